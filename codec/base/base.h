@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Ground: errors, memory, little-endian access, small integer helpers.
+ * Knows nothing of the codec. The room's other headers: pool.h, cpu.h,
+ * digest.h.
+ */
+#ifndef ADCGS_BASE_BASE_H
+#define ADCGS_BASE_BASE_H
+
+#include <adcgs/status.h>
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifdef __FAST_MATH__
+#error "adcgs must not be built with -ffast-math: decoded frames would differ"
+#endif
+
+/** Record status and message, return status: `return adcgs_fail(err, ADCGS_ERR_DATA, "...", ...)`. error may be NULL. */
+adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
+
+/** Return early when expr is not ADCGS_OK. */
+#define ADCGS_TRY(expr)                          \
+    do {                                         \
+        const adcgs_status try_status_ = (expr); \
+        if (try_status_ != ADCGS_OK)             \
+            return try_status_;                  \
+    } while (0)
+
+/** Memory with a limit. One per decoder; alignment is 64 bytes; contents are zero. Not thread-safe. */
+typedef struct adcgs_memory {
+    uint64_t used, peak;
+    uint64_t limit; /**< bytes; 0 means none */
+} adcgs_memory;
+
+/**
+ * Allocate count * size zeroed bytes, 64-byte aligned. NULL on overflow, limit or
+ * exhaustion, with the reason in error (ADCGS_ERR_MEMORY or ADCGS_ERR_LIMIT).
+ * memory may be NULL: no accounting. count * size == 0 gives a valid pointer.
+ */
+void *adcgs_alloc(adcgs_memory *memory, size_t count, size_t size, adcgs_error *error);
+/** Free what adcgs_alloc() gave; NULL is fine. The same memory that allocated it. */
+void adcgs_free(adcgs_memory *memory, void *pointer);
+
+static inline uint16_t adcgs_load_le16(const uint8_t *p)
+{
+    return (uint16_t)(p[0] | p[1] << 8);
+}
+static inline uint32_t adcgs_load_le32(const uint8_t *p)
+{
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+static inline uint64_t adcgs_load_le64(const uint8_t *p)
+{
+    return adcgs_load_le32(p) | (uint64_t)adcgs_load_le32(p + 4) << 32;
+}
+static inline void adcgs_store_le16(uint8_t *p, uint16_t v)
+{
+    p[0] = (uint8_t)v;
+    p[1] = (uint8_t)(v >> 8);
+}
+static inline void adcgs_store_le32(uint8_t *p, uint32_t v)
+{
+    adcgs_store_le16(p, (uint16_t)v);
+    adcgs_store_le16(p + 2, (uint16_t)(v >> 16));
+}
+static inline void adcgs_store_le64(uint8_t *p, uint64_t v)
+{
+    adcgs_store_le32(p, (uint32_t)v);
+    adcgs_store_le32(p + 4, (uint32_t)(v >> 32));
+}
+/** The bits of a binary32 as an integer, and back. */
+static inline uint32_t adcgs_float_bits(float f)
+{
+    uint32_t u;
+    memcpy(&u, &f, sizeof u);
+    return u;
+}
+static inline float adcgs_bits_float(uint32_t u)
+{
+    float f;
+    memcpy(&f, &u, sizeof f);
+    return f;
+}
+static inline uint64_t adcgs_double_bits(double f)
+{
+    uint64_t u;
+    memcpy(&u, &f, sizeof u);
+    return u;
+}
+static inline double adcgs_bits_double(uint64_t u)
+{
+    double f;
+    memcpy(&f, &u, sizeof f);
+    return f;
+}
+
+#define ADCGS_MIN(a, b) ((a) < (b) ? (a) : (b))
+#define ADCGS_MAX(a, b) ((a) > (b) ? (a) : (b))
+#define ADCGS_COUNTOF(a) (sizeof(a) / sizeof((a)[0]))
+
+#endif

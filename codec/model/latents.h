@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The latent chain (spec clause "Latent chain"): eta -> f_v -> Sigma_v, C_v ->
+ * f_g chunk by chunk. One walk defines the order and the contexts; what it does
+ * at each group of values (decode, encode, quantise, count) is a visitor.
+ */
+#ifndef ADCGS_MODEL_LATENTS_H
+#define ADCGS_MODEL_LATENTS_H
+
+#include "model/model.h"
+#include "base/pool.h"
+
+#define ADCGS_SLICE_LOG2_MIN 6
+#define ADCGS_SLICE_LOG2_DEFAULT 10
+
+/** The values of one group at one anchor (and one primitive, for f_g). */
+typedef struct adcgs_latent_site {
+    uint32_t anchor;
+    int k;             /**< primitive for f_g, else -1 */
+    int group;         /**< adcgs_group */
+    int first, count;  /**< channels [first, first+count) of the latent's row */
+    const int16_t *mu; /**< [count], 1/64 step */
+    const uint8_t *si; /**< [count] */
+    int16_t *yq;       /**< [count], in the model */
+} adcgs_latent_site;
+
+/** Called for every site in coding order within a slice; must leave yq final (it is the context of what follows). */
+typedef void (*adcgs_latent_visit)(void *user, const adcgs_latent_site *site);
+
+typedef struct adcgs_latents adcgs_latents;
+/** Prepare the entropy networks of a model (which must outlive it and keep its networks unchanged). */
+adcgs_status adcgs_latents_create(adcgs_latents **out, const adcgs_model *model, adcgs_cpu_level cpu, adcgs_memory *memory,
+                                  adcgs_error *error);
+void adcgs_latents_free(adcgs_latents **latents);
+
+/** Walk one layer (0..4) of anchors [begin, end) in coding order. Layer m needs layers < m of the same anchors final. */
+void adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
+                        adcgs_latent_visit visit, void *user);
+
+/** Append sub-stream of (layer, [begin,end)). Values must be consistent with the networks: ADCGS_ERR_USAGE names the site if not. */
+adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
+                                  adcgs_buffer *out, adcgs_error *error);
+adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
+                                  const uint8_t *data, size_t bytes, adcgs_error *error);
+/** What an absent or damaged layer holds: every n = 0, so yq = mu. Also clears masks/flags to "all present, none static" for layer 0. */
+void adcgs_latents_conceal(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end);
+
+#endif

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The hinge: adcgs_model is exactly the numbers that one time segment of a
+ * stream carries, no more (decision D1). The trainer ends by producing one; the
+ * writer serialises it; the reader returns an equal one; primitives and frames
+ * are derived from it alone.
+ */
+#ifndef ADCGS_MODEL_MODEL_H
+#define ADCGS_MODEL_MODEL_H
+
+#include "base/base.h"
+#include "bits/bytes.h"
+#include "net/net.h"
+
+#define ADCGS_K_MAX 16
+#define ADCGS_NV_MAX 64
+#define ADCGS_NG_MAX 32
+#define ADCGS_CHUNKS_MAX 4
+#define ADCGS_ETA_MAX 8
+#define ADCGS_OCTAVES_MAX 10
+#define ADCGS_SIGMA_N 6
+#define ADCGS_COLOUR_N 3
+#define ADCGS_LAYERS 5
+
+/** Channel groups that share a shape code. */
+typedef enum adcgs_group {
+    ADCGS_GROUP_ETA = 0,
+    ADCGS_GROUP_FV = 1,
+    ADCGS_GROUP_SIGMA = 2,
+    ADCGS_GROUP_COLOUR = 3,
+    ADCGS_GROUP_FG = 4, /**< 4 + chunk */
+    ADCGS_GROUPS = 8
+} adcgs_group;
+
+/** Sizes and switches; the same for all segments of a stream. */
+typedef struct adcgs_params {
+    uint8_t k;            /**< primitives per anchor, 1..16 */
+    uint8_t n_fv;         /**< N_v: channels of f_v, 1..64 */
+    uint8_t n_fg;         /**< N_g: channels of f_g per primitive, 0..32, a multiple of chunks */
+    uint8_t chunks;       /**< M: 1..4 */
+    uint8_t n_eta;        /**< channels of the hyper-latent, 0..8; 0: f_v has a factorised prior */
+    uint8_t octaves;      /**< octaves of the position code f_p, 0..10: f_p has 6*octaves values */
+    uint8_t fine_uses_fv; /**< F_varpi's static inputs are [f_p, f_v] instead of f_p */
+    uint8_t coarse_rotation; /**< F_omega also predicts a rotation of the anchor */
+    uint16_t time_rows;   /**< rows of Z; 0: the scene is still, no deformation networks */
+    uint16_t time_width;  /**< columns of Z */
+} adcgs_params;
+
+typedef struct adcgs_model {
+    adcgs_params params;
+    double time_start, time_end; /**< seconds; end >= start */
+
+    uint32_t n;      /**< anchors, >= 1 */
+    uint8_t depth;   /**< 0..21 */
+    float origin[3]; /**< scene units: corner of voxel (0,0,0) */
+    float voxel;     /**< scene units: edge of a voxel, > 0 */
+    uint32_t *pos;   /**< [n][3], Morton order, distinct */
+
+    uint8_t *is_static; /**< [n] 1: the anchor is not deformed */
+    uint16_t *mask;     /**< [n] bit k: primitive k exists */
+
+    /* Reconstructed latents yq in 1/64 step, |yq| <= 32767. Primitives that do not exist have f_g = 0. */
+    int16_t *eta;    /**< [n][n_eta] */
+    int16_t *fv;     /**< [n][n_fv] */
+    int16_t *sigma;  /**< [n][6]: log extents of offsets xyz, log base scales xyz */
+    int16_t *colour; /**< [n][3] */
+    int16_t *fg;     /**< [n][k][n_fg]; chunk c is channels [c*n_fg/chunks, (c+1)*n_fg/chunks) */
+
+    /* value = (float)yq * d, d = step/64, normal binary32 in [2^-40, 2^10] */
+    float d_fv[ADCGS_NV_MAX], d_sigma[ADCGS_SIGMA_N], d_colour[ADCGS_COLOUR_N], d_fg[ADCGS_NG_MAX];
+    uint8_t shape[ADCGS_GROUPS];          /**< 0..3: 0 Gaussian, 1: beta 1.5, 2: beta 1.25, 3: beta 1 */
+    int16_t eta_mu[ADCGS_ETA_MAX];        /**< prior of eta, 1/64 step */
+    uint8_t eta_si[ADCGS_ETA_MAX];
+
+    adcgs_net net[ADCGS_ROLES];
+    uint8_t layers; /**< layers this model was decoded with, 1..5; not part of equality or digest of a complete model */
+} adcgs_model;
+
+/** Allocate the per-anchor arrays for n anchors (n, params set by the caller first). */
+adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_error *error);
+void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory);
+/** Shapes, ranges, network sizes against params; E24 bounds; finite steps. Everything a decoder relies on. */
+adcgs_status adcgs_model_validate(const adcgs_model *model, adcgs_error *error);
+/** Byte-for-byte equality of everything the stream carries; on difference, names the first in error. */
+int adcgs_model_equal(const adcgs_model *a, const adcgs_model *b, adcgs_error *error);
+/** MD5 of the canonical serialisation (spec "Model digest"). */
+void adcgs_model_digest(const adcgs_model *model, uint8_t digest[16]);
+
+/** Expected n_in, n_out of a role's network under params; 0,0 if the role is absent under params. */
+void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint32_t *n_out);
+
+#endif

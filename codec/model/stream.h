@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * A whole stream in memory: header, cameras, metadata and one model per time
+ * segment; written to bytes and read from bytes (spec clause "Stream").
+ */
+#ifndef ADCGS_MODEL_STREAM_H
+#define ADCGS_MODEL_STREAM_H
+
+#include "model/latents.h"
+#include "model/model.h"
+
+#include <adcgs/decoder.h>
+
+typedef struct adcgs_meta {
+    char *key, *value; /**< UTF-8, owned */
+} adcgs_meta;
+
+typedef struct adcgs_stream {
+    uint8_t profile, level, arith;
+    uint8_t slice_log2;            /**< anchors per slice = 2^slice_log2 */
+    adcgs_params params;
+    uint32_t timebase_num, timebase_den; /**< seconds per tick = num/den */
+    uint32_t rate_num, rate_den;   /**< frames per second suggested for playing */
+    int64_t start_ticks, duration_ticks;
+    double scene_origin[3], scene_scale; /**< world = origin + scale * scene units */
+    float background[3];
+    float screen_filter;           /**< variance in pixels^2 added to every projected splat, 0..16 */
+    uint8_t colour_space;          /**< 0 unknown, 1 sRGB, 2 linear BT.709 */
+    uint8_t axes;                  /**< 0 unknown, 1 right-handed y up, 2 right-handed z up, 3 right-handed y down */
+    uint8_t units;                 /**< 0 unknown, 1 metre */
+    uint32_t n_cameras;
+    adcgs_camera *cameras;         /**< [n_cameras] */
+    uint32_t n_meta;
+    adcgs_meta *meta;
+    uint32_t n_segments;
+    adcgs_model *segments;         /**< [n_segments], in time order; time_start/end in seconds are derived from ticks */
+    int truncated;
+    adcgs_bytes bytes;             /**< filled by reading and by writing */
+} adcgs_stream;
+
+void adcgs_stream_init(adcgs_stream *stream); /**< zero and defaults (timebase 1/1000, slice 1024, filter 0.3) */
+void adcgs_stream_clear(adcgs_stream *stream, adcgs_memory *memory);
+
+/** Serialise; fills stream->bytes. Validates first. */
+adcgs_status adcgs_stream_write(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error);
+
+typedef struct adcgs_read_options {
+    adcgs_cpu_level cpu;   /**< resolved */
+    adcgs_pool *pool;      /**< may be NULL */
+    adcgs_memory *memory;  /**< may be NULL */
+    int layers;            /**< 1..5, 0: all */
+    int strict_end;
+} adcgs_read_options;
+
+/** Called for each syntax element, chunk and sub-stream in stream order: absolute bit position, name, value as text. */
+typedef void (*adcgs_trace_fn)(void *user, uint64_t bit, const char *element, const char *value);
+
+/** Parse and decode from a sequential source. trace may be NULL. */
+adcgs_status adcgs_stream_read(adcgs_stream *stream, adcgs_read_fn read, void *user, const adcgs_read_options *options,
+                               adcgs_trace_fn trace, void *trace_user, adcgs_error *error);
+
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Networks as the stream carries them, the E24 integer evaluation of the
+ * entropy networks, and the coding of weights (decisions D2, D6; spec clauses
+ * "Networks" and "Weights").
+ */
+#ifndef ADCGS_NET_NET_H
+#define ADCGS_NET_NET_H
+
+#include "base/base.h"
+#include "bits/range.h"
+
+#include <adcgs/decoder.h>
+
+#define ADCGS_NET_LAYERS_MAX 8
+#define ADCGS_NET_INPUTS_MAX 1024
+#define ADCGS_NET_WIDTH_MAX 512
+#define ADCGS_LANES 64 /**< samples are evaluated in groups of 64, feature-major: [feature][64] */
+
+/**
+ * A tensor [rows][cols], row-major, of 32-bit values.
+ * mode 0: value = m * 2^-e, 0 <= e <= 40, any int32 m; mode 1: m holds the bits of a finite binary32.
+ */
+typedef struct adcgs_tensor {
+    uint32_t rows, cols;
+    uint8_t mode, e;
+    int32_t *m;
+} adcgs_tensor;
+
+/** What a network is for. Values are those of the syntax element net_role. */
+typedef enum adcgs_role {
+    ADCGS_ROLE_ENTROPY_FV = 0,    /**< E_fv: eta -> mean and scale of f_v */
+    ADCGS_ROLE_ENTROPY_SIGMA = 1, /**< E_Sigma: f_v -> of Sigma_v */
+    ADCGS_ROLE_ENTROPY_COLOUR = 2,/**< E_C: f_v -> of C_v */
+    ADCGS_ROLE_ENTROPY_FG = 3,    /**< E_fg: 3 + chunk, chunk 0..3: f_v and earlier chunks of f_g,k -> of this chunk */
+    ADCGS_ROLE_PREDICTION = 8,    /**< F_theta (binary32) */
+    ADCGS_ROLE_COARSE = 9,        /**< F_omega (binary32) */
+    ADCGS_ROLE_FINE = 10,         /**< F_varpi (binary32) */
+    ADCGS_ROLE_TIME = 11,         /**< Z, the time table: one tensor [time_rows][time_width] in layer 0's w, no bias */
+    ADCGS_ROLES = 12
+} adcgs_role;
+
+/** One dense layer, optionally residual. Float networks ignore the shift. */
+typedef struct adcgs_layer {
+    adcgs_tensor w;  /**< [n_out][n_in] */
+    adcgs_tensor b;  /**< [n_out][1] (0 rows for the time table) */
+    uint8_t residual;/**< h' = clip(h + lrelu(shr(acc, shift)), A), n_in == n_out; never on the last layer */
+    uint8_t shift;   /**< s, E24: hidden layers, and s_mu on the last */
+} adcgs_layer;
+
+/**
+ * A network. Hidden layers use leaky ReLU of slope 1/64; the last is linear.
+ * E24 (roles below 8): input clip(shr(yq, in_shift), 2047); the last layer's rows are [mu of C channels, then sigma index of
+ * C channels]; mu = clip(shr(acc, shift), 32767), si = clip3(0, 63, shr(acc, sigma_shift) + sigma_offset).
+ * A network with n_in == 0 has one layer and its outputs are its biases.
+ */
+typedef struct adcgs_net {
+    uint8_t present;
+    uint8_t role;
+    uint8_t n_layers;
+    uint8_t in_shift;     /**< 0..8 */
+    uint8_t sigma_shift;  /**< 0..24 */
+    int16_t sigma_offset; /**< -64..127 */
+    adcgs_layer layer[ADCGS_NET_LAYERS_MAX];
+} adcgs_net;
+
+void adcgs_net_clear(adcgs_net *net); /**< frees with memory NULL accounting; harmless on zeroed structs */
+uint32_t adcgs_net_weights(const adcgs_net *net);
+static inline uint32_t adcgs_net_inputs(const adcgs_net *net)
+{
+    return net->layer[0].w.cols;
+}
+static inline uint32_t adcgs_net_outputs(const adcgs_net *net)
+{
+    return net->layer[net->n_layers - 1].w.rows;
+}
+
+/** An E24 network made ready: int16 weights packed for the CPU level. */
+typedef struct adcgs_e24 adcgs_e24;
+/** Checks shapes, |w| <= 2047, all w on mode 0, and the row bound A*sum|w| + |b| + 2^(s-1) <= 2^24-1: ADCGS_ERR_DATA names the row. */
+adcgs_status adcgs_e24_create(adcgs_e24 **out, const adcgs_net *net, adcgs_cpu_level cpu, adcgs_memory *memory, adcgs_error *error);
+void adcgs_e24_free(adcgs_e24 **net, adcgs_memory *memory);
+/**
+ * Evaluate 64 samples. x: [n_in][64] yq in 1/64 step (already the reconstruction; shift and clip happen inside).
+ * mu: [C][64] in 1/64 step; si: [C][64] in 0..63, C = n_out/2. scratch: adcgs_e24_scratch() bytes, 64-byte aligned.
+ */
+void adcgs_e24_eval(const adcgs_e24 *net, const int16_t *x, int16_t *mu, uint8_t *si, void *scratch);
+size_t adcgs_e24_scratch(const adcgs_e24 *net);
+/** Known-answer test of every E24 kernel this machine has. */
+adcgs_status adcgs_e24_check(adcgs_error *error);
+
+/** shr of the specification: floor((v + 2^(s-1)) / 2^s), s = 0 gives v. |v| < 2^30, 0 <= s <= 24. */
+static inline int32_t adcgs_shr(int32_t v, int s)
+{
+    if (s == 0)
+        return v;
+    const int32_t r = v + (1 << (s - 1));
+    return r >= 0 ? r >> s : -((-r + (1 << s) - 1) >> s);
+}
+static inline int32_t adcgs_clip(int32_t v, int32_t limit)
+{
+    return v > limit ? limit : v < -limit ? -limit : v;
+}
+
+/** Weight coder (bitstream study 4): code class, top bits, rest, sign of m with adaptive contexts. */
+void adcgs_tensor_encode(adcgs_range_enc *e, const adcgs_tensor *t);
+/** rows, cols, mode, e are set; m is allocated by the caller. Sticky errors in d; ADCGS_ERR_DATA on values outside the mode's range. */
+adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_error *error);
+
+/* ---- Probability tables (spec annex "Tables") ---- */
+#define ADCGS_SIGMA_LEVELS 64
+#define ADCGS_SHAPES 4
+/** Half-support T of level l: coded values are -T..T and an escape. */
+int adcgs_table_support(int shape, int level);
+/** CDF of level l, 2T+3 entries, 0 .. 65536; symbol k is value k-T, the last symbol is the escape. */
+const uint32_t *adcgs_table_cdf(int shape, int level);
+/** Decode / encode one value under level si (si == 0 is never coded: the value is 0). */
+int32_t adcgs_value_dec(adcgs_range_dec *d, int shape, int si);
+void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value);
+/** Cost in 1/65536 bit. |value| may be anything codable: |value| <= T + 2^16 - 1 + 2^15. */
+uint32_t adcgs_value_cost(int shape, int si, int32_t value);
+/** Largest |value| that can be coded at a level. */
+int32_t adcgs_value_max(int shape, int si);
+/** sigma in steps of level l, for the trainer: 0.11 * (64/0.11)^(l/63). */
+double adcgs_table_sigma(int level);
+
+#endif

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Rendering in strict binary32 (spec clause "Rendering"): project, order by
+ * depth, bin into 16x16 tiles with exact 4x4-block masks, blend front to back.
+ * The trainer uses the same forward pass and reads the kept lists back.
+ */
+#ifndef ADCGS_RENDER_RENDER_H
+#define ADCGS_RENDER_RENDER_H
+
+#include "base/pool.h"
+#include "base/cpu.h"
+
+#include <adcgs/camera.h>
+#include <adcgs/decoder.h>
+
+#define ADCGS_TILE 16
+
+/** A camera prepared for rendering: scene units, binary32. */
+typedef struct adcgs_view {
+    int32_t width, height;
+    float rotation[9];    /**< scene to camera, row-major */
+    float translation[3]; /**< camera = rotation * scene + translation */
+    float fx, fy, cx, cy;
+    float near_plane;
+    float limit[4];       /**< bounds of X/Z (lo, hi) and Y/Z (lo, hi) inside the Jacobian */
+} adcgs_view;
+
+/** Validates the camera; world = origin + scale * scene. Binary64, rounded once per field (spec "View"). */
+adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale, adcgs_error *error);
+
+/** One projected splat, 64 bytes. alpha = exp2(a dx^2 + b dx dy + c dy^2 + log2_opacity), dx = pixel centre - x. */
+typedef struct adcgs_splat2d {
+    float x, y;          /**< centre, pixels */
+    float a, b, c;       /**< conic times -log2(e)/2, b times -log2(e) */
+    float log2_opacity;
+    float rgb[3];
+    float depth;         /**< camera z, > near plane */
+    uint16_t tile[4];    /**< x0, y0, x1, y1: tiles [x0,x1) x [y0,y1) that may be touched */
+    uint32_t slot;       /**< primitive it came from */
+    float spare[3];
+} adcgs_splat2d;
+
+/** A splat in a tile: index into splats, and the 4x4 blocks it may touch (bit 4*by+bx). */
+typedef struct adcgs_tile_entry {
+    uint32_t splat;
+    uint32_t mask;
+} adcgs_tile_entry;
+
+typedef struct adcgs_raster adcgs_raster;
+
+adcgs_status adcgs_raster_create(adcgs_raster **out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_memory *memory, adcgs_error *error);
+void adcgs_raster_free(adcgs_raster **raster);
+
+/**
+ * Render. rgb: planar [3][height][width]. No allocation once the workspace has grown. keep nonzero: what backward needs stays
+ * readable through adcgs_raster_kept() until the next call.
+ */
+adcgs_status adcgs_raster_forward(adcgs_raster *raster, const adcgs_primitives *primitives, const adcgs_view *view,
+                                  const float background[3], float screen_filter, float *rgb, int keep, adcgs_error *error);
+
+/** What the last forward pass with keep left behind. */
+typedef struct adcgs_kept {
+    uint32_t n_splats;
+    const adcgs_splat2d *splats;     /**< [n_splats], by depth, then slot */
+    int tiles_x, tiles_y;
+    const uint32_t *tile_start;      /**< [tiles+1] into entries */
+    const adcgs_tile_entry *entries; /**< depth order within a tile */
+    const float *transmittance;      /**< final T, [tiles][16 blocks][16 pixels] */
+} adcgs_kept;
+void adcgs_raster_kept(const adcgs_raster *raster, adcgs_kept *kept);
+
+#endif

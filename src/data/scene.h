@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * A scene to learn from: posed images with times, whatever layout they came
+ * in. Conventions are converted here, once: cameras are OpenCV-axed pinholes in
+ * world units, times are seconds from the start of the scene.
+ */
+#ifndef ADCGS_DATA_SCENE_H
+#define ADCGS_DATA_SCENE_H
+
+#include "base/base.h"
+#include "io/image.h"
+
+#include <adcgs/camera.h>
+
+typedef enum adcgs_split { ADCGS_SPLIT_TRAIN, ADCGS_SPLIT_VAL, ADCGS_SPLIT_TEST, ADCGS_SPLITS } adcgs_split;
+
+typedef struct adcgs_scene_view {
+    adcgs_camera camera;  /**< at the image's own size; name is the file's stem */
+    double time;          /**< seconds */
+    char *path;           /**< of the image */
+} adcgs_scene_view;
+
+typedef struct adcgs_scene_points {
+    uint32_t n;
+    float (*position)[3]; /**< world */
+    uint8_t (*colour)[3];
+} adcgs_scene_points;
+
+typedef struct adcgs_scene {
+    char *directory;
+    uint32_t n_views[ADCGS_SPLITS];
+    adcgs_scene_view *views[ADCGS_SPLITS];
+    double duration;      /**< seconds, 0 for a still scene; from the training split */
+    double frame_rate;    /**< frames per second */
+    uint32_t n_times;     /**< distinct times of the training split */
+    int has_alpha;        /**< images carry alpha, composited over background */
+    float background[3];
+    adcgs_scene_points points; /**< initial points, n = 0 if the scene has none */
+    uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
+} adcgs_scene;
+
+/** Overrides given on a command line. Zero-initialise. */
+typedef struct adcgs_scene_options {
+    const char *points_path;  /**< PLY of initial points instead of the scene's own */
+    int has_background;
+    float background[3];
+    double frame_rate;        /**< 0: the scene's, else 30 */
+} adcgs_scene_options;
+
+/** Open a scene folder or its JSON file. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate. */
+adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error);
+void adcgs_scene_free(adcgs_scene **scene);
+
+/**
+ * Load a view's picture as planar binary32 [3][h][w], alpha composited over scene->background, box-filtered down by the integer
+ * factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not NULL, gets the camera at that size.
+ * The caller frees *rgb with free().
+ */
+adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb, adcgs_camera *camera,
+                              adcgs_error *error);
+
+#endif
