@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Scenes with known truth: small animated worlds, ray traced, written in the
+ * layout of D-NeRF (transforms_{train,val,test}.json and a folder of pictures
+ * each). Every byte follows from the name and the size: only + - * / and sqrt
+ * on doubles, own sine and cosine, counter-based random numbers.
+ */
+#ifndef ADCGS_SCENES_SCENES_H
+#define ADCGS_SCENES_SCENES_H
+
+#include "base/pool.h"
+
+typedef struct adcgs_scenes_options {
+    const char *name;   /**< of the scene, see adcgs_scenes_name() */
+    int width, height;  /**< of the pictures; 0: the scene's own size */
+    const char *format; /**< extension of the pictures: "png" or "ppm"; NULL: "png" */
+} adcgs_scenes_options;
+
+/** Name and one line about scene i; NULL past the last. */
+const char *adcgs_scenes_name(int i);
+const char *adcgs_scenes_about(int i);
+
+/** Number of pictures of the three splits together, 0 if there is no such scene. */
+int adcgs_scenes_count(const char *name);
+
+/** Called after each picture. */
+typedef void (*adcgs_scenes_progress_fn)(void *user, int done, int total);
+
+/** Render a scene into a folder, which is made if need be. pool may be NULL. */
+adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_options *options, adcgs_pool *pool,
+                                adcgs_scenes_progress_fn progress, void *user, adcgs_error *error);
+
+#endif

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The scenes. To add one, add a line to the table below, and objects if the present ones do not do. */
+#include "scenes/table.h"
+
+/* A table top under a wide sky. Everything rests on z = 0; the cameras stand on the -y side. */
+static const adcgs_trace_object stage[] = {
+    /* 0 */ {.shape = ADCGS_SHAPE_DOME, .size = {7.0}, .texture = ADCGS_TEXTURE_NOISE, .frequency = 0.35,
+             .colour = {{0.42, 0.56, 0.74}, {0.86, 0.84, 0.80}}, .seed = 11},
+    /* 1 */ {.shape = ADCGS_SHAPE_FLOOR, .size = {2.6}, .texture = ADCGS_TEXTURE_CHECKER, .frequency = 1.6,
+             .colour = {{0.72, 0.64, 0.52}, {0.50, 0.46, 0.44}}, .detail = 0.30, .seed = 12},
+    /* 2 */ {.shape = ADCGS_SHAPE_BOX, .size = {0.36, 0.36, 0.36}, .position = {-0.95, 0.50, 0.36},
+             .texture = ADCGS_TEXTURE_PATCHES, .frequency = 6.0, .colour = {{0.15, 0.35, 0.55}, {0.90, 0.85, 0.60}}, .seed = 13},
+    /* 3 */ {.shape = ADCGS_SHAPE_CYLINDER, .size = {0.28, 0.0, 0.52}, .position = {0.92, 0.62, 0.52},
+             .texture = ADCGS_TEXTURE_STRIPES, .frequency = 4.0, .colour = {{0.85, 0.82, 0.78}, {0.22, 0.42, 0.34}},
+             .detail = 0.2, .seed = 14},
+    /* 4 */ {.shape = ADCGS_SHAPE_BALL, .size = {0.22}, .position = {-0.15, -1.00, 0.22}, .texture = ADCGS_TEXTURE_DOTS,
+             .frequency = 7.0, .colour = {{0.92, 0.88, 0.80}, {0.75, 0.25, 0.20}}, .seed = 15},
+    /* 5 */ {.shape = ADCGS_SHAPE_CYLINDER, .size = {0.42, 0.0, 0.16}, .position = {0.0, 0.15, 0.16},
+             .texture = ADCGS_TEXTURE_NOISE, .frequency = 5.0, .colour = {{0.30, 0.26, 0.30}, {0.80, 0.76, 0.82}}, .seed = 16},
+    /* 6: a ball that hops and rolls */
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.26}, .position = {-1.10, -0.45, 0.26}, .texture = ADCGS_TEXTURE_CHECKER,
+     .frequency = 5.0, .colour = {{0.95, 0.72, 0.15}, {0.20, 0.22, 0.50}}, .seed = 17, .velocity = {1.0, -0.05, 0.0},
+     .bounces = 1.0, .bounce_height = 0.40, .spin_axis = {0.0, 1.0, 0.0}, .spin = 0.45},
+    /* 7: a box that turns on a pedestal */
+    {.shape = ADCGS_SHAPE_BOX, .size = {0.26, 0.20, 0.26}, .position = {0.0, 0.15, 0.58}, .texture = ADCGS_TEXTURE_RINGS,
+     .frequency = 28.0, .colour = {{0.88, 0.50, 0.42}, {0.35, 0.18, 0.35}}, .detail = 0.25, .seed = 18,
+     .spin_axis = {0.0, 0.0, 1.0}, .spin = 0.20},
+    /* 8: a ball that passes behind the still things */
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.24}, .position = {-0.85, 1.30, 0.24}, .texture = ADCGS_TEXTURE_STRIPES,
+     .frequency = 6.0, .colour = {{0.20, 0.60, 0.62}, {0.92, 0.92, 0.86}}, .seed = 19, .velocity = {1.5, -0.15, 0.0},
+     .spin_axis = {0.0, 1.0, 0.0}, .spin = 0.60},
+    /* 9: a ball that changes colour slowly */
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.30}, .position = {1.10, -0.40, 0.30}, .texture = ADCGS_TEXTURE_NOISE,
+     .frequency = 5.0, .colour = {{0.85, 0.30, 0.25}, {0.98, 0.62, 0.45}}, .seed = 20, .fade = {-0.60, 0.25, 0.40}},
+    /* 10: a small ball that flies around the turning box */
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.13}, .position = {-0.50, 0.00, 1.15}, .texture = ADCGS_TEXTURE_CHECKER,
+     .frequency = 9.0, .colour = {{0.30, 0.70, 0.30}, {0.90, 0.95, 0.70}}, .seed = 21, .orbit = {0.0, 0.15},
+     .orbit_turns = 0.40},
+};
+
+enum { HOP = 1 << 6, SPIN = 1 << 7, PASS = 1 << 8, FADE = 1 << 9, ORBIT = 1 << 10 };
+
+/* A few things that hardly anything is needed to learn. */
+static const adcgs_trace_object mini[] = {
+    {.shape = ADCGS_SHAPE_DOME, .size = {7.0}, .texture = ADCGS_TEXTURE_NOISE, .frequency = 0.25,
+     .colour = {{0.45, 0.55, 0.70}, {0.80, 0.80, 0.80}}, .seed = 31},
+    {.shape = ADCGS_SHAPE_FLOOR, .size = {2.4}, .texture = ADCGS_TEXTURE_NOISE, .frequency = 1.5,
+     .colour = {{0.70, 0.60, 0.50}, {0.45, 0.45, 0.40}}, .seed = 32},
+    {.shape = ADCGS_SHAPE_BOX, .size = {0.45, 0.45, 0.45}, .position = {-0.60, 0.30, 0.45}, .texture = ADCGS_TEXTURE_STRIPES,
+     .frequency = 2.0, .colour = {{0.20, 0.35, 0.60}, {0.85, 0.80, 0.60}}, .seed = 33},
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.40}, .position = {0.40, -0.40, 0.40}, .texture = ADCGS_TEXTURE_NOISE,
+     .frequency = 3.0, .colour = {{0.80, 0.30, 0.20}, {0.95, 0.75, 0.30}}, .seed = 34, .velocity = {0.60, 0.0, 0.0}},
+};
+
+#define STAGE .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage), .size = 256, .cameras = 12, .times = 10, .n_val = 5, \
+              .n_test = 10, .distance = 4.2, .target = {0.0, 0.0, 0.35}
+
+static const adcgs_scenes_entry entries[] = {
+    {.name = "demo", .about = "things on a table: some still, five that hop, turn, pass behind, fade and fly",
+     .moving = HOP | SPIN | PASS | FADE | ORBIT, STAGE},
+    {.name = "still", .about = "the demo's table, nothing moves", .moving = 0, STAGE},
+    {.name = "hop", .about = "the demo's table, only the hopping ball moves", .moving = HOP, STAGE},
+    {.name = "spin", .about = "the demo's table, only the box turns", .moving = SPIN, STAGE},
+    {.name = "pass", .about = "the demo's table, only the ball at the back moves, hidden at times", .moving = PASS, STAGE},
+    {.name = "fade", .about = "the demo's table, only a colour changes", .moving = FADE, STAGE},
+    {.name = "orbit", .about = "the demo's table, only the small ball flies", .moving = ORBIT, STAGE},
+    {.name = "tiny", .about = "a miniature for tests: a box and a ball that slides", .objects = mini,
+     .n_objects = (int)ADCGS_COUNTOF(mini), .moving = 1 << 3, .size = 64, .cameras = 6, .times = 4, .n_val = 1, .n_test = 3,
+     .distance = 4.2, .target = {0.0, 0.0, 0.3}},
+};
+
+const adcgs_scenes_entry *adcgs_scenes_entry_at(int i)
+{
+    return i >= 0 && i < (int)ADCGS_COUNTOF(entries) ? &entries[i] : NULL;
+}
+
+const adcgs_scenes_entry *adcgs_scenes_entry_find(const char *name)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(entries); i++)
+        if (!strcmp(entries[i].name, name))
+            return &entries[i];
+    return NULL;
+}

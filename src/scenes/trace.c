@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Rays against shapes, and the light on what they hit. */
+#include "scenes/trace.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+#define SAMPLES_MAX 8
+#define FAR 1e30
+
+/* An object at one moment. */
+typedef struct pose {
+    double centre[3];
+    double axes[9]; /* rows are the local axes in the world */
+    double fade;
+    double bound2;  /* squared radius of a ball around it */
+} pose;
+
+typedef struct job {
+    const adcgs_trace_object *objects;
+    const pose *poses;
+    int n, width, height, samples;
+    const adcgs_trace_camera *camera;
+    double light[SAMPLES_MAX * SAMPLES_MAX][3];
+    float *rgb;
+} job;
+
+typedef struct hit {
+    double t;
+    int object;
+    double local[3], normal[3]; /* normal in local axes, not turned towards the ray */
+} hit;
+
+/* Odd Taylor polynomial of the sine within a quarter turn of zero; error below 1e-11 there. */
+static double sin_core(double x)
+{
+    const double y = x * x;
+    double s = -1.0 / 1307674368000.0;
+    s = s * y + 1.0 / 6227020800.0;
+    s = s * y - 1.0 / 39916800.0;
+    s = s * y + 1.0 / 362880.0;
+    s = s * y - 1.0 / 5040.0;
+    s = s * y + 1.0 / 120.0;
+    s = s * y - 1.0 / 6.0;
+    return x + x * y * s;
+}
+
+double adcgs_trace_sin(double turns)
+{
+    double f = turns - (double)(int)turns;
+    f = f > 0.5 ? f - 1.0 : f < -0.5 ? f + 1.0 : f;
+    f = f > 0.25 ? 0.5 - f : f < -0.25 ? -0.5 - f : f;
+    return sin_core(2.0 * PI * f);
+}
+
+double adcgs_trace_cos(double turns)
+{
+    return adcgs_trace_sin(turns + 0.25);
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void normalise(double a[3])
+{
+    const double length = sqrt(dot(a, a));
+    for (int i = 0; i < 3; i++)
+        a[i] /= length;
+}
+
+static void cross(double out[3], const double a[3], const double b[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const double target[3])
+{
+    const double up[3] = {0.0, 0.0, 1.0};
+    double back[3], right[3], above[3];
+    for (int i = 0; i < 3; i++)
+        back[i] = eye[i] - target[i];
+    normalise(back);
+    cross(right, up, back);
+    normalise(right);
+    cross(above, back, right);
+    for (int i = 0; i < 3; i++) {
+        camera->to_world[4 * i] = right[i];
+        camera->to_world[4 * i + 1] = above[i];
+        camera->to_world[4 * i + 2] = back[i];
+        camera->to_world[4 * i + 3] = eye[i];
+    }
+}
+
+/* Turn a vector about a unit axis. */
+static void rotate(double v[3], const double axis[3], double turns)
+{
+    const double s = adcgs_trace_sin(turns), c = adcgs_trace_cos(turns), d = dot(axis, v) * (1.0 - c);
+    double side[3];
+    cross(side, axis, v);
+    for (int i = 0; i < 3; i++)
+        v[i] = v[i] * c + side[i] * s + axis[i] * d;
+}
+
+static void pose_at(pose *out, const adcgs_trace_object *o, double time)
+{
+    static const double x_axis[3] = {1.0, 0.0, 0.0};
+    for (int a = 0; a < 3; a++) {
+        double *const axis = out->axes + 3 * a;
+        for (int i = 0; i < 3; i++)
+            axis[i] = a == i ? 1.0 : 0.0;
+        rotate(axis, x_axis, o->tilt);
+        rotate(axis, o->spin_axis, o->spin * time);
+        out->centre[a] = o->position[a] + o->velocity[a] * time;
+    }
+    if (o->bounces > 0.0) {
+        const double phase = o->bounces * time, f = phase - (double)(int)phase;
+        out->centre[2] += o->bounce_height * 4.0 * f * (1.0 - f);
+    }
+    if (o->orbit_turns != 0.0) {
+        const double s = adcgs_trace_sin(o->orbit_turns * time), c = adcgs_trace_cos(o->orbit_turns * time);
+        const double dx = out->centre[0] - o->orbit[0], dy = out->centre[1] - o->orbit[1];
+        out->centre[0] = o->orbit[0] + c * dx - s * dy;
+        out->centre[1] = o->orbit[1] + s * dx + c * dy;
+    }
+    out->fade = time * time * (3.0 - 2.0 * time);
+    out->bound2 = o->shape == ADCGS_SHAPE_BOX ? dot(o->size, o->size) : o->size[0] * o->size[0] + o->size[2] * o->size[2];
+}
+
+/* Smallest t > 0 of the ray in local coordinates, with the normal there; FAR if none. */
+static double hit_ball(const double o[3], const double d[3], double radius, double normal[3])
+{
+    const double b = dot(o, d), q = b * b - dot(o, o) + radius * radius;
+    if (q < 0.0)
+        return FAR;
+    const double root = sqrt(q), t = -b - root > 0.0 ? -b - root : -b + root;
+    if (t <= 0.0)
+        return FAR;
+    for (int i = 0; i < 3; i++)
+        normal[i] = (o[i] + t * d[i]) / radius;
+    return t;
+}
+
+static double hit_box(const double o[3], const double d[3], const double half[3], double normal[3])
+{
+    double enter = -FAR, leave = FAR;
+    int axis = 0;
+    for (int i = 0; i < 3; i++) {
+        const double slope = d[i] != 0.0 ? 1.0 / d[i] : FAR, middle = -o[i] * slope;
+        const double reach = half[i] * (slope < 0.0 ? -slope : slope);
+        if (middle - reach > enter) {
+            enter = middle - reach;
+            axis = i;
+        }
+        leave = ADCGS_MIN(leave, middle + reach);
+    }
+    if (enter >= leave || enter <= 0.0)
+        return FAR;
+    normal[0] = normal[1] = normal[2] = 0.0;
+    normal[axis] = d[axis] > 0.0 ? -1.0 : 1.0;
+    return enter;
+}
+
+static double hit_cylinder(const double o[3], const double d[3], const double size[3], double normal[3])
+{
+    const double radius = size[0], half = size[2];
+    const double a = d[0] * d[0] + d[1] * d[1], b = o[0] * d[0] + o[1] * d[1];
+    const double q = b * b - a * (o[0] * o[0] + o[1] * o[1] - radius * radius);
+    if (q >= 0.0 && a > 1e-12) {
+        const double t = (-b - sqrt(q)) / a, z = o[2] + t * d[2];
+        if (t > 0.0 && z >= -half && z <= half) {
+            normal[0] = (o[0] + t * d[0]) / radius;
+            normal[1] = (o[1] + t * d[1]) / radius;
+            normal[2] = 0.0;
+            return t;
+        }
+    }
+    if (d[2] == 0.0)
+        return FAR;
+    const double cap = d[2] < 0.0 ? half : -half, t = (cap - o[2]) / d[2];
+    const double x = o[0] + t * d[0], y = o[1] + t * d[1];
+    if (t <= 0.0 || x * x + y * y > radius * radius)
+        return FAR;
+    normal[0] = normal[1] = 0.0;
+    normal[2] = d[2] < 0.0 ? 1.0 : -1.0;
+    return t;
+}
+
+static double hit_floor(const double o[3], const double d[3], double radius, double normal[3])
+{
+    if (d[2] == 0.0)
+        return FAR;
+    const double t = -o[2] / d[2], x = o[0] + t * d[0], y = o[1] + t * d[1];
+    if (t <= 0.0 || x * x + y * y > radius * radius)
+        return FAR;
+    normal[0] = normal[1] = 0.0;
+    normal[2] = 1.0;
+    return t;
+}
+
+static double hit_shape(const adcgs_trace_object *object, const double o[3], const double d[3], double normal[3])
+{
+    switch (object->shape) {
+    case ADCGS_SHAPE_BOX:
+        return hit_box(o, d, object->size, normal);
+    case ADCGS_SHAPE_CYLINDER:
+        return hit_cylinder(o, d, object->size, normal);
+    case ADCGS_SHAPE_FLOOR:
+        return hit_floor(o, d, object->size[0], normal);
+    default:
+        return hit_ball(o, d, object->size[0], normal);
+    }
+}
+
+/* Does the ray pass through the ball around the object, in front of its origin? */
+static int near_object(const pose *at, const double from[3], const double direction[3])
+{
+    double to[3];
+    for (int i = 0; i < 3; i++)
+        to[i] = at->centre[i] - from[i];
+    const double along = dot(to, direction), d2 = dot(to, to);
+    return d2 < at->bound2 || (along > 0.0 && d2 - along * along < at->bound2);
+}
+
+static void to_local(const pose *at, const double v[3], double out[3])
+{
+    for (int a = 0; a < 3; a++)
+        out[a] = dot(at->axes + 3 * a, v);
+}
+
+static double hit_object(const job *j, int i, const double from[3], const double direction[3], hit *out)
+{
+    const pose *const at = &j->poses[i];
+    double relative[3], o[3], d[3], normal[3] = {0.0, 0.0, 1.0};
+    for (int a = 0; a < 3; a++)
+        relative[a] = from[a] - at->centre[a];
+    to_local(at, relative, o);
+    to_local(at, direction, d);
+    const double t = hit_shape(&j->objects[i], o, d, normal);
+    if (t < out->t) {
+        out->t = t;
+        out->object = i;
+        for (int a = 0; a < 3; a++) {
+            out->local[a] = o[a] + t * d[a];
+            out->normal[a] = normal[a];
+        }
+    }
+    return t;
+}
+
+static int in_shadow(const job *j, const double point[3], const double light[3])
+{
+    for (int i = 0; i < j->n; i++) {
+        hit h = {.t = FAR};
+        if (j->objects[i].shape < ADCGS_SHAPE_FLOOR && near_object(&j->poses[i], point, light) &&
+            hit_object(j, i, point, light, &h) < FAR)
+            return 1;
+    }
+    return 0;
+}
+
+static void surface_colour(const job *j, const hit *h, double colour[3])
+{
+    const adcgs_trace_object *const o = &j->objects[h->object];
+    const double mix = adcgs_texture_mix(o, h->local);
+    const double fine[3] = {h->local[0] * 9.0, h->local[1] * 9.0, h->local[2] * 9.0};
+    const double grain = o->detail > 0.0 ? 1.0 + o->detail * (adcgs_texture_noise(fine, o->seed + 77u) - 0.5) : 1.0;
+    for (int c = 0; c < 3; c++)
+        colour[c] = (o->colour[0][c] + (o->colour[1][c] - o->colour[0][c]) * mix + o->fade[c] * j->poses[h->object].fade) * grain;
+}
+
+static void shade(const job *j, const hit *h, const double from[3], const double direction[3], int sample, double colour[3])
+{
+    static const double fill[3] = {-0.64, -0.48, 0.6};
+    surface_colour(j, h, colour);
+    if (j->objects[h->object].shape == ADCGS_SHAPE_DOME)
+        return;
+    const pose *const at = &j->poses[h->object];
+    const double *const light = j->light[sample];
+    double normal[3], point[3];
+    for (int i = 0; i < 3; i++)
+        normal[i] = at->axes[i] * h->normal[0] + at->axes[3 + i] * h->normal[1] + at->axes[6 + i] * h->normal[2];
+    for (int i = 0; i < 3; i++)
+        point[i] = from[i] + h->t * direction[i] + 1e-6 * normal[i];
+    const double key = dot(normal, light), side = dot(normal, fill);
+    double level = 0.42 + 0.10 * normal[2] + (side > 0.0 ? 0.12 * side : 0.0);
+    if (key > 0.0 && !in_shadow(j, point, light))
+        level += 0.48 * key;
+    for (int c = 0; c < 3; c++)
+        colour[c] *= level;
+}
+
+static void trace_ray(const job *j, const double from[3], const double direction[3], int sample, double colour[3])
+{
+    hit nearest = {.t = FAR};
+    for (int i = 0; i < j->n; i++)
+        if (near_object(&j->poses[i], from, direction))
+            hit_object(j, i, from, direction, &nearest);
+    colour[0] = colour[1] = colour[2] = 0.0;
+    if (nearest.t < FAR)
+        shade(j, &nearest, from, direction, sample, colour);
+}
+
+static void trace_row(void *arg, int y, int thread)
+{
+    const job *const j = arg;
+    const double *const m = j->camera->to_world, eye[3] = {m[3], m[7], m[11]};
+    const int s = j->samples;
+    (void)thread;
+    for (int x = 0; x < j->width; x++) {
+        double sum[3] = {0.0, 0.0, 0.0};
+        for (int k = 0; k < s * s; k++) {
+            const double u = (x + (k % s + 0.5) / s - 0.5 * j->width) / j->camera->focal;
+            const double v = (0.5 * j->height - y - (k / s + 0.5) / s) / j->camera->focal;
+            double direction[3], colour[3];
+            for (int i = 0; i < 3; i++)
+                direction[i] = m[4 * i] * u + m[4 * i + 1] * v - m[4 * i + 2];
+            normalise(direction);
+            trace_ray(j, eye, direction, k, colour);
+            for (int c = 0; c < 3; c++)
+                sum[c] += colour[c];
+        }
+        for (int c = 0; c < 3; c++) {
+            const double mean = sum[c] / (s * s);
+            j->rgb[3 * ((size_t)y * (size_t)j->width + (size_t)x) + (size_t)c] = (float)(mean < 0.0 ? 0.0 : mean > 1.0 ? 1.0 : mean);
+        }
+    }
+}
+
+/* A disc of light directions, one per sample of a pixel: shadows get a soft edge that is the same from every side. */
+static void spread_light(job *j)
+{
+    const int s = j->samples;
+    for (int k = 0; k < s * s; k++) {
+        double *const light = j->light[k];
+        light[0] = 0.42 + 0.16 * ((k % s + 0.5) / s - 0.5);
+        light[1] = -0.30 + 0.16 * ((k / s + 0.5) / s - 0.5);
+        light[2] = 0.86;
+        normalise(light);
+    }
+}
+
+adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time, int width,
+                                int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error)
+{
+    if (samples < 1 || samples > SAMPLES_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "ray tracer: %d samples, expected 1..%d", samples, SAMPLES_MAX);
+    pose *const poses = adcgs_alloc(NULL, (size_t)n, sizeof *poses, error);
+    if (!poses)
+        return ADCGS_ERR_MEMORY;
+    for (int i = 0; i < n; i++)
+        pose_at(&poses[i], &objects[i], time);
+    job j = {.objects = objects, .poses = poses, .n = n, .width = width, .height = height, .samples = samples, .camera = camera,
+             .rgb = rgb};
+    spread_light(&j);
+    adcgs_pool_run(pool, trace_row, &j, height);
+    adcgs_free(NULL, poses);
+    return ADCGS_OK;
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The ray tracer behind the scenes: a list of textured shapes with simple
+ * motions, a key light with a soft edge, ambient and fill light.
+ */
+#ifndef ADCGS_SCENES_TRACE_H
+#define ADCGS_SCENES_TRACE_H
+
+#include "base/pool.h"
+
+typedef enum adcgs_trace_shape {
+    ADCGS_SHAPE_BALL,     /**< size[0] is the radius */
+    ADCGS_SHAPE_BOX,      /**< size is half the edges */
+    ADCGS_SHAPE_CYLINDER, /**< size[0] is the radius, size[2] half the height, axis z */
+    ADCGS_SHAPE_FLOOR,    /**< the disc z = position z of radius size[0] */
+    ADCGS_SHAPE_DOME      /**< a ball seen from inside: shines by itself, casts no shadow */
+} adcgs_trace_shape;
+
+typedef enum adcgs_trace_texture {
+    ADCGS_TEXTURE_PLAIN,
+    ADCGS_TEXTURE_CHECKER,
+    ADCGS_TEXTURE_STRIPES, /**< soft stripes across the local x + z/2 */
+    ADCGS_TEXTURE_NOISE,   /**< three octaves of smooth noise */
+    ADCGS_TEXTURE_RINGS,   /**< soft rings around the local z axis */
+    ADCGS_TEXTURE_PATCHES, /**< a grid of cells, each with its own random mix */
+    ADCGS_TEXTURE_DOTS
+} adcgs_trace_texture;
+
+/** One thing in a scene. Motions are added up; a member left at zero does nothing. Time runs from 0 to 1. */
+typedef struct adcgs_trace_object {
+    adcgs_trace_shape shape;
+    double size[3];
+    double position[3];
+    double tilt;                 /**< turns about the local x axis, before everything else */
+    adcgs_trace_texture texture;
+    double frequency;            /**< texture cells per unit of length */
+    double colour[2][3];         /**< the two ends of the texture's mix */
+    double detail;               /**< strength of the fine noise on top, 0..1 */
+    uint32_t seed;
+    double velocity[3];          /**< units per unit of time */
+    double bounces, bounce_height;
+    double spin_axis[3], spin;   /**< unit axis, turns per unit of time */
+    double orbit[2], orbit_turns; /**< circle about the point orbit (x, y) in turns per unit of time */
+    double fade[3];              /**< added to both colours by time 1, smoothly */
+} adcgs_trace_object;
+
+/** A camera of the tracer: OpenGL axes (x right, y up, looking along -z), as in the layout that is written. */
+typedef struct adcgs_trace_camera {
+    double to_world[12]; /**< row-major 3x4 */
+    double focal;        /**< in pixels */
+} adcgs_trace_camera;
+
+/** Sine and cosine of a number of turns, from basic arithmetic alone; error below 1e-11. */
+double adcgs_trace_sin(double turns);
+double adcgs_trace_cos(double turns);
+
+/** The camera at eye that looks at target with z up. */
+void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const double target[3]);
+
+/**
+ * Picture of objects [n] at a time, 0..1 interleaved rgb [height][width][3], with samples x samples rays per pixel.
+ * The same bytes for any number of threads.
+ */
+adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time, int width,
+                                int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error);
+
+/** The mix factor 0..1 of an object's texture at a local point. */
+double adcgs_texture_mix(const adcgs_trace_object *object, const double point[3]);
+/** Smooth noise 0..1 of unit cell size. */
+double adcgs_texture_noise(const double point[3], uint32_t seed);
+
+#endif

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-demo-scene: writes one of the built-in scenes. Part of the tree's own demo and tests; not installed. */
+#include "scenes/scenes.h"
+#include "tools/cli.h"
+
+#include <stdio.h>
+
+static void show(void *user, int done, int total)
+{
+    adcgs_progress_show(user, "picture %d of %d", done, total);
+}
+
+int main(int argc, char **argv)
+{
+    static const char *const formats[] = {"png", "ppm", NULL};
+    const char *scene = "demo", *directory = "demo-scene";
+    int size[2] = {0, 0}, format = 0, threads = 0, list = 0, first = 0;
+    const adcgs_option options[] = {
+        {.name = "scene", .kind = ADCGS_OPTION_STRING, .target = &scene, .value = "NAME", .help = "which scene (default: demo)"},
+        {.name = "size", .kind = ADCGS_OPTION_PAIR, .target = size, .min = 1, .max = 16384, .value = "WxH",
+         .help = "size of the pictures (default: the scene's own)"},
+        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &directory, .value = "DIR",
+         .help = "folder to write (default: demo-scene)"},
+        {.name = "format", .kind = ADCGS_OPTION_CHOICE, .target = &format, .value = "FORMAT", .choices = formats,
+         .help = "format of the pictures: png or ppm (default: png)"},
+        {.name = "threads", .kind = ADCGS_OPTION_INT, .target = &threads, .min = 0, .max = 256, .value = "N",
+         .help = "threads (default: one per CPU)"},
+        {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &list, .help = "list the scenes and leave"},
+    };
+    const adcgs_cli cli = {.program = "adcgs-demo-scene", .operands = "", .summary = "Render a built-in animated scene to a folder.",
+                           .options = options, .n_options = ADCGS_COUNTOF(options)};
+    const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
+    if (leave >= 0)
+        return leave;
+    for (int i = 0; list && adcgs_scenes_name(i); i++)
+        printf("%-8s %s\n", adcgs_scenes_name(i), adcgs_scenes_about(i));
+    if (list)
+        return 0;
+    adcgs_error error;
+    adcgs_pool *pool = NULL;
+    adcgs_progress progress;
+    const adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .format = formats[format]};
+    if (adcgs_pool_create(&pool, threads, &error) != ADCGS_OK)
+        return adcgs_cli_fail(&cli, &error);
+    adcgs_progress_init(&progress);
+    const adcgs_status status = adcgs_scenes_write(directory, &wanted, pool, show, &progress, &error);
+    adcgs_progress_clear(&progress);
+    adcgs_pool_free(&pool);
+    return status == ADCGS_OK ? 0 : adcgs_cli_fail(&cli, &error);
+}
