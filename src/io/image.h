@@ -1,20 +1,24 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Images in files. Reading goes through OpenImageIO (and our own PPM reader);
- * writing through one small table of formats: PPM, PFM-free raw, Y4M (own code), EXR
- * (OpenEXRCore), everything else OpenImageIO.
+ * Images in files. PPM and PGM are our own code, EXR is written by OpenEXRCore,
+ * everything else goes through OpenImageIO; a build without the encoder has
+ * the first only. Reading tells formats by content, writing by extension.
  */
 #ifndef ADCGS_IO_IMAGE_H
 #define ADCGS_IO_IMAGE_H
 
 #include "base/base.h"
 
+#define ADCGS_IMAGE_MAX 16384 /**< largest width and height */
+
 /** Pixels as binary32, interleaved [height][width][channels], values as stored (8 bit: v/255), no colour conversion. */
 typedef struct adcgs_image {
     int width, height, channels; /**< channels 1..4: grey, grey+alpha, RGB, RGBA (straight alpha) */
-    float *data;
+    float *data;                 /**< from malloc() */
 } adcgs_image;
 
+/** Uninitialised pixels. ADCGS_ERR_DATA, naming path, when a size is not within the limits. */
+adcgs_status adcgs_image_alloc(adcgs_image *image, int width, int height, int channels, const char *path, adcgs_error *error);
 void adcgs_image_free(adcgs_image *image);
 /** Limits: 16384 x 16384. One-line errors name the file. */
 adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *error);
@@ -22,5 +26,11 @@ adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *e
 adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const char *path, adcgs_error *error);
 /** Format by extension (ppm, exr, png, tif, jpg, ...). Atomic: temporary name, sync, rename. half: EXR stores half floats. */
 adcgs_status adcgs_image_write(const adcgs_image *image, const char *path, int half, adcgs_error *error);
+
+/** The decoder's output conversion: floor(clip(v,0,1)*255 + 0.5) in binary32. */
+void adcgs_image_to_u8(const float *values, size_t n, uint8_t *out);
+/** Colours times alpha, and back (transparent pixels keep what they hold). Nothing happens without alpha. */
+void adcgs_image_premultiply(adcgs_image *image);
+void adcgs_image_unpremultiply(adcgs_image *image);
 
 #endif
