@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Point clouds in files: PLY by our own reader, Draco behind a shim. */
+#ifndef ADCGS_IO_POINTS_H
+#define ADCGS_IO_POINTS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#include "base/base.h"
+
+#define ADCGS_POINTS_MAX (1u << 26)
+
+typedef struct adcgs_points {
+    uint32_t n;
+    float (*position)[3]; /**< finite */
+    uint8_t (*colour)[3]; /**< mid-grey where the file has none */
+} adcgs_points;
+
+/** Uninitialised positions, grey colours. */
+adcgs_status adcgs_points_alloc(adcgs_points *points, uint64_t n, const char *path, adcgs_error *error);
+void adcgs_points_free(adcgs_points *points);
+
+/** Read PLY or Draco, told by content. */
+adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error *error);
+
+/**
+ * PLY in memory: ASCII, binary of either byte order. Positions are x, y, z of the element "vertex"; colours are red, green,
+ * blue as integers (full range is white) or floats (1 is white). Other properties and elements are skipped.
+ */
+adcgs_status adcgs_ply_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
+/** Binary little-endian PLY with float positions and uchar colours. Atomic. */
+adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs_error *error);
+
+/** Draco in memory, point cloud or mesh (whose vertices are taken). */
+adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
