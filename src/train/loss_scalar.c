@@ -1,0 +1,4 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The loss kernels as portable C. */
+#define KERNEL adcgs_loss_strip_scalar
+#include "train/loss_kernels.h"
