@@ -50,9 +50,14 @@ static void ring_rows(const float *ring, int maps, int last, const float *rows[T
         rows[k] = ring + (size_t)((last + 1 + k) % TAPS) * (size_t)maps * ROW;
 }
 
-#define COLUMN(r, j)                                                                                              \
-    (G0 * r[5][j] + G1 * (r[4][j] + r[6][j]) + G2 * (r[3][j] + r[7][j]) + G3 * (r[2][j] + r[8][j]) + G4 * (r[1][j] + r[9][j]) + \
-     G5 * (r[0][j] + r[10][j]))
+/* Each row in a variable of its own: gcc then sees that stores to the outputs leave them alone. */
+#define TAKE_ROWS(rows)                                                                                              \
+    const float *restrict const r0 = rows[0], *restrict const r1 = rows[1], *restrict const r2 = rows[2],           \
+                                *restrict const r3 = rows[3], *restrict const r4 = rows[4], *restrict const r5 = rows[5],   \
+                                *restrict const r6 = rows[6], *restrict const r7 = rows[7], *restrict const r8 = rows[8],   \
+                                *restrict const r9 = rows[9], *restrict const r10 = rows[10]
+#define COLUMN(j)                                                                                                     \
+    (G0 * r5[j] + G1 * (r4[j] + r6[j]) + G2 * (r3[j] + r7[j]) + G3 * (r2[j] + r8[j]) + G4 * (r1[j] + r9[j]) + G5 * (r0[j] + r10[j]))
 
 static float sum_lanes(const float lane[16])
 {
@@ -101,10 +106,10 @@ static void load_row(const adcgs_loss_strip *s, int row, float *restrict scratch
 /* SSIM and its three derivatives along a row; index 0 is column first - 5. */
 static void ssim_row(const float *const rows[TAPS], float *restrict derivatives, float *restrict ssim, int n)
 {
-    const float *const r[TAPS] = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8], rows[9], rows[10]};
+    TAKE_ROWS(rows);
     for (int i = 0; i < n; i++) {
-        const float m = COLUMN(r, MAP_M * ROW + i), k = COLUMN(r, MAP_N * ROW + i);
-        const float q = COLUMN(r, MAP_Q * ROW + i), c = COLUMN(r, MAP_C * ROW + i);
+        const float m = COLUMN(MAP_M * ROW + i), k = COLUMN(MAP_N * ROW + i);
+        const float q = COLUMN(MAP_Q * ROW + i), c = COLUMN(MAP_C * ROW + i);
         const float mm = m * m + k * k, mk = 2.0f * (m * k);
         const float a1 = mk + C1, a2 = (2.0f * c - mk) + C2, b1 = mm + C1, b2 = (q - mm) + C2;
         const float inverse = 1.0f / (b1 * b2), s = (a1 * a2) * inverse;
@@ -116,19 +121,16 @@ static void ssim_row(const float *const rows[TAPS], float *restrict derivatives,
 }
 
 /* Gradient of a row, and |x - y| and (x - y)^2 for the sums. */
-static void gradient_row(const adcgs_loss_strip *s, const float *const rows[TAPS], int row, float *restrict distance,
-                         float *restrict square)
+static void gradient_row(const adcgs_loss_strip *s, const float *const rows[TAPS], const float *restrict x, const float *restrict y,
+                         float *restrict grad, float *restrict distance, float *restrict square)
 {
-    const float *const r[TAPS] = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8], rows[9], rows[10]};
-    const size_t from = (size_t)row * (size_t)s->stride + (size_t)s->first;
-    const float *restrict const x = s->image + from, *restrict const y = s->target + from;
-    float *restrict const grad = s->grad + from;
+    TAKE_ROWS(rows);
     const float l1_scale = s->l1_scale, ssim_scale = s->ssim_scale;
     const int n = s->count;
     for (int i = 0; i < n; i++) {
         const float d = x[i] - y[i];
         const float up = d > 0.0f ? l1_scale : 0.0f, down = d < 0.0f ? l1_scale : 0.0f;
-        const float g = COLUMN(r, MAP_DM * ROW + i) + 2.0f * x[i] * COLUMN(r, MAP_DQ * ROW + i) + y[i] * COLUMN(r, MAP_DC * ROW + i);
+        const float g = COLUMN(MAP_DM * ROW + i) + 2.0f * x[i] * COLUMN(MAP_DQ * ROW + i) + y[i] * COLUMN(MAP_DC * ROW + i);
         grad[i] = ssim_scale * g + (up - down);
         distance[i] = d < 0.0f ? -d : d;
         square[i] = d * d;
@@ -180,7 +182,8 @@ void KERNEL(adcgs_loss_strip *s, float *scratch)
         if (r >= 2 * HALO) {
             const float *rows[TAPS];
             ring_rows(out, MAPS_OUT, r - HALO, rows);
-            gradient_row(s, rows, r - 2 * HALO, single + 8 * ROW, single + 9 * ROW);
+            const size_t at = (size_t)(r - 2 * HALO) * (size_t)s->stride + (size_t)s->first;
+            gradient_row(s, rows, s->image + at, s->target + at, s->grad + at, single + 8 * ROW, single + 9 * ROW);
             s->l1 += row_sum(single + 8 * ROW, s->count);
             s->mse += row_sum(single + 9 * ROW, s->count);
         }
