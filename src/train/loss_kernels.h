@@ -15,6 +15,7 @@
  */
 #include "train/loss_strip.h"
 
+#include <math.h>
 #include <string.h>
 
 #define TAPS 11
@@ -129,10 +130,9 @@ static void gradient_row(const adcgs_loss_strip *s, const float *const rows[TAPS
     const int n = s->count;
     for (int i = 0; i < n; i++) {
         const float d = x[i] - y[i];
-        const float up = d > 0.0f ? l1_scale : 0.0f, down = d < 0.0f ? l1_scale : 0.0f;
         const float g = COLUMN(MAP_DM * ROW + i) + 2.0f * x[i] * COLUMN(MAP_DQ * ROW + i) + y[i] * COLUMN(MAP_DC * ROW + i);
-        grad[i] = ssim_scale * g + (up - down);
-        distance[i] = d < 0.0f ? -d : d;
+        grad[i] = ssim_scale * g + l1_scale * (float)((d > 0.0f) - (d < 0.0f));
+        distance[i] = fabsf(d);
         square[i] = d * d;
     }
 }
