@@ -40,6 +40,11 @@ typedef struct adcgs_memory {
  * memory may be NULL: no accounting. count * size == 0 gives a valid pointer.
  */
 void *adcgs_alloc(adcgs_memory *memory, size_t count, size_t size, adcgs_error *error);
+/** The status of a failed adcgs_alloc(), as far as its caller can know it. */
+static inline adcgs_status adcgs_alloc_status(const adcgs_error *error)
+{
+    return error ? error->status : ADCGS_ERR_MEMORY;
+}
 /** Free what adcgs_alloc() gave; NULL is fine. The same memory that allocated it. */
 void adcgs_free(adcgs_memory *memory, void *pointer);
 
