@@ -3,12 +3,18 @@
  * A scene to learn from: posed images with times, whatever layout they came
  * in. Conventions are converted here, once: cameras are OpenCV-axed pinholes in
  * world units, times are seconds from the start of the scene.
+ *
+ * Layouts: a folder with transforms_train.json (and _val, _test; D-NeRF), a
+ * folder with one transforms.json (nerfstudio), or such a file itself. Without
+ * files per split, every 8th frame (0, 8, 16, ...) is for testing and the others are for
+ * training. World axes, units and colours are the dataset's own.
  */
 #ifndef ADCGS_DATA_SCENE_H
 #define ADCGS_DATA_SCENE_H
 
 #include "base/base.h"
 #include "io/image.h"
+#include "io/points.h"
 
 #include <adcgs/camera.h>
 
@@ -20,11 +26,7 @@ typedef struct adcgs_scene_view {
     char *path;           /**< of the image */
 } adcgs_scene_view;
 
-typedef struct adcgs_scene_points {
-    uint32_t n;
-    float (*position)[3]; /**< world */
-    uint8_t (*colour)[3];
-} adcgs_scene_points;
+typedef adcgs_points adcgs_scene_points; /**< positions in world units */
 
 typedef struct adcgs_scene {
     char *directory;
@@ -34,22 +36,32 @@ typedef struct adcgs_scene {
     double frame_rate;    /**< frames per second */
     uint32_t n_times;     /**< distinct times of the training split */
     int has_alpha;        /**< images carry alpha, composited over background */
-    float background[3];
+    float background[3];  /**< white for images with alpha, else black, unless given */
     adcgs_scene_points points; /**< initial points, n = 0 if the scene has none */
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
 } adcgs_scene;
 
 /** Overrides given on a command line. Zero-initialise. */
 typedef struct adcgs_scene_options {
-    const char *points_path;  /**< PLY of initial points instead of the scene's own */
+    const char *points_path;  /**< PLY or Draco file of initial points instead of the scene's own */
     int has_background;
     float background[3];
     double frame_rate;        /**< 0: the scene's, else 30 */
 } adcgs_scene_options;
 
-/** Open a scene folder or its JSON file. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate. */
+/**
+ * Open a scene folder or its JSON file. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate. The near plane
+ * is a hundredth of the median distance of the training cameras from the centre of their views.
+ * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
+ * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole.
+ */
 adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error);
 void adcgs_scene_free(adcgs_scene **scene);
+
+/** "train", "val", "test". */
+const char *adcgs_split_name(adcgs_split split);
+/** 0, or -1 if unknown. */
+int adcgs_split_parse(const char *name, adcgs_split *split);
 
 /**
  * Load a view's picture as planar binary32 [3][h][w], alpha composited over scene->background, box-filtered down by the integer

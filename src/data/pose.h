@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Checking camera poses and measuring where cameras look. */
+#ifndef ADCGS_DATA_POSE_H
+#define ADCGS_DATA_POSE_H
+
+#include "data/scene.h"
+
+#define ADCGS_POSE_TOLERANCE 1e-3 /**< largest entry of |R R^T - I| that counts as rounding of a rotation */
+
+/**
+ * Make a row-major 3x4 [R|c] in OpenGL axes (y up, looking along -z) one in OpenCV axes with R orthonormal to rounding.
+ * \return NULL, or what is wrong with it: not finite, singular, scaled, reflected, not orthonormal.
+ */
+const char *adcgs_pose_from_opengl(double pose[12]);
+
+/** Median distance of the cameras from the point nearest to all their axes; 0 if they share one position. */
+double adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n);
+
+#endif

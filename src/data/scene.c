@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Scenes: finding the layout, what follows from all views together, loading pictures. */
+#include "config.h"
+
+#include "data/scene.h"
+
+#include "data/pose.h"
+#include "data/transforms.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#define DEFAULT_FRAME_RATE 30.0
+#define TIME_TOLERANCE 1e-6     /* closer times of a layout, which are in [0,1], are one */
+#define NEAR_PER_DISTANCE 0.01
+#define NEAR_LEAST 1e-3
+#define AXES_Z_UP 2             /* the codes of adcgs_stream; both layouts are z up by custom */
+#define COLOUR_SRGB 1
+
+static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
+
+const char *adcgs_split_name(adcgs_split split)
+{
+    return split_names[split];
+}
+
+int adcgs_split_parse(const char *name, adcgs_split *split)
+{
+    for (int i = 0; i < ADCGS_SPLITS; i++)
+        if (!strcmp(name, split_names[i])) {
+            *split = (adcgs_split)i;
+            return 0;
+        }
+    return -1;
+}
+
+void adcgs_scene_free(adcgs_scene **scene)
+{
+    if (!*scene)
+        return;
+    for (int s = 0; s < ADCGS_SPLITS; s++) {
+        for (uint32_t i = 0; i < (*scene)->n_views[s]; i++)
+            free((*scene)->views[s][i].path);
+        free((*scene)->views[s]);
+    }
+    adcgs_points_free(&(*scene)->points);
+    free((*scene)->directory);
+    free(*scene);
+    *scene = NULL;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_error *error)
+{
+    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
+    double *times = malloc(n * sizeof *times);
+    if (!times)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    for (uint32_t i = 0; i < n; i++)
+        times[i] = scene->views[ADCGS_SPLIT_TRAIN][i].time;
+    qsort(times, n, sizeof *times, compare);
+    scene->n_times = 1;
+    for (uint32_t i = 1; i < n; i++)
+        scene->n_times += times[i] - times[i - 1] > TIME_TOLERANCE;
+    free(times);
+    return ADCGS_OK;
+}
+
+/** What follows from all views together: seconds, near planes, alpha, background. */
+static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
+{
+    ADCGS_TRY(count_times(scene, path, error));
+    scene->duration = (scene->n_times - 1) / scene->frame_rate;
+    const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
+    const double near_plane =
+        fmax(NEAR_LEAST, NEAR_PER_DISTANCE * adcgs_pose_median_distance(train, scene->n_views[ADCGS_SPLIT_TRAIN]));
+    for (int s = 0; s < ADCGS_SPLITS; s++)
+        for (uint32_t i = 0; i < scene->n_views[s]; i++) {
+            scene->views[s][i].time *= scene->duration;
+            scene->views[s][i].camera.near_plane = near_plane;
+        }
+    int width, height, channels;
+    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
+    scene->has_alpha = channels % 2 == 0;
+    for (int c = 0; c < 3; c++)
+        scene->background[c] = options->has_background ? options->background[c] : scene->has_alpha ? 1.0f : 0.0f;
+    return ADCGS_OK;
+}
+
+/** folder/name, allocated; NULL without memory. */
+static char *in_folder(const char *folder, const char *name)
+{
+    const size_t size = strlen(folder) + strlen(name) + 2;
+    char *path = malloc(size);
+    if (path)
+        snprintf(path, size, "%s/%s", folder, name);
+    return path;
+}
+
+static int is_file(const char *path)
+{
+    struct stat status;
+    return path && !stat(path, &status) && S_ISREG(status.st_mode);
+}
+
+/** Take what a file says besides its views; the training split comes first and decides. */
+static void take_facts(adcgs_scene *scene, adcgs_transforms *facts, char **points_path)
+{
+    if (!scene->frame_rate)
+        scene->frame_rate = facts->frame_rate;
+    if (!*points_path)
+        *points_path = facts->points_path;
+    else
+        free(facts->points_path);
+}
+
+/** One file per split; only the training split must exist. */
+static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_error *error)
+{
+    int has_times = 0;
+    for (int s = 0; s < ADCGS_SPLITS; s++) {
+        char name[40];
+        snprintf(name, sizeof name, "transforms_%s.json", split_names[s]);
+        char *path = in_folder(scene->directory, name);
+        adcgs_transforms facts = {0};
+        adcgs_status status = ADCGS_OK;
+        if (is_file(path)) {
+            status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
+            if (status == ADCGS_OK)
+                take_facts(scene, &facts, points_path);
+            if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN)
+                has_times = facts.has_times;
+            if (status == ADCGS_OK && has_times != facts.has_times)
+                status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: frames[0].time: %s, unlike in the training split", path,
+                                    has_times ? "missing" : "given");
+        }
+        free(path);
+        ADCGS_TRY(status);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status read_single(adcgs_scene *scene, const char *path, char **points_path, adcgs_error *error)
+{
+    adcgs_transforms facts;
+    ADCGS_TRY(adcgs_transforms_read(scene, &facts, path, ADCGS_SPLITS, error));
+    take_facts(scene, &facts, points_path);
+    if (!scene->n_views[ADCGS_SPLIT_TRAIN])
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: frames: no frame is left for training", path);
+    return ADCGS_OK;
+}
+
+/** The folder's layout by the files it has. */
+static adcgs_status read_folder(adcgs_scene *scene, char **points_path, adcgs_error *error)
+{
+    char *train = in_folder(scene->directory, "transforms_train.json");
+    char *single = in_folder(scene->directory, "transforms.json");
+    adcgs_status status;
+    if (is_file(train))
+        status = read_splits(scene, points_path, error);
+    else if (is_file(single))
+        status = read_single(scene, single, points_path, error);
+    else
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: not a scene: neither transforms_train.json nor transforms.json is there",
+                            scene->directory);
+    free(train);
+    free(single);
+    return status;
+}
+
+static adcgs_status read_points(adcgs_scene *scene, const char *listed, const adcgs_scene_options *options, adcgs_error *error)
+{
+    if (options->points_path)
+        return adcgs_points_read(&scene->points, options->points_path, error);
+    if (listed)
+        return adcgs_points_read(&scene->points, listed, error);
+    char *customary = in_folder(scene->directory, "points3d.ply");
+    const adcgs_status status = is_file(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
+    free(customary);
+    return status;
+}
+
+/** path without slashes at its end, or for a file the folder it is in. */
+static char *folder_of(const char *path, int is_folder)
+{
+    char *folder = strdup(path);
+    if (!folder)
+        return NULL;
+    size_t n = strlen(folder);
+    if (is_folder) {
+        while (n > 1 && folder[n - 1] == '/')
+            folder[--n] = 0;
+        return folder;
+    }
+    char *slash = strrchr(folder, '/');
+    if (slash)
+        slash[slash == folder] = 0;
+    else
+        strcpy(folder, "."); /* a name is at least one character long */
+    return folder;
+}
+
+static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, const adcgs_scene_options *options,
+                         adcgs_error *error)
+{
+    char *points_path = NULL;
+    scene->axes = AXES_Z_UP;
+    scene->colour_space = COLOUR_SRGB;
+    scene->frame_rate = options->frame_rate;
+    adcgs_status status =
+        is_folder ? read_folder(scene, &points_path, error) : read_single(scene, path, &points_path, error);
+    if (!scene->frame_rate)
+        scene->frame_rate = DEFAULT_FRAME_RATE;
+    if (status == ADCGS_OK)
+        status = finish_views(scene, path, options, error);
+    if (status == ADCGS_OK)
+        status = read_points(scene, points_path, options, error);
+    free(points_path);
+    return status;
+}
+
+adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error)
+{
+    static const adcgs_scene_options defaults;
+    struct stat status;
+    *out = NULL;
+    if (!*path || stat(path, &status))
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open the scene: %s", path, strerror(errno));
+    adcgs_scene *scene = calloc(1, sizeof *scene);
+    if (!scene)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    scene->directory = folder_of(path, S_ISDIR(status.st_mode));
+    const adcgs_status result = scene->directory
+                                    ? fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error)
+                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (result != ADCGS_OK)
+        adcgs_scene_free(&scene);
+    *out = scene;
+    return result;
+}
+
+/** Colour of one pixel over the background. */
+static inline void composite(const float *pixel, int channels, const float background[3], float rgb[3])
+{
+    const float alpha = channels % 2 ? 1.0f : pixel[channels - 1];
+    for (int c = 0; c < 3; c++) {
+        const float value = pixel[channels < 3 ? 0 : c];
+        rgb[c] = channels % 2 ? value : value * alpha + background[c] * (1.0f - alpha);
+    }
+}
+
+/** Average of the box of source pixels under one pixel of the smaller picture. */
+static void average_box(const adcgs_image *image, int x, int y, int divide, const float background[3], float out[3])
+{
+    const int right = ADCGS_MIN(x + divide, image->width), bottom = ADCGS_MIN(y + divide, image->height);
+    float sum[3] = {0.0f, 0.0f, 0.0f}, rgb[3];
+    for (int v = y; v < bottom; v++)
+        for (int u = x; u < right; u++) {
+            const size_t pixel = (size_t)v * (size_t)image->width + (size_t)u;
+            composite(image->data + pixel * (size_t)image->channels, image->channels, background, rgb);
+            for (int c = 0; c < 3; c++)
+                sum[c] += rgb[c];
+        }
+    const float scale = 1.0f / (float)((right - x) * (bottom - y));
+    for (int c = 0; c < 3; c++)
+        out[c] = divide == 1 ? sum[c] : sum[c] * scale;
+}
+
+static float *reduce(const adcgs_image *image, int divide, const float background[3])
+{
+    const int width = (image->width + divide - 1) / divide, height = (image->height + divide - 1) / divide;
+    const size_t plane = (size_t)width * (size_t)height;
+    float *rgb = malloc(3 * plane * sizeof *rgb);
+    for (int y = 0; rgb && y < height; y++)
+        for (int x = 0; x < width; x++) {
+            float colour[3];
+            average_box(image, x * divide, y * divide, divide, background, colour);
+            for (size_t c = 0; c < 3; c++)
+                rgb[c * plane + (size_t)y * (size_t)width + (size_t)x] = colour[c];
+        }
+    return rgb;
+}
+
+static void divide_camera(adcgs_camera *camera, int divide)
+{
+    camera->width = (camera->width + divide - 1) / divide;
+    camera->height = (camera->height + divide - 1) / divide;
+    camera->fx /= divide;
+    camera->fy /= divide;
+    camera->cx /= divide;
+    camera->cy /= divide;
+}
+
+adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb, adcgs_camera *camera,
+                              adcgs_error *error)
+{
+    adcgs_image image;
+    *rgb = NULL;
+    if (divide < 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
+    ADCGS_TRY(adcgs_image_read(&image, view->path, error));
+    adcgs_status status = ADCGS_OK;
+    if (image.width != view->camera.width || image.height != view->camera.height)
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, image.width,
+                            image.height, view->camera.width, view->camera.height);
+    else if (!(*rgb = reduce(&image, divide, scene->background)))
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);
+    adcgs_image_free(&image);
+    if (status == ADCGS_OK && camera) {
+        *camera = view->camera;
+        divide_camera(camera, divide);
+    }
+    return status;
+}
