@@ -52,7 +52,8 @@ adcgs_status adcgs_raster_create(adcgs_raster **out, adcgs_cpu_level cpu, adcgs_
 void adcgs_raster_free(adcgs_raster **raster);
 
 /**
- * Render. rgb: planar [3][height][width]. No allocation once the workspace has grown. keep nonzero: what backward needs stays
+ * Render. primitives->n is a multiple of 64, its arrays are 64-byte aligned. rgb: planar [3][height][width]. More than 2^28
+ * (splat, tile) pairs by the splats' bounding rectangles are ADCGS_ERR_LIMIT. No allocation once the workspace has grown. keep nonzero: what backward needs stays
  * readable through adcgs_raster_kept() until the next call.
  */
 adcgs_status adcgs_raster_forward(adcgs_raster *raster, const adcgs_primitives *primitives, const adcgs_view *view,
@@ -66,6 +67,10 @@ typedef struct adcgs_kept {
     const uint32_t *tile_start;      /**< [tiles+1] into entries */
     const adcgs_tile_entry *entries; /**< depth order within a tile */
     const float *transmittance;      /**< final T, [tiles][16 blocks][16 pixels] */
+    uint32_t n_slots;
+    const uint32_t *where;           /**< [n_slots] index into splats of a slot's splat, or 0xffffffff */
+    const uint32_t *first;           /**< [n_splats+1] into place: the entries of a splat, by tile row, then column */
+    const uint32_t *place;           /**< [entries] index into entries */
 } adcgs_kept;
 void adcgs_raster_kept(const adcgs_raster *raster, adcgs_kept *kept);
 

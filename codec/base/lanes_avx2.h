@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Sixteen lanes in two AVX registers; see lanes.h. */
+#include <immintrin.h>
+
+typedef struct vf {
+    __m256 a, b;
+} vf;
+typedef vf vm;
+
+LANES_INLINE vf vf_set1(float x) { return (vf){_mm256_set1_ps(x), _mm256_set1_ps(x)}; }
+LANES_INLINE vf vf_load(const float *p) { return (vf){_mm256_load_ps(p), _mm256_load_ps(p + 8)}; }
+LANES_INLINE vf vf_add(vf x, vf y) { return (vf){_mm256_add_ps(x.a, y.a), _mm256_add_ps(x.b, y.b)}; }
+LANES_INLINE vf vf_sub(vf x, vf y) { return (vf){_mm256_sub_ps(x.a, y.a), _mm256_sub_ps(x.b, y.b)}; }
+LANES_INLINE vf vf_mul(vf x, vf y) { return (vf){_mm256_mul_ps(x.a, y.a), _mm256_mul_ps(x.b, y.b)}; }
+LANES_INLINE vf vf_div(vf x, vf y) { return (vf){_mm256_div_ps(x.a, y.a), _mm256_div_ps(x.b, y.b)}; }
+LANES_INLINE vf vf_sqrt(vf x) { return (vf){_mm256_sqrt_ps(x.a), _mm256_sqrt_ps(x.b)}; }
+LANES_INLINE vf vf_min(vf x, vf y) { return (vf){_mm256_min_ps(x.a, y.a), _mm256_min_ps(x.b, y.b)}; }
+LANES_INLINE vf vf_max(vf x, vf y) { return (vf){_mm256_max_ps(x.a, y.a), _mm256_max_ps(x.b, y.b)}; }
+LANES_INLINE int vm_any(vm m) { return _mm256_movemask_ps(_mm256_or_ps(m.a, m.b)) != 0; }
+LANES_INLINE vf vf_only(vm m, vf x) { return (vf){_mm256_and_ps(m.a, x.a), _mm256_and_ps(m.b, x.b)}; }
+
+LANES_INLINE void vf_store(float *p, vf x)
+{
+    _mm256_store_ps(p, x.a);
+    _mm256_store_ps(p + 8, x.b);
+}
+
+LANES_INLINE vf vf_fma(vf x, vf y, vf z)
+{
+    return (vf){_mm256_fmadd_ps(x.a, y.a, z.a), _mm256_fmadd_ps(x.b, y.b, z.b)};
+}
+
+LANES_INLINE vf vf_fnma(vf x, vf y, vf z)
+{
+    return (vf){_mm256_fnmadd_ps(x.a, y.a, z.a), _mm256_fnmadd_ps(x.b, y.b, z.b)};
+}
+
+LANES_INLINE vf vf_abs(vf x)
+{
+    const __m256 sign = _mm256_set1_ps(-0.0f);
+    return (vf){_mm256_andnot_ps(sign, x.a), _mm256_andnot_ps(sign, x.b)};
+}
+
+LANES_INLINE vm vf_ge(vf x, vf y)
+{
+    return (vm){_mm256_cmp_ps(x.a, y.a, _CMP_GE_OQ), _mm256_cmp_ps(x.b, y.b, _CMP_GE_OQ)};
+}
+
+LANES_INLINE vf vf_where(vm m, vf x, vf otherwise)
+{
+    return (vf){_mm256_blendv_ps(otherwise.a, x.a, m.a), _mm256_blendv_ps(otherwise.b, x.b, m.b)};
+}
+
+LANES_INLINE vf vf_fma_where(vm m, vf x, vf y, vf z) { return vf_where(m, vf_fma(x, y, z), z); }
+LANES_INLINE vf vf_fnma_where(vm m, vf x, vf y, vf z) { return vf_where(m, vf_fnma(x, y, z), z); }
+
+LANES_INLINE __m256 half_scale2(__m256 p, __m256 rounded)
+{
+    return _mm256_castsi256_ps(_mm256_add_epi32(_mm256_castps_si256(p), _mm256_slli_epi32(_mm256_castps_si256(rounded), 23)));
+}
+
+LANES_INLINE vf vf_scale2(vf p, vf rounded)
+{
+    return (vf){half_scale2(p.a, rounded.a), half_scale2(p.b, rounded.b)};
+}
+
+LANES_INLINE void vf_store_int(int32_t *p, vf x)
+{
+    _mm256_store_si256((__m256i *)p, _mm256_cvttps_epi32(x.a));
+    _mm256_store_si256((__m256i *)(p + 8), _mm256_cvttps_epi32(x.b));
+}
+
+LANES_INLINE void vf_store_rows(float *const row[4], vf x)
+{
+    _mm_storeu_ps(row[0], _mm256_castps256_ps128(x.a));
+    _mm_storeu_ps(row[1], _mm256_extractf128_ps(x.a, 1));
+    _mm_storeu_ps(row[2], _mm256_castps256_ps128(x.b));
+    _mm_storeu_ps(row[3], _mm256_extractf128_ps(x.b, 1));
+}

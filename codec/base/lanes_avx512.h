@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Sixteen lanes in one AVX-512 register; see lanes.h. */
+#include <immintrin.h>
+
+typedef __m512 vf;
+typedef __mmask16 vm;
+
+LANES_INLINE vf vf_set1(float x) { return _mm512_set1_ps(x); }
+LANES_INLINE vf vf_load(const float *p) { return _mm512_load_ps(p); }
+LANES_INLINE void vf_store(float *p, vf a) { _mm512_store_ps(p, a); }
+LANES_INLINE vf vf_add(vf a, vf b) { return _mm512_add_ps(a, b); }
+LANES_INLINE vf vf_sub(vf a, vf b) { return _mm512_sub_ps(a, b); }
+LANES_INLINE vf vf_mul(vf a, vf b) { return _mm512_mul_ps(a, b); }
+LANES_INLINE vf vf_div(vf a, vf b) { return _mm512_div_ps(a, b); }
+LANES_INLINE vf vf_sqrt(vf a) { return _mm512_sqrt_ps(a); }
+LANES_INLINE vf vf_fma(vf a, vf b, vf c) { return _mm512_fmadd_ps(a, b, c); }
+LANES_INLINE vf vf_fnma(vf a, vf b, vf c) { return _mm512_fnmadd_ps(a, b, c); }
+LANES_INLINE vf vf_min(vf a, vf b) { return _mm512_min_ps(a, b); }
+LANES_INLINE vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }
+LANES_INLINE vf vf_abs(vf a) { return _mm512_abs_ps(a); }
+LANES_INLINE vm vf_ge(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_GE_OQ); }
+LANES_INLINE int vm_any(vm m) { return m != 0; }
+/* m ? a : 0 */
+LANES_INLINE vf vf_only(vm m, vf a) { return _mm512_maskz_mov_ps(m, a); }
+/* c with a*b added where m */
+LANES_INLINE vf vf_fma_where(vm m, vf a, vf b, vf c) { return _mm512_mask3_fmadd_ps(a, b, c, m); }
+LANES_INLINE vf vf_fnma_where(vm m, vf a, vf b, vf c) { return _mm512_mask3_fnmadd_ps(a, b, c, m); }
+
+LANES_INLINE vf vf_scale2(vf p, vf rounded)
+{
+    return _mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(p), _mm512_slli_epi32(_mm512_castps_si512(rounded), 23)));
+}
+
+/* Truncation of 0 <= a < 2^31 to integers. */
+LANES_INLINE void vf_store_int(int32_t *p, vf a)
+{
+    _mm512_store_si512(p, _mm512_cvttps_epi32(a));
+}
+
+/* Rows i of four lanes each to row[i]. */
+LANES_INLINE void vf_store_rows(float *const row[4], vf a)
+{
+    _mm_storeu_ps(row[0], _mm512_castps512_ps128(a));
+    _mm_storeu_ps(row[1], _mm512_extractf32x4_ps(a, 1));
+    _mm_storeu_ps(row[2], _mm512_extractf32x4_ps(a, 2));
+    _mm_storeu_ps(row[3], _mm512_extractf32x4_ps(a, 3));
+}

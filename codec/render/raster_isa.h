@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What the kernels of the renderer take, and their variants; for raster.c alone. */
+#ifndef ADCGS_RENDER_RASTER_ISA_H
+#define ADCGS_RENDER_RASTER_ISA_H
+
+#include "render/render.h"
+
+/** Outline of a projected splat, for binning: where alpha can reach 1/255 is |dy| <= ym, |dx - slope*dy| <= width*sqrt(ym^2 - dy^2). */
+typedef struct adcgs_outline {
+    float slope, width, ym;
+    float y_right; /**< dy of the rightmost point */
+} adcgs_outline;
+
+typedef struct adcgs_project_job {
+    const adcgs_primitives *primitives;
+    const adcgs_view *view;
+    float filter;
+    int tiles_x, tiles_y;
+    adcgs_splat2d *splats;   /**< [slots] */
+    adcgs_outline *outlines; /**< [slots] */
+    uint64_t *keys;          /**< [slots] depth bits << 32 | index into splats */
+    uint32_t *areas;         /**< [slots] tiles of the rectangle */
+} adcgs_project_job;
+
+typedef struct adcgs_blend_job {
+    const adcgs_splat2d *splats;
+    const adcgs_tile_entry *entries;
+    const uint32_t *tile_start;
+    int tiles_x, width, height;
+    float background[3];
+    float *rgb;
+    float *transmittance; /**< [tiles][16][16], or NULL */
+} adcgs_blend_job;
+
+typedef struct adcgs_raster_dsp {
+    /** Project 64 slots from first; drawn ones are written from index at on, in slot order. Returns how many. */
+    uint32_t (*project)(const adcgs_project_job *job, uint32_t first, uint32_t at);
+    /** Tiles and block masks of a splat: out[i] = splat << 36 | tile << 16 | mask, counts[tile]++. Returns how many. */
+    uint32_t (*bin)(const adcgs_splat2d *splat, const adcgs_outline *outline, uint32_t index, int tiles_x, uint32_t *counts,
+                    uint64_t *out);
+    /** Blend a tile and write its pixels. scratch: 3*((entries of the tile + 31) & ~15) words, 64-byte aligned. */
+    void (*blend)(const adcgs_blend_job *job, int tile, uint32_t *scratch);
+} adcgs_raster_dsp;
+
+extern const adcgs_raster_dsp adcgs_raster_scalar, adcgs_raster_avx2, adcgs_raster_avx512;
+
+#endif
