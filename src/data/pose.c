@@ -58,7 +58,8 @@ const char *adcgs_pose_from_opengl(double pose[12])
     if (scale <= 0.0 || fabs(det) < 1e-6 * scale * sqrt(scale))
         return "is singular";
     if (deviation(g, 1.0) > ADCGS_POSE_TOLERANCE)
-        return deviation(g, scale) <= ADCGS_POSE_TOLERANCE ? "is scaled, expected a rotation" : "is not orthonormal, expected a rotation";
+        return deviation(g, scale) <= ADCGS_POSE_TOLERANCE ? "is scaled, expected a rotation"
+                                                           : "is not orthonormal, expected a rotation";
     if (det < 0.0)
         return "is a reflection, expected a rotation";
     for (int i = 0; i < 3; i++)

@@ -299,8 +299,8 @@ static void divide_camera(adcgs_camera *camera, int divide)
     camera->cy /= divide;
 }
 
-adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb, adcgs_camera *camera,
-                              adcgs_error *error)
+adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                              adcgs_camera *camera, adcgs_error *error)
 {
     adcgs_image image;
     *rgb = NULL;

@@ -49,7 +49,8 @@ adcgs_status parse(adcgs_points *out, const uint8_t *data, size_t bytes, const c
 
 } // namespace
 
-extern "C" adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
+extern "C" adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path,
+                                          adcgs_error *error)
 {
     try {
         return parse(out, data, bytes, path, error);

@@ -61,7 +61,8 @@ static exr_result_t describe(exr_context_t context, const adcgs_image *image, in
     for (const char *sorted = "ABGRY"; *sorted && code == EXR_ERR_SUCCESS; sorted++) {
         const char name[2] = {*sorted, 0};
         if (place_of(name, image->channels) >= 0)
-            code = exr_add_channel(context, part, name, half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+            code = exr_add_channel(context, part, name, half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC,
+                                   1, 1);
     }
     return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
 }

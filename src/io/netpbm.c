@@ -60,7 +60,8 @@ adcgs_status adcgs_netpbm_probe(FILE *file, int *width, int *height, int *channe
     return ADCGS_OK;
 }
 
-static adcgs_status read_rows(FILE *file, const header *head, uint8_t *row, adcgs_image *out, const char *path, adcgs_error *error)
+static adcgs_status read_rows(FILE *file, const header *head, uint8_t *row, adcgs_image *out, const char *path,
+                              adcgs_error *error)
 {
     const size_t n = (size_t)head->width * (size_t)head->channels;
     const size_t sample = head->maximum > 255 ? 2 : 1;

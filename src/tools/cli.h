@@ -47,7 +47,8 @@ typedef struct adcgs_cli {
 
 /**
  * Parse argv; operands end up in argv[*first .. argc).
- * \return -1 to go on, else the exit code to leave with (0 after --help and --version, 2 after a mistake, which has been reported).
+ * \return -1 to go on, else the exit code to leave with (0 after --help and --version, 2 after a mistake, which has been
+ * reported).
  */
 int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The camera fields that transforms files and camera paths share. */
+#include "config.h"
+
+#include "data/camera_json.h"
+
+#include "data/pose.h"
+#include "io/file.h"
+#include "io/image.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define FILE_MAX ((uint64_t)256 << 20)
+#define FRAMES_MAX 1000000
+
+adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error)
+{
+    uint8_t *text;
+    size_t bytes;
+    json_error_t where;
+    *root = NULL;
+    ADCGS_TRY(adcgs_file_load(&text, &bytes, path, FILE_MAX, error));
+    json_t *value = json_loadb((const char *)text, bytes, JSON_REJECT_DUPLICATES, &where);
+    free(text);
+    if (!value)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: line %d: malformed JSON: %s", path, where.line, where.text);
+    if (!json_is_object(value)) {
+        json_decref(value);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: expected a JSON object", path);
+    }
+    *root = value;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, const char *field, const char *format, ...)
+{
+    char what[160];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    if (at->frame)
+        return adcgs_fail(at->error, status, "%s: frames[%zu].%s: %s", at->path, at->index, field, what);
+    return adcgs_fail(at->error, status, "%s: %s: %s", at->path, field, what);
+}
+
+json_t *adcgs_json_find(const adcgs_json_place *at, const char *field)
+{
+    json_t *own = at->frame ? json_object_get(at->frame, field) : NULL;
+    return own ? own : json_object_get(at->root, field);
+}
+
+adcgs_status adcgs_json_number(const adcgs_json_place *at, const char *field, double min, double max, double *value, int *found)
+{
+    json_t *item = adcgs_json_find(at, field);
+    *found = 0;
+    if (!item)
+        return ADCGS_OK;
+    if (!json_is_number(item))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "expected a number");
+    const double v = json_number_value(item);
+    if (!(v >= min && v <= max))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "%g, expected %g to %g", v, min, max);
+    *value = v;
+    *found = 1;
+    return ADCGS_OK;
+}
+
+static adcgs_status check_model(const adcgs_json_place *at)
+{
+    static const char *const distortions[] = {"k1", "k2", "k3", "k4", "p1", "p2"};
+    json_t *model = adcgs_json_find(at, "camera_model");
+    if (model) {
+        const char *name = json_string_value(model);
+        if (!name)
+            return adcgs_json_bad(at, ADCGS_ERR_DATA, "camera_model", "expected a string");
+        if (strcmp(name, "PINHOLE") && strcmp(name, "SIMPLE_PINHOLE") && strcmp(name, "OPENCV"))
+            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "camera_model",
+                                  "%.32s, expected PINHOLE or OPENCV without distortion", name);
+    }
+    if (json_is_true(adcgs_json_find(at, "is_fisheye")))
+        return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "is_fisheye", "fisheye cameras are not supported");
+    for (size_t i = 0; i < ADCGS_COUNTOF(distortions); i++) {
+        double value = 0.0;
+        int found;
+        ADCGS_TRY(adcgs_json_number(at, distortions[i], -HUGE_VAL, HUGE_VAL, &value, &found));
+        if (found && value != 0.0)
+            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, distortions[i],
+                                  "lens distortion %g is not supported, undistort the images first", value);
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_json_frames(const adcgs_json_place *at, json_t **frames, size_t *n)
+{
+    *frames = json_object_get(at->root, "frames");
+    *n = json_array_size(*frames);
+    if (!json_is_array(*frames))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "expected an array");
+    if (!*n)
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "is empty");
+    if (*n > FRAMES_MAX)
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "%zu frames, expected at most %d", *n, FRAMES_MAX);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_json_size(const adcgs_json_place *at, adcgs_camera *camera, int *found)
+{
+    double w = 0.0, h = 0.0;
+    int has_h;
+    ADCGS_TRY(adcgs_json_number(at, "w", 1.0, ADCGS_IMAGE_MAX, &w, found));
+    ADCGS_TRY(adcgs_json_number(at, "h", 1.0, ADCGS_IMAGE_MAX, &h, &has_h));
+    if (*found != has_h)
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, has_h ? "w" : "h", "missing, expected both w and h or neither");
+    if (w != floor(w) || h != floor(h))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, w != floor(w) ? "w" : "h", "expected a whole number of pixels");
+    if (*found) {
+        camera->width = (int32_t)w;
+        camera->height = (int32_t)h;
+    }
+    return ADCGS_OK;
+}
+
+/** Focal length of an axis from pixels, or else from the field of view. */
+static adcgs_status read_focal(const adcgs_json_place *at, const char *pixels, const char *angle, int size, double *focal,
+                               int *found)
+{
+    double view = 0.0;
+    ADCGS_TRY(adcgs_json_number(at, pixels, 1e-3, 1e9, focal, found));
+    if (*found)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_json_number(at, angle, 1e-6, 3.14159, &view, found));
+    if (*found)
+        *focal = 0.5 * size / tan(0.5 * view);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *camera)
+{
+    int found;
+    ADCGS_TRY(check_model(at));
+    ADCGS_TRY(read_focal(at, "fl_x", "camera_angle_x", camera->width, &camera->fx, &found));
+    if (!found)
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "fl_x", "missing, expected fl_x or camera_angle_x");
+    ADCGS_TRY(read_focal(at, "fl_y", "camera_angle_y", camera->height, &camera->fy, &found));
+    if (!found)
+        camera->fy = camera->fx;
+    camera->cx = 0.5 * camera->width;
+    camera->cy = 0.5 * camera->height;
+    ADCGS_TRY(adcgs_json_number(at, "cx", -1e6, 1e6, &camera->cx, &found));
+    return adcgs_json_number(at, "cy", -1e6, 1e6, &camera->cy, &found);
+}
+
+adcgs_status adcgs_json_pose(const adcgs_json_place *at, adcgs_camera *camera)
+{
+    static const double last_row[4] = {0.0, 0.0, 0.0, 1.0};
+    const char *field = "transform_matrix";
+    json_t *matrix = json_object_get(at->frame, field);
+    const size_t rows = json_array_size(matrix);
+    if (rows != 3 && rows != 4)
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "expected 4 rows of 4 numbers");
+    for (size_t i = 0; i < rows; i++) {
+        json_t *row = json_array_get(matrix, i);
+        if (json_array_size(row) != 4)
+            return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "expected 4 rows of 4 numbers");
+        for (size_t j = 0; j < 4; j++) {
+            json_t *item = json_array_get(row, j);
+            if (!json_is_number(item))
+                return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "row %zu column %zu: expected a number", i, j);
+            const double value = json_number_value(item);
+            if (i < 3)
+                camera->cam_to_world[4 * i + j] = value;
+            else if (fabs(value - last_row[j]) > ADCGS_POSE_TOLERANCE)
+                return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "the last row must be 0 0 0 1");
+        }
+    }
+    const char *wrong = adcgs_pose_from_opengl(camera->cam_to_world);
+    return wrong ? adcgs_json_bad(at, ADCGS_ERR_DATA, field, "%s", wrong) : ADCGS_OK;
+}

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Where rendered frames go. Each kind of output is a row of a table. */
+#include "config.h"
+
+#include "io/sink.h"
+
+#include "io/atomic.h"
+#include "io/image.h"
+#include "io/y4m.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <strings.h>
+
+typedef struct kind {
+    const char *name;
+    int is_stream; /**< all frames go to one file */
+    int has_float;
+    void (*begin)(FILE *file, const adcgs_sink_config *config);
+    adcgs_status (*write)(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error);
+} kind;
+
+struct adcgs_sink {
+    adcgs_sink_config config;
+    const kind *what;
+    FILE *file; /**< of a stream: standard output or the atomic file */
+    adcgs_atomic atomic;
+};
+
+static void y4m_begin(FILE *file, const adcgs_sink_config *config)
+{
+    adcgs_y4m_write_header(file, config->width, config->height, config->frame_rate);
+}
+
+static adcgs_status y4m_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
+{
+    return adcgs_y4m_write_frame(sink->file, frame, error);
+}
+
+/** RGB, interleaved: bytes, or binary32 in little-endian order. */
+static adcgs_status raw_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
+{
+    const size_t n = (size_t)frame->width * (size_t)frame->height * 3;
+    const size_t each = sink->config.depth == ADCGS_DEPTH_FLOAT ? 4 : 1;
+    uint8_t *bytes = malloc(n * each);
+    if (!bytes)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a frame of %dx%d pixels", frame->width, frame->height);
+    if (each == 1)
+        adcgs_frame_to_u8(frame, bytes);
+    else
+        for (size_t i = 0; i < n; i++)
+            adcgs_store_le32(bytes + 4 * i, adcgs_float_bits(frame->rgb[i]));
+    fwrite(bytes, each, n, sink->file);
+    free(bytes);
+    return ADCGS_OK;
+}
+
+static adcgs_status null_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
+{
+    return ADCGS_OK;
+}
+
+static adcgs_status image_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
+{
+    const adcgs_image image = {frame->width, frame->height, 3, frame->rgb};
+    const size_t size = strlen(sink->config.target) + 128;
+    char *path = malloc(size);
+    if (!path)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", sink->config.target);
+    adcgs_pattern_format(sink->config.target, index, path, size);
+    const adcgs_status status = adcgs_image_write(&image, path, sink->config.depth != ADCGS_DEPTH_FLOAT, error);
+    free(path);
+    return status;
+}
+
+static const kind kinds[] = {
+    {"y4m", 1, 0, y4m_begin, y4m_write},
+    {"raw", 1, 1, NULL, raw_write},
+    {"null", 0, 1, NULL, null_write},
+};
+static const kind image_kind = {"image", 0, 0, NULL, image_write};
+static const kind exr_kind = {"exr", 0, 1, NULL, image_write};
+
+static const char *extension_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const char *dot = strrchr(slash ? slash : path, '.');
+    return dot ? dot + 1 : "";
+}
+
+static const kind *find_kind(const char *format)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(kinds); i++)
+        if (!strcasecmp(format, kinds[i].name))
+            return &kinds[i];
+    return strcasecmp(format, "exr") ? &image_kind : &exr_kind;
+}
+
+int adcgs_pattern_format(const char *pattern, int index, char *out, size_t size)
+{
+    size_t used = 0;
+    int places = 0;
+    for (const char *c = pattern; *c; c++) {
+        int n;
+        if (*c != '%' || c[1] == '%') {
+            n = snprintf(out + used, size - used, "%c", *c);
+            c += *c == '%';
+        } else {
+            const int zero = *++c == '0';
+            int width = 0;
+            while (*c >= '0' && *c <= '9' && width < 100)
+                width = 10 * width + (*c++ - '0');
+            if (*c != 'd' || width > 20)
+                return -1;
+            places++;
+            n = snprintf(out + used, size - used, zero ? "%0*d" : "%*d", width, index);
+        }
+        if (n < 0 || (size_t)n >= size - used)
+            return -1;
+        used += (size_t)n;
+    }
+    return places <= 1 ? 0 : -1;
+}
+
+int adcgs_pattern_places(const char *pattern)
+{
+    int places = 0;
+    for (const char *c = strchr(pattern, '%'); c; c = strchr(c + 1, '%')) {
+        if (*++c == '%')
+            continue;
+        while (*c >= '0' && *c <= '9')
+            c++;
+        if (*c != 'd')
+            return -1;
+        places++;
+    }
+    return places;
+}
+
+static adcgs_status check(const adcgs_sink_config *config, const kind *what, const char *format, adcgs_error *error)
+{
+    const int is_image = what == &image_kind || what == &exr_kind;
+    const int places = is_image ? adcgs_pattern_places(config->target) : 0;
+    if (config->depth == ADCGS_DEPTH_FLOAT && !what->has_float)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: float samples need EXR or raw", config->target);
+    if (config->depth == ADCGS_DEPTH_HALF && what != &exr_kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: half samples need EXR", config->target);
+    if (!is_image)
+        return ADCGS_OK;
+    if (!strcmp(config->target, "-"))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "standard output takes y4m or raw, not %s", format);
+    if (strcasecmp(extension_of(config->target), format))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name must end in .%s", config->target,
+                          *format ? format : "ppm, .exr, ...");
+    if (places < 0 || places > 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: expected one number like %%04d in the name", config->target);
+    if (!places && config->frames > 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %d frames need a number like %%04d in the name", config->target,
+                          config->frames);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_sink_open(adcgs_sink **out, const adcgs_sink_config *config, adcgs_error *error)
+{
+    *out = NULL;
+    const int to_stdout = !strcmp(config->target, "-");
+    const char *format = config->format ? config->format : to_stdout ? "y4m" : extension_of(config->target);
+    const kind *what = find_kind(format);
+    ADCGS_TRY(check(config, what, format, error));
+    adcgs_sink *sink = calloc(1, sizeof *sink);
+    if (!sink)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", config->target);
+    sink->config = *config;
+    sink->what = what;
+    if (what->is_stream && to_stdout)
+        sink->file = stdout;
+    else if (what->is_stream) {
+        const adcgs_status status = adcgs_atomic_open(&sink->atomic, config->target, error);
+        if (status != ADCGS_OK) {
+            free(sink);
+            return status;
+        }
+        sink->file = sink->atomic.file;
+    }
+    if (what->begin)
+        what->begin(sink->file, config);
+    *out = sink;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_sink_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
+{
+    if (frame->width != sink->config.width || frame->height != sink->config.height)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels among those of %dx%d", sink->config.target,
+                          frame->width, frame->height, sink->config.width, sink->config.height);
+    errno = 0;
+    ADCGS_TRY(sink->what->write(sink, frame, index, error));
+    if (sink->file && ferror(sink->file))
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", sink->config.target, strerror(errno ? errno : EIO));
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_sink_close(adcgs_sink **sink, adcgs_error *error)
+{
+    adcgs_status status = ADCGS_OK;
+    if (!*sink)
+        return ADCGS_OK;
+    if ((*sink)->file == stdout && (fflush(stdout) || ferror(stdout)))
+        status = adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write: %s", strerror(errno));
+    else if ((*sink)->atomic.file)
+        status = adcgs_atomic_commit(&(*sink)->atomic, error);
+    free(*sink);
+    *sink = NULL;
+    return status;
+}
+
+void adcgs_sink_abort(adcgs_sink **sink)
+{
+    if (!*sink)
+        return;
+    adcgs_atomic_abort(&(*sink)->atomic);
+    free(*sink);
+    *sink = NULL;
+}

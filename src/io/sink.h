@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Where rendered frames go: numbered images, Y4M, raw pixels, or nowhere. Files
+ * appear complete or not at all; "-" is standard output.
+ */
+#ifndef ADCGS_IO_SINK_H
+#define ADCGS_IO_SINK_H
+
+#include "base/base.h"
+
+#include <adcgs/camera.h>
+
+typedef struct adcgs_sink adcgs_sink;
+
+typedef enum adcgs_depth {
+    ADCGS_DEPTH_DEFAULT, /**< EXR: half; everything else: 8 bit */
+    ADCGS_DEPTH_HALF,    /**< EXR only */
+    ADCGS_DEPTH_FLOAT    /**< EXR and raw only */
+} adcgs_depth;
+
+typedef struct adcgs_sink_config {
+    const char *target;  /**< "-", a file, or for images a pattern with %d or %04d */
+    const char *format;  /**< NULL: by the target's extension, Y4M for "-"; else y4m, raw, null or an image extension */
+    adcgs_depth depth;
+    double frame_rate;   /**< for Y4M */
+    int width, height;
+    int frames;          /**< how many will come; more than one image needs a pattern */
+} adcgs_sink_config;
+
+/** The strings of config must outlive the sink. */
+adcgs_status adcgs_sink_open(adcgs_sink **out, const adcgs_sink_config *config, adcgs_error *error);
+/** index numbers the image in a pattern. */
+adcgs_status adcgs_sink_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error);
+/** Complete the output. *sink may be NULL. */
+adcgs_status adcgs_sink_close(adcgs_sink **sink, adcgs_error *error);
+/** Give up: a file not yet complete disappears. *sink may be NULL. */
+void adcgs_sink_abort(adcgs_sink **sink);
+
+/** Put index in the place of the one %d, %Nd or %0Nd of pattern; "%%" is a percent sign. -1 if the pattern is malformed. */
+int adcgs_pattern_format(const char *pattern, int index, char *out, size_t size);
+/** Places for a number in pattern; -1 if it is malformed. */
+int adcgs_pattern_places(const char *pattern);
+
+#endif
