@@ -77,3 +77,24 @@ LANES_INLINE void vf_store_rows(float *const row[4], vf x)
     _mm_storeu_ps(row[2], _mm256_castps256_ps128(x.b));
     _mm_storeu_ps(row[3], _mm256_extractf128_ps(x.b, 1));
 }
+
+/* As in lanes_avx512.h. Two of the four columns of sums at a time. */
+LANES_INLINE __m256 half_sums(const vf *v)
+{
+    __m256 quarter[3];
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; i++) {
+        const __m256 x = _mm256_add_ps(v[4 * i].a, v[4 * i].b), y = _mm256_add_ps(v[4 * i + 1].a, v[4 * i + 1].b);
+        quarter[i] = _mm256_add_ps(_mm256_permute2f128_ps(x, y, 0x20), _mm256_permute2f128_ps(x, y, 0x31));
+    }
+    const __m256 zero = _mm256_setzero_ps();
+    const __m256 a = _mm256_add_ps(_mm256_shuffle_ps(quarter[0], quarter[1], 0x44), _mm256_shuffle_ps(quarter[0], quarter[1], 0xee));
+    const __m256 b = _mm256_add_ps(_mm256_shuffle_ps(quarter[2], zero, 0x44), _mm256_shuffle_ps(quarter[2], zero, 0xee));
+    return _mm256_add_ps(_mm256_shuffle_ps(a, b, 0x88), _mm256_shuffle_ps(a, b, 0xdd));
+}
+
+LANES_INLINE void vf_sums(float *out, const vf v[12])
+{
+    _mm256_store_ps(out, half_sums(v));
+    _mm256_store_ps(out + 8, half_sums(v + 2));
+}

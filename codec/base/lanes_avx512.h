@@ -45,3 +45,23 @@ LANES_INLINE void vf_store_rows(float *const row[4], vf a)
     _mm_storeu_ps(row[2], _mm512_extractf32x4_ps(a, 2));
     _mm_storeu_ps(row[3], _mm512_extractf32x4_ps(a, 3));
 }
+
+/*
+ * Sums over the lanes of twelve vectors: out[4*(i&3) + i/4] = sum of v[i], out[3, 7, 11, 15] = 0. Lanes i and i+8 are added,
+ * then i and i+4, i+2, i+1.
+ */
+LANES_INLINE void vf_sums(float *out, const vf v[12])
+{
+    __m512 half[6], quarter[3];
+#pragma GCC unroll 6
+    for (int i = 0; i < 6; i++)
+        half[i] = _mm512_add_ps(_mm512_shuffle_f32x4(v[2 * i], v[2 * i + 1], 0x44), _mm512_shuffle_f32x4(v[2 * i], v[2 * i + 1], 0xee));
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; i++)
+        quarter[i] = _mm512_add_ps(_mm512_shuffle_f32x4(half[2 * i], half[2 * i + 1], 0x88),
+                                   _mm512_shuffle_f32x4(half[2 * i], half[2 * i + 1], 0xdd));
+    const __m512 zero = _mm512_setzero_ps();
+    const __m512 a = _mm512_add_ps(_mm512_shuffle_ps(quarter[0], quarter[1], 0x44), _mm512_shuffle_ps(quarter[0], quarter[1], 0xee));
+    const __m512 b = _mm512_add_ps(_mm512_shuffle_ps(quarter[2], zero, 0x44), _mm512_shuffle_ps(quarter[2], zero, 0xee));
+    _mm512_store_ps(out, _mm512_add_ps(_mm512_shuffle_ps(a, b, 0x88), _mm512_shuffle_ps(a, b, 0xdd)));
+}

@@ -107,3 +107,17 @@ LANES_INLINE void vf_store_rows(float *const row[4], vf a)
     for (int i = 0; i < 4; i++)
         memcpy(row[i], a.v + 4 * i, 4 * sizeof(float));
 }
+
+/* As in lanes_avx512.h. */
+LANES_INLINE void vf_sums(float *out, const vf v[12])
+{
+    for (int i = 0; i < 16; i++)
+        out[i] = 0.0f;
+    for (int i = 0; i < 12; i++) {
+        vf x = v[i];
+        for (int width = 8; width; width /= 2)
+            for (int j = 0; j < width; j++)
+                x.v[j] += x.v[j + width];
+        out[4 * (i & 3) + i / 4] = x.v[0];
+    }
+}

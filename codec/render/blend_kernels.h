@@ -4,15 +4,8 @@
  * walks the splats whose mask has its bit, front to back, with transmittance
  * and colour in registers.
  */
-#include "render/project.h"
+#include "render/alpha.h"
 #include "render/raster_isa.h"
-
-#include <stdalign.h>
-
-static const alignas(64) float pixel_x[16] = {0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f,
-                                              0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f};
-static const alignas(64) float pixel_y[16] = {0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f, 1.5f, 1.5f,
-                                              2.5f, 2.5f, 2.5f, 2.5f, 3.5f, 3.5f, 3.5f, 3.5f};
 
 /* Splats and masks of a tile apart, so that vectors of either can be read. */
 static void split_entries(const adcgs_tile_entry *entries, uint32_t n, uint32_t *splats, uint32_t *masks)
@@ -56,17 +49,14 @@ typedef struct block_state {
 LANES_INLINE block_state blend_block(const adcgs_splat2d *splats, const uint32_t *list, uint32_t n, float x, float y, vf t)
 {
     const vf px = vf_add(vf_load(pixel_x), vf_set1(x)), py = vf_add(vf_load(pixel_y), vf_set1(y));
-    const vf power_min = vf_set1(ADCGS_POWER_MIN), t_min = vf_set1(ADCGS_T_MIN);
+    const vf t_min = vf_set1(ADCGS_T_MIN);
     vf red = vf_set1(0.0f), green = red, blue = red;
     for (uint32_t i = 0; i < n; i++) {
         if (!vm_any(vf_ge(t, t_min)))
             break;
         const adcgs_splat2d *s = splats + list[i];
         const vf dx = vf_sub(px, vf_set1(s->x)), dy = vf_sub(py, vf_set1(s->y));
-        const vf along = vf_fma(vf_set1(s->a), dx, vf_mul(vf_set1(s->b), dy));
-        const vf power = vf_fma(dx, along, vf_fma(vf_mul(vf_set1(s->c), dy), dy, vf_set1(s->log2_opacity)));
-        const vm drawn = vf_ge(power, power_min);
-        const vf alpha = vf_only(drawn, vf_exp2(power));
+        const vf alpha = splat_alpha(s, dx, dy);
         const vf weight = vf_mul(alpha, t);
         red = vf_fma(vf_set1(s->rgb[0]), weight, red);
         green = vf_fma(vf_set1(s->rgb[1]), weight, green);
@@ -74,15 +64,6 @@ LANES_INLINE block_state blend_block(const adcgs_splat2d *splats, const uint32_t
         t = vf_fnma(alpha, t, t);
     }
     return (block_state){t, {red, green, blue}};
-}
-
-/* Pixels outside the image begin with no light left. */
-static vf initial_transmittance(int x, int y, int width, int height)
-{
-    alignas(64) float t[16];
-    for (int i = 0; i < 16; i++)
-        t[i] = x + (i & 3) < width && y + (i >> 2) < height ? 1.0f : 0.0f;
-    return vf_load(t);
 }
 
 static void write_block(const adcgs_blend_job *job, int x, int y, const block_state *state)

@@ -313,9 +313,9 @@ adcgs_status adcgs_raster_forward(adcgs_raster *r, const adcgs_primitives *primi
                            .tiles_y = r->project.tiles_y,
                            .tile_start = r->tile_start.data,
                            .entries = r->entries.data,
-                           .transmittance = r->transmittance.data,
+                           .transmittance = r->keep ? r->transmittance.data : NULL,
                            .n_slots = r->n_slots,
-                           .where = r->where.data,
+                           .where = r->keep ? r->where.data : NULL,
                            .first = r->first.data,
                            .place = r->place.data};
     return ADCGS_OK;

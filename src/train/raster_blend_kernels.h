@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Body of the backward blend. A tile's splats are walked front to back, as the
+ * forward pass did; each pixel keeps its transmittance and one more number, the
+ * product of the gradient and what the splats still to come contribute.
+ */
+#include "render/alpha.h"
+#include "train/raster_isa.h"
+
+typedef struct tile_state {
+    alignas(64) float t[16][16];      /* transmittance before the next splat */
+    alignas(64) float behind[16][16]; /* gradient times (final colour - colour so far) */
+    alignas(64) float grad[16][3][16];
+    alignas(64) float x[16][16], y[16][16];
+    uint32_t alive; /* blocks with light left */
+} tile_state;
+
+static void start_block(tile_state *s, const adcgs_back_job *job, int block, int x, int y)
+{
+    const int width = job->view->width, height = job->view->height;
+    const size_t plane = (size_t)width * (size_t)height;
+    for (int i = 0; i < 16; i++) {
+        const int px = x + (i & 3), py = y + (i >> 2), inside = px < width && py < height;
+        const size_t at = inside ? (size_t)py * (size_t)width + (size_t)px : 0;
+        float behind = 0.0f;
+        for (int c = 0; c < 3; c++) {
+            const float g = inside ? job->grad[(size_t)c * plane + at] : 0.0f;
+            s->grad[block][c][i] = g;
+            behind = fmaf(g, job->rgb[(size_t)c * plane + at], behind);
+        }
+        s->behind[block][i] = behind;
+        s->t[block][i] = inside ? 1.0f : 0.0f;
+        s->x[block][i] = (float)x + pixel_x[i];
+        s->y[block][i] = (float)y + pixel_y[i];
+    }
+    if (x < width && y < height)
+        s->alive |= (uint32_t)1 << block;
+}
+
+/* Adds a block's part to the sums of a splat; returns whether light is left. */
+LANES_INLINE int back_block(tile_state *s, const adcgs_splat2d *g, int block, vf sum[12])
+{
+    const vf one = vf_set1(1.0f), red = vf_load(s->grad[block][0]), green = vf_load(s->grad[block][1]), blue = vf_load(s->grad[block][2]);
+    const vf t = vf_load(s->t[block]);
+    const vf dx = vf_sub(vf_load(s->x[block]), vf_set1(g->x)), dy = vf_sub(vf_load(s->y[block]), vf_set1(g->y));
+    const vf alpha = splat_alpha(g, dx, dy);
+    const vf weight = vf_mul(alpha, t);
+    const vf toward = vf_fma(vf_set1(g->rgb[2]), blue, vf_fma(vf_set1(g->rgb[1]), green, vf_mul(vf_set1(g->rgb[0]), red)));
+    const vf behind = vf_fnma(weight, toward, vf_load(s->behind[block]));
+    const vf through = vf_fnma(alpha, t, t);
+    const vf e = vf_mul(alpha, vf_sub(vf_mul(t, toward), vf_div(behind, vf_sub(one, alpha))));
+    const vf ex = vf_mul(e, dx), ey = vf_mul(e, dy), b = vf_set1(g->b);
+    const vf u = vf_fma(vf_set1(2.0f * g->a), ex, vf_mul(b, ey)), v = vf_fma(vf_set1(2.0f * g->c), ey, vf_mul(b, ex));
+    vf_store(s->t[block], through);
+    vf_store(s->behind[block], behind);
+    sum[0] = vf_add(sum[0], e);
+    sum[1] = vf_add(sum[1], ex);
+    sum[2] = vf_add(sum[2], ey);
+    sum[4] = vf_fma(ex, dx, sum[4]);
+    sum[5] = vf_fma(ex, dy, sum[5]);
+    sum[6] = vf_fma(ey, dy, sum[6]);
+    sum[8] = vf_fma(weight, red, sum[8]);
+    sum[9] = vf_fma(weight, green, sum[9]);
+    sum[10] = vf_fma(weight, blue, sum[10]);
+    sum[3] = vf_add(sum[3], weight);
+    sum[7] = vf_add(sum[7], vf_abs(u));
+    sum[11] = vf_add(sum[11], vf_abs(v));
+    return vm_any(vf_ge(through, vf_set1(ADCGS_T_MIN)));
+}
+
+static void blend(const adcgs_back_job *job, int tile)
+{
+    tile_state s;
+    const int tile_x = tile % job->kept.tiles_x * ADCGS_TILE, tile_y = tile / job->kept.tiles_x * ADCGS_TILE;
+    s.alive = 0;
+    for (int block = 0; block < 16; block++)
+        start_block(&s, job, block, tile_x + 4 * (block & 3), tile_y + 4 * (block >> 2));
+    const vf zero = vf_set1(0.0f);
+    for (uint32_t i = job->kept.tile_start[tile]; i < job->kept.tile_start[tile + 1]; i++) {
+        const adcgs_splat2d *g = job->kept.splats + job->kept.entries[i].splat;
+        vf sum[12] = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
+        for (uint32_t left = job->kept.entries[i].mask & s.alive; left; left &= left - 1) {
+            const int block = __builtin_ctz(left);
+            if (!back_block(&s, g, block, sum))
+                s.alive &= ~((uint32_t)1 << block);
+        }
+        vf_sums(job->sums + (size_t)i * SUM_WORDS, sum);
+    }
+}
