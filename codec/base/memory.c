@@ -6,6 +6,7 @@
  */
 #include "base/base.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 
 #define ALIGNMENT 64u
@@ -24,8 +25,8 @@ void *adcgs_alloc(adcgs_memory *memory, size_t count, size_t size, adcgs_error *
     }
     const size_t bytes = count * size + overhead;
     if (memory && memory->limit && (bytes > memory->limit || memory->used > memory->limit - bytes)) {
-        adcgs_fail(error, ADCGS_ERR_LIMIT, "allocation of %zu bytes exceeds the memory limit: %llu of %llu bytes are in use", bytes,
-                   (unsigned long long)memory->used, (unsigned long long)memory->limit);
+        adcgs_fail(error, ADCGS_ERR_LIMIT, "allocation of %zu bytes exceeds the limit: %" PRIu64 " of %" PRIu64 " in use", bytes,
+                   memory->used, memory->limit);
         return NULL;
     }
     uint8_t *base = calloc(bytes, 1);

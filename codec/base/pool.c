@@ -64,7 +64,8 @@ static void work(adcgs_pool *pool, int thread)
         if (index >= (uint32_t)n)
             break;
         /* Success proves that the run is still the one whose ticket was read, hence that n, fn and arg belong to it. */
-        if (!atomic_compare_exchange_weak_explicit(&pool->ticket, &ticket, ticket + 1, memory_order_acq_rel, memory_order_acquire))
+        if (!atomic_compare_exchange_weak_explicit(&pool->ticket, &ticket, ticket + 1, memory_order_acq_rel,
+                                                   memory_order_acquire))
             continue;
         fn(arg, (int)index, thread);
         completed++;

@@ -3,7 +3,7 @@
 #include "bits/range.h"
 
 /* Shift of the update by the number of updates so far: about 1/(count + 1.5) at first, 1/64 in the long run. */
-static const uint8_t rates[] = { 1, 2, 2, 3, 3, 3, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 6 };
+static const uint8_t rates[] = { 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 6 };
 #define COUNT_MAX (ADCGS_COUNTOF(rates) - 1)
 
 /* log2(1 + i/256) in 1/65536, rounded to nearest. */

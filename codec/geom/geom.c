@@ -167,7 +167,8 @@ static adcgs_status run(walk *w, adcgs_error *error)
         for (int axis = 0; axis < 3; axis++) {
             const int bits = (step + 2 - axis) / 3; /* of this axis already split */
             w->mask[axis] = X_MASK >> axis & ((UINT64_C(1) << 3 * w->depth) - 1);
-            w->unit[axis] = UINT64_C(1) << (3 * (w->depth - bits) + 2 - axis);
+            /* an axis not yet split has no neighbours: its part is 0, and stays 0 */
+            w->unit[axis] = bits ? UINT64_C(1) << (3 * (w->depth - bits) + 2 - axis) : 0;
         }
         fill_slots(w, n_cells);
         n_cells = split_cells(w, step, n_cells);

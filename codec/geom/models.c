@@ -104,15 +104,23 @@ static int sign_class(uint64_t a, uint64_t b)
     return a < b ? 0 : a > b ? 2 : 1;
 }
 
-/* Which half: 1 is left. */
+/* Which half: 1 is left. Mirror images share their contexts, so that both halves learn from each other. */
 static int code_side(adcgs_geom_coder *c, int several, int step, const adcgs_geom_around *around, int left)
 {
-    const int s0 = sign_class(around->before, around->behind), s1 = sign_class(around->ring_before, around->ring_behind);
-    const int s2 = sign_class((uint64_t)around->lateral_left, (uint64_t)around->lateral_right);
-    const int lateral = around->lateral_left * 5 + around->lateral_right;
-    return code_mixed(c, &c->models->side[several].signs[(s0 * 3 + s1) * 3 + s2],
-                      &c->models->side[several].lateral[lateral * 9 + s0 * 3 + s1],
-                      &c->models->side[several].step[step * 9 + s1 * 3 + s2], left);
+    int s0 = sign_class(around->before, around->behind), s1 = sign_class(around->ring_before, around->ring_behind);
+    int s2 = sign_class((uint64_t)around->lateral_left, (uint64_t)around->lateral_right);
+    int near = around->lateral_left, far = around->lateral_right;
+    const int mirrored = s0 * 9 + s1 * 3 + s2 < 13;
+    if (mirrored) {
+        s0 = 2 - s0;
+        s1 = 2 - s1;
+        s2 = 2 - s2;
+        near = around->lateral_right;
+        far = around->lateral_left;
+    }
+    return mirrored ^ code_mixed(c, &c->models->side[several].signs[(s0 * 3 + s1) * 3 + s2],
+                                 &c->models->side[several].lateral[(near * 5 + far) * 9 + s0 * 3 + s1],
+                                 &c->models->side[several].step[step * 9 + s1 * 3 + s2], left ^ mirrored);
 }
 
 static int code_one_sided(adcgs_geom_coder *c, int step, uint32_t n, const adcgs_geom_around *around, int one_sided)

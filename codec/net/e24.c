@@ -33,19 +33,20 @@ static adcgs_status check_shapes(const adcgs_net *net, adcgs_error *error)
 {
     const int role = net->role, n = net->n_layers;
     if (n < 1 || n > ADCGS_NET_LAYERS_MAX)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "network %d has %d layers; it may have 1 to %d", role, n, ADCGS_NET_LAYERS_MAX);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "network %d has %d layers; 1 to %d are allowed", role, n, ADCGS_NET_LAYERS_MAX);
     if (net->in_shift > 8 || net->sigma_shift > SHIFT_MAX || net->sigma_offset < -64 || net->sigma_offset > 127)
         return adcgs_fail(error, ADCGS_ERR_DATA, "network %d: input shift %d, sigma shift %d or sigma offset %d is out of range",
                           role, net->in_shift, net->sigma_shift, net->sigma_offset);
     for (int l = 0; l < n; l++) {
         const adcgs_layer *layer = &net->layer[l];
         const uint32_t in_max = l ? ADCGS_NET_WIDTH_MAX : ADCGS_NET_INPUTS_MAX;
-        if (layer->w.rows < 1 || layer->w.rows > ADCGS_NET_WIDTH_MAX || layer->w.cols > in_max || layer->b.rows != layer->w.rows ||
-            layer->b.cols != 1 || (l ? layer->w.cols != net->layer[l - 1].w.rows : layer->w.cols == 0 && n > 1))
+        const int chained = l ? layer->w.cols == net->layer[l - 1].w.rows : layer->w.cols > 0 || n == 1;
+        if (!chained || layer->w.rows < 1 || layer->w.rows > ADCGS_NET_WIDTH_MAX || layer->w.cols > in_max ||
+            layer->b.rows != layer->w.rows || layer->b.cols != 1)
             return adcgs_fail(error, ADCGS_ERR_DATA, "network %d, layer %d: %u x %u weights and %u biases do not fit", role, l,
                               layer->w.rows, layer->w.cols, layer->b.rows);
         if (layer->w.mode != 0 || layer->b.mode != 0 || layer->shift > SHIFT_MAX)
-            return adcgs_fail(error, ADCGS_ERR_DATA, "network %d, layer %d: an integer layer needs mode 0 and a shift of 0 to %d",
+            return adcgs_fail(error, ADCGS_ERR_DATA, "network %d, layer %d: integer layers need mode 0 and a shift of 0 to %d",
                               role, l, SHIFT_MAX);
         if (layer->residual > 1 || (layer->residual && (l + 1 == n || layer->w.rows != layer->w.cols)))
             return adcgs_fail(error, ADCGS_ERR_DATA, "network %d, layer %d cannot be residual", role, l);

@@ -77,8 +77,12 @@ static inline uint32_t adcgs_net_outputs(const adcgs_net *net)
 
 /** An E24 network made ready: int16 weights packed for the CPU level. */
 typedef struct adcgs_e24 adcgs_e24;
-/** Checks shapes, |w| <= 2047, all w on mode 0, and the row bound A*sum|w| + |b| + 2^(s-1) <= 2^24-1: ADCGS_ERR_DATA names the row. */
-adcgs_status adcgs_e24_create(adcgs_e24 **out, const adcgs_net *net, adcgs_cpu_level cpu, adcgs_memory *memory, adcgs_error *error);
+/**
+ * Checks shapes, |w| <= 2047, mode 0 (the numbers m are the weights, e is not used), and the row bound
+ * A*sum|w| + |b| + 2^(s-1) <= 2^24-1: ADCGS_ERR_DATA names the row.
+ */
+adcgs_status adcgs_e24_create(adcgs_e24 **out, const adcgs_net *net, adcgs_cpu_level cpu, adcgs_memory *memory,
+                              adcgs_error *error);
 void adcgs_e24_free(adcgs_e24 **net, adcgs_memory *memory);
 /**
  * Evaluate 64 samples. x: [n_in][64] yq in 1/64 step (already the reconstruction; shift and clip happen inside).
@@ -104,7 +108,10 @@ static inline int32_t adcgs_clip(int32_t v, int32_t limit)
 
 /** Weight coder (bitstream study 4): code class, top bits, rest, sign of m with adaptive contexts. */
 void adcgs_tensor_encode(adcgs_range_enc *e, const adcgs_tensor *t);
-/** rows, cols, mode, e are set; m is allocated by the caller. Sticky errors in d; ADCGS_ERR_DATA on values outside the mode's range. */
+/**
+ * rows, cols, mode, e are set; m is allocated by the caller, from adcgs_alloc(). Sticky errors in d; ADCGS_ERR_DATA on values
+ * outside the mode's range.
+ */
 adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_error *error);
 
 /* ---- Probability tables (spec annex "Tables") ---- */
@@ -117,7 +124,7 @@ const uint32_t *adcgs_table_cdf(int shape, int level);
 /** Decode / encode one value under level si (si == 0 is never coded: the value is 0). */
 int32_t adcgs_value_dec(adcgs_range_dec *d, int shape, int si);
 void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value);
-/** Cost in 1/65536 bit. |value| may be anything codable: |value| <= T + 2^16 - 1 + 2^15. */
+/** Cost in 1/65536 bit. |value| <= adcgs_value_max(). */
 uint32_t adcgs_value_cost(int shape, int si, int32_t value);
 /** Largest |value| that can be coded at a level. */
 int32_t adcgs_value_max(int shape, int si);

@@ -201,8 +201,8 @@ adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_erro
     coder c = { .d = d };
     uint8_t classes[ADCGS_NET_INPUTS_MAX] = { 0 };
     if (t->mode > 1 || t->cols > ADCGS_NET_INPUTS_MAX)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "tensor of mode %d with %u columns; modes are 0 and 1, columns up to %d", t->mode,
-                          t->cols, ADCGS_NET_INPUTS_MAX);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "tensor of mode %d with %u columns; modes are 0 and 1, columns up to %d",
+                          t->mode, t->cols, ADCGS_NET_INPUTS_MAX);
     if (t->mode == 1) {
         code_floats(&c, t);
     } else {
@@ -210,6 +210,6 @@ adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_erro
         code_integers(&c, t, zeros, by_row, classes);
     }
     if (c.bad)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "tensor of %u x %u numbers: one of them does not fit its type", t->rows, t->cols);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "tensor of %u x %u numbers: one does not fit its type", t->rows, t->cols);
     return ADCGS_OK;
 }

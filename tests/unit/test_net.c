@@ -66,8 +66,8 @@ static void code_extremes(adcgs_range_enc *e, adcgs_range_dec *d)
     for (int shape = 0; shape < ADCGS_SHAPES; shape++)
         for (int si = 1; si < ADCGS_SIGMA_LEVELS; si++) {
             const int support = adcgs_table_support(shape, si), largest = adcgs_value_max(shape, si);
-            const int values[] = { 0, 1, -1, support, -support, support + 1, -support - 1, support + 2, 1000, -1023, 32767, -32768,
-                                   largest - 1, largest, -largest };
+            const int values[] = { 0, 1, -1, support, -support, support + 1, -support - 1, support + 2, 1000, -1023, 32767,
+                                   -32768, largest - 1, largest, -largest };
             for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
                 if (e)
                     adcgs_value_enc(e, shape, si, values[i]);
@@ -246,8 +246,9 @@ static void check_net(const adcgs_net *net, uint64_t *seed)
 static void test_e24_equals_reference(void **state)
 {
     (void)state;
-    static const uint32_t sizes[][5] = { { 1, 2 },           { 0, 14 },         { 7, 5, 6 },       { 32, 48, 64 },  { 33, 33, 33, 10 },
-                                         { 64, 24, 24, 24, 32 }, { 1024, 13, 512 }, { 512, 512, 2 },   { 80, 1, 1, 22 } };
+    static const uint32_t sizes[][5] = { { 1, 2 },         { 0, 14 },         { 7, 5, 6 },
+                                         { 32, 48, 64 },   { 33, 33, 33, 10 }, { 64, 24, 24, 24, 32 },
+                                         { 1024, 13, 512 }, { 512, 512, 2 },    { 80, 1, 1, 22 } };
     static const int layers[] = { 1, 1, 2, 2, 3, 4, 2, 2, 3 };
     uint64_t seed = 11;
     for (size_t i = 0; i < ADCGS_COUNTOF(layers); i++)
@@ -384,7 +385,8 @@ static double gauss(uint64_t *seed)
 static void test_integer_tensors(void **state)
 {
     (void)state;
-    static const int32_t extremes[] = { 0, 1, -1, 2, -2, 3, 4, 2047, -2047, INT32_MAX, INT32_MIN, -INT32_MAX, 1 << 30, 65536, -65535 };
+    static const int32_t extremes[] = { 0,    1,     -1,        2,         -2,         3,       4,     -65535,
+                                        2047, -2047, INT32_MAX, INT32_MIN, -INT32_MAX, 1 << 30, 65536 };
     uint64_t seed = 21;
     adcgs_tensor t;
     make_tensor(&t, 5, 3);
@@ -431,8 +433,9 @@ static void test_weights_are_cheap(void **state)
 static void test_float_tensors(void **state)
 {
     (void)state;
-    static const uint32_t bits[] = { 0,          0x80000000, 1,          0x80000001, 0x007fffff, 0x00800000, 0x7f7fffff, 0xff7fffff,
-                                     0x3f800000, 0x3f800001, 0x3f800002, 0x3fc00000, 0x3fe00000, 0xbf000000, 0x40490fdb };
+    static const uint32_t bits[] = { 0,          0x80000000, 1,          0x80000001, 0x007fffff,
+                                     0x00800000, 0x7f7fffff, 0xff7fffff, 0x3f800000, 0x3f800001,
+                                     0x3f800002, 0x3fc00000, 0x3fe00000, 0xbf000000, 0x40490fdb };
     adcgs_tensor t;
     make_tensor(&t, 3, 5);
     t.mode = 1;
