@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Training run to stream. */
+#include "encode/encode.h"
+
+#include "encode/quantise.h"
+
+#include <math.h>
+
+adcgs_status adcgs_encode_quantise_hook(void *user, const adcgs_fmodel *f, float *const mu[ADCGS_P_ANCHOR],
+                                        float *const value[ADCGS_P_ANCHOR], adcgs_error *error)
+{
+    adcgs_model model;
+    const adcgs_status status = adcgs_quantise(&model, f, *(const adcgs_cpu_level *)user, mu, value, error);
+    adcgs_model_clear(&model, NULL);
+    return status;
+}
+
+/** Copy a string into memory that adcgs_stream_clear() frees. */
+static char *copy_text(const char *text, adcgs_error *error)
+{
+    const size_t n = strlen(text) + 1;
+    char *copy = adcgs_alloc(NULL, n, 1, error);
+    if (copy)
+        memcpy(copy, text, n);
+    return copy;
+}
+
+static adcgs_status set_notes(adcgs_stream *s, const adcgs_encode_note *notes, uint32_t n, adcgs_error *error)
+{
+    s->meta = adcgs_alloc(NULL, n, sizeof *s->meta, error);
+    for (uint32_t i = 0; s->meta && i < n; i++) {
+        s->n_meta = i + 1;
+        s->meta[i].key = copy_text(notes[i].key, error);
+        s->meta[i].value = copy_text(notes[i].value, error);
+        if (!s->meta[i].key || !s->meta[i].value)
+            return ADCGS_ERR_MEMORY;
+    }
+    return s->meta ? ADCGS_OK : ADCGS_ERR_MEMORY;
+}
+
+/** A few training cameras, spread evenly over the split; fixed cameras that recur at every time are stored once. */
+static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs_error *error)
+{
+    const adcgs_scene_view *views = scene->views[ADCGS_SPLIT_TRAIN];
+    const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN];
+    s->cameras = adcgs_alloc(NULL, ADCGS_ENCODE_CAMERAS_MAX, sizeof *s->cameras, error);
+    if (!s->cameras)
+        return ADCGS_ERR_MEMORY;
+    for (uint32_t i = 0; i < ADCGS_ENCODE_CAMERAS_MAX; i++) {
+        const adcgs_camera *c = &views[(uint64_t)i * all / ADCGS_ENCODE_CAMERAS_MAX].camera;
+        int known = 0;
+        for (uint32_t j = 0; j < s->n_cameras; j++)
+            known |= !memcmp(s->cameras[j].cam_to_world, c->cam_to_world, sizeof c->cam_to_world);
+        if (!known)
+            s->cameras[s->n_cameras++] = *c;
+    }
+    return ADCGS_OK;
+}
+
+static void set_time(adcgs_stream *s, const adcgs_scene *scene)
+{
+    /* One tick per frame: the scene's times are then exact. */
+    s->rate_num = (uint32_t)fmax(1, rint(scene->frame_rate * 1000));
+    s->rate_den = 1000;
+    s->timebase_num = s->rate_den;
+    s->timebase_den = s->rate_num;
+    s->start_ticks = 0;
+    s->duration_ticks = (int64_t)rint(scene->duration * (double)s->rate_num / s->rate_den);
+}
+
+adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_encode_note *notes, uint32_t n_notes,
+                                 adcgs_error *error)
+{
+    const adcgs_scene *scene = t->scene;
+    adcgs_stream_init(s);
+    s->params = t->f->params;
+    s->level = (uint8_t)(t->f->n <= 4096 ? 1 : t->f->n <= 65536 ? 2 : 3);
+    memcpy(s->scene_origin, t->origin, sizeof s->scene_origin);
+    s->scene_scale = t->scale;
+    memcpy(s->background, scene->background, sizeof s->background);
+    s->screen_filter = 0.3f;
+    s->colour_space = scene->colour_space;
+    s->axes = scene->axes;
+    s->units = scene->units;
+    set_time(s, scene);
+    ADCGS_TRY(set_cameras(s, scene, error));
+    ADCGS_TRY(set_notes(s, notes, n_notes, error));
+    s->segments = adcgs_alloc(NULL, 1, sizeof *s->segments, error);
+    if (!s->segments)
+        return ADCGS_ERR_MEMORY;
+    s->n_segments = 1;
+    ADCGS_TRY(adcgs_quantise(&s->segments[0], t->f, t->cpu, NULL, NULL, error));
+    s->segments[0].time_end = (double)s->duration_ticks * s->timebase_num / s->timebase_den;
+    return ADCGS_OK;
+}
+
+/* ---- Proof ---- */
+
+typedef struct source {
+    const adcgs_buffer *bytes;
+    size_t pos;
+} source;
+
+static int64_t read_source(void *user, void *buffer, size_t bytes)
+{
+    source *s = user;
+    const size_t n = ADCGS_MIN(bytes, s->bytes->size - s->pos);
+    memcpy(buffer, s->bytes->data + s->pos, n);
+    s->pos += n;
+    return (int64_t)n;
+}
+
+adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_stream_write(stream, out, error));
+    adcgs_stream back;
+    source from = { out, 0 };
+    const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };
+    adcgs_stream_init(&back);
+    adcgs_status status = adcgs_stream_read(&back, read_source, &from, &options, NULL, NULL, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < stream->n_segments; i++) {
+        adcgs_error difference;
+        if (back.n_segments != stream->n_segments)
+            status = adcgs_fail(error, ADCGS_ERR_INTERNAL, "the stream written has %u segments instead of %u", back.n_segments,
+                                stream->n_segments);
+        else if (!adcgs_model_equal(&stream->segments[i], &back.segments[i], &difference))
+            status = adcgs_fail(error, ADCGS_ERR_INTERNAL, "the stream written decodes to another model: %s", difference.text);
+    }
+    adcgs_stream_clear(&back, NULL);
+    return status;
+}

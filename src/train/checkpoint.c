@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Checkpoints: one walk over the state of a run visits every number that the
+ * rest of the run depends on; saving and loading are its two visitors.
+ * A file is "ADCGSCKP", a format number, the walk, and a CRC-32C of it all.
+ */
+#include "train/trainer.h"
+
+#include "base/digest.h"
+#include "io/atomic.h"
+#include "io/file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
+enum { FORMAT = 1 };
+
+typedef struct walk {
+    adcgs_buffer *out; /* storing */
+    adcgs_reader *in;  /* or restoring */
+    int failed;
+} walk;
+
+static void visit(walk *w, void *data, size_t bytes)
+{
+    if (w->out) {
+        adcgs_write_bytes(w->out, data, bytes);
+        return;
+    }
+    const uint8_t *from = adcgs_read_bytes(w->in, bytes);
+    if (from)
+        memcpy(data, from, bytes);
+    else
+        w->failed = 1;
+}
+
+/** A number that must be the same in the run and in the file. */
+static void visit_same(walk *w, uint64_t value)
+{
+    uint64_t stored = value;
+    visit(w, &stored, sizeof stored);
+    w->failed |= stored != value;
+}
+
+static void walk_config(walk *w, adcgs_trainer *t)
+{
+    visit_same(w, FORMAT);
+    visit_same(w, t->config.seed);
+    visit_same(w, t->config.iterations);
+    visit_same(w, (uint64_t)t->config.scale);
+    visit_same(w, t->n_views);
+    visit_same(w, adcgs_float_bits(t->config.lambda));
+    for (size_t i = 0; i < sizeof t->config.params; i++)
+        visit_same(w, ((const uint8_t *)&t->f->params)[i]);
+    visit_same(w, (uint64_t)t->f->shape.theta_width << 32 | (uint64_t)t->f->shape.omega_width << 16 | (uint64_t)t->f->shape.varpi_width);
+    visit_same(w, (uint64_t)t->f->shape.entropy_width << 32 | (uint64_t)t->f->shape.depth);
+}
+
+static void walk_scalars(walk *w, adcgs_trainer *t)
+{
+    visit(w, &t->iteration, sizeof t->iteration);
+    visit(w, &t->adam_steps, sizeof t->adam_steps);
+    visit(w, &t->decided, sizeof t->decided);
+    visit(w, &t->rounding, sizeof t->rounding);
+    visit(w, &t->frozen, sizeof t->frozen);
+    visit(w, &t->lr_scale, sizeof t->lr_scale);
+    visit(w, &t->rollbacks, sizeof t->rollbacks);
+    visit(w, &t->mean_loss, sizeof t->mean_loss);
+    visit(w, &t->mean_mse, sizeof t->mean_mse);
+    visit(w, &t->mean_bits, sizeof t->mean_bits);
+    visit(w, &t->elapsed, sizeof t->elapsed);
+}
+
+static void walk_arrays(walk *w, adcgs_trainer *t)
+{
+    adcgs_fmodel *f = t->f;
+    const size_t lanes = (size_t)f->groups * 64, slots = lanes * f->params.k;
+    visit(w, f->keep, slots * sizeof(float));
+    visit(w, f->moving, lanes * sizeof(float));
+    visit(w, t->stats.weight, 3 * slots * sizeof(float));
+    visit(w, &t->stats.n, sizeof t->stats.n);
+    for (int i = 0; i < ADCGS_P_COUNT; i++) {
+        adcgs_param *p = &f->param[i];
+        visit(w, p->p, p->n * sizeof(float));
+        visit(w, p->m, p->n * sizeof(float));
+        visit(w, p->v, p->n * sizeof(float));
+        visit(w, f->mlp[i].lattice, sizeof f->mlp[i].lattice);
+    }
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        visit(w, t->pass->mu[i], f->param[i].n * sizeof(float));
+}
+
+adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
+{
+    adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the storing visitor only reads */
+    walk w = { out, NULL, 0 };
+    walk_config(&w, t);
+    walk_scalars(&w, t);
+    visit(&w, &t->f->n, sizeof t->f->n);
+    visit(&w, t->f->pos, t->f->n * sizeof *t->f->pos);
+    walk_arrays(&w, t);
+    return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint") : ADCGS_OK;
+}
+
+/** Give the model the stored number of anchors and their places; parameters follow. */
+static adcgs_status restore_anchors(walk *w, adcgs_trainer *t, adcgs_error *error)
+{
+    uint32_t n = 0;
+    visit(w, &n, sizeof n);
+    if (w->failed || n == 0 || n > adcgs_reader_left(w->in) / 12)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "checkpoint: %u anchors do not fit its size", n);
+    uint32_t(*pos)[3] = malloc(n * sizeof *pos);
+    uint32_t *source = calloc(n, sizeof *source);
+    adcgs_status status = pos && source ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", n);
+    if (status == ADCGS_OK) {
+        visit(w, pos, n * sizeof *pos);
+        status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])pos, source, NULL, n, error);
+    }
+    free(pos);
+    free(source);
+    return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
+}
+
+adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t size, adcgs_error *error)
+{
+    adcgs_reader reader;
+    adcgs_reader_init(&reader, data, size);
+    walk w = { NULL, &reader, 0 };
+    walk_config(&w, t);
+    if (w.failed)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "checkpoint: made with other options or another scene; give the same as when it was saved");
+    walk_scalars(&w, t);
+    ADCGS_TRY(restore_anchors(&w, t, error));
+    walk_arrays(&w, t);
+    if (w.failed || adcgs_reader_left(&reader))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "checkpoint: its length does not match its contents");
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
+        if (t->f->mlp[i].n)
+            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_trainer_save(const adcgs_trainer *t, const char *path, adcgs_error *error)
+{
+    adcgs_buffer b;
+    adcgs_atomic atomic;
+    adcgs_buffer_init(&b);
+    adcgs_write_bytes(&b, magic, sizeof magic);
+    adcgs_status status = adcgs_trainer_store(t, &b, error);
+    if (status == ADCGS_OK) {
+        adcgs_write_uint(&b, adcgs_crc32c(0, b.data, b.size), 4);
+        status = adcgs_atomic_open(&atomic, path, error);
+    }
+    if (status == ADCGS_OK) {
+        if (fwrite(b.data, 1, b.size, atomic.file) == b.size)
+            status = adcgs_atomic_commit(&atomic, error);
+        else {
+            adcgs_atomic_abort(&atomic);
+            status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the checkpoint", path);
+        }
+    }
+    adcgs_buffer_clear(&b);
+    return status;
+}
+
+adcgs_status adcgs_trainer_load(adcgs_trainer *t, const char *path, adcgs_error *error)
+{
+    uint8_t *data;
+    size_t size;
+    ADCGS_TRY(adcgs_file_load(&data, &size, path, 1ull << 36, error));
+    adcgs_status status;
+    if (size < sizeof magic + 4 || memcmp(data, magic, sizeof magic))
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a checkpoint of adcgs-enc", path);
+    else if (adcgs_crc32c(0, data, size - 4) != adcgs_load_le32(data + size - 4))
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged: its checksum does not match", path);
+    else
+        status = adcgs_trainer_restore(t, data + sizeof magic, size - 4 - sizeof magic, error);
+    free(data);
+    return status;
+}

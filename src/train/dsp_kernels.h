@@ -1,0 +1,434 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Bodies of the trainer's kernels. Included once per CPU level by a file that
+ * defines ISA(name) and is compiled with that level's flags; the 64-lane loops
+ * are written for the compiler's vectoriser, the weight gradient by hand.
+ */
+#include "base/fmath.h"
+#include "train/dsp.h"
+#include "train/random.h"
+
+#include <math.h>
+
+#define LANES ADCGS_LANES
+
+/* ---- Weight gradients: a tile of outputs x inputs kept in registers across lanes and tiles, reduced once. ---- */
+#if defined(__AVX512F__)
+#include <immintrin.h>
+typedef __m512 vec;
+#define VN 16
+#define vzero _mm512_setzero_ps
+#define vload _mm512_load_ps
+#define vfma _mm512_fmadd_ps
+#define vadd _mm512_add_ps
+#define vsum _mm512_reduce_add_ps
+enum { TILE_O = 4, TILE_I = 5 };
+#elif defined(__AVX2__)
+#include <immintrin.h>
+typedef __m256 vec;
+#define VN 8
+#define vzero _mm256_setzero_ps
+#define vload _mm256_load_ps
+#define vfma _mm256_fmadd_ps
+#define vadd _mm256_add_ps
+static inline float vsum(vec v)
+{
+    __m128 s = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    s = _mm_add_ps(s, _mm_movehl_ps(s, s));
+    return _mm_cvtss_f32(_mm_add_ss(s, _mm_movehdup_ps(s)));
+}
+enum { TILE_O = 3, TILE_I = 3 };
+#else
+typedef float vec;
+#define VN 1
+#define vzero() 0.0f
+#define vload(p) (*(p))
+#define vfma(a, b, c) ((a) * (b) + (c))
+#define vadd(a, b) ((a) + (b))
+#define vsum(v) (v)
+enum { TILE_O = 2, TILE_I = 2 };
+#endif
+
+static inline __attribute__((always_inline)) void weight_tile(float *gw, size_t ldg, const float *dy, size_t sy, const float *x,
+                                                              size_t sx, int tiles, int no, int ni)
+{
+    vec acc[TILE_O][TILE_I];
+    for (int o = 0; o < no; o++)
+        for (int i = 0; i < ni; i++)
+            acc[o][i] = vzero();
+    for (int t = 0; t < tiles; t++)
+        for (int l = 0; l < LANES; l += VN) {
+            vec xs[TILE_I];
+            for (int i = 0; i < ni; i++)
+                xs[i] = vload(x + (size_t)t * sx + (size_t)i * LANES + l);
+            for (int o = 0; o < no; o++) {
+                const vec d = vload(dy + (size_t)t * sy + (size_t)o * LANES + l);
+                for (int i = 0; i < ni; i++)
+                    acc[o][i] = vfma(d, xs[i], acc[o][i]);
+            }
+        }
+    for (int o = 0; o < no; o++)
+        for (int i = 0; i < ni; i++)
+            gw[(size_t)o * ldg + i] += vsum(acc[o][i]);
+}
+
+static void ISA(weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles,
+                             int n_out, int n_in)
+{
+    for (int o = 0; o < n_out; o += TILE_O) {
+        const int no = n_out - o < TILE_O ? n_out - o : TILE_O;
+        for (int i = 0; i < n_in; i += TILE_I) {
+            const int ni = n_in - i < TILE_I ? n_in - i : TILE_I;
+            float *g = gw + (size_t)o * ldg + i;
+            const float *d = dy + (size_t)o * LANES, *xi = x + (size_t)i * LANES;
+            if (no == TILE_O && ni == TILE_I)
+                weight_tile(g, ldg, d, sy, xi, sx, tiles, TILE_O, TILE_I);
+            else
+                weight_tile(g, ldg, d, sy, xi, sx, tiles, no, ni);
+        }
+    }
+    for (int o = 0; gb && o < n_out; o++) {
+        vec acc = vzero();
+        for (int t = 0; t < tiles; t++)
+            for (int l = 0; l < LANES; l += VN)
+                acc = vadd(acc, vload(dy + (size_t)t * sy + (size_t)o * LANES + l));
+        gb[o] += vsum(acc);
+    }
+}
+
+static void ISA(lrelu_back)(float *restrict dz, const float *restrict h, int n)
+{
+    for (int i = 0; i < n * LANES; i++)
+        dz[i] *= h[i] < 0 ? 0x1p-6f : 1.0f;
+}
+
+static void ISA(noise)(float *restrict y, const float *restrict p, const float *restrict step, int n, uint32_t seed)
+{
+    for (int i = 0; i < n; i++)
+        for (int l = 0; l < LANES; l++) {
+            const uint32_t r = adcgs_mix32(seed + (uint32_t)(i * LANES + l));
+            y[i * LANES + l] = p[i * LANES + l] + step[i] * ((float)(int32_t)r * 0x1p-32f);
+        }
+}
+
+static void ISA(round)(float *restrict y, const float *restrict p, const float *restrict step, const float *restrict mu, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const float inverse = 1 / step[i];
+        for (int l = 0; l < LANES; l++) {
+            const float m = mu[i * LANES + l] * 0x1p-6f;
+            y[i * LANES + l] = step[i] * (rintf(p[i * LANES + l] * inverse - m) + m);
+        }
+    }
+}
+
+/* ---- From network outputs to primitives, and back. The forward formulas are those of spec clause "Primitives". ---- */
+
+/** Rotation matrix of a unit quaternion, row-major, per lane. */
+#define ROTATION(r, w, x, y, z)                                                                              \
+    const float r##00 = 1 - 2 * (y * y + z * z), r##01 = 2 * (x * y - w * z), r##02 = 2 * (x * z + w * y);   \
+    const float r##10 = 2 * (x * y + w * z), r##11 = 1 - 2 * (x * x + z * z), r##12 = 2 * (y * z - w * x);   \
+    const float r##20 = 2 * (x * z - w * y), r##21 = 2 * (y * z + w * x), r##22 = 1 - 2 * (x * x + y * y)
+
+/** Anchor quantities all of a group's primitives share. */
+typedef struct anchor_terms {
+    float extent[3][LANES], base[3][LANES]; /* exp(Sigma_v) */
+    float move[3][LANES], grow[3][LANES], tint[3][LANES]; /* deltas of F_omega */
+    float q[4][LANES];                      /* anchor's rotation */
+    float norm[LANES];                      /* length of (1, r) */
+} anchor_terms;
+
+static void ISA(anchor_forward)(anchor_terms *a, const adcgs_group_io *io)
+{
+    for (int c = 0; c < 3; c++)
+        for (int l = 0; l < LANES; l++) {
+            a->extent[c][l] = adcgs_exp(adcgs_clampf(io->sigma[c * LANES + l], -16, 8));
+            a->base[c][l] = adcgs_exp(adcgs_clampf(io->sigma[(3 + c) * LANES + l], -16, 8));
+        }
+    const float *om = io->omega;
+    for (int c = 0; c < 3; c++)
+        for (int l = 0; l < LANES; l++) {
+            a->move[c][l] = om ? om[c * LANES + l] * io->moving[l] : 0;
+            a->grow[c][l] = om ? adcgs_exp(adcgs_clampf(om[(3 + c) * LANES + l] * io->moving[l], -8, 8)) : 1;
+            a->tint[c][l] = om ? om[(6 + c) * LANES + l] * io->moving[l] : 0;
+        }
+    const int turn = om && io->rotation;
+    for (int l = 0; l < LANES; l++) {
+        const float x = turn ? om[9 * LANES + l] * io->moving[l] : 0;
+        const float y = turn ? om[10 * LANES + l] * io->moving[l] : 0;
+        const float z = turn ? om[11 * LANES + l] * io->moving[l] : 0;
+        const float norm = sqrtf(1 + x * x + y * y + z * z), inverse = 1 / norm;
+        a->norm[l] = norm;
+        a->q[0][l] = inverse;
+        a->q[1][l] = x * inverse;
+        a->q[2][l] = y * inverse;
+        a->q[3][l] = z * inverse;
+    }
+}
+
+static void ISA(primitives)(const adcgs_group_io *io)
+{
+    anchor_terms a;
+    ISA(anchor_forward)(&a, io);
+    for (int k = 0; k < io->k; k++) {
+        const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
+        const float *restrict va = io->varpi ? io->varpi + (size_t)k * ADCGS_VARPI_OUT * LANES : NULL;
+        const float *restrict keep = io->keep + k * LANES;
+        float *restrict m0 = io->mean[0] + k * LANES, *restrict m1 = io->mean[1] + k * LANES, *restrict m2 = io->mean[2] + k * LANES;
+        for (int l = 0; l < LANES; l++) {
+            const float ox = th[l] * a.extent[0][l], oy = th[LANES + l] * a.extent[1][l], oz = th[2 * LANES + l] * a.extent[2][l];
+            const float w = a.q[0][l], x = a.q[1][l], y = a.q[2][l], z = a.q[3][l];
+            ROTATION(r, w, x, y, z);
+            m0[l] = io->x[l] + a.move[0][l] + (r00 * ox + r01 * oy + r02 * oz);
+            m1[l] = io->x[LANES + l] + a.move[1][l] + (r10 * ox + r11 * oy + r12 * oz);
+            m2[l] = io->x[2 * LANES + l] + a.move[2][l] + (r20 * ox + r21 * oy + r22 * oz);
+        }
+        for (int c = 0; c < 3; c++) {
+            float *restrict scale = io->scale[c] + k * LANES;
+            for (int l = 0; l < LANES; l++)
+                scale[l] = adcgs_clampf(a.base[c][l] * adcgs_sigmoid(th[(3 + c) * LANES + l]) * a.grow[c][l], 0x1p-20f, 0x1p10f);
+        }
+        float *restrict qw = io->rot[0] + k * LANES, *restrict qx = io->rot[1] + k * LANES;
+        float *restrict qy = io->rot[2] + k * LANES, *restrict qz = io->rot[3] + k * LANES;
+        for (int l = 0; l < LANES; l++) {
+            const float vw = th[6 * LANES + l] + 1, vx = th[7 * LANES + l], vy = th[8 * LANES + l], vz = th[9 * LANES + l];
+            const float inverse = 1 / sqrtf(vw * vw + vx * vx + vy * vy + vz * vz + 1e-12f);
+            const float pw = vw * inverse, px = vx * inverse, py = vy * inverse, pz = vz * inverse;
+            const float w = a.q[0][l], x = a.q[1][l], y = a.q[2][l], z = a.q[3][l];
+            qw[l] = w * pw - x * px - y * py - z * pz;
+            qx[l] = w * px + x * pw + y * pz - z * py;
+            qy[l] = w * py - x * pz + y * pw + z * px;
+            qz[l] = w * pz + x * py - y * px + z * pw;
+        }
+        for (int c = 0; c < 3; c++) {
+            float *restrict rgb = io->rgb[c] + k * LANES;
+            for (int l = 0; l < LANES; l++)
+                rgb[l] = io->colour[c * LANES + l] + th[(10 + c) * LANES + l] + a.tint[c][l] +
+                         (va ? va[(1 + c) * LANES + l] * io->moving[l] : 0);
+        }
+        float *restrict opacity = io->opacity + k * LANES;
+        for (int l = 0; l < LANES; l++) {
+            const float logit = th[13 * LANES + l] + (va ? va[l] * io->moving[l] : 0);
+            opacity[l] = 0.99f * adcgs_sigmoid(logit) * keep[l];
+        }
+    }
+}
+
+/** Sums over a group's primitives of what flows back into its anchors. */
+typedef struct anchor_grads {
+    float move[3][LANES], grow[3][LANES], tint[3][LANES];
+    float m[9][LANES]; /* sum of dL/dmean (x) offset: gradient of the rotation matrix */
+    float q[4][LANES]; /* gradient of the anchor's quaternion through the primitives' */
+} anchor_grads;
+
+static void ISA(primitive_mean_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g, int k)
+{
+    const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
+    float *restrict dt = g->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
+    const float *restrict g0 = g->mean[0] + k * LANES, *restrict g1 = g->mean[1] + k * LANES, *restrict g2 = g->mean[2] + k * LANES;
+    float *restrict ds = g->sigma;
+    for (int l = 0; l < LANES; l++) {
+        const float ox = th[l] * a->extent[0][l], oy = th[LANES + l] * a->extent[1][l], oz = th[2 * LANES + l] * a->extent[2][l];
+        const float w = a->q[0][l], x = a->q[1][l], y = a->q[2][l], z = a->q[3][l];
+        ROTATION(r, w, x, y, z);
+        s->move[0][l] += g0[l];
+        s->move[1][l] += g1[l];
+        s->move[2][l] += g2[l];
+        const float fx = r00 * g0[l] + r10 * g1[l] + r20 * g2[l];
+        const float fy = r01 * g0[l] + r11 * g1[l] + r21 * g2[l];
+        const float fz = r02 * g0[l] + r12 * g1[l] + r22 * g2[l];
+        dt[l] = fx * a->extent[0][l];
+        dt[LANES + l] = fy * a->extent[1][l];
+        dt[2 * LANES + l] = fz * a->extent[2][l];
+        ds[l] += fx * ox;
+        ds[LANES + l] += fy * oy;
+        ds[2 * LANES + l] += fz * oz;
+        s->m[0][l] += g0[l] * ox;
+        s->m[1][l] += g0[l] * oy;
+        s->m[2][l] += g0[l] * oz;
+        s->m[3][l] += g1[l] * ox;
+        s->m[4][l] += g1[l] * oy;
+        s->m[5][l] += g1[l] * oz;
+        s->m[6][l] += g2[l] * ox;
+        s->m[7][l] += g2[l] * oy;
+        s->m[8][l] += g2[l] * oz;
+    }
+}
+
+static void ISA(primitive_rotation_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g, int k)
+{
+    const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
+    float *restrict dt = g->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
+    const float *restrict gw = g->rot[0] + k * LANES, *restrict gx = g->rot[1] + k * LANES;
+    const float *restrict gy = g->rot[2] + k * LANES, *restrict gz = g->rot[3] + k * LANES;
+    for (int l = 0; l < LANES; l++) {
+        const float vw = th[6 * LANES + l] + 1, vx = th[7 * LANES + l], vy = th[8 * LANES + l], vz = th[9 * LANES + l];
+        const float inverse = 1 / sqrtf(vw * vw + vx * vx + vy * vy + vz * vz + 1e-12f);
+        const float pw = vw * inverse, px = vx * inverse, py = vy * inverse, pz = vz * inverse;
+        const float w = a->q[0][l], x = a->q[1][l], y = a->q[2][l], z = a->q[3][l];
+        /* conj(anchor) times g: gradient of the primitive's own quaternion */
+        const float hw = w * gw[l] + x * gx[l] + y * gy[l] + z * gz[l];
+        const float hx = w * gx[l] - x * gw[l] - y * gz[l] + z * gy[l];
+        const float hy = w * gy[l] + x * gz[l] - y * gw[l] - z * gx[l];
+        const float hz = w * gz[l] - x * gy[l] + y * gx[l] - z * gw[l];
+        const float along = pw * hw + px * hx + py * hy + pz * hz;
+        dt[6 * LANES + l] = (hw - pw * along) * inverse;
+        dt[7 * LANES + l] = (hx - px * along) * inverse;
+        dt[8 * LANES + l] = (hy - py * along) * inverse;
+        dt[9 * LANES + l] = (hz - pz * along) * inverse;
+        /* g times conj(primitive): gradient of the anchor's quaternion */
+        s->q[0][l] += gw[l] * pw + gx[l] * px + gy[l] * py + gz[l] * pz;
+        s->q[1][l] += -gw[l] * px + gx[l] * pw - gy[l] * pz + gz[l] * py;
+        s->q[2][l] += -gw[l] * py + gx[l] * pz + gy[l] * pw - gz[l] * px;
+        s->q[3][l] += -gw[l] * pz - gx[l] * py + gy[l] * px + gz[l] * pw;
+    }
+}
+
+static void ISA(primitive_rest_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g, int k)
+{
+    const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
+    float *restrict dt = g->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
+    const float *restrict va = io->varpi ? io->varpi + (size_t)k * ADCGS_VARPI_OUT * LANES : NULL;
+    float *restrict dv = io->varpi ? g->varpi + (size_t)k * ADCGS_VARPI_OUT * LANES : NULL;
+    for (int c = 0; c < 3; c++) {
+        const float *restrict gs = g->scale[c] + k * LANES;
+        for (int l = 0; l < LANES; l++) {
+            const float sg = adcgs_sigmoid(th[(3 + c) * LANES + l]);
+            const float t = gs[l] * a->base[c][l] * sg * a->grow[c][l]; /* dL/d log scale */
+            dt[(3 + c) * LANES + l] = t * (1 - sg);
+            s->grow[c][l] += t;
+            g->sigma[(3 + c) * LANES + l] += t;
+        }
+        const float *restrict gc = g->rgb[c] + k * LANES;
+        for (int l = 0; l < LANES; l++) {
+            dt[(10 + c) * LANES + l] = gc[l];
+            s->tint[c][l] += gc[l];
+            g->colour[c * LANES + l] += gc[l];
+            if (dv)
+                dv[(1 + c) * LANES + l] = gc[l] * io->moving[l];
+        }
+    }
+    const float *restrict go = g->opacity + k * LANES, *restrict keep = io->keep + k * LANES;
+    for (int l = 0; l < LANES; l++) {
+        const float sg = adcgs_sigmoid(th[13 * LANES + l] + (va ? va[l] * io->moving[l] : 0));
+        const float t = go[l] * keep[l] * 0.99f * sg * (1 - sg);
+        dt[13 * LANES + l] = t;
+        if (dv)
+            dv[l] = t * io->moving[l];
+    }
+}
+
+static void ISA(omega_back)(const anchor_terms *a, const anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g)
+{
+    float *restrict d = g->omega;
+    for (int c = 0; c < 3; c++)
+        for (int l = 0; l < LANES; l++) {
+            d[c * LANES + l] = s->move[c][l] * io->moving[l];
+            d[(3 + c) * LANES + l] = s->grow[c][l] * io->moving[l];
+            d[(6 + c) * LANES + l] = s->tint[c][l] * io->moving[l];
+        }
+    if (!io->rotation)
+        return;
+    for (int l = 0; l < LANES; l++) {
+        const float w = a->q[0][l], x = a->q[1][l], y = a->q[2][l], z = a->q[3][l];
+        const float m00 = s->m[0][l], m01 = s->m[1][l], m02 = s->m[2][l], m10 = s->m[3][l], m11 = s->m[4][l];
+        const float m12 = s->m[5][l], m20 = s->m[6][l], m21 = s->m[7][l], m22 = s->m[8][l];
+        const float gw = s->q[0][l] + 2 * (z * (m10 - m01) + y * (m02 - m20) + x * (m21 - m12));
+        const float gx = s->q[1][l] + 2 * (y * (m01 + m10) + z * (m02 + m20) + w * (m21 - m12) - 2 * x * (m11 + m22));
+        const float gy = s->q[2][l] + 2 * (x * (m01 + m10) + z * (m12 + m21) + w * (m02 - m20) - 2 * y * (m00 + m22));
+        const float gz = s->q[3][l] + 2 * (x * (m02 + m20) + y * (m12 + m21) + w * (m10 - m01) - 2 * z * (m00 + m11));
+        const float along = w * gw + x * gx + y * gy + z * gz, turn = io->moving[l] / a->norm[l];
+        d[9 * LANES + l] = (gx - x * along) * turn;
+        d[10 * LANES + l] = (gy - y * along) * turn;
+        d[11 * LANES + l] = (gz - z * along) * turn;
+    }
+}
+
+static void ISA(primitives_back)(const adcgs_group_io *io, const adcgs_group_grad *grad)
+{
+    anchor_terms a;
+    anchor_grads s;
+    memset(&s, 0, sizeof s);
+    ISA(anchor_forward)(&a, io);
+    for (int k = 0; k < io->k; k++) {
+        ISA(primitive_mean_back)(&a, &s, io, grad, k);
+        ISA(primitive_rotation_back)(&a, &s, io, grad, k);
+        ISA(primitive_rest_back)(&a, &s, io, grad, k);
+    }
+    if (io->omega)
+        ISA(omega_back)(&a, &s, io, grad);
+}
+
+/* ---- Rate: the continuous twin of the coder's tables. ---- */
+
+/** Upper tail of the standard normal for x >= 0 (Abramowitz and Stegun 26.2.17), and its density. */
+static inline float tail(float x, float *density)
+{
+    const float t = 1 / (1 + 0.2316419f * x);
+    const float p = t * (0.319381530f + t * (-0.356563782f + t * (1.781477937f + t * (-1.821255978f + t * 1.330274429f))));
+    *density = 0.3989422804f * adcgs_exp(adcgs_clampf(-0.5f * x * x, -80, 0));
+    return p * *density;
+}
+
+static double ISA(rate)(const float *restrict y, const float *restrict step, const float *restrict mu, const float *restrict si,
+                        const float *restrict weight, int n, float scale, float *restrict dy, float *restrict dmu, float *restrict dsi)
+{
+    const float log2_ratio = 0.14575835f; /* log2(64/0.11)/63: sigma levels are 2^0.1458 apart */
+    const float level0 = -3.18442457f;    /* log2(0.11) */
+    double total = 0;
+    for (int i = 0; i < n; i++) {
+        const float inverse = 1 / step[i];
+        float bits_row[LANES];
+        for (int l = 0; l < LANES; l++) {
+            const int at = i * LANES + l;
+            const float v = y[at] * inverse - ADCGS_MU_GAIN * mu[at], av = v < 0 ? -v : v;
+            const float raw = ADCGS_SI_GAIN * si[at] + ADCGS_SI_CENTRE, level = adcgs_clampf(raw, 0, 63);
+            const float inv_sigma = adcgs_exp(-0.69314718f * (level * log2_ratio + level0));
+            const float a = (av - 0.5f) * inv_sigma, b = (av + 0.5f) * inv_sigma;
+            float fa, fb;
+            const float qa = tail(a < 0 ? -a : a, &fa), qb = tail(b, &fb);
+            const float inside = (a < 0 ? 1 - qa : qa) - qb;
+            /* a thin heavy tail stands for the escape code and keeps gradients alive far out */
+            const float width = 1 + 4 / inv_sigma, far = 1 / (width * width + av * av), heavy = 0x1p-14f * width * far;
+            const float p = inside * (1 - 0x1p-12f) + heavy + 1e-12f;
+            const float factor = -1.44269504f / p * scale * weight[l];
+            const float dp_dv = (fb - fa) * inv_sigma * (1 - 0x1p-12f) - 2 * heavy * av * far;
+            const float dp_dlog = -(b * fb - a * fa) * (1 - 0x1p-12f); /* d p / d ln sigma */
+            const float gv = factor * dp_dv * (v < 0 ? -1.0f : 1.0f);
+            bits_row[l] = -adcgs_log2(p) * weight[l];
+            dy[at] += gv * inverse;
+            dmu[at] = -gv * ADCGS_MU_GAIN;
+            float gs = factor * dp_dlog * (0.69314718f * 0.14575835f * ADCGS_SI_GAIN);
+            gs = (raw < 0 && gs > 0) || (raw > 63 && gs < 0) ? 0 : gs; /* let it come back inside, not go further out */
+            dsi[at] = gs;
+        }
+        float sum = 0;
+        for (int l = 0; l < LANES; l++)
+            sum += bits_row[l];
+        total += sum;
+    }
+    return total;
+}
+
+static void ISA(adam)(float *restrict p, float *restrict g, float *restrict m, float *restrict v, size_t n, float lr, float c1, float c2)
+{
+    for (size_t i = 0; i < n; i++) {
+        m[i] = 0.9f * m[i] + 0.1f * g[i];
+        v[i] = 0.999f * v[i] + 0.001f * (g[i] * g[i]);
+        p[i] -= lr * (m[i] * c1) / (sqrtf(v[i] * c2) + 1e-15f);
+        g[i] = 0;
+    }
+}
+
+void ISA(adcgs_train_dsp_init)(adcgs_train_dsp *dsp);
+void ISA(adcgs_train_dsp_init)(adcgs_train_dsp *dsp)
+{
+    dsp->weight_grad = ISA(weight_grad);
+    dsp->lrelu_back = ISA(lrelu_back);
+    dsp->noise = ISA(noise);
+    dsp->round = ISA(round);
+    dsp->primitives = ISA(primitives);
+    dsp->primitives_back = ISA(primitives_back);
+    dsp->rate = ISA(rate);
+    dsp->adam = ISA(adam);
+}

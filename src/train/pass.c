@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Workspace of the passes and the forward pass. */
+#include "train/pass_layout.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- Workspace ---- */
+
+static size_t rows_of(const adcgs_mlp *m)
+{
+    /* h and z per hidden layer (kept for weight gradients), output and its gradient */
+    return (size_t)(m->hidden * 2 + (m->hidden > 1 ? m->hidden - 1 : 0)) * (size_t)m->width + 2u * (size_t)m->out;
+}
+
+static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error *error)
+{
+    const size_t g = f->groups, k = f->params.k, slots = g * k * 64;
+    p->groups = f->groups;
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+        const size_t n = g * (size_t)adcgs_fmodel_rows(f, i) * 64;
+        p->used[i] = adcgs_alloc(NULL, n, sizeof(float), error);
+        p->mu[i] = adcgs_alloc(NULL, n, sizeof(float), error);
+        if (!p->used[i] || !p->mu[i])
+            return ADCGS_ERR_MEMORY;
+    }
+    p->act = adcgs_alloc(NULL, g * p->act_stride, sizeof(float), error);
+    p->prim = adcgs_alloc(NULL, slots * 14, sizeof(float), error);
+    p->grad = adcgs_alloc(NULL, slots * 16, sizeof(float), error);
+    if (!p->act || !p->prim || !p->grad)
+        return ADCGS_ERR_MEMORY;
+    float *a = p->prim, *d = p->grad;
+    adcgs_primitives *r = &p->primitives;
+    r->n = (uint32_t)slots;
+    for (int c = 0; c < 3; c++) {
+        r->mean[c] = a + (size_t)c * slots;
+        r->scale[c] = a + (size_t)(3 + c) * slots;
+        r->colour[c] = a + (size_t)(11 + c) * slots;
+        p->grads.mean[c] = d + (size_t)c * slots;
+        p->grads.scale[c] = d + (size_t)(3 + c) * slots;
+        p->grads.colour[c] = d + (size_t)(11 + c) * slots;
+    }
+    for (int c = 0; c < 4; c++) {
+        r->rotation[c] = a + (size_t)(6 + c) * slots;
+        p->grads.rotation[c] = d + (size_t)(6 + c) * slots;
+    }
+    r->opacity = a + 10 * slots;
+    p->grads.opacity = d + 10 * slots;
+    p->grads.weight = d + 14 * slots;
+    p->grads.screen = d + 15 * slots;
+    return ADCGS_OK;
+}
+
+static void free_groups(adcgs_pass *p)
+{
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+        adcgs_free(NULL, p->used[i]);
+        adcgs_free(NULL, p->mu[i]);
+    }
+    adcgs_free(NULL, p->act);
+    adcgs_free(NULL, p->prim);
+    adcgs_free(NULL, p->grad);
+}
+
+adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_pass *p = calloc(1, sizeof *p);
+    *out = NULL;
+    if (!p)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the training workspace");
+    p->cpu = cpu;
+    p->pool = pool;
+    adcgs_train_dsp_init(&p->dsp, cpu);
+    const adcgs_mlp *m = f->mlp;
+    const size_t k = f->params.k;
+    const adcgs_mlp *theta = &m[ADCGS_P_THETA];
+    p->act_stride = 64 * ((size_t)theta->width + k * (rows_of(theta) - (size_t)theta->out) + rows_of(&m[ADCGS_P_OMEGA]) +
+                          rows_of(&m[ADCGS_P_VARPI]));
+    p->scratch_stride = 64 * adcgs_pass_scratch_rows(f);
+    size_t at = 0;
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
+        p->partial_at[i] = at;
+        at += (f->param[i].n + 15) / 16 * 16;
+    }
+    p->partial_stride = at;
+    p->chunks = ADCGS_PASS_CHUNKS;
+    p->scratch = adcgs_alloc(NULL, p->scratch_stride * (size_t)adcgs_pool_threads(pool), sizeof(float), error);
+    p->partial = adcgs_alloc(NULL, at * (size_t)p->chunks, sizeof(float), error);
+    p->bits = adcgs_alloc(NULL, (size_t)p->chunks * ADCGS_P_ANCHOR, sizeof(double), error);
+    p->time_code = adcgs_alloc(NULL, (size_t)f->params.time_width + 1, sizeof(float), error);
+    for (int i = 0; i < 2; i++)
+        p->time_bias[i] = adcgs_alloc(NULL, 1024, sizeof(float), error);
+    *out = p;
+    if (!p->scratch || !p->partial || !p->bits || !p->time_code || !p->time_bias[0] || !p->time_bias[1] ||
+        alloc_groups(p, f, error) != ADCGS_OK) {
+        adcgs_pass_free(out);
+        return ADCGS_ERR_MEMORY;
+    }
+    return ADCGS_OK;
+}
+
+void adcgs_pass_free(adcgs_pass **pass)
+{
+    adcgs_pass *p = *pass;
+    if (!p)
+        return;
+    free_groups(p);
+    adcgs_free(NULL, p->scratch);
+    adcgs_free(NULL, p->partial);
+    adcgs_free(NULL, p->bits);
+    adcgs_free(NULL, p->time_code);
+    for (int i = 0; i < 2; i++)
+        adcgs_free(NULL, p->time_bias[i]);
+    free(p);
+    *pass = NULL;
+}
+
+adcgs_status adcgs_pass_resize(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error *error)
+{
+    free_groups(p);
+    return alloc_groups(p, f, error);
+}
+
+/* ---- Forward ---- */
+
+void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, float *a, float *out)
+{
+    const size_t tile = (size_t)m->width * 64;
+    dsp->dense.lrelu(h, m->width);
+    for (int i = 1; i < m->hidden; i++) {
+        float *branch = a + (size_t)(i - 1) * tile, *next = h + (size_t)i * tile;
+        dsp->dense.dense(branch, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, next - tile, m->width, m->width);
+        dsp->dense.lrelu(branch, m->width);
+        for (size_t j = 0; j < tile; j++)
+            next[j] = next[j - tile] + branch[j];
+    }
+    dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width,
+                     h + (size_t)(m->hidden - 1) * tile, m->out, m->width);
+}
+
+typedef struct forward_job {
+    adcgs_pass *pass;
+    const adcgs_fmodel *f;
+    adcgs_quant quant;
+    int deform;
+    uint32_t seed;
+} forward_job;
+
+static void quantise_group(const forward_job *job, uint32_t g)
+{
+    adcgs_pass *p = job->pass;
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+        const int rows = adcgs_fmodel_rows(job->f, i);
+        const size_t at = (size_t)g * (size_t)rows * 64;
+        const float *value = job->f->param[i].p + at;
+        const float *step = job->f->step[i];
+        if (job->quant == ADCGS_QUANT_NOISE)
+            p->dsp.noise(p->used[i] + at, value, step, rows, adcgs_mix32(job->seed ^ (g * ADCGS_P_ANCHOR + (uint32_t)i)));
+        else if (job->quant == ADCGS_QUANT_ROUND)
+            p->dsp.round(p->used[i] + at, value, step, p->mu[i] + at, rows);
+        else
+            memcpy(p->used[i] + at, value, (size_t)rows * 64 * sizeof *value);
+    }
+}
+
+static void forward_theta(const forward_job *job, uint32_t g)
+{
+    const adcgs_pass *p = job->pass;
+    const adcgs_fmodel *f = job->f;
+    const adcgs_mlp *m = &f->mlp[ADCGS_P_THETA];
+    const adcgs_dense_dsp *d = &p->dsp.dense;
+    const int nv = f->params.n_fv, ng = f->params.n_fg;
+    const adcgs_act act = adcgs_pass_act(p, f, g);
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
+    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * 64;
+    d->dense(act.theta_anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], fv, m->width, nv);
+    for (int k = 0; k < f->params.k; k++) {
+        float *h = act.theta_h + (size_t)k * act.theta_h_stride;
+        d->dense(h, act.theta_anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
+        adcgs_mlp_tail(&p->dsp, m, h, act.theta_a + (size_t)k * act.theta_a_stride, act.theta_out + (size_t)k * ADCGS_THETA_OUT * 64);
+    }
+}
+
+static void forward_deform(const forward_job *job, uint32_t g)
+{
+    const adcgs_pass *p = job->pass;
+    const adcgs_fmodel *f = job->f;
+    const adcgs_dense_dsp *d = &p->dsp.dense;
+    const int nv = f->params.n_fv, fp = 6 * f->params.octaves;
+    const adcgs_act act = adcgs_pass_act(p, f, g);
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
+    const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
+    if (om->n) {
+        d->dense(act.omega_h, NULL, p->time_bias[0], om->use, (size_t)om->in[0], fv, om->width, nv);
+        adcgs_mlp_tail(&p->dsp, om, act.omega_h, act.omega_a, act.omega_out);
+    }
+    if (va->n) {
+        d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], f->code + (size_t)g * (size_t)fp * 64, va->width, fp);
+        if (f->params.fine_uses_fv)
+            d->dense(act.varpi_h, act.varpi_h, NULL, va->use + fp, (size_t)va->in[0], fv, va->width, nv);
+        adcgs_mlp_tail(&p->dsp, va, act.varpi_h, act.varpi_a, act.varpi_out);
+    }
+}
+
+void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int deform, adcgs_group_io *io)
+{
+    const adcgs_act act = adcgs_pass_act(p, f, g);
+    const size_t slots = (size_t)f->groups * f->params.k * 64, at = (size_t)g * f->params.k * 64;
+    io->k = f->params.k;
+    io->x = f->x + (size_t)g * 3 * 64;
+    io->sigma = p->used[ADCGS_P_SIGMA] + (size_t)g * ADCGS_SIGMA_N * 64;
+    io->colour = p->used[ADCGS_P_COLOUR] + (size_t)g * ADCGS_COLOUR_N * 64;
+    io->theta = act.theta_out;
+    io->omega = deform && f->mlp[ADCGS_P_OMEGA].n ? act.omega_out : NULL;
+    io->varpi = deform && f->mlp[ADCGS_P_VARPI].n ? act.varpi_out : NULL;
+    io->moving = f->moving + (size_t)g * 64;
+    io->keep = f->keep + at;
+    io->rotation = f->params.coarse_rotation;
+    for (int c = 0; c < 3; c++) {
+        io->mean[c] = p->prim + (size_t)c * slots + at;
+        io->scale[c] = p->prim + (size_t)(3 + c) * slots + at;
+        io->rgb[c] = p->prim + (size_t)(11 + c) * slots + at;
+    }
+    for (int c = 0; c < 4; c++)
+        io->rot[c] = p->prim + (size_t)(6 + c) * slots + at;
+    io->opacity = p->prim + 10 * slots + at;
+}
+
+static void forward_group(void *arg, int index, int thread)
+{
+    (void)thread;
+    const forward_job *job = arg;
+    const uint32_t g = (uint32_t)index;
+    quantise_group(job, g);
+    forward_theta(job, g);
+    if (job->deform)
+        forward_deform(job, g);
+    adcgs_group_io io;
+    adcgs_pass_io(job->pass, job->f, g, job->deform, &io);
+    job->pass->dsp.primitives(&io);
+}
+
+/** Row coordinate of t in the time table: *row and the fraction towards the next row. */
+static float time_row(const adcgs_fmodel *f, float t, int *row)
+{
+    const int rows = f->params.time_rows;
+    const float u = t * (float)(rows - 1);
+    *row = rows > 1 ? (int)u < rows - 2 ? (int)u : rows - 2 : 0;
+    return rows > 1 ? u - (float)*row : 0;
+}
+
+static void forward_time(adcgs_pass *p, const adcgs_fmodel *f, float t)
+{
+    const int width = f->params.time_width;
+    int row;
+    const float frac = time_row(f, t, &row);
+    const float *z = f->mlp[ADCGS_P_TIME].use + (size_t)row * (size_t)width;
+    for (int j = 0; j < width; j++)
+        p->time_code[j] = f->params.time_rows > 1 ? z[j] + frac * (z[j + width] - z[j]) : z[j];
+    const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
+    for (int i = 0; i < 2; i++) {
+        const adcgs_mlp *m = &f->mlp[which[i]];
+        for (int o = 0; m->n && o < m->width; o++) {
+            const float *w = m->use + (size_t)o * (size_t)m->in[0] + m->own;
+            float acc = m->use[m->b[0] + (size_t)o];
+            for (int j = 0; j < width; j++)
+                acc += w[j] * p->time_code[j];
+            p->time_bias[i][o] = acc;
+        }
+    }
+    p->t = t;
+}
+
+void adcgs_pass_forward(adcgs_pass *p, const adcgs_fmodel *f, float t, adcgs_quant quant, int deform, uint32_t seed)
+{
+    forward_job job = { p, f, quant, deform && f->params.time_rows, seed };
+    if (job.deform)
+        forward_time(p, f, t);
+    adcgs_pool_run(p->pool, forward_group, &job, (int)f->groups);
+}
+
+/* The time part of the first layers: their bias gradient is the gradient of the per-frame bias vector. */
+void adcgs_pass_time_back(adcgs_pass *p, adcgs_fmodel *f)
+{
+    const int width = f->params.time_width;
+    const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
+    float *dz = f->param[ADCGS_P_TIME].g;
+    int row;
+    const float frac = time_row(f, p->t, &row);
+    for (int i = 0; i < 2; i++) {
+        const adcgs_mlp *m = &f->mlp[which[i]];
+        float *g = f->param[which[i]].g;
+        for (int o = 0; m->n && o < m->width; o++) {
+            const float d = g[m->b[0] + (size_t)o];
+            const size_t w = (size_t)o * (size_t)m->in[0] + (size_t)m->own;
+            for (int j = 0; j < width; j++) {
+                g[w + (size_t)j] += d * p->time_code[j];
+                const float dcode = d * m->use[w + (size_t)j];
+                dz[row * width + j] += dcode * (1 - frac);
+                if (f->params.time_rows > 1)
+                    dz[(row + 1) * width + j] += dcode * frac;
+            }
+        }
+    }
+}

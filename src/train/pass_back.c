@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The backward pass: primitives' gradients to anchors and networks. */
+#include "train/pass_layout.h"
+
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout, float *dz)
+{
+    const size_t tile = (size_t)m->width * 64;
+    /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
+    dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
+    for (int i = m->hidden - 1; i > 0; i--) {
+        float *d = dz + (size_t)i * tile;
+        memcpy(d, dz, tile * sizeof *d);
+        dsp->lrelu_back(d, a + (size_t)(i - 1) * tile, m->width);
+        dsp->dense.dense(dz, dz, NULL, m->turn + m->w[i], (size_t)m->width, d, m->width, m->width);
+    }
+    dsp->lrelu_back(dz, h, m->width);
+}
+
+void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
+                            size_t sdz, const float *dout, size_t sdout, int tiles)
+{
+    const size_t tile = (size_t)m->width * 64;
+    for (int i = 1; i < m->hidden; i++)
+        dsp->weight_grad(g + m->w[i], (size_t)m->width, g + m->b[i], dz + (size_t)i * tile, sdz, h + (size_t)(i - 1) * tile, sh, tiles,
+                         m->width, m->width);
+    const int last = m->hidden;
+    dsp->weight_grad(g + m->w[last], (size_t)m->width, g + m->b[last], dout, sdout, h + (size_t)(last - 1) * tile, sh, tiles, m->out,
+                     m->width);
+}
+
+typedef struct backward_job {
+    adcgs_pass *pass;
+    adcgs_fmodel *f;
+    int deform, period, first;
+    float rate_scale;
+} backward_job;
+
+static float *grad_at(const adcgs_fmodel *f, int group, uint32_t g)
+{
+    return f->param[group].g + (size_t)g * (size_t)adcgs_fmodel_rows(f, group) * 64;
+}
+
+static void theta_back(const backward_job *job, uint32_t g, const float *dtheta, float *scratch, float *partial)
+{
+    const adcgs_pass *p = job->pass;
+    const adcgs_fmodel *f = job->f;
+    const adcgs_mlp *m = &f->mlp[ADCGS_P_THETA];
+    const adcgs_train_dsp *dsp = &p->dsp;
+    const int nv = f->params.n_fv, ng = f->params.n_fg, k = f->params.k, w = m->width;
+    const adcgs_act act = adcgs_pass_act(p, f, g);
+    const size_t tile = (size_t)w * 64, sdz = (size_t)m->hidden * tile, fg_tile = (size_t)ng * 64;
+    float *sum = scratch, *dz = scratch + tile;
+    float *dfg = grad_at(f, ADCGS_P_FG, g), *dfv = grad_at(f, ADCGS_P_FV, g);
+    memset(sum, 0, tile * sizeof *sum);
+    for (int i = 0; i < k; i++) {
+        float *d = dz + (size_t)i * sdz;
+        adcgs_mlp_tail_back(dsp, m, act.theta_h + (size_t)i * act.theta_h_stride, act.theta_a + (size_t)i * act.theta_a_stride,
+                            dtheta + (size_t)i * ADCGS_THETA_OUT * 64, d);
+        dsp->dense.dense(dfg + (size_t)i * fg_tile, dfg + (size_t)i * fg_tile, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w, d, ng, w);
+        for (size_t j = 0; j < tile; j++)
+            sum[j] += d[j];
+    }
+    dsp->dense.dense(dfv, dfv, NULL, m->turn, (size_t)w, sum, nv, w);
+    float *gm = partial + p->partial_at[ADCGS_P_THETA];
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
+    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * (size_t)k * fg_tile;
+    dsp->weight_grad(gm, (size_t)m->in[0], gm + m->b[0], sum, 0, fv, 0, 1, w, nv);
+    dsp->weight_grad(gm + nv, (size_t)m->in[0], NULL, dz, sdz, fg, fg_tile, k, w, ng);
+    adcgs_mlp_weight_grads(dsp, m, gm, act.theta_h, act.theta_h_stride, dz, sdz, dtheta, ADCGS_THETA_OUT * 64, k);
+}
+
+/** From the outputs' gradients to dz and f_v; weights follow per chunk. */
+static void deform_back(const backward_job *job, uint32_t g)
+{
+    const adcgs_pass *p = job->pass;
+    const adcgs_fmodel *f = job->f;
+    const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
+    const adcgs_act act = adcgs_pass_act(p, f, g);
+    float *dfv = grad_at(f, ADCGS_P_FV, g);
+    if (om->n) {
+        adcgs_mlp_tail_back(&p->dsp, om, act.omega_h, act.omega_a, act.omega_dout, act.omega_dz);
+        p->dsp.dense.dense(dfv, dfv, NULL, om->turn, (size_t)om->width, act.omega_dz, f->params.n_fv, om->width);
+    }
+    if (va->n) {
+        adcgs_mlp_tail_back(&p->dsp, va, act.varpi_h, act.varpi_a, act.varpi_dout, act.varpi_dz);
+        if (f->params.fine_uses_fv)
+            p->dsp.dense.dense(dfv, dfv, NULL, va->turn + (size_t)(6 * f->params.octaves) * (size_t)va->width, (size_t)va->width,
+                               act.varpi_dz, f->params.n_fv, va->width);
+    }
+}
+
+static void deform_weights(const backward_job *job, uint32_t begin, int tiles, float *partial)
+{
+    const adcgs_pass *p = job->pass;
+    const adcgs_fmodel *f = job->f;
+    const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
+    const adcgs_act act = adcgs_pass_act(p, f, begin);
+    const int nv = f->params.n_fv, fp = 6 * f->params.octaves;
+    const size_t s = p->act_stride, sfv = (size_t)nv * 64, sfp = (size_t)fp * 64;
+    const float *fv = p->used[ADCGS_P_FV] + begin * sfv;
+    if (om->n) {
+        float *g = partial + p->partial_at[ADCGS_P_OMEGA];
+        p->dsp.weight_grad(g, (size_t)om->in[0], g + om->b[0], act.omega_dz, s, fv, sfv, tiles, om->width, nv);
+        adcgs_mlp_weight_grads(&p->dsp, om, g, act.omega_h, s, act.omega_dz, s, act.omega_dout, s, tiles);
+    }
+    if (va->n) {
+        float *g = partial + p->partial_at[ADCGS_P_VARPI];
+        p->dsp.weight_grad(g, (size_t)va->in[0], g + va->b[0], act.varpi_dz, s, f->code + begin * sfp, sfp, tiles, va->width, fp);
+        if (f->params.fine_uses_fv)
+            p->dsp.weight_grad(g + fp, (size_t)va->in[0], NULL, act.varpi_dz, s, fv, sfv, tiles, va->width, nv);
+        adcgs_mlp_weight_grads(&p->dsp, va, g, act.varpi_h, s, act.varpi_dz, s, act.varpi_dout, s, tiles);
+    }
+}
+
+static void backward_group(const backward_job *job, uint32_t g, float *scratch, float *partial)
+{
+    const adcgs_pass *p = job->pass;
+    const adcgs_fmodel *f = job->f;
+    const size_t at = (size_t)g * f->params.k * 64;
+    const adcgs_act act = adcgs_pass_act(p, f, g);
+    adcgs_group_io io;
+    adcgs_group_grad grad;
+    adcgs_pass_io(p, f, g, job->deform, &io);
+    for (int c = 0; c < 3; c++) {
+        grad.mean[c] = p->grads.mean[c] + at;
+        grad.scale[c] = p->grads.scale[c] + at;
+        grad.rgb[c] = p->grads.colour[c] + at;
+    }
+    for (int c = 0; c < 4; c++)
+        grad.rot[c] = p->grads.rotation[c] + at;
+    grad.opacity = p->grads.opacity + at;
+    grad.sigma = grad_at(f, ADCGS_P_SIGMA, g);
+    grad.colour = grad_at(f, ADCGS_P_COLOUR, g);
+    grad.theta = scratch;
+    grad.omega = act.omega_dout;
+    grad.varpi = act.varpi_dout;
+    p->dsp.primitives_back(&io, &grad);
+    theta_back(job, g, grad.theta, scratch + (size_t)f->params.k * ADCGS_THETA_OUT * 64, partial);
+    if (job->deform)
+        deform_back(job, g);
+}
+
+static void backward_chunk(void *arg, int chunk, int thread)
+{
+    const backward_job *job = arg;
+    adcgs_pass *p = job->pass;
+    float *scratch = p->scratch + (size_t)thread * p->scratch_stride;
+    float *partial = p->partial + (size_t)chunk * p->partial_stride;
+    const uint32_t begin = (uint32_t)((uint64_t)p->groups * (uint64_t)chunk / (uint64_t)p->chunks);
+    const uint32_t end = (uint32_t)((uint64_t)p->groups * (uint64_t)(chunk + 1) / (uint64_t)p->chunks);
+    double *bits = p->bits + (size_t)chunk * ADCGS_P_ANCHOR;
+    memset(partial, 0, p->partial_stride * sizeof *partial);
+    memset(bits, 0, ADCGS_P_ANCHOR * sizeof *bits);
+    for (uint32_t g = begin; g < end; g++) {
+        backward_group(job, g, scratch, partial);
+        if (job->period && (g + (uint32_t)job->first) % (uint32_t)job->period == 0)
+            adcgs_rate_group(p, job->f, g, job->rate_scale * (float)job->period, partial, scratch, bits);
+    }
+    if (job->deform && end > begin)
+        deform_weights(job, begin, (int)(end - begin), partial);
+}
+
+static void merge_partials(adcgs_pass *p, adcgs_fmodel *f)
+{
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
+        for (int c = 0; c < p->chunks; c++) {
+            const float *from = p->partial + (size_t)c * p->partial_stride + p->partial_at[i];
+            float *to = f->param[i].g;
+            for (size_t j = 0; j < f->param[i].n; j++)
+                to[j] += from[j];
+        }
+}
+
+void adcgs_pass_backward(adcgs_pass *p, adcgs_fmodel *f, int deform, float rate_scale, int period, int first, adcgs_rate *rate)
+{
+    backward_job job = { p, f, deform && f->params.time_rows, rate_scale > 0 ? period : 0, first, rate_scale };
+    adcgs_pool_run(p->pool, backward_chunk, &job, p->chunks);
+    merge_partials(p, f);
+    if (job.deform)
+        adcgs_pass_time_back(p, f);
+    if (!rate)
+        return;
+    memset(rate, 0, sizeof *rate);
+    for (int c = 0; c < p->chunks; c++)
+        for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+            rate->bits[i] += p->bits[c * ADCGS_P_ANCHOR + i] * period;
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        rate->total += rate->bits[i];
+}

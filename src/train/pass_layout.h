@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Private to the passes: where activations of a group lie, and what forward and backward share. */
+#ifndef ADCGS_TRAIN_PASS_LAYOUT_H
+#define ADCGS_TRAIN_PASS_LAYOUT_H
+
+#include "train/pass.h"
+#include "train/random.h"
+
+/** Groups are merged in this many fixed pieces, whatever the number of threads. */
+#define ADCGS_PASS_CHUNKS 8
+
+/** Activations of one group. h: hidden layers' outputs; a: residual branches; dz, dout: gradients, kept for weight gradients. */
+typedef struct adcgs_act {
+    float *theta_anchor;                      /* [width][64] */
+    float *theta_h, *theta_a, *theta_out;     /* per primitive */
+    size_t theta_h_stride, theta_a_stride;
+    float *omega_h, *omega_a, *omega_dz, *omega_out, *omega_dout;
+    float *varpi_h, *varpi_a, *varpi_dz, *varpi_out, *varpi_dout;
+} adcgs_act;
+
+static inline size_t adcgs_pass_branches(const adcgs_mlp *m)
+{
+    return m->hidden > 1 ? (size_t)(m->hidden - 1) : 0;
+}
+
+static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g)
+{
+    const adcgs_mlp *th = &f->mlp[ADCGS_P_THETA], *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
+    const size_t k = f->params.k;
+    adcgs_act a;
+    float *at = p->act + (size_t)g * p->act_stride;
+#define TAKE(field, rows) (a.field = at, at += (size_t)(rows) * 64)
+    a.theta_h_stride = (size_t)th->hidden * (size_t)th->width * 64;
+    a.theta_a_stride = adcgs_pass_branches(th) * (size_t)th->width * 64;
+    TAKE(theta_anchor, th->width);
+    TAKE(theta_h, k * (size_t)th->hidden * (size_t)th->width);
+    TAKE(theta_a, k * adcgs_pass_branches(th) * (size_t)th->width);
+    TAKE(theta_out, k * ADCGS_THETA_OUT);
+    TAKE(omega_h, om->hidden * om->width);
+    TAKE(omega_a, adcgs_pass_branches(om) * (size_t)om->width);
+    TAKE(omega_dz, om->hidden * om->width);
+    TAKE(omega_out, om->out);
+    TAKE(omega_dout, om->out);
+    TAKE(varpi_h, va->hidden * va->width);
+    TAKE(varpi_a, adcgs_pass_branches(va) * (size_t)va->width);
+    TAKE(varpi_dz, va->hidden * va->width);
+    TAKE(varpi_out, va->out);
+    TAKE(varpi_dout, va->out);
+#undef TAKE
+    return a;
+}
+
+/** Run layers 1.. of a network: h[0] holds layer 0's sums and is activated in place. */
+void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, float *a, float *out);
+/** Gradients dz of every hidden layer's sums from dout. */
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout, float *dz);
+/** Weight gradients of layers 1.. over tiles of the given strides. */
+void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
+                            size_t sdz, const float *dout, size_t sdout, int tiles);
+
+void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int deform, adcgs_group_io *io);
+void adcgs_pass_time_back(adcgs_pass *p, adcgs_fmodel *f);
+size_t adcgs_pass_scratch_rows(const adcgs_fmodel *f);
+
+/** Rate of one group: gradients into f's anchors (scale included) and partial network gradients g; bits[5] accumulated. */
+void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, float scale, float *partial, float *scratch, double *bits);
+
+#endif

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Growth and pruning of anchors by temporal significance (paper section 3.5), and the final decisions. */
+#include "train/trainer.h"
+
+#include "geom/geom.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- A set of grid cells ---- */
+
+typedef struct cells {
+    uint64_t *key; /* cell + 1, 0: empty */
+    size_t mask;
+} cells;
+
+/** Insert a cell; returns 0 if it was there already. */
+static int cells_add(cells *c, const uint32_t pos[3])
+{
+    const uint32_t cell[3] = { pos[0] >> 2, pos[1] >> 2, pos[2] >> 2 };
+    const uint64_t key = adcgs_morton(cell) + 1;
+    size_t at = (size_t)((key * 0x9e3779b97f4a7c15u) >> 20) & c->mask;
+    while (c->key[at]) {
+        if (c->key[at] == key)
+            return 0;
+        at = (at + 1) & c->mask;
+    }
+    c->key[at] = key;
+    return 1;
+}
+
+/* ---- Growth candidates ---- */
+
+typedef struct candidate {
+    float score;
+    uint32_t slot;
+} candidate;
+
+static int by_score(const void *a, const void *b)
+{
+    const candidate *x = a, *y = b;
+    if (x->score != y->score)
+        return x->score < y->score ? 1 : -1;
+    return (x->slot > y->slot) - (x->slot < y->slot);
+}
+
+static uint32_t anchor_of(const adcgs_fmodel *f, uint32_t slot)
+{
+    return slot / (64u * f->params.k) * 64 + slot % 64;
+}
+
+static uint32_t find_candidates(const adcgs_trainer *t, candidate *list)
+{
+    const uint32_t slots = t->pass->primitives.n;
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < slots; i++) {
+        const float w = t->stats.weight[i];
+        if (anchor_of(t->f, i) >= t->f->n || !(w > 1))
+            continue;
+        const float score = t->stats.significance[i] / w;
+        if (score > t->config.grow_threshold)
+            list[n++] = (candidate){ score, i };
+    }
+    qsort(list, n, sizeof *list, by_score);
+    return n;
+}
+
+/** Anchors whose primitives stay transparent or cover next to nothing. */
+static int is_idle(const adcgs_trainer *t, uint32_t anchor, double min_pixels)
+{
+    const int k = t->f->params.k;
+    float opacity = 0;
+    double weight = 0;
+    for (int i = 0; i < k; i++) {
+        const size_t slot = ((size_t)(anchor / 64) * (size_t)k + (size_t)i) * 64 + anchor % 64;
+        opacity = fmaxf(opacity, t->stats.opacity[slot]);
+        weight += t->stats.weight[slot];
+    }
+    return opacity < t->config.prune_opacity * (float)t->stats.n || weight < min_pixels * t->stats.n;
+}
+
+/** The next set of anchors. */
+typedef struct next_set {
+    uint32_t n, capacity;
+    uint32_t (*pos)[3];
+    uint32_t *source, *order;
+    uint8_t *fresh;
+} next_set;
+
+static void next_clear(next_set *s)
+{
+    free(s->pos);
+    free(s->source);
+    free(s->order);
+    free(s->fresh);
+}
+
+static adcgs_status next_init(next_set *s, uint32_t capacity, adcgs_error *error)
+{
+    s->n = 0;
+    s->capacity = capacity;
+    s->pos = malloc(capacity * sizeof *s->pos);
+    s->source = malloc(capacity * sizeof *s->source);
+    s->order = malloc(capacity * sizeof *s->order);
+    s->fresh = malloc(capacity * sizeof *s->fresh);
+    if (s->pos && s->source && s->order && s->fresh)
+        return ADCGS_OK;
+    next_clear(s);
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", capacity);
+}
+
+static void next_add(next_set *s, const uint32_t pos[3], uint32_t source, int fresh)
+{
+    memcpy(s->pos[s->n], pos, sizeof s->pos[0]);
+    s->source[s->n] = source;
+    s->fresh[s->n++] = (uint8_t)fresh;
+}
+
+static void grow(adcgs_trainer *t, next_set *s, uint32_t budget, const candidate *list, uint32_t n, cells *occupied)
+{
+    const adcgs_fmodel *f = t->f;
+    const uint32_t side = 1u << f->shape.depth;
+    for (uint32_t i = 0; i < n && s->n < budget; i++) {
+        uint32_t pos[3];
+        int inside = 1;
+        for (int a = 0; a < 3; a++) {
+            const float v = floorf((t->pass->primitives.mean[a][list[i].slot] - f->origin[a]) / f->voxel);
+            inside &= v >= 0 && v < (float)side;
+            pos[a] = inside ? (uint32_t)v : 0;
+        }
+        if (inside && cells_add(occupied, pos))
+            next_add(s, pos, anchor_of(f, list[i].slot), 1);
+    }
+}
+
+/** Sort the set, hand it to the model, and shrink what is new: half the reach, smaller primitives. */
+static adcgs_status adopt(adcgs_trainer *t, next_set *s, adcgs_error *error)
+{
+    uint32_t *source = malloc(s->n * sizeof *source);
+    uint8_t *fresh = malloc(s->n);
+    if (!source || !fresh) {
+        free(source);
+        free(fresh);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", s->n);
+    }
+    adcgs_morton_sort(&s->pos[0][0], s->n, s->order, error);
+    for (uint32_t i = 0; i < s->n; i++) {
+        source[i] = s->source[s->order[i]];
+        fresh[i] = s->fresh[s->order[i]];
+    }
+    adcgs_status status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])s->pos, source, fresh, s->n, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < s->n; i++)
+        for (int a = 0; fresh[i] && a < 3; a++) {
+            *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, a) -= 0.6f;
+            *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, 3 + a) -= 0.4f;
+        }
+    free(source);
+    free(fresh);
+    return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
+}
+
+static uint32_t budget_at(const adcgs_train_config *c, double progress)
+{
+    const double ramp = fmin(1, (progress - c->grow_from) / (0.8 * (c->grow_until - c->grow_from)));
+    const double from = ADCGS_MIN(c->start_anchors, c->max_anchors);
+    return (uint32_t)(from + (c->max_anchors - from) * ramp);
+}
+
+adcgs_status adcgs_trainer_refine(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const uint32_t budget = budget_at(&t->config, progress), slots = t->pass->primitives.n;
+    next_set s;
+    cells occupied = { NULL, 1 };
+    while (occupied.mask < 4 * ((size_t)t->f->n + budget))
+        occupied.mask *= 2;
+    ADCGS_TRY(next_init(&s, t->f->n + budget + 1, error));
+    occupied.key = calloc(occupied.mask--, sizeof *occupied.key);
+    candidate *list = malloc((size_t)slots * sizeof *list);
+    adcgs_status status = occupied.key && list ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for refinement");
+    if (status == ADCGS_OK) {
+        for (uint32_t i = 0; i < t->f->n; i++)
+            if (!is_idle(t, i, 0.2)) {
+                cells_add(&occupied, t->f->pos[i]);
+                next_add(&s, t->f->pos[i], i, 0);
+            }
+        if (!s.n)
+            next_add(&s, t->f->pos[0], 0, 0);
+        const uint32_t n = find_candidates(t, list);
+        adcgs_pass_forward(t->pass, t->f, 0, ADCGS_QUANT_NONE, 0, 0); /* canonical places of all primitives */
+        grow(t, &s, budget, list, n, &occupied);
+        status = adopt(t, &s, error);
+    }
+    next_clear(&s);
+    free(occupied.key);
+    free(list);
+    return status;
+}
+
+/* ---- Decisions before rounding ---- */
+
+enum { DECIDE_TIMES = 16 };
+
+/** Largest effect of time on each anchor, in units where 1 is just worth its bits. */
+static void measure_motion(adcgs_trainer *t, float *effect)
+{
+    const adcgs_fmodel *f = t->f;
+    const int k = f->params.k;
+    const size_t slots = t->pass->primitives.n;
+    float *still = malloc(slots * 14 * sizeof *still);
+    if (!still) { /* without memory every anchor counts as moving: correct, only larger */
+        for (uint32_t i = 0; i < f->n; i++)
+            effect[i] = 1e9f;
+        return;
+    }
+    const float pixel = 1 / t->views[0].view.fx; /* scene units per pixel at unit distance */
+    adcgs_pass_forward(t->pass, f, 0, ADCGS_QUANT_NONE, 0, 0);
+    memcpy(still, t->pass->prim, slots * 14 * sizeof *still);
+    for (int step = 0; step < DECIDE_TIMES; step++) {
+        adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), ADCGS_QUANT_NONE, 1, 0);
+        for (size_t i = 0; i < slots; i++) {
+            const uint32_t anchor = anchor_of(f, (uint32_t)i);
+            if (anchor >= f->n || f->keep[i] == 0)
+                continue;
+            const float *now = t->pass->prim;
+            const float o = fmaxf(now[10 * slots + i], still[10 * slots + i]);
+            float shift = 0, tint = 0;
+            for (int a = 0; a < 3; a++) {
+                shift = fmaxf(shift, fabsf(now[(size_t)a * slots + i] - still[(size_t)a * slots + i]));
+                tint = fmaxf(tint, fabsf(now[(size_t)(11 + a) * slots + i] - still[(size_t)(11 + a) * slots + i]));
+            }
+            const float fade = fabsf(now[10 * slots + i] - still[10 * slots + i]);
+            const float here = o * (shift / (0.25f * pixel)) + o * tint / 0.02f + fade / 0.02f;
+            effect[anchor] = fmaxf(effect[anchor], here);
+        }
+    }
+    (void)k;
+    free(still);
+}
+
+adcgs_status adcgs_trainer_decide(adcgs_trainer *t, adcgs_error *error)
+{
+    adcgs_fmodel *f = t->f;
+    const int k = f->params.k;
+    if (!t->stats.n)
+        return ADCGS_OK;
+    for (uint32_t i = 0; i < f->n; i++)
+        for (int j = 0; j < k; j++) {
+            const size_t slot = ((size_t)(i / 64) * (size_t)k + (size_t)j) * 64 + i % 64;
+            if (t->stats.weight[slot] < 0.05 * t->stats.n)
+                f->keep[slot] = 0;
+        }
+    if (f->params.time_rows) {
+        float *effect = calloc(f->n, sizeof *effect);
+        if (!effect)
+            return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", f->n);
+        measure_motion(t, effect);
+        for (uint32_t i = 0; i < f->n; i++)
+            f->moving[i] = effect[i] >= 1 ? 1.0f : 0.0f;
+        free(effect);
+    }
+    next_set s;
+    ADCGS_TRY(next_init(&s, f->n + 1, error));
+    for (uint32_t i = 0; i < f->n; i++) {
+        int kept = 0;
+        for (int j = 0; j < k; j++)
+            kept += f->keep[((size_t)(i / 64) * (size_t)k + (size_t)j) * 64 + i % 64] > 0;
+        if (kept && !is_idle(t, i, 0.5))
+            next_add(&s, f->pos[i], i, 0);
+    }
+    if (!s.n)
+        next_add(&s, f->pos[0], 0, 0);
+    const adcgs_status status = adopt(t, &s, error);
+    next_clear(&s);
+    return status;
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Presets and learning rates. */
+#include "train/schedule.h"
+
+const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "paper", NULL };
+
+/** What the presets share. */
+static const adcgs_train_config base = {
+    .preset = "fast",
+    .iterations = 20000,
+    .seed = 1,
+    .scale = 1,
+    .lambda = 0.01f,
+    .ssim_weight = 0.2f,
+    .params = { .k = 10, .n_fv = 32, .n_fg = 8, .chunks = 4, .n_eta = 4, .octaves = 5, .fine_uses_fv = 1, .coarse_rotation = 1,
+                .time_rows = 16, .time_width = 16 },
+    .shape = { .theta_width = 32, .theta_hidden = 2, .omega_width = 48, .omega_hidden = 2, .varpi_width = 48, .varpi_hidden = 2,
+               .entropy_width = 24, .entropy_hidden = 1, .step_fv = 0.1f, .step_fg = 0.1f, .step_sigma = 0.06f, .step_colour = 0.02f,
+               .depth = 10 },
+    .start_anchors = 1000,
+    .max_anchors = 2500,
+    .grow_threshold = 0.0003f,
+    .prune_opacity = 0.02f,
+    .refine_every = 100,
+    .rate_period = 4,
+    .volume_weight = 0.0f,
+    .quarter_until = 0.12f,
+    .half_until = 0.40f,
+    .deform_from = 0.05f,
+    .grow_from = 0.03f,
+    .grow_until = 0.50f,
+    .noise_from = 0.25f,
+    .rate_from = 0.30f,
+    .decide_at = 0.72f,
+    .round_from = 0.75f,
+    .freeze_from = 0.90f,
+};
+
+adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, adcgs_error *error)
+{
+    *config = base;
+    config->preset = name;
+    if (!strcmp(name, "draft")) {
+        config->iterations = 3000;
+        config->max_anchors = 1200;
+        config->start_anchors = 600;
+        return ADCGS_OK;
+    }
+    if (!strcmp(name, "fast"))
+        return ADCGS_OK;
+    if (!strcmp(name, "medium")) {
+        config->iterations = 60000;
+        config->max_anchors = 4000;
+        return ADCGS_OK;
+    }
+    if (!strcmp(name, "slow")) {
+        config->iterations = 120000;
+        config->max_anchors = 6000;
+        return ADCGS_OK;
+    }
+    if (!strcmp(name, "paper")) {
+        /* The paper's sizes and order of events (section 4.1, appendix A), without coarse-to-fine. */
+        config->iterations = 80000;
+        config->max_anchors = 20000;
+        config->params.n_fg = 16;
+        config->params.time_width = 64;
+        config->shape.theta_width = config->shape.entropy_width = 32;
+        config->shape.entropy_hidden = 2;
+        config->shape.omega_width = config->shape.varpi_width = 128;
+        config->quarter_until = config->half_until = 0;
+        config->deform_from = 0.10f;
+        config->noise_from = config->rate_from = 0.125f;
+        config->grow_from = 0.0125f;
+        config->grow_until = 0.3125f;
+        return ADCGS_OK;
+    }
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown preset '%s': expected draft, fast, medium, slow or paper", name);
+}
+
+void adcgs_train_rates(adcgs_fmodel *f)
+{
+    static const float rates[ADCGS_P_COUNT][2] = {
+        [ADCGS_P_FV] = { 7.5e-3f, 7.5e-4f },    [ADCGS_P_FG] = { 1.0e-2f, 1.0e-3f },     [ADCGS_P_SIGMA] = { 7.0e-3f, 7.0e-4f },
+        [ADCGS_P_COLOUR] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_ETA] = { 1.0e-2f, 1.0e-3f },    [ADCGS_P_THETA] = { 4.0e-3f, 2.0e-4f },
+        [ADCGS_P_OMEGA] = { 1.5e-3f, 1.0e-4f },  [ADCGS_P_VARPI] = { 1.5e-3f, 1.0e-4f },  [ADCGS_P_TIME] = { 5.0e-3f, 3.0e-4f },
+        [ADCGS_P_ETA_PRIOR] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FV] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_SIGMA] = { 5.0e-3f, 5.0e-4f },
+        [ADCGS_P_E_COLOUR] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FG] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FG + 1] = { 5.0e-3f, 5.0e-4f },
+        [ADCGS_P_E_FG + 2] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FG + 3] = { 5.0e-3f, 5.0e-4f },
+    };
+    for (int i = 0; i < ADCGS_P_COUNT; i++) {
+        f->param[i].lr0 = rates[i][0];
+        f->param[i].lr1 = rates[i][1];
+    }
+}
+
+const char *adcgs_train_stage(const adcgs_train_config *c, double progress)
+{
+    if (progress < c->deform_from)
+        return "canonical";
+    if (progress < c->noise_from)
+        return "deform";
+    if (progress < c->rate_from)
+        return "noise";
+    if (progress < c->round_from)
+        return "rate";
+    return progress < c->freeze_from ? "round" : "networks";
+}

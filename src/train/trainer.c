@@ -1,0 +1,412 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The training loop. */
+#define _POSIX_C_SOURCE 200809L
+#include "train/trainer.h"
+
+#include "metric/metric.h"
+#include "train/random.h"
+#include "train/start.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { SNAPSHOT_EVERY = 500, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
+
+/* ---- Memory ---- */
+
+adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
+{
+    const size_t slots = (size_t)t->f->groups * 64 * t->f->params.k;
+    ADCGS_TRY(adcgs_pass_resize(t->pass, t->f, error));
+    adcgs_free(NULL, t->stats.weight);
+    t->stats.weight = adcgs_alloc(NULL, 3 * slots, sizeof(float), error);
+    t->stats.significance = t->stats.weight + slots;
+    t->stats.opacity = t->stats.weight + 2 * slots;
+    t->stats.n = 0;
+    return t->stats.weight ? ADCGS_OK : ADCGS_ERR_MEMORY;
+}
+
+static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
+{
+    adcgs_train_config *c = &t->config;
+    const uint32_t times = t->scene->n_times;
+    if (c->without_coarse && c->without_fine)
+        c->params.time_rows = 0;
+    if (times <= 1)
+        c->params.time_rows = 0;
+    else if (c->params.time_rows > times)
+        c->params.time_rows = (uint16_t)times;
+    if (!c->params.time_rows)
+        c->params.time_width = 0;
+    if (c->without_fine)
+        c->shape.varpi_width = 0;
+    adcgs_scene_frame(t->scene, t->origin, &t->scale);
+    ADCGS_TRY(adcgs_train_start(&t->f, t->scene, c, t->pool, error));
+    adcgs_train_rates(t->f);
+    ADCGS_TRY(adcgs_pass_create(&t->pass, t->f, t->cpu, t->pool, error));
+    ADCGS_TRY(adcgs_raster_create(&t->raster, t->cpu, t->pool, NULL, error));
+    ADCGS_TRY(adcgs_raster_back_create(&t->back, t->cpu, t->pool, error));
+    ADCGS_TRY(adcgs_loss_create(&t->loss, t->cpu, t->pool, error));
+    t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
+    t->views = calloc(t->n_views, sizeof *t->views);
+    if (!t->views)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u views", t->n_views);
+    return adcgs_trainer_resize(t, error);
+}
+
+adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config, adcgs_cpu_level cpu,
+                                  adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_trainer *t = calloc(1, sizeof *t);
+    *out = NULL;
+    if (!t)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the trainer");
+    t->config = *config;
+    t->scene = scene;
+    t->cpu = cpu;
+    t->pool = pool;
+    t->lr_scale = 1;
+    adcgs_buffer_init(&t->snapshot);
+    const adcgs_status status = create_parts(t, error);
+    if (status != ADCGS_OK)
+        adcgs_trainer_free(&t);
+    *out = t;
+    return status;
+}
+
+static void free_views(adcgs_trainer *t)
+{
+    for (uint32_t i = 0; t->views && i < t->n_views; i++) {
+        free(t->views[i].rgb);
+        t->views[i].rgb = NULL;
+    }
+    adcgs_free(NULL, t->image);
+    adcgs_free(NULL, t->grad);
+    t->image = t->grad = NULL;
+}
+
+void adcgs_trainer_free(adcgs_trainer **trainer)
+{
+    adcgs_trainer *t = *trainer;
+    if (!t)
+        return;
+    free_views(t);
+    free(t->views);
+    adcgs_free(NULL, t->stats.weight);
+    adcgs_fmodel_free(&t->f);
+    adcgs_pass_free(&t->pass);
+    adcgs_raster_free(&t->raster);
+    adcgs_raster_back_free(&t->back);
+    adcgs_loss_free(&t->loss);
+    adcgs_buffer_clear(&t->snapshot);
+    free(t);
+    *trainer = NULL;
+}
+
+/* ---- Views ---- */
+
+typedef struct load_job {
+    adcgs_trainer *t;
+    int divide;
+    adcgs_error *errors;
+    size_t *pixels;
+} load_job;
+
+static void load_view(void *arg, int i, int thread)
+{
+    (void)thread;
+    load_job *job = arg;
+    adcgs_trainer *t = job->t;
+    const adcgs_scene_view *from = &t->scene->views[ADCGS_SPLIT_TRAIN][i];
+    adcgs_train_view *to = &t->views[i];
+    adcgs_camera camera;
+    adcgs_error *error = &job->errors[i];
+    error->status = adcgs_scene_load(t->scene, from, job->divide, &to->rgb, &camera, error);
+    if (error->status == ADCGS_OK)
+        error->status = adcgs_view_init(&to->view, &camera, t->origin, t->scale, error);
+    to->t = t->scene->duration > 0 ? (float)fmin(fmax(from->time / t->scene->duration, 0), 1) : 0;
+    job->pixels[i] = error->status == ADCGS_OK ? (size_t)camera.width * (size_t)camera.height : 0;
+}
+
+/** Load all training views at a resolution. */
+static adcgs_status load_views(adcgs_trainer *t, int divide, adcgs_error *error)
+{
+    load_job job = { t, divide, calloc(t->n_views, sizeof(adcgs_error)), calloc(t->n_views, sizeof(size_t)) };
+    adcgs_status status = job.errors && job.pixels ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the views");
+    free_views(t);
+    if (status == ADCGS_OK)
+        adcgs_pool_run(t->pool, load_view, &job, (int)t->n_views);
+    size_t most = 0;
+    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
+        if (job.errors[i].status != ADCGS_OK) {
+            status = job.errors[i].status;
+            if (error)
+                *error = job.errors[i];
+        }
+        most = ADCGS_MAX(most, job.pixels[i]);
+    }
+    free(job.errors);
+    free(job.pixels);
+    ADCGS_TRY(status);
+    t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);
+    t->grad = adcgs_alloc(NULL, most * 3, sizeof(float), error);
+    t->divide = divide;
+    return t->image && t->grad ? ADCGS_OK : ADCGS_ERR_MEMORY;
+}
+
+/** View of an iteration: every epoch visits all views once, in an order of its own (a Feistel walk over the index). */
+static uint32_t pick_view(const adcgs_trainer *t, uint32_t iteration)
+{
+    const uint32_t n = t->n_views, epoch = iteration / n;
+    int half = 1;
+    while ((uint64_t)1 << (2 * half) < n)
+        half++;
+    const uint32_t mask = (1u << half) - 1;
+    uint32_t x = iteration % n;
+    do {
+        uint32_t l = x >> half, r = x & mask;
+        for (uint32_t round = 0; round < 4; round++) {
+            const uint32_t next = l ^ ((uint32_t)adcgs_random64(t->config.seed, 2000 + round, (uint64_t)epoch << 32 | r) & mask);
+            l = r;
+            r = next;
+        }
+        x = l << half | r;
+    } while (x >= n);
+    return x;
+}
+
+/* ---- One iteration ---- */
+
+static double progress_of(const adcgs_trainer *t)
+{
+    const double by_count = (double)t->iteration / t->config.iterations;
+    return t->config.time_limit > 0 ? fmax(by_count, t->elapsed / t->config.time_limit) : by_count;
+}
+
+static int is_network(int group)
+{
+    return group >= ADCGS_P_ANCHOR;
+}
+
+static void prepare_networks(adcgs_trainer *t)
+{
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
+        if (t->f->mlp[i].n)
+            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);
+}
+
+typedef struct adam_job {
+    adcgs_trainer *t;
+    int group;
+    float lr, c1, c2;
+} adam_job;
+
+enum { ADAM_PIECE = 16384 };
+
+static void adam_piece(void *arg, int i, int thread)
+{
+    (void)thread;
+    const adam_job *job = arg;
+    adcgs_param *p = &job->t->f->param[job->group];
+    const size_t at = (size_t)i * ADAM_PIECE, n = p->n - at < ADAM_PIECE ? p->n - at : ADAM_PIECE;
+    job->t->pass->dsp.adam(p->p + at, p->g + at, p->m + at, p->v + at, n, job->lr, job->c1, job->c2);
+}
+
+static void update(adcgs_trainer *t, double progress)
+{
+    t->adam_steps++;
+    const float c1 = 1 / (1 - powf(0.9f, (float)t->adam_steps)), c2 = 1 / (1 - powf(0.999f, (float)t->adam_steps));
+    for (int i = 0; i < ADCGS_P_COUNT; i++) {
+        adcgs_param *p = &t->f->param[i];
+        const int entropy = i == ADCGS_P_ETA_PRIOR || i >= ADCGS_P_E_FV;
+        if (t->frozen && (!is_network(i) || entropy)) {
+            memset(p->g, 0, p->n * sizeof *p->g);
+            continue;
+        }
+        const float lr = t->lr_scale * p->lr0 * powf(p->lr1 / p->lr0, (float)progress);
+        adam_job job = { t, i, lr, c1, c2 };
+        adcgs_pool_run(p->n > ADAM_PIECE ? t->pool : NULL, adam_piece, &job, (int)((p->n + ADAM_PIECE - 1) / ADAM_PIECE));
+    }
+    prepare_networks(t);
+}
+
+static void accumulate_stats(adcgs_trainer *t)
+{
+    const size_t slots = t->pass->primitives.n;
+    const float *weight = t->pass->grads.weight, *screen = t->pass->grads.screen, *opacity = t->pass->primitives.opacity;
+    /* Psi is counted in pixels of the full resolution. */
+    const float area = (float)(t->divide * t->divide);
+    for (size_t i = 0; i < slots; i++) {
+        t->stats.weight[i] += area * weight[i];
+        t->stats.significance[i] += area * weight[i] * screen[i];
+        t->stats.opacity[i] += opacity[i];
+    }
+    t->stats.n++;
+}
+
+static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    const adcgs_train_view *v = &t->views[pick_view(t, t->iteration)];
+    const int deform = progress >= c->deform_from;
+    const adcgs_quant quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND :
+                              progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
+    const int rated = progress >= c->rate_from && !c->without_rate && !t->frozen;
+    const uint32_t seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration);
+    adcgs_loss_value value;
+    adcgs_pass_forward(t->pass, t->f, v->t, quant, deform, seed);
+    ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1, error));
+    ADCGS_TRY(adcgs_loss_image(t->loss, t->image, v->rgb, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
+    ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, t->grad,
+                                    &t->pass->grads, error));
+    accumulate_stats(t);
+    adcgs_rate rate = { .total = 0 };
+    /* Loss per bit: lambda per 2^23 bits. */
+    adcgs_pass_backward(t->pass, t->f, deform, rated ? c->lambda * 0x1p-23f : 0, c->rate_period, (int)(t->iteration % (uint32_t)c->rate_period),
+                        rated ? &rate : NULL);
+    const double keep = t->iteration < 100 ? 0.9 : 0.99;
+    t->mean_loss = t->iteration ? keep * t->mean_loss + (1 - keep) * value.loss : value.loss;
+    t->mean_mse = t->iteration ? keep * t->mean_mse + (1 - keep) * value.mse : value.mse;
+    if (rated)
+        t->mean_bits = t->mean_bits > 0 ? 0.95 * t->mean_bits + 0.05 * rate.total : rate.total;
+    update(t, progress);
+    t->iteration++;
+    return ADCGS_OK;
+}
+
+/* ---- Stages ---- */
+
+/** Weights' lattice: about `levels` steps per root mean square, per layer. */
+static void choose_lattices(adcgs_trainer *t)
+{
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
+        adcgs_mlp *m = &t->f->mlp[i];
+        for (int l = 0; m->n && l <= m->hidden; l++) {
+            const size_t n = (l < m->hidden ? m->w[l + 1] : m->n) - m->w[l];
+            const float *w = t->f->param[i].p + m->w[l];
+            double square = 0;
+            for (size_t j = 0; j < n; j++)
+                square += (double)w[j] * w[j];
+            const double rms = sqrt(square / (double)n);
+            m->lattice[l] = i >= ADCGS_P_E_FV ? 6 : (int8_t)fmin(fmax(ceil(-log2(fmax(rms, 1e-6) / 16)), 4), 14);
+        }
+    }
+}
+
+static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    if (!t->decided && progress >= c->decide_at) {
+        t->decided = 1;
+        if (!c->without_refinement)
+            ADCGS_TRY(adcgs_trainer_decide(t, error));
+    }
+    if (!t->quantise)
+        return ADCGS_OK;
+    if (!t->rounding && progress >= c->round_from) {
+        choose_lattices(t);
+        t->rounding = 1;
+        prepare_networks(t);
+        ADCGS_TRY(t->quantise(t->quantise_user, t->f, t->pass->mu, NULL, error));
+    } else if (t->rounding && !t->frozen && t->iteration % MEANS_EVERY == 0) {
+        ADCGS_TRY(t->quantise(t->quantise_user, t->f, t->pass->mu, NULL, error));
+    }
+    if (t->rounding && !t->frozen && progress >= c->freeze_from) {
+        float *value[ADCGS_P_ANCHOR];
+        for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+            value[i] = t->f->param[i].p;
+        ADCGS_TRY(t->quantise(t->quantise_user, t->f, t->pass->mu, value, error));
+        t->frozen = 1;
+    }
+    return ADCGS_OK;
+}
+
+static int wanted_divide(const adcgs_trainer *t, double progress)
+{
+    return t->config.scale * (progress < t->config.quarter_until ? 4 : progress < t->config.half_until ? 2 : 1);
+}
+
+static adcgs_status before_iteration(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    if (wanted_divide(t, progress) != t->divide)
+        ADCGS_TRY(load_views(t, wanted_divide(t, progress), error));
+    if (!c->without_refinement && t->iteration && t->iteration % c->refine_every == 0 && progress >= c->grow_from &&
+        progress < c->grow_until)
+        ADCGS_TRY(adcgs_trainer_refine(t, progress, error));
+    return enter_stages(t, progress, error);
+}
+
+/** NaN, infinity, or a loss far above what it was: go back to the last good state with smaller steps. */
+static adcgs_status guard(adcgs_trainer *t, adcgs_error *error)
+{
+    const int sick = !isfinite(t->mean_loss) || t->mean_loss > 4;
+    if (!sick && t->iteration % SNAPSHOT_EVERY == 0) {
+        t->snapshot.size = 0;
+        return adcgs_trainer_store(t, &t->snapshot, error);
+    }
+    if (!sick)
+        return ADCGS_OK;
+    const uint32_t rollbacks = t->rollbacks + 1;
+    const float lr = t->lr_scale * 0.5f;
+    if (!t->snapshot.size || rollbacks > ROLLBACKS_MAX)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "training diverged at iteration %u (loss %g) after %u rollbacks: check poses and exposure",
+                          t->iteration, t->mean_loss, t->rollbacks);
+    ADCGS_TRY(adcgs_trainer_restore(t, t->snapshot.data, t->snapshot.size, error));
+    t->rollbacks = rollbacks;
+    t->lr_scale = lr;
+    return ADCGS_OK;
+}
+
+static double now(void)
+{
+    struct timespec ts;
+    clock_gettime(CLOCK_MONOTONIC, &ts);
+    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
+}
+
+static void fill_report(const adcgs_trainer *t, double progress, double rate, adcgs_train_report *r)
+{
+    r->stage = adcgs_train_stage(&t->config, progress);
+    r->iteration = t->iteration;
+    r->iterations = t->config.iterations;
+    r->anchors = t->f->n;
+    r->divide = t->divide;
+    r->loss = t->mean_loss;
+    r->psnr = adcgs_psnr_from_mse(t->mean_mse);
+    r->bytes = t->mean_bits / 8;
+    r->seconds = t->elapsed;
+    r->rate = rate;
+    r->left = progress > 0.02 ? t->elapsed * (1 - progress) / progress : 0;
+    r->rollbacks = (int)t->rollbacks;
+}
+
+adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
+{
+    const double begin = now() - t->elapsed;
+    double last = now(), rate = 0;
+    *stopped = 0;
+    prepare_networks(t);
+    for (;;) {
+        const double progress = progress_of(t);
+        adcgs_train_report report;
+        if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
+            const double at = now();
+            if (at > last)
+                rate = rate > 0 ? 0.9 * rate + 0.1 * REPORT_EVERY / (at - last) : REPORT_EVERY / (at - last);
+            last = at;
+            fill_report(t, progress, rate, &report);
+            if (observe && observe(user, &report)) {
+                *stopped = progress < 1;
+                return ADCGS_OK;
+            }
+        }
+        if (progress >= 1)
+            return ADCGS_OK;
+        ADCGS_TRY(before_iteration(t, progress, error));
+        ADCGS_TRY(iterate(t, progress, error));
+        t->elapsed = now() - begin;
+        ADCGS_TRY(guard(t, error));
+    }
+}
