@@ -72,6 +72,7 @@ double adcgs_seconds(void);
 
 /** Make SIGINT and SIGTERM set a flag (a second one kills). */
 void adcgs_interrupt_catch(void);
+/** The signal that came, 0 if none. */
 int adcgs_interrupted(void);
 
 /** A line on stderr that rewrites itself; silent unless stderr is a terminal. */

@@ -15,7 +15,7 @@ static volatile sig_atomic_t interrupted;
 
 static void on_signal(int number)
 {
-    interrupted = 1;
+    interrupted = number;
     signal(number, SIG_DFL);
 }
 
@@ -31,7 +31,7 @@ void adcgs_interrupt_catch(void)
 
 int adcgs_interrupted(void)
 {
-    return interrupted != 0;
+    return interrupted;
 }
 
 double adcgs_seconds(void)

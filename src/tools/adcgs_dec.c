@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-dec: decode a stream and render frames from it. */
+#include "config.h"
+
+#include "base/digest.h"
+#include "io/sink.h"
+#include "tools/cli.h"
+#include "tools/shots.h"
+
+#include <adcgs/adcgs.h>
+
+#include <signal.h>
+#include <stdlib.h>
+#include <strings.h>
+
+typedef struct settings {
+    const char *input, *output, *format, *times, *verify;
+    adcgs_shots_request request;
+    adcgs_config config;
+    int cpu, half, use_float, md5, frametimes;
+} settings;
+
+static const char *const cpu_names[] = {"auto", "scalar", "avx2", "avx512", NULL};
+
+#define OPTION_COUNT 14
+static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
+{
+    const adcgs_option table[OPTION_COUNT] = {
+        {"output", 'o', ADCGS_OPTION_STRING, &s->output, 0, 0, "TARGET",
+         "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.y4m, pixels.raw, or - for standard output", NULL, NULL},
+        {"format", 'f', ADCGS_OPTION_STRING, &s->format, 0, 0, "NAME",
+         "y4m, raw, null or an image's extension; without it\nthe target's name decides, and - is y4m", NULL, NULL},
+        {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
+        {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
+         NULL},
+        {"camera", 'c', ADCGS_OPTION_STRING, &s->request.camera, 0, 0, "WHICH",
+         "stored camera's name or index, orbit, or a path FILE.json;\nwithout it camera 0, or orbit if none is stored", NULL,
+         NULL},
+        {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B",
+         "one time, or a span at the stream's frame rate, in seconds;\nwithout it everything", NULL, NULL},
+        {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; the field of view stays", NULL,
+         NULL},
+        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
+        {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
+         "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
+        {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "fail unless the frames together have this MD5", NULL, NULL},
+        {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL, "print the milliseconds that each frame took to render",
+         NULL, NULL},
+        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
+        {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; frames do not depend on it",
+         cpu_names, NULL},
+        {"strict", 0, ADCGS_OPTION_FLAG, &s->config.strict_end, 0, 0, NULL, "refuse a stream that ends early", NULL, NULL},
+    };
+    memcpy(options, table, sizeof table);
+}
+
+static int64_t read_file(void *user, void *buffer, size_t bytes)
+{
+    FILE *file = user;
+    const size_t n = fread(buffer, 1, bytes, file);
+    return ferror(file) ? -1 : (int64_t)n;
+}
+
+static adcgs_status open_input(adcgs_decoder **decoder, const settings *s, adcgs_error *error)
+{
+    if (!strcmp(s->input, "-"))
+        return adcgs_open_stream(decoder, read_file, stdin, &s->config, error);
+    return adcgs_open_file(decoder, s->input, &s->config, error);
+}
+
+/** The frame's values as little-endian binary32 into one or two digests. */
+static void digest_frame(const adcgs_frame *frame, adcgs_md5 *one, adcgs_md5 *all)
+{
+    uint8_t bytes[4096];
+    const size_t n = (size_t)frame->width * (size_t)frame->height * 3, step = sizeof bytes / 4;
+    for (size_t i = 0; i < n; i += step) {
+        const size_t count = ADCGS_MIN(step, n - i);
+        for (size_t j = 0; j < count; j++)
+            adcgs_store_le32(bytes + 4 * j, adcgs_float_bits(frame->rgb[i + j]));
+        adcgs_md5_update(one, bytes, 4 * count);
+        adcgs_md5_update(all, bytes, 4 * count);
+    }
+}
+
+static void print_row(const settings *s, const char *hex, double seconds)
+{
+    if (s->md5 && s->frametimes)
+        printf("%s %.3f\n", hex, 1e3 * seconds);
+    else if (s->md5)
+        printf("%s\n", hex);
+    else if (s->frametimes)
+        printf("%.3f\n", 1e3 * seconds);
+}
+
+/** Render all shots; all gets the digest of the frames together. */
+static adcgs_status render(const settings *s, adcgs_decoder *decoder, const adcgs_shots *shots, adcgs_sink *sink,
+                           adcgs_frame *frame, adcgs_md5 *all, double *render_seconds, adcgs_error *error)
+{
+    adcgs_progress progress;
+    adcgs_progress_init(&progress);
+    adcgs_status status = ADCGS_OK;
+    for (int i = 0; i < shots->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
+        const double start = adcgs_seconds();
+        status = adcgs_render(decoder, &shots->shot[i].camera, shots->shot[i].time, frame, error);
+        const double seconds = adcgs_seconds() - start;
+        *render_seconds += seconds;
+        char hex[33] = "";
+        if (status == ADCGS_OK && (s->md5 || s->verify)) {
+            adcgs_md5 one;
+            uint8_t digest[16];
+            adcgs_md5_init(&one);
+            digest_frame(frame, &one, all);
+            adcgs_md5_final(&one, digest);
+            adcgs_md5_hex(digest, hex);
+        }
+        if (status == ADCGS_OK && sink)
+            status = adcgs_sink_write(sink, frame, i, error);
+        if (status == ADCGS_OK)
+            print_row(s, hex, seconds);
+        adcgs_progress_show(&progress, "frame %d of %d, %.1f ms", i + 1, shots->n, 1e3 * seconds);
+    }
+    adcgs_progress_clear(&progress);
+    return status;
+}
+
+static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_shots *shots, double frame_rate,
+                              adcgs_error *error)
+{
+    const adcgs_sink_config config = {.target = s->output,
+                                      .format = s->format,
+                                      .depth = s->use_float ? ADCGS_DEPTH_FLOAT
+                                               : s->half    ? ADCGS_DEPTH_HALF
+                                                            : ADCGS_DEPTH_DEFAULT,
+                                      .frame_rate = frame_rate,
+                                      .width = shots->shot[0].camera.width,
+                                      .height = shots->shot[0].camera.height,
+                                      .frames = shots->n};
+    return s->output ? adcgs_sink_open(sink, &config, error) : ADCGS_OK;
+}
+
+/** \return ADCGS_OK, or with *mismatch set when the digest is not the expected one. */
+static adcgs_status decode(const adcgs_cli *cli, const settings *s, adcgs_decoder *decoder, int *mismatch, adcgs_error *error)
+{
+    adcgs_info info;
+    adcgs_shots shots;
+    adcgs_sink *sink = NULL;
+    adcgs_md5 all;
+    double seconds = 0.0;
+    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    if (info.truncated)
+        adcgs_cli_note(cli, "%s: the stream ends early; showing what is complete", s->input);
+    ADCGS_TRY(adcgs_shots_make(&shots, decoder, &s->request, error));
+    adcgs_frame frame = {.width = shots.shot[0].camera.width, .height = shots.shot[0].camera.height};
+    frame.rgb = malloc((size_t)frame.width * (size_t)frame.height * 3 * sizeof *frame.rgb);
+    adcgs_md5_init(&all);
+    adcgs_status status = frame.rgb ? open_sink(&sink, s, &shots, info.frame_rate, error)
+                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a frame");
+    if (status == ADCGS_OK)
+        status = render(s, decoder, &shots, sink, &frame, &all, &seconds, error);
+    if (status == ADCGS_OK && !adcgs_interrupted())
+        status = adcgs_sink_close(&sink, error);
+    adcgs_sink_abort(&sink);
+    free(frame.rgb);
+    if (status == ADCGS_OK && !adcgs_interrupted()) {
+        uint8_t digest[16];
+        char hex[33];
+        adcgs_md5_final(&all, digest);
+        adcgs_md5_hex(digest, hex);
+        *mismatch = s->verify && strcasecmp(s->verify, hex);
+        if (*mismatch)
+            adcgs_cli_note(cli, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
+        else
+            adcgs_cli_note(cli, "%s: %d frames of %dx%d, %.2f ms each", s->input, shots.n, frame.width, frame.height,
+                           1e3 * seconds / shots.n);
+    }
+    adcgs_shots_free(&shots);
+    return status;
+}
+
+/** What the option table cannot check. */
+static adcgs_status check_settings(settings *s, adcgs_error *error)
+{
+    s->config.cpu = (adcgs_cpu_level)s->cpu;
+    if (s->times && adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, or A:B with A not after B", s->times);
+    s->request.has_times = s->times != NULL;
+    if (s->half && s->use_float)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
+    if ((s->format || s->half || s->use_float) && !s->output)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--format, --half and --float need --output");
+    if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output takes");
+    if (s->verify && (strlen(s->verify) != 32 || strspn(s->verify, "0123456789abcdefABCDEF") != 32))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--verify %s: expected 32 hexadecimal digits", s->verify);
+    return ADCGS_OK;
+}
+
+int main(int argc, char **argv)
+{
+    settings s = {0};
+    adcgs_option options[OPTION_COUNT];
+    adcgs_config_init(&s.config);
+    make_options(&s, options);
+    const adcgs_cli cli = {.program = "adcgs-dec",
+                           .operands = "FILE|-",
+                           .summary = "Decode a stream and render frames from it.",
+                           .details = "Exit status: 0 done, 1 MD5 differs, 2 usage, 3 input or output, 4 invalid stream,\n"
+                                      "5 unsupported.",
+                           .options = options,
+                           .n_options = OPTION_COUNT,
+                           .min_operands = 1,
+                           .max_operands = 1};
+    int first, mismatch = 0;
+    const int done = adcgs_cli_parse(&cli, argc, argv, &first);
+    if (done >= 0)
+        return done;
+    s.input = argv[first];
+    adcgs_error error = {0};
+    adcgs_decoder *decoder = NULL;
+    adcgs_status status = check_settings(&s, &error);
+    adcgs_interrupt_catch();
+    if (status == ADCGS_OK)
+        status = open_input(&decoder, &s, &error);
+    if (status == ADCGS_OK)
+        status = decode(&cli, &s, decoder, &mismatch, &error);
+    adcgs_close(&decoder);
+    if (adcgs_interrupted())
+        raise(adcgs_interrupted()); /* the shell shall see why the program ended; the handler is gone by now */
+    if (status == ADCGS_OK && fflush(stdout))
+        status = adcgs_fail(&error, ADCGS_ERR_IO, "standard output: cannot write");
+    error.status = status;
+    return status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : mismatch;
+}

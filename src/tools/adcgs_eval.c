@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-eval: measure a stream against the pictures of a scene. */
+#include "config.h"
+
+#include "metric/evaluate.h"
+#include "tools/cli.h"
+
+#include <adcgs/adcgs.h>
+
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+typedef struct settings {
+    const char *file, *scene, *images;
+    adcgs_config config;
+    int split, cpu, json, as_is;
+} settings;
+
+/** What the views' scores go through. */
+typedef struct report {
+    const settings *set;
+    adcgs_json json;
+    adcgs_progress progress;
+    uint32_t done, n;
+} report;
+
+static const char *const cpu_names[] = {"auto", "scalar", "avx2", "avx512", NULL};
+static const char *const splits[] = {"train", "val", "test", NULL}; /* in the order of adcgs_split */
+
+#define OPTION_COUNT 7
+static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
+{
+    const adcgs_option table[OPTION_COUNT] = {
+        {"split", 0, ADCGS_OPTION_CHOICE, &s->split, 0, 0, "NAME", "views to compare: test (the default), val or train", splits,
+         NULL},
+        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
+        {"images", 0, ADCGS_OPTION_STRING, &s->images, 0, 0, "DIR", "write the decoded views there as PNG", NULL, NULL},
+        {"scene-background", 0, ADCGS_OPTION_FLAG, &s->as_is, 0, 0, NULL,
+         "put pictures with alpha on the scene's background\ninstead of the stream's", NULL, NULL},
+        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
+        {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; figures do not depend on it",
+         cpu_names, NULL},
+        {"json", 0, ADCGS_OPTION_FLAG, &s->json, 0, 0, NULL, "print one JSON object", NULL, NULL},
+    };
+    memcpy(options, table, sizeof table);
+}
+
+static adcgs_status write_image(const report *r, const adcgs_view_score *score, adcgs_error *error)
+{
+    const size_t plane = (size_t)score->width * (size_t)score->height;
+    const size_t size = strlen(r->set->images) + ADCGS_CAMERA_NAME_MAX + 32;
+    adcgs_image image = {0};
+    char *path = malloc(size);
+    if (!path)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", r->set->images);
+    snprintf(path, size, "%s/%04u-%s.png", r->set->images, r->done, score->view->camera.name);
+    adcgs_status status = adcgs_image_alloc(&image, score->width, score->height, 3, path, error);
+    if (status == ADCGS_OK) {
+        for (size_t i = 0; i < 3 * plane; i++)
+            image.data[i] = score->decoded[i % 3 * plane + i / 3];
+        status = adcgs_image_write(&image, path, 0, error);
+    }
+    adcgs_image_free(&image);
+    free(path);
+    return status;
+}
+
+static adcgs_status on_view(void *user, const adcgs_view_score *score, adcgs_error *error)
+{
+    report *r = user;
+    adcgs_progress_clear(&r->progress);
+    if (r->set->images)
+        ADCGS_TRY(write_image(r, score, error));
+    if (r->set->json) {
+        adcgs_json_open(&r->json, NULL, '{');
+        adcgs_json_string(&r->json, "name", score->view->camera.name);
+        adcgs_json_real(&r->json, "time", score->view->time);
+        adcgs_json_real(&r->json, "psnr", score->psnr);
+        adcgs_json_real(&r->json, "ssim", score->ssim);
+        adcgs_json_real(&r->json, "milliseconds", 1e3 * score->seconds);
+        adcgs_json_close(&r->json, '}');
+    } else
+        printf("%-24s %8.3f s %8.2f dB %8.4f\n", score->view->camera.name, score->view->time, score->psnr, score->ssim);
+    r->done++;
+    adcgs_progress_show(&r->progress, "view %u of %u", r->done, r->n);
+    return adcgs_interrupted() ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted") : ADCGS_OK;
+}
+
+static void begin_json(report *r, const adcgs_info *info, double decode_seconds)
+{
+    adcgs_json_init(&r->json, stdout);
+    adcgs_json_open(&r->json, NULL, '{');
+    adcgs_json_string(&r->json, "file", r->set->file);
+    adcgs_json_string(&r->json, "scene", r->set->scene);
+    adcgs_json_string(&r->json, "split", splits[r->set->split]);
+    adcgs_json_int(&r->json, "bytes", (int64_t)info->bytes.total);
+    adcgs_json_int(&r->json, "layers", info->layers);
+    adcgs_json_real(&r->json, "decode_seconds", decode_seconds);
+    adcgs_json_open(&r->json, "views", '[');
+}
+
+static adcgs_status end_json(report *r, const adcgs_evaluation *e, adcgs_error *error)
+{
+    adcgs_json_close(&r->json, ']');
+    adcgs_json_real(&r->json, "psnr", e->psnr);
+    adcgs_json_real(&r->json, "ssim", e->ssim);
+    adcgs_json_real(&r->json, "frames_per_second", e->frames_per_second);
+    adcgs_json_close(&r->json, '}');
+    return adcgs_json_finish(&r->json, error);
+}
+
+/** Scenes give times in steps of a frame, and their alpha over a background: both are the stream's. */
+static adcgs_status open_scene(adcgs_scene **scene, const settings *s, const adcgs_info *info, adcgs_error *error)
+{
+    adcgs_scene_options options = {.has_background = !s->as_is, .frame_rate = info->frame_rate};
+    memcpy(options.background, info->background, sizeof options.background);
+    return adcgs_scene_open(scene, s->scene, &options, error);
+}
+
+static adcgs_status compare(const settings *s, adcgs_decoder *decoder, double decode_seconds, adcgs_error *error)
+{
+    adcgs_info info;
+    adcgs_scene *scene = NULL;
+    adcgs_evaluation e;
+    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(open_scene(&scene, s, &info, error));
+    report r = {.set = s, .n = scene->n_views[s->split]};
+    adcgs_progress_init(&r.progress);
+    if (s->json)
+        begin_json(&r, &info, decode_seconds);
+    adcgs_status status = adcgs_evaluate(&e, decoder, scene, (adcgs_split)s->split, on_view, &r, error);
+    adcgs_progress_clear(&r.progress);
+    if (status == ADCGS_OK && s->json)
+        status = end_json(&r, &e, error);
+    else if (status == ADCGS_OK)
+        printf("mean of %-3u %s views %14.2f dB %8.4f\n%llu bytes, decoded in %.3f s, %.1f frames per second\n", e.n,
+               splits[s->split], e.psnr, e.ssim, (unsigned long long)info.bytes.total, decode_seconds, e.frames_per_second);
+    adcgs_scene_free(&scene);
+    return status;
+}
+
+static adcgs_status run(const settings *s, adcgs_error *error)
+{
+    adcgs_decoder *decoder;
+    if (s->images && mkdir(s->images, 0777) && errno != EEXIST)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", s->images, strerror(errno));
+    const double start = adcgs_seconds();
+    ADCGS_TRY(adcgs_open_file(&decoder, s->file, &s->config, error));
+    adcgs_status status = compare(s, decoder, adcgs_seconds() - start, error);
+    adcgs_close(&decoder);
+    if (status == ADCGS_OK && fflush(stdout))
+        status = adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write");
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    settings s = {.split = ADCGS_SPLIT_TEST};
+    adcgs_option options[OPTION_COUNT];
+    adcgs_config_init(&s.config);
+    make_options(&s, options);
+    const adcgs_cli cli = {.program = "adcgs-eval",
+                           .operands = "FILE SCENE",
+                           .summary = "Render the views of a scene from a stream and compare them with its pictures.",
+                           .details = "PSNR and SSIM are of frames rounded to 8 bits; speed is 1 / the median time to render.\n"
+                                      "Exit status: 0 done, 2 usage, 3 input or output, 4 invalid data, 5 unsupported.",
+                           .options = options,
+                           .n_options = OPTION_COUNT,
+                           .min_operands = 2,
+                           .max_operands = 2};
+    int first;
+    const int done = adcgs_cli_parse(&cli, argc, argv, &first);
+    if (done >= 0)
+        return done;
+    s.file = argv[first];
+    s.scene = argv[first + 1];
+    s.config.cpu = (adcgs_cpu_level)s.cpu;
+    adcgs_error error = {0};
+    adcgs_interrupt_catch();
+    error.status = run(&s, &error);
+    return error.status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : 0;
+}

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Which frames to render. */
+#include "config.h"
+
+#include "tools/shots.h"
+
+#include "tools/cli.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define ORBIT_SECONDS 4.0   /* of a still scene */
+#define ORBIT_DISTANCE 2.5  /* scene units, when no stored camera says better */
+#define ORBIT_ELEVATION 0.35
+#define ORBIT_FOCAL 1.2     /* focal length per image width */
+#define NEAR_PER_SCALE 0.01
+#define FULL_TURN 6.283185307179586
+
+adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, adcgs_error *error)
+{
+    *shots = (adcgs_shots){0};
+    if (!(n >= 1.0 && n <= ADCGS_SHOTS_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f frames asked for, expected 1 to %d", n, ADCGS_SHOTS_MAX);
+    shots->shot = calloc((size_t)n, sizeof *shots->shot);
+    if (!shots->shot)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %.0f frames", n);
+    shots->n = (int)n;
+    return ADCGS_OK;
+}
+
+void adcgs_shots_free(adcgs_shots *shots)
+{
+    free(shots->shot);
+    *shots = (adcgs_shots){0};
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static void normalise(double v[3])
+{
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+}
+
+/** The direction that the stream calls up; z if it does not say. */
+static void find_up(const adcgs_info *info, double up[3])
+{
+    up[0] = up[1] = up[2] = 0.0;
+    if (strstr(info->axes, "y up"))
+        up[1] = 1.0;
+    else if (strstr(info->axes, "y down"))
+        up[1] = -1.0;
+    else
+        up[2] = 1.0;
+}
+
+/** A camera on the outside that looks at the scene's centre from a little above. */
+static void default_orbit(adcgs_camera *camera, const adcgs_info *info, const double up[3])
+{
+    *camera = (adcgs_camera){.width = ADCGS_ORBIT_WIDTH,
+                             .height = ADCGS_ORBIT_HEIGHT,
+                             .fx = ORBIT_FOCAL * ADCGS_ORBIT_WIDTH,
+                             .fy = ORBIT_FOCAL * ADCGS_ORBIT_WIDTH,
+                             .cx = 0.5 * ADCGS_ORBIT_WIDTH,
+                             .cy = 0.5 * ADCGS_ORBIT_HEIGHT,
+                             .near_plane = NEAR_PER_SCALE * info->scene_scale,
+                             .name = "orbit"};
+    double forward[3], right[3], down[3];
+    for (int i = 0; i < 3; i++)
+        forward[i] = -(up[i] * sin(ORBIT_ELEVATION) + (i == 0) * cos(ORBIT_ELEVATION)); /* up is never x */
+    cross(forward, up, right);
+    normalise(right);
+    cross(forward, right, down);
+    for (int i = 0; i < 3; i++) {
+        double *row = camera->cam_to_world + 4 * i;
+        row[0] = right[i];
+        row[1] = down[i];
+        row[2] = forward[i];
+        row[3] = info->scene_origin[i] - ORBIT_DISTANCE * info->scene_scale * forward[i];
+    }
+}
+
+/** Turn a vector about the unit vector up. */
+static void turn(const double up[3], double angle, double v[3])
+{
+    double side[3];
+    cross(up, v, side);
+    const double along = (up[0] * v[0] + up[1] * v[1] + up[2] * v[2]) * (1.0 - cos(angle));
+    for (int i = 0; i < 3; i++)
+        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + up[i] * along;
+}
+
+/** Turn a camera about the axis through the scene's centre. */
+static void turn_camera(adcgs_camera *camera, const adcgs_info *info, const double up[3], double angle)
+{
+    double *m = camera->cam_to_world;
+    for (int c = 0; c < 4; c++) {
+        double v[3];
+        for (int i = 0; i < 3; i++)
+            v[i] = m[4 * i + c] - (c == 3 ? info->scene_origin[i] : 0.0);
+        turn(up, angle, v);
+        for (int i = 0; i < 3; i++)
+            m[4 * i + c] = v[i] + (c == 3 ? info->scene_origin[i] : 0.0);
+    }
+}
+
+static adcgs_status find_stored(const adcgs_decoder *decoder, const adcgs_info *info, const char *wanted, adcgs_camera *camera,
+                                adcgs_error *error)
+{
+    int index;
+    for (int i = 0; i < info->cameras; i++) {
+        ADCGS_TRY(adcgs_get_camera(decoder, i, camera));
+        if (!strcmp(camera->name, wanted))
+            return ADCGS_OK;
+    }
+    if (!info->cameras)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: the stream stores no cameras; try --camera orbit", wanted);
+    if (adcgs_parse_int(wanted, 0, info->cameras - 1, &index))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: neither a stored camera's name nor an index from 0 to %d", wanted,
+                          info->cameras - 1);
+    return adcgs_get_camera(decoder, index, camera);
+}
+
+/** Times at the stream's frame rate, both ends included. */
+static adcgs_status make_times(adcgs_shots *out, const adcgs_info *info, const adcgs_shots_request *request, int orbits,
+                               adcgs_error *error)
+{
+    const double begin = request->has_times ? request->begin : info->time_start;
+    const double end = request->has_times ? request->end : info->time_end;
+    const int is_still = !request->has_times && orbits && begin == end;
+    const double n = is_still ? ORBIT_SECONDS * info->frame_rate : (end - begin) * info->frame_rate + 1.0;
+    ADCGS_TRY(adcgs_shots_alloc(out, floor(n + 1e-6), error));
+    for (int i = 0; i < out->n; i++)
+        out->shot[i].time = is_still ? begin : begin + i / info->frame_rate;
+    return ADCGS_OK;
+}
+
+static adcgs_status make_from_camera(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                                     const adcgs_shots_request *request, adcgs_error *error)
+{
+    const int orbits = request->camera ? !strcmp(request->camera, "orbit") : !info->cameras;
+    adcgs_camera camera;
+    double up[3];
+    find_up(info, up);
+    if (orbits && !info->cameras)
+        default_orbit(&camera, info, up);
+    else if (orbits || !request->camera)
+        ADCGS_TRY(adcgs_get_camera(decoder, 0, &camera));
+    else
+        ADCGS_TRY(find_stored(decoder, info, request->camera, &camera, error));
+    ADCGS_TRY(make_times(out, info, request, orbits, error));
+    for (int i = 0; i < out->n; i++) {
+        out->shot[i].camera = camera;
+        if (orbits)
+            turn_camera(&out->shot[i].camera, info, up, FULL_TURN * i / out->n);
+    }
+    return ADCGS_OK;
+}
+
+/** Stretch what the camera sees to another size. */
+static void fit(adcgs_camera *camera, const int size[2])
+{
+    const double x = (double)size[0] / camera->width, y = (double)size[1] / camera->height;
+    camera->width = size[0];
+    camera->height = size[1];
+    camera->fx *= x;
+    camera->cx *= x;
+    camera->fy *= y;
+    camera->cy *= y;
+}
+
+#ifndef HAVE_ENCODER
+adcgs_status adcgs_shots_read_path(adcgs_shots *out, const adcgs_info *info, const adcgs_shots_request *request,
+                                   double near_plane, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads no camera paths", request->camera);
+}
+#endif
+
+static int is_path(const char *name)
+{
+    const size_t n = name ? strlen(name) : 0;
+    return n > 5 && !strcmp(name + n - 5, ".json");
+}
+
+adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_shots_request *request,
+                              adcgs_error *error)
+{
+    adcgs_info info;
+    *out = (adcgs_shots){0};
+    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    adcgs_status status = is_path(request->camera)
+                              ? adcgs_shots_read_path(out, &info, request, NEAR_PER_SCALE * info.scene_scale, error)
+                              : make_from_camera(out, decoder, &info, request, error);
+    if (status != ADCGS_OK)
+        adcgs_shots_free(out);
+    for (int i = 0; i < out->n && request->size[0]; i++)
+        fit(&out->shot[i].camera, request->size);
+    return status;
+}
