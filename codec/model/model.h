@@ -21,6 +21,9 @@
 #define ADCGS_SIGMA_N 6
 #define ADCGS_COLOUR_N 3
 #define ADCGS_LAYERS 5
+#define ADCGS_ANCHORS_MAX (1U << 20)
+#define ADCGS_TIME_ROWS_MAX 4096
+#define ADCGS_TIME_WIDTH_MAX 512
 
 /** Channel groups that share a shape code. */
 typedef enum adcgs_group {

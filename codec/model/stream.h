@@ -16,7 +16,7 @@ typedef struct adcgs_meta {
 } adcgs_meta;
 
 typedef struct adcgs_stream {
-    uint8_t profile, level, arith;
+    uint8_t profile, level, arith;  /**< level 0, for writing: the lowest that fits */
     uint8_t slice_log2;            /**< anchors per slice = 2^slice_log2 */
     adcgs_params params;
     uint32_t timebase_num, timebase_den; /**< seconds per tick = num/den */
@@ -38,10 +38,17 @@ typedef struct adcgs_stream {
     adcgs_bytes bytes;             /**< filled by reading and by writing */
 } adcgs_stream;
 
-void adcgs_stream_init(adcgs_stream *stream); /**< zero and defaults (timebase 1/1000, slice 1024, filter 0.3) */
+void adcgs_stream_init(adcgs_stream *stream); /**< zero and defaults (timebase 1/1000, rate 30, slice 1024, scale 1, filter 0.3) */
 void adcgs_stream_clear(adcgs_stream *stream, adcgs_memory *memory);
 
-/** Serialise; fills stream->bytes. Validates first. */
+/** Seconds of a tick, and the tick of a time that a tick gives exactly (ADCGS_ERR_USAGE if none does). */
+double adcgs_ticks_to_seconds(const adcgs_stream *stream, int64_t ticks);
+adcgs_status adcgs_seconds_to_ticks(const adcgs_stream *stream, double seconds, int64_t *ticks, adcgs_error *error);
+
+/**
+ * Append the stream to out. Validates first; segment times must be whole ticks. Derives start_ticks and duration_ticks from the
+ * segments; level 0 becomes the lowest level that the stream fits; fills bytes.
+ */
 adcgs_status adcgs_stream_write(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error);
 
 typedef struct adcgs_read_options {

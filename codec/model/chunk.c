@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Chunk framing in both directions, and levels. */
+#include "model/chunk.h"
+
+#include "base/digest.h"
+#include "model/model_priv.h"
+
+#define STEP_BYTES 65536 /* payload memory grows with what arrives, not with what a header claims */
+#define SEGMENT_BYTES 8192
+
+const adcgs_level *adcgs_level_get(int level)
+{
+    static const adcgs_level levels[ADCGS_LEVELS] = {
+        { 4096, 16, 12, UINT32_C(1) << 19, UINT64_C(4) << 20, UINT64_C(2) << 20, UINT64_C(32) << 20 },
+        { 65536, 4096, 16, UINT32_C(1) << 21, UINT64_C(256) << 20, UINT64_C(32) << 20, UINT64_C(256) << 20 },
+        { 1048576, 65535, 21, UINT32_C(1) << 24, UINT64_C(64) << 30, UINT64_C(1) << 30, UINT64_C(4) << 30 },
+    };
+    return &levels[level - 1];
+}
+
+int adcgs_type_layer(uint32_t type)
+{
+    for (int layer = 0; layer < ADCGS_LAYERS; layer++)
+        if (type == ADCGS_TYPE_FEA(layer))
+            return layer;
+    return -1;
+}
+
+uint64_t adcgs_segment_bytes(const adcgs_params *params, uint64_t anchors, uint64_t weights)
+{
+    return SEGMENT_BYTES + anchors * adcgs_anchor_bytes(params) + weights * sizeof(int32_t);
+}
+
+adcgs_status adcgs_source_read(adcgs_source *source, void *buffer, size_t bytes, size_t *got, adcgs_error *error)
+{
+    for (*got = 0; *got < bytes;) {
+        const int64_t n = source->read(source->user, (uint8_t *)buffer + *got, bytes - *got);
+        if (n < 0 || (uint64_t)n > bytes - *got)
+            return adcgs_fail(error, ADCGS_ERR_IO, "stream: reading failed at byte %llu",
+                              (unsigned long long)(source->pos + *got));
+        if (n == 0)
+            break;
+        *got += (size_t)n;
+    }
+    source->pos += *got;
+    return ADCGS_OK;
+}
+
+static adcgs_status grow(adcgs_source *source, size_t wanted, adcgs_error *error)
+{
+    if (wanted <= source->capacity)
+        return ADCGS_OK;
+    const size_t capacity = ADCGS_MAX(wanted, 2 * source->capacity);
+    uint8_t *payload = adcgs_alloc(source->memory, capacity, 1, error);
+    if (!payload)
+        return ADCGS_ERR_MEMORY;
+    if (source->capacity > 0)
+        memcpy(payload, source->payload, source->capacity);
+    adcgs_free(source->memory, source->payload);
+    source->payload = payload;
+    source->capacity = capacity;
+    return ADCGS_OK;
+}
+
+void adcgs_source_clear(adcgs_source *source)
+{
+    adcgs_free(source->memory, source->payload);
+    source->payload = NULL;
+    source->capacity = 0;
+}
+
+static adcgs_status read_payload(adcgs_source *source, adcgs_chunk *chunk, adcgs_error *error)
+{
+    const size_t length = chunk->header.length;
+    size_t got = 1;
+    ADCGS_TRY(grow(source, STEP_BYTES, error));
+    for (chunk->available = 0; chunk->available < length && got > 0; chunk->available += got) {
+        if (chunk->available == source->capacity)
+            ADCGS_TRY(grow(source, ADCGS_MIN(length, 2 * source->capacity), error));
+        const size_t room = ADCGS_MIN(length, source->capacity) - chunk->available;
+        ADCGS_TRY(adcgs_source_read(source, source->payload + chunk->available, room, &got, error));
+    }
+    return ADCGS_OK;
+}
+
+/** Letters and digits only, so that a message can show it. */
+static int type_is_text(const char *name)
+{
+    for (int i = 0; i < 4; i++) {
+        const int letter = (name[i] >= 'a' && name[i] <= 'z') || (name[i] >= 'A' && name[i] <= 'Z');
+        if (!letter && (i == 0 || name[i] < '0' || name[i] > '9'))
+            return 0;
+    }
+    return 1;
+}
+
+static adcgs_status parse_header(adcgs_chunk *chunk, const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES], adcgs_error *error)
+{
+    adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk header", .error = error };
+    adcgs_reader_init(&p.r, bytes, ADCGS_CHUNK_HEADER_BYTES - 4);
+    if (adcgs_load_le32(bytes + ADCGS_CHUNK_HEADER_BYTES - 4) != adcgs_crc32c(0, bytes, ADCGS_CHUNK_HEADER_BYTES - 4))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "chunk header at byte %llu: checksum is wrong", (unsigned long long)chunk->origin);
+    ADCGS_TRY(adcgs_syn_chunk_header_parse(&p, &chunk->header));
+    adcgs_store_le32((uint8_t *)chunk->name, chunk->header.type);
+    if (!type_is_text(chunk->name))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "chunk header at byte %llu: type %08x is not a letter followed by letters and digits",
+                          (unsigned long long)chunk->origin, chunk->header.type);
+    return ADCGS_OK;
+}
+
+static adcgs_status check_limits(const adcgs_chunk *chunk, const adcgs_level *limits, adcgs_error *error)
+{
+    const uint64_t length = chunk->header.length, most = limits ? limits->chunk_bytes : ADCGS_HEAD_BYTES_MAX;
+    if (length > most)
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "%s: payload of %llu bytes exceeds the limit of %llu", chunk->name,
+                          (unsigned long long)length, (unsigned long long)most);
+    if (limits && chunk->origin + ADCGS_CHUNK_BYTES + length > limits->file_bytes)
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "%s: the stream exceeds its level's limit of %llu bytes", chunk->name,
+                          (unsigned long long)limits->file_bytes);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_chunk_read(adcgs_source *source, const adcgs_level *limits, adcgs_chunk *chunk, adcgs_error *error)
+{
+    uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES];
+    size_t got;
+    *chunk = (adcgs_chunk){ .origin = source->pos };
+    ADCGS_TRY(adcgs_source_read(source, bytes, sizeof bytes, &got, error));
+    chunk->ended = got < sizeof bytes;
+    if (chunk->ended)
+        return ADCGS_OK;
+    ADCGS_TRY(parse_header(chunk, bytes, error));
+    ADCGS_TRY(check_limits(chunk, limits, error));
+    ADCGS_TRY(read_payload(source, chunk, error));
+    if (chunk->available < chunk->header.length)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_source_read(source, bytes, 4, &got, error));
+    chunk->complete = got == 4;
+    if (!chunk->complete)
+        return ADCGS_OK;
+    chunk->crc = adcgs_load_le32(bytes);
+    if (chunk->crc != adcgs_crc32c(0, source->payload, chunk->header.length))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s at byte %llu: checksum of the payload is wrong", chunk->name,
+                          (unsigned long long)chunk->origin);
+    return ADCGS_OK;
+}
+
+size_t adcgs_chunk_begin(adcgs_buffer *out, uint32_t type, uint32_t segment, int flags)
+{
+    const size_t begin = out->size;
+    adcgs_write_uint(out, type, 4);
+    adcgs_write_uint(out, 0, 4); /* the length, known at the end */
+    adcgs_write_uint(out, segment, 2);
+    adcgs_write_uint(out, (uint64_t)flags, 1);
+    adcgs_write_uint(out, 0, 1);
+    adcgs_write_uint(out, 0, 4);
+    return begin;
+}
+
+void adcgs_chunk_end(adcgs_buffer *out, size_t begin)
+{
+    if (out->failed)
+        return;
+    uint8_t *header = out->data + begin;
+    const size_t length = out->size - begin - ADCGS_CHUNK_HEADER_BYTES;
+    adcgs_store_le32(header + 4, (uint32_t)length);
+    adcgs_store_le32(header + 12, adcgs_crc32c(0, header, 12));
+    adcgs_write_uint(out, adcgs_crc32c(0, header + ADCGS_CHUNK_HEADER_BYTES, length), 4);
+}
+
+void adcgs_bytes_count(adcgs_bytes *bytes, uint32_t type, uint64_t payload)
+{
+    if (adcgs_type_layer(type) >= 0)
+        bytes->layer[adcgs_type_layer(type)] += payload;
+    else if (type == ADCGS_TYPE_NETW)
+        bytes->networks += payload;
+    else if (type == ADCGS_TYPE_GEOM)
+        bytes->geometry += payload;
+    else if (type == ADCGS_TYPE_cams)
+        bytes->cameras += payload;
+    else if (type != ADCGS_TYPE_HEAD && type != ADCGS_TYPE_SEGM && type != ADCGS_TYPE_INDX && type != ADCGS_TYPE_ENDC
+             && type != ADCGS_TYPE_hash)
+        bytes->metadata += payload;
+}
+
+void adcgs_bytes_finish(adcgs_bytes *bytes, uint64_t total)
+{
+    uint64_t payloads = bytes->networks + bytes->geometry + bytes->cameras + bytes->metadata;
+    for (int i = 0; i < ADCGS_LAYERS; i++)
+        payloads += bytes->layer[i];
+    bytes->total = total;
+    bytes->header = total - payloads;
+}

@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The order of the latents and their contexts (spec clause "Latent chain").
+ * Everything that decodes, encodes, quantises or conceals goes through the two
+ * walks here, so there is one definition of the order.
+ */
+#include "model/latents.h"
+#include "model/latents_priv.h"
+#include "model/model_priv.h"
+
+#define INPUTS_MAX (ADCGS_NV_MAX + ADCGS_NG_MAX)
+
+struct adcgs_latents {
+    adcgs_memory *memory;
+    adcgs_e24 *net[ADCGS_ROLE_PREDICTION]; /**< by role; NULL where the parameters have none */
+    size_t scratch;                        /**< bytes that the largest of them needs */
+};
+
+/** One walk: where it is and its working memory, 64 anchors wide. */
+typedef struct walker {
+    const adcgs_latents *latents;
+    adcgs_model *model;
+    adcgs_latent_visit visit;
+    void *user;
+    uint32_t begin; /**< first anchor of the group */
+    int n;          /**< anchors in it, 1..64 */
+    int16_t (*x)[ADCGS_LANES];
+    int16_t (*mu)[ADCGS_LANES];
+    uint8_t (*si)[ADCGS_LANES];
+    void *scratch;
+} walker;
+
+adcgs_status adcgs_latents_create(adcgs_latents **out, const adcgs_model *model, adcgs_cpu_level cpu, adcgs_memory *memory,
+                                  adcgs_error *error)
+{
+    adcgs_latents *l = adcgs_alloc(memory, 1, sizeof *l, error);
+    *out = l;
+    if (!l)
+        return ADCGS_ERR_MEMORY;
+    l->memory = memory;
+    for (int role = 0; role < ADCGS_ROLE_PREDICTION; role++) {
+        if (!adcgs_role_required(&model->params, role))
+            continue;
+        const adcgs_status status = adcgs_e24_create(&l->net[role], &model->net[role], cpu, memory, error);
+        if (status != ADCGS_OK) {
+            adcgs_latents_free(out);
+            return status;
+        }
+        const size_t scratch = adcgs_e24_scratch(l->net[role]);
+        l->scratch = ADCGS_MAX(l->scratch, scratch);
+    }
+    return ADCGS_OK;
+}
+
+void adcgs_latents_free(adcgs_latents **latents)
+{
+    adcgs_latents *l = *latents;
+    if (!l)
+        return;
+    for (int role = 0; role < ADCGS_ROLE_PREDICTION; role++)
+        adcgs_e24_free(&l->net[role], l->memory);
+    adcgs_free(l->memory, l);
+    *latents = NULL;
+}
+
+/** Bring channels [0,count) of rows that are stride apart into feature-major inputs. Lanes past the group's end hold anything: nobody looks at theirs. */
+static void gather(int16_t (*x)[ADCGS_LANES], const int16_t *rows, size_t stride, int n, int count)
+{
+    for (int j = 0; j < n; j++)
+        for (int c = 0; c < count; c++)
+            x[c][j] = rows[(size_t)j * stride + (size_t)c];
+}
+
+/** Hand the group's anchors to the visitor. rows: first value of the first anchor; k < 0: values that every anchor has. */
+static void visit_group(const walker *w, int group, int k, int first, int count, int16_t *rows, size_t stride)
+{
+    int16_t mu[ADCGS_NV_MAX];
+    uint8_t si[ADCGS_NV_MAX];
+    adcgs_latent_site site = { .k = k, .group = group, .first = first, .count = count, .mu = mu, .si = si };
+    for (int j = 0; j < w->n; j++) {
+        site.anchor = w->begin + (uint32_t)j;
+        site.yq = rows + (size_t)j * stride;
+        if (k >= 0 && !(w->model->mask[site.anchor] >> k & 1)) {
+            memset(site.yq, 0, (size_t)count * sizeof *site.yq);
+            continue;
+        }
+        for (int c = 0; c < count; c++) {
+            mu[c] = w->mu[c][j];
+            si[c] = w->si[c][j];
+        }
+        w->visit(w->user, &site);
+    }
+}
+
+static void predict(const walker *w, int role)
+{
+    adcgs_e24_eval(w->latents->net[role], w->x[0], w->mu[0], w->si[0], w->scratch);
+}
+
+static void walk_base(const walker *w)
+{
+    adcgs_model *m = w->model;
+    const int n_eta = m->params.n_eta, n_fv = m->params.n_fv;
+    int16_t *eta = m->eta + (size_t)w->begin * (size_t)n_eta;
+    int16_t *fv = m->fv + (size_t)w->begin * (size_t)n_fv;
+    for (int c = 0; c < n_eta; c++)
+        for (int j = 0; j < w->n; j++) {
+            w->mu[c][j] = m->eta_mu[c];
+            w->si[c][j] = m->eta_si[c];
+        }
+    if (n_eta > 0)
+        visit_group(w, ADCGS_GROUP_ETA, -1, 0, n_eta, eta, (size_t)n_eta);
+    gather(w->x, eta, (size_t)n_eta, w->n, n_eta);
+    predict(w, ADCGS_ROLE_ENTROPY_FV);
+    visit_group(w, ADCGS_GROUP_FV, -1, 0, n_fv, fv, (size_t)n_fv);
+
+    gather(w->x, fv, (size_t)n_fv, w->n, n_fv);
+    predict(w, ADCGS_ROLE_ENTROPY_SIGMA);
+    visit_group(w, ADCGS_GROUP_SIGMA, -1, 0, ADCGS_SIGMA_N, m->sigma + (size_t)w->begin * ADCGS_SIGMA_N, ADCGS_SIGMA_N);
+    predict(w, ADCGS_ROLE_ENTROPY_COLOUR);
+    visit_group(w, ADCGS_GROUP_COLOUR, -1, 0, ADCGS_COLOUR_N, m->colour + (size_t)w->begin * ADCGS_COLOUR_N, ADCGS_COLOUR_N);
+}
+
+static int any_exists(const walker *w, int k)
+{
+    for (int j = 0; j < w->n; j++)
+        if (w->model->mask[w->begin + (uint32_t)j] >> k & 1)
+            return 1;
+    return 0;
+}
+
+static void walk_chunk(const walker *w, int chunk)
+{
+    adcgs_model *m = w->model;
+    const int n_fv = m->params.n_fv, count = m->params.n_fg / m->params.chunks, before = chunk * count;
+    const size_t stride = (size_t)m->params.k * m->params.n_fg;
+    gather(w->x, m->fv + (size_t)w->begin * (size_t)n_fv, (size_t)n_fv, w->n, n_fv);
+    for (int k = 0; k < m->params.k; k++) {
+        int16_t *fg = m->fg + (size_t)w->begin * stride + (size_t)k * m->params.n_fg;
+        gather(w->x + n_fv, fg, stride, w->n, before);
+        if (any_exists(w, k))
+            predict(w, ADCGS_ROLE_ENTROPY_FG + chunk);
+        visit_group(w, ADCGS_GROUP_FG + chunk, k, before, count, fg + before, stride);
+    }
+}
+
+adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
+                                adcgs_latent_visit visit, void *user)
+{
+    const size_t lane = ADCGS_LANES * sizeof(int16_t);
+    const size_t bytes = (INPUTS_MAX + ADCGS_NV_MAX) * lane + ADCGS_NV_MAX * ADCGS_LANES;
+    uint8_t *memory = adcgs_alloc(NULL, 1, bytes + latents->scratch, NULL);
+    if (!memory)
+        return ADCGS_ERR_MEMORY;
+    walker w = { latents, model, visit, user, 0, 0, NULL, NULL, NULL, NULL };
+    w.x = (int16_t(*)[ADCGS_LANES])memory;
+    w.mu = w.x + INPUTS_MAX;
+    w.si = (uint8_t(*)[ADCGS_LANES])(memory + (INPUTS_MAX + ADCGS_NV_MAX) * lane);
+    w.scratch = memory + bytes;
+    for (w.begin = begin; w.begin < end; w.begin += ADCGS_LANES) {
+        w.n = (int)ADCGS_MIN(end - w.begin, (uint32_t)ADCGS_LANES);
+        if (layer == 0)
+            walk_base(&w);
+        else
+            walk_chunk(&w, layer - 1);
+    }
+    adcgs_free(NULL, memory);
+    return ADCGS_OK;
+}
+
+void adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_flag_fn code, void *user)
+{
+    adcgs_adaptive static_context[2], mask_context[4];
+    const int n_k = model->params.k, moves = model->params.time_rows > 0;
+    int previous_static = 0;
+    uint32_t previous_mask = (1U << n_k) - 1;
+    adcgs_adaptive_init(static_context, ADCGS_COUNTOF(static_context));
+    adcgs_adaptive_init(mask_context, ADCGS_COUNTOF(mask_context));
+    for (uint32_t i = begin; i < end; i++) {
+        if (moves)
+            previous_static = code(user, &static_context[previous_static], model->is_static[i]);
+        model->is_static[i] = (uint8_t)previous_static;
+        uint32_t mask = 0, left = 1;
+        for (int k = 0; k < n_k; k++) {
+            left = (uint32_t)code(user, &mask_context[2 * (previous_mask >> k & 1) + left], model->mask[i] >> k & 1);
+            mask |= left << k;
+        }
+        model->mask[i] = (uint16_t)mask;
+        previous_mask = mask;
+    }
+}

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The parts of the latent chain that decoding and encoding share. */
+#ifndef ADCGS_MODEL_LATENTS_PRIV_H
+#define ADCGS_MODEL_LATENTS_PRIV_H
+
+#include "model/latents.h"
+
+/** Code one flag with its context: a decoder returns what it read, an encoder writes and returns bit. */
+typedef int (*adcgs_flag_fn)(void *user, adcgs_adaptive *context, int bit);
+
+/** Walk static flags and masks of anchors [begin, end) in coding order; the model receives what code returns. */
+void adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_flag_fn code, void *user);
+
+#endif

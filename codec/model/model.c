@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The model's storage, and the shapes that its parameters imply. */
+#include "model/model.h"
+#include "model/model_priv.h"
+
+int adcgs_params_layers(const adcgs_params *params)
+{
+    return params->n_fg ? 1 + params->chunks : 1;
+}
+
+uint64_t adcgs_anchor_bytes(const adcgs_params *params)
+{
+    const uint64_t values = (uint64_t)params->n_eta + params->n_fv + ADCGS_SIGMA_N + ADCGS_COLOUR_N
+                            + (uint64_t)params->k * params->n_fg;
+    return 3 * sizeof(uint32_t) + sizeof(uint8_t) + sizeof(uint16_t) + values * sizeof(int16_t);
+}
+
+void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint32_t *n_out)
+{
+    const uint32_t fv = params->n_fv, width = params->time_width;
+    const uint32_t chunk = params->n_fg / params->chunks;
+    uint32_t in = 0, out = 0;
+    if (role == ADCGS_ROLE_ENTROPY_FV) {
+        in = params->n_eta;
+        out = 2 * fv;
+    } else if (role == ADCGS_ROLE_ENTROPY_SIGMA) {
+        in = fv;
+        out = 2 * ADCGS_SIGMA_N;
+    } else if (role == ADCGS_ROLE_ENTROPY_COLOUR) {
+        in = fv;
+        out = 2 * ADCGS_COLOUR_N;
+    } else if (role >= ADCGS_ROLE_ENTROPY_FG && role < ADCGS_ROLE_ENTROPY_FG + params->chunks && chunk > 0) {
+        in = fv + (uint32_t)(role - ADCGS_ROLE_ENTROPY_FG) * chunk;
+        out = 2 * chunk;
+    } else if (role == ADCGS_ROLE_PREDICTION) {
+        in = fv + params->n_fg;
+        out = 14;
+    } else if (role == ADCGS_ROLE_COARSE && params->time_rows > 0) {
+        in = fv + width;
+        out = params->coarse_rotation ? 12 : 9;
+    } else if (role == ADCGS_ROLE_FINE && params->time_rows > 0) {
+        in = 6U * params->octaves + (params->fine_uses_fv ? fv : 0) + width;
+        out = 4U * params->k;
+    } else if (role == ADCGS_ROLE_TIME && params->time_rows > 0) {
+        in = width;
+        out = params->time_rows;
+    }
+    *n_in = in;
+    *n_out = out;
+}
+
+static void clear_tensor(adcgs_tensor *t, adcgs_memory *memory)
+{
+    adcgs_free(memory, t->m);
+    t->m = NULL;
+}
+
+void adcgs_net_release(adcgs_net *net, adcgs_memory *memory)
+{
+    for (int i = 0; i < ADCGS_NET_LAYERS_MAX; i++) {
+        clear_tensor(&net->layer[i].w, memory);
+        clear_tensor(&net->layer[i].b, memory);
+    }
+    memset(net, 0, sizeof *net);
+}
+
+static adcgs_status copy_tensor(adcgs_tensor *dst, const adcgs_tensor *src, adcgs_memory *memory, adcgs_error *error)
+{
+    const size_t n = (size_t)src->rows * src->cols;
+    *dst = *src;
+    dst->m = adcgs_alloc(memory, n, sizeof *dst->m, error);
+    if (!dst->m)
+        return ADCGS_ERR_MEMORY;
+    if (n > 0)
+        memcpy(dst->m, src->m, n * sizeof *dst->m);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_net_copy(adcgs_net *dst, const adcgs_net *src, adcgs_memory *memory, adcgs_error *error)
+{
+    *dst = *src;
+    for (int i = 0; i < ADCGS_NET_LAYERS_MAX; i++)
+        dst->layer[i].w.m = dst->layer[i].b.m = NULL;
+    for (int i = 0; i < src->n_layers; i++) {
+        ADCGS_TRY(copy_tensor(&dst->layer[i].w, &src->layer[i].w, memory, error));
+        ADCGS_TRY(copy_tensor(&dst->layer[i].b, &src->layer[i].b, memory, error));
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_error *error)
+{
+    const adcgs_params *p = &model->params;
+    const size_t n = model->n, value = sizeof(int16_t);
+    model->pos = adcgs_alloc(memory, n, 3 * sizeof *model->pos, error);
+    model->is_static = model->pos ? adcgs_alloc(memory, n, sizeof *model->is_static, error) : NULL;
+    model->mask = model->is_static ? adcgs_alloc(memory, n, sizeof *model->mask, error) : NULL;
+    model->eta = model->mask ? adcgs_alloc(memory, n, p->n_eta * value, error) : NULL;
+    model->fv = model->eta ? adcgs_alloc(memory, n, p->n_fv * value, error) : NULL;
+    model->sigma = model->fv ? adcgs_alloc(memory, n, ADCGS_SIGMA_N * value, error) : NULL;
+    model->colour = model->sigma ? adcgs_alloc(memory, n, ADCGS_COLOUR_N * value, error) : NULL;
+    model->fg = model->colour ? adcgs_alloc(memory, n, (size_t)p->k * p->n_fg * value, error) : NULL;
+    return model->fg ? ADCGS_OK : ADCGS_ERR_MEMORY;
+}
+
+void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory)
+{
+    adcgs_free(memory, model->pos);
+    adcgs_free(memory, model->is_static);
+    adcgs_free(memory, model->mask);
+    adcgs_free(memory, model->eta);
+    adcgs_free(memory, model->fv);
+    adcgs_free(memory, model->sigma);
+    adcgs_free(memory, model->colour);
+    adcgs_free(memory, model->fg);
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        adcgs_net_release(&model->net[role], memory);
+    memset(model, 0, sizeof *model);
+}

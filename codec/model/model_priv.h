@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What the files of this room share about models and networks. */
+#ifndef ADCGS_MODEL_MODEL_PRIV_H
+#define ADCGS_MODEL_MODEL_PRIV_H
+
+#include "model/model.h"
+
+/** Layers that streams with these parameters have: 1, or 1 + chunks. */
+int adcgs_params_layers(const adcgs_params *params);
+/** Bytes of the per-anchor arrays, per anchor (spec "Levels"). */
+uint64_t adcgs_anchor_bytes(const adcgs_params *params);
+/** Ranges and cross-field rules of the parameters. */
+adcgs_status adcgs_params_validate(const adcgs_params *params, adcgs_error *error);
+
+/** Shapes against the parameters, value ranges, E24 bounds. */
+adcgs_status adcgs_net_validate(const adcgs_params *params, int role, const adcgs_net *net, adcgs_error *error);
+/** Roles that a model must have; of the others only COARSE and FINE may be present, and only with a time table. */
+int adcgs_role_required(const adcgs_params *params, int role);
+int adcgs_role_allowed(const adcgs_params *params, int role);
+/** Name of a role for messages and reports, e.g. "E_fv". */
+const char *adcgs_role_name(int role);
+
+/** Deep copy; on failure dst holds what adcgs_net_release() frees. */
+adcgs_status adcgs_net_copy(adcgs_net *dst, const adcgs_net *src, adcgs_memory *memory, adcgs_error *error);
+/** Free the tensors with the memory that they came from, and zero the struct. */
+void adcgs_net_release(adcgs_net *net, adcgs_memory *memory);
+/** Whether everything that the stream carries of the two is equal. */
+int adcgs_net_equal(const adcgs_net *a, const adcgs_net *b);
+
+#endif

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What a model must satisfy before anything is derived from it: everything that
+ * the later stages rely on without looking again.
+ */
+#include "geom/geom.h"
+#include "model/latents.h"
+#include "model/model.h"
+#include "model/model_priv.h"
+
+#define FLOAT_LAYERS_MAX 4
+
+const char *adcgs_role_name(int role)
+{
+    static const char *const names[ADCGS_ROLES] = { "E_fv",    "E_Sigma", "E_C", "E_fg0",   "E_fg1",   "E_fg2",
+                                                    "E_fg3",   NULL,      "F_theta", "F_omega", "F_varpi", "Z" };
+    return role >= 0 && role < ADCGS_ROLES && names[role] ? names[role] : "unknown";
+}
+
+int adcgs_role_allowed(const adcgs_params *params, int role)
+{
+    uint32_t n_in, n_out;
+    adcgs_role_shape(params, role, &n_in, &n_out);
+    return n_out > 0;
+}
+
+int adcgs_role_required(const adcgs_params *params, int role)
+{
+    return role != ADCGS_ROLE_COARSE && role != ADCGS_ROLE_FINE && adcgs_role_allowed(params, role);
+}
+
+static adcgs_status check_range(const char *name, uint32_t value, uint32_t lo, uint32_t hi, adcgs_error *error)
+{
+    if (value < lo || value > hi)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "model: %s is %u, expected %u..%u", name, value, lo, hi);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_params_validate(const adcgs_params *p, adcgs_error *error)
+{
+    ADCGS_TRY(check_range("k", p->k, 1, ADCGS_K_MAX, error));
+    ADCGS_TRY(check_range("n_fv", p->n_fv, 1, ADCGS_NV_MAX, error));
+    ADCGS_TRY(check_range("n_fg", p->n_fg, 0, ADCGS_NG_MAX, error));
+    ADCGS_TRY(check_range("chunks", p->chunks, 1, ADCGS_CHUNKS_MAX, error));
+    ADCGS_TRY(check_range("n_eta", p->n_eta, 0, ADCGS_ETA_MAX, error));
+    ADCGS_TRY(check_range("octaves", p->octaves, 0, ADCGS_OCTAVES_MAX, error));
+    ADCGS_TRY(check_range("fine_uses_fv", p->fine_uses_fv, 0, 1, error));
+    ADCGS_TRY(check_range("coarse_rotation", p->coarse_rotation, 0, 1, error));
+    ADCGS_TRY(check_range("time_rows", p->time_rows, 0, ADCGS_TIME_ROWS_MAX, error));
+    ADCGS_TRY(check_range("time_width", p->time_width, p->time_rows > 0, ADCGS_TIME_WIDTH_MAX, error));
+    if (p->n_fg % p->chunks)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "model: n_fg is %u, expected a multiple of chunks, %u", p->n_fg, p->chunks);
+    return ADCGS_OK;
+}
+
+/** A weight of a binary32 network: exact in binary32 and of magnitude below 2^8, so that nothing downstream overflows. */
+static int float_weight_ok(const adcgs_tensor *t, int32_t m)
+{
+    if (t->mode == 0) {
+        const int64_t magnitude = m < 0 ? -(int64_t)m : m;
+        return magnitude < INT64_C(1) << 24 && magnitude < INT64_C(1) << (8 + t->e);
+    }
+    const uint32_t exponent = (uint32_t)m >> 23 & 255;
+    return exponent == 0 ? ((uint32_t)m & 0x7fffff) == 0 : exponent < 127 + 8;
+}
+
+static adcgs_status check_tensor(const adcgs_tensor *t, uint32_t rows, uint32_t cols, int role, int layer, adcgs_error *error)
+{
+    const char *name = adcgs_role_name(role);
+    if (t->rows != rows || t->cols != cols)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d has a tensor of %ux%u, expected %ux%u", name, layer,
+                          t->rows, t->cols, rows, cols);
+    if (t->mode > 1 || t->e > 40)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d has tensor mode %u, exponent %u, expected 0..1, 0..40", name,
+                          layer, t->mode, t->e);
+    if (role < ADCGS_ROLE_PREDICTION)
+        return ADCGS_OK;
+    for (size_t i = 0; i < (size_t)rows * cols; i++)
+        if (!float_weight_ok(t, t->m[i]))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d, value %zu of a tensor is not a weight below 2^8", name,
+                              layer, i);
+    return ADCGS_OK;
+}
+
+static adcgs_status check_layers(int role, const adcgs_net *net, uint32_t n_in, uint32_t n_out, adcgs_error *error)
+{
+    const char *name = adcgs_role_name(role);
+    for (int i = 0; i < net->n_layers; i++) {
+        const adcgs_layer *l = &net->layer[i];
+        const int last = i == net->n_layers - 1;
+        const uint32_t rows = last ? n_out : l->w.rows;
+        if (!last)
+            ADCGS_TRY(check_range("hidden width", rows, 1, ADCGS_NET_WIDTH_MAX, error));
+        ADCGS_TRY(check_tensor(&l->w, rows, n_in, role, i, error));
+        if (role != ADCGS_ROLE_TIME)
+            ADCGS_TRY(check_tensor(&l->b, rows, 1, role, i, error));
+        if (l->residual > 1 || (l->residual && (last || (i == 0 && role >= ADCGS_ROLE_PREDICTION) || rows != n_in)))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d cannot be residual", name, i);
+        if (l->shift > 24)
+            return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d has shift %u, expected 0..24", name, i, l->shift);
+        n_in = rows;
+    }
+    return ADCGS_OK;
+}
+
+/** The E24 rules are checked by making the network ready, which is where they are needed. */
+static adcgs_status check_e24(const adcgs_net *net, adcgs_error *error)
+{
+    adcgs_e24 *ready = NULL;
+    const adcgs_status status = adcgs_e24_create(&ready, net, ADCGS_CPU_SCALAR, NULL, error);
+    adcgs_e24_free(&ready, NULL);
+    return status;
+}
+
+adcgs_status adcgs_net_validate(const adcgs_params *params, int role, const adcgs_net *net, adcgs_error *error)
+{
+    uint32_t n_in, n_out;
+    adcgs_role_shape(params, role, &n_in, &n_out);
+    if (n_out == 0)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: not used with these parameters", adcgs_role_name(role));
+    const int layers_max = role < ADCGS_ROLE_PREDICTION ? ADCGS_NET_LAYERS_MAX : FLOAT_LAYERS_MAX;
+    const int one_layer = role == ADCGS_ROLE_TIME || n_in == 0;
+    if (net->role != role || net->n_layers < 1 || net->n_layers > (one_layer ? 1 : layers_max))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: role %u with %u layers, expected role %d with 1..%d",
+                          adcgs_role_name(role), net->role, net->n_layers, role, one_layer ? 1 : layers_max);
+    if (net->in_shift > 8 || net->sigma_shift > 24 || net->sigma_offset < -64 || net->sigma_offset > 127)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: shifts %u, %u, offset %d, expected 0..8, 0..24, -64..127",
+                          adcgs_role_name(role), net->in_shift, net->sigma_shift, net->sigma_offset);
+    ADCGS_TRY(check_layers(role, net, n_in, n_out, error));
+    return role < ADCGS_ROLE_PREDICTION ? check_e24(net, error) : ADCGS_OK;
+}
+
+static adcgs_status check_nets(const adcgs_model *model, adcgs_error *error)
+{
+    for (int role = 0; role < ADCGS_ROLES; role++) {
+        const adcgs_net *net = &model->net[role];
+        if (net->present)
+            ADCGS_TRY(adcgs_net_validate(&model->params, role, net, error));
+        else if (adcgs_role_required(&model->params, role))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "network %s is missing", adcgs_role_name(role));
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status check_steps(const char *name, const float *d, size_t n, adcgs_error *error)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!(d[i] >= 0x1p-40f && d[i] <= 0x1p10f))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: %s[%zu] is %g, expected 2^-40..2^10", name, i, (double)d[i]);
+    return ADCGS_OK;
+}
+
+static adcgs_status check_tables(const adcgs_model *m, adcgs_error *error)
+{
+    ADCGS_TRY(check_steps("d_fv", m->d_fv, m->params.n_fv, error));
+    ADCGS_TRY(check_steps("d_sigma", m->d_sigma, ADCGS_SIGMA_N, error));
+    ADCGS_TRY(check_steps("d_colour", m->d_colour, ADCGS_COLOUR_N, error));
+    ADCGS_TRY(check_steps("d_fg", m->d_fg, m->params.n_fg, error));
+    for (int i = 0; i < ADCGS_GROUPS; i++)
+        ADCGS_TRY(check_range("shape", m->shape[i], 0, ADCGS_SHAPES - 1, error));
+    for (int i = 0; i < m->params.n_eta; i++) {
+        ADCGS_TRY(check_range("eta_si", m->eta_si[i], 0, ADCGS_SIGMA_LEVELS - 1, error));
+        if (m->eta_mu[i] == INT16_MIN)
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: eta_mu[%d] is -32768, expected -32767..32767", i);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status check_positions(const adcgs_model *m, adcgs_error *error)
+{
+    uint64_t previous = 0;
+    for (uint32_t i = 0; i < m->n; i++) {
+        const uint32_t *v = m->pos + 3 * (size_t)i;
+        const uint64_t code = adcgs_morton(v);
+        if ((v[0] | v[1] | v[2]) >> m->depth || (i > 0 && code <= previous))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: position of anchor %u is outside the cube or not in Morton order", i);
+        previous = code;
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status check_values(const char *name, const int16_t *v, size_t n, adcgs_error *error)
+{
+    for (size_t i = 0; i < n; i++)
+        if (v[i] == INT16_MIN)
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: %s[%zu] is -32768, expected -32767..32767", name, i);
+    return ADCGS_OK;
+}
+
+/** Flags, masks, and that primitives which do not exist hold zeros. */
+static adcgs_status check_primitives(const adcgs_model *m, adcgs_error *error)
+{
+    const adcgs_params *p = &m->params;
+    const int16_t *fg = m->fg;
+    for (uint32_t i = 0; i < m->n; i++) {
+        if (m->is_static[i] > (p->time_rows > 0) || m->mask[i] >> p->k)
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: anchor %u has static flag %u, mask %u, expected 0..%d, %u bits", i,
+                              m->is_static[i], m->mask[i], p->time_rows > 0, p->k);
+        for (int k = 0; k < p->k; k++)
+            for (int c = 0; c < p->n_fg; c++, fg++)
+                if (*fg != 0 && !(m->mask[i] >> k & 1))
+                    return adcgs_fail(error, ADCGS_ERR_DATA, "model: primitive %d of anchor %u does not exist but has f_g", k, i);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status check_frame(const adcgs_model *m, adcgs_error *error)
+{
+    ADCGS_TRY(check_range("anchors", m->n, 1, ADCGS_ANCHORS_MAX, error));
+    ADCGS_TRY(check_range("depth", m->depth, 0, ADCGS_GEOM_DEPTH_MAX, error));
+    for (int a = 0; a < 3; a++)
+        if (!(m->origin[a] >= -0x1p15f && m->origin[a] <= 0x1p15f))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: origin[%d] is %g, expected -2^15..2^15", a, (double)m->origin[a]);
+    if (!(m->voxel >= 0x1p-40f && m->voxel <= 0x1p10f))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "model: voxel is %g, expected 2^-40..2^10", (double)m->voxel);
+    if (!(m->time_start <= m->time_end && m->time_start >= -0x1p60 && m->time_end <= 0x1p60))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "model: times %g..%g s are not a span", m->time_start, m->time_end);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_model_validate(const adcgs_model *model, adcgs_error *error)
+{
+    const adcgs_params *p = &model->params;
+    const size_t n = model->n;
+    ADCGS_TRY(adcgs_params_validate(p, error));
+    ADCGS_TRY(check_frame(model, error));
+    ADCGS_TRY(check_tables(model, error));
+    ADCGS_TRY(check_nets(model, error));
+    ADCGS_TRY(check_positions(model, error));
+    ADCGS_TRY(check_primitives(model, error));
+    ADCGS_TRY(check_values("eta", model->eta, n * p->n_eta, error));
+    ADCGS_TRY(check_values("fv", model->fv, n * p->n_fv, error));
+    ADCGS_TRY(check_values("sigma", model->sigma, n * ADCGS_SIGMA_N, error));
+    ADCGS_TRY(check_values("colour", model->colour, n * ADCGS_COLOUR_N, error));
+    return check_values("fg", model->fg, n * p->k * p->n_fg, error);
+}

@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Random valid models and streams for tests. */
+#include "random_model.h"
+
+#include "base/cpu.h"
+#include "geom/geom.h"
+#include "model/model_priv.h"
+
+#include <stdio.h>
+
+uint64_t adcgs_random_next(uint64_t *state)
+{
+    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
+int64_t adcgs_random_range(uint64_t *state, int64_t lo, int64_t hi)
+{
+    return lo + (int64_t)(adcgs_random_next(state) % (uint64_t)(hi - lo + 1));
+}
+
+static int draw(uint64_t *state, int lo, int hi)
+{
+    return (int)adcgs_random_range(state, lo, hi);
+}
+
+void adcgs_random_params(adcgs_params *p, int moving, uint64_t *state)
+{
+    memset(p, 0, sizeof *p);
+    p->k = (uint8_t)draw(state, 1, ADCGS_K_MAX);
+    p->n_fv = (uint8_t)draw(state, 1, 40);
+    p->chunks = (uint8_t)draw(state, 1, ADCGS_CHUNKS_MAX);
+    p->n_fg = (uint8_t)(p->chunks * draw(state, 0, 4));
+    p->n_eta = (uint8_t)draw(state, 0, ADCGS_ETA_MAX);
+    p->octaves = (uint8_t)draw(state, 0, ADCGS_OCTAVES_MAX);
+    p->fine_uses_fv = (uint8_t)draw(state, 0, 1);
+    p->coarse_rotation = (uint8_t)draw(state, 0, 1);
+    p->time_rows = (uint16_t)(moving ? draw(state, 1, 12) : 0);
+    p->time_width = (uint16_t)(moving ? draw(state, 1, 9) : 0);
+}
+
+/** Magnitudes stay small enough for the E24 row bound with 96 inputs and for finite binary32 networks of 4 layers. */
+static adcgs_status fill_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols, int limit, int e, int mode, uint64_t *state,
+                                adcgs_error *error)
+{
+    *t = (adcgs_tensor){ .rows = rows, .cols = cols, .mode = (uint8_t)mode, .e = (uint8_t)e };
+    t->m = adcgs_alloc(NULL, (size_t)rows * cols, sizeof *t->m, error);
+    if (!t->m)
+        return ADCGS_ERR_MEMORY;
+    for (size_t i = 0; i < (size_t)rows * cols; i++) {
+        const int32_t v = draw(state, 0, 2) ? draw(state, -limit, limit) : 0;
+        t->m[i] = mode ? (int32_t)adcgs_float_bits((float)v * 0x1.357p-9f) : v;
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status random_net(adcgs_net *net, const adcgs_params *params, int role, uint64_t *state, adcgs_error *error)
+{
+    uint32_t n_in, n_out;
+    adcgs_role_shape(params, role, &n_in, &n_out);
+    const int e24 = role < ADCGS_ROLE_PREDICTION, table = role == ADCGS_ROLE_TIME, limit = e24 ? 60 : 400;
+    *net = (adcgs_net){ .present = 1, .role = (uint8_t)role };
+    net->n_layers = (uint8_t)(table || n_in == 0 ? 1 : draw(state, 1, 3));
+    net->in_shift = (uint8_t)(e24 ? draw(state, 0, 3) : 0);
+    net->sigma_shift = (uint8_t)(e24 ? draw(state, 6, 9) : 0);
+    net->sigma_offset = (int16_t)(e24 ? draw(state, 0, 40) : 0);
+    for (int i = 0; i < net->n_layers; i++) {
+        adcgs_layer *l = &net->layer[i];
+        const int last = i == net->n_layers - 1;
+        l->residual = (uint8_t)(!last && i > 0 && draw(state, 0, 1));
+        const uint32_t rows = last ? n_out : l->residual ? n_in : (uint32_t)draw(state, 1, 24);
+        l->shift = (uint8_t)(e24 ? draw(state, 5, 9) : 0);
+        ADCGS_TRY(fill_tensor(&l->w, rows, n_in, limit, e24 ? 0 : 9, e24 ? 0 : draw(state, 0, 3) == 0, state, error));
+        if (!table)
+            ADCGS_TRY(fill_tensor(&l->b, rows, 1, e24 ? 20000 : limit, e24 ? 0 : 9, 0, state, error));
+        n_in = rows;
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status random_positions(adcgs_model *m, uint64_t *state, adcgs_error *error)
+{
+    const uint32_t side = 1U << m->depth;
+    const uint64_t cells = (uint64_t)side * side * side, stride = cells / m->n;
+    for (uint32_t i = 0; i < m->n; i++) { /* distinct: one cell out of each run of stride */
+        const uint64_t cell = i * stride + adcgs_random_next(state) % stride;
+        m->pos[3 * i] = (uint32_t)(cell % side);
+        m->pos[3 * i + 1] = (uint32_t)(cell / side % side);
+        m->pos[3 * i + 2] = (uint32_t)(cell / side / side);
+    }
+    if (!adcgs_morton_sort(m->pos, m->n, NULL, error))
+        return ADCGS_OK;
+    return ADCGS_ERR_INTERNAL;
+}
+
+static void random_steps(float *d, int n, uint64_t *state)
+{
+    const int form = draw(state, 0, 3);
+    for (int i = 0; i < n; i++) {
+        const uint32_t bits = adcgs_float_bits(0x1p-7f) + (uint32_t)draw(state, 0, 0xffffff);
+        d[i] = form & 1 && i > 0 ? d[0] : adcgs_bits_float(form & 2 ? bits & 0xffff0000 : bits);
+    }
+}
+
+static void random_tables(adcgs_model *m, uint64_t *state)
+{
+    random_steps(m->d_fv, m->params.n_fv, state);
+    random_steps(m->d_sigma, ADCGS_SIGMA_N, state);
+    random_steps(m->d_colour, ADCGS_COLOUR_N, state);
+    random_steps(m->d_fg, m->params.n_fg, state);
+    for (int i = 0; i < ADCGS_GROUPS; i++)
+        m->shape[i] = (uint8_t)draw(state, 0, ADCGS_SHAPES - 1);
+    for (int i = 0; i < m->params.n_eta; i++) {
+        m->eta_mu[i] = (int16_t)draw(state, -400, 400);
+        m->eta_si[i] = (uint8_t)draw(state, 0, ADCGS_SIGMA_LEVELS - 1);
+    }
+    m->voxel = 2.0f / (float)(1U << m->depth);
+    for (int a = 0; a < 3; a++)
+        m->origin[a] = -1.0f + (float)draw(state, -9, 9) * 0x1p-5f;
+}
+
+/** Mostly small numbers, now and then one far out in the escape codes or past the clip. */
+static void draw_site(void *user, const adcgs_latent_site *site)
+{
+    uint64_t *state = user;
+    for (int c = 0; c < site->count; c++) {
+        int32_t n = 0;
+        if (site->si[c] > 0) {
+            const int spread = 1 + site->si[c] / 8, far = adcgs_value_max(0, site->si[c]);
+            n = draw(state, 0, 199) ? draw(state, -spread, spread) : draw(state, -ADCGS_MIN(far, 700), ADCGS_MIN(far, 700));
+        }
+        site->yq[c] = (int16_t)adcgs_clip(64 * n + site->mu[c], 32767);
+    }
+}
+
+adcgs_status adcgs_random_values(adcgs_model *m, uint64_t *state, adcgs_error *error)
+{
+    adcgs_latents *latents = NULL;
+    adcgs_cpu_level cpu;
+    adcgs_status status = adcgs_cpu_resolve(ADCGS_CPU_AUTO, &cpu, error);
+    if (status == ADCGS_OK)
+        status = adcgs_latents_create(&latents, m, cpu, NULL, error);
+    for (int layer = 0; layer < adcgs_params_layers(&m->params) && status == ADCGS_OK; layer++)
+        status = adcgs_latents_walk(latents, m, layer, 0, m->n, draw_site, state);
+    adcgs_latents_free(&latents);
+    return status;
+}
+
+static adcgs_status random_anchors(adcgs_model *m, uint64_t *state, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
+    ADCGS_TRY(random_positions(m, state, error));
+    for (uint32_t i = 0; i < m->n; i++) {
+        m->is_static[i] = (uint8_t)(m->params.time_rows > 0 && draw(state, 0, 1));
+        m->mask[i] = (uint16_t)((adcgs_random_next(state) | adcgs_random_next(state)) & ((1U << m->params.k) - 1));
+    }
+    return adcgs_random_values(m, state, error);
+}
+
+adcgs_status adcgs_random_model(adcgs_model *m, const adcgs_params *params, uint32_t n, int depth, uint64_t *state,
+                                adcgs_error *error)
+{
+    memset(m, 0, sizeof *m);
+    m->params = *params;
+    m->n = n;
+    m->depth = (uint8_t)depth;
+    m->time_end = 1;
+    m->layers = (uint8_t)adcgs_params_layers(params);
+    random_tables(m, state);
+    for (int role = 0; role < ADCGS_ROLES; role++) {
+        const int optional = adcgs_role_allowed(params, role) && !adcgs_role_required(params, role);
+        if (adcgs_role_required(params, role) || (optional && draw(state, 0, 3)))
+            ADCGS_TRY(random_net(&m->net[role], params, role, state, error));
+    }
+    return random_anchors(m, state, error);
+}
+
+static adcgs_status share_networks(adcgs_model *m, const adcgs_model *from, uint64_t *state, adcgs_error *error)
+{
+    for (int role = 0; role < ADCGS_ROLES; role++) {
+        adcgs_net_release(&m->net[role], NULL);
+        if (from->net[role].present)
+            ADCGS_TRY(adcgs_net_copy(&m->net[role], &from->net[role], NULL, error));
+    }
+    return adcgs_random_values(m, state, error);
+}
+
+static adcgs_status random_cameras(adcgs_stream *stream, uint64_t *state, adcgs_error *error)
+{
+    static const double pose[12] = { 1, 0, 0, 0.25, 0, 1, 0, -0.5, 0, 0, 1, -4 };
+    stream->n_cameras = (uint32_t)draw(state, 0, 3);
+    stream->cameras = adcgs_alloc(NULL, stream->n_cameras, sizeof *stream->cameras, error);
+    if (!stream->cameras)
+        return ADCGS_ERR_MEMORY;
+    for (uint32_t i = 0; i < stream->n_cameras; i++) {
+        adcgs_camera *c = &stream->cameras[i];
+        *c = (adcgs_camera){ .width = 64, .height = 48, .fx = 50 + (i > 1), .fy = 50, .cx = 32, .cy = 24, .near_plane = 0.01 };
+        memcpy(c->cam_to_world, pose, sizeof pose);
+        c->cam_to_world[7] = i == 1 ? 0.1 : -0.5; /* 0.1 is no binary32 */
+        snprintf(c->name, sizeof c->name, "camera %u", i);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status random_text(char **out, const char *format, int number, adcgs_error *error)
+{
+    *out = adcgs_alloc(NULL, 64, 1, error);
+    if (!*out)
+        return ADCGS_ERR_MEMORY;
+    snprintf(*out, 64, format, number);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t segments, uint32_t n, int depth,
+                                 uint64_t *state, adcgs_error *error)
+{
+    adcgs_stream_init(stream);
+    stream->params = *params;
+    stream->slice_log2 = (uint8_t)draw(state, ADCGS_SLICE_LOG2_MIN, ADCGS_SLICE_LOG2_MIN + 2);
+    ADCGS_TRY(random_cameras(stream, state, error));
+    stream->segments = adcgs_alloc(NULL, segments, sizeof *stream->segments, error);
+    stream->meta = stream->segments ? adcgs_alloc(NULL, 2, sizeof *stream->meta, error) : NULL;
+    if (!stream->meta)
+        return ADCGS_ERR_MEMORY;
+    for (stream->n_meta = 0; stream->n_meta < 2; stream->n_meta++) {
+        ADCGS_TRY(random_text(&stream->meta[stream->n_meta].key, "key%d", (int)stream->n_meta, error));
+        ADCGS_TRY(random_text(&stream->meta[stream->n_meta].value, "value %d", draw(state, 0, 999), error));
+    }
+    for (uint32_t i = 0; i < segments; i++) {
+        adcgs_model *m = &stream->segments[i];
+        stream->n_segments = i + 1;
+        ADCGS_TRY(adcgs_random_model(m, params, n, depth, state, error));
+        if (i % 2)
+            ADCGS_TRY(share_networks(m, m - 1, state, error));
+        m->time_start = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i);
+        m->time_end = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i + draw(state, 1, 40));
+    }
+    return ADCGS_OK;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Random valid models and streams for tests: any parameters, small networks
+ * inside their bounds, random anchors, values quantised along the walk of the
+ * latents. The seed decides everything.
+ */
+#ifndef ADCGS_TESTS_RANDOM_MODEL_H
+#define ADCGS_TESTS_RANDOM_MODEL_H
+
+#include "model/stream.h"
+
+/** Counter-based random numbers (SplitMix64). */
+uint64_t adcgs_random_next(uint64_t *state);
+/** Uniform in [lo, hi]. */
+int64_t adcgs_random_range(uint64_t *state, int64_t lo, int64_t hi);
+
+/** Any valid parameters; moving decides whether there is a time table. */
+void adcgs_random_params(adcgs_params *params, int moving, uint64_t *state);
+/** A valid model of n anchors in a cube of depth bits per axis (n <= 2^(3 depth)), times 0..1 s. Allocated without a memory. */
+adcgs_status adcgs_random_model(adcgs_model *model, const adcgs_params *params, uint32_t n, int depth, uint64_t *state,
+                                adcgs_error *error);
+/** A stream of segments with such models, some cameras and metadata; every second segment shares the networks of the one before. */
+adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t segments, uint32_t n, int depth,
+                                 uint64_t *state, adcgs_error *error);
+/** Draw all values of a model anew along the walk, for the networks, flags and masks that it has. */
+adcgs_status adcgs_random_values(adcgs_model *model, uint64_t *state, adcgs_error *error);
+
+#endif

@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Streams: writing and reading are inverse for any valid model, however the bytes arrive and whatever decodes them. */
+#include "random_model.h"
+
+#include "base/cpu.h"
+#include "base/digest.h"
+#include "base/pool.h"
+#include "model/chunk.h"
+#include "model/model_priv.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+
+#include <cmocka.h>
+
+/** Bytes that arrive in pieces. */
+typedef struct pipe {
+    const uint8_t *data;
+    size_t size, pos, piece;
+} pipe;
+
+static int64_t read_pipe(void *user, void *buffer, size_t bytes)
+{
+    pipe *p = user;
+    const size_t n = ADCGS_MIN(ADCGS_MIN(bytes, p->piece), p->size - p->pos);
+    if (n > 0)
+        memcpy(buffer, p->data + p->pos, n);
+    p->pos += n;
+    return (int64_t)n;
+}
+
+static adcgs_status read_stream(adcgs_stream *stream, const uint8_t *data, size_t bytes, const adcgs_read_options *options,
+                                adcgs_error *error)
+{
+    pipe p = { data, bytes, 0, SIZE_MAX };
+    return adcgs_stream_read(stream, read_pipe, &p, options, NULL, NULL, error);
+}
+
+static const adcgs_read_options plain = { .cpu = ADCGS_CPU_SCALAR };
+
+static void check(adcgs_status status, const adcgs_error *error)
+{
+    if (status != ADCGS_OK)
+        fail_msg("%s: %s", adcgs_status_name(status), error->text);
+}
+
+static void check_equal(const adcgs_stream *a, const adcgs_stream *b)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    assert_int_equal(a->n_segments, b->n_segments);
+    for (uint32_t i = 0; i < a->n_segments; i++)
+        if (!adcgs_model_equal(&a->segments[i], &b->segments[i], &error))
+            fail_msg("segment %u: %s", i, error.text);
+    assert_int_equal(a->n_cameras, b->n_cameras);
+    for (uint32_t i = 0; i < a->n_cameras; i++) {
+        assert_string_equal(a->cameras[i].name, b->cameras[i].name);
+        assert_int_equal(a->cameras[i].width, b->cameras[i].width);
+        assert_true(a->cameras[i].fx == b->cameras[i].fx && a->cameras[i].near_plane == b->cameras[i].near_plane);
+        assert_memory_equal(a->cameras[i].cam_to_world, b->cameras[i].cam_to_world, sizeof a->cameras[i].cam_to_world);
+    }
+    assert_int_equal(a->n_meta, b->n_meta);
+    for (uint32_t i = 0; i < a->n_meta; i++) {
+        assert_string_equal(a->meta[i].key, b->meta[i].key);
+        assert_string_equal(a->meta[i].value, b->meta[i].value);
+    }
+    assert_memory_equal(&a->bytes, &b->bytes, sizeof a->bytes);
+    assert_true(a->start_ticks == b->start_ticks && a->duration_ticks == b->duration_ticks && a->level == b->level);
+}
+
+static void check_round_trip(adcgs_stream *stream)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_stream back;
+    adcgs_buffer bytes, again;
+    adcgs_buffer_init(&bytes);
+    adcgs_buffer_init(&again);
+    check(adcgs_stream_write(stream, &bytes, &error), &error);
+    assert_true(stream->bytes.total == bytes.size);
+    check(read_stream(&back, bytes.data, bytes.size, &plain, &error), &error);
+    check_equal(stream, &back);
+    assert_false(back.truncated);
+    check(adcgs_stream_write(&back, &again, &error), &error);
+    assert_int_equal(bytes.size, again.size);
+    assert_memory_equal(bytes.data, again.data, bytes.size);
+    adcgs_buffer_clear(&bytes);
+    adcgs_buffer_clear(&again);
+    adcgs_stream_clear(&back, NULL);
+}
+
+static void make_stream(adcgs_stream *stream, int moving, uint32_t segments, uint32_t n, uint64_t seed)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_params params;
+    adcgs_random_params(&params, moving, &seed);
+    check(adcgs_random_stream(stream, &params, segments, n, 5, &seed, &error), &error);
+}
+
+static void test_round_trip(void **state)
+{
+    static const uint32_t counts[] = { 1, 3, 63, 64, 65, 300, 700 };
+    (void)state;
+    for (uint64_t seed = 1; seed <= 42; seed++) {
+        adcgs_stream stream;
+        make_stream(&stream, (int)(seed & 1), 1 + (uint32_t)(seed % 4), counts[seed % ADCGS_COUNTOF(counts)], seed);
+        check_round_trip(&stream);
+        adcgs_stream_clear(&stream, NULL);
+    }
+}
+
+/** A model decoded with fewer layers has the layers that it has, and predicted means for the rest. */
+static void test_layers(void **state)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_params params;
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    uint64_t seed = 7;
+    (void)state;
+    adcgs_random_params(&params, 1, &seed);
+    params.chunks = 4;
+    params.n_fg = 8;
+    check(adcgs_random_stream(&stream, &params, 2, 200, 6, &seed, &error), &error);
+    adcgs_buffer_init(&bytes);
+    check(adcgs_stream_write(&stream, &bytes, &error), &error);
+    for (int layers = 1; layers <= ADCGS_LAYERS; layers++) {
+        adcgs_stream back;
+        adcgs_read_options options = plain;
+        options.layers = layers;
+        check(read_stream(&back, bytes.data, bytes.size, &options, &error), &error);
+        for (uint32_t s = 0; s < 2; s++) {
+            const adcgs_model *a = &stream.segments[s], *b = &back.segments[s];
+            size_t different = 0;
+            assert_int_equal(b->layers, layers);
+            assert_memory_equal(a->fv, b->fv, (size_t)a->n * params.n_fv * sizeof *a->fv);
+            for (size_t i = 0; i < (size_t)a->n * params.k * params.n_fg; i++) {
+                if (i % params.n_fg < 2U * ((unsigned)layers - 1))
+                    assert_int_equal(a->fg[i], b->fg[i]);
+                different += a->fg[i] != b->fg[i];
+            }
+            assert_true(layers == ADCGS_LAYERS ? different == 0 : different > 0);
+        }
+        adcgs_stream_clear(&back, NULL);
+    }
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+}
+
+static void test_threads_and_cpus(void **state)
+{
+    static const int threads[] = { 1, 2, 7 };
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    (void)state;
+    make_stream(&stream, 1, 2, 1000, 99);
+    adcgs_buffer_init(&bytes);
+    check(adcgs_stream_write(&stream, &bytes, &error), &error);
+    for (size_t i = 0; i < ADCGS_COUNTOF(threads); i++)
+        for (int cpu = ADCGS_CPU_SCALAR; cpu <= (int)adcgs_cpu_best(); cpu++) {
+            adcgs_stream back;
+            adcgs_read_options options = { .cpu = (adcgs_cpu_level)cpu };
+            check(adcgs_pool_create(&options.pool, threads[i], &error), &error);
+            check(read_stream(&back, bytes.data, bytes.size, &options, &error), &error);
+            check_equal(&stream, &back);
+            adcgs_stream_clear(&back, NULL);
+            adcgs_pool_free(&options.pool);
+        }
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+}
+
+static void test_pieces_and_memory(void **state)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_stream stream, back;
+    adcgs_buffer bytes;
+    (void)state;
+    make_stream(&stream, 1, 2, 130, 5);
+    adcgs_buffer_init(&bytes);
+    check(adcgs_stream_write(&stream, &bytes, &error), &error);
+    pipe p = { bytes.data, bytes.size, 0, 1 };
+    adcgs_memory memory = { 0, 0, 0 };
+    adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .memory = &memory, .strict_end = 1 };
+    check(adcgs_stream_read(&back, read_pipe, &p, &options, NULL, NULL, &error), &error);
+    check_equal(&stream, &back);
+    adcgs_stream_clear(&back, &memory);
+    assert_true(memory.used == 0 && memory.peak > 0);
+    const uint64_t peak = memory.peak;
+    for (uint64_t limit = 100; limit < peak; limit += peak / 50) { /* running out at any point is clean */
+        memory = (adcgs_memory){ .limit = limit };
+        assert_int_equal(read_stream(&back, bytes.data, bytes.size, &options, &error), ADCGS_ERR_LIMIT);
+        assert_true(memory.used == 0);
+    }
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+}
+
+/** A trace goes forward from chunk to chunk and names every one of them. */
+typedef struct trace {
+    int chunks, elements;
+    uint64_t last;
+} trace;
+
+static void count_element(void *user, uint64_t bit, const char *element, const char *value)
+{
+    trace *t = user;
+    t->elements++;
+    assert_true(value[0] != 0);
+    if (strcmp(element, "chunk") == 0) {
+        assert_true(bit > t->last);
+        t->last = bit;
+        t->chunks++;
+    }
+}
+
+static void test_trace(void **state)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_stream stream, back;
+    adcgs_buffer bytes;
+    trace t = { 0, 0, 0 };
+    (void)state;
+    make_stream(&stream, 1, 1, 100, 12);
+    adcgs_buffer_init(&bytes);
+    check(adcgs_stream_write(&stream, &bytes, &error), &error);
+    pipe p = { bytes.data, bytes.size, 0, SIZE_MAX };
+    check(adcgs_stream_read(&back, read_pipe, &p, &plain, count_element, &t, &error), &error);
+    /* HEAD, meta, SEGM, NETW, GEOM, layers, hash, ENDC, perhaps cams */
+    assert_int_equal(t.chunks, 7 + adcgs_params_layers(&stream.params) + (stream.n_cameras > 0));
+    assert_true(t.elements > 60);
+    adcgs_stream_clear(&back, NULL);
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+}
+
+/** What the writer refuses: values that the networks cannot give, times off the ticks, models that differ in parameters. */
+static void test_writer_refuses(void **state)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    (void)state;
+    make_stream(&stream, 0, 1, 20, 3);
+    adcgs_buffer_init(&bytes);
+    adcgs_model *m = &stream.segments[0];
+    m->sigma[5] = (int16_t)(m->sigma[5] > 0 ? m->sigma[5] - 1 : m->sigma[5] + 1);
+    assert_int_equal(adcgs_stream_write(&stream, &bytes, &error), ADCGS_ERR_USAGE);
+    assert_int_equal(bytes.size, 0);
+    m->sigma[5] = INT16_MIN;
+    assert_int_equal(adcgs_stream_write(&stream, &bytes, &error), ADCGS_ERR_DATA);
+    adcgs_stream_clear(&stream, NULL);
+
+    make_stream(&stream, 0, 2, 20, 3);
+    stream.segments[1].time_end += 1e-5;
+    assert_int_equal(adcgs_stream_write(&stream, &bytes, &error), ADCGS_ERR_USAGE);
+    stream.segments[1].time_end = stream.segments[1].time_start = stream.segments[0].time_start;
+    assert_int_equal(adcgs_stream_write(&stream, &bytes, &error), ADCGS_ERR_USAGE);
+    adcgs_stream_clear(&stream, NULL);
+
+    make_stream(&stream, 0, 1, 20, 3);
+    stream.params.k ^= 1;
+    assert_int_equal(adcgs_stream_write(&stream, &bytes, &error), ADCGS_ERR_USAGE);
+    adcgs_stream_clear(&stream, NULL);
+    adcgs_buffer_clear(&bytes);
+}
+
+/** Level 0 picks the lowest that fits; an explicit level that does not fit is refused by both sides. */
+static void test_levels(void **state)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_params params;
+    adcgs_stream stream, back;
+    adcgs_buffer bytes;
+    uint64_t seed = 4;
+    (void)state;
+    adcgs_random_params(&params, 0, &seed);
+    params.k = 1;
+    params.n_fv = 2;
+    params.n_fg = 0;
+    check(adcgs_random_stream(&stream, &params, 1, 4097, 5, &seed, &error), &error);
+    adcgs_buffer_init(&bytes);
+    check(adcgs_stream_write(&stream, &bytes, &error), &error);
+    assert_int_equal(stream.level, 2);
+    stream.level = 1;
+    adcgs_buffer none;
+    adcgs_buffer_init(&none);
+    assert_int_equal(adcgs_stream_write(&stream, &none, &error), ADCGS_ERR_LIMIT);
+    adcgs_buffer_clear(&none);
+
+    uint8_t *head = bytes.data + ADCGS_SIGNATURE_BYTES, *payload = head + ADCGS_CHUNK_HEADER_BYTES;
+    const uint32_t length = adcgs_load_le32(head + 4);
+    assert_int_equal(payload[5], 2); /* after version and profile */
+    payload[5] = 1;
+    adcgs_store_le32(payload + length, adcgs_crc32c(0, payload, length));
+    assert_int_equal(read_stream(&back, bytes.data, bytes.size, &plain, &error), ADCGS_ERR_LIMIT);
+    assert_non_null(strstr(error.text, "max_anchors"));
+    payload[5] = 9;
+    adcgs_store_le32(payload + length, adcgs_crc32c(0, payload, length));
+    assert_int_equal(read_stream(&back, bytes.data, bytes.size, &plain, &error), ADCGS_ERR_UNSUPPORTED);
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_round_trip),       cmocka_unit_test(test_layers),
+        cmocka_unit_test(test_threads_and_cpus), cmocka_unit_test(test_pieces_and_memory),
+        cmocka_unit_test(test_trace),            cmocka_unit_test(test_writer_refuses),
+        cmocka_unit_test(test_levels),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
