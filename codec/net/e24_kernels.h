@@ -12,16 +12,22 @@
 
 #ifndef E24_DENSE
 /* acc[j][s] = b[j] + sum over features of w[j][f] x[f][s] for rows [0, n) */
-static void e24_dense(int32_t *acc, const int16_t *w, const int32_t *b, const uint32_t *x, int n, int pairs)
+static void e24_dense(int32_t *restrict acc, const int16_t *w, const int32_t *b, const uint32_t *x, int n, int pairs)
 {
-    for (int j = 0; j < n; j++, acc += ADCGS_LANES, w += 2 * pairs) {
+    int16_t even[ADCGS_LANES], odd[ADCGS_LANES];
+    for (int j = 0; j < n; j++)
         for (int s = 0; s < ADCGS_LANES; s++)
-            acc[s] = b[j];
-        for (int p = 0; p < pairs; p++) {
-            const int16_t w0 = w[2 * p], w1 = w[2 * p + 1];
-            const uint32_t *pair = x + p * ADCGS_LANES;
+            acc[j * ADCGS_LANES + s] = b[j];
+    for (int p = 0; p < pairs; p++, x += ADCGS_LANES) {
+        for (int s = 0; s < ADCGS_LANES; s++) {
+            even[s] = (int16_t)(x[s] & 0xffff);
+            odd[s] = (int16_t)(x[s] >> 16);
+        }
+        for (int j = 0; j < n; j++) {
+            const int16_t *pair = w + 2 * ((size_t)j * (size_t)pairs + (size_t)p);
+            const int16_t w0 = pair[0], w1 = pair[1];
             for (int s = 0; s < ADCGS_LANES; s++)
-                acc[s] += (int16_t)(pair[s] & 0xffff) * w0 + (int16_t)(pair[s] >> 16) * w1;
+                acc[j * ADCGS_LANES + s] += even[s] * w0 + odd[s] * w1;
         }
     }
 }
