@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Where the cameras of a scene stand, and writing the scene to a folder. */
+#include "config.h"
+
 #include "scenes/scenes.h"
 
 #include "data/scene.h"

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file adcgs-sweep: a grid of encodings, each decoded and measured, as table and chart. */
+#include "config.h"
+
 #include "tools/cli.h"
 #include "tools/sweep.h"
 

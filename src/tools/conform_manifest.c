@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Reading the conformance manifest. Unknown members are refused: a misspelt expectation must not pass for a met one. */
+#include "config.h"
+
 #include "tools/conform.h"
 
 #include <errno.h>

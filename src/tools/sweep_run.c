@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file One point of a sweep: runs the encoder and the evaluation, keeps what they report. */
+#include "config.h"
+
 #include "tools/sweep.h"
 
 #include "io/atomic.h"

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file What a sweep leaves behind: a table as CSV and JSON, and a chart drawn by gnuplot. */
+#include "config.h"
+
 #include "tools/sweep.h"
 
 #include "io/atomic.h"

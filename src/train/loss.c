@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The loss of an image: cuts it into strips, runs them on the pool, adds up in a fixed order. */
+#include "config.h"
+
 #include "train/loss.h"
 
 #include "train/loss_strip.h"
-
-#ifdef HAVE_CONFIG_H
-#include "config.h"
-#endif
 
 #define CHANNELS 3
 #define STRIPS_MAX (CHANNELS * (16384 / ADCGS_LOSS_STRIP + 1))
