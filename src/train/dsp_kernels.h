@@ -373,7 +373,7 @@ static inline float tail(float x, float *density)
 static double ISA(rate)(const float *restrict y, const float *restrict step, const float *restrict mu, const float *restrict si,
                         const float *restrict weight, int n, float scale, float *restrict dy, float *restrict dmu, float *restrict dsi)
 {
-    const float log2_ratio = 0.14575835f; /* log2(64/0.11)/63: sigma levels are 2^0.1458 apart */
+    const float log2_ratio = 0.145784517f; /* log2(64/0.11)/63: sigma levels are 2^0.1458 apart */
     const float level0 = -3.18442457f;    /* log2(0.11) */
     double total = 0;
     for (int i = 0; i < n; i++) {
@@ -393,12 +393,14 @@ static double ISA(rate)(const float *restrict y, const float *restrict step, con
             const float p = inside * (1 - 0x1p-12f) + heavy + 1e-12f;
             const float factor = -1.44269504f / p * scale * weight[l];
             const float dp_dv = (fb - fa) * inv_sigma * (1 - 0x1p-12f) - 2 * heavy * av * far;
-            const float dp_dlog = -(b * fb - a * fa) * (1 - 0x1p-12f); /* d p / d ln sigma */
+            /* d p / d ln sigma; the tail's width grows with sigma */
+            const float dp_dlog = -(b * fb - a * fa) * (1 - 0x1p-12f) +
+                                  0x1p-14f * far * (1 - 2 * width * width * far) * (width - 1);
             const float gv = factor * dp_dv * (v < 0 ? -1.0f : 1.0f);
             bits_row[l] = -adcgs_log2(p) * weight[l];
             dy[at] += gv * inverse;
             dmu[at] = -gv * ADCGS_MU_GAIN;
-            float gs = factor * dp_dlog * (0.69314718f * 0.14575835f * ADCGS_SI_GAIN);
+            float gs = factor * dp_dlog * (0.69314718f * 0.145784517f * ADCGS_SI_GAIN);
             gs = (raw < 0 && gs > 0) || (raw > 63 && gs < 0) ? 0 : gs; /* let it come back inside, not go further out */
             dsi[at] = gs;
         }
