@@ -35,11 +35,15 @@ typedef struct adcgs_stream {
     uint32_t n_segments;
     adcgs_model *segments;         /**< [n_segments], in time order; time_start/end in seconds are derived from ticks */
     int truncated;
+    uint32_t weights;              /**< of distinct networks; filled by reading and by writing */
     adcgs_bytes bytes;             /**< filled by reading and by writing */
 } adcgs_stream;
 
 void adcgs_stream_init(adcgs_stream *stream); /**< zero and defaults (timebase 1/1000, rate 30, slice 1024, scale 1, filter 0.3) */
 void adcgs_stream_clear(adcgs_stream *stream, adcgs_memory *memory);
+
+/** The summary that decoders and reports give, of a stream that was read or written. */
+void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info);
 
 /** Seconds of a tick, and the tick of a time that a tick gives exactly (ADCGS_ERR_USAGE if none does). */
 double adcgs_ticks_to_seconds(const adcgs_stream *stream, int64_t ticks);

@@ -208,6 +208,7 @@ static adcgs_status read_all(stream_reader *s)
         ADCGS_TRY(read_chunk(s, &truncated));
     if (truncated)
         ADCGS_TRY(end_early(s));
+    s->stream->weights = (uint32_t)s->nets.weights;
     adcgs_bytes_finish(&s->stream->bytes, s->source.pos);
     return ADCGS_OK;
 }

@@ -239,6 +239,7 @@ static adcgs_status write_end(writer *w)
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_ENDC, 0, 0);
     ADCGS_TRY(adcgs_syn_endc_write(w->out, "ENDC", &endc, w->error));
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_ENDC, begin));
+    w->stream->weights = (uint32_t)w->weights;
     adcgs_bytes_finish(&w->stream->bytes, total);
     return ADCGS_OK;
 }

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The version of the library that is running. */
+#include <adcgs/version.h>
+
+#define TEXT_OF(a) #a
+#define TEXT(a) TEXT_OF(a)
+
+const char *adcgs_version_string(void)
+{
+    return TEXT(ADCGS_VERSION_MAJOR) "." TEXT(ADCGS_VERSION_MINOR) "." TEXT(ADCGS_VERSION_PATCH);
+}
