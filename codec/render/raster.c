@@ -72,7 +72,7 @@ adcgs_status adcgs_raster_create(adcgs_raster **out, adcgs_cpu_level cpu, adcgs_
     ADCGS_TRY(adcgs_cpu_resolve(cpu, &level, error));
     adcgs_raster *r = adcgs_alloc(memory, 1, sizeof *r, error);
     if (!r)
-        return ADCGS_ERR_MEMORY;
+        return error ? error->status : ADCGS_ERR_MEMORY;
     r->pool = pool;
     r->memory = memory;
     r->dsp = adcgs_raster_scalar;

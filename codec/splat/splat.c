@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Prediction and deformation over groups of 64 anchors. What depends on no time
+ * is evaluated once: the canonical primitives and, for groups in which something
+ * moves, the part of the deformation networks' first layer that the anchors
+ * decide. A group without motion is written once and never touched again.
+ */
+#include "config.h"
+
+#include "base/cpu.h"
+#include "splat/floatnet.h"
+#include "splat/splat.h"
+#include "splat/splat_isa.h"
+
+#include <math.h>
+
+#define OUT_ARRAYS 14
+/* Rows of scratch beside three buffers as wide as the widest network: Sigma_v, f_p and f_v, f_g. */
+#define INPUT_ROWS (ADCGS_SIGMA_N + 6 * ADCGS_OCTAVES_MAX + ADCGS_NV_MAX + ADCGS_NG_MAX)
+
+struct adcgs_splat {
+    const adcgs_model *model;
+    adcgs_pool *pool;
+    adcgs_memory *memory;
+    adcgs_dense_dsp dense;
+    adcgs_splat_dsp dsp;
+    adcgs_floatnet prediction, coarse, fine;
+    uint32_t groups, moving; /* groups of 64 anchors; those in which an anchor moves */
+    int width;               /* widest layer of the networks */
+    float *out;              /* [OUT_ARRAYS][groups*k*64] */
+    uint32_t *moving_group;  /* [moving] */
+    adcgs_anchor_lanes *anchors; /* [moving] */
+    adcgs_slot_lanes *slots;     /* [moving][k] */
+    int32_t *present;            /* [moving][k][64] */
+    int32_t *moves;              /* [moving][64] */
+    float *coarse_part, *fine_part; /* [moving][outputs of layer 0][64]: layer 0 over the static inputs */
+    float *scratch;                 /* [threads][scratch_rows][64] */
+    size_t scratch_rows;
+    float *time_code, *coarse_time, *fine_time; /* f_t; bias and time's part of layer 0 */
+    float time;
+    int has_time;
+};
+
+static size_t slot_of(const adcgs_splat *s, uint32_t group, int k)
+{
+    return ((size_t)group * s->model->params.k + (size_t)k) * 64;
+}
+
+static adcgs_slot_out slot_out(const adcgs_splat *s, uint32_t group, int k)
+{
+    const size_t n = (size_t)s->groups * s->model->params.k * 64;
+    float *at = s->out + slot_of(s, group, k);
+    adcgs_slot_out o;
+    for (int c = 0; c < 3; c++) {
+        o.mean[c] = at + (size_t)c * n;
+        o.scale[c] = at + (size_t)(3 + c) * n;
+        o.colour[c] = at + (size_t)(11 + c) * n;
+    }
+    for (int c = 0; c < 4; c++)
+        o.rotation[c] = at + (size_t)(6 + c) * n;
+    o.opacity = at + 10 * n;
+    return o;
+}
+
+/* ---- Inputs of a group ---- */
+
+/* Latents of 64 anchors as rows of 64 lanes; lanes past the last anchor are 0. stride: values from anchor to anchor. */
+static void load_rows(float *rows, const int16_t *yq, size_t stride, const float *d, int channels, uint32_t first, uint32_t n)
+{
+    memset(rows, 0, (size_t)channels * 64 * sizeof *rows);
+    for (uint32_t l = 0; l < 64 && first + l < n; l++)
+        for (int c = 0; c < channels; c++)
+            rows[(size_t)c * 64 + l] = (float)yq[(first + l) * stride + (size_t)c] * d[c];
+}
+
+static void load_positions(adcgs_anchor_lanes *a, const adcgs_model *m, uint32_t first)
+{
+    const float half = 0.5f * m->voxel, cell = adcgs_bits_float((uint32_t)(127 - (m->depth + 1)) << 23);
+    for (int c = 0; c < 3; c++)
+        for (uint32_t l = 0; l < 64; l++) {
+            const uint32_t i = first + l < m->n ? m->pos[3 * (size_t)(first + l) + (size_t)c] : 0;
+            const float odd = (float)(2 * i + 1);
+            a->position[c][l] = fmaf(odd, half, m->origin[c]);
+            a->code[c][l] = odd * cell;
+        }
+}
+
+static void load_present(int32_t present[64], const adcgs_model *m, uint32_t first, int k)
+{
+    for (uint32_t l = 0; l < 64; l++)
+        present[l] = first + l < m->n && (m->mask[first + l] >> k & 1);
+}
+
+/* ---- What depends on no time ---- */
+
+typedef struct canonical_job {
+    adcgs_splat *splat;
+    const uint32_t *moving_index; /* [groups] index among the moving groups, or UINT32_MAX */
+} canonical_job;
+
+static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const adcgs_anchor_lanes *anchor, const float *fv, float *fg,
+                          float *buffers)
+{
+    const adcgs_model *m = s->model;
+    const adcgs_params *p = &m->params;
+    const adcgs_float_layer *first = &s->prediction.layer[0];
+    const size_t rows = (size_t)s->width * 64, ldw = (size_t)first->n_in;
+    float *shared = buffers, *z = buffers + rows, *other = buffers + 2 * rows;
+    s->dense.dense(shared, NULL, first->b, first->w, ldw, fv, first->n_out, p->n_fv);
+    for (int k = 0; k < p->k; k++) {
+        adcgs_slot_lanes local, *slot = index == UINT32_MAX ? &local : s->slots + (size_t)index * p->k + k;
+        int32_t none[64], *present = index == UINT32_MAX ? none : s->present + ((size_t)index * p->k + (size_t)k) * 64;
+        const adcgs_slot_out to = slot_out(s, group, k);
+        load_rows(fg, m->fg + (size_t)k * p->n_fg, (size_t)p->k * p->n_fg, m->d_fg, p->n_fg, group * 64, m->n);
+        s->dense.dense(z, shared, NULL, first->w + p->n_fv, ldw, fg, first->n_out, p->n_fg);
+        s->dsp.predict(slot, anchor, adcgs_floatnet_finish(&s->prediction, &s->dense, z, other));
+        load_present(present, m, group * 64, k);
+        s->dsp.place(&to, slot, anchor, present);
+    }
+}
+
+/* The part of a deformation network's layer 0 that the anchors decide. */
+static void static_part(const adcgs_splat *s, float *to, const adcgs_floatnet *net, const float *x, int n_in)
+{
+    if (net->n_layers)
+        s->dense.dense(to, NULL, NULL, net->layer[0].w, (size_t)net->layer[0].n_in, x, net->layer[0].n_out, n_in);
+}
+
+static void canonical_group(void *arg, int index, int thread)
+{
+    const canonical_job *job = arg;
+    adcgs_splat *s = job->splat;
+    const adcgs_model *m = s->model;
+    const adcgs_params *p = &m->params;
+    const uint32_t group = (uint32_t)index, moving = job->moving_index[group], first = group * 64;
+    adcgs_anchor_lanes local, *anchor = moving == UINT32_MAX ? &local : s->anchors + moving;
+    float *sigma = s->scratch + (size_t)thread * s->scratch_rows * 64, *code = sigma + ADCGS_SIGMA_N * 64;
+    float *fv = code + (size_t)p->octaves * 6 * 64, *fg = fv + (size_t)p->n_fv * 64, *buffers = fg + (size_t)p->n_fg * 64;
+    load_positions(anchor, m, first);
+    load_rows(sigma, m->sigma, ADCGS_SIGMA_N, m->d_sigma, ADCGS_SIGMA_N, first, m->n);
+    load_rows(anchor->colour[0], m->colour, ADCGS_COLOUR_N, m->d_colour, ADCGS_COLOUR_N, first, m->n);
+    load_rows(fv, m->fv, p->n_fv, m->d_fv, p->n_fv, first, m->n);
+    s->dsp.anchor(anchor, sigma);
+    predict_group(s, group, moving, anchor, fv, fg, buffers);
+    if (moving == UINT32_MAX)
+        return;
+    for (uint32_t l = 0; l < 64; l++)
+        s->moves[(size_t)moving * 64 + l] = first + l < m->n && !m->is_static[first + l];
+    s->dsp.position_code(code, anchor->code[0], p->octaves);
+    static_part(s, s->coarse_part + (size_t)moving * (size_t)s->coarse.layer[0].n_out * 64, &s->coarse, fv, p->n_fv);
+    static_part(s, s->fine_part + (size_t)moving * (size_t)s->fine.layer[0].n_out * 64, &s->fine, code,
+                6 * p->octaves + (p->fine_uses_fv ? p->n_fv : 0));
+}
+
+/* ---- Creation ---- */
+
+static int group_moves(const adcgs_model *m, uint32_t group)
+{
+    for (uint32_t i = group * 64; i < group * 64 + 64 && i < m->n; i++)
+        if (!m->is_static[i])
+            return 1;
+    return 0;
+}
+
+static uint32_t count_moving(const adcgs_splat *s, uint32_t *moving_index)
+{
+    uint32_t moving = 0;
+    for (uint32_t g = 0; g < s->groups; g++)
+        moving_index[g] = (s->coarse.n_layers || s->fine.n_layers) && group_moves(s->model, g) ? moving++ : UINT32_MAX;
+    return moving;
+}
+
+static adcgs_status ready_networks(adcgs_splat *s, adcgs_error *error)
+{
+    const adcgs_net *nets = s->model->net;
+    ADCGS_TRY(adcgs_floatnet_init(&s->prediction, &nets[ADCGS_ROLE_PREDICTION], s->memory, error));
+    if (s->model->params.time_rows) {
+        ADCGS_TRY(adcgs_floatnet_init(&s->coarse, &nets[ADCGS_ROLE_COARSE], s->memory, error));
+        ADCGS_TRY(adcgs_floatnet_init(&s->fine, &nets[ADCGS_ROLE_FINE], s->memory, error));
+    }
+    s->width = ADCGS_MAX(s->prediction.width, ADCGS_MAX(s->coarse.width, s->fine.width));
+    return ADCGS_OK;
+}
+
+static void *get(adcgs_splat *s, size_t count, size_t size, int *missing, adcgs_error *error)
+{
+    void *p = *missing ? NULL : adcgs_alloc(s->memory, count, size, error);
+    if (!p)
+        *missing = 1;
+    return p;
+}
+
+static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
+{
+    const size_t k = s->model->params.k, moving = s->moving, threads = (size_t)adcgs_pool_threads(s->pool);
+    const size_t coarse = (size_t)s->coarse.layer[0].n_out, fine = (size_t)s->fine.layer[0].n_out, row = 64 * sizeof(float);
+    int missing = 0;
+    s->scratch_rows = INPUT_ROWS + 3 * (size_t)s->width;
+    s->out = get(s, OUT_ARRAYS * s->groups * k, row, &missing, error);
+    s->moving_group = get(s, moving, sizeof(uint32_t), &missing, error);
+    s->anchors = get(s, moving, sizeof(adcgs_anchor_lanes), &missing, error);
+    s->slots = get(s, moving * k, sizeof(adcgs_slot_lanes), &missing, error);
+    s->present = get(s, moving * k, row, &missing, error);
+    s->moves = get(s, moving, row, &missing, error);
+    s->coarse_part = get(s, moving * coarse, row, &missing, error);
+    s->fine_part = get(s, moving * fine, row, &missing, error);
+    s->scratch = get(s, threads * s->scratch_rows, row, &missing, error);
+    s->time_code = get(s, s->model->params.time_width, sizeof(float), &missing, error);
+    s->coarse_time = get(s, coarse, sizeof(float), &missing, error);
+    s->fine_time = get(s, fine, sizeof(float), &missing, error);
+    return !missing ? ADCGS_OK : error ? error->status : ADCGS_ERR_MEMORY;
+}
+
+static adcgs_status build(adcgs_splat *s, uint32_t *moving_index, adcgs_error *error)
+{
+    ADCGS_TRY(ready_networks(s, error));
+    s->moving = count_moving(s, moving_index);
+    ADCGS_TRY(alloc_arrays(s, error));
+    for (uint32_t g = 0; g < s->groups; g++)
+        if (moving_index[g] != UINT32_MAX)
+            s->moving_group[moving_index[g]] = g;
+    canonical_job job = {s, moving_index};
+    adcgs_pool_run(s->pool, canonical_group, &job, (int)s->groups);
+    return ADCGS_OK;
+}
+
+static void choose_kernels(adcgs_splat *s, adcgs_cpu_level level)
+{
+    adcgs_dense_dsp_init(&s->dense, level);
+    s->dsp = adcgs_splat_scalar;
+#ifdef HAVE_AVX2
+    if (level >= ADCGS_CPU_AVX2)
+        s->dsp = adcgs_splat_avx2;
+#endif
+#ifdef HAVE_AVX512
+    if (level >= ADCGS_CPU_AVX512)
+        s->dsp = adcgs_splat_avx512;
+#endif
+}
+
+adcgs_status adcgs_splat_create(adcgs_splat **out, const adcgs_model *model, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                adcgs_memory *memory, adcgs_error *error)
+{
+    adcgs_cpu_level level;
+    *out = NULL;
+    ADCGS_TRY(adcgs_cpu_resolve(cpu, &level, error));
+    adcgs_splat *s = adcgs_alloc(memory, 1, sizeof *s, error);
+    if (!s)
+        return error ? error->status : ADCGS_ERR_MEMORY;
+    s->model = model;
+    s->pool = pool;
+    s->memory = memory;
+    s->groups = (model->n + 63) / 64;
+    choose_kernels(s, level);
+    uint32_t *moving_index = adcgs_alloc(memory, s->groups, sizeof *moving_index, error);
+    const adcgs_status status = moving_index ? build(s, moving_index, error) : error ? error->status : ADCGS_ERR_MEMORY;
+    adcgs_free(memory, moving_index);
+    if (status != ADCGS_OK)
+        adcgs_splat_free(&s);
+    *out = s;
+    return status;
+}
+
+void adcgs_splat_free(adcgs_splat **splat)
+{
+    adcgs_splat *s = *splat;
+    if (!s)
+        return;
+    void *const arrays[] = {s->out,         s->moving_group, s->anchors, s->slots,     s->present,     s->moves,
+                            s->coarse_part, s->fine_part,    s->scratch, s->time_code, s->coarse_time, s->fine_time};
+    for (size_t i = 0; i < ADCGS_COUNTOF(arrays); i++)
+        adcgs_free(s->memory, arrays[i]);
+    adcgs_floatnet_clear(&s->prediction, s->memory);
+    adcgs_floatnet_clear(&s->coarse, s->memory);
+    adcgs_floatnet_clear(&s->fine, s->memory);
+    adcgs_free(s->memory, s);
+    *splat = NULL;
+}
+
+/* ---- At a time ---- */
+
+/* f_t: linear interpolation between two rows of the time table. */
+static void interpolate_time(adcgs_splat *s, float t)
+{
+    const adcgs_tensor *z = &s->model->net[ADCGS_ROLE_TIME].layer[0].w;
+    const size_t width = s->model->params.time_width;
+    const float u = t * (float)(z->rows - 1);
+    const uint32_t row = z->rows < 2 ? 0 : ADCGS_MIN((uint32_t)u, z->rows - 2), next = z->rows < 2 ? 0 : row + 1;
+    const float fraction = u - (float)row;
+    for (size_t j = 0; j < width; j++) {
+        const float a = adcgs_tensor_value(z, row * width + j), b = adcgs_tensor_value(z, next * width + j);
+        s->time_code[j] = fmaf(fraction, b - a, a);
+    }
+}
+
+/* What the time adds to a deformation network's layer 0: the same for all anchors. */
+static void time_part(float *to, const adcgs_floatnet *net, const float *time_code, int width)
+{
+    const adcgs_float_layer *layer = &net->layer[0];
+    for (int o = 0; net->n_layers && o < layer->n_out; o++) {
+        const float *w = layer->w + (size_t)(o + 1) * (size_t)layer->n_in - width;
+        float sum = layer->b[o];
+        for (int i = 0; i < width; i++)
+            sum = fmaf(w[i], time_code[i], sum);
+        to[o] = sum;
+    }
+}
+
+/* Outputs of a deformation network for a group; NULL if there is no network. */
+static const float *deform_outputs(const adcgs_splat *s, const adcgs_floatnet *net, const float *part, const float *time, float *z,
+                                   float *other)
+{
+    static const _Alignas(64) float ones[64] = {
+        1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
+        1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    if (!net->n_layers)
+        return NULL;
+    /* One times the time's part, fused with the anchors' part, is their plain sum. */
+    s->dense.dense(z, part, NULL, time, 1, ones, net->layer[0].n_out, 1);
+    return adcgs_floatnet_finish(net, &s->dense, z, other);
+}
+
+static void deform_group(void *arg, int index, int thread)
+{
+    const adcgs_splat *s = arg;
+    const adcgs_params *p = &s->model->params;
+    const uint32_t group = s->moving_group[index];
+    const size_t at = (size_t)index, rows = (size_t)s->width * 64;
+    const adcgs_anchor_lanes *anchor = s->anchors + at;
+    float *z = s->scratch + (size_t)thread * s->scratch_rows * 64, *other = z + rows;
+    adcgs_anchor_motion motion;
+    const float *coarse = deform_outputs(s, &s->coarse, s->coarse_part + at * (size_t)s->coarse.layer[0].n_out * 64, s->coarse_time, z, other);
+    if (coarse)
+        s->dsp.motion(&motion, anchor, coarse, p->coarse_rotation);
+    const float *fine = deform_outputs(s, &s->fine, s->fine_part + at * (size_t)s->fine.layer[0].n_out * 64, s->fine_time, z, other);
+    for (int k = 0; k < p->k; k++) {
+        const adcgs_slot_out to = slot_out(s, group, k);
+        s->dsp.deform(&to, s->slots + at * p->k + k, anchor, coarse ? &motion : NULL, p->coarse_rotation,
+                      fine ? fine + (size_t)k * 4 * 64 : NULL, s->present + (at * p->k + (size_t)k) * 64, s->moves + at * 64);
+    }
+}
+
+adcgs_status adcgs_splat_at(adcgs_splat *s, float t, adcgs_primitives *out, adcgs_error *error)
+{
+    const float time = t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;
+    if (s->moving && !(s->has_time && s->time == time)) {
+        interpolate_time(s, time);
+        time_part(s->coarse_time, &s->coarse, s->time_code, s->model->params.time_width);
+        time_part(s->fine_time, &s->fine, s->time_code, s->model->params.time_width);
+        adcgs_pool_run(s->pool, deform_group, s, (int)s->moving);
+        s->time = time;
+        s->has_time = 1;
+    }
+    const adcgs_slot_out o = slot_out(s, 0, 0);
+    *out = (adcgs_primitives){.n = s->groups * s->model->params.k * 64, .opacity = o.opacity};
+    for (int c = 0; c < 3; c++) {
+        out->mean[c] = o.mean[c];
+        out->scale[c] = o.scale[c];
+        out->colour[c] = o.colour[c];
+    }
+    for (int c = 0; c < 4; c++)
+        out->rotation[c] = o.rotation[c];
+    return ADCGS_OK;
+}
+
+void adcgs_position_code(float *out, const float *x, int octaves)
+{
+    const adcgs_cpu_level level = adcgs_cpu_best();
+    adcgs_splat s;
+    choose_kernels(&s, level);
+    s.dsp.position_code(out, x, octaves);
+}

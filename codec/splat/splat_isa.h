@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Kernels that turn network outputs into primitives, 64 lanes at a time; for splat.c alone. */
+#ifndef ADCGS_SPLAT_SPLAT_ISA_H
+#define ADCGS_SPLAT_SPLAT_ISA_H
+
+#include "base/base.h"
+
+/** Rows of 64 lanes that an anchor group needs beside the networks. */
+typedef struct adcgs_anchor_lanes {
+    _Alignas(64) float position[3][64];
+    float code[3][64];       /**< p: position in the cube, in (0,1) */
+    float extent[3][64];     /**< exp of Sigma_v 0..2 */
+    float scale[3][64];      /**< exp of Sigma_v 3..5 */
+    float colour[3][64];     /**< C_v */
+} adcgs_anchor_lanes;
+
+/** What a group's anchors do at one time. */
+typedef struct adcgs_anchor_motion {
+    _Alignas(64) float position[3][64]; /**< X_v + dX */
+    float scale[3][64];      /**< exp of dS */
+    float colour[3][64];     /**< dC_v */
+    float q[4][64];          /**< qr */
+    float matrix[9][64];     /**< its rotation matrix, row-major */
+} adcgs_anchor_motion;
+
+/** 64 slots of one primitive index of a group. Canonical values, from the prediction. */
+typedef struct adcgs_slot_lanes {
+    _Alignas(64) float offset[3][64];
+    float scale[3][64], q[4][64], colour[3][64], logit[64];
+} adcgs_slot_lanes;
+
+/** 64 slots of the arrays that the renderer reads. */
+typedef struct adcgs_slot_out {
+    float *mean[3], *scale[3], *rotation[4], *opacity, *colour[3];
+} adcgs_slot_out;
+
+/** present, moves: [64] 0 or 1 per lane. */
+typedef struct adcgs_splat_dsp {
+    /** Sigma_v values [6][64] to extent and scale. */
+    void (*anchor)(adcgs_anchor_lanes *anchor, const float *sigma);
+    /** F_theta's outputs [14][64] to canonical values. */
+    void (*predict)(adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor, const float *out);
+    /** Primitives of anchors that do not move. */
+    void (*place)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor, const int32_t *present);
+    /** F_omega's outputs, [9][64], or [12][64] if rotation. */
+    void (*motion)(adcgs_anchor_motion *motion, const adcgs_anchor_lanes *anchor, const float *out, int rotation);
+    /** Primitives of the anchors that move; other lanes of to stay. motion and fine ([4][64]) may be NULL, not both. */
+    void (*deform)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor,
+                   const adcgs_anchor_motion *motion, int rotation, const float *fine, const int32_t *present, const int32_t *moves);
+    void (*position_code)(float *out, const float *x, int octaves);
+} adcgs_splat_dsp;
+
+extern const adcgs_splat_dsp adcgs_splat_scalar, adcgs_splat_avx2, adcgs_splat_avx512;
+
+#endif

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Body of the kernels from network outputs to primitives (spec clause
+ * "Primitives"). Every loop is over 64 independent lanes and without branches,
+ * so that compilers vectorise it for the CPU level it is compiled for.
+ */
+#include "base/fmath.h"
+#include "splat/splat_isa.h"
+
+#define LANES for (int l = 0; l < 64; l++)
+
+/* 1/sqrt is 0 where the quaternion is too small or too large to normalise; it then becomes the identity. */
+static inline int usable_norm(float n)
+{
+    return n >= 0x1p-40f && n <= 0x1p100f;
+}
+
+static inline float norm2(float w, float x, float y, float z)
+{
+    return fmaf(z, z, fmaf(y, y, fmaf(x, x, w * w)));
+}
+
+static void anchor(adcgs_anchor_lanes *a, const float *sigma)
+{
+    for (int c = 0; c < 3; c++)
+        LANES {
+            a->extent[c][l] = adcgs_exp(adcgs_clampf(sigma[c * 64 + l], -16.0f, 8.0f));
+            a->scale[c][l] = adcgs_exp(adcgs_clampf(sigma[(3 + c) * 64 + l], -16.0f, 8.0f));
+        }
+}
+
+static void predict(adcgs_slot_lanes *s, const adcgs_anchor_lanes *a, const float *out)
+{
+    for (int c = 0; c < 3; c++)
+        LANES {
+            s->offset[c][l] = out[c * 64 + l] * a->extent[c][l];
+            s->scale[c][l] = a->scale[c][l] * adcgs_sigmoid(out[(3 + c) * 64 + l]);
+            s->colour[c][l] = a->colour[c][l] + out[(10 + c) * 64 + l];
+        }
+    LANES {
+        const float w = out[6 * 64 + l] + 1.0f, x = out[7 * 64 + l], y = out[8 * 64 + l], z = out[9 * 64 + l];
+        const float n = norm2(w, x, y, z), root = sqrtf(n);
+        const int ok = usable_norm(n);
+        s->q[0][l] = ok ? w / root : 1.0f;
+        s->q[1][l] = ok ? x / root : 0.0f;
+        s->q[2][l] = ok ? y / root : 0.0f;
+        s->q[3][l] = ok ? z / root : 0.0f;
+        s->logit[l] = out[13 * 64 + l];
+    }
+}
+
+static inline float final_mean(float x)
+{
+    return adcgs_clampf(x, -0x1p15f, 0x1p15f);
+}
+
+static inline float final_scale(float x)
+{
+    return adcgs_clampf(x, 0x1p-20f, 0x1p10f);
+}
+
+static inline float final_colour(float x)
+{
+    return adcgs_clampf(x, -0x1p8f, 0x1p8f);
+}
+
+static inline float final_opacity(float logit, int32_t present)
+{
+    const float o = 0.99f * adcgs_sigmoid(logit);
+    return present ? o : 0.0f;
+}
+
+static void place(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_lanes *a, const int32_t *present)
+{
+    for (int c = 0; c < 3; c++) {
+        float *restrict mean = to->mean[c], *restrict scale = to->scale[c], *restrict colour = to->colour[c];
+        LANES {
+            mean[l] = final_mean(a->position[c][l] + s->offset[c][l]);
+            scale[l] = final_scale(s->scale[c][l]);
+            colour[l] = final_colour(s->colour[c][l]);
+        }
+    }
+    for (int c = 0; c < 4; c++)
+        memcpy(to->rotation[c], s->q[c], sizeof s->q[c]);
+    float *restrict opacity = to->opacity;
+    LANES opacity[l] = final_opacity(s->logit[l], present[l]);
+}
+
+/* The rotation 1 + r0 i + r1 j + r2 k, normalised, and its matrix. */
+static void turn(adcgs_anchor_motion *m, const float *r)
+{
+    LANES {
+        const float n = norm2(1.0f, r[l], r[64 + l], r[128 + l]), root = sqrtf(n);
+        const int ok = usable_norm(n);
+        const float w = ok ? 1.0f / root : 1.0f, x = ok ? r[l] / root : 0.0f, y = ok ? r[64 + l] / root : 0.0f;
+        const float z = ok ? r[128 + l] / root : 0.0f, x2 = x + x, y2 = y + y, z2 = z + z;
+        m->q[0][l] = w;
+        m->q[1][l] = x;
+        m->q[2][l] = y;
+        m->q[3][l] = z;
+        m->matrix[0][l] = fmaf(-y2, y, fmaf(-z2, z, 1.0f));
+        m->matrix[1][l] = fmaf(x2, y, -(w * z2));
+        m->matrix[2][l] = fmaf(x2, z, w * y2);
+        m->matrix[3][l] = fmaf(x2, y, w * z2);
+        m->matrix[4][l] = fmaf(-x2, x, fmaf(-z2, z, 1.0f));
+        m->matrix[5][l] = fmaf(y2, z, -(w * x2));
+        m->matrix[6][l] = fmaf(x2, z, -(w * y2));
+        m->matrix[7][l] = fmaf(y2, z, w * x2);
+        m->matrix[8][l] = fmaf(-x2, x, fmaf(-y2, y, 1.0f));
+    }
+}
+
+static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const float *out, int rotation)
+{
+    for (int c = 0; c < 3; c++)
+        LANES {
+            m->position[c][l] = a->position[c][l] + out[c * 64 + l];
+            m->scale[c][l] = adcgs_exp(adcgs_clampf(out[(3 + c) * 64 + l], -8.0f, 8.0f));
+            m->colour[c][l] = out[(6 + c) * 64 + l];
+        }
+    if (rotation)
+        turn(m, out + 9 * 64);
+}
+
+/* Offset turned by the anchor's rotation. */
+static void turn_offset(float out[3][64], const adcgs_slot_lanes *s, const adcgs_anchor_motion *m)
+{
+    for (int c = 0; c < 3; c++) {
+        const float *r0 = m->matrix[3 * c], *r1 = m->matrix[3 * c + 1], *r2 = m->matrix[3 * c + 2];
+        LANES out[c][l] = fmaf(r2[l], s->offset[2][l], fmaf(r1[l], s->offset[1][l], r0[l] * s->offset[0][l]));
+    }
+}
+
+/* Product of the anchor's rotation and the primitive's; not normalised again. */
+static void turn_quaternion(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, const int32_t *moves)
+{
+    float *restrict ow = to->rotation[0], *restrict ox = to->rotation[1], *restrict oy = to->rotation[2], *restrict oz = to->rotation[3];
+    LANES {
+        const float rw = m->q[0][l], rx = m->q[1][l], ry = m->q[2][l], rz = m->q[3][l];
+        const float w = s->q[0][l], x = s->q[1][l], y = s->q[2][l], z = s->q[3][l];
+        const float pw = fmaf(-rz, z, fmaf(-ry, y, fmaf(-rx, x, rw * w)));
+        const float px = fmaf(-rz, y, fmaf(ry, z, fmaf(rx, w, rw * x)));
+        const float py = fmaf(rz, x, fmaf(ry, w, fmaf(-rx, z, rw * y)));
+        const float pz = fmaf(rz, w, fmaf(-ry, x, fmaf(rx, y, rw * z)));
+        ow[l] = moves[l] ? pw : ow[l];
+        ox[l] = moves[l] ? px : ox[l];
+        oy[l] = moves[l] ? py : oy[l];
+        oz[l] = moves[l] ? pz : oz[l];
+    }
+}
+
+static void deform_anchor(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, int rotation,
+                          const int32_t *moves)
+{
+    float turned[3][64];
+    if (rotation) {
+        turn_offset(turned, s, m);
+        turn_quaternion(to, s, m, moves);
+    }
+    for (int c = 0; c < 3; c++) {
+        const float *offset = rotation ? turned[c] : s->offset[c];
+        float *restrict mean = to->mean[c], *restrict scale = to->scale[c];
+        LANES {
+            const float x = final_mean(m->position[c][l] + offset[l]), size = final_scale(s->scale[c][l] * m->scale[c][l]);
+            mean[l] = moves[l] ? x : mean[l];
+            scale[l] = moves[l] ? size : scale[l];
+        }
+    }
+}
+
+static void deform(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_lanes *a, const adcgs_anchor_motion *m,
+                   int rotation, const float *fine, const int32_t *present, const int32_t *moves)
+{
+    if (m)
+        deform_anchor(to, s, m, rotation, moves);
+    for (int c = 0; c < 3; c++) {
+        float *restrict colour = to->colour[c];
+        LANES {
+            float value = s->colour[c][l];
+            value = m ? value + m->colour[c][l] : value;
+            value = final_colour(fine ? value + fine[(1 + c) * 64 + l] : value);
+            colour[l] = moves[l] ? value : colour[l];
+        }
+    }
+    if (!fine)
+        return;
+    float *restrict opacity = to->opacity;
+    LANES {
+        const float o = final_opacity(s->logit[l] + fine[l], present[l]);
+        opacity[l] = moves[l] ? o : opacity[l];
+    }
+}
+
+static void position_code(float *out, const float *x, int octaves)
+{
+    for (int a = 0; a < 3; a++)
+        for (int o = 0; o < octaves; o++) {
+            const float factor = (float)(1 << o);
+            float *restrict sine = out + ((size_t)a * (size_t)octaves + (size_t)o) * 128, *restrict cosine = sine + 64;
+            LANES adcgs_sincospi(x[a * 64 + l] * factor, &sine[l], &cosine[l]);
+        }
+}

@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Primitives against an evaluation one by one that follows the specification's
+ * text, bit for bit, on every CPU level and for several numbers of threads; and
+ * the elementary functions against the C library's.
+ */
+#include "base/cpu.h"
+#include "base/fmath.h"
+#include "random_model.h"
+#include "splat/floatnet.h"
+#include "splat/splat.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+/* ---- The reference ---- */
+
+static const double PI = 3.14159265358979323846;
+
+typedef struct primitive {
+    float v[14]; /* mean, scale, rotation, opacity, colour */
+} primitive;
+
+static float weight(const adcgs_layer *l, uint32_t row, uint32_t column)
+{
+    return adcgs_tensor_value(&l->w, (size_t)row * l->w.cols + column);
+}
+
+static float bent(float x)
+{
+    return x < 0.0f ? x * 0x1p-6f : x;
+}
+
+/* Layers after the first; h holds the first one's sums and becomes the outputs. */
+static void later_layers(const adcgs_net *net, float *h)
+{
+    float next[ADCGS_NET_WIDTH_MAX];
+    for (int i = 1; i < net->n_layers; i++) {
+        const adcgs_layer *l = &net->layer[i];
+        if (i == 1)
+            for (uint32_t j = 0; j < l->w.cols; j++)
+                h[j] = bent(h[j]);
+        for (uint32_t o = 0; o < l->w.rows; o++) {
+            float sum = adcgs_tensor_value(&l->b, o);
+            for (uint32_t j = 0; j < l->w.cols; j++)
+                sum = fmaf(weight(l, o, j), h[j], sum);
+            next[o] = i + 1 == net->n_layers ? sum : l->residual ? h[o] + bent(sum) : bent(sum);
+        }
+        memcpy(h, next, l->w.rows * sizeof *h);
+    }
+}
+
+static void normalise(float q[4])
+{
+    float n = q[0] * q[0];
+    for (int i = 1; i < 4; i++)
+        n = fmaf(q[i], q[i], n);
+    const int ok = n >= 0x1p-40f && n <= 0x1p100f;
+    for (int i = 0; i < 4; i++)
+        q[i] = ok ? q[i] / sqrtf(n) : i == 0 ? 1.0f : 0.0f;
+}
+
+static void evaluate_prediction(const adcgs_model *m, uint32_t anchor, int k, float *out)
+{
+    const adcgs_net *net = &m->net[ADCGS_ROLE_PREDICTION];
+    const adcgs_params *p = &m->params;
+    for (uint32_t o = 0; o < net->layer[0].w.rows; o++) {
+        float sum = adcgs_tensor_value(&net->layer[0].b, o);
+        for (uint32_t i = 0; i < p->n_fv; i++)
+            sum = fmaf(weight(&net->layer[0], o, i), (float)m->fv[(size_t)anchor * p->n_fv + i] * m->d_fv[i], sum);
+        for (uint32_t i = 0; i < p->n_fg; i++)
+            sum = fmaf(weight(&net->layer[0], o, p->n_fv + i),
+                       (float)m->fg[((size_t)anchor * p->k + (size_t)k) * p->n_fg + i] * m->d_fg[i], sum);
+        out[o] = sum;
+    }
+    later_layers(net, out);
+}
+
+static void evaluate_time(const adcgs_model *m, float t, float *out)
+{
+    const adcgs_tensor *z = &m->net[ADCGS_ROLE_TIME].layer[0].w;
+    const float u = t * (float)(z->rows - 1);
+    uint32_t i = 0;
+    while (i + 2 < z->rows && (float)(i + 1) <= u)
+        i++;
+    const uint32_t next = z->rows > 1 ? i + 1 : 0;
+    for (uint32_t j = 0; j < z->cols; j++) {
+        const float a = adcgs_tensor_value(z, (size_t)i * z->cols + j), b = adcgs_tensor_value(z, (size_t)next * z->cols + j);
+        out[j] = fmaf(u - (float)i, b - a, a);
+    }
+}
+
+static void evaluate_deformation(const adcgs_model *m, int role, uint32_t anchor, const float *time, float *out)
+{
+    const adcgs_net *net = &m->net[role];
+    const adcgs_params *p = &m->params;
+    float x[6 * ADCGS_OCTAVES_MAX + ADCGS_NV_MAX];
+    uint32_t n = 0;
+    if (role == ADCGS_ROLE_FINE)
+        for (uint32_t a = 0; a < 3; a++)
+            for (int o = 0; o < p->octaves; o++, n += 2)
+                adcgs_sincospi(ldexpf((float)(2 * m->pos[3 * (size_t)anchor + a] + 1), o - m->depth - 1), &x[n], &x[n + 1]);
+    if (role == ADCGS_ROLE_COARSE || p->fine_uses_fv)
+        for (uint32_t i = 0; i < p->n_fv; i++)
+            x[n++] = (float)m->fv[(size_t)anchor * p->n_fv + i] * m->d_fv[i];
+    for (uint32_t o = 0; o < net->layer[0].w.rows; o++) {
+        float still = 0.0f, moving = adcgs_tensor_value(&net->layer[0].b, o);
+        for (uint32_t i = 0; i < n; i++)
+            still = fmaf(weight(&net->layer[0], o, i), x[i], still);
+        for (uint32_t i = 0; i < p->time_width; i++)
+            moving = fmaf(weight(&net->layer[0], o, n + i), time[i], moving);
+        out[o] = still + moving;
+    }
+    later_layers(net, out);
+}
+
+static void turn(const float r[4], float offset[3], float q[4])
+{
+    const float w = r[0], x = r[1], y = r[2], z = r[3], x2 = x + x, y2 = y + y, z2 = z + z;
+    const float m[9] = {fmaf(-y2, y, fmaf(-z2, z, 1.0f)), fmaf(x2, y, -(w * z2)), fmaf(x2, z, w * y2),
+                        fmaf(x2, y, w * z2), fmaf(-x2, x, fmaf(-z2, z, 1.0f)), fmaf(y2, z, -(w * x2)),
+                        fmaf(x2, z, -(w * y2)), fmaf(y2, z, w * x2), fmaf(-x2, x, fmaf(-y2, y, 1.0f))};
+    const float o[3] = {offset[0], offset[1], offset[2]}, s[4] = {q[0], q[1], q[2], q[3]};
+    for (int a = 0; a < 3; a++)
+        offset[a] = fmaf(m[3 * a + 2], o[2], fmaf(m[3 * a + 1], o[1], m[3 * a] * o[0]));
+    q[0] = fmaf(-z, s[3], fmaf(-y, s[2], fmaf(-x, s[1], w * s[0])));
+    q[1] = fmaf(-z, s[2], fmaf(y, s[3], fmaf(x, s[0], w * s[1])));
+    q[2] = fmaf(z, s[1], fmaf(y, s[0], fmaf(-x, s[3], w * s[2])));
+    q[3] = fmaf(z, s[0], fmaf(-y, s[1], fmaf(x, s[2], w * s[3])));
+}
+
+static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
+{
+    float out[ADCGS_NET_WIDTH_MAX], coarse[ADCGS_NET_WIDTH_MAX], fine[ADCGS_NET_WIDTH_MAX], time[ADCGS_TIME_WIDTH_MAX];
+    float position[3], offset[3], q[4];
+    primitive r;
+    const int moves = m->params.time_rows > 0 && !m->is_static[anchor];
+    const int has_coarse = moves && m->net[ADCGS_ROLE_COARSE].present, has_fine = moves && m->net[ADCGS_ROLE_FINE].present;
+    evaluate_prediction(m, anchor, k, out);
+    if (moves)
+        evaluate_time(m, t, time);
+    if (has_coarse)
+        evaluate_deformation(m, ADCGS_ROLE_COARSE, anchor, time, coarse);
+    if (has_fine)
+        evaluate_deformation(m, ADCGS_ROLE_FINE, anchor, time, fine);
+    float logit = out[13];
+    for (int a = 0; a < 3; a++) {
+        const float extent = (float)m->sigma[6 * (size_t)anchor + (size_t)a] * m->d_sigma[a];
+        const float size = (float)m->sigma[6 * (size_t)anchor + 3 + (size_t)a] * m->d_sigma[3 + a];
+        position[a] = fmaf((float)(2 * m->pos[3 * (size_t)anchor + (size_t)a] + 1), 0.5f * m->voxel, m->origin[a]);
+        offset[a] = out[a] * adcgs_exp(adcgs_clampf(extent, -16.0f, 8.0f));
+        r.v[3 + a] = adcgs_exp(adcgs_clampf(size, -16.0f, 8.0f)) * adcgs_sigmoid(out[3 + a]);
+        r.v[11 + a] = (float)m->colour[3 * (size_t)anchor + (size_t)a] * m->d_colour[a] + out[10 + a];
+    }
+    for (int a = 0; a < 4; a++)
+        q[a] = out[6 + a] + (a == 0 ? 1.0f : 0.0f);
+    normalise(q);
+    if (has_coarse) {
+        float turned[4] = {1.0f, coarse[9], coarse[10], coarse[11]};
+        for (int a = 0; a < 3; a++) {
+            position[a] += coarse[a];
+            r.v[3 + a] *= adcgs_exp(adcgs_clampf(coarse[3 + a], -8.0f, 8.0f));
+            r.v[11 + a] += coarse[6 + a];
+        }
+        normalise(turned);
+        if (m->params.coarse_rotation)
+            turn(turned, offset, q);
+    }
+    if (has_fine) {
+        logit += fine[4 * k];
+        for (int a = 0; a < 3; a++)
+            r.v[11 + a] += fine[4 * k + 1 + a];
+    }
+    for (int a = 0; a < 3; a++) {
+        r.v[a] = adcgs_clampf(position[a] + offset[a], -0x1p15f, 0x1p15f);
+        r.v[3 + a] = adcgs_clampf(r.v[3 + a], 0x1p-20f, 0x1p10f);
+        r.v[11 + a] = adcgs_clampf(r.v[11 + a], -0x1p8f, 0x1p8f);
+    }
+    memcpy(r.v + 6, q, sizeof q);
+    r.v[10] = 0.99f * adcgs_sigmoid(logit);
+    return r;
+}
+
+/* ---- The tests ---- */
+
+static void check_primitives(const adcgs_model *m, const adcgs_primitives *p, float t)
+{
+    const float *const arrays[] = {p->mean[0],     p->mean[1],     p->mean[2],     p->scale[0], p->scale[1],  p->scale[2],  p->rotation[0],
+                                   p->rotation[1], p->rotation[2], p->rotation[3], p->opacity,  p->colour[0], p->colour[1], p->colour[2]};
+    const uint32_t k = m->params.k;
+    assert_int_equal(p->n, (m->n + 63) / 64 * 64 * k);
+    for (uint32_t slot = 0; slot < p->n; slot++) {
+        const uint32_t anchor = slot / (64 * k) * 64 + slot % 64, j = slot / 64 % k;
+        for (int a = 0; a < 14; a++)
+            assert_true(fabsf(arrays[a][slot]) <= 0x1p15f);
+        if (anchor >= m->n || !(m->mask[anchor] >> j & 1)) {
+            assert_true(p->opacity[slot] == 0.0f);
+            continue;
+        }
+        const primitive expected = evaluate(m, anchor, (int)j, t);
+        for (int a = 0; a < 14; a++)
+            if (adcgs_float_bits(arrays[a][slot]) != adcgs_float_bits(expected.v[a]))
+                fail_msg("anchor %u, primitive %u, array %d: %a, expected %a", anchor, j, a, (double)arrays[a][slot], (double)expected.v[a]);
+    }
+}
+
+static void check_model(const adcgs_model *m, int threads, adcgs_cpu_level cpu)
+{
+    static const float times[] = {0.0f, 0.37f, 0.37f, 1.0f, 0.999999f, -3.0f, 2.0f};
+    adcgs_pool *pool;
+    adcgs_splat *splat;
+    adcgs_primitives p;
+    uint8_t digest[2][16];
+    assert_int_equal(adcgs_pool_create(&pool, threads, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_splat_create(&splat, m, cpu, pool, NULL, NULL), ADCGS_OK);
+    for (size_t i = 0; i < ADCGS_COUNTOF(times); i++) {
+        assert_int_equal(adcgs_splat_at(splat, times[i], &p, NULL), ADCGS_OK);
+        check_primitives(m, &p, adcgs_clampf(times[i], 0.0f, 1.0f));
+        adcgs_splat_digest(m, &p, digest[i & 1]);
+    }
+    assert_int_equal(adcgs_splat_at(splat, NAN, &p, NULL), ADCGS_OK);
+    check_primitives(m, &p, 0.0f);
+    adcgs_splat_free(&splat);
+    adcgs_pool_free(&pool);
+}
+
+static void clear_model(adcgs_model *m)
+{
+    adcgs_model_clear(m, NULL);
+}
+
+static void test_against_reference(void **state)
+{
+    uint64_t random = 5;
+    for (int i = 0; i < 24; i++) {
+        adcgs_params params;
+        adcgs_model m;
+        adcgs_error error = {0};
+        adcgs_random_params(&params, i % 4 != 0, &random);
+        if (adcgs_random_model(&m, &params, (uint32_t)adcgs_random_range(&random, 1, 200), 5, &random, &error) != ADCGS_OK)
+            fail_msg("%s", error.text);
+        if (i % 3 == 0) /* whole groups that stand still */
+            memset(m.is_static, params.time_rows > 0, ADCGS_MIN(m.n, 128));
+        for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
+            check_model(&m, cpu == ADCGS_CPU_SCALAR ? 1 : 3, cpu);
+        clear_model(&m);
+    }
+}
+
+/* The largest weights and values that a valid model may hold: nothing may become infinite or NaN. */
+static void test_extremes(void **state)
+{
+    uint64_t random = 6;
+    for (int i = 0; i < 8; i++) {
+        adcgs_params params;
+        adcgs_model m;
+        adcgs_random_params(&params, 1, &random);
+        assert_int_equal(adcgs_random_model(&m, &params, 70, 4, &random, NULL), ADCGS_OK);
+        for (int role = ADCGS_ROLE_PREDICTION; role < ADCGS_ROLES; role++)
+            for (int l = 0; m.net[role].present && l < m.net[role].n_layers; l++) {
+                adcgs_tensor *w = &m.net[role].layer[l].w;
+                for (size_t j = 0; j < (size_t)w->rows * w->cols; j++)
+                    w->m[j] = (int32_t)adcgs_float_bits(i & 1 && j & 1 ? -0x1.fffffep7f : 0x1.fffffep7f);
+                w->mode = 1;
+            }
+        for (size_t j = 0; j < (size_t)m.n * params.n_fv; j++)
+            m.fv[j] = i & 2 ? 32767 : -32767;
+        for (size_t j = 0; j < (size_t)m.n * ADCGS_SIGMA_N; j++)
+            m.sigma[j] = i & 4 ? 32767 : -32767;
+        for (int c = 0; c < params.n_fv; c++)
+            m.d_fv[c] = 0x1p10f;
+        for (int c = 0; c < ADCGS_SIGMA_N; c++)
+            m.d_sigma[c] = 0x1p10f;
+        for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
+            check_model(&m, 1, cpu);
+        clear_model(&m);
+    }
+}
+
+static void test_memory_limit(void **state)
+{
+    uint64_t random = 7;
+    adcgs_params params;
+    adcgs_model m;
+    adcgs_splat *splat;
+    adcgs_error error = {0};
+    adcgs_random_params(&params, 1, &random);
+    assert_int_equal(adcgs_random_model(&m, &params, 100, 4, &random, NULL), ADCGS_OK);
+    for (uint64_t limit = 1; limit < 100000; limit *= 3) {
+        adcgs_memory memory = {.limit = limit};
+        assert_int_equal(adcgs_splat_create(&splat, &m, ADCGS_CPU_AUTO, NULL, &memory, &error), ADCGS_ERR_LIMIT);
+        assert_null(splat);
+        assert_int_equal(memory.used, 0);
+    }
+    clear_model(&m);
+}
+
+static void test_functions(void **state)
+{
+    for (int i = -1000000; i <= 1000000; i++) {
+        const float x = (float)i * 1.2e-4f, y = (float)i * 1e-3f;
+        float s, c;
+        assert_true(fabs(adcgs_exp2(x) / exp2(x) - 1.0) < 1.0e-7);
+        if (fabsf(x) < 86.0f)
+            assert_true(fabs(adcgs_exp(x) / exp(x) - 1.0) < 1.5e-7);
+        if (fabsf(x) < 32.0f)
+            assert_true(fabs(adcgs_sigmoid(x) * (1.0 + exp(-(double)x)) - 1.0) < 2.5e-7);
+        const double power = log2(adcgs_exp2(x));
+        assert_true(fabs(adcgs_log2(adcgs_exp2(x)) - power) < 1.0e-7 * fmax(1.0, fabs(power)));
+        adcgs_sincospi(y, &s, &c);
+        assert_true(fabs(s - sin(PI * fmod(y, 2.0))) < 1.2e-7 && fabs(c - cos(PI * fmod(y, 2.0))) < 1.2e-7);
+    }
+    assert_true(adcgs_exp2(1e30f) == 0x1p127f && adcgs_exp2(-1e30f) == 0x1p-125f);
+    assert_true(adcgs_sigmoid(1e30f) == 1.0f && adcgs_sigmoid(-1e30f) > 0.0f && adcgs_exp(0.0f) == 1.0f);
+}
+
+static void test_position_code(void **state)
+{
+    static _Alignas(64) float x[3 * 64], code[6 * ADCGS_OCTAVES_MAX * 64];
+    for (int i = 0; i < 192; i++)
+        x[i] = (float)(2 * i + 1) * 0x1p-9f;
+    adcgs_position_code(code, x, ADCGS_OCTAVES_MAX);
+    for (int a = 0; a < 3; a++)
+        for (int o = 0; o < ADCGS_OCTAVES_MAX; o++)
+            for (int l = 0; l < 64; l++) {
+                float s, c;
+                adcgs_sincospi(ldexpf(x[a * 64 + l], o), &s, &c);
+                assert_true(code[(a * ADCGS_OCTAVES_MAX + o) * 128 + l] == s && code[(a * ADCGS_OCTAVES_MAX + o) * 128 + 64 + l] == c);
+            }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_functions),  cmocka_unit_test(test_position_code), cmocka_unit_test(test_against_reference),
+        cmocka_unit_test(test_extremes),   cmocka_unit_test(test_memory_limit),
+    };
+    return cmocka_run_group_tests_name("splat", tests, NULL, NULL);
+}
