@@ -1,0 +1,35 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# --help and the man page of each program name the same options; a missing or unknown option is a usage error.
+set -u
+man=${srcdir:-.}/man
+faults=0
+
+fault()
+{
+    echo "$*" >&2
+    faults=$((faults + 1))
+}
+
+for program in adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-sweep; do
+    if [ ! -x "./$program" ]; then
+        fault "$program: not built"
+        continue
+    fi
+    help=$("./$program" --help) || fault "$program --help leaves with $?"
+    "./$program" --version >/dev/null || fault "$program --version leaves with $?"
+    "./$program" --no-such-option >/dev/null 2>&1
+    [ $? -eq 2 ] || fault "$program: an unknown option is no usage error"
+    # Options start a line of the help; in the page they follow .TP.
+    in_help=$(grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+' <<<"$help" | grep -o -E -e '--[a-z0-9-]+' | sort -u)
+    in_page=$(sed 's/\\//g' "$man/$program.1" | grep -A1 '^\.TP' | grep -o -E -e '--[a-z0-9-]+' | sort -u)
+    [ -n "$in_help" ] || fault "$program: no options found in its help"
+    if [ "$in_help" != "$in_page" ]; then
+        fault "$program: options of --help (<) and of the man page (>) differ:"
+        diff <(echo "$in_help") <(echo "$in_page") >&2
+    fi
+    if command -v groff >/dev/null && [ -n "$(groff -man -ww -Tutf8 "$man/$program.1" 2>&1 >/dev/null)" ]; then
+        fault "$program.1: groff warns"
+    fi
+done
+[ "$faults" -eq 0 ]

@@ -1,0 +1,27 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# configure --disable-encoder: the library, adcgs-dec and adcgs-info build with a C compiler and nothing else.
+set -u
+source=$(cd "${srcdir:-.}" && pwd) || exit 99
+# A tree that is configured in place cannot be configured elsewhere too.
+[ -x "$source/configure" ] && [ ! -f "$source/config.status" ] || exit 77
+dir=$(mktemp -d) || exit 99
+trap 'rm -rf "$dir"' EXIT
+cd "$dir" || exit 99
+
+fail()
+{
+    echo "FAIL: $*" >&2
+    tail -n 30 log >&2
+    exit 1
+}
+
+"$source/configure" --disable-encoder --disable-static CXX=false PKG_CONFIG=false CFLAGS=-O0 >log 2>&1 || fail "configure"
+make -j2 >log 2>&1 || fail "make"
+for program in adcgs-dec adcgs-info; do
+    ./$program --version >log 2>&1 || fail "$program --version"
+done
+for program in adcgs-enc adcgs-eval; do
+    [ ! -e $program ] || fail "$program was built"
+done
+exit 0
