@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file adcgs-enc: learn a scene from posed pictures and write it to one file. */
+#include "config.h"
+
 #include "encode/encode.h"
 #include "io/atomic.h"
 #include "metric/evaluate.h"
