@@ -121,8 +121,8 @@ static adcgs_status parse_property(reader *r, const char *line, element *e)
 
 static adcgs_status parse_format(reader *r, const char *line)
 {
-    char name[32];
-    if (sscanf(line, "format %31s 1.0", name) != 1)
+    char name[32], version[8];
+    if (sscanf(line, "format %31s %7s", name, version) != 2 || strcmp(version, "1.0"))
         return bad_header(r, "malformed format");
     if (!strcmp(name, "ascii"))
         r->form = ASCII;

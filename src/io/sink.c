@@ -149,9 +149,9 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
         return ADCGS_OK;
     if (!strcmp(config->target, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "standard output takes y4m or raw, not %s", format);
-    if (strcasecmp(extension_of(config->target), format))
+    if (!*format || strcasecmp(extension_of(config->target), format))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name must end in .%s", config->target,
-                          *format ? format : "ppm, .exr, ...");
+                          *format ? format : "ppm, .exr, .y4m, ...");
     if (places < 0 || places > 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: expected one number like %%04d in the name", config->target);
     if (!places && config->frames > 1)

@@ -256,6 +256,16 @@ static const adcgs_option *find_option(const adcgs_cli *cli, int code)
     return NULL;
 }
 
+/** getopt_long() said '?'; optopt holds what it choked on: a letter, an option of ours, or 0. */
+static int wrong_option(const adcgs_cli *cli, const char *word)
+{
+    if (optopt > UCHAR_MAX || (optopt && !strncmp(word, "--", 2)))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: the option takes no value", word);
+    if (optopt)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "-%c: unknown option; try '%s --help'", optopt, cli->program);
+    return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: unknown option; try '%s --help'", word, cli->program);
+}
+
 static int check_operands(const adcgs_cli *cli, int n, const char *surplus)
 {
     if (n < cli->min_operands)
@@ -279,9 +289,9 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
         const char *word = argv[ADCGS_MAX(optind - 1, 1)];
         if (code == ':')
             return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: a value must follow", word);
-        const adcgs_option *option = code == '?' ? NULL : find_option(cli, code);
-        if (!option)
-            return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: unknown option; try '%s --help'", word, cli->program);
+        if (code == '?')
+            return wrong_option(cli, word);
+        const adcgs_option *option = find_option(cli, code);
         if (option_set(option, optarg))
             return option_wrong(cli, option, optarg);
     }

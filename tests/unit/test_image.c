@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Images in files: round trips of every format, damage, atomic writing, frame outputs. */
+#include "outside_files.h"
+
+#include "io/atomic.h"
+#include "io/image.h"
+#include "io/sink.h"
+
+#include <math.h>
+
+#define WIDTH 37
+#define HEIGHT 21
+
+/** 8-bit levels; alpha never 0, so that colours survive premultiplication. */
+static void make_image(adcgs_image *image, int channels)
+{
+    assert_int_equal(adcgs_image_alloc(image, WIDTH, HEIGHT, channels, "picture", &error), ADCGS_OK);
+    for (int i = 0; i < WIDTH * HEIGHT * channels; i++)
+        image->data[i] = (float)((i * 37 + i / 11 * 5) % 256) / 255.0f;
+    for (int i = channels - 1; channels % 2 == 0 && i < WIDTH * HEIGHT * channels; i += channels)
+        image->data[i] = (float)(64 + i % 190) / 255.0f;
+}
+
+/** Write, probe, read; the largest difference. */
+static double round_trip(const char *name, int channels, int half)
+{
+    adcgs_image image, back;
+    int width, height, stored;
+    make_image(&image, channels);
+    assert_int_equal(adcgs_image_write(&image, in(name), half, &error), ADCGS_OK);
+    assert_int_equal(adcgs_image_probe(&width, &height, &stored, in(name), &error), ADCGS_OK);
+    assert_int_equal(adcgs_image_read(&back, in(name), &error), ADCGS_OK);
+    assert_true(width == WIDTH && height == HEIGHT && stored == channels);
+    assert_true(back.width == WIDTH && back.height == HEIGHT && back.channels == channels);
+    double worst = 0.0;
+    for (int i = 0; i < WIDTH * HEIGHT * channels; i++)
+        worst = fmax(worst, fabs((double)image.data[i] - (double)back.data[i]));
+    adcgs_image_free(&image);
+    adcgs_image_free(&back);
+    unlink(in(name));
+    return worst;
+}
+
+static void test_round_trips(void **state)
+{
+    assert_true(round_trip("a.ppm", 3, 0) == 0.0);
+    assert_true(round_trip("a.pgm", 1, 0) == 0.0);
+    assert_true(round_trip("a.exr", 3, 0) == 0.0);
+    assert_true(round_trip("a.exr", 1, 0) == 0.0);
+    assert_true(round_trip("a.exr", 4, 0) < 1e-6);
+    assert_true(round_trip("a.exr", 3, 1) < 2.5e-4);
+    assert_true(round_trip("a.exr", 4, 1) < 2e-3);
+    assert_true(round_trip("a.tif", 3, 0) == 0.0);
+    assert_true(round_trip("a.tif", 4, 0) == 0.0);
+    assert_int_equal(count_files(), 0);
+}
+
+static void test_png(void **state)
+{
+    adcgs_image image;
+    make_image(&image, 3);
+    const adcgs_status status = adcgs_image_write(&image, in("p.png"), 0, &error);
+    adcgs_image_free(&image);
+    if (status == ADCGS_ERR_UNSUPPORTED) {
+        expect_error(status, ADCGS_ERR_UNSUPPORTED, "p.png", "cannot write .png");
+        skip();
+    }
+    assert_true(round_trip("q.png", 3, 0) == 0.0);
+    assert_true(round_trip("q.png", 4, 0) == 0.0);
+    assert_true(round_trip("q.png", 2, 0) == 0.0);
+    unlink(in("p.png"));
+}
+
+static void test_sixteen_bits(void **state)
+{
+    static const uint8_t file[] = "P5 # a comment\n2\t1 # another\n65535\n\xff\xff\x80\x00";
+    adcgs_image image;
+    put_bytes("s.pgm", file, sizeof file - 1);
+    assert_int_equal(adcgs_image_read(&image, in("s.pgm"), &error), ADCGS_OK);
+    assert_true(image.data[0] == 1.0f && image.data[1] == 32768.0f / 65535.0f);
+    adcgs_image_free(&image);
+}
+
+static void expect_bad(const char *name, const char *text, adcgs_status status, const char *what)
+{
+    adcgs_image image;
+    put_text(name, text);
+    expect_error(adcgs_image_read(&image, in(name), &error), status, name, what);
+    assert_null(image.data);
+}
+
+static void test_damage(void **state)
+{
+    adcgs_image image;
+    expect_bad("d.ppm", "P6\n4 4\n255\n0123456789", ADCGS_ERR_DATA, "ends in row 0");
+    expect_bad("d.ppm", "P6\n4 0\n255\n0123456789", ADCGS_ERR_DATA, "header");
+    expect_bad("d.ppm", "P6\n4 -4\n255\n0123456789", ADCGS_ERR_DATA, "header");
+    expect_bad("d.ppm", "P6\n99999999999 4\n255\n", ADCGS_ERR_DATA, "header");
+    expect_bad("d.ppm", "P6\n16385 1\n255\n", ADCGS_ERR_DATA, "16385x1");
+    expect_bad("d.ppm", "P6\n4 4\n70000\n", ADCGS_ERR_DATA, "header");
+    expect_bad("d.ppm", "P", ADCGS_ERR_DATA, "too short");
+    expect_bad("d.exr", "\x76\x2f\x31\x01 and then nothing of use", ADCGS_ERR_DATA, "d.exr");
+    expect_bad("d.tif", "II*\001 and then nothing of use", ADCGS_ERR_DATA, "d.tif");
+    expect_bad("d.foo", "what is this?", ADCGS_ERR_UNSUPPORTED, ".foo");
+    expect_error(adcgs_image_read(&image, in("absent.ppm"), &error), ADCGS_ERR_IO, "absent.ppm", "No such file");
+    expect_error(adcgs_image_read(&image, folder, &error), ADCGS_ERR_IO, folder, "");
+}
+
+/** Every cut of a good file is either read (by a format that can) or refused, never a crash. */
+static void test_cuts(void **state)
+{
+    static uint8_t bytes[65536];
+    adcgs_image image, back;
+    make_image(&image, 3);
+    const char *names[] = {"c.exr", "c.tif", "c.ppm"};
+    for (size_t i = 0; i < ADCGS_COUNTOF(names); i++) {
+        assert_int_equal(adcgs_image_write(&image, in(names[i]), 1, &error), ADCGS_OK);
+        FILE *file = fopen(in(names[i]), "rb");
+        const size_t size = fread(bytes, 1, sizeof bytes, file);
+        fclose(file);
+        for (size_t cut = 0; cut < size; cut += 1 + size / 60) {
+            put_bytes(names[i], bytes, cut);
+            if (adcgs_image_read(&back, in(names[i]), &error) == ADCGS_OK)
+                adcgs_image_free(&back);
+            else
+                assert_non_null(strstr(error.text, names[i]));
+        }
+    }
+    adcgs_image_free(&image);
+}
+
+static void test_unwritable(void **state)
+{
+    adcgs_image image;
+    make_image(&image, 3);
+    const int before = count_files();
+    expect_error(adcgs_image_write(&image, in("no/such/folder.ppm"), 0, &error), ADCGS_ERR_IO, "folder.ppm", "No such file");
+    expect_error(adcgs_image_write(&image, in("a.foo"), 0, &error), ADCGS_ERR_UNSUPPORTED, "a.foo", ".foo");
+    expect_error(adcgs_image_write(&image, in("noextension"), 0, &error), ADCGS_ERR_USAGE, "noextension", "extension");
+    expect_error(adcgs_image_write(&image, folder, 0, &error), ADCGS_ERR_USAGE, folder, "extension");
+    assert_int_equal(count_files(), before);
+    adcgs_image_free(&image);
+}
+
+static void test_to_u8(void **state)
+{
+    const float values[] = {-1.0f, 0.0f, 0.00196f, 0.00197f, 0.5f, 1.0f, 7.0f, NAN, INFINITY, -INFINITY};
+    const uint8_t expected[] = {0, 0, 0, 1, 128, 255, 255, 0, 255, 0};
+    uint8_t got[ADCGS_COUNTOF(values)];
+    adcgs_image_to_u8(values, ADCGS_COUNTOF(values), got);
+    assert_memory_equal(got, expected, sizeof got);
+}
+
+static void test_atomic(void **state)
+{
+    adcgs_atomic atomic;
+    put_text("t.txt", "old");
+    const int before = count_files();
+    assert_int_equal(adcgs_atomic_open(&atomic, in("t.txt"), &error), ADCGS_OK);
+    fputs("new text", atomic.file);
+    assert_int_equal(count_files(), before + 1);
+    adcgs_atomic_abort(&atomic);
+    adcgs_atomic_abort(&atomic);
+    assert_int_equal(count_files(), before);
+    struct stat status;
+    assert_int_equal(stat(in("t.txt"), &status), 0);
+    assert_int_equal(status.st_size, 3);
+    assert_int_equal(adcgs_atomic_open(&atomic, in("t.txt"), &error), ADCGS_OK);
+    fputs("new text", atomic.file);
+    assert_int_equal(adcgs_atomic_commit(&atomic, &error), ADCGS_OK);
+    assert_int_equal(stat(in("t.txt"), &status), 0);
+    assert_int_equal(status.st_size, 8);
+    assert_int_equal(count_files(), before);
+    assert_int_equal(adcgs_atomic_open(&atomic, "/dev/null", &error), ADCGS_OK);
+    assert_null(atomic.temporary);
+    assert_int_equal(adcgs_atomic_commit(&atomic, &error), ADCGS_OK);
+    expect_error(adcgs_atomic_open(&atomic, folder, &error), ADCGS_ERR_IO, folder, "is a folder");
+}
+
+static void test_full_disk(void **state)
+{
+    if (access("/dev/full", W_OK))
+        skip();
+    adcgs_atomic atomic;
+    assert_int_equal(adcgs_atomic_open(&atomic, "/dev/full", &error), ADCGS_OK);
+    for (int i = 0; i < 100000; i++)
+        fputc('x', atomic.file);
+    expect_error(adcgs_atomic_commit(&atomic, &error), ADCGS_ERR_IO, "/dev/full", "No space left");
+}
+
+static void test_patterns(void **state)
+{
+    char text[32];
+    assert_int_equal(adcgs_pattern_format("f%04d.png", 12, text, sizeof text), 0);
+    assert_string_equal(text, "f0012.png");
+    assert_int_equal(adcgs_pattern_format("100%%-%d", 7, text, sizeof text), 0);
+    assert_string_equal(text, "100%-7");
+    assert_int_equal(adcgs_pattern_format("%s", 1, text, sizeof text), -1);
+    assert_int_equal(adcgs_pattern_format("%d%d", 1, text, sizeof text), -1);
+    assert_int_equal(adcgs_pattern_format("%99999d", 1, text, sizeof text), -1);
+    assert_int_equal(adcgs_pattern_format("%040d", 1, text, sizeof text), -1);
+    assert_int_equal(adcgs_pattern_format("a%", 1, text, sizeof text), -1);
+    assert_int_equal(adcgs_pattern_places("x%d"), 1);
+    assert_int_equal(adcgs_pattern_places("x%%d"), 0);
+    assert_int_equal(adcgs_pattern_places("x%n"), -1);
+    assert_int_equal(adcgs_pattern_places("x%"), -1);
+}
+
+static float pixels[WIDTH * HEIGHT * 3];
+
+static adcgs_status sink_frames(const char *target, const char *format, adcgs_depth depth, int frames)
+{
+    const adcgs_frame frame = {WIDTH, HEIGHT, pixels};
+    const adcgs_sink_config config = {target, format, depth, 30.0, WIDTH, HEIGHT, frames};
+    adcgs_sink *sink;
+    ADCGS_TRY(adcgs_sink_open(&sink, &config, &error));
+    for (int i = 0; i < frames; i++)
+        assert_int_equal(adcgs_sink_write(sink, &frame, i, &error), ADCGS_OK);
+    return adcgs_sink_close(&sink, &error);
+}
+
+static long size_of(const char *name)
+{
+    struct stat status;
+    return stat(in(name), &status) ? -1 : (long)status.st_size;
+}
+
+static void test_y4m(void **state)
+{
+    /* Y, Cb, Cr of black, white, red, green, blue and of values out of range (BT.709, limited). */
+    static const float rgb[6][3] = {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-3, 2, NAN}};
+    static const uint8_t expected[6][3] = {{16, 128, 128}, {235, 128, 128}, {63, 102, 240}, {173, 42, 26}, {32, 240, 118},
+                                           {173, 42, 26}};
+    static const char header[] = "YUV4MPEG2 W37 H21 F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\nFRAME\n";
+    static uint8_t bytes[65536];
+    memcpy(pixels, rgb, sizeof rgb);
+    assert_int_equal(sink_frames(in("v.y4m"), NULL, ADCGS_DEPTH_DEFAULT, 3), ADCGS_OK);
+    FILE *file = fopen(in("v.y4m"), "rb");
+    const size_t n = fread(bytes, 1, sizeof bytes, file), plane = WIDTH * HEIGHT;
+    fclose(file);
+    assert_int_equal(n, strlen(header) - 6 + 3 * (6 + 3 * plane));
+    assert_memory_equal(bytes, header, strlen(header));
+    for (size_t i = 0; i < 6; i++)
+        for (size_t c = 0; c < 3; c++)
+            assert_int_equal(bytes[strlen(header) + c * plane + i], expected[i][c]);
+}
+
+static void test_sinks(void **state)
+{
+    const long n = WIDTH * HEIGHT * 3;
+    assert_int_equal(sink_frames(in("r.raw"), NULL, ADCGS_DEPTH_DEFAULT, 2), ADCGS_OK);
+    assert_int_equal(size_of("r.raw"), 2 * n);
+    assert_int_equal(sink_frames(in("r.bin"), "raw", ADCGS_DEPTH_FLOAT, 2), ADCGS_OK);
+    assert_int_equal(size_of("r.bin"), 8 * n);
+    assert_int_equal(sink_frames("nothing", "null", ADCGS_DEPTH_DEFAULT, 2), ADCGS_OK);
+    assert_int_equal(sink_frames(in("i%03d.ppm"), NULL, ADCGS_DEPTH_DEFAULT, 2), ADCGS_OK);
+    assert_true(size_of("i000.ppm") > n && size_of("i001.ppm") > n && size_of("i002.ppm") < 0);
+    assert_int_equal(sink_frames(in("one.exr"), NULL, ADCGS_DEPTH_FLOAT, 1), ADCGS_OK);
+    expect_error(sink_frames(in("i.ppm"), NULL, ADCGS_DEPTH_DEFAULT, 2), ADCGS_ERR_USAGE, "i.ppm", "%04d");
+    expect_error(sink_frames(in("i%s.ppm"), NULL, ADCGS_DEPTH_DEFAULT, 2), ADCGS_ERR_USAGE, "i%s.ppm", "%04d");
+    expect_error(sink_frames(in("i%d.ppm"), NULL, ADCGS_DEPTH_FLOAT, 2), ADCGS_ERR_USAGE, "i%d.ppm", "float");
+    expect_error(sink_frames(in("i%d.ppm"), NULL, ADCGS_DEPTH_HALF, 2), ADCGS_ERR_USAGE, "i%d.ppm", "half");
+    expect_error(sink_frames("-", "png", ADCGS_DEPTH_DEFAULT, 2), ADCGS_ERR_USAGE, "standard output", "png");
+    expect_error(sink_frames(in("i%d.ppm"), "png", ADCGS_DEPTH_DEFAULT, 2), ADCGS_ERR_USAGE, "i%d.ppm", ".png");
+    expect_error(sink_frames(in("noextension"), NULL, ADCGS_DEPTH_DEFAULT, 1), ADCGS_ERR_USAGE, "noextension", ".ppm");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_round_trips), cmocka_unit_test(test_png),      cmocka_unit_test(test_sixteen_bits),
+        cmocka_unit_test(test_damage),      cmocka_unit_test(test_cuts),     cmocka_unit_test(test_unwritable),
+        cmocka_unit_test(test_to_u8),       cmocka_unit_test(test_atomic),   cmocka_unit_test(test_full_disk),
+        cmocka_unit_test(test_patterns),    cmocka_unit_test(test_y4m),      cmocka_unit_test(test_sinks),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Point clouds: variants of PLY, damage, real files. */
+#include "outside_files.h"
+
+#include "io/points.h"
+
+#include <math.h>
+
+static adcgs_status read_text(adcgs_points *points, const char *text, size_t bytes)
+{
+    put_bytes("p.ply", text, bytes);
+    return adcgs_points_read(points, in("p.ply"), &error);
+}
+
+static void expect_points(const char *text, size_t bytes, uint32_t n, const float position[3], const uint8_t colour[3])
+{
+    adcgs_points points;
+    const adcgs_status status = read_text(&points, text, bytes);
+    if (status != ADCGS_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(points.n, n);
+    assert_memory_equal(points.position[n - 1], position, 3 * sizeof *position);
+    assert_memory_equal(points.colour[n - 1], colour, 3);
+    adcgs_points_free(&points);
+}
+
+#define TEXT(s) s, sizeof(s) - 1
+
+static void test_variants(void **state)
+{
+    static const float p[3] = {1.0f, -2.0f, 0.5f};
+    static const uint8_t grey[3] = {128, 128, 128}, orange[3] = {255, 128, 0};
+    expect_points(TEXT("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+                       "7 7 7\n1 -2 .5\n"), 2, p, grey);
+    /* Carriage returns, comments, other order, other elements on both sides, lists, no newline at the end. */
+    expect_points(TEXT("ply\r\nformat ascii 1.0\r\ncomment x\r\nobj_info y\r\nelement camera 2\r\nproperty list uchar int id\r\n"
+                       "property float f\r\nelement vertex 1\r\nproperty uchar blue\r\nproperty float z\r\nproperty uchar red\r\n"
+                       "property list int float w\r\nproperty double x\r\nproperty uchar green\r\nproperty float y\r\n"
+                       "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n"
+                       "3 1 2 3 0.5\r\n0 0.5\r\n0 0.5 255 2 9 9 1 128 -2\r\n1 0"), 1, p, orange);
+    /* Float colours. */
+    expect_points(TEXT("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                       "property float red\nproperty float green\nproperty float blue\nend_header\n1 -2 0.5 3 0.5 -1\n"),
+                  1, p, orange);
+    /* Binary, both byte orders. */
+    expect_points(TEXT("ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                       "property float z\nproperty ushort red\nproperty uint8 green\nproperty char blue\nend_header\n"
+                       "\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f\xff\xff\x80\x80"), 1, p, orange);
+    expect_points(TEXT("ply\nformat binary_big_endian 1.0\nelement tag 1\nproperty list ushort short v\nelement vertex 1\n"
+                       "property float x\nproperty short y\nproperty double z\nend_header\n"
+                       "\0\2\1\1\1\1\x3f\x80\0\0\xff\xfe\x3f\xe0\0\0\0\0\0\0"), 1, p, grey);
+}
+
+static void expect_bad(const char *text, size_t bytes, const char *what)
+{
+    adcgs_points points;
+    expect_error(read_text(&points, text, bytes), ADCGS_ERR_DATA, "p.ply", what);
+    assert_true(points.n == 0 && !points.position && !points.colour);
+}
+
+#define HEAD "ply\nformat ascii 1.0\nelement vertex "
+#define XYZ "\nproperty float x\nproperty float y\nproperty float z\n"
+
+static void test_damage(void **state)
+{
+    expect_bad(TEXT(""), "neither");
+    expect_bad(TEXT("ply"), "neither");
+    expect_bad(TEXT("ply\n"), "ends early");
+    expect_bad(TEXT("ply\nformat ascii 2.0\n"), "line 2");
+    expect_bad(TEXT("ply\nformat middle_endian 1.0\n"), "unknown format");
+    expect_bad(TEXT("ply\nelement vertex 1" XYZ "end_header\n1 2 3\n"), "without format");
+    expect_bad(TEXT("ply\nformat ascii 1.0\nend_header\n"), "without format or vertices");
+    expect_bad(TEXT(HEAD "1\nproperty float x\nproperty float y\nend_header\n1 2\n"), "no x, y and z");
+    expect_bad(TEXT(HEAD "1\nproperty quad x\n"), "unknown type");
+    expect_bad(TEXT(HEAD "1\nproperty list float int x\n"), "integer");
+    expect_bad(TEXT(HEAD "1\nnonsense\n"), "line 4");
+    expect_bad(TEXT(HEAD "1" XYZ "end_header\n1 22222\n"), "ends in item 0");
+    expect_bad(TEXT(HEAD "1" XYZ "end_header\n1 zwei 3\n"), "expected a number");
+    expect_bad(TEXT(HEAD "1" XYZ "end_header\n1 2x 3\n"), "expected a number");
+    expect_bad(TEXT(HEAD "1" XYZ "end_header\n1 nan 3\n"), "not a finite");
+    expect_bad(TEXT(HEAD "1" XYZ "end_header\n1 1e99 3\n"), "not a finite");
+    expect_bad(TEXT(HEAD "4000000000" XYZ "end_header\n1 2 3\n"), "bytes follow");
+    expect_bad(TEXT(HEAD "18446744073709551615" XYZ "end_header\n1 2 3\n"), "bytes follow");
+    expect_bad(TEXT(HEAD "-1" XYZ "end_header\n1 2 3\n"), "bytes follow");
+    expect_bad(TEXT("ply\nformat binary_little_endian 1.0\nelement vertex 2" XYZ "end_header\n0123456789012345678"), "bytes follow");
+    expect_bad(TEXT("ply\nformat binary_little_endian 1.0\nelement a 1\nproperty list uint double v\nelement vertex 1" XYZ
+                    "end_header\n\xff\xff\xff\xff 01234567890123456789"), "ends in item 0");
+    expect_bad(TEXT("DRACO\2\2"), "Draco");
+    expect_bad(TEXT("DRACO\2\2\1\1\0\0\xff\xff\xff\x7f\xff\xff\xff\x7f 0123456789"), "Draco");
+    adcgs_points points;
+    expect_error(adcgs_points_read(&points, in("absent.ply"), &error), ADCGS_ERR_IO, "absent.ply", "No such file");
+    expect_error(adcgs_points_read(&points, folder, &error), ADCGS_ERR_IO, folder, "regular");
+}
+
+static void test_too_many_properties(void **state)
+{
+    char text[32768] = HEAD "1\n";
+    for (int i = 0; i < 300; i++)
+        snprintf(text + strlen(text), 40, "property float p%d\n", i);
+    expect_bad(text, strlen(text), "256 properties");
+}
+
+static void test_round_trip(void **state)
+{
+    adcgs_points points, back;
+    assert_int_equal(adcgs_points_alloc(&points, 1000, "points", &error), ADCGS_OK);
+    for (uint32_t i = 0; i < points.n; i++)
+        for (int a = 0; a < 3; a++) {
+            points.position[i][a] = ldexpf((float)i - 500.5f, a * 10 - 20);
+            points.colour[i][a] = (uint8_t)(i * 7 + (uint32_t)a);
+        }
+    assert_int_equal(adcgs_ply_write(&points, in("w.ply"), &error), ADCGS_OK);
+    assert_int_equal(adcgs_points_read(&back, in("w.ply"), &error), ADCGS_OK);
+    assert_int_equal(back.n, points.n);
+    assert_memory_equal(back.position, points.position, points.n * sizeof *points.position);
+    assert_memory_equal(back.colour, points.colour, points.n * sizeof *points.colour);
+    adcgs_points_free(&points);
+    adcgs_points_free(&back);
+}
+
+/** One byte of a good file at a time gets another value: any outcome but a crash. */
+static void test_mutations(void **state)
+{
+    static const char good[] = "ply\nformat binary_little_endian 1.0\nelement a 2\nproperty list uchar int v\nelement vertex 3" XYZ
+                               "end_header\n\1\0\0\0\0\0" "012345678901" "012345678901" "012345678901";
+    char bytes[sizeof good];
+    adcgs_points points;
+    for (size_t i = 0; i < sizeof good - 1; i++)
+        for (int v = 0; v < 256; v += 3) {
+            memcpy(bytes, good, sizeof good);
+            bytes[i] = (char)v;
+            adcgs_ply_parse(&points, (const uint8_t *)bytes, sizeof good - 1, "mutant", &error);
+            adcgs_points_free(&points);
+        }
+}
+
+/** Four points (i, -2i, 0.5) with colours (10i, 200, 255-i), as Draco 1.5 writes them; then every cut of the file. */
+static void test_draco(void **state)
+{
+    static const uint8_t file[] = {
+        0x44, 0x52, 0x41, 0x43, 0x4f, 0x02, 0x03, 0x00, 0x00, 0x00, 0x00, 0x04, 0x00, 0x00, 0x00, 0x01, 0x02, 0x00, 0x09, 0x03,
+        0x00, 0x00, 0x02, 0x02, 0x03, 0x00, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x80, 0x00, 0x00, 0x00,
+        0x3f, 0x00, 0x00, 0x80, 0x3f, 0x00, 0x00, 0x00, 0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x00, 0x40, 0x00, 0x00, 0x80,
+        0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x00, 0x40, 0x40, 0x00, 0x00, 0xc0, 0xc0, 0x00, 0x00, 0x00, 0x3f, 0x00, 0x01, 0x01,
+        0x01, 0x02, 0x70, 0x55, 0x15, 0x59, 0x15, 0x47, 0x01, 0x10, 0xff, 0x67, 0x55, 0x05, 0x05, 0x96, 0xc2, 0x7f, 0xc4, 0x90,
+        0x00, 0x00, 0x00, 0x00, 0xff, 0x00, 0x00, 0x00,
+    };
+    adcgs_points points;
+    assert_int_equal(adcgs_draco_parse(&points, file, sizeof file, "d.drc", &error), ADCGS_OK);
+    assert_int_equal(points.n, 4);
+    for (int i = 0; i < 4; i++) {
+        assert_true(points.position[i][0] == (float)i && points.position[i][1] == -2.0f * (float)i && points.position[i][2] == 0.5f);
+        assert_true(points.colour[i][0] == 10 * i && points.colour[i][1] == 200 && points.colour[i][2] == 255 - i);
+    }
+    adcgs_points_free(&points);
+    for (size_t cut = 0; cut < sizeof file - 4; cut++) {
+        put_bytes("d.drc", file, cut);
+        expect_error(adcgs_points_read(&points, in("d.drc"), &error), ADCGS_ERR_DATA, "d.drc", "");
+    }
+}
+
+static void test_real_files(void **state)
+{
+    static const struct {
+        const char *name;
+        uint32_t n;
+    } files[] = {{"pointclouds/bun_zipper.ply", 35947}, {"pointclouds/garden_points.ply", 138766}, {"zju313_15f/points3d.ply", 1313}};
+    const char *data = getenv("ADCGS_DATA");
+    if (!data || access(data, R_OK))
+        skip();
+    for (size_t i = 0; i < ADCGS_COUNTOF(files); i++) {
+        char path[1024];
+        adcgs_points points;
+        snprintf(path, sizeof path, "%s/%s", data, files[i].name);
+        assert_int_equal(adcgs_points_read(&points, path, &error), ADCGS_OK);
+        assert_int_equal(points.n, files[i].n);
+        adcgs_points_free(&points);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_variants),   cmocka_unit_test(test_damage),    cmocka_unit_test(test_too_many_properties),
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_mutations), cmocka_unit_test(test_draco),
+        cmocka_unit_test(test_real_files),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

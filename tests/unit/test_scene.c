@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Scenes: both layouts, conventions, every kind of bad input, real scenes where they are at hand. */
+#include "outside_files.h"
+
+#include "data/pose.h"
+#include "data/scene.h"
+
+#include <math.h>
+
+#define IDENTITY "[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]"
+#define FRAME(path, more) "{\"file_path\":\"" path "\",\"transform_matrix\":" IDENTITY more "}"
+
+static adcgs_scene *scene;
+
+/** 6x4 pixels; alpha 0 on the left half if there is alpha. */
+static void put_image(const char *name, int channels)
+{
+    adcgs_image image;
+    assert_int_equal(adcgs_image_alloc(&image, 6, 4, channels, name, &error), ADCGS_OK);
+    for (int i = 0; i < 6 * 4 * channels; i++)
+        image.data[i] = (float)(i % 251) / 255.0f;
+    for (int i = 3; channels == 4 && i < 6 * 4 * 4; i += 4)
+        image.data[i] = i / 4 % 6 < 3 ? 0.0f : 1.0f;
+    assert_int_equal(adcgs_image_write(&image, in(name), 0, &error), ADCGS_OK);
+    adcgs_image_free(&image);
+}
+
+static int setup(void **state)
+{
+    if (make_folder(state))
+        return -1;
+    put_image("a.ppm", 3);
+    put_image("b.ppm", 3);
+    put_image("c.tif", 4);
+    return 0;
+}
+
+static int no_files(void **state)
+{
+    unlink(in("transforms.json"));
+    unlink(in("transforms_train.json"));
+    unlink(in("transforms_val.json"));
+    unlink(in("transforms_test.json"));
+    unlink(in("points3d.ply"));
+    return 0;
+}
+
+static adcgs_status open_single(const char *json)
+{
+    put_text("transforms.json", json);
+    return adcgs_scene_open(&scene, folder, NULL, &error);
+}
+
+static void expect_good(adcgs_status status)
+{
+    if (status != ADCGS_OK)
+        fail_msg("%s", error.text);
+}
+
+static void expect_bad(const char *json, adcgs_status status, const char *field, const char *what)
+{
+    expect_error(open_single(json), status, field, what);
+    assert_non_null(strstr(error.text, "transforms.json"));
+    assert_null(scene);
+}
+
+static void test_single(void **state)
+{
+    expect_good(open_single("{\"w\":6,\"h\":4,\"fl_x\":5,\"camera_model\":\"OPENCV\",\"k1\":0,\"p2\":0.0,\"fps\":25,\"frames\":["
+                            FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"fl_x\":7,\"cx\":1.5,\"cy\":2.25") "," FRAME("a.ppm", "") "]}"));
+    assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 2 && scene->n_views[ADCGS_SPLIT_TEST] == 1 && !scene->n_views[ADCGS_SPLIT_VAL]);
+    assert_true(scene->n_times == 1 && scene->duration == 0.0 && scene->frame_rate == 25.0 && !scene->has_alpha);
+    assert_true(scene->background[0] == 0.0f && scene->points.n == 0);
+    const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
+    assert_true(c->width == 6 && c->height == 4 && c->fx == 7.0 && c->fy == 7.0 && c->cx == 1.5 && c->cy == 2.25);
+    assert_string_equal(c->name, "b");
+    /* OpenGL looks along -z: in OpenCV axes x stays, y and z turn round; the centre stays. */
+    const double expected[12] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 4};
+    for (int i = 0; i < 12; i++)
+        assert_true(c->cam_to_world[i] == expected[i]);
+    const adcgs_camera *d = &scene->views[ADCGS_SPLIT_TRAIN][1].camera;
+    assert_true(d->fx == 5.0 && d->cx == 3.0 && d->cy == 2.0);
+    adcgs_scene_free(&scene);
+}
+
+static void test_filename_lists(void **state)
+{
+    expect_good(open_single("{\"fl_x\":5,\"train_filenames\":[\"b.ppm\"],\"val_filenames\":[\"a.ppm\"],\"frames\":["
+                            FRAME("a.ppm", "") "," FRAME("b.ppm", "") "," FRAME("c.tif", "") "]}"));
+    assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 1 && scene->n_views[ADCGS_SPLIT_VAL] == 1 && !scene->n_views[ADCGS_SPLIT_TEST]);
+    adcgs_scene_free(&scene);
+    expect_bad("{\"fl_x\":5,\"train_filenames\":[],\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "frames", "training");
+}
+
+/** Times, extensions, alpha, field of view, initial points. */
+static void test_split_files(void **state)
+{
+    put_text("transforms_train.json", "{\"camera_angle_x\":1.5707963267948966,\"frames\":["
+                                      FRAME("./c", ",\"time\":0.0") "," FRAME("c.tif", ",\"time\":0.5") ","
+                                      FRAME("c", ",\"time\":1.0") "," FRAME("c", ",\"time\":1") "]}");
+    put_text("transforms_test.json", "{\"camera_angle_x\":1.5707963267948966,\"frames\":[" FRAME("./c", ",\"time\":0.75") "]}");
+    put_text("points3d.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                             "end_header\n1 2 3\n");
+    char path[512];
+    snprintf(path, sizeof path, "%s///", folder);
+    expect_good(adcgs_scene_open(&scene, path, NULL, &error));
+    assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 4 && scene->n_views[ADCGS_SPLIT_TEST] == 1);
+    assert_true(scene->n_times == 3 && scene->frame_rate == 30.0 && fabs(scene->duration - 2.0 / 30.0) < 1e-12);
+    assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][0].time - 0.05) < 1e-12);
+    assert_true(scene->has_alpha && scene->background[1] == 1.0f && scene->points.n == 1);
+    const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
+    assert_true(c->width == 6 && c->height == 4 && fabs(c->fx - 3.0) < 1e-12 && fabs(c->fy - 3.0) < 1e-12);
+    adcgs_scene_free(&scene);
+
+    const adcgs_scene_options options = {.has_background = 1, .background = {0.25f, 0.5f, 1.0f}, .frame_rate = 10.0,
+                                         .points_path = in("missing.ply")};
+    expect_error(adcgs_scene_open(&scene, folder, &options, &error), ADCGS_ERR_IO, "missing.ply", "No such file");
+}
+
+static void test_load(void **state)
+{
+    expect_good(open_single("{\"fl_x\":5,\"frames\":[" FRAME("c", "") "," FRAME("c", ",\"w\":6,\"h\":4") "]}"));
+    const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TRAIN][0];
+    float *rgb;
+    adcgs_camera camera;
+    expect_good(adcgs_scene_load(scene, view, 1, &rgb, &camera, &error));
+    assert_true(camera.width == 6 && camera.height == 4 && camera.fx == 5.0);
+    assert_true(rgb[0] == 1.0f && rgb[24] == 1.0f);                                      /* transparent: white */
+    assert_true(rgb[3] == 12.0f / 255.0f && rgb[24 + 3] == 13.0f / 255.0f && rgb[48 + 3] == 14.0f / 255.0f); /* opaque */
+    float small[3] = {0};
+    for (int c = 0; c < 3; c++)
+        for (int y = 3; y < 4; y++)
+            for (int x = 3; x < 6; x++)
+                small[c] += rgb[c * 24 + y * 6 + x] / 3.0f;
+    free(rgb);
+    expect_good(adcgs_scene_load(scene, view, 3, &rgb, &camera, &error));
+    assert_true(camera.width == 2 && camera.height == 2 && fabs(camera.fx - 5.0 / 3.0) < 1e-12 && camera.cx == 1.0);
+    for (int c = 0; c < 3; c++)
+        assert_true(fabsf(rgb[4 * c + 3] - small[c]) < 1e-6f); /* the last box covers one row */
+    free(rgb);
+    expect_error(adcgs_scene_load(scene, view, 0, &rgb, NULL, &error), ADCGS_ERR_USAGE, "c.tif", "0");
+    adcgs_scene_view wrong = *view;
+    wrong.camera.width = 7;
+    expect_error(adcgs_scene_load(scene, &wrong, 1, &rgb, NULL, &error), ADCGS_ERR_DATA, "6x4", "7x4");
+    assert_null(rgb);
+    adcgs_scene_free(&scene);
+}
+
+static void test_bad_files(void **state)
+{
+    expect_error(adcgs_scene_open(&scene, in("nowhere"), NULL, &error), ADCGS_ERR_IO, "nowhere", "No such file");
+    expect_error(adcgs_scene_open(&scene, "", NULL, &error), ADCGS_ERR_IO, "cannot open", "");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_IO, "not a scene", "transforms.json");
+    expect_bad("{\"frames\":[\n\n,]}", ADCGS_ERR_DATA, "line 3", "malformed JSON");
+    expect_bad("{\"w\":1e999}", ADCGS_ERR_DATA, "line 1", "malformed JSON");
+    expect_bad("{\"w\":NaN}", ADCGS_ERR_DATA, "line 1", "malformed JSON");
+    expect_bad("", ADCGS_ERR_DATA, "malformed JSON", "");
+    expect_bad("[]", ADCGS_ERR_DATA, "object", "");
+    expect_bad("{}", ADCGS_ERR_DATA, "frames", "array");
+    expect_bad("{\"frames\":{}}", ADCGS_ERR_DATA, "frames", "array");
+    expect_bad("{\"frames\":[]}", ADCGS_ERR_DATA, "frames", "empty");
+    expect_bad("{\"frames\":[7]}", ADCGS_ERR_DATA, "frames[0]", "object");
+    expect_bad("{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "frames", "training");
+    expect_bad("{\"fps\":0,\"frames\":[]}", ADCGS_ERR_DATA, "fps", "0");
+    expect_bad("{\"ply_file_path\":\"x.ply\",\"frames\":[]}", ADCGS_ERR_DATA, "ply_file_path", "x.ply");
+    expect_bad("{\"ply_file_path\":1,\"frames\":[]}", ADCGS_ERR_DATA, "ply_file_path", "string");
+}
+
+/** One good frame, then one with the fields given. */
+static void expect_bad_frame(const char *fields, adcgs_status status, const char *field, const char *what)
+{
+    char json[1024], place[64];
+    snprintf(json, sizeof json, "{\"w\":6,\"h\":4,\"fl_x\":5,\"frames\":[" FRAME("a.ppm", ",\"time\":0") ",{%s}]}", fields);
+    snprintf(place, sizeof place, "frames[1].%s", field);
+    expect_bad(json, status, place, what);
+}
+
+#define GOOD "\"file_path\":\"b.ppm\",\"time\":0.5,\"transform_matrix\":" IDENTITY
+
+static void test_bad_frames(void **state)
+{
+    expect_bad_frame("\"time\":0,\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "file_path", "name");
+    expect_bad_frame("\"time\":0,\"file_path\":\"\",\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "file_path", "name");
+    expect_bad_frame("\"time\":0,\"file_path\":\"./zz/y\",\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "file_path", "zz/y");
+    expect_bad_frame("\"file_path\":\"b.ppm\",\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "missing");
+    expect_bad_frame("\"file_path\":\"b.ppm\",\"time\":1.01,\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "1.01");
+    expect_bad_frame("\"file_path\":\"b.ppm\",\"time\":-0.1,\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "-0.1");
+    expect_bad_frame("\"file_path\":\"b.ppm\",\"time\":\"0\",\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "number");
+    expect_bad_frame(GOOD ",\"w\":7.5", ADCGS_ERR_DATA, "w", "whole");
+    expect_bad_frame(GOOD ",\"w\":0", ADCGS_ERR_DATA, "w", "0");
+    expect_bad_frame(GOOD ",\"h\":20000", ADCGS_ERR_DATA, "h", "20000");
+    expect_bad_frame(GOOD ",\"fl_x\":-1", ADCGS_ERR_DATA, "fl_x", "-1");
+    expect_bad_frame(GOOD ",\"fl_y\":null", ADCGS_ERR_DATA, "fl_y", "number");
+    expect_bad_frame(GOOD ",\"cx\":1e30", ADCGS_ERR_DATA, "cx", "1e+30");
+    expect_bad_frame(GOOD ",\"k1\":0.1", ADCGS_ERR_UNSUPPORTED, "k1", "distortion");
+    expect_bad_frame(GOOD ",\"p2\":-0.1", ADCGS_ERR_UNSUPPORTED, "p2", "distortion");
+    expect_bad_frame(GOOD ",\"camera_model\":\"OPENCV_FISHEYE\"", ADCGS_ERR_UNSUPPORTED, "camera_model", "OPENCV_FISHEYE");
+    expect_bad_frame(GOOD ",\"camera_model\":3", ADCGS_ERR_DATA, "camera_model", "string");
+    expect_bad_frame(GOOD ",\"is_fisheye\":true", ADCGS_ERR_UNSUPPORTED, "is_fisheye", "fisheye");
+    expect_bad("{\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "fl_x", "missing");
+    expect_bad("{\"w\":6,\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "frames[0].h", "missing");
+}
+
+static void expect_bad_pose(const char *matrix, const char *what)
+{
+    char fields[512];
+    snprintf(fields, sizeof fields, "\"file_path\":\"b.ppm\",\"time\":0,\"transform_matrix\":%s", matrix);
+    expect_bad_frame(fields, ADCGS_ERR_DATA, "transform_matrix", what);
+}
+
+static void test_bad_poses(void **state)
+{
+    expect_bad_pose("null", "4 rows");
+    expect_bad_pose("[[1,0,0,0],[0,1,0,0]]", "4 rows");
+    expect_bad_pose("[[1,0,0],[0,1,0],[0,0,1]]", "4 rows");
+    expect_bad_pose("[[1,0,0,0],[0,1,0,0],[0,0,1,\"4\"],[0,0,0,1]]", "row 2 column 3");
+    expect_bad_pose("[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,2]]", "last row");
+    expect_bad_pose("[[1,0,0,0],[0,1,0,0],[0,0,0,4],[0,0,0,1]]", "singular");
+    expect_bad_pose("[[0,0,0,0],[0,0,0,0],[0,0,0,4],[0,0,0,1]]", "singular");
+    expect_bad_pose("[[2,0,0,0],[0,2,0,0],[0,0,2,4],[0,0,0,1]]", "scaled");
+    expect_bad_pose("[[1,0,0,0],[0,1,0.1,0],[0,0,1,4],[0,0,0,1]]", "orthonormal");
+    expect_bad_pose("[[-1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]", "reflection");
+    expect_bad_pose("[[1e200,0,0,0],[0,1e200,0,0],[0,0,1e200,4],[0,0,0,1]]", "too large");
+    double infinite[12] = {1, 0, 0, INFINITY, 0, 1, 0, 0, 0, 0, 1, 0};
+    assert_string_equal(adcgs_pose_from_opengl(infinite), "holds a value that is not finite");
+}
+
+/** Rounding of poses is mended to orthonormal. */
+static void test_straightening(void **state)
+{
+    double pose[12] = {0.8003, -0.6, 0.0, 1, 0.6001, 0.7998, 0.0002, 2, -0.0003, 0.0, 1.0001, 3};
+    assert_null(adcgs_pose_from_opengl(pose));
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double dot = 0.0;
+            for (int k = 0; k < 3; k++)
+                dot += pose[4 * i + k] * pose[4 * j + k];
+            assert_true(fabs(dot - (i == j)) < 1e-12);
+        }
+    assert_true(fabs(pose[0] - 0.8) < 1e-3 && pose[3] == 1.0 && pose[11] == 3.0);
+}
+
+/** Times in one split file and none in another contradict each other. */
+static void test_mixed_times(void **state)
+{
+    put_text("transforms_train.json", "{\"fl_x\":5,\"frames\":[" FRAME("a", ",\"time\":0.0") "]}");
+    put_text("transforms_test.json", "{\"fl_x\":5,\"frames\":[" FRAME("a", "") "]}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_test.json", "time");
+    put_text("transforms_test.json", "{\"fl_x\":5,\"frames\":[]}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_test.json", "empty");
+}
+
+static void check_real(const char *name, uint32_t train, uint32_t val, uint32_t test, uint32_t times, int size)
+{
+    char path[1024];
+    const char *data = getenv("ADCGS_DATA");
+    snprintf(path, sizeof path, "%s/%s", data ? data : "", name);
+    if (!data || access(path, R_OK)) {
+        print_message("skipped: no ADCGS_DATA/%s\n", name);
+        skip();
+    }
+    expect_good(adcgs_scene_open(&scene, path, NULL, &error));
+    assert_int_equal(scene->n_views[ADCGS_SPLIT_TRAIN], train);
+    assert_int_equal(scene->n_views[ADCGS_SPLIT_VAL], val);
+    assert_int_equal(scene->n_views[ADCGS_SPLIT_TEST], test);
+    assert_int_equal(scene->n_times, times);
+    float *rgb;
+    adcgs_camera camera;
+    expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][test - 1], 1, &rgb, &camera, &error));
+    assert_true(camera.width == size && camera.height == size);
+    free(rgb);
+}
+
+static void test_robot(void **state)
+{
+    check_real("synth_robot_dnerf", 100, 10, 20, 100, 400);
+    assert_true(scene->has_alpha && scene->background[0] == 1.0f);
+    assert_true(scene->views[0][0].camera.near_plane > 0.02 && scene->views[0][0].camera.near_plane < 0.05);
+    adcgs_scene_free(&scene);
+}
+
+/** The initial points, which were triangulated, fall inside the pictures of cameras with their own intrinsics. */
+static void test_ring(void **state)
+{
+    check_real("zju313_15f", 255, 30, 30, 15, 512);
+    assert_int_equal(scene->points.n, 1313);
+    for (uint32_t v = 0; v < scene->n_views[0]; v += 15) {
+        const adcgs_camera *c = &scene->views[0][v].camera;
+        const double *m = c->cam_to_world;
+        uint32_t inside = 0;
+        for (uint32_t i = 0; i < scene->points.n; i++) {
+            double p[3];
+            for (int a = 0; a < 3; a++)
+                p[a] = m[a] * (scene->points.position[i][0] - m[3]) + m[4 + a] * (scene->points.position[i][1] - m[7]) +
+                       m[8 + a] * (scene->points.position[i][2] - m[11]);
+            const double x = c->fx * p[0] / p[2] + c->cx, y = c->fy * p[1] / p[2] + c->cy;
+            inside += p[2] > 0.0 && x >= 0.0 && x <= c->width && y >= 0.0 && y <= c->height;
+        }
+        assert_true(inside > scene->points.n * 9 / 10);
+    }
+    adcgs_scene_free(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_single, no_files),        cmocka_unit_test_teardown(test_filename_lists, no_files),
+        cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_load, no_files),
+        cmocka_unit_test_teardown(test_bad_files, no_files),     cmocka_unit_test_teardown(test_bad_frames, no_files),
+        cmocka_unit_test_teardown(test_bad_poses, no_files),     cmocka_unit_test_teardown(test_straightening, no_files),
+        cmocka_unit_test_teardown(test_mixed_times, no_files),   cmocka_unit_test(test_robot),
+        cmocka_unit_test(test_ring),
+    };
+    return cmocka_run_group_tests(tests, setup, remove_folder);
+}
