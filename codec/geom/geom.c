@@ -2,14 +2,17 @@
 /** \file
  * The walk of the position coder: the cube is halved 3 * depth times, x, y and z
  * in turn, and at each step the count of every non-empty cell is split. Cells
- * are kept in Morton order; a hash table finds the neighbours of the step.
- * Encoder and decoder run the same walk.
+ * are kept in Morton order; a hash table finds the neighbours of the step, or,
+ * where keys were made to collide, bisection. Encoder and decoder run the same
+ * walk.
  */
 #include "geom/geom.h"
 
 #include "geom/geom_models.h"
 
 #define NO_KEY UINT64_MAX
+/* A key lies at most this far behind its slot; with more, somebody chose the keys to be slow. */
+#define PROBES_MAX 64
 #define X_MASK UINT64_C(0x4924924924924924)
 
 typedef struct cell {
@@ -33,7 +36,8 @@ typedef struct walk {
     const uint64_t *codes; /* encoder: [n], ascending */
     cell *cells, *children;
     slot *slots;
-    int slot_bits;
+    int slot_bits; /* 0: bisect instead */
+    size_t n_cells;
     uint64_t mask[3], unit[3]; /* bits of each axis; one cell in its direction */
 } walk;
 
@@ -42,10 +46,26 @@ static size_t hash(const walk *w, uint64_t key)
     return (size_t)(key * UINT64_C(0x9e3779b97f4a7c15) >> (64 - w->slot_bits));
 }
 
+static const cell *bisect(const walk *w, uint64_t key)
+{
+    size_t low = 0, high = w->n_cells;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (w->cells[middle].key < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < w->n_cells && w->cells[low].key == key ? &w->cells[low] : NULL;
+}
+
 static const cell *find(const walk *w, uint64_t key)
 {
+    if (w->slot_bits == 0)
+        return bisect(w, key);
     const size_t wrap = ((size_t)1 << w->slot_bits) - 1;
-    for (size_t i = hash(w, key); w->slots[i].key != NO_KEY; i = (i + 1) & wrap)
+    size_t i = hash(w, key);
+    for (int probe = 0; probe < PROBES_MAX && w->slots[i].key != NO_KEY; probe++, i = (i + 1) & wrap)
         if (w->slots[i].key == key)
             return &w->cells[w->slots[i].index];
     return NULL;
@@ -58,20 +78,25 @@ static uint32_t count_at(const walk *w, uint64_t key)
 }
 
 /* Cells without neighbours are nobody's neighbours, so they stay out of the table. */
-static void fill_slots(walk *w, size_t n_cells)
+static void fill_slots(walk *w)
 {
     w->slot_bits = 3;
-    while ((size_t)1 << w->slot_bits < 2 * n_cells)
+    while ((size_t)1 << w->slot_bits < 2 * w->n_cells)
         w->slot_bits++;
     const size_t size = (size_t)1 << w->slot_bits;
     for (size_t i = 0; i < size; i++)
         w->slots[i].key = NO_KEY;
-    for (size_t c = 0; c < n_cells; c++) {
+    for (size_t c = 0; c < w->n_cells; c++) {
         if (w->cells[c].alone)
             continue;
         size_t i = hash(w, w->cells[c].key);
-        while (w->slots[i].key != NO_KEY)
+        int probe = 0;
+        for (; probe < PROBES_MAX && w->slots[i].key != NO_KEY; probe++)
             i = (i + 1) & (size - 1);
+        if (probe == PROBES_MAX) {
+            w->slot_bits = 0;
+            return;
+        }
         w->slots[i] = (slot){ w->cells[c].key, c };
     }
 }
@@ -126,13 +151,13 @@ static uint32_t count_left(const uint64_t *codes, uint32_t n, uint64_t bit)
     return low;
 }
 
-static size_t split_cells(walk *w, int step, size_t n_cells)
+static size_t split_cells(walk *w, int step)
 {
     const int axis = step % 3, left_bits = 3 * w->depth - 1 - step;
     const uint64_t bit = UINT64_C(1) << left_bits;
     size_t n_children = 0;
     uint32_t first = 0;
-    for (size_t i = 0; i < n_cells; i++) {
+    for (size_t i = 0; i < w->n_cells; i++) {
         cell *at = &w->cells[i];
         adcgs_geom_around around = { 0 };
         if (!at->alone)
@@ -162,7 +187,7 @@ static adcgs_status run(walk *w, adcgs_error *error)
     adcgs_geom_models_init(&w->models);
     w->coder.models = &w->models;
     w->cells[0] = (cell){ .n = w->n };
-    size_t n_cells = 1;
+    w->n_cells = 1;
     for (int step = 0; step < 3 * w->depth; step++) {
         for (int axis = 0; axis < 3; axis++) {
             const int bits = (step + 2 - axis) / 3; /* of this axis already split */
@@ -170,8 +195,8 @@ static adcgs_status run(walk *w, adcgs_error *error)
             /* an axis not yet split has no neighbours: its part is 0, and stays 0 */
             w->unit[axis] = bits ? UINT64_C(1) << (3 * (w->depth - bits) + 2 - axis) : 0;
         }
-        fill_slots(w, n_cells);
-        n_cells = split_cells(w, step, n_cells);
+        fill_slots(w);
+        w->n_cells = split_cells(w, step);
         cell *swap = w->cells;
         w->cells = w->children;
         w->children = swap;

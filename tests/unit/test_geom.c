@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Positions: sorting, exact round trips from one voxel to full cubes, and hostile data. */
 #include "geom/geom.h"
+#include "geom/logistic_data.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -49,6 +50,30 @@ static double check_cloud(const uint32_t *voxels, uint32_t n, int depth)
     free(back);
     adcgs_buffer_clear(&b);
     return bits;
+}
+
+/* The numbers compiled in are those of the specification. */
+static void test_logistic_equals_csv(void **state)
+{
+    (void)state;
+    static const int stretch[] = { LOGISTIC_STRETCH }, squash[] = { LOGISTIC_SQUASH };
+    const char *top = getenv("srcdir");
+    char path[4096], line[100];
+    snprintf(path, sizeof path, "%s/spec/tables/logistic.csv", top ? top : ".");
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file));
+    for (long i = 0; i < 2048; i++) {
+        char *end;
+        assert_non_null(fgets(line, sizeof line, file));
+        assert_int_equal(strtol(line, &end, 10), i);
+        assert_int_equal(strtol(end + 1, &end, 10), stretch[i]);
+        assert_int_equal(strtol(end + 1, &end, 10), squash[i]);
+    }
+    assert_null(fgets(line, sizeof line, file));
+    fclose(file);
+    assert_int_equal(ADCGS_COUNTOF(stretch), 2048);
+    assert_int_equal(ADCGS_COUNTOF(squash), 2048);
 }
 
 static void test_sorting(void **state)
@@ -128,6 +153,33 @@ static void test_random_clouds(void **state)
             check_cloud(voxels, tidy(voxels, sizes[i]), depth);
             free(voxels);
         }
+}
+
+/* Voxels whose Morton codes fall on one slot of the coder's hash table, each with a neighbour: still exact, and not slow. */
+static void test_colliding_cells(void **state)
+{
+    (void)state;
+    uint64_t inverse = 1, multiplier = UINT64_C(0x9e3779b97f4a7c15);
+    for (int i = 0; i < 6; i++)
+        inverse *= 2 - multiplier * inverse;
+    const uint32_t n = 20000;
+    uint32_t *voxels = make_voxels(n);
+    uint64_t product = 0;
+    for (uint32_t i = 0; i < n; i += 2) {
+        uint64_t code;
+        do
+            code = product++ * inverse;
+        while (code >> 63 || code & 1);
+        for (int axis = 0; axis < 3; axis++) {
+            uint32_t v = 0;
+            for (int b = 0; b < 21; b++)
+                v |= (uint32_t)(code >> (3 * b + 2 - axis) & 1) << b;
+            voxels[3 * i + (uint32_t)axis] = voxels[3 * i + 3 + (uint32_t)axis] = v;
+        }
+        voxels[3 * i + 5] ^= 1;
+    }
+    check_cloud(voxels, tidy(voxels, n), 21);
+    free(voxels);
 }
 
 /* A surface costs much less than uniform noise: about 2 bits of prediction per point here. */
@@ -214,10 +266,11 @@ static void test_hostile_data(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_logistic_equals_csv),
         cmocka_unit_test(test_sorting),       cmocka_unit_test(test_single_points),
         cmocka_unit_test(test_full_cubes),    cmocka_unit_test(test_random_clouds),
-        cmocka_unit_test(test_surface_is_predicted), cmocka_unit_test(test_wrong_use),
-        cmocka_unit_test(test_hostile_data),
+        cmocka_unit_test(test_colliding_cells), cmocka_unit_test(test_surface_is_predicted),
+        cmocka_unit_test(test_wrong_use),     cmocka_unit_test(test_hostile_data),
     };
     return cmocka_run_group_tests_name("geom", tests, NULL, NULL);
 }
