@@ -3,6 +3,8 @@
 #ifndef ADCGS_TESTS_OUTSIDE_FILES_H
 #define ADCGS_TESTS_OUTSIDE_FILES_H
 
+#include "config.h" /* for the declarations that it switches on in system headers */
+
 #include "base/base.h"
 
 #include <dirent.h>
