@@ -1,0 +1,103 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-dec and adcgs-eval on a tiny stream: outputs, digests, cameras, exit codes.
+# Runs in the build folder; needs adcgs-demo-scene and adcgs-enc to make the stream.
+for tool in adcgs-dec adcgs-eval adcgs-enc adcgs-demo-scene; do
+    [ -x "./$tool" ] || { echo "skipped: no $tool in $PWD"; exit 77; }
+done
+dir=$(mktemp -d "${TMPDIR:-/tmp}/adcgs-test-XXXXXX") || exit 99
+trap 'rm -rf "$dir"' EXIT
+failed=0
+bad() { echo "FAILED: $*"; failed=1; }
+
+# expect CODE TEXT COMMAND...: exit code, and what standard error says.
+expect()
+{
+    code=$1 text=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    got=$?
+    [ "$got" -eq "$code" ] || bad "exit code $got, expected $code: $*"
+    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
+}
+
+./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 ||
+    { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
+s=$dir/s.adcgs
+dec=./adcgs-dec
+
+# Frames are the same whatever they come out as and whatever computes them.
+expect 0 "frame" $dec "$s" --md5
+cp "$dir/out" "$dir/md5"
+n=$(wc -l <"$dir/md5")
+[ "$n" -ge 2 ] || bad "--md5 printed $n lines"
+for flags in "--threads 1" "--threads 3" "--cpu scalar" "--strict"; do
+    # shellcheck disable=SC2086
+    expect 0 "frame" $dec "$s" --md5 $flags
+    cmp -s "$dir/out" "$dir/md5" || bad "frames differ with $flags"
+done
+expect 0 "frame" sh -c "cat '$s' | $dec - --md5"
+cmp -s "$dir/out" "$dir/md5" || bad "frames differ from a pipe"
+$dec "$s" -o - --format raw --float >"$dir/raw" 2>/dev/null
+whole=$(md5sum <"$dir/raw" | cut -c1-32)
+expect 0 "frame" $dec "$s" --verify "$whole"
+expect 1 "$whole" $dec "$s" --verify 00112233445566778899aabbccddeeff
+expect 2 "32 hex" $dec "$s" --verify 123
+
+# Outputs.
+expect 0 "frame" $dec "$s" -o "$dir/f%03d.ppm"
+[ -s "$dir/f000.ppm" ] && [ "$(find "$dir" -name 'f*.ppm' | wc -l)" -eq "$n" ] || bad "numbered images"
+expect 0 "50x40" $dec "$s" -o "$dir/e%d.exr" --half --time 0 --size 50x40 --camera orbit
+[ -s "$dir/e0.exr" ] || bad "EXR"
+expect 0 "frame" $dec "$s" -o "$dir/v.y4m"
+head -n 1 "$dir/v.y4m" | grep -q '^YUV4MPEG2 W[0-9]* H[0-9]* F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED$' || bad "Y4M header"
+$dec "$s" -o - 2>/dev/null | cmp -s - "$dir/v.y4m" || bad "Y4M on standard output"
+expect 0 "frame" $dec "$s" --frametimes
+[ "$(wc -l <"$dir/out")" -eq "$n" ] || bad "--frametimes"
+expect 0 "frame" $dec "$s" -o "$dir/l.ppm" --layers 1 --time 0.03
+expect 2 "%04d" $dec "$s" -o "$dir/x.ppm"
+expect 2 "standard output" $dec "$s" -o - --md5
+expect 2 "exclude" $dec "$s" -o "$dir/x.exr" --half --float
+expect 2 "output" $dec "$s" --float
+expect 3 "x.ppm" $dec "$s" -o "$dir/no/x.ppm" --time 0
+expect 5 "foo" $dec "$s" -o "$dir/x.foo" --time 0
+[ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || bad "something was left behind"
+
+# Cameras and times.
+expect 0 "frame" $dec "$s" --camera 1 --md5 --time 0
+cp "$dir/out" "$dir/first"
+expect 0 "frame" $dec "$s" --camera 0 --md5 --time 0
+cmp -s "$dir/out" "$dir/first" && bad "two cameras see the same"
+expect 2 "neither" $dec "$s" --camera nobody
+expect 2 "seconds" $dec "$s" --time 2:1
+expect 2 "WIDTHxHEIGHT" $dec "$s" --size 0x10
+expect 2 "frames asked" $dec "$s" --time 0:1e9
+pose='[[1,0,0,0],[0,0,-1,-4],[0,1,0,0.3],[0,0,0,1]]'
+echo "{\"fl_x\":80,\"w\":64,\"h\":48,\"frames\":[{\"time\":0,\"transform_matrix\":$pose},{\"transform_matrix\":$pose}]}" >"$dir/path.json"
+expect 0 "2 frames of 64x48" $dec "$s" --camera "$dir/path.json" --md5
+echo '{"fl_x":80,"frames":[{"time":0,"transform_matrix":[[2,0,0,0],[0,2,0,0],[0,0,2,0]]}]}' >"$dir/path.json"
+expect 4 "frames\\[0\\].transform_matrix" $dec "$s" --camera "$dir/path.json"
+expect 3 "nowhere.json" $dec "$s" --camera "$dir/nowhere.json"
+
+# Bad input.
+expect 2 "FILE" $dec
+expect 2 "too many" $dec "$s" "$s"
+expect 2 "1 to 5" $dec "$s" --layers 6
+expect 3 "nowhere" $dec "$dir/nowhere"
+expect 4 "" $dec "$dir/f000.ppm"
+head -c 100 "$s" >"$dir/cut"
+expect 4 "" $dec "$dir/cut"
+expect 0 "" $dec --help
+expect 0 "" $dec --version
+
+# Evaluation.
+expect 0 "" ./adcgs-eval "$s" "$dir/scene"
+grep -q '^mean of .* dB' "$dir/out" || bad "no mean"
+expect 0 "" ./adcgs-eval "$s" "$dir/scene" --split train --layers 1 --json --images "$dir/views"
+grep -q '"frames_per_second"' "$dir/out" || bad "no speed in the JSON report"
+expect 2 "train" ./adcgs-eval "$s" "$dir/scene" --split both
+expect 3 "nowhere" ./adcgs-eval "$s" "$dir/nowhere"
+mkdir "$dir/empty"
+expect 3 "not a scene" ./adcgs-eval "$s" "$dir/empty"
+exit $failed
