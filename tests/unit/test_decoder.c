@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The public decoder: every source gives the same, segments are chosen by time, frames do not depend on threads or CPU. */
+#include "config.h"
+
 #include "random_model.h"
 
 #include "render/render.h"
