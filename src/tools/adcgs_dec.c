@@ -170,8 +170,8 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, adcgs_decode
         if (*mismatch)
             adcgs_cli_note(cli, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
         else
-            adcgs_cli_note(cli, "%s: %d frames of %dx%d, %.2f ms each", s->input, shots.n, frame.width, frame.height,
-                           1e3 * seconds / shots.n);
+            adcgs_cli_note(cli, "%s: %d frame%s of %dx%d, %.2f ms each", s->input, shots.n, shots.n == 1 ? "" : "s",
+                           frame.width, frame.height, 1e3 * seconds / shots.n);
     }
     adcgs_shots_free(&shots);
     return status;

@@ -250,6 +250,28 @@ static void test_mixed_times(void **state)
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_test.json", "empty");
 }
 
+/** One byte of a good file at a time gets another value, or the file ends there: any outcome but a crash, always with a reason. */
+static void test_mutations(void **state)
+{
+    static const char good[] = "{\"w\":6,\"h\":4,\"fl_x\":5,\"k1\":0,\"ply_file_path\":\"points3d.ply\",\"frames\":["
+                               FRAME("a.ppm", ",\"time\":0") "," FRAME("b.ppm", ",\"time\":1,\"cx\":3") "]}";
+    static const char values[] = "\0\"[}9-e,\xff";
+    char bytes[sizeof good];
+    put_text("points3d.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
+                             "end_header\n");
+    for (size_t i = 0; i < 2 * (sizeof good - 1); i++) {
+        const size_t at = i / 2, size = i % 2 ? at : sizeof good - 1;
+        memcpy(bytes, good, sizeof good);
+        bytes[at] = values[at % (sizeof values - 1)];
+        put_bytes("transforms.json", bytes, size);
+        error = (adcgs_error){0};
+        if (adcgs_scene_open(&scene, folder, NULL, &error) == ADCGS_OK)
+            adcgs_scene_free(&scene);
+        else
+            assert_true(error.text[0] && !strchr(error.text, '\n'));
+    }
+}
+
 static void check_real(const char *name, uint32_t train, uint32_t val, uint32_t test, uint32_t times, int size)
 {
     char path[1024];
@@ -308,8 +330,8 @@ int main(void)
         cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_load, no_files),
         cmocka_unit_test_teardown(test_bad_files, no_files),     cmocka_unit_test_teardown(test_bad_frames, no_files),
         cmocka_unit_test_teardown(test_bad_poses, no_files),     cmocka_unit_test_teardown(test_straightening, no_files),
-        cmocka_unit_test_teardown(test_mixed_times, no_files),   cmocka_unit_test(test_robot),
-        cmocka_unit_test(test_ring),
+        cmocka_unit_test_teardown(test_mixed_times, no_files),   cmocka_unit_test_teardown(test_mutations, no_files),
+        cmocka_unit_test(test_robot),                            cmocka_unit_test(test_ring),
     };
     return cmocka_run_group_tests(tests, setup, remove_folder);
 }
