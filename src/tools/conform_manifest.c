@@ -99,7 +99,7 @@ static adcgs_status read_vector(adcgs_vector *v, json_t *object, int index, adcg
     if (json_unpack_ex(object, &where, JSON_STRICT, "{s:s, s:s, s:s, s:s, s?s, s?o, s?o, s?o}", "file", &file, "md5", &md5, "title", &title,
                        "verdict", &verdict, "status", &status, "models", &models, "cameras", &cameras, "frames", &frames) != 0)
         return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: vector %d: %s", index, where.text);
-    if (snprintf(v->file, sizeof v->file, "%s", file) >= (int)sizeof v->file || strchr(file, '/') || copy_hex(v->md5, md5) != 0)
+    if (snprintf(v->file, sizeof v->file, "%s", file) >= (int)sizeof v->file || file[0] == '/' || strstr(file, "..") || copy_hex(v->md5, md5) != 0)
         return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: vector %d: bad file name or MD5", index);
     snprintf(v->title, sizeof v->title, "%s", title);
     if (!strcmp(verdict, "good") && !status)
