@@ -30,8 +30,8 @@ static void test_variants(void **state)
 {
     static const float p[3] = {1.0f, -2.0f, 0.5f};
     static const uint8_t grey[3] = {128, 128, 128}, orange[3] = {255, 128, 0};
-    expect_points(TEXT("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
-                       "7 7 7\n1 -2 .5\n"), 2, p, grey);
+    expect_points(TEXT("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+                       "end_header\n7 7 7\n1 -2 .5\n"), 2, p, grey);
     /* Carriage returns, comments, other order, other elements on both sides, lists, no newline at the end. */
     expect_points(TEXT("ply\r\nformat ascii 1.0\r\ncomment x\r\nobj_info y\r\nelement camera 2\r\nproperty list uchar int id\r\n"
                        "property float f\r\nelement vertex 1\r\nproperty uchar blue\r\nproperty float z\r\nproperty uchar red\r\n"
@@ -82,7 +82,8 @@ static void test_damage(void **state)
     expect_bad(TEXT(HEAD "4000000000" XYZ "end_header\n1 2 3\n"), "bytes follow");
     expect_bad(TEXT(HEAD "18446744073709551615" XYZ "end_header\n1 2 3\n"), "bytes follow");
     expect_bad(TEXT(HEAD "-1" XYZ "end_header\n1 2 3\n"), "bytes follow");
-    expect_bad(TEXT("ply\nformat binary_little_endian 1.0\nelement vertex 2" XYZ "end_header\n0123456789012345678"), "bytes follow");
+    expect_bad(TEXT("ply\nformat binary_little_endian 1.0\nelement vertex 2" XYZ "end_header\n0123456789012345678"),
+               "bytes follow");
     expect_bad(TEXT("ply\nformat binary_little_endian 1.0\nelement a 1\nproperty list uint double v\nelement vertex 1" XYZ
                     "end_header\n\xff\xff\xff\xff 01234567890123456789"), "ends in item 0");
     expect_bad(TEXT("DRACO\2\2"), "Draco");
@@ -121,8 +122,8 @@ static void test_round_trip(void **state)
 /** One byte of a good file at a time gets another value: any outcome but a crash. */
 static void test_mutations(void **state)
 {
-    static const char good[] = "ply\nformat binary_little_endian 1.0\nelement a 2\nproperty list uchar int v\nelement vertex 3" XYZ
-                               "end_header\n\1\0\0\0\0\0" "012345678901" "012345678901" "012345678901";
+    static const char good[] = "ply\nformat binary_little_endian 1.0\nelement a 2\nproperty list uchar int v\n"
+                               "element vertex 3" XYZ "end_header\n\1\0\0\0\0\0" "012345678901" "012345678901" "012345678901";
     char bytes[sizeof good];
     adcgs_points points;
     for (size_t i = 0; i < sizeof good - 1; i++)
@@ -149,7 +150,8 @@ static void test_draco(void **state)
     assert_int_equal(adcgs_draco_parse(&points, file, sizeof file, "d.drc", &error), ADCGS_OK);
     assert_int_equal(points.n, 4);
     for (int i = 0; i < 4; i++) {
-        assert_true(points.position[i][0] == (float)i && points.position[i][1] == -2.0f * (float)i && points.position[i][2] == 0.5f);
+        const float *p = points.position[i];
+        assert_true(p[0] == (float)i && p[1] == -2.0f * (float)i && p[2] == 0.5f);
         assert_true(points.colour[i][0] == 10 * i && points.colour[i][1] == 200 && points.colour[i][2] == 255 - i);
     }
     adcgs_points_free(&points);
@@ -164,7 +166,9 @@ static void test_real_files(void **state)
     static const struct {
         const char *name;
         uint32_t n;
-    } files[] = {{"pointclouds/bun_zipper.ply", 35947}, {"pointclouds/garden_points.ply", 138766}, {"zju313_15f/points3d.ply", 1313}};
+    } files[] = {{"pointclouds/bun_zipper.ply", 35947},
+                 {"pointclouds/garden_points.ply", 138766},
+                 {"zju313_15f/points3d.ply", 1313}};
     const char *data = getenv("ADCGS_DATA");
     if (!data || access(data, R_OK))
         skip();
