@@ -53,7 +53,7 @@ const char *adcgs_scenes_about(int i)
 
 static int split_size(const adcgs_scenes_entry *scene, int split)
 {
-    return split == ADCGS_SPLIT_TRAIN ? scene->cameras * scene->times : split == ADCGS_SPLIT_VAL ? scene->n_val : scene->n_test;
+    return split == ADCGS_SPLIT_TRAIN ? scene->cameras / scene->turns * scene->times : split == ADCGS_SPLIT_VAL ? scene->n_val : scene->n_test;
 }
 
 int adcgs_scenes_count(const char *name)
@@ -76,8 +76,8 @@ static void place(adcgs_trace_camera *camera, const adcgs_scenes_entry *scene, d
 }
 
 /*
- * Training cameras stand on an arc of 140 degrees at three heights and see every
- * time. The others stand between them, and the test looks between the times too.
+ * Training cameras stand on an arc of 140 degrees at three heights and take
+ * turns: each moment is seen by some of them. The others stand between them, and the test looks between the times too.
  */
 static view view_at(const adcgs_scenes_entry *scene, int split, int i, int width)
 {
@@ -86,9 +86,10 @@ static view view_at(const adcgs_scenes_entry *scene, int split, int i, int width
     const int steps = scene->times - 1, count = split_size(scene, split);
     view v;
     if (split == ADCGS_SPLIT_TRAIN) {
-        const int c = i % scene->cameras;
-        v.time = steps > 0 ? (double)(i / scene->cameras) / steps : 0.0;
-        place(&v.camera, scene, 0.39 * ((double)c / (scene->cameras - 1) - 0.5), heights[c % 3], width);
+        const int each = scene->cameras / scene->turns, moment = i / each;
+        const int c = i % each * scene->turns + moment % scene->turns;
+        v.time = steps > 0 ? (double)moment / steps : 0.0;
+        place(&v.camera, scene, 0.39 * ((double)c / (scene->cameras - 1) - 0.5), heights[(c + c / 3) % 3], width);
         return v;
     }
     const double along = (i + shift[split]) / count;

@@ -11,7 +11,8 @@ typedef struct adcgs_scenes_entry {
     int n_objects;
     uint32_t moving;         /**< bit i: object i moves; the others keep the pose of time 0 */
     int size;                /**< width and height */
-    int cameras, times;      /**< the training split holds every pair */
+    int cameras, times;
+    int turns;               /**< each moment is seen by every turns-th camera, a different set from moment to moment; divides cameras */
     int n_val, n_test;
     double distance;         /**< of the cameras from the target */
     double target[3];

@@ -24,10 +24,11 @@ static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_err
         if (!p->used[i] || !p->mu[i])
             return ADCGS_ERR_MEMORY;
     }
+    p->keep = adcgs_alloc(NULL, slots, sizeof(float), error);
     p->act = adcgs_alloc(NULL, g * p->act_stride, sizeof(float), error);
     p->prim = adcgs_alloc(NULL, slots * 14, sizeof(float), error);
     p->grad = adcgs_alloc(NULL, slots * 16, sizeof(float), error);
-    if (!p->act || !p->prim || !p->grad)
+    if (!p->keep || !p->act || !p->prim || !p->grad)
         return ADCGS_ERR_MEMORY;
     float *a = p->prim, *d = p->grad;
     adcgs_primitives *r = &p->primitives;
@@ -57,6 +58,7 @@ static void free_groups(adcgs_pass *p)
         adcgs_free(NULL, p->used[i]);
         adcgs_free(NULL, p->mu[i]);
     }
+    adcgs_free(NULL, p->keep);
     adcgs_free(NULL, p->act);
     adcgs_free(NULL, p->prim);
     adcgs_free(NULL, p->grad);
@@ -141,9 +143,8 @@ void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, fl
 typedef struct forward_job {
     adcgs_pass *pass;
     const adcgs_fmodel *f;
-    adcgs_quant quant;
+    const adcgs_pass_mode *mode;
     int deform;
-    uint32_t seed;
 } forward_job;
 
 static void quantise_group(const forward_job *job, uint32_t g)
@@ -154,9 +155,9 @@ static void quantise_group(const forward_job *job, uint32_t g)
         const size_t at = (size_t)g * (size_t)rows * 64;
         const float *value = job->f->param[i].p + at;
         const float *step = job->f->step[i];
-        if (job->quant == ADCGS_QUANT_NOISE)
-            p->dsp.noise(p->used[i] + at, value, step, rows, adcgs_mix32(job->seed ^ (g * ADCGS_P_ANCHOR + (uint32_t)i)));
-        else if (job->quant == ADCGS_QUANT_ROUND)
+        if (job->mode->quant == ADCGS_QUANT_NOISE)
+            p->dsp.noise(p->used[i] + at, value, step, rows, adcgs_mix32(job->mode->seed ^ (g * ADCGS_P_ANCHOR + (uint32_t)i)));
+        else if (job->mode->quant == ADCGS_QUANT_ROUND)
             p->dsp.round(p->used[i] + at, value, step, p->mu[i] + at, rows);
         else
             memcpy(p->used[i] + at, value, (size_t)rows * 64 * sizeof *value);
@@ -214,7 +215,7 @@ void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int d
     io->omega = deform && f->mlp[ADCGS_P_OMEGA].n ? act.omega_out : NULL;
     io->varpi = deform && f->mlp[ADCGS_P_VARPI].n ? act.varpi_out : NULL;
     io->moving = f->moving + (size_t)g * 64;
-    io->keep = f->keep + at;
+    io->keep = p->keep + at;
     io->rotation = f->params.coarse_rotation;
     for (int c = 0; c < 3; c++) {
         io->mean[c] = p->prim + (size_t)c * slots + at;
@@ -226,12 +227,21 @@ void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int d
     io->opacity = p->prim + 10 * slots + at;
 }
 
+static void drop_primitives(const forward_job *job, uint32_t g)
+{
+    const size_t n = (size_t)job->f->params.k * 64, at = g * n;
+    const uint32_t seed = adcgs_mix32(job->mode->seed ^ 0x5bd1e995u), below = (uint32_t)(job->mode->dropout * 0x1p32f);
+    for (size_t i = at; i < at + n; i++)
+        job->pass->keep[i] = below && adcgs_mix32(seed + (uint32_t)i) < below ? 0 : job->f->keep[i];
+}
+
 static void forward_group(void *arg, int index, int thread)
 {
     (void)thread;
     const forward_job *job = arg;
     const uint32_t g = (uint32_t)index;
     quantise_group(job, g);
+    drop_primitives(job, g);
     forward_theta(job, g);
     if (job->deform)
         forward_deform(job, g);
@@ -271,9 +281,9 @@ static void forward_time(adcgs_pass *p, const adcgs_fmodel *f, float t)
     p->t = t;
 }
 
-void adcgs_pass_forward(adcgs_pass *p, const adcgs_fmodel *f, float t, adcgs_quant quant, int deform, uint32_t seed)
+void adcgs_pass_forward(adcgs_pass *p, const adcgs_fmodel *f, float t, const adcgs_pass_mode *mode)
 {
-    forward_job job = { p, f, quant, deform && f->params.time_rows, seed };
+    forward_job job = { p, f, mode, mode->deform && f->params.time_rows };
     if (job.deform)
         forward_time(p, f, t);
     adcgs_pool_run(p->pool, forward_group, &job, (int)f->groups);

@@ -26,6 +26,7 @@ typedef struct adcgs_pass {
     uint32_t groups;
     float *used[ADCGS_P_ANCHOR]; /**< what the networks see, laid out as the parameters */
     float *mu[ADCGS_P_ANCHOR];   /**< predicted means in 1/64 step for ADCGS_QUANT_ROUND */
+    float *keep;                 /**< the model's keep, less what was dropped out: [slots] */
     float *act;                  /**< activations, act_stride floats per group */
     size_t act_stride;
     float *scratch;              /**< scratch_stride floats per thread */
@@ -54,8 +55,16 @@ void adcgs_pass_free(adcgs_pass **pass);
 /** After the number of anchors changed. */
 adcgs_status adcgs_pass_resize(adcgs_pass *pass, const adcgs_fmodel *f, adcgs_error *error);
 
-/** Primitives at t in [0,1] into pass->primitives; seed drives the noise. deform 0 leaves the deformation networks out. */
-void adcgs_pass_forward(adcgs_pass *pass, const adcgs_fmodel *f, float t, adcgs_quant quant, int deform, uint32_t seed);
+/** How a forward pass differs from playing the model. Zero-initialise for playing. */
+typedef struct adcgs_pass_mode {
+    adcgs_quant quant;
+    int deform;    /**< 0 leaves the deformation networks out */
+    float dropout; /**< share of primitives left out at random: what remains may not rely on any one of them */
+    uint32_t seed; /**< of noise and dropout */
+} adcgs_pass_mode;
+
+/** Primitives at t in [0,1] into pass->primitives. */
+void adcgs_pass_forward(adcgs_pass *pass, const adcgs_fmodel *f, float t, const adcgs_pass_mode *mode);
 
 /**
  * Accumulate gradients of pass->grads into f->param[].g. With rate_scale > 0 add the gradient of rate_scale * bits, measured on

@@ -186,7 +186,7 @@ adcgs_status adcgs_trainer_refine(adcgs_trainer *t, double progress, adcgs_error
         if (!s.n)
             next_add(&s, t->f->pos[0], 0, 0);
         const uint32_t n = find_candidates(t, list);
-        adcgs_pass_forward(t->pass, t->f, 0, ADCGS_QUANT_NONE, 0, 0); /* canonical places of all primitives */
+        adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = 0 }); /* canonical places of all primitives */
         grow(t, &s, budget, list, n, &occupied);
         status = adopt(t, &s, error);
     }
@@ -213,10 +213,10 @@ static void measure_motion(adcgs_trainer *t, float *effect)
         return;
     }
     const float pixel = 1 / t->views[0].view.fx; /* scene units per pixel at unit distance */
-    adcgs_pass_forward(t->pass, f, 0, ADCGS_QUANT_NONE, 0, 0);
+    adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = 0 });
     memcpy(still, t->pass->prim, slots * 14 * sizeof *still);
     for (int step = 0; step < DECIDE_TIMES; step++) {
-        adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), ADCGS_QUANT_NONE, 1, 0);
+        adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), &(adcgs_pass_mode){ .deform = 1 });
         for (size_t i = 0; i < slots; i++) {
             const uint32_t anchor = anchor_of(f, (uint32_t)i);
             if (anchor >= f->n || f->keep[i] == 0)

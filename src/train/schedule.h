@@ -24,7 +24,7 @@ typedef struct adcgs_train_config {
     float prune_opacity;   /**< of the accumulated opacity */
     uint32_t refine_every; /**< iterations between refinements */
     int rate_period;       /**< rate is measured on every n-th group of anchors */
-    float volume_weight;   /**< weight of the mean scale of primitives in the loss */
+    float dropout;         /**< share of primitives left out at random until rounding: against overfitting few views */
     /* Moments, as fractions of the run. */
     float quarter_until, half_until; /**< coarse-to-fine: a quarter, then half of the resolution */
     float deform_from, grow_from, grow_until, noise_from, rate_from, decide_at, round_from, freeze_from;

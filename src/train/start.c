@@ -188,16 +188,38 @@ static void given_points(cloud *c, const sight *s, uint32_t wanted)
     }
 }
 
+/** Reach of the random points: the volume the cameras surround, and as a share of the points what lies behind it. */
+#define NEAR_RADIUS 1.2
+#define FAR_RADIUS 4.0
+#define FAR_SHARE 0.2
+
+/** Uniform in a ball, or beyond it with density falling as the cube of the distance, as pictures resolve it. */
+static void random_place(double x[3], uint64_t seed, uint64_t i)
+{
+    double length;
+    do {
+        length = 0;
+        for (int a = 0; a < 3; a++) {
+            x[a] = 2 * adcgs_random_unit(seed, 1000, i * 4 + (uint64_t)a) - 1;
+            length += x[a] * x[a];
+        }
+        i ^= 0x5851f42d4c957f2du; /* rejected corners draw again */
+        seed++;
+    } while (length > 1 || length < 1e-6);
+    const double u = adcgs_random_unit(seed, 1001, i), far = NEAR_RADIUS * pow(FAR_RADIUS / NEAR_RADIUS, u / FAR_SHARE);
+    const double scale = u < FAR_SHARE ? far / sqrt(length) : NEAR_RADIUS;
+    for (int a = 0; a < 3; a++)
+        x[a] *= scale;
+}
+
 /** Random points that enough cameras see, and where alpha says so, that enough of them do not see through. */
 static void random_points(cloud *c, const sight *s, uint32_t wanted, uint64_t seed)
 {
-    const int need = s->n < 4 ? 1 : (int)s->n / 4;
     for (uint64_t i = 0; c->n < wanted && i < 400ull * wanted; i++) {
         double x[3];
-        for (int a = 0; a < 3; a++)
-            x[a] = 1.2 * (2 * adcgs_random_unit(seed, 1000, i * 3 + (uint64_t)a) - 1);
-        if (x[0] * x[0] + x[1] * x[1] + x[2] * x[2] > 1.44)
-            continue;
+        random_place(x, seed, i);
+        const int far = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] > NEAR_RADIUS * NEAR_RADIUS;
+        const int need = (int)s->n / (far ? 10 : 4) > 1 ? (int)s->n / (far ? 10 : 4) : 1;
         const glimpse g = look_at(s, x);
         if (g.seen < need || g.covered * 2 < g.seen)
             continue;
@@ -247,7 +269,7 @@ static double spacing(const adcgs_fmodel *f, uint32_t i)
 
 static void set_anchor(adcgs_fmodel *f, uint32_t i, const double rgb[3])
 {
-    const double d = fmin(fmax(spacing(f, i), 2 * f->voxel), 0.3);
+    const double d = fmin(fmax(spacing(f, i), 2 * f->voxel), 1.0);
     for (int a = 0; a < 3; a++) {
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, a) = (float)log(d);
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, 3 + a) = (float)log(d);

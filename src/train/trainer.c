@@ -249,13 +249,15 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
 {
     const adcgs_train_config *c = &t->config;
     const adcgs_train_view *v = &t->views[pick_view(t, t->iteration)];
-    const int deform = progress >= c->deform_from;
     const adcgs_quant quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND :
                               progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
     const int rated = progress >= c->rate_from && !c->without_rate && !t->frozen;
-    const uint32_t seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration);
+    const adcgs_pass_mode mode = { .quant = quant,
+                                   .deform = progress >= c->deform_from,
+                                   .dropout = t->rounding ? 0 : c->dropout,
+                                   .seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration) };
     adcgs_loss_value value;
-    adcgs_pass_forward(t->pass, t->f, v->t, quant, deform, seed);
+    adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1, error));
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, v->rgb, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
     ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, t->grad,
@@ -263,7 +265,7 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
     accumulate_stats(t);
     adcgs_rate rate = { .total = 0 };
     /* Loss per bit: lambda per 2^23 bits. */
-    adcgs_pass_backward(t->pass, t->f, deform, rated ? c->lambda * 0x1p-23f : 0, c->rate_period, (int)(t->iteration % (uint32_t)c->rate_period),
+    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? c->lambda * 0x1p-23f : 0, c->rate_period, (int)(t->iteration % (uint32_t)c->rate_period),
                         rated ? &rate : NULL);
     const double keep = t->iteration < 100 ? 0.9 : 0.99;
     t->mean_loss = t->iteration ? keep * t->mean_loss + (1 - keep) * value.loss : value.loss;

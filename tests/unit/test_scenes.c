@@ -68,7 +68,7 @@ static void table_is_sound(void **state)
     for (int i = 0; adcgs_scenes_name(i); i++) {
         const adcgs_scenes_entry *const scene = adcgs_scenes_entry_at(i);
         assert_ptr_equal(adcgs_scenes_entry_find(scene->name), scene);
-        assert_int_equal(adcgs_scenes_count(scene->name), scene->cameras * scene->times + scene->n_val + scene->n_test);
+        assert_int_equal(adcgs_scenes_count(scene->name), scene->cameras / scene->turns * scene->times + scene->n_val + scene->n_test);
         assert_true(scene->n_objects < 32 && scene->moving >> scene->n_objects == 0);
         assert_true(scene->cameras > 1 && scene->times > 1);
     }

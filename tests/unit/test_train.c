@@ -239,7 +239,7 @@ static void test_forward(void **state)
 {
     const fixture *x = *state;
     const size_t slots = x->pass->primitives.n;
-    adcgs_pass_forward(x->pass, x->f, 0.4f, ADCGS_QUANT_NONE, 1, 1);
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = 1 });
     for (uint32_t a = 0; a < ANCHORS; a++)
         for (int k = 0; k < K; k++) {
             double p[VALUES];
@@ -293,7 +293,7 @@ static void test_distortion_gradients(void **state)
     const fixture *x = *state;
     const size_t slots = x->pass->primitives.n;
     clear_gradients(x->f);
-    adcgs_pass_forward(x->pass, x->f, 0.4f, ADCGS_QUANT_NONE, 1, 1);
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = 1 });
     memset(x->pass->grad, 0, 16 * slots * sizeof(float));
     for (uint32_t a = 0; a < ANCHORS; a++)
         for (int k = 0; k < K; k++) {
@@ -310,7 +310,7 @@ static void test_rate_gradients(void **state)
     const fixture *x = *state;
     adcgs_rate rate;
     clear_gradients(x->f);
-    adcgs_pass_forward(x->pass, x->f, 0.4f, ADCGS_QUANT_NONE, 1, 1);
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = 1 });
     memset(x->pass->grad, 0, 16 * (size_t)x->pass->primitives.n * sizeof(float));
     adcgs_pass_backward(x->pass, x->f, 1, 1, 1, 0, &rate);
     assert_float_equal(rate.total, ref_rate(x->f), 5e-6 * rate.total);
@@ -333,7 +333,7 @@ static void test_threads(void **state)
         adcgs_pass *pass;
         assert_int_equal(adcgs_pass_create(&pass, x->f, x->pass->cpu, round ? pool : NULL, &error), ADCGS_OK);
         clear_gradients(x->f);
-        adcgs_pass_forward(pass, x->f, 0.7f, ADCGS_QUANT_NOISE, 1, 99);
+        adcgs_pass_forward(pass, x->f, 0.7f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = 1, .dropout = 0.2f, .seed = 99 });
         randomise(pass->grad, 16 * (size_t)pass->primitives.n, 0, 0);
         memcpy(pass->grad, pass->prim, 14 * (size_t)pass->primitives.n * sizeof(float));
         adcgs_pass_backward(pass, x->f, 1, 0.5f, 1, 0, &rate);
