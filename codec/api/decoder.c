@@ -29,8 +29,8 @@ void adcgs_config_init(adcgs_config *config)
 static adcgs_status check_config(const adcgs_config *config, adcgs_error *error)
 {
     if (config->size != sizeof *config)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "config: size is %zu, expected %zu: call adcgs_config_init() first", config->size,
-                          sizeof *config);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "config: size is %zu, expected %zu: call adcgs_config_init() first",
+                          config->size, sizeof *config);
     if (config->threads < 0 || config->threads > 256)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "config: threads is %d, expected 0..256", config->threads);
     if (config->layers < 0 || config->layers > ADCGS_LAYERS)
@@ -55,7 +55,8 @@ static adcgs_status open_decoder(adcgs_decoder *d, adcgs_read_fn read, void *use
     return adcgs_stream_read(&d->stream, read, user, &options, NULL, NULL, error);
 }
 
-adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read, void *user, const adcgs_config *config, adcgs_error *error)
+adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read, void *user, const adcgs_config *config,
+                               adcgs_error *error)
 {
     adcgs_config defaults;
     *out = NULL;
@@ -171,7 +172,8 @@ adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, do
     if (!d->raster)
         ADCGS_TRY(adcgs_raster_create(&d->raster, d->cpu, d->pool, &d->memory, error));
     ADCGS_TRY(reserve_planar(d, 3 * (size_t)frame->width * (size_t)frame->height, error));
-    ADCGS_TRY(adcgs_raster_forward(d->raster, &primitives, &view, stream->background, stream->screen_filter, d->planar, 0, error));
+    ADCGS_TRY(adcgs_raster_forward(d->raster, &primitives, &view, stream->background, stream->screen_filter, d->planar, 0,
+                                   error));
     interleave_job job = { d->planar, frame };
     adcgs_pool_run(d->pool, interleave, &job, (frame->height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
     return ADCGS_OK;

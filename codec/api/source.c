@@ -43,7 +43,8 @@ static int64_t read_memory(void *user, void *buffer, size_t bytes)
     return (int64_t)n;
 }
 
-adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, size_t bytes, const adcgs_config *config, adcgs_error *error)
+adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, size_t bytes, const adcgs_config *config,
+                               adcgs_error *error)
 {
     span s = { data, bytes };
     return adcgs_open_stream(out, read_memory, &s, config, error);

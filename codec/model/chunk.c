@@ -99,11 +99,13 @@ static adcgs_status parse_header(adcgs_chunk *chunk, const uint8_t bytes[ADCGS_C
     adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk header", .error = error };
     adcgs_reader_init(&p.r, bytes, ADCGS_CHUNK_HEADER_BYTES - 4);
     if (adcgs_load_le32(bytes + ADCGS_CHUNK_HEADER_BYTES - 4) != adcgs_crc32c(0, bytes, ADCGS_CHUNK_HEADER_BYTES - 4))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "chunk header at byte %llu: checksum is wrong", (unsigned long long)chunk->origin);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "chunk header at byte %llu: checksum is wrong",
+                          (unsigned long long)chunk->origin);
     ADCGS_TRY(adcgs_syn_chunk_header_parse(&p, &chunk->header));
     adcgs_store_le32((uint8_t *)chunk->name, chunk->header.type);
     if (!type_is_text(chunk->name))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "chunk header at byte %llu: type %08x is not a letter followed by letters and digits",
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "chunk header at byte %llu: type %08x is not a letter followed by letters and digits",
                           (unsigned long long)chunk->origin, chunk->header.type);
     return ADCGS_OK;
 }

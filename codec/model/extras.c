@@ -56,8 +56,8 @@ static adcgs_status parse_camera(adcgs_parse *p, adcgs_camera *c, const adcgs_ca
         c->cy = before->cy;
         c->near_plane = before->near_plane;
     } else {
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "cams: camera_flags of the first camera is %u, but there is no camera before it",
-                          head.camera_flags);
+        return adcgs_fail(p->error, ADCGS_ERR_DATA,
+                          "cams: camera_flags of the first camera is %u, but there is no camera before it", head.camera_flags);
     }
     return parse_pose(p, head.camera_flags, c->cam_to_world);
 }

@@ -17,7 +17,8 @@ static adcgs_status check_support(const adcgs_syn_head *h, adcgs_error *error)
     if (h->arith != 0)
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: arith is %u, this decoder knows 0", h->arith);
     if (h->features != 0)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: features 0x%08x are required, this decoder knows none", h->features);
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: features 0x%08x are required, this decoder knows none",
+                          h->features);
     return ADCGS_OK;
 }
 

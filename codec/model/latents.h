@@ -35,19 +35,19 @@ adcgs_status adcgs_latents_create(adcgs_latents **out, const adcgs_model *model,
 void adcgs_latents_free(adcgs_latents **latents);
 
 /**
- * Walk one layer (0..4) of anchors [begin, end) in coding order, where begin and end are slice bounds: multiples of 64, or end == n.
+ * Walk one layer (0..4) of anchors [begin, end) in coding order; begin and end are multiples of 64, or end == n.
  * Layer m needs layers < m of the same anchors final; flags and masks are final before layer 0. Layer m > 0 also sets f_g of
  * primitives that do not exist to 0. Threads may walk disjoint ranges at once. Fails only for want of memory.
  */
 adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                 adcgs_latent_visit visit, void *user);
 
-/** Append sub-stream of (layer, [begin,end)). Values must be consistent with the networks: ADCGS_ERR_USAGE names the site if not. */
+/** Append sub-stream of (layer, [begin,end)). ADCGS_ERR_USAGE names a value that the networks cannot give. */
 adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   adcgs_buffer *out, adcgs_error *error);
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   const uint8_t *data, size_t bytes, adcgs_error *error);
-/** What an absent or damaged layer holds: every n = 0, so yq = mu. Also clears masks/flags to "all present, none static" for layer 0. */
+/** What an absent layer holds: every n = 0, so yq = mu. For layer 0 also masks and flags: all present, none static. */
 adcgs_status adcgs_latents_conceal(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end);
 
 #endif

@@ -30,12 +30,13 @@ typedef struct adcgs_role_ids {
 } adcgs_role_ids;
 
 /** SEGM: times, which networks, shapes, steps and the prior of eta. model->params is set. */
-adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids, int64_t ticks[2]);
+adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids,
+                              int64_t ticks[2]);
 adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, const adcgs_model *model, const adcgs_role_ids *ids,
                               adcgs_error *error);
 /** GEOM: allocates the model's arrays once the counts are checked, and decodes the positions. */
-adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, adcgs_model *model, uint64_t *budget,
-                              uint64_t weights, adcgs_memory *memory);
+adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, adcgs_model *model,
+                              uint64_t *budget, uint64_t weights, adcgs_memory *memory);
 adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error);
 
 adcgs_status adcgs_cams_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory *memory);

@@ -22,8 +22,8 @@ adcgs_status adcgs_seconds_to_ticks(const adcgs_stream *stream, double seconds, 
             if (adcgs_ticks_to_seconds(stream, *ticks) == seconds)
                 return ADCGS_OK;
     }
-    return adcgs_fail(error, ADCGS_ERR_USAGE, "SEGM: %.17g s is no whole number of ticks of %u/%u s", seconds, stream->timebase_num,
-                      stream->timebase_den);
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "SEGM: %.17g s is no whole number of ticks of %u/%u s", seconds,
+                      stream->timebase_num, stream->timebase_den);
 }
 
 static adcgs_status parse_step(adcgs_parse *p, int form, float *d)
@@ -87,8 +87,8 @@ static adcgs_status parse_roles(adcgs_parse *p, const adcgs_params *params, uint
         uint32_t id = 0;
         const int present = mask >> role & 1;
         if (present ? !adcgs_role_allowed(params, role) : adcgs_role_required(params, role))
-            return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: roles is 0x%04x: network %s must be %s", mask, adcgs_role_name(role),
-                              present ? "absent" : "present");
+            return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: roles is 0x%04x: network %s must be %s", mask,
+                              adcgs_role_name(role), present ? "absent" : "present");
         if (present)
             ADCGS_TRY(adcgs_parse_varint(p, "network_id", 0, UINT16_MAX, &id));
         ids->id[role] = (uint16_t)id;
@@ -96,7 +96,8 @@ static adcgs_status parse_roles(adcgs_parse *p, const adcgs_params *params, uint
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids, int64_t ticks[2])
+adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids,
+                              int64_t ticks[2])
 {
     adcgs_syn_segm segm;
     ADCGS_TRY(adcgs_syn_segm_parse(p, &segm));
@@ -157,8 +158,8 @@ static adcgs_status check_geom(const adcgs_parse *p, const adcgs_syn_geom *g, co
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, adcgs_model *model, uint64_t *budget,
-                              uint64_t weights, adcgs_memory *memory)
+adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, adcgs_model *model,
+                              uint64_t *budget, uint64_t weights, adcgs_memory *memory)
 {
     adcgs_syn_geom g;
     const uint8_t *data;
@@ -166,7 +167,8 @@ adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_
     ADCGS_TRY(check_geom(p, &g, limits, max_anchors));
     const uint64_t bytes = adcgs_segment_bytes(&model->params, g.anchors, weights);
     if (bytes > *budget)
-        return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "GEOM: the models of the stream need more than %llu bytes, the level's limit",
+        return adcgs_fail(p->error, ADCGS_ERR_LIMIT,
+                          "GEOM: the models of the stream need more than %llu bytes, the level's limit",
                           (unsigned long long)limits->model_bytes);
     *budget -= bytes;
     model->n = g.anchors;

@@ -65,8 +65,9 @@ static adcgs_status check_times(const adcgs_segment *s, const int64_t ticks[2])
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: ticks %lld..%lld lie outside the span in HEAD", (long long)ticks[0],
                           (long long)ticks[1]);
     if (stream->n_segments > 0 && (ticks[0] <= s->ticks[0] || ticks[0] < s->ticks[1]))
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: start_ticks is %lld, before the end of the segment in front of it, %lld",
-                          (long long)ticks[0], (long long)s->ticks[1]);
+        return adcgs_fail(s->error, ADCGS_ERR_DATA,
+                          "SEGM: start_ticks is %lld, before the end of the segment in front of it, %lld", (long long)ticks[0],
+                          (long long)s->ticks[1]);
     return ADCGS_OK;
 }
 
@@ -128,7 +129,8 @@ static void decode_slice(void *arg, int index, int thread)
 }
 
 /** Decode usable slices on all threads. The first that fails is decoded once more for its message. */
-static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int layer, uint32_t first, slice *slices, uint32_t usable)
+static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int layer, uint32_t first, slice *slices,
+                                  uint32_t usable)
 {
     slice_job job = { s, slices, p->r.data, first, layer };
     adcgs_pool_run(s->options->pool, decode_slice, &job, (int)usable);
@@ -162,7 +164,8 @@ static adcgs_status parse_slices(adcgs_parse *p, slice *slices, uint32_t n, uint
 }
 
 /** How many of the slices are there, with checksums that are right. */
-static adcgs_status check_slices(adcgs_segment *s, const adcgs_parse *p, slice *slices, uint32_t first, uint32_t n, uint32_t *usable)
+static adcgs_status check_slices(adcgs_segment *s, const adcgs_parse *p, slice *slices, uint32_t first, uint32_t n,
+                                 uint32_t *usable)
 {
     for (*usable = 0; *usable < n; ++*usable) {
         slice *one = &slices[*usable];
@@ -171,13 +174,14 @@ static adcgs_status check_slices(adcgs_segment *s, const adcgs_parse *p, slice *
             break;
         adcgs_parse_trace(p, 8 * (uint64_t)one->offset, "slice", "%u: %u bytes", first + *usable, one->bytes);
         if (adcgs_crc32c(0, p->r.data + one->offset, one->bytes) != one->crc)
-            return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment %u, slice %u: checksum is wrong", p->chunk, segment_number(s),
-                              first + *usable);
+            return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment %u, slice %u: checksum is wrong", p->chunk,
+                              segment_number(s), first + *usable);
     }
     return ADCGS_OK;
 }
 
-static adcgs_status use_slices(adcgs_segment *s, adcgs_parse *p, int layer, uint32_t first, slice *slices, uint32_t n, int complete)
+static adcgs_status use_slices(adcgs_segment *s, adcgs_parse *p, int layer, uint32_t first, slice *slices, uint32_t n,
+                               int complete)
 {
     uint64_t total;
     uint32_t usable = 0;
@@ -202,8 +206,9 @@ adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer,
     if (layer >= layers_wanted(s))
         return ADCGS_OK;
     const uint32_t ready = layer == 0 ? s->n_slices : s->done[layer - 1], next = s->done[layer];
-    adcgs_status status = next < ready ? adcgs_parse_varint(p, "first_slice", next, next, &first)
-                                       : adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: slices of the layer below are missing", p->chunk);
+    if (next >= ready)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: slices of the layer below are missing", p->chunk);
+    adcgs_status status = adcgs_parse_varint(p, "first_slice", next, next, &first);
     if (status == ADCGS_OK)
         status = adcgs_parse_varint(p, "slices", 1, ready - next, &n);
     if (status != ADCGS_OK)
@@ -235,7 +240,8 @@ static adcgs_status conceal_layers(adcgs_segment *s)
             uint32_t begin, end;
             slice_span(s, i, &begin, &end);
             if (adcgs_latents_conceal(s->latents, &s->model, layer, begin, end) != ADCGS_OK)
-                return adcgs_fail(s->error, ADCGS_ERR_MEMORY, "segment %u: no memory to conceal layer %d", segment_number(s), layer);
+                return adcgs_fail(s->error, ADCGS_ERR_MEMORY, "segment %u: no memory to conceal layer %d", segment_number(s),
+                                  layer);
         }
     return ADCGS_OK;
 }

@@ -39,7 +39,8 @@ typedef struct adcgs_stream {
     adcgs_bytes bytes;             /**< filled by reading and by writing */
 } adcgs_stream;
 
-void adcgs_stream_init(adcgs_stream *stream); /**< zero and defaults (timebase 1/1000, rate 30, slice 1024, scale 1, filter 0.3) */
+/** Zero and defaults: timebase 1/1000, rate 30, slices of 1024, scale 1, filter 0.3. */
+void adcgs_stream_init(adcgs_stream *stream);
 void adcgs_stream_clear(adcgs_stream *stream, adcgs_memory *memory);
 
 /** The summary that decoders and reports give, of a stream that was read or written. */

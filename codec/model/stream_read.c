@@ -98,7 +98,7 @@ static int belongs_to_segment(uint32_t type)
 /** Order of chunks and versions, before any payload is looked at. */
 static adcgs_status check_chunk(stream_reader *s, const adcgs_chunk *chunk)
 {
-    const uint32_t type = chunk->header.type, number = s->stream->n_segments & 0xffff;
+    const uint32_t type = chunk->header.type, number = s->stream->n_segments;
     const int critical = chunk->name[0] >= 'A' && chunk->name[0] <= 'Z';
     if (!s->head_payload && type != ADCGS_TYPE_HEAD)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: the first chunk must be HEAD", chunk->name);
@@ -108,7 +108,8 @@ static adcgs_status check_chunk(stream_reader *s, const adcgs_chunk *chunk)
     if (critical && s->indexed && type != ADCGS_TYPE_ENDC)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: only ENDC may follow INDX", chunk->name);
     if (belongs_to_segment(type)) {
-        const uint32_t expected = type == ADCGS_TYPE_SEGM && s->segment.stage != ADCGS_SEGMENT_NONE ? (number + 1) & 0xffff : number;
+        const int ends_another = type == ADCGS_TYPE_SEGM && s->segment.stage != ADCGS_SEGMENT_NONE;
+        const uint32_t expected = (number + (uint32_t)ends_another) & 0xffff;
         if (chunk->header.segment != expected)
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment is %u, expected %u", chunk->name, chunk->header.segment,
                               expected);
@@ -192,10 +193,12 @@ static adcgs_status end_early(stream_reader *s)
 {
     const unsigned long long at = s->source.pos;
     if (s->options->strict_end || !s->head_payload)
-        return adcgs_fail(s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before %s", at, s->head_payload ? "ENDC" : "HEAD");
+        return adcgs_fail(s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before %s", at,
+                          s->head_payload ? "ENDC" : "HEAD");
     ADCGS_TRY(adcgs_segment_finish(&s->segment, s->source.pos, 1));
     if (s->stream->n_segments == 0)
-        return adcgs_fail(s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before the base layer of its first segment", at);
+        return adcgs_fail(s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before the base layer of its first segment",
+                          at);
     s->stream->truncated = 1;
     return ADCGS_OK;
 }

@@ -71,14 +71,14 @@ static adcgs_status check_tensor(const adcgs_tensor *t, uint32_t rows, uint32_t 
         return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d has a tensor of %ux%u, expected %ux%u", name, layer,
                           t->rows, t->cols, rows, cols);
     if (t->mode > 1 || t->e > 40)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d has tensor mode %u, exponent %u, expected 0..1, 0..40", name,
-                          layer, t->mode, t->e);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d has tensor mode %u, exponent %u, expected 0..1, 0..40",
+                          name, layer, t->mode, t->e);
     if (role < ADCGS_ROLE_PREDICTION)
         return ADCGS_OK;
     for (size_t i = 0; i < (size_t)rows * cols; i++)
         if (!float_weight_ok(t, t->m[i]))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d, value %zu of a tensor is not a weight below 2^8", name,
-                              layer, i);
+            return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: layer %d, value %zu of a tensor is not a weight below 2^8",
+                              name, layer, i);
     return ADCGS_OK;
 }
 
@@ -173,7 +173,8 @@ static adcgs_status check_positions(const adcgs_model *m, adcgs_error *error)
         const uint32_t *v = m->pos + 3 * (size_t)i;
         const uint64_t code = adcgs_morton(v);
         if ((v[0] | v[1] | v[2]) >> m->depth || (i > 0 && code <= previous))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "model: position of anchor %u is outside the cube or not in Morton order", i);
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: position of anchor %u is outside the cube or not in Morton order",
+                              i);
         previous = code;
     }
     return ADCGS_OK;

@@ -120,8 +120,8 @@ static void print_header(const report *r, const char *name)
            i->truncated ? ", TRUNCATED" : "");
     printf("time        %g .. %g s, %d segment%s, %g frames/s\n", i->time_start, i->time_end, i->segments,
            i->segments == 1 ? "" : "s", i->frame_rate);
-    printf("scene       origin %g %g %g, scale %g, axes %s, unit %s\n", i->scene_origin[0], i->scene_origin[1], i->scene_origin[2],
-           i->scene_scale, i->axes, i->units);
+    printf("scene       origin %g %g %g, scale %g, axes %s, unit %s\n", i->scene_origin[0], i->scene_origin[1],
+           i->scene_origin[2], i->scene_scale, i->axes, i->units);
     printf("picture     colour %s, background %g %g %g, filter %g px^2\n", i->colour, (double)i->background[0],
            (double)i->background[1], (double)i->background[2], (double)r->stream.screen_filter);
     printf("model       %u anchors (%u static), %u Gaussians of at most %d each, %u weights, %d of %d layers\n", i->anchors,
@@ -166,8 +166,8 @@ static void print_segments(const report *r)
 {
     for (uint32_t i = 0; i < r->stream.n_segments; i++) {
         const adcgs_model *m = &r->stream.segments[i];
-        printf("\nsegment %u: %g .. %g s, %u anchors, depth %u, voxel %g, %u Gaussians, %d layers\n", i, m->time_start, m->time_end,
-               m->n, m->depth, (double)m->voxel, count_gaussians(m), m->layers);
+        printf("\nsegment %u: %g .. %g s, %u anchors, depth %u, voxel %g, %u Gaussians, %d layers\n", i, m->time_start,
+               m->time_end, m->n, m->depth, (double)m->voxel, count_gaussians(m), m->layers);
         print_networks(m);
     }
 }
@@ -347,8 +347,8 @@ int main(int argc, char **argv)
     const adcgs_option options[] = {
         { "json", 'j', ADCGS_OPTION_FLAG, &s.json, 0, 0, NULL, "print one JSON object", NULL, NULL },
         { "bits", 'b', ADCGS_OPTION_FLAG, &s.bits, 0, 0, NULL, "list every chunk with its bits", NULL, NULL },
-        { "trace", 't', ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL, "print position in bits, name and value of every\nsyntax element",
-          NULL, NULL },
+        { "trace", 't', ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL,
+          "print position in bits, name and value of every\nsyntax element", NULL, NULL },
         { "digest", 'd', ADCGS_OPTION_FLAG, &s.digest, 0, 0, NULL, "print the digest of each segment's model", NULL, NULL },
     };
     const adcgs_cli cli = { "adcgs-info", "FILE|-", "Says what an adcgs stream holds and where its bytes are.", NULL, options,

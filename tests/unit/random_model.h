@@ -19,7 +19,7 @@ void adcgs_random_params(adcgs_params *params, int moving, uint64_t *state);
 /** A valid model of n anchors in a cube of depth bits per axis (n <= 2^(3 depth)), times 0..1 s. Allocated without a memory. */
 adcgs_status adcgs_random_model(adcgs_model *model, const adcgs_params *params, uint32_t n, int depth, uint64_t *state,
                                 adcgs_error *error);
-/** A stream of segments with such models, some cameras and metadata; every second segment shares the networks of the one before. */
+/** A stream of such models, some cameras and metadata; every second segment shares the networks of the one before. */
 adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t segments, uint32_t n, int depth,
                                  uint64_t *state, adcgs_error *error);
 /** Draw all values of a model anew along the walk, for the networks, flags and masks that it has. */

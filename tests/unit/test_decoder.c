@@ -162,8 +162,9 @@ static void test_segments_by_time(void **state)
     fixture *f = *state;
     adcgs_decoder *d = open_with(f, NULL);
     const double middle = f->stream.segments[1].time_start;
-    const double times[] = { -5, 0, nextafter(middle, 0), middle, f->stream.segments[1].time_end, f->stream.segments[2].time_start,
-                             1e9, NAN };
+    const double times[] = {
+        -5, 0, nextafter(middle, 0), middle, f->stream.segments[1].time_end, f->stream.segments[2].time_start, 1e9, NAN
+    };
     const int expected[] = { 0, 0, 0, 1, 1, 2, 2, 0 };
     for (size_t i = 0; i < ADCGS_COUNTOF(times); i++) {
         const adcgs_model *m = &f->stream.segments[expected[i]];
