@@ -40,8 +40,8 @@ static const recipe recipes[] = {
     { "good-slices.adcgs", "several slices per layer", 105,
       { .k = 2, .n_fv = 6, .n_fg = 2, .chunks = 2, .n_eta = 8 }, 1, 400, 8, 1, 6 },
     { "good-k16.adcgs", "sixteen primitives per anchor, one row of time embeddings", 106,
-      { .k = 16, .n_fv = 10, .n_fg = 2, .chunks = 1, .octaves = 10, .coarse_rotation = 1, .time_rows = 1, .time_width = 1 }, 1, 40,
-      5, 1, 10 },
+      { .k = 16, .n_fv = 10, .n_fg = 2, .chunks = 1, .octaves = 10, .coarse_rotation = 1, .time_rows = 1, .time_width = 1 },
+      1, 40, 5, 1, 10 },
     { "good-wide.adcgs", "the widest features: 64 channels of f_v, 32 of f_g", 107,
       { .k = 2, .n_fv = 64, .n_fg = 32, .chunks = 4, .n_eta = 3 }, 1, 50, 10, 1, 10 },
     { "good-deep.adcgs", "the finest grid, level 3", 108,
@@ -67,21 +67,32 @@ typedef struct variant {
 } variant;
 
 static const variant variants[] = {
-    { "good-ancillary.adcgs", "an unknown ancillary chunk, to be skipped", "good-still.adcgs", EDIT_INSERT, "SEGM", 0, 0, "note", "" },
-    { "bad-signature.adcgs", "text-mode transfer has damaged the signature", "good-one-anchor.adcgs", EDIT_BYTE, NULL, 4, 0x07, NULL,
-      "data" },
-    { "bad-chunk-header.adcgs", "a flipped bit in a chunk's header", "good-one-anchor.adcgs", EDIT_BYTE, NULL, 12, 0x01, NULL, "data" },
-    { "bad-chunk-payload.adcgs", "a flipped bit in a chunk's payload", "good-one-anchor.adcgs", EDIT_BYTE, NULL, 30, 0x10, NULL, "data" },
-    { "bad-empty.adcgs", "no byte at all", "good-one-anchor.adcgs", EDIT_CUT, NULL, 0, 0, NULL, "truncated" },
-    { "bad-cut.adcgs", "the last third is missing", "good-moving.adcgs", EDIT_CUT, NULL, 667, 0, NULL, "truncated" },
-    { "bad-version.adcgs", "a later major version", "good-one-anchor.adcgs", EDIT_PAYLOAD, "HEAD", 0, 99, NULL, "unsupported" },
-    { "bad-profile.adcgs", "an unknown profile", "good-one-anchor.adcgs", EDIT_PAYLOAD, "HEAD", 4, 7, NULL, "unsupported" },
-    { "bad-arith.adcgs", "the reserved arithmetic of the entropy networks", "good-one-anchor.adcgs", EDIT_PAYLOAD, "HEAD", 6, 1, NULL,
-      "unsupported" },
-    { "bad-critical.adcgs", "an unknown critical chunk", "good-one-anchor.adcgs", EDIT_INSERT, "SEGM", 0, 0, "XTRA", "unsupported" },
-    { "bad-level.adcgs", "a grid finer than its level allows", "good-deep.adcgs", EDIT_PAYLOAD, "HEAD", 5, 1, NULL, "limit" },
-    { "bad-order.adcgs", "features before positions", "good-one-anchor.adcgs", EDIT_SWAP, "GEOM", 0, 0, NULL, "data" },
-    { "bad-digest.adcgs", "a model digest that is not the model's", "good-still.adcgs", EDIT_PAYLOAD, "hash", 3, 0x5a, NULL, "data" },
+    { "good-ancillary.adcgs", "an unknown ancillary chunk, to be skipped",
+      "good-still.adcgs", EDIT_INSERT, "SEGM", 0, 0, "note", "" },
+    { "bad-signature.adcgs", "text-mode transfer has damaged the signature",
+      "good-one-anchor.adcgs", EDIT_BYTE, NULL, 4, 0x07, NULL, "data" },
+    { "bad-chunk-header.adcgs", "a flipped bit in a chunk's header",
+      "good-one-anchor.adcgs", EDIT_BYTE, NULL, 12, 0x01, NULL, "data" },
+    { "bad-chunk-payload.adcgs", "a flipped bit in a chunk's payload",
+      "good-one-anchor.adcgs", EDIT_BYTE, NULL, 30, 0x10, NULL, "data" },
+    { "bad-empty.adcgs", "no byte at all",
+      "good-one-anchor.adcgs", EDIT_CUT, NULL, 0, 0, NULL, "truncated" },
+    { "bad-cut.adcgs", "the last third is missing",
+      "good-moving.adcgs", EDIT_CUT, NULL, 667, 0, NULL, "truncated" },
+    { "bad-version.adcgs", "a later major version",
+      "good-one-anchor.adcgs", EDIT_PAYLOAD, "HEAD", 0, 99, NULL, "unsupported" },
+    { "bad-profile.adcgs", "an unknown profile",
+      "good-one-anchor.adcgs", EDIT_PAYLOAD, "HEAD", 4, 7, NULL, "unsupported" },
+    { "bad-arith.adcgs", "the reserved arithmetic of the entropy networks",
+      "good-one-anchor.adcgs", EDIT_PAYLOAD, "HEAD", 6, 1, NULL, "unsupported" },
+    { "bad-critical.adcgs", "an unknown critical chunk",
+      "good-one-anchor.adcgs", EDIT_INSERT, "SEGM", 0, 0, "XTRA", "unsupported" },
+    { "bad-level.adcgs", "a grid finer than its level allows",
+      "good-deep.adcgs", EDIT_PAYLOAD, "HEAD", 5, 1, NULL, "limit" },
+    { "bad-order.adcgs", "features before positions",
+      "good-one-anchor.adcgs", EDIT_SWAP, "GEOM", 0, 0, NULL, "data" },
+    { "bad-digest.adcgs", "a model digest that is not the model's",
+      "good-still.adcgs", EDIT_PAYLOAD, "hash", 3, 0x5a, NULL, "data" },
 };
 
 /* ---- Expectations ---- */
@@ -119,8 +130,9 @@ static void print_cameras(FILE *out)
     fprintf(out, ",\n      \"cameras\": [");
     for (size_t i = 0; i < ADCGS_COUNTOF(cameras); i++) {
         const adcgs_camera *const c = &cameras[i];
-        fprintf(out, "%s\n        { \"name\": \"%s\", \"width\": %d, \"height\": %d, \"fx\": %.17g, \"fy\": %.17g, \"cx\": %.17g, \"cy\": %.17g,",
-                i ? "," : "", c->name, (int)c->width, (int)c->height, c->fx, c->fy, c->cx, c->cy);
+        fprintf(out, "%s\n        { \"name\": \"%s\", \"width\": %d, \"height\": %d, ", i ? "," : "", c->name, (int)c->width,
+                (int)c->height);
+        fprintf(out, "\"fx\": %.17g, \"fy\": %.17g, \"cx\": %.17g, \"cy\": %.17g,", c->fx, c->fy, c->cx, c->cy);
         fprintf(out, "\n          \"near\": %.17g, \"cam_to_world\": [", c->near_plane);
         for (int k = 0; k < 12; k++)
             fprintf(out, "%s%.17g", k ? ", " : "", c->cam_to_world[k]);
@@ -129,7 +141,8 @@ static void print_cameras(FILE *out)
     fprintf(out, " ]");
 }
 
-static adcgs_status print_frame(FILE *out, adcgs_decoder *decoder, int camera, double time, const char *separator, adcgs_error *error)
+static adcgs_status print_frame(FILE *out, adcgs_decoder *decoder, int camera, double time, const char *separator,
+                                adcgs_error *error)
 {
     static float rgb[3 * 64 * 64];
     static uint8_t bytes[sizeof rgb];
@@ -208,8 +221,8 @@ static adcgs_status finish(maker *m, const char *name, const char *title, const 
                           adcgs_status_name(opened), why.text, status);
     }
     hex_of(file->data, file->size, hex);
-    fprintf(m->manifest, "%s\n    { \"file\": \"vectors/%s\", \"md5\": \"%s\",\n      \"title\": \"%s\",\n      \"verdict\": \"%s\"", m->n++ ? "," : "",
-            name, hex, title, *status ? "bad" : "good");
+    fprintf(m->manifest, "%s\n    { \"file\": \"vectors/%s\", \"md5\": \"%s\",\n", m->n++ ? "," : "", name, hex);
+    fprintf(m->manifest, "      \"title\": \"%s\",\n      \"verdict\": \"%s\"", title, *status ? "bad" : "good");
     adcgs_status result = ADCGS_OK;
     if (*status)
         fprintf(m->manifest, ", \"status\": \"%s\"", status);

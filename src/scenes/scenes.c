@@ -53,7 +53,9 @@ const char *adcgs_scenes_about(int i)
 
 static int split_size(const adcgs_scenes_entry *scene, int split)
 {
-    return split == ADCGS_SPLIT_TRAIN ? scene->cameras / scene->turns * scene->times : split == ADCGS_SPLIT_VAL ? scene->n_val : scene->n_test;
+    return split == ADCGS_SPLIT_TRAIN ? scene->cameras / scene->turns * scene->times
+           : split == ADCGS_SPLIT_VAL ? scene->n_val
+                                      : scene->n_test;
 }
 
 int adcgs_scenes_count(const char *name)
@@ -107,7 +109,8 @@ static adcgs_status make_directory(const char *path, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static adcgs_status join(char path[PATH_BYTES], const char *directory, const char *name, const char *extension, adcgs_error *error)
+static adcgs_status join(char path[PATH_BYTES], const char *directory, const char *name, const char *extension,
+                         adcgs_error *error)
 {
     if (snprintf(path, PATH_BYTES, "%s/%s%s%s", directory, name, *extension ? "." : "", extension) >= PATH_BYTES)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.60s...: path too long", directory);

@@ -52,8 +52,9 @@ static const adcgs_trace_object mini[] = {
      .frequency = 3.0, .colour = {{0.80, 0.30, 0.20}, {0.95, 0.75, 0.30}}, .seed = 34, .velocity = {0.60, 0.0, 0.0}},
 };
 
-#define STAGE .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage), .size = 256, .cameras = 12, .times = 40, .turns = 3, .n_val = 5, \
-              .n_test = 10, .distance = 4.2, .target = {0.0, 0.0, 0.35}
+#define STAGE                                                                                                         \
+    .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage), .size = 256, .cameras = 12, .times = 40, .turns = 3, .n_val = 5, \
+    .n_test = 10, .distance = 4.2, .target = {0.0, 0.0, 0.35}
 
 static const adcgs_scenes_entry entries[] = {
     {.name = "demo", .about = "things on a table: some still, five that hop, turn, pass behind, fade and fly",
@@ -65,8 +66,8 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "fade", .about = "the demo's table, only a colour changes", .moving = FADE, STAGE},
     {.name = "orbit", .about = "the demo's table, only the small ball flies", .moving = ORBIT, STAGE},
     {.name = "tiny", .about = "a miniature for tests: a box and a ball that slides", .objects = mini,
-     .n_objects = (int)ADCGS_COUNTOF(mini), .moving = 1 << 3, .size = 64, .cameras = 6, .times = 8, .turns = 2, .n_val = 1, .n_test = 3,
-     .distance = 4.2, .target = {0.0, 0.0, 0.3}},
+     .n_objects = (int)ADCGS_COUNTOF(mini), .moving = 1 << 3, .size = 64, .cameras = 6, .times = 8, .turns = 2, .n_val = 1,
+     .n_test = 3, .distance = 4.2, .target = {0.0, 0.0, 0.3}},
 };
 
 const adcgs_scenes_entry *adcgs_scenes_entry_at(int i)

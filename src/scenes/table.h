@@ -12,7 +12,7 @@ typedef struct adcgs_scenes_entry {
     uint32_t moving;         /**< bit i: object i moves; the others keep the pose of time 0 */
     int size;                /**< width and height */
     int cameras, times;
-    int turns;               /**< each moment is seen by every turns-th camera, a different set from moment to moment; divides cameras */
+    int turns; /**< each moment is seen by every turns-th camera, a different set from moment to moment; divides cameras */
     int n_val, n_test;
     double distance;         /**< of the cameras from the target */
     double target[3];

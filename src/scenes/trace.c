@@ -323,9 +323,10 @@ static void trace_row(void *arg, int y, int thread)
             for (int c = 0; c < 3; c++)
                 sum[c] += colour[c];
         }
+        float *const pixel = j->rgb + 3 * ((size_t)y * (size_t)j->width + (size_t)x);
         for (int c = 0; c < 3; c++) {
             const double mean = sum[c] / (s * s);
-            j->rgb[3 * ((size_t)y * (size_t)j->width + (size_t)x) + (size_t)c] = (float)(mean < 0.0 ? 0.0 : mean > 1.0 ? 1.0 : mean);
+            pixel[c] = (float)(mean < 0.0 ? 0.0 : mean > 1.0 ? 1.0 : mean);
         }
     }
 }
@@ -343,8 +344,8 @@ static void spread_light(job *j)
     }
 }
 
-adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time, int width,
-                                int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error)
+adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time,
+                                int width, int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error)
 {
     if (samples < 1 || samples > SAMPLES_MAX)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "ray tracer: %d samples, expected 1..%d", samples, SAMPLES_MAX);

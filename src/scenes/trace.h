@@ -61,8 +61,8 @@ void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const dou
  * Picture of objects [n] at a time, 0..1 interleaved rgb [height][width][3], with samples x samples rays per pixel.
  * The same bytes for any number of threads.
  */
-adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time, int width,
-                                int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error);
+adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time,
+                                int width, int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error);
 
 /** The mix factor 0..1 of an object's texture at a local point. */
 double adcgs_texture_mix(const adcgs_trace_object *object, const double point[3]);

@@ -39,8 +39,8 @@ static void check_vector(const adcgs_manifest *manifest, const adcgs_vector *vec
     else
         good = try_everywhere(vector, data, bytes, &runs, what, sizeof what);
     free(data);
-    printf("%-32s %-11s %2d frames %3d runs  %s\n", vector->file, vector->status == ADCGS_OK ? "good" : "bad", vector->n_frames, runs,
-           good ? "ok" : what);
+    printf("%-32s %-11s %2d frames %3d runs  %s\n", vector->file, vector->status == ADCGS_OK ? "good" : "bad", vector->n_frames,
+           runs, good ? "ok" : what);
     t->runs += runs;
     t->faults += !good;
 }
@@ -116,11 +116,15 @@ int main(int argc, char **argv)
         {.name = "self-test", .kind = ADCGS_OPTION_FLAG, .target = &self,
          .help = "damage each expectation and each stream in memory, one at a time, and require\nthat the check notices"},
     };
-    const adcgs_cli cli = {.program = "adcgs-conform", .operands = "[MANIFEST]",
-                           .summary = "Check this decoder against conformance vectors.",
-                           .details = "MANIFEST is conformance/manifest.json unless given. Each vector is decoded at every CPU level that\n"
-                                      "this machine has, with 1, 2 and 7 threads.",
-                           .options = options, .n_options = ADCGS_COUNTOF(options), .max_operands = 1};
+    const adcgs_cli cli = {
+        .program = "adcgs-conform",
+        .operands = "[MANIFEST]",
+        .summary = "Check this decoder against conformance vectors.",
+        .details = "MANIFEST is conformance/manifest.json unless given. Each vector is decoded at every CPU level that\n"
+                   "this machine has, with 1, 2 and 7 threads.",
+        .options = options,
+        .n_options = ADCGS_COUNTOF(options),
+        .max_operands = 1};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;

@@ -27,8 +27,11 @@ int main(int argc, char **argv)
          .help = "threads (default: one per CPU)"},
         {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &list, .help = "list the scenes and leave"},
     };
-    const adcgs_cli cli = {.program = "adcgs-demo-scene", .operands = "", .summary = "Render a built-in animated scene to a folder.",
-                           .options = options, .n_options = ADCGS_COUNTOF(options)};
+    const adcgs_cli cli = {.program = "adcgs-demo-scene",
+                           .operands = "",
+                           .summary = "Render a built-in animated scene to a folder.",
+                           .options = options,
+                           .n_options = ADCGS_COUNTOF(options)};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;

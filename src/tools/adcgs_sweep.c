@@ -141,7 +141,8 @@ static int sweep_grid(const adcgs_cli *cli, const adcgs_sweep *sweep, grid *g, i
     const int worst = run_all(cli, sweep, g, jobs);
     if (adcgs_sweep_write(sweep, g->points, g->n, &chart, &error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
-    adcgs_cli_note(cli, "wrote %s/sweep.csv, sweep.json%s", sweep->directory, chart ? ", sweep.svg" : "; no chart (is gnuplot there?)");
+    adcgs_cli_note(cli, "wrote %s/sweep.csv, sweep.json%s", sweep->directory,
+                   chart ? ", sweep.svg" : "; no chart (is gnuplot there?)");
     return worst;
 }
 
@@ -150,27 +151,23 @@ int main(int argc, char **argv)
     const char *lambdas = NULL, *ks = NULL, *directory = NULL, *preset = NULL;
     int iterations = 0, jobs = 1, threads = 0, resume = 0, first = 0;
     const adcgs_option options[] = {
-        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &directory, .value = "DIR",
-         .help = "folder for streams, logs, table and chart (required)"},
-        {.name = "lambda", .letter = 'l', .kind = ADCGS_OPTION_STRING, .target = &lambdas, .value = "A,B,C",
-         .help = "values of the encoder's --lambda, at most 16 (required)"},
-        {.name = "k", .kind = ADCGS_OPTION_STRING, .target = &ks, .value = "A,B,C",
-         .help = "values of the encoder's --k (default: the preset's)"},
-        {.name = "preset", .letter = 'p', .kind = ADCGS_OPTION_STRING, .target = &preset, .value = "NAME",
-         .help = "preset of the encoder (default: its own)"},
-        {.name = "iterations", .letter = 'n', .kind = ADCGS_OPTION_INT, .target = &iterations, .min = 1, .max = 10000000, .value = "N",
-         .help = "training iterations (default: the preset's)"},
-        {.name = "jobs", .letter = 'j', .kind = ADCGS_OPTION_INT, .target = &jobs, .min = 1, .max = 64, .value = "N",
-         .help = "encoders at a time (default: 1)"},
-        {.name = "threads", .letter = 't', .kind = ADCGS_OPTION_INT, .target = &threads, .min = 0, .max = 256, .value = "N",
-         .help = "threads of each encoder (default: one per CPU)"},
-        {.name = "resume", .kind = ADCGS_OPTION_FLAG, .target = &resume,
-         .help = "keep points that are finished and were made with the same settings"},
+        {"output", 'o', ADCGS_OPTION_STRING, &directory, 0, 0, "DIR", "folder for all results (required)", NULL, NULL},
+        {"lambda", 'l', ADCGS_OPTION_STRING, &lambdas, 0, 0, "A,B,C", "values of the encoder's --lambda (required)", NULL, NULL},
+        {"k", 0, ADCGS_OPTION_STRING, &ks, 0, 0, "A,B,C", "values of the encoder's --k (default: the preset's)", NULL, NULL},
+        {"preset", 'p', ADCGS_OPTION_STRING, &preset, 0, 0, "NAME", "preset of the encoder (default: its own)", NULL, NULL},
+        {"iterations", 'n', ADCGS_OPTION_INT, &iterations, 1, 10000000, "N", "of training (default: the preset's)", NULL, NULL},
+        {"jobs", 'j', ADCGS_OPTION_INT, &jobs, 1, 64, "N", "encoders at a time (default: 1)", NULL, NULL},
+        {"threads", 't', ADCGS_OPTION_INT, &threads, 0, 256, "N", "threads of each encoder (default: one per CPU)", NULL, NULL},
+        {"resume", 0, ADCGS_OPTION_FLAG, &resume, 0, 0, NULL, "keep finished points that have the same settings", NULL, NULL},
     };
-    const adcgs_cli cli = {.program = "adcgs-sweep", .operands = "SCENE",
+    const adcgs_cli cli = {.program = "adcgs-sweep",
+                           .operands = "SCENE",
                            .summary = "Encode a scene at several rates, measure each decoded file, draw the curve.",
-                           .details = "Runs adcgs-enc and adcgs-eval from the folder that adcgs-sweep itself lies in.", .options = options,
-                           .n_options = ADCGS_COUNTOF(options), .min_operands = 1, .max_operands = 1};
+                           .details = "Runs adcgs-enc and adcgs-eval from the folder that adcgs-sweep itself lies in.",
+                           .options = options,
+                           .n_options = ADCGS_COUNTOF(options),
+                           .min_operands = 1,
+                           .max_operands = 1};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;
@@ -183,7 +180,8 @@ int main(int argc, char **argv)
     g->n_ks = ks ? parse_list(ks, 1.0, 16.0, g->ks) : 0;
     int code = 2;
     if (g->n_lambdas < 1 || g->n_ks < 0)
-        code = adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "bad list \"%s\": expected numbers, separated by commas", g->n_lambdas < 1 ? lambdas : ks);
+        code = adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "bad list \"%s\": expected numbers, separated by commas",
+                               g->n_lambdas < 1 ? lambdas : ks);
     else {
         char programs[4096];
         find_programs(argv[0], programs, sizeof programs);

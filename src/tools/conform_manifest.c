@@ -50,9 +50,9 @@ static adcgs_status read_camera(adcgs_vector *v, adcgs_camera *c, json_t *object
     const char *name;
     json_t *pose;
     json_error_t where;
-    if (json_unpack_ex(object, &where, JSON_STRICT, "{s:s, s:i, s:i, s:F, s:F, s:F, s:F, s:F, s:o}", "name", &name, "width", &c->width,
-                       "height", &c->height, "fx", &c->fx, "fy", &c->fy, "cx", &c->cx, "cy", &c->cy, "near", &c->near_plane,
-                       "cam_to_world", &pose) != 0)
+    if (json_unpack_ex(object, &where, JSON_STRICT, "{s:s, s:i, s:i, s:F, s:F, s:F, s:F, s:F, s:o}", "name", &name, "width",
+                       &c->width, "height", &c->height, "fx", &c->fx, "fy", &c->fy, "cx", &c->cx, "cy", &c->cy, "near",
+                       &c->near_plane, "cam_to_world", &pose) != 0)
         return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: %s: camera: %s", v->file, where.text);
     snprintf(c->name, sizeof c->name, "%s", name);
     if (json_array_size(pose) != ADCGS_COUNTOF(c->cam_to_world))
@@ -66,15 +66,16 @@ static adcgs_status read_frame(adcgs_vector *v, int i, json_t *object, adcgs_err
 {
     const char *md5;
     json_error_t where;
-    if (json_unpack_ex(object, &where, JSON_STRICT, "{s:i, s:F, s:s}", "camera", &v->frames[i].camera, "time", &v->frames[i].time, "md5",
-                       &md5) != 0)
+    if (json_unpack_ex(object, &where, JSON_STRICT, "{s:i, s:F, s:s}", "camera", &v->frames[i].camera, "time", &v->frames[i].time,
+                       "md5", &md5) != 0)
         return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: %s: frame %d: %s", v->file, i, where.text);
     if (copy_hex(v->frames[i].md5, md5) != 0 || v->frames[i].camera < 0 || v->frames[i].camera >= v->n_cameras)
         return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: %s: frame %d: bad MD5 or no such camera", v->file, i);
     return ADCGS_OK;
 }
 
-static adcgs_status read_good(adcgs_vector *v, const json_t *models, const json_t *cameras, const json_t *frames, adcgs_error *error)
+static adcgs_status read_good(adcgs_vector *v, const json_t *models, const json_t *cameras, const json_t *frames,
+                              adcgs_error *error)
 {
     if (json_array_size(models) == 0)
         return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: %s: a good vector names its models", v->file);
@@ -96,17 +97,20 @@ static adcgs_status read_vector(adcgs_vector *v, json_t *object, int index, adcg
     const char *file, *md5, *title, *verdict, *status = NULL;
     json_t *models = NULL, *cameras = NULL, *frames = NULL;
     json_error_t where;
-    if (json_unpack_ex(object, &where, JSON_STRICT, "{s:s, s:s, s:s, s:s, s?s, s?o, s?o, s?o}", "file", &file, "md5", &md5, "title", &title,
-                       "verdict", &verdict, "status", &status, "models", &models, "cameras", &cameras, "frames", &frames) != 0)
+    if (json_unpack_ex(object, &where, JSON_STRICT, "{s:s, s:s, s:s, s:s, s?s, s?o, s?o, s?o}", "file", &file, "md5", &md5,
+                       "title", &title, "verdict", &verdict, "status", &status, "models", &models, "cameras", &cameras, "frames",
+                       &frames) != 0)
         return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: vector %d: %s", index, where.text);
-    if (snprintf(v->file, sizeof v->file, "%s", file) >= (int)sizeof v->file || file[0] == '/' || strstr(file, "..") || copy_hex(v->md5, md5) != 0)
+    if (snprintf(v->file, sizeof v->file, "%s", file) >= (int)sizeof v->file || file[0] == '/' || strstr(file, "..") ||
+        copy_hex(v->md5, md5) != 0)
         return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: vector %d: bad file name or MD5", index);
     snprintf(v->title, sizeof v->title, "%s", title);
     if (!strcmp(verdict, "good") && !status)
         return read_good(v, models, cameras, frames, error);
     if (!strcmp(verdict, "bad") && status && !models && !cameras && !frames && adcgs_vector_class(status, &v->status) == 0)
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: %s: expected verdict good, or bad with a status and nothing else", v->file);
+    return adcgs_fail(error, ADCGS_ERR_DATA, "manifest: %s: expected verdict good, or bad with a status and nothing else",
+                      v->file);
 }
 
 static adcgs_status read_root(adcgs_manifest *m, json_t *root, const char *path, adcgs_error *error)

@@ -35,7 +35,7 @@ adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_point *point
 /** sweep.csv, sweep.json and, with gnuplot, sweep.svg in the folder. *chart: whether there is a chart. */
 adcgs_status adcgs_sweep_write(const adcgs_sweep *sweep, const adcgs_sweep_point *points, int n, int *chart, adcgs_error *error);
 
-/** Run argv[0] with stdout and stderr to files (NULL: as they are; append: add to them). *exit_code: 127 if it could not be started. */
+/** Run argv[0], stdout to the file out, stderr added to the file log (NULL: as they are). *exit_code: 127 if it did not start. */
 adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *log, int *exit_code, adcgs_error *error);
 
 #endif

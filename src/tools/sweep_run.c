@@ -61,7 +61,8 @@ static void path_of(char path[PATH_BYTES], const adcgs_sweep *sweep, const adcgs
     snprintf(path, PATH_BYTES, "%s/%s%s", sweep->directory, point->tag, suffix);
 }
 
-static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_point *point, char *const argv[], const char *out, adcgs_error *error)
+static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_point *point, char *const argv[], const char *out,
+                         adcgs_error *error)
 {
     char log[PATH_BYTES];
     int code = 0;
@@ -72,7 +73,8 @@ static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_point *poin
     return ADCGS_OK;
 }
 
-static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_point *point, char *file, const char *out, adcgs_error *error)
+static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_point *point, char *file, const char *out,
+                           adcgs_error *error)
 {
     char program[PATH_BYTES], lambda[32], k[16], iterations[16], threads[16];
     char *argv[ARGS_MAX];
@@ -104,7 +106,8 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_point *po
     return call(sweep, point, argv, out, error);
 }
 
-static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_point *point, char *file, const char *out, adcgs_error *error)
+static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_point *point, char *file, const char *out,
+                             adcgs_error *error)
 {
     char program[PATH_BYTES];
     snprintf(program, sizeof program, "%s/adcgs-eval", sweep->programs);
@@ -114,8 +117,8 @@ static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_point *
 
 static json_t *settings_of(const adcgs_sweep *sweep, const adcgs_sweep_point *point)
 {
-    return json_pack("{s:s, s:s, s:i, s:f, s:i}", "scene", sweep->scene, "preset", sweep->preset ? sweep->preset : "", "iterations",
-                     sweep->iterations, "lambda", point->lambda, "k", point->k);
+    return json_pack("{s:s, s:s, s:i, s:f, s:i}", "scene", sweep->scene, "preset", sweep->preset ? sweep->preset : "",
+                     "iterations", sweep->iterations, "lambda", point->lambda, "k", point->k);
 }
 
 static json_t *load(const char *path, adcgs_error *error)
@@ -128,8 +131,8 @@ static json_t *load(const char *path, adcgs_error *error)
 }
 
 /* The result file: the settings, and both programs' own reports. Written last, so that its presence means a finished point. */
-static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_point *point, const char *encoded, const char *evaluated,
-                                 adcgs_error *error)
+static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_point *point, const char *encoded,
+                                 const char *evaluated, adcgs_error *error)
 {
     char path[PATH_BYTES];
     adcgs_atomic file;
@@ -138,9 +141,11 @@ static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_poi
         json_decref(encoder);
         return ADCGS_ERR_DATA;
     }
-    json_t *const root = json_pack("{s:o, s:o, s:o}", "settings", settings_of(sweep, point), "encoder", encoder, "evaluation", evaluation);
+    json_t *const root =
+        json_pack("{s:o, s:o, s:o}", "settings", settings_of(sweep, point), "encoder", encoder, "evaluation", evaluation);
     path_of(path, sweep, point, ".json");
-    adcgs_status status = root ? adcgs_atomic_open(&file, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    adcgs_status status =
+        root ? adcgs_atomic_open(&file, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (status == ADCGS_OK) {
         const int bad = json_dumpf(root, file.file, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
         if (!bad)

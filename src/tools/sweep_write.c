@@ -49,7 +49,8 @@ static adcgs_status write_csv(const char *path, const adcgs_sweep_point *points,
     return finish(&file, error);
 }
 
-static adcgs_status write_json(const char *path, const adcgs_sweep *sweep, const adcgs_sweep_point *points, int n, adcgs_error *error)
+static adcgs_status write_json(const char *path, const adcgs_sweep *sweep, const adcgs_sweep_point *points, int n,
+                               adcgs_error *error)
 {
     adcgs_atomic file;
     adcgs_json json;

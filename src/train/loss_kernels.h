@@ -57,8 +57,9 @@ static void ring_rows(const float *ring, int maps, int last, const float *rows[T
                                 *restrict const r3 = rows[3], *restrict const r4 = rows[4], *restrict const r5 = rows[5],   \
                                 *restrict const r6 = rows[6], *restrict const r7 = rows[7], *restrict const r8 = rows[8],   \
                                 *restrict const r9 = rows[9], *restrict const r10 = rows[10]
-#define COLUMN(j)                                                                                                     \
-    (G0 * r5[j] + G1 * (r4[j] + r6[j]) + G2 * (r3[j] + r7[j]) + G3 * (r2[j] + r8[j]) + G4 * (r1[j] + r9[j]) + G5 * (r0[j] + r10[j]))
+#define COLUMN(j)                                                                                             \
+    (G0 * r5[j] + G1 * (r4[j] + r6[j]) + G2 * (r3[j] + r7[j]) + G3 * (r2[j] + r8[j]) + G4 * (r1[j] + r9[j]) + \
+     G5 * (r0[j] + r10[j]))
 
 static float sum_lanes(const float lane[16])
 {
@@ -122,8 +123,8 @@ static void ssim_row(const float *const rows[TAPS], float *restrict derivatives,
 }
 
 /* Gradient of a row, and |x - y| and (x - y)^2 for the sums. */
-static void gradient_row(const adcgs_loss_strip *s, const float *const rows[TAPS], const float *restrict x, const float *restrict y,
-                         float *restrict grad, float *restrict distance, float *restrict square)
+static void gradient_row(const adcgs_loss_strip *s, const float *const rows[TAPS], const float *restrict x,
+                         const float *restrict y, float *restrict grad, float *restrict distance, float *restrict square)
 {
     TAKE_ROWS(rows);
     const float l1_scale = s->l1_scale, ssim_scale = s->ssim_scale;

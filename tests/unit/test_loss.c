@@ -81,11 +81,13 @@ typedef struct pictures {
 static pictures make(int w, int h)
 {
     const size_t n = 3 * (size_t)w * (size_t)h;
-    pictures p = {.w = w, .h = h, .x = malloc(n * 4), .y = malloc(n * 4), .grad = malloc(n * 4), .dx = malloc(n * 8), .dy = malloc(n * 8)};
+    pictures p = {
+        .w = w, .h = h, .x = malloc(n * 4), .y = malloc(n * 4), .grad = malloc(n * 4), .dx = malloc(n * 8), .dy = malloc(n * 8)};
     uint32_t seed = 12345u + (uint32_t)w;
     for (size_t i = 0; i < n; i++) {
         seed = seed * 1664525u + 1013904223u;
-        const double noise = (seed >> 8) / 16777216.0, wave = 0.5 + 0.3 * sin((double)(i % (size_t)w) * 0.3) * cos((double)i * 0.01);
+        const double noise = (seed >> 8) / 16777216.0,
+                     wave = 0.5 + 0.3 * sin((double)(i % (size_t)w) * 0.3) * cos((double)i * 0.01);
         p.y[i] = (float)(0.8 * wave + 0.2 * noise);
         seed = seed * 1664525u + 1013904223u;
         const float change = 0.01f + 0.15f * (float)(seed >> 9) / 8388608.0f;

@@ -27,7 +27,8 @@ static void render(const adcgs_scenes_entry *scene, double time, adcgs_pool *poo
     adcgs_trace_camera camera = {.focal = 1.25 * SIZE};
     const double eye[3] = {1.5, -3.8, 1.6};
     adcgs_trace_look(&camera, eye, scene->target);
-    assert_int_equal(adcgs_trace_render(scene->objects, scene->n_objects, &camera, time, SIZE, SIZE, 3, pool, rgb, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_trace_render(scene->objects, scene->n_objects, &camera, time, SIZE, SIZE, 3, pool, rgb, NULL),
+                     ADCGS_OK);
 }
 
 static void threads_do_not_matter(void **state)
@@ -68,7 +69,8 @@ static void table_is_sound(void **state)
     for (int i = 0; adcgs_scenes_name(i); i++) {
         const adcgs_scenes_entry *const scene = adcgs_scenes_entry_at(i);
         assert_ptr_equal(adcgs_scenes_entry_find(scene->name), scene);
-        assert_int_equal(adcgs_scenes_count(scene->name), scene->cameras / scene->turns * scene->times + scene->n_val + scene->n_test);
+        assert_int_equal(adcgs_scenes_count(scene->name),
+                         scene->cameras / scene->turns * scene->times + scene->n_val + scene->n_test);
         assert_true(scene->n_objects < 32 && scene->moving >> scene->n_objects == 0);
         assert_true(scene->cameras > 1 && scene->times > 1);
     }

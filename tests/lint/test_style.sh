@@ -1,0 +1,19 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# What every source file has (licence line, a word on what it is for) and has not (tabs, trailing blanks).
+set -u
+cd "${srcdir:-.}" || exit 99
+faults=0
+
+fault()
+{
+    echo "$*" >&2
+    faults=$((faults + 1))
+}
+
+while read -r file; do
+    head -n 1 "$file" | grep -q 'SPDX-License-Identifier: BSD-2-Clause' || fault "$file:1: no licence line"
+    head -n 4 "$file" | grep -q '\\file' || fault "$file: no \\file comment"
+    grep -nHP '\t|[ \r]$' "$file" >&2 && fault "$file: tab or trailing blank"
+done < <(find codec src tests conformance -name '*.[ch]' -o -name '*.cc')
+[ "$faults" -eq 0 ]
