@@ -22,6 +22,8 @@ adcgs_status adcgs_open_file(adcgs_decoder **out, const char *path, const adcgs_
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
     const adcgs_status status = adcgs_open_stream(out, read_file, file, config, error);
     fclose(file);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, path);
     return status;
 }
 

@@ -20,6 +20,9 @@
 /** Record status and message, return status: `return adcgs_fail(err, ADCGS_ERR_DATA, "...", ...)`. error may be NULL. */
 adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
 
+/** Put the name of an input in front of a message about its contents, in place of "stream:". error may be NULL. */
+void adcgs_error_locate(adcgs_error *error, const char *name);
+
 /** Return early when expr is not ADCGS_OK. */
 #define ADCGS_TRY(expr)                          \
     do {                                         \

@@ -54,3 +54,16 @@ adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *for
     }
     return status;
 }
+
+void adcgs_error_locate(adcgs_error *error, const char *name)
+{
+    static const char general[] = "stream: ";
+    char text[sizeof error->text];
+    if (!error || error->status == ADCGS_OK || error->status == ADCGS_ERR_USAGE || error->status == ADCGS_ERR_FPENV)
+        return;
+    const size_t skip = strncmp(error->text, general, sizeof general - 1) == 0 ? sizeof general - 1 : 0;
+    memcpy(text, error->text, sizeof text);
+    /* A name of any length leaves room for the start of the message. */
+    if (snprintf(error->text, sizeof error->text, "%.160s: %s", name, text + skip) < 0)
+        error->text[0] = 0;
+}

@@ -63,9 +63,12 @@ static int64_t read_file(void *user, void *buffer, size_t bytes)
 
 static adcgs_status open_input(adcgs_decoder **decoder, const settings *s, adcgs_error *error)
 {
-    if (!strcmp(s->input, "-"))
-        return adcgs_open_stream(decoder, read_file, stdin, &s->config, error);
-    return adcgs_open_file(decoder, s->input, &s->config, error);
+    if (strcmp(s->input, "-"))
+        return adcgs_open_file(decoder, s->input, &s->config, error);
+    const adcgs_status status = adcgs_open_stream(decoder, read_file, stdin, &s->config, error);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, "standard input");
+    return status;
 }
 
 /** The frame's values as little-endian binary32 into one or two digests. */

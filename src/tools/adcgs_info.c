@@ -110,6 +110,8 @@ static adcgs_status read_report(report *r, const settings *s, adcgs_error *error
     adcgs_pool_free(&options.pool);
     if (!standard_input)
         fclose(file);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, standard_input ? "standard input" : s->input);
     return status;
 }
 

@@ -87,7 +87,9 @@ expect 2 "1 to 5" $dec "$s" --layers 6
 expect 3 "nowhere" $dec "$dir/nowhere"
 expect 4 "" $dec "$dir/f000.ppm"
 head -c 100 "$s" >"$dir/cut"
-expect 4 "" $dec "$dir/cut"
+expect 4 "^adcgs-dec: $dir/cut: " $dec "$dir/cut"
+expect 4 "^adcgs-info: $dir/cut: " ./adcgs-info "$dir/cut"
+expect 4 "^adcgs-dec: standard input: " sh -c "$dec - <'$dir/cut'"
 expect 0 "" $dec --help
 expect 0 "" $dec --version
 

@@ -115,6 +115,11 @@ static void test_sources(void **state)
     adcgs_model_digest(&f->stream.segments[2], b);
     assert_memory_equal(a, b, 16);
     adcgs_close(&d);
+    assert_int_equal(truncate(path, 100), 0);
+    assert_int_equal(adcgs_open_file(&d, path, NULL, &error), ADCGS_ERR_TRUNCATED);
+    assert_int_equal(strncmp(error.text, path, strlen(path)), 0); /* the message names the file */
+    assert_null(strstr(error.text, "stream:"));
+    assert_int_equal(adcgs_open_file(&d, path, NULL, NULL), ADCGS_ERR_TRUNCATED);
     unlink(path);
     assert_int_equal(adcgs_open_file(&d, path, NULL, &error), ADCGS_ERR_IO);
     assert_null(d);
