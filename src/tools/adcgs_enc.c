@@ -10,6 +10,7 @@
 #include <adcgs/adcgs.h>
 
 #include <stdlib.h>
+#include <sys/stat.h>
 
 static const char *const cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
 static const char *const stage_names[] = { "none", "coarse", "fine", "deformation", "rate", "refinement", NULL };
@@ -86,6 +87,18 @@ static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs
 }
 
 /* ---- Output ---- */
+
+/** Learn before the training, not after it, that a file cannot be written. The stream is read back: no pipe, no device. */
+static adcgs_status check_writable(const char *path, adcgs_error *error)
+{
+    struct stat s;
+    adcgs_atomic probe;
+    if (!stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode))
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: not a regular file", path);
+    ADCGS_TRY(adcgs_atomic_open(&probe, path, error));
+    adcgs_atomic_abort(&probe);
+    return ADCGS_OK;
+}
 
 static adcgs_status write_stream(adcgs_stream *stream, const watcher *w, const adcgs_train_config *c, adcgs_pool *pool, adcgs_error *error)
 {
@@ -238,6 +251,10 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
     if (status == ADCGS_OK)
         status = configure(&config, o, error);
+    if (status == ADCGS_OK)
+        status = check_writable(o->output, error);
+    if (status == ADCGS_OK && o->checkpoint)
+        status = check_writable(o->checkpoint, error);
     if (status == ADCGS_OK)
         status = adcgs_scene_open(&scene, o->scene, &scene_options, error);
     if (status == ADCGS_OK)
