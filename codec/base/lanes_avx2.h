@@ -78,6 +78,12 @@ LANES_INLINE void vf_store_rows(float *const row[4], vf x)
     _mm_storeu_ps(row[3], _mm256_extractf128_ps(x.b, 1));
 }
 
+LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
+{
+    return (vf){_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p)), _mm_loadu_ps(p + stride), 1),
+                _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 2 * stride)), _mm_loadu_ps(p + 3 * stride), 1)};
+}
+
 /* As in lanes_avx512.h. Two of the four columns of sums at a time. */
 LANES_INLINE __m256 half_sums(const vf *v)
 {

@@ -46,6 +46,14 @@ LANES_INLINE void vf_store_rows(float *const row[4], vf a)
     _mm_storeu_ps(row[3], _mm512_extractf32x4_ps(a, 3));
 }
 
+/* Four rows of four lanes each, stride floats apart. */
+LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
+{
+    const __m256 a = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p)), _mm_loadu_ps(p + stride), 1);
+    const __m256 b = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 2 * stride)), _mm_loadu_ps(p + 3 * stride), 1);
+    return _mm512_insertf32x8(_mm512_castps256_ps512(a), b, 1);
+}
+
 /*
  * Sums over the lanes of twelve vectors: out[4*(i&3) + i/4] = sum of v[i], out[3, 7, 11, 15] = 0. Lanes i and i+8 are added,
  * then i and i+4, i+2, i+1.

@@ -108,6 +108,14 @@ LANES_INLINE void vf_store_rows(float *const row[4], vf a)
         memcpy(row[i], a.v + 4 * i, 4 * sizeof(float));
 }
 
+LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
+{
+    vf r;
+    for (size_t i = 0; i < 4; i++)
+        memcpy(r.v + 4 * i, p + i * stride, 4 * sizeof(float));
+    return r;
+}
+
 /* As in lanes_avx512.h. */
 LANES_INLINE void vf_sums(float *out, const vf v[12])
 {

@@ -28,6 +28,8 @@ LANES_INLINE vf splat_alpha(const adcgs_splat2d *s, vf dx, vf dy)
 LANES_INLINE vf initial_transmittance(int x, int y, int width, int height)
 {
     alignas(64) float t[16];
+    if (x + 4 <= width && y + 4 <= height)
+        return vf_set1(1.0f);
     for (int i = 0; i < 16; i++)
         t[i] = x + (i & 3) < width && y + (i >> 2) < height ? 1.0f : 0.0f;
     return vf_load(t);

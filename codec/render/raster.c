@@ -40,8 +40,8 @@ struct adcgs_raster {
     room pieces, counts, emitted, tile_start, entries, place;   /* binning */
     room scratch, transmittance;                                /* blending */
     adcgs_project_job project;
+    adcgs_bin_job bin;
     adcgs_blend_job blend;
-    const uint64_t *order; /* [n] sorted keys */
     uint32_t n_slots, n;
     int n_pieces, tiles, keep;
     size_t scratch_words;
@@ -148,7 +148,7 @@ static adcgs_status project(adcgs_raster *r, const adcgs_primitives *primitives,
         memmove(keys + r->n, keys + (size_t)i * PROJECT_PIECE, counts[i] * sizeof *keys);
         r->n += counts[i];
     }
-    r->order = adcgs_sort_keys(keys, r->other.data, r->n);
+    r->bin.order = adcgs_sort_keys(keys, r->other.data, r->n);
     return ADCGS_OK;
 }
 
@@ -160,7 +160,7 @@ static adcgs_status cut_pieces(adcgs_raster *r, adcgs_error *error)
     const uint32_t *areas = r->areas.data;
     uint64_t total = 0;
     for (uint32_t i = 0; i < r->n; i++)
-        total += areas[(uint32_t)r->order[i]];
+        total += areas[(uint32_t)r->bin.order[i]];
     if (total > ENTRIES_MAX)
         return adcgs_fail(error, ADCGS_ERR_LIMIT, "rendering: the splats cover %llu tiles, more than 2^28", (unsigned long long)total);
     const int threads = adcgs_pool_threads(r->pool);
@@ -169,14 +169,14 @@ static adcgs_status cut_pieces(adcgs_raster *r, adcgs_error *error)
     pieces = ADCGS_MAX(pieces, 1);
     ADCGS_TRY(grow(r, &r->pieces, pieces, sizeof(bin_piece), error));
     ADCGS_TRY(grow(r, &r->counts, pieces * (size_t)r->tiles, sizeof(uint32_t), error));
-    ADCGS_TRY(grow(r, &r->emitted, total, sizeof(uint64_t), error));
+    ADCGS_TRY(grow(r, &r->emitted, total + pieces * ADCGS_BIN_SLACK, sizeof(uint64_t), error));
     bin_piece *p = r->pieces.data;
     uint64_t sum = 0;
     uint32_t i = 0;
     for (size_t k = 0; k < pieces; k++) {
-        p[k] = (bin_piece){.begin = i, .at = sum};
+        p[k] = (bin_piece){.begin = i, .at = sum + k * ADCGS_BIN_SLACK};
         while (i < r->n && (k + 1 == pieces || sum < total * (k + 1) / pieces))
-            sum += areas[(uint32_t)r->order[i++]];
+            sum += areas[(uint32_t)r->bin.order[i++]];
         p[k].end = i;
     }
     r->n_pieces = (int)pieces;
@@ -188,22 +188,8 @@ static void bin_piece_splats(void *arg, int index, int thread)
     adcgs_raster *r = arg;
     bin_piece *piece = (bin_piece *)r->pieces.data + index;
     uint32_t *counts = (uint32_t *)r->counts.data + (size_t)index * (size_t)r->tiles;
-    uint64_t *out = (uint64_t *)r->emitted.data + piece->at;
-    const adcgs_splat2d *from = r->projected.data;
-    const adcgs_outline *outlines = r->outlines.data;
-    adcgs_splat2d *to = r->splats.data;
-    uint32_t *first = r->first.data, *where = r->where.data, n = 0;
     memset(counts, 0, (size_t)r->tiles * sizeof *counts);
-    for (uint32_t i = piece->begin; i < piece->end; i++) {
-        const uint32_t source = (uint32_t)r->order[i];
-        to[i] = from[source];
-        if (r->keep) {
-            first[i] = n;
-            where[from[source].slot] = i;
-        }
-        n += r->dsp.bin(from + source, outlines + source, i, r->project.tiles_x, counts, out + n);
-    }
-    piece->emitted = n;
+    piece->emitted = r->dsp.bin(&r->bin, piece->begin, piece->end, counts, (uint64_t *)r->emitted.data + piece->at);
 }
 
 /* Turn the pieces' counts into their first places: by tile, then by piece. Also the first pair of each piece. */
@@ -260,6 +246,13 @@ static adcgs_status bin(adcgs_raster *r, adcgs_error *error)
     ADCGS_TRY(grow(r, &r->first, (uint64_t)r->n + 1, sizeof(uint32_t), error));
     ADCGS_TRY(grow(r, &r->tile_start, (uint64_t)r->tiles + 1, sizeof(uint32_t), error));
     ADCGS_TRY(cut_pieces(r, error));
+    r->bin = (adcgs_bin_job){.order = r->bin.order,
+                             .from = r->projected.data,
+                             .outlines = r->outlines.data,
+                             .tiles_x = r->project.tiles_x,
+                             .to = r->splats.data,
+                             .first = r->first.data,
+                             .where = r->keep ? r->where.data : NULL};
     adcgs_pool_run(r->pool, bin_piece_splats, r, r->n_pieces);
     const uint32_t entries = place_counts(r);
     ADCGS_TRY(grow(r, &r->entries, entries, sizeof(adcgs_tile_entry), error));

@@ -22,6 +22,19 @@ typedef struct adcgs_project_job {
     uint32_t *areas;         /**< [slots] tiles of the rectangle */
 } adcgs_project_job;
 
+/** Words that the binning kernel may write past its last pair. */
+#define ADCGS_BIN_SLACK 16
+
+typedef struct adcgs_bin_job {
+    const uint64_t *order;         /**< sorted keys */
+    const adcgs_splat2d *from;     /**< as projected */
+    const adcgs_outline *outlines; /**< as projected */
+    int tiles_x;
+    adcgs_splat2d *to; /**< sorted */
+    uint32_t *first;   /**< pairs of this piece before each sorted splat; unless where is NULL */
+    uint32_t *where;   /**< sorted place of each slot, or NULL */
+} adcgs_bin_job;
+
 typedef struct adcgs_blend_job {
     const adcgs_splat2d *splats;
     const adcgs_tile_entry *entries;
@@ -35,9 +48,11 @@ typedef struct adcgs_blend_job {
 typedef struct adcgs_raster_dsp {
     /** Project 64 slots from first; drawn ones are written from index at on, in slot order. Returns how many. */
     uint32_t (*project)(const adcgs_project_job *job, uint32_t first, uint32_t at);
-    /** Tiles and block masks of a splat: out[i] = splat << 36 | tile << 16 | mask, counts[tile]++. Returns how many. */
-    uint32_t (*bin)(const adcgs_splat2d *splat, const adcgs_outline *outline, uint32_t index, int tiles_x, uint32_t *counts,
-                    uint64_t *out);
+    /**
+     * Copy sorted splats [begin, end) and list the tiles that each touches: out[i] = splat << 36 | tile << 16 | mask;
+     * counts[tile] is raised by one for each. Returns how many. out has room for the splats' areas and ADCGS_BIN_SLACK more.
+     */
+    uint32_t (*bin)(const adcgs_bin_job *job, uint32_t begin, uint32_t end, uint32_t *counts, uint64_t *out);
     /** Blend a tile and write its pixels. scratch: 3*((entries of the tile + 31) & ~15) words, 64-byte aligned. */
     void (*blend)(const adcgs_blend_job *job, int tile, uint32_t *scratch);
 } adcgs_raster_dsp;

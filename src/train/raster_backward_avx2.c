@@ -6,4 +6,4 @@
 #include "train/raster_blend_kernels.h"
 #include "train/raster_project_kernels.h"
 
-const adcgs_back_dsp adcgs_back_avx2 = {blend, project};
+const adcgs_back_dsp adcgs_back_avx2 = {blend_back, project_back};

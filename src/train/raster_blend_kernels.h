@@ -15,26 +15,36 @@ typedef struct tile_state {
     uint32_t alive; /* blocks with light left */
 } tile_state;
 
+/* The pixels of a block from a plane of the image; those outside are 0. */
+LANES_INLINE vf load_pixels(const float *plane, int x, int y, int width, int height)
+{
+    const float *at = plane + (size_t)y * (size_t)width + (size_t)x;
+    if (x + 4 <= width && y + 4 <= height)
+        return vf_load_rows(at, (size_t)width);
+    alignas(64) float v[16] = {0.0f};
+    for (int j = 0; j < 4 && y + j < height; j++)
+        for (int i = 0; i < 4 && x + i < width; i++)
+            v[4 * j + i] = at[(size_t)j * (size_t)width + (size_t)i];
+    return vf_load(v);
+}
+
 static void start_block(tile_state *s, const adcgs_back_job *job, int block, int x, int y)
 {
     const int width = job->view->width, height = job->view->height;
     const size_t plane = (size_t)width * (size_t)height;
-    for (int i = 0; i < 16; i++) {
-        const int px = x + (i & 3), py = y + (i >> 2), inside = px < width && py < height;
-        const size_t at = inside ? (size_t)py * (size_t)width + (size_t)px : 0;
-        float behind = 0.0f;
-        for (int c = 0; c < 3; c++) {
-            const float g = inside ? job->grad[(size_t)c * plane + at] : 0.0f;
-            s->grad[block][c][i] = g;
-            behind = fmaf(g, job->rgb[(size_t)c * plane + at], behind);
-        }
-        s->behind[block][i] = behind;
-        s->t[block][i] = inside ? 1.0f : 0.0f;
-        s->x[block][i] = (float)x + pixel_x[i];
-        s->y[block][i] = (float)y + pixel_y[i];
+    vf behind = vf_set1(0.0f);
+    if (x >= width || y >= height)
+        return;
+    for (size_t c = 0; c < 3; c++) {
+        const vf grad = load_pixels(job->grad + c * plane, x, y, width, height);
+        behind = vf_fma(grad, load_pixels(job->rgb + c * plane, x, y, width, height), behind);
+        vf_store(s->grad[block][c], grad);
     }
-    if (x < width && y < height)
-        s->alive |= (uint32_t)1 << block;
+    vf_store(s->behind[block], behind);
+    vf_store(s->t[block], initial_transmittance(x, y, width, height));
+    vf_store(s->x[block], vf_add(vf_load(pixel_x), vf_set1((float)x)));
+    vf_store(s->y[block], vf_add(vf_load(pixel_y), vf_set1((float)y)));
+    s->alive |= (uint32_t)1 << block;
 }
 
 /* Adds a block's part to the sums of a splat; returns whether light is left. */
@@ -68,7 +78,7 @@ LANES_INLINE int back_block(tile_state *s, const adcgs_splat2d *g, int block, vf
     return vm_any(vf_ge(through, vf_set1(ADCGS_T_MIN)));
 }
 
-static void blend(const adcgs_back_job *job, int tile)
+static void blend_back(const adcgs_back_job *job, int tile)
 {
     tile_state s;
     const int tile_x = tile % job->kept.tiles_x * ADCGS_TILE, tile_y = tile / job->kept.tiles_x * ADCGS_TILE;
@@ -78,6 +88,10 @@ static void blend(const adcgs_back_job *job, int tile)
     const vf zero = vf_set1(0.0f);
     for (uint32_t i = job->kept.tile_start[tile]; i < job->kept.tile_start[tile + 1]; i++) {
         const adcgs_splat2d *g = job->kept.splats + job->kept.entries[i].splat;
+        if (!(job->kept.entries[i].mask & s.alive)) {
+            vf_store(job->sums + (size_t)i * SUM_WORDS, zero);
+            continue;
+        }
         vf sum[12] = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
         for (uint32_t left = job->kept.entries[i].mask & s.alive; left; left &= left - 1) {
             const int block = __builtin_ctz(left);

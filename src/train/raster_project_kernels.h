@@ -16,19 +16,70 @@ typedef struct slot_sums {
     alignas(64) int32_t drawn[64];
 } slot_sums;
 
+/* Lines listed before they are added, and how far ahead they are fetched: they lie where their tiles are. */
+#define LIST_MAX 512
+#define FETCH_AHEAD 24
+
+static vf add_lines(vf sum, const float *sums, const uint32_t *lines, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        __builtin_prefetch(sums + (size_t)lines[i + FETCH_AHEAD] * SUM_WORDS);
+        sum = vf_add(sum, vf_load(sums + (size_t)lines[i] * SUM_WORDS));
+    }
+    return sum;
+}
+
+/* The lines of slots [from, ...) as far as the list has room, and the end of each slot's. Returns the slot after the last. */
+static uint32_t list_lines(uint32_t *lines, uint32_t *ends, const adcgs_kept *k, uint32_t slot, uint32_t from)
+{
+    uint32_t n = 0, l = from;
+    for (; l < 64; l++) {
+        const uint32_t splat = k->where[slot + l];
+        const uint32_t begin = splat == UINT32_MAX ? 0 : k->first[splat], count = splat == UINT32_MAX ? 0 : k->first[splat + 1] - begin;
+        if (n + count > LIST_MAX)
+            break;
+        for (uint32_t i = 0; i < count; i++)
+            lines[n + i] = k->place[begin + i];
+        n += count;
+        ends[l] = n;
+    }
+    for (uint32_t i = 0; i < FETCH_AHEAD; i++)
+        lines[n + i] = 0;
+    return l;
+}
+
+/* A slot with more lines than a list holds. */
+static vf add_many(const adcgs_back_job *job, uint32_t splat)
+{
+    vf sum = vf_set1(0.0f);
+    for (uint32_t i = job->kept.first[splat]; i < job->kept.first[splat + 1]; i++)
+        sum = vf_add(sum, vf_load(job->sums + (size_t)job->kept.place[i] * SUM_WORDS));
+    return sum;
+}
+
+static void store_sum(slot_sums *o, uint32_t l, vf sum)
+{
+    alignas(64) float total[SUM_WORDS];
+    vf_store(total, sum);
+    for (int i = 0; i < SUM_WORDS; i++)
+        o->v[i][l] = total[i];
+}
+
 static void gather_sums(slot_sums *o, const adcgs_back_job *job, uint32_t slot)
 {
-    for (uint32_t l = 0; l < 64; l++) {
-        const uint32_t splat = job->kept.where[slot + l];
-        alignas(64) float total[SUM_WORDS];
-        vf sum = vf_set1(0.0f);
-        o->drawn[l] = splat != UINT32_MAX;
-        if (o->drawn[l])
-            for (uint32_t i = job->kept.first[splat]; i < job->kept.first[splat + 1]; i++)
-                sum = vf_add(sum, vf_load(job->sums + (size_t)job->kept.place[i] * SUM_WORDS));
-        vf_store(total, sum);
-        for (int i = 0; i < SUM_WORDS; i++)
-            o->v[i][l] = total[i];
+    uint32_t lines[LIST_MAX + FETCH_AHEAD], ends[64];
+    for (uint32_t l = 0; l < 64; l++)
+        o->drawn[l] = job->kept.where[slot + l] != UINT32_MAX;
+    for (uint32_t from = 0; from < 64;) {
+        const uint32_t to = list_lines(lines, ends, &job->kept, slot, from);
+        uint32_t done = 0;
+        for (uint32_t l = from; l < to; l++) {
+            store_sum(o, l, add_lines(vf_set1(0.0f), job->sums, lines + done, ends[l] - done));
+            done = ends[l];
+        }
+        if (to == from)
+            store_sum(o, to, add_many(job, job->kept.where[slot + to]));
+        from = to == from ? to + 1 : to;
     }
 }
 
@@ -57,8 +108,8 @@ static inline void rotation_back(float out[4], float d[3][3], float w, float x, 
 }
 
 /* From gradients of centre (u, v) and covariance (p, q, r) to those of the Gaussian. */
-static inline void project_back(gaussian_grads *out, const adcgs_projection *g, const adcgs_view *view, const float scale[3],
-                                const float quaternion[4], float gu, float gv, const float cov[3])
+static inline void carry_back(gaussian_grads *out, const adcgs_projection *g, const adcgs_view *view, const float scale[3],
+                              const float quaternion[4], float gu, float gv, const float cov[3])
 {
     float mr[2][3], m[2][3], rot[3][3], along[2] = {0.0f, 0.0f}, tilt[2] = {0.0f, 0.0f};
     for (int j = 0; j < 3; j++) {
@@ -85,7 +136,7 @@ static inline void project_back(gaussian_grads *out, const adcgs_projection *g, 
         out->mean[j] = view->rotation[j] * cx + view->rotation[3 + j] * cy + view->rotation[6 + j] * cz;
 }
 
-static void project(const adcgs_back_job *job, uint32_t first)
+static void project_back(const adcgs_back_job *job, uint32_t first)
 {
     slot_sums o;
     gather_sums(&o, job, first);
@@ -106,7 +157,7 @@ static void project(const adcgs_back_job *job, uint32_t first)
         conic_back(cov, &g, o.v[SUM_EXX][l], o.v[SUM_EXY][l], o.v[SUM_EYY][l]);
         const float inv = 1.0f / g.det, ex = o.v[SUM_EX][l], ey = o.v[SUM_EY][l];
         gaussian_grads d;
-        project_back(&d, &g, &view, scale, q, inv * (g.r * ex - g.q * ey), inv * (g.p * ey - g.q * ex), cov);
+        carry_back(&d, &g, &view, scale, q, inv * (g.r * ex - g.q * ey), inv * (g.p * ey - g.q * ex), cov);
         for (int a = 0; a < 3; a++) {
             to.mean[a][i] = drawn ? d.mean[a] : 0.0f;
             to.scale[a][i] = drawn ? d.scale[a] : 0.0f;

@@ -82,7 +82,7 @@ static inline scene_splats scene_room(uint32_t n, double overlap, uint64_t seed)
 {
     scene_splats s = scene_create(n);
     uint64_t state = seed * 0x9e3779b97f4a7c15ull + 1;
-    const double base = 0.0200 * sqrt(overlap * 500.0 / (double)n);
+    const double base = 0.0195 * sqrt(overlap * 500.0 / (double)n);
     for (uint32_t i = 0; i < n; i++) {
         const double kind = scene_uniform(&state);
         double p[3];
@@ -107,7 +107,7 @@ static inline scene_splats scene_room(uint32_t n, double overlap, uint64_t seed)
         }
         scene_random_rotation(&s, i, &state);
         const double o = scene_uniform(&state);
-        scene_array(&s, SCENE_OPACITY)[i] = (float)(i & 1 ? 0.02 + 0.2 * o : 0.4 + 0.58 * o);
+        scene_array(&s, SCENE_OPACITY)[i] = (float)(i & 1 ? 0.02 + 0.2 * o : 0.6 + 0.39 * o);
     }
     return s;
 }
