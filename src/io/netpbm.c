@@ -52,7 +52,7 @@ static adcgs_status read_header(FILE *file, header *out, const char *path, adcgs
 
 adcgs_status adcgs_netpbm_probe(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
 {
-    header head;
+    header head = {0};
     ADCGS_TRY(read_header(file, &head, path, error));
     *width = head.width;
     *height = head.height;
@@ -79,7 +79,7 @@ static adcgs_status read_rows(FILE *file, const header *head, uint8_t *row, adcg
 adcgs_status adcgs_netpbm_read(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
 {
     *out = (adcgs_image){0};
-    header head;
+    header head = {0};
     ADCGS_TRY(read_header(file, &head, path, error));
     ADCGS_TRY(adcgs_image_alloc(out, head.width, head.height, head.channels, path, error));
     uint8_t *row = malloc((size_t)head.width * (size_t)head.channels * 2);
