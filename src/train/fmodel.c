@@ -79,7 +79,8 @@ static void layout_networks(adcgs_fmodel *f)
     adcgs_mlp *m = f->mlp;
     adcgs_mlp_layout(&m[ADCGS_P_THETA], p->n_fv + p->n_fg, 0, s->theta_width, s->theta_hidden, ADCGS_THETA_OUT);
     if (p->time_rows) {
-        adcgs_mlp_layout(&m[ADCGS_P_OMEGA], p->n_fv, p->time_width, s->omega_width, s->omega_hidden, p->coarse_rotation ? 12 : 9);
+        if (s->omega_width)
+            adcgs_mlp_layout(&m[ADCGS_P_OMEGA], p->n_fv, p->time_width, s->omega_width, s->omega_hidden, p->coarse_rotation ? 12 : 9);
         if (s->varpi_width)
             adcgs_mlp_layout(&m[ADCGS_P_VARPI], fp + (p->fine_uses_fv ? p->n_fv : 0), p->time_width, s->varpi_width, s->varpi_hidden,
                              ADCGS_VARPI_OUT * p->k);
