@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { SNAPSHOT_EVERY = 500, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
+enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 50, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
 
 /* ---- Memory ---- */
 
@@ -39,6 +39,8 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
         c->params.time_rows = (uint16_t)times;
     if (!c->params.time_rows)
         c->params.time_width = 0;
+    if (c->without_coarse)
+        c->shape.omega_width = 0;
     if (c->without_fine)
         c->shape.varpi_width = 0;
     adcgs_scene_frame(t->scene, t->origin, &t->scale);
@@ -340,19 +342,35 @@ static adcgs_status before_iteration(adcgs_trainer *t, double progress, adcgs_er
     return enter_stages(t, progress, error);
 }
 
+/** Whether every parameter is a number. A splat that is none vanishes from the pictures, so the loss alone may not tell. */
+static int is_finite(const adcgs_trainer *t)
+{
+    for (int i = 0; i < ADCGS_P_COUNT; i++) {
+        const adcgs_param *p = &t->f->param[i];
+        int bad = 0;
+        for (size_t j = 0; j < p->n; j++)
+            bad |= (adcgs_float_bits(p->p[j]) & 0x7f800000) == 0x7f800000;
+        if (bad)
+            return 0;
+    }
+    return 1;
+}
+
+static adcgs_status take_snapshot(adcgs_trainer *t, adcgs_error *error)
+{
+    t->snapshot.size = 0;
+    return adcgs_trainer_store(t, &t->snapshot, error);
+}
+
 /** NaN, infinity, or a loss far above what it was: go back to the last good state with smaller steps. */
 static adcgs_status guard(adcgs_trainer *t, adcgs_error *error)
 {
-    const int sick = !isfinite(t->mean_loss) || t->mean_loss > 4;
-    if (!sick && t->iteration % SNAPSHOT_EVERY == 0) {
-        t->snapshot.size = 0;
-        return adcgs_trainer_store(t, &t->snapshot, error);
-    }
-    if (!sick)
-        return ADCGS_OK;
+    const int due = t->iteration % CHECK_EVERY == 0 || progress_of(t) >= 1;
+    if (isfinite(t->mean_loss) && t->mean_loss <= 4 && (!due || is_finite(t)))
+        return t->iteration % SNAPSHOT_EVERY == 0 ? take_snapshot(t, error) : ADCGS_OK;
     const uint32_t rollbacks = t->rollbacks + 1;
     const float lr = t->lr_scale * 0.5f;
-    if (!t->snapshot.size || rollbacks > ROLLBACKS_MAX)
+    if (rollbacks > ROLLBACKS_MAX)
         return adcgs_fail(error, ADCGS_ERR_DATA, "training diverged at iteration %u (loss %g) after %u rollbacks: check poses and exposure",
                           t->iteration, t->mean_loss, t->rollbacks);
     ADCGS_TRY(adcgs_trainer_restore(t, t->snapshot.data, t->snapshot.size, error));
@@ -388,15 +406,18 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
 {
     const double begin = now() - t->elapsed;
     double last = now(), rate = 0;
+    uint32_t reported = t->iteration;
     *stopped = 0;
     prepare_networks(t);
+    ADCGS_TRY(take_snapshot(t, error));
     for (;;) {
         const double progress = progress_of(t);
         adcgs_train_report report;
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
             const double at = now();
-            if (at > last)
-                rate = rate > 0 ? 0.9 * rate + 0.1 * REPORT_EVERY / (at - last) : REPORT_EVERY / (at - last);
+            const double lately = at > last && t->iteration > reported ? (t->iteration - reported) / (at - last) : rate;
+            rate = rate > 0 ? 0.9 * rate + 0.1 * lately : lately;
+            reported = t->iteration;
             last = at;
             fill_report(t, progress, rate, &report);
             if (observe && observe(user, &report)) {
