@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 1 };
+enum { FORMAT = 2 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -43,18 +43,52 @@ static void visit_same(walk *w, uint64_t value)
     w->failed |= stored != value;
 }
 
-static void walk_config(walk *w, adcgs_trainer *t)
+/** Everything that the run depends on and no limit of time: a run may go on with another. */
+static void walk_options(walk *w, const adcgs_train_config *c)
+{
+    const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->refine_every,
+                               (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate, c->without_refinement };
+    const float real[] = { c->lambda, c->ssim_weight, c->grow_threshold, c->prune_opacity, c->dropout, c->quarter_until, c->half_until,
+                           c->deform_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->decide_at, c->round_from,
+                           c->freeze_from };
+    for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
+        visit_same(w, whole[i]);
+    for (size_t i = 0; i < ADCGS_COUNTOF(real); i++)
+        visit_same(w, adcgs_float_bits(real[i]));
+}
+
+static void walk_sizes(walk *w, const adcgs_params *p, const adcgs_shape *s)
+{
+    const int sizes[] = { p->k, p->n_fv, p->n_fg, p->chunks, p->n_eta, p->octaves, p->fine_uses_fv, p->coarse_rotation, p->time_rows,
+                          p->time_width, s->theta_width, s->theta_hidden, s->omega_width, s->omega_hidden, s->varpi_width,
+                          s->varpi_hidden, s->entropy_width, s->entropy_hidden, s->depth };
+    const float steps[] = { s->step_fv, s->step_fg, s->step_sigma, s->step_colour };
+    for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++)
+        visit_same(w, (uint64_t)sizes[i]);
+    for (size_t i = 0; i < ADCGS_COUNTOF(steps); i++)
+        visit_same(w, adcgs_float_bits(steps[i]));
+}
+
+/** The scene by its cameras and times; its pictures are taken on trust. */
+static void walk_scene(walk *w, const adcgs_trainer *t)
+{
+    uint32_t crc = 0;
+    for (uint32_t i = 0; i < t->n_views; i++) {
+        const adcgs_scene_view *v = &t->scene->views[ADCGS_SPLIT_TRAIN][i];
+        crc = adcgs_crc32c(crc, v->camera.cam_to_world, sizeof v->camera.cam_to_world);
+        crc = adcgs_crc32c(crc, &v->camera.fx, sizeof v->camera.fx);
+        crc = adcgs_crc32c(crc, &v->time, sizeof v->time);
+    }
+    visit_same(w, t->n_views);
+    visit_same(w, crc);
+}
+
+static void walk_config(walk *w, const adcgs_trainer *t)
 {
     visit_same(w, FORMAT);
-    visit_same(w, t->config.seed);
-    visit_same(w, t->config.iterations);
-    visit_same(w, (uint64_t)t->config.scale);
-    visit_same(w, t->n_views);
-    visit_same(w, adcgs_float_bits(t->config.lambda));
-    for (size_t i = 0; i < sizeof t->config.params; i++)
-        visit_same(w, ((const uint8_t *)&t->f->params)[i]);
-    visit_same(w, (uint64_t)t->f->shape.theta_width << 32 | (uint64_t)t->f->shape.omega_width << 16 | (uint64_t)t->f->shape.varpi_width);
-    visit_same(w, (uint64_t)t->f->shape.entropy_width << 32 | (uint64_t)t->f->shape.depth);
+    walk_options(w, &t->config);
+    walk_sizes(w, &t->f->params, &t->f->shape);
+    walk_scene(w, t);
 }
 
 static void walk_scalars(walk *w, adcgs_trainer *t)
@@ -109,7 +143,7 @@ static adcgs_status restore_anchors(walk *w, adcgs_trainer *t, adcgs_error *erro
     uint32_t n = 0;
     visit(w, &n, sizeof n);
     if (w->failed || n == 0 || n > adcgs_reader_left(w->in) / 12)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "checkpoint: %u anchors do not fit its size", n);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%u anchors do not fit its size", n);
     uint32_t(*pos)[3] = malloc(n * sizeof *pos);
     uint32_t *source = calloc(n, sizeof *source);
     adcgs_status status = pos && source ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", n);
@@ -129,12 +163,12 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     walk w = { NULL, &reader, 0 };
     walk_config(&w, t);
     if (w.failed)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "checkpoint: made with other options or another scene; give the same as when it was saved");
+        return adcgs_fail(error, ADCGS_ERR_DATA, "saved with other options or another scene; give the same as then");
     walk_scalars(&w, t);
     ADCGS_TRY(restore_anchors(&w, t, error));
     walk_arrays(&w, t);
     if (w.failed || adcgs_reader_left(&reader))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "checkpoint: its length does not match its contents");
+        return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         if (t->f->mlp[i].n)
             adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);
@@ -171,11 +205,13 @@ adcgs_status adcgs_trainer_load(adcgs_trainer *t, const char *path, adcgs_error 
     ADCGS_TRY(adcgs_file_load(&data, &size, path, 1ull << 36, error));
     adcgs_status status;
     if (size < sizeof magic + 4 || memcmp(data, magic, sizeof magic))
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a checkpoint of adcgs-enc", path);
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "not a checkpoint of adcgs-enc");
     else if (adcgs_crc32c(0, data, size - 4) != adcgs_load_le32(data + size - 4))
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged: its checksum does not match", path);
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "damaged: its checksum does not match");
     else
         status = adcgs_trainer_restore(t, data + sizeof magic, size - 4 - sizeof magic, error);
     free(data);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, path);
     return status;
 }
