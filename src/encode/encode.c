@@ -73,7 +73,6 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
 {
     const adcgs_scene *scene = t->scene;
     adcgs_stream_init(s);
-    s->params = t->f->params;
     s->level = (uint8_t)(t->f->n <= 4096 ? 1 : t->f->n <= 65536 ? 2 : 3);
     memcpy(s->scene_origin, t->origin, sizeof s->scene_origin);
     s->scene_scale = t->scale;
@@ -90,6 +89,7 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
         return ADCGS_ERR_MEMORY;
     s->n_segments = 1;
     ADCGS_TRY(adcgs_quantise(&s->segments[0], t->f, t->cpu, NULL, NULL, error));
+    s->params = s->segments[0].params;
     s->segments[0].time_end = (double)s->duration_ticks * s->timebase_num / s->timebase_den;
     return ADCGS_OK;
 }

@@ -100,7 +100,8 @@ static adcgs_status set_networks(adcgs_model *model, const adcgs_fmodel *f, adcg
         [ADCGS_P_E_FG + 2] = ADCGS_ROLE_ENTROPY_FG + 2, [ADCGS_P_E_FG + 3] = ADCGS_ROLE_ENTROPY_FG + 3,
     };
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
-        if (!f->mlp[i].n)
+        const int deforms = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI || i == ADCGS_P_TIME;
+        if (!f->mlp[i].n || (deforms && !model->params.time_rows))
             continue;
         adcgs_net *net = &model->net[roles[i]];
         if (i >= ADCGS_P_E_FV)
@@ -117,7 +118,7 @@ static void set_anchors(adcgs_model *model, const adcgs_fmodel *f)
 {
     for (uint32_t i = 0; i < f->n; i++) {
         memcpy(model->pos + (size_t)i * 3, f->pos[i], sizeof f->pos[i]);
-        model->is_static[i] = f->params.time_rows && f->moving[i] == 0;
+        model->is_static[i] = model->params.time_rows && f->moving[i] == 0;
         model->mask[i] = 0;
         for (int k = 0; k < f->params.k; k++)
             if (f->keep[((size_t)(i / 64) * f->params.k + (size_t)k) * 64 + i % 64] != 0)
@@ -162,7 +163,7 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
         const double target = 64.0 * f->param[group].p[at] / f->step[group][row];
         const int32_t mu = s->mu[c], most = s->si[c] ? ADCGS_MIN(adcgs_value_max(q->model->shape[s->group], s->si[c]), 500) : 0;
         double n = rint((target - mu) / 64);
-        n = n > most ? most : n < -most ? -most : n;
+        n = n >= most ? most : n >= -most ? n : -most; /* whatever n is, a value within reach */
         s->yq[c] = (int16_t)adcgs_clip(64 * (int32_t)n + mu, 32767);
         if (q->mu)
             q->mu[group][at] = (float)mu;
@@ -171,11 +172,22 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
     }
 }
 
+/** Where nothing moves, a stream carries no motion: no networks, no time table, no flags. */
+static int moves(const adcgs_fmodel *f)
+{
+    for (uint32_t i = 0; i < f->n; i++)
+        if (f->moving[i] != 0)
+            return 1;
+    return 0;
+}
+
 adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, adcgs_cpu_level cpu, float *const mu[ADCGS_P_ANCHOR],
                             float *const value[ADCGS_P_ANCHOR], adcgs_error *error)
 {
     memset(model, 0, sizeof *model);
     model->params = f->params;
+    if (!moves(f))
+        model->params.time_rows = model->params.time_width = 0;
     model->n = f->n;
     model->depth = (uint8_t)f->shape.depth;
     memcpy(model->origin, f->origin, sizeof model->origin);
