@@ -30,15 +30,17 @@ typedef struct watcher {
     adcgs_progress progress;
     FILE *log;
     double saved;
-    uint32_t logged;
+    adcgs_train_report last;
+    uint32_t next_log; /**< iteration */
     adcgs_error error;
 } watcher;
 
-static void log_report(watcher *w, const adcgs_train_report *r)
+static void log_last(watcher *w)
 {
-    if (!w->log || (r->iteration < w->logged && r->iteration))
+    const adcgs_train_report *r = &w->last;
+    if (!w->log)
         return;
-    w->logged = r->iteration + 100;
+    w->next_log = r->iteration + 100;
     fprintf(w->log,
             "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,\"loss\":%.6g,\"psnr\":%.4f,\"anchors\":%u,\"divide\":%d,\"bytes\":%.0f,"
             "\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d}\n",
@@ -49,7 +51,9 @@ static void log_report(watcher *w, const adcgs_train_report *r)
 static int observe(void *user, const adcgs_train_report *r)
 {
     watcher *w = user;
-    log_report(w, r);
+    w->last = *r;
+    if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
+        log_last(w);
     adcgs_progress_show(&w->progress, "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s  %d:%02d left", r->stage,
                         r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
                         (int)r->left / 60, (int)r->left % 60);
@@ -228,6 +232,8 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
     adcgs_progress_init(&w->progress);
     const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
     adcgs_progress_clear(&w->progress);
+    if (w->last.stage && w->last.iteration + 100 != w->next_log)
+        log_last(w);
     ADCGS_TRY(status);
     if (w->error.status != ADCGS_OK) {
         *error = w->error;
