@@ -1,0 +1,192 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-enc on a tiny scene: the same bytes from the same seed, stopping and going on, logs, stages left out, bad input.
+# Runs in the build folder; needs adcgs-demo-scene, adcgs-info and adcgs-dec too.
+for tool in adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene; do
+    [ -x "./$tool" ] || { echo "skipped: no $tool in $PWD"; exit 77; }
+done
+dir=$(mktemp -d "${TMPDIR:-/tmp}/adcgs-test-XXXXXX") || exit 99
+trap 'rm -rf "$dir"' EXIT
+failed=0
+bad() { echo "FAILED: $*"; failed=1; }
+
+# enc NAME OPTIONS...: encode the scene to NAME.adcgs.
+enc()
+{
+    name=$1
+    shift
+    ./adcgs-enc "$scene" -o "$dir/$name.adcgs" --preset draft --max-anchors 300 "$@" >"$dir/$name.out" 2>"$dir/$name.err"
+    got=$?
+    [ "$got" -eq 0 ] || { bad "exit code $got: adcgs-enc $*"; cat "$dir/$name.err"; }
+}
+
+# same A B WHAT: two streams are the same, byte for byte.
+same() { cmp "$dir/$1.adcgs" "$dir/$2.adcgs" || bad "$3"; }
+
+# expect CODE TEXT COMMAND...: exit code, and one line on standard error that says TEXT.
+expect()
+{
+    code=$1 text=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    got=$?
+    [ "$got" -eq "$code" ] || bad "exit code $got, expected $code: $*"
+    [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "not one line on standard error: $*"; cat "$dir/err"; }
+    grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
+}
+
+# json FILE: each line is a JSON object; whole FILE: the file is one. Both pass where no tool knows.
+json()
+{
+    if command -v jq >/dev/null; then
+        jq -e . "$1" >/dev/null
+    elif command -v python3 >/dev/null; then
+        python3 -c 'import json, sys; [json.loads(line) for line in open(sys.argv[1])]' "$1"
+    fi
+}
+whole()
+{
+    if command -v jq >/dev/null; then
+        jq -e . "$1" >/dev/null
+    elif command -v python3 >/dev/null; then
+        python3 -m json.tool "$1" >/dev/null
+    fi
+}
+
+# interrupt ITERATION SIGNAL OPTIONS...: stop a run once its log has reached an iteration; its messages are in stop.err.
+# A machine may be so busy that the run ends before the signal arrives; then there is nothing to look at, and it tries again.
+interrupt()
+{
+    from=$1 signal=$2
+    shift 2
+    for try in 1 2 3; do
+        rm -f "$dir/stop.log"
+        ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft --max-anchors 300 --log "$dir/stop.log" "$@" \
+            >"$dir/stop.out" 2>"$dir/stop.err" &
+        pid=$!
+        while kill -0 $pid 2>/dev/null && ! grep -q "\"iteration\":$from," "$dir/stop.log" 2>/dev/null; do
+            sleep 0.05
+        done
+        kill "-$signal" $pid 2>/dev/null
+        wait $pid
+        got=$?
+        [ "$got" -eq 0 ] || break
+    done
+    [ "$got" -eq 3 ] || { bad "exit code $got after SIG$signal, expected 3"; cat "$dir/stop.err"; }
+}
+
+scene=$dir/scene
+./adcgs-demo-scene --scene tiny --format ppm -o "$scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+
+# The same bytes at any number of threads; other bytes from another seed; reports that parse.
+n=600
+enc one --iterations $n --threads 1 --log "$dir/one.log" --json
+enc two --iterations $n --threads 2
+enc seven --iterations $n --threads 7
+enc other --iterations $n --threads 2 --seed 2
+same one two "another stream with two threads"
+same one seven "another stream with seven threads"
+cmp -s "$dir/one.adcgs" "$dir/other.adcgs" && bad "the seed changes nothing"
+json "$dir/one.log" || bad "--log is no JSON"
+[ "$(wc -l <"$dir/one.log")" -eq 7 ] || { bad "lines in the log"; cat "$dir/one.log"; }
+whole "$dir/one.out" || bad "--json is no JSON"
+grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json tells another size"
+[ ! -s "$dir/one.err" ] || { bad "messages without a terminal"; cat "$dir/one.err"; }
+[ ! -s "$dir/two.out" ] || bad "standard output without --json"
+./adcgs-dec "$dir/one.adcgs" --md5 >/dev/null 2>&1 || bad "the stream does not decode"
+
+# An interrupt leaves a checkpoint, says how to go on, and leaves the output alone. Going on gives what never stopping gives.
+echo precious >"$dir/stop.adcgs"
+interrupt 100 INT --iterations $n --threads 2
+grep -q -- "--resume $dir/stop.adcgs.checkpoint" "$dir/stop.err" || { bad "no word of --resume"; cat "$dir/stop.err"; }
+[ "$(cat "$dir/stop.adcgs")" = precious ] || bad "an interrupted run touched its output"
+enc resumed --iterations $n --threads 2 --resume "$dir/stop.adcgs.checkpoint"
+same one resumed "another stream after an interrupt"
+rm "$dir/stop.adcgs.checkpoint"
+interrupt 500 TERM --iterations $n --threads 2 --checkpoint "$dir/late"
+[ ! -e "$dir/stop.adcgs.checkpoint" ] && [ -s "$dir/late" ] || bad "no checkpoint where --checkpoint says"
+enc threads --iterations $n --threads 5 --resume "$dir/late" --log "$dir/stop.log"
+same one threads "another stream after an interrupt, with other threads"
+json "$dir/stop.log" || bad "the log of both parts is no JSON"
+grep -q "\"iteration\":$n," "$dir/stop.log" || bad "the log was not continued"
+
+# A checkpoint goes with its options and its scene, and is checked.
+short="--preset draft --max-anchors 300 --iterations $n"
+for options in "--seed 2" "--lambda 3" "--k 5" "--max-anchors 299" "--without fine" "--iterations 601" "--scale 2"; do
+    # shellcheck disable=SC2086
+    expect 4 "$dir/late: saved with other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short $options --resume "$dir/late"
+done
+sed 's/"time": *1[ ,]/"time": 0.99,/' "$scene/transforms_train.json" >"$scene/transforms.json"
+# shellcheck disable=SC2086
+expect 4 "other options" ./adcgs-enc "$scene/transforms.json" -o "$dir/x.adcgs" $short --resume "$dir/late"
+rm "$scene/transforms.json"
+size=$(wc -c <"$dir/late")
+head -c $((size / 2)) "$dir/late" >"$dir/damaged"
+# shellcheck disable=SC2086
+expect 4 "$dir/damaged: damaged" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --resume "$dir/damaged"
+{ head -c 20000 "$dir/late"; printf X; tail -c +20002 "$dir/late"; } >"$dir/damaged"
+# shellcheck disable=SC2086
+expect 4 "$dir/damaged: damaged" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --resume "$dir/damaged"
+expect 4 "not a checkpoint" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/one.adcgs"
+expect 3 "nowhere" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/nowhere"
+
+# Stages left out; what a scene does not need is not in its stream.
+n=60
+networks() { ./adcgs-info "$dir/$1.adcgs" --json | tr -d '\n'; }
+for stage in coarse fine deformation rate refinement; do
+    enc "$stage" --iterations $n --without $stage
+    ./adcgs-dec "$dir/$stage.adcgs" --md5 >/dev/null 2>&1 || bad "--without $stage does not decode"
+done
+enc all --iterations $n
+networks all | grep -q 'F_omega.*F_varpi.*"Z"' || bad "a moving scene without motion"
+networks coarse | grep -q F_omega && bad "--without coarse leaves F_omega in"
+networks fine | grep -q F_varpi && bad "--without fine leaves F_varpi in"
+networks deformation | grep -q 'F_omega\|F_varpi\|"Z"' && bad "--without deformation leaves networks in"
+cmp -s "$dir/all.adcgs" "$dir/rate.adcgs" && bad "--without rate changes nothing"
+cmp -s "$dir/all.adcgs" "$dir/refinement.adcgs" && bad "--without refinement changes nothing"
+mkdir "$dir/still"
+cp -r "$scene/." "$dir/still"
+for json in "$dir/still/"*.json; do
+    sed 's/"time": *[0-9.e-]*/"time": 0/' "$json" >"$dir/json" && mv "$dir/json" "$json"
+done
+scene=$dir/still enc still --iterations $n
+networks still | grep -q 'F_omega\|F_varpi\|"Z"' && bad "a still scene carries deformation networks"
+./adcgs-dec "$dir/still.adcgs" --md5 >/dev/null 2>&1 || bad "a still scene does not decode"
+
+# Wrong use and bad input: one line, the right exit code, nothing written.
+try="./adcgs-enc $scene -o $dir/x.adcgs"
+expect 2 "SCENE" ./adcgs-enc -o "$dir/x.adcgs"
+expect 2 "no output" ./adcgs-enc "$scene"
+expect 2 "too many" $try extra
+expect 2 "unknown preset 'quick'" $try --preset quick
+expect 2 "unknown option" $try --fast
+expect 2 "from 0 to 1000" $try --lambda -1
+expect 2 "from 0 to 1000" $try --lambda nan
+expect 2 "whole number" $try --iterations 1.5
+expect 2 "whole number" $try --iterations 9
+expect 2 "1 to 16" $try --k 17
+expect 2 "1 to 64" $try --scale 0
+expect 2 "0 to 256" $try --threads -1
+expect 2 "whole number" $try --seed x
+expect 2 "one of none, coarse" $try --without everything
+expect 2 "one of auto" $try --cpu sse
+expect 2 "value must follow" $try --seed
+expect 3 "$dir/nowhere" ./adcgs-enc "$dir/nowhere" -o "$dir/x.adcgs"
+expect 3 "nowhere.ply" $try --points "$dir/nowhere.ply"
+mkdir "$dir/broken"
+echo '{"frames": [' >"$dir/broken/transforms_train.json"
+expect 4 "transforms_train.json" ./adcgs-enc "$dir/broken" -o "$dir/x.adcgs"
+expect 4 "two.adcgs" ./adcgs-enc "$dir/two.adcgs" -o "$dir/x.adcgs"
+expect 3 "no/x.adcgs" ./adcgs-enc "$scene" -o "$dir/no/x.adcgs" --log "$dir/x.log"
+expect 3 "is a folder" ./adcgs-enc "$scene" -o "$dir" --log "$dir/x.log"
+expect 3 "not a regular file" ./adcgs-enc "$scene" -o /dev/null --log "$dir/x.log"
+expect 3 "no/check" $try --checkpoint "$dir/no/check" --log "$dir/x.log"
+[ ! -e "$dir/x.log" ] || bad "a run began whose output cannot be written"
+expect 3 "no/log" $try --log "$dir/no/log"
+
+# A full disk, pretended by a limit on the size of files: the file that was there stays.
+cp "$dir/one.adcgs" "$dir/full.adcgs"
+expect 3 "full.adcgs" sh -c "trap '' XFSZ; ulimit -f 8; exec ./adcgs-enc '$scene' -o '$dir/full.adcgs' --preset draft --iterations 10"
+same one full "a failed write touched the file"
+[ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || { bad "something was left behind"; ls -a "$dir"; }
+exit $failed
