@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 50, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
+enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
 
 /* ---- Memory ---- */
 
@@ -363,9 +363,12 @@ static adcgs_status take_snapshot(adcgs_trainer *t, adcgs_error *error)
 }
 
 /** NaN, infinity, or a loss far above what it was: go back to the last good state with smaller steps. */
-static adcgs_status guard(adcgs_trainer *t, adcgs_error *error)
+static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
 {
-    const int due = t->iteration % CHECK_EVERY == 0 || progress_of(t) >= 1;
+    const double progress = progress_of(t);
+    /* Also before what follows from the parameters is fixed: at the end, and when the stage changes. */
+    const int due = t->iteration % CHECK_EVERY == 0 || progress >= 1 ||
+                    adcgs_train_stage(&t->config, progress) != adcgs_train_stage(&t->config, before);
     if (isfinite(t->mean_loss) && t->mean_loss <= 4 && (!due || is_finite(t)))
         return t->iteration % SNAPSHOT_EVERY == 0 ? take_snapshot(t, error) : ADCGS_OK;
     const uint32_t rollbacks = t->rollbacks + 1;
@@ -430,6 +433,6 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         ADCGS_TRY(before_iteration(t, progress, error));
         ADCGS_TRY(iterate(t, progress, error));
         t->elapsed = now() - begin;
-        ADCGS_TRY(guard(t, error));
+        ADCGS_TRY(guard(t, progress, error));
     }
 }
