@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Whole training runs in miniature: stopping and going on, refinement, recovery
+ * from what is not a number, and the numbers that end up in a stream.
+ */
+#include "outside_files.h"
+
+#include "encode/encode.h"
+#include "encode/quantise.h"
+#include "geom/geom.h"
+#include "scenes/scenes.h"
+#include "train/trainer.h"
+
+#include <math.h>
+
+enum { ITERATIONS = 200 };
+
+static adcgs_scene *scene;
+static adcgs_pool *pool;
+
+static int setup(void **state)
+{
+    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
+    const adcgs_scene_options options = { .points_path = NULL };
+    if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
+        return -1;
+    return adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
+           adcgs_scene_open(&scene, folder, &options, &error) != ADCGS_OK;
+}
+
+static int teardown(void **state)
+{
+    adcgs_scene_free(&scene);
+    adcgs_pool_free(&pool);
+    return remove_folder(state);
+}
+
+static adcgs_train_config small_config(void)
+{
+    adcgs_train_config c;
+    assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
+    c.iterations = ITERATIONS;
+    c.start_anchors = 100;
+    c.max_anchors = 150;
+    c.refine_every = 20;
+    c.grow_threshold = 1e-6f;
+    c.params.k = 4;
+    c.params.n_fv = 12;
+    c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 16;
+    return c;
+}
+
+static adcgs_trainer *make(const adcgs_train_config *config, adcgs_pool *threads)
+{
+    adcgs_trainer *t;
+    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), threads, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    t->quantise = adcgs_encode_quantise_hook;
+    t->quantise_user = &t->cpu;
+    return t;
+}
+
+static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
+{
+    int stopped;
+    if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(stopped, t->iteration < t->config.iterations);
+}
+
+/** The state of a run less the clock. */
+static void store(adcgs_trainer *t, adcgs_buffer *out)
+{
+    t->elapsed = 0;
+    adcgs_buffer_init(out);
+    assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
+}
+
+static void assert_same(const adcgs_buffer *a, const adcgs_buffer *b)
+{
+    assert_int_equal(a->size, b->size);
+    assert_memory_equal(a->data, b->data, a->size);
+}
+
+static int all_finite(const adcgs_fmodel *f)
+{
+    for (int i = 0; i < ADCGS_P_COUNT; i++)
+        for (size_t j = 0; j < f->param[i].n; j++)
+            if (!isfinite(f->param[i].p[j]))
+                return 0;
+    return 1;
+}
+
+/* ---- Checkpoints ---- */
+
+static int stop_at(void *user, const adcgs_train_report *r)
+{
+    return r->iteration >= *(const uint32_t *)user;
+}
+
+/** In each stage: a restored run is the stored one to the bit, and both end where a run that never stopped ends. */
+static void restored_runs_go_on_in_lockstep(void **state)
+{
+    static const uint32_t stops[] = { 0, 30, 100, 140, 160, 190 };
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *through = make(&config, pool), *stopping = make(&config, NULL);
+    adcgs_buffer end, middle, again;
+    run(through, NULL, NULL);
+    store(through, &end);
+    for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
+        uint32_t stop = stops[i];
+        run(stopping, stop_at, &stop);
+        assert_int_equal(stopping->iteration, stop);
+        store(stopping, &middle);
+        adcgs_trainer *restored = make(&config, pool);
+        assert_int_equal(adcgs_trainer_restore(restored, middle.data, middle.size, &error), ADCGS_OK);
+        store(restored, &again);
+        assert_same(&middle, &again);
+        adcgs_buffer_clear(&again);
+        run(restored, NULL, NULL);
+        store(restored, &again);
+        assert_same(&end, &again);
+        adcgs_buffer_clear(&again);
+        adcgs_buffer_clear(&middle);
+        adcgs_trainer_free(&restored);
+    }
+    run(stopping, NULL, NULL);
+    store(stopping, &again);
+    assert_same(&end, &again);
+    adcgs_buffer_clear(&again);
+    adcgs_buffer_clear(&end);
+    adcgs_trainer_free(&stopping);
+    adcgs_trainer_free(&through);
+}
+
+static void checkpoints_are_checked(void **state)
+{
+    adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, NULL), *other;
+    adcgs_buffer b;
+    store(t, &b);
+    for (size_t cut = 0; cut < b.size; cut += b.size / 97 + 1) {
+        assert_int_equal(adcgs_trainer_restore(t, b.data, cut, &error), ADCGS_ERR_DATA);
+        assert_true(error.text[0] && !strchr(error.text, '\n'));
+    }
+    adcgs_write_uint(&b, 0, 1);
+    assert_int_equal(adcgs_trainer_restore(t, b.data, b.size, &error), ADCGS_ERR_DATA);
+    assert_int_equal(adcgs_trainer_restore(t, b.data, b.size - 1, &error), ADCGS_OK);
+    config.grow_until += 0.01f;
+    other = make(&config, NULL);
+    assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
+    assert_non_null(strstr(error.text, "other options"));
+    adcgs_trainer_free(&other);
+    adcgs_trainer_free(&t);
+    adcgs_buffer_clear(&b);
+}
+
+/* ---- Refinement ---- */
+
+typedef struct census {
+    adcgs_trainer *t;
+    uint32_t least, most;
+} census;
+
+static int count_anchors(void *user, const adcgs_train_report *r)
+{
+    census *c = user;
+    const adcgs_fmodel *f = c->t->f;
+    assert_int_equal(r->anchors, f->n);
+    assert_in_range(f->n, 1, c->t->config.max_anchors);
+    for (uint32_t i = 0; i < f->n; i++) {
+        assert_true(f->pos[i][0] >> f->shape.depth == 0 && f->pos[i][1] >> f->shape.depth == 0 && f->pos[i][2] >> f->shape.depth == 0);
+        assert_true(i == 0 || adcgs_morton(f->pos[i - 1]) < adcgs_morton(f->pos[i]));
+    }
+    for (uint32_t i = f->n; i < f->groups * 64; i++)
+        assert_true(f->live[i] == 0);
+    c->least = ADCGS_MIN(c->least, f->n);
+    c->most = ADCGS_MAX(c->most, f->n);
+    return 0;
+}
+
+static void refinement_keeps_order_and_budget(void **state)
+{
+    const adcgs_train_config config = small_config();
+    census c = { make(&config, pool), UINT32_MAX, 0 };
+    const uint32_t start = c.t->f->n;
+    run(c.t, count_anchors, &c);
+    assert_true(c.most > start);     /* it grew */
+    assert_true(c.t->f->n < c.most); /* and was pruned */
+    adcgs_trainer_free(&c.t);
+}
+
+/* ---- Recovery ---- */
+
+typedef struct poison {
+    adcgs_trainer *t;
+    int group;   /* of the parameter, or -1: a picture */
+    int repair;  /* the picture is whole again after the first rollback */
+    int given;
+    uint32_t at;
+} poison;
+
+static int give_poison(void *user, const adcgs_train_report *r)
+{
+    poison *p = user;
+    float *rgb = p->t->views[0].rgb;
+    if (!p->given && r->iteration >= p->at) {
+        p->given = 1;
+        if (p->group < 0)
+            rgb[5] = NAN;
+        else
+            p->t->f->param[p->group].p[p->group == ADCGS_P_FG ? 64 : 0] = NAN;
+    }
+    if (p->group < 0 && p->repair && r->rollbacks)
+        rgb[5] = 0.5f;
+    return 0;
+}
+
+static void no_number_is_rolled_back(void **state)
+{
+    static const int groups[] = { -1, ADCGS_P_FV, ADCGS_P_FG, ADCGS_P_COLOUR, ADCGS_P_ETA, ADCGS_P_THETA, ADCGS_P_TIME, ADCGS_P_E_FV };
+    const adcgs_train_config config = small_config();
+    for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++) {
+        adcgs_model model;
+        poison p = { .t = make(&config, pool), .group = groups[i], .repair = 1, .at = 90 };
+        run(p.t, give_poison, &p);
+        assert_int_equal(p.t->iteration, ITERATIONS);
+        assert_int_equal(p.t->rollbacks, 1);
+        assert_true(isfinite(p.t->mean_loss) && all_finite(p.t->f));
+        assert_int_equal(adcgs_quantise(&model, p.t->f, p.t->cpu, NULL, NULL, &error), ADCGS_OK);
+        assert_int_equal(adcgs_model_validate(&model, &error), ADCGS_OK);
+        adcgs_model_clear(&model, NULL);
+        adcgs_trainer_free(&p.t);
+    }
+}
+
+/** The same in the last stages, where anchors are final and stored as they decode. */
+static void no_number_is_rolled_back_late(void **state)
+{
+    const adcgs_train_config config = small_config();
+    for (uint32_t at = 140; at < ITERATIONS; at += 20) {
+        poison p = { .t = make(&config, pool), .group = ADCGS_P_THETA, .at = at };
+        run(p.t, give_poison, &p);
+        assert_int_equal(p.t->iteration, ITERATIONS);
+        assert_true(p.t->rollbacks >= 1 && all_finite(p.t->f));
+        adcgs_trainer_free(&p.t);
+    }
+}
+
+static void lasting_poison_ends_the_run(void **state)
+{
+    const adcgs_train_config config = small_config();
+    poison p = { .t = make(&config, pool), .group = -1, .at = 0 };
+    int stopped;
+    p.t->config.quarter_until = p.t->config.half_until = 0; /* loaded once: the picture keeps its fault */
+    p.at = 10;
+    assert_int_equal(adcgs_trainer_run(p.t, give_poison, &p, &stopped, &error), ADCGS_ERR_DATA);
+    assert_non_null(strstr(error.text, "diverged"));
+    assert_null(strchr(error.text, '\n'));
+    assert_true(all_finite(p.t->f) || p.t->rollbacks > 0);
+    adcgs_trainer_free(&p.t);
+}
+
+/* ---- Quantisation ---- */
+
+static void take_values(adcgs_fmodel *f, float *mu[ADCGS_P_ANCHOR], float *value[ADCGS_P_ANCHOR])
+{
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+        mu[i] = calloc(f->param[i].n, sizeof(float));
+        value[i] = calloc(f->param[i].n, sizeof(float));
+        assert_true(mu[i] && value[i]);
+    }
+}
+
+static void decoded_values_are_their_own_quantisation(void **state)
+{
+    const adcgs_train_config config = small_config();
+    for (uint32_t stop = 90; stop <= ITERATIONS; stop += 110) {
+        adcgs_trainer *t = make(&config, pool);
+        adcgs_model first, second;
+        float *mu[ADCGS_P_ANCHOR], *value[ADCGS_P_ANCHOR];
+        run(t, stop_at, &stop);
+        take_values(t->f, mu, value);
+        assert_int_equal(adcgs_quantise(&first, t->f, t->cpu, mu, value, &error), ADCGS_OK);
+        if (adcgs_model_validate(&first, &error) != ADCGS_OK)
+            fail_msg("%s", error.text);
+        for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+            memcpy(t->f->param[i].p, value[i], t->f->param[i].n * sizeof(float));
+        assert_int_equal(adcgs_quantise(&second, t->f, ADCGS_CPU_SCALAR, NULL, NULL, &error), ADCGS_OK);
+        if (!adcgs_model_equal(&first, &second, &error))
+            fail_msg("%s", error.text);
+        for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+            free(mu[i]);
+            free(value[i]);
+        }
+        adcgs_model_clear(&first, NULL);
+        adcgs_model_clear(&second, NULL);
+        adcgs_trainer_free(&t);
+    }
+}
+
+static void estimated_bits_are_written_bytes(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, pool);
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    adcgs_rate rate;
+    float *value[ADCGS_P_ANCHOR];
+    run(t, NULL, NULL);
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        value[i] = t->f->param[i].p;
+    assert_int_equal(adcgs_encode_quantise_hook(&t->cpu, t->f, t->pass->mu, value, &error), ADCGS_OK);
+    adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .deform = 1 });
+    memset(t->pass->grad, 0, 16 * (size_t)t->pass->primitives.n * sizeof(float));
+    adcgs_pass_backward(t->pass, t->f, 1, 1, 1, 0, &rate);
+    adcgs_buffer_init(&bytes);
+    assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
+    if (adcgs_encode_verified(&stream, &bytes, t->cpu, pool, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    double written = 0;
+    for (int i = 0; i < ADCGS_LAYERS; i++)
+        written += (double)stream.bytes.layer[i];
+    /* Written are also the flags of anchors and primitives, less than a bit each, and the ends of ten sub-streams. */
+    const double rest = (t->f->n * (1.0 + t->f->params.k)) / 8 + 60;
+    print_message("estimated %.0f bytes, written %.0f (%+.2f %%), at most %.0f of them flags and framing\n", rate.total / 8, written,
+                  100 * (written / (rate.total / 8) - 1), rest);
+    assert_true(written > 0.97 * rate.total / 8);
+    assert_true(written < 1.03 * rate.total / 8 + rest);
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+    adcgs_trainer_free(&t);
+}
+
+/** A stream of a model in which no anchor moves has no networks, table or flags for motion. */
+static void still_models_carry_no_motion(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, pool);
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    uint32_t stop = 160;
+    run(t, stop_at, &stop);
+    memset(t->f->moving, 0, (size_t)t->f->groups * 64 * sizeof *t->f->moving);
+    adcgs_buffer_init(&bytes);
+    assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
+    const adcgs_model *m = &stream.segments[0];
+    assert_int_equal(stream.params.time_rows + stream.params.time_width + m->params.time_rows, 0);
+    assert_false(m->net[ADCGS_ROLE_COARSE].present || m->net[ADCGS_ROLE_FINE].present || m->net[ADCGS_ROLE_TIME].present);
+    if (adcgs_encode_verified(&stream, &bytes, t->cpu, pool, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+    adcgs_trainer_free(&t);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(restored_runs_go_on_in_lockstep),
+        cmocka_unit_test(checkpoints_are_checked),
+        cmocka_unit_test(refinement_keeps_order_and_budget),
+        cmocka_unit_test(no_number_is_rolled_back),
+        cmocka_unit_test(no_number_is_rolled_back_late),
+        cmocka_unit_test(lasting_poison_ends_the_run),
+        cmocka_unit_test(decoded_values_are_their_own_quantisation),
+        cmocka_unit_test(estimated_bits_are_written_bytes),
+        cmocka_unit_test(still_models_carry_no_motion),
+    };
+    return cmocka_run_group_tests_name("trainer", tests, setup, teardown);
+}
