@@ -18,7 +18,7 @@ static const char *const stage_names[] = { "none", "coarse", "fine", "deformatio
 typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points;
     double lambda, time_limit;
-    int iterations, scale, k, max_anchors, threads, cpu, without, json, quiet, has_lambda, has_threads;
+    int iterations, scale, k, max_anchors, threads, cpu, without, json, has_lambda;
     uint64_t seed;
 } enc_options;
 
@@ -42,9 +42,10 @@ static void log_last(watcher *w)
         return;
     w->next_log = r->iteration + 100;
     fprintf(w->log,
-            "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,\"loss\":%.6g,\"psnr\":%.4f,\"anchors\":%u,\"divide\":%d,\"bytes\":%.0f,"
-            "\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d}\n",
-            r->stage, r->iteration, r->iterations, r->loss, r->psnr, r->anchors, r->divide, r->bytes, r->rate, r->seconds, r->rollbacks);
+            "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,\"loss\":%.6g,\"psnr\":%.4f,\"anchors\":%u,\"divide\":%d,"
+            "\"bytes\":%.0f,\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d}\n",
+            r->stage, r->iteration, r->iterations, r->loss, r->psnr, r->anchors, r->divide, r->bytes, r->rate, r->seconds,
+            r->rollbacks);
     fflush(w->log);
 }
 
@@ -292,25 +293,36 @@ int main(int argc, char **argv)
     enc_options o = { .preset = "fast", .scale = 1, .seed = 1 };
     const adcgs_option options[] = {
         { "output", 'o', ADCGS_OPTION_STRING, &o.output, 0, 0, "FILE", "write the stream here (required)", NULL, NULL },
-        { "preset", 'p', ADCGS_OPTION_STRING, &o.preset, 0, 0, "NAME", "draft, fast, medium, slow or paper (default fast)", NULL, NULL },
-        { "lambda", 'l', ADCGS_OPTION_REAL, &o.lambda, 0, 1000, "X", "loss per mebibyte of features: larger makes smaller files", NULL,
-          &o.has_lambda },
-        { "iterations", 'n', ADCGS_OPTION_INT, &o.iterations, 10, 10000000, "N", "length of the run (default: the preset's)", NULL, NULL },
-        { "scale", 0, ADCGS_OPTION_INT, &o.scale, 1, 64, "S", "divide the pictures' size by this integer (default 1)", NULL, NULL },
-        { "k", 0, ADCGS_OPTION_INT, &o.k, 1, ADCGS_K_MAX, "N", "primitives per anchor (default: the preset's)", NULL, NULL },
-        { "max-anchors", 0, ADCGS_OPTION_INT, &o.max_anchors, 1, 1000000, "N", "budget of anchors (default: the preset's)", NULL, NULL },
-        { "points", 0, ADCGS_OPTION_STRING, &o.points, 0, 0, "FILE", "initial points (PLY or Draco) instead of the scene's", NULL, NULL },
+        { "preset", 'p', ADCGS_OPTION_STRING, &o.preset, 0, 0, "NAME",
+          "draft, fast, medium, slow or paper (default fast)", NULL, NULL },
+        { "lambda", 'l', ADCGS_OPTION_REAL, &o.lambda, 0, 1000, "X",
+          "loss per mebibyte of features: larger makes smaller\nfiles (default: the preset's)", NULL, &o.has_lambda },
+        { "iterations", 'n', ADCGS_OPTION_INT, &o.iterations, 10, 10000000, "N",
+          "length of the run (default: the preset's)", NULL, NULL },
+        { "scale", 0, ADCGS_OPTION_INT, &o.scale, 1, 64, "S",
+          "divide the pictures' size by this integer (default 1)", NULL, NULL },
+        { "k", 0, ADCGS_OPTION_INT, &o.k, 1, ADCGS_K_MAX, "N",
+          "primitives per anchor, 1 to 16 (default: the preset's)", NULL, NULL },
+        { "max-anchors", 0, ADCGS_OPTION_INT, &o.max_anchors, 1, 1000000, "N",
+          "budget of anchors (default: the preset's)", NULL, NULL },
+        { "points", 0, ADCGS_OPTION_STRING, &o.points, 0, 0, "FILE",
+          "initial points (PLY or Draco) instead of the scene's or\nrandom ones", NULL, NULL },
         { "without", 0, ADCGS_OPTION_CHOICE, &o.without, 0, 0, "STAGE",
-          "leave out: coarse, fine, deformation (both), rate, refinement", stage_names, NULL },
-        { "time-limit", 0, ADCGS_OPTION_REAL, &o.time_limit, 0, 1e7, "S", "train for at most S seconds; the result then depends on\nthe machine",
-          NULL, NULL },
+          "leave out coarse, fine, deformation (both), rate or\nrefinement", stage_names, NULL },
+        { "time-limit", 0, ADCGS_OPTION_REAL, &o.time_limit, 0, 1e7, "S",
+          "train for at most S seconds; the result then depends on\nthe speed of the machine", NULL, NULL },
         { "seed", 0, ADCGS_OPTION_SIZE, &o.seed, 0, 1e15, "N", "seed of every random choice (default 1)", NULL, NULL },
-        { "checkpoint", 0, ADCGS_OPTION_STRING, &o.checkpoint, 0, 0, "FILE", "save the state of the run here every minute", NULL, NULL },
-        { "resume", 0, ADCGS_OPTION_STRING, &o.resume, 0, 0, "FILE", "go on from such a state", NULL, NULL },
-        { "log", 0, ADCGS_OPTION_STRING, &o.log, 0, 0, "FILE", "write progress as JSON lines", NULL, NULL },
-        { "threads", 't', ADCGS_OPTION_INT, &o.threads, 0, 256, "N", "threads (default: one per CPU); the result does not depend on it",
-          NULL, &o.has_threads },
-        { "cpu", 0, ADCGS_OPTION_CHOICE, &o.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)", cpu_names, NULL },
+        { "checkpoint", 0, ADCGS_OPTION_STRING, &o.checkpoint, 0, 0, "FILE",
+          "save the state of the run here every minute and when\ninterrupted (default then: the output's name.checkpoint)", NULL,
+          NULL },
+        { "resume", 0, ADCGS_OPTION_STRING, &o.resume, 0, 0, "FILE",
+          "go on from such a state; same scene, same options", NULL, NULL },
+        { "log", 0, ADCGS_OPTION_STRING, &o.log, 0, 0, "FILE",
+          "write progress as JSON lines; appended with --resume", NULL, NULL },
+        { "threads", 't', ADCGS_OPTION_INT, &o.threads, 0, 256, "N",
+          "threads (default: one per CPU); the result does not\ndepend on it", NULL, NULL },
+        { "cpu", 0, ADCGS_OPTION_CHOICE, &o.cpu, 0, 0, "LEVEL",
+          "kernels: auto, scalar, avx2, avx512 (default auto)", cpu_names, NULL },
         { "json", 0, ADCGS_OPTION_FLAG, &o.json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
     const adcgs_cli cli = {

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# --help and the man page of each program name the same options; a missing or unknown option is a usage error.
+# --help and the man page of each program name the same options with the same values; a missing or unknown option is a usage error.
 set -u
 man=${srcdir:-.}/man
 faults=0
@@ -21,8 +21,9 @@ for program in adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-swe
     "./$program" --no-such-option >/dev/null 2>&1
     [ $? -eq 2 ] || fault "$program: an unknown option is no usage error"
     # Options start a line of the help; in the page they follow .TP.
-    in_help=$(grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+' <<<"$help" | grep -o -E -e '--[a-z0-9-]+' | sort -u)
-    in_page=$(sed 's/\\//g' "$man/$program.1" | grep -A1 '^\.TP' | grep -o -E -e '--[a-z0-9-]+' | sort -u)
+    in_help=$(grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+( [A-Z][A-Za-z:,|]*)?' <<<"$help" | grep -o -E -e '--.*' | sort -u)
+    in_page=$(sed 's/\\f[IR]//g; s/[\\"]//g' "$man/$program.1" | grep -A1 '^\.TP' |
+        grep -o -E -e '--[a-z0-9-]+ *([A-Z][A-Za-z:,|]*)?' | sed 's/  */ /; s/ *$//' | sort -u)
     [ -n "$in_help" ] || fault "$program: no options found in its help"
     if [ "$in_help" != "$in_page" ]; then
         fault "$program: options of --help (<) and of the man page (>) differ:"
