@@ -293,7 +293,7 @@ static void choose_lattices(adcgs_trainer *t)
             for (size_t j = 0; j < n; j++)
                 square += (double)w[j] * w[j];
             const double rms = sqrt(square / (double)n);
-            m->lattice[l] = i >= ADCGS_P_E_FV ? 6 : (int8_t)fmin(fmax(ceil(-log2(fmax(rms, 1e-6) / 16)), 4), 14);
+            m->lattice[l] = i >= ADCGS_P_E_FV ? 6 : (int8_t)fmin(fmax(ceil(-log2(fmax(rms, 1e-6) / 64)), 4), 14);
         }
     }
 }
