@@ -200,11 +200,13 @@ adcgs_status adcgs_trainer_refine(adcgs_trainer *t, double progress, adcgs_error
 
 enum { DECIDE_TIMES = 16 };
 
-/** Largest effect of time on each anchor, in units where 1 is just worth its bits. */
+/**
+ * Largest effect of time on each anchor's primitives. 1 is half a pixel of way, or 0.03 of colour, for an opaque one, or 0.03
+ * of opacity: what lies below is seen as noise, and costs every frame its networks.
+ */
 static void measure_motion(adcgs_trainer *t, float *effect)
 {
     const adcgs_fmodel *f = t->f;
-    const int k = f->params.k;
     const size_t slots = t->pass->primitives.n;
     float *still = malloc(slots * 14 * sizeof *still);
     if (!still) { /* without memory every anchor counts as moving: correct, only larger */
@@ -229,11 +231,10 @@ static void measure_motion(adcgs_trainer *t, float *effect)
                 tint = fmaxf(tint, fabsf(now[(size_t)(11 + a) * slots + i] - still[(size_t)(11 + a) * slots + i]));
             }
             const float fade = fabsf(now[10 * slots + i] - still[10 * slots + i]);
-            const float here = o * (shift / (0.25f * pixel)) + o * tint / 0.02f + fade / 0.02f;
+            const float here = fmaxf(fmaxf(o * shift / (0.5f * pixel), o * tint / 0.03f), fade / 0.03f);
             effect[anchor] = fmaxf(effect[anchor], here);
         }
     }
-    (void)k;
     free(still);
 }
 
