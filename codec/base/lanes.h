@@ -11,7 +11,12 @@
 
 #include "base/fmath.h"
 
+#if ADCGS_LANES_ISA
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
+#else
+/* Sixteen loops in a row, all unrolled: the compiler may choose. */
+#define LANES_INLINE static inline __attribute__((unused))
+#endif
 
 #if ADCGS_LANES_ISA == 512
 #include "base/lanes_avx512.h"

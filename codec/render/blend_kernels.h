@@ -46,22 +46,29 @@ typedef struct block_state {
     vf t, rgb[3];
 } block_state;
 
+LANES_INLINE vf opacity_at(const adcgs_splat2d *s, vf px, vf py)
+{
+    return splat_alpha(s, vf_sub(px, vf_set1(s->x)), vf_sub(py, vf_set1(s->y)));
+}
+
+/*
+ * list[n] is one more splat, any. The opacity of each splat is computed while the one before is blended: nothing in it waits
+ * for the transmittance.
+ */
 LANES_INLINE block_state blend_block(const adcgs_splat2d *splats, const uint32_t *list, uint32_t n, float x, float y, vf t)
 {
-    const vf px = vf_add(vf_load(pixel_x), vf_set1(x)), py = vf_add(vf_load(pixel_y), vf_set1(y));
-    const vf t_min = vf_set1(ADCGS_T_MIN);
-    vf red = vf_set1(0.0f), green = red, blue = red;
+    const vf px = vf_add(vf_load(pixel_x), vf_set1(x)), py = vf_add(vf_load(pixel_y), vf_set1(y)), t_min = vf_set1(ADCGS_T_MIN);
+    vf red = vf_set1(0.0f), green = red, blue = red, alpha = opacity_at(splats + list[0], px, py);
     for (uint32_t i = 0; i < n; i++) {
         if (!vm_any(vf_ge(t, t_min)))
             break;
         const adcgs_splat2d *s = splats + list[i];
-        const vf dx = vf_sub(px, vf_set1(s->x)), dy = vf_sub(py, vf_set1(s->y));
-        const vf alpha = splat_alpha(s, dx, dy);
-        const vf weight = vf_mul(alpha, t);
+        const vf next = opacity_at(splats + list[i + 1], px, py), weight = vf_mul(alpha, t);
         red = vf_fma(vf_set1(s->rgb[0]), weight, red);
         green = vf_fma(vf_set1(s->rgb[1]), weight, green);
         blue = vf_fma(vf_set1(s->rgb[2]), weight, blue);
         t = vf_fnma(alpha, t, t);
+        alpha = next;
     }
     return (block_state){t, {red, green, blue}};
 }
@@ -98,6 +105,7 @@ static void blend(const adcgs_blend_job *job, int tile, uint32_t *scratch)
         block_state state = {vf_set1(0.0f), {vf_set1(0.0f), vf_set1(0.0f), vf_set1(0.0f)}};
         if (x < job->width && y < job->height) {
             const uint32_t count = select_block(list, splats, masks, n, block);
+            list[count] = n ? splats[0] : 0;
             state = blend_block(job->splats, list, count, (float)x, (float)y, initial_transmittance(x, y, job->width, job->height));
             write_block(job, x, y, &state);
         }

@@ -232,7 +232,7 @@ static void scatter_piece(void *arg, int index, int thread)
         const uint32_t at = next[from[i] >> 16 & 0xfffff]++;
         entries[at] = (adcgs_tile_entry){(uint32_t)(from[i] >> 36), (uint32_t)(from[i] & 0xffff)};
         if (r->keep)
-            place[begin + i] = at;
+            place[at] = begin + i;
     }
     if (r->keep)
         for (uint32_t i = piece->begin; i < piece->end; i++)

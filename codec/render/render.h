@@ -69,8 +69,8 @@ typedef struct adcgs_kept {
     const float *transmittance;      /**< final T, [tiles][16 blocks][16 pixels] */
     uint32_t n_slots;
     const uint32_t *where;           /**< [n_slots] index into splats of a slot's splat, or 0xffffffff */
-    const uint32_t *first;           /**< [n_splats+1] into place: the entries of a splat, by tile row, then column */
-    const uint32_t *place;           /**< [entries] index into entries */
+    const uint32_t *first;           /**< [n_splats+1] first pair of a splat, counting (splat, tile) pairs splat by splat */
+    const uint32_t *place;           /**< [entries] number of that pair */
 } adcgs_kept;
 void adcgs_raster_kept(const adcgs_raster *raster, adcgs_kept *kept);
 

@@ -7,8 +7,12 @@
 #include "render/alpha.h"
 #include "train/raster_isa.h"
 
+/* How far ahead splats and places of sums are fetched. */
+#define FETCH_ENTRIES 8
+
 typedef struct tile_state {
     alignas(64) float t[16][16];      /* transmittance before the next splat */
+    alignas(64) float alpha[2][16][16]; /* opacities of the splats at hand and next */
     alignas(64) float behind[16][16]; /* gradient times (final colour - colour so far) */
     alignas(64) float grad[16][3][16];
     alignas(64) float x[16][16], y[16][16];
@@ -47,13 +51,22 @@ static void start_block(tile_state *s, const adcgs_back_job *job, int block, int
     s->alive |= (uint32_t)1 << block;
 }
 
+/*
+ * A splat's opacity in each of its blocks comes first and on its own, since nothing there waits for anything: in one loop with
+ * the rest the processor would spend its time waiting at the end of a long chain.
+ */
+LANES_INLINE void alpha_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block)
+{
+    const vf dx = vf_sub(vf_load(s->x[block]), vf_set1(g->x)), dy = vf_sub(vf_load(s->y[block]), vf_set1(g->y));
+    vf_store(s->alpha[turn][block], splat_alpha(g, dx, dy));
+}
+
 /* Adds a block's part to the sums of a splat; returns whether light is left. */
-LANES_INLINE int back_block(tile_state *s, const adcgs_splat2d *g, int block, vf sum[12])
+LANES_INLINE int back_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block, vf sum[12])
 {
     const vf one = vf_set1(1.0f), red = vf_load(s->grad[block][0]), green = vf_load(s->grad[block][1]), blue = vf_load(s->grad[block][2]);
-    const vf t = vf_load(s->t[block]);
+    const vf t = vf_load(s->t[block]), alpha = vf_load(s->alpha[turn][block]);
     const vf dx = vf_sub(vf_load(s->x[block]), vf_set1(g->x)), dy = vf_sub(vf_load(s->y[block]), vf_set1(g->y));
-    const vf alpha = splat_alpha(g, dx, dy);
     const vf weight = vf_mul(alpha, t);
     const vf toward = vf_fma(vf_set1(g->rgb[2]), blue, vf_fma(vf_set1(g->rgb[1]), green, vf_mul(vf_set1(g->rgb[0]), red)));
     const vf behind = vf_fnma(weight, toward, vf_load(s->behind[block]));
@@ -78,26 +91,49 @@ LANES_INLINE int back_block(tile_state *s, const adcgs_splat2d *g, int block, vf
     return vm_any(vf_ge(through, vf_set1(ADCGS_T_MIN)));
 }
 
+/* The opacities of an entry's blocks that have light, one entry ahead of their use. */
+static inline void alpha_entry(tile_state *s, const adcgs_back_job *job, uint32_t i)
+{
+    const adcgs_tile_entry entry = job->kept.entries[i];
+    const adcgs_splat2d *g = job->kept.splats + entry.splat;
+    for (uint32_t left = entry.mask & s->alive; left; left &= left - 1)
+        alpha_block(s, i & 1, g, __builtin_ctz(left));
+}
+
+static inline void back_entry(tile_state *s, const adcgs_back_job *job, uint32_t i, float *sums)
+{
+    const vf zero = vf_set1(0.0f);
+    const adcgs_tile_entry entry = job->kept.entries[i];
+    const adcgs_splat2d *g = job->kept.splats + entry.splat;
+    vf sum[12] = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
+    for (uint32_t left = entry.mask & s->alive; left; left &= left - 1) {
+        const int block = __builtin_ctz(left);
+        if (!back_block(s, i & 1, g, block, sum))
+            s->alive &= ~((uint32_t)1 << block);
+    }
+    vf_sums(sums, sum);
+}
+
 static void blend_back(const adcgs_back_job *job, int tile)
 {
     tile_state s;
     const int tile_x = tile % job->kept.tiles_x * ADCGS_TILE, tile_y = tile / job->kept.tiles_x * ADCGS_TILE;
+    const uint32_t begin = job->kept.tile_start[tile], end = job->kept.tile_start[tile + 1];
     s.alive = 0;
     for (int block = 0; block < 16; block++)
         start_block(&s, job, block, tile_x + 4 * (block & 3), tile_y + 4 * (block >> 2));
-    const vf zero = vf_set1(0.0f);
-    for (uint32_t i = job->kept.tile_start[tile]; i < job->kept.tile_start[tile + 1]; i++) {
-        const adcgs_splat2d *g = job->kept.splats + job->kept.entries[i].splat;
-        if (!(job->kept.entries[i].mask & s.alive)) {
-            vf_store(job->sums + (size_t)i * SUM_WORDS, zero);
-            continue;
-        }
-        vf sum[12] = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
-        for (uint32_t left = job->kept.entries[i].mask & s.alive; left; left &= left - 1) {
-            const int block = __builtin_ctz(left);
-            if (!back_block(&s, g, block, sum))
-                s.alive &= ~((uint32_t)1 << block);
-        }
-        vf_sums(job->sums + (size_t)i * SUM_WORDS, sum);
+    if (begin < end)
+        alpha_entry(&s, job, begin);
+    for (uint32_t i = begin; i < end; i++) {
+        float *sums = job->sums + (size_t)job->kept.place[i] * SUM_WORDS;
+        const uint32_t ahead = i + FETCH_ENTRIES < end ? i + FETCH_ENTRIES : i;
+        __builtin_prefetch(job->kept.splats + job->kept.entries[ahead].splat);
+        __builtin_prefetch(job->sums + (size_t)job->kept.place[ahead] * SUM_WORDS, 1);
+        if (i + 1 < end)
+            alpha_entry(&s, job, i + 1);
+        if (job->kept.entries[i].mask & s.alive)
+            back_entry(&s, job, i, sums);
+        else
+            vf_store(sums, vf_set1(0.0f));
     }
 }

@@ -28,7 +28,7 @@ typedef struct adcgs_back_job {
     const adcgs_view *view;
     float filter;
     const float *rgb, *grad; /* [3][height][width] */
-    float *sums;             /* [entries][SUM_WORDS] */
+    float *sums;             /* [entries][SUM_WORDS], pairs splat by splat */
     adcgs_raster_grads out;
 } adcgs_back_job;
 

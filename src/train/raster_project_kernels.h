@@ -16,70 +16,34 @@ typedef struct slot_sums {
     alignas(64) int32_t drawn[64];
 } slot_sums;
 
-/* Lines listed before they are added, and how far ahead they are fetched: they lie where their tiles are. */
-#define LIST_MAX 512
-#define FETCH_AHEAD 24
+/* How many slots ahead the first lines are fetched: slots are not in the order of depth, in which the lines lie. */
+#define FETCH_AHEAD 6
 
-static vf add_lines(vf sum, const float *sums, const uint32_t *lines, uint32_t n)
+static void fetch_sums(const adcgs_back_job *job, uint32_t splat)
 {
-    for (uint32_t i = 0; i < n; i++) {
-        __builtin_prefetch(sums + (size_t)lines[i + FETCH_AHEAD] * SUM_WORDS);
-        sum = vf_add(sum, vf_load(sums + (size_t)lines[i] * SUM_WORDS));
-    }
-    return sum;
-}
-
-/* The lines of slots [from, ...) as far as the list has room, and the end of each slot's. Returns the slot after the last. */
-static uint32_t list_lines(uint32_t *lines, uint32_t *ends, const adcgs_kept *k, uint32_t slot, uint32_t from)
-{
-    uint32_t n = 0, l = from;
-    for (; l < 64; l++) {
-        const uint32_t splat = k->where[slot + l];
-        const uint32_t begin = splat == UINT32_MAX ? 0 : k->first[splat], count = splat == UINT32_MAX ? 0 : k->first[splat + 1] - begin;
-        if (n + count > LIST_MAX)
-            break;
-        for (uint32_t i = 0; i < count; i++)
-            lines[n + i] = k->place[begin + i];
-        n += count;
-        ends[l] = n;
-    }
-    for (uint32_t i = 0; i < FETCH_AHEAD; i++)
-        lines[n + i] = 0;
-    return l;
-}
-
-/* A slot with more lines than a list holds. */
-static vf add_many(const adcgs_back_job *job, uint32_t splat)
-{
-    vf sum = vf_set1(0.0f);
-    for (uint32_t i = job->kept.first[splat]; i < job->kept.first[splat + 1]; i++)
-        sum = vf_add(sum, vf_load(job->sums + (size_t)job->kept.place[i] * SUM_WORDS));
-    return sum;
-}
-
-static void store_sum(slot_sums *o, uint32_t l, vf sum)
-{
-    alignas(64) float total[SUM_WORDS];
-    vf_store(total, sum);
-    for (int i = 0; i < SUM_WORDS; i++)
-        o->v[i][l] = total[i];
+    if (splat == UINT32_MAX)
+        return;
+    const float *line = job->sums + (size_t)job->kept.first[splat] * SUM_WORDS;
+    for (int i = 0; i < 4; i++)
+        __builtin_prefetch(line + i * SUM_WORDS);
 }
 
 static void gather_sums(slot_sums *o, const adcgs_back_job *job, uint32_t slot)
 {
-    uint32_t lines[LIST_MAX + FETCH_AHEAD], ends[64];
-    for (uint32_t l = 0; l < 64; l++)
-        o->drawn[l] = job->kept.where[slot + l] != UINT32_MAX;
-    for (uint32_t from = 0; from < 64;) {
-        const uint32_t to = list_lines(lines, ends, &job->kept, slot, from);
-        uint32_t done = 0;
-        for (uint32_t l = from; l < to; l++) {
-            store_sum(o, l, add_lines(vf_set1(0.0f), job->sums, lines + done, ends[l] - done));
-            done = ends[l];
-        }
-        if (to == from)
-            store_sum(o, to, add_many(job, job->kept.where[slot + to]));
-        from = to == from ? to + 1 : to;
+    const uint32_t *where = job->kept.where + slot;
+    for (uint32_t l = 0; l < 64; l++) {
+        const uint32_t splat = where[l];
+        alignas(64) float total[SUM_WORDS];
+        vf sum = vf_set1(0.0f);
+        if (l + FETCH_AHEAD < 64)
+            fetch_sums(job, where[l + FETCH_AHEAD]);
+        o->drawn[l] = splat != UINT32_MAX;
+        if (o->drawn[l])
+            for (uint32_t i = job->kept.first[splat]; i < job->kept.first[splat + 1]; i++)
+                sum = vf_add(sum, vf_load(job->sums + (size_t)i * SUM_WORDS));
+        vf_store(total, sum);
+        for (int i = 0; i < SUM_WORDS; i++)
+            o->v[i][l] = total[i];
     }
 }
 
@@ -136,38 +100,59 @@ static inline void carry_back(gaussian_grads *out, const adcgs_projection *g, co
         out->mean[j] = view->rotation[j] * cx + view->rotation[3 + j] * cy + view->rotation[6 + j] * cz;
 }
 
-static void project_back(const adcgs_back_job *job, uint32_t first)
+/* Gradients of 64 slots before they are written: locals, so that nothing aliases and the loop vectorises. */
+typedef struct slot_grads {
+    alignas(64) float mean[3][64], scale[3][64], rotation[4][64], opacity[64], screen[64];
+} slot_grads;
+
+static void back_lanes(slot_grads *to, const slot_sums *o, const adcgs_back_job *job, uint32_t first)
 {
-    slot_sums o;
-    gather_sums(&o, job, first);
     const adcgs_primitives *s = job->primitives;
     const adcgs_view view = *job->view;
-    const adcgs_raster_grads to = job->out;
     const float half_width = 0.5f * LN2 * (float)view.width, half_height = 0.5f * LN2 * (float)view.height, filter = job->filter;
-    for (uint32_t l = 0; l < 64; l++) {
-        const uint32_t i = first + l;
-        const int drawn = o.drawn[l];
-        const float scale[3] = {s->scale[0][i], s->scale[1][i], s->scale[2][i]};
-        const float q[4] = {s->rotation[0][i], s->rotation[1][i], s->rotation[2][i], s->rotation[3][i]};
+    const float *mx = s->mean[0] + first, *my = s->mean[1] + first, *mz = s->mean[2] + first, *opacity = s->opacity + first;
+    const float *sx = s->scale[0] + first, *sy = s->scale[1] + first, *sz = s->scale[2] + first;
+    const float *qw = s->rotation[0] + first, *qx = s->rotation[1] + first, *qy = s->rotation[2] + first, *qz = s->rotation[3] + first;
+    for (int l = 0; l < 64; l++) {
+        const int drawn = o->drawn[l];
+        const float scale[3] = {sx[l], sy[l], sz[l]}, q[4] = {qw[l], qx[l], qy[l], qz[l]};
         adcgs_projection g;
-        adcgs_project_centre(&g, &view, s->mean[0][i], s->mean[1][i], s->mean[2][i]);
+        adcgs_project_centre(&g, &view, mx[l], my[l], mz[l]);
         adcgs_quaternion_matrix(g.rot, q[0], q[1], q[2], q[3]);
         adcgs_project_shape(&g, &view, filter, scale[0], scale[1], scale[2]);
         float cov[3];
-        conic_back(cov, &g, o.v[SUM_EXX][l], o.v[SUM_EXY][l], o.v[SUM_EYY][l]);
-        const float inv = 1.0f / g.det, ex = o.v[SUM_EX][l], ey = o.v[SUM_EY][l];
+        conic_back(cov, &g, o->v[SUM_EXX][l], o->v[SUM_EXY][l], o->v[SUM_EYY][l]);
+        const float inv = 1.0f / g.det, ex = o->v[SUM_EX][l], ey = o->v[SUM_EY][l];
         gaussian_grads d;
         carry_back(&d, &g, &view, scale, q, inv * (g.r * ex - g.q * ey), inv * (g.p * ey - g.q * ex), cov);
         for (int a = 0; a < 3; a++) {
-            to.mean[a][i] = drawn ? d.mean[a] : 0.0f;
-            to.scale[a][i] = drawn ? d.scale[a] : 0.0f;
-            to.colour[a][i] = o.v[SUM_RED + 4 * a][l];
+            to->mean[a][l] = drawn ? d.mean[a] : 0.0f;
+            to->scale[a][l] = drawn ? d.scale[a] : 0.0f;
         }
         for (int a = 0; a < 4; a++)
-            to.rotation[a][i] = drawn ? d.rotation[a] : 0.0f;
-        to.opacity[i] = drawn ? o.v[SUM_E][l] / s->opacity[i] : 0.0f;
-        to.weight[i] = o.v[SUM_WEIGHT][l];
-        const float su = half_width * o.v[SUM_ABS_U][l], sv = half_height * o.v[SUM_ABS_V][l];
-        to.screen[i] = sqrtf(su * su + sv * sv);
+            to->rotation[a][l] = drawn ? d.rotation[a] : 0.0f;
+        to->opacity[l] = drawn ? o->v[SUM_E][l] / opacity[l] : 0.0f;
+        const float su = half_width * o->v[SUM_ABS_U][l], sv = half_height * o->v[SUM_ABS_V][l];
+        to->screen[l] = sqrtf(su * su + sv * sv);
     }
+}
+
+static void project_back(const adcgs_back_job *job, uint32_t first)
+{
+    slot_sums sums;
+    slot_grads g;
+    const adcgs_raster_grads *to = &job->out;
+    const size_t bytes = sizeof g.opacity;
+    gather_sums(&sums, job, first);
+    back_lanes(&g, &sums, job, first);
+    for (int a = 0; a < 3; a++) {
+        memcpy(to->mean[a] + first, g.mean[a], bytes);
+        memcpy(to->scale[a] + first, g.scale[a], bytes);
+        memcpy(to->colour[a] + first, sums.v[SUM_RED + 4 * a], bytes);
+    }
+    for (int a = 0; a < 4; a++)
+        memcpy(to->rotation[a] + first, g.rotation[a], bytes);
+    memcpy(to->opacity + first, g.opacity, bytes);
+    memcpy(to->weight + first, sums.v[SUM_WEIGHT], bytes);
+    memcpy(to->screen + first, g.screen, bytes);
 }
