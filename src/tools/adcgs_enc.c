@@ -160,7 +160,7 @@ static adcgs_status print_json(const enc_options *o, const adcgs_info *info, con
     adcgs_json_int(&j, "networks", (int64_t)info->bytes.networks);
     adcgs_json_int(&j, "geometry", (int64_t)info->bytes.geometry);
     for (int i = 0; i < 5; i++) {
-        char name[16];
+        char name[24];
         snprintf(name, sizeof name, "layer%d", i);
         adcgs_json_int(&j, name, (int64_t)info->bytes.layer[i]);
     }
