@@ -94,7 +94,8 @@ LANES_INLINE __m256 half_sums(const vf *v)
         quarter[i] = _mm256_add_ps(_mm256_permute2f128_ps(x, y, 0x20), _mm256_permute2f128_ps(x, y, 0x31));
     }
     const __m256 zero = _mm256_setzero_ps();
-    const __m256 a = _mm256_add_ps(_mm256_shuffle_ps(quarter[0], quarter[1], 0x44), _mm256_shuffle_ps(quarter[0], quarter[1], 0xee));
+    const __m256 a = _mm256_add_ps(_mm256_shuffle_ps(quarter[0], quarter[1], 0x44),
+                                   _mm256_shuffle_ps(quarter[0], quarter[1], 0xee));
     const __m256 b = _mm256_add_ps(_mm256_shuffle_ps(quarter[2], zero, 0x44), _mm256_shuffle_ps(quarter[2], zero, 0xee));
     return _mm256_add_ps(_mm256_shuffle_ps(a, b, 0x88), _mm256_shuffle_ps(a, b, 0xdd));
 }

@@ -63,13 +63,15 @@ LANES_INLINE void vf_sums(float *out, const vf v[12])
     __m512 half[6], quarter[3];
 #pragma GCC unroll 6
     for (int i = 0; i < 6; i++)
-        half[i] = _mm512_add_ps(_mm512_shuffle_f32x4(v[2 * i], v[2 * i + 1], 0x44), _mm512_shuffle_f32x4(v[2 * i], v[2 * i + 1], 0xee));
+        half[i] = _mm512_add_ps(_mm512_shuffle_f32x4(v[2 * i], v[2 * i + 1], 0x44),
+                                _mm512_shuffle_f32x4(v[2 * i], v[2 * i + 1], 0xee));
 #pragma GCC unroll 3
     for (int i = 0; i < 3; i++)
         quarter[i] = _mm512_add_ps(_mm512_shuffle_f32x4(half[2 * i], half[2 * i + 1], 0x88),
                                    _mm512_shuffle_f32x4(half[2 * i], half[2 * i + 1], 0xdd));
     const __m512 zero = _mm512_setzero_ps();
-    const __m512 a = _mm512_add_ps(_mm512_shuffle_ps(quarter[0], quarter[1], 0x44), _mm512_shuffle_ps(quarter[0], quarter[1], 0xee));
+    const __m512 a = _mm512_add_ps(_mm512_shuffle_ps(quarter[0], quarter[1], 0x44),
+                                   _mm512_shuffle_ps(quarter[0], quarter[1], 0xee));
     const __m512 b = _mm512_add_ps(_mm512_shuffle_ps(quarter[2], zero, 0x44), _mm512_shuffle_ps(quarter[2], zero, 0xee));
     _mm512_store_ps(out, _mm512_add_ps(_mm512_shuffle_ps(a, b, 0x88), _mm512_shuffle_ps(a, b, 0xdd)));
 }

@@ -54,7 +54,8 @@ static inline bin_frame bin_begin(int tiles_x)
     const __m512i column = _mm512_set_epi64(3, 2, 1, 0, 3, 2, 1, 0), row = _mm512_set_epi64(1, 1, 1, 1, 0, 0, 0, 0);
     const __m512i line = _mm512_set1_epi64(tiles_x);
     const __m512i first = _mm512_add_epi64(column, _mm512_mullo_epi64(row, line));
-    return (bin_frame){{_mm512_slli_epi64(first, 16), _mm512_slli_epi64(_mm512_add_epi64(first, _mm512_add_epi64(line, line)), 16)}};
+    const __m512i third = _mm512_add_epi64(first, _mm512_add_epi64(line, line));
+    return (bin_frame){{_mm512_slli_epi64(first, 16), _mm512_slli_epi64(third, 16)}};
 }
 
 /* Masks of two rows of tiles, whose words stand in lanes 0-3 and 4-7. */
@@ -77,7 +78,8 @@ static inline uint32_t emit(uint64_t *out, __m512i item, __m512i offset, __m512i
 
 static inline uint32_t bin_group(const bin_frame *f, const block_rows *rows, int tile_rows, int x, uint64_t item, uint64_t *out)
 {
-    const __m512i zero = _mm512_setzero_si512(), sixteen = _mm512_set1_epi32(16), one = _mm512_set1_epi32(1), at = _mm512_set1_epi32(4 * x);
+    const __m512i zero = _mm512_setzero_si512(), sixteen = _mm512_set1_epi32(16), one = _mm512_set1_epi32(1);
+    const __m512i at = _mm512_set1_epi32(4 * x);
     const __m512i b = _mm512_min_epi32(_mm512_max_epi32(_mm512_sub_epi32(_mm512_cvttps_epi32(rows->begin), at), zero), sixteen);
     const __m512i e = _mm512_min_epi32(_mm512_max_epi32(_mm512_sub_epi32(_mm512_cvttps_epi32(rows->end), at), zero), sixteen);
     const __mmask16 inside = (__mmask16)(tile_rows >= 4 ? 0xffff : (1 << 4 * tile_rows) - 1);

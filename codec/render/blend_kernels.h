@@ -106,7 +106,8 @@ static void blend(const adcgs_blend_job *job, int tile, uint32_t *scratch)
         if (x < job->width && y < job->height) {
             const uint32_t count = select_block(list, splats, masks, n, block);
             list[count] = n ? splats[0] : 0;
-            state = blend_block(job->splats, list, count, (float)x, (float)y, initial_transmittance(x, y, job->width, job->height));
+            state = blend_block(job->splats, list, count, (float)x, (float)y,
+                                initial_transmittance(x, y, job->width, job->height));
             write_block(job, x, y, &state);
         }
         if (job->transmittance)

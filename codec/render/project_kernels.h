@@ -29,7 +29,8 @@ static void project_lanes(lanes64 *o, const adcgs_project_job *job, uint32_t fir
     const float filter = job->filter, tiles_x = (float)job->tiles_x, tiles_y = (float)job->tiles_y;
     const float *mx = s->mean[0] + first, *my = s->mean[1] + first, *mz = s->mean[2] + first;
     const float *sx = s->scale[0] + first, *sy = s->scale[1] + first, *sz = s->scale[2] + first;
-    const float *qw = s->rotation[0] + first, *qx = s->rotation[1] + first, *qy = s->rotation[2] + first, *qz = s->rotation[3] + first;
+    const float *qw = s->rotation[0] + first, *qx = s->rotation[1] + first;
+    const float *qy = s->rotation[2] + first, *qz = s->rotation[3] + first;
     const float *opacity = s->opacity + first;
     for (int l = 0; l < 64; l++) {
         adcgs_projection g;

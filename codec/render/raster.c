@@ -65,7 +65,8 @@ static adcgs_status grow(adcgs_raster *r, room *x, uint64_t count, size_t size, 
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_raster_create(adcgs_raster **out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_memory *memory, adcgs_error *error)
+adcgs_status adcgs_raster_create(adcgs_raster **out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_memory *memory,
+                                 adcgs_error *error)
 {
     adcgs_cpu_level level;
     *out = NULL;
@@ -93,9 +94,9 @@ void adcgs_raster_free(adcgs_raster **raster)
     adcgs_raster *r = *raster;
     if (!r)
         return;
-    room *const rooms[] = {&r->projected, &r->outlines, &r->areas,  &r->keys,       &r->other,   &r->piece_counts, &r->splats,  &r->first,
-                           &r->where,     &r->pieces,   &r->counts, &r->emitted,    &r->entries, &r->tile_start,   &r->place,   &r->scratch,
-                           &r->transmittance};
+    room *const rooms[] = {&r->projected,  &r->outlines, &r->areas,   &r->keys,    &r->other,   &r->piece_counts,
+                           &r->splats,     &r->first,    &r->where,   &r->pieces,  &r->counts,  &r->emitted,
+                           &r->tile_start, &r->entries,  &r->place,   &r->scratch, &r->transmittance};
     for (size_t i = 0; i < ADCGS_COUNTOF(rooms); i++)
         adcgs_free(r->memory, rooms[i]->data);
     adcgs_free(r->memory, r);
@@ -162,7 +163,8 @@ static adcgs_status cut_pieces(adcgs_raster *r, adcgs_error *error)
     for (uint32_t i = 0; i < r->n; i++)
         total += areas[(uint32_t)r->bin.order[i]];
     if (total > ENTRIES_MAX)
-        return adcgs_fail(error, ADCGS_ERR_LIMIT, "rendering: the splats cover %llu tiles, more than 2^28", (unsigned long long)total);
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "rendering: the splats cover %llu tiles, more than 2^28",
+                          (unsigned long long)total);
     const int threads = adcgs_pool_threads(r->pool);
     size_t pieces = threads > 1 ? 4 * (size_t)threads : 1;
     pieces = ADCGS_MIN(pieces, COUNTERS_MAX / (size_t)r->tiles);

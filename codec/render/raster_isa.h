@@ -5,7 +5,7 @@
 
 #include "render/render.h"
 
-/** Outline of a projected splat, for binning: where alpha can reach 1/255 is |dy| <= ym, |dx - slope*dy| <= width*sqrt(ym^2 - dy^2). */
+/** Outline of a splat: alpha can reach 1/255 only where |dy| <= ym and |dx - slope*dy| <= width*sqrt(ym^2 - dy^2). */
 typedef struct adcgs_outline {
     float slope, width, ym;
     float y_right; /**< dy of the rightmost point */

@@ -26,7 +26,8 @@ typedef struct adcgs_view {
 } adcgs_view;
 
 /** Validates the camera; world = origin + scale * scene. Binary64, rounded once per field (spec "View"). */
-adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale, adcgs_error *error);
+adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale,
+                             adcgs_error *error);
 
 /** One projected splat, 64 bytes. alpha = exp2(a dx^2 + b dx dy + c dy^2 + log2_opacity), dx = pixel centre - x. */
 typedef struct adcgs_splat2d {
@@ -48,13 +49,14 @@ typedef struct adcgs_tile_entry {
 
 typedef struct adcgs_raster adcgs_raster;
 
-adcgs_status adcgs_raster_create(adcgs_raster **out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_memory *memory, adcgs_error *error);
+adcgs_status adcgs_raster_create(adcgs_raster **out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_memory *memory,
+                                 adcgs_error *error);
 void adcgs_raster_free(adcgs_raster **raster);
 
 /**
- * Render. primitives->n is a multiple of 64, its arrays are 64-byte aligned. rgb: planar [3][height][width]. More than 2^28
- * (splat, tile) pairs by the splats' bounding rectangles are ADCGS_ERR_LIMIT. No allocation once the workspace has grown. keep nonzero: what backward needs stays
- * readable through adcgs_raster_kept() until the next call.
+ * Render. primitives->n is a multiple of 64 and its arrays are 64-byte aligned. rgb: planar [3][height][width]. More than 2^28
+ * (splat, tile) pairs by the splats' bounding rectangles are ADCGS_ERR_LIMIT. No allocation once the workspace has grown. keep
+ * nonzero: what backward needs stays readable through adcgs_raster_kept() until the next call.
  */
 adcgs_status adcgs_raster_forward(adcgs_raster *raster, const adcgs_primitives *primitives, const adcgs_view *view,
                                   const float background[3], float screen_filter, float *rgb, int keep, adcgs_error *error);

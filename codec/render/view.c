@@ -18,9 +18,11 @@ static adcgs_status check_camera(const adcgs_camera *camera, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "camera: image of %d x %d pixels, expected 1..16384 each", (int)camera->width,
                           (int)camera->height);
     if (!usable(camera->fx, 0x1p-10, 0x1p24) || !usable(camera->fy, 0x1p-10, 0x1p24))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "camera: focal lengths %g, %g pixels, expected 2^-10..2^24", camera->fx, camera->fy);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "camera: focal lengths %g, %g pixels, expected 2^-10..2^24", camera->fx,
+                          camera->fy);
     if (!usable(camera->cx, -0x1p20, 0x1p20) || !usable(camera->cy, -0x1p20, 0x1p20))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "camera: principal point %g, %g is farther than 2^20 pixels", camera->cx, camera->cy);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "camera: principal point %g, %g is farther than 2^20 pixels", camera->cx,
+                          camera->cy);
     const double *m = camera->cam_to_world;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
@@ -40,7 +42,8 @@ static void fill_limits(adcgs_view *view, const adcgs_camera *camera)
     view->limit[3] = (float)((camera->height - camera->cy + margin_y) / camera->fy);
 }
 
-adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale, adcgs_error *error)
+adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale,
+                             adcgs_error *error)
 {
     ADCGS_TRY(check_camera(camera, error));
     if (!usable(scale, 0x1p-60, 0x1p60))

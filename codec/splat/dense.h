@@ -16,7 +16,8 @@ typedef struct adcgs_dense_dsp {
      * start is init[o][64] if init is given, else bias[o] if bias is given, else 0.
      * w: row o begins at w + o*ldw. y may be init; y must not overlap x. x, y, init are 64-byte aligned.
      */
-    void (*dense)(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in);
+    void (*dense)(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out,
+                  int n_in);
     /** y[i] = y[i] < 0 ? y[i] * 2^-6 : y[i], n rows of 64. */
     void (*lrelu)(float *y, int n);
     /** y[i] = x[i] + lrelu(y[i]): the residual layer's tail, n rows of 64. */

@@ -10,7 +10,8 @@
 #define ROWS_MAX 6
 #define INLINE static inline __attribute__((always_inline))
 
-INLINE void dense_tile(int rows, float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_in)
+INLINE void dense_tile(int rows, float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x,
+                       int n_in)
 {
     V acc[ROWS_MAX][COLS];
 #pragma GCC unroll 6
@@ -38,7 +39,8 @@ INLINE void dense_tile(int rows, float *y, const float *init, const float *bias,
             STORE(y + r * 64 + c * VW, acc[r][c]);
 }
 
-static void dense_rows(int rows, float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_in)
+static void dense_rows(int rows, float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x,
+                       int n_in)
 {
     for (int lane = 0; lane < 64; lane += COLS * VW) {
         float *out = y + lane;
@@ -73,8 +75,8 @@ static void dense(float *y, const float *init, const float *bias, const float *w
     int row = 0;
     for (int t = 0; t < tiles; t++) {
         const int rows = (n_out - row + tiles - t - 1) / (tiles - t);
-        dense_rows(rows, y + (size_t)row * 64, init ? init + (size_t)row * 64 : NULL, bias ? bias + row : NULL, w + (size_t)row * ldw,
-                   ldw, x, n_in);
+        const size_t at = (size_t)row * 64;
+        dense_rows(rows, y + at, init ? init + at : NULL, bias ? bias + row : NULL, w + (size_t)row * ldw, ldw, x, n_in);
         row += rows;
     }
 }

@@ -98,8 +98,8 @@ typedef struct canonical_job {
     const uint32_t *moving_index; /* [groups] index among the moving groups, or UINT32_MAX */
 } canonical_job;
 
-static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const adcgs_anchor_lanes *anchor, const float *fv, float *fg,
-                          float *buffers)
+static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const adcgs_anchor_lanes *anchor, const float *fv,
+                          float *fg, float *buffers)
 {
     const adcgs_model *m = s->model;
     const adcgs_params *p = &m->params;
@@ -307,8 +307,8 @@ static void time_part(float *to, const adcgs_floatnet *net, const float *time_co
 }
 
 /* Outputs of a deformation network for a group; NULL if there is no network. */
-static const float *deform_outputs(const adcgs_splat *s, const adcgs_floatnet *net, const float *part, const float *time, float *z,
-                                   float *other)
+static const float *deform_outputs(const adcgs_splat *s, const adcgs_floatnet *net, const float *part, const float *time,
+                                   float *z, float *other)
 {
     static const _Alignas(64) float ones[64] = {
         1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
@@ -329,10 +329,12 @@ static void deform_group(void *arg, int index, int thread)
     const adcgs_anchor_lanes *anchor = s->anchors + at;
     float *z = s->scratch + (size_t)thread * s->scratch_rows * 64, *other = z + rows;
     adcgs_anchor_motion motion;
-    const float *coarse = deform_outputs(s, &s->coarse, s->coarse_part + at * (size_t)s->coarse.layer[0].n_out * 64, s->coarse_time, z, other);
+    const float *coarse_part = s->coarse_part + at * (size_t)s->coarse.layer[0].n_out * 64;
+    const float *fine_part = s->fine_part + at * (size_t)s->fine.layer[0].n_out * 64;
+    const float *coarse = deform_outputs(s, &s->coarse, coarse_part, s->coarse_time, z, other);
     if (coarse)
         s->dsp.motion(&motion, anchor, coarse, p->coarse_rotation);
-    const float *fine = deform_outputs(s, &s->fine, s->fine_part + at * (size_t)s->fine.layer[0].n_out * 64, s->fine_time, z, other);
+    const float *fine = deform_outputs(s, &s->fine, fine_part, s->fine_time, z, other);
     for (int k = 0; k < p->k; k++) {
         const adcgs_slot_out to = slot_out(s, group, k);
         s->dsp.deform(&to, s->slots + at * p->k + k, anchor, coarse ? &motion : NULL, p->coarse_rotation,

@@ -41,12 +41,14 @@ typedef struct adcgs_splat_dsp {
     /** F_theta's outputs [14][64] to canonical values. */
     void (*predict)(adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor, const float *out);
     /** Primitives of anchors that do not move. */
-    void (*place)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor, const int32_t *present);
+    void (*place)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor,
+                  const int32_t *present);
     /** F_omega's outputs, [9][64], or [12][64] if rotation. */
     void (*motion)(adcgs_anchor_motion *motion, const adcgs_anchor_lanes *anchor, const float *out, int rotation);
     /** Primitives of the anchors that move; other lanes of to stay. motion and fine ([4][64]) may be NULL, not both. */
     void (*deform)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor,
-                   const adcgs_anchor_motion *motion, int rotation, const float *fine, const int32_t *present, const int32_t *moves);
+                   const adcgs_anchor_motion *motion, int rotation, const float *fine, const int32_t *present,
+                   const int32_t *moves);
     void (*position_code)(float *out, const float *x, int octaves);
 } adcgs_splat_dsp;
 

@@ -9,7 +9,7 @@
 
 #define LANES for (int l = 0; l < 64; l++)
 
-/* 1/sqrt is 0 where the quaternion is too small or too large to normalise; it then becomes the identity. */
+/* A quaternion whose squared norm is outside cannot be normalised; it becomes the identity. */
 static inline int usable_norm(float n)
 {
     return n >= 0x1p-40f && n <= 0x1p100f;
@@ -132,9 +132,11 @@ static void turn_offset(float out[3][64], const adcgs_slot_lanes *s, const adcgs
 }
 
 /* Product of the anchor's rotation and the primitive's; not normalised again. */
-static void turn_quaternion(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, const int32_t *moves)
+static void turn_quaternion(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m,
+                            const int32_t *moves)
 {
-    float *restrict ow = to->rotation[0], *restrict ox = to->rotation[1], *restrict oy = to->rotation[2], *restrict oz = to->rotation[3];
+    float *restrict ow = to->rotation[0], *restrict ox = to->rotation[1];
+    float *restrict oy = to->rotation[2], *restrict oz = to->rotation[3];
     LANES {
         const float rw = m->q[0][l], rx = m->q[1][l], ry = m->q[2][l], rz = m->q[3][l];
         const float w = s->q[0][l], x = s->q[1][l], y = s->q[2][l], z = s->q[3][l];

@@ -64,14 +64,14 @@ LANES_INLINE void alpha_block(tile_state *s, uint32_t turn, const adcgs_splat2d 
 /* Adds a block's part to the sums of a splat; returns whether light is left. */
 LANES_INLINE int back_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block, vf sum[12])
 {
-    const vf one = vf_set1(1.0f), red = vf_load(s->grad[block][0]), green = vf_load(s->grad[block][1]), blue = vf_load(s->grad[block][2]);
+    const vf red = vf_load(s->grad[block][0]), green = vf_load(s->grad[block][1]), blue = vf_load(s->grad[block][2]);
     const vf t = vf_load(s->t[block]), alpha = vf_load(s->alpha[turn][block]);
     const vf dx = vf_sub(vf_load(s->x[block]), vf_set1(g->x)), dy = vf_sub(vf_load(s->y[block]), vf_set1(g->y));
     const vf weight = vf_mul(alpha, t);
     const vf toward = vf_fma(vf_set1(g->rgb[2]), blue, vf_fma(vf_set1(g->rgb[1]), green, vf_mul(vf_set1(g->rgb[0]), red)));
     const vf behind = vf_fnma(weight, toward, vf_load(s->behind[block]));
     const vf through = vf_fnma(alpha, t, t);
-    const vf e = vf_mul(alpha, vf_sub(vf_mul(t, toward), vf_div(behind, vf_sub(one, alpha))));
+    const vf e = vf_mul(alpha, vf_sub(vf_mul(t, toward), vf_div(behind, vf_sub(vf_set1(1.0f), alpha))));
     const vf ex = vf_mul(e, dx), ey = vf_mul(e, dy), b = vf_set1(g->b);
     const vf u = vf_fma(vf_set1(2.0f * g->a), ex, vf_mul(b, ey)), v = vf_fma(vf_set1(2.0f * g->c), ey, vf_mul(b, ex));
     vf_store(s->t[block], through);

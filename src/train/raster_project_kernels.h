@@ -66,9 +66,12 @@ static inline void conic_back(float back[3], const adcgs_projection *g, float ex
 static inline void rotation_back(float out[4], float d[3][3], float w, float x, float y, float z)
 {
     out[0] = 2.0f * (z * (d[1][0] - d[0][1]) + y * (d[0][2] - d[2][0]) + x * (d[2][1] - d[1][2]));
-    out[1] = 2.0f * (y * (d[0][1] + d[1][0]) + z * (d[0][2] + d[2][0]) + w * (d[2][1] - d[1][2]) - 2.0f * x * (d[1][1] + d[2][2]));
-    out[2] = 2.0f * (x * (d[0][1] + d[1][0]) + z * (d[1][2] + d[2][1]) + w * (d[0][2] - d[2][0]) - 2.0f * y * (d[0][0] + d[2][2]));
-    out[3] = 2.0f * (x * (d[0][2] + d[2][0]) + y * (d[1][2] + d[2][1]) + w * (d[1][0] - d[0][1]) - 2.0f * z * (d[0][0] + d[1][1]));
+    out[1] = 2.0f * (y * (d[0][1] + d[1][0]) + z * (d[0][2] + d[2][0]) + w * (d[2][1] - d[1][2]) -
+                     2.0f * x * (d[1][1] + d[2][2]));
+    out[2] = 2.0f * (x * (d[0][1] + d[1][0]) + z * (d[1][2] + d[2][1]) + w * (d[0][2] - d[2][0]) -
+                     2.0f * y * (d[0][0] + d[2][2]));
+    out[3] = 2.0f * (x * (d[0][2] + d[2][0]) + y * (d[1][2] + d[2][1]) + w * (d[1][0] - d[0][1]) -
+                     2.0f * z * (d[0][0] + d[1][1]));
 }
 
 /* From gradients of centre (u, v) and covariance (p, q, r) to those of the Gaussian. */
@@ -112,7 +115,8 @@ static void back_lanes(slot_grads *to, const slot_sums *o, const adcgs_back_job 
     const float half_width = 0.5f * LN2 * (float)view.width, half_height = 0.5f * LN2 * (float)view.height, filter = job->filter;
     const float *mx = s->mean[0] + first, *my = s->mean[1] + first, *mz = s->mean[2] + first, *opacity = s->opacity + first;
     const float *sx = s->scale[0] + first, *sy = s->scale[1] + first, *sz = s->scale[2] + first;
-    const float *qw = s->rotation[0] + first, *qx = s->rotation[1] + first, *qy = s->rotation[2] + first, *qz = s->rotation[3] + first;
+    const float *qw = s->rotation[0] + first, *qx = s->rotation[1] + first;
+    const float *qy = s->rotation[2] + first, *qz = s->rotation[3] + first;
     for (int l = 0; l < 64; l++) {
         const int drawn = o->drawn[l];
         const float scale[3] = {sx[l], sy[l], sz[l]}, q[4] = {qw[l], qx[l], qy[l], qz[l]};

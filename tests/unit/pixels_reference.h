@@ -47,7 +47,8 @@ static inline double reference_limit(double x, double lo, double hi)
 }
 
 /* Returns 0 if the splat is not drawn. */
-static inline int reference_project(reference_splat *o, const reference_scene *s, const adcgs_view *view, double filter, uint32_t i)
+static inline int reference_project(reference_splat *o, const reference_scene *s, const adcgs_view *view, double filter,
+                                    uint32_t i)
 {
     double p[3], q[4], rot[3][3], world[3][3] = {{0}}, cam[2][3], cov[2][2] = {{filter, 0}, {0, filter}};
     for (int a = 0; a < 3; a++)
@@ -103,8 +104,8 @@ static inline double reference_alpha(const reference_splat *g, int x, int y)
     return alpha < 1.0 / 255 ? 0.0 : alpha;
 }
 
-static inline void reference_block(const reference_splat *splats, uint32_t n, const adcgs_view *view, const float background[3], int bx,
-                                   int by, double *rgb)
+static inline void reference_block(const reference_splat *splats, uint32_t n, const adcgs_view *view, const float background[3],
+                                   int bx, int by, double *rgb)
 {
     double t[16], colour[16][3] = {{0}};
     for (int i = 0; i < 16; i++)
@@ -130,7 +131,8 @@ static inline void reference_block(const reference_splat *splats, uint32_t n, co
 }
 
 /** rgb: planar [3][height][width]. */
-static inline void reference_render(const reference_scene *s, const adcgs_view *view, const float background[3], double filter, double *rgb)
+static inline void reference_render(const reference_scene *s, const adcgs_view *view, const float background[3], double filter,
+                                    double *rgb)
 {
     reference_splat *splats = malloc((s->n + 1) * sizeof *splats);
     uint32_t n = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The backward pass against central differences of the binary64 reference, and against itself on other CPUs and threads. */
+/** \file The backward pass against differences of the binary64 reference, and against itself on other CPUs and threads. */
 #include "train/raster.h"
 #include "unit/pixels_reference.h"
 

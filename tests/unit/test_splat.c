@@ -188,8 +188,9 @@ static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
 
 static void check_primitives(const adcgs_model *m, const adcgs_primitives *p, float t)
 {
-    const float *const arrays[] = {p->mean[0],     p->mean[1],     p->mean[2],     p->scale[0], p->scale[1],  p->scale[2],  p->rotation[0],
-                                   p->rotation[1], p->rotation[2], p->rotation[3], p->opacity,  p->colour[0], p->colour[1], p->colour[2]};
+    const float *const arrays[] = {p->mean[0],     p->mean[1],     p->mean[2],     p->scale[0],    p->scale[1],
+                                   p->scale[2],    p->rotation[0], p->rotation[1], p->rotation[2], p->rotation[3],
+                                   p->opacity,     p->colour[0],   p->colour[1],   p->colour[2]};
     const uint32_t k = m->params.k;
     assert_int_equal(p->n, (m->n + 63) / 64 * 64 * k);
     for (uint32_t slot = 0; slot < p->n; slot++) {
@@ -203,7 +204,8 @@ static void check_primitives(const adcgs_model *m, const adcgs_primitives *p, fl
         const primitive expected = evaluate(m, anchor, (int)j, t);
         for (int a = 0; a < 14; a++)
             if (adcgs_float_bits(arrays[a][slot]) != adcgs_float_bits(expected.v[a]))
-                fail_msg("anchor %u, primitive %u, array %d: %a, expected %a", anchor, j, a, (double)arrays[a][slot], (double)expected.v[a]);
+                fail_msg("anchor %u, primitive %u, array %d: %a, expected %a", anchor, j, a, (double)arrays[a][slot],
+                         (double)expected.v[a]);
     }
 }
 
@@ -328,7 +330,8 @@ static void test_position_code(void **state)
             for (int l = 0; l < 64; l++) {
                 float s, c;
                 adcgs_sincospi(ldexpf(x[a * 64 + l], o), &s, &c);
-                assert_true(code[(a * ADCGS_OCTAVES_MAX + o) * 128 + l] == s && code[(a * ADCGS_OCTAVES_MAX + o) * 128 + 64 + l] == c);
+                assert_true(code[(a * ADCGS_OCTAVES_MAX + o) * 128 + l] == s &&
+                            code[(a * ADCGS_OCTAVES_MAX + o) * 128 + 64 + l] == c);
             }
 }
 
