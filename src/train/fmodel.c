@@ -118,6 +118,18 @@ static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** Waves of half a cycle and more, fainter as they quicken: neighbouring times look alike from the start, and motion begins smooth. */
+static void start_time_table(adcgs_fmodel *f)
+{
+    const int rows = f->params.time_rows, width = f->params.time_width;
+    float *z = f->param[ADCGS_P_TIME].p;
+    for (int r = 0; r < rows; r++)
+        for (int j = 0; j < width; j++) {
+            const double phase = 3.14159265358979 * (0.5 + j / 2) * (rows > 1 ? (double)r / (rows - 1) - 0.5 : 0);
+            z[r * width + j] = (float)((j % 2 ? cos(phase) : sin(phase)) * 0.7 / (1 + 0.3 * j));
+        }
+}
+
 static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error *error)
 {
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
@@ -135,9 +147,7 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
         const int deforms = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI;
         mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : deforms ? 0.0f : 0.02f, seed, (uint64_t)i);
     }
-    float *z = f->param[ADCGS_P_TIME].p;
-    for (size_t i = 0; i < f->param[ADCGS_P_TIME].n; i++)
-        z[i] = (float)(0.3 * adcgs_random_normal(seed, ADCGS_P_TIME, i));
+    start_time_table(f);
     const adcgs_mlp *theta = &f->mlp[ADCGS_P_THETA];
     float *b = f->param[ADCGS_P_THETA].p + theta->b[theta->hidden];
     b[13] = -2.0f; /* opacity starts near 0.12 */

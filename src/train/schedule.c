@@ -12,7 +12,7 @@ static const adcgs_train_config base = {
     .scale = 1,
     .lambda = 0.01f,
     .ssim_weight = 0.2f,
-    .params = { .k = 10, .n_fv = 32, .n_fg = 8, .chunks = 4, .n_eta = 4, .octaves = 5, .fine_uses_fv = 1, .coarse_rotation = 1,
+    .params = { .k = 6, .n_fv = 32, .n_fg = 8, .chunks = 4, .n_eta = 4, .octaves = 5, .fine_uses_fv = 1, .coarse_rotation = 1,
                 .time_rows = 16, .time_width = 16 },
     .shape = { .theta_width = 32, .theta_hidden = 2, .omega_width = 48, .omega_hidden = 2, .varpi_width = 48, .varpi_hidden = 2,
                .entropy_width = 24, .entropy_hidden = 1, .step_fv = 0.1f, .step_fg = 0.1f, .step_sigma = 0.06f, .step_colour = 0.02f,
@@ -26,7 +26,7 @@ static const adcgs_train_config base = {
     .dropout = 0.1f,
     .quarter_until = 0.12f,
     .half_until = 0.40f,
-    .deform_from = 0.05f,
+    .deform_from = 0.01f,
     .grow_from = 0.03f,
     .grow_until = 0.50f,
     .noise_from = 0.25f,
@@ -62,6 +62,7 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         /* The paper's sizes and order of events (section 4.1, appendix A), without coarse-to-fine. */
         config->iterations = 80000;
         config->max_anchors = 20000;
+        config->params.k = 10;
         config->params.n_fg = 16;
         config->params.time_width = 64;
         config->shape.theta_width = config->shape.entropy_width = 32;
