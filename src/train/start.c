@@ -192,6 +192,7 @@ static void given_points(cloud *c, const sight *s, uint32_t wanted)
 #define NEAR_RADIUS 1.2
 #define FAR_RADIUS 4.0
 #define FAR_SHARE 0.2
+#define CORE_SHARE 0.5 /* of the points lie in the inner half of the near radius, where all cameras look */
 
 /** Uniform in a ball, or beyond it with density falling as the cube of the distance, as pictures resolve it. */
 static void random_place(double x[3], uint64_t seed, uint64_t i)
@@ -207,7 +208,7 @@ static void random_place(double x[3], uint64_t seed, uint64_t i)
         seed++;
     } while (length > 1 || length < 1e-6);
     const double u = adcgs_random_unit(seed, 1001, i), far = NEAR_RADIUS * pow(FAR_RADIUS / NEAR_RADIUS, u / FAR_SHARE);
-    const double scale = u < FAR_SHARE ? far / sqrt(length) : NEAR_RADIUS;
+    const double scale = u < FAR_SHARE ? far / sqrt(length) : u < FAR_SHARE + CORE_SHARE ? 0.5 * NEAR_RADIUS : NEAR_RADIUS;
     for (int a = 0; a < 3; a++)
         x[a] *= scale;
 }
