@@ -185,9 +185,32 @@ static void refinement_keeps_order_and_budget(void **state)
     census c = { make(&config, pool), UINT32_MAX, 0 };
     const uint32_t start = c.t->f->n;
     run(c.t, count_anchors, &c);
-    assert_true(c.most > start);     /* it grew */
-    assert_true(c.t->f->n < c.most); /* and was pruned */
+    assert_true(c.most > start);
     adcgs_trainer_free(&c.t);
+}
+
+/** Anchors that nobody saw since the last refinement go, the others stay, and their parameters with them. */
+static void refinement_prunes_what_is_not_seen(void **state)
+{
+    adcgs_train_config config = small_config();
+    config.grow_threshold = 1e9f;
+    adcgs_trainer *t = make(&config, pool);
+    uint32_t stop = 50, gone[3], left;
+    run(t, stop_at, &stop);
+    const uint32_t slots = t->pass->primitives.n, k = config.params.k;
+    for (uint32_t i = 0; i < slots; i++) {
+        const int seen = i % 64 != 3;
+        t->stats.weight[i] = t->stats.opacity[i] = seen ? 1000.0f * (float)t->stats.n : 0;
+    }
+    memcpy(gone, t->f->pos[3], sizeof gone);
+    left = t->f->n - (t->f->n + 60) / 64; /* less one of each group of 64 */
+    const float next = *adcgs_fmodel_at(t->f, ADCGS_P_FG, 4, (int)k);
+    assert_int_equal(adcgs_trainer_refine(t, 0.4, &error), ADCGS_OK);
+    assert_int_equal(t->f->n, left);
+    for (uint32_t i = 0; i < left; i++)
+        assert_memory_not_equal(t->f->pos[i], gone, sizeof gone);
+    assert_true(*adcgs_fmodel_at(t->f, ADCGS_P_FG, 3, (int)k) == next);
+    adcgs_trainer_free(&t);
 }
 
 /* ---- Recovery ---- */
@@ -360,6 +383,7 @@ int main(void)
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
         cmocka_unit_test(checkpoints_are_checked),
         cmocka_unit_test(refinement_keeps_order_and_budget),
+        cmocka_unit_test(refinement_prunes_what_is_not_seen),
         cmocka_unit_test(no_number_is_rolled_back),
         cmocka_unit_test(no_number_is_rolled_back_late),
         cmocka_unit_test(lasting_poison_ends_the_run),
