@@ -13,7 +13,7 @@ static const adcgs_train_config base = {
     .lambda = 0.01f,
     .ssim_weight = 0.2f,
     .params = { .k = 6, .n_fv = 32, .n_fg = 8, .chunks = 4, .n_eta = 4, .octaves = 5, .fine_uses_fv = 1, .coarse_rotation = 1,
-                .time_rows = 16, .time_width = 16 },
+                .time_rows = 40, .time_width = 16 },
     .shape = { .theta_width = 32, .theta_hidden = 2, .omega_width = 48, .omega_hidden = 2, .varpi_width = 48, .varpi_hidden = 2,
                .entropy_width = 24, .entropy_hidden = 1, .step_fv = 0.1f, .step_fg = 0.1f, .step_sigma = 0.06f, .step_colour = 0.02f,
                .depth = 11 },
