@@ -63,7 +63,10 @@ void adcgs_latents_free(adcgs_latents **latents)
     *latents = NULL;
 }
 
-/** Bring channels [0,count) of rows that are stride apart into feature-major inputs. Nobody looks at lanes past the group's end. */
+/**
+ * Bring channels [0,count) of rows that are stride apart into feature-major inputs. Nobody looks at lanes past the
+ * group's end.
+ */
 static void gather(int16_t (*x)[ADCGS_LANES], const int16_t *rows, size_t stride, int n, int count)
 {
     for (int j = 0; j < n; j++)

@@ -110,7 +110,8 @@ static int64_t read_source(void *user, void *buffer, size_t bytes)
     return (int64_t)n;
 }
 
-adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                   adcgs_error *error)
 {
     ADCGS_TRY(adcgs_stream_write(stream, out, error));
     adcgs_stream back;

@@ -16,8 +16,8 @@ static double now(void)
 }
 
 /** Render a view into planar 8-bit levels over 255. The frame and planes are the caller's, of the view's size. */
-static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_scene_view *view, adcgs_frame *frame, uint8_t *levels, float *planar,
-                                  double *seconds, adcgs_error *error)
+static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_scene_view *view, adcgs_frame *frame, uint8_t *levels,
+                                  float *planar, double *seconds, adcgs_error *error)
 {
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;
     const double begin = now();
@@ -30,8 +30,8 @@ static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_scene_view
     return ADCGS_OK;
 }
 
-static adcgs_status score_view(adcgs_decoder *decoder, const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_score_fn each, void *user,
-                               adcgs_view_score *score, adcgs_error *error)
+static adcgs_status score_view(adcgs_decoder *decoder, const adcgs_scene *scene, const adcgs_scene_view *view,
+                               adcgs_score_fn each, void *user, adcgs_view_score *score, adcgs_error *error)
 {
     const size_t pixels = (size_t)view->camera.width * (size_t)view->camera.height;
     float *truth;

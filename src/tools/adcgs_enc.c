@@ -55,8 +55,8 @@ static int observe(void *user, const adcgs_train_report *r)
     w->last = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
         log_last(w);
-    adcgs_progress_show(&w->progress, "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s  %d:%02d left", r->stage,
-                        r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
+    adcgs_progress_show(&w->progress, "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s  %d:%02d left",
+                        r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
                         (int)r->left / 60, (int)r->left % 60);
     if (w->o->checkpoint && r->seconds - w->saved > 60) {
         w->saved = r->seconds;
@@ -105,7 +105,8 @@ static adcgs_status check_writable(const char *path, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static adcgs_status write_stream(adcgs_stream *stream, const watcher *w, const adcgs_train_config *c, adcgs_pool *pool, adcgs_error *error)
+static adcgs_status write_stream(adcgs_stream *stream, const watcher *w, const adcgs_train_config *c, adcgs_pool *pool,
+                                 adcgs_error *error)
 {
     char seed[32], lambda[32], iterations[32];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)c->seed);
@@ -140,15 +141,15 @@ static void print_text(const enc_options *o, const adcgs_info *info, const adcgs
     const adcgs_bytes *b = &info->bytes;
     const uint64_t features = b->layer[0] + b->layer[1] + b->layer[2] + b->layer[3] + b->layer[4];
     fprintf(stderr, "%s: %llu bytes: networks %llu, geometry %llu, features %llu, cameras %llu, rest %llu\n", o->output,
-            (unsigned long long)b->total, (unsigned long long)b->networks, (unsigned long long)b->geometry, (unsigned long long)features,
-            (unsigned long long)b->cameras, (unsigned long long)(b->header + b->metadata));
-    fprintf(stderr, "%u anchors (%u static), %u primitives; trained in %.0f s\n", info->anchors, info->static_anchors, info->gaussians,
-            seconds);
+            (unsigned long long)b->total, (unsigned long long)b->networks, (unsigned long long)b->geometry,
+            (unsigned long long)features, (unsigned long long)b->cameras, (unsigned long long)(b->header + b->metadata));
+    fprintf(stderr, "%u anchors (%u static), %u primitives; trained in %.0f s\n", info->anchors, info->static_anchors,
+            info->gaussians, seconds);
     fprintf(stderr, "decoded from the file, %u %s views: %.2f dB PSNR, %.4f SSIM\n", e->n, split, e->psnr, e->ssim);
 }
 
-static adcgs_status print_json(const enc_options *o, const adcgs_info *info, const adcgs_evaluation *e, const char *split, double seconds,
-                               adcgs_error *error)
+static adcgs_status print_json(const enc_options *o, const adcgs_info *info, const adcgs_evaluation *e, const char *split,
+                               double seconds, adcgs_error *error)
 {
     adcgs_json j;
     adcgs_json_init(&j, stdout);
@@ -288,69 +289,82 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     return status;
 }
 
-int main(int argc, char **argv)
+/* ---- Command line ---- */
+
+static const adcgs_cli program = {
+    .program = "adcgs-enc",
+    .operands = "SCENE",
+    .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
+    .details = "SCENE is a folder with transforms_train.json or transforms.json, or such a file.",
+    .min_operands = 1,
+    .max_operands = 1,
+};
+
+/** -1 to go on, else the exit code to leave with. */
+static int parse(enc_options *o, int argc, char **argv)
 {
-    enc_options o = { .preset = "fast", .scale = 1, .seed = 1 };
     const adcgs_option options[] = {
-        { "output", 'o', ADCGS_OPTION_STRING, &o.output, 0, 0, "FILE", "write the stream here (required)", NULL, NULL },
-        { "preset", 'p', ADCGS_OPTION_STRING, &o.preset, 0, 0, "NAME",
+        { "output", 'o', ADCGS_OPTION_STRING, &o->output, 0, 0, "FILE", "write the stream here (required)", NULL, NULL },
+        { "preset", 'p', ADCGS_OPTION_STRING, &o->preset, 0, 0, "NAME",
           "draft, fast, medium, slow or paper (default fast)", NULL, NULL },
-        { "lambda", 'l', ADCGS_OPTION_REAL, &o.lambda, 0, 1000, "X",
-          "loss per mebibyte of features: larger makes smaller\nfiles (default: the preset's)", NULL, &o.has_lambda },
-        { "iterations", 'n', ADCGS_OPTION_INT, &o.iterations, 10, 10000000, "N",
+        { "lambda", 'l', ADCGS_OPTION_REAL, &o->lambda, 0, 1000, "X",
+          "loss per mebibyte of features: larger makes smaller\nfiles (default: the preset's)", NULL, &o->has_lambda },
+        { "iterations", 'n', ADCGS_OPTION_INT, &o->iterations, 10, 10000000, "N",
           "length of the run (default: the preset's)", NULL, NULL },
-        { "scale", 0, ADCGS_OPTION_INT, &o.scale, 1, 64, "S",
+        { "scale", 0, ADCGS_OPTION_INT, &o->scale, 1, 64, "S",
           "divide the pictures' size by this integer (default 1)", NULL, NULL },
-        { "k", 0, ADCGS_OPTION_INT, &o.k, 1, ADCGS_K_MAX, "N",
+        { "k", 0, ADCGS_OPTION_INT, &o->k, 1, ADCGS_K_MAX, "N",
           "primitives per anchor, 1 to 16 (default: the preset's)", NULL, NULL },
-        { "max-anchors", 0, ADCGS_OPTION_INT, &o.max_anchors, 1, 1000000, "N",
+        { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, 1, 1000000, "N",
           "budget of anchors (default: the preset's)", NULL, NULL },
-        { "points", 0, ADCGS_OPTION_STRING, &o.points, 0, 0, "FILE",
+        { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY or Draco) instead of the scene's or\nrandom ones", NULL, NULL },
-        { "without", 0, ADCGS_OPTION_CHOICE, &o.without, 0, 0, "STAGE",
+        { "without", 0, ADCGS_OPTION_CHOICE, &o->without, 0, 0, "STAGE",
           "leave out coarse, fine, deformation (both), rate or\nrefinement", stage_names, NULL },
-        { "time-limit", 0, ADCGS_OPTION_REAL, &o.time_limit, 0, 1e7, "S",
+        { "time-limit", 0, ADCGS_OPTION_REAL, &o->time_limit, 0, 1e7, "S",
           "train for at most S seconds; the result then depends on\nthe speed of the machine", NULL, NULL },
-        { "seed", 0, ADCGS_OPTION_SIZE, &o.seed, 0, 1e15, "N", "seed of every random choice (default 1)", NULL, NULL },
-        { "checkpoint", 0, ADCGS_OPTION_STRING, &o.checkpoint, 0, 0, "FILE",
+        { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, 0, 1e15, "N", "seed of every random choice (default 1)", NULL, NULL },
+        { "checkpoint", 0, ADCGS_OPTION_STRING, &o->checkpoint, 0, 0, "FILE",
           "save the state of the run here every minute and when\ninterrupted (default then: the output's name.checkpoint)", NULL,
           NULL },
-        { "resume", 0, ADCGS_OPTION_STRING, &o.resume, 0, 0, "FILE",
+        { "resume", 0, ADCGS_OPTION_STRING, &o->resume, 0, 0, "FILE",
           "go on from such a state; same scene, same options", NULL, NULL },
-        { "log", 0, ADCGS_OPTION_STRING, &o.log, 0, 0, "FILE",
+        { "log", 0, ADCGS_OPTION_STRING, &o->log, 0, 0, "FILE",
           "write progress as JSON lines; appended with --resume", NULL, NULL },
-        { "threads", 't', ADCGS_OPTION_INT, &o.threads, 0, 256, "N",
+        { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N",
           "threads (default: one per CPU); the result does not\ndepend on it", NULL, NULL },
-        { "cpu", 0, ADCGS_OPTION_CHOICE, &o.cpu, 0, 0, "LEVEL",
+        { "cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL",
           "kernels: auto, scalar, avx2, avx512 (default auto)", cpu_names, NULL },
-        { "json", 0, ADCGS_OPTION_FLAG, &o.json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
+        { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
-    const adcgs_cli cli = {
-        .program = "adcgs-enc",
-        .operands = "SCENE",
-        .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
-        .details = "SCENE is a folder with transforms_train.json or transforms.json, or such a file.",
-        .options = options,
-        .n_options = ADCGS_COUNTOF(options),
-        .min_operands = 1,
-        .max_operands = 1,
-    };
+    adcgs_cli cli = program;
+    cli.options = options;
+    cli.n_options = ADCGS_COUNTOF(options);
     int first;
     const int code = adcgs_cli_parse(&cli, argc, argv, &first);
     if (code >= 0)
         return code;
-    if (!o.output)
+    if (!o->output)
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "no output: give -o FILE");
-    o.scene = argv[first];
+    o->scene = argv[first];
+    return -1;
+}
+
+int main(int argc, char **argv)
+{
+    enc_options o = { .preset = "fast", .scale = 1, .seed = 1 };
+    const int code = parse(&o, argc, argv);
+    if (code >= 0)
+        return code;
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_pool *pool = NULL;
     adcgs_status status = adcgs_pool_create(&pool, o.threads, &error);
     if (status == ADCGS_OK)
-        status = encode(&cli, &o, pool, &error);
+        status = encode(&program, &o, pool, &error);
     adcgs_pool_free(&pool);
     if (status != ADCGS_OK) {
         error.status = status;
-        return adcgs_cli_fail(&cli, &error);
+        return adcgs_cli_fail(&program, &error);
     }
     return 0;
 }

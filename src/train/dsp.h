@@ -36,9 +36,12 @@ typedef struct adcgs_group_grad {
 
 typedef struct adcgs_train_dsp {
     adcgs_dense_dsp dense;
-    /** gw[o][i] += sum over tiles and lanes of dy[o]*x[i]; gb[o] += sum of dy[o] (gb may be NULL). Tile t: dy + t*sy, x + t*sx. */
-    void (*weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles, int n_out,
-                        int n_in);
+    /**
+     * gw[o][i] += sum over tiles and lanes of dy[o]*x[i]; gb[o] += sum of dy[o] (gb may be NULL).
+     * Tile t: dy + t*sy, x + t*sx.
+     */
+    void (*weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles,
+                        int n_out, int n_in);
     /** dz[i] *= h[i] < 0 ? 2^-6 : 1 over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. */
     void (*lrelu_back)(float *dz, const float *h, int n);
     /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */

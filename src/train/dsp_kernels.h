@@ -174,7 +174,8 @@ static void ISA(primitives)(const adcgs_group_io *io)
         const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
         const float *restrict va = io->varpi ? io->varpi + (size_t)k * ADCGS_VARPI_OUT * LANES : NULL;
         const float *restrict keep = io->keep + k * LANES;
-        float *restrict m0 = io->mean[0] + k * LANES, *restrict m1 = io->mean[1] + k * LANES, *restrict m2 = io->mean[2] + k * LANES;
+        float *restrict m0 = io->mean[0] + k * LANES, *restrict m1 = io->mean[1] + k * LANES,
+            *restrict m2 = io->mean[2] + k * LANES;
         for (int l = 0; l < LANES; l++) {
             const float ox = th[l] * a.extent[0][l], oy = th[LANES + l] * a.extent[1][l], oz = th[2 * LANES + l] * a.extent[2][l];
             const float w = a.q[0][l], x = a.q[1][l], y = a.q[2][l], z = a.q[3][l];
@@ -221,11 +222,13 @@ typedef struct anchor_grads {
     float q[4][LANES]; /* gradient of the anchor's quaternion through the primitives' */
 } anchor_grads;
 
-static void ISA(primitive_mean_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g, int k)
+static void ISA(primitive_mean_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g,
+                                     int k)
 {
     const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
     float *restrict dt = g->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
-    const float *restrict g0 = g->mean[0] + k * LANES, *restrict g1 = g->mean[1] + k * LANES, *restrict g2 = g->mean[2] + k * LANES;
+    const float *restrict g0 = g->mean[0] + k * LANES, *restrict g1 = g->mean[1] + k * LANES,
+        *restrict g2 = g->mean[2] + k * LANES;
     float *restrict ds = g->sigma;
     for (int l = 0; l < LANES; l++) {
         const float ox = th[l] * a->extent[0][l], oy = th[LANES + l] * a->extent[1][l], oz = th[2 * LANES + l] * a->extent[2][l];
@@ -255,7 +258,8 @@ static void ISA(primitive_mean_back)(const anchor_terms *a, anchor_grads *s, con
     }
 }
 
-static void ISA(primitive_rotation_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g, int k)
+static void ISA(primitive_rotation_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io,
+                                         const adcgs_group_grad *g, int k)
 {
     const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
     float *restrict dt = g->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
@@ -284,7 +288,8 @@ static void ISA(primitive_rotation_back)(const anchor_terms *a, anchor_grads *s,
     }
 }
 
-static void ISA(primitive_rest_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g, int k)
+static void ISA(primitive_rest_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g,
+                                     int k)
 {
     const float *restrict th = io->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
     float *restrict dt = g->theta + (size_t)k * ADCGS_THETA_OUT * LANES;
@@ -371,7 +376,8 @@ static inline float tail(float x, float *density)
 }
 
 static double ISA(rate)(const float *restrict y, const float *restrict step, const float *restrict mu, const float *restrict si,
-                        const float *restrict weight, int n, float scale, float *restrict dy, float *restrict dmu, float *restrict dsi)
+                        const float *restrict weight, int n, float scale, float *restrict dy, float *restrict dmu,
+                        float *restrict dsi)
 {
     const float log2_ratio = 0.145784517f; /* log2(64/0.11)/63: sigma levels are 2^0.1458 apart */
     const float level0 = -3.18442457f;    /* log2(0.11) */
@@ -412,7 +418,8 @@ static double ISA(rate)(const float *restrict y, const float *restrict step, con
     return total;
 }
 
-static void ISA(adam)(float *restrict p, float *restrict g, float *restrict m, float *restrict v, size_t n, float lr, float c1, float c2)
+static void ISA(adam)(float *restrict p, float *restrict g, float *restrict m, float *restrict v, size_t n, float lr, float c1,
+                      float c2)
 {
     for (size_t i = 0; i < n; i++) {
         m[i] = 0.9f * m[i] + 0.1f * g[i];

@@ -56,7 +56,8 @@ void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise)
         }
         for (int o = 0; o < mlp->n_out[i]; o++)
             for (int j = 0; j < mlp->in[i]; j++)
-                mlp->turn[mlp->w[i] + (size_t)j * (size_t)mlp->n_out[i] + (size_t)o] = w[(size_t)o * (size_t)mlp->in[i] + (size_t)j];
+                mlp->turn[mlp->w[i] + (size_t)j * (size_t)mlp->n_out[i] + (size_t)o] =
+                    w[(size_t)o * (size_t)mlp->in[i] + (size_t)j];
     }
 }
 
@@ -80,10 +81,11 @@ static void layout_networks(adcgs_fmodel *f)
     adcgs_mlp_layout(&m[ADCGS_P_THETA], p->n_fv + p->n_fg, 0, s->theta_width, s->theta_hidden, ADCGS_THETA_OUT);
     if (p->time_rows) {
         if (s->omega_width)
-            adcgs_mlp_layout(&m[ADCGS_P_OMEGA], p->n_fv, p->time_width, s->omega_width, s->omega_hidden, p->coarse_rotation ? 12 : 9);
+            adcgs_mlp_layout(&m[ADCGS_P_OMEGA], p->n_fv, p->time_width, s->omega_width, s->omega_hidden,
+                             p->coarse_rotation ? 12 : 9);
         if (s->varpi_width)
-            adcgs_mlp_layout(&m[ADCGS_P_VARPI], fp + (p->fine_uses_fv ? p->n_fv : 0), p->time_width, s->varpi_width, s->varpi_hidden,
-                             ADCGS_VARPI_OUT * p->k);
+            adcgs_mlp_layout(&m[ADCGS_P_VARPI], fp + (p->fine_uses_fv ? p->n_fv : 0), p->time_width, s->varpi_width,
+                             s->varpi_hidden, ADCGS_VARPI_OUT * p->k);
     }
     if (p->time_rows) { /* the time table: one tensor, no bias */
         adcgs_mlp *z = &m[ADCGS_P_TIME];
@@ -102,7 +104,8 @@ static void layout_networks(adcgs_fmodel *f)
 }
 
 static const char *const names[ADCGS_P_COUNT] = { "f_v", "f_g", "sigma", "colour", "eta", "theta", "omega", "varpi", "time",
-                                                  "eta prior", "E_fv", "E_sigma", "E_colour", "E_fg1", "E_fg2", "E_fg3", "E_fg4" };
+                                                  "eta prior", "E_fv", "E_sigma", "E_colour", "E_fg1", "E_fg2", "E_fg3",
+                                                  "E_fg4" };
 
 static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
 {
@@ -118,7 +121,10 @@ static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Waves of half a cycle and more, fainter as they quicken: neighbouring times look alike from the start, and motion begins smooth. */
+/**
+ * Waves of half a cycle and more, fainter as they quicken: neighbouring times look alike from the start, and motion
+ * begins smooth.
+ */
 static void start_time_table(adcgs_fmodel *f)
 {
     const int rows = f->params.time_rows, width = f->params.time_width;
@@ -280,8 +286,8 @@ static void copy_rows(float *to_array, const float *from_array, uint32_t to, uin
         t[r * 64] = s[r * 64];
 }
 
-adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh, uint32_t n,
-                                  adcgs_error *error)
+adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh,
+                                  uint32_t n, adcgs_error *error)
 {
     adcgs_fmodel old = *f;
     adcgs_status status = alloc_anchors(f, n, error);

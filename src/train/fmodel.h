@@ -82,7 +82,10 @@ typedef struct adcgs_fmodel {
 /** Rows (features) per group of an anchor parameter. */
 int adcgs_fmodel_rows(const adcgs_fmodel *f, int group);
 
-/** Build networks and arrays for n anchors at pos (copied, must be in Morton order and distinct); values start random from seed. */
+/**
+ * Build networks and arrays for n anchors at pos (copied, must be in Morton order and distinct); values start random from
+ * seed.
+ */
 adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params, const adcgs_shape *shape, const float origin[3],
                                  float voxel, const uint32_t (*pos)[3], uint32_t n, uint64_t seed, adcgs_error *error);
 void adcgs_fmodel_free(adcgs_fmodel **f);
@@ -91,8 +94,8 @@ void adcgs_fmodel_free(adcgs_fmodel **f);
  * Replace the anchors: new anchor i comes from old anchor source[i] (parameters and, unless fresh[i], Adam moments copied),
  * at pos[i] (Morton order, distinct).
  */
-adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh, uint32_t n,
-                                  adcgs_error *error);
+adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh,
+                                  uint32_t n, adcgs_error *error);
 
 /** Set one anchor's parameter row. */
 static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t anchor, int row)

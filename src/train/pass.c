@@ -178,7 +178,8 @@ static void forward_theta(const forward_job *job, uint32_t g)
     for (int k = 0; k < f->params.k; k++) {
         float *h = act.theta_h + (size_t)k * act.theta_h_stride;
         d->dense(h, act.theta_anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
-        adcgs_mlp_tail(&p->dsp, m, h, act.theta_a + (size_t)k * act.theta_a_stride, act.theta_out + (size_t)k * ADCGS_THETA_OUT * 64);
+        adcgs_mlp_tail(&p->dsp, m, h, act.theta_a + (size_t)k * act.theta_a_stride,
+                       act.theta_out + (size_t)k * ADCGS_THETA_OUT * 64);
     }
 }
 
@@ -196,7 +197,8 @@ static void forward_deform(const forward_job *job, uint32_t g)
         adcgs_mlp_tail(&p->dsp, om, act.omega_h, act.omega_a, act.omega_out);
     }
     if (va->n) {
-        d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], f->code + (size_t)g * (size_t)fp * 64, va->width, fp);
+        d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], f->code + (size_t)g * (size_t)fp * 64, va->width,
+                 fp);
         if (f->params.fine_uses_fv)
             d->dense(act.varpi_h, act.varpi_h, NULL, va->use + fp, (size_t)va->in[0], fv, va->width, nv);
         adcgs_mlp_tail(&p->dsp, va, act.varpi_h, act.varpi_a, act.varpi_out);

@@ -50,7 +50,8 @@ typedef struct adcgs_rate {
     double total;
 } adcgs_rate;
 
-adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
+adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cpu_level cpu, adcgs_pool *pool,
+                               adcgs_error *error);
 void adcgs_pass_free(adcgs_pass **pass);
 /** After the number of anchors changed. */
 adcgs_status adcgs_pass_resize(adcgs_pass *pass, const adcgs_fmodel *f, adcgs_error *error);
@@ -71,6 +72,7 @@ void adcgs_pass_forward(adcgs_pass *pass, const adcgs_fmodel *f, float t, const 
  * every `period`-th group starting at `first` and scaled up; rate, if not NULL, receives the estimate for all anchors.
  * anchors 0: only networks receive gradients.
  */
-void adcgs_pass_backward(adcgs_pass *pass, adcgs_fmodel *f, int deform, float rate_scale, int period, int first, adcgs_rate *rate);
+void adcgs_pass_backward(adcgs_pass *pass, adcgs_fmodel *f, int deform, float rate_scale, int period, int first,
+                         adcgs_rate *rate);
 
 #endif

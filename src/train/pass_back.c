@@ -2,7 +2,8 @@
 /** \file The backward pass: primitives' gradients to anchors and networks. */
 #include "train/pass_layout.h"
 
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout, float *dz)
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout,
+                         float *dz)
 {
     const size_t tile = (size_t)m->width * 64;
     /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
@@ -21,11 +22,11 @@ void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, floa
 {
     const size_t tile = (size_t)m->width * 64;
     for (int i = 1; i < m->hidden; i++)
-        dsp->weight_grad(g + m->w[i], (size_t)m->width, g + m->b[i], dz + (size_t)i * tile, sdz, h + (size_t)(i - 1) * tile, sh, tiles,
-                         m->width, m->width);
+        dsp->weight_grad(g + m->w[i], (size_t)m->width, g + m->b[i], dz + (size_t)i * tile, sdz, h + (size_t)(i - 1) * tile, sh,
+                         tiles, m->width, m->width);
     const int last = m->hidden;
-    dsp->weight_grad(g + m->w[last], (size_t)m->width, g + m->b[last], dout, sdout, h + (size_t)(last - 1) * tile, sh, tiles, m->out,
-                     m->width);
+    dsp->weight_grad(g + m->w[last], (size_t)m->width, g + m->b[last], dout, sdout, h + (size_t)(last - 1) * tile, sh, tiles,
+                     m->out, m->width);
 }
 
 typedef struct backward_job {
@@ -56,7 +57,8 @@ static void theta_back(const backward_job *job, uint32_t g, const float *dtheta,
         float *d = dz + (size_t)i * sdz;
         adcgs_mlp_tail_back(dsp, m, act.theta_h + (size_t)i * act.theta_h_stride, act.theta_a + (size_t)i * act.theta_a_stride,
                             dtheta + (size_t)i * ADCGS_THETA_OUT * 64, d);
-        dsp->dense.dense(dfg + (size_t)i * fg_tile, dfg + (size_t)i * fg_tile, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w, d, ng, w);
+        dsp->dense.dense(dfg + (size_t)i * fg_tile, dfg + (size_t)i * fg_tile, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w,
+                         d, ng, w);
         for (size_t j = 0; j < tile; j++)
             sum[j] += d[j];
     }

@@ -53,7 +53,8 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
 /** Run layers 1.. of a network: h[0] holds layer 0's sums and is activated in place. */
 void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, float *a, float *out);
 /** Gradients dz of every hidden layer's sums from dout. */
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout, float *dz);
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout,
+                         float *dz);
 /** Weight gradients of layers 1.. over tiles of the given strides. */
 void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
                             size_t sdz, const float *dout, size_t sdout, int tiles);
@@ -63,6 +64,7 @@ void adcgs_pass_time_back(adcgs_pass *p, adcgs_fmodel *f);
 size_t adcgs_pass_scratch_rows(const adcgs_fmodel *f);
 
 /** Rate of one group: gradients into f's anchors (scale included) and partial network gradients g; bits[5] accumulated. */
-void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, float scale, float *partial, float *scratch, double *bits);
+void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, float scale, float *partial, float *scratch,
+                      double *bits);
 
 #endif

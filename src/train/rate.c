@@ -11,7 +11,8 @@ size_t adcgs_pass_scratch_rows(const adcgs_fmodel *f)
     const size_t k = f->params.k, nv = f->params.n_fv, ng = f->params.n_fg;
     const adcgs_mlp *th = &f->mlp[ADCGS_P_THETA];
     const size_t theta = k * ADCGS_THETA_OUT + (size_t)th->width * (1 + k * (size_t)th->hidden);
-    const size_t w = (size_t)f->shape.entropy_width * (size_t)(f->shape.entropy_hidden + 1), out = 2 * (nv > ng + 6 ? nv : ng + 6);
+    const size_t w = (size_t)f->shape.entropy_width * (size_t)(f->shape.entropy_hidden + 1),
+        out = 2 * (nv > ng + 6 ? nv : ng + 6);
     const size_t rate = 2 * nv + k * ng + f->params.n_eta * 2u + k * (3 * w + 2 * out) + 2 * w + ng + 64;
     return theta > rate ? theta : rate;
 }
@@ -65,8 +66,8 @@ typedef struct coded {
 } coded;
 
 /** One network on one tile: forward, bits, backward; dx accumulates [in][64] of the input's gradient. */
-static double rate_net(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *x, float *dx, const coded *c, float scale, float *g,
-                       float *scratch)
+static double rate_net(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *x, float *dx, const coded *c, float scale,
+                       float *g, float *scratch)
 {
     const net_tiles t = take_tiles(m, 1, &scratch);
     const int half = m->out / 2;
@@ -78,7 +79,8 @@ static double rate_net(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const flo
         dsp->dense.dense(t.h, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], x, m->width, m->in[0]);
         adcgs_mlp_tail(dsp, m, t.h, t.a, t.out);
     }
-    const double bits = dsp->rate(c->y, c->step, t.out, t.out + half * 64, c->weight, c->rows, scale, c->dy, t.dout, t.dout + half * 64);
+    const double bits = dsp->rate(c->y, c->step, t.out, t.out + half * 64, c->weight, c->rows, scale, c->dy, t.dout,
+                                  t.dout + half * 64);
     if (!m->hidden) {
         dsp->weight_grad(g, 1, g + m->b[0], t.dout, 0, t.dout, 0, 1, m->out, 0);
         return bits;
@@ -91,12 +93,13 @@ static double rate_net(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const flo
 }
 
 /** Chunk c of f_g for all primitives of the group. xv, dxv: f_v input and its gradient; xg: scaled f_g [k][n_fg][64]. */
-static double rate_chunk(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, int c, const float *xv, float *dxv, const float *xg,
-                         float scale, float *g, float *scratch)
+static double rate_chunk(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, int c, const float *xv, float *dxv,
+                         const float *xg, float scale, float *g, float *scratch)
 {
     const adcgs_train_dsp *dsp = &p->dsp;
     const adcgs_mlp *m = &f->mlp[ADCGS_P_E_FG + c];
-    const int nv = f->params.n_fv, ng = f->params.n_fg, per = ng / f->params.chunks, before = c * per, k = f->params.k, w = m->width;
+    const int nv = f->params.n_fv, ng = f->params.n_fg, per = ng / f->params.chunks, before = c * per, k = f->params.k,
+        w = m->width;
     const size_t fg_tile = (size_t)ng * 64, tile = (size_t)w * 64;
     float *anchor = scratch, *sum = scratch + tile, *dx = sum + tile, *rest = dx + (size_t)(before + 1) * 64;
     const net_tiles t = take_tiles(m, k, &rest);
@@ -130,7 +133,8 @@ static double rate_chunk(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, i
 }
 
 /** eta under its prior: one mean and level per channel. */
-static double rate_eta(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t group, float scale, const coded *c, float *g, float *scratch)
+static double rate_eta(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t group, float scale, const coded *c, float *g,
+                       float *scratch)
 {
     (void)group;
     const int n = c->rows;
@@ -146,7 +150,8 @@ static double rate_eta(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t grou
     return bits;
 }
 
-void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, float scale, float *partial, float *scratch, double *bits)
+void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, float scale, float *partial, float *scratch,
+                      double *bits)
 {
     const int nv = f->params.n_fv, ng = f->params.n_fg, ne = f->params.n_eta, k = f->params.k;
     coded part[ADCGS_P_ANCHOR];
@@ -170,8 +175,10 @@ void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, floa
     if (ne)
         bits[ADCGS_P_ETA] += rate_eta(p, f, group, scale, &part[ADCGS_P_ETA], GRAD(ADCGS_P_ETA_PRIOR), rest);
     bits[ADCGS_P_FV] += rate_net(&p->dsp, NET(ADCGS_P_E_FV), xe, dxe, &part[ADCGS_P_FV], scale, GRAD(ADCGS_P_E_FV), rest);
-    bits[ADCGS_P_SIGMA] += rate_net(&p->dsp, NET(ADCGS_P_E_SIGMA), xv, dxv, &part[ADCGS_P_SIGMA], scale, GRAD(ADCGS_P_E_SIGMA), rest);
-    bits[ADCGS_P_COLOUR] += rate_net(&p->dsp, NET(ADCGS_P_E_COLOUR), xv, dxv, &part[ADCGS_P_COLOUR], scale, GRAD(ADCGS_P_E_COLOUR), rest);
+    bits[ADCGS_P_SIGMA] += rate_net(&p->dsp, NET(ADCGS_P_E_SIGMA), xv, dxv, &part[ADCGS_P_SIGMA], scale, GRAD(ADCGS_P_E_SIGMA),
+                                    rest);
+    bits[ADCGS_P_COLOUR] += rate_net(&p->dsp, NET(ADCGS_P_E_COLOUR), xv, dxv, &part[ADCGS_P_COLOUR], scale,
+                                     GRAD(ADCGS_P_E_COLOUR), rest);
     for (int c = 0; c < f->params.chunks && ng; c++)
         bits[ADCGS_P_FG] += rate_chunk(p, f, group, c, xv, dxv, xg, scale, GRAD(ADCGS_P_E_FG + c), rest);
 #undef NET

@@ -308,7 +308,8 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const cloud *c, const adcgs
     adcgs_status status = ADCGS_ERR_MEMORY;
     if (pos && order) {
         const uint32_t n = voxelise(c, half, config->shape.depth, pos, order, error);
-        status = adcgs_fmodel_create(out, &config->params, &config->shape, origin, voxel, (const uint32_t(*)[3])pos, n, config->seed, error);
+        status = adcgs_fmodel_create(out, &config->params, &config->shape, origin, voxel, (const uint32_t(*)[3])pos, n,
+                                     config->seed, error);
         for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
             set_anchor(*out, i, c->rgb[order[i]]);
     } else {
@@ -332,7 +333,8 @@ adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, con
         if (c.n < 16)
             random_points(&c, &s, config->start_anchors, config->seed);
         if (!c.n)
-            status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no volume that at least a quarter of the training cameras see: check the poses",
+            status = adcgs_fail(error, ADCGS_ERR_DATA,
+                                "%s: no volume that at least a quarter of the training cameras see: check the poses",
                                 scene->directory);
     }
     if (status == ADCGS_OK)

@@ -183,8 +183,8 @@ static void randomise(float *p, size_t n, double size, uint64_t stream)
 
 static int setup(void **state)
 {
-    const adcgs_params params = { .k = K, .n_fv = NV, .n_fg = NG, .chunks = CHUNKS, .n_eta = ETA, .octaves = OCTAVES, .fine_uses_fv = 1,
-                                  .coarse_rotation = 1, .time_rows = 4, .time_width = 3 };
+    const adcgs_params params = { .k = K, .n_fv = NV, .n_fg = NG, .chunks = CHUNKS, .n_eta = ETA, .octaves = OCTAVES,
+                                  .fine_uses_fv = 1, .coarse_rotation = 1, .time_rows = 4, .time_width = 3 };
     const adcgs_shape shape = { .theta_width = 6, .theta_hidden = 2, .omega_width = 5, .omega_hidden = 3, .varpi_width = 6,
                                 .varpi_hidden = 2, .entropy_width = 6, .entropy_hidden = 2, .step_fv = 0.1f, .step_fg = 0.2f,
                                 .step_sigma = 0.1f, .step_colour = 0.05f, .depth = 8 };
@@ -194,7 +194,8 @@ static int setup(void **state)
         pos[i][0] = i, pos[i][1] = 3 * i % 200, pos[i][2] = 7 * i % 200;
     fixture *x = calloc(1, sizeof *x);
     adcgs_error error;
-    assert_int_equal(adcgs_fmodel_create(&x->f, &params, &shape, origin, 1.0f / 128, (const uint32_t(*)[3])pos, ANCHORS, 3, &error), ADCGS_OK);
+    assert_int_equal(adcgs_fmodel_create(&x->f, &params, &shape, origin, 1.0f / 128, (const uint32_t(*)[3])pos, ANCHORS, 3,
+                                         &error), ADCGS_OK);
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         randomise(x->f->param[i].p, x->f->param[i].n, i < ADCGS_P_ANCHOR ? 0.4 : 0.15, (uint64_t)i);
         if (x->f->mlp[i].n)
@@ -333,7 +334,8 @@ static void test_threads(void **state)
         adcgs_pass *pass;
         assert_int_equal(adcgs_pass_create(&pass, x->f, x->pass->cpu, round ? pool : NULL, &error), ADCGS_OK);
         clear_gradients(x->f);
-        adcgs_pass_forward(pass, x->f, 0.7f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = 1, .dropout = 0.2f, .seed = 99 });
+        adcgs_pass_forward(pass, x->f, 0.7f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = 1, .dropout = 0.2f,
+                                                                 .seed = 99 });
         randomise(pass->grad, 16 * (size_t)pass->primitives.n, 0, 0);
         memcpy(pass->grad, pass->prim, 14 * (size_t)pass->primitives.n * sizeof(float));
         adcgs_pass_backward(pass, x->f, 1, 0.5f, 1, 0, &rate);

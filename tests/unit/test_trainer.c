@@ -169,7 +169,8 @@ static int count_anchors(void *user, const adcgs_train_report *r)
     assert_int_equal(r->anchors, f->n);
     assert_in_range(f->n, 1, c->t->config.max_anchors);
     for (uint32_t i = 0; i < f->n; i++) {
-        assert_true(f->pos[i][0] >> f->shape.depth == 0 && f->pos[i][1] >> f->shape.depth == 0 && f->pos[i][2] >> f->shape.depth == 0);
+        assert_true(f->pos[i][0] >> f->shape.depth == 0 && f->pos[i][1] >> f->shape.depth == 0 &&
+                    f->pos[i][2] >> f->shape.depth == 0);
         assert_true(i == 0 || adcgs_morton(f->pos[i - 1]) < adcgs_morton(f->pos[i]));
     }
     for (uint32_t i = f->n; i < f->groups * 64; i++)
@@ -241,7 +242,8 @@ static int give_poison(void *user, const adcgs_train_report *r)
 
 static void no_number_is_rolled_back(void **state)
 {
-    static const int groups[] = { -1, ADCGS_P_FV, ADCGS_P_FG, ADCGS_P_COLOUR, ADCGS_P_ETA, ADCGS_P_THETA, ADCGS_P_TIME, ADCGS_P_E_FV };
+    static const int groups[] = { -1, ADCGS_P_FV, ADCGS_P_FG, ADCGS_P_COLOUR, ADCGS_P_ETA, ADCGS_P_THETA, ADCGS_P_TIME,
+                                  ADCGS_P_E_FV };
     const adcgs_train_config config = small_config();
     for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++) {
         adcgs_model model;
@@ -346,8 +348,8 @@ static void estimated_bits_are_written_bytes(void **state)
         written += (double)stream.bytes.layer[i];
     /* Written are also the flags of anchors and primitives, less than a bit each, and the ends of ten sub-streams. */
     const double rest = (t->f->n * (1.0 + t->f->params.k)) / 8 + 60;
-    print_message("estimated %.0f bytes, written %.0f (%+.2f %%), at most %.0f of them flags and framing\n", rate.total / 8, written,
-                  100 * (written / (rate.total / 8) - 1), rest);
+    print_message("estimated %.0f bytes, written %.0f (%+.2f %%), at most %.0f of them flags and framing\n", rate.total / 8,
+                  written, 100 * (written / (rate.total / 8) - 1), rest);
     assert_true(written > 0.97 * rate.total / 8);
     assert_true(written < 1.03 * rate.total / 8 + rest);
     adcgs_buffer_clear(&bytes);
