@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 2 };
+enum { FORMAT = 3 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -47,10 +47,11 @@ static void visit_same(walk *w, uint64_t value)
 static void walk_options(walk *w, const adcgs_train_config *c)
 {
     const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->refine_every,
-                               (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate, c->without_refinement };
-    const float real[] = { c->lambda, c->ssim_weight, c->grow_threshold, c->prune_opacity, c->dropout, c->quarter_until, c->half_until,
-                           c->deform_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->decide_at, c->round_from,
-                           c->freeze_from };
+                               (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
+                               c->without_refinement };
+    const float real[] = { c->lambda, c->ssim_weight, c->grow_threshold, c->prune_opacity, c->dropout, c->quarter_until,
+                           c->half_until, c->deform_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->weigh_at,
+                           c->decide_at, c->round_from, c->freeze_from };
     for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
         visit_same(w, whole[i]);
     for (size_t i = 0; i < ADCGS_COUNTOF(real); i++)
@@ -59,9 +60,9 @@ static void walk_options(walk *w, const adcgs_train_config *c)
 
 static void walk_sizes(walk *w, const adcgs_params *p, const adcgs_shape *s)
 {
-    const int sizes[] = { p->k, p->n_fv, p->n_fg, p->chunks, p->n_eta, p->octaves, p->fine_uses_fv, p->coarse_rotation, p->time_rows,
-                          p->time_width, s->theta_width, s->theta_hidden, s->omega_width, s->omega_hidden, s->varpi_width,
-                          s->varpi_hidden, s->entropy_width, s->entropy_hidden, s->depth };
+    const int sizes[] = { p->k, p->n_fv, p->n_fg, p->chunks, p->n_eta, p->octaves, p->fine_uses_fv, p->coarse_rotation,
+                          p->time_rows, p->time_width, s->theta_width, s->theta_hidden, s->omega_width, s->omega_hidden,
+                          s->varpi_width, s->varpi_hidden, s->entropy_width, s->entropy_hidden, s->depth };
     const float steps[] = { s->step_fv, s->step_fg, s->step_sigma, s->step_colour };
     for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++)
         visit_same(w, (uint64_t)sizes[i]);
@@ -95,6 +96,7 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
 {
     visit(w, &t->iteration, sizeof t->iteration);
     visit(w, &t->adam_steps, sizeof t->adam_steps);
+    visit(w, &t->weighed, sizeof t->weighed);
     visit(w, &t->decided, sizeof t->decided);
     visit(w, &t->rounding, sizeof t->rounding);
     visit(w, &t->frozen, sizeof t->frozen);

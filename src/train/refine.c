@@ -198,7 +198,7 @@ adcgs_status adcgs_trainer_refine(adcgs_trainer *t, double progress, adcgs_error
 
 /* ---- Decisions before rounding ---- */
 
-enum { DECIDE_TIMES = 16 };
+enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
 
 /**
  * Largest effect of time on each anchor's primitives. 1 is half a pixel of way, or 0.03 of colour, for an opaque one, or 0.03
@@ -238,6 +238,55 @@ static void measure_motion(adcgs_trainer *t, float *effect)
     free(still);
 }
 
+/** Mean loss over some training views: each at its own time, or all at the middle of time. */
+static adcgs_status sample_loss(adcgs_trainer *t, int own_time, double *loss, adcgs_error *error)
+{
+    const uint32_t n = ADCGS_MIN(t->n_views, DECIDE_VIEWS);
+    *loss = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        const adcgs_train_view *v = &t->views[(uint64_t)i * t->n_views / n];
+        adcgs_loss_value value;
+        adcgs_pass_forward(t->pass, t->f, own_time ? v->t : 0.5f, &(adcgs_pass_mode){ .deform = 1 });
+        ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 0,
+                                       error));
+        ADCGS_TRY(adcgs_loss_image(t->loss, t->image, v->rgb, v->view.width, v->view.height, t->config.ssim_weight, t->grad,
+                                   &value, error));
+        *loss += value.loss / n;
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_trainer_weigh(adcgs_trainer *t, adcgs_error *error)
+{
+    const adcgs_fmodel *f = t->f;
+    double stopped, moving;
+    if (!f->params.time_rows)
+        return ADCGS_OK;
+    ADCGS_TRY(sample_loss(t, 0, &stopped, error));
+    ADCGS_TRY(sample_loss(t, 1, &moving, error));
+    /* Seven bits a weight; a hundredth of the loss is what networks gain by learning the noise of each picture. */
+    const size_t weights = f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n + f->mlp[ADCGS_P_TIME].n;
+    if (stopped > 1.01 * moving + (double)t->config.lambda * 7 * (double)weights * 0x1p-23)
+        return ADCGS_OK;
+    memset(f->moving, 0, (size_t)f->groups * 64 * sizeof *f->moving);
+    return ADCGS_OK;
+}
+
+/** Mark the anchors that time does not touch. */
+static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
+{
+    adcgs_fmodel *f = t->f;
+    float *effect = calloc(f->n, sizeof *effect);
+    if (!effect)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", f->n);
+    measure_motion(t, effect);
+    for (uint32_t i = 0; i < f->n; i++)
+        if (effect[i] < 1)
+            f->moving[i] = 0;
+    free(effect);
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_trainer_decide(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_fmodel *f = t->f;
@@ -250,15 +299,8 @@ adcgs_status adcgs_trainer_decide(adcgs_trainer *t, adcgs_error *error)
             if (t->stats.weight[slot] < 0.05 * t->stats.n)
                 f->keep[slot] = 0;
         }
-    if (f->params.time_rows) {
-        float *effect = calloc(f->n, sizeof *effect);
-        if (!effect)
-            return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", f->n);
-        measure_motion(t, effect);
-        for (uint32_t i = 0; i < f->n; i++)
-            f->moving[i] = effect[i] >= 1 ? 1.0f : 0.0f;
-        free(effect);
-    }
+    if (f->params.time_rows)
+        ADCGS_TRY(decide_motion(t, error));
     next_set s;
     ADCGS_TRY(next_init(&s, f->n + 1, error));
     for (uint32_t i = 0; i < f->n; i++) {

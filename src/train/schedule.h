@@ -27,7 +27,7 @@ typedef struct adcgs_train_config {
     float dropout;         /**< share of primitives left out at random until rounding: against overfitting few views */
     /* Moments, as fractions of the run. */
     float quarter_until, half_until; /**< coarse-to-fine: a quarter, then half of the resolution */
-    float deform_from, grow_from, grow_until, noise_from, rate_from, decide_at, round_from, freeze_from;
+    float deform_from, grow_from, grow_until, noise_from, rate_from, weigh_at, decide_at, round_from, freeze_from;
     /* Ablation switches of the paper: stages left out. */
     uint8_t without_coarse, without_fine, without_rate, without_refinement;
 } adcgs_train_config;

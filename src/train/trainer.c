@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
+/* WEIGH_AFTER: before that many iterations motion has not had its chance. */
+enum { WEIGH_AFTER = 300, SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
 
 /* ---- Memory ---- */
 
@@ -57,8 +58,8 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     return adcgs_trainer_resize(t, error);
 }
 
-adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config, adcgs_cpu_level cpu,
-                                  adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                  adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
 {
     adcgs_trainer *t = calloc(1, sizeof *t);
     *out = NULL;
@@ -135,7 +136,9 @@ static void load_view(void *arg, int i, int thread)
 static adcgs_status load_views(adcgs_trainer *t, int divide, adcgs_error *error)
 {
     load_job job = { t, divide, calloc(t->n_views, sizeof(adcgs_error)), calloc(t->n_views, sizeof(size_t)) };
-    adcgs_status status = job.errors && job.pixels ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the views");
+    adcgs_status status = ADCGS_OK;
+    if (!job.errors || !job.pixels)
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the views");
     free_views(t);
     if (status == ADCGS_OK)
         adcgs_pool_run(t->pool, load_view, &job, (int)t->n_views);
@@ -262,13 +265,13 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1, error));
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, v->rgb, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
-    ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, t->grad,
-                                    &t->pass->grads, error));
+    ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image,
+                                    t->grad, &t->pass->grads, error));
     accumulate_stats(t);
     adcgs_rate rate = { .total = 0 };
     /* Loss per bit: lambda per 2^23 bits. */
-    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? c->lambda * 0x1p-23f : 0, c->rate_period, (int)(t->iteration % (uint32_t)c->rate_period),
-                        rated ? &rate : NULL);
+    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? c->lambda * 0x1p-23f : 0, c->rate_period,
+                        (int)(t->iteration % (uint32_t)c->rate_period), rated ? &rate : NULL);
     const double keep = t->iteration < 100 ? 0.9 : 0.99;
     t->mean_loss = t->iteration ? keep * t->mean_loss + (1 - keep) * value.loss : value.loss;
     t->mean_mse = t->iteration ? keep * t->mean_mse + (1 - keep) * value.mse : value.mse;
@@ -301,6 +304,11 @@ static void choose_lattices(adcgs_trainer *t)
 static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
+    if (!t->weighed && progress >= c->weigh_at) {
+        t->weighed = 1;
+        if (t->iteration >= WEIGH_AFTER)
+            ADCGS_TRY(adcgs_trainer_weigh(t, error));
+    }
     if (!t->decided && progress >= c->decide_at) {
         t->decided = 1;
         if (!c->without_refinement)
@@ -374,7 +382,8 @@ static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
     const uint32_t rollbacks = t->rollbacks + 1;
     const float lr = t->lr_scale * 0.5f;
     if (rollbacks > ROLLBACKS_MAX)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "training diverged at iteration %u (loss %g) after %u rollbacks: check poses and exposure",
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "training diverged at iteration %u (loss %g) after %u rollbacks: check poses and exposure",
                           t->iteration, t->mean_loss, t->rollbacks);
     ADCGS_TRY(adcgs_trainer_restore(t, t->snapshot.data, t->snapshot.size, error));
     t->rollbacks = rollbacks;

@@ -69,15 +69,15 @@ typedef struct adcgs_trainer {
     void *quantise_user;
     /* State that a checkpoint carries beside the model. */
     uint32_t iteration, adam_steps;
-    uint8_t decided, rounding, frozen;
+    uint8_t weighed, decided, rounding, frozen;
     float lr_scale;
     uint32_t rollbacks;
     double mean_loss, mean_mse, mean_bits, elapsed;
     adcgs_buffer snapshot;
 } adcgs_trainer;
 
-adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config, adcgs_cpu_level cpu,
-                                  adcgs_pool *pool, adcgs_error *error);
+adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                  adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 void adcgs_trainer_free(adcgs_trainer **trainer);
 /** Train to the end, or until observe says stop (*stopped = 1). */
 adcgs_status adcgs_trainer_run(adcgs_trainer *trainer, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error);
@@ -91,6 +91,11 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, 
 
 /** Growth and pruning by temporal significance (paper section 3.5); progress in [0,1]. */
 adcgs_status adcgs_trainer_refine(adcgs_trainer *trainer, double progress, adcgs_error *error);
+/**
+ * Whether motion is worth its bytes at all: if stopping time costs the pictures less than the deformation networks cost the
+ * file, every anchor becomes static. Early, so that the rest of the run makes up for what the networks had taken over.
+ */
+adcgs_status adcgs_trainer_weigh(adcgs_trainer *trainer, adcgs_error *error);
 /** Drop primitives that never matter and mark anchors that never move. */
 adcgs_status adcgs_trainer_decide(adcgs_trainer *trainer, adcgs_error *error);
 /** After the anchors changed: workspace and statistics. */

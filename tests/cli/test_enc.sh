@@ -153,6 +153,11 @@ scene=$dir/still enc still --iterations $n
 networks still | grep -q 'F_omega\|F_varpi\|"Z"' && bad "a still scene carries deformation networks"
 ./adcgs-dec "$dir/still.adcgs" --md5 >/dev/null 2>&1 || bad "a still scene does not decode"
 
+# A scene seen at many moments in which nothing moves: the encoder finds out that motion does not pay.
+./adcgs-demo-scene --scene still --size 48x48 --format ppm -o "$dir/rest" >/dev/null 2>&1
+scene=$dir/rest enc rest --iterations 2400 --max-anchors 200
+networks rest | grep -q 'F_omega\|F_varpi\|"Z"' && bad "a scene at rest carries deformation networks"
+
 # Wrong use and bad input: one line, the right exit code, nothing written.
 try="./adcgs-enc $scene -o $dir/x.adcgs"
 expect 2 "SCENE" ./adcgs-enc -o "$dir/x.adcgs"
