@@ -73,7 +73,7 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
 {
     const adcgs_scene *scene = t->scene;
     adcgs_stream_init(s);
-    s->level = (uint8_t)(t->f->n <= 4096 ? 1 : t->f->n <= 65536 ? 2 : 3);
+    s->level = 0; /* the lowest that fits */
     memcpy(s->scene_origin, t->origin, sizeof s->scene_origin);
     s->scene_scale = t->scale;
     memcpy(s->background, scene->background, sizeof s->background);

@@ -122,7 +122,7 @@ static void set_anchors(adcgs_model *model, const adcgs_fmodel *f)
         model->is_static[i] = model->params.time_rows && f->moving[i] == 0;
         model->mask[i] = 0;
         for (int k = 0; k < f->params.k; k++)
-            if (f->keep[((size_t)(i / 64) * f->params.k + (size_t)k) * 64 + i % 64] != 0)
+            if (f->keep[adcgs_fmodel_slot(f, i, k)] != 0)
                 model->mask[i] |= (uint16_t)(1u << k);
     }
 }

@@ -97,7 +97,13 @@ void adcgs_fmodel_free(adcgs_fmodel **f);
 adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh,
                                   uint32_t n, adcgs_error *error);
 
-/** Set one anchor's parameter row. */
+/** Slot of primitive k of an anchor, the order of spec clause "Primitives". */
+static inline size_t adcgs_fmodel_slot(const adcgs_fmodel *f, uint32_t anchor, int k)
+{
+    return ((size_t)(anchor / 64) * f->params.k + (size_t)k) * 64 + anchor % 64;
+}
+
+/** One anchor's parameter row. */
 static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
 {
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group);

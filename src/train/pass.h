@@ -70,7 +70,6 @@ void adcgs_pass_forward(adcgs_pass *pass, const adcgs_fmodel *f, float t, const 
 /**
  * Accumulate gradients of pass->grads into f->param[].g. With rate_scale > 0 add the gradient of rate_scale * bits, measured on
  * every `period`-th group starting at `first` and scaled up; rate, if not NULL, receives the estimate for all anchors.
- * anchors 0: only networks receive gradients.
  */
 void adcgs_pass_backward(adcgs_pass *pass, adcgs_fmodel *f, int deform, float rate_scale, int period, int first,
                          adcgs_rate *rate);

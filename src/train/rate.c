@@ -133,10 +133,8 @@ static double rate_chunk(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, i
 }
 
 /** eta under its prior: one mean and level per channel. */
-static double rate_eta(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t group, float scale, const coded *c, float *g,
-                       float *scratch)
+static double rate_eta(const adcgs_pass *p, const adcgs_fmodel *f, float scale, const coded *c, float *g, float *scratch)
 {
-    (void)group;
     const int n = c->rows;
     float *mu = scratch, *si = mu + n * 64, *dmu = si + n * 64, *dsi = dmu + n * 64;
     const float *prior = f->param[ADCGS_P_ETA_PRIOR].p;
@@ -173,7 +171,7 @@ void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, floa
 #define NET(which) &f->mlp[which]
 #define GRAD(which) partial + p->partial_at[which]
     if (ne)
-        bits[ADCGS_P_ETA] += rate_eta(p, f, group, scale, &part[ADCGS_P_ETA], GRAD(ADCGS_P_ETA_PRIOR), rest);
+        bits[ADCGS_P_ETA] += rate_eta(p, f, scale, &part[ADCGS_P_ETA], GRAD(ADCGS_P_ETA_PRIOR), rest);
     bits[ADCGS_P_FV] += rate_net(&p->dsp, NET(ADCGS_P_E_FV), xe, dxe, &part[ADCGS_P_FV], scale, GRAD(ADCGS_P_E_FV), rest);
     bits[ADCGS_P_SIGMA] += rate_net(&p->dsp, NET(ADCGS_P_E_SIGMA), xv, dxv, &part[ADCGS_P_SIGMA], scale, GRAD(ADCGS_P_E_SIGMA),
                                     rest);

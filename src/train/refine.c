@@ -72,7 +72,7 @@ static int is_idle(const adcgs_trainer *t, uint32_t anchor, double min_pixels)
     float opacity = 0;
     double weight = 0;
     for (int i = 0; i < k; i++) {
-        const size_t slot = ((size_t)(anchor / 64) * (size_t)k + (size_t)i) * 64 + anchor % 64;
+        const size_t slot = adcgs_fmodel_slot(t->f, anchor, i);
         opacity = fmaxf(opacity, t->stats.opacity[slot]);
         weight += t->stats.weight[slot];
     }
@@ -295,7 +295,7 @@ adcgs_status adcgs_trainer_decide(adcgs_trainer *t, adcgs_error *error)
         return ADCGS_OK;
     for (uint32_t i = 0; i < f->n; i++)
         for (int j = 0; j < k; j++) {
-            const size_t slot = ((size_t)(i / 64) * (size_t)k + (size_t)j) * 64 + i % 64;
+            const size_t slot = adcgs_fmodel_slot(f, i, j);
             if (t->stats.weight[slot] < 0.05 * t->stats.n)
                 f->keep[slot] = 0;
         }
@@ -306,7 +306,7 @@ adcgs_status adcgs_trainer_decide(adcgs_trainer *t, adcgs_error *error)
     for (uint32_t i = 0; i < f->n; i++) {
         int kept = 0;
         for (int j = 0; j < k; j++)
-            kept += f->keep[((size_t)(i / 64) * (size_t)k + (size_t)j) * 64 + i % 64] > 0;
+            kept += f->keep[adcgs_fmodel_slot(f, i, j)] > 0;
         if (kept && !is_idle(t, i, 0.5))
             next_add(&s, f->pos[i], i, 0);
     }

@@ -320,10 +320,9 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const cloud *c, const adcgs
     return status;
 }
 
-adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config, adcgs_pool *pool,
+adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                adcgs_error *error)
 {
-    (void)pool;
     sight s;
     cloud c = { 0, NULL, NULL };
     ADCGS_TRY(sight_init(&s, scene, error));

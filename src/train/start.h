@@ -3,7 +3,6 @@
 #ifndef ADCGS_TRAIN_START_H
 #define ADCGS_TRAIN_START_H
 
-#include "base/pool.h"
 #include "data/scene.h"
 #include "train/schedule.h"
 
@@ -14,7 +13,7 @@ void adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale
  * First anchors: the scene's points, or random points inside the cameras' common volume; one per voxel, at most
  * config->start_anchors. Only training views are looked at.
  */
-adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config, adcgs_pool *pool,
+adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                adcgs_error *error);
 
 #endif

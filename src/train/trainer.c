@@ -45,7 +45,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     if (c->without_fine)
         c->shape.varpi_width = 0;
     adcgs_scene_frame(t->scene, t->origin, &t->scale);
-    ADCGS_TRY(adcgs_train_start(&t->f, t->scene, c, t->pool, error));
+    ADCGS_TRY(adcgs_train_start(&t->f, t->scene, c, error));
     adcgs_train_rates(t->f);
     ADCGS_TRY(adcgs_pass_create(&t->pass, t->f, t->cpu, t->pool, error));
     ADCGS_TRY(adcgs_raster_create(&t->raster, t->cpu, t->pool, NULL, error));
