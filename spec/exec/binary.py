@@ -76,7 +76,7 @@ def _to32(x):
     if kind is not Literal and kind is not int:
         raise NotationError("%r meets a binary32 number" % (x,))
     result = _round32(value)
-    if result != value:
+    if float(result) != value:
         raise NotationError("%r is not exact in binary32" % (x,))
     return result
 
