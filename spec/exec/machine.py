@@ -84,7 +84,7 @@ class Machine:
         names = {name: getattr(binary, name) for name in
                  ("fma", "sqrt", "binary32", "binary64", "floor", "pattern", "number32", "number64")}
         names.update(_read=reading.read, _declare=reading.declare, _set=reading.assign, _put=reading.put, _child=reading.child,
-                     _record_of=lambda s, nested: nested, _cut=_cut)
+                     _record=lambda s: s.record, _cut=_cut)
         names.update(len=len, range=_range, sum=sum, sorted=sorted, array=_array, record=Record, table=Dictionary, little=_little,
                      require=_require, md5=lambda data: list(hashlib.md5(bytes(data)).digest()),
                      min=_integers("min", min), max=_integers("max", max), abs=_integers("abs", abs),

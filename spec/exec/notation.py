@@ -242,7 +242,7 @@ class Program:
         for element, index in dict(elements).items():
             preamble.append("    %s = _declare(_s, \"%s\", %s)" % (element, element, "true" if index else "false"))
         self._compile(block, start, ["def %s%s(_s%s):" % (STRUCTURE, name, ", " + parameters if parameters else "")] + preamble
-                      + (body or ["    pass"]))
+                      + body + ["    return _record(_s)"])
         self.names[name] = Structure(name, self.names[STRUCTURE + name], [e for e, _ in elements])
 
     @staticmethod
@@ -262,7 +262,6 @@ class Program:
             value = "_read(_s, \"%s\", \"%s\", %s, %s, %s, %s)" % (name, base, sizes, count or "none", low, high)
         elif call:
             value = "%s%s(_child(_s)%s)" % (STRUCTURE, call.group(1), ", " + call.group(2) if call.group(2) else "")
-            value = "_record_of(_s, %s)" % value
         else:
             raise NotationError("%s: unknown descriptor \"%s\"" % (where, descriptor))
         if index:

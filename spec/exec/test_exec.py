@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-2-Clause
+"""The executor itself: its arithmetic against exact rationals, what the notation refuses, and how elements are read."""
+import math
+import os
+import random
+import struct
+import sys
+import tempfile
+import unittest
+from fractions import Fraction
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import machine
+from binary import F32, F64, Literal, NotationError, binary32, divide, fma, number32, pattern, power, sqrt
+from reading import Bytes, Fault
+
+
+def nearest32(exact):
+    """An exact rational rounded to binary32, by search for the two neighbours."""
+    if exact == 0:
+        return 0.0
+    exponent = max(math.floor(math.log2(abs(exact))) - 25, -149)
+    while abs(exact) >= Fraction(2) ** (exponent + 24):
+        exponent += 1
+    while exponent > -149 and abs(exact) < Fraction(2) ** (exponent + 23):
+        exponent -= 1
+    scaled = exact / Fraction(2) ** exponent
+    units = math.floor(scaled)
+    rest = scaled - units
+    if rest > Fraction(1, 2) or (rest == Fraction(1, 2) and units % 2):
+        units += 1
+    value = units * Fraction(2) ** exponent
+    return math.copysign(math.inf, value) if abs(value) >= Fraction(2) ** 128 else float(value)
+
+
+def some_number(source):
+    """Patterns with many equal exponents, few significant bits, and subnormal numbers among them."""
+    bits = source.getrandbits(32)
+    choice = source.randrange(4)
+    if choice == 0:
+        bits = bits & 0x807FFFFF | source.randrange(100, 150) << 23
+    elif choice == 1:
+        bits &= 0x807FFFFF
+    elif choice == 2:
+        bits &= 0xFFFFF000
+    number = number32(bits)
+    return number if math.isfinite(number) else number32(bits & 0x3FFFFFFF)
+
+
+class Arithmetic(unittest.TestCase):
+    """REQ-CONV-002: one rounding to nearest, ties to even, subnormal numbers honoured."""
+
+    def test_against_rationals(self):
+        source = random.Random(1)
+        for i in range(3000):
+            a, b, c = (some_number(source) for _ in range(3))
+            x, y, z = Fraction(float(a)), Fraction(float(b)), Fraction(float(c))
+            if i % 5 == 0:
+                c = -(a * b)
+                z = Fraction(float(c)) if math.isfinite(c) else None
+            self.assertEqual(float(a + b), nearest32(x + y))
+            self.assertEqual(float(a * b), nearest32(x * y))
+            if b != 0:
+                self.assertEqual(float(a / b), nearest32(x / y))
+            if z is not None:
+                self.assertEqual(float(fma(a, b, c)), nearest32(x * y + z))
+
+    def test_square_root(self):
+        for value, root in ((4, 2), (9, 3), (0, 0)):
+            self.assertEqual(float(sqrt(binary32(value))), root)
+        self.assertEqual(pattern(sqrt(binary32(2))), 0x3FB504F3)
+
+    def test_special_values(self):
+        self.assertEqual(float(1 / binary32(0)), math.inf)
+        self.assertEqual(pattern(-binary32(0)), 0x80000000)
+        self.assertEqual(float(binary32(2 ** 60 + 2 ** 36)), float(2 ** 60))
+        self.assertEqual(float(binary32(2 ** 60 + 2 ** 36 + 1)), float(2 ** 60 + 2 ** 37))
+
+    def test_kinds_do_not_mix(self):
+        for wrong in (lambda: binary32(1) + F64(1), lambda: binary32(1) + Literal(0.1), lambda: binary32(1) + (2 ** 24 + 1),
+                      lambda: divide(1, 2), lambda: binary32(1) // 2, lambda: power(binary32(2), 2), lambda: binary32(1) < F64(1)):
+            self.assertRaises(NotationError, wrong)
+        self.assertIs(type(Literal(0.5) * binary32(3)), F32)
+        self.assertIs(type(Literal(0.1) * F64(3)), F64)
+
+
+class Blocks(unittest.TestCase):
+    """What the notation takes and what it refuses."""
+
+    def machine(self, process="", syntax="", semantics=""):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        clause = "".join(("[source,adcgs]\n----\n%s\n----\n" % process if process else "",
+                          "[source,adcgs-syntax]\n----\n%s\n----\n" % syntax if syntax else "",
+                          "[semantics=X,cols=\"1,1,1\"]\n|===\n%s\n|===\n" % semantics if semantics else ""))
+        for name, text in (("adcgs.adoc", "include::c.adoc[]\n"), ("c.adoc", clause)):
+            with open(os.path.join(folder.name, name), "w", encoding="utf-8") as file:
+                file.write(text)
+        os.symlink(os.path.join(machine.folder, "tables"), os.path.join(folder.name, "tables"))
+        lines = []
+        return machine.Machine(os.path.join(folder.name, "adcgs.adoc"), lines.append), lines
+
+    def test_refuses(self):
+        for text in ("f():\n    import os", "f():\n    x = lambda: 1", "f():\n    a.b()", "f():\n    return 1j", "lower = 1",
+                     "f():\n    pass\n\nf():\n    pass", "f():\n    return {1: 2}", "f():\n    with a:\n        pass", "len(a):\n    pass"):
+            self.assertRaises(NotationError, self.machine, text)
+
+    def test_constants_slices_and_tables(self):
+        m, _ = self.machine("A = [1, 2,\n     3]\nf(n):\n    t = table()\n    t[n] = A[1 : n]\n    return [t[n], t[0], 7 // 2]")
+        self.assertEqual(m.f(3), [[2, 3], None, 3])
+        self.assertRaises(NotationError, m.f, 4)
+
+    def test_hexadecimal_constants(self):
+        m, _ = self.machine("f(x):\n    return x * 0x1.8p+1")
+        self.assertEqual(float(m.f(binary32(2))), 6.0)
+
+    def test_reads_elements(self):
+        m, lines = self.machine("f(b):\n    return parse(X, b, 2)",
+                                "X(k):\n    n               u8\n    v               i16 * k\n    for i in range(n):\n"
+                                "        y[i]        Y()\n    if n > 1:\n        w           var\n    s               text(0, 3)\nY():\n"
+                                "    z               f32",
+                                "| n | 0 .. k | \n| v | `-2**8 .. 2**8` | \n| y | | \n| w | 128 .. 300 | \n| s | | ")
+        data = struct.pack("<Bhhff", 2, -3, 256, 0.1, -2.0) + bytes([0x80, 1, 2]) + b"a\""
+        x = m.f(Bytes.at(data, 100))
+        self.assertEqual((x.n, x.v, x.w, bytes(x.s), float(x.y[1].z)), (2, [-3, 256], 128, b"a\"", -2.0))
+        self.assertEqual(lines, ["800 X.n 2", "808 X.v[0] -3", "824 X.v[1] 256", "840 X.z 0.100000001", "872 X.z -2", "904 X.w 128",
+                                 "920 X.s \"a\\x22\""])
+        for wrong in (data[:-1], data + b"x", b"\3" + data[1:], data[:13] + b"\x80\x80\0" + data[15:], data[:13] + b"\x7f" + data[15:]):
+            self.assertRaises(Fault, m.f, Bytes.at(wrong, 0))
+
+
+if __name__ == "__main__":
+    unittest.main()
