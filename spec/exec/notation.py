@@ -226,11 +226,17 @@ class Program:
         name, parameters = header.groups()
         self._define(block, start, name, self.structures)
         rows = {row.element: row for row in text.semantics.get(name, [])}
-        elements, body = [], []
+        elements, body, loops = [], [], []
         for offset, line in enumerate(lines):
             code = line.split("#")[0].rstrip()
             found = _element.match(code)
+            indent = len(code) - len(code.lstrip())
+            loops = [loop for loop in loops if loop < indent or not code]
+            if re.match(r"\s*(for|while)\b", code):
+                loops.append(indent)
             if found and not code.strip().endswith(":"):
+                if loops and not found.group(3):
+                    raise NotationError("%s: an element in a loop needs an index" % block.where(start + 1 + offset))
                 body.append(self._element(block.where(start + 1 + offset), found, rows, elements))
             else:
                 body.append(code)

@@ -116,6 +116,11 @@ class Blocks(unittest.TestCase):
         m, _ = self.machine("f(x):\n    return x * 0x1.8p+1")
         self.assertEqual(float(m.f(binary32(2))), 6.0)
 
+    def test_elements_in_loops_have_an_index(self):
+        table = "X(k):\n    for i in range(k):\n        a%s           u8\n    b               u8"
+        self.machine(syntax=table % "[i]")
+        self.assertRaises(NotationError, self.machine, "", table % "")
+
     def test_reads_elements(self):
         m, lines = self.machine("f(b):\n    return parse(X, b, 2)",
                                 "X(k):\n    n               u8\n    v               i16 * k\n    for i in range(n):\n"
