@@ -127,6 +127,14 @@ adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time, adcgs_pri
     return primitives_at(decoder, time, out, NULL);
 }
 
+adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t digest[16])
+{
+    adcgs_primitives primitives;
+    ADCGS_TRY(primitives_at(decoder, time, &primitives, NULL));
+    adcgs_splat_digest(&decoder->stream.segments[decoder->splat_segment], &primitives, digest);
+    return ADCGS_OK;
+}
+
 /** Planar to interleaved, a band of rows. */
 typedef struct interleave_job {
     const float *planar;

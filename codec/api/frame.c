@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Frames leaving the decoder (spec clause "Output conversion"). */
+#include "base/digest.h"
+
 #include <adcgs/camera.h>
 
 void adcgs_frame_to_u8(const adcgs_frame *frame, uint8_t *out)
@@ -9,4 +11,19 @@ void adcgs_frame_to_u8(const adcgs_frame *frame, uint8_t *out)
         const float v = frame->rgb[i] > 0.0f ? frame->rgb[i] < 1.0f ? frame->rgb[i] : 1.0f : 0.0f;
         out[i] = (uint8_t)(v * 255.0f + 0.5f); /* not negative: truncation is floor */
     }
+}
+
+void adcgs_frame_digest(const adcgs_frame *frame, uint8_t digest[16])
+{
+    uint8_t bytes[4096];
+    const size_t n = 3 * (size_t)frame->width * (size_t)frame->height, step = sizeof bytes / 4;
+    adcgs_md5 md5;
+    adcgs_md5_init(&md5);
+    for (size_t i = 0; i < n; i += step) {
+        const size_t count = ADCGS_MIN(step, n - i);
+        for (size_t j = 0; j < count; j++)
+            adcgs_store_le32(bytes + 4 * j, adcgs_float_bits(frame->rgb[i + j]));
+        adcgs_md5_update(&md5, bytes, 4 * count);
+    }
+    adcgs_md5_final(&md5, digest);
 }

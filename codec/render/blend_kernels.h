@@ -79,7 +79,8 @@ static void write_block(const adcgs_blend_job *job, int x, int y, const block_st
     const size_t stride = (size_t)job->width;
     const int columns = job->width - x, lines = job->height - y;
     for (int c = 0; c < 3; c++) {
-        const vf value = vf_fma(state->t, vf_set1(job->background[c]), state->rgb[c]);
+        /* Adding zero makes -0 into +0: neither a black background nor a splat that adds nothing decides a zero's sign. */
+        const vf value = vf_add(vf_fma(state->t, vf_set1(job->background[c]), state->rgb[c]), vf_set1(0.0f));
         float *to = job->rgb + (size_t)c * plane + at;
         if (columns >= 4 && lines >= 4) {
             float *const rows[4] = {to, to + stride, to + 2 * stride, to + 3 * stride};

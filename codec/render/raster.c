@@ -287,9 +287,7 @@ static adcgs_status blend(adcgs_raster *r, const adcgs_view *view, const float b
                                  .height = view->height,
                                  .rgb = rgb,
                                  .transmittance = r->keep ? r->transmittance.data : NULL};
-    /* Adding zero makes -0 into +0, so that a black background never decides the sign of a black pixel's zero. */
-    for (int c = 0; c < 3; c++)
-        r->blend.background[c] = background[c] + 0.0f;
+    memcpy(r->blend.background, background, sizeof r->blend.background);
     adcgs_pool_run(r->pool, blend_tile, r, r->tiles);
     return ADCGS_OK;
 }

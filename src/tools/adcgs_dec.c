@@ -4,6 +4,7 @@
 
 #include "base/digest.h"
 #include "io/sink.h"
+#include "tools/answer.h"
 #include "tools/cli.h"
 #include "tools/shots.h"
 
@@ -14,7 +15,7 @@
 #include <strings.h>
 
 typedef struct settings {
-    const char *input, *output, *format, *times, *verify;
+    const char *input, *output, *format, *times, *verify, *answer;
     adcgs_shots_request request;
     adcgs_config config;
     int cpu, half, use_float, md5, frametimes;
@@ -22,7 +23,7 @@ typedef struct settings {
 
 static const char *const cpu_names[] = {"auto", "scalar", "avx2", "avx512", NULL};
 
-#define OPTION_COUNT 14
+#define OPTION_COUNT 15
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -44,6 +45,9 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
          "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
         {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "fail unless the frames together have this MD5", NULL, NULL},
+        {"answer", 0, ADCGS_OPTION_STRING, &s->answer, 0, 0, "REQUESTS",
+         "answer a file of requests for digests of models, splats and\nframes, as the specification's clause on conformance says", NULL,
+         NULL},
         {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL, "print the milliseconds that each frame took to render",
          NULL, NULL},
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
@@ -71,8 +75,8 @@ static adcgs_status open_input(adcgs_decoder **decoder, const settings *s, adcgs
     return status;
 }
 
-/** The frame's values as little-endian binary32 into one or two digests. */
-static void digest_frame(const adcgs_frame *frame, adcgs_md5 *one, adcgs_md5 *all)
+/** The frame's values as little-endian binary32 into a digest. */
+static void digest_frame(const adcgs_frame *frame, adcgs_md5 *all)
 {
     uint8_t bytes[4096];
     const size_t n = (size_t)frame->width * (size_t)frame->height * 3, step = sizeof bytes / 4;
@@ -80,7 +84,6 @@ static void digest_frame(const adcgs_frame *frame, adcgs_md5 *one, adcgs_md5 *al
         const size_t count = ADCGS_MIN(step, n - i);
         for (size_t j = 0; j < count; j++)
             adcgs_store_le32(bytes + 4 * j, adcgs_float_bits(frame->rgb[i + j]));
-        adcgs_md5_update(one, bytes, 4 * count);
         adcgs_md5_update(all, bytes, 4 * count);
     }
 }
@@ -108,14 +111,13 @@ static adcgs_status render(const settings *s, adcgs_decoder *decoder, const adcg
         const double seconds = adcgs_seconds() - start;
         *render_seconds += seconds;
         char hex[33] = "";
-        if (status == ADCGS_OK && (s->md5 || s->verify)) {
-            adcgs_md5 one;
+        if (status == ADCGS_OK && s->md5) {
             uint8_t digest[16];
-            adcgs_md5_init(&one);
-            digest_frame(frame, &one, all);
-            adcgs_md5_final(&one, digest);
+            adcgs_frame_digest(frame, digest);
             adcgs_md5_hex(digest, hex);
         }
+        if (status == ADCGS_OK && s->verify)
+            digest_frame(frame, all);
         if (status == ADCGS_OK && sink)
             status = adcgs_sink_write(sink, frame, i, error);
         if (status == ADCGS_OK)
@@ -180,6 +182,26 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, adcgs_decode
     return status;
 }
 
+/** Answer requests in place of rendering a clip. */
+static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **decoder, adcgs_error *error)
+{
+    adcgs_requests requests;
+    ADCGS_TRY(adcgs_requests_read(&requests, s->answer, error));
+    s->config.strict_end |= requests.complete;
+    s->config.layers = requests.layers ? requests.layers : s->config.layers;
+    adcgs_status status = open_input(decoder, s, error);
+    const char *const fault = adcgs_fault_class(status);
+    if (status == ADCGS_OK)
+        status = adcgs_requests_answer(&requests, *decoder, error);
+    else if (fault) {
+        printf("fault %s\n", fault);
+        adcgs_cli_note(cli, "%s", error->text);
+        adcgs_fail(error, status, "%.160s: a fault of class %s", s->input, fault);
+    }
+    adcgs_requests_clear(&requests);
+    return status;
+}
+
 /** What the option table cannot check. */
 static adcgs_status check_settings(settings *s, adcgs_error *error)
 {
@@ -189,6 +211,8 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     s->request.has_times = s->times != NULL;
     if (s->half && s->use_float)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
+    if (s->answer && (s->output || s->request.camera || s->times || s->request.size[0] || s->md5 || s->verify || s->frametimes))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--answer goes with --layers, --strict, --threads and --cpu only");
     if ((s->format || s->half || s->use_float) && !s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--format, --half and --float need --output");
     if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
@@ -222,9 +246,11 @@ int main(int argc, char **argv)
     adcgs_decoder *decoder = NULL;
     adcgs_status status = check_settings(&s, &error);
     adcgs_interrupt_catch();
-    if (status == ADCGS_OK)
+    if (status == ADCGS_OK && s.answer)
+        status = answer(&cli, &s, &decoder, &error);
+    else if (status == ADCGS_OK)
         status = open_input(&decoder, &s, &error);
-    if (status == ADCGS_OK)
+    if (status == ADCGS_OK && !s.answer)
         status = decode(&cli, &s, decoder, &mismatch, &error);
     adcgs_close(&decoder);
     if (adcgs_interrupted())

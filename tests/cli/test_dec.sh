@@ -93,6 +93,69 @@ expect 4 "^adcgs-dec: standard input: " sh -c "$dec - <'$dir/cut'"
 expect 0 "" $dec --help
 expect 0 "" $dec --version
 
+# Requests and answers.
+eye="1 0 0 0  0 0 1 -4  0 -1 0 0"
+cat >"$dir/requests" <<END
+# a comment
+
+camera 48 32 40 40 24 16 0.01 $eye
+camera 0 32 40 40 24 16 0.01 $eye
+camera 16 16 40 40 8 8 0 $eye
+frame 0 0.0500
+model
+splats 0
+frame 1 0
+frame 2 1e-3
+splats 0.03
+frame 0 0
+END
+expect 0 "" $dec "$s" --answer "$dir/requests" --threads 2
+cp "$dir/out" "$dir/answers"
+sed 's/ [0-9a-f]\{32\}$/ MD5/' "$dir/answers" >"$dir/shape"
+cat >"$dir/wanted" <<END
+frame 0 0.0500 MD5
+model 0 MD5
+splats 0 MD5
+frame 1 0 refused
+frame 2 1e-3 refused
+splats 0.03 MD5
+frame 0 0 MD5
+END
+cmp -s "$dir/shape" "$dir/wanted" || { bad "answers are"; cat "$dir/answers"; }
+expect 0 "" $dec "$s" --answer "$dir/requests" --cpu scalar
+cmp -s "$dir/out" "$dir/answers" || bad "answers differ with --cpu scalar"
+$dec "$s" --camera 0 --time 0 -o - --format raw --float >"$dir/raw" 2>/dev/null
+md5sum <"$dir/raw" | cut -c1-32 >"$dir/whole"
+$dec "$s" --camera 0 --time 0 --md5 2>/dev/null | cmp -s - "$dir/whole" || bad "a frame's digest is not that of its samples"
+for line in frame "frame 0 0" "splats now" "splats 0 0" "layers 6" "camera 1 1" "render 0 0" \
+    "camera 1.5 1 1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 0"; do
+    printf 'model\n%s\n' "$line" >"$dir/requests"
+    expect 2 "line 2" $dec "$s" --answer "$dir/requests"
+done
+expect 3 "nowhere" $dec "$s" --answer "$dir/nowhere"
+expect 2 "only" $dec "$s" --answer "$dir/requests" --md5
+# faults CODE CLASS FILE: the class stands alone on standard output and ends standard error.
+faults()
+{
+    expect "$1" "" $dec "$3" --answer "$dir/requests"
+    [ "$(cat "$dir/out")" = "fault $2" ] || bad "no \"fault $2\" on standard output"
+    tail -n 1 "$dir/err" | grep -q "$2\$" || bad "no \"$2\" at the end of standard error"
+}
+echo model >"$dir/requests"
+head -c 100 "$s" >"$dir/cut"
+faults 4 truncated "$dir/cut"
+faults 4 data "$dir/f000.ppm"
+size=$(wc -c <"$s")
+head -c $((size - 1)) "$s" >"$dir/almost"
+expect 0 "" $dec "$dir/almost" --answer "$dir/requests"
+grep -q "^model 0" "$dir/out" || bad "a truncated stream gives no model"
+echo complete >>"$dir/requests"
+faults 4 truncated "$dir/almost"
+echo layers 1 >"$dir/requests"
+echo model >>"$dir/requests"
+expect 0 "" $dec "$s" --answer "$dir/requests"
+cmp -s "$dir/out" "$dir/answers" && bad "layers have no effect"
+
 # Evaluation.
 expect 0 "" ./adcgs-eval "$s" "$dir/scene"
 grep -q '^mean of .* dB' "$dir/out" || bad "no mean"

@@ -4,7 +4,9 @@
 
 #include "random_model.h"
 
+#include "base/digest.h"
 #include "render/render.h"
+#include "splat/splat.h"
 
 #include <adcgs/adcgs.h>
 
@@ -63,6 +65,7 @@ static adcgs_decoder *open_with(const fixture *f, const adcgs_config *config)
     return d;
 }
 
+/* REQ-LATN-009 */
 static void test_info(void **state)
 {
     fixture *f = *state;
@@ -183,6 +186,35 @@ static void test_segments_by_time(void **state)
     adcgs_close(&d);
 }
 
+/** Of splats: by time, each with its own segment's masks. Of a frame: its samples in order, as little-endian bytes. */
+static void test_digests(void **state)
+{
+    fixture *f = *state;
+    adcgs_decoder *d = open_with(f, NULL);
+    const adcgs_model *m = &f->stream.segments[1];
+    const double times[] = { 0, m->time_start, m->time_end };
+    float rgb[] = { 1.0f, -0.0f, 0.5f };
+    const adcgs_frame frame = { 1, 1, rgb };
+    adcgs_primitives p;
+    uint8_t found[3][16], expected[16];
+    adcgs_md5 md5;
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(adcgs_get_splat_digest(d, times[i], found[i]), ADCGS_OK);
+        assert_int_equal(adcgs_get_primitives(d, times[i], &p), ADCGS_OK);
+        adcgs_splat_digest(i ? m : &f->stream.segments[0], &p, expected);
+        assert_memory_equal(found[i], expected, 16);
+        for (size_t j = 0; j < i; j++)
+            assert_memory_not_equal(found[i], found[j], 16);
+    }
+    adcgs_close(&d);
+    adcgs_md5_init(&md5);
+    adcgs_md5_update(&md5, "\0\0\x80\x3f\0\0\0\x80\0\0\0\x3f", 12);
+    adcgs_md5_final(&md5, expected);
+    adcgs_frame_digest(&frame, found[0]);
+    assert_memory_equal(found[0], expected, 16);
+}
+
+/* REQ-CONF-004, REQ-REND-009 */
 static void test_frames(void **state)
 {
     const fixture *f = *state;
@@ -229,6 +261,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_info),   cmocka_unit_test(test_sources),         cmocka_unit_test(test_config),
         cmocka_unit_test(test_frames), cmocka_unit_test(test_segments_by_time),
+        cmocka_unit_test(test_digests),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -60,7 +60,7 @@ static void blend_all(const adcgs_kept *k, const adcgs_view *view, int x, int y,
         if (x + (i & 3) < view->width && y + (i >> 2) < view->height)
             for (int c = 0; c < 3; c++)
                 rgb[((size_t)c * (size_t)view->height + (size_t)(y + (i >> 2))) * (size_t)view->width + (size_t)(x + (i & 3))] =
-                    fmaf(t[i], background[c], colour[i][c]);
+                    fmaf(t[i], background[c], colour[i][c]) + 0.0f;
 }
 
 /* ---- Rendering once ---- */
@@ -114,6 +114,7 @@ static void check_scene(const scene_splats *s, const adcgs_camera *camera, float
 
 /* ---- Tests ---- */
 
+/* REQ-CONF-004, REQ-REND-006, REQ-REND-007, REQ-REND-008 */
 static void test_same_everywhere(void **state)
 {
     scene_splats s = scene_room(2000, 40.0, 1);
@@ -126,6 +127,7 @@ static void test_same_everywhere(void **state)
     adcgs_free(NULL, s.data);
 }
 
+/* REQ-REND-006 */
 static void test_sizes(void **state)
 {
     static const int sizes[][2] = {{1, 1}, {3, 2}, {16, 16}, {17, 15}, {64, 1}, {1, 33}, {31, 48}};
@@ -138,6 +140,7 @@ static void test_sizes(void **state)
 }
 
 /* Scales over thirty octaves, needles and discs, opacities of all sizes, any filter. */
+/* REQ-REND-003, REQ-REND-007 */
 static void test_wild_splats(void **state)
 {
     for (uint64_t seed = 1; seed <= 24; seed++) {
@@ -162,6 +165,7 @@ static void test_wild_splats(void **state)
 }
 
 /* Exact edge cases: at the camera, on the near plane, behind it, flat, edge-on, enormous, at the ends of the ranges. */
+/* REQ-REND-004, REQ-REND-007 */
 static void test_hostile_splats(void **state)
 {
     static const float values[] = {0.0f, 0x1p-20f, 1.0f, 0x1p10f, 0x1p15f, -0x1p15f, -3.2f, -3.15f, 0x1p-126f};
@@ -190,6 +194,7 @@ static void test_hostile_splats(void **state)
     adcgs_free(NULL, s.data);
 }
 
+/* REQ-REND-004, REQ-REND-008 */
 static void test_nothing_to_draw(void **state)
 {
     scene_splats none = scene_create(0), hidden = scene_create(64);
@@ -203,6 +208,35 @@ static void test_nothing_to_draw(void **state)
     free(rgb);
     adcgs_free(NULL, none.data);
     adcgs_free(NULL, hidden.data);
+}
+
+/* A pixel is never -0, whatever the background's sign and colours too small to be seen make of it. */
+/* REQ-REND-008 */
+static void test_zero_has_no_sign(void **state)
+{
+    static const float nothing[3] = {0.0f, -0.0f, -0.0f};
+    scene_splats s = scene_create(64);
+    const adcgs_camera c = scene_camera(24, 24);
+    const adcgs_primitives p = scene_primitives(&s);
+    float *rgb = malloc(image_bytes(&c));
+    adcgs_view view;
+    scene_array(&s, SCENE_OPACITY)[0] = 0.25f;
+    for (int a = 0; a < 3; a++)
+        scene_array(&s, SCENE_COLOUR + a)[0] = -0x1p-149f;
+    assert_int_equal(adcgs_view_init(&view, &c, origin, 1.0, NULL), ADCGS_OK);
+    for (int cpu = ADCGS_CPU_SCALAR; cpu <= (int)adcgs_cpu_best(); cpu++) {
+        adcgs_raster *raster;
+        assert_int_equal(adcgs_raster_create(&raster, (adcgs_cpu_level)cpu, NULL, NULL, NULL), ADCGS_OK);
+        assert_int_equal(adcgs_raster_forward(raster, &p, &view, nothing, 0.3f, rgb, 1, NULL), ADCGS_OK);
+        adcgs_kept kept;
+        adcgs_raster_kept(raster, &kept);
+        assert_int_equal(kept.n_splats, 1);
+        for (int i = 0; i < 3 * 24 * 24; i++)
+            assert_int_equal(adcgs_float_bits(rgb[i]), 0);
+        adcgs_raster_free(&raster);
+    }
+    free(rgb);
+    adcgs_free(NULL, s.data);
 }
 
 /* NaN and infinity never come from a stream, but they must not crash a caller either. */
@@ -221,6 +255,7 @@ static void test_not_numbers(void **state)
     adcgs_free(NULL, s.data);
 }
 
+/* REQ-REND-002, REQ-REND-003, REQ-REND-005 */
 static void test_reference(void **state)
 {
     scene_splats s = scene_room(1500, 40.0, 3);
@@ -298,6 +333,7 @@ static void test_steady_memory(void **state)
     adcgs_free(NULL, s.data);
 }
 
+/* REQ-REND-001 */
 static void test_cameras(void **state)
 {
     adcgs_camera good = scene_camera(20, 20), bad;
@@ -322,6 +358,7 @@ static void test_cameras(void **state)
     REFUSED(bad.cam_to_world[3] = 1e30);
 }
 
+/* REQ-REND-005 */
 static void test_sort(void **state)
 {
     uint64_t random = 8;
@@ -342,7 +379,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_everywhere), cmocka_unit_test(test_sizes),       cmocka_unit_test(test_wild_splats),
-        cmocka_unit_test(test_hostile_splats),  cmocka_unit_test(test_nothing_to_draw), cmocka_unit_test(test_not_numbers),
+        cmocka_unit_test(test_hostile_splats),  cmocka_unit_test(test_nothing_to_draw),
+        cmocka_unit_test(test_not_numbers),     cmocka_unit_test(test_zero_has_no_sign),
         cmocka_unit_test(test_reference),       cmocka_unit_test(test_limits),      cmocka_unit_test(test_steady_memory),
         cmocka_unit_test(test_cameras),         cmocka_unit_test(test_sort),
     };

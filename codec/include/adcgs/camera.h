@@ -43,6 +43,9 @@ typedef struct adcgs_frame {
 /** Convert to 8 bits: q = floor(clip(v,0,1)*255 + 0.5) in binary32 (spec clause "Output conversion"). out: [n]. */
 ADCGS_API void adcgs_frame_to_u8(const adcgs_frame *frame, uint8_t *out);
 
+/** Digest (MD5) of a frame's values in memory order, each as a little-endian binary32: conformance point R. */
+ADCGS_API void adcgs_frame_digest(const adcgs_frame *frame, uint8_t digest[16]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -122,6 +122,9 @@ ADCGS_API adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *
 /** Digest (MD5) of the decoded model of one segment: conformance point M. */
 ADCGS_API adcgs_status adcgs_get_model_digest(const adcgs_decoder *decoder, int segment, uint8_t digest[16]);
 
+/** Digest (MD5) of the splats at time t, as adcgs_get_primitives() gives them: conformance point S. */
+ADCGS_API adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t digest[16]);
+
 /** Best CPU level this build has on this machine. */
 ADCGS_API adcgs_cpu_level adcgs_cpu_best(void);
 

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The conformance protocol on a decoder's side: reading requests, printing answers. */
+#include "config.h"
+
+#include "tools/answer.h"
+
+#include "base/digest.h"
+#include "tools/cli.h"
+
+#include <adcgs/adcgs.h>
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define BLANKS " \t\r\n"
+/* Numbers behind the word "camera": width, height, fx, fy, cx, cy, near plane and twelve of the matrix. */
+#define CAMERA_NUMBERS 19
+
+const char *adcgs_fault_class(adcgs_status status)
+{
+    switch (status) {
+    case ADCGS_ERR_DATA:
+        return "data";
+    case ADCGS_ERR_TRUNCATED:
+        return "truncated";
+    case ADCGS_ERR_UNSUPPORTED:
+        return "unsupported";
+    case ADCGS_ERR_LIMIT:
+        return "limit";
+    default:
+        return NULL;
+    }
+}
+
+/* ---- Reading ---- */
+
+/* Room for one more element behind count, which is a power of two whenever the room is used up. */
+static void *one_more(void *array, int count, size_t size)
+{
+    if (count & (count - 1))
+        return array;
+    return realloc(array, (count ? 2 * (size_t)count : 1) * size);
+}
+
+static const char *word(char **rest)
+{
+    return strtok_r(NULL, BLANKS, rest);
+}
+
+static int read_camera(adcgs_requests *r, char **rest)
+{
+    double v[CAMERA_NUMBERS];
+    for (int i = 0; i < CAMERA_NUMBERS; i++) {
+        const char *text = word(rest);
+        if (!text || adcgs_parse_real(text, -HUGE_VAL, HUGE_VAL, &v[i]))
+            return -1;
+    }
+    if (fabs(v[0]) > 1e6 || fabs(v[1]) > 1e6 || v[0] != floor(v[0]) || v[1] != floor(v[1]))
+        return -1;
+    adcgs_camera *grown = one_more(r->camera, r->n_cameras, sizeof *grown);
+    if (!grown)
+        return -1;
+    r->camera = grown;
+    adcgs_camera *c = &grown[r->n_cameras++];
+    *c = (adcgs_camera){.width = (int32_t)v[0], .height = (int32_t)v[1], .fx = v[2], .fy = v[3], .cx = v[4], .cy = v[5],
+                        .near_plane = v[6]};
+    memcpy(c->cam_to_world, v + 7, sizeof c->cam_to_world);
+    return 0;
+}
+
+static int read_time(adcgs_request *to, const char *text)
+{
+    if (!text || strlen(text) >= sizeof to->text || adcgs_parse_real(text, -HUGE_VAL, HUGE_VAL, &to->time))
+        return -1;
+    memcpy(to->text, text, strlen(text) + 1);
+    return 0;
+}
+
+static int read_request(adcgs_requests *r, const char *name, char **rest)
+{
+    adcgs_request q = {ADCGS_REQUEST_MODEL, 0, 0.0, ""};
+    if (!strcmp(name, "splats")) {
+        q.kind = ADCGS_REQUEST_SPLATS;
+        if (read_time(&q, word(rest)))
+            return -1;
+    } else if (!strcmp(name, "frame")) {
+        const char *camera = word(rest);
+        q.kind = ADCGS_REQUEST_FRAME;
+        if (!camera || adcgs_parse_int(camera, 0, r->n_cameras - 1, &q.camera) || read_time(&q, word(rest)))
+            return -1;
+    } else if (strcmp(name, "model"))
+        return -1;
+    adcgs_request *grown = one_more(r->request, r->n, sizeof *grown);
+    if (!grown)
+        return -1;
+    r->request = grown;
+    grown[r->n++] = q;
+    return 0;
+}
+
+static int read_line(adcgs_requests *r, char *line)
+{
+    char *rest = NULL;
+    const char *name = strtok_r(line, BLANKS, &rest);
+    int bad = 0;
+    if (!name || *name == '#')
+        return 0;
+    if (!strcmp(name, "camera"))
+        bad = read_camera(r, &rest);
+    else if (!strcmp(name, "complete"))
+        r->complete = 1;
+    else if (!strcmp(name, "layers")) {
+        const char *text = word(&rest);
+        bad = !text || adcgs_parse_int(text, 1, 5, &r->layers);
+    } else
+        bad = read_request(r, name, &rest);
+    return bad || word(&rest) ? -1 : 0;
+}
+
+adcgs_status adcgs_requests_read(adcgs_requests *out, const char *path, adcgs_error *error)
+{
+    adcgs_status status = ADCGS_OK;
+    char *line = NULL;
+    size_t room = 0;
+    *out = (adcgs_requests){0};
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
+    for (int number = 1; status == ADCGS_OK && getline(&line, &room, file) >= 0; number++)
+        if (read_line(out, line))
+            status = adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: line %d is no request", path, number);
+    if (status == ADCGS_OK && ferror(file))
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%.160s: cannot read", path);
+    free(line);
+    fclose(file);
+    if (status != ADCGS_OK)
+        adcgs_requests_clear(out);
+    return status;
+}
+
+void adcgs_requests_clear(adcgs_requests *requests)
+{
+    free(requests->request);
+    free(requests->camera);
+    *requests = (adcgs_requests){0};
+}
+
+/* ---- Answering ---- */
+
+static adcgs_status answer_model(adcgs_decoder *decoder)
+{
+    adcgs_info info;
+    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    for (int i = 0; i < info.segments; i++) {
+        uint8_t digest[16];
+        char hex[33];
+        ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest));
+        adcgs_md5_hex(digest, hex);
+        printf("model %d %s\n", i, hex);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status answer_splats(const adcgs_request *q, adcgs_decoder *decoder, adcgs_error *error)
+{
+    uint8_t digest[16];
+    char hex[33];
+    const adcgs_status status = adcgs_get_splat_digest(decoder, q->time, digest);
+    if (status != ADCGS_OK)
+        return adcgs_fail(error, status, "splats at %s: %s", q->text, adcgs_status_name(status));
+    adcgs_md5_hex(digest, hex);
+    printf("splats %s %s\n", q->text, hex);
+    return ADCGS_OK;
+}
+
+/* A camera that the specification refuses gets the word "refused" for a digest. */
+static adcgs_status answer_frame(const adcgs_request *q, const adcgs_camera *camera, adcgs_decoder *decoder,
+                                 adcgs_error *error)
+{
+    const int32_t w = camera->width, h = camera->height;
+    const int sane = w >= 1 && w <= 16384 && h >= 1 && h <= 16384;
+    adcgs_frame frame = {.width = w, .height = h, .rgb = malloc((sane ? 3 * (size_t)w * (size_t)h : 1) * sizeof(float))};
+    char hex[33] = "refused";
+    if (!frame.rgb)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a frame");
+    const adcgs_status status = adcgs_render(decoder, camera, q->time, &frame, error);
+    if (status == ADCGS_OK) {
+        uint8_t digest[16];
+        adcgs_frame_digest(&frame, digest);
+        adcgs_md5_hex(digest, hex);
+    }
+    free(frame.rgb);
+    if (status != ADCGS_OK && status != ADCGS_ERR_USAGE)
+        return status;
+    printf("frame %d %s %s\n", q->camera, q->text, hex);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_requests_answer(const adcgs_requests *requests, adcgs_decoder *decoder, adcgs_error *error)
+{
+    adcgs_status status = ADCGS_OK;
+    for (int i = 0; i < requests->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
+        const adcgs_request *q = &requests->request[i];
+        if (q->kind == ADCGS_REQUEST_MODEL)
+            status = answer_model(decoder);
+        else if (q->kind == ADCGS_REQUEST_SPLATS)
+            status = answer_splats(q, decoder, error);
+        else
+            status = answer_frame(q, &requests->camera[q->camera], decoder, error);
+    }
+    return status;
+}
