@@ -229,20 +229,18 @@ static uint32_t gather(uint64_t code, int depth)
     return v;
 }
 
-adcgs_status adcgs_geom_decode(const uint8_t *data, size_t bytes, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error)
+adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error)
 {
     ADCGS_TRY(check_size(n, depth, ADCGS_ERR_DATA, error));
-    adcgs_range_dec decoder;
-    adcgs_range_dec_init(&decoder, data, bytes);
     walk *w = adcgs_alloc(NULL, 1, sizeof *w, error);
     if (!w)
         return adcgs_alloc_status(error);
-    w->coder.dec = &decoder;
+    w->coder.dec = d;
     w->depth = depth;
     w->n = n;
     adcgs_status status = run(w, error);
     if (status == ADCGS_OK)
-        status = adcgs_range_dec_finish(&decoder, error);
+        status = adcgs_range_dec_finish(d, error);
     /* Every cell of the last step is one voxel with one point, because capacities were respected all the way. */
     for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
         for (int axis = 0; axis < 3; axis++)
@@ -250,6 +248,13 @@ adcgs_status adcgs_geom_decode(const uint8_t *data, size_t bytes, uint32_t n, in
     clear(w);
     adcgs_free(NULL, w);
     return status;
+}
+
+adcgs_status adcgs_geom_decode(const uint8_t *data, size_t bytes, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error)
+{
+    adcgs_range_dec d;
+    adcgs_range_dec_init(&d, data, bytes);
+    return adcgs_geom_decode_from(&d, n, depth, voxels, error);
 }
 
 static adcgs_status list_codes(uint64_t *codes, const uint32_t *voxels, uint32_t n, int depth, adcgs_error *error)

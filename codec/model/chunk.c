@@ -94,20 +94,23 @@ static int type_is_text(const char *name)
     return 1;
 }
 
-static adcgs_status parse_header(adcgs_chunk *chunk, const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES], adcgs_error *error)
+static adcgs_status parse_header(const adcgs_source *source, adcgs_chunk *chunk, const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES],
+                                 adcgs_error *error)
 {
-    adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk header", .error = error };
-    adcgs_reader_init(&p.r, bytes, ADCGS_CHUNK_HEADER_BYTES - 4);
+    adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk", .trace = source->trace, .trace_user = source->trace_user,
+                      .error = error };
+    adcgs_reader_init(&p.r, bytes, ADCGS_CHUNK_HEADER_BYTES);
     if (adcgs_load_le32(bytes + ADCGS_CHUNK_HEADER_BYTES - 4) != adcgs_crc32c(0, bytes, ADCGS_CHUNK_HEADER_BYTES - 4))
         return adcgs_fail(error, ADCGS_ERR_DATA, "chunk header at byte %llu: checksum is wrong",
                           (unsigned long long)chunk->origin);
-    ADCGS_TRY(adcgs_syn_chunk_header_parse(&p, &chunk->header));
-    adcgs_store_le32((uint8_t *)chunk->name, chunk->header.type);
+    chunk->type = (uint32_t)adcgs_read_uint(&p.r, 4);
+    adcgs_store_le32((uint8_t *)chunk->name, chunk->type);
     if (!type_is_text(chunk->name))
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "chunk header at byte %llu: type %08x is not a letter followed by letters and digits",
-                          (unsigned long long)chunk->origin, chunk->header.type);
-    return ADCGS_OK;
+                          (unsigned long long)chunk->origin, chunk->type);
+    adcgs_parse_trace(&p, 0, "type", "%s", chunk->name);
+    return adcgs_syn_chunk_header_parse(&p, &chunk->header);
 }
 
 static adcgs_status check_limits(const adcgs_chunk *chunk, const adcgs_level *limits, adcgs_error *error)
@@ -131,7 +134,7 @@ adcgs_status adcgs_chunk_read(adcgs_source *source, const adcgs_level *limits, a
     chunk->ended = got < sizeof bytes;
     if (chunk->ended)
         return ADCGS_OK;
-    ADCGS_TRY(parse_header(chunk, bytes, error));
+    ADCGS_TRY(parse_header(source, chunk, bytes, error));
     ADCGS_TRY(check_limits(chunk, limits, error));
     ADCGS_TRY(read_payload(source, chunk, error));
     if (chunk->available < chunk->header.length)

@@ -54,12 +54,15 @@ typedef struct adcgs_source {
     uint8_t *payload;   /**< of the chunk read last; reused, grows as data arrives */
     size_t capacity;
     adcgs_memory *memory;
+    adcgs_trace_fn trace; /**< told the elements of chunk headers; may be NULL */
+    void *trace_user;
 } adcgs_source;
 
 /** A chunk as read. The stream may have ended inside it. */
 typedef struct adcgs_chunk {
-    adcgs_syn_chunk_header header;
+    uint32_t type;
     char name[5];           /**< the type as text */
+    adcgs_syn_chunk_header header;
     uint64_t origin;        /**< position of the chunk */
     size_t available;       /**< payload bytes that the stream had */
     int complete;           /**< header, payload and CRC were all there */

@@ -2,6 +2,7 @@
 /** \file The drivers of the field lists: parse with trace, and write. */
 #include "model/fields.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -65,18 +66,24 @@ static void store_member(void *member, int bytes, uint64_t bits)
     memcpy(member, from, (size_t)bytes);
 }
 
-/** 9 and 17 digits bring a binary32 and a binary64 back exactly; integers up to 2^53 need 16. */
-static int digits(int type)
+/** The value as text: integers exactly, 9 and 17 digits bring a binary32 and a binary64 back exactly. */
+static void format_value(char *text, size_t size, int type, field_value v)
 {
-    return type == ADCGS_F32 ? 9 : 17;
+    if (type == ADCGS_F32 || type == ADCGS_F64)
+        snprintf(text, size, "%.*g", type == ADCGS_F32 ? 9 : 17, v.number);
+    else if (type == ADCGS_I16 || type == ADCGS_I64)
+        snprintf(text, size, "%" PRId64, type == ADCGS_I16 ? (int16_t)(uint16_t)v.bits : (int64_t)v.bits);
+    else
+        snprintf(text, size, "%" PRIu64, v.bits);
 }
 
 static adcgs_status check_value(const char *chunk, const adcgs_field *f, field_value v, adcgs_status status, adcgs_error *error)
 {
+    char text[32];
     if (v.number >= f->min && v.number <= f->max) /* false for NaN */
         return ADCGS_OK;
-    return adcgs_fail(error, status, "%s: %s is %.*g, expected %.10g..%.10g", chunk, f->name, digits(f->type), v.number, f->min,
-                      f->max);
+    format_value(text, sizeof text, f->type, v);
+    return adcgs_fail(error, status, "%s: %s is %s, expected %.10g..%.10g", chunk, f->name, text, f->min, f->max);
 }
 
 void adcgs_parse_trace(const adcgs_parse *p, uint64_t bit, const char *name, const char *format, ...)
@@ -90,6 +97,26 @@ void adcgs_parse_trace(const adcgs_parse *p, uint64_t bit, const char *name, con
     va_end(args);
     snprintf(element, sizeof element, "%s.%s", p->chunk, name);
     p->trace(p->trace_user, 8 * p->origin + bit, element, text);
+}
+
+void adcgs_parse_trace_end(const adcgs_parse *p, const adcgs_range_dec *d)
+{
+    adcgs_parse_trace(p, 8 * (uint64_t)(d->next - p->r.data), "range_end", "range 0x%016" PRIx64 " value 0x%016" PRIx64 " virtual %d",
+                      d->range, d->value, d->zeros);
+}
+
+/** An element of a list; those of an array are told apart by an index. */
+static void trace_field(const adcgs_parse *p, uint64_t bit, const adcgs_field *f, int i, field_value v)
+{
+    char name[40], text[32];
+    if (!p->trace)
+        return;
+    if (f->count > 1)
+        snprintf(name, sizeof name, "%s[%d]", f->name, i);
+    else
+        snprintf(name, sizeof name, "%s", f->name);
+    format_value(text, sizeof text, f->type, v);
+    adcgs_parse_trace(p, bit, name, "%s", text);
 }
 
 static adcgs_status cut_off(const adcgs_parse *p, const char *name)
@@ -108,7 +135,7 @@ adcgs_status adcgs_parse_fields(adcgs_parse *p, const adcgs_field *fields, size_
             if (p->r.overrun)
                 return cut_off(p, f->name);
             v.number = number_of(f->type, v.bits);
-            adcgs_parse_trace(p, bit, f->name, "%.*g", digits(f->type), v.number);
+            trace_field(p, bit, f, i, v);
             ADCGS_TRY(check_value(p->chunk, f, v, ADCGS_ERR_DATA, p->error));
             store_member((uint8_t *)structure + f->offset + i * bytes, bytes, v.bits);
         }
@@ -132,16 +159,22 @@ adcgs_status adcgs_write_fields(adcgs_buffer *out, const char *chunk, const adcg
     return ADCGS_OK;
 }
 
+static adcgs_status check_varint(const adcgs_parse *p, const char *name, uint32_t min, uint32_t max, uint32_t value)
+{
+    if (p->r.overrun)
+        return cut_off(p, name);
+    if (value < min || value > max)
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "%s: %s is %u, expected %u..%u", p->chunk, name, value, min, max);
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_parse_varint(adcgs_parse *p, const char *name, uint32_t min, uint32_t max, uint32_t *value)
 {
     const uint64_t bit = 8 * (uint64_t)p->r.pos;
     *value = adcgs_read_varint(&p->r);
-    if (p->r.overrun)
-        return cut_off(p, name);
-    adcgs_parse_trace(p, bit, name, "%u", *value);
-    if (*value < min || *value > max)
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "%s: %s is %u, expected %u..%u", p->chunk, name, *value, min, max);
-    return ADCGS_OK;
+    if (!p->r.overrun)
+        adcgs_parse_trace(p, bit, name, "%u", *value);
+    return check_varint(p, name, min, max, *value);
 }
 
 adcgs_status adcgs_parse_bytes(adcgs_parse *p, const char *name, size_t n, const uint8_t **bytes)
@@ -154,12 +187,39 @@ adcgs_status adcgs_parse_bytes(adcgs_parse *p, const char *name, size_t n, const
     return ADCGS_OK;
 }
 
+/** Text from a stream in quotes, with whatever is not plain in hexadecimal. */
+static adcgs_status trace_text(const adcgs_parse *p, uint64_t bit, const char *name, const uint8_t *bytes, size_t n)
+{
+    char element[64];
+    if (!p->trace)
+        return ADCGS_OK;
+    char *text = adcgs_alloc(NULL, 4 * n + 3, 1, p->error), *end = text;
+    if (!text)
+        return ADCGS_ERR_MEMORY;
+    *end++ = '"';
+    for (size_t i = 0; i < n; i++)
+        if (bytes[i] < 32 || bytes[i] > 126 || bytes[i] == '"' || bytes[i] == '\\')
+            end += snprintf(end, 5, "\\x%02x", bytes[i]);
+        else
+            *end++ = (char)bytes[i];
+    *end++ = '"';
+    *end = 0;
+    snprintf(element, sizeof element, "%s.%s", p->chunk, name);
+    p->trace(p->trace_user, 8 * p->origin + bit, element, text);
+    adcgs_free(NULL, text);
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_parse_text(adcgs_parse *p, const char *name, uint32_t min, uint32_t max, adcgs_memory *memory, char **text)
 {
+    const uint64_t bit = 8 * (uint64_t)p->r.pos;
     const uint8_t *bytes;
-    uint32_t length;
-    ADCGS_TRY(adcgs_parse_varint(p, name, min, max, &length));
-    ADCGS_TRY(adcgs_parse_bytes(p, name, length, &bytes));
+    const uint32_t length = adcgs_read_varint(&p->r);
+    ADCGS_TRY(check_varint(p, name, min, max, length));
+    bytes = adcgs_read_bytes(&p->r, length);
+    if (!bytes)
+        return cut_off(p, name);
+    ADCGS_TRY(trace_text(p, bit, name, bytes, length));
     if (length > 0 && memchr(bytes, 0, length))
         return adcgs_fail(p->error, ADCGS_ERR_DATA, "%s: %s holds a zero byte", p->chunk, name);
     *text = adcgs_alloc(memory, (size_t)length + 1, 1, p->error);

@@ -6,7 +6,7 @@
 #ifndef ADCGS_MODEL_FIELDS_H
 #define ADCGS_MODEL_FIELDS_H
 
-#include "bits/bytes.h"
+#include "bits/range.h"
 #include "model/stream.h"
 
 typedef enum adcgs_field_type {
@@ -41,7 +41,7 @@ typedef struct adcgs_parse {
 /** Read n elements in order into structure. ADCGS_ERR_DATA names the element that is cut off or out of range. */
 adcgs_status adcgs_parse_fields(adcgs_parse *p, const adcgs_field *fields, size_t n, void *structure);
 adcgs_status adcgs_parse_varint(adcgs_parse *p, const char *name, uint32_t min, uint32_t max, uint32_t *value);
-/** The next n bytes, which stay in the payload. */
+/** The next n bytes, which stay in the payload. The trace has their number. */
 adcgs_status adcgs_parse_bytes(adcgs_parse *p, const char *name, size_t n, const uint8_t **bytes);
 /** A varint length in min..max, then as many bytes without a zero among them: allocated, zero-terminated. */
 adcgs_status adcgs_parse_text(adcgs_parse *p, const char *name, uint32_t min, uint32_t max, adcgs_memory *memory, char **text);
@@ -49,6 +49,8 @@ adcgs_status adcgs_parse_text(adcgs_parse *p, const char *name, uint32_t min, ui
 adcgs_status adcgs_parse_end(const adcgs_parse *p);
 /** Report an element to the trace; bit counts from the start of the payload. */
 void adcgs_parse_trace(const adcgs_parse *p, uint64_t bit, const char *name, const char *format, ...) ADCGS_PRINTF(4, 5);
+/** Report how the sub-stream ended that a decoder finished; it lies in the payload. */
+void adcgs_parse_trace_end(const adcgs_parse *p, const adcgs_range_dec *d);
 
 /** Append n elements. ADCGS_ERR_USAGE names one that is out of range. */
 adcgs_status adcgs_write_fields(adcgs_buffer *out, const char *chunk, const adcgs_field *fields, size_t n, const void *structure,

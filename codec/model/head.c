@@ -5,31 +5,31 @@
 
 #include <adcgs/version.h>
 
-static adcgs_status check_support(const adcgs_syn_head *h, adcgs_error *error)
+static adcgs_status check_support(const adcgs_syn_version *v, adcgs_error *error)
 {
-    if (h->version_major != ADCGS_BITSTREAM_MAJOR || h->version_minor > ADCGS_BITSTREAM_MINOR)
+    if (v->version_major != ADCGS_BITSTREAM_MAJOR || v->version_minor > ADCGS_BITSTREAM_MINOR)
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: bitstream version is %u.%u, this decoder knows up to %d.%d",
-                          h->version_major, h->version_minor, ADCGS_BITSTREAM_MAJOR, ADCGS_BITSTREAM_MINOR);
-    if (h->profile != 0)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: profile is %u, this decoder knows 0", h->profile);
-    if (h->level < 1 || h->level > ADCGS_LEVELS)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: level is %u, this decoder knows 1..%d", h->level, ADCGS_LEVELS);
-    if (h->arith != 0)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: arith is %u, this decoder knows 0", h->arith);
-    if (h->features != 0)
+                          v->version_major, v->version_minor, ADCGS_BITSTREAM_MAJOR, ADCGS_BITSTREAM_MINOR);
+    if (v->profile != 0)
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: profile is %u, this decoder knows 0", v->profile);
+    if (v->level < 1 || v->level > ADCGS_LEVELS)
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: level is %u, this decoder knows 1..%d", v->level, ADCGS_LEVELS);
+    if (v->arith != 0)
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: arith is %u, this decoder knows 0", v->arith);
+    if (v->features != 0)
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: features 0x%08x are required, this decoder knows none",
-                          h->features);
+                          v->features);
     return ADCGS_OK;
 }
 
-static adcgs_status check_counts(const adcgs_syn_head *h, adcgs_error *error)
+static adcgs_status check_counts(const adcgs_syn_head *h, int level, adcgs_error *error)
 {
-    const adcgs_level *limits = adcgs_level_get(h->level);
+    const adcgs_level *limits = adcgs_level_get(level);
     if (h->segments > limits->segments)
-        return adcgs_fail(error, ADCGS_ERR_LIMIT, "HEAD: segments is %u, level %u allows %u", h->segments, h->level,
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "HEAD: segments is %u, level %d allows %u", h->segments, level,
                           limits->segments);
     if (h->max_anchors > limits->anchors)
-        return adcgs_fail(error, ADCGS_ERR_LIMIT, "HEAD: max_anchors is %u, level %u allows %u", h->max_anchors, h->level,
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "HEAD: max_anchors is %u, level %d allows %u", h->max_anchors, level,
                           limits->anchors);
     return ADCGS_OK;
 }
@@ -50,12 +50,15 @@ static void params_from_head(adcgs_params *params, const adcgs_syn_head *h)
 
 adcgs_status adcgs_head_parse(adcgs_parse *p, adcgs_syn_head *head, adcgs_stream *stream)
 {
+    adcgs_syn_version version;
+    ADCGS_TRY(adcgs_syn_version_parse(p, &version));
+    ADCGS_TRY(check_support(&version, p->error));
     ADCGS_TRY(adcgs_syn_head_parse(p, head));
-    ADCGS_TRY(check_support(head, p->error));
-    ADCGS_TRY(check_counts(head, p->error));
-    stream->profile = head->profile;
-    stream->level = head->level;
-    stream->arith = head->arith;
+    ADCGS_TRY(adcgs_parse_end(p));
+    ADCGS_TRY(check_counts(head, version.level, p->error));
+    stream->profile = version.profile;
+    stream->level = version.level;
+    stream->arith = version.arith;
     stream->timebase_num = head->timebase_num;
     stream->timebase_den = head->timebase_den;
     stream->rate_num = head->rate_num;
@@ -71,19 +74,20 @@ adcgs_status adcgs_head_parse(adcgs_parse *p, adcgs_syn_head *head, adcgs_stream
     stream->units = head->units;
     stream->slice_log2 = head->slice_log2;
     params_from_head(&stream->params, head);
-    ADCGS_TRY(adcgs_params_validate(&stream->params, p->error));
-    return adcgs_parse_end(p);
+    return adcgs_params_validate(&stream->params, p->error);
 }
 
 adcgs_status adcgs_head_write(adcgs_buffer *out, const adcgs_stream *stream, uint32_t max_anchors, adcgs_error *error)
 {
     const adcgs_params *params = &stream->params;
-    adcgs_syn_head h = {
+    const adcgs_syn_version v = {
         .version_major = ADCGS_BITSTREAM_MAJOR,
         .version_minor = ADCGS_BITSTREAM_MINOR,
         .profile = stream->profile,
         .level = stream->level,
         .arith = stream->arith,
+    };
+    adcgs_syn_head h = {
         .timebase_num = stream->timebase_num,
         .timebase_den = stream->timebase_den,
         .rate_num = stream->rate_num,
@@ -111,8 +115,9 @@ adcgs_status adcgs_head_write(adcgs_buffer *out, const adcgs_stream *stream, uin
     };
     memcpy(h.scene_origin, stream->scene_origin, sizeof h.scene_origin);
     memcpy(h.background, stream->background, sizeof h.background);
-    ADCGS_TRY(check_support(&h, error));
-    ADCGS_TRY(check_counts(&h, error));
+    ADCGS_TRY(check_support(&v, error));
+    ADCGS_TRY(check_counts(&h, v.level, error));
     ADCGS_TRY(adcgs_params_validate(params, error));
+    ADCGS_TRY(adcgs_syn_version_write(out, "HEAD", &v, error));
     return adcgs_syn_head_write(out, "HEAD", &h, error);
 }

@@ -42,11 +42,12 @@ void adcgs_latents_free(adcgs_latents **latents);
 adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                 adcgs_latent_visit visit, void *user);
 
-/** Append sub-stream of (layer, [begin,end)). ADCGS_ERR_USAGE names a value that the networks cannot give. */
+/** Append the sub-stream of (layer, [begin,end)). ADCGS_ERR_USAGE names a value that the networks cannot give. */
 adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   adcgs_buffer *out, adcgs_error *error);
+/** Decode it with a decoder that has been started. It is finished here, and holds its final state if all is well. */
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
-                                  const uint8_t *data, size_t bytes, adcgs_error *error);
+                                  adcgs_range_dec *range, adcgs_error *error);
 /** What an absent layer holds: every n = 0, so yq = mu. For layer 0 also masks and flags: all present, none static. */
 adcgs_status adcgs_latents_conceal(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end);
 

@@ -4,7 +4,7 @@
 #include "model/latents_priv.h"
 
 typedef struct decoder {
-    adcgs_range_dec range;
+    adcgs_range_dec *range;
     const uint8_t *shape; /**< by group */
 } decoder;
 
@@ -12,7 +12,7 @@ static int decode_flag(void *user, adcgs_adaptive *context, int bit)
 {
     decoder *d = user;
     (void)bit;
-    return adcgs_adaptive_dec(&d->range, context);
+    return adcgs_adaptive_dec(d->range, context);
 }
 
 static void decode_site(void *user, const adcgs_latent_site *site)
@@ -20,21 +20,20 @@ static void decode_site(void *user, const adcgs_latent_site *site)
     decoder *d = user;
     const int shape = d->shape[site->group];
     for (int c = 0; c < site->count; c++) {
-        const int32_t n = site->si[c] > 0 ? adcgs_value_dec(&d->range, shape, site->si[c]) : 0;
+        const int32_t n = site->si[c] > 0 ? adcgs_value_dec(d->range, shape, site->si[c]) : 0;
         site->yq[c] = (int16_t)adcgs_clip(64 * n + site->mu[c], 32767);
     }
 }
 
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
-                                  const uint8_t *data, size_t bytes, adcgs_error *error)
+                                  adcgs_range_dec *range, adcgs_error *error)
 {
-    decoder d = { .shape = model->shape };
-    adcgs_range_dec_init(&d.range, data, bytes);
+    decoder d = { range, model->shape };
     if (layer == 0)
         adcgs_latents_flags(model, begin, end, decode_flag, &d);
     if (adcgs_latents_walk(latents, model, layer, begin, end, decode_site, &d) != ADCGS_OK)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "latents: no memory for the networks' activations");
-    return adcgs_range_dec_finish(&d.range, error);
+    return adcgs_range_dec_finish(range, error);
 }
 
 static void conceal_site(void *user, const adcgs_latent_site *site)

@@ -69,15 +69,13 @@ static adcgs_status parse_layer(adcgs_parse *p, adcgs_net *net, int i, uint32_t 
     return ADCGS_OK;
 }
 
-/** Everything but the values. */
+/** Everything but the values. A role that the parameters do not give has no outputs, which check_shapes() refuses. */
 static adcgs_status parse_shape(adcgs_parse *p, const adcgs_params *params, adcgs_net *net)
 {
     adcgs_syn_net head;
     uint32_t n_in, n_out, width = 0;
     ADCGS_TRY(adcgs_syn_net_parse(p, &head));
     adcgs_role_shape(params, head.role, &n_in, &n_out);
-    if (n_out == 0)
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "NETW: role %u is not used with these parameters", head.role);
     net->present = 1;
     net->role = head.role;
     net->n_layers = head.n_layers;
@@ -98,14 +96,10 @@ static adcgs_status parse_shape(adcgs_parse *p, const adcgs_params *params, adcg
 static adcgs_status decode_tensor(adcgs_parse *p, adcgs_range_dec *d, adcgs_tensor *t, adcgs_memory *memory)
 {
     const size_t n = (size_t)t->rows * t->cols;
-    const uint64_t bit = 8 * (uint64_t)(d->next - p->r.data);
     t->m = adcgs_alloc(memory, n, sizeof *t->m, p->error);
     if (!t->m)
         return ADCGS_ERR_MEMORY;
-    if (n > 0)
-        ADCGS_TRY(adcgs_tensor_decode(d, t, p->error));
-    adcgs_parse_trace(p, bit, "tensor", "%ux%u mode %u e %u", t->rows, t->cols, t->mode, t->e);
-    return ADCGS_OK;
+    return n > 0 ? adcgs_tensor_decode(d, t, p->error) : ADCGS_OK;
 }
 
 static adcgs_status decode_values(adcgs_parse *p, adcgs_net *nets, uint32_t n, adcgs_memory *memory)
@@ -121,7 +115,32 @@ static adcgs_status decode_values(adcgs_parse *p, adcgs_net *nets, uint32_t n, a
             if (nets[i].role != ADCGS_ROLE_TIME)
                 ADCGS_TRY(decode_tensor(p, &d, &nets[i].layer[l].b, memory));
         }
-    return adcgs_range_dec_finish(&d, p->error);
+    ADCGS_TRY(adcgs_range_dec_finish(&d, p->error));
+    adcgs_parse_trace_end(p, &d);
+    return ADCGS_OK;
+}
+
+/**
+ * What can be said before the values are decoded, so that damage costs neither time nor memory. A network that is repeated
+ * has the weights of the one that it repeats; the others count.
+ */
+static adcgs_status check_shapes(const adcgs_params *params, const adcgs_level *limits, const adcgs_net *nets, uint32_t n,
+                                 uint32_t first_id, const adcgs_net_table *table, adcgs_error *error)
+{
+    uint64_t weights = table->weights;
+    if (first_id > table->n)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "NETW: network id is %u, expected at most %u", first_id, table->n);
+    for (uint32_t i = 0; i < n; i++) {
+        const adcgs_net *before = first_id + i < table->n ? &table->nets[first_id + i] : NULL;
+        if (!adcgs_role_allowed(params, nets[i].role))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "NETW: role %u is not used with these parameters", nets[i].role);
+        if (before && adcgs_net_weights(before) != adcgs_net_weights(&nets[i]))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "NETW: network %u is repeated with other contents", first_id + i);
+        weights += before ? 0 : adcgs_net_weights(&nets[i]);
+        if (weights > limits->weights)
+            return adcgs_fail(error, ADCGS_ERR_LIMIT, "NETW: more than %u weights, the level's limit", limits->weights);
+    }
+    return ADCGS_OK;
 }
 
 /** Enter the networks of a chunk into the table; what the table takes is zeroed here. */
@@ -129,8 +148,6 @@ static adcgs_status enter_nets(adcgs_parse *p, const adcgs_params *params, adcgs
                                adcgs_net_table *table)
 {
     for (uint32_t i = 0; i < n; i++, id++) {
-        if (id > table->n)
-            return adcgs_fail(p->error, ADCGS_ERR_DATA, "NETW: network id is %u, expected at most %u", id, table->n);
         if (id < table->n) {
             if (!adcgs_net_equal(&nets[i], &table->nets[id]))
                 return adcgs_fail(p->error, ADCGS_ERR_DATA, "NETW: network %u is repeated with other contents", id);
@@ -146,16 +163,11 @@ static adcgs_status parse_nets(adcgs_parse *p, const adcgs_params *params, const
                                adcgs_net_table *table)
 {
     uint32_t first_id, n;
-    uint64_t weights = table->weights;
     ADCGS_TRY(adcgs_parse_varint(p, "first_id", 0, UINT16_MAX, &first_id));
     ADCGS_TRY(adcgs_parse_varint(p, "networks", 1, ADCGS_ROLES, &n));
-    for (uint32_t i = 0; i < n; i++) {
+    for (uint32_t i = 0; i < n; i++)
         ADCGS_TRY(parse_shape(p, params, &nets[i]));
-        if (first_id + i >= table->n)
-            weights += adcgs_net_weights(&nets[i]);
-        if (weights > limits->weights || adcgs_net_weights(&nets[i]) > limits->weights)
-            return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "NETW: more than %u weights, the level's limit", limits->weights);
-    }
+    ADCGS_TRY(check_shapes(params, limits, nets, n, first_id, table, p->error));
     ADCGS_TRY(decode_values(p, nets, n, table->memory));
     return enter_nets(p, params, nets, n, first_id, table);
 }

@@ -163,6 +163,7 @@ adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_
 {
     adcgs_syn_geom g;
     const uint8_t *data;
+    adcgs_range_dec d;
     ADCGS_TRY(adcgs_syn_geom_parse(p, &g));
     ADCGS_TRY(check_geom(p, &g, limits, max_anchors));
     const uint64_t bytes = adcgs_segment_bytes(&model->params, g.anchors, weights);
@@ -178,7 +179,10 @@ adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_
     ADCGS_TRY(adcgs_model_alloc(model, memory, p->error));
     const size_t left = adcgs_reader_left(&p->r);
     ADCGS_TRY(adcgs_parse_bytes(p, "positions", left, &data));
-    return adcgs_geom_decode(data, left, model->n, model->depth, model->pos, p->error);
+    adcgs_range_dec_init(&d, data, left);
+    ADCGS_TRY(adcgs_geom_decode_from(&d, model->n, model->depth, model->pos, p->error));
+    adcgs_parse_trace_end(p, &d);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error)

@@ -9,6 +9,7 @@
 typedef struct slice {
     size_t offset; /**< in the payload */
     uint32_t bytes, crc;
+    adcgs_range_dec range;
     adcgs_status status;
 } slice;
 
@@ -86,9 +87,10 @@ adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t orig
     return ADCGS_OK;
 }
 
-/** Copy the networks that SEGM named into the model. */
-static adcgs_status resolve_nets(adcgs_segment *s)
+/** Whether the networks that SEGM named are there, and their weights. */
+static adcgs_status check_nets(const adcgs_segment *s, uint64_t *weights)
 {
+    *weights = 0;
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const uint32_t id = s->ids.id[role];
         if (!(s->ids.mask >> role & 1))
@@ -96,21 +98,27 @@ static adcgs_status resolve_nets(adcgs_segment *s)
         if (id >= s->nets->n || s->nets->nets[id].role != role)
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: network_id for %s is %u, which is no such network",
                               adcgs_role_name(role), id);
-        ADCGS_TRY(adcgs_net_copy(&s->model.net[role], &s->nets->nets[id], s->options->memory, s->error));
+        *weights += adcgs_net_weights(&s->nets->nets[id]);
     }
+    return ADCGS_OK;
+}
+
+static adcgs_status copy_nets(adcgs_segment *s)
+{
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (s->ids.mask >> role & 1)
+            ADCGS_TRY(adcgs_net_copy(&s->model.net[role], &s->nets->nets[s->ids.id[role]], s->options->memory, s->error));
     return ADCGS_OK;
 }
 
 adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
 {
-    uint64_t weights = 0;
+    uint64_t weights;
     if (s->stage != ADCGS_SEGMENT_STARTED)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected once, after SEGM");
-    for (int role = 0; role < ADCGS_ROLES; role++)
-        if (s->ids.mask >> role & 1 && s->ids.id[role] < s->nets->n)
-            weights += adcgs_net_weights(&s->nets->nets[s->ids.id[role]]);
+    ADCGS_TRY(check_nets(s, &weights));
     ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, &s->model, &s->budget, weights, s->options->memory));
-    ADCGS_TRY(resolve_nets(s));
+    ADCGS_TRY(copy_nets(s));
     ADCGS_TRY(adcgs_latents_create(&s->latents, &s->model, s->options->cpu, s->options->memory, s->error));
     s->n_slices = ((s->model.n - 1) >> s->stream->slice_log2) + 1;
     s->stage = ADCGS_SEGMENT_PLACED;
@@ -124,25 +132,26 @@ static void decode_slice(void *arg, int index, int thread)
     uint32_t begin, end;
     (void)thread;
     slice_span(job->s, job->first + (uint32_t)index, &begin, &end);
-    one->status = adcgs_latents_decode(job->s->latents, &job->s->model, job->layer, begin, end, job->payload + one->offset,
-                                       one->bytes, NULL);
+    adcgs_range_dec_init(&one->range, job->payload + one->offset, one->bytes);
+    one->status = adcgs_latents_decode(job->s->latents, &job->s->model, job->layer, begin, end, &one->range, NULL);
 }
 
-/** Decode usable slices on all threads. The first that fails is decoded once more for its message. */
+/** Decode usable slices on all threads. The first that fails has its end looked at once more for a message. */
 static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int layer, uint32_t first, slice *slices,
                                   uint32_t usable)
 {
     slice_job job = { s, slices, p->r.data, first, layer };
     adcgs_pool_run(s->options->pool, decode_slice, &job, (int)usable);
     for (uint32_t i = 0; i < usable; i++) {
-        adcgs_error why = { ADCGS_OK, "" };
-        uint32_t begin, end;
-        if (slices[i].status == ADCGS_OK)
+        adcgs_error why = { ADCGS_ERR_MEMORY, "no memory for the networks' activations" };
+        if (slices[i].status == ADCGS_OK) {
+            adcgs_parse_trace_end(p, &slices[i].range);
             continue;
-        slice_span(s, first + i, &begin, &end);
-        const adcgs_status status = adcgs_latents_decode(s->latents, &s->model, layer, begin, end, p->r.data + slices[i].offset,
-                                                         slices[i].bytes, &why);
-        return adcgs_fail(s->error, status, "%s: segment %u, slice %u: %.160s", p->chunk, segment_number(s), first + i, why.text);
+        }
+        if (slices[i].status != ADCGS_ERR_MEMORY)
+            adcgs_range_dec_finish(&slices[i].range, &why);
+        return adcgs_fail(s->error, slices[i].status, "%s: segment %u, slice %u: %.160s", p->chunk, segment_number(s), first + i,
+                          why.text);
     }
     s->done[layer] += usable;
     return ADCGS_OK;
@@ -172,7 +181,7 @@ static adcgs_status check_slices(adcgs_segment *s, const adcgs_parse *p, slice *
         one->offset += p->r.pos;
         if (one->offset > p->r.size || one->bytes > p->r.size - one->offset)
             break;
-        adcgs_parse_trace(p, 8 * (uint64_t)one->offset, "slice", "%u: %u bytes", first + *usable, one->bytes);
+        adcgs_parse_trace(p, 8 * (uint64_t)one->offset, "slice", "%u bytes", one->bytes);
         if (adcgs_crc32c(0, p->r.data + one->offset, one->bytes) != one->crc)
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment %u, slice %u: checksum is wrong", p->chunk,
                               segment_number(s), first + *usable);
@@ -223,11 +232,16 @@ adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer,
 
 adcgs_status adcgs_segment_hash(adcgs_segment *s, adcgs_parse *p)
 {
-    const uint8_t *hash;
+    const uint64_t bit = 8 * (uint64_t)p->r.pos;
     if (s->stage != ADCGS_SEGMENT_PLACED || s->has_hash)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "hash: expected once, after the layers of its segment");
-    ADCGS_TRY(adcgs_parse_bytes(p, "md5", sizeof s->hash, &hash));
+    char text[33];
+    const uint8_t *hash = adcgs_read_bytes(&p->r, sizeof s->hash);
+    if (!hash)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "hash: payload of %zu bytes, expected %zu", p->r.size, sizeof s->hash);
     memcpy(s->hash, hash, sizeof s->hash);
+    adcgs_md5_hex(s->hash, text);
+    adcgs_parse_trace(p, bit, "md5", "%s", text);
     s->has_hash = 1;
     return adcgs_parse_end(p);
 }

@@ -64,7 +64,7 @@ typedef struct adcgs_read_options {
     int strict_end;
 } adcgs_read_options;
 
-/** Called for each syntax element, chunk and sub-stream in stream order: absolute bit position, name, value as text. */
+/** Called for each line of the trace (spec "Trace"): absolute bit position, name, value as text; always in the caller's thread. */
 typedef void (*adcgs_trace_fn)(void *user, uint64_t bit, const char *element, const char *value);
 
 /** Parse and decode from a sequential source. trace may be NULL. */

@@ -3,8 +3,6 @@
 #include "base/digest.h"
 #include "model/segment.h"
 
-#include <stdio.h>
-
 typedef struct stream_reader {
     adcgs_stream *stream;
     const adcgs_read_options *options;
@@ -31,25 +29,42 @@ static adcgs_status read_signature(stream_reader *s)
     if (got < sizeof bytes)
         return adcgs_fail(s->error, ADCGS_ERR_TRUNCATED, "stream: ends after %zu bytes, inside the signature", got);
     if (s->trace)
-        s->trace(s->trace_user, 0, "signature", "8 bytes");
+        s->trace(s->trace_user, 0, "stream.signature", "8b4144430d0a1a0a");
     return ADCGS_OK;
+}
+
+/** The parts of a chunk that are not its payload's elements. */
+static adcgs_parse chunk_parts(const stream_reader *s, const adcgs_chunk *chunk)
+{
+    const adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk", .trace = s->trace, .trace_user = s->trace_user,
+                            .error = s->error };
+    return p;
+}
+
+static adcgs_status skip_payload(stream_reader *s, const adcgs_chunk *chunk)
+{
+    const adcgs_parse p = chunk_parts(s, chunk);
+    adcgs_parse_trace(&p, 8 * ADCGS_CHUNK_HEADER_BYTES, "payload", "%u bytes", chunk->header.length);
+    return ADCGS_OK;
+}
+
+static adcgs_status repeat_head(stream_reader *s, const adcgs_chunk *chunk, const adcgs_parse *p)
+{
+    if (p->r.size != s->head_bytes || memcmp(p->r.data, s->head_payload, s->head_bytes) != 0)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "HEAD: repeated with other contents");
+    return skip_payload(s, chunk);
 }
 
 static adcgs_status read_head(stream_reader *s, adcgs_parse *p)
 {
     const size_t bytes = p->r.size;
-    if (s->head_payload) {
-        if (bytes != s->head_bytes || memcmp(p->r.data, s->head_payload, bytes) != 0)
-            return adcgs_fail(s->error, ADCGS_ERR_DATA, "HEAD: repeated with other contents");
-        return ADCGS_OK;
-    }
     ADCGS_TRY(adcgs_head_parse(p, &s->head, s->stream));
     s->head_payload = adcgs_alloc(s->options->memory, bytes, 1, s->error);
     if (!s->head_payload)
         return ADCGS_ERR_MEMORY;
     memcpy(s->head_payload, p->r.data, bytes);
     s->head_bytes = bytes;
-    s->segment.limits = adcgs_level_get(s->head.level);
+    s->segment.limits = adcgs_level_get(s->stream->level);
     s->segment.max_anchors = s->head.max_anchors;
     s->segment.budget = s->segment.limits->model_bytes;
     return ADCGS_OK;
@@ -98,7 +113,7 @@ static int belongs_to_segment(uint32_t type)
 /** Order of chunks and versions, before any payload is looked at. */
 static adcgs_status check_chunk(stream_reader *s, const adcgs_chunk *chunk)
 {
-    const uint32_t type = chunk->header.type, number = s->stream->n_segments;
+    const uint32_t type = chunk->type, number = s->stream->n_segments;
     const int critical = chunk->name[0] >= 'A' && chunk->name[0] <= 'Z';
     if (!s->head_payload && type != ADCGS_TYPE_HEAD)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: the first chunk must be HEAD", chunk->name);
@@ -119,12 +134,12 @@ static adcgs_status check_chunk(stream_reader *s, const adcgs_chunk *chunk)
 
 static adcgs_status use_chunk(stream_reader *s, const adcgs_chunk *chunk, adcgs_parse *p)
 {
-    const uint32_t type = chunk->header.type;
+    const uint32_t type = chunk->type;
     if (adcgs_type_layer(type) >= 0)
         return adcgs_segment_features(&s->segment, p, adcgs_type_layer(type), chunk->complete);
     switch (type) {
     case ADCGS_TYPE_HEAD:
-        return read_head(s, p);
+        return s->head_payload ? repeat_head(s, chunk, p) : read_head(s, p);
     case ADCGS_TYPE_NETW:
         return adcgs_netw_parse(p, &s->stream->params, s->segment.limits, &s->nets);
     case ADCGS_TYPE_SEGM:
@@ -144,47 +159,47 @@ static adcgs_status use_chunk(stream_reader *s, const adcgs_chunk *chunk, adcgs_
         return read_end(s, p, chunk->origin);
     default:
         if (chunk->name[0] >= 'a') /* ancillary */
-            return ADCGS_OK;
+            return skip_payload(s, chunk);
         return adcgs_fail(s->error, ADCGS_ERR_UNSUPPORTED, "%s: unknown critical chunk at byte %llu", chunk->name,
                           (unsigned long long)chunk->origin);
     }
 }
 
 /** Ancillary chunks of a newer version than known are skipped like unknown ones; of cut-off chunks only layers are of use. */
-static int is_skipped(const adcgs_chunk *chunk)
+static adcgs_status use_or_skip(stream_reader *s, const adcgs_chunk *chunk, adcgs_parse *p)
 {
-    const int newer = chunk->name[0] >= 'a' && chunk->header.version > 0;
-    return newer || (!chunk->complete && adcgs_type_layer(chunk->header.type) < 0);
+    if (!chunk->complete && adcgs_type_layer(chunk->type) < 0)
+        return ADCGS_OK;
+    if (chunk->name[0] >= 'a' && chunk->header.version > 0)
+        return skip_payload(s, chunk);
+    return use_chunk(s, chunk, p);
 }
 
-static void trace_chunk(const stream_reader *s, const adcgs_chunk *chunk)
+/** A chunk came to its end: its checksum counts. */
+static void end_chunk(stream_reader *s, const adcgs_chunk *chunk)
 {
-    char text[96];
-    if (!s->trace)
-        return;
-    snprintf(text, sizeof text, "%s segment %u flags %u version %u: %u bytes", chunk->name, chunk->header.segment,
-             chunk->header.flags, chunk->header.version, chunk->header.length);
-    s->trace(s->trace_user, 8 * chunk->origin, "chunk", text);
+    const adcgs_parse p = chunk_parts(s, chunk);
+    uint8_t crc[4];
+    adcgs_parse_trace(&p, 8 * (ADCGS_CHUNK_HEADER_BYTES + (uint64_t)chunk->header.length), "payload_crc", "%u", chunk->crc);
+    adcgs_store_le32(crc, chunk->crc);
+    s->crc_of_crcs = adcgs_crc32c(s->crc_of_crcs, crc, sizeof crc);
 }
 
 static adcgs_status read_chunk(stream_reader *s, int *truncated)
 {
     adcgs_chunk chunk;
-    uint8_t crc[4];
     ADCGS_TRY(adcgs_chunk_read(&s->source, s->segment.limits, &chunk, s->error));
     *truncated = !chunk.complete;
     if (chunk.ended)
         return ADCGS_OK;
     ADCGS_TRY(check_chunk(s, &chunk));
-    trace_chunk(s, &chunk);
-    adcgs_bytes_count(&s->stream->bytes, chunk.header.type, chunk.available);
+    adcgs_bytes_count(&s->stream->bytes, chunk.type, chunk.available);
     adcgs_parse p = { .origin = chunk.origin + ADCGS_CHUNK_HEADER_BYTES, .chunk = chunk.name, .trace = s->trace,
                       .trace_user = s->trace_user, .error = s->error };
     adcgs_reader_init(&p.r, s->source.payload, chunk.available);
-    if (!is_skipped(&chunk))
-        ADCGS_TRY(use_chunk(s, &chunk, &p));
-    adcgs_store_le32(crc, chunk.crc);
-    s->crc_of_crcs = adcgs_crc32c(s->crc_of_crcs, crc, sizeof crc);
+    ADCGS_TRY(use_or_skip(s, &chunk, &p));
+    if (chunk.complete)
+        end_chunk(s, &chunk);
     return ADCGS_OK;
 }
 
@@ -221,7 +236,7 @@ adcgs_status adcgs_stream_read(adcgs_stream *stream, adcgs_read_fn read, void *u
 {
     adcgs_error why = { ADCGS_OK, "" };
     stream_reader s = { .stream = stream, .options = options, .trace = trace, .trace_user = trace_user, .error = &why };
-    s.source = (adcgs_source){ .read = read, .user = user, .memory = options->memory };
+    s.source = (adcgs_source){ .read = read, .user = user, .memory = options->memory, .trace = trace, .trace_user = trace_user };
     s.nets.memory = options->memory;
     s.segment = (adcgs_segment){ .stream = stream, .options = options, .nets = &s.nets, .error = &why };
     adcgs_stream_init(stream);

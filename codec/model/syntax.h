@@ -13,20 +13,23 @@
 #define ADCGS_TICKS_MAX 0x1p52
 #define ADCGS_WORLD_MAX 0x1p40
 
-#define ADCGS_LIST_CHUNK_HEADER(F, V)      \
-    F(U32, type, 0, 4294967295.0)          \
-    F(U32, length, 0, 0x1p30)              \
-    F(U16, segment, 0, 65535)              \
-    F(U8, flags, 0, 255)                   \
-    F(U8, version, 0, 255)
+/* Of a chunk, behind its type. */
+#define ADCGS_LIST_CHUNK_HEADER(F, V) \
+    F(U32, length, 0, 0x1p30)         \
+    F(U16, segment, 0, 65535)         \
+    F(U8, flags, 0, 255)              \
+    F(U8, version, 0, 255)            \
+    F(U32, header_crc, 0, 4294967295.0)
 
+/* HEAD: what says whether a decoder knows the rest, and the rest. */
+#define ADCGS_LIST_VERSION(F, V)    \
+    F(U16, version_major, 0, 65535) \
+    F(U16, version_minor, 0, 65535) \
+    F(U8, profile, 0, 255)          \
+    F(U8, level, 0, 255)            \
+    F(U8, arith, 0, 15)             \
+    F(U32, features, 0, 4294967295.0)
 #define ADCGS_LIST_HEAD(F, V)                                   \
-    F(U16, version_major, 0, 65535)                             \
-    F(U16, version_minor, 0, 65535)                             \
-    F(U8, profile, 0, 255)                                      \
-    F(U8, level, 0, 255)                                        \
-    F(U8, arith, 0, 15)                                         \
-    F(U32, features, 0, 4294967295.0)                           \
     F(U32, timebase_num, 1, 4294967295.0)                       \
     F(U32, timebase_den, 1, 4294967295.0)                       \
     F(U32, rate_num, 1, 4294967295.0)                           \
@@ -111,6 +114,7 @@
 /** X(list, structure): every structure of the stream. */
 #define ADCGS_STRUCTURES(X)                  \
     X(CHUNK_HEADER, adcgs_syn_chunk_header)  \
+    X(VERSION, adcgs_syn_version)            \
     X(HEAD, adcgs_syn_head)                  \
     X(NET, adcgs_syn_net)                    \
     X(NET_E24, adcgs_syn_net_e24)            \

@@ -17,7 +17,7 @@ typedef struct settings {
     int json, bits, trace, digest;
 } settings;
 
-/** A chunk as the trace reported it. */
+/** A chunk as the elements of its header tell. */
 typedef struct chunk {
     char type[5];
     uint64_t offset;
@@ -58,11 +58,10 @@ static void print_safe(const char *text)
         putchar((unsigned char)*text < 32 || *text == 127 ? '?' : *text);
 }
 
-static void add_chunk(report *r, uint64_t bit, const char *value)
+static void add_chunk(report *r, uint64_t bit, const char *type)
 {
     chunk c = { .offset = bit / 8 };
-    if (sscanf(value, "%4s segment %u flags %*u version %*u: %u bytes", c.type, &c.segment, &c.bytes) != 3)
-        return;
+    snprintf(c.type, sizeof c.type, "%s", type);
     if (r->n_chunks == r->capacity) {
         const size_t capacity = r->capacity ? 2 * r->capacity : 64;
         chunk *chunks = realloc(r->chunks, capacity * sizeof *chunks);
@@ -80,8 +79,15 @@ static void on_element(void *user, uint64_t bit, const char *element, const char
     report *r = user;
     if (r->trace)
         printf("%llu %s %s\n", (unsigned long long)bit, element, value);
-    if (strcmp(element, "chunk") == 0)
+    if (strcmp(element, "chunk.type") == 0)
         add_chunk(r, bit, value);
+    if (r->failed || r->n_chunks == 0)
+        return;
+    chunk *last = &r->chunks[r->n_chunks - 1];
+    if (strcmp(element, "chunk.length") == 0)
+        last->bytes = (unsigned)strtoul(value, NULL, 10);
+    else if (strcmp(element, "chunk.segment") == 0)
+        last->segment = (unsigned)strtoul(value, NULL, 10);
 }
 
 static int64_t read_file(void *user, void *buffer, size_t bytes)

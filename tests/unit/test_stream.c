@@ -95,6 +95,8 @@ static void make_stream(adcgs_stream *stream, int moving, uint32_t segments, uin
     check(adcgs_random_stream(stream, &params, segments, n, 5, &seed, &error), &error);
 }
 
+/* REQ-STRM-001, REQ-STRM-006, REQ-STRM-007, REQ-STRM-013, REQ-STRM-016, REQ-LATN-001, REQ-LATN-002, REQ-LATN-003,
+   REQ-LATN-004, REQ-LATN-005 */
 static void test_round_trip(void **state)
 {
     static const uint32_t counts[] = { 1, 3, 63, 64, 65, 300, 700 };
@@ -108,6 +110,7 @@ static void test_round_trip(void **state)
 }
 
 /** A model decoded with fewer layers has the layers that it has, and predicted means for the rest. */
+/* REQ-LATN-005, REQ-LATN-007 */
 static void test_layers(void **state)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -145,6 +148,7 @@ static void test_layers(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
+/* REQ-CONF-004 */
 static void test_threads_and_cpus(void **state)
 {
     static const int threads[] = { 1, 2, 7 };
@@ -169,6 +173,7 @@ static void test_threads_and_cpus(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
+/* REQ-CONF-004, REQ-CONF-005 */
 static void test_pieces_and_memory(void **state)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -195,10 +200,12 @@ static void test_pieces_and_memory(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** A trace goes forward from chunk to chunk and names every one of them. */
+/** A trace goes forward from chunk to chunk, names every one of them, and does not depend on threads. */
 typedef struct trace {
-    int chunks, elements;
+    int chunks, checksums, ends, elements;
+    char title[32]; /**< the first text */
     uint64_t last;
+    adcgs_md5 md5;
 } trace;
 
 static void count_element(void *user, uint64_t bit, const char *element, const char *value)
@@ -206,29 +213,58 @@ static void count_element(void *user, uint64_t bit, const char *element, const c
     trace *t = user;
     t->elements++;
     assert_true(value[0] != 0);
-    if (strcmp(element, "chunk") == 0) {
+    t->checksums += strcmp(element, "chunk.payload_crc") == 0;
+    t->ends += strstr(element, ".range_end") != NULL;
+    if (strcmp(element, "meta.value") == 0 && !t->title[0])
+        snprintf(t->title, sizeof t->title, "%s", value);
+    if (strcmp(element, "chunk.type") == 0) {
         assert_true(bit > t->last);
         t->last = bit;
         t->chunks++;
     }
+    adcgs_md5_update(&t->md5, &bit, sizeof bit);
+    adcgs_md5_update(&t->md5, element, strlen(element) + 1);
+    adcgs_md5_update(&t->md5, value, strlen(value) + 1);
+}
+
+static void trace_stream(const adcgs_buffer *bytes, int threads, trace *t, uint8_t digest[16])
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_stream back;
+    adcgs_read_options options = plain;
+    pipe p = { bytes->data, bytes->size, 0, SIZE_MAX };
+    *t = (trace){ .chunks = 0 };
+    adcgs_md5_init(&t->md5);
+    check(adcgs_pool_create(&options.pool, threads, &error), &error);
+    check(adcgs_stream_read(&back, read_pipe, &p, &options, count_element, t, &error), &error);
+    adcgs_pool_free(&options.pool);
+    adcgs_stream_clear(&back, NULL);
+    adcgs_md5_final(&t->md5, digest);
 }
 
 static void test_trace(void **state)
 {
     adcgs_error error = { ADCGS_OK, "" };
-    adcgs_stream stream, back;
+    uint8_t digest[16], again[16];
+    adcgs_stream stream;
     adcgs_buffer bytes;
-    trace t = { 0, 0, 0 };
+    trace t;
     (void)state;
-    make_stream(&stream, 1, 1, 100, 12);
+    make_stream(&stream, 1, 1, 300, 12);
+    stream.slice_log2 = ADCGS_SLICE_LOG2_MIN;
+    memcpy(stream.meta[0].value, "\"\\\177\n", 5); /* the four characters that a trace must not show as they are */
     adcgs_buffer_init(&bytes);
     check(adcgs_stream_write(&stream, &bytes, &error), &error);
-    pipe p = { bytes.data, bytes.size, 0, SIZE_MAX };
-    check(adcgs_stream_read(&back, read_pipe, &p, &plain, count_element, &t, &error), &error);
+    const int layers = adcgs_params_layers(&stream.params);
+    trace_stream(&bytes, 1, &t, digest);
     /* HEAD, meta, SEGM, NETW, GEOM, layers, hash, ENDC, perhaps cams */
-    assert_int_equal(t.chunks, 7 + adcgs_params_layers(&stream.params) + (stream.n_cameras > 0));
+    assert_int_equal(t.chunks, 7 + layers + (stream.n_cameras > 0));
+    assert_int_equal(t.checksums, t.chunks);
+    assert_int_equal(t.ends, 2 + 5 * layers);
     assert_true(t.elements > 60);
-    adcgs_stream_clear(&back, NULL);
+    assert_string_equal(t.title, "\"\\x22\\x5c\\x7f\\x0a\"");
+    trace_stream(&bytes, 3, &t, again);
+    assert_memory_equal(digest, again, sizeof digest);
     adcgs_buffer_clear(&bytes);
     adcgs_stream_clear(&stream, NULL);
 }
@@ -265,6 +301,7 @@ static void test_writer_refuses(void **state)
 }
 
 /** Level 0 picks the lowest that fits; an explicit level that does not fit is refused by both sides. */
+/* REQ-STRM-010, REQ-STRM-011, REQ-STRM-034 */
 static void test_levels(void **state)
 {
     adcgs_error error = { ADCGS_OK, "" };
