@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-2-Clause
+"""Checks the specification: that its text runs, agrees with itself, with the implementation and with the conformance vectors."""
+import argparse
+import os
+import sys
+import time
+
+import sources
+
+here = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(here, "..", "exec"))
+
+TITLES = {
+    "S1": "blocks are in the notation and compile",
+    "S2": "syntax and semantics mirror each other",
+    "S3": "the trace of the text is that of adcgs-info",
+    "S4": "models, splats, frames and verdicts of the text are those of the manifest",
+    "S5": "constants and tables are those of the implementation",
+    "S6": "bounds follow from the limits",
+    "S7": "requirements are numbered, cited and indexed",
+    "S8": "examples are what the text yields",
+    "S9": "links, terms, lines",
+}
+
+
+def run_check(name, tree, arguments):
+    """(faults, remark)."""
+    if name in ("S3", "S4"):
+        import streams
+        points = ("trace",) if name == "S3" else ("model", "splats", "verdict")
+        if name == "S3" and not arguments.info:
+            return ["where is adcgs-info? (--info)"], ""
+        faults, counts = streams.run(tree, arguments.info, points, arguments.jobs, arguments.vectors)
+        return faults, ", ".join("%d %s" % (n, what) for what, n in counts.items() if n)
+    if name == "S1":
+        import hygiene
+        import machine
+        return hygiene.notation(tree, lambda t: machine.Machine(t.master()).program), ""
+    if name in ("S2", "S9"):
+        import hygiene
+        return (hygiene.mirror if name == "S2" else hygiene.hygiene)(tree), ""
+    if name == "S5":
+        import constants
+        return constants.check(tree), ""
+    if name == "S6":
+        import subprocess
+        program = os.path.join(here, "..", "exec", "bounds.py")
+        done = subprocess.run([sys.executable, "-B", program, "--check", "--spec", tree.master()], capture_output=True, text=True,
+                              check=False)
+        return [] if done.returncode == 0 else (done.stdout + done.stderr).strip().split("\n"), ""
+    if name == "S7":
+        import hygiene
+        import make_requirements
+        return hygiene.requirements(tree) + make_requirements.check(tree), ""
+    import make_examples
+    return make_examples.check(tree), ""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--source", default=os.path.join(here, "..", ".."), help="top of the source tree")
+    parser.add_argument("--info", help="the program adcgs-info, for S3")
+    parser.add_argument("--only", default=",".join(TITLES), help="checks to run, such as S1,S9")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--vectors", nargs="*", help="ids of the vectors for S3 and S4 (default: all)")
+    arguments = parser.parse_args()
+    tree = sources.Tree(os.path.abspath(arguments.source))
+    failed = 0
+    for name in arguments.only.split(","):
+        start = time.monotonic()
+        faults, remark = run_check(name, tree, arguments)
+        for fault in faults:
+            print("%s: %s" % (name, fault))
+        print("%s: %s %s (%s%.1f s)" % ("FAIL" if faults else "PASS", name, TITLES[name], remark and remark + "; ",
+                                       time.monotonic() - start), flush=True)
+        failed += bool(faults)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

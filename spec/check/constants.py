@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""S5: what stands in the text and in the implementation as well, or in the text and in tables, is the same in both."""
+import ast
+import hashlib
+import os
+import re
+import subprocess
+import sys
+
+import hygiene
+import sources
+
+GENERATORS = ("make_values.py", "make_logistic.py")
+# Files of the implementation whose hexadecimal fractions are normative.
+STRICT = ("base/fmath.h", "base/lanes.h", "render/project.h")
+_hexadecimal = re.compile(r"-?0x[0-9a-f]\.[0-9a-f]+p[+-]?\d+")
+_full = {"u8": (0, 2**8 - 1), "u16": (0, 2**16 - 1), "u32": (0, 2**32 - 1), "u64": (0, 2**64 - 1)}
+
+
+def check(tree):
+    text = sources.Text(tree)
+    return _tables(tree, text) + _fractions(tree, text) + _constants(tree, text) + _syntax(tree, text)
+
+
+def _read(tree, name):
+    with open(os.path.join(tree.codec, name), encoding="utf-8") as file:
+        return file.read()
+
+
+# ---- Tables ----
+
+def _tables(tree, text):
+    faults = []
+    for name in GENERATORS:
+        done = subprocess.run([sys.executable, "-B", os.path.join(tree.spec, "tables", name), "--check"], cwd=os.path.dirname(tree.spec),
+                              capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            faults.append("%s --check: %s" % (name, (done.stdout + done.stderr).strip().replace("\n", "; ")))
+    printed = {}
+    for clause in text.clauses:
+        for found in re.finditer(r"\| `(tables/[\w.]+)` \| (\d+) \| `([0-9a-f]{64})`", "\n".join(clause.lines)):
+            printed[found.group(1)] = (int(found.group(2)), found.group(3))
+    for name in sorted(os.listdir(os.path.join(tree.spec, "tables"))):
+        if name.endswith(".csv"):
+            with open(os.path.join(tree.spec, "tables", name), "rb") as file:
+                data = file.read()
+            if printed.get("tables/" + name) != (data.count(b"\n"), hashlib.sha256(data).hexdigest()):
+                faults.append("tables/%s has %d lines and the SHA-256 %s; the text says otherwise"
+                              % (name, data.count(b"\n"), hashlib.sha256(data).hexdigest()))
+    return faults
+
+
+# ---- Hexadecimal fractions: coefficients and thresholds ----
+
+def _fractions(tree, text):
+    said, used = set(), set()
+    for block in text.blocks("adcgs"):
+        said |= {float.fromhex(h) for h in _hexadecimal.findall("\n".join(line.split("#")[0] for line in block.lines))}
+    for name in STRICT:
+        used |= {float.fromhex(h) for h in _hexadecimal.findall(_read(tree, name))}
+    # A sign may stand apart from its number.
+    said, used = {abs(x) for x in said}, {abs(x) for x in used}
+    faults = ["%s stands in the text and not in the implementation" % x.hex() for x in sorted(said - used)]
+    return faults + ["%s stands in the implementation and not in the text" % x.hex() for x in sorted(used - said)]
+
+
+# ---- Integers ----
+
+def _value_of(source):
+    """A C or notation expression of numbers."""
+    source = re.sub(r"U?INT(?:32|64)_C\((\w+)\)", r"\1", source)
+    source = re.sub(r"\b(0x[0-9a-fA-F.]*p[+-]?\d+)f?\b", lambda m: repr(float.fromhex(m.group(1))), source)
+    source = re.sub(r"\b(0x[0-9a-fA-F]+|\d+)[uUlL]+\b", r"\1", source)
+    return eval(compile(ast.parse(source.strip(), mode="eval"), "expression", "eval"), {"__builtins__": {}}, {"min": min, "max": max})
+
+
+def _numbers(source):
+    return [int(n, 0) for n in re.findall(r"\b0[xX][0-9a-fA-F]+|\b\d+", source)]
+
+
+# What the text calls a constant, where the implementation has it, and how the numbers are found there.
+CONSTANTS = (
+    ("E24_MAX", "net/e24.h", r"#define ADCGS_E24_A (\d+)"),
+    ("RATE", "bits/adaptive.c", r"rates\[\] = \{([^}]*)\}"),
+    ("SIGNATURE", "model/chunk.h", None),
+    ("LEVELS", "model/chunk.c", None),
+)
+
+
+def _constants(tree, text):
+    faults, defined = [], {}
+    for block in text.blocks("adcgs"):
+        for found in re.finditer(r"^([A-Z][A-Z0-9_]*) = ((?:.|\n[ \])])*)", "\n".join(re.sub(r"#.*", "", l) for l in block.lines), re.M):
+            defined[found.group(1)] = found.group(2)
+    for name, path, pattern in CONSTANTS:
+        if name not in defined:
+            faults.append("the text defines no constant %s" % name)
+            continue
+        if name == "SIGNATURE":
+            given = list(b"\x8bADC\r\n\x1a\n") if "\"\\x8B\"" in _read(tree, path) else None
+        elif name == "LEVELS":
+            given = _levels(_read(tree, path))
+        else:
+            given = _numbers(re.search(pattern, _read(tree, path)).group(1))
+        wanted = _levels_of_text(defined[name]) if name == "LEVELS" else _numbers(defined[name])
+        if sorted(given or []) != sorted(wanted):
+            faults.append("%s is %s in the text, %s in %s" % (name, wanted, given, path))
+    answer = re.search(r"CRC-32C 0x([0-9A-Fa-f]{8})", "\n".join(line for clause in text.clauses for line in clause.lines))
+    code = re.search(r"#define ANSWER 0x([0-9a-f]{8})u", _read(tree, "net/e24_check.c"))
+    if not answer or not code or answer.group(1).lower() != code.group(1):
+        faults.append("the known answer of the text is not that of net/e24_check.c")
+    return faults
+
+
+def _levels(source):
+    """All bounds of all levels, in one list."""
+    table = re.search(r"levels\[ADCGS_LEVELS\] = \{(.*?)\n    \};", source, re.S).group(1)
+    return [int(_value_of(entry)) for row in re.findall(r"\{([^{}]*)\}", table) for entry in row.split(",")]
+
+
+def _levels_of_text(source):
+    return [int(_value_of(entry)) for entry in re.findall(r"=\s*([^,()=]+)", source)]
+
+
+# ---- Syntax elements: type and range ----
+
+_list = re.compile(r"#define ADCGS_LIST_(\w+)\(F, V\)((?:.*\\\n)*.*)")
+_field = re.compile(r"\b([FV])\((\w+), (\w+), ([^\n]*?)\)(?=\s*(?:\\?\n|\\|$))")
+_ours = re.compile(r"^#define (ADCGS_\w+) (.+?)(?:\s*/\*.*)?$", re.M)
+
+
+def _macros(tree):
+    found = {"ADCGS_ROLES": "12"}
+    for name in ("model/model.h", "model/latents.h", "model/syntax.h", "net/net.h", "geom/geom.h"):
+        found.update(_ours.findall(_read(tree, name)))
+    return found
+
+
+def _resolve(source, macros):
+    for _ in range(4):
+        source = re.sub(r"\bADCGS_\w+", lambda m: "(%s)" % macros[m.group(0)], source)
+    return float(_value_of(source))
+
+
+def _fields_of_code(tree):
+    """(name, descriptor, low, high) of every element that the implementation's lists give."""
+    macros, found = _macros(tree), set()
+    source = _read(tree, "model/syntax.h")
+    for _, body in _list.findall(source):
+        for kind, base, name, rest in _field.findall(body + "\n"):
+            parts = [p.strip() for p in rest.split(",")]
+            if kind == "V":
+                parts = parts[1:]
+            found.add((name, base.lower(), _resolve(parts[0], macros), _resolve(parts[1], macros)))
+    return found
+
+
+def _fields_of_text(text):
+    found = {}
+    tables = text.semantics()
+    for name, (where, _, elements) in hygiene.structures(text).items():
+        rows = {cells[0].strip("`"): cells[1].replace("`", "") for _, _, rows in tables.get(name, []) for _, cells in rows}
+        for element, descriptor in elements:
+            base = re.match(r"\w+", descriptor).group(0)
+            if base in ("u8", "u16", "u32", "u64", "i16", "i64", "f32", "f64"):
+                found[(name, element)] = (where, base, rows.get(element, ""))
+    return found
+
+
+def _syntax(tree, text):
+    faults, code, seen = [], _fields_of_code(tree), set()
+    for (structure, element), (where, base, values) in _fields_of_text(text).items():
+        if not values.strip() and base not in _full:
+            continue
+        try:
+            low, high = [float(_value_of(v)) for v in values.split("..")] if values.strip() else map(float, _full[base])
+        except (NameError, SyntaxError, ValueError):
+            continue  # a range that depends on other elements; the trace and the vectors test it
+        same = [f for f in code if f[0] == element]
+        seen.add(element)
+        if same and (element, base, low, high) not in same:
+            faults.append("%s: %s.%s is %s %g .. %g, in model/syntax.h %s" % (where, structure, element, base, low, high, sorted(same)))
+    for element in sorted({f[0] for f in code} - {e for _, e in _fields_of_text(text)}):
+        faults.append("model/syntax.h: %s is in no syntax table" % element)
+    if not seen:
+        faults.append("no element of the syntax tables was compared with model/syntax.h")
+    return faults

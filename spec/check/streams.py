@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""S3 and S4: the text, run over the conformance vectors, says what the implementation and the manifest say."""
+import multiprocessing
+import os
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "exec"))
+
+from binary import F64
+from machine import Machine
+from reading import Bytes, Fault, Record
+
+# What is affordable in an interpreted language: splats derived, and pixels times splats rendered, for one vector.
+SPLATS_MOST, BLENDS_MOST = 600, 60000
+POINTS = ("trace", "model", "splats", "frames", "verdict")
+
+_machine, _lines = None, []
+
+
+def _start(master):
+    global _machine
+    _machine = Machine(master, _lines.append)
+
+
+def decode(path, partial=False):
+    """The stream, and the lines of its trace."""
+    _lines.clear()
+    with open(path, "rb") as file:
+        data = file.read()
+    return _machine.decode_stream(Bytes.at(data, 0), not partial), list(_lines)
+
+
+def camera_of(entry):
+    numbers = {key: F64(float(entry[key])) for key in ("fx", "fy", "cx", "cy")}
+    return Record(width=entry["width"], height=entry["height"], near_plane=F64(float(entry.get("near_plane", entry.get("near")))),
+                  cam_to_world=[F64(float(v)) for v in entry["cam_to_world"]], **numbers)
+
+
+def _same_trace(path, lines, info):
+    process = subprocess.run([info, "--trace", path], capture_output=True, text=True, check=False)
+    given = process.stdout.rstrip("\n").split("\n")
+    if process.returncode != 0:
+        return ["adcgs-info --trace ends with %d: %s" % (process.returncode, process.stderr.strip())]
+    for a, b in zip(lines, given):
+        if a != b:
+            return ["the text says \"%s\", the implementation \"%s\"" % (a, b)]
+    if len(lines) != len(given):
+        return ["the text yields %d lines of trace, the implementation %d" % (len(lines), len(given))]
+    return []
+
+
+def _hex(digest):
+    return bytes(digest).hex()
+
+
+def _expected(entry):
+    """Digests of a good vector, whichever layout the manifest has: models, [(time, md5)] of splats, frames."""
+    expect = entry.get("expect", entry)
+    return expect.get("models", []), expect.get("splats", []), expect.get("frames", []), entry.get("cameras", [])
+
+
+def _check_models(stream, wanted, counts):
+    given = [_hex(_machine.model_digest(model)) for model in stream.models]
+    counts["model"] += 1
+    return [] if given == wanted else ["model digests are %s, expected %s" % (given, wanted)]
+
+
+def _count_splats(stream):
+    return max(sum(bin(m).count("1") for m in model.mask) for model in stream.models)
+
+
+def _check_pictures(stream, splats, frames, cameras, counts):
+    faults, at, total = [], {}, _count_splats(stream)
+    if total > SPLATS_MOST:
+        return []
+    for entry in splats:
+        time = entry["time"]
+        at[time] = _machine.splats_of(stream, F64(float(time)))
+        counts["splats"] += 1
+        given = _hex(_machine.splats_digest(at[time]))
+        if given != entry["md5"]:
+            faults.append("splats at %r are %s, expected %s" % (time, given, entry["md5"]))
+    done = set()
+    for entry in frames:
+        camera = cameras[entry["camera"]]
+        if camera["width"] * camera["height"] * total > BLENDS_MOST or entry["md5"] in done:
+            continue
+        done.add(entry["md5"])
+        time = entry["time"]
+        if time not in at:
+            at[time] = _machine.splats_of(stream, F64(float(time)))
+        counts["frames"] += 1
+        given = _hex(_machine.frame_digest(_machine.render(stream.head, at[time], camera_of(camera))))
+        if given != entry["md5"]:
+            faults.append("the frame of camera %d at %r is %s, expected %s" % (entry["camera"], time, given, entry["md5"]))
+    return faults
+
+
+def _check_good(entry, path, info, points, counts):
+    stream, lines = decode(path, entry.get("partial", False))
+    faults = []
+    models, splats, frames, cameras = _expected(entry)
+    if "trace" in points:
+        counts["trace"] += 1
+        faults += _same_trace(path, lines, info)
+    if "model" in points:
+        faults += _check_models(stream, models, counts)
+    if "splats" in points:
+        faults += _check_pictures(stream, splats, frames, cameras, counts)
+    return faults
+
+
+def _check(job):
+    """(id, faults, counts) of one vector."""
+    name, entry, path, info, points = job
+    counts = dict.fromkeys(POINTS, 0)
+    good = entry["verdict"] == "good"
+    kind = "good"
+    faults = []
+    try:
+        if good:
+            faults = _check_good(entry, path, info, points, counts)
+        else:
+            decode(path)
+    except Fault as fault:
+        kind = fault.kind
+    except Exception as error:  # the text is wrong here, or the executor: both are findings of this vector
+        return name, ["%s: %s" % (type(error).__name__, error)], counts
+    wanted = "good" if good else entry.get("status") or entry["expect"]["status"]
+    if "verdict" in points or good:
+        counts["verdict"] += 1
+        if kind != wanted:
+            faults = ["the text says %s, the manifest %s" % (kind, wanted)]
+    return name, faults, counts
+
+
+def run(tree, info, points, jobs=2, only=None):
+    """(faults, counts): points are those of POINTS to be compared."""
+    work = []
+    for name, entry, path in tree.vectors():
+        if (only and name not in only) or (entry["verdict"] != "good" and "verdict" not in points):
+            continue
+        work.append((name, entry, path, info, points))
+    work.sort(key=lambda job: -os.path.getsize(job[2]))
+    counts, faults = dict.fromkeys(POINTS, 0), []
+    if not work:
+        return ["no vectors"], counts
+    with multiprocessing.Pool(jobs, _start, (tree.master(),)) as pool:
+        for name, found, part in pool.imap_unordered(_check, work):
+            faults += ["%s: %s" % (name, fault) for fault in found]
+            for point in POINTS:
+                counts[point] += part[point]
+    return sorted(faults), counts
