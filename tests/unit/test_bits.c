@@ -41,6 +41,7 @@ static void test_fields(void **state)
     adcgs_buffer_clear(&b);
 }
 
+/* REQ-CONV-006 */
 static void test_varint_is_unique(void **state)
 {
     (void)state;
@@ -117,6 +118,7 @@ static void run_mixture(uint64_t seed, int count, adcgs_range_enc *e, adcgs_rang
     }
 }
 
+/* REQ-PARS-001, REQ-PARS-003, REQ-PARS-004, REQ-PARS-005, REQ-PARS-007, REQ-PARS-010 */
 static void test_round_trip(void **state)
 {
     (void)state;
@@ -139,6 +141,7 @@ static void test_round_trip(void **state)
 }
 
 /* Low stays at the top of its interval: carries run through many bytes of 0xff. */
+/* REQ-PARS-003 */
 static void test_long_carry(void **state)
 {
     (void)state;
@@ -175,6 +178,7 @@ static void decode_anything(adcgs_range_dec *d, int count)
     }
 }
 
+/* REQ-PARS-002, REQ-PARS-008, REQ-PARS-009 */
 static void test_damage_is_reported(void **state)
 {
     (void)state;
@@ -200,6 +204,7 @@ static void test_damage_is_reported(void **state)
     }
 }
 
+/* REQ-PARS-010 */
 static void test_adaptive_stays_inside(void **state)
 {
     (void)state;

@@ -74,6 +74,7 @@ static void check_usable(const adcgs_stream *whole, const adcgs_stream *part)
     }
 }
 
+/* REQ-STRM-031, REQ-STRM-032 */
 static void test_cut_anywhere(void **state)
 {
     adcgs_stream stream, part;
@@ -110,6 +111,7 @@ static void test_cut_anywhere(void **state)
 }
 
 /** A cut inside a layer keeps the slices in front of it. */
+/* REQ-STRM-031 */
 static void test_slices_before_cut(void **state)
 {
     adcgs_stream stream, part;
@@ -135,6 +137,7 @@ static void test_slices_before_cut(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
+/* REQ-STRM-004, REQ-STRM-033 */
 static void test_flip_every_byte(void **state)
 {
     adcgs_stream stream, part;
@@ -198,6 +201,7 @@ static void repair(adcgs_buffer *bytes)
 }
 
 /** Damage under valid checksums, in streams of which every second has no digest that would notice. */
+/* REQ-CONF-005 */
 static void test_malice(void **state)
 {
     adcgs_stream stream, part;
@@ -249,6 +253,7 @@ static void insert_chunk(adcgs_buffer *out, const adcgs_buffer *in, uint32_t typ
     repair(out);
 }
 
+/* REQ-STRM-003, REQ-STRM-004, REQ-STRM-005 */
 static void test_unknown_chunks(void **state)
 {
     adcgs_stream stream, part;
@@ -273,6 +278,7 @@ static void test_unknown_chunks(void **state)
 }
 
 /** A stream from which the last layers were taken plays with what is left. */
+/* REQ-STRM-009, REQ-LATN-007 */
 static void test_layers_taken_out(void **state)
 {
     adcgs_stream stream, part;
@@ -301,6 +307,7 @@ static void test_layers_taken_out(void **state)
 }
 
 /** A length that promises a gigabyte costs no gigabyte. */
+/* REQ-STRM-004, REQ-STRM-034, REQ-CONF-005 */
 static void test_false_length(void **state)
 {
     adcgs_buffer bytes;

@@ -53,6 +53,7 @@ static double check_cloud(const uint32_t *voxels, uint32_t n, int depth)
 }
 
 /* The numbers compiled in are those of the specification. */
+/* REQ-TABL-002 */
 static void test_logistic_equals_csv(void **state)
 {
     (void)state;
@@ -76,6 +77,7 @@ static void test_logistic_equals_csv(void **state)
     assert_int_equal(ADCGS_COUNTOF(squash), 2048);
 }
 
+/* REQ-GEOM-002 */
 static void test_sorting(void **state)
 {
     (void)state;
@@ -100,6 +102,7 @@ static void test_sorting(void **state)
     free(order);
 }
 
+/* REQ-GEOM-001, REQ-GEOM-003, REQ-GEOM-007 */
 static void test_single_points(void **state)
 {
     (void)state;
@@ -111,6 +114,7 @@ static void test_single_points(void **state)
     }
 }
 
+/* REQ-GEOM-004, REQ-GEOM-007 */
 static void test_full_cubes(void **state)
 {
     (void)state;
@@ -134,6 +138,7 @@ static void test_full_cubes(void **state)
     }
 }
 
+/* REQ-GEOM-004, REQ-GEOM-005, REQ-GEOM-006, REQ-GEOM-007, REQ-GEOM-008, REQ-GEOM-009, REQ-GEOM-010, REQ-GEOM-011 */
 static void test_random_clouds(void **state)
 {
     (void)state;
@@ -201,6 +206,7 @@ static void test_surface_is_predicted(void **state)
     free(voxels);
 }
 
+/* REQ-GEOM-001 */
 static void test_wrong_use(void **state)
 {
     (void)state;
@@ -233,6 +239,7 @@ static void try_bytes(const uint8_t *data, size_t bytes, uint32_t n, int depth)
     free(voxels);
 }
 
+/* REQ-GEOM-012, REQ-CONF-005 */
 static void test_hostile_data(void **state)
 {
     (void)state;

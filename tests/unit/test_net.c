@@ -42,6 +42,7 @@ static void check_csv_row(const char *line)
         assert_true(cdf[i] < cdf[i + 1]);
 }
 
+/* REQ-TABL-001 */
 static void test_tables_equal_csv(void **state)
 {
     (void)state;
@@ -76,6 +77,7 @@ static void code_extremes(adcgs_range_enc *e, adcgs_range_dec *d)
         }
 }
 
+/* REQ-PARS-006, REQ-PARS-011 */
 static void test_values_round_trip(void **state)
 {
     (void)state;
@@ -113,6 +115,7 @@ static void test_value_cost(void **state)
     adcgs_buffer_clear(&b);
 }
 
+/* REQ-PARS-009, REQ-PARS-011 */
 static void test_damaged_values_end(void **state)
 {
     (void)state;
@@ -243,6 +246,7 @@ static void check_net(const adcgs_net *net, uint64_t *seed)
     }
 }
 
+/* REQ-NETW-004, REQ-NETW-005, REQ-NETW-006, REQ-NETW-007, REQ-NETW-008 */
 static void test_e24_equals_reference(void **state)
 {
     (void)state;
@@ -268,6 +272,7 @@ static adcgs_status load(const adcgs_net *net)
     return status;
 }
 
+/* REQ-NETW-003 */
 static void test_e24_row_bound(void **state)
 {
     (void)state;
@@ -321,6 +326,7 @@ static void test_e24_known_answer(void **state)
         fail_msg("%s", error.text);
 }
 
+/* REQ-NETW-002 */
 static void test_shr(void **state)
 {
     (void)state;
@@ -382,6 +388,7 @@ static double gauss(uint64_t *seed)
     return sum;
 }
 
+/* REQ-NETW-001, REQ-WGHT-001, REQ-WGHT-002 */
 static void test_integer_tensors(void **state)
 {
     (void)state;
@@ -430,6 +437,7 @@ static void test_weights_are_cheap(void **state)
     adcgs_free(NULL, t.m);
 }
 
+/* REQ-NETW-001, REQ-WGHT-003, REQ-WGHT-004 */
 static void test_float_tensors(void **state)
 {
     (void)state;

@@ -234,6 +234,8 @@ static void clear_model(adcgs_model *m)
     adcgs_model_clear(m, NULL);
 }
 
+/* REQ-PRIM-005, REQ-PRIM-006, REQ-PRIM-008, REQ-PRIM-009, REQ-PRIM-010, REQ-PRIM-011, REQ-PRIM-012, REQ-PRIM-013,
+   REQ-PRIM-014, REQ-PRIM-015, REQ-PRIM-016, REQ-PRIM-017, REQ-PRIM-018 */
 static void test_against_reference(void **state)
 {
     uint64_t random = 5;
@@ -253,6 +255,7 @@ static void test_against_reference(void **state)
 }
 
 /* The largest weights and values that a valid model may hold: nothing may become infinite or NaN. */
+/* REQ-PRIM-007, REQ-PRIM-017 */
 static void test_extremes(void **state)
 {
     uint64_t random = 6;
@@ -300,6 +303,7 @@ static void test_memory_limit(void **state)
     clear_model(&m);
 }
 
+/* REQ-PRIM-001, REQ-PRIM-002, REQ-PRIM-003, REQ-PRIM-004 */
 static void test_functions(void **state)
 {
     for (int i = -1000000; i <= 1000000; i++) {
@@ -319,6 +323,7 @@ static void test_functions(void **state)
     assert_true(adcgs_sigmoid(1e30f) == 1.0f && adcgs_sigmoid(-1e30f) > 0.0f && adcgs_exp(0.0f) == 1.0f);
 }
 
+/* REQ-PRIM-010 */
 static void test_position_code(void **state)
 {
     static _Alignas(64) float x[3 * 64], code[6 * ADCGS_OCTAVES_MAX * 64];
