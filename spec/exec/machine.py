@@ -72,6 +72,7 @@ class Machine:
         self.tables = os.path.join(os.path.dirname(master), "tables") if master else os.path.join(folder, "tables")
         self.program = notation.Program(self.text, self._builtins())
         self.names = self.program.names
+        self._fill_values()
 
     def __getattr__(self, name):
         if name in self.program.processes or name in self.program.constants:
@@ -94,16 +95,19 @@ class Machine:
         return names
 
     def _load_tables(self):
-        """VALUE_TABLE[shape][level], STRETCH and SQUASH from the files of annex "Tables"."""
-        values = [[None] * 64 for _ in range(4)]
-        with open(os.path.join(self.tables, "values.csv"), encoding="ascii") as file:
-            for row in list(csv.reader(file))[1:]:
-                shape, level, support, mass, *left = [int(cell) for cell in row if cell]
-                values[shape][level] = left + [mass - c for c in reversed(left)] + [65536]
-                assert len(values[shape][level]) == 2 * support + 3
-        with open(os.path.join(self.tables, "logistic.csv"), encoding="ascii") as file:
-            rows = [[int(cell) for cell in row] for row in list(csv.reader(file))[1:]]
-        return {"VALUE_TABLE": values, "STRETCH": [row[1] for row in rows], "SQUASH": [row[2] for row in rows]}
+        """STRETCH and SQUASH from a file of annex "Tables"; VALUE_TABLE is filled once the process that completes it is there."""
+        rows = self._rows("logistic.csv")
+        return {"VALUE_TABLE": [[None] * 64 for _ in range(4)], "STRETCH": [row[1] for row in rows], "SQUASH": [row[2] for row in rows]}
+
+    def _fill_values(self):
+        """VALUE_TABLE[shape][level] from the rows of values.csv, as the text completes them."""
+        if "value_table" in self.program.processes:
+            for row in self._rows("values.csv"):
+                self.names["VALUE_TABLE"][row[0]][row[1]] = self.names["value_table"](row)
+
+    def _rows(self, name):
+        with open(os.path.join(self.tables, name), encoding="ascii") as file:
+            return [[int(cell) for cell in row] for row in list(csv.reader(file))[1:]]
 
     def _structure(self, structure, payload, arguments):
         if not isinstance(structure, notation.Structure):
