@@ -2,6 +2,7 @@
 /** \file The public decoder: a stream, and the splats and the rasteriser of the segment that is being looked at. */
 #include "base/cpu.h"
 #include "base/pool.h"
+#include "base/strict.h"
 #include "model/stream.h"
 #include "net/net.h"
 #include "render/render.h"
@@ -40,7 +41,7 @@ static adcgs_status check_config(const adcgs_config *config, adcgs_error *error)
 
 static adcgs_status open_decoder(adcgs_decoder *d, adcgs_read_fn read, void *user, const adcgs_config *config, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_cpu_check_float(error));
+    ADCGS_TRY(adcgs_strict_check(error));
     ADCGS_TRY(adcgs_e24_check(error));
     ADCGS_TRY(adcgs_cpu_resolve(config->cpu, &d->cpu, error));
     ADCGS_TRY(adcgs_pool_create(&d->pool, config->threads, error));
@@ -112,6 +113,7 @@ static float normalised_time(const adcgs_model *model, double time)
 
 static adcgs_status primitives_at(adcgs_decoder *d, double time, adcgs_primitives *out, adcgs_error *error)
 {
+    ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
     const uint32_t segment = segment_at(&d->stream, time);
     const adcgs_model *model = &d->stream.segments[segment];
     if (d->splat && d->splat_segment != segment)

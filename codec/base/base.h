@@ -1,20 +1,31 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Ground: errors, memory, little-endian access, small integer helpers.
- * Knows nothing of the codec. The room's other headers: pool.h, cpu.h,
- * digest.h.
+ * Ground: errors, memory, little-endian access, small integer helpers, the
+ * clock. Knows nothing of the codec. The room's other headers: pool.h, cpu.h,
+ * digest.h, fmath.h, lanes.h, strict.h.
  */
 #ifndef ADCGS_BASE_BASE_H
 #define ADCGS_BASE_BASE_H
 
 #include <adcgs/status.h>
 
+#include <float.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#ifdef __FAST_MATH__
-#error "adcgs must not be built with -ffast-math: decoded frames would differ"
+/* Refusals by macro. What no macro shows (contraction, flushing, rounding) is found when a decoder opens: strict.h. */
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
+#error "adcgs must not be built with -ffast-math or a part of it: decoded frames would differ"
+#endif
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0
+#error "adcgs must not be built with -ffinite-math-only: NaN and infinity have defined results"
+#endif
+#if FLT_EVAL_METHOD != 0
+#error "adcgs needs binary32 without excess precision: on 32-bit x86 add -msse2 -mfpmath=sse, elsewhere -fexcess-precision=fast"
+#endif
+#if FLT_RADIX != 2 || FLT_MANT_DIG != 24 || FLT_MAX_EXP != 128 || DBL_MANT_DIG != 53
+#error "adcgs needs float and double to be binary32 and binary64"
 #endif
 
 /** Record status and message, return status: `return adcgs_fail(err, ADCGS_ERR_DATA, "...", ...)`. error may be NULL. */
@@ -103,6 +114,9 @@ static inline double adcgs_bits_double(uint64_t u)
     memcpy(&f, &u, sizeof f);
     return f;
 }
+
+/** Seconds of a clock that only goes forward. */
+double adcgs_seconds(void);
 
 #define ADCGS_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define ADCGS_MAX(a, b) ((a) > (b) ? (a) : (b))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the CPU can do, and whether it computes strict binary32. */
+/** \file What the CPU can do. */
 #ifndef ADCGS_BASE_CPU_H
 #define ADCGS_BASE_CPU_H
 
@@ -13,7 +13,5 @@ adcgs_status adcgs_cpu_resolve(adcgs_cpu_level asked, adcgs_cpu_level *level, ad
 const char *adcgs_cpu_name(adcgs_cpu_level level);
 /** Parse such a name; returns 0, or -1 if unknown. */
 int adcgs_cpu_parse(const char *name, adcgs_cpu_level *level);
-/** Known-answer test of the floating-point environment (rounding, contraction, subnormals): ADCGS_ERR_FPENV if wrong. */
-adcgs_status adcgs_cpu_check_float(adcgs_error *error);
 
 #endif

@@ -6,6 +6,7 @@
  */
 #include "base/cpu.h"
 #include "base/digest.h"
+#include "base/strict.h"
 #include "net/e24.h"
 
 #define INPUTS 23
@@ -13,20 +14,14 @@
 #define CHANNELS 9
 #define ANSWER 0x9e2a8e70u
 
-static uint32_t draw(uint32_t *state, uint32_t n)
-{
-    *state = *state * 1664525u + 1013904223u;
-    return (*state >> 8) % n;
-}
-
 static void fill(adcgs_layer *layer, int32_t *numbers, uint32_t rows, uint32_t cols, uint32_t *state)
 {
     layer->w = (adcgs_tensor){ .rows = rows, .cols = cols, .m = numbers };
     layer->b = (adcgs_tensor){ .rows = rows, .cols = 1, .m = numbers + rows * cols };
     for (uint32_t i = 0; i < rows * cols; i++)
-        layer->w.m[i] = (int32_t)draw(state, 255) - 127;
+        layer->w.m[i] = (int32_t)adcgs_strict_draw(state, 255) - 127;
     for (uint32_t i = 0; i < rows; i++)
-        layer->b.m[i] = (int32_t)draw(state, 20001) - 10000;
+        layer->b.m[i] = (int32_t)adcgs_strict_draw(state, 20001) - 10000;
 }
 
 static adcgs_status check_level(const adcgs_net *net, const int16_t *x, adcgs_cpu_level level, adcgs_error *error)
@@ -68,7 +63,7 @@ adcgs_status adcgs_e24_check(adcgs_error *error)
     net.layer[1].residual = 1;
     net.layer[2].shift = 4;
     for (size_t i = 0; i < ADCGS_COUNTOF(x); i++)
-        x[i] = (int16_t)((int32_t)draw(&state, 65536) - 32768);
+        x[i] = (int16_t)((int32_t)adcgs_strict_draw(&state, 65536) - 32768);
     for (int level = ADCGS_CPU_SCALAR; level <= (int)adcgs_cpu_best(); level++)
         ADCGS_TRY(check_level(&net, x, (adcgs_cpu_level)level, error));
     return ADCGS_OK;

@@ -128,7 +128,5 @@ void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value);
 uint32_t adcgs_value_cost(int shape, int si, int32_t value);
 /** Largest |value| that can be coded at a level. */
 int32_t adcgs_value_max(int shape, int si);
-/** sigma in steps of level l, for the trainer: 0.11 * (64/0.11)^(l/63). */
-double adcgs_table_sigma(int level);
 
 #endif

@@ -18,7 +18,6 @@
 static const uint32_t entries[VALUE_ENTRIES] = { VALUE_TABLES };
 static const uint16_t offsets[ADCGS_SHAPES * ADCGS_SIGMA_LEVELS] = { VALUE_OFFSETS };
 static const uint8_t supports[ADCGS_SIGMA_LEVELS] = { VALUE_SUPPORTS };
-static const double sigmas[ADCGS_SIGMA_LEVELS] = { VALUE_SIGMAS };
 
 int adcgs_table_support(int shape, int level)
 {
@@ -29,9 +28,4 @@ int adcgs_table_support(int shape, int level)
 const uint32_t *adcgs_table_cdf(int shape, int level)
 {
     return entries + offsets[shape * ADCGS_SIGMA_LEVELS + level];
-}
-
-double adcgs_table_sigma(int level)
-{
-    return sigmas[level];
 }

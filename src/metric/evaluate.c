@@ -1,28 +1,19 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Quality of a decoded stream against a scene's pictures. */
-#define _POSIX_C_SOURCE 200809L
 #include "metric/evaluate.h"
 
 #include "metric/metric.h"
 
 #include <stdlib.h>
-#include <time.h>
-
-static double now(void)
-{
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
 
 /** Render a view into planar 8-bit levels over 255. The frame and planes are the caller's, of the view's size. */
 static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_scene_view *view, adcgs_frame *frame, uint8_t *levels,
                                   float *planar, double *seconds, adcgs_error *error)
 {
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;
-    const double begin = now();
+    const double begin = adcgs_seconds();
     ADCGS_TRY(adcgs_render(decoder, &view->camera, view->time, frame, error));
-    *seconds = now() - begin;
+    *seconds = adcgs_seconds() - begin;
     adcgs_frame_to_u8(frame, levels);
     for (size_t i = 0; i < pixels; i++)
         for (size_t c = 0; c < 3; c++)

@@ -67,9 +67,6 @@ int adcgs_parse_pair(const char *text, int min, int max, int out[2]);
 /** "T" or "A:B" in seconds; *end == *begin for the former. */
 int adcgs_parse_times(const char *text, double *begin, double *end);
 
-/** Seconds of a clock that only goes forward. */
-double adcgs_seconds(void);
-
 /** Make SIGINT and SIGTERM set a flag (a second one kills). */
 void adcgs_interrupt_catch(void);
 /** The signal that came, 0 if none. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Progress, interruption, time and JSON for the programs. */
+/** \file Progress, interruption and JSON for the programs. */
 #include "config.h"
 
 #include "tools/cli.h"
@@ -7,7 +7,6 @@
 #include <math.h>
 #include <signal.h>
 #include <stdarg.h>
-#include <time.h>
 #include <unistd.h>
 
 /* A signal handler can reach nothing but static storage. */
@@ -32,13 +31,6 @@ void adcgs_interrupt_catch(void)
 int adcgs_interrupted(void)
 {
     return interrupted;
-}
-
-double adcgs_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 void adcgs_progress_init(adcgs_progress *progress)

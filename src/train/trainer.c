@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The training loop. */
-#define _POSIX_C_SOURCE 200809L
 #include "train/trainer.h"
 
 #include "metric/metric.h"
@@ -9,7 +8,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
 /* WEIGH_AFTER: before that many iterations motion has not had its chance. */
 enum { WEIGH_AFTER = 300, SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
@@ -391,13 +389,6 @@ static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static double now(void)
-{
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
-
 static void fill_report(const adcgs_trainer *t, double progress, double rate, adcgs_train_report *r)
 {
     r->stage = adcgs_train_stage(&t->config, progress);
@@ -416,8 +407,8 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
 
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
-    const double begin = now() - t->elapsed;
-    double last = now(), rate = 0;
+    const double begin = adcgs_seconds() - t->elapsed;
+    double last = adcgs_seconds(), rate = 0;
     uint32_t reported = t->iteration;
     *stopped = 0;
     prepare_networks(t);
@@ -426,7 +417,7 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         const double progress = progress_of(t);
         adcgs_train_report report;
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
-            const double at = now();
+            const double at = adcgs_seconds();
             const double lately = at > last && t->iteration > reported ? (t->iteration - reported) / (at - last) : rate;
             rate = rate > 0 ? 0.9 * rate + 0.1 * lately : lately;
             reported = t->iteration;
@@ -441,7 +432,7 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
             return ADCGS_OK;
         ADCGS_TRY(before_iteration(t, progress, error));
         ADCGS_TRY(iterate(t, progress, error));
-        t->elapsed = now() - begin;
+        t->elapsed = adcgs_seconds() - begin;
         ADCGS_TRY(guard(t, progress, error));
     }
 }

@@ -11,10 +11,7 @@
 
 #include <cmocka.h>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
+/* REQ-STRM-002 */
 static void test_crc32c(void **state)
 {
     (void)state;
@@ -106,29 +103,9 @@ static void test_status(void **state)
     assert_int_equal(adcgs_fail(NULL, ADCGS_ERR_IO, "nobody listens"), ADCGS_ERR_IO);
 }
 
-#ifdef __SSE2__
-/* What a library linked with -ffast-math does to the process: flush to zero, then another rounding direction. */
-static void test_wrong_float_modes_are_refused(void **state)
-{
-    (void)state;
-    const unsigned saved = _mm_getcsr();
-    static const unsigned modes[] = { 0x8000, 0x0040, 0x2000, 0x4000, 0x6000 };
-    for (size_t i = 0; i < ADCGS_COUNTOF(modes); i++) {
-        _mm_setcsr(saved | modes[i]);
-        const adcgs_status status = adcgs_cpu_check_float(NULL);
-        _mm_setcsr(saved);
-        assert_int_equal(status, ADCGS_ERR_FPENV);
-    }
-    assert_int_equal(adcgs_cpu_check_float(NULL), ADCGS_OK);
-}
-#endif
-
 static void test_cpu(void **state)
 {
     (void)state;
-    adcgs_error error = { 0 };
-    if (adcgs_cpu_check_float(&error) != ADCGS_OK)
-        fail_msg("%s", error.text);
     adcgs_cpu_level level;
     assert_int_equal(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &level, NULL), ADCGS_OK);
     assert_int_equal(level, adcgs_cpu_best());
@@ -202,9 +179,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_crc32c), cmocka_unit_test(test_md5), cmocka_unit_test(test_memory),
         cmocka_unit_test(test_status), cmocka_unit_test(test_cpu), cmocka_unit_test(test_pool),
-#ifdef __SSE2__
-        cmocka_unit_test(test_wrong_float_modes_are_refused),
-#endif
     };
     return cmocka_run_group_tests_name("base", tests, NULL, NULL);
 }

@@ -1,0 +1,114 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# Flags that would change frames are refused: by the compiler where a macro shows them, else when a decoder opens.
+set -u
+source=${srcdir:-.}
+dir=$(mktemp -d) || exit 99
+trap 'rm -rf "$dir"' EXIT
+faults=0
+tried=0
+
+cat >"$dir/main.c" <<'END'
+#include "base/strict.h"
+#include <stdio.h>
+int main(void)
+{
+    adcgs_error error = { 0 };
+    const adcgs_status status = adcgs_strict_check(&error);
+    puts(status == ADCGS_OK ? "strict" : error.text);
+    return status == ADCGS_OK ? 0 : status == ADCGS_ERR_FPENV ? 1 : 2;
+}
+END
+files=("$dir/main.c")
+for name in strict cpu status crc32c clock; do
+    files+=("$source/codec/base/$name.c")
+done
+include=(-I"$source/codec" -I"$source/codec/include" -std=c11 -fno-math-errno)
+
+fault()
+{
+    echo "FAIL: $*" >&2
+    faults=$((faults + 1))
+}
+
+# allowed COMPILER FLAG...: a decoder built so opens.
+allowed()
+{
+    tried=$((tried + 1))
+    "$1" "${include[@]}" -ffp-contract=off "${@:2}" "${files[@]}" -lm -o "$dir/main" 2>"$dir/log" && "$dir/main" >"$dir/out" ||
+        fault "$*: $(cat "$dir/log" "$dir/out")"
+}
+
+# refused_by_compiler COMPILER FLAG...: an #error of base.h.
+refused_by_compiler()
+{
+    tried=$((tried + 1))
+    "$1" "${include[@]}" -ffp-contract=off "${@:2}" -fsyntax-only "$source/codec/base/status.c" 2>"$dir/log" &&
+        fault "$*: compiles"
+    grep -q 'error.*adcgs \(must not be built\|needs\)' "$dir/log" || fault "$*: $(head -n 5 "$dir/log")"
+}
+
+# refused_at_open COMPILER FLAG...: compiles, and the check says ADCGS_ERR_FPENV.
+refused_at_open()
+{
+    tried=$((tried + 1))
+    "$1" "${include[@]}" -ffp-contract=off "${@:2}" "${files[@]}" -lm -o "$dir/main" 2>"$dir/log" || { fault "$*: $(cat "$dir/log")"; return; }
+    "$dir/main" >"$dir/out"
+    [ $? -eq 1 ] || fault "$*: $(cat "$dir/out")"
+}
+
+# As the library does it: the kernels of AVX2 with their own flags, and with a flag of the user's.
+contracted_kernels()
+{
+    tried=$((tried + 1))
+    "$1" "${include[@]}" -O2 -ffp-contract=fast -mavx2 -mfma -c "$source/codec/base/strict_avx2.c" -o "$dir/avx2.o" &&
+        "$1" "${include[@]}" -O2 -ffp-contract=fast -DHAVE_AVX2 "${files[@]}" "$dir/avx2.o" -lm -o "$dir/main" || { fault "$1: AVX2"; return; }
+    "$dir/main" >"$dir/out"
+    [ $? -eq 1 ] && grep -q avx2 "$dir/out" || fault "$1: contracted AVX2 kernels: $(cat "$dir/out")"
+}
+
+# Objects that were compiled well, linked with -ffast-math: the start-up code flushes subnormals.
+flushed_by_linking()
+{
+    local file objects=()
+    tried=$((tried + 1))
+    for file in "${files[@]}"; do
+        objects+=("$dir/$(basename "$file" .c).o")
+        gcc "${include[@]}" -O2 -ffp-contract=off -c "$file" -o "${objects[-1]}" || { fault "gcc -c $file"; return; }
+    done
+    gcc "${objects[@]}" -ffast-math -lm -o "$dir/main" || { fault "gcc: linking with -ffast-math"; return; }
+    "$dir/main" >"$dir/out"
+    [ $? -eq 1 ] && grep -q subnormal "$dir/out" || fault "linked with -ffast-math: $(cat "$dir/out")"
+}
+
+try_compiler()
+{
+    local compiler=$1 level flag
+    for level in -O0 -O2 -O3; do
+        allowed "$compiler" $level
+    done
+    for flag in -ffast-math -Ofast -ffinite-math-only; do
+        refused_by_compiler "$compiler" $flag
+    done
+    [ "$(uname -m)" = x86_64 ] || return
+    allowed "$compiler" -O2 -mfma
+    refused_at_open "$compiler" -O2 -mfma -ffp-contract=fast
+    if grep -qw fma /proc/cpuinfo && grep -qw avx2 /proc/cpuinfo; then
+        contracted_kernels "$compiler"
+    fi
+}
+
+for compiler in gcc clang; do
+    command -v $compiler >/dev/null && try_compiler $compiler
+done
+if command -v gcc >/dev/null; then
+    for flag in -funsafe-math-optimizations '-fassociative-math -fno-signed-zeros -fno-trapping-math' -freciprocal-math; do
+        refused_by_compiler gcc -O2 $flag
+    done
+    if [ "$(uname -m)" = x86_64 ]; then
+        refused_by_compiler gcc -mfpmath=387
+        flushed_by_linking
+    fi
+fi
+[ $tried -gt 0 ] || exit 77
+[ "$faults" -eq 0 ]
