@@ -9,7 +9,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 
 from binary import F64
 from machine import Machine
-from reading import Bytes, Fault, Record
+from reading import Bytes, Fault
+from watching import camera_of
 
 # What is affordable in an interpreted language: splats derived, and pixels times splats rendered, for one vector.
 SPLATS_MOST, BLENDS_MOST = 600, 60000
@@ -29,12 +30,6 @@ def decode(path, partial=False):
     with open(path, "rb") as file:
         data = file.read()
     return _machine.decode_stream(Bytes.at(data, 0), not partial), list(_lines)
-
-
-def camera_of(entry):
-    numbers = {key: F64(float(entry[key])) for key in ("fx", "fy", "cx", "cy")}
-    return Record(width=entry["width"], height=entry["height"], near_plane=F64(float(entry.get("near_plane", entry.get("near")))),
-                  cam_to_world=[F64(float(v)) for v in entry["cam_to_world"]], **numbers)
 
 
 def _same_trace(path, lines, info):
