@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-2-Clause
+"""Plants one fault after the other in a copy of the specification and its surroundings, and expects the check that it is for to
+notice it, with a message that names it."""
+import argparse
+import os
+import re
+import shutil
+import sys
+import tempfile
+
+import check_spec
+import sources
+
+here = os.path.dirname(os.path.abspath(__file__))
+
+
+class Fault:
+    """In the first file of `path` (a glob of the copied tree) that holds `pattern`, it is replaced by `new`."""
+
+    def __init__(self, check, path, pattern, new, message):
+        self.check, self.path, self.pattern, self.new, self.message = check, path, pattern, new, message
+
+
+FAULTS = [
+    # S1: not in the notation; a name nobody defines; the same name twice; an unknown descriptor; an unknown language
+    Fault("S1", "spec/clauses/07-parsing.adoc", r"^range_finish\(d\):\n", "range_finish(d):\n    f = lambda: 0\n", "Lambda"),
+    Fault("S1", "spec/clauses/08-geometry.adoc", r"compared\(around\.before", "comparedd(around.before", "comparedd"),
+    Fault("S1", "spec/clauses/09-networks.adoc", r"^leaky\(v\):", "clip(v, limit):\n    return v\n\nleaky(v):", "clip is defined twice"),
+    Fault("S1", "spec/clauses/06-stream.adoc", r"(?<=\s\s)f64 \* 3$", "f65 * 3", "f65"),
+    Fault("S1", "spec/clauses/09-networks.adoc", r"^\[source,adcgs\]$", "[source,adcg]", "unknown language"),
+    # S2: a row lost, a row too many, another order, a range that cannot be read, or that looks ahead
+    Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_rows \|", "| time_rowz |", r"time_rows has no row"),
+    Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_rows \|(.*)\n\| time_width \|(.*)\n", r"| time_width |\2\n| time_rows |\1\n",
+          "another order"),
+    Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_width \| `0 \.\. 512`", "| time_width | `0 .. (512`", "cannot be read"),
+    Fault("S2", "spec/clauses/06-stream.adoc", r"^\| n_fv \| `1 \.\. 64`", "| n_fv | `1 .. n_eta`", "not known yet"),
+    # S3: an element of another size would not even parse; one of another name shows in the trace
+    Fault("S3", "spec/clauses/06-stream.adoc", r"\boctaves\b", "octavez", "octavez"),
+    # S4: another model, other splats, another frame, another verdict
+    Fault("S4", "spec/clauses/10-latents.adoc", r"clip\(64 \* q \+ mu, 32767\)", "clip(63 * q + mu, 32767)", "."),
+    Fault("S4", "spec/clauses/11-primitives.adoc", r"0x1\.fae148p-1", "0x1.fae14ap-1", r"splats at|the frame"),
+    Fault("S4", "spec/clauses/12-rendering.adoc", r"0x1\.ebf1b4p-3", "0x1.ebf1b6p-3", "the frame"),
+    Fault("S4", "conformance/manifest.json", r'"status": "data"', '"status": "limit"', "the text says data, the manifest limit"),
+    # S5: tables, coefficients, constants, elements
+    Fault("S5", "spec/tables/logistic.csv", r"^1,1,", "1,2,", "logistic"),
+    Fault("S5", "spec/clauses/annex-tables.adoc", r"(`tables/values\.csv` \| \d+ \| `)\w", r"\1x", "values.csv"),
+    Fault("S5", "spec/clauses/11-primitives.adoc", r"0x1\.3b270ep-7", "0x1.3b270cp-7", "0x1.3b270"),
+    Fault("S5", "codec/base/fmath.h", r"0x1\.465e92p\+1f", "0x1.465e94p+1f", "0x1.465e9"),
+    Fault("S5", "codec/bits/adaptive.c", r"rates\[\] = \{ 1, 2, 2,", "rates[] = { 1, 2, 3,", "RATE"),
+    Fault("S5", "codec/model/chunk.c", r"\{ 4096, 16, 12,", "{ 4096, 16, 13,", "LEVELS"),
+    Fault("S5", "codec/model/syntax.h", r"\(F32, voxel, 0x1p-40,", "(F32, voxel, 0x1p-41,", "voxel"),
+    Fault("S5", "codec/model/syntax.h", r"F\(U8, depth,", "F(U16, depth,", "depth"),
+    # S7: twice, badly formed, cited without being there, not cited, index out of date
+    Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEOM-001]]", "stands in"),
+    Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEO-2]]", "not of the form"),
+    Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEOM-998]]", "no test and no vector cites REQ-GEOM-998"),
+    Fault("S7", "tests/unit/test_geom.c", r"REQ-GEOM-002", "REQ-GEOM-" + "999", "test_geom.c: test_sorting cites REQ-GEOM-" + "999"),
+    Fault("S7", "tests/unit/test_geom.c", r"/\* REQ-GEOM-002 \*/\n", "", "out of date"),
+    # S8: a digit of an example
+    Fault("S8", "spec/clauses/annex-examples.adoc", r"HEAD\.k` \| 1\b", "HEAD.k` | 2", "annex-examples"),
+    # S9: links, open ends, terms, abbreviations, form
+    Fault("S9", "spec/clauses/08-geometry.adoc", r"<<adaptive>>", "<<adaptative>>", "no anchor for the reference"),
+    Fault("S9", "spec/clauses/08-geometry.adoc", r"^\[\[geom-split\]\]$", "[[geometry]]", "stands in"),
+    Fault("S9", "spec/clauses/08-geometry.adoc", r"^=== Result$", "=== Result TB" + "D", "left open"),
+    Fault("S9", "spec/clauses/03-terms.adoc", r"^voxel::", "voxelet::", "voxelet is used nowhere"),
+    Fault("S9", "spec/clauses/08-geometry.adoc", r"_Morton code_", "_Martin code_", "Martin code"),
+    Fault("S9", "spec/clauses/08-geometry.adoc", r"^The idea:", "The QZX idea:", "QZX"),
+    Fault("S9", "spec/clauses/08-geometry.adoc", r"^The idea:", "The idea: see /ho" + "me/me/notes.", "path of some machine"),
+    Fault("S9", "spec/clauses/08-geometry.adoc", r"^The idea:", "The idea: " + "very " * 50, "columns"),
+    Fault("S9", "spec/clauses/08-geometry.adoc", r"^// SPDX.*\n", "//\n", "no licence line"),
+    Fault("S9", "spec/adcgs.adoc", r"^include::clauses/08-geometry\.adoc\[\]$", "", "not included"),
+]
+
+
+class Arguments:
+    """What check_spec's checks want to know."""
+
+    def __init__(self, info, vectors):
+        self.info, self.vectors, self.jobs = info, vectors, 1
+
+
+def smallest_vectors(tree):
+    """A good vector with something of everything, and a bad one: the smallest of each kind."""
+    good, bad = [], []
+    for name, entry, path in tree.vectors():
+        if entry["verdict"] == "good":
+            pictures = entry.get("expect", entry).get("frames")
+            good.append((not pictures, os.path.getsize(path), name))
+        elif (entry.get("status") or entry["expect"]["status"]) == "data":
+            bad.append((os.path.getsize(path), name))
+    return [min(good)[-1]], [min(b for b in bad if b[0] > 0)[-1]]
+
+
+def copy_tree(top, to):
+    for folder in ("spec", "codec", "tests", "conformance"):
+        shutil.copytree(os.path.join(top, folder), os.path.join(to, folder), ignore=shutil.ignore_patterns("__pycache__", "*.o", ".libs"))
+    for place, folders, names in os.walk(to):
+        for name in folders + names:
+            os.chmod(os.path.join(place, name), 0o755)
+    return sources.Tree(to)
+
+
+def plant(tree, fault):
+    """The file as it was, or None if the fault finds no place."""
+    path = os.path.join(tree.top, fault.path)
+    if not os.path.exists(path):
+        return None
+    with open(path, encoding="utf-8") as file:
+        before = file.read()
+    after = re.sub(fault.pattern, fault.new, before, count=0 if fault.check == "S3" else 1, flags=re.M)
+    if after == before:
+        return None
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(after)
+    return before
+
+
+def restore(tree, fault, before):
+    with open(os.path.join(tree.top, fault.path), "w", encoding="utf-8") as file:
+        file.write(before)
+
+
+def try_fault(tree, fault, arguments):
+    """None, or what is wrong."""
+    before = plant(tree, fault)
+    if before is None:
+        return "finds no place"
+    try:
+        found, _ = check_spec.run_check(fault.check, tree, arguments)
+    finally:
+        restore(tree, fault, before)
+    if not found:
+        return "is not noticed"
+    if not any(re.search(fault.message, line) for line in found):
+        return "is noticed, but not by name: %s" % "; ".join(found[:3])
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--source", default=os.path.join(here, "..", ".."))
+    parser.add_argument("--info", help="the program adcgs-info")
+    parser.add_argument("--only", help="checks whose faults to plant, such as S1,S9")
+    arguments = parser.parse_args()
+    wanted = arguments.only.split(",") if arguments.only else sorted({fault.check for fault in FAULTS})
+    failed = 0
+    with tempfile.TemporaryDirectory() as place:
+        tree = copy_tree(os.path.abspath(arguments.source), place)
+        good, bad = smallest_vectors(tree)
+        settings = Arguments(arguments.info, good + bad)
+        for check in wanted:
+            faults, _ = check_spec.run_check(check, tree, settings)
+            for fault in faults:
+                print("%s: without any fault: %s" % (check, fault))
+            failed += bool(faults)
+        for fault in FAULTS:
+            if fault.check in wanted:
+                wrong = try_fault(tree, fault, settings)
+                failed += wrong is not None
+                print("%s: %s: %s in %s: %s" % ("FAIL" if wrong else "PASS", fault.check, fault.message, fault.path, wrong or "noticed"),
+                      flush=True)
+    print("%d faults planted, %d checks or faults failed" % (sum(f.check in wanted for f in FAULTS), failed))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

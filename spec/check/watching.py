@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Looks over the executor's shoulder: which operations the range decoder does and why, what networks compute, what a pixel sees."""
+import linecache
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "exec"))
+
+from binary import F64
+from machine import Machine
+from reading import Bytes, Record
+
+# Processes that only pass on what another one wants to know.
+PASSING = {"raw", "symbol", "bit", "adaptive", "value", "mixed", "tree", "uniform", "leaf", "latent", "latents", "tail", "decode_length",
+           "decode_signed", "raw_bits", "inner", "side", "one_sided"}
+
+
+class Operation:
+    """One operation of a range decoder: its kind, what it was given, R and V before it, the result, and where the text asks for it."""
+
+    def __init__(self, kind, state, given, asked):
+        self.kind, self.state, self.given, self.asked = kind, state, given, asked
+        self.result = None
+
+
+class SubStream:
+    """What happened between range_start and range_finish."""
+
+    def __init__(self, d):
+        self.d, self.name, self.operations, self.bytes = d, "", [], d.bytes
+
+
+def _asked_by():
+    """Name of the nearest process that says what is decoded, and its statement."""
+    frame = sys._getframe(3)
+    while frame:
+        code = frame.f_code
+        if code.co_filename.endswith(".adoc") and code.co_name not in PASSING:
+            return code.co_name, linecache.getline(code.co_filename, frame.f_lineno).split("#")[0].strip()
+        frame = frame.f_back
+    return "", ""
+
+
+class Watch:
+    """A machine whose steps are kept."""
+
+    def __init__(self, master):
+        self.lines, self.streams, self.depth = [], [], 0
+        self.machine = Machine(master, self.lines.append)
+        self.calls = {}
+        for name in ("symbol", "bit", "raw"):
+            self._watch_operation(name)
+        self._replace("range_start", self._started)
+        self._replace("trace_end", self._ended)
+
+    def _replace(self, name, make):
+        names = self.machine.names
+        original = names[name]
+        names[name] = lambda *arguments: make(original, *arguments)
+
+    def _started(self, original, data):
+        d = original(data)
+        self.streams.append(SubStream(d))
+        return d
+
+    def _ended(self, original, name, d):
+        for stream in self.streams:
+            if stream.d is d:
+                stream.name = name
+        return original(name, d)
+
+    def _watch_operation(self, name):
+        def make(original, d, *arguments):
+            own = [stream for stream in self.streams if stream.d is d][-1]
+            before = len(own.operations)
+            operation = Operation(name, (d.R, d.V), arguments, _asked_by())
+            result = original(d, *arguments)
+            if len(own.operations) == before and (name != "raw" or arguments[0] > 0):
+                operation.result = result
+                own.operations.append(operation)
+            return result
+        self._replace(name, make)
+
+    def keep(self, *names):
+        """From now on, arguments and result of each call of these processes."""
+        for name in names:
+            self.calls.setdefault(name, [])
+
+            def make(original, *arguments, name=name):
+                result = original(*arguments)
+                self.calls[name].append((arguments, result))
+                return result
+            self._replace(name, make)
+
+    def decode(self, path):
+        with open(path, "rb") as file:
+            data = file.read()
+        self.lines.clear()
+        return data, self.machine.decode_stream(Bytes.at(data, 0), True)
+
+
+def camera_of(entry):
+    """A camera of the manifest as the text wants it."""
+    numbers = {key: F64(float(entry[key])) for key in ("fx", "fy", "cx", "cy")}
+    return Record(width=entry["width"], height=entry["height"], near_plane=F64(float(entry.get("near_plane", entry.get("near")))),
+                  cam_to_world=[F64(float(v)) for v in entry["cam_to_world"]], **numbers)
+
+
+def frames_of(entry):
+    return entry.get("expect", entry).get("frames", [])
