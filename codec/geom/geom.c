@@ -31,6 +31,7 @@ typedef struct slot {
 typedef struct walk {
     adcgs_geom_coder coder;
     adcgs_geom_models models;
+    adcgs_memory *memory; /* of everything here; may be NULL */
     int depth;
     uint32_t n;
     const uint64_t *codes; /* encoder: [n], ascending */
@@ -179,9 +180,9 @@ static adcgs_status run(walk *w, adcgs_error *error)
     size_t slots = 8;
     while (slots < 2 * (size_t)w->n)
         slots *= 2;
-    w->cells = adcgs_alloc(NULL, w->n, sizeof *w->cells, error);
-    w->children = adcgs_alloc(NULL, w->n, sizeof *w->children, error);
-    w->slots = adcgs_alloc(NULL, slots, sizeof *w->slots, error);
+    w->cells = adcgs_alloc(w->memory, w->n, sizeof *w->cells, error);
+    w->children = adcgs_alloc(w->memory, w->n, sizeof *w->children, error);
+    w->slots = adcgs_alloc(w->memory, slots, sizeof *w->slots, error);
     if (!w->cells || !w->children || !w->slots)
         return adcgs_alloc_status(error);
     adcgs_geom_models_init(&w->models);
@@ -206,9 +207,9 @@ static adcgs_status run(walk *w, adcgs_error *error)
 
 static void clear(walk *w)
 {
-    adcgs_free(NULL, w->cells);
-    adcgs_free(NULL, w->children);
-    adcgs_free(NULL, w->slots);
+    adcgs_free(w->memory, w->cells);
+    adcgs_free(w->memory, w->children);
+    adcgs_free(w->memory, w->slots);
 }
 
 static adcgs_status check_size(uint32_t n, int depth, adcgs_status status, adcgs_error *error)
@@ -229,12 +230,14 @@ static uint32_t gather(uint64_t code, int depth)
     return v;
 }
 
-adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error)
+adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_memory *memory,
+                                    adcgs_error *error)
 {
     ADCGS_TRY(check_size(n, depth, ADCGS_ERR_DATA, error));
-    walk *w = adcgs_alloc(NULL, 1, sizeof *w, error);
+    walk *w = adcgs_alloc(memory, 1, sizeof *w, error);
     if (!w)
         return adcgs_alloc_status(error);
+    w->memory = memory;
     w->coder.dec = d;
     w->depth = depth;
     w->n = n;
@@ -246,7 +249,7 @@ adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, u
         for (int axis = 0; axis < 3; axis++)
             voxels[3 * i + (uint32_t)axis] = gather(w->cells[i].key >> (2 - axis), depth);
     clear(w);
-    adcgs_free(NULL, w);
+    adcgs_free(memory, w);
     return status;
 }
 
@@ -254,7 +257,7 @@ adcgs_status adcgs_geom_decode(const uint8_t *data, size_t bytes, uint32_t n, in
 {
     adcgs_range_dec d;
     adcgs_range_dec_init(&d, data, bytes);
-    return adcgs_geom_decode_from(&d, n, depth, voxels, error);
+    return adcgs_geom_decode_from(&d, n, depth, voxels, NULL, error);
 }
 
 static adcgs_status list_codes(uint64_t *codes, const uint32_t *voxels, uint32_t n, int depth, adcgs_error *error)

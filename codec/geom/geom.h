@@ -21,8 +21,12 @@ int adcgs_morton_sort(uint32_t *voxels, size_t n, uint32_t *order, adcgs_error *
  * 1 <= n, depth 0..21, n <= 2^(3 depth) is the caller's check (it is also checked here).
  */
 adcgs_status adcgs_geom_decode(const uint8_t *data, size_t bytes, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error);
-/** The same from a decoder that has been started. It is finished here, and holds its final state if all is well. */
-adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error);
+/**
+ * The same from a decoder that has been started. It is finished here, and holds its final state if all is well. Scratch of at
+ * most 128 bytes for each position and a constant comes from memory.
+ */
+adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_memory *memory,
+                                    adcgs_error *error);
 /** Append the coded positions to out. voxels: [n][3], Morton order, distinct (ADCGS_ERR_USAGE otherwise). */
 adcgs_status adcgs_geom_encode(adcgs_buffer *out, const uint32_t *voxels, uint32_t n, int depth, adcgs_error *error);
 

@@ -7,13 +7,24 @@
 
 #define STEP_BYTES 65536 /* payload memory grows with what arrives, not with what a header claims */
 #define SEGMENT_BYTES 8192
+/* What takes longer than a multiplication and addition, in these: a coded value, the splits of one bit of depth of a position,
+ * a coded weight. */
+#define VALUE_WORK 512
+#define DEPTH_WORK 8192
+#define WEIGHT_WORK 1024
 
 const adcgs_level *adcgs_level_get(int level)
 {
     static const adcgs_level levels[ADCGS_LEVELS] = {
-        { 4096, 16, 12, UINT32_C(1) << 19, UINT64_C(4) << 20, UINT64_C(2) << 20, UINT64_C(32) << 20 },
-        { 65536, 4096, 16, UINT32_C(1) << 21, UINT64_C(256) << 20, UINT64_C(32) << 20, UINT64_C(256) << 20 },
-        { 1048576, 65535, 21, UINT32_C(1) << 24, UINT64_C(64) << 30, UINT64_C(1) << 30, UINT64_C(4) << 30 },
+        { .anchors = 4096, .segments = 16, .depth = 12, .weights = UINT32_C(1) << 19, .networks = 256,
+          .file_bytes = UINT64_C(4) << 20, .chunk_bytes = UINT64_C(2) << 20, .model_bytes = UINT64_C(32) << 20,
+          .work = UINT64_C(1) << 34 },
+        { .anchors = 65536, .segments = 4096, .depth = 16, .weights = UINT32_C(1) << 21, .networks = 4096,
+          .file_bytes = UINT64_C(256) << 20, .chunk_bytes = UINT64_C(32) << 20, .model_bytes = UINT64_C(256) << 20,
+          .work = UINT64_C(1) << 36 },
+        { .anchors = 1048576, .segments = 65535, .depth = 21, .weights = UINT32_C(1) << 24, .networks = 65536,
+          .file_bytes = UINT64_C(64) << 30, .chunk_bytes = UINT64_C(1) << 30, .model_bytes = UINT64_C(4) << 30,
+          .work = UINT64_C(1) << 40 },
     };
     return &levels[level - 1];
 }
@@ -26,9 +37,28 @@ int adcgs_type_layer(uint32_t type)
     return -1;
 }
 
-uint64_t adcgs_segment_bytes(const adcgs_params *params, uint64_t anchors, uint64_t weights)
+void adcgs_nets_cost_add(adcgs_nets_cost *cost, const adcgs_params *params, int role, const adcgs_net *net)
 {
-    return SEGMENT_BYTES + anchors * adcgs_anchor_bytes(params) + weights * sizeof(int32_t);
+    const uint64_t weights = adcgs_net_weights(net);
+    const int per_primitive = role >= ADCGS_ROLE_ENTROPY_FG && role <= ADCGS_ROLE_PREDICTION;
+    cost->weights += weights;
+    if (role != ADCGS_ROLE_TIME)
+        cost->evaluated += weights * (per_primitive ? params->k : 1U);
+}
+
+adcgs_cost adcgs_segment_cost(const adcgs_params *params, uint64_t anchors, int depth, const adcgs_nets_cost *nets)
+{
+    const uint64_t values = adcgs_anchor_values(params);
+    const adcgs_cost cost = {
+        .bytes = SEGMENT_BYTES + anchors * adcgs_anchor_bytes(params) + nets->weights * sizeof(int32_t),
+        .work = anchors * (nets->evaluated + VALUE_WORK * values + DEPTH_WORK * (uint64_t)depth),
+    };
+    return cost;
+}
+
+uint64_t adcgs_weights_work(uint64_t weights)
+{
+    return WEIGHT_WORK * weights;
 }
 
 adcgs_status adcgs_source_read(adcgs_source *source, void *buffer, size_t bytes, size_t *got, adcgs_error *error)

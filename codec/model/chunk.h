@@ -38,13 +38,25 @@ typedef struct adcgs_level {
     uint32_t segments;
     uint32_t depth;
     uint32_t weights;  /**< over the networks of the stream */
+    uint32_t networks; /**< of the stream */
     uint64_t file_bytes, chunk_bytes, model_bytes;
+    uint64_t work;     /**< of decoding the stream and its primitives; one is about a multiplication and addition */
 } adcgs_level;
 #define ADCGS_LEVELS 3
 /** level 1..ADCGS_LEVELS. */
 const adcgs_level *adcgs_level_get(int level);
-/** What a segment counts towards model_bytes. */
-uint64_t adcgs_segment_bytes(const adcgs_params *params, uint64_t anchors, uint64_t weights);
+/** What is counted towards model_bytes and work, or is left of them. */
+typedef struct adcgs_cost {
+    uint64_t bytes, work;
+} adcgs_cost;
+/** The part of a segment's cost that one of its networks makes: weights for the whole segment, evaluated ones for each anchor. */
+typedef struct adcgs_nets_cost {
+    uint64_t weights, evaluated;
+} adcgs_nets_cost;
+void adcgs_nets_cost_add(adcgs_nets_cost *cost, const adcgs_params *params, int role, const adcgs_net *net);
+adcgs_cost adcgs_segment_cost(const adcgs_params *params, uint64_t anchors, int depth, const adcgs_nets_cost *nets);
+/** The work of decoding this many weights, whether they are new or repeated. */
+uint64_t adcgs_weights_work(uint64_t weights);
 
 /** The stream as bytes. */
 typedef struct adcgs_source {

@@ -8,11 +8,14 @@ int adcgs_params_layers(const adcgs_params *params)
     return params->n_fg ? 1 + params->chunks : 1;
 }
 
+uint64_t adcgs_anchor_values(const adcgs_params *params)
+{
+    return (uint64_t)params->n_eta + params->n_fv + ADCGS_SIGMA_N + ADCGS_COLOUR_N + (uint64_t)params->k * params->n_fg;
+}
+
 uint64_t adcgs_anchor_bytes(const adcgs_params *params)
 {
-    const uint64_t values = (uint64_t)params->n_eta + params->n_fv + ADCGS_SIGMA_N + ADCGS_COLOUR_N
-                            + (uint64_t)params->k * params->n_fg;
-    return 3 * sizeof(uint32_t) + sizeof(uint8_t) + sizeof(uint16_t) + values * sizeof(int16_t);
+    return 3 * sizeof(uint32_t) + sizeof(uint8_t) + sizeof(uint16_t) + adcgs_anchor_values(params) * sizeof(int16_t);
 }
 
 void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint32_t *n_out)

@@ -7,7 +7,8 @@
 
 /** Layers that streams with these parameters have: 1, or 1 + chunks. */
 int adcgs_params_layers(const adcgs_params *params);
-/** Bytes of the per-anchor arrays, per anchor (spec "Levels"). */
+/** Coded values of an anchor; bytes of the per-anchor arrays, per anchor (spec "Levels"). */
+uint64_t adcgs_anchor_values(const adcgs_params *params);
 uint64_t adcgs_anchor_bytes(const adcgs_params *params);
 /** Ranges and cross-field rules of the parameters. */
 adcgs_status adcgs_params_validate(const adcgs_params *params, adcgs_error *error);

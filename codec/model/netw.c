@@ -125,7 +125,7 @@ static adcgs_status decode_values(adcgs_parse *p, adcgs_net *nets, uint32_t n, a
  * has the weights of the one that it repeats; the others count.
  */
 static adcgs_status check_shapes(const adcgs_params *params, const adcgs_level *limits, const adcgs_net *nets, uint32_t n,
-                                 uint32_t first_id, const adcgs_net_table *table, adcgs_error *error)
+                                 uint32_t first_id, const adcgs_net_table *table, adcgs_cost *left, adcgs_error *error)
 {
     uint64_t weights = table->weights;
     if (first_id > table->n)
@@ -139,6 +139,13 @@ static adcgs_status check_shapes(const adcgs_params *params, const adcgs_level *
         weights += before ? 0 : adcgs_net_weights(&nets[i]);
         if (weights > limits->weights)
             return adcgs_fail(error, ADCGS_ERR_LIMIT, "NETW: more than %u weights, the level's limit", limits->weights);
+        if (first_id + i >= limits->networks)
+            return adcgs_fail(error, ADCGS_ERR_LIMIT, "NETW: more than %u networks, the level's limit", limits->networks);
+        const uint64_t work = adcgs_weights_work(adcgs_net_weights(&nets[i])); /* of repeated ones too: they are decoded */
+        if (work > left->work)
+            return adcgs_fail(error, ADCGS_ERR_LIMIT, "NETW: decoding the stream is more work than %llu, the level's limit",
+                              (unsigned long long)limits->work);
+        left->work -= work;
     }
     return ADCGS_OK;
 }
@@ -159,25 +166,26 @@ static adcgs_status enter_nets(adcgs_parse *p, const adcgs_params *params, adcgs
     return ADCGS_OK;
 }
 
-static adcgs_status parse_nets(adcgs_parse *p, const adcgs_params *params, const adcgs_level *limits, adcgs_net *nets,
-                               adcgs_net_table *table)
+static adcgs_status parse_nets(adcgs_parse *p, const adcgs_params *params, const adcgs_level *limits, adcgs_cost *left,
+                               adcgs_net *nets, adcgs_net_table *table)
 {
     uint32_t first_id, n;
     ADCGS_TRY(adcgs_parse_varint(p, "first_id", 0, UINT16_MAX, &first_id));
     ADCGS_TRY(adcgs_parse_varint(p, "networks", 1, ADCGS_ROLES, &n));
     for (uint32_t i = 0; i < n; i++)
         ADCGS_TRY(parse_shape(p, params, &nets[i]));
-    ADCGS_TRY(check_shapes(params, limits, nets, n, first_id, table, p->error));
+    ADCGS_TRY(check_shapes(params, limits, nets, n, first_id, table, left, p->error));
     ADCGS_TRY(decode_values(p, nets, n, table->memory));
     return enter_nets(p, params, nets, n, first_id, table);
 }
 
-adcgs_status adcgs_netw_parse(adcgs_parse *p, const adcgs_params *params, const adcgs_level *limits, adcgs_net_table *table)
+adcgs_status adcgs_netw_parse(adcgs_parse *p, const adcgs_params *params, const adcgs_level *limits, adcgs_cost *left,
+                              adcgs_net_table *table)
 {
     adcgs_net *nets = adcgs_alloc(table->memory, ADCGS_ROLES, sizeof *nets, p->error);
     if (!nets)
         return ADCGS_ERR_MEMORY;
-    const adcgs_status status = parse_nets(p, params, limits, nets, table);
+    const adcgs_status status = parse_nets(p, params, limits, left, nets, table);
     for (int i = 0; i < ADCGS_ROLES; i++)
         adcgs_net_release(&nets[i], table->memory);
     adcgs_free(table->memory, nets);

@@ -14,8 +14,9 @@ typedef struct adcgs_net_table {
 } adcgs_net_table;
 
 void adcgs_net_table_clear(adcgs_net_table *table);
-/** NETW: add its networks; one whose id is already taken must be equal to it. */
-adcgs_status adcgs_netw_parse(adcgs_parse *p, const adcgs_params *params, const adcgs_level *limits, adcgs_net_table *table);
+/** NETW: add its networks; one whose id is already taken must be equal to it. left is what is left of the level's work. */
+adcgs_status adcgs_netw_parse(adcgs_parse *p, const adcgs_params *params, const adcgs_level *limits, adcgs_cost *left,
+                              adcgs_net_table *table);
 /** nets with ids first_id, first_id + 1, ... */
 adcgs_status adcgs_netw_write(adcgs_buffer *out, const adcgs_net *const *nets, uint32_t n, uint32_t first_id, adcgs_error *error);
 
@@ -34,9 +35,9 @@ adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_
                               int64_t ticks[2]);
 adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, const adcgs_model *model, const adcgs_role_ids *ids,
                               adcgs_error *error);
-/** GEOM: allocates the model's arrays once the counts are checked, and decodes the positions. */
+/** GEOM: allocates the model's arrays once the counts are checked, and decodes the positions. left: of the level, is used up. */
 adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, adcgs_model *model,
-                              uint64_t *budget, uint64_t weights, adcgs_memory *memory);
+                              adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory);
 adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error);
 
 adcgs_status adcgs_cams_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory *memory);

@@ -147,6 +147,21 @@ adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, con
     return ADCGS_OK;
 }
 
+/** Use up a segment's cost, if that much is left. */
+static adcgs_status spend(const adcgs_parse *p, const adcgs_level *limits, adcgs_cost cost, adcgs_cost *left)
+{
+    if (cost.bytes > left->bytes)
+        return adcgs_fail(p->error, ADCGS_ERR_LIMIT,
+                          "GEOM: the models of the stream need more than %llu bytes, the level's limit",
+                          (unsigned long long)limits->model_bytes);
+    if (cost.work > left->work)
+        return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "GEOM: decoding the stream is more work than %llu, the level's limit",
+                          (unsigned long long)limits->work);
+    left->bytes -= cost.bytes;
+    left->work -= cost.work;
+    return ADCGS_OK;
+}
+
 static adcgs_status check_geom(const adcgs_parse *p, const adcgs_syn_geom *g, const adcgs_level *limits, uint32_t max_anchors)
 {
     if (g->anchors > max_anchors)
@@ -159,28 +174,23 @@ static adcgs_status check_geom(const adcgs_parse *p, const adcgs_syn_geom *g, co
 }
 
 adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, adcgs_model *model,
-                              uint64_t *budget, uint64_t weights, adcgs_memory *memory)
+                              adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory)
 {
     adcgs_syn_geom g;
     const uint8_t *data;
     adcgs_range_dec d;
     ADCGS_TRY(adcgs_syn_geom_parse(p, &g));
     ADCGS_TRY(check_geom(p, &g, limits, max_anchors));
-    const uint64_t bytes = adcgs_segment_bytes(&model->params, g.anchors, weights);
-    if (bytes > *budget)
-        return adcgs_fail(p->error, ADCGS_ERR_LIMIT,
-                          "GEOM: the models of the stream need more than %llu bytes, the level's limit",
-                          (unsigned long long)limits->model_bytes);
-    *budget -= bytes;
+    ADCGS_TRY(spend(p, limits, adcgs_segment_cost(&model->params, g.anchors, g.depth, nets), left));
     model->n = g.anchors;
     model->depth = g.depth;
     memcpy(model->origin, g.origin, sizeof model->origin);
     model->voxel = g.voxel;
     ADCGS_TRY(adcgs_model_alloc(model, memory, p->error));
-    const size_t left = adcgs_reader_left(&p->r);
-    ADCGS_TRY(adcgs_parse_bytes(p, "positions", left, &data));
-    adcgs_range_dec_init(&d, data, left);
-    ADCGS_TRY(adcgs_geom_decode_from(&d, model->n, model->depth, model->pos, p->error));
+    const size_t bytes = adcgs_reader_left(&p->r);
+    ADCGS_TRY(adcgs_parse_bytes(p, "positions", bytes, &data));
+    adcgs_range_dec_init(&d, data, bytes);
+    ADCGS_TRY(adcgs_geom_decode_from(&d, model->n, model->depth, model->pos, memory, p->error));
     adcgs_parse_trace_end(p, &d);
     return ADCGS_OK;
 }

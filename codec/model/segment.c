@@ -87,10 +87,10 @@ adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t orig
     return ADCGS_OK;
 }
 
-/** Whether the networks that SEGM named are there, and their weights. */
-static adcgs_status check_nets(const adcgs_segment *s, uint64_t *weights)
+/** Whether the networks that SEGM named are there, and what they cost. */
+static adcgs_status check_nets(const adcgs_segment *s, adcgs_nets_cost *cost)
 {
-    *weights = 0;
+    *cost = (adcgs_nets_cost){ 0, 0 };
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const uint32_t id = s->ids.id[role];
         if (!(s->ids.mask >> role & 1))
@@ -98,7 +98,7 @@ static adcgs_status check_nets(const adcgs_segment *s, uint64_t *weights)
         if (id >= s->nets->n || s->nets->nets[id].role != role)
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: network_id for %s is %u, which is no such network",
                               adcgs_role_name(role), id);
-        *weights += adcgs_net_weights(&s->nets->nets[id]);
+        adcgs_nets_cost_add(cost, &s->stream->params, role, &s->nets->nets[id]);
     }
     return ADCGS_OK;
 }
@@ -113,11 +113,11 @@ static adcgs_status copy_nets(adcgs_segment *s)
 
 adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
 {
-    uint64_t weights;
+    adcgs_nets_cost cost;
     if (s->stage != ADCGS_SEGMENT_STARTED)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected once, after SEGM");
-    ADCGS_TRY(check_nets(s, &weights));
-    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, &s->model, &s->budget, weights, s->options->memory));
+    ADCGS_TRY(check_nets(s, &cost));
+    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, &s->model, &s->left, &cost, s->options->memory));
     ADCGS_TRY(copy_nets(s));
     ADCGS_TRY(adcgs_latents_create(&s->latents, &s->model, s->options->cpu, s->options->memory, s->error));
     s->n_slices = ((s->model.n - 1) >> s->stream->slice_log2) + 1;

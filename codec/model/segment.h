@@ -16,7 +16,7 @@ typedef struct adcgs_segment {
     uint32_t max_anchors;
     const adcgs_net_table *nets;
     uint32_t capacity;    /**< of stream->segments */
-    uint64_t budget;      /**< model bytes left of the level's */
+    adcgs_cost left;      /**< of the level's model bytes and work */
     adcgs_buffer index;   /**< what INDX must hold, less the count */
     int64_t ticks[2];     /**< of the segment read last */
 

@@ -66,7 +66,7 @@ static adcgs_status read_head(stream_reader *s, adcgs_parse *p)
     s->head_bytes = bytes;
     s->segment.limits = adcgs_level_get(s->stream->level);
     s->segment.max_anchors = s->head.max_anchors;
-    s->segment.budget = s->segment.limits->model_bytes;
+    s->segment.left = (adcgs_cost){ s->segment.limits->model_bytes, s->segment.limits->work };
     return ADCGS_OK;
 }
 
@@ -141,7 +141,7 @@ static adcgs_status use_chunk(stream_reader *s, const adcgs_chunk *chunk, adcgs_
     case ADCGS_TYPE_HEAD:
         return s->head_payload ? repeat_head(s, chunk, p) : read_head(s, p);
     case ADCGS_TYPE_NETW:
-        return adcgs_netw_parse(p, &s->stream->params, s->segment.limits, &s->nets);
+        return adcgs_netw_parse(p, &s->stream->params, s->segment.limits, &s->segment.left, &s->nets);
     case ADCGS_TYPE_SEGM:
         ADCGS_TRY(adcgs_segment_finish(&s->segment, chunk->origin, 0));
         return adcgs_segment_start(&s->segment, p, chunk->origin);

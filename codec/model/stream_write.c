@@ -15,7 +15,8 @@ typedef struct writer {
     uint32_t crc_of_crcs;
     const adcgs_net **nets; /**< written so far, by id */
     uint32_t n_nets;
-    uint64_t weights, model_bytes;
+    uint64_t weights;
+    adcgs_cost spent;       /**< of the level's model bytes and work */
     adcgs_buffer index;     /**< payload of INDX, less the count */
     adcgs_error *error;
 } writer;
@@ -86,6 +87,7 @@ static uint32_t assign_ids(writer *w, const adcgs_model *model, adcgs_role_ids *
         if (id == w->n_nets) {
             w->nets[w->n_nets++] = net;
             w->weights += adcgs_net_weights(net);
+            w->spent.work += adcgs_weights_work(adcgs_net_weights(net));
         }
         ids->mask |= (uint16_t)(1 << role);
         ids->id[role] = (uint16_t)id;
@@ -95,14 +97,20 @@ static uint32_t assign_ids(writer *w, const adcgs_model *model, adcgs_role_ids *
 
 static adcgs_status check_segment(writer *w, const adcgs_model *model)
 {
-    uint64_t weights = 0;
+    const adcgs_level *limits = w->limits;
+    adcgs_nets_cost nets = { 0, 0 };
     for (int role = 0; role < ADCGS_ROLES; role++)
-        weights += model->net[role].present ? adcgs_net_weights(&model->net[role]) : 0;
-    w->model_bytes += adcgs_segment_bytes(&model->params, model->n, weights);
-    if (w->model_bytes > w->limits->model_bytes || w->weights > w->limits->weights || model->depth > w->limits->depth
-        || w->n_nets > UINT16_MAX)
-        return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: %llu model bytes, %llu weights or depth %u exceed level %u",
-                          (unsigned long long)w->model_bytes, (unsigned long long)w->weights, model->depth, w->stream->level);
+        if (model->net[role].present)
+            adcgs_nets_cost_add(&nets, &model->params, role, &model->net[role]);
+    const adcgs_cost cost = adcgs_segment_cost(&model->params, model->n, model->depth, &nets);
+    w->spent.bytes += cost.bytes;
+    w->spent.work += cost.work;
+    if (w->spent.bytes > limits->model_bytes || w->spent.work > limits->work || w->weights > limits->weights
+        || model->depth > limits->depth || w->n_nets > limits->networks)
+        return adcgs_fail(w->error, ADCGS_ERR_LIMIT,
+                          "stream: %llu model bytes, work %llu, %llu weights, %u networks or depth %u exceed level %u",
+                          (unsigned long long)w->spent.bytes, (unsigned long long)w->spent.work, (unsigned long long)w->weights,
+                          w->n_nets, model->depth, w->stream->level);
     return ADCGS_OK;
 }
 
