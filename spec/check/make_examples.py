@@ -28,7 +28,7 @@ Complete streams from the conformance vectors, decoded to the last bit. Everythi
 document, while it decoded these streams. Who looks for a fault in a decoder compares line by line, and finds the first difference.
 
 Positions are in bytes from the first byte of the stream; where a column says so, in bits. R and V are the state of the range decoder _before_ the operation, in hexadecimal. The column "asked by" names
-the process that wants to know, and its statement. An operation `symbol` shows the number s that it compares with its table and the interval c[k], c[k + 1] that holds it; `bit` shows the probability p1 out of 65536; `raw` the number of bits.
+the process that wants to know, and its statement. An operation `symbol` shows the number s that it compares with its table and the interval c[k], c[k + 1] that holds it; `bit` shows the probability p1 out of 65536; `bits` the number of bits.
 """
 
 
@@ -116,7 +116,7 @@ def given(operation):
         return "symbol: s = %d in %d, %d" % (s, c[operation.result], c[operation.result + 1])
     if operation.kind == "bit":
         return "bit: p1 = %d" % operation.given[0]
-    return "raw: %d" % operation.given[0]
+    return "bits: %d" % operation.given[0]
 
 
 def operation_table(stream):
@@ -206,18 +206,24 @@ def field_rows(machine, record):
 
 
 def pixel_tables(watch, stream, splats, entry):
-    """A frame's pixel nearest to the middle that shows something: the projections, then what each splat does to it."""
-    machine = watch.machine
-    camera = camera_of(entry)
-    watch.keep("project", "blend_splat")
+    """A frame's pixel nearest to the middle that shows something: the first projection, then what each splat does to it."""
+    machine, camera = watch.machine, camera_of(entry)
+    watch.keep("project", "ordered", "make_view")
     frame = machine.render(stream.head, splats, camera)
-    lines = []
-    for (arguments, projected) in watch.calls["project"][:1]:
-        lines += [".Projection of the splat by camera \"%s\"" % entry["name"]]
+    view, drawn = watch.calls["make_view"][-1][1], watch.calls["ordered"][-1][1]
+    lines = [".The view of camera \"%s\"" % entry["name"]] + table("1,8", ("Element", "Values (patterns)"), field_rows(machine, view))
+    for _, projected in [call for call in watch.calls["project"] if call[1] is not None][:1]:
+        lines += [".Projection of the splat in slot %d" % projected.slot]
         lines += table("1,8", ("Element", "Values (patterns)"), field_rows(machine, projected))
     j, i = nearest_drawn(frame, stream.head.background)
-    lines += [".The pixel in column %d, row %d" % (i, j)]
-    lines += table("2,7", ("Name", "Values (patterns)"), [("value", ", ".join("`%s`" % patterned(machine, x) for x in frame[j][i]))])
+    steps = watch.locals_of("blend_pixel", lambda: machine.blend_block(view, drawn, i - i % 4, j - j % 4))
+    rows, here = [], (i + 0.5, j + 0.5)
+    for step in [step for step in steps if (step["pixel"].x, step["pixel"].y) == here][:8]:
+        rows.append([step["s"].slot] + ["`%s`" % patterned(machine, step[n]) if n in step else "" for n in ("dx", "dy", "power", "alpha", "weight")])
+    lines += [".What the first splats do to the pixel in column %d, row %d" % (i, j)]
+    lines += table("1,3,3,3,3,3", ("Slot", "dx", "dy", "power", "alpha", "weight"), rows)
+    lines += ["The pixel's values are %s." % ", ".join("`%s`" % patterned(machine, x) for x in frame[j][i]), ""]
+    lines += ["The digest of the frame, %d × %d pixels, is `%s`." % (view.width, view.height, bytes(machine.frame_digest(frame)).hex()), ""]
     return lines
 
 

@@ -11,8 +11,8 @@ from machine import Machine
 from reading import Bytes, Record
 
 # Processes that only pass on what another one wants to know.
-PASSING = {"raw", "symbol", "bit", "adaptive", "value", "mixed", "tree", "uniform", "leaf", "latent", "latents", "tail", "decode_length",
-           "decode_signed", "raw_bits", "inner", "side", "one_sided"}
+PASSING = {"raw", "bits", "bit", "symbol", "adaptive", "value", "mixed", "tree", "uniform", "leaf", "latent", "latents", "tail",
+           "decode_length", "decode_signed", "inner", "side", "one_sided"}
 
 
 class Operation:
@@ -45,10 +45,10 @@ class Watch:
     """A machine whose steps are kept."""
 
     def __init__(self, master):
-        self.lines, self.streams, self.depth = [], [], 0
+        self.lines, self.streams = [], []
         self.machine = Machine(master, self.lines.append)
         self.calls = {}
-        for name in ("symbol", "bit", "raw"):
+        for name in ("symbol", "bit", "bits"):
             self._watch_operation(name)
         self._replace("range_start", self._started)
         self._replace("trace_end", self._ended)
@@ -72,13 +72,10 @@ class Watch:
     def _watch_operation(self, name):
         def make(original, d, *arguments):
             own = [stream for stream in self.streams if stream.d is d][-1]
-            before = len(own.operations)
             operation = Operation(name, (d.R, d.V), arguments, _asked_by())
-            result = original(d, *arguments)
-            if len(own.operations) == before and (name != "raw" or arguments[0] > 0):
-                operation.result = result
-                own.operations.append(operation)
-            return result
+            operation.result = original(d, *arguments)
+            own.operations.append(operation)
+            return operation.result
         self._replace(name, make)
 
     def keep(self, *names):
@@ -91,6 +88,20 @@ class Watch:
                 self.calls[name].append((arguments, result))
                 return result
             self._replace(name, make)
+
+    def locals_of(self, process, call):
+        """What the named process had computed at the end of each of its calls while call() ran."""
+        found = []
+
+        def look(frame, event, _):
+            if event == "return" and frame.f_code.co_name == process and frame.f_code.co_filename.endswith(".adoc"):
+                found.append(dict(frame.f_locals))
+        sys.setprofile(look)
+        try:
+            call()
+        finally:
+            sys.setprofile(None)
+        return found
 
     def decode(self, path):
         with open(path, "rb") as file:
