@@ -4,6 +4,7 @@ import copy
 import csv
 import hashlib
 import os
+import re
 
 import binary
 import notation
@@ -68,6 +69,7 @@ class Machine:
 
     def __init__(self, master=None, trace=None):
         self.trace = trace or (lambda line: None)
+        self.layer = ""
         self.text = notation.Text(master or os.path.join(folder, "adcgs.adoc"))
         self.tables = os.path.join(os.path.dirname(master), "tables") if master else os.path.join(folder, "tables")
         self.program = notation.Program(self.text, self._builtins())
@@ -89,7 +91,7 @@ class Machine:
         names.update(len=len, range=_range, sum=sum, sorted=sorted, array=_array, record=Record, table=Dictionary, little=_little,
                      require=_require, md5=lambda data: list(hashlib.md5(bytes(data)).digest()),
                      min=_integers("min", min), max=_integers("max", max), abs=_integers("abs", abs),
-                     bit_length=lambda n: n.bit_length(), parse=self._parse, parse_prefix=self._parse_prefix,
+                     bit_length=lambda n: n.bit_length(), parse=self._parse, parse_prefix=self._parse_prefix, try_parse=self._try_parse,
                      trace_end=self._trace_end, trace_bytes=self._trace_bytes, trace_hex=self._trace_hex)
         names.update(self._load_tables())
         return names
@@ -97,7 +99,8 @@ class Machine:
     def _load_tables(self):
         """STRETCH and SQUASH from a file of annex "Tables"; VALUE_TABLE is filled once the process that completes it is there."""
         rows = self._rows("logistic.csv")
-        return {"VALUE_TABLE": [[None] * 64 for _ in range(4)], "STRETCH": [row[1] for row in rows], "SQUASH": [row[2] for row in rows]}
+        values = [[None] * 64 for _ in range(4)]
+        return {"VALUE_TABLE": values, "STRETCH": [row[1] for row in rows], "SQUASH": [row[2] for row in rows]}
 
     def _fill_values(self):
         """VALUE_TABLE[shape][level] from the rows of values.csv, as the text completes them."""
@@ -114,7 +117,10 @@ class Machine:
             raise NotationError("parse of %r, which is no syntax table" % (structure,))
         if not isinstance(payload, Bytes):
             raise NotationError("parse of %r, which is no part of the stream" % (payload,))
-        name = structure.name + (str(arguments[0]) if structure.name == "FEA" else "")
+        name = structure.name.split("_")[0]
+        if name == "FEA":
+            self.layer = str(arguments[0])
+            name += self.layer
         s = Reading(payload, name, self.trace)
         self._run(s, structure, arguments)
         return s
@@ -133,12 +139,22 @@ class Machine:
             raise Fault("data", "%s: %d bytes are left over" % (s.name, len(payload) - s.position))
         return s.record
 
+    def _try_parse(self, structure, payload, *arguments):
+        try:
+            return self._parse_prefix(structure, payload, *arguments)
+        except Fault:
+            return None
+
+    def _name(self, name):
+        """In the trace FEA is the layer whose table was read last."""
+        return re.sub(r"^FEA\b", "FEA" + self.layer, name)
+
     def _trace_end(self, name, d):
         self.trace("%d %s.range_end range 0x%016x value 0x%016x virtual %d"
-                   % (8 * (d.bytes.origin + len(d.bytes)), name, d.R, d.V, d.virtual))
+                   % (8 * (d.bytes.origin + len(d.bytes)), self._name(name), d.R, d.V, d.virtual))
 
     def _trace_bytes(self, name, data):
-        self.trace("%d %s %d bytes" % (8 * data.origin, name, len(data)))
+        self.trace("%d %s %d bytes" % (8 * data.origin, self._name(name), len(data)))
 
     def _trace_hex(self, name, data):
         self.trace("%d %s %s" % (8 * data.origin, name, bytes(data).hex()))

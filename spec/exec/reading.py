@@ -18,6 +18,11 @@ class Bytes(bytes):
 
     origin = 0
 
+    def __eq__(self, other):
+        return list(self) == list(other)
+
+    __hash__ = bytes.__hash__
+
     @staticmethod
     def at(data, origin):
         result = Bytes(data)
