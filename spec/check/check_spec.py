@@ -11,6 +11,8 @@ import sources
 here = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(here, "..", "exec"))
 
+from binary import NotationError
+
 TITLES = {
     "S1": "blocks are in the notation and compile",
     "S2": "syntax and semantics mirror each other",
@@ -69,7 +71,10 @@ def main():
     failed = 0
     for name in arguments.only.split(","):
         start = time.monotonic()
-        faults, remark = run_check(name, tree, arguments)
+        try:
+            faults, remark = run_check(name, tree, arguments)
+        except NotationError as error:
+            faults, remark = ["the text: %s" % error], ""
         for fault in faults:
             print("%s: %s" % (name, fault))
         print("%s: %s %s (%s%.1f s)" % ("FAIL" if faults else "PASS", name, TITLES[name], remark and remark + "; ",

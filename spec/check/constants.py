@@ -25,7 +25,7 @@ OTHERWISE = (
     ("0x1.fae148p-1", "splat/splat_kernels.h", "0.99f"),
     ("0x1.715476p-1", "render/project_kernels.h", "-0.5f * ADCGS_LOG2E"),
 )
-_examples = re.compile(r"^\w+_examples\(\):.*\n(?:[ \n].*\n|\n)*", re.M)
+_examples = re.compile(r"^\w*examples?\(\):.*\n(?:[ \n].*\n|\n)*", re.M)
 _hexadecimal = re.compile(r"-?0x[0-9a-f]\.[0-9a-f]+p[+-]?\d+")
 _full = {"u8": (0, 2**8 - 1), "u16": (0, 2**16 - 1), "u32": (0, 2**32 - 1), "u64": (0, 2**64 - 1)}
 
@@ -89,7 +89,7 @@ def _fractions(tree, text):
 def _examples_hold(tree, text):
     """The text's own examples, and its known answer."""
     machine, faults = Machine(tree.master()), []
-    for name in [n for n in machine.program.processes if n.endswith("_examples")]:
+    for name in [n for n in machine.program.processes if re.search("examples?$", n)]:
         try:
             machine.names[name]()
         except Fault:
@@ -129,8 +129,9 @@ CONSTANTS = (
     ("E24_MAX", "net/e24.h", r"#define ADCGS_E24_A (\d+)"),
     ("RATE", "bits/adaptive.c", r"rates\[\] = \{([^}]*)\}"),
     ("SIGNATURE", "model/chunk.h", None),
-    ("LEVELS", "model/chunk.c", None),
 )
+# Bounds of the levels: constants of the text, and the implementation's names where they differ.
+LEVEL_NAMES = {"STREAM_BYTES": "file_bytes"}
 
 
 def _constants(tree, text):
@@ -144,24 +145,37 @@ def _constants(tree, text):
             continue
         if name == "SIGNATURE":
             given = list(b"\x8bADC\r\n\x1a\n") if "\"\\x8B\"" in _read(tree, path) else None
-        elif name == "LEVELS":
-            given = _levels(_read(tree, path))
         else:
             given = _numbers(re.search(pattern, _read(tree, path)).group(1))
-        wanted = _levels_of_text(defined[name]) if name == "LEVELS" else _numbers(defined[name])
-        if sorted(given or []) != sorted(wanted):
-            faults.append("%s is %s in the text, %s in %s" % (name, wanted, given, path))
-    return faults
+        if given != _numbers(defined[name]):
+            faults.append("%s is %s in the text, %s in %s" % (name, defined[name], given, path))
+    return faults + _levels(tree, text, defined)
 
 
-def _levels(source):
-    """All bounds of all levels, in one list."""
-    table = re.search(r"levels\[ADCGS_LEVELS\] = \{(.*?)\n    \};", source, re.S).group(1)
-    return [int(_value_of(entry)) for row in re.findall(r"\{([^{}]*)\}", table) for entry in row.split(",")]
+def _levels(tree, text, defined):
+    """Each bound of the implementation's table is a constant of the text, and a row of its table of levels."""
+    faults, code = [], {}
+    table = re.search(r"levels\[ADCGS_LEVELS\] = \{(.*?)\n    \};", _read(tree, "model/chunk.c"), re.S).group(1)
+    for name, value in re.findall(r"\.(\w+) = ([^,}]+)", table):
+        code.setdefault(name, []).append(int(_value_of(value)))
+    printed = [row for clause in text.clauses for row in _printed_levels(clause)]
+    for name, values in defined.items():
+        field = LEVEL_NAMES.get(name, name.lower())
+        if field in code:
+            given = [_value_of(v) for v in values.strip()[1:-1].split(",")][1:]
+            if given != code[field]:
+                faults.append("%s is %s in the text, %s in model/chunk.c" % (name, given, code[field]))
+            if given not in printed:
+                faults.append("%s, %s, is no row of the table of levels" % (name, given))
+            del code[field]
+    return faults + ["the level's bound %s is no constant of the text" % field for field in code]
 
 
-def _levels_of_text(source):
-    return [int(_value_of(entry)) for entry in re.findall(r"=\s*([^,()=]+)", source)]
+def _printed_levels(clause):
+    for line in clause.lines:
+        cells = [re.sub(r"\^(\d+)\^", r"**\1", cell.strip()) for cell in line.split("|")[2:]]
+        if len(cells) == 3 and all(re.fullmatch(r"[\d* ]+", cell) for cell in cells):
+            yield [_value_of(cell) for cell in cells]
 
 
 # ---- Syntax elements: type and range ----

@@ -13,7 +13,7 @@ from reading import Bytes, Fault
 from watching import camera_of
 
 # What is affordable in an interpreted language: splats derived, and pixels times splats rendered, for one vector.
-SPLATS_MOST, BLENDS_MOST = 600, 60000
+SPLATS_MOST, BLENDS_MOST = 2000, 400000
 POINTS = ("trace", "model", "splats", "frames", "verdict")
 
 _machine, _lines = None, []
