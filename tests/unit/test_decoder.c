@@ -164,29 +164,36 @@ static void test_config(void **state)
     adcgs_close(&d);
 }
 
-/** The last segment that starts at or before the time, at its nearest time. */
+/** REQ-PRIM-021, REQ-PRIM-023: the last segment that starts at or before the time, at its nearest time; all layers or one. */
 static void test_segments_by_time(void **state)
 {
     fixture *f = *state;
-    adcgs_decoder *d = open_with(f, NULL);
     const double middle = f->stream.segments[1].time_start;
     const double times[] = {
         -5, 0, nextafter(middle, 0), middle, f->stream.segments[1].time_end, f->stream.segments[2].time_start, 1e9, NAN
     };
     const int expected[] = { 0, 0, 0, 1, 1, 2, 2, 0 };
-    for (size_t i = 0; i < ADCGS_COUNTOF(times); i++) {
-        const adcgs_model *m = &f->stream.segments[expected[i]];
-        adcgs_primitives p;
-        assert_int_equal(adcgs_get_primitives(d, times[i], &p), ADCGS_OK);
-        assert_int_equal(p.n, (m->n + 63) / 64 * 64 * 4);
-        for (uint32_t j = 0; j < m->n; j++) /* masks tell the segments apart */
-            for (uint32_t k = 0; k < 4; k++)
-                assert_int_equal(p.opacity[(j / 64 * 4 + k) * 64 + j % 64] > 0, m->mask[j] >> k & 1);
+    adcgs_config config;
+    adcgs_config_init(&config);
+    for (config.layers = 0; config.layers < 2; config.layers++) {
+        adcgs_decoder *d = open_with(f, &config);
+        for (size_t i = 0; i < ADCGS_COUNTOF(times); i++) {
+            const adcgs_model *m = &f->stream.segments[expected[i]];
+            adcgs_primitives p;
+            assert_int_equal(adcgs_get_primitives(d, times[i], &p), ADCGS_OK);
+            assert_int_equal(p.n, (m->n + 63) / 64 * 64 * 4);
+            for (uint32_t j = 0; j < m->n; j++) /* masks tell the segments apart */
+                for (uint32_t k = 0; k < 4; k++)
+                    assert_int_equal(p.opacity[(j / 64 * 4 + k) * 64 + j % 64] > 0, m->mask[j] >> k & 1);
+        }
+        adcgs_close(&d);
     }
-    adcgs_close(&d);
 }
 
-/** Of splats: by time, each with its own segment's masks. Of a frame: its samples in order, as little-endian bytes. */
+/**
+ * REQ-PRIM-019: digests of splats, by time, each with its own segment's masks. REQ-REND-011: of a frame, its samples in order
+ * as little-endian bytes.
+ */
 static void test_digests(void **state)
 {
     fixture *f = *state;

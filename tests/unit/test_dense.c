@@ -56,7 +56,7 @@ static void check_shape(const adcgs_dense_dsp *dsp, int n_out, int n_in)
     assert_memory_equal(y, expected, bytes);
 }
 
-/* REQ-CONV-002, REQ-PRIM-008 */
+/* REQ-CONV-002, REQ-PRIM-008, REQ-PRIM-020 */
 static void test_dense(void **state)
 {
     static const int sizes[] = {0, 1, 2, 3, 5, 6, 7, 9, 11, 12, 13, 14, 16, 23, 32, 48, 64, 70};

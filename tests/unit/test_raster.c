@@ -280,7 +280,7 @@ static void test_reference(void **state)
     adcgs_free(NULL, s.data);
 }
 
-/* Splats over all of a large image, so many that their pairs would not fit: refused, not tried. */
+/* REQ-REND-010. Splats over all of a large image, so many that their pairs would not fit: refused, not tried. */
 static void test_limits(void **state)
 {
     scene_splats s = scene_create(4096);

@@ -235,7 +235,7 @@ static void clear_model(adcgs_model *m)
 }
 
 /* REQ-PRIM-005, REQ-PRIM-006, REQ-PRIM-008, REQ-PRIM-009, REQ-PRIM-010, REQ-PRIM-011, REQ-PRIM-012, REQ-PRIM-013,
-   REQ-PRIM-014, REQ-PRIM-015, REQ-PRIM-016, REQ-PRIM-017, REQ-PRIM-018 */
+   REQ-PRIM-014, REQ-PRIM-015, REQ-PRIM-016, REQ-PRIM-017, REQ-PRIM-018, REQ-PRIM-022 */
 static void test_against_reference(void **state)
 {
     uint64_t random = 5;
