@@ -33,7 +33,9 @@ def camera_of(words):
 def answer(machine, stream, request):
     """The protocol of clause "Conformance": a line for each request, in order."""
     cameras, splats = [], {}
-    for words in (line.split() for line in request if line.strip()):
+    for words in request:
+        if words[0] == "complete":
+            continue
         if words[0] == "camera":
             cameras.append(camera_of(words[1:]))
         elif words[0] == "model":
@@ -47,7 +49,8 @@ def answer(machine, stream, request):
                 print("splats %s %s" % (time, hexadecimal(machine.splats_digest(splats[time]))))
             else:
                 frame = machine.render(stream.head, splats[time], cameras[int(words[1])])
-                print("frame %s %s %s" % (words[1], time, hexadecimal(machine.frame_digest(frame))))
+                digest = "refused" if frame is None else hexadecimal(machine.frame_digest(frame))
+                print("frame %s %s %s" % (words[1], time, digest))
 
 
 def run(arguments):
@@ -59,13 +62,17 @@ def run(arguments):
             for name in sorted(table):
                 print("%s %s %s" % (title, name, table[name]))
         return 0
-    stream = machine.decode_stream(load(arguments.file), not arguments.partial)
+    request, complete = [], not vars(arguments).get("partial")
+    if arguments.command == "answer":
+        with open(arguments.request, encoding="ascii") as file:
+            request = [line.split() for line in file if line.split() and not line.startswith("#")]
+        complete = ["complete"] in request
+    stream = machine.decode_stream(load(arguments.file), complete)
     if arguments.command == "digest":
         for model in stream.models:
             print(hexadecimal(machine.model_digest(model)))
     elif arguments.command == "answer":
-        with open(arguments.request, encoding="ascii") as request:
-            answer(machine, stream, request)
+        answer(machine, stream, request)
     elif arguments.command == "verdict":
         print("good")
     return 0
@@ -79,7 +86,8 @@ def main():
                        ("digest", "print the digest of each model"), ("verdict", "print good, or the class of the first fault"),
                        ("answer", "answer a request file, as the conformance clause says")):
         command = commands.add_parser(name, help=text)
-        command.add_argument("--partial", action="store_true", help="use what is there of a truncated stream")
+        if name != "answer":
+            command.add_argument("--partial", action="store_true", help="use what is there of a truncated stream")
         command.add_argument("file")
         if name == "answer":
             command.add_argument("request")
