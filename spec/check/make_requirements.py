@@ -15,8 +15,8 @@ TITLE = """\
 [[requirements]]
 == Index of requirements (informative)
 
-Each requirement of this document with the tests of the reference software and the conformance vectors that cite it. "Covers" and "violates" in the
-manifest are both citations: a vector that a decoder has to refuse is a test of the requirement that it breaks.
+Each requirement of this document with the tests of the reference software and the conformance vectors that cite it. "Covers" and
+"violates" in the manifest are both citations: a vector that a decoder has to refuse is a test of the requirement that it breaks.
 """
 
 

@@ -158,7 +158,7 @@ class Text:
 
 # ---- Citations ----
 
-_cited_folders = ("tests", "conformance")
+_cited_folders = ("tests", "conformance", "spec")
 _test_suffixes = (".c", ".h", ".sh", ".py", ".cc")
 _function = re.compile(r"^(?:static )?(?:void|int)\s+(test_\w+|LLVMFuzzerTestOneInput)\(|^def (test_\w+)\(|^([a-z_]+)\(\)$")
 
@@ -196,7 +196,7 @@ def citations(tree):
     for folder in _cited_folders:
         top = getattr(tree, folder)
         for path in sorted(os.path.join(place, name) for place, _, names in os.walk(top) for name in names):
-            if path.endswith(_test_suffixes):
+            if path.endswith(_test_suffixes) and (folder != "spec" or os.path.basename(path).startswith("test_")):
                 for name, label in _citations_of(path, os.path.basename(path)):
                     add(name, 0, label)
     for vector, entry, _ in tree.vectors():

@@ -1,5 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The specification, run over the conformance vectors, yields the implementation's trace and the manifest's digests and verdicts.
+# The specification, run over the conformance vectors, yields the implementation's trace and the manifest's digests and verdicts:
+# the notation's numbers, conversions, orders and descriptors (REQ-CONV-001, REQ-CONV-002, REQ-CONV-003, REQ-CONV-004, REQ-CONV-005,
+# REQ-CONV-006), and each point of conformance (REQ-CONF-003).
 command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
 exec python3 -B "${srcdir:-.}/spec/check/check_spec.py" --source "${srcdir:-.}" --info ./adcgs-info --only S3,S4

@@ -12,7 +12,7 @@ from reading import Bytes, Record
 
 # Processes that only pass on what another one wants to know.
 PASSING = {"raw", "bits", "bit", "symbol", "adaptive", "value", "mixed", "tree", "uniform", "leaf", "latent", "latents", "tail",
-           "decode_length", "decode_signed", "inner", "side", "one_sided"}
+           "decode_length", "decode_signed", "inner", "side", "one_sided", "<listcomp>"}
 
 
 class Operation:
