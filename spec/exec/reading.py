@@ -19,7 +19,7 @@ class Bytes(bytes):
     origin = 0
 
     def __eq__(self, other):
-        return list(self) == list(other)
+        return isinstance(other, (list, bytes)) and list(self) == list(other)
 
     __hash__ = bytes.__hash__
 
