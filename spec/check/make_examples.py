@@ -16,7 +16,7 @@ EXAMPLES = (
     ("good-moving", "model", "A scene that moves, with hyper-latents and all networks."),
     ("good-segments", "elements", "Several segments with an index."),
 )
-MOST_FIRST, MOST_LAST = 40, 8  # operations shown of a long sub-stream
+MOST_FIRST, MOST_LAST = 40, 4  # operations shown of a long sub-stream
 MOST_CODED = 40  # latents shown with their priors
 TITLE = """\
 // SPDX-License-Identifier: CC-BY-4.0
@@ -30,9 +30,9 @@ executes the pseudo-code of this document, while it decoded these streams. Who l
 and finds the first difference.
 
 Positions count bytes from the first byte of the stream. R and V are the state of the range decoder _before_ the operation, in
-hexadecimal. The column "asked by" names the process that wants to know, and its statement. An operation `symbol` shows the number s
-that it compares with its table and the interval c[k], c[k + 1] that holds it; `bit` shows the probability p1 out of 65536; `bits`
-shows the number of bits.
+hexadecimal. The column "asked by" names the process that wants to know, and its statement, where they change. An operation
+`symbol` shows the number s that it compares with its table and the interval c[k], c[k + 1] that holds it; `bit` shows the
+probability p1 out of 65536; `bits` shows the number of bits.
 """
 
 
@@ -85,14 +85,14 @@ def meaning_of(known, chunk, element):
     chunk = "FEA" if chunk.startswith("FEA") else chunk
     if (chunk, plain) in known:
         return known[(chunk, plain)]
-    others = sorted({text for (name, other), text in known.items() if other == plain})
+    others = sorted({text for (name, other), text in known.items() if other == plain and name.startswith(chunk)})
     return others[0] if len(others) == 1 else ""
 
 
 def shortened(meaning):
-    """The first statement, without what only the clause can say."""
-    first = re.split(r";|\. |, see", meaning)[0].strip()
-    return first if len(first) <= 90 else first[:first.rfind(" ", 0, 90)] + " …"
+    """The first statement, where the whole is long."""
+    first = meaning if len(meaning) <= 100 else re.split(r";|\. |, see", meaning)[0].strip()
+    return first if len(first) <= 100 else first[:first.rfind(" ", 0, 100)] + " …"
 
 
 def element_table(lines, known):
@@ -109,7 +109,7 @@ def element_table(lines, known):
         length = int(count.group(1)) if count else bits // 8
         chunk, name = element.split(".", 1)
         rows.append((int(position) // 8, length, "`%s`" % element, "`%s`" % value, shortened(meaning_of(known, chunk, name))))
-    return table("2,1,5,5,6", ("Byte", "Bytes", "Element", "Value", "Meaning"), rows)
+    return table("3,3,9,9,14", ("Byte", "Bytes", "Element", "Value", "Meaning"), rows)
 
 
 # ---- Range decoder ----
@@ -130,15 +130,17 @@ def operation_table(stream):
     shown = list(enumerate(operations, 1))
     if len(shown) > MOST_FIRST + MOST_LAST:
         shown = shown[:MOST_FIRST] + [None] + shown[-MOST_LAST:]
-    rows = []
+    rows, before = [], None
     for item in shown:
         if item is None:
             rows.append(("…", "%d more" % (len(operations) - MOST_FIRST - MOST_LAST), "", "", "", ""))
             continue
         i, o = item
-        rows.append((i, "`%016x`" % o.state[0], "`%016x`" % o.state[1], given(o), o.result, "`%s: %s`" % o.asked))
+        asked = "`%s: %s`" % o.asked if o.asked != before else ""
+        before = o.asked
+        rows.append((i, "`%016x`" % o.state[0], "`%016x`" % o.state[1], given(o), o.result, asked))
     end = "At the end R = `%016x`, V = `%016x`, %d virtual bytes." % (stream.d.R, stream.d.V, stream.d.virtual)
-    return table("1,4,4,5,1,7", ("#", "R", "V", "Operation", "Result", "Asked by"), rows) + [end, ""]
+    return table("2,6,6,8,2,12", ("#", "R", "V", "Operation", "Result", "Asked by"), rows) + [end, ""]
 
 
 def stream_tables(watch):

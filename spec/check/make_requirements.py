@@ -32,7 +32,7 @@ def generate(tree):
         if not clause.requirements:
             continue
         title = next(line[3:] for line in clause.lines if line.startswith("== "))
-        lines += ["", ".%s" % title, "[cols=\"2,3,5,5\"]", "|===", "| Requirement | Where | Tests | Vectors"]
+        lines += ["", ".%s" % title, "[cols=\"3,4,6,6\"]", "|===", "| Requirement | Where | Tests | Vectors"]
         for r in sorted(clause.requirements, key=lambda r: r.name):
             tests, vectors = cited.get(r.name, ([], []))
             lines += ["", "| <<%s,%s>>" % (r.name, r.name), "| %s" % r.section, "| %s" % _listed(tests), "| %s" % _listed(vectors)]
