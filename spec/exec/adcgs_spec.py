@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Runs the specification: a decoder whose only source is the text of the clauses and the tables beside them."""
 import argparse
+import hashlib
 import os
 import sys
 
@@ -30,13 +31,16 @@ def camera_of(words):
                   near_plane=numbers[4], cam_to_world=numbers[5:17])
 
 
-def answer(machine, stream, request):
+def answer(machine, stream, request, lines):
     """The protocol of clause "Conformance": a line for each request, in order."""
     cameras, splats = [], {}
     for words in request:
         if words[0] == "complete":
             continue
-        if words[0] == "camera":
+        if words[0] == "trace":
+            text = "".join(line + "\n" for line in lines)
+            print("trace %d %s" % (len(lines), hashlib.md5(text.encode("ascii")).hexdigest()))
+        elif words[0] == "camera":
             cameras.append(camera_of(words[1:]))
         elif words[0] == "model":
             for i, model in enumerate(stream.models):
@@ -72,7 +76,7 @@ def run(arguments):
         for model in stream.models:
             print(hexadecimal(machine.model_digest(model)))
     elif arguments.command == "answer":
-        answer(machine, stream, request)
+        answer(machine, stream, request, lines)
     elif arguments.command == "verdict":
         print("good")
     return 0

@@ -4,7 +4,9 @@
 
 #include "tools/answer.h"
 
+#include "base/cpu.h"
 #include "base/digest.h"
+#include "model/stream.h"
 #include "tools/cli.h"
 
 #include <adcgs/adcgs.h>
@@ -90,7 +92,9 @@ static int read_request(adcgs_requests *r, const char *name, char **rest)
         q.kind = ADCGS_REQUEST_FRAME;
         if (!camera || adcgs_parse_int(camera, 0, r->n_cameras - 1, &q.camera) || read_time(&q, word(rest)))
             return -1;
-    } else if (strcmp(name, "model"))
+    } else if (!strcmp(name, "trace"))
+        q.kind = ADCGS_REQUEST_TRACE;
+    else if (strcmp(name, "model"))
         return -1;
     adcgs_request *grown = one_more(r->request, r->n, sizeof *grown);
     if (!grown)
@@ -149,6 +153,54 @@ void adcgs_requests_clear(adcgs_requests *requests)
 
 /* ---- Answering ---- */
 
+typedef struct trace_sum {
+    adcgs_md5 md5;
+    unsigned long lines;
+} trace_sum;
+
+static void add_element(void *user, uint64_t bit, const char *element, const char *value)
+{
+    trace_sum *sum = user;
+    char number[24];
+    const int n = snprintf(number, sizeof number, "%llu ", (unsigned long long)bit);
+    adcgs_md5_update(&sum->md5, number, (size_t)n);
+    adcgs_md5_update(&sum->md5, element, strlen(element));
+    adcgs_md5_update(&sum->md5, " ", 1);
+    adcgs_md5_update(&sum->md5, value, strlen(value));
+    adcgs_md5_update(&sum->md5, "\n", 1);
+    sum->lines++;
+}
+
+static int64_t read_file(void *user, void *buffer, size_t bytes)
+{
+    FILE *file = user;
+    const size_t n = fread(buffer, 1, bytes, file);
+    return n == 0 && ferror(file) ? -1 : (int64_t)n;
+}
+
+static adcgs_status answer_trace(const adcgs_requests *requests, const char *path, adcgs_error *error)
+{
+    adcgs_read_options options = {.layers = requests->layers, .strict_end = requests->complete};
+    adcgs_stream stream;
+    trace_sum sum = {.lines = 0};
+    uint8_t digest[16];
+    char hex[33];
+    ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &options.cpu, error));
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
+    adcgs_md5_init(&sum.md5);
+    const adcgs_status status = adcgs_stream_read(&stream, read_file, file, &options, add_element, &sum, error);
+    fclose(file);
+    if (status != ADCGS_OK)
+        return status;
+    adcgs_stream_clear(&stream, NULL);
+    adcgs_md5_final(&sum.md5, digest);
+    adcgs_md5_hex(digest, hex);
+    printf("trace %lu %s\n", sum.lines, hex);
+    return ADCGS_OK;
+}
+
 static adcgs_status answer_model(adcgs_decoder *decoder)
 {
     adcgs_info info;
@@ -175,14 +227,14 @@ static adcgs_status answer_splats(const adcgs_request *q, adcgs_decoder *decoder
     return ADCGS_OK;
 }
 
-/* A camera that the specification refuses gets the word "refused" for a digest. */
+/* For a digest, a camera that the specification refuses gets the word "refused", a frame beyond its limit "declined". */
 static adcgs_status answer_frame(const adcgs_request *q, const adcgs_camera *camera, adcgs_decoder *decoder,
                                  adcgs_error *error)
 {
     const int32_t w = camera->width, h = camera->height;
     const int sane = w >= 1 && w <= 16384 && h >= 1 && h <= 16384;
     adcgs_frame frame = {.width = w, .height = h, .rgb = malloc((sane ? 3 * (size_t)w * (size_t)h : 1) * sizeof(float))};
-    char hex[33] = "refused";
+    char hex[33];
     if (!frame.rgb)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a frame");
     const adcgs_status status = adcgs_render(decoder, camera, q->time, &frame, error);
@@ -192,18 +244,22 @@ static adcgs_status answer_frame(const adcgs_request *q, const adcgs_camera *cam
         adcgs_md5_hex(digest, hex);
     }
     free(frame.rgb);
-    if (status != ADCGS_OK && status != ADCGS_ERR_USAGE)
+    if (status != ADCGS_OK && status != ADCGS_ERR_USAGE && status != ADCGS_ERR_LIMIT)
         return status;
+    if (status != ADCGS_OK)
+        snprintf(hex, sizeof hex, "%s", status == ADCGS_ERR_USAGE ? "refused" : "declined");
     printf("frame %d %s %s\n", q->camera, q->text, hex);
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_requests_answer(const adcgs_requests *requests, adcgs_decoder *decoder, adcgs_error *error)
+adcgs_status adcgs_requests_answer(const adcgs_requests *requests, const char *path, adcgs_decoder *decoder, adcgs_error *error)
 {
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < requests->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         const adcgs_request *q = &requests->request[i];
-        if (q->kind == ADCGS_REQUEST_MODEL)
+        if (q->kind == ADCGS_REQUEST_TRACE)
+            status = answer_trace(requests, path, error);
+        else if (q->kind == ADCGS_REQUEST_MODEL)
             status = answer_model(decoder);
         else if (q->kind == ADCGS_REQUEST_SPLATS)
             status = answer_splats(q, decoder, error);

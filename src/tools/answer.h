@@ -10,7 +10,12 @@
 
 #include <adcgs/decoder.h>
 
-typedef enum adcgs_request_kind { ADCGS_REQUEST_MODEL, ADCGS_REQUEST_SPLATS, ADCGS_REQUEST_FRAME } adcgs_request_kind;
+typedef enum adcgs_request_kind {
+    ADCGS_REQUEST_TRACE,
+    ADCGS_REQUEST_MODEL,
+    ADCGS_REQUEST_SPLATS,
+    ADCGS_REQUEST_FRAME
+} adcgs_request_kind;
 
 typedef struct adcgs_request {
     adcgs_request_kind kind;
@@ -30,8 +35,9 @@ typedef struct adcgs_requests {
 /** A mistake in the file is ADCGS_ERR_USAGE. */
 adcgs_status adcgs_requests_read(adcgs_requests *out, const char *path, adcgs_error *error);
 void adcgs_requests_clear(adcgs_requests *requests);
-/** Print the answers. */
-adcgs_status adcgs_requests_answer(const adcgs_requests *requests, adcgs_decoder *decoder, adcgs_error *error);
+/** Print the answers. decoder has decoded the file at path, which is read once more for a trace. */
+adcgs_status adcgs_requests_answer(const adcgs_requests *requests, const char *path, adcgs_decoder *decoder,
+                                   adcgs_error *error);
 /** The class under which the protocol reports a status of decoding, NULL if the status is not about the stream. */
 const char *adcgs_fault_class(adcgs_status status);
 

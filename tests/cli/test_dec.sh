@@ -93,7 +93,7 @@ expect 4 "^adcgs-dec: standard input: " sh -c "$dec - <'$dir/cut'"
 expect 0 "" $dec --help
 expect 0 "" $dec --version
 
-# Requests and answers.
+# Requests and answers: REQ-CONF-006, REQ-CONF-007, REQ-CONF-010, REQ-CONF-012, REQ-CONF-013, REQ-CONF-014.
 eye="1 0 0 0  0 0 1 -4  0 -1 0 0"
 cat >"$dir/requests" <<END
 # a comment
@@ -104,6 +104,7 @@ camera 16 16 40 40 8 8 0 $eye
 frame 0 0.0500
 model
 splats 0
+trace
 frame 1 0
 frame 2 1e-3
 splats 0.03
@@ -111,11 +112,12 @@ frame 0 0
 END
 expect 0 "" $dec "$s" --answer "$dir/requests" --threads 2
 cp "$dir/out" "$dir/answers"
-sed 's/ [0-9a-f]\{32\}$/ MD5/' "$dir/answers" >"$dir/shape"
+sed 's/ [0-9a-f]\{32\}$/ MD5/; s/^trace [0-9]* /trace LINES /' "$dir/answers" >"$dir/shape"
 cat >"$dir/wanted" <<END
 frame 0 0.0500 MD5
 model 0 MD5
 splats 0 MD5
+trace LINES MD5
 frame 1 0 refused
 frame 2 1e-3 refused
 splats 0.03 MD5
@@ -124,6 +126,8 @@ END
 cmp -s "$dir/shape" "$dir/wanted" || { bad "answers are"; cat "$dir/answers"; }
 expect 0 "" $dec "$s" --answer "$dir/requests" --cpu scalar
 cmp -s "$dir/out" "$dir/answers" || bad "answers differ with --cpu scalar"
+./adcgs-info --trace "$s" >"$dir/trace"
+grep -qx "trace $(wc -l <"$dir/trace") $(md5sum <"$dir/trace" | cut -c1-32)" "$dir/answers" || bad "trace"
 $dec "$s" --camera 0 --time 0 -o - --format raw --float >"$dir/raw" 2>/dev/null
 md5sum <"$dir/raw" | cut -c1-32 >"$dir/whole"
 $dec "$s" --camera 0 --time 0 --md5 2>/dev/null | cmp -s - "$dir/whole" || bad "a frame's digest is not that of its samples"
