@@ -52,6 +52,9 @@ FAULTS = [
     Fault("S5", "codec/model/chunk.c", r"\.depth = 12", ".depth = 13", "DEPTH"),
     Fault("S5", "codec/model/syntax.h", r"\(F32, voxel, 0x1p-40,", "(F32, voxel, 0x1p-41,", "voxel"),
     Fault("S5", "codec/model/syntax.h", r"F\(U8, depth,", "F(U16, depth,", "depth"),
+    # S6: a range that grows, a number of the annex
+    Fault("S6", "spec/clauses/06-stream.adoc", r"^\| n_fv \| `1 \.\. 64`", "| n_fv | `1 .. 640`", "."),
+    Fault("S6", "spec/clauses/annex-bounds.adoc", r"\| -34605 \.\. 34605 \|", "| -34605 .. 34604 |", "mixed.total"),
     # S7: twice, badly formed, cited without being there, not cited, index out of date
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEOM-001]]", "stands in"),
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEO-2]]", "not of the form"),
