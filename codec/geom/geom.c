@@ -39,6 +39,7 @@ typedef struct walk {
     slot *slots;
     int slot_bits; /* 0: bisect instead */
     size_t n_cells;
+    size_t finger[27];     /* where bisection for each neighbour ended last, in this step */
     uint64_t mask[3], unit[3]; /* bits of each axis; one cell in its direction */
 } walk;
 
@@ -47,9 +48,19 @@ static size_t hash(const walk *w, uint64_t key)
     return (size_t)(key * UINT64_C(0x9e3779b97f4a7c15) >> (64 - w->slot_bits));
 }
 
-static const cell *bisect(const walk *w, uint64_t key)
+/* Bisection between bounds that are found by doubling steps away from where the same neighbour of the cell before was. */
+static const cell *bisect(walk *w, uint64_t key, int neighbour)
 {
-    size_t low = 0, high = w->n_cells;
+    size_t low = w->finger[neighbour], high = low;
+    for (size_t step = 1; high < w->n_cells && w->cells[high].key < key; step *= 2) {
+        low = high + 1;
+        high += step;
+    }
+    for (size_t step = 1; low > 0 && w->cells[low - 1].key >= key; step *= 2) {
+        high = low - 1;
+        low -= ADCGS_MIN(step, low);
+    }
+    high = ADCGS_MIN(high, w->n_cells);
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
         if (w->cells[middle].key < key)
@@ -57,13 +68,17 @@ static const cell *bisect(const walk *w, uint64_t key)
         else
             high = middle;
     }
+    w->finger[neighbour] = low;
     return low < w->n_cells && w->cells[low].key == key ? &w->cells[low] : NULL;
 }
 
-static const cell *find(const walk *w, uint64_t key)
+/* The cell with a key, which is that of a neighbour 0..26 of the cell at hand, or NULL. */
+static const cell *find(walk *w, uint64_t key, int neighbour)
 {
+    if (key == NO_KEY)
+        return NULL;
     if (w->slot_bits == 0)
-        return bisect(w, key);
+        return bisect(w, key, neighbour);
     const size_t wrap = ((size_t)1 << w->slot_bits) - 1;
     size_t i = hash(w, key);
     for (int probe = 0; probe < PROBES_MAX && w->slots[i].key != NO_KEY; probe++, i = (i + 1) & wrap)
@@ -72,15 +87,16 @@ static const cell *find(const walk *w, uint64_t key)
     return NULL;
 }
 
-static uint32_t count_at(const walk *w, uint64_t key)
+static uint32_t count_at(walk *w, uint64_t key, int neighbour)
 {
-    const cell *found = find(w, key);
+    const cell *found = find(w, key, neighbour);
     return found ? found->n : 0;
 }
 
 /* Cells without neighbours are nobody's neighbours, so they stay out of the table. */
 static void fill_slots(walk *w)
 {
+    memset(w->finger, 0, sizeof w->finger);
     w->slot_bits = 3;
     while ((size_t)1 << w->slot_bits < 2 * w->n_cells)
         w->slot_bits++;
@@ -112,30 +128,33 @@ static void parts_along(const walk *w, int axis, uint64_t key, uint64_t part[3])
     part[2] = part[2] ? part[2] : NO_KEY;
 }
 
-static void look_around(const walk *w, cell *at, int axis, adcgs_geom_around *around)
+static void look_around(walk *w, cell *at, int axis, adcgs_geom_around *around)
 {
     uint64_t a[3], u[3], v[3];
     parts_along(w, axis, at->key, a);
     parts_along(w, (axis + 1) % 3, at->key, u);
     parts_along(w, (axis + 2) % 3, at->key, v);
-    *around = (adcgs_geom_around){ .before = count_at(w, a[0] | u[1] | v[1]), .behind = count_at(w, a[2] | u[1] | v[1]) };
+    *around = (adcgs_geom_around){
+        .before = count_at(w, a[0] | u[1] | v[1], 4),
+        .behind = count_at(w, a[2] | u[1] | v[1], 22),
+    };
     int lateral = 0;
     for (int i = 0; i < 9; i++) {
         const uint64_t uv = u[i / 3] | v[i % 3];
         if (i == 4 || uv == NO_KEY)
             continue;
-        around->ring_before += count_at(w, a[0] | uv);
-        around->ring_behind += count_at(w, a[2] | uv);
+        around->ring_before += count_at(w, a[0] | uv, i);
+        around->ring_behind += count_at(w, a[2] | uv, 18 + i);
         if (i % 2 == 0)
             continue;
-        const cell *side = find(w, a[1] | uv);
+        const cell *side = find(w, a[1] | uv, 9 + i);
         lateral += side != NULL;
         around->lateral_left += side && side->split && side->left;
         around->lateral_right += side && side->split && side->left < side->n;
     }
     if (at->n == 1 && !lateral && !around->before && !around->behind && !around->ring_before && !around->ring_behind)
-        at->alone = !find(w, a[1] | u[0] | v[0]) && !find(w, a[1] | u[0] | v[2]) && !find(w, a[1] | u[2] | v[0]) &&
-                    !find(w, a[1] | u[2] | v[2]);
+        at->alone = !find(w, a[1] | u[0] | v[0], 9) && !find(w, a[1] | u[0] | v[2], 11) && !find(w, a[1] | u[2] | v[0], 15) &&
+                    !find(w, a[1] | u[2] | v[2], 17);
 }
 
 /* How many of the codes [first, first + n) have the bit clear. */

@@ -310,6 +310,8 @@ adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
     ADCGS_TRY(conceal_layers(s));
     ADCGS_TRY(check_hash(s));
     ADCGS_TRY(adcgs_syn_index_write(&s->index, "INDX", &entry, s->error));
+    if (s->index.failed)
+        return adcgs_fail(s->error, ADCGS_ERR_MEMORY, "segment %u: no memory for its place in the index", segment_number(s));
     ADCGS_TRY(append_model(s));
     reset(s);
     return ADCGS_OK;

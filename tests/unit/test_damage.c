@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Damaged, cut and foreign streams: every one gives a clean error or something usable, never anything else. */
 #include "random_model.h"
+#include "stream_edit.h"
 
 #include "base/digest.h"
 #include "model/chunk.h"
@@ -158,48 +159,6 @@ static void test_flip_every_byte(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
-/** The checksums in a table of slices, as far as table and slices can be followed. */
-static void repair_slices(uint8_t *payload, size_t length)
-{
-    adcgs_reader r, table;
-    size_t total = 0;
-    adcgs_reader_init(&r, payload, length);
-    adcgs_read_varint(&r);
-    const uint32_t n = adcgs_read_varint(&r);
-    table = r;
-    for (uint32_t i = 0; i < n && !r.overrun; i++, adcgs_read_uint(&r, 4))
-        adcgs_read_varint(&r);
-    for (uint32_t i = 0; i < n && !r.overrun; i++) {
-        const uint32_t bytes = adcgs_read_varint(&table);
-        if (bytes > length - r.pos - total)
-            return;
-        adcgs_store_le32(payload + table.pos, adcgs_crc32c(0, payload + r.pos + total, bytes));
-        adcgs_read_uint(&table, 4);
-        total += bytes;
-    }
-}
-
-/** Make all checksums of a stream right again, as somebody would who means harm. */
-static void repair(adcgs_buffer *bytes)
-{
-    size_t pos = ADCGS_SIGNATURE_BYTES;
-    uint32_t crcs = 0;
-    while (pos + ADCGS_CHUNK_BYTES <= bytes->size) {
-        uint8_t *header = bytes->data + pos, *payload = header + ADCGS_CHUNK_HEADER_BYTES;
-        const size_t length = adcgs_load_le32(header + 4);
-        if (length > bytes->size - pos - ADCGS_CHUNK_BYTES)
-            return;
-        if (adcgs_load_le32(header) == ADCGS_TYPE_ENDC && length == 12)
-            adcgs_store_le32(payload + 8, crcs);
-        if (adcgs_type_layer(adcgs_load_le32(header)) >= 0)
-            repair_slices(payload, length);
-        adcgs_store_le32(header + 12, adcgs_crc32c(0, header, 12));
-        adcgs_store_le32(payload + length, adcgs_crc32c(0, payload, length));
-        crcs = adcgs_crc32c(crcs, payload + length, 4);
-        pos += ADCGS_CHUNK_BYTES + length;
-    }
-}
-
 /** Damage under valid checksums, in streams of which every second has no digest that would notice. */
 /* REQ-CONF-005 */
 static void test_malice(void **state)
@@ -222,7 +181,7 @@ static void test_malice(void **state)
             const size_t at = (size_t)adcgs_random_range(&seed, ADCGS_SIGNATURE_BYTES, (int64_t)bad.size - 1);
             bad.data[at] = (uint8_t)(n & 1 ? bad.data[at] ^ 1 << (round & 7) : adcgs_random_range(&seed, 0, 255));
         }
-        repair(&bad);
+        adcgs_repair_stream(bad.data, bad.size, 0);
         if (read_stream(&part, bad.data, bad.size, 0, &error) != ADCGS_OK) {
             refused++;
             continue;
@@ -250,7 +209,7 @@ static void insert_chunk(adcgs_buffer *out, const adcgs_buffer *in, uint32_t typ
     adcgs_chunk_end(out, begin);
     adcgs_write_bytes(out, in->data + in->size - tail, tail);
     adcgs_store_le64(out->data + out->size - 16, out->size);
-    repair(out);
+    adcgs_repair_stream(out->data, out->size, 0);
 }
 
 /* REQ-STRM-003, REQ-STRM-004, REQ-STRM-005 */
@@ -295,7 +254,7 @@ static void test_layers_taken_out(void **state)
         pos += length;
     }
     adcgs_store_le64(less.data + less.size - 16, less.size);
-    repair(&less);
+    adcgs_repair_stream(less.data, less.size, 0);
     assert_int_equal(read_stream(&part, less.data, less.size, 1, &error), ADCGS_OK);
     assert_int_equal(part.segments[0].layers, 2);
     assert_false(part.truncated);

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What every fuzz target offers. Under libFuzzer (`make fuzz`) the engine
+ * calls the target; otherwise fuzz_main.c does, with seeds, regressions and
+ * mutations that are the same every time.
+ */
+#ifndef ADCGS_TESTS_FUZZ_H
+#define ADCGS_TESTS_FUZZ_H
+
+#include "base/base.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/** One input; returns 0. A fault is a sanitizer's report, a signal, or FUZZ_REQUIRE. */
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+/** Change data of size bytes in a buffer of max; returns the new size. Targets that read streams have one that knows chunks. */
+size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned int seed);
+/** The engine's own mutations. */
+size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max);
+
+/** What fuzz_main.c replays when it is given nothing: files and folders of them, relative to the source tree; NULL at the end. */
+extern const char *const adcgs_fuzz_seeds[];
+
+/** What must hold whatever the input is. */
+#define FUZZ_REQUIRE(condition)                                                                   \
+    do {                                                                                          \
+        if (!(condition)) {                                                                       \
+            fprintf(stderr, "%s:%d: fault: not true: %s\n", __FILE__, __LINE__, #condition);      \
+            abort();                                                                              \
+        }                                                                                         \
+    } while (0)
+
+#endif

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The public decoder over whole streams. The last bytes choose limits, threads,
+ * CPU level, layers and how the input arrives; a quarter of the streams that
+ * decode is decoded a second time another way, with the same result. Checksums
+ * are made right first, unless the choice says not to.
+ */
+#include "fuzz.h"
+#include "stream_edit.h"
+
+#include "base/digest.h"
+
+#include <adcgs/adcgs.h>
+
+#define WIDTH 20
+#define HEIGHT 12
+#define MEMORY_MOST ((uint64_t)256 << 20)
+
+const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/decode", NULL };
+
+/** A source that gives at most step bytes at a time. */
+typedef struct dripping {
+    const uint8_t *next;
+    size_t left, step;
+} dripping;
+
+static int64_t drip(void *user, void *buffer, size_t bytes)
+{
+    dripping *d = user;
+    const size_t n = ADCGS_MIN(ADCGS_MIN(bytes, d->left), d->step);
+    if (n > 0)
+        memcpy(buffer, d->next, n);
+    d->next += n;
+    d->left -= n;
+    return (int64_t)n;
+}
+
+static adcgs_camera any_camera(const adcgs_decoder *d, int stored)
+{
+    adcgs_camera camera = { .fx = 20, .fy = 20, .cx = 10, .cy = 6, .near_plane = 0.01,
+                            .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 } };
+    if (stored)
+        (void)adcgs_get_camera(d, 0, &camera);
+    camera.width = WIDTH;
+    camera.height = HEIGHT;
+    return camera;
+}
+
+/** Everything a decoder can be asked; returns a checksum over the answers. */
+static uint32_t ask(adcgs_decoder *d, int stored_camera)
+{
+    adcgs_info info;
+    adcgs_primitives primitives;
+    uint8_t digest[16], bytes[WIDTH * HEIGHT * 3];
+    float rgb[WIDTH * HEIGHT * 3];
+    uint32_t crc = 0;
+    FUZZ_REQUIRE(adcgs_get_info(d, &info) == ADCGS_OK);
+    FUZZ_REQUIRE(info.segments >= 1 && info.layers >= 1 && info.frame_rate > 0 && info.scene_scale > 0);
+    (void)adcgs_get_metadata(d, "title");
+    for (int i = 0; i < info.segments; i++) {
+        FUZZ_REQUIRE(adcgs_get_model_digest(d, i, digest) == ADCGS_OK);
+        crc = adcgs_crc32c(crc, digest, sizeof digest);
+    }
+    const adcgs_camera camera = any_camera(d, stored_camera);
+    for (int i = 0; i < 2; i++) {
+        const double time = i ? info.time_end : info.time_start;
+        adcgs_frame frame = { WIDTH, HEIGHT, rgb };
+        if (adcgs_get_primitives(d, time, &primitives) != ADCGS_OK || adcgs_render(d, &camera, time, &frame, NULL) != ADCGS_OK)
+            continue;
+        for (size_t p = 0; p < ADCGS_COUNTOF(rgb); p++)
+            FUZZ_REQUIRE(rgb[p] - rgb[p] == 0); /* finite */
+        adcgs_frame_to_u8(&frame, bytes);
+        crc = adcgs_crc32c(adcgs_crc32c(crc, rgb, sizeof rgb), bytes, sizeof bytes);
+    }
+    return crc;
+}
+
+static adcgs_status decode(const uint8_t *data, size_t size, const adcgs_config *config, size_t step, int stored, uint32_t *crc)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_decoder *d = NULL;
+    dripping source = { data, size, step };
+    const adcgs_status status = adcgs_open_stream(&d, drip, &source, config, &error);
+    FUZZ_REQUIRE((status == ADCGS_OK) == (d != NULL));
+    FUZZ_REQUIRE(status == ADCGS_OK || (error.status == status && error.text[0] && !strchr(error.text, '\n')));
+    FUZZ_REQUIRE(status != ADCGS_ERR_INTERNAL && status != ADCGS_ERR_IO && status != ADCGS_ERR_USAGE);
+    if (d)
+        *crc = ask(d, stored);
+    adcgs_close(&d);
+    return status;
+}
+
+/** Level 1, or 2 if the choice says so, in place of a level above: those of level 3 may take a minute. */
+static void tame_level(uint8_t *stream, size_t size, int level)
+{
+    const size_t at = ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_HEADER_BYTES + 5;
+    if (size > at && stream[at] > level)
+        stream[at] = (uint8_t)level;
+}
+
+static void decode_both(uint8_t *stream, size_t size, const uint8_t choice[8])
+{
+    static const size_t steps[] = { SIZE_MAX, 1, 7, 4096 };
+    uint32_t crc = 0, again = 0;
+    adcgs_config config;
+    adcgs_config_init(&config);
+    config.threads = 1 + (choice[1] % 8 == 0);
+    config.cpu = (adcgs_cpu_level)(choice[2] % (adcgs_cpu_best() + 1));
+    config.layers = choice[3] % 8 < 6 ? 0 : choice[3] % 6;
+    config.strict_end = choice[4] & 1;
+    config.memory_limit = choice[4] & 2 ? (uint64_t)choice[5] << 12 : MEMORY_MOST;
+    const adcgs_status status = decode(stream, size, &config, steps[choice[6] % 4], choice[4] & 4, &crc);
+    if (choice[7] % 4)
+        return;
+    config.threads = 3 - config.threads;
+    config.cpu = ADCGS_CPU_SCALAR;
+    const adcgs_status other = decode(stream, size, &config, steps[choice[7] / 4 % 4], choice[4] & 4, &again);
+    FUZZ_REQUIRE((status == other && crc == again) || config.memory_limit < MEMORY_MOST);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    uint8_t choice[8] = { 0 };
+    const size_t n = ADCGS_MIN(size, sizeof choice);
+    if (n > 0)
+        memcpy(choice, data + size - n, n);
+    uint8_t *stream = malloc(size + (size == 0));
+    FUZZ_REQUIRE(stream != NULL);
+    if (size > 0)
+        memcpy(stream, data, size);
+    tame_level(stream, size, 1 + (choice[0] % 4 == 0));
+    if (choice[0] % 16)
+        adcgs_repair_stream(stream, size, choice[0] & 32);
+    decode_both(stream, size, choice);
+    free(stream);
+    return 0;
+}

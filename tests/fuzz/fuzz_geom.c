@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Positions: every GEOM of a stream, whatever else the stream holds. What decodes must survive coding it again. */
+#include "fuzz.h"
+#include "stream_edit.h"
+
+#include "geom/geom.h"
+
+#define ANCHORS_MAX 20000U
+#define FIXED_BYTES 21 /* elements in front of the positions */
+
+const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/geom", NULL };
+
+static void check_positions(const uint32_t *voxels, uint32_t n, int depth)
+{
+    uint64_t last = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t *v = voxels + 3 * (size_t)i;
+        const uint64_t code = adcgs_morton(v);
+        FUZZ_REQUIRE((v[0] | v[1] | v[2]) >> depth == 0);
+        FUZZ_REQUIRE(i == 0 || code > last);
+        last = code;
+    }
+}
+
+static void try_positions(uint32_t n, int depth, const uint8_t *data, size_t size)
+{
+    adcgs_buffer out;
+    uint32_t *voxels = calloc(n ? n : 1, 3 * sizeof *voxels), *again = calloc(n ? n : 1, 3 * sizeof *again);
+    FUZZ_REQUIRE(voxels && again);
+    adcgs_buffer_init(&out);
+    if (adcgs_geom_decode(data, size, n, depth, voxels, NULL) == ADCGS_OK) {
+        check_positions(voxels, n, depth);
+        FUZZ_REQUIRE(adcgs_geom_encode(&out, voxels, n, depth, NULL) == ADCGS_OK);
+        FUZZ_REQUIRE(adcgs_geom_decode(out.data, out.size, n, depth, again, NULL) == ADCGS_OK);
+        FUZZ_REQUIRE(memcmp(voxels, again, 3 * (size_t)n * sizeof *voxels) == 0);
+    }
+    adcgs_buffer_clear(&out);
+    free(voxels);
+    free(again);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    adcgs_found_chunk c;
+    for (size_t pos = ADCGS_SIGNATURE_BYTES; adcgs_next_chunk(data, size, &pos, &c);) {
+        const uint8_t *payload = data + c.payload;
+        if (c.type == ADCGS_TYPE_GEOM && c.length >= FIXED_BYTES && adcgs_load_le32(payload) <= ANCHORS_MAX)
+            try_positions(adcgs_load_le32(payload), payload[4] % (ADCGS_GEOM_DEPTH_MAX + 2), payload + FIXED_BYTES,
+                          c.length - FIXED_BYTES);
+    }
+    return 0;
+}

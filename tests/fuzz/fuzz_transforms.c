@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Scenes as JSON files from outside: cameras, times, splits. The only picture there is is empty. */
+#define _GNU_SOURCE
+
+#include "outside_file.h"
+
+#include "data/transforms.h"
+
+const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/transforms", "tests/fuzz/regressions/transforms", NULL };
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[64], picture[64];
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_transforms said = { 0 };
+    adcgs_scene *scene = calloc(1, sizeof *scene);
+    const adcgs_split split = (adcgs_split)(size % (ADCGS_SPLITS + 1));
+    FUZZ_REQUIRE(scene && mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/scene.json", folder);
+    snprintf(picture, sizeof picture, "%s/a.png", folder);
+    write_outside_file(path, data, size);
+    write_outside_file(picture, data, 0);
+    const adcgs_status status = adcgs_transforms_read(scene, &said, path, split, &error);
+    FUZZ_REQUIRE(status == ADCGS_OK || (error.status == status && error.text[0]));
+    unlink(path);
+    unlink(picture);
+    rmdir(folder);
+    free(said.points_path);
+    adcgs_scene_free(&scene);
+    return 0;
+}

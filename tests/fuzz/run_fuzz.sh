@@ -1,0 +1,52 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# Builds the fuzz targets with clang and libFuzzer in fuzz-build/ and runs each of them for some seconds.
+# usage: run_fuzz.sh SRCDIR SECONDS [TARGET...]
+# SANITIZE=memory builds the targets of the library alone with MemorySanitizer instead; JOBS sets make's -j.
+# What the fuzzer finds stays in fuzz-build/corpus/TARGET, and the input of a fault in fuzz-build/faults/.
+set -u
+top=$(cd "$1" && pwd) || exit 3
+seconds=$2
+shift 2
+sanitize=${SANITIZE:-address,undefined}
+build=fuzz-build${SANITIZE:+-$SANITIZE}
+targets=(range geom net headers decode roundtrip ply transforms manifest)
+options=()
+if [ "$sanitize" = memory ]; then
+    targets=(range geom net headers decode roundtrip)
+    options=(--disable-encoder) # the libraries that it needs are not instrumented
+fi
+[ $# -gt 0 ] && targets=("$@")
+
+mkdir -p "$build/faults" && cd "$build" || exit 3
+flags="-g -O2 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,$sanitize -fno-sanitize-recover=all"
+if [ ! -f Makefile ]; then
+    "$top/configure" -q --disable-shared --disable-hardening "${options[@]}" CC=clang CXX=clang++ CFLAGS="$flags" CXXFLAGS="$flags" ||
+        exit 3
+fi
+programs=("${targets[@]/#/tests/fuzz/fuzz_}")
+make -s -j "${JOBS:-2}" "${programs[@]}" LDFLAGS="-fsanitize=fuzzer,$sanitize" || exit 3
+
+seeds()
+{
+    case $1 in
+        ply | transforms) echo "$top/tests/fuzz/seeds/$1" ;;
+        manifest) echo "$top/conformance/manifest.json" ;;
+        *) echo "$top/conformance/vectors" ;;
+    esac
+    [ -d "$top/tests/fuzz/regressions/$1" ] && echo "$top/tests/fuzz/regressions/$1"
+}
+
+bad=0
+for target in "${targets[@]}"; do
+    mkdir -p "corpus/$target"
+    # shellcheck disable=SC2046
+    find $(seeds "$target") -type f -size -64k -exec cp -n {} "corpus/$target/" \;
+    "tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
+        -dict="$top/tests/fuzz/adcgs.dict" -artifact_prefix="faults/$target-" "corpus/$target" >"$target.log" 2>&1
+    status=$?
+    printf '%-12s %s executions, %s\n' "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$target.log")" \
+        "$([ "$status" -eq 0 ] && echo 'no fault' || echo "FAULT, see $build/$target.log")"
+    [ "$status" -eq 0 ] || bad=1
+done
+exit $bad

@@ -1,0 +1,480 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What a stream can make a decoder spend: streams of a few hundred bytes that
+ * claim all that a level allows are decoded within their memory and time, and
+ * one more of anything is refused before anything is taken for it. And every
+ * allocation of the decoder is made to fail once.
+ */
+#include "random_model.h"
+#include "stream_edit.h"
+
+#include "base/cpu.h"
+#include "model/model_priv.h"
+#include "model/parts.h"
+
+#include <adcgs/adcgs.h>
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+/* Besides models, payloads and weights: contexts of the coders, headers of blocks, the table of networks. */
+#define SLACK ((uint64_t)1 << 20)
+#define SECONDS_MOST 2.0
+
+typedef struct span {
+    const uint8_t *next;
+    size_t left;
+} span;
+
+static int64_t read_span(void *user, void *buffer, size_t bytes)
+{
+    span *s = user;
+    const size_t n = ADCGS_MIN(bytes, s->left);
+    if (n > 0)
+        memcpy(buffer, s->next, n);
+    s->next += n;
+    s->left -= n;
+    return (int64_t)n;
+}
+
+/* ---- Streams whose contents cost no bytes ---- */
+
+/** What a stream of nothing is made of: every weight and every value 0, anchors that fill a cube. */
+typedef struct nothing {
+    adcgs_params params;
+    uint32_t segments, anchors;
+    int depth;
+    int role, layers, width; /**< hidden layers of one network, of this width; the others have none */
+    uint32_t cameras;
+} nothing;
+
+static const nothing least = { .params = { .k = 1, .n_fv = 1, .chunks = 1 }, .segments = 1, .anchors = 1 };
+
+static void zero_net(adcgs_net *net, const adcgs_params *params, int role, int layers, uint32_t width)
+{
+    uint32_t n_in, n_out;
+    adcgs_role_shape(params, role, &n_in, &n_out);
+    *net = (adcgs_net){ .present = 1, .role = (uint8_t)role, .n_layers = (uint8_t)(n_in == 0 ? 1 : layers) };
+    for (int i = 0; i < net->n_layers; i++) {
+        adcgs_layer *l = &net->layer[i];
+        const uint32_t rows = i == net->n_layers - 1 ? n_out : width;
+        l->w = (adcgs_tensor){ .rows = rows, .cols = n_in, .m = adcgs_alloc(NULL, (size_t)rows * n_in, 4, NULL) };
+        l->b = (adcgs_tensor){ .rows = rows, .cols = 1, .m = adcgs_alloc(NULL, rows, 4, NULL) };
+        assert_true(l->w.m && l->b.m);
+        n_in = rows;
+    }
+}
+
+/** Anchor i in the voxel whose Morton code is i. */
+static void fill_cube(adcgs_model *m)
+{
+    for (uint32_t i = 0; i < m->n; i++)
+        for (int bit = 0; bit < 10; bit++)
+            for (int axis = 0; axis < 3; axis++)
+                m->pos[3 * i + (uint32_t)axis] |= (i >> (3 * bit + 2 - axis) & 1) << bit;
+}
+
+static void make_model(adcgs_model *m, const nothing *what)
+{
+    m->params = what->params;
+    m->n = what->anchors;
+    m->depth = (uint8_t)what->depth;
+    m->voxel = 1;
+    m->layers = (uint8_t)adcgs_params_layers(&m->params);
+    assert_int_equal(adcgs_model_alloc(m, NULL, NULL), ADCGS_OK);
+    fill_cube(m);
+    for (uint32_t i = 0; i < m->n; i++)
+        m->mask[i] = (uint16_t)((1U << m->params.k) - 1);
+    for (int i = 0; i < ADCGS_NV_MAX; i++)
+        m->d_fv[i] = 1;
+    for (int i = 0; i < ADCGS_NG_MAX; i++)
+        m->d_fg[i] = 1;
+    for (int i = 0; i < ADCGS_SIGMA_N; i++)
+        m->d_sigma[i] = 1;
+    for (int i = 0; i < ADCGS_COLOUR_N; i++)
+        m->d_colour[i] = 1;
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (adcgs_role_required(&m->params, role))
+            zero_net(&m->net[role], &m->params, role, role == what->role ? 1 + what->layers : 1, (uint32_t)what->width);
+}
+
+static void make_stream(adcgs_stream *stream, const nothing *what)
+{
+    adcgs_stream_init(stream);
+    stream->params = what->params;
+    stream->slice_log2 = ADCGS_SLICE_LOG2_MAX;
+    stream->segments = adcgs_alloc(NULL, what->segments, sizeof *stream->segments, NULL);
+    stream->cameras = adcgs_alloc(NULL, what->cameras, sizeof *stream->cameras, NULL);
+    assert_true(stream->segments && stream->cameras);
+    for (; stream->n_segments < what->segments; stream->n_segments++) {
+        adcgs_model *m = &stream->segments[stream->n_segments];
+        make_model(m, what);
+        m->time_start = m->time_end = adcgs_ticks_to_seconds(stream, stream->n_segments);
+    }
+    for (; stream->n_cameras < what->cameras; stream->n_cameras++)
+        stream->cameras[stream->n_cameras] =
+            (adcgs_camera){ .width = 1, .height = 1, .fx = 1, .fy = 1, .near_plane = 1, .cam_to_world = { 1 } };
+}
+
+static void set_level(uint8_t *stream, size_t size, int level)
+{
+    stream[ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_HEADER_BYTES + 5] = (uint8_t)level;
+    adcgs_repair_stream(stream, size, 0);
+}
+
+/** The stream of nothing, whatever level it needs, made to say that it is of level 1. */
+static void make_bytes(adcgs_buffer *bytes, const nothing *what)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_stream stream;
+    adcgs_buffer_init(bytes);
+    make_stream(&stream, what);
+    if (adcgs_stream_write(&stream, bytes, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    set_level(bytes->data, bytes->size, 1);
+    adcgs_stream_clear(&stream, NULL);
+}
+
+/* ---- What they cost ---- */
+
+typedef struct cost {
+    adcgs_status status;
+    uint64_t peak;
+    double seconds;
+    char text[256];
+} cost;
+
+static cost decode(const uint8_t *data, size_t size)
+{
+    adcgs_memory memory = { .limit = 0 };
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_stream stream;
+    const adcgs_read_options options = { .cpu = adcgs_cpu_best(), .memory = &memory };
+    span s = { data, size };
+    cost c = { .seconds = (double)clock() };
+    c.status = adcgs_stream_read(&stream, read_span, &s, &options, NULL, NULL, &error);
+    c.seconds = ((double)clock() - c.seconds) / CLOCKS_PER_SEC;
+    c.peak = memory.peak;
+    snprintf(c.text, sizeof c.text, "%s", error.text);
+    if (c.status == ADCGS_OK)
+        adcgs_stream_clear(&stream, &memory);
+    assert_int_equal(memory.used, 0);
+    return c;
+}
+
+/** The bound that the specification's annex states, for streams of one layer of networks in memory at a time. */
+static uint64_t bound_of(const nothing *what, uint64_t weights, uint64_t longest_payload)
+{
+    const adcgs_nets_cost nets = { weights, 0 };
+    const adcgs_cost each = adcgs_segment_cost(&what->params, what->anchors, what->depth, &nets);
+    return what->segments * each.bytes + 128 * (uint64_t)what->anchors + 16 * weights + 3 * longest_payload
+           + 5 * (uint64_t)what->cameras * 50 + SLACK;
+}
+
+static int is_instrumented(void)
+{
+#if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__x86_64__)
+    return 1;
+#else
+    return adcgs_cpu_best() == ADCGS_CPU_SCALAR;
+#endif
+}
+
+/** A stream at the edge is decoded within memory and time; the one behind the edge is refused, having taken next to nothing. */
+static void check_edge(const char *name, const nothing *inside, const nothing *outside, uint64_t weights, const char *refusal)
+{
+    adcgs_buffer bytes;
+    make_bytes(&bytes, inside);
+    const cost in = decode(bytes.data, bytes.size);
+    const uint64_t bound = bound_of(inside, weights, bytes.size);
+    print_message("%s: %zu bytes, %llu of %llu KiB, %.3f s\n", name, bytes.size, (unsigned long long)in.peak >> 10,
+                  (unsigned long long)bound >> 10, in.seconds);
+    adcgs_buffer_clear(&bytes);
+    if (in.status != ADCGS_OK)
+        fail_msg("%s: %s", name, in.text);
+    assert_true(in.peak <= bound);
+    assert_true(is_instrumented() || in.seconds < SECONDS_MOST);
+    make_bytes(&bytes, outside);
+    const cost out = decode(bytes.data, bytes.size);
+    adcgs_buffer_clear(&bytes);
+    assert_int_equal(out.status, ADCGS_ERR_LIMIT);
+    if (!strstr(out.text, refusal))
+        fail_msg("%s: refused with: %s", name, out.text);
+    assert_true(out.peak <= in.peak + SLACK);
+}
+
+static void test_anchors(void **state)
+{
+    nothing in = least, out;
+    (void)state;
+    in.anchors = 4096;
+    in.depth = 12;
+    out = in;
+    out.anchors++;
+    check_edge("anchors", &in, &out, 0, "max_anchors");
+    out = in;
+    out.depth++;
+    check_edge("depth", &in, &out, 0, "depth");
+}
+
+static void test_segments(void **state)
+{
+    nothing in = least, out;
+    (void)state;
+    in.segments = 16;
+    in.anchors = 4096;
+    in.depth = 4;
+    out = in;
+    out.segments++;
+    check_edge("segments", &in, &out, 0, "segments");
+}
+
+static void test_weights(void **state)
+{
+    nothing in = least, out;
+    (void)state;
+    in.role = ADCGS_ROLE_ENTROPY_SIGMA;
+    in.layers = 2;
+    in.width = 512;
+    out = in;
+    out.layers = 3;
+    check_edge("weights", &in, &out, 300000, "weights");
+}
+
+static void test_model_bytes(void **state)
+{
+    nothing in = least, out;
+    (void)state;
+    in.params = (adcgs_params){ .k = 16, .n_fv = 64, .n_fg = 32, .chunks = 1 };
+    in.anchors = 4096;
+    in.depth = 4;
+    in.segments = 6;
+    out = in;
+    out.segments = 7;
+    check_edge("model bytes", &in, &out, 20000, "level's limit");
+}
+
+/** As near to the bound of work as networks of this width come. */
+static void test_work(void **state)
+{
+    nothing in = least, out;
+    (void)state;
+    in.params = (adcgs_params){ .k = 16, .n_fv = 64, .n_fg = 32, .chunks = 1 };
+    in.role = ADCGS_ROLE_ENTROPY_FG;
+    in.layers = 2;
+    in.width = 512;
+    in.anchors = 2950;
+    in.depth = 4;
+    out = in;
+    out.anchors = 3050;
+    check_edge("work", &in, &out, 350000, "work");
+}
+
+static void test_cameras(void **state)
+{
+    nothing in = least, out;
+    (void)state;
+    in.cameras = 25000;
+    out = in;
+    out.cameras = 42000;
+    check_edge("cameras", &in, &out, 0, "payload");
+}
+
+/** Copies of the only NETW in front of the last chunk: it repeats what is known, and its weights are decoded each time. */
+static void repeat_networks(adcgs_buffer *out, const adcgs_buffer *in, int times)
+{
+    adcgs_found_chunk c, netw = { 0 }, end = { 0 };
+    for (size_t pos = ADCGS_SIGNATURE_BYTES; adcgs_next_chunk(in->data, in->size, &pos, &c); end = c)
+        netw = c.type == ADCGS_TYPE_NETW ? c : netw;
+    adcgs_write_bytes(out, in->data, end.at);
+    for (int i = 0; i < times; i++)
+        adcgs_write_bytes(out, in->data + netw.at, netw.length + ADCGS_CHUNK_BYTES);
+    adcgs_write_bytes(out, in->data + end.at, in->size - end.at);
+    adcgs_repair_stream(out->data, out->size, 0);
+}
+
+static void test_repeated_networks(void **state)
+{
+    nothing what = least;
+    adcgs_buffer once, often;
+    (void)state;
+    what.role = ADCGS_ROLE_ENTROPY_SIGMA;
+    what.layers = 2;
+    what.width = 512;
+    make_bytes(&once, &what);
+    adcgs_buffer_init(&often);
+    repeat_networks(&often, &once, 50);
+    const cost in = decode(often.data, often.size);
+    print_message("networks 51 times: %zu bytes, %.3f s\n", often.size, in.seconds);
+    assert_int_equal(in.status, ADCGS_OK);
+    assert_true(in.peak <= bound_of(&what, 300000, often.size));
+    assert_true(is_instrumented() || in.seconds < SECONDS_MOST);
+    often.size = 0;
+    repeat_networks(&often, &once, 70);
+    const cost out = decode(often.data, often.size);
+    assert_int_equal(out.status, ADCGS_ERR_LIMIT);
+    assert_non_null(strstr(out.text, "work"));
+    adcgs_buffer_clear(&once);
+    adcgs_buffer_clear(&often);
+}
+
+/** A NETW with the networks from first_id on, each E_fv without inputs: two biases. */
+static void write_tiny_networks(adcgs_buffer *out, const adcgs_net *net, uint32_t first_id, uint32_t n)
+{
+    const adcgs_net *nets[ADCGS_ROLES];
+    for (uint32_t i = 0; i < n; i++)
+        nets[i] = net;
+    const size_t begin = adcgs_chunk_begin(out, ADCGS_TYPE_NETW, 0, 0);
+    assert_int_equal(adcgs_netw_write(out, nets, n, first_id, NULL), ADCGS_OK);
+    adcgs_chunk_end(out, begin);
+}
+
+static cost decode_tiny_networks(uint32_t networks)
+{
+    adcgs_buffer bytes, more;
+    adcgs_net net;
+    adcgs_found_chunk c, end = { 0 };
+    make_bytes(&bytes, &least);
+    adcgs_buffer_init(&more);
+    zero_net(&net, &least.params, ADCGS_ROLE_ENTROPY_FV, 1, 0);
+    for (size_t pos = ADCGS_SIGNATURE_BYTES; adcgs_next_chunk(bytes.data, bytes.size, &pos, &c);)
+        end = c;
+    adcgs_write_bytes(&more, bytes.data, end.at);
+    for (uint32_t id = 4; id < networks; id += ADCGS_ROLES)
+        write_tiny_networks(&more, &net, id, ADCGS_MIN(networks - id, (uint32_t)ADCGS_ROLES));
+    adcgs_write_bytes(&more, bytes.data + end.at, bytes.size - end.at);
+    adcgs_repair_stream(more.data, more.size, 0);
+    const cost spent = decode(more.data, more.size);
+    adcgs_net_clear(&net);
+    adcgs_buffer_clear(&more);
+    adcgs_buffer_clear(&bytes);
+    return spent;
+}
+
+static void test_networks(void **state)
+{
+    (void)state;
+    const cost in = decode_tiny_networks(256), out = decode_tiny_networks(257);
+    assert_int_equal(in.status, ADCGS_OK);
+    assert_true(in.peak <= bound_of(&least, 512, 4096));
+    assert_int_equal(out.status, ADCGS_ERR_LIMIT);
+    assert_non_null(strstr(out.text, "networks"));
+}
+
+/* ---- Allocations that fail ---- */
+
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+void __real_free(void *block);
+int __real_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void *(*function)(void *), void *arg);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+void __wrap_free(void *block);
+int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void *(*function)(void *), void *arg);
+
+/* Allocations that still succeed; below 0 nothing fails. Blocks in use. */
+static atomic_long left = -1;
+static atomic_long blocks = 0;
+
+static int fails(void)
+{
+    return atomic_load(&left) >= 0 && atomic_fetch_sub(&left, 1) == 0;
+}
+
+void *__wrap_calloc(size_t count, size_t size)
+{
+    void *block = fails() ? NULL : __real_calloc(count, size);
+    atomic_fetch_add(&blocks, block != NULL);
+    return block;
+}
+
+void *__wrap_realloc(void *old, size_t size)
+{
+    void *block = fails() ? NULL : __real_realloc(old, size);
+    atomic_fetch_add(&blocks, block != NULL && old == NULL);
+    return block;
+}
+
+void __wrap_free(void *block)
+{
+    atomic_fetch_sub(&blocks, block != NULL);
+    __real_free(block);
+}
+
+int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void *(*function)(void *), void *arg)
+{
+    return fails() ? 11 : __real_pthread_create(id, attributes, function, arg);
+}
+
+/** Open, look at two moments, close, with the allocation number n failing. Returns whether one did. */
+static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
+{
+    static const adcgs_camera camera = { .width = 33, .height = 20, .fx = 30, .fy = 30, .cx = 16, .cy = 10, .near_plane = 0.01,
+                                         .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4 } };
+    float rgb[33 * 20 * 3];
+    adcgs_frame frame = { 33, 20, rgb };
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_config config;
+    adcgs_decoder *d = NULL;
+    adcgs_config_init(&config);
+    config.threads = threads;
+    const long before = atomic_load(&blocks);
+    atomic_store(&left, n);
+    adcgs_status status = adcgs_open_memory(&d, bytes->data, bytes->size, &config, &error);
+    if (status == ADCGS_OK)
+        status = adcgs_render(d, &camera, 0, &frame, &error);
+    const int failed = atomic_load(&left) < 0;
+    atomic_store(&left, -1);
+    if (status != (failed ? ADCGS_ERR_MEMORY : ADCGS_OK))
+        fail_msg("allocation %ld fails: status %d, %s", n, (int)status, error.text);
+    assert_int_equal(error.status, status);
+    assert_true(!failed || error.text[0] != 0);
+    if (d && failed) /* it goes on as if nothing had happened */
+        assert_int_equal(adcgs_render(d, &camera, 0, &frame, &error), ADCGS_OK);
+    adcgs_close(&d);
+    assert_int_equal(atomic_load(&blocks), before);
+    return failed;
+}
+
+static void test_failing_allocations(void **state)
+{
+    adcgs_stream stream;
+    adcgs_params params;
+    adcgs_buffer bytes;
+    uint64_t seed = 3;
+    (void)state;
+    adcgs_random_params(&params, 1, &seed);
+    params.k = 2;
+    params.n_fg = params.chunks = 2;
+    assert_int_equal(adcgs_random_stream(&stream, &params, 2, 130, 4, &seed, NULL), ADCGS_OK);
+    stream.slice_log2 = ADCGS_SLICE_LOG2_MIN;
+    adcgs_buffer_init(&bytes);
+    assert_int_equal(adcgs_stream_write(&stream, &bytes, NULL), ADCGS_OK);
+    adcgs_stream_clear(&stream, NULL);
+    for (int threads = 1; threads <= 2; threads++) {
+        long n = 0;
+        while (fail_allocation(&bytes, threads, n))
+            n++;
+        print_message("%d threads: each of %ld allocations failed once\n", threads, n);
+        assert_true(n > 100);
+    }
+    adcgs_buffer_clear(&bytes);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_anchors),     cmocka_unit_test(test_segments), cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_model_bytes), cmocka_unit_test(test_work),     cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_networks),    cmocka_unit_test(test_repeated_networks),
+        cmocka_unit_test(test_failing_allocations),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
