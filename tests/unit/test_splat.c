@@ -285,6 +285,99 @@ static void test_extremes(void **state)
     }
 }
 
+/* A tensor of which every number is the same pattern. */
+static void fill_tensor(adcgs_tensor *t, uint32_t rows, uint32_t cols, float value)
+{
+    adcgs_free(NULL, t->m);
+    *t = (adcgs_tensor){.rows = rows, .cols = cols, .mode = 1, .m = adcgs_alloc(NULL, (size_t)rows * cols, 4, NULL)};
+    assert_non_null(t->m);
+    for (size_t i = 0; i < (size_t)rows * cols; i++)
+        t->m[i] = (int32_t)adcgs_float_bits(value);
+}
+
+/* The largest network of a role: four layers of 512 rows, the inner ones residual, all numbers as large as they may be. */
+static void fill_network(adcgs_model *m, int role, float value)
+{
+    adcgs_net *net = &m->net[role];
+    uint32_t n_in, n_out;
+    adcgs_role_shape(&m->params, role, &n_in, &n_out);
+    net->present = 1;
+    net->role = (uint8_t)role;
+    net->n_layers = 4;
+    for (int l = 0; l < 4; l++, n_in = ADCGS_NET_WIDTH_MAX) {
+        const uint32_t rows = l < 3 ? ADCGS_NET_WIDTH_MAX : n_out;
+        net->layer[l].residual = l == 1 || l == 2;
+        fill_tensor(&net->layer[l].w, rows, n_in, value);
+        fill_tensor(&net->layer[l].b, rows, 1, value);
+    }
+}
+
+static void make_largest(adcgs_model *m, float value)
+{
+    uint64_t random = 8;
+    adcgs_params params;
+    adcgs_random_params(&params, 1, &random);
+    assert_int_equal(adcgs_random_model(m, &params, 2, 4, &random, NULL), ADCGS_OK);
+    for (int role = ADCGS_ROLE_PREDICTION; role < ADCGS_ROLE_TIME; role++)
+        fill_network(m, role, value);
+    for (size_t j = 0; j < (size_t)m->n * params.n_fv; j++)
+        m->fv[j] = 32767;
+    for (int c = 0; c < params.n_fv; c++)
+        m->d_fv[c] = 0x1p10f;
+    m->is_static[0] = 0;
+}
+
+/* REQ-BNDS-001, REQ-LATN-008 */
+static void test_largest_networks(void **state)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        adcgs_model m;
+        adcgs_error error = {0};
+        make_largest(&m, (float)sign * 0x1.fffffep7f);
+        if (adcgs_model_validate(&m, &error) != ADCGS_OK)
+            fail_msg("%s", error.text);
+        for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
+            check_model(&m, 1, cpu);
+        clear_model(&m);
+    }
+}
+
+/* REQ-NETW-009 */
+static void test_refused_networks(void **state)
+{
+    static const uint32_t patterns[] = {0x43800000u, 0xc3800000u, 0x7f800000u, 0xffc00000u, 0x00000001u, 0x807fffffu};
+    adcgs_model m;
+    make_largest(&m, 0x1p-3f);
+    adcgs_net *net = &m.net[ADCGS_ROLE_COARSE];
+    adcgs_tensor *w = &net->layer[3].w;
+    w->m[1] = (int32_t)0x80000000u;
+    assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_OK);
+    for (size_t i = 0; i < ADCGS_COUNTOF(patterns); i++) {
+        w->m[1] = (int32_t)patterns[i];
+        assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
+    }
+    w->m[1] = 0;
+    for (int e = 0; e <= 41; e++) {
+        const int32_t largest = e < 16 ? (1 << (8 + e)) - 1 : 0xffffff;
+        for (size_t i = 0; i < (size_t)w->rows * w->cols; i++)
+            w->m[i] = -largest;
+        w->mode = 0;
+        w->e = (uint8_t)e;
+        assert_int_equal(adcgs_model_validate(&m, NULL), e <= 40 ? ADCGS_OK : ADCGS_ERR_DATA);
+        w->m[2] = largest + 1;
+        assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
+    }
+    w->e = 20;
+    w->m[2] = 0;
+    for (int l = 0; l < 4; l++) {
+        const uint8_t before = net->layer[l].residual;
+        net->layer[l].residual = l == 0 || l == 3;
+        assert_int_equal(adcgs_model_validate(&m, NULL), l == 0 || l == 3 ? ADCGS_ERR_DATA : ADCGS_OK);
+        net->layer[l].residual = before;
+    }
+    clear_model(&m);
+}
+
 static void test_memory_limit(void **state)
 {
     uint64_t random = 7;
@@ -344,7 +437,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_functions),  cmocka_unit_test(test_position_code), cmocka_unit_test(test_against_reference),
-        cmocka_unit_test(test_extremes),   cmocka_unit_test(test_memory_limit),
+        cmocka_unit_test(test_extremes),   cmocka_unit_test(test_memory_limit),  cmocka_unit_test(test_largest_networks),
+        cmocka_unit_test(test_refused_networks),
     };
     return cmocka_run_group_tests_name("splat", tests, NULL, NULL);
 }

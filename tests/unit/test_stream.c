@@ -96,7 +96,7 @@ static void make_stream(adcgs_stream *stream, int moving, uint32_t segments, uin
 }
 
 /* REQ-STRM-001, REQ-STRM-006, REQ-STRM-007, REQ-STRM-013, REQ-STRM-016, REQ-LATN-001, REQ-LATN-002, REQ-LATN-003,
-   REQ-LATN-004, REQ-LATN-005 */
+   REQ-LATN-004, REQ-LATN-005, REQ-LATN-006, REQ-LATN-010 */
 static void test_round_trip(void **state)
 {
     static const uint32_t counts[] = { 1, 3, 63, 64, 65, 300, 700 };
