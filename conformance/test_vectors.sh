@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
 # The committed vectors are those that the generator makes, byte for byte; the decoder does what their manifest says, and
-# the check of that would notice if it did not.
+# the check of that would notice if it did not. REQ-CONF-001, REQ-CONF-002, REQ-CONF-003, REQ-CONF-008
 set -u
 source=${srcdir:-.}/conformance
 dir=$(mktemp -d) || exit 99

@@ -46,7 +46,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
         {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "fail unless the frames together have this MD5", NULL, NULL},
         {"answer", 0, ADCGS_OPTION_STRING, &s->answer, 0, 0, "REQUESTS",
-         "answer a file of requests for digests of models, splats and\nframes (specification, clause \"Conformance\")", NULL, NULL},
+         "answer a file of requests for digests, as the specification's\nclause on conformance says", NULL, NULL},
         {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL, "print the milliseconds that each frame took to render",
          NULL, NULL},
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},

@@ -93,7 +93,7 @@ expect 4 "^adcgs-dec: standard input: " sh -c "$dec - <'$dir/cut'"
 expect 0 "" $dec --help
 expect 0 "" $dec --version
 
-# Requests and answers: REQ-CONF-006, REQ-CONF-007, REQ-CONF-010, REQ-CONF-012, REQ-CONF-013, REQ-CONF-014.
+# Requests and answers: REQ-CONF-006, REQ-CONF-007, REQ-CONF-009, REQ-CONF-010, REQ-CONF-012, REQ-CONF-013, REQ-CONF-014.
 eye="1 0 0 0  0 0 1 -4  0 -1 0 0"
 cat >"$dir/requests" <<END
 # a comment

@@ -2,6 +2,7 @@
 /** \file Ground: known answers of the digests, memory accounting, statuses, CPU levels, and the pool at 1, 2 and 7 threads. */
 #include "base/cpu.h"
 #include "base/digest.h"
+#include "base/fmath.h"
 #include "base/pool.h"
 
 #include <setjmp.h>
@@ -174,11 +175,42 @@ static void test_pool(void **state)
     adcgs_pool_free(&pool);
 }
 
+static void add_number(adcgs_md5 *md5, float x)
+{
+    uint8_t bytes[4];
+    adcgs_store_le32(bytes, adcgs_float_bits(x));
+    adcgs_md5_update(md5, bytes, sizeof bytes);
+}
+
+/* REQ-PRIM-001, REQ-PRIM-002, REQ-PRIM-003, REQ-PRIM-004: the specification's sweep_example. */
+static void test_sweep(void **state)
+{
+    adcgs_md5 md5;
+    uint8_t digest[16];
+    char text[33];
+    (void)state;
+    adcgs_md5_init(&md5);
+    for (int n = 0; n < 2048; n++) {
+        const float x = (float)(n - 1024) * 0x1.5bf0a8p-5f, turn = (float)n * 0x1.5bf0a8p-3f;
+        float sine, cosine;
+        adcgs_sincospi(turn, &sine, &cosine);
+        add_number(&md5, adcgs_exp(x));
+        add_number(&md5, adcgs_sigmoid(x));
+        add_number(&md5, adcgs_log2(adcgs_bits_float(0x00800000u + 1036287u * (uint32_t)n)));
+        add_number(&md5, sine);
+        add_number(&md5, cosine);
+    }
+    adcgs_md5_final(&md5, digest);
+    adcgs_md5_hex(digest, text);
+    assert_string_equal(text, "71b64812a7bd722a040ad91dfd910d4d");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_crc32c), cmocka_unit_test(test_md5), cmocka_unit_test(test_memory),
         cmocka_unit_test(test_status), cmocka_unit_test(test_cpu), cmocka_unit_test(test_pool),
+        cmocka_unit_test(test_sweep),
     };
     return cmocka_run_group_tests_name("base", tests, NULL, NULL);
 }
