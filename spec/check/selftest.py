@@ -33,8 +33,8 @@ FAULTS = [
     Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_rows \|", "| time_rowz |", r"time_rows has no row"),
     Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_rows \|(.*)\n\| time_width \|(.*)\n", r"| time_width |\2\n| time_rows |\1\n",
           "another order"),
-    Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_width \| `0 \.\. 512`", "| time_width | `0 .. (512`", "cannot be read"),
-    Fault("S2", "spec/clauses/06-stream.adoc", r"^\| n_fv \| `1 \.\. 64`", "| n_fv | `1 .. n_eta`", "not known yet"),
+    Fault("S2", "spec/clauses/06-stream.adoc", r"^\| time_width \| `?0 \.\. 512`?", "| time_width | 0 .. (512", "cannot be read"),
+    Fault("S2", "spec/clauses/06-stream.adoc", r"^\| n_fv \| `?1 \.\. 64`?", "| n_fv | 1 .. n_eta", "not known yet"),
     # S3: an element of another size would not even parse; one of another name shows in the trace
     Fault("S3", "spec/clauses/06-stream.adoc", r"\baxes\b", "axez", "axez", True),
     # S4: another model, other splats, another frame, another verdict
@@ -53,7 +53,7 @@ FAULTS = [
     Fault("S5", "codec/model/syntax.h", r"\(F32, voxel, 0x1p-40,", "(F32, voxel, 0x1p-41,", "voxel"),
     Fault("S5", "codec/model/syntax.h", r"F\(U8, depth,", "F(U16, depth,", "depth"),
     # S6: a range that grows, a number of the annex
-    Fault("S6", "spec/clauses/06-stream.adoc", r"^\| n_fv \| `1 \.\. 64`", "| n_fv | `1 .. 640`", "."),
+    Fault("S6", "spec/clauses/06-stream.adoc", r"^\| n_fv \| `?1 \.\. 64`?", "| n_fv | 1 .. 640", "."),
     Fault("S6", "spec/clauses/annex-bounds.adoc", r"\| -34605 \.\. 34605 \|", "| -34605 .. 34604 |", "mixed.total"),
     # S7: twice, badly formed, cited without being there, not cited, index out of date
     Fault("S7", "spec/clauses/08-geometry.adoc", r"\[\[REQ-GEOM-002\]\]", "[[REQ-GEOM-001]]", "stands in"),
