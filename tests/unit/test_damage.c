@@ -112,7 +112,7 @@ static void test_cut_anywhere(void **state)
 }
 
 /** A cut inside a layer keeps the slices in front of it. */
-/* REQ-STRM-031 */
+/* REQ-STRM-031, REQ-STRM-038 */
 static void test_slices_before_cut(void **state)
 {
     adcgs_stream stream, part;
@@ -237,7 +237,7 @@ static void test_unknown_chunks(void **state)
 }
 
 /** A stream from which the last layers were taken plays with what is left. */
-/* REQ-STRM-009, REQ-LATN-007 */
+/* REQ-STRM-009, REQ-LATN-007, REQ-STRM-038 */
 static void test_layers_taken_out(void **state)
 {
     adcgs_stream stream, part;

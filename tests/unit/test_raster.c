@@ -255,7 +255,7 @@ static void test_not_numbers(void **state)
     adcgs_free(NULL, s.data);
 }
 
-/* REQ-REND-002, REQ-REND-003, REQ-REND-005 */
+/* REQ-REND-002, REQ-REND-003, REQ-REND-005, REQ-CONV-007, REQ-CONV-008 */
 static void test_reference(void **state)
 {
     scene_splats s = scene_room(1500, 40.0, 3);
@@ -333,7 +333,7 @@ static void test_steady_memory(void **state)
     adcgs_free(NULL, s.data);
 }
 
-/* REQ-REND-001 */
+/* REQ-REND-001, REQ-CONV-007 */
 static void test_cameras(void **state)
 {
     adcgs_camera good = scene_camera(20, 20), bad;
