@@ -247,17 +247,17 @@ def geometry(b):
 
 
 def stream(b):
-    n, head = b.limit("anchors", "GEOM")[1], lambda e: b.limit(e, "HEAD")[1]
-    channels = head("n_eta") + head("n_fv") + 9 + head("k") * head("n_fg")
-    segment = 8192 + n * (15 + 2 * channels) + 4 * 12 * b.level("WEIGHTS")
+    n, depth, weights_most = b.limit("anchors", "GEOM")[1], b.limit("depth", "GEOM")[1], b.level("WEIGHTS")
+    head = Record(**{e: b.limit(e, "HEAD")[1] for e in ("n_eta", "n_fv", "n_fg", "k")})
+    segment = b.m.segment_bytes(head, n, weights_most)  # a network has one role: none counts twice
     b.integer("stream.segment_bytes", 0, segment)
     b.integer("stream.model_bytes", 0, b.level("MODEL_BYTES") + segment)
-    if "WORK" in b.m.names:
-        work = n * (12 * b.level("WEIGHTS") * head("k") + 512 * channels + 8192 * b.limit("depth", "GEOM")[1])
-        b.integer("stream.work", 0, b.level("WORK") + work)
+    network_work, work = 1024 * weights_most, b.m.segment_work(head, n, depth, head.k * weights_most)
+    b.rests_on("s.work += 1024 * net.numbers")
+    b.integer("stream.work", 0, b.level("WORK") + max(network_work, work))
     slices = n >> b.limit("slice_log2", "HEAD")[0]
     b.integer("stream.slice_bytes", 0, slices * (2 ** 32 - 1))
-    b.integer("stream.primitives", 0, n * head("k"))
+    b.integer("stream.primitives", 0, n * head.k)
 
 
 # ---- Binary32: the processes of the text on intervals ----
@@ -285,41 +285,43 @@ def symmetric(x):
     return Interval(-x, x)
 
 
-def splats(b):
-    m = b.m
-    head = lambda e: b.limit(e, "HEAD")[1]
-    step = b.limit("step", "SEGM_steps")[1]
+def networks(b):
+    """The value of a latent, and the outputs of the three networks."""
     b.rests_on("y = clamp(x, -86.0, 88.0)")
     b.rests_on("0x1p-40 <= n <= 0x1p+100")
     b.integer("exp.n", *(math.floor(x / math.log(2) + 0.5) for x in (-86, 88)))
-    on_intervals(m)
+    on_intervals(b.m)
     Interval.peak = 0
-    latent = m.latent_value(symmetric(32767), Interval(0, step))
+    latent = b.m.latent_value(symmetric(32767), Interval(0, b.limit("step", "SEGM_steps")[1]))
     b.real("latent.value", latent)
-    weight = symmetric(2.0 ** 8)
-    f_t = m.names["fma"](Interval(0, 1), weight - weight, weight)
-    b.real("time.code", f_t)
-    code = symmetric(1 + 2.0 ** -20)
-    y = network(b, "theta", [latent] * (head("n_fv") + head("n_fg")), 14)
-    omega = network(b, "omega", [latent] * head("n_fv") + [f_t] * head("time_width"), 12)
-    varpi = network(b, "varpi", [code] * (6 * head("octaves")) + [latent] * head("n_fv") + [f_t] * head("time_width"), 4)
-    at_rest = Record(offset=None, scale=None, rotation=None, colour=None, logit=None)
-    m.names.update(features=lambda latents, steps: [latent] * 6, accumulate=lambda *_: None, outputs=lambda *_: y)
+    weight = symmetric(2 ** 8)
+    of_time = fma(Interval(0, 1), weight - weight, weight)
+    b.real("time.code", of_time)
+    most = {e: b.limit(e, "HEAD")[1] for e in ("n_fv", "n_fg", "octaves", "time_width")}
+    fv, code, f_t = [latent] * most["n_fv"], [symmetric(1 + 2.0 ** -20)] * (6 * most["octaves"]), [of_time] * most["time_width"]
+    theta = network(b, "theta", fv + [latent] * most["n_fg"], 14)
+    return latent, theta, network(b, "omega", fv + f_t, 12), network(b, "varpi", code + fv + f_t, 4)
+
+
+def splats(b):
+    m = b.m
+    latent, theta, omega, varpi = networks(b)
+    m.names.update(features=lambda latents, steps: [latent] * 6, accumulate=lambda *_: None, outputs=lambda *_: theta)
     model = Record(fv=[None], fg=[[None]], sigma=[None], colour=[None], d_fv=None, d_fg=None, d_sigma=None, d_colour=None,
-                   positions=[[Interval(0, 2 ** b.limit("depth", "GEOM")[1] - 1)] * 3], voxel=Interval(0, b.limit("voxel", "GEOM")[1]),
-                   origin=[Interval(*b.limit("origin", "GEOM"))] * 3, head=Record(coarse_rotation=1, k=head("k")))
-    at_rest = m.predict(model, [Record(b=None, w=None)], 0, 0)
-    position = m.anchor_position(model, 0)
-    for name in ("offset", "scale", "colour"):
-        b.real("rest." + name, getattr(at_rest, name)[0])
+                   positions=[[Interval(0, 2 ** b.limit("depth", "GEOM")[1] - 1)] * 3],
+                   voxel=Interval(0, b.limit("voxel", "GEOM")[1]),
+                   origin=[Interval(*b.limit("origin", "GEOM"))] * 3, head=Record(coarse_rotation=1, k=b.limit("k", "HEAD")[1]))
+    primitive, position = m.predict(model, [Record(b=None, w=None)], 0, 0), m.anchor_position(model, 0)
     b.real("rest.position", position[0])
-    position = m.move_anchor(model, 0, omega, position, at_rest)
-    m.change_primitive(0, varpi, at_rest)
+    for name in ("offset", "scale", "colour"):
+        b.real("rest." + name, getattr(primitive, name)[0])
+    position = m.move_anchor(model, 0, omega, position, primitive)
+    m.change_primitive(0, varpi, primitive)
     b.real("moved.position", position[0])
     for name in ("offset", "scale", "rotation", "colour"):
-        b.real("moved." + name, getattr(at_rest, name)[0])
-    b.real("moved.logit", at_rest.logit)
-    splat = m.splat(model, 0, 0, position, at_rest)
+        b.real("moved." + name, getattr(primitive, name)[0])
+    b.real("moved.logit", primitive.logit)
+    splat = m.splat(model, 0, 0, position, primitive)
     b.real("splats.any", symmetric(Interval.peak))
     b.real("splat.opacity", splat.opacity)
     return splat
@@ -348,7 +350,7 @@ def rendering(b, splat):
 
 
 def needle(b, splat):
-    """What a drawn splat is, where interval arithmetic alone knows too little: the inequalities of the annex, in exact numbers."""
+    """A splat that is drawn. Intervals alone know too little here; these are the inequalities of the annex in exact numbers."""
     u = Fraction(1, 2 ** 24)
     b.rests_on("q = 0x1.ffff8p-1 * fma(f[0][2], f[1][2], fma(f[0][1], f[1][1], f[0][0] * f[1][0]))")
     shear = Fraction(float.fromhex("0x1.ffff8p-1"))
@@ -382,10 +384,9 @@ def blending(b, splat, a, ratio):
     power = Interval(low, high * (1 - 2.0 ** -23) ** 2)
     b.real("blend.power", power)
     b.real("blend.alpha", opacity(b, power))
-    least = float(2.0 ** -8)
-    total = (1 + u) * (1 + u / (1 - (1 - Fraction(least)) * (1 + u)))
-    splats_most = b.found["stream.primitives"][1]
-    colour = symmetric(splat.colour[0].high * float(total) * math.exp(splats_most * float(u) * 1.001))
+    light = (1 + u) * (1 + u / (1 - (1 - Fraction(1, 256)) * (1 + u)))  # the sum of alpha * t, each alpha being 1/256 or more
+    roundings = math.exp(b.found["stream.primitives"][1] * float(u) * 1.001)
+    colour = symmetric(splat.colour[0].high * float(light) * roundings)
     b.real("blend.colour", colour)
     b.real("frame", fma(Interval(0, 1), Interval(*b.limit("background", "HEAD")), colour))
 
