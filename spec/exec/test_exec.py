@@ -4,6 +4,7 @@
 import math
 import os
 import random
+import re
 import struct
 import sys
 import tempfile
@@ -79,6 +80,7 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(float(binary32(2 ** 60 + 2 ** 36 + 1)), float(2 ** 60 + 2 ** 37))
 
     def test_kinds_do_not_mix(self):
+        """REQ-CONV-012: formats never meet, and what meets them is exact."""
         for wrong in (lambda: binary32(1) + F64(1), lambda: binary32(1) + Literal(0.1), lambda: binary32(1) + (2 ** 24 + 1),
                       lambda: divide(1, 2), lambda: binary32(1) // 2, lambda: power(binary32(2), 2), lambda: binary32(1) < F64(1)):
             self.assertRaises(NotationError, wrong)
@@ -87,7 +89,7 @@ class Arithmetic(unittest.TestCase):
 
 
 class Blocks(unittest.TestCase):
-    """What the notation takes and what it refuses."""
+    """REQ-CONV-011: what the notation takes and what it refuses."""
 
     def machine(self, process="", syntax="", semantics=""):
         folder = tempfile.TemporaryDirectory()
@@ -122,6 +124,7 @@ class Blocks(unittest.TestCase):
         self.assertRaises(NotationError, self.machine, "", table % "")
 
     def test_reads_elements(self):
+        """REQ-CONV-006, REQ-CONV-014: descriptors, ranges, indices, and what is a fault."""
         m, lines = self.machine("f(b):\n    return parse(X, b, 2)",
                                 "X(k):\n    n               u8\n    v               i16 * k\n    for i in range(n):\n"
                                 "        y[i]        Y()\n    if n > 1:\n        w           var\n    s               text(0, 3)\nY():\n"
@@ -134,6 +137,77 @@ class Blocks(unittest.TestCase):
                                  "920 X.s \"a\\x22\""])
         for wrong in (data[:-1], data + b"x", b"\3" + data[1:], data[:13] + b"\x80\x80\0" + data[15:], data[:13] + b"\x7f" + data[15:]):
             self.assertRaises(Fault, m.f, Bytes.at(wrong, 0))
+
+
+class Examples(unittest.TestCase):
+    """What clauses give as examples is what their processes yield."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.machine = machine.Machine()
+
+    def clause(self, name):
+        with open(os.path.join(machine.folder, "clauses", name), encoding="utf-8") as file:
+            return file.read()
+
+    def value_of(self, expression):
+        program = machine.notation.Program(machine.notation.Text(os.devnull), self.machine._builtins())
+        block = machine.notation.Block("adcgs", "example", 1, ["f():", "    return " + expression])
+        program._load(block, None)
+        return program.names["f"]()
+
+    def test_expressions(self):
+        """REQ-CONV-001: the values that the conventions give for orientation."""
+        line = re.search(r"Some values, for orientation: (.*)\.", self.clause("04-conventions.adoc")).group(1)
+        cases = re.split(r"; | and ", line.replace("`+", "").replace("+`", "").replace("`", "").replace("\u2212", "-"))
+        self.assertGreaterEqual(len(cases), 8)
+        for case in cases:
+            expression, value = case.split(" = ")
+            self.assertEqual(self.value_of(expression), int(value), case)
+
+    def test_var(self):
+        """REQ-CONV-006: the bytes of `var`, and those that are none."""
+        table = self.clause("04-conventions.adoc").split("| Bytes of a `var` | Value")[1].split("|===")[0]
+        rows = re.findall(r"^\| ([0-9A-F ,]+) \| (.*)$", table, re.M)
+        self.assertEqual(len(rows), 8)
+        for cell, value in rows:
+            for data in (bytes.fromhex(part.replace(" ", "")) for part in cell.split(",")):
+                s = machine.Reading(Bytes.at(data, 0), "X", lambda line: None)
+                if value.startswith("fault"):
+                    self.assertRaises(Fault, machine.reading.read, s, "x", "var", [], None, None, None)
+                else:
+                    wanted = 2 ** 32 - 1 if value.startswith("2^32^") else int(value)
+                    self.assertEqual(machine.reading.read(s, "x", "var", [], None, None, None), wanted)
+
+    def test_range_decoder(self):
+        """REQ-PARS-001 to REQ-PARS-008: every state of the example."""
+        m, text = self.machine, self.clause("07-parsing.adoc")
+        data, table = re.search(r"five bytes `([0-9a-f ]+)`.*?(\| start.*?)\n\|===", text, re.S).groups()
+        d = m.range_start(Bytes.at(bytes.fromhex(data), 0))
+        for row in table.split("\n"):
+            operation, result, r, v, used = [cell.strip() for cell in row.split("|")[1:]]
+            number = int(operation.split("=")[1]) if "=" in operation else None
+            if operation == "symbol":
+                self.assertEqual(m.symbol(d, [0, 40000, 60000, 65536]), int(result))
+            elif number is not None:
+                self.assertEqual((m.bit if operation.startswith("bit,") else m.bits)(d, number), int(result))
+            self.assertEqual((d.R, d.V, d.position + d.virtual), (int(r, 16), int(v, 16), int(used)), row)
+        m.range_finish(d)
+
+    def test_adaptive(self):
+        """REQ-PARS-010: where four outcomes take a fresh context."""
+        text = self.clause("07-parsing.adoc")
+        outcomes, states = re.search(r"outcomes ([01, ]+) take .*? from \(32768, 0\) to (.*)\.", text).groups()
+        context = self.machine.context()
+        for b, state in zip(outcomes.split(", "), re.findall(r"\((\d+), (\d+)\)", states), strict=True):
+            self.machine.update(context, int(b))
+            self.assertEqual((context.p1, context.count), tuple(int(n) for n in state))
+
+    def test_checksum(self):
+        """REQ-STRM-002: the CRC of nine digits, and of nothing."""
+        wanted = re.search(r"`123456789` is\s+([0-9A-F]{8})", self.clause("06-stream.adoc")).group(1)
+        self.assertEqual(self.machine.crc32c(list(b"123456789")), int(wanted, 16))
+        self.assertEqual(self.machine.crc32c([]), 0)
 
 
 if __name__ == "__main__":
