@@ -30,8 +30,7 @@ _nodes = {
     "Module", "FunctionDef", "arguments", "arg", "Assign", "AugAssign", "Return", "If", "For", "While", "Break", "Continue", "Pass",
     "Expr", "Call", "keyword", "Name", "Load", "Store", "Constant", "Attribute", "Subscript", "Slice", "Tuple", "List", "ListComp",
     "comprehension", "BinOp", "UnaryOp", "BoolOp", "Compare", "IfExp", "And", "Or", "Not", "USub", "Invert", "Add", "Sub", "Mult",
-    "Div", "FloorDiv", "Mod", "Pow", "LShift", "RShift", "BitAnd", "BitOr", "BitXor", "Eq", "NotEq", "Lt", "LtE", "Gt", "GtE", "In",
-    "NotIn", "Is", "IsNot",
+    "Div", "FloorDiv", "Mod", "Pow", "LShift", "RShift", "BitAnd", "BitOr", "BitXor", "Eq", "NotEq", "Lt", "LtE", "Gt", "GtE",
 }
 
 
