@@ -131,10 +131,11 @@ void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, fl
     dsp->dense.lrelu(h, m->width);
     for (int i = 1; i < m->hidden; i++) {
         float *branch = a + (size_t)(i - 1) * tile, *next = h + (size_t)i * tile;
-        dsp->dense.dense(branch, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, next - tile, m->width, m->width);
+        const float *last = next - tile;
+        dsp->dense.dense(branch, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, last, m->width, m->width);
         dsp->dense.lrelu(branch, m->width);
         for (size_t j = 0; j < tile; j++)
-            next[j] = next[j - tile] + branch[j];
+            next[j] = last[j] + branch[j];
     }
     dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width,
                      h + (size_t)(m->hidden - 1) * tile, m->out, m->width);

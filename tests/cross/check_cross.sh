@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The decoder, built by several compilers at several optimisation levels and for other machines (run under qemu), gives
-# every conformance vector the same digests: models, splats and frames, to the bit.
+# The decoder, built by several compilers at several optimisation levels, with sanitizers, and for other machines (run under
+# qemu), gives every conformance vector the same digests: models, splats and frames, to the bit.
 #
 # usage: check_cross.sh [-c CONFORM] [-j JOBS] [-s] [TARGET...]
 #   -c CONFORM  a native adcgs-conform, which asks the decoders (default ./adcgs-conform)
@@ -10,7 +10,7 @@
 # Builds in cross/TARGET of the working directory. One line per target; exit status 1 if one failed.
 set -u
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd) || exit 99
-targets=(gcc-O0 gcc-O2 gcc-O3 clang-O0 clang-O2 clang-O3 aarch64 armhf riscv64 s390x)
+targets=(gcc-O0 gcc-O2 gcc-O3 clang-O0 clang-O2 clang-O3 address memory aarch64 armhf riscv64 s390x)
 conform=./adcgs-conform
 jobs=$(nproc 2>/dev/null || echo 2)
 missing=SKIP
@@ -28,31 +28,33 @@ shift $((OPTIND - 1))
 conform=$(realpath "$conform") && [ -x "$conform" ] || { echo "check_cross.sh: no adcgs-conform: $conform" >&2; exit 2; }
 [ ! -f "$source/config.status" ] || { echo "check_cross.sh: the source tree is configured in place" >&2; exit 2; }
 
-# describe TARGET: sets compiler, flags, host and emulator (the last two empty for this machine).
+# describe TARGET: sets compiler, flags, configure's options, libtool's, and emulator (empty for this machine).
 describe()
 {
     local triplet= cpu=
+    emulator= options=(--enable-werror) link=
     case $1 in
         gcc-O? | clang-O?) compiler=${1%-*} flags=-${1##*-} ;;
+        address) compiler=clang flags='-O1 -fsanitize=address,undefined -fno-sanitize-recover=all' options=(--disable-hardening) ;;
+        memory) compiler=clang flags='-O1 -fsanitize=memory -fno-sanitize-recover=all' options=(--disable-hardening) ;;
         aarch64) triplet=aarch64-linux-gnu cpu=aarch64 ;;
         armhf) triplet=arm-linux-gnueabihf cpu=arm ;;
         riscv64) triplet=riscv64-linux-gnu cpu=riscv64 ;;
         s390x) triplet=s390x-linux-gnu cpu=s390x ;;
         *) echo "check_cross.sh: unknown target $1" >&2; return 2 ;;
     esac
-    host=$triplet emulator=
     [ -n "$triplet" ] || return 0
-    compiler=$triplet-gcc flags=-O3
+    # Static, so that an emulator needs no libraries of the other machine.
+    compiler=$triplet-gcc flags=-O3 options+=(--host=$triplet) link=-all-static
     emulator=$(command -v qemu-$cpu-static || command -v qemu-$cpu) || emulator=qemu-$cpu
 }
 
-# build COMPILER FLAGS HOST: a static decoder in the working directory.
+# build: the decoder that was described, in the working directory.
 build()
 {
     [ Makefile -nt "$source/configure" ] ||
-        "$source/configure" --disable-encoder --disable-shared --enable-werror ${3:+--host="$3"} CC="$1" CFLAGS="-g $2" || return
-    # Static, so that an emulator needs no libraries of the other machine.
-    make LDFLAGS=-all-static adcgs-dec
+        "$source/configure" --disable-encoder --disable-shared "${options[@]}" CC="$compiler" CFLAGS="-g1 $flags" || return
+    make LDFLAGS=$link adcgs-dec
 }
 
 # levels RUN: the CPU levels at which a decoder runs here; the portable one has to.
@@ -68,7 +70,7 @@ levels()
 # check TARGET: everything about one target; prints its line.
 check()
 {
-    local target=$1 compiler flags host emulator level done_levels= vectors=0 begin=$SECONDS
+    local target=$1 compiler flags options link emulator level done_levels= vectors=0 begin=$SECONDS
     describe "$target" || return
     line()
     {
@@ -79,7 +81,7 @@ check()
         command -v "$tool" >/dev/null || { line $missing ": $tool is not installed"; return; }
     done
     mkdir -p "cross/$target" && cd "cross/$target" || return
-    build "$compiler" "$flags" "$host" >build.log 2>&1 || { line FAIL ": does not build, see $PWD/build.log"; return; }
+    build >build.log 2>&1 || { line FAIL ": does not build, see $PWD/build.log"; return; }
     for level in $(levels "${emulator:+$emulator }./adcgs-dec"); do
         "$conform" --decoder "${emulator:+$emulator }./adcgs-dec --cpu $level --answer {request} {in}" \
             "$source/conformance/manifest.json" >conform-$level.log 2>&1 ||
@@ -93,6 +95,8 @@ check()
 for target in "${targets[@]}"; do
     describe "$target" || exit 2
 done
+# What a sanitizer finds is a crash, never to be taken for an exit code.
+export ASAN_OPTIONS=abort_on_error=1 UBSAN_OPTIONS=abort_on_error=1 MSAN_OPTIONS=abort_on_error=1
 mkdir -p cross/lines || exit 2
 rm -f cross/lines/*
 for target in "${targets[@]}"; do
