@@ -9,7 +9,7 @@
 
 #include "base/base.h"
 
-/** Samples and functions of the known answers (spec annex "Tables", "Known answers in binary32"). */
+/** Samples and functions of the known answers. */
 #define ADCGS_STRICT_SAMPLES 64
 #define ADCGS_STRICT_FUNCTIONS 15
 

@@ -23,7 +23,8 @@ static void tensor_set(adcgs_tensor *t, const float *w, double scale, int32_t li
 {
     for (size_t i = 0; i < (size_t)t->rows * t->cols; i++) {
         const double v = rint((double)w[i] * scale);
-        t->m[i] = (int32_t)(v > limit ? limit : v < -limit ? -limit : v);
+        /* NaN, of a training run about to be rolled back, becomes the lower limit: its conversion is undefined. */
+        t->m[i] = (int32_t)(v > -limit ? ADCGS_MIN(v, limit) : -limit);
     }
 }
 
