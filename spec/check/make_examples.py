@@ -12,9 +12,10 @@ from watching import F64, camera_of
 
 # Ids of the vectors that the examples show, what is shown of each, and a word on it.
 EXAMPLES = (
-    ("good-one-anchor", "full", "The smallest scene there is: one anchor with one primitive, and nothing moves."),
-    ("good-moving", "model", "A scene that moves, with hyper-latents and all networks."),
-    ("good-segments", "elements", "Several segments with an index."),
+    ("good-geom-one-anchor", "full",
+     "One anchor with one primitive; nothing moves, and there are no hyper-latents. Depth 0 leaves no choice of a position."),
+    ("good-net-narrowest", "full", "Eight anchors that move, with hyper-latents and all networks, each as narrow as can be."),
+    ("good-seq-segments", "elements", "Several segments and an index. What the sub-streams hold is left out."),
 )
 MOST_FIRST, MOST_LAST = 40, 4  # operations shown of a long sub-stream
 MOST_CODED = 40  # latents shown with their priors

@@ -89,9 +89,8 @@ def smallest_vectors(tree):
     good, bad = [], []
     for name, entry, path in tree.vectors():
         if entry["verdict"] == "good":
-            pictures = entry.get("expect", entry).get("frames")
-            good.append((not pictures, os.path.getsize(path), name))
-        elif (entry.get("status") or entry["expect"]["status"]) == "data":
+            good.append((not entry["expect"]["R"], os.path.getsize(path), name))
+        elif entry["status"] == "data":
             bad.append((os.path.getsize(path), name))
     return [min(good)[-1]], [min(b for b in bad if b[0] > 0)[-1]]
 

@@ -36,8 +36,7 @@ class Tree:
     def vectors(self):
         """Of the manifest: (id, entry, path)."""
         for entry in self.manifest()["vectors"]:
-            name = entry.get("id") or os.path.basename(entry["file"]).rsplit(".", 1)[0]
-            yield name, entry, os.path.join(self.conformance, entry["file"])
+            yield entry["id"], entry, os.path.join(self.conformance, entry["file"])
 
 
 class Block:

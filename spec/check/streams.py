@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """S3 and S4: the text, run over the conformance vectors, says what the implementation and the manifest say."""
+import hashlib
 import multiprocessing
 import os
 import subprocess
@@ -24,15 +25,15 @@ def _start(master):
     _machine = Machine(master, _lines.append)
 
 
-def decode(path, partial=False):
+def decode(path, complete=False):
     """The stream, and the lines of its trace."""
     _lines.clear()
     with open(path, "rb") as file:
         data = file.read()
-    return _machine.decode_stream(Bytes.at(data, 0), not partial), list(_lines)
+    return _machine.decode_stream(Bytes.at(data, 0), complete), list(_lines)
 
 
-def _same_trace(path, lines, info):
+def _same_trace(entry, path, lines, info):
     process = subprocess.run([info, "--trace", path], capture_output=True, text=True, check=False)
     given = process.stdout.rstrip("\n").split("\n")
     if process.returncode != 0:
@@ -42,17 +43,24 @@ def _same_trace(path, lines, info):
             return ["the text says \"%s\", the implementation \"%s\"" % (a, b)]
     if len(lines) != len(given):
         return ["the text yields %d lines of trace, the implementation %d" % (len(lines), len(given))]
+    digest = hashlib.md5("".join(line + "\n" for line in lines).encode("ascii")).hexdigest()
+    wanted = entry["expect"]["P"]
+    if (len(lines), digest) != (wanted["elements"], wanted["trace_md5"]):
+        return ["the trace has %d lines and the MD5 %s, expected %s" % (len(lines), digest, wanted)]
     return []
+
+
+def _refused(path):
+    """A truncated stream is refused to a user who wants complete ones only."""
+    try:
+        decode(path, True)
+    except Fault as fault:
+        return [] if fault.kind == "truncated" else ["not complete, the text says %s" % fault.kind]
+    return ["the text takes it for complete"]
 
 
 def _hex(digest):
     return bytes(digest).hex()
-
-
-def _expected(entry):
-    """Digests of a good vector, whichever layout the manifest has: models, [(time, md5)] of splats, frames."""
-    expect = entry.get("expect", entry)
-    return expect.get("models", []), expect.get("splats", []), expect.get("frames", []), entry.get("cameras", [])
 
 
 def _check_models(stream, wanted, counts):
@@ -93,16 +101,18 @@ def _check_pictures(stream, splats, frames, cameras, counts):
 
 
 def _check_good(entry, path, info, points, counts):
-    stream, lines = decode(path, entry.get("partial", False))
-    faults = []
-    models, splats, frames, cameras = _expected(entry)
+    stream, lines = decode(path)
+    faults, expect = [], entry["expect"]
+    if stream.truncated != entry["props"]["truncated"]:
+        faults.append("truncated is %s" % stream.truncated)
     if "trace" in points:
         counts["trace"] += 1
-        faults += _same_trace(path, lines, info)
+        faults += _same_trace(entry, path, lines, info)
     if "model" in points:
-        faults += _check_models(stream, models, counts)
+        faults += _check_models(stream, expect["M"], counts)
+        faults += _refused(path) if stream.truncated else []
     if "splats" in points:
-        faults += _check_pictures(stream, splats, frames, cameras, counts)
+        faults += _check_pictures(stream, expect["S"], expect["R"], entry["cameras"], counts)
     return faults
 
 
@@ -122,7 +132,7 @@ def _check(job):
         kind = fault.kind
     except Exception as error:  # the text is wrong here, or the executor: both are findings of this vector
         return name, ["%s: %s" % (type(error).__name__, error)], counts
-    wanted = "good" if good else entry.get("status") or entry["expect"]["status"]
+    wanted = "good" if good else entry["status"]
     if "verdict" in points or good:
         counts["verdict"] += 1
         if kind != wanted:

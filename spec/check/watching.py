@@ -113,9 +113,9 @@ class Watch:
 def camera_of(entry):
     """A camera of the manifest as the text wants it."""
     numbers = {key: F64(float(entry[key])) for key in ("fx", "fy", "cx", "cy")}
-    return Record(width=entry["width"], height=entry["height"], near_plane=F64(float(entry.get("near_plane", entry.get("near")))),
+    return Record(width=entry["width"], height=entry["height"], near_plane=F64(float(entry["near"])),
                   cam_to_world=[F64(float(v)) for v in entry["cam_to_world"]], **numbers)
 
 
 def frames_of(entry):
-    return entry.get("expect", entry).get("frames", [])
+    return entry["expect"]["R"]
