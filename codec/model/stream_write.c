@@ -138,7 +138,8 @@ static uint32_t slices_per_chunk(const writer *w, const layer_data *l, uint32_t 
 
 static adcgs_status write_layer(writer *w, uint32_t segment, int layer, const layer_data *l)
 {
-    const uint8_t *data = l->data.data, *slice = data;
+    static const uint8_t nothing[1]; /* all slices may be empty, and then the buffer has no bytes either */
+    const uint8_t *data = l->data.data ? l->data.data : nothing, *slice = data;
     for (uint32_t first = 0, n; first < l->n_slices; first += n) {
         const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_FEA(layer), segment, 0);
         n = slices_per_chunk(w, l, first);

@@ -26,7 +26,8 @@ adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error 
 
 /**
  * PLY in memory: ASCII, binary of either byte order. Positions are x, y, z of the element "vertex"; colours are red, green,
- * blue as integers (full range is white) or floats (1 is white). Other properties and elements are skipped.
+ * blue as integers (full range is white) or floats (1 is white). Other properties and elements are skipped. A zero byte
+ * stands behind the data, as adcgs_file_load() gives it; positions need not be finite yet.
  */
 adcgs_status adcgs_ply_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 /** Binary little-endian PLY with float positions and uchar colours. Atomic. */

@@ -9,6 +9,17 @@
 
 #define CHUNKS_MAX 256
 
+/* MemorySanitizer does not see what the engine, which is not instrumented, writes. */
+#if defined(__has_feature)
+#if __has_feature(memory_sanitizer)
+#include <sanitizer/msan_interface.h>
+#define WRITTEN(data, size) __msan_unpoison(data, size)
+#endif
+#endif
+#ifndef WRITTEN
+#define WRITTEN(data, size) ((void)0)
+#endif
+
 typedef struct chunk_list {
     int n;
     adcgs_found_chunk chunk[CHUNKS_MAX];
@@ -48,7 +59,7 @@ static size_t mutate_payload(uint8_t *data, size_t size, size_t max, const adcgs
 {
     const int layer = adcgs_type_layer(c->type) >= 0;
     const size_t room = layer ? c->length : c->length + 64;
-    uint8_t *copy = malloc(room + 1);
+    uint8_t *copy = calloc(room + 1, 1);
     if (!copy)
         return size;
     memcpy(copy, data + c->payload, c->length);
@@ -84,6 +95,7 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned 
 {
     uint32_t state = seed;
     chunk_list list;
+    WRITTEN(data, max);
     list_chunks(&list, data, size);
     const uint32_t kind = draw(&state, 16);
     if (list.n == 0 || kind == 0)

@@ -24,8 +24,9 @@ if [ ! -f Makefile ]; then
     "$top/configure" -q --disable-shared --disable-hardening "${options[@]}" CC=clang CXX=clang++ CFLAGS="$flags" CXXFLAGS="$flags" ||
         exit 3
 fi
+make -s am--refresh >build.log 2>&1 || { tail build.log; exit 3; } # by itself: LDFLAGS below would get into configure's tests
 programs=("${targets[@]/#/tests/fuzz/fuzz_}")
-make -s -j "${JOBS:-2}" "${programs[@]}" LDFLAGS="-fsanitize=fuzzer,$sanitize" || exit 3
+make -s -j "${JOBS:-2}" "${programs[@]}" LDFLAGS="-fsanitize=fuzzer,$sanitize" >build.log 2>&1 || { tail build.log; exit 3; }
 
 seeds()
 {
