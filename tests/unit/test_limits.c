@@ -217,6 +217,7 @@ static void check_edge(const char *name, const nothing *inside, const nothing *o
     assert_true(out.peak <= in.peak + SLACK);
 }
 
+/* REQ-STRM-034 */
 static void test_anchors(void **state)
 {
     nothing in = least, out;
@@ -231,6 +232,7 @@ static void test_anchors(void **state)
     check_edge("depth", &in, &out, 0, "depth");
 }
 
+/* REQ-STRM-034 */
 static void test_segments(void **state)
 {
     nothing in = least, out;
@@ -243,6 +245,7 @@ static void test_segments(void **state)
     check_edge("segments", &in, &out, 0, "segments");
 }
 
+/* REQ-STRM-018, REQ-STRM-034 */
 static void test_weights(void **state)
 {
     nothing in = least, out;
@@ -255,6 +258,7 @@ static void test_weights(void **state)
     check_edge("weights", &in, &out, 300000, "weights");
 }
 
+/* REQ-STRM-034, REQ-STRM-035 */
 static void test_model_bytes(void **state)
 {
     nothing in = least, out;
@@ -269,6 +273,7 @@ static void test_model_bytes(void **state)
 }
 
 /** As near to the bound of work as networks of this width come. */
+/* REQ-STRM-040, REQ-CONF-005 */
 static void test_work(void **state)
 {
     nothing in = least, out;
@@ -307,6 +312,7 @@ static void repeat_networks(adcgs_buffer *out, const adcgs_buffer *in, int times
     adcgs_repair_stream(out->data, out->size, 0);
 }
 
+/* REQ-STRM-040 */
 static void test_repeated_networks(void **state)
 {
     nothing what = least;
@@ -365,6 +371,7 @@ static cost decode_tiny_networks(uint32_t networks)
     return spent;
 }
 
+/* REQ-STRM-040 */
 static void test_networks(void **state)
 {
     (void)state;
