@@ -236,6 +236,27 @@ static void test_unknown_chunks(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
+/** What follows the elements that name version and tools may differ in other versions: it is not looked at. */
+/* REQ-STRM-010 */
+static void test_future_head(void **state)
+{
+    static const uint8_t elements[] = { 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff };
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    adcgs_error error;
+    (void)state;
+    adcgs_buffer_init(&bytes);
+    adcgs_write_bytes(&bytes, ADCGS_SIGNATURE, ADCGS_SIGNATURE_BYTES);
+    const size_t begin = adcgs_chunk_begin(&bytes, ADCGS_TYPE_HEAD, 0, 0);
+    adcgs_write_bytes(&bytes, elements, sizeof elements);
+    adcgs_chunk_end(&bytes, begin);
+    assert_int_equal(read_stream(&stream, bytes.data, bytes.size, 0, &error), ADCGS_ERR_DATA);
+    bytes.data[begin + ADCGS_CHUNK_HEADER_BYTES + 2]++;
+    adcgs_repair_stream(bytes.data, bytes.size, 0);
+    assert_int_equal(read_stream(&stream, bytes.data, bytes.size, 0, &error), ADCGS_ERR_UNSUPPORTED);
+    adcgs_buffer_clear(&bytes);
+}
+
 /** A stream from which the last layers were taken plays with what is left. */
 /* REQ-STRM-009, REQ-LATN-007, REQ-STRM-038 */
 static void test_layers_taken_out(void **state)
@@ -298,7 +319,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cut_anywhere),   cmocka_unit_test(test_slices_before_cut),
         cmocka_unit_test(test_flip_every_byte), cmocka_unit_test(test_malice),
-        cmocka_unit_test(test_unknown_chunks), cmocka_unit_test(test_layers_taken_out),
+        cmocka_unit_test(test_unknown_chunks), cmocka_unit_test(test_future_head), cmocka_unit_test(test_layers_taken_out),
         cmocka_unit_test(test_false_length),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
