@@ -4,25 +4,10 @@
 
 #include "base/digest.h"
 
-#include <string.h>
+#include <stdio.h>
+#include <stdlib.h>
 
-enum { SIGNATURE = 8, HEADER = 12, CRC = 4 };
-
-adcgs_status adcgs_chunk_list_read(adcgs_chunk_list *list, const uint8_t *data, size_t bytes, adcgs_error *error)
-{
-    list->n = 0;
-    for (size_t at = SIGNATURE; at < bytes;) {
-        const size_t length = bytes - at >= HEADER + 2 * CRC ? adcgs_load_le32(data + at + 4) : bytes;
-        if (list->n == ADCGS_CHUNK_LIST_MAX || length > bytes - at - HEADER - 2 * CRC)
-            return adcgs_fail(error, ADCGS_ERR_DATA, "chunk %d at byte %zu does not fit", list->n, at);
-        adcgs_raw_chunk *const c = &list->chunk[list->n++];
-        memcpy(c->header, data + at, HEADER);
-        adcgs_buffer_init(&c->payload);
-        adcgs_write_bytes(&c->payload, data + at + HEADER + CRC, length);
-        at += HEADER + CRC + length + CRC;
-    }
-    return ADCGS_OK;
-}
+enum { SIGNATURE = 8, HEADER = 12, CRC = 4, TICKS = 16 };
 
 void adcgs_chunk_list_clear(adcgs_chunk_list *list)
 {
@@ -30,56 +15,114 @@ void adcgs_chunk_list_clear(adcgs_chunk_list *list)
         adcgs_buffer_clear(&list->chunk[--list->n].payload);
 }
 
-int adcgs_chunk_list_find(const adcgs_chunk_list *list, const char *type)
+static int is_type(const adcgs_raw_chunk *chunk, const char *type)
 {
-    for (int i = 0; i < list->n; i++)
-        if (!memcmp(list->chunk[i].header, type, 4))
-            return i;
-    return -1;
+    return strcmp(chunk->type, type) == 0;
 }
 
-adcgs_status adcgs_chunk_list_insert(adcgs_chunk_list *list, int at, const char *type, const char *text, adcgs_error *error)
+adcgs_status adcgs_chunk_list_find(const adcgs_chunk_list *list, const char *name, int *index, adcgs_error *error)
+{
+    int wanted = strlen(name) > 5 && name[4] == '#' ? atoi(name + 5) : 0;
+    for (*index = 0; *index < list->n; ++*index)
+        if (strncmp(list->chunk[*index].type, name, 4) == 0 && wanted-- == 0)
+            return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "the stream has no chunk %s", name);
+}
+
+adcgs_status adcgs_chunk_list_insert(adcgs_chunk_list *list, int at, const char *type, adcgs_error *error)
 {
     if (list->n == ADCGS_CHUNK_LIST_MAX)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "more than %d chunks", ADCGS_CHUNK_LIST_MAX);
     memmove(&list->chunk[at + 1], &list->chunk[at], (size_t)(list->n++ - at) * sizeof list->chunk[0]);
-    adcgs_raw_chunk *const c = &list->chunk[at];
-    memset(c->header, 0, HEADER);
-    memcpy(c->header, type, 4);
-    adcgs_buffer_init(&c->payload);
-    adcgs_write_bytes(&c->payload, text, strlen(text));
+    memset(&list->chunk[at], 0, sizeof list->chunk[at]);
+    snprintf(list->chunk[at].type, sizeof list->chunk[at].type, "%.4s", type);
     return ADCGS_OK;
 }
 
-/* The end chunk's payload: bytes of the file, CRC over the payload CRCs of all chunks before it. */
-static void complete_end(adcgs_chunk_list *list)
+void adcgs_chunk_list_remove(adcgs_chunk_list *list, int at)
 {
-    const int end = adcgs_chunk_list_find(list, "ENDC");
-    uint64_t total = SIGNATURE;
-    uint32_t crc = 0;
-    if (end < 0 || list->chunk[end].payload.size != 12)
-        return;
-    for (int i = 0; i <= end; i++) {
-        uint8_t bytes[CRC];
-        const adcgs_buffer *const payload = &list->chunk[i].payload;
-        total += HEADER + CRC + payload->size + CRC;
-        adcgs_store_le32(bytes, adcgs_crc32c(0, payload->data, payload->size));
-        crc = i < end ? adcgs_crc32c(crc, bytes, sizeof bytes) : crc;
-    }
-    adcgs_store_le64(list->chunk[end].payload.data, total);
-    adcgs_store_le32(list->chunk[end].payload.data + 8, crc);
+    adcgs_buffer_clear(&list->chunk[at].payload);
+    memmove(&list->chunk[at], &list->chunk[at + 1], (size_t)(--list->n - at) * sizeof list->chunk[0]);
 }
 
-void adcgs_chunk_list_write(adcgs_chunk_list *list, adcgs_buffer *out)
+/* Positions of all chunks. The index's own length must be known for it: that depends on the number of segments alone. */
+static void place(adcgs_chunk_list *list)
 {
-    complete_end(list);
-    adcgs_write_bytes(out, "\x8B" "ADC\r\n\x1A\n", SIGNATURE);
+    size_t at = SIGNATURE;
     for (int i = 0; i < list->n; i++) {
-        adcgs_raw_chunk *const c = &list->chunk[i];
-        adcgs_store_le32(c->header + 4, (uint32_t)c->payload.size);
-        adcgs_write_bytes(out, c->header, HEADER);
-        adcgs_write_uint(out, adcgs_crc32c(0, c->header, HEADER), CRC);
-        adcgs_write_bytes(out, c->payload.data, c->payload.size);
-        adcgs_write_uint(out, adcgs_crc32c(0, c->payload.data, c->payload.size), CRC);
+        list->chunk[i].at = at;
+        at += ADCGS_CHUNK_FRAME + list->chunk[i].payload.size;
     }
+}
+
+/* The payload of INDX: the times of each segment are the first elements of its SEGM. */
+static void complete_index(adcgs_chunk_list *list, adcgs_raw_chunk *index)
+{
+    uint32_t segments = 0;
+    for (int i = 0; i < list->n; i++)
+        segments += is_type(&list->chunk[i], "SEGM");
+    for (int pass = 0; pass < 2; pass++) {
+        index->payload.size = 0;
+        adcgs_write_varint(&index->payload, segments);
+        for (int i = 0; i < list->n; i++) {
+            int end = i + 1;
+            if (!is_type(&list->chunk[i], "SEGM"))
+                continue;
+            while (end < list->n && !is_type(&list->chunk[end], "SEGM") && !is_type(&list->chunk[end], "INDX"))
+                end++;
+            const adcgs_raw_chunk *const last = &list->chunk[end - 1];
+            adcgs_write_bytes(&index->payload, list->chunk[i].payload.data, ADCGS_MIN(list->chunk[i].payload.size, TICKS));
+            adcgs_write_uint(&index->payload, list->chunk[i].at, 8);
+            adcgs_write_uint(&index->payload, last->at + ADCGS_CHUNK_FRAME + last->payload.size - list->chunk[i].at, 8);
+        }
+        place(list);
+    }
+}
+
+static uint32_t payload_crc(const adcgs_raw_chunk *c)
+{
+    return adcgs_crc32c(0, c->payload.data, c->payload.size) ^ c->payload_damage;
+}
+
+/* The end chunk's payload: bytes of the file, CRC over the payload CRCs of all chunks before it. */
+static void complete_end(const adcgs_chunk_list *list, adcgs_raw_chunk *end)
+{
+    uint32_t crc = 0;
+    for (const adcgs_raw_chunk *c = list->chunk; c < end; c++) {
+        uint8_t bytes[CRC];
+        adcgs_store_le32(bytes, payload_crc(c));
+        crc = adcgs_crc32c(crc, bytes, sizeof bytes);
+    }
+    end->payload.size = 0;
+    adcgs_write_uint(&end->payload, end->at + ADCGS_CHUNK_FRAME + 12, 8);
+    adcgs_write_uint(&end->payload, crc, 4);
+}
+
+static void write_chunk(const adcgs_raw_chunk *c, adcgs_buffer *out)
+{
+    const size_t begin = out->size;
+    adcgs_write_bytes(out, c->type, 4);
+    adcgs_write_uint(out, c->has_length ? c->length : c->payload.size, 4);
+    adcgs_write_uint(out, c->segment, 2);
+    adcgs_write_uint(out, c->flags, 1);
+    adcgs_write_uint(out, c->version, 1);
+    adcgs_write_uint(out, adcgs_crc32c(0, out->data + begin, HEADER) ^ c->header_damage, CRC);
+    adcgs_write_bytes(out, c->payload.data, c->payload.size);
+    adcgs_write_uint(out, payload_crc(c), CRC);
+}
+
+adcgs_status adcgs_chunk_list_write(adcgs_chunk_list *list, adcgs_buffer *out, adcgs_error *error)
+{
+    place(list);
+    for (int i = 0; i < list->n; i++)
+        if (is_type(&list->chunk[i], "INDX") && !list->chunk[i].as_is)
+            complete_index(list, &list->chunk[i]);
+    for (int i = 0; i < list->n; i++)
+        if (is_type(&list->chunk[i], "ENDC") && !list->chunk[i].as_is)
+            complete_end(list, &list->chunk[i]);
+    out->size = 0;
+    adcgs_write_bytes(out, "\x8B" "ADC\r\n\x1A\n", SIGNATURE);
+    for (int i = 0; i < list->n; i++)
+        write_chunk(&list->chunk[i], out);
+    return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for a stream") : ADCGS_OK;
 }

@@ -1,18 +1,26 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A stream as a list of chunks that can be edited: for vectors that the writer
- * does not produce. Checksums and the end chunk are made right again on request.
+ * A stream as a list of chunks that can be edited and put together with
+ * everything as the specification wants it, or with one thing wrong.
  */
 #ifndef ADCGS_CONFORMANCE_CHUNKS_H
 #define ADCGS_CONFORMANCE_CHUNKS_H
 
 #include "bits/bytes.h"
 
-#define ADCGS_CHUNK_LIST_MAX 64
+#define ADCGS_CHUNK_LIST_MAX 256
+#define ADCGS_CHUNK_FRAME 20 /**< bytes of a chunk besides its payload; 16 of them before it */
 
 typedef struct adcgs_raw_chunk {
-    uint8_t header[12]; /**< type, length, segment, flags, version */
+    char type[5];
+    uint16_t segment;
+    uint8_t flags, version;
     adcgs_buffer payload;
+    int as_is;              /**< INDX, ENDC: the payload is not made right when the list is put together */
+    int has_length;         /**< the header says length, whatever the payload has */
+    uint32_t length;
+    uint32_t header_damage, payload_damage; /**< XORed to the checksums */
+    size_t at;              /**< position of the chunk in the stream written last */
 } adcgs_raw_chunk;
 
 typedef struct adcgs_chunk_list {
@@ -20,14 +28,13 @@ typedef struct adcgs_chunk_list {
     adcgs_raw_chunk chunk[ADCGS_CHUNK_LIST_MAX];
 } adcgs_chunk_list;
 
-/** Cut a valid stream into chunks. */
-adcgs_status adcgs_chunk_list_read(adcgs_chunk_list *list, const uint8_t *data, size_t bytes, adcgs_error *error);
 void adcgs_chunk_list_clear(adcgs_chunk_list *list);
-/** First chunk of a type ("GEOM"), -1 if there is none. */
-int adcgs_chunk_list_find(const adcgs_chunk_list *list, const char *type);
-/** Insert a chunk before index at. */
-adcgs_status adcgs_chunk_list_insert(adcgs_chunk_list *list, int at, const char *type, const char *text, adcgs_error *error);
-/** Put the list together as a stream, with all checksums, lengths and the end chunk as the specification wants them. */
-void adcgs_chunk_list_write(adcgs_chunk_list *list, adcgs_buffer *out);
+/** The chunk that "GEOM" or, counted from 0, "GEOM#2" names. */
+adcgs_status adcgs_chunk_list_find(const adcgs_chunk_list *list, const char *name, int *index, adcgs_error *error);
+/** Insert an empty chunk before index at. */
+adcgs_status adcgs_chunk_list_insert(adcgs_chunk_list *list, int at, const char *type, adcgs_error *error);
+void adcgs_chunk_list_remove(adcgs_chunk_list *list, int at);
+/** Put the list together as a stream: checksums, lengths, the index and the end chunk are right unless a chunk says otherwise. */
+adcgs_status adcgs_chunk_list_write(adcgs_chunk_list *list, adcgs_buffer *out, adcgs_error *error);
 
 #endif

@@ -1,145 +1,156 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-conform: every vector of a manifest at every CPU level and several thread counts. */
+/** \file adcgs-conform: every vector of a manifest against this library in every way that it can run, or against any program. */
+#include "config.h"
+
 #include "base/cpu.h"
 #include "tools/cli.h"
 #include "tools/conform.h"
 
+#include <fnmatch.h>
 #include <stdlib.h>
 
 static const int thread_counts[] = {1, 2, 7};
+static const int steps[] = {0, 7};
+
+typedef struct settings {
+    const char *filter, *junit;
+    int list, selftest, point;
+    adcgs_program program;
+} settings;
 
 typedef struct tally {
-    int runs, faults;
+    int vectors, runs, faults;
+    int outcome[4];
+    adcgs_junit junit;
 } tally;
 
-/* All levels and thread counts; returns nonzero if every run is as expected. */
-static int try_everywhere(const adcgs_vector *vector, const uint8_t *data, size_t bytes, int *runs, char *what, size_t size)
+/* All CPU levels, thread counts and ways of input, until one goes wrong. */
+static adcgs_outcome try_everywhere(const adcgs_vector *vector, const uint8_t *data, size_t bytes, int *runs,
+                                    char what[ADCGS_WHAT])
 {
-    char why[320];
-    for (int level = ADCGS_CPU_SCALAR; level <= (int)adcgs_cpu_best(); level++)
-        for (size_t i = 0; i < ADCGS_COUNTOF(thread_counts); i++) {
+    char why[ADCGS_WHAT];
+    adcgs_trial t = {.cpu = ADCGS_CPU_SCALAR};
+    for (; t.cpu <= adcgs_cpu_best(); t.cpu = (adcgs_cpu_level)(t.cpu + 1))
+        for (size_t i = 0; i < ADCGS_COUNTOF(thread_counts) * ADCGS_COUNTOF(steps); i++) {
+            t.threads = thread_counts[i / ADCGS_COUNTOF(steps)];
+            t.step = steps[i % ADCGS_COUNTOF(steps)];
             ++*runs;
-            if (!adcgs_vector_try(vector, data, bytes, (adcgs_cpu_level)level, thread_counts[i], why, sizeof why)) {
-                snprintf(what, size, "%s, %d threads: %s", adcgs_cpu_name((adcgs_cpu_level)level), thread_counts[i], why);
-                return 0;
-            }
+            if (adcgs_vector_try(vector, data, bytes, &t, why) == ADCGS_OUTCOME_OK)
+                continue;
+            snprintf(what, ADCGS_WHAT, "%s, %d threads, input %s: %.320s", adcgs_cpu_name(t.cpu), t.threads,
+                     t.step ? "in pieces" : "whole", why);
+            return ADCGS_OUTCOME_WRONG;
         }
-    return 1;
+    return ADCGS_OUTCOME_OK;
 }
 
-static void check_vector(const adcgs_manifest *manifest, const adcgs_vector *vector, tally *t)
+static void check_vector(const settings *s, const adcgs_manifest *manifest, const adcgs_vector *vector, tally *t)
 {
     uint8_t *data = NULL;
     size_t bytes = 0;
-    int runs = 0, good = 0;
-    char what[512];
+    int runs = 0;
+    char what[ADCGS_WHAT] = "";
     adcgs_error error;
-    if (adcgs_vector_load(manifest, vector, &data, &bytes, &error) != ADCGS_OK)
-        snprintf(what, sizeof what, "%s", error.text);
+    adcgs_outcome outcome = ADCGS_OUTCOME_WRONG;
+    const double start = adcgs_seconds();
+    if (s->program.command) {
+        runs = 1;
+        outcome = adcgs_program_try(&s->program, manifest, vector, what);
+    } else if (adcgs_vector_load(manifest, vector, &data, &bytes, &error) == ADCGS_OK)
+        outcome = try_everywhere(vector, data, bytes, &runs, what);
     else
-        good = try_everywhere(vector, data, bytes, &runs, what, sizeof what);
+        snprintf(what, sizeof what, "%s", error.text);
+    const double seconds = adcgs_seconds() - start;
     free(data);
-    printf("%-32s %-11s %2d frames %3d runs  %s\n", vector->file, vector->status == ADCGS_OK ? "good" : "bad", vector->n_frames,
-           runs, good ? "ok" : what);
+    printf("%-36s %-11s %2d frames %3d runs %6.0f ms  %s%s%s\n", vector->id,
+           vector->status == ADCGS_OK ? "good" : adcgs_vector_class_name(vector->status), vector->n_frames, runs, 1000 * seconds,
+           adcgs_outcome_name(outcome), *what && outcome != ADCGS_OUTCOME_OK ? ": " : "", outcome == ADCGS_OUTCOME_OK ? "" : what);
     t->runs += runs;
-    t->faults += !good;
+    t->faults += outcome != ADCGS_OUTCOME_OK;
+    t->outcome[outcome]++;
+    adcgs_junit_add(&t->junit, vector, outcome, seconds, what);
 }
 
-/* One damaged expectation or stream: the check has to fail. */
-static void must_notice(const adcgs_vector *damaged, const uint8_t *data, size_t bytes, const char *damage, tally *t)
+static void use_vector(const settings *s, const adcgs_manifest *manifest, const adcgs_vector *vector, tally *t)
 {
-    char what[320];
-    t->runs++;
-    if (!adcgs_vector_try(damaged, data, bytes, ADCGS_CPU_AUTO, 1, what, sizeof what))
+    if (s->filter && fnmatch(s->filter, vector->id, 0) != 0)
         return;
-    t->faults++;
-    printf("%-32s not noticed: %s\n", damaged->file, damage);
+    t->vectors++;
+    if (s->list)
+        printf("%-36s %s\n", vector->id, vector->title);
+    else if (s->selftest)
+        adcgs_selftest_vector(manifest, vector, &t->runs, &t->faults);
+    else
+        check_vector(s, manifest, vector, t);
 }
 
-static void change_hex(char hex[ADCGS_HEX])
+static void use_manifest(const settings *s, const adcgs_manifest *manifest, tally *t)
 {
-    hex[7] = hex[7] == '0' ? '1' : '0';
-}
-
-static void damage_expectations(const adcgs_vector *vector, const uint8_t *data, size_t bytes, tally *t)
-{
-    adcgs_vector v = *vector;
-    change_hex(v.md5);
-    must_notice(&v, data, bytes, "MD5 of the file", t);
-    v = *vector;
-    v.status = vector->status == ADCGS_ERR_DATA ? ADCGS_ERR_LIMIT : ADCGS_ERR_DATA;
-    must_notice(&v, data, bytes, "status", t);
-    if (vector->status != ADCGS_OK) {
-        v.status = ADCGS_OK;
-        must_notice(&v, data, bytes, "verdict", t);
+    for (int i = 0; i < manifest->n; i++)
+        use_vector(s, manifest, &manifest->vectors[i], t);
+    if (s->selftest)
+        adcgs_selftest_program(manifest, &t->runs, &t->faults);
+    if (s->list)
         return;
-    }
-    v = *vector;
-    v.n_models++;
-    must_notice(&v, data, bytes, "number of models", t);
-    for (int i = 0; i < vector->n_models; i++) {
-        v = *vector;
-        change_hex(v.models[i]);
-        must_notice(&v, data, bytes, "digest of a model", t);
-    }
-    for (int i = 0; i < vector->n_frames; i++) {
-        v = *vector;
-        change_hex(v.frames[i].md5);
-        must_notice(&v, data, bytes, "digest of a frame", t);
-    }
+    if (s->selftest)
+        printf("%d vectors, %d damages, %d not noticed\n", t->vectors, t->runs, t->faults);
+    else
+        printf("%d vectors, %d runs, %d ok, %d wrong, %d crashed, %d timed out\n", t->vectors, t->runs,
+               t->outcome[ADCGS_OUTCOME_OK], t->outcome[ADCGS_OUTCOME_WRONG], t->outcome[ADCGS_OUTCOME_CRASHED],
+               t->outcome[ADCGS_OUTCOME_TIMEOUT]);
 }
 
-static void self_test(const adcgs_manifest *manifest, const adcgs_vector *vector, tally *t)
+static int run(const adcgs_cli *cli, settings *s, const char *path)
 {
-    uint8_t *data = NULL;
-    size_t bytes = 0;
-    adcgs_error error;
-    if (adcgs_vector_load(manifest, vector, &data, &bytes, &error) != ADCGS_OK) {
-        printf("%-32s %s\n", vector->file, error.text);
-        t->faults++;
-        return;
+    adcgs_manifest manifest;
+    adcgs_error error = {ADCGS_OK, ""};
+    tally t = {0};
+    s->program.point = s->point;
+    if (adcgs_manifest_read(&manifest, path, &error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    adcgs_status status = adcgs_junit_open(&t.junit, s->junit, &error);
+    if (status == ADCGS_OK) {
+        use_manifest(s, &manifest, &t);
+        status = adcgs_junit_close(&t.junit, &error);
     }
-    damage_expectations(vector, data, bytes, t);
-    if (bytes > 0) {
-        data[bytes / 2] ^= 4;
-        must_notice(vector, data, bytes, "a bit in the middle of the file", t);
-        data[bytes / 2] ^= 4;
-        must_notice(vector, data, bytes - 1, "last byte cut off", t);
-    }
-    free(data);
+    adcgs_manifest_clear(&manifest);
+    if (status == ADCGS_OK && t.vectors == 0)
+        status = adcgs_fail(&error, ADCGS_ERR_USAGE, "no vector is called %s", s->filter);
+    return status != ADCGS_OK ? adcgs_cli_fail(cli, &error) : t.faults ? 1 : 0;
 }
 
 int main(int argc, char **argv)
 {
-    int self = 0, first = 0;
+    static const char *const points[] = {"P", "M", "S", "R", NULL};
+    settings s = {.point = 3, .program = {.timeout = 20}};
+    int first = 0;
     const adcgs_option options[] = {
-        {.name = "self-test", .kind = ADCGS_OPTION_FLAG, .target = &self,
-         .help = "damage each expectation and each stream in memory, one at a time, and require\nthat the check notices"},
+        {.name = "decoder", .kind = ADCGS_OPTION_STRING, .target = &s.program.command, .value = "COMMAND",
+         .help = "check this program in place of the library; the shell runs it, with\n{in} and {request} replaced by files"},
+        {.name = "point", .kind = ADCGS_OPTION_CHOICE, .target = &s.point, .choices = points, .value = "POINT",
+         .help = "the point that the program claims: P, M, S or R (default R)"},
+        {.name = "timeout", .kind = ADCGS_OPTION_INT, .target = &s.program.timeout, .min = 1, .max = 3600, .value = "SECONDS",
+         .help = "time that the program has for a vector (default 20)"},
+        {.name = "filter", .kind = ADCGS_OPTION_STRING, .target = &s.filter, .value = "PATTERN",
+         .help = "only vectors whose name matches, as in 'bad-geom-*'"},
+        {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &s.list, .help = "print names and titles, check nothing"},
+        {.name = "junit", .kind = ADCGS_OPTION_STRING, .target = &s.junit, .value = "FILE", .help = "write the results as JUnit XML"},
+        {.name = "self-test", .kind = ADCGS_OPTION_FLAG, .target = &s.selftest,
+         .help = "damage each expectation and each stream in memory, one at a time, and run\nprograms that lie, die and hang; "
+                 "require that the check notices"},
     };
     const adcgs_cli cli = {
         .program = "adcgs-conform",
         .operands = "[MANIFEST]",
-        .summary = "Check this decoder against conformance vectors.",
-        .details = "MANIFEST is conformance/manifest.json unless given. Each vector is decoded at every CPU level that\n"
-                   "this machine has, with 1, 2 and 7 threads.",
+        .summary = "Check a decoder against conformance vectors.",
+        .details = "MANIFEST is conformance/manifest.json unless given. Without --decoder the library is\n"
+                   "checked, at every CPU level that this machine has, with 1, 2 and 7 threads, with\n"
+                   "the input as a whole and in pieces of few bytes.",
         .options = options,
         .n_options = ADCGS_COUNTOF(options),
         .max_operands = 1};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;
-    adcgs_manifest manifest;
-    adcgs_error error;
-    tally t = {0, 0};
-    if (adcgs_manifest_read(&manifest, first < argc ? argv[first] : "conformance/manifest.json", &error) != ADCGS_OK)
-        return adcgs_cli_fail(&cli, &error);
-    for (int i = 0; i < manifest.n; i++) {
-        if (self)
-            self_test(&manifest, &manifest.vectors[i], &t);
-        else
-            check_vector(&manifest, &manifest.vectors[i], &t);
-    }
-    printf(self ? "%d vectors, %d damages, %d not noticed\n" : "%d vectors, %d runs, %d failed\n", manifest.n, t.runs, t.faults);
-    adcgs_manifest_clear(&manifest);
-    return t.faults ? 1 : 0;
+    return run(&cli, &s, first < argc ? argv[first] : "conformance/manifest.json");
 }

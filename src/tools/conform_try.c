@@ -1,124 +1,230 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file One conformance vector against the library, at one CPU level and thread count. */
+/** \file One conformance vector against the library, at one CPU level, thread count and way of input. */
 #include "tools/conform.h"
 
 #include "base/digest.h"
+#include "base/pool.h"
+#include "model/chunk.h"
+#include "model/stream.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 
-typedef struct report {
+/* A decoder holds the models and, while it reads, a chunk and what it decodes from it: memory beyond this is a defect. */
+#define MEMORY_FACTOR 2
+#define MEMORY_CONSTANT (UINT64_C(1) << 20)
+
+typedef struct attempt {
+    const adcgs_vector *vector;
+    const uint8_t *data;
+    size_t bytes;
+    const adcgs_trial *trial;
     char *what;
-    size_t size;
-} report;
+} attempt;
 
-/* Say what is wrong; always 0, the verdict. */
-static int wrong(const report *r, const char *format, ...) ADCGS_PRINTF(2, 3);
+/* The input, in pieces or whole, and the trace. */
+typedef struct source {
+    const uint8_t *next;
+    size_t left;
+    int step, turn;
+    uint32_t elements;
+    adcgs_md5 md5;
+} source;
 
-static int wrong(const report *r, const char *format, ...)
+/* Say what is wrong; always 0. */
+static int wrong(const attempt *a, const char *format, ...) ADCGS_PRINTF(2, 3);
+
+static int wrong(const attempt *a, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    vsnprintf(r->what, r->size, format, list);
+    vsnprintf(a->what, ADCGS_WHAT, format, list);
     va_end(list);
     return 0;
 }
 
-static void hex_of(const void *data, size_t bytes, char hex[ADCGS_HEX])
+const char *adcgs_outcome_name(adcgs_outcome outcome)
 {
-    adcgs_md5 md5;
-    uint8_t digest[16];
-    adcgs_md5_init(&md5);
-    adcgs_md5_update(&md5, data, bytes);
-    adcgs_md5_final(&md5, digest);
-    adcgs_md5_hex(digest, hex);
+    static const char *const names[] = {"ok", "WRONG", "CRASHED", "TIMEOUT"};
+    return names[outcome];
 }
 
-static int models_match(const adcgs_vector *v, const adcgs_decoder *decoder, const report *r)
+static source source_of(const attempt *a)
 {
+    source s = {.next = a->data, .left = a->bytes, .step = a->trial->step};
+    adcgs_md5_init(&s.md5);
+    return s;
+}
+
+static int64_t read_pieces(void *user, void *buffer, size_t bytes)
+{
+    source *const s = user;
+    size_t n = ADCGS_MIN(bytes, s->left);
+    if (s->step > 0) {
+        s->turn = s->turn % s->step + 1;
+        n = ADCGS_MIN(n, (size_t)s->turn);
+    }
+    if (n > 0)
+        memcpy(buffer, s->next, n);
+    s->next += n;
+    s->left -= n;
+    return (int64_t)n;
+}
+
+static void on_element(void *user, uint64_t bit, const char *element, const char *value)
+{
+    source *const s = user;
+    char number[24];
+    const int n = snprintf(number, sizeof number, "%llu ", (unsigned long long)bit);
+    adcgs_md5_update(&s->md5, number, (size_t)n);
+    adcgs_md5_update(&s->md5, element, strlen(element));
+    adcgs_md5_update(&s->md5, " ", 1);
+    adcgs_md5_update(&s->md5, value, strlen(value));
+    adcgs_md5_update(&s->md5, "\n", 1);
+    s->elements++;
+}
+
+static int status_fits(const attempt *a, adcgs_status status, adcgs_status expected, const adcgs_error *error)
+{
+    if (status == expected)
+        return 1;
+    return wrong(a, "status \"%s\", expected \"%s\"%s%.200s", adcgs_status_name(status), adcgs_status_name(expected),
+                 status == ADCGS_OK ? "" : ": ", status == ADCGS_OK ? "" : error->text);
+}
+
+/* ---- P: the trace, and the memory that parsing takes ---- */
+
+static int trace_fits(const attempt *a, source *s, const adcgs_memory *memory)
+{
+    const adcgs_vector *const v = a->vector;
+    const uint64_t most = MEMORY_FACTOR * adcgs_level_get(v->level)->model_bytes + MEMORY_CONSTANT;
+    uint8_t digest[16];
+    char hex[ADCGS_HEX];
+    if (memory->peak > most)
+        return wrong(a, "takes %llu bytes, more than %llu", (unsigned long long)memory->peak, (unsigned long long)most);
+    if (v->status != ADCGS_OK)
+        return 1;
+    adcgs_md5_final(&s->md5, digest);
+    adcgs_md5_hex(digest, hex);
+    if (s->elements != v->elements || strcmp(hex, v->trace))
+        return wrong(a, "P: trace of %u lines is %s, expected %u, %s", s->elements, hex, v->elements, v->trace);
+    return 1;
+}
+
+static int parse_fits(const attempt *a, adcgs_pool *pool)
+{
+    adcgs_memory memory = {.limit = 0};
+    const adcgs_read_options options = {.cpu = a->trial->cpu, .pool = pool, .memory = &memory};
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_stream stream;
+    source s = source_of(a);
+    const adcgs_status status = adcgs_stream_read(&stream, read_pieces, &s, &options, on_element, &s, &error);
+    int good = status_fits(a, status, a->vector->status, &error) && trace_fits(a, &s, &memory);
+    if (status == ADCGS_OK && stream.truncated != a->vector->truncated)
+        good = wrong(a, "truncated is %d", stream.truncated);
+    if (status == ADCGS_OK)
+        adcgs_stream_clear(&stream, &memory);
+    if (memory.used > 0)
+        good = wrong(a, "%llu bytes of memory are left behind", (unsigned long long)memory.used);
+    return good;
+}
+
+/* ---- M, S, R ---- */
+
+static int models_fit(const attempt *a, const adcgs_decoder *decoder)
+{
+    const adcgs_vector *const v = a->vector;
     adcgs_info info;
     if (adcgs_get_info(decoder, &info) != ADCGS_OK || info.segments != v->n_models)
-        return wrong(r, "%d segments, expected %d", info.segments, v->n_models);
+        return wrong(a, "M: %d segments, expected %d", info.segments, v->n_models);
     for (int i = 0; i < v->n_models; i++) {
         uint8_t digest[16];
         char hex[ADCGS_HEX] = "";
         if (adcgs_get_model_digest(decoder, i, digest) == ADCGS_OK)
             adcgs_md5_hex(digest, hex);
         if (strcmp(hex, v->models[i]))
-            return wrong(r, "model %d is %s, expected %s", i, hex, v->models[i]);
+            return wrong(a, "M: model %d is %s, expected %s", i, hex, v->models[i]);
     }
     return 1;
 }
 
-/* MD5 of the frame's binary32 values as little-endian bytes. */
-static void hex_of_frame(const adcgs_frame *frame, char hex[ADCGS_HEX])
+static int splats_fit(const attempt *a, adcgs_decoder *decoder)
 {
-    adcgs_md5 md5;
-    uint8_t digest[16], word[4];
-    const size_t n = 3 * (size_t)frame->width * (size_t)frame->height;
-    adcgs_md5_init(&md5);
-    for (size_t i = 0; i < n; i++) {
-        adcgs_store_le32(word, adcgs_float_bits(frame->rgb[i]));
-        adcgs_md5_update(&md5, word, sizeof word);
+    const adcgs_vector *const v = a->vector;
+    for (int i = 0; i < v->n_splats; i++) {
+        uint8_t digest[16];
+        char hex[ADCGS_HEX] = "";
+        if (adcgs_get_splat_digest(decoder, v->splats[i].time, digest) == ADCGS_OK)
+            adcgs_md5_hex(digest, hex);
+        if (strcmp(hex, v->splats[i].md5))
+            return wrong(a, "S: splats %d are %s, expected %s", i, hex, v->splats[i].md5);
     }
-    adcgs_md5_final(&md5, digest);
-    adcgs_md5_hex(digest, hex);
+    return 1;
 }
 
-static int frame_matches(const adcgs_vector *v, int i, adcgs_decoder *decoder, float *rgb, const report *r)
+static int frame_fits(const attempt *a, int i, adcgs_decoder *decoder)
 {
+    const adcgs_vector *const v = a->vector;
     const adcgs_camera *const camera = &v->cameras[v->frames[i].camera];
-    adcgs_frame frame = {.width = camera->width, .height = camera->height, .rgb = rgb};
-    adcgs_error error;
-    char hex[ADCGS_HEX];
-    if (adcgs_render(decoder, camera, v->frames[i].time, &frame, &error) != ADCGS_OK)
-        return wrong(r, "frame %d: %s", i, error.text);
-    hex_of_frame(&frame, hex);
+    adcgs_frame frame = {.width = camera->width, .height = camera->height};
+    adcgs_error error = {ADCGS_OK, ""};
+    char hex[ADCGS_HEX] = "";
+    uint8_t digest[16];
+    if (camera->width < 1 || camera->height < 1 || camera->width > 16384 || camera->height > 16384)
+        return wrong(a, "camera of %dx%d", (int)camera->width, (int)camera->height);
+    frame.rgb = malloc(3 * sizeof *frame.rgb * (size_t)camera->width * (size_t)camera->height);
+    if (frame.rgb && adcgs_render(decoder, camera, v->frames[i].time, &frame, &error) == ADCGS_OK) {
+        adcgs_frame_digest(&frame, digest);
+        adcgs_md5_hex(digest, hex);
+    }
+    free(frame.rgb);
     if (strcmp(hex, v->frames[i].md5))
-        return wrong(r, "frame %d is %s, expected %s", i, hex, v->frames[i].md5);
+        return wrong(a, "R: frame %d is %s, expected %s %.160s", i, hex, v->frames[i].md5, error.text);
     return 1;
 }
 
-static int frames_match(const adcgs_vector *v, adcgs_decoder *decoder, const report *r)
+static int results_fit(const attempt *a, adcgs_decoder *decoder)
 {
-    size_t most = 1;
-    for (int i = 0; i < v->n_cameras; i++) {
-        const adcgs_camera *const c = &v->cameras[i];
-        if (c->width < 1 || c->height < 1 || c->width > 16384 || c->height > 16384)
-            return wrong(r, "camera %d: size %dx%d", i, (int)c->width, (int)c->height);
-        most = ADCGS_MAX(most, (size_t)c->width * (size_t)c->height);
-    }
-    float *const rgb = malloc(most * 3 * sizeof *rgb);
-    int good = rgb ? 1 : wrong(r, "out of memory");
-    for (int i = 0; good && i < v->n_frames; i++)
-        good = frame_matches(v, i, decoder, rgb, r);
-    free(rgb);
+    int good = models_fit(a, decoder) && splats_fit(a, decoder);
+    for (int i = 0; good && i < a->vector->n_frames; i++)
+        good = frame_fits(a, i, decoder);
     return good;
 }
 
-int adcgs_vector_try(const adcgs_vector *vector, const uint8_t *data, size_t bytes, adcgs_cpu_level cpu, int threads, char *what,
-                     size_t size)
+/* Through the public interface; with complete set, a truncated stream has to be refused. */
+static int decode_fits(const attempt *a, int complete)
 {
-    const report r = {.what = what, .size = size};
     adcgs_config config;
     adcgs_decoder *decoder = NULL;
     adcgs_error error = {ADCGS_OK, ""};
-    char hex[ADCGS_HEX];
-    hex_of(data, bytes, hex);
-    if (strcmp(hex, vector->md5))
-        return wrong(&r, "file is %s, expected %s", hex, vector->md5);
+    source s = source_of(a);
     adcgs_config_init(&config);
-    config.cpu = cpu;
-    config.threads = threads;
-    config.strict_end = 1;
-    const adcgs_status status = adcgs_open_memory(&decoder, data, bytes, &config, &error);
-    int good;
-    if (status != vector->status)
-        good = wrong(&r, "status \"%s\", expected \"%s\"%s%s", adcgs_status_name(status), adcgs_status_name(vector->status),
-                     status == ADCGS_OK ? "" : ": ", status == ADCGS_OK ? "" : error.text);
-    else
-        good = status != ADCGS_OK || (models_match(vector, decoder, &r) && frames_match(vector, decoder, &r));
+    config.cpu = a->trial->cpu;
+    config.threads = a->trial->threads;
+    config.strict_end = complete;
+    const adcgs_status status = adcgs_open_stream(&decoder, read_pieces, &s, &config, &error);
+    const int refused = complete && a->vector->truncated;
+    int good = status_fits(a, status, refused ? ADCGS_ERR_TRUNCATED : a->vector->status, &error);
+    if (good && status == ADCGS_OK)
+        good = results_fit(a, decoder);
     adcgs_close(&decoder);
     return good;
+}
+
+adcgs_outcome adcgs_vector_try(const adcgs_vector *vector, const uint8_t *data, size_t bytes, const adcgs_trial *trial,
+                               char what[ADCGS_WHAT])
+{
+    const attempt a = {.vector = vector, .data = data, .bytes = bytes, .trial = trial, .what = what};
+    adcgs_pool *pool = NULL;
+    char hex[ADCGS_HEX];
+    int good = 0;
+    adcgs_hex_of(data, bytes, hex);
+    if (strcmp(hex, vector->md5))
+        wrong(&a, "file is %s, expected %s", hex, vector->md5);
+    else if (adcgs_pool_create(&pool, trial->threads, NULL) != ADCGS_OK)
+        wrong(&a, "no threads");
+    else
+        good = parse_fits(&a, pool) && decode_fits(&a, 0) && (!vector->truncated || decode_fits(&a, 1));
+    adcgs_pool_free(&pool);
+    return good ? ADCGS_OUTCOME_OK : ADCGS_OUTCOME_WRONG;
 }

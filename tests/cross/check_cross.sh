@@ -63,7 +63,7 @@ levels()
     local level
     echo scalar
     for level in avx2 avx512; do
-        $1 --cpu $level --md5 "$source/conformance/vectors/good-one-anchor.adcgs" >/dev/null 2>&1 && echo $level
+        $1 --cpu $level --md5 "$source/conformance/vectors/good-geom-one-anchor.adcgs" >/dev/null 2>&1 && echo $level
     done
 }
 

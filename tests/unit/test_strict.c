@@ -28,7 +28,7 @@ static int load_stream(void **state)
     const char *source = getenv("srcdir");
     char path[1024];
     (void)state;
-    snprintf(path, sizeof path, "%s/conformance/vectors/good-one-anchor.adcgs", source ? source : ".");
+    snprintf(path, sizeof path, "%s/conformance/vectors/good-geom-one-anchor.adcgs", source ? source : ".");
     FILE *file = fopen(path, "rb");
     stream = malloc(1 << 20);
     if (!file || !stream)

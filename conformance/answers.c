@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Entries of the manifest. */
+#include "answers.h"
+
+#include "base/digest.h"
+
+#include <adcgs/adcgs.h>
+
+#include <stdlib.h>
+
+/** The stream from memory, and what its trace adds up to. */
+typedef struct parse {
+    const uint8_t *next;
+    size_t left;
+    uint32_t elements;
+    adcgs_md5 md5;
+} parse;
+
+static int64_t read_bytes(void *user, void *buffer, size_t bytes)
+{
+    parse *const p = user;
+    const size_t n = ADCGS_MIN(bytes, p->left);
+    if (n > 0)
+        memcpy(buffer, p->next, n);
+    p->next += n;
+    p->left -= n;
+    return (int64_t)n;
+}
+
+static void on_element(void *user, uint64_t bit, const char *element, const char *value)
+{
+    parse *const p = user;
+    char number[24];
+    const int n = snprintf(number, sizeof number, "%llu ", (unsigned long long)bit);
+    adcgs_md5_update(&p->md5, number, (size_t)n);
+    adcgs_md5_update(&p->md5, element, strlen(element));
+    adcgs_md5_update(&p->md5, " ", 1);
+    adcgs_md5_update(&p->md5, value, strlen(value));
+    adcgs_md5_update(&p->md5, "\n", 1);
+    p->elements++;
+}
+
+static void hex_of(adcgs_md5 *md5, char hex[33])
+{
+    uint8_t digest[16];
+    adcgs_md5_final(md5, digest);
+    adcgs_md5_hex(digest, hex);
+}
+
+const char *adcgs_answers_verdict(const char *id)
+{
+    static const char *const verdicts[] = { "good", "bad", "limit", "unsup" };
+    for (size_t i = 0; i < ADCGS_COUNTOF(verdicts); i++)
+        if (strncmp(id, verdicts[i], strlen(verdicts[i])) == 0 && id[strlen(verdicts[i])] == '-')
+            return verdicts[i];
+    return "";
+}
+
+static const char *class_of(adcgs_status status)
+{
+    return status == ADCGS_ERR_DATA ? "data" : status == ADCGS_ERR_TRUNCATED ? "truncated" :
+           status == ADCGS_ERR_UNSUPPORTED ? "unsupported" : status == ADCGS_ERR_LIMIT ? "limit" : "";
+}
+
+/* ---- Parts of an entry ---- */
+
+static const adcgs_command *own_command(const adcgs_plan *plan, const char *verb)
+{
+    for (int i = 0; i < plan->recipe->n; i++)
+        if (adcgs_command_is(&plan->recipe->command[i], verb)) {
+            plan->recipe->command[i].used = 1;
+            return &plan->recipe->command[i];
+        }
+    return NULL;
+}
+
+/* Requirements, each in the form REQ-AREA-NUMBER. */
+static adcgs_status print_requirements(FILE *out, const char *name, const adcgs_command *c, adcgs_error *error)
+{
+    fprintf(out, ",\n      \"%s\": [", name);
+    for (int i = 1; i < c->n; i++) {
+        if (strncmp(c->word[i], "REQ-", 4) || strlen(c->word[i]) != 12)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": expected the number of a requirement", c->word[i]);
+        fprintf(out, "%s\"%s\"", i > 1 ? ", " : "", c->word[i]);
+    }
+    fprintf(out, "]");
+    return ADCGS_OK;
+}
+
+static void print_cameras(FILE *out, const adcgs_plan *plan)
+{
+    fprintf(out, ",\n      \"cameras\": [");
+    for (int i = 0; i < plan->n_cameras; i++) {
+        const adcgs_camera *const c = &plan->cameras[i];
+        fprintf(out, "%s\n        { \"name\": \"%s\", \"width\": %d, \"height\": %d, ", i ? "," : "", c->name, (int)c->width,
+                (int)c->height);
+        fprintf(out, "\"fx\": %.17g, \"fy\": %.17g, \"cx\": %.17g, \"cy\": %.17g,", c->fx, c->fy, c->cx, c->cy);
+        fprintf(out, "\n          \"near\": %.17g, \"cam_to_world\": [", c->near_plane);
+        for (int k = 0; k < 12; k++)
+            fprintf(out, "%s%.17g", k ? ", " : "", c->cam_to_world[k]);
+        fprintf(out, "] }");
+    }
+    fprintf(out, " ]");
+}
+
+static adcgs_status print_props(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder, size_t bytes, adcgs_error *error)
+{
+    adcgs_info info;
+    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    if ((int)info.truncated != (strstr(plan->recipe->id, "truncated") != NULL))
+        return adcgs_fail(error, ADCGS_ERR_INTERNAL, "%s: truncated is %d", plan->recipe->id, info.truncated);
+    fprintf(out, ",\n      \"props\": { \"bytes\": %zu, \"anchors\": %u, \"segments\": %d, \"frames\": %d, \"truncated\": %s }",
+            bytes, info.anchors, info.segments, plan->n_cameras * plan->n_times, info.truncated ? "true" : "false");
+    return ADCGS_OK;
+}
+
+static adcgs_status print_models(FILE *out, adcgs_decoder *decoder)
+{
+    adcgs_info info;
+    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    fprintf(out, ",\n        \"M\": [");
+    for (int i = 0; i < info.segments; i++) {
+        uint8_t digest[16];
+        char hex[33];
+        ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest));
+        adcgs_md5_hex(digest, hex);
+        fprintf(out, "%s\"%s\"", i ? ", " : "", hex);
+    }
+    fprintf(out, "]");
+    return ADCGS_OK;
+}
+
+static adcgs_status print_splats(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder)
+{
+    fprintf(out, ",\n        \"S\": [");
+    for (int i = 0; i < plan->n_times; i++) {
+        uint8_t digest[16];
+        char hex[33];
+        ADCGS_TRY(adcgs_get_splat_digest(decoder, plan->times[i], digest));
+        adcgs_md5_hex(digest, hex);
+        fprintf(out, "%s\n          { \"time\": %.17g, \"md5\": \"%s\" }", i ? "," : "", plan->times[i], hex);
+    }
+    fprintf(out, " ]");
+    return ADCGS_OK;
+}
+
+static adcgs_status print_frame(FILE *out, adcgs_decoder *decoder, const adcgs_camera *c, int index, double time, int first,
+                                adcgs_error *error)
+{
+    uint8_t digest[16];
+    char hex[33];
+    adcgs_frame frame = { .width = c->width, .height = c->height };
+    frame.rgb = malloc(3 * sizeof *frame.rgb * (size_t)c->width * (size_t)c->height);
+    if (!frame.rgb)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for a frame");
+    const adcgs_status status = adcgs_render(decoder, c, time, &frame, error);
+    if (status == ADCGS_OK)
+        adcgs_frame_digest(&frame, digest);
+    free(frame.rgb);
+    ADCGS_TRY(status);
+    adcgs_md5_hex(digest, hex);
+    fprintf(out, "%s\n          { \"camera\": %d, \"time\": %.17g, \"md5\": \"%s\" }", first ? "" : ",", index, time, hex);
+    return ADCGS_OK;
+}
+
+static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder, parse *p, adcgs_error *error)
+{
+    char hex[33];
+    hex_of(&p->md5, hex);
+    fprintf(out, ",\n      \"expect\": {\n        \"P\": { \"elements\": %u, \"trace_md5\": \"%s\" }", p->elements, hex);
+    ADCGS_TRY(print_models(out, decoder));
+    ADCGS_TRY(print_splats(out, plan, decoder));
+    fprintf(out, ",\n        \"R\": [");
+    for (int t = 0; t < plan->n_times; t++)
+        for (int c = 0; c < plan->n_cameras; c++)
+            ADCGS_TRY(print_frame(out, decoder, &plan->cameras[c], c, plan->times[t], t + c == 0, error));
+    fprintf(out, " ] }");
+    return ADCGS_OK;
+}
+
+/* ---- The entry ---- */
+
+static adcgs_status print_good(FILE *out, const adcgs_plan *plan, const adcgs_buffer *file, parse *p, adcgs_error *error)
+{
+    const adcgs_command *const covers = own_command(plan, "covers");
+    adcgs_decoder *decoder = NULL;
+    adcgs_config config;
+    if (!covers)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: covers nothing", plan->recipe->id);
+    ADCGS_TRY(print_requirements(out, "covers", covers, error));
+    adcgs_config_init(&config);
+    config.threads = 1;
+    config.cpu = ADCGS_CPU_SCALAR;
+    ADCGS_TRY(adcgs_open_memory(&decoder, file->data, file->size, &config, error));
+    adcgs_status status = print_props(out, plan, decoder, file->size, error);
+    print_cameras(out, plan);
+    if (status == ADCGS_OK)
+        status = print_expected(out, plan, decoder, p, error);
+    adcgs_close(&decoder);
+    return status;
+}
+
+/* expect CLASS "part of the message": so that nothing is refused for another reason than is meant. */
+static adcgs_status print_bad(FILE *out, const adcgs_plan *plan, const char *verdict, adcgs_status status, const char *message,
+                              size_t bytes, adcgs_error *error)
+{
+    const adcgs_command *const violates = own_command(plan, "violates"), *const expect = own_command(plan, "expect");
+    if (!violates || !expect || expect->n != 3)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: lacks violates or expect", plan->recipe->id);
+    if (strcmp(class_of(status), expect->word[1]) || !strstr(message, expect->word[2]))
+        return adcgs_fail(error, ADCGS_ERR_INTERNAL, "%s: ends with \"%s\" (%.100s), expected \"%s\" (%.60s)", plan->recipe->id,
+                          class_of(status), message, expect->word[1], expect->word[2]);
+    if ((strcmp(verdict, "limit") == 0 && status != ADCGS_ERR_LIMIT) ||
+        (strcmp(verdict, "unsup") == 0 && status != ADCGS_ERR_UNSUPPORTED) ||
+        (strcmp(verdict, "bad") == 0 && status != ADCGS_ERR_DATA && status != ADCGS_ERR_TRUNCATED))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: its name and its class differ", plan->recipe->id);
+    fprintf(out, ",\n      \"status\": \"%s\"", class_of(status));
+    ADCGS_TRY(print_requirements(out, "violates", violates, error));
+    fprintf(out, ",\n      \"props\": { \"bytes\": %zu }", bytes);
+    return ADCGS_OK;
+}
+
+static int is_plain(const char *text)
+{
+    for (; *text; text++)
+        if (*text < 32 || *text > 126 || *text == '"' || *text == '\\')
+            return 0;
+    return 1;
+}
+
+adcgs_status adcgs_answers_print(FILE *out, const adcgs_plan *plan, const adcgs_buffer *file, adcgs_error *error)
+{
+    const char *const id = plan->recipe->id, *const verdict = adcgs_answers_verdict(id);
+    const adcgs_command *const title = own_command(plan, "title");
+    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
+    parse p = { .next = file->data, .left = file->size };
+    adcgs_error why = { ADCGS_OK, "" };
+    adcgs_stream stream;
+    adcgs_md5 md5;
+    char hex[33];
+    if (!*verdict || !title || title->n != 2 || !is_plain(title->word[1]))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: lacks a verdict in its name or a plain title in quotes", id);
+    adcgs_md5_init(&p.md5);
+    const adcgs_status status = adcgs_stream_read(&stream, read_bytes, &p, &options, on_element, &p, &why);
+    if (status == ADCGS_OK)
+        adcgs_stream_clear(&stream, NULL);
+    adcgs_md5_init(&md5);
+    adcgs_md5_update(&md5, file->data, file->size);
+    hex_of(&md5, hex);
+    fprintf(out, "    { \"id\": \"%s\", \"file\": \"vectors/%s.adcgs\", \"recipe\": \"recipes/%s.txt\",\n", id, id, id);
+    fprintf(out, "      \"title\": \"%s\",\n      \"md5\": \"%s\", \"level\": %u, \"verdict\": \"%s\"", title->word[1], hex,
+            plan->stream.level, verdict);
+    if (strcmp(verdict, "good"))
+        ADCGS_TRY(print_bad(out, plan, verdict, status, why.text, file->size, error));
+    else if (status != ADCGS_OK)
+        return adcgs_fail(error, ADCGS_ERR_INTERNAL, "%s: ends with \"%s\": %.160s", id, adcgs_status_name(status), why.text);
+    else
+        ADCGS_TRY(print_good(out, plan, file, &p, error));
+    fprintf(out, " }");
+    return ADCGS_OK;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What the manifest says of a vector: taken from the portable kernels on one thread, or checked against the recipe. */
+#ifndef ADCGS_CONFORMANCE_ANSWERS_H
+#define ADCGS_CONFORMANCE_ANSWERS_H
+
+#include "plan.h"
+
+#include <stdio.h>
+
+/** Decode the vector, check that it ends as its recipe says, and print its entry. */
+adcgs_status adcgs_answers_print(FILE *out, const adcgs_plan *plan, const adcgs_buffer *file, adcgs_error *error);
+/** "good-area-feature": "good". */
+const char *adcgs_answers_verdict(const char *id);
+
+#endif

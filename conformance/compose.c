@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file From models to chunks, without the checks that keep a writer from writing what decoders have to refuse. */
+#include "plan.h"
+
+#include "base/digest.h"
+#include "model/model_priv.h"
+#include "model/parts.h"
+
+/** Networks in the stream so far, by id. */
+typedef struct id_table {
+    adcgs_chunk_list *list;
+    uint32_t n;
+    const adcgs_net *net[ADCGS_PLAN_SEGMENTS * ADCGS_ROLES];
+} id_table;
+
+static adcgs_status add(adcgs_chunk_list *list, const char *type, uint32_t segment, int flags, adcgs_buffer **payload,
+                        adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_chunk_list_insert(list, list->n, type, error));
+    adcgs_raw_chunk *const c = &list->chunk[list->n - 1];
+    c->segment = (uint16_t)segment;
+    c->flags = (uint8_t)flags;
+    *payload = &c->payload;
+    return ADCGS_OK;
+}
+
+static uint32_t assign_ids(id_table *table, const adcgs_model *m, adcgs_role_ids *ids)
+{
+    const uint32_t before = table->n;
+    for (int role = 0; role < ADCGS_ROLES; role++) {
+        const adcgs_net *const net = &m->net[role];
+        uint32_t id = 0;
+        if (!net->present)
+            continue;
+        while (id < table->n && !adcgs_net_equal(table->net[id], net))
+            id++;
+        if (id == table->n)
+            table->net[table->n++] = net;
+        ids->mask |= (uint16_t)(1 << role);
+        ids->id[role] = (uint16_t)id;
+    }
+    return before;
+}
+
+static adcgs_status add_layers(adcgs_plan *plan, uint32_t segment, adcgs_chunk_list *out, adcgs_error *error)
+{
+    const adcgs_drawn *const d = &plan->drawn[segment];
+    for (int layer = 0; layer < adcgs_params_layers(&plan->stream.params); layer++) {
+        const char type[5] = { 'F', 'E', 'A', (char)('0' + layer), 0 };
+        const adcgs_buffer *const slice = d->data + (size_t)layer * d->n_slices;
+        adcgs_buffer *payload;
+        ADCGS_TRY(add(out, type, segment, 0, &payload, error));
+        adcgs_write_varint(payload, 0);
+        adcgs_write_varint(payload, d->n_slices);
+        for (uint32_t i = 0; i < d->n_slices; i++) {
+            adcgs_write_varint(payload, (uint32_t)slice[i].size);
+            adcgs_write_uint(payload, adcgs_crc32c(0, slice[i].data, slice[i].size), 4);
+        }
+        for (uint32_t i = 0; i < d->n_slices; i++)
+            adcgs_write_bytes(payload, slice[i].data, slice[i].size);
+    }
+    return ADCGS_OK;
+}
+
+/* unnamed ROLE N: networks like that one of the only segment, which no segment names. */
+static adcgs_status add_unnamed(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    id_table *const table = user;
+    const adcgs_net *copies[ADCGS_ROLES];
+    adcgs_buffer *payload;
+    int64_t left;
+    int role = 0;
+    ADCGS_TRY(adcgs_command_words(c, 2, 2, error));
+    ADCGS_TRY(adcgs_word_int(c->word[2], 1, 65535, &left, error));
+    while (role < ADCGS_ROLES && strcmp(c->word[1], adcgs_role_name(role)))
+        role++;
+    if (role == ADCGS_ROLES || !plan->stream.segments[0].net[role].present || plan->segments > 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": no such network in the only segment", c->word[1]);
+    for (int i = 0; i < ADCGS_ROLES; i++)
+        copies[i] = &plan->stream.segments[0].net[role];
+    for (uint32_t id = table->n, n; left > 0; left -= n, id += n) {
+        n = (uint32_t)ADCGS_MIN(left, ADCGS_ROLES);
+        ADCGS_TRY(add(table->list, "NETW", 0, 0, &payload, error));
+        ADCGS_TRY(adcgs_netw_write(payload, copies, n, id, error));
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status add_segment(adcgs_plan *plan, uint32_t segment, id_table *table, adcgs_chunk_list *out, adcgs_error *error)
+{
+    const adcgs_model *const m = &plan->stream.segments[segment];
+    adcgs_role_ids ids = { 0 };
+    adcgs_buffer *payload;
+    uint8_t digest[16];
+    const uint32_t first = assign_ids(table, m, &ids), added = table->n - first;
+    int used = 0;
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        used += ids.mask >> role & 1;
+    ADCGS_TRY(add(out, "SEGM", segment, (int)added == used ? ADCGS_CHUNK_INDEPENDENT : 0, &payload, error));
+    ADCGS_TRY(adcgs_segm_write(payload, &plan->stream, m, &ids, error));
+    if (added > 0) {
+        ADCGS_TRY(add(out, "NETW", segment, 0, &payload, error));
+        ADCGS_TRY(adcgs_netw_write(payload, table->net + first, added, first, error));
+    }
+    ADCGS_TRY(adcgs_plan_each(plan, "unnamed", add_unnamed, table, error));
+    ADCGS_TRY(add(out, "GEOM", segment, 0, &payload, error));
+    ADCGS_TRY(adcgs_geom_write(payload, m, error));
+    ADCGS_TRY(add_layers(plan, segment, out, error));
+    ADCGS_TRY(add(out, "hash", segment, ADCGS_CHUNK_LAST, &payload, error));
+    adcgs_model_digest(m, digest);
+    adcgs_write_bytes(payload, digest, sizeof digest);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_plan_compose(adcgs_plan *plan, adcgs_chunk_list *out, adcgs_error *error)
+{
+    id_table table = { .list = out };
+    adcgs_buffer *payload;
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < plan->segments; i++)
+        most = ADCGS_MAX(most, plan->anchors[i]);
+    ADCGS_TRY(add(out, "HEAD", 0, 0, &payload, error));
+    ADCGS_TRY(adcgs_head_write(payload, &plan->stream, most, error));
+    if (plan->stream.n_cameras > 0) {
+        ADCGS_TRY(add(out, "cams", 0, 0, &payload, error));
+        ADCGS_TRY(adcgs_cams_write(payload, &plan->stream, error));
+    }
+    if (plan->stream.n_meta > 0) {
+        ADCGS_TRY(add(out, "meta", 0, 0, &payload, error));
+        ADCGS_TRY(adcgs_meta_write(payload, &plan->stream, error));
+    }
+    for (uint32_t i = 0; i < plan->segments; i++)
+        ADCGS_TRY(add_segment(plan, i, &table, out, error));
+    if (plan->segments > 1)
+        ADCGS_TRY(add(out, "INDX", 0, 0, &payload, error));
+    return add(out, "ENDC", 0, 0, &payload, error);
+}

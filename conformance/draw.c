@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The models of a recipe: positions, flags and masks, steps and priors, and values that are coded as they are drawn. */
+#include "plan.h"
+#include "random_model.h"
+
+#include "base/cpu.h"
+#include "geom/geom.h"
+#include "model/latents_priv.h"
+#include "model/model_priv.h"
+
+#include <stdlib.h>
+
+/** One slice being drawn. */
+typedef struct drawing {
+    adcgs_plan *plan;
+    const adcgs_model *model;
+    adcgs_range_enc range;
+    int turn; /**< of the fills that take turns */
+} drawing;
+
+static int draw(uint64_t *state, int lo, int hi)
+{
+    return (int)adcgs_random_range(state, lo, hi);
+}
+
+/* ---- Positions ---- */
+
+static void place_code(uint32_t voxel[3], uint64_t code)
+{
+    for (int bit = 0; bit < 63; bit++)
+        voxel[2 - bit % 3] |= (uint32_t)(code >> bit & 1) << bit / 3;
+}
+
+/* The code of anchor i of n; they ascend with i. */
+static uint64_t code_of(adcgs_plan *plan, uint32_t i, uint32_t n, int depth)
+{
+    const uint64_t cells = UINT64_C(1) << 3 * depth, half = n / 2;
+    const uint64_t stride = cells / n;
+    switch (plan->positions) {
+    case ADCGS_SPREAD_DENSE:
+        return i;
+    case ADCGS_SPREAD_MIXED:
+        return i < half ? i : half + (i - half) * ((cells - half) / (n - half));
+    case ADCGS_SPREAD_ENDS:
+        return i < half ? i : cells - n + i;
+    default:
+        return i * stride + adcgs_random_next(&plan->state) % stride;
+    }
+}
+
+static void place_anchors(adcgs_plan *plan, adcgs_model *m)
+{
+    const uint32_t side = 1U << m->depth;
+    for (uint32_t i = 0; i < m->n; i++) {
+        uint32_t *const voxel = m->pos + 3 * (size_t)i;
+        if (plan->positions == ADCGS_SPREAD_LINE) {
+            voxel[0] = (uint32_t)((uint64_t)i * side / m->n);
+        } else if (plan->positions == ADCGS_SPREAD_PLANE) {
+            const uint64_t stride = (uint64_t)side * side / m->n, cell = i * stride + adcgs_random_next(&plan->state) % stride;
+            for (int bit = 0; bit < 2 * m->depth; bit++)
+                voxel[1 - bit % 2] |= (uint32_t)(cell >> bit & 1) << bit / 2;
+            voxel[2] = side / 2;
+        } else {
+            place_code(voxel, code_of(plan, i, m->n, m->depth));
+        }
+    }
+}
+
+static unsigned pick(adcgs_plan *plan, int how, uint32_t i, unsigned all)
+{
+    switch (how) {
+    case ADCGS_PICK_ALL:
+        return all;
+    case ADCGS_PICK_NONE:
+        return 0;
+    case ADCGS_PICK_FIRST:
+        return 1;
+    case ADCGS_PICK_TURNS:
+        return i % 2 ? all : 0;
+    default:
+        return (unsigned)(adcgs_random_next(&plan->state) | adcgs_random_next(&plan->state)) & all;
+    }
+}
+
+/* ---- Steps and priors ---- */
+
+/* Forms as in the stream: bit 0, one value for all channels; bit 1, the lower half of the number is 0. */
+static void fill_steps(float *d, int n, int form, double value)
+{
+    for (int i = 0; i < n; i++) {
+        const uint32_t bits = adcgs_float_bits((float)(value * (form & 1 ? 1.0 : 1.0 + 0.0625 * i)));
+        d[i] = adcgs_bits_float(form & 2 ? bits & 0xffff0000 : bits | 1);
+    }
+}
+
+/* steps fv|sigma|colour|fg FORM VALUE */
+static adcgs_status set_steps(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    static const char *const groups[] = { "fv", "sigma", "colour", "fg", NULL };
+    adcgs_model *const m = user;
+    float *const d[] = { m->d_fv, m->d_sigma, m->d_colour, m->d_fg };
+    const int n[] = { m->params.n_fv, ADCGS_SIGMA_N, ADCGS_COLOUR_N, m->params.n_fg };
+    int group;
+    int64_t form;
+    double value;
+    (void)plan;
+    ADCGS_TRY(adcgs_command_words(c, 3, 3, error));
+    ADCGS_TRY(adcgs_word_choice(c->word[1], groups, &group, error));
+    ADCGS_TRY(adcgs_word_int(c->word[2], 0, 3, &form, error));
+    ADCGS_TRY(adcgs_word_real(c->word[3], &value, error));
+    fill_steps(d[group], n[group], (int)form, value);
+    return ADCGS_OK;
+}
+
+/* shapes G0 .. G7, eta_mu M.., eta_si S..: the last number holds for the rest. */
+static adcgs_status set_table(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    adcgs_model *const m = user;
+    int64_t value = 0;
+    (void)plan;
+    ADCGS_TRY(adcgs_command_words(c, 1, ADCGS_GROUPS, error));
+    for (int i = 0; i < ADCGS_GROUPS; i++) {
+        if (i + 1 < c->n)
+            ADCGS_TRY(adcgs_word_int(c->word[1 + i], -32767, 32767, &value, error));
+        if (adcgs_command_is(c, "shapes"))
+            m->shape[i] = (uint8_t)(value & 3);
+        else if (adcgs_command_is(c, "eta_mu"))
+            m->eta_mu[i] = (int16_t)value;
+        else
+            m->eta_si[i] = (uint8_t)(value & 63);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status fill_tables(adcgs_plan *plan, adcgs_model *m, adcgs_error *error)
+{
+    fill_steps(m->d_fv, m->params.n_fv, 0, 0x1p-10);
+    fill_steps(m->d_sigma, ADCGS_SIGMA_N, 0, 0x1p-10);
+    fill_steps(m->d_colour, ADCGS_COLOUR_N, 0, 0x1p-11);
+    fill_steps(m->d_fg, m->params.n_fg, 0, 0x1p-10);
+    for (int i = 0; i < ADCGS_GROUPS; i++)
+        m->shape[i] = (uint8_t)draw(&plan->state, 0, ADCGS_SHAPES - 1);
+    for (int i = 0; i < ADCGS_ETA_MAX; i++) {
+        m->eta_mu[i] = (int16_t)draw(&plan->state, -400, 400);
+        m->eta_si[i] = (uint8_t)draw(&plan->state, 0, ADCGS_SIGMA_LEVELS - 1);
+    }
+    ADCGS_TRY(adcgs_plan_each(plan, "steps", set_steps, m, error));
+    ADCGS_TRY(adcgs_plan_each(plan, "shapes", set_table, m, error));
+    ADCGS_TRY(adcgs_plan_each(plan, "eta_mu", set_table, m, error));
+    ADCGS_TRY(adcgs_plan_each(plan, "eta_si", set_table, m, error));
+    m->voxel = plan->voxel > 0 ? (float)plan->voxel : 2.0f / (float)(1U << m->depth);
+    for (int a = 0; a < 3; a++)
+        m->origin[a] = (float)plan->origin[a];
+    return ADCGS_OK;
+}
+
+/* ---- Values ---- */
+
+static int group_index(int group)
+{
+    return ADCGS_MIN(group, ADCGS_GROUP_FG);
+}
+
+/* What a picture needs: extents of e^-3.5 to e^-2.5, colours of 0 to 1; all else small. */
+static int32_t paint(drawing *w, const adcgs_latent_site *site, int c)
+{
+    const int channel = site->first + c, sigma = site->group == ADCGS_GROUP_SIGMA;
+    if (!sigma && site->group != ADCGS_GROUP_COLOUR)
+        return draw(&w->plan->state, -2, 2);
+    const double step = 64.0 * (double)(sigma ? w->model->d_sigma[channel] : w->model->d_colour[channel]);
+    const double wanted = draw(&w->plan->state, 0, 1000) / 1000.0 - (sigma ? 3.5 : 0.0);
+    return (int32_t)(wanted / step - site->mu[c] / 64.0);
+}
+
+/* The index n of a value; the caller limits it to what the code can hold. */
+static int32_t choose(drawing *w, const adcgs_latent_site *site, int c, int shape, int si)
+{
+    const int32_t support = adcgs_table_support(shape, si), turn = w->turn++, sign = turn & 1 ? -1 : 1;
+    const int prefix = turn / 2 % 16;
+    switch (w->plan->values) {
+    case ADCGS_FILL_RANDOM:
+        return draw(&w->plan->state, 0, 99) ? draw(&w->plan->state, -1 - si / 8, 1 + si / 8) : draw(&w->plan->state, -700, 700);
+    case ADCGS_FILL_ZERO:
+        return 0;
+    case ADCGS_FILL_EDGES:
+        return sign * (support + (turn / 2 & 1));
+    case ADCGS_FILL_ESCAPES:
+        return sign * (support + (1 << prefix) + draw(&w->plan->state, 0, (1 << prefix) - 1));
+    case ADCGS_FILL_CLIPS:
+        return sign * (32767 - sign * site->mu[c] + 63 * (turn / 2 % 3)) / 64;
+    default:
+        return paint(w, site, c);
+    }
+}
+
+/** For commands "force": the place, and the value that they leave there. */
+typedef struct forced {
+    const adcgs_latent_site *site;
+    int c, shape, si;
+    int32_t n;
+} forced;
+
+static int word_is_index(const char *word, int index)
+{
+    return strcmp(word, "*") == 0 || atoi(word) == index;
+}
+
+/* force GROUP ANCHOR K CHANNEL VALUE; numbers or *, and VALUE also as [-]max, [-]edge, [-]escape. */
+static adcgs_status force(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    static const char *const groups[] = { "eta", "fv", "sigma", "colour", "fg", NULL };
+    static const char *const names[] = { "max", "edge", "escape", NULL };
+    forced *const f = user;
+    int group, name;
+    int64_t value;
+    (void)plan;
+    ADCGS_TRY(adcgs_command_words(c, 5, 5, error));
+    ADCGS_TRY(adcgs_word_choice(c->word[1], groups, &group, error));
+    if (group != group_index(f->site->group) || !word_is_index(c->word[2], (int)f->site->anchor) ||
+        (f->site->k >= 0 && !word_is_index(c->word[3], f->site->k)) || !word_is_index(c->word[4], f->site->first + f->c))
+        return ADCGS_OK;
+    const int negative = c->word[5][0] == '-';
+    const int32_t support = adcgs_table_support(f->shape, f->si);
+    if (adcgs_word_choice(c->word[5] + negative, names, &name, NULL) == ADCGS_OK) {
+        f->n = name == 0 ? adcgs_value_max(f->shape, f->si) : support + (name == 2);
+        f->n = negative ? -f->n : f->n;
+        return ADCGS_OK;
+    }
+    ADCGS_TRY(adcgs_word_int(c->word[5], -100000, 100000, &value, error));
+    f->n = (int32_t)value;
+    return ADCGS_OK;
+}
+
+static void draw_site(void *user, const adcgs_latent_site *site)
+{
+    drawing *const w = user;
+    for (int c = 0; c < site->count; c++) {
+        const int shape = w->model->shape[site->group], si = site->si[c];
+        forced f = { site, c, shape, si, 0 };
+        if (si > 0) {
+            const int32_t most = adcgs_value_max(shape, si);
+            f.n = choose(w, site, c, shape, si);
+            adcgs_plan_each(w->plan, "force", force, &f, NULL); /* checked in advance */
+            f.n = adcgs_clip(f.n, most);
+            adcgs_value_enc(&w->range, shape, si, f.n);
+        }
+        site->yq[c] = (int16_t)adcgs_clip(64 * f.n + site->mu[c], 32767);
+    }
+}
+
+static int draw_flag(void *user, adcgs_adaptive *context, int bit)
+{
+    drawing *const w = user;
+    adcgs_adaptive_enc(&w->range, context, bit);
+    return bit;
+}
+
+static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *out, adcgs_error *error)
+{
+    const uint32_t slice = 1U << plan->stream.slice_log2;
+    const int layers = adcgs_params_layers(&m->params);
+    adcgs_latents *latents = NULL;
+    drawing w = { .plan = plan, .model = m };
+    out->n_slices = ((m->n - 1) >> plan->stream.slice_log2) + 1;
+    out->data = adcgs_alloc(NULL, ADCGS_LAYERS * out->n_slices, sizeof *out->data, error);
+    if (!out->data)
+        return ADCGS_ERR_MEMORY;
+    adcgs_status status = adcgs_latents_create(&latents, m, ADCGS_CPU_SCALAR, NULL, error);
+    for (uint32_t i = 0; i < (uint32_t)layers * out->n_slices && status == ADCGS_OK; i++) {
+        const int layer = (int)(i / out->n_slices);
+        const uint32_t begin = i % out->n_slices * slice, end = begin + ADCGS_MIN(m->n - begin, slice);
+        adcgs_range_enc_init(&w.range, &out->data[i]);
+        if (layer == 0)
+            adcgs_latents_flags(m, begin, end, draw_flag, &w);
+        status = adcgs_latents_walk(latents, m, layer, begin, end, draw_site, &w);
+        adcgs_range_enc_finish(&w.range);
+    }
+    adcgs_latents_free(&latents);
+    return status;
+}
+
+static adcgs_status draw_model(adcgs_plan *plan, uint32_t segment, adcgs_error *error)
+{
+    adcgs_model *const m = &plan->stream.segments[segment];
+    m->params = plan->stream.params;
+    m->n = plan->anchors[segment];
+    m->depth = plan->depth;
+    m->layers = (uint8_t)adcgs_params_layers(&m->params);
+    m->time_start = adcgs_ticks_to_seconds(&plan->stream, plan->ticks[2 * segment]);
+    m->time_end = adcgs_ticks_to_seconds(&plan->stream, plan->ticks[2 * segment + 1]);
+    if (m->depth > ADCGS_GEOM_DEPTH_MAX || m->n > UINT64_C(1) << 3 * m->depth)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%u anchors do not fit into depth %u", m->n, m->depth);
+    ADCGS_TRY(fill_tables(plan, m, error));
+    ADCGS_TRY(adcgs_plan_nets(plan, segment, error));
+    ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
+    place_anchors(plan, m);
+    for (uint32_t i = 0; i < m->n; i++) {
+        m->is_static[i] = (uint8_t)(m->params.time_rows > 0 ? pick(plan, plan->statics, i, 1) : 0);
+        m->mask[i] = (uint16_t)pick(plan, plan->masks, i, (1U << m->params.k) - 1);
+    }
+    return draw_slices(plan, m, &plan->drawn[segment], error);
+}
+
+adcgs_status adcgs_plan_draw(adcgs_plan *plan, adcgs_error *error)
+{
+    adcgs_stream *const s = &plan->stream;
+    const adcgs_latent_site nowhere = { .k = 0, .group = ADCGS_GROUP_ETA };
+    forced f = { .site = &nowhere, .si = 1 };
+    ADCGS_TRY(adcgs_params_validate(&s->params, error));
+    ADCGS_TRY(adcgs_plan_each(plan, "force", force, &f, error));
+    s->segments = adcgs_alloc(NULL, plan->segments, sizeof *s->segments, error);
+    if (!s->segments)
+        return ADCGS_ERR_MEMORY;
+    s->n_segments = plan->segments;
+    s->start_ticks = plan->ticks[0];
+    s->duration_ticks = plan->ticks[2 * plan->segments - 1] - plan->ticks[0];
+    for (uint32_t i = 0; i < plan->segments; i++)
+        ADCGS_TRY(draw_model(plan, i, error));
+    return adcgs_plan_poke(plan, error);
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What a recipe asks for, and the stream that results: header, models, and the
+ * sub-streams of their features, coded while their values are drawn, so that
+ * also codes that no encoder would choose can occur.
+ */
+#ifndef ADCGS_CONFORMANCE_PLAN_H
+#define ADCGS_CONFORMANCE_PLAN_H
+
+#include "chunks.h"
+#include "recipe.h"
+
+#include "model/stream.h"
+
+#define ADCGS_PLAN_SEGMENTS 20
+#define ADCGS_PLAN_CAMERAS 8
+#define ADCGS_PLAN_TIMES 8
+
+/** Which bits of masks, or which static flags, are set. */
+typedef enum adcgs_pick { ADCGS_PICK_RANDOM, ADCGS_PICK_ALL, ADCGS_PICK_NONE, ADCGS_PICK_FIRST, ADCGS_PICK_TURNS } adcgs_pick;
+
+/** Where the voxels are. */
+typedef enum adcgs_spread {
+    ADCGS_SPREAD_RANDOM, /**< one in each run of equal length along the Morton order */
+    ADCGS_SPREAD_DENSE,  /**< the first ones in Morton order */
+    ADCGS_SPREAD_PLANE,  /**< random, all in the middle plane of z */
+    ADCGS_SPREAD_LINE,   /**< along x, y and z are 0 */
+    ADCGS_SPREAD_MIXED,  /**< half dense, half random */
+    ADCGS_SPREAD_ENDS    /**< the first and the last ones */
+} adcgs_spread;
+
+/** What values are drawn where no command forces one. */
+typedef enum adcgs_fill {
+    ADCGS_FILL_PAINT,   /**< extents and colours as a picture needs them, the rest small */
+    ADCGS_FILL_RANDOM,  /**< small, now and then far */
+    ADCGS_FILL_ZERO,
+    ADCGS_FILL_EDGES,   /**< the outermost symbols of the tables */
+    ADCGS_FILL_ESCAPES, /**< escape codes of every length and both signs */
+    ADCGS_FILL_CLIPS    /**< so far that the clip of the value is met */
+} adcgs_fill;
+
+/** The coded slices of a segment: [layer * n_slices + slice]. */
+typedef struct adcgs_drawn {
+    uint32_t n_slices;
+    adcgs_buffer *data;
+} adcgs_drawn;
+
+typedef struct adcgs_plan {
+    adcgs_recipe *recipe;
+    uint64_t seed, state;
+    uint32_t segments;
+    uint32_t anchors[ADCGS_PLAN_SEGMENTS];
+    uint8_t depth;
+    double origin[3], voxel; /**< voxel 0: the cube's edge is 2 */
+    int64_t ticks[2 * ADCGS_PLAN_SEGMENTS];
+    int masks, statics, positions, values; /**< adcgs_pick, adcgs_spread, adcgs_fill */
+    adcgs_stream stream;
+    adcgs_drawn drawn[ADCGS_PLAN_SEGMENTS];
+    int n_cameras, n_times; /**< what is rendered to compare */
+    adcgs_camera cameras[ADCGS_PLAN_CAMERAS];
+    double times[ADCGS_PLAN_TIMES];
+} adcgs_plan;
+
+/** Settings of the recipe. */
+adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error *error);
+void adcgs_plan_clear(adcgs_plan *plan);
+/** Make the models and code their features. */
+adcgs_status adcgs_plan_draw(adcgs_plan *plan, adcgs_error *error);
+/** The stream as chunks. */
+adcgs_status adcgs_plan_compose(adcgs_plan *plan, adcgs_chunk_list *out, adcgs_error *error);
+
+/* Networks, in nets.c. */
+adcgs_status adcgs_plan_nets(adcgs_plan *plan, uint32_t segment, adcgs_error *error);
+/** Commands "poke": numbers changed after the features were coded. */
+adcgs_status adcgs_plan_poke(adcgs_plan *plan, adcgs_error *error);
+
+/** Call fn for each command with this verb and count it as used; messages name its line. */
+typedef adcgs_status (*adcgs_command_fn)(adcgs_plan *plan, const adcgs_command *command, void *user, adcgs_error *error);
+adcgs_status adcgs_plan_each(adcgs_plan *plan, const char *verb, adcgs_command_fn fn, void *user, adcgs_error *error);
+
+#endif
