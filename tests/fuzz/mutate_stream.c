@@ -9,7 +9,7 @@
 
 #define CHUNKS_MAX 256
 
-/* MemorySanitizer does not see what the engine, which is not instrumented, writes. */
+/* MemorySanitizer does not see what the engine, which is not instrumented, writes, passes and returns. */
 #if defined(__has_feature)
 #if __has_feature(memory_sanitizer)
 #include <sanitizer/msan_interface.h>
@@ -64,6 +64,7 @@ static size_t mutate_payload(uint8_t *data, size_t size, size_t max, const adcgs
         return size;
     memcpy(copy, data + c->payload, c->length);
     size_t n = LLVMFuzzerMutate(copy, c->length, room + (room == 0));
+    WRITTEN(&n, sizeof n);
     if (layer && n < c->length) {
         memmove(copy + c->length - n, copy, n); /* the slices' bytes stay where they were */
         memcpy(copy, data + c->payload, c->length - n);
@@ -95,6 +96,10 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned 
 {
     uint32_t state = seed;
     chunk_list list;
+    WRITTEN(&data, sizeof data);
+    WRITTEN(&size, sizeof size);
+    WRITTEN(&max, sizeof max);
+    WRITTEN(&state, sizeof state);
     WRITTEN(data, max);
     list_chunks(&list, data, size);
     const uint32_t kind = draw(&state, 16);
