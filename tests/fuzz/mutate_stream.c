@@ -65,6 +65,7 @@ static size_t mutate_payload(uint8_t *data, size_t size, size_t max, const adcgs
     memcpy(copy, data + c->payload, c->length);
     size_t n = LLVMFuzzerMutate(copy, c->length, room + (room == 0));
     WRITTEN(&n, sizeof n);
+    WRITTEN(copy, room + 1);
     if (layer && n < c->length) {
         memmove(copy + c->length - n, copy, n); /* the slices' bytes stay where they were */
         memcpy(copy, data + c->payload, c->length - n);

@@ -5,6 +5,12 @@
  * A decoder is not thread-safe by itself (one thread at a time per decoder);
  * it uses its own threads inside a call. Different decoders are independent.
  * All results are bit-identical on every CPU, CPU level and thread count.
+ *
+ * Streams may come from strangers. Opening one takes memory and time that its
+ * level bounds before they are spent, whatever its size: with level 1 at most 64
+ * MiB, with level 2 half a GiB, and one or two seconds of one core. A frame is
+ * as large as the caller wants it, and its time and memory grow with pixels times splats;
+ * memory_limit bounds both (spec annex "Security and resources").
  */
 #ifndef ADCGS_DECODER_H
 #define ADCGS_DECODER_H
