@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file From models to chunks, without the checks that keep a writer from writing what decoders have to refuse. */
-#include "plan.h"
+#include "edit.h"
 
 #include "base/digest.h"
 #include "model/model_priv.h"
@@ -134,4 +134,29 @@ adcgs_status adcgs_plan_compose(adcgs_plan *plan, adcgs_chunk_list *out, adcgs_e
     if (plan->segments > 1)
         ADCGS_TRY(add(out, "INDX", 0, 0, &payload, error));
     return add(out, "ENDC", 0, 0, &payload, error);
+}
+
+/* A verb that nobody knows is a misspelling. What a recipe is for is used later. */
+static adcgs_status check_used(const adcgs_recipe *r, adcgs_error *error)
+{
+    for (int i = 0; i < r->n; i++)
+        if (!r->command[i].used && !adcgs_recipe_is_about(&r->command[i])) {
+            adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": not a command, or not here", r->command[i].word[0]);
+            return adcgs_command_locate(r, &r->command[i], ADCGS_ERR_USAGE, error);
+        }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_plan_build(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_buffer *file, adcgs_error *error)
+{
+    adcgs_chunk_list list = { .n = 0 };
+    adcgs_status status = adcgs_plan_init(plan, recipe, error);
+    if (status == ADCGS_OK)
+        status = adcgs_plan_draw(plan, error);
+    if (status == ADCGS_OK)
+        status = adcgs_plan_compose(plan, &list, error);
+    if (status == ADCGS_OK)
+        status = adcgs_edit_apply(plan, &list, file, error);
+    adcgs_chunk_list_clear(&list);
+    return status == ADCGS_OK ? check_used(recipe, error) : status;
 }

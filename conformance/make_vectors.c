@@ -3,7 +3,6 @@
 #include "config.h"
 
 #include "answers.h"
-#include "edit.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -29,31 +28,6 @@ static adcgs_status write_file(const maker *m, const char *id, const adcgs_buffe
     return ADCGS_OK;
 }
 
-/* Nobody but a misspelling has a verb that nobody knows. */
-static adcgs_status check_used(const adcgs_recipe *r, adcgs_error *error)
-{
-    for (int i = 0; i < r->n; i++)
-        if (!r->command[i].used) {
-            adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": not a command, or not here", r->command[i].word[0]);
-            return adcgs_command_locate(r, &r->command[i], ADCGS_ERR_USAGE, error);
-        }
-    return ADCGS_OK;
-}
-
-static adcgs_status build(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_buffer *file, adcgs_error *error)
-{
-    adcgs_chunk_list list = { .n = 0 };
-    adcgs_status status = adcgs_plan_init(plan, recipe, error);
-    if (status == ADCGS_OK)
-        status = adcgs_plan_draw(plan, error);
-    if (status == ADCGS_OK)
-        status = adcgs_plan_compose(plan, &list, error);
-    if (status == ADCGS_OK)
-        status = adcgs_edit_apply(plan, &list, file, error);
-    adcgs_chunk_list_clear(&list);
-    return status;
-}
-
 /* One vector; its entry goes to the manifest only if all of it is well. */
 static adcgs_status make(maker *m, const char *id, adcgs_error *error)
 {
@@ -67,15 +41,13 @@ static adcgs_status make(maker *m, const char *id, adcgs_error *error)
     adcgs_status status = adcgs_recipe_read(&recipe, directory, id, error);
     if (status == ADCGS_OK) {
         FILE *const out = open_memstream(&entry, &bytes);
-        status = build(&plan, &recipe, &file, error);
+        status = adcgs_plan_build(&plan, &recipe, &file, error);
         if (status == ADCGS_OK && out)
             status = adcgs_answers_print(out, &plan, &file, error);
         if (!out || fclose(out) != 0)
             status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: no memory for its entry", id);
         adcgs_plan_clear(&plan);
     }
-    if (status == ADCGS_OK)
-        status = check_used(&recipe, error);
     if (status == ADCGS_OK)
         status = write_file(m, id, &file, error);
     if (status == ADCGS_OK)

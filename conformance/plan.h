@@ -66,6 +66,8 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
 void adcgs_plan_clear(adcgs_plan *plan);
 /** Make the models and code their features. */
 adcgs_status adcgs_plan_draw(adcgs_plan *plan, adcgs_error *error);
+/** All that a recipe says: settings, models, chunks, edits. plan has to be cleared also after a failure. */
+adcgs_status adcgs_plan_build(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_buffer *file, adcgs_error *error);
 /** The stream as chunks. */
 adcgs_status adcgs_plan_compose(adcgs_plan *plan, adcgs_chunk_list *out, adcgs_error *error);
 

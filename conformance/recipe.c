@@ -107,8 +107,7 @@ static adcgs_status add_command(adcgs_recipe *r, const char *line, int number, i
     return cut_words(c, error);
 }
 
-/* What a recipe is for is not taken over by one that begins with it. */
-static int is_about(const adcgs_command *c)
+int adcgs_recipe_is_about(const adcgs_command *c)
 {
     return adcgs_command_is(c, "title") || adcgs_command_is(c, "covers") || adcgs_command_is(c, "violates") ||
            adcgs_command_is(c, "expect");
@@ -120,7 +119,7 @@ static adcgs_status use_line(adcgs_recipe *r, const char *directory, const char 
 {
     adcgs_command *c = NULL;
     ADCGS_TRY(add_command(r, line, number, depth > 0, &c, error));
-    if (c->n == 0 || (depth > 0 && is_about(c))) {
+    if (c->n == 0 || (depth > 0 && adcgs_recipe_is_about(c))) {
         free(c->text);
         r->n--;
         return ADCGS_OK;
@@ -156,6 +155,12 @@ adcgs_status adcgs_recipe_read(adcgs_recipe *out, const char *directory, const c
     if (snprintf(out->id, sizeof out->id, "%s", id) >= (int)sizeof out->id)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.80s: the name is too long", id);
     return read_lines(out, directory, id, 0, error);
+}
+
+adcgs_status adcgs_recipe_add(adcgs_recipe *recipe, const char *line, adcgs_error *error)
+{
+    adcgs_command *c;
+    return add_command(recipe, line, recipe->n + 1, 0, &c, error);
 }
 
 void adcgs_recipe_clear(adcgs_recipe *recipe)

@@ -28,10 +28,14 @@ typedef struct adcgs_recipe {
 
 /** Read DIRECTORY/ID.txt. */
 adcgs_status adcgs_recipe_read(adcgs_recipe *out, const char *directory, const char *id, adcgs_error *error);
+/** Append a line. */
+adcgs_status adcgs_recipe_add(adcgs_recipe *recipe, const char *line, adcgs_error *error);
 void adcgs_recipe_clear(adcgs_recipe *recipe);
 
 /** The command's verb is this one. */
 int adcgs_command_is(const adcgs_command *command, const char *verb);
+/** It says what the recipe is for, which one that begins with it does not take over. */
+int adcgs_recipe_is_about(const adcgs_command *command);
 /** ADCGS_ERR_USAGE unless there are lo to hi words behind the verb. */
 adcgs_status adcgs_command_words(const adcgs_command *command, int lo, int hi, adcgs_error *error);
 /** Put recipe and line in front of a message about a command. */
