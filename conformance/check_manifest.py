@@ -13,8 +13,8 @@ import sys
 from pathlib import Path
 
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool}
-KNOWN = {"$schema", "$defs", "$ref", "title", "type", "required", "additionalProperties", "properties", "const", "enum", "pattern",
-         "minimum", "maximum", "minLength", "minItems", "maxItems", "uniqueItems", "items", "oneOf"}
+KNOWN = {"$schema", "$defs", "$ref", "title", "type", "required", "additionalProperties", "properties", "const", "enum",
+         "pattern", "minimum", "maximum", "minLength", "minItems", "maxItems", "uniqueItems", "items", "oneOf"}
 SIZE_MAX, TOTAL_MAX = 16 * 1024, 4 * 1024 * 1024
 FEWEST = {"good": 80, "bad": 80, "at the edges": 10}
 
@@ -135,7 +135,8 @@ def main():
     manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
     schema = json.loads((folder / "schema.json").read_text(encoding="utf-8"))
     clauses = (source / "spec" / "clauses").glob("*.adoc")
-    requirements = {name for path in clauses for name in re.findall(r"\[\[(REQ-[A-Z]+-\d+)\]\]", path.read_text(encoding="utf-8"))}
+    text = "".join(path.read_text(encoding="utf-8") for path in clauses)
+    requirements = set(re.findall(r"\[\[(REQ-[A-Z]+-\d+)\]\]", text))
     found = list(faults(manifest, schema, schema, "manifest"))
     if not found:
         for vector in manifest["vectors"]:

@@ -352,7 +352,7 @@ static adcgs_status flip(editor *e, const adcgs_command *c, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/* cut N, cut CHUNK N: so many bytes of the stream, or of it up to the chunk and so many of the chunk, are left; -N: less than all */
+/* cut N, cut CHUNK N: so many bytes are left of the stream, or of the chunk, with which it ends; -N: so many less than all */
 static adcgs_status cut(editor *e, const adcgs_command *c, adcgs_error *error)
 {
     adcgs_raw_chunk *chunk;

@@ -61,12 +61,13 @@ adcgs_status adcgs_plan_each(adcgs_plan *plan, const char *verb, adcgs_command_f
 
 static adcgs_status set_number(void *place, int type, const char *word, adcgs_error *error)
 {
+    const int64_t most = type == ADCGS_U8 ? UINT8_MAX : type == ADCGS_U32 ? UINT32_MAX : INT64_MAX;
     int64_t whole = 0;
     double real = 0;
     if (type == ADCGS_F32 || type == ADCGS_F64)
         ADCGS_TRY(adcgs_word_real(word, &real, error));
     else
-        ADCGS_TRY(adcgs_word_int(word, 0, type == ADCGS_U8 ? UINT8_MAX : type == ADCGS_U32 ? UINT32_MAX : INT64_MAX, &whole, error));
+        ADCGS_TRY(adcgs_word_int(word, 0, most, &whole, error));
     const float narrow = (float)real;
     const uint32_t word32 = (uint32_t)whole;
     const uint8_t byte = (uint8_t)whole;

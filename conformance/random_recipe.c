@@ -57,9 +57,11 @@ static void write_params(writer *w)
     w->chunks = draw(w, 1, 4);
     w->n_fg = w->chunks * draw(w, 0, small ? 3 : 32 / w->chunks);
     w->moving = draw(w, 0, 2) > 0;
-    line(w, "params k=%d n_fv=%d n_fg=%d chunks=%d n_eta=%d octaves=%d fine_uses_fv=%d coarse_rotation=%d time_rows=%d time_width=%d",
-         edgy(w, 1, small ? 5 : 16), edgy(w, 1, small ? 12 : 64), w->n_fg, w->chunks, edgy(w, 0, 8), edgy(w, 0, small ? 4 : 10),
-         draw(w, 0, 1), draw(w, 0, 1), w->moving ? rows[draw(w, 0, COUNT(rows) - 1)] : 0, w->moving ? edgy(w, 1, 9) : 0);
+    line(w, "params k=%d n_fv=%d n_fg=%d chunks=%d n_eta=%d", edgy(w, 1, small ? 5 : 16), edgy(w, 1, small ? 12 : 64), w->n_fg,
+         w->chunks, edgy(w, 0, 8));
+    line(w, "params octaves=%d fine_uses_fv=%d coarse_rotation=%d", edgy(w, 0, small ? 4 : 10), draw(w, 0, 1), draw(w, 0, 1));
+    if (w->moving)
+        line(w, "params time_rows=%d time_width=%d", rows[draw(w, 0, COUNT(rows) - 1)], edgy(w, 1, 9));
 }
 
 static void write_geometry(writer *w)

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# The committed vectors are those that the generator makes from the recipes, byte for byte; the manifest is sound; the library does
-# what it says, in every way that it can run, and so does the decoder when asked from outside; the check of all this would notice
-# if it did not. REQ-CONF-001, REQ-CONF-002, REQ-CONF-003, REQ-CONF-008
+# The committed vectors are those that the generator makes from the recipes, byte for byte; the manifest is sound (REQ-CONF-001,
+# REQ-CONF-008); the library does what it says, in every way that it can run (REQ-CONF-002, REQ-CONF-003, REQ-CONF-004,
+# REQ-CONF-006, REQ-CONF-009), and so does the decoder when asked from outside (REQ-CONF-012, REQ-CONF-013, REQ-CONF-014); the
+# check of all this would notice if it did not.
 set -u
 source=${srcdir:-.}/conformance
 dir=$(mktemp -d) || exit 99

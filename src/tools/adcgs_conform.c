@@ -62,9 +62,10 @@ static void check_vector(const settings *s, const adcgs_manifest *manifest, cons
         snprintf(what, sizeof what, "%s", error.text);
     const double seconds = adcgs_seconds() - start;
     free(data);
-    printf("%-36s %-11s %2d frames %3d runs %6.0f ms  %s%s%s\n", vector->id,
-           vector->status == ADCGS_OK ? "good" : adcgs_vector_class_name(vector->status), vector->n_frames, runs, 1000 * seconds,
-           adcgs_outcome_name(outcome), *what && outcome != ADCGS_OUTCOME_OK ? ": " : "", outcome == ADCGS_OUTCOME_OK ? "" : what);
+    const char *const kind = vector->status == ADCGS_OK ? "good" : adcgs_vector_class_name(vector->status);
+    printf("%-36s %-11s %2d frames %3d runs %6.0f ms  %s", vector->id, kind, vector->n_frames, runs, 1000 * seconds,
+           adcgs_outcome_name(outcome));
+    printf(outcome == ADCGS_OUTCOME_OK ? "\n" : ": %s\n", what);
     t->runs += runs;
     t->faults += outcome != ADCGS_OUTCOME_OK;
     t->outcome[outcome]++;
@@ -134,7 +135,8 @@ int main(int argc, char **argv)
         {.name = "filter", .kind = ADCGS_OPTION_STRING, .target = &s.filter, .value = "PATTERN",
          .help = "only vectors whose name matches, as in 'bad-geom-*'"},
         {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &s.list, .help = "print names and titles, check nothing"},
-        {.name = "junit", .kind = ADCGS_OPTION_STRING, .target = &s.junit, .value = "FILE", .help = "write the results as JUnit XML"},
+        {.name = "junit", .kind = ADCGS_OPTION_STRING, .target = &s.junit, .value = "FILE",
+         .help = "write the results as JUnit XML"},
         {.name = "self-test", .kind = ADCGS_OPTION_FLAG, .target = &s.selftest,
          .help = "damage each expectation and each stream in memory, one at a time, and run\nprograms that lie, die and hang; "
                  "require that the check notices"},

@@ -65,8 +65,8 @@ adcgs_status adcgs_junit_close(adcgs_junit *junit, adcgs_error *error)
     if (!junit->file)
         return ADCGS_OK;
     const int complete = fclose(junit->memory) == 0;
-    fprintf(junit->file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"adcgs-conform\" tests=\"%d\" failures=\"%d\"",
-            junit->n, junit->failures);
+    fprintf(junit->file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    fprintf(junit->file, "<testsuite name=\"adcgs-conform\" tests=\"%d\" failures=\"%d\"", junit->n, junit->failures);
     fprintf(junit->file, " errors=\"%d\" time=\"%.3f\">\n%s</testsuite>\n", junit->errors, junit->seconds,
             complete ? junit->cases : "");
     free(junit->cases);
