@@ -81,7 +81,7 @@ static adcgs_status print_requirements(FILE *out, const char *name, const adcgs_
     for (int i = 1; i < c->n; i++) {
         if (strncmp(c->word[i], "REQ-", 4) || strlen(c->word[i]) != 12)
             return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": expected the number of a requirement", c->word[i]);
-        fprintf(out, "%s\"%s\"", i > 1 ? ", " : "", c->word[i]);
+        fprintf(out, "%s\"%s\"", i == 1 ? "" : i % 6 ? ", " : ",\n        ", c->word[i]);
     }
     fprintf(out, "]");
     return ADCGS_OK;
@@ -124,7 +124,7 @@ static adcgs_status print_models(FILE *out, adcgs_decoder *decoder)
         char hex[33];
         ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest));
         adcgs_md5_hex(digest, hex);
-        fprintf(out, "%s\"%s\"", i ? ", " : "", hex);
+        fprintf(out, "%s\"%s\"", i == 0 ? "" : i % 3 ? ", " : ",\n          ", hex);
     }
     fprintf(out, "]");
     return ADCGS_OK;
@@ -247,7 +247,7 @@ adcgs_status adcgs_answers_print(FILE *out, const adcgs_plan *plan, const adcgs_
     adcgs_md5_init(&md5);
     adcgs_md5_update(&md5, file->data, file->size);
     hex_of(&md5, hex);
-    fprintf(out, "    { \"id\": \"%s\", \"file\": \"vectors/%s.adcgs\", \"recipe\": \"recipes/%s.txt\",\n", id, id, id);
+    fprintf(out, "    { \"id\": \"%s\",\n      \"file\": \"vectors/%s.adcgs\", \"recipe\": \"recipes/%s.txt\",\n", id, id, id);
     fprintf(out, "      \"title\": \"%s\",\n      \"md5\": \"%s\", \"level\": %u, \"verdict\": \"%s\"", title->word[1], hex,
             plan->stream.level, verdict);
     if (strcmp(verdict, "good"))
