@@ -20,6 +20,7 @@ fi
 
 mkdir -p "$build/faults" && cd "$build" || exit 3
 flags="-g -O2 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,$sanitize -fno-sanitize-recover=all"
+flags="$flags -fsanitize-coverage-ignorelist=$top/tests/fuzz/no_coverage.txt"
 if [ ! -f Makefile ]; then
     "$top/configure" -q --disable-shared --disable-hardening "${options[@]}" CC=clang CXX=clang++ CFLAGS="$flags" CXXFLAGS="$flags" ||
         exit 3
