@@ -14,6 +14,7 @@ from reading import Bytes, Fault
 from watching import camera_of
 
 POINTS = ("trace", "model", "splats", "frames", "verdict")
+TRACE = "trace: "  # begins a fault of S3
 
 _machine, _lines = None, []
 
@@ -92,7 +93,7 @@ def _check_good(entry, path, info, points, counts):
         faults.append("truncated is %s" % stream.truncated)
     if "trace" in points:
         counts["trace"] += 1
-        faults += _same_trace(entry, path, lines, info)
+        faults += [TRACE + fault for fault in _same_trace(entry, path, lines, info)]
     if "model" in points:
         faults += _check_models(stream, expect["M"], counts)
         faults += _refused(path) if stream.truncated else []
