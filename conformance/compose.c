@@ -9,7 +9,7 @@
 /** Networks in the stream so far, by id. */
 typedef struct id_table {
     adcgs_chunk_list *list;
-    uint32_t n;
+    uint32_t n, extra; /**< those that segments name, and others behind them */
     const adcgs_net *net[ADCGS_PLAN_SEGMENTS * ADCGS_ROLES];
 } id_table;
 
@@ -62,28 +62,56 @@ static adcgs_status add_layers(adcgs_plan *plan, uint32_t segment, adcgs_chunk_l
     return ADCGS_OK;
 }
 
-/* unnamed ROLE N: networks like that one of the only segment, which no segment names. */
+static adcgs_status add_extra(id_table *table, const adcgs_net *const *nets, uint32_t n, adcgs_error *error)
+{
+    adcgs_buffer *payload;
+    ADCGS_TRY(add(table->list, "NETW", 0, 0, &payload, error));
+    ADCGS_TRY(adcgs_netw_write(payload, nets, n, table->n + table->extra, error));
+    table->extra += n;
+    return ADCGS_OK;
+}
+
+/* The network of a role, in the only segment. */
+static adcgs_status find_net(const adcgs_plan *plan, const char *name, const adcgs_net **net, adcgs_error *error)
+{
+    int role = 0;
+    while (role < ADCGS_ROLES && strcmp(name, adcgs_role_name(role)))
+        role++;
+    *net = &plan->stream.segments[0].net[role % ADCGS_ROLES];
+    if (role < ADCGS_ROLES && (*net)->present && plan->segments == 1)
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": no such network in the only segment", name);
+}
+
+/* unnamed ROLE N: networks like that one, which no segment names. */
 static adcgs_status add_unnamed(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
-    id_table *const table = user;
     const adcgs_net *copies[ADCGS_ROLES];
-    adcgs_buffer *payload;
     int64_t left;
-    int role = 0;
     ADCGS_TRY(adcgs_command_words(c, 2, 2, error));
     ADCGS_TRY(adcgs_word_int(c->word[2], 1, 65535, &left, error));
-    while (role < ADCGS_ROLES && strcmp(c->word[1], adcgs_role_name(role)))
-        role++;
-    if (role == ADCGS_ROLES || !plan->stream.segments[0].net[role].present || plan->segments > 1)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "\"%s\": no such network in the only segment", c->word[1]);
     for (int i = 0; i < ADCGS_ROLES; i++)
-        copies[i] = &plan->stream.segments[0].net[role];
-    for (uint32_t id = table->n, n; left > 0; left -= n, id += n) {
-        n = (uint32_t)ADCGS_MIN(left, ADCGS_ROLES);
-        ADCGS_TRY(add(table->list, "NETW", 0, 0, &payload, error));
-        ADCGS_TRY(adcgs_netw_write(payload, copies, n, id, error));
-    }
+        ADCGS_TRY(find_net(plan, c->word[1], &copies[i], error));
+    for (; left > 0; left -= ADCGS_ROLES)
+        ADCGS_TRY(add_extra(user, copies, (uint32_t)ADCGS_MIN(left, ADCGS_ROLES), error));
     return ADCGS_OK;
+}
+
+/* poke ROLE LAYER w|b INDEX VALUE: a network like that one but for a number, which no segment names. */
+static adcgs_status add_poked(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    const adcgs_net *net;
+    adcgs_net copy;
+    ADCGS_TRY(adcgs_command_words(c, 5, 5, error));
+    ADCGS_TRY(find_net(plan, c->word[1], &net, error));
+    adcgs_status status = adcgs_net_copy(&copy, net, NULL, error);
+    net = &copy;
+    if (status == ADCGS_OK)
+        status = adcgs_plan_set_weight(plan, c, &copy, error);
+    if (status == ADCGS_OK)
+        status = add_extra(user, &net, 1, error);
+    adcgs_net_release(&copy, NULL);
+    return status;
 }
 
 static adcgs_status add_segment(adcgs_plan *plan, uint32_t segment, id_table *table, adcgs_chunk_list *out, adcgs_error *error)
@@ -103,9 +131,12 @@ static adcgs_status add_segment(adcgs_plan *plan, uint32_t segment, id_table *ta
         ADCGS_TRY(adcgs_netw_write(payload, table->net + first, added, first, error));
     }
     ADCGS_TRY(adcgs_plan_each(plan, "unnamed", add_unnamed, table, error));
+    ADCGS_TRY(adcgs_plan_each(plan, "poke", add_poked, table, error));
     ADCGS_TRY(add(out, "GEOM", segment, 0, &payload, error));
     ADCGS_TRY(adcgs_geom_write(payload, m, error));
     ADCGS_TRY(add_layers(plan, segment, out, error));
+    if (plan->no_digest)
+        return ADCGS_OK;
     ADCGS_TRY(add(out, "hash", segment, ADCGS_CHUNK_LAST, &payload, error));
     adcgs_model_digest(m, digest);
     adcgs_write_bytes(payload, digest, sizeof digest);

@@ -316,5 +316,5 @@ adcgs_status adcgs_plan_draw(adcgs_plan *plan, adcgs_error *error)
     s->duration_ticks = plan->ticks[2 * plan->segments - 1] - plan->ticks[0];
     for (uint32_t i = 0; i < plan->segments; i++)
         ADCGS_TRY(draw_model(plan, i, error));
-    return adcgs_plan_poke(plan, error);
+    return ADCGS_OK;
 }

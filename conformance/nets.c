@@ -246,13 +246,8 @@ adcgs_status adcgs_plan_nets(adcgs_plan *plan, uint32_t segment, adcgs_error *er
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_plan_poke(adcgs_plan *plan, adcgs_error *error)
+adcgs_status adcgs_plan_set_weight(adcgs_plan *plan, const adcgs_command *command, adcgs_net *net, adcgs_error *error)
 {
-    for (uint32_t i = 0; i < plan->segments; i++)
-        for (int role = 0; role < ADCGS_ROLES; role++) {
-            target t = { .role = role, .net = &plan->stream.segments[i].net[role] };
-            if (t.net->present)
-                ADCGS_TRY(adcgs_plan_each(plan, "poke", set_weight, &t, error));
-        }
-    return ADCGS_OK;
+    target t = { .role = net->role, .net = net };
+    return set_weight(plan, command, &t, error);
 }

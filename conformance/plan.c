@@ -36,6 +36,8 @@ static const char *const picks[] = { "random", "all", "none", "first", "turns", 
 static const char *const spreads[] = { "random", "dense", "plane", "line", "mixed", "ends", NULL };
 static const char *const fills[] = { "paint", "random", "zero", "edges", "escapes", "clips", NULL };
 
+static const char *const digests[] = { "all", "none", NULL };
+
 static const struct {
     const char *verb;
     const char *const *names;
@@ -45,6 +47,7 @@ static const struct {
     { "static", picks, offsetof(adcgs_plan, statics) },
     { "positions", spreads, offsetof(adcgs_plan, positions) },
     { "values", fills, offsetof(adcgs_plan, values) },
+    { "digest", digests, offsetof(adcgs_plan, no_digest) },
 };
 
 adcgs_status adcgs_plan_each(adcgs_plan *plan, const char *verb, adcgs_command_fn fn, void *user, adcgs_error *error)

@@ -54,6 +54,7 @@ typedef struct adcgs_plan {
     double origin[3], voxel; /**< voxel 0: the cube's edge is 2 */
     int64_t ticks[2 * ADCGS_PLAN_SEGMENTS];
     int masks, statics, positions, values; /**< adcgs_pick, adcgs_spread, adcgs_fill */
+    int no_digest;
     adcgs_stream stream;
     adcgs_drawn drawn[ADCGS_PLAN_SEGMENTS];
     int n_cameras, n_times; /**< what is rendered to compare */
@@ -73,8 +74,8 @@ adcgs_status adcgs_plan_compose(adcgs_plan *plan, adcgs_chunk_list *out, adcgs_e
 
 /* Networks, in nets.c. */
 adcgs_status adcgs_plan_nets(adcgs_plan *plan, uint32_t segment, adcgs_error *error);
-/** Commands "poke": numbers changed after the features were coded. */
-adcgs_status adcgs_plan_poke(adcgs_plan *plan, adcgs_error *error);
+/** A command that sets a number of a network (weight, poke), applied to this one. */
+adcgs_status adcgs_plan_set_weight(adcgs_plan *plan, const adcgs_command *command, adcgs_net *net, adcgs_error *error);
 
 /** Call fn for each command with this verb and count it as used; messages name its line. */
 typedef adcgs_status (*adcgs_command_fn)(adcgs_plan *plan, const adcgs_command *command, void *user, adcgs_error *error);
