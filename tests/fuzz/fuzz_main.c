@@ -111,7 +111,7 @@ static void replay_file(replay *r, const char *path)
 
 static void replay_path(replay *r, const char *path)
 {
-    struct stat info;
+    struct stat info = {0}; /* MemorySanitizer does not know every name under which the C library has stat() */
     if (stat(path, &info) != 0 || !S_ISDIR(info.st_mode)) {
         replay_file(r, path);
         return;
