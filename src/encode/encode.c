@@ -3,6 +3,7 @@
 #include "encode/encode.h"
 
 #include "encode/quantise.h"
+#include "model/input.h"
 
 #include <math.h>
 
@@ -96,29 +97,15 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
 
 /* ---- Proof ---- */
 
-typedef struct source {
-    const adcgs_buffer *bytes;
-    size_t pos;
-} source;
-
-static int64_t read_source(void *user, void *buffer, size_t bytes)
-{
-    source *s = user;
-    const size_t n = ADCGS_MIN(bytes, s->bytes->size - s->pos);
-    memcpy(buffer, s->bytes->data + s->pos, n);
-    s->pos += n;
-    return (int64_t)n;
-}
-
 adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool,
                                    adcgs_error *error)
 {
     ADCGS_TRY(adcgs_stream_write(stream, out, error));
     adcgs_stream back;
-    source from = { out, 0 };
+    adcgs_span from = { .next = out->data, .left = out->size };
     const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };
     adcgs_stream_init(&back);
-    adcgs_status status = adcgs_stream_read(&back, read_source, &from, &options, NULL, NULL, error);
+    adcgs_status status = adcgs_stream_read(&back, adcgs_span_read, &from, &options, NULL, NULL, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < stream->n_segments; i++) {
         adcgs_error difference;
         if (back.n_segments != stream->n_segments)

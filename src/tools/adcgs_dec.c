@@ -4,6 +4,7 @@
 
 #include "base/digest.h"
 #include "io/sink.h"
+#include "model/input.h"
 #include "tools/answer.h"
 #include "tools/cli.h"
 #include "tools/shots.h"
@@ -57,18 +58,11 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
     memcpy(options, table, sizeof table);
 }
 
-static int64_t read_file(void *user, void *buffer, size_t bytes)
-{
-    FILE *file = user;
-    const size_t n = fread(buffer, 1, bytes, file);
-    return ferror(file) ? -1 : (int64_t)n;
-}
-
 static adcgs_status open_input(adcgs_decoder **decoder, const settings *s, adcgs_error *error)
 {
     if (strcmp(s->input, "-"))
         return adcgs_open_file(decoder, s->input, &s->config, error);
-    const adcgs_status status = adcgs_open_stream(decoder, read_file, stdin, &s->config, error);
+    const adcgs_status status = adcgs_open_stream(decoder, adcgs_file_read, stdin, &s->config, error);
     if (status != ADCGS_OK)
         adcgs_error_locate(error, "standard input");
     return status;

@@ -5,6 +5,7 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "base/pool.h"
+#include "model/input.h"
 #include "model/model_priv.h"
 #include "model/stream.h"
 #include "tools/cli.h"
@@ -90,13 +91,6 @@ static void on_element(void *user, uint64_t bit, const char *element, const char
         last->segment = (unsigned)strtoul(value, NULL, 10);
 }
 
-static int64_t read_file(void *user, void *buffer, size_t bytes)
-{
-    FILE *file = user;
-    const size_t n = fread(buffer, 1, bytes, file);
-    return n == 0 && ferror(file) ? -1 : (int64_t)n;
-}
-
 static adcgs_status read_report(report *r, const settings *s, adcgs_error *error)
 {
     const int standard_input = strcmp(s->input, "-") == 0;
@@ -108,7 +102,7 @@ static adcgs_status read_report(report *r, const settings *s, adcgs_error *error
     if (status == ADCGS_OK)
         status = adcgs_pool_create(&options.pool, 0, error);
     if (status == ADCGS_OK)
-        status = adcgs_stream_read(&r->stream, read_file, file, &options, on_element, r, error);
+        status = adcgs_stream_read(&r->stream, adcgs_file_read, file, &options, on_element, r, error);
     if (status == ADCGS_OK && r->failed)
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for the list of chunks");
     if (status == ADCGS_OK)

@@ -6,6 +6,7 @@
 
 #include "base/cpu.h"
 #include "base/digest.h"
+#include "model/input.h"
 #include "model/stream.h"
 #include "tools/cli.h"
 
@@ -137,6 +138,9 @@ adcgs_status adcgs_requests_read(adcgs_requests *out, const char *path, adcgs_er
             status = adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: line %d is no request", path, number);
     if (status == ADCGS_OK && ferror(file))
         status = adcgs_fail(error, ADCGS_ERR_IO, "%.160s: cannot read", path);
+    for (int i = 0; out->layers && i < out->n && status == ADCGS_OK; i++)
+        if (out->request[i].kind == ADCGS_REQUEST_TRACE)
+            status = adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: layers and trace exclude each other", path);
     free(line);
     fclose(file);
     if (status != ADCGS_OK)
@@ -153,51 +157,24 @@ void adcgs_requests_clear(adcgs_requests *requests)
 
 /* ---- Answering ---- */
 
-typedef struct trace_sum {
-    adcgs_md5 md5;
-    unsigned long lines;
-} trace_sum;
-
-static void add_element(void *user, uint64_t bit, const char *element, const char *value)
-{
-    trace_sum *sum = user;
-    char number[24];
-    const int n = snprintf(number, sizeof number, "%llu ", (unsigned long long)bit);
-    adcgs_md5_update(&sum->md5, number, (size_t)n);
-    adcgs_md5_update(&sum->md5, element, strlen(element));
-    adcgs_md5_update(&sum->md5, " ", 1);
-    adcgs_md5_update(&sum->md5, value, strlen(value));
-    adcgs_md5_update(&sum->md5, "\n", 1);
-    sum->lines++;
-}
-
-static int64_t read_file(void *user, void *buffer, size_t bytes)
-{
-    FILE *file = user;
-    const size_t n = fread(buffer, 1, bytes, file);
-    return n == 0 && ferror(file) ? -1 : (int64_t)n;
-}
-
 static adcgs_status answer_trace(const adcgs_requests *requests, const char *path, adcgs_error *error)
 {
-    adcgs_read_options options = {.layers = requests->layers, .strict_end = requests->complete};
+    adcgs_read_options options = {.strict_end = requests->complete};
     adcgs_stream stream;
-    trace_sum sum = {.lines = 0};
-    uint8_t digest[16];
+    adcgs_trace_sum sum;
     char hex[33];
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &options.cpu, error));
     FILE *file = fopen(path, "rb");
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
-    adcgs_md5_init(&sum.md5);
-    const adcgs_status status = adcgs_stream_read(&stream, read_file, file, &options, add_element, &sum, error);
+    adcgs_trace_sum_init(&sum);
+    const adcgs_status status = adcgs_stream_read(&stream, adcgs_file_read, file, &options, adcgs_trace_sum_add, &sum, error);
     fclose(file);
     if (status != ADCGS_OK)
         return status;
     adcgs_stream_clear(&stream, NULL);
-    adcgs_md5_final(&sum.md5, digest);
-    adcgs_md5_hex(digest, hex);
-    printf("trace %lu %s\n", sum.lines, hex);
+    adcgs_trace_sum_final(&sum, hex);
+    printf("trace %u %s\n", (unsigned)sum.lines, hex);
     return ADCGS_OK;
 }
 

@@ -9,24 +9,9 @@
 
 #include "base/digest.h"
 #include "base/pool.h"
+#include "model/input.h"
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/roundtrip", NULL };
-
-typedef struct span {
-    const uint8_t *next;
-    size_t left;
-} span;
-
-static int64_t read_span(void *user, void *buffer, size_t bytes)
-{
-    span *s = user;
-    const size_t n = ADCGS_MIN(bytes, s->left);
-    if (n > 0)
-        memcpy(buffer, s->next, n);
-    s->next += n;
-    s->left -= n;
-    return (int64_t)n;
-}
 
 static uint8_t in_range(uint8_t byte, int lo, int hi)
 {
@@ -55,8 +40,8 @@ static void read_back(const adcgs_buffer *bytes, const adcgs_stream *stream, adc
     const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .pool = pool, .strict_end = 1 };
     adcgs_stream back;
     adcgs_buffer again;
-    span s = { bytes->data, bytes->size };
-    FUZZ_REQUIRE(adcgs_stream_read(&back, read_span, &s, &options, NULL, NULL, NULL) == ADCGS_OK);
+    adcgs_span s = { .next = bytes->data, .left = bytes->size };
+    FUZZ_REQUIRE(adcgs_stream_read(&back, adcgs_span_read, &s, &options, NULL, NULL, NULL) == ADCGS_OK);
     FUZZ_REQUIRE(back.n_segments == stream->n_segments && back.n_cameras == stream->n_cameras && back.n_meta == stream->n_meta);
     for (uint32_t i = 0; i < back.n_segments; i++)
         FUZZ_REQUIRE(adcgs_model_equal(&back.segments[i], &stream->segments[i], NULL));

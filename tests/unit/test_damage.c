@@ -5,6 +5,7 @@
 
 #include "base/digest.h"
 #include "model/chunk.h"
+#include "model/input.h"
 #include "model/model_priv.h"
 
 #include <setjmp.h>
@@ -13,27 +14,11 @@
 
 #include <cmocka.h>
 
-typedef struct span {
-    const uint8_t *next;
-    size_t left;
-} span;
-
-static int64_t read_span(void *user, void *buffer, size_t bytes)
-{
-    span *s = user;
-    const size_t n = ADCGS_MIN(bytes, s->left);
-    if (n > 0)
-        memcpy(buffer, s->next, n);
-    s->next += n;
-    s->left -= n;
-    return (int64_t)n;
-}
-
 static adcgs_status read_stream(adcgs_stream *stream, const uint8_t *data, size_t bytes, int strict_end, adcgs_error *error)
 {
     const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .strict_end = strict_end };
-    span s = { data, bytes };
-    return adcgs_stream_read(stream, read_span, &s, &options, NULL, NULL, error);
+    adcgs_span s = { .next = data, .left = bytes };
+    return adcgs_stream_read(stream, adcgs_span_read, &s, &options, NULL, NULL, error);
 }
 
 static void make_bytes(adcgs_stream *stream, adcgs_buffer *bytes, uint32_t segments, uint32_t n, int n_fg, uint64_t seed)
@@ -286,6 +271,42 @@ static void test_layers_taken_out(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
+static adcgs_status read_layers(adcgs_stream *stream, const adcgs_buffer *bytes, int layers, adcgs_error *error)
+{
+    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .layers = layers };
+    adcgs_span s = { .next = bytes->data, .left = bytes->size };
+    return adcgs_stream_read(stream, adcgs_span_read, &s, &options, NULL, NULL, error);
+}
+
+/** What stands in layers that are left out is not looked at, but for the checksums of chunks and that there is such a layer. */
+/* REQ-STRM-042 */
+static void test_layers_left_out(void **state)
+{
+    adcgs_stream stream, part;
+    adcgs_buffer bytes;
+    adcgs_error error;
+    (void)state;
+    make_bytes(&stream, &bytes, 1, 100, 4, 7);
+    size_t pos = ADCGS_SIGNATURE_BYTES;
+    while (adcgs_load_le32(bytes.data + pos) != ADCGS_TYPE_FEA(2))
+        pos += ADCGS_CHUNK_BYTES + adcgs_load_le32(bytes.data + pos + 4);
+    uint8_t *const payload = bytes.data + pos + ADCGS_CHUNK_HEADER_BYTES;
+    memset(payload, 0xff, adcgs_load_le32(bytes.data + pos + 4));
+    assert_int_equal(read_layers(&part, &bytes, 2, &error), ADCGS_ERR_DATA); /* payload_crc */
+    adcgs_repair_stream(bytes.data, bytes.size, 0);
+    assert_int_equal(read_layers(&part, &bytes, 3, &error), ADCGS_ERR_DATA);
+    assert_int_equal(read_layers(&part, &bytes, 0, &error), ADCGS_ERR_DATA);
+    assert_int_equal(read_layers(&part, &bytes, 2, &error), ADCGS_OK);
+    assert_int_equal(part.segments[0].layers, 2);
+    check_usable(&stream, &part);
+    adcgs_stream_clear(&part, NULL);
+    bytes.data[pos + 3] = '4'; /* FEA4, which a stream of three layers does not have */
+    adcgs_repair_stream(bytes.data, bytes.size, 0);
+    assert_int_equal(read_layers(&part, &bytes, 1, &error), ADCGS_ERR_DATA);
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+}
+
 /** A length that promises a gigabyte costs no gigabyte. */
 /* REQ-STRM-004, REQ-STRM-034, REQ-CONF-005 */
 static void test_false_length(void **state)
@@ -304,8 +325,8 @@ static void test_false_length(void **state)
     adcgs_store_le32(header + 12, adcgs_crc32c(0, header, 12));
     adcgs_memory memory = { .limit = 1 << 20 };
     const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR, .memory = &memory };
-    span s = { bytes.data, bytes.size };
-    assert_int_equal(adcgs_stream_read(&part, read_span, &s, &options, NULL, NULL, &error), ADCGS_ERR_TRUNCATED);
+    adcgs_span s = { .next = bytes.data, .left = bytes.size };
+    assert_int_equal(adcgs_stream_read(&part, adcgs_span_read, &s, &options, NULL, NULL, &error), ADCGS_ERR_TRUNCATED);
     assert_true(memory.peak < 1 << 19 && memory.used == 0);
     adcgs_store_le32(header + 4, (1U << 30) + 1);
     adcgs_store_le32(header + 12, adcgs_crc32c(0, header, 12));
@@ -320,7 +341,7 @@ int main(void)
         cmocka_unit_test(test_cut_anywhere),   cmocka_unit_test(test_slices_before_cut),
         cmocka_unit_test(test_flip_every_byte), cmocka_unit_test(test_malice),
         cmocka_unit_test(test_unknown_chunks), cmocka_unit_test(test_future_head), cmocka_unit_test(test_layers_taken_out),
-        cmocka_unit_test(test_false_length),
+        cmocka_unit_test(test_layers_left_out), cmocka_unit_test(test_false_length),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

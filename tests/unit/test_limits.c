@@ -9,6 +9,7 @@
 #include "stream_edit.h"
 
 #include "base/cpu.h"
+#include "model/input.h"
 #include "model/model_priv.h"
 #include "model/parts.h"
 
@@ -27,22 +28,6 @@
 /* Besides models, payloads and weights: contexts of the coders, headers of blocks, the table of networks. */
 #define SLACK ((uint64_t)1 << 20)
 #define SECONDS_MOST 2.0
-
-typedef struct span {
-    const uint8_t *next;
-    size_t left;
-} span;
-
-static int64_t read_span(void *user, void *buffer, size_t bytes)
-{
-    span *s = user;
-    const size_t n = ADCGS_MIN(bytes, s->left);
-    if (n > 0)
-        memcpy(buffer, s->next, n);
-    s->next += n;
-    s->left -= n;
-    return (int64_t)n;
-}
 
 /* ---- Streams whose contents cost no bytes ---- */
 
@@ -157,9 +142,9 @@ static cost decode(const uint8_t *data, size_t size)
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_stream stream;
     const adcgs_read_options options = { .cpu = adcgs_cpu_best(), .memory = &memory };
-    span s = { data, size };
+    adcgs_span s = { .next = data, .left = size };
     cost c = { .seconds = (double)clock() };
-    c.status = adcgs_stream_read(&stream, read_span, &s, &options, NULL, NULL, &error);
+    c.status = adcgs_stream_read(&stream, adcgs_span_read, &s, &options, NULL, NULL, &error);
     c.seconds = ((double)clock() - c.seconds) / CLOCKS_PER_SEC;
     c.peak = memory.peak;
     snprintf(c.text, sizeof c.text, "%s", error.text);
