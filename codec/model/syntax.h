@@ -27,7 +27,7 @@
     F(U16, version_minor, 0, 65535) \
     F(U8, profile, 0, 255)          \
     F(U8, level, 0, 255)            \
-    F(U8, arith, 0, 15)             \
+    F(U8, arith, 0, 255)            \
     F(U32, features, 0, 4294967295.0)
 #define ADCGS_LIST_HEAD(F, V)                                   \
     F(U32, timebase_num, 1, 4294967295.0)                       \

@@ -35,7 +35,7 @@ def answer(machine, stream, request, lines):
     """The protocol of clause "Conformance": a line for each request, in order."""
     cameras, splats = [], {}
     for words in request:
-        if words[0] == "complete":
+        if words[0] in ("complete", "layers"):
             continue
         if words[0] == "trace":
             text = "".join(line + "\n" for line in lines)
@@ -66,12 +66,13 @@ def run(arguments):
             for name in sorted(table):
                 print("%s %s %s" % (title, name, table[name]))
         return 0
-    request, complete = [], not vars(arguments).get("partial")
+    request, complete, layers = [], not vars(arguments).get("partial"), 5
     if arguments.command == "answer":
         with open(arguments.request, encoding="ascii") as file:
             request = [line.split() for line in file if line.split() and not line.startswith("#")]
         complete = ["complete"] in request
-    stream = machine.decode_stream(load(arguments.file), complete)
+        layers = min([int(words[1]) for words in request if words[0] == "layers"], default=layers)
+    stream = machine.decode_stream(load(arguments.file), complete, layers)
     if arguments.command == "digest":
         for model in stream.models:
             print(hexadecimal(machine.model_digest(model)))

@@ -81,6 +81,10 @@ class Machine:
             return self.program.names[name]
         raise AttributeError("the text defines no %s" % name)
 
+    def decode_stream(self, data, complete_only, layers=5):
+        """The text's process of this name; all layers unless the caller wants fewer."""
+        return self.names["decode_stream"](data, complete_only, layers)
+
     # ---- Built-in processes ----
 
     def _builtins(self):
@@ -103,7 +107,7 @@ class Machine:
         return {"VALUE_TABLE": values, "STRETCH": [row[1] for row in rows], "SQUASH": [row[2] for row in rows]}
 
     def _fill_values(self):
-        """VALUE_TABLE[shape][level] from the rows of values.csv, as the text completes them."""
+        """VALUE_TABLE[shape][si] from the rows of values.csv, as the text completes them."""
         if "value_table" in self.program.processes:
             for row in self._rows("values.csv"):
                 self.names["VALUE_TABLE"][row[0]][row[1]] = self.names["value_table"](row)

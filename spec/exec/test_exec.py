@@ -203,6 +203,19 @@ class Examples(unittest.TestCase):
             self.machine.update(context, int(b))
             self.assertEqual((context.p1, context.count), tuple(int(n) for n in state))
 
+    def test_trace(self):
+        """REQ-STRM-041: the lines of the example are those of the vector that it names, in order."""
+        example = r"^\.From the trace of the vector ([\w-]+)\n----\n(.*?)\n----"
+        vector, block = re.search(example, self.clause("06-stream.adoc"), re.M | re.S).groups()
+        path = os.path.join(machine.folder, "..", "conformance", "vectors", vector + ".adcgs")
+        with open(path, "rb") as file:
+            data = file.read()
+        lines = []
+        machine.Machine(None, lines.append).decode_stream(Bytes.at(data, 0), True)
+        trace = iter(lines)
+        for line in block.split("\n"):
+            self.assertTrue(line == "..." or line in trace, line)
+
     def test_checksum(self):
         """REQ-STRM-002: the CRC of nine digits, and of nothing."""
         wanted = re.search(r"`123456789` is\s+([0-9A-F]{8})", self.clause("06-stream.adoc")).group(1)

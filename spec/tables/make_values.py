@@ -60,7 +60,7 @@ def left_half(beta, level, gammas):
 
 
 def csv_lines():
-    yield "shape,level,T,total,c0..cT"
+    yield "shape,si,H,mass,c0..cH"
     for shape, beta in enumerate(BETAS):
         gammas = gamma(1 / beta), gamma(3 / beta)
         for level in range(LEVELS):

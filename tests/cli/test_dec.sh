@@ -159,6 +159,8 @@ echo layers 1 >"$dir/requests"
 echo model >>"$dir/requests"
 expect 0 "" $dec "$s" --answer "$dir/requests"
 cmp -s "$dir/out" "$dir/answers" && bad "layers have no effect"
+echo trace >>"$dir/requests"
+expect 2 "exclude" $dec "$s" --answer "$dir/requests"
 
 # Evaluation.
 expect 0 "" ./adcgs-eval "$s" "$dir/scene"
