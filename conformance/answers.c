@@ -3,42 +3,11 @@
 #include "answers.h"
 
 #include "base/digest.h"
+#include "model/input.h"
 
 #include <adcgs/adcgs.h>
 
 #include <stdlib.h>
-
-/** The stream from memory, and what its trace adds up to. */
-typedef struct parse {
-    const uint8_t *next;
-    size_t left;
-    uint32_t elements;
-    adcgs_md5 md5;
-} parse;
-
-static int64_t read_bytes(void *user, void *buffer, size_t bytes)
-{
-    parse *const p = user;
-    const size_t n = ADCGS_MIN(bytes, p->left);
-    if (n > 0)
-        memcpy(buffer, p->next, n);
-    p->next += n;
-    p->left -= n;
-    return (int64_t)n;
-}
-
-static void on_element(void *user, uint64_t bit, const char *element, const char *value)
-{
-    parse *const p = user;
-    char number[24];
-    const int n = snprintf(number, sizeof number, "%llu ", (unsigned long long)bit);
-    adcgs_md5_update(&p->md5, number, (size_t)n);
-    adcgs_md5_update(&p->md5, element, strlen(element));
-    adcgs_md5_update(&p->md5, " ", 1);
-    adcgs_md5_update(&p->md5, value, strlen(value));
-    adcgs_md5_update(&p->md5, "\n", 1);
-    p->elements++;
-}
 
 static void hex_of(adcgs_md5 *md5, char hex[33])
 {
@@ -163,11 +132,11 @@ static adcgs_status print_frame(FILE *out, adcgs_decoder *decoder, const adcgs_c
     return ADCGS_OK;
 }
 
-static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder, parse *p, adcgs_error *error)
+static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder, adcgs_trace_sum *trace, adcgs_error *error)
 {
     char hex[33];
-    hex_of(&p->md5, hex);
-    fprintf(out, ",\n      \"expect\": {\n        \"P\": { \"elements\": %u, \"trace_md5\": \"%s\" }", p->elements, hex);
+    adcgs_trace_sum_final(trace, hex);
+    fprintf(out, ",\n      \"expect\": {\n        \"P\": { \"elements\": %u, \"trace_md5\": \"%s\" }", trace->lines, hex);
     ADCGS_TRY(print_models(out, decoder));
     ADCGS_TRY(print_splats(out, plan, decoder));
     fprintf(out, ",\n        \"R\": [");
@@ -180,7 +149,8 @@ static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_deco
 
 /* ---- The entry ---- */
 
-static adcgs_status print_good(FILE *out, const adcgs_plan *plan, const adcgs_buffer *file, parse *p, adcgs_error *error)
+static adcgs_status print_good(FILE *out, const adcgs_plan *plan, const adcgs_buffer *file, adcgs_trace_sum *trace,
+                               adcgs_error *error)
 {
     const adcgs_command *const covers = own_command(plan, "covers");
     adcgs_decoder *decoder = NULL;
@@ -195,7 +165,7 @@ static adcgs_status print_good(FILE *out, const adcgs_plan *plan, const adcgs_bu
     adcgs_status status = print_props(out, plan, decoder, file->size, error);
     print_cameras(out, plan);
     if (status == ADCGS_OK)
-        status = print_expected(out, plan, decoder, p, error);
+        status = print_expected(out, plan, decoder, trace, error);
     adcgs_close(&decoder);
     return status;
 }
@@ -233,15 +203,16 @@ adcgs_status adcgs_answers_print(FILE *out, const adcgs_plan *plan, const adcgs_
     const char *const id = plan->recipe->id, *const verdict = adcgs_answers_verdict(id);
     const adcgs_command *const title = own_command(plan, "title");
     const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
-    parse p = { .next = file->data, .left = file->size };
+    adcgs_span source = { .next = file->data, .left = file->size };
+    adcgs_trace_sum trace;
     adcgs_error why = { ADCGS_OK, "" };
     adcgs_stream stream;
     adcgs_md5 md5;
     char hex[33];
     if (!*verdict || !title || title->n != 2 || !is_plain(title->word[1]))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: lacks a verdict in its name or a plain title in quotes", id);
-    adcgs_md5_init(&p.md5);
-    const adcgs_status status = adcgs_stream_read(&stream, read_bytes, &p, &options, on_element, &p, &why);
+    adcgs_trace_sum_init(&trace);
+    const adcgs_status status = adcgs_stream_read(&stream, adcgs_span_read, &source, &options, adcgs_trace_sum_add, &trace, &why);
     if (status == ADCGS_OK)
         adcgs_stream_clear(&stream, NULL);
     adcgs_md5_init(&md5);
@@ -255,7 +226,7 @@ adcgs_status adcgs_answers_print(FILE *out, const adcgs_plan *plan, const adcgs_
     else if (status != ADCGS_OK)
         return adcgs_fail(error, ADCGS_ERR_INTERNAL, "%s: ends with \"%s\": %.160s", id, adcgs_status_name(status), why.text);
     else
-        ADCGS_TRY(print_good(out, plan, file, &p, error));
+        ADCGS_TRY(print_good(out, plan, file, &trace, error));
     fprintf(out, " }");
     return ADCGS_OK;
 }

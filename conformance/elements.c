@@ -2,6 +2,7 @@
 /** \file Syntax elements by name: found by a trace of the stream, replaced by their bytes. */
 #include "edit.h"
 
+#include "model/input.h"
 #include "model/stream.h"
 #include "model/syntax.h"
 
@@ -39,20 +40,7 @@ typedef struct search {
     int left, found;
     uint64_t bit;
     char value[192];
-    const uint8_t *next; /**< of the stream */
-    size_t bytes;
 } search;
-
-static int64_t read_bytes(void *user, void *buffer, size_t bytes)
-{
-    search *const s = user;
-    const size_t n = ADCGS_MIN(bytes, s->bytes);
-    if (n > 0)
-        memcpy(buffer, s->next, n);
-    s->next += n;
-    s->bytes -= n;
-    return (int64_t)n;
-}
 
 static void on_element(void *user, uint64_t bit, const char *element, const char *value)
 {
@@ -107,10 +95,9 @@ adcgs_status adcgs_element_find(adcgs_chunk_list *list, const char *name, adcgs_
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
     const adcgs_status status = adcgs_chunk_list_write(list, &bytes, error);
-    s.next = bytes.data;
-    s.bytes = bytes.size;
+    adcgs_span source = { .next = bytes.data, .left = bytes.size };
     /* The stream need not be valid; what is found before it goes wrong counts. */
-    if (status == ADCGS_OK && adcgs_stream_read(&stream, read_bytes, &s, &options, on_element, &s, NULL) == ADCGS_OK)
+    if (status == ADCGS_OK && adcgs_stream_read(&stream, adcgs_span_read, &source, &options, on_element, &s, NULL) == ADCGS_OK)
         adcgs_stream_clear(&stream, NULL);
     adcgs_buffer_clear(&bytes);
     ADCGS_TRY(status);

@@ -9,53 +9,29 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "base/pool.h"
+#include "model/input.h"
 
 #include <adcgs/adcgs.h>
 
 #include <stdlib.h>
-
-/** The input, in pieces if step is not 0, and the trace. */
-typedef struct source {
-    const adcgs_buffer *file;
-    size_t pos;
-    int step, turn;
-    adcgs_md5 *md5;
-} source;
-
-static int64_t read_pieces(void *user, void *buffer, size_t bytes)
-{
-    source *const s = user;
-    size_t n = ADCGS_MIN(bytes, s->file->size - s->pos);
-    if (s->step > 0) {
-        s->turn = s->turn % s->step + 1;
-        n = ADCGS_MIN(n, (size_t)s->turn);
-    }
-    if (n > 0)
-        memcpy(buffer, s->file->data + s->pos, n);
-    s->pos += n;
-    return (int64_t)n;
-}
-
-static void on_element(void *user, uint64_t bit, const char *element, const char *value)
-{
-    source *const s = user;
-    adcgs_md5_update(s->md5, &bit, sizeof bit);
-    adcgs_md5_update(s->md5, element, strlen(element));
-    adcgs_md5_update(s->md5, value, strlen(value) + 1);
-}
 
 /* ---- Everything that a decoder says about a stream, as one digest ---- */
 
 static adcgs_status add_trace(adcgs_md5 *md5, const adcgs_buffer *file, adcgs_cpu_level cpu, int threads, int step,
                               adcgs_error *error)
 {
-    source s = { .file = file, .step = step, .md5 = md5 };
+    adcgs_span s = { .next = file->data, .left = file->size, .step = step };
     adcgs_read_options options = { .cpu = cpu };
+    adcgs_trace_sum trace;
     adcgs_stream stream;
+    char hex[33];
+    adcgs_trace_sum_init(&trace);
     ADCGS_TRY(adcgs_pool_create(&options.pool, threads, error));
-    const adcgs_status status = adcgs_stream_read(&stream, read_pieces, &s, &options, on_element, &s, error);
+    const adcgs_status status = adcgs_stream_read(&stream, adcgs_span_read, &s, &options, adcgs_trace_sum_add, &trace, error);
     if (status == ADCGS_OK)
         adcgs_stream_clear(&stream, NULL);
+    adcgs_trace_sum_final(&trace, hex);
+    adcgs_md5_update(md5, hex, sizeof hex);
     adcgs_pool_free(&options.pool);
     return status;
 }
@@ -100,13 +76,13 @@ static adcgs_status digest_of(const adcgs_plan *plan, const adcgs_buffer *file, 
     adcgs_decoder *decoder = NULL;
     adcgs_config config;
     adcgs_md5 md5;
-    source s = { .file = file, .step = step };
+    adcgs_span s = { .next = file->data, .left = file->size, .step = step };
     adcgs_md5_init(&md5);
     ADCGS_TRY(add_trace(&md5, file, cpu, threads, step, error));
     adcgs_config_init(&config);
     config.cpu = cpu;
     config.threads = threads;
-    ADCGS_TRY(adcgs_open_stream(&decoder, read_pieces, &s, &config, error));
+    ADCGS_TRY(adcgs_open_stream(&decoder, adcgs_span_read, &s, &config, error));
     const adcgs_status status = add_results(&md5, decoder, plan, error);
     adcgs_close(&decoder);
     adcgs_md5_final(&md5, digest);
@@ -133,8 +109,8 @@ static adcgs_status check_ways(const adcgs_plan *plan, const adcgs_buffer *file,
 static adcgs_status read_all(adcgs_stream *stream, const adcgs_buffer *file, adcgs_error *error)
 {
     const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
-    source s = { .file = file };
-    return adcgs_stream_read(stream, read_pieces, &s, &options, NULL, NULL, error);
+    adcgs_span s = { .next = file->data, .left = file->size };
+    return adcgs_stream_read(stream, adcgs_span_read, &s, &options, NULL, NULL, error);
 }
 
 static adcgs_status same_models(const adcgs_stream *a, const adcgs_stream *b, adcgs_error *error)

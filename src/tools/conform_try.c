@@ -5,6 +5,7 @@
 #include "base/digest.h"
 #include "base/pool.h"
 #include "model/chunk.h"
+#include "model/input.h"
 #include "model/stream.h"
 
 #include <stdarg.h>
@@ -21,15 +22,6 @@ typedef struct attempt {
     const adcgs_trial *trial;
     char *what;
 } attempt;
-
-/* The input, in pieces or whole, and the trace. */
-typedef struct source {
-    const uint8_t *next;
-    size_t left;
-    int step, turn;
-    uint32_t elements;
-    adcgs_md5 md5;
-} source;
 
 /* Say what is wrong; always 0. */
 static int wrong(const attempt *a, const char *format, ...) ADCGS_PRINTF(2, 3);
@@ -49,39 +41,9 @@ const char *adcgs_outcome_name(adcgs_outcome outcome)
     return names[outcome];
 }
 
-static source source_of(const attempt *a)
+static adcgs_span input_of(const attempt *a)
 {
-    source s = {.next = a->data, .left = a->bytes, .step = a->trial->step};
-    adcgs_md5_init(&s.md5);
-    return s;
-}
-
-static int64_t read_pieces(void *user, void *buffer, size_t bytes)
-{
-    source *const s = user;
-    size_t n = ADCGS_MIN(bytes, s->left);
-    if (s->step > 0) {
-        s->turn = s->turn % s->step + 1;
-        n = ADCGS_MIN(n, (size_t)s->turn);
-    }
-    if (n > 0)
-        memcpy(buffer, s->next, n);
-    s->next += n;
-    s->left -= n;
-    return (int64_t)n;
-}
-
-static void on_element(void *user, uint64_t bit, const char *element, const char *value)
-{
-    source *const s = user;
-    char number[24];
-    const int n = snprintf(number, sizeof number, "%llu ", (unsigned long long)bit);
-    adcgs_md5_update(&s->md5, number, (size_t)n);
-    adcgs_md5_update(&s->md5, element, strlen(element));
-    adcgs_md5_update(&s->md5, " ", 1);
-    adcgs_md5_update(&s->md5, value, strlen(value));
-    adcgs_md5_update(&s->md5, "\n", 1);
-    s->elements++;
+    return (adcgs_span){.next = a->data, .left = a->bytes, .step = a->trial->step};
 }
 
 static int status_fits(const attempt *a, adcgs_status status, adcgs_status expected, const adcgs_error *error)
@@ -94,20 +56,18 @@ static int status_fits(const attempt *a, adcgs_status status, adcgs_status expec
 
 /* ---- P: the trace, and the memory that parsing takes ---- */
 
-static int trace_fits(const attempt *a, source *s, const adcgs_memory *memory)
+static int trace_fits(const attempt *a, adcgs_trace_sum *trace, const adcgs_memory *memory)
 {
     const adcgs_vector *const v = a->vector;
     const uint64_t most = MEMORY_FACTOR * adcgs_level_get(v->level)->model_bytes + MEMORY_CONSTANT;
-    uint8_t digest[16];
     char hex[ADCGS_HEX];
     if (memory->peak > most)
         return wrong(a, "takes %llu bytes, more than %llu", (unsigned long long)memory->peak, (unsigned long long)most);
     if (v->status != ADCGS_OK)
         return 1;
-    adcgs_md5_final(&s->md5, digest);
-    adcgs_md5_hex(digest, hex);
-    if (s->elements != v->elements || strcmp(hex, v->trace))
-        return wrong(a, "P: trace of %u lines is %s, expected %u, %s", s->elements, hex, v->elements, v->trace);
+    adcgs_trace_sum_final(trace, hex);
+    if (trace->lines != v->elements || strcmp(hex, v->trace))
+        return wrong(a, "P: trace of %u lines is %s, expected %u, %s", trace->lines, hex, v->elements, v->trace);
     return 1;
 }
 
@@ -117,9 +77,11 @@ static int parse_fits(const attempt *a, adcgs_pool *pool)
     const adcgs_read_options options = {.cpu = a->trial->cpu, .pool = pool, .memory = &memory};
     adcgs_error error = {ADCGS_OK, ""};
     adcgs_stream stream;
-    source s = source_of(a);
-    const adcgs_status status = adcgs_stream_read(&stream, read_pieces, &s, &options, on_element, &s, &error);
-    int good = status_fits(a, status, a->vector->status, &error) && trace_fits(a, &s, &memory);
+    adcgs_span input = input_of(a);
+    adcgs_trace_sum trace;
+    adcgs_trace_sum_init(&trace);
+    const adcgs_status status = adcgs_stream_read(&stream, adcgs_span_read, &input, &options, adcgs_trace_sum_add, &trace, &error);
+    int good = status_fits(a, status, a->vector->status, &error) && trace_fits(a, &trace, &memory);
     if (status == ADCGS_OK && stream.truncated != a->vector->truncated)
         good = wrong(a, "truncated is %d", stream.truncated);
     if (status == ADCGS_OK)
@@ -197,12 +159,12 @@ static int decode_fits(const attempt *a, int complete)
     adcgs_config config;
     adcgs_decoder *decoder = NULL;
     adcgs_error error = {ADCGS_OK, ""};
-    source s = source_of(a);
+    adcgs_span input = input_of(a);
     adcgs_config_init(&config);
     config.cpu = a->trial->cpu;
     config.threads = a->trial->threads;
     config.strict_end = complete;
-    const adcgs_status status = adcgs_open_stream(&decoder, read_pieces, &s, &config, &error);
+    const adcgs_status status = adcgs_open_stream(&decoder, adcgs_span_read, &input, &config, &error);
     const int refused = complete && a->vector->truncated;
     int good = status_fits(a, status, refused ? ADCGS_ERR_TRUNCATED : a->vector->status, &error);
     if (good && status == ADCGS_OK)
