@@ -27,7 +27,7 @@ static void put_escaped(FILE *out, const char *text)
 
 adcgs_status adcgs_junit_open(adcgs_junit *junit, const char *path, adcgs_error *error)
 {
-    *junit = (adcgs_junit){NULL};
+    *junit = (adcgs_junit){.file = NULL};
     if (!path)
         return ADCGS_OK;
     junit->file = fopen(path, "w");
