@@ -7,8 +7,8 @@
 
 static adcgs_status check_support(const adcgs_syn_version *v, adcgs_error *error)
 {
-    if (v->version_major != ADCGS_BITSTREAM_MAJOR || v->version_minor > ADCGS_BITSTREAM_MINOR)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: bitstream version is %u.%u, this decoder knows up to %d.%d",
+    if (v->version_major != ADCGS_BITSTREAM_MAJOR || v->version_minor != ADCGS_BITSTREAM_MINOR)
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: bitstream version is %u.%u, this decoder knows %d.%d",
                           v->version_major, v->version_minor, ADCGS_BITSTREAM_MAJOR, ADCGS_BITSTREAM_MINOR);
     if (v->profile != 0)
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "HEAD: profile is %u, this decoder knows 0", v->profile);

@@ -8,6 +8,8 @@
 #include "model/input.h"
 #include "model/model_priv.h"
 
+#include <adcgs/version.h>
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -225,7 +227,8 @@ static void test_unknown_chunks(void **state)
 /* REQ-STRM-010 */
 static void test_future_head(void **state)
 {
-    static const uint8_t elements[] = { 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff };
+    static const uint8_t elements[] = { ADCGS_BITSTREAM_MAJOR, 0, ADCGS_BITSTREAM_MINOR, 0, 0, 1, 0, 0, 0, 0, 0,
+                                        0xff, 0xff, 0xff, 0xff };
     adcgs_stream stream;
     adcgs_buffer bytes;
     adcgs_error error;

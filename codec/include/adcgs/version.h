@@ -10,7 +10,7 @@
 #define ADCGS_VERSION_PATCH 0
 
 #define ADCGS_BITSTREAM_MAJOR 0
-#define ADCGS_BITSTREAM_MINOR 1
+#define ADCGS_BITSTREAM_MINOR 2
 
 #ifdef __cplusplus
 extern "C" {
