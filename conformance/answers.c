@@ -123,11 +123,14 @@ static adcgs_status print_frame(FILE *out, adcgs_decoder *decoder, const adcgs_c
     if (!frame.rgb)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for a frame");
     const adcgs_status status = adcgs_render(decoder, c, time, &frame, error);
-    if (status == ADCGS_OK)
+    snprintf(hex, sizeof hex, "refused");
+    if (status == ADCGS_OK) {
         adcgs_frame_digest(&frame, digest);
+        adcgs_md5_hex(digest, hex);
+    }
     free(frame.rgb);
-    ADCGS_TRY(status);
-    adcgs_md5_hex(digest, hex);
+    if (status != ADCGS_ERR_USAGE)
+        ADCGS_TRY(status);
     fprintf(out, "%s\n          { \"camera\": %d, \"time\": %.17g, \"md5\": \"%s\" }", first ? "" : ",", index, time, hex);
     return ADCGS_OK;
 }

@@ -17,6 +17,7 @@
 #define ADCGS_VECTOR_TIMES 8
 #define ADCGS_VECTOR_FRAMES 64
 #define ADCGS_HEX 33
+#define ADCGS_REFUSED "refused" /**< in place of a frame's digest: its camera is */
 #define ADCGS_WHAT 400 /**< room for an explanation */
 
 typedef struct adcgs_vector {

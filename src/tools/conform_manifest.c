@@ -120,8 +120,12 @@ static adcgs_status read_frames(adcgs_vector *v, const json_t *frames, adcgs_err
         if (json_unpack_ex(json_array_get(frames, (size_t)i), &where, JSON_STRICT, "{s:i, s:F, s:s}", "camera",
                            &v->frames[i].camera, "time", &v->frames[i].time, "md5", &md5) != 0)
             return bad(v, where.text, error);
-        if (copy_hex(v->frames[i].md5, md5) != 0 || v->frames[i].camera < 0 || v->frames[i].camera >= v->n_cameras)
-            return bad(v, "a frame has a bad MD5 or no such camera", error);
+        if (strcmp(md5, ADCGS_REFUSED) == 0)
+            copy_text(v->frames[i].md5, ADCGS_HEX, md5);
+        else if (copy_hex(v->frames[i].md5, md5) != 0)
+            return bad(v, "a frame has a bad MD5", error);
+        if (v->frames[i].camera < 0 || v->frames[i].camera >= v->n_cameras)
+            return bad(v, "a frame has no such camera", error);
     }
     return ADCGS_OK;
 }

@@ -132,12 +132,17 @@ static int frame_fits(const attempt *a, int i, adcgs_decoder *decoder)
     adcgs_error error = {ADCGS_OK, ""};
     char hex[ADCGS_HEX] = "";
     uint8_t digest[16];
+    adcgs_status status = ADCGS_ERR_MEMORY;
     if (camera->width < 1 || camera->height < 1 || camera->width > 16384 || camera->height > 16384)
         return wrong(a, "camera of %dx%d", (int)camera->width, (int)camera->height);
     frame.rgb = malloc(3 * sizeof *frame.rgb * (size_t)camera->width * (size_t)camera->height);
-    if (frame.rgb && adcgs_render(decoder, camera, v->frames[i].time, &frame, &error) == ADCGS_OK) {
+    if (frame.rgb)
+        status = adcgs_render(decoder, camera, v->frames[i].time, &frame, &error);
+    if (status == ADCGS_OK) {
         adcgs_frame_digest(&frame, digest);
         adcgs_md5_hex(digest, hex);
+    } else if (status == ADCGS_ERR_USAGE) {
+        snprintf(hex, sizeof hex, ADCGS_REFUSED);
     }
     free(frame.rgb);
     if (strcmp(hex, v->frames[i].md5))
