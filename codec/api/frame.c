@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Frames leaving the decoder (spec clause "Output conversion"). */
-#include "base/digest.h"
-
-#include <adcgs/camera.h>
+#include "api/frame.h"
 
 void adcgs_frame_to_u8(const adcgs_frame *frame, uint8_t *out)
 {
@@ -13,17 +11,22 @@ void adcgs_frame_to_u8(const adcgs_frame *frame, uint8_t *out)
     }
 }
 
-void adcgs_frame_digest(const adcgs_frame *frame, uint8_t digest[16])
+void adcgs_frame_digest_add(adcgs_md5 *md5, const adcgs_frame *frame)
 {
     uint8_t bytes[4096];
     const size_t n = 3 * (size_t)frame->width * (size_t)frame->height, step = sizeof bytes / 4;
-    adcgs_md5 md5;
-    adcgs_md5_init(&md5);
     for (size_t i = 0; i < n; i += step) {
         const size_t count = ADCGS_MIN(step, n - i);
         for (size_t j = 0; j < count; j++)
             adcgs_store_le32(bytes + 4 * j, adcgs_float_bits(frame->rgb[i + j]));
-        adcgs_md5_update(&md5, bytes, 4 * count);
+        adcgs_md5_update(md5, bytes, 4 * count);
     }
+}
+
+void adcgs_frame_digest(const adcgs_frame *frame, uint8_t digest[16])
+{
+    adcgs_md5 md5;
+    adcgs_md5_init(&md5);
+    adcgs_frame_digest_add(&md5, frame);
     adcgs_md5_final(&md5, digest);
 }

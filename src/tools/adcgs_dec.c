@@ -2,7 +2,7 @@
 /** \file adcgs-dec: decode a stream and render frames from it. */
 #include "config.h"
 
-#include "base/digest.h"
+#include "api/frame.h"
 #include "io/sink.h"
 #include "model/input.h"
 #include "tools/answer.h"
@@ -68,19 +68,6 @@ static adcgs_status open_input(adcgs_decoder **decoder, const settings *s, adcgs
     return status;
 }
 
-/** The frame's values as little-endian binary32 into a digest. */
-static void digest_frame(const adcgs_frame *frame, adcgs_md5 *all)
-{
-    uint8_t bytes[4096];
-    const size_t n = (size_t)frame->width * (size_t)frame->height * 3, step = sizeof bytes / 4;
-    for (size_t i = 0; i < n; i += step) {
-        const size_t count = ADCGS_MIN(step, n - i);
-        for (size_t j = 0; j < count; j++)
-            adcgs_store_le32(bytes + 4 * j, adcgs_float_bits(frame->rgb[i + j]));
-        adcgs_md5_update(all, bytes, 4 * count);
-    }
-}
-
 static void print_row(const settings *s, const char *hex, double seconds)
 {
     if (s->md5 && s->frametimes)
@@ -110,7 +97,7 @@ static adcgs_status render(const settings *s, adcgs_decoder *decoder, const adcg
             adcgs_md5_hex(digest, hex);
         }
         if (status == ADCGS_OK && s->verify)
-            digest_frame(frame, all);
+            adcgs_frame_digest_add(all, frame);
         if (status == ADCGS_OK && sink)
             status = adcgs_sink_write(sink, frame, i, error);
         if (status == ADCGS_OK)
