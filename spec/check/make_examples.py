@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
 """Writes annex "Worked examples": complete streams, decoded by the text itself while somebody takes notes; or, with --check, compares."""
-import argparse
 import os
 import re
 import sys
@@ -317,21 +316,5 @@ def check(tree):
     return []
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--source", default=os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-    parser.add_argument("--check", action="store_true")
-    arguments = parser.parse_args()
-    tree = sources.Tree(arguments.source)
-    if arguments.check:
-        faults = check(tree)
-        print("\n".join(faults))
-        return 1 if faults else 0
-    text = generate(tree)
-    with open(path_of(tree), "w", encoding="utf-8") as file:
-        file.write(text)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.write_or_check(__doc__, path_of, generate, check))

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
 """Writes annex "Index of requirements" from the text, the tests' comments and the manifest; with --check it compares."""
-import argparse
 import os
 import sys
 
@@ -53,20 +52,5 @@ def check(tree):
     return [] if same else ["annex-requirements.adoc is out of date: make spec-update"]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--source", default=os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-    parser.add_argument("--check", action="store_true")
-    arguments = parser.parse_args()
-    tree = sources.Tree(arguments.source)
-    if arguments.check:
-        faults = check(tree)
-        print("\n".join(faults))
-        return 1 if faults else 0
-    with open(path_of(tree), "w", encoding="utf-8") as file:
-        file.write(generate(tree))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.write_or_check(__doc__, path_of, generate, check))

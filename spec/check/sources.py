@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """What the checks look at: the clauses with their blocks, tables, anchors and requirements, and who cites requirements."""
+import argparse
 import json
 import os
 import re
@@ -202,3 +203,22 @@ def citations(tree):
         for name in entry.get("covers", []) + entry.get("violates", []):
             add(name, 1, vector)
     return cited
+
+
+# ---- Generated annexes ----
+
+def write_or_check(description, path_of, generate, check):
+    """The command line of a generator: writes the file that it makes from a tree, or compares; the exit status."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--source", default=os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+    parser.add_argument("--check", action="store_true", help="compare, write nothing")
+    arguments = parser.parse_args()
+    tree = Tree(arguments.source)
+    if arguments.check:
+        faults = check(tree)
+        print("\n".join(faults))
+        return 1 if faults else 0
+    text = generate(tree)
+    with open(path_of(tree), "w", encoding="utf-8") as file:
+        file.write(text)
+    return 0
