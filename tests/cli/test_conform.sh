@@ -1,0 +1,43 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# The command line of adcgs-conform: what it lists and writes, and what it says of options and manifests that are wrong.
+set -u
+dir=$(mktemp -d) || exit 99
+trap 'rm -rf "$dir"' EXIT
+manifest=${srcdir:-.}/conformance/manifest.json
+faults=0
+
+# expect STATUS TEXT ARGUMENT...: the exit status, and a part of the last line on standard error.
+expect()
+{
+    local status=$1 text=$2
+    shift 2
+    ./adcgs-conform "$@" >"$dir/out" 2>"$dir/err"
+    local found=$?
+    if [ $found -ne "$status" ] || { [ -n "$text" ] && ! tail -n 1 "$dir/err" | grep -qF -- "$text"; }; then
+        echo "adcgs-conform $*: status $found, expected $status and \"$text\"; it says:" >&2
+        cat "$dir/err" >&2
+        faults=$((faults + 1))
+    fi
+}
+
+expect 0 "" --filter 'good-geom-one-*' --junit "$dir/junit.xml" "$manifest"
+grep -q '<testcase [^>]*good-geom-one-anchor' "$dir/junit.xml" || { echo "no case in the JUnit report" >&2; faults=1; }
+expect 0 "" --list "$manifest"
+[ "$(wc -l <"$dir/out")" -eq "$(grep -c '"id":' "$manifest")" ] || { echo "not all vectors are listed" >&2; faults=1; }
+
+expect 2 "no vector" --filter 'nothing-*' "$manifest"
+expect 2 "" --point Q "$manifest"
+expect 2 "" --timeout 0 "$manifest"
+expect 2 "" --timeout soon "$manifest"
+expect 2 "" --no-such-option "$manifest"
+expect 2 "" "$manifest" "$manifest"
+expect 3 "nowhere" --filter 'good-geom-one-*' --junit "$dir/nowhere/junit.xml" "$manifest"
+expect 3 "nowhere.json" "$dir/nowhere.json"
+echo '{ "format": 1, "vectors": [ { "id": 7 } ] }' >"$dir/wrong.json"
+expect 4 "manifest" "$dir/wrong.json"
+echo 'not JSON' >"$dir/text.json"
+expect 4 "text.json" "$dir/text.json"
+expect 1 "" --decoder 'false' --filter 'good-geom-one-*' "$manifest"
+expect 1 "" --decoder './no-such-decoder {in}' --filter 'good-geom-one-*' "$manifest"
+[ "$faults" -eq 0 ]
