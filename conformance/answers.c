@@ -135,7 +135,8 @@ static adcgs_status print_frame(FILE *out, adcgs_decoder *decoder, const adcgs_c
     return ADCGS_OK;
 }
 
-static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder, adcgs_trace_sum *trace, adcgs_error *error)
+static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder, adcgs_trace_sum *trace,
+                                   adcgs_error *error)
 {
     char hex[33];
     adcgs_trace_sum_final(trace, hex);

@@ -101,8 +101,8 @@ void adcgs_parse_trace(const adcgs_parse *p, uint64_t bit, const char *name, con
 
 void adcgs_parse_trace_end(const adcgs_parse *p, const adcgs_range_dec *d)
 {
-    adcgs_parse_trace(p, 8 * (uint64_t)(d->next - p->r.data), "range_end", "range 0x%016" PRIx64 " value 0x%016" PRIx64 " virtual %d",
-                      d->range, d->value, d->zeros);
+    adcgs_parse_trace(p, 8 * (uint64_t)(d->next - p->r.data), "range_end",
+                      "range 0x%016" PRIx64 " value 0x%016" PRIx64 " virtual %d", d->range, d->value, d->zeros);
 }
 
 /** An element of a list; those of an array are told apart by an index. */

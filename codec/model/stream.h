@@ -64,7 +64,7 @@ typedef struct adcgs_read_options {
     int strict_end;
 } adcgs_read_options;
 
-/** Called for each line of the trace (spec "Trace"): absolute bit position, name, value as text; always in the caller's thread. */
+/** Called for each line of the trace (spec "Trace"), in the caller's thread: absolute bit position, name, value as text. */
 typedef void (*adcgs_trace_fn)(void *user, uint64_t bit, const char *element, const char *value);
 
 /** Parse and decode from a sequential source. trace may be NULL. */

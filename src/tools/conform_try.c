@@ -80,7 +80,8 @@ static int parse_fits(const attempt *a, adcgs_pool *pool)
     adcgs_span input = input_of(a);
     adcgs_trace_sum trace;
     adcgs_trace_sum_init(&trace);
-    const adcgs_status status = adcgs_stream_read(&stream, adcgs_span_read, &input, &options, adcgs_trace_sum_add, &trace, &error);
+    const adcgs_status status =
+        adcgs_stream_read(&stream, adcgs_span_read, &input, &options, adcgs_trace_sum_add, &trace, &error);
     int good = status_fits(a, status, a->vector->status, &error) && trace_fits(a, &trace, &memory);
     if (status == ADCGS_OK && stream.truncated != a->vector->truncated)
         good = wrong(a, "truncated is %d", stream.truncated);

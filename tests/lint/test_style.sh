@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# What every source file has (licence line, a word on what it is for) and has not (tabs, trailing blanks).
+# What every source file has (licence line, a word on what it is for) and has not (tabs, trailing blanks, lines of over 130 columns).
 set -u
 cd "${srcdir:-.}" || exit 99
 faults=0
@@ -15,5 +15,6 @@ while read -r file; do
     head -n 1 "$file" | grep -q 'SPDX-License-Identifier: BSD-2-Clause' || fault "$file:1: no licence line"
     head -n 4 "$file" | grep -q '\\file' || fault "$file: no \\file comment"
     grep -nHP '\t|[ \r]$' "$file" >&2 && fault "$file: tab or trailing blank"
+    LC_ALL=C.UTF-8 grep -nHP '^.{131}' "$file" >&2 && fault "$file: line of over 130 columns"
 done < <(find codec src tests conformance -name '*.[ch]' -o -name '*.cc')
 [ "$faults" -eq 0 ]
