@@ -37,9 +37,9 @@ static adcgs_status is_about(const target *t, const adcgs_command *c, int *about
 
 static shape default_shape(int role, uint32_t n_in)
 {
-    const int e24 = role < ADCGS_ROLE_PREDICTION;
-    shape s = { .layers = role == ADCGS_ROLE_TIME || n_in == 0 ? 1 : 2, .in_shift = 2 * e24, .sigma_shift = 7 * e24,
-                .sigma_offset = 16 * e24, .limit = e24 ? 60 : 400, .bias = e24 ? 2000 : 400, .e = e24 ? 0 : 9,
+    const int e24 = role < ADCGS_ROLE_PREDICTION, prior = adcgs_role_is_prior(role);
+    shape s = { .layers = role == ADCGS_ROLE_TIME || n_in == 0 ? 1 : 2, .in_shift = 2 * e24, .sigma_shift = 7 * prior,
+                .sigma_offset = 16 * prior, .limit = e24 ? 60 : 400, .bias = e24 ? 2000 : 400, .e = e24 ? 0 : 9,
                 .bias_e = e24 ? 0 : 9 };
     for (int i = 0; i < ADCGS_NET_LAYERS_MAX; i++) {
         s.width[i] = 8;
@@ -196,7 +196,7 @@ static adcgs_status set_bound(adcgs_plan *plan, const adcgs_command *c, void *us
     ADCGS_TRY(adcgs_word_int(c->word[3], 0, l->w.rows - 1, &row, error));
     for (uint32_t i = 0; i < l->w.cols; i++)
         sum += ADCGS_E24_A * (int64_t)abs(l->w.m[(size_t)row * l->w.cols + i]);
-    const int is_sigma = layer + 1 == t->net->n_layers && row >= l->w.rows / 2;
+    const int is_sigma = layer + 1 == t->net->n_layers && row >= adcgs_net_channels(t->net);
     const int shift = is_sigma ? t->net->sigma_shift : l->shift;
     const int64_t left = (1 << 24) - 1 - sum - (shift ? INT64_C(1) << (shift - 1) : 0);
     if (left < 0)

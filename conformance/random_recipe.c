@@ -15,7 +15,7 @@ typedef struct writer {
     uint64_t state;
     adcgs_status status;
     adcgs_error *error;
-    int n_fg, chunks, moving, segments, anchors, slice_log2;
+    int n_fg, chunks, adaptive, moving, segments, anchors, slice_log2;
 } writer;
 
 static void line(writer *w, const char *format, ...) ADCGS_PRINTF(2, 3);
@@ -59,6 +59,9 @@ static void write_params(writer *w)
     w->moving = draw(w, 0, 2) > 0;
     line(w, "params k=%d n_fv=%d n_fg=%d chunks=%d n_eta=%d", edgy(w, 1, small ? 5 : 16), edgy(w, 1, small ? 12 : 64), w->n_fg,
          w->chunks, edgy(w, 0, 8));
+    w->adaptive = once_in(w, 3);
+    if (w->adaptive)
+        line(w, "params adaptive_steps=1");
     line(w, "params octaves=%d fine_uses_fv=%d coarse_rotation=%d", edgy(w, 0, small ? 4 : 10), draw(w, 0, 1), draw(w, 0, 1));
     if (w->moving)
         line(w, "params time_rows=%d time_width=%d", rows[draw(w, 0, COUNT(rows) - 1)], edgy(w, 1, 9));
@@ -105,7 +108,10 @@ static void write_segments(writer *w)
         line(w, "share %s", draw(w, 0, 2) ? (draw(w, 0, 1) ? "all" : "none") : "E_Sigma F_theta Z E_fg0");
 }
 
-static void write_network(writer *w, const char *role, int e24, int layers_max)
+/** What a network yields: priors, other integers, binary32. */
+typedef enum net_form { PRIOR, INTEGERS, BINARY32 } net_form;
+
+static void write_network(writer *w, const char *role, net_form form, int layers_max)
 {
     char residual[40] = "0";
     const int layers = edgy(w, 1, layers_max);
@@ -113,11 +119,13 @@ static void write_network(writer *w, const char *role, int e24, int layers_max)
     for (int i = 1; i < layers; i++)
         n += (size_t)snprintf(residual + n, sizeof residual - n, ",%d", i + 1 < layers && once_in(w, 3));
     line(w, "net %s layers=%d width=%d,%d residual=%s", role, layers, edgy(w, 1, 24), draw(w, 1, 24), residual);
-    if (e24)
-        line(w, "net %s in_shift=%d shift=%d,%d,%d sigma_shift=%d sigma_offset=%d limit=%d bias=20000", role, edgy(w, 0, 8),
-             draw(w, 3, 9), draw(w, 3, 10), edgy(w, 0, 24), edgy(w, 4, 24), once_in(w, 4) ? edgy(w, -64, 127) : draw(w, 0, 40),
-             draw(w, 1, 40));
-    else
+    if (form != BINARY32)
+        line(w, "net %s in_shift=%d shift=%d,%d,%d limit=%d bias=20000", role, edgy(w, 0, 8), draw(w, 3, 9), draw(w, 3, 10),
+             edgy(w, 0, 24), draw(w, 1, 40));
+    if (form == PRIOR)
+        line(w, "net %s sigma_shift=%d sigma_offset=%d", role, edgy(w, 4, 24),
+             once_in(w, 4) ? edgy(w, -64, 127) : draw(w, 0, 40));
+    else if (form == BINARY32)
         line(w, "net %s e=%d bias_e=%d mode=%d bias_mode=%d", role, draw(w, 5, 12), draw(w, 5, 12), once_in(w, 4), once_in(w, 4));
 }
 
@@ -125,13 +133,15 @@ static void write_network(writer *w, const char *role, int e24, int layers_max)
 static void write_networks(writer *w)
 {
     static const char *const fg[] = { "E_fg0", "E_fg1", "E_fg2", "E_fg3" };
-    write_network(w, "E_Sigma", 1, 8);
-    write_network(w, "E_C", 1, 8);
+    write_network(w, "E_Sigma", PRIOR, 8);
+    write_network(w, "E_C", PRIOR, 8);
+    if (w->adaptive)
+        write_network(w, "E_q", INTEGERS, 8);
     for (int i = 0; i < w->chunks && w->n_fg > 0; i++)
-        write_network(w, fg[i], 1, 4);
-    write_network(w, "F_theta", 0, 4);
+        write_network(w, fg[i], PRIOR, 4);
+    write_network(w, "F_theta", BINARY32, 4);
     if (w->moving)
-        write_network(w, "F_omega", 0, 4);
+        write_network(w, "F_omega", BINARY32, 4);
     if (w->moving && once_in(w, 5))
         line(w, "net %s absent=1", draw(w, 0, 1) ? "F_omega" : "F_varpi");
 }

@@ -28,7 +28,10 @@
 #error "adcgs needs float and double to be binary32 and binary64"
 #endif
 
-/** Record status and message, return status: `return adcgs_fail(err, ADCGS_ERR_DATA, "...", ...)`. error may be NULL. */
+/**
+ * Record status and message, return status: `return adcgs_fail(err, ADCGS_ERR_DATA, "...", ...)`. error may be NULL. The message
+ * stays one line: control characters, which names from outside may hold, become question marks.
+ */
 adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
 
 /** Put the name of an input in front of a message about its contents, in place of "stream:". error may be NULL. */

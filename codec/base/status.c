@@ -51,6 +51,9 @@ adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *for
         if (vsnprintf(error->text, sizeof error->text, format, args) < 0)
             error->text[0] = 0;
         va_end(args);
+        for (char *c = error->text; *c; c++)
+            if ((unsigned char)*c < ' ' || *c == 127)
+                *c = '?';
     }
     return status;
 }

@@ -40,7 +40,7 @@ int adcgs_type_layer(uint32_t type)
 void adcgs_nets_cost_add(adcgs_nets_cost *cost, const adcgs_params *params, int role, const adcgs_net *net)
 {
     const uint64_t weights = adcgs_net_weights(net);
-    const int per_primitive = role >= ADCGS_ROLE_ENTROPY_FG && role <= ADCGS_ROLE_PREDICTION;
+    const int per_primitive = (role >= ADCGS_ROLE_ENTROPY_FG && role < ADCGS_ROLE_ENTROPY_STEPS) || role == ADCGS_ROLE_PREDICTION;
     cost->weights += weights;
     if (role != ADCGS_ROLE_TIME)
         cost->evaluated += weights * (per_primitive ? params->k : 1U);

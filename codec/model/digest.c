@@ -70,6 +70,7 @@ static void visit_params(visitor *v, const adcgs_params *a, const adcgs_params *
     ITEM("octaves", octaves);
     ITEM("fine_uses_fv", fine_uses_fv);
     ITEM("coarse_rotation", coarse_rotation);
+    ITEM("adaptive_steps", adaptive_steps);
     ITEM("time_rows", time_rows);
     ITEM("time_width", time_width);
 }
@@ -93,6 +94,8 @@ static void visit_net(visitor *v, const adcgs_net *a, const adcgs_net *b)
     const int e24 = a->role < ADCGS_ROLE_PREDICTION;
     if (e24) {
         ITEM("network in_shift", in_shift);
+    }
+    if (adcgs_role_is_prior(a->role)) {
         ITEM("network sigma_shift", sigma_shift);
         ITEM("network sigma_offset", sigma_offset);
     }
@@ -159,6 +162,13 @@ int adcgs_model_equal(const adcgs_model *a, const adcgs_model *b, adcgs_error *e
         return 1;
     adcgs_fail(error, ADCGS_ERR_DATA, "models differ in %s[%zu]", v.difference, v.index);
     return 0;
+}
+
+int adcgs_params_equal(const adcgs_params *a, const adcgs_params *b)
+{
+    visitor v = { .item = compare_item };
+    visit_params(&v, a, b);
+    return v.difference == NULL;
 }
 
 int adcgs_net_equal(const adcgs_net *a, const adcgs_net *b)

@@ -44,6 +44,7 @@ static void params_from_head(adcgs_params *params, const adcgs_syn_head *h)
     params->octaves = h->octaves;
     params->fine_uses_fv = h->fine_uses_fv;
     params->coarse_rotation = h->coarse_rotation;
+    params->adaptive_steps = h->adaptive_steps;
     params->time_rows = h->time_rows;
     params->time_width = h->time_width;
 }
@@ -110,6 +111,7 @@ adcgs_status adcgs_head_write(adcgs_buffer *out, const adcgs_stream *stream, uin
         .octaves = params->octaves,
         .fine_uses_fv = params->fine_uses_fv,
         .coarse_rotation = params->coarse_rotation,
+        .adaptive_steps = params->adaptive_steps,
         .time_rows = params->time_rows,
         .time_width = params->time_width,
     };

@@ -8,6 +8,11 @@ int adcgs_params_layers(const adcgs_params *params)
     return params->n_fg ? 1 + params->chunks : 1;
 }
 
+int adcgs_params_steps(const adcgs_params *params)
+{
+    return !params->adaptive_steps ? 0 : params->n_fg ? 2 + params->chunks : 2;
+}
+
 uint64_t adcgs_anchor_values(const adcgs_params *params)
 {
     return (uint64_t)params->n_eta + params->n_fv + ADCGS_SIGMA_N + ADCGS_COLOUR_N + (uint64_t)params->k * params->n_fg;
@@ -35,6 +40,9 @@ void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint
     } else if (role >= ADCGS_ROLE_ENTROPY_FG && role < ADCGS_ROLE_ENTROPY_FG + params->chunks && chunk > 0) {
         in = fv + (uint32_t)(role - ADCGS_ROLE_ENTROPY_FG) * chunk;
         out = 2 * chunk;
+    } else if (role == ADCGS_ROLE_ENTROPY_STEPS && params->adaptive_steps) {
+        in = fv;
+        out = (uint32_t)adcgs_params_steps(params);
     } else if (role == ADCGS_ROLE_PREDICTION) {
         in = fv + params->n_fg;
         out = 14;

@@ -45,6 +45,7 @@ typedef struct adcgs_params {
     uint8_t octaves;      /**< octaves of the position code f_p, 0..10: f_p has 6*octaves values */
     uint8_t fine_uses_fv; /**< F_varpi's static inputs are [f_p, f_v] instead of f_p */
     uint8_t coarse_rotation; /**< F_omega also predicts a rotation of the anchor */
+    uint8_t adaptive_steps;  /**< the steps of all but f_v adapt to the anchor, by E_q */
     uint16_t time_rows;   /**< rows of Z; 0: the scene is still, no deformation networks */
     uint16_t time_width;  /**< columns of Z */
 } adcgs_params;
@@ -69,7 +70,7 @@ typedef struct adcgs_model {
     int16_t *colour; /**< [n][3] */
     int16_t *fg;     /**< [n][k][n_fg]; chunk c is channels [c*n_fg/chunks, (c+1)*n_fg/chunks) */
 
-    /* value = (float)yq * d, d = step/64, normal binary32 in [2^-40, 2^10] */
+    /* value = (float)yq * (d * factor), d = step/64, normal binary32 in [2^-40, 2^10]; factor: splat/steps.h */
     float d_fv[ADCGS_NV_MAX], d_sigma[ADCGS_SIGMA_N], d_colour[ADCGS_COLOUR_N], d_fg[ADCGS_NG_MAX];
     uint8_t shape[ADCGS_GROUPS];          /**< 0..3: 0 Gaussian, 1: beta 1.5, 2: beta 1.25, 3: beta 1 */
     int16_t eta_mu[ADCGS_ETA_MAX];        /**< prior of eta, 1/64 step */
@@ -91,5 +92,18 @@ void adcgs_model_digest(const adcgs_model *model, uint8_t digest[16]);
 
 /** Expected n_in, n_out of a role's network under params; 0,0 if the role is absent under params. */
 void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint32_t *n_out);
+
+/**
+ * Groups of channels whose steps adapt to the anchor, each by an index q of its own in -16..16, eighths of an octave. Which of
+ * them a group of channels belongs to: Sigma_v, C_v, chunks of f_g. f_v has none.
+ */
+#define ADCGS_STEPS_MAX (2 + ADCGS_CHUNKS_MAX)
+#define ADCGS_STEP_INDEX_MAX 16
+/** How many of them the parameters give; 0 without adaptive steps. */
+int adcgs_params_steps(const adcgs_params *params);
+static inline int adcgs_group_steps(int group)
+{
+    return group - ADCGS_GROUP_SIGMA;
+}
 
 #endif

@@ -12,6 +12,7 @@ uint64_t adcgs_anchor_values(const adcgs_params *params);
 uint64_t adcgs_anchor_bytes(const adcgs_params *params);
 /** Ranges and cross-field rules of the parameters. */
 adcgs_status adcgs_params_validate(const adcgs_params *params, adcgs_error *error);
+int adcgs_params_equal(const adcgs_params *a, const adcgs_params *b);
 
 /** Shapes against the parameters, value ranges, E24 bounds. */
 adcgs_status adcgs_net_validate(const adcgs_params *params, int role, const adcgs_net *net, adcgs_error *error);

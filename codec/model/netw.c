@@ -83,8 +83,12 @@ static adcgs_status parse_shape(adcgs_parse *p, const adcgs_params *params, adcg
         adcgs_syn_net_e24 e24;
         ADCGS_TRY(adcgs_syn_net_e24_parse(p, &e24));
         net->in_shift = e24.in_shift;
-        net->sigma_shift = e24.sigma_shift;
-        net->sigma_offset = e24.sigma_offset;
+    }
+    if (adcgs_role_is_prior(head.role)) {
+        adcgs_syn_net_prior prior;
+        ADCGS_TRY(adcgs_syn_net_prior_parse(p, &prior));
+        net->sigma_shift = prior.sigma_shift;
+        net->sigma_offset = prior.sigma_offset;
     }
     for (int i = 0; i < net->n_layers; i++, n_in = width) {
         width = n_out; /* the last layer's; the others send theirs */
@@ -209,10 +213,13 @@ static adcgs_status write_layer(adcgs_buffer *out, const adcgs_net *net, int i, 
 static adcgs_status write_shape(adcgs_buffer *out, const adcgs_net *net, adcgs_error *error)
 {
     const adcgs_syn_net head = { net->role, net->n_layers };
-    const adcgs_syn_net_e24 e24 = { net->in_shift, net->sigma_shift, net->sigma_offset };
+    const adcgs_syn_net_e24 e24 = { net->in_shift };
+    const adcgs_syn_net_prior prior = { net->sigma_shift, net->sigma_offset };
     ADCGS_TRY(adcgs_syn_net_write(out, "NETW", &head, error));
     if (is_e24(net->role))
         ADCGS_TRY(adcgs_syn_net_e24_write(out, "NETW", &e24, error));
+    if (adcgs_role_is_prior(net->role))
+        ADCGS_TRY(adcgs_syn_net_prior_write(out, "NETW", &prior, error));
     for (int i = 0; i < net->n_layers; i++)
         ADCGS_TRY(write_layer(out, net, i, error));
     return ADCGS_OK;

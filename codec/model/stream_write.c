@@ -293,7 +293,7 @@ static adcgs_status check_stream(adcgs_stream *stream, adcgs_error *error)
     for (uint32_t i = 0; i < stream->n_segments; i++) {
         const adcgs_model *model = &stream->segments[i];
         ADCGS_TRY(adcgs_model_validate(model, error));
-        if (memcmp(&model->params, &stream->params, sizeof model->params) != 0)
+        if (!adcgs_params_equal(&model->params, &stream->params))
             return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u has other parameters than the stream", i);
         ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &start, error));
         ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &end, error));

@@ -54,16 +54,18 @@
     F(U8, octaves, 0, ADCGS_OCTAVES_MAX)                        \
     F(U8, fine_uses_fv, 0, 1)                                   \
     F(U8, coarse_rotation, 0, 1)                                \
+    F(U8, adaptive_steps, 0, 1)                                 \
     F(U16, time_rows, 0, ADCGS_TIME_ROWS_MAX)                   \
     F(U16, time_width, 0, ADCGS_TIME_WIDTH_MAX)
 
-/* Of a network: role, then for E24 roles e24, then layers; and of a layer, where form is 64 mode + e, plus 128 if residual. */
+/* Of a network: role, then for E24 roles e24 and for priors prior, then layers; and of a layer, where form is 64 mode + e, plus
+ * 128 if residual. */
 #define ADCGS_LIST_NET(F, V)        \
     F(U8, role, 0, ADCGS_ROLES - 1) \
     F(U8, n_layers, 1, ADCGS_NET_LAYERS_MAX)
-#define ADCGS_LIST_NET_E24(F, V) \
-    F(U8, in_shift, 0, 8)        \
-    F(U8, sigma_shift, 0, 24)    \
+#define ADCGS_LIST_NET_E24(F, V) F(U8, in_shift, 0, 8)
+#define ADCGS_LIST_NET_PRIOR(F, V) \
+    F(U8, sigma_shift, 0, 24)      \
     F(I16, sigma_offset, -64, 127)
 #define ADCGS_LIST_LAYER(F, V) F(U8, weight_form, 0, 255)
 #define ADCGS_LIST_LAYER_BIAS(F, V) F(U8, bias_form, 0, 127)
@@ -118,6 +120,7 @@
     X(HEAD, adcgs_syn_head)                  \
     X(NET, adcgs_syn_net)                    \
     X(NET_E24, adcgs_syn_net_e24)            \
+    X(NET_PRIOR, adcgs_syn_net_prior)        \
     X(LAYER, adcgs_syn_layer)                \
     X(LAYER_BIAS, adcgs_syn_layer_bias)      \
     X(LAYER_E24, adcgs_syn_layer_e24)        \

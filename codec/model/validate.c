@@ -13,8 +13,8 @@
 const char *adcgs_role_name(int role)
 {
     static const char *const names[ADCGS_ROLES] = { "E_fv",    "E_Sigma", "E_C", "E_fg0",   "E_fg1",   "E_fg2",
-                                                    "E_fg3",   NULL,      "F_theta", "F_omega", "F_varpi", "Z" };
-    return role >= 0 && role < ADCGS_ROLES && names[role] ? names[role] : "unknown";
+                                                    "E_fg3",   "E_q",     "F_theta", "F_omega", "F_varpi", "Z" };
+    return role >= 0 && role < ADCGS_ROLES ? names[role] : "unknown";
 }
 
 int adcgs_role_allowed(const adcgs_params *params, int role)
@@ -46,6 +46,7 @@ adcgs_status adcgs_params_validate(const adcgs_params *p, adcgs_error *error)
     ADCGS_TRY(check_range("octaves", p->octaves, 0, ADCGS_OCTAVES_MAX, error));
     ADCGS_TRY(check_range("fine_uses_fv", p->fine_uses_fv, 0, 1, error));
     ADCGS_TRY(check_range("coarse_rotation", p->coarse_rotation, 0, 1, error));
+    ADCGS_TRY(check_range("adaptive_steps", p->adaptive_steps, 0, 1, error));
     ADCGS_TRY(check_range("time_rows", p->time_rows, 0, ADCGS_TIME_ROWS_MAX, error));
     ADCGS_TRY(check_range("time_width", p->time_width, p->time_rows > 0, ADCGS_TIME_WIDTH_MAX, error));
     if (p->n_fg % p->chunks)
@@ -126,6 +127,9 @@ adcgs_status adcgs_net_validate(const adcgs_params *params, int role, const adcg
     if (net->in_shift > 8 || net->sigma_shift > 24 || net->sigma_offset < -64 || net->sigma_offset > 127)
         return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: shifts %u, %u, offset %d, expected 0..8, 0..24, -64..127",
                           adcgs_role_name(role), net->in_shift, net->sigma_shift, net->sigma_offset);
+    if (!adcgs_role_is_prior(role) && (net->sigma_shift || net->sigma_offset))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "network %s: it has no scale indices, but their shift is %u, their offset %d",
+                          adcgs_role_name(role), net->sigma_shift, net->sigma_offset);
     ADCGS_TRY(check_layers(role, net, n_in, n_out, error));
     return role < ADCGS_ROLE_PREDICTION ? check_e24(net, error) : ADCGS_OK;
 }

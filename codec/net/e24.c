@@ -51,7 +51,7 @@ static adcgs_status check_shapes(const adcgs_net *net, adcgs_error *error)
         if (layer->residual > 1 || (layer->residual && (l + 1 == n || layer->w.rows != layer->w.cols)))
             return adcgs_fail(error, ADCGS_ERR_DATA, "network %d, layer %d cannot be residual", role, l);
     }
-    if (adcgs_net_outputs(net) % 2)
+    if (adcgs_role_is_prior(role) && adcgs_net_outputs(net) % 2)
         return adcgs_fail(error, ADCGS_ERR_DATA, "network %d has %u outputs; a mean and a scale per channel make an even number",
                           role, adcgs_net_outputs(net));
     return ADCGS_OK;
@@ -62,7 +62,7 @@ static adcgs_status pack_row(int16_t *to, const adcgs_net *net, int l, uint32_t 
 {
     const adcgs_layer *layer = &net->layer[l];
     const uint32_t n_in = layer->w.cols;
-    const int is_sigma = l + 1 == net->n_layers && row >= layer->w.rows / 2;
+    const int is_sigma = l + 1 == net->n_layers && row >= adcgs_net_channels(net);
     const int shift = is_sigma ? net->sigma_shift : layer->shift;
     const int64_t bias = layer->b.m[row];
     int64_t sum = (bias < 0 ? -bias : bias) + (shift ? INT64_C(1) << (shift - 1) : 0);
@@ -115,7 +115,7 @@ adcgs_status adcgs_e24_create(adcgs_e24 **out, const adcgs_net *net, adcgs_cpu_l
         status = pack_layer(&e24->layer[l], net, l, memory, error);
     }
     e24->n_layers = net->n_layers;
-    e24->channels = (int)adcgs_net_outputs(net) / 2;
+    e24->channels = (int)adcgs_net_channels(net);
     e24->in_shift = net->in_shift;
     e24->sigma_shift = net->sigma_shift;
     e24->sigma_offset = net->sigma_offset;

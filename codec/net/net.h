@@ -33,6 +33,7 @@ typedef enum adcgs_role {
     ADCGS_ROLE_ENTROPY_SIGMA = 1, /**< E_Sigma: f_v -> of Sigma_v */
     ADCGS_ROLE_ENTROPY_COLOUR = 2,/**< E_C: f_v -> of C_v */
     ADCGS_ROLE_ENTROPY_FG = 3,    /**< E_fg: 3 + chunk, chunk 0..3: f_v and earlier chunks of f_g,k -> of this chunk */
+    ADCGS_ROLE_ENTROPY_STEPS = 7, /**< E_q: f_v -> step indices of Sigma_v, C_v and the chunks of f_g */
     ADCGS_ROLE_PREDICTION = 8,    /**< F_theta (binary32) */
     ADCGS_ROLE_COARSE = 9,        /**< F_omega (binary32) */
     ADCGS_ROLE_FINE = 10,         /**< F_varpi (binary32) */
@@ -51,7 +52,8 @@ typedef struct adcgs_layer {
 /**
  * A network. Hidden layers use leaky ReLU of slope 1/64; the last is linear.
  * E24 (roles below 8): input clip(shr(yq, in_shift), 2047); the last layer's rows are [mu of C channels, then sigma index of
- * C channels]; mu = clip(shr(acc, shift), 32767), si = clip3(0, 63, shr(acc, sigma_shift) + sigma_offset).
+ * C channels]; mu = clip(shr(acc, shift), 32767), si = clip3(0, 63, shr(acc, sigma_shift) + sigma_offset). E_q has the former
+ * rows alone, and uses no sigma_shift and no sigma_offset: they are 0.
  * A network with n_in == 0 has one layer and its outputs are its biases.
  */
 typedef struct adcgs_net {
@@ -74,6 +76,16 @@ static inline uint32_t adcgs_net_outputs(const adcgs_net *net)
 {
     return net->layer[net->n_layers - 1].w.rows;
 }
+/** Whether a role's outputs are means and scale indices of a prior, half and half. */
+static inline int adcgs_role_is_prior(int role)
+{
+    return role < ADCGS_ROLE_ENTROPY_STEPS;
+}
+/** Channels of an E24 network: each row of the last layer is one, or each two rows are. */
+static inline uint32_t adcgs_net_channels(const adcgs_net *net)
+{
+    return adcgs_role_is_prior(net->role) ? adcgs_net_outputs(net) / 2 : adcgs_net_outputs(net);
+}
 
 /** An E24 network made ready: int16 weights packed for the CPU level. */
 typedef struct adcgs_e24 adcgs_e24;
@@ -87,6 +99,7 @@ void adcgs_e24_free(adcgs_e24 **net, adcgs_memory *memory);
 /**
  * Evaluate 64 samples. x: [n_in][64] yq in 1/64 step (already the reconstruction; shift and clip happen inside).
  * mu: [C][64] in 1/64 step; si: [C][64] in 0..63, C = n_out/2. scratch: adcgs_e24_scratch() bytes, 64-byte aligned.
+ * Of E_q there is no si (NULL), and C = n_out.
  */
 void adcgs_e24_eval(const adcgs_e24 *net, const int16_t *x, int16_t *mu, uint8_t *si, void *scratch);
 size_t adcgs_e24_scratch(const adcgs_e24 *net);

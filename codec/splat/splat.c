@@ -11,6 +11,7 @@
 #include "splat/floatnet.h"
 #include "splat/splat.h"
 #include "splat/splat_isa.h"
+#include "splat/steps.h"
 
 #include <math.h>
 
@@ -25,6 +26,7 @@ struct adcgs_splat {
     adcgs_dense_dsp dense;
     adcgs_splat_dsp dsp;
     adcgs_floatnet prediction, coarse, fine;
+    adcgs_steps steps;
     uint32_t groups, moving; /* groups of 64 anchors; those in which an anchor moves */
     int width;               /* widest layer of the networks */
     float *out;              /* [OUT_ARRAYS][groups*k*64] */
@@ -64,13 +66,17 @@ static adcgs_slot_out slot_out(const adcgs_splat *s, uint32_t group, int k)
 
 /* ---- Inputs of a group ---- */
 
-/* Latents of 64 anchors as rows of 64 lanes; lanes past the last anchor are 0. stride: values from anchor to anchor. */
-static void load_rows(float *rows, const int16_t *yq, size_t stride, const float *d, int channels, uint32_t first, uint32_t n)
+/*
+ * Latents of 64 anchors as rows of 64 lanes; lanes past the last anchor are 0. stride: values from anchor to anchor.
+ * factor: of each anchor's steps, or NULL.
+ */
+static void load_rows(float *rows, const int16_t *yq, size_t stride, const float *d, int channels, uint32_t first, uint32_t n,
+                      const float *factor)
 {
     memset(rows, 0, (size_t)channels * 64 * sizeof *rows);
     for (uint32_t l = 0; l < 64 && first + l < n; l++)
         for (int c = 0; c < channels; c++)
-            rows[(size_t)c * 64 + l] = (float)yq[(first + l) * stride + (size_t)c] * d[c];
+            rows[(size_t)c * 64 + l] = (float)yq[(first + l) * stride + (size_t)c] * (factor ? d[c] * factor[l] : d[c]);
 }
 
 static void load_positions(adcgs_anchor_lanes *a, const adcgs_model *m, uint32_t first)
@@ -91,6 +97,16 @@ static void load_present(int32_t present[64], const adcgs_model *m, uint32_t fir
         present[l] = first + l < m->n && (m->mask[first + l] >> k & 1);
 }
 
+/* Factors of a group's steps, by adcgs_group_steps(). */
+typedef struct adcgs_group_factors {
+    float of[ADCGS_STEPS_MAX][64];
+} adcgs_group_factors;
+
+static const float *factor_of(const adcgs_model *m, const adcgs_group_factors *factors, int group)
+{
+    return m->params.adaptive_steps ? factors->of[adcgs_group_steps(group)] : NULL;
+}
+
 /* ---- What depends on no time ---- */
 
 typedef struct canonical_job {
@@ -98,8 +114,19 @@ typedef struct canonical_job {
     const uint32_t *moving_index; /* [groups] index among the moving groups, or UINT32_MAX */
 } canonical_job;
 
+/* f_g of primitive k of a group, chunk by chunk: each has factors of its own. */
+static void load_fg(float *fg, const adcgs_model *m, uint32_t first, int k, const adcgs_group_factors *factors)
+{
+    const int n_fg = m->params.n_fg, count = n_fg / m->params.chunks;
+    for (int c = 0; c < n_fg; c += count) {
+        const int chunk = c / count;
+        load_rows(fg + (size_t)c * 64, m->fg + (size_t)(k * n_fg + c), (size_t)(m->params.k * n_fg), m->d_fg + c, count, first,
+                  m->n, factor_of(m, factors, ADCGS_GROUP_FG + chunk));
+    }
+}
+
 static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const adcgs_anchor_lanes *anchor, const float *fv,
-                          float *fg, float *buffers)
+                          const adcgs_group_factors *factors, float *fg, float *buffers)
 {
     const adcgs_model *m = s->model;
     const adcgs_params *p = &m->params;
@@ -111,7 +138,7 @@ static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const 
         adcgs_slot_lanes local, *slot = index == UINT32_MAX ? &local : s->slots + (size_t)index * p->k + k;
         int32_t none[64], *present = index == UINT32_MAX ? none : s->present + ((size_t)index * p->k + (size_t)k) * 64;
         const adcgs_slot_out to = slot_out(s, group, k);
-        load_rows(fg, m->fg + (size_t)k * p->n_fg, (size_t)p->k * p->n_fg, m->d_fg, p->n_fg, group * 64, m->n);
+        load_fg(fg, m, group * 64, k, factors);
         s->dense.dense(z, shared, NULL, first->w + p->n_fv, ldw, fg, first->n_out, p->n_fg);
         s->dsp.predict(slot, anchor, adcgs_floatnet_finish(&s->prediction, &s->dense, z, other));
         load_present(present, m, group * 64, k);
@@ -136,12 +163,15 @@ static void canonical_group(void *arg, int index, int thread)
     adcgs_anchor_lanes local, *anchor = moving == UINT32_MAX ? &local : s->anchors + moving;
     float *sigma = s->scratch + (size_t)thread * s->scratch_rows * 64, *code = sigma + ADCGS_SIGMA_N * 64;
     float *fv = code + (size_t)p->octaves * 6 * 64, *fg = fv + (size_t)p->n_fv * 64, *buffers = fg + (size_t)p->n_fg * 64;
+    adcgs_group_factors factors;
+    adcgs_steps_factors(&s->steps, m, first, factors.of, buffers);
     load_positions(anchor, m, first);
-    load_rows(sigma, m->sigma, ADCGS_SIGMA_N, m->d_sigma, ADCGS_SIGMA_N, first, m->n);
-    load_rows(anchor->colour[0], m->colour, ADCGS_COLOUR_N, m->d_colour, ADCGS_COLOUR_N, first, m->n);
-    load_rows(fv, m->fv, p->n_fv, m->d_fv, p->n_fv, first, m->n);
+    load_rows(sigma, m->sigma, ADCGS_SIGMA_N, m->d_sigma, ADCGS_SIGMA_N, first, m->n, factor_of(m, &factors, ADCGS_GROUP_SIGMA));
+    load_rows(anchor->colour[0], m->colour, ADCGS_COLOUR_N, m->d_colour, ADCGS_COLOUR_N, first, m->n,
+              factor_of(m, &factors, ADCGS_GROUP_COLOUR));
+    load_rows(fv, m->fv, p->n_fv, m->d_fv, p->n_fv, first, m->n, NULL);
     s->dsp.anchor(anchor, sigma);
-    predict_group(s, group, moving, anchor, fv, fg, buffers);
+    predict_group(s, group, moving, anchor, fv, &factors, fg, buffers);
     if (moving == UINT32_MAX)
         return;
     for (uint32_t l = 0; l < 64; l++)
@@ -170,9 +200,10 @@ static uint32_t count_moving(const adcgs_splat *s, uint32_t *moving_index)
     return moving;
 }
 
-static adcgs_status ready_networks(adcgs_splat *s, adcgs_error *error)
+static adcgs_status ready_networks(adcgs_splat *s, adcgs_cpu_level cpu, adcgs_error *error)
 {
     const adcgs_net *nets = s->model->net;
+    ADCGS_TRY(adcgs_steps_init(&s->steps, s->model, cpu, s->memory, error));
     ADCGS_TRY(adcgs_floatnet_init(&s->prediction, &nets[ADCGS_ROLE_PREDICTION], s->memory, error));
     if (s->model->params.time_rows) {
         ADCGS_TRY(adcgs_floatnet_init(&s->coarse, &nets[ADCGS_ROLE_COARSE], s->memory, error));
@@ -195,7 +226,7 @@ static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
     const size_t k = s->model->params.k, moving = s->moving, threads = (size_t)adcgs_pool_threads(s->pool);
     const size_t coarse = (size_t)s->coarse.layer[0].n_out, fine = (size_t)s->fine.layer[0].n_out, row = 64 * sizeof(float);
     int missing = 0;
-    s->scratch_rows = INPUT_ROWS + 3 * (size_t)s->width;
+    s->scratch_rows = INPUT_ROWS + ADCGS_MAX(3 * (size_t)s->width, (adcgs_steps_scratch(&s->steps) + row - 1) / row);
     s->out = get(s, OUT_ARRAYS * s->groups * k, row, &missing, error);
     s->moving_group = get(s, moving, sizeof(uint32_t), &missing, error);
     s->anchors = get(s, moving, sizeof(adcgs_anchor_lanes), &missing, error);
@@ -211,9 +242,9 @@ static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
     return !missing ? ADCGS_OK : error ? error->status : ADCGS_ERR_MEMORY;
 }
 
-static adcgs_status build(adcgs_splat *s, uint32_t *moving_index, adcgs_error *error)
+static adcgs_status build(adcgs_splat *s, adcgs_cpu_level cpu, uint32_t *moving_index, adcgs_error *error)
 {
-    ADCGS_TRY(ready_networks(s, error));
+    ADCGS_TRY(ready_networks(s, cpu, error));
     s->moving = count_moving(s, moving_index);
     ADCGS_TRY(alloc_arrays(s, error));
     for (uint32_t g = 0; g < s->groups; g++)
@@ -253,7 +284,7 @@ adcgs_status adcgs_splat_create(adcgs_splat **out, const adcgs_model *model, adc
     s->groups = (model->n + 63) / 64;
     choose_kernels(s, level);
     uint32_t *moving_index = adcgs_alloc(memory, s->groups, sizeof *moving_index, error);
-    const adcgs_status status = moving_index ? build(s, moving_index, error) : error ? error->status : ADCGS_ERR_MEMORY;
+    const adcgs_status status = moving_index ? build(s, level, moving_index, error) : error ? error->status : ADCGS_ERR_MEMORY;
     adcgs_free(memory, moving_index);
     if (status != ADCGS_OK)
         adcgs_splat_free(&s);
@@ -270,6 +301,7 @@ void adcgs_splat_free(adcgs_splat **splat)
                             s->coarse_part, s->fine_part,    s->scratch, s->time_code, s->coarse_time, s->fine_time};
     for (size_t i = 0; i < ADCGS_COUNTOF(arrays); i++)
         adcgs_free(s->memory, arrays[i]);
+    adcgs_steps_clear(&s->steps, s->memory);
     adcgs_floatnet_clear(&s->prediction, s->memory);
     adcgs_floatnet_clear(&s->coarse, s->memory);
     adcgs_floatnet_clear(&s->fine, s->memory);

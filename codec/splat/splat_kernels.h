@@ -110,25 +110,29 @@ static void turn(adcgs_anchor_motion *m, const float *r)
     }
 }
 
+/* A position or an offset turned by the anchor's rotation. */
+static void turn_vector(float out[3][64], const float in[3][64], const adcgs_anchor_motion *m)
+{
+    for (int c = 0; c < 3; c++) {
+        const float *r0 = m->matrix[3 * c], *r1 = m->matrix[3 * c + 1], *r2 = m->matrix[3 * c + 2];
+        LANES out[c][l] = fmaf(r2[l], in[2][l], fmaf(r1[l], in[1][l], r0[l] * in[0][l]));
+    }
+}
+
 static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const float *out, int rotation)
 {
     for (int c = 0; c < 3; c++)
         LANES {
-            m->position[c][l] = a->position[c][l] + out[c * 64 + l];
+            m->position[c][l] = a->position[c][l];
             m->scale[c][l] = adcgs_exp(adcgs_clampf(out[(3 + c) * 64 + l], -8.0f, 8.0f));
             m->colour[c][l] = out[(6 + c) * 64 + l];
         }
-    if (rotation)
+    if (rotation) {
         turn(m, out + 9 * 64);
-}
-
-/* Offset turned by the anchor's rotation. */
-static void turn_offset(float out[3][64], const adcgs_slot_lanes *s, const adcgs_anchor_motion *m)
-{
-    for (int c = 0; c < 3; c++) {
-        const float *r0 = m->matrix[3 * c], *r1 = m->matrix[3 * c + 1], *r2 = m->matrix[3 * c + 2];
-        LANES out[c][l] = fmaf(r2[l], s->offset[2][l], fmaf(r1[l], s->offset[1][l], r0[l] * s->offset[0][l]));
+        turn_vector(m->position, a->position, m);
     }
+    for (int c = 0; c < 3; c++)
+        LANES m->position[c][l] += out[c * 64 + l];
 }
 
 /* Product of the anchor's rotation and the primitive's; not normalised again. */
@@ -156,7 +160,7 @@ static void deform_anchor(const adcgs_slot_out *to, const adcgs_slot_lanes *s, c
 {
     float turned[3][64];
     if (rotation) {
-        turn_offset(turned, s, m);
+        turn_vector(turned, s->offset, m);
         turn_quaternion(to, s, m, moves);
     }
     for (int c = 0; c < 3; c++) {

@@ -215,6 +215,16 @@ def values(b):
     b.integer("latent", b.m.clip(-64 * largest - 32767, 32767), b.m.clip(64 * largest + 32767, 32767))
 
 
+def step_factors(b):
+    """The range of a factor of steps; the table increases, and has an entry for each index."""
+    table, most = [x.value for x in b.m.names["STEP_FACTOR"]], 2 ** 24 - 1
+    net = Record(in_shift=0, layer=[Record(shift=0, w=Record(rows=2, cols=0), b=Record(m=[[-most], [most]]))])
+    first, last = b.m.step_indices(net, [])
+    assert len(table) == last - first + 1 and all(x < y for x, y in zip(table, table[1:]))
+    b.integer("e24.q", first, last)
+    return Interval(table[0], table[-1])
+
+
 def integer_networks(b):
     a, bound = b.m.names["E24_MAX"], 2 ** 24 - 1
     b.integer("e24.check", 0, 1024 * a * a + 2 ** 31 + 2 ** 23)
@@ -286,27 +296,31 @@ def symmetric(x):
 
 
 def networks(b):
-    """The value of a latent, and the outputs of the three networks."""
+    """The value of a latent with the largest step, and the outputs of the three networks."""
     b.rests_on("y = clamp(x, -86.0, 88.0)")
     b.rests_on("0x1p-40 <= n <= 0x1p+100")
     b.integer("exp.n", *(math.floor(x / math.log(2) + 0.5) for x in (-86, 88)))
     on_intervals(b.m)
     Interval.peak = 0
-    latent = b.m.latent_value(symmetric(32767), Interval(0, b.limit("step", "SEGM_steps")[1]))
+    step, factor = Interval(*b.limit("step", "SEGM_steps")), step_factors(b)
+    latent, varied = b.m.latent_value(symmetric(32767), step, 1), b.m.latent_value(symmetric(32767), step, factor)
+    b.real("latent.step", step * factor)
     b.real("latent.value", latent)
+    b.real("latent.varied", varied)
     weight = symmetric(2 ** 8)
     of_time = fma(Interval(0, 1), weight - weight, weight)
     b.real("time.code", of_time)
     most = {e: b.limit(e, "HEAD")[1] for e in ("n_fv", "n_fg", "octaves", "time_width")}
     fv, code, f_t = [latent] * most["n_fv"], [symmetric(1 + 2.0 ** -20)] * (6 * most["octaves"]), [of_time] * most["time_width"]
-    theta = network(b, "theta", fv + [latent] * most["n_fg"], 14)
-    return latent, theta, network(b, "omega", fv + f_t, 12), network(b, "varpi", code + fv + f_t, 4)
+    theta = network(b, "theta", fv + [varied] * most["n_fg"], 14)
+    return varied, theta, network(b, "omega", fv + f_t, 12), network(b, "varpi", code + fv + f_t, 4)
 
 
 def splats(b):
     m = b.m
     latent, theta, omega, varpi = networks(b)
-    m.names.update(features=lambda latents, steps: [latent] * 6, accumulate=lambda *_: None, outputs=lambda *_: theta)
+    m.names.update(features=lambda latents, steps, factor: [latent] * 6, features_fg=lambda *_: [latent],
+                   step_factors=lambda *_: [1, 1, 1], accumulate=lambda *_: None, outputs=lambda *_: theta)
     model = Record(fv=[None], fg=[[None]], sigma=[None], colour=[None], d_fv=None, d_fg=None, d_sigma=None, d_colour=None,
                    positions=[[Interval(0, 2 ** b.limit("depth", "GEOM")[1] - 1)] * 3],
                    voxel=Interval(0, b.limit("voxel", "GEOM")[1]),

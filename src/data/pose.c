@@ -4,6 +4,8 @@
 
 #include "data/pose.h"
 
+#include "data/sort.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -45,7 +47,7 @@ static void straighten(double pose[12])
         memcpy(pose + 4 * i, r[i], sizeof r[i]);
 }
 
-const char *adcgs_pose_from_opengl(double pose[12])
+const char *adcgs_pose_check(double pose[12])
 {
     double g[3][3];
     for (int i = 0; i < 12; i++)
@@ -64,11 +66,28 @@ const char *adcgs_pose_from_opengl(double pose[12])
         return "is a reflection, expected a rotation";
     for (int i = 0; i < 3; i++)
         straighten(pose);
-    for (int i = 0; i < 3; i++) {
+    return NULL;
+}
+
+const char *adcgs_pose_from_opengl(double pose[12])
+{
+    const char *wrong = adcgs_pose_check(pose);
+    for (int i = 0; !wrong && i < 3; i++) {
         pose[4 * i + 1] = -pose[4 * i + 1];
         pose[4 * i + 2] = -pose[4 * i + 2];
     }
-    return NULL;
+    return wrong;
+}
+
+uint8_t adcgs_pose_axes(const adcgs_scene_view *views, uint32_t n)
+{
+    double up[3] = {0.0, 0.0, 0.0};
+    for (uint32_t v = 0; v < n; v++)
+        for (int i = 0; i < 3; i++)
+            up[i] -= views[v].camera.cam_to_world[4 * i + 1];
+    if (fabs(up[1]) > fabs(up[0]) && fabs(up[1]) > fabs(up[2]))
+        return up[1] > 0.0 ? ADCGS_AXES_Y_UP : ADCGS_AXES_Y_DOWN;
+    return up[2] > fabs(up[0]) ? ADCGS_AXES_Z_UP : ADCGS_AXES_UNKNOWN;
 }
 
 /** Solve the symmetric positive definite 3x3 system a x = b by Cramer's rule. */
@@ -107,12 +126,6 @@ static void find_centre(const adcgs_scene_view *views, uint32_t n, double centre
     solve(a, b, centre);
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n)
 {
     double centre[3];
@@ -125,7 +138,7 @@ double adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n)
         distances[v] = sqrt((p[3] - centre[0]) * (p[3] - centre[0]) + (p[7] - centre[1]) * (p[7] - centre[1]) +
                             (p[11] - centre[2]) * (p[11] - centre[2]));
     }
-    qsort(distances, n, sizeof *distances, compare);
+    adcgs_sort(distances, n);
     const double median = distances[n / 2];
     free(distances);
     return isfinite(median) ? median : 0.0;

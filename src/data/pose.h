@@ -8,12 +8,17 @@
 #define ADCGS_POSE_TOLERANCE 1e-3 /**< largest entry of |R R^T - I| that counts as rounding of a rotation */
 
 /**
- * Make a row-major 3x4 [R|c] in OpenGL axes (y up, looking along -z) one in OpenCV axes with R orthonormal to rounding.
+ * Make R of a row-major 3x4 [R|c] orthonormal to rounding.
  * \return NULL, or what is wrong with it: not finite, singular, scaled, reflected, not orthonormal.
  */
+const char *adcgs_pose_check(double pose[12]);
+/** As adcgs_pose_check(), and from OpenGL axes (y up, looking along -z) to OpenCV axes. */
 const char *adcgs_pose_from_opengl(double pose[12]);
 
 /** Median distance of the cameras from the point nearest to all their axes; 0 if they share one position. */
 double adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n);
+
+/** The world axis that is up in the pictures on the mean, as an adcgs_axes; unknown if that is x or z downwards. */
+uint8_t adcgs_pose_axes(const adcgs_scene_view *views, uint32_t n);
 
 #endif

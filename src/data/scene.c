@@ -4,7 +4,10 @@
 
 #include "data/scene.h"
 
+#include "data/hypernerf.h"
+#include "data/paths.h"
 #include "data/pose.h"
+#include "data/sort.h"
 #include "data/transforms.h"
 
 #include <errno.h>
@@ -17,8 +20,7 @@
 #define TIME_TOLERANCE 1e-6     /* closer times of a layout, which are in [0,1], are one */
 #define NEAR_PER_DISTANCE 0.01
 #define NEAR_LEAST 1e-3
-#define AXES_Z_UP 2             /* the codes of adcgs_stream; both layouts are z up by custom */
-#define COLOUR_SRGB 1
+#define COLOUR_SRGB 1           /* a code of adcgs_stream */
 
 static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
 
@@ -52,12 +54,6 @@ void adcgs_scene_free(adcgs_scene **scene)
     *scene = NULL;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -66,7 +62,7 @@ static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_erro
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     for (uint32_t i = 0; i < n; i++)
         times[i] = scene->views[ADCGS_SPLIT_TRAIN][i].time;
-    qsort(times, n, sizeof *times, compare);
+    adcgs_sort(times, n);
     scene->n_times = 1;
     for (uint32_t i = 1; i < n; i++)
         scene->n_times += times[i] - times[i - 1] > TIME_TOLERANCE;
@@ -95,22 +91,6 @@ static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adc
     return ADCGS_OK;
 }
 
-/** folder/name, allocated; NULL without memory. */
-static char *in_folder(const char *folder, const char *name)
-{
-    const size_t size = strlen(folder) + strlen(name) + 2;
-    char *path = malloc(size);
-    if (path)
-        snprintf(path, size, "%s/%s", folder, name);
-    return path;
-}
-
-static int is_file(const char *path)
-{
-    struct stat status;
-    return path && !stat(path, &status) && S_ISREG(status.st_mode);
-}
-
 /** Take what a file says besides its views; the training split comes first and decides. */
 static void take_facts(adcgs_scene *scene, adcgs_transforms *facts, char **points_path)
 {
@@ -127,12 +107,10 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
 {
     int has_times = 0;
     for (int s = 0; s < ADCGS_SPLITS; s++) {
-        char name[40];
-        snprintf(name, sizeof name, "transforms_%s.json", split_names[s]);
-        char *path = in_folder(scene->directory, name);
+        char *path = adcgs_path("%s/transforms_%s.json", scene->directory, split_names[s]);
         adcgs_transforms facts = {0};
         adcgs_status status = ADCGS_OK;
-        if (is_file(path)) {
+        if (adcgs_is_file(path)) {
             status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
             if (status == ADCGS_OK)
                 take_facts(scene, &facts, points_path);
@@ -159,17 +137,21 @@ static adcgs_status read_single(adcgs_scene *scene, const char *path, char **poi
 }
 
 /** The folder's layout by the files it has. */
-static adcgs_status read_folder(adcgs_scene *scene, char **points_path, adcgs_error *error)
+static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const adcgs_scene_options *options, adcgs_error *error)
 {
-    char *train = in_folder(scene->directory, "transforms_train.json");
-    char *single = in_folder(scene->directory, "transforms.json");
+    char *train = adcgs_path("%s/transforms_train.json", scene->directory);
+    char *single = adcgs_path("%s/transforms.json", scene->directory);
     adcgs_status status;
-    if (is_file(train))
+    if (adcgs_is_file(train))
         status = read_splits(scene, points_path, error);
-    else if (is_file(single))
+    else if (adcgs_is_file(single))
         status = read_single(scene, single, points_path, error);
+    else if (adcgs_is_hypernerf(scene->directory))
+        status = adcgs_hypernerf_read(scene, !options->points_path, error);
     else
-        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: not a scene: neither transforms_train.json nor transforms.json is there",
+        status = adcgs_fail(error, ADCGS_ERR_IO,
+                            "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
+                            "metadata.json and camera/ are there",
                             scene->directory);
     free(train);
     free(single);
@@ -182,8 +164,8 @@ static adcgs_status read_points(adcgs_scene *scene, const char *listed, const ad
         return adcgs_points_read(&scene->points, options->points_path, error);
     if (listed)
         return adcgs_points_read(&scene->points, listed, error);
-    char *customary = in_folder(scene->directory, "points3d.ply");
-    const adcgs_status status = is_file(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
+    char *customary = adcgs_path("%s/points3d.ply", scene->directory);
+    const adcgs_status status = adcgs_is_file(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
     free(customary);
     return status;
 }
@@ -212,16 +194,16 @@ static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, co
                          adcgs_error *error)
 {
     char *points_path = NULL;
-    scene->axes = AXES_Z_UP;
+    scene->axes = ADCGS_AXES_Z_UP; /* by custom of the transforms layouts */
     scene->colour_space = COLOUR_SRGB;
     scene->frame_rate = options->frame_rate;
     adcgs_status status =
-        is_folder ? read_folder(scene, &points_path, error) : read_single(scene, path, &points_path, error);
+        is_folder ? read_folder(scene, &points_path, options, error) : read_single(scene, path, &points_path, error);
     if (!scene->frame_rate)
         scene->frame_rate = DEFAULT_FRAME_RATE;
     if (status == ADCGS_OK)
         status = finish_views(scene, path, options, error);
-    if (status == ADCGS_OK)
+    if (status == ADCGS_OK && !scene->points.position) /* the layout's own may be there already */
         status = read_points(scene, points_path, options, error);
     free(points_path);
     return status;

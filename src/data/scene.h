@@ -4,10 +4,12 @@
  * in. Conventions are converted here, once: cameras are OpenCV-axed pinholes in
  * world units, times are seconds from the start of the scene.
  *
- * Layouts: a folder with transforms_train.json (and _val, _test; D-NeRF), a
- * folder with one transforms.json (nerfstudio), or such a file itself. Without
- * files per split, every 8th frame (0, 8, 16, ...) is for testing and the others are for
- * training. World axes, units and colours are the dataset's own.
+ * Layouts, told by the files that are there:
+ * - a folder with transforms_train.json (and _val, _test; D-NeRF), a folder with one transforms.json (nerfstudio), or such a
+ *   file itself. Without files per split, every 8th frame (0, 8, 16, ...) is for testing and the others are for training.
+ *   World axes, units and colours are the dataset's own.
+ * - a folder with dataset.json, metadata.json and camera/ (HyperNeRF, Nerfies). World units are the layout's working
+ *   coordinates, (x - center) * scale of its scene.json.
  */
 #ifndef ADCGS_DATA_SCENE_H
 #define ADCGS_DATA_SCENE_H
@@ -20,13 +22,16 @@
 
 typedef enum adcgs_split { ADCGS_SPLIT_TRAIN, ADCGS_SPLIT_VAL, ADCGS_SPLIT_TEST, ADCGS_SPLITS } adcgs_split;
 
+/** World axes, right-handed: the codes of adcgs_stream. */
+typedef enum adcgs_axes { ADCGS_AXES_UNKNOWN, ADCGS_AXES_Y_UP, ADCGS_AXES_Z_UP, ADCGS_AXES_Y_DOWN } adcgs_axes;
+
 typedef struct adcgs_scene_view {
     adcgs_camera camera;  /**< at the image's own size; name is the file's stem */
     double time;          /**< seconds */
     char *path;           /**< of the image */
 } adcgs_scene_view;
 
-typedef adcgs_points adcgs_scene_points; /**< positions in world units */
+typedef adcgs_points adcgs_scene_points; /**< positions in world units; as the scene gives them, none left out */
 
 typedef struct adcgs_scene {
     char *directory;
@@ -43,15 +48,15 @@ typedef struct adcgs_scene {
 
 /** Overrides given on a command line. Zero-initialise. */
 typedef struct adcgs_scene_options {
-    const char *points_path;  /**< PLY or Draco file of initial points instead of the scene's own */
+    const char *points_path;  /**< file of initial points, in world units, instead of the scene's own */
     int has_background;
     float background[3];
     double frame_rate;        /**< 0: the scene's, else 30 */
 } adcgs_scene_options;
 
 /**
- * Open a scene folder or its JSON file. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate. The near plane
- * is a hundredth of the median distance of the training cameras from the centre of their views.
+ * Open a scene folder or its JSON file of transforms. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate.
+ * The near plane is a hundredth of the median distance of the training cameras from the centre of their views.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
  * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole.
  */

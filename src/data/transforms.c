@@ -5,10 +5,10 @@
 #include "data/transforms.h"
 
 #include "data/camera_json.h"
+#include "data/paths.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 
 #define TEST_EVERY 8
 
@@ -18,44 +18,27 @@ typedef struct place {
     int width, height;  /**< of the first image, for frames that do not say; 0: not known yet */
 } place;
 
-static int is_file(const char *path)
-{
-    struct stat status;
-    return !stat(path, &status) && S_ISREG(status.st_mode);
-}
-
-/** folder + name + extension, allocated. Absolute names stand for themselves. */
-static char *join(const char *folder, const char *name, const char *extension)
+/** folder + name, allocated. Absolute names stand for themselves. */
+static char *join(const char *folder, const char *name)
 {
     while (name[0] == '.' && name[1] == '/')
         name += 2;
-    if (*name == '/')
-        folder = "";
-    const size_t size = strlen(folder) + strlen(name) + strlen(extension) + 1;
-    char *path = malloc(size);
-    if (path)
-        snprintf(path, size, "%s%s%s", folder, name, extension);
-    return path;
+    return adcgs_path("%s%s", *name == '/' ? "" : folder, name);
 }
 
 /** The image's file: as named, or with an extension that makes it exist. */
 static adcgs_status find_image(const place *at, char **out)
 {
-    static const char *const extensions[] = {"", ".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".webp", ".ppm"};
     const char *name = json_string_value(json_object_get(at->json.frame, "file_path"));
     if (!name || !*name)
         return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "expected the name of an image");
-    for (size_t i = 0; i < ADCGS_COUNTOF(extensions); i++) {
-        char *path = join(at->folder, name, extensions[i]);
-        if (!path)
-            return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "file_path", "out of memory");
-        if (is_file(path)) {
-            *out = path;
-            return ADCGS_OK;
-        }
-        free(path);
-    }
-    return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.100s", name);
+    char *stem = join(at->folder, name);
+    const adcgs_status status = stem ? adcgs_find_image(out, stem, at->json.error)
+                                     : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "file_path", "out of memory");
+    free(stem);
+    if (status == ADCGS_OK && !*out)
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.100s", name);
+    return status;
 }
 
 static adcgs_status read_camera(place *at, const char *image, adcgs_camera *camera)
@@ -167,9 +150,9 @@ static adcgs_status read_root(place *at, adcgs_scene *scene, adcgs_transforms *o
         const char *name = json_string_value(points);
         if (!name)
             return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "ply_file_path", "expected a string");
-        if (!(out->points_path = join(at->folder, name, "")))
+        if (!(out->points_path = join(at->folder, name)))
             return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "ply_file_path", "out of memory");
-        if (!is_file(out->points_path))
+        if (!adcgs_is_file(out->points_path))
             return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "ply_file_path", "no such file: %.100s", name);
     }
     return read_frames(at, scene, out, split);

@@ -7,11 +7,10 @@
 
 #include <math.h>
 
-adcgs_status adcgs_encode_quantise_hook(void *user, const adcgs_fmodel *f, float *const mu[ADCGS_P_ANCHOR],
-                                        float *const value[ADCGS_P_ANCHOR], adcgs_error *error)
+adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error)
 {
     adcgs_model model;
-    const adcgs_status status = adcgs_quantise(&model, f, *(const adcgs_cpu_level *)user, mu, value, error);
+    const adcgs_status status = adcgs_quantise(&model, f, options, error);
     adcgs_model_clear(&model, NULL);
     return status;
 }
@@ -69,8 +68,8 @@ static void set_time(adcgs_stream *s, const adcgs_scene *scene)
     s->duration_ticks = (int64_t)rint(scene->duration * (double)s->rate_num / s->rate_den);
 }
 
-adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_encode_note *notes, uint32_t n_notes,
-                                 adcgs_error *error)
+static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,
+                                uint32_t n_notes, adcgs_error *error)
 {
     const adcgs_scene *scene = t->scene;
     adcgs_stream_init(s);
@@ -89,10 +88,35 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
     if (!s->segments)
         return ADCGS_ERR_MEMORY;
     s->n_segments = 1;
-    ADCGS_TRY(adcgs_quantise(&s->segments[0], t->f, t->cpu, NULL, NULL, error));
+    const adcgs_quantise_options options = { .cpu = t->cpu, .rdo = rdo };
+    ADCGS_TRY(adcgs_quantise(&s->segments[0], t->f, &options, error));
     s->params = s->segments[0].params;
     s->segments[0].time_end = (double)s->duration_ticks * s->timebase_num / s->timebase_den;
     return ADCGS_OK;
+}
+
+adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_encode_note *notes, uint32_t n_notes,
+                                 adcgs_error *error)
+{
+    return make_stream(s, t, NULL, notes, n_notes, error);
+}
+
+adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, double strength, const adcgs_encode_note *notes,
+                                uint32_t n_notes, adcgs_error *error)
+{
+    adcgs_stream stream;
+    adcgs_buffer out;
+    adcgs_rdo rdo;
+    if (strength >= 0)
+        ADCGS_TRY(adcgs_trainer_prices(t, strength, &rdo, error));
+    adcgs_buffer_init(&out);
+    adcgs_status status = make_stream(&stream, t, strength >= 0 ? &rdo : NULL, notes, n_notes, error);
+    if (status == ADCGS_OK)
+        status = adcgs_stream_write(&stream, &out, error);
+    *bytes = stream.bytes;
+    adcgs_buffer_clear(&out);
+    adcgs_stream_clear(&stream, NULL);
+    return status;
 }
 
 /* ---- Proof ---- */

@@ -27,8 +27,18 @@ adcgs_status adcgs_encode_stream(adcgs_stream *stream, const adcgs_trainer *trai
 adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool,
                                    adcgs_error *error);
 
-/** The hook that gives a trainer exact quantisation; user: the trainer's resolved CPU level, adcgs_cpu_level *. */
-adcgs_status adcgs_encode_quantise_hook(void *user, const adcgs_fmodel *f, float *const mu[ADCGS_P_ANCHOR],
-                                        float *const value[ADCGS_P_ANCHOR], adcgs_error *error);
+/** The hook that gives a trainer exact quantisation (adcgs_train_quantise). */
+adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error);
+
+/**
+ * Bytes of the stream that adcgs_encode_stream() and adcgs_stream_write() would make, with the same notes, if the frozen values
+ * were decided anew by adcgs_trainer_choose() with this strength: exact, from the coder itself; nothing is changed or written.
+ * Takes about as long as quantising and coding once, tens of milliseconds for a few thousand anchors. More strength gives
+ * fewer bytes, but not strictly: choices are greedy, so equal or slightly more is possible from one strength to the next; who
+ * bisects compares with the bytes, not with an order. ADCGS_ERR_USAGE before the trainer is frozen. A negative strength, at any
+ * time: with the values as they stand.
+ */
+adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *trainer, double strength, const adcgs_encode_note *notes,
+                                uint32_t n_notes, adcgs_error *error);
 
 #endif

@@ -2,12 +2,16 @@
 /** \file Float model to adcgs_model. */
 #include "encode/quantise.h"
 
+#include "encode/rdo.h"
+#include "model/model_priv.h"
+#include "splat/steps.h"
+
 #include <math.h>
 
 /* ---- Networks ---- */
 
-/** Fraction bits of an entropy network's weights, and of its inputs and hidden activations (units of 16 steps). */
-enum { E24_WEIGHT_BITS = 6, E24_ACTIVATION_BITS = 6, E24_INPUT_SHIFT = 4 };
+/** The largest binary32 below 2^8, which weights of binary32 networks are held under. */
+#define FLOAT_WEIGHT_MAX 0x1.fffffep7f
 
 static adcgs_status tensor_alloc(adcgs_tensor *t, uint32_t rows, uint32_t cols, int e, adcgs_error *error)
 {
@@ -28,49 +32,50 @@ static void tensor_set(adcgs_tensor *t, const float *w, double scale, int32_t li
     }
 }
 
-/** Keep A*sum|w| + |b| + rounding inside 2^24 by shrinking the row: never needed by networks that trained normally. */
-static void bound_row(adcgs_layer *layer, uint32_t row, int shift)
+/** Without a lattice the bits of the numbers themselves, within what networks may hold: no subnormals, magnitudes below 2^8. */
+static void tensor_set_exact(adcgs_tensor *t, const float *w)
 {
-    int32_t *w = layer->w.m + (size_t)row * layer->w.cols, *b = &layer->b.m[row];
-    for (;;) {
-        int64_t sum = 0;
-        for (uint32_t i = 0; i < layer->w.cols; i++)
-            sum += w[i] < 0 ? -(int64_t)w[i] : w[i];
-        if (2047 * sum + (*b < 0 ? -(int64_t)*b : *b) + ((int64_t)1 << shift) < (1 << 24))
-            return;
-        for (uint32_t i = 0; i < layer->w.cols; i++)
-            w[i] /= 2;
-        *b /= 2;
+    t->mode = 1;
+    for (size_t i = 0; i < (size_t)t->rows * t->cols; i++) {
+        const float v = adcgs_bounded(w[i], -FLOAT_WEIGHT_MAX, FLOAT_WEIGHT_MAX);
+        t->m[i] = (int32_t)adcgs_float_bits(fabsf(v) < 0x1p-126f ? 0 : v);
     }
 }
 
-/** The integer form of an entropy network; its float twin is rate.c's, in units of the gains of train/dsp.h. */
-static adcgs_status entropy_network(adcgs_net *net, const adcgs_mlp *m, const float *p, int role, adcgs_error *error)
+/** The integer form of an entropy network; weights: its twin's on the lattice, from adcgs_mlp_integer(). */
+static adcgs_status entropy_network(adcgs_net *net, const adcgs_mlp *m, const float *weights, int role, adcgs_error *error)
 {
-    const int unit = E24_WEIGHT_BITS + E24_ACTIVATION_BITS;
+    const int one = 1 << ADCGS_E24_BITS, prior = adcgs_role_is_prior(role);
     net->present = 1;
     net->role = (uint8_t)role;
     net->n_layers = (uint8_t)(m->hidden + 1);
-    net->in_shift = E24_INPUT_SHIFT;
+    net->in_shift = ADCGS_E24_INPUT_SHIFT;
     for (int i = 0; i <= m->hidden; i++) {
         adcgs_layer *layer = &net->layer[i];
         const int last = i == m->hidden;
-        ADCGS_TRY(tensor_alloc(&layer->w, (uint32_t)m->n_out[i], (uint32_t)m->in[i], E24_WEIGHT_BITS, error));
+        ADCGS_TRY(tensor_alloc(&layer->w, (uint32_t)m->n_out[i], (uint32_t)m->in[i], ADCGS_E24_BITS, error));
         ADCGS_TRY(tensor_alloc(&layer->b, (uint32_t)m->n_out[i], 1, 0, error));
-        tensor_set(&layer->w, p + m->w[i], ldexp(1, E24_WEIGHT_BITS), 2047);
+        tensor_set(&layer->w, weights + m->w[i], one, ADCGS_E24_MAX);
         /* Biases live at the accumulators' scale; on the weights' lattice their low bits are zero and cost nothing. */
-        tensor_set(&layer->b, p + m->b[i], ldexp(1, E24_WEIGHT_BITS), 1 << 14);
-        for (uint32_t j = 0; j < layer->b.rows; j++)
-            layer->b.m[j] *= 1 << E24_ACTIVATION_BITS;
+        tensor_set(&layer->b, weights + m->b[i], (double)one * one, (1 << 24) - 1);
         layer->residual = (uint8_t)(i > 0 && !last);
-        /* Hidden: back to activation bits. Output mu: gain 16 (2^4) in 1/64 step (2^6). */
-        layer->shift = (uint8_t)(last ? unit - 10 : E24_WEIGHT_BITS);
-        for (uint32_t j = 0; j < layer->w.rows; j++)
-            bound_row(layer, j, unit - 3);
+        /* Hidden: back to the activations' lattice. Output mu: gain 16 (2^4) in 1/64 step (2^6). Output q: gain 8. */
+        layer->shift = (uint8_t)(!last ? ADCGS_E24_BITS : 2 * ADCGS_E24_BITS - (prior ? 10 : 3));
     }
-    net->sigma_shift = (uint8_t)(unit - 3); /* gain 8 */
-    net->sigma_offset = (int16_t)ADCGS_SI_CENTRE;
+    net->sigma_shift = (uint8_t)(prior ? 2 * ADCGS_E24_BITS - 3 : 0); /* gain 8 */
+    net->sigma_offset = (int16_t)(prior ? ADCGS_SI_CENTRE : 0);
     return ADCGS_OK;
+}
+
+static adcgs_status integer_network(adcgs_net *net, const adcgs_mlp *m, const float *p, int role, adcgs_error *error)
+{
+    float *weights = adcgs_alloc(NULL, m->n, sizeof *weights, error);
+    if (!weights)
+        return ADCGS_ERR_MEMORY;
+    adcgs_mlp_integer(m, p, weights);
+    const adcgs_status status = entropy_network(net, m, weights, role, error);
+    adcgs_free(NULL, weights);
+    return status;
 }
 
 static adcgs_status float_network(adcgs_net *net, const adcgs_mlp *m, const float *p, int role, adcgs_error *error)
@@ -80,13 +85,18 @@ static adcgs_status float_network(adcgs_net *net, const adcgs_mlp *m, const floa
     net->n_layers = (uint8_t)(m->hidden + 1);
     for (int i = 0; i <= m->hidden; i++) {
         adcgs_layer *layer = &net->layer[i];
-        const int e = m->lattice[i] == 127 ? 12 : m->lattice[i];
-        const int32_t limit = ADCGS_MIN((1 << 24) - 1, (1 << (e + 8)) - 1);
+        const int exact = m->lattice[i] == ADCGS_LATTICE_NONE, e = exact ? 0 : m->lattice[i];
+        const int32_t limit = (int32_t)ldexpf(FLOAT_WEIGHT_MAX, ADCGS_MIN(e, 16));
         const size_t biases = (i < m->hidden ? m->w[i + 1] : m->n) - m->b[i];
         ADCGS_TRY(tensor_alloc(&layer->w, (uint32_t)m->n_out[i], (uint32_t)m->in[i], e, error));
         ADCGS_TRY(tensor_alloc(&layer->b, (uint32_t)biases, 1, e, error));
-        tensor_set(&layer->w, p + m->w[i], ldexp(1, e), limit);
-        tensor_set(&layer->b, p + m->b[i], ldexp(1, e), limit);
+        if (exact) {
+            tensor_set_exact(&layer->w, p + m->w[i]);
+            tensor_set_exact(&layer->b, p + m->b[i]);
+        } else {
+            tensor_set(&layer->w, p + m->w[i], ldexp(1, e), limit);
+            tensor_set(&layer->b, p + m->b[i], ldexp(1, e), limit);
+        }
         layer->residual = i > 0 && i < m->hidden;
     }
     return ADCGS_OK;
@@ -100,14 +110,15 @@ static adcgs_status set_networks(adcgs_model *model, const adcgs_fmodel *f, adcg
         [ADCGS_P_E_SIGMA] = ADCGS_ROLE_ENTROPY_SIGMA, [ADCGS_P_E_COLOUR] = ADCGS_ROLE_ENTROPY_COLOUR,
         [ADCGS_P_E_FG] = ADCGS_ROLE_ENTROPY_FG, [ADCGS_P_E_FG + 1] = ADCGS_ROLE_ENTROPY_FG + 1,
         [ADCGS_P_E_FG + 2] = ADCGS_ROLE_ENTROPY_FG + 2, [ADCGS_P_E_FG + 3] = ADCGS_ROLE_ENTROPY_FG + 3,
+        [ADCGS_P_E_STEPS] = ADCGS_ROLE_ENTROPY_STEPS,
     };
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         const int deforms = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI || i == ADCGS_P_TIME;
         if (!f->mlp[i].n || (deforms && !model->params.time_rows))
             continue;
         adcgs_net *net = &model->net[roles[i]];
-        if (i >= ADCGS_P_E_FV)
-            ADCGS_TRY(entropy_network(net, &f->mlp[i], f->param[i].p, roles[i], error));
+        if (f->mlp[i].entropy)
+            ADCGS_TRY(integer_network(net, &f->mlp[i], f->param[i].p, roles[i], error));
         else
             ADCGS_TRY(float_network(net, &f->mlp[i], f->param[i].p, roles[i], error));
     }
@@ -137,9 +148,8 @@ static void set_steps(adcgs_model *model, const adcgs_fmodel *f)
             d[i][r] = f->step[i][r] * 0x1p-6f;
     const float *prior = f->param[ADCGS_P_ETA_PRIOR].p;
     for (int i = 0; i < f->params.n_eta; i++) {
-        const double si = rint(ADCGS_SI_GAIN * prior[f->params.n_eta + i] + ADCGS_SI_CENTRE);
-        model->eta_mu[i] = (int16_t)rint(fmin(fmax(64 * ADCGS_MU_GAIN * prior[i], -4096), 4096));
-        model->eta_si[i] = (uint8_t)fmin(fmax(si, 0), 63);
+        model->eta_mu[i] = (int16_t)adcgs_coder_mean(prior[i]);
+        model->eta_si[i] = (uint8_t)adcgs_coder_level(prior[f->params.n_eta + i]);
     }
 }
 
@@ -148,8 +158,22 @@ static void set_steps(adcgs_model *model, const adcgs_fmodel *f)
 typedef struct quantiser {
     const adcgs_fmodel *f;
     const adcgs_model *model;
-    float *const *mu, *const *value;
+    const adcgs_quantise_options *o;
+    adcgs_steps steps;
+    float (*factor)[ADCGS_LANES]; /**< [groups * steps.n] */
+    void *scratch;                /**< of steps */
 } quantiser;
+
+/** Factor of the steps of a site. Those of 64 anchors follow from their f_v, which is final when Sigma_v begins. */
+static float factor_of(const quantiser *q, const adcgs_latent_site *s)
+{
+    if (!q->steps.n || s->group < ADCGS_GROUP_SIGMA)
+        return 1;
+    float(*factor)[ADCGS_LANES] = q->factor + (size_t)(s->anchor / ADCGS_LANES) * (size_t)q->steps.n;
+    if (s->group == ADCGS_GROUP_SIGMA && s->anchor % ADCGS_LANES == 0)
+        adcgs_steps_factors(&q->steps, q->model, s->anchor, factor, q->scratch);
+    return factor[adcgs_group_steps(s->group)][s->anchor % ADCGS_LANES];
+}
 
 static void quantise_site(void *user, const adcgs_latent_site *s)
 {
@@ -159,18 +183,25 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
     const int group = s->group >= ADCGS_GROUP_FG ? ADCGS_P_FG : groups[s->group];
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
     const int base = group == ADCGS_P_FG ? s->k * f->params.n_fg : 0;
+    const float *target = q->o->rdo ? q->o->rdo->target[group] : f->param[group].p;
+    const float factor = factor_of(q, s);
+    const float *curvature = q->o->rdo ? q->o->rdo->curvature[group] : NULL;
     for (int c = 0; c < s->count; c++) {
         const int row = base + s->first + c;
         const size_t at = ((size_t)(s->anchor / 64) * rows + (size_t)row) * 64 + s->anchor % 64;
-        const double target = 64.0 * f->param[group].p[at] / f->step[group][row];
-        const int32_t mu = s->mu[c], most = s->si[c] ? ADCGS_MIN(adcgs_value_max(q->model->shape[s->group], s->si[c]), 500) : 0;
-        double n = rint((target - mu) / 64);
+        const float d = f->step[group][row] * 0x1p-6f * factor, step = 64 * d;
+        const int32_t mu = s->mu[c], most = s->si[c] ? ADCGS_LEVEL_MAX : 0; /* what every level can code, but 0 */
+        const double wanted = (64.0 * target[at] / step - mu) / 64;
+        double n = rint(wanted);
         n = n >= most ? most : n >= -most ? n : -most; /* whatever n is, a value within reach */
+        if (curvature)
+            n = adcgs_rdo_level(q->model->shape[s->group], s->si[c], wanted, (int32_t)n,
+                                0.5 * curvature[at] * step * step, q->o->rdo->lambda_bit);
         s->yq[c] = (int16_t)adcgs_clip(64 * (int32_t)n + mu, 32767);
-        if (q->mu)
-            q->mu[group][at] = (float)mu;
-        if (q->value)
-            q->value[group][at] = (float)s->yq[c] * (f->step[group][row] * 0x1p-6f);
+        if (q->o->mu)
+            q->o->mu[group][at] = adcgs_mean_pack((float)mu, most == 0);
+        if (q->o->value)
+            q->o->value[group][at] = (float)s->yq[c] * d;
     }
 }
 
@@ -183,8 +214,34 @@ static int moves(const adcgs_fmodel *f)
     return 0;
 }
 
-adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, adcgs_cpu_level cpu, float *const mu[ADCGS_P_ANCHOR],
-                            float *const value[ADCGS_P_ANCHOR], adcgs_error *error)
+/** Quantise all latents of the model along the walk that defines their order. */
+static adcgs_status walk_latents(quantiser *q, adcgs_model *model, adcgs_error *error)
+{
+    adcgs_latents *latents;
+    ADCGS_TRY(adcgs_latents_create(&latents, model, q->o->cpu, NULL, error));
+    adcgs_status status = ADCGS_OK;
+    for (int layer = 0; status == ADCGS_OK && layer < model->layers; layer++)
+        status = adcgs_latents_walk(latents, model, layer, 0, model->n, quantise_site, q);
+    adcgs_latents_free(&latents);
+    return status;
+}
+
+static adcgs_status quantise_latents(adcgs_model *model, const adcgs_fmodel *f, const adcgs_quantise_options *options,
+                                     adcgs_error *error)
+{
+    quantiser q = { .f = f, .model = model, .o = options };
+    ADCGS_TRY(adcgs_steps_init(&q.steps, model, options->cpu, NULL, error));
+    float *own = options->factor ? NULL : adcgs_alloc(NULL, (size_t)f->groups * (size_t)q.steps.n * 64, sizeof *own, error);
+    q.factor = (float(*)[ADCGS_LANES])(options->factor ? options->factor : own);
+    q.scratch = adcgs_alloc(NULL, adcgs_steps_scratch(&q.steps), 1, error);
+    const adcgs_status status = q.factor && q.scratch ? walk_latents(&q, model, error) : ADCGS_ERR_MEMORY;
+    adcgs_free(NULL, own);
+    adcgs_free(NULL, q.scratch);
+    adcgs_steps_clear(&q.steps, NULL);
+    return status;
+}
+
+adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error)
 {
     memset(model, 0, sizeof *model);
     model->params = f->params;
@@ -194,17 +251,11 @@ adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, adcgs_cpu
     model->depth = (uint8_t)f->shape.depth;
     memcpy(model->origin, f->origin, sizeof model->origin);
     model->voxel = f->voxel;
-    model->layers = (uint8_t)(1 + f->params.chunks);
+    model->layers = (uint8_t)adcgs_params_layers(&f->params);
     ADCGS_TRY(adcgs_model_alloc(model, NULL, error));
     set_anchors(model, f);
     set_steps(model, f);
+    memcpy(model->shape, f->density, sizeof model->shape);
     ADCGS_TRY(set_networks(model, f, error));
-    adcgs_latents *latents;
-    ADCGS_TRY(adcgs_latents_create(&latents, model, cpu, NULL, error));
-    quantiser q = { f, model, mu, value };
-    adcgs_status status = ADCGS_OK;
-    for (int layer = 0; status == ADCGS_OK && layer <= f->params.chunks; layer++)
-        status = adcgs_latents_walk(latents, model, layer, 0, model->n, quantise_site, &q);
-    adcgs_latents_free(&latents);
-    return status;
+    return quantise_latents(model, f, options, error);
 }

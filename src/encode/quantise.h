@@ -8,13 +8,13 @@
 #define ADCGS_ENCODE_QUANTISE_H
 
 #include "model/latents.h"
-#include "train/pass.h"
+#include "train/rdo.h"
 
 /**
- * Build the model of f. Anchors are f's, in their Morton order. mu, value: if not NULL, receive per anchor group the predicted
- * means (1/64 step) and the decoded values, laid out like f's parameters. The caller clears the model.
+ * Build the model of f. Anchors are f's, in their Morton order. Values that lie on levels already, as those of a frozen model
+ * do, come out as they are. The caller clears the model.
  */
-adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, adcgs_cpu_level cpu, float *const mu[ADCGS_P_ANCHOR],
-                            float *const value[ADCGS_P_ANCHOR], adcgs_error *error);
+adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adcgs_quantise_options *options,
+                            adcgs_error *error);
 
 #endif

@@ -57,8 +57,10 @@ adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error 
         status = adcgs_ply_parse(out, data, bytes, path, error);
     else if (bytes >= 5 && !memcmp(data, "DRACO", 5))
         status = adcgs_draco_parse(out, data, bytes, path, error);
+    else if (bytes >= 6 && !memcmp(data, "\x93NUMPY", 6))
+        status = adcgs_npy_parse(out, data, bytes, path, error);
     else
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: neither a PLY nor a Draco file", path);
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: neither a PLY nor a Draco nor an NPY file", path);
     free(data);
     if (status == ADCGS_OK)
         status = check_finite(out, path, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Point clouds in files: PLY by our own reader, Draco behind a shim. */
+/** \file Point clouds in files: PLY and NPY by our own readers, Draco behind a shim. */
 #ifndef ADCGS_IO_POINTS_H
 #define ADCGS_IO_POINTS_H
 
@@ -21,7 +21,7 @@ typedef struct adcgs_points {
 adcgs_status adcgs_points_alloc(adcgs_points *points, uint64_t n, const char *path, adcgs_error *error);
 void adcgs_points_free(adcgs_points *points);
 
-/** Read PLY or Draco, told by content. */
+/** Read PLY, Draco or NPY, told by content. */
 adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error *error);
 
 /**
@@ -32,6 +32,12 @@ adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error 
 adcgs_status adcgs_ply_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 /** Binary little-endian PLY with float positions and uchar colours. Atomic. */
 adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs_error *error);
+
+/**
+ * NPY in memory, formats 1.0 to 3.0: a little-endian array of binary32 or binary64, shape (n,3), C order, and nothing behind
+ * it. Binary64 is rounded. A zero byte stands behind the data; positions need not be finite yet.
+ */
+adcgs_status adcgs_npy_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 
 /** Draco in memory, point cloud or mesh (whose vertices are taken). */
 adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);

@@ -2,6 +2,7 @@
 /** \file Quality of a decoded stream against a scene's pictures. */
 #include "metric/evaluate.h"
 
+#include "data/sort.h"
 #include "metric/metric.h"
 
 #include <stdlib.h>
@@ -53,12 +54,6 @@ static adcgs_status score_view(adcgs_decoder *decoder, const adcgs_scene *scene,
     return status;
 }
 
-static int compare_double(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 adcgs_status adcgs_evaluate(adcgs_evaluation *out, adcgs_decoder *decoder, const adcgs_scene *scene, adcgs_split split,
                             adcgs_score_fn each, void *user, adcgs_error *error)
 {
@@ -80,7 +75,7 @@ adcgs_status adcgs_evaluate(adcgs_evaluation *out, adcgs_decoder *decoder, const
         }
     }
     if (status == ADCGS_OK) {
-        qsort(seconds, n, sizeof *seconds, compare_double);
+        adcgs_sort(seconds, n);
         out->frames_per_second = seconds[n / 2] > 0 ? 1 / seconds[n / 2] : 0;
     }
     free(seconds);

@@ -3,9 +3,9 @@
 #include "config.h"
 
 #include "encode/encode.h"
+#include "encode/raw.h"
 #include "io/atomic.h"
-#include "metric/evaluate.h"
-#include "tools/cli.h"
+#include "tools/enc_report.h"
 
 #include <adcgs/adcgs.h>
 
@@ -13,13 +13,12 @@
 #include <sys/stat.h>
 
 static const char *const cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
-static const char *const stage_names[] = { "none", "coarse", "fine", "deformation", "rate", "refinement", NULL };
 
 typedef struct enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points;
-    double lambda, time_limit;
-    int iterations, scale, k, max_anchors, threads, cpu, without, json, has_lambda;
-    uint64_t seed;
+    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    double lambda, psnr, time_limit;
+    int iterations, scale, k, max_anchors, threads, cpu, json, has_lambda, has_size, has_psnr;
+    uint64_t seed, size;
 } enc_options;
 
 /* ---- What the run shows and logs ---- */
@@ -31,6 +30,7 @@ typedef struct watcher {
     FILE *log;
     double saved;
     adcgs_train_report last;
+    size_t uncompressed_bytes;
     uint32_t next_log; /**< iteration */
     adcgs_error error;
 } watcher;
@@ -41,11 +41,15 @@ static void log_last(watcher *w)
     if (!w->log)
         return;
     w->next_log = r->iteration + 100;
+    static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
     fprintf(w->log,
             "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,\"loss\":%.6g,\"psnr\":%.4f,\"anchors\":%u,\"divide\":%d,"
-            "\"bytes\":%.0f,\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d}\n",
-            r->stage, r->iteration, r->iterations, r->loss, r->psnr, r->anchors, r->divide, r->bytes, r->rate, r->seconds,
-            r->rollbacks);
+            "\"bytes\":%.0f,\"lambda\":%.6g,\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d",
+            r->stage, r->iteration, r->iterations, r->loss, r->psnr, r->anchors, r->divide, r->bytes, r->lambda, r->rate,
+            r->seconds, r->rollbacks);
+    for (int i = 0; i < ADCGS_GROUPS; i++)
+        fprintf(w->log, "%s\"%s\":%.0f", i ? "," : ",\"streams\":{", streams[i], r->stream[i]);
+    fputs("}}\n", w->log);
     fflush(w->log);
 }
 
@@ -71,23 +75,34 @@ static int observe(void *user, const adcgs_train_report *r)
 static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_train_preset(c, o->preset, error));
+    if (o->set)
+        ADCGS_TRY(adcgs_train_set(c, o->set, error));
     c->seed = o->seed;
     c->time_limit = o->time_limit;
     c->scale = o->scale;
     if (o->has_lambda)
         c->lambda = (float)o->lambda;
+    if (o->has_size || o->has_psnr) {
+        c->target = o->has_size ? ADCGS_TARGET_SIZE : ADCGS_TARGET_PSNR;
+        c->target_value = o->has_size ? (double)o->size : o->psnr;
+    }
     if (o->iterations)
         c->iterations = (uint32_t)o->iterations;
     if (o->k)
         c->params.k = (uint8_t)o->k;
     if (o->max_anchors) {
         c->max_anchors = (uint32_t)o->max_anchors;
+        c->own_anchors = 1;
         c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
     }
-    c->without_coarse = o->without == 1 || o->without == 3;
-    c->without_fine = o->without == 2 || o->without == 3;
-    c->without_rate = o->without == 4;
-    c->without_refinement = o->without == 5;
+    if (o->without)
+        ADCGS_TRY(adcgs_train_leave_out(c, o->without, error));
+    c->without_rate |= o->uncompressed != NULL;
+    c->without_rounding |= o->uncompressed != NULL;
+    if (c->target != ADCGS_TARGET_NONE && (c->without_rate || c->without_rounding))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--size and --psnr need rate: neither --without rate nor --uncompressed");
+    if (o->beginning && adcgs_train_lambda_from(c) >= 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--beginning: lambda has no say in this run, so its beginning has no end");
     return ADCGS_OK;
 }
 
@@ -105,116 +120,96 @@ static adcgs_status check_writable(const char *path, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static adcgs_status write_stream(adcgs_stream *stream, const watcher *w, const adcgs_train_config *c, adcgs_pool *pool,
-                                 adcgs_error *error)
+static adcgs_status write_bytes(const char *path, const adcgs_buffer *bytes, adcgs_error *error)
 {
-    char seed[32], lambda[32], iterations[32];
-    snprintf(seed, sizeof seed, "%llu", (unsigned long long)c->seed);
-    snprintf(lambda, sizeof lambda, "%g", (double)c->lambda);
-    snprintf(iterations, sizeof iterations, "%u", w->t->iteration);
-    const adcgs_encode_note notes[] = {
-        { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", c->preset }, { "lambda", lambda }, { "iterations", iterations },
-        { "seed", seed },
-    };
-    adcgs_buffer bytes;
     adcgs_atomic file;
+    ADCGS_TRY(adcgs_atomic_open(&file, path, error));
+    if (fwrite(bytes->data, 1, bytes->size, file.file) == bytes->size)
+        return adcgs_atomic_commit(&file, error);
+    adcgs_atomic_abort(&file);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write %zu bytes", path, bytes->size);
+}
+
+/** The model as plain numbers, next to the stream. */
+static adcgs_status write_uncompressed(watcher *w, const adcgs_model *model, adcgs_error *error)
+{
+    adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
-    adcgs_status status = adcgs_encode_stream(stream, w->t, notes, ADCGS_COUNTOF(notes), error);
+    adcgs_status status = adcgs_raw_write(model, &bytes, error);
     if (status == ADCGS_OK)
-        status = adcgs_encode_verified(stream, &bytes, w->t->cpu, pool, error);
-    if (status == ADCGS_OK)
-        status = adcgs_atomic_open(&file, w->o->output, error);
-    if (status == ADCGS_OK) {
-        if (fwrite(bytes.data, 1, bytes.size, file.file) == bytes.size)
-            status = adcgs_atomic_commit(&file, error);
-        else {
-            adcgs_atomic_abort(&file);
-            status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write %zu bytes", w->o->output, bytes.size);
-        }
-    }
+        status = write_bytes(w->o->uncompressed, &bytes, error);
+    w->uncompressed_bytes = bytes.size;
     adcgs_buffer_clear(&bytes);
     return status;
 }
 
-static void print_text(const enc_options *o, const adcgs_info *info, const adcgs_evaluation *e, const char *split, double seconds)
+/** What the stream tells of how it was made. */
+typedef struct notes {
+    adcgs_encode_note list[5];
+    char seed[32], lambda[32], iterations[32];
+} notes;
+
+static void take_notes(notes *n, const adcgs_trainer *t)
 {
-    const adcgs_bytes *b = &info->bytes;
-    const uint64_t features = b->layer[0] + b->layer[1] + b->layer[2] + b->layer[3] + b->layer[4];
-    fprintf(stderr, "%s: %llu bytes: networks %llu, geometry %llu, features %llu, cameras %llu, rest %llu\n", o->output,
-            (unsigned long long)b->total, (unsigned long long)b->networks, (unsigned long long)b->geometry,
-            (unsigned long long)features, (unsigned long long)b->cameras, (unsigned long long)(b->header + b->metadata));
-    fprintf(stderr, "%u anchors (%u static), %u primitives; trained in %.0f s\n", info->anchors, info->static_anchors,
-            info->gaussians, seconds);
-    fprintf(stderr, "decoded from the file, %u %s views: %.2f dB PSNR, %.4f SSIM\n", e->n, split, e->psnr, e->ssim);
+    snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
+    snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
+    snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
+    const adcgs_encode_note list[ADCGS_COUNTOF(n->list)] = {
+        { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
+        { "iterations", n->iterations }, { "seed", n->seed },
+    };
+    memcpy(n->list, list, sizeof list);
 }
 
-static adcgs_status print_json(const enc_options *o, const adcgs_info *info, const adcgs_evaluation *e, const char *split,
-                               double seconds, adcgs_error *error)
+/** The bytes that the run's file would have. */
+static adcgs_status measure(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *error)
 {
-    adcgs_json j;
-    adcgs_json_init(&j, stdout);
-    adcgs_json_open(&j, NULL, '{');
-    adcgs_json_string(&j, "file", o->output);
-    adcgs_json_int(&j, "bytes", (int64_t)info->bytes.total);
-    adcgs_json_open(&j, "components", '{');
-    adcgs_json_int(&j, "header", (int64_t)info->bytes.header);
-    adcgs_json_int(&j, "networks", (int64_t)info->bytes.networks);
-    adcgs_json_int(&j, "geometry", (int64_t)info->bytes.geometry);
-    for (int i = 0; i < 5; i++) {
-        char name[24];
-        snprintf(name, sizeof name, "layer%d", i);
-        adcgs_json_int(&j, name, (int64_t)info->bytes.layer[i]);
-    }
-    adcgs_json_int(&j, "cameras", (int64_t)info->bytes.cameras);
-    adcgs_json_int(&j, "metadata", (int64_t)info->bytes.metadata);
-    adcgs_json_close(&j, '}');
-    adcgs_json_int(&j, "anchors", info->anchors);
-    adcgs_json_int(&j, "static_anchors", info->static_anchors);
-    adcgs_json_int(&j, "primitives", info->gaussians);
-    adcgs_json_real(&j, "training_seconds", seconds);
-    adcgs_json_string(&j, "split", split);
-    adcgs_json_real(&j, "psnr", e->psnr);
-    adcgs_json_real(&j, "ssim", e->ssim);
-    adcgs_json_close(&j, '}');
-    return adcgs_json_finish(&j, error);
+    notes n;
+    (void)user;
+    take_notes(&n, t);
+    return adcgs_encode_bytes(bytes, t, -1, n.list, ADCGS_COUNTOF(n.list), error);
 }
 
-/** Measure the file just written, from disk, on views that training never saw if the scene has any. */
-static adcgs_status report(const enc_options *o, const adcgs_scene *scene, double seconds, adcgs_error *error)
+static adcgs_status write_stream(adcgs_stream *stream, watcher *w, adcgs_pool *pool, adcgs_error *error)
 {
-    const adcgs_split split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
-                              scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
-    adcgs_config config;
-    adcgs_decoder *decoder;
-    adcgs_info info;
-    adcgs_evaluation evaluation;
-    adcgs_config_init(&config);
-    config.threads = o->threads;
-    config.cpu = (adcgs_cpu_level)o->cpu;
-    ADCGS_TRY(adcgs_open_file(&decoder, o->output, &config, error));
-    adcgs_status status = adcgs_get_info(decoder, &info);
+    notes n;
+    adcgs_buffer bytes;
+    take_notes(&n, w->t);
+    adcgs_buffer_init(&bytes);
+    if (w->o->uncompressed)
+        adcgs_raw_prepare(w->t->f);
+    adcgs_status status = adcgs_encode_stream(stream, w->t, n.list, ADCGS_COUNTOF(n.list), error);
     if (status == ADCGS_OK)
-        status = adcgs_evaluate(&evaluation, decoder, scene, split, NULL, NULL, error);
-    if (status == ADCGS_OK && o->json)
-        status = print_json(o, &info, &evaluation, adcgs_split_name(split), seconds, error);
-    else if (status == ADCGS_OK)
-        print_text(o, &info, &evaluation, adcgs_split_name(split), seconds);
-    adcgs_close(&decoder);
+        status = adcgs_encode_verified(stream, &bytes, w->t->cpu, pool, error);
+    if (status == ADCGS_OK && w->t->config.target == ADCGS_TARGET_SIZE && bytes.size > w->o->size)
+        status = adcgs_fail(error, ADCGS_ERR_USAGE, "%s: not written, since a single anchor and its networks take %zu bytes",
+                            w->o->output, bytes.size);
+    if (status == ADCGS_OK)
+        status = write_bytes(w->o->output, &bytes, error);
+    if (status == ADCGS_OK && w->o->uncompressed)
+        status = write_uncompressed(w, &stream->segments[0], error);
+    adcgs_buffer_clear(&bytes);
     return status;
 }
 
 /* ---- The run ---- */
+
+/** What the run is for: the stream, or the state before lambda matters. */
+static const char *target(const enc_options *o)
+{
+    return o->beginning ? o->beginning : o->output;
+}
 
 static adcgs_status stop_early(const adcgs_cli *cli, watcher *w, adcgs_error *error)
 {
     char *name = NULL;
     const char *path = w->o->checkpoint;
     if (!path) {
-        const size_t n = strlen(w->o->output) + 16;
+        const size_t n = strlen(target(w->o)) + 16;
         name = malloc(n);
         if (!name)
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
-        snprintf(name, n, "%s.checkpoint", w->o->output);
+        snprintf(name, n, "%s.checkpoint", target(w->o));
         path = name;
     }
     const adcgs_status status = adcgs_trainer_save(w->t, path, error);
@@ -229,6 +224,9 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
     int stopped;
     if (w->o->resume)
         ADCGS_TRY(adcgs_trainer_load(w->t, w->o->resume, error));
+    if (w->o->beginning && w->t->lambda_used)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: this run is past its beginning", w->o->resume);
+    w->t->until_lambda = w->o->beginning != NULL;
     w->saved = w->t->elapsed;
     adcgs_interrupt_catch();
     adcgs_progress_init(&w->progress);
@@ -243,11 +241,13 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
     }
     if (!stopped)
         return ADCGS_OK;
+    if (w->o->beginning && !adcgs_interrupted())
+        return adcgs_trainer_save(w->t, w->o->beginning, error);
     ADCGS_TRY(stop_early(cli, w, error));
-    return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", w->o->output);
+    return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", target(w->o));
 }
 
-static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_pool *pool, adcgs_error *error)
+static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
 {
     const adcgs_scene_options scene_options = { .points_path = o->points };
     adcgs_scene *scene = NULL;
@@ -260,9 +260,11 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK)
         status = configure(&config, o, error);
     if (status == ADCGS_OK)
-        status = check_writable(o->output, error);
+        status = check_writable(target(o), error);
     if (status == ADCGS_OK && o->checkpoint)
         status = check_writable(o->checkpoint, error);
+    if (status == ADCGS_OK && o->uncompressed)
+        status = check_writable(o->uncompressed, error);
     if (status == ADCGS_OK)
         status = adcgs_scene_open(&scene, o->scene, &scene_options, error);
     if (status == ADCGS_OK)
@@ -274,13 +276,14 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     }
     if (status == ADCGS_OK) {
         w.t->quantise = adcgs_encode_quantise_hook;
-        w.t->quantise_user = &w.t->cpu;
+        w.t->measure = measure;
         status = train(cli, &w, error);
     }
-    if (status == ADCGS_OK)
-        status = write_stream(&stream, &w, &config, pool, error);
-    if (status == ADCGS_OK)
-        status = report(o, scene, w.t->elapsed, error);
+    if (status == ADCGS_OK && o->output)
+        status = write_stream(&stream, &w, pool, error);
+    if (status == ADCGS_OK && o->output)
+        status = adcgs_enc_report_print(cli, &(adcgs_enc_report){ o->output, w.t, w.last, w.uncompressed_bytes, o->threads,
+                                                                  o->json }, met, error);
     if (w.log)
         fclose(w.log);
     adcgs_stream_clear(&stream, NULL);
@@ -296,19 +299,36 @@ static const adcgs_cli program = {
     .operands = "SCENE",
     .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
     .details = "SCENE is a folder with transforms_train.json or transforms.json, or such a file.",
-    .min_operands = 1,
+    .min_operands = 0,
     .max_operands = 1,
 };
+
+static int list_settings(const adcgs_cli *cli, const enc_options *o)
+{
+    adcgs_train_config config;
+    adcgs_error error;
+    if (adcgs_train_preset(&config, o->preset, &error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    adcgs_train_settings(&config, stdout);
+    return 0;
+}
 
 /** -1 to go on, else the exit code to leave with. */
 static int parse(enc_options *o, int argc, char **argv)
 {
     const adcgs_option options[] = {
-        { "output", 'o', ADCGS_OPTION_STRING, &o->output, 0, 0, "FILE", "write the stream here (required)", NULL, NULL },
+        { "output", 'o', ADCGS_OPTION_STRING, &o->output, 0, 0, "FILE",
+          "write the stream here (required, but for --beginning)", NULL, NULL },
         { "preset", 'p', ADCGS_OPTION_STRING, &o->preset, 0, 0, "NAME",
           "draft, fast, medium, slow or paper (default fast)", NULL, NULL },
         { "lambda", 'l', ADCGS_OPTION_REAL, &o->lambda, 0, 1000, "X",
           "loss per mebibyte of features: larger makes smaller\nfiles (default: the preset's)", NULL, &o->has_lambda },
+        { "size", 's', ADCGS_OPTION_SIZE, &o->size, 1, 1e12, "BYTES",
+          "make the file at most this large (150k, 1.5M, 2MiB), by\nless than 3 %, instead of giving --lambda", NULL,
+          &o->has_size },
+        { "psnr", 0, ADCGS_OPTION_REAL, &o->psnr, 5, 80, "DB",
+          "make the file so small that the training views, decoded\nfrom it, have this mean PSNR, within 0.1; test views are\n"
+          "never looked at", NULL, &o->has_psnr },
         { "iterations", 'n', ADCGS_OPTION_INT, &o->iterations, 10, 10000000, "N",
           "length of the run (default: the preset's)", NULL, NULL },
         { "scale", 0, ADCGS_OPTION_INT, &o->scale, 1, 64, "S",
@@ -318,9 +338,14 @@ static int parse(enc_options *o, int argc, char **argv)
         { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, 1, 1000000, "N",
           "budget of anchors (default: the preset's)", NULL, NULL },
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
-          "initial points (PLY or Draco) instead of the scene's or\nrandom ones", NULL, NULL },
-        { "without", 0, ADCGS_OPTION_CHOICE, &o->without, 0, 0, "STAGE",
-          "leave out coarse, fine, deformation (both), rate or\nrefinement", stage_names, NULL },
+          "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
+        { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
+          "leave out coarse, fine, deformation (both), rate,\nrefinement, anchors or lattice", NULL, NULL },
+        { "uncompressed", 0, ADCGS_OPTION_STRING, &o->uncompressed, 0, 0, "FILE",
+          "train without rate and rounding, write the model here\nas plain binary32 numbers; the stream is then the finest", NULL,
+          NULL },
+        { "set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
+          "change settings of the preset; 'list' shows them", NULL, NULL },
         { "time-limit", 0, ADCGS_OPTION_REAL, &o->time_limit, 0, 1e7, "S",
           "train for at most S seconds; the result then depends on\nthe speed of the machine", NULL, NULL },
         { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, 0, 1e15, "N", "seed of every random choice (default 1)", NULL, NULL },
@@ -329,6 +354,9 @@ static int parse(enc_options *o, int argc, char **argv)
           NULL },
         { "resume", 0, ADCGS_OPTION_STRING, &o->resume, 0, 0, "FILE",
           "go on from such a state; same scene, same options", NULL, NULL },
+        { "beginning", 0, ADCGS_OPTION_STRING, &o->beginning, 0, 0, "FILE",
+          "train as far as lambda does not matter, save the state\nhere and leave; runs with any lambda --resume it", NULL,
+          NULL },
         { "log", 0, ADCGS_OPTION_STRING, &o->log, 0, 0, "FILE",
           "write progress as JSON lines; appended with --resume", NULL, NULL },
         { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N",
@@ -344,8 +372,15 @@ static int parse(enc_options *o, int argc, char **argv)
     const int code = adcgs_cli_parse(&cli, argc, argv, &first);
     if (code >= 0)
         return code;
-    if (!o->output)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "no output: give -o FILE");
+    if (o->set && !strcmp(o->set, "list"))
+        return list_settings(&cli, o);
+    if (first >= argc)
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
+    if (!o->output == !o->beginning)
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
+                                                                  "no output: give -o FILE");
+    if (o->has_lambda + o->has_size + o->has_psnr > 1)
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
     o->scene = argv[first];
     return -1;
 }
@@ -358,13 +393,14 @@ int main(int argc, char **argv)
         return code;
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_pool *pool = NULL;
+    int met = 1;
     adcgs_status status = adcgs_pool_create(&pool, o.threads, &error);
     if (status == ADCGS_OK)
-        status = encode(&program, &o, pool, &error);
+        status = encode(&program, &o, pool, &met, &error);
     adcgs_pool_free(&pool);
     if (status != ADCGS_OK) {
         error.status = status;
         return adcgs_cli_fail(&program, &error);
     }
-    return 0;
+    return met ? 0 : 1;
 }

@@ -11,13 +11,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-typedef struct grid {
-    double lambdas[ADCGS_SWEEP_LIST], ks[ADCGS_SWEEP_LIST];
-    int n_lambdas, n_ks, n;
-    adcgs_sweep_point points[ADCGS_SWEEP_LIST * ADCGS_SWEEP_LIST];
-    pid_t child[ADCGS_SWEEP_LIST * ADCGS_SWEEP_LIST];
-} grid;
-
 /* "a,b,c"; returns how many, or -1. */
 static int parse_list(const char *text, double min, double max, double out[ADCGS_SWEEP_LIST])
 {
@@ -37,13 +30,6 @@ static int parse_list(const char *text, double min, double max, double out[ADCGS
     }
 }
 
-static void fill(grid *g)
-{
-    for (int j = 0; j < ADCGS_MAX(g->n_ks, 1); j++)
-        for (int i = 0; i < g->n_lambdas; i++)
-            adcgs_sweep_point_init(&g->points[g->n++], g->lambdas[i], g->n_ks ? (int)g->ks[j] : 0);
-}
-
 /* The folder this program lies in, where its siblings are. */
 static void find_programs(const char *argv0, char *out, size_t size)
 {
@@ -59,137 +45,267 @@ static void find_programs(const char *argv0, char *out, size_t size)
         snprintf(out, size, ".");
 }
 
-static pid_t start(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_sweep_point *point)
+/* ---- Running ---- */
+
+static int start(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_sweep_run *run)
 {
     const pid_t child = fork();
     if (child == 0) {
         adcgs_error error;
-        const adcgs_status status = adcgs_sweep_run(sweep, point, &error);
+        const adcgs_sweep_run *const from = run->from >= 0 ? &plan->run[run->from] : NULL;
+        const adcgs_status status = adcgs_sweep_execute(sweep, run, from, &error);
         _exit(status == ADCGS_OK ? 0 : adcgs_cli_fail(cli, &error));
     }
-    return child;
+    run->child = child;
+    run->state = child < 0 ? ADCGS_RUN_FAILED : ADCGS_RUN_RUNS;
+    return child < 0 ? adcgs_cli_error(cli, ADCGS_ERR_IO, "cannot start a process: %s", strerror(errno)) : 0;
 }
 
-/* Wait for one child; returns the index of its point or -1. */
-static int reap(grid *g, int *code)
+/** A run that can start now, NULL if there is none. Beginnings come when the first run that needs them would. */
+static adcgs_sweep_run *next_run(adcgs_sweep_plan *plan)
 {
-    int state = 0;
-    const pid_t child = waitpid(-1, &state, 0);
-    if (child < 0)
-        return -1;
-    *code = WIFEXITED(state) ? WEXITSTATUS(state) : 128;
-    for (int i = 0; i < g->n; i++)
-        if (g->child[i] == child)
-            return i;
-    return -1;
-}
-
-static void say(const adcgs_cli *cli, const adcgs_sweep_point *p, const char *how)
-{
-    adcgs_cli_note(cli, "%s: %.0f bytes, %.2f dB PSNR, %.4f SSIM%s", p->tag, p->bytes, p->psnr, p->ssim, how);
-}
-
-/* Run all points not yet done, some at a time. Returns the worst exit code. */
-static int run_all(const adcgs_cli *cli, const adcgs_sweep *sweep, grid *g, int jobs)
-{
-    int next = 0, running = 0, worst = 0;
-    while (next < g->n || running > 0) {
-        while (running < jobs && next < g->n && !adcgs_interrupted()) {
-            if (!g->points[next].done) {
-                g->child[next] = start(cli, sweep, &g->points[next]);
-                if (g->child[next] < 0)
-                    return adcgs_cli_error(cli, ADCGS_ERR_IO, "cannot start a process: %s", strerror(errno));
-                running++;
-            }
-            next++;
-        }
-        if (running == 0)
-            break;
-        int code = 0;
-        const int i = reap(g, &code);
-        if (i < 0)
+    for (int i = 0; i < plan->n_runs; i++) {
+        adcgs_sweep_run *const run = &plan->run[i];
+        if (run->beginning || run->state != ADCGS_RUN_WAITS)
             continue;
-        running--;
+        adcgs_sweep_run *const from = run->from >= 0 ? &plan->run[run->from] : NULL;
+        if (!from || from->state == ADCGS_RUN_DONE)
+            return run;
+        if (from->state == ADCGS_RUN_WAITS)
+            return from;
+        if (from->state == ADCGS_RUN_FAILED)
+            run->state = ADCGS_RUN_FAILED;
+    }
+    return NULL;
+}
+
+static void say(const adcgs_cli *cli, const adcgs_sweep_run *r, const char *how)
+{
+    if (r->beginning)
+        adcgs_cli_note(cli, "%s: trained%s", r->tag, how);
+    else
+        adcgs_cli_note(cli, "%s: %.0f bytes, %.2f dB PSNR, %.4f SSIM%s", r->tag, r->figure[ADCGS_FIGURE_BYTES],
+                       r->figure[ADCGS_FIGURE_PSNR], r->figure[ADCGS_FIGURE_SSIM], how);
+}
+
+/** Wait for one child and take its result; returns its exit code. */
+static int reap(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
+{
+    int state = 0, i = 0;
+    const pid_t child = waitpid(-1, &state, 0);
+    while (i < plan->n_runs && (plan->run[i].state != ADCGS_RUN_RUNS || plan->run[i].child != child))
+        i++;
+    if (child < 0 || i == plan->n_runs)
+        return 0;
+    adcgs_sweep_run *const run = &plan->run[i];
+    const int code = WIFEXITED(state) ? WEXITSTATUS(state) : 128;
+    adcgs_error error;
+    run->state = ADCGS_RUN_FAILED;
+    if (code == 0 && adcgs_sweep_load(sweep, run, &error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    if (code == 0)
+        say(cli, run, "");
+    return code;
+}
+
+static int count_running(const adcgs_sweep_plan *plan)
+{
+    int n = 0;
+    for (int i = 0; i < plan->n_runs; i++)
+        n += plan->run[i].state == ADCGS_RUN_RUNS;
+    return n;
+}
+
+/* Run all that is not yet done, some at a time. Returns the worst exit code. */
+static int run_all(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan, int jobs)
+{
+    int worst = 0;
+    for (;;) {
+        adcgs_sweep_run *run;
+        int code = 0;
+        while (code == 0 && count_running(plan) < jobs && !adcgs_interrupted() && (run = next_run(plan)))
+            code = start(cli, sweep, plan, run);
         worst = ADCGS_MAX(worst, code);
-        adcgs_error error;
-        if (code == 0 && adcgs_sweep_load(sweep, &g->points[i], &error) != ADCGS_OK)
-            worst = ADCGS_MAX(worst, adcgs_cli_fail(cli, &error));
-        else if (code == 0)
-            say(cli, &g->points[i], "");
+        if (!count_running(plan))
+            break;
+        code = reap(cli, sweep, plan);
+        worst = ADCGS_MAX(worst, code);
     }
     return adcgs_interrupted() ? ADCGS_MAX(worst, 3) : worst;
 }
 
-static void take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, grid *g)
+static void take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
 {
-    for (int i = 0; i < g->n; i++) {
+    for (int i = 0; i < plan->n_runs; i++) {
         adcgs_error ignored;
-        if (adcgs_sweep_load(sweep, &g->points[i], &ignored) == ADCGS_OK)
-            say(cli, &g->points[i], " (from before)");
+        if (adcgs_sweep_load(sweep, &plan->run[i], &ignored) == ADCGS_OK)
+            say(cli, &plan->run[i], " (from before)");
     }
 }
 
-static int sweep_grid(const adcgs_cli *cli, const adcgs_sweep *sweep, grid *g, int jobs)
+static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
 {
+    adcgs_error error;
     int chart = 0;
+    if (adcgs_sweep_write_tables(sweep, plan, &error) != ADCGS_OK || adcgs_sweep_draw(sweep, plan, &chart, &error) != ADCGS_OK ||
+        adcgs_sweep_write_page(sweep, plan, chart, &error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    adcgs_sweep_print(stdout, plan);
+    if (fflush(stdout))
+        return adcgs_cli_error(cli, ADCGS_ERR_IO, "standard output: cannot write");
+    adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s", sweep->directory,
+                   plan->n_stages ? ", ablation.csv" : "",
+                   chart ? ", sweep.svg" : plan->n_curves ? "; no chart (is gnuplot there?)" : "");
+    return 0;
+}
+
+static int run_sweep(const adcgs_cli *cli, const adcgs_sweep *sweep, int jobs)
+{
     adcgs_error error;
     if (mkdir(sweep->directory, 0777) != 0 && errno != EEXIST)
         return adcgs_cli_error(cli, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
-    if (sweep->resume)
-        take_finished(cli, sweep, g);
-    adcgs_interrupt_catch();
-    const int worst = run_all(cli, sweep, g, jobs);
-    if (adcgs_sweep_write(sweep, g->points, g->n, &chart, &error) != ADCGS_OK)
-        return adcgs_cli_fail(cli, &error);
-    adcgs_cli_note(cli, "wrote %s/sweep.csv, sweep.json%s", sweep->directory,
-                   chart ? ", sweep.svg" : "; no chart (is gnuplot there?)");
-    return worst;
+    adcgs_sweep_plan *const plan = calloc(1, sizeof *plan);
+    if (!plan)
+        return adcgs_cli_error(cli, ADCGS_ERR_MEMORY, "out of memory");
+    int code = 0;
+    if (adcgs_sweep_plan_make(plan, sweep, &error) != ADCGS_OK)
+        code = adcgs_cli_fail(cli, &error);
+    else {
+        if (sweep->resume)
+            take_finished(cli, sweep, plan);
+        adcgs_interrupt_catch();
+        const int ran = run_all(cli, sweep, plan, jobs), written = write_all(cli, sweep, plan);
+        code = ADCGS_MAX(ran, written);
+    }
+    adcgs_sweep_plan_clear(plan);
+    free(plan);
+    return code;
+}
+
+/* ---- Command line ---- */
+
+static int compare_double(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/** "all", "none" or some of the names, separated by commas; -1 if it is none of these. */
+static int parse_yardsticks(const char *text)
+{
+    static const struct {
+        const char *name;
+        int bits;
+    } known[] = {{"none", 0},
+                 {"all", ADCGS_YARD_ALL},
+                 {"networks", ADCGS_YARD_NETWORKS},
+                 {"uncompressed", ADCGS_YARD_UNCOMPRESSED},
+                 {"gaussians", ADCGS_YARD_GAUSSIANS}};
+    int bits = 0;
+    for (;; text++) {
+        const size_t length = strcspn(text, ",");
+        size_t i = 0;
+        while (i < ADCGS_COUNTOF(known) && (strlen(known[i].name) != length || memcmp(known[i].name, text, length) != 0))
+            i++;
+        if (i == ADCGS_COUNTOF(known))
+            return -1;
+        bits |= known[i].bits;
+        text += length;
+        if (!*text)
+            return bits;
+    }
+}
+
+/** The lists as the user gave them; NULL: not given. */
+typedef struct lists {
+    const char *lambdas, *ks, *seeds, *yardsticks;
+} lists;
+
+/** -1 to go on, else the exit code to leave with. */
+static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
+{
+    const struct {
+        const char *text;
+        double min, max;
+        double *out;
+        int *n;
+    } each[] = {{l->lambdas, 0, 1000, sweep->lambda, &sweep->n_lambda},
+                {l->ks, 1, 16, sweep->k, &sweep->n_k},
+                {l->seeds, 0, 1e15, sweep->seed, &sweep->n_seed}};
+    for (size_t i = 0; i < ADCGS_COUNTOF(each); i++) {
+        *each[i].n = each[i].text ? parse_list(each[i].text, each[i].min, each[i].max, each[i].out) : 0;
+        for (int j = 0; i > 0 && j < *each[i].n; j++)
+            if (each[i].out[j] != (double)(int64_t)each[i].out[j])
+                *each[i].n = -1;
+        if (*each[i].n < 0)
+            return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "bad list \"%s\": expected at most %d %snumbers from %g to %g, with "
+                                   "commas between", each[i].text, ADCGS_SWEEP_LIST, i ? "whole " : "", each[i].min, each[i].max);
+    }
+    qsort(sweep->lambda, (size_t)sweep->n_lambda, sizeof *sweep->lambda, compare_double);
+    sweep->yardsticks = parse_yardsticks(l->yardsticks);
+    if (sweep->yardsticks < 0)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--yardsticks %s: expected all, none, or some of networks, uncompressed and "
+                               "gaussians", l->yardsticks);
+    return -1;
+}
+
+static const adcgs_cli program = {
+    .program = "adcgs-sweep",
+    .operands = "SCENE",
+    .summary = "Encode a scene at several rates, measure each decoded file, draw the curve.",
+    .details = "Runs adcgs-enc and adcgs-eval from the folder that adcgs-sweep itself lies in.",
+    .min_operands = 1,
+    .max_operands = 1,
+};
+
+/** -1 to go on, else the exit code to leave with. */
+static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
+{
+    lists l = {.yardsticks = "all"};
+    int first = 0;
+    const adcgs_option options[] = {
+        {"output", 'o', ADCGS_OPTION_STRING, &sweep->directory, 0, 0, "DIR", "folder for all results (required)", NULL, NULL},
+        {"lambda", 'l', ADCGS_OPTION_STRING, &l.lambdas, 0, 0, "A,B,C",
+         "values of the encoder's --lambda (required, but for\n--ablation)", NULL, NULL},
+        {"k", 0, ADCGS_OPTION_STRING, &l.ks, 0, 0, "A,B,C", "values of the encoder's --k (default: the preset's)", NULL, NULL},
+        {"seeds", 0, ADCGS_OPTION_STRING, &l.seeds, 0, 0, "A,B,C",
+         "train each point with these seeds; figures are means\n(default: the encoder's seed)", NULL, NULL},
+        {"yardsticks", 0, ADCGS_OPTION_STRING, &l.yardsticks, 0, 0, "NAME,...",
+         "what to compare with: networks (of 32 bits; no run),\nuncompressed (a run; also by zstd and xz), gaussians (a\n"
+         "curve and a run); all (default) or none", NULL, NULL},
+        {"ablation", 0, ADCGS_OPTION_FLAG, &sweep->ablation, 0, 0, NULL,
+         "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},
+        {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)", NULL,
+         NULL},
+        {"set", 0, ADCGS_OPTION_STRING, &sweep->set, 0, 0, "NAME=VALUE,...", "settings of the encoder", NULL, NULL},
+        {"iterations", 'n', ADCGS_OPTION_INT, &sweep->iterations, 1, 10000000, "N", "of training (default: the preset's)", NULL,
+         NULL},
+        {"jobs", 'j', ADCGS_OPTION_INT, jobs, 1, 64, "N", "encoders at a time (default: 1)", NULL, NULL},
+        {"threads", 't', ADCGS_OPTION_INT, &sweep->threads, 0, 256, "N", "threads of each encoder (default: one per CPU)", NULL,
+         NULL},
+        {"resume", 0, ADCGS_OPTION_FLAG, &sweep->resume, 0, 0, NULL,
+         "keep what an earlier sweep finished with the same\nsettings, go on with what it did not", NULL, NULL},
+    };
+    adcgs_cli cli = program;
+    cli.options = options;
+    cli.n_options = ADCGS_COUNTOF(options);
+    const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
+    if (leave >= 0)
+        return leave;
+    if (!sweep->directory || (!l.lambdas && !sweep->ablation))
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
+    sweep->scene = argv[first];
+    return parse_lists(&cli, &l, sweep);
 }
 
 int main(int argc, char **argv)
 {
-    const char *lambdas = NULL, *ks = NULL, *directory = NULL, *preset = NULL;
-    int iterations = 0, jobs = 1, threads = 0, resume = 0, first = 0;
-    const adcgs_option options[] = {
-        {"output", 'o', ADCGS_OPTION_STRING, &directory, 0, 0, "DIR", "folder for all results (required)", NULL, NULL},
-        {"lambda", 'l', ADCGS_OPTION_STRING, &lambdas, 0, 0, "A,B,C", "values of the encoder's --lambda (required)", NULL, NULL},
-        {"k", 0, ADCGS_OPTION_STRING, &ks, 0, 0, "A,B,C", "values of the encoder's --k (default: the preset's)", NULL, NULL},
-        {"preset", 'p', ADCGS_OPTION_STRING, &preset, 0, 0, "NAME", "preset of the encoder (default: its own)", NULL, NULL},
-        {"iterations", 'n', ADCGS_OPTION_INT, &iterations, 1, 10000000, "N", "of training (default: the preset's)", NULL, NULL},
-        {"jobs", 'j', ADCGS_OPTION_INT, &jobs, 1, 64, "N", "encoders at a time (default: 1)", NULL, NULL},
-        {"threads", 't', ADCGS_OPTION_INT, &threads, 0, 256, "N", "threads of each encoder (default: one per CPU)", NULL, NULL},
-        {"resume", 0, ADCGS_OPTION_FLAG, &resume, 0, 0, NULL, "keep finished points that have the same settings", NULL, NULL},
-    };
-    const adcgs_cli cli = {.program = "adcgs-sweep",
-                           .operands = "SCENE",
-                           .summary = "Encode a scene at several rates, measure each decoded file, draw the curve.",
-                           .details = "Runs adcgs-enc and adcgs-eval from the folder that adcgs-sweep itself lies in.",
-                           .options = options,
-                           .n_options = ADCGS_COUNTOF(options),
-                           .min_operands = 1,
-                           .max_operands = 1};
-    const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
-    if (leave >= 0)
-        return leave;
-    if (!directory || !lambdas)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
-    grid *const g = calloc(1, sizeof *g);
-    if (!g)
-        return adcgs_cli_error(&cli, ADCGS_ERR_MEMORY, "out of memory");
-    g->n_lambdas = parse_list(lambdas, 0.0, 1000.0, g->lambdas);
-    g->n_ks = ks ? parse_list(ks, 1.0, 16.0, g->ks) : 0;
-    int code = 2;
-    if (g->n_lambdas < 1 || g->n_ks < 0)
-        code = adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "bad list \"%s\": expected numbers, separated by commas",
-                               g->n_lambdas < 1 ? lambdas : ks);
-    else {
-        char programs[4096];
-        find_programs(argv[0], programs, sizeof programs);
-        const adcgs_sweep sweep = {.scene = argv[first], .directory = directory, .programs = programs, .preset = preset,
-                                   .iterations = iterations, .threads = threads, .resume = resume};
-        fill(g);
-        code = sweep_grid(&cli, &sweep, g, jobs);
-    }
-    free(g);
-    return code;
+    char programs[ADCGS_SWEEP_PATH];
+    adcgs_sweep sweep = {.programs = programs};
+    int jobs = 1;
+    const int code = parse(&sweep, &jobs, argc, argv);
+    if (code >= 0)
+        return code;
+    find_programs(argv[0], programs, sizeof programs);
+    return run_sweep(&program, &sweep, jobs);
 }

@@ -67,17 +67,41 @@ int adcgs_parse_int(const char *text, int min, int max, int *out)
     return 0;
 }
 
+/** Bytes that a suffix stands for: none (1), k, M, G (powers of 1000), Ki, Mi, Gi (of 1024), with or without B; else 0. */
+static uint64_t size_unit(const char *suffix)
+{
+    static const char letters[] = "kMG";
+    if (!*suffix)
+        return 1;
+    const char *found = strchr(letters, *suffix == 'K' ? 'k' : *suffix == 'm' ? 'M' : *suffix == 'g' ? 'G' : *suffix);
+    if (!found)
+        return 0;
+    const int binary = suffix[1] == 'i';
+    suffix += 1 + binary;
+    if (*suffix && strcmp(suffix, "B") != 0)
+        return 0;
+    uint64_t unit = 1;
+    for (const char *letter = letters; letter <= found; letter++)
+        unit *= binary ? 1024 : 1000;
+    return unit;
+}
+
 int adcgs_parse_size(const char *text, uint64_t min, uint64_t max, uint64_t *out)
 {
     char *end;
     if (*text < '0' || *text > '9') /* strtoull accepts a sign and wraps */
         return -1;
     errno = 0;
-    unsigned long long value = strtoull(text, &end, 10);
-    const int shift = *end == 'K' || *end == 'k' ? 10 : *end == 'M' || *end == 'm' ? 20 : *end == 'G' || *end == 'g' ? 30 : 0;
-    if (errno || end[shift != 0] || value > ULLONG_MAX >> shift)
+    const unsigned long long whole = strtoull(text, &end, 10);
+    uint64_t digits = 0, scale = 1;
+    const char *rest = end;
+    if (*rest == '.')
+        for (rest++; *rest >= '0' && *rest <= '9' && scale < 1000000000; rest++, scale *= 10)
+            digits = 10 * digits + (uint64_t)(*rest - '0');
+    const uint64_t unit = size_unit(rest);
+    if (errno || !unit || (rest != end && (scale == 1 || unit == 1)) || whole > (UINT64_MAX - unit) / unit)
         return -1;
-    value <<= shift;
+    const uint64_t value = whole * unit + digits * unit / scale;
     if (value < min || value > max)
         return -1;
     *out = value;
@@ -159,7 +183,8 @@ static void describe(const adcgs_option *option, char *text, size_t size)
         snprintf(text, size, "a whole number from %.0f to %.0f", option->min, option->max);
         break;
     case ADCGS_OPTION_SIZE:
-        snprintf(text, size, "a whole number from %.0f to %.0f, suffix K, M or G allowed", option->min, option->max);
+        snprintf(text, size, "a whole number from %.0f to %.0f, suffix k, M, G, KiB, MiB or GiB allowed",
+                 option->min, option->max);
         break;
     case ADCGS_OPTION_REAL:
         snprintf(text, size, "a number from %g to %g", option->min, option->max);

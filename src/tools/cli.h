@@ -15,7 +15,7 @@ typedef enum adcgs_option_kind {
     ADCGS_OPTION_FLAG,   /**< target: int, set to 1 */
     ADCGS_OPTION_STRING, /**< target: const char * */
     ADCGS_OPTION_INT,    /**< target: int */
-    ADCGS_OPTION_SIZE,   /**< target: uint64_t; suffix K, M or G multiplies by 1024, 1024^2 or 1024^3 */
+    ADCGS_OPTION_SIZE,   /**< target: uint64_t; suffixes k, M, G are powers of 1000, KiB, MiB, GiB of 1024 */
     ADCGS_OPTION_REAL,   /**< target: double */
     ADCGS_OPTION_PAIR,   /**< target: int[2]; WIDTHxHEIGHT */
     ADCGS_OPTION_CHOICE  /**< target: int, index into choices */
@@ -61,6 +61,7 @@ void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(
 
 /* Whole-string parsers: 0, or -1 when text is not exactly one number of the kind within [min, max]. */
 int adcgs_parse_int(const char *text, int min, int max, int *out);
+/** Digits, or with a suffix (k, M, G, also followed by B, or Ki, Mi, Gi likewise) also a decimal fraction, rounded down: 1.5M. */
 int adcgs_parse_size(const char *text, uint64_t min, uint64_t max, uint64_t *out);
 int adcgs_parse_real(const char *text, double min, double max, double *out);
 int adcgs_parse_pair(const char *text, int min, int max, int out[2]);

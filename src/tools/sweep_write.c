@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a sweep leaves behind: a table as CSV and JSON, and a chart drawn by gnuplot. */
+/** \file What a sweep leaves for other programs: tables as CSV, everything as JSON. */
 #include "config.h"
 
 #include "tools/sweep.h"
@@ -9,9 +9,38 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <unistd.h>
 
-#define PATH_BYTES 4096
+/* ---- CSV ---- */
+
+static void csv_number(FILE *file, double value, int digits)
+{
+    if (isfinite(value))
+        fprintf(file, ",%.*f", digits, value);
+    else
+        fprintf(file, ",");
+}
+
+static void csv_row(FILE *file, const adcgs_sweep_row *r)
+{
+    fprintf(file, "%s,", r->name);
+    if (r->lambda >= 0)
+        fprintf(file, "%.9g", r->lambda);
+    fprintf(file, ",");
+    if (r->k)
+        fprintf(file, "%d", r->k);
+    fprintf(file, ",%d", r->bytes.n);
+    csv_number(file, r->bytes.mean, 0);
+    csv_number(file, r->bytes.min, 0);
+    csv_number(file, r->bytes.max, 0);
+    csv_number(file, r->psnr.mean, 4);
+    csv_number(file, r->psnr.min, 4);
+    csv_number(file, r->psnr.max, 4);
+    csv_number(file, r->ssim, 6);
+    csv_number(file, r->networks, 4);
+    csv_number(file, r->seconds, 2);
+    csv_number(file, r->speed, 2);
+    fprintf(file, "\n");
+}
 
 static adcgs_status finish(adcgs_atomic *file, adcgs_error *error)
 {
@@ -22,61 +51,174 @@ static adcgs_status finish(adcgs_atomic *file, adcgs_error *error)
     return ADCGS_ERR_IO;
 }
 
-static void print_cell(FILE *file, double value, int digits)
+static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const char *name, const char *first,
+                             adcgs_error *error)
 {
-    if (isfinite(value))
-        fprintf(file, ",%.*f", digits, value);
-    else
-        fprintf(file, ",");
+    char path[ADCGS_SWEEP_PATH];
+    snprintf(path, sizeof path, "%s/%s", sweep->directory, name);
+    ADCGS_TRY(adcgs_atomic_open(file, path, error));
+    fprintf(file->file, "%s,lambda,k,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,training_seconds,"
+            "frames_per_second\n", first);
+    return ADCGS_OK;
 }
 
-static adcgs_status write_csv(const char *path, const adcgs_sweep_point *points, int n, adcgs_error *error)
+static adcgs_status write_curves(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
 {
     adcgs_atomic file;
-    ADCGS_TRY(adcgs_atomic_open(&file, path, error));
-    fprintf(file.file, "lambda,k,bytes,psnr,ssim,training_seconds,frames_per_second\n");
-    for (int i = 0; i < n; i++) {
-        const adcgs_sweep_point *const p = &points[i];
-        if (!p->done)
-            continue;
-        fprintf(file.file, "%g,%d,%.0f", p->lambda, p->k, p->bytes);
-        print_cell(file.file, p->psnr, 4);
-        print_cell(file.file, p->ssim, 6);
-        print_cell(file.file, p->training_seconds, 2);
-        print_cell(file.file, p->frames_per_second, 2);
-        fprintf(file.file, "\n");
+    ADCGS_TRY(csv_open(&file, sweep, "sweep.csv", "curve", error));
+    for (int i = 0; i < plan->n_curves; i++)
+        for (int j = 0; j < plan->curve[i].n; j++) {
+            adcgs_sweep_row row;
+            if (adcgs_sweep_row_make(&row, plan, plan->curve[i].name, plan->curve[i].cell[j], plan->curve[i].size))
+                csv_row(file.file, &row);
+        }
+    return finish(&file, error);
+}
+
+static adcgs_status write_stages(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
+{
+    adcgs_atomic file;
+    ADCGS_TRY(csv_open(&file, sweep, "ablation.csv", "stage", error));
+    for (int i = 0; i < plan->n_stages; i++) {
+        adcgs_sweep_row row;
+        if (adcgs_sweep_row_make(&row, plan, plan->stage[i].name, plan->stage[i].cell, plan->stage[i].size))
+            csv_row(file.file, &row);
     }
     return finish(&file, error);
 }
 
-static adcgs_status write_json(const char *path, const adcgs_sweep *sweep, const adcgs_sweep_point *points, int n,
-                               adcgs_error *error)
+/* ---- JSON ---- */
+
+static void json_spread(adcgs_json *json, const char *key, const adcgs_spread *s)
 {
+    adcgs_json_open(json, key, '{');
+    adcgs_json_real(json, "mean", s->mean);
+    adcgs_json_real(json, "min", s->min);
+    adcgs_json_real(json, "max", s->max);
+    adcgs_json_close(json, '}');
+}
+
+static void json_row(adcgs_json *json, const adcgs_sweep_row *r)
+{
+    if (r->lambda >= 0)
+        adcgs_json_real(json, "lambda", r->lambda);
+    if (r->k)
+        adcgs_json_int(json, "k", r->k);
+    adcgs_json_int(json, "seeds", r->bytes.n);
+    json_spread(json, "bytes", &r->bytes);
+    json_spread(json, "psnr", &r->psnr);
+    adcgs_json_real(json, "ssim", r->ssim);
+    if (isfinite(r->networks))
+        adcgs_json_real(json, "network_share", r->networks);
+    adcgs_json_real(json, "training_seconds", r->seconds);
+    adcgs_json_real(json, "frames_per_second", r->speed);
+}
+
+static void json_comparison(adcgs_json *json, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
+{
+    const adcgs_comparison c = adcgs_sweep_compare(plan, curve);
+    adcgs_json_open(json, "comparison", '{');
+    adcgs_json_real(json, "bd_rate", c.bd_rate);
+    adcgs_json_bool(json, "above", c.above);
+    adcgs_json_int(json, "points_compared", c.compared);
+    adcgs_json_int(json, "points_beyond", c.beyond);
+    adcgs_json_real(json, "least_margin", c.margin);
+    adcgs_json_real(json, "times_smaller", c.smaller);
+    adcgs_json_close(json, '}');
+}
+
+static void json_curves(adcgs_json *json, const adcgs_sweep_plan *plan)
+{
+    adcgs_json_open(json, "curves", '[');
+    for (int i = 0; i < plan->n_curves; i++) {
+        const adcgs_sweep_curve *const curve = &plan->curve[i];
+        adcgs_json_open(json, NULL, '{');
+        adcgs_json_string(json, "name", curve->name);
+        adcgs_json_string(json, "note", curve->note);
+        adcgs_json_bool(json, "yardstick", curve->yardstick);
+        adcgs_json_open(json, "points", '[');
+        for (int j = 0; j < curve->n; j++) {
+            adcgs_sweep_row row;
+            if (!adcgs_sweep_row_make(&row, plan, curve->name, curve->cell[j], curve->size))
+                continue;
+            adcgs_json_open(json, NULL, '{');
+            json_row(json, &row);
+            adcgs_json_close(json, '}');
+        }
+        adcgs_json_close(json, ']');
+        if (i)
+            json_comparison(json, plan, curve);
+        adcgs_json_close(json, '}');
+    }
+    adcgs_json_close(json, ']');
+}
+
+static void json_stages(adcgs_json *json, const adcgs_sweep_plan *plan)
+{
+    adcgs_json_open(json, "ablation", '[');
+    for (int i = 0; i < plan->n_stages; i++) {
+        adcgs_sweep_row row;
+        if (!adcgs_sweep_row_make(&row, plan, plan->stage[i].name, plan->stage[i].cell, plan->stage[i].size))
+            continue;
+        adcgs_json_open(json, NULL, '{');
+        adcgs_json_string(json, "stage", plan->stage[i].name);
+        adcgs_json_string(json, "stored", plan->stage[i].size == ADCGS_FIGURE_RAW ? "uncompressed" : "stream");
+        json_row(json, &row);
+        adcgs_json_close(json, '}');
+    }
+    adcgs_json_close(json, ']');
+}
+
+static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
+{
+    static const char *const names[ADCGS_FIGURE_COUNT] = {
+        "bytes", "bytes_with_32_bit_weights", "uncompressed_bytes", "zstd_bytes", "xz_bytes", "network_bytes",
+        "psnr", "ssim", "training_seconds", "frames_per_second"};
+    adcgs_json_open(json, "runs", '[');
+    for (int i = 0; i < plan->n_runs; i++) {
+        const adcgs_sweep_run *const run = &plan->run[i];
+        if (run->beginning || run->state != ADCGS_RUN_DONE)
+            continue;
+        adcgs_json_open(json, NULL, '{');
+        adcgs_json_string(json, "name", run->tag);
+        if (run->seed >= 0)
+            adcgs_json_real(json, "seed", run->seed);
+        for (int j = 0; j < ADCGS_FIGURE_COUNT; j++)
+            if (isfinite(run->figure[j]))
+                adcgs_json_real(json, names[j], run->figure[j]);
+        adcgs_json_close(json, '}');
+    }
+    adcgs_json_close(json, ']');
+}
+
+static void json_sweep(adcgs_json *json, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
+{
+    const adcgs_curve_facts facts = adcgs_sweep_facts(plan);
+    adcgs_json_open(json, NULL, '{');
+    adcgs_json_string(json, "scene", sweep->scene);
+    adcgs_json_string(json, "preset", sweep->preset ? sweep->preset : "");
+    adcgs_json_string(json, "set", sweep->set ? sweep->set : "");
+    adcgs_json_int(json, "iterations", sweep->iterations);
+    adcgs_json_open(json, "curve", '{');
+    adcgs_json_int(json, "points", facts.n);
+    adcgs_json_bool(json, "monotone", facts.monotone);
+    adcgs_json_real(json, "span", facts.span);
+    adcgs_json_close(json, '}');
+    json_curves(json, plan);
+    json_stages(json, plan);
+    json_runs(json, plan);
+    adcgs_json_close(json, '}');
+}
+
+static adcgs_status write_json(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
+{
+    char path[ADCGS_SWEEP_PATH];
     adcgs_atomic file;
     adcgs_json json;
+    snprintf(path, sizeof path, "%s/sweep.json", sweep->directory);
     ADCGS_TRY(adcgs_atomic_open(&file, path, error));
     adcgs_json_init(&json, file.file);
-    adcgs_json_open(&json, NULL, '{');
-    adcgs_json_string(&json, "scene", sweep->scene);
-    adcgs_json_string(&json, "preset", sweep->preset ? sweep->preset : "");
-    adcgs_json_int(&json, "iterations", sweep->iterations);
-    adcgs_json_open(&json, "points", '[');
-    for (int i = 0; i < n; i++) {
-        const adcgs_sweep_point *const p = &points[i];
-        if (!p->done)
-            continue;
-        adcgs_json_open(&json, NULL, '{');
-        adcgs_json_real(&json, "lambda", p->lambda);
-        adcgs_json_int(&json, "k", p->k);
-        adcgs_json_int(&json, "bytes", (int64_t)p->bytes);
-        adcgs_json_real(&json, "psnr", p->psnr);
-        adcgs_json_real(&json, "ssim", p->ssim);
-        adcgs_json_real(&json, "training_seconds", p->training_seconds);
-        adcgs_json_real(&json, "frames_per_second", p->frames_per_second);
-        adcgs_json_close(&json, '}');
-    }
-    adcgs_json_close(&json, ']');
-    adcgs_json_close(&json, '}');
+    json_sweep(&json, sweep, plan);
     const adcgs_status status = adcgs_json_finish(&json, error);
     if (status == ADCGS_OK)
         return finish(&file, error);
@@ -84,86 +226,10 @@ static adcgs_status write_json(const char *path, const adcgs_sweep *sweep, const
     return status;
 }
 
-/* One block of data per k, its points in the order of the list. */
-static void print_blocks(FILE *script, const adcgs_sweep_point *points, int n)
+adcgs_status adcgs_sweep_write_tables(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
 {
-    for (int first = 0; first < n; first++) {
-        if (first > 0 && points[first].k == points[first - 1].k)
-            continue;
-        fprintf(script, "$curve%d << END\n", first);
-        for (int i = first; i < n && points[i].k == points[first].k; i++)
-            if (points[i].done)
-                fprintf(script, "%.3f %.4f %g\n", points[i].bytes / 1000.0, points[i].psnr, points[i].lambda);
-        fprintf(script, "END\n");
-    }
-    const char *separator = "plot ";
-    for (int first = 0; first < n; first++) {
-        if (first > 0 && points[first].k == points[first - 1].k)
-            continue;
-        fprintf(script, "%s$curve%d using 1:2 with linespoints linewidth 2 pointtype 7 pointsize 0.6 title ", separator, first);
-        if (points[first].k)
-            fprintf(script, "'K = %d'", points[first].k);
-        else
-            fprintf(script, "'adcgs'");
-        fprintf(script, ", \\\n  $curve%d using 1:2:(sprintf('%%g', $3)) with labels offset 0,1 font ',9' notitle", first);
-        separator = ", \\\n  ";
-    }
-    fprintf(script, "\n");
-}
-
-static adcgs_status write_script(const char *path, const char *chart, const adcgs_sweep_point *points, int n, adcgs_error *error)
-{
-    adcgs_atomic file;
-    ADCGS_TRY(adcgs_atomic_open(&file, path, error));
-    fprintf(file.file,
-            "# Drawn from here by: gnuplot sweep.gp\n"
-            "set terminal svg size 720,480 font 'sans-serif,12' background 'white'\n"
-            "set output '%s'\n"
-            "set title 'Rate and distortion on the test views; labels are lambda'\n"
-            "set xlabel 'file size, kB (1000 bytes)'\n"
-            "set ylabel 'PSNR, dB'\n"
-            "set grid\nset key bottom right\nset offsets graph 0.05, graph 0.05, graph 0.08, graph 0.05\n",
-            chart);
-    print_blocks(file.file, points, n);
-    return finish(&file, error);
-}
-
-static int any_done(const adcgs_sweep_point *points, int n)
-{
-    for (int i = 0; i < n; i++)
-        if (points[i].done)
-            return 1;
-    return 0;
-}
-
-/* gnuplot runs in the folder, so that no path has to be quoted for it. A missing gnuplot is no fault. */
-static adcgs_status draw(const adcgs_sweep *sweep, int *chart, adcgs_error *error)
-{
-    char command[] = "cd \"$1\" && gnuplot sweep.gp && mv -f sweep.svg.part sweep.svg";
-    char sh[] = "/bin/sh", c[] = "-c";
-    char *const argv[] = {sh, c, command, sh, (char *)(uintptr_t)sweep->directory, NULL};
-    char log[PATH_BYTES];
-    int code = 0;
-    snprintf(log, sizeof log, "%s/sweep.gp.log", sweep->directory);
-    unlink(log);
-    ADCGS_TRY(adcgs_sweep_spawn(argv, NULL, log, &code, error));
-    if (code == 0)
-        unlink(log);
-    *chart = code == 0;
-    return ADCGS_OK;
-}
-
-adcgs_status adcgs_sweep_write(const adcgs_sweep *sweep, const adcgs_sweep_point *points, int n, int *chart, adcgs_error *error)
-{
-    char path[PATH_BYTES];
-    *chart = 0;
-    snprintf(path, sizeof path, "%s/sweep.csv", sweep->directory);
-    ADCGS_TRY(write_csv(path, points, n, error));
-    snprintf(path, sizeof path, "%s/sweep.json", sweep->directory);
-    ADCGS_TRY(write_json(path, sweep, points, n, error));
-    if (!any_done(points, n))
-        return ADCGS_OK;
-    snprintf(path, sizeof path, "%s/sweep.gp", sweep->directory);
-    ADCGS_TRY(write_script(path, "sweep.svg.part", points, n, error));
-    return draw(sweep, chart, error);
+    ADCGS_TRY(write_curves(sweep, plan, error));
+    if (plan->n_stages)
+        ADCGS_TRY(write_stages(sweep, plan, error));
+    return write_json(sweep, plan, error);
 }

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 3 };
+enum { FORMAT = 13 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -48,21 +48,44 @@ static void walk_options(walk *w, const adcgs_train_config *c)
 {
     const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->refine_every,
                                (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
-                               c->without_refinement };
-    const float real[] = { c->lambda, c->ssim_weight, c->grow_threshold, c->prune_opacity, c->dropout, c->quarter_until,
-                           c->half_until, c->deform_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->weigh_at,
-                           c->decide_at, c->round_from, c->freeze_from };
+                               c->without_refinement, c->without_rounding };
+    const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->rigid_weight, c->still_below,
+                           c->rdo_strength, c->dropout, c->network_rate, c->quarter_until, c->half_until, c->deform_from,
+                           c->fine_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->slim_at, c->decide_at,
+                           c->round_from, c->freeze_from };
     for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
         visit_same(w, whole[i]);
     for (size_t i = 0; i < ADCGS_COUNTOF(real); i++)
         visit_same(w, adcgs_float_bits(real[i]));
 }
 
+/** A run is bound to its lambda, or its target, from where that has a say; before, it may go on with another. */
+static void walk_lambda(walk *w, adcgs_trainer *t)
+{
+    const adcgs_train_config *c = &t->config;
+    uint32_t lambda = adcgs_float_bits(c->lambda), target = c->target;
+    double value = c->target_value;
+    visit(w, &lambda, sizeof lambda);
+    visit(w, &target, sizeof target);
+    visit(w, &value, sizeof value);
+    visit(w, &t->lambda_used, sizeof t->lambda_used);
+    w->failed |= t->lambda_used && (lambda != adcgs_float_bits(c->lambda) || target != c->target || value != c->target_value);
+}
+
+/** Whether weights get a lattice is open until they do. */
+static void walk_lattice(walk *w, adcgs_trainer *t)
+{
+    uint8_t without = t->config.without_lattice;
+    visit(w, &without, sizeof without);
+    visit(w, &t->rounding, sizeof t->rounding);
+    w->failed |= t->rounding && without != t->config.without_lattice;
+}
+
 static void walk_sizes(walk *w, const adcgs_params *p, const adcgs_shape *s)
 {
     const int sizes[] = { p->k, p->n_fv, p->n_fg, p->chunks, p->n_eta, p->octaves, p->fine_uses_fv, p->coarse_rotation,
-                          p->time_rows, p->time_width, s->theta_width, s->theta_hidden, s->omega_width, s->omega_hidden,
-                          s->varpi_width, s->varpi_hidden, s->entropy_width, s->entropy_hidden, s->depth };
+                          p->adaptive_steps, p->time_rows, p->time_width, s->theta_width, s->theta_hidden, s->omega_width,
+                          s->omega_hidden, s->varpi_width, s->varpi_hidden, s->entropy_width, s->entropy_hidden, s->depth };
     const float steps[] = { s->step_fv, s->step_fg, s->step_sigma, s->step_colour };
     for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++)
         visit_same(w, (uint64_t)sizes[i]);
@@ -84,10 +107,12 @@ static void walk_scene(walk *w, const adcgs_trainer *t)
     visit_same(w, crc);
 }
 
-static void walk_config(walk *w, const adcgs_trainer *t)
+static void walk_config(walk *w, adcgs_trainer *t)
 {
     visit_same(w, FORMAT);
     walk_options(w, &t->config);
+    walk_lambda(w, t);
+    walk_lattice(w, t);
     walk_sizes(w, &t->f->params, &t->f->shape);
     walk_scene(w, t);
 }
@@ -97,27 +122,46 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->iteration, sizeof t->iteration);
     visit(w, &t->adam_steps, sizeof t->adam_steps);
     visit(w, &t->weighed, sizeof t->weighed);
+    visit(w, &t->slimmed, sizeof t->slimmed);
     visit(w, &t->decided, sizeof t->decided);
-    visit(w, &t->rounding, sizeof t->rounding);
     visit(w, &t->frozen, sizeof t->frozen);
     visit(w, &t->lr_scale, sizeof t->lr_scale);
+    visit(w, &t->lambda, sizeof t->lambda);
+    visit(w, &t->control, sizeof t->control);
     visit(w, &t->rollbacks, sizeof t->rollbacks);
     visit(w, &t->mean_loss, sizeof t->mean_loss);
     visit(w, &t->mean_mse, sizeof t->mean_mse);
-    visit(w, &t->mean_bits, sizeof t->mean_bits);
+    visit(w, t->mean_bits, sizeof t->mean_bits);
     visit(w, &t->elapsed, sizeof t->elapsed);
+}
+
+/** Hidden layers may be narrower than they began. */
+static void walk_width(walk *w, adcgs_fmodel *f, int group)
+{
+    const int from[ADCGS_P_COUNT] = { [ADCGS_P_THETA] = f->shape.theta_width, [ADCGS_P_OMEGA] = f->shape.omega_width,
+                                      [ADCGS_P_VARPI] = f->shape.varpi_width };
+    int width = f->mlp[group].width;
+    visit(w, &width, sizeof width);
+    if (!f->mlp[group].hidden || w->out)
+        return;
+    if (width < 1 || width > (f->mlp[group].entropy ? f->shape.entropy_width : from[group]))
+        w->failed = 1;
+    else
+        adcgs_fmodel_set_width(f, group, width);
 }
 
 static void walk_arrays(walk *w, adcgs_trainer *t)
 {
     adcgs_fmodel *f = t->f;
     const size_t lanes = (size_t)f->groups * 64, slots = lanes * f->params.k;
+    visit(w, f->density, sizeof f->density);
     visit(w, f->keep, slots * sizeof(float));
     visit(w, f->moving, lanes * sizeof(float));
     visit(w, t->stats.weight, 3 * slots * sizeof(float));
     visit(w, &t->stats.n, sizeof t->stats.n);
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         adcgs_param *p = &f->param[i];
+        walk_width(w, f, i);
         visit(w, p->p, p->n * sizeof(float));
         visit(w, p->m, p->n * sizeof(float));
         visit(w, p->v, p->n * sizeof(float));
@@ -125,6 +169,7 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
     }
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         visit(w, t->pass->mu[i], f->param[i].n * sizeof(float));
+    visit(w, t->pass->factor, lanes * (size_t)adcgs_params_steps(&f->params) * sizeof(float));
 }
 
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
@@ -167,10 +212,13 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     if (w.failed)
         return adcgs_fail(error, ADCGS_ERR_DATA, "saved with other options or another scene; give the same as then");
     walk_scalars(&w, t);
+    if (!t->lambda_used)
+        t->lambda = (double)t->config.lambda;
     ADCGS_TRY(restore_anchors(&w, t, error));
     walk_arrays(&w, t);
     if (w.failed || adcgs_reader_left(&reader))
         return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
+    adcgs_fmodel_take_steps(t->f);
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         if (t->f->mlp[i].n)
             adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);

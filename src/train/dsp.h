@@ -9,6 +9,8 @@
 
 #include "splat/dense.h"
 
+#include <math.h>
+
 /** Outputs of F_theta per primitive, of F_omega per anchor, of F_varpi per primitive. */
 enum { ADCGS_THETA_OUT = 14, ADCGS_OMEGA_OUT = 12, ADCGS_VARPI_OUT = 4 };
 
@@ -32,7 +34,36 @@ typedef struct adcgs_group_grad {
     const float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] */
     float *sigma, *colour;        /**< [6][64], [3][64], accumulated */
     float *theta, *omega, *varpi; /**< overwritten; omega, varpi may be NULL as above */
+    const float *pull;            /**< [12][64] more gradient of the anchors' way and rotation matrix, or NULL */
 } adcgs_group_grad;
+
+/** What the coder's tables say about a value of magnitude `a` at a sigma level. */
+typedef struct adcgs_rate_cell {
+    float bits;     /**< that coding it takes; at level 0 nothing is coded */
+    float by_value; /**< their derivative by the magnitude */
+    float by_level; /**< and by the level */
+} adcgs_rate_cell;
+
+/** Largest magnitude of a quantised value; one more, so that a value may lie between two cells. */
+enum { ADCGS_LEVEL_MAX = 500, ADCGS_RATE_CELLS = ADCGS_LEVEL_MAX + 2 };
+typedef struct adcgs_rate_table {
+    adcgs_rate_cell cell[ADCGS_SIGMA_LEVELS][ADCGS_RATE_CELLS];
+} adcgs_rate_table;
+/** Fill in the table of a density shape. */
+void adcgs_rate_table_init(adcgs_rate_table *table, int shape);
+
+/** Rows of 64 values to be coded and what an entropy network says about them. */
+typedef struct adcgs_rate_io {
+    int n;
+    const float *y, *step;  /**< values [n][64], steps [n] */
+    const float *mu, *si;   /**< the network's outputs: [n][64] in 16 steps, [n][64] in 8 sigma levels around level 32 */
+    const float *weight;    /**< [64] of each lane, 0 for padding */
+    float scale;
+    float *dy, *dmu, *dsi;  /**< dy += scale*dbits/dy; dmu, dsi overwritten with scale*dbits/dmu, /dsi */
+    float *x;               /**< receives the values as inputs of networks that follow; may be NULL */
+    const adcgs_rate_table *table; /**< rate_exact: of the group's shape */
+    float *mean;            /**< rate_exact: receives the means, packed */
+} adcgs_rate_io;
 
 typedef struct adcgs_train_dsp {
     adcgs_dense_dsp dense;
@@ -46,17 +77,22 @@ typedef struct adcgs_train_dsp {
     void (*lrelu_back)(float *dz, const float *h, int n);
     /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */
     void (*noise)(float *y, const float *p, const float *step, int n, uint32_t seed);
-    /** y = step*(rint(p/step - mu/64) + mu/64): straight-through rounding around the predicted mean (mu in 1/64 step). */
+    /** y: what the coder makes of p, rounded in steps around the predicted mean mu; see adcgs_mean_pack(). */
     void (*round)(float *y, const float *p, const float *step, const float *mu, int n);
     void (*primitives)(const adcgs_group_io *io);
     void (*primitives_back)(const adcgs_group_io *io, const adcgs_group_grad *grad);
     /**
-     * Bits of n rows of 64 values and their gradients. y: values; step: [n]; mu: [n][64] in 16 steps; si: [n][64] in 8 sigma
-     * levels around level 32; weight: [64] of each lane (0 for padding). dy += scale*dbits/dy; dmu, dsi overwritten with
-     * scale*dbits/dmu, /dsi. Returns the weighted sum of bits.
+     * n rows of a hidden layer of an entropy network: h = leaky ReLU of z, plus in where it is not NULL. hidden_exact: z, in on
+     * the integer networks' lattices, and h what they compute.
      */
-    double (*rate)(const float *y, const float *step, const float *mu, const float *si, const float *weight, int n, float scale,
-                   float *dy, float *dmu, float *dsi);
+    void (*hidden)(float *h, const float *z, const float *in, int n);
+    void (*hidden_exact)(float *h, const float *z, const float *in, int n);
+    /**
+     * Bits of values and their gradients; returns the weighted sum of bits. rate: of values as they are, noisy ones that is,
+     * under a Gaussian. rate_exact: as the coder does it, with the gradients straight through every rounding.
+     */
+    double (*rate)(const adcgs_rate_io *io);
+    double (*rate_exact)(const adcgs_rate_io *io);
     /** Adam step on n parameters; c1 = 1/(1-beta1^t), c2 = 1/(1-beta2^t); clears g. */
     void (*adam)(float *p, float *g, float *m, float *v, size_t n, float lr, float c1, float c2);
 } adcgs_train_dsp;
@@ -65,6 +101,36 @@ typedef struct adcgs_train_dsp {
 #define ADCGS_MU_GAIN 16.0f
 #define ADCGS_SI_GAIN 8.0f
 #define ADCGS_SI_CENTRE 32.0f
+#define ADCGS_STEP_GAIN 8.0f /**< E_q's twin yields octaves, the integer network eighths of them */
+
+/**
+ * The integer networks in the twins' units: weights, biases and activations are multiples of 2^-ADCGS_E24_BITS, weights and
+ * activations of magnitude at most ADCGS_E24_MAX of them; inputs, values in units of 16 steps, are so to a quarter of a step.
+ */
+enum { ADCGS_E24_BITS = 6, ADCGS_E24_MAX = 2047, ADCGS_E24_INPUT_SHIFT = 4 };
+
+/** x, or the nearer bound; lo where x is no number. */
+static inline float adcgs_bounded(float x, float lo, float hi)
+{
+    const float y = x > lo ? x : lo;
+    return y < hi ? y : hi;
+}
+/** A mean in 1/64 step as the passes keep it: marked where the sigma level is 0, so that the mean is all that is coded. */
+#define ADCGS_MEAN_ALONE 0x1p18f
+static inline float adcgs_mean_pack(float mean, int alone)
+{
+    return alone ? mean + ADCGS_MEAN_ALONE : mean;
+}
+
+/** What the coder makes of the twins' outputs: the mean in 1/64 step, the sigma level. */
+static inline float adcgs_coder_mean(float mu)
+{
+    return adcgs_bounded(floorf(64 * ADCGS_MU_GAIN * mu + 0.5f), -32767, 32767);
+}
+static inline float adcgs_coder_level(float si)
+{
+    return adcgs_bounded(floorf(ADCGS_SI_GAIN * si + 0.5f) + ADCGS_SI_CENTRE, 0, ADCGS_SIGMA_LEVELS - 1);
+}
 
 void adcgs_train_dsp_init(adcgs_train_dsp *dsp, adcgs_cpu_level level);
 

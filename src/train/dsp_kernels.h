@@ -113,11 +113,14 @@ static void ISA(noise)(float *restrict y, const float *restrict p, const float *
 
 static void ISA(round)(float *restrict y, const float *restrict p, const float *restrict step, const float *restrict mu, int n)
 {
+    const float most = 32767.0f / 64;
     for (int i = 0; i < n; i++) {
         const float inverse = 1 / step[i];
         for (int l = 0; l < LANES; l++) {
-            const float m = mu[i * LANES + l] * 0x1p-6f;
-            y[i * LANES + l] = step[i] * (rintf(p[i * LANES + l] * inverse - m) + m);
+            const int alone = mu[i * LANES + l] > 0.5f * ADCGS_MEAN_ALONE;
+            const float m = (mu[i * LANES + l] - (alone ? ADCGS_MEAN_ALONE : 0)) * 0x1p-6f;
+            const float v = adcgs_bounded(rintf(p[i * LANES + l] * inverse - m), -ADCGS_LEVEL_MAX, ADCGS_LEVEL_MAX);
+            y[i * LANES + l] = step[i] * adcgs_bounded((alone ? 0 : v) + m, -most, most);
         }
     }
 }
@@ -180,9 +183,10 @@ static void ISA(primitives)(const adcgs_group_io *io)
             const float ox = th[l] * a.extent[0][l], oy = th[LANES + l] * a.extent[1][l], oz = th[2 * LANES + l] * a.extent[2][l];
             const float w = a.q[0][l], x = a.q[1][l], y = a.q[2][l], z = a.q[3][l];
             ROTATION(r, w, x, y, z);
-            m0[l] = io->x[l] + a.move[0][l] + (r00 * ox + r01 * oy + r02 * oz);
-            m1[l] = io->x[LANES + l] + a.move[1][l] + (r10 * ox + r11 * oy + r12 * oz);
-            m2[l] = io->x[2 * LANES + l] + a.move[2][l] + (r20 * ox + r21 * oy + r22 * oz);
+            const float px = io->x[l] + ox, py = io->x[LANES + l] + oy, pz = io->x[2 * LANES + l] + oz;
+            m0[l] = a.move[0][l] + (r00 * px + r01 * py + r02 * pz);
+            m1[l] = a.move[1][l] + (r10 * px + r11 * py + r12 * pz);
+            m2[l] = a.move[2][l] + (r20 * px + r21 * py + r22 * pz);
         }
         for (int c = 0; c < 3; c++) {
             float *restrict scale = io->scale[c] + k * LANES;
@@ -218,7 +222,7 @@ static void ISA(primitives)(const adcgs_group_io *io)
 /** Sums over a group's primitives of what flows back into its anchors. */
 typedef struct anchor_grads {
     float move[3][LANES], grow[3][LANES], tint[3][LANES];
-    float m[9][LANES]; /* sum of dL/dmean (x) offset: gradient of the rotation matrix */
+    float m[9][LANES]; /* sum of dL/dmean (x) canonical mean: gradient of the rotation matrix */
     float q[4][LANES]; /* gradient of the anchor's quaternion through the primitives' */
 } anchor_grads;
 
@@ -246,15 +250,16 @@ static void ISA(primitive_mean_back)(const anchor_terms *a, anchor_grads *s, con
         ds[l] += fx * ox;
         ds[LANES + l] += fy * oy;
         ds[2 * LANES + l] += fz * oz;
-        s->m[0][l] += g0[l] * ox;
-        s->m[1][l] += g0[l] * oy;
-        s->m[2][l] += g0[l] * oz;
-        s->m[3][l] += g1[l] * ox;
-        s->m[4][l] += g1[l] * oy;
-        s->m[5][l] += g1[l] * oz;
-        s->m[6][l] += g2[l] * ox;
-        s->m[7][l] += g2[l] * oy;
-        s->m[8][l] += g2[l] * oz;
+        const float px = io->x[l] + ox, py = io->x[LANES + l] + oy, pz = io->x[2 * LANES + l] + oz;
+        s->m[0][l] += g0[l] * px;
+        s->m[1][l] += g0[l] * py;
+        s->m[2][l] += g0[l] * pz;
+        s->m[3][l] += g1[l] * px;
+        s->m[4][l] += g1[l] * py;
+        s->m[5][l] += g1[l] * pz;
+        s->m[6][l] += g2[l] * px;
+        s->m[7][l] += g2[l] * py;
+        s->m[8][l] += g2[l] * pz;
     }
 }
 
@@ -354,6 +359,10 @@ static void ISA(primitives_back)(const adcgs_group_io *io, const adcgs_group_gra
     anchor_terms a;
     anchor_grads s;
     memset(&s, 0, sizeof s);
+    if (grad->pull && io->omega) {
+        memcpy(s.move, grad->pull, sizeof s.move);
+        memcpy(s.m, grad->pull + 3 * LANES, sizeof s.m);
+    }
     ISA(anchor_forward)(&a, io);
     for (int k = 0; k < io->k; k++) {
         ISA(primitive_mean_back)(&a, &s, io, grad, k);
@@ -375,45 +384,153 @@ static inline float tail(float x, float *density)
     return p * *density;
 }
 
-static double ISA(rate)(const float *restrict y, const float *restrict step, const float *restrict mu, const float *restrict si,
-                        const float *restrict weight, int n, float scale, float *restrict dy, float *restrict dmu,
-                        float *restrict dsi)
+/** One row of values: bits of each lane; v in steps from the mean, its derivative into gv, that of the level into gs. */
+static void ISA(rate_row)(float *restrict bits, float *restrict gv, float *restrict gs, const float *restrict v_row,
+                          const float *restrict level_row)
 {
     const float log2_ratio = 0.145784517f; /* log2(64/0.11)/63: sigma levels are 2^0.1458 apart */
     const float level0 = -3.18442457f;    /* log2(0.11) */
+    for (int l = 0; l < LANES; l++) {
+        const float v = v_row[l], av = v < 0 ? -v : v, level = adcgs_clampf(level_row[l], 0, 63);
+        const float inv_sigma = adcgs_exp(-0.69314718f * (level * log2_ratio + level0));
+        const float a = (av - 0.5f) * inv_sigma, b = (av + 0.5f) * inv_sigma;
+        float fa, fb;
+        const float qa = tail(a < 0 ? -a : a, &fa), qb = tail(b, &fb);
+        const float inside = (a < 0 ? 1 - qa : qa) - qb;
+        /* a thin heavy tail stands for the escape code and keeps gradients alive far out */
+        const float width = 1 + 4 / inv_sigma, far = 1 / (width * width + av * av), heavy = 0x1p-14f * width * far;
+        const float p = inside * (1 - 0x1p-12f) + heavy + 1e-12f, factor = -1.44269504f / p;
+        const float dp_dv = (fb - fa) * inv_sigma * (1 - 0x1p-12f) - 2 * heavy * av * far;
+        /* d p / d ln sigma; the tail's width grows with sigma */
+        const float dp_dlog = -(b * fb - a * fa) * (1 - 0x1p-12f) + 0x1p-14f * far * (1 - 2 * width * width * far) * (width - 1);
+        bits[l] = -adcgs_log2(p);
+        gv[l] = factor * dp_dv * (v < 0 ? -1.0f : 1.0f);
+        gs[l] = factor * dp_dlog * (0.69314718f * log2_ratio);
+    }
+}
+
+/** The same as the coder has it, from the table's cells of each lane's level. */
+static void ISA(rate_row_exact)(float *restrict bits, float *restrict gv, float *restrict gs, const float *restrict v_row,
+                                const float *restrict n, const float *restrict level, const adcgs_rate_cell *restrict cells)
+{
+    for (int l = 0; l < LANES; l++) {
+        /* The level is judged by the value as it is coded; the mean and the value by where the value really lies. */
+        const float v = v_row[l], a = v < 0 ? -v : v, floor_a = floorf(a);
+        const int at = (int)level[l] * ADCGS_RATE_CELLS, below = at + (int)floor_a;
+        const float slope = cells[below].by_value + (a - floor_a) * (cells[below + 1].by_value - cells[below].by_value);
+        bits[l] = cells[at + (int)(n[l] < 0 ? -n[l] : n[l])].bits;
+        gv[l] = v < 0 ? -slope : slope;
+        gs[l] = cells[at + (int)floorf(a + 0.5f)].by_level;
+    }
+}
+
+/** Bits and derivatives of a row of io to its sum and gradients; raw: the level before it was bounded. */
+static float ISA(rate_pass_on)(const adcgs_rate_io *io, int i, const float *restrict bits, const float *restrict gv,
+                               const float *restrict gs, const float *restrict raw)
+{
+    float *restrict dy = io->dy + i * LANES, *restrict dmu = io->dmu + i * LANES, *restrict dsi = io->dsi + i * LANES;
+    const float *restrict weight = io->weight;
+    const float inverse = 1 / io->step[i], scale = io->scale;
+    float sum = 0;
+    for (int l = 0; l < LANES; l++) {
+        const float v = gv[l] * weight[l] * scale, s = gs[l] * weight[l] * scale * ADCGS_SI_GAIN;
+        /* let it come back inside, not go further out */
+        const int outwards = ((raw[l] < 0) & (s > 0)) | ((raw[l] > 63) & (s < 0));
+        dy[l] += v * inverse;
+        dmu[l] = -v * ADCGS_MU_GAIN;
+        dsi[l] = outwards ? 0 : s;
+    }
+    for (int l = 0; l < LANES; l++)
+        sum += bits[l] * weight[l];
+    return sum;
+}
+
+static double ISA(rate)(const adcgs_rate_io *io)
+{
     double total = 0;
-    for (int i = 0; i < n; i++) {
-        const float inverse = 1 / step[i];
-        float bits_row[LANES];
+    for (int i = 0; i < io->n; i++) {
+        const float *restrict y = io->y + i * LANES, *restrict mu = io->mu + i * LANES, *restrict si = io->si + i * LANES;
+        float v[LANES], raw[LANES], bits[LANES], gv[LANES], gs[LANES];
+        const float inverse = 1 / io->step[i];
         for (int l = 0; l < LANES; l++) {
-            const int at = i * LANES + l;
-            const float v = y[at] * inverse - ADCGS_MU_GAIN * mu[at], av = v < 0 ? -v : v;
-            const float raw = ADCGS_SI_GAIN * si[at] + ADCGS_SI_CENTRE, level = adcgs_clampf(raw, 0, 63);
-            const float inv_sigma = adcgs_exp(-0.69314718f * (level * log2_ratio + level0));
-            const float a = (av - 0.5f) * inv_sigma, b = (av + 0.5f) * inv_sigma;
-            float fa, fb;
-            const float qa = tail(a < 0 ? -a : a, &fa), qb = tail(b, &fb);
-            const float inside = (a < 0 ? 1 - qa : qa) - qb;
-            /* a thin heavy tail stands for the escape code and keeps gradients alive far out */
-            const float width = 1 + 4 / inv_sigma, far = 1 / (width * width + av * av), heavy = 0x1p-14f * width * far;
-            const float p = inside * (1 - 0x1p-12f) + heavy + 1e-12f;
-            const float factor = -1.44269504f / p * scale * weight[l];
-            const float dp_dv = (fb - fa) * inv_sigma * (1 - 0x1p-12f) - 2 * heavy * av * far;
-            /* d p / d ln sigma; the tail's width grows with sigma */
-            const float dp_dlog = -(b * fb - a * fa) * (1 - 0x1p-12f) +
-                                  0x1p-14f * far * (1 - 2 * width * width * far) * (width - 1);
-            const float gv = factor * dp_dv * (v < 0 ? -1.0f : 1.0f);
-            bits_row[l] = -adcgs_log2(p) * weight[l];
-            dy[at] += gv * inverse;
-            dmu[at] = -gv * ADCGS_MU_GAIN;
-            float gs = factor * dp_dlog * (0.69314718f * 0.145784517f * ADCGS_SI_GAIN);
-            gs = (raw < 0 && gs > 0) || (raw > 63 && gs < 0) ? 0 : gs; /* let it come back inside, not go further out */
-            dsi[at] = gs;
+            v[l] = y[l] * inverse - ADCGS_MU_GAIN * mu[l];
+            raw[l] = ADCGS_SI_GAIN * si[l] + ADCGS_SI_CENTRE;
         }
-        float sum = 0;
+        for (int l = 0; io->x && l < LANES; l++)
+            io->x[i * LANES + l] = y[l] * inverse * (1 / ADCGS_MU_GAIN);
+        ISA(rate_row)(bits, gv, gs, v, raw);
+        total += ISA(rate_pass_on)(io, i, bits, gv, gs, raw);
+    }
+    return total;
+}
+
+/* ---- The same as the coder does it: integers in float's clothes, and its tables. ---- */
+
+/** shr(v, s) of the specification for v = x * 2^s. */
+static inline float nearest(float x)
+{
+    return floorf(x + 0.5f);
+}
+
+static void ISA(hidden)(float *restrict h, const float *restrict z, const float *restrict in, int n)
+{
+    for (int i = 0; i < n * LANES; i++)
+        h[i] = (z[i] < 0 ? z[i] * 0x1p-6f : z[i]) + (in ? in[i] : 0);
+}
+
+static void ISA(hidden_exact)(float *restrict h, const float *restrict z, const float *restrict in, int n)
+{
+    const float up = 1 << ADCGS_E24_BITS, down = 1 / up, most = ADCGS_E24_MAX * down;
+    for (int i = 0; i < n * LANES; i++) {
+        /* The leaky ReLU is the larger of the two. */
+        const float v = nearest(z[i] * up), slow = nearest(v * 0x1p-6f), a = (v > slow ? v : slow) * down;
+        h[i] = adcgs_bounded(in ? a + in[i] : a, -most, most);
+    }
+}
+
+/** A row of values as the coder sees them. */
+typedef struct exact_row {
+    float mean[LANES], raw[LANES], level[LANES];
+    float v[LANES], n[LANES]; /* in steps from the mean; the same rounded, or 0 where nothing is coded */
+} exact_row;
+
+static void ISA(exact_values)(exact_row *restrict r, const float *restrict y, const float *restrict mu, const float *restrict si,
+                              float inverse)
+{
+    for (int l = 0; l < LANES; l++) {
+        const float level = adcgs_coder_level(si[l]), m = adcgs_coder_mean(mu[l]);
+        const float v = adcgs_bounded(y[l] * inverse - m * 0x1p-6f, -ADCGS_LEVEL_MAX, ADCGS_LEVEL_MAX), n = rintf(v);
+        r->mean[l] = m;
+        r->raw[l] = ADCGS_SI_GAIN * si[l] + ADCGS_SI_CENTRE;
+        r->level[l] = level;
+        r->v[l] = v;
+        r->n[l] = level > 0 ? n : 0;
+    }
+}
+
+/** What the row is to networks that follow. */
+static void ISA(exact_inputs)(float *restrict x, const exact_row *restrict r)
+{
+    const float down = 1.0f / (1 << ADCGS_E24_BITS), most = ADCGS_E24_MAX * down, quarter = 1.0f / (1 << ADCGS_E24_INPUT_SHIFT);
+    for (int l = 0; l < LANES; l++) {
+        const float yq = adcgs_bounded(64 * r->n[l] + r->mean[l], -32767, 32767);
+        x[l] = adcgs_bounded(nearest(yq * quarter) * down, -most, most);
+    }
+}
+
+static double ISA(rate_exact)(const adcgs_rate_io *io)
+{
+    double total = 0;
+    for (int i = 0; i < io->n; i++) {
+        exact_row r;
+        float bits[LANES], gv[LANES], gs[LANES];
+        ISA(exact_values)(&r, io->y + i * LANES, io->mu + i * LANES, io->si + i * LANES, 1 / io->step[i]);
         for (int l = 0; l < LANES; l++)
-            sum += bits_row[l];
-        total += sum;
+            io->mean[i * LANES + l] = adcgs_mean_pack(r.mean[l], !(r.level[l] > 0));
+        if (io->x)
+            ISA(exact_inputs)(io->x + i * LANES, &r);
+        ISA(rate_row_exact)(bits, gv, gs, r.v, r.n, r.level, &io->table->cell[0][0]);
+        total += ISA(rate_pass_on)(io, i, bits, gv, gs, r.raw);
     }
     return total;
 }
@@ -438,6 +555,9 @@ void ISA(adcgs_train_dsp_init)(adcgs_train_dsp *dsp)
     dsp->round = ISA(round);
     dsp->primitives = ISA(primitives);
     dsp->primitives_back = ISA(primitives_back);
+    dsp->hidden = ISA(hidden);
+    dsp->hidden_exact = ISA(hidden_exact);
     dsp->rate = ISA(rate);
+    dsp->rate_exact = ISA(rate_exact);
     dsp->adam = ISA(adam);
 }

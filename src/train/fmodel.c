@@ -37,19 +37,76 @@ size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden
         at += (size_t)mlp->in[i] * (size_t)mlp->n_out[i];
         mlp->b[i] = at;
         at += (size_t)mlp->n_out[i];
-        mlp->lattice[i] = 127;
+        mlp->lattice[i] = ADCGS_LATTICE_NONE;
     }
     mlp->n = at;
     return at;
 }
 
+void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width)
+{
+    adcgs_mlp *m = &f->mlp[group];
+    const adcgs_mlp old = *m;
+    f->param[group].n = adcgs_mlp_layout(m, old.own, old.time, width, old.hidden, old.out);
+    memcpy(m->lattice, old.lattice, sizeof m->lattice);
+    m->use = old.use;
+    m->turn = old.turn;
+    m->entropy = old.entropy;
+}
+
+/** Onto a lattice that is that of the integer networks or coarser. NaN, of a run about to be rolled back, becomes -limit. */
+static float integer_weight(float w, int e, int limit)
+{
+    const float v = rintf(ldexpf(w, e)) * (float)(1 << (ADCGS_E24_BITS - e));
+    return v > (float)-limit ? fminf(v, (float)limit) : (float)-limit;
+}
+
+/**
+ * The row bound of the decoder, A*sum|w| + |b| + 2^(s-1) <= 2^24 - 1 with any shift s of the integer networks, by halving the
+ * row: never needed by networks that train normally.
+ */
+static void bound_row(float *w, float *b, int n)
+{
+    for (;;) {
+        double sum = 0;
+        for (int i = 0; i < n; i++)
+            sum += fabs((double)w[i]);
+        if (ADCGS_E24_MAX * sum + (1 << ADCGS_E24_BITS) * fabs((double)*b) + (1 << (2 * ADCGS_E24_BITS)) < 1 << 24)
+            return;
+        for (int i = 0; i < n; i++)
+            w[i] = truncf(w[i] / 2);
+        *b = truncf(*b / 2);
+    }
+}
+
+void adcgs_mlp_integer(const adcgs_mlp *m, const float *p, float *to)
+{
+    for (int i = 0; i <= m->hidden; i++) {
+        const size_t inputs = (size_t)m->in[i];
+        const int e = ADCGS_MIN(m->lattice[i], ADCGS_E24_BITS);
+        for (size_t o = 0; o < (size_t)m->n_out[i]; o++) {
+            float *w = to + m->w[i] + o * inputs, *b = to + m->b[i] + o;
+            for (size_t j = 0; j < inputs; j++)
+                w[j] = integer_weight(p[m->w[i] + o * inputs + j], e, ADCGS_E24_MAX);
+            *b = integer_weight(p[m->b[i] + o], e, 1 << 14);
+            bound_row(w, b, m->in[i]);
+            for (size_t j = 0; j < inputs; j++)
+                w[j] = ldexpf(w[j], -ADCGS_E24_BITS);
+            *b = ldexpf(*b, -ADCGS_E24_BITS);
+        }
+    }
+}
+
 void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise)
 {
-    memcpy(mlp->use, p, mlp->n * sizeof *p);
+    if (quantise && mlp->entropy)
+        adcgs_mlp_integer(mlp, p, mlp->use);
+    else
+        memcpy(mlp->use, p, mlp->n * sizeof *p);
     for (int i = 0; i <= mlp->hidden; i++) {
         const size_t n = (i < mlp->hidden ? mlp->w[i + 1] : mlp->n) - mlp->w[i]; /* weights and biases */
         float *w = mlp->use + mlp->w[i];
-        if (quantise && mlp->lattice[i] != 127) {
+        if (quantise && !mlp->entropy && mlp->lattice[i] != ADCGS_LATTICE_NONE) {
             const float up = ldexpf(1, mlp->lattice[i]), down = ldexpf(1, -mlp->lattice[i]);
             for (size_t j = 0; j < n; j++)
                 w[j] = rintf(w[j] * up) * down;
@@ -93,7 +150,7 @@ static void layout_networks(adcgs_fmodel *f)
         z->in[0] = p->time_width;
         z->n_out[0] = p->time_rows;
         z->n = z->b[0] = (size_t)p->time_rows * p->time_width;
-        z->lattice[0] = 127;
+        z->lattice[0] = ADCGS_LATTICE_NONE;
     }
     const int w = s->entropy_width, h = s->entropy_hidden;
     adcgs_mlp_layout(&m[ADCGS_P_E_FV], p->n_eta, 0, w, h, 2 * p->n_fv);
@@ -101,11 +158,15 @@ static void layout_networks(adcgs_fmodel *f)
     adcgs_mlp_layout(&m[ADCGS_P_E_COLOUR], p->n_fv, 0, w, h, 2 * ADCGS_COLOUR_N);
     for (int c = 0; c < p->chunks && per_chunk; c++)
         adcgs_mlp_layout(&m[ADCGS_P_E_FG + c], p->n_fv + c * per_chunk, 0, w, h, 2 * per_chunk);
+    if (p->adaptive_steps)
+        adcgs_mlp_layout(&m[ADCGS_P_E_STEPS], p->n_fv, 0, w, h, adcgs_params_steps(p));
+    for (int i = ADCGS_P_E_FV; i < ADCGS_P_COUNT; i++)
+        m[i].entropy = 1;
 }
 
 static const char *const names[ADCGS_P_COUNT] = { "f_v", "f_g", "sigma", "colour", "eta", "theta", "omega", "varpi", "time",
-                                                  "eta prior", "E_fv", "E_sigma", "E_colour", "E_fg1", "E_fg2", "E_fg3",
-                                                  "E_fg4" };
+                                                  "eta prior", "steps", "E_fv", "E_sigma", "E_colour", "E_fg1", "E_fg2", "E_fg3",
+                                                  "E_fg4", "E_q" };
 
 static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
 {
@@ -143,6 +204,8 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
         size_t n = mlp->n;
         if (i == ADCGS_P_ETA_PRIOR)
             n = 2u * f->params.n_eta;
+        if (i == ADCGS_P_STEP)
+            n = (size_t)f->params.n_fv + f->params.n_fg + ADCGS_SIGMA_N + ADCGS_COLOUR_N;
         ADCGS_TRY(param_alloc(&f->param[i], n, error));
         if (!mlp->n)
             continue;
@@ -150,8 +213,8 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
         if (!mlp->use)
             return ADCGS_ERR_MEMORY;
         mlp->turn = mlp->use + (n + 15) / 16 * 16;
-        const int deforms = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI;
-        mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : deforms ? 0.0f : 0.02f, seed, (uint64_t)i);
+        const int from_zero = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI || i == ADCGS_P_E_STEPS;
+        mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : from_zero ? 0.0f : 0.02f, seed, (uint64_t)i);
     }
     start_time_table(f);
     const adcgs_mlp *theta = &f->mlp[ADCGS_P_THETA];
@@ -162,12 +225,58 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
 
 /* ---- Anchors ---- */
 
-static void set_steps(adcgs_fmodel *f)
+static float first_step(const adcgs_fmodel *f, int group)
 {
     const float step[ADCGS_P_ANCHOR] = { f->shape.step_fv, f->shape.step_fg, f->shape.step_sigma, f->shape.step_colour, 1.0f };
-    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+    return step[group];
+}
+
+static void start_steps(adcgs_fmodel *f)
+{
+    for (int i = 0; i < ADCGS_P_ETA; i++)
         for (int r = 0; r < adcgs_fmodel_rows(f, i); r++)
-            f->step[i][r] = step[i];
+            f->param[ADCGS_P_STEP].p[adcgs_fmodel_step_at(f, i, r)] = logf(first_step(f, i));
+    for (int r = 0; r < f->params.n_eta; r++)
+        f->step[ADCGS_P_ETA][r] = first_step(f, ADCGS_P_ETA);
+    adcgs_fmodel_take_steps(f);
+}
+
+/** Rows of a group that have steps of their own. */
+static int channels_of(const adcgs_fmodel *f, int group)
+{
+    return group == ADCGS_P_FG ? f->params.n_fg : adcgs_fmodel_rows(f, group);
+}
+
+float adcgs_fmodel_finest_step(const adcgs_fmodel *f, int group, int channel)
+{
+    float most = 0x1p-20f;
+    for (int r = channel; r < adcgs_fmodel_rows(f, group); r += channels_of(f, group))
+        for (uint32_t i = 0; i < f->n; i++)
+            most = fmaxf(most, fabsf(*adcgs_fmodel_at(f, group, i, r)));
+    return most / 480;
+}
+
+void adcgs_fmodel_widen_steps(adcgs_fmodel *f)
+{
+    for (int i = 0; i < ADCGS_P_ETA; i++)
+        for (int c = 0; c < channels_of(f, i); c++) {
+            float *log_step = &f->param[ADCGS_P_STEP].p[adcgs_fmodel_step_at(f, i, c)];
+            *log_step = fmaxf(*log_step, logf(adcgs_fmodel_finest_step(f, i, c)));
+        }
+    adcgs_fmodel_take_steps(f);
+}
+
+void adcgs_fmodel_take_steps(adcgs_fmodel *f)
+{
+    const float reach = logf(64);
+    for (int i = 0; i < ADCGS_P_ETA; i++) {
+        const float middle = logf(first_step(f, i));
+        for (int r = 0; r < adcgs_fmodel_rows(f, i); r++) {
+            float *log_step = &f->param[ADCGS_P_STEP].p[adcgs_fmodel_step_at(f, i, r)];
+            *log_step = fminf(fmaxf(*log_step, middle - reach), middle + reach);
+            f->step[i][r] = expf(*log_step);
+        }
+    }
 }
 
 static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *error)
@@ -234,7 +343,7 @@ adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params,
         adcgs_fmodel_free(&f);
         return status;
     }
-    set_steps(f);
+    start_steps(f);
     place_anchors(f, pos);
     for (size_t i = 0; i < (size_t)f->groups * 64; i++) {
         f->moving[i] = params->time_rows ? f->live[i] : 0;

@@ -25,11 +25,13 @@ typedef enum adcgs_pgroup {
     ADCGS_P_VARPI,
     ADCGS_P_TIME,      /**< Z [rows][width] */
     ADCGS_P_ETA_PRIOR, /**< [2][n_eta]: mean and level of the prior, in the twins' gains */
+    ADCGS_P_STEP,      /**< natural logarithms of the quantiser steps: f_v, f_g (of one primitive), Sigma_v, C_v */
     ADCGS_P_E_FV,
     ADCGS_P_E_SIGMA,
     ADCGS_P_E_COLOUR,
     ADCGS_P_E_FG, /**< + chunk */
-    ADCGS_P_COUNT = ADCGS_P_E_FG + ADCGS_CHUNKS_MAX
+    ADCGS_P_E_STEPS = ADCGS_P_E_FG + ADCGS_CHUNKS_MAX, /**< E_q: octaves by which an anchor's steps differ */
+    ADCGS_P_COUNT
 } adcgs_pgroup;
 
 /** One block of parameters. */
@@ -41,6 +43,7 @@ typedef struct adcgs_param {
 } adcgs_param;
 
 #define ADCGS_MLP_LAYERS 4
+#define ADCGS_LATTICE_NONE 127 /**< weights that are binary32 */
 
 /**
  * Shape of a network: inputs [own | time], hidden layers of equal width (leaky ReLU; from the second on residual), linear output.
@@ -53,7 +56,8 @@ typedef struct adcgs_mlp {
     size_t n;                                        /**< parameters; 0: the network does not exist */
     float *use;   /**< [n] the weights the forward pass uses: the parameters, or their lattice values */
     float *turn;  /**< [n] the same transposed per layer: w^T [n_in][n_out] at w's offset */
-    int8_t lattice[ADCGS_MLP_LAYERS]; /**< exponent e of the lattice 2^-e of each layer's weights; 127: none yet */
+    int8_t lattice[ADCGS_MLP_LAYERS]; /**< exponent e of the lattice 2^-e of each layer's weights, or ADCGS_LATTICE_NONE */
+    uint8_t entropy; /**< an entropy network: on the lattice it is the integer network of spec clause "E24" */
 } adcgs_mlp;
 
 /** Widths and steps that a model is made with. Sizes in the stream are in params. */
@@ -76,7 +80,8 @@ typedef struct adcgs_fmodel {
     float *live;                /**< [group][64] 1 for anchors, 0 for padding */
     adcgs_param param[ADCGS_P_COUNT];
     adcgs_mlp mlp[ADCGS_P_COUNT]; /**< of the network groups */
-    float *step[ADCGS_P_ANCHOR];  /**< quantiser steps per feature row of a group */
+    float *step[ADCGS_P_ANCHOR];  /**< quantiser steps per feature row of a group, of ADCGS_P_STEP */
+    uint8_t density[ADCGS_GROUPS]; /**< shape of the density of each group of channels, as adcgs_model.shape */
 } adcgs_fmodel;
 
 /** Rows (features) per group of an anchor parameter. */
@@ -103,6 +108,23 @@ static inline size_t adcgs_fmodel_slot(const adcgs_fmodel *f, uint32_t anchor, i
     return ((size_t)(anchor / 64) * f->params.k + (size_t)k) * 64 + anchor % 64;
 }
 
+/** Where in ADCGS_P_STEP the step of a row lies; eta's is 1 and not among them. */
+static inline int adcgs_fmodel_step_at(const adcgs_fmodel *f, int group, int row)
+{
+    const int nv = f->params.n_fv, ng = f->params.n_fg;
+    return group == ADCGS_P_FV ? row : group == ADCGS_P_FG ? nv + row % ng : nv + ng + (group == ADCGS_P_COLOUR ? 6 : 0) + row;
+}
+
+/**
+ * The finest step with which a stream holds all values of a channel, row `channel` of the first primitive for f_g. It holds 511
+ * steps (|yq| <= 32767 in 1/64 step) and 500 from the mean; a few are left for values that go on moving.
+ */
+float adcgs_fmodel_finest_step(const adcgs_fmodel *f, int group, int channel);
+/** Make steps that are too fine for the values of their channel as fine as can be. */
+void adcgs_fmodel_widen_steps(adcgs_fmodel *f);
+/** Renew the steps from their logarithms, which are held within a factor of 64 of where they began. */
+void adcgs_fmodel_take_steps(adcgs_fmodel *f);
+
 /** One anchor's parameter row. */
 static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
 {
@@ -112,6 +134,13 @@ static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t 
 
 /** Copy parameters into `use` (on the lattice where lattice is set and `quantise` is nonzero) and transpose. */
 void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise);
+/**
+ * The weights [n] of the integer network that an entropy network's parameters stand for, as multiples of 2^-ADCGS_E24_BITS: in
+ * range, and every row within the bound that makes its sums exact.
+ */
+void adcgs_mlp_integer(const adcgs_mlp *mlp, const float *p, float *to);
+/** Give a network's hidden layers another width, at most the shape's; its parameters are left to the caller. */
+void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width);
 /** Fill in a network's layout; returns its number of parameters. */
 size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden, int out);
 

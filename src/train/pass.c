@@ -24,11 +24,14 @@ static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_err
         if (!p->used[i] || !p->mu[i])
             return ADCGS_ERR_MEMORY;
     }
+    p->factor = adcgs_alloc(NULL, g * (size_t)adcgs_params_steps(&f->params) * 64, sizeof(float), error);
     p->keep = adcgs_alloc(NULL, slots, sizeof(float), error);
     p->act = adcgs_alloc(NULL, g * p->act_stride, sizeof(float), error);
     p->prim = adcgs_alloc(NULL, slots * 14, sizeof(float), error);
     p->grad = adcgs_alloc(NULL, slots * 16, sizeof(float), error);
-    if (!p->keep || !p->act || !p->prim || !p->grad)
+    for (size_t i = 0; p->factor && i < g * (size_t)adcgs_params_steps(&f->params) * 64; i++)
+        p->factor[i] = 1;
+    if (!p->factor || !p->keep || !p->act || !p->prim || !p->grad)
         return ADCGS_ERR_MEMORY;
     float *a = p->prim, *d = p->grad;
     adcgs_primitives *r = &p->primitives;
@@ -58,6 +61,7 @@ static void free_groups(adcgs_pass *p)
         adcgs_free(NULL, p->used[i]);
         adcgs_free(NULL, p->mu[i]);
     }
+    adcgs_free(NULL, p->factor);
     adcgs_free(NULL, p->keep);
     adcgs_free(NULL, p->act);
     adcgs_free(NULL, p->prim);
@@ -75,9 +79,10 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     adcgs_train_dsp_init(&p->dsp, cpu);
     const adcgs_mlp *m = f->mlp;
     const size_t k = f->params.k;
-    const adcgs_mlp *theta = &m[ADCGS_P_THETA];
+    const adcgs_mlp *theta = &m[ADCGS_P_THETA], *steps = &m[ADCGS_P_E_STEPS];
+    const size_t steps_hidden = ((size_t)steps->hidden + adcgs_pass_branches(steps)) * (size_t)steps->width;
     p->act_stride = 64 * ((size_t)theta->width + k * (rows_of(theta) - (size_t)theta->out) + rows_of(&m[ADCGS_P_OMEGA]) +
-                          rows_of(&m[ADCGS_P_VARPI]));
+                          rows_of(&m[ADCGS_P_VARPI]) + steps_hidden + 2 * (size_t)steps->out);
     p->scratch_stride = 64 * adcgs_pass_scratch_rows(f);
     size_t at = 0;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
@@ -88,16 +93,19 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     p->chunks = ADCGS_PASS_CHUNKS;
     p->scratch = adcgs_alloc(NULL, p->scratch_stride * (size_t)adcgs_pool_threads(pool), sizeof(float), error);
     p->partial = adcgs_alloc(NULL, at * (size_t)p->chunks, sizeof(float), error);
-    p->bits = adcgs_alloc(NULL, (size_t)p->chunks * ADCGS_P_ANCHOR, sizeof(double), error);
+    p->bits = adcgs_alloc(NULL, (size_t)p->chunks * ADCGS_GROUPS, sizeof(double), error);
+    p->tables = adcgs_alloc(NULL, ADCGS_SHAPES, sizeof *p->tables, error);
     p->time_code = adcgs_alloc(NULL, (size_t)f->params.time_width + 1, sizeof(float), error);
     for (int i = 0; i < 2; i++)
         p->time_bias[i] = adcgs_alloc(NULL, 1024, sizeof(float), error);
     *out = p;
-    if (!p->scratch || !p->partial || !p->bits || !p->time_code || !p->time_bias[0] || !p->time_bias[1] ||
+    if (!p->scratch || !p->partial || !p->bits || !p->tables || !p->time_code || !p->time_bias[0] || !p->time_bias[1] ||
         alloc_groups(p, f, error) != ADCGS_OK) {
         adcgs_pass_free(out);
         return ADCGS_ERR_MEMORY;
     }
+    for (int i = 0; i < ADCGS_SHAPES; i++)
+        adcgs_rate_table_init(&p->tables[i], i);
     return ADCGS_OK;
 }
 
@@ -110,6 +118,7 @@ void adcgs_pass_free(adcgs_pass **pass)
     adcgs_free(NULL, p->scratch);
     adcgs_free(NULL, p->partial);
     adcgs_free(NULL, p->bits);
+    adcgs_free(NULL, p->tables);
     adcgs_free(NULL, p->time_code);
     for (int i = 0; i < 2; i++)
         adcgs_free(NULL, p->time_bias[i]);
@@ -145,23 +154,40 @@ typedef struct forward_job {
     adcgs_pass *pass;
     const adcgs_fmodel *f;
     const adcgs_pass_mode *mode;
-    int deform;
+    adcgs_deform deform;
 } forward_job;
 
-static void quantise_group(const forward_job *job, uint32_t g)
+static void quantise_rows(const forward_job *job, uint32_t g, int i, float *to, const float *value)
 {
-    adcgs_pass *p = job->pass;
+    const adcgs_pass *p = job->pass;
+    const int rows = adcgs_fmodel_rows(job->f, i);
+    const float *step = job->f->step[i];
+    if (job->mode->quant == ADCGS_QUANT_NOISE)
+        p->dsp.noise(to, value, step, rows, adcgs_mix32(job->mode->seed ^ (g * ADCGS_P_ANCHOR + (uint32_t)i)));
+    else if (job->mode->quant == ADCGS_QUANT_ROUND)
+        p->dsp.round(to, value, step, p->mu[i] + (size_t)g * (size_t)rows * 64, rows);
+    else
+        memcpy(to, value, (size_t)rows * 64 * sizeof *value);
+}
+
+/** f_v comes first: the steps of the others may follow from it. */
+static void quantise_group(const forward_job *job, uint32_t g, float *scratch)
+{
+    const adcgs_pass *p = job->pass;
+    const adcgs_fmodel *f = job->f;
+    const int adapts = adcgs_pass_adapts(p, f);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
-        const int rows = adcgs_fmodel_rows(job->f, i);
-        const size_t at = (size_t)g * (size_t)rows * 64;
-        const float *value = job->f->param[i].p + at;
-        const float *step = job->f->step[i];
-        if (job->mode->quant == ADCGS_QUANT_NOISE)
-            p->dsp.noise(p->used[i] + at, value, step, rows, adcgs_mix32(job->mode->seed ^ (g * ADCGS_P_ANCHOR + (uint32_t)i)));
-        else if (job->mode->quant == ADCGS_QUANT_ROUND)
-            p->dsp.round(p->used[i] + at, value, step, p->mu[i] + at, rows);
-        else
-            memcpy(p->used[i] + at, value, (size_t)rows * 64 * sizeof *value);
+        const size_t at = (size_t)g * (size_t)adcgs_fmodel_rows(f, i) * 64;
+        float *used = p->used[i] + at;
+        if (adapts && adcgs_pass_factor_of(f, i, 0) >= 0) { /* in units of the factors, and back */
+            adcgs_pass_divide(p, f, g, i, scratch, f->param[i].p + at);
+            quantise_rows(job, g, i, used, scratch);
+            adcgs_pass_multiply(p, f, g, i, used, used);
+        } else {
+            quantise_rows(job, g, i, used, f->param[i].p + at);
+        }
+        if (adapts && i == ADCGS_P_FV)
+            adcgs_pass_evaluate_factors(p, f, g, job->mode->quant == ADCGS_QUANT_NOISE, scratch);
     }
 }
 
@@ -197,7 +223,7 @@ static void forward_deform(const forward_job *job, uint32_t g)
         d->dense(act.omega_h, NULL, p->time_bias[0], om->use, (size_t)om->in[0], fv, om->width, nv);
         adcgs_mlp_tail(&p->dsp, om, act.omega_h, act.omega_a, act.omega_out);
     }
-    if (va->n) {
+    if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], f->code + (size_t)g * (size_t)fp * 64, va->width,
                  fp);
         if (f->params.fine_uses_fv)
@@ -206,7 +232,7 @@ static void forward_deform(const forward_job *job, uint32_t g)
     }
 }
 
-void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int deform, adcgs_group_io *io)
+void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs_deform deform, adcgs_group_io *io)
 {
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const size_t slots = (size_t)f->groups * f->params.k * 64, at = (size_t)g * f->params.k * 64;
@@ -216,7 +242,7 @@ void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int d
     io->colour = p->used[ADCGS_P_COLOUR] + (size_t)g * ADCGS_COLOUR_N * 64;
     io->theta = act.theta_out;
     io->omega = deform && f->mlp[ADCGS_P_OMEGA].n ? act.omega_out : NULL;
-    io->varpi = deform && f->mlp[ADCGS_P_VARPI].n ? act.varpi_out : NULL;
+    io->varpi = deform == ADCGS_DEFORM_ALL && f->mlp[ADCGS_P_VARPI].n ? act.varpi_out : NULL;
     io->moving = f->moving + (size_t)g * 64;
     io->keep = p->keep + at;
     io->rotation = f->params.coarse_rotation;
@@ -240,10 +266,9 @@ static void drop_primitives(const forward_job *job, uint32_t g)
 
 static void forward_group(void *arg, int index, int thread)
 {
-    (void)thread;
     const forward_job *job = arg;
     const uint32_t g = (uint32_t)index;
-    quantise_group(job, g);
+    quantise_group(job, g, job->pass->scratch + (size_t)thread * job->pass->scratch_stride);
     drop_primitives(job, g);
     forward_theta(job, g);
     if (job->deform)
@@ -286,7 +311,8 @@ static void forward_time(adcgs_pass *p, const adcgs_fmodel *f, float t)
 
 void adcgs_pass_forward(adcgs_pass *p, const adcgs_fmodel *f, float t, const adcgs_pass_mode *mode)
 {
-    forward_job job = { p, f, mode, mode->deform && f->params.time_rows };
+    forward_job job = { p, f, mode, f->params.time_rows ? mode->deform : ADCGS_DEFORM_NONE };
+    p->quant = mode->quant;
     if (job.deform)
         forward_time(p, f, t);
     adcgs_pool_run(p->pool, forward_group, &job, (int)f->groups);

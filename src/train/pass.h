@@ -16,7 +16,7 @@
 typedef enum adcgs_quant {
     ADCGS_QUANT_NONE,  /**< the parameters */
     ADCGS_QUANT_NOISE, /**< parameters plus uniform noise of one step */
-    ADCGS_QUANT_ROUND, /**< rounded around the means in adcgs_pass.mu, gradients straight through */
+    ADCGS_QUANT_ROUND, /**< rounded around the means in adcgs_pass.mu, in steps times adcgs_pass.factor, straight through */
 } adcgs_quant;
 
 typedef struct adcgs_pass {
@@ -25,7 +25,10 @@ typedef struct adcgs_pass {
     adcgs_train_dsp dsp;
     uint32_t groups;
     float *used[ADCGS_P_ANCHOR]; /**< what the networks see, laid out as the parameters */
-    float *mu[ADCGS_P_ANCHOR];   /**< predicted means in 1/64 step for ADCGS_QUANT_ROUND */
+    float *mu[ADCGS_P_ANCHOR];   /**< predicted means for ADCGS_QUANT_ROUND, packed */
+    float *factor;               /**< [groups][steps][64] of steps that adapt; steps: adcgs_params_steps(). Read like mu */
+    adcgs_quant quant;           /**< of the last forward pass */
+    adcgs_rate_table *tables;    /**< the coder's costs: [ADCGS_SHAPES] */
     float *keep;                 /**< the model's keep, less what was dropped out: [slots] */
     float *act;                  /**< activations, act_stride floats per group */
     size_t act_stride;
@@ -34,19 +37,20 @@ typedef struct adcgs_pass {
     float *partial;              /**< network gradients, partial_stride per chunk */
     size_t partial_stride, partial_at[ADCGS_P_COUNT];
     int chunks;
-    double *bits;                /**< [chunk][5 streams] estimated bits of the last backward pass */
+    double *bits;                /**< [chunk][ADCGS_GROUPS] estimated bits of the last backward pass */
     float *prim;                 /**< primitives: 14 arrays of slots */
     float *grad;                 /**< their gradients and statistics: 16 arrays */
     adcgs_primitives primitives;
     adcgs_raster_grads grads;
+    const float *pull;           /**< gradient added to that of the anchors' ways and rotations, [group][12][64]; NULL: none */
     float *time_code;            /**< f_t */
     float *time_bias[2];         /**< first-layer bias of omega, varpi at this time */
     float t;
 } adcgs_pass;
 
-/** Bits per anchor group of parameters: f_v, f_g, sigma, colour, eta. */
+/** Bits of what is coded: eta, f_v, Sigma_v, C_v, which make layer 0, and the chunks of f_g, which make the others. */
 typedef struct adcgs_rate {
-    double bits[ADCGS_P_ANCHOR];
+    double bits[ADCGS_GROUPS];
     double total;
 } adcgs_rate;
 
@@ -56,10 +60,13 @@ void adcgs_pass_free(adcgs_pass **pass);
 /** After the number of anchors changed. */
 adcgs_status adcgs_pass_resize(adcgs_pass *pass, const adcgs_fmodel *f, adcgs_error *error);
 
+/** Which deformation networks take part. */
+typedef enum adcgs_deform { ADCGS_DEFORM_NONE, ADCGS_DEFORM_ALL, ADCGS_DEFORM_COARSE } adcgs_deform;
+
 /** How a forward pass differs from playing the model. Zero-initialise for playing. */
 typedef struct adcgs_pass_mode {
     adcgs_quant quant;
-    int deform;    /**< 0 leaves the deformation networks out */
+    adcgs_deform deform;
     float dropout; /**< share of primitives left out at random: what remains may not rely on any one of them */
     uint32_t seed; /**< of noise and dropout */
 } adcgs_pass_mode;
@@ -68,10 +75,21 @@ typedef struct adcgs_pass_mode {
 void adcgs_pass_forward(adcgs_pass *pass, const adcgs_fmodel *f, float t, const adcgs_pass_mode *mode);
 
 /**
- * Accumulate gradients of pass->grads into f->param[].g. With rate_scale > 0 add the gradient of rate_scale * bits, measured on
- * every `period`-th group starting at `first` and scaled up; rate, if not NULL, receives the estimate for all anchors.
+ * Accumulate gradients of pass->grads into f->param[].g; where steps adapt, those of the anchors have to be 0 before. With
+ * rate_scale > 0 add the gradient of rate_scale * bits, measured on every `period`-th group starting at `first` and scaled up;
+ * rate, if not NULL, receives the estimate for all anchors. After a pass that rounded, these bits are the coder's own for values
+ * rounded around the means of now.
  */
-void adcgs_pass_backward(adcgs_pass *pass, adcgs_fmodel *f, int deform, float rate_scale, int period, int first,
+void adcgs_pass_backward(adcgs_pass *pass, adcgs_fmodel *f, adcgs_deform deform, float rate_scale, int period, int first,
                          adcgs_rate *rate);
+
+/**
+ * The bits of all anchors as the coder would spend them on the values rounded, flags and framing aside. The networks must be
+ * on their lattices; gradients stay as they are.
+ */
+void adcgs_pass_rate(adcgs_pass *pass, adcgs_fmodel *f, adcgs_rate *rate);
+
+/** Give each group of channels the shape of density under which adcgs_pass_rate() is least; rate receives what it is then. */
+void adcgs_pass_densities(adcgs_pass *pass, adcgs_fmodel *f, adcgs_rate *rate);
 
 #endif

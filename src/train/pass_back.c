@@ -32,8 +32,10 @@ void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, floa
 typedef struct backward_job {
     adcgs_pass *pass;
     adcgs_fmodel *f;
-    int deform, period, first;
+    adcgs_deform deform;
+    int period, first;
     float rate_scale;
+    int only_rate;
 } backward_job;
 
 static float *grad_at(const adcgs_fmodel *f, int group, uint32_t g)
@@ -83,7 +85,7 @@ static void deform_back(const backward_job *job, uint32_t g)
         adcgs_mlp_tail_back(&p->dsp, om, act.omega_h, act.omega_a, act.omega_dout, act.omega_dz);
         p->dsp.dense.dense(dfv, dfv, NULL, om->turn, (size_t)om->width, act.omega_dz, f->params.n_fv, om->width);
     }
-    if (va->n) {
+    if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         adcgs_mlp_tail_back(&p->dsp, va, act.varpi_h, act.varpi_a, act.varpi_dout, act.varpi_dz);
         if (f->params.fine_uses_fv)
             p->dsp.dense.dense(dfv, dfv, NULL, va->turn + (size_t)(6 * f->params.octaves) * (size_t)va->width, (size_t)va->width,
@@ -105,7 +107,7 @@ static void deform_weights(const backward_job *job, uint32_t begin, int tiles, f
         p->dsp.weight_grad(g, (size_t)om->in[0], g + om->b[0], act.omega_dz, s, fv, sfv, tiles, om->width, nv);
         adcgs_mlp_weight_grads(&p->dsp, om, g, act.omega_h, s, act.omega_dz, s, act.omega_dout, s, tiles);
     }
-    if (va->n) {
+    if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         float *g = partial + p->partial_at[ADCGS_P_VARPI];
         p->dsp.weight_grad(g, (size_t)va->in[0], g + va->b[0], act.varpi_dz, s, f->code + begin * sfp, sfp, tiles, va->width, fp);
         if (f->params.fine_uses_fv)
@@ -136,10 +138,46 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
     grad.theta = scratch;
     grad.omega = act.omega_dout;
     grad.varpi = act.varpi_dout;
+    grad.pull = p->pull ? p->pull + (size_t)g * 12 * 64 : NULL;
     p->dsp.primitives_back(&io, &grad);
     theta_back(job, g, grad.theta, scratch + (size_t)f->params.k * ADCGS_THETA_OUT * 64, partial);
     if (job->deform)
         deform_back(job, g);
+}
+
+/**
+ * Sum of a group's gradients times `to - from` (times `to` if from is NULL) by step, times scale: added into sums laid out as
+ * ADCGS_P_STEP.
+ */
+static void step_sums(const adcgs_fmodel *f, uint32_t g, float *const to[], float *const from[], float scale, float *sums)
+{
+    for (int i = 0; i < ADCGS_P_ETA; i++)
+        for (int r = 0; r < adcgs_fmodel_rows(f, i); r++) {
+            const size_t at = ((size_t)g * (size_t)adcgs_fmodel_rows(f, i) + (size_t)r) * 64;
+            float sum = 0;
+            for (size_t l = at; l < at + 64; l++)
+                sum += f->param[i].g[l] * (to[i][l] - (from ? from[i][l] : 0));
+            sums[adcgs_fmodel_step_at(f, i, r)] += scale * sum;
+        }
+}
+
+/**
+ * Rate of a group, and the gradient by the logarithms of the steps: the pictures see them in the noise (or the error of
+ * rounding), which is as large as they are; the rate sees the values divided by them.
+ */
+static void rate_back(const backward_job *job, uint32_t g, float *scratch, float *partial, double *bits)
+{
+    const adcgs_pass *p = job->pass;
+    adcgs_fmodel *f = job->f;
+    float *sums = partial + p->partial_at[ADCGS_P_STEP], *values[ADCGS_P_ETA];
+    for (int i = 0; i < ADCGS_P_ETA; i++)
+        values[i] = f->param[i].p;
+    step_sums(f, g, p->used, values, (float)job->period, sums);
+    step_sums(f, g, values, NULL, 1, sums);
+    adcgs_rate_group(p, f, g, job->rate_scale * (float)job->period, partial, scratch, bits);
+    if (adcgs_pass_adapts(p, f) && !job->only_rate)
+        adcgs_pass_factors_back(p, f, g, partial, scratch);
+    step_sums(f, g, values, NULL, -1, sums);
 }
 
 static void backward_chunk(void *arg, int chunk, int thread)
@@ -150,13 +188,19 @@ static void backward_chunk(void *arg, int chunk, int thread)
     float *partial = p->partial + (size_t)chunk * p->partial_stride;
     const uint32_t begin = (uint32_t)((uint64_t)p->groups * (uint64_t)chunk / (uint64_t)p->chunks);
     const uint32_t end = (uint32_t)((uint64_t)p->groups * (uint64_t)(chunk + 1) / (uint64_t)p->chunks);
-    double *bits = p->bits + (size_t)chunk * ADCGS_P_ANCHOR;
+    double *bits = p->bits + (size_t)chunk * ADCGS_GROUPS;
+    const int adapts = adcgs_pass_adapts(p, job->f);
     memset(partial, 0, p->partial_stride * sizeof *partial);
-    memset(bits, 0, ADCGS_P_ANCHOR * sizeof *bits);
+    memset(bits, 0, ADCGS_GROUPS * sizeof *bits);
     for (uint32_t g = begin; g < end; g++) {
-        backward_group(job, g, scratch, partial);
+        if (!job->only_rate)
+            backward_group(job, g, scratch, partial);
+        if (adapts)
+            adcgs_pass_factors_begin(p, job->f, g);
         if (job->period && (g + (uint32_t)job->first) % (uint32_t)job->period == 0)
-            adcgs_rate_group(p, job->f, g, job->rate_scale * (float)job->period, partial, scratch, bits);
+            rate_back(job, g, scratch, partial, bits);
+        else if (adapts)
+            adcgs_pass_factors_back(p, job->f, g, partial, scratch);
     }
     if (job->deform && end > begin)
         deform_weights(job, begin, (int)(end - begin), partial);
@@ -173,19 +217,53 @@ static void merge_partials(adcgs_pass *p, adcgs_fmodel *f)
         }
 }
 
-void adcgs_pass_backward(adcgs_pass *p, adcgs_fmodel *f, int deform, float rate_scale, int period, int first, adcgs_rate *rate)
+static void sum_rate(const adcgs_pass *p, int period, adcgs_rate *rate)
 {
-    backward_job job = { p, f, deform && f->params.time_rows, rate_scale > 0 ? period : 0, first, rate_scale };
+    memset(rate, 0, sizeof *rate);
+    for (int c = 0; c < p->chunks; c++)
+        for (int i = 0; i < ADCGS_GROUPS; i++)
+            rate->bits[i] += p->bits[c * ADCGS_GROUPS + i] * period;
+    for (int i = 0; i < ADCGS_GROUPS; i++)
+        rate->total += rate->bits[i];
+}
+
+void adcgs_pass_backward(adcgs_pass *p, adcgs_fmodel *f, adcgs_deform deform, float rate_scale, int period, int first,
+                         adcgs_rate *rate)
+{
+    backward_job job = { p, f, f->params.time_rows ? deform : ADCGS_DEFORM_NONE, rate_scale > 0 ? period : 0, first, rate_scale,
+                         0 };
     adcgs_pool_run(p->pool, backward_chunk, &job, p->chunks);
     merge_partials(p, f);
     if (job.deform)
         adcgs_pass_time_back(p, f);
-    if (!rate)
-        return;
-    memset(rate, 0, sizeof *rate);
-    for (int c = 0; c < p->chunks; c++)
-        for (int i = 0; i < ADCGS_P_ANCHOR; i++)
-            rate->bits[i] += p->bits[c * ADCGS_P_ANCHOR + i] * period;
-    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+    if (rate)
+        sum_rate(p, period, rate);
+}
+
+void adcgs_pass_rate(adcgs_pass *p, adcgs_fmodel *f, adcgs_rate *rate)
+{
+    backward_job job = { p, f, 0, 1, 0, 0, 1 };
+    p->quant = ADCGS_QUANT_ROUND;
+    adcgs_pool_run(p->pool, backward_chunk, &job, p->chunks);
+    sum_rate(p, 1, rate);
+}
+
+void adcgs_pass_densities(adcgs_pass *p, adcgs_fmodel *f, adcgs_rate *rate)
+{
+    uint8_t best[ADCGS_GROUPS] = { 0 };
+    adcgs_rate least = { .total = 0 };
+    for (int shape = 0; shape < ADCGS_SHAPES; shape++) {
+        memset(f->density, shape, sizeof f->density);
+        adcgs_pass_rate(p, f, rate);
+        for (int i = 0; i < ADCGS_GROUPS; i++)
+            if (shape == 0 || rate->bits[i] < least.bits[i]) {
+                least.bits[i] = rate->bits[i];
+                best[i] = (uint8_t)shape;
+            }
+    }
+    memcpy(f->density, best, sizeof best);
+    *rate = least;
+    rate->total = 0;
+    for (int i = 0; i < ADCGS_GROUPS; i++)
         rate->total += rate->bits[i];
 }

@@ -16,6 +16,7 @@ typedef struct adcgs_act {
     size_t theta_h_stride, theta_a_stride;
     float *omega_h, *omega_a, *omega_dz, *omega_out, *omega_dout;
     float *varpi_h, *varpi_a, *varpi_dz, *varpi_out, *varpi_dout;
+    float *steps_h, *steps_a, *steps_out, *steps_dlog; /* E_q: octaves; gradient of the factors' logarithms */
 } adcgs_act;
 
 static inline size_t adcgs_pass_branches(const adcgs_mlp *m)
@@ -26,6 +27,7 @@ static inline size_t adcgs_pass_branches(const adcgs_mlp *m)
 static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g)
 {
     const adcgs_mlp *th = &f->mlp[ADCGS_P_THETA], *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
+    const adcgs_mlp *eq = &f->mlp[ADCGS_P_E_STEPS];
     const size_t k = f->params.k;
     adcgs_act a;
     float *at = p->act + (size_t)g * p->act_stride;
@@ -46,6 +48,10 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
     TAKE(varpi_dz, va->hidden * va->width);
     TAKE(varpi_out, va->out);
     TAKE(varpi_dout, va->out);
+    TAKE(steps_h, eq->hidden * eq->width);
+    TAKE(steps_a, adcgs_pass_branches(eq) * (size_t)eq->width);
+    TAKE(steps_out, eq->out);
+    TAKE(steps_dlog, eq->out);
 #undef TAKE
     return a;
 }
@@ -59,11 +65,37 @@ void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const f
 void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
                             size_t sdz, const float *dout, size_t sdout, int tiles);
 
-void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int deform, adcgs_group_io *io);
+void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs_deform deform, adcgs_group_io *io);
 void adcgs_pass_time_back(adcgs_pass *p, adcgs_fmodel *f);
 size_t adcgs_pass_scratch_rows(const adcgs_fmodel *f);
 
-/** Rate of one group: gradients into f's anchors (scale included) and partial network gradients g; bits[5] accumulated. */
+/** Whether the steps of the last forward pass adapted to the anchors. */
+static inline int adcgs_pass_adapts(const adcgs_pass *p, const adcgs_fmodel *f)
+{
+    return f->params.adaptive_steps && p->quant != ADCGS_QUANT_NONE;
+}
+/** Factors of a group of anchors: [steps][64]. */
+static inline float *adcgs_pass_factors(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g)
+{
+    return p->factor + (size_t)g * (size_t)adcgs_params_steps(&f->params) * 64;
+}
+/** Which of them the rows of a parameter group use; -1: none. */
+int adcgs_pass_factor_of(const adcgs_fmodel *f, int group, int row);
+/** Evaluate E_q on the f_v in used; with set, its outputs give the factors. */
+void adcgs_pass_evaluate_factors(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int set, float *scratch);
+/** to = from / factor, and to = from * factor, over the rows of a parameter group in a group of anchors. */
+void adcgs_pass_divide(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int group, float *to, const float *from);
+void adcgs_pass_multiply(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int group, float *to, const float *from);
+/** Begin steps_dlog with what the pictures' gradients say; adcgs_rate_group() adds the rate's. */
+void adcgs_pass_factors_begin(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g);
+/** From steps_dlog to E_q and f_v. */
+void adcgs_pass_factors_back(const adcgs_pass *p, adcgs_fmodel *f, uint32_t g, float *partial, float *scratch);
+
+/**
+ * Rate of one group: gradients into f's anchors (scale included), where steps adapt into steps_dlog, and partial network
+ * gradients; bits[ADCGS_GROUPS] accumulated. Where the last forward pass rounded, the rate is the coder's, and p->mu and
+ * p->factor of the group receive the means and the factors of now.
+ */
 void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, float scale, float *partial, float *scratch,
                       double *bits);
 

@@ -159,16 +159,16 @@ static adcgs_status adopt(adcgs_trainer *t, next_set *s, adcgs_error *error)
     return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
 }
 
-static uint32_t budget_at(const adcgs_train_config *c, double progress)
+double adcgs_trainer_budget(const adcgs_train_config *c, double progress)
 {
     const double ramp = fmin(1, (progress - c->grow_from) / (0.8 * (c->grow_until - c->grow_from)));
     const double from = ADCGS_MIN(c->start_anchors, c->max_anchors);
-    return (uint32_t)(from + (c->max_anchors - from) * ramp);
+    return from + (c->max_anchors - from) * ramp;
 }
 
 adcgs_status adcgs_trainer_refine(adcgs_trainer *t, double progress, adcgs_error *error)
 {
-    const uint32_t budget = budget_at(&t->config, progress), slots = t->pass->primitives.n;
+    const uint32_t budget = (uint32_t)adcgs_trainer_budget(&t->config, progress), slots = t->pass->primitives.n;
     next_set s;
     cells occupied = { NULL, 1 };
     while (occupied.mask < 4 * ((size_t)t->f->n + budget))
@@ -186,13 +186,41 @@ adcgs_status adcgs_trainer_refine(adcgs_trainer *t, double progress, adcgs_error
         if (!s.n)
             next_add(&s, t->f->pos[0], 0, 0);
         const uint32_t n = find_candidates(t, list);
-        adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = 0 }); /* canonical places of all primitives */
+        adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical places */
         grow(t, &s, budget, list, n, &occupied);
         status = adopt(t, &s, error);
     }
     next_clear(&s);
     free(occupied.key);
     free(list);
+    return status;
+}
+
+adcgs_status adcgs_trainer_prune(adcgs_trainer *t, uint32_t keep, adcgs_error *error)
+{
+    const adcgs_fmodel *f = t->f;
+    next_set s;
+    candidate *rank = malloc(f->n * sizeof *rank);
+    uint8_t *kept = calloc(f->n, 1);
+    adcgs_status status = rank && kept ? next_init(&s, f->n, error)
+                                       : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", f->n);
+    if (status == ADCGS_OK) {
+        for (uint32_t i = 0; i < f->n; i++) {
+            rank[i] = (candidate){ 0, i };
+            for (int j = 0; j < f->params.k; j++)
+                rank[i].score += t->stats.weight[adcgs_fmodel_slot(f, i, j)];
+        }
+        qsort(rank, f->n, sizeof *rank, by_score);
+        for (uint32_t i = 0; i < ADCGS_MIN(f->n, ADCGS_MAX(keep, 1)); i++)
+            kept[rank[i].slot] = 1;
+        for (uint32_t i = 0; i < f->n; i++)
+            if (kept[i])
+                next_add(&s, f->pos[i], i, 0);
+        status = adopt(t, &s, error);
+        next_clear(&s);
+    }
+    free(rank);
+    free(kept);
     return status;
 }
 
@@ -214,11 +242,12 @@ static void measure_motion(adcgs_trainer *t, float *effect)
             effect[i] = 1e9f;
         return;
     }
-    const float pixel = 1 / t->views[0].view.fx; /* scene units per pixel at unit distance */
-    adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = 0 });
+    /* Scene units per pixel of the full resolution at unit distance. */
+    const float pixel = (float)t->config.scale / (t->views[0].view.fx * (float)t->divide);
+    adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
     memcpy(still, t->pass->prim, slots * 14 * sizeof *still);
     for (int step = 0; step < DECIDE_TIMES; step++) {
-        adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), &(adcgs_pass_mode){ .deform = 1 });
+        adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
         for (size_t i = 0; i < slots; i++) {
             const uint32_t anchor = anchor_of(f, (uint32_t)i);
             if (anchor >= f->n || f->keep[i] == 0)
@@ -238,35 +267,17 @@ static void measure_motion(adcgs_trainer *t, float *effect)
     free(still);
 }
 
-/** Mean loss over some training views: each at its own time, or all at the middle of time. */
-static adcgs_status sample_loss(adcgs_trainer *t, int own_time, double *loss, adcgs_error *error)
-{
-    const uint32_t n = ADCGS_MIN(t->n_views, DECIDE_VIEWS);
-    *loss = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        const adcgs_train_view *v = &t->views[(uint64_t)i * t->n_views / n];
-        adcgs_loss_value value;
-        adcgs_pass_forward(t->pass, t->f, own_time ? v->t : 0.5f, &(adcgs_pass_mode){ .deform = 1 });
-        ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 0,
-                                       error));
-        ADCGS_TRY(adcgs_loss_image(t->loss, t->image, v->rgb, v->view.width, v->view.height, t->config.ssim_weight, t->grad,
-                                   &value, error));
-        *loss += value.loss / n;
-    }
-    return ADCGS_OK;
-}
-
 adcgs_status adcgs_trainer_weigh(adcgs_trainer *t, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
     double stopped, moving;
     if (!f->params.time_rows)
         return ADCGS_OK;
-    ADCGS_TRY(sample_loss(t, 0, &stopped, error));
-    ADCGS_TRY(sample_loss(t, 1, &moving, error));
+    ADCGS_TRY(adcgs_trainer_sample_loss(t, DECIDE_VIEWS, 0, &stopped, error));
+    ADCGS_TRY(adcgs_trainer_sample_loss(t, DECIDE_VIEWS, 1, &moving, error));
     /* Seven bits a weight; a hundredth of the loss is what networks gain by learning the noise of each picture. */
     const size_t weights = f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n + f->mlp[ADCGS_P_TIME].n;
-    if (stopped > 1.01 * moving + (double)t->config.lambda * 7 * (double)weights * 0x1p-23)
+    if (stopped > 1.01 * moving + t->lambda * 7 * (double)weights * 0x1p-23)
         return ADCGS_OK;
     memset(f->moving, 0, (size_t)f->groups * 64 * sizeof *f->moving);
     return ADCGS_OK;
@@ -281,7 +292,7 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", f->n);
     measure_motion(t, effect);
     for (uint32_t i = 0; i < f->n; i++)
-        if (effect[i] < 1)
+        if (effect[i] < t->config.still_below)
             f->moving[i] = 0;
     free(effect);
     return ADCGS_OK;

@@ -10,7 +10,7 @@ static const adcgs_train_config base = {
     .iterations = 20000,
     .seed = 1,
     .scale = 1,
-    .lambda = 0.01f,
+    .lambda = 0.02f,
     .ssim_weight = 0.2f,
     .params = { .k = 6, .n_fv = 32, .n_fg = 8, .chunks = 4, .n_eta = 4, .octaves = 5, .fine_uses_fv = 1, .coarse_rotation = 1,
                 .time_rows = 40, .time_width = 16 },
@@ -23,16 +23,21 @@ static const adcgs_train_config base = {
     .prune_opacity = 0.02f,
     .refine_every = 100,
     .rate_period = 4,
+    .network_rate = 0,
+    .rigid_weight = 0.02f,
+    .rdo_strength = 0,
     .dropout = 0.1f,
-    .quarter_until = 0.12f,
-    .half_until = 0.40f,
+    .still_below = 3,
+    .quarter_until = 0.25f,
+    .half_until = 0.55f,
     .deform_from = 0.01f,
+    .fine_from = 0.35f,
     .grow_from = 0.03f,
     .grow_until = 0.50f,
     .noise_from = 0.25f,
     .rate_from = 0.30f,
-    .weigh_at = 0.15f,
-    .decide_at = 0.72f,
+    .slim_at = 2,
+    .decide_at = 0.52f,
     .round_from = 0.75f,
     .freeze_from = 0.90f,
 };
@@ -70,10 +75,11 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         config->shape.entropy_hidden = 2;
         config->shape.omega_width = config->shape.varpi_width = 128;
         config->quarter_until = config->half_until = 0;
-        config->deform_from = 0.10f;
+        config->deform_from = config->fine_from = 0.10f;
         config->noise_from = config->rate_from = 0.125f;
         config->grow_from = 0.0125f;
         config->grow_until = 0.3125f;
+        config->rigid_weight = config->dropout = config->still_below = 0;
         return ADCGS_OK;
     }
     return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown preset '%s': expected draft, fast, medium, slow or paper", name);
@@ -85,15 +91,22 @@ void adcgs_train_rates(adcgs_fmodel *f)
         [ADCGS_P_FV] = { 7.5e-3f, 7.5e-4f },    [ADCGS_P_FG] = { 1.0e-2f, 1.0e-3f },     [ADCGS_P_SIGMA] = { 7.0e-3f, 7.0e-4f },
         [ADCGS_P_COLOUR] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_ETA] = { 1.0e-2f, 1.0e-3f },    [ADCGS_P_THETA] = { 4.0e-3f, 2.0e-4f },
         [ADCGS_P_OMEGA] = { 1.5e-3f, 1.0e-4f },  [ADCGS_P_VARPI] = { 1.5e-3f, 1.0e-4f },  [ADCGS_P_TIME] = { 5.0e-3f, 3.0e-4f },
+        [ADCGS_P_STEP] = { 5.0e-3f, 1.0e-3f },
         [ADCGS_P_ETA_PRIOR] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FV] = { 5.0e-3f, 5.0e-4f },
         [ADCGS_P_E_SIGMA] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_COLOUR] = { 5.0e-3f, 5.0e-4f },
         [ADCGS_P_E_FG] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FG + 1] = { 5.0e-3f, 5.0e-4f },
         [ADCGS_P_E_FG + 2] = { 5.0e-3f, 5.0e-4f }, [ADCGS_P_E_FG + 3] = { 5.0e-3f, 5.0e-4f },
+        [ADCGS_P_E_STEPS] = { 5.0e-3f, 5.0e-4f },
     };
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         f->param[i].lr0 = rates[i][0];
         f->param[i].lr1 = rates[i][1];
     }
+}
+
+float adcgs_train_lambda_from(const adcgs_train_config *c)
+{
+    return c->without_rate ? 2 : ADCGS_MIN(c->rate_from, c->slim_at);
 }
 
 const char *adcgs_train_stage(const adcgs_train_config *c, double progress)

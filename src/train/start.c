@@ -2,6 +2,7 @@
 /** \file The scene's frame of reference and the first anchors. */
 #include "train/start.h"
 
+#include "data/sort.h"
 #include "geom/geom.h"
 #include "train/random.h"
 
@@ -9,12 +10,6 @@
 #include <stdlib.h>
 
 /* ---- Frame ---- */
-
-static int compare_double(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 /** Solve the symmetric 3x3 system a x = b by Cramer's rule; 0 if it is singular. */
 static int solve3(const double a[9], const double b[3], double x[3])
@@ -63,7 +58,7 @@ void adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale
         const double *m = scene->views[ADCGS_SPLIT_TRAIN][v].camera.cam_to_world;
         distance[v] = sqrt(pow(m[3] - origin[0], 2) + pow(m[7] - origin[1], 2) + pow(m[11] - origin[2], 2));
     }
-    qsort(distance, n, sizeof *distance, compare_double);
+    adcgs_sort(distance, n);
     *scale = distance[n / 2] > 1e-9 ? distance[n / 2] : 1;
     free(distance);
 }

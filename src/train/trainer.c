@@ -3,14 +3,18 @@
 #include "train/trainer.h"
 
 #include "metric/metric.h"
+#include "train/lattice.h"
 #include "train/random.h"
+#include "train/slim.h"
 #include "train/start.h"
+#include "train/weight_rate.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* WEIGH_AFTER: before that many iterations motion has not had its chance. */
-enum { WEIGH_AFTER = 300, SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
+/* WEIGH_AFTER, SLIM_AFTER: before that many iterations motion and networks have not had their chance. */
+enum { WEIGH_AFTER = 300, SLIM_AFTER = 1000 };
+enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, MEANS_EVERY = 100, ROLLBACKS_MAX = 4 };
 
 /* ---- Memory ---- */
 
@@ -23,7 +27,9 @@ adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
     t->stats.significance = t->stats.weight + slots;
     t->stats.opacity = t->stats.weight + 2 * slots;
     t->stats.n = 0;
-    return t->stats.weight ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    if (!t->stats.weight)
+        return ADCGS_ERR_MEMORY;
+    return t->config.rigid_weight > 0 ? adcgs_rigid_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
 }
 
 static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
@@ -42,6 +48,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
         c->shape.omega_width = 0;
     if (c->without_fine)
         c->shape.varpi_width = 0;
+    ADCGS_TRY(adcgs_control_plan(c, error));
     adcgs_scene_frame(t->scene, t->origin, &t->scale);
     ADCGS_TRY(adcgs_train_start(&t->f, t->scene, c, error));
     adcgs_train_rates(t->f);
@@ -68,6 +75,7 @@ adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene,
     t->cpu = cpu;
     t->pool = pool;
     t->lr_scale = 1;
+    t->lambda = (double)config->lambda;
     adcgs_buffer_init(&t->snapshot);
     const adcgs_status status = create_parts(t, error);
     if (status != ADCGS_OK)
@@ -100,6 +108,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_raster_free(&t->raster);
     adcgs_raster_back_free(&t->back);
     adcgs_loss_free(&t->loss);
+    adcgs_rigid_clear(&t->rigid);
     adcgs_buffer_clear(&t->snapshot);
     free(t);
     *trainer = NULL;
@@ -130,8 +139,7 @@ static void load_view(void *arg, int i, int thread)
     job->pixels[i] = error->status == ADCGS_OK ? (size_t)camera.width * (size_t)camera.height : 0;
 }
 
-/** Load all training views at a resolution. */
-static adcgs_status load_views(adcgs_trainer *t, int divide, adcgs_error *error)
+adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error *error)
 {
     load_job job = { t, divide, calloc(t->n_views, sizeof(adcgs_error)), calloc(t->n_views, sizeof(size_t)) };
     adcgs_status status = ADCGS_OK;
@@ -216,21 +224,38 @@ static void adam_piece(void *arg, int i, int thread)
     job->t->pass->dsp.adam(p->p + at, p->g + at, p->m + at, p->v + at, n, job->lr, job->c1, job->c2);
 }
 
+/**
+ * Loss per bit of a network's weights. They cost nothing until networks have found their form: what begins near 0 could not
+ * leave it. The weights of all iterations are coded once.
+ */
+static float weight_price(const adcgs_trainer *t, double progress)
+{
+    const adcgs_train_config *c = &t->config;
+    return progress >= c->slim_at && !c->without_rate ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
+}
+
 static void update(adcgs_trainer *t, double progress)
 {
+    const float price = weight_price(t, progress);
     t->adam_steps++;
     const float c1 = 1 / (1 - powf(0.9f, (float)t->adam_steps)), c2 = 1 / (1 - powf(0.999f, (float)t->adam_steps));
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         adcgs_param *p = &t->f->param[i];
         const int entropy = i == ADCGS_P_ETA_PRIOR || i >= ADCGS_P_E_FV;
-        if (t->frozen && (!is_network(i) || entropy)) {
+        if ((t->frozen && (!is_network(i) || entropy)) || (t->rounding && (i == ADCGS_P_STEP || i == ADCGS_P_E_STEPS))) {
             memset(p->g, 0, p->n * sizeof *p->g);
             continue;
         }
+        if (t->f->mlp[i].n && price > 0)
+            adcgs_weight_rate(t->f, i, price);
         const float lr = t->lr_scale * p->lr0 * powf(p->lr1 / p->lr0, (float)progress);
         adam_job job = { t, i, lr, c1, c2 };
         adcgs_pool_run(p->n > ADAM_PIECE ? t->pool : NULL, adam_piece, &job, (int)((p->n + ADAM_PIECE - 1) / ADAM_PIECE));
     }
+    if (!t->rounding && t->iteration % CHECK_EVERY == 0)
+        adcgs_fmodel_widen_steps(t->f);
+    else
+        adcgs_fmodel_take_steps(t->f);
     prepare_networks(t);
 }
 
@@ -256,8 +281,9 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
                               progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
     const int rated = progress >= c->rate_from && !c->without_rate && !t->frozen;
     const adcgs_pass_mode mode = { .quant = quant,
-                                   .deform = progress >= c->deform_from,
-                                   .dropout = t->rounding ? 0 : c->dropout,
+                                   .deform = progress < c->deform_from ? ADCGS_DEFORM_NONE :
+                                             progress < c->fine_from   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
+                                   .dropout = progress >= c->round_from ? 0 : c->dropout,
                                    .seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration) };
     adcgs_loss_value value;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
@@ -266,15 +292,20 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
     ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image,
                                     t->grad, &t->pass->grads, error));
     accumulate_stats(t);
+    t->pass->pull = NULL;
+    if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
+        adcgs_rigid_pull(&t->rigid, t->pass, t->f, c->rigid_weight);
+        t->pass->pull = t->rigid.pull;
+    }
     adcgs_rate rate = { .total = 0 };
     /* Loss per bit: lambda per 2^23 bits. */
-    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? c->lambda * 0x1p-23f : 0, c->rate_period,
+    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)t->lambda * 0x1p-23f : 0, c->rate_period,
                         (int)(t->iteration % (uint32_t)c->rate_period), rated ? &rate : NULL);
     const double keep = t->iteration < 100 ? 0.9 : 0.99;
     t->mean_loss = t->iteration ? keep * t->mean_loss + (1 - keep) * value.loss : value.loss;
     t->mean_mse = t->iteration ? keep * t->mean_mse + (1 - keep) * value.mse : value.mse;
-    if (rated)
-        t->mean_bits = t->mean_bits > 0 ? 0.95 * t->mean_bits + 0.05 * rate.total : rate.total;
+    for (int i = 0; rated && i < ADCGS_GROUPS; i++)
+        t->mean_bits[i] = t->mean_bits[i] > 0 ? 0.95 * t->mean_bits[i] + 0.05 * rate.bits[i] : rate.bits[i];
     update(t, progress);
     t->iteration++;
     return ADCGS_OK;
@@ -282,54 +313,48 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
 
 /* ---- Stages ---- */
 
-/** Weights' lattice: about `levels` steps per root mean square, per layer. */
-static void choose_lattices(adcgs_trainer *t)
+adcgs_status adcgs_trainer_round(adcgs_trainer *t, adcgs_error *error)
 {
-    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
-        adcgs_mlp *m = &t->f->mlp[i];
-        for (int l = 0; m->n && l <= m->hidden; l++) {
-            const size_t n = (l < m->hidden ? m->w[l + 1] : m->n) - m->w[l];
-            const float *w = t->f->param[i].p + m->w[l];
-            double square = 0;
-            for (size_t j = 0; j < n; j++)
-                square += (double)w[j] * w[j];
-            const double rms = sqrt(square / (double)n);
-            m->lattice[l] = i >= ADCGS_P_E_FV ? 6 : (int8_t)fmin(fmax(ceil(-log2(fmax(rms, 1e-6) / 64)), 4), 14);
-        }
-    }
+    ADCGS_TRY(adcgs_trainer_choose_lattices(t, error));
+    t->rounding = 1;
+    prepare_networks(t);
+    return ADCGS_OK;
 }
 
 static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
-    if (!t->weighed && progress >= c->weigh_at) {
+    if (progress >= adcgs_train_lambda_from(c))
+        t->lambda_used = 1;
+    if (!t->weighed && progress >= c->rate_from && !c->without_rate) {
         t->weighed = 1;
         if (t->iteration >= WEIGH_AFTER)
             ADCGS_TRY(adcgs_trainer_weigh(t, error));
+    }
+    if (!t->slimmed && progress >= c->slim_at && !c->without_rate) {
+        t->slimmed = 1;
+        if (t->iteration >= SLIM_AFTER)
+            ADCGS_TRY(adcgs_trainer_slim(t, error));
     }
     if (!t->decided && progress >= c->decide_at) {
         t->decided = 1;
         if (!c->without_refinement)
             ADCGS_TRY(adcgs_trainer_decide(t, error));
     }
-    if (!t->quantise)
+    if (!t->quantise || c->without_rounding)
         return ADCGS_OK;
+    const adcgs_quantise_options means = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
     if (!t->rounding && progress >= c->round_from) {
-        choose_lattices(t);
-        t->rounding = 1;
-        prepare_networks(t);
-        ADCGS_TRY(t->quantise(t->quantise_user, t->f, t->pass->mu, NULL, error));
+        ADCGS_TRY(adcgs_trainer_round(t, error));
+        adcgs_trainer_densities(t);
+        ADCGS_TRY(t->quantise(t->f, &means, error));
     } else if (t->rounding && !t->frozen && t->iteration % MEANS_EVERY == 0) {
-        ADCGS_TRY(t->quantise(t->quantise_user, t->f, t->pass->mu, NULL, error));
+        ADCGS_TRY(t->quantise(t->f, &means, error));
     }
-    if (t->rounding && !t->frozen && progress >= c->freeze_from) {
-        float *value[ADCGS_P_ANCHOR];
-        for (int i = 0; i < ADCGS_P_ANCHOR; i++)
-            value[i] = t->f->param[i].p;
-        ADCGS_TRY(t->quantise(t->quantise_user, t->f, t->pass->mu, value, error));
-        t->frozen = 1;
-    }
-    return ADCGS_OK;
+    if (t->frozen || !t->rounding || progress < c->freeze_from)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_trainer_freeze(t, error));
+    return adcgs_control_frozen(t, error);
 }
 
 static int wanted_divide(const adcgs_trainer *t, double progress)
@@ -341,7 +366,7 @@ static adcgs_status before_iteration(adcgs_trainer *t, double progress, adcgs_er
 {
     const adcgs_train_config *c = &t->config;
     if (wanted_divide(t, progress) != t->divide)
-        ADCGS_TRY(load_views(t, wanted_divide(t, progress), error));
+        ADCGS_TRY(adcgs_trainer_load_views(t, wanted_divide(t, progress), error));
     if (!c->without_refinement && t->iteration && t->iteration % c->refine_every == 0 && progress >= c->grow_from &&
         progress < c->grow_until)
         ADCGS_TRY(adcgs_trainer_refine(t, progress, error));
@@ -398,7 +423,10 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     r->divide = t->divide;
     r->loss = t->mean_loss;
     r->psnr = adcgs_psnr_from_mse(t->mean_mse);
-    r->bytes = t->mean_bits / 8;
+    r->bytes = 0;
+    for (int i = 0; i < ADCGS_GROUPS; i++)
+        r->bytes += r->stream[i] = t->mean_bits[i] / 8;
+    r->lambda = t->lambda;
     r->seconds = t->elapsed;
     r->rate = rate;
     r->left = progress > 0.02 ? t->elapsed * (1 - progress) / progress : 0;
@@ -429,8 +457,13 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
             }
         }
         if (progress >= 1)
+            return adcgs_control_finish(t, error);
+        if (t->until_lambda && progress >= adcgs_train_lambda_from(&t->config)) {
+            *stopped = 1;
             return ADCGS_OK;
+        }
         ADCGS_TRY(before_iteration(t, progress, error));
+        ADCGS_TRY(adcgs_control_step(t, progress, error));
         ADCGS_TRY(iterate(t, progress, error));
         t->elapsed = adcgs_seconds() - begin;
         ADCGS_TRY(guard(t, progress, error));

@@ -167,6 +167,31 @@ expect 0 "" ./adcgs-eval "$s" "$dir/scene"
 grep -q '^mean of .* dB' "$dir/out" || bad "no mean"
 expect 0 "" ./adcgs-eval "$s" "$dir/scene" --split train --layers 1 --json --images "$dir/views"
 grep -q '"frames_per_second"' "$dir/out" || bad "no speed in the JSON report"
+
+# The part of the pictures in a box. One round the cameras covers all, one far above them nothing.
+# mean JSON KEY: the last value of a key, which is the mean.
+mean() { grep -o "\"$2\": *[^,}]*" "$1" | tail -n 1 | sed 's/.*: *//'; }
+expect 0 "" ./adcgs-eval "$s" "$dir/scene" --json --crop -99,-99,-99,99,99,99
+[ "$(mean "$dir/out" crop_psnr)" = "$(mean "$dir/out" psnr)" ] || { bad "a box round everything has another PSNR"; cat "$dir/out"; }
+[ "$(mean "$dir/out" crop_ssim)" = "$(mean "$dir/out" ssim)" ] || bad "a box round everything has another SSIM"
+views=$(mean "$dir/out" crop_views)
+[ "$views" -eq "$(grep -c '"name"' "$dir/out")" ] || bad "a box round everything is not in all views"
+expect 0 "" ./adcgs-eval "$s" "$dir/scene" --json --crop=0,0,9e8,1,1,1e9
+[ "$(mean "$dir/out" crop_views)" = 0 ] && [ "$(mean "$dir/out" crop_psnr)" = null ] || bad "a box out of sight is measured"
+expect 0 "" ./adcgs-eval "$s" "$dir/scene" --crop 0,0,9e8,1,1,1e9
+grep -q '^no view sees the box$' "$dir/out" || bad "no word of a box out of sight"
+expect 4 "no points" ./adcgs-eval "$s" "$dir/scene" --crop points
+printf '%s\n' ply "format ascii 1.0" "element vertex 2" "property float x" "property float y" "property float z" end_header \
+    "-0.2 -0.2 -0.2" "0.2 0.2 0.2" >"$dir/scene/points3d.ply"
+expect 0 "" ./adcgs-eval "$s" "$dir/scene" --crop points
+grep -q "^mean of $views *crops .* dB" "$dir/out" || { bad "no mean of the crops"; cat "$dir/out"; }
+cp "$dir/out" "$dir/points"
+expect 0 "" ./adcgs-eval "$s" "$dir/scene" --crop -0.22,-0.22,-0.22,0.22,0.22,0.22
+[ "$(grep crop "$dir/out" | sed 's/.*crop//')" = "$(grep crop "$dir/points" | sed 's/.*crop//')" ] || bad "points make another box"
+rm "$dir/scene/points3d.ply"
+for box in 1,2,3 0,0,0,1,1,0 0,0,0,1,1,1,1 0,0,0,1,1,x "" point; do
+    expect 2 "expected points, or X0" ./adcgs-eval "$s" "$dir/scene" --crop "$box"
+done
 expect 2 "train" ./adcgs-eval "$s" "$dir/scene" --split both
 expect 3 "nowhere" ./adcgs-eval "$s" "$dir/nowhere"
 mkdir "$dir/empty"

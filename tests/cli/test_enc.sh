@@ -90,7 +90,13 @@ cmp -s "$dir/one.adcgs" "$dir/other.adcgs" && bad "the seed changes nothing"
 json "$dir/one.log" || bad "--log is no JSON"
 [ "$(wc -l <"$dir/one.log")" -eq 7 ] || { bad "lines in the log"; cat "$dir/one.log"; }
 whole "$dir/one.out" || bad "--json is no JSON"
+# The last line knows what the streams will take: f_g's first chunk is all of layer 1 but its framing.
+chunk=$(sed -n '$s/.*"f_g1":\([0-9]*\).*/\1/p' "$dir/one.log")
+layer=$(sed -n 's/.*"layer1": \([0-9]*\).*/\1/p' "$dir/one.out")
+[ -n "$chunk" ] && [ "$layer" -ge "$chunk" ] && [ "$layer" -le $((chunk + chunk / 100 + 20)) ] ||
+    bad "f_g1 of the log is '$chunk', layer 1 of the file has '$layer' bytes"
 grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json tells another size"
+grep -q '"lambda": 0.02' "$dir/one.out" || bad "--json does not tell lambda"
 [ ! -s "$dir/one.err" ] || { bad "messages without a terminal"; cat "$dir/one.err"; }
 [ ! -s "$dir/two.out" ] || bad "standard output without --json"
 ./adcgs-dec "$dir/one.adcgs" --md5 >/dev/null 2>&1 || bad "the stream does not decode"
@@ -130,20 +136,58 @@ expect 4 "$dir/damaged: damaged" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short -
 expect 4 "not a checkpoint" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/one.adcgs"
 expect 3 "nowhere" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/nowhere"
 
+# Before lambda has a say a run may go on with any: what comes of it is what comes of a whole run. After that it may not.
+# shellcheck disable=SC2086
+./adcgs-enc "$scene" --beginning "$dir/begin" $short --lambda 7 >"$dir/out" 2>"$dir/err" || { bad "--beginning"; cat "$dir/err"; }
+[ ! -s "$dir/out" ] && [ ! -s "$dir/err" ] || bad "--beginning says something"
+enc whole --iterations $n --lambda 0.5
+enc shared --iterations $n --lambda 0.5 --threads 2 --resume "$dir/begin"
+same whole shared "another stream from a shared beginning"
+enc shared --iterations $n --resume "$dir/begin"
+same one shared "another stream from a shared beginning, with the preset's lambda"
+cmp -s "$dir/one.adcgs" "$dir/whole.adcgs" && bad "lambda changes nothing"
+# shellcheck disable=SC2086
+expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --seed 2 --resume "$dir/begin"
+# shellcheck disable=SC2086
+expect 4 "past its beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" $short --resume "$dir/late"
+expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --without rate
+expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1
+expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
+
 # Stages left out; what a scene does not need is not in its stream.
+# Motion shows after so few iterations if neighbours are free of each other.
 n=60
+free="--set rigid_weight=0,still_below=0"
 networks() { ./adcgs-info "$dir/$1.adcgs" --json | tr -d '\n'; }
 for stage in coarse fine deformation rate refinement; do
-    enc "$stage" --iterations $n --without $stage
+    enc "$stage" --iterations $n $free --without $stage
     ./adcgs-dec "$dir/$stage.adcgs" --md5 >/dev/null 2>&1 || bad "--without $stage does not decode"
 done
-enc all --iterations $n
+enc all --iterations $n $free --json
 networks all | grep -q 'F_omega.*F_varpi.*"Z"' || bad "a moving scene without motion"
 networks coarse | grep -q F_omega && bad "--without coarse leaves F_omega in"
 networks fine | grep -q F_varpi && bad "--without fine leaves F_varpi in"
 networks deformation | grep -q 'F_omega\|F_varpi\|"Z"' && bad "--without deformation leaves networks in"
 cmp -s "$dir/all.adcgs" "$dir/rate.adcgs" && bad "--without rate changes nothing"
 cmp -s "$dir/all.adcgs" "$dir/refinement.adcgs" && bad "--without refinement changes nothing"
+enc lattice --iterations $n $free --without lattice --json
+# shellcheck disable=SC2086
+./adcgs-enc "$scene" --beginning "$dir/begin" --preset draft --max-anchors 300 --iterations $n $free || bad "--beginning"
+enc lattice2 --iterations $n $free --without lattice --resume "$dir/begin"
+same lattice lattice2 "the beginning is not that of a run without lattice"
+enc raw --iterations $n $free --uncompressed "$dir/raw" --json
+grep -q "\"uncompressed_bytes\": $(wc -c <"$dir/raw")," "$dir/raw.out" || { bad "another uncompressed size"; cat "$dir/raw.out"; }
+# field NAME KEY: a whole number of a report.
+field() { sed -n "s/.*\"$2\": \([0-9]*\).*/\1/p" "$dir/$1.out" | head -1; }
+[ "$(field raw uncompressed_bytes)" -gt $((4 * ($(field raw anchors) * 44 + $(field raw primitives) * 8))) ] ||
+    bad "the uncompressed model is too small"
+[ "$(field lattice networks)" -gt "$(field all networks)" ] || bad "--without lattice does not store 32-bit weights"
+enc both --iterations $n $free --without coarse,fine
+same deformation both "--without coarse,fine is not --without deformation"
+enc each --iterations $n --without anchors,refinement --json
+grep -q '"anchors": 1[78][0-9][0-9],' "$dir/each.out" || { bad "not six times the anchors, without growth"; cat "$dir/each.out"; }
+grep -q "$(sed -n 's/.*"anchors": \([0-9]*\).*/"primitives": \1,/p' "$dir/each.out")" "$dir/each.out" || bad "not one primitive per anchor"
+./adcgs-dec "$dir/each.adcgs" --md5 >/dev/null 2>&1 || bad "--without anchors does not decode"
 mkdir "$dir/still"
 cp -r "$scene/." "$dir/still"
 for json in "$dir/still/"*.json; do
@@ -173,7 +217,7 @@ expect 2 "1 to 16" $try --k 17
 expect 2 "1 to 64" $try --scale 0
 expect 2 "0 to 256" $try --threads -1
 expect 2 "whole number" $try --seed x
-expect 2 "one of none, coarse" $try --without everything
+expect 2 "expected none, coarse" $try --without fine,everything
 expect 2 "one of auto" $try --cpu sse
 expect 2 "value must follow" $try --seed
 expect 3 "$dir/nowhere" ./adcgs-enc "$dir/nowhere" -o "$dir/x.adcgs"
@@ -187,6 +231,7 @@ expect 3 "is a folder" ./adcgs-enc "$scene" -o "$dir" --log "$dir/x.log"
 expect 3 "not a regular file" ./adcgs-enc "$scene" -o /dev/null --log "$dir/x.log"
 expect 3 "no/check" $try --checkpoint "$dir/no/check" --log "$dir/x.log"
 [ ! -e "$dir/x.log" ] || bad "a run began whose output cannot be written"
+expect 3 "no/raw" $try --uncompressed "$dir/no/raw"
 expect 3 "no/log" $try --log "$dir/no/log"
 
 # A full disk, pretended by a limit on the size of files: the file that was there stays.

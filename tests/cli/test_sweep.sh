@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-sweep with an encoder and an evaluation that only pretend: grid, table, chart, resuming, failures.
+# adcgs-sweep with an encoder and an evaluation that only pretend: runs and their beginnings, yardsticks, ablation, seeds, tables,
+# checks, page, chart, resuming, failures. Then with the real ones in miniature.
 set -u
 dir=$(mktemp -d) || exit 99
 trap 'rm -rf "$dir"' EXIT
@@ -14,53 +15,207 @@ fail()
     exit 1
 }
 
-# The pretended encoder writes 1000 bytes times lambda, counts its calls, and refuses lambda 666.
+# The pretended encoder: 64000 bytes over lambda at 36 - lambda dB, with features for each primitive twice that; 0.1 dB a seed; half a
+# dB less for each part left out of the method. An uncompressed model has 400000 zeros and 35.05 dB. It lists its calls, goes
+# on from nothing but what it began, and refuses lambda 666 half way.
 cat >"$dir/adcgs-enc" <<'END'
 #!/bin/bash
+here=$(dirname "$0") lambda=1 seed=0 without= raw= begin= resume= partial=
+echo "$*" >>"$here/calls"
 while [ $# -gt 0 ]; do
     case $1 in
-        --output) file=$2; shift ;;
-        --lambda) lambda=${2%.*}; shift ;;
-        --preset | --iterations | --threads | --k) shift ;;
+        --output) file=$2 ;;
+        --beginning) begin=$2 ;;
+        --checkpoint) partial=$2 ;;
+        --resume) resume=$2 ;;
+        --lambda) lambda=${2%.*} ;;
+        --seed) seed=$2 ;;
+        --without) without=$2 ;;
+        --uncompressed) raw=$2 ;;
+        --preset | --iterations | --threads | --k | --set) ;;
+        --json) shift; continue ;;
+        --) break ;;
+        *) exit 2 ;;
     esac
-    shift
+    shift 2
 done
-echo call >>"$(dirname "$0")/calls"
+early=${without#lattice}
+[ -z "$resume" ] || grep -q "^begun$seed without $early$" "$resume" || exit 4
+echo "begun$seed without $early" >"${begin:-$partial}"
+[ -n "$begin" ] && exit 0
 [ "$lambda" = 666 ] && exit 4
-head -c $((1000 * lambda)) /dev/zero >"$file"
-echo "{\"bytes\": $((1000 * lambda)), \"training_seconds\": 1.5}"
+bytes=$((64000 / lambda))
+psnr=$((3600 - 100 * lambda + 10 * seed))
+[ "$without" = anchors ] && bytes=$((2 * bytes))
+case $without in *refinement*) psnr=$((psnr - 50 * $(tr ',' '\n' <<<"$without" | wc -l))) ;; esac
+if [ -n "$raw" ]; then
+    head -c 400000 /dev/zero >"$raw"
+    [ -n "$without" ] || psnr=3505
+fi
+{ echo "$psnr"; head -c $((bytes - 5)) /dev/zero; } >"$file"
+echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"training_seconds\": 1.5}"
 END
 cat >"$dir/adcgs-eval" <<'END'
 #!/bin/bash
-echo '{"psnr": 30.25, "ssim": 0.9, "frames_per_second": 100}'
+read -r psnr <"$3"
+echo "{\"psnr\": ${psnr%??}.${psnr: -2}, \"ssim\": 0.9, \"frames_per_second\": 100}"
 END
 chmod +x "$dir/adcgs-enc" "$dir/adcgs-eval"
 
-"$dir/adcgs-sweep" scene -o "$out" --lambda 1,2,4 --k 5,10 --jobs 2 2>"$dir/err" || fail "plain run: $(cat "$dir/err")"
-[ "$(wc -l <"$dir/calls")" -eq 6 ] || fail "expected 6 calls"
-[ "$(wc -l <"$out/sweep.csv")" -eq 7 ] || fail "expected 7 lines of table"
-grep -q '^2,10,2000,30.2500,0.900000,1.50,100.00$' "$out/sweep.csv" || fail "table: $(cat "$out/sweep.csv")"
+# sweep OPTIONS...: run one, its report in report, messages in err; got is how it left.
+sweep()
+{
+    "$dir/adcgs-sweep" scene -o "$out" "$@" >"$dir/report" 2>"$dir/err" </dev/null
+    got=$?
+}
+
+# calls N TEXT: so many calls of the encoder since the last look, of those so many with TEXT.
+calls()
+{
+    [ "$(wc -l <"$dir/calls")" -eq "$1" ] || fail "expected $1 calls: $(cat "$dir/calls")"
+    [ $# -eq 1 ] || [ "$(grep -c -e "$3" "$dir/calls")" -eq "$2" ] || fail "expected $2 calls with '$3': $(cat "$dir/calls")"
+    : >"$dir/calls"
+}
+line() { grep -q "$1" "$2" || fail "no '$1' in $2: $(cat "$2")"; }
+
+# A grid: runs that lambda alone tells apart begin together.
+sweep --lambda 4,1,2 --k 5,10 --jobs 2 --yardsticks none
+[ $got -eq 0 ] || fail "plain run: $(cat "$dir/err")"
+calls 8 6 "--resume $out/beginning-k-[0-9]*.checkpoint"
+[ "$(wc -l <"$out/sweep.csv")" -eq 7 ] || fail "expected 7 lines of table: $(cat "$out/sweep.csv")"
+line '^adcgs K = 10,2,10,1,32000,32000,32000,34.0000,34.0000,34.0000,0.900000,0.0312,1.50,100.00$' "$out/sweep.csv"
+[ ! -e "$out/lambda-1-k-5.partial" ] && [ ! -e "$out/lambda-1-k-5.partial.json" ] || fail "a finished run left its state"
+line '3 points, spans a factor of 4.00 in bytes and is monotone' "$dir/report"
 if command -v gnuplot >/dev/null; then
     grep -q '<svg' "$out/sweep.svg" || fail "no chart: $(cat "$out/sweep.gp.log")"
+    line '<svg' "$out/index.html"
 fi
+! grep -q 'set logscale' "$out/sweep.gp" || fail "a logarithmic axis for a factor of four"
 
-"$dir/adcgs-sweep" scene -o "$out" --lambda 1,2,4 --k 5,10 --resume 2>"$dir/err" || fail "resume: $(cat "$dir/err")"
-[ "$(wc -l <"$dir/calls")" -eq 6 ] || fail "resuming ran finished points again"
-"$dir/adcgs-sweep" scene -o "$out" --lambda 1,8 --k 5 --resume --iterations 7 2>"$dir/err" || fail "other settings: $(cat "$dir/err")"
-[ "$(wc -l <"$dir/calls")" -eq 8 ] || fail "points of other settings were kept"
+# Going on: nothing that is there is made again, unless it belongs to other settings or is damaged. Beginnings serve later lambdas.
+sweep --lambda 1,2,4 --k 5,10 --resume --yardsticks none
+calls 0
+sweep --lambda 1,8 --k 5 --resume --yardsticks none
+calls 1 1 "--resume $out/beginning-k-5.checkpoint"
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 7
+calls 3 1 "--beginning"
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 7 --set depth=10
+calls 3 3 "--set depth=10"
 truncate -s 5 "$out/lambda-8-k-5.adcgs"
-"$dir/adcgs-sweep" scene -o "$out" --lambda 1,8 --k 5 --resume --iterations 7 2>"$dir/err" || fail "damaged: $(cat "$dir/err")"
-[ "$(wc -l <"$dir/calls")" -eq 9 ] || fail "a damaged stream was taken for a finished point"
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 7 --set depth=10
+calls 1 0 "--beginning"
+sweep --lambda 8 --k 7 --yardsticks none
+calls 1 0 "--resume"
 
-"$dir/adcgs-sweep" scene -o "$out" --lambda 1,666,2 2>"$dir/err"
-[ $? -eq 3 ] || fail "a failing encoder goes unnoticed"
-grep -q 'lambda-666' "$dir/err" || fail "the failing point is not named: $(cat "$dir/err")"
+# A run that fails is named, the others are written out; what it had reached is where the next attempt goes on.
+sweep --lambda 1,666,2 --yardsticks none
+[ $got -eq 3 ] || fail "a failing encoder goes unnoticed"
+line 'lambda-666' "$dir/err"
 [ "$(wc -l <"$out/sweep.csv")" -eq 3 ] || fail "the other points are not in the table"
+calls 4
+sweep --lambda 1,666,2 --yardsticks none --resume
+calls 1 1 "--resume $out/lambda-666.partial"
+sweep --lambda 1,666,2 --yardsticks none --resume --iterations 9
+calls 4 0 "--resume $out/lambda-666.partial"
+
+# Yardsticks: sizes, and how the curve compares with them.
+out=$dir/yard
+sweep --lambda 1,2,4,8
+[ $got -eq 0 ] || fail "yardsticks: $(cat "$dir/err")"
+calls 12 2 "--beginning"
+line '^32-bit networks (same PSNR),2,,1,34000,34000,34000,34.0000' "$out/sweep.csv"
+line '^uncompressed,,,1,400000,400000,400000,35.0500,35.0500,35.0500,0.900000,,' "$out/sweep.csv"
+line '^per Gaussian,8,,1,16000,16000,16000,28.0000' "$out/sweep.csv"
+line '^per Gaussian uncompressed,,,1,400000,400000,400000,35.0000' "$out/sweep.csv"
+line 'adcgs has 4 points, spans a factor of 8.00 in bytes and is monotone' "$dir/report"
+line 'Against 32-bit networks (same PSNR): BD-rate -[0-9.]* %, above it (points compared: 4; ' "$dir/report"
+line 'Against per Gaussian: BD-rate -50.0 %, above it (points compared: 4; margin.*0.00 dB or more); 2.00 times smaller' "$dir/report"
+line 'Against uncompressed: NOT above it (points compared: 1; at worst 0.05 dB below); 6.25 times smaller' "$dir/report"
+line 'Against per Gaussian uncompressed: above it (points compared: 1; ' "$dir/report"
+line 'set logscale x' "$out/sweep.gp"
+for packer in 'zstd:zst:zstd -19' 'xz:xz:xz -9e'; do
+    IFS=: read -r tool suffix name <<<"$packer"
+    if command -v "$tool" >/dev/null; then
+        bytes=$(wc -c <"$out/uncompressed.raw.$suffix")
+        line "^$name,,,1,$bytes,$bytes,$bytes,35.0500" "$out/sweep.csv"
+        line "Against $name: none of its points is larger than the smallest stream" "$dir/report"
+    fi
+done
+if command -v jq >/dev/null; then
+    jq -e '(.curves | length) == 7 and .curve.monotone and (.curve.span == 8) and
+           (.curves[] | select(.name == "per Gaussian").comparison.bd_rate + 50 | fabs < 1e-9) and
+           (.curves[] | select(.name == "uncompressed").comparison | .above == false and .bd_rate == null)' "$out/sweep.json" \
+        >/dev/null || fail "sweep.json: $(cat "$out/sweep.json")"
+fi
+for name in 'per Gaussian uncompressed' 'BD-rate' 'xz -9e'; do line "$name" "$out/index.html"; done
+sweep --lambda 1,2,4,8 --resume
+calls 0
+truncate -s 7 "$out/uncompressed.raw"
+sweep --lambda 1,2,4,8 --resume
+calls 1 1 "--uncompressed"
+
+# Programs that are not installed are said to be missing, and no fault. PATH holds what the pretended programs need.
+mkdir "$dir/bin"
+for tool in bash dirname grep tr wc head sh mv; do ln -s "$(command -v $tool)" "$dir/bin/$tool"; done
+out=$dir/poor
+PATH=$dir/bin sweep --lambda 1,2 --yardsticks uncompressed
+[ $got -eq 0 ] || fail "without zstd: $(cat "$dir/err")"
+line 'Against zstd -19: no result (is the program installed?)' "$dir/report"
+line 'no chart (is gnuplot there?)' "$dir/err"
+! grep -q '^zstd' "$out/sweep.csv" || fail "a size without zstd"
+: >"$dir/calls"
+
+# Seeds: mean, least and most of each point.
+out=$dir/seeds
+sweep --lambda 1,2 --seeds 1,2,3 --yardsticks uncompressed
+[ $got -eq 0 ] || fail "seeds: $(cat "$dir/err")"
+calls 12 3 "--beginning"
+line '^adcgs,2,,3,32000,32000,32000,34.2000,34.1000,34.3000,' "$out/sweep.csv"
+line '34.20 (34.10..34.30)' "$dir/report"
+line 'xyerrorlines' "$out/sweep.gp"
+line '"seed": 3' "$out/sweep.json"
+
+# Ablation: each stage once, the whole method shared with the curve; stages before rate are uncompressed.
+out=$dir/stages
+sweep --lambda 1,2,4 --ablation --yardsticks none
+[ $got -eq 0 ] || fail "ablation: $(cat "$dir/err")"
+calls 12 3 "--uncompressed"
+[ -s "$out/lambda-2-without-lattice.adcgs" ] || fail "no run without lattice"
+[ "$(wc -l <"$out/ablation.csv")" -eq 10 ] || fail "expected nine stages: $(cat "$out/ablation.csv")"
+line '^base,,,1,400000,400000,400000,33.0000' "$out/ablation.csv"
+line '^+ fine deformation,,,1,400000,400000,400000,34.0000' "$out/ablation.csv"
+line '^+ rate-distortion,2,,1,32000,32000,32000,33.5000' "$out/ablation.csv"
+line '^+ refinement,2,,1,32000,32000,32000,34.0000' "$out/ablation.csv"
+line '^K = 15,2,15,1,' "$out/ablation.csv"
+line 'K = 15' "$out/index.html"
+sweep --ablation
+[ $got -eq 0 ] || fail "ablation alone: $(cat "$dir/err")"
+line '^+ refinement,,,1,64000' "$out/ablation.csv"
+: >"$dir/calls"
 
 for list in '' 1, ,1 1,x 1,-1 "$(seq -s, 1 17)"; do
-    "$dir/adcgs-sweep" scene -o "$out" --lambda "$list" 2>/dev/null
-    [ $? -eq 2 ] || fail "list \"$list\" accepted"
+    sweep --lambda "$list"
+    [ $got -eq 2 ] || fail "list \"$list\" accepted"
 done
+sweep --lambda 1 --seeds 1.5
+[ $got -eq 2 ] || fail "a seed that is not whole accepted"
+sweep --lambda 1 --yardsticks networks,zip
+[ $got -eq 2 ] || fail "an unknown yardstick accepted"
+sweep
+[ $got -eq 2 ] || fail "no lambda accepted"
 "$dir/adcgs-sweep" scene --lambda 1 2>/dev/null
 [ $? -eq 2 ] || fail "no output accepted"
+
+# The real programs on a tiny scene: a stream from a shared beginning is that of a whole run.
+for tool in adcgs-enc adcgs-eval adcgs-demo-scene; do
+    [ -x "./$tool" ] || { echo "no $tool in $PWD: only pretended"; exit 0; }
+done
+small="--preset draft --iterations 60 --set max_anchors=60,start_anchors=40"
+./adcgs-demo-scene --scene tiny --size 32x32 --format ppm -o "$dir/tiny" >/dev/null 2>&1 || fail "adcgs-demo-scene"
+# shellcheck disable=SC2086
+./adcgs-sweep "$dir/tiny" -o "$dir/real" --lambda 1,30 --seeds 2 $small >"$dir/report" 2>"$dir/err" || fail "real: $(cat "$dir/err")"
+[ "$(wc -l <"$dir/real/sweep.csv")" -ge 8 ] || fail "real: $(cat "$dir/real/sweep.csv")"
+# shellcheck disable=SC2086
+./adcgs-enc "$dir/tiny" -o "$dir/whole.adcgs" --lambda 30 --seed 2 $small 2>"$dir/err" || fail "whole: $(cat "$dir/err")"
+cmp "$dir/whole.adcgs" "$dir/real/lambda-30-seed-2.adcgs" || fail "another stream from a shared beginning"
 exit 0

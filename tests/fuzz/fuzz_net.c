@@ -19,7 +19,7 @@ const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regr
 /** All outputs of a network at a CPU level, for inputs that fill the whole range. */
 static uint32_t evaluate(const adcgs_net *net, adcgs_cpu_level cpu)
 {
-    const size_t n_in = adcgs_net_inputs(net), channels = adcgs_net_outputs(net) / 2;
+    const size_t n_in = adcgs_net_inputs(net), channels = adcgs_net_channels(net);
     adcgs_e24 *e24;
     FUZZ_REQUIRE(adcgs_e24_create(&e24, net, cpu, NULL, NULL) == ADCGS_OK);
     int16_t *x = adcgs_alloc(NULL, n_in, ADCGS_LANES * sizeof *x, NULL), *mu = adcgs_alloc(NULL, channels, ADCGS_LANES * 2, NULL);

@@ -30,6 +30,7 @@ static adcgs_params params_of(const uint8_t b[10])
     p.octaves = in_range(b[5], 0, ADCGS_OCTAVES_MAX);
     p.fine_uses_fv = b[6] & 1;
     p.coarse_rotation = b[6] >> 1 & 1;
+    p.adaptive_steps = b[6] >> 2 & 1;
     p.time_rows = b[7] & 1 ? in_range(b[7] >> 1, 1, 20) : 0;
     p.time_width = p.time_rows ? in_range(b[8], 1, 20) : 0;
     return p;

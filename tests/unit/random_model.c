@@ -37,6 +37,7 @@ void adcgs_random_params(adcgs_params *p, int moving, uint64_t *state)
     p->octaves = (uint8_t)draw(state, 0, ADCGS_OCTAVES_MAX);
     p->fine_uses_fv = (uint8_t)draw(state, 0, 1);
     p->coarse_rotation = (uint8_t)draw(state, 0, 1);
+    p->adaptive_steps = (uint8_t)draw(state, 0, 1);
     p->time_rows = (uint16_t)(moving ? draw(state, 1, 12) : 0);
     p->time_width = (uint16_t)(moving ? draw(state, 1, 9) : 0);
 }
@@ -60,18 +61,19 @@ static adcgs_status random_net(adcgs_net *net, const adcgs_params *params, int r
 {
     uint32_t n_in, n_out;
     adcgs_role_shape(params, role, &n_in, &n_out);
-    const int e24 = role < ADCGS_ROLE_PREDICTION, table = role == ADCGS_ROLE_TIME, limit = e24 ? 60 : 400;
+    const int e24 = role < ADCGS_ROLE_PREDICTION, prior = adcgs_role_is_prior(role), table = role == ADCGS_ROLE_TIME;
+    const int limit = e24 ? 60 : 400;
     *net = (adcgs_net){ .present = 1, .role = (uint8_t)role };
     net->n_layers = (uint8_t)(table || n_in == 0 ? 1 : draw(state, 1, 3));
     net->in_shift = (uint8_t)(e24 ? draw(state, 0, 3) : 0);
-    net->sigma_shift = (uint8_t)(e24 ? draw(state, 6, 9) : 0);
-    net->sigma_offset = (int16_t)(e24 ? draw(state, 0, 40) : 0);
+    net->sigma_shift = (uint8_t)(prior ? draw(state, 6, 9) : 0);
+    net->sigma_offset = (int16_t)(prior ? draw(state, 0, 40) : 0);
     for (int i = 0; i < net->n_layers; i++) {
         adcgs_layer *l = &net->layer[i];
         const int last = i == net->n_layers - 1;
         l->residual = (uint8_t)(!last && i > 0 && draw(state, 0, 1));
         const uint32_t rows = last ? n_out : l->residual ? n_in : (uint32_t)draw(state, 1, 24);
-        l->shift = (uint8_t)(e24 ? draw(state, 5, 9) : 0);
+        l->shift = (uint8_t)(!e24 ? 0 : prior || !last ? draw(state, 5, 9) : draw(state, 9, 15));
         ADCGS_TRY(fill_tensor(&l->w, rows, n_in, limit, e24 ? 0 : 9, e24 ? 0 : draw(state, 0, 3) == 0, state, error));
         if (!table)
             ADCGS_TRY(fill_tensor(&l->b, rows, 1, e24 ? 20000 : limit, e24 ? 0 : 9, 0, state, error));

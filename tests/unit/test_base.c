@@ -102,6 +102,8 @@ static void test_status(void **state)
     assert_int_equal(adcgs_fail(&error, ADCGS_ERR_DATA, "%s", longer), ADCGS_ERR_DATA);
     assert_int_equal(strlen(error.text), sizeof error.text - 1);
     assert_int_equal(adcgs_fail(NULL, ADCGS_ERR_IO, "nobody listens"), ADCGS_ERR_IO);
+    adcgs_fail(&error, ADCGS_ERR_IO, "%s", "a\nb\x1b\x7f\xc3\xa9");
+    assert_string_equal(error.text, "a?b??\xc3\xa9");
 }
 
 static void test_cpu(void **state)

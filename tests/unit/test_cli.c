@@ -21,10 +21,16 @@ static void test_numbers(void **state)
     for (size_t n = 0; n < ADCGS_COUNTOF(bad_ints); n++)
         assert_int_equal(adcgs_parse_int(bad_ints[n], -3, 12, &i), -1);
     assert_true(!adcgs_parse_size("200000", 0, UINT64_MAX, &size) && size == 200000);
-    assert_true(!adcgs_parse_size("200k", 0, UINT64_MAX, &size) && size == 204800);
-    assert_true(!adcgs_parse_size("3M", 0, UINT64_MAX, &size) && size == 3u << 20);
-    assert_true(!adcgs_parse_size("1G", 0, UINT64_MAX, &size) && size == 1u << 30);
-    const char *bad_sizes[] = {"", "K", "-1", "+1", "1KK", "1T", "17179869184G", "99999999999999999999", " 1"};
+    assert_true(!adcgs_parse_size("200k", 0, UINT64_MAX, &size) && size == 200000);
+    assert_true(!adcgs_parse_size("200KiB", 0, UINT64_MAX, &size) && size == 204800);
+    assert_true(!adcgs_parse_size("3m", 0, UINT64_MAX, &size) && size == 3000000);
+    assert_true(!adcgs_parse_size("3MiB", 0, UINT64_MAX, &size) && size == 3u << 20);
+    assert_true(!adcgs_parse_size("1.5MB", 0, UINT64_MAX, &size) && size == 1500000);
+    assert_true(!adcgs_parse_size("1.0625Ki", 0, UINT64_MAX, &size) && size == 1088);
+    assert_true(!adcgs_parse_size("1g", 0, UINT64_MAX, &size) && size == 1000000000);
+    assert_true(!adcgs_parse_size("1GiB", 0, UINT64_MAX, &size) && size == 1u << 30);
+    const char *bad_sizes[] = {"",    "K",    "-1", "+1",  "1KK",    "1T", "18446744074G",  "99999999999999999999", " 1",
+                               "1.5", "1.k", ".5k", "1i", "1kiBB", "1B", "1.5.5k", "1 k", "17179869184GiB", "1e5"};
     for (size_t n = 0; n < ADCGS_COUNTOF(bad_sizes); n++)
         assert_int_equal(adcgs_parse_size(bad_sizes[n], 0, UINT64_MAX, &size), -1);
     assert_true(!adcgs_parse_real("1e-3", 0, 1, &real) && real == 1e-3);
@@ -85,7 +91,7 @@ static void test_options(void **state)
     assert_int_equal(PARSE(&v, &first, "file"), -1);
     assert_true(v.number == 5 && v.size == 7 && !v.flag && !v.given);
     assert_int_equal(PARSE(&v, &first, "file", "-f", "--text=x y", "--number", "9", "-s2K", "--colour", "green"), -1);
-    assert_true(v.flag == 1 && v.number == 9 && v.given && v.size == 2048 && v.choice == 1);
+    assert_true(v.flag == 1 && v.number == 9 && v.given && v.size == 2000 && v.choice == 1);
     assert_string_equal(v.text, "x y");
     assert_int_equal(PARSE(&v, &first, "-t", "-", "file", "--", "-f"), -1);
     assert_string_equal(v.text, "-");

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file PSNR and SSIM against slow direct references. */
+/** \file PSNR and SSIM against slow direct references; boxes and the parts of pictures that they cover. */
+#include "metric/crop.h"
 #include "metric/metric.h"
 
 #include <math.h>
@@ -93,8 +94,160 @@ static void test_psnr(void **state)
     assert_true(isnan(adcgs_psnr_from_mse(NAN)));
 }
 
+static const adcgs_camera camera = {.width = 64, .height = 48, .fx = 40, .fy = 50, .cx = 30, .cy = 20, .near_plane = 0.1,
+                                    .cam_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
+
+static void expect_rectangle(const adcgs_box *box, const adcgs_camera *c, int left, int top, int right, int bottom)
+{
+    int r[4];
+    assert_int_equal(adcgs_box_rectangle(box, c, r), 1);
+    if (r[0] != left || r[1] != top || r[2] != right || r[3] != bottom)
+        fail_msg("%d %d %d %d, expected %d %d %d %d", r[0], r[1], r[2], r[3], left, top, right, bottom);
+}
+
+static void test_rectangle(void **state)
+{
+    int r[4];
+    /* The face at z = 4 covers x 30 +- 10 and y 20 +- 12.5, the one behind it less. */
+    expect_rectangle(&(adcgs_box){{-1, -1, 4}, {1, 1, 9}}, &camera, 20, 7, 40, 33);
+    expect_rectangle(&(adcgs_box){{-9, -1, 4}, {1, 9, 9}}, &camera, 0, 7, 40, 48);
+    expect_rectangle(&(adcgs_box){{0, 0, 4}, {1e-9, 1e-9, 4.1}}, &camera, 30, 20, 31, 21);
+    expect_rectangle(&(adcgs_box){{-1, -1, -1}, {1, 1, 9}}, &camera, 0, 0, 64, 48);   /* round the camera */
+    expect_rectangle(&(adcgs_box){{2, -1, -9}, {3, 1, 10}}, &camera, 38, 0, 64, 48);  /* from beside it to far ahead */
+    assert_false(adcgs_box_rectangle(&(adcgs_box){{-1, -1, -9}, {1, 1, -1}}, &camera, r));   /* behind */
+    assert_false(adcgs_box_rectangle(&(adcgs_box){{-1, -1, -1}, {1, 1, 0.09}}, &camera, r)); /* nearer than the near plane */
+    assert_false(adcgs_box_rectangle(&(adcgs_box){{9, -1, 4}, {10, 1, 5}}, &camera, r));     /* to the right */
+    assert_false(adcgs_box_rectangle(&(adcgs_box){{-1, -9, 4}, {1, -8, 5}}, &camera, r));    /* above */
+}
+
+/** Bounds of where the points of a grid inside the box fall, and the depth of the nearest. */
+static double project_grid(const adcgs_box *box, const adcgs_camera *c, double bounds[4])
+{
+    const double *m = c->cam_to_world;
+    double nearest = HUGE_VAL;
+    for (int i = 0; i < 40 * 40 * 40; i++) {
+        const int at[3] = {i % 40, i / 40 % 40, i / 1600};
+        double x[3], p[3];
+        for (int a = 0; a < 3; a++)
+            x[a] = box->low[a] + (box->high[a] - box->low[a]) * at[a] / 39.0 - m[4 * a + 3];
+        for (int a = 0; a < 3; a++)
+            p[a] = m[a] * x[0] + m[4 + a] * x[1] + m[8 + a] * x[2];
+        const double u = c->fx * p[0] / p[2] + c->cx, v = c->fy * p[1] / p[2] + c->cy;
+        nearest = fmin(nearest, p[2]);
+        if (p[2] < c->near_plane)
+            continue;
+        bounds[0] = fmin(bounds[0], u);
+        bounds[1] = fmin(bounds[1], v);
+        bounds[2] = fmax(bounds[2], u);
+        bounds[3] = fmax(bounds[3], v);
+    }
+    return nearest;
+}
+
+static double clip(double x, double most)
+{
+    return fmin(fmax(x, 0), most);
+}
+
+/** Whatever the pose: the rectangle holds all that the grid shows of the box, and where the box is far enough, hardly more. */
+static void test_any_box(void **state)
+{
+    int shown = 0;
+    for (int round = 0; round < 300; round++) {
+        const double angle = 6.3 * (double)random_value();
+        const double pose[12] = {cos(angle), 0, sin(angle), 0.3, 0, 1, 0, -0.2, -sin(angle), 0, cos(angle), 0.1};
+        double bounds[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+        adcgs_camera c = camera;
+        adcgs_box box;
+        memcpy(c.cam_to_world, pose, sizeof pose);
+        for (int a = 0; a < 3; a++) {
+            box.low[a] = 6 * (double)random_value() - 3;
+            box.high[a] = box.low[a] + 0.1 + 2 * (double)random_value();
+        }
+        int r[4];
+        const double nearest = project_grid(&box, &c, bounds);
+        const int visible = adcgs_box_rectangle(&box, &c, r);
+        if (bounds[0] < c.width && bounds[1] < c.height && bounds[2] > 0 && bounds[3] > 0) {
+            assert_true(visible);
+            for (int i = 0; i < 4; i++) {
+                const double edge = clip(bounds[i], i % 2 ? c.height : c.width), beyond = i < 2 ? edge - r[i] : r[i] - edge;
+                assert_true(beyond > -1e-9 && (nearest < 0.5 || beyond < 1.001));
+            }
+            shown++;
+        } else if (nearest > 0.5)
+            assert_false(visible);
+    }
+    assert_true(shown > 50);
+}
+
+/** Fences by hand: x from 0 to 100 in no order, y from -1000 to 0 with one stray point, z the same for all. */
+static void test_box_of_points(void **state)
+{
+    static float position[101][3];
+    adcgs_scene scene = {.directory = "scene", .points = {.n = 101, .position = position}};
+    adcgs_error error;
+    adcgs_box box;
+    for (int i = 0; i < 101; i++) {
+        position[i][0] = (float)(i * 37 % 101);
+        position[i][1] = -10.0f * (float)(i * 29 % 101);
+        position[i][2] = 7.0f;
+    }
+    assert_int_equal(adcgs_box_of_points(&box, &scene, &error), ADCGS_OK);
+    assert_true(fabs(box.low[0] + 5) < 1e-9 && fabs(box.high[0] - 105) < 1e-9);
+    assert_true(fabs(box.low[1] + 1050) < 1e-9 && fabs(box.high[1] - 50) < 1e-9 && box.low[2] == 7 && box.high[2] == 7);
+    for (int i = 0; i < 101; i++)
+        if (position[i][0] == 100.0f)
+            position[i][1] = 251.0f; /* inside: the quartiles are near -750 and -250 and the fence near 500 */
+    assert_int_equal(adcgs_box_of_points(&box, &scene, &error), ADCGS_OK);
+    assert_true(box.high[1] > 251 && fabs(box.high[0] - 105) < 1e-9);
+    for (int i = 0; i < 101; i++)
+        if (position[i][0] == 100.0f)
+            position[i][1] = 600.0f; /* beyond it: the point does not count along the other axes either */
+    assert_int_equal(adcgs_box_of_points(&box, &scene, &error), ADCGS_OK);
+    assert_true(box.high[1] < 51 && fabs(box.high[0] - (99 + 0.05 * 99)) < 1e-9);
+    scene.points.n = 1;
+    assert_int_equal(adcgs_box_of_points(&box, &scene, &error), ADCGS_OK);
+    assert_true(box.low[0] == 0 && box.high[0] == 0);
+    scene.points.n = 0;
+    assert_int_equal(adcgs_box_of_points(&box, &scene, &error), ADCGS_ERR_DATA);
+    assert_non_null(strstr(error.text, "scene: the scene has no points"));
+}
+
+/** Outside of the rectangle nothing counts; inside it the figures are those of the pictures cut out. */
+static void test_crop(void **state)
+{
+    enum { W = 64, H = 48 };
+    static float truth[3 * W * H], decoded[3 * W * H], small_truth[3 * 20 * 26], small_decoded[3 * 20 * 26];
+    const adcgs_box box = {{-1, -1, 4}, {1, 1, 9}}, aside = {{9, -1, 4}, {10, 1, 5}}; /* 20..40 x 7..33, as above */
+    const adcgs_scene_view view = {.camera = camera};
+    const adcgs_view_score score = {.view = &view, .width = W, .height = H, .decoded = decoded, .truth = truth};
+    adcgs_crop crop, again;
+    double ssim;
+    for (int i = 0; i < 3 * W * H; i++) {
+        const int c = i / (W * H), y = i / W % H - 7, x = i % W - 20, inside = x >= 0 && x < 20 && y >= 0 && y < 26;
+        truth[i] = random_value();
+        decoded[i] = inside ? 0.9f * truth[i] + 0.1f * random_value() : random_value();
+        if (inside) {
+            small_truth[(c * 26 + y) * 20 + x] = truth[i];
+            small_decoded[(c * 26 + y) * 20 + x] = decoded[i];
+        }
+    }
+    assert_int_equal(adcgs_crop_measure(&crop, &box, &score, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_ssim(small_decoded, small_truth, 20, 26, &ssim, NULL), ADCGS_OK);
+    assert_true(crop.visible && crop.ssim == ssim && crop.psnr == adcgs_psnr(small_decoded, small_truth, 3 * 20 * 26));
+    for (int i = 0; i < 7 * W + 20; i++)
+        decoded[i] = decoded[W * H + i] = 0;
+    assert_int_equal(adcgs_crop_measure(&again, &box, &score, NULL), ADCGS_OK);
+    assert_true(again.psnr == crop.psnr && again.ssim == crop.ssim);
+    assert_int_equal(adcgs_crop_measure(&again, &aside, &score, NULL), ADCGS_OK);
+    assert_false(again.visible);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_ssim), cmocka_unit_test(test_psnr)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ssim),    cmocka_unit_test(test_psnr),          cmocka_unit_test(test_rectangle),
+        cmocka_unit_test(test_any_box), cmocka_unit_test(test_box_of_points), cmocka_unit_test(test_crop),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -201,9 +201,12 @@ static void reference(const adcgs_net *net, const int16_t *x, int sample, int16_
             h[j] = clip64(layer->residual ? h[j] + v : v, 2047);
         }
     }
-    const uint32_t channels = adcgs_net_outputs(net) / 2;
+    const int prior = net->role != ADCGS_ROLE_ENTROPY_STEPS;
+    const uint32_t channels = adcgs_net_outputs(net) / (prior ? 2 : 1);
     for (uint32_t c = 0; c < channels; c++) {
         mu[c] = (int16_t)clip64(shr64(acc[c], net->layer[net->n_layers - 1].shift), 32767);
+        if (!prior)
+            continue;
         const int64_t v = shr64(acc[channels + c], net->sigma_shift) + net->sigma_offset;
         si[c] = (uint8_t)(v < 0 ? 0 : v > 63 ? 63 : v);
     }
@@ -211,9 +214,10 @@ static void reference(const adcgs_net *net, const int16_t *x, int sample, int16_
 
 static void check_net(const adcgs_net *net, uint64_t *seed)
 {
-    static int16_t x[1024 * ADCGS_LANES], mu[256 * ADCGS_LANES], first_mu[256 * ADCGS_LANES];
+    static int16_t x[1024 * ADCGS_LANES], mu[512 * ADCGS_LANES], first_mu[512 * ADCGS_LANES];
     static uint8_t si[256 * ADCGS_LANES], first_si[256 * ADCGS_LANES];
-    const uint32_t n_in = adcgs_net_inputs(net), channels = adcgs_net_outputs(net) / 2;
+    const int prior = net->role != ADCGS_ROLE_ENTROPY_STEPS;
+    const uint32_t n_in = adcgs_net_inputs(net), channels = adcgs_net_channels(net);
     for (uint32_t i = 0; i < n_in * ADCGS_LANES; i++)
         x[i] = (int16_t)draw(seed, i % 3 ? 500 : 32767);
     if (n_in)
@@ -224,7 +228,7 @@ static void check_net(const adcgs_net *net, uint64_t *seed)
         if (adcgs_e24_create(&e24, net, (adcgs_cpu_level)level, NULL, &error) != ADCGS_OK)
             fail_msg("%s", error.text);
         void *scratch = adcgs_alloc(NULL, 1, adcgs_e24_scratch(e24), NULL);
-        adcgs_e24_eval(e24, x, mu, si, scratch);
+        adcgs_e24_eval(e24, x, mu, prior ? si : NULL, scratch);
         adcgs_free(NULL, scratch);
         adcgs_e24_free(&e24, NULL);
         if (level == ADCGS_CPU_SCALAR) {
@@ -232,32 +236,43 @@ static void check_net(const adcgs_net *net, uint64_t *seed)
             memcpy(first_si, si, sizeof si);
         }
         assert_memory_equal(mu, first_mu, channels * ADCGS_LANES * sizeof *mu);
-        assert_memory_equal(si, first_si, channels * ADCGS_LANES);
+        assert_memory_equal(si, first_si, prior ? channels * ADCGS_LANES : 0);
     }
     for (int s = 0; s < ADCGS_LANES; s++) {
-        int16_t m[256];
+        int16_t m[512];
         uint8_t v[256];
         reference(net, x, s, m, v);
         for (uint32_t c = 0; c < channels; c++) {
             assert_int_equal(m[c], mu[c * ADCGS_LANES + (uint32_t)s]);
-            assert_int_equal(v[c], si[c * ADCGS_LANES + (uint32_t)s]);
+            assert_true(!prior || v[c] == si[c * ADCGS_LANES + (uint32_t)s]);
         }
     }
 }
 
-/* REQ-NETW-004, REQ-NETW-005, REQ-NETW-006, REQ-NETW-007, REQ-NETW-008 */
+/* What a network of priors is without them: step indices, as many as it has outputs. */
+static void make_steps(adcgs_net *net)
+{
+    net->role = ADCGS_ROLE_ENTROPY_STEPS;
+    net->sigma_shift = 0;
+    net->sigma_offset = 0;
+}
+
+/* REQ-NETW-004, REQ-NETW-005, REQ-NETW-006, REQ-NETW-007, REQ-NETW-008, REQ-NETW-010 */
 static void test_e24_equals_reference(void **state)
 {
     (void)state;
     static const uint32_t sizes[][5] = { { 1, 2 },         { 0, 14 },         { 7, 5, 6 },
                                          { 32, 48, 64 },   { 33, 33, 33, 10 }, { 64, 24, 24, 24, 32 },
-                                         { 1024, 13, 512 }, { 512, 512, 2 },    { 80, 1, 1, 22 } };
-    static const int layers[] = { 1, 1, 2, 2, 3, 4, 2, 2, 3 };
+                                         { 1024, 13, 512 }, { 512, 512, 2 },    { 80, 1, 1, 22 },
+                                         { 32, 24, 5 } };
+    static const int layers[] = { 1, 1, 2, 2, 3, 4, 2, 2, 3, 2 };
     uint64_t seed = 11;
     for (size_t i = 0; i < ADCGS_COUNTOF(layers); i++)
         for (int trial = 0; trial < 4; trial++) {
             adcgs_net net;
             make_net(&net, layers[i], sizes[i], &seed);
+            if (trial % 2 || sizes[i][layers[i]] % 2)
+                make_steps(&net);
             check_net(&net, &seed);
             adcgs_net_clear(&net);
         }
@@ -314,6 +329,30 @@ static void test_e24_row_bound(void **state)
     net.layer[0].w.mode = 0;
     net.in_shift = 9;
     assert_int_equal(load(&net), ADCGS_ERR_DATA);
+    adcgs_net_clear(&net);
+}
+
+/* All rows of the last layer of step indices see the layer's shift. */
+/* REQ-NETW-003, REQ-NETW-010 */
+static void test_e24_steps_bound(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[] = { 5, 3 };
+    uint64_t seed = 13;
+    adcgs_net net;
+    make_net(&net, 1, sizes, &seed);
+    assert_int_equal(load(&net), ADCGS_ERR_DATA); /* an odd number of outputs is no prior */
+    make_steps(&net);
+    memset(net.layer[0].w.m, 0, 15 * sizeof(int32_t));
+    net.layer[0].shift = 24;
+    for (int row = 0; row < 3; row++) {
+        net.layer[0].b.m[row] = row % 2 ? -((1 << 23) - 1) : (1 << 23) - 1;
+        assert_int_equal(load(&net), ADCGS_OK);
+        net.layer[0].b.m[row] += row % 2 ? -1 : 1;
+        assert_int_equal(load(&net), ADCGS_ERR_DATA);
+        net.layer[0].b.m[row] = 0;
+    }
+    check_net(&net, &seed);
     adcgs_net_clear(&net);
 }
 
@@ -463,7 +502,8 @@ int main(void)
         cmocka_unit_test(test_tables_equal_csv),  cmocka_unit_test(test_values_round_trip),
         cmocka_unit_test(test_value_cost),        cmocka_unit_test(test_damaged_values_end),
         cmocka_unit_test(test_shr),               cmocka_unit_test(test_e24_equals_reference),
-        cmocka_unit_test(test_e24_row_bound),     cmocka_unit_test(test_e24_known_answer),
+        cmocka_unit_test(test_e24_row_bound),
+        cmocka_unit_test(test_e24_steps_bound),     cmocka_unit_test(test_e24_known_answer),
         cmocka_unit_test(test_integer_tensors),   cmocka_unit_test(test_weights_are_cheap),
         cmocka_unit_test(test_float_tensors),
     };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Point clouds: variants of PLY, damage, real files. */
+/** \file Point clouds: variants of PLY and NPY, damage, real files. */
 #include "outside_files.h"
 
 #include "io/points.h"
@@ -91,6 +91,73 @@ static void test_damage(void **state)
     adcgs_points points;
     expect_error(adcgs_points_read(&points, in("absent.ply"), &error), ADCGS_ERR_IO, "absent.ply", "No such file");
     expect_error(adcgs_points_read(&points, folder, &error), ADCGS_ERR_IO, folder, "regular");
+}
+
+static void test_npy(void **state)
+{
+    static const float p[3] = {1.0f, -2.0f, 0.5f};
+    static const uint8_t grey[3] = {128, 128, 128};
+    expect_points(TEXT("\x93NUMPY\1\0\x3c\0" "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n"
+                       "............\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f"), 2, p, grey);
+    /* Another order, other quotes, no comma at the end, blanks; formats 2.0 and 3.0 give the header's length in four bytes. */
+    expect_points(TEXT("\x93NUMPY\2\0\x38\0\0\0" "{\"shape\":(1,3,),\"descr\":\"<f8\",\"fortran_order\":False}   \n"
+                       "\0\0\0\0\0\0\xf0\x3f\0\0\0\0\0\0\0\xc0\0\0\0\0\0\0\xe0\x3f"), 1, p, grey);
+    expect_points(TEXT("\x93NUMPY\3\0\x3b\0\0\0" "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
+                       "\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f"), 1, p, grey);
+}
+
+static void expect_bad_header(const char *header, size_t bytes, const char *what)
+{
+    char text[256] = "\x93NUMPY\1\0";
+    text[8] = (char)bytes;
+    memcpy(text + 10, header, bytes);
+    expect_bad(text, 10 + bytes, what);
+}
+
+#define F4 "'descr': '<f4'"
+#define C_ORDER "'fortran_order': False"
+
+static void test_bad_npy(void **state)
+{
+    adcgs_points points;
+    expect_bad(TEXT("\x93NUMPY"), "ends early");
+    expect_bad(TEXT("\x93NUMPY\1\0\x10\0{}"), "ends early");
+    expect_bad(TEXT("\x93NUMPY\2\0\xff\xff\xff\xff{}"), "ends early");
+    expect_error(read_text(&points, TEXT("\x93NUMPY\4\0\2\0{}")), ADCGS_ERR_UNSUPPORTED, "p.ply", "format 4.0");
+    expect_bad_header(TEXT("{ "), "key in quotes");
+    expect_bad_header(TEXT("  x"), "dictionary");
+    expect_bad_header(TEXT("{'descr'}"), "descr: expected a colon");
+    expect_bad_header(TEXT("{'descr': 4}"), "descr: expected a string");
+    expect_bad_header(TEXT("{'descr': '<f4}"), "descr: expected a string");
+    expect_bad_header(TEXT("{'descr': '>f4'}"), "descr: >f4");
+    expect_bad_header(TEXT("{'descr': '<f2'}"), "descr: <f2");
+    expect_bad_header(TEXT("{'descr': '|O'}"), "descr: |O");
+    expect_bad_header(TEXT("{" F4 " " C_ORDER "}"), "comma");
+    expect_bad_header(TEXT("{" F4 ", " F4 "}"), "descr: given twice");
+    expect_bad_header(TEXT("{'colour': 1}"), "colour: unknown key");
+    expect_bad_header(TEXT("{'a key of more than 16': 1}"), "key in quotes");
+    expect_bad_header(TEXT("{'fortran_order': True}"), "True, expected False");
+    expect_bad_header(TEXT("{'fortran_order': 0}"), "expected False");
+    expect_bad_header(TEXT("{'shape': 3}"), "tuple");
+    expect_bad_header(TEXT("{'shape': (3"), "tuple");
+    expect_bad_header(TEXT("{'shape': (-1, 3)}"), "tuple");
+    expect_bad_header(TEXT("{'shape': (99999999999999999999, 3)}"), "tuple");
+    expect_bad_header(TEXT("{'shape': (1,1,1,1,1)}"), "tuple");
+    expect_bad_header(TEXT("{'shape': (,)}"), "tuple");
+    expect_bad_header(TEXT("{" F4 ", " C_ORDER "}"), "shape: missing");
+    expect_bad_header(TEXT("{" C_ORDER ", 'shape': (0, 3)}"), "descr: missing");
+    expect_bad_header(TEXT("{" F4 ", 'shape': (0, 3)}"), "fortran_order: missing");
+    expect_bad_header(TEXT("{" F4 ", " C_ORDER ", 'shape': (3,)}"), "shape: expected (n, 3)");
+    expect_bad_header(TEXT("{" F4 ", " C_ORDER ", 'shape': (0, 4)}"), "shape: expected (n, 3)");
+    expect_bad_header(TEXT("{" F4 ", " C_ORDER ", 'shape': (0, 3)}, {"), "follows the dictionary");
+    expect_bad_header(TEXT("{" F4 ", " C_ORDER ", 'shape': (1, 3)}"), "0 bytes behind the header, expected 12");
+    expect_bad_header(TEXT("{" F4 ", " C_ORDER ", 'shape': (100000000000, 3)}"), "expected 1200000000000");
+    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0" "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
+                       "0123456789012"), "13 bytes");
+    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0" "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }"
+                       "........\0\0\x80\x7f"), "not a finite");
+    expect_bad(TEXT("\x93NUMPY\1\0\x3b\0" "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3), }"
+                       "................\0\0\0\0\0\0\xf0\x7e"), "not a finite");
 }
 
 static void test_too_many_properties(void **state)
@@ -187,7 +254,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_variants),   cmocka_unit_test(test_damage),    cmocka_unit_test(test_too_many_properties),
         cmocka_unit_test(test_round_trip), cmocka_unit_test(test_mutations), cmocka_unit_test(test_draco),
-        cmocka_unit_test(test_real_files),
+        cmocka_unit_test(test_real_files), cmocka_unit_test(test_npy),       cmocka_unit_test(test_bad_npy),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -9,6 +9,7 @@
 #include "random_model.h"
 #include "splat/floatnet.h"
 #include "splat/splat.h"
+#include "splat/steps.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -63,6 +64,37 @@ static void normalise(float q[4])
         q[i] = ok ? q[i] / sqrtf(n) : i == 0 ? 1.0f : 0.0f;
 }
 
+/* E_q of an anchor straight from its numbers: index of a group of channels, 0 Sigma_v, 1 C_v, 2 + c chunk c of f_g. */
+static int step_index(const adcgs_model *m, uint32_t anchor, uint32_t of)
+{
+    const adcgs_net *net = &m->net[ADCGS_ROLE_ENTROPY_STEPS];
+    int32_t h[ADCGS_NET_WIDTH_MAX], acc[ADCGS_NET_WIDTH_MAX];
+    for (uint32_t i = 0; i < m->params.n_fv; i++)
+        h[i] = adcgs_clip(adcgs_shr(m->fv[(size_t)anchor * m->params.n_fv + i], net->in_shift), 2047);
+    for (int l = 0; l < net->n_layers; l++) {
+        const adcgs_layer *layer = &net->layer[l];
+        for (uint32_t o = 0; o < layer->w.rows; o++) {
+            acc[o] = layer->b.m[o];
+            for (uint32_t i = 0; i < layer->w.cols; i++)
+                acc[o] += layer->w.m[(size_t)o * layer->w.cols + i] * h[i];
+            acc[o] = adcgs_shr(acc[o], layer->shift);
+        }
+        for (uint32_t o = 0; l + 1 < net->n_layers && o < layer->w.rows; o++) {
+            const int32_t v = acc[o] < 0 ? adcgs_shr(acc[o], 6) : acc[o];
+            h[o] = adcgs_clip(layer->residual ? h[o] + v : v, 2047);
+        }
+    }
+    return adcgs_clip(acc[of], 16);
+}
+
+/* The value of a latent: its step adapts to the anchor, if the model has E_q. */
+static float valued(const adcgs_model *m, uint32_t anchor, uint32_t of, int16_t yq, float d)
+{
+    const float factor = m->params.adaptive_steps ? adcgs_step_factor(step_index(m, anchor, of)) : 1.0f;
+    const float step = d * factor;
+    return (float)yq * step;
+}
+
 static void evaluate_prediction(const adcgs_model *m, uint32_t anchor, int k, float *out)
 {
     const adcgs_net *net = &m->net[ADCGS_ROLE_PREDICTION];
@@ -73,7 +105,8 @@ static void evaluate_prediction(const adcgs_model *m, uint32_t anchor, int k, fl
             sum = fmaf(weight(&net->layer[0], o, i), (float)m->fv[(size_t)anchor * p->n_fv + i] * m->d_fv[i], sum);
         for (uint32_t i = 0; i < p->n_fg; i++)
             sum = fmaf(weight(&net->layer[0], o, p->n_fv + i),
-                       (float)m->fg[((size_t)anchor * p->k + (size_t)k) * p->n_fg + i] * m->d_fg[i], sum);
+                       valued(m, anchor, 2 + i / (p->n_fg / p->chunks), m->fg[((size_t)anchor * p->k + (size_t)k) * p->n_fg + i],
+                              m->d_fg[i]), sum);
         out[o] = sum;
     }
     later_layers(net, out);
@@ -117,15 +150,18 @@ static void evaluate_deformation(const adcgs_model *m, int role, uint32_t anchor
     later_layers(net, out);
 }
 
-static void turn(const float r[4], float offset[3], float q[4])
+static void turn(const float r[4], float position[3], float offset[3], float q[4])
 {
     const float w = r[0], x = r[1], y = r[2], z = r[3], x2 = x + x, y2 = y + y, z2 = z + z;
     const float m[9] = {fmaf(-y2, y, fmaf(-z2, z, 1.0f)), fmaf(x2, y, -(w * z2)), fmaf(x2, z, w * y2),
                         fmaf(x2, y, w * z2), fmaf(-x2, x, fmaf(-z2, z, 1.0f)), fmaf(y2, z, -(w * x2)),
                         fmaf(x2, z, -(w * y2)), fmaf(y2, z, w * x2), fmaf(-x2, x, fmaf(-y2, y, 1.0f))};
-    const float o[3] = {offset[0], offset[1], offset[2]}, s[4] = {q[0], q[1], q[2], q[3]};
-    for (int a = 0; a < 3; a++)
+    const float p[3] = {position[0], position[1], position[2]}, o[3] = {offset[0], offset[1], offset[2]};
+    const float s[4] = {q[0], q[1], q[2], q[3]};
+    for (int a = 0; a < 3; a++) {
+        position[a] = fmaf(m[3 * a + 2], p[2], fmaf(m[3 * a + 1], p[1], m[3 * a] * p[0]));
         offset[a] = fmaf(m[3 * a + 2], o[2], fmaf(m[3 * a + 1], o[1], m[3 * a] * o[0]));
+    }
     q[0] = fmaf(-z, s[3], fmaf(-y, s[2], fmaf(-x, s[1], w * s[0])));
     q[1] = fmaf(-z, s[2], fmaf(y, s[3], fmaf(x, s[0], w * s[1])));
     q[2] = fmaf(z, s[1], fmaf(y, s[0], fmaf(-x, s[3], w * s[2])));
@@ -148,26 +184,26 @@ static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
         evaluate_deformation(m, ADCGS_ROLE_FINE, anchor, time, fine);
     float logit = out[13];
     for (int a = 0; a < 3; a++) {
-        const float extent = (float)m->sigma[6 * (size_t)anchor + (size_t)a] * m->d_sigma[a];
-        const float size = (float)m->sigma[6 * (size_t)anchor + 3 + (size_t)a] * m->d_sigma[3 + a];
+        const float extent = valued(m, anchor, 0, m->sigma[6 * (size_t)anchor + (size_t)a], m->d_sigma[a]);
+        const float size = valued(m, anchor, 0, m->sigma[6 * (size_t)anchor + 3 + (size_t)a], m->d_sigma[3 + a]);
         position[a] = fmaf((float)(2 * m->pos[3 * (size_t)anchor + (size_t)a] + 1), 0.5f * m->voxel, m->origin[a]);
         offset[a] = out[a] * adcgs_exp(adcgs_clampf(extent, -16.0f, 8.0f));
         r.v[3 + a] = adcgs_exp(adcgs_clampf(size, -16.0f, 8.0f)) * adcgs_sigmoid(out[3 + a]);
-        r.v[11 + a] = (float)m->colour[3 * (size_t)anchor + (size_t)a] * m->d_colour[a] + out[10 + a];
+        r.v[11 + a] = valued(m, anchor, 1, m->colour[3 * (size_t)anchor + (size_t)a], m->d_colour[a]) + out[10 + a];
     }
     for (int a = 0; a < 4; a++)
         q[a] = out[6 + a] + (a == 0 ? 1.0f : 0.0f);
     normalise(q);
     if (has_coarse) {
         float turned[4] = {1.0f, coarse[9], coarse[10], coarse[11]};
+        normalise(turned);
+        if (m->params.coarse_rotation)
+            turn(turned, position, offset, q);
         for (int a = 0; a < 3; a++) {
             position[a] += coarse[a];
             r.v[3 + a] *= adcgs_exp(adcgs_clampf(coarse[3 + a], -8.0f, 8.0f));
             r.v[11 + a] += coarse[6 + a];
         }
-        normalise(turned);
-        if (m->params.coarse_rotation)
-            turn(turned, offset, q);
     }
     if (has_fine) {
         logit += fine[4 * k];
@@ -342,6 +378,37 @@ static void test_largest_networks(void **state)
     }
 }
 
+/* Indices at both limits, and factors as the table has them: 2^(q/8), rounded once. */
+/* REQ-LATN-011 */
+static void test_adaptive_steps(void **state)
+{
+    uint64_t random = 9;
+    for (int q = -16; q <= 16; q++) {
+        assert_true(fabs(adcgs_step_factor(q) / exp2(q / 8.0) - 1) <= 0x1p-24);
+        assert_true(q < -8 || adcgs_step_factor(q) == 2 * adcgs_step_factor(q - 8));
+    }
+    assert_true(adcgs_step_factor(0) == 1);
+    for (int i = 0; i < 12; i++) {
+        adcgs_params params;
+        adcgs_model m;
+        adcgs_random_params(&params, i % 2, &random);
+        params.adaptive_steps = 1;
+        params.n_fg = (uint8_t)(i % 3 * params.chunks);
+        assert_int_equal(adcgs_random_model(&m, &params, 130, 4, &random, NULL), ADCGS_OK);
+        adcgs_net *net = &m.net[ADCGS_ROLE_ENTROPY_STEPS];
+        assert_int_equal(adcgs_net_outputs(net), i % 3 ? 2 + params.chunks : 2);
+        for (uint32_t o = 0; i % 4 == 3 && o < adcgs_net_outputs(net); o++)
+            net->layer[net->n_layers - 1].b.m[o] = o % 2 ? 5000000 : -5000000;
+        net->layer[net->n_layers - 1].shift = (uint8_t)(i % 4 == 3 ? 0 : 10);
+        assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_OK);
+        for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
+            check_model(&m, 3, cpu);
+        net->sigma_offset = 1;
+        assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
+        clear_model(&m);
+    }
+}
+
 /* REQ-NETW-009 */
 static void test_refused_networks(void **state)
 {
@@ -438,7 +505,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_functions),  cmocka_unit_test(test_position_code), cmocka_unit_test(test_against_reference),
         cmocka_unit_test(test_extremes),   cmocka_unit_test(test_memory_limit),  cmocka_unit_test(test_largest_networks),
-        cmocka_unit_test(test_refused_networks),
+        cmocka_unit_test(test_adaptive_steps), cmocka_unit_test(test_refused_networks),
     };
     return cmocka_run_group_tests_name("splat", tests, NULL, NULL);
 }

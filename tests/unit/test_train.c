@@ -12,6 +12,7 @@
 
 #include "train/pass.h"
 #include "train/random.h"
+#include "train/rigid.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -42,9 +43,45 @@ static void ref_mlp(const adcgs_mlp *m, const float *p, const double *x, double 
     }
 }
 
+/** The noise that a test's forward pass added, in steps. Without it steps do not adapt. */
+static int noisy;
+static float *noise[ADCGS_P_ANCHOR];
+
+static double noise_at(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
+{
+    const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
+    return noise[group][((size_t)(anchor / 64) * rows + (size_t)row) * 64 + anchor % 64];
+}
+
+/** The factor of a step: 2 to the power of what E_q gives for the f_v that the networks see, within two octaves. */
+static double factor_of(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
+{
+    double x[64], out[64];
+    const int of = group == ADCGS_P_SIGMA ? 0 : group == ADCGS_P_COLOUR ? 1 : 2 + row % NG / (NG / CHUNKS);
+    if (!noisy || group == ADCGS_P_FV || group == ADCGS_P_ETA)
+        return 1;
+    for (int i = 0; i < NV; i++) {
+        const double step = f->step[ADCGS_P_FV][i];
+        x[i] = (*adcgs_fmodel_at(f, ADCGS_P_FV, anchor, i) + step * noise_at(f, ADCGS_P_FV, anchor, i)) / (16 * step);
+    }
+    ref_mlp(&f->mlp[ADCGS_P_E_STEPS], f->param[ADCGS_P_E_STEPS].p, x, out);
+    return pow(2, fmin(fmax(out[of], -2), 2));
+}
+
+static double step_of(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
+{
+    return f->step[group][row] * factor_of(f, group, anchor, row);
+}
+
 static double value(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
 {
-    return *adcgs_fmodel_at(f, group, anchor, row);
+    const double y = *adcgs_fmodel_at(f, group, anchor, row);
+    return noisy ? y + step_of(f, group, anchor, row) * noise_at(f, group, anchor, row) : y;
+}
+
+static double place(const adcgs_fmodel *f, uint32_t anchor, int axis)
+{
+    return f->x[((size_t)(anchor / 64) * 3 + (size_t)axis) * 64 + anchor % 64];
 }
 
 static double sigmoid(double x)
@@ -77,6 +114,18 @@ static void time_code(const adcgs_fmodel *f, double t, double *code)
         code[j] = z[i * width + j] + (u - i) * (z[(i + 1) * width + j] - (double)z[i * width + j]);
 }
 
+/** What F_omega says of an anchor at time t; nothing of one that does not move. */
+static void ref_omega(const adcgs_fmodel *f, uint32_t anchor, double t, double om[12])
+{
+    double x[64];
+    for (int i = 0; i < NV; i++)
+        x[i] = value(f, ADCGS_P_FV, anchor, i);
+    time_code(f, t, x + NV);
+    ref_mlp(&f->mlp[ADCGS_P_OMEGA], f->param[ADCGS_P_OMEGA].p, x, om);
+    for (int i = 0; i < 12; i++)
+        om[i] *= f->moving[anchor];
+}
+
 /** Primitive k of an anchor at time t: mean 3, scale 3, rotation 4, opacity, colour 3. */
 static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double t, double out[VALUES])
 {
@@ -86,8 +135,7 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
     for (int i = 0; i < NG; i++)
         x[NV + i] = value(f, ADCGS_P_FG, anchor, k * NG + i);
     ref_mlp(&f->mlp[ADCGS_P_THETA], f->param[ADCGS_P_THETA].p, x, th);
-    time_code(f, t, x + NV);
-    ref_mlp(&f->mlp[ADCGS_P_OMEGA], f->param[ADCGS_P_OMEGA].p, x, om);
+    ref_omega(f, anchor, t, om);
     double y[64];
     for (int i = 0; i < 6 * OCTAVES; i++)
         y[i] = f->code[((size_t)(anchor / 64) * 6 * OCTAVES + (size_t)i) * 64 + anchor % 64];
@@ -95,14 +143,12 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
     time_code(f, t, y + 6 * OCTAVES + NV);
     ref_mlp(&f->mlp[ADCGS_P_VARPI], f->param[ADCGS_P_VARPI].p, y, va);
     const double moving = f->moving[anchor];
-    for (int i = 0; i < 12; i++)
-        om[i] *= moving;
     qr[0] = 1;
     q0[0] = th[6] + 1;
     for (int a = 0; a < 3; a++) {
         qr[1 + a] = om[9 + a];
         q0[1 + a] = th[7 + a];
-        off[1 + a] = th[a] * exp(value(f, ADCGS_P_SIGMA, anchor, a));
+        off[1 + a] = th[a] * exp(value(f, ADCGS_P_SIGMA, anchor, a)) + place(f, anchor, a);
     }
     normalise(qr);
     normalise(q0);
@@ -111,7 +157,7 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
     product(qr, off, turned);
     product(turned, conj, back);
     for (int a = 0; a < 3; a++) {
-        out[a] = f->x[((size_t)(anchor / 64) * 3 + (size_t)a) * 64 + anchor % 64] + om[a] + back[1 + a];
+        out[a] = om[a] + back[1 + a];
         out[3 + a] = exp(value(f, ADCGS_P_SIGMA, anchor, 3 + a)) * sigmoid(th[3 + a]) * exp(om[3 + a]);
         out[11 + a] = value(f, ADCGS_P_COLOUR, anchor, a) + th[10 + a] + om[6 + a] + moving * va[4 * k + 1 + a];
     }
@@ -138,7 +184,7 @@ static double ref_rows(const adcgs_fmodel *f, int net, const double *x, int grou
     double out[64], bits = 0;
     ref_mlp(&f->mlp[net], f->param[net].p, x, out);
     for (int i = 0; i < rows; i++)
-        bits += ref_bits(value(f, group, anchor, first + i), f->step[group][first + i], out[i], out[rows + i]);
+        bits += ref_bits(value(f, group, anchor, first + i), step_of(f, group, anchor, first + i), out[i], out[rows + i]);
     return bits;
 }
 
@@ -160,7 +206,7 @@ static double ref_rate(const adcgs_fmodel *f)
             if (f->keep[((size_t)(a / 64) * K + (size_t)k) * 64 + a % 64] == 0)
                 continue;
             for (int i = 0; i < NG; i++)
-                x[NV + i] = value(f, ADCGS_P_FG, a, k * NG + i) / (16.0 * f->step[ADCGS_P_FG][k * NG + i]);
+                x[NV + i] = value(f, ADCGS_P_FG, a, k * NG + i) / (16.0 * step_of(f, ADCGS_P_FG, a, k * NG + i));
             for (int c = 0; c < CHUNKS; c++)
                 bits += ref_rows(f, ADCGS_P_E_FG + c, x, ADCGS_P_FG, a, k * NG + c * NG / CHUNKS, NG / CHUNKS);
         }
@@ -184,7 +230,7 @@ static void randomise(float *p, size_t n, double size, uint64_t stream)
 static int setup(void **state)
 {
     const adcgs_params params = { .k = K, .n_fv = NV, .n_fg = NG, .chunks = CHUNKS, .n_eta = ETA, .octaves = OCTAVES,
-                                  .fine_uses_fv = 1, .coarse_rotation = 1, .time_rows = 4, .time_width = 3 };
+                                  .fine_uses_fv = 1, .coarse_rotation = 1, .adaptive_steps = 1, .time_rows = 4, .time_width = 3 };
     const adcgs_shape shape = { .theta_width = 6, .theta_hidden = 2, .omega_width = 5, .omega_hidden = 3, .varpi_width = 6,
                                 .varpi_hidden = 2, .entropy_width = 6, .entropy_hidden = 2, .step_fv = 0.1f, .step_fg = 0.2f,
                                 .step_sigma = 0.1f, .step_colour = 0.05f, .depth = 8 };
@@ -201,6 +247,7 @@ static int setup(void **state)
         if (x->f->mlp[i].n)
             adcgs_mlp_prepare(&x->f->mlp[i], x->f->param[i].p, 0);
     }
+    adcgs_fmodel_take_steps(x->f);
     x->f->moving[5] = 0;
     x->f->keep[1 * 64 + 9] = 0;
     assert_int_equal(adcgs_pass_create(&x->pass, x->f, (adcgs_cpu_level)(uintptr_t)*state, NULL, &error), ADCGS_OK);
@@ -240,7 +287,7 @@ static void test_forward(void **state)
 {
     const fixture *x = *state;
     const size_t slots = x->pass->primitives.n;
-    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = 1 });
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
     for (uint32_t a = 0; a < ANCHORS; a++)
         for (int k = 0; k < K; k++) {
             double p[VALUES];
@@ -259,7 +306,7 @@ static double distortion(const adcgs_fmodel *f)
 }
 
 /** Compare gradients of a sample of each group's parameters with central differences of fn. */
-static void check_gradients(const adcgs_fmodel *f, scalar_fn fn, int first_group)
+static void check_gradients(adcgs_fmodel *f, scalar_fn fn, int first_group)
 {
     for (int g = first_group; g < ADCGS_P_COUNT; g++) {
         const adcgs_param *p = &f->param[g];
@@ -270,12 +317,15 @@ static void check_gradients(const adcgs_fmodel *f, scalar_fn fn, int first_group
             continue;
         for (int trial = 0; trial < 24; trial++) {
             const size_t i = (size_t)(adcgs_random_unit(5, (uint64_t)g, (uint64_t)trial) * (double)p->n);
-            const float keep = p->p[i], h = 1e-4f;
+            const float keep = p->p[i], h = g == ADCGS_P_STEP ? 1e-3f : 1e-4f;
             p->p[i] = keep + h;
+            adcgs_fmodel_take_steps(f);
             const double hi = p->p[i], up = fn(f);
             p->p[i] = keep - h;
+            adcgs_fmodel_take_steps(f);
             const double lo = p->p[i], down = fn(f);
             p->p[i] = keep;
+            adcgs_fmodel_take_steps(f);
             const double want = (up - down) / (hi - lo);
             if (fabs(p->g[i] - want) > 2e-3 * size + 1e-3 * fabs(want))
                 fail_msg("%s[%zu]: gradient %g, differences %g (largest %g)", p->name, i, (double)p->g[i], want, size);
@@ -294,7 +344,7 @@ static void test_distortion_gradients(void **state)
     const fixture *x = *state;
     const size_t slots = x->pass->primitives.n;
     clear_gradients(x->f);
-    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = 1 });
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
     memset(x->pass->grad, 0, 16 * slots * sizeof(float));
     for (uint32_t a = 0; a < ANCHORS; a++)
         for (int k = 0; k < K; k++) {
@@ -302,7 +352,7 @@ static void test_distortion_gradients(void **state)
             for (int v = 0; v < VALUES; v++)
                 x->pass->grad[(size_t)v * slots + slot] = (float)weight_of(slot, v);
         }
-    adcgs_pass_backward(x->pass, x->f, 1, 0, 0, 0, NULL);
+    adcgs_pass_backward(x->pass, x->f, ADCGS_DEFORM_ALL, 0, 0, 0, NULL);
     check_gradients(x->f, distortion, 0);
 }
 
@@ -311,14 +361,259 @@ static void test_rate_gradients(void **state)
     const fixture *x = *state;
     adcgs_rate rate;
     clear_gradients(x->f);
-    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = 1 });
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
     memset(x->pass->grad, 0, 16 * (size_t)x->pass->primitives.n * sizeof(float));
-    adcgs_pass_backward(x->pass, x->f, 1, 1, 1, 0, &rate);
+    adcgs_pass_backward(x->pass, x->f, ADCGS_DEFORM_ALL, 1, 1, 0, &rate);
     assert_float_equal(rate.total, ref_rate(x->f), 5e-6 * rate.total);
     for (int g = ADCGS_P_E_FV; g < ADCGS_P_E_FG + CHUNKS; g++)
         for (size_t i = x->f->mlp[g].b[x->f->mlp[g].hidden]; i < x->f->param[g].n; i++)
             assert_true(x->f->param[g].g[i] != 0); /* a live gradient into every entropy network */
     check_gradients(x->f, ref_rate, 0);
+}
+
+/** Weighted sum of the primitives that a pass with noise makes. */
+static double noisy_sum(const fixture *x)
+{
+    const size_t slots = x->pass->primitives.n;
+    double sum = 0;
+    adcgs_pass_forward(x->pass, x->f, 0.4f,
+                       &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = ADCGS_DEFORM_ALL, .seed = 5 });
+    for (uint32_t a = 0; a < ANCHORS; a++)
+        for (int k = 0; k < K; k++) {
+            const size_t slot = ((size_t)(a / 64) * K + (size_t)k) * 64 + a % 64;
+            for (int v = 0; v < VALUES; v++)
+                sum += weight_of(slot, v) * (double)x->pass->prim[(size_t)v * slots + slot];
+        }
+    return sum;
+}
+
+/** The pictures' part of the steps' gradient: through the noise. A rate next to nothing switches it on. */
+static void test_step_gradients(void **state)
+{
+    const fixture *x = *state;
+    adcgs_param *p = &x->f->param[ADCGS_P_STEP];
+    adcgs_rate rate;
+    noisy_sum(x);
+    memset(x->pass->grad, 0, 16 * (size_t)x->pass->primitives.n * sizeof(float));
+    for (uint32_t a = 0; a < ANCHORS; a++)
+        for (int k = 0; k < K; k++)
+            for (int v = 0; v < VALUES; v++) {
+                const size_t slot = ((size_t)(a / 64) * K + (size_t)k) * 64 + a % 64;
+                x->pass->grad[(size_t)v * x->pass->primitives.n + slot] = (float)weight_of(slot, v);
+            }
+    clear_gradients(x->f);
+    adcgs_pass_backward(x->pass, x->f, ADCGS_DEFORM_ALL, 1e-12f, 1, 0, &rate);
+    double size = 0;
+    for (size_t i = 0; i < p->n; i++)
+        size = fmax(size, fabs(p->g[i]));
+    for (size_t i = 0; i < p->n; i++) {
+        const float keep = p->p[i], h = 1e-3f, got = p->g[i];
+        p->p[i] = keep + h;
+        adcgs_fmodel_take_steps(x->f);
+        const double up = noisy_sum(x);
+        p->p[i] = keep - h;
+        adcgs_fmodel_take_steps(x->f);
+        const double want = (up - noisy_sum(x)) / (2 * (double)h);
+        p->p[i] = keep;
+        adcgs_fmodel_take_steps(x->f);
+        if (fabs(got - want) > 1e-2 * size)
+            fail_msg("step %zu: gradient %g, differences %g (largest %g)", i, (double)got, want, size);
+    }
+}
+
+/** Where the motion that F_omega gives takes a place. */
+static void ref_motion(const double om[12], const double place[3], double out[3])
+{
+    double q[4] = { 1, om[9], om[10], om[11] }, v[4] = { 0, place[0], place[1], place[2] }, turned[4], back[4];
+    normalise(q);
+    const double conj[4] = { q[0], -q[1], -q[2], -q[3] };
+    product(q, v, turned);
+    product(turned, conj, back);
+    for (int a = 0; a < 3; a++)
+        out[a] = back[1 + a] + om[a];
+}
+
+/** The energy that keeps neighbours together, by its definition, in double. */
+static double ref_rigid(const adcgs_rigid *rigid, const adcgs_fmodel *f, double t)
+{
+    double energy = 0, om[ANCHORS][12];
+    for (uint32_t i = 0; i < f->n; i++)
+        ref_omega(f, i, t, om[i]);
+    for (uint32_t i = 0; i < f->n; i++)
+        for (int k = 0; k < ADCGS_RIGID_NEAR; k++) {
+            double y[3], by_i[3], by_j[3], length = 0, stretch = 0;
+            if (rigid->near[i][k] < 0)
+                continue;
+            const uint32_t j = (uint32_t)rigid->near[i][k];
+            if (f->moving[i] == 0 || f->moving[j] == 0)
+                continue;
+            for (int a = 0; a < 3; a++) {
+                y[a] = place(f, j, a);
+                length += pow(y[a] - place(f, i, a), 2);
+            }
+            ref_motion(om[i], y, by_i);
+            ref_motion(om[j], y, by_j);
+            for (int a = 0; a < 3; a++)
+                stretch += pow(by_i[a] - by_j[a], 2);
+            energy += 0.05 * log(1 + stretch / length / (0.05 * 0.05));
+        }
+    return energy / ADCGS_RIGID_NEAR / f->n;
+}
+
+static const adcgs_rigid *rigid_under_test;
+
+static double rigid_energy(const adcgs_fmodel *f)
+{
+    return ref_rigid(rigid_under_test, f, 0.4f);
+}
+
+static void test_rigid(void **state)
+{
+    const fixture *x = *state;
+    adcgs_rigid rigid = { 0 };
+    adcgs_error error;
+    assert_int_equal(adcgs_rigid_build(&rigid, x->f, NULL, &error), ADCGS_OK);
+    rigid_under_test = &rigid;
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    clear_gradients(x->f);
+    memset(x->pass->grad, 0, 16 * (size_t)x->pass->primitives.n * sizeof(float));
+    assert_float_equal(adcgs_rigid_pull(&rigid, x->pass, x->f, 1), rigid_energy(x->f), 1e-5);
+    x->pass->pull = rigid.pull;
+    adcgs_pass_backward(x->pass, x->f, ADCGS_DEFORM_ALL, 0, 0, 0, NULL);
+    x->pass->pull = NULL;
+    check_gradients(x->f, rigid_energy, 0);
+    adcgs_rigid_clear(&rigid);
+}
+
+/** Forward with noise; the reference is told the noise, which no parameter changes. */
+static void forward_noisy(const fixture *x, adcgs_pass *pass)
+{
+    adcgs_pass_forward(pass, x->f, 0.4f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = 1, .seed = 5 });
+    memset(pass->grad, 0, 16 * (size_t)pass->primitives.n * sizeof(float));
+    for (int g = 0; g < ADCGS_P_ANCHOR; g++)
+        noise[g] = calloc(x->f->param[g].n, sizeof(float));
+    noisy = 1;
+    for (int g = 0; g < ADCGS_P_ANCHOR; g++) /* f_v is the first, which the factors of the others take */
+        for (uint32_t a = 0; a < ANCHORS; a++)
+            for (int r = 0; r < adcgs_fmodel_rows(x->f, g); r++) {
+                const size_t at = (size_t)(adcgs_fmodel_at(x->f, g, a, r) - x->f->param[g].p);
+                const double moved = (double)pass->used[g][at] - x->f->param[g].p[at];
+                noise[g][at] = (float)(moved / step_of(x->f, g, a, r));
+                assert_true(fabs((double)noise[g][at]) <= 0.501);
+            }
+}
+
+static void forget_noise(void)
+{
+    noisy = 0;
+    for (int g = 0; g < ADCGS_P_ANCHOR; g++)
+        free(noise[g]);
+}
+
+/* The rate alone moves E_q, f_v and the features through steps that adapt. */
+static void test_adaptive_rate_gradients(void **state)
+{
+    const fixture *x = *state;
+    const adcgs_mlp *m = &x->f->mlp[ADCGS_P_E_STEPS];
+    adcgs_rate rate;
+    clear_gradients(x->f);
+    forward_noisy(x, x->pass);
+    adcgs_pass_backward(x->pass, x->f, 1, 1, 1, 0, &rate);
+    assert_float_equal(rate.total, ref_rate(x->f), 2e-5 * rate.total);
+    for (size_t i = m->b[m->hidden]; i < m->n; i++)
+        assert_true(x->f->param[ADCGS_P_E_STEPS].g[i] != 0);
+    check_gradients(x->f, ref_rate, 0);
+    forget_noise();
+}
+
+static double total_loss(const adcgs_fmodel *f)
+{
+    return distortion(f) + ref_rate(f);
+}
+
+/* So does the distortion: the noise is as large as the step. */
+static void test_adaptive_gradients(void **state)
+{
+    const fixture *x = *state;
+    const size_t slots = x->pass->primitives.n;
+    clear_gradients(x->f);
+    forward_noisy(x, x->pass);
+    for (uint32_t a = 0; a < ANCHORS; a++)
+        for (int k = 0; k < K; k++) {
+            const size_t slot = ((size_t)(a / 64) * K + (size_t)k) * 64 + a % 64;
+            for (int v = 0; v < VALUES; v++)
+                x->pass->grad[(size_t)v * slots + slot] = (float)weight_of(slot, v);
+        }
+    adcgs_pass_backward(x->pass, x->f, 1, 1, 1, 0, NULL);
+    check_gradients(x->f, total_loss, 0);
+    forget_noise();
+}
+
+/* Factors stay within two octaves; what is beyond may come back but go no further. */
+static void test_adaptive_limits(void **state)
+{
+    const fixture *x = *state;
+    const adcgs_mlp *m = &x->f->mlp[ADCGS_P_E_STEPS];
+    float *b = x->f->param[ADCGS_P_E_STEPS].p + m->b[m->hidden];
+    for (int up = 0; up < 2; up++) {
+        for (int i = 0; i < m->out; i++)
+            b[i] = up ? 9.0f : -9.0f;
+        adcgs_mlp_prepare(&x->f->mlp[ADCGS_P_E_STEPS], x->f->param[ADCGS_P_E_STEPS].p, 0);
+        clear_gradients(x->f);
+        forward_noisy(x, x->pass);
+        adcgs_pass_backward(x->pass, x->f, 1, 1, 1, 0, NULL);
+        for (int i = 0; i < m->out; i++) {
+            const float g = x->f->param[ADCGS_P_E_STEPS].g[m->b[m->hidden] + (size_t)i];
+            assert_true(up ? g >= 0 : g < 0); /* the rate wants large steps */
+        }
+        forget_noise();
+    }
+}
+
+/* Rounding takes the factors that it is given. */
+static void test_adaptive_rounding(void **state)
+{
+    const fixture *x = *state;
+    for (uint32_t i = 0; i < x->f->groups * (2 + CHUNKS) * 64; i++)
+        x->pass->factor[i] = (float)pow(2, (double)((int)(i * 7 % 33) - 16) / 8);
+    adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_ROUND });
+    for (int g = 0; g < ADCGS_P_ETA; g++)
+        for (uint32_t a = 0; a < ANCHORS; a++)
+            for (int r = 0; r < adcgs_fmodel_rows(x->f, g); r++) {
+                const size_t at = (size_t)(adcgs_fmodel_at(x->f, g, a, r) - x->f->param[g].p);
+                const int of = g == ADCGS_P_SIGMA ? 0 : g == ADCGS_P_COLOUR ? 1 : 2 + r % NG / (NG / CHUNKS);
+                const double f = g == ADCGS_P_FV ? 1 : x->pass->factor[(a / 64 * (2 + CHUNKS) + (uint32_t)of) * 64 + a % 64];
+                const double step = f * x->f->step[g][r], n = (double)x->pass->used[g][at] / step;
+                assert_float_equal(n, rint(n), 1e-4);
+                assert_true(fabs((double)x->pass->used[g][at] - x->f->param[g].p[at]) <= 0.5001 * step);
+            }
+}
+
+/* E_q begins at zero, so that switching it on changes no bit. */
+static void test_adaptive_start(void **state)
+{
+    const fixture *x = *state;
+    adcgs_param *eq = &x->f->param[ADCGS_P_E_STEPS];
+    const adcgs_mlp *m = &x->f->mlp[ADCGS_P_E_STEPS];
+    adcgs_fmodel *fresh;
+    adcgs_error error;
+    assert_int_equal(adcgs_fmodel_create(&fresh, &x->f->params, &x->f->shape, x->f->origin, x->f->voxel,
+                                         (const uint32_t(*)[3])x->f->pos, ANCHORS, 3, &error), ADCGS_OK);
+    memcpy(eq->p, fresh->param[ADCGS_P_E_STEPS].p, eq->n * sizeof *eq->p);
+    adcgs_fmodel_free(&fresh);
+    for (size_t i = m->w[m->hidden]; i < m->n; i++)
+        assert_true(eq->p[i] == 0);
+    adcgs_mlp_prepare(&x->f->mlp[ADCGS_P_E_STEPS], eq->p, 0);
+    const size_t bytes = 14 * (size_t)x->pass->primitives.n * sizeof(float);
+    float *with = malloc(bytes);
+    const adcgs_pass_mode mode = { .quant = ADCGS_QUANT_NOISE, .deform = 1, .seed = 3 };
+    adcgs_pass_forward(x->pass, x->f, 0.2f, &mode);
+    memcpy(with, x->pass->prim, bytes);
+    x->f->params.adaptive_steps = 0;
+    adcgs_pass_forward(x->pass, x->f, 0.2f, &mode);
+    assert_memory_equal(with, x->pass->prim, bytes);
+    x->f->params.adaptive_steps = 1;
+    free(with);
 }
 
 /** The same gradients, to the bit, with one thread and with seven. */
@@ -334,11 +629,11 @@ static void test_threads(void **state)
         adcgs_pass *pass;
         assert_int_equal(adcgs_pass_create(&pass, x->f, x->pass->cpu, round ? pool : NULL, &error), ADCGS_OK);
         clear_gradients(x->f);
-        adcgs_pass_forward(pass, x->f, 0.7f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_NOISE, .deform = 1, .dropout = 0.2f,
-                                                                 .seed = 99 });
+        const adcgs_pass_mode mode = { .quant = ADCGS_QUANT_NOISE, .deform = ADCGS_DEFORM_ALL, .dropout = 0.2f, .seed = 99 };
+        adcgs_pass_forward(pass, x->f, 0.7f, &mode);
         randomise(pass->grad, 16 * (size_t)pass->primitives.n, 0, 0);
         memcpy(pass->grad, pass->prim, 14 * (size_t)pass->primitives.n * sizeof(float));
-        adcgs_pass_backward(pass, x->f, 1, 0.5f, 1, 0, &rate);
+        adcgs_pass_backward(pass, x->f, ADCGS_DEFORM_ALL, 0.5f, 1, 0, &rate);
         for (int g = 0; g < ADCGS_P_COUNT; g++) {
             const size_t bytes = x->f->param[g].n * sizeof(float);
             if (!round) {
@@ -363,6 +658,13 @@ int main(void)
             { "forward", test_forward, setup, teardown, state },
             { "distortion gradients", test_distortion_gradients, setup, teardown, state },
             { "rate gradients", test_rate_gradients, setup, teardown, state },
+            { "step gradients", test_step_gradients, setup, teardown, state },
+            { "adaptive rate gradients", test_adaptive_rate_gradients, setup, teardown, state },
+            { "adaptive gradients", test_adaptive_gradients, setup, teardown, state },
+            { "adaptive limits", test_adaptive_limits, setup, teardown, state },
+            { "adaptive rounding", test_adaptive_rounding, setup, teardown, state },
+            { "adaptive start", test_adaptive_start, setup, teardown, state },
+            { "rigid", test_rigid, setup, teardown, state },
             { "threads", test_threads, setup, teardown, state },
         };
         failed += cmocka_run_group_tests_name("train", tests, NULL, NULL);

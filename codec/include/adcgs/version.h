@@ -10,7 +10,7 @@
 #define ADCGS_VERSION_PATCH 0
 
 #define ADCGS_BITSTREAM_MAJOR 0
-#define ADCGS_BITSTREAM_MINOR 2
+#define ADCGS_BITSTREAM_MINOR 3
 
 #ifdef __cplusplus
 extern "C" {

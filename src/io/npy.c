@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Reading NPY: a magic number, the length of a header, a header that is the
+ * text of a Python dictionary, the numbers. Only what describes an array of
+ * points is understood; everything else is an error that says so.
+ */
+#include "config.h"
+
+#include "io/points.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+#define MAGIC_BYTES 6
+#define DIMENSIONS_MAX 4
+#define COUNT_MAX ((uint64_t)1 << 40) /* of one dimension; no file is as large */
+
+enum { SEEN_DESCR = 1, SEEN_ORDER = 2, SEEN_SHAPE = 4, SEEN_ALL = 7 };
+
+typedef struct reader {
+    const char *at, *end; /**< of the header */
+    const char *path;
+    adcgs_error *error;
+    int seen;
+    int item_bytes;       /**< 4 or 8 */
+    int n_dimensions;
+    uint64_t shape[DIMENSIONS_MAX];
+} reader;
+
+static adcgs_status bad(const reader *r, const char *key, const char *what)
+{
+    return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: header: %s%s%s", r->path, key, *key ? ": " : "", what);
+}
+
+static void skip_blanks(reader *r)
+{
+    while (r->at < r->end && (*r->at == ' ' || *r->at == '\n'))
+        r->at++;
+}
+
+/** The character next, after blanks, if it is this one. */
+static int take(reader *r, char c)
+{
+    skip_blanks(r);
+    if (r->at == r->end || *r->at != c)
+        return 0;
+    r->at++;
+    return 1;
+}
+
+/** A word that stands next, after blanks. */
+static int take_word(reader *r, const char *word)
+{
+    const size_t n = strlen(word);
+    skip_blanks(r);
+    if ((size_t)(r->end - r->at) < n || memcmp(r->at, word, n))
+        return 0;
+    r->at += n;
+    return 1;
+}
+
+/** A string in quotes of either kind, without escapes. */
+static int take_string(reader *r, char text[16])
+{
+    skip_blanks(r);
+    if (r->at == r->end || (*r->at != '\'' && *r->at != '"'))
+        return 0;
+    const char quote = *r->at++;
+    for (int i = 0; i < 16 && r->at < r->end; i++) {
+        text[i] = *r->at++;
+        if (text[i] == quote) {
+            text[i] = 0;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static adcgs_status read_descr(reader *r)
+{
+    char text[16];
+    if (!take_string(r, text))
+        return bad(r, "descr", "expected a string");
+    if (strcmp(text, "<f4") && strcmp(text, "<f8"))
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: header: descr: %.16s, expected <f4 or <f8", r->path, text);
+    r->item_bytes = text[2] - '0';
+    return ADCGS_OK;
+}
+
+static adcgs_status read_order(reader *r)
+{
+    if (take_word(r, "True"))
+        return bad(r, "fortran_order", "True, expected False");
+    return take_word(r, "False") ? ADCGS_OK : bad(r, "fortran_order", "expected False");
+}
+
+static adcgs_status read_shape(reader *r)
+{
+    const char *expected = "expected a tuple of whole numbers";
+    if (!take(r, '('))
+        return bad(r, "shape", expected);
+    while (!take(r, ')')) {
+        uint64_t value = 0;
+        const char *first = r->at;
+        for (; r->at < r->end && *r->at >= '0' && *r->at <= '9' && value < COUNT_MAX; r->at++)
+            value = 10 * value + (uint64_t)(*r->at - '0');
+        if (r->at == first || r->n_dimensions == DIMENSIONS_MAX || value >= COUNT_MAX)
+            return bad(r, "shape", expected);
+        r->shape[r->n_dimensions++] = value;
+        skip_blanks(r);
+        if (!take(r, ',') && (r->at == r->end || *r->at != ')'))
+            return bad(r, "shape", expected);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status read_item(reader *r)
+{
+    static const struct {
+        const char *key;
+        adcgs_status (*read)(reader *);
+    } items[] = {{"descr", read_descr}, {"fortran_order", read_order}, {"shape", read_shape}};
+    char key[16];
+    if (!take_string(r, key))
+        return bad(r, "", "expected a key in quotes");
+    for (int i = 0; i < (int)ADCGS_COUNTOF(items); i++)
+        if (!strcmp(key, items[i].key)) {
+            if (r->seen & 1 << i)
+                return bad(r, key, "given twice");
+            r->seen |= 1 << i;
+            return take(r, ':') ? items[i].read(r) : bad(r, key, "expected a colon");
+        }
+    return bad(r, key, "unknown key");
+}
+
+static adcgs_status read_dictionary(reader *r)
+{
+    if (!take(r, '{'))
+        return bad(r, "", "expected a dictionary");
+    while (!take(r, '}')) {
+        ADCGS_TRY(read_item(r));
+        skip_blanks(r);
+        if (!take(r, ',') && (r->at == r->end || *r->at != '}'))
+            return bad(r, "", "expected a comma or the end of the dictionary");
+    }
+    skip_blanks(r);
+    if (r->at != r->end)
+        return bad(r, "", "something follows the dictionary");
+    if (r->seen != SEEN_ALL)
+        return bad(r, r->seen & SEEN_DESCR ? r->seen & SEEN_ORDER ? "shape" : "fortran_order" : "descr", "missing");
+    if (r->n_dimensions != 2 || r->shape[1] != 3)
+        return bad(r, "shape", "expected (n, 3)");
+    return ADCGS_OK;
+}
+
+/** Where the header's text lies, by the format's version. */
+static adcgs_status find_header(reader *r, const uint8_t *data, size_t bytes)
+{
+    const size_t fixed = MAGIC_BYTES + 2;
+    if (bytes < fixed + 4)
+        return bad(r, "", "the file ends early");
+    if (data[MAGIC_BYTES] < 1 || data[MAGIC_BYTES] > 3 || data[MAGIC_BYTES + 1] != 0)
+        return adcgs_fail(r->error, ADCGS_ERR_UNSUPPORTED, "%s: NPY format %d.%d, expected 1.0, 2.0 or 3.0", r->path,
+                          data[MAGIC_BYTES], data[MAGIC_BYTES + 1]);
+    const int is_short = data[MAGIC_BYTES] == 1;
+    const size_t begin = fixed + (is_short ? 2 : 4);
+    const size_t length = is_short ? adcgs_load_le16(data + fixed) : adcgs_load_le32(data + fixed);
+    if (length > bytes - begin)
+        return bad(r, "", "the file ends early");
+    r->at = (const char *)data + begin;
+    r->end = r->at + length;
+    return ADCGS_OK;
+}
+
+/** A number of the array. What binary32 cannot hold becomes infinite. */
+static float load_number(const uint8_t *p, int item_bytes)
+{
+    if (item_bytes == 4)
+        return adcgs_bits_float(adcgs_load_le32(p));
+    const double value = adcgs_bits_double(adcgs_load_le64(p));
+    return fabs(value) <= (double)FLT_MAX ? (float)value : INFINITY;
+}
+
+adcgs_status adcgs_npy_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
+{
+    reader r = {.path = path, .error = error};
+    *out = (adcgs_points){0};
+    ADCGS_TRY(find_header(&r, data, bytes));
+    ADCGS_TRY(read_dictionary(&r));
+    const uint8_t *numbers = (const uint8_t *)r.end;
+    const uint64_t n = r.shape[0], expected = n * 3 * (uint64_t)r.item_bytes, found = bytes - (size_t)(numbers - data);
+    if (found != expected)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %llu bytes behind the header, expected %llu for %llu points", path,
+                          (unsigned long long)found, (unsigned long long)expected, (unsigned long long)n);
+    ADCGS_TRY(adcgs_points_alloc(out, n, path, error));
+    for (size_t i = 0; i < n; i++)
+        for (size_t a = 0; a < 3; a++)
+            out->position[i][a] = load_number(numbers + (3 * i + a) * (size_t)r.item_bytes, r.item_bytes);
+    return ADCGS_OK;
+}

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What adcgs-enc reports of a file it has written. */
+#include "tools/enc_report.h"
+
+#include "metric/evaluate.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/** How far a size may stay below what was asked for, and a PSNR be from it. */
+#define SIZE_WITHIN 0.03
+#define PSNR_WITHIN 0.1
+
+/** What was asked for, and what came out; kind NULL: nothing was. */
+typedef struct outcome {
+    const char *kind;
+    double value, reached;
+    int met;
+} outcome;
+
+/** What of the result is printed. */
+typedef struct result {
+    adcgs_info info;
+    adcgs_evaluation quality; /**< of the views of split */
+    adcgs_split split;
+    outcome target;
+} result;
+
+static void print_text(const adcgs_enc_report *r, const result *x)
+{
+    const adcgs_bytes *b = &x->info.bytes;
+    const uint64_t features = b->layer[0] + b->layer[1] + b->layer[2] + b->layer[3] + b->layer[4];
+    fprintf(stderr, "%s: %llu bytes: networks %llu, geometry %llu, features %llu, cameras %llu, rest %llu\n", r->file,
+            (unsigned long long)b->total, (unsigned long long)b->networks, (unsigned long long)b->geometry,
+            (unsigned long long)features, (unsigned long long)b->cameras, (unsigned long long)(b->header + b->metadata));
+    fprintf(stderr, "%u anchors (%u static), %u primitives; lambda %.3g; trained in %.0f s\n", x->info.anchors,
+            x->info.static_anchors, x->info.gaussians, r->trainer->lambda, r->last.seconds);
+    fprintf(stderr, "decoded from the file, %u %s views: %.2f dB PSNR, %.4f SSIM\n", x->quality.n, adcgs_split_name(x->split),
+            x->quality.psnr, x->quality.ssim);
+}
+
+/** Six digits of it: 0.01 was a float on its way here. */
+static double shown(double x)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.6g", x);
+    return strtod(text, NULL);
+}
+
+static void print_components(adcgs_json *j, const adcgs_bytes *b)
+{
+    adcgs_json_open(j, "components", '{');
+    adcgs_json_int(j, "header", (int64_t)b->header);
+    adcgs_json_int(j, "networks", (int64_t)b->networks);
+    adcgs_json_int(j, "geometry", (int64_t)b->geometry);
+    for (int i = 0; i < 5; i++) {
+        char name[24];
+        snprintf(name, sizeof name, "layer%d", i);
+        adcgs_json_int(j, name, (int64_t)b->layer[i]);
+    }
+    adcgs_json_int(j, "cameras", (int64_t)b->cameras);
+    adcgs_json_int(j, "metadata", (int64_t)b->metadata);
+    adcgs_json_close(j, '}');
+}
+
+static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs_error *error)
+{
+    adcgs_json j;
+    adcgs_json_init(&j, stdout);
+    adcgs_json_open(&j, NULL, '{');
+    adcgs_json_string(&j, "file", r->file);
+    adcgs_json_int(&j, "bytes", (int64_t)x->info.bytes.total);
+    print_components(&j, &x->info.bytes);
+    adcgs_json_int(&j, "anchors", x->info.anchors);
+    adcgs_json_int(&j, "static_anchors", x->info.static_anchors);
+    adcgs_json_int(&j, "primitives", x->info.gaussians);
+    adcgs_json_int(&j, "weights", x->info.weights);
+    if (r->uncompressed)
+        adcgs_json_int(&j, "uncompressed_bytes", (int64_t)r->uncompressed);
+    adcgs_json_real(&j, "lambda", shown(r->trainer->lambda));
+    if (x->target.kind) {
+        adcgs_json_open(&j, "target", '{');
+        adcgs_json_string(&j, "kind", x->target.kind);
+        adcgs_json_real(&j, "value", x->target.value);
+        adcgs_json_real(&j, "reached", x->target.reached);
+        adcgs_json_bool(&j, "met", x->target.met);
+        adcgs_json_close(&j, '}');
+    }
+    adcgs_json_int(&j, "iterations", r->last.iteration);
+    adcgs_json_real(&j, "training_seconds", r->last.seconds);
+    adcgs_json_real(&j, "training_psnr", r->last.psnr);
+    adcgs_json_string(&j, "split", adcgs_split_name(x->split));
+    adcgs_json_real(&j, "psnr", x->quality.psnr);
+    adcgs_json_real(&j, "ssim", x->quality.ssim);
+    adcgs_json_close(&j, '}');
+    return adcgs_json_finish(&j, error);
+}
+
+/** Compare with the target. The PSNR of training views is measured from the file like any other. */
+static adcgs_status judge(outcome *o, const adcgs_enc_report *r, const adcgs_info *info, adcgs_decoder *decoder,
+                          adcgs_error *error)
+{
+    const adcgs_train_config *c = &r->trainer->config;
+    adcgs_evaluation e;
+    *o = (outcome){ .value = c->target_value, .met = 1 };
+    if (c->target == ADCGS_TARGET_SIZE) {
+        o->kind = "size";
+        o->reached = (double)info->bytes.total;
+        o->met = o->reached <= o->value && o->reached > (1 - SIZE_WITHIN) * o->value;
+    } else if (c->target == ADCGS_TARGET_PSNR) {
+        ADCGS_TRY(adcgs_evaluate(&e, decoder, r->trainer->scene, ADCGS_SPLIT_TRAIN, NULL, NULL, error));
+        o->kind = "psnr";
+        o->reached = e.psnr;
+        o->met = fabs(o->reached - o->value) <= PSNR_WITHIN;
+    }
+    return ADCGS_OK;
+}
+
+static void say_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const outcome *o)
+{
+    if (!strcmp(o->kind, "size"))
+        adcgs_cli_note(cli, "%s: %.0f bytes, smaller than the %.0f asked for: more anchors, or a longer run, would use them",
+                       r->file, o->reached, o->value);
+    else
+        adcgs_cli_note(cli, "%s: the training views have %.2f dB instead of the %.2f asked for: %s", r->file, o->reached,
+                       o->value, o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
+}
+
+static adcgs_status measure(result *x, const adcgs_enc_report *r, adcgs_decoder *decoder, adcgs_error *error)
+{
+    const adcgs_scene *scene = r->trainer->scene;
+    x->split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
+               scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
+    ADCGS_TRY(adcgs_get_info(decoder, &x->info));
+    ADCGS_TRY(adcgs_evaluate(&x->quality, decoder, scene, x->split, NULL, NULL, error));
+    return judge(&x->target, r, &x->info, decoder, error);
+}
+
+adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report *r, int *met, adcgs_error *error)
+{
+    adcgs_config config;
+    adcgs_decoder *decoder;
+    result x;
+    adcgs_config_init(&config);
+    config.threads = r->threads;
+    config.cpu = r->trainer->cpu;
+    ADCGS_TRY(adcgs_open_file(&decoder, r->file, &config, error));
+    adcgs_status status = measure(&x, r, decoder, error);
+    if (status == ADCGS_OK && r->json)
+        status = print_json(r, &x, error);
+    else if (status == ADCGS_OK)
+        print_text(r, &x);
+    if (status == ADCGS_OK && !x.target.met)
+        say_missed(cli, r, &x.target);
+    *met = status != ADCGS_OK || x.target.met;
+    adcgs_close(&decoder);
+    return status;
+}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What adcgs-enc reports of a file it has written: measured from the file, on the disk. */
+#ifndef ADCGS_TOOLS_ENC_REPORT_H
+#define ADCGS_TOOLS_ENC_REPORT_H
+
+#include "tools/cli.h"
+#include "train/trainer.h"
+
+typedef struct adcgs_enc_report {
+    const char *file;
+    const adcgs_trainer *trainer;
+    adcgs_train_report last; /**< of the training run */
+    size_t uncompressed;     /**< bytes of the file of plain numbers; 0: none was asked for */
+    int threads, json;       /**< as on the command line */
+} adcgs_enc_report;
+
+/**
+ * Decode the file and measure it, on views that training never saw if the scene has any; print the result, as text on stderr or
+ * as JSON on stdout. *met: whether the run's target was met, 1 without one; if not, a line on stderr says how far the result
+ * is from it.
+ */
+adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report *report, int *met, adcgs_error *error);
+
+#endif

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Curvature of the loss by the anchors' values. For a picture I of P values and J = dI/dy, the sum of squares of J's column is
+ * the mean of (J^T s)^2 over random signs s: one backward pass with s for the picture's gradient gives it for every value at
+ * once. What the squares are worth in loss is then measured: values move up or down at random, and back.
+ */
+#include "train/curvature.h"
+
+#include "train/random.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { PROBES = 2, MEASURE_VIEWS = 32 };
+
+/* Of a step: what all values move by when loss is measured. About the error of rounding, lest the loss bends otherwise there. */
+static const float reach = 0.25f;
+
+/** Signs of the picture's gradient; P squares of them sum to 1. */
+static void random_signs(float *grad, size_t n, uint32_t seed)
+{
+    const float size = (float)sqrt(1.0 / (double)n);
+    for (size_t i = 0; i < n; i++)
+        grad[i] = adcgs_mix32(seed ^ (uint32_t)i) & 1 ? size : -size;
+}
+
+/** Take the gradients' squares, scaled, and clear them. */
+static void take_squares(adcgs_fmodel *f, float *const h[ADCGS_P_ANCHOR], float scale)
+{
+    for (int i = 0; i < ADCGS_P_COUNT; i++) {
+        adcgs_param *p = &f->param[i];
+        for (size_t j = 0; i < ADCGS_P_ANCHOR && j < p->n; j++)
+            h[i][j] += scale * p->g[j] * p->g[j];
+        memset(p->g, 0, p->n * sizeof *p->g);
+    }
+}
+
+static adcgs_status project_views(adcgs_trainer *t, float *const h[ADCGS_P_ANCHOR], adcgs_error *error)
+{
+    const uint32_t n = ADCGS_MIN(t->n_views, ADCGS_CURVATURE_VIEWS);
+    const float scale = 1.0f / (float)(n * PROBES);
+    t->pass->pull = NULL;
+    for (uint32_t i = 0; i < n; i++) {
+        const adcgs_train_view *v = &t->views[(uint64_t)i * t->n_views / n];
+        const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
+        adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+        ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1,
+                                       error));
+        for (uint32_t probe = 0; probe < PROBES; probe++) {
+            random_signs(t->grad, values, (uint32_t)adcgs_random64(t->config.seed, 4000 + probe, i));
+            ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f,
+                                            t->image, t->grad, &t->pass->grads, error));
+            adcgs_pass_backward(t->pass, t->f, ADCGS_DEFORM_ALL, 0, 0, 0, NULL);
+            take_squares(t->f, h, scale);
+        }
+    }
+    return ADCGS_OK;
+}
+
+/** Move a group's values to still, and a part of a step in the direction of random signs. */
+static void move_values(adcgs_trainer *t, int group, const float *still, float direction)
+{
+    const adcgs_fmodel *f = t->f;
+    const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
+    const uint32_t seed = (uint32_t)adcgs_random64(t->config.seed, 4100, (uint64_t)group);
+    for (size_t j = 0; j < f->param[group].n; j++) {
+        const float sign = adcgs_mix32(seed ^ (uint32_t)j) & 1 ? direction : -direction;
+        f->param[group].p[j] = still[j] + sign * reach * f->step[group][j / 64 % rows];
+    }
+}
+
+/** The loss that moving a group costs, the mean of both directions, and what h says of it. */
+static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, double still_loss, double *seen, double *said,
+                              adcgs_error *error)
+{
+    adcgs_param *p = &t->f->param[group];
+    const size_t rows = (size_t)adcgs_fmodel_rows(t->f, group);
+    float *still = malloc(p->n * sizeof *still);
+    double up = 0, down = 0;
+    if (!still)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %zu values", p->n);
+    memcpy(still, p->p, p->n * sizeof *still);
+    move_values(t, group, still, 1);
+    adcgs_status status = adcgs_trainer_sample_loss(t, MEASURE_VIEWS, 1, &up, error);
+    move_values(t, group, still, -1);
+    if (status == ADCGS_OK)
+        status = adcgs_trainer_sample_loss(t, MEASURE_VIEWS, 1, &down, error);
+    memcpy(p->p, still, p->n * sizeof *still);
+    free(still);
+    *seen = 0.5 * (up + down) - still_loss;
+    *said = 0;
+    for (size_t j = 0; j < p->n; j++) {
+        const double d = (double)reach * (double)t->f->step[group][j / 64 % rows];
+        *said += 0.5 * (double)h[j] * d * d;
+    }
+    return status;
+}
+
+/**
+ * Factors from loss said to loss seen. One that is no positive number, or far from that of all groups together, is noise: a
+ * group that hardly matters.
+ */
+static adcgs_status calibrate(adcgs_trainer *t, float *const h[ADCGS_P_ANCHOR], double ratio[ADCGS_P_ANCHOR], adcgs_error *error)
+{
+    double still, seen[ADCGS_P_ANCHOR], said[ADCGS_P_ANCHOR], all_seen = 0, all_said = 0;
+    ADCGS_TRY(adcgs_trainer_sample_loss(t, MEASURE_VIEWS, 1, &still, error));
+    for (int i = 0; i < ADCGS_P_ETA; i++) {
+        ADCGS_TRY(measured_move(t, i, h[i], still, &seen[i], &said[i], error));
+        all_seen += seen[i];
+        all_said += said[i];
+    }
+    const double all = all_seen > 0 && all_said > 0 ? all_seen / all_said : 1;
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+        const double own = i < ADCGS_P_ETA && said[i] > 0 ? seen[i] / said[i] : all;
+        ratio[i] = fmin(fmax(own, all / 16), 16 * all);
+        for (size_t j = 0; j < t->f->param[i].n; j++)
+            h[i][j] *= (float)ratio[i];
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_curvature_measure(adcgs_trainer *t, float *const h[ADCGS_P_ANCHOR], double ratio[ADCGS_P_ANCHOR],
+                                     adcgs_error *error)
+{
+    double factors[ADCGS_P_ANCHOR];
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        memset(h[i], 0, t->f->param[i].n * sizeof *h[i]);
+    ADCGS_TRY(project_views(t, h, error));
+    return calibrate(t, h, ratio ? ratio : factors, error);
+}

@@ -1,0 +1,125 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-enc with a target: sizes and qualities are met, whatever cannot be met is said, and a limit of time is kept.
+# Runs in the build folder; needs adcgs-demo-scene, adcgs-dec and adcgs-eval too.
+for tool in adcgs-enc adcgs-dec adcgs-eval adcgs-demo-scene; do
+    [ -x "./$tool" ] || { echo "skipped: no $tool in $PWD"; exit 77; }
+done
+dir=$(mktemp -d "${TMPDIR:-/tmp}/adcgs-test-XXXXXX") || exit 99
+trap 'rm -rf "$dir"' EXIT
+failed=0
+bad() { echo "FAILED: $*"; failed=1; }
+
+# enc CODE NAME OPTIONS...: encode the scene to NAME.adcgs, and expect an exit code; the report is in NAME.out.
+enc()
+{
+    code=$1 name=$2
+    shift 2
+    ./adcgs-enc "$scene" -o "$dir/$name.adcgs" --preset draft --json "$@" >"$dir/$name.out" 2>"$dir/$name.err"
+    got=$?
+    [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code: adcgs-enc $*"; cat "$dir/$name.err"; }
+    ./adcgs-dec "$dir/$name.adcgs" --md5 >/dev/null 2>&1 || bad "no stream that decodes: adcgs-enc $*"
+}
+
+# refuse TEXT OPTIONS...: wrong use, one line that says TEXT, no file.
+refuse()
+{
+    text=$1
+    shift
+    ./adcgs-enc "$scene" -o "$dir/x.adcgs" --preset draft "$@" >"$dir/x.out" 2>"$dir/x.err"
+    got=$?
+    [ "$got" -eq 2 ] || bad "exit code $got, expected 2: $*"
+    [ "$(wc -l <"$dir/x.err")" -eq 1 ] || { bad "not one line on standard error: $*"; cat "$dir/x.err"; }
+    grep -q -- "$text" "$dir/x.err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/x.err"; }
+    [ ! -e "$dir/x.adcgs" ] || bad "a file in spite of: $*"
+}
+
+# within A LOW HIGH WHAT: a number lies in [LOW, HIGH].
+within() { awk -v a="$1" -v l="$2" -v h="$3" 'BEGIN { exit !(a != "" && a >= l && a <= h) }' || bad "$4: $1 is not in [$2, $3]"; }
+
+# value FILE KEY: the first number of that name in a JSON report.
+value() { tr -d '\n' <"$1" | sed -n "s/.*[{,] *\"$2\": *\([-0-9.e]*\).*/\1/p"; }
+
+scene=$dir/scene
+./adcgs-demo-scene --scene tiny --format ppm -o "$scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+n=1600
+
+# Sizes: never more, and less by under 3 %; the report tells.
+for size in 12000 20k 30KiB; do
+    case $size in *KiB) bytes=30720 ;; *k) bytes=20000 ;; *) bytes=$size ;; esac
+    enc 0 "size$size" --size $size --iterations $n
+    within "$(wc -c <"$dir/size$size.adcgs")" $((bytes * 97 / 100 + 1)) $bytes "bytes with --size $size"
+    tr -d ' \n' <"$dir/size$size.out" | grep -q "\"target\":{\"kind\":\"size\",\"value\":$bytes,\"reached\":[0-9]*,\"met\":true}" ||
+        { bad "--json with --size $size"; cat "$dir/size$size.out"; }
+    [ ! -s "$dir/size$size.err" ] || { bad "messages with --size $size"; cat "$dir/size$size.err"; }
+done
+
+# A budget of anchors that is given stands, and anchors that a size cannot hold go.
+./adcgs-enc "$scene" -o "$dir/few.adcgs" --preset draft --json --size 14k --max-anchors 60 --iterations 100 \
+    >"$dir/few.out" 2>/dev/null
+within "$(wc -c <"$dir/few.adcgs")" 1 14000 "bytes with few anchors"
+within "$(value "$dir/few.out" anchors)" 1 60 "few anchors"
+enc 0 many --size 12k --set max_anchors=600,theta_width=16,omega_width=16,varpi_width=16,entropy_width=8 --iterations 400
+within "$(wc -c <"$dir/many.adcgs")" 11641 12000 "bytes with many anchors"
+
+# The same bytes with other threads, and after an interrupt; a run is bound to its target.
+enc 0 threads --size 20k --iterations $n --threads 5
+cmp "$dir/size20k.adcgs" "$dir/threads.adcgs" || bad "another stream with other threads"
+for at in 300 700; do
+    for try in 1 2 3; do
+        rm -f "$dir/stop.log" "$dir/state"
+        ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft --size 20k --iterations $n --threads 2 --log "$dir/stop.log" \
+            --checkpoint "$dir/state" >/dev/null 2>&1 &
+        pid=$!
+        while kill -0 $pid 2>/dev/null && ! grep -q "\"iteration\":$at," "$dir/stop.log" 2>/dev/null; do
+            sleep 0.05
+        done
+        kill -INT $pid 2>/dev/null
+        wait $pid
+        [ $? -eq 0 ] || break # so busy a machine that the run ended first
+    done
+    enc 0 resumed --size 20k --iterations $n --resume "$dir/state"
+    cmp "$dir/size20k.adcgs" "$dir/resumed.adcgs" || bad "another stream after an interrupt at $at"
+done
+./adcgs-enc "$scene" -o "$dir/x.adcgs" --preset draft --size 20001 --iterations $n --resume "$dir/state" 2>"$dir/err"
+[ $? -eq 4 ] && grep -q "other options" "$dir/err" || { bad "a run goes on with another target"; cat "$dir/err"; }
+
+# A quality: what adcgs-eval measures on the training views. Views for tests play no part.
+enc 0 psnr --psnr 27.5 --iterations $n
+./adcgs-eval "$dir/psnr.adcgs" "$scene" --split train --json >"$dir/train.json" 2>"$dir/err" || bad "adcgs-eval"
+within "$(sed 's/.*\], *//' "$dir/train.json" | tr -d '\n' | sed 's/.*\],//; s/.*"psnr": *\([0-9.]*\).*/\1/')" 27.4 27.6 "PSNR"
+within "$(tr -d ' \n' <"$dir/psnr.out" | sed 's/.*"reached":\([0-9.]*\).*/\1/')" 27.4 27.6 "PSNR reported"
+mkdir "$dir/blind"
+cp -r "$scene/train" "$scene/transforms_train.json" "$dir/blind"
+scene=$dir/blind enc 0 blind --psnr 27.5 --iterations $n
+cmp "$dir/psnr.adcgs" "$dir/blind.adcgs" || bad "views for tests play a part"
+
+# What cannot be had: the nearest is written, and a line says so.
+enc 1 best --psnr 70 --iterations 100
+grep -q "best that this run can do" "$dir/best.err" && [ "$(wc -l <"$dir/best.err")" -eq 1 ] ||
+    { bad "the best goes without a word"; cat "$dir/best.err"; }
+grep -q '"met": false' "$dir/best.out" || bad "--json does not tell that a target is missed"
+enc 1 large --size 900k --iterations 100 --max-anchors 50
+grep -q "smaller than the 900000 asked for" "$dir/large.err" || { bad "too large goes without a word"; cat "$dir/large.err"; }
+
+# Wrong use.
+refuse "too few" --size 3000
+refuse "too few" --size 1
+for size in 0 -5 x 10q 1.5 1e5 ''; do
+    refuse "whole number" "--size=$size"
+done
+refuse "from 5 to 80" --psnr 4
+refuse "from 5 to 80" --psnr nan
+refuse "exclude each other" --size 20k --psnr 30
+refuse "exclude each other" --lambda 0.1 --psnr 30
+refuse "exclude each other" --lambda 0.1 --size 20k
+refuse "need rate" --size 20k --without fine,rate
+refuse "need rate" --psnr 30 --uncompressed "$dir/raw"
+
+# A limit of time ends the run, with a stream that is whole and meets its target.
+enc 0 brief --time-limit 2 --iterations 1000000 --size 15k
+within "$(value "$dir/brief.out" iterations)" 1 999999 "iterations within a limit of time"
+within "$(wc -c <"$dir/brief.adcgs")" 14550 15000 "bytes within a limit of time"
+enc 0 plain --time-limit 1 --iterations 1000000
+within "$(value "$dir/plain.out" iterations)" 1 999999 "iterations within a limit of time"
+exit $failed

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Steering: what is planned for a size, how lambda follows, where runs land, and that stopping changes nothing. */
+#include "outside_files.h"
+
+#include "encode/encode.h"
+#include "scenes/scenes.h"
+#include "train/trainer.h"
+
+enum { ITERATIONS = 200 };
+
+static adcgs_scene *scene;
+static adcgs_pool *pool;
+
+static int setup(void **state)
+{
+    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
+    const adcgs_scene_options options = { .points_path = NULL };
+    if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
+        return -1;
+    return adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
+           adcgs_scene_open(&scene, folder, &options, &error) != ADCGS_OK;
+}
+
+static int teardown(void **state)
+{
+    adcgs_scene_free(&scene);
+    adcgs_pool_free(&pool);
+    return remove_folder(state);
+}
+
+static adcgs_train_config config_for(adcgs_train_target target, double value)
+{
+    adcgs_train_config c;
+    assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
+    c.iterations = ITERATIONS;
+    c.start_anchors = 100;
+    c.refine_every = 20;
+    c.grow_threshold = 1e-6f;
+    c.target = target;
+    c.target_value = value;
+    return c;
+}
+
+/* ---- The plan ---- */
+
+static void plans_grow_with_the_size(void **state)
+{
+    uint32_t anchors = 0;
+    int widths = 0;
+    for (double size = 8000; size < 4e6; size *= 1.5) {
+        adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, size);
+        const adcgs_train_config before = c;
+        if (adcgs_control_plan(&c, &error) != ADCGS_OK)
+            fail_msg("%.0f: %s", size, error.text);
+        const int sum = c.shape.theta_width + c.shape.omega_width + c.shape.varpi_width + c.shape.entropy_width;
+        assert_true(c.max_anchors >= anchors && sum >= widths);
+        assert_true(c.start_anchors <= c.max_anchors && c.shape.omega_width <= before.shape.omega_width);
+        anchors = c.max_anchors;
+        widths = sum;
+    }
+    const adcgs_train_config preset = config_for(ADCGS_TARGET_NONE, 0);
+    assert_int_equal(widths, preset.shape.theta_width + preset.shape.omega_width + preset.shape.varpi_width +
+                                 preset.shape.entropy_width);
+    assert_true(anchors > preset.max_anchors);
+}
+
+static void plans_leave_what_was_chosen(void **state)
+{
+    adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, 60000);
+    assert_int_equal(adcgs_train_set(&c, "max_anchors=77,theta_width=31", &error), ADCGS_OK);
+    const adcgs_shape shape = c.shape;
+    assert_int_equal(adcgs_control_plan(&c, &error), ADCGS_OK);
+    assert_int_equal(c.max_anchors, 77);
+    assert_int_equal(c.start_anchors, 77);
+    assert_memory_equal(&shape, &c.shape, sizeof shape);
+}
+
+static void sizes_too_small_are_refused(void **state)
+{
+    adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, 2500);
+    assert_int_equal(adcgs_control_plan(&c, &error), ADCGS_ERR_USAGE);
+    assert_non_null(strstr(error.text, "too few"));
+    c = config_for(ADCGS_TARGET_PSNR, 30);
+    c.lambda = 0;
+    assert_int_equal(adcgs_control_plan(&c, &error), ADCGS_OK);
+    assert_true(c.lambda > 0);
+}
+
+/* ---- Lambda ---- */
+
+static adcgs_trainer *make(const adcgs_train_config *config, adcgs_train_measure measure)
+{
+    adcgs_trainer *t;
+    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), pool, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    t->quantise = adcgs_encode_quantise_hook;
+    t->measure = measure;
+    return t;
+}
+
+static adcgs_status pretended_bytes(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *e)
+{
+    (void)t;
+    (void)e;
+    *bytes = (adcgs_bytes){ .networks = 10000, .layer = { *(const uint64_t *)user }, .total = 10000 + *(const uint64_t *)user };
+    return ADCGS_OK;
+}
+
+/** Too many bytes raise lambda, step by step, up to a bound, where anchors go; too few lower it. */
+static void lambda_follows_the_bytes(void **state)
+{
+    const adcgs_train_config config = config_for(ADCGS_TARGET_SIZE, 60000);
+    for (int much = 0; much < 2; much++) {
+        uint64_t features = much ? 200000 : 10000;
+        adcgs_trainer *t = make(&config, pretended_bytes);
+        const uint32_t n = t->f->n;
+        t->measure_user = &features;
+        t->mean_bits[0] = 8.0 * (double)features;
+        t->stats.n = 1000;
+        double last = t->lambda;
+        for (int i = 0; i < 40; i++) {
+            t->iteration = (uint32_t)(60 + 10 * i);
+            assert_int_equal(adcgs_control_step(t, 0.3 + 0.01 * i, &error), ADCGS_OK);
+            assert_true(much ? t->lambda >= last : t->lambda <= last);
+            last = t->lambda;
+            t->stats.n = 1000;
+        }
+        assert_true(much ? last > 20 * (double)config.lambda : last < 0.05 * (double)config.lambda);
+        assert_true(much ? t->f->n < n / 2 && t->f->n > 0 : t->f->n == n);
+        adcgs_trainer_free(&t);
+    }
+}
+
+/* ---- Landing ---- */
+
+static adcgs_status real_bytes(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *e)
+{
+    (void)user;
+    return adcgs_encode_bytes(bytes, t, -1, NULL, 0, e);
+}
+
+static uint64_t final_bytes(const adcgs_trainer *t)
+{
+    adcgs_bytes bytes;
+    assert_int_equal(adcgs_encode_bytes(&bytes, t, -1, NULL, 0, &error), ADCGS_OK);
+    return bytes.total;
+}
+
+static int stop_at(void *user, const adcgs_train_report *r)
+{
+    return r->iteration >= *(const uint32_t *)user;
+}
+
+static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
+{
+    int stopped;
+    if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+}
+
+/** More anchors than a size can hold after so short a run: levels, or anchors, have to give way. */
+static adcgs_train_config roomy_config(adcgs_train_target target, double value)
+{
+    adcgs_train_config c = config_for(target, value);
+    c.own_anchors = 1;
+    c.max_anchors = 400;
+    return c;
+}
+
+static void runs_land_on_sizes(void **state)
+{
+    for (int size = 8000; size <= 16000; size += 4000) {
+        const adcgs_train_config config = roomy_config(ADCGS_TARGET_SIZE, size);
+        adcgs_trainer *t = make(&config, real_bytes);
+        run(t, NULL, NULL);
+        const uint64_t bytes = final_bytes(t);
+        print_message("asked for %d bytes, got %llu\n", size, (unsigned long long)bytes);
+        assert_true(bytes <= (uint64_t)size && bytes > 0.97 * size);
+        adcgs_trainer_free(&t);
+    }
+}
+
+/** A run that never came to round its values, as one short of time, lands all the same. */
+static void runs_land_without_rounding(void **state)
+{
+    adcgs_train_config config = roomy_config(ADCGS_TARGET_SIZE, 12000);
+    config.round_from = config.freeze_from = 1.5f;
+    adcgs_trainer *t = make(&config, real_bytes);
+    run(t, NULL, NULL);
+    print_message("asked for 12000 bytes, got %llu\n", (unsigned long long)final_bytes(t));
+    assert_true(final_bytes(t) <= 12000 && final_bytes(t) > 0.97 * 12000);
+    adcgs_trainer_free(&t);
+}
+
+static void runs_land_on_qualities(void **state)
+{
+    const adcgs_train_config config = roomy_config(ADCGS_TARGET_PSNR, 22);
+    adcgs_trainer *t = make(&config, real_bytes);
+    double psnr;
+    run(t, NULL, NULL);
+    assert_int_equal(adcgs_control_psnr(t, UINT32_MAX, &psnr, &error), ADCGS_OK);
+    print_message("asked for 22 dB, got %.3f\n", psnr);
+    assert_true(psnr > 21.95 && psnr < 22.05);
+    adcgs_trainer_free(&t);
+}
+
+/** Wherever a run stops, going on from what it stored gives what never stopping gives. */
+static void stopping_changes_nothing(void **state)
+{
+    static const uint32_t stops[] = { 50, 70, 130, 170, 190 };
+    static const double values[] = { [ADCGS_TARGET_SIZE] = 12000, [ADCGS_TARGET_PSNR] = 22 };
+    for (int target = ADCGS_TARGET_SIZE; target <= ADCGS_TARGET_PSNR; target++) {
+        const adcgs_train_config config = roomy_config((adcgs_train_target)target, values[target]);
+        adcgs_trainer *through = make(&config, real_bytes);
+        run(through, NULL, NULL);
+        const uint64_t bytes = final_bytes(through);
+        for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
+            uint32_t stop = stops[i];
+            adcgs_buffer middle;
+            adcgs_trainer *first = make(&config, real_bytes), *second = make(&config, real_bytes);
+            adcgs_buffer_init(&middle);
+            run(first, stop_at, &stop);
+            assert_int_equal(adcgs_trainer_store(first, &middle, &error), ADCGS_OK);
+            assert_int_equal(adcgs_trainer_restore(second, middle.data, middle.size, &error), ADCGS_OK);
+            run(second, NULL, NULL);
+            assert_true(second->lambda == through->lambda && final_bytes(second) == bytes);
+            assert_memory_equal(second->f->param[ADCGS_P_FV].p, through->f->param[ADCGS_P_FV].p,
+                                second->f->param[ADCGS_P_FV].n * sizeof(float));
+            adcgs_trainer_free(&first);
+            adcgs_trainer_free(&second);
+            adcgs_buffer_clear(&middle);
+        }
+        adcgs_trainer_free(&through);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plans_grow_with_the_size),
+        cmocka_unit_test(plans_leave_what_was_chosen),
+        cmocka_unit_test(sizes_too_small_are_refused),
+        cmocka_unit_test(lambda_follows_the_bytes),
+        cmocka_unit_test(runs_land_on_sizes),
+        cmocka_unit_test(runs_land_without_rounding),
+        cmocka_unit_test(runs_land_on_qualities),
+        cmocka_unit_test(stopping_changes_nothing),
+    };
+    return cmocka_run_group_tests_name("control", tests, setup, teardown);
+}

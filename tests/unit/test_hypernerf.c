@@ -1,0 +1,532 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Scenes in the layout of HyperNeRF: every field, every kind of bad input, real scenes where they are at hand. */
+#include "outside_files.h"
+
+#include "data/scene.h"
+
+#include <jansson.h>
+#include <math.h>
+
+static adcgs_scene *scene;
+
+/* Pictures are 6x4. The first camera is turned by a quarter about its axis: its x axis is the world's y. */
+#define LENS "\"focal_length\":8,\"principal_point\":[2.5,2.25],\"image_size\":[6,4]"
+#define TURNED "\"orientation\":[[0,1,0],[-1,0,0],[0,0,1]],\"position\":[1,2,3]"
+#define PLAIN "\"orientation\":[[1,0,0],[0,1,0],[0,0,1]],\"position\":[0,0,-5]"
+#define ZERO "\"skew\":0.0,\"pixel_aspect_ratio\":1.5,\"radial_distortion\":[0,1e-7,0],\"tangential_distortion\":[0,0]"
+
+/** The files of a good scene; a test puts others in their place. */
+static const struct {
+    const char *name, *text;
+} good[] = {
+    {"dataset.json", "{\"ids\":[\"a\",\"b\",\"c\"],\"train_ids\":[\"a\",\"c\"],\"val_ids\":[\"b\"]}"},
+    {"metadata.json", "{\"a\":{\"warp_id\":0},\"b\":{\"warp_id\":3,\"camera_id\":0},\"c\":{\"warp_id\":4},"
+                      "\"d\":{\"warp_id\":8}}"},
+    {"scene.json", "{\"center\":[1,0,-1],\"scale\":0.5,\"near\":0.1,\"far\":2}"},
+    {"camera/a.json", "{" TURNED "," LENS "," ZERO "}"},
+    {"camera/b.json", "{" PLAIN "," LENS ",\"tangential\":[0,1e-7]}"},
+    {"camera/c.json", "{" PLAIN "," LENS "}"},
+};
+
+#define NPY "\x93NUMPY\x01\0\x3e\0{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }  \n"
+#define NUMBERS "\0\0\x80\x3f\0\0\0\x40\0\0\x40\x40\0\0\x80\xbf\0\0\0\0\0\0\0\x3f" /* 1 2 3, -1 0 0.5 */
+
+static void put_image(const char *name)
+{
+    adcgs_image image;
+    assert_int_equal(adcgs_image_alloc(&image, 6, 4, 3, name, &error), ADCGS_OK);
+    for (int i = 0; i < 6 * 4 * 3; i++)
+        image.data[i] = (float)i / 255.0f;
+    assert_int_equal(adcgs_image_write(&image, in(name), 0, &error), ADCGS_OK);
+    adcgs_image_free(&image);
+}
+
+static void put_scene(void)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(good); i++)
+        put_text(good[i].name, good[i].text);
+    put_bytes("points.npy", NPY NUMBERS, sizeof NPY + sizeof NUMBERS - 2);
+}
+
+static int setup(void **state)
+{
+    if (make_folder(state) || mkdir(in("camera"), 0777) || mkdir(in("rgb"), 0777) || mkdir(in("rgb/1x"), 0777))
+        return -1;
+    put_image("rgb/1x/a.png");
+    put_image("rgb/1x/b.ppm");
+    put_image("rgb/1x/c.png");
+    put_scene();
+    return 0;
+}
+
+static int mend(void **state)
+{
+    put_scene();
+    unlink(in("points3d.ply"));
+    unlink(in("transforms.json"));
+    return 0;
+}
+
+static void expect_good(adcgs_status status)
+{
+    if (status != ADCGS_OK)
+        fail_msg("%s", error.text);
+}
+
+static void open_good(void)
+{
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
+}
+
+static void expect_views(uint32_t train, uint32_t test)
+{
+    assert_int_equal(scene->n_views[ADCGS_SPLIT_TRAIN], train);
+    assert_int_equal(scene->n_views[ADCGS_SPLIT_VAL], 0);
+    assert_int_equal(scene->n_views[ADCGS_SPLIT_TEST], test);
+}
+
+static void expect_bad(const char *file, const char *text, adcgs_status status, const char *what)
+{
+    put_scene();
+    put_text(file, text);
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), status, file, what);
+    assert_null(scene);
+    put_scene();
+}
+
+static void test_fields(void **state)
+{
+    open_good();
+    expect_views(2, 1);
+    const adcgs_scene_view *a = &scene->views[ADCGS_SPLIT_TRAIN][0], *b = &scene->views[ADCGS_SPLIT_TEST][0];
+    const adcgs_scene_view *c = &scene->views[ADCGS_SPLIT_TRAIN][1];
+    assert_string_equal(a->camera.name, "a");
+    assert_string_equal(b->camera.name, "b");
+    assert_string_equal(c->camera.name, "c");
+    assert_true(a->camera.width == 6 && a->camera.height == 4 && a->camera.fx == 8.0 && a->camera.fy == 12.0);
+    assert_true(a->camera.cx == 2.5 && a->camera.cy == 2.25 && c->camera.fy == 8.0);
+    /* Columns are the camera's axes; the centre is (position - center) * scale. */
+    const double expected[12] = {0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 2}, plain[12] = {1, 0, 0, -0.5, 0, 1, 0, 0, 0, 0, 1, -2};
+    for (int i = 0; i < 12; i++)
+        assert_true(a->camera.cam_to_world[i] == expected[i] && c->camera.cam_to_world[i] == plain[i]);
+    /* Times are warp ids over the largest of all; seconds as in every scene: two training times, one frame apart. */
+    assert_true(scene->n_times == 2 && scene->frame_rate == 30.0 && fabs(scene->duration - 1.0 / 30.0) < 1e-15);
+    assert_true(a->time == 0.0 && fabs(b->time - 0.375 / 30.0) < 1e-15 && fabs(c->time - 0.5 / 30.0) < 1e-15);
+    assert_int_equal(scene->points.n, 2);
+    const float points[2][3] = {{0.0f, 1.0f, 2.0f}, {-1.0f, 0.0f, 0.75f}};
+    assert_memory_equal(scene->points.position, points, sizeof points);
+    float *rgb;
+    expect_good(adcgs_scene_load(scene, b, 1, &rgb, NULL, &error));
+    free(rgb);
+    adcgs_scene_free(&scene);
+    const adcgs_scene_options options = {.frame_rate = 10.0, .points_path = in("other.npy")};
+    put_bytes("other.npy", NPY NUMBERS, sizeof NPY + sizeof NUMBERS - 2);
+    put_text("points.npy", "not looked at");
+    expect_good(adcgs_scene_open(&scene, folder, &options, &error)); /* points of one's own are in world units already */
+    assert_true(scene->duration == 0.1 && scene->points.n == 2 && scene->points.position[0][1] == 2.0f);
+    adcgs_scene_free(&scene);
+}
+
+/** Without a list of val_ids, ids 0, 4, 8, ... are for training and 2, 6, ... for testing. */
+static void test_rule(void **state)
+{
+    put_text("dataset.json", "{\"ids\":[\"a\",\"x\",\"b\",\"x\",\"c\"],\"train_ids\":[\"x\"],\"val_ids\":[]}");
+    open_good();
+    expect_views(2, 1);
+    assert_string_equal(scene->views[ADCGS_SPLIT_TRAIN][1].camera.name, "c");
+    assert_string_equal(scene->views[ADCGS_SPLIT_TEST][0].camera.name, "b");
+    adcgs_scene_free(&scene);
+    put_text("dataset.json", "{\"ids\":[\"c\"]}");
+    open_good();
+    expect_views(1, 0);
+    assert_true(scene->n_times == 1 && scene->duration == 0.0 && scene->views[ADCGS_SPLIT_TRAIN][0].time == 0.0);
+    adcgs_scene_free(&scene);
+}
+
+/** The largest pictures count; those at 1/N of full size have cameras to match. */
+static void test_reduced(void **state)
+{
+    put_text("dataset.json", "{\"train_ids\":[\"c\"],\"val_ids\":[\"b\"]}");
+    put_text("camera/b.json", "{" PLAIN ",\"focal_length\":8,\"principal_point\":[9,6],\"image_size\":[17,12]}");
+    put_text("camera/c.json", "{" PLAIN ",\"focal_length\":8,\"principal_point\":[9,6],\"image_size\":[17,12]}");
+    assert_int_equal(rename(in("rgb/1x"), in("rgb/3x")), 0);
+    assert_true(!mkdir(in("rgb/16x"), 0777) && !mkdir(in("rgb/x"), 0777) && !mkdir(in("rgb/0x"), 0777));
+    put_text("rgb/2x", "no folder");
+    open_good();
+    const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
+    assert_true(c->width == 6 && c->height == 4 && c->fx == 8.0 / 3.0 && c->fy == 8.0 / 3.0 && c->cx == 3.0 && c->cy == 2.0);
+    float *rgb;
+    expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][0], 1, &rgb, NULL, &error));
+    free(rgb);
+    adcgs_scene_free(&scene);
+    put_text("camera/b.json", "{" PLAIN ",\"focal_length\":8,\"principal_point\":[9,6],\"image_size\":[17,15]}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "rgb/3x/b.ppm: 6x4", "5.66667x5");
+    assert_true(!remove(in("rgb/2x")) && !rmdir(in("rgb/16x")) && !rmdir(in("rgb/x")) && !rmdir(in("rgb/0x")));
+    assert_int_equal(rename(in("rgb/3x"), in("rgb/65x")), 0);
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, folder, "rgb/1x");
+    assert_int_equal(rename(in("rgb/65x"), in("rgb/1x")), 0);
+}
+
+/** Points are those of the file, in its order, whatever the cameras see of them. None is fine. */
+static void test_points(void **state)
+{
+    put_text("scene.json", "{\"center\":[0,0,0],\"scale\":1}");
+    open_good();
+    assert_true(scene->points.n == 2 && scene->points.position[0][2] == 3.0f && scene->points.position[1][0] == -1.0f);
+    assert_true(scene->points.colour[1][0] == 128);
+    adcgs_scene_free(&scene);
+    unlink(in("points.npy"));
+    open_good();
+    assert_int_equal(scene->points.n, 0);
+    adcgs_scene_free(&scene);
+}
+
+/** Nothing but the test views themselves comes from the test views. */
+static void test_apart(void **state)
+{
+    adcgs_scene *first;
+    expect_good(adcgs_scene_open(&first, folder, NULL, &error));
+    put_text("camera/b.json", "{\"orientation\":[[0,0,1],[0,-1,0],[1,0,0]],\"position\":[900,8,7],\"focal_length\":1,"
+                              "\"principal_point\":[0,0],\"image_size\":[6,4]}");
+    put_text("metadata.json", "{\"a\":{\"warp_id\":0},\"b\":{\"warp_id\":7},\"c\":{\"warp_id\":4},\"d\":{\"warp_id\":8}}");
+    open_good();
+    assert_true(scene->views[ADCGS_SPLIT_TEST][0].camera.fx != first->views[ADCGS_SPLIT_TEST][0].camera.fx);
+    for (uint32_t i = 0; i < 2; i++) {
+        const adcgs_scene_view *one = &scene->views[ADCGS_SPLIT_TRAIN][i], *other = &first->views[ADCGS_SPLIT_TRAIN][i];
+        assert_memory_equal(&one->camera, &other->camera, sizeof one->camera); /* with the near plane */
+        assert_true(one->time == other->time);
+    }
+    assert_memory_equal(scene->points.position, first->points.position, 2 * sizeof *scene->points.position);
+    assert_true(scene->points.n == first->points.n && scene->duration == first->duration && scene->n_times == first->n_times);
+    assert_true(scene->axes == first->axes);
+    adcgs_scene_free(&first);
+    adcgs_scene_free(&scene);
+}
+
+/** What is up in the pictures tells the world's axes. */
+static void test_axes(void **state)
+{
+    static const struct {
+        const char *rows;
+        int axes;
+    } cases[] = {{"[[1,0,0],[0,1,0],[0,0,1]]", ADCGS_AXES_Y_DOWN}, {"[[1,0,0],[0,-1,0],[0,0,-1]]", ADCGS_AXES_Y_UP},
+                 {"[[1,0,0],[0,0,-1],[0,1,0]]", ADCGS_AXES_Z_UP},  {"[[1,0,0],[0,0,1],[0,-1,0]]", ADCGS_AXES_UNKNOWN},
+                 {"[[0,1,0],[-1,0,0],[0,0,1]]", ADCGS_AXES_UNKNOWN}};
+    put_text("dataset.json", "{\"ids\":[\"c\"]}");
+    for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
+        char text[256];
+        snprintf(text, sizeof text, "{\"orientation\":%s,\"position\":[0,0,0]," LENS "}", cases[i].rows);
+        put_text("camera/c.json", text);
+        open_good();
+        assert_int_equal(scene->axes, cases[i].axes);
+        adcgs_scene_free(&scene);
+    }
+}
+
+/** transforms.json goes before the files of this layout, and all of these must be there. */
+static void test_detection(void **state)
+{
+    put_text("transforms.json", "{}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms.json", "frames");
+    unlink(in("transforms.json"));
+    unlink(in("metadata.json"));
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_IO, "not a scene", "metadata.json");
+    mend(state);
+    assert_int_equal(rename(in("camera"), in("cameras")), 0);
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_IO, "not a scene", "camera/");
+    assert_int_equal(rename(in("cameras"), in("camera")), 0);
+}
+
+static void test_bad_lists(void **state)
+{
+    expect_bad("dataset.json", "", ADCGS_ERR_DATA, "malformed JSON");
+    expect_bad("dataset.json", "[]", ADCGS_ERR_DATA, "object");
+    expect_bad("dataset.json", "{}", ADCGS_ERR_DATA, "ids: expected an array");
+    expect_bad("dataset.json", "{\"ids\":[]}", ADCGS_ERR_DATA, "ids: is empty");
+    expect_bad("dataset.json", "{\"ids\":7}", ADCGS_ERR_DATA, "ids: expected an array");
+    expect_bad("dataset.json", "{\"ids\":[7]}", ADCGS_ERR_DATA, "ids[0]: expected the name");
+    expect_bad("dataset.json", "{\"ids\":[\"\"]}", ADCGS_ERR_DATA, "ids[0]: expected the name");
+    expect_bad("dataset.json", "{\"ids\":[\"../a\"]}", ADCGS_ERR_DATA, "ids[0]: expected the name");
+    expect_bad("dataset.json", "{\"ids\":[\"a\"],\"val_ids\":{}}", ADCGS_ERR_DATA, "train_ids: expected an array");
+    expect_bad("dataset.json", "{\"train_ids\":[\"a\"],\"val_ids\":{\"b\":0}}", ADCGS_ERR_DATA, "val_ids: expected an array");
+    expect_bad("dataset.json", "{\"train_ids\":[],\"val_ids\":[\"b\"]}", ADCGS_ERR_DATA, "train_ids: is empty");
+    expect_bad("dataset.json", "{\"train_ids\":[\"a\",\"c\"],\"val_ids\":[\"b\",\"c\"]}", ADCGS_ERR_DATA,
+               "val_ids[1]: c is listed");
+    expect_bad("dataset.json", "{\"train_ids\":[\"a\",\"a\"],\"val_ids\":[\"b\"]}", ADCGS_ERR_DATA, "train_ids[1]: a is listed");
+    char text[512];
+    snprintf(text, sizeof text, "{\"ids\":[\"%0201d\"]}", 0);
+    expect_bad("dataset.json", text, ADCGS_ERR_DATA, "ids[0]: expected the name");
+    expect_bad("metadata.json", "[1", ADCGS_ERR_DATA, "malformed JSON");
+    expect_bad("metadata.json", "{\"a\":{\"warp_id\":0},\"b\":{\"warp_id\":3}}", ADCGS_ERR_DATA, "c: missing");
+    expect_bad("metadata.json", "{\"a\":7}", ADCGS_ERR_DATA, "a: warp_id");
+    expect_bad("metadata.json", "{\"a\":{}}", ADCGS_ERR_DATA, "a: warp_id");
+    expect_bad("metadata.json", "{\"z\":{\"warp_id\":-1}}", ADCGS_ERR_DATA, "z: warp_id");
+    expect_bad("metadata.json", "{\"z\":{\"warp_id\":1.5}}", ADCGS_ERR_DATA, "z: warp_id");
+    expect_bad("metadata.json", "{\"z\":{\"warp_id\":9223372036854775807}}", ADCGS_ERR_DATA, "z: warp_id");
+    put_text("dataset.json", "{\"ids\":[\"d\\n\"]}");
+    put_text("metadata.json", "{\"d\\n\":{\"warp_id\":0}}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "rgb/1x: no image of", "d?");
+}
+
+static void test_bad_scene(void **state)
+{
+    expect_bad("scene.json", "{", ADCGS_ERR_DATA, "malformed JSON");
+    expect_bad("scene.json", "{\"scale\":1}", ADCGS_ERR_DATA, "center: missing");
+    expect_bad("scene.json", "{\"center\":[0,0],\"scale\":1}", ADCGS_ERR_DATA, "center: expected 3");
+    expect_bad("scene.json", "{\"center\":[0,0,\"1\"],\"scale\":1}", ADCGS_ERR_DATA, "center: expected 3");
+    expect_bad("scene.json", "{\"center\":[0,0,1e10],\"scale\":1}", ADCGS_ERR_DATA, "center: 1e+10");
+    expect_bad("scene.json", "{\"center\":[0,0,1]}", ADCGS_ERR_DATA, "scale: missing");
+    expect_bad("scene.json", "{\"center\":[0,0,1],\"scale\":0}", ADCGS_ERR_DATA, "scale: 0");
+    expect_bad("scene.json", "{\"center\":[0,0,1],\"scale\":null}", ADCGS_ERR_DATA, "scale: expected a number");
+    unlink(in("scene.json"));
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_IO, "scene.json", "No such file");
+    put_text("scene.json", "{\"center\":[0,0,0],\"scale\":1e9}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "camera/a.json: position", "2e+09");
+    put_text("camera/a.json", "{\"orientation\":[[1,0,0],[0,1,0],[0,0,1]],\"position\":[0,0,0]," LENS "}");
+    put_text("dataset.json", "{\"ids\":[\"a\"]}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "points.npy: point 0", "2e+09");
+}
+
+/** A camera with the fields given. */
+static void bad_camera(const char *fields, adcgs_status status, const char *what)
+{
+    char text[512];
+    snprintf(text, sizeof text, "{%s}", fields);
+    expect_bad("camera/c.json", text, status, what);
+}
+
+#define FOCAL ",\"focal_length\":8"
+#define MIDDLE FOCAL ",\"principal_point\":[1,1]"
+
+static void test_bad_cameras(void **state)
+{
+    unlink(in("camera/c.json"));
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_IO, "camera/c.json", "No such file");
+    bad_camera("", ADCGS_ERR_DATA, "focal_length: missing");
+    bad_camera(PLAIN ",\"focal_length\":0", ADCGS_ERR_DATA, "focal_length: 0");
+    bad_camera(PLAIN ",\"focal_length\":[8]", ADCGS_ERR_DATA, "focal_length: expected a number");
+    bad_camera(PLAIN FOCAL, ADCGS_ERR_DATA, "principal_point: missing");
+    bad_camera(PLAIN FOCAL ",\"principal_point\":[1,1e7]", ADCGS_ERR_DATA, "principal_point: 1e+07");
+    bad_camera(PLAIN MIDDLE, ADCGS_ERR_DATA, "image_size: missing");
+    bad_camera(PLAIN MIDDLE ",\"image_size\":[6]", ADCGS_ERR_DATA, "image_size: expected 2");
+    bad_camera(PLAIN MIDDLE ",\"image_size\":[6,4.5]", ADCGS_ERR_DATA, "image_size: 4.5");
+    bad_camera(PLAIN MIDDLE ",\"image_size\":[0,4]", ADCGS_ERR_DATA, "image_size: 0");
+    bad_camera(PLAIN MIDDLE ",\"image_size\":[16385,4]", ADCGS_ERR_DATA, "image_size: 16385");
+    bad_camera(PLAIN "," LENS ",\"pixel_aspect_ratio\":0", ADCGS_ERR_DATA, "pixel_aspect_ratio: 0");
+    bad_camera(PLAIN "," LENS ",\"skew\":0.001", ADCGS_ERR_UNSUPPORTED, "skew: skew 0.001");
+    bad_camera(PLAIN "," LENS ",\"skew\":[0]", ADCGS_ERR_DATA, "skew: expected a number");
+    bad_camera(PLAIN "," LENS ",\"radial_distortion\":[0,0,-2e-6]", ADCGS_ERR_UNSUPPORTED,
+               "radial_distortion: lens distortion -2e-06");
+    bad_camera(PLAIN "," LENS ",\"radial_distortion\":[0,0]", ADCGS_ERR_DATA, "radial_distortion: expected 3");
+    bad_camera(PLAIN "," LENS ",\"tangential_distortion\":[0,1]", ADCGS_ERR_UNSUPPORTED,
+               "tangential_distortion: lens distortion 1");
+    bad_camera(PLAIN "," LENS ",\"tangential\":[0.5,0]", ADCGS_ERR_UNSUPPORTED, "tangential: lens distortion 0.5");
+    bad_camera(LENS ",\"position\":[0,0,0]", ADCGS_ERR_DATA, "orientation: expected 3 rows");
+    bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1],[0,0,1]]", ADCGS_ERR_DATA, "orientation: expected 3 numbers");
+    bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1,0],[0,0,-1]],\"position\":[0,0,0]", ADCGS_ERR_DATA,
+               "orientation: is a reflection");
+    bad_camera(LENS ",\"orientation\":[[2,0,0],[0,2,0],[0,0,2]],\"position\":[0,0,0]", ADCGS_ERR_DATA,
+               "orientation: is scaled");
+    bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1,0],[0,0,1]]", ADCGS_ERR_DATA, "position: missing");
+    bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1,0],[0,0,1]],\"position\":[0,\"\",0]", ADCGS_ERR_DATA, "position: expected 3");
+    put_text("dataset.json", "{\"ids\":[\"d\"]}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "rgb/1x", "no image of d");
+}
+
+/** One byte of a good file at a time gets another value, or the file ends there: never a crash, always a reason in one line. */
+static void mutate(const char *name, const char *bytes, size_t size)
+{
+    static const char values[] = "\0\"[}9-e,\xff\n";
+    char changed[512];
+    assert_true(size < sizeof changed);
+    for (size_t i = 0; i < 2 * size; i++) {
+        const size_t at = i / 2;
+        memcpy(changed, bytes, size);
+        changed[at] = values[at % (sizeof values - 1)];
+        put_bytes(name, changed, i % 2 ? at : size);
+        error = (adcgs_error){0};
+        if (adcgs_scene_open(&scene, folder, NULL, &error) == ADCGS_OK)
+            adcgs_scene_free(&scene);
+        else
+            assert_true(error.text[0] && !strchr(error.text, '\n'));
+    }
+    put_scene();
+}
+
+static void test_mutations(void **state)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(good); i++)
+        mutate(good[i].name, good[i].text, strlen(good[i].text));
+    mutate("points.npy", NPY NUMBERS, sizeof NPY + sizeof NUMBERS - 2);
+}
+
+/* ---- Real scenes ---- */
+
+static const char *real(const char *name)
+{
+    static char path[1024];
+    const char *data = getenv("ADCGS_DATA");
+    snprintf(path, sizeof path, "%s/%s", data ? data : "", name);
+    if (!data || access(path, R_OK)) {
+        print_message("skipped: no ADCGS_DATA/%s\n", name);
+        skip();
+    }
+    return path;
+}
+
+/** The pixel that a point falls on; 0 if it is not in front of the camera and inside the frame. */
+static int find_pixel(const adcgs_camera *c, uint32_t point, size_t *pixel)
+{
+    const double *m = c->cam_to_world;
+    double p[3];
+    for (int a = 0; a < 3; a++)
+        p[a] = m[a] * (scene->points.position[point][0] - m[3]) + m[4 + a] * (scene->points.position[point][1] - m[7]) +
+               m[8 + a] * (scene->points.position[point][2] - m[11]);
+    const double x = c->fx * p[0] / p[2] + c->cx, y = c->fy * p[1] / p[2] + c->cy;
+    if (!(p[2] > c->near_plane && x >= 0.0 && x < c->width && y >= 0.0 && y < c->height))
+        return 0;
+    *pixel = (size_t)y * (size_t)c->width + (size_t)x;
+    return 1;
+}
+
+static double share_seen(const adcgs_camera *c)
+{
+    uint32_t inside = 0;
+    size_t pixel;
+    for (uint32_t i = 0; i < scene->points.n; i++)
+        inside += (uint32_t)find_pixel(c, i, &pixel);
+    return (double)inside / scene->points.n;
+}
+
+/** How much the red of a point varies from view to view: its variance over that of all points. 1 if poses say nothing. */
+static double inconsistency(void)
+{
+    enum { VIEWS = 8, STEP = 9 };
+    double within = 0.0, sum = 0.0, square = 0.0, n = 0.0;
+    float *red[VIEWS];
+    for (uint32_t v = 0; v < VIEWS; v++)
+        expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TRAIN][STEP * v], 1, &red[v], NULL, &error));
+    for (uint32_t i = 0; i < scene->points.n; i++) {
+        double s = 0.0, q = 0.0, k = 0.0;
+        size_t pixel;
+        for (uint32_t v = 0; v < VIEWS; v++)
+            if (find_pixel(&scene->views[ADCGS_SPLIT_TRAIN][STEP * v].camera, i, &pixel)) {
+                s += (double)red[v][pixel];
+                q += (double)red[v][pixel] * (double)red[v][pixel];
+                k++;
+            }
+        within += k > 0.0 ? q - s * s / k : 0.0;
+        sum += s;
+        square += q;
+        n += k;
+    }
+    for (uint32_t v = 0; v < VIEWS; v++)
+        free(red[v]);
+    return within / (square - sum * sum / n);
+}
+
+static double number(json_t *array, size_t i)
+{
+    return json_number_value(json_array_get(array, i));
+}
+
+/** A view's camera against the pose as published: [R|t|h,w,f], camera to world in OpenGL axes, other coordinates. */
+static void check_published(const adcgs_camera *c, json_t *poses, const double centre[3], double scale)
+{
+    unsigned int index;
+    assert_int_equal(sscanf(c->name, "image%u", &index), 1);
+    json_t *pose = json_array_get(poses, index - 1);
+    for (size_t i = 0; i < 3; i++) {
+        json_t *row = json_array_get(pose, i);
+        assert_true(fabs(c->cam_to_world[4 * i] - number(row, 0)) < 1e-5);
+        assert_true(fabs(c->cam_to_world[4 * i + 1] + number(row, 1)) < 1e-5);
+        assert_true(fabs(c->cam_to_world[4 * i + 2] + number(row, 2)) < 1e-5);
+        assert_true(fabs(c->cam_to_world[4 * i + 3] - (number(row, 3) - centre[i]) * scale) < 1e-5);
+    }
+    const double h = number(json_array_get(pose, 0), 4), w = number(json_array_get(pose, 1), 4);
+    const double f = number(json_array_get(pose, 2), 4);
+    assert_true(c->width == w && c->height == h && fabs(c->fx - f) < 1e-4 && c->fy == c->fx && c->cx == w / 2 && c->cy == h / 2);
+}
+
+/** Cameras are those that the scene's makers published in another form, and see the points that were triangulated with them. */
+static void test_hand(void **state)
+{
+    const char *path = real("nrnerf_hand");
+    expect_good(adcgs_scene_open(&scene, path, NULL, &error));
+    expect_views(75, 11);
+    assert_true(scene->n_times == 75 && scene->points.n == 4630 && scene->axes == ADCGS_AXES_Y_UP && !scene->has_alpha);
+    char file[1100];
+    snprintf(file, sizeof file, "%s/precomputed.json", path);
+    json_t *published = json_load_file(file, 0, NULL);
+    snprintf(file, sizeof file, "%s/scene.json", path);
+    json_t *coordinates = json_load_file(file, 0, NULL), *poses = json_object_get(published, "poses");
+    assert_int_equal(json_array_size(poses), 86);
+    double centre[3];
+    for (size_t i = 0; i < 3; i++)
+        centre[i] = number(json_object_get(coordinates, "center"), i);
+    for (int s = 0; s < ADCGS_SPLITS; s++)
+        for (uint32_t v = 0; v < scene->n_views[s]; v++) {
+            const adcgs_camera *c = &scene->views[s][v].camera;
+            check_published(c, poses, centre, json_number_value(json_object_get(coordinates, "scale")));
+            assert_true(share_seen(c) > 0.85);
+        }
+    assert_true(inconsistency() < 0.5);
+    assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][10].time - scene->duration * 84.0 / 85.0) < 1e-12);
+    float *rgb;
+    expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][10], 1, &rgb, NULL, &error));
+    free(rgb);
+    json_decref(published);
+    json_decref(coordinates);
+    adcgs_scene_free(&scene);
+}
+
+/** Three real cameras with missing moments and principal points off the middle; pictures at half size, made up. */
+static void test_windmill(void **state)
+{
+    const char *path = real("dycheck_paper-windmill_cameras");
+    static const char *const parts[] = {"dataset.json", "metadata.json", "scene.json", "camera"};
+    char mine[512], at[1100];
+    adcgs_image image;
+    snprintf(mine, sizeof mine, "%s", in("windmill"));
+    assert_true(!mkdir(mine, 0777) && !mkdir(in("windmill/rgb"), 0777) && !mkdir(in("windmill/rgb/2x"), 0777));
+    for (size_t i = 0; i < ADCGS_COUNTOF(parts); i++) {
+        snprintf(at, sizeof at, "%s/%s", path, parts[i]);
+        char name[64];
+        snprintf(name, sizeof name, "windmill/%s", parts[i]);
+        assert_int_equal(symlink(at, in(name)), 0);
+    }
+    assert_int_equal(adcgs_image_alloc(&image, 360, 480, 3, "black", &error), ADCGS_OK);
+    memset(image.data, 0, 360 * 480 * 3 * sizeof *image.data);
+    expect_good(adcgs_image_write(&image, in("windmill/black.png"), 0, &error));
+    adcgs_image_free(&image);
+    snprintf(at, sizeof at, "%s/metadata.json", path);
+    json_t *metadata = json_load_file(at, 0, NULL), *entry;
+    const char *id;
+    json_object_foreach(metadata, id, entry)
+    {
+        char name[64];
+        snprintf(name, sizeof name, "windmill/rgb/2x/%s.png", id);
+        assert_int_equal(symlink("../../black.png", in(name)), 0);
+    }
+    json_decref(metadata);
+    expect_good(adcgs_scene_open(&scene, mine, NULL, &error));
+    expect_views(277, 419);
+    const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
+    assert_true(c->width == 360 && c->height == 480 && c->fx == 719.9471435546875 / 2 && c->cx == 358.8895263671875 / 2);
+    assert_true(c->cy == 484.92236328125 / 2 && scene->n_times == 277 && scene->axes == ADCGS_AXES_Y_UP && scene->points.n == 0);
+    adcgs_scene_free(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_fields, mend),      cmocka_unit_test_teardown(test_rule, mend),
+        cmocka_unit_test_teardown(test_reduced, mend),     cmocka_unit_test_teardown(test_points, mend),
+        cmocka_unit_test_teardown(test_apart, mend),       cmocka_unit_test_teardown(test_axes, mend),
+        cmocka_unit_test_teardown(test_detection, mend),   cmocka_unit_test_teardown(test_bad_lists, mend),
+        cmocka_unit_test_teardown(test_bad_scene, mend),   cmocka_unit_test_teardown(test_bad_cameras, mend),
+        cmocka_unit_test_teardown(test_mutations, mend),   cmocka_unit_test(test_hand),
+        cmocka_unit_test(test_windmill),
+    };
+    return cmocka_run_group_tests(tests, setup, remove_folder);
+}

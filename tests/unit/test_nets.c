@@ -1,0 +1,418 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What the networks cost and what is done about it: the rate of their weights
+ * and its gradient, the choice of lattices, weights that stay binary32.
+ */
+#include "outside_files.h"
+
+#include "encode/encode.h"
+#include "encode/quantise.h"
+#include "scenes/scenes.h"
+#include "train/lattice.h"
+#include "train/random.h"
+#include "train/slim.h"
+#include "train/weight_rate.h"
+
+#include <math.h>
+
+enum { ITERATIONS = 200 };
+
+static adcgs_scene *scene;
+static adcgs_pool *pool;
+
+static int setup(void **state)
+{
+    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
+    const adcgs_scene_options options = { .points_path = NULL };
+    if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
+        return -1;
+    return adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
+           adcgs_scene_open(&scene, folder, &options, &error) != ADCGS_OK;
+}
+
+static int teardown(void **state)
+{
+    adcgs_scene_free(&scene);
+    adcgs_pool_free(&pool);
+    return remove_folder(state);
+}
+
+static adcgs_train_config small_config(void)
+{
+    adcgs_train_config c;
+    assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
+    c.iterations = ITERATIONS;
+    c.start_anchors = 100;
+    c.max_anchors = 150;
+    c.refine_every = 20;
+    c.grow_threshold = 1e-6f;
+    c.still_below = 0; /* motion takes longer to show than these runs last */
+    c.params.k = 4;
+    c.params.n_fv = 12;
+    c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 16;
+    return c;
+}
+
+static int stop_at(void *user, const adcgs_train_report *r)
+{
+    return r->iteration >= *(const uint32_t *)user;
+}
+
+static void go_on(adcgs_trainer *t, uint32_t stop)
+{
+    int stopped;
+    if (adcgs_trainer_run(t, stop_at, &stop, &stopped, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+}
+
+/** A run that stopped before iteration `stop`. */
+static adcgs_trainer *run_to(const adcgs_train_config *config, uint32_t stop)
+{
+    adcgs_trainer *t;
+    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), pool, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    t->quantise = adcgs_encode_quantise_hook;
+    go_on(t, stop);
+    return t;
+}
+
+/* ---- The rate of weights ---- */
+
+static void randomise(adcgs_fmodel *f, int group, double size)
+{
+    for (size_t i = 0; i < f->param[group].n; i++) {
+        const double wide = i % 3 == 0 ? 0.02 : 1; /* some next to 0, where magnitudes are rounded off */
+        f->param[group].p[i] = (float)(size * wide * adcgs_random_normal(5, (uint64_t)group, i));
+    }
+}
+
+/** The gradient against central differences; the bits in binary32 are good to about 1e-4 of a bit in 1e4. */
+static void weight_rate_has_its_gradient(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 0);
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
+        adcgs_param *p = &t->f->param[i];
+        if (!t->f->mlp[i].n)
+            continue;
+        randomise(t->f, i, 0.4);
+        memset(t->f->mlp[i].lattice, i % 2 ? 4 : ADCGS_LATTICE_NONE, sizeof t->f->mlp[i].lattice);
+        memset(p->g, 0, p->n * sizeof *p->g);
+        const double bits = adcgs_weight_rate(t->f, i, 2);
+        assert_true(bits > 0 && adcgs_weight_rate(t->f, i, 0) == bits);
+        for (size_t j = 0; j < p->n; j += p->n / 40 + 1) {
+            const float w = p->p[j], h = 1e-3f;
+            p->p[j] = w + h;
+            const double high = adcgs_weight_rate(t->f, i, 0);
+            p->p[j] = w - h;
+            const double low = adcgs_weight_rate(t->f, i, 0), g = (high - low) / (2 * (double)h);
+            p->p[j] = w;
+            assert_float_equal(p->g[j] / 2, g, 0.05 * fabs(g) + 0.3);
+        }
+    }
+    adcgs_trainer_free(&t);
+}
+
+/** The estimate follows what the weight coder spends. */
+static void weight_rate_is_close_to_the_coder(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 0);
+    adcgs_mlp *m = &t->f->mlp[ADCGS_P_VARPI];
+    for (double size = 0.02; size < 3; size *= 3) {
+        double coded = 0, bits;
+        randomise(t->f, ADCGS_P_VARPI, size);
+        memset(m->lattice, 6, sizeof m->lattice);
+        for (int l = 0; l <= m->hidden; l++) {
+            assert_int_equal(adcgs_lattice_bits(m, t->f->param[ADCGS_P_VARPI].p, l, 6, &bits, &error), ADCGS_OK);
+            coded += bits;
+        }
+        bits = adcgs_weight_rate(t->f, ADCGS_P_VARPI, 0);
+        print_message("weights of %.2f: %.0f bits coded, %.0f estimated\n", size, coded, bits);
+        assert_true(bits > 0.6 * coded && bits < 1.4 * coded);
+    }
+    adcgs_trainer_free(&t);
+}
+
+/** A higher price makes the networks' part of the file smaller. */
+static void price_shrinks_networks(void **state)
+{
+    uint64_t bytes[2];
+    for (int i = 0; i < 2; i++) {
+        adcgs_train_config config = small_config();
+        config.slim_at = 0.55f;
+        config.network_rate = i ? 300 : 0;
+        adcgs_trainer *t = run_to(&config, ITERATIONS);
+        adcgs_stream stream;
+        adcgs_buffer out;
+        adcgs_buffer_init(&out);
+        assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
+        assert_int_equal(adcgs_encode_verified(&stream, &out, t->cpu, pool, &error), ADCGS_OK);
+        bytes[i] = stream.bytes.networks;
+        adcgs_buffer_clear(&out);
+        adcgs_stream_clear(&stream, NULL);
+        adcgs_trainer_free(&t);
+    }
+    print_message("networks: %llu bytes at no price, %llu at a high one\n", (unsigned long long)bytes[0],
+                  (unsigned long long)bytes[1]);
+    assert_true(bytes[1] < bytes[0]);
+}
+
+/* ---- Lattices ---- */
+
+/** Bits by layer add up to what the networks take in a file, less shapes and framing. */
+static void lattice_bits_are_the_files(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, ITERATIONS);
+    adcgs_stream stream;
+    adcgs_buffer out;
+    double sum = 0, bits;
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
+        for (int l = 0; t->f->mlp[i].n && l <= t->f->mlp[i].hidden; l++) {
+            assert_int_equal(adcgs_lattice_bits(&t->f->mlp[i], t->f->param[i].p, l, t->f->mlp[i].lattice[l], &bits, &error),
+                             ADCGS_OK);
+            sum += bits / 8;
+        }
+    adcgs_buffer_init(&out);
+    assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_encode_verified(&stream, &out, t->cpu, pool, &error), ADCGS_OK);
+    print_message("layers %.0f bytes, file %llu\n", sum, (unsigned long long)stream.bytes.networks);
+    assert_float_equal(sum, (double)stream.bytes.networks, 0.01 * sum + 150);
+    adcgs_buffer_clear(&out);
+    adcgs_stream_clear(&stream, NULL);
+    adcgs_trainer_free(&t);
+}
+
+static int sum_of_lattices(const adcgs_fmodel *f)
+{
+    int sum = 0;
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
+        for (int l = 0; f->mlp[i].n && l <= f->mlp[i].hidden; l++) {
+            assert_in_range(f->mlp[i].lattice[l], ADCGS_LATTICE_MIN, f->mlp[i].entropy ? ADCGS_E24_BITS : ADCGS_LATTICE_MAX);
+            sum += f->mlp[i].lattice[l];
+        }
+    return sum;
+}
+
+/** The dearer bits are, the coarser the lattices; the choice changes nothing but lattices and takes no luck. */
+static void lattices_follow_lambda(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 149);
+    float *before = calloc(t->f->param[ADCGS_P_OMEGA].n, sizeof *before);
+    int sum[3];
+    assert_non_null(before);
+    memcpy(before, t->f->param[ADCGS_P_OMEGA].p, t->f->param[ADCGS_P_OMEGA].n * sizeof *before);
+    for (int i = 0; i < 3; i++) {
+        t->lambda = (const double[]){ 1e-4, 1, 100 }[i];
+        assert_int_equal(adcgs_trainer_choose_lattices(t, &error), ADCGS_OK);
+        sum[i] = sum_of_lattices(t->f);
+    }
+    print_message("exponents in sum %d, %d, %d\n", sum[0], sum[1], sum[2]);
+    assert_true(sum[0] >= sum[1] && sum[1] > sum[2]);
+    assert_memory_equal(before, t->f->param[ADCGS_P_OMEGA].p, t->f->param[ADCGS_P_OMEGA].n * sizeof *before);
+    t->lambda = 1;
+    assert_int_equal(adcgs_trainer_choose_lattices(t, &error), ADCGS_OK);
+    assert_int_equal(sum_of_lattices(t->f), sum[1]);
+    free(before);
+    adcgs_trainer_free(&t);
+}
+
+/** Weights that stay binary32 are in the file to the bit, and a run may go on with or without from where lattices are due. */
+static void raw_networks_are_exact(void **state)
+{
+    adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 149), *raw;
+    adcgs_buffer state_of_run, out;
+    adcgs_stream stream;
+    adcgs_buffer_init(&state_of_run);
+    adcgs_buffer_init(&out);
+    assert_int_equal(adcgs_trainer_store(t, &state_of_run, &error), ADCGS_OK);
+    config.without_lattice = 1;
+    raw = run_to(&config, 0);
+    assert_int_equal(adcgs_trainer_restore(raw, state_of_run.data, state_of_run.size, &error), ADCGS_OK);
+    go_on(raw, ITERATIONS);
+    assert_int_equal(adcgs_encode_stream(&stream, raw, NULL, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_encode_verified(&stream, &out, raw->cpu, pool, &error), ADCGS_OK);
+    const adcgs_tensor *w = &stream.segments[0].net[ADCGS_ROLE_PREDICTION].layer[0].w;
+    const float *p = raw->f->param[ADCGS_P_THETA].p;
+    assert_int_equal(w->mode, 1);
+    for (size_t i = 0; i < (size_t)w->rows * w->cols; i++)
+        assert_true((uint32_t)w->m[i] == adcgs_float_bits(p[i]));
+    adcgs_stream_clear(&stream, NULL);
+    adcgs_buffer_clear(&out);
+    adcgs_buffer_clear(&state_of_run);
+    adcgs_trainer_free(&raw);
+    adcgs_trainer_free(&t);
+}
+
+/* ---- Narrower networks ---- */
+
+/** Primitives at some time, and the bits of all features. */
+static void outputs(adcgs_trainer *t, float *prim, double *bits)
+{
+    adcgs_rate rate;
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
+        if (t->f->mlp[i].n)
+            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, 1);
+    adcgs_pass_forward(t->pass, t->f, 0.3f, &(adcgs_pass_mode){ .deform = 1 });
+    memcpy(prim, t->pass->prim, 14 * (size_t)t->pass->primitives.n * sizeof *prim);
+    adcgs_pass_rate(t->pass, t->f, &rate);
+    *bits = rate.total;
+}
+
+static void assert_close(const float *a, const float *b, size_t n, float tolerance)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!(fabsf(a[i] - b[i]) <= tolerance * (1 + fabsf(a[i]))))
+            fail_msg("value %zu is %g, expected %g", i, (double)b[i], (double)a[i]);
+}
+
+/** A network without the units that nothing reads computes what it did, and its moments stay with its parameters. */
+static void narrow_networks_compute_the_same(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 100);
+    const size_t n = 14 * (size_t)t->pass->primitives.n;
+    float *before = malloc(n * sizeof *before), *after = malloc(n * sizeof *after);
+    double bits[2];
+    assert_true(before && after);
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
+        const adcgs_mlp *m = &t->f->mlp[i];
+        adcgs_param *p = &t->f->param[i];
+        uint8_t keep[16];
+        if (!m->hidden)
+            continue;
+        randomise(t->f, i, 0.3);
+        for (int u = 0; u < m->width; u++) {
+            keep[u] = u % 3 != i % 3;
+            for (int l = 1; l <= m->hidden; l++)
+                for (int o = 0; o < m->n_out[l] && !keep[u]; o++)
+                    p->p[m->w[l] + (size_t)(o * m->width + u)] = 0;
+        }
+        for (size_t j = 0; j < p->n; j++) {
+            p->m[j] = 2 * p->p[j];
+            p->v[j] = p->p[j] * p->p[j];
+        }
+        outputs(t, before, &bits[0]);
+        const size_t all = p->n;
+        adcgs_fmodel_narrow(t->f, i, keep);
+        assert_true(m->width == (i % 3 == 0 ? 10 : 11) && p->n == m->n && p->n < all);
+        outputs(t, after, &bits[1]);
+        assert_close(before, after, n, 1e-5f);
+        assert_float_equal(bits[0], bits[1], 1e-4 * bits[0]);
+        for (size_t j = 0; j < p->n; j++)
+            assert_true(p->m[j] == 2 * p->p[j] && p->v[j] == p->p[j] * p->p[j]);
+    }
+    free(before);
+    free(after);
+    adcgs_trainer_free(&t);
+}
+
+/** The others take over the work of a unit that does a multiple of what one of them does, and of one that never changes. */
+static void silent_units_are_replaced(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 100);
+    const size_t n = 14 * (size_t)t->pass->primitives.n;
+    float *before = malloc(n * sizeof *before), *after = malloc(n * sizeof *after);
+    double bits;
+    assert_true(before && after);
+    for (int i = ADCGS_P_THETA; i <= ADCGS_P_VARPI; i++) {
+        const adcgs_mlp *m = &t->f->mlp[i];
+        float *p = t->f->param[i].p;
+        adcgs_gram gram;
+        randomise(t->f, i, 0.3);
+        for (int l = 0; l < m->hidden; l++) {
+            for (int j = 0; j < m->in[l]; j++) {
+                p[m->w[l] + (size_t)(3 * m->in[l] + j)] = 2 * p[m->w[l] + (size_t)(5 * m->in[l] + j)];
+                p[m->w[l] + (size_t)(7 * m->in[l] + j)] = 0;
+            }
+            p[m->b[l] + 3] = 2 * p[m->b[l] + 5];
+            p[m->b[l] + 7] = 0.5f;
+        }
+        outputs(t, before, &bits);
+        assert_int_equal(adcgs_gram_take(&gram, t->f, i, &error), ADCGS_OK);
+        adcgs_mlp_silence(m, p, &gram, 3);
+        adcgs_mlp_silence(m, p, &gram, 7);
+        adcgs_gram_clear(&gram);
+        for (int l = 1; l <= m->hidden; l++)
+            for (int o = 0; o < m->n_out[l]; o++)
+                assert_true(p[m->w[l] + (size_t)(o * m->width + 3)] == 0 && p[m->w[l] + (size_t)(o * m->width + 7)] == 0);
+        outputs(t, after, &bits);
+        assert_close(before, after, n, 2e-3f);
+    }
+    free(before);
+    free(after);
+    adcgs_trainer_free(&t);
+}
+
+/** A run with networks of other widths takes them over, wider or narrower. */
+static void checkpoints_hold_widths(const adcgs_train_config *config, const adcgs_trainer *t)
+{
+    adcgs_trainer *other = run_to(config, 110);
+    adcgs_buffer wide, narrow, again;
+    adcgs_buffer_init(&wide);
+    adcgs_buffer_init(&narrow);
+    adcgs_buffer_init(&again);
+    assert_int_equal(adcgs_trainer_store(other, &wide, &error), ADCGS_OK);
+    assert_int_equal(adcgs_trainer_store(t, &narrow, &error), ADCGS_OK);
+    assert_int_equal(adcgs_trainer_restore(other, narrow.data, narrow.size, &error), ADCGS_OK);
+    assert_int_equal(adcgs_trainer_store(other, &again, &error), ADCGS_OK);
+    assert_true(again.size == narrow.size && again.size < wide.size && !memcmp(again.data, narrow.data, again.size));
+    again.size = 0;
+    assert_int_equal(adcgs_trainer_restore(other, wide.data, wide.size, &error), ADCGS_OK);
+    assert_int_equal(adcgs_trainer_store(other, &again, &error), ADCGS_OK);
+    assert_true(again.size == wide.size && !memcmp(again.data, wide.data, again.size));
+    adcgs_buffer_clear(&again);
+    adcgs_buffer_clear(&narrow);
+    adcgs_buffer_clear(&wide);
+    adcgs_trainer_free(&other);
+}
+
+/** Units go when bits are dear, and stay when they cost nothing; a run goes on either way and ends in a file. */
+static void units_go_when_bits_are_dear(void **state)
+{
+    adcgs_train_config config = small_config();
+    config.params.adaptive_steps = 1;
+    for (int dear = 0; dear < 2; dear++) {
+        adcgs_trainer *t = run_to(&config, 110);
+        adcgs_stream stream;
+        adcgs_buffer out;
+        int units = 0, all = 0;
+        t->lambda = dear ? 1000 : 0;
+        assert_int_equal(adcgs_trainer_slim(t, &error), ADCGS_OK);
+        for (int i = ADCGS_P_THETA; i <= ADCGS_P_VARPI; i++, all += 16)
+            units += t->f->mlp[i].width;
+        print_message("%d of %d units left\n", units, all);
+        assert_true(dear ? units < all / 2 : units > all / 2);
+        assert_int_equal(t->f->mlp[ADCGS_P_E_STEPS].width, 16);
+        t->lambda = (double)config.lambda;
+        checkpoints_hold_widths(&config, t);
+        go_on(t, ITERATIONS);
+        adcgs_buffer_init(&out);
+        assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
+        if (adcgs_encode_verified(&stream, &out, t->cpu, pool, &error) != ADCGS_OK)
+            fail_msg("%s", error.text);
+        adcgs_buffer_clear(&out);
+        adcgs_stream_clear(&stream, NULL);
+        adcgs_trainer_free(&t);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(weight_rate_has_its_gradient),
+        cmocka_unit_test(weight_rate_is_close_to_the_coder),
+        cmocka_unit_test(price_shrinks_networks),
+        cmocka_unit_test(lattice_bits_are_the_files),
+        cmocka_unit_test(lattices_follow_lambda),
+        cmocka_unit_test(raw_networks_are_exact),
+        cmocka_unit_test(narrow_networks_compute_the_same),
+        cmocka_unit_test(silent_units_are_replaced),
+        cmocka_unit_test(units_go_when_bits_are_dear),
+    };
+    return cmocka_run_group_tests_name("nets", tests, setup, teardown);
+}
