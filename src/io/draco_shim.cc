@@ -39,6 +39,7 @@ adcgs_status parse(adcgs_points *out, const uint8_t *data, size_t bytes, const c
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the Draco file has no positions with x, y and z", path);
     ADCGS_TRY(adcgs_points_alloc(out, cloud.num_points(), path, error));
     const bool bytes_per_colour = colour && colour->data_type() == draco::DT_UINT8;
+    out->coloured = bytes_per_colour;
     for (uint32_t i = 0; i < out->n; i++) {
         read_values<float>(position, i, out->position[i]);
         if (bytes_per_colour)

@@ -262,6 +262,7 @@ static adcgs_status read_vertices(reader *r, const element *e, adcgs_points *out
     if ((roles & 7) != 7)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: the vertices have no x, y and z", r->path);
     ADCGS_TRY(adcgs_points_alloc(out, e->count, r->path, r->error));
+    out->coloured = roles >> ROLE_RED != 0;
     const adcgs_status status = read_element(r, e, out);
     if (status != ADCGS_OK)
         adcgs_points_free(out);

@@ -14,7 +14,8 @@ extern "C" {
 typedef struct adcgs_points {
     uint32_t n;
     float (*position)[3]; /**< finite */
-    uint8_t (*colour)[3]; /**< mid-grey where the file has none */
+    uint8_t (*colour)[3];
+    int coloured;         /**< 0: the file has no colours, and they are mid-grey */
 } adcgs_points;
 
 /** Uninitialised positions, grey colours. */

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 13 };
+enum { FORMAT = 14 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -50,7 +50,8 @@ static void walk_options(walk *w, const adcgs_train_config *c)
                                (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
                                c->without_refinement, c->without_rounding };
     const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->rigid_weight, c->still_below,
-                           c->rdo_strength, c->dropout, c->network_rate, c->quarter_until, c->half_until, c->deform_from,
+                           c->rdo_strength, c->dropout, c->network_rate, c->window_begin,
+                           c->window_until, c->quarter_until, c->half_until, c->deform_from,
                            c->fine_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->slim_at, c->decide_at,
                            c->round_from, c->freeze_from };
     for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
@@ -128,6 +129,9 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->lr_scale, sizeof t->lr_scale);
     visit(w, &t->lambda, sizeof t->lambda);
     visit(w, &t->control, sizeof t->control);
+    visit(w, &t->window.n, sizeof t->window.n);
+    visit(w, &t->window.first, sizeof t->window.first);
+    visit(w, &t->window.last, sizeof t->window.last);
     visit(w, &t->rollbacks, sizeof t->rollbacks);
     visit(w, &t->mean_loss, sizeof t->mean_loss);
     visit(w, &t->mean_mse, sizeof t->mean_mse);

@@ -28,6 +28,8 @@ static const adcgs_train_config base = {
     .rdo_strength = 0,
     .dropout = 0.1f,
     .still_below = 3,
+    .window_begin = 0.1f,
+    .window_until = 0.25f,
     .quarter_until = 0.25f,
     .half_until = 0.55f,
     .deform_from = 0.01f,
@@ -74,7 +76,7 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         config->shape.theta_width = config->shape.entropy_width = 32;
         config->shape.entropy_hidden = 2;
         config->shape.omega_width = config->shape.varpi_width = 128;
-        config->quarter_until = config->half_until = 0;
+        config->window_until = config->quarter_until = config->half_until = 0;
         config->deform_from = config->fine_from = 0.10f;
         config->noise_from = config->rate_from = 0.125f;
         config->grow_from = 0.0125f;

@@ -160,7 +160,7 @@ static void cloud_clear(cloud *c)
     free(c->rgb);
 }
 
-/** The scene's own points, in scene units, evenly thinned. */
+/** The scene's own points, in scene units, evenly thinned; those without a colour take that of the pictures. */
 static void given_points(cloud *c, const sight *s, uint32_t wanted)
 {
     const adcgs_scene_points *p = &s->scene->points;
@@ -175,9 +175,10 @@ static void given_points(cloud *c, const sight *s, uint32_t wanted)
         }
         if (far)
             continue;
+        const glimpse seen = p->coloured ? (glimpse){ 0 } : look_at(s, x);
         for (int a = 0; a < 3; a++) {
             c->x[c->n][a] = x[a];
-            c->rgb[c->n][a] = p->colour ? p->colour[from][a] / 255.0 : 0.5;
+            c->rgb[c->n][a] = p->coloured ? p->colour[from][a] / 255.0 : seen.rgb[a];
         }
         c->n++;
     }

@@ -32,6 +32,25 @@ adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
     return t->config.rigid_weight > 0 ? adcgs_rigid_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
 }
 
+static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
+{
+    const double duration = t->scene->duration;
+    t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
+    t->views = calloc(t->n_views, sizeof *t->views);
+    float *times = calloc(t->n_views, sizeof *times);
+    adcgs_status status = ADCGS_OK;
+    if (!t->views || !times)
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u views", t->n_views);
+    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
+        const double time = t->scene->views[ADCGS_SPLIT_TRAIN][i].time;
+        times[i] = t->views[i].t = duration > 0 ? (float)fmin(fmax(time / duration, 0), 1) : 0;
+    }
+    if (status == ADCGS_OK)
+        status = adcgs_window_create(&t->window, times, t->n_views, error);
+    free(times);
+    return status;
+}
+
 static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_train_config *c = &t->config;
@@ -56,10 +75,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_raster_create(&t->raster, t->cpu, t->pool, NULL, error));
     ADCGS_TRY(adcgs_raster_back_create(&t->back, t->cpu, t->pool, error));
     ADCGS_TRY(adcgs_loss_create(&t->loss, t->cpu, t->pool, error));
-    t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
-    t->views = calloc(t->n_views, sizeof *t->views);
-    if (!t->views)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u views", t->n_views);
+    ADCGS_TRY(create_views(t, error));
     return adcgs_trainer_resize(t, error);
 }
 
@@ -109,6 +125,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_raster_back_free(&t->back);
     adcgs_loss_free(&t->loss);
     adcgs_rigid_clear(&t->rigid);
+    adcgs_window_clear(&t->window);
     adcgs_buffer_clear(&t->snapshot);
     free(t);
     *trainer = NULL;
@@ -135,7 +152,6 @@ static void load_view(void *arg, int i, int thread)
     error->status = adcgs_scene_load(t->scene, from, job->divide, &to->rgb, &camera, error);
     if (error->status == ADCGS_OK)
         error->status = adcgs_view_init(&to->view, &camera, t->origin, t->scale, error);
-    to->t = t->scene->duration > 0 ? (float)fmin(fmax(from->time / t->scene->duration, 0), 1) : 0;
     job->pixels[i] = error->status == ADCGS_OK ? (size_t)camera.width * (size_t)camera.height : 0;
 }
 
@@ -169,6 +185,8 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
 /** View of an iteration: every epoch visits all views once, in an order of its own (a Feistel walk over the index). */
 static uint32_t pick_view(const adcgs_trainer *t, uint32_t iteration)
 {
+    if (t->window.n < t->n_views)
+        return adcgs_window_pick(&t->window, t->config.seed, iteration);
     const uint32_t n = t->n_views, epoch = iteration / n;
     int half = 1;
     while ((uint64_t)1 << (2 * half) < n)
@@ -362,11 +380,18 @@ static int wanted_divide(const adcgs_trainer *t, double progress)
     return t->config.scale * (progress < t->config.quarter_until ? 4 : progress < t->config.half_until ? 2 : 1);
 }
 
+/** Fraction of the views, by their distance from the middle of time, that are trained on. */
+static double window_of(const adcgs_train_config *c, double progress)
+{
+    return progress < c->window_until ? c->window_begin + (1 - c->window_begin) * progress / c->window_until : 1;
+}
+
 static adcgs_status before_iteration(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
     if (wanted_divide(t, progress) != t->divide)
         ADCGS_TRY(adcgs_trainer_load_views(t, wanted_divide(t, progress), error));
+    adcgs_window_grow(&t->window, window_of(c, progress), t->f);
     if (!c->without_refinement && t->iteration && t->iteration % c->refine_every == 0 && progress >= c->grow_from &&
         progress < c->grow_until)
         ADCGS_TRY(adcgs_trainer_refine(t, progress, error));

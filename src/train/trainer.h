@@ -14,6 +14,7 @@
 #include "train/rdo.h"
 #include "train/rigid.h"
 #include "train/schedule.h"
+#include "train/window.h"
 
 /** What an observer is told. Bits are estimates until the stream is written. */
 typedef struct adcgs_train_report {
@@ -59,6 +60,7 @@ typedef struct adcgs_trainer {
     adcgs_raster_back *back;
     adcgs_loss *loss;
     adcgs_rigid rigid;
+    adcgs_window window;
     uint32_t n_views;
     adcgs_train_view *views;
     int divide;              /* of the views loaded; 0: none */

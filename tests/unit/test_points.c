@@ -21,6 +21,7 @@ static void expect_points(const char *text, size_t bytes, uint32_t n, const floa
     assert_int_equal(points.n, n);
     assert_memory_equal(points.position[n - 1], position, 3 * sizeof *position);
     assert_memory_equal(points.colour[n - 1], colour, 3);
+    assert_int_equal(points.coloured, colour[0] != colour[2]);
     adcgs_points_free(&points);
 }
 
@@ -216,6 +217,7 @@ static void test_draco(void **state)
     adcgs_points points;
     assert_int_equal(adcgs_draco_parse(&points, file, sizeof file, "d.drc", &error), ADCGS_OK);
     assert_int_equal(points.n, 4);
+    assert_int_equal(points.coloured, 1);
     for (int i = 0; i < 4; i++) {
         const float *p = points.position[i];
         assert_true(p[0] == (float)i && p[1] == -2.0f * (float)i && p[2] == 0.5f);

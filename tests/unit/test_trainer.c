@@ -571,6 +571,44 @@ static void uncompressed_models_lose_nothing(void **state)
     adcgs_trainer_free(&other);
 }
 
+/* ---- The part of time that is trained on ---- */
+
+static float *time_row(adcgs_trainer *t, int row)
+{
+    return t->f->param[ADCGS_P_TIME].p + (size_t)row * t->f->params.time_width;
+}
+
+/** Views come in from the middle of time outwards; a row reached begins where its neighbour stands, others stay. */
+static void windows_grow_outwards(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, pool);
+    adcgs_window *w = &t->window;
+    const size_t bytes = t->f->params.time_width * sizeof(float);
+    const int rows = t->f->params.time_rows;
+    assert_true(rows >= 6);
+    adcgs_window_grow(w, 0.1, t->f);
+    const int first = w->first, last = w->last;
+    assert_true(w->n > 0 && w->n < t->n_views && first > 0 && last < rows - 1);
+    for (int i = 0; i < 100; i++) {
+        const float at = t->views[adcgs_window_pick(w, 1, (uint32_t)i)].t * (float)(rows - 1);
+        assert_true(at >= (float)first && at <= (float)last);
+    }
+    for (int r = 0; r < rows; r++)
+        time_row(t, r)[0] = (float)r;
+    adcgs_window_grow(w, 0.6, t->f);
+    assert_true(w->first < first && w->last > last && w->last - w->first < rows - 1);
+    adcgs_window_grow(w, 0.2, t->f); /* takes nothing back */
+    for (int r = 0; r < rows; r++)
+        if (r < w->first || r > w->last)
+            assert_true(time_row(t, r)[0] == (float)r);
+        else
+            assert_memory_equal(time_row(t, r), time_row(t, r < first ? first : r > last ? last : r), bytes);
+    adcgs_window_grow(w, 1, t->f);
+    assert_true(w->n == t->n_views && w->first == 0 && w->last == rows - 1);
+    adcgs_trainer_free(&t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -587,6 +625,7 @@ int main(void)
         cmocka_unit_test(rate_reaches_every_weight),
         cmocka_unit_test(still_models_carry_no_motion),
         cmocka_unit_test(uncompressed_models_lose_nothing),
+        cmocka_unit_test(windows_grow_outwards),
     };
     return cmocka_run_group_tests_name("trainer", tests, setup, teardown);
 }
