@@ -10,7 +10,7 @@ static const adcgs_train_config base = {
     .iterations = 20000,
     .seed = 1,
     .scale = 1,
-    .lambda = 0.02f,
+    .lambda = 0.1f,
     .ssim_weight = 0.2f,
     .params = { .k = 6, .n_fv = 32, .n_fg = 8, .chunks = 4, .n_eta = 4, .octaves = 5, .fine_uses_fv = 1, .coarse_rotation = 1,
                 .time_rows = 40, .time_width = 16 },
@@ -18,12 +18,12 @@ static const adcgs_train_config base = {
                .entropy_width = 24, .entropy_hidden = 1, .step_fv = 0.1f, .step_fg = 0.1f, .step_sigma = 0.06f,
                .step_colour = 0.02f, .depth = 11 },
     .start_anchors = 1000,
-    .max_anchors = 2500,
+    .max_anchors = 4000,
     .grow_threshold = 0.0003f,
     .prune_opacity = 0.02f,
     .refine_every = 100,
     .rate_period = 4,
-    .network_rate = 0,
+    .network_rate = 1,
     .rigid_weight = 0.02f,
     .rdo_strength = 0,
     .dropout = 0.1f,
@@ -38,7 +38,7 @@ static const adcgs_train_config base = {
     .grow_until = 0.50f,
     .noise_from = 0.25f,
     .rate_from = 0.30f,
-    .slim_at = 2,
+    .slim_at = 0.52f,
     .decide_at = 0.52f,
     .round_from = 0.75f,
     .freeze_from = 0.90f,
@@ -57,12 +57,12 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
     if (!strcmp(name, "fast"))
         return ADCGS_OK;
     if (!strcmp(name, "medium")) {
-        config->iterations = 60000;
-        config->max_anchors = 4000;
+        config->iterations = 40000;
+        config->max_anchors = 5000;
         return ADCGS_OK;
     }
     if (!strcmp(name, "slow")) {
-        config->iterations = 120000;
+        config->iterations = 100000;
         config->max_anchors = 6000;
         return ADCGS_OK;
     }
@@ -81,7 +81,8 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         config->noise_from = config->rate_from = 0.125f;
         config->grow_from = 0.0125f;
         config->grow_until = 0.3125f;
-        config->rigid_weight = config->dropout = config->still_below = 0;
+        config->rigid_weight = config->dropout = config->still_below = config->network_rate = 0;
+        config->slim_at = 2;
         return ADCGS_OK;
     }
     return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown preset '%s': expected draft, fast, medium, slow or paper", name);

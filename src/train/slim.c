@@ -12,8 +12,9 @@ enum { SAMPLES = 4096, WIDTH_MAX = ADCGS_NET_WIDTH_MAX };
 /** What a weight will cost on its lattice, about, in bits. */
 #define WEIGHT_BITS 5.0
 
-/** Share of the loss by removal that is left when the rest of the run has made up for it. */
+/** Shares of the loss by removal that are left when the rest of the run has made up for it: of pictures, and of bits. */
 #define LASTING 0.1
+#define LASTING_BITS 0.4
 
 /* ---- Activations at samples ---- */
 
@@ -268,7 +269,8 @@ static adcgs_status judge(slimming *s, int *better, adcgs_error *error)
     ADCGS_TRY(adcgs_trainer_distortion(s->t, s->group, &now, error));
     if (s->left == s->width)
         s->before = now;
-    const double cost = LASTING * (now - s->before) + bits_left(s);
+    const double lasting = f->mlp[s->group].entropy ? LASTING_BITS : LASTING;
+    const double cost = lasting * (now - s->before) + bits_left(s);
     *better = s->left == s->width || cost < s->least;
     if (!*better)
         return ADCGS_OK;
