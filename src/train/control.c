@@ -13,9 +13,9 @@
 /* ---- What fits into a size ---- */
 
 /** Bytes of headers, cameras and notes, at most about; a plausible share of networks; anchors as the coder leaves them. */
-enum { OTHER_BYTES = 1700, ANCHOR_BITS = 300, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
+enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
 #define NETWORKS_SHARE 0.25
-#define LAMBDA_LEAST 1e-3f /* to begin with: factors move it */
+#define LAMBDA_FIRST 0.02f /* from where a target steers it */
 #define ANCHORS_GROWTH 4 /* a large size may raise a preset's budget so many times */
 
 /** Weights of all networks under a configuration. */
@@ -63,7 +63,7 @@ adcgs_status adcgs_control_plan(adcgs_train_config *c, adcgs_error *error)
 {
     double networks;
     if (c->target != ADCGS_TARGET_NONE)
-        c->lambda = fmaxf(c->lambda, LAMBDA_LEAST);
+        c->lambda = LAMBDA_FIRST;
     if (c->target != ADCGS_TARGET_SIZE)
         return ADCGS_OK;
     ADCGS_TRY(plan_networks(c, &networks, error));

@@ -24,7 +24,7 @@ typedef struct adcgs_train_config {
     double time_limit;     /**< seconds; > 0: progress is measured in time, and the result depends on the machine */
     uint64_t seed;
     int scale;             /**< images are divided by this integer before training */
-    float lambda;          /**< loss per mebibyte (2^23 bits) of estimated features */
+    float lambda;          /**< loss per mebibyte (2^23 bits) of estimated features and networks */
     adcgs_train_target target;
     double target_value;   /**< bytes or dB */
     uint8_t own_anchors, own_networks; /**< max_anchors, the networks' widths were chosen by hand: no target changes them */

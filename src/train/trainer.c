@@ -91,9 +91,9 @@ adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene,
     t->cpu = cpu;
     t->pool = pool;
     t->lr_scale = 1;
-    t->lambda = (double)config->lambda;
     adcgs_buffer_init(&t->snapshot);
     const adcgs_status status = create_parts(t, error);
+    t->lambda = (double)t->config.lambda;
     if (status != ADCGS_OK)
         adcgs_trainer_free(&t);
     *out = t;
@@ -244,12 +244,13 @@ static void adam_piece(void *arg, int i, int thread)
 
 /**
  * Loss per bit of a network's weights. They cost nothing until networks have found their form: what begins near 0 could not
- * leave it. The weights of all iterations are coded once.
+ * leave it. The weights of all iterations are coded once. A run that has landed on a size keeps what networks take of it.
  */
 static float weight_price(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
-    return progress >= c->slim_at && !c->without_rate ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
+    const int landed = t->frozen && c->target == ADCGS_TARGET_SIZE;
+    return progress >= c->slim_at && !c->without_rate && !landed ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
 }
 
 static void update(adcgs_trainer *t, double progress)

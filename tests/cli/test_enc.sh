@@ -96,7 +96,7 @@ layer=$(sed -n 's/.*"layer1": \([0-9]*\).*/\1/p' "$dir/one.out")
 [ -n "$chunk" ] && [ "$layer" -ge "$chunk" ] && [ "$layer" -le $((chunk + chunk / 100 + 20)) ] ||
     bad "f_g1 of the log is '$chunk', layer 1 of the file has '$layer' bytes"
 grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json tells another size"
-grep -q '"lambda": 0.02' "$dir/one.out" || bad "--json does not tell lambda"
+grep -q '"lambda": 0.1' "$dir/one.out" || bad "--json does not tell lambda"
 [ ! -s "$dir/one.err" ] || { bad "messages without a terminal"; cat "$dir/one.err"; }
 [ ! -s "$dir/two.out" ] || bad "standard output without --json"
 ./adcgs-dec "$dir/one.adcgs" --md5 >/dev/null 2>&1 || bad "the stream does not decode"
@@ -151,7 +151,7 @@ expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --seed 2 
 # shellcheck disable=SC2086
 expect 4 "past its beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" $short --resume "$dir/late"
 expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --without rate
-expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1
+expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,slim_at=1
 expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
 
 # Stages left out; what a scene does not need is not in its stream.

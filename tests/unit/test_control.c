@@ -125,7 +125,7 @@ static void lambda_follows_the_bytes(void **state)
             last = t->lambda;
             t->stats.n = 1000;
         }
-        assert_true(much ? last > 20 * (double)config.lambda : last < 0.05 * (double)config.lambda);
+        assert_true(much ? last > 20 * (double)t->config.lambda : last < 0.05 * (double)t->config.lambda);
         assert_true(much ? t->f->n < n / 2 && t->f->n > 0 : t->f->n == n);
         adcgs_trainer_free(&t);
     }
