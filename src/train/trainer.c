@@ -182,7 +182,10 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     return t->image && t->grad ? ADCGS_OK : ADCGS_ERR_MEMORY;
 }
 
-/** View of an iteration: every epoch visits all views once, in an order of its own (a Feistel walk over the index). */
+/**
+ * View of an iteration. Once all of time is trained on, every epoch visits all views once, in an order of its own (a Feistel walk
+ * over the index).
+ */
 static uint32_t pick_view(const adcgs_trainer *t, uint32_t iteration)
 {
     if (t->window.n < t->n_views)

@@ -1,32 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Steering: what is planned for a size, how lambda follows, where runs land, and that stopping changes nothing. */
-#include "outside_files.h"
+#include "tiny_scene.h"
 
 #include "encode/encode.h"
-#include "scenes/scenes.h"
-#include "train/trainer.h"
 
 enum { ITERATIONS = 200 };
-
-static adcgs_scene *scene;
-static adcgs_pool *pool;
-
-static int setup(void **state)
-{
-    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
-    const adcgs_scene_options options = { .points_path = NULL };
-    if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
-        return -1;
-    return adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
-           adcgs_scene_open(&scene, folder, &options, &error) != ADCGS_OK;
-}
-
-static int teardown(void **state)
-{
-    adcgs_scene_free(&scene);
-    adcgs_pool_free(&pool);
-    return remove_folder(state);
-}
 
 static adcgs_train_config config_for(adcgs_train_target target, double value)
 {
@@ -146,11 +124,6 @@ static uint64_t final_bytes(const adcgs_trainer *t)
     return bytes.total;
 }
 
-static int stop_at(void *user, const adcgs_train_report *r)
-{
-    return r->iteration >= *(const uint32_t *)user;
-}
-
 static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
 {
     int stopped;
@@ -253,5 +226,5 @@ int main(void)
         cmocka_unit_test(runs_land_on_qualities),
         cmocka_unit_test(stopping_changes_nothing),
     };
-    return cmocka_run_group_tests_name("control", tests, setup, teardown);
+    return cmocka_run_group_tests_name("control", tests, open_scene, close_scene);
 }

@@ -3,11 +3,10 @@
  * What the networks cost and what is done about it: the rate of their weights
  * and its gradient, the choice of lattices, weights that stay binary32.
  */
-#include "outside_files.h"
+#include "tiny_scene.h"
 
 #include "encode/encode.h"
 #include "encode/quantise.h"
-#include "scenes/scenes.h"
 #include "train/lattice.h"
 #include "train/random.h"
 #include "train/slim.h"
@@ -16,26 +15,6 @@
 #include <math.h>
 
 enum { ITERATIONS = 200 };
-
-static adcgs_scene *scene;
-static adcgs_pool *pool;
-
-static int setup(void **state)
-{
-    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
-    const adcgs_scene_options options = { .points_path = NULL };
-    if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
-        return -1;
-    return adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
-           adcgs_scene_open(&scene, folder, &options, &error) != ADCGS_OK;
-}
-
-static int teardown(void **state)
-{
-    adcgs_scene_free(&scene);
-    adcgs_pool_free(&pool);
-    return remove_folder(state);
-}
 
 static adcgs_train_config small_config(void)
 {
@@ -51,11 +30,6 @@ static adcgs_train_config small_config(void)
     c.params.n_fv = 12;
     c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 16;
     return c;
-}
-
-static int stop_at(void *user, const adcgs_train_report *r)
-{
-    return r->iteration >= *(const uint32_t *)user;
 }
 
 static void go_on(adcgs_trainer *t, uint32_t stop)
@@ -414,5 +388,5 @@ int main(void)
         cmocka_unit_test(silent_units_are_replaced),
         cmocka_unit_test(units_go_when_bits_are_dear),
     };
-    return cmocka_run_group_tests_name("nets", tests, setup, teardown);
+    return cmocka_run_group_tests_name("nets", tests, open_scene, close_scene);
 }

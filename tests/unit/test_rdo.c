@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Levels chosen by rate and distortion: the choice of one, its curvature, and what becomes of it in a stream. */
-#include "outside_files.h"
+#include "tiny_scene.h"
 
 #include "encode/encode.h"
 #include "encode/quantise.h"
 #include "encode/rdo.h"
-#include "scenes/scenes.h"
 #include "train/curvature.h"
 #include "train/random.h"
 
@@ -13,14 +12,7 @@
 
 static const char small[] = "max_anchors=150,start_anchors=100,refine_every=20,k=4,n_fv=12,theta_width=16,omega_width=16,"
                             "varpi_width=16,entropy_width=16,lambda=0.05";
-static adcgs_scene *scene;
-static adcgs_pool *pool;
 static adcgs_trainer *trainer; /**< stopped just before its values are frozen */
-
-static int stop_at(void *user, const adcgs_train_report *r)
-{
-    return r->iteration >= *(const uint32_t *)user;
-}
 
 static adcgs_trainer *make(void)
 {
@@ -37,14 +29,9 @@ static adcgs_trainer *make(void)
 
 static int setup(void **state)
 {
-    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
-    const adcgs_scene_options options = { .points_path = NULL };
     uint32_t stop = 360;
     int stopped;
-    if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
-        return -1;
-    if (adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
-        adcgs_scene_open(&scene, folder, &options, &error) != ADCGS_OK)
+    if (open_scene(state) != 0)
         return -1;
     trainer = make();
     return adcgs_trainer_run(trainer, stop_at, &stop, &stopped, &error) != ADCGS_OK || trainer->frozen || !trainer->rounding;
@@ -53,9 +40,7 @@ static int setup(void **state)
 static int teardown(void **state)
 {
     adcgs_trainer_free(&trainer);
-    adcgs_scene_free(&scene);
-    adcgs_pool_free(&pool);
-    return remove_folder(state);
+    return close_scene(state);
 }
 
 /** A trainer of its own in the common state, frozen if wanted. */

@@ -3,7 +3,7 @@
  * Whole training runs in miniature: stopping and going on, refinement, recovery
  * from what is not a number, and the numbers that end up in a stream.
  */
-#include "outside_files.h"
+#include "tiny_scene.h"
 
 #include "encode/encode.h"
 #include "encode/quantise.h"
@@ -11,32 +11,10 @@
 #include "geom/geom.h"
 #include "metric/metric.h"
 #include "model/latents_priv.h"
-#include "scenes/scenes.h"
-#include "train/trainer.h"
 
 #include <math.h>
 
 enum { ITERATIONS = 200 };
-
-static adcgs_scene *scene;
-static adcgs_pool *pool;
-
-static int setup(void **state)
-{
-    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
-    const adcgs_scene_options options = { .points_path = NULL };
-    if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
-        return -1;
-    return adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
-           adcgs_scene_open(&scene, folder, &options, &error) != ADCGS_OK;
-}
-
-static int teardown(void **state)
-{
-    adcgs_scene_free(&scene);
-    adcgs_pool_free(&pool);
-    return remove_folder(state);
-}
 
 static adcgs_train_config small_config(void)
 {
@@ -97,11 +75,6 @@ static int all_finite(const adcgs_fmodel *f)
 }
 
 /* ---- Checkpoints ---- */
-
-static int stop_at(void *user, const adcgs_train_report *r)
-{
-    return r->iteration >= *(const uint32_t *)user;
-}
 
 /** In each stage: a restored run is the stored one to the bit, and both end where a run that never stopped ends. */
 static void restored_runs_go_on_in_lockstep(void **state)
@@ -627,5 +600,5 @@ int main(void)
         cmocka_unit_test(uncompressed_models_lose_nothing),
         cmocka_unit_test(windows_grow_outwards),
     };
-    return cmocka_run_group_tests_name("trainer", tests, setup, teardown);
+    return cmocka_run_group_tests_name("trainer", tests, open_scene, close_scene);
 }

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The tiny scene in a folder of its own, three threads, and runs that stop where they are told: for tests that train. */
+#ifndef ADCGS_TESTS_TINY_SCENE_H
+#define ADCGS_TESTS_TINY_SCENE_H
+
+#include "outside_files.h"
+
+#include "scenes/scenes.h"
+#include "train/trainer.h"
+
+static adcgs_scene *scene;
+static adcgs_pool *pool;
+
+static int open_scene(void **state)
+{
+    const adcgs_scenes_options scene_options = { .name = "tiny", .width = 32, .height = 32, .format = "ppm" };
+    const adcgs_scene_options options = { .points_path = NULL };
+    if (make_folder(state) != 0 || adcgs_pool_create(&pool, 3, &error) != ADCGS_OK)
+        return -1;
+    return adcgs_scenes_write(folder, &scene_options, NULL, NULL, NULL, &error) != ADCGS_OK ||
+           adcgs_scene_open(&scene, folder, &options, &error) != ADCGS_OK;
+}
+
+static int close_scene(void **state)
+{
+    adcgs_scene_free(&scene);
+    adcgs_pool_free(&pool);
+    return remove_folder(state);
+}
+
+/** An observer: stop at the iteration that user points to. */
+static int stop_at(void *user, const adcgs_train_report *r)
+{
+    return r->iteration >= *(const uint32_t *)user;
+}
+
+#endif
