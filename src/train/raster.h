@@ -13,7 +13,8 @@
 typedef struct adcgs_raster_grads {
     float *mean[3], *scale[3], *rotation[4], *opacity, *colour[3];
     float *weight;      /**< sum over pixels of alpha*T: temporal significance Psi(k,t) (paper section 3.5) */
-    float *screen;      /**< length of (sum over pixels of |dL/du|, of |dL/dv|), each times half the image size */
+    /** length of (sum over pixels of |dL/du|, of |dL/dv|), each times half the image size; NULL: not wanted, which saves time */
+    float *screen;
 } adcgs_raster_grads;
 
 typedef struct adcgs_raster_back adcgs_raster_back;

@@ -61,34 +61,52 @@ LANES_INLINE void alpha_block(tile_state *s, uint32_t turn, const adcgs_splat2d 
     vf_store(s->alpha[turn][block], splat_alpha(g, dx, dy));
 }
 
-/* Adds a block's part to the sums of a splat; returns whether light is left. */
-LANES_INLINE int back_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block, vf sum[12])
+/* A splat in a block: e = alpha * dL/dalpha, weight = alpha * T, and the pixels' offsets from its centre. */
+typedef struct passage {
+    vf e, weight, dx, dy;
+} passage;
+
+/* Light of a block passes a splat; returns whether any is left. */
+LANES_INLINE int pass_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block, passage *p)
 {
     const vf red = vf_load(s->grad[block][0]), green = vf_load(s->grad[block][1]), blue = vf_load(s->grad[block][2]);
-    const vf t = vf_load(s->t[block]), alpha = vf_load(s->alpha[turn][block]);
-    const vf dx = vf_sub(vf_load(s->x[block]), vf_set1(g->x)), dy = vf_sub(vf_load(s->y[block]), vf_set1(g->y));
-    const vf weight = vf_mul(alpha, t);
+    const vf t = vf_load(s->t[block]), alpha = vf_load(s->alpha[turn][block]), weight = vf_mul(alpha, t);
     const vf toward = vf_fma(vf_set1(g->rgb[2]), blue, vf_fma(vf_set1(g->rgb[1]), green, vf_mul(vf_set1(g->rgb[0]), red)));
     const vf behind = vf_fnma(weight, toward, vf_load(s->behind[block]));
     const vf through = vf_fnma(alpha, t, t);
-    const vf e = vf_mul(alpha, vf_sub(vf_mul(t, toward), vf_div(behind, vf_sub(vf_set1(1.0f), alpha))));
-    const vf ex = vf_mul(e, dx), ey = vf_mul(e, dy), b = vf_set1(g->b);
-    const vf u = vf_fma(vf_set1(2.0f * g->a), ex, vf_mul(b, ey)), v = vf_fma(vf_set1(2.0f * g->c), ey, vf_mul(b, ex));
+    p->e = vf_mul(alpha, vf_sub(vf_mul(t, toward), vf_div(behind, vf_sub(vf_set1(1.0f), alpha))));
+    p->weight = weight;
+    p->dx = vf_sub(vf_load(s->x[block]), vf_set1(g->x));
+    p->dy = vf_sub(vf_load(s->y[block]), vf_set1(g->y));
     vf_store(s->t[block], through);
     vf_store(s->behind[block], behind);
+    return vm_any(vf_ge(through, vf_set1(ADCGS_T_MIN)));
+}
+
+LANES_INLINE void add_moments(vf sum[12], vf e, vf dx, vf dy)
+{
+    const vf ex = vf_mul(e, dx), ey = vf_mul(e, dy);
     sum[0] = vf_add(sum[0], e);
     sum[1] = vf_add(sum[1], ex);
     sum[2] = vf_add(sum[2], ey);
     sum[4] = vf_fma(ex, dx, sum[4]);
     sum[5] = vf_fma(ex, dy, sum[5]);
     sum[6] = vf_fma(ey, dy, sum[6]);
-    sum[8] = vf_fma(weight, red, sum[8]);
-    sum[9] = vf_fma(weight, green, sum[9]);
-    sum[10] = vf_fma(weight, blue, sum[10]);
+}
+
+LANES_INLINE void add_colours(vf sum[12], vf weight, const float grad[3][16])
+{
+    sum[8] = vf_fma(weight, vf_load(grad[0]), sum[8]);
+    sum[9] = vf_fma(weight, vf_load(grad[1]), sum[9]);
+    sum[10] = vf_fma(weight, vf_load(grad[2]), sum[10]);
     sum[3] = vf_add(sum[3], weight);
-    sum[7] = vf_add(sum[7], vf_abs(u));
-    sum[11] = vf_add(sum[11], vf_abs(v));
-    return vm_any(vf_ge(through, vf_set1(ADCGS_T_MIN)));
+}
+
+LANES_INLINE void add_screen(vf sum[12], const adcgs_splat2d *g, vf e, vf dx, vf dy)
+{
+    const vf ex = vf_mul(e, dx), ey = vf_mul(e, dy), b = vf_set1(g->b);
+    sum[7] = vf_add(sum[7], vf_abs(vf_fma(vf_set1(2.0f * g->a), ex, vf_mul(b, ey))));
+    sum[11] = vf_add(sum[11], vf_abs(vf_fma(vf_set1(2.0f * g->c), ey, vf_mul(b, ex))));
 }
 
 /* The opacities of an entry's blocks that have light, one entry ahead of their use. */
@@ -100,21 +118,59 @@ static inline void alpha_entry(tile_state *s, const adcgs_back_job *job, uint32_
         alpha_block(s, i & 1, g, __builtin_ctz(left));
 }
 
-static inline void back_entry(tile_state *s, const adcgs_back_job *job, uint32_t i, float *sums)
+#if ADCGS_LANES_ISA == 512
+/* All sums fit into registers. */
+LANES_INLINE void sum_blocks(tile_state *s, uint32_t turn, const adcgs_splat2d *g, uint32_t mask, int screen, vf sum[12])
+{
+    for (uint32_t left = mask; left; left &= left - 1) {
+        const int block = __builtin_ctz(left);
+        passage p;
+        if (!pass_block(s, turn, g, block, &p))
+            s->alive &= ~((uint32_t)1 << block);
+        add_moments(sum, p.e, p.dx, p.dy);
+        add_colours(sum, p.weight, s->grad[block]);
+        if (screen)
+            add_screen(sum, g, p.e, p.dx, p.dy);
+    }
+}
+#else
+/* Half of the sums fit into registers: what they are made of is kept, and gone through for each half. */
+LANES_INLINE void sum_blocks(tile_state *s, uint32_t turn, const adcgs_splat2d *g, uint32_t mask, int screen, vf sum[12])
+{
+    alignas(64) float kept[16][4][16];
+    uint8_t blocks[16];
+    int n = 0;
+    for (uint32_t left = mask; left; left &= left - 1) {
+        const int block = __builtin_ctz(left);
+        passage p;
+        if (!pass_block(s, turn, g, block, &p))
+            s->alive &= ~((uint32_t)1 << block);
+        vf_store(kept[n][0], p.e);
+        vf_store(kept[n][1], p.weight);
+        vf_store(kept[n][2], p.dx);
+        vf_store(kept[n][3], p.dy);
+        blocks[n++] = (uint8_t)block;
+    }
+    for (int i = 0; i < n; i++)
+        add_moments(sum, vf_load(kept[i][0]), vf_load(kept[i][2]), vf_load(kept[i][3]));
+    for (int i = 0; i < n; i++) {
+        add_colours(sum, vf_load(kept[i][1]), s->grad[blocks[i]]);
+        if (screen)
+            add_screen(sum, g, vf_load(kept[i][0]), vf_load(kept[i][2]), vf_load(kept[i][3]));
+    }
+}
+#endif
+
+LANES_INLINE void back_entry(tile_state *s, const adcgs_back_job *job, uint32_t i, int screen, float *sums)
 {
     const vf zero = vf_set1(0.0f);
     const adcgs_tile_entry entry = job->kept.entries[i];
-    const adcgs_splat2d *g = job->kept.splats + entry.splat;
     vf sum[12] = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
-    for (uint32_t left = entry.mask & s->alive; left; left &= left - 1) {
-        const int block = __builtin_ctz(left);
-        if (!back_block(s, i & 1, g, block, sum))
-            s->alive &= ~((uint32_t)1 << block);
-    }
+    sum_blocks(s, i & 1, job->kept.splats + entry.splat, entry.mask & s->alive, screen, sum);
     vf_sums(sums, sum);
 }
 
-static void blend_back(const adcgs_back_job *job, int tile)
+LANES_INLINE void back_tile(const adcgs_back_job *job, int tile, int screen)
 {
     tile_state s;
     const int tile_x = tile % job->kept.tiles_x * ADCGS_TILE, tile_y = tile / job->kept.tiles_x * ADCGS_TILE;
@@ -132,8 +188,16 @@ static void blend_back(const adcgs_back_job *job, int tile)
         if (i + 1 < end)
             alpha_entry(&s, job, i + 1);
         if (job->kept.entries[i].mask & s.alive)
-            back_entry(&s, job, i, sums);
+            back_entry(&s, job, i, screen, sums);
         else
             vf_store(sums, vf_set1(0.0f));
     }
+}
+
+static void blend_back(const adcgs_back_job *job, int tile)
+{
+    if (job->out.screen)
+        back_tile(job, tile, 1);
+    else
+        back_tile(job, tile, 0);
 }

@@ -158,5 +158,6 @@ static void project_back(const adcgs_back_job *job, uint32_t first)
         memcpy(to->rotation[a] + first, g.rotation[a], bytes);
     memcpy(to->opacity + first, g.opacity, bytes);
     memcpy(to->weight + first, sums.v[SUM_WEIGHT], bytes);
-    memcpy(to->screen + first, g.screen, bytes);
+    if (to->screen)
+        memcpy(to->screen + first, g.screen, bytes);
 }

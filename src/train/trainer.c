@@ -281,17 +281,18 @@ static void update(adcgs_trainer *t, double progress)
     prepare_networks(t);
 }
 
-static void accumulate_stats(adcgs_trainer *t)
+static void accumulate_stats(adcgs_trainer *t, const adcgs_raster_grads *grads)
 {
     const size_t slots = t->pass->primitives.n;
-    const float *weight = t->pass->grads.weight, *screen = t->pass->grads.screen, *opacity = t->pass->primitives.opacity;
+    const float *weight = t->pass->grads.weight, *screen = grads->screen, *opacity = t->pass->primitives.opacity;
     /* Psi is counted in pixels of the full resolution. */
     const float area = (float)(t->divide * t->divide);
     for (size_t i = 0; i < slots; i++) {
         t->stats.weight[i] += area * weight[i];
-        t->stats.significance[i] += area * weight[i] * screen[i];
         t->stats.opacity[i] += opacity[i];
     }
+    for (size_t i = 0; screen && i < slots; i++)
+        t->stats.significance[i] += area * weight[i] * screen[i];
     t->stats.n++;
 }
 
@@ -308,12 +309,15 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
                                    .dropout = progress >= c->round_from ? 0 : c->dropout,
                                    .seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration) };
     adcgs_loss_value value;
+    adcgs_raster_grads grads = t->pass->grads;
+    if (progress >= c->grow_until) /* only growth asks for it */
+        grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1, error));
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, v->rgb, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
     ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image,
-                                    t->grad, &t->pass->grads, error));
-    accumulate_stats(t);
+                                    t->grad, &grads, error));
+    accumulate_stats(t, &grads);
     t->pass->pull = NULL;
     if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
         adcgs_rigid_pull(&t->rigid, t->pass, t->f, c->rigid_weight);

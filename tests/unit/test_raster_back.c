@@ -35,6 +35,7 @@ typedef struct frame {
     adcgs_view view;
     size_t pixels;
     float *rgb, *grad;
+    int without_screen; /* screen gradients are not asked for */
 } frame;
 
 static frame frame_create(const adcgs_camera *camera, uint64_t seed)
@@ -62,6 +63,8 @@ static void run(frame *f, const scene_splats *s, float *grads, adcgs_cpu_level c
     adcgs_pool *pool;
     const adcgs_primitives p = scene_primitives(s);
     adcgs_raster_grads g = grads_of(grads, s->n);
+    if (f->without_screen)
+        g.screen = NULL;
     assert_int_equal(adcgs_pool_create(&pool, threads, NULL), ADCGS_OK);
     assert_int_equal(adcgs_raster_create(&raster, cpu, pool, NULL, NULL), ADCGS_OK);
     assert_int_equal(adcgs_raster_back_create(&back, cpu, pool, NULL), ADCGS_OK);
@@ -194,9 +197,33 @@ static void test_same_everywhere(void **state)
     frame_free(&f);
 }
 
+/** Screen gradients that nobody asks for are not written, and nothing else changes. */
+static void test_without_screen(void **state)
+{
+    scene_splats s = scene_room(700, 30.0, 8);
+    const adcgs_camera c = scene_camera(75, 61);
+    frame f = frame_create(&c, 9);
+    const size_t others = (size_t)GRAD_SCREEN * s.n * sizeof(float);
+    float *expected = grads_create(s.n), *grads = grads_create(s.n);
+    run(&f, &s, expected, ADCGS_CPU_SCALAR, 1);
+    f.without_screen = 1;
+    for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++) {
+        memset(grads, 0xff, (size_t)s.n * GRAD_ARRAYS * sizeof(float));
+        run(&f, &s, grads, cpu, 1);
+        assert_memory_equal(grads, expected, others);
+        for (uint32_t i = 0; i < s.n; i++)
+            assert_true(isnan(grads[(size_t)GRAD_SCREEN * s.n + i]));
+    }
+    adcgs_free(NULL, grads);
+    adcgs_free(NULL, expected);
+    adcgs_free(NULL, s.data);
+    frame_free(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_without_screen),
         cmocka_unit_test(test_gradients),
         cmocka_unit_test(test_gradients_limited),
         cmocka_unit_test(test_weight),
