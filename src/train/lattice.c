@@ -57,7 +57,7 @@ adcgs_status adcgs_trainer_distortion(adcgs_trainer *t, int group, double *bits,
 
 typedef struct search {
     adcgs_trainer *t;
-    int group, layer, max;
+    int group, layer, min, max; /**< min, max: exponents allowed */
     double base; /**< distortion of the networks as they are, in bits: loss, or the features' bits */
 } search;
 
@@ -67,7 +67,7 @@ static adcgs_status cost_of(const search *s, int e, double *cost, adcgs_error *e
     const float *p = s->t->f->param[s->group].p;
     double bits, now;
     *cost = INFINITY;
-    if (e < ADCGS_LATTICE_MIN || e > s->max)
+    if (e < s->min || e > s->max)
         return ADCGS_OK;
     m->lattice[s->layer] = (int8_t)e;
     adcgs_mlp_prepare(m, p, 1);
@@ -132,16 +132,29 @@ void adcgs_trainer_lattices(adcgs_trainer *t)
     }
 }
 
+/**
+ * The coarsest lattice of a layer. Of an entropy network it is not far from the nominal one, least of all at the output: where a
+ * stream has no bits left to lose any lattice would do, and the first weight to change its point in training would move the
+ * means of all anchors by many steps.
+ */
+static int coarsest(const adcgs_fmodel *f, int group, int layer)
+{
+    const adcgs_mlp *m = &f->mlp[group];
+    const int finer = layer < m->hidden ? 2 : 1;
+    return m->entropy ? ADCGS_MAX(nominal(f, group, layer) - finer, ADCGS_LATTICE_MIN) : ADCGS_LATTICE_MIN;
+}
+
 /** A network's layers one after the other, each with the others as they were before: their losses add up. */
 static adcgs_status choose_network(adcgs_trainer *t, int group, int8_t chosen[ADCGS_MLP_LAYERS], adcgs_error *error)
 {
     adcgs_mlp *m = &t->f->mlp[group];
     const float *p = t->f->param[group].p;
-    search s = { t, group, 0, m->entropy ? ADCGS_E24_BITS : ADCGS_LATTICE_MAX, 0 };
+    search s = { .t = t, .group = group, .max = m->entropy ? ADCGS_E24_BITS : ADCGS_LATTICE_MAX };
     int8_t before[ADCGS_MLP_LAYERS];
     memcpy(before, m->lattice, sizeof before);
     ADCGS_TRY(adcgs_trainer_distortion(t, group, &s.base, error));
     for (s.layer = 0; s.layer <= m->hidden; s.layer++) {
+        s.min = coarsest(t->f, group, s.layer);
         ADCGS_TRY(choose_layer(&s, nominal(t->f, group, s.layer), &chosen[s.layer], error));
         m->lattice[s.layer] = before[s.layer];
         adcgs_mlp_prepare(m, p, 1);

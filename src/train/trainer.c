@@ -256,6 +256,21 @@ static float weight_price(const adcgs_trainer *t, double progress)
     return progress >= c->slim_at && !c->without_rate && !landed ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
 }
 
+/**
+ * Values that are not coded, since all that is coded of their channel is the mean, go with the mean. Nothing else holds them,
+ * and should bits be spent on the channel again, they would be far from where any are.
+ */
+static void follow_means(adcgs_trainer *t)
+{
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+        const size_t n = (size_t)adcgs_fmodel_rows(t->f, i) * t->f->groups * 64;
+        const float *mu = t->pass->mu[i], *used = t->pass->used[i];
+        float *p = t->f->param[i].p;
+        for (size_t j = 0; j < n; j++)
+            p[j] = mu[j] > 0.5f * ADCGS_MEAN_ALONE ? used[j] : p[j];
+    }
+}
+
 static void update(adcgs_trainer *t, double progress)
 {
     const float price = weight_price(t, progress);
@@ -274,6 +289,8 @@ static void update(adcgs_trainer *t, double progress)
         adam_job job = { t, i, lr, c1, c2 };
         adcgs_pool_run(p->n > ADAM_PIECE ? t->pool : NULL, adam_piece, &job, (int)((p->n + ADAM_PIECE - 1) / ADAM_PIECE));
     }
+    if (t->rounding && !t->frozen)
+        follow_means(t);
     if (!t->rounding && t->iteration % CHECK_EVERY == 0)
         adcgs_fmodel_widen_steps(t->f);
     else

@@ -193,6 +193,59 @@ static void lattices_follow_lambda(void **state)
     adcgs_trainer_free(&t);
 }
 
+/** A layer's points are not so far apart that `steps` of them are more than its weights' root mean square. */
+static void assert_fine(const adcgs_fmodel *f, int group, int layer, double steps)
+{
+    const adcgs_mlp *m = &f->mlp[group];
+    const size_t begin = m->w[layer], end = layer < m->hidden ? m->w[layer + 1] : m->n;
+    double square = 0;
+    for (size_t i = begin; i < end; i++)
+        square += (double)f->param[group].p[i] * (double)f->param[group].p[i];
+    const double rms = sqrt(square / (double)(end - begin));
+    assert_true(ldexp(steps, -m->lattice[layer]) <= 1.001 * rms || m->lattice[layer] >= ADCGS_E24_BITS - 1);
+}
+
+/** Of all f_g the means alone are coded: their networks say sigma level 0 everywhere. */
+static void silence_streams(adcgs_fmodel *f)
+{
+    for (int c = 0; c < f->params.chunks; c++) {
+        const adcgs_mlp *m = &f->mlp[ADCGS_P_E_FG + c];
+        float *out = f->param[ADCGS_P_E_FG + c].p + m->b[m->hidden];
+        for (int i = m->out / 2; i < m->out; i++)
+            out[i] = -100;
+    }
+}
+
+/** Streams without a bit left to lose do not make their networks' lattices coarse. */
+static void lattices_outlive_their_streams(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 149);
+    silence_streams(t->f);
+    t->lambda = 100;
+    assert_int_equal(adcgs_trainer_choose_lattices(t, &error), ADCGS_OK);
+    for (int i = 0; i < ADCGS_P_COUNT; i++)
+        for (int l = 0; t->f->mlp[i].entropy && t->f->mlp[i].n && l <= t->f->mlp[i].hidden; l++)
+            assert_fine(t->f, i, l, l < t->f->mlp[i].hidden ? 4 : 32);
+    adcgs_trainer_free(&t);
+}
+
+/** Where the mean alone is coded, values are where it is. */
+static void silent_values_follow_their_means(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 149);
+    silence_streams(t->f);
+    go_on(t, 175);
+    assert_true(t->rounding && !t->frozen);
+    const size_t n = (size_t)adcgs_fmodel_rows(t->f, ADCGS_P_FG) * t->f->groups * 64;
+    for (size_t j = 0; j < n; j++) {
+        assert_true(t->pass->mu[ADCGS_P_FG][j] > 0.5f * ADCGS_MEAN_ALONE);
+        assert_true(t->f->param[ADCGS_P_FG].p[j] == t->pass->used[ADCGS_P_FG][j]);
+    }
+    adcgs_trainer_free(&t);
+}
+
 /** Weights that stay binary32 are in the file to the bit, and a run may go on with or without from where lattices are due. */
 static void raw_networks_are_exact(void **state)
 {
@@ -383,6 +436,8 @@ int main(void)
         cmocka_unit_test(price_shrinks_networks),
         cmocka_unit_test(lattice_bits_are_the_files),
         cmocka_unit_test(lattices_follow_lambda),
+        cmocka_unit_test(lattices_outlive_their_streams),
+        cmocka_unit_test(silent_values_follow_their_means),
         cmocka_unit_test(raw_networks_are_exact),
         cmocka_unit_test(narrow_networks_compute_the_same),
         cmocka_unit_test(silent_units_are_replaced),
