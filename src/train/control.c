@@ -66,6 +66,7 @@ adcgs_status adcgs_control_plan(adcgs_train_config *c, adcgs_error *error)
         c->lambda = LAMBDA_FIRST;
     if (c->target != ADCGS_TARGET_SIZE)
         return ADCGS_OK;
+    c->keep_opacity = 0; /* the bytes are to be spent: on what is faint rather than not at all */
     ADCGS_TRY(plan_networks(c, &networks, error));
     const double anchors = floor((c->target_value - networks - OTHER_BYTES) * 8 / ANCHOR_BITS);
     if (anchors < ANCHORS_LEAST)

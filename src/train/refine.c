@@ -298,6 +298,13 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** What covers next to nothing, and large faint primitives: they cost the most time, fit single views and are soon replaced. */
+static int is_superfluous(const adcgs_trainer *t, size_t slot)
+{
+    const float n = (float)t->stats.n;
+    return t->stats.weight[slot] < 0.05f * n || t->stats.opacity[slot] < t->config.keep_opacity * n;
+}
+
 adcgs_status adcgs_trainer_decide(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_fmodel *f = t->f;
@@ -307,7 +314,7 @@ adcgs_status adcgs_trainer_decide(adcgs_trainer *t, adcgs_error *error)
     for (uint32_t i = 0; i < f->n; i++)
         for (int j = 0; j < k; j++) {
             const size_t slot = adcgs_fmodel_slot(f, i, j);
-            if (t->stats.weight[slot] < 0.05 * t->stats.n)
+            if (is_superfluous(t, slot))
                 f->keep[slot] = 0;
         }
     if (f->params.time_rows)

@@ -21,6 +21,7 @@ static const adcgs_train_config base = {
     .max_anchors = 4000,
     .grow_threshold = 0.0003f,
     .prune_opacity = 0.02f,
+    .keep_opacity = 0.06f,
     .refine_every = 100,
     .rate_period = 4,
     .network_rate = 1,
@@ -82,6 +83,7 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         config->grow_from = 0.0125f;
         config->grow_until = 0.3125f;
         config->rigid_weight = config->dropout = config->still_below = config->network_rate = 0;
+        config->keep_opacity = 0;
         config->slim_at = 2;
         return ADCGS_OK;
     }

@@ -34,6 +34,7 @@ typedef struct adcgs_train_config {
     uint32_t start_anchors, max_anchors;
     float grow_threshold;  /**< of the significance-weighted screen gradient */
     float prune_opacity;   /**< of the accumulated opacity */
+    float keep_opacity;    /**< primitives of less opacity in the mean go when it is decided what stays */
     uint32_t refine_every; /**< iterations between refinements */
     int rate_period;       /**< rate is measured on every n-th group of anchors */
     float network_rate;    /**< weight of the networks' own bits, relative to the features' */

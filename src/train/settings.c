@@ -50,6 +50,7 @@ static const setting settings[] = {
     AT(INT, max_anchors, 1, ADCGS_ANCHORS_MAX),
     AT(REAL, grow_threshold, 0, 1e6),
     AT(REAL, prune_opacity, 0, 1),
+    AT(REAL, keep_opacity, 0, 1),
     AT(INT, refine_every, 1, 1e6),
     AT(INT, rate_period, 1, 1000),
     AT(REAL, rdo_strength, 0, 1000),

@@ -192,6 +192,30 @@ static void refinement_prunes_what_is_not_seen(void **state)
     adcgs_trainer_free(&t);
 }
 
+/** When it is decided what stays, faint primitives go, and anchors that have no other. */
+static void faint_primitives_go(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, pool);
+    uint32_t stop = 50;
+    run(t, stop_at, &stop);
+    const int k = config.params.k;
+    const uint32_t n = t->f->n;
+    for (uint32_t i = 0; i < n; i++)
+        for (int j = 0; j < k; j++) {
+            const size_t slot = adcgs_fmodel_slot(t->f, i, j);
+            const int faint = j == 1 || i == 5;
+            t->stats.weight[slot] = 1000.0f * (float)t->stats.n;
+            t->stats.opacity[slot] = config.keep_opacity * (faint ? 0.99f : 1.01f) * (float)t->stats.n;
+        }
+    assert_int_equal(adcgs_trainer_decide(t, &error), ADCGS_OK);
+    assert_int_equal(t->f->n, n - 1);
+    for (uint32_t i = 0; i < t->f->n; i++)
+        for (int j = 0; j < k; j++)
+            assert_true((t->f->keep[adcgs_fmodel_slot(t->f, i, j)] > 0) == (j != 1));
+    adcgs_trainer_free(&t);
+}
+
 /* ---- Recovery ---- */
 
 typedef struct poison {
@@ -589,6 +613,7 @@ int main(void)
         cmocka_unit_test(checkpoints_are_checked),
         cmocka_unit_test(refinement_keeps_order_and_budget),
         cmocka_unit_test(refinement_prunes_what_is_not_seen),
+        cmocka_unit_test(faint_primitives_go),
         cmocka_unit_test(no_number_is_rolled_back),
         cmocka_unit_test(no_number_is_rolled_back_late),
         cmocka_unit_test(lasting_poison_ends_the_run),
