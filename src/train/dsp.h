@@ -121,6 +121,10 @@ static inline float adcgs_mean_pack(float mean, int alone)
 {
     return alone ? mean + ADCGS_MEAN_ALONE : mean;
 }
+static inline int adcgs_mean_alone(float packed)
+{
+    return packed > 0.5f * ADCGS_MEAN_ALONE;
+}
 
 /** What the coder makes of the twins' outputs: the mean in 1/64 step, the sigma level. */
 static inline float adcgs_coder_mean(float mu)

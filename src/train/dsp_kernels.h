@@ -117,7 +117,7 @@ static void ISA(round)(float *restrict y, const float *restrict p, const float *
     for (int i = 0; i < n; i++) {
         const float inverse = 1 / step[i];
         for (int l = 0; l < LANES; l++) {
-            const int alone = mu[i * LANES + l] > 0.5f * ADCGS_MEAN_ALONE;
+            const int alone = adcgs_mean_alone(mu[i * LANES + l]);
             const float m = (mu[i * LANES + l] - (alone ? ADCGS_MEAN_ALONE : 0)) * 0x1p-6f;
             const float v = adcgs_bounded(rintf(p[i * LANES + l] * inverse - m), -ADCGS_LEVEL_MAX, ADCGS_LEVEL_MAX);
             y[i * LANES + l] = step[i] * adcgs_bounded((alone ? 0 : v) + m, -most, most);

@@ -137,26 +137,21 @@ LANES_INLINE void sum_blocks(tile_state *s, uint32_t turn, const adcgs_splat2d *
 /* Half of the sums fit into registers: what they are made of is kept, and gone through for each half. */
 LANES_INLINE void sum_blocks(tile_state *s, uint32_t turn, const adcgs_splat2d *g, uint32_t mask, int screen, vf sum[12])
 {
-    alignas(64) float kept[16][4][16];
+    passage kept[16];
     uint8_t blocks[16];
     int n = 0;
     for (uint32_t left = mask; left; left &= left - 1) {
         const int block = __builtin_ctz(left);
-        passage p;
-        if (!pass_block(s, turn, g, block, &p))
+        if (!pass_block(s, turn, g, block, &kept[n]))
             s->alive &= ~((uint32_t)1 << block);
-        vf_store(kept[n][0], p.e);
-        vf_store(kept[n][1], p.weight);
-        vf_store(kept[n][2], p.dx);
-        vf_store(kept[n][3], p.dy);
         blocks[n++] = (uint8_t)block;
     }
     for (int i = 0; i < n; i++)
-        add_moments(sum, vf_load(kept[i][0]), vf_load(kept[i][2]), vf_load(kept[i][3]));
+        add_moments(sum, kept[i].e, kept[i].dx, kept[i].dy);
     for (int i = 0; i < n; i++) {
-        add_colours(sum, vf_load(kept[i][1]), s->grad[blocks[i]]);
+        add_colours(sum, kept[i].weight, s->grad[blocks[i]]);
         if (screen)
-            add_screen(sum, g, vf_load(kept[i][0]), vf_load(kept[i][2]), vf_load(kept[i][3]));
+            add_screen(sum, g, kept[i].e, kept[i].dx, kept[i].dy);
     }
 }
 #endif

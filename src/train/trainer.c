@@ -267,7 +267,7 @@ static void follow_means(adcgs_trainer *t)
         const float *mu = t->pass->mu[i], *used = t->pass->used[i];
         float *p = t->f->param[i].p;
         for (size_t j = 0; j < n; j++)
-            p[j] = mu[j] > 0.5f * ADCGS_MEAN_ALONE ? used[j] : p[j];
+            p[j] = adcgs_mean_alone(mu[j]) ? used[j] : p[j];
     }
 }
 

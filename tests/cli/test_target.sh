@@ -10,14 +10,14 @@ trap 'rm -rf "$dir"' EXIT
 failed=0
 bad() { echo "FAILED: $*"; failed=1; }
 
-# enc CODE NAME OPTIONS...: encode the scene to NAME.adcgs, and expect an exit code; the report is in NAME.out.
+# enc CODE NAME OPTIONS...: encode the scene to NAME.adcgs, and expect an exit code (a pattern); the report is in NAME.out.
 enc()
 {
     code=$1 name=$2
     shift 2
     ./adcgs-enc "$scene" -o "$dir/$name.adcgs" --preset draft --json "$@" >"$dir/$name.out" 2>"$dir/$name.err"
     got=$?
-    [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code: adcgs-enc $*"; cat "$dir/$name.err"; }
+    case $got in $code) ;; *) bad "exit code $got, expected $code: adcgs-enc $*"; cat "$dir/$name.err" ;; esac
     ./adcgs-dec "$dir/$name.adcgs" --md5 >/dev/null 2>&1 || bad "no stream that decodes: adcgs-enc $*"
 }
 
@@ -118,15 +118,14 @@ refuse "need rate" --psnr 30 --uncompressed "$dir/raw"
 
 # A limit of time ends the run, with a stream that is whole and no larger than asked for. How near it comes depends on what the
 # machine does in that time; a run that has too little to show says so.
-./adcgs-enc "$scene" -o "$dir/brief.adcgs" --preset draft --json --time-limit 2 --iterations 1000000 --size 15k \
-    >"$dir/brief.out" 2>"$dir/brief.err"
-got=$?
-least=14550
-[ $got -eq 1 ] && grep -q "smaller than the 15000 asked for" "$dir/brief.err" && got=0 least=1
-[ $got -eq 0 ] || { bad "exit code $got with a limit of time"; cat "$dir/brief.err"; }
-./adcgs-dec "$dir/brief.adcgs" --md5 >/dev/null 2>&1 || bad "no stream that decodes after a limit of time"
+enc '[01]' brief --time-limit 2 --iterations 1000000 --size 15k
+least=14550 most=15000
+if [ "$got" -eq 1 ]; then
+    least=1 most=14550
+    grep -q "smaller than the 15000 asked for" "$dir/brief.err" || { bad "too small goes without a word"; cat "$dir/brief.err"; }
+fi
 within "$(value "$dir/brief.out" iterations)" 1 999999 "iterations within a limit of time"
-within "$(wc -c <"$dir/brief.adcgs")" $least 15000 "bytes within a limit of time"
+within "$(wc -c <"$dir/brief.adcgs")" $least $most "bytes within a limit of time"
 enc 0 plain --time-limit 1 --iterations 1000000
 within "$(value "$dir/plain.out" iterations)" 1 999999 "iterations within a limit of time"
 exit $failed

@@ -240,7 +240,7 @@ static void silent_values_follow_their_means(void **state)
     assert_true(t->rounding && !t->frozen);
     const size_t n = (size_t)adcgs_fmodel_rows(t->f, ADCGS_P_FG) * t->f->groups * 64;
     for (size_t j = 0; j < n; j++) {
-        assert_true(t->pass->mu[ADCGS_P_FG][j] > 0.5f * ADCGS_MEAN_ALONE);
+        assert_true(adcgs_mean_alone(t->pass->mu[ADCGS_P_FG][j]));
         assert_true(t->f->param[ADCGS_P_FG].p[j] == t->pass->used[ADCGS_P_FG][j]);
     }
     adcgs_trainer_free(&t);

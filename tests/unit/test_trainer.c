@@ -422,7 +422,7 @@ static int eta_is_zero(const adcgs_trainer *t, int c)
     const adcgs_fmodel *f = t->f;
     for (uint32_t i = 0; i < f->n; i++) {
         const float *p = adcgs_fmodel_at(f, ADCGS_P_ETA, i, c), mean = t->pass->mu[ADCGS_P_ETA][p - f->param[ADCGS_P_ETA].p];
-        const float yq = mean > 0.5f * ADCGS_MEAN_ALONE ? mean - ADCGS_MEAN_ALONE : 64 * rintf(*p - mean / 64) + mean;
+        const float yq = adcgs_mean_alone(mean) ? mean - ADCGS_MEAN_ALONE : 64 * rintf(*p - mean / 64) + mean;
         if (floorf(yq / 16 + 0.5f) != 0)
             return 0;
     }
