@@ -26,6 +26,7 @@ static const adcgs_train_config base = {
     .rate_period = 4,
     .network_rate = 1,
     .rigid_weight = 0.02f,
+    .area_weight = 0.02f,
     .rdo_strength = 0,
     .dropout = 0.1f,
     .still_below = 3,
@@ -41,8 +42,8 @@ static const adcgs_train_config base = {
     .rate_from = 0.30f,
     .slim_at = 0.52f,
     .decide_at = 0.52f,
-    .round_from = 0.75f,
-    .freeze_from = 0.90f,
+    .round_from = 0.85f,
+    .freeze_from = 0.96f,
 };
 
 adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, adcgs_error *error)
@@ -82,7 +83,7 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         config->noise_from = config->rate_from = 0.125f;
         config->grow_from = 0.0125f;
         config->grow_until = 0.3125f;
-        config->rigid_weight = config->dropout = config->still_below = config->network_rate = 0;
+        config->rigid_weight = config->area_weight = config->dropout = config->still_below = config->network_rate = 0;
         config->keep_opacity = 0;
         config->slim_at = 2;
         return ADCGS_OK;

@@ -3,6 +3,7 @@
 #include "train/trainer.h"
 
 #include "metric/metric.h"
+#include "train/area.h"
 #include "train/lattice.h"
 #include "train/random.h"
 #include "train/slim.h"
@@ -335,6 +336,8 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
     ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image,
                                     t->grad, &grads, error));
     accumulate_stats(t, &grads);
+    if (c->area_weight > 0)
+        adcgs_area_price(&t->pass->primitives, c->area_weight, grads.scale);
     t->pass->pull = NULL;
     if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
         adcgs_rigid_pull(&t->rigid, t->pass, t->f, c->rigid_weight);

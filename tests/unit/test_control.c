@@ -14,6 +14,7 @@ static adcgs_train_config config_for(adcgs_train_target target, double value)
     c.start_anchors = 100;
     c.refine_every = 20;
     c.grow_threshold = 1e-6f;
+    c.freeze_from = 0.92f; /* long enough to stop in */
     c.target = target;
     c.target_value = value;
     return c;
@@ -180,7 +181,7 @@ static void runs_land_on_qualities(void **state)
 /** Goes on to the end by way of every stop: each time what was stored goes into a new trainer. */
 static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
 {
-    static const uint32_t stops[] = { 50, 70, 130, 170, 190 };
+    static const uint32_t stops[] = { 50, 70, 130, 180, 190 };
     adcgs_trainer *t = make(config, real_bytes);
     for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
         uint32_t stop = stops[i];

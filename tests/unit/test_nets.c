@@ -173,7 +173,7 @@ static int sum_of_lattices(const adcgs_fmodel *f)
 static void lattices_follow_lambda(void **state)
 {
     const adcgs_train_config config = small_config();
-    adcgs_trainer *t = run_to(&config, 149);
+    adcgs_trainer *t = run_to(&config, 169);
     float *before = calloc(t->f->param[ADCGS_P_OMEGA].n, sizeof *before);
     int sum[3];
     assert_non_null(before);
@@ -193,8 +193,8 @@ static void lattices_follow_lambda(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** A layer's points are not so far apart that `steps` of them are more than its weights' root mean square. */
-static void assert_fine(const adcgs_fmodel *f, int group, int layer, double steps)
+/** A layer's points are at most two bits, at the output one, farther apart than the 16th (64th) of its weights' root mean square. */
+static void assert_fine(const adcgs_fmodel *f, int group, int layer)
 {
     const adcgs_mlp *m = &f->mlp[group];
     const size_t begin = m->w[layer], end = layer < m->hidden ? m->w[layer + 1] : m->n;
@@ -202,7 +202,9 @@ static void assert_fine(const adcgs_fmodel *f, int group, int layer, double step
     for (size_t i = begin; i < end; i++)
         square += (double)f->param[group].p[i] * (double)f->param[group].p[i];
     const double rms = sqrt(square / (double)(end - begin));
-    assert_true(ldexp(steps, -m->lattice[layer]) <= 1.001 * rms || m->lattice[layer] >= ADCGS_E24_BITS - 1);
+    const int farther = layer < m->hidden ? 2 : 1;
+    const double steps = ldexp(layer < m->hidden ? 16 : 64, -farther);
+    assert_true(ldexp(steps, -m->lattice[layer]) <= 1.001 * rms || m->lattice[layer] >= ADCGS_E24_BITS - farther);
 }
 
 /** Of all f_g the means alone are coded: their networks say sigma level 0 everywhere. */
@@ -220,13 +222,13 @@ static void silence_streams(adcgs_fmodel *f)
 static void lattices_outlive_their_streams(void **state)
 {
     const adcgs_train_config config = small_config();
-    adcgs_trainer *t = run_to(&config, 149);
+    adcgs_trainer *t = run_to(&config, 169);
     silence_streams(t->f);
     t->lambda = 100;
     assert_int_equal(adcgs_trainer_choose_lattices(t, &error), ADCGS_OK);
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         for (int l = 0; t->f->mlp[i].entropy && t->f->mlp[i].n && l <= t->f->mlp[i].hidden; l++)
-            assert_fine(t->f, i, l, l < t->f->mlp[i].hidden ? 4 : 32);
+            assert_fine(t->f, i, l);
     adcgs_trainer_free(&t);
 }
 
@@ -234,9 +236,9 @@ static void lattices_outlive_their_streams(void **state)
 static void silent_values_follow_their_means(void **state)
 {
     const adcgs_train_config config = small_config();
-    adcgs_trainer *t = run_to(&config, 149);
+    adcgs_trainer *t = run_to(&config, 169);
     silence_streams(t->f);
-    go_on(t, 175);
+    go_on(t, 185);
     assert_true(t->rounding && !t->frozen);
     const size_t n = (size_t)adcgs_fmodel_rows(t->f, ADCGS_P_FG) * t->f->groups * 64;
     for (size_t j = 0; j < n; j++) {
@@ -250,7 +252,7 @@ static void silent_values_follow_their_means(void **state)
 static void raw_networks_are_exact(void **state)
 {
     adcgs_train_config config = small_config();
-    adcgs_trainer *t = run_to(&config, 149), *raw;
+    adcgs_trainer *t = run_to(&config, 169), *raw;
     adcgs_buffer state_of_run, out;
     adcgs_stream stream;
     adcgs_buffer_init(&state_of_run);

@@ -21,6 +21,7 @@ static adcgs_trainer *make(void)
     assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
     assert_int_equal(adcgs_train_set(&c, small, &error), ADCGS_OK);
     c.iterations = 400;
+    c.freeze_from = 0.90f;
     if (adcgs_trainer_create(&t, scene, &c, adcgs_cpu_best(), pool, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     t->quantise = adcgs_encode_quantise_hook;

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "train/area.h"
 #include "train/pass.h"
 #include "train/random.h"
 #include "train/rigid.h"
@@ -485,6 +486,22 @@ static void test_rigid(void **state)
     adcgs_rigid_clear(&rigid);
 }
 
+/** Price of size: its value and its gradient by hand; what is not there neither counts nor pays. */
+static void test_area(void **state)
+{
+    static const float sd[3][4] = { { 1, 2, 5, 0.5f }, { 2, 3, 7, 0.25f }, { 4, 1, 9, 1 } }, opacity[4] = { 0.5f, 0.25f, 0, 0.99f };
+    const float *const s[3] = { sd[0], sd[1], sd[2] };
+    const adcgs_primitives primitives = { .n = 4, .scale = { sd[0], sd[1], sd[2] }, .opacity = opacity };
+    float g[3][4] = { { 1, 1, 1, 1 }, { 1, 1, 1, 1 }, { 1, 1, 1, 1 } };
+    double area = 0;
+    for (int i = 0; i < 4; i++)
+        area += i == 2 ? 0 : (double)(s[0][i] * s[1][i] + s[1][i] * s[2][i] + s[2][i] * s[0][i]);
+    assert_float_equal(adcgs_area_price(&primitives, 0.5f, (float *const[]){ g[0], g[1], g[2] }), 0.5 * area / 9, 1e-6);
+    for (int a = 0; a < 3; a++)
+        for (int i = 0; i < 4; i++)
+            assert_float_equal(g[a][i], i == 2 ? 1 : 1 + 0.5f / 9 * (s[(a + 1) % 3][i] + s[(a + 2) % 3][i]), 1e-6);
+}
+
 /** Forward with noise; the reference is told the noise, which no parameter changes. */
 static void forward_noisy(const fixture *x, adcgs_pass *pass)
 {
@@ -665,6 +682,7 @@ int main(void)
             { "adaptive rounding", test_adaptive_rounding, setup, teardown, state },
             { "adaptive start", test_adaptive_start, setup, teardown, state },
             { "rigid", test_rigid, setup, teardown, state },
+            { "area", test_area, NULL, NULL, state },
             { "threads", test_threads, setup, teardown, state },
         };
         failed += cmocka_run_group_tests_name("train", tests, NULL, NULL);

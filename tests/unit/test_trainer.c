@@ -25,6 +25,7 @@ static adcgs_train_config small_config(void)
     c.max_anchors = 150;
     c.refine_every = 20;
     c.grow_threshold = 1e-6f;
+    c.freeze_from = 0.92f; /* long enough to stop in */
     c.still_below = 0; /* motion takes longer to show than these runs last */
     c.rdo_strength = 1;
     c.params.k = 4;
@@ -79,7 +80,7 @@ static int all_finite(const adcgs_fmodel *f)
 /** In each stage: a restored run is the stored one to the bit, and both end where a run that never stopped ends. */
 static void restored_runs_go_on_in_lockstep(void **state)
 {
-    static const uint32_t stops[] = { 0, 30, 100, 140, 160, 190 };
+    static const uint32_t stops[] = { 0, 30, 90, 140, 180, 190 };
     const adcgs_train_config config = small_config();
     adcgs_trainer *through = make(&config, pool), *stopping = make(&config, NULL);
     adcgs_buffer end, middle, again;
@@ -336,7 +337,7 @@ static void rounding_is_decoding(void **state)
     adcgs_trainer *t = make(&config, pool);
     float *mu[ADCGS_P_ANCHOR], *value[ADCGS_P_ANCHOR];
     adcgs_model model;
-    uint32_t stop = 160, adapted = 0;
+    uint32_t stop = 180, adapted = 0;
     run(t, stop_at, &stop);
     take_values(t->f, mu, value);
     const adcgs_quantise_options options = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value };
@@ -451,7 +452,7 @@ static void check_reach(const adcgs_trainer *t, int network)
  */
 static void rate_reaches_every_weight(void **state)
 {
-    static const uint32_t stops[] = { 100, 170 };
+    static const uint32_t stops[] = { 120, 180 };
     adcgs_train_config config = small_config();
     config.without_lattice = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
     config.network_rate = 0;
@@ -488,7 +489,7 @@ static void still_models_carry_no_motion(void **state)
     adcgs_trainer *t = make(&config, pool);
     adcgs_stream stream;
     adcgs_buffer bytes;
-    uint32_t stop = 160;
+    uint32_t stop = 180;
     run(t, stop_at, &stop);
     memset(t->f->moving, 0, (size_t)t->f->groups * 64 * sizeof *t->f->moving);
     adcgs_buffer_init(&bytes);
