@@ -1,14 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
 # adcgs-dec and adcgs-eval on a tiny stream: outputs, digests, cameras, exit codes.
-# Runs in the build folder; needs adcgs-demo-scene and adcgs-enc to make the stream.
-for tool in adcgs-dec adcgs-eval adcgs-enc adcgs-demo-scene; do
-    [ -x "./$tool" ] || { echo "skipped: no $tool in $PWD"; exit 77; }
-done
-dir=$(mktemp -d "${TMPDIR:-/tmp}/adcgs-test-XXXXXX") || exit 99
-trap 'rm -rf "$dir"' EXIT
-failed=0
-bad() { echo "FAILED: $*"; failed=1; }
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-dec adcgs-eval adcgs-enc adcgs-demo-scene
 
 # expect CODE TEXT COMMAND...: exit code, and what standard error says.
 expect()

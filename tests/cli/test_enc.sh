@@ -1,14 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
 # adcgs-enc on a tiny scene: the same bytes from the same seed, stopping and going on, logs, stages left out, bad input.
-# Runs in the build folder; needs adcgs-demo-scene, adcgs-info and adcgs-dec too.
-for tool in adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene; do
-    [ -x "./$tool" ] || { echo "skipped: no $tool in $PWD"; exit 77; }
-done
-dir=$(mktemp -d "${TMPDIR:-/tmp}/adcgs-test-XXXXXX") || exit 99
-trap 'rm -rf "$dir"' EXIT
-failed=0
-bad() { echo "FAILED: $*"; failed=1; }
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene
 
 # enc NAME OPTIONS...: encode the scene to NAME.adcgs.
 enc()

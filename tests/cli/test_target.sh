@@ -1,14 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
 # adcgs-enc with a target: sizes and qualities are met, whatever cannot be met is said, and a limit of time is kept.
-# Runs in the build folder; needs adcgs-demo-scene, adcgs-dec and adcgs-eval too.
-for tool in adcgs-enc adcgs-dec adcgs-eval adcgs-demo-scene; do
-    [ -x "./$tool" ] || { echo "skipped: no $tool in $PWD"; exit 77; }
-done
-dir=$(mktemp -d "${TMPDIR:-/tmp}/adcgs-test-XXXXXX") || exit 99
-trap 'rm -rf "$dir"' EXIT
-failed=0
-bad() { echo "FAILED: $*"; failed=1; }
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-dec adcgs-eval adcgs-demo-scene
 
 # enc CODE NAME OPTIONS...: encode the scene to NAME.adcgs, and expect an exit code (a pattern); the report is in NAME.out.
 enc()
