@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 14 };
+enum { FORMAT = 15 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -50,7 +50,8 @@ static void walk_options(walk *w, const adcgs_train_config *c)
                                (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
                                c->without_refinement, c->without_rounding };
     const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight, c->area_weight,
-                           c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->window_begin, c->window_until,
+                           c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
+                           c->window_begin, c->window_until,
                            c->quarter_until, c->half_until, c->deform_from, c->fine_from, c->grow_from, c->grow_until,
                            c->noise_from, c->rate_from, c->slim_at, c->decide_at, c->round_from, c->freeze_from };
     for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
@@ -175,6 +176,18 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
     visit(w, t->pass->factor, lanes * (size_t)adcgs_params_steps(&f->params) * sizeof(float));
 }
 
+static void walk_average(walk *w, adcgs_trainer *t)
+{
+    adcgs_average *a = &t->average;
+    uint32_t n = a->n;
+    visit(w, &n, sizeof n);
+    if (n > 0 && !w->out && adcgs_average_begin(a, t->f, NULL) != ADCGS_OK)
+        w->failed = 1;
+    a->n = w->failed ? 0 : n;
+    if (a->n > 0)
+        visit(w, a->mean, a->size * sizeof *a->mean);
+}
+
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
 {
     adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the storing visitor only reads */
@@ -184,6 +197,7 @@ adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out
     visit(&w, &t->f->n, sizeof t->f->n);
     visit(&w, t->f->pos, t->f->n * sizeof *t->f->pos);
     walk_arrays(&w, t);
+    walk_average(&w, t);
     return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint") : ADCGS_OK;
 }
 
@@ -219,6 +233,7 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
         t->lambda = (double)t->config.lambda;
     ADCGS_TRY(restore_anchors(&w, t, error));
     walk_arrays(&w, t);
+    walk_average(&w, t);
     if (w.failed || adcgs_reader_left(&reader))
         return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
     adcgs_fmodel_take_steps(t->f);

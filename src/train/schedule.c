@@ -30,6 +30,7 @@ static const adcgs_train_config base = {
     .rdo_strength = 0,
     .dropout = 0.1f,
     .still_below = 3,
+    .average_last = 0.05f,
     .window_begin = 0.1f,
     .window_until = 0.25f,
     .quarter_until = 0.25f,
@@ -84,7 +85,7 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         config->grow_from = 0.0125f;
         config->grow_until = 0.3125f;
         config->rigid_weight = config->area_weight = config->dropout = config->still_below = config->network_rate = 0;
-        config->keep_opacity = 0;
+        config->keep_opacity = config->average_last = 0;
         config->slim_at = 2;
         return ADCGS_OK;
     }

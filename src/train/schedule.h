@@ -44,6 +44,7 @@ typedef struct adcgs_train_config {
     float still_below;     /**< effect of time on an anchor, of which 1 can just be seen, below which it is static */
     float dropout;         /**< share of primitives left out at random until rounding: against overfitting few views */
     /* Moments, as fractions of the run. */
+    float average_last;    /**< so much of the end of rounding, and of the run, is averaged, but at most half of either stage */
     float window_begin, window_until; /**< views trained on grow from this fraction, about the middle of time, to all */
     float quarter_until, half_until; /**< coarse-to-fine: a quarter, then half of the resolution */
     float deform_from, fine_from, grow_from, grow_until, noise_from, rate_from, slim_at, decide_at, round_from, freeze_from;

@@ -59,6 +59,7 @@ static const setting settings[] = {
     AT(REAL, still_below, 0, 1e6),
     AT(REAL, rigid_weight, 0, 1000),
     AT(REAL, area_weight, 0, 1000),
+    AT(REAL, average_last, 0, 1),
     AT(REAL, window_begin, 0, 1),
     AT(REAL, window_until, 0, 2),
     AT(REAL, quarter_until, 0, 2),

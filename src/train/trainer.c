@@ -127,6 +127,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_loss_free(&t->loss);
     adcgs_rigid_clear(&t->rigid);
     adcgs_window_clear(&t->window);
+    adcgs_average_clear(&t->average);
     adcgs_buffer_clear(&t->snapshot);
     free(t);
     *trainer = NULL;
@@ -314,6 +315,22 @@ static void accumulate_stats(adcgs_trainer *t, const adcgs_raster_grads *grads)
     t->stats.n++;
 }
 
+/** Whether an iteration is one of the last before values are frozen, or before the end. */
+static int averages(const adcgs_trainer *t, double progress)
+{
+    const adcgs_train_config *c = &t->config;
+    const double freeze = t->quantise && !c->without_rounding ? fmin((double)c->freeze_from, 1) : 1;
+    const double begin = t->frozen ? freeze : freeze < 1 ? (double)c->round_from : 0, end = t->frozen ? 1 : freeze;
+    return progress >= end - fmin((double)c->average_last, (end - begin) / 2);
+}
+
+/** Go on from where the last iterations led in the mean. */
+static void take_average(adcgs_trainer *t)
+{
+    adcgs_average_take(&t->average, t->f);
+    prepare_networks(t);
+}
+
 static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
@@ -354,7 +371,7 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
         t->mean_bits[i] = t->mean_bits[i] > 0 ? 0.95 * t->mean_bits[i] + 0.05 * rate.bits[i] : rate.bits[i];
     update(t, progress);
     t->iteration++;
-    return ADCGS_OK;
+    return averages(t, progress) ? adcgs_average_add(&t->average, t->f, error) : ADCGS_OK;
 }
 
 /* ---- Stages ---- */
@@ -399,6 +416,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     }
     if (t->frozen || !t->rounding || progress < c->freeze_from)
         return ADCGS_OK;
+    take_average(t);
     ADCGS_TRY(adcgs_trainer_freeze(t, error));
     return adcgs_control_frozen(t, error);
 }
@@ -509,8 +527,10 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
                 return ADCGS_OK;
             }
         }
-        if (progress >= 1)
+        if (progress >= 1) {
+            take_average(t);
             return adcgs_control_finish(t, error);
+        }
         if (t->until_lambda && progress >= adcgs_train_lambda_from(&t->config)) {
             *stopped = 1;
             return ADCGS_OK;

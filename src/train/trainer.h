@@ -8,6 +8,7 @@
 
 #include "bits/bytes.h"
 #include "data/scene.h"
+#include "train/average.h"
 #include "train/control.h"
 #include "train/loss.h"
 #include "train/pass.h"
@@ -66,6 +67,7 @@ typedef struct adcgs_trainer {
     int divide;              /* of the views loaded; 0: none */
     float *image, *grad;
     adcgs_train_stats stats;
+    adcgs_average average;
     adcgs_train_quantise quantise; /* provided by the room that builds streams; NULL: values stay as they are */
     adcgs_train_measure measure;   /* likewise; asked where there is a size to meet */
     void *measure_user;

@@ -607,6 +607,35 @@ static void windows_grow_outwards(void **state)
     adcgs_trainer_free(&t);
 }
 
+/** The mean of three states, the same to the bit where they are; a model of another size begins a mean of its own. */
+static void averages_are_means(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, pool);
+    adcgs_fmodel *f = t->f;
+    adcgs_param *varied = &f->param[ADCGS_P_OMEGA], *same = &f->param[ADCGS_P_THETA];
+    adcgs_average average = { .n = 0 };
+    const float begin = varied->p[0], kept = same->p[1];
+    adcgs_average_take(&average, f); /* of nothing: nothing */
+    assert_true(varied->p[0] == begin);
+    for (int i = 0; i < 3; i++) {
+        varied->p[0] = (const float[]){ 1, 2, 6 }[i];
+        assert_int_equal(adcgs_average_add(&average, f, &error), ADCGS_OK);
+    }
+    adcgs_average_take(&average, f);
+    assert_float_equal(varied->p[0], 3, 1e-6);
+    assert_true(same->p[1] == kept && average.n == 0);
+    assert_int_equal(adcgs_average_add(&average, f, &error), ADCGS_OK);
+    adcgs_fmodel_set_width(f, ADCGS_P_THETA, 8);
+    varied->p[0] = 7;
+    assert_int_equal(adcgs_average_add(&average, f, &error), ADCGS_OK);
+    assert_int_equal(average.n, 1);
+    adcgs_average_take(&average, f);
+    assert_true(varied->p[0] == 7);
+    adcgs_average_clear(&average);
+    adcgs_trainer_free(&t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -625,6 +654,7 @@ int main(void)
         cmocka_unit_test(still_models_carry_no_motion),
         cmocka_unit_test(uncompressed_models_lose_nothing),
         cmocka_unit_test(windows_grow_outwards),
+        cmocka_unit_test(averages_are_means),
     };
     return cmocka_run_group_tests_name("trainer", tests, open_scene, close_scene);
 }
