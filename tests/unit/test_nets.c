@@ -193,7 +193,7 @@ static void lattices_follow_lambda(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** A layer's points are at most two bits, at the output one, farther apart than the 16th (64th) of its weights' root mean square. */
+/** A layer's points are at most two bits, at the output one, farther apart than the 16th (64th) of its weights' rms. */
 static void assert_fine(const adcgs_fmodel *f, int group, int layer)
 {
     const adcgs_mlp *m = &f->mlp[group];

@@ -489,7 +489,8 @@ static void test_rigid(void **state)
 /** Price of size: its value and its gradient by hand; what is not there neither counts nor pays. */
 static void test_area(void **state)
 {
-    static const float sd[3][4] = { { 1, 2, 5, 0.5f }, { 2, 3, 7, 0.25f }, { 4, 1, 9, 1 } }, opacity[4] = { 0.5f, 0.25f, 0, 0.99f };
+    static const float sd[3][4] = { { 1, 2, 5, 0.5f }, { 2, 3, 7, 0.25f }, { 4, 1, 9, 1 } };
+    static const float opacity[4] = { 0.5f, 0.25f, 0, 0.99f };
     const float *const s[3] = { sd[0], sd[1], sd[2] };
     const adcgs_primitives primitives = { .n = 4, .scale = { sd[0], sd[1], sd[2] }, .opacity = opacity };
     float g[3][4] = { { 1, 1, 1, 1 }, { 1, 1, 1, 1 }, { 1, 1, 1, 1 } };
