@@ -49,11 +49,11 @@ static void walk_options(walk *w, const adcgs_train_config *c)
     const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->refine_every,
                                (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
                                c->without_refinement, c->without_rounding };
-    const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight, c->area_weight,
-                           c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
-                           c->window_begin, c->window_until,
-                           c->quarter_until, c->half_until, c->deform_from, c->fine_from, c->grow_from, c->grow_until,
-                           c->noise_from, c->rate_from, c->slim_at, c->decide_at, c->round_from, c->freeze_from };
+    const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight,
+                           c->area_weight, c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
+                           c->window_begin, c->window_until, c->quarter_until, c->half_until, c->area_from, c->deform_from,
+                           c->fine_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->slim_at, c->decide_at,
+                           c->round_from, c->freeze_from };
     for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
         visit_same(w, whole[i]);
     for (size_t i = 0; i < ADCGS_COUNTOF(real); i++)

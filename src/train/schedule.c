@@ -35,6 +35,7 @@ static const adcgs_train_config base = {
     .window_until = 0.25f,
     .quarter_until = 0.25f,
     .half_until = 0.70f,
+    .area_from = 0.30f,
     .deform_from = 0.01f,
     .fine_from = 0.35f,
     .grow_from = 0.03f,

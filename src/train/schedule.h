@@ -47,6 +47,7 @@ typedef struct adcgs_train_config {
     float average_last;    /**< so much of the end of rounding, and of the run, is averaged, but at most half of either stage */
     float window_begin, window_until; /**< views trained on grow from this fraction, about the middle of time, to all */
     float quarter_until, half_until; /**< coarse-to-fine: a quarter, then half of the resolution */
+    float area_from;       /**< size has its price from here on; where several views share a moment, from the start */
     float deform_from, fine_from, grow_from, grow_until, noise_from, rate_from, slim_at, decide_at, round_from, freeze_from;
     /* Ablation switches: what is left out, see adcgs_train_leave_out(). */
     uint8_t without_coarse, without_fine, without_rate, without_refinement, without_lattice;

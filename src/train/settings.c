@@ -64,6 +64,7 @@ static const setting settings[] = {
     AT(REAL, window_until, 0, 2),
     AT(REAL, quarter_until, 0, 2),
     AT(REAL, half_until, 0, 2),
+    AT(REAL, area_from, 0, 2),
     AT(REAL, deform_from, 0, 2),
     AT(REAL, fine_from, 0, 2),
     AT(REAL, grow_from, 0, 2),

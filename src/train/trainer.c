@@ -64,6 +64,9 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
         c->params.time_rows = (uint16_t)times;
     if (!c->params.time_rows)
         c->params.time_width = 0;
+    /* A camera alone finds what moves with large primitives first. */
+    if (t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times)
+        c->area_from = 0;
     if (c->without_coarse)
         c->shape.omega_width = 0;
     if (c->without_fine)
@@ -353,7 +356,7 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
     ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image,
                                     t->grad, &grads, error));
     accumulate_stats(t, &grads);
-    if (c->area_weight > 0)
+    if (c->area_weight > 0 && progress >= c->area_from)
         adcgs_area_price(&t->pass->primitives, c->area_weight, grads.scale);
     t->pass->pull = NULL;
     if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
