@@ -341,7 +341,7 @@ static int parse(enc_options *o, int argc, char **argv)
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
-          "leave out coarse, fine, deformation (both), rate,\nrefinement, anchors or lattice", NULL, NULL },
+          "leave out coarse, fine, deformation (both), rate,\nrefinement, anchors, removal or lattice", NULL, NULL },
         { "uncompressed", 0, ADCGS_OPTION_STRING, &o->uncompressed, 0, 0, "FILE",
           "train without rate and rounding, write the model here\nas plain binary32 numbers; the stream is then the finest", NULL,
           NULL },

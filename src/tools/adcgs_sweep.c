@@ -271,7 +271,7 @@ static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
         {"seeds", 0, ADCGS_OPTION_STRING, &l.seeds, 0, 0, "A,B,C",
          "train each point with these seeds; figures are means\n(default: the encoder's seed)", NULL, NULL},
         {"yardsticks", 0, ADCGS_OPTION_STRING, &l.yardsticks, 0, 0, "NAME,...",
-         "what to compare with: networks (of 32 bits; no run),\nuncompressed (a run; also by zstd and xz), gaussians (a\n"
+         "what to compare with: networks (of 32 bits; no run),\nuncompressed (two runs; by zstd and xz), gaussians (a\n"
          "curve and a run); all (default) or none", NULL, NULL},
         {"ablation", 0, ADCGS_OPTION_FLAG, &sweep->ablation, 0, 0, NULL,
          "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},

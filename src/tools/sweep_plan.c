@@ -146,11 +146,18 @@ static int add_own_curves(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)
     return 1;
 }
 
-/** What a general-purpose compressor makes of plain numbers is a yardstick too. */
+/**
+ * What a general-purpose compressor makes of plain numbers is a yardstick too. The model is spare already, primitives gone and
+ * units removed, which belongs to compression: the whole one is what the method stores without any.
+ */
 static int add_uncompressed(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_sweep_run like)
 {
+    adcgs_sweep_run whole = like;
+    whole.without = "removal";
     const int cell = add_cell(plan, sweep, like);
     return add_point(plan, "uncompressed", "trained without rate and rounding, 4 bytes a number", ADCGS_FIGURE_RAW, cell) &&
+           add_point(plan, "whole uncompressed", "the same, and nothing that has grown is removed", ADCGS_FIGURE_RAW,
+                     add_cell(plan, sweep, whole)) &&
            add_point(plan, "zstd -19", "the uncompressed file by zstd -19", ADCGS_FIGURE_ZSTD, cell) &&
            add_point(plan, "xz -9e", "the uncompressed file by xz -9e", ADCGS_FIGURE_XZ, cell);
 }

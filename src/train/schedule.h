@@ -38,7 +38,7 @@ typedef struct adcgs_train_config {
     uint32_t refine_every; /**< iterations between refinements */
     int rate_period;       /**< rate is measured on every n-th group of anchors */
     float network_rate;    /**< weight of the networks' own bits, relative to the features' */
-    float rigid_weight;    /**< of the energy that keeps neighbours together as they move */
+    float rigid_weight;    /**< of the energy that keeps neighbours together as they move; where several views share a moment, 0 */
     float area_weight;     /**< of the price of primitives' size */
     float rdo_strength;    /**< of the loss per bit when values are frozen, relative to training's; 0: the nearest levels */
     float still_below;     /**< effect of time on an anchor, of which 1 can just be seen, below which it is static */
@@ -64,6 +64,7 @@ adcgs_status adcgs_train_set(adcgs_train_config *config, const char *text, adcgs
  * - without refinement all max_anchors are there from the start: the initial cloud is dense, as in the paper's ablation;
  * - without anchors every primitive is one of its own, with its own embedding, deformed by itself (as in E-D3DGS): K anchors of
  *   one primitive without f_g take the place of each anchor;
+ * - without removal all that has grown stays: every anchor with all its primitives and its motion, every hidden unit;
  * - without the lattice the weights of the networks that draw are stored as binary32, as the paper does.
  */
 adcgs_status adcgs_train_leave_out(adcgs_train_config *config, const char *parts, adcgs_error *error);

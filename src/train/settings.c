@@ -148,13 +148,13 @@ static void leave_out_anchors(adcgs_train_config *c)
 
 adcgs_status adcgs_train_leave_out(adcgs_train_config *c, const char *parts, adcgs_error *error)
 {
-    enum { COARSE = 1, FINE = 2, RATE = 4, REFINEMENT = 8, ANCHORS = 16, LATTICE = 32 };
+    enum { COARSE = 1, FINE = 2, RATE = 4, REFINEMENT = 8, ANCHORS = 16, LATTICE = 32, REMOVAL = 64 };
     static const struct {
         const char *name;
         int bits;
     } known[] = { { "none", 0 },           { "coarse", COARSE },         { "fine", FINE },       { "deformation", COARSE | FINE },
                   { "rate", RATE },        { "refinement", REFINEMENT }, { "anchors", ANCHORS },
-                  { "lattice", LATTICE } };
+                  { "lattice", LATTICE },  { "removal", REMOVAL } };
     int bits = 0;
     for (const char *at = parts;; at++) {
         const size_t length = strcspn(at, ",");
@@ -163,8 +163,8 @@ adcgs_status adcgs_train_leave_out(adcgs_train_config *c, const char *parts, adc
             i++;
         if (i == ADCGS_COUNTOF(known))
             return adcgs_fail(error, ADCGS_ERR_USAGE,
-                              "cannot leave out '%.*s': expected none, coarse, fine, deformation, rate, refinement, anchors or "
-                              "lattice", (int)length, at);
+                              "cannot leave out '%.*s': expected none, coarse, fine, deformation, rate, refinement, anchors, "
+                              "removal or lattice", (int)length, at);
         bits |= known[i].bits;
         at += length;
         if (!*at)
@@ -177,6 +177,8 @@ adcgs_status adcgs_train_leave_out(adcgs_train_config *c, const char *parts, adc
     c->without_lattice = (bits & LATTICE) != 0;
     if (bits & ANCHORS)
         leave_out_anchors(c);
+    if (bits & REMOVAL)
+        c->slim_at = c->decide_at = 2;
     if (bits & REFINEMENT)
         c->start_anchors = c->max_anchors;
     return ADCGS_OK;

@@ -64,9 +64,9 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
         c->params.time_rows = (uint16_t)times;
     if (!c->params.time_rows)
         c->params.time_width = 0;
-    /* A camera alone finds what moves with large primitives first. */
+    /* A camera alone finds what moves with large primitives first, and by what neighbours do. Several tell from one moment. */
     if (t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times)
-        c->area_from = 0;
+        c->area_from = c->rigid_weight = 0;
     if (c->without_coarse)
         c->shape.omega_width = 0;
     if (c->without_fine)

@@ -122,9 +122,10 @@ calls 4 0 "--resume $out/lambda-666.partial"
 out=$dir/yard
 sweep --lambda 1,2,4,8
 [ $got -eq 0 ] || fail "yardsticks: $(cat "$dir/err")"
-calls 12 2 "--beginning"
+calls 13 2 "--beginning"
 line '^32-bit networks (same PSNR),2,,1,34000,34000,34000,34.0000' "$out/sweep.csv"
 line '^uncompressed,,,1,400000,400000,400000,35.0500,35.0500,35.0500,0.900000,,' "$out/sweep.csv"
+line '^whole uncompressed,,,1,400000,400000,400000,35.0000,' "$out/sweep.csv"
 line '^per Gaussian,8,,1,16000,16000,16000,28.0000' "$out/sweep.csv"
 line '^per Gaussian uncompressed,,,1,400000,400000,400000,35.0000' "$out/sweep.csv"
 line 'adcgs has 4 points, spans a factor of 8.00 in bytes and is monotone' "$dir/report"
@@ -142,7 +143,7 @@ for packer in 'zstd:zst:zstd -19' 'xz:xz:xz -9e'; do
     fi
 done
 if command -v jq >/dev/null; then
-    jq -e '(.curves | length) == 7 and .curve.monotone and (.curve.span == 8) and
+    jq -e '(.curves | length) == 8 and .curve.monotone and (.curve.span == 8) and
            (.curves[] | select(.name == "per Gaussian").comparison.bd_rate + 50 | fabs < 1e-9) and
            (.curves[] | select(.name == "uncompressed").comparison | .above == false and .bd_rate == null)' "$out/sweep.json" \
         >/dev/null || fail "sweep.json: $(cat "$out/sweep.json")"
@@ -169,7 +170,7 @@ line 'no chart (is gnuplot there?)' "$dir/err"
 out=$dir/seeds
 sweep --lambda 1,2 --seeds 1,2,3 --yardsticks uncompressed
 [ $got -eq 0 ] || fail "seeds: $(cat "$dir/err")"
-calls 12 3 "--beginning"
+calls 15 3 "--beginning"
 line '^adcgs,2,,3,32000,32000,32000,34.2000,34.1000,34.3000,' "$out/sweep.csv"
 line '34.20 (34.10..34.30)' "$dir/report"
 line 'xyerrorlines' "$out/sweep.gp"
