@@ -38,7 +38,7 @@ typedef struct adcgs_train_config {
     uint32_t refine_every; /**< iterations between refinements */
     int rate_period;       /**< rate is measured on every n-th group of anchors */
     float network_rate;    /**< weight of the networks' own bits, relative to the features' */
-    float rigid_weight;    /**< of the energy that keeps neighbours together as they move; where several views share a moment, 0 */
+    float rigid_weight;    /**< of the energy that keeps neighbours alike as they move; 0 where several views share a moment */
     float area_weight;     /**< of the price of primitives' size */
     float rdo_strength;    /**< of the loss per bit when values are frozen, relative to training's; 0: the nearest levels */
     float still_below;     /**< effect of time on an anchor, of which 1 can just be seen, below which it is static */

@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 # The command line of adcgs-conform: what it lists and writes, and what it says of options and manifests that are wrong.
 set -u
-dir=$(mktemp -d) || exit 99
-trap 'rm -rf "$dir"' EXIT
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-conform
 manifest=${srcdir:-.}/conformance/manifest.json
-faults=0
 
 # expect STATUS TEXT ARGUMENT...: the exit status, and a part of the last line on standard error.
 expect()
@@ -15,16 +14,15 @@ expect()
     ./adcgs-conform "$@" >"$dir/out" 2>"$dir/err"
     local found=$?
     if [ $found -ne "$status" ] || { [ -n "$text" ] && ! tail -n 1 "$dir/err" | grep -qF -- "$text"; }; then
-        echo "adcgs-conform $*: status $found, expected $status and \"$text\"; it says:" >&2
-        cat "$dir/err" >&2
-        faults=$((faults + 1))
+        bad "adcgs-conform $*: status $found, expected $status and \"$text\"; it says:"
+        cat "$dir/err"
     fi
 }
 
 expect 0 "" --filter 'good-geom-one-*' --junit "$dir/junit.xml" "$manifest"
-grep -q '<testcase [^>]*good-geom-one-anchor' "$dir/junit.xml" || { echo "no case in the JUnit report" >&2; faults=1; }
+grep -q '<testcase [^>]*good-geom-one-anchor' "$dir/junit.xml" || bad "no case in the JUnit report"
 expect 0 "" --list "$manifest"
-[ "$(wc -l <"$dir/out")" -eq "$(grep -c '"id":' "$manifest")" ] || { echo "not all vectors are listed" >&2; faults=1; }
+[ "$(wc -l <"$dir/out")" -eq "$(grep -c '"id":' "$manifest")" ] || bad "not all vectors are listed"
 
 expect 2 "no vector" --filter 'nothing-*' "$manifest"
 expect 2 "" --point Q "$manifest"
@@ -40,4 +38,4 @@ echo 'not JSON' >"$dir/text.json"
 expect 4 "text.json" "$dir/text.json"
 expect 1 "" --decoder 'false' --filter 'good-geom-one-*' "$manifest"
 expect 1 "" --decoder './no-such-decoder {in}' --filter 'good-geom-one-*' "$manifest"
-[ "$faults" -eq 0 ]
+exit $failed

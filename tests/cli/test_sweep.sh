@@ -3,15 +3,14 @@
 # adcgs-sweep with an encoder and an evaluation that only pretend: runs and their beginnings, yardsticks, ablation, seeds, tables,
 # checks, page, chart, resuming, failures. Then with the real ones in miniature.
 set -u
-dir=$(mktemp -d) || exit 99
-trap 'rm -rf "$dir"' EXIT
-program=${ADCGS_SWEEP:-./adcgs-sweep}
-cp "$program" "$dir/adcgs-sweep" || exit 99
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-sweep
+cp ./adcgs-sweep "$dir/adcgs-sweep" || exit 99
 out=$dir/out
 
 fail()
 {
-    echo "FAIL: $*" >&2
+    bad "$*"
     exit 1
 }
 
