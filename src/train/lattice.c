@@ -133,15 +133,13 @@ void adcgs_trainer_lattices(adcgs_trainer *t)
 }
 
 /**
- * The coarsest lattice of a layer. Of an entropy network it is not far from the nominal one, least of all at the output: where a
- * stream has no bits left to lose any lattice would do, and the first weight to change its point in training would move the
- * means of all anchors by many steps.
+ * The coarsest lattice of a layer. An entropy network has none coarser than the nominal one: where a stream has next to no bits
+ * left any lattice would do by itself, but those of all layers and networks together move the means of all anchors by many steps,
+ * when they are chosen, and again with the first weight that changes its point in training.
  */
 static int coarsest(const adcgs_fmodel *f, int group, int layer)
 {
-    const adcgs_mlp *m = &f->mlp[group];
-    const int finer = layer < m->hidden ? 2 : 1;
-    return m->entropy ? ADCGS_MAX(nominal(f, group, layer) - finer, ADCGS_LATTICE_MIN) : ADCGS_LATTICE_MIN;
+    return f->mlp[group].entropy ? nominal(f, group, layer) : ADCGS_LATTICE_MIN;
 }
 
 /** A network's layers one after the other, each with the others as they were before: their losses add up. */
