@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 15 };
+enum { FORMAT = 16 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -188,6 +188,13 @@ static void walk_average(walk *w, adcgs_trainer *t)
         visit(w, a->mean, a->size * sizeof *a->mean);
 }
 
+/** The cameras are the scene's. */
+static void walk_exposure(walk *w, adcgs_trainer *t)
+{
+    for (uint32_t i = 0; i < t->exposure.n; i++)
+        visit(w, &t->exposure.cameras[i], sizeof t->exposure.cameras[i]);
+}
+
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
 {
     adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the storing visitor only reads */
@@ -198,6 +205,7 @@ adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out
     visit(&w, t->f->pos, t->f->n * sizeof *t->f->pos);
     walk_arrays(&w, t);
     walk_average(&w, t);
+    walk_exposure(&w, t);
     return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint") : ADCGS_OK;
 }
 
@@ -234,6 +242,7 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     ADCGS_TRY(restore_anchors(&w, t, error));
     walk_arrays(&w, t);
     walk_average(&w, t);
+    walk_exposure(&w, t);
     if (w.failed || adcgs_reader_left(&reader))
         return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
     adcgs_fmodel_take_steps(t->f);

@@ -3,6 +3,8 @@
 #include "train/trainer.h"
 
 #include "geom/geom.h"
+#include "train/missing.h"
+#include "train/start.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -116,20 +118,80 @@ static void next_add(next_set *s, const uint32_t pos[3], uint32_t source, int fr
     s->fresh[s->n++] = (uint8_t)fresh;
 }
 
+/** The cell of a place in scene units; 0 if it is outside the grid. */
+static int cell_of(const adcgs_fmodel *f, const float x[3], uint32_t pos[3])
+{
+    const uint32_t side = 1u << f->shape.depth;
+    int inside = 1;
+    for (int a = 0; a < 3; a++) {
+        const float v = floorf((x[a] - f->origin[a]) / f->voxel);
+        inside &= v >= 0 && v < (float)side;
+        pos[a] = inside ? (uint32_t)v : 0;
+    }
+    return inside;
+}
+
 static void grow(adcgs_trainer *t, next_set *s, uint32_t budget, const candidate *list, uint32_t n, cells *occupied)
 {
-    const adcgs_fmodel *f = t->f;
-    const uint32_t side = 1u << f->shape.depth;
+    const float *const *mean = t->pass->primitives.mean;
+    for (uint32_t i = 0; i < n && s->n < budget; i++) {
+        const uint32_t slot = list[i].slot;
+        uint32_t pos[3];
+        if (cell_of(t->f, (const float[]){ mean[0][slot], mean[1][slot], mean[2][slot] }, pos) && cells_add(occupied, pos))
+            next_add(s, pos, anchor_of(t->f, slot), 1);
+    }
+}
+
+/* ---- Growth where something is missing ---- */
+
+enum { MISSING_MOST = 512 };
+
+static uint32_t nearest_anchor(const adcgs_fmodel *f, const uint32_t pos[3])
+{
+    double least = INFINITY;
+    uint32_t nearest = 0;
+    for (uint32_t i = 0; i < f->n; i++) {
+        double d = 0;
+        for (int a = 0; a < 3; a++)
+            d += pow((double)f->pos[i][a] - (double)pos[a], 2);
+        if (d < least) {
+            least = d;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+/** Take in the places that are free, moved to the front; returns how many. */
+static uint32_t sow(adcgs_trainer *t, next_set *s, uint32_t budget, adcgs_missing *places, uint32_t n, cells *occupied)
+{
+    uint32_t taken = 0;
     for (uint32_t i = 0; i < n && s->n < budget; i++) {
         uint32_t pos[3];
-        int inside = 1;
+        if (!cell_of(t->f, places[i].x, pos) || !cells_add(occupied, pos))
+            continue;
+        next_add(s, pos, nearest_anchor(t->f, pos), 1);
+        places[taken++] = places[i];
+    }
+    return taken;
+}
+
+/** Anchors where something was missing begin as small as a pixel, in its colour, with no features. */
+static void dress(adcgs_fmodel *f, const adcgs_missing *places, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t pos[3], at = 0;
+        cell_of(f, places[i].x, pos);
+        while (at < f->n && memcmp(f->pos[at], pos, sizeof pos) != 0)
+            at++;
+        if (at == f->n)
+            continue;
         for (int a = 0; a < 3; a++) {
-            const float v = floorf((t->pass->primitives.mean[a][list[i].slot] - f->origin[a]) / f->voxel);
-            inside &= v >= 0 && v < (float)side;
-            pos[a] = inside ? (uint32_t)v : 0;
+            *adcgs_fmodel_at(f, ADCGS_P_SIGMA, at, a) = *adcgs_fmodel_at(f, ADCGS_P_SIGMA, at, 3 + a) = logf(places[i].size);
+            *adcgs_fmodel_at(f, ADCGS_P_COLOUR, at, a) = places[i].rgb[a];
         }
-        if (inside && cells_add(occupied, pos))
-            next_add(s, pos, anchor_of(f, list[i].slot), 1);
+        for (int a = 0; a < adcgs_fmodel_rows(f, ADCGS_P_FV); a++)
+            *adcgs_fmodel_at(f, ADCGS_P_FV, at, a) = 0;
     }
 }
 
@@ -166,33 +228,77 @@ double adcgs_trainer_budget(const adcgs_train_config *c, double progress)
     return from + (c->max_anchors - from) * ramp;
 }
 
+/** What a refinement works with. */
+typedef struct workspace {
+    next_set next;
+    cells occupied;
+    candidate *list;        /* [slots] */
+    adcgs_missing *missing; /* [MISSING_MOST] */
+} workspace;
+
+static void workspace_clear(workspace *w)
+{
+    next_clear(&w->next);
+    free(w->occupied.key);
+    free(w->list);
+    free(w->missing);
+}
+
+static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_t budget, adcgs_error *error)
+{
+    const size_t anchors = (size_t)t->f->n + budget;
+    size_t buckets = 1;
+    while (buckets < 4 * anchors)
+        buckets *= 2;
+    ADCGS_TRY(next_init(&w->next, (uint32_t)anchors + 1, error));
+    w->occupied = (cells){ calloc(buckets, sizeof *w->occupied.key), buckets - 1 };
+    w->list = malloc((size_t)t->pass->primitives.n * sizeof *w->list);
+    w->missing = malloc(MISSING_MOST * sizeof *w->missing);
+    if (w->occupied.key && w->list && w->missing)
+        return ADCGS_OK;
+    workspace_clear(w);
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for refinement");
+}
+
+static void keep_anchors(const adcgs_trainer *t, workspace *w)
+{
+    for (uint32_t i = 0; i < t->f->n; i++)
+        if (!is_idle(t, i, 0.2)) {
+            cells_add(&w->occupied, t->f->pos[i]);
+            next_add(&w->next, t->f->pos[i], i, 0);
+        }
+    if (!w->next.n)
+        next_add(&w->next, t->f->pos[0], 0, 0);
+}
+
+/**
+ * Random points fill the space that cameras see; a scene's own, as matched between pictures, leave out what is plain or seldom
+ * seen. Gaps are looked for while pictures are small.
+ */
+static int leaves_gaps(const adcgs_trainer *t, double progress)
+{
+    return t->scene->points.n >= ADCGS_POINTS_LEAST && progress < t->config.quarter_until;
+}
+
 adcgs_status adcgs_trainer_refine(adcgs_trainer *t, double progress, adcgs_error *error)
 {
-    const uint32_t budget = (uint32_t)adcgs_trainer_budget(&t->config, progress), slots = t->pass->primitives.n;
-    next_set s;
-    cells occupied = { NULL, 1 };
-    while (occupied.mask < 4 * ((size_t)t->f->n + budget))
-        occupied.mask *= 2;
-    ADCGS_TRY(next_init(&s, t->f->n + budget + 1, error));
-    occupied.key = calloc(occupied.mask--, sizeof *occupied.key);
-    candidate *list = malloc((size_t)slots * sizeof *list);
-    adcgs_status status = occupied.key && list ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for refinement");
+    const uint32_t budget = (uint32_t)adcgs_trainer_budget(&t->config, progress);
+    uint32_t n_missing = 0;
+    workspace w;
+    ADCGS_TRY(workspace_init(&w, t, budget, error));
+    keep_anchors(t, &w);
+    adcgs_status status = ADCGS_OK;
+    if (leaves_gaps(t, progress))
+        status = adcgs_trainer_missing(t, w.missing, MISSING_MOST, &n_missing, error);
     if (status == ADCGS_OK) {
-        for (uint32_t i = 0; i < t->f->n; i++)
-            if (!is_idle(t, i, 0.2)) {
-                cells_add(&occupied, t->f->pos[i]);
-                next_add(&s, t->f->pos[i], i, 0);
-            }
-        if (!s.n)
-            next_add(&s, t->f->pos[0], 0, 0);
-        const uint32_t n = find_candidates(t, list);
+        n_missing = sow(t, &w.next, budget, w.missing, n_missing, &w.occupied);
         adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical places */
-        grow(t, &s, budget, list, n, &occupied);
-        status = adopt(t, &s, error);
+        grow(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
+        status = adopt(t, &w.next, error);
     }
-    next_clear(&s);
-    free(occupied.key);
-    free(list);
+    if (status == ADCGS_OK)
+        dress(t->f, w.missing, n_missing);
+    workspace_clear(&w);
     return status;
 }
 

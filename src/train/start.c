@@ -325,7 +325,7 @@ adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, con
     adcgs_status status = cloud_alloc(&c, config->start_anchors, error);
     if (status == ADCGS_OK) {
         given_points(&c, &s, config->start_anchors);
-        if (c.n < 16)
+        if (c.n < ADCGS_POINTS_LEAST)
             random_points(&c, &s, config->start_anchors, config->seed);
         if (!c.n)
             status = adcgs_fail(error, ADCGS_ERR_DATA,

@@ -6,6 +6,9 @@
 #include "data/scene.h"
 #include "train/schedule.h"
 
+/** Fewer points say nothing of a scene. */
+enum { ADCGS_POINTS_LEAST = 16 };
+
 /** Scene units: the cameras' common focus is the origin, their median distance from it is 1. */
 void adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale);
 

@@ -49,6 +49,21 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
     if (status == ADCGS_OK)
         status = adcgs_window_create(&t->window, times, t->n_views, error);
     free(times);
+    if (status == ADCGS_OK)
+        status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, error);
+    return status;
+}
+
+static adcgs_status create_viewpoints(adcgs_trainer *t, adcgs_error *error)
+{
+    float(*x)[3] = adcgs_alloc(NULL, t->n_views, sizeof *x, error);
+    if (!x)
+        return ADCGS_ERR_MEMORY;
+    for (uint32_t i = 0; i < t->n_views; i++)
+        for (int a = 0; a < 3; a++)
+            x[i][a] = (float)((t->scene->views[ADCGS_SPLIT_TRAIN][i].camera.cam_to_world[4 * a + 3] - t->origin[a]) / t->scale);
+    const adcgs_status status = adcgs_viewpoints_create(&t->viewpoints, (const float(*)[3])x, t->n_views, error);
+    adcgs_free(NULL, x);
     return status;
 }
 
@@ -65,7 +80,8 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     if (!c->params.time_rows)
         c->params.time_width = 0;
     /* A camera alone finds what moves with large primitives first, and by what neighbours do. Several tell from one moment. */
-    if (t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times)
+    const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
+    if (several)
         c->area_from = c->rigid_weight = 0;
     if (c->without_coarse)
         c->shape.omega_width = 0;
@@ -80,6 +96,9 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_raster_back_create(&t->back, t->cpu, t->pool, error));
     ADCGS_TRY(adcgs_loss_create(&t->loss, t->cpu, t->pool, error));
     ADCGS_TRY(create_views(t, error));
+    /* Points of its own say that a scene is filmed from within: where cameras stand is free, whatever others see behind. */
+    if (several && t->scene->points.n >= ADCGS_POINTS_LEAST)
+        ADCGS_TRY(create_viewpoints(t, error));
     return adcgs_trainer_resize(t, error);
 }
 
@@ -112,7 +131,8 @@ static void free_views(adcgs_trainer *t)
     }
     adcgs_free(NULL, t->image);
     adcgs_free(NULL, t->grad);
-    t->image = t->grad = NULL;
+    adcgs_free(NULL, t->even);
+    t->image = t->grad = t->even = NULL;
 }
 
 void adcgs_trainer_free(adcgs_trainer **trainer)
@@ -130,6 +150,8 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_loss_free(&t->loss);
     adcgs_rigid_clear(&t->rigid);
     adcgs_window_clear(&t->window);
+    adcgs_exposure_clear(&t->exposure);
+    adcgs_viewpoints_clear(&t->viewpoints);
     adcgs_average_clear(&t->average);
     adcgs_buffer_clear(&t->snapshot);
     free(t);
@@ -183,8 +205,9 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     ADCGS_TRY(status);
     t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->grad = adcgs_alloc(NULL, most * 3, sizeof(float), error);
+    t->even = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->divide = divide;
-    return t->image && t->grad ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return t->image && t->grad && t->even ? ADCGS_OK : ADCGS_ERR_MEMORY;
 }
 
 /**
@@ -334,10 +357,23 @@ static void take_average(adcgs_trainer *t)
     prepare_networks(t);
 }
 
+/* Before, the pictures drawn say nothing of brightness. */
+static const double EXPOSURE_FROM = 0.02;
+
+const float *adcgs_trainer_target(adcgs_trainer *t, uint32_t view)
+{
+    const adcgs_train_view *v = &t->views[view];
+    if (!t->exposure.n)
+        return v->rgb;
+    adcgs_exposure_even(&t->exposure, view, v->rgb, t->even, (size_t)v->view.width * (size_t)v->view.height);
+    return t->even;
+}
+
 static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
-    const adcgs_train_view *v = &t->views[pick_view(t, t->iteration)];
+    const uint32_t picked = pick_view(t, t->iteration);
+    const adcgs_train_view *v = &t->views[picked];
     const adcgs_quant quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND :
                               progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
     const int rated = progress >= c->rate_from && !c->without_rate && !t->frozen;
@@ -352,12 +388,15 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
         grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1, error));
-    ADCGS_TRY(adcgs_loss_image(t->loss, t->image, v->rgb, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
+    if (t->exposure.n && progress >= EXPOSURE_FROM)
+        adcgs_exposure_follow(&t->exposure, picked, t->image, v->rgb, (size_t)v->view.width * (size_t)v->view.height);
+    const float *target = adcgs_trainer_target(t, picked);
+    ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
     ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image,
                                     t->grad, &grads, error));
     accumulate_stats(t, &grads);
     if (c->area_weight > 0 && progress >= c->area_from)
-        adcgs_area_price(&t->pass->primitives, c->area_weight, grads.scale);
+        adcgs_area_price(&t->pass->primitives, &t->viewpoints, c->area_weight, grads.scale);
     t->pass->pull = NULL;
     if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
         adcgs_rigid_pull(&t->rigid, t->pass, t->f, c->rigid_weight);

@@ -8,8 +8,10 @@
 
 #include "bits/bytes.h"
 #include "data/scene.h"
+#include "train/area.h"
 #include "train/average.h"
 #include "train/control.h"
+#include "train/exposure.h"
 #include "train/loss.h"
 #include "train/pass.h"
 #include "train/rdo.h"
@@ -62,10 +64,13 @@ typedef struct adcgs_trainer {
     adcgs_loss *loss;
     adcgs_rigid rigid;
     adcgs_window window;
+    adcgs_exposure exposure;
+    adcgs_viewpoints viewpoints;
     uint32_t n_views;
     adcgs_train_view *views;
     int divide;              /* of the views loaded; 0: none */
     float *image, *grad;
+    float *even;             /* a view's picture as the mean camera would have taken it */
     adcgs_train_stats stats;
     adcgs_average average;
     adcgs_train_quantise quantise; /* provided by the room that builds streams; NULL: values stay as they are */
@@ -102,6 +107,8 @@ adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error);
 adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, size_t size, adcgs_error *error);
 
+/** A training view's picture, evened out in brightness; valid until the next is asked for. */
+const float *adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view);
 /** (Re)load all training views with their size divided by an integer. */
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *trainer, int divide, adcgs_error *error);
 /** Growth and pruning by temporal significance (paper section 3.5); progress in [0,1]. */

@@ -497,10 +497,32 @@ static void test_area(void **state)
     double area = 0;
     for (int i = 0; i < 4; i++)
         area += i == 2 ? 0 : (double)(s[0][i] * s[1][i] + s[1][i] * s[2][i] + s[2][i] * s[0][i]);
-    assert_float_equal(adcgs_area_price(&primitives, 0.5f, (float *const[]){ g[0], g[1], g[2] }), 0.5 * area / 9, 1e-6);
+    const double price = adcgs_area_price(&primitives, &(adcgs_viewpoints){ .n = 0 }, 0.5f, (float *const[]){ g[0], g[1], g[2] });
+    assert_float_equal(price, 0.5 * area / 9, 1e-6);
     for (int a = 0; a < 3; a++)
         for (int i = 0; i < 4; i++)
             assert_float_equal(g[a][i], i == 2 ? 1 : 1 + 0.5f / 9 * (s[(a + 1) % 3][i] + s[(a + 2) % 3][i]), 1e-6);
+}
+
+/** The same before viewpoints, between cameras too: what is near looks larger. */
+static void test_area_seen(void **state)
+{
+    static const float camera[5][3] = { { 0, 0, 0 }, { 2, 0, 0 }, { 0, 0, 0 }, { 0, 6, 0 }, { 2, 0, 0 } };
+    static const float at[3][4] = { { 1, 3, 0, 0 }, { 0.25f, 1, 0, 6.01f }, { 0, 0, 0.1f, 0 } }; /* by axis */
+    static const float larger[4] = { 16, 0.5f, 100, 400 };
+    static const float one[4] = { 1, 1, 1, 1 };
+    const float *const mean[3] = { at[0], at[1], at[2] };
+    adcgs_primitives primitives = { .n = 4, .scale = { one, one, one }, .opacity = one };
+    float g[3][4] = { { 0 } };
+    adcgs_viewpoints viewpoints = { .n = 0 };
+    adcgs_error error;
+    memcpy(primitives.mean, mean, sizeof mean);
+    assert_int_equal(adcgs_viewpoints_create(&viewpoints, camera, 5, &error), ADCGS_OK);
+    assert_int_equal(viewpoints.n, 3 + 2 * 3);
+    adcgs_area_price(&primitives, &viewpoints, 3, (float *const[]){ g[0], g[1], g[2] });
+    for (int i = 0; i < 4; i++)
+        assert_float_equal(g[0][i], 0.5f * larger[i], 1e-4);
+    adcgs_viewpoints_clear(&viewpoints);
 }
 
 /** Forward with noise; the reference is told the noise, which no parameter changes. */
@@ -684,6 +706,7 @@ int main(void)
             { "adaptive start", test_adaptive_start, setup, teardown, state },
             { "rigid", test_rigid, setup, teardown, state },
             { "area", test_area, NULL, NULL, state },
+            { "area as it is seen", test_area_seen, NULL, NULL, state },
             { "threads", test_threads, setup, teardown, state },
         };
         failed += cmocka_run_group_tests_name("train", tests, NULL, NULL);

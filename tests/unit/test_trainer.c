@@ -11,6 +11,8 @@
 #include "geom/geom.h"
 #include "metric/metric.h"
 #include "model/latents_priv.h"
+#include "train/missing.h"
+#include "train/start.h"
 
 #include <math.h>
 
@@ -636,6 +638,126 @@ static void averages_are_means(void **state)
     adcgs_trainer_free(&t);
 }
 
+/* ---- Brightness of cameras ---- */
+
+enum { CAMERAS = 3, PICTURES = 5, PLANE = 64 };
+
+/** Pictures by cameras of these gains, followed in the order they were taken; even: what the mean camera would have taken. */
+static uint32_t follow_cameras(const float *gain, uint32_t n_views, float even[][3 * PLANE], const float *drawn)
+{
+    adcgs_scene_view views[CAMERAS * PICTURES] = { { .time = 0 } };
+    adcgs_exposure exposure = { .n = 0 };
+    float taken[3 * PLANE];
+    for (uint32_t i = 0; i < n_views; i++)
+        views[i].camera.cam_to_world[3] = i % CAMERAS;
+    assert_int_equal(adcgs_exposure_create(&exposure, views, n_views, &error), ADCGS_OK);
+    for (int even_out = 0; even_out < 2; even_out++)
+        for (uint32_t i = 0; exposure.n && i < n_views; i++) {
+            for (int j = 0; j < 3 * PLANE; j++)
+                taken[j] = gain[i % CAMERAS] * drawn[j];
+            if (even_out)
+                adcgs_exposure_even(&exposure, i, taken, even[i], PLANE);
+            else
+                adcgs_exposure_follow(&exposure, i, drawn, taken, PLANE);
+        }
+    const uint32_t n = exposure.n;
+    adcgs_exposure_clear(&exposure);
+    return n;
+}
+
+static void cameras_are_evened_out(void **state)
+{
+    float drawn[3 * PLANE], even[CAMERAS * PICTURES][3 * PLANE];
+    for (int j = 0; j < 3 * PLANE; j++)
+        drawn[j] = 0.1f + (float)(j * 29 % 101) / 250;
+    /* Gains of mean 1 are found but for 3 %, whatever the pictures show. */
+    assert_int_equal(follow_cameras((const float[]){ 0.5f, 1, 2 }, CAMERAS * PICTURES, even, drawn), CAMERAS);
+    for (int i = 0; i < CAMERAS * PICTURES; i++) {
+        const double left = exp(0.03 * (i % CAMERAS - 1));
+        for (int j = 0; j < 3 * PLANE; j++)
+            assert_float_equal(even[i][j], left * (double)drawn[j], 1e-5);
+    }
+    /* Cameras that agree are left alone, to the bit. */
+    const float near[] = { 0.99f, 1, 1.01f };
+    assert_int_equal(follow_cameras(near, CAMERAS * PICTURES, even, drawn), CAMERAS);
+    for (int i = 0; i < CAMERAS * PICTURES; i++)
+        for (int j = 0; j < 3 * PLANE; j++)
+            assert_true(even[i][j] == near[i % CAMERAS] * drawn[j]);
+    /* Too few pictures a camera tell nothing of it. */
+    assert_int_equal(follow_cameras(near, CAMERAS * 3, even, drawn), 0);
+}
+
+/* ---- What is missing ---- */
+
+/** Every view shows the background and one dot: of the place x, or somewhere of its own. */
+static void show_dot(adcgs_trainer *t, const float x[3], int scattered)
+{
+    static const float colour[3] = { 0.9f, 0.6f, 0.3f };
+    for (uint32_t i = 0; i < t->n_views; i++) {
+        const adcgs_view *v = &t->views[i].view;
+        const int w = v->width, h = v->height;
+        float p[3];
+        for (int a = 0; a < 3; a++)
+            p[a] = v->rotation[3 * a] * x[0] + v->rotation[3 * a + 1] * x[1] + v->rotation[3 * a + 2] * x[2] +
+                   v->translation[a];
+        const int u = scattered ? (int)(i * 7 % 19) + 6 : (int)(v->fx * p[0] / p[2] + v->cx);
+        const int y = scattered ? (int)(i * 5 % 17) + 7 : (int)(v->fy * p[1] / p[2] + v->cy);
+        assert_true(p[2] > 0 && u >= 1 && y >= 1 && u < w - 1 && y < h - 1);
+        for (int c = 0; c < 3; c++) {
+            for (int j = 0; j < w * h; j++)
+                t->views[i].rgb[c * w * h + j] = t->scene->background[c];
+            t->views[i].rgb[(c * h + y) * w + u] += colour[c];
+        }
+    }
+}
+
+/** A thing that no primitive is near to is found where the cameras of a moment say it is; what they do not agree on is not. */
+static void missing_things_are_found(void **state)
+{
+    enum { MOST = 64 };
+    const adcgs_train_config config = small_config();
+    const float x[3] = { 0.1f, -0.05f, 0.12f };
+    adcgs_trainer *t = make(&config, pool);
+    adcgs_missing places[MOST];
+    uint32_t n;
+    assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
+    adcgs_window_grow(&t->window, 1, t->f);
+    memset(t->f->keep, 0, (size_t)t->f->groups * 64 * (size_t)t->f->params.k * sizeof *t->f->keep);
+    show_dot(t, x, 0);
+    assert_int_equal(adcgs_trainer_missing(t, places, MOST, &n, &error), ADCGS_OK);
+    assert_true(n > 0);
+    for (uint32_t i = 0; i < n; i++) {
+        for (int a = 0; a < 3; a++)
+            assert_true(fabsf(places[i].x[a] - x[a]) < 2 * places[i].size);
+        assert_true(places[i].size > 0.01f && places[i].size < 0.2f && places[i].score > 0);
+    }
+    /* A refinement puts an anchor there, if the scene's own points may have left it out. */
+    adcgs_scene with_points = *scene;
+    with_points.points.n = ADCGS_POINTS_LEAST;
+    t->scene = &with_points;
+    t->stats.n = 1;
+    assert_int_equal(adcgs_trainer_refine(t, 0.1, &error), ADCGS_OK);
+    int put = 0;
+    for (uint32_t i = 0; i < t->f->n; i++) {
+        const float *place = t->f->x + (size_t)i / 64 * 192 + i % 64;
+        float off = 0;
+        for (int a = 0; a < 3; a++)
+            off = fmaxf(off, fabsf(place[64 * a] - x[a]));
+        put += off < 2 * places[0].size && *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, 3) == logf(places[0].size);
+    }
+    assert_int_equal(put, 1);
+    memset(t->f->keep, 0, (size_t)t->f->groups * 64 * (size_t)t->f->params.k * sizeof *t->f->keep);
+    show_dot(t, x, 1);
+    assert_int_equal(adcgs_trainer_missing(t, places, MOST, &n, &error), ADCGS_OK);
+    assert_int_equal(n, 0);
+    show_dot(t, x, 0);
+    for (uint32_t i = 0; i < t->n_views; i++)
+        t->views[i].t = (float)i / (float)t->n_views; /* no two at a time */
+    assert_int_equal(adcgs_trainer_missing(t, places, MOST, &n, &error), ADCGS_OK);
+    assert_int_equal(n, 0);
+    adcgs_trainer_free(&t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -655,6 +777,8 @@ int main(void)
         cmocka_unit_test(uncompressed_models_lose_nothing),
         cmocka_unit_test(windows_grow_outwards),
         cmocka_unit_test(averages_are_means),
+        cmocka_unit_test(cameras_are_evened_out),
+        cmocka_unit_test(missing_things_are_found),
     };
     return cmocka_run_group_tests_name("trainer", tests, open_scene, close_scene);
 }

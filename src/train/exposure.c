@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Brightness of cameras. */
+#include "train/exposure.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { PICTURES_LEAST = 4 };
+/*
+ * KEEP: of the sums, from one picture of a camera to its next. DOUBT: logarithm of what gains may be off where cameras agree.
+ * BURNT: values from here on do not grow with the light.
+ */
+static const double KEEP = 0.9, DOUBT = 0.03;
+static const float BURNT = 0.98f, GAIN_MOST = 4;
+
+static int same_camera(const adcgs_camera *a, const adcgs_camera *b)
+{
+    return a->width == b->width && a->height == b->height && !memcmp(&a->fx, &b->fx, sizeof a->fx) &&
+           !memcmp(&a->fy, &b->fy, sizeof a->fy) && !memcmp(&a->cx, &b->cx, sizeof a->cx) &&
+           !memcmp(&a->cy, &b->cy, sizeof a->cy) && !memcmp(a->cam_to_world, b->cam_to_world, sizeof a->cam_to_world);
+}
+
+adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *views, uint32_t n_views, adcgs_error *error)
+{
+    const uint32_t most = n_views / PICTURES_LEAST;
+    adcgs_exposure_clear(e);
+    e->of = adcgs_alloc(NULL, n_views, sizeof *e->of, error);
+    uint32_t *first = adcgs_alloc(NULL, n_views, sizeof *first, error), n = 0;
+    if (!e->of || !first) {
+        adcgs_free(NULL, first);
+        return ADCGS_ERR_MEMORY;
+    }
+    for (uint32_t i = 0; i < n_views && n <= most; i++) {
+        uint32_t c = 0;
+        while (c < n && !same_camera(&views[first[c]].camera, &views[i].camera))
+            c++;
+        if (c == n)
+            first[n++] = i;
+        e->of[i] = c;
+    }
+    adcgs_free(NULL, first);
+    if (n < 2 || n > most)
+        return ADCGS_OK;
+    e->cameras = adcgs_alloc(NULL, n, sizeof *e->cameras, error);
+    if (!e->cameras)
+        return ADCGS_ERR_MEMORY;
+    for (uint32_t i = 0; i < n; i++)
+        e->cameras[i] = (adcgs_exposure_camera){ .gain = { 1, 1, 1 } };
+    e->n = n;
+    return ADCGS_OK;
+}
+
+void adcgs_exposure_clear(adcgs_exposure *e)
+{
+    adcgs_free(NULL, e->of);
+    adcgs_free(NULL, e->cameras);
+    *e = (adcgs_exposure){ .n = 0 };
+}
+
+void adcgs_exposure_follow(adcgs_exposure *e, uint32_t view, const float *drawn, const float *taken, size_t plane)
+{
+    adcgs_exposure_camera *camera = &e->cameras[e->of[view]];
+    for (size_t c = 0; c < 3; c++, drawn += plane, taken += plane) {
+        double cross = 0, square = 0;
+        for (size_t i = 0; i < plane; i++)
+            if (taken[i] < BURNT) {
+                cross += (double)drawn[i] * (double)taken[i];
+                square += (double)drawn[i] * (double)drawn[i];
+            }
+        camera->cross[c] = KEEP * camera->cross[c] + cross;
+        camera->square[c] = KEEP * camera->square[c] + square;
+        if (camera->cross[c] > 0 && camera->square[c] > 0)
+            camera->gain[c] = fminf(fmaxf((float)(camera->cross[c] / camera->square[c]), 1 / GAIN_MOST), GAIN_MOST);
+    }
+}
+
+/** By how much a camera's pictures exceed the mean camera's, as a factor. What may be the model's own fault is left out. */
+static float excess(const adcgs_exposure *e, uint32_t camera, size_t channel)
+{
+    double mean = 0;
+    for (uint32_t i = 0; i < e->n; i++)
+        mean += log((double)e->cameras[i].gain[channel]) / e->n;
+    const double off = log((double)e->cameras[camera].gain[channel]) - mean;
+    return (float)exp(off > DOUBT ? off - DOUBT : off < -DOUBT ? off + DOUBT : 0);
+}
+
+void adcgs_exposure_even(const adcgs_exposure *e, uint32_t view, const float *taken, float *out, size_t plane)
+{
+    for (size_t c = 0; c < 3; c++) {
+        const float by = 1 / excess(e, e->of[view], c);
+        for (size_t i = c * plane; i < (c + 1) * plane; i++)
+            out[i] = by * taken[i];
+    }
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Brightness of cameras. Cameras filmed together seldom agree on it, by tens of percent in some sets, and a model told to match
+ * them all puts haze before those that are dark. So each camera that takes several pictures has a gain per channel, which follows
+ * the least squares fit of pictures drawn to pictures taken, and the model is trained on pictures divided by it, so that it shows
+ * the mean camera. Cameras that agree within 3 % are taken as they are. Gains are of training alone, no stream holds them.
+ */
+#ifndef ADCGS_TRAIN_EXPOSURE_H
+#define ADCGS_TRAIN_EXPOSURE_H
+
+#include "data/scene.h"
+
+typedef struct adcgs_exposure_camera {
+    double cross[3], square[3]; /* sums of drawn * taken and of drawn^2; recent pictures count more */
+    float gain[3];              /* taken / drawn */
+} adcgs_exposure_camera;
+
+/** Zero-initialise before use. */
+typedef struct adcgs_exposure {
+    uint32_t n;                     /**< cameras; 0: brightness is taken as it is */
+    uint32_t *of;                   /**< [views] camera of each view */
+    adcgs_exposure_camera *cameras; /**< [n] */
+} adcgs_exposure;
+
+/** Sort views by camera, equal in pose and lens. Where a camera has less than four pictures in the mean, n stays 0. */
+adcgs_status adcgs_exposure_create(adcgs_exposure *exposure, const adcgs_scene_view *views, uint32_t n_views, adcgs_error *error);
+void adcgs_exposure_clear(adcgs_exposure *exposure);
+/** Take note of a view's picture as drawn and as taken, [3][plane] both. */
+void adcgs_exposure_follow(adcgs_exposure *exposure, uint32_t view, const float *drawn, const float *taken, size_t plane);
+/** out: the picture taken, as the mean camera would have. All [3][plane]. */
+void adcgs_exposure_even(const adcgs_exposure *exposure, uint32_t view, const float *taken, float *out, size_t plane);
+
+#endif
