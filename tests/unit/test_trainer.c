@@ -332,6 +332,12 @@ static void decoded_values_are_their_own_quantisation(void **state)
     }
 }
 
+/** Whether a value is so near half-way between two levels that either is right. */
+static int is_tie(double value, double level, double other)
+{
+    return fabs(value - (level + other) / 2) < 1e-5 * fabs(level - other);
+}
+
 /** The values that rounding shows to the networks are those that a decoder will have, steps that adapt included. */
 static void rounding_is_decoding(void **state)
 {
@@ -339,7 +345,7 @@ static void rounding_is_decoding(void **state)
     adcgs_trainer *t = make(&config, pool);
     float *mu[ADCGS_P_ANCHOR], *value[ADCGS_P_ANCHOR];
     adcgs_model model;
-    uint32_t stop = 180, adapted = 0;
+    uint32_t stop = 180, adapted = 0, ties = 0;
     run(t, stop_at, &stop);
     take_values(t->f, mu, value);
     const adcgs_quantise_options options = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value };
@@ -349,16 +355,20 @@ static void rounding_is_decoding(void **state)
         for (uint32_t a = 0; a < t->f->n; a++)
             for (int r = 0; r < adcgs_fmodel_rows(t->f, i); r++) {
                 const size_t at = (size_t)(adcgs_fmodel_at(t->f, i, a, r) - t->f->param[i].p);
-                const double want = (double)value[i][at];
-                if (i != ADCGS_P_FG || model.mask[a] >> r / t->f->params.n_fg & 1)
-                    assert_float_equal(t->pass->used[i][at], want, 2e-6 * (1 + fabs(want)));
+                const double want = (double)value[i][at], seen = (double)t->pass->used[i][at];
+                if (i == ADCGS_P_FG && !(model.mask[a] >> r / t->f->params.n_fg & 1))
+                    continue;
+                if (is_tie((double)t->f->param[i].p[at], seen, want))
+                    ties++;
+                else
+                    assert_float_equal(seen, want, 2e-6 * (1 + fabs(want)));
             }
         free(mu[i]);
         free(value[i]);
     }
     for (uint32_t i = 0; i < t->f->groups * (2u + t->f->params.chunks) * 64; i++)
         adapted += t->pass->factor[i] != 1;
-    assert_true(adapted > 0);
+    assert_true(adapted > 0 && ties < 10);
     adcgs_model_clear(&model, NULL);
     adcgs_trainer_free(&t);
 }
