@@ -4,8 +4,6 @@
 
 #include "encode/encode.h"
 
-enum { ITERATIONS = 200 };
-
 static adcgs_train_config config_for(adcgs_train_target target, double value)
 {
     adcgs_train_config c;

@@ -14,24 +14,6 @@
 
 #include <math.h>
 
-enum { ITERATIONS = 200 };
-
-static adcgs_train_config small_config(void)
-{
-    adcgs_train_config c;
-    assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
-    c.iterations = ITERATIONS;
-    c.start_anchors = 100;
-    c.max_anchors = 150;
-    c.refine_every = 20;
-    c.grow_threshold = 1e-6f;
-    c.still_below = 0; /* motion takes longer to show than these runs last */
-    c.params.k = 4;
-    c.params.n_fv = 12;
-    c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 16;
-    return c;
-}
-
 static void go_on(adcgs_trainer *t, uint32_t stop)
 {
     int stopped;

@@ -16,24 +16,12 @@
 
 #include <math.h>
 
-enum { ITERATIONS = 200 };
-
-static adcgs_train_config small_config(void)
+static adcgs_train_config all_stages_config(void)
 {
-    adcgs_train_config c;
-    assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
-    c.iterations = ITERATIONS;
-    c.start_anchors = 100;
-    c.max_anchors = 150;
-    c.refine_every = 20;
-    c.grow_threshold = 1e-6f;
+    adcgs_train_config c = small_config();
     c.freeze_from = 0.92f; /* long enough to stop in */
-    c.still_below = 0; /* motion takes longer to show than these runs last */
     c.rdo_strength = 1;
-    c.params.k = 4;
-    c.params.n_fv = 12;
     c.params.adaptive_steps = 1;
-    c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 16;
     return c;
 }
 
@@ -83,7 +71,7 @@ static int all_finite(const adcgs_fmodel *f)
 static void restored_runs_go_on_in_lockstep(void **state)
 {
     static const uint32_t stops[] = { 0, 30, 90, 140, 180, 190 };
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     adcgs_trainer *through = make(&config, pool), *stopping = make(&config, NULL);
     adcgs_buffer end, middle, again;
     run(through, NULL, NULL);
@@ -116,7 +104,7 @@ static void restored_runs_go_on_in_lockstep(void **state)
 
 static void checkpoints_are_checked(void **state)
 {
-    adcgs_train_config config = small_config();
+    adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make(&config, NULL), *other;
     adcgs_buffer b;
     store(t, &b);
@@ -163,7 +151,7 @@ static int count_anchors(void *user, const adcgs_train_report *r)
 
 static void refinement_keeps_order_and_budget(void **state)
 {
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     census c = { make(&config, pool), UINT32_MAX, 0 };
     const uint32_t start = c.t->f->n;
     run(c.t, count_anchors, &c);
@@ -174,7 +162,7 @@ static void refinement_keeps_order_and_budget(void **state)
 /** Anchors that nobody saw since the last refinement go, the others stay, and their parameters with them. */
 static void refinement_prunes_what_is_not_seen(void **state)
 {
-    adcgs_train_config config = small_config();
+    adcgs_train_config config = all_stages_config();
     config.grow_threshold = 1e9f;
     adcgs_trainer *t = make(&config, pool);
     uint32_t stop = 50, gone[3], left;
@@ -198,7 +186,7 @@ static void refinement_prunes_what_is_not_seen(void **state)
 /** When it is decided what stays, faint primitives go, and anchors that have no other. */
 static void faint_primitives_go(void **state)
 {
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make(&config, pool);
     uint32_t stop = 50;
     run(t, stop_at, &stop);
@@ -249,7 +237,7 @@ static void no_number_is_rolled_back(void **state)
 {
     static const int groups[] = { -1, ADCGS_P_FV, ADCGS_P_FG, ADCGS_P_COLOUR, ADCGS_P_ETA, ADCGS_P_THETA, ADCGS_P_TIME,
                                   ADCGS_P_E_FV };
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++) {
         adcgs_model model;
         poison p = { .t = make(&config, pool), .group = groups[i], .repair = 1, .at = 90 };
@@ -267,7 +255,7 @@ static void no_number_is_rolled_back(void **state)
 /** The same in the last stages, where anchors are final and stored as they decode. */
 static void no_number_is_rolled_back_late(void **state)
 {
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     for (uint32_t at = 140; at < ITERATIONS; at += 20) {
         poison p = { .t = make(&config, pool), .group = ADCGS_P_THETA, .at = at };
         run(p.t, give_poison, &p);
@@ -279,7 +267,7 @@ static void no_number_is_rolled_back_late(void **state)
 
 static void lasting_poison_ends_the_run(void **state)
 {
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     poison p = { .t = make(&config, pool), .group = -1, .at = 0 };
     int stopped;
     p.t->config.quarter_until = p.t->config.half_until = 0; /* loaded once: the picture keeps its fault */
@@ -304,7 +292,7 @@ static void take_values(adcgs_fmodel *f, float *mu[ADCGS_P_ANCHOR], float *value
 
 static void decoded_values_are_their_own_quantisation(void **state)
 {
-    adcgs_train_config config = small_config();
+    adcgs_train_config config = all_stages_config();
     for (uint32_t stop = 90; stop <= ITERATIONS; stop += 55) {
         config.params.adaptive_steps = stop % 110 == 90;
         adcgs_trainer *t = make(&config, pool);
@@ -341,7 +329,7 @@ static int is_tie(double value, double level, double other)
 /** The values that rounding shows to the networks are those that a decoder will have, steps that adapt included. */
 static void rounding_is_decoding(void **state)
 {
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make(&config, pool);
     float *mu[ADCGS_P_ANCHOR], *value[ADCGS_P_ANCHOR];
     adcgs_model model;
@@ -397,7 +385,7 @@ static double flag_bytes(adcgs_model *model)
 static void estimated_bits_are_written_bytes(void **state)
 {
     enum { LARGE = 2000, FRAMING = 10 }; /* of a sub-stream: its length, check sum and end */
-    adcgs_train_config config = small_config();
+    adcgs_train_config config = all_stages_config();
     config.start_anchors = config.max_anchors = 600;
     config.params.k = 6;
     adcgs_trainer *t = make(&config, pool);
@@ -465,7 +453,7 @@ static void check_reach(const adcgs_trainer *t, int network)
 static void rate_reaches_every_weight(void **state)
 {
     static const uint32_t stops[] = { 120, 180 };
-    adcgs_train_config config = small_config();
+    adcgs_train_config config = all_stages_config();
     config.without_lattice = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
     config.network_rate = 0;
     for (size_t s = 0; s < ADCGS_COUNTOF(stops); s++) {
@@ -497,7 +485,7 @@ static void rate_reaches_every_weight(void **state)
 /** A stream of a model in which no anchor moves has no networks, table or flags for motion. */
 static void still_models_carry_no_motion(void **state)
 {
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make(&config, pool);
     adcgs_stream stream;
     adcgs_buffer bytes;
@@ -550,7 +538,7 @@ static uint32_t drawing_weights(const adcgs_model *model)
 
 static void uncompressed_models_lose_nothing(void **state)
 {
-    adcgs_train_config config = small_config();
+    adcgs_train_config config = all_stages_config();
     config.without_rate = config.without_rounding = 1;
     adcgs_trainer *t = make(&config, pool), *other = make(&config, pool);
     adcgs_model model, coarse;
@@ -591,7 +579,7 @@ static float *time_row(adcgs_trainer *t, int row)
 /** Views come in from the middle of time outwards; a row reached begins where its neighbour stands, others stay. */
 static void windows_grow_outwards(void **state)
 {
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make(&config, pool);
     adcgs_window *w = &t->window;
     const size_t bytes = t->f->params.time_width * sizeof(float);
@@ -622,7 +610,7 @@ static void windows_grow_outwards(void **state)
 /** The mean of three states, the same to the bit where they are; a model of another size begins a mean of its own. */
 static void averages_are_means(void **state)
 {
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make(&config, pool);
     adcgs_fmodel *f = t->f;
     adcgs_param *varied = &f->param[ADCGS_P_OMEGA], *same = &f->param[ADCGS_P_THETA];
@@ -725,7 +713,7 @@ static void show_dot(adcgs_trainer *t, const float x[3], int scattered)
 static void missing_things_are_found(void **state)
 {
     enum { MOST = 64 };
-    const adcgs_train_config config = small_config();
+    const adcgs_train_config config = all_stages_config();
     const float x[3] = { 0.1f, -0.05f, 0.12f };
     adcgs_trainer *t = make(&config, pool);
     adcgs_missing places[MOST];

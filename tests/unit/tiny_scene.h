@@ -28,6 +28,25 @@ static int close_scene(void **state)
     return remove_folder(state);
 }
 
+enum { ITERATIONS = 200 };
+
+/** A run of a second or two that goes through every stage. */
+static inline adcgs_train_config small_config(void)
+{
+    adcgs_train_config c;
+    assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
+    c.iterations = ITERATIONS;
+    c.start_anchors = 100;
+    c.max_anchors = 150;
+    c.refine_every = 20;
+    c.grow_threshold = 1e-6f;
+    c.still_below = 0; /* motion takes longer to show than these runs last */
+    c.params.k = 4;
+    c.params.n_fv = 12;
+    c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 16;
+    return c;
+}
+
 /** An observer: stop at the iteration that user points to. */
 static int stop_at(void *user, const adcgs_train_report *r)
 {
