@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 16 };
+enum { FORMAT = 17 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -52,8 +52,8 @@ static void walk_options(walk *w, const adcgs_train_config *c)
     const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight,
                            c->area_weight, c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
                            c->window_begin, c->window_until, c->quarter_until, c->half_until, c->area_from, c->deform_from,
-                           c->fine_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->slim_at, c->decide_at,
-                           c->round_from, c->freeze_from };
+                           c->fine_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->slim_at, c->slim_again,
+                           c->decide_at, c->round_from, c->freeze_from };
     for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
         visit_same(w, whole[i]);
     for (size_t i = 0; i < ADCGS_COUNTOF(real); i++)

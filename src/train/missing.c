@@ -14,8 +14,9 @@ enum { VIEWS_MOST = 32, VIEWS_LEAST = 3, PIXELS_MOST = 256, DEPTHS = 256 };
 typedef struct look {
     const adcgs_train_view *view;
     int w, h;
-    float *off;  /* [h][w] taken - drawn, mean of the channels */
-    float *more; /* [h][w] the most of it about a pixel */
+    float *off;   /* [h][w] taken - drawn, mean of the channels */
+    float *more;  /* [h][w] the most of it about a pixel */
+    float *taken; /* [3][h][w] as the mean camera would have taken it */
 } look;
 
 typedef struct pixel {
@@ -54,14 +55,15 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
     const int w = l->w = v->view.width, h = l->h = v->view.height;
     const size_t plane = (size_t)w * (size_t)h;
     l->view = v;
-    l->off = adcgs_alloc(NULL, 2 * plane, sizeof *l->off, error);
+    l->off = adcgs_alloc(NULL, 5 * plane, sizeof *l->off, error);
     if (!l->off)
         return ADCGS_ERR_MEMORY;
     l->more = l->off + plane;
+    l->taken = l->more + plane;
     ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 0, error));
-    const float *taken = adcgs_trainer_target(t, index);
+    memcpy(l->taken, adcgs_trainer_target(t, index), 3 * plane * sizeof *l->taken);
     for (size_t i = 0; i < plane; i++)
-        l->off[i] = ((taken[i] + taken[plane + i] + taken[2 * plane + i]) -
+        l->off[i] = ((l->taken[i] + l->taken[plane + i] + l->taken[2 * plane + i]) -
                      (t->image[i] + t->image[plane + i] + t->image[2 * plane + i])) / 3;
     spread(l);
     return ADCGS_OK;
@@ -126,11 +128,10 @@ static uint32_t follow(const look *looks, int n, int own, adcgs_missing *places,
             list[count++] = (pixel){ l->more[i], i };
     qsort(list, count, sizeof *list, by_difference);
     for (uint32_t i = 0; i < ADCGS_MIN(count, PIXELS_MOST) && found < most; i++) {
-        const float *taken = l->view->rgb + list[i].at;
         if (!place_of(looks, n, own, list[i], &places[found]))
             continue;
         for (int c = 0; c < 3; c++)
-            places[found].rgb[c] = taken[(size_t)c * (size_t)l->w * (size_t)l->h];
+            places[found].rgb[c] = l->taken[(size_t)c * (size_t)l->w * (size_t)l->h + (size_t)list[i].at];
         found++;
     }
     free(list);
@@ -139,7 +140,7 @@ static uint32_t follow(const look *looks, int n, int own, adcgs_missing *places,
 
 adcgs_status adcgs_trainer_missing(adcgs_trainer *t, adcgs_missing *places, uint32_t most, uint32_t *n, adcgs_error *error)
 {
-    look looks[VIEWS_MOST] = { { NULL, 0, 0, NULL, NULL } };
+    look looks[VIEWS_MOST] = { { NULL, 0, 0, NULL, NULL, NULL } };
     const float moment = t->views[t->window.views[t->iteration % t->window.n].index].t;
     int count = 0;
     adcgs_status status = ADCGS_OK;

@@ -28,6 +28,7 @@ typedef struct adcgs_train_config {
     adcgs_train_target target;
     double target_value;   /**< bytes or dB */
     uint8_t own_anchors, own_networks; /**< max_anchors, the networks' widths were chosen by hand: no target changes them */
+    uint8_t own_rigid, own_area; /**< rigid_weight, area_from were chosen by hand: no scene changes them */
     float ssim_weight;
     adcgs_params params;   /**< time_rows is capped by the scene */
     adcgs_shape shape;
@@ -48,7 +49,8 @@ typedef struct adcgs_train_config {
     float window_begin, window_until; /**< views trained on grow from this fraction, about the middle of time, to all */
     float quarter_until, half_until; /**< coarse-to-fine: a quarter, then half of the resolution */
     float area_from;       /**< size has its price from here on; where several views share a moment, from the start */
-    float deform_from, fine_from, grow_from, grow_until, noise_from, rate_from, slim_at, decide_at, round_from, freeze_from;
+    float slim_at, slim_again; /**< hidden units are removed; the second time needs the first */
+    float deform_from, fine_from, grow_from, grow_until, noise_from, rate_from, decide_at, round_from, freeze_from;
     /* Ablation switches: what is left out, see adcgs_train_leave_out(). */
     uint8_t without_coarse, without_fine, without_rate, without_refinement, without_lattice;
     uint8_t without_rounding; /**< values and weights remain binary32 to the end, for a model that is stored uncompressed */

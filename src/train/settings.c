@@ -72,6 +72,7 @@ static const setting settings[] = {
     AT(REAL, noise_from, 0, 2),
     AT(REAL, rate_from, 0, 2),
     AT(REAL, slim_at, 0, 2),
+    AT(REAL, slim_again, 0, 2),
     AT(REAL, decide_at, 0, 2),
     AT(REAL, round_from, 0, 2),
     AT(REAL, freeze_from, 0, 2),
@@ -115,6 +116,8 @@ static adcgs_status set_one(adcgs_train_config *c, const char *text, size_t leng
                               s->name, s->kind == REAL ? "NUMBER" : "INTEGER", s->min, s->max);
         put(c, s, value);
         c->own_anchors |= s->offset == offsetof(adcgs_train_config, max_anchors);
+        c->own_rigid |= s->offset == offsetof(adcgs_train_config, rigid_weight);
+        c->own_area |= s->offset == offsetof(adcgs_train_config, area_from);
         c->own_networks |= s->offset >= offsetof(adcgs_train_config, shape.theta_width) &&
                            s->offset <= offsetof(adcgs_train_config, shape.entropy_hidden);
         return ADCGS_OK;

@@ -81,8 +81,10 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
         c->params.time_width = 0;
     /* A camera alone finds what moves with large primitives first, and by what neighbours do. Several tell from one moment. */
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
-    if (several)
-        c->area_from = c->rigid_weight = 0;
+    if (several && !c->own_rigid)
+        c->rigid_weight = 0;
+    if (several && !c->own_area)
+        c->area_from = 0;
     if (c->without_coarse)
         c->shape.omega_width = 0;
     if (c->without_fine)
@@ -436,8 +438,8 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
         if (t->iteration >= WEIGH_AFTER)
             ADCGS_TRY(adcgs_trainer_weigh(t, error));
     }
-    if (!t->slimmed && progress >= c->slim_at && !c->without_rate) {
-        t->slimmed = 1;
+    if (t->slimmed < 2 && progress >= (t->slimmed ? c->slim_again : c->slim_at) && !c->without_rate) {
+        t->slimmed++;
         if (t->iteration >= SLIM_AFTER)
             ADCGS_TRY(adcgs_trainer_slim(t, error));
     }

@@ -685,6 +685,27 @@ static void cameras_are_evened_out(void **state)
     assert_int_equal(follow_cameras(near, CAMERAS * 3, even, drawn), 0);
 }
 
+/** Where several views share a moment, neighbours move as pictures say and size has its price at once, unless told otherwise. */
+static void moments_shared_by_views_change_settings(void **state)
+{
+    adcgs_scene alone = *scene;
+    adcgs_train_config config = small_config();
+    const float rigid = config.rigid_weight, from = config.area_from;
+    const adcgs_scene *alone_and_shared[] = { &alone, scene };
+    assert_true(rigid > 0 && from > 0);
+    alone.n_times = alone.n_views[ADCGS_SPLIT_TRAIN];
+    for (int by_hand = 0; by_hand < 2; by_hand++)
+        for (int i = 0; i < 2; i++) {
+            adcgs_trainer *t;
+            if (by_hand)
+                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,area_from=0.125", &error), ADCGS_OK);
+            assert_int_equal(adcgs_trainer_create(&t, alone_and_shared[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
+            assert_true(t->config.rigid_weight == (by_hand ? 0.5f : i ? 0 : rigid));
+            assert_true(t->config.area_from == (by_hand ? 0.125f : i ? 0 : from));
+            adcgs_trainer_free(&t);
+        }
+}
+
 /* ---- What is missing ---- */
 
 /** Every view shows the background and one dot: of the place x, or somewhere of its own. */
@@ -728,6 +749,7 @@ static void missing_things_are_found(void **state)
         for (int a = 0; a < 3; a++)
             assert_true(fabsf(places[i].x[a] - x[a]) < 2 * places[i].size);
         assert_true(places[i].size > 0.01f && places[i].size < 0.2f && places[i].score > 0);
+        assert_float_equal(places[i].rgb[0] - scene->background[0], 0.9, 1e-6);
     }
     /* A refinement puts an anchor there, if the scene's own points may have left it out. */
     adcgs_scene with_points = *scene;
@@ -776,6 +798,7 @@ int main(void)
         cmocka_unit_test(windows_grow_outwards),
         cmocka_unit_test(averages_are_means),
         cmocka_unit_test(cameras_are_evened_out),
+        cmocka_unit_test(moments_shared_by_views_change_settings),
         cmocka_unit_test(missing_things_are_found),
     };
     return cmocka_run_group_tests_name("trainer", tests, open_scene, close_scene);
