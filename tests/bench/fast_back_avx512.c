@@ -1,0 +1,6 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The kernels of its backward pass, AVX-512, without the rules that make them exact. */
+#include "fast.h"
+
+#define adcgs_back_avx512 bench_fast_back_avx512
+#include "train/raster_backward_avx512.c"

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Measuring. */
+#define _POSIX_C_SOURCE 200809L
+
+#include "measure.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { ITEMS_MAX = 8, ROUNDS_MAX = 101 };
+
+void bench_check(adcgs_status status, const adcgs_error *error)
+{
+    if (status == ADCGS_OK)
+        return;
+    fprintf(stderr, "adcgs-bench: %s\n", error && error->text[0] ? error->text : adcgs_status_name(status));
+    exit(1);
+}
+
+float *bench_floats(size_t n)
+{
+    adcgs_error error = { .status = ADCGS_OK };
+    float *p = adcgs_alloc(NULL, n, sizeof *p, &error);
+    bench_check(p ? ADCGS_OK : ADCGS_ERR_MEMORY, &error);
+    return p;
+}
+
+int bench_wants(const bench *b, const char *group)
+{
+    return !b->only || !strncmp(group, b->only, strlen(b->only));
+}
+
+const bench_ceilings *bench_ceilings_of(const bench *b, int threads)
+{
+    return &b->ceilings[threads > 1];
+}
+
+/* ---- Turns ---- */
+
+/** Of one thread, the time that it had a processor; of several, the time that passed. */
+static double clock_of(int threads)
+{
+    struct timespec now;
+    if (threads > 1 || clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) != 0)
+        return adcgs_seconds();
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double seconds_of(const bench_item *item, int times, int threads)
+{
+    const double start = clock_of(threads);
+    for (int i = 0; i < times; i++)
+        item->run(item->arg);
+    return (clock_of(threads) - start) / times;
+}
+
+/** How often an item runs in a turn. The runs that find out also warm it up. */
+static int times_of(const bench *b, const bench_item *item, int threads)
+{
+    int times = 1;
+    for (double took = seconds_of(item, 1, threads); took * times < b->turn && times < 1 << 24;
+         took = seconds_of(item, times, threads))
+        times = took > 0 ? (int)ADCGS_MIN(1.2 * b->turn / took + 1, 1 << 24) : 2 * times;
+    return times;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/** The value that a share of those in v[n] are below. */
+static double percentile(const double *v, int n, double share)
+{
+    double sorted[ROUNDS_MAX];
+    memcpy(sorted, v, (size_t)n * sizeof *v);
+    qsort(sorted, (size_t)n, sizeof *sorted, ascending);
+    return sorted[(int)(share * (n - 1) + 0.5)];
+}
+
+/* ---- Reports ---- */
+
+static void print_rate(double rate, const char *unit)
+{
+    static const char *const prefixes[] = { "", "k", "M", "G", "T" };
+    size_t i = 0;
+    for (; rate >= 1000 && i + 1 < ADCGS_COUNTOF(prefixes); i++)
+        rate /= 1000;
+    char name[32];
+    snprintf(name, sizeof name, "%s%s/s", prefixes[i], unit);
+    printf(" %7.2f %-11s", rate, name);
+}
+
+void bench_header(const bench *b)
+{
+    printf("%-31s %9s %19s %19s %8s %7s\n", "median of turns", "ms", "10 % .. 90 %", "rate", "of most", "ratio");
+    if (b->csv)
+        fprintf(b->csv, "group,item,level,width,height,anchors,splats,threads,ms,ms_10,ms_90,rate,unit,of_most,ratio\n");
+}
+
+static void print_place(const bench_place *p)
+{
+    printf("%s", p->group);
+    if (p->width)
+        printf(", %dx%d", p->width, p->height);
+    if (p->anchors)
+        printf(", %u anchors", p->anchors);
+    if (p->splats)
+        printf(", %u splats", p->splats);
+    printf(p->threads > 1 ? ", %d threads\n" : ", %d thread\n", p->threads);
+}
+
+static void report(const bench *b, const bench_place *p, const bench_item *item, const double *seconds, const double *first)
+{
+    double ratios[ROUNDS_MAX];
+    for (int r = 0; r < b->rounds; r++)
+        ratios[r] = first ? seconds[r] / first[r] : 0;
+    const double middle = percentile(seconds, b->rounds, 0.5), ratio = percentile(ratios, b->rounds, 0.5);
+    const double low = 1e3 * percentile(seconds, b->rounds, 0.1), high = 1e3 * percentile(seconds, b->rounds, 0.9);
+    const double rate = item->work / middle, share = item->most > 0 ? rate / item->most : 0;
+    printf("  %-29s %9.4f %8.4f .. %7.4f", item->name, 1e3 * middle, low, high);
+    print_rate(rate, item->unit);
+    if (share > 0)
+        printf(" %6.1f %%", 100 * share);
+    else
+        printf(" %8s", "");
+    if (first && seconds != first)
+        printf(" %7.2f", ratio);
+    printf("\n");
+    fflush(stdout);
+    if (!b->csv)
+        return;
+    fprintf(b->csv, "%s,%s,%s,%d,%d,%u,%u,%d,%.6g,%.6g,%.6g,%.6g,%s,%.4g,%.4g\n", p->group, item->name, adcgs_cpu_name(b->level),
+            p->width, p->height, p->anchors, p->splats, p->threads, 1e3 * middle, low, high, rate, item->unit, share, ratio);
+}
+
+void bench_group(const bench *b, const bench_place *place, const bench_item *items, int n, int compare)
+{
+    static double seconds[ITEMS_MAX][ROUNDS_MAX];
+    int times[ITEMS_MAX];
+    if (!bench_wants(b, place->group))
+        return;
+    for (int i = 0; i < n; i++)
+        times[i] = times_of(b, &items[i], place->threads);
+    for (int r = 0; r < b->rounds; r++)
+        for (int i = 0; i < n; i++)
+            seconds[i][r] = seconds_of(&items[i], times[i], place->threads);
+    print_place(place);
+    for (int i = 0; i < n; i++)
+        report(b, place, &items[i], seconds[i], compare ? seconds[0] : NULL);
+}

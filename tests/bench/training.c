@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Whole iterations of training, then the decoding and playing of what was trained. */
+#include "parts.h"
+
+#include "encode/encode.h"
+#include "scenes/scenes.h"
+#include "train/trainer.h"
+
+#include <math.h>
+#include <sys/stat.h>
+
+enum { WARM_UP = 200, AT_A_TIME = 20, ROUNDED = 20, FRAMES = 32 };
+
+typedef struct training {
+    adcgs_trainer *t;
+    uint32_t until;
+} training;
+
+static int reached(void *user, const adcgs_train_report *report)
+{
+    return report->iteration >= ((const training *)user)->until;
+}
+
+static void iterate(training *r, uint32_t n)
+{
+    adcgs_error error = { .status = ADCGS_OK };
+    int stopped;
+    r->until = r->t->iteration + n;
+    bench_check(adcgs_trainer_run(r->t, reached, r, &stopped, &error), &error);
+}
+
+static void some_iterations(void *arg)
+{
+    iterate(arg, AT_A_TIME);
+}
+
+/** Everything takes part in every iteration, and nothing changes the number of anchors. */
+static adcgs_train_config steady(const char *preset, uint32_t anchors)
+{
+    adcgs_train_config c;
+    adcgs_error error = { .status = ADCGS_OK };
+    bench_check(adcgs_train_preset(&c, preset, &error), &error);
+    c.iterations = 1000000;
+    c.start_anchors = c.max_anchors = anchors;
+    c.window_until = c.quarter_until = c.half_until = c.area_from = 0;
+    c.deform_from = c.fine_from = c.noise_from = c.rate_from = c.grow_from = c.grow_until = 0;
+    c.slim_at = c.decide_at = c.round_from = c.freeze_from = 2;
+    return c;
+}
+
+static adcgs_scene *open_scene(const char *folder, int width, int height)
+{
+    char path[512];
+    struct stat there;
+    adcgs_scene *scene;
+    adcgs_error error = { .status = ADCGS_OK };
+    const adcgs_scenes_options made = { .name = "tiny", .width = width, .height = height, .format = "ppm" };
+    const adcgs_scene_options options = { .points_path = NULL };
+    snprintf(path, sizeof path, "%s/tiny-%dx%d", folder, width, height);
+    if (stat(path, &there) != 0) {
+        mkdir(folder, 0777); /* if it fails, so does what follows, with a message */
+        bench_check(adcgs_scenes_write(path, &made, NULL, NULL, NULL, &error), &error);
+    }
+    bench_check(adcgs_scene_open(&scene, path, &options, &error), &error);
+    return scene;
+}
+
+/* ---- Playing ---- */
+
+typedef struct player {
+    const adcgs_buffer *stream;
+    adcgs_config config;
+    adcgs_decoder *decoder;
+    adcgs_camera camera;
+    adcgs_frame frame;
+    double length;
+    int next;
+} player;
+
+static void open_stream(void *arg)
+{
+    player *p = arg;
+    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_close(&p->decoder);
+    bench_check(adcgs_open_memory(&p->decoder, p->stream->data, p->stream->size, &p->config, &error), &error);
+}
+
+/** One frame after another, each at a time of its own. */
+static void play(void *arg)
+{
+    player *p = arg;
+    adcgs_error error = { .status = ADCGS_OK };
+    p->next = (p->next + 1) % FRAMES;
+    bench_check(adcgs_render(p->decoder, &p->camera, p->length * p->next / FRAMES, &p->frame, &error), &error);
+}
+
+static void splats_alone(void *arg)
+{
+    player *p = arg;
+    adcgs_primitives primitives;
+    p->next = (p->next + 1) % FRAMES;
+    bench_check(adcgs_get_primitives(p->decoder, p->length * p->next / FRAMES, &primitives), NULL);
+}
+
+static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_place place)
+{
+    for (int threads = 1; threads <= b->threads; threads += b->threads > 1 ? b->threads - 1 : 1) {
+        player p = { .stream = stream };
+        adcgs_info info;
+        adcgs_config_init(&p.config);
+        p.config.threads = threads;
+        p.config.cpu = b->level;
+        open_stream(&p);
+        bench_check(adcgs_get_info(p.decoder, &info), NULL);
+        bench_check(adcgs_get_camera(p.decoder, 0, &p.camera), NULL);
+        p.length = info.time_end - info.time_start;
+        p.frame = (adcgs_frame){ .width = p.camera.width, .height = p.camera.height,
+                                 .rgb = bench_floats(3 * (size_t)p.camera.width * (size_t)p.camera.height) };
+        place.threads = threads;
+        place.anchors = info.anchors;
+        place.splats = info.gaussians;
+        const bench_item items[] = { { "open and decode", open_stream, &p, (double)stream->size, "byte", 0 },
+                                     { "splats of a moment", splats_alone, &p, 1, "frame", 0 },
+                                     { "a whole frame", play, &p, 1, "frame", 0 } };
+        place.group = "play";
+        bench_group(b, &place, items, ADCGS_COUNTOF(items), 0);
+        adcgs_free(NULL, p.frame.rgb);
+        adcgs_close(&p.decoder);
+    }
+}
+
+/** Let the run round and freeze, and write it. */
+static void write_stream(training *r, adcgs_pool *pool, adcgs_buffer *out)
+{
+    adcgs_stream stream;
+    adcgs_error error = { .status = ADCGS_OK };
+    r->t->config.round_from = 0;
+    iterate(r, ROUNDED);
+    r->t->config.freeze_from = 0;
+    iterate(r, ROUNDED);
+    bench_check(adcgs_encode_stream(&stream, r->t, NULL, 0, &error), &error);
+    bench_check(adcgs_encode_verified(&stream, out, r->t->cpu, pool, &error), &error);
+    adcgs_stream_clear(&stream, NULL);
+}
+
+void bench_training(const bench *b, const char *scenes, int width, int height, uint32_t anchors, const char *preset)
+{
+    char group[64];
+    adcgs_error error = { .status = ADCGS_OK };
+    adcgs_buffer stream;
+    snprintf(group, sizeof group, "train, preset %s", preset);
+    if (!bench_wants(b, group) && !bench_wants(b, "play"))
+        return;
+    adcgs_buffer_init(&stream);
+    adcgs_scene *scene = open_scene(scenes, width, height);
+    const adcgs_train_config config = steady(preset, anchors);
+    for (int threads = 1; threads <= b->threads; threads += b->threads > 1 ? b->threads - 1 : 1) {
+        training r = { .until = 0 };
+        adcgs_pool *pool = NULL;
+        bench_check(adcgs_pool_create(&pool, threads, &error), &error);
+        bench_check(adcgs_trainer_create(&r.t, scene, &config, b->level, pool, &error), &error);
+        r.t->quantise = adcgs_encode_quantise_hook;
+        iterate(&r, WARM_UP);
+        bench_group(b, &(bench_place){ group, width, height, r.t->f->n, r.t->f->n * r.t->f->params.k, threads },
+                    &(bench_item){ "iterations", some_iterations, &r, AT_A_TIME, "iteration", 0 }, 1, 0);
+        if (threads == 1)
+            write_stream(&r, pool, &stream);
+        adcgs_trainer_free(&r.t);
+        adcgs_pool_free(&pool);
+    }
+    snprintf(group, sizeof group, "play, %s", preset);
+    decode_and_play(b, &stream, (bench_place){ .width = width, .height = height });
+    adcgs_scene_free(&scene);
+    adcgs_buffer_clear(&stream);
+}
