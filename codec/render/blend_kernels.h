@@ -6,37 +6,73 @@
  */
 #include "render/alpha.h"
 #include "render/raster_isa.h"
+#if ADCGS_LANES_ISA == 256
+#include "render/bits_of.h"
+#endif
 
-/* Splats and masks of a tile apart, so that vectors of either can be read. */
-static void split_entries(const adcgs_tile_entry *entries, uint32_t n, uint32_t *splats, uint32_t *masks)
+/*
+ * A tile's splats are taken so many at a time: their records and lists stay in the first cache while all blocks go through them,
+ * and blocks without light left are spared the rest.
+ */
+#define PIECE 128
+
+typedef struct tile_piece {
+    alignas(64) uint32_t splats[PIECE];
+    alignas(64) uint32_t masks[PIECE];
+    alignas(64) uint32_t list[PIECE + 16]; /* splats of one block, and room for vectors written past the last */
+    uint32_t n;
+} tile_piece;
+
+/* Splats and masks apart, so that vectors of either can be read; what lies past the last splat touches nothing. */
+static void take_piece(tile_piece *piece, const adcgs_tile_entry *entries, uint32_t n, const adcgs_splat2d *splats)
 {
     for (uint32_t i = 0; i < n; i++) {
-        splats[i] = entries[i].splat;
-        masks[i] = entries[i].mask;
+        __builtin_prefetch(splats + entries[i].splat);
+        piece->splats[i] = entries[i].splat;
+        piece->masks[i] = entries[i].mask;
     }
     for (uint32_t i = n; i & 15; i++)
-        masks[i] = 0;
+        piece->splats[i] = piece->masks[i] = 0;
+    piece->n = n;
 }
 
+/* List the splats that touch a block; returns how many. */
 #if ADCGS_LANES_ISA == 512
-static uint32_t select_block(uint32_t *list, const uint32_t *splats, const uint32_t *masks, uint32_t n, int block)
+static uint32_t select_block(tile_piece *piece, int block)
 {
     const __m512i bit = _mm512_set1_epi32(1 << block);
     uint32_t count = 0;
-    for (uint32_t i = 0; i < n; i += 16) {
-        const __mmask16 hit = _mm512_test_epi32_mask(_mm512_load_si512(masks + i), bit);
-        _mm512_storeu_si512(list + count, _mm512_maskz_compress_epi32(hit, _mm512_load_si512(splats + i)));
+    for (uint32_t i = 0; i < piece->n; i += 16) {
+        const __mmask16 hit = _mm512_test_epi32_mask(_mm512_load_si512(piece->masks + i), bit);
+        _mm512_storeu_si512(piece->list + count, _mm512_maskz_compress_epi32(hit, _mm512_load_si512(piece->splats + i)));
+        count += (uint32_t)__builtin_popcount(hit);
+    }
+    return count;
+}
+#elif ADCGS_LANES_ISA == 256
+static uint32_t select_block(tile_piece *piece, int block)
+{
+    const __m256i digits = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
+    const __m128i to_sign = _mm_cvtsi32_si128(31 - block);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < piece->n; i += 8) {
+        const __m256i masks = _mm256_sll_epi32(_mm256_load_si256((const __m256i *)(piece->masks + i)), to_sign);
+        const uint32_t hit = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(masks));
+        /* A lane's number is its index's low three bits: what the shift leaves above them does not matter. */
+        const __m256i from = _mm256_srlv_epi32(_mm256_set1_epi32((int)bits_of[hit]), digits);
+        const __m256i splats = _mm256_load_si256((const __m256i *)(piece->splats + i));
+        _mm256_storeu_si256((__m256i *)(piece->list + count), _mm256_permutevar8x32_epi32(splats, from));
         count += (uint32_t)__builtin_popcount(hit);
     }
     return count;
 }
 #else
-static uint32_t select_block(uint32_t *list, const uint32_t *splats, const uint32_t *masks, uint32_t n, int block)
+static uint32_t select_block(tile_piece *piece, int block)
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        list[count] = splats[i];
-        count += masks[i] >> block & 1;
+    for (uint32_t i = 0; i < piece->n; i++) {
+        piece->list[count] = piece->splats[i];
+        count += piece->masks[i] >> block & 1;
     }
     return count;
 }
@@ -51,26 +87,35 @@ LANES_INLINE vf opacity_at(const adcgs_splat2d *s, vf px, vf py)
     return splat_alpha(s, vf_sub(px, vf_set1(s->x)), vf_sub(py, vf_set1(s->y)));
 }
 
+/* Splats whose opacities in a block are found together. */
+#define TOGETHER 8
+
 /*
- * list[n] is one more splat, any. The opacity of each splat is computed while the one before is blended: nothing in it waits
- * for the transmittance.
+ * Blend n splats of a list; returns whether light is left. Opacities of several splats come first and on their own: nothing in
+ * them waits for the light that is left, while behind each other they would keep the processor waiting.
  */
-LANES_INLINE block_state blend_block(const adcgs_splat2d *splats, const uint32_t *list, uint32_t n, float x, float y, vf t)
+LANES_INLINE int blend_block(block_state *state, const adcgs_splat2d *splats, const uint32_t *list, uint32_t n, float x, float y)
 {
     const vf px = vf_add(vf_load(pixel_x), vf_set1(x)), py = vf_add(vf_load(pixel_y), vf_set1(y)), t_min = vf_set1(ADCGS_T_MIN);
-    vf red = vf_set1(0.0f), green = red, blue = red, alpha = opacity_at(splats + list[0], px, py);
-    for (uint32_t i = 0; i < n; i++) {
-        if (!vm_any(vf_ge(t, t_min)))
-            break;
-        const adcgs_splat2d *s = splats + list[i];
-        const vf next = opacity_at(splats + list[i + 1], px, py), weight = vf_mul(alpha, t);
-        red = vf_fma(vf_set1(s->rgb[0]), weight, red);
-        green = vf_fma(vf_set1(s->rgb[1]), weight, green);
-        blue = vf_fma(vf_set1(s->rgb[2]), weight, blue);
-        t = vf_fnma(alpha, t, t);
-        alpha = next;
+    alignas(64) float opacity[TOGETHER][16];
+    vf t = state->t, red = state->rgb[0], green = state->rgb[1], blue = state->rgb[2];
+    int light = 1;
+    for (uint32_t i = 0; i < n && light; i += TOGETHER) {
+        const uint32_t some = ADCGS_MIN(n - i, TOGETHER);
+        for (uint32_t k = 0; k < some; k++)
+            vf_store(opacity[k], opacity_at(splats + list[i + k], px, py));
+        for (uint32_t k = 0; k < some && light; k++) {
+            const adcgs_splat2d *s = splats + list[i + k];
+            const vf alpha = vf_load(opacity[k]), weight = vf_mul(alpha, t);
+            red = vf_fma(vf_set1(s->rgb[0]), weight, red);
+            green = vf_fma(vf_set1(s->rgb[1]), weight, green);
+            blue = vf_fma(vf_set1(s->rgb[2]), weight, blue);
+            t = vf_fnma(alpha, t, t);
+            light = vm_any(vf_ge(t, t_min));
+        }
     }
-    return (block_state){t, {red, green, blue}};
+    *state = (block_state){t, {red, green, blue}};
+    return light;
 }
 
 static void write_block(const adcgs_blend_job *job, int x, int y, const block_state *state)
@@ -95,23 +140,42 @@ static void write_block(const adcgs_blend_job *job, int x, int y, const block_st
     }
 }
 
-static void blend(const adcgs_blend_job *job, int tile, uint32_t *scratch)
+/* Light of a tile's blocks passes a piece of its splats; returns the blocks with light left. */
+LANES_INLINE uint32_t blend_piece(block_state *blocks, uint32_t alive, tile_piece *piece, const adcgs_splat2d *splats,
+                                  const float at[2])
 {
-    const uint32_t first = job->tile_start[tile], n = job->tile_start[tile + 1] - first, half = (n + 31) & ~(uint32_t)15;
-    uint32_t *splats = scratch, *masks = scratch + half, *list = scratch + 2 * (size_t)half;
-    split_entries(job->entries + first, n, splats, masks);
+    for (uint32_t left = alive; left; left &= left - 1) {
+        const int block = __builtin_ctz(left);
+        const uint32_t n = select_block(piece, block);
+        if (!blend_block(blocks + block, splats, piece->list, n, at[0] + (float)(4 * (block & 3)), at[1] + (float)(4 * (block >> 2))))
+            alive &= ~((uint32_t)1 << block);
+    }
+    return alive;
+}
+
+static void blend(const adcgs_blend_job *job, int tile)
+{
     const int tile_x = tile % job->tiles_x * ADCGS_TILE, tile_y = tile / job->tiles_x * ADCGS_TILE;
+    const float at[2] = {(float)tile_x, (float)tile_y};
+    const uint32_t end = job->tile_start[tile + 1];
+    block_state blocks[16];
+    tile_piece piece;
+    uint32_t alive = 0;
+    for (int block = 0; block < 16; block++) {
+        const int x = tile_x + 4 * (block & 3), y = tile_y + 4 * (block >> 2), seen = x < job->width && y < job->height;
+        const vf none = vf_set1(0.0f);
+        blocks[block] = (block_state){seen ? initial_transmittance(x, y, job->width, job->height) : none, {none, none, none}};
+        alive |= (uint32_t)seen << block;
+    }
+    for (uint32_t i = job->tile_start[tile]; i < end && alive; i += PIECE) {
+        take_piece(&piece, job->entries + i, ADCGS_MIN(end - i, PIECE), job->splats);
+        alive = blend_piece(blocks, alive, &piece, job->splats, at);
+    }
     for (int block = 0; block < 16; block++) {
         const int x = tile_x + 4 * (block & 3), y = tile_y + 4 * (block >> 2);
-        block_state state = {vf_set1(0.0f), {vf_set1(0.0f), vf_set1(0.0f), vf_set1(0.0f)}};
-        if (x < job->width && y < job->height) {
-            const uint32_t count = select_block(list, splats, masks, n, block);
-            list[count] = n ? splats[0] : 0;
-            state = blend_block(job->splats, list, count, (float)x, (float)y,
-                                initial_transmittance(x, y, job->width, job->height));
-            write_block(job, x, y, &state);
-        }
+        if (x < job->width && y < job->height)
+            write_block(job, x, y, &blocks[block]);
         if (job->transmittance)
-            vf_store(job->transmittance + ((size_t)tile * 16 + (size_t)block) * 16, state.t);
+            vf_store(job->transmittance + ((size_t)tile * 16 + (size_t)block) * 16, blocks[block].t);
     }
 }

@@ -38,13 +38,12 @@ struct adcgs_raster {
     room projected, outlines, areas, keys, other, piece_counts; /* by slot */
     room splats, first, where;                                  /* sorted; first pair of each; slot to sorted */
     room pieces, counts, emitted, tile_start, entries, place;   /* binning */
-    room scratch, transmittance;                                /* blending */
+    room transmittance;                                         /* blending */
     adcgs_project_job project;
     adcgs_bin_job bin;
     adcgs_blend_job blend;
     uint32_t n_slots, n;
     int n_pieces, tiles, keep;
-    size_t scratch_words;
     adcgs_kept kept;
 };
 
@@ -96,7 +95,7 @@ void adcgs_raster_free(adcgs_raster **raster)
         return;
     room *const rooms[] = {&r->projected,  &r->outlines, &r->areas,   &r->keys,    &r->other,   &r->piece_counts,
                            &r->splats,     &r->first,    &r->where,   &r->pieces,  &r->counts,  &r->emitted,
-                           &r->tile_start, &r->entries,  &r->place,   &r->scratch, &r->transmittance};
+                           &r->tile_start, &r->entries,  &r->place,   &r->transmittance};
     for (size_t i = 0; i < ADCGS_COUNTOF(rooms); i++)
         adcgs_free(r->memory, rooms[i]->data);
     adcgs_free(r->memory, r);
@@ -197,7 +196,7 @@ static void bin_piece_splats(void *arg, int index, int thread)
 /* Turn the pieces' counts into their first places: by tile, then by piece. Also the first pair of each piece. */
 static uint32_t place_counts(adcgs_raster *r)
 {
-    uint32_t *start = r->tile_start.data, *counts = r->counts.data, sum = 0, most = 0;
+    uint32_t *start = r->tile_start.data, *counts = r->counts.data, sum = 0;
     for (int t = 0; t < r->tiles; t++) {
         start[t] = sum;
         for (int p = 0; p < r->n_pieces; p++) {
@@ -206,10 +205,8 @@ static uint32_t place_counts(adcgs_raster *r)
             *count = sum;
             sum += n;
         }
-        most = ADCGS_MAX(most, sum - start[t]);
     }
     start[r->tiles] = sum;
-    r->scratch_words = 3 * (((size_t)most + 31) & ~(size_t)15);
     uint32_t pairs = 0;
     bin_piece *pieces = r->pieces.data;
     for (int p = 0; p < r->n_pieces; p++) {
@@ -271,12 +268,12 @@ static adcgs_status bin(adcgs_raster *r, adcgs_error *error)
 static void blend_tile(void *arg, int index, int thread)
 {
     adcgs_raster *r = arg;
-    r->dsp.blend(&r->blend, index, (uint32_t *)r->scratch.data + (size_t)thread * r->scratch_words);
+    (void)thread;
+    r->dsp.blend(&r->blend, index);
 }
 
 static adcgs_status blend(adcgs_raster *r, const adcgs_view *view, const float background[3], float *rgb, adcgs_error *error)
 {
-    ADCGS_TRY(grow(r, &r->scratch, r->scratch_words * (uint64_t)adcgs_pool_threads(r->pool), sizeof(uint32_t), error));
     if (r->keep)
         ADCGS_TRY(grow(r, &r->transmittance, (uint64_t)r->tiles * 256, sizeof(float), error));
     r->blend = (adcgs_blend_job){.splats = r->splats.data,

@@ -53,8 +53,8 @@ typedef struct adcgs_raster_dsp {
      * counts[tile] is raised by one for each. Returns how many. out has room for the splats' areas and ADCGS_BIN_SLACK more.
      */
     uint32_t (*bin)(const adcgs_bin_job *job, uint32_t begin, uint32_t end, uint32_t *counts, uint64_t *out);
-    /** Blend a tile and write its pixels. scratch: 3*((entries of the tile + 31) & ~15) words, 64-byte aligned. */
-    void (*blend)(const adcgs_blend_job *job, int tile, uint32_t *scratch);
+    /** Blend a tile and write its pixels. */
+    void (*blend)(const adcgs_blend_job *job, int tile);
 } adcgs_raster_dsp;
 
 extern const adcgs_raster_dsp adcgs_raster_scalar, adcgs_raster_avx2, adcgs_raster_avx512;

@@ -37,7 +37,14 @@ static inline float vsum(vec v)
     s = _mm_add_ps(s, _mm_movehl_ps(s, s));
     return _mm_cvtss_f32(_mm_add_ss(s, _mm_movehdup_ps(s)));
 }
-enum { TILE_O = 3, TILE_I = 3 };
+/** Four sums at once, each as vsum() would add it up but for the order. */
+static inline void add_four(float *to, const vec v[4])
+{
+    const __m256 s = _mm256_hadd_ps(_mm256_hadd_ps(v[0], v[1]), _mm256_hadd_ps(v[2], v[3]));
+    _mm_storeu_ps(to, _mm_add_ps(_mm_loadu_ps(to), _mm_add_ps(_mm256_castps256_ps128(s), _mm256_extractf128_ps(s, 1))));
+}
+#define ADD_FOUR
+enum { TILE_O = 3, TILE_I = 4 };
 #else
 typedef float vec;
 #define VN 1
@@ -58,18 +65,24 @@ static inline __attribute__((always_inline)) void weight_tile(float *gw, size_t 
             acc[o][i] = vzero();
     for (int t = 0; t < tiles; t++)
         for (int l = 0; l < LANES; l += VN) {
-            vec xs[TILE_I];
-            for (int i = 0; i < ni; i++)
-                xs[i] = vload(x + (size_t)t * sx + (size_t)i * LANES + l);
-            for (int o = 0; o < no; o++) {
-                const vec d = vload(dy + (size_t)t * sy + (size_t)o * LANES + l);
-                for (int i = 0; i < ni; i++)
-                    acc[o][i] = vfma(d, xs[i], acc[o][i]);
+            vec d[TILE_O];
+            for (int o = 0; o < no; o++)
+                d[o] = vload(dy + (size_t)t * sy + (size_t)o * LANES + l);
+            for (int i = 0; i < ni; i++) {
+                const vec xi = vload(x + (size_t)t * sx + (size_t)i * LANES + l);
+                for (int o = 0; o < no; o++)
+                    acc[o][i] = vfma(d[o], xi, acc[o][i]);
             }
         }
-    for (int o = 0; o < no; o++)
-        for (int i = 0; i < ni; i++)
+    for (int o = 0; o < no; o++) {
+        int i = 0;
+#ifdef ADD_FOUR
+        for (; i + 4 <= ni; i += 4)
+            add_four(gw + (size_t)o * ldg + i, acc[o] + i);
+#endif
+        for (; i < ni; i++)
             gw[(size_t)o * ldg + i] += vsum(acc[o][i]);
+    }
 }
 
 static void ISA(weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles,

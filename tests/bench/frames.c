@@ -52,7 +52,7 @@ typedef struct frame {
     adcgs_bin_job bin;
     adcgs_blend_job blend;
     adcgs_back_job gradients;
-    uint32_t n, *where, *first, *counts, *scratch;
+    uint32_t n, *where, *first, *counts;
     uint64_t *keys, *emitted;
     plain_job plain;
     adcgs_back_job plain_gradients;
@@ -127,7 +127,7 @@ static void blend(void *arg)
 {
     frame *f = arg;
     for (int tile = 0; tile < f->tiles; tile++)
-        f->k.raster->blend(&f->blend, tile, f->scratch);
+        f->k.raster->blend(&f->blend, tile);
 }
 
 static void blend_back(void *arg)
@@ -232,9 +232,7 @@ static void make_stages(frame *f)
     draw_and_back(f);
     adcgs_raster_kept(f->raster, &f->kept);
     f->tiles = f->kept.tiles_x * f->kept.tiles_y;
-    uint32_t most = 0, areas = 0;
-    for (int tile = 0; tile < f->tiles; tile++)
-        most = ADCGS_MAX(most, f->kept.tile_start[tile + 1] - f->kept.tile_start[tile]);
+    uint32_t areas = 0;
     f->project = (adcgs_project_job){ .primitives = &f->primitives, .view = &f->view, .filter = FILTER,
                                       .tiles_x = f->kept.tiles_x, .tiles_y = f->kept.tiles_y };
     f->project.splats = (void *)bench_floats((size_t)(n + 64) * 16);
@@ -245,7 +243,6 @@ static void make_stages(frame *f)
     f->where = (void *)bench_floats(n);
     f->first = (void *)bench_floats(n + 1);
     f->counts = (void *)bench_floats((size_t)f->tiles);
-    f->scratch = (void *)bench_floats(3 * (((size_t)most + 31) & ~(size_t)15));
     project(f);
     for (uint32_t i = 0; i < f->n; i++)
         areas += f->project.areas[i];
@@ -298,7 +295,7 @@ static void make(frame *f, adcgs_cpu_level level, int threads, int width, int he
 static void clear(frame *f)
 {
     void *const parts[] = { f->grads, f->rgb, f->target, f->grad, f->project.splats, f->project.outlines, f->project.keys,
-                            f->project.areas, f->keys, f->where, f->first, f->counts, f->scratch, f->emitted, f->bin.to,
+                            f->project.areas, f->keys, f->where, f->first, f->counts, f->emitted, f->bin.to,
                             f->gradients.sums, (void *)(uintptr_t)f->plain_gradients.kept.first, f->scene.data };
     plain_clear(&f->plain);
     adcgs_loss_free(&f->loss);
