@@ -9,103 +9,151 @@
 #include "train/random.h"
 
 #include <math.h>
+#include <stdalign.h>
 
 #define LANES ADCGS_LANES
 
-/* ---- Weight gradients: a tile of outputs x inputs kept in registers across lanes and tiles, reduced once. ---- */
+/* ---- Weight gradients ---- */
 #if defined(__AVX512F__)
 #include <immintrin.h>
 typedef __m512 vec;
 #define VN 16
 #define vzero _mm512_setzero_ps
+#define vspread _mm512_set1_ps
 #define vload _mm512_load_ps
+#define vloadu _mm512_loadu_ps
+#define vstoreu _mm512_storeu_ps
 #define vfma _mm512_fmadd_ps
 #define vadd _mm512_add_ps
-#define vsum _mm512_reduce_add_ps
-enum { TILE_O = 4, TILE_I = 5 };
 #elif defined(__AVX2__)
 #include <immintrin.h>
 typedef __m256 vec;
 #define VN 8
 #define vzero _mm256_setzero_ps
+#define vspread _mm256_set1_ps
 #define vload _mm256_load_ps
+#define vloadu _mm256_loadu_ps
+#define vstoreu _mm256_storeu_ps
 #define vfma _mm256_fmadd_ps
 #define vadd _mm256_add_ps
-static inline float vsum(vec v)
-{
-    __m128 s = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    s = _mm_add_ps(s, _mm_movehl_ps(s, s));
-    return _mm_cvtss_f32(_mm_add_ss(s, _mm_movehdup_ps(s)));
-}
-/** Four sums at once, each as vsum() would add it up but for the order. */
-static inline void add_four(float *to, const vec v[4])
-{
-    const __m256 s = _mm256_hadd_ps(_mm256_hadd_ps(v[0], v[1]), _mm256_hadd_ps(v[2], v[3]));
-    _mm_storeu_ps(to, _mm_add_ps(_mm_loadu_ps(to), _mm_add_ps(_mm256_castps256_ps128(s), _mm256_extractf128_ps(s, 1))));
-}
-#define ADD_FOUR
-enum { TILE_O = 3, TILE_I = 4 };
 #else
 typedef float vec;
 #define VN 1
 #define vzero() 0.0f
+#define vspread(x) (x)
 #define vload(p) (*(p))
+#define vloadu(p) (*(p))
+#define vstoreu(p, x) (*(p) = (x))
 #define vfma(a, b, c) ((a) * (b) + (c))
 #define vadd(a, b) ((a) + (b))
-#define vsum(v) (v)
-enum { TILE_O = 2, TILE_I = 2 };
 #endif
 
-static inline __attribute__((always_inline)) void weight_tile(float *gw, size_t ldg, const float *dy, size_t sy, const float *x,
-                                                              size_t sx, int tiles, int no, int ni)
+/* Outputs and vectors of inputs whose products stay in registers while all lanes pass by. */
+enum { TILE_O = 6, TILE_V = 2, TILE_I = TILE_V * VN };
+
+#if VN > 1
+/** Eight rows of eight lanes become eight lanes of eight rows. */
+static inline void turn_eight(float *to, size_t to_stride, const float *from)
 {
-    vec acc[TILE_O][TILE_I];
-    for (int o = 0; o < no; o++)
-        for (int i = 0; i < ni; i++)
-            acc[o][i] = vzero();
-    for (int t = 0; t < tiles; t++)
-        for (int l = 0; l < LANES; l += VN) {
-            vec d[TILE_O];
-            for (int o = 0; o < no; o++)
-                d[o] = vload(dy + (size_t)t * sy + (size_t)o * LANES + l);
-            for (int i = 0; i < ni; i++) {
-                const vec xi = vload(x + (size_t)t * sx + (size_t)i * LANES + l);
-                for (int o = 0; o < no; o++)
-                    acc[o][i] = vfma(d[o], xi, acc[o][i]);
-            }
+    __m256 r[8], s[8];
+    for (int i = 0; i < 8; i++)
+        r[i] = _mm256_load_ps(from + i * LANES);
+    for (int i = 0; i < 8; i += 2) {
+        s[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
+        s[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
+    }
+    for (int i = 0; i < 8; i += 4)
+        for (int j = 0; j < 2; j++) {
+            r[i + 2 * j] = _mm256_shuffle_ps(s[i + j], s[i + j + 2], 0x44);
+            r[i + 2 * j + 1] = _mm256_shuffle_ps(s[i + j], s[i + j + 2], 0xee);
         }
-    for (int o = 0; o < no; o++) {
-        int i = 0;
-#ifdef ADD_FOUR
-        for (; i + 4 <= ni; i += 4)
-            add_four(gw + (size_t)o * ldg + i, acc[o] + i);
+    for (int i = 0; i < 4; i++) {
+        _mm256_storeu_ps(to + (size_t)i * to_stride, _mm256_permute2f128_ps(r[i], r[i + 4], 0x20));
+        _mm256_storeu_ps(to + (size_t)(i + 4) * to_stride, _mm256_permute2f128_ps(r[i], r[i + 4], 0x31));
+    }
+}
 #endif
-        for (; i < ni; i++)
-            gw[(size_t)o * ldg + i] += vsum(acc[o][i]);
+
+/** to[lane][input] of n inputs from x[input][lane]; inputs past the last are 0. */
+static void turn(float to[LANES][TILE_I], const float *x, int n)
+{
+    int i = 0;
+#if VN > 1
+    for (; i + 8 <= n; i += 8)
+        for (int l = 0; l < LANES; l += 8)
+            turn_eight(&to[l][i], TILE_I, x + (size_t)i * LANES + l);
+#endif
+    for (; i < TILE_I; i++)
+        for (int l = 0; l < LANES; l++)
+            to[l][i] = i < n ? x[(size_t)i * LANES + (size_t)l] : 0;
+}
+
+/** Gradients of no weights' rows, ni of each, from lanes of their outputs dy[no][64] and inputs xt[64][TILE_I]. */
+static inline __attribute__((always_inline)) void weight_tile(float *gw, size_t ldg, const float *dy, float xt[LANES][TILE_I],
+                                                              int no, int ni)
+{
+    vec acc[TILE_O][TILE_V];
+    for (int o = 0; o < no; o++)
+        for (int v = 0; v < TILE_V; v++)
+            acc[o][v] = vzero();
+    for (int l = 0; l < LANES; l++) {
+        vec x[TILE_V];
+        for (int v = 0; v < TILE_V; v++)
+            x[v] = vload(xt[l] + v * VN);
+        for (int o = 0; o < no; o++) {
+            const vec d = vspread(dy[o * LANES + l]);
+            for (int v = 0; v < TILE_V; v++)
+                acc[o][v] = vfma(d, x[v], acc[o][v]);
+        }
+    }
+    for (int o = 0; o < no; o++, gw += ldg) {
+        float sums[TILE_I];
+        for (int v = 0; v < TILE_V && ni == TILE_I; v++)
+            vstoreu(gw + v * VN, vadd(vloadu(gw + v * VN), acc[o][v]));
+        for (int v = 0; v < TILE_V && ni < TILE_I; v++)
+            vstoreu(sums + v * VN, acc[o][v]);
+        for (int i = 0; i < ni && ni < TILE_I; i++)
+            gw[i] += sums[i];
+    }
+}
+
+static void weight_rows(float *gw, size_t ldg, const float *dy, float xt[LANES][TILE_I], int no, int ni)
+{
+    switch (no) {
+    case 6: weight_tile(gw, ldg, dy, xt, 6, ni); break;
+    case 5: weight_tile(gw, ldg, dy, xt, 5, ni); break;
+    case 4: weight_tile(gw, ldg, dy, xt, 4, ni); break;
+    case 3: weight_tile(gw, ldg, dy, xt, 3, ni); break;
+    case 2: weight_tile(gw, ldg, dy, xt, 2, ni); break;
+    default: weight_tile(gw, ldg, dy, xt, 1, ni); break;
     }
 }
 
 static void ISA(weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles,
                              int n_out, int n_in)
 {
-    for (int o = 0; o < n_out; o += TILE_O) {
-        const int no = n_out - o < TILE_O ? n_out - o : TILE_O;
+    const int groups = (n_out + TILE_O - 1) / TILE_O;
+    alignas(64) float xt[LANES][TILE_I];
+    for (int t = 0; t < tiles; t++, dy += sy, x += sx) {
         for (int i = 0; i < n_in; i += TILE_I) {
             const int ni = n_in - i < TILE_I ? n_in - i : TILE_I;
-            float *g = gw + (size_t)o * ldg + i;
-            const float *d = dy + (size_t)o * LANES, *xi = x + (size_t)i * LANES;
-            if (no == TILE_O && ni == TILE_I)
-                weight_tile(g, ldg, d, sy, xi, sx, tiles, TILE_O, TILE_I);
-            else
-                weight_tile(g, ldg, d, sy, xi, sx, tiles, no, ni);
+            turn(xt, x + (size_t)i * LANES, ni);
+            /* Rows are dealt out evenly: a rest of one or two would leave the multipliers idle. */
+            for (int g = 0, o = 0, no; g < groups; g++, o += no) {
+                no = (n_out - o + groups - g - 1) / (groups - g);
+                weight_rows(gw + (size_t)o * ldg + i, ldg, dy + (size_t)o * LANES, xt, no, ni);
+            }
         }
-    }
-    for (int o = 0; gb && o < n_out; o++) {
-        vec acc = vzero();
-        for (int t = 0; t < tiles; t++)
+        for (int o = 0; gb && o < n_out; o++) {
+            vec acc = vzero();
+            float lanes[VN], sum = 0;
             for (int l = 0; l < LANES; l += VN)
-                acc = vadd(acc, vload(dy + (size_t)t * sy + (size_t)o * LANES + l));
-        gb[o] += vsum(acc);
+                acc = vadd(acc, vload(dy + (size_t)o * LANES + l));
+            vstoreu(lanes, acc);
+            for (int l = 0; l < VN; l++)
+                sum += lanes[l];
+            gb[o] += sum;
+        }
     }
 }
 
