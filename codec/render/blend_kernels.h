@@ -147,7 +147,8 @@ LANES_INLINE uint32_t blend_piece(block_state *blocks, uint32_t alive, tile_piec
     for (uint32_t left = alive; left; left &= left - 1) {
         const int block = __builtin_ctz(left);
         const uint32_t n = select_block(piece, block);
-        if (!blend_block(blocks + block, splats, piece->list, n, at[0] + (float)(4 * (block & 3)), at[1] + (float)(4 * (block >> 2))))
+        const float x = at[0] + (float)(4 * (block & 3)), y = at[1] + (float)(4 * (block >> 2));
+        if (!blend_block(blocks + block, splats, piece->list, n, x, y))
             alive &= ~((uint32_t)1 << block);
     }
     return alive;

@@ -351,8 +351,8 @@ static void stages(const bench *b, frame *f, bench_place place)
                                  { "sort by depth", sort, f, n, "splat", 0 },
                                  { "list tiles", list_tiles, f, listed, "entry", fma / ENTRY_OPERATIONS },
                                  { "blend", blend, f, drawn, "pair", fma / PAIR_OPERATIONS },
-                                 { "blend, gradients", blend_back, f, drawn, "pair", fma / back },
-                                 { "project, gradients", project_back, f, n, "splat", 0 } };
+                                 { "gradients of blend", blend_back, f, drawn, "pair", fma / back },
+                                 { "gradients of project", project_back, f, n, "splat", 0 } };
     place.group = "stages";
     bench_group(b, &place, items, ADCGS_COUNTOF(items), 0);
 }

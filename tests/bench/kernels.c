@@ -262,7 +262,7 @@ static void trainers_own(const bench *b)
     for (int i = 0; i < 64; i++)
         v.weight[i] = 1;
     const bench_item items[] = { { "rate and its gradient", rate, &v, ROWS * 64, "value", 0 },
-                                 { "rate, exact", rate_exact, &v, ROWS * 64, "value", 0 },
+                                 { "exact rate", rate_exact, &v, ROWS * 64, "value", 0 },
                                  { "noise", noise, &v, ROWS * 64, "value", 0 },
                                  { "Adam", adam, &v, PARAMETERS, "weight", 0 } };
     bench_group(b, &(bench_place){ .group = "trainer's kernels", .threads = 1 }, items, ADCGS_COUNTOF(items), 0);

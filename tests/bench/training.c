@@ -122,7 +122,6 @@ static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_pl
         const bench_item items[] = { { "open and decode", open_stream, &p, (double)stream->size, "byte", 0 },
                                      { "splats of a moment", splats_alone, &p, 1, "frame", 0 },
                                      { "a whole frame", play, &p, 1, "frame", 0 } };
-        place.group = "play";
         bench_group(b, &place, items, ADCGS_COUNTOF(items), 0);
         adcgs_free(NULL, p.frame.rgb);
         adcgs_close(&p.decoder);
@@ -148,7 +147,7 @@ void bench_training(const bench *b, const char *scenes, int width, int height, u
     char group[64];
     adcgs_error error = { .status = ADCGS_OK };
     adcgs_buffer stream;
-    snprintf(group, sizeof group, "train, preset %s", preset);
+    snprintf(group, sizeof group, "train by preset %s", preset);
     if (!bench_wants(b, group) && !bench_wants(b, "play"))
         return;
     adcgs_buffer_init(&stream);
@@ -168,8 +167,8 @@ void bench_training(const bench *b, const char *scenes, int width, int height, u
         adcgs_trainer_free(&r.t);
         adcgs_pool_free(&pool);
     }
-    snprintf(group, sizeof group, "play, %s", preset);
-    decode_and_play(b, &stream, (bench_place){ .width = width, .height = height });
+    snprintf(group, sizeof group, "play preset %s", preset);
+    decode_and_play(b, &stream, (bench_place){ .group = group, .width = width, .height = height });
     adcgs_scene_free(&scene);
     adcgs_buffer_clear(&stream);
 }
