@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
 # A chart of the benchmark's table: gnuplot -e "table='speed.csv'; chart='speed.svg'" tests/bench/speed.gp
-set terminal svg size 900,1100 dynamic font 'sans-serif,12'
+set terminal svg size 1100,1100 dynamic font 'sans-serif,12'
 set output chart
 set datafile separator ','
 set style fill solid 0.7 noborder
@@ -9,12 +9,13 @@ set key off
 set grid xtics
 set yrange [] reverse
 set ytics nomirror
-set multiplot layout 2,1 margins 0.46,0.95,0.05,0.95 spacing 0,0.1
+set offsets 0,0,0.4,0.4
+set multiplot layout 2,1 margins 0.5,0.95,0.05,0.95 spacing 0,0.1
 
 place(c) = column(4) > 0 ? sprintf(', %dx%d, %d', column(4), column(5), column(7)) : ''
 name(c) = sprintf('%s: %s%s', strcol(1), strcol(2), place(0))
 
-set title 'Share of the most that the machine can do, one thread, %'
+set title 'Percent of the most that the machine can do, one thread'
 set xrange [0:100]
 plot "< awk -F, 'NR > 1 && $14 > 0 && $8 == 1' ".table \
     using (50 * $14):0:(50 * $14):(0.35):ytic(name(0)) with boxxyerror
