@@ -88,7 +88,7 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         config->grow_until = 0.3125f;
         config->rigid_weight = config->area_weight = config->dropout = config->still_below = config->network_rate = 0;
         config->keep_opacity = config->average_last = 0;
-        config->slim_at = config->slim_again = 2;
+        config->slim_at = 2;
         return ADCGS_OK;
     }
     return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown preset '%s': expected draft, fast, medium, slow or paper", name);

@@ -90,6 +90,14 @@ static void weight_rate_is_close_to_the_coder(void **state)
     adcgs_trainer_free(&t);
 }
 
+static size_t weights_of(const adcgs_fmodel *f)
+{
+    size_t n = 0;
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
+        n += f->mlp[i].hidden ? f->param[i].n : 0;
+    return n;
+}
+
 /** A higher price makes the networks' part of the file smaller. */
 static void price_shrinks_networks(void **state)
 {
@@ -112,6 +120,29 @@ static void price_shrinks_networks(void **state)
     print_message("networks: %llu bytes at no price, %llu at a high one\n", (unsigned long long)bytes[0],
                   (unsigned long long)bytes[1]);
     assert_true(bytes[1] < bytes[0]);
+}
+
+/** Hidden units go when networks have found their form, and again when bits have become dearer to them. */
+static void units_go_twice(void **state)
+{
+    adcgs_train_config config = small_config();
+    config.iterations = 1500;
+    config.slim_at = 0.7f;
+    config.slim_again = 0.8f;
+    config.lambda = 0.02f;
+    adcgs_trainer *t = run_to(&config, 1040);
+    const size_t before = weights_of(t->f);
+    assert_int_equal(t->slimmed, 0);
+    go_on(t, 1100);
+    const size_t once = weights_of(t->f);
+    assert_int_equal(t->slimmed, 1);
+    t->lambda = 100;
+    go_on(t, 1250);
+    const size_t twice = weights_of(t->f);
+    print_message("%zu weights, then %zu, then %zu\n", before, once, twice);
+    assert_int_equal(t->slimmed, 2);
+    assert_true(once < before && twice < once);
+    adcgs_trainer_free(&t);
 }
 
 /* ---- Lattices ---- */
@@ -418,6 +449,7 @@ int main(void)
         cmocka_unit_test(weight_rate_has_its_gradient),
         cmocka_unit_test(weight_rate_is_close_to_the_coder),
         cmocka_unit_test(price_shrinks_networks),
+        cmocka_unit_test(units_go_twice),
         cmocka_unit_test(lattice_bits_are_the_files),
         cmocka_unit_test(lattices_follow_lambda),
         cmocka_unit_test(lattices_outlive_their_streams),
