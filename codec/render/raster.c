@@ -268,7 +268,6 @@ static adcgs_status bin(adcgs_raster *r, adcgs_error *error)
 static void blend_tile(void *arg, int index, int thread)
 {
     adcgs_raster *r = arg;
-    (void)thread;
     r->dsp.blend(&r->blend, index);
 }
 

@@ -2,73 +2,23 @@
 /** \file
  * Speed: the machine's ceilings first, then kernels, stages, frames, iterations and playing beside them. See HACKING.md.
  *
- *     make tests/bench/adcgs-bench && tests/bench/adcgs-bench --csv speed.csv
+ *     make tests/bench/adcgs-bench && tests/bench/adcgs-bench --output speed.csv
  */
 #define _POSIX_C_SOURCE 200809L
 
 #include "ceilings.h"
 #include "parts.h"
 
+#include "tools/cli.h"
 
-#include <stdlib.h>
+#include <errno.h>
 #include <unistd.h>
-
-static const char usage[] =
-    "Usage: adcgs-bench [options]\n"
-    "Measures this build on this machine. Things that are compared take turns, so a busy\n"
-    "machine spoils times, but hardly ratios.\n\n"
-    "  -o FILE     also write a table of all figures here (CSV)\n"
-    "  -g GROUP    only groups whose name begins so: frame, stages, loss, exactness,\n"
-    "              levels, dense, integer, decode, trainer, train, play\n"
-    "  -c LEVEL    kernels: auto, scalar, avx2, avx512 (default auto)\n"
-    "  -t N        threads at most (default: one per CPU)\n"
-    "  -r N        turns of each thing, 3 to 101 (default 15)\n"
-    "  -s FOLDER   where the training's scene is made, or was (default bench-scenes)\n"
-    "  -q          a part of it: one size, one number of splats\n"
-    "  -h          print this text and exit\n";
 
 typedef struct settings {
     bench b;
-    const char *scenes;
-    int quick;
+    const char *output, *scenes;
+    int cpu, quick;
 } settings;
-
-static int refuse(const char *what)
-{
-    fprintf(stderr, "adcgs-bench: %s; see adcgs-bench -h\n", what);
-    return 2;
-}
-
-/** 0, or the exit status plus one. */
-static int parse(settings *s, int argc, char **argv)
-{
-    adcgs_error error = { .status = ADCGS_OK };
-    adcgs_cpu_level asked = ADCGS_CPU_AUTO;
-    for (int option; (option = getopt(argc, argv, "o:g:c:t:r:s:qh")) != -1;) {
-        switch (option) {
-        case 'o':
-            s->b.csv = fopen(optarg, "w");
-            if (!s->b.csv)
-                return 1 + refuse("cannot write the table");
-            break;
-        case 'g': s->b.only = optarg; break;
-        case 'c':
-            if (adcgs_cpu_parse(optarg, &asked))
-                return 1 + refuse("unknown level");
-            break;
-        case 't': s->b.threads = atoi(optarg); break;
-        case 'r': s->b.rounds = atoi(optarg); break;
-        case 's': s->scenes = optarg; break;
-        case 'q': s->quick = 1; break;
-        case 'h': fputs(usage, stdout); return 1;
-        default: return 1 + refuse("unknown option");
-        }
-    }
-    if (optind < argc || s->b.threads < 1 || s->b.threads > 256 || s->b.rounds < 3 || s->b.rounds > 101)
-        return 1 + refuse("bad number or operand");
-    bench_check(adcgs_cpu_resolve(asked, &s->b.level, &error), &error);
-    return 0;
-}
 
 static void measure_all(const settings *s)
 {
@@ -89,15 +39,50 @@ static void measure_all(const settings *s)
             bench_training(b, s->scenes, 1352, 1014, anchors[j], "paper");
 }
 
+static adcgs_status open_table(settings *s, adcgs_error *error)
+{
+    if (s->output && !(s->b.csv = fopen(s->output, "w")))
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", s->output, strerror(errno));
+    return ADCGS_OK;
+}
+
+static adcgs_status close_table(settings *s, adcgs_error *error)
+{
+    if (s->b.csv && fclose(s->b.csv) != 0)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", s->output, strerror(errno));
+    return ADCGS_OK;
+}
+
 int main(int argc, char **argv)
 {
+    static const char *const cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
     settings s = { .b = { .rounds = 15, .turn = 2e-3, .threads = (int)sysconf(_SC_NPROCESSORS_ONLN) }, .scenes = "bench-scenes" };
-    const int status = parse(&s, argc, argv);
-    if (status)
-        return status - 1;
+    const adcgs_option options[] = {
+        { "output", 'o', ADCGS_OPTION_STRING, &s.output, 0, 0, "FILE", "also write a table of all figures here (CSV)", NULL,
+          NULL },
+        { "group", 'g', ADCGS_OPTION_STRING, &s.b.only, 0, 0, "NAME",
+          "only groups whose name begins so: frame, stages, loss, exactness,\n"
+          "levels, dense, integer, decode, kernels, train, play",
+          NULL, NULL },
+        { "cpu", 'c', ADCGS_OPTION_CHOICE, &s.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)", cpu_names,
+          NULL },
+        { "threads", 't', ADCGS_OPTION_INT, &s.b.threads, 1, 256, "N", "threads at most (default: one per CPU)", NULL, NULL },
+        { "turns", 'r', ADCGS_OPTION_INT, &s.b.rounds, 3, 101, "N", "turns of each thing (default 15)", NULL, NULL },
+        { "scenes", 's', ADCGS_OPTION_STRING, &s.scenes, 0, 0, "DIR",
+          "where the training's scene is made, or was (default bench-scenes)", NULL, NULL },
+        { "quick", 'q', ADCGS_OPTION_FLAG, &s.quick, 0, 0, NULL, "one size, one number of splats", NULL, NULL },
+    };
+    const adcgs_cli cli = { .program = "adcgs-bench", .operands = "", .summary = "Measures this build on this machine.",
+                            .details = "What is compared takes turns, so a busy machine spoils times, but hardly ratios.\n",
+                            .options = options, .n_options = ADCGS_COUNTOF(options) };
+    adcgs_error error = { .status = ADCGS_OK };
+    int first;
+    const int left = adcgs_cli_parse(&cli, argc, argv, &first);
+    if (left >= 0)
+        return left;
+    if (adcgs_cpu_resolve((adcgs_cpu_level)s.cpu, &s.b.level, &error) != ADCGS_OK || open_table(&s, &error) != ADCGS_OK)
+        return adcgs_cli_fail(&cli, &error);
     bench_find_ceilings(&s.b);
     measure_all(&s);
-    if (s.b.csv && fclose(s.b.csv) != 0)
-        return refuse("the table could not be written") - 1;
-    return 0;
+    return close_table(&s, &error) == ADCGS_OK ? 0 : adcgs_cli_fail(&cli, &error);
 }

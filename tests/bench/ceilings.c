@@ -25,6 +25,9 @@ const bench_loops *bench_loops_of(adcgs_cpu_level level)
 
 enum { FMA, INT16, READ };
 
+/** Bytes that each thread reads in a turn, about. */
+#define READ_LEAST ((size_t)256 << 20)
+
 typedef struct job {
     const bench_loops *loops;
     int kind, times;
@@ -76,9 +79,8 @@ static void find(bench *b, adcgs_pool *pool, bench_ceilings *c, const float *mem
     j.kind = READ;
     j.from = memory;
     for (size_t i = 0; i < ADCGS_COUNTOF(read_bytes); i++) {
-        const size_t least = (size_t)READ * 512 << 20;
         j.n = (i < 2 ? read_bytes[i] : read_bytes[i] / (size_t)threads) / sizeof(float) / 1024 * 1024;
-        j.times = (int)(least / 4 / (j.n * sizeof(float)) + 1);
+        j.times = (int)(READ_LEAST / (j.n * sizeof(float)) + 1);
         c->read[i] = best_rate(&j, pool);
         printf("  %-29s %7.1f GB/s\n", read_names[i], 1e-9 * c->read[i]);
     }

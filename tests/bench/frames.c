@@ -361,7 +361,7 @@ void bench_frames(const bench *b, int width, int height, uint32_t splats)
 {
     if (!bench_wants(b, "frame") && !bench_wants(b, "stages") && !bench_wants(b, "loss"))
         return;
-    for (int threads = 1; threads <= b->threads; threads += b->threads > 1 ? b->threads - 1 : 1) {
+    for (int threads = 1; threads <= b->threads; threads = bench_more_threads(b, threads)) {
         frame f;
         make(&f, b->level, threads, width, height, splats);
         const bench_place place = { .width = width, .height = height, .splats = splats, .threads = threads };
@@ -382,14 +382,14 @@ static void all_kernels(void *arg)
     project_back(arg);
 }
 
-static void exactness(const bench *b, adcgs_cpu_level level, bench_place place)
+static void exactness(const bench *b, bench_place place)
 {
     frame exact, fast;
-    if (level == ADCGS_CPU_SCALAR)
+    if (b->level == ADCGS_CPU_SCALAR)
         return;
-    make(&exact, level, 1, place.width, place.height, place.splats);
-    make(&fast, level, 1, place.width, place.height, place.splats);
-    fast.k = kernels_of(level, 1);
+    make(&exact, b->level, 1, place.width, place.height, place.splats);
+    make(&fast, b->level, 1, place.width, place.height, place.splats);
+    fast.k = kernels_of(b->level, 1);
     const bench_item items[] = { { "not exact", all_kernels, &fast, exact.n, "splat", 0 },
                                  { "exact", all_kernels, &exact, exact.n, "splat", 0 } };
     place.group = "exactness";
@@ -402,7 +402,7 @@ void bench_levels(const bench *b)
 {
     bench_place place = { .group = "levels", .width = 400, .height = 400, .splats = 20000, .threads = 1 };
     if (bench_wants(b, "exactness"))
-        exactness(b, b->level, place);
+        exactness(b, place);
     if (!bench_wants(b, "levels"))
         return;
     frame frames[ADCGS_CPU_AVX512 + 1];

@@ -265,7 +265,7 @@ static void trainers_own(const bench *b)
                                  { "exact rate", rate_exact, &v, ROWS * 64, "value", 0 },
                                  { "noise", noise, &v, ROWS * 64, "value", 0 },
                                  { "Adam", adam, &v, PARAMETERS, "weight", 0 } };
-    bench_group(b, &(bench_place){ .group = "trainer's kernels", .threads = 1 }, items, ADCGS_COUNTOF(items), 0);
+    bench_group(b, &(bench_place){ .group = "kernels of training", .threads = 1 }, items, ADCGS_COUNTOF(items), 0);
     void *const parts[] = { v.y, v.step, v.mu, v.si, v.weight, v.dy, v.dmu, v.dsi, v.mean, v.p, v.g, v.m, v.v, v.table };
     for (size_t i = 0; i < ADCGS_COUNTOF(parts); i++)
         adcgs_free(NULL, parts[i]);
@@ -273,8 +273,12 @@ static void trainers_own(const bench *b)
 
 void bench_kernels(const bench *b)
 {
-    dense_layers(b);
-    integer_nets(b);
-    coding(b);
-    trainers_own(b);
+    if (bench_wants(b, "dense"))
+        dense_layers(b);
+    if (bench_wants(b, "integer"))
+        integer_nets(b);
+    if (bench_wants(b, "decode"))
+        coding(b);
+    if (bench_wants(b, "kernels"))
+        trainers_own(b);
 }

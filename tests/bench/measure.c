@@ -26,9 +26,9 @@ float *bench_floats(size_t n)
     return p;
 }
 
-int bench_wants(const bench *b, const char *group)
+int bench_wants(const bench *b, const char *beginning)
 {
-    return !b->only || !strncmp(group, b->only, strlen(b->only));
+    return !b->only || !strncmp(beginning, b->only, ADCGS_MIN(strlen(beginning), strlen(b->only)));
 }
 
 const bench_ceilings *bench_ceilings_of(const bench *b, int threads)
@@ -140,7 +140,7 @@ void bench_group(const bench *b, const bench_place *place, const bench_item *ite
 {
     static double seconds[ITEMS_MAX][ROUNDS_MAX];
     int times[ITEMS_MAX];
-    if (!bench_wants(b, place->group))
+    if (b->only && strncmp(place->group, b->only, strlen(b->only)) != 0)
         return;
     for (int i = 0; i < n; i++)
         times[i] = times_of(b, &items[i], place->threads);

@@ -47,8 +47,13 @@ typedef struct bench_place {
     int threads;
 } bench_place;
 
-/** Whether a group is wanted. */
-int bench_wants(const bench *b, const char *group);
+/** Whether any group whose name begins so is wanted. */
+int bench_wants(const bench *b, const char *beginning);
+/** After one thread come all of them. */
+static inline int bench_more_threads(const bench *b, int threads)
+{
+    return threads < b->threads ? b->threads : threads + 1;
+}
 /** The ceilings for so many threads. */
 const bench_ceilings *bench_ceilings_of(const bench *b, int threads);
 /**

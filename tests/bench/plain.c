@@ -1,26 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The baseline: which tiles a splat touches. */
-#include "config.h"
-
 #include "plain.h"
 
 #include "measure.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-const plain_dsp *plain_of(adcgs_cpu_level level)
-{
-#ifdef HAVE_AVX512
-    if (level == ADCGS_CPU_AVX512)
-        return &plain_avx512;
-#endif
-#ifdef HAVE_AVX2
-    if (level == ADCGS_CPU_AVX2)
-        return &plain_avx2;
-#endif
-    return &plain_scalar;
-}
 
 void plain_init(plain_job *job, uint32_t most)
 {

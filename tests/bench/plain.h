@@ -34,7 +34,6 @@ typedef struct plain_dsp {
 } plain_dsp;
 
 extern const plain_dsp plain_scalar, plain_avx2, plain_avx512;
-const plain_dsp *plain_of(adcgs_cpu_level level);
 
 /** Room for a picture's lists, tiles and sums; freed with plain_clear(). */
 void plain_init(plain_job *job, uint32_t most);

@@ -104,7 +104,7 @@ static void splats_alone(void *arg)
 
 static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_place place)
 {
-    for (int threads = 1; threads <= b->threads; threads += b->threads > 1 ? b->threads - 1 : 1) {
+    for (int threads = 1; threads <= b->threads; threads = bench_more_threads(b, threads)) {
         player p = { .stream = stream };
         adcgs_info info;
         adcgs_config_init(&p.config);
@@ -153,7 +153,7 @@ void bench_training(const bench *b, const char *scenes, int width, int height, u
     adcgs_buffer_init(&stream);
     adcgs_scene *scene = open_scene(scenes, width, height);
     const adcgs_train_config config = steady(preset, anchors);
-    for (int threads = 1; threads <= b->threads; threads += b->threads > 1 ? b->threads - 1 : 1) {
+    for (int threads = 1; threads <= b->threads; threads = bench_more_threads(b, threads)) {
         training r = { .until = 0 };
         adcgs_pool *pool = NULL;
         bench_check(adcgs_pool_create(&pool, threads, &error), &error);
