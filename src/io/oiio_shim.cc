@@ -115,9 +115,7 @@ adcgs_status write(const adcgs_image *image, const char *name, const char *exten
     return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output->geterror()).c_str());
 }
 
-} // namespace
-
-extern "C" adcgs_status adcgs_oiio_probe(int *width, int *height, int *channels, const char *path, adcgs_error *error)
+adcgs_status probe_c(int *width, int *height, int *channels, const char *path, adcgs_error *error) noexcept
 {
     return guarded(path, error, [&]() -> adcgs_status {
         std::unique_ptr<OIIO::ImageInput> input;
@@ -129,7 +127,7 @@ extern "C" adcgs_status adcgs_oiio_probe(int *width, int *height, int *channels,
     });
 }
 
-extern "C" adcgs_status adcgs_oiio_read(adcgs_image *out, const char *path, adcgs_error *error)
+adcgs_status read_c(adcgs_image *out, const char *path, adcgs_error *error) noexcept
 {
     *out = adcgs_image{};
     const adcgs_status status = guarded(path, error, [&]() { return read(out, path, error); });
@@ -138,8 +136,12 @@ extern "C" adcgs_status adcgs_oiio_read(adcgs_image *out, const char *path, adcg
     return status;
 }
 
-extern "C" adcgs_status adcgs_oiio_write(const adcgs_image *image, const char *name, const char *extension, const char *path,
-                                         adcgs_error *error)
+adcgs_status write_c(const adcgs_image *image, const char *name, const char *extension, const char *path,
+                     adcgs_error *error) noexcept
 {
     return guarded(path, error, [&]() { return write(image, name, extension, path, error); });
 }
+
+} // namespace
+
+extern "C" const adcgs_oiio adcgs_oiio_table = { PACKAGE_VERSION, probe_c, read_c, write_c };

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * OpenImageIO seen from C. No exception and no C++ type crosses this border.
- * What a build of OpenImageIO cannot do gives ADCGS_ERR_UNSUPPORTED.
+ * It brings some 250 shared libraries along, which take a decoder's time many
+ * times over to load; so the shim is a module of its own, opened when the first
+ * picture needs it. A build without shared libraries links it.
  */
 #ifndef ADCGS_IO_OIIO_SHIM_H
 #define ADCGS_IO_OIIO_SHIM_H
@@ -12,12 +14,29 @@ extern "C" {
 
 #include "io/image.h"
 
-adcgs_status adcgs_oiio_probe(int *width, int *height, int *channels, const char *path, adcgs_error *error);
-/** The first picture in the file; straight alpha. */
-adcgs_status adcgs_oiio_read(adcgs_image *out, const char *path, adcgs_error *error);
-/** 8 bit to the file `name`, in the format that `extension` stands for; messages name `path`. */
-adcgs_status adcgs_oiio_write(const adcgs_image *image, const char *name, const char *extension, const char *path,
-                              adcgs_error *error);
+/** What the module offers. What a build of OpenImageIO cannot do gives ADCGS_ERR_UNSUPPORTED. Any thread may call. */
+typedef struct adcgs_oiio {
+    const char *version; /**< of the programs that the module belongs to */
+    adcgs_status (*probe)(int *width, int *height, int *channels, const char *path, adcgs_error *error);
+    /** The first picture in the file; straight alpha. */
+    adcgs_status (*read)(adcgs_image *out, const char *path, adcgs_error *error);
+    /** 8 bit to the file `name`, in the format that `extension` stands for; messages name `path`. */
+    adcgs_status (*write)(const adcgs_image *image, const char *name, const char *extension, const char *path,
+                          adcgs_error *error);
+} adcgs_oiio;
+
+/** The one thing that the module exports. */
+#if defined __GNUC__
+__attribute__((visibility("default")))
+#endif
+extern const adcgs_oiio adcgs_oiio_table;
+
+/**
+ * The module, opened at the first call, for the file `path`, which messages name. Where it is looked for:
+ * the directory that ADCGS_MODULES names, and nowhere else if that is set; then beside the running program, as
+ * built and as installed; then where it was to be installed. ADCGS_ERR_UNSUPPORTED when it is in none of them.
+ */
+adcgs_status adcgs_oiio_get(const adcgs_oiio **oiio, const char *path, adcgs_error *error);
 
 #ifdef __cplusplus
 }

@@ -20,6 +20,7 @@ typedef struct settings {
     adcgs_shots_request request;
     adcgs_config config;
     int cpu, half, use_float, md5, frametimes;
+    double opened; /**< when opening the input began, in seconds */
 } settings;
 
 static const char *const cpu_names[] = {"auto", "scalar", "avx2", "avx512", NULL};
@@ -48,8 +49,8 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "fail unless the frames together have this MD5", NULL, NULL},
         {"answer", 0, ADCGS_OPTION_STRING, &s->answer, 0, 0, "REQUESTS",
          "answer a file of requests for digests, as the specification's\nclause on conformance says", NULL, NULL},
-        {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL, "print the milliseconds that each frame took to render",
-         NULL, NULL},
+        {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL,
+         "print the milliseconds from opening to the first frame,\nthen those that each frame took to render", NULL, NULL},
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; frames do not depend on it",
          cpu_names, NULL},
@@ -90,6 +91,8 @@ static adcgs_status render(const settings *s, adcgs_decoder *decoder, const adcg
         status = adcgs_render(decoder, &shots->shot[i].camera, shots->shot[i].time, frame, error);
         const double seconds = adcgs_seconds() - start;
         *render_seconds += seconds;
+        if (status == ADCGS_OK && s->frametimes && i == 0)
+            printf("first %.3f\n", 1e3 * (start + seconds - s->opened));
         char hex[33] = "";
         if (status == ADCGS_OK && s->md5) {
             uint8_t digest[16];
@@ -226,6 +229,7 @@ int main(int argc, char **argv)
     adcgs_decoder *decoder = NULL;
     adcgs_status status = check_settings(&s, &error);
     adcgs_interrupt_catch();
+    s.opened = adcgs_seconds();
     if (status == ADCGS_OK && s.answer)
         status = answer(&cli, &s, &decoder, &error);
     else if (status == ADCGS_OK)

@@ -49,7 +49,7 @@ expect 0 "frame" $dec "$s" -o "$dir/v.y4m"
 head -n 1 "$dir/v.y4m" | grep -q '^YUV4MPEG2 W[0-9]* H[0-9]* F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED$' || bad "Y4M header"
 $dec "$s" -o - 2>/dev/null | cmp -s - "$dir/v.y4m" || bad "Y4M on standard output"
 expect 0 "frame" $dec "$s" --frametimes
-[ "$(wc -l <"$dir/out")" -eq "$n" ] || bad "--frametimes"
+[ "$(grep -c '^[0-9.]*$' "$dir/out")" -eq "$n" ] && head -n 1 "$dir/out" | grep -q '^first [0-9]*\.[0-9]*$' || bad "--frametimes"
 expect 0 "frame" $dec "$s" -o "$dir/l.ppm" --layers 1 --time 0.03
 expect 2 "%04d" $dec "$s" -o "$dir/x.ppm"
 expect 2 "standard output" $dec "$s" -o - --md5
@@ -57,6 +57,17 @@ expect 2 "exclude" $dec "$s" -o "$dir/x.exr" --half --float
 expect 2 "output" $dec "$s" --float
 expect 3 "x.ppm" $dec "$s" -o "$dir/no/x.ppm" --time 0
 expect 5 "foo" $dec "$s" -o "$dir/x.foo" --time 0
+# OpenImageIO is opened when an image needs it, and not before. A build without shared libraries has it inside.
+if [ -f .libs/adcgs_oiio.so ]; then
+    ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*\(OpenImageIO\|stdc++\)' || bad "adcgs-dec loads OpenImageIO at once"
+    expect 0 "frame" $dec "$s" -o "$dir/g.png" --time 0
+    [ -s "$dir/g.png" ] || bad "PNG"
+    mkdir "$dir/none"
+    expect 5 "x.png: images need OpenImageIO: no adcgs_oiio.so in $dir/none" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.png" --time 0
+    echo "not a module" >"$dir/none/adcgs_oiio.so"
+    expect 5 "x.png: images need OpenImageIO: " env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.png" --time 0
+    expect 0 "frame" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/v.y4m"
+fi
 [ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || bad "something was left behind"
 
 # Cameras and times.
