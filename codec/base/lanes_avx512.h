@@ -7,6 +7,8 @@ typedef __mmask16 vm;
 
 LANES_INLINE vf vf_set1(float x) { return _mm512_set1_ps(x); }
 LANES_INLINE vf vf_load(const float *p) { return _mm512_load_ps(p); }
+LANES_INLINE vf vf_loadu(const float *p) { return _mm512_loadu_ps(p); }
+LANES_INLINE void vf_storeu(float *p, vf a) { _mm512_storeu_ps(p, a); }
 LANES_INLINE void vf_store(float *p, vf a) { _mm512_store_ps(p, a); }
 LANES_INLINE vf vf_add(vf a, vf b) { return _mm512_add_ps(a, b); }
 LANES_INLINE vf vf_sub(vf a, vf b) { return _mm512_sub_ps(a, b); }

@@ -55,6 +55,9 @@ LANES_INLINE void vf_store(float *p, vf a)
     memcpy(p, a.v, sizeof a.v);
 }
 
+LANES_INLINE vf vf_loadu(const float *p) { return vf_load(p); }
+LANES_INLINE void vf_storeu(float *p, vf a) { vf_store(p, a); }
+
 LANES_INLINE vf vf_fma(vf a, vf b, vf c)
 {
     vf r;

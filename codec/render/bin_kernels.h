@@ -91,6 +91,66 @@ static inline uint32_t bin_group(const bin_frame *f, const block_rows *rows, int
     const uint32_t n = emit(out, base, f->offset[0], tile_masks(upper));
     return n + emit(out + n, base, f->offset[1], tile_masks(lower));
 }
+#elif ADCGS_LANES_ISA == 256
+typedef struct bin_frame {
+    __m256i offset[4]; /* tile numbers of a row of four tiles from the group's first, at bit 16 */
+} bin_frame;
+
+static inline bin_frame bin_begin(int tiles_x)
+{
+    const __m256i column = _mm256_setr_epi64x(0, 1, 2, 3);
+    bin_frame f;
+    for (int row = 0; row < 4; row++)
+        f.offset[row] = _mm256_slli_epi64(_mm256_add_epi64(column, _mm256_set1_epi64x((long long)row * tiles_x)), 16);
+    return f;
+}
+
+/* Bits of eight rows of blocks. */
+static inline __m256i row_bits(__m256 begin, __m256 end, int at)
+{
+    const __m256i zero = _mm256_setzero_si256(), sixteen = _mm256_set1_epi32(16), one = _mm256_set1_epi32(1);
+    const __m256i from = _mm256_set1_epi32(at);
+    const __m256i b = _mm256_min_epi32(_mm256_max_epi32(_mm256_sub_epi32(_mm256_cvttps_epi32(begin), from), zero), sixteen);
+    const __m256i e = _mm256_min_epi32(_mm256_max_epi32(_mm256_sub_epi32(_mm256_cvttps_epi32(end), from), zero), sixteen);
+    const __m256i bits = _mm256_sub_epi32(_mm256_sllv_epi32(one, e), _mm256_sllv_epi32(one, b));
+    return _mm256_and_si256(bits, _mm256_cmpgt_epi32(e, b));
+}
+
+/* Masks of a row of four tiles. */
+static inline __m256i tile_masks(long long words)
+{
+    __m256i x = _mm256_srlv_epi64(_mm256_set1_epi64x(words), _mm256_setr_epi64x(0, 4, 8, 12));
+    x = _mm256_and_si256(x, _mm256_set1_epi64x(0x000f000f000f000f));
+    x = _mm256_or_si256(x, _mm256_srli_epi64(x, 12));
+    x = _mm256_or_si256(x, _mm256_srli_epi64(x, 24));
+    return _mm256_and_si256(x, _mm256_set1_epi64x(0xffff));
+}
+
+static inline uint32_t emit(uint64_t *out, __m256i items, __m256i masks)
+{
+    /* The set bits of four, first to last, as places of two 32-bit halves each. */
+    static const uint32_t halves_of[16] = {0, 0x10, 0x32, 0x3210, 0x54, 0x5410, 0x5432, 0x543210, 0x76, 0x7610,
+                                                       0x7632, 0x763210, 0x7654, 0x765410, 0x765432, 0x76543210};
+    const __m256i hits = _mm256_cmpgt_epi64(masks, _mm256_setzero_si256());
+    const uint32_t hit = (uint32_t)_mm256_movemask_pd(_mm256_castsi256_pd(hits));
+    const __m256i digits = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
+    const __m256i from = _mm256_srlv_epi32(_mm256_set1_epi32((int)halves_of[hit]), digits);
+    _mm256_storeu_si256((__m256i *)out, _mm256_permutevar8x32_epi32(_mm256_add_epi64(items, masks), from));
+    return (uint32_t)__builtin_popcount(hit);
+}
+
+static inline uint32_t bin_group(const bin_frame *f, const block_rows *rows, int tile_rows, int x, uint64_t item, uint64_t *out)
+{
+    const __m256i packed = _mm256_packus_epi32(row_bits(rows->begin.a, rows->end.a, 4 * x),
+                                               row_bits(rows->begin.b, rows->end.b, 4 * x));
+    const __m256i base = _mm256_set1_epi64x((long long)item);
+    alignas(32) long long words[4];
+    uint32_t n = 0;
+    _mm256_store_si256((__m256i *)words, _mm256_permute4x64_epi64(packed, 0xd8));
+    for (int r = 0; r < 4 && r < tile_rows; r++)
+        n += emit(out + n, _mm256_add_epi64(base, f->offset[r]), tile_masks(words[r]));
+    return n;
+}
 #else
 typedef struct bin_frame {
     int tiles_x;

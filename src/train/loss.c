@@ -15,7 +15,7 @@
 struct adcgs_loss {
     adcgs_pool *pool;
     adcgs_loss_strip_fn kernel;
-    float *scratch; /* [threads][ADCGS_LOSS_SCRATCH] */
+    adcgs_loss_scratch *scratch; /* [threads] */
     adcgs_loss_strip strip[STRIPS_MAX];
 };
 
@@ -43,7 +43,7 @@ adcgs_status adcgs_loss_create(adcgs_loss **out, adcgs_cpu_level cpu, adcgs_pool
         return ADCGS_ERR_MEMORY;
     loss->pool = pool;
     loss->kernel = kernel_of(level);
-    loss->scratch = adcgs_alloc(NULL, (size_t)adcgs_pool_threads(pool), ADCGS_LOSS_SCRATCH * sizeof(float), error);
+    loss->scratch = adcgs_alloc(NULL, (size_t)adcgs_pool_threads(pool), sizeof *loss->scratch, error);
     if (!loss->scratch) {
         adcgs_free(NULL, loss);
         return ADCGS_ERR_MEMORY;
@@ -64,7 +64,7 @@ void adcgs_loss_free(adcgs_loss **loss)
 static void run_strip(void *arg, int index, int thread)
 {
     adcgs_loss *const loss = arg;
-    loss->kernel(&loss->strip[index], loss->scratch + (size_t)thread * ADCGS_LOSS_SCRATCH);
+    loss->kernel(&loss->strip[index], loss->scratch + thread);
 }
 
 /* L1 alone: strip->first and count are rows here. */

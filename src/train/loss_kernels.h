@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * L1 and SSIM of a strip, value and gradient, in one pass down its rows. The
- * body of loss_scalar.c, loss_avx2.c and loss_avx512.c, which define KERNEL.
+ * body of loss_scalar.c, loss_avx2.c and loss_avx512.c, which define KERNEL and
+ * ADCGS_LANES_ISA.
  *
  * With G the window, x the image and y the target, SSIM needs m = G x, n = G y,
  * q = G (x^2 + y^2) and c = G (x y) at each pixel, and its gradient is
  *   G (dS/dm) + 2 x G (dS/dq) + y G (dS/dc),
- * the derivatives taken as if m, q and c were independent. G is separable:
- * rows go through it once as they come in (ring of 4 maps), the three
- * derivative maps again (ring of 3 maps); gradients leave ten rows behind.
- *
- * No sum runs across vector lanes, except row_sum() with lanes fixed at 16, and
- * nothing is fused: gcc vectorises these loops and the bits stay the same.
+ * the derivatives taken as if m, q and c were independent. G is separable: rows
+ * go through it once as they come in, the three derivatives again. Down the
+ * columns two rows are done at a time, since their windows share most of what
+ * they read. The two halves take turns of some rows, so that the ring of each
+ * stays in the first-level cache meanwhile.
  */
 #include "train/loss_strip.h"
 
-#include <math.h>
+#include "base/base.h"
+#include "base/lanes.h"
+
 #include <string.h>
 
-#define TAPS 11
 #define HALO ADCGS_LOSS_HALO
-#define ROW ADCGS_LOSS_ROW
 
 /* exp(-k^2/4.5) for k = 0..5, scaled to sum 1 over -5..5. */
 #define G0 0.266011725f
@@ -35,158 +35,230 @@
 
 enum { MAP_M, MAP_N, MAP_Q, MAP_C, MAPS_IN };
 enum { MAP_DM, MAP_DQ, MAP_DC, MAPS_OUT };
+enum { LANES = 16, TURN = 16, RING_IN = 12, RING_OUT = 32 };
+_Static_assert(TURN + 2 * HALO + 2 <= RING_OUT, "the rows that a turn reads are there");
 
-/* out[i] = window over in[i .. i+10] */
-static void filter_row(const float *restrict in, float *restrict out, int n)
+/* ---- The window ---- */
+
+/* out[i] = window over in[i+3 .. i+13] */
+LANES_INLINE void filter_row(const float *restrict in, float *restrict out, int n)
 {
-    for (int i = 0; i < n; i++)
-        out[i] = G0 * in[i + 5] + G1 * (in[i + 4] + in[i + 6]) + G2 * (in[i + 3] + in[i + 7]) + G3 * (in[i + 2] + in[i + 8]) +
-                 G4 * (in[i + 1] + in[i + 9]) + G5 * (in[i] + in[i + 10]);
+    for (int i = 0; i < n; i += LANES) {
+        const float *const p = in + i + 8;
+        vf sum = vf_mul(vf_set1(G5), vf_add(vf_loadu(p - 5), vf_loadu(p + 5)));
+        sum = vf_fma(vf_set1(G4), vf_add(vf_loadu(p - 4), vf_loadu(p + 4)), sum);
+        sum = vf_fma(vf_set1(G3), vf_add(vf_loadu(p - 3), vf_loadu(p + 3)), sum);
+        sum = vf_fma(vf_set1(G2), vf_add(vf_loadu(p - 2), vf_loadu(p + 2)), sum);
+        sum = vf_fma(vf_set1(G1), vf_add(vf_loadu(p - 1), vf_loadu(p + 1)), sum);
+        vf_store(out + i, vf_fma(vf_set1(G0), vf_loadu(p), sum));
+    }
 }
 
-/* The eleven rows that end with row `last`, oldest first. Rows are kept at their number modulo 11. */
-static void ring_rows(const float *ring, int maps, int last, const float *rows[TAPS])
+/* The rows first .. first+11 of a ring. */
+typedef struct twelve {
+    const float *row[12];
+} twelve;
+
+typedef struct pair {
+    vf a, b;
+} pair;
+
+/*
+ * Windows over rows 0 .. 10 and 1 .. 11. Each row is next to its mirror images in both, so that going from one mirror image to
+ * the next takes one load for each sum of two.
+ */
+LANES_INLINE pair columns(const twelve *rows, int at)
 {
-    for (int k = 0; k < TAPS; k++)
-        rows[k] = ring + (size_t)((last + 1 + k) % TAPS) * (size_t)maps * ROW;
+#define ROW(k) vf_load(rows->row[k] + at)
+    const vf r1 = ROW(1), r9 = ROW(9), r3 = ROW(3), r7 = ROW(7), r5 = ROW(5);
+    vf b = vf_mul(vf_set1(G5), vf_add(ROW(11), r1));
+    vf a = vf_mul(vf_set1(G4), vf_add(r1, r9));
+    b = vf_fma(vf_set1(G3), vf_add(r9, r3), b);
+    a = vf_fma(vf_set1(G2), vf_add(r3, r7), a);
+    b = vf_fma(vf_set1(G1), vf_add(r7, r5), b);
+    a = vf_fma(vf_set1(G0), r5, a);
+    const vf r10 = ROW(10), r2 = ROW(2), r8 = ROW(8), r4 = ROW(4), r6 = ROW(6);
+    a = vf_fma(vf_set1(G5), vf_add(ROW(0), r10), a);
+    b = vf_fma(vf_set1(G4), vf_add(r10, r2), b);
+    a = vf_fma(vf_set1(G3), vf_add(r2, r8), a);
+    b = vf_fma(vf_set1(G2), vf_add(r8, r4), b);
+    a = vf_fma(vf_set1(G1), vf_add(r4, r6), a);
+    b = vf_fma(vf_set1(G0), r6, b);
+    return (pair){a, b};
+#undef ROW
 }
 
-/* Each row in a variable of its own: gcc then sees that stores to the outputs leave them alone. */
-#define TAKE_ROWS(rows)                                                                                              \
-    const float *restrict const r0 = rows[0], *restrict const r1 = rows[1], *restrict const r2 = rows[2],           \
-                                *restrict const r3 = rows[3], *restrict const r4 = rows[4], *restrict const r5 = rows[5],   \
-                                *restrict const r6 = rows[6], *restrict const r7 = rows[7], *restrict const r8 = rows[8],   \
-                                *restrict const r9 = rows[9], *restrict const r10 = rows[10]
-#define COLUMN(j)                                                                                             \
-    (G0 * r5[j] + G1 * (r4[j] + r6[j]) + G2 * (r3[j] + r7[j]) + G3 * (r2[j] + r8[j]) + G4 * (r1[j] + r9[j]) + \
-     G5 * (r0[j] + r10[j]))
-
-static float sum_lanes(const float lane[16])
-{
-    float a[8];
-    for (int i = 0; i < 8; i++)
-        a[i] = lane[i] + lane[i + 8];
-    return ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7]));
-}
-
+/* Sum of n numbers, beyond which there is room for a whole vector. */
 static double row_sum(const float *p, int n)
 {
-    float lane[16] = {0.0f};
-    const int whole = n & ~15;
-    for (int i = 0; i < whole; i += 16)
-        for (int l = 0; l < 16; l++)
-            lane[l] += p[i + l];
-    for (int l = 0; l < n - whole; l++)
-        lane[l] += p[whole + l];
-    return sum_lanes(lane);
+    _Alignas(64) float lane[LANES];
+    vf sum = vf_set1(0.0f);
+    const int whole = n / LANES * LANES;
+    for (int i = 0; i < whole; i += LANES)
+        sum = vf_add(sum, vf_loadu(p + i));
+    vf_store(lane, sum);
+    for (int i = whole; i < n; i++)
+        lane[i - whole] += p[i];
+    for (int half = LANES / 2; half; half /= 2)
+        for (int i = 0; i < half; i++)
+            lane[i] += lane[i + half];
+    return (double)lane[0];
 }
 
-/* Index 0 is column first - 10; columns outside the image are zero. */
-static void load_row(const adcgs_loss_strip *s, int row, float *restrict scratch, float *restrict maps, int n)
+/* ---- SSIM and its derivatives ---- */
+
+/* Columns first - 16 .. of a row; those outside the image are zero. */
+static void load_row(const adcgs_loss_strip *s, int row, adcgs_loss_scratch *w)
 {
-    float *const x = scratch, *const y = scratch + ROW, *const q = scratch + 2 * ROW, *const c = scratch + 3 * ROW;
-    const int left = s->first - 2 * HALO < 0 ? 2 * HALO - s->first : 0;
-    const int right = s->width - (s->first - 2 * HALO) < ROW ? s->width - (s->first - 2 * HALO) : ROW;
-    const size_t from = (size_t)row * (size_t)s->stride + (size_t)(s->first - 2 * HALO + left);
-    const size_t bytes = (size_t)(right - left) * sizeof(float);
-    memset(x, 0, (size_t)left * sizeof(float));
-    memset(y, 0, (size_t)left * sizeof(float));
-    memcpy(x + left, s->image + from, bytes);
-    memcpy(y + left, s->target + from, bytes);
-    memset(x + right, 0, (size_t)(ROW - right) * sizeof(float));
-    memset(y + right, 0, (size_t)(ROW - right) * sizeof(float));
-    for (int i = 0; i < ROW; i++) {
-        q[i] = x[i] * x[i] + y[i] * y[i];
-        c[i] = x[i] * y[i];
+    enum { N = ADCGS_LOSS_STRIP + 32 };
+    const int begin = s->first - LANES, left = begin < 0 ? -begin : 0, right = ADCGS_MIN(s->width - begin, N);
+    const size_t from = (size_t)row * (size_t)s->stride + (size_t)(begin + left), bytes = (size_t)(right - left) * sizeof(float);
+    const float *const source[2] = {s->image + from, s->target + from};
+    for (int i = 0; i < 2; i++) {
+        memset(w->pixels[i], 0, (size_t)left * sizeof(float));
+        memcpy(w->pixels[i] + left, source[i], bytes);
+        memset(w->pixels[i] + right, 0, (size_t)(N - right) * sizeof(float));
     }
-    filter_row(x, maps + MAP_M * ROW, n);
-    filter_row(y, maps + MAP_N * ROW, n);
-    filter_row(q, maps + MAP_Q * ROW, n);
-    filter_row(c, maps + MAP_C * ROW, n);
-}
-
-/* SSIM and its three derivatives along a row; index 0 is column first - 5. */
-static void ssim_row(const float *const rows[TAPS], float *restrict derivatives, float *restrict ssim, int n)
-{
-    TAKE_ROWS(rows);
-    for (int i = 0; i < n; i++) {
-        const float m = COLUMN(MAP_M * ROW + i), k = COLUMN(MAP_N * ROW + i);
-        const float q = COLUMN(MAP_Q * ROW + i), c = COLUMN(MAP_C * ROW + i);
-        const float mm = m * m + k * k, mk = 2.0f * (m * k);
-        const float a1 = mk + C1, a2 = (2.0f * c - mk) + C2, b1 = mm + C1, b2 = (q - mm) + C2;
-        const float inverse = 1.0f / (b1 * b2), s = (a1 * a2) * inverse;
-        ssim[i] = s;
-        derivatives[MAP_DM * ROW + i] = 2.0f * inverse * (k * (a2 - a1) - m * s * (b2 - b1));
-        derivatives[MAP_DQ * ROW + i] = -s * b1 * inverse;
-        derivatives[MAP_DC * ROW + i] = 2.0f * a1 * inverse;
+    for (int i = 0; i < N; i += LANES) {
+        const vf x = vf_load(w->pixels[MAP_M] + i), y = vf_load(w->pixels[MAP_N] + i);
+        vf_store(w->pixels[MAP_Q] + i, vf_fma(x, x, vf_mul(y, y)));
+        vf_store(w->pixels[MAP_C] + i, vf_mul(x, y));
     }
 }
 
-/* Gradient of a row, and |x - y| and (x - y)^2 for the sums. */
-static void gradient_row(const adcgs_loss_strip *s, const float *const rows[TAPS], const float *restrict x,
-                         const float *restrict y, float *restrict grad, float *restrict distance, float *restrict square)
+/* A row into the ring of those that came in; there is nothing above and below the image. */
+static void take_row(const adcgs_loss_strip *s, int row, adcgs_loss_scratch *w, int n)
 {
-    TAKE_ROWS(rows);
-    const float l1_scale = s->l1_scale, ssim_scale = s->ssim_scale;
-    const int n = s->count;
-    for (int i = 0; i < n; i++) {
-        const float d = x[i] - y[i];
-        const float g = COLUMN(MAP_DM * ROW + i) + 2.0f * x[i] * COLUMN(MAP_DQ * ROW + i) + y[i] * COLUMN(MAP_DC * ROW + i);
-        grad[i] = ssim_scale * g + l1_scale * (float)((d > 0.0f) - (d < 0.0f));
-        distance[i] = fabsf(d);
-        square[i] = d * d;
+    float(*const maps)[ADCGS_LOSS_STRIP + 16] = w->in[(row + RING_IN) % RING_IN];
+    if (row < 0 || row >= s->height) {
+        memset(maps, 0, sizeof w->in[0]);
+        return;
+    }
+    load_row(s, row, w);
+    for (int map = 0; map < MAPS_IN; map++)
+        filter_row(w->pixels[map], maps[map], n);
+}
+
+LANES_INLINE void ssim_of(vf m, vf k, vf q, vf c, float *ssim, float (*derivatives)[ADCGS_LOSS_STRIP + 16], int i)
+{
+    const vf two = vf_set1(2.0f);
+    const vf mm = vf_fma(m, m, vf_mul(k, k)), mk = vf_mul(two, vf_mul(m, k));
+    const vf a1 = vf_add(mk, vf_set1(C1)), a2 = vf_add(vf_sub(vf_mul(two, c), mk), vf_set1(C2));
+    const vf b1 = vf_add(mm, vf_set1(C1)), b2 = vf_add(vf_sub(q, mm), vf_set1(C2));
+    const vf inverse = vf_div(vf_set1(1.0f), vf_mul(b1, b2)), twice = vf_mul(two, inverse);
+    const vf s = vf_mul(vf_mul(a1, a2), inverse);
+    vf_store(ssim + i, s);
+    vf_store(derivatives[MAP_DM] + i, vf_mul(twice, vf_fnma(vf_mul(m, s), vf_sub(b2, b1), vf_mul(k, vf_sub(a2, a1)))));
+    vf_store(derivatives[MAP_DQ] + i, vf_mul(vf_sub(vf_set1(0.0f), s), vf_mul(b1, inverse)));
+    vf_store(derivatives[MAP_DC] + i, vf_mul(a1, twice));
+}
+
+/* Of two rows. Index 0 is column first - 8. */
+static void ssim_rows(const twelve *rows, adcgs_loss_scratch *w, int n)
+{
+    enum { MAP = ADCGS_LOSS_STRIP + 16 };
+    for (int i = 0; i < n; i += LANES) {
+        const pair m = columns(rows, MAP_M * MAP + i), k = columns(rows, MAP_N * MAP + i);
+        const pair q = columns(rows, MAP_Q * MAP + i), c = columns(rows, MAP_C * MAP + i);
+        ssim_of(m.a, k.a, q.a, c.a, w->ssim[0], w->derivatives[0], i);
+        ssim_of(m.b, k.b, q.b, c.b, w->ssim[1], w->derivatives[1], i);
     }
 }
 
 /* Outside the image there is no SSIM, hence no derivative. */
 static void clear_outside(const adcgs_loss_strip *s, float *map, int n)
 {
-    const int left = s->first < HALO ? HALO - s->first : 0;
-    const int right = s->width - (s->first - HALO);
-    for (int i = 0; i < left; i++)
-        map[i] = 0.0f;
-    for (int i = right; i < n; i++)
-        map[i] = 0.0f;
+    const int begin = s->first - 8, right = s->width - begin;
+    if (begin < 0)
+        memset(map, 0, (size_t)-begin * sizeof *map);
+    if (right < n)
+        memset(map + right, 0, (size_t)(n - right) * sizeof *map);
 }
 
-static void derivatives_in(adcgs_loss_strip *s, const float *ring, float *out, int row, float *scratch, int n, int n_out)
+/* Derivatives of two rows into the ring of those that go out. */
+static void differentiate(adcgs_loss_strip *s, int row, adcgs_loss_scratch *w, int n)
 {
-    const float *rows[TAPS];
-    float *const ssim = scratch, *const derivatives = scratch + ROW;
-    ring_rows(ring, MAPS_IN, row + HALO, rows);
-    ssim_row(rows, derivatives, ssim, n);
-    s->ssim += row_sum(ssim + HALO, s->count);
-    for (int map = 0; map < MAPS_OUT; map++) {
-        clear_outside(s, derivatives + map * ROW, n);
-        filter_row(derivatives + map * ROW, out + map * ROW, n_out);
+    twelve rows;
+    for (int ahead = row ? HALO : -HALO; ahead <= HALO + 1; ahead++)
+        take_row(s, row + ahead, w, n);
+    for (int k = 0; k < 12; k++)
+        rows.row[k] = w->in[(row - HALO + k + RING_IN) % RING_IN][0];
+    ssim_rows(&rows, w, n);
+    for (int i = 0; i < 2; i++) {
+        float(*const out)[ADCGS_LOSS_STRIP] = w->out[(row + i) % RING_OUT];
+        if (row + i >= s->height) {
+            memset(out, 0, sizeof w->out[0]);
+            continue;
+        }
+        s->ssim += row_sum(w->ssim[i] + 8, s->count);
+        for (int map = 0; map < MAPS_OUT; map++) {
+            clear_outside(s, w->derivatives[i][map], n);
+            filter_row(w->derivatives[i][map], out[map], (s->count + LANES - 1) / LANES * LANES);
+        }
     }
 }
 
-void KERNEL(adcgs_loss_strip *s, float *scratch)
+/* ---- Gradients ---- */
+
+/* |x - y| and (x - y)^2 besides. */
+LANES_INLINE vf gradient_of(const adcgs_loss_strip *s, vf x, vf y, vf dm, vf dq, vf dc, float *distance, float *square)
 {
-    float *const in = scratch, *const out = in + TAPS * MAPS_IN * ROW, *const single = out + TAPS * MAPS_OUT * ROW;
-    /* Whole vectors: what lies beyond the columns needed is computed from zeros or real pixels, and never used. */
-    const int n_out = (s->count + 15) & ~15, n = (s->count + 2 * HALO + 15) & ~15;
-    const size_t in_bytes = MAPS_IN * ROW * sizeof(float), out_bytes = MAPS_OUT * ROW * sizeof(float);
-    memset(scratch, 0, ADCGS_LOSS_SCRATCH * sizeof(float));
+    const vf d = vf_sub(x, y), zero = vf_set1(0.0f), size = vf_abs(d);
+    const vf scale = vf_set1(s->l1_scale), slope = vf_sub(vf_only(vf_ge(d, zero), scale), vf_only(vf_ge(zero, d), scale));
+    const vf g = vf_fma(y, dc, vf_fma(vf_add(x, x), dq, dm));
+    vf_store(distance, size);
+    vf_store(square, vf_mul(d, d));
+    return vf_fma(vf_set1(s->ssim_scale), g, slope);
+}
+
+/* Of one of two rows, columns from at; the strip's last vector may not be whole. */
+LANES_INLINE void gradient_vector(const adcgs_loss_strip *s, int row, int at, vf dm, vf dq, vf dc, float *distance, float *square)
+{
+    const size_t from = (size_t)row * (size_t)s->stride + (size_t)(s->first + at);
+    if (at + LANES <= s->count) {
+        const vf x = vf_loadu(s->image + from), y = vf_loadu(s->target + from);
+        vf_storeu(s->grad + from, gradient_of(s, x, y, dm, dq, dc, distance + at, square + at));
+        return;
+    }
+    _Alignas(64) float x[LANES] = {0.0f}, y[LANES] = {0.0f}, grad[LANES];
+    const size_t bytes = (size_t)(s->count - at) * sizeof(float);
+    memcpy(x, s->image + from, bytes);
+    memcpy(y, s->target + from, bytes);
+    vf_store(grad, gradient_of(s, vf_load(x), vf_load(y), dm, dq, dc, distance + at, square + at));
+    memcpy(s->grad + from, grad, bytes);
+}
+
+static void gradient_rows(adcgs_loss_strip *s, int row, adcgs_loss_scratch *w)
+{
+    enum { MAP = ADCGS_LOSS_STRIP };
+    const int there = ADCGS_MIN(2, s->height - row);
+    twelve rows;
+    for (int k = 0; k < 12; k++)
+        rows.row[k] = w->out[(row - HALO + k + RING_OUT) % RING_OUT][0];
+    for (int at = 0; at < s->count; at += LANES) {
+        const pair dm = columns(&rows, MAP_DM * MAP + at), dq = columns(&rows, MAP_DQ * MAP + at);
+        const pair dc = columns(&rows, MAP_DC * MAP + at);
+        gradient_vector(s, row, at, dm.a, dq.a, dc.a, w->distance[0], w->square[0]);
+        if (there == 2)
+            gradient_vector(s, row + 1, at, dm.b, dq.b, dc.b, w->distance[1], w->square[1]);
+    }
+    for (int i = 0; i < there; i++) {
+        s->l1 += row_sum(w->distance[i], s->count);
+        s->mse += row_sum(w->square[i], s->count);
+    }
+}
+
+void KERNEL(adcgs_loss_strip *s, adcgs_loss_scratch *w)
+{
+    /* What the window needs, in whole vectors: the rest is computed from zeros or real pixels, and never used. */
+    const int n = (s->count + 8 + HALO + LANES - 1) / LANES * LANES;
+    int in = 0;
     s->l1 = s->mse = s->ssim = 0.0;
-    for (int r = 0; r < s->height + 2 * HALO; r++) {
-        float *const in_row = in + r % TAPS * MAPS_IN * ROW, *const out_row = out + (r + TAPS - HALO) % TAPS * MAPS_OUT * ROW;
-        if (r < s->height)
-            load_row(s, r, single, in_row, n);
-        else
-            memset(in_row, 0, in_bytes);
-        if (r >= HALO && r < s->height + HALO)
-            derivatives_in(s, in, out_row, r - HALO, single + 4 * ROW, n, n_out);
-        else
-            memset(out_row, 0, out_bytes);
-        if (r >= 2 * HALO) {
-            const float *rows[TAPS];
-            ring_rows(out, MAPS_OUT, r - HALO, rows);
-            const size_t at = (size_t)(r - 2 * HALO) * (size_t)s->stride + (size_t)s->first;
-            gradient_row(s, rows, s->image + at, s->target + at, s->grad + at, single + 8 * ROW, single + 9 * ROW);
-            s->l1 += row_sum(single + 8 * ROW, s->count);
-            s->mse += row_sum(single + 9 * ROW, s->count);
-        }
+    memset(w->out[RING_OUT - HALO], 0, HALO * sizeof w->out[0]); /* above the image */
+    for (int out = 0; out < s->height;) {
+        for (const int turn = in + TURN; in < turn; in += 2)
+            differentiate(s, in, w, n);
+        for (; out < s->height && out + HALO + 1 < in; out += 2)
+            gradient_rows(s, out, w);
     }
 }

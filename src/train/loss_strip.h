@@ -3,13 +3,9 @@
 #ifndef ADCGS_TRAIN_LOSS_STRIP_H
 #define ADCGS_TRAIN_LOSS_STRIP_H
 
-/** Columns of a strip at most: its rings of rows then fit the first-level cache. */
+/** Columns of a strip at most: twelve rows of its maps then fit the first-level cache. */
 #define ADCGS_LOSS_STRIP 128
 #define ADCGS_LOSS_HALO 5
-/** Floats of a row buffer: a strip with two halos on both sides, in whole vectors. */
-#define ADCGS_LOSS_ROW (ADCGS_LOSS_STRIP + 32)
-/** Floats of scratch space per thread: rings of 11 rows of 4 and 3 maps, 10 single rows. */
-#define ADCGS_LOSS_SCRATCH ((11 * 7 + 10) * ADCGS_LOSS_ROW)
 
 typedef struct adcgs_loss_strip {
     const float *image, *target; /**< [height][stride], one channel */
@@ -20,11 +16,21 @@ typedef struct adcgs_loss_strip {
     double l1, mse, ssim;        /**< out: sums over the strip's pixels */
 } adcgs_loss_strip;
 
-/** scratch: [ADCGS_LOSS_SCRATCH], 64-byte aligned. All variants give the same bits. */
-typedef void (*adcgs_loss_strip_fn)(adcgs_loss_strip *strip, float *scratch);
+/** What a kernel works in, all of it vectors of sixteen. Columns begin 16, 8 and 0 before the strip's first one. */
+typedef struct adcgs_loss_scratch {
+    _Alignas(64) float pixels[4][ADCGS_LOSS_STRIP + 32]; /**< of a row: image, target, squares, product */
+    float in[12][4][ADCGS_LOSS_STRIP + 16];              /**< ring of rows of those, through the window */
+    float ssim[2][ADCGS_LOSS_STRIP + 16];                /**< of two rows */
+    float derivatives[2][3][ADCGS_LOSS_STRIP + 16];      /**< of the same rows */
+    float out[32][3][ADCGS_LOSS_STRIP];                  /**< ring of rows of those, through the window */
+    float distance[2][ADCGS_LOSS_STRIP], square[2][ADCGS_LOSS_STRIP];
+} adcgs_loss_scratch;
 
-void adcgs_loss_strip_scalar(adcgs_loss_strip *strip, float *scratch);
-void adcgs_loss_strip_avx2(adcgs_loss_strip *strip, float *scratch);
-void adcgs_loss_strip_avx512(adcgs_loss_strip *strip, float *scratch);
+/** All variants give the same bits. */
+typedef void (*adcgs_loss_strip_fn)(adcgs_loss_strip *strip, adcgs_loss_scratch *scratch);
+
+void adcgs_loss_strip_scalar(adcgs_loss_strip *strip, adcgs_loss_scratch *scratch);
+void adcgs_loss_strip_avx2(adcgs_loss_strip *strip, adcgs_loss_scratch *scratch);
+void adcgs_loss_strip_avx512(adcgs_loss_strip *strip, adcgs_loss_scratch *scratch);
 
 #endif
