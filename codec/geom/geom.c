@@ -10,23 +10,25 @@
 
 #include "geom/geom_models.h"
 
-#define NO_KEY UINT64_MAX
+#define NO_CELL UINT32_MAX
 /* A key lies at most this far behind its slot; with more, somebody chose the keys to be slow. */
 #define PROBES_MAX 64
 #define X_MASK UINT64_C(0x4924924924924924)
+/*
+ * The cells around one are numbered 9 a + 3 u + v, where 0, 1 or 2 tell what lies before, at or behind it along the axis of the
+ * step, the next one and the one after that; bits of masks likewise.
+ */
+#define ITSELF 13
+#define LAYER 0x1ffu
 
 typedef struct cell {
     uint64_t key;  /* Morton code of its lowest voxel */
     uint32_t n;    /* points */
     uint32_t left; /* of these in the left half, once split */
-    uint32_t alone; /* one point, and nothing in the 26 cells around: so it will be for all its descendants */
-    uint32_t split; /* left is known */
+    uint32_t split : 1; /* left is known */
+    uint32_t alone : 1; /* one point, and nothing in the 26 cells around: so it will be for all its descendants */
+    uint32_t around : 27; /* which of the 27 cells around and at it are there, or, before they were looked for, may be */
 } cell;
-
-typedef struct slot {
-    uint64_t key;
-    uint64_t index;
-} slot;
 
 typedef struct walk {
     adcgs_geom_coder coder;
@@ -36,7 +38,7 @@ typedef struct walk {
     uint32_t n;
     const uint64_t *codes; /* encoder: [n], ascending */
     cell *cells, *children;
-    slot *slots;
+    uint32_t *slots; /* numbers of cells */
     int slot_bits; /* 0: bisect instead */
     size_t n_cells;
     size_t finger[27];     /* where bisection for each neighbour ended last, in this step */
@@ -75,22 +77,14 @@ static const cell *bisect(walk *w, uint64_t key, int neighbour)
 /* The cell with a key, which is that of a neighbour 0..26 of the cell at hand, or NULL. */
 static const cell *find(walk *w, uint64_t key, int neighbour)
 {
-    if (key == NO_KEY)
-        return NULL;
     if (w->slot_bits == 0)
         return bisect(w, key, neighbour);
     const size_t wrap = ((size_t)1 << w->slot_bits) - 1;
     size_t i = hash(w, key);
-    for (int probe = 0; probe < PROBES_MAX && w->slots[i].key != NO_KEY; probe++, i = (i + 1) & wrap)
-        if (w->slots[i].key == key)
-            return &w->cells[w->slots[i].index];
+    for (int probe = 0; probe < PROBES_MAX && w->slots[i] != NO_CELL; probe++, i = (i + 1) & wrap)
+        if (w->cells[w->slots[i]].key == key)
+            return &w->cells[w->slots[i]];
     return NULL;
-}
-
-static uint32_t count_at(walk *w, uint64_t key, int neighbour)
-{
-    const cell *found = find(w, key, neighbour);
-    return found ? found->n : 0;
 }
 
 /* Cells without neighbours are nobody's neighbours, so they stay out of the table. */
@@ -101,60 +95,82 @@ static void fill_slots(walk *w)
     while ((size_t)1 << w->slot_bits < 2 * w->n_cells)
         w->slot_bits++;
     const size_t size = (size_t)1 << w->slot_bits;
-    for (size_t i = 0; i < size; i++)
-        w->slots[i].key = NO_KEY;
-    for (size_t c = 0; c < w->n_cells; c++) {
+    memset(w->slots, 0xff, size * sizeof *w->slots);
+    for (uint32_t c = 0; c < w->n_cells; c++) {
         if (w->cells[c].alone)
             continue;
         size_t i = hash(w, w->cells[c].key);
         int probe = 0;
-        for (; probe < PROBES_MAX && w->slots[i].key != NO_KEY; probe++)
+        for (; probe < PROBES_MAX && w->slots[i] != NO_CELL; probe++)
             i = (i + 1) & (size - 1);
         if (probe == PROBES_MAX) {
             w->slot_bits = 0;
             return;
         }
-        w->slots[i] = (slot){ w->cells[c].key, c };
+        w->slots[i] = c;
     }
 }
 
-/* The parts of the keys of the cells before, at and behind a cell along one axis; NO_KEY outside the cube. */
+/* The parts of the keys of the cells before, at and behind a cell along one axis, as far as these are in the cube. */
 static void parts_along(const walk *w, int axis, uint64_t key, uint64_t part[3])
 {
     const uint64_t mask = w->mask[axis];
     part[1] = key & mask;
-    part[0] = part[1] ? (part[1] - w->unit[axis]) & mask : NO_KEY;
+    part[0] = (part[1] - w->unit[axis]) & mask;
     part[2] = ((part[1] | ~mask) + w->unit[axis]) & mask;
-    part[2] = part[2] ? part[2] : NO_KEY;
 }
 
+/* What cell number i around another tells about how that one is split. */
+static void take_neighbour(adcgs_geom_around *around, const cell *c, int i)
+{
+    const int layer = i / 9, straight = i % 9 == ITSELF % 9;
+    if (layer != 1) {
+        const int before = layer == 0;
+        if (straight)
+            *(before ? &around->before : &around->behind) += c->n;
+        else
+            *(before ? &around->ring_before : &around->ring_behind) += c->n;
+    } else if (i % 2 == 0 && c->split) { /* not across an edge */
+        around->lateral_left += c->left != 0;
+        around->lateral_right += c->left < c->n;
+    }
+}
+
+/* Look for those of the cells around that may be there. */
 static void look_around(walk *w, cell *at, int axis, adcgs_geom_around *around)
 {
     uint64_t a[3], u[3], v[3];
     parts_along(w, axis, at->key, a);
     parts_along(w, (axis + 1) % 3, at->key, u);
     parts_along(w, (axis + 2) % 3, at->key, v);
-    *around = (adcgs_geom_around){
-        .before = count_at(w, a[0] | u[1] | v[1], 4),
-        .behind = count_at(w, a[2] | u[1] | v[1], 22),
-    };
-    int lateral = 0;
-    for (int i = 0; i < 9; i++) {
-        const uint64_t uv = u[i / 3] | v[i % 3];
-        if (i == 4 || uv == NO_KEY)
-            continue;
-        around->ring_before += count_at(w, a[0] | uv, i);
-        around->ring_behind += count_at(w, a[2] | uv, 18 + i);
-        if (i % 2 == 0)
-            continue;
-        const cell *side = find(w, a[1] | uv, 9 + i);
-        lateral += side != NULL;
-        around->lateral_left += side && side->split && side->left;
-        around->lateral_right += side && side->split && side->left < side->n;
+    for (uint32_t left = at->around & ~(1u << ITSELF); left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        const cell *const found = find(w, a[i / 9] | u[i / 3 % 3] | v[i % 3], i);
+        if (found)
+            take_neighbour(around, found, i);
+        else
+            at->around &= ~(1u << i);
     }
-    if (at->n == 1 && !lateral && !around->before && !around->behind && !around->ring_before && !around->ring_behind)
-        at->alone = !find(w, a[1] | u[0] | v[0], 9) && !find(w, a[1] | u[0] | v[2], 11) && !find(w, a[1] | u[2] | v[0], 15) &&
-                    !find(w, a[1] | u[2] | v[2], 17);
+    at->alone = at->n == 1 && at->around == 1u << ITSELF;
+}
+
+/* Bit i of nine to bit 3 i. */
+static uint32_t spread(uint32_t x)
+{
+    x = (x | x << 16) & 0x030000ff;
+    x = (x | x << 8) & 0x0300f00f;
+    x = (x | x << 4) & 0x030c30c3;
+    return (x | x << 2) & 0x09249249;
+}
+
+/*
+ * What may be around the halves of a cell: children of what is around it. Of the three layers along the step's axis, which comes
+ * last in the numbers of the next step, the left half has two within the cell's own.
+ */
+static uint32_t around_half(uint32_t around, int right)
+{
+    const uint32_t before = spread(around & LAYER), at = spread(around >> 9 & LAYER), behind = spread(around >> 18);
+    return right ? at | at << 1 | behind << 2 : before | at << 1 | at << 2;
 }
 
 /* How many of the codes [first, first + n) have the bit clear. */
@@ -169,6 +185,11 @@ static uint32_t count_left(const uint64_t *codes, uint32_t n, uint64_t bit)
             low = middle + 1;
     }
     return low;
+}
+
+static cell half(const cell *at, int right, uint64_t key, uint32_t n)
+{
+    return (cell){ .key = key, .n = n, .alone = at->alone, .around = at->alone ? 0 : around_half(at->around, right) };
 }
 
 static size_t split_cells(walk *w, int step)
@@ -187,9 +208,9 @@ static size_t split_cells(walk *w, int step)
         at->split = 1;
         first += at->n;
         if (at->left)
-            w->children[n_children++] = (cell){ .key = at->key, .n = at->left, .alone = at->alone };
+            w->children[n_children++] = half(at, 0, at->key, at->left);
         if (at->left < at->n)
-            w->children[n_children++] = (cell){ .key = at->key | bit, .n = at->n - at->left, .alone = at->alone };
+            w->children[n_children++] = half(at, 1, at->key | bit, at->n - at->left);
     }
     return n_children;
 }
@@ -206,7 +227,7 @@ static adcgs_status run(walk *w, adcgs_error *error)
         return adcgs_alloc_status(error);
     adcgs_geom_models_init(&w->models);
     w->coder.models = &w->models;
-    w->cells[0] = (cell){ .n = w->n };
+    w->cells[0] = (cell){ .n = w->n, .around = 1u << ITSELF };
     w->n_cells = 1;
     for (int step = 0; step < 3 * w->depth; step++) {
         for (int axis = 0; axis < 3; axis++) {
