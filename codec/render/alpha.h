@@ -16,11 +16,20 @@ static const alignas(64) float pixel_x[16] = {0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f
 static const alignas(64) float pixel_y[16] = {0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f, 1.5f, 1.5f,
                                               2.5f, 2.5f, 2.5f, 2.5f, 3.5f, 3.5f, 3.5f, 3.5f};
 
-/* Opacity at offset (dx, dy) from the splat's centre; 0 where it is below 1/255. */
-LANES_INLINE vf splat_alpha(const adcgs_splat2d *s, vf dx, vf dy)
+/*
+ * Opacity at offset (dx, dy) from the splat's centre, in two steps: first its logarithm to base 2, without the limit. The two in
+ * a row are a long chain of operations that wait for each other; a loop of the first and then one of the second are two short
+ * ones.
+ */
+LANES_INLINE vf splat_power(const adcgs_splat2d *s, vf dx, vf dy)
 {
     const vf along = vf_fma(vf_set1(s->a), dx, vf_mul(vf_set1(s->b), dy));
-    const vf power = vf_fma(dx, along, vf_fma(vf_mul(vf_set1(s->c), dy), dy, vf_set1(s->log2_opacity)));
+    return vf_fma(dx, along, vf_fma(vf_mul(vf_set1(s->c), dy), dy, vf_set1(s->log2_opacity)));
+}
+
+/* 0 where it is below 1/255. */
+LANES_INLINE vf alpha_of_power(vf power)
+{
     return vf_only(vf_ge(power, vf_set1(ADCGS_POWER_MIN)), vf_exp2(power));
 }
 

@@ -82,9 +82,9 @@ typedef struct block_state {
     vf t, rgb[3];
 } block_state;
 
-LANES_INLINE vf opacity_at(const adcgs_splat2d *s, vf px, vf py)
+LANES_INLINE vf power_at(const adcgs_splat2d *s, vf px, vf py)
 {
-    return splat_alpha(s, vf_sub(px, vf_set1(s->x)), vf_sub(py, vf_set1(s->y)));
+    return splat_power(s, vf_sub(px, vf_set1(s->x)), vf_sub(py, vf_set1(s->y)));
 }
 
 /* Splats whose opacities in a block are found together. */
@@ -103,7 +103,9 @@ LANES_INLINE int blend_block(block_state *state, const adcgs_splat2d *splats, co
     for (uint32_t i = 0; i < n && light; i += TOGETHER) {
         const uint32_t some = ADCGS_MIN(n - i, TOGETHER);
         for (uint32_t k = 0; k < some; k++)
-            vf_store(opacity[k], opacity_at(splats + list[i + k], px, py));
+            vf_store(opacity[k], power_at(splats + list[i + k], px, py));
+        for (uint32_t k = 0; k < some; k++)
+            vf_store(opacity[k], alpha_of_power(vf_load(opacity[k])));
         for (uint32_t k = 0; k < some && light; k++) {
             const adcgs_splat2d *s = splats + list[i + k];
             const vf alpha = vf_load(opacity[k]), weight = vf_mul(alpha, t);

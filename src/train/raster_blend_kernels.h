@@ -15,7 +15,7 @@ typedef struct tile_state {
     alignas(64) float alpha[2][16][16]; /* opacities of the splats at hand and next */
     alignas(64) float behind[16][16]; /* gradient times (final colour - colour so far) */
     alignas(64) float grad[16][3][16];
-    alignas(64) float x[16][16], y[16][16];
+    alignas(64) float x[16], y[16]; /* left and upper edges of the blocks */
     uint32_t alive; /* blocks with light left */
 } tile_state;
 
@@ -37,6 +37,8 @@ static void start_block(tile_state *s, const adcgs_back_job *job, int block, int
     const int width = job->view->width, height = job->view->height;
     const size_t plane = (size_t)width * (size_t)height;
     vf behind = vf_set1(0.0f);
+    s->x[block] = (float)x;
+    s->y[block] = (float)y;
     if (x >= width || y >= height)
         return;
     for (size_t c = 0; c < 3; c++) {
@@ -46,115 +48,112 @@ static void start_block(tile_state *s, const adcgs_back_job *job, int block, int
     }
     vf_store(s->behind[block], behind);
     vf_store(s->t[block], initial_transmittance(x, y, width, height));
-    vf_store(s->x[block], vf_add(vf_load(pixel_x), vf_set1((float)x)));
-    vf_store(s->y[block], vf_add(vf_load(pixel_y), vf_set1((float)y)));
     s->alive |= (uint32_t)1 << block;
 }
 
 /*
- * A splat's opacity in each of its blocks comes first and on its own, since nothing there waits for anything: in one loop with
- * the rest the processor would spend its time waiting at the end of a long chain.
+ * Light of a block passes a splat: the colours' sums take it in, and what is left of it is kept. Returns alpha * dL/dalpha.
  */
-LANES_INLINE void alpha_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block)
-{
-    const vf dx = vf_sub(vf_load(s->x[block]), vf_set1(g->x)), dy = vf_sub(vf_load(s->y[block]), vf_set1(g->y));
-    vf_store(s->alpha[turn][block], splat_alpha(g, dx, dy));
-}
-
-/* A splat in a block: e = alpha * dL/dalpha, weight = alpha * T, and the pixels' offsets from its centre. */
-typedef struct passage {
-    vf e, weight, dx, dy;
-} passage;
-
-/* Light of a block passes a splat; returns whether any is left. */
-LANES_INLINE int pass_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block, passage *p)
+LANES_INLINE vf pass_block(tile_state *s, uint32_t turn, const adcgs_splat2d *g, int block, vf sum[12])
 {
     const vf red = vf_load(s->grad[block][0]), green = vf_load(s->grad[block][1]), blue = vf_load(s->grad[block][2]);
     const vf t = vf_load(s->t[block]), alpha = vf_load(s->alpha[turn][block]), weight = vf_mul(alpha, t);
     const vf toward = vf_fma(vf_set1(g->rgb[2]), blue, vf_fma(vf_set1(g->rgb[1]), green, vf_mul(vf_set1(g->rgb[0]), red)));
-    const vf behind = vf_fnma(weight, toward, vf_load(s->behind[block]));
-    const vf through = vf_fnma(alpha, t, t);
-    p->e = vf_mul(alpha, vf_sub(vf_mul(t, toward), vf_div(behind, vf_sub(vf_set1(1.0f), alpha))));
-    p->weight = weight;
-    p->dx = vf_sub(vf_load(s->x[block]), vf_set1(g->x));
-    p->dy = vf_sub(vf_load(s->y[block]), vf_set1(g->y));
+    const vf behind = vf_fnma(weight, toward, vf_load(s->behind[block])), through = vf_fnma(alpha, t, t);
+    sum[8] = vf_fma(weight, red, sum[8]);
+    sum[9] = vf_fma(weight, green, sum[9]);
+    sum[10] = vf_fma(weight, blue, sum[10]);
+    sum[3] = vf_add(sum[3], weight);
     vf_store(s->t[block], through);
     vf_store(s->behind[block], behind);
-    return vm_any(vf_ge(through, vf_set1(ADCGS_T_MIN)));
+    if (!vm_any(vf_ge(through, vf_set1(ADCGS_T_MIN))))
+        s->alive &= ~((uint32_t)1 << block);
+    return vf_mul(alpha, vf_sub(vf_mul(t, toward), vf_div(behind, vf_sub(vf_set1(1.0f), alpha))));
 }
 
-LANES_INLINE void add_moments(vf sum[12], vf e, vf dx, vf dy)
+/* Offsets of the blocks of a tile from a splat's centre, and their products. */
+typedef struct block_offsets {
+    alignas(64) float x[16], y[16], xx[16], xy[16], yy[16];
+} block_offsets;
+
+LANES_INLINE void find_offsets(block_offsets *o, const tile_state *s, const adcgs_splat2d *g)
 {
-    const vf ex = vf_mul(e, dx), ey = vf_mul(e, dy);
+    const vf x = vf_sub(vf_load(s->x), vf_set1(g->x)), y = vf_sub(vf_load(s->y), vf_set1(g->y));
+    vf_store(o->x, x);
+    vf_store(o->y, y);
+    vf_store(o->xx, vf_mul(x, x));
+    vf_store(o->xy, vf_mul(x, y));
+    vf_store(o->yy, vf_mul(y, y));
+}
+
+/* Moments of e as if it all stood at the block's corner; move_moments() makes up for that, for all blocks at once. */
+LANES_INLINE void add_moments(vf sum[12], vf e, const block_offsets *o, int block)
+{
     sum[0] = vf_add(sum[0], e);
-    sum[1] = vf_add(sum[1], ex);
-    sum[2] = vf_add(sum[2], ey);
-    sum[4] = vf_fma(ex, dx, sum[4]);
-    sum[5] = vf_fma(ex, dy, sum[5]);
-    sum[6] = vf_fma(ey, dy, sum[6]);
+    sum[1] = vf_fma(vf_set1(o->x[block]), e, sum[1]);
+    sum[2] = vf_fma(vf_set1(o->y[block]), e, sum[2]);
+    sum[4] = vf_fma(vf_set1(o->xx[block]), e, sum[4]);
+    sum[5] = vf_fma(vf_set1(o->xy[block]), e, sum[5]);
+    sum[6] = vf_fma(vf_set1(o->yy[block]), e, sum[6]);
 }
 
-LANES_INLINE void add_colours(vf sum[12], vf weight, const float grad[3][16])
+LANES_INLINE void move_moments(vf sum[12])
 {
-    sum[8] = vf_fma(weight, vf_load(grad[0]), sum[8]);
-    sum[9] = vf_fma(weight, vf_load(grad[1]), sum[9]);
-    sum[10] = vf_fma(weight, vf_load(grad[2]), sum[10]);
-    sum[3] = vf_add(sum[3], weight);
+    const vf px = vf_load(pixel_x), py = vf_load(pixel_y);
+    const vf x = vf_fma(px, sum[0], sum[1]), y = vf_fma(py, sum[0], sum[2]);
+    sum[4] = vf_fma(px, vf_add(sum[1], x), sum[4]);
+    sum[5] = vf_fma(py, sum[1], vf_fma(px, y, sum[5]));
+    sum[6] = vf_fma(py, vf_add(sum[2], y), sum[6]);
+    sum[1] = x;
+    sum[2] = y;
 }
 
-LANES_INLINE void add_screen(vf sum[12], const adcgs_splat2d *g, vf e, vf dx, vf dy)
+LANES_INLINE void add_screen(vf sum[12], const adcgs_splat2d *g, vf e, const block_offsets *o, int block)
 {
-    const vf ex = vf_mul(e, dx), ey = vf_mul(e, dy), b = vf_set1(g->b);
+    const vf ex = vf_mul(e, vf_add(vf_load(pixel_x), vf_set1(o->x[block])));
+    const vf ey = vf_mul(e, vf_add(vf_load(pixel_y), vf_set1(o->y[block]))), b = vf_set1(g->b);
     sum[7] = vf_add(sum[7], vf_abs(vf_fma(vf_set1(2.0f * g->a), ex, vf_mul(b, ey))));
     sum[11] = vf_add(sum[11], vf_abs(vf_fma(vf_set1(2.0f * g->c), ey, vf_mul(b, ex))));
 }
 
-/* The opacities of an entry's blocks that have light, one entry ahead of their use. */
+/*
+ * The opacities of an entry's blocks that have light, one entry ahead of their use. They come first and on their own, since
+ * nothing there waits for anything: in one loop with the rest the processor would spend its time waiting at the end of a long
+ * chain.
+ */
 static inline void alpha_entry(tile_state *s, const adcgs_back_job *job, uint32_t i)
 {
     const adcgs_tile_entry entry = job->kept.entries[i];
     const adcgs_splat2d *g = job->kept.splats + entry.splat;
-    for (uint32_t left = entry.mask & s->alive; left; left &= left - 1)
-        alpha_block(s, i & 1, g, __builtin_ctz(left));
+    const uint32_t mask = entry.mask & s->alive;
+    float(*const alpha)[16] = s->alpha[i & 1];
+    for (uint32_t left = mask; left; left &= left - 1) {
+        const int block = __builtin_ctz(left);
+        const vf px = vf_add(vf_load(pixel_x), vf_set1(s->x[block])), py = vf_add(vf_load(pixel_y), vf_set1(s->y[block]));
+        vf_store(alpha[block], splat_power(g, vf_sub(px, vf_set1(g->x)), vf_sub(py, vf_set1(g->y))));
+    }
+    for (uint32_t left = mask; left; left &= left - 1) {
+        float *const at = alpha[__builtin_ctz(left)];
+        vf_store(at, alpha_of_power(vf_load(at)));
+    }
 }
 
-#if ADCGS_LANES_ISA == 512
-/* All sums fit into registers. */
+/* The sums of colours and those of moments fit into registers of AVX one after the other, not together. */
 LANES_INLINE void sum_blocks(tile_state *s, uint32_t turn, const adcgs_splat2d *g, uint32_t mask, int screen, vf sum[12])
 {
+    block_offsets offsets;
+    alignas(64) float e[16][16];
+    find_offsets(&offsets, s, g);
     for (uint32_t left = mask; left; left &= left - 1) {
         const int block = __builtin_ctz(left);
-        passage p;
-        if (!pass_block(s, turn, g, block, &p))
-            s->alive &= ~((uint32_t)1 << block);
-        add_moments(sum, p.e, p.dx, p.dy);
-        add_colours(sum, p.weight, s->grad[block]);
-        if (screen)
-            add_screen(sum, g, p.e, p.dx, p.dy);
+        vf_store(e[block], pass_block(s, turn, g, block, sum));
     }
+    for (uint32_t left = mask; left; left &= left - 1)
+        add_moments(sum, vf_load(e[__builtin_ctz(left)]), &offsets, __builtin_ctz(left));
+    move_moments(sum);
+    for (uint32_t left = screen ? mask : 0; left; left &= left - 1)
+        add_screen(sum, g, vf_load(e[__builtin_ctz(left)]), &offsets, __builtin_ctz(left));
 }
-#else
-/* Half of the sums fit into registers: what they are made of is kept, and gone through for each half. */
-LANES_INLINE void sum_blocks(tile_state *s, uint32_t turn, const adcgs_splat2d *g, uint32_t mask, int screen, vf sum[12])
-{
-    passage kept[16];
-    uint8_t blocks[16];
-    int n = 0;
-    for (uint32_t left = mask; left; left &= left - 1) {
-        const int block = __builtin_ctz(left);
-        if (!pass_block(s, turn, g, block, &kept[n]))
-            s->alive &= ~((uint32_t)1 << block);
-        blocks[n++] = (uint8_t)block;
-    }
-    for (int i = 0; i < n; i++)
-        add_moments(sum, kept[i].e, kept[i].dx, kept[i].dy);
-    for (int i = 0; i < n; i++) {
-        add_colours(sum, kept[i].weight, s->grad[blocks[i]]);
-        if (screen)
-            add_screen(sum, g, kept[i].e, kept[i].dx, kept[i].dy);
-    }
-}
-#endif
 
 LANES_INLINE void back_entry(tile_state *s, const adcgs_back_job *job, uint32_t i, int screen, float *sums)
 {

@@ -56,7 +56,8 @@ static void blend(const plain_job *job, int tile)
         const vf dx = vf_sub(px, vf_set1(s->x));
         for (uint32_t left = alive; left; left &= left - 1) {
             const int row = __builtin_ctz(left);
-            const vf alpha = splat_alpha(s, dx, vf_set1((float)(rect[1] + row) + 0.5f - s->y)), weight = vf_mul(alpha, t[row]);
+            const vf dy = vf_set1((float)(rect[1] + row) + 0.5f - s->y);
+            const vf alpha = alpha_of_power(splat_power(s, dx, dy)), weight = vf_mul(alpha, t[row]);
             for (int c = 0; c < 3; c++)
                 rgb[row][c] = vf_fma(vf_set1(s->rgb[c]), weight, rgb[row][c]);
             t[row] = vf_fnma(alpha, t[row], t[row]);
@@ -80,7 +81,7 @@ typedef struct row_state {
 
 LANES_INLINE void back_row(row_state *r, const adcgs_splat2d *s, vf dx, vf dy, vf sum[12])
 {
-    const vf alpha = splat_alpha(s, dx, dy), through = vf_sub(vf_set1(1.0f), alpha);
+    const vf alpha = alpha_of_power(splat_power(s, dx, dy)), through = vf_sub(vf_set1(1.0f), alpha);
     r->t = vf_div(r->t, through);
     const vf weight = vf_mul(alpha, r->t);
     vf own = vf_mul(vf_set1(s->rgb[0]), r->grad[0]);
