@@ -2,7 +2,7 @@
 /** \file
  * Speed: the machine's ceilings first, then kernels, stages, frames, iterations and playing beside them. See HACKING.md.
  *
- *     make tests/bench/adcgs-bench && tests/bench/adcgs-bench --output speed.csv
+ *     tests/bench/adcgs-bench --output speed.csv
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -53,6 +53,16 @@ static adcgs_status close_table(settings *s, adcgs_error *error)
     return ADCGS_OK;
 }
 
+static adcgs_status check_group(const bench *b, adcgs_error *error)
+{
+    static const char *const groups[] = { "frame", "stages", "loss", "exactness", "levels", "dense", "integer", "decode",
+                                          "kernels", "train", "play" };
+    for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++)
+        if (bench_wants(b, groups[i]))
+            return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "--group %s: there is none; see --help", b->only);
+}
+
 int main(int argc, char **argv)
 {
     static const char *const cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
@@ -80,7 +90,8 @@ int main(int argc, char **argv)
     const int left = adcgs_cli_parse(&cli, argc, argv, &first);
     if (left >= 0)
         return left;
-    if (adcgs_cpu_resolve((adcgs_cpu_level)s.cpu, &s.b.level, &error) != ADCGS_OK || open_table(&s, &error) != ADCGS_OK)
+    if (check_group(&s.b, &error) != ADCGS_OK || adcgs_cpu_resolve((adcgs_cpu_level)s.cpu, &s.b.level, &error) != ADCGS_OK ||
+        open_table(&s, &error) != ADCGS_OK)
         return adcgs_cli_fail(&cli, &error);
     bench_find_ceilings(&s.b);
     measure_all(&s);

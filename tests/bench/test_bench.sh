@@ -1,0 +1,15 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# The benchmark runs, finds its baseline drawing the same picture, and writes its table. Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+bench=tests/bench/adcgs-bench
+need $bench
+for group in frame exactness levels decode; do
+    $bench --quick --turns 3 --threads 2 --group $group --output "$dir/$group.csv" >"$dir/out" 2>&1 ||
+        { bad "adcgs-bench --group $group"; cat "$dir/out"; }
+    # Every row has all columns, and a time.
+    awk -F, 'NR == 1 { n = NF } NF != n || NR > 1 && !($9 > 0) { exit 1 } END { exit NR < 2 }' "$dir/$group.csv" ||
+        { bad "the table of $group"; cat "$dir/$group.csv"; }
+done
+$bench --group nothing >"$dir/out" 2>&1 && bad "a group that is not there"
+exit $failed
