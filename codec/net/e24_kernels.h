@@ -33,17 +33,19 @@ static void e24_dense(int32_t *restrict acc, const int16_t *w, const int32_t *b,
 }
 #endif
 
-/* shr() for |v| + 2^(s-1) < 2^25: the offset, a multiple of 2^s, makes the shifted number positive. */
+_Static_assert(-3 >> 1 == -2, "shifts of negative numbers go down");
+
+/* shr() for |v| + 2^(s-1) < 2^31. */
 static inline int32_t e24_shr(int32_t v, int s)
 {
-    const int32_t offset = 1 << 25, half = s ? 1 << (s - 1) : 0;
-    return (int32_t)((uint32_t)(v + half + offset) >> s) - (offset >> s);
+    return (v + (1 << s >> 1)) >> s;
 }
 
+/* The larger one, since shr(v, 6) is nearer to zero. */
 static inline int32_t e24_lrelu(int32_t v)
 {
     const int32_t slow = e24_shr(v, 6);
-    return v < 0 ? slow : v;
+    return v > slow ? v : slow;
 }
 
 static inline uint32_t e24_pair(int32_t even, int32_t odd)
