@@ -6,7 +6,8 @@
 
 #include "base/cpu.h"
 
-static const char *const level_names[] = { "auto", "scalar", "avx2", "avx512" };
+const char *const adcgs_cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
+#define LEVELS (ADCGS_COUNTOF(adcgs_cpu_names) - 1)
 
 adcgs_cpu_level adcgs_cpu_best(void)
 {
@@ -24,23 +25,13 @@ adcgs_cpu_level adcgs_cpu_best(void)
 
 const char *adcgs_cpu_name(adcgs_cpu_level level)
 {
-    return (unsigned)level < ADCGS_COUNTOF(level_names) ? level_names[level] : "unknown";
-}
-
-int adcgs_cpu_parse(const char *name, adcgs_cpu_level *level)
-{
-    for (size_t i = 0; i < ADCGS_COUNTOF(level_names); i++)
-        if (!strcmp(name, level_names[i])) {
-            *level = (adcgs_cpu_level)i;
-            return 0;
-        }
-    return -1;
+    return (unsigned)level < LEVELS ? adcgs_cpu_names[level] : "unknown";
 }
 
 adcgs_status adcgs_cpu_resolve(adcgs_cpu_level asked, adcgs_cpu_level *level, adcgs_error *error)
 {
     const adcgs_cpu_level best = adcgs_cpu_best();
-    if ((unsigned)asked >= ADCGS_COUNTOF(level_names))
+    if ((unsigned)asked >= LEVELS)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "CPU level %d does not exist", (int)asked);
     if (asked > best)
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "CPU level %s is not available: this machine and build have %s",

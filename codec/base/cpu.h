@@ -9,9 +9,8 @@
 
 /** Resolve AUTO to the best level; ADCGS_ERR_UNSUPPORTED when the machine or the build lacks the level asked for. */
 adcgs_status adcgs_cpu_resolve(adcgs_cpu_level asked, adcgs_cpu_level *level, adcgs_error *error);
-/** "scalar", "avx2", "avx512"; "auto". */
+/** "auto", "scalar", "avx2", "avx512" by level, then NULL. */
+extern const char *const adcgs_cpu_names[];
 const char *adcgs_cpu_name(adcgs_cpu_level level);
-/** Parse such a name; returns 0, or -1 if unknown. */
-int adcgs_cpu_parse(const char *name, adcgs_cpu_level *level);
 
 #endif

@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "api/frame.h"
+#include "base/cpu.h"
 #include "io/sink.h"
 #include "model/input.h"
 #include "tools/answer.h"
@@ -22,8 +23,6 @@ typedef struct settings {
     int cpu, half, use_float, md5, frametimes;
     double opened; /**< when opening the input began, in seconds */
 } settings;
-
-static const char *const cpu_names[] = {"auto", "scalar", "avx2", "avx512", NULL};
 
 #define OPTION_COUNT 15
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
@@ -53,7 +52,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "print the milliseconds from opening to the first frame,\nthen those that each frame took to render", NULL, NULL},
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; frames do not depend on it",
-         cpu_names, NULL},
+         adcgs_cpu_names, NULL},
         {"strict", 0, ADCGS_OPTION_FLAG, &s->config.strict_end, 0, 0, NULL, "refuse a stream that ends early", NULL, NULL},
     };
     memcpy(options, table, sizeof table);

@@ -2,6 +2,7 @@
 /** \file adcgs-enc: learn a scene from posed pictures and write it to one file. */
 #include "config.h"
 
+#include "base/cpu.h"
 #include "encode/encode.h"
 #include "encode/raw.h"
 #include "io/atomic.h"
@@ -11,8 +12,6 @@
 
 #include <stdlib.h>
 #include <sys/stat.h>
-
-static const char *const cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
 
 typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
@@ -363,7 +362,7 @@ static int parse(enc_options *o, int argc, char **argv)
         { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N",
           "threads (default: one per CPU); the result does not\ndepend on it", NULL, NULL },
         { "cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL",
-          "kernels: auto, scalar, avx2, avx512 (default auto)", cpu_names, NULL },
+          "kernels: auto, scalar, avx2, avx512 (default auto)", adcgs_cpu_names, NULL },
         { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
     adcgs_cli cli = program;

@@ -2,6 +2,7 @@
 /** \file adcgs-eval: measure a stream against the pictures of a scene. */
 #include "config.h"
 
+#include "base/cpu.h"
 #include "metric/crop.h"
 #include "tools/cli.h"
 
@@ -30,7 +31,6 @@ typedef struct report {
     uint32_t n_crops;
 } report;
 
-static const char *const cpu_names[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const splits[] = {"train", "val", "test", NULL}; /* in the order of adcgs_split */
 
 #define OPTION_COUNT 8
@@ -47,7 +47,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "put pictures with alpha on the scene's background\ninstead of the stream's", NULL, NULL},
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; figures do not depend on it",
-         cpu_names, NULL},
+         adcgs_cpu_names, NULL},
         {"json", 0, ADCGS_OPTION_FLAG, &s->json, 0, 0, NULL, "print one JSON object", NULL, NULL},
     };
     memcpy(options, table, sizeof table);

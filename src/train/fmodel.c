@@ -421,3 +421,11 @@ adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], con
     free_anchors(&old);
     return ADCGS_OK;
 }
+
+float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row)
+{
+    const int rows = params->time_rows;
+    const float u = t * (float)(rows - 1);
+    *row = rows > 1 ? (int)u < rows - 2 ? (int)u : rows - 2 : 0;
+    return rows > 1 ? u - (float)*row : 0;
+}

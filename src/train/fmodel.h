@@ -144,4 +144,7 @@ void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width);
 /** Fill in a network's layout; returns its number of parameters. */
 size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden, int out);
 
+/** Where t in [0,1] is in the time table: the row before it, and the fraction of the way to the next, if there is one. */
+float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row);
+
 #endif

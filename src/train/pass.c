@@ -278,20 +278,11 @@ static void forward_group(void *arg, int index, int thread)
     job->pass->dsp.primitives(&io);
 }
 
-/** Row coordinate of t in the time table: *row and the fraction towards the next row. */
-static float time_row(const adcgs_fmodel *f, float t, int *row)
-{
-    const int rows = f->params.time_rows;
-    const float u = t * (float)(rows - 1);
-    *row = rows > 1 ? (int)u < rows - 2 ? (int)u : rows - 2 : 0;
-    return rows > 1 ? u - (float)*row : 0;
-}
-
 static void forward_time(adcgs_pass *p, const adcgs_fmodel *f, float t)
 {
     const int width = f->params.time_width;
     int row;
-    const float frac = time_row(f, t, &row);
+    const float frac = adcgs_fmodel_time_row(&f->params, t, &row);
     const float *z = f->mlp[ADCGS_P_TIME].use + (size_t)row * (size_t)width;
     for (int j = 0; j < width; j++)
         p->time_code[j] = f->params.time_rows > 1 ? z[j] + frac * (z[j + width] - z[j]) : z[j];
@@ -325,7 +316,7 @@ void adcgs_pass_time_back(adcgs_pass *p, adcgs_fmodel *f)
     const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
     float *dz = f->param[ADCGS_P_TIME].g;
     int row;
-    const float frac = time_row(f, p->t, &row);
+    const float frac = adcgs_fmodel_time_row(&f->params, p->t, &row);
     for (int i = 0; i < 2; i++) {
         const adcgs_mlp *m = &f->mlp[which[i]];
         float *g = f->param[which[i]].g;

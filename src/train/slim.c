@@ -46,9 +46,9 @@ static double *put_rows(const adcgs_fmodel *f, double *x, int group, uint32_t an
 
 static double *put_time(const adcgs_fmodel *f, double *x, double t)
 {
-    const int rows = f->params.time_rows, width = f->params.time_width;
-    const int row = ADCGS_MAX(ADCGS_MIN((int)(t * (rows - 1)), rows - 2), 0);
-    const double part = rows > 1 ? t * (rows - 1) - row : 0;
+    const int width = f->params.time_width;
+    int row;
+    const double part = (double)adcgs_fmodel_time_row(&f->params, (float)t, &row);
     const float *z = f->param[ADCGS_P_TIME].p + (size_t)row * (size_t)width;
     for (int j = 0; j < width; j++)
         *x++ = (1 - part) * (double)z[j] + (part > 0 ? part * (double)z[j + width] : 0);

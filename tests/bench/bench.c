@@ -65,7 +65,6 @@ static adcgs_status check_group(const bench *b, adcgs_error *error)
 
 int main(int argc, char **argv)
 {
-    static const char *const cpu_names[] = { "auto", "scalar", "avx2", "avx512", NULL };
     settings s = { .b = { .rounds = 15, .turn = 2e-3, .threads = (int)sysconf(_SC_NPROCESSORS_ONLN) }, .scenes = "bench-scenes" };
     const adcgs_option options[] = {
         { "output", 'o', ADCGS_OPTION_STRING, &s.output, 0, 0, "FILE", "also write a table of all figures here (CSV)", NULL,
@@ -74,8 +73,8 @@ int main(int argc, char **argv)
           "only groups whose name begins so: frame, stages, loss, exactness,\n"
           "levels, dense, integer, decode, kernels, train, play",
           NULL, NULL },
-        { "cpu", 'c', ADCGS_OPTION_CHOICE, &s.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)", cpu_names,
-          NULL },
+        { "cpu", 'c', ADCGS_OPTION_CHOICE, &s.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)",
+          adcgs_cpu_names, NULL },
         { "threads", 't', ADCGS_OPTION_INT, &s.b.threads, 1, 256, "N", "threads at most (default: one per CPU)", NULL, NULL },
         { "turns", 'r', ADCGS_OPTION_INT, &s.b.rounds, 3, 101, "N", "turns of each thing (default 15)", NULL, NULL },
         { "scenes", 's', ADCGS_OPTION_STRING, &s.scenes, 0, 0, "DIR",

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <sys/stat.h>
 
-enum { YOUTH = 1500, WARM_UP = 100, AT_A_TIME = 20, ROUNDED = 20, FRAMES = 32 };
+enum { YOUTH = 1500, WARM_UP = 40, AT_A_TIME = 4, ROUNDED = 20, FRAMES = 32 };
 
 typedef struct training {
     adcgs_trainer *t;
