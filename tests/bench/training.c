@@ -7,9 +7,11 @@
 #include "train/trainer.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 
-enum { YOUTH = 1500, WARM_UP = 40, AT_A_TIME = 4, ROUNDED = 20, FRAMES = 32 };
+/* A run is asked every tenth iteration whether it shall go on: these are multiples of that. */
+enum { YOUTH = 1500, WARM_UP = 40, AT_A_TIME = 10, ROUNDED = 20, FRAMES = 32 };
 
 typedef struct training {
     adcgs_trainer *t;
@@ -27,6 +29,10 @@ static void iterate(training *r, uint32_t n)
     int stopped;
     r->until = r->t->iteration + n;
     bench_check(adcgs_trainer_run(r->t, reached, r, &stopped, &error), &error);
+    if (r->t->iteration != r->until) {
+        fprintf(stderr, "adcgs-bench: %u iterations asked for, %u more were made\n", n, r->t->iteration - r->until);
+        exit(1);
+    }
 }
 
 static void some_iterations(void *arg)
