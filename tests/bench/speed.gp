@@ -10,7 +10,7 @@ set grid xtics
 set yrange [] reverse
 set ytics nomirror
 set offsets 0,0,0.4,0.4
-set multiplot layout 2,1 margins 0.5,0.95,0.05,0.95 spacing 0,0.1
+set multiplot layout 2,1 margins 0.56,0.97,0.05,0.95 spacing 0,0.1
 
 place(c) = column(4) > 0 ? sprintf(', %dx%d, %d', column(4), column(5), column(7)) : ''
 name(c) = sprintf('%s: %s%s', strcol(1), strcol(2), place(0))
@@ -24,4 +24,4 @@ set title 'Rate of frames and iterations, a second'
 set logscale x
 set xrange [1:*]
 plot "< awk -F, '$13 == \"frame\" || $13 == \"iteration\"' ".table \
-    using ($12 / 2):0:($12 / 2):(0.35):ytic(sprintf('%s splats, %d threads', name(0), $8)) with boxxyerror
+    using ($12 / 2):0:($12 / 2):(0.35):ytic(sprintf('%s splats, %s', name(0), $8 > 1 ? sprintf('%d threads', $8) : '1 thread')) with boxxyerror
