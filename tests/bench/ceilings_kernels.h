@@ -4,7 +4,7 @@
  * in one, and the operations FMA, SPREAD, LOAD, ADD, ISPREAD, IMADD (products of neighbours, added in pairs) and IADD.
  * Enough chains side by side hide the time that an instruction takes.
  */
-enum { CHAINS = 10, INTEGER_CHAINS = 6, FACTORS = 4, READS = 8 };
+enum { CHAINS = 10, READS = 8 };
 
 static double sum_of(F v)
 {
@@ -34,29 +34,25 @@ static double fma_loop(int times, double *operations)
     return sum;
 }
 
-/** Fewer chains, since each takes a second register for its product. */
 static double int16_loop(int times, double *operations)
 {
-    I chain[INTEGER_CHAINS], by[FACTORS], of = ISPREAD(3);
+    I chain[CHAINS];
+    const I by = ISPREAD(3);
     int32_t lanes[LANES];
-    for (int c = 0; c < FACTORS; c++)
-        by[c] = ISPREAD((int16_t)(c + 1));
-#pragma GCC unroll 6
-    for (int c = 0; c < INTEGER_CHAINS; c++)
-        chain[c] = ISPREAD((int16_t)c);
-    for (int i = 0; i < times; i++) {
-        of = IADD(of, by[1]);
-#pragma GCC unroll 6
-        for (int c = 0; c < INTEGER_CHAINS; c++)
-            chain[c] = IADD(chain[c], IMADD(by[c % FACTORS], of));
-    }
+#pragma GCC unroll 10
+    for (int c = 0; c < CHAINS; c++)
+        chain[c] = ISPREAD((int16_t)(c + 1));
+    for (int i = 0; i < times; i++)
+#pragma GCC unroll 10
+        for (int c = 0; c < CHAINS; c++)
+            chain[c] = IADD(chain[c], IMADD(chain[c], by));
     double sum = 0;
-    for (int c = 0; c < INTEGER_CHAINS; c++) {
+    for (int c = 0; c < CHAINS; c++) {
         memcpy(lanes, &chain[c], sizeof lanes);
         for (int i = 0; i < LANES; i++)
             sum += lanes[i];
     }
-    *operations = 4.0 * INTEGER_CHAINS * LANES * times;
+    *operations = 4.0 * CHAINS * LANES * times;
     return sum;
 }
 

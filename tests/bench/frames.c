@@ -333,14 +333,13 @@ static void whole(const bench *b, frame *f, bench_place place)
         place.group = "frame and gradients";
         bench_group(b, &place, gradients, 2, 1);
     }
-    const double fma = bench_ceilings_of(b, place.threads)->fma;
     place.group = "loss";
-    bench_group(b, &place, &(bench_item){ "L1 and SSIM", loss, f, pixels, "pixel", fma / LOSS_OPERATIONS }, 1, 0);
+    bench_group(b, &place, &(bench_item){ "L1 and SSIM", loss, f, pixels, "pixel", LOSS_OPERATIONS }, 1, 0);
 }
 
 static void stages(const bench *b, frame *f, bench_place place)
 {
-    const double fma = b->ceilings[0].fma, n = f->n, listed = f->kept.tile_start[f->tiles], drawn = pairs(f);
+    const double n = f->n, listed = f->kept.tile_start[f->tiles], drawn = pairs(f);
     const double back = (drawn * PAIR_BACK_OPERATIONS + listed * ENTRY_BACK_OPERATIONS) / drawn;
     /* Sums of the kept frame, whatever ran since. */
     draw_and_back(f);
@@ -348,9 +347,9 @@ static void stages(const bench *b, frame *f, bench_place place)
     sort(f);
     const bench_item items[] = { { "project", project, f, n, "splat", 0 },
                                  { "sort by depth", sort, f, n, "splat", 0 },
-                                 { "list tiles", list_tiles, f, listed, "entry", fma / ENTRY_OPERATIONS },
-                                 { "blend", blend, f, drawn, "pair", fma / PAIR_OPERATIONS },
-                                 { "gradients of blend", blend_back, f, drawn, "pair", fma / back },
+                                 { "list tiles", list_tiles, f, listed, "entry", ENTRY_OPERATIONS },
+                                 { "blend", blend, f, drawn, "pair", PAIR_OPERATIONS },
+                                 { "gradients of blend", blend_back, f, drawn, "pair", back },
                                  { "gradients of project", project_back, f, n, "splat", 0 } };
     place.group = "stages";
     bench_group(b, &place, items, ADCGS_COUNTOF(items), 0);

@@ -2,8 +2,9 @@
 /** \file Measuring. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "measure.h"
+#include "ceilings.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -29,11 +30,6 @@ float *bench_floats(size_t n)
 int bench_wants(const bench *b, const char *beginning)
 {
     return !b->only || !strncmp(beginning, b->only, ADCGS_MIN(strlen(beginning), strlen(b->only)));
-}
-
-const bench_ceilings *bench_ceilings_of(const bench *b, int threads)
-{
-    return &b->ceilings[threads > 1];
 }
 
 /* ---- Turns ---- */
@@ -63,6 +59,18 @@ static int times_of(const bench *b, const bench_item *item, int threads)
          took = seconds_of(item, times, threads))
         times = took > 0 ? (int)ADCGS_MIN(1.2 * b->turn / took + 1, 1 << 24) : 2 * times;
     return times;
+}
+
+/** What one thread can do in a second at this moment. */
+static double ceiling_now(const bench *b, int integers)
+{
+    const bench_loops *const loops = bench_loops_of(b->level);
+    double operations;
+    volatile double sum;
+    const double start = clock_of(1);
+    sum = integers ? loops->int16(1 << 19, &operations) : loops->fma(1 << 19, &operations);
+    (void)sum;
+    return operations / (clock_of(1) - start);
 }
 
 static int ascending(const void *a, const void *b)
@@ -112,14 +120,17 @@ static void print_place(const bench_place *p)
     printf(p->threads > 1 ? ", %d threads\n" : ", %d thread\n", p->threads);
 }
 
-static void report(const bench *b, const bench_place *p, const bench_item *item, const double *seconds, const double *first)
+static void report(const bench *b, const bench_place *p, const bench_item *item, const double *seconds, const double *first,
+                   const double *most)
 {
-    double ratios[ROUNDS_MAX];
-    for (int r = 0; r < b->rounds; r++)
+    double ratios[ROUNDS_MAX], shares[ROUNDS_MAX];
+    for (int r = 0; r < b->rounds; r++) {
         ratios[r] = first ? seconds[r] / first[r] : 0;
+        shares[r] = most ? item->work * fabs(item->cost) / seconds[r] / most[r] : 0;
+    }
     const double middle = percentile(seconds, b->rounds, 0.5), ratio = percentile(ratios, b->rounds, 0.5);
     const double low = 1e3 * percentile(seconds, b->rounds, 0.1), high = 1e3 * percentile(seconds, b->rounds, 0.9);
-    const double rate = item->work / middle, share = item->most > 0 ? rate / item->most : 0;
+    const double rate = item->work / middle, share = percentile(shares, b->rounds, 0.5);
     printf("  %-29s %9.4f %8.4f .. %7.4f", item->name, 1e3 * middle, low, high);
     print_rate(rate, item->unit);
     if (share > 0)
@@ -138,16 +149,25 @@ static void report(const bench *b, const bench_place *p, const bench_item *item,
 
 void bench_group(const bench *b, const bench_place *place, const bench_item *items, int n, int compare)
 {
-    static double seconds[ITEMS_MAX][ROUNDS_MAX];
-    int times[ITEMS_MAX];
+    static double seconds[ITEMS_MAX][ROUNDS_MAX], most[2][ROUNDS_MAX];
+    const bench_ceilings *const all = &b->ceilings[1];
+    int times[ITEMS_MAX], bound[2] = { 0, 0 };
     if (b->only && strncmp(place->group, b->only, strlen(b->only)) != 0)
         return;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         times[i] = times_of(b, &items[i], place->threads);
-    for (int r = 0; r < b->rounds; r++)
+        bound[items[i].cost < 0] |= items[i].cost < 0 ? all->int16 > 0 : items[i].cost > 0;
+    }
+    for (int r = 0; r < b->rounds; r++) {
+        for (int k = 0; k < 2; k++)
+            if (bound[k])
+                most[k][r] = place->threads > 1 ? k ? all->int16 : all->fma : ceiling_now(b, k);
         for (int i = 0; i < n; i++)
             seconds[i][r] = seconds_of(&items[i], times[i], place->threads);
+    }
     print_place(place);
-    for (int i = 0; i < n; i++)
-        report(b, place, &items[i], seconds[i], compare ? seconds[0] : NULL);
+    for (int i = 0; i < n; i++) {
+        const int kind = items[i].cost < 0;
+        report(b, place, &items[i], seconds[i], compare ? seconds[0] : NULL, bound[kind] ? most[kind] : NULL);
+    }
 }

@@ -36,7 +36,7 @@ typedef struct bench_item {
     void *arg;
     double work;      /**< done by one run */
     const char *unit; /**< of the work */
-    double most;      /**< work that can be done in a second; 0: not known */
+    double cost;      /**< binary32 operations for a unit of work; below 0: 16-bit integer ones; 0: not known */
 } bench_item;
 
 /** Where a group is measured. Zero leaves a column empty. */
@@ -54,11 +54,10 @@ static inline int bench_more_threads(const bench *b, int threads)
 {
     return threads < b->threads ? b->threads : threads + 1;
 }
-/** The ceilings for so many threads. */
-const bench_ceilings *bench_ceilings_of(const bench *b, int threads);
 /**
- * Measure things in turns and print a line for each. compare: the others also have the ratio of their time to the first's,
- * median of the turns.
+ * Measure things in turns and print a line for each. Ceilings of one thread take turns too, since what a machine can do changes
+ * with what others do on it; with more threads they are those found at the beginning. compare: the others also have the ratio
+ * of their time to the first's, median of the turns.
  */
 void bench_group(const bench *b, const bench_place *place, const bench_item *items, int n, int compare);
 /** Print the columns' names. */
