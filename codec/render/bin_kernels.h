@@ -129,8 +129,8 @@ static inline __m256i tile_masks(long long words)
 static inline uint32_t emit(uint64_t *out, __m256i items, __m256i masks)
 {
     /* The set bits of four, first to last, as places of two 32-bit halves each. */
-    static const uint32_t halves_of[16] = {0, 0x10, 0x32, 0x3210, 0x54, 0x5410, 0x5432, 0x543210, 0x76, 0x7610,
-                                                       0x7632, 0x763210, 0x7654, 0x765410, 0x765432, 0x76543210};
+    static const uint32_t halves_of[16] = {0,    0x10,   0x32,   0x3210,   0x54,   0x5410,   0x5432,   0x543210,
+                                           0x76, 0x7610, 0x7632, 0x763210, 0x7654, 0x765410, 0x765432, 0x76543210};
     const __m256i hits = _mm256_cmpgt_epi64(masks, _mm256_setzero_si256());
     const uint32_t hit = (uint32_t)_mm256_movemask_pd(_mm256_castsi256_pd(hits));
     const __m256i digits = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
