@@ -2,8 +2,9 @@
 /** \file
  * Sixteen binary32 lanes, for kernels that are written once and compiled per
  * CPU level. The including file defines ADCGS_LANES_ISA as 512 (one AVX-512
- * register), 256 (two AVX registers) or 0 (portable C). Every operation means
- * the same in all three, to the bit: minimum and maximum are `a < b ? a : b`
+ * register), 256 (two AVX registers) or 0 (what every machine of the kind has:
+ * four NEON registers of 64-bit ARM, else portable C; ADCGS_PORTABLE asks for
+ * the latter). Every operation means the same in all, to the bit: minimum and maximum are `a < b ? a : b`
  * and `a > b ? a : b`, comparisons with NaN are false.
  */
 #ifndef ADCGS_BASE_LANES_H
@@ -11,7 +12,13 @@
 
 #include "base/fmath.h"
 
-#if ADCGS_LANES_ISA
+#if !ADCGS_LANES_ISA && defined(__aarch64__) && defined(__ARM_NEON) && !defined(ADCGS_PORTABLE)
+#define LANES_NEON 1
+#else
+#define LANES_NEON 0
+#endif
+
+#if ADCGS_LANES_ISA || LANES_NEON
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 #else
 /* Sixteen loops in a row, all unrolled: the compiler may choose. */
@@ -22,6 +29,8 @@
 #include "base/lanes_avx512.h"
 #elif ADCGS_LANES_ISA == 256
 #include "base/lanes_avx2.h"
+#elif LANES_NEON
+#include "base/lanes_neon.h"
 #else
 #include "base/lanes_portable.h"
 #endif
