@@ -178,12 +178,14 @@ static void clear_outside(const adcgs_loss_strip *s, float *map, int n)
 /* Derivatives of two rows into the ring of those that go out. */
 static void differentiate(adcgs_loss_strip *s, int row, adcgs_loss_scratch *w, int n)
 {
-    twelve rows;
-    for (int ahead = row ? HALO : -HALO; ahead <= HALO + 1; ahead++)
+    for (int ahead = row ? HALO : -HALO; row < s->height && ahead <= HALO + 1; ahead++)
         take_row(s, row + ahead, w, n);
-    for (int k = 0; k < 12; k++)
-        rows.row[k] = w->in[(row - HALO + k + RING_IN) % RING_IN][0];
-    ssim_rows(&rows, w, n);
+    if (row < s->height) {
+        twelve rows;
+        for (int k = 0; k < 12; k++)
+            rows.row[k] = w->in[(row - HALO + k + RING_IN) % RING_IN][0];
+        ssim_rows(&rows, w, n);
+    }
     for (int i = 0; i < 2; i++) {
         float(*const out)[ADCGS_LOSS_STRIP] = w->out[(row + i) % RING_OUT];
         if (row + i >= s->height) {
