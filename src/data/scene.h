@@ -15,6 +15,7 @@
 #define ADCGS_DATA_SCENE_H
 
 #include "base/base.h"
+#include "data/lens.h"
 #include "io/image.h"
 #include "io/points.h"
 
@@ -26,9 +27,12 @@ typedef enum adcgs_split { ADCGS_SPLIT_TRAIN, ADCGS_SPLIT_VAL, ADCGS_SPLIT_TEST,
 typedef enum adcgs_axes { ADCGS_AXES_UNKNOWN, ADCGS_AXES_Y_UP, ADCGS_AXES_Z_UP, ADCGS_AXES_Y_DOWN } adcgs_axes;
 
 typedef struct adcgs_scene_view {
-    adcgs_camera camera;  /**< at the image's own size; name is the file's stem */
+    adcgs_camera camera;  /**< at the image's own size, straightened; name is the file's stem */
     double time;          /**< seconds */
-    char *path;           /**< of the image */
+    char *path;           /**< of the image or the video */
+    int is_video;
+    int64_t frame;        /**< of a video, from 0 */
+    adcgs_lens lens;      /**< the picture as it was taken; width 0: by the camera itself */
 } adcgs_scene_view;
 
 typedef adcgs_points adcgs_scene_points; /**< positions in world units; as the scene gives them, none left out */

@@ -13,6 +13,7 @@ extern "C" {
 #endif
 
 #include "io/image.h"
+#include "io/module.h"
 
 /** What the module offers. What a build of OpenImageIO cannot do gives ADCGS_ERR_UNSUPPORTED. Any thread may call. */
 typedef struct adcgs_oiio {
@@ -26,16 +27,9 @@ typedef struct adcgs_oiio {
 } adcgs_oiio;
 
 /** The one thing that the module exports. */
-#if defined __GNUC__
-__attribute__((visibility("default")))
-#endif
-extern const adcgs_oiio adcgs_oiio_table;
+ADCGS_MODULE_EXPORT extern const adcgs_oiio adcgs_oiio_table;
 
-/**
- * The module, opened at the first call, for the file `path`, which messages name. Where it is looked for:
- * the directory that ADCGS_MODULES names, and nowhere else if that is set; then beside the running program, as
- * built and as installed; then where it was to be installed. ADCGS_ERR_UNSUPPORTED when it is in none of them.
- */
+/** The module's table (see module.h), for the file `path`, which messages name. ADCGS_ERR_UNSUPPORTED when it is not there. */
 adcgs_status adcgs_oiio_get(const adcgs_oiio **oiio, const char *path, adcgs_error *error);
 
 #ifdef __cplusplus

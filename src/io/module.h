@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Parts of the programs that are opened when first needed, because the
+ * libraries below them take a decoder's time many times over to load. A module
+ * is a shared object that exports one table of functions, whose first member
+ * is the version of the programs it belongs to. A build without shared
+ * libraries links what would be modules.
+ */
+#ifndef ADCGS_IO_MODULE_H
+#define ADCGS_IO_MODULE_H
+
+#include "base/base.h"
+
+#include <pthread.h>
+
+#if defined __GNUC__
+#define ADCGS_MODULE_EXPORT __attribute__((visibility("default")))
+#else
+#define ADCGS_MODULE_EXPORT
+#endif
+
+typedef struct adcgs_module {
+    const char *file;     /**< "adcgs_oiio.so" */
+    const char *symbol;   /**< of its table: starts with a const char *version */
+    const char *purpose;  /**< for messages: "images need OpenImageIO" */
+    pthread_mutex_t lock; /**< begins as PTHREAD_MUTEX_INITIALIZER; the rest begins as zero */
+    int tried;
+    const void *table;
+    char reason[160];     /**< why there is no table */
+} adcgs_module;
+
+/**
+ * The module's table, opened at the first call, for `path`, which messages name. Where it is looked for:
+ * the directory that ADCGS_MODULES names, and nowhere else if that is set; then beside the running program, as
+ * built and as installed; then where it was to be installed. ADCGS_ERR_UNSUPPORTED when it is in none of them.
+ */
+adcgs_status adcgs_module_get(adcgs_module *module, const void **table, const char *path, adcgs_error *error);
+
+#endif

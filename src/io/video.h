@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Video files through FFmpeg's libraries, in a module of their own. Colours
+ * become RGB by the stream's own matrix and range (BT.709 where it names none
+ * and is large, BT.601 where small, limited range where it names none).
+ */
+#ifndef ADCGS_IO_VIDEO_H
+#define ADCGS_IO_VIDEO_H
+
+#include "io/image.h"
+
+#include <adcgs/camera.h>
+
+typedef struct adcgs_video adcgs_video;
+
+typedef struct adcgs_video_info {
+    int width, height;    /**< as shown: rotation applied, square pixels */
+    int64_t frames;       /**< counted, not believed */
+    double frame_rate;    /**< the mean one, > 0 */
+} adcgs_video_info;
+
+/** Does the name end like a video file's (mp4, mov, mkv, webm, avi, m4v, ...)? */
+int adcgs_is_video(const char *path);
+
+/**
+ * ADCGS_ERR_UNSUPPORTED without FFmpeg or for a codec it lacks, ADCGS_ERR_IO if the file is not there, ADCGS_ERR_DATA if it is
+ * no video, or one without a frame.
+ */
+adcgs_status adcgs_video_open(adcgs_video **out, const char *path, adcgs_error *error);
+void adcgs_video_close(adcgs_video **video);
+const adcgs_video_info *adcgs_video_get_info(const adcgs_video *video);
+/**
+ * The frame of an index in the order in which they are shown, from 0: three channels. Cheap in ascending order; one thread at a
+ * time. A frame that is missing or damaged is ADCGS_ERR_DATA, naming file and frame.
+ */
+adcgs_status adcgs_video_read(adcgs_video *video, int64_t frame, adcgs_image *out, adcgs_error *error);
+
+typedef struct adcgs_video_writer adcgs_video_writer;
+/** Container and codec by the name's end: H.264 or what FFmpeg has for it; BT.709, limited range, tagged as such. */
+adcgs_status adcgs_video_write_open(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
+                                    adcgs_error *error);
+adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, adcgs_error *error);
+/** Complete the file. On failure, and after adcgs_video_write_abort(), nothing is left behind. */
+adcgs_status adcgs_video_write_close(adcgs_video_writer **writer, adcgs_error *error);
+void adcgs_video_write_abort(adcgs_video_writer **writer);
+
+#endif
