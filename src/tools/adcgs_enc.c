@@ -17,7 +17,7 @@ typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
     double lambda, psnr, time_limit;
     int iterations, scale, k, max_anchors, threads, cpu, json, has_lambda, has_size, has_psnr;
-    uint64_t seed, size;
+    uint64_t seed, size, memory;
 } enc_options;
 
 /* ---- What the run shows and logs ---- */
@@ -66,6 +66,13 @@ static int observe(void *user, const adcgs_train_report *r)
         if (adcgs_trainer_save(w->t, w->o->checkpoint, &w->error) != ADCGS_OK)
             return 1;
     }
+    return adcgs_interrupted();
+}
+
+static int loading(void *user, uint32_t done, uint32_t n)
+{
+    watcher *w = user;
+    adcgs_progress_show(&w->progress, "pictures  %6u/%u", done, n);
     return adcgs_interrupted();
 }
 
@@ -276,6 +283,9 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK) {
         w.t->quantise = adcgs_encode_quantise_hook;
         w.t->measure = measure;
+        w.t->picture_memory = o->memory;
+        w.t->loading = loading;
+        w.t->loading_user = &w;
         status = train(cli, &w, error);
     }
     if (status == ADCGS_OK && o->output)
@@ -359,6 +369,9 @@ static int parse(enc_options *o, int argc, char **argv)
           NULL },
         { "log", 0, ADCGS_OPTION_STRING, &o->log, 0, 0, "FILE",
           "write progress as JSON lines; appended with --resume", NULL, NULL },
+        { "memory", 0, ADCGS_OPTION_SIZE, &o->memory, 1, 1e15, "BYTES",
+          "keep at most so much of the pictures in memory (2G), the\nothers in a file in TMPDIR (default: half of the\n"
+          "machine's); the result does not depend on it", NULL, NULL },
         { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N",
           "threads (default: one per CPU); the result does not\ndepend on it", NULL, NULL },
         { "cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL",
