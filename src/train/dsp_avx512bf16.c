@@ -99,14 +99,21 @@ static int rows_next(int left)
 
 /* ---- Layers ---- */
 
+/** 32 consecutive numbers, rounded. */
+static inline __m512i pair_up(__m512 low, __m512 high)
+{
+    return (__m512i)_mm512_cvtne2ps_pbh(high, low);
+}
+
 /** Pairs of consecutive numbers of a row; behind the last comes 0. */
 static inline void pack_row(uint32_t *to, const float *from, int n)
 {
-    for (int i = 0; i < n; i += 2 * VN) {
-        const __m512 low = _mm512_maskz_loadu_ps(first(n - i), from + i);
-        const __m512 high = _mm512_maskz_loadu_ps(first(n - i - VN), from + i + VN);
-        _mm512_store_si512(to + i / 2, (__m512i)_mm512_cvtne2ps_pbh(high, low));
-    }
+    int i = 0;
+    for (; i + 2 * VN <= n; i += 2 * VN)
+        _mm512_store_si512(to + i / 2, pair_up(_mm512_loadu_ps(from + i), _mm512_loadu_ps(from + i + VN)));
+    if (i < n)
+        _mm512_store_si512(to + i / 2, pair_up(_mm512_maskz_loadu_ps(first(n - i), from + i),
+                                               _mm512_maskz_loadu_ps(first(n - i - VN), from + i + VN)));
 }
 
 /** Pairs of consecutive rows of 64 lanes. */
@@ -118,7 +125,7 @@ static void pack_inputs(columns *to, const float *x, int n)
         for (int c = 0; c < COLS; c++) {
             const float *from = x + (size_t)i * LANES + c * VN;
             const __m512 next = i + 1 < n ? _mm512_load_ps(from + LANES) : _mm512_setzero_ps();
-            const __m512i both = (__m512i)_mm512_cvtne2ps_pbh(next, _mm512_load_ps(from));
+            const __m512i both = pair_up(_mm512_load_ps(from), next);
             to->pair[i / 2][c] = _mm512_permutexvar_epi16(alternate, both);
         }
 }
@@ -174,7 +181,7 @@ static void turn_inputs(columns *to, const float *x, int n)
 #pragma GCC unroll 16
             for (int i = 0; i < VN; i++) {
                 const float *from = x + (size_t)(c * VN + i) * LANES + half * 2 * VN;
-                r[i] = c * VN + i < n ? (__m512i)_mm512_cvtne2ps_pbh(_mm512_load_ps(from + VN), _mm512_load_ps(from)) :
+                r[i] = c * VN + i < n ? pair_up(_mm512_load_ps(from), _mm512_load_ps(from + VN)) :
                                         _mm512_setzero_si512();
             }
             turn(r);

@@ -144,9 +144,7 @@ void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, fl
         float *branch = a + (size_t)(i - 1) * tile, *next = h + (size_t)i * tile;
         const float *last = next - tile;
         dsp->dense.dense(branch, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, last, m->width, m->width);
-        dsp->dense.lrelu(branch, m->width);
-        for (size_t j = 0; j < tile; j++)
-            next[j] = last[j] + branch[j];
+        dsp->hidden(next, branch, last, m->width); /* of the branch the backward pass asks only for signs */
     }
     dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width,
                      h + (size_t)(m->hidden - 1) * tile, m->out, m->width);

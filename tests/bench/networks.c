@@ -5,7 +5,7 @@
 #include "train/pass.h"
 #include "train/schedule.h"
 
-enum { GROUPS = 10, ANCHORS = 64 * GROUPS };
+enum { GROUPS = 32, ANCHORS = 64 * GROUPS };
 
 typedef struct networks {
     adcgs_fmodel *f;
