@@ -140,7 +140,7 @@ void adcgs_train_dsp_init(adcgs_train_dsp *dsp, adcgs_cpu_level level);
 
 /** Whether kernels of this level can have layers in bf16: ADCGS_ERR_UNSUPPORTED names what the CPU or the build lacks. */
 adcgs_status adcgs_bf16_check(adcgs_cpu_level level, adcgs_error *error);
-/** The kernels of a level, with factors of layers and of weight gradients in bf16 and sums in binary32, where the check passes. */
+/** The kernels of a level; where the check passes, layers and weight gradients with factors in bf16 and sums in binary32. */
 void adcgs_train_dsp_init_bf16(adcgs_train_dsp *dsp, adcgs_cpu_level level);
 
 #endif
