@@ -133,7 +133,7 @@ expect 3 "nowhere" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/nowhere
 
 # Networks in bf16: another stream, the same at any number of threads, where the CPU can; else one line that says what it lacks.
 # shellcheck disable=SC2086
-if ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --iterations 10 --bf16 >"$dir/out" 2>"$dir/err"; then
+if ./adcgs-enc "$scene" -o "$dir/bf16.adcgs" $short --iterations 10 --bf16 >"$dir/out" 2>"$dir/err"; then
     enc short1 --iterations $n --bf16 --threads 1
     enc short2 --iterations $n --bf16 --threads 2
     same short1 short2 "another stream with other threads, in bf16"
