@@ -16,7 +16,7 @@
 typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
     double lambda, psnr, time_limit;
-    int iterations, scale, k, max_anchors, threads, cpu, json, has_lambda, has_size, has_psnr;
+    int iterations, scale, k, max_anchors, threads, cpu, bf16, json, has_lambda, has_size, has_psnr;
     uint64_t seed, size, memory;
 } enc_options;
 
@@ -78,14 +78,17 @@ static int loading(void *user, uint32_t done, uint32_t n)
 
 /* ---- Configuration ---- */
 
-static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs_error *error)
+static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs_cpu_level cpu, adcgs_error *error)
 {
+    if (o->bf16)
+        ADCGS_TRY(adcgs_bf16_check(cpu, error));
     ADCGS_TRY(adcgs_train_preset(c, o->preset, error));
     if (o->set)
         ADCGS_TRY(adcgs_train_set(c, o->set, error));
     c->seed = o->seed;
     c->time_limit = o->time_limit;
     c->scale = o->scale;
+    c->bf16 = (uint8_t)o->bf16;
     if (o->has_lambda)
         c->lambda = (float)o->lambda;
     if (o->has_size || o->has_psnr) {
@@ -264,7 +267,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_stream_init(&stream);
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
     if (status == ADCGS_OK)
-        status = configure(&config, o, error);
+        status = configure(&config, o, cpu, error);
     if (status == ADCGS_OK)
         status = check_writable(target(o), error);
     if (status == ADCGS_OK && o->checkpoint)
@@ -376,6 +379,8 @@ static int parse(enc_options *o, int argc, char **argv)
           "threads (default: one per CPU); the result does not\ndepend on it", NULL, NULL },
         { "cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL",
           "kernels: auto, scalar, avx2, avx512 (default auto)", adcgs_cpu_names, NULL },
+        { "bf16", 0, ADCGS_OPTION_FLAG, &o->bf16, 0, 0, NULL,
+          "train the networks that draw in bf16, which is quicker;\nneeds a CPU with AVX512-BF16", NULL, NULL },
         { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
     adcgs_cli cli = program;

@@ -71,6 +71,8 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_train_config *c = &t->config;
     const uint32_t times = t->scene->n_times;
+    if (c->bf16)
+        ADCGS_TRY(adcgs_bf16_check(t->cpu, error));
     if (c->without_coarse && c->without_fine)
         c->params.time_rows = 0;
     if (times <= 1)
@@ -354,6 +356,7 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
     const adcgs_pass_mode mode = { .quant = quant,
                                    .deform = progress < c->deform_from ? ADCGS_DEFORM_NONE :
                                              progress < c->fine_from   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
+                                   .bf16 = c->bf16,
                                    .dropout = progress >= c->round_from ? 0 : c->dropout,
                                    .seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration) };
     adcgs_loss_value value;
