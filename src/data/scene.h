@@ -64,7 +64,8 @@ typedef struct adcgs_scene_options {
 } adcgs_scene_options;
 
 /**
- * Open a scene folder, its JSON file of transforms, or a PLY file of splats. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate.
+ * Open a scene folder, its JSON file of transforms, or a PLY file of splats. Times in [0,1] of the layout become seconds:
+ * t * (n_times-1)/frame_rate.
  * The near plane is a hundredth of the median distance of the training cameras from the centre of their views.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
  * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole.
