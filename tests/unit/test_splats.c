@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats in PLY: what is written, what is read and what is refused; a decoder's splats there and back; splats as scenes. */
+/** \file Splats in PLY: what is written, read and refused; a decoder's splats there and back; splats as scenes. */
 #include "outside_files.h"
 #include "random_model.h"
 
@@ -26,15 +26,15 @@ static void expect_good(adcgs_status status)
 /* ---- Files made here ---- */
 
 /** A PLY as text: properties with `left_out` missing, `odd` of another type, n_rest of f_rest_*, then lines. */
-static void put_splats(const char *name, const char *left_out, const char *odd, const char *odd_type, int n_rest, const char *count,
-                       const char *lines)
+static void put_splats(const char *name, const char *left_out, const char *odd, const char *odd_type, int n_rest,
+                       const char *count, const char *lines)
 {
     char text[8192];
     int n = snprintf(text, sizeof text, "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex %s\n", count);
     for (int i = 0; i < NAMES; i++)
         if (!left_out || strcmp(left_out, names[i]))
-            n += snprintf(text + n, sizeof text - (size_t)n, "property %s %s\n", odd && !strcmp(odd, names[i]) ? odd_type : "float",
-                          names[i]);
+            n += snprintf(text + n, sizeof text - (size_t)n, "property %s %s\n",
+                          odd && !strcmp(odd, names[i]) ? odd_type : "float", names[i]);
     for (int i = 0; i < n_rest; i++)
         n += snprintf(text + n, sizeof text - (size_t)n, "property float f_rest_%d\n", i);
     n += snprintf(text + n, sizeof text - (size_t)n, "end_header\n%s", lines);
@@ -184,11 +184,13 @@ static void test_layout(void **state)
 {
     static const char header[] =
         "ply\nformat binary_little_endian 1.0\ncomment adcgs, now\nelement vertex 1\nproperty float x\nproperty float y\n"
-        "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float f_dc_0\nproperty float f_dc_1\n"
-        "property float f_dc_2\nproperty float opacity\nproperty float scale_0\nproperty float scale_1\nproperty float scale_2\n"
+        "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float f_dc_0\n"
+        "property float f_dc_1\nproperty float f_dc_2\nproperty float opacity\nproperty float scale_0\n"
+        "property float scale_1\nproperty float scale_2\n"
         "property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\nend_header\n";
-    const float expected[17] = {1.0f, -2.0f, 3.0f, 0.0f, 0.0f, 0.0f, 0.0f, (float)(0.5 / 0.28209479177387814), (float)(-0.5 / 0.28209479177387814),
-                                (float)log(3.0), 0.0f, (float)log(2.0), (float)log(0.25), 0.5f, -0.5f, 0.5f, 0.5f};
+    const float dc = (float)(0.5 / 0.28209479177387814);
+    const float expected[17] = {1.0f, -2.0f, 3.0f, 0.0f, 0.0f, 0.0f, 0.0f, dc, -dc, (float)log(3.0),
+                                0.0f, (float)log(2.0), (float)log(0.25), 0.5f, -0.5f, 0.5f, 0.5f};
     adcgs_splats s;
     char bytes[sizeof header + sizeof expected + 1];
     expect_good(adcgs_splats_alloc(&s, 1, "one", &error));
@@ -354,8 +356,8 @@ static adcgs_scene *open_splats(const char *path)
 }
 
 /** A picture of a scene's view and one of primitives from where the view is. */
-static void same_picture(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_primitives *p, const double origin[3],
-                         double scale)
+static void same_picture(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_primitives *p,
+                         const double origin[3], double scale)
 {
     adcgs_camera camera;
     float *rgb;
@@ -452,8 +454,8 @@ static void test_cameras(void **state)
         }
     assert_true(nearest > 1e-3); /* no view to test on is one of training */
     for (int i = 0; i < 500; i++) { /* and no direction is farther than 25 degrees from a view of training */
-        const double h = cos(0.1 + i * 0.006);
-        const adcgs_camera c = {.cam_to_world = {0, 0, sqrt(1 - h * h) * cos(i), 0, 0, 0, h, 0, 0, 0, sqrt(1 - h * h) * sin(i), 0}};
+        const double h = cos(0.1 + i * 0.006), r = sqrt(1 - h * h);
+        const adcgs_camera c = {.cam_to_world = {0, 0, r * cos(i), 0, 0, 0, h, 0, 0, 0, r * sin(i), 0}};
         double least = 10.0;
         for (uint32_t j = 0; j < 100; j++)
             least = fmin(least, between(&c, &scene->views[0][j].camera));
@@ -476,8 +478,8 @@ static void test_scene(void **state)
     float *rgb, *half;
     adcgs_camera camera;
     expect_good(adcgs_splats_write(&s, "s", in("s.ply"), &error));
-    put_text("p.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
-                      "1 2 3\n");
+    put_text("p.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                      "end_header\n1 2 3\n");
     expect_good(adcgs_scene_open(&scene, in("s.ply"), &white, &error));
     expect_good(adcgs_scene_load(scene, &scene->views[0][0], 1, &rgb, NULL, &error));
     expect_good(adcgs_scene_load(scene, &scene->views[0][0], 2, &half, &camera, &error));
