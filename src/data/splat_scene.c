@@ -262,8 +262,10 @@ adcgs_status adcgs_splat_scene_render(const adcgs_splat_scene *splats, const flo
         status = draw(planar, splats, background, camera, colours, error);
         for (size_t i = 0; i < 3 * plane && status == ADCGS_OK; i++)
             out->data[i] = fminf(fmaxf(planar[i % 3 * plane + i / 3], 0.0f), 1.0f);
-        if (status != ADCGS_OK)
+        if (status != ADCGS_OK) {
+            adcgs_error_locate(error, path);
             adcgs_image_free(out);
+        }
     }
     free(planar);
     free(colours);

@@ -15,8 +15,10 @@ static void check(const adcgs_splats *s)
     for (uint32_t i = 0; i < s->n; i++) {
         float length = 0.0f;
         FUZZ_REQUIRE(s->opacity[i] >= 0.0f && s->opacity[i] <= 1.0f);
-        for (int a = 0; a < 3; a++)
-            FUZZ_REQUIRE(isfinite(s->mean[a][i]) && isfinite(s->colour[a][i]) && isnormal(s->scale[a][i]) && s->scale[a][i] > 0.0f);
+        for (int a = 0; a < 3; a++) {
+            FUZZ_REQUIRE(isfinite(s->mean[a][i]) && isfinite(s->colour[a][i]));
+            FUZZ_REQUIRE(isnormal(s->scale[a][i]) && s->scale[a][i] > 0.0f);
+        }
         for (int a = 0; a < 4; a++)
             length += s->rotation[a][i] * s->rotation[a][i];
         FUZZ_REQUIRE(fabsf(length - 1.0f) < 1e-5f);

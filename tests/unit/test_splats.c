@@ -8,6 +8,7 @@
 #include "io/splats.h"
 #include "metric/metric.h"
 #include "render/render.h"
+#include "tools/info_points.h"
 
 #include <adcgs/adcgs.h>
 
@@ -309,6 +310,37 @@ static void test_take(void **state)
     for (uint32_t i = n; i < p.n; i++)
         assert_true(p.opacity[i] == 0.0f);
     adcgs_splats_free(&s);
+}
+
+/** Anchors as points: where the stream says, in the colours that the decoder gives at the middle of the stream. */
+static void test_points(void **state)
+{
+    const fixture *f = *state;
+    const double middle = 0.5 * (f->info.time_start + f->info.time_end);
+    const adcgs_model *m = &f->stream.segments[f->stream.segments[1].time_start <= middle];
+    adcgs_points points;
+    adcgs_primitives p;
+    expect_good(adcgs_info_points(&points, &f->stream, "points", &error));
+    assert_int_equal(adcgs_get_primitives(f->decoder, middle, &p), ADCGS_OK);
+    assert_int_equal(points.n, m->n);
+    uint32_t grey = 0;
+    for (uint32_t i = 0; i < m->n; i++) {
+        double sum[3] = {0, 0, 0}, weight = 0.0;
+        for (int a = 0; a < 3; a++) {
+            const double scene = (double)m->origin[a] + 0.5 * (2.0 * m->pos[3 * i + (uint32_t)a] + 1.0) * (double)m->voxel;
+            near(points.position[i][a], (float)((a == 1 ? 0.75 : 0.0) + 2.5 * scene), 2e-7, 1e-9);
+        }
+        for (uint32_t slot = i / 64 * 4 * 64 + i % 64; slot < (i / 64 + 1) * 4 * 64; slot += 64)
+            for (int c = 0; c < 3; c++) {
+                sum[c] += (double)p.opacity[slot] * (double)p.colour[c][slot];
+                weight += c ? 0.0 : (double)p.opacity[slot];
+            }
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs((weight > 0 ? 255.0 * fmin(fmax(sum[c] / weight, 0), 1) : 128.0) - points.colour[i][c]) < 0.51);
+        grey += weight == 0.0;
+    }
+    assert_true(grey < m->n && points.coloured);
+    adcgs_points_free(&points);
 }
 
 static double psnr(const float *a, const float *b, size_t n, double *variance)
@@ -620,6 +652,7 @@ int main(void)
         cmocka_unit_test(test_read),      cmocka_unit_test(test_bad),
         cmocka_unit_test(test_layout),    cmocka_unit_test(test_round_trip),
         cmocka_unit_test(test_mutations), cmocka_unit_test_setup_teardown(test_take, open_stream, close_stream),
+        cmocka_unit_test_setup_teardown(test_points, open_stream, close_stream),
         cmocka_unit_test_setup_teardown(test_export, open_stream, close_stream),
         cmocka_unit_test(test_cameras),   cmocka_unit_test(test_scene),
         cmocka_unit_test(test_harmonics), cmocka_unit_test(test_view_dependence),
