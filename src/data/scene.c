@@ -8,6 +8,7 @@
 #include "data/paths.h"
 #include "data/pose.h"
 #include "data/sort.h"
+#include "data/splat_scene.h"
 #include "data/transforms.h"
 
 #include <errno.h>
@@ -49,6 +50,7 @@ void adcgs_scene_free(adcgs_scene **scene)
         free((*scene)->views[s]);
     }
     adcgs_points_free(&(*scene)->points);
+    adcgs_splat_scene_free(&(*scene)->splats);
     free((*scene)->directory);
     free(*scene);
     *scene = NULL;
@@ -83,8 +85,9 @@ static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adc
             scene->views[s][i].time *= scene->duration;
             scene->views[s][i].camera.near_plane = near_plane;
         }
-    int width, height, channels;
-    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
+    int width, height, channels = 3;
+    if (!scene->splats)
+        ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
     scene->has_alpha = channels % 2 == 0;
     for (int c = 0; c < 3; c++)
         scene->background[c] = options->has_background ? options->background[c] : scene->has_alpha ? 1.0f : 0.0f;
@@ -170,6 +173,13 @@ static adcgs_status read_points(adcgs_scene *scene, const char *listed, const ad
     return status;
 }
 
+static adcgs_status read_file(adcgs_scene *scene, const char *path, char **points_path, const adcgs_scene_options *options,
+                              adcgs_error *error)
+{
+    return adcgs_is_ply(path) ? adcgs_splat_scene_read(scene, !options->points_path, path, error)
+                              : read_single(scene, path, points_path, error);
+}
+
 /** path without slashes at its end, or for a file the folder it is in. */
 static char *folder_of(const char *path, int is_folder)
 {
@@ -198,7 +208,7 @@ static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, co
     scene->colour_space = COLOUR_SRGB;
     scene->frame_rate = options->frame_rate;
     adcgs_status status =
-        is_folder ? read_folder(scene, &points_path, options, error) : read_single(scene, path, &points_path, error);
+        is_folder ? read_folder(scene, &points_path, options, error) : read_file(scene, path, &points_path, options, error);
     if (!scene->frame_rate)
         scene->frame_rate = DEFAULT_FRAME_RATE;
     if (status == ADCGS_OK)
@@ -288,7 +298,9 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     *rgb = NULL;
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
-    ADCGS_TRY(adcgs_image_read(&image, view->path, error));
+    ADCGS_TRY(scene->splats
+                  ? adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, &image, view->path, error)
+                  : adcgs_image_read(&image, view->path, error));
     adcgs_status status = ADCGS_OK;
     if (image.width != view->camera.width || image.height != view->camera.height)
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, image.width,

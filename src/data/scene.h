@@ -10,6 +10,7 @@
  *   World axes, units and colours are the dataset's own.
  * - a folder with dataset.json, metadata.json and camera/ (HyperNeRF, Nerfies). World units are the layout's working
  *   coordinates, (x - center) * scale of its scene.json.
+ * - a PLY file of splats: a still scene, whose views are renderings of them (splat_scene.h).
  */
 #ifndef ADCGS_DATA_SCENE_H
 #define ADCGS_DATA_SCENE_H
@@ -37,6 +38,9 @@ typedef struct adcgs_scene_view {
 
 typedef adcgs_points adcgs_scene_points; /**< positions in world units; as the scene gives them, none left out */
 
+/** Splats that views are renderings of; see splat_scene.h. */
+typedef struct adcgs_splat_scene adcgs_splat_scene;
+
 typedef struct adcgs_scene {
     char *directory;
     uint32_t n_views[ADCGS_SPLITS];
@@ -48,6 +52,7 @@ typedef struct adcgs_scene {
     float background[3];  /**< white for images with alpha, else black, unless given */
     adcgs_scene_points points; /**< initial points, n = 0 if the scene has none */
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
+    adcgs_splat_scene *splats; /**< NULL: views are pictures; else path of a view is that of the splats */
 } adcgs_scene;
 
 /** Overrides given on a command line. Zero-initialise. */
@@ -59,7 +64,8 @@ typedef struct adcgs_scene_options {
 } adcgs_scene_options;
 
 /**
- * Open a scene folder or its JSON file of transforms. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate.
+ * Open a scene folder, its JSON file of transforms, or a PLY file of splats. Times in [0,1] of the layout become seconds:
+ * t * (n_times-1)/frame_rate.
  * The near plane is a hundredth of the median distance of the training cameras from the centre of their views.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
  * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole.

@@ -8,6 +8,7 @@
 #include "model/input.h"
 #include "tools/answer.h"
 #include "tools/cli.h"
+#include "tools/dec_splats.h"
 #include "tools/shots.h"
 
 #include <adcgs/adcgs.h>
@@ -17,14 +18,14 @@
 #include <strings.h>
 
 typedef struct settings {
-    const char *input, *output, *format, *times, *verify, *answer;
+    const char *input, *output, *format, *times, *verify, *answer, *splats;
     adcgs_shots_request request;
     adcgs_config config;
     int cpu, half, use_float, md5, frametimes;
     double opened; /**< when opening the input began, in seconds */
 } settings;
 
-#define OPTION_COUNT 15
+#define OPTION_COUNT 16
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -35,6 +36,9 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
         {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
          NULL},
+        {"splats", 0, ADCGS_OPTION_STRING, &s->splats, 0, 0, "FILE",
+         "write the splats as PLY instead of frames: out.ply for one\nmoment (the first without --time), out%04d.ply for a span",
+         NULL, NULL},
         {"camera", 'c', ADCGS_OPTION_STRING, &s->request.camera, 0, 0, "WHICH",
          "stored camera's name or index, orbit, or a path FILE.json;\nwithout it camera 0, or orbit if none is stored", NULL,
          NULL},
@@ -184,6 +188,13 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
     return status;
 }
 
+/** Whether options are given that only frames need. */
+static int wants_frames(const settings *s)
+{
+    return s->output || s->format || s->half || s->use_float || s->request.camera || s->request.size[0] || s->md5 || s->verify ||
+           s->frametimes;
+}
+
 /** What the option table cannot check. */
 static adcgs_status check_settings(settings *s, adcgs_error *error)
 {
@@ -195,6 +206,8 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
     if (s->answer && (s->output || s->request.camera || s->times || s->request.size[0] || s->md5 || s->verify || s->frametimes))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--answer goes with --layers, --strict, --threads and --cpu only");
+    if (s->splats && (s->answer || wants_frames(s)))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--splats goes with --time, --layers, --strict, --threads and --cpu only");
     if ((s->format || s->half || s->use_float) && !s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--format, --half and --float need --output");
     if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
@@ -233,7 +246,9 @@ int main(int argc, char **argv)
         status = answer(&cli, &s, &decoder, &error);
     else if (status == ADCGS_OK)
         status = open_input(&decoder, &s, &error);
-    if (status == ADCGS_OK && !s.answer)
+    if (status == ADCGS_OK && s.splats)
+        status = adcgs_dec_splats(&cli, decoder, s.input, s.splats, &s.request, &error);
+    else if (status == ADCGS_OK && !s.answer)
         status = decode(&cli, &s, decoder, &mismatch, &error);
     adcgs_close(&decoder);
     if (adcgs_interrupted())

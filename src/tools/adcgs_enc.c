@@ -310,7 +310,8 @@ static const adcgs_cli program = {
     .program = "adcgs-enc",
     .operands = "SCENE",
     .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
-    .details = "SCENE is a folder with transforms_train.json or transforms.json, or such a file.",
+    .details = "SCENE is a folder with transforms_train.json or transforms.json, or such a file;\n"
+               "or a PLY file of splats, of which it renders views to learn from.",
     .min_operands = 0,
     .max_operands = 1,
 };
