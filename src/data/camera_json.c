@@ -35,6 +35,11 @@ adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error
     return ADCGS_OK;
 }
 
+static const char *list_name(const adcgs_json_place *at)
+{
+    return at->list ? at->list : "frames";
+}
+
 adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, const char *field, const char *format, ...)
 {
     char what[160];
@@ -43,7 +48,7 @@ adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, con
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
     if (at->frame)
-        return adcgs_fail(at->error, status, "%s: frames[%zu].%s: %s", at->path, at->index, field, what);
+        return adcgs_fail(at->error, status, "%s: %s[%zu].%s: %s", at->path, list_name(at), at->index, field, what);
     return adcgs_fail(at->error, status, "%s: %s: %s", at->path, field, what);
 }
 
@@ -96,14 +101,15 @@ static adcgs_status check_model(const adcgs_json_place *at)
 
 adcgs_status adcgs_json_frames(const adcgs_json_place *at, json_t **frames, size_t *n)
 {
-    *frames = json_object_get(at->root, "frames");
+    const char *name = list_name(at);
+    *frames = json_object_get(at->root, name);
     *n = json_array_size(*frames);
     if (!json_is_array(*frames))
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "expected an array");
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, name, "expected an array");
     if (!*n)
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "is empty");
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, name, "is empty");
     if (*n > FRAMES_MAX)
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "%zu frames, expected at most %d", *n, FRAMES_MAX);
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, name, "%zu elements, expected at most %d", *n, FRAMES_MAX);
     return ADCGS_OK;
 }
 

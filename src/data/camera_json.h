@@ -19,6 +19,7 @@ typedef struct adcgs_json_place {
     json_t *root;
     json_t *frame;    /**< NULL: at the root */
     size_t index;     /**< of the frame */
+    const char *list; /**< name of the array of frames; NULL: "frames" */
     adcgs_error *error;
 } adcgs_json_place;
 
@@ -31,7 +32,7 @@ adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, con
 json_t *adcgs_json_find(const adcgs_json_place *at, const char *field);
 /** Such a field as a number in [min, max]. Leaves *value alone and *found 0 when it is not there. */
 adcgs_status adcgs_json_number(const adcgs_json_place *at, const char *field, double min, double max, double *value, int *found);
-/** The array "frames", not empty, of at most a million. */
+/** The array of frames, not empty, of at most a million. */
 adcgs_status adcgs_json_frames(const adcgs_json_place *at, json_t **frames, size_t *n);
 
 /** w and h; *found 0 when neither is there. */

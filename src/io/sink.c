@@ -23,6 +23,7 @@ typedef struct kind {
 struct adcgs_sink {
     adcgs_sink_config config;
     const kind *what;
+    adcgs_sink_extras extras; /**< of the frame being written */
     FILE *file; /**< of a stream: standard output or the atomic file */
     adcgs_atomic atomic;
 };
@@ -60,15 +61,46 @@ static adcgs_status null_write(adcgs_sink *sink, const adcgs_frame *frame, int i
     return ADCGS_OK;
 }
 
+/** Colours and alpha as pixels of four. */
+static adcgs_status join_alpha(adcgs_image *image, const adcgs_frame *frame, const float *alpha, const char *path,
+                               adcgs_error *error)
+{
+    const size_t n = (size_t)frame->width * (size_t)frame->height;
+    ADCGS_TRY(adcgs_image_alloc(image, frame->width, frame->height, 4, path, error));
+    for (size_t i = 0; i < n; i++) {
+        memcpy(image->data + 4 * i, frame->rgb + 3 * i, 3 * sizeof *frame->rgb);
+        image->data[4 * i + 3] = alpha[i];
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status write_picture(const adcgs_sink *sink, const adcgs_frame *frame, const char *path, adcgs_error *error)
+{
+    const adcgs_sink_extras *extras = &sink->extras;
+    const adcgs_depth depth = sink->config.depth;
+    const adcgs_image_options options = {.half = depth != ADCGS_DEPTH_FLOAT,
+                                         .bits = depth == ADCGS_DEPTH_16 ? 16 : 8,
+                                         .premultiplied = 1,
+                                         .depth = extras->depth,
+                                         .camera = extras->camera,
+                                         .time = extras->time};
+    adcgs_image image = {frame->width, frame->height, 3, frame->rgb};
+    if (!extras->alpha)
+        return adcgs_image_write_as(&image, &options, path, error);
+    ADCGS_TRY(join_alpha(&image, frame, extras->alpha, path, error));
+    const adcgs_status status = adcgs_image_write_as(&image, &options, path, error);
+    adcgs_image_free(&image);
+    return status;
+}
+
 static adcgs_status image_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
 {
-    const adcgs_image image = {frame->width, frame->height, 3, frame->rgb};
     const size_t size = strlen(sink->config.target) + 128;
     char *path = malloc(size);
     if (!path)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", sink->config.target);
     adcgs_pattern_format(sink->config.target, index, path, size);
-    const adcgs_status status = adcgs_image_write(&image, path, sink->config.depth != ADCGS_DEPTH_FLOAT, error);
+    const adcgs_status status = write_picture(sink, frame, path, error);
     free(path);
     return status;
 }
@@ -145,6 +177,12 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: float samples need EXR or raw", config->target);
     if (config->depth == ADCGS_DEPTH_HALF && what != &exr_kind)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: half samples need EXR", config->target);
+    if (config->depth == ADCGS_DEPTH_16 && what != &image_kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: 16 bits need PNG, TIFF or PPM", config->target);
+    if (config->has_alpha && (!is_image || !strcasecmp(format, "ppm") || !strcasecmp(format, "pgm")))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: alpha needs EXR, PNG or TIFF", config->target);
+    if (config->has_z && what != &exr_kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: depth needs EXR", config->target);
     if (!is_image)
         return ADCGS_OK;
     if (!strcmp(config->target, "-"))
@@ -190,6 +228,14 @@ adcgs_status adcgs_sink_open(adcgs_sink **out, const adcgs_sink_config *config, 
 
 adcgs_status adcgs_sink_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
 {
+    const adcgs_sink_extras none = {0};
+    return adcgs_sink_write_with(sink, frame, &none, index, error);
+}
+
+adcgs_status adcgs_sink_write_with(adcgs_sink *sink, const adcgs_frame *frame, const adcgs_sink_extras *extras, int index,
+                                   adcgs_error *error)
+{
+    sink->extras = *extras;
     if (frame->width != sink->config.width || frame->height != sink->config.height)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels among those of %dx%d", sink->config.target,
                           frame->width, frame->height, sink->config.width, sink->config.height);

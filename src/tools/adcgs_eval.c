@@ -5,6 +5,7 @@
 #include "base/cpu.h"
 #include "metric/crop.h"
 #include "tools/cli.h"
+#include "tools/mosaic.h"
 
 #include <adcgs/adcgs.h>
 
@@ -17,7 +18,7 @@ typedef struct settings {
     const char *file, *scene, *images, *crop;
     adcgs_config config;
     adcgs_box box; /**< of --crop, where it gives numbers */
-    int split, cpu, json, as_is;
+    int split, cpu, json, as_is, beside;
 } settings;
 
 /** What the views' scores go through. */
@@ -33,7 +34,7 @@ typedef struct report {
 
 static const char *const splits[] = {"train", "val", "test", NULL}; /* in the order of adcgs_split */
 
-#define OPTION_COUNT 8
+#define OPTION_COUNT 9
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -41,6 +42,8 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          NULL},
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
         {"images", 0, ADCGS_OPTION_STRING, &s->images, 0, 0, "DIR", "write the decoded views there as PNG", NULL, NULL},
+        {"beside", 0, ADCGS_OPTION_FLAG, &s->beside, 0, 0, NULL,
+         "in these pictures: truth, decoded view, and four times their\ndifference round grey, side by side", NULL, NULL},
         {"crop", 0, ADCGS_OPTION_STRING, &s->crop, 0, 0, "BOX",
          "measure, too, where the box X0,Y0,Z0,X1,Y1,Z1 is seen;\npoints: a box round the scene's initial points", NULL, NULL},
         {"scene-background", 0, ADCGS_OPTION_FLAG, &s->as_is, 0, 0, NULL,
@@ -53,22 +56,31 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
     memcpy(options, table, sizeof table);
 }
 
-static adcgs_status write_image(const report *r, const adcgs_view_score *score, adcgs_error *error)
+static adcgs_status write_views(const report *r, const adcgs_view_score *score, const char *path, adcgs_error *error)
 {
     const size_t plane = (size_t)score->width * (size_t)score->height;
+    const adcgs_samples truth = {score->truth, 1, plane}, decoded = {score->decoded, 1, plane};
+    const int beside = r->set->beside;
+    adcgs_mosaic mosaic;
+    ADCGS_TRY(adcgs_mosaic_init(&mosaic, score->width, score->height, beside ? 3 : 1, 1, path, error));
+    adcgs_mosaic_place(&mosaic, beside, 0, decoded);
+    if (beside) {
+        adcgs_mosaic_place(&mosaic, 0, 0, truth);
+        adcgs_mosaic_difference(&mosaic, 2, 0, decoded, truth);
+    }
+    const adcgs_status status = adcgs_image_write(&mosaic.image, path, 0, error);
+    adcgs_mosaic_clear(&mosaic);
+    return status;
+}
+
+static adcgs_status write_image(const report *r, const adcgs_view_score *score, adcgs_error *error)
+{
     const size_t size = strlen(r->set->images) + ADCGS_CAMERA_NAME_MAX + 32;
-    adcgs_image image = {0};
     char *path = malloc(size);
     if (!path)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", r->set->images);
     snprintf(path, size, "%s/%04u-%s.png", r->set->images, r->done, score->view->camera.name);
-    adcgs_status status = adcgs_image_alloc(&image, score->width, score->height, 3, path, error);
-    if (status == ADCGS_OK) {
-        for (size_t i = 0; i < 3 * plane; i++)
-            image.data[i] = score->decoded[i % 3 * plane + i / 3];
-        status = adcgs_image_write(&image, path, 0, error);
-    }
-    adcgs_image_free(&image);
+    const adcgs_status status = write_views(r, score, path, error);
     free(path);
     return status;
 }
@@ -268,6 +280,8 @@ int main(int argc, char **argv)
     if (s.crop && strcmp(s.crop, "points") && parse_box(s.crop, &s.box))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE,
                                "--crop %.100s: expected points, or X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1", s.crop);
+    if (s.beside && !s.images)
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--beside needs --images");
     s.file = argv[first];
     s.scene = argv[first + 1];
     s.config.cpu = (adcgs_cpu_level)s.cpu;
