@@ -4,6 +4,7 @@
 
 #include "data/scene.h"
 
+#include "data/clips.h"
 #include "data/hypernerf.h"
 #include "data/paths.h"
 #include "data/pose.h"
@@ -49,6 +50,7 @@ void adcgs_scene_free(adcgs_scene **scene)
         free((*scene)->views[s]);
     }
     adcgs_points_free(&(*scene)->points);
+    adcgs_clips_free(&(*scene)->clips);
     free((*scene)->directory);
     free(*scene);
     *scene = NULL;
@@ -83,8 +85,9 @@ static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adc
             scene->views[s][i].time *= scene->duration;
             scene->views[s][i].camera.near_plane = near_plane;
         }
-    int width, height, channels;
-    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
+    int width, height, channels = 3;
+    if (!train[0].is_video)
+        ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
     scene->has_alpha = channels % 2 == 0;
     for (int c = 0; c < 3; c++)
         scene->background[c] = options->has_background ? options->background[c] : scene->has_alpha ? 1.0f : 0.0f;
@@ -220,9 +223,10 @@ adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_s
     if (!scene)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     scene->directory = folder_of(path, S_ISDIR(status.st_mode));
-    const adcgs_status result = scene->directory
-                                    ? fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error)
-                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    adcgs_status result = scene->directory ? adcgs_clips_create(&scene->clips, error)
+                                           : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (result == ADCGS_OK)
+        result = fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error);
     if (result != ADCGS_OK)
         adcgs_scene_free(&scene);
     *out = scene;
@@ -288,7 +292,8 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     *rgb = NULL;
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
-    ADCGS_TRY(adcgs_image_read(&image, view->path, error));
+    ADCGS_TRY(view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, &image, error)
+                             : adcgs_image_read(&image, view->path, error));
     adcgs_status status = ADCGS_OK;
     if (image.width != view->camera.width || image.height != view->camera.height)
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, image.width,
