@@ -16,6 +16,8 @@
             fail_msg("%s: \"%s\"", #call, error.text);        \
     } while (0)
 
+#ifdef HAVE_FFMPEG
+
 #define TOP 96
 static float pixels[TOP * TOP * 3];
 
@@ -55,8 +57,6 @@ static double psnr(const adcgs_image *image, int width, int height, int number)
                 sum += pow((double)image->data[3 * (y * image->width + x) + c] - (double)pixels[3 * (y * width + x) + c], 2);
     return -10 * log10(sum / (3.0 * width * height) + 1e-12);
 }
-
-#ifdef HAVE_FFMPEG
 
 /* Every container: as many frames as went in, at their rate, looking as they did; odd sizes are kept or made even. */
 static void test_round_trip(void **state)
