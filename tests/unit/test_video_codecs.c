@@ -10,6 +10,13 @@
             fail_msg("%s: \"%s\"", #call, error.text);        \
     } while (0)
 
+/* What LeakSanitizer is to overlook: libx265 3.5 loses a kilobyte for each encoder. */
+__attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:x265";
+}
+
 typedef struct painted {
     int depth, frame;
 } painted;
@@ -145,7 +152,7 @@ static void test_codecs(void **state)
         {"refresh.ts", "libx264", "crf=20:bf=0:x264-params=intra-refresh=1", AV_PIX_FMT_YUV420P, 40},
         {"x264.avi", "libx264", "crf=20:bf=0", AV_PIX_FMT_YUV420P, 40},
         {"x264.h264", "libx264", "crf=20:bf=3", AV_PIX_FMT_YUV420P, 40},
-        {"x265.mp4", "libx265", "crf=20:x265-params=log-level=none:pools=none", AV_PIX_FMT_YUV420P10LE, 40},
+        {"x265.mp4", "libx265", "crf=20:x265-params=log-level=none", AV_PIX_FMT_YUV420P10LE, 40},
         {"vp9.webm", "libvpx-vp9", "crf=20:b=0:cpu-used=5:auto-alt-ref=1:lag-in-frames=12", AV_PIX_FMT_YUV420P, 40},
         {"vp8.webm", "libvpx", "crf=20:b=1M:cpu-used=5:auto-alt-ref=1:lag-in-frames=12", AV_PIX_FMT_YUV420P, 40},
         {"av1.mp4", "libaom-av1", "crf=20:b=0:cpu-used=8", AV_PIX_FMT_YUV420P, 20},
