@@ -4,6 +4,7 @@
 
 #include "data/scene.h"
 
+#include "data/clips.h"
 #include "data/hypernerf.h"
 #include "data/paths.h"
 #include "data/pose.h"
@@ -51,6 +52,7 @@ void adcgs_scene_free(adcgs_scene **scene)
     }
     adcgs_points_free(&(*scene)->points);
     adcgs_splat_scene_free(&(*scene)->splats);
+    adcgs_clips_free(&(*scene)->clips);
     free((*scene)->directory);
     free(*scene);
     *scene = NULL;
@@ -86,7 +88,7 @@ static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adc
             scene->views[s][i].camera.near_plane = near_plane;
         }
     int width, height, channels = 3;
-    if (!scene->splats)
+    if (!scene->splats && !train[0].is_video)
         ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
     scene->has_alpha = channels % 2 == 0;
     for (int c = 0; c < 3; c++)
@@ -230,9 +232,10 @@ adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_s
     if (!scene)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     scene->directory = folder_of(path, S_ISDIR(status.st_mode));
-    const adcgs_status result = scene->directory
-                                    ? fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error)
-                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    adcgs_status result = scene->directory ? adcgs_clips_create(&scene->clips, error)
+                                           : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (result == ADCGS_OK)
+        result = fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error);
     if (result != ADCGS_OK)
         adcgs_scene_free(&scene);
     *out = scene;
@@ -291,6 +294,15 @@ static void divide_camera(adcgs_camera *camera, int divide)
     camera->cy /= divide;
 }
 
+/** As it was taken: of a file, a video or splats. */
+static adcgs_status read_picture(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
+{
+    if (scene->splats)
+        return adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, image, view->path, error);
+    return view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, image, error)
+                          : adcgs_image_read(image, view->path, error);
+}
+
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error)
 {
@@ -298,9 +310,7 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     *rgb = NULL;
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
-    ADCGS_TRY(scene->splats
-                  ? adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, &image, view->path, error)
-                  : adcgs_image_read(&image, view->path, error));
+    ADCGS_TRY(read_picture(scene, view, &image, error));
     adcgs_status status = ADCGS_OK;
     if (image.width != view->camera.width || image.height != view->camera.height)
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, image.width,
