@@ -85,17 +85,18 @@ static void e24_hidden(uint32_t *out, int32_t *acc, const uint32_t *in, int n, i
 
 static void e24_output(const adcgs_e24 *net, const int32_t *acc, int first, int n, int16_t *mu, uint8_t *si)
 {
-    const adcgs_e24_layer *last = &net->layer[net->n_layers - 1];
-    for (int j = 0; j < n; j++, acc += ADCGS_LANES) {
-        const int row = first + j;
-        if (row < net->channels) {
+    /* Read once: for all the compiler knows, a byte that is stored may be a part of them. */
+    const int channels = net->channels, offset = net->sigma_offset;
+    const int mu_shift = net->layer[net->n_layers - 1].shift, si_shift = net->sigma_shift;
+    for (int row = first; row < first + n; row++, acc += ADCGS_LANES) {
+        if (row < channels) {
             for (int s = 0; s < ADCGS_LANES; s++)
-                mu[row * ADCGS_LANES + s] = (int16_t)adcgs_clip(e24_shr(acc[s], last->shift), 32767);
+                mu[row * ADCGS_LANES + s] = (int16_t)adcgs_clip(e24_shr(acc[s], mu_shift), 32767);
             continue;
         }
         for (int s = 0; s < ADCGS_LANES; s++) {
-            const int32_t v = e24_shr(acc[s], net->sigma_shift) + net->sigma_offset;
-            si[(row - net->channels) * ADCGS_LANES + s] =
+            const int32_t v = e24_shr(acc[s], si_shift) + offset;
+            si[(row - channels) * ADCGS_LANES + s] =
                 (uint8_t)(v < 0 ? 0 : v > ADCGS_SIGMA_LEVELS - 1 ? ADCGS_SIGMA_LEVELS - 1 : v);
         }
     }
