@@ -43,7 +43,8 @@ adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, con
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
     if (at->frame)
-        return adcgs_fail(at->error, status, "%s: frames[%zu].%s: %s", at->path, at->index, field, what);
+        return adcgs_fail(at->error, status, "%s: %s[%zu].%s: %s", at->path, at->list ? at->list : "frames", at->index, field,
+                          what);
     return adcgs_fail(at->error, status, "%s: %s: %s", at->path, field, what);
 }
 

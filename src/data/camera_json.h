@@ -19,6 +19,7 @@ typedef struct adcgs_json_place {
     json_t *root;
     json_t *frame;    /**< NULL: at the root */
     size_t index;     /**< of the frame */
+    const char *list; /**< the array that the frame is of; NULL: "frames" */
     adcgs_error *error;
 } adcgs_json_place;
 
