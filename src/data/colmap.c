@@ -105,9 +105,9 @@ static adcgs_status read_file(reader *r, int file)
     return status;
 }
 
-static adcgs_status read_points(reader *r, size_t period)
+static adcgs_status read_points(reader *r, size_t n, size_t period)
 {
-    ADCGS_TRY(adcgs_colmap_list_training(&r->model, period));
+    ADCGS_TRY(adcgs_colmap_list_training(&r->model, n, period));
     ADCGS_TRY(read_file(r, POINTS));
     r->scene->points = r->model.points;
     r->model.points = (adcgs_points){0};
@@ -304,7 +304,7 @@ static adcgs_status read_model(reader *r, int with_points)
     free(video);
     ADCGS_TRY(has_videos ? add_videos(r) : add_pictures(r));
     r->scene->axes = adcgs_pose_axes(r->scene->views[ADCGS_SPLIT_TRAIN], r->scene->n_views[ADCGS_SPLIT_TRAIN]);
-    return with_points ? read_points(r, has_videos ? SIZE_MAX : TEST_EVERY) : ADCGS_OK;
+    return with_points ? read_points(r, 0, has_videos ? SIZE_MAX : TEST_EVERY) : ADCGS_OK;
 }
 
 static void clear(reader *r)
@@ -327,21 +327,17 @@ adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *fram
     return status;
 }
 
-adcgs_status adcgs_colmap_read_points(adcgs_scene *scene, size_t period, adcgs_error *error)
+adcgs_status adcgs_colmap_read_points(adcgs_scene *scene, size_t n, size_t period, adcgs_error *error)
 {
     reader r = {.scene = scene, .error = error};
     adcgs_status status = ADCGS_OK;
     find_model(scene->directory, &r.folder, &r.format);
     if (r.folder && has_file(&r, POINTS)) {
-        const int with_images = has_file(&r, IMAGES);
-        if (with_images)
+        r.model.error = error;
+        if (has_file(&r, IMAGES))
             status = read_file(&r, IMAGES);
         if (status == ADCGS_OK)
-            status = with_images ? read_points(&r, period) : read_file(&r, POINTS);
-        if (status == ADCGS_OK && !with_images) {
-            scene->points = r.model.points;
-            r.model.points = (adcgs_points){0};
-        }
+            status = read_points(&r, n, period);
     }
     clear(&r);
     return status;

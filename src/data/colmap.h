@@ -28,9 +28,9 @@ int adcgs_is_colmap(const char *folder);
 adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *frames, int with_points, adcgs_error *error);
 
 /**
- * The points of a model alone, if the scene's directory has any. Of its images, if these are there, every period-th by name is
- * for testing, beginning with the first.
+ * The points of a model alone, if the scene's directory has any. Of its images every period-th by name is for testing, beginning
+ * with the first; if the list of them is missing, there are n, with ids from 1 in the order of their names.
  */
-adcgs_status adcgs_colmap_read_points(adcgs_scene *scene, size_t period, adcgs_error *error);
+adcgs_status adcgs_colmap_read_points(adcgs_scene *scene, size_t n, size_t period, adcgs_error *error);
 
 #endif

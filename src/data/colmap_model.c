@@ -231,14 +231,15 @@ static int compare_ids(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-adcgs_status adcgs_colmap_list_training(adcgs_colmap *model, size_t period)
+adcgs_status adcgs_colmap_list_training(adcgs_colmap *model, size_t n, size_t period)
 {
-    model->training = malloc((model->n_images + 1) * sizeof *model->training);
+    const size_t all = model->n_images ? model->n_images : n;
+    model->training = malloc((all + 1) * sizeof *model->training);
     if (!model->training)
-        return adcgs_fail(model->error, ADCGS_ERR_MEMORY, "out of memory for %zu images", model->n_images);
-    for (size_t i = 0; i < model->n_images; i++)
+        return adcgs_fail(model->error, ADCGS_ERR_MEMORY, "out of memory for %zu images", all);
+    for (size_t i = 0; i < all; i++)
         if (i % period)
-            model->training[model->n_training++] = model->images[i].id;
+            model->training[model->n_training++] = model->n_images ? model->images[i].id : (uint32_t)(i + 1);
     qsort(model->training, model->n_training, sizeof *model->training, compare_ids);
     return ADCGS_OK;
 }

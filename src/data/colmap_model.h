@@ -53,8 +53,11 @@ adcgs_status adcgs_colmap_add_image(adcgs_colmap *model, uint32_t id, const doub
  */
 adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3], const uint64_t colour[3], uint64_t seen,
                                     uint64_t training);
-/** All images, sorted before, but every period-th by name, beginning with the first, are for training. */
-adcgs_status adcgs_colmap_list_training(adcgs_colmap *model, size_t period);
+/**
+ * Of the model's images, sorted before, all but every period-th by name, beginning with the first, are for training. Without
+ * images there are n of them, with ids from 1 in the order of their names, as COLMAP gives them.
+ */
+adcgs_status adcgs_colmap_list_training(adcgs_colmap *model, size_t n, size_t period);
 int adcgs_colmap_is_training(const adcgs_colmap *model, uint32_t image);
 
 /** Sort, and find what is listed twice. */

@@ -281,7 +281,7 @@ adcgs_status adcgs_llff_read(adcgs_scene *scene, const adcgs_frame_range *frames
     ADCGS_TRY(status);
     char *points = adcgs_path("%s/points3d.ply", scene->directory);
     if (with_points && !adcgs_is_file(points))
-        status = adcgs_colmap_read_points(scene, r.fixed ? SIZE_MAX : TEST_EVERY, error);
+        status = adcgs_colmap_read_points(scene, r.table.rows, r.fixed ? SIZE_MAX : TEST_EVERY, error);
     free(points);
     return status;
 }
