@@ -10,6 +10,11 @@
  *   World axes, units and colours are the dataset's own.
  * - a folder with dataset.json, metadata.json and camera/ (HyperNeRF, Nerfies). World units are the layout's working
  *   coordinates, (x - center) * scale of its scene.json.
+ *
+ * Pictures taken through a lens that bends (OpenCV's model) are straightened when they are loaded: a view's camera is the
+ * pinhole, its lens says how the picture was taken. Training on the rays as given would need a rasteriser of its own:
+ * splats are projected by the pinhole's normative projection, in training as in decoding, and the bent image of a splat
+ * is no ellipse. Resampling costs a little sharpness, once; training, measuring and decoding then speak of one picture.
  */
 #ifndef ADCGS_DATA_SCENE_H
 #define ADCGS_DATA_SCENE_H
@@ -62,7 +67,7 @@ typedef struct adcgs_scene_options {
  * Open a scene folder or its JSON file of transforms. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate.
  * The near plane is a hundredth of the median distance of the training cameras from the centre of their views.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
- * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole.
+ * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole and OpenCV's.
  */
 adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error);
 void adcgs_scene_free(adcgs_scene **scene);
@@ -73,7 +78,7 @@ const char *adcgs_split_name(adcgs_split split);
 int adcgs_split_parse(const char *name, adcgs_split *split);
 
 /**
- * Load a view's picture as planar binary32 [3][h][w], alpha composited over scene->background, box-filtered down by the
+ * Load a view's picture as planar binary32 [3][h][w], straightened, alpha composited over scene->background, box-filtered down by the
  * integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not NULL, gets the camera
  * at that size. The caller frees *rgb with free().
  */
