@@ -357,10 +357,14 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
     ADCGS_TRY(adcgs_image_read(&image, view->path, error));
     adcgs_status status = ADCGS_OK;
-    if (image.width != view->camera.width || image.height != view->camera.height)
+    const int bends = view->lens.width > 0, width = bends ? view->lens.width : view->camera.width;
+    const int height = bends ? view->lens.height : view->camera.height;
+    if (image.width != width || image.height != height)
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, image.width,
-                            image.height, view->camera.width, view->camera.height);
-    else if (!(*rgb = reduce(&image, divide, scene->background)))
+                            image.height, width, height);
+    else if (bends)
+        status = adcgs_lens_straighten(&view->lens, &view->camera, &image, view->path, error);
+    if (status == ADCGS_OK && !(*rgb = reduce(&image, divide, scene->background)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);
     adcgs_image_free(&image);
     if (status == ADCGS_OK && camera) {

@@ -16,6 +16,11 @@
  *
  * Views for testing and validation are only listed: what follows from all views together (duration, near plane, axes, the
  * frame of reference, the first anchors) follows from the views for training alone.
+ *
+ * Pictures taken through a lens that bends (OpenCV's model) are straightened when they are loaded: a view's camera is the
+ * pinhole, its lens says how the picture was taken. Training on the rays as given would need a rasteriser of its own:
+ * splats are projected by the pinhole's normative projection, in training as in decoding, and the bent image of a splat
+ * is no ellipse. Resampling costs a little sharpness, once; training, measuring and decoding then speak of one picture.
  */
 #ifndef ADCGS_DATA_SCENE_H
 #define ADCGS_DATA_SCENE_H
@@ -87,7 +92,7 @@ typedef struct adcgs_scene_options {
  * t * (n_times-1)/frame_rate. The near plane is half the near bound, or where there is none, a hundredth of the median distance
  * of the training cameras from the centre of their views.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
- * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole.
+ * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole and OpenCV's.
  */
 adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error);
 void adcgs_scene_free(adcgs_scene **scene);
@@ -98,7 +103,7 @@ const char *adcgs_split_name(adcgs_split split);
 int adcgs_split_parse(const char *name, adcgs_split *split);
 
 /**
- * Load a view's picture as planar binary32 [3][h][w], alpha composited over scene->background, box-filtered down by the
+ * Load a view's picture as planar binary32 [3][h][w], straightened, alpha composited over scene->background, box-filtered down by the
  * integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not NULL, gets the camera
  * at that size. The caller frees *rgb with free().
  */

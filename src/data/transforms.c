@@ -6,6 +6,7 @@
 
 #include "data/camera_json.h"
 #include "data/paths.h"
+#include "data/view_lens.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,19 +42,24 @@ static adcgs_status find_image(const place *at, char **out)
     return status;
 }
 
-static adcgs_status read_camera(place *at, const char *image, adcgs_camera *camera)
+/** The lens and the pinhole for it; w and h are the picture's as it was taken. */
+static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene_view *view)
 {
+    adcgs_camera taken;
     int found;
-    ADCGS_TRY(adcgs_json_size(&at->json, camera, &found));
+    ADCGS_TRY(adcgs_json_size(&at->json, &taken, &found));
     if (!found && !at->width) {
         int channels;
-        ADCGS_TRY(adcgs_image_probe(&at->width, &at->height, &channels, image, at->json.error));
+        ADCGS_TRY(adcgs_image_probe(&at->width, &at->height, &channels, view->path, at->json.error));
     }
-    if (!found) {
-        camera->width = at->width;
-        camera->height = at->height;
-    }
-    return adcgs_json_intrinsics(&at->json, camera);
+    view->lens.width = found ? taken.width : at->width;
+    view->lens.height = found ? taken.height : at->height;
+    ADCGS_TRY(adcgs_json_lens(&at->json, &view->lens));
+    char *where = adcgs_path("%s: frames[%zu]", at->json.path, at->json.index);
+    const adcgs_status status = where ? adcgs_view_lens(scene, view, where, at->json.error)
+                                      : adcgs_fail(at->json.error, ADCGS_ERR_MEMORY, "%s: out of memory", at->json.path);
+    free(where);
+    return status;
 }
 
 /** The file's name without folder and extension. */
@@ -67,7 +73,7 @@ static void set_name(adcgs_camera *camera, const char *path)
 }
 
 /** On failure view->path is freed. */
-static adcgs_status read_view(place *at, adcgs_scene_view *view, adcgs_transforms *out)
+static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_view *view, adcgs_transforms *out)
 {
     int found;
     if (!json_is_object(at->json.frame))
@@ -82,7 +88,7 @@ static adcgs_status read_view(place *at, adcgs_scene_view *view, adcgs_transform
         ADCGS_TRY(adcgs_json_number(&at->json, "time", 0.0, 1.0, &view->time, &found));
     ADCGS_TRY(adcgs_json_pose(&at->json, &view->camera));
     ADCGS_TRY(find_image(at, &view->path));
-    const adcgs_status status = read_camera(at, view->path, &view->camera);
+    const adcgs_status status = read_camera(at, scene, view);
     if (status != ADCGS_OK) {
         free(view->path);
         view->path = NULL;
@@ -130,7 +136,7 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
         adcgs_scene_view view = {.time = 0.0};
         at->json.index = i;
         at->json.frame = json_array_get(frames, i);
-        ADCGS_TRY(read_view(at, &view, out));
+        ADCGS_TRY(read_view(at, scene, &view, out));
         const adcgs_split to = split == ADCGS_SPLITS ? choose_split(at) : split;
         if (to == ADCGS_SPLITS)
             free(view.path);
