@@ -92,7 +92,7 @@ static adcgs_status read_file(reader *r, int file)
     r->model.error = r->error;
     adcgs_status status = adcgs_file_load(&data, &bytes, path, FILE_MAX, r->error);
     if (status == ADCGS_ERR_IO && !has_file(r, file))
-        status = adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no such file; a COLMAP model needs cameras, images and points3D", path);
+        status = adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no such file; a COLMAP model has cameras, images, points3D", path);
     if (status == ADCGS_OK)
         status = formats[r->format].parse[file](&r->model, data, bytes);
     if (status == ADCGS_OK && file == CAMERAS)
@@ -158,8 +158,8 @@ static adcgs_status find_pictures(reader *r, const char *name)
     }
     return r->pictures ? ADCGS_OK
                        : adcgs_fail(r->error, ADCGS_ERR_DATA,
-                                    "%s: no image %.100s in images, here, input, images_N or rgb/Nx, and no video of it", directory,
-                                    name);
+                                    "%s: no image %.100s in images, here, input, images_N or rgb/Nx, and no video of it",
+                                    directory, name);
 }
 
 /** A name without its extension; folders become part of it. */
@@ -236,7 +236,8 @@ static char *find_video(const reader *r, const char *name)
     const int all = (int)strlen(name), stem = dot && (slash ? dot > slash + 1 : dot > name) ? (int)(dot - name) : all;
     for (size_t i = 0; i < ADCGS_COUNTOF(ends); i++)
         for (int way = 0; way < 3; way++) {
-            char *path = adcgs_path("%s/%s%.*s.%s", r->scene->directory, way < 2 ? "videos/" : "", way ? stem : all, name, ends[i]);
+            const int length = way ? stem : all;
+            char *path = adcgs_path("%s/%s%.*s.%s", r->scene->directory, way < 2 ? "videos/" : "", length, name, ends[i]);
             if (adcgs_is_file(path))
                 return path;
             free(path);
@@ -321,8 +322,8 @@ adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *fram
     find_model(scene->directory, &r.folder, &r.format);
     const adcgs_status status =
         r.folder ? read_model(&r, with_points)
-                 : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, sparse or here",
-                              scene->directory);
+                 : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, sparse or "
+                              "here", scene->directory);
     clear(&r);
     return status;
 }

@@ -51,7 +51,7 @@ static adcgs_status begin(adcgs_colmap *model, cursor *c, const uint8_t *data, s
 {
     *c = (cursor){data, data + bytes};
     if (bytes < 8)
-        return adcgs_fail(model->error, ADCGS_ERR_DATA, "%s: %zu bytes, too few for a file of a COLMAP model", model->path, bytes);
+        return adcgs_fail(model->error, ADCGS_ERR_DATA, "%s: %zu bytes, too few for a COLMAP file", model->path, bytes);
     *n = take64(c);
     if (*n > left(c) / least)
         return adcgs_fail(model->error, ADCGS_ERR_DATA, "%s: counts %llu %ss, but %zu bytes hold at most %zu", model->path,

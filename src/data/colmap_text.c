@@ -65,7 +65,8 @@ static adcgs_status take_integer(const adcgs_colmap *model, cursor *c, const cha
     errno = 0;
     *value = strtoull(c->at, &end, 10);
     if (*c->at < '0' || *c->at > '9' || errno || !ends(end) || *value > max)
-        return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "%s: expected a whole number from 0 to %llu", what, (unsigned long long)max);
+        return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "%s: expected a whole number from 0 to %llu", what,
+                                (unsigned long long)max);
     c->at = end;
     return ADCGS_OK;
 }

@@ -19,7 +19,8 @@ adcgs_status adcgs_footage_video(adcgs_footage *out, const char *path, adcgs_err
 adcgs_status adcgs_footage_folder(adcgs_footage *out, const char *folder, adcgs_error *error);
 /**
  * Pictures by number: folder, which ends with its slash or is "", and a pattern that has one %d or %0Nd, or
- * none for a picture that stands for itself. count 0: as many as follow each other. ADCGS_ERR_DATA, naming the file, if one is missing.
+ * none for a picture that stands for itself. count 0: as many as follow each other. ADCGS_ERR_DATA, naming the
+ * file, if one is missing.
  */
 adcgs_status adcgs_footage_pattern(adcgs_footage *out, const char *folder, const char *pattern, int64_t first, int64_t count,
                                    adcgs_error *error);

@@ -35,7 +35,7 @@ adcgs_status adcgs_frames_parse(adcgs_frame_range *range, const char *text, adcg
         bad = take_number(&at, &r.step);
     }
     if (bad || *at || !r.step)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--frames %.64s: expected A:B or A:B:STEP, whole numbers, STEP at least 1", text);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--frames %.64s: expected A:B or A:B:STEP, with STEP at least 1", text);
     if (r.end >= 0 && r.end <= r.begin)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--frames %.64s: holds no frame, %lld is not below %lld", text,
                           (long long)r.begin, (long long)r.end);

@@ -206,9 +206,10 @@ static adcgs_status open_footage(const reader *r, size_t index, int videos, adcg
 {
     char *path = adcgs_path("%s/%s", r->scene->directory, r->cameras.names[index]);
     char *images = adcgs_path("%s/%s/images", r->scene->directory, r->cameras.names[index]);
+    const char *folder = adcgs_is_folder(images) ? images : path;
     const adcgs_status status = !path || !images ? no_memory(r)
                                 : videos         ? adcgs_footage_video(footage, path, r->error)
-                                                 : adcgs_footage_folder(footage, adcgs_is_folder(images) ? images : path, r->error);
+                                                 : adcgs_footage_folder(footage, folder, r->error);
     free(path);
     free(images);
     return status;
@@ -226,7 +227,8 @@ static adcgs_status add_camera(const reader *r, size_t index, const adcgs_footag
                           r->cameras.names[0], (long long)*frames, name, (long long)footage->frames);
     *frames = footage->frames;
     ADCGS_TRY(adcgs_frames_count(r->frames, footage->frames, &count, r->scene->directory, r->error));
-    ADCGS_TRY(read_view(r, index, footage->width, footage->height, footage->video ? footage->video : footage->pictures[0], &like));
+    const char *file = footage->video ? footage->video : footage->pictures[0];
+    ADCGS_TRY(read_view(r, index, footage->width, footage->height, file, &like));
     if (split == ADCGS_SPLIT_TRAIN) {
         ADCGS_TRY(read_bounds(r, index));
         if (!r->scene->frame_rate)

@@ -35,8 +35,8 @@ static const char *const root_fields[] = {"adcgs_scene", "name", "frame_rate", "
 /* Of a camera; the first of them cannot be shared. */
 static const char *const camera_fields[] = {
     "name", "camera_to_world", "world_to_camera", "R", "t", "video", "axes", "pixel_centre", "width", "height", "fx", "fy", "cx",
-    "cy", "skew", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "images", "first", "count", "frame_rate", "time_offset", "split",
-    NULL};
+    "cy", "skew", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "images", "first", "count", "frame_rate", "time_offset",
+    "split", NULL};
 #define OWN_FIELDS 6
 
 /** A name in the file, from malloc(). */
@@ -103,7 +103,8 @@ static adcgs_status scale_pose(const reader *r, const adcgs_json_place *at, doub
     for (int i = 0; i < 3; i++) {
         pose[4 * i + 3] *= r->scale;
         if (!(fabs(pose[4 * i + 3]) <= WORLD_MAX))
-            return adcgs_json_bad(at, ADCGS_ERR_DATA, "name", "the camera is at %g, expected at most %g", pose[4 * i + 3], WORLD_MAX);
+            return adcgs_json_bad(at, ADCGS_ERR_DATA, "name", "the camera is at %g, expected at most %g", pose[4 * i + 3],
+                                  WORLD_MAX);
     }
     return ADCGS_OK;
 }

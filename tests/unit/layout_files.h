@@ -15,6 +15,9 @@
 
 enum { RIG_WIDTH = 24, RIG_HEIGHT = 16, RIG_POINTS = 27 };
 #define RIG_FOCAL 20.0
+/** A point of one's own: 1 2 3. */
+#define RIG_PLY                                                                                                          \
+    "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
 
 /** Camera to world: the position on an arc of radius 3, up is -y of the world (y points down). */
 static inline void rig_pose(int i, double pose[12])
@@ -230,8 +233,8 @@ static inline void put_model_text(const char *place, int n, const char *names, c
         rig_pose(i, pose);
         rig_quaternion(pose, q, t);
         snprintf(name, sizeof name, names, i);
-        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 7 %s\n%s\n", 10 + i, q[0], q[1], q[2], q[3],
-                              t[0], t[1], t[2], name, i % 2 ? "" : "1.5 2.5 -1");
+        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 7 %s\n%s\n", 10 + i, q[0], q[1], q[2],
+                              q[3], t[0], t[1], t[2], name, i % 2 ? "" : "1.5 2.5 -1");
     }
     snprintf(path, sizeof path, "%s/images.txt", place);
     put_text(path, text);
@@ -260,8 +263,8 @@ static inline uint32_t count_kept_points(int n, int period)
 static inline const char *json_matrix(const double m[12])
 {
     static char text[512];
-    snprintf(text, sizeof text, "[[%.17g,%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g,%.17g]]", m[0], m[1], m[2],
-             m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]);
+    snprintf(text, sizeof text, "[[%.17g,%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g,%.17g]]", m[0], m[1],
+             m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]);
     return text;
 }
 

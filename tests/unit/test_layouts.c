@@ -63,8 +63,8 @@ static void put_transforms(const char *name, int first, int step)
     for (int i = first; i < CAMERAS; i += step) {
         double pose[12];
         rig_pose(i, pose);
-        at += (size_t)sprintf(text + at, "%s{\"file_path\":\"%d.ppm\",\"time\":%g,\"transform_matrix\":%s}", i > first ? "," : "", i,
-                              i / 8.0, json_opengl(pose));
+        at += (size_t)sprintf(text + at, "%s{\"file_path\":\"%d.ppm\",\"time\":%g,\"transform_matrix\":%s}",
+                              i > first ? "," : "", i, i / 8.0, json_opengl(pose));
     }
     sprintf(text + at, "]}");
     put_text(name, text);
@@ -169,8 +169,8 @@ static void put_scene_file(void)
     for (int i = 0; i < CAMERAS; i++) {
         double pose[12];
         rig_pose(i, pose);
-        at += (size_t)sprintf(text + at, "%s{\"name\":\"%d\",\"camera_to_world\":%s,\"images\":\"cam%d/%%04d.ppm\",\"split\":\"%s\"}",
-                              i ? "," : "", i, json_matrix(pose), i, i ? "train" : "test");
+        at += (size_t)sprintf(text + at, "%s{\"name\":\"%d\",\"camera_to_world\":%s,\"images\":\"cam%d/%%04d.ppm\","
+                              "\"split\":\"%s\"}", i ? "," : "", i, json_matrix(pose), i, i ? "train" : "test");
     }
     sprintf(text + at, "]}");
     put_text("scene.json", text);
@@ -322,8 +322,8 @@ static void test_apart_poses(void **state)
     begin_anew(&layouts[0]);
     start first = make_start(&layouts[0]), second;
     finish_start(&first);
-    put_text("transforms_test.json", "{\"fl_x\":99,\"fps\":7,\"w\":24,\"h\":16,\"ply_file_path\":\"0.ppm\",\"frames\":[{\"file_path\":"
-             "\"0.ppm\",\"time\":1,\"transform_matrix\":[[1,0,0,70],[0,1,0,0],[0,0,1,900]]}]}");
+    put_text("transforms_test.json", "{\"fl_x\":99,\"fps\":7,\"w\":24,\"h\":16,\"ply_file_path\":\"0.ppm\",\"frames\":["
+             "{\"file_path\":\"0.ppm\",\"time\":1,\"transform_matrix\":[[1,0,0,70],[0,1,0,0],[0,0,1,900]]}]}");
     second = make_start(&layouts[0]);
     finish_start(&second);
     expect_same(&first, &second);
