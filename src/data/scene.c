@@ -5,6 +5,7 @@
 #include "data/scene.h"
 
 #include "data/camera_json.h"
+#include "data/clips.h"
 #include "data/colmap.h"
 #include "data/hypernerf.h"
 #include "data/llff.h"
@@ -55,6 +56,7 @@ void adcgs_scene_free(adcgs_scene **scene)
         free((*scene)->views[s]);
     }
     adcgs_points_free(&(*scene)->points);
+    adcgs_clips_free(&(*scene)->clips);
     free((*scene)->directory);
     free(*scene);
     *scene = NULL;
@@ -287,9 +289,10 @@ adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_s
     if (!scene)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     scene->directory = folder_of(path, S_ISDIR(status.st_mode));
-    const adcgs_status result = scene->directory
-                                    ? fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error)
-                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    adcgs_status result = scene->directory ? adcgs_clips_create(&scene->clips, error)
+                                           : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (result == ADCGS_OK)
+        result = fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error);
     if (result != ADCGS_OK)
         adcgs_scene_free(&scene);
     *out = scene;
@@ -355,7 +358,8 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     *rgb = NULL;
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
-    ADCGS_TRY(adcgs_image_read(&image, view->path, error));
+    ADCGS_TRY(view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, &image, error)
+                             : adcgs_image_read(&image, view->path, error));
     adcgs_status status = ADCGS_OK;
     const int bends = view->lens.width > 0, width = bends ? view->lens.width : view->camera.width;
     const int height = bends ? view->lens.height : view->camera.height;

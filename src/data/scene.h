@@ -75,6 +75,7 @@ typedef struct adcgs_scene {
     float background[3];  /**< white for images with alpha, else black, unless given */
     adcgs_scene_points points; /**< initial points, n = 0 if the scene has none */
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
+    struct adcgs_clips *clips; /**< videos that are open (clips.h) */
 } adcgs_scene;
 
 /** Overrides given on a command line. Zero-initialise. */
@@ -105,7 +106,8 @@ int adcgs_split_parse(const char *name, adcgs_split *split);
 /**
  * Load a view's picture as planar binary32 [3][h][w], straightened, alpha composited over scene->background, box-filtered down
  * by the integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not NULL, gets the
- * camera at that size. The caller frees *rgb with free().
+ * camera at that size. The caller frees *rgb with free(). Any thread may call; frames of a video are best asked for in
+ * ascending order by one thread (adcgs_view_runs_make()).
  */
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error);

@@ -6,6 +6,7 @@
 
 #include "io/atomic.h"
 #include "io/image.h"
+#include "io/video.h"
 #include "io/y4m.h"
 
 #include <errno.h>
@@ -25,6 +26,7 @@ struct adcgs_sink {
     const kind *what;
     FILE *file; /**< of a stream: standard output or the atomic file */
     adcgs_atomic atomic;
+    adcgs_video_writer *video;
 };
 
 static void y4m_begin(FILE *file, const adcgs_sink_config *config)
@@ -73,6 +75,11 @@ static adcgs_status image_write(adcgs_sink *sink, const adcgs_frame *frame, int 
     return status;
 }
 
+static adcgs_status video_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
+{
+    return adcgs_video_write_frame(sink->video, frame, error);
+}
+
 static const kind kinds[] = {
     {"y4m", 1, 0, y4m_begin, y4m_write},
     {"raw", 1, 1, NULL, raw_write},
@@ -80,6 +87,7 @@ static const kind kinds[] = {
 };
 static const kind image_kind = {"image", 0, 0, NULL, image_write};
 static const kind exr_kind = {"exr", 0, 1, NULL, image_write};
+static const kind video_kind = {"video", 0, 0, NULL, video_write};
 
 static const char *extension_of(const char *path)
 {
@@ -90,9 +98,13 @@ static const char *extension_of(const char *path)
 
 static const kind *find_kind(const char *format)
 {
+    char name[16];
     for (size_t i = 0; i < ADCGS_COUNTOF(kinds); i++)
         if (!strcasecmp(format, kinds[i].name))
             return &kinds[i];
+    snprintf(name, sizeof name, "x.%s", format);
+    if (adcgs_is_video(name))
+        return &video_kind;
     return strcasecmp(format, "exr") ? &image_kind : &exr_kind;
 }
 
@@ -145,18 +157,34 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: float samples need EXR or raw", config->target);
     if (config->depth == ADCGS_DEPTH_HALF && what != &exr_kind)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: half samples need EXR", config->target);
-    if (!is_image)
+    if (!is_image && what != &video_kind)
         return ADCGS_OK;
     if (!strcmp(config->target, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "standard output takes y4m or raw, not %s", format);
     if (!*format || strcasecmp(extension_of(config->target), format))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name must end in .%s", config->target,
                           *format ? format : "ppm, .exr, .y4m, ...");
+    if (!is_image)
+        return ADCGS_OK;
     if (places < 0 || places > 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: expected one number like %%04d in the name", config->target);
     if (!places && config->frames > 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %d frames need a number like %%04d in the name", config->target,
                           config->frames);
+    return ADCGS_OK;
+}
+
+/** What the sink writes to: standard output, a file of ours, or a video's, which is opened by name. */
+static adcgs_status open_target(adcgs_sink *sink, adcgs_error *error)
+{
+    const adcgs_sink_config *config = &sink->config;
+    if (sink->what == &video_kind)
+        return adcgs_video_write_open(&sink->video, config->target, config->width, config->height, config->frame_rate, error);
+    if (!sink->what->is_stream)
+        return ADCGS_OK;
+    if (strcmp(config->target, "-"))
+        ADCGS_TRY(adcgs_atomic_open(&sink->atomic, config->target, error));
+    sink->file = sink->atomic.file ? sink->atomic.file : stdout;
     return ADCGS_OK;
 }
 
@@ -172,20 +200,23 @@ adcgs_status adcgs_sink_open(adcgs_sink **out, const adcgs_sink_config *config, 
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", config->target);
     sink->config = *config;
     sink->what = what;
-    if (what->is_stream && to_stdout)
-        sink->file = stdout;
-    else if (what->is_stream) {
-        const adcgs_status status = adcgs_atomic_open(&sink->atomic, config->target, error);
-        if (status != ADCGS_OK) {
-            free(sink);
-            return status;
-        }
-        sink->file = sink->atomic.file;
+    const adcgs_status status = open_target(sink, error);
+    if (status != ADCGS_OK) {
+        free(sink);
+        return status;
     }
     if (what->begin)
         what->begin(sink->file, config);
     *out = sink;
     return ADCGS_OK;
+}
+
+void adcgs_sink_size(const adcgs_sink *sink, int *width, int *height)
+{
+    *width = sink->config.width;
+    *height = sink->config.height;
+    if (sink->video)
+        adcgs_video_write_size(sink->video, width, height);
 }
 
 adcgs_status adcgs_sink_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
@@ -209,6 +240,8 @@ adcgs_status adcgs_sink_close(adcgs_sink **sink, adcgs_error *error)
         status = adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write: %s", strerror(errno));
     else if ((*sink)->atomic.file)
         status = adcgs_atomic_commit(&(*sink)->atomic, error);
+    else if ((*sink)->video)
+        status = adcgs_video_write_close(&(*sink)->video, error);
     free(*sink);
     *sink = NULL;
     return status;
@@ -219,6 +252,7 @@ void adcgs_sink_abort(adcgs_sink **sink)
     if (!*sink)
         return;
     adcgs_atomic_abort(&(*sink)->atomic);
+    adcgs_video_write_abort(&(*sink)->video);
     free(*sink);
     *sink = NULL;
 }

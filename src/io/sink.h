@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Where rendered frames go: numbered images, Y4M, raw pixels, or nowhere. Files
- * appear complete or not at all; "-" is standard output.
+ * Where rendered frames go: numbered images, a video file, Y4M, raw pixels, or
+ * nowhere. Files appear complete or not at all; "-" is standard output.
  */
 #ifndef ADCGS_IO_SINK_H
 #define ADCGS_IO_SINK_H
@@ -20,15 +20,17 @@ typedef enum adcgs_depth {
 
 typedef struct adcgs_sink_config {
     const char *target;  /**< "-", a file, or for images a pattern with %d or %04d */
-    const char *format;  /**< NULL: by the target's extension, Y4M for "-"; else y4m, raw, null or an image extension */
+    const char *format;  /**< NULL: by the target's extension, Y4M for "-"; else y4m, raw, null or an extension */
     adcgs_depth depth;
-    double frame_rate;   /**< for Y4M */
+    double frame_rate;   /**< for Y4M and videos */
     int width, height;
     int frames;          /**< how many will come; more than one image needs a pattern */
 } adcgs_sink_config;
 
 /** The strings of config must outlive the sink. */
 adcgs_status adcgs_sink_open(adcgs_sink **out, const adcgs_sink_config *config, adcgs_error *error);
+/** The size of the pictures as they are stored: that of the frames, but for videos whose codec takes even sizes only. */
+void adcgs_sink_size(const adcgs_sink *sink, int *width, int *height);
 /** index numbers the image in a pattern. */
 adcgs_status adcgs_sink_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error);
 /** Complete the output. *sink may be NULL. */

@@ -29,9 +29,10 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
         {"output", 'o', ADCGS_OPTION_STRING, &s->output, 0, 0, "TARGET",
-         "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.y4m, pixels.raw, or - for standard output", NULL, NULL},
+         "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
+         "or - for standard output", NULL, NULL},
         {"format", 'f', ADCGS_OPTION_STRING, &s->format, 0, 0, "NAME",
-         "y4m, raw, null or an image's extension; without it\nthe target's name decides, and - is y4m", NULL, NULL},
+         "y4m, raw, null, an image's or a video's extension;\nwithout it the target's name decides, and - is y4m", NULL, NULL},
         {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
         {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
          NULL},
@@ -125,6 +126,15 @@ static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_
     return s->output ? adcgs_sink_open(sink, &config, error) : ADCGS_OK;
 }
 
+static void note_size(const adcgs_cli *cli, const settings *s, const adcgs_sink *sink, const adcgs_frame *frame)
+{
+    int width, height;
+    adcgs_sink_size(sink, &width, &height);
+    if (width != frame->width || height != frame->height)
+        adcgs_cli_note(cli, "%s: stored as %dx%d pixels, since its codec takes even sizes only: the edge is repeated", s->output,
+                       width, height);
+}
+
 /** \return ADCGS_OK, or with *mismatch set when the digest is not the expected one. */
 static adcgs_status decode(const adcgs_cli *cli, const settings *s, adcgs_decoder *decoder, int *mismatch, adcgs_error *error)
 {
@@ -142,6 +152,8 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, adcgs_decode
     adcgs_md5_init(&all);
     adcgs_status status = frame.rgb ? open_sink(&sink, s, &shots, info.frame_rate, error)
                                     : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a frame");
+    if (sink)
+        note_size(cli, s, sink, &frame);
     if (status == ADCGS_OK)
         status = render(s, decoder, &shots, sink, &frame, &all, &seconds, error);
     if (status == ADCGS_OK && !adcgs_interrupted())

@@ -2,6 +2,7 @@
 /** \file The training loop. */
 #include "train/trainer.h"
 
+#include "data/clips.h"
 #include "metric/metric.h"
 #include "train/area.h"
 #include "train/lattice.h"
@@ -167,12 +168,11 @@ typedef struct load_job {
     int divide;
     adcgs_error *errors;
     size_t *pixels;
+    adcgs_view_runs runs;
 } load_job;
 
-static void load_view(void *arg, int i, int thread)
+static void load_view(load_job *job, uint32_t i)
 {
-    (void)thread;
-    load_job *job = arg;
     adcgs_trainer *t = job->t;
     const adcgs_scene_view *from = &t->scene->views[ADCGS_SPLIT_TRAIN][i];
     adcgs_train_view *to = &t->views[i];
@@ -184,15 +184,29 @@ static void load_view(void *arg, int i, int thread)
     job->pixels[i] = error->status == ADCGS_OK ? (size_t)camera.width * (size_t)camera.height : 0;
 }
 
+/** One thread reads a video from its beginning to its end or its first fault, or one picture. */
+static void load_run(void *arg, int run, int thread)
+{
+    (void)thread;
+    load_job *job = arg;
+    int good = 1;
+    for (uint32_t i = job->runs.begin[run]; good && i < job->runs.begin[run + 1]; i++) {
+        load_view(job, job->runs.order[i]);
+        good = job->errors[job->runs.order[i]].status == ADCGS_OK;
+    }
+}
+
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error *error)
 {
-    load_job job = { t, divide, calloc(t->n_views, sizeof(adcgs_error)), calloc(t->n_views, sizeof(size_t)) };
+    load_job job = { t, divide, calloc(t->n_views, sizeof(adcgs_error)), calloc(t->n_views, sizeof(size_t)), { 0 } };
     adcgs_status status = ADCGS_OK;
     if (!job.errors || !job.pixels)
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the views");
     free_views(t);
     if (status == ADCGS_OK)
-        adcgs_pool_run(t->pool, load_view, &job, (int)t->n_views);
+        status = adcgs_view_runs_make(&job.runs, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, error);
+    if (status == ADCGS_OK)
+        adcgs_pool_run(t->pool, load_run, &job, (int)job.runs.n);
     size_t most = 0;
     for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
         if (job.errors[i].status != ADCGS_OK) {
@@ -204,6 +218,7 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     }
     free(job.errors);
     free(job.pixels);
+    adcgs_view_runs_clear(&job.runs);
     ADCGS_TRY(status);
     t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->grad = adcgs_alloc(NULL, most * 3, sizeof(float), error);

@@ -68,6 +68,29 @@ if [ -f .libs/adcgs_oiio.so ]; then
     expect 5 "x.png: images need OpenImageIO: " env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.png" --time 0
     expect 0 "frame" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/v.y4m"
 fi
+# Videos likewise, by FFmpeg.
+expect 2 "standard output takes y4m" $dec "$s" -o - --format mp4
+expect 2 "must end in .mp4" $dec "$s" -o "$dir/x.mkv" --format mp4
+expect 2 "float" $dec "$s" -o "$dir/x.mp4" --float
+if grep -q "define HAVE_FFMPEG" config.h; then
+    for ext in mp4 mov mkv webm avi; do
+        expect 0 "frame" $dec "$s" -o "$dir/c.$ext"
+        [ -s "$dir/c.$ext" ] || bad "no $ext"
+    done
+    dd if="$dir/c.mp4" bs=1 skip=4 count=4 2>/dev/null | grep -q ftyp || bad "c.mp4 is no MP4"
+    cp "$dir/c.mp4" "$dir/again.mp4"
+    expect 0 "frame" $dec "$s" -o "$dir/c.mp4" --format mp4 --threads 1
+    cmp -s "$dir/c.mp4" "$dir/again.mp4" || bad "the same frames give another video"
+    expect 0 "stored as 52x40" $dec "$s" -o "$dir/odd.mp4" --size 51x39 --time 0
+    expect 3 "x.mp4" $dec "$s" -o "$dir/no/x.mp4" --time 0
+    expect 5 ".webm or .avi" $dec "$s" -o "$dir/x.mpg" --time 0
+    if [ -f .libs/adcgs_video.so ]; then
+        ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*libav' || bad "adcgs-dec loads FFmpeg at once"
+        expect 5 "x.mp4: videos need FFmpeg: no adcgs_video.so in $dir/none" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.mp4"
+    fi
+else
+    expect 5 "x.mp4: videos need FFmpeg" $dec "$s" -o "$dir/x.mp4"
+fi
 [ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || bad "something was left behind"
 
 # Cameras and times.
