@@ -5,6 +5,7 @@
 #include "data/transforms.h"
 
 #include "data/camera_json.h"
+#include "data/listing.h"
 #include "data/paths.h"
 #include "data/view_lens.h"
 
@@ -16,7 +17,8 @@
 typedef struct place {
     adcgs_json_place json;
     const char *folder; /**< of the file, with the slash at its end */
-    int width, height;  /**< of the first image, for frames that do not say; 0: not known yet */
+    adcgs_split split;  /**< of the frame; ADCGS_SPLITS: of none */
+    int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< of a split's first image, for frames that do not say; 0: none yet */
 } place;
 
 /** folder + name, allocated. Absolute names stand for themselves. */
@@ -48,28 +50,19 @@ static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene
     adcgs_camera taken;
     int found;
     ADCGS_TRY(adcgs_json_size(&at->json, &taken, &found));
-    if (!found && !at->width) {
+    int *width = &at->width[at->split], *height = &at->height[at->split];
+    if (!found && !*width) {
         int channels;
-        ADCGS_TRY(adcgs_image_probe(&at->width, &at->height, &channels, view->path, at->json.error));
+        ADCGS_TRY(adcgs_image_probe(width, height, &channels, view->path, at->json.error));
     }
-    view->lens.width = found ? taken.width : at->width;
-    view->lens.height = found ? taken.height : at->height;
+    view->lens.width = found ? taken.width : *width;
+    view->lens.height = found ? taken.height : *height;
     ADCGS_TRY(adcgs_json_lens(&at->json, &view->lens));
     char *where = adcgs_path("%s: frames[%zu]", at->json.path, at->json.index);
     const adcgs_status status = where ? adcgs_view_lens(scene, view, where, at->json.error)
                                       : adcgs_fail(at->json.error, ADCGS_ERR_MEMORY, "%s: out of memory", at->json.path);
     free(where);
     return status;
-}
-
-/** The file's name without folder and extension. */
-static void set_name(adcgs_camera *camera, const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    snprintf(camera->name, sizeof camera->name, "%s", slash ? slash + 1 : path);
-    char *dot = strrchr(camera->name, '.');
-    if (dot && dot != camera->name)
-        *dot = 0;
 }
 
 /** On failure view->path is freed. */
@@ -94,7 +87,7 @@ static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_v
         view->path = NULL;
         return status;
     }
-    set_name(&view->camera, view->path);
+    adcgs_stem(view->camera.name, sizeof view->camera.name, view->path);
     return ADCGS_OK;
 }
 
@@ -136,12 +129,12 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
         adcgs_scene_view view = {.time = 0.0};
         at->json.index = i;
         at->json.frame = json_array_get(frames, i);
+        at->split = split == ADCGS_SPLITS ? choose_split(at) : split;
         ADCGS_TRY(read_view(at, scene, &view, out));
-        const adcgs_split to = split == ADCGS_SPLITS ? choose_split(at) : split;
-        if (to == ADCGS_SPLITS)
+        if (at->split == ADCGS_SPLITS)
             free(view.path);
         else
-            scene->views[to][scene->n_views[to]++] = view;
+            scene->views[at->split][scene->n_views[at->split]++] = view;
     }
     at->json.frame = NULL;
     return ADCGS_OK;

@@ -331,6 +331,34 @@ static void test_apart_poses(void **state)
     free_start(&second);
 }
 
+/** Frames that do not say how large they are: other sizes of test pictures do not become those of the others. */
+static void test_apart_sizes(void **state)
+{
+    const layout *l = &layouts[1];
+    begin_anew(l);
+    put_transforms("transforms.json", 0, 1);
+    char *text = malloc(65536);
+    assert_non_null(text);
+    FILE *file = fopen(in("transforms.json"), "rb");
+    const size_t n = fread(text, 1, 65535, file);
+    fclose(file);
+    text[n] = 0;
+    memset(strstr(text, "\"w\":24,"), ' ', 7);
+    memset(strstr(text, "\"h\":16,"), ' ', 7);
+    put_text("transforms.json", text);
+    free(text);
+    start first = make_start(l), second;
+    finish_start(&first);
+    put_picture("0.ppm", 0, 2 * RIG_WIDTH, 2 * RIG_HEIGHT);
+    put_picture("8.ppm", 8, 2 * RIG_WIDTH, 2 * RIG_HEIGHT);
+    second = make_start(l);
+    finish_start(&second);
+    expect_same(&first, &second);
+    assert_int_equal(second.scene->views[ADCGS_SPLIT_TEST][0].camera.width, 2 * RIG_WIDTH);
+    free_start(&first);
+    free_start(&second);
+}
+
 /* ---- Frames ---- */
 
 static void expect_range(const char *text, int64_t begin, int64_t end, int64_t step)
@@ -452,6 +480,7 @@ int main(void)
         cmocka_unit_test(test_apart),
         cmocka_unit_test(test_apart_notices),
         cmocka_unit_test(test_apart_poses),
+        cmocka_unit_test(test_apart_sizes),
         cmocka_unit_test(test_parse_frames),
         cmocka_unit_test(test_frames_of_pictures),
         cmocka_unit_test(test_frames_of_cameras),
