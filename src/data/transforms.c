@@ -18,7 +18,7 @@ typedef struct place {
     adcgs_json_place json;
     const char *folder; /**< of the file, with the slash at its end */
     adcgs_split split;  /**< of the frame; ADCGS_SPLITS: of none */
-    int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< of a split's first image, for frames that do not say; 0: none yet */
+    int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< of a split's first image, for frames that do not say */
 } place;
 
 /** folder + name, allocated. Absolute names stand for themselves. */
