@@ -8,6 +8,7 @@
 #define ADCGS_DATA_CAMERA_JSON_H
 
 #include "base/base.h"
+#include "data/lens.h"
 
 #include <adcgs/camera.h>
 
@@ -39,6 +40,11 @@ adcgs_status adcgs_json_frames(const adcgs_json_place *at, json_t **frames, size
 adcgs_status adcgs_json_size(const adcgs_json_place *at, adcgs_camera *camera, int *found);
 /** Focal lengths and principal point (the middle, if not given) of a camera whose size is set. Lenses that bend are refused. */
 adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *camera);
+/**
+ * The same for a lens whose size is set, with its distortion in the meaning of nerfstudio: k1 to k3, p1 and p2 are OpenCV's, k4
+ * is the factor of r^8. Only camera_model FULL_OPENCV, which is COLMAP's, has k4 to k6 below the line.
+ */
+adcgs_status adcgs_json_lens(const adcgs_json_place *at, adcgs_lens *lens);
 /** The frame's transform_matrix, converted to OpenCV axes. */
 adcgs_status adcgs_json_pose(const adcgs_json_place *at, adcgs_camera *camera);
 

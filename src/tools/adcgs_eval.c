@@ -15,10 +15,10 @@
 #include <sys/stat.h>
 
 typedef struct settings {
-    const char *file, *scene, *images, *crop;
+    const char *file, *scene, *images, *crop, *frames;
     adcgs_config config;
     adcgs_box box; /**< of --crop, where it gives numbers */
-    int split, cpu, json, as_is, beside;
+    int split, cpu, json, as_is, beside, dataset;
 } settings;
 
 /** What the views' scores go through. */
@@ -34,12 +34,17 @@ typedef struct report {
 
 static const char *const splits[] = {"train", "val", "test", NULL}; /* in the order of adcgs_split */
 
-#define OPTION_COUNT 9
+#define OPTION_COUNT 11
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
         {"split", 0, ADCGS_OPTION_CHOICE, &s->split, 0, 0, "NAME", "views to compare: test (the default), val or train", splits,
          NULL},
+        {"dataset", 0, ADCGS_OPTION_CHOICE, &s->dataset, 0, 0, "KIND",
+         "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs or splats",
+         adcgs_dataset_names, NULL},
+        {"frames", 0, ADCGS_OPTION_STRING, &s->frames, 0, 0, "A:B:STEP",
+         "the frames that the stream was made of, as for adcgs-enc", NULL, NULL},
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
         {"images", 0, ADCGS_OPTION_STRING, &s->images, 0, 0, "DIR", "write the decoded views there as PNG", NULL, NULL},
         {"beside", 0, ADCGS_OPTION_FLAG, &s->beside, 0, 0, NULL,
@@ -205,7 +210,9 @@ static void end_text(const report *r, const adcgs_info *info, const adcgs_evalua
 /** Scenes give times in steps of a frame, and their alpha over a background: both are the stream's. */
 static adcgs_status open_scene(adcgs_scene **scene, const settings *s, const adcgs_info *info, adcgs_error *error)
 {
-    adcgs_scene_options options = {.has_background = !s->as_is, .frame_rate = info->frame_rate};
+    adcgs_scene_options options = {.has_background = !s->as_is, .frame_rate = info->frame_rate, .dataset = s->dataset};
+    if (s->frames)
+        ADCGS_TRY(adcgs_frames_parse(&options.frames, s->frames, error));
     memcpy(options.background, info->background, sizeof options.background);
     return adcgs_scene_open(scene, s->scene, &options, error);
 }

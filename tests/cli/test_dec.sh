@@ -107,6 +107,8 @@ echo "{\"fl_x\":80,\"w\":64,\"h\":48,\"frames\":[{\"time\":0,\"transform_matrix\
 expect 0 "2 frames of 64x48" $dec "$s" --camera "$dir/path.json" --md5
 echo '{"fl_x":80,"frames":[{"time":0,"transform_matrix":[[2,0,0,0],[0,2,0,0],[0,0,2,0]]}]}' >"$dir/path.json"
 expect 4 "frames\\[0\\].transform_matrix" $dec "$s" --camera "$dir/path.json"
+echo "{\"fl_x\":80,\"k1\":0.1,\"frames\":[{\"transform_matrix\":$pose}]}" >"$dir/path.json"
+expect 5 "frames\\[0\\].k1: .*pinhole" $dec "$s" --camera "$dir/path.json"
 expect 3 "nowhere.json" $dec "$s" --camera "$dir/nowhere.json"
 
 # Bad input.
