@@ -78,9 +78,9 @@ const char *adcgs_split_name(adcgs_split split);
 int adcgs_split_parse(const char *name, adcgs_split *split);
 
 /**
- * Load a view's picture as planar binary32 [3][h][w], straightened, alpha composited over scene->background, box-filtered down by the
- * integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not NULL, gets the camera
- * at that size. The caller frees *rgb with free().
+ * Load a view's picture as planar binary32 [3][h][w], straightened, alpha composited over scene->background,
+ * box-filtered down by the integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not
+ * NULL, gets the camera at that size. The caller frees *rgb with free().
  */
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error);
