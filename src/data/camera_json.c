@@ -208,7 +208,8 @@ adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *cam
     ADCGS_TRY(read_terms(at, &its, values));
     for (int i = 0; i < N_TERMS; i++)
         if (values[i] != 0.0)
-            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, terms[i], "lens distortion %g, expected a pinhole camera", values[i]);
+            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, terms[i], "lens distortion %g, expected a pinhole camera",
+                                  values[i]);
     return read_pinhole(at, camera);
 }
 

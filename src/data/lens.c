@@ -12,7 +12,8 @@
 #define NEWTON_STEPS 40
 #define NEWTON_TOLERANCE 1e-12
 
-enum { ABOVE = 5, BELOW = 4, DEGREE = ABOVE + BELOW - 2 }; /* coefficients in r^2 above and below the line; degree of their product */
+/* Coefficients in r^2 above and below the line; degree of their product. */
+enum { ABOVE = 5, BELOW = 4, DEGREE = ABOVE + BELOW - 2 };
 
 /** Where a direction goes, and the derivatives of x' by x, of both by the other, of y' by y. */
 typedef struct bent {

@@ -38,7 +38,7 @@ int adcgs_lens_unproject(const adcgs_lens *lens, double u, double v, double xy[2
 adcgs_status adcgs_lens_pinhole(adcgs_lens *lens, adcgs_camera *camera, const char *path, adcgs_error *error);
 /**
  * The pinhole's picture from the lens's, all channels: *image is replaced. Cubic convolution (Catmull-Rom, 4x4 pixels),
- * colours weighted by alpha: exact for what is linear and smoother than straight lines between pixels, with no value
+ * colours weighted by alpha: exact for ramps and smoother than straight lines between pixels, with no value
  * outside the range of the pixels it is made of. On failure *image is as it was.
  */
 adcgs_status adcgs_lens_straighten(const adcgs_lens *lens, const adcgs_camera *camera, adcgs_image *image, const char *path,

@@ -56,9 +56,9 @@ static int find_box(search *s)
     s->box = (area){{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
     for (int i = 0; i <= PROBES; i++)
         for (int edge = 0; edge < 4; edge++) {
-            const double along = (double)i / PROBES;
+            const double along = (double)i / PROBES, u = edge < 2 ? along : edge - 2, v = edge < 2 ? edge : along;
             double at[2];
-            if (!adcgs_lens_invert(l, s->fold, l->width * (edge < 2 ? along : edge - 2), l->height * (edge < 2 ? edge : along), at))
+            if (!adcgs_lens_invert(l, s->fold, l->width * u, l->height * v, at))
                 return 0;
             for (int axis = 0; axis < 2; axis++) {
                 const double x = axis ? at[1] * l->fy + l->cy : at[0] * l->fx + l->cx;
@@ -146,8 +146,8 @@ static void grow(const search *s, double step, area *a)
         for (int side = 0, stuck = 0; stuck < 4; side = (side + 1) % 4) {
             area larger = *a;
             larger.side[side] += side < 2 ? -step : step;
-            const int fits = side < 2 ? larger.side[side] >= s->box.side[side] : larger.side[side] <= s->box.side[side];
-            if (fits && is_area_covered(s, &larger)) {
+            const int axis = side % 2;
+            if (larger.side[2 + axis] - larger.side[axis] <= ADCGS_IMAGE_MAX && is_area_covered(s, &larger)) {
                 *a = larger;
                 stuck = 0;
             } else
@@ -185,9 +185,10 @@ adcgs_status adcgs_lens_pinhole(adcgs_lens *lens, adcgs_camera *camera, const ch
 {
     area a = {{0.0, 0.0, lens->width, lens->height}};
     if (!is_sane(lens))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: focal lengths %g %g, principal point %g %g, skew %g: expected at most %g, and "
-                          "focal lengths of %g at least", path, lens->fx, lens->fy, lens->cx, lens->cy, lens->skew, NUMBER_MOST,
-                          FOCAL_LEAST);
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "%s: focal lengths %g %g, principal point %g %g, skew %g: expected at most %g, and focal lengths of "
+                          "%g at least",
+                          path, lens->fx, lens->fy, lens->cx, lens->cy, lens->skew, NUMBER_MOST, FOCAL_LEAST);
     const int bends = moves(lens);
     if (bends) {
         search s = {.lens = lens, .fold = adcgs_lens_fold(lens)};

@@ -18,12 +18,12 @@ typedef struct taps {
 /** n pixels, of which the outermost go on outside; x from 0 to n. */
 static taps find_taps(double x, int n)
 {
-    const double whole = floor(x - 0.5);
+    const int whole = (int)(x + 0.5) - 1; /* rounded down, as x is not negative */
     const float f = (float)(x - 0.5 - whole);
     taps t = {.weight = {((1.0f - 0.5f * f) * f - 0.5f) * f, (1.5f * f - 2.5f) * f * f + 1.0f,
                          ((2.0f - 1.5f * f) * f + 0.5f) * f, (0.5f * f - 0.5f) * f * f}};
     for (int i = 0; i < 4; i++)
-        t.at[i] = ADCGS_MIN(ADCGS_MAX((int)whole - 1 + i, 0), n - 1);
+        t.at[i] = ADCGS_MIN(ADCGS_MAX(whole - 1 + i, 0), n - 1);
     return t;
 }
 
@@ -52,7 +52,7 @@ static void sample(const adcgs_image *image, const taps *across, const taps *dow
 /** Into [0, n]; what is no number to 0. */
 static double limit(double x, int n)
 {
-    return x > 0.0 ? fmin(x, n) : 0.0;
+    return x > 0.0 ? x < n ? x : n : 0.0;
 }
 
 static void straighten_rows(const adcgs_lens *lens, const adcgs_camera *camera, const adcgs_image *from, adcgs_image *to)
