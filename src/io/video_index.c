@@ -36,6 +36,8 @@ static adcgs_status append(adcgs_video_index *index, uint32_t *room, const AVPac
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for the list of frames", path);
         index->packet = grown;
     }
+    if (packet->duration > 0 && (!index->duration || packet->duration < index->duration))
+        index->duration = packet->duration;
     index->packet[index->n++] = (adcgs_video_packet){.pts = packet->pts,
                                                      .key = (packet->flags & AV_PKT_FLAG_KEY) != 0,
                                                      .bad = (packet->flags & AV_PKT_FLAG_CORRUPT) != 0};
@@ -114,11 +116,11 @@ static double distance(const adcgs_video_index *index, uint32_t frame)
 
 /**
  * Frames before the first that follows at more than one and a half times the usual distance. In a file that is cut off, a frame
- * shown earlier may be missing there, since it is stored later.
+ * shown earlier may be missing there, since it is stored later. Two frames alone tell no usual distance.
  */
 static uint32_t count_sure(const adcgs_video_index *index)
 {
-    double least = INFINITY;
+    double least = index->duration ? (double)index->duration : index->n > 2 ? INFINITY : 0.0;
     for (uint32_t i = 1; i < index->n; i++)
         least = fmin(least, distance(index, i));
     for (uint32_t i = 1; i < index->n; i++)

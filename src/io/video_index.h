@@ -16,6 +16,7 @@ typedef struct adcgs_video_packet {
 
 typedef struct adcgs_video_index {
     int timed;                  /**< each packet is one frame with a time of its own; else nothing but frames is known */
+    int64_t duration;           /**< the shortest that a packet tells; 0: none does */
     int64_t frames;             /**< with those that the file lists and does not hold */
     uint32_t n;                 /**< packets */
     uint32_t sure;              /**< frames whose index is certain: of a file cut off, those before the first gap; timed only */
