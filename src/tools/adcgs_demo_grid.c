@@ -56,7 +56,7 @@ static adcgs_status draw(const char *stream, const char *folder, const char *out
     if (status == ADCGS_OK) {
         g.total = (int)scene->n_views[ADCGS_SPLIT_TEST];
         g.columns = ADCGS_MIN(columns, ADCGS_MAX(g.total, 1));
-        status = adcgs_evaluate(&evaluation, decoder, scene, ADCGS_SPLIT_TEST, take, &g, error);
+        status = adcgs_evaluate(&evaluation, decoder, scene, ADCGS_SPLIT_TEST, 0, take, &g, error);
     }
     if (status == ADCGS_OK)
         status = adcgs_image_write(&g.mosaic.image, output, 0, error);
