@@ -4,6 +4,7 @@
 
 #include "data/paths.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,6 +37,15 @@ int adcgs_is_folder(const char *path)
     return path && !stat(path, &status) && S_ISDIR(status.st_mode);
 }
 
+/** Why a symbolic link leads nowhere; 0 if it leads somewhere, or is none. */
+static int broken_link(const char *path)
+{
+    struct stat status;
+    if (lstat(path, &status) || !S_ISLNK(status.st_mode) || !stat(path, &status))
+        return 0;
+    return errno;
+}
+
 adcgs_status adcgs_find_image(char **out, const char *stem, adcgs_error *error)
 {
     static const char *const extensions[] = {"", ".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".webp", ".ppm"};
@@ -48,7 +58,12 @@ adcgs_status adcgs_find_image(char **out, const char *stem, adcgs_error *error)
             *out = path;
             return ADCGS_OK;
         }
+        const int reason = broken_link(path);
+        if (reason)
+            adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open: %s", path, strerror(reason));
         free(path);
+        if (reason)
+            return ADCGS_ERR_IO;
     }
     return ADCGS_OK;
 }

@@ -15,6 +15,7 @@
 #include "data/sort.h"
 #include "data/splat_scene.h"
 #include "data/transforms.h"
+#include "io/file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -81,9 +82,20 @@ static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_erro
     return ADCGS_OK;
 }
 
+/** Every picture is there, those for testing too: better to hear of it now than when all is learnt. */
+static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
+{
+    for (int s = 0; s < ADCGS_SPLITS && !scene->splats; s++)
+        for (uint32_t i = 0; i < scene->n_views[s]; i++)
+            if (!scene->views[s][i].is_video)
+                ADCGS_TRY(adcgs_file_check(scene->views[s][i].path, "an image", error));
+    return ADCGS_OK;
+}
+
 /** What follows from all views together: seconds, near planes, alpha, background. */
 static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
 {
+    ADCGS_TRY(check_files(scene, error));
     ADCGS_TRY(count_times(scene, path, error));
     if (scene->duration <= 0.0)
         scene->duration = (scene->n_times - 1) / scene->frame_rate;
@@ -358,13 +370,32 @@ static void divide_camera(adcgs_camera *camera, int divide)
     camera->cy /= divide;
 }
 
+static adcgs_status check_size(const adcgs_scene_view *view, int width, int height, adcgs_error *error)
+{
+    const int bends = view->lens.width > 0;
+    const int wanted[2] = {bends ? view->lens.width : view->camera.width, bends ? view->lens.height : view->camera.height};
+    if (width == wanted[0] && height == wanted[1])
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, width, height,
+                      wanted[0], wanted[1]);
+}
+
+/** Of another size than it should have, an image is refused before there is memory for its pixels. */
+static adcgs_status read_image(const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
+{
+    int width, height, channels;
+    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, view->path, error));
+    ADCGS_TRY(check_size(view, width, height, error));
+    return adcgs_image_read(image, view->path, error);
+}
+
 /** As it was taken: of a file, a video or splats. */
 static adcgs_status read_picture(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
 {
     if (scene->splats)
         return adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, image, view->path, error);
     return view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, image, error)
-                          : adcgs_image_read(image, view->path, error);
+                          : read_image(view, image, error);
 }
 
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
@@ -375,13 +406,8 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
     ADCGS_TRY(read_picture(scene, view, &image, error));
-    adcgs_status status = ADCGS_OK;
-    const int bends = view->lens.width > 0, width = bends ? view->lens.width : view->camera.width;
-    const int height = bends ? view->lens.height : view->camera.height;
-    if (image.width != width || image.height != height)
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, image.width,
-                            image.height, width, height);
-    else if (bends)
+    adcgs_status status = check_size(view, image.width, image.height, error);
+    if (status == ADCGS_OK && view->lens.width > 0)
         status = adcgs_lens_straighten(&view->lens, &view->camera, &image, view->path, error);
     if (status == ADCGS_OK && !(*rgb = reduce(&image, divide, scene->background)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);

@@ -5,6 +5,7 @@
 #include "io/image.h"
 
 #include "io/atomic.h"
+#include "io/file.h"
 #include "io/netpbm.h"
 #ifdef HAVE_ENCODER
 #include "io/exr.h"
@@ -30,9 +31,7 @@ static int is_exr(const char *extension)
 static adcgs_status open_image(FILE **file, int *own, const char *path, adcgs_error *error)
 {
     uint8_t magic[2];
-    *file = fopen(path, "rb");
-    if (!*file)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open: %s", path, strerror(errno));
+    ADCGS_TRY(adcgs_file_open(file, path, error));
     errno = 0;
     if (fread(magic, 1, 2, *file) < 2 || fseek(*file, 0, SEEK_SET)) {
         const int reason = errno;
