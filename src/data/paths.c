@@ -4,7 +4,6 @@
 
 #include "data/paths.h"
 
-#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,25 +24,16 @@ char *adcgs_path(const char *format, ...)
     return path;
 }
 
-int adcgs_is_file(const char *path)
+int adcgs_is_there(const char *path)
 {
     struct stat status;
-    return path && !stat(path, &status) && S_ISREG(status.st_mode);
+    return path && !lstat(path, &status);
 }
 
 int adcgs_is_folder(const char *path)
 {
     struct stat status;
     return path && !stat(path, &status) && S_ISDIR(status.st_mode);
-}
-
-/** Why a symbolic link leads nowhere; 0 if it leads somewhere, or is none. */
-static int broken_link(const char *path)
-{
-    struct stat status;
-    if (lstat(path, &status) || !S_ISLNK(status.st_mode) || !stat(path, &status))
-        return 0;
-    return errno;
 }
 
 adcgs_status adcgs_find_image(char **out, const char *stem, adcgs_error *error)
@@ -54,16 +44,11 @@ adcgs_status adcgs_find_image(char **out, const char *stem, adcgs_error *error)
         char *path = adcgs_path("%s%s", stem, extensions[i]);
         if (!path)
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", stem);
-        if (adcgs_is_file(path)) {
+        if (adcgs_is_there(path) && !adcgs_is_folder(path)) {
             *out = path;
             return ADCGS_OK;
         }
-        const int reason = broken_link(path);
-        if (reason)
-            adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open: %s", path, strerror(reason));
         free(path);
-        if (reason)
-            return ADCGS_ERR_IO;
     }
     return ADCGS_OK;
 }

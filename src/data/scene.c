@@ -82,13 +82,38 @@ static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_erro
     return ADCGS_OK;
 }
 
-/** Every picture is there, those for testing too: better to hear of it now than when all is learnt. */
+static adcgs_status check_size(const adcgs_scene_view *view, int width, int height, adcgs_error *error)
+{
+    const int bends = view->lens.width > 0;
+    const int wanted[2] = {bends ? view->lens.width : view->camera.width, bends ? view->lens.height : view->camera.height};
+    if (width == wanted[0] && height == wanted[1])
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, width, height,
+                      wanted[0], wanted[1]);
+}
+
+static adcgs_status probe(const adcgs_scene_view *view, adcgs_error *error)
+{
+    int width, height, channels;
+    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, view->path, error));
+    return check_size(view, width, height, error);
+}
+
+/**
+ * Every picture is there, and those that are not for training have the right size: these are read last, and it is better to
+ * hear of them now than when all is learnt.
+ */
 static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
 {
     for (int s = 0; s < ADCGS_SPLITS && !scene->splats; s++)
-        for (uint32_t i = 0; i < scene->n_views[s]; i++)
-            if (!scene->views[s][i].is_video)
-                ADCGS_TRY(adcgs_file_check(scene->views[s][i].path, "an image", error));
+        for (uint32_t i = 0; i < scene->n_views[s]; i++) {
+            const adcgs_scene_view *view = &scene->views[s][i];
+            if (view->is_video)
+                continue;
+            ADCGS_TRY(adcgs_file_check(view->path, "an image", error));
+            if (s != ADCGS_SPLIT_TRAIN)
+                ADCGS_TRY(probe(view, error));
+        }
     return ADCGS_OK;
 }
 
@@ -136,7 +161,7 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
         char *path = adcgs_path("%s/transforms_%s.json", scene->directory, split_names[s]);
         adcgs_transforms facts = {0};
         adcgs_status status = ADCGS_OK;
-        if (adcgs_is_file(path)) {
+        if (adcgs_is_there(path)) {
             status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
             if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN) {
                 take_facts(scene, &facts, points_path);
@@ -171,7 +196,7 @@ static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcg
     if (!train || !single)
         adcgs_fail(error, status, "%s: out of memory", scene->directory);
     else
-        status = adcgs_is_file(train) ? read_splits(scene, points_path, error) : read_single(scene, single, points_path, error);
+        status = adcgs_is_there(train) ? read_splits(scene, points_path, error) : read_single(scene, single, points_path, error);
     free(train);
     free(single);
     return status;
@@ -180,7 +205,7 @@ static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcg
 static int is_transforms(const char *folder)
 {
     char *train = adcgs_path("%s/transforms_train.json", folder), *single = adcgs_path("%s/transforms.json", folder);
-    const int is = adcgs_is_file(train) || adcgs_is_file(single);
+    const int is = adcgs_is_there(train) || adcgs_is_there(single);
     free(train);
     free(single);
     return is;
@@ -251,7 +276,7 @@ static adcgs_status read_points(adcgs_scene *scene, const char *listed, const ad
     if (listed)
         return adcgs_points_read(&scene->points, listed, error);
     char *customary = adcgs_path("%s/points3d.ply", scene->directory);
-    const adcgs_status status = adcgs_is_file(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
+    const adcgs_status status = adcgs_is_there(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
     free(customary);
     return status;
 }
@@ -304,6 +329,8 @@ adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_s
     *out = NULL;
     if (!*path || stat(path, &status))
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open the scene: %s", path, strerror(errno));
+    if (S_ISREG(status.st_mode) && !status.st_size)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected a scene", path);
     adcgs_scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
@@ -370,22 +397,10 @@ static void divide_camera(adcgs_camera *camera, int divide)
     camera->cy /= divide;
 }
 
-static adcgs_status check_size(const adcgs_scene_view *view, int width, int height, adcgs_error *error)
-{
-    const int bends = view->lens.width > 0;
-    const int wanted[2] = {bends ? view->lens.width : view->camera.width, bends ? view->lens.height : view->camera.height};
-    if (width == wanted[0] && height == wanted[1])
-        return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, width, height,
-                      wanted[0], wanted[1]);
-}
-
 /** Of another size than it should have, an image is refused before there is memory for its pixels. */
 static adcgs_status read_image(const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
 {
-    int width, height, channels;
-    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, view->path, error));
-    ADCGS_TRY(check_size(view, width, height, error));
+    ADCGS_TRY(probe(view, error));
     return adcgs_image_read(image, view->path, error);
 }
 

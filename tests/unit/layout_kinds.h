@@ -185,8 +185,8 @@ static inline void put_splats_file(void)
         at += (size_t)sprintf(text + at, "property float %s\n", names[i]);
     at += (size_t)sprintf(text + at, "end_header\n");
     for (int i = 0; i < 125; i++)
-        at += (size_t)sprintf(text + at, "%g %g %g %g 0 0.5 2 -2 -2.5 -3 1 0 0 0\n", 0.5 * (i % 5), 0.5 * (i / 5 % 5), 0.5 * (i / 25),
-                              0.1 * (i % 7));
+        at += (size_t)sprintf(text + at, "%g %g %g %g 0 0.5 2 -2 -2.5 -3 1 0 0 0\n", 0.5 * (i % 5), 0.5 * (i / 5 % 5),
+                              0.5 * (i / 25), 0.1 * (i % 7));
     put_text("splats.ply", text);
     free(text);
 }

@@ -101,14 +101,14 @@ static int touch_tests(const layout *l, int what)
 /** Once a scene is open, cameras and times of its test views are no numbers, and their files are not there. */
 static void spoil_tests(const layout *l, adcgs_scene *opened)
 {
-    for (uint32_t i = 0; i < opened->n_views[ADCGS_SPLIT_TEST]; i++) {
-        adcgs_scene_view *view = &opened->views[ADCGS_SPLIT_TEST][i];
-        memset(&view->camera, 0xff, sizeof view->camera);
-        view->time = NAN;
-        view->frame = INT64_MAX;
-        if (l->tests)
+    for (int s = ADCGS_SPLIT_VAL; s < ADCGS_SPLITS; s++)
+        for (uint32_t i = 0; i < opened->n_views[s]; i++) {
+            adcgs_scene_view *view = &opened->views[s][i];
+            memset(&view->camera, 0xff, sizeof view->camera);
+            view->time = NAN;
+            view->frame = INT64_MAX;
             *strrchr(view->path, '/') = '_';
-    }
+        }
     assert_true(!l->tests || touch_tests(l, REMOVE) > 0);
 }
 
@@ -145,21 +145,30 @@ static void test_apart(void **state)
     }
 }
 
-/** Training views do have a part: the test above would notice. */
+/** Training views do have a part, their pictures and their poses: the test above would notice. */
 static void test_apart_notices(void **state)
 {
-    begin_anew(&layouts[LLFF]);
-    start first = make_start(&layouts[LLFF]), second;
-    finish_start(&first);
-    put_picture("images/4.ppm", 99, RIG_WIDTH, RIG_HEIGHT);
-    second = make_start(&layouts[LLFF]);
-    finish_start(&second);
-    int same = first.model->n == second.model->n;
-    for (int p = 0; same && p < ADCGS_P_COUNT; p++)
-        same = !memcmp(first.model->param[p].p, second.model->param[p].p, first.model->param[p].n * sizeof(float));
-    assert_false(same);
-    free_start(&first);
-    free_start(&second);
+    for (int moved = 0; moved < 2; moved++) {
+        begin_anew(&layouts[LLFF]);
+        start first = make_start(&layouts[LLFF]), second;
+        finish_start(&first);
+        if (moved) {
+            rig_moved = 5;
+            begin_anew(&layouts[LLFF]);
+            rig_moved = 0;
+        } else
+            put_picture("images/4.ppm", 99, RIG_WIDTH, RIG_HEIGHT);
+        second = make_start(&layouts[LLFF]);
+        finish_start(&second);
+        int same = first.model->n == second.model->n;
+        for (int p = 0; same && p < ADCGS_P_COUNT; p++)
+            same = !memcmp(first.model->param[p].p, second.model->param[p].p, first.model->param[p].n * sizeof(float));
+        assert_false(same);
+        assert_int_equal(first.scene->near_bound != second.scene->near_bound, moved);
+        assert_int_equal(memcmp(first.origin, second.origin, sizeof first.origin) != 0, moved);
+        free_start(&first);
+        free_start(&second);
+    }
 }
 
 /** The other test views' cameras, not only their pictures. */
