@@ -37,7 +37,7 @@ adcgs_status adcgs_image_alloc(adcgs_image *image, int width, int height, int ch
 /** As adcgs_image_alloc(), with the pixels of another. */
 adcgs_status adcgs_image_copy(adcgs_image *copy, const adcgs_image *image, const char *path, adcgs_error *error);
 void adcgs_image_free(adcgs_image *image);
-/** Limits: 16384 x 16384. One-line errors name the file. Floats that are not finite are errors, and other primaries than sRGB's. */
+/** Limits: 16384 x 16384. One-line errors name the file. Floats that are not finite are errors, so are primaries not sRGB's. */
 adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *error);
 /** Size and channels without decoding pixels. */
 adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const char *path, adcgs_error *error);
