@@ -4,6 +4,7 @@
 
 #include "tools/shots.h"
 
+#include "play/turn.h"
 #include "tools/cli.h"
 
 #include <math.h>
@@ -34,31 +35,6 @@ void adcgs_shots_free(adcgs_shots *shots)
     *shots = (adcgs_shots){0};
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static void normalise(double v[3])
-{
-    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-}
-
-/** The direction that the stream calls up; z if it does not say. */
-static void find_up(const adcgs_info *info, double up[3])
-{
-    up[0] = up[1] = up[2] = 0.0;
-    if (strstr(info->axes, "y up"))
-        up[1] = 1.0;
-    else if (strstr(info->axes, "y down"))
-        up[1] = -1.0;
-    else
-        up[2] = 1.0;
-}
-
 /** A camera on the outside that looks at the scene's centre from a little above. */
 static void default_orbit(adcgs_camera *camera, const adcgs_info *info, const double up[3])
 {
@@ -83,16 +59,6 @@ static void default_orbit(adcgs_camera *camera, const adcgs_info *info, const do
         row[2] = forward[i];
         row[3] = info->scene_origin[i] - ORBIT_DISTANCE * info->scene_scale * forward[i];
     }
-}
-
-/** Turn a vector about the unit vector up. */
-static void turn(const double up[3], double angle, double v[3])
-{
-    double side[3];
-    cross(up, v, side);
-    const double along = (up[0] * v[0] + up[1] * v[1] + up[2] * v[2]) * (1.0 - cos(angle));
-    for (int i = 0; i < 3; i++)
-        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + up[i] * along;
 }
 
 /** Turn a camera about the axis through the scene's centre. */
