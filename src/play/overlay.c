@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #define BACKGROUND 0x000000a8u
+#define PAGE 0x000000e0u /* behind the help, which covers other text */
 #define TEXT 0xffffffffu
 #define GROOVE 0xffffff50u
 #define DONE 0x58b0ffffu
@@ -17,14 +18,15 @@
 enum { BAR, STATISTICS, MESSAGE, HELP };
 
 /** A panel of the size of its text; place is what part of the free space lies left of it and above it. */
-static void text_panel(adcgs_panel *panel, const adcgs_play_state *state, const char *text, double x, double y)
+static void text_panel(adcgs_panel *panel, const adcgs_play_state *state, const char *text, double x, double y,
+                       uint32_t background)
 {
     const int size = adcgs_play_text_size(state);
     int columns, lines;
     adcgs_text_size(text, &columns, &lines);
     const int width = size * (columns * ADCGS_CELL_WIDTH + 2 * MARGIN - 1);
     const int height = size * (lines * ADCGS_CELL_HEIGHT + 2 * MARGIN - (ADCGS_CELL_HEIGHT - ADCGS_GLYPH_HEIGHT + 2));
-    adcgs_panel_init(panel, width, height, BACKGROUND);
+    adcgs_panel_init(panel, width, height, background);
     adcgs_panel_text(panel, size * MARGIN, size * MARGIN, size, text, TEXT);
     panel->x = ADCGS_MAX(0, (int)(x * (state->width - width)));
     panel->y = ADCGS_MAX(0, (int)(y * (state->height - height)));
@@ -69,7 +71,7 @@ static void draw_statistics(adcgs_panel *panel, const adcgs_play_state *state, c
              (unsigned)figures->splats, state->layers, state->layers_max, adcgs_play_clock_time(clock),
              adcgs_play_clock_frame(clock), clock->frames, adcgs_play_clock_factor(clock), clock->loop ? ", loop" : "",
              state->flying ? ", flying" : "", figures->dropped);
-    text_panel(panel, state, text, 0.0, 0.0);
+    text_panel(panel, state, text, 0.0, 0.0, BACKGROUND);
 }
 
 static void draw_help(adcgs_panel *panel, const adcgs_play_state *state)
@@ -80,7 +82,7 @@ static void draw_help(adcgs_panel *panel, const adcgs_play_state *state)
     const adcgs_play_help *const lines = adcgs_play_help_lines(&n);
     for (int i = 0; i < n && used < sizeof text; i++)
         used += (size_t)snprintf(text + used, sizeof text - used, "%s%-11s %s", i ? "\n" : "", lines[i].keys, lines[i].text);
-    text_panel(panel, state, text, 0.5, 0.5);
+    text_panel(panel, state, text, 0.5, 0.5, PAGE);
 }
 
 void adcgs_overlay_draw(adcgs_panel panels[ADCGS_PANELS], const adcgs_play_state *state, const adcgs_play_figures *figures)
@@ -91,7 +93,7 @@ void adcgs_overlay_draw(adcgs_panel panels[ADCGS_PANELS], const adcgs_play_state
     if (state->statistics)
         draw_statistics(&panels[STATISTICS], state, figures);
     if (*state->message && state->now < state->message_end) {
-        text_panel(&panels[MESSAGE], state, state->message, 0.0, 1.0);
+        text_panel(&panels[MESSAGE], state, state->message, 0.0, 1.0, BACKGROUND);
         panels[MESSAGE].y = ADCGS_MAX(0, panels[MESSAGE].y - adcgs_play_bar(state).height);
     }
     if (state->help)

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #define HEIGHT_WANTED 480         /* of the first window; smaller cameras are enlarged by a whole number */
+#define SIDE_MAX 4096             /* of the first window, whatever the camera */
 #define HAND_SECONDS (1.0 / 30.0) /* that a picture may take while the camera is moved by hand */
 #define BUDGET_MIN (1.0 / 60.0)   /* more pictures than that nobody sees */
 #define BUDGET_MAX (1.0 / 15.0)   /* fewer are no film */
@@ -25,7 +26,7 @@ static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
 {
     const adcgs_play_state *const state = &p->state;
     adcgs_play_job job = {.time = adcgs_play_clock_time(&state->clock), .layers = state->layers, .divider = divider,
-                          .number = adcgs_play_clock_frame(&state->clock)};
+                          .number = adcgs_play_clock_frame(&state->clock), .seeks = p->seeks};
     adcgs_rig_view(&state->rig, state->width, state->height, &job.camera);
     if (divider > 1)
         adcgs_rig_stretch(&job.camera, (state->width + divider - 1) / divider, (state->height + divider - 1) / divider);
@@ -121,13 +122,21 @@ static void count_picture(adcgs_player *p, const adcgs_play_result *result)
     p->pictures++;
 }
 
-static adcgs_status take_picture(adcgs_player *p, const adcgs_play_result *result, int last_frame, adcgs_error *error)
+/** Frames left out on purpose, at a higher speed or by going elsewhere, do not count. */
+static void count_dropped(adcgs_player *p, const adcgs_play_job *job)
+{
+    const adcgs_play_clock *const clock = &p->state.clock;
+    if (clock->playing && clock->speed <= 0 && p->last_frame >= 0 && p->last_seeks == job->seeks)
+        p->figures.dropped += adcgs_play_clock_dropped(clock, p->last_frame, job->number);
+    p->last_frame = clock->playing ? job->number : -1;
+    p->last_seeks = job->seeks;
+}
+
+static adcgs_status take_picture(adcgs_player *p, const adcgs_play_result *result, adcgs_error *error)
 {
     const adcgs_camera *const camera = &result->job.camera;
-    const adcgs_play_clock *const clock = &p->state.clock;
     count_picture(p, result);
-    if (clock->playing && last_frame >= 0 && clock->speed <= 0)
-        p->figures.dropped += adcgs_play_clock_dropped(clock, last_frame, result->job.number);
+    count_dropped(p, &result->job);
     if (adcgs_play_moving(&p->state) && result->job.divider == p->scale.divider)
         adcgs_play_scale_took(&p->scale, result->seconds, budget(p));
     p->stale = 1;
@@ -145,10 +154,8 @@ static adcgs_status collect(adcgs_player *p, adcgs_error *error)
         take_shot(p, result);
     else if (result->status != ADCGS_OK)
         take_failure(p, result);
-    else {
-        status = take_picture(p, result, p->last_frame, error);
-        p->last_frame = p->state.clock.playing ? result->job.number : -1;
-    }
+    else
+        status = take_picture(p, result, error);
     adcgs_worker_release(p->worker);
     return status;
 }
@@ -178,7 +185,9 @@ static void take_events(adcgs_player *p)
     const int moves = adcgs_play_moving(&p->state) || p->run.at < p->run.script.n;
     adcgs_event event;
     for (int wait = moves ? WAIT_MOVING : WAIT_STILL; p->sdl->event(p->window, wait, &event); wait = 0) {
+        const int frame = adcgs_play_clock_frame(&p->state.clock);
         adcgs_play_event(&p->state, &event);
+        p->seeks += adcgs_play_clock_frame(&p->state.clock) != frame;
         p->stale |= event.kind != ADCGS_EVENT_NONE;
         if (event.kind == ADCGS_EVENT_SIZE)
             measure_window(p);
@@ -215,7 +224,8 @@ static adcgs_status open_window(adcgs_player *p, adcgs_error *error)
 {
     const adcgs_play_settings *const s = p->settings;
     const int times = (HEIGHT_WANTED + s->home.height - 1) / s->home.height;
-    const int *const size = s->size[0] ? s->size : (const int[]){times * s->home.width, times * s->home.height};
+    const int suits[2] = {ADCGS_MIN(times * s->home.width, SIDE_MAX), ADCGS_MIN(times * s->home.height, SIDE_MAX)};
+    const int *const size = s->size[0] ? s->size : suits;
     ADCGS_TRY(adcgs_sdl_get(&p->sdl, s->path, error));
     ADCGS_TRY(p->sdl->open(&p->window, s->path, size[0], size[1], error));
     measure_window(p);

@@ -34,6 +34,7 @@ typedef struct adcgs_player {
     int drawing;             /**< the worker has a job */
     int captured;            /**< the window holds the mouse */
     int last_frame;          /**< the frame shown last while playing; -1: none */
+    int seeks, last_seeks;   /**< times that an event changed the frame: by now, and when that one was posted */
     int stale;               /**< what the window shows is not the last word */
     double shown;            /**< when the window was drawn last */
     double arrived;          /**< when the last picture came */

@@ -20,6 +20,7 @@ typedef struct adcgs_play_job {
     int layers;          /**< 1..5 */
     int divider;         /**< of the window's resolution; nothing to the worker */
     int number;          /**< of the frame in the stream; nothing to the worker */
+    int seeks;           /**< times that the user had gone to another frame; nothing to the worker */
     char path[PATH_MAX]; /**< a file to write the picture to; "": none */
 } adcgs_play_job;
 

@@ -33,7 +33,7 @@ same()
 }
 differ() { ! cmp -s "$dir/$1" "$dir/$2" || bad "$1 and $2 are the same, on $where"; }
 
-everything()
+pictures()
 {
     rm -f "$dir"/*.png "$dir"/*.exr
     # Unmoved, the player shows what adcgs-dec renders: in the file, and in the window's own pixels.
@@ -82,8 +82,11 @@ key 1
 expect camera 1
 screenshot second.png
 key ]
-expect camera 2
+expect camera 0
 key [
+expect camera 1
+key 7
+expect camera 1
 key [
 expect camera 0
 key r
@@ -127,7 +130,6 @@ expect help 0
 screenshot large.png
 key escape
 END
-    same first.png --camera 0 --time 0 --size 192x192 2>/dev/null && bad "a picture of another shape is the same"
     cmp -s "$dir/first.png" "$dir/back.png" || bad "reset does not lead back, on $where"
     for other in orbit pan near second coarse last large overlay; do
         differ first.png $other.png
@@ -136,7 +138,11 @@ END
     differ pan.png near.png
     differ overlay.png large.png
 
-    # Layers and times are adcgs-dec's; a script that ends early does not end the player, and a signal does.
+}
+
+behaviour()
+{
+    # Layers and times are adcgs-dec's.
     play 0 "" --size 128x128 --time 0 --layers 2 <<'END'
 expect layers 2
 screenshot two.png
@@ -213,7 +219,8 @@ $dec "$dir/s.adcgs" --play --script "$dir/script" 2>"$dir/err" || {
     bad "the player does not start"
     cat "$dir/err"
 }
-everything
+pictures
+behaviour
 
 # A user who says nothing: the player goes on until a signal comes, also when its script has ended.
 echo "wait 1 frames" >"$dir/script"
@@ -243,10 +250,10 @@ expect 3 "nowhere" $dec "$dir/s.adcgs" --play --script "$dir/nowhere"
 expect 4 "script" $dec "$dir/script" --play
 expect 2 "nobody" $dec "$dir/s.adcgs" --play --camera nobody
 
-unset SDL_VIDEODRIVER
+unset SDL_VIDEODRIVER SDL_RENDER_DRIVER
 if command -v xvfb-run >/dev/null; then
     where="a display" display="xvfb-run -a"
-    everything
+    pictures
 else
     echo "no xvfb-run: not tried on a display"
 fi

@@ -498,8 +498,9 @@ static adcgs_status read_script(adcgs_script *script, const char *text)
 static void test_script(void **state)
 {
     adcgs_script script;
-    assert_int_equal(read_script(&script, "# a word\n\n wait 10 frames\r\nwait 0.5 seconds\ndrag shift-left 1 2 3.5 -4\nkey shift-p\n"
-                                          "key f1\nsize 640x480\nexpect time 0.5 1e-3\nexpect size 64x65\nquit"), ADCGS_OK);
+    assert_int_equal(read_script(&script, "# a word\n\n wait 10 frames\r\nwait 0.5 seconds\n"
+                                          "drag shift-left 1 2 3.5 -4\nkey shift-p\nkey f1\n"
+                                          "size 640x480\nexpect time 0.5 1e-3\nexpect size 64x65\nquit"), ADCGS_OK);
     assert_int_equal(script.n, 9);
     const adcgs_script_line *const l = script.lines;
     assert_true(l[0].line == 3 && l[0].kind == ADCGS_SCRIPT_WAIT_FRAMES && l[0].number[0] == 10.0);
