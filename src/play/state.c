@@ -36,7 +36,7 @@ void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcg
         .bar = 1,
         .moved = -STILL_AFTER,
     };
-    adcgs_rig_init(&state->rig, info, home);
+    adcgs_play_rig_init(&state->rig, info, home);
     adcgs_play_clock_init(&state->clock, info->time_start, info->time_end, info->frame_rate, 0.0);
 }
 
@@ -83,7 +83,7 @@ static void place_camera(adcgs_play_state *state, int index, const adcgs_camera 
 {
     state->jumped = index;
     state->flying = 0;
-    adcgs_rig_jump(&state->rig, camera);
+    adcgs_play_rig_jump(&state->rig, camera);
 }
 
 static void move_by_hand(adcgs_play_state *state)
@@ -152,7 +152,7 @@ static void do_fly(adcgs_play_state *state, int unused)
     state->held = 0;
     state->drag = ADCGS_DRAG_NONE;
     if (!state->flying)
-        adcgs_rig_land(&state->rig);
+        adcgs_play_rig_land(&state->rig);
     adcgs_play_say(state, state->flying ? "fly: w a s d q e and the mouse; f to stop" : "orbit");
 }
 
@@ -306,12 +306,12 @@ static void on_motion(adcgs_play_state *state, const adcgs_event *event)
         return;
     move_by_hand(state);
     if (state->flying)
-        adcgs_rig_look(&state->rig, turn * event->dx, turn * event->dy);
+        adcgs_play_rig_look(&state->rig, turn * event->dx, turn * event->dy);
     else if (state->drag == ADCGS_DRAG_ORBIT)
-        adcgs_rig_orbit(&state->rig, turn * event->dx, turn * event->dy);
+        adcgs_play_rig_orbit(&state->rig, turn * event->dx, turn * event->dy);
     else {
-        adcgs_rig_view(&state->rig, state->width, state->height, &view);
-        adcgs_rig_pan(&state->rig, event->dx / view.fx, event->dy / view.fy);
+        adcgs_play_rig_view(&state->rig, state->width, state->height, &view);
+        adcgs_play_rig_pan(&state->rig, event->dx / view.fx, event->dy / view.fy);
     }
 }
 
@@ -323,7 +323,7 @@ static void on_wheel(adcgs_play_state *state, const adcgs_event *event)
         return;
     }
     move_by_hand(state);
-    adcgs_rig_zoom(&state->rig, event->dy);
+    adcgs_play_rig_zoom(&state->rig, event->dy);
 }
 
 void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event)
@@ -369,6 +369,6 @@ void adcgs_play_tick(adcgs_play_state *state, double now)
         }
     if (state->held) {
         move_by_hand(state);
-        adcgs_rig_fly(&state->rig, by[0], by[1], by[2]);
+        adcgs_play_rig_fly(&state->rig, by[0], by[1], by[2]);
     }
 }

@@ -1,49 +1,36 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Vectors of three, and the direction that a stream calls up: what moves cameras. */
+/**
+ * \file
+ * Directions and rotations of cameras, moved by hand or along a path, in
+ * binary64. Quaternions are w, x, y, z; a turn is an axis times half the
+ * angle, so that the quaternion is its exponential.
+ */
 #ifndef ADCGS_PLAY_TURN_H
 #define ADCGS_PLAY_TURN_H
 
 #include <adcgs/decoder.h>
 
-#include <math.h>
-#include <string.h>
+double adcgs_v3_dot(const double a[3], const double b[3]);
+void adcgs_v3_cross(const double a[3], const double b[3], double out[3]);
+/** To length 1. \return the length it had; a vector of length 0 stays. */
+double adcgs_v3_normalise(double v[3]);
+/** Turn a vector by an angle in radians about an axis of length 1. */
+void adcgs_v3_turn(const double axis[3], double angle, double v[3]);
 
-static inline double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+/** The direction that the stream calls up, of length 1; z if it does not say. \return whether it says. */
+int adcgs_find_up(const adcgs_info *info, double up[3]);
 
-static inline void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
+/** A 3x4 camera-to-world matrix in OpenCV axes of an eye that sees the target in the middle; up need not be at right angles. */
+void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3]);
 
-static inline void normalise(double v[3])
-{
-    const double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-}
-
-/** Turn a vector about a unit vector. */
-static inline void turn(const double axis[3], double angle, double v[3])
-{
-    double side[3];
-    cross(axis, v, side);
-    const double along = dot(axis, v) * (1.0 - cos(angle));
-    for (int i = 0; i < 3; i++)
-        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + axis[i] * along;
-}
-
-/** The direction that the stream calls up, z if it does not say. \return whether it says. */
-static inline int find_up(const adcgs_info *info, double up[3])
-{
-    const int y_up = strstr(info->axes, "y up") != NULL, y_down = strstr(info->axes, "y down") != NULL;
-    up[0] = 0.0;
-    up[1] = y_up - y_down;
-    up[2] = !y_up && !y_down;
-    return y_up || y_down || strstr(info->axes, "z up") != NULL;
-}
+/** Rotation of a row-major 3x4 matrix, whose 3x3 part is orthonormal, and back; the last column stays. */
+void adcgs_turn_from_pose(const double pose[12], double q[4]);
+void adcgs_turn_to_pose(const double q[4], double pose[12]);
+/** out = a b; out may be either. */
+void adcgs_turn_multiply(const double a[4], const double b[4], double out[4]);
+/** out = exp(t times turn). */
+void adcgs_turn_exp(const double turn[3], double t, double out[4]);
+/** The shortest turn from a to b: b = a exp(turn), or its negative, which is the same rotation. */
+void adcgs_turn_between(const double a[4], const double b[4], double turn[3]);
 
 #endif

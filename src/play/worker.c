@@ -88,7 +88,8 @@ static adcgs_status draw(adcgs_worker *w)
     r->splats = info.gaussians;
     r->rgb = w->rgb;
     const adcgs_image image = {.width = frame.width, .height = frame.height, .channels = 3, .data = frame.rgb};
-    return *r->job.path ? adcgs_image_write(&image, r->job.path, 1, &r->error) : ADCGS_OK;
+    const adcgs_image_options options = {.half = 1, .camera = camera, .time = r->job.time};
+    return *r->job.path ? adcgs_image_write_as(&image, &options, r->job.path, &r->error) : ADCGS_OK;
 }
 
 static void set_stage(adcgs_worker *w, stage next)

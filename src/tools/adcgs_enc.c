@@ -14,10 +14,10 @@
 #include <sys/stat.h>
 
 typedef struct enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed, *frames;
     double lambda, psnr, time_limit;
-    int iterations, scale, k, max_anchors, threads, cpu, json, has_lambda, has_size, has_psnr;
-    uint64_t seed, size;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, has_lambda, has_size, has_psnr;
+    uint64_t seed, size, memory;
 } enc_options;
 
 /* ---- What the run shows and logs ---- */
@@ -69,16 +69,26 @@ static int observe(void *user, const adcgs_train_report *r)
     return adcgs_interrupted();
 }
 
+static int loading(void *user, uint32_t done, uint32_t n)
+{
+    watcher *w = user;
+    adcgs_progress_show(&w->progress, "pictures  %6u/%u", done, n);
+    return adcgs_interrupted();
+}
+
 /* ---- Configuration ---- */
 
-static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs_error *error)
+static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs_cpu_level cpu, adcgs_error *error)
 {
+    if (o->bf16)
+        ADCGS_TRY(adcgs_bf16_check(cpu, error));
     ADCGS_TRY(adcgs_train_preset(c, o->preset, error));
     if (o->set)
         ADCGS_TRY(adcgs_train_set(c, o->set, error));
     c->seed = o->seed;
     c->time_limit = o->time_limit;
     c->scale = o->scale;
+    c->bf16 = (uint8_t)o->bf16;
     if (o->has_lambda)
         c->lambda = (float)o->lambda;
     if (o->has_size || o->has_psnr) {
@@ -248,7 +258,7 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
 
 static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
 {
-    const adcgs_scene_options scene_options = { .points_path = o->points };
+    adcgs_scene_options scene_options = { .points_path = o->points, .dataset = o->dataset };
     adcgs_scene *scene = NULL;
     adcgs_train_config config;
     adcgs_cpu_level cpu;
@@ -256,8 +266,10 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_stream stream;
     adcgs_stream_init(&stream);
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
+    if (status == ADCGS_OK && o->frames)
+        status = adcgs_frames_parse(&scene_options.frames, o->frames, error);
     if (status == ADCGS_OK)
-        status = configure(&config, o, error);
+        status = configure(&config, o, cpu, error);
     if (status == ADCGS_OK)
         status = check_writable(target(o), error);
     if (status == ADCGS_OK && o->checkpoint)
@@ -276,6 +288,9 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK) {
         w.t->quantise = adcgs_encode_quantise_hook;
         w.t->measure = measure;
+        w.t->picture_memory = o->memory;
+        w.t->loading = loading;
+        w.t->loading_user = &w;
         status = train(cli, &w, error);
     }
     if (status == ADCGS_OK && o->output)
@@ -297,7 +312,8 @@ static const adcgs_cli program = {
     .program = "adcgs-enc",
     .operands = "SCENE",
     .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
-    .details = "SCENE is a folder with transforms_train.json or transforms.json, or such a file.",
+    .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D or COLMAP,\n"
+               "a transforms.json, a scene file, or a PLY file of splats, of which it renders views.",
     .min_operands = 0,
     .max_operands = 1,
 };
@@ -337,6 +353,12 @@ static int parse(enc_options *o, int argc, char **argv)
           "primitives per anchor, 1 to 16 (default: the preset's)", NULL, NULL },
         { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, 1, 1000000, "N",
           "budget of anchors (default: the preset's)", NULL, NULL },
+        { "dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
+          "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs or splats",
+          adcgs_dataset_names, NULL },
+        { "frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
+          "take frames A, A + STEP, ... below B of videos, or such\nmoments of pictures; A, B or :STEP may be left out", NULL,
+          NULL },
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
@@ -359,10 +381,15 @@ static int parse(enc_options *o, int argc, char **argv)
           NULL },
         { "log", 0, ADCGS_OPTION_STRING, &o->log, 0, 0, "FILE",
           "write progress as JSON lines; appended with --resume", NULL, NULL },
+        { "memory", 0, ADCGS_OPTION_SIZE, &o->memory, 1, 1e15, "BYTES",
+          "keep at most so much of the pictures in memory (2G), the\nothers in a file in TMPDIR (default: half of the\n"
+          "machine's); the result does not depend on it", NULL, NULL },
         { "threads", 't', ADCGS_OPTION_INT, &o->threads, 0, 256, "N",
           "threads (default: one per CPU); the result does not\ndepend on it", NULL, NULL },
         { "cpu", 0, ADCGS_OPTION_CHOICE, &o->cpu, 0, 0, "LEVEL",
           "kernels: auto, scalar, avx2, avx512 (default auto)", adcgs_cpu_names, NULL },
+        { "bf16", 0, ADCGS_OPTION_FLAG, &o->bf16, 0, 0, NULL,
+          "train the networks that draw in bf16, which is quicker;\nneeds a CPU with AVX512-BF16", NULL, NULL },
         { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
     adcgs_cli cli = program;

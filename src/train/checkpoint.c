@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 17 };
+enum { FORMAT = 18 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -48,7 +48,7 @@ static void walk_options(walk *w, const adcgs_train_config *c)
 {
     const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->refine_every,
                                (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
-                               c->without_refinement, c->without_rounding };
+                               c->without_refinement, c->without_rounding, c->bf16 };
     const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight,
                            c->area_weight, c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
                            c->window_begin, c->window_until, c->quarter_until, c->half_until, c->area_from, c->deform_from,

@@ -140,30 +140,38 @@ static double size_error(const adcgs_trainer *t, double progress)
     return log(fmax(estimate(t) * t->control.ratio * growth_ahead(t, progress), 1) / room);
 }
 
-/** PSNR of the picture of a view, as a player would round it. */
-static adcgs_status picture_psnr(adcgs_trainer *t, const adcgs_train_view *v, float *image, double *psnr, adcgs_error *error)
+/** PSNR of the picture of a view, as a player would round it, against the one taken. */
+static adcgs_status picture_psnr(adcgs_trainer *t, const adcgs_view *view, const float *taken, float *image, double *psnr,
+                                 adcgs_error *error)
 {
-    const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
-    ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, image, 0, error));
+    const size_t values = 3 * (size_t)view->width * (size_t)view->height;
+    ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, view, t->scene->background, 0.3f, image, 0, error));
     for (size_t i = 0; i < values; i++)
         image[i] = rintf(255 * fminf(fmaxf(image[i], 0), 1)) / 255;
-    *psnr = adcgs_psnr(image, v->rgb, values);
+    *psnr = adcgs_psnr(image, taken, values);
     return ADCGS_OK;
+}
+
+static adcgs_status loaded_psnr(adcgs_trainer *t, uint32_t index, double *psnr, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_pictures_get(t->pictures, index, t->taken, error));
+    return picture_psnr(t, &t->views[index].view, t->taken, t->image, psnr, error);
 }
 
 /** The same of a view that is not loaded in full size. */
 static adcgs_status full_psnr(adcgs_trainer *t, uint32_t index, double *psnr, adcgs_error *error)
 {
     adcgs_camera camera;
-    adcgs_train_view v;
-    ADCGS_TRY(adcgs_scene_load(t->scene, &t->scene->views[ADCGS_SPLIT_TRAIN][index], 1, &v.rgb, &camera, error));
+    adcgs_view view;
+    float *taken;
+    ADCGS_TRY(adcgs_scene_load(t->scene, &t->scene->views[ADCGS_SPLIT_TRAIN][index], 1, &taken, &camera, error));
     float *image = malloc(3 * sizeof *image * (size_t)camera.width * (size_t)camera.height);
-    adcgs_status status = image ? adcgs_view_init(&v.view, &camera, t->origin, t->scale, error)
+    adcgs_status status = image ? adcgs_view_init(&view, &camera, t->origin, t->scale, error)
                                 : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a picture");
     if (status == ADCGS_OK)
-        status = picture_psnr(t, &v, image, psnr, error);
+        status = picture_psnr(t, &view, taken, image, psnr, error);
     free(image);
-    free(v.rgb);
+    free(taken);
     return status;
 }
 
@@ -178,7 +186,7 @@ adcgs_status adcgs_control_psnr(adcgs_trainer *t, uint32_t most, double *psnr, a
         const uint32_t index = (uint32_t)((uint64_t)i * t->n_views / n);
         double one;
         adcgs_pass_forward(t->pass, t->f, t->views[index].t, &mode);
-        ADCGS_TRY(t->divide == 1 ? picture_psnr(t, &t->views[index], t->image, &one, error) : full_psnr(t, index, &one, error));
+        ADCGS_TRY(t->divide == 1 ? loaded_psnr(t, index, &one, error) : full_psnr(t, index, &one, error));
         *psnr += one / n;
     }
     return ADCGS_OK;

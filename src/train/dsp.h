@@ -138,4 +138,9 @@ static inline float adcgs_coder_level(float si)
 
 void adcgs_train_dsp_init(adcgs_train_dsp *dsp, adcgs_cpu_level level);
 
+/** Whether kernels of this level can have layers in bf16: ADCGS_ERR_UNSUPPORTED names what the CPU or the build lacks. */
+adcgs_status adcgs_bf16_check(adcgs_cpu_level level, adcgs_error *error);
+/** The kernels of a level; where the check passes, layers and weight gradients with factors in bf16 and sums in binary32. */
+void adcgs_train_dsp_init_bf16(adcgs_train_dsp *dsp, adcgs_cpu_level level);
+
 #endif

@@ -61,7 +61,9 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
     l->more = l->off + plane;
     l->taken = l->more + plane;
     ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 0, error));
-    memcpy(l->taken, adcgs_trainer_target(t, index), 3 * plane * sizeof *l->taken);
+    const float *target;
+    ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &target, error));
+    memcpy(l->taken, target, 3 * plane * sizeof *l->taken);
     for (size_t i = 0; i < plane; i++)
         l->off[i] = ((l->taken[i] + l->taken[plane + i] + l->taken[2 * plane + i]) -
                      (t->image[i] + t->image[plane + i] + t->image[2 * plane + i])) / 3;

@@ -77,6 +77,8 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     p->cpu = cpu;
     p->pool = pool;
     adcgs_train_dsp_init(&p->dsp, cpu);
+    adcgs_train_dsp_init_bf16(&p->bf16, cpu);
+    p->net = &p->dsp;
     const adcgs_mlp *m = f->mlp;
     const size_t k = f->params.k;
     const adcgs_mlp *theta = &m[ADCGS_P_THETA], *steps = &m[ADCGS_P_E_STEPS];
@@ -142,9 +144,7 @@ void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, fl
         float *branch = a + (size_t)(i - 1) * tile, *next = h + (size_t)i * tile;
         const float *last = next - tile;
         dsp->dense.dense(branch, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, last, m->width, m->width);
-        dsp->dense.lrelu(branch, m->width);
-        for (size_t j = 0; j < tile; j++)
-            next[j] = last[j] + branch[j];
+        dsp->hidden(next, branch, last, m->width); /* of the branch the backward pass asks only for signs */
     }
     dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width,
                      h + (size_t)(m->hidden - 1) * tile, m->out, m->width);
@@ -196,7 +196,7 @@ static void forward_theta(const forward_job *job, uint32_t g)
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
     const adcgs_mlp *m = &f->mlp[ADCGS_P_THETA];
-    const adcgs_dense_dsp *d = &p->dsp.dense;
+    const adcgs_dense_dsp *d = &p->net->dense;
     const int nv = f->params.n_fv, ng = f->params.n_fg;
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
@@ -205,7 +205,7 @@ static void forward_theta(const forward_job *job, uint32_t g)
     for (int k = 0; k < f->params.k; k++) {
         float *h = act.theta_h + (size_t)k * act.theta_h_stride;
         d->dense(h, act.theta_anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
-        adcgs_mlp_tail(&p->dsp, m, h, act.theta_a + (size_t)k * act.theta_a_stride,
+        adcgs_mlp_tail(p->net, m, h, act.theta_a + (size_t)k * act.theta_a_stride,
                        act.theta_out + (size_t)k * ADCGS_THETA_OUT * 64);
     }
 }
@@ -214,21 +214,21 @@ static void forward_deform(const forward_job *job, uint32_t g)
 {
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
-    const adcgs_dense_dsp *d = &p->dsp.dense;
+    const adcgs_dense_dsp *d = &p->net->dense;
     const int nv = f->params.n_fv, fp = 6 * f->params.octaves;
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
     const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
     if (om->n) {
         d->dense(act.omega_h, NULL, p->time_bias[0], om->use, (size_t)om->in[0], fv, om->width, nv);
-        adcgs_mlp_tail(&p->dsp, om, act.omega_h, act.omega_a, act.omega_out);
+        adcgs_mlp_tail(p->net, om, act.omega_h, act.omega_a, act.omega_out);
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], f->code + (size_t)g * (size_t)fp * 64, va->width,
                  fp);
         if (f->params.fine_uses_fv)
             d->dense(act.varpi_h, act.varpi_h, NULL, va->use + fp, (size_t)va->in[0], fv, va->width, nv);
-        adcgs_mlp_tail(&p->dsp, va, act.varpi_h, act.varpi_a, act.varpi_out);
+        adcgs_mlp_tail(p->net, va, act.varpi_h, act.varpi_a, act.varpi_out);
     }
 }
 
@@ -304,6 +304,7 @@ void adcgs_pass_forward(adcgs_pass *p, const adcgs_fmodel *f, float t, const adc
 {
     forward_job job = { p, f, mode, f->params.time_rows ? mode->deform : ADCGS_DEFORM_NONE };
     p->quant = mode->quant;
+    p->net = mode->bf16 ? &p->bf16 : &p->dsp;
     if (job.deform)
         forward_time(p, f, t);
     adcgs_pool_run(p->pool, forward_group, &job, (int)f->groups);

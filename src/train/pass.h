@@ -22,7 +22,8 @@ typedef enum adcgs_quant {
 typedef struct adcgs_pass {
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
-    adcgs_train_dsp dsp;
+    adcgs_train_dsp dsp, bf16;   /**< bf16: with layers in bf16, where this CPU can */
+    const adcgs_train_dsp *net;  /**< of these, those of F_theta, F_omega, F_varpi since the last forward pass */
     uint32_t groups;
     float *used[ADCGS_P_ANCHOR]; /**< what the networks see, laid out as the parameters */
     float *mu[ADCGS_P_ANCHOR];   /**< predicted means for ADCGS_QUANT_ROUND, packed */
@@ -67,6 +68,7 @@ typedef enum adcgs_deform { ADCGS_DEFORM_NONE, ADCGS_DEFORM_ALL, ADCGS_DEFORM_CO
 typedef struct adcgs_pass_mode {
     adcgs_quant quant;
     adcgs_deform deform;
+    int bf16;      /**< the networks that draw, here and in the backward pass, run in bf16; the entropy networks never do */
     float dropout; /**< share of primitives left out at random: what remains may not rely on any one of them */
     uint32_t seed; /**< of noise and dropout */
 } adcgs_pass_mode;

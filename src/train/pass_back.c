@@ -48,7 +48,7 @@ static void theta_back(const backward_job *job, uint32_t g, const float *dtheta,
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
     const adcgs_mlp *m = &f->mlp[ADCGS_P_THETA];
-    const adcgs_train_dsp *dsp = &p->dsp;
+    const adcgs_train_dsp *dsp = p->net;
     const int nv = f->params.n_fv, ng = f->params.n_fg, k = f->params.k, w = m->width;
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const size_t tile = (size_t)w * 64, sdz = (size_t)m->hidden * tile, fg_tile = (size_t)ng * 64;
@@ -82,14 +82,14 @@ static void deform_back(const backward_job *job, uint32_t g)
     const adcgs_act act = adcgs_pass_act(p, f, g);
     float *dfv = grad_at(f, ADCGS_P_FV, g);
     if (om->n) {
-        adcgs_mlp_tail_back(&p->dsp, om, act.omega_h, act.omega_a, act.omega_dout, act.omega_dz);
-        p->dsp.dense.dense(dfv, dfv, NULL, om->turn, (size_t)om->width, act.omega_dz, f->params.n_fv, om->width);
+        adcgs_mlp_tail_back(p->net, om, act.omega_h, act.omega_a, act.omega_dout, act.omega_dz);
+        p->net->dense.dense(dfv, dfv, NULL, om->turn, (size_t)om->width, act.omega_dz, f->params.n_fv, om->width);
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
-        adcgs_mlp_tail_back(&p->dsp, va, act.varpi_h, act.varpi_a, act.varpi_dout, act.varpi_dz);
+        adcgs_mlp_tail_back(p->net, va, act.varpi_h, act.varpi_a, act.varpi_dout, act.varpi_dz);
         if (f->params.fine_uses_fv)
-            p->dsp.dense.dense(dfv, dfv, NULL, va->turn + (size_t)(6 * f->params.octaves) * (size_t)va->width, (size_t)va->width,
-                               act.varpi_dz, f->params.n_fv, va->width);
+            p->net->dense.dense(dfv, dfv, NULL, va->turn + (size_t)(6 * f->params.octaves) * (size_t)va->width,
+                                (size_t)va->width, act.varpi_dz, f->params.n_fv, va->width);
     }
 }
 
@@ -104,15 +104,16 @@ static void deform_weights(const backward_job *job, uint32_t begin, int tiles, f
     const float *fv = p->used[ADCGS_P_FV] + begin * sfv;
     if (om->n) {
         float *g = partial + p->partial_at[ADCGS_P_OMEGA];
-        p->dsp.weight_grad(g, (size_t)om->in[0], g + om->b[0], act.omega_dz, s, fv, sfv, tiles, om->width, nv);
-        adcgs_mlp_weight_grads(&p->dsp, om, g, act.omega_h, s, act.omega_dz, s, act.omega_dout, s, tiles);
+        p->net->weight_grad(g, (size_t)om->in[0], g + om->b[0], act.omega_dz, s, fv, sfv, tiles, om->width, nv);
+        adcgs_mlp_weight_grads(p->net, om, g, act.omega_h, s, act.omega_dz, s, act.omega_dout, s, tiles);
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         float *g = partial + p->partial_at[ADCGS_P_VARPI];
-        p->dsp.weight_grad(g, (size_t)va->in[0], g + va->b[0], act.varpi_dz, s, f->code + begin * sfp, sfp, tiles, va->width, fp);
+        p->net->weight_grad(g, (size_t)va->in[0], g + va->b[0], act.varpi_dz, s, f->code + begin * sfp, sfp, tiles, va->width,
+                            fp);
         if (f->params.fine_uses_fv)
-            p->dsp.weight_grad(g + fp, (size_t)va->in[0], NULL, act.varpi_dz, s, fv, sfv, tiles, va->width, nv);
-        adcgs_mlp_weight_grads(&p->dsp, va, g, act.varpi_h, s, act.varpi_dz, s, act.varpi_dout, s, tiles);
+            p->net->weight_grad(g + fp, (size_t)va->in[0], NULL, act.varpi_dz, s, fv, sfv, tiles, va->width, nv);
+        adcgs_mlp_weight_grads(p->net, va, g, act.varpi_h, s, act.varpi_dz, s, act.varpi_dout, s, tiles);
     }
 }
 

@@ -13,8 +13,10 @@ adcgs_status adcgs_trainer_sample_loss(adcgs_trainer *t, uint32_t most, int own_
         adcgs_pass_forward(t->pass, t->f, own_time ? v->t : 0.5f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
         ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 0,
                                        error));
-        ADCGS_TRY(adcgs_loss_image(t->loss, t->image, adcgs_trainer_target(t, picked), v->view.width, v->view.height,
-                                   t->config.ssim_weight, t->grad, &value, error));
+        const float *target;
+        ADCGS_TRY(adcgs_trainer_target(t, picked, NULL, &target, error));
+        ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->view.width, v->view.height, t->config.ssim_weight, t->grad,
+                                   &value, error));
         *loss += value.loss / n;
     }
     return ADCGS_OK;

@@ -53,6 +53,7 @@ typedef struct adcgs_train_config {
     float deform_from, fine_from, grow_from, grow_until, noise_from, rate_from, decide_at, round_from, freeze_from;
     /* Ablation switches: what is left out, see adcgs_train_leave_out(). */
     uint8_t without_coarse, without_fine, without_rate, without_refinement, without_lattice;
+    uint8_t bf16;          /**< networks that draw are trained in bf16; see adcgs_bf16_check() */
     uint8_t without_rounding; /**< values and weights remain binary32 to the end, for a model that is stored uncompressed */
 } adcgs_train_config;
 

@@ -71,6 +71,8 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_train_config *c = &t->config;
     const uint32_t times = t->scene->n_times;
+    if (c->bf16)
+        ADCGS_TRY(adcgs_bf16_check(t->cpu, error));
     if (c->without_coarse && c->without_fine)
         c->params.time_rows = 0;
     if (times <= 1)
@@ -127,14 +129,11 @@ adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene,
 
 static void free_views(adcgs_trainer *t)
 {
-    for (uint32_t i = 0; t->views && i < t->n_views; i++) {
-        free(t->views[i].rgb);
-        t->views[i].rgb = NULL;
-    }
+    adcgs_pictures_free(&t->pictures);
     adcgs_free(NULL, t->image);
     adcgs_free(NULL, t->grad);
-    adcgs_free(NULL, t->even);
-    t->image = t->grad = t->even = NULL;
+    adcgs_free(NULL, t->taken);
+    t->image = t->grad = t->taken = NULL;
 }
 
 void adcgs_trainer_free(adcgs_trainer **trainer)
@@ -162,54 +161,23 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
 
 /* ---- Views ---- */
 
-typedef struct load_job {
-    adcgs_trainer *t;
-    int divide;
-    adcgs_error *errors;
-    size_t *pixels;
-} load_job;
-
-static void load_view(void *arg, int i, int thread)
-{
-    (void)thread;
-    load_job *job = arg;
-    adcgs_trainer *t = job->t;
-    const adcgs_scene_view *from = &t->scene->views[ADCGS_SPLIT_TRAIN][i];
-    adcgs_train_view *to = &t->views[i];
-    adcgs_camera camera;
-    adcgs_error *error = &job->errors[i];
-    error->status = adcgs_scene_load(t->scene, from, job->divide, &to->rgb, &camera, error);
-    if (error->status == ADCGS_OK)
-        error->status = adcgs_view_init(&to->view, &camera, t->origin, t->scale, error);
-    job->pixels[i] = error->status == ADCGS_OK ? (size_t)camera.width * (size_t)camera.height : 0;
-}
-
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error *error)
 {
-    load_job job = { t, divide, calloc(t->n_views, sizeof(adcgs_error)), calloc(t->n_views, sizeof(size_t)) };
-    adcgs_status status = ADCGS_OK;
-    if (!job.errors || !job.pixels)
-        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the views");
-    free_views(t);
-    if (status == ADCGS_OK)
-        adcgs_pool_run(t->pool, load_view, &job, (int)t->n_views);
+    const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
+                                           .progress = t->loading, .user = t->loading_user };
     size_t most = 0;
-    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
-        if (job.errors[i].status != ADCGS_OK) {
-            status = job.errors[i].status;
-            if (error)
-                *error = job.errors[i];
-        }
-        most = ADCGS_MAX(most, job.pixels[i]);
+    free_views(t);
+    ADCGS_TRY(adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error));
+    for (uint32_t i = 0; i < t->n_views; i++) {
+        const adcgs_camera *camera = adcgs_pictures_camera(t->pictures, i);
+        ADCGS_TRY(adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error));
+        most = ADCGS_MAX(most, (size_t)camera->width * (size_t)camera->height);
     }
-    free(job.errors);
-    free(job.pixels);
-    ADCGS_TRY(status);
     t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->grad = adcgs_alloc(NULL, most * 3, sizeof(float), error);
-    t->even = adcgs_alloc(NULL, most * 3, sizeof(float), error);
+    t->taken = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->divide = divide;
-    return t->image && t->grad && t->even ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return t->image && t->grad && t->taken ? ADCGS_OK : ADCGS_ERR_MEMORY;
 }
 
 /**
@@ -361,14 +329,20 @@ static void take_average(adcgs_trainer *t)
 
 /* Before, the pictures drawn say nothing of brightness. */
 static const double EXPOSURE_FROM = 0.02;
+/* Iterations for a picture to be read in the meantime. */
+enum { PICTURES_AHEAD = 8 };
 
-const float *adcgs_trainer_target(adcgs_trainer *t, uint32_t view)
+adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, const float *drawn, const float **target, adcgs_error *error)
 {
-    const adcgs_train_view *v = &t->views[view];
-    if (!t->exposure.n)
-        return v->rgb;
-    adcgs_exposure_even(&t->exposure, view, v->rgb, t->even, (size_t)v->view.width * (size_t)v->view.height);
-    return t->even;
+    const adcgs_view *v = &t->views[view].view;
+    const size_t plane = (size_t)v->width * (size_t)v->height;
+    ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
+    if (t->exposure.n && drawn)
+        adcgs_exposure_follow(&t->exposure, view, drawn, t->taken, plane);
+    if (t->exposure.n)
+        adcgs_exposure_even(&t->exposure, view, t->taken, t->taken, plane);
+    *target = t->taken;
+    return ADCGS_OK;
 }
 
 static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *error)
@@ -382,6 +356,7 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
     const adcgs_pass_mode mode = { .quant = quant,
                                    .deform = progress < c->deform_from ? ADCGS_DEFORM_NONE :
                                              progress < c->fine_from   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
+                                   .bf16 = c->bf16,
                                    .dropout = progress >= c->round_from ? 0 : c->dropout,
                                    .seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration) };
     adcgs_loss_value value;
@@ -390,9 +365,9 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
         grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1, error));
-    if (t->exposure.n && progress >= EXPOSURE_FROM)
-        adcgs_exposure_follow(&t->exposure, picked, t->image, v->rgb, (size_t)v->view.width * (size_t)v->view.height);
-    const float *target = adcgs_trainer_target(t, picked);
+    const float *target;
+    ADCGS_TRY(adcgs_trainer_target(t, picked, progress >= EXPOSURE_FROM ? t->image : NULL, &target, error));
+    adcgs_pictures_expect(t->pictures, pick_view(t, t->iteration + PICTURES_AHEAD));
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
     ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image,
                                     t->grad, &grads, error));

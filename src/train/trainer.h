@@ -7,7 +7,7 @@
 #define ADCGS_TRAIN_TRAINER_H
 
 #include "bits/bytes.h"
-#include "data/scene.h"
+#include "data/pictures.h"
 #include "train/area.h"
 #include "train/average.h"
 #include "train/control.h"
@@ -38,7 +38,6 @@ typedef struct adcgs_train_report {
 typedef int (*adcgs_train_observe)(void *user, const adcgs_train_report *report);
 
 typedef struct adcgs_train_view {
-    float *rgb;          /* planar target, NULL until loaded */
     adcgs_view view;
     float t;
 } adcgs_train_view;
@@ -68,9 +67,13 @@ typedef struct adcgs_trainer {
     adcgs_viewpoints viewpoints;
     uint32_t n_views;
     adcgs_train_view *views;
+    adcgs_pictures *pictures; /* of the training views */
     int divide;              /* of the views loaded; 0: none */
+    uint64_t picture_memory; /* bytes of them at most; 0: half of the machine's */
+    adcgs_pictures_progress loading; /* told of pictures loaded, or NULL */
+    void *loading_user;
     float *image, *grad;
-    float *even;             /* a view's picture as the mean camera would have taken it */
+    float *taken;            /* the view's picture in use */
     adcgs_train_stats stats;
     adcgs_average average;
     adcgs_train_quantise quantise; /* provided by the room that builds streams; NULL: values stay as they are */
@@ -107,8 +110,12 @@ adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error);
 adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, size_t size, adcgs_error *error);
 
-/** A training view's picture, evened out in brightness; valid until the next is asked for. */
-const float *adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view);
+/**
+ * A training view's picture as the mean camera would have taken it; valid until the next is asked for. drawn: the model's
+ * picture of it, from which the camera's exposure is followed, or NULL.
+ */
+adcgs_status adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view, const float *drawn, const float **target,
+                                  adcgs_error *error);
 /** (Re)load all training views with their size divided by an integer. */
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *trainer, int divide, adcgs_error *error);
 /** Growth and pruning by temporal significance (paper section 3.5); progress in [0,1]. */

@@ -27,6 +27,7 @@ static void measure_all(const settings *s)
     const bench *b = &s->b;
     bench_header(b);
     bench_kernels(b);
+    bench_networks(b);
     bench_levels(b);
     for (size_t i = 0; i < (s->quick ? 1 : ADCGS_COUNTOF(sizes)); i++)
         for (size_t j = 0; j < (s->quick ? 1 : ADCGS_COUNTOF(splats)); j++)
@@ -54,8 +55,8 @@ static adcgs_status close_table(settings *s, adcgs_error *error)
 
 static adcgs_status check_group(const bench *b, adcgs_error *error)
 {
-    static const char *const groups[] = { "frame", "stages", "loss", "exactness", "levels", "dense", "integer", "decode",
-                                          "kernels", "train", "play" };
+    static const char *const groups[] = { "frame", "stages", "loss", "exactness", "levels", "dense", "networks", "integer",
+                                          "decode", "kernels", "train", "play" };
     for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++)
         if (bench_wants(b, groups[i]))
             return ADCGS_OK;
@@ -70,7 +71,7 @@ int main(int argc, char **argv)
           NULL },
         { "group", 'g', ADCGS_OPTION_STRING, &s.b.only, 0, 0, "NAME",
           "only groups whose name begins so: frame, stages, loss, exactness,\n"
-          "levels, dense, integer, decode, kernels, train, play",
+          "levels, dense, networks, integer, decode, kernels, train, play",
           NULL, NULL },
         { "cpu", 'c', ADCGS_OPTION_CHOICE, &s.cpu, 0, 0, "LEVEL", "kernels: auto, scalar, avx2, avx512 (default auto)",
           adcgs_cpu_names, NULL },

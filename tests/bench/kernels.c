@@ -13,21 +13,39 @@
 /* ---- Dense layers and their gradients ---- */
 
 typedef struct layer {
-    adcgs_train_dsp dsp;
+    adcgs_train_dsp dsp, bf16;
     int width;
     float *w, *bias, *x, *y, *gw, *gb;
 } layer;
 
+static void run_dense(const adcgs_train_dsp *dsp, const layer *l)
+{
+    dsp->dense.dense(l->y, NULL, l->bias, l->w, (size_t)l->width, l->x, l->width, l->width);
+}
+
+static void run_weight_grad(const adcgs_train_dsp *dsp, const layer *l)
+{
+    dsp->weight_grad(l->gw, (size_t)l->width, l->gb, l->y, 0, l->x, 0, 1, l->width, l->width);
+}
+
 static void dense(void *arg)
 {
-    layer *l = arg;
-    l->dsp.dense.dense(l->y, NULL, l->bias, l->w, (size_t)l->width, l->x, l->width, l->width);
+    run_dense(&((layer *)arg)->dsp, arg);
+}
+
+static void dense_bf16(void *arg)
+{
+    run_dense(&((layer *)arg)->bf16, arg);
 }
 
 static void weight_grad(void *arg)
 {
-    layer *l = arg;
-    l->dsp.weight_grad(l->gw, (size_t)l->width, l->gb, l->y, 0, l->x, 0, 1, l->width, l->width);
+    run_weight_grad(&((layer *)arg)->dsp, arg);
+}
+
+static void weight_grad_bf16(void *arg)
+{
+    run_weight_grad(&((layer *)arg)->bf16, arg);
 }
 
 /** Numbers within (-size, size). */
@@ -42,6 +60,7 @@ static float *random_floats(size_t n, float size)
 static void dense_layers(const bench *b)
 {
     static const int widths[] = { 32, 48, 64, 128, 256 };
+    const int each = adcgs_bf16_check(b->level, NULL) == ADCGS_OK ? 2 : 1;
     for (size_t i = 0; i < ADCGS_COUNTOF(widths); i++) {
         const size_t n = (size_t)widths[i];
         const double operations = 2.0 * 64 * (double)(n * n);
@@ -49,15 +68,20 @@ static void dense_layers(const bench *b)
         layer l = { .width = widths[i] };
         snprintf(group, sizeof group, "dense layer of %d", widths[i]);
         adcgs_train_dsp_init(&l.dsp, b->level);
+        adcgs_train_dsp_init_bf16(&l.bf16, b->level);
         l.w = random_floats(n * n, 0.1f);
         l.x = random_floats(64 * n, 1);
         l.bias = bench_floats(n);
         l.y = bench_floats(64 * n);
         l.gw = bench_floats(n * n);
         l.gb = bench_floats(n);
-        const bench_item items[] = { { "forward", dense, &l, operations, "operation", 1 },
-                                     { "gradient of weights", weight_grad, &l, operations, "operation", 1 } };
-        bench_group(b, &(bench_place){ .group = group, .anchors = 64, .threads = 1 }, items, 2, 0);
+        const bench_place place = { .group = group, .anchors = 64, .threads = 1 };
+        const bench_item forward[] = { { "forward", dense, &l, operations, "operation", 1 },
+                                       { "forward in bf16", dense_bf16, &l, operations, "operation", 1 } };
+        const bench_item weights[] = { { "gradient of weights", weight_grad, &l, operations, "operation", 1 },
+                                       { "the same in bf16", weight_grad_bf16, &l, operations, "operation", 1 } };
+        bench_group(b, &place, forward, each, 1);
+        bench_group(b, &place, weights, each, 1);
         float *const parts[] = { l.w, l.bias, l.x, l.y, l.gw, l.gb };
         for (size_t j = 0; j < ADCGS_COUNTOF(parts); j++)
             adcgs_free(NULL, parts[j]);

@@ -11,6 +11,8 @@ void bench_frames(const bench *b, int width, int height, uint32_t splats);
 void bench_levels(const bench *b);
 /** Networks, entropy coding and the trainer's other kernels. */
 void bench_kernels(const bench *b);
+/** Networks of an anchor model forward and backward, in binary32 and in bf16. */
+void bench_networks(const bench *b);
 /** Whole iterations of training and, from what was trained, decoding and playing. scenes: folder for the scene. */
 void bench_training(const bench *b, const char *scenes, int width, int height, uint32_t anchors, const char *preset);
 

@@ -162,19 +162,26 @@ void bench_training(const bench *b, const char *scenes, int width, int height, u
         return;
     adcgs_buffer_init(&stream);
     adcgs_scene *scene = open_scene(scenes, width, height);
-    const adcgs_train_config config = steady(preset, anchors);
+    adcgs_train_config config = steady(preset, anchors);
+    const int runs = !strcmp(preset, "paper") && adcgs_bf16_check(b->level, NULL) == ADCGS_OK ? 2 : 1;
     for (int threads = 1; threads <= b->threads; threads = bench_more_threads(b, threads)) {
-        training r = { .until = 0 };
+        training r[2] = { { .until = 0 } };
         adcgs_pool *pool = NULL;
         bench_check(adcgs_pool_create(&pool, threads, &error), &error);
-        bench_check(adcgs_trainer_create(&r.t, scene, &config, b->level, pool, &error), &error);
-        r.t->quantise = adcgs_encode_quantise_hook;
-        iterate(&r, YOUTH + WARM_UP);
-        bench_group(b, &(bench_place){ group, width, height, r.t->f->n, r.t->f->n * r.t->f->params.k, threads },
-                    &(bench_item){ "iterations", some_iterations, &r, AT_A_TIME, "iteration", 0 }, 1, 0);
+        for (int i = 0; i < runs; i++) {
+            config.bf16 = i > 0;
+            bench_check(adcgs_trainer_create(&r[i].t, scene, &config, b->level, pool, &error), &error);
+            r[i].t->quantise = adcgs_encode_quantise_hook;
+            iterate(&r[i], YOUTH + WARM_UP);
+        }
+        const bench_item items[] = { { "iterations", some_iterations, &r[0], AT_A_TIME, "iteration", 0 },
+                                     { "iterations in bf16", some_iterations, &r[1], AT_A_TIME, "iteration", 0 } };
+        const uint32_t n = r[0].t->f->n;
+        bench_group(b, &(bench_place){ group, width, height, n, n * r[0].t->f->params.k, threads }, items, runs, 1);
         if (threads == 1)
-            write_stream(&r, pool, &stream);
-        adcgs_trainer_free(&r.t);
+            write_stream(&r[0], pool, &stream);
+        for (int i = 0; i < runs; i++)
+            adcgs_trainer_free(&r[i].t);
         adcgs_pool_free(&pool);
     }
     snprintf(group, sizeof group, "play preset %s", preset);

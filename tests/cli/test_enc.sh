@@ -131,6 +131,19 @@ expect 4 "$dir/damaged: damaged" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short -
 expect 4 "not a checkpoint" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/one.adcgs"
 expect 3 "nowhere" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --resume "$dir/nowhere"
 
+# Networks in bf16: another stream, the same at any number of threads, where the CPU can; else one line that says what it lacks.
+# shellcheck disable=SC2086
+if ./adcgs-enc "$scene" -o "$dir/bf16.adcgs" $short --iterations 10 --bf16 >"$dir/out" 2>"$dir/err"; then
+    enc short1 --iterations $n --bf16 --threads 1
+    enc short2 --iterations $n --bf16 --threads 2
+    same short1 short2 "another stream with other threads, in bf16"
+    cmp -s "$dir/one.adcgs" "$dir/short1.adcgs" && bad "--bf16 changes nothing"
+    expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --bf16 --resume "$dir/late"
+    expect 5 "CPU level avx512: these are of scalar" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --bf16 --cpu scalar
+else
+    expect 5 "AVX512-BF16" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --bf16
+fi
+
 # Before lambda has a say a run may go on with any: what comes of it is what comes of a whole run. After that it may not.
 # shellcheck disable=SC2086
 ./adcgs-enc "$scene" --beginning "$dir/begin" $short --lambda 7 >"$dir/out" 2>"$dir/err" || { bad "--beginning"; cat "$dir/err"; }

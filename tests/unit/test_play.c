@@ -27,73 +27,74 @@ static adcgs_camera make_camera(void)
                           .cam_to_world = {1, 0, 0, 1.0, 0, 0, 1, -4.0, 0, -1, 0, 3.0}, .name = "first"};
 }
 
-static adcgs_rig make_rig(const char *axes)
+static adcgs_play_rig make_rig(const char *axes)
 {
     const adcgs_info info = make_info(axes);
     const adcgs_camera camera = make_camera();
-    adcgs_rig rig;
-    adcgs_rig_init(&rig, &info, &camera);
+    adcgs_play_rig rig;
+    adcgs_play_rig_init(&rig, &info, &camera);
     return rig;
 }
 
-static void column(const adcgs_rig *rig, int c, double v[3])
+static void column(const adcgs_play_rig *rig, int c, double v[3])
 {
     for (int i = 0; i < 3; i++)
         v[i] = rig->camera.cam_to_world[4 * i + c];
 }
 
 /** Cosine of the angle between the view and the direction to a point. */
-static double looks_at(const adcgs_rig *rig, const double point[3])
+static double looks_at(const adcgs_play_rig *rig, const double point[3])
 {
     double forward[3], to[3];
     column(rig, 2, forward);
     column(rig, 3, to);
     for (int i = 0; i < 3; i++)
         to[i] = point[i] - to[i];
-    return dot(forward, to) / sqrt(dot(to, to));
+    return adcgs_v3_dot(forward, to) / sqrt(adcgs_v3_dot(to, to));
 }
 
-static void assert_rotation(const adcgs_rig *rig)
+static void assert_rotation(const adcgs_play_rig *rig)
 {
     double right[3], down[3], forward[3], third[3];
     column(rig, 0, right);
     column(rig, 1, down);
     column(rig, 2, forward);
-    cross(right, down, third);
+    adcgs_v3_cross(right, down, third);
     for (int i = 0; i < 3; i++)
         assert_true(fabs(third[i] - forward[i]) < 1e-12);
-    assert_true(fabs(dot(right, right) - 1.0) < 1e-12 && fabs(dot(down, down) - 1.0) < 1e-12 && fabs(dot(right, down)) < 1e-12);
+    assert_true(fabs(adcgs_v3_dot(right, right) - 1.0) < 1e-12 && fabs(adcgs_v3_dot(down, down) - 1.0) < 1e-12);
+    assert_true(fabs(adcgs_v3_dot(right, down)) < 1e-12);
 }
 
 static void test_orbit(void **state)
 {
-    adcgs_rig rig = make_rig("right-handed, z up");
+    adcgs_play_rig rig = make_rig("right-handed, z up");
     double right[3];
     for (int i = 0; i < 20000; i++) {
-        adcgs_rig_orbit(&rig, 0.37 * sin(i), 0.11 * cos(3.0 * i));
+        adcgs_play_rig_orbit(&rig, 0.37 * sin(i), 0.11 * cos(3.0 * i));
         assert_rotation(&rig);
     }
-    assert_true(fabs(adcgs_rig_distance(&rig) - 6.0) < 1e-9);
+    assert_true(fabs(adcgs_play_rig_distance(&rig) - 6.0) < 1e-9);
     assert_true(looks_at(&rig, rig.centre) > 1.0 - 1e-12);
     column(&rig, 0, right);
     assert_true(fabs(right[2]) < 1e-9); /* the horizon stays level */
     /* Dragging down shows the scene from above, at most from straight above. */
-    adcgs_rig_orbit(&rig, 0.0, -10.0);
+    adcgs_play_rig_orbit(&rig, 0.0, -10.0);
     assert_true(rig.camera.cam_to_world[11] > 3.0 + 6.0 * 0.999);
     assert_true(looks_at(&rig, rig.centre) > 1.0 - 1e-12);
-    adcgs_rig_orbit(&rig, 0.0, 20.0);
+    adcgs_play_rig_orbit(&rig, 0.0, 20.0);
     assert_true(rig.camera.cam_to_world[11] < 3.0 - 6.0 * 0.999);
     assert_rotation(&rig);
 }
 
 static void test_orbit_follows_mouse(void **state)
 {
-    adcgs_rig rig = make_rig("right-handed, z up");
-    adcgs_rig_orbit(&rig, -0.1, 0.0); /* dragged to the right: the camera goes left, -x */
+    adcgs_play_rig rig = make_rig("right-handed, z up");
+    adcgs_play_rig_orbit(&rig, -0.1, 0.0); /* dragged to the right: the camera goes left, -x */
     assert_true(fabs(rig.camera.cam_to_world[3] - (1.0 - 6.0 * sin(0.1))) < 1e-12);
     assert_true(fabs(rig.camera.cam_to_world[7] - (2.0 - 6.0 * cos(0.1))) < 1e-12);
     rig = make_rig("right-handed, z up");
-    adcgs_rig_look(&rig, -0.1, 0.0); /* looks to the right, +x, from where it is */
+    adcgs_play_rig_look(&rig, -0.1, 0.0); /* looks to the right, +x, from where it is */
     assert_true(fabs(rig.camera.cam_to_world[2] - sin(0.1)) < 1e-12);
     assert_true(rig.camera.cam_to_world[3] == 1.0 && rig.camera.cam_to_world[7] == -4.0 && rig.camera.cam_to_world[11] == 3.0);
 }
@@ -106,69 +107,69 @@ static void test_up(void **state)
     /* Where nobody says, the camera knows: here its own up is +z, then it is tilted by a quarter turn and is +x. */
     adcgs_info info = make_info("unknown");
     adcgs_camera camera = make_camera();
-    adcgs_rig rig = make_rig("unknown");
+    adcgs_play_rig rig = make_rig("unknown");
     assert_true(rig.up[2] == 1.0);
     const double tilted[12] = {0, -1, 0, 1.0, 0, 0, 1, -4.0, -1, 0, 0, 3.0};
     memcpy(camera.cam_to_world, tilted, sizeof tilted);
-    adcgs_rig_init(&rig, &info, &camera);
+    adcgs_play_rig_init(&rig, &info, &camera);
     assert_true(rig.up[0] == 1.0);
 }
 
 static void test_pan_and_zoom(void **state)
 {
-    adcgs_rig rig = make_rig("right-handed, z up");
-    adcgs_rig_orbit(&rig, 0.5, 0.3);
-    const adcgs_rig before = rig;
+    adcgs_play_rig rig = make_rig("right-handed, z up");
+    adcgs_play_rig_orbit(&rig, 0.5, 0.3);
+    const adcgs_play_rig before = rig;
     double right[3], down[3];
     column(&rig, 0, right);
     column(&rig, 1, down);
-    adcgs_rig_pan(&rig, 0.1, -0.05);
-    assert_true(fabs(adcgs_rig_distance(&rig) - 6.0) < 1e-12);
+    adcgs_play_rig_pan(&rig, 0.1, -0.05);
+    assert_true(fabs(adcgs_play_rig_distance(&rig) - 6.0) < 1e-12);
     assert_true(looks_at(&rig, rig.target) > 1.0 - 1e-12);
     /* The old target is now where it was dragged to: right by 0.1 focal lengths, up by 0.05. */
     double to[3];
     for (int i = 0; i < 3; i++)
         to[i] = before.target[i] - rig.camera.cam_to_world[4 * i + 3];
-    assert_true(fabs(dot(to, right) / 6.0 - 0.1) < 1e-12 && fabs(dot(to, down) / 6.0 + 0.05) < 1e-12);
-    adcgs_rig_zoom(&rig, 3.0);
-    assert_true(fabs(adcgs_rig_distance(&rig) - 6.0 * 0.729) < 1e-12);
-    adcgs_rig_zoom(&rig, -3.0);
-    assert_true(fabs(adcgs_rig_distance(&rig) - 6.0) < 1e-9);
-    adcgs_rig_zoom(&rig, 1e9);
-    assert_true(adcgs_rig_distance(&rig) > 0.0 && adcgs_rig_distance(&rig) < 0.01);
+    assert_true(fabs(adcgs_v3_dot(to, right) / 6.0 - 0.1) < 1e-12 && fabs(adcgs_v3_dot(to, down) / 6.0 + 0.05) < 1e-12);
+    adcgs_play_rig_zoom(&rig, 3.0);
+    assert_true(fabs(adcgs_play_rig_distance(&rig) - 6.0 * 0.729) < 1e-12);
+    adcgs_play_rig_zoom(&rig, -3.0);
+    assert_true(fabs(adcgs_play_rig_distance(&rig) - 6.0) < 1e-9);
+    adcgs_play_rig_zoom(&rig, 1e9);
+    assert_true(adcgs_play_rig_distance(&rig) > 0.0 && adcgs_play_rig_distance(&rig) < 0.01);
     for (int i = 0; i < 300; i++)
-        adcgs_rig_zoom(&rig, -1e3); /* never out of this world */
-    assert_true(adcgs_rig_distance(&rig) < 3e5 * 3.0 + 10.0);
+        adcgs_play_rig_zoom(&rig, -1e3); /* never out of this world */
+    assert_true(adcgs_play_rig_distance(&rig) < 3e5 * 3.0 + 10.0);
     assert_rotation(&rig);
 }
 
 static void test_fly(void **state)
 {
-    adcgs_rig rig = make_rig("right-handed, z up");
-    adcgs_rig_fly(&rig, 1.0, 0.0, 2.0); /* units of 3 */
+    adcgs_play_rig rig = make_rig("right-handed, z up");
+    adcgs_play_rig_fly(&rig, 1.0, 0.0, 2.0); /* units of 3 */
     assert_true(rig.camera.cam_to_world[3] == 4.0 && rig.camera.cam_to_world[7] == 2.0 && rig.camera.cam_to_world[11] == 3.0);
     assert_memory_equal(rig.target, rig.centre, sizeof rig.target);
-    adcgs_rig_look(&rig, 0.3, 0.1);
-    adcgs_rig_land(&rig);
+    adcgs_play_rig_look(&rig, 0.3, 0.1);
+    adcgs_play_rig_land(&rig);
     assert_true(looks_at(&rig, rig.target) > 1.0 - 1e-12);
     const adcgs_camera camera = make_camera();
-    adcgs_rig_jump(&rig, &camera);
+    adcgs_play_rig_jump(&rig, &camera);
     assert_memory_equal(&rig.camera, &camera, sizeof camera);
     assert_memory_equal(rig.target, rig.centre, sizeof rig.target);
 }
 
 static void test_view(void **state)
 {
-    const adcgs_rig rig = make_rig("right-handed, z up");
+    const adcgs_play_rig rig = make_rig("right-handed, z up");
     adcgs_camera view, again = rig.camera;
-    adcgs_rig_view(&rig, 640, 480, &view);
+    adcgs_play_rig_view(&rig, 640, 480, &view);
     assert_memory_equal(&view, &rig.camera, sizeof view);
-    adcgs_rig_view(&rig, 1920, 1440, &view); /* the same shape: what stretching gives, to the last bit */
-    adcgs_rig_stretch(&again, 1920, 1440);
+    adcgs_play_rig_view(&rig, 1920, 1440, &view); /* the same shape: what stretching gives, to the last bit */
+    adcgs_play_rig_stretch(&again, 1920, 1440);
     assert_memory_equal(&view, &again, sizeof view);
-    adcgs_rig_view(&rig, 1000, 480, &view); /* 180 pixels more at both sides */
+    adcgs_play_rig_view(&rig, 1000, 480, &view); /* 180 pixels more at both sides */
     assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 480.0 && view.cy == 250.0);
-    adcgs_rig_view(&rig, 320, 480, &view); /* half the size, 120 more above and below */
+    adcgs_play_rig_view(&rig, 320, 480, &view); /* half the size, 120 more above and below */
     assert_true(view.fx == 250.0 && view.fy == 255.0 && view.cx == 150.0 && view.cy == 245.0);
 }
 
@@ -366,13 +367,13 @@ static void test_mouse(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
     adcgs_play_state play = make_state(cameras);
-    const adcgs_rig before = play.rig;
+    const adcgs_play_rig before = play.rig;
     motion(&play, 10, 10, 10, 10); /* without a button nothing moves */
     assert_memory_equal(&play.rig, &before, sizeof before);
     assert_false(adcgs_play_moving(&play));
     button(&play, 1, 1, 100, 100);
     motion(&play, 200, 100, 100, 0);
-    assert_true(adcgs_play_moving(&play) && fabs(adcgs_rig_distance(&play.rig) - 6.0) < 1e-12);
+    assert_true(adcgs_play_moving(&play) && fabs(adcgs_play_rig_distance(&play.rig) - 6.0) < 1e-12);
     assert_true(play.rig.camera.cam_to_world[3] < 1.0 && looks_at(&play.rig, play.rig.centre) > 1.0 - 1e-12);
     button(&play, 1, 0, 200, 100);
     adcgs_play_tick(&play, 51.0);
@@ -383,14 +384,14 @@ static void test_mouse(void **state)
     button(&play, 3, 0, 150, 100);
     assert_true(fabs(play.rig.camera.cam_to_world[3] - (1.0 - 0.6)) < 1e-12);
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_WHEEL, .dy = 1.0});
-    assert_true(fabs(adcgs_rig_distance(&play.rig) - 5.4) < 1e-9);
+    assert_true(fabs(adcgs_play_rig_distance(&play.rig) - 5.4) < 1e-9);
 }
 
 static void test_scrub(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
     adcgs_play_state play = make_state(cameras);
-    const adcgs_rig before = play.rig;
+    const adcgs_play_rig before = play.rig;
     const adcgs_rect bar = adcgs_play_bar(&play);
     assert_true(bar.width > 400 && bar.y + bar.height == 480);
     button(&play, 1, 1, bar.width - 1, bar.y + 3);

@@ -100,7 +100,8 @@ static void explain_pictures(adcgs_trainer *t)
         assert_int_equal(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, scene->background, 0.3f, t->image, 0,
                                               &error), ADCGS_OK);
         for (size_t j = 0; j < n; j++)
-            v->rgb[j] = t->image[j] + (float)(0.03 * adcgs_random_normal(9, i, j));
+            t->taken[j] = t->image[j] + (float)(0.03 * adcgs_random_normal(9, i, j));
+        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
     }
 }
 

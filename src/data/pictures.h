@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * All pictures of a split at one size, decoded once and kept: in memory up to a
+ * budget, the others in an unnamed file of TMPDIR (/var/tmp without it), which
+ * the system reads ahead when told what comes next. Values in [0,1] are kept in
+ * 16 bits wherever they lie, so that a budget never changes what is learnt;
+ * those of a picture that goes beyond are kept as binary32.
+ */
+#ifndef ADCGS_DATA_PICTURES_H
+#define ADCGS_DATA_PICTURES_H
+
+#include "base/pool.h"
+#include "data/scene.h"
+
+typedef struct adcgs_pictures adcgs_pictures;
+
+/** Told how many of n are there, by any thread, one at a time; nonzero: stop. */
+typedef int (*adcgs_pictures_progress)(void *user, uint32_t done, uint32_t n);
+
+typedef struct adcgs_pictures_config {
+    adcgs_split split;
+    int divide;        /**< sizes are divided by this, see adcgs_scene_load() */
+    uint64_t memory;   /**< bytes of pictures in memory at most; 0: half of what the machine has */
+    adcgs_pictures_progress progress; /**< or NULL */
+    void *user;
+} adcgs_pictures_config;
+
+/**
+ * The scene must outlive them. The first failure of a picture, in their order, is the one reported; ADCGS_ERR_IO also when
+ * the file has no room, or when progress says stop.
+ */
+adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene, const adcgs_pictures_config *config,
+                                 adcgs_pool *pool, adcgs_error *error);
+void adcgs_pictures_free(adcgs_pictures **pictures);
+/** At the size of the pictures. */
+const adcgs_camera *adcgs_pictures_camera(const adcgs_pictures *pictures, uint32_t view);
+/** rgb: planar [3][height][width], the caller's. Any thread. */
+adcgs_status adcgs_pictures_get(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error);
+/** Put another picture of the same size in a view's place; no other thread may read meanwhile. */
+adcgs_status adcgs_pictures_put(adcgs_pictures *pictures, uint32_t view, const float *rgb, adcgs_error *error);
+/** That a picture will be asked for soon. Costs nothing when it is in memory. */
+void adcgs_pictures_expect(const adcgs_pictures *pictures, uint32_t view);
+/** Bytes in memory, and in the file. */
+void adcgs_pictures_size(const adcgs_pictures *pictures, uint64_t *memory, uint64_t *file);
+
+#endif
