@@ -58,16 +58,18 @@ static void draw_bar(adcgs_panel *panel, const adcgs_play_state *state)
 static void draw_statistics(adcgs_panel *panel, const adcgs_play_state *state, const adcgs_play_figures *figures)
 {
     const adcgs_play_clock *const clock = &state->clock;
-    char text[400];
+    char rate[40] = "", text[440];
+    if (figures->rate > 0.0)
+        snprintf(rate, sizeof rate, ", %.1f fps", figures->rate);
     snprintf(text, sizeof text,
-             "picture %.1f ms, %.1f fps\n"
+             "picture %.1f ms%s\n"
              "size    %dx%d of %dx%d\n"
              "splats  %u\n"
              "layers  %d of %d\n"
              "time    %.3f s, frame %d of %d\n"
              "speed   %gx%s%s\n"
              "dropped %ld",
-             1e3 * figures->seconds, figures->rate, figures->width, figures->height, state->width, state->height,
+             1e3 * figures->seconds, rate, figures->width, figures->height, state->width, state->height,
              (unsigned)figures->splats, state->layers, state->layers_max, adcgs_play_clock_time(clock),
              adcgs_play_clock_frame(clock), clock->frames, adcgs_play_clock_factor(clock), clock->loop ? ", loop" : "",
              state->flying ? ", flying" : "", figures->dropped);

@@ -8,7 +8,7 @@
 /** What the state does not know. */
 typedef struct adcgs_play_figures {
     double seconds;     /**< that the last picture took to draw */
-    double rate;        /**< pictures in a second */
+    double rate;        /**< pictures in a second; 0: none came lately */
     int width, height;  /**< of the last picture */
     uint32_t splats;    /**< of the stream, with the layers used */
     long dropped;       /**< frames left out while playing */

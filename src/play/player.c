@@ -16,6 +16,7 @@
 #define BUDGET_MIN (1.0 / 60.0)   /* more pictures than that nobody sees */
 #define BUDGET_MAX (1.0 / 15.0)   /* fewer are no film */
 #define REFRESH_SECONDS 0.25      /* after which figures and messages are drawn anew */
+#define REST_SECONDS 0.5          /* without a picture, after which there is no rate of them */
 #define WAIT_MOVING 4             /* milliseconds to wait for events */
 #define WAIT_STILL 100
 #define SHOTS_MAX 999999
@@ -37,8 +38,8 @@ static int same_picture(const adcgs_play_job *a, const adcgs_play_job *b)
 {
     const adcgs_camera *const c = &a->camera, *const d = &b->camera;
     return c->width == d->width && c->height == d->height && c->fx == d->fx && c->fy == d->fy && c->cx == d->cx &&
-           c->cy == d->cy && c->near_plane == d->near_plane && a->time == b->time && a->layers == b->layers &&
-           !memcmp(c->cam_to_world, d->cam_to_world, sizeof c->cam_to_world);
+           c->cy == d->cy && c->near_plane == d->near_plane && a->time == b->time && a->number == b->number &&
+           a->layers == b->layers && !memcmp(c->cam_to_world, d->cam_to_world, sizeof c->cam_to_world);
 }
 
 static int wanted_divider(const adcgs_player *p)
@@ -49,7 +50,7 @@ static int wanted_divider(const adcgs_player *p)
 int adcgs_player_settled(const adcgs_player *p)
 {
     const adcgs_play_job wanted = wanted_job(p, wanted_divider(p));
-    return !p->drawing && !*p->shot && !adcgs_play_moving(&p->state) && same_picture(&p->job, &wanted);
+    return !p->drawing && !*p->shot && !p->state.shot && !adcgs_play_moving(&p->state) && same_picture(&p->job, &wanted);
 }
 
 static double budget(const adcgs_player *p)
@@ -105,15 +106,20 @@ static void take_failure(adcgs_player *p, const adcgs_play_result *result)
     const int too_large = result->status == ADCGS_ERR_LIMIT || result->status == ADCGS_ERR_MEMORY;
     if (too_large && result->job.divider < ADCGS_PLAY_DIVIDER_MAX)
         p->least_divider = result->job.divider + 1;
-    else
+    else {
+        p->failure = result->status;
+        p->failure_error = result->error;
         adcgs_play_say(&p->state, "%s", result->error.text);
+    }
 }
 
 static void count_picture(adcgs_player *p, const adcgs_play_result *result)
 {
     adcgs_play_figures *const f = &p->figures;
     const double now = adcgs_seconds(), since = now - p->arrived;
-    f->rate = p->pictures && since > 0.0 ? 0.9 * f->rate + 0.1 / since : 0.0;
+    p->period = p->period > 0.0 ? 0.9 * p->period + 0.1 * since : since;
+    if (!p->pictures || since > REST_SECONDS)
+        p->period = 0.0;
     p->arrived = now;
     f->seconds = result->seconds;
     f->width = result->job.camera.width;
@@ -135,6 +141,7 @@ static void count_dropped(adcgs_player *p, const adcgs_play_job *job)
 static adcgs_status take_picture(adcgs_player *p, const adcgs_play_result *result, adcgs_error *error)
 {
     const adcgs_camera *const camera = &result->job.camera;
+    p->failure = ADCGS_OK;
     count_picture(p, result);
     count_dropped(p, &result->job);
     if (adcgs_play_moving(&p->state) && result->job.divider == p->scale.divider)
@@ -166,6 +173,7 @@ adcgs_status adcgs_player_show(adcgs_player *p, uint8_t *rgb, adcgs_error *error
 {
     p->stale = 0;
     p->shown = adcgs_seconds();
+    p->figures.rate = p->period > 0.0 && p->shown - p->arrived < REST_SECONDS ? 1.0 / p->period : 0.0;
     adcgs_overlay_draw(p->panels, &p->state, &p->figures);
     return p->sdl->show(p->window, p->panels, rgb, error);
 }
@@ -195,14 +203,16 @@ static void take_events(adcgs_player *p)
     if (p->captured != p->state.flying)
         p->sdl->capture(p->window, p->state.flying);
     p->captured = p->state.flying;
-    if (p->state.shot && !*p->shot)
+    if (p->state.shot && !*p->shot) {
         name_shot(p, p->state.shot == ADCGS_SHOT_EXR ? "exr" : "png");
-    p->state.shot = ADCGS_SHOT_NONE;
+        p->state.shot = ADCGS_SHOT_NONE;
+    }
 }
 
+/** Screenshots that were asked for are made before the player leaves. */
 static adcgs_status loop(adcgs_player *p, adcgs_error *error)
 {
-    while (!p->state.quit && !p->settings->interrupted()) {
+    while ((!p->state.quit || p->state.shot || *p->shot) && !p->settings->interrupted()) {
         take_events(p);
         adcgs_play_tick(&p->state, adcgs_seconds());
         ADCGS_TRY(collect(p, error));
@@ -246,6 +256,8 @@ static void init(adcgs_player *p, const adcgs_play_settings *s)
         adcgs_play_clock_seek(clock, (s->start - s->begin) * clock->rate / (clock->frames - 1));
     if (!s->paused)
         adcgs_play_clock_toggle(clock);
+    if (s->info.truncated)
+        adcgs_play_say(&p->state, "the stream ends early");
 }
 
 adcgs_status adcgs_play_run(const adcgs_play_settings *settings, int *failed, adcgs_error *error)

@@ -38,7 +38,10 @@ typedef struct adcgs_player {
     int stale;               /**< what the window shows is not the last word */
     double shown;            /**< when the window was drawn last */
     double arrived;          /**< when the last picture came */
+    double period;           /**< seconds between pictures, on the mean of the last ones; 0: not known */
     long pictures;           /**< shown so far */
+    adcgs_status failure;    /**< of the last picture for the window, if it cannot be drawn at any resolution */
+    adcgs_error failure_error;
     char shot[PATH_MAX];     /**< file of the screenshot that is to be made or being made; "": none */
     adcgs_status shot_status; /**< of the last one */
     adcgs_error shot_error;

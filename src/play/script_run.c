@@ -174,6 +174,9 @@ static outcome begin(adcgs_player *p, const adcgs_script_line *line)
 /** What is asked in each turn until the line is done. */
 static adcgs_status go_on(adcgs_player *p, const adcgs_script_line *line, outcome *how, adcgs_error *error)
 {
+    const int waits = line->kind == ADCGS_SCRIPT_WAIT_FRAMES || line->kind == ADCGS_SCRIPT_GRAB;
+    if (waits && p->failure != ADCGS_OK && !p->drawing) /* there may never be a picture */
+        return wrong(p, line, p->failure, p->failure_error.text, error);
     switch (line->kind) {
     case ADCGS_SCRIPT_WAIT_FRAMES:
         *how = wait_frames(p, line);

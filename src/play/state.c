@@ -90,6 +90,7 @@ static void move_by_hand(adcgs_play_state *state)
 {
     state->moved = state->now;
     state->jumped = -1;
+    *state->rig.camera.name = 0; /* it is no longer that one */
 }
 
 static void do_play(adcgs_play_state *state, int unused)

@@ -75,11 +75,35 @@ static void window_close(adcgs_window **window)
     free(w);
 }
 
+/** Whether a driver of SDL draws where somebody sees it, and can be asked without writing messages of its own. */
+static int has_display(const char *driver)
+{
+    static const char *const blind[] = {"dummy", "evdev", "offscreen"};
+    for (size_t i = 0; i < ADCGS_COUNTOF(blind); i++)
+        if (!strcmp(driver, blind[i]))
+            return 0;
+    return strcmp(driver, "wayland") || SDL_getenv("XDG_RUNTIME_DIR") || SDL_getenv("WAYLAND_SOCKET");
+}
+
+/** With the driver that the user names, or the first that has a display: SDL by itself is content with one that has none. */
+static int init_video(void)
+{
+    const char *const named = SDL_getenv("SDL_VIDEODRIVER");
+    if (named && *named)
+        return SDL_Init(SDL_INIT_VIDEO);
+    for (int i = 0; i < SDL_GetNumVideoDrivers(); i++) {
+        const char *const driver = SDL_GetVideoDriver(i);
+        if (has_display(driver) && !SDL_setenv("SDL_VIDEODRIVER", driver, 1) && !SDL_Init(SDL_INIT_VIDEO))
+            return 0;
+    }
+    return SDL_SetError("none of SDL's drivers finds one");
+}
+
 static adcgs_status open_parts(adcgs_window *w, const char *title, int width, int height, adcgs_error *error)
 {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); /* the program has its own */
     SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
-    if (SDL_Init(SDL_INIT_VIDEO))
+    if (init_video())
         return adcgs_fail(error, ADCGS_ERR_IO, "%.100s: no display to play on: %s", title, SDL_GetError());
     fit_screen(&width, &height);
     w->window = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height,

@@ -375,6 +375,7 @@ static void test_mouse(void **state)
     motion(&play, 200, 100, 100, 0);
     assert_true(adcgs_play_moving(&play) && fabs(adcgs_play_rig_distance(&play.rig) - 6.0) < 1e-12);
     assert_true(play.rig.camera.cam_to_world[3] < 1.0 && looks_at(&play.rig, play.rig.centre) > 1.0 - 1e-12);
+    assert_string_equal(play.rig.camera.name, ""); /* it is the first camera no more */
     button(&play, 1, 0, 200, 100);
     adcgs_play_tick(&play, 51.0);
     assert_false(adcgs_play_moving(&play));
