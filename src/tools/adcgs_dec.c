@@ -9,6 +9,7 @@
 #include "tools/answer.h"
 #include "tools/canvas.h"
 #include "tools/cli.h"
+#include "tools/dec_play.h"
 #include "tools/dec_splats.h"
 #include "tools/shots.h"
 
@@ -19,14 +20,14 @@
 #include <strings.h>
 
 typedef struct settings {
-    const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras;
+    const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script;
     adcgs_shots_request request;
     adcgs_config config;
-    int cpu, half, use_float, bits, alpha, depth, md5, frametimes;
+    int cpu, half, use_float, bits, alpha, depth, md5, frametimes, play;
     double opened; /**< when opening the input began, in seconds */
 } settings;
 
-#define OPTION_COUNT 21
+#define OPTION_COUNT 23
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -65,6 +66,9 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "answer a file of requests for digests, as the specification's\nclause on conformance says", NULL, NULL},
         {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL,
          "print the milliseconds from opening to the first frame,\nthen those that each frame took to render", NULL, NULL},
+        {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a camera to move", NULL, NULL},
+        {"script", 0, ADCGS_OPTION_STRING, &s->script, 0, 0, "COMMANDS", "with --play: do what this file says, as a user would",
+         NULL, NULL},
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; frames do not depend on it",
          adcgs_cpu_names, NULL},
@@ -228,6 +232,16 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
     return status;
 }
 
+/** Play in place of rendering a clip. */
+static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch, adcgs_error *error)
+{
+    const adcgs_dec_play how = {.input = s->input, .script = s->script, .request = s->request, .config = s->config};
+    const adcgs_status status = adcgs_dec_play_run(&how, mismatch, error);
+    if (*mismatch)
+        adcgs_cli_note(cli, "%s", error->text);
+    return status;
+}
+
 /** Open what is to be shown, and show it. */
 static adcgs_status show(const adcgs_cli *cli, const settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
@@ -245,6 +259,17 @@ static adcgs_status show(const adcgs_cli *cli, const settings *s, adcgs_decoder 
     return status;
 }
 
+/** What goes with the player, and what does not. */
+static adcgs_status check_play(const settings *s, adcgs_error *error)
+{
+    const int written = s->output || s->format || s->half || s->use_float || s->bits || s->alpha || s->depth || s->beside;
+    if (s->play && (written || s->splats || s->cameras || s->md5 || s->verify || s->answer || s->frametimes))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--play shows frames, and does nothing else with them");
+    if (s->script && !s->play)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--script needs --play");
+    return ADCGS_OK;
+}
+
 /** What the option table cannot check. */
 static adcgs_status check_settings(settings *s, adcgs_error *error)
 {
@@ -252,6 +277,7 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     if (s->times && adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, or A:B with A not after B", s->times);
     s->request.has_times = s->times != NULL;
+    ADCGS_TRY(check_play(s, error));
     if (s->half && s->use_float)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
     const int frames = s->output || s->request.camera || s->request.size[0] || s->md5 || s->verify || s->frametimes;
@@ -286,8 +312,8 @@ int main(int argc, char **argv)
     const adcgs_cli cli = {.program = "adcgs-dec",
                            .operands = "FILE|-",
                            .summary = "Decode a stream and render frames from it.",
-                           .details = "Exit status: 0 done, 1 MD5 differs, 2 usage, 3 input or output, 4 invalid stream,\n"
-                                      "5 unsupported.",
+                           .details = "Exit status: 0 done, 1 MD5 or an expectation differs, 2 usage, 3 input or output,\n"
+                                      "4 invalid stream, 5 unsupported.",
                            .options = options,
                            .n_options = OPTION_COUNT,
                            .min_operands = 1,
@@ -304,6 +330,8 @@ int main(int argc, char **argv)
     s.opened = adcgs_seconds();
     if (status == ADCGS_OK && s.answer)
         status = answer(&cli, &s, &decoder, &error);
+    else if (status == ADCGS_OK && s.play)
+        status = play(&cli, &s, &mismatch, &error);
     else if (status == ADCGS_OK)
         status = show(&cli, &s, &decoder, &mismatch, &error);
     adcgs_close(&decoder);

@@ -4,7 +4,7 @@
 
 #include "tools/flight.h"
 
-#include "tools/turn.h"
+#include "play/turn.h"
 
 #include <math.h>
 #include <stdlib.h>

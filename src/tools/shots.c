@@ -4,8 +4,8 @@
 
 #include "tools/shots.h"
 
+#include "play/turn.h"
 #include "tools/cli.h"
-#include "tools/turn.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,18 +34,6 @@ void adcgs_shots_free(adcgs_shots *shots)
     *shots = (adcgs_shots){0};
 }
 
-/** The direction that the stream calls up; z if it does not say. */
-static void find_up(const adcgs_info *info, double up[3])
-{
-    up[0] = up[1] = up[2] = 0.0;
-    if (strstr(info->axes, "y up"))
-        up[1] = 1.0;
-    else if (strstr(info->axes, "y down"))
-        up[1] = -1.0;
-    else
-        up[2] = 1.0;
-}
-
 /** On the outside, looking at the scene's centre from a little above. */
 void adcgs_shots_default(adcgs_camera *camera, const adcgs_info *info, const double up[3])
 {
@@ -64,16 +52,6 @@ void adcgs_shots_default(adcgs_camera *camera, const adcgs_info *info, const dou
     adcgs_look_at(camera->cam_to_world, eye, info->scene_origin, up);
 }
 
-/** Turn a vector about the unit vector up. */
-static void turn(const double up[3], double angle, double v[3])
-{
-    double side[3];
-    adcgs_v3_cross(up, v, side);
-    const double along = adcgs_v3_dot(up, v) * (1.0 - cos(angle));
-    for (int i = 0; i < 3; i++)
-        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + up[i] * along;
-}
-
 /** Turn a camera about the axis through the scene's centre. */
 static void turn_camera(adcgs_camera *camera, const adcgs_info *info, const double up[3], double angle)
 {
@@ -82,7 +60,7 @@ static void turn_camera(adcgs_camera *camera, const adcgs_info *info, const doub
         double v[3];
         for (int i = 0; i < 3; i++)
             v[i] = m[4 * i + c] - (c == 3 ? info->scene_origin[i] : 0.0);
-        turn(up, angle, v);
+        adcgs_v3_turn(up, angle, v);
         for (int i = 0; i < 3; i++)
             m[4 * i + c] = v[i] + (c == 3 ? info->scene_origin[i] : 0.0);
     }
@@ -156,7 +134,7 @@ static adcgs_status make_from_rig(adcgs_shots *out, const adcgs_decoder *decoder
     const int is_bullet = is_named(request, "bullet");
     adcgs_rig rig;
     double up[3];
-    find_up(info, up);
+    adcgs_find_up(info, up);
     ADCGS_TRY(adcgs_shots_times(out, info, request, is_bullet ? ADCGS_SHOTS_FROZEN : ADCGS_SHOTS_MOVING, error));
     adcgs_status status = adcgs_rig_init(&rig, decoder, info, up, error);
     if (status == ADCGS_OK && is_bullet && rig.n >= 3)

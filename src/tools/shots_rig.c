@@ -2,8 +2,8 @@
 /** \file Camera paths drawn round the stored cameras. */
 #include "config.h"
 
+#include "play/turn.h"
 #include "tools/flight.h"
-#include "tools/turn.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -195,7 +195,7 @@ take dnerf
 spoil cut 0.ppm
 run ./adcgs-enc "$scene" -o "$dir/x" --preset draft --iterations 10 --threads 2 &&
     bad "$what: adcgs-enc says nothing of a test picture"
-grep -q "0.ppm: ends in row 10 of 16; but $dir/x is written" "$dir/err" || { bad "$what: what became of the stream"; cat "$dir/err"; }
+grep -q "0.ppm: ends in row 10 of 16; but $dir/x is written" "$dir/err" || { bad "$what: the message"; cat "$dir/err"; }
 [ "$(wc -l <"$dir/err")" -eq 1 ] && ./adcgs-info "$dir/x" >/dev/null || bad "$what: the stream"
 while read -r kind file; do
     grep -q "^$kind " "$dir/list" || continue

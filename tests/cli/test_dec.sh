@@ -57,6 +57,11 @@ expect 2 "exclude" $dec "$s" -o "$dir/x.exr" --half --float
 expect 2 "output" $dec "$s" --float
 expect 3 "x.ppm" $dec "$s" -o "$dir/no/x.ppm" --time 0
 expect 5 "foo" $dec "$s" -o "$dir/x.foo" --time 0
+# SDL is the player's alone (see test_play.sh): frames are made without it.
+if [ -f .libs/adcgs_play.so ]; then
+    ! readelf -d adcgs-dec .libs/adcgs_oiio.so 2>/dev/null | grep -q 'NEEDED.*SDL' || bad "adcgs-dec loads SDL at once"
+    readelf -d .libs/adcgs_play.so | grep -q 'NEEDED.*SDL' || bad "the player's module does not load SDL"
+fi
 # OpenImageIO is opened when an image needs it, and not before. A build without shared libraries has it inside.
 if [ -f .libs/adcgs_oiio.so ]; then
     ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*\(OpenImageIO\|stdc++\)' || bad "adcgs-dec loads OpenImageIO at once"

@@ -28,7 +28,7 @@ check()
 
 codec="base bits geom net model splat render api"
 check codec "" $codec
-check src "$codec" io data scenes metric train encode tools
+check src "$codec" io data scenes metric train encode play tools
 
 # The installed headers stand alone.
 if grep -n '^ *# *include' codec/include/adcgs/*.h | grep -v -E 'include <(adcgs/[a-z]+|stddef|stdint)\.h>' >&2; then

@@ -1,16 +1,24 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
  * \file
- * Directions and rotations of cameras, in binary64. Quaternions are w, x, y, z; a turn is an axis times half the angle, so that
- * the quaternion is its exponential.
+ * Directions and rotations of cameras, moved by hand or along a path, in
+ * binary64. Quaternions are w, x, y, z; a turn is an axis times half the
+ * angle, so that the quaternion is its exponential.
  */
-#ifndef ADCGS_TOOLS_TURN_H
-#define ADCGS_TOOLS_TURN_H
+#ifndef ADCGS_PLAY_TURN_H
+#define ADCGS_PLAY_TURN_H
+
+#include <adcgs/decoder.h>
 
 double adcgs_v3_dot(const double a[3], const double b[3]);
 void adcgs_v3_cross(const double a[3], const double b[3], double out[3]);
 /** To length 1. \return the length it had; a vector of length 0 stays. */
 double adcgs_v3_normalise(double v[3]);
+/** Turn a vector by an angle in radians about an axis of length 1. */
+void adcgs_v3_turn(const double axis[3], double angle, double v[3]);
+
+/** The direction that the stream calls up, of length 1; z if it does not say. \return whether it says. */
+int adcgs_find_up(const adcgs_info *info, double up[3]);
 
 /** A 3x4 camera-to-world matrix in OpenCV axes of an eye that sees the target in the middle; up need not be at right angles. */
 void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Directions and rotations of cameras. */
-#include "tools/turn.h"
+#include "play/turn.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,6 +22,24 @@ double adcgs_v3_normalise(double v[3])
     for (int i = 0; i < 3 && length > 0.0; i++)
         v[i] /= length;
     return length;
+}
+
+void adcgs_v3_turn(const double axis[3], double angle, double v[3])
+{
+    double side[3];
+    adcgs_v3_cross(axis, v, side);
+    const double along = adcgs_v3_dot(axis, v) * (1.0 - cos(angle));
+    for (int i = 0; i < 3; i++)
+        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + axis[i] * along;
+}
+
+int adcgs_find_up(const adcgs_info *info, double up[3])
+{
+    const int y_up = strstr(info->axes, "y up") != NULL, y_down = strstr(info->axes, "y down") != NULL;
+    up[0] = 0.0;
+    up[1] = y_up ? 1.0 : y_down ? -1.0 : 0.0;
+    up[2] = !y_up && !y_down;
+    return y_up || y_down || strstr(info->axes, "z up") != NULL;
 }
 
 void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3])

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * A thread that draws pictures, one at a time, so that the window answers
+ * while it does. It owns the decoder, and opens the stream anew for another
+ * number of layers. Who posts a job gets its result before the next job can
+ * be posted; what the result points to is the worker's.
+ */
+#ifndef ADCGS_PLAY_WORKER_H
+#define ADCGS_PLAY_WORKER_H
+
+#include "base/base.h"
+
+#include <adcgs/decoder.h>
+
+#include <limits.h>
+
+typedef struct adcgs_play_job {
+    adcgs_camera camera;
+    double time;         /**< seconds */
+    int layers;          /**< 1..5 */
+    int divider;         /**< of the window's resolution; nothing to the worker */
+    int number;          /**< of the frame in the stream; nothing to the worker */
+    int seeks;           /**< times that the user had gone to another frame; nothing to the worker */
+    char path[PATH_MAX]; /**< a file to write the picture to; "": none */
+} adcgs_play_job;
+
+typedef struct adcgs_play_result {
+    adcgs_play_job job;
+    adcgs_status status;
+    adcgs_error error;    /**< why there is no picture */
+    double seconds;       /**< that drawing took */
+    uint32_t splats;      /**< of the stream with these layers */
+    const uint8_t *rgb;   /**< [height][width][3], of the camera's size */
+} adcgs_play_result;
+
+typedef struct adcgs_worker adcgs_worker;
+
+/**
+ * data are the stream's bytes, path its name for messages; both must live as long as the worker. config->layers is not
+ * looked at. wake(arg) is called from the worker's thread when a result is there.
+ */
+adcgs_status adcgs_worker_create(adcgs_worker **out, const uint8_t *data, size_t bytes, const char *path,
+                                 const adcgs_config *config, void (*wake)(void *arg), void *arg, adcgs_error *error);
+/** Waits for the picture that is being drawn. */
+void adcgs_worker_free(adcgs_worker **worker);
+
+/** \return 0 when the worker is drawing, or its last result was not taken: then the job is not accepted. */
+int adcgs_worker_post(adcgs_worker *worker, const adcgs_play_job *job);
+/** The result of the last job, NULL while there is none. It lives until adcgs_worker_release(). */
+const adcgs_play_result *adcgs_worker_result(adcgs_worker *worker);
+/** The result was taken. */
+void adcgs_worker_release(adcgs_worker *worker);
+
+#endif

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-dec --play: from the command line to the player. */
+#include "config.h"
+
+#include "tools/dec_play.h"
+
+#include <stdlib.h>
+
+#ifdef HAVE_ENCODER
+
+#include "io/file.h"
+#include "play/play.h"
+#include "tools/cli.h"
+
+#define STREAM_BYTES_MAX ((uint64_t)1 << 32) /* the player keeps them, to open the stream with other layers */
+
+/** What the player must know of the stream. The cameras are the caller's to free. */
+static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder, adcgs_play_settings *settings,
+                         adcgs_camera **cameras, adcgs_error *error)
+{
+    adcgs_info *const info = &settings->info;
+    adcgs_shots_request request = how->request;
+    adcgs_shots shots;
+    ADCGS_TRY(adcgs_get_info(decoder, info));
+    *cameras = calloc((size_t)info->cameras + 1, sizeof **cameras);
+    if (!*cameras)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %d cameras", how->input, info->cameras);
+    for (int i = 0; i < info->cameras; i++)
+        ADCGS_TRY(adcgs_get_camera(decoder, i, &(*cameras)[i]));
+    /* Where to begin is the first of one shot; the window keeps its shape, so it is not stretched to a size. */
+    request.has_times = 1;
+    request.end = request.begin;
+    request.size[0] = request.size[1] = 0;
+    ADCGS_TRY(adcgs_shots_make(&shots, decoder, &request, error));
+    settings->home = shots.shot[0].camera;
+    adcgs_shots_free(&shots);
+    settings->cameras = *cameras;
+    return ADCGS_OK;
+}
+
+static void set_times(const adcgs_shots_request *request, adcgs_play_settings *settings)
+{
+    const int is_span = request->has_times && request->begin < request->end;
+    settings->begin = is_span ? request->begin : settings->info.time_start;
+    settings->end = is_span ? request->end : settings->info.time_end;
+    settings->paused = request->has_times && !is_span;
+    settings->start = settings->paused ? request->begin : settings->begin;
+}
+
+static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
+{
+    adcgs_config all = how->config;
+    adcgs_decoder *decoder;
+    adcgs_camera *cameras = NULL;
+    all.layers = 0;
+    adcgs_status status = adcgs_open_memory(&decoder, settings->data, settings->bytes, &all, error);
+    if (status != ADCGS_OK) {
+        adcgs_error_locate(error, how->input);
+        return status;
+    }
+    status = look(how, decoder, settings, &cameras, error);
+    adcgs_close(&decoder); /* the player opens it on its own thread */
+    set_times(&how->request, settings);
+    if (status == ADCGS_OK)
+        status = adcgs_play_run(settings, failed, error);
+    free(cameras);
+    return status;
+}
+
+adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_error *error)
+{
+    adcgs_play_settings settings = {.path = how->input, .config = how->config, .script = how->script,
+                                    .interrupted = adcgs_interrupted};
+    uint8_t *data;
+    memcpy(settings.size, how->request.size, sizeof settings.size);
+    if (!strcmp(how->input, "-"))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--play: expected a file, which standard input is not");
+    ADCGS_TRY(adcgs_file_load(&data, &settings.bytes, how->input, STREAM_BYTES_MAX, error));
+    settings.data = data;
+    const adcgs_status status = play(how, &settings, failed, error);
+    free(data);
+    return status;
+}
+
+#else
+
+adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%.160s: this build has no player", how->input);
+}
+
+#endif

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-dec --play. */
+#ifndef ADCGS_TOOLS_DEC_PLAY_H
+#define ADCGS_TOOLS_DEC_PLAY_H
+
+#include "tools/shots.h"
+
+/** What the command line says about playing. */
+typedef struct adcgs_dec_play {
+    const char *input;           /**< the stream's file */
+    const char *script;          /**< NULL: the user plays */
+    adcgs_shots_request request; /**< its camera is where to begin; one time is where to begin paused; the window's size */
+    adcgs_config config;
+} adcgs_dec_play;
+
+/**
+ * Play until the user leaves. *failed is set when an expectation of the script did not hold; error then says which,
+ * though the status is ADCGS_OK.
+ */
+adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_error *error);
+
+#endif

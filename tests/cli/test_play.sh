@@ -1,0 +1,274 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-dec --play, driven by scripts: without a display by SDL's dummy driver, and on a display of Xvfb where there is one.
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-dec adcgs-enc adcgs-demo-scene
+dec=$PWD/adcgs-dec
+
+./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --iterations 60 --threads 2 >"$dir/out" 2>&1 ||
+    { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
+
+# play CODE TEXT SCRIPT OPTIONS...: play with a script from standard input; exit code, and what standard error says.
+play()
+{
+    code=$1 text=$2
+    shift 2
+    cat >"$dir/script"
+    (cd "$dir" && timeout 60 $display "$dec" s.adcgs --play --script script --threads 2 "$@") >"$dir/out" 2>"$dir/err"
+    got=$?
+    [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code, on $where:"; cat "$dir/script" "$dir/err"; }
+    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message on $where"; cat "$dir/err"; }
+    [ "$(wc -l <"$dir/err")" -eq "$([ "$code" -eq 0 ] && echo 0 || echo 1)" ] || { bad "not one line of message"; cat "$dir/err"; }
+}
+
+# same PICTURE OPTIONS...: a picture of the player is, byte by byte, what adcgs-dec renders with these options.
+same()
+{
+    picture=$1
+    shift
+    $dec "$dir/s.adcgs" -o "$dir/wanted.${picture##*.}" --threads 2 "$@" 2>/dev/null || bad "adcgs-dec $*"
+    cmp -s "$dir/$picture" "$dir/wanted.${picture##*.}" || bad "$picture is not that of adcgs-dec $*, on $where"
+}
+differ() { ! cmp -s "$dir/$1" "$dir/$2" || bad "$1 and $2 are the same, on $where"; }
+
+pictures()
+{
+    rm -f "$dir"/*.png "$dir"/*.exr
+    # Unmoved, the player shows what adcgs-dec renders: in the file, and in the window's own pixels.
+    play 0 "" --size 256x256 --time 0.1 --camera 1 <<'END'
+expect size 256x256
+expect time 0.1
+expect playing 0
+key b
+wait 1 frames
+expect divider 1
+grab grab.png
+screenshot shot.png
+key shift-p
+wait 1 frames
+key p
+wait 1 frames
+grab said.png
+key p
+key shift-p
+quit
+END
+    same shot.png --camera 1 --time 0.1 --size 256x256
+    same grab.png --camera 1 --time 0.1 --size 256x256
+    same s-000001.exr --camera 1 --time 0.1 --size 256x256
+    same s-000001.png --camera 1 --time 0.1 --size 256x256
+    # Two at once, and leaving: both are made.
+    same s-000002.png --camera 1 --time 0.1 --size 256x256
+    same s-000002.exr --camera 1 --time 0.1 --size 256x256
+    differ grab.png said.png
+
+    # Moved by the mouse and back by a key; cameras, layers, time bar, another size of the window.
+    play 0 "" --size 256x192 --time 0 <<'END'
+# what is begun with
+wait 1 frames
+screenshot first.png
+expect distance 4.2 4.2
+drag left 100 100 140 80
+screenshot orbit.png
+drag right 100 100 140 80
+screenshot pan.png
+drag shift-left 140 80 100 100
+wheel 3
+screenshot near.png
+key r
+expect camera -1
+screenshot back.png
+key 1
+expect camera 1
+screenshot second.png
+key ]
+expect camera 0
+key [
+expect camera 1
+key 7
+expect camera 1
+key [
+expect camera 0
+key r
+expect layers 5
+key -
+expect layers 4
+key -
+key -
+key -
+key -
+expect layers 1
+screenshot coarse.png
+key +
+expect layers 2
+key =
+key =
+key =
+key =
+expect layers 5
+drag left 0 190 60 185
+expect frame 3 2
+key end
+expect frame 7
+key right
+expect frame 0
+key left
+expect frame 7
+screenshot last.png
+key home
+expect time 0
+size 384x300
+expect size 384x300
+key i
+key h
+expect help 1
+expect statistics 1
+wait 1 frames
+grab overlay.png
+key f1
+expect help 0
+screenshot large.png
+key escape
+END
+    cmp -s "$dir/first.png" "$dir/back.png" || bad "reset does not lead back, on $where"
+    for other in orbit pan near second coarse last large overlay; do
+        differ first.png $other.png
+    done
+    differ orbit.png pan.png
+    differ pan.png near.png
+    differ overlay.png large.png
+
+}
+
+behaviour()
+{
+    # Layers and times are adcgs-dec's.
+    play 0 "" --size 128x128 --time 0 --layers 2 <<'END'
+expect layers 2
+screenshot two.png
+key +
+screenshot three.png
+key end
+screenshot end.png
+quit
+END
+    same two.png --camera 0 --time 0 --layers 2 --size 128x128
+    same three.png --camera 0 --time 0 --layers 3 --size 128x128
+    same end.png --camera 0 --time 0.2333333333 --layers 3 --size 128x128
+
+    # Time goes on by the clock on the wall, whatever is drawn.
+    play 0 "" --size 192x192 <<'END'
+expect playing 1
+expect loop 1
+wait 5 frames
+expect playing 1
+key space
+expect playing 0
+key l
+expect loop 0
+key home
+key space
+wait 1 seconds
+expect frame 7
+expect playing 0
+key ,
+key ,
+key ,
+key ,
+expect speed 0.125
+key space
+wait 1 seconds
+expect frame 3.75 2
+expect playing 1
+key .
+expect speed 0.25
+quit
+END
+
+    # Flying: the camera goes where it looks, as long as the key is held.
+    play 0 "" --size 128x128 --time 0 <<'END'
+screenshot ground.png
+key f
+expect flying 1
+hold w
+wait 0.3 seconds
+release w
+move 10 5
+wait 1 frames
+screenshot flown.png
+key escape
+expect flying 0
+quit
+END
+    differ ground.png flown.png
+
+    # What does not hold, and what is no script.
+    printf 'wait 1 frames\n\nexpect time 0.5\nquit\n' | play 1 "^adcgs-dec: script: line 3: time is 0.1, expected 0.5$" --time 0.1
+    printf 'expect weather 1\nquit\n' | play 2 "^adcgs-dec: script: line 1: "
+    printf 'quit\njump\n' | play 2 "^adcgs-dec: script: line 2 is no command"
+    printf 'screenshot no/such.png\nquit\n' | play 3 "^adcgs-dec: script: line 1: .*no/such.png"
+    printf 'screenshot x.foo\nquit\n' | play 5 "^adcgs-dec: script: line 1: .*x.foo"
+}
+
+where="the dummy driver" display=
+SDL_VIDEODRIVER=dummy SDL_RENDER_DRIVER=software
+export SDL_VIDEODRIVER SDL_RENDER_DRIVER
+echo quit >"$dir/script"
+$dec "$dir/s.adcgs" --play --script "$dir/script" 2>"$dir/err" || {
+    [ $? -eq 5 ] && grep -q "which this build does not have$" "$dir/err" && { echo "skipped: no player in this build"; exit 77; }
+    bad "the player does not start"
+    cat "$dir/err"
+}
+pictures
+behaviour
+
+# A user who says nothing: the player goes on until a signal comes, also when its script has ended.
+echo "wait 1 frames" >"$dir/script"
+timeout -s TERM 3 $dec "$dir/s.adcgs" --play --script "$dir/script" 2>"$dir/err"
+[ $? -eq 124 ] || bad "the player leaves by itself"
+
+# Without a display, without the module, and what goes with --play.
+expect()
+{
+    code=$1 text=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    got=$?
+    [ "$got" -eq "$code" ] && grep -q -- "$text" "$dir/err" && [ "$(wc -l <"$dir/err")" -eq 1 ] ||
+        { bad "exit code $got, expected $code and \"$text\": $*"; cat "$dir/err"; }
+}
+expect 3 "s.adcgs: no display to play on: " env -u DISPLAY SDL_VIDEODRIVER=x11 $dec "$dir/s.adcgs" --play
+if [ ! -e /dev/dri ]; then # else SDL might find a display in the bare console
+    expect 3 "s.adcgs: no display to play on: none" \
+        env -u DISPLAY -u XDG_RUNTIME_DIR -u WAYLAND_SOCKET -u SDL_VIDEODRIVER $dec "$dir/s.adcgs" --play
+fi
+# A view that nobody can draw: a script does not wait for its picture.
+expect 2 "script: line 1: camera: focal lengths" timeout 60 \
+    $dec "${srcdir:-.}/conformance/vectors/good-sys-cams-extremes.adcgs" --play --script "$dir/script"
+if [ -f .libs/adcgs_play.so ]; then
+    mkdir "$dir/none"
+    expect 5 "s.adcgs: the player needs SDL2: no adcgs_play.so in $dir/none" env ADCGS_MODULES="$dir/none" $dec "$dir/s.adcgs" --play
+fi
+expect 2 "does nothing else" $dec "$dir/s.adcgs" --play --md5
+expect 2 "needs --play" $dec "$dir/s.adcgs" --script "$dir/script"
+expect 2 "expected a file" $dec - --play
+expect 3 "nowhere" $dec "$dir/nowhere" --play
+expect 3 "nowhere" $dec "$dir/s.adcgs" --play --script "$dir/nowhere"
+expect 4 "script" $dec "$dir/script" --play
+expect 2 "does nothing else" $dec "$dir/s.adcgs" --play --splats "$dir/x.ply"
+expect 2 "does nothing else" $dec "$dir/s.adcgs" --play --beside "$dir/s.adcgs"
+expect 2 "nobody" $dec "$dir/s.adcgs" --play --camera nobody
+
+unset SDL_VIDEODRIVER SDL_RENDER_DRIVER
+if command -v xvfb-run >/dev/null; then
+    where="a display" display="xvfb-run -a"
+    # Drivers of displays leak; our own leaks were looked for above.
+    ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
+    export ASAN_OPTIONS
+    pictures
+else
+    echo "no xvfb-run: not tried on a display"
+fi
+exit $failed
