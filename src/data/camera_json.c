@@ -24,6 +24,10 @@ adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error
     json_error_t where;
     *root = NULL;
     ADCGS_TRY(adcgs_file_load(&text, &bytes, path, FILE_MAX, error));
+    if (!bytes) {
+        free(text);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected JSON", path);
+    }
     json_t *value = json_loadb((const char *)text, bytes, JSON_REJECT_DUPLICATES, &where);
     free(text);
     if (!value)

@@ -56,7 +56,7 @@ static void find_model(const char *directory, char **folder, int *format)
         for (*format = 0; *format < (int)ADCGS_COUNTOF(formats); ++*format)
             for (int f = 0; f < FILES; f++) {
                 char *path = adcgs_path("%s/%s%s.%s", directory, places[p], names[f], formats[*format].end);
-                const int found = adcgs_is_file(path);
+                const int found = adcgs_is_there(path);
                 free(path);
                 *folder = found ? adcgs_path("%s/%s", directory, places[p]) : NULL;
                 if (found)
@@ -76,7 +76,7 @@ int adcgs_is_colmap(const char *folder)
 static int has_file(const reader *r, int file)
 {
     char *path = adcgs_path("%s%s.%s", r->folder, names[file], formats[r->format].end);
-    const int has = adcgs_is_file(path);
+    const int has = adcgs_is_there(path);
     free(path);
     return has;
 }
@@ -238,7 +238,7 @@ static char *find_video(const reader *r, const char *name)
         for (int way = 0; way < 3; way++) {
             const int length = way ? stem : all;
             char *path = adcgs_path("%s/%s%.*s.%s", r->scene->directory, way < 2 ? "videos/" : "", length, name, ends[i]);
-            if (adcgs_is_file(path))
+            if (adcgs_is_there(path))
                 return path;
             free(path);
         }
@@ -294,6 +294,9 @@ static adcgs_status read_model(reader *r, int with_points)
             if (!has_file(r, file))
                 return read_file(r, file); /* says why */
     ADCGS_TRY(read_file(r, CAMERAS));
+    if (!r->model.n_cameras)
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%scameras.%s: no cameras, expected at least one", r->folder,
+                          formats[r->format].end);
     ADCGS_TRY(read_file(r, IMAGES));
     if (r->model.n_images < 2)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%simages.%s: %zu images, expected at least two: the first is for testing",

@@ -14,6 +14,7 @@
 
 #define VIEWS_MAX 1000000  /* of a scene; a view takes some hundred bytes */
 #define FIRST_CAPACITY 64
+#define GAP_MAX 1000       /* numbers that are tried behind the last picture of an open row */
 
 static adcgs_status no_memory(const char *path, adcgs_error *error)
 {
@@ -94,15 +95,21 @@ static int find_number(const char *pattern, size_t *at, size_t *after, int *widt
     return 1;
 }
 
+/** The path of a number, from malloc(). */
+static char *number_path(const char *folder, const char *pattern, int64_t number)
+{
+    size_t at, after;
+    int width;
+    return find_number(pattern, &at, &after, &width) > 0
+               ? adcgs_path("%s%.*s%0*lld%s", folder, (int)at, pattern, width, (long long)number, pattern + after)
+               : adcgs_path("%s%s", folder, pattern);
+}
+
 /** Append the picture of a number; *found 0 if it is not there. */
 static adcgs_status add_picture(adcgs_footage *out, size_t *capacity, const char *folder, const char *pattern, int64_t number,
                                 int *found, adcgs_error *error)
 {
-    size_t at, after;
-    int width;
-    char *path = find_number(pattern, &at, &after, &width) > 0
-                     ? adcgs_path("%s%.*s%0*lld%s", folder, (int)at, pattern, width, (long long)number, pattern + after)
-                     : adcgs_path("%s%s", folder, pattern);
+    char *path = number_path(folder, pattern, number);
     if (path && (size_t)out->frames == *capacity) {
         const size_t more = 2 * *capacity + FIRST_CAPACITY;
         char **pictures = realloc(out->pictures, more * sizeof *pictures);
@@ -115,13 +122,31 @@ static adcgs_status add_picture(adcgs_footage *out, size_t *capacity, const char
         free(path);
         return no_memory(pattern, error);
     }
-    *found = adcgs_is_file(path);
+    *found = adcgs_is_there(path);
     if (*found) {
         out->pictures[out->frames++] = path;
         return ADCGS_OK;
     }
     adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such image", path);
     free(path);
+    return ADCGS_OK;
+}
+
+/** A row of pictures ends where it does: one with a later number says that this one is missing. */
+static adcgs_status check_gap(const char *folder, const char *pattern, int64_t missing, adcgs_error *error)
+{
+    for (int64_t number = missing + 1; number <= missing + GAP_MAX; number++) {
+        char *path = number_path(folder, pattern, number);
+        const int found = adcgs_is_there(path);
+        free(path);
+        if (!found)
+            continue;
+        char *gap = number_path(folder, pattern, missing);
+        adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such image, but there is number %lld: if they end before, give their count",
+                   gap ? gap : pattern, (long long)number);
+        free(gap);
+        return ADCGS_ERR_DATA;
+    }
     return ADCGS_OK;
 }
 
@@ -142,6 +167,8 @@ adcgs_status adcgs_footage_pattern(adcgs_footage *out, const char *folder, const
         status = add_picture(out, &capacity, folder, pattern, first + out->frames, &found, error);
     if (status == ADCGS_OK && !found && (count || !out->frames))
         status = ADCGS_ERR_DATA; /* the message is there already */
+    if (status == ADCGS_OK && !found)
+        status = check_gap(folder, pattern, first + out->frames, error);
     if (status == ADCGS_OK)
         status = probe(out, error);
     if (status != ADCGS_OK)

@@ -39,7 +39,7 @@ int adcgs_is_hypernerf(const char *folder)
 {
     char *dataset = adcgs_path("%s/dataset.json", folder), *metadata = adcgs_path("%s/metadata.json", folder);
     char *camera = adcgs_path("%s/camera", folder);
-    const int is = adcgs_is_file(dataset) && adcgs_is_file(metadata) && adcgs_is_folder(camera);
+    const int is = adcgs_is_there(dataset) && adcgs_is_there(metadata) && adcgs_is_folder(camera);
     free(dataset);
     free(metadata);
     free(camera);
@@ -343,7 +343,7 @@ static adcgs_status read_points(const reader *r)
     adcgs_status status = ADCGS_OK;
     if (!path)
         status = adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->scene->directory);
-    else if (adcgs_is_file(path))
+    else if (adcgs_is_there(path))
         status = adcgs_points_read(points, path, r->error);
     for (uint32_t i = 0; status == ADCGS_OK && i < points->n; i++)
         status = move_point(r, path, i, points->position[i]);

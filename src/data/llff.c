@@ -45,7 +45,7 @@ static adcgs_status no_memory(const reader *r)
 int adcgs_is_llff(const char *folder)
 {
     char *path = adcgs_path("%s/poses_bounds.npy", folder);
-    const int is = adcgs_is_file(path);
+    const int is = adcgs_is_there(path);
     free(path);
     return is;
 }
@@ -282,7 +282,7 @@ adcgs_status adcgs_llff_read(adcgs_scene *scene, const adcgs_frame_range *frames
     free(r.path);
     ADCGS_TRY(status);
     char *points = adcgs_path("%s/points3d.ply", scene->directory);
-    if (with_points && !adcgs_is_file(points))
+    if (with_points && !adcgs_is_there(points))
         status = adcgs_colmap_read_points(scene, r.table.rows, r.fixed ? SIZE_MAX : TEST_EVERY, error);
     free(points);
     return status;

@@ -24,10 +24,10 @@ char *adcgs_path(const char *format, ...)
     return path;
 }
 
-int adcgs_is_file(const char *path)
+int adcgs_is_there(const char *path)
 {
     struct stat status;
-    return path && !stat(path, &status) && S_ISREG(status.st_mode);
+    return path && !lstat(path, &status);
 }
 
 int adcgs_is_folder(const char *path)
@@ -44,7 +44,7 @@ adcgs_status adcgs_find_image(char **out, const char *stem, adcgs_error *error)
         char *path = adcgs_path("%s%s", stem, extensions[i]);
         if (!path)
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", stem);
-        if (adcgs_is_file(path)) {
+        if (adcgs_is_there(path) && !adcgs_is_folder(path)) {
             *out = path;
             return ADCGS_OK;
         }

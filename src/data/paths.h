@@ -7,10 +7,11 @@
 
 /** As printf into memory from malloc(), which the caller frees; NULL if there is none. */
 char *adcgs_path(const char *format, ...) ADCGS_PRINTF(1, 2);
-/** Is it there, and of this kind? 0 for NULL. */
-int adcgs_is_file(const char *path);
+/** Is there something of this name, be it a link that leads nowhere? Who opens it hears what is wrong with it. 0 for NULL. */
+int adcgs_is_there(const char *path);
+/** 0 for NULL. */
 int adcgs_is_folder(const char *path);
-/** *out: the stem itself or with an extension of images, whichever is a file; NULL if none is. ADCGS_ERR_MEMORY. */
+/** *out: the stem itself or with an extension of images, whichever is there and no folder; NULL if none is. ADCGS_ERR_MEMORY. */
 adcgs_status adcgs_find_image(char **out, const char *stem, adcgs_error *error);
 
 #endif

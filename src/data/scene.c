@@ -15,6 +15,7 @@
 #include "data/sort.h"
 #include "data/splat_scene.h"
 #include "data/transforms.h"
+#include "io/file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -81,9 +82,45 @@ static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_erro
     return ADCGS_OK;
 }
 
+static adcgs_status check_size(const adcgs_scene_view *view, int width, int height, adcgs_error *error)
+{
+    const int bends = view->lens.width > 0;
+    const int wanted[2] = {bends ? view->lens.width : view->camera.width, bends ? view->lens.height : view->camera.height};
+    if (width == wanted[0] && height == wanted[1])
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, width, height,
+                      wanted[0], wanted[1]);
+}
+
+static adcgs_status probe(const adcgs_scene_view *view, adcgs_error *error)
+{
+    int width, height, channels;
+    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, view->path, error));
+    return check_size(view, width, height, error);
+}
+
+/**
+ * Every picture is there, and those that are not for training have the right size: these are read last, and it is better to
+ * hear of them now than when all is learnt.
+ */
+static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
+{
+    for (int s = 0; s < ADCGS_SPLITS && !scene->splats; s++)
+        for (uint32_t i = 0; i < scene->n_views[s]; i++) {
+            const adcgs_scene_view *view = &scene->views[s][i];
+            if (view->is_video)
+                continue;
+            ADCGS_TRY(adcgs_file_check(view->path, "an image", error));
+            if (s != ADCGS_SPLIT_TRAIN)
+                ADCGS_TRY(probe(view, error));
+        }
+    return ADCGS_OK;
+}
+
 /** What follows from all views together: seconds, near planes, alpha, background. */
 static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
 {
+    ADCGS_TRY(check_files(scene, error));
     ADCGS_TRY(count_times(scene, path, error));
     if (scene->duration <= 0.0)
         scene->duration = (scene->n_times - 1) / scene->frame_rate;
@@ -124,7 +161,7 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
         char *path = adcgs_path("%s/transforms_%s.json", scene->directory, split_names[s]);
         adcgs_transforms facts = {0};
         adcgs_status status = ADCGS_OK;
-        if (adcgs_is_file(path)) {
+        if (adcgs_is_there(path)) {
             status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
             if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN) {
                 take_facts(scene, &facts, points_path);
@@ -159,7 +196,7 @@ static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcg
     if (!train || !single)
         adcgs_fail(error, status, "%s: out of memory", scene->directory);
     else
-        status = adcgs_is_file(train) ? read_splits(scene, points_path, error) : read_single(scene, single, points_path, error);
+        status = adcgs_is_there(train) ? read_splits(scene, points_path, error) : read_single(scene, single, points_path, error);
     free(train);
     free(single);
     return status;
@@ -168,7 +205,7 @@ static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcg
 static int is_transforms(const char *folder)
 {
     char *train = adcgs_path("%s/transforms_train.json", folder), *single = adcgs_path("%s/transforms.json", folder);
-    const int is = adcgs_is_file(train) || adcgs_is_file(single);
+    const int is = adcgs_is_there(train) || adcgs_is_there(single);
     free(train);
     free(single);
     return is;
@@ -239,7 +276,7 @@ static adcgs_status read_points(adcgs_scene *scene, const char *listed, const ad
     if (listed)
         return adcgs_points_read(&scene->points, listed, error);
     char *customary = adcgs_path("%s/points3d.ply", scene->directory);
-    const adcgs_status status = adcgs_is_file(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
+    const adcgs_status status = adcgs_is_there(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
     free(customary);
     return status;
 }
@@ -292,6 +329,8 @@ adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_s
     *out = NULL;
     if (!*path || stat(path, &status))
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open the scene: %s", path, strerror(errno));
+    if (S_ISREG(status.st_mode) && !status.st_size)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected a scene", path);
     adcgs_scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
@@ -358,13 +397,20 @@ static void divide_camera(adcgs_camera *camera, int divide)
     camera->cy /= divide;
 }
 
+/** Of another size than it should have, an image is refused before there is memory for its pixels. */
+static adcgs_status read_image(const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
+{
+    ADCGS_TRY(probe(view, error));
+    return adcgs_image_read(image, view->path, error);
+}
+
 /** As it was taken: of a file, a video or splats. */
 static adcgs_status read_picture(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
 {
     if (scene->splats)
         return adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, image, view->path, error);
     return view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, image, error)
-                          : adcgs_image_read(image, view->path, error);
+                          : read_image(view, image, error);
 }
 
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
@@ -375,13 +421,8 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
     ADCGS_TRY(read_picture(scene, view, &image, error));
-    adcgs_status status = ADCGS_OK;
-    const int bends = view->lens.width > 0, width = bends ? view->lens.width : view->camera.width;
-    const int height = bends ? view->lens.height : view->camera.height;
-    if (image.width != width || image.height != height)
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, image.width,
-                            image.height, width, height);
-    else if (bends)
+    adcgs_status status = check_size(view, image.width, image.height, error);
+    if (status == ADCGS_OK && view->lens.width > 0)
         status = adcgs_lens_straighten(&view->lens, &view->camera, &image, view->path, error);
     if (status == ADCGS_OK && !(*rgb = reduce(&image, divide, scene->background)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);

@@ -7,6 +7,7 @@
 #include "base/cpu.h"
 #include "data/harmonics.h"
 #include "data/sort.h"
+#include "io/file.h"
 #include "io/splats.h"
 #include "render/render.h"
 
@@ -34,10 +35,11 @@ struct adcgs_splat_scene {
 int adcgs_is_ply(const char *path)
 {
     char start[4];
-    FILE *file = fopen(path, "rb");
-    const size_t n = file ? fread(start, 1, sizeof start, file) : 0;
-    if (file)
-        fclose(file);
+    FILE *file;
+    if (adcgs_file_open(&file, path, NULL) != ADCGS_OK)
+        return 0;
+    const size_t n = fread(start, 1, sizeof start, file);
+    fclose(file);
     return n == sizeof start && !memcmp(start, "ply", 3) && (start[3] == '\n' || start[3] == '\r');
 }
 

@@ -151,7 +151,7 @@ static adcgs_status read_root(place *at, adcgs_scene *scene, adcgs_transforms *o
             return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "ply_file_path", "expected a string");
         if (!(out->points_path = join(at->folder, name)))
             return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "ply_file_path", "out of memory");
-        if (!adcgs_is_file(out->points_path))
+        if (!adcgs_is_there(out->points_path))
             return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "ply_file_path", "no such file: %.100s", name);
     }
     return read_frames(at, scene, out, split);

@@ -140,6 +140,8 @@ static exr_result_t describe(exr_context_t context, const picture *p)
         code = exr_add_channel(context, part, p->planes[i].name, p->planes[i].type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     if (code == EXR_ERR_SUCCESS)
         code = exr_attr_set_string(context, part, "software", PACKAGE_NAME " " PACKAGE_VERSION);
+    if (code == EXR_ERR_SUCCESS) /* without it EXR is linear light */
+        code = exr_attr_set_string(context, part, "oiio:ColorSpace", "sRGB");
     if (code == EXR_ERR_SUCCESS && p->options->camera)
         code = describe_camera(context, part, p->options->camera, p->options->time);
     return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;

@@ -1,32 +1,71 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A whole file in memory. */
+/** \file Files that are read. */
 #include "config.h"
 
 #include "io/file.h"
 
 #include <errno.h>
-#include <stdio.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+/** Open without waiting, which a pipe that nobody writes to would make us do, and see what it is. */
+static adcgs_status open_regular(int *fd, uint64_t *size, const char *path, adcgs_error *error)
+{
+    struct stat status;
+    *size = 0;
+    *fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    adcgs_status result = ADCGS_OK;
+    if (*fd < 0 || fstat(*fd, &status))
+        result = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open: %s", path, strerror(errno));
+    else if (!S_ISREG(status.st_mode))
+        result = adcgs_fail(error, ADCGS_ERR_IO, "%s: not a regular file", path);
+    else
+        *size = (uint64_t)status.st_size;
+    if (result != ADCGS_OK && *fd >= 0)
+        close(*fd);
+    return result;
+}
+
+static adcgs_status open_sized(FILE **out, uint64_t *size, const char *path, adcgs_error *error)
+{
+    int fd;
+    *out = NULL;
+    ADCGS_TRY(open_regular(&fd, size, path, error));
+    *out = fdopen(fd, "rb");
+    if (*out)
+        return ADCGS_OK;
+    close(fd);
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+}
+
+adcgs_status adcgs_file_open(FILE **out, const char *path, adcgs_error *error)
+{
+    uint64_t size;
+    return open_sized(out, &size, path, error);
+}
+
+adcgs_status adcgs_file_check(const char *path, const char *what, adcgs_error *error)
+{
+    int fd;
+    uint64_t size;
+    ADCGS_TRY(open_regular(&fd, &size, path, error));
+    close(fd);
+    return size ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected %s", path, what);
+}
 
 adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error)
 {
+    FILE *file;
+    uint64_t size;
+    uint8_t *buffer = NULL;
     *data = NULL;
     *bytes = 0;
-    FILE *file = fopen(path, "rb");
-    struct stat status;
-    if (!file || fstat(fileno(file), &status)) {
-        const int reason = errno;
-        if (file)
-            fclose(file);
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open: %s", path, strerror(reason));
-    }
+    ADCGS_TRY(open_sized(&file, &size, path, error));
     adcgs_status result = ADCGS_OK;
-    const uint64_t size = (uint64_t)status.st_size;
-    uint8_t *buffer = NULL;
-    if (!S_ISREG(status.st_mode))
-        result = adcgs_fail(error, ADCGS_ERR_IO, "%s: not a regular file", path);
-    else if (size > limit || size >= SIZE_MAX)
+    errno = 0;
+    if (size > limit || size >= SIZE_MAX)
         result = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %llu bytes, expected at most %llu", path, (unsigned long long)size,
                             (unsigned long long)limit);
     else if (!(buffer = malloc((size_t)size + 1)))

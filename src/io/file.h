@@ -1,10 +1,19 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A whole file in memory. */
+/** \file Files that are read: opening them, a whole one in memory. */
 #ifndef ADCGS_IO_FILE_H
 #define ADCGS_IO_FILE_H
 
 #include "base/base.h"
 
+#include <stdio.h>
+
+/**
+ * Open a regular file for reading, as binary. A pipe, a device and a folder are ADCGS_ERR_IO at once: nothing waits for who
+ * might write to them.
+ */
+adcgs_status adcgs_file_open(FILE **out, const char *path, adcgs_error *error);
+/** Is it a regular file that can be read and holds something? what it is, for the message: "an image". */
+adcgs_status adcgs_file_check(const char *path, const char *what, adcgs_error *error);
 /** Load a regular file of at most limit bytes; the caller free()s *data, which has a zero byte after the last one. */
 adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error);
 

@@ -5,10 +5,12 @@
 #include "io/image.h"
 
 #include "io/atomic.h"
+#include "io/file.h"
 #include "io/netpbm.h"
 #ifdef HAVE_ENCODER
 #include "io/exr.h"
 #include "io/oiio_shim.h"
+#include "io/whole.h"
 #endif
 
 #include <errno.h>
@@ -30,9 +32,7 @@ static int is_exr(const char *extension)
 static adcgs_status open_image(FILE **file, int *own, const char *path, adcgs_error *error)
 {
     uint8_t magic[2];
-    *file = fopen(path, "rb");
-    if (!*file)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open: %s", path, strerror(errno));
+    ADCGS_TRY(adcgs_file_open(file, path, error));
     errno = 0;
     if (fread(magic, 1, 2, *file) < 2 || fseek(*file, 0, SEEK_SET)) {
         const int reason = errno;
@@ -45,16 +45,18 @@ static adcgs_status open_image(FILE **file, int *own, const char *path, adcgs_er
 }
 
 #ifdef HAVE_ENCODER
-static adcgs_status read_foreign(adcgs_image *out, const char *path, adcgs_error *error)
+static adcgs_status read_foreign(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
 {
     const adcgs_oiio *oiio;
+    ADCGS_TRY(adcgs_whole_check(file, 1, path, error));
     ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
     return oiio->read(out, path, error);
 }
 
-static adcgs_status probe_foreign(int *width, int *height, int *channels, const char *path, adcgs_error *error)
+static adcgs_status probe_foreign(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
 {
     const adcgs_oiio *oiio;
+    ADCGS_TRY(adcgs_whole_check(file, 0, path, error));
     ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
     return oiio->probe(width, height, channels, path, error);
 }
@@ -69,12 +71,12 @@ static adcgs_status write_foreign(adcgs_atomic *atomic, const adcgs_image *image
     return oiio->write(image, options->bits, adcgs_atomic_name(atomic), extension, path, error);
 }
 #else
-static adcgs_status read_foreign(adcgs_image *out, const char *path, adcgs_error *error)
+static adcgs_status read_foreign(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
 }
 
-static adcgs_status probe_foreign(int *width, int *height, int *channels, const char *path, adcgs_error *error)
+static adcgs_status probe_foreign(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
 }
@@ -92,7 +94,7 @@ adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *e
     int own;
     *out = (adcgs_image){0};
     ADCGS_TRY(open_image(&file, &own, path, error));
-    const adcgs_status status = own ? adcgs_netpbm_read(file, out, path, error) : read_foreign(out, path, error);
+    const adcgs_status status = own ? adcgs_netpbm_read(file, out, path, error) : read_foreign(file, out, path, error);
     fclose(file);
     return status;
 }
@@ -103,7 +105,7 @@ adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const cha
     int own;
     ADCGS_TRY(open_image(&file, &own, path, error));
     adcgs_status status = own ? adcgs_netpbm_probe(file, width, height, channels, path, error)
-                              : probe_foreign(width, height, channels, path, error);
+                              : probe_foreign(file, width, height, channels, path, error);
     fclose(file);
     if (status == ADCGS_OK && (*width < 1 || *height < 1 || *width > ADCGS_IMAGE_MAX || *height > ADCGS_IMAGE_MAX))
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected at most %dx%d", path, *width, *height,

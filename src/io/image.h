@@ -13,7 +13,10 @@
 
 #define ADCGS_IMAGE_MAX 16384 /**< largest width and height */
 
-/** Pixels as binary32, interleaved [height][width][channels], values as stored (8 bit: v/255), no colour conversion. */
+/**
+ * Pixels as binary32, interleaved [height][width][channels], values as stored (8 bit: v/255), as sRGB. What a file holds as
+ * linear light is converted when it is read: EXR that does not say otherwise, other formats where they say so.
+ */
 typedef struct adcgs_image {
     int width, height, channels; /**< channels 1..4: grey, grey+alpha, RGB, RGBA (straight alpha) */
     float *data;                 /**< from malloc() */
@@ -34,7 +37,7 @@ adcgs_status adcgs_image_alloc(adcgs_image *image, int width, int height, int ch
 /** As adcgs_image_alloc(), with the pixels of another. */
 adcgs_status adcgs_image_copy(adcgs_image *copy, const adcgs_image *image, const char *path, adcgs_error *error);
 void adcgs_image_free(adcgs_image *image);
-/** Limits: 16384 x 16384. One-line errors name the file. */
+/** Limits: 16384 x 16384. One-line errors name the file. Floats that are not finite are errors, so are primaries not sRGB's. */
 adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *error);
 /** Size and channels without decoding pixels. */
 adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const char *path, adcgs_error *error);
@@ -51,5 +54,7 @@ void adcgs_image_to_u16(const float *values, size_t n, uint16_t *out);
 /** Colours times alpha, and back (transparent pixels keep what they hold). Nothing happens without alpha. */
 void adcgs_image_premultiply(adcgs_image *image);
 void adcgs_image_unpremultiply(adcgs_image *image);
+/** Straight colours from linear light to sRGB's curve, which goes on beyond 1 and straight below 0; alpha stays. */
+void adcgs_image_to_srgb(adcgs_image *image);
 
 #endif

@@ -6,11 +6,13 @@
 
 #include <stdlib.h>
 
+#define NUMBER_MAX 99999999
+
 typedef struct header {
     int width, height, channels, maximum;
 } header;
 
-/** A decimal number after white space and comments; -1 if there is none or it is beyond 65536. */
+/** A decimal number after white space and comments; -1 if there is none or it is beyond NUMBER_MAX. */
 static int read_number(FILE *file)
 {
     int c = getc(file);
@@ -24,7 +26,7 @@ static int read_number(FILE *file)
     int value = -1;
     for (; c >= '0' && c <= '9'; c = getc(file)) {
         value = (value < 0 ? 0 : value) * 10 + (c - '0');
-        if (value > 65536)
+        if (value > NUMBER_MAX)
             return -1;
     }
     ungetc(c, file);

@@ -3,6 +3,7 @@
 #include "config.h"
 
 /* The standard headers first: the shim's own header includes C headers inside extern "C". */
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -11,6 +12,8 @@
 #include <new>
 #include <string>
 #include <vector>
+
+#include <strings.h>
 
 #include <OpenImageIO/imageio.h>
 
@@ -77,12 +80,56 @@ int colour_channels(const OIIO::ImageSpec &spec)
     return spec.z_channel > 0 && spec.z_channel == spec.nchannels - 1 ? spec.z_channel : spec.nchannels;
 }
 
+/** Whether two names are the same but for the case of their letters. */
+bool same_name(const std::string &a, const char *b)
+{
+    return a.size() == strlen(b) && !strncasecmp(a.c_str(), b, a.size());
+}
+
+/** Whether values are linear light, by what the file says or its format stands for (EXR), under every name OpenImageIO has. */
+bool is_linear(const OIIO::ImageSpec &spec)
+{
+    static const char *const names[] = {"Linear", "scene_linear", "lin_srgb", "lin_rec709", "lin_rec709_scene",
+                                        "lin_rec709_display"};
+    const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+    for (const char *name : names)
+        if (same_name(space, name))
+            return true;
+    return false;
+}
+
+/** EXR may name its primaries; those of BT.709 are sRGB's, and what it has when it names none. */
+adcgs_status check_primaries(const OIIO::ImageSpec &spec, const char *path, adcgs_error *error)
+{
+    static const float bt709[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+    float given[8];
+    if (!spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), given))
+        return ADCGS_OK;
+    for (int i = 0; i < 8; i++)
+        if (!(std::fabs(given[i] - bt709[i]) < 0.005f))
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: its primaries (chromaticities) are not those of BT.709 and sRGB",
+                              path);
+    return ADCGS_OK;
+}
+
+/** Floats may be no numbers, which would spoil whatever is learnt from them. */
+adcgs_status check_finite(const adcgs_image *image, const char *path, adcgs_error *error)
+{
+    const size_t row = (size_t)image->width * (size_t)image->channels, values = row * (size_t)image->height;
+    for (size_t i = 0; i < values; i++)
+        if (!std::isfinite(image->data[i]))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: pixel %zu of row %zu is not a finite number", path,
+                              i % row / (size_t)image->channels, i / row);
+    return ADCGS_OK;
+}
+
 adcgs_status read(adcgs_image *out, const char *path, adcgs_error *error)
 {
     std::unique_ptr<OIIO::ImageInput> input;
     ADCGS_TRY(open_input(input, path, error));
     const OIIO::ImageSpec &spec = input->spec();
     const int channels = colour_channels(spec);
+    ADCGS_TRY(check_primaries(spec, path, error));
     ADCGS_TRY(adcgs_image_alloc(out, spec.width, spec.height, channels, path, error));
     bool good;
     if (spec.format == OIIO::TypeDesc::UINT8) {
@@ -97,7 +144,9 @@ adcgs_status read(adcgs_image *out, const char *path, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: %s", path, first_line(input->geterror()).c_str());
     if (spec.alpha_channel >= 0 && !spec.get_int_attribute("oiio:UnassociatedAlpha"))
         adcgs_image_unpremultiply(out);
-    return ADCGS_OK;
+    if (is_linear(spec))
+        adcgs_image_to_srgb(out);
+    return check_finite(out, path, error);
 }
 
 /** Samples of the kind that the format is to hold. */

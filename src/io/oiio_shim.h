@@ -19,7 +19,7 @@ extern "C" {
 typedef struct adcgs_oiio {
     const char *version; /**< of the programs that the module belongs to */
     adcgs_status (*probe)(int *width, int *height, int *channels, const char *path, adcgs_error *error);
-    /** The first picture in the file; straight alpha. A depth channel behind the colours is left out. */
+    /** The first picture in the file, as sRGB with straight alpha. A depth channel behind the colours is left out. */
     adcgs_status (*read)(adcgs_image *out, const char *path, adcgs_error *error);
     /**
      * With 8 or 16 bits to the file `name`, in the format that `extension` stands for; messages name `path`. ADCGS_ERR_USAGE

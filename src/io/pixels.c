@@ -4,6 +4,7 @@
 
 #include "io/image.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 adcgs_status adcgs_image_alloc(adcgs_image *image, int width, int height, int channels, const char *path, adcgs_error *error)
@@ -76,4 +77,14 @@ void adcgs_image_unpremultiply(adcgs_image *image)
             if (pixel[channels - 1] > 0.0f)
                 pixel[c] /= pixel[channels - 1];
     }
+}
+
+void adcgs_image_to_srgb(adcgs_image *image)
+{
+    const size_t n = (size_t)image->channels, colours = n % 2 ? n : n - 1;
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+        for (size_t c = 0; c < colours; c++) {
+            float *v = &image->data[i * n + c];
+            *v = *v <= 0.0031308f ? 12.92f * *v : 1.055f * powf(*v, 1.0f / 2.4f) - 0.055f;
+        }
 }

@@ -136,6 +136,13 @@ static adcgs_status measure(result *x, const adcgs_enc_report *r, adcgs_decoder 
     return judge(&x->target, r, &x->info, decoder, error);
 }
 
+/** What could not be measured is complete all the same. */
+static void say_written(const adcgs_enc_report *r, adcgs_error *error)
+{
+    const adcgs_error why = *error;
+    adcgs_fail(error, why.status, "%s; but %s is written", why.text, r->file);
+}
+
 adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report *r, int *met, adcgs_error *error)
 {
     adcgs_config config;
@@ -146,6 +153,8 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     config.cpu = r->trainer->cpu;
     ADCGS_TRY(adcgs_open_file(&decoder, r->file, &config, error));
     adcgs_status status = measure(&x, r, decoder, error);
+    if (status != ADCGS_OK)
+        say_written(r, error);
     if (status == ADCGS_OK && r->json)
         status = print_json(r, &x, error);
     else if (status == ADCGS_OK)

@@ -96,6 +96,13 @@ grep -q '"lambda": 0.1' "$dir/one.out" || bad "--json does not tell lambda"
 [ ! -s "$dir/two.out" ] || bad "standard output without --json"
 ./adcgs-dec "$dir/one.adcgs" --md5 >/dev/null 2>&1 || bad "the stream does not decode"
 
+# Test and validation views have no part in the stream: without them it is the same.
+cp -r "$scene" "$dir/apart"
+rm -r "$dir/apart/test" "$dir/apart/val" "$dir/apart/transforms_test.json" "$dir/apart/transforms_val.json"
+scene=$dir/apart enc apart --iterations $n --threads 2
+same one apart "another stream without test views"
+rm -r "$dir/apart"
+
 # An interrupt leaves a checkpoint, says how to go on, and leaves the output alone. Going on gives what never stopping gives.
 echo precious >"$dir/stop.adcgs"
 interrupt 100 INT --iterations $n --threads 2

@@ -19,10 +19,19 @@ enum { RIG_WIDTH = 24, RIG_HEIGHT = 16, RIG_POINTS = 27 };
 #define RIG_PLY                                                                                                          \
     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
 
+/** Cameras 0, rig_moved, 2 * rig_moved, ... stand elsewhere, much farther off, and their bounds are nearer. 0: none does. */
+static int rig_moved;
+
+static inline int rig_is_moved(int i)
+{
+    return rig_moved && i % rig_moved == 0;
+}
+
 /** Camera to world: the position on an arc of radius 3, up is -y of the world (y points down). */
 static inline void rig_pose(int i, double pose[12])
 {
-    const double angle = 0.2 * i - 0.5, p[3] = {3 * sin(angle), 0.3 * (i % 3), -3 * cos(angle)};
+    const double angle = 0.2 * i - 0.5 + (rig_is_moved(i) ? 0.7 : 0.0), radius = rig_is_moved(i) ? 300.0 : 3.0;
+    const double p[3] = {radius * sin(angle), 0.3 * (i % 3), -radius * cos(angle)};
     const double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
     const double z[3] = {-p[0] / length, -p[1] / length, -p[2] / length}, across = sqrt(z[0] * z[0] + z[2] * z[2]);
     const double x[3] = {z[2] / across, 0, -z[0] / across}; /* y cross z */
@@ -113,7 +122,7 @@ static inline void put_poses(int n, double times)
         row[4] = RIG_HEIGHT * times;
         row[9] = RIG_WIDTH * times;
         row[14] = RIG_FOCAL * times;
-        row[15] = 2.0 + 0.01 * i;
+        row[15] = rig_is_moved(i) ? 0.01 : 2.0 + 0.01 * i;
         row[16] = 4.5;
         for (int k = 0; k < 17; k++)
             adcgs_store_le64(data + 128 + 8 * (17 * i + k), adcgs_double_bits(row[k]));

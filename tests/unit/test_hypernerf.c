@@ -239,7 +239,7 @@ static void test_detection(void **state)
 
 static void test_bad_lists(void **state)
 {
-    expect_bad("dataset.json", "", ADCGS_ERR_DATA, "malformed JSON");
+    expect_bad("dataset.json", "", ADCGS_ERR_DATA, "empty, expected JSON");
     expect_bad("dataset.json", "[]", ADCGS_ERR_DATA, "object");
     expect_bad("dataset.json", "{}", ADCGS_ERR_DATA, "ids: expected an array");
     expect_bad("dataset.json", "{\"ids\":[]}", ADCGS_ERR_DATA, "ids: is empty");

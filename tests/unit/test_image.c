@@ -97,6 +97,7 @@ static void test_damage(void **state)
     expect_bad("d.ppm", "P6\n4 -4\n255\n0123456789", ADCGS_ERR_DATA, "header");
     expect_bad("d.ppm", "P6\n99999999999 4\n255\n", ADCGS_ERR_DATA, "header");
     expect_bad("d.ppm", "P6\n16385 1\n255\n", ADCGS_ERR_DATA, "16385x1");
+    expect_bad("d.ppm", "P6\n99999 99999\n255\n", ADCGS_ERR_DATA, "99999x99999 pixels, expected at most 16384x16384");
     expect_bad("d.ppm", "P6\n4 4\n70000\n", ADCGS_ERR_DATA, "header");
     expect_bad("d.ppm", "P", ADCGS_ERR_DATA, "too short");
     expect_bad("d.exr", "\x76\x2f\x31\x01 and then nothing of use", ADCGS_ERR_DATA, "d.exr");
@@ -125,6 +126,38 @@ static void test_cuts(void **state)
             else
                 assert_non_null(strstr(error.text, names[i]));
         }
+    }
+    adcgs_image_free(&image);
+}
+
+/** PNG and JPEG that end anywhere before their end are refused, as is a PNG in which any byte is another; more behind is fine. */
+static void test_whole(void **state)
+{
+    static const char *const names[] = {"w.png", "w.jpg"};
+    static uint8_t bytes[65536];
+    adcgs_image image, back;
+    make_image(&image, 3);
+    for (size_t i = 0; i < ADCGS_COUNTOF(names); i++) {
+        const adcgs_status status = adcgs_image_write(&image, in(names[i]), 0, &error);
+        if (status == ADCGS_ERR_UNSUPPORTED)
+            continue;
+        assert_int_equal(status, ADCGS_OK);
+        FILE *file = fopen(in(names[i]), "rb");
+        const size_t size = fread(bytes, 1, sizeof bytes - 1, file);
+        fclose(file);
+        for (size_t cut = 0; cut < size; cut += cut + 40 < size ? 1 + size / 50 : 1) {
+            put_bytes(names[i], bytes, cut);
+            expect_error(adcgs_image_read(&back, in(names[i]), &error), ADCGS_ERR_DATA, names[i], "");
+        }
+        for (size_t at = 8; i == 0 && at < size; at += 1 + size / 50) {
+            bytes[at] ^= 0x10;
+            put_bytes(names[i], bytes, size);
+            expect_error(adcgs_image_read(&back, in(names[i]), &error), ADCGS_ERR_DATA, names[i], "damaged image");
+            bytes[at] ^= 0x10;
+        }
+        put_bytes(names[i], bytes, size + 1);
+        assert_int_equal(adcgs_image_read(&back, in(names[i]), &error), ADCGS_OK);
+        adcgs_image_free(&back);
     }
     adcgs_image_free(&image);
 }
@@ -270,7 +303,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trips), cmocka_unit_test(test_png),      cmocka_unit_test(test_sixteen_bits),
-        cmocka_unit_test(test_damage),      cmocka_unit_test(test_cuts),     cmocka_unit_test(test_unwritable),
+        cmocka_unit_test(test_damage),      cmocka_unit_test(test_cuts),     cmocka_unit_test(test_whole),
+        cmocka_unit_test(test_unwritable),
         cmocka_unit_test(test_to_u8),       cmocka_unit_test(test_atomic),   cmocka_unit_test(test_full_disk),
         cmocka_unit_test(test_patterns),    cmocka_unit_test(test_y4m),      cmocka_unit_test(test_sinks),
     };

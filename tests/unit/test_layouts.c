@@ -3,11 +3,9 @@
  * What holds for scenes of every layout: test views have no part in where training starts, frames can be chosen, a kind can be
  * forced.
  */
-#include "layout_files.h"
+#include "layout_kinds.h"
 
 #include "train/start.h"
-
-enum { CAMERAS = 9, MOMENTS = 4 };
 
 static adcgs_scene *scene;
 
@@ -16,178 +14,6 @@ static void expect_good(adcgs_status status)
     if (status != ADCGS_OK)
         fail_msg("%s", error.text);
 }
-
-/* ---- The layouts; each returns what is for testing as a pattern of its files, with one number ---- */
-
-/** Files of the test views: a picture or video by number. */
-typedef struct layout {
-    const char *name;
-    const char *scene;    /**< below the folder; "": the folder itself */
-    const char *tests;    /**< "" if tests are of numbers 0 and 8 of the pictures */
-    int first, last, step;
-    void (*put)(void);
-    int videos;
-} layout;
-
-static void put_pictures(const char *format, int n)
-{
-    for (int i = 0; i < n; i++) {
-        char name[64];
-        snprintf(name, sizeof name, format, i);
-        put_picture(name, i, RIG_WIDTH, RIG_HEIGHT);
-    }
-}
-
-static void put_frames(const char *format)
-{
-    for (int c = 0; c < CAMERAS; c++) {
-        char name[64];
-        snprintf(name, sizeof name, format, c);
-        *strrchr(name, '/') = 0;
-        put_folder(name);
-        for (int i = 0; i < MOMENTS; i++) {
-            char file[64];
-            snprintf(file, sizeof file, format, c);
-            snprintf(file + strlen(file), sizeof file - strlen(file), "%04d.ppm", i);
-            put_picture(file, c * MOMENTS + i, RIG_WIDTH, RIG_HEIGHT);
-        }
-    }
-}
-
-/** One file of transforms for every step-th camera from the first. */
-static void put_transforms(const char *name, int first, int step)
-{
-    char *text = malloc(65536);
-    assert_non_null(text);
-    size_t at = (size_t)sprintf(text, "{\"fl_x\":20,\"w\":24,\"h\":16,\"frames\":[");
-    for (int i = first; i < CAMERAS; i += step) {
-        double pose[12];
-        rig_pose(i, pose);
-        at += (size_t)sprintf(text + at, "%s{\"file_path\":\"%d.ppm\",\"time\":%g,\"transform_matrix\":%s}",
-                              i > first ? "," : "", i, i / 8.0, json_opengl(pose));
-    }
-    sprintf(text + at, "]}");
-    put_text(name, text);
-    free(text);
-}
-
-static void put_dnerf(void)
-{
-    put_pictures("%d.ppm", CAMERAS);
-    put_transforms("transforms_train.json", 1, 2);
-    put_transforms("transforms_test.json", 0, 8);
-}
-
-static void put_nerfstudio(void)
-{
-    put_pictures("%d.ppm", CAMERAS);
-    put_transforms("transforms.json", 0, 1);
-}
-
-static void put_hypernerf(void)
-{
-    char ids[256] = "", times[256] = "", name[64], text[512];
-    put_folder("rgb");
-    put_folder("rgb/1x");
-    put_folder("camera");
-    put_pictures("rgb/1x/%d.ppm", CAMERAS);
-    for (int i = 0; i < CAMERAS; i++) {
-        double p[12];
-        rig_pose(i, p);
-        if (i % 8)
-            sprintf(ids + strlen(ids), "%s\"%d\"", i > 1 ? "," : "", i);
-        sprintf(times + strlen(times), "%s\"%d\":{\"warp_id\":%d}", i ? "," : "", i, i);
-        snprintf(name, sizeof name, "camera/%d.json", i);
-        snprintf(text, sizeof text, "{\"orientation\":[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]],"
-                 "\"position\":[%.17g,%.17g,%.17g],\"focal_length\":20,\"principal_point\":[12,8],\"image_size\":[24,16]}",
-                 p[0], p[4], p[8], p[1], p[5], p[9], p[2], p[6], p[10], p[3], p[7], p[11]);
-        put_text(name, text);
-    }
-    snprintf(text, sizeof text, "{\"ids\":[],\"train_ids\":[%s],\"val_ids\":[\"0\",\"8\"]}", ids);
-    put_text("dataset.json", text);
-    snprintf(text, sizeof text, "{%s}", times);
-    put_text("metadata.json", text);
-    put_text("scene.json", "{\"center\":[0,0,0],\"scale\":1}");
-}
-
-static void put_llff(void)
-{
-    put_folder("images");
-    put_pictures("images/%d.ppm", CAMERAS);
-    put_poses(CAMERAS, 4);
-}
-
-static void put_neu3d(void)
-{
-    for (int c = 0; c < CAMERAS; c++) {
-        char name[64];
-        snprintf(name, sizeof name, "cam%02d", c);
-        put_folder(name);
-    }
-    put_frames("cam%02d/images/");
-    put_poses(CAMERAS, 2);
-}
-
-static void put_videos(const char *format)
-{
-    for (int c = 0; c < CAMERAS; c++) {
-        char name[64];
-        snprintf(name, sizeof name, format, c);
-        put_video(name, c, MOMENTS, RIG_WIDTH, RIG_HEIGHT);
-    }
-}
-
-static void put_neu3d_videos(void)
-{
-    put_videos("cam%02d.mp4");
-    put_poses(CAMERAS, 1);
-}
-
-static void put_colmap(void)
-{
-    put_folder("sparse");
-    put_folder("sparse/0");
-    put_folder("images");
-    put_pictures("images/%d.ppm", CAMERAS);
-    put_model_binary("sparse/0", CAMERAS, "%d.ppm");
-}
-
-static void put_colmap_videos(void)
-{
-    put_folder("sparse");
-    put_folder("videos");
-    put_videos("videos/%d.mp4");
-    put_model_text("sparse", CAMERAS, "%d.ppm", "7 PINHOLE 24 16 20 20 12 8\n");
-}
-
-static void put_scene_file(void)
-{
-    put_frames("cam%d/");
-    char *text = malloc(65536);
-    assert_non_null(text);
-    size_t at = (size_t)sprintf(text, "{\"adcgs_scene\":1,\"defaults\":{\"width\":24,\"height\":16,\"fx\":20},\"cameras\":[");
-    for (int i = 0; i < CAMERAS; i++) {
-        double pose[12];
-        rig_pose(i, pose);
-        at += (size_t)sprintf(text + at, "%s{\"name\":\"%d\",\"camera_to_world\":%s,\"images\":\"cam%d/%%04d.ppm\","
-                              "\"split\":\"%s\"}", i ? "," : "", i, json_matrix(pose), i, i ? "train" : "test");
-    }
-    sprintf(text + at, "]}");
-    put_text("scene.json", text);
-    free(text);
-}
-
-static const layout layouts[] = {
-    {"D-NeRF", "", "%d.ppm", 0, 8, 8, put_dnerf, 0},
-    {"nerfstudio", "", "%d.ppm", 0, 8, 8, put_nerfstudio, 0},
-    {"HyperNeRF", "", "rgb/1x/%d.ppm", 0, 8, 8, put_hypernerf, 0},
-    {"LLFF", "", "images/%d.ppm", 0, 8, 8, put_llff, 0},
-    {"Neu3D, pictures", "", "cam00/images/%04d.ppm", 0, MOMENTS - 1, 1, put_neu3d, 0},
-    {"Neu3D, videos", "", "cam%02d.mp4", 0, 0, 1, put_neu3d_videos, 1},
-    {"COLMAP, pictures", "", "images/%d.ppm", 0, 8, 8, put_colmap, 0},
-    {"COLMAP, videos", "", "videos/%d.mp4", 0, 0, 1, put_colmap_videos, 1},
-    {"scene file", "scene.json", "cam0/%04d.ppm", 0, MOMENTS - 1, 1, put_scene_file, 0},
-};
 
 static const char *scene_path(const layout *l)
 {
@@ -272,10 +98,24 @@ static int touch_tests(const layout *l, int what)
     return n;
 }
 
-/** Other test views, and none at all once the scene is open, leave the start of training as it is, to the bit. */
+/** Once a scene is open, cameras and times of its test views are no numbers, and their files are not there. */
+static void spoil_tests(const layout *l, adcgs_scene *opened)
+{
+    for (int s = ADCGS_SPLIT_VAL; s < ADCGS_SPLITS; s++)
+        for (uint32_t i = 0; i < opened->n_views[s]; i++) {
+            adcgs_scene_view *view = &opened->views[s][i];
+            memset(&view->camera, 0xff, sizeof view->camera);
+            view->time = NAN;
+            view->frame = INT64_MAX;
+            *strrchr(view->path, '/') = '_';
+        }
+    assert_true(!l->tests || touch_tests(l, REMOVE) > 0);
+}
+
+/** Other test views, from elsewhere, and none at all once the scene is open, leave the start of training as it is, to the bit. */
 static void test_apart(void **state)
 {
-    for (size_t i = 0; i < ADCGS_COUNTOF(layouts); i++) {
+    for (size_t i = 0; i < LAYOUTS; i++) {
         const layout *l = &layouts[i];
         if (l->videos && !put_video("probe.mp4", 0, 1, RIG_WIDTH, RIG_HEIGHT)) {
             print_message("skipped: %s: this build writes no videos\n", l->name);
@@ -285,12 +125,18 @@ static void test_apart(void **state)
         start first = make_start(l), second, third;
         finish_start(&first);
         assert_true(first.scene->n_views[ADCGS_SPLIT_TEST] > 0 && first.scene->n_views[ADCGS_SPLIT_TRAIN] > 0);
-        assert_true(touch_tests(l, REPLACE) > 0);
+        rig_moved = l->period;
+        begin_anew(l);
+        rig_moved = 0;
+        assert_true(!l->tests || touch_tests(l, REPLACE) > 0);
         second = make_start(l);
         finish_start(&second);
         third = make_start(l);
-        assert_true(touch_tests(l, REMOVE) > 0);
+        spoil_tests(l, third.scene);
         finish_start(&third);
+        if (l->period)
+            assert_memory_not_equal(&first.scene->views[ADCGS_SPLIT_TEST][0].camera.cam_to_world,
+                                    &second.scene->views[ADCGS_SPLIT_TEST][0].camera.cam_to_world, sizeof(double[12]));
         expect_same(&first, &second);
         expect_same(&first, &third);
         free_start(&first);
@@ -299,32 +145,41 @@ static void test_apart(void **state)
     }
 }
 
-/** Training views do have a part: the test above would notice. */
+/** Training views do have a part, their pictures and their poses: the test above would notice. */
 static void test_apart_notices(void **state)
 {
-    begin_anew(&layouts[3]);
-    start first = make_start(&layouts[3]), second;
-    finish_start(&first);
-    put_picture("images/4.ppm", 99, RIG_WIDTH, RIG_HEIGHT);
-    second = make_start(&layouts[3]);
-    finish_start(&second);
-    int same = first.model->n == second.model->n;
-    for (int p = 0; same && p < ADCGS_P_COUNT; p++)
-        same = !memcmp(first.model->param[p].p, second.model->param[p].p, first.model->param[p].n * sizeof(float));
-    assert_false(same);
-    free_start(&first);
-    free_start(&second);
+    for (int moved = 0; moved < 2; moved++) {
+        begin_anew(&layouts[LLFF]);
+        start first = make_start(&layouts[LLFF]), second;
+        finish_start(&first);
+        if (moved) {
+            rig_moved = 5;
+            begin_anew(&layouts[LLFF]);
+            rig_moved = 0;
+        } else
+            put_picture("images/4.ppm", 99, RIG_WIDTH, RIG_HEIGHT);
+        second = make_start(&layouts[LLFF]);
+        finish_start(&second);
+        int same = first.model->n == second.model->n;
+        for (int p = 0; same && p < ADCGS_P_COUNT; p++)
+            same = !memcmp(first.model->param[p].p, second.model->param[p].p, first.model->param[p].n * sizeof(float));
+        assert_false(same);
+        assert_int_equal(first.scene->near_bound != second.scene->near_bound, moved);
+        assert_int_equal(memcmp(first.origin, second.origin, sizeof first.origin) != 0, moved);
+        free_start(&first);
+        free_start(&second);
+    }
 }
 
 /** The other test views' cameras, not only their pictures. */
 static void test_apart_poses(void **state)
 {
-    begin_anew(&layouts[0]);
-    start first = make_start(&layouts[0]), second;
+    begin_anew(&layouts[DNERF]);
+    start first = make_start(&layouts[DNERF]), second;
     finish_start(&first);
     put_text("transforms_test.json", "{\"fl_x\":99,\"fps\":7,\"w\":24,\"h\":16,\"ply_file_path\":\"0.ppm\",\"frames\":["
              "{\"file_path\":\"0.ppm\",\"time\":1,\"transform_matrix\":[[1,0,0,70],[0,1,0,0],[0,0,1,900]]}]}");
-    second = make_start(&layouts[0]);
+    second = make_start(&layouts[DNERF]);
     finish_start(&second);
     expect_same(&first, &second);
     free_start(&first);
@@ -334,7 +189,7 @@ static void test_apart_poses(void **state)
 /** Frames that do not say how large they are: other sizes of test pictures do not become those of the others. */
 static void test_apart_sizes(void **state)
 {
-    const layout *l = &layouts[1];
+    const layout *l = &layouts[NERFSTUDIO];
     begin_anew(l);
     put_transforms("transforms.json", 0, 1);
     char *text = malloc(65536);
@@ -397,25 +252,25 @@ static void open_range(const layout *l, int64_t begin, int64_t end, int64_t step
 /** Moments of single pictures: those of training 1, 3, 5, 7 and of testing 0, 8, all over 8. */
 static void test_frames_of_pictures(void **state)
 {
-    begin_anew(&layouts[0]);
-    open_range(&layouts[0], 1, 5, 2, ADCGS_OK, NULL); /* of the moments 0 1 3 5 7 8: 1 and 5 */
+    begin_anew(&layouts[DNERF]);
+    open_range(&layouts[DNERF], 1, 5, 2, ADCGS_OK, NULL); /* of the moments 0 1 3 5 7 8: 1 and 5 */
     assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 2 && scene->n_views[ADCGS_SPLIT_TEST] == 0);
     assert_string_equal(scene->views[ADCGS_SPLIT_TRAIN][1].camera.name, "5");
     assert_true(scene->views[ADCGS_SPLIT_TRAIN][0].time == 0.0 && scene->duration == 0.1);
     assert_true(scene->views[ADCGS_SPLIT_TRAIN][1].time == scene->duration);
     adcgs_scene_free(&scene);
-    open_range(&layouts[0], 3, 0, 1, ADCGS_OK, NULL);
+    open_range(&layouts[DNERF], 3, 0, 1, ADCGS_OK, NULL);
     assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 2 && scene->n_views[ADCGS_SPLIT_TEST] == 1);
     assert_true(scene->views[ADCGS_SPLIT_TRAIN][0].time == 0.0 && scene->views[ADCGS_SPLIT_TEST][0].time == scene->duration);
     adcgs_scene_free(&scene);
-    open_range(&layouts[0], 6, 0, 1, ADCGS_ERR_DATA, "begins with frame 6, but there are 6");
-    open_range(&layouts[0], 5, 0, 1, ADCGS_ERR_DATA, "leaves no view for training");
+    open_range(&layouts[DNERF], 6, 0, 1, ADCGS_ERR_DATA, "begins with frame 6, but there are 6");
+    open_range(&layouts[DNERF], 5, 0, 1, ADCGS_ERR_DATA, "leaves no view for training");
 }
 
 /** Frames of cameras: the step makes frames rarer, not faster. */
 static void test_frames_of_cameras(void **state)
 {
-    static const int which[] = {4, 5, 7, 8};
+    static const int which[] = {NEU3D, NEU3D_VIDEOS, COLMAP_VIDEOS, SCENE_FILE};
     for (size_t i = 0; i < ADCGS_COUNTOF(which); i++) {
         const layout *l = &layouts[which[i]];
         if (l->videos && !put_video("probe.mp4", 0, 1, RIG_WIDTH, RIG_HEIGHT))
@@ -451,7 +306,7 @@ static void open_as(int dataset, adcgs_status expected, const char *what)
 
 static void test_kinds(void **state)
 {
-    begin_anew(&layouts[3]);
+    begin_anew(&layouts[LLFF]);
     put_folder("sparse");
     put_model_text("sparse", CAMERAS, "%d.ppm", "7 PINHOLE 24 16 20 20 12 8\n");
     expect_good(adcgs_scene_open(&scene, folder, NULL, &error)); /* LLFF goes first */

@@ -292,7 +292,7 @@ static void test_bad_text(void **state)
     put_images(2, "images", "ppm");
     put_folder("sparse");
     put_model_text("sparse", 2, "%02d.ppm", "");
-    expect_bad(ADCGS_ERR_DATA, "images.txt: 01.ppm", "there is no camera 7");
+    expect_bad(ADCGS_ERR_DATA, "cameras.txt", "no cameras");
     bad_line("cameras.txt", "7 PINHOLE 24 16 20 20 12\n8", "line 1: PARAMS: expected 4 numbers");
     bad_line("cameras.txt", "7 PINHOLE 24 16 20 20 12 8 9\n", "unexpected \"9\"");
     bad_line("cameras.txt", "7 PINHOLE 24 0 20 20 12 8\n", "24x0 pixels");

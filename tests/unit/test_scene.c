@@ -162,7 +162,7 @@ static void test_bad_files(void **state)
     expect_bad("{\"frames\":[\n\n,]}", ADCGS_ERR_DATA, "line 3", "malformed JSON");
     expect_bad("{\"w\":1e999}", ADCGS_ERR_DATA, "line 1", "malformed JSON");
     expect_bad("{\"w\":NaN}", ADCGS_ERR_DATA, "line 1", "malformed JSON");
-    expect_bad("", ADCGS_ERR_DATA, "malformed JSON", "");
+    expect_bad("", ADCGS_ERR_DATA, "empty, expected JSON", "");
     expect_bad("[]", ADCGS_ERR_DATA, "object", "");
     expect_bad("{}", ADCGS_ERR_DATA, "frames", "array");
     expect_bad("{\"frames\":{}}", ADCGS_ERR_DATA, "frames", "array");
