@@ -73,8 +73,11 @@ typedef struct adcgs_train_dsp {
      */
     void (*weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles,
                         int n_out, int n_in);
-    /** dz[i] *= h[i] < 0 ? 2^-6 : 1 over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. */
-    void (*lrelu_back)(float *dz, const float *h, int n);
+    /**
+     * dz[i] = dh[i] * (h[i] < 0 ? 2^-6 : 1) over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. dz may be
+     * dh.
+     */
+    void (*lrelu_back)(float *dz, const float *dh, const float *h, int n);
     /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */
     void (*noise)(float *y, const float *p, const float *step, int n, uint32_t seed);
     /** y: what the coder makes of p, rounded in steps around the predicted mean mu; see adcgs_mean_pack(). */

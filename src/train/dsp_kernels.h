@@ -157,10 +157,11 @@ static void ISA(weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, 
     }
 }
 
-static void ISA(lrelu_back)(float *restrict dz, const float *restrict h, int n)
+static void ISA(lrelu_back)(float *dz, const float *dh, const float *h, int n)
 {
+#pragma GCC ivdep
     for (int i = 0; i < n * LANES; i++)
-        dz[i] *= h[i] < 0 ? 0x1p-6f : 1.0f;
+        dz[i] = dh[i] * (h[i] < 0 ? 0x1p-6f : 1.0f);
 }
 
 static void ISA(noise)(float *restrict y, const float *restrict p, const float *restrict step, int n, uint32_t seed)

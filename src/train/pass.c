@@ -7,10 +7,10 @@
 
 /* ---- Workspace ---- */
 
+/** Hidden layers, their branches, outputs. */
 static size_t rows_of(const adcgs_mlp *m)
 {
-    /* h and z per hidden layer (kept for weight gradients), output and its gradient */
-    return (size_t)(m->hidden * 2 + (m->hidden > 1 ? m->hidden - 1 : 0)) * (size_t)m->width + 2u * (size_t)m->out;
+    return ((size_t)m->hidden + adcgs_pass_branches(m)) * (size_t)m->width + (size_t)m->out;
 }
 
 static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error *error)
@@ -82,9 +82,8 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     const adcgs_mlp *m = f->mlp;
     const size_t k = f->params.k;
     const adcgs_mlp *theta = &m[ADCGS_P_THETA], *steps = &m[ADCGS_P_E_STEPS];
-    const size_t steps_hidden = ((size_t)steps->hidden + adcgs_pass_branches(steps)) * (size_t)steps->width;
-    p->act_stride = 64 * ((size_t)theta->width + k * (rows_of(theta) - (size_t)theta->out) + rows_of(&m[ADCGS_P_OMEGA]) +
-                          rows_of(&m[ADCGS_P_VARPI]) + steps_hidden + 2 * (size_t)steps->out);
+    p->act_stride = 64 * (k * rows_of(theta) + rows_of(&m[ADCGS_P_OMEGA]) + rows_of(&m[ADCGS_P_VARPI]) + rows_of(steps) +
+                          (size_t)steps->out);
     p->scratch_stride = 64 * adcgs_pass_scratch_rows(f);
     size_t at = 0;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
@@ -191,7 +190,7 @@ static void quantise_group(const forward_job *job, uint32_t g, float *scratch)
     }
 }
 
-static void forward_theta(const forward_job *job, uint32_t g)
+static void forward_theta(const forward_job *job, uint32_t g, float *anchor)
 {
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
@@ -201,10 +200,10 @@ static void forward_theta(const forward_job *job, uint32_t g)
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
     const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * 64;
-    d->dense(act.theta_anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], fv, m->width, nv);
+    d->dense(anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], fv, m->width, nv);
     for (int k = 0; k < f->params.k; k++) {
         float *h = act.theta_h + (size_t)k * act.theta_h_stride;
-        d->dense(h, act.theta_anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
+        d->dense(h, anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
         adcgs_mlp_tail(p->net, m, h, act.theta_a + (size_t)k * act.theta_a_stride,
                        act.theta_out + (size_t)k * ADCGS_THETA_OUT * 64);
     }
@@ -268,9 +267,10 @@ static void forward_group(void *arg, int index, int thread)
 {
     const forward_job *job = arg;
     const uint32_t g = (uint32_t)index;
-    quantise_group(job, g, job->pass->scratch + (size_t)thread * job->pass->scratch_stride);
+    float *scratch = job->pass->scratch + (size_t)thread * job->pass->scratch_stride;
+    quantise_group(job, g, scratch);
     drop_primitives(job, g);
-    forward_theta(job, g);
+    forward_theta(job, g, scratch);
     if (job->deform)
         forward_deform(job, g);
     adcgs_group_io io;

@@ -9,13 +9,12 @@
 /** Groups are merged in this many fixed pieces, whatever the number of threads. */
 #define ADCGS_PASS_CHUNKS 8
 
-/** Activations of one group. h: hidden layers' outputs; a: residual branches; dz, dout: gradients, kept for weight gradients. */
+/** Activations of one group. h: hidden layers' outputs; a: residual branches. */
 typedef struct adcgs_act {
-    float *theta_anchor;                      /* [width][64] */
-    float *theta_h, *theta_a, *theta_out;     /* per primitive */
+    float *theta_h, *theta_a, *theta_out; /* per primitive */
     size_t theta_h_stride, theta_a_stride;
-    float *omega_h, *omega_a, *omega_dz, *omega_out, *omega_dout;
-    float *varpi_h, *varpi_a, *varpi_dz, *varpi_out, *varpi_dout;
+    float *omega_h, *omega_a, *omega_out;
+    float *varpi_h, *varpi_a, *varpi_out;
     float *steps_h, *steps_a, *steps_out, *steps_dlog; /* E_q: octaves; gradient of the factors' logarithms */
 } adcgs_act;
 
@@ -34,20 +33,15 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
 #define TAKE(field, rows) (a.field = at, at += (size_t)(rows) * 64)
     a.theta_h_stride = (size_t)th->hidden * (size_t)th->width * 64;
     a.theta_a_stride = adcgs_pass_branches(th) * (size_t)th->width * 64;
-    TAKE(theta_anchor, th->width);
     TAKE(theta_h, k * (size_t)th->hidden * (size_t)th->width);
     TAKE(theta_a, k * adcgs_pass_branches(th) * (size_t)th->width);
     TAKE(theta_out, k * ADCGS_THETA_OUT);
     TAKE(omega_h, om->hidden * om->width);
     TAKE(omega_a, adcgs_pass_branches(om) * (size_t)om->width);
-    TAKE(omega_dz, om->hidden * om->width);
     TAKE(omega_out, om->out);
-    TAKE(omega_dout, om->out);
     TAKE(varpi_h, va->hidden * va->width);
     TAKE(varpi_a, adcgs_pass_branches(va) * (size_t)va->width);
-    TAKE(varpi_dz, va->hidden * va->width);
     TAKE(varpi_out, va->out);
-    TAKE(varpi_dout, va->out);
     TAKE(steps_h, eq->hidden * eq->width);
     TAKE(steps_a, adcgs_pass_branches(eq) * (size_t)eq->width);
     TAKE(steps_out, eq->out);

@@ -279,7 +279,9 @@ static void rows(call *c)
     const int n = size_of(c, 20);
     const size_t many = (size_t)n * L;
     const float *const step = constant(c, (size_t)n, 0.25f);
-    dsp.lrelu_back(added(c, many), given(c, many), n);
+    float *const dz = added(c, many);
+    dsp.lrelu_back(dz, dz, given(c, many), n);
+    dsp.lrelu_back(output(c, many), given(c, many), given(c, many), n);
     dsp.noise(output(c, many), given(c, many), step, n, (uint32_t)c->round);
     dsp.hidden(output(c, many), given(c, many), c->round & 1 ? given(c, many) : NULL, n);
 }
