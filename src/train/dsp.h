@@ -73,11 +73,17 @@ typedef struct adcgs_train_dsp {
      */
     void (*weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles,
                         int n_out, int n_in);
+    /** dz[i] *= h[i] < 0 ? 2^-6 : 1 over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. */
+    void (*lrelu_back)(float *dz, const float *h, int n);
     /**
-     * dz[i] = dh[i] * (h[i] < 0 ? 2^-6 : 1) over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. dz may be
-     * dh.
+     * A residual hidden layer of n units: with z = bias + w x, h = x + leaky ReLU of z; w: [n][n]. Bit l of below[o]: lane l of
+     * z[o] is below 0. dsp: these kernels.
      */
-    void (*lrelu_back)(float *dz, const float *dh, const float *h, int n);
+    void (*residual)(const struct adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const float *w,
+                     const float *x, int n);
+    /** The way back: dz = dh times the leaky ReLU's slope, dx = dh + turn dz; turn: w transposed. dx may be dh. */
+    void (*residual_back)(const struct adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below, const float *turn,
+                          const float *dh, int n);
     /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */
     void (*noise)(float *y, const float *p, const float *step, int n, uint32_t seed);
     /** y: what the coder makes of p, rounded in steps around the predicted mean mu; see adcgs_mean_pack(). */
@@ -85,11 +91,11 @@ typedef struct adcgs_train_dsp {
     void (*primitives)(const adcgs_group_io *io);
     void (*primitives_back)(const adcgs_group_io *io, const adcgs_group_grad *grad);
     /**
-     * n rows of a hidden layer of an entropy network: h = leaky ReLU of z, plus in where it is not NULL. hidden_exact: z, in on
-     * the integer networks' lattices, and h what they compute.
+     * n rows of a hidden layer: h = leaky ReLU of z, plus in where it is not NULL; below as in residual. hidden_exact, for
+     * entropy networks: z, in on the integer networks' lattices, and h what they compute.
      */
-    void (*hidden)(float *h, const float *z, const float *in, int n);
-    void (*hidden_exact)(float *h, const float *z, const float *in, int n);
+    void (*hidden)(float *h, uint64_t *below, const float *z, const float *in, int n);
+    void (*hidden_exact)(float *h, uint64_t *below, const float *z, const float *in, int n);
     /**
      * Bits of values and their gradients; returns the weighted sum of bits. rate: of values as they are, noisy ones that is,
      * under a Gaussian. rate_exact: as the coder does it, with the gradients straight through every rounding.

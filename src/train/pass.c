@@ -7,10 +7,10 @@
 
 /* ---- Workspace ---- */
 
-/** Hidden layers, their branches, outputs. */
+/** Hidden layers, their branches' signs, outputs. */
 static size_t rows_of(const adcgs_mlp *m)
 {
-    return ((size_t)m->hidden + adcgs_pass_branches(m)) * (size_t)m->width + (size_t)m->out;
+    return (size_t)m->hidden * (size_t)m->width + adcgs_below_rows(m) + (size_t)m->out;
 }
 
 static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error *error)
@@ -135,15 +135,13 @@ adcgs_status adcgs_pass_resize(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error
 
 /* ---- Forward ---- */
 
-void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, float *a, float *out)
+void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, uint64_t *below, float *out)
 {
     const size_t tile = (size_t)m->width * 64;
     dsp->dense.lrelu(h, m->width);
     for (int i = 1; i < m->hidden; i++) {
-        float *branch = a + (size_t)(i - 1) * tile, *next = h + (size_t)i * tile;
-        const float *last = next - tile;
-        dsp->dense.dense(branch, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, last, m->width, m->width);
-        dsp->hidden(next, branch, last, m->width); /* of the branch the backward pass asks only for signs */
+        float *next = h + (size_t)i * tile;
+        dsp->residual(dsp, next, below + (i - 1) * m->width, m->use + m->b[i], m->use + m->w[i], next - tile, m->width);
     }
     dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width,
                      h + (size_t)(m->hidden - 1) * tile, m->out, m->width);
@@ -204,7 +202,7 @@ static void forward_theta(const forward_job *job, uint32_t g, float *anchor)
     for (int k = 0; k < f->params.k; k++) {
         float *h = act.theta_h + (size_t)k * act.theta_h_stride;
         d->dense(h, anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
-        adcgs_mlp_tail(p->net, m, h, act.theta_a + (size_t)k * act.theta_a_stride,
+        adcgs_mlp_tail(p->net, m, h, act.theta_below + (size_t)k * act.theta_below_stride,
                        act.theta_out + (size_t)k * ADCGS_THETA_OUT * 64);
     }
 }
@@ -220,14 +218,14 @@ static void forward_deform(const forward_job *job, uint32_t g)
     const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
     if (om->n) {
         d->dense(act.omega_h, NULL, p->time_bias[0], om->use, (size_t)om->in[0], fv, om->width, nv);
-        adcgs_mlp_tail(p->net, om, act.omega_h, act.omega_a, act.omega_out);
+        adcgs_mlp_tail(p->net, om, act.omega_h, act.omega_below, act.omega_out);
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], f->code + (size_t)g * (size_t)fp * 64, va->width,
                  fp);
         if (f->params.fine_uses_fv)
             d->dense(act.varpi_h, act.varpi_h, NULL, va->use + fp, (size_t)va->in[0], fv, va->width, nv);
-        adcgs_mlp_tail(p->net, va, act.varpi_h, act.varpi_a, act.varpi_out);
+        adcgs_mlp_tail(p->net, va, act.varpi_h, act.varpi_below, act.varpi_out);
     }
 }
 

@@ -2,18 +2,15 @@
 /** \file The backward pass: primitives' gradients to anchors and networks. */
 #include "train/pass_layout.h"
 
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout,
-                         float *dz)
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
+                         const float *dout, float *dz)
 {
     const size_t tile = (size_t)m->width * 64;
     /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
     dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
-    for (int i = m->hidden - 1; i > 0; i--) {
-        float *d = dz + (size_t)i * tile;
-        dsp->lrelu_back(d, dz, a + (size_t)(i - 1) * tile, m->width);
-        dsp->dense.dense(dz, dz, NULL, m->turn + m->w[i], (size_t)m->width, d, m->width, m->width);
-    }
-    dsp->lrelu_back(dz, dz, h, m->width);
+    for (int i = m->hidden - 1; i > 0; i--)
+        dsp->residual_back(dsp, dz, dz + (size_t)i * tile, below + (i - 1) * m->width, m->turn + m->w[i], dz, m->width);
+    dsp->lrelu_back(dz, h, m->width);
 }
 
 void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
@@ -63,7 +60,7 @@ static void theta_back(const backward_job *job, uint32_t g, const float *dtheta,
     for (size_t i = 0; i < f->params.k; i++) {
         const float *h = act.theta_h + i * act.theta_h_stride, *dout = dtheta + i * ADCGS_THETA_OUT * 64;
         float *d = dfg + i * (size_t)ng * 64;
-        adcgs_mlp_tail_back(dsp, m, h, act.theta_a + i * act.theta_a_stride, dout, dz);
+        adcgs_mlp_tail_back(dsp, m, h, act.theta_below + i * act.theta_below_stride, dout, dz);
         dsp->dense.dense(d, d, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w, dz, ng, w);
         for (size_t j = 0; j < tile; j++)
             sum[j] += dz[j];
@@ -75,10 +72,10 @@ static void theta_back(const backward_job *job, uint32_t g, const float *dtheta,
 }
 
 /** The same for a network of deformation, to its weights beyond the first layer's. */
-static void tail_back(const adcgs_pass *p, const adcgs_mlp *m, const float *h, const float *a, const float *dout, float *dz,
-                      float *gm)
+static void tail_back(const adcgs_pass *p, const adcgs_mlp *m, const float *h, const uint64_t *below, const float *dout,
+                      float *dz, float *gm)
 {
-    adcgs_mlp_tail_back(p->net, m, h, a, dout, dz);
+    adcgs_mlp_tail_back(p->net, m, h, below, dout, dz);
     adcgs_mlp_weight_grads(p->net, m, gm, h, 0, dz, 0, dout, 0, 1);
 }
 
@@ -94,14 +91,14 @@ static void deform_back(const backward_job *job, uint32_t g, const float *domega
     float *dfv = grad_at(f, ADCGS_P_FV, g);
     if (om->n) {
         float *gm = partial + p->partial_at[ADCGS_P_OMEGA];
-        tail_back(p, om, act.omega_h, act.omega_a, domega, dz, gm);
+        tail_back(p, om, act.omega_h, act.omega_below, domega, dz, gm);
         dsp->weight_grad(gm, (size_t)om->in[0], gm + om->b[0], dz, 0, fv, 0, 1, om->width, nv);
         dsp->dense.dense(dfv, dfv, NULL, om->turn, (size_t)om->width, dz, nv, om->width);
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         float *gm = partial + p->partial_at[ADCGS_P_VARPI];
         const float *code = f->code + (size_t)g * (size_t)fp * 64;
-        tail_back(p, va, act.varpi_h, act.varpi_a, dvarpi, dz, gm);
+        tail_back(p, va, act.varpi_h, act.varpi_below, dvarpi, dz, gm);
         dsp->weight_grad(gm, (size_t)va->in[0], gm + va->b[0], dz, 0, code, 0, 1, va->width, fp);
         if (f->params.fine_uses_fv) {
             dsp->weight_grad(gm + fp, (size_t)va->in[0], NULL, dz, 0, fv, 0, 1, va->width, nv);
