@@ -20,12 +20,17 @@ typedef struct columns {
     __m512i pair[PAIRS][COLS];
 } columns;
 
-/** Its sums: at to, rows ld apart, n columns in use. They begin with what is at from, else with bias, else with 0. */
+/**
+ * Its sums: at to, rows ld apart, n columns in use. They begin with what is at from, else with bias, else with 0. If in is given,
+ * what is stored is in plus the leaky ReLU of the sums, rows of 64, and below says which sums are below 0.
+ */
 typedef struct sums {
     float *to;
     const float *from, *bias;
     size_t ld;
     int n;
+    const float *in;
+    uint64_t *below;
 } sums;
 
 static inline __mmask16 first(int n)
@@ -33,7 +38,36 @@ static inline __mmask16 first(int n)
     return (__mmask16)(n >= VN ? 0xffff : n > 0 ? (1 << n) - 1 : 0);
 }
 
+static inline __m512 slope(__m512 x, __mmask16 below)
+{
+    return _mm512_mask_mul_ps(x, below, x, _mm512_set1_ps(0x1p-6f));
+}
+
 /* ---- The product ---- */
+
+/** The end of a residual layer, for one row. */
+INLINE void store_residual(const sums *s, int r, const __m512 acc[COLS])
+{
+    uint64_t below = 0;
+#pragma GCC unroll 4
+    for (int c = 0; c < COLS; c++) {
+        const size_t at = (size_t)r * LANES + (size_t)(c * VN);
+        const __mmask16 negative = _mm512_cmp_ps_mask(acc[c], _mm512_setzero_ps(), _CMP_LT_OQ);
+        _mm512_store_ps(s->to + at, _mm512_add_ps(_mm512_load_ps(s->in + at), slope(acc[c], negative)));
+        below |= (uint64_t)negative << c * VN;
+    }
+    s->below[r] = below;
+}
+
+INLINE void store_sums(int cols, const sums *s, int r, const __m512 acc[COLS], __mmask16 last)
+{
+#pragma GCC unroll 4
+    for (int c = 0; c < cols; c++)
+        if (c < cols - 1 || last == 0xffff)
+            _mm512_storeu_ps(s->to + (size_t)r * s->ld + c * VN, acc[c]);
+        else
+            _mm512_mask_storeu_ps(s->to + (size_t)r * s->ld + c * VN, last, acc[c]);
+}
 
 INLINE void product_tile(int rows, int cols, const sums *s, const uint32_t *a, size_t lda, const columns *b, int pairs)
 {
@@ -60,12 +94,10 @@ INLINE void product_tile(int rows, int cols, const sums *s, const uint32_t *a, s
     }
 #pragma GCC unroll 6
     for (int r = 0; r < rows; r++)
-#pragma GCC unroll 4
-        for (int c = 0; c < cols; c++)
-            if (c < cols - 1 || last == 0xffff)
-                _mm512_storeu_ps(s->to + (size_t)r * s->ld + c * VN, acc[r][c]);
-            else
-                _mm512_mask_storeu_ps(s->to + (size_t)r * s->ld + c * VN, last, acc[r][c]);
+        if (cols == COLS && s->in)
+            store_residual(s, r, acc[r]);
+        else
+            store_sums(cols, s, r, acc[r], last);
 }
 
 INLINE void product_rows(int rows, const sums *s, const uint32_t *a, size_t lda, const columns *b, int pairs)
@@ -130,25 +162,40 @@ static void pack_inputs(columns *to, const float *x, int n)
         }
 }
 
-static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
+/** One layer: y->from and the rest are of its first row. */
+static void layer(const sums *y, const float *w, size_t ldw, const float *x, int n_out, int n_in)
 {
     alignas(64) uint32_t weights[ROWS][PAIRS];
     columns inputs;
+    const float *init = y->from;
     int i = 0;
     do {
         const int n = n_in - i < 2 * PAIRS ? n_in - i : 2 * PAIRS;
         pack_inputs(&inputs, x + (size_t)i * LANES, n);
         for (int o = 0, rows; o < n_out; o += rows) {
             const size_t at = (size_t)o * LANES;
-            const sums s = { y + at, init ? init + at : NULL, bias ? bias + o : NULL, LANES, LANES };
+            const int ends = y->in && i + n == n_in;
+            const sums s = { y->to + at, init ? init + at : NULL, y->bias ? y->bias + o : NULL, LANES, LANES,
+                             ends ? y->in + at : NULL, ends ? y->below + o : NULL };
             rows = rows_next(n_out - o);
             for (int r = 0; r < rows; r++)
                 pack_row(weights[r], w + (size_t)(o + r) * ldw + i, n);
             product(rows, &s, weights[0], PAIRS, &inputs, (n + 1) / 2);
         }
-        init = y;
+        init = y->to;
         i += n;
     } while (i < n_in);
+}
+
+static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
+{
+    layer(&(sums){ y, init, bias, LANES, LANES, NULL, NULL }, w, ldw, x, n_out, n_in);
+}
+
+static void residual(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const float *w, const float *x,
+                     int n)
+{
+    layer(&(sums){ h, NULL, bias, LANES, LANES, x, below }, w, (size_t)n, x, n, n);
 }
 
 /* ---- Weight gradients ---- */
@@ -202,7 +249,7 @@ static void tile_grad(float *gw, size_t ldg, float *gb, const float *dy, const f
         turn_inputs(&inputs, x + (size_t)i * LANES, n_in - i < LANES ? n_in - i : LANES);
         for (int o = 0, rows; o < n_out; o += rows) {
             float *at = gw + (size_t)o * ldg + i;
-            const sums s = { at, at, NULL, ldg, n_in - i < LANES ? n_in - i : LANES };
+            const sums s = { at, at, NULL, ldg, n_in - i < LANES ? n_in - i : LANES, NULL, NULL };
             rows = rows_next(n_out - o);
             product(rows, &s, factors[o], LANES / 2, &inputs, LANES / 2);
         }
@@ -228,5 +275,6 @@ void adcgs_train_dsp_init_avx512bf16(adcgs_train_dsp *dsp);
 void adcgs_train_dsp_init_avx512bf16(adcgs_train_dsp *dsp)
 {
     dsp->dense.dense = dense;
+    dsp->residual = residual;
     dsp->weight_grad = weight_grad;
 }
