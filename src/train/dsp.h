@@ -65,6 +65,19 @@ typedef struct adcgs_rate_io {
     float *mean;            /**< rate_exact: receives the means, packed */
 } adcgs_rate_io;
 
+/** Weights of a residual layer, [n][n], and the same as adcgs_train_dsp.pack leaves them, if there is such a function. */
+typedef struct adcgs_square {
+    int n;
+    const float *w;
+    const uint32_t *packed;
+} adcgs_square;
+
+/** Words of a packed square. */
+static inline size_t adcgs_square_words(int n)
+{
+    return (size_t)n * (((size_t)n + 31) / 32 * 16);
+}
+
 typedef struct adcgs_train_dsp {
     adcgs_dense_dsp dense;
     /**
@@ -76,14 +89,16 @@ typedef struct adcgs_train_dsp {
     /** dz[i] *= h[i] < 0 ? 2^-6 : 1 over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. */
     void (*lrelu_back)(float *dz, const float *h, int n);
     /**
-     * A residual hidden layer of n units: with z = bias + w x, h = x + leaky ReLU of z; w: [n][n]. Bit l of below[o]: lane l of
-     * z[o] is below 0. dsp: these kernels.
+     * A residual hidden layer: with z = bias + w x, h = x + leaky ReLU of z. Bit l of below[o]: lane l of z[o] is below 0. dsp:
+     * these kernels.
      */
-    void (*residual)(const struct adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const float *w,
-                     const float *x, int n);
+    void (*residual)(const struct adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
+                     const float *x);
     /** The way back: dz = dh times the leaky ReLU's slope, dx = dh + turn dz; turn: w transposed. dx may be dh. */
-    void (*residual_back)(const struct adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below, const float *turn,
-                          const float *dh, int n);
+    void (*residual_back)(const struct adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
+                          const adcgs_square *turn, const float *dh);
+    /** Weights [n][n] to adcgs_square_words(n) aligned words as the two above want them; NULL if they want none. */
+    void (*pack)(uint32_t *to, const float *w, int n);
     /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */
     void (*noise)(float *y, const float *p, const float *step, int n, uint32_t seed);
     /** y: what the coder makes of p, rounded in steps around the predicted mean mu; see adcgs_mean_pack(). */

@@ -162,10 +162,24 @@ static void pack_inputs(columns *to, const float *x, int n)
         }
 }
 
-/** One layer: y->from and the rest are of its first row. */
-static void layer(const sums *y, const float *w, size_t ldw, const float *x, int n_out, int n_in)
+/** Words of a row that is packed as a whole. */
+static inline size_t words_of(int n)
 {
-    alignas(64) uint32_t weights[ROWS][PAIRS];
+    return ((size_t)n + 31) / 32 * 16;
+}
+
+/** Some rows of weights for the inputs from i on: in w, or packed, if that is not NULL. */
+typedef struct weights {
+    const float *w;
+    size_t ldw;
+    const uint32_t *packed;
+} weights;
+
+/** One layer: y->from and the rest are of its first row. */
+static void layer(const sums *y, const weights *w, const float *x, int n_out, int n_in)
+{
+    alignas(64) uint32_t some[ROWS][PAIRS];
+    const size_t words = words_of(n_in);
     columns inputs;
     const float *init = y->from;
     int i = 0;
@@ -178,9 +192,13 @@ static void layer(const sums *y, const float *w, size_t ldw, const float *x, int
             const sums s = { y->to + at, init ? init + at : NULL, y->bias ? y->bias + o : NULL, LANES, LANES,
                              ends ? y->in + at : NULL, ends ? y->below + o : NULL };
             rows = rows_next(n_out - o);
+            if (w->packed) {
+                product(rows, &s, w->packed + (size_t)o * words + i / 2, words, &inputs, (n + 1) / 2);
+                continue;
+            }
             for (int r = 0; r < rows; r++)
-                pack_row(weights[r], w + (size_t)(o + r) * ldw + i, n);
-            product(rows, &s, weights[0], PAIRS, &inputs, (n + 1) / 2);
+                pack_row(some[r], w->w + (size_t)(o + r) * w->ldw + i, n);
+            product(rows, &s, some[0], PAIRS, &inputs, (n + 1) / 2);
         }
         init = y->to;
         i += n;
@@ -189,13 +207,30 @@ static void layer(const sums *y, const float *w, size_t ldw, const float *x, int
 
 static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
 {
-    layer(&(sums){ y, init, bias, LANES, LANES, NULL, NULL }, w, ldw, x, n_out, n_in);
+    layer(&(sums){ y, init, bias, LANES, LANES, NULL, NULL }, &(weights){ w, ldw, NULL }, x, n_out, n_in);
 }
 
-static void residual(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const float *w, const float *x,
-                     int n)
+static void residual(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
+                     const float *x)
 {
-    layer(&(sums){ h, NULL, bias, LANES, LANES, x, below }, w, (size_t)n, x, n, n);
+    layer(&(sums){ h, NULL, bias, LANES, LANES, x, below }, &(weights){ .packed = w->packed }, x, w->n, w->n);
+}
+
+static void residual_back(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below, const adcgs_square *turn,
+                          const float *dh)
+{
+    for (int i = 0; i < turn->n; i++)
+        for (int c = 0; c < COLS; c++) {
+            const size_t at = (size_t)i * LANES + (size_t)(c * VN);
+            _mm512_store_ps(dz + at, slope(_mm512_load_ps(dh + at), (__mmask16)(below[i] >> c * VN)));
+        }
+    layer(&(sums){ dx, dh, NULL, LANES, LANES, NULL, NULL }, &(weights){ .packed = turn->packed }, dz, turn->n, turn->n);
+}
+
+static void pack(uint32_t *to, const float *w, int n)
+{
+    for (int o = 0; o < n; o++)
+        pack_row(to + (size_t)o * words_of(n), w + (size_t)o * (size_t)n, n);
 }
 
 /* ---- Weight gradients ---- */
@@ -276,5 +311,7 @@ void adcgs_train_dsp_init_avx512bf16(adcgs_train_dsp *dsp)
 {
     dsp->dense.dense = dense;
     dsp->residual = residual;
+    dsp->residual_back = residual_back;
+    dsp->pack = pack;
     dsp->weight_grad = weight_grad;
 }

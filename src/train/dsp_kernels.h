@@ -184,25 +184,27 @@ static inline uint64_t below_of(const float *row)
 }
 
 /* Few rows at a time, so that their sums stay in the first cache. */
-static void ISA(residual)(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const float *w, const float *x,
-                          int n)
+static void ISA(residual)(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
+                          const float *x)
 {
     enum { ROWS = 36 };
+    const int n = w->n;
     alignas(64) float z[ROWS * LANES];
     for (int o = 0; o < n; o += ROWS) {
         const int rows = n - o < ROWS ? n - o : ROWS;
-        dsp->dense.dense(z, NULL, bias + o, w + (size_t)o * (size_t)n, (size_t)n, x, rows, n);
+        dsp->dense.dense(z, NULL, bias + o, w->w + (size_t)o * (size_t)n, (size_t)n, x, rows, n);
         dsp->hidden(h + (size_t)o * LANES, below + o, z, x + (size_t)o * LANES, rows);
     }
 }
 
-static void ISA(residual_back)(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below, const float *turn,
-                               const float *dh, int n)
+static void ISA(residual_back)(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
+                               const adcgs_square *turn, const float *dh)
 {
+    const int n = turn->n;
     for (int i = 0; i < n; i++)
         for (int l = 0; l < LANES; l += VN)
             vstoreu(dz + i * LANES + l, vslope(vload(dh + i * LANES + l), below[i] >> l));
-    dsp->dense.dense(dx, dh, NULL, turn, (size_t)n, dz, n, n);
+    dsp->dense.dense(dx, dh, NULL, turn->w, (size_t)n, dz, n, n);
 }
 
 static void ISA(noise)(float *restrict y, const float *restrict p, const float *restrict step, int n, uint32_t seed)
@@ -661,6 +663,7 @@ void ISA(adcgs_train_dsp_init)(adcgs_train_dsp *dsp)
     dsp->lrelu_back = ISA(lrelu_back);
     dsp->residual = ISA(residual);
     dsp->residual_back = ISA(residual_back);
+    dsp->pack = NULL;
     dsp->noise = ISA(noise);
     dsp->round = ISA(round);
     dsp->primitives = ISA(primitives);

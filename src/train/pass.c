@@ -141,7 +141,8 @@ void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, ui
     dsp->dense.lrelu(h, m->width);
     for (int i = 1; i < m->hidden; i++) {
         float *next = h + (size_t)i * tile;
-        dsp->residual(dsp, next, below + (i - 1) * m->width, m->use + m->b[i], m->use + m->w[i], next - tile, m->width);
+        dsp->residual(dsp, next, below + (i - 1) * m->width, m->use + m->b[i],
+                      &(adcgs_square){ m->width, m->use + m->w[i], adcgs_mlp_packed(m, i, 0) }, next - tile);
     }
     dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width,
                      h + (size_t)(m->hidden - 1) * tile, m->out, m->width);
@@ -303,6 +304,8 @@ void adcgs_pass_forward(adcgs_pass *p, const adcgs_fmodel *f, float t, const adc
     forward_job job = { p, f, mode, f->params.time_rows ? mode->deform : ADCGS_DEFORM_NONE };
     p->quant = mode->quant;
     p->net = mode->bf16 ? &p->bf16 : &p->dsp;
+    for (int i = ADCGS_P_THETA; i <= ADCGS_P_VARPI; i++)
+        adcgs_mlp_pack(p->net, &f->mlp[i]);
     if (job.deform)
         forward_time(p, f, t);
     adcgs_pool_run(p->pool, forward_group, &job, (int)f->groups);

@@ -34,7 +34,10 @@ typedef struct job {
     double *bits;                    /* by adcgs_group */
 } job;
 
-/** Scratch of one network over `tiles` tiles: sums and outputs of hidden layers, which sums are below 0, gradients of the sums, outputs. */
+/**
+ * Scratch of one network over `tiles` tiles: sums and outputs of hidden layers, gradients of the sums, outputs, which sums are
+ * below 0.
+ */
 typedef struct net_tiles {
     float *z, *h, *dz, *out, *dout;
     uint64_t *below;

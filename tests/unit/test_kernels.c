@@ -300,13 +300,14 @@ static void residual(call *c)
     const int n = size_of(c, 80);
     const size_t many = (size_t)n * L;
     uint64_t below[80];
-    const float *const bias = given(c, (size_t)n), *const w = given(c, (size_t)(n * n));
-    dsp.residual(&dsp, output(c, many), below, bias, w, given(c, many), n);
+    const float *const bias = given(c, (size_t)n);
+    const adcgs_square w = {n, given(c, (size_t)(n * n)), NULL};
+    dsp.residual(&dsp, output(c, many), below, bias, &w, given(c, many));
     spread(output(c, many), below, n);
     const float *const dh = given(c, many);
-    dsp.residual_back(&dsp, output(c, many), output(c, many), below, w, dh, n);
+    dsp.residual_back(&dsp, output(c, many), output(c, many), below, &w, dh);
     float *const both = added(c, many);
-    dsp.residual_back(&dsp, both, output(c, many), below, w, both, n);
+    dsp.residual_back(&dsp, both, output(c, many), below, &w, both);
 }
 
 static void rates(call *c)
