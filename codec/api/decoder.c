@@ -168,6 +168,17 @@ static adcgs_status reserve_planar(adcgs_decoder *d, size_t floats, adcgs_error 
     return ADCGS_OK;
 }
 
+/** What both kinds of picture need: the view, the splats, a raster, and planes of the picture's size. */
+static adcgs_status prepare(adcgs_decoder *d, const adcgs_camera *camera, double time, adcgs_primitives *primitives,
+                            adcgs_view *view, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_view_init(view, camera, d->stream.scene_origin, d->stream.scene_scale, error));
+    ADCGS_TRY(primitives_at(d, time, primitives, error));
+    if (!d->raster)
+        ADCGS_TRY(adcgs_raster_create(&d->raster, d->cpu, d->pool, &d->memory, error));
+    return reserve_planar(d, 3 * (size_t)view->width * (size_t)view->height, error);
+}
+
 adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, double time, adcgs_frame *frame, adcgs_error *error)
 {
     adcgs_decoder *d = decoder;
@@ -177,15 +188,49 @@ adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, do
     if (!frame->rgb || frame->width != camera->width || frame->height != camera->height)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "frame: size is %dx%d, expected the camera's, %dx%d", (int)frame->width,
                           (int)frame->height, (int)camera->width, (int)camera->height);
-    ADCGS_TRY(adcgs_view_init(&view, camera, stream->scene_origin, stream->scene_scale, error));
-    ADCGS_TRY(primitives_at(d, time, &primitives, error));
-    if (!d->raster)
-        ADCGS_TRY(adcgs_raster_create(&d->raster, d->cpu, d->pool, &d->memory, error));
-    ADCGS_TRY(reserve_planar(d, 3 * (size_t)frame->width * (size_t)frame->height, error));
+    ADCGS_TRY(prepare(d, camera, time, &primitives, &view, error));
     ADCGS_TRY(adcgs_raster_forward(d->raster, &primitives, &view, stream->background, stream->screen_filter, d->planar, 0,
                                    error));
     interleave_job job = { d->planar, frame };
     adcgs_pool_run(d->pool, interleave, &job, (frame->height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
+    return ADCGS_OK;
+}
+
+/** Sums over the splats to depth and coverage, a band of rows. */
+typedef struct divide_job {
+    const float *sums;
+    size_t width, height;
+    double scale;
+    float *depth, *alpha;
+} divide_job;
+
+static void divide(void *arg, int index, int thread)
+{
+    const divide_job *job = arg;
+    const size_t plane = job->width * job->height, begin = (size_t)index * ROWS_PER_JOB * job->width;
+    const size_t end = ADCGS_MIN(begin + ROWS_PER_JOB * job->width, plane);
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const float weight = job->sums[plane + i];
+        if (job->depth) {
+            const double depth = (double)job->sums[i] / (double)weight * job->scale;
+            job->depth[i] = weight > 0 && depth < (double)ADCGS_DEPTH_FAR ? (float)depth : ADCGS_DEPTH_FAR; /* NaN is far, too */
+        }
+        if (job->alpha)
+            job->alpha[i] = weight < 1 ? weight : 1.0f; /* rounding may add up to more */
+    }
+}
+
+adcgs_status adcgs_render_depth(adcgs_decoder *decoder, const adcgs_camera *camera, double time, float *depth, float *alpha,
+                                adcgs_error *error)
+{
+    adcgs_decoder *d = decoder;
+    adcgs_primitives primitives;
+    adcgs_view view;
+    ADCGS_TRY(prepare(d, camera, time, &primitives, &view, error));
+    ADCGS_TRY(adcgs_raster_depth(d->raster, &primitives, &view, d->stream.screen_filter, d->planar, error));
+    divide_job job = { d->planar, (size_t)view.width, (size_t)view.height, d->stream.scene_scale, depth, alpha };
+    adcgs_pool_run(d->pool, divide, &job, (view.height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
     return ADCGS_OK;
 }
 

@@ -20,6 +20,8 @@ LANES_INLINE vf vf_max(vf x, vf y) { return (vf){_mm256_max_ps(x.a, y.a), _mm256
 LANES_INLINE int vm_any(vm m) { return _mm256_movemask_ps(_mm256_or_ps(m.a, m.b)) != 0; }
 LANES_INLINE vf vf_only(vm m, vf x) { return (vf){_mm256_and_ps(m.a, x.a), _mm256_and_ps(m.b, x.b)}; }
 
+LANES_INLINE vf vf_load_once(const float *p) { return vf_load(p); }
+
 LANES_INLINE void vf_store(float *p, vf x)
 {
     _mm256_store_ps(p, x.a);
@@ -89,6 +91,40 @@ LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
 {
     return (vf){_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p)), _mm_loadu_ps(p + stride), 1),
                 _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 2 * stride)), _mm_loadu_ps(p + 3 * stride), 1)};
+}
+
+LANES_INLINE __m256 half_align(__m256 high, __m256 low, const int odd)
+{
+    const __m256i h = _mm256_castps_si256(high), l = _mm256_castps_si256(low);
+    return _mm256_castsi256_ps(odd ? _mm256_alignr_epi8(h, l, 12) : _mm256_alignr_epi8(h, l, 4));
+}
+
+LANES_INLINE vf vf_next(vf x)
+{
+    return (vf){half_align(_mm256_permute2f128_ps(x.a, x.b, 0x21), x.a, 0),
+                half_align(_mm256_permute2f128_ps(x.b, x.b, 0x81), x.b, 0)};
+}
+
+LANES_INLINE vf vf_before(vf x)
+{
+    return (vf){half_align(x.a, _mm256_permute2f128_ps(x.a, x.a, 0x08), 1),
+                half_align(x.b, _mm256_permute2f128_ps(x.a, x.b, 0x21), 1)};
+}
+
+LANES_INLINE void half_turn(__m256 *r0, __m256 *r1, __m256 *r2, __m256 *r3)
+{
+    const __m256 a = _mm256_unpacklo_ps(*r0, *r1), b = _mm256_unpackhi_ps(*r0, *r1);
+    const __m256 c = _mm256_unpacklo_ps(*r2, *r3), d = _mm256_unpackhi_ps(*r2, *r3);
+    *r0 = _mm256_shuffle_ps(a, c, 0x44);
+    *r1 = _mm256_shuffle_ps(a, c, 0xee);
+    *r2 = _mm256_shuffle_ps(b, d, 0x44);
+    *r3 = _mm256_shuffle_ps(b, d, 0xee);
+}
+
+LANES_INLINE void vf_turn_squares(vf r[4])
+{
+    half_turn(&r[0].a, &r[1].a, &r[2].a, &r[3].a);
+    half_turn(&r[0].b, &r[1].b, &r[2].b, &r[3].b);
 }
 
 /* As in lanes_avx512.h. Two of the four columns of sums at a time. */

@@ -56,6 +56,36 @@ LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
     return _mm512_insertf32x8(_mm512_castps256_ps512(a), b, 1);
 }
 
+/* Not again at each use, as GCC would where a load may be an operand: there is one load in the time of one multiply-add. */
+LANES_INLINE vf vf_load_once(const float *p)
+{
+    vf a = _mm512_load_ps(p);
+    __asm__("" : "+v"(a));
+    return a;
+}
+
+/* Lanes take what is in the next one, or in the one before; there is 0 beyond the ends. */
+LANES_INLINE vf vf_next(vf a)
+{
+    return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_setzero_si512(), _mm512_castps_si512(a), 1));
+}
+
+LANES_INLINE vf vf_before(vf a)
+{
+    return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(a), _mm512_setzero_si512(), 15));
+}
+
+/* Each four lanes of four vectors are a square that is transposed. */
+LANES_INLINE void vf_turn_squares(vf r[4])
+{
+    const __m512 a = _mm512_unpacklo_ps(r[0], r[1]), b = _mm512_unpackhi_ps(r[0], r[1]);
+    const __m512 c = _mm512_unpacklo_ps(r[2], r[3]), d = _mm512_unpackhi_ps(r[2], r[3]);
+    r[0] = _mm512_shuffle_ps(a, c, 0x44);
+    r[1] = _mm512_shuffle_ps(a, c, 0xee);
+    r[2] = _mm512_shuffle_ps(b, d, 0x44);
+    r[3] = _mm512_shuffle_ps(b, d, 0xee);
+}
+
 /*
  * Sums over the lanes of twelve vectors: out[4*(i&3) + i/4] = sum of v[i], out[3, 7, 11, 15] = 0. Lanes i and i+8 are added,
  * then i and i+4, i+2, i+1.

@@ -61,6 +61,7 @@ LANES_INLINE void vf_store(float *p, vf a)
     LANES_EACH vst1q_f32(p + 4 * i, a.v[i]);
 }
 
+LANES_INLINE vf vf_load_once(const float *p) { return vf_load(p); }
 LANES_INLINE vf vf_loadu(const float *p) { return vf_load(p); }
 LANES_INLINE void vf_storeu(float *p, vf a) { vf_store(p, a); }
 
@@ -119,6 +120,32 @@ LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
     vf r;
     LANES_EACH r.v[i] = vld1q_f32(p + (size_t)i * stride);
     return r;
+}
+
+LANES_INLINE vf vf_next(vf a)
+{
+    vf r;
+    LANES_EACH r.v[i] = vextq_f32(a.v[i], i < 3 ? a.v[i + 1] : vdupq_n_f32(0.0f), 1);
+    return r;
+}
+
+LANES_INLINE vf vf_before(vf a)
+{
+    vf r;
+    LANES_EACH r.v[i] = vextq_f32(i > 0 ? a.v[i - 1] : vdupq_n_f32(0.0f), a.v[i], 3);
+    return r;
+}
+
+LANES_INLINE void vf_turn_squares(vf r[4])
+{
+    LANES_EACH {
+        const float32x4x2_t a = vzipq_f32(r[0].v[i], r[2].v[i]), b = vzipq_f32(r[1].v[i], r[3].v[i]);
+        const float32x4x2_t c = vzipq_f32(a.val[0], b.val[0]), d = vzipq_f32(a.val[1], b.val[1]);
+        r[0].v[i] = c.val[0];
+        r[1].v[i] = c.val[1];
+        r[2].v[i] = d.val[0];
+        r[3].v[i] = d.val[1];
+    }
 }
 
 /* Lanes 0 and 2, 1 and 3 of the four registers' sum. */

@@ -55,6 +55,7 @@ LANES_INLINE void vf_store(float *p, vf a)
     memcpy(p, a.v, sizeof a.v);
 }
 
+LANES_INLINE vf vf_load_once(const float *p) { return vf_load(p); }
 LANES_INLINE vf vf_loadu(const float *p) { return vf_load(p); }
 LANES_INLINE void vf_storeu(float *p, vf a) { vf_store(p, a); }
 
@@ -117,6 +118,20 @@ LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
     for (size_t i = 0; i < 4; i++)
         memcpy(r.v + 4 * i, p + i * stride, 4 * sizeof(float));
     return r;
+}
+
+LANES_UNARY(vf_next, vf, i < 15 ? a.v[i + 1] : 0.0f)
+LANES_UNARY(vf_before, vf, i > 0 ? a.v[i - 1] : 0.0f)
+
+LANES_INLINE void vf_turn_squares(vf r[4])
+{
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < i; j++)
+            for (int k = 0; k < 16; k += 4) {
+                const float keep = r[i].v[k + j];
+                r[i].v[k + j] = r[j].v[k + i];
+                r[j].v[k + i] = keep;
+            }
 }
 
 /* As in lanes_avx512.h. */

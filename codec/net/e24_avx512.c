@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file E24 kernels for AVX-512 BW: six rows by 64 samples in registers. */
+/** \file E24 kernels for AVX-512 BW: up to six rows by 64 samples in registers. */
 #include <immintrin.h>
 
 #define E24_NAME(x) x##_avx512
@@ -7,7 +7,7 @@
 
 #include "net/e24.h"
 
-/* Rows j .. j+rows-1, all samples. rows is a constant where this is inlined, so the loops unroll. */
+/* The rows from w and b on, all samples. rows is a constant where this is inlined, so the loops unroll. */
 static inline __attribute__((always_inline)) void dense_tile(int32_t *acc, const int16_t *w, const int32_t *b, const uint32_t *x,
                                                              int pairs, int rows)
 {
@@ -32,20 +32,20 @@ static inline __attribute__((always_inline)) void dense_tile(int32_t *acc, const
             _mm512_store_si512((void *)(acc + j * ADCGS_LANES + 16 * q), sum[j][q]);
 }
 
+/* The rows are dealt out evenly: fewer at once would load more than they multiply. */
 static void e24_dense(int32_t *acc, const int16_t *w, const int32_t *b, const uint32_t *x, int n, int pairs)
 {
-    for (int j = 0; j < n;) {
-        const int16_t *rows = w + 2 * (size_t)j * (size_t)pairs;
+    for (int j = 0, tiles = (n + 5) / 6, rows; tiles > 0; tiles--, j += rows) {
+        const int16_t *weights = w + 2 * (size_t)j * (size_t)pairs;
         int32_t *to = acc + j * ADCGS_LANES;
-        if (n - j >= 6) {
-            dense_tile(to, rows, b + j, x, pairs, 6);
-            j += 6;
-        } else if (n - j >= 2) {
-            dense_tile(to, rows, b + j, x, pairs, 2);
-            j += 2;
-        } else {
-            dense_tile(to, rows, b + j, x, pairs, 1);
-            j += 1;
+        rows = (n - j + tiles - 1) / tiles;
+        switch (rows) {
+        case 6: dense_tile(to, weights, b + j, x, pairs, 6); break;
+        case 5: dense_tile(to, weights, b + j, x, pairs, 5); break;
+        case 4: dense_tile(to, weights, b + j, x, pairs, 4); break;
+        case 3: dense_tile(to, weights, b + j, x, pairs, 3); break;
+        case 2: dense_tile(to, weights, b + j, x, pairs, 2); break;
+        default: dense_tile(to, weights, b + j, x, pairs, 1); break;
         }
     }
 }

@@ -53,13 +53,29 @@ static inline uint32_t e24_pair(int32_t even, int32_t odd)
     return ((uint32_t)even & 0xffff) | (uint32_t)odd << 16;
 }
 
+/*
+ * shr(x, s) within the bound of activations, factor being 2^(15-s): a product of 16-bit numbers that many machines round like
+ * this. No shift is a factor of 2^15 - 1, which changes only what is far beyond the bound.
+ */
+static inline int16_t e24_scaled(int16_t x, int16_t factor)
+{
+    const int16_t v = (int16_t)(((x * factor >> 14) + 1) >> 1);
+    return v < -ADCGS_E24_A ? -ADCGS_E24_A : v > ADCGS_E24_A ? ADCGS_E24_A : v;
+}
+
 static void e24_input(uint32_t *out, const int16_t *x, int n, int shift)
 {
     static const int16_t nothing[ADCGS_LANES];
+    const int16_t factor = (int16_t)ADCGS_MIN(1 << (15 - shift), INT16_MAX);
     for (int f = 0; f < n; f += 2, out += ADCGS_LANES) {
         const int16_t *even = x + f * ADCGS_LANES, *odd = f + 1 < n ? even + ADCGS_LANES : nothing;
+        int16_t a[ADCGS_LANES], b[ADCGS_LANES];
+        for (int s = 0; s < ADCGS_LANES; s++) {
+            a[s] = e24_scaled(even[s], factor);
+            b[s] = e24_scaled(odd[s], factor);
+        }
         for (int s = 0; s < ADCGS_LANES; s++)
-            out[s] = e24_pair(adcgs_clip(e24_shr(even[s], shift), ADCGS_E24_A), adcgs_clip(e24_shr(odd[s], shift), ADCGS_E24_A));
+            out[s] = e24_pair(a[s], b[s]);
     }
 }
 
@@ -85,17 +101,18 @@ static void e24_hidden(uint32_t *out, int32_t *acc, const uint32_t *in, int n, i
 
 static void e24_output(const adcgs_e24 *net, const int32_t *acc, int first, int n, int16_t *mu, uint8_t *si)
 {
-    const adcgs_e24_layer *last = &net->layer[net->n_layers - 1];
-    for (int j = 0; j < n; j++, acc += ADCGS_LANES) {
-        const int row = first + j;
-        if (row < net->channels) {
+    /* Read once: for all the compiler knows, a byte that is stored may be a part of them. */
+    const int channels = net->channels, offset = net->sigma_offset;
+    const int mu_shift = net->layer[net->n_layers - 1].shift, si_shift = net->sigma_shift;
+    for (int row = first; row < first + n; row++, acc += ADCGS_LANES) {
+        if (row < channels) {
             for (int s = 0; s < ADCGS_LANES; s++)
-                mu[row * ADCGS_LANES + s] = (int16_t)adcgs_clip(e24_shr(acc[s], last->shift), 32767);
+                mu[row * ADCGS_LANES + s] = (int16_t)adcgs_clip(e24_shr(acc[s], mu_shift), 32767);
             continue;
         }
         for (int s = 0; s < ADCGS_LANES; s++) {
-            const int32_t v = e24_shr(acc[s], net->sigma_shift) + net->sigma_offset;
-            si[(row - net->channels) * ADCGS_LANES + s] =
+            const int32_t v = e24_shr(acc[s], si_shift) + offset;
+            si[(row - channels) * ADCGS_LANES + s] =
                 (uint8_t)(v < 0 ? 0 : v > ADCGS_SIGMA_LEVELS - 1 ? ADCGS_SIGMA_LEVELS - 1 : v);
         }
     }

@@ -288,13 +288,19 @@ static adcgs_status blend(adcgs_raster *r, const adcgs_view *view, const float b
     return ADCGS_OK;
 }
 
+static adcgs_status project_and_bin(adcgs_raster *r, const adcgs_primitives *primitives, const adcgs_view *view, float filter,
+                                    int keep, adcgs_error *error)
+{
+    r->keep = keep;
+    r->kept = (adcgs_kept){0};
+    ADCGS_TRY(project(r, primitives, view, filter, error));
+    return bin(r, error);
+}
+
 adcgs_status adcgs_raster_forward(adcgs_raster *r, const adcgs_primitives *primitives, const adcgs_view *view,
                                   const float background[3], float screen_filter, float *rgb, int keep, adcgs_error *error)
 {
-    r->keep = keep != 0;
-    r->kept = (adcgs_kept){0};
-    ADCGS_TRY(project(r, primitives, view, screen_filter, error));
-    ADCGS_TRY(bin(r, error));
+    ADCGS_TRY(project_and_bin(r, primitives, view, screen_filter, keep != 0, error));
     ADCGS_TRY(blend(r, view, background, rgb, error));
     r->kept = (adcgs_kept){.n_splats = r->n,
                            .splats = r->splats.data,
@@ -308,6 +314,27 @@ adcgs_status adcgs_raster_forward(adcgs_raster *r, const adcgs_primitives *primi
                            .first = r->first.data,
                            .place = r->place.data};
     return ADCGS_OK;
+}
+
+static void colour_by_depth(void *arg, int index, int thread)
+{
+    adcgs_raster *r = arg;
+    const bin_piece *piece = (bin_piece *)r->pieces.data + index;
+    adcgs_splat2d *splats = r->splats.data;
+    for (uint32_t i = piece->begin; i < piece->end; i++) {
+        splats[i].rgb[0] = splats[i].depth;
+        splats[i].rgb[1] = 1.0f;
+        splats[i].rgb[2] = 0.0f;
+    }
+}
+
+adcgs_status adcgs_raster_depth(adcgs_raster *r, const adcgs_primitives *primitives, const adcgs_view *view, float screen_filter,
+                                float *sums, adcgs_error *error)
+{
+    static const float black[3];
+    ADCGS_TRY(project_and_bin(r, primitives, view, screen_filter, 0, error));
+    adcgs_pool_run(r->pool, colour_by_depth, r, r->n_pieces);
+    return blend(r, view, black, sums, error);
 }
 
 void adcgs_raster_kept(const adcgs_raster *raster, adcgs_kept *kept)

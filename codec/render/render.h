@@ -61,6 +61,13 @@ void adcgs_raster_free(adcgs_raster **raster);
 adcgs_status adcgs_raster_forward(adcgs_raster *raster, const adcgs_primitives *primitives, const adcgs_view *view,
                                   const float background[3], float screen_filter, float *rgb, int keep, adcgs_error *error);
 
+/**
+ * Draw depth and coverage in place of colours: the same splats with the same weights. sums: planar [3][height][width]: the sum
+ * of weight times camera z in scene units, the sum of weights, and zeros. Ends what the last forward pass kept.
+ */
+adcgs_status adcgs_raster_depth(adcgs_raster *raster, const adcgs_primitives *primitives, const adcgs_view *view,
+                                float screen_filter, float *sums, adcgs_error *error);
+
 /** What the last forward pass with keep left behind. */
 typedef struct adcgs_kept {
     uint32_t n_splats;

@@ -15,6 +15,7 @@
 
 #define FILE_MAX ((uint64_t)256 << 20)
 #define FRAMES_MAX 1000000
+#define TERM_MAX 1e6 /* of distortion */
 
 adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error)
 {
@@ -35,6 +36,11 @@ adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error
     return ADCGS_OK;
 }
 
+static const char *list_name(const adcgs_json_place *at)
+{
+    return at->list ? at->list : "frames";
+}
+
 adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, const char *field, const char *format, ...)
 {
     char what[160];
@@ -43,7 +49,7 @@ adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, con
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
     if (at->frame)
-        return adcgs_fail(at->error, status, "%s: frames[%zu].%s: %s", at->path, at->index, field, what);
+        return adcgs_fail(at->error, status, "%s: %s[%zu].%s: %s", at->path, list_name(at), at->index, field, what);
     return adcgs_fail(at->error, status, "%s: %s: %s", at->path, field, what);
 }
 
@@ -69,41 +75,83 @@ adcgs_status adcgs_json_number(const adcgs_json_place *at, const char *field, do
     return ADCGS_OK;
 }
 
-static adcgs_status check_model(const adcgs_json_place *at)
+/* ---- Camera models ---- */
+
+enum { N_TERMS = 8 };
+static const char *const terms[N_TERMS] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"};
+
+/** The models by which pictures are made from a pinhole's, and how many of k1 .. k6 and of p1, p2 they have. */
+typedef struct model {
+    const char *name;
+    int n_radial, n_tangential;
+} model;
+
+static const model models[] = {{"OPENCV", 4, 2},      {"PINHOLE", 0, 0},  {"SIMPLE_PINHOLE", 0, 0},
+                               {"SIMPLE_RADIAL", 1, 0}, {"RADIAL", 2, 0}, {"FULL_OPENCV", 6, 2}};
+
+/** Without a name, OPENCV. */
+static adcgs_status find_model(const adcgs_json_place *at, const model **out)
 {
-    static const char *const distortions[] = {"k1", "k2", "k3", "k4", "p1", "p2"};
-    json_t *model = adcgs_json_find(at, "camera_model");
-    if (model) {
-        const char *name = json_string_value(model);
-        if (!name)
-            return adcgs_json_bad(at, ADCGS_ERR_DATA, "camera_model", "expected a string");
-        if (strcmp(name, "PINHOLE") && strcmp(name, "SIMPLE_PINHOLE") && strcmp(name, "OPENCV"))
-            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "camera_model",
-                                  "%.32s, expected PINHOLE or OPENCV without distortion", name);
+    json_t *item = adcgs_json_find(at, "camera_model");
+    const char *name = item ? json_string_value(item) : models[0].name;
+    if (!name)
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "camera_model", "expected a string");
+    for (size_t i = 0; i < ADCGS_COUNTOF(models); i++)
+        if (!strcmp(name, models[i].name)) {
+            *out = &models[i];
+            return ADCGS_OK;
+        }
+    return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "camera_model",
+                          "%.32s is not supported, expected PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or FULL_OPENCV", name);
+}
+
+/** What instant-ngp has for other projections, and skew, which has no agreed meaning here. */
+static adcgs_status refuse_others(const adcgs_json_place *at)
+{
+    static const char *const kinds[] = {"is_fisheye", "ftheta_p0", "latlong", "equirectangular"};
+    static const char *const skews[] = {"sk_x", "sk_y"};
+    for (size_t i = 0; i < ADCGS_COUNTOF(kinds); i++) {
+        json_t *item = adcgs_json_find(at, kinds[i]);
+        if (item && !json_is_false(item) && !json_is_null(item))
+            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, kinds[i], "fisheye and panoramic cameras are not supported");
     }
-    if (json_is_true(adcgs_json_find(at, "is_fisheye")))
-        return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "is_fisheye", "fisheye cameras are not supported");
-    for (size_t i = 0; i < ADCGS_COUNTOF(distortions); i++) {
+    for (size_t i = 0; i < ADCGS_COUNTOF(skews); i++) {
         double value = 0.0;
         int found;
-        ADCGS_TRY(adcgs_json_number(at, distortions[i], -HUGE_VAL, HUGE_VAL, &value, &found));
-        if (found && value != 0.0)
-            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, distortions[i],
-                                  "lens distortion %g is not supported, undistort the images first", value);
+        ADCGS_TRY(adcgs_json_number(at, skews[i], -HUGE_VAL, HUGE_VAL, &value, &found));
+        if (value != 0.0)
+            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, skews[i], "skewed pixels (%g) are not supported here", value);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status read_terms(const adcgs_json_place *at, const model **out, double values[N_TERMS])
+{
+    ADCGS_TRY(find_model(at, out));
+    ADCGS_TRY(refuse_others(at));
+    for (int i = 0; i < N_TERMS; i++) {
+        const int has = i < 6 ? i < (*out)->n_radial : i - 6 < (*out)->n_tangential;
+        int found;
+        values[i] = 0.0;
+        ADCGS_TRY(adcgs_json_number(at, terms[i], -TERM_MAX, TERM_MAX, &values[i], &found));
+        if (values[i] != 0.0 && !has)
+            return adcgs_json_bad(at, ADCGS_ERR_DATA, terms[i], "%g, but camera_model %s has no %s", values[i], (*out)->name,
+                                  terms[i]);
     }
     return ADCGS_OK;
 }
 
 adcgs_status adcgs_json_frames(const adcgs_json_place *at, json_t **frames, size_t *n)
 {
-    *frames = json_object_get(at->root, "frames");
+    const char *name = list_name(at);
+    *frames = json_object_get(at->root, name);
     *n = json_array_size(*frames);
     if (!json_is_array(*frames))
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "expected an array");
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, name, "expected an array");
     if (!*n)
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "is empty");
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, name, "is empty");
     if (*n > FRAMES_MAX)
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "frames", "%zu frames, expected at most %d", *n, FRAMES_MAX);
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, name, "%zu elements, expected at most %d", *n, FRAMES_MAX);
     return ADCGS_OK;
 }
 
@@ -138,10 +186,9 @@ static adcgs_status read_focal(const adcgs_json_place *at, const char *pixels, c
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *camera)
+static adcgs_status read_pinhole(const adcgs_json_place *at, adcgs_camera *camera)
 {
     int found;
-    ADCGS_TRY(check_model(at));
     ADCGS_TRY(read_focal(at, "fl_x", "camera_angle_x", camera->width, &camera->fx, &found));
     if (!found)
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "fl_x", "missing, expected fl_x or camera_angle_x");
@@ -152,6 +199,35 @@ adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *cam
     camera->cy = 0.5 * camera->height;
     ADCGS_TRY(adcgs_json_number(at, "cx", -1e6, 1e6, &camera->cx, &found));
     return adcgs_json_number(at, "cy", -1e6, 1e6, &camera->cy, &found);
+}
+
+adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *camera)
+{
+    const model *its;
+    double values[N_TERMS];
+    ADCGS_TRY(read_terms(at, &its, values));
+    for (int i = 0; i < N_TERMS; i++)
+        if (values[i] != 0.0)
+            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, terms[i], "lens distortion %g, expected a pinhole camera",
+                                  values[i]);
+    return read_pinhole(at, camera);
+}
+
+adcgs_status adcgs_json_lens(const adcgs_json_place *at, adcgs_lens *lens)
+{
+    adcgs_camera camera = {.width = lens->width, .height = lens->height};
+    const model *its;
+    double values[N_TERMS];
+    ADCGS_TRY(read_terms(at, &its, values));
+    ADCGS_TRY(read_pinhole(at, &camera));
+    *lens = (adcgs_lens){.width = camera.width, .height = camera.height, .fx = camera.fx, .fy = camera.fy, .cx = camera.cx,
+                         .cy = camera.cy, .p = {values[6], values[7]}};
+    memcpy(lens->k, values, sizeof lens->k);
+    if (its->n_radial == 4) { /* nerfstudio's polynomial */
+        lens->k8 = lens->k[3];
+        lens->k[3] = 0.0;
+    }
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_json_pose(const adcgs_json_place *at, adcgs_camera *camera)

@@ -8,6 +8,7 @@
 #define ADCGS_DATA_CAMERA_JSON_H
 
 #include "base/base.h"
+#include "data/lens.h"
 
 #include <adcgs/camera.h>
 
@@ -19,6 +20,7 @@ typedef struct adcgs_json_place {
     json_t *root;
     json_t *frame;    /**< NULL: at the root */
     size_t index;     /**< of the frame */
+    const char *list; /**< name of the array of frames; NULL: "frames" */
     adcgs_error *error;
 } adcgs_json_place;
 
@@ -31,13 +33,18 @@ adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, con
 json_t *adcgs_json_find(const adcgs_json_place *at, const char *field);
 /** Such a field as a number in [min, max]. Leaves *value alone and *found 0 when it is not there. */
 adcgs_status adcgs_json_number(const adcgs_json_place *at, const char *field, double min, double max, double *value, int *found);
-/** The array "frames", not empty, of at most a million. */
+/** The array of frames, not empty, of at most a million. */
 adcgs_status adcgs_json_frames(const adcgs_json_place *at, json_t **frames, size_t *n);
 
 /** w and h; *found 0 when neither is there. */
 adcgs_status adcgs_json_size(const adcgs_json_place *at, adcgs_camera *camera, int *found);
 /** Focal lengths and principal point (the middle, if not given) of a camera whose size is set. Lenses that bend are refused. */
 adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *camera);
+/**
+ * The same for a lens whose size is set, with its distortion in the meaning of nerfstudio: k1 to k3, p1 and p2 are OpenCV's, k4
+ * is the factor of r^8. Only camera_model FULL_OPENCV, which is COLMAP's, has k4 to k6 below the line.
+ */
+adcgs_status adcgs_json_lens(const adcgs_json_place *at, adcgs_lens *lens);
 /** The frame's transform_matrix, converted to OpenCV axes. */
 adcgs_status adcgs_json_pose(const adcgs_json_place *at, adcgs_camera *camera);
 

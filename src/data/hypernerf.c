@@ -7,6 +7,7 @@
 #include "data/camera_json.h"
 #include "data/paths.h"
 #include "data/pose.h"
+#include "data/view_lens.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -17,7 +18,7 @@
 #define ID_BYTES_MAX 200
 #define WARP_MAX 1e9
 #define WORLD_MAX 1e9          /* largest coordinate, of files and of what follows from them */
-#define BEND_MAX 1e-6          /* skew and distortion that are no more than rounding */
+#define BEND_MAX 1e6           /* skew in pixels, factors of distortion */
 #define DIVIDE_MAX 64          /* largest N of rgb/Nx */
 #define RULE_PERIOD 4          /* without val_ids: of this many ids, one is for training ... */
 #define RULE_TEST 2            /* ... and this one for testing */
@@ -79,38 +80,33 @@ static adcgs_status need_array(const adcgs_json_place *at, const char *field, si
 
 /* ---- Cameras ---- */
 
-/** Numbers that must be zero, if they are there; n 0: one number instead of an array. */
-static adcgs_status refuse_bend(const adcgs_json_place *at, const char *field, size_t n, const char *what)
+/** An array that may be there. */
+static adcgs_status read_terms(const adcgs_json_place *at, const char *field, size_t n, double *values)
 {
-    double values[3] = {0.0, 0.0, 0.0};
     json_t *item = json_object_get(at->root, field);
-    int found;
-    if (item && n)
-        ADCGS_TRY(read_array(at, field, item, n, HUGE_VAL, values));
-    else if (item)
-        ADCGS_TRY(adcgs_json_number(at, field, -HUGE_VAL, HUGE_VAL, values, &found));
-    for (int i = 0; i < 3; i++)
-        if (fabs(values[i]) > BEND_MAX)
-            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, field, "%s %g is not supported, undistort the images first", what,
-                                  values[i]);
-    return ADCGS_OK;
+    return item ? read_array(at, field, item, n, BEND_MAX, values) : ADCGS_OK;
 }
 
-static adcgs_status read_lens(const reader *r, const adcgs_json_place *at, adcgs_camera *camera)
+/**
+ * Distortion is OpenCV's, [k1, k2, k3] and [p1, p2]. skew is in pixels and multiplies the bent y, so it is divided with the
+ * focal length for smaller pictures.
+ */
+static adcgs_status read_lens(const reader *r, const adcgs_json_place *at, adcgs_lens *lens)
 {
     double focal, aspect = 1.0, principal[2];
     int found;
-    ADCGS_TRY(refuse_bend(at, "skew", 0, "skew"));
-    ADCGS_TRY(refuse_bend(at, "radial_distortion", 3, "lens distortion"));
-    ADCGS_TRY(refuse_bend(at, "tangential_distortion", 2, "lens distortion"));
-    ADCGS_TRY(refuse_bend(at, "tangential", 2, "lens distortion")); /* the older name */
+    ADCGS_TRY(adcgs_json_number(at, "skew", -BEND_MAX, BEND_MAX, &lens->skew, &found));
+    ADCGS_TRY(read_terms(at, "radial_distortion", 3, lens->k));
+    ADCGS_TRY(read_terms(at, "tangential_distortion", 2, lens->p));
+    ADCGS_TRY(read_terms(at, "tangential", 2, lens->p)); /* the older name */
     ADCGS_TRY(need_number(at, "focal_length", 1e-3, 1e9, &focal));
     ADCGS_TRY(adcgs_json_number(at, "pixel_aspect_ratio", 1e-3, 1e3, &aspect, &found));
     ADCGS_TRY(need_array(at, "principal_point", 2, 1e6, principal));
-    camera->fx = focal / r->divide;
-    camera->fy = focal * aspect / r->divide;
-    camera->cx = principal[0] / r->divide;
-    camera->cy = principal[1] / r->divide;
+    lens->skew /= r->divide;
+    lens->fx = focal / r->divide;
+    lens->fy = focal * aspect / r->divide;
+    lens->cx = principal[0] / r->divide;
+    lens->cy = principal[1] / r->divide;
     return ADCGS_OK;
 }
 
@@ -140,15 +136,15 @@ static adcgs_status read_pose(const reader *r, const adcgs_json_place *at, adcgs
 }
 
 /** The picture's size: image_size, or of a reduced picture its own, which rounding has made. */
-static adcgs_status read_size(const reader *r, const adcgs_json_place *at, const char *image, adcgs_camera *camera)
+static adcgs_status read_size(const reader *r, const adcgs_json_place *at, const char *image, adcgs_lens *lens)
 {
     double size[2];
     ADCGS_TRY(need_array(at, "image_size", 2, ADCGS_IMAGE_MAX, size));
     for (int i = 0; i < 2; i++)
         if (size[i] < 1.0 || size[i] != floor(size[i]))
             return adcgs_json_bad(at, ADCGS_ERR_DATA, "image_size", "%g, expected a whole number of pixels", size[i]);
-    camera->width = (int32_t)size[0];
-    camera->height = (int32_t)size[1];
+    lens->width = (int32_t)size[0];
+    lens->height = (int32_t)size[1];
     if (r->divide == 1)
         return ADCGS_OK;
     int width, height, channels;
@@ -156,12 +152,12 @@ static adcgs_status read_size(const reader *r, const adcgs_json_place *at, const
     if (fabs(width - size[0] / r->divide) >= 1.0 || fabs(height - size[1] / r->divide) >= 1.0)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %gx%g, which is image_size of its camera over %d",
                           image, width, height, size[0] / r->divide, size[1] / r->divide, r->divide);
-    camera->width = width;
-    camera->height = height;
+    lens->width = width;
+    lens->height = height;
     return ADCGS_OK;
 }
 
-static adcgs_status read_camera(const reader *r, const char *id, const char *image, adcgs_camera *camera)
+static adcgs_status read_camera(const reader *r, const char *id, adcgs_scene_view *view)
 {
     char *path = adcgs_path("%s/camera/%s.json", r->scene->directory, id);
     if (!path)
@@ -169,14 +165,16 @@ static adcgs_status read_camera(const reader *r, const char *id, const char *ima
     adcgs_json_place at = {.path = path, .error = r->error};
     adcgs_status status = adcgs_json_load(&at.root, path, r->error);
     if (status == ADCGS_OK)
-        status = read_lens(r, &at, camera);
+        status = read_lens(r, &at, &view->lens);
     if (status == ADCGS_OK)
-        status = read_pose(r, &at, camera);
+        status = read_pose(r, &at, &view->camera);
     if (status == ADCGS_OK)
-        status = read_size(r, &at, image, camera);
+        status = read_size(r, &at, view->path, &view->lens);
+    if (status == ADCGS_OK)
+        status = adcgs_view_lens(r->scene, view, path, r->error);
     json_decref(at.root);
     free(path);
-    snprintf(camera->name, sizeof camera->name, "%s", id);
+    snprintf(view->camera.name, sizeof view->camera.name, "%s", id);
     return status;
 }
 
@@ -222,7 +220,7 @@ static adcgs_status read_view(const reader *r, const char *id, adcgs_scene_view 
     ADCGS_TRY(status);
     if (!view->path)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no image of %s", r->images, id);
-    return read_camera(r, id, view->path, &view->camera);
+    return read_camera(r, id, view);
 }
 
 /** An id that can be the name of a file, and has not been taken yet. */

@@ -5,7 +5,8 @@
  *   ... for testing;
  * - metadata.json: a warp_id for each id, the number of its moment; the largest of all is the end of the scene;
  * - scene.json: center and scale, which take cameras and points to working coordinates (x - center) * scale;
- * - camera/ID.json: cameras in OpenCV axes with world-to-camera rotations, for pictures at full size;
+ * - camera/ID.json: cameras in OpenCV axes with world-to-camera rotations, for pictures at full size, with skew and OpenCV's
+ *   distortion (k1 k2 k3, p1 p2): the pictures are straightened when they are loaded;
  * - rgb/Nx/ID.png: pictures at 1/N of full size; the largest are taken;
  * - points.npy, which may be missing: points in the coordinates of the cameras' files.
  */
@@ -20,7 +21,7 @@ int adcgs_is_hypernerf(const char *folder);
 /**
  * Fill the views of an empty scene from its directory, with times in [0,1], and its axes; with_points: its points too. val_ids
  * become the test split.
- * \return ADCGS_ERR_UNSUPPORTED, naming file and field, for skewed pixels and lenses that bend; ADCGS_ERR_DATA for what is wrong.
+ * \return ADCGS_ERR_DATA, naming file and field, for what is wrong.
  */
 adcgs_status adcgs_hypernerf_read(adcgs_scene *scene, int with_points, adcgs_error *error);
 

@@ -4,6 +4,7 @@
 
 #include "data/pictures.h"
 
+#include "data/clips.h"
 #include "data/paths.h"
 
 #include <errno.h>
@@ -13,7 +14,6 @@
 #include <unistd.h>
 
 #define FULL 65535.0f
-#define BATCH 4 /* pictures of each thread between two reports */
 
 typedef struct picture {
     adcgs_camera camera;
@@ -146,41 +146,66 @@ static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, adcgs_error
 
 typedef struct load_job {
     adcgs_pictures *pictures;
-    uint32_t first;
-    adcgs_error *errors; /**< of a batch */
+    adcgs_view_runs runs;
+    adcgs_error *errors; /**< of each view */
+    uint32_t done;       /**< under the lock */
+    int stop;            /**< likewise */
 } load_job;
 
-static void load(void *arg, int index, int thread)
+static adcgs_status load(adcgs_pictures *p, uint32_t view, adcgs_error *error)
 {
-    const load_job *job = arg;
-    adcgs_pictures *p = job->pictures;
-    const uint32_t view = job->first + (uint32_t)index;
-    adcgs_error *error = &job->errors[index];
     float *rgb;
-    error->status = adcgs_scene_load(p->scene, &p->scene->views[p->config.split][view], p->config.divide, &rgb,
-                                     &p->list[view].camera, error);
-    if (error->status == ADCGS_OK)
-        error->status = keep(p, &p->list[view], rgb, error);
+    ADCGS_TRY(adcgs_scene_load(p->scene, &p->scene->views[p->config.split][view], p->config.divide, &rgb, &p->list[view].camera,
+                               error));
+    return keep(p, &p->list[view], rgb, error);
 }
 
-/** Batch by batch, so that progress is told by the thread that asked. */
+/** Count a picture, or one that failed. \return whether to go on. */
+static int tell(load_job *job, adcgs_status status)
+{
+    adcgs_pictures *p = job->pictures;
+    pthread_mutex_lock(&p->lock);
+    job->done += status == ADCGS_OK;
+    if (status == ADCGS_OK && !job->stop && p->config.progress)
+        job->stop = p->config.progress(p->config.user, job->done, p->n);
+    const int on = status == ADCGS_OK && !job->stop;
+    pthread_mutex_unlock(&p->lock);
+    return on;
+}
+
+/** One thread reads a video from its beginning to its end or its first fault, or one picture. */
+static void load_run(void *arg, int run, int thread)
+{
+    load_job *job = arg;
+    int on = 1;
+    for (uint32_t i = job->runs.begin[run]; on && i < job->runs.begin[run + 1]; i++) {
+        adcgs_error *error = &job->errors[job->runs.order[i]];
+        error->status = load(job->pictures, job->runs.order[i], error);
+        on = tell(job, error->status);
+    }
+}
+
+static adcgs_status first_error(const load_job *job, adcgs_error *error)
+{
+    for (uint32_t i = 0; i < job->pictures->n; i++)
+        if (job->errors[i].status != ADCGS_OK) {
+            if (error)
+                *error = job->errors[i];
+            return job->errors[i].status;
+        }
+    return job->stop ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted while pictures were loaded") : ADCGS_OK;
+}
+
 static adcgs_status load_all(adcgs_pictures *p, adcgs_pool *pool, adcgs_error *error)
 {
-    const uint32_t batch = BATCH * (uint32_t)adcgs_pool_threads(pool);
-    load_job job = {p, 0, calloc(batch, sizeof *job.errors)};
-    adcgs_status status = job.errors ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for pictures");
-    while (status == ADCGS_OK && job.first < p->n) {
-        const uint32_t n = ADCGS_MIN(batch, p->n - job.first);
-        adcgs_pool_run(pool, load, &job, (int)n);
-        for (uint32_t i = 0; i < n && status == ADCGS_OK; i++) {
-            status = job.errors[i].status;
-            if (status != ADCGS_OK && error)
-                *error = job.errors[i];
-        }
-        job.first += n;
-        if (status == ADCGS_OK && p->config.progress && p->config.progress(p->config.user, job.first, p->n))
-            status = adcgs_fail(error, ADCGS_ERR_IO, "interrupted while pictures were loaded");
+    load_job job = {.pictures = p, .errors = calloc(ADCGS_MAX(p->n, 1), sizeof *job.errors)};
+    adcgs_status status = job.errors ? adcgs_view_runs_make(&job.runs, p->scene->views[p->config.split], p->n, error)
+                                     : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for pictures");
+    if (status == ADCGS_OK) {
+        adcgs_pool_run(pool, load_run, &job, (int)job.runs.n);
+        status = first_error(&job, error);
     }
+    adcgs_view_runs_clear(&job.runs);
     free(job.errors);
     return status;
 }

@@ -14,7 +14,7 @@
 
 typedef struct adcgs_pictures adcgs_pictures;
 
-/** Told how many of n are there; nonzero: stop. */
+/** Told how many of n are there, by any thread, one at a time; nonzero: stop. */
 typedef int (*adcgs_pictures_progress)(void *user, uint32_t done, uint32_t n);
 
 typedef struct adcgs_pictures_config {

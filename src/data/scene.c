@@ -4,10 +4,16 @@
 
 #include "data/scene.h"
 
+#include "data/camera_json.h"
+#include "data/clips.h"
+#include "data/colmap.h"
 #include "data/hypernerf.h"
+#include "data/llff.h"
 #include "data/paths.h"
 #include "data/pose.h"
+#include "data/scene_file.h"
 #include "data/sort.h"
+#include "data/splat_scene.h"
 #include "data/transforms.h"
 
 #include <errno.h>
@@ -17,10 +23,13 @@
 #include <sys/stat.h>
 
 #define DEFAULT_FRAME_RATE 30.0
-#define TIME_TOLERANCE 1e-6     /* closer times of a layout, which are in [0,1], are one */
 #define NEAR_PER_DISTANCE 0.01
+#define NEAR_PER_BOUND 0.5      /* bounds are of most points, not of all */
 #define NEAR_LEAST 1e-3
 #define COLOUR_SRGB 1           /* a code of adcgs_stream */
+
+const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto", "transforms", "hypernerf", "llff", "colmap", "adcgs",
+                                                            "splats", NULL};
 
 static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
 
@@ -49,6 +58,8 @@ void adcgs_scene_free(adcgs_scene **scene)
         free((*scene)->views[s]);
     }
     adcgs_points_free(&(*scene)->points);
+    adcgs_splat_scene_free(&(*scene)->splats);
+    adcgs_clips_free(&(*scene)->clips);
     free((*scene)->directory);
     free(*scene);
     *scene = NULL;
@@ -65,7 +76,7 @@ static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_erro
     adcgs_sort(times, n);
     scene->n_times = 1;
     for (uint32_t i = 1; i < n; i++)
-        scene->n_times += times[i] - times[i - 1] > TIME_TOLERANCE;
+        scene->n_times += times[i] - times[i - 1] > ADCGS_TIME_TOLERANCE;
     free(times);
     return ADCGS_OK;
 }
@@ -74,24 +85,27 @@ static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_erro
 static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
 {
     ADCGS_TRY(count_times(scene, path, error));
-    scene->duration = (scene->n_times - 1) / scene->frame_rate;
+    if (scene->duration <= 0.0)
+        scene->duration = (scene->n_times - 1) / scene->frame_rate;
     const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
+    const double distance = adcgs_pose_median_distance(train, scene->n_views[ADCGS_SPLIT_TRAIN]);
     const double near_plane =
-        fmax(NEAR_LEAST, NEAR_PER_DISTANCE * adcgs_pose_median_distance(train, scene->n_views[ADCGS_SPLIT_TRAIN]));
+        fmax(NEAR_LEAST, scene->near_bound > 0.0 ? NEAR_PER_BOUND * scene->near_bound : NEAR_PER_DISTANCE * distance);
     for (int s = 0; s < ADCGS_SPLITS; s++)
         for (uint32_t i = 0; i < scene->n_views[s]; i++) {
             scene->views[s][i].time *= scene->duration;
             scene->views[s][i].camera.near_plane = near_plane;
         }
-    int width, height, channels;
-    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
+    int width, height, channels = 3;
+    if (!scene->splats && !train[0].is_video)
+        ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
     scene->has_alpha = channels % 2 == 0;
     for (int c = 0; c < 3; c++)
         scene->background[c] = options->has_background ? options->background[c] : scene->has_alpha ? 1.0f : 0.0f;
     return ADCGS_OK;
 }
 
-/** Take what a file says besides its views; the training split comes first and decides. */
+/** Take what a file says besides its views. */
 static void take_facts(adcgs_scene *scene, adcgs_transforms *facts, char **points_path)
 {
     if (!scene->frame_rate)
@@ -112,10 +126,11 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
         adcgs_status status = ADCGS_OK;
         if (adcgs_is_file(path)) {
             status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
-            if (status == ADCGS_OK)
+            if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN) {
                 take_facts(scene, &facts, points_path);
-            if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN)
                 has_times = facts.has_times;
+            } else
+                free(facts.points_path); /* only the training split decides */
             if (status == ADCGS_OK && has_times != facts.has_times)
                 status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: frames[0].time: %s, unlike in the training split", path,
                                     has_times ? "missing" : "given");
@@ -136,26 +151,85 @@ static adcgs_status read_single(adcgs_scene *scene, const char *path, char **poi
     return ADCGS_OK;
 }
 
-/** The folder's layout by the files it has. */
-static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const adcgs_scene_options *options, adcgs_error *error)
+static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcgs_error *error)
 {
     char *train = adcgs_path("%s/transforms_train.json", scene->directory);
     char *single = adcgs_path("%s/transforms.json", scene->directory);
-    adcgs_status status;
-    if (adcgs_is_file(train))
-        status = read_splits(scene, points_path, error);
-    else if (adcgs_is_file(single))
-        status = read_single(scene, single, points_path, error);
-    else if (adcgs_is_hypernerf(scene->directory))
-        status = adcgs_hypernerf_read(scene, !options->points_path, error);
+    adcgs_status status = ADCGS_ERR_MEMORY;
+    if (!train || !single)
+        adcgs_fail(error, status, "%s: out of memory", scene->directory);
     else
-        status = adcgs_fail(error, ADCGS_ERR_IO,
-                            "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
-                            "metadata.json and camera/ are there",
-                            scene->directory);
+        status = adcgs_is_file(train) ? read_splits(scene, points_path, error) : read_single(scene, single, points_path, error);
     free(train);
     free(single);
     return status;
+}
+
+static int is_transforms(const char *folder)
+{
+    char *train = adcgs_path("%s/transforms_train.json", folder), *single = adcgs_path("%s/transforms.json", folder);
+    const int is = adcgs_is_file(train) || adcgs_is_file(single);
+    free(train);
+    free(single);
+    return is;
+}
+
+/** The folder's layout by the files it has; ADCGS_DATASET_AUTO: none that we know. */
+static adcgs_dataset find_dataset(const char *folder)
+{
+    return is_transforms(folder)         ? ADCGS_DATASET_TRANSFORMS
+           : adcgs_is_hypernerf(folder) ? ADCGS_DATASET_HYPERNERF
+           : adcgs_is_llff(folder)      ? ADCGS_DATASET_LLFF
+           : adcgs_is_colmap(folder)    ? ADCGS_DATASET_COLMAP
+                                        : ADCGS_DATASET_AUTO;
+}
+
+static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const adcgs_scene_options *options, adcgs_error *error)
+{
+    const int with_points = !options->points_path;
+    switch (options->dataset ? options->dataset : (int)find_dataset(scene->directory)) {
+    case ADCGS_DATASET_TRANSFORMS:
+        ADCGS_TRY(read_transforms(scene, points_path, error));
+        break;
+    case ADCGS_DATASET_HYPERNERF:
+        ADCGS_TRY(adcgs_hypernerf_read(scene, with_points, error));
+        break;
+    case ADCGS_DATASET_LLFF:
+        return adcgs_llff_read(scene, &options->frames, with_points, error);
+    case ADCGS_DATASET_COLMAP:
+        return adcgs_colmap_read(scene, &options->frames, with_points, error);
+    case ADCGS_DATASET_ADCGS:
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a scene file (JSON)", scene->directory);
+    case ADCGS_DATASET_SPLATS:
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats (PLY)", scene->directory);
+    default:
+        return adcgs_fail(error, ADCGS_ERR_IO,
+                          "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
+                          "metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model in sparse/0, sparse or here",
+                          scene->directory);
+    }
+    return adcgs_frames_keep(scene, &options->frames, scene->directory, error);
+}
+
+/** Splats, told by being a PLY file; a scene file or a file of transforms, told by the field adcgs_scene. */
+static adcgs_status read_file(adcgs_scene *scene, const char *path, char **points_path, const adcgs_scene_options *options,
+                              adcgs_error *error)
+{
+    json_t *root;
+    int is_scene_file = options->dataset == ADCGS_DATASET_ADCGS;
+    if (options->dataset == ADCGS_DATASET_SPLATS || (options->dataset == ADCGS_DATASET_AUTO && adcgs_is_ply(path)))
+        return adcgs_splat_scene_read(scene, !options->points_path, path, error);
+    if (options->dataset == ADCGS_DATASET_AUTO) {
+        ADCGS_TRY(adcgs_json_load(&root, path, error));
+        is_scene_file = json_object_get(root, "adcgs_scene") != NULL;
+        json_decref(root);
+    } else if (!is_scene_file && options->dataset != ADCGS_DATASET_TRANSFORMS)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a file, expected the folder of a scene of the kind %s", path,
+                          adcgs_dataset_names[options->dataset]);
+    if (is_scene_file)
+        return adcgs_scene_file_read(scene, path, &options->frames, !options->points_path, error);
+    ADCGS_TRY(read_single(scene, path, points_path, error));
+    return adcgs_frames_keep(scene, &options->frames, path, error);
 }
 
 static adcgs_status read_points(adcgs_scene *scene, const char *listed, const adcgs_scene_options *options, adcgs_error *error)
@@ -198,9 +272,11 @@ static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, co
     scene->colour_space = COLOUR_SRGB;
     scene->frame_rate = options->frame_rate;
     adcgs_status status =
-        is_folder ? read_folder(scene, &points_path, options, error) : read_single(scene, path, &points_path, error);
+        is_folder ? read_folder(scene, &points_path, options, error) : read_file(scene, path, &points_path, options, error);
     if (!scene->frame_rate)
         scene->frame_rate = DEFAULT_FRAME_RATE;
+    if (!options->frame_rate)
+        scene->frame_rate /= (double)adcgs_frames_step(&options->frames);
     if (status == ADCGS_OK)
         status = finish_views(scene, path, options, error);
     if (status == ADCGS_OK && !scene->points.position) /* the layout's own may be there already */
@@ -220,9 +296,10 @@ adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_s
     if (!scene)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     scene->directory = folder_of(path, S_ISDIR(status.st_mode));
-    const adcgs_status result = scene->directory
-                                    ? fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error)
-                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    adcgs_status result = scene->directory ? adcgs_clips_create(&scene->clips, error)
+                                           : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (result == ADCGS_OK)
+        result = fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error);
     if (result != ADCGS_OK)
         adcgs_scene_free(&scene);
     *out = scene;
@@ -281,6 +358,15 @@ static void divide_camera(adcgs_camera *camera, int divide)
     camera->cy /= divide;
 }
 
+/** As it was taken: of a file, a video or splats. */
+static adcgs_status read_picture(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
+{
+    if (scene->splats)
+        return adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, image, view->path, error);
+    return view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, image, error)
+                          : adcgs_image_read(image, view->path, error);
+}
+
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error)
 {
@@ -288,12 +374,16 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     *rgb = NULL;
     if (divide < 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
-    ADCGS_TRY(adcgs_image_read(&image, view->path, error));
+    ADCGS_TRY(read_picture(scene, view, &image, error));
     adcgs_status status = ADCGS_OK;
-    if (image.width != view->camera.width || image.height != view->camera.height)
+    const int bends = view->lens.width > 0, width = bends ? view->lens.width : view->camera.width;
+    const int height = bends ? view->lens.height : view->camera.height;
+    if (image.width != width || image.height != height)
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", view->path, image.width,
-                            image.height, view->camera.width, view->camera.height);
-    else if (!(*rgb = reduce(&image, divide, scene->background)))
+                            image.height, width, height);
+    else if (bends)
+        status = adcgs_lens_straighten(&view->lens, &view->camera, &image, view->path, error);
+    if (status == ADCGS_OK && !(*rgb = reduce(&image, divide, scene->background)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);
     adcgs_image_free(&image);
     if (status == ADCGS_OK && camera) {

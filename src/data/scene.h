@@ -10,11 +10,24 @@
  *   World axes, units and colours are the dataset's own.
  * - a folder with dataset.json, metadata.json and camera/ (HyperNeRF, Nerfies). World units are the layout's working
  *   coordinates, (x - center) * scale of its scene.json.
+ * - a folder with poses_bounds.npy: pictures (LLFF) or videos of fixed cameras (Neu3D), see data/llff.h.
+ * - a folder with a sparse model of COLMAP, see data/colmap.h.
+ * - a JSON file with the field adcgs_scene, see data/scene_file.h.
+ * - a PLY file of splats: a still scene, whose views are renderings of them, see data/splat_scene.h.
+ *
+ * Views for testing and validation are only listed: what follows from all views together (duration, near plane, axes, the
+ * frame of reference, the first anchors) follows from the views for training alone.
+ *
+ * Pictures taken through a lens that bends (OpenCV's model) are straightened when they are loaded: a view's camera is the
+ * pinhole, its lens says how the picture was taken. Training on the rays as given would need a rasteriser of its own:
+ * splats are projected by the pinhole's normative projection, in training as in decoding, and the bent image of a splat
+ * is no ellipse. Resampling costs a little sharpness, once; training, measuring and decoding then speak of one picture.
  */
 #ifndef ADCGS_DATA_SCENE_H
 #define ADCGS_DATA_SCENE_H
 
 #include "base/base.h"
+#include "data/frames.h"
 #include "data/lens.h"
 #include "io/image.h"
 #include "io/points.h"
@@ -22,6 +35,21 @@
 #include <adcgs/camera.h>
 
 typedef enum adcgs_split { ADCGS_SPLIT_TRAIN, ADCGS_SPLIT_VAL, ADCGS_SPLIT_TEST, ADCGS_SPLITS } adcgs_split;
+
+/** Kinds of scenes; AUTO: the first of them whose files are there. */
+typedef enum adcgs_dataset {
+    ADCGS_DATASET_AUTO,
+    ADCGS_DATASET_TRANSFORMS,
+    ADCGS_DATASET_HYPERNERF,
+    ADCGS_DATASET_LLFF,
+    ADCGS_DATASET_COLMAP,
+    ADCGS_DATASET_ADCGS,  /**< the scene file */
+    ADCGS_DATASET_SPLATS, /**< a PLY file of splats */
+    ADCGS_DATASETS
+} adcgs_dataset;
+
+/** "auto", "transforms", "hypernerf", "llff", "colmap", "adcgs", and NULL at the end. */
+extern const char *const adcgs_dataset_names[ADCGS_DATASETS + 1];
 
 /** World axes, right-handed: the codes of adcgs_stream. */
 typedef enum adcgs_axes { ADCGS_AXES_UNKNOWN, ADCGS_AXES_Y_UP, ADCGS_AXES_Z_UP, ADCGS_AXES_Y_DOWN } adcgs_axes;
@@ -35,7 +63,10 @@ typedef struct adcgs_scene_view {
     adcgs_lens lens;      /**< the picture as it was taken; width 0: by the camera itself */
 } adcgs_scene_view;
 
-typedef adcgs_points adcgs_scene_points; /**< positions in world units; as the scene gives them, none left out */
+typedef adcgs_points adcgs_scene_points; /**< positions in world units; as the scene gives them */
+
+/** Splats that views are renderings of; see splat_scene.h. */
+typedef struct adcgs_splat_scene adcgs_splat_scene;
 
 typedef struct adcgs_scene {
     char *directory;
@@ -44,10 +75,13 @@ typedef struct adcgs_scene {
     double duration;      /**< seconds, 0 for a still scene; from the training split */
     double frame_rate;    /**< frames per second */
     uint32_t n_times;     /**< distinct times of the training split */
+    double near_bound;    /**< nothing that training views show is nearer, by what the data set says; 0: it does not say */
     int has_alpha;        /**< images carry alpha, composited over background */
     float background[3];  /**< white for images with alpha, else black, unless given */
     adcgs_scene_points points; /**< initial points, n = 0 if the scene has none */
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
+    adcgs_splat_scene *splats; /**< NULL: views are pictures; else path of a view is that of the splats */
+    struct adcgs_clips *clips; /**< videos that are open (clips.h) */
 } adcgs_scene;
 
 /** Overrides given on a command line. Zero-initialise. */
@@ -55,14 +89,17 @@ typedef struct adcgs_scene_options {
     const char *points_path;  /**< file of initial points, in world units, instead of the scene's own */
     int has_background;
     float background[3];
-    double frame_rate;        /**< 0: the scene's, else 30 */
+    double frame_rate;        /**< of the frames that are kept; 0: the scene's, else 30 */
+    int dataset;              /**< an adcgs_dataset */
+    adcgs_frame_range frames; /**< of videos, or of the distinct moments of all pictures; the first one kept is time 0 */
 } adcgs_scene_options;
 
 /**
- * Open a scene folder or its JSON file of transforms. Times in [0,1] of the layout become seconds: t * (n_times-1)/frame_rate.
- * The near plane is a hundredth of the median distance of the training cameras from the centre of their views.
+ * Open a scene folder, its JSON file of transforms, a scene file, or a PLY file of splats. Times in [0,1] of the layout become
+ * seconds: t * (n_times-1)/frame_rate. The near plane is half the near bound, or where there is none, a hundredth of the median
+ * distance of the training cameras from the centre of their views.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
- * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole.
+ * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole and OpenCV's.
  */
 adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error);
 void adcgs_scene_free(adcgs_scene **scene);
@@ -73,9 +110,10 @@ const char *adcgs_split_name(adcgs_split split);
 int adcgs_split_parse(const char *name, adcgs_split *split);
 
 /**
- * Load a view's picture as planar binary32 [3][h][w], alpha composited over scene->background, box-filtered down by the
- * integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not NULL, gets the camera
- * at that size. The caller frees *rgb with free().
+ * Load a view's picture as planar binary32 [3][h][w], straightened, alpha composited over scene->background, box-filtered down
+ * by the integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not NULL, gets the
+ * camera at that size. The caller frees *rgb with free(). Any thread may call; frames of a video are best asked for in
+ * ascending order by one thread (adcgs_view_runs_make()).
  */
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error);

@@ -5,7 +5,9 @@
 #include "data/transforms.h"
 
 #include "data/camera_json.h"
+#include "data/listing.h"
 #include "data/paths.h"
+#include "data/view_lens.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +17,8 @@
 typedef struct place {
     adcgs_json_place json;
     const char *folder; /**< of the file, with the slash at its end */
-    int width, height;  /**< of the first image, for frames that do not say; 0: not known yet */
+    adcgs_split split;  /**< of the frame; ADCGS_SPLITS: of none */
+    int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< of a split's first image, for frames that do not say */
 } place;
 
 /** folder + name, allocated. Absolute names stand for themselves. */
@@ -41,33 +44,29 @@ static adcgs_status find_image(const place *at, char **out)
     return status;
 }
 
-static adcgs_status read_camera(place *at, const char *image, adcgs_camera *camera)
+/** The lens and the pinhole for it; w and h are the picture's as it was taken. */
+static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene_view *view)
 {
+    adcgs_camera taken;
     int found;
-    ADCGS_TRY(adcgs_json_size(&at->json, camera, &found));
-    if (!found && !at->width) {
+    ADCGS_TRY(adcgs_json_size(&at->json, &taken, &found));
+    int *width = &at->width[at->split], *height = &at->height[at->split];
+    if (!found && !*width) {
         int channels;
-        ADCGS_TRY(adcgs_image_probe(&at->width, &at->height, &channels, image, at->json.error));
+        ADCGS_TRY(adcgs_image_probe(width, height, &channels, view->path, at->json.error));
     }
-    if (!found) {
-        camera->width = at->width;
-        camera->height = at->height;
-    }
-    return adcgs_json_intrinsics(&at->json, camera);
-}
-
-/** The file's name without folder and extension. */
-static void set_name(adcgs_camera *camera, const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    snprintf(camera->name, sizeof camera->name, "%s", slash ? slash + 1 : path);
-    char *dot = strrchr(camera->name, '.');
-    if (dot && dot != camera->name)
-        *dot = 0;
+    view->lens.width = found ? taken.width : *width;
+    view->lens.height = found ? taken.height : *height;
+    ADCGS_TRY(adcgs_json_lens(&at->json, &view->lens));
+    char *where = adcgs_path("%s: frames[%zu]", at->json.path, at->json.index);
+    const adcgs_status status = where ? adcgs_view_lens(scene, view, where, at->json.error)
+                                      : adcgs_fail(at->json.error, ADCGS_ERR_MEMORY, "%s: out of memory", at->json.path);
+    free(where);
+    return status;
 }
 
 /** On failure view->path is freed. */
-static adcgs_status read_view(place *at, adcgs_scene_view *view, adcgs_transforms *out)
+static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_view *view, adcgs_transforms *out)
 {
     int found;
     if (!json_is_object(at->json.frame))
@@ -82,13 +81,13 @@ static adcgs_status read_view(place *at, adcgs_scene_view *view, adcgs_transform
         ADCGS_TRY(adcgs_json_number(&at->json, "time", 0.0, 1.0, &view->time, &found));
     ADCGS_TRY(adcgs_json_pose(&at->json, &view->camera));
     ADCGS_TRY(find_image(at, &view->path));
-    const adcgs_status status = read_camera(at, view->path, &view->camera);
+    const adcgs_status status = read_camera(at, scene, view);
     if (status != ADCGS_OK) {
         free(view->path);
         view->path = NULL;
         return status;
     }
-    set_name(&view->camera, view->path);
+    adcgs_stem(view->camera.name, sizeof view->camera.name, view->path);
     return ADCGS_OK;
 }
 
@@ -130,12 +129,12 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
         adcgs_scene_view view = {.time = 0.0};
         at->json.index = i;
         at->json.frame = json_array_get(frames, i);
-        ADCGS_TRY(read_view(at, &view, out));
-        const adcgs_split to = split == ADCGS_SPLITS ? choose_split(at) : split;
-        if (to == ADCGS_SPLITS)
+        at->split = split == ADCGS_SPLITS ? choose_split(at) : split;
+        ADCGS_TRY(read_view(at, scene, &view, out));
+        if (at->split == ADCGS_SPLITS)
             free(view.path);
         else
-            scene->views[to][scene->n_views[to]++] = view;
+            scene->views[at->split][scene->n_views[at->split]++] = view;
     }
     at->json.frame = NULL;
     return ADCGS_OK;

@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Draco point clouds seen from C. No exception and no C++ type crosses this border. */
+/** \file Draco point clouds: see draco_shim.h. */
 #include "config.h"
 
-/* The standard headers first: points.h includes C headers inside extern "C". */
+/* The standard headers first: draco_shim.h includes C headers inside extern "C". */
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <memory>
 #include <new>
 
+#include <draco/compression/config/compression_shared.h>
 #include <draco/compression/decode.h>
+#include <draco/compression/encode.h>
+#include <draco/point_cloud/point_cloud_builder.h>
 
-#include "io/points.h"
+#include "io/draco_shim.h"
 
 namespace {
 
@@ -48,10 +52,43 @@ adcgs_status parse(adcgs_points *out, const uint8_t *data, size_t bytes, const c
     return ADCGS_OK;
 }
 
-} // namespace
+std::unique_ptr<draco::PointCloud> build(const adcgs_points *points)
+{
+    draco::PointCloudBuilder builder;
+    builder.Start(points->n);
+    const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    builder.SetAttributeValuesForAllPoints(position, points->position, sizeof *points->position);
+    if (points->coloured) {
+        const int colour = builder.AddAttribute(draco::GeometryAttribute::COLOR, 3, draco::DT_UINT8);
+        builder.SetAttributeValuesForAllPoints(colour, points->colour, sizeof *points->colour);
+    }
+    return builder.Finalize(false);
+}
 
-extern "C" adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path,
-                                          adcgs_error *error)
+/** Sequential, not by a tree, which would be smaller but give the points back in an order of its own. */
+adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_points *points, const char *path, adcgs_error *error)
+{
+    if (!points->n)
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: a Draco file holds at least one point", path);
+    const std::unique_ptr<draco::PointCloud> cloud = build(points);
+    draco::Encoder encoder;
+    draco::EncoderBuffer buffer;
+    encoder.SetSpeedOptions(0, 0);
+    encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, ADCGS_DRACO_BITS);
+    const draco::Status status = cloud ? encoder.EncodePointCloudToBuffer(*cloud, &buffer)
+                                       : draco::Status(draco::Status::DRACO_ERROR, "no point cloud");
+    if (!status.ok())
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot encode as Draco: %s", path, status.error_msg());
+    *data = static_cast<uint8_t *>(std::malloc(buffer.size()));
+    if (!*data)
+        throw std::bad_alloc();
+    *bytes = buffer.size();
+    std::memcpy(*data, buffer.data(), *bytes);
+    return ADCGS_OK;
+}
+
+adcgs_status parse_c(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error) noexcept
 {
     try {
         return parse(out, data, bytes, path, error);
@@ -61,3 +98,20 @@ extern "C" adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged Draco file", path);
     }
 }
+
+adcgs_status encode_c(uint8_t **data, size_t *bytes, const adcgs_points *points, const char *path, adcgs_error *error) noexcept
+{
+    *data = nullptr;
+    *bytes = 0;
+    try {
+        return encode(data, bytes, points, path, error);
+    } catch (const std::bad_alloc &) {
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    } catch (...) {
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot encode as Draco", path);
+    }
+}
+
+} // namespace
+
+extern "C" const adcgs_draco adcgs_draco_table = { PACKAGE_VERSION, parse_c, encode_c };

@@ -8,32 +8,51 @@
 
 #include <openexr.h>
 
-static const char *const channel_names[5] = {"", "Y", "YA", "RGB", "RGBA"};
+/** A channel and where its samples lie; the file has them in alphabetical order. */
+typedef struct plane {
+    char name[2];
+    exr_pixel_type_t type;
+    const float *samples;
+    size_t stride; /**< floats from a pixel to the next */
+} plane;
+
+typedef struct picture {
+    const adcgs_image *image;
+    const adcgs_image_options *options;
+    int n;
+    plane planes[5];
+} picture;
 
 /** Messages are written by the callers, with the file's name. */
 static void ignore_message(exr_const_context_t context, exr_result_t code, const char *text)
 {
 }
 
-/** Place of a channel in a pixel of ours, -1 if it has none. */
-static int place_of(const char *name, int channels)
+static void list_planes(picture *p)
 {
-    const char *found = name[0] && !name[1] ? strchr(channel_names[channels], name[0]) : NULL;
-    return found ? (int)(found - channel_names[channels]) : -1;
+    static const char *const names[5] = {"", "Y", "YA", "RGB", "RGBA"};
+    const adcgs_image *image = p->image;
+    const exr_pixel_type_t type = p->options->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+    for (const char *sorted = "ABGRY"; *sorted; sorted++) {
+        const char *found = strchr(names[image->channels], *sorted);
+        if (found)
+            p->planes[p->n++] = (plane){{*sorted}, type, image->data + (found - names[image->channels]), (size_t)image->channels};
+    }
+    if (p->options->depth)
+        p->planes[p->n++] = (plane){"Z", EXR_PIXEL_FLOAT, p->options->depth, 1};
 }
 
 /** Point the library at where a chunk's first row lies in our picture. */
-static void aim(exr_coding_channel_info_t *channels, int count, const adcgs_image *image, int row)
+static void aim(exr_coding_channel_info_t *channels, int count, const picture *p, int row)
 {
-    const size_t pixel = (size_t)image->channels;
-    for (int i = 0; i < count; i++) {
-        const size_t place = (size_t)place_of(channels[i].channel_name, image->channels);
-        const float *first = image->data + (size_t)row * (size_t)image->width * pixel + place;
+    for (int i = 0; i < count && i < p->n; i++) {
+        const plane *from = &p->planes[i];
+        const size_t line = from->stride * (size_t)p->image->width;
         channels[i].user_bytes_per_element = 4;
         channels[i].user_data_type = EXR_PIXEL_FLOAT;
-        channels[i].user_pixel_stride = (int32_t)(pixel * sizeof(float));
-        channels[i].user_line_stride = (int32_t)(pixel * sizeof(float) * (size_t)image->width);
-        channels[i].encode_from_ptr = (const uint8_t *)first;
+        channels[i].user_pixel_stride = (int32_t)(from->stride * sizeof(float));
+        channels[i].user_line_stride = (int32_t)(line * sizeof(float));
+        channels[i].encode_from_ptr = (const uint8_t *)(from->samples + (size_t)row * line);
     }
 }
 
@@ -51,28 +70,87 @@ static int64_t write_at(exr_const_context_t context, void *user, const void *buf
     return (int64_t)done;
 }
 
-static exr_result_t describe(exr_context_t context, const adcgs_image *image, int half)
+/** Our matrices take columns; those of the format take rows, and its camera has y up. */
+static void make_matrices(const adcgs_camera *camera, exr_attr_m44f_t *to_camera, exr_attr_m44f_t *to_ndc)
+{
+    double m[4][3]; /* world to our camera, for rows */
+    for (int j = 0; j < 3; j++) {
+        m[3][j] = 0.0;
+        for (int i = 0; i < 3; i++) {
+            m[i][j] = camera->cam_to_world[4 * i + j];
+            m[3][j] -= camera->cam_to_world[4 * i + 3] * m[i][j];
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        const double x = m[i][0], y = m[i][1], z = m[i][2], one = i == 3;
+        const double camera_row[4] = {x, -y, z, one};
+        const double ndc_row[4] = {(camera->fx * x + camera->cx * z) / camera->width,
+                                   (camera->fy * y + camera->cy * z) / camera->height, z - one * camera->near_plane, z};
+        for (int j = 0; j < 4; j++) {
+            to_camera->m[4 * i + j] = (float)camera_row[j];
+            to_ndc->m[4 * i + j] = (float)ndc_row[j];
+        }
+    }
+}
+
+/** Attributes that every EXR has; the screen window is the picture as the camera throws it on a plane at distance 1. */
+static exr_result_t describe_size(exr_context_t context, int part, const picture *p)
+{
+    const adcgs_camera *camera = p->options->camera;
+    const int width = p->image->width, height = p->image->height;
+    const exr_attr_box2i_t window = {.min = {{{0, 0}}}, .max = {{{width - 1, height - 1}}}};
+    exr_attr_v2f_t centre = {{{0.0f, 0.0f}}};
+    float across = 1.0f;
+    if (camera) {
+        centre.x = (float)((camera->cx - 0.5 * width) / camera->fx);
+        centre.y = (float)((camera->cy - 0.5 * height) / camera->fy);
+        across = (float)(width / camera->fx);
+    }
+    return exr_initialize_required_attr(context, part, &window, &window, 1.0f, &centre, across, EXR_LINEORDER_INCREASING_Y,
+                                        EXR_COMPRESSION_ZIP);
+}
+
+static exr_result_t describe_camera(exr_context_t context, int part, const adcgs_camera *camera, double time)
+{
+    exr_attr_m44f_t to_camera, to_ndc;
+    make_matrices(camera, &to_camera, &to_ndc);
+    const exr_attr_v2d_t focal = {{{camera->fx, camera->fy}}}, principal = {{{camera->cx, camera->cy}}};
+    const exr_result_t codes[] = {
+        exr_attr_set_m44f(context, part, "worldToCamera", &to_camera),
+        exr_attr_set_m44f(context, part, "worldToNDC", &to_ndc),
+        exr_attr_set_v2d(context, part, "adcgs/focal", &focal),
+        exr_attr_set_v2d(context, part, "adcgs/principal", &principal),
+        exr_attr_set_double(context, part, "adcgs/near", camera->near_plane),
+        exr_attr_set_double(context, part, "adcgs/time", time),
+        exr_attr_set_string(context, part, "adcgs/camera", camera->name),
+    };
+    for (size_t i = 0; i < ADCGS_COUNTOF(codes); i++)
+        if (codes[i] != EXR_ERR_SUCCESS)
+            return codes[i];
+    return EXR_ERR_SUCCESS;
+}
+
+static exr_result_t describe(exr_context_t context, const picture *p)
 {
     int part;
     exr_result_t code = exr_add_part(context, "image", EXR_STORAGE_SCANLINE, &part);
     if (code == EXR_ERR_SUCCESS)
-        code = exr_initialize_required_attr_simple(context, part, image->width, image->height, EXR_COMPRESSION_ZIP);
-    /* The file's channels are in alphabetical order. */
-    for (const char *sorted = "ABGRY"; *sorted && code == EXR_ERR_SUCCESS; sorted++) {
-        const char name[2] = {*sorted, 0};
-        if (place_of(name, image->channels) >= 0)
-            code = exr_add_channel(context, part, name, half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC,
-                                   1, 1);
-    }
+        code = describe_size(context, part, p);
+    for (int i = 0; i < p->n && code == EXR_ERR_SUCCESS; i++)
+        code = exr_add_channel(context, part, p->planes[i].name, p->planes[i].type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_attr_set_string(context, part, "software", PACKAGE_NAME " " PACKAGE_VERSION);
+    if (code == EXR_ERR_SUCCESS && p->options->camera)
+        code = describe_camera(context, part, p->options->camera, p->options->time);
     return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
 }
 
-static exr_result_t write_chunks(exr_context_t context, const adcgs_image *image)
+static exr_result_t write_chunks(exr_context_t context, const picture *p)
 {
     exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
     exr_result_t code = EXR_ERR_SUCCESS;
     int started = 0;
-    for (int y = 0; y < image->height && code == EXR_ERR_SUCCESS;) {
+    for (int y = 0; y < p->image->height && code == EXR_ERR_SUCCESS;) {
         exr_chunk_info_t chunk;
         code = exr_write_scanline_chunk_info(context, 0, y, &chunk);
         if (code == EXR_ERR_SUCCESS)
@@ -80,7 +158,7 @@ static exr_result_t write_chunks(exr_context_t context, const adcgs_image *image
                            : exr_encoding_initialize(context, 0, &chunk, &pipeline);
         if (code != EXR_ERR_SUCCESS)
             break;
-        aim(pipeline.channels, pipeline.channel_count, image, y);
+        aim(pipeline.channels, pipeline.channel_count, p, y);
         if (!started)
             code = exr_encoding_choose_default_routines(context, 0, &pipeline);
         started = 1;
@@ -92,7 +170,7 @@ static exr_result_t write_chunks(exr_context_t context, const adcgs_image *image
     return code;
 }
 
-static exr_result_t write_premultiplied(FILE *file, const adcgs_image *image, int half, const char *path)
+static exr_result_t write_premultiplied(FILE *file, const picture *p, const char *path)
 {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = ignore_message;
@@ -102,22 +180,24 @@ static exr_result_t write_premultiplied(FILE *file, const adcgs_image *image, in
     exr_result_t code = exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, &setup);
     if (code != EXR_ERR_SUCCESS)
         return code;
-    code = describe(context, image, half);
+    code = describe(context, p);
     if (code == EXR_ERR_SUCCESS)
-        code = write_chunks(context, image);
+        code = write_chunks(context, p);
     const exr_result_t end = exr_finish(&context);
     return code == EXR_ERR_SUCCESS ? end : code;
 }
 
-adcgs_status adcgs_exr_write(FILE *file, const adcgs_image *image, int half, const char *path, adcgs_error *error)
+adcgs_status adcgs_exr_write(FILE *file, const adcgs_image *image, const adcgs_image_options *options, const char *path,
+                             adcgs_error *error)
 {
     adcgs_image copy = *image;
-    if (image->channels % 2 == 0) {
-        ADCGS_TRY(adcgs_image_alloc(&copy, image->width, image->height, image->channels, path, error));
-        memcpy(copy.data, image->data, (size_t)image->width * (size_t)image->height * (size_t)image->channels * sizeof(float));
+    if (image->channels % 2 == 0 && !options->premultiplied) {
+        ADCGS_TRY(adcgs_image_copy(&copy, image, path, error));
         adcgs_image_premultiply(&copy);
     }
-    const exr_result_t code = write_premultiplied(file, &copy, half, path);
+    picture p = {.image = &copy, .options = options};
+    list_planes(&p);
+    const exr_result_t code = write_premultiplied(file, &p, path);
     if (copy.data != image->data)
         adcgs_image_free(&copy);
     if (code != EXR_ERR_SUCCESS)

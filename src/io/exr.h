@@ -11,7 +11,13 @@
 
 #include <stdio.h>
 
-/** Scan lines, lossless ZIP compression, samples of binary16 (half) or binary32. path is for messages. */
-adcgs_status adcgs_exr_write(FILE *file, const adcgs_image *image, int half, const char *path, adcgs_error *error);
+/**
+ * Scan lines, lossless ZIP compression; path is for messages. With a camera the attributes are: worldToCamera and worldToNDC, for
+ * row vectors; camera axes x right, y up, z forward; (0, 0) to (1, 1) across the picture, z/w from 0 at the near plane to 1 in
+ * infinity. screenWindowCenter and screenWindowWidth, with x to the left and y up at distance 1. adcgs/focal and
+ * adcgs/principal (v2d, pixels), adcgs/near (double, world units), adcgs/camera (string), adcgs/time (double, seconds).
+ */
+adcgs_status adcgs_exr_write(FILE *file, const adcgs_image *image, const adcgs_image_options *options, const char *path,
+                             adcgs_error *error);
 
 #endif

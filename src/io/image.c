@@ -14,6 +14,18 @@
 #include <errno.h>
 #include <strings.h>
 
+static const char *extension_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const char *dot = strrchr(slash ? slash : path, '.');
+    return dot ? dot + 1 : "";
+}
+
+static int is_exr(const char *extension)
+{
+    return !strcasecmp(extension, "exr");
+}
+
 /** Open for reading and tell by the first two bytes whether our own reader takes it. */
 static adcgs_status open_image(FILE **file, int *own, const char *path, adcgs_error *error)
 {
@@ -47,14 +59,14 @@ static adcgs_status probe_foreign(int *width, int *height, int *channels, const 
     return oiio->probe(width, height, channels, path, error);
 }
 
-static adcgs_status write_foreign(adcgs_atomic *atomic, const adcgs_image *image, const char *path, const char *extension,
-                                  int half, adcgs_error *error)
+static adcgs_status write_foreign(adcgs_atomic *atomic, const adcgs_image *image, const adcgs_image_options *options,
+                                  const char *path, const char *extension, adcgs_error *error)
 {
-    if (!strcasecmp(extension, "exr"))
-        return adcgs_exr_write(atomic->file, image, half, path, error);
+    if (is_exr(extension))
+        return adcgs_exr_write(atomic->file, image, options, path, error);
     const adcgs_oiio *oiio;
     ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
-    return oiio->write(image, adcgs_atomic_name(atomic), extension, path, error);
+    return oiio->write(image, options->bits, adcgs_atomic_name(atomic), extension, path, error);
 }
 #else
 static adcgs_status read_foreign(adcgs_image *out, const char *path, adcgs_error *error)
@@ -67,8 +79,8 @@ static adcgs_status probe_foreign(int *width, int *height, int *channels, const 
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
 }
 
-static adcgs_status write_foreign(adcgs_atomic *atomic, const adcgs_image *image, const char *path, const char *extension,
-                                  int half, adcgs_error *error)
+static adcgs_status write_foreign(adcgs_atomic *atomic, const adcgs_image *image, const adcgs_image_options *options,
+                                  const char *path, const char *extension, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build writes images as PPM and PGM only", path);
 }
@@ -99,26 +111,56 @@ adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const cha
     return status;
 }
 
-static const char *extension_of(const char *path)
+/** What the formats have is asked before a file is opened, except for OpenImageIO's. */
+static adcgs_status check_options(const adcgs_image_options *options, const char *path, const char *extension,
+                                  adcgs_error *error)
 {
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(slash ? slash : path, '.');
-    return dot ? dot + 1 : "";
-}
-
-adcgs_status adcgs_image_write(const adcgs_image *image, const char *path, int half, adcgs_error *error)
-{
-    const char *extension = extension_of(path);
     if (!*extension)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name's extension must say the format", path);
-    adcgs_atomic atomic;
-    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
+    if (options->bits != 0 && options->bits != 8 && options->bits != 16)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %d bits, expected 8 or 16", path, options->bits);
+    if (options->depth && !is_exr(extension))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: depth needs EXR", path);
+    return ADCGS_OK;
+}
+
+/** Write what is opened; only EXR has premultiplied colours. */
+static adcgs_status write_open(adcgs_atomic *atomic, const adcgs_image *image, const adcgs_image_options *options,
+                               const char *path, const char *extension, adcgs_error *error)
+{
+    adcgs_image_options set = *options;
+    adcgs_image copy = *image;
+    set.bits = set.bits ? set.bits : 8;
+    if (set.premultiplied && !is_exr(extension)) {
+        ADCGS_TRY(adcgs_image_copy(&copy, image, path, error));
+        adcgs_image_unpremultiply(&copy);
+        set.premultiplied = 0;
+    }
     const int own = !strcasecmp(extension, "ppm") || !strcasecmp(extension, "pgm");
-    const adcgs_status status = own ? adcgs_netpbm_write(atomic.file, image, path, error)
-                                    : write_foreign(&atomic, image, path, extension, half, error);
+    const adcgs_status status = own ? adcgs_netpbm_write(atomic->file, &copy, set.bits, path, error)
+                                    : write_foreign(atomic, &copy, &set, path, extension, error);
+    if (copy.data != image->data)
+        adcgs_image_free(&copy);
+    return status;
+}
+
+adcgs_status adcgs_image_write_as(const adcgs_image *image, const adcgs_image_options *options, const char *path,
+                                  adcgs_error *error)
+{
+    const char *extension = extension_of(path);
+    adcgs_atomic atomic;
+    ADCGS_TRY(check_options(options, path, extension, error));
+    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
+    const adcgs_status status = write_open(&atomic, image, options, path, extension, error);
     if (status != ADCGS_OK) {
         adcgs_atomic_abort(&atomic);
         return status;
     }
     return adcgs_atomic_commit(&atomic, error);
+}
+
+adcgs_status adcgs_image_write(const adcgs_image *image, const char *path, int half, adcgs_error *error)
+{
+    const adcgs_image_options options = {.half = half};
+    return adcgs_image_write_as(image, &options, path, error);
 }

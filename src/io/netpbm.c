@@ -91,20 +91,37 @@ adcgs_status adcgs_netpbm_read(FILE *file, adcgs_image *out, const char *path, a
     return status;
 }
 
-adcgs_status adcgs_netpbm_write(FILE *file, const adcgs_image *image, const char *path, adcgs_error *error)
+/** A row without its alpha: of bytes, or of pairs of bytes, high byte first. */
+static void pack_row(const float *row, size_t width, size_t held, size_t stored, int bits, uint16_t *levels, uint8_t *bytes)
+{
+    if (bits == 16)
+        adcgs_image_to_u16(row, width * held, levels);
+    else
+        adcgs_image_to_u8(row, width * held, bytes);
+    for (size_t i = 0; i < width * stored; i++) {
+        const size_t from = i / stored * held + i % stored;
+        if (bits == 16) {
+            bytes[2 * i] = (uint8_t)(levels[from] >> 8);
+            bytes[2 * i + 1] = (uint8_t)levels[from];
+        } else
+            bytes[i] = bytes[from];
+    }
+}
+
+adcgs_status adcgs_netpbm_write(FILE *file, const adcgs_image *image, int bits, const char *path, adcgs_error *error)
 {
     const size_t stored = image->channels < 3 ? 1 : 3, held = (size_t)image->channels, width = (size_t)image->width;
-    uint8_t *row = malloc(width * held);
-    if (!row)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    fprintf(file, "P%c\n%d %d\n255\n", stored == 3 ? '6' : '5', image->width, image->height);
-    for (int y = 0; y < image->height; y++) {
-        adcgs_image_to_u8(image->data + (size_t)y * width * held, width * held, row);
-        if (stored != held)
-            for (size_t i = 0; i < width * stored; i++)
-                row[i] = row[i / stored * held + i % stored];
-        fwrite(row, stored, width, file);
+    uint8_t *bytes = malloc(2 * width * held);
+    uint16_t *levels = malloc(width * held * sizeof *levels);
+    if (bytes && levels) {
+        fprintf(file, "P%c\n%d %d\n%d\n", stored == 3 ? '6' : '5', image->width, image->height, bits == 16 ? 65535 : 255);
+        for (int y = 0; y < image->height; y++) {
+            pack_row(image->data + (size_t)y * width * held, width, held, stored, bits, levels, bytes);
+            fwrite(bytes, stored * (size_t)bits / 8, width, file);
+        }
     }
-    free(row);
-    return ADCGS_OK;
+    const int done = bytes && levels;
+    free(bytes);
+    free(levels);
+    return done ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Reading NPY: a magic number, the length of a header, a header that is the
- * text of a Python dictionary, the numbers. Only what describes an array of
- * points is understood; everything else is an error that says so.
+ * text of a Python dictionary, the numbers. Only what describes a table of
+ * so many columns is understood; everything else is an error that says so.
  */
 #include "config.h"
 
+#include "io/npy.h"
 #include "io/points.h"
 
 #include <float.h>
@@ -24,6 +25,7 @@ typedef struct reader {
     adcgs_error *error;
     int seen;
     int item_bytes;       /**< 4 or 8 */
+    uint32_t columns;     /**< that the table must have */
     int n_dimensions;
     uint64_t shape[DIMENSIONS_MAX];
 } reader;
@@ -149,8 +151,8 @@ static adcgs_status read_dictionary(reader *r)
         return bad(r, "", "something follows the dictionary");
     if (r->seen != SEEN_ALL)
         return bad(r, r->seen & SEEN_DESCR ? r->seen & SEEN_ORDER ? "shape" : "fortran_order" : "descr", "missing");
-    if (r->n_dimensions != 2 || r->shape[1] != 3)
-        return bad(r, "shape", "expected (n, 3)");
+    if (r->n_dimensions != 2 || r->shape[1] != r->columns)
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: header: shape: expected (n, %u)", r->path, r->columns);
     return ADCGS_OK;
 }
 
@@ -173,29 +175,40 @@ static adcgs_status find_header(reader *r, const uint8_t *data, size_t bytes)
     return ADCGS_OK;
 }
 
-/** A number of the array. What binary32 cannot hold becomes infinite. */
-static float load_number(const uint8_t *p, int item_bytes)
+adcgs_status adcgs_npy_open(adcgs_npy *out, const uint8_t *data, size_t bytes, uint32_t columns, const char *what,
+                            const char *path, adcgs_error *error)
 {
-    if (item_bytes == 4)
-        return adcgs_bits_float(adcgs_load_le32(p));
-    const double value = adcgs_bits_double(adcgs_load_le64(p));
-    return fabs(value) <= (double)FLT_MAX ? (float)value : INFINITY;
+    reader r = {.path = path, .error = error, .columns = columns};
+    *out = (adcgs_npy){0};
+    if (bytes < MAGIC_BYTES || memcmp(data, "\x93NUMPY", MAGIC_BYTES))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not an NPY file", path);
+    ADCGS_TRY(find_header(&r, data, bytes));
+    ADCGS_TRY(read_dictionary(&r));
+    const uint8_t *numbers = (const uint8_t *)r.end;
+    const uint64_t n = r.shape[0], expected = n * columns * (uint64_t)r.item_bytes, found = bytes - (size_t)(numbers - data);
+    if (found != expected)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %llu bytes behind the header, expected %llu for %llu %s", path,
+                          (unsigned long long)found, (unsigned long long)expected, (unsigned long long)n, what);
+    *out = (adcgs_npy){.rows = n, .columns = columns, .item_bytes = r.item_bytes, .numbers = numbers};
+    return ADCGS_OK;
+}
+
+double adcgs_npy_value(const adcgs_npy *table, size_t row, uint32_t column)
+{
+    const uint8_t *p = table->numbers + (row * table->columns + column) * (size_t)table->item_bytes;
+    return table->item_bytes == 4 ? (double)adcgs_bits_float(adcgs_load_le32(p)) : adcgs_bits_double(adcgs_load_le64(p));
 }
 
 adcgs_status adcgs_npy_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
 {
-    reader r = {.path = path, .error = error};
+    adcgs_npy table;
     *out = (adcgs_points){0};
-    ADCGS_TRY(find_header(&r, data, bytes));
-    ADCGS_TRY(read_dictionary(&r));
-    const uint8_t *numbers = (const uint8_t *)r.end;
-    const uint64_t n = r.shape[0], expected = n * 3 * (uint64_t)r.item_bytes, found = bytes - (size_t)(numbers - data);
-    if (found != expected)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %llu bytes behind the header, expected %llu for %llu points", path,
-                          (unsigned long long)found, (unsigned long long)expected, (unsigned long long)n);
-    ADCGS_TRY(adcgs_points_alloc(out, n, path, error));
-    for (size_t i = 0; i < n; i++)
-        for (size_t a = 0; a < 3; a++)
-            out->position[i][a] = load_number(numbers + (3 * i + a) * (size_t)r.item_bytes, r.item_bytes);
+    ADCGS_TRY(adcgs_npy_open(&table, data, bytes, 3, "points", path, error));
+    ADCGS_TRY(adcgs_points_alloc(out, table.rows, path, error));
+    for (uint32_t i = 0; i < out->n; i++)
+        for (uint32_t a = 0; a < 3; a++) {
+            const double value = adcgs_npy_value(&table, i, a);
+            out->position[i][a] = fabs(value) <= (double)FLT_MAX ? (float)value : INFINITY; /* binary32 cannot hold it */
+        }
     return ADCGS_OK;
 }

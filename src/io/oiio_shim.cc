@@ -71,12 +71,18 @@ adcgs_status open_input(std::unique_ptr<OIIO::ImageInput> &input, const char *pa
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot read as an image: %s", path, reason.c_str());
 }
 
+/** EXR may hold depth behind its colours. */
+int colour_channels(const OIIO::ImageSpec &spec)
+{
+    return spec.z_channel > 0 && spec.z_channel == spec.nchannels - 1 ? spec.z_channel : spec.nchannels;
+}
+
 adcgs_status read(adcgs_image *out, const char *path, adcgs_error *error)
 {
     std::unique_ptr<OIIO::ImageInput> input;
     ADCGS_TRY(open_input(input, path, error));
     const OIIO::ImageSpec &spec = input->spec();
-    const int channels = spec.nchannels;
+    const int channels = colour_channels(spec);
     ADCGS_TRY(adcgs_image_alloc(out, spec.width, spec.height, channels, path, error));
     bool good;
     if (spec.format == OIIO::TypeDesc::UINT8) {
@@ -94,23 +100,41 @@ adcgs_status read(adcgs_image *out, const char *path, adcgs_error *error)
     return ADCGS_OK;
 }
 
-adcgs_status write(const adcgs_image *image, const char *name, const char *extension, const char *path, adcgs_error *error)
+/** Samples of the kind that the format is to hold. */
+template <typename Sample>
+bool write_samples(OIIO::ImageOutput &output, const adcgs_image *image, OIIO::TypeDesc kind,
+                   void (*convert)(const float *, size_t, Sample *))
 {
+    std::vector<Sample> samples((size_t)image->width * (size_t)image->height * (size_t)image->channels);
+    convert(image->data, samples.size(), samples.data());
+    return output.write_image(kind, samples.data()) && output.close();
+}
+
+adcgs_status write(const adcgs_image *image, int bits, const char *name, const char *extension, const char *path,
+                   adcgs_error *error)
+{
+    const OIIO::TypeDesc kind = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
     OIIO::attribute("threads", 1);
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(extension);
     if (!output) {
         OIIO::geterror(); /* take the message away, else the library prints it at exit */
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of OpenImageIO cannot write .%s files", path, extension);
     }
-    OIIO::ImageSpec spec(image->width, image->height, image->channels, OIIO::TypeDesc::UINT8);
+    if (image->channels % 2 == 0 && !output->supports("alpha"))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no alpha; EXR, PNG and TIFF do", path, extension);
+    OIIO::ImageSpec spec(image->width, image->height, image->channels, kind);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("jpeg:subsampling", "4:4:4");
     if (std::string(output->format_name()) == "jpeg")
         spec.attribute("Compression", "jpeg:95");
-    std::vector<uint8_t> bytes((size_t)image->width * (size_t)image->height * (size_t)image->channels);
-    adcgs_image_to_u8(image->data, bytes.size(), bytes.data());
-    if (output->open(name, spec) && output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) && output->close())
+    bool good = output->open(name, spec);
+    if (good && output->spec().format != kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no samples of %d bits", path, extension, bits);
+    if (good)
+        good = bits == 16 ? write_samples(*output, image, kind, adcgs_image_to_u16)
+                          : write_samples(*output, image, kind, adcgs_image_to_u8);
+    if (good)
         return ADCGS_OK;
     return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output->geterror()).c_str());
 }
@@ -122,7 +146,7 @@ adcgs_status probe_c(int *width, int *height, int *channels, const char *path, a
         ADCGS_TRY(open_input(input, path, error));
         *width = input->spec().width;
         *height = input->spec().height;
-        *channels = input->spec().nchannels;
+        *channels = colour_channels(input->spec());
         return ADCGS_OK;
     });
 }
@@ -136,10 +160,10 @@ adcgs_status read_c(adcgs_image *out, const char *path, adcgs_error *error) noex
     return status;
 }
 
-adcgs_status write_c(const adcgs_image *image, const char *name, const char *extension, const char *path,
+adcgs_status write_c(const adcgs_image *image, int bits, const char *name, const char *extension, const char *path,
                      adcgs_error *error) noexcept
 {
-    return guarded(path, error, [&]() { return write(image, name, extension, path, error); });
+    return guarded(path, error, [&]() { return write(image, bits, name, extension, path, error); });
 }
 
 } // namespace

@@ -19,10 +19,13 @@ extern "C" {
 typedef struct adcgs_oiio {
     const char *version; /**< of the programs that the module belongs to */
     adcgs_status (*probe)(int *width, int *height, int *channels, const char *path, adcgs_error *error);
-    /** The first picture in the file; straight alpha. */
+    /** The first picture in the file; straight alpha. A depth channel behind the colours is left out. */
     adcgs_status (*read)(adcgs_image *out, const char *path, adcgs_error *error);
-    /** 8 bit to the file `name`, in the format that `extension` stands for; messages name `path`. */
-    adcgs_status (*write)(const adcgs_image *image, const char *name, const char *extension, const char *path,
+    /**
+     * With 8 or 16 bits to the file `name`, in the format that `extension` stands for; messages name `path`. ADCGS_ERR_USAGE
+     * when the format has no such samples, or no alpha and the image has.
+     */
+    adcgs_status (*write)(const adcgs_image *image, int bits, const char *name, const char *extension, const char *path,
                           adcgs_error *error);
 } adcgs_oiio;
 

@@ -22,6 +22,13 @@ adcgs_status adcgs_image_alloc(adcgs_image *image, int width, int height, int ch
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_image_copy(adcgs_image *copy, const adcgs_image *image, const char *path, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_image_alloc(copy, image->width, image->height, image->channels, path, error));
+    memcpy(copy->data, image->data, (size_t)image->width * (size_t)image->height * (size_t)image->channels * sizeof *copy->data);
+    return ADCGS_OK;
+}
+
 void adcgs_image_free(adcgs_image *image)
 {
     free(image->data);
@@ -34,6 +41,14 @@ void adcgs_image_to_u8(const float *values, size_t n, uint8_t *out)
         const float low = values[i] > 0.0f ? values[i] : 0.0f; /* not-a-number becomes 0 */
         const float clipped = low < 1.0f ? low : 1.0f;
         out[i] = (uint8_t)(clipped * 255.0f + 0.5f);
+    }
+}
+
+void adcgs_image_to_u16(const float *values, size_t n, uint16_t *out)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double low = values[i] > 0.0f ? (double)values[i] : 0.0; /* not-a-number becomes 0 */
+        out[i] = (uint16_t)((low < 1.0 ? low : 1.0) * 65535.0 + 0.5);
     }
 }
 

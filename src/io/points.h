@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Point clouds in files: PLY and NPY by our own readers, Draco behind a shim. */
+/** \file Point clouds in files: PLY and NPY by our own readers, Draco in a module (draco_shim.h). */
 #ifndef ADCGS_IO_POINTS_H
 #define ADCGS_IO_POINTS_H
 
@@ -40,8 +40,19 @@ adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs
  */
 adcgs_status adcgs_npy_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 
-/** Draco in memory, point cloud or mesh (whose vertices are taken). */
+/** Draco in memory, point cloud or mesh (whose vertices are taken). ADCGS_ERR_UNSUPPORTED without the module. */
 adcgs_status adcgs_draco_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
+
+#define ADCGS_DRACO_BITS 16
+/**
+ * A Draco point cloud: the points in their order, positions rounded to ADCGS_DRACO_BITS bits of the longest edge of the box round
+ * them (so off by at most half of edge / (2^16 - 1) along each axis, and the rounding of binary32), colours as they are, left
+ * out if points->coloured is 0. The same points give the same bytes. Atomic. ADCGS_ERR_UNSUPPORTED without the module.
+ */
+adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adcgs_error *error);
+
+/** As PLY or Draco, by the name's extension; ADCGS_ERR_USAGE for another. */
+adcgs_status adcgs_points_write(const adcgs_points *points, const char *path, adcgs_error *error);
 
 #ifdef __cplusplus
 }

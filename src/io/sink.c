@@ -6,6 +6,7 @@
 
 #include "io/atomic.h"
 #include "io/image.h"
+#include "io/video.h"
 #include "io/y4m.h"
 
 #include <errno.h>
@@ -23,8 +24,10 @@ typedef struct kind {
 struct adcgs_sink {
     adcgs_sink_config config;
     const kind *what;
+    adcgs_sink_extras extras; /**< of the frame being written */
     FILE *file; /**< of a stream: standard output or the atomic file */
     adcgs_atomic atomic;
+    adcgs_video_writer *video;
 };
 
 static void y4m_begin(FILE *file, const adcgs_sink_config *config)
@@ -60,17 +63,53 @@ static adcgs_status null_write(adcgs_sink *sink, const adcgs_frame *frame, int i
     return ADCGS_OK;
 }
 
+/** Colours and alpha as pixels of four. */
+static adcgs_status join_alpha(adcgs_image *image, const adcgs_frame *frame, const float *alpha, const char *path,
+                               adcgs_error *error)
+{
+    const size_t n = (size_t)frame->width * (size_t)frame->height;
+    ADCGS_TRY(adcgs_image_alloc(image, frame->width, frame->height, 4, path, error));
+    for (size_t i = 0; i < n; i++) {
+        memcpy(image->data + 4 * i, frame->rgb + 3 * i, 3 * sizeof *frame->rgb);
+        image->data[4 * i + 3] = alpha[i];
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status write_picture(const adcgs_sink *sink, const adcgs_frame *frame, const char *path, adcgs_error *error)
+{
+    const adcgs_sink_extras *extras = &sink->extras;
+    const adcgs_depth depth = sink->config.depth;
+    const adcgs_image_options options = {.half = depth != ADCGS_DEPTH_FLOAT,
+                                         .bits = depth == ADCGS_DEPTH_16 ? 16 : 8,
+                                         .premultiplied = 1,
+                                         .depth = extras->depth,
+                                         .camera = extras->camera,
+                                         .time = extras->time};
+    adcgs_image image = {frame->width, frame->height, 3, frame->rgb};
+    if (!extras->alpha)
+        return adcgs_image_write_as(&image, &options, path, error);
+    ADCGS_TRY(join_alpha(&image, frame, extras->alpha, path, error));
+    const adcgs_status status = adcgs_image_write_as(&image, &options, path, error);
+    adcgs_image_free(&image);
+    return status;
+}
+
 static adcgs_status image_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
 {
-    const adcgs_image image = {frame->width, frame->height, 3, frame->rgb};
     const size_t size = strlen(sink->config.target) + 128;
     char *path = malloc(size);
     if (!path)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", sink->config.target);
     adcgs_pattern_format(sink->config.target, index, path, size);
-    const adcgs_status status = adcgs_image_write(&image, path, sink->config.depth != ADCGS_DEPTH_FLOAT, error);
+    const adcgs_status status = write_picture(sink, frame, path, error);
     free(path);
     return status;
+}
+
+static adcgs_status video_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
+{
+    return adcgs_video_write_frame(sink->video, frame, error);
 }
 
 static const kind kinds[] = {
@@ -80,6 +119,7 @@ static const kind kinds[] = {
 };
 static const kind image_kind = {"image", 0, 0, NULL, image_write};
 static const kind exr_kind = {"exr", 0, 1, NULL, image_write};
+static const kind video_kind = {"video", 0, 0, NULL, video_write};
 
 static const char *extension_of(const char *path)
 {
@@ -90,9 +130,13 @@ static const char *extension_of(const char *path)
 
 static const kind *find_kind(const char *format)
 {
+    char name[16];
     for (size_t i = 0; i < ADCGS_COUNTOF(kinds); i++)
         if (!strcasecmp(format, kinds[i].name))
             return &kinds[i];
+    snprintf(name, sizeof name, "x.%s", format);
+    if (adcgs_is_video(name))
+        return &video_kind;
     return strcasecmp(format, "exr") ? &image_kind : &exr_kind;
 }
 
@@ -145,18 +189,40 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: float samples need EXR or raw", config->target);
     if (config->depth == ADCGS_DEPTH_HALF && what != &exr_kind)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: half samples need EXR", config->target);
-    if (!is_image)
+    if (config->depth == ADCGS_DEPTH_16 && what != &image_kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: 16 bits need PNG, TIFF or PPM", config->target);
+    if (config->has_alpha && (!is_image || !strcasecmp(format, "ppm") || !strcasecmp(format, "pgm")))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: alpha needs EXR, PNG or TIFF", config->target);
+    if (config->has_z && what != &exr_kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: depth needs EXR", config->target);
+    if (!is_image && what != &video_kind)
         return ADCGS_OK;
     if (!strcmp(config->target, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "standard output takes y4m or raw, not %s", format);
     if (!*format || strcasecmp(extension_of(config->target), format))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name must end in .%s", config->target,
                           *format ? format : "ppm, .exr, .y4m, ...");
+    if (!is_image)
+        return ADCGS_OK;
     if (places < 0 || places > 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: expected one number like %%04d in the name", config->target);
     if (!places && config->frames > 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %d frames need a number like %%04d in the name", config->target,
                           config->frames);
+    return ADCGS_OK;
+}
+
+/** What the sink writes to: standard output, a file of ours, or a video's, which is opened by name. */
+static adcgs_status open_target(adcgs_sink *sink, adcgs_error *error)
+{
+    const adcgs_sink_config *config = &sink->config;
+    if (sink->what == &video_kind)
+        return adcgs_video_write_open(&sink->video, config->target, config->width, config->height, config->frame_rate, error);
+    if (!sink->what->is_stream)
+        return ADCGS_OK;
+    if (strcmp(config->target, "-"))
+        ADCGS_TRY(adcgs_atomic_open(&sink->atomic, config->target, error));
+    sink->file = sink->atomic.file ? sink->atomic.file : stdout;
     return ADCGS_OK;
 }
 
@@ -172,15 +238,10 @@ adcgs_status adcgs_sink_open(adcgs_sink **out, const adcgs_sink_config *config, 
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", config->target);
     sink->config = *config;
     sink->what = what;
-    if (what->is_stream && to_stdout)
-        sink->file = stdout;
-    else if (what->is_stream) {
-        const adcgs_status status = adcgs_atomic_open(&sink->atomic, config->target, error);
-        if (status != ADCGS_OK) {
-            free(sink);
-            return status;
-        }
-        sink->file = sink->atomic.file;
+    const adcgs_status status = open_target(sink, error);
+    if (status != ADCGS_OK) {
+        free(sink);
+        return status;
     }
     if (what->begin)
         what->begin(sink->file, config);
@@ -188,8 +249,24 @@ adcgs_status adcgs_sink_open(adcgs_sink **out, const adcgs_sink_config *config, 
     return ADCGS_OK;
 }
 
+void adcgs_sink_size(const adcgs_sink *sink, int *width, int *height)
+{
+    *width = sink->config.width;
+    *height = sink->config.height;
+    if (sink->video)
+        adcgs_video_write_size(sink->video, width, height);
+}
+
 adcgs_status adcgs_sink_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
 {
+    const adcgs_sink_extras none = {0};
+    return adcgs_sink_write_with(sink, frame, &none, index, error);
+}
+
+adcgs_status adcgs_sink_write_with(adcgs_sink *sink, const adcgs_frame *frame, const adcgs_sink_extras *extras, int index,
+                                   adcgs_error *error)
+{
+    sink->extras = *extras;
     if (frame->width != sink->config.width || frame->height != sink->config.height)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels among those of %dx%d", sink->config.target,
                           frame->width, frame->height, sink->config.width, sink->config.height);
@@ -209,6 +286,8 @@ adcgs_status adcgs_sink_close(adcgs_sink **sink, adcgs_error *error)
         status = adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write: %s", strerror(errno));
     else if ((*sink)->atomic.file)
         status = adcgs_atomic_commit(&(*sink)->atomic, error);
+    else if ((*sink)->video)
+        status = adcgs_video_write_close(&(*sink)->video, error);
     free(*sink);
     *sink = NULL;
     return status;
@@ -219,6 +298,7 @@ void adcgs_sink_abort(adcgs_sink **sink)
     if (!*sink)
         return;
     adcgs_atomic_abort(&(*sink)->atomic);
+    adcgs_video_write_abort(&(*sink)->video);
     free(*sink);
     *sink = NULL;
 }

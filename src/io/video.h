@@ -39,6 +39,8 @@ typedef struct adcgs_video_writer adcgs_video_writer;
 /** Container and codec by the name's end: H.264 or what FFmpeg has for it; BT.709, limited range, tagged as such. */
 adcgs_status adcgs_video_write_open(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
                                     adcgs_error *error);
+/** The size of the pictures in the file: the frames', or where the codec takes even sizes only, one row or column more. */
+void adcgs_video_write_size(const adcgs_video_writer *writer, int *width, int *height);
 adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, adcgs_error *error);
 /** Complete the file. On failure, and after adcgs_video_write_abort(), nothing is left behind. */
 adcgs_status adcgs_video_write_close(adcgs_video_writer **writer, adcgs_error *error);

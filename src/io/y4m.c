@@ -4,16 +4,12 @@
 
 #include "io/y4m.h"
 
+#include "io/ycbcr.h"
+
 #include <math.h>
 #include <stdlib.h>
 
-/* BT.709: the weights of luma, and the ranges of limited ("video") coding. */
-#define KR 0.2126f
-#define KB 0.0722f
-#define KG (1.0f - KR - KB)
-
-/** Whole rates as N:1, the 1000/1001 family exactly, all others in thousandths. */
-static void make_ratio(double rate, long *numerator, long *denominator)
+void adcgs_rate_ratio(double rate, long *numerator, long *denominator)
 {
     const double whole = floor(rate + 0.5), ntsc = floor(rate * 1001.0 / 1000.0 + 0.5);
     *numerator = (long)whole;
@@ -28,7 +24,7 @@ static void make_ratio(double rate, long *numerator, long *denominator)
 void adcgs_y4m_write_header(FILE *file, int width, int height, double frame_rate)
 {
     long numerator, denominator;
-    make_ratio(frame_rate, &numerator, &denominator);
+    adcgs_rate_ratio(frame_rate, &numerator, &denominator);
     fprintf(file, "YUV4MPEG2 W%d H%d F%ld:%ld Ip A1:1 C444 XCOLORRANGE=LIMITED\n", width, height, numerator, denominator);
 }
 
@@ -45,11 +41,12 @@ adcgs_status adcgs_y4m_write_frame(FILE *file, const adcgs_frame *frame, adcgs_e
     if (!planes)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a frame of %dx%d pixels", frame->width, frame->height);
     for (size_t i = 0; i < n; i++) {
-        const float r = clip(frame->rgb[3 * i]), g = clip(frame->rgb[3 * i + 1]), b = clip(frame->rgb[3 * i + 2]);
-        const float y = KR * r + KG * g + KB * b;
+        const float rgb[3] = {clip(frame->rgb[3 * i]), clip(frame->rgb[3 * i + 1]), clip(frame->rgb[3 * i + 2])};
+        float y, cb, cr;
+        adcgs_ycbcr_from_rgb((adcgs_ycbcr)ADCGS_YCBCR_709, rgb, &y, &cb, &cr);
         planes[i] = (uint8_t)(16.5f + 219.0f * y);
-        planes[n + i] = (uint8_t)(128.5f + 112.0f * ((b - y) / (1.0f - KB)));
-        planes[2 * n + i] = (uint8_t)(128.5f + 112.0f * ((r - y) / (1.0f - KR)));
+        planes[n + i] = (uint8_t)(128.5f + 224.0f * cb);
+        planes[2 * n + i] = (uint8_t)(128.5f + 224.0f * cr);
     }
     fputs("FRAME\n", file);
     fwrite(planes, 1, 3 * n, file);

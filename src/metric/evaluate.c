@@ -2,9 +2,11 @@
 /** \file Quality of a decoded stream against a scene's pictures. */
 #include "metric/evaluate.h"
 
+#include "data/by_camera.h"
 #include "data/sort.h"
 #include "metric/metric.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /** Render a view into planar 8-bit levels over 255. The frame and planes are the caller's, of the view's size. */
@@ -22,31 +24,91 @@ static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_scene_view
     return ADCGS_OK;
 }
 
-static adcgs_status score_view(adcgs_decoder *decoder, const adcgs_scene *scene, const adcgs_scene_view *view,
-                               adcgs_score_fn each, void *user, adcgs_view_score *score, adcgs_error *error)
+/** What the views of a split go through. */
+typedef struct session {
+    adcgs_decoder *decoder;
+    const adcgs_scene *scene;
+    const adcgs_scene_view *views;
+    uint32_t n;
+    uint32_t *of, *order;     /**< [n] as adcgs_sort_by_camera() gives them */
+    int measure;
+    adcgs_temporal *temporal; /**< of the camera at hand; NULL: it has one view, or nothing over time is wanted */
+    adcgs_temporal_total total;
+    adcgs_score_fn each;
+    void *user;
+} session;
+
+/** Load the true pictures of the camera whose views are order[first..end). */
+static adcgs_status look_ahead(session *s, uint32_t first, uint32_t end, adcgs_error *error)
 {
+    const adcgs_camera *camera = &s->views[s->order[first]].camera;
+    ADCGS_TRY(adcgs_temporal_create(&s->temporal, camera->width, camera->height, error));
+    for (uint32_t i = first; i < end; i++) {
+        float *truth;
+        ADCGS_TRY(adcgs_scene_load(s->scene, &s->views[s->order[i]], 1, &truth, NULL, error));
+        adcgs_temporal_look(s->temporal, truth);
+        free(truth);
+    }
+    return adcgs_temporal_find_region(s->temporal, error);
+}
+
+static int is_same_camera(const session *s, uint32_t i, uint32_t j)
+{
+    return j < s->n && s->of[s->order[i]] == s->of[s->order[j]];
+}
+
+/** Before view order[i]. */
+static adcgs_status begin_camera(session *s, uint32_t i, adcgs_error *error)
+{
+    uint32_t end = i + 1;
+    if (!(s->measure & ADCGS_MEASURE_TIME) || (i && is_same_camera(s, i, i - 1)) || !is_same_camera(s, i, end))
+        return ADCGS_OK;
+    while (is_same_camera(s, i, end))
+        end++;
+    return look_ahead(s, i, end, error);
+}
+
+/** All but the speed. */
+static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_error *error)
+{
+    const float *const a = score->decoded, *const b = score->truth;
+    score->psnr = adcgs_psnr(a, b, (size_t)score->width * (size_t)score->height * 3);
+    ADCGS_TRY(adcgs_ssim(a, b, score->width, score->height, &score->ssim, error));
+    score->ms_ssim = (double)NAN;
+    if (s->measure & ADCGS_MEASURE_MS_SSIM)
+        ADCGS_TRY(adcgs_ms_ssim(a, b, score->width, score->height, &score->ms_ssim, &score->ms_ssim_scales, error));
+    score->temporal = (adcgs_temporal_view){.dynamic_psnr = (double)NAN, .flicker = (double)NAN};
+    if (s->temporal)
+        score->temporal = adcgs_temporal_add(s->temporal, a, b);
+    return ADCGS_OK;
+}
+
+/** View order[i]. */
+static adcgs_status score_view(session *s, uint32_t i, adcgs_view_score *score, adcgs_error *error)
+{
+    const adcgs_scene_view *view = &s->views[s->order[i]];
     const size_t pixels = (size_t)view->camera.width * (size_t)view->camera.height;
     float *truth;
-    ADCGS_TRY(adcgs_scene_load(scene, view, 1, &truth, NULL, error));
+    ADCGS_TRY(adcgs_scene_load(s->scene, view, 1, &truth, NULL, error));
     float *rgb = malloc(pixels * 3 * sizeof *rgb), *planar = malloc(pixels * 3 * sizeof *planar);
     uint8_t *levels = malloc(pixels * 3);
     adcgs_frame frame = { view->camera.width, view->camera.height, rgb };
+    *score = (adcgs_view_score){.view = view, .camera = s->of[s->order[i]], .width = frame.width, .height = frame.height,
+                                .decoded = planar, .truth = truth};
     adcgs_status status = ADCGS_ERR_MEMORY;
     if (rgb && planar && levels)
-        status = render_planar(decoder, view, &frame, levels, planar, &score->seconds, error);
+        status = render_planar(s->decoder, view, &frame, levels, planar, &score->seconds, error);
     else
         adcgs_fail(error, status, "out of memory for a picture of %d x %d", frame.width, frame.height);
-    score->view = view;
-    score->width = frame.width;
-    score->height = frame.height;
-    score->decoded = planar;
-    score->truth = truth;
-    if (status == ADCGS_OK) {
-        score->psnr = adcgs_psnr(planar, truth, pixels * 3);
-        status = adcgs_ssim(planar, truth, frame.width, frame.height, &score->ssim, error);
+    if (status == ADCGS_OK)
+        status = compare(s, score, error);
+    if (status == ADCGS_OK && s->temporal && !is_same_camera(s, i, i + 1)) {
+        s->total = adcgs_temporal_end(s->temporal);
+        score->of_camera = &s->total;
+        adcgs_temporal_free(&s->temporal);
     }
-    if (status == ADCGS_OK && each)
-        status = each(user, score, error);
+    if (status == ADCGS_OK && s->each)
+        status = s->each(s->user, score, error);
     free(truth);
     free(rgb);
     free(planar);
@@ -54,30 +116,41 @@ static adcgs_status score_view(adcgs_decoder *decoder, const adcgs_scene *scene,
     return status;
 }
 
+/** seconds: [n] of each frame. */
+static adcgs_status score_all(session *s, adcgs_evaluation *out, double *seconds, adcgs_error *error)
+{
+    uint32_t n_cameras;
+    ADCGS_TRY(adcgs_sort_by_camera(s->views, s->n, s->of, s->order, &n_cameras, error));
+    for (uint32_t i = 0; i < s->n; i++) {
+        adcgs_view_score score;
+        ADCGS_TRY(begin_camera(s, i, error));
+        ADCGS_TRY(score_view(s, i, &score, error));
+        out->psnr += score.psnr / s->n;
+        out->ssim += score.ssim / s->n;
+        seconds[out->n++] = score.seconds;
+    }
+    adcgs_sort(seconds, s->n);
+    const double median = seconds[s->n / 2];
+    out->frames_per_second = median > 0 ? 1 / median : 0;
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_evaluate(adcgs_evaluation *out, adcgs_decoder *decoder, const adcgs_scene *scene, adcgs_split split,
-                            adcgs_score_fn each, void *user, adcgs_error *error)
+                            int measure, adcgs_score_fn each, void *user, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[split];
+    session s = {.decoder = decoder, .scene = scene, .views = scene->views[split], .n = n, .measure = measure, .each = each,
+                 .user = user};
     memset(out, 0, sizeof *out);
     if (!n)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the %s split has no views", scene->directory, adcgs_split_name(split));
-    double *seconds = malloc(n * sizeof *seconds);
-    if (!seconds)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u results", n);
-    adcgs_status status = ADCGS_OK;
-    for (uint32_t i = 0; status == ADCGS_OK && i < n; i++) {
-        adcgs_view_score score;
-        status = score_view(decoder, scene, &scene->views[split][i], each, user, &score, error);
-        if (status == ADCGS_OK) {
-            out->psnr += score.psnr / n;
-            out->ssim += score.ssim / n;
-            seconds[out->n++] = score.seconds;
-        }
-    }
-    if (status == ADCGS_OK) {
-        adcgs_sort(seconds, n);
-        out->frames_per_second = seconds[n / 2] > 0 ? 1 / seconds[n / 2] : 0;
-    }
-    free(seconds);
+    double *seconds = adcgs_alloc(NULL, n, sizeof *seconds, error);
+    s.of = adcgs_alloc(NULL, n, sizeof *s.of, error);
+    s.order = adcgs_alloc(NULL, n, sizeof *s.order, error);
+    const adcgs_status status = seconds && s.of && s.order ? score_all(&s, out, seconds, error) : ADCGS_ERR_MEMORY;
+    adcgs_temporal_free(&s.temporal);
+    adcgs_free(NULL, seconds);
+    adcgs_free(NULL, s.of);
+    adcgs_free(NULL, s.order);
     return status;
 }

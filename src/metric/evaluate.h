@@ -7,14 +7,30 @@
 #define ADCGS_METRIC_EVALUATE_H
 
 #include "data/scene.h"
+#include "metric/temporal.h"
 
 #include <adcgs/decoder.h>
+
+/** What to measure besides PSNR and SSIM; flags. */
+enum {
+    ADCGS_MEASURE_MS_SSIM = 1,
+    ADCGS_MEASURE_DYNAMIC = 2, /**< PSNR of what moves; this and the next two want two passes over the truth of fixed cameras */
+    ADCGS_MEASURE_STATIC = 4,  /**< variance over time of what does not */
+    ADCGS_MEASURE_FLICKER = 8,
+    ADCGS_MEASURE_TIME = ADCGS_MEASURE_DYNAMIC | ADCGS_MEASURE_STATIC | ADCGS_MEASURE_FLICKER,
+    ADCGS_MEASURE_ALL = ADCGS_MEASURE_MS_SSIM | ADCGS_MEASURE_TIME
+};
 
 /** One view's result. Pictures are planar [3][height][width] and last only during the call. */
 typedef struct adcgs_view_score {
     const adcgs_scene_view *view;
+    uint32_t camera;                        /**< from 0 in the order of the views; equal pose and lens are one camera */
     double psnr, ssim;
-    double seconds;                /**< to render the frame */
+    double ms_ssim;                         /**< not a number where it is not measured, as all of the next */
+    int ms_ssim_scales;                     /**< 0 then */
+    adcgs_temporal_view temporal;           /**< of cameras with more than one view */
+    const adcgs_temporal_total *of_camera;  /**< with the last view of such a camera, else NULL */
+    double seconds;                         /**< to render the frame */
     int width, height;
     const float *decoded, *truth;
 } adcgs_view_score;
@@ -28,8 +44,11 @@ typedef struct adcgs_evaluation {
     double frames_per_second; /**< of rendering alone: 1 / median seconds */
 } adcgs_evaluation;
 
-/** each may be NULL. ADCGS_ERR_DATA if the split is empty. */
+/**
+ * Views come camera by camera, each in ascending time. measure: flags from above. each may be NULL.
+ * ADCGS_ERR_DATA if the split is empty.
+ */
 adcgs_status adcgs_evaluate(adcgs_evaluation *out, adcgs_decoder *decoder, const adcgs_scene *scene, adcgs_split split,
-                            adcgs_score_fn each, void *user, adcgs_error *error);
+                            int measure, adcgs_score_fn each, void *user, adcgs_error *error);
 
 #endif

@@ -11,4 +11,17 @@ double adcgs_psnr_from_mse(double mse);
 /** Structural similarity: 11x11 Gaussian, sigma 1.5, zero padding, mean over pixels and channels, K1 = 0.01, K2 = 0.03. */
 adcgs_status adcgs_ssim(const float *a, const float *b, int width, int height, double *ssim, adcgs_error *error);
 
+#define ADCGS_MS_SSIM_SCALES 5
+
+/**
+ * Multi-scale structural similarity (Wang, Simoncelli and Bovik 2003): the product over five scales of the mean of contrast times
+ * structure, at the last scale of the mean of the whole similarity, raised to 0.0448, 0.2856, 0.3001, 0.2363, 0.1333. A mean
+ * below 0 counts as 0. Per channel, then the mean over channels. Window and constants are those of adcgs_ssim(), but only pixels
+ * count whose window lies inside the picture. From scale to scale, means of 2x2 pixels; boxes at an odd edge take what they
+ * cover. Where the window does not fit into a scale, that scale and the ones after it are left out, and the exponents of the
+ * others are divided by their sum. *scales: how many were used. Pictures smaller than the window: 0 scales, not a number.
+ */
+adcgs_status adcgs_ms_ssim(const float *a, const float *b, int width, int height, double *ms_ssim, int *scales,
+                           adcgs_error *error);
+
 #endif

@@ -1,122 +1,130 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file
- * Structural similarity. The window is separable, so each of the five moments
- * is blurred along rows and then along columns; a ring of the last eleven
- * blurred rows is all that is kept.
- */
+/** \file Structural similarity at one scale and at several. */
 #include "config.h"
 
 #include "metric/metric.h"
+#include "metric/ssim_plane.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#define RADIUS 5
-#define TAPS (2 * RADIUS + 1)
-#define SIGMA 1.5
-#define C1 (0.01 * 0.01)
-#define C2 (0.03 * 0.03)
-#define MOMENTS 5 /* a, b, aa, bb, ab */
+/** Wang, Simoncelli and Bovik, Multiscale structural similarity for image quality assessment, 2003. */
+static const double WEIGHTS[ADCGS_MS_SSIM_SCALES] = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
 
-typedef struct state {
+/** Two planes, and the space to compare them in. */
+typedef struct pair {
+    adcgs_ssim_space space;
+    double *a, *b;
     int width, height;
-    double window[TAPS];
-    double *ring;   /* [TAPS][MOMENTS][width] */
-    double *padded; /* [MOMENTS][width + 2 RADIUS] */
-} state;
+} pair;
 
-static void make_window(double window[TAPS])
+static void pair_clear(pair *p)
 {
-    double sum = 0.0;
-    for (int i = 0; i < TAPS; i++)
-        sum += window[i] = exp(-(i - RADIUS) * (i - RADIUS) / (2.0 * SIGMA * SIGMA));
-    for (int i = 0; i < TAPS; i++)
-        window[i] /= sum;
+    adcgs_ssim_space_clear(&p->space);
+    adcgs_free(NULL, p->a);
+    adcgs_free(NULL, p->b);
 }
 
-static double *ring_row(const state *s, int row, int moment)
+static adcgs_status pair_init(pair *p, int width, int height, adcgs_error *error)
 {
-    return s->ring + ((size_t)(row % TAPS) * MOMENTS + (size_t)moment) * (size_t)s->width;
+    *p = (pair){.width = width, .height = height};
+    if (width < 1 || height < 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "SSIM of a picture of %dx%d pixels", width, height);
+    const size_t plane = (size_t)width * (size_t)height;
+    p->a = adcgs_alloc(NULL, plane, sizeof *p->a, error);
+    p->b = adcgs_alloc(NULL, plane, sizeof *p->b, error);
+    adcgs_status status = p->a && p->b ? adcgs_ssim_space_init(&p->space, width, error) : ADCGS_ERR_MEMORY;
+    if (status != ADCGS_OK)
+        pair_clear(p);
+    return status;
 }
 
-/** Moments of one row, blurred along it; zeros beyond the picture's edge. */
-static void blur_row(const state *s, const float *a, const float *b, int row)
+/** Take channel c of two pictures, which have the size of pair_init(). */
+static void pair_fill(pair *p, const float *a, const float *b, int width, int height, size_t c)
 {
-    const size_t stride = (size_t)s->width + 2 * RADIUS;
-    for (int x = 0; x < s->width; x++) {
-        const double va = (double)a[x], vb = (double)b[x];
-        double *p = s->padded + RADIUS + x;
-        p[0] = va;
-        p[stride] = vb;
-        p[2 * stride] = va * va;
-        p[3 * stride] = vb * vb;
-        p[4 * stride] = va * vb;
+    const size_t plane = (size_t)width * (size_t)height;
+    p->width = width;
+    p->height = height;
+    for (size_t i = 0; i < plane; i++) {
+        p->a[i] = (double)a[c * plane + i];
+        p->b[i] = (double)b[c * plane + i];
     }
-    for (int m = 0; m < MOMENTS; m++) {
-        const double *in = s->padded + (size_t)m * stride;
-        double *out = ring_row(s, row, m);
-        for (int x = 0; x < s->width; x++) {
-            double sum = 0.0;
-            for (int t = 0; t < TAPS; t++)
-                sum += s->window[t] * in[x + t];
-            out[x] = sum;
-        }
-    }
-}
-
-/** Similarity of one pixel from its blurred moments. */
-static double similarity(const double m[MOMENTS])
-{
-    const double aa = m[2] - m[0] * m[0], bb = m[3] - m[1] * m[1], ab = m[4] - m[0] * m[1];
-    return (2.0 * m[0] * m[1] + C1) * (2.0 * ab + C2) / ((m[0] * m[0] + m[1] * m[1] + C1) * (aa + bb + C2));
-}
-
-/** Sum over a row whose neighbours within the radius are in the ring. */
-static double finish_row(const state *s, int row)
-{
-    const int first = ADCGS_MAX(row - RADIUS, 0), last = ADCGS_MIN(row + RADIUS, s->height - 1);
-    double total = 0.0;
-    for (int x = 0; x < s->width; x++) {
-        double moments[MOMENTS] = {0.0};
-        for (int y = first; y <= last; y++)
-            for (int m = 0; m < MOMENTS; m++)
-                moments[m] += s->window[y - row + RADIUS] * ring_row(s, y, m)[x];
-        total += similarity(moments);
-    }
-    return total;
-}
-
-static double plane_sum(const state *s, const float *a, const float *b)
-{
-    double total = 0.0;
-    for (int y = 0; y < s->height + RADIUS; y++) {
-        const size_t offset = (size_t)y * (size_t)s->width;
-        if (y < s->height)
-            blur_row(s, a + offset, b + offset, y);
-        if (y >= RADIUS)
-            total += finish_row(s, y - RADIUS);
-    }
-    return total;
 }
 
 adcgs_status adcgs_ssim(const float *a, const float *b, int width, int height, double *ssim, adcgs_error *error)
 {
-    if (width < 1 || height < 1)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "SSIM of a picture of %dx%d pixels", width, height);
-    const size_t plane = (size_t)width * (size_t)height;
-    state s = {.width = width, .height = height};
-    make_window(s.window);
-    s.ring = malloc((size_t)TAPS * MOMENTS * (size_t)width * sizeof *s.ring);
-    s.padded = calloc(MOMENTS * ((size_t)width + 2 * RADIUS), sizeof *s.padded);
+    pair p;
     double total = 0.0;
-    if (s.ring && s.padded)
-        for (size_t c = 0; c < 3; c++)
-            total += plane_sum(&s, a + c * plane, b + c * plane);
-    const int out_of_memory = !s.ring || !s.padded;
-    free(s.ring);
-    free(s.padded);
-    if (out_of_memory)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for SSIM of %dx%d pixels", width, height);
-    *ssim = total / (3.0 * (double)plane);
+    ADCGS_TRY(pair_init(&p, width, height, error));
+    for (size_t c = 0; c < 3; c++) {
+        pair_fill(&p, a, b, width, height, c);
+        total += adcgs_ssim_plane(&p.space, p.a, p.b, width, height, 0).similarity;
+    }
+    pair_clear(&p);
+    *ssim = total / (3.0 * (double)width * (double)height);
+    return ADCGS_OK;
+}
+
+/** Mean of the pixels of a plane that a box of 2x2 covers. In place: boxes are read no earlier than they are written. */
+static void halve(double *plane, int width, int height)
+{
+    double *out = plane;
+    for (int y = 0; y < height; y += 2)
+        for (int x = 0; x < width; x += 2) {
+            const int right = x + 1 < width, below = y + 1 < height;
+            const double *in = plane + (size_t)y * (size_t)width + (size_t)x;
+            double sum = in[0] + (right ? in[1] : 0.0);
+            if (below)
+                sum += in[width] + (right ? in[width + 1] : 0.0);
+            *out++ = sum / ((1 + right) * (1 + below));
+        }
+}
+
+static void pair_halve(pair *p)
+{
+    halve(p->a, p->width, p->height);
+    halve(p->b, p->width, p->height);
+    p->width = (p->width + 1) / 2;
+    p->height = (p->height + 1) / 2;
+}
+
+/** Product over the scales of one channel. */
+static double measure_scales(pair *p, int n, double weights)
+{
+    double product = 1.0;
+    for (int i = 0; i < n; i++) {
+        if (i)
+            pair_halve(p);
+        const adcgs_ssim_sums sums = adcgs_ssim_plane(&p->space, p->a, p->b, p->width, p->height, ADCGS_SSIM_RADIUS);
+        const double pixels = (double)(p->width - 2 * ADCGS_SSIM_RADIUS) * (double)(p->height - 2 * ADCGS_SSIM_RADIUS);
+        const double mean = (i + 1 < n ? sums.structure : sums.similarity) / pixels;
+        product *= pow(mean < 0.0 ? 0.0 : mean, WEIGHTS[i] / weights);
+    }
+    return product;
+}
+
+static int count_scales(int width, int height)
+{
+    int n = 0, side = ADCGS_MIN(width, height);
+    for (; n < ADCGS_MS_SSIM_SCALES && side >= ADCGS_SSIM_TAPS; n++)
+        side = (side + 1) / 2;
+    return n;
+}
+
+adcgs_status adcgs_ms_ssim(const float *a, const float *b, int width, int height, double *ms_ssim, int *scales,
+                           adcgs_error *error)
+{
+    pair p;
+    double total = 0.0, weights = 0.0;
+    const int n = count_scales(width, height);
+    ADCGS_TRY(pair_init(&p, width, height, error));
+    for (int i = 0; i < n; i++)
+        weights += WEIGHTS[i];
+    for (size_t c = 0; c < 3 && n; c++) {
+        pair_fill(&p, a, b, width, height, c);
+        total += measure_scales(&p, n, n < ADCGS_MS_SSIM_SCALES ? weights : 1.0);
+    }
+    pair_clear(&p);
+    *ms_ssim = n ? total / 3.0 : (double)NAN;
+    *scales = n;
     return ADCGS_OK;
 }

@@ -7,7 +7,9 @@
 #include "io/sink.h"
 #include "model/input.h"
 #include "tools/answer.h"
+#include "tools/canvas.h"
 #include "tools/cli.h"
+#include "tools/dec_splats.h"
 #include "tools/shots.h"
 
 #include <adcgs/adcgs.h>
@@ -17,27 +19,40 @@
 #include <strings.h>
 
 typedef struct settings {
-    const char *input, *output, *format, *times, *verify, *answer;
+    const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras;
     adcgs_shots_request request;
     adcgs_config config;
-    int cpu, half, use_float, md5, frametimes;
+    int cpu, half, use_float, bits, alpha, depth, md5, frametimes;
     double opened; /**< when opening the input began, in seconds */
 } settings;
 
-#define OPTION_COUNT 15
+#define OPTION_COUNT 21
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
         {"output", 'o', ADCGS_OPTION_STRING, &s->output, 0, 0, "TARGET",
-         "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.y4m, pixels.raw, or - for standard output", NULL, NULL},
+         "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
+         "or - for standard output", NULL, NULL},
         {"format", 'f', ADCGS_OPTION_STRING, &s->format, 0, 0, "NAME",
-         "y4m, raw, null or an image's extension; without it\nthe target's name decides, and - is y4m", NULL, NULL},
+         "y4m, raw, null, an image's or a video's extension;\nwithout it the target's name decides, and - is y4m", NULL, NULL},
         {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
         {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
          NULL},
+        {"splats", 0, ADCGS_OPTION_STRING, &s->splats, 0, 0, "FILE",
+         "write the splats as PLY instead of frames: out.ply for one\nmoment (the first without --time), out%04d.ply for a span",
+         NULL, NULL},
+        {"bits", 0, ADCGS_OPTION_INT, &s->bits, 8, 16, "N", "bits of a sample in PNG, TIFF and PPM: 8 or 16", NULL, NULL},
+        {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
+         "leave the background out and write alpha: premultiplied in\nEXR, straight in PNG and TIFF", NULL, NULL},
+        {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
+        {"beside", 0, ADCGS_OPTION_STRING, &s->beside, 0, 0, "OTHER",
+         "show the frames of another stream to the right, through the\nsame cameras at the same times", NULL, NULL},
         {"camera", 'c', ADCGS_OPTION_STRING, &s->request.camera, 0, 0, "WHICH",
-         "stored camera's name or index, orbit, or a path FILE.json;\nwithout it camera 0, or orbit if none is stored", NULL,
-         NULL},
+         "stored camera's name or index, orbit, spiral, bullet, or a path\nFILE.json; without it camera 0, or orbit if none is "
+         "stored",
+         NULL, NULL},
+        {"cameras", 0, ADCGS_OPTION_STRING, &s->cameras, 0, 0, "PATH",
+         "write the stored cameras as a path's PATH.json, and nothing else", NULL, NULL},
         {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B",
          "one time, or a span at the stream's frame rate, in seconds;\nwithout it everything", NULL, NULL},
         {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; the field of view stays", NULL,
@@ -58,10 +73,10 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
     memcpy(options, table, sizeof table);
 }
 
-static adcgs_status open_input(adcgs_decoder **decoder, const settings *s, adcgs_error *error)
+static adcgs_status open_input(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
 {
-    if (strcmp(s->input, "-"))
-        return adcgs_open_file(decoder, s->input, &s->config, error);
+    if (strcmp(input, "-"))
+        return adcgs_open_file(decoder, input, &s->config, error);
     const adcgs_status status = adcgs_open_stream(decoder, adcgs_file_read, stdin, &s->config, error);
     if (status != ADCGS_OK)
         adcgs_error_locate(error, "standard input");
@@ -78,16 +93,30 @@ static void print_row(const settings *s, const char *hex, double seconds)
         printf("%.3f\n", 1e3 * seconds);
 }
 
-/** Render all shots; all gets the digest of the frames together. */
-static adcgs_status render(const settings *s, adcgs_decoder *decoder, const adcgs_shots *shots, adcgs_sink *sink,
-                           adcgs_frame *frame, adcgs_md5 *all, double *render_seconds, adcgs_error *error)
+/** The stream to show, and the one beside it or NULL. */
+typedef struct streams {
+    adcgs_decoder *decoder, *beside;
+} streams;
+
+/** What follows a frame's rendering: the picture made of it goes to the sink. */
+static adcgs_status write_frame(const streams *from, const adcgs_shot *shot, adcgs_sink *sink, adcgs_canvas *canvas, int index,
+                                adcgs_error *error)
 {
+    ADCGS_TRY(adcgs_canvas_finish(canvas, from->decoder, from->beside, shot, error));
+    return adcgs_sink_write_with(sink, &canvas->shown, &canvas->extras, index, error);
+}
+
+/** Render all shots; all gets the digest of the frames together. */
+static adcgs_status render(const settings *s, const streams *from, const adcgs_shots *shots, adcgs_sink *sink,
+                           adcgs_canvas *canvas, adcgs_md5 *all, double *render_seconds, adcgs_error *error)
+{
+    adcgs_frame *frame = &canvas->frame;
     adcgs_progress progress;
     adcgs_progress_init(&progress);
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < shots->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         const double start = adcgs_seconds();
-        status = adcgs_render(decoder, &shots->shot[i].camera, shots->shot[i].time, frame, error);
+        status = adcgs_render(from->decoder, &shots->shot[i].camera, shots->shot[i].time, frame, error);
         const double seconds = adcgs_seconds() - start;
         *render_seconds += seconds;
         if (status == ADCGS_OK && s->frametimes && i == 0)
@@ -101,7 +130,7 @@ static adcgs_status render(const settings *s, adcgs_decoder *decoder, const adcg
         if (status == ADCGS_OK && s->verify)
             adcgs_frame_digest_add(all, frame);
         if (status == ADCGS_OK && sink)
-            status = adcgs_sink_write(sink, frame, i, error);
+            status = write_frame(from, &shots->shot[i], sink, canvas, i, error);
         if (status == ADCGS_OK)
             print_row(s, hex, seconds);
         adcgs_progress_show(&progress, "frame %d of %d, %.1f ms", i + 1, shots->n, 1e3 * seconds);
@@ -110,44 +139,59 @@ static adcgs_status render(const settings *s, adcgs_decoder *decoder, const adcg
     return status;
 }
 
-static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_shots *shots, double frame_rate,
+static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_shots *shots, const adcgs_canvas *canvas,
                               adcgs_error *error)
 {
     const adcgs_sink_config config = {.target = s->output,
                                       .format = s->format,
-                                      .depth = s->use_float ? ADCGS_DEPTH_FLOAT
-                                               : s->half    ? ADCGS_DEPTH_HALF
-                                                            : ADCGS_DEPTH_DEFAULT,
-                                      .frame_rate = frame_rate,
-                                      .width = shots->shot[0].camera.width,
-                                      .height = shots->shot[0].camera.height,
-                                      .frames = shots->n};
+                                      .depth = s->use_float    ? ADCGS_DEPTH_FLOAT
+                                               : s->half       ? ADCGS_DEPTH_HALF
+                                               : s->bits == 16 ? ADCGS_DEPTH_16
+                                                               : ADCGS_DEPTH_DEFAULT,
+                                      .frame_rate = shots->frame_rate,
+                                      .width = canvas->shown.width,
+                                      .height = canvas->shown.height,
+                                      .frames = shots->n,
+                                      .has_alpha = s->alpha,
+                                      .has_z = s->depth};
     return s->output ? adcgs_sink_open(sink, &config, error) : ADCGS_OK;
 }
 
+static void note_size(const adcgs_cli *cli, const settings *s, const adcgs_sink *sink, const adcgs_frame *frame)
+{
+    int width, height;
+    adcgs_sink_size(sink, &width, &height);
+    if (width != frame->width || height != frame->height)
+        adcgs_cli_note(cli, "%s: stored as %dx%d pixels, since its codec takes even sizes only: the edge is repeated", s->output,
+                       width, height);
+}
+
 /** \return ADCGS_OK, or with *mismatch set when the digest is not the expected one. */
-static adcgs_status decode(const adcgs_cli *cli, const settings *s, adcgs_decoder *decoder, int *mismatch, adcgs_error *error)
+static adcgs_status decode(const adcgs_cli *cli, const settings *s, const streams *from, int *mismatch, adcgs_error *error)
 {
     adcgs_info info;
     adcgs_shots shots;
+    adcgs_canvas canvas;
     adcgs_sink *sink = NULL;
     adcgs_md5 all;
     double seconds = 0.0;
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(from->decoder, &info));
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; showing what is complete", s->input);
-    ADCGS_TRY(adcgs_shots_make(&shots, decoder, &s->request, error));
-    adcgs_frame frame = {.width = shots.shot[0].camera.width, .height = shots.shot[0].camera.height};
-    frame.rgb = malloc((size_t)frame.width * (size_t)frame.height * 3 * sizeof *frame.rgb);
+    ADCGS_TRY(adcgs_shots_make(&shots, from->decoder, &s->request, error));
+    const int size[2] = {shots.shot[0].camera.width, shots.shot[0].camera.height};
     adcgs_md5_init(&all);
-    adcgs_status status = frame.rgb ? open_sink(&sink, s, &shots, info.frame_rate, error)
-                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a frame");
+    adcgs_status status = adcgs_canvas_init(&canvas, size, &info, s->alpha, s->depth, from->beside != NULL, error);
     if (status == ADCGS_OK)
-        status = render(s, decoder, &shots, sink, &frame, &all, &seconds, error);
+        status = open_sink(&sink, s, &shots, &canvas, error);
+    if (sink)
+        note_size(cli, s, sink, &canvas.shown);
+    if (status == ADCGS_OK)
+        status = render(s, from, &shots, sink, &canvas, &all, &seconds, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = adcgs_sink_close(&sink, error);
     adcgs_sink_abort(&sink);
-    free(frame.rgb);
+    adcgs_canvas_clear(&canvas);
     if (status == ADCGS_OK && !adcgs_interrupted()) {
         uint8_t digest[16];
         char hex[33];
@@ -158,7 +202,7 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, adcgs_decode
             adcgs_cli_note(cli, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
         else
             adcgs_cli_note(cli, "%s: %d frame%s of %dx%d, %.2f ms each", s->input, shots.n, shots.n == 1 ? "" : "s",
-                           frame.width, frame.height, 1e3 * seconds / shots.n);
+                           size[0], size[1], 1e3 * seconds / shots.n);
     }
     adcgs_shots_free(&shots);
     return status;
@@ -171,7 +215,7 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
     ADCGS_TRY(adcgs_requests_read(&requests, s->answer, error));
     s->config.strict_end |= requests.complete;
     s->config.layers = requests.layers ? requests.layers : s->config.layers;
-    adcgs_status status = open_input(decoder, s, error);
+    adcgs_status status = open_input(decoder, s->input, s, error);
     const char *const fault = adcgs_fault_class(status);
     if (status == ADCGS_OK)
         status = adcgs_requests_answer(&requests, s->input, *decoder, error);
@@ -184,6 +228,23 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
     return status;
 }
 
+/** Open what is to be shown, and show it. */
+static adcgs_status show(const adcgs_cli *cli, const settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
+{
+    streams from = {0};
+    ADCGS_TRY(open_input(decoder, s->input, s, error));
+    from.decoder = *decoder;
+    if (s->cameras)
+        return adcgs_shots_write_path(from.decoder, s->cameras, error);
+    if (s->splats)
+        return adcgs_dec_splats(cli, from.decoder, s->input, s->splats, &s->request, error);
+    adcgs_status status = s->beside ? open_input(&from.beside, s->beside, s, error) : ADCGS_OK;
+    if (status == ADCGS_OK)
+        status = decode(cli, s, &from, mismatch, error);
+    adcgs_close(&from.beside);
+    return status;
+}
+
 /** What the option table cannot check. */
 static adcgs_status check_settings(settings *s, adcgs_error *error)
 {
@@ -193,10 +254,22 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     s->request.has_times = s->times != NULL;
     if (s->half && s->use_float)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
-    if (s->answer && (s->output || s->request.camera || s->times || s->request.size[0] || s->md5 || s->verify || s->frametimes))
+    const int frames = s->output || s->request.camera || s->request.size[0] || s->md5 || s->verify || s->frametimes;
+    if (s->answer && (frames || s->times || s->cameras))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--answer goes with --layers, --strict, --threads and --cpu only");
-    if ((s->format || s->half || s->use_float) && !s->output)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--format, --half and --float need --output");
+    if (s->splats && (s->answer || s->cameras || frames))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--splats goes with --time, --layers, --strict, --threads and --cpu only");
+    if ((s->format || s->half || s->use_float || s->bits || s->alpha || s->depth || s->beside) && !s->output)
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--format, --half, --float, --bits, --alpha, --depth and --beside need --output");
+    if (s->bits % 8)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits %d: expected 8 or 16", s->bits);
+    if (s->bits && (s->half || s->use_float))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits excludes --half and --float");
+    if (s->beside && (s->alpha || s->depth || s->md5 || s->verify || s->frametimes))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--beside excludes --alpha, --depth, --md5, --verify and --frametimes");
+    if (s->cameras && (frames || s->times))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--cameras goes with --layers, --strict, --threads and --cpu only");
     if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output takes");
     if (s->verify && (strlen(s->verify) != 32 || strspn(s->verify, "0123456789abcdefABCDEF") != 32))
@@ -232,9 +305,7 @@ int main(int argc, char **argv)
     if (status == ADCGS_OK && s.answer)
         status = answer(&cli, &s, &decoder, &error);
     else if (status == ADCGS_OK)
-        status = open_input(&decoder, &s, &error);
-    if (status == ADCGS_OK && !s.answer)
-        status = decode(&cli, &s, decoder, &mismatch, &error);
+        status = show(&cli, &s, &decoder, &mismatch, &error);
     adcgs_close(&decoder);
     if (adcgs_interrupted())
         raise(adcgs_interrupted()); /* the shell shall see why the program ended; the handler is gone by now */

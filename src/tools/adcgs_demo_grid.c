@@ -3,68 +3,37 @@
  * adcgs-demo-grid: one picture to look at: some views of a scene in columns,
  * truth above, decoded in the middle, their difference below. Not installed.
  */
-#include "io/image.h"
 #include "metric/evaluate.h"
 #include "tools/cli.h"
+#include "tools/mosaic.h"
 
 #include <adcgs/adcgs.h>
 
-#include <math.h>
-#include <stdlib.h>
-
-#define GAP 4
-/* The difference is shown around grey, this many times as strong. */
-#define GAIN 4.0f
-
 typedef struct grid {
     int columns, total, seen, placed;
-    adcgs_image image;
+    const char *output;
+    adcgs_mosaic mosaic;
 } grid;
 
 enum { ROW_TRUTH, ROW_DECODED, ROW_DIFFERENCE, ROWS };
-
-static adcgs_status allocate(grid *g, int width, int height, adcgs_error *error)
-{
-    g->image = (adcgs_image){.width = g->columns * (width + GAP) - GAP, .height = ROWS * (height + GAP) - GAP, .channels = 3};
-    const size_t n = 3 * (size_t)g->image.width * (size_t)g->image.height;
-    g->image.data = malloc(n * sizeof *g->image.data);
-    if (!g->image.data)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
-    for (size_t i = 0; i < n; i++)
-        g->image.data[i] = 1.0f;
-    return ADCGS_OK;
-}
-
-static void place(grid *g, int row, const adcgs_view_score *s)
-{
-    const size_t plane = (size_t)s->width * (size_t)s->height;
-    for (int y = 0; y < s->height; y++)
-        for (int x = 0; x < s->width; x++) {
-            const size_t from = (size_t)y * (size_t)s->width + (size_t)x;
-            const size_t line = (size_t)(row * (s->height + GAP) + y), column = (size_t)(g->placed * (s->width + GAP) + x);
-            float *const to = g->image.data + 3 * (line * (size_t)g->image.width + column);
-            for (size_t c = 0; c < 3; c++) {
-                const float truth = s->truth[c * plane + from], decoded = s->decoded[c * plane + from];
-                const float shown = row == ROW_TRUTH ? truth : row == ROW_DECODED ? decoded : 0.5f + GAIN * (decoded - truth);
-                to[c] = fminf(fmaxf(shown, 0.0f), 1.0f);
-            }
-        }
-}
 
 /* Views are taken evenly from the split; those of another size than the first are left out. */
 static adcgs_status take(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
     grid *const g = user;
     const int wanted = g->placed < g->columns && (int64_t)g->seen * g->columns >= (int64_t)g->placed * g->total;
+    const size_t plane = (size_t)score->width * (size_t)score->height;
+    const adcgs_samples truth = {score->truth, 1, plane}, decoded = {score->decoded, 1, plane};
     g->seen++;
     if (!wanted)
         return ADCGS_OK;
-    if (!g->image.data)
-        ADCGS_TRY(allocate(g, score->width, score->height, error));
-    if (g->columns * (score->width + GAP) - GAP != g->image.width || ROWS * (score->height + GAP) - GAP != g->image.height)
+    if (!g->mosaic.image.data)
+        ADCGS_TRY(adcgs_mosaic_init(&g->mosaic, score->width, score->height, g->columns, ROWS, g->output, error));
+    if (score->width != g->mosaic.width || score->height != g->mosaic.height)
         return ADCGS_OK;
-    for (int row = 0; row < ROWS; row++)
-        place(g, row, score);
+    adcgs_mosaic_place(&g->mosaic, g->placed, ROW_TRUTH, truth);
+    adcgs_mosaic_place(&g->mosaic, g->placed, ROW_DECODED, decoded);
+    adcgs_mosaic_difference(&g->mosaic, g->placed, ROW_DIFFERENCE, decoded, truth);
     g->placed++;
     return ADCGS_OK;
 }
@@ -83,15 +52,15 @@ static adcgs_status draw(const char *stream, const char *folder, const char *out
     memcpy(options.background, info.background, sizeof options.background);
     if (status == ADCGS_OK)
         status = adcgs_scene_open(&scene, folder, &options, error);
-    grid g = {.columns = columns};
+    grid g = {.columns = columns, .output = output};
     if (status == ADCGS_OK) {
         g.total = (int)scene->n_views[ADCGS_SPLIT_TEST];
         g.columns = ADCGS_MIN(columns, ADCGS_MAX(g.total, 1));
-        status = adcgs_evaluate(&evaluation, decoder, scene, ADCGS_SPLIT_TEST, take, &g, error);
+        status = adcgs_evaluate(&evaluation, decoder, scene, ADCGS_SPLIT_TEST, 0, take, &g, error);
     }
     if (status == ADCGS_OK)
-        status = adcgs_image_write(&g.image, output, 0, error);
-    free(g.image.data);
+        status = adcgs_image_write(&g.mosaic.image, output, 0, error);
+    adcgs_mosaic_clear(&g.mosaic);
     adcgs_scene_free(&scene);
     adcgs_close(&decoder);
     return status;

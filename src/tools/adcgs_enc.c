@@ -14,9 +14,9 @@
 #include <sys/stat.h>
 
 typedef struct enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed, *frames;
     double lambda, psnr, time_limit;
-    int iterations, scale, k, max_anchors, threads, cpu, bf16, json, has_lambda, has_size, has_psnr;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, has_lambda, has_size, has_psnr;
     uint64_t seed, size, memory;
 } enc_options;
 
@@ -258,7 +258,7 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
 
 static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
 {
-    const adcgs_scene_options scene_options = { .points_path = o->points };
+    adcgs_scene_options scene_options = { .points_path = o->points, .dataset = o->dataset };
     adcgs_scene *scene = NULL;
     adcgs_train_config config;
     adcgs_cpu_level cpu;
@@ -266,6 +266,8 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_stream stream;
     adcgs_stream_init(&stream);
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
+    if (status == ADCGS_OK && o->frames)
+        status = adcgs_frames_parse(&scene_options.frames, o->frames, error);
     if (status == ADCGS_OK)
         status = configure(&config, o, cpu, error);
     if (status == ADCGS_OK)
@@ -310,7 +312,8 @@ static const adcgs_cli program = {
     .program = "adcgs-enc",
     .operands = "SCENE",
     .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
-    .details = "SCENE is a folder with transforms_train.json or transforms.json, or such a file.",
+    .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D or COLMAP,\n"
+               "a transforms.json, a scene file, or a PLY file of splats, of which it renders views.",
     .min_operands = 0,
     .max_operands = 1,
 };
@@ -350,6 +353,12 @@ static int parse(enc_options *o, int argc, char **argv)
           "primitives per anchor, 1 to 16 (default: the preset's)", NULL, NULL },
         { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, 1, 1000000, "N",
           "budget of anchors (default: the preset's)", NULL, NULL },
+        { "dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
+          "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs or splats",
+          adcgs_dataset_names, NULL },
+        { "frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
+          "take frames A, A + STEP, ... below B of videos, or such\nmoments of pictures; A, B or :STEP may be left out", NULL,
+          NULL },
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",

@@ -9,12 +9,13 @@
 #include "model/model_priv.h"
 #include "model/stream.h"
 #include "tools/cli.h"
+#include "tools/info_points.h"
 
 #include <errno.h>
 #include <stdlib.h>
 
 typedef struct settings {
-    const char *input;
+    const char *input, *points;
     int json, bits, trace, digest;
 } settings;
 
@@ -326,8 +327,19 @@ static adcgs_status print_json(const report *r, adcgs_error *error)
     return adcgs_json_finish(&j, error);
 }
 
+static adcgs_status write_points(const report *r, const char *path, adcgs_error *error)
+{
+    adcgs_points points;
+    ADCGS_TRY(adcgs_info_points(&points, &r->stream, path, error));
+    const adcgs_status status = adcgs_points_write(&points, path, error);
+    adcgs_points_free(&points);
+    return status;
+}
+
 static adcgs_status print_report(const report *r, const settings *s, adcgs_error *error)
 {
+    if (s->points)
+        return write_points(r, s->points, error);
     if (s->json)
         return print_json(r, error);
     if (s->digest)
@@ -352,6 +364,8 @@ int main(int argc, char **argv)
         { "trace", 't', ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL,
           "print position in bits, name and value of every\nsyntax element", NULL, NULL },
         { "digest", 'd', ADCGS_OPTION_FLAG, &s.digest, 0, 0, NULL, "print the digest of each segment's model", NULL, NULL },
+        { "points", 0, ADCGS_OPTION_STRING, &s.points, 0, 0, "FILE",
+          "write the anchors' positions and colours, as .ply or\n.drc (Draco), instead of a report", NULL, NULL },
     };
     const adcgs_cli cli = { "adcgs-info", "FILE|-", "Says what an adcgs stream holds and where its bytes are.", NULL, options,
                             ADCGS_COUNTOF(options), 1, 1 };
@@ -362,6 +376,8 @@ int main(int argc, char **argv)
     report r = { .trace = 0 };
     s.input = argv[first];
     r.trace = s.trace && !s.json;
+    if (s.points && (s.json || s.bits || s.trace || s.digest))
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--points goes with no other option");
     adcgs_status status = read_report(&r, &s, &error);
     if (status == ADCGS_OK)
         status = print_report(&r, &s, &error);

@@ -278,6 +278,8 @@ static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
         {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)", NULL,
          NULL},
         {"set", 0, ADCGS_OPTION_STRING, &sweep->set, 0, 0, "NAME=VALUE,...", "settings of the encoder", NULL, NULL},
+        {"dataset", 0, ADCGS_OPTION_STRING, &sweep->dataset, 0, 0, "KIND", "kind of the scene, as for adcgs-enc", NULL, NULL},
+        {"frames", 0, ADCGS_OPTION_STRING, &sweep->frames, 0, 0, "A:B:STEP", "frames of the scene, as for adcgs-enc", NULL, NULL},
         {"iterations", 'n', ADCGS_OPTION_INT, &sweep->iterations, 1, 10000000, "N", "of training (default: the preset's)", NULL,
          NULL},
         {"jobs", 'j', ADCGS_OPTION_INT, jobs, 1, 64, "N", "encoders at a time (default: 1)", NULL, NULL},

@@ -108,7 +108,7 @@ static adcgs_status judge(outcome *o, const adcgs_enc_report *r, const adcgs_inf
         o->reached = (double)info->bytes.total;
         o->met = o->reached <= o->value && o->reached > (1 - SIZE_WITHIN) * o->value;
     } else if (c->target == ADCGS_TARGET_PSNR) {
-        ADCGS_TRY(adcgs_evaluate(&e, decoder, r->trainer->scene, ADCGS_SPLIT_TRAIN, NULL, NULL, error));
+        ADCGS_TRY(adcgs_evaluate(&e, decoder, r->trainer->scene, ADCGS_SPLIT_TRAIN, 0, NULL, NULL, error));
         o->kind = "psnr";
         o->reached = e.psnr;
         o->met = fabs(o->reached - o->value) <= PSNR_WITHIN;
@@ -132,7 +132,7 @@ static adcgs_status measure(result *x, const adcgs_enc_report *r, adcgs_decoder 
     x->split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
                scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
     ADCGS_TRY(adcgs_get_info(decoder, &x->info));
-    ADCGS_TRY(adcgs_evaluate(&x->quality, decoder, scene, x->split, NULL, NULL, error));
+    ADCGS_TRY(adcgs_evaluate(&x->quality, decoder, scene, x->split, 0, NULL, NULL, error));
     return judge(&x->target, r, &x->info, decoder, error);
 }
 

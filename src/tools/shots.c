@@ -5,11 +5,11 @@
 #include "tools/shots.h"
 
 #include "tools/cli.h"
+#include "tools/turn.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#define ORBIT_SECONDS 4.0   /* of a still scene */
 #define ORBIT_DISTANCE 2.5  /* scene units, when no stored camera says better */
 #define ORBIT_ELEVATION 0.35
 #define ORBIT_FOCAL 1.2     /* focal length per image width */
@@ -34,19 +34,6 @@ void adcgs_shots_free(adcgs_shots *shots)
     *shots = (adcgs_shots){0};
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static void normalise(double v[3])
-{
-    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-}
-
 /** The direction that the stream calls up; z if it does not say. */
 static void find_up(const adcgs_info *info, double up[3])
 {
@@ -59,8 +46,8 @@ static void find_up(const adcgs_info *info, double up[3])
         up[2] = 1.0;
 }
 
-/** A camera on the outside that looks at the scene's centre from a little above. */
-static void default_orbit(adcgs_camera *camera, const adcgs_info *info, const double up[3])
+/** On the outside, looking at the scene's centre from a little above. */
+void adcgs_shots_default(adcgs_camera *camera, const adcgs_info *info, const double up[3])
 {
     *camera = (adcgs_camera){.width = ADCGS_ORBIT_WIDTH,
                              .height = ADCGS_ORBIT_HEIGHT,
@@ -70,27 +57,19 @@ static void default_orbit(adcgs_camera *camera, const adcgs_info *info, const do
                              .cy = 0.5 * ADCGS_ORBIT_HEIGHT,
                              .near_plane = NEAR_PER_SCALE * info->scene_scale,
                              .name = "orbit"};
-    double forward[3], right[3], down[3];
-    for (int i = 0; i < 3; i++)
-        forward[i] = -(up[i] * sin(ORBIT_ELEVATION) + (i == 0) * cos(ORBIT_ELEVATION)); /* up is never x */
-    cross(forward, up, right);
-    normalise(right);
-    cross(forward, right, down);
-    for (int i = 0; i < 3; i++) {
-        double *row = camera->cam_to_world + 4 * i;
-        row[0] = right[i];
-        row[1] = down[i];
-        row[2] = forward[i];
-        row[3] = info->scene_origin[i] - ORBIT_DISTANCE * info->scene_scale * forward[i];
-    }
+    double eye[3];
+    for (int i = 0; i < 3; i++) /* up is never x */
+        eye[i] = info->scene_origin[i] +
+                 ORBIT_DISTANCE * info->scene_scale * (up[i] * sin(ORBIT_ELEVATION) + (i == 0) * cos(ORBIT_ELEVATION));
+    adcgs_look_at(camera->cam_to_world, eye, info->scene_origin, up);
 }
 
 /** Turn a vector about the unit vector up. */
 static void turn(const double up[3], double angle, double v[3])
 {
     double side[3];
-    cross(up, v, side);
-    const double along = (up[0] * v[0] + up[1] * v[1] + up[2] * v[2]) * (1.0 - cos(angle));
+    adcgs_v3_cross(up, v, side);
+    const double along = adcgs_v3_dot(up, v) * (1.0 - cos(angle));
     for (int i = 0; i < 3; i++)
         v[i] = v[i] * cos(angle) + side[i] * sin(angle) + up[i] * along;
 }
@@ -126,52 +105,21 @@ static adcgs_status find_stored(const adcgs_decoder *decoder, const adcgs_info *
     return adcgs_get_camera(decoder, index, camera);
 }
 
-/** Times at the stream's frame rate, both ends included. */
-static adcgs_status make_times(adcgs_shots *out, const adcgs_info *info, const adcgs_shots_request *request, int orbits,
-                               adcgs_error *error)
+adcgs_status adcgs_shots_times(adcgs_shots *out, const adcgs_info *info, const adcgs_shots_request *request,
+                               adcgs_shots_motion motion, adcgs_error *error)
 {
     const double begin = request->has_times ? request->begin : info->time_start;
     const double end = request->has_times ? request->end : info->time_end;
-    const int is_still = !request->has_times && orbits && begin == end;
-    const double n = is_still ? ORBIT_SECONDS * info->frame_rate : (end - begin) * info->frame_rate + 1.0;
-    ADCGS_TRY(adcgs_shots_alloc(out, floor(n + 1e-6), error));
+    const int is_frozen = motion == ADCGS_SHOTS_FROZEN;
+    if (is_frozen && request->has_times && begin != end)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time: time stands still with --camera %s, expected one moment",
+                          request->camera);
+    const int is_still = is_frozen || (!request->has_times && motion == ADCGS_SHOTS_MOVING && begin == end);
+    const double n = is_still ? ADCGS_SHOTS_SECONDS * info->frame_rate : (end - begin) * info->frame_rate + 1.0;
+    ADCGS_TRY(adcgs_shots_alloc(out, fmax(floor(n + 1e-6), is_still), error));
     for (int i = 0; i < out->n; i++)
         out->shot[i].time = is_still ? begin : begin + i / info->frame_rate;
     return ADCGS_OK;
-}
-
-static adcgs_status make_from_camera(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_info *info,
-                                     const adcgs_shots_request *request, adcgs_error *error)
-{
-    const int orbits = request->camera ? !strcmp(request->camera, "orbit") : !info->cameras;
-    adcgs_camera camera;
-    double up[3];
-    find_up(info, up);
-    if (orbits && !info->cameras)
-        default_orbit(&camera, info, up);
-    else if (orbits || !request->camera)
-        ADCGS_TRY(adcgs_get_camera(decoder, 0, &camera));
-    else
-        ADCGS_TRY(find_stored(decoder, info, request->camera, &camera, error));
-    ADCGS_TRY(make_times(out, info, request, orbits, error));
-    for (int i = 0; i < out->n; i++) {
-        out->shot[i].camera = camera;
-        if (orbits)
-            turn_camera(&out->shot[i].camera, info, up, FULL_TURN * i / out->n);
-    }
-    return ADCGS_OK;
-}
-
-/** Stretch what the camera sees to another size. */
-static void fit(adcgs_camera *camera, const int size[2])
-{
-    const double x = (double)size[0] / camera->width, y = (double)size[1] / camera->height;
-    camera->width = size[0];
-    camera->height = size[1];
-    camera->fx *= x;
-    camera->cx *= x;
-    camera->fy *= y;
-    camera->cy *= y;
 }
 
 #ifndef HAVE_ENCODER
@@ -188,18 +136,87 @@ static int is_path(const char *name)
     return n > 5 && !strcmp(name + n - 5, ".json");
 }
 
+static int is_named(const adcgs_shots_request *request, const char *name)
+{
+    return request->camera && !strcmp(request->camera, name);
+}
+
+static void make_orbit(adcgs_shots *out, const adcgs_rig *rig, const adcgs_info *info, const double up[3])
+{
+    for (int i = 0; i < out->n; i++) {
+        out->shot[i].camera = rig->cameras[0];
+        turn_camera(&out->shot[i].camera, info, up, FULL_TURN * i / out->n);
+    }
+}
+
+/** Paths that begin at the stored cameras, or at one of our own. */
+static adcgs_status make_from_rig(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                                  const adcgs_shots_request *request, adcgs_error *error)
+{
+    const int is_bullet = is_named(request, "bullet");
+    adcgs_rig rig;
+    double up[3];
+    find_up(info, up);
+    ADCGS_TRY(adcgs_shots_times(out, info, request, is_bullet ? ADCGS_SHOTS_FROZEN : ADCGS_SHOTS_MOVING, error));
+    adcgs_status status = adcgs_rig_init(&rig, decoder, info, up, error);
+    if (status == ADCGS_OK && is_bullet && rig.n >= 3)
+        status = adcgs_rig_bullet(&rig, out, error);
+    else if (status == ADCGS_OK && is_named(request, "spiral"))
+        adcgs_rig_spiral(&rig, out);
+    else if (status == ADCGS_OK)
+        make_orbit(out, &rig, info, up);
+    adcgs_rig_clear(&rig);
+    return status;
+}
+
+static adcgs_status make_from_camera(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                                     const adcgs_shots_request *request, adcgs_error *error)
+{
+    adcgs_camera camera;
+    if (request->camera)
+        ADCGS_TRY(find_stored(decoder, info, request->camera, &camera, error));
+    else
+        ADCGS_TRY(adcgs_get_camera(decoder, 0, &camera));
+    ADCGS_TRY(adcgs_shots_times(out, info, request, ADCGS_SHOTS_FIXED, error));
+    for (int i = 0; i < out->n; i++)
+        out->shot[i].camera = camera;
+    return ADCGS_OK;
+}
+
+static adcgs_status make_shots(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                               const adcgs_shots_request *request, adcgs_error *error)
+{
+    if (is_path(request->camera))
+        return adcgs_shots_read_path(out, info, request, NEAR_PER_SCALE * info->scene_scale, error);
+    if (is_named(request, "orbit") || is_named(request, "spiral") || is_named(request, "bullet") ||
+        (!request->camera && !info->cameras))
+        return make_from_rig(out, decoder, info, request, error);
+    return make_from_camera(out, decoder, info, request, error);
+}
+
+void adcgs_shots_fit(adcgs_camera *camera, const int size[2])
+{
+    const double x = (double)size[0] / camera->width, y = (double)size[1] / camera->height;
+    camera->width = size[0];
+    camera->height = size[1];
+    camera->fx *= x;
+    camera->cx *= x;
+    camera->fy *= y;
+    camera->cy *= y;
+}
+
 adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_shots_request *request,
                               adcgs_error *error)
 {
     adcgs_info info;
     *out = (adcgs_shots){0};
     ADCGS_TRY(adcgs_get_info(decoder, &info));
-    adcgs_status status = is_path(request->camera)
-                              ? adcgs_shots_read_path(out, &info, request, NEAR_PER_SCALE * info.scene_scale, error)
-                              : make_from_camera(out, decoder, &info, request, error);
+    const adcgs_status status = make_shots(out, decoder, &info, request, error);
     if (status != ADCGS_OK)
         adcgs_shots_free(out);
+    if (!(out->frame_rate > 0.0)) /* paths may have one of their own */
+        out->frame_rate = info.frame_rate;
     for (int i = 0; i < out->n && request->size[0]; i++)
-        fit(&out->shot[i].camera, request->size);
+        adcgs_shots_fit(&out->shot[i].camera, request->size);
     return status;
 }

@@ -30,6 +30,7 @@ typedef struct adcgs_sweep {
     const char *scene, *directory;
     const char *programs;    /**< folder of adcgs-enc and adcgs-eval */
     const char *preset, *set; /**< NULL: the encoder's; nothing changed */
+    const char *dataset, *frames; /**< for both programs; NULL: told by files; all */
     int iterations;          /**< 0: the preset's */
     int threads;             /**< of each encoder; 0: one per CPU */
     int resume, ablation, yardsticks;

@@ -105,10 +105,10 @@ static double size_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run, cons
 /* What the result depends on. Neither threads nor a shared beginning do. */
 static json_t *settings_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run)
 {
-    return json_pack("{s:s, s:s, s:s, s:i, s:f, s:i, s:f, s:s, s:i, s:i}", "scene", sweep->scene, "preset",
+    return json_pack("{s:s, s:s, s:s, s:i, s:f, s:i, s:f, s:s, s:i, s:i, s:s*, s:s*}", "scene", sweep->scene, "preset",
                      sweep->preset ? sweep->preset : "", "set", sweep->set ? sweep->set : "", "iterations", sweep->iterations,
                      "lambda", run->lambda, "k", run->k, "seed", run->seed, "without", run->without, "uncompressed",
-                     run->uncompressed, "beginning", run->beginning);
+                     run->uncompressed, "beginning", run->beginning, "dataset", sweep->dataset, "frames", sweep->frames);
 }
 
 static json_t *load(const char *path, adcgs_error *error)
@@ -197,6 +197,8 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
     option(&c, "--resume", unfinished ? partial : from ? begin : NULL);
     option(&c, "--preset", sweep->preset);
     option(&c, "--set", sweep->set);
+    option(&c, "--dataset", sweep->dataset);
+    option(&c, "--frames", sweep->frames);
     option(&c, "--without", run->without);
     option(&c, "--uncompressed", run->uncompressed ? raw : NULL);
     number_option(&c, "--lambda", run->lambda, 0);
@@ -217,6 +219,8 @@ static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_run *ru
     snprintf(program, sizeof program, "%s/adcgs-eval", sweep->programs);
     path_of(file, sweep, run, ".adcgs");
     word(&c, program);
+    option(&c, "--dataset", sweep->dataset);
+    option(&c, "--frames", sweep->frames);
     word(&c, "--json");
     word(&c, "--");
     word(&c, file);

@@ -60,111 +60,161 @@ typedef float vec;
 #endif
 
 /* Outputs and vectors of inputs whose products stay in registers while all lanes pass by. */
-enum { TILE_O = 6, TILE_V = 2, TILE_I = TILE_V * VN };
+enum { TILE_O = 6, TILE_V = VN == 16 ? 4 : 2, TILE_I = TILE_V * VN };
 
 #if VN > 1
-/** Eight rows of eight lanes become eight lanes of eight rows. */
-static inline void turn_eight(float *to, size_t to_stride, const float *from)
+/** n of eight rows of eight lanes become eight lanes of eight rows; the rest is 0. */
+static inline __attribute__((always_inline)) void turn_eight(float *to, const float *from, int n)
 {
-    __m256 r[8], s[8];
-    for (int i = 0; i < 8; i++)
-        r[i] = _mm256_load_ps(from + i * LANES);
-    for (int i = 0; i < 8; i += 2) {
-        s[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
-        s[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
-    }
-    for (int i = 0; i < 8; i += 4)
-        for (int j = 0; j < 2; j++) {
-            r[i + 2 * j] = _mm256_shuffle_ps(s[i + j], s[i + j + 2], 0x44);
-            r[i + 2 * j + 1] = _mm256_shuffle_ps(s[i + j], s[i + j + 2], 0xee);
+    for (int half = 0; half < 2; half++, from += 4, to += 4 * TILE_I) {
+        __m256 r[4];
+#pragma GCC unroll 4
+        for (int i = 0; i < 4; i++) {
+            const __m128 low = i < n ? _mm_load_ps(from + i * LANES) : _mm_setzero_ps();
+            const __m128 high = i + 4 < n ? _mm_load_ps(from + (i + 4) * LANES) : _mm_setzero_ps();
+            r[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
         }
-    for (int i = 0; i < 4; i++) {
-        _mm256_storeu_ps(to + (size_t)i * to_stride, _mm256_permute2f128_ps(r[i], r[i + 4], 0x20));
-        _mm256_storeu_ps(to + (size_t)(i + 4) * to_stride, _mm256_permute2f128_ps(r[i], r[i + 4], 0x31));
+        const __m256 a = _mm256_unpacklo_ps(r[0], r[1]), b = _mm256_unpackhi_ps(r[0], r[1]);
+        const __m256 c = _mm256_unpacklo_ps(r[2], r[3]), d = _mm256_unpackhi_ps(r[2], r[3]);
+        _mm256_store_ps(to, _mm256_shuffle_ps(a, c, 0x44));
+        _mm256_store_ps(to + TILE_I, _mm256_shuffle_ps(a, c, 0xee));
+        _mm256_store_ps(to + 2 * TILE_I, _mm256_shuffle_ps(b, d, 0x44));
+        _mm256_store_ps(to + 3 * TILE_I, _mm256_shuffle_ps(b, d, 0xee));
     }
 }
-#endif
 
-/** to[lane][input] of n inputs from x[input][lane]; inputs past the last are 0. */
+/** to[lane][input] of n inputs from x[input][lane]; the last vector's other inputs are 0. */
 static void turn(float to[LANES][TILE_I], const float *x, int n)
 {
-    int i = 0;
-#if VN > 1
-    for (; i + 8 <= n; i += 8)
+    for (int i = 0; i < (n + VN - 1) / VN * VN; i += 8)
         for (int l = 0; l < LANES; l += 8)
-            turn_eight(&to[l][i], TILE_I, x + (size_t)i * LANES + l);
-#endif
-    for (; i < TILE_I; i++)
-        for (int l = 0; l < LANES; l++)
-            to[l][i] = i < n ? x[(size_t)i * LANES + (size_t)l] : 0;
+            if (n - i >= 8)
+                turn_eight(&to[l][i], x + (size_t)i * LANES + l, 8);
+            else
+                turn_eight(&to[l][i], x + (size_t)i * LANES + l, n - i);
 }
 
-/** Gradients of no weights' rows, ni of each, from lanes of their outputs dy[no][64] and inputs xt[64][TILE_I]. */
+/** Adds to gb[n], up to eight, the sums over lanes of dy[n][64]. */
+static inline __attribute__((always_inline)) void sum_lanes(float *gb, const float *dy, int n)
+{
+    __m256 row[8] = {_mm256_setzero_ps()}, half[4];
+    float sums[8];
+    for (int l = 0; l < LANES; l += 8)
+#pragma GCC unroll 8
+        for (int i = 0; i < 8; i++)
+            if (i < n)
+                row[i] = _mm256_add_ps(row[i], _mm256_load_ps(dy + i * LANES + l));
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; i++)
+        half[i] = _mm256_add_ps(_mm256_permute2f128_ps(row[i], row[i + 4], 0x20),
+                                _mm256_permute2f128_ps(row[i], row[i + 4], 0x31));
+    _mm256_storeu_ps(sums, _mm256_hadd_ps(_mm256_hadd_ps(half[0], half[1]), _mm256_hadd_ps(half[2], half[3])));
+    for (int i = 0; i < n; i++)
+        gb[i] += sums[i];
+}
+
+static void bias_grad(float *gb, const float *dy, int n)
+{
+    for (; n >= 8; n -= 8, gb += 8, dy += 8 * LANES)
+        sum_lanes(gb, dy, 8);
+    if (n)
+        sum_lanes(gb, dy, n);
+}
+#else
+static void turn(float to[LANES][TILE_I], const float *x, int n)
+{
+    for (int l = 0; l < LANES; l++)
+        for (int i = 0; i < n; i++)
+            to[l][i] = x[(size_t)i * LANES + (size_t)l];
+}
+
+static void bias_grad(float *gb, const float *dy, int n)
+{
+    for (int o = 0; o < n; o++) {
+        float sum = 0;
+        for (int l = 0; l < LANES; l++)
+            sum += dy[o * LANES + l];
+        gb[o] += sum;
+    }
+}
+#endif
+
+/** Gradients of no weights' rows, ni of each in nv vectors, from lanes of their outputs dy[no][64] and inputs xt[64][TILE_I]. */
 static inline __attribute__((always_inline)) void weight_tile(float *gw, size_t ldg, const float *dy, float xt[LANES][TILE_I],
-                                                              int no, int ni)
+                                                              int no, int nv, int ni)
 {
     vec acc[TILE_O][TILE_V];
     for (int o = 0; o < no; o++)
-        for (int v = 0; v < TILE_V; v++)
+        for (int v = 0; v < nv; v++)
             acc[o][v] = vzero();
     for (int l = 0; l < LANES; l++) {
         vec x[TILE_V];
-        for (int v = 0; v < TILE_V; v++)
+        for (int v = 0; v < nv; v++)
             x[v] = vload(xt[l] + v * VN);
+#pragma GCC unroll 6
         for (int o = 0; o < no; o++) {
             const vec d = vspread(dy[o * LANES + l]);
-            for (int v = 0; v < TILE_V; v++)
+#pragma GCC unroll 4
+            for (int v = 0; v < nv; v++)
                 acc[o][v] = vfma(d, x[v], acc[o][v]);
         }
     }
+#pragma GCC unroll 6
     for (int o = 0; o < no; o++, gw += ldg) {
-        float sums[TILE_I];
-        for (int v = 0; v < TILE_V && ni == TILE_I; v++)
-            vstoreu(gw + v * VN, vadd(vloadu(gw + v * VN), acc[o][v]));
-        for (int v = 0; v < TILE_V && ni < TILE_I; v++)
-            vstoreu(sums + v * VN, acc[o][v]);
-        for (int i = 0; i < ni && ni < TILE_I; i++)
-            gw[i] += sums[i];
+        float rest[VN];
+#pragma GCC unroll 4
+        for (int v = 0; v < nv; v++)
+            if ((v + 1) * VN <= ni)
+                vstoreu(gw + v * VN, vadd(vloadu(gw + v * VN), acc[o][v]));
+        vstoreu(rest, acc[o][nv - 1]);
+        for (int i = ni / VN * VN; i < ni; i++)
+            gw[i] += rest[i % VN];
     }
 }
 
-static void weight_rows(float *gw, size_t ldg, const float *dy, float xt[LANES][TILE_I], int no, int ni)
+static inline __attribute__((always_inline)) void weight_rows(float *gw, size_t ldg, const float *dy, float xt[LANES][TILE_I],
+                                                              int no, int nv, int ni)
 {
     switch (no) {
-    case 6: weight_tile(gw, ldg, dy, xt, 6, ni); break;
-    case 5: weight_tile(gw, ldg, dy, xt, 5, ni); break;
-    case 4: weight_tile(gw, ldg, dy, xt, 4, ni); break;
-    case 3: weight_tile(gw, ldg, dy, xt, 3, ni); break;
-    case 2: weight_tile(gw, ldg, dy, xt, 2, ni); break;
-    default: weight_tile(gw, ldg, dy, xt, 1, ni); break;
+    case 6: weight_tile(gw, ldg, dy, xt, 6, nv, ni); break;
+    case 5: weight_tile(gw, ldg, dy, xt, 5, nv, ni); break;
+    case 4: weight_tile(gw, ldg, dy, xt, 4, nv, ni); break;
+    case 3: weight_tile(gw, ldg, dy, xt, 3, nv, ni); break;
+    case 2: weight_tile(gw, ldg, dy, xt, 2, nv, ni); break;
+    default: weight_tile(gw, ldg, dy, xt, 1, nv, ni); break;
+    }
+}
+
+/** Of n_out rows, dealt out evenly: a rest of one or two would leave the multipliers idle. */
+static void weight_columns(float *gw, size_t ldg, const float *dy, float xt[LANES][TILE_I], int n_out, int ni)
+{
+    const int groups = (n_out + TILE_O - 1) / TILE_O;
+    for (int g = 0, o = 0, no; g < groups; g++, o += no, gw += (size_t)no * ldg, dy += no * LANES) {
+        no = (n_out - o + groups - g - 1) / (groups - g);
+        switch ((ni + VN - 1) / VN) {
+#if VN == 16
+        case 4: weight_rows(gw, ldg, dy, xt, no, 4, ni); break;
+        case 3: weight_rows(gw, ldg, dy, xt, no, 3, ni); break;
+#endif
+        case 2: weight_rows(gw, ldg, dy, xt, no, 2, ni); break;
+        default: weight_rows(gw, ldg, dy, xt, no, 1, ni); break;
+        }
     }
 }
 
 static void ISA(weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles,
                              int n_out, int n_in)
 {
-    const int groups = (n_out + TILE_O - 1) / TILE_O;
+    const int vectors = (n_in + VN - 1) / VN, blocks = (vectors + TILE_V - 1) / TILE_V;
     alignas(64) float xt[LANES][TILE_I];
     for (int t = 0; t < tiles; t++, dy += sy, x += sx) {
-        for (int i = 0; i < n_in; i += TILE_I) {
-            const int ni = n_in - i < TILE_I ? n_in - i : TILE_I;
+        for (int b = 0, i = 0, ni; b < blocks; b++, i += ni) {
+            ni = ADCGS_MIN((vectors - i / VN + blocks - b - 1) / (blocks - b) * VN, n_in - i);
             turn(xt, x + (size_t)i * LANES, ni);
-            /* Rows are dealt out evenly: a rest of one or two would leave the multipliers idle. */
-            for (int g = 0, o = 0, no; g < groups; g++, o += no) {
-                no = (n_out - o + groups - g - 1) / (groups - g);
-                weight_rows(gw + (size_t)o * ldg + i, ldg, dy + (size_t)o * LANES, xt, no, ni);
-            }
+            weight_columns(gw + i, ldg, dy, xt, n_out, ni);
         }
-        for (int o = 0; gb && o < n_out; o++) {
-            vec acc = vzero();
-            float lanes[VN], sum = 0;
-            for (int l = 0; l < LANES; l += VN)
-                acc = vadd(acc, vload(dy + (size_t)o * LANES + l));
-            vstoreu(lanes, acc);
-            for (int l = 0; l < VN; l++)
-                sum += lanes[l];
-            gb[o] += sum;
-        }
+        if (gb)
+            bias_grad(gb, dy, n_out);
     }
 }
 

@@ -2,8 +2,9 @@
 /** \file Brightness of cameras. */
 #include "train/exposure.h"
 
+#include "data/by_camera.h"
+
 #include <math.h>
-#include <stdlib.h>
 
 enum { PICTURES_LEAST = 4 };
 /*
@@ -13,32 +14,15 @@ enum { PICTURES_LEAST = 4 };
 static const double KEEP = 0.9, DOUBT = 0.03;
 static const float BURNT = 0.98f, GAIN_MOST = 4;
 
-static int same_camera(const adcgs_camera *a, const adcgs_camera *b)
-{
-    return a->width == b->width && a->height == b->height && !memcmp(&a->fx, &b->fx, sizeof a->fx) &&
-           !memcmp(&a->fy, &b->fy, sizeof a->fy) && !memcmp(&a->cx, &b->cx, sizeof a->cx) &&
-           !memcmp(&a->cy, &b->cy, sizeof a->cy) && !memcmp(a->cam_to_world, b->cam_to_world, sizeof a->cam_to_world);
-}
-
 adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *views, uint32_t n_views, adcgs_error *error)
 {
     const uint32_t most = n_views / PICTURES_LEAST;
     adcgs_exposure_clear(e);
     e->of = adcgs_alloc(NULL, n_views, sizeof *e->of, error);
-    uint32_t *first = adcgs_alloc(NULL, n_views, sizeof *first, error), n = 0;
-    if (!e->of || !first) {
-        adcgs_free(NULL, first);
+    uint32_t n = 0;
+    if (!e->of)
         return ADCGS_ERR_MEMORY;
-    }
-    for (uint32_t i = 0; i < n_views && n <= most; i++) {
-        uint32_t c = 0;
-        while (c < n && !same_camera(&views[first[c]].camera, &views[i].camera))
-            c++;
-        if (c == n)
-            first[n++] = i;
-        e->of[i] = c;
-    }
-    adcgs_free(NULL, first);
+    ADCGS_TRY(adcgs_sort_by_camera(views, n_views, e->of, NULL, &n, error));
     if (n < 2 || n > most)
         return ADCGS_OK;
     e->cameras = adcgs_alloc(NULL, n, sizeof *e->cameras, error);

@@ -75,7 +75,7 @@ static void run_band(void *arg, int index, int thread)
     (void)thread;
     s->l1 = s->mse = s->ssim = 0.0;
     for (int row = s->first; row < s->first + s->count; row++) {
-        const size_t from = (size_t)row * (size_t)s->stride;
+        const size_t from = (size_t)row * (size_t)s->width;
         double l1 = 0.0, mse = 0.0;
         for (size_t i = from; i < from + (size_t)s->width; i++) {
             const float d = s->image[i] - s->target[i];
@@ -88,11 +88,19 @@ static void run_band(void *arg, int index, int thread)
     }
 }
 
-/* Cut `size` into units of at most `most`, each a multiple of 16 but the last. Returns the size of a unit. */
+/* Cut `size` into units of at most `most`. Returns the size of a unit. */
 static int unit_size(int size, int most)
 {
     const int units = (size + most - 1) / most;
-    return ((size + units - 1) / units + 15) & ~15;
+    return (size + units - 1) / units;
+}
+
+/* Stripes over a strip's columns and those that its windows see, within the image as far as it is wide enough. */
+static void place_stripes(adcgs_loss_strip *s)
+{
+    const int seen = ADCGS_MIN(s->count + 4 * ADCGS_LOSS_HALO, s->width), pairs = 2 * ADCGS_LOSS_LANES;
+    s->stripe = ADCGS_MAX(2 * ((seen + pairs - 1) / pairs), ADCGS_LOSS_HALO + 1);
+    s->begin = ADCGS_MAX(0, ADCGS_MIN(s->first - 2 * ADCGS_LOSS_HALO, s->width - ADCGS_LOSS_LANES * s->stripe));
 }
 
 adcgs_status adcgs_loss_image(adcgs_loss *loss, const float *image, const float *target, int width, int height, float ssim_weight,
@@ -103,14 +111,17 @@ adcgs_status adcgs_loss_image(adcgs_loss *loss, const float *image, const float 
     const size_t plane = (size_t)width * (size_t)height;
     const float per_value = (float)(1.0 / (CHANNELS * (double)plane));
     const int bands = ssim_weight == 0.0f, length = bands ? height : width;
-    const int unit = bands ? unit_size(height, height > 64 * BAND ? height / 64 : BAND) : unit_size(width, ADCGS_LOSS_STRIP);
+    const int unit = unit_size(length, bands ? ADCGS_MAX(BAND, height / 64)
+                                             : width > ADCGS_LOSS_SPAN ? ADCGS_LOSS_STRIP : ADCGS_LOSS_SPAN);
     int n = 0;
     for (int c = 0; c < CHANNELS; c++)
         for (int first = 0; first < length; first += unit)
             loss->strip[n++] = (adcgs_loss_strip){
                 .image = image + (size_t)c * plane, .target = target + (size_t)c * plane, .grad = grad + (size_t)c * plane,
-                .stride = width, .width = width, .height = height, .first = first, .count = ADCGS_MIN(unit, length - first),
+                .width = width, .height = height, .first = first, .count = ADCGS_MIN(unit, length - first),
                 .l1_scale = (1.0f - ssim_weight) * per_value, .ssim_scale = -ssim_weight * per_value};
+    for (int i = 0; i < n && !bands; i++)
+        place_stripes(&loss->strip[i]);
     adcgs_pool_run(loss->pool, bands ? run_band : run_strip, loss, n);
     *value = (adcgs_loss_value){0.0, 0.0, 0.0, 0.0};
     for (int i = 0; i < n; i++) {

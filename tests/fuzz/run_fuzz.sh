@@ -10,7 +10,7 @@ seconds=$2
 shift 2
 sanitize=${SANITIZE:-address,undefined}
 build=fuzz-build${SANITIZE:+-$SANITIZE}
-targets=(range geom net headers decode roundtrip ply transforms hypernerf manifest)
+targets=(range geom net headers decode roundtrip ply splats transforms hypernerf layouts manifest)
 options=()
 if [ "$sanitize" = memory ]; then
     targets=(range geom net headers decode roundtrip)
@@ -32,7 +32,7 @@ make -s -j "${JOBS:-2}" "${programs[@]}" LDFLAGS="-fsanitize=fuzzer,$sanitize" >
 seeds()
 {
     case $1 in
-        ply | transforms | hypernerf) echo "$top/tests/fuzz/seeds/$1" ;;
+        ply | splats | transforms | hypernerf | layouts) echo "$top/tests/fuzz/seeds/$1" ;;
         manifest) echo "$top/conformance/manifest.json" ;;
         *) echo "$top/conformance/vectors" ;;
     esac

@@ -313,14 +313,14 @@ static void test_bad_cameras(void **state)
     bad_camera(PLAIN MIDDLE ",\"image_size\":[0,4]", ADCGS_ERR_DATA, "image_size: 0");
     bad_camera(PLAIN MIDDLE ",\"image_size\":[16385,4]", ADCGS_ERR_DATA, "image_size: 16385");
     bad_camera(PLAIN "," LENS ",\"pixel_aspect_ratio\":0", ADCGS_ERR_DATA, "pixel_aspect_ratio: 0");
-    bad_camera(PLAIN "," LENS ",\"skew\":0.001", ADCGS_ERR_UNSUPPORTED, "skew: skew 0.001");
+    bad_camera(PLAIN "," LENS ",\"skew\":1e7", ADCGS_ERR_DATA, "skew: 1e+07");
+    bad_camera(PLAIN "," LENS ",\"skew\":60", ADCGS_ERR_DATA, "a tenth of 6x4");
     bad_camera(PLAIN "," LENS ",\"skew\":[0]", ADCGS_ERR_DATA, "skew: expected a number");
-    bad_camera(PLAIN "," LENS ",\"radial_distortion\":[0,0,-2e-6]", ADCGS_ERR_UNSUPPORTED,
-               "radial_distortion: lens distortion -2e-06");
+    bad_camera(PLAIN "," LENS ",\"radial_distortion\":[-9,0,0]", ADCGS_ERR_DATA, "folds inside the picture of 6x4");
+    bad_camera(PLAIN "," LENS ",\"radial_distortion\":[0,0,1e7]", ADCGS_ERR_DATA, "radial_distortion: 1e+07");
     bad_camera(PLAIN "," LENS ",\"radial_distortion\":[0,0]", ADCGS_ERR_DATA, "radial_distortion: expected 3");
-    bad_camera(PLAIN "," LENS ",\"tangential_distortion\":[0,1]", ADCGS_ERR_UNSUPPORTED,
-               "tangential_distortion: lens distortion 1");
-    bad_camera(PLAIN "," LENS ",\"tangential\":[0.5,0]", ADCGS_ERR_UNSUPPORTED, "tangential: lens distortion 0.5");
+    bad_camera(PLAIN "," LENS ",\"tangential_distortion\":[0,-4]", ADCGS_ERR_DATA, "folds inside");
+    bad_camera(PLAIN "," LENS ",\"tangential\":[0.5]", ADCGS_ERR_DATA, "tangential: expected 2");
     bad_camera(LENS ",\"position\":[0,0,0]", ADCGS_ERR_DATA, "orientation: expected 3 rows");
     bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1],[0,0,1]]", ADCGS_ERR_DATA, "orientation: expected 3 numbers");
     bad_camera(LENS ",\"orientation\":[[1,0,0],[0,1,0],[0,0,-1]],\"position\":[0,0,0]", ADCGS_ERR_DATA,

@@ -211,7 +211,8 @@ static float pixels[WIDTH * HEIGHT * 3];
 static adcgs_status sink_frames(const char *target, const char *format, adcgs_depth depth, int frames)
 {
     const adcgs_frame frame = {WIDTH, HEIGHT, pixels};
-    const adcgs_sink_config config = {target, format, depth, 30.0, WIDTH, HEIGHT, frames};
+    const adcgs_sink_config config = {.target = target, .format = format, .depth = depth, .frame_rate = 30.0, .width = WIDTH,
+                                      .height = HEIGHT, .frames = frames};
     adcgs_sink *sink;
     ADCGS_TRY(adcgs_sink_open(&sink, &config, &error));
     for (int i = 0; i < frames; i++)

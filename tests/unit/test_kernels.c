@@ -262,9 +262,9 @@ static adcgs_train_dsp train_dsp(const call *c)
 static void weights(call *c)
 {
     const adcgs_train_dsp dsp = train_dsp(c);
-    const int n_out = size_of(c, 40), n_in = size_of(c, 40), tiles = size_of(c, 3);
+    const int n_out = size_of(c, 40), n_in = size_of(c, 150), tiles = size_of(c, 3);
     const float *const dy = given(c, (size_t)(tiles * n_out) * L), *const x = given(c, (size_t)(tiles * n_in) * L);
-    dsp.weight_grad(added(c, (size_t)n_out * 40), 40, c->round & 1 ? added(c, (size_t)n_out) : NULL, dy, (size_t)n_out * L, x,
+    dsp.weight_grad(added(c, (size_t)n_out * 150), 150, c->round & 1 ? added(c, (size_t)n_out) : NULL, dy, (size_t)n_out * L, x,
                     (size_t)n_in * L, tiles, n_out, n_in);
     const size_t many = (size_t)size_of(c, 1000);
     float *const p = added(c, many), *const g = added(c, many), *const m = added(c, many), *const v = added(c, many);

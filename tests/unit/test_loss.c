@@ -144,6 +144,7 @@ static void agrees_with_reference(void **state)
     check_reference(3, 29, 1);
     check_reference(37, 23, 1);
     check_reference(300, 14, 7);
+    check_reference(430, 7, 5);
 }
 
 static void levels_and_threads_do_not_matter(void **state)

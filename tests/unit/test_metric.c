@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file PSNR and SSIM against slow direct references; boxes and the parts of pictures that they cover. */
+/** \file PSNR, SSIM and MS-SSIM against slow direct references; boxes and the parts of pictures that they cover. */
 #include "metric/crop.h"
 #include "metric/metric.h"
 
@@ -76,6 +76,118 @@ static void test_ssim(void **state)
         check_ssim(sizes[i][0], sizes[i][1]);
     double got;
     assert_int_equal(adcgs_ssim(NULL, NULL, 0, 5, &got, NULL), ADCGS_ERR_USAGE);
+}
+
+/** Wang's definition, written out, for sides that all scales divide or exceed by a pixel: windows of 11x11 that stay inside. */
+static double reference_ms_ssim(const float *a, const float *b, int width, int height, int scales)
+{
+    static const double exponents[5] = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
+    double mean = 0, sum_of_exponents = 0, window = 0;
+    for (int i = 0; i < 121; i++)
+        window += exp(-((i / 11 - 5) * (i / 11 - 5) + (i % 11 - 5) * (i % 11 - 5)) / 4.5);
+    for (int i = 0; i < scales; i++)
+        sum_of_exponents += exponents[i];
+    for (int c = 0; c < 3; c++) {
+        double product = 1;
+        for (int scale = 0; scale < scales; scale++) {
+            /* A pixel of a scale is the mean of the box of the first scale that it stands for. */
+            const int box = 1 << scale, w = (width + box - 1) / box, h = (height + box - 1) / box;
+            double *p[2] = {calloc((size_t)(w * h), sizeof(double)), calloc((size_t)(w * h), sizeof(double))}, sum = 0;
+            for (int y = 0; y < h * box; y++)
+                for (int x = 0; x < w * box; x++)
+                    for (int k = 0; k < 2; k++) {
+                        const float *plane = (k ? b : a) + c * width * height;
+                        p[k][y / box * w + x / box] +=
+                            (double)plane[ADCGS_MIN(y, height - 1) * width + ADCGS_MIN(x, width - 1)] / (box * box);
+                    }
+            for (int y = 5; y < h - 5; y++)
+                for (int x = 5; x < w - 5; x++) {
+                    double ma = 0, mb = 0, aa = 0, bb = 0, ab = 0;
+                    for (int i = -5; i <= 5; i++)
+                        for (int j = -5; j <= 5; j++) {
+                            const double weight = exp(-(i * i + j * j) / 4.5) / window;
+                            const double va = p[0][(y + i) * w + x + j], vb = p[1][(y + i) * w + x + j];
+                            ma += weight * va;
+                            mb += weight * vb;
+                            aa += weight * va * va;
+                            bb += weight * vb * vb;
+                            ab += weight * va * vb;
+                        }
+                    const double structure = (2 * (ab - ma * mb) + 9e-4) / (aa - ma * ma + bb - mb * mb + 9e-4);
+                    const double luminance = (2 * ma * mb + 1e-4) / (ma * ma + mb * mb + 1e-4);
+                    sum += scale + 1 < scales ? structure : structure * luminance;
+                }
+            product *= pow(sum / ((w - 10) * (h - 10)), exponents[scale] / (scales < 5 ? sum_of_exponents : 1));
+            free(p[0]);
+            free(p[1]);
+        }
+        mean += product / 3;
+    }
+    return mean;
+}
+
+static double check_ms_ssim(int width, int height, int expected_scales)
+{
+    const int n = 3 * width * height;
+    float *a = malloc((size_t)n * sizeof *a), *b = malloc((size_t)n * sizeof *b);
+    double got, same;
+    int scales;
+    for (int i = 0; i < n; i++) {
+        a[i] = 0.5f * random_value() + (float)(i % width / 9 % 2) * 0.5f;
+        b[i] = 0.7f * a[i] + 0.3f * random_value();
+    }
+    assert_int_equal(adcgs_ms_ssim(a, b, width, height, &got, &scales, NULL), ADCGS_OK);
+    assert_int_equal(scales, expected_scales);
+    if (scales) {
+        const double reference = reference_ms_ssim(a, b, width, height, scales);
+        if (!(fabs(got - reference) < 1e-11))
+            fail_msg("%dx%d: %.15g, reference %.15g", width, height, got, reference);
+        assert_true(got > 0.1 && got < 0.99);
+        assert_int_equal(adcgs_ms_ssim(a, a, width, height, &same, &scales, NULL), ADCGS_OK);
+        assert_true(fabs(same - 1) < 1e-9);
+    }
+    free(a);
+    free(b);
+    return got;
+}
+
+static void test_ms_ssim(void **state)
+{
+    double got;
+    int scales;
+    check_ms_ssim(176, 176, 5);
+    check_ms_ssim(161, 192, 5); /* sides halve to 161, 81, 41, 21, 11: all boxes at the edge are half empty */
+    check_ms_ssim(160, 192, 4);
+    check_ms_ssim(21, 44, 2);
+    check_ms_ssim(11, 40, 1);
+    assert_true(isnan(check_ms_ssim(10, 40, 0)));
+    assert_int_equal(adcgs_ms_ssim(NULL, NULL, 0, 5, &got, &scales, NULL), ADCGS_ERR_USAGE);
+}
+
+/**
+ * A grey picture against one with its contrast turned round: structure is negative and counts as 0. Constant pictures differ in
+ * luminance at the last scale alone.
+ */
+static void test_ms_ssim_values(void **state)
+{
+    enum { SIDE = 176 };
+    float *a = malloc(3 * SIDE * SIDE * sizeof *a), *b = malloc(3 * SIDE * SIDE * sizeof *b);
+    double got;
+    int scales;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        a[i] = random_value();
+        b[i] = 1 - a[i];
+    }
+    assert_int_equal(adcgs_ms_ssim(a, b, SIDE, SIDE, &got, &scales, NULL), ADCGS_OK);
+    assert_true(got == 0);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        a[i] = 0.25f;
+        b[i] = 0.75f;
+    }
+    assert_int_equal(adcgs_ms_ssim(a, b, SIDE, SIDE, &got, &scales, NULL), ADCGS_OK);
+    assert_true(fabs(got - pow((2 * 0.25 * 0.75 + 1e-4) / (0.25 * 0.25 + 0.75 * 0.75 + 1e-4), 0.1333)) < 1e-9);
+    free(a);
+    free(b);
 }
 
 static void test_psnr(void **state)
@@ -246,7 +358,8 @@ static void test_crop(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ssim),    cmocka_unit_test(test_psnr),          cmocka_unit_test(test_rectangle),
+        cmocka_unit_test(test_ssim),    cmocka_unit_test(test_ms_ssim),       cmocka_unit_test(test_ms_ssim_values),
+        cmocka_unit_test(test_psnr),          cmocka_unit_test(test_rectangle),
         cmocka_unit_test(test_any_box), cmocka_unit_test(test_box_of_points), cmocka_unit_test(test_crop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -230,6 +230,77 @@ static void test_draco(void **state)
     }
 }
 
+/** The points come back in their order, off by at most half a step of 16 bits of the longest edge; colours as they were. */
+static void expect_draco_round_trip(const adcgs_points *points)
+{
+    adcgs_points back;
+    assert_int_equal(adcgs_draco_write(points, in("w.drc"), &error), ADCGS_OK);
+    assert_int_equal(adcgs_points_read(&back, in("w.drc"), &error), ADCGS_OK);
+    double longest = 0.0, farthest = 0.0, bound;
+    for (int a = 0; a < 3; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t i = 0; i < points->n; i++) {
+            low = fmin(low, (double)points->position[i][a]);
+            high = fmax(high, (double)points->position[i][a]);
+        }
+        longest = fmax(longest, high - low);
+        farthest = fmax(farthest, fmax(-low, high));
+    }
+    bound = 0.5 * longest / 65535.0 + 0x1p-23 * farthest + 0x1p-22 * longest; /* and the rounding of binary32 */
+    assert_int_equal(back.n, points->n);
+    assert_int_equal(back.coloured, points->coloured);
+    for (uint32_t i = 0; i < points->n; i++)
+        for (int a = 0; a < 3; a++) {
+            const double off = fabs((double)back.position[i][a] - (double)points->position[i][a]);
+            if (!(off <= bound))
+                fail_msg("point %u: off by %g, bound %g", i, off, bound);
+        }
+    assert_memory_equal(back.colour, points->colour, points->n * sizeof *points->colour);
+    adcgs_points_free(&back);
+}
+
+static size_t load(const char *name, uint8_t *bytes, size_t most)
+{
+    FILE *file = fopen(in(name), "rb");
+    assert_non_null(file);
+    const size_t n = fread(bytes, 1, most, file);
+    fclose(file);
+    return n;
+}
+
+static void test_draco_writing(void **state)
+{
+    static uint8_t first[32768], second[32768];
+    adcgs_points points;
+    assert_int_equal(adcgs_points_alloc(&points, 1000, "points", &error), ADCGS_OK);
+    for (uint32_t i = 0; i < points.n; i++)
+        for (int a = 0; a < 3; a++) {
+            points.position[i][a] = 100.0f + (float)(i * 7919 % 1000) / (float)(a + 1);
+            points.colour[i][a] = (uint8_t)(i * 7 + (uint32_t)a);
+        }
+    memcpy(points.position[999], points.position[3], sizeof *points.position); /* no two become one */
+    memcpy(points.colour[999], points.colour[3], sizeof *points.colour);
+    points.coloured = 1;
+    expect_draco_round_trip(&points);
+    const size_t n = load("w.drc", first, sizeof first);
+    assert_true(n > 100 && n < sizeof first);
+    assert_int_equal(adcgs_points_write(&points, in("again.DRC"), &error), ADCGS_OK);
+    assert_int_equal(load("again.DRC", second, sizeof second), n);
+    assert_memory_equal(first, second, n);
+    memset(points.colour, 128, points.n * sizeof *points.colour);
+    points.coloured = 0;
+    expect_draco_round_trip(&points);
+    points.n = 1;
+    expect_draco_round_trip(&points);
+    points.n = 0;
+    expect_error(adcgs_draco_write(&points, in("none.drc"), &error), ADCGS_ERR_UNSUPPORTED, "none.drc", "at least one point");
+    points.n = 1;
+    expect_error(adcgs_draco_write(&points, in("no/w.drc"), &error), ADCGS_ERR_IO, "no/w.drc", "No such");
+    expect_error(adcgs_points_write(&points, in("w.xyz"), &error), ADCGS_ERR_USAGE, "w.xyz", ".ply or .drc");
+    assert_true(access(in("none.drc"), F_OK) != 0 && access(in("w.xyz"), F_OK) != 0);
+    adcgs_points_free(&points);
+}
+
 static void test_real_files(void **state)
 {
     static const struct {
@@ -247,6 +318,7 @@ static void test_real_files(void **state)
         snprintf(path, sizeof path, "%s/%s", data, files[i].name);
         assert_int_equal(adcgs_points_read(&points, path, &error), ADCGS_OK);
         assert_int_equal(points.n, files[i].n);
+        expect_draco_round_trip(&points);
         adcgs_points_free(&points);
     }
 }
@@ -257,6 +329,7 @@ int main(void)
         cmocka_unit_test(test_variants),   cmocka_unit_test(test_damage),    cmocka_unit_test(test_too_many_properties),
         cmocka_unit_test(test_round_trip), cmocka_unit_test(test_mutations), cmocka_unit_test(test_draco),
         cmocka_unit_test(test_real_files), cmocka_unit_test(test_npy),       cmocka_unit_test(test_bad_npy),
+        cmocka_unit_test(test_draco_writing),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

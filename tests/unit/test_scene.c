@@ -200,13 +200,27 @@ static void test_bad_frames(void **state)
     expect_bad_frame(GOOD ",\"fl_x\":-1", ADCGS_ERR_DATA, "fl_x", "-1");
     expect_bad_frame(GOOD ",\"fl_y\":null", ADCGS_ERR_DATA, "fl_y", "number");
     expect_bad_frame(GOOD ",\"cx\":1e30", ADCGS_ERR_DATA, "cx", "1e+30");
-    expect_bad_frame(GOOD ",\"k1\":0.1", ADCGS_ERR_UNSUPPORTED, "k1", "distortion");
-    expect_bad_frame(GOOD ",\"p2\":-0.1", ADCGS_ERR_UNSUPPORTED, "p2", "distortion");
-    expect_bad_frame(GOOD ",\"camera_model\":\"OPENCV_FISHEYE\"", ADCGS_ERR_UNSUPPORTED, "camera_model", "OPENCV_FISHEYE");
+    expect_bad_frame(GOOD ",\"k1\":\"0\"", ADCGS_ERR_DATA, "k1", "number");
+    expect_bad_frame(GOOD ",\"p2\":1e7", ADCGS_ERR_DATA, "p2", "1e+07");
+    expect_bad_frame(GOOD ",\"k5\":0.1", ADCGS_ERR_DATA, "k5", "OPENCV has no k5");
+    expect_bad_frame(GOOD ",\"camera_model\":\"PINHOLE\",\"k1\":0.1", ADCGS_ERR_DATA, "k1", "PINHOLE has no k1");
+    expect_bad_frame(GOOD ",\"camera_model\":\"SIMPLE_PINHOLE\",\"p1\":1", ADCGS_ERR_DATA, "p1", "SIMPLE_PINHOLE has no p1");
+    expect_bad_frame(GOOD ",\"camera_model\":\"SIMPLE_RADIAL\",\"k2\":1", ADCGS_ERR_DATA, "k2", "SIMPLE_RADIAL has no k2");
+    expect_bad_frame(GOOD ",\"camera_model\":\"RADIAL\",\"k3\":1", ADCGS_ERR_DATA, "k3", "RADIAL has no k3");
+    expect_bad_frame(GOOD ",\"sk_x\":0.5", ADCGS_ERR_UNSUPPORTED, "sk_x", "0.5");
+    static const char *const others[] = {"OPENCV_FISHEYE", "EQUIRECTANGULAR", "FISHEYE624", "ORTHOPHOTO", "VR180_L", "opencv"};
+    for (size_t i = 0; i < ADCGS_COUNTOF(others); i++) {
+        char fields[512];
+        snprintf(fields, sizeof fields, GOOD ",\"camera_model\":\"%s\"", others[i]);
+        expect_bad_frame(fields, ADCGS_ERR_UNSUPPORTED, "camera_model", others[i]);
+    }
+    expect_bad_frame(GOOD ",\"latlong\":true", ADCGS_ERR_UNSUPPORTED, "latlong", "panoramic");
+    expect_bad_frame(GOOD ",\"ftheta_p0\":1", ADCGS_ERR_UNSUPPORTED, "ftheta_p0", "fisheye");
     expect_bad_frame(GOOD ",\"camera_model\":3", ADCGS_ERR_DATA, "camera_model", "string");
     expect_bad_frame(GOOD ",\"is_fisheye\":true", ADCGS_ERR_UNSUPPORTED, "is_fisheye", "fisheye");
     expect_bad("{\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "fl_x", "missing");
     expect_bad("{\"w\":6,\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "frames[0].h", "missing");
+    expect_bad("{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", ",\"k1\":-3") "]}", ADCGS_ERR_DATA, "frames[0]: ", "folds");
 }
 
 static void expect_bad_pose(const char *matrix, const char *what)

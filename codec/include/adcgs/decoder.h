@@ -125,6 +125,19 @@ ADCGS_API adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time,
 ADCGS_API adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, double time, adcgs_frame *frame,
                                     adcgs_error *error);
 
+/** Depth of pixels that no splat touches, and the largest that adcgs_render_depth() gives. */
+#define ADCGS_DEPTH_FAR 1e10f
+
+/**
+ * Depth and coverage at time t, of the splats and with the weights of adcgs_render(), in a pass of its own that takes as long as
+ * a frame. alpha: [height][width], 0..1: the sum of the splats' weights, which is 1 less the part of the background that the
+ * frame shows; so a frame less (1 - alpha) times the background is its colours premultiplied by alpha. depth: [height][width],
+ * world units along the camera's axis: the mean of the splats' depths by their weights; ADCGS_DEPTH_FAR where alpha is 0.
+ * Either may be NULL. As deterministic as frames, but not a point of conformance.
+ */
+ADCGS_API adcgs_status adcgs_render_depth(adcgs_decoder *decoder, const adcgs_camera *camera, double time, float *depth,
+                                          float *alpha, adcgs_error *error);
+
 /** Digest (MD5) of the decoded model of one segment: conformance point M. */
 ADCGS_API adcgs_status adcgs_get_model_digest(const adcgs_decoder *decoder, int segment, uint8_t digest[16]);
 

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Which frames of a scene are taken. */
+#include "config.h"
+
+#include "data/frames.h"
+
+#include "data/scene.h"
+#include "data/sort.h"
+
+#include <stdlib.h>
+
+#define FRAME_MAX 1000000000 /* larger numbers are mistakes */
+
+/** Digits, if there are any: 0, or -1 for a number that is too large. */
+static int take_number(const char **text, int64_t *value)
+{
+    if (**text < '0' || **text > '9')
+        return 0;
+    for (*value = 0; **text >= '0' && **text <= '9'; (*text)++) {
+        *value = 10 * *value + (**text - '0');
+        if (*value > FRAME_MAX)
+            return -1;
+    }
+    return 0;
+}
+
+adcgs_status adcgs_frames_parse(adcgs_frame_range *range, const char *text, adcgs_error *error)
+{
+    adcgs_frame_range r = {.end = -1, .step = 1};
+    const char *at = text;
+    int bad = take_number(&at, &r.begin) || *at++ != ':';
+    bad = bad || take_number(&at, &r.end);
+    if (!bad && *at == ':') {
+        at++;
+        bad = take_number(&at, &r.step);
+    }
+    if (bad || *at || !r.step)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--frames %.64s: expected A:B or A:B:STEP, with STEP at least 1", text);
+    if (r.end >= 0 && r.end <= r.begin)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--frames %.64s: holds no frame, %lld is not below %lld", text,
+                          (long long)r.begin, (long long)r.end);
+    r.end = ADCGS_MAX(r.end, 0);
+    *range = r;
+    return ADCGS_OK;
+}
+
+int64_t adcgs_frames_step(const adcgs_frame_range *range)
+{
+    return ADCGS_MAX(range->step, 1);
+}
+
+adcgs_status adcgs_frames_count(const adcgs_frame_range *range, int64_t n, int64_t *count, const char *path, adcgs_error *error)
+{
+    const int64_t end = range->end && range->end < n ? range->end : n, step = adcgs_frames_step(range);
+    *count = range->begin < end ? (end - range->begin + step - 1) / step : 0;
+    if (!*count)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: --frames begins with frame %lld, but there are %lld, counted from 0", path,
+                          (long long)range->begin, (long long)n);
+    return ADCGS_OK;
+}
+
+/** Of ascending values the distinct ones. */
+static size_t drop_repeated(double *values, size_t n)
+{
+    size_t kept = ADCGS_MIN(n, 1);
+    for (size_t i = 1; i < n; i++)
+        if (values[i] - values[kept - 1] > ADCGS_TIME_TOLERANCE)
+            values[kept++] = values[i];
+    return kept;
+}
+
+/** The distinct times of all views, ascending, from malloc(). */
+static double *find_moments(const adcgs_scene *scene, size_t *n)
+{
+    size_t all = 0;
+    for (int s = 0; s < ADCGS_SPLITS; s++)
+        all += scene->n_views[s];
+    double *moments = malloc((all + 1) * sizeof *moments);
+    if (!moments)
+        return NULL;
+    all = 0;
+    for (int s = 0; s < ADCGS_SPLITS; s++)
+        for (uint32_t i = 0; i < scene->n_views[s]; i++)
+            moments[all++] = scene->views[s][i].time;
+    adcgs_sort(moments, all);
+    *n = drop_repeated(moments, all);
+    return moments;
+}
+
+/** The place of a time among the moments. */
+static int64_t find_moment(const double *moments, size_t n, double time)
+{
+    size_t low = 0, high = n;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (moments[middle] <= time)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (int64_t)low;
+}
+
+static void keep_views(adcgs_scene *scene, int split, const adcgs_frame_range *range, int64_t count, const double *moments,
+                       size_t n)
+{
+    const int64_t step = adcgs_frames_step(range), last = range->begin + (count - 1) * step;
+    const double first = moments[range->begin], span = moments[last] - first;
+    adcgs_scene_view *views = scene->views[split];
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < scene->n_views[split]; i++) {
+        const int64_t at = find_moment(moments, n, views[i].time);
+        if (at < range->begin || at > last || (at - range->begin) % step) {
+            free(views[i].path);
+            continue;
+        }
+        views[kept] = views[i];
+        views[kept++].time = span > 0.0 ? (moments[at] - first) / span : 0.0;
+    }
+    scene->n_views[split] = kept;
+}
+
+adcgs_status adcgs_frames_keep(adcgs_scene *scene, const adcgs_frame_range *range, const char *path, adcgs_error *error)
+{
+    size_t n = 0;
+    int64_t count;
+    if (!range->begin && !range->end && adcgs_frames_step(range) == 1)
+        return ADCGS_OK;
+    double *moments = find_moments(scene, &n);
+    if (!moments)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    const adcgs_status status = adcgs_frames_count(range, (int64_t)n, &count, path, error);
+    for (int s = 0; status == ADCGS_OK && s < ADCGS_SPLITS; s++)
+        keep_views(scene, s, range, count, moments, n);
+    free(moments);
+    ADCGS_TRY(status);
+    if (!scene->n_views[ADCGS_SPLIT_TRAIN])
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: --frames leaves no view for training", path);
+    return ADCGS_OK;
+}

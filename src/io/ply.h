@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * PLY in memory, for the readers of points and of splats: the header, and the
+ * numbers of the element "vertex". Other elements and lists are skipped. Every
+ * count is held against the bytes that are there before anything is allocated.
+ */
+#ifndef ADCGS_IO_PLY_H
+#define ADCGS_IO_PLY_H
+
+#include "base/base.h"
+
+#define ADCGS_PLY_PROPERTIES 256
+#define ADCGS_PLY_BEFORE 4 /**< elements before the vertices */
+
+typedef enum adcgs_ply_type {
+    ADCGS_PLY_INT8,
+    ADCGS_PLY_UINT8,
+    ADCGS_PLY_INT16,
+    ADCGS_PLY_UINT16,
+    ADCGS_PLY_INT32,
+    ADCGS_PLY_UINT32,
+    ADCGS_PLY_FLOAT32,
+    ADCGS_PLY_FLOAT64,
+    ADCGS_PLY_TYPES
+} adcgs_ply_type;
+
+typedef struct adcgs_ply_property {
+    char name[64];
+    adcgs_ply_type type;
+    adcgs_ply_type count_type; /**< of a list */
+    int is_list;
+    int role;                  /**< the reader's own: -1, which is what it begins as, if nobody wants it */
+} adcgs_ply_property;
+
+typedef struct adcgs_ply_element {
+    uint64_t count;
+    int n;
+    adcgs_ply_property properties[ADCGS_PLY_PROPERTIES];
+} adcgs_ply_element;
+
+typedef enum adcgs_ply_form { ADCGS_PLY_ASCII, ADCGS_PLY_LITTLE, ADCGS_PLY_BIG } adcgs_ply_form;
+
+typedef struct adcgs_ply {
+    const uint8_t *at, *end;
+    const char *path;
+    adcgs_error *error;
+    adcgs_ply_form form;
+    int line;
+    int n_before;
+    adcgs_ply_element vertex, before[ADCGS_PLY_BEFORE];
+} adcgs_ply;
+
+/** Whether the bytes begin as a PLY file does. */
+int adcgs_ply_is(const uint8_t *data, size_t bytes);
+/** The name of a type in headers: "float". */
+const char *adcgs_ply_type_name(adcgs_ply_type type);
+
+/**
+ * The header of `bytes` bytes at data, which stay the caller's and have a zero byte behind them, as adcgs_file_load() gives it.
+ * path and error are for messages of this call and of adcgs_ply_vertices(). ADCGS_ERR_DATA if it is no header of a PLY file with
+ * vertices, or declares more of them than can follow. On failure *out is NULL.
+ */
+adcgs_status adcgs_ply_open(adcgs_ply **out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
+void adcgs_ply_close(adcgs_ply **ply);
+
+/** A vertex's property by its name, lists aside; NULL without it. */
+adcgs_ply_property *adcgs_ply_find(adcgs_ply *ply, const char *name);
+
+/** One number of a vertex. */
+typedef void (*adcgs_ply_take_fn)(void *user, uint64_t vertex, const adcgs_ply_property *property, double value);
+/** Hand over, in order, every number whose property has a role. */
+adcgs_status adcgs_ply_vertices(adcgs_ply *ply, adcgs_ply_take_fn take, void *user);
+
+#endif

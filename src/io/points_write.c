@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Writing point clouds. */
+#include "config.h"
+
+#include "io/atomic.h"
+#include "io/draco_shim.h"
+#include "io/points.h"
+
+#include <stdlib.h>
+#include <strings.h>
+
+adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs_error *error)
+{
+    adcgs_atomic atomic;
+    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
+    fprintf(atomic.file,
+            "ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty float x\nproperty float y\nproperty float z\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+            points->n);
+    for (uint32_t i = 0; i < points->n; i++) {
+        uint8_t record[15];
+        for (int a = 0; a < 3; a++)
+            adcgs_store_le32(record + 4 * a, adcgs_float_bits(points->position[i][a]));
+        memcpy(record + 12, points->colour[i], 3);
+        fwrite(record, sizeof record, 1, atomic.file);
+    }
+    return adcgs_atomic_commit(&atomic, error);
+}
+
+adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adcgs_error *error)
+{
+    const adcgs_draco *draco;
+    adcgs_atomic atomic;
+    uint8_t *data;
+    size_t bytes;
+    ADCGS_TRY(adcgs_draco_get(&draco, path, error));
+    ADCGS_TRY(draco->encode(&data, &bytes, points, path, error));
+    const adcgs_status status = adcgs_atomic_open(&atomic, path, error);
+    if (status == ADCGS_OK)
+        fwrite(data, 1, bytes, atomic.file);
+    free(data);
+    return status == ADCGS_OK ? adcgs_atomic_commit(&atomic, error) : status;
+}
+
+adcgs_status adcgs_points_write(const adcgs_points *points, const char *path, adcgs_error *error)
+{
+    const char *const dot = strrchr(path, '.');
+    if (dot && !strcasecmp(dot, ".ply"))
+        return adcgs_ply_write(points, path, error);
+    if (dot && !strcasecmp(dot, ".drc"))
+        return adcgs_draco_write(points, path, error);
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name of points must end in .ply or .drc", path);
+}

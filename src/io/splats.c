@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Splats in memory, taken from a decoder, and written as PLY. */
+#include "config.h"
+
+#include "io/splats.h"
+
+#include "io/atomic.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define ARRAYS 14
+#define ALIGN 64
+#define WRITTEN 17 /* floats of a splat in a file */
+
+static void place(adcgs_splats *s, float *block, size_t slots)
+{
+    float **const arrays[ARRAYS] = {&s->mean[0],     &s->mean[1],     &s->mean[2],     &s->scale[0],  &s->scale[1],
+                                    &s->scale[2],    &s->rotation[0], &s->rotation[1], &s->rotation[2], &s->rotation[3],
+                                    &s->opacity,     &s->colour[0],   &s->colour[1],   &s->colour[2]};
+    for (size_t i = 0; i < ARRAYS; i++)
+        *arrays[i] = block + i * slots;
+    for (size_t i = 0; i < slots; i++)
+        s->scale[0][i] = s->scale[1][i] = s->scale[2][i] = s->rotation[0][i] = 1.0f;
+    s->block = block;
+}
+
+adcgs_status adcgs_splats_alloc(adcgs_splats *splats, uint64_t n, const char *path, adcgs_error *error)
+{
+    *splats = (adcgs_splats){0};
+    if (n > ADCGS_SPLATS_MAX)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %llu splats, expected at most %u", path, (unsigned long long)n,
+                          ADCGS_SPLATS_MAX);
+    const size_t slots = ((size_t)n + 63) / 64 * 64 + 64 * !n, bytes = ARRAYS * slots * sizeof(float);
+    float *block = aligned_alloc(ALIGN, bytes);
+    if (!block)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %llu splats", path, (unsigned long long)n);
+    memset(block, 0, bytes);
+    place(splats, block, slots);
+    splats->n = (uint32_t)n;
+    return ADCGS_OK;
+}
+
+void adcgs_splats_free(adcgs_splats *splats)
+{
+    free(splats->block);
+    free(splats->harmonics);
+    *splats = (adcgs_splats){0};
+}
+
+void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out)
+{
+    *out = (adcgs_primitives){.n = (splats->n + 63) / 64 * 64, .opacity = splats->opacity};
+    for (int i = 0; i < 3; i++) {
+        out->mean[i] = splats->mean[i];
+        out->scale[i] = splats->scale[i];
+        out->colour[i] = splats->colour[i];
+    }
+    for (int i = 0; i < 4; i++)
+        out->rotation[i] = splats->rotation[i];
+}
+
+/** One primitive at place `to`. \return whether it is one that can be seen and written. */
+static int take_one(adcgs_splats *out, uint32_t to, const adcgs_primitives *p, uint32_t from, const double origin[3],
+                    double scale)
+{
+    if (!(p->opacity[from] > 0.0f))
+        return 0;
+    int finite = 1;
+    out->opacity[to] = p->opacity[from];
+    for (int a = 0; a < 3; a++) {
+        out->mean[a][to] = (float)(origin[a] + scale * (double)p->mean[a][from]);
+        out->scale[a][to] = (float)(scale * (double)p->scale[a][from]);
+        out->colour[a][to] = p->colour[a][from];
+        finite &= isfinite(out->mean[a][to]) && isnormal(out->scale[a][to]);
+    }
+    for (int a = 0; a < 4; a++)
+        out->rotation[a][to] = p->rotation[a][from];
+    return finite;
+}
+
+adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primitives, const double origin[3], double scale,
+                               const char *path, adcgs_error *error)
+{
+    uint32_t n = 0;
+    ADCGS_TRY(adcgs_splats_alloc(out, primitives->n, path, error));
+    for (uint32_t i = 0; i < primitives->n; i++)
+        n += (uint32_t)take_one(out, n, primitives, i, origin, scale);
+    for (uint32_t i = n; i < out->n; i++) /* one that was left out may stand here */
+        out->opacity[i] = 0.0f;
+    out->n = n;
+    return ADCGS_OK;
+}
+
+static void put_header(FILE *file, uint32_t n, const char *comment)
+{
+    static const char *const names[WRITTEN] = {"x",      "y",       "z",       "nx",      "ny",      "nz",
+                                               "f_dc_0", "f_dc_1",  "f_dc_2",  "opacity", "scale_0", "scale_1",
+                                               "scale_2", "rot_0",  "rot_1",   "rot_2",   "rot_3"};
+    fprintf(file, "ply\nformat binary_little_endian 1.0\ncomment %s\nelement vertex %u\n", comment, n);
+    for (int i = 0; i < WRITTEN; i++)
+        fprintf(file, "property float %s\n", names[i]);
+    fputs("end_header\n", file);
+}
+
+/** The numbers before their activations, each rounded once. */
+static void put_splat(FILE *file, const adcgs_splats *s, uint32_t i)
+{
+    float values[WRITTEN] = {0};
+    uint8_t record[4 * WRITTEN];
+    const double opacity = (double)s->opacity[i];
+    values[9] = (float)log(opacity / (1.0 - opacity));
+    for (int a = 0; a < 3; a++) {
+        values[a] = s->mean[a][i];
+        values[6 + a] = (float)(((double)s->colour[a][i] - 0.5) / ADCGS_SPLATS_DC);
+        values[10 + a] = (float)log((double)s->scale[a][i]);
+    }
+    for (int a = 0; a < 4; a++)
+        values[13 + a] = s->rotation[a][i];
+    for (int j = 0; j < WRITTEN; j++)
+        adcgs_store_le32(record + 4 * j, adcgs_float_bits(values[j]));
+    fwrite(record, sizeof record, 1, file);
+}
+
+adcgs_status adcgs_splats_write(const adcgs_splats *splats, const char *comment, const char *path, adcgs_error *error)
+{
+    adcgs_atomic atomic;
+    for (uint32_t i = 0; i < splats->n; i++)
+        if (!(splats->opacity[i] > 0.0f && splats->opacity[i] < 1.0f))
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: splat %u: an opacity of %g has no logit", path, i,
+                              (double)splats->opacity[i]);
+    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
+    put_header(atomic.file, splats->n, comment);
+    for (uint32_t i = 0; i < splats->n; i++)
+        put_splat(atomic.file, splats, i);
+    return adcgs_atomic_commit(&atomic, error);
+}

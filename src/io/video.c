@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Video files: the front of the module that holds FFmpeg. */
+#include "config.h"
+
+#include "io/video.h"
+
+#include "io/atomic.h"
+#include "io/video_ffmpeg.h"
+#include "io/y4m.h"
+
+#include <stdlib.h>
+#include <strings.h>
+
+#define RATE_MAX 100000.0
+
+struct adcgs_video {
+    const adcgs_ffmpeg *ffmpeg;
+    adcgs_video_info info;
+    adcgs_video_reader *reader;
+};
+
+struct adcgs_video_writer {
+    const adcgs_ffmpeg *ffmpeg;
+    adcgs_atomic atomic;
+    adcgs_video_encoder *encoder;
+    char *path;
+    int stored[2];
+};
+
+#ifndef HAVE_FFMPEG
+
+static adcgs_status get_ffmpeg(const adcgs_ffmpeg **ffmpeg, const char *path, adcgs_error *error)
+{
+    *ffmpeg = NULL;
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: videos need FFmpeg, which this build does without", path);
+}
+
+#elif defined MODULES
+
+static adcgs_module module = {
+    .file = "adcgs_video.so",
+    .symbol = "adcgs_ffmpeg_table",
+    .purpose = "videos need FFmpeg",
+    .lock = PTHREAD_MUTEX_INITIALIZER,
+};
+
+static adcgs_status get_ffmpeg(const adcgs_ffmpeg **ffmpeg, const char *path, adcgs_error *error)
+{
+    const void *table;
+    const adcgs_status status = adcgs_module_get(&module, &table, path, error);
+    *ffmpeg = table;
+    return status;
+}
+
+#else
+
+static adcgs_status get_ffmpeg(const adcgs_ffmpeg **ffmpeg, const char *path, adcgs_error *error)
+{
+    *ffmpeg = &adcgs_ffmpeg_table;
+    return ADCGS_OK;
+}
+
+#endif
+
+int adcgs_is_video(const char *path)
+{
+    static const char *const extensions[] = {"mp4", "m4v", "mov", "mkv", "webm", "avi",  "mpg", "mpeg", "mts", "m2ts",
+                                             "ts",  "wmv", "flv", "ogv", "3gp",  "ivf", "mxf", "h264", "hevc", "obu"};
+    const char *slash = strrchr(path, '/');
+    const char *dot = strrchr(slash ? slash : path, '.');
+    for (size_t i = 0; dot && i < ADCGS_COUNTOF(extensions); i++)
+        if (!strcasecmp(dot + 1, extensions[i]))
+            return 1;
+    return 0;
+}
+
+/* ---- Reading ---- */
+
+adcgs_status adcgs_video_open(adcgs_video **out, const char *path, adcgs_error *error)
+{
+    const adcgs_ffmpeg *ffmpeg;
+    *out = NULL;
+    ADCGS_TRY(get_ffmpeg(&ffmpeg, path, error));
+    adcgs_video *video = calloc(1, sizeof *video);
+    if (!video)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    video->ffmpeg = ffmpeg;
+    const adcgs_status status = ffmpeg->open(&video->reader, &video->info, path, error);
+    if (status != ADCGS_OK)
+        adcgs_video_close(&video);
+    *out = video;
+    return status;
+}
+
+void adcgs_video_close(adcgs_video **video)
+{
+    if (!*video)
+        return;
+    (*video)->ffmpeg->close(&(*video)->reader);
+    free(*video);
+    *video = NULL;
+}
+
+const adcgs_video_info *adcgs_video_get_info(const adcgs_video *video)
+{
+    return &video->info;
+}
+
+adcgs_status adcgs_video_read(adcgs_video *video, int64_t frame, adcgs_image *out, adcgs_error *error)
+{
+    return video->ffmpeg->read(video->reader, frame, out, error);
+}
+
+/* ---- Writing ---- */
+
+static adcgs_status begin(adcgs_video_writer *w, int width, int height, double frame_rate, adcgs_error *error)
+{
+    long numerator, denominator;
+    if (!(frame_rate >= 0.001 && frame_rate <= RATE_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %g frames per second, expected 0.001 to %g", w->path, frame_rate,
+                          RATE_MAX);
+    adcgs_rate_ratio(frame_rate, &numerator, &denominator);
+    ADCGS_TRY(adcgs_atomic_open(&w->atomic, w->path, error));
+    const adcgs_video_target target = {.file = w->atomic.file,
+                                       .path = w->path,
+                                       .width = width,
+                                       .height = height,
+                                       .rate = {(int)numerator, (int)denominator}};
+    return w->ffmpeg->begin(&w->encoder, w->stored, &target, error);
+}
+
+adcgs_status adcgs_video_write_open(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
+                                    adcgs_error *error)
+{
+    const adcgs_ffmpeg *ffmpeg;
+    *out = NULL;
+    ADCGS_TRY(get_ffmpeg(&ffmpeg, path, error));
+    adcgs_video_writer *w = calloc(1, sizeof *w);
+    if (!w)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    w->ffmpeg = ffmpeg;
+    w->path = strdup(path);
+    const adcgs_status status = w->path ? begin(w, width, height, frame_rate, error)
+                                        : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (status != ADCGS_OK)
+        adcgs_video_write_abort(&w);
+    *out = w;
+    return status;
+}
+
+void adcgs_video_write_size(const adcgs_video_writer *writer, int *width, int *height)
+{
+    *width = writer->stored[0];
+    *height = writer->stored[1];
+}
+
+adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, adcgs_error *error)
+{
+    return writer->ffmpeg->add(writer->encoder, frame, error);
+}
+
+adcgs_status adcgs_video_write_close(adcgs_video_writer **writer, adcgs_error *error)
+{
+    adcgs_video_writer *w = *writer;
+    adcgs_status status = w->ffmpeg->end(w->encoder, error);
+    if (status == ADCGS_OK)
+        status = adcgs_atomic_commit(&w->atomic, error);
+    adcgs_video_write_abort(writer);
+    return status;
+}
+
+void adcgs_video_write_abort(adcgs_video_writer **writer)
+{
+    adcgs_video_writer *w = *writer;
+    if (!w)
+        return;
+    w->ffmpeg->free(&w->encoder);
+    adcgs_atomic_abort(&w->atomic);
+    free(w->path);
+    free(w);
+    *writer = NULL;
+}

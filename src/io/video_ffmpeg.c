@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The table of the module that holds FFmpeg. */
+#include "config.h"
+
+#include "io/video_ffmpeg.h"
+
+const adcgs_ffmpeg adcgs_ffmpeg_table = {
+    .version = PACKAGE_VERSION,
+    .open = adcgs_video_reader_open,
+    .close = adcgs_video_reader_close,
+    .read = adcgs_video_reader_read,
+    .begin = adcgs_video_encoder_begin,
+    .add = adcgs_video_encoder_add,
+    .end = adcgs_video_encoder_end,
+    .free = adcgs_video_encoder_free,
+};

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The module that holds FFmpeg: its table, and what its parts share. The front
+ * (video.c) sees the table alone; nothing of FFmpeg's shows in its types.
+ */
+#ifndef ADCGS_IO_VIDEO_FFMPEG_H
+#define ADCGS_IO_VIDEO_FFMPEG_H
+
+#include "io/module.h"
+#include "io/video.h"
+
+#include <stdio.h>
+
+typedef struct adcgs_video_reader adcgs_video_reader;
+typedef struct adcgs_video_encoder adcgs_video_encoder;
+
+/** What a film is written to. */
+typedef struct adcgs_video_target {
+    FILE *file;           /**< written and sought in, not closed */
+    const char *path;     /**< its name's end says the container; for messages; outlives the encoder */
+    int width, height;    /**< of the frames */
+    int rate[2];          /**< frames per second: numerator and denominator, > 0 */
+} adcgs_video_target;
+
+typedef struct adcgs_ffmpeg {
+    const char *version; /**< of the programs that the module belongs to */
+    adcgs_status (*open)(adcgs_video_reader **out, adcgs_video_info *info, const char *path, adcgs_error *error);
+    void (*close)(adcgs_video_reader **reader);
+    adcgs_status (*read)(adcgs_video_reader *reader, int64_t frame, adcgs_image *out, adcgs_error *error);
+    /** stored: the size of the pictures in the file, which some codecs make even. */
+    adcgs_status (*begin)(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target, adcgs_error *error);
+    adcgs_status (*add)(adcgs_video_encoder *encoder, const adcgs_frame *frame, adcgs_error *error);
+    /** What is still to come, and the container's end. */
+    adcgs_status (*end)(adcgs_video_encoder *encoder, adcgs_error *error);
+    void (*free)(adcgs_video_encoder **encoder);
+} adcgs_ffmpeg;
+
+/** The one thing that the module exports. */
+ADCGS_MODULE_EXPORT extern const adcgs_ffmpeg adcgs_ffmpeg_table;
+
+/* ---- Shared by the module's parts: the functions of the table. ---- */
+adcgs_status adcgs_video_reader_open(adcgs_video_reader **out, adcgs_video_info *info, const char *path, adcgs_error *error);
+void adcgs_video_reader_close(adcgs_video_reader **reader);
+adcgs_status adcgs_video_reader_read(adcgs_video_reader *reader, int64_t frame, adcgs_image *out, adcgs_error *error);
+adcgs_status adcgs_video_encoder_begin(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target,
+                                       adcgs_error *error);
+adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *encoder, const adcgs_frame *frame, adcgs_error *error);
+adcgs_status adcgs_video_encoder_end(adcgs_video_encoder *encoder, adcgs_error *error);
+void adcgs_video_encoder_free(adcgs_video_encoder **encoder);
+
+#endif

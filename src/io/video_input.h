@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * A video file opened by FFmpeg: one stream of packets and its decoder. FFmpeg
+ * reads from our file alone: formats that name other files or addresses
+ * (playlists, lists to concatenate) are not known here.
+ */
+#ifndef ADCGS_IO_VIDEO_INPUT_H
+#define ADCGS_IO_VIDEO_INPUT_H
+
+#include "io/image.h"
+
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+
+typedef struct adcgs_video_input {
+    int fd;            /**< the caller's */
+    const char *path;  /**< for messages */
+    AVIOContext *io;
+    AVFormatContext *format;
+    AVStream *stream;  /**< the one to decode; the others are left out */
+    AVCodecContext *codec;
+} adcgs_video_input;
+
+/** Open from the file's beginning. input->fd and path are set. On failure as on success, adcgs_video_input_close() clears up. */
+adcgs_status adcgs_video_input_open(adcgs_video_input *input, adcgs_error *error);
+void adcgs_video_input_close(adcgs_video_input *input);
+/** The stream's next packet; AVERROR_EOF at the end, or another negative code of FFmpeg's. Packets without bytes are left out. */
+int adcgs_video_input_next(adcgs_video_input *input, AVPacket *packet);
+/** Whether the file is shorter than its header says (Matroska, WebM, AVI); a cut in others shows when they are read. */
+int adcgs_video_input_cut(const adcgs_video_input *input);
+/** The matrix that turns the picture, nine numbers as in ISO 14496-12; NULL if there is none. */
+const int32_t *adcgs_video_input_matrix(const adcgs_video_input *input);
+
+#endif

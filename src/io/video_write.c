@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Writing films: the container by the name's end, the first of its codecs that
+ * this build of FFmpeg can encode. The same frames give the same bytes.
+ */
+#include "config.h"
+
+#include "io/video_ffmpeg.h"
+#include "io/video_planes.h"
+
+#include <errno.h>
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <stdlib.h>
+#include <strings.h>
+
+#define IO_BYTES 65536
+#define THREADS 4            /* a fixed number, since what encoders write depends on it */
+#define KEY_SECONDS 2        /* between key frames */
+#define KEY_FRAMES_MAX 250
+#define BITS_PER_PIXEL 1     /* for encoders that know no constant quality */
+
+struct adcgs_video_encoder {
+    adcgs_video_target target;
+    AVIOContext *io;
+    AVFormatContext *format;
+    AVCodecContext *codec;
+    AVStream *stream;
+    AVFrame *frame;
+    AVPacket *packet;
+    int64_t frames;
+    int reason; /* errno of the first write that failed */
+};
+
+typedef struct codec {
+    const char *name, *options; /* as FFmpeg's encoder and its options, for little loss */
+    int even;                   /* sizes must be */
+} codec;
+
+/* Without mb-tree: its AVX-512 code in x264 reads memory nobody has set, and the same frames would not give the same bytes. */
+static const codec h264 = {"libx264", "preset=medium:crf=12:x264-params=mbtree=0", 1};
+static const codec openh264 = {"libopenh264", "", 1};
+static const codec vp9 = {"libvpx-vp9", "crf=12:b=0:deadline=good:cpu-used=2:row-mt=1", 0};
+static const codec av1 = {"libaom-av1", "crf=12:b=0:cpu-used=6:row-mt=1", 0};
+static const codec mpeg4 = {"mpeg4", "flags=+qscale:global_quality=236", 0};
+
+static const struct {
+    const char *extension, *name;
+    const codec *codecs[6];
+} containers[] = {
+    {"mp4", "mp4", {&h264, &openh264, &vp9, &av1, &mpeg4}},
+    {"m4v", "mp4", {&h264, &openh264, &mpeg4}},
+    {"mov", "mov", {&h264, &openh264, &mpeg4}},
+    {"mkv", "matroska", {&h264, &openh264, &vp9, &av1, &mpeg4}},
+    {"webm", "webm", {&vp9, &av1}},
+    {"avi", "avi", {&h264, &openh264, &mpeg4}},
+};
+
+/* ---- The file ---- */
+
+#if LIBAVFORMAT_VERSION_MAJOR < 61
+static int write_bytes(void *opaque, uint8_t *buffer, int size)
+#else
+static int write_bytes(void *opaque, const uint8_t *buffer, int size)
+#endif
+{
+    adcgs_video_encoder *e = opaque;
+    errno = 0;
+    if (fwrite(buffer, 1, (size_t)size, e->target.file) == (size_t)size)
+        return size;
+    e->reason = e->reason ? e->reason : errno ? errno : EIO;
+    return AVERROR(e->reason);
+}
+
+static int64_t seek_bytes(void *opaque, int64_t offset, int whence)
+{
+    adcgs_video_encoder *e = opaque;
+    if (whence & AVSEEK_SIZE)
+        return AVERROR(ENOSYS);
+    if (fseeko(e->target.file, (off_t)offset, whence & ~AVSEEK_FORCE)) { /* writes what stdio has held back */
+        e->reason = e->reason ? e->reason : errno;
+        return AVERROR(errno);
+    }
+    return (int64_t)ftello(e->target.file);
+}
+
+static adcgs_status fail(const adcgs_video_encoder *e, int code, const char *what, adcgs_error *error)
+{
+    if (e->reason)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", e->target.path, strerror(e->reason));
+    if (code == AVERROR(ENOMEM))
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", e->target.path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: cannot %s: %s", e->target.path, what, av_err2str(code));
+}
+
+static adcgs_status open_io(adcgs_video_encoder *e, adcgs_error *error)
+{
+    if (fseeko(e->target.file, 0, SEEK_SET))
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: a video is written to files only: %s", e->target.path, strerror(errno));
+    uint8_t *buffer = av_malloc(IO_BYTES);
+    e->io = buffer ? avio_alloc_context(buffer, IO_BYTES, 1, e, NULL, write_bytes, seek_bytes) : NULL;
+    if (!e->io)
+        av_free(buffer);
+    return e->io ? ADCGS_OK : fail(e, AVERROR(ENOMEM), "", error);
+}
+
+/* ---- Codec and container ---- */
+
+static const char *extension_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const char *dot = strrchr(slash ? slash : path, '.');
+    return dot ? dot + 1 : "";
+}
+
+static adcgs_status choose(const adcgs_video_encoder *e, const char **container, const codec **chosen, const AVCodec **encoder,
+                           adcgs_error *error)
+{
+    const char *extension = extension_of(e->target.path);
+    for (size_t i = 0; i < ADCGS_COUNTOF(containers); i++) {
+        if (strcasecmp(extension, containers[i].extension))
+            continue;
+        *container = containers[i].name;
+        for (const codec *const *c = containers[i].codecs; *c; c++)
+            if ((*encoder = avcodec_find_encoder_by_name((*c)->name))) {
+                *chosen = *c;
+                return ADCGS_OK;
+            }
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of FFmpeg has no encoder for .%s", e->target.path,
+                          extension);
+    }
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: videos are written as .mp4, .m4v, .mov, .mkv, .webm or .avi",
+                      e->target.path);
+}
+
+static void set_codec(adcgs_video_encoder *e, const codec *chosen)
+{
+    AVCodecContext *c = e->codec;
+    const int *rate = e->target.rate;
+    c->width = chosen->even ? (e->target.width + 1) & ~1 : e->target.width;
+    c->height = chosen->even ? (e->target.height + 1) & ~1 : e->target.height;
+    c->pix_fmt = AV_PIX_FMT_YUV420P;
+    c->sample_aspect_ratio = (AVRational){1, 1};
+    c->framerate = (AVRational){rate[0], rate[1]};
+    c->time_base = av_inv_q(c->framerate);
+    c->color_range = AVCOL_RANGE_MPEG;
+    c->colorspace = AVCOL_SPC_BT709;
+    c->color_primaries = AVCOL_PRI_BT709;
+    c->color_trc = AVCOL_TRC_IEC61966_2_1; /* pictures are sRGB, and so is what is learnt from them */
+    c->chroma_sample_location = AVCHROMA_LOC_LEFT;
+    c->gop_size = ADCGS_MIN(ADCGS_MAX((int)(KEY_SECONDS * (int64_t)rate[0] / rate[1]), 1), KEY_FRAMES_MAX);
+    c->max_b_frames = strcasecmp(extension_of(e->target.path), "avi") ? c->max_b_frames : 0; /* its packets have no times */
+    c->thread_count = THREADS;
+    c->flags |= AV_CODEC_FLAG_BITEXACT;
+    if (e->format->oformat->flags & AVFMT_GLOBALHEADER)
+        c->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    if (!*chosen->options)
+        c->bit_rate = (int64_t)c->width * c->height * BITS_PER_PIXEL * rate[0] / rate[1];
+}
+
+static int open_codec(adcgs_video_encoder *e, const codec *chosen, const AVCodec *encoder)
+{
+    AVDictionary *options = NULL;
+    e->codec = avcodec_alloc_context3(encoder);
+    e->frame = av_frame_alloc();
+    e->packet = av_packet_alloc();
+    if (!e->codec || !e->frame || !e->packet)
+        return AVERROR(ENOMEM);
+    set_codec(e, chosen);
+    int code = av_dict_parse_string(&options, chosen->options, "=", ":", 0);
+    if (code >= 0)
+        code = avcodec_open2(e->codec, encoder, &options);
+    av_dict_free(&options);
+    return code;
+}
+
+static int open_frame(adcgs_video_encoder *e)
+{
+    const AVCodecContext *c = e->codec;
+    e->frame->format = c->pix_fmt;
+    e->frame->width = c->width;
+    e->frame->height = c->height;
+    e->frame->color_range = c->color_range;
+    e->frame->colorspace = c->colorspace;
+    e->frame->color_primaries = c->color_primaries;
+    e->frame->color_trc = c->color_trc;
+    e->frame->chroma_location = c->chroma_sample_location;
+    e->frame->quality = c->global_quality;
+    return av_frame_get_buffer(e->frame, 0);
+}
+
+static int open_container(adcgs_video_encoder *e)
+{
+    e->stream = avformat_new_stream(e->format, NULL);
+    if (!e->stream)
+        return AVERROR(ENOMEM);
+    e->stream->time_base = e->codec->time_base;
+    e->stream->avg_frame_rate = e->codec->framerate;
+    e->stream->sample_aspect_ratio = e->codec->sample_aspect_ratio;
+    const int code = avcodec_parameters_from_context(e->stream->codecpar, e->codec);
+    return code < 0 ? code : avformat_write_header(e->format, NULL);
+}
+
+static adcgs_status begin(adcgs_video_encoder *e, adcgs_error *error)
+{
+    const char *container = NULL;
+    const codec *chosen = NULL;
+    const AVCodec *encoder = NULL;
+    if (e->target.width < 1 || e->target.height < 1 || e->target.width > ADCGS_IMAGE_MAX || e->target.height > ADCGS_IMAGE_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %dx%d pixels, expected at most %dx%d", e->target.path, e->target.width,
+                          e->target.height, ADCGS_IMAGE_MAX, ADCGS_IMAGE_MAX);
+    ADCGS_TRY(choose(e, &container, &chosen, &encoder, error));
+    ADCGS_TRY(open_io(e, error));
+    int code = avformat_alloc_output_context2(&e->format, NULL, container, NULL);
+    if (code < 0)
+        return fail(e, code, "write this container", error);
+    e->format->pb = e->io;
+    e->format->flags |= AVFMT_FLAG_CUSTOM_IO | AVFMT_FLAG_BITEXACT;
+    code = open_codec(e, chosen, encoder);
+    if (code >= 0)
+        code = open_frame(e);
+    if (code < 0)
+        return fail(e, code, "encode pictures of this size", error);
+    code = open_container(e);
+    return code < 0 ? fail(e, code, "begin the file", error) : ADCGS_OK;
+}
+
+adcgs_status adcgs_video_encoder_begin(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target,
+                                       adcgs_error *error)
+{
+    *out = NULL;
+    av_log_set_level(AV_LOG_QUIET); /* what FFmpeg has to say is in our messages */
+    adcgs_video_encoder *e = calloc(1, sizeof *e);
+    if (!e)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", target->path);
+    e->target = *target;
+    const adcgs_status status = begin(e, error);
+    if (status == ADCGS_OK) {
+        stored[0] = e->codec->width;
+        stored[1] = e->codec->height;
+    } else
+        adcgs_video_encoder_free(&e);
+    *out = e;
+    return status;
+}
+
+void adcgs_video_encoder_free(adcgs_video_encoder **encoder)
+{
+    adcgs_video_encoder *e = *encoder;
+    if (!e)
+        return;
+    av_frame_free(&e->frame);
+    av_packet_free(&e->packet);
+    avcodec_free_context(&e->codec);
+    avformat_free_context(e->format);
+    if (e->io)
+        av_freep(&e->io->buffer);
+    avio_context_free(&e->io);
+    free(e);
+    *encoder = NULL;
+}
+
+/* ---- Frames ---- */
+
+/** Encode a frame, or with NULL what is held back, and write what comes out. */
+static adcgs_status encode(adcgs_video_encoder *e, const AVFrame *frame, adcgs_error *error)
+{
+    int code = avcodec_send_frame(e->codec, frame);
+    while (code >= 0) {
+        code = avcodec_receive_packet(e->codec, e->packet);
+        if (code == AVERROR(EAGAIN) || code == AVERROR_EOF)
+            return ADCGS_OK;
+        if (code < 0)
+            break;
+        if (!e->packet->duration)
+            e->packet->duration = 1;
+        av_packet_rescale_ts(e->packet, e->codec->time_base, e->stream->time_base);
+        e->packet->stream_index = e->stream->index;
+        code = av_interleaved_write_frame(e->format, e->packet);
+        if (code >= 0 && e->io->error < 0)
+            code = e->io->error;
+    }
+    return fail(e, code, "encode", error);
+}
+
+adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *e, const adcgs_frame *frame, adcgs_error *error)
+{
+    if (frame->width != e->target.width || frame->height != e->target.height)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels among those of %dx%d", e->target.path,
+                          frame->width, frame->height, e->target.width, e->target.height);
+    const int code = av_frame_make_writable(e->frame); /* the encoder may hold the last one */
+    if (code < 0)
+        return fail(e, code, "encode", error);
+    ADCGS_TRY(adcgs_video_planes(e->frame, frame, error));
+    e->frame->pts = e->frames++;
+    return encode(e, e->frame, error);
+}
+
+adcgs_status adcgs_video_encoder_end(adcgs_video_encoder *e, adcgs_error *error)
+{
+    if (!e->frames)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a video without a frame", e->target.path);
+    ADCGS_TRY(encode(e, NULL, error));
+    const int code = av_write_trailer(e->format);
+    return code < 0 || e->io->error < 0 ? fail(e, code < 0 ? code : e->io->error, "end the file", error) : ADCGS_OK;
+}

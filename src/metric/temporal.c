@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Quality over time, in sums that run along. The region is known before variances begin, so the squares of all static pixels go
+ * into one sum (Welford's, which loses nothing to large means), and a pixel keeps no more than its means. The difference of two
+ * changes is the change of the error, so one picture of errors is all that flicker needs.
+ */
+#include "config.h"
+
+#include "metric/temporal.h"
+
+#include "metric/metric.h"
+
+#include <math.h>
+
+/** A value over time. */
+typedef struct moments {
+    double *mean;  /* [3][plane] */
+    double square; /* sum over static values of squared distances from their means */
+} moments;
+
+struct adcgs_temporal {
+    int width, height;
+    size_t plane, moving; /* pixels; those in the region */
+    uint32_t looked, n;   /* pictures of the first pass, of the second */
+    float *low, *high;    /* [3][plane] of the truth; until the region is found */
+    uint8_t *region;      /* [plane] */
+    double *error;        /* [3][plane] decoded - true of the picture before */
+    moments decoded, truth;
+};
+
+static void free_range(adcgs_temporal *t)
+{
+    adcgs_free(NULL, t->low);
+    adcgs_free(NULL, t->high);
+    t->low = t->high = NULL;
+}
+
+void adcgs_temporal_free(adcgs_temporal **temporal)
+{
+    adcgs_temporal *t = *temporal;
+    if (!t)
+        return;
+    free_range(t);
+    adcgs_free(NULL, t->region);
+    adcgs_free(NULL, t->error);
+    adcgs_free(NULL, t->decoded.mean);
+    adcgs_free(NULL, t->truth.mean);
+    adcgs_free(NULL, t);
+    *temporal = NULL;
+}
+
+adcgs_status adcgs_temporal_create(adcgs_temporal **out, int width, int height, adcgs_error *error)
+{
+    adcgs_temporal *t = *out = adcgs_alloc(NULL, 1, sizeof *t, error);
+    if (!t)
+        return ADCGS_ERR_MEMORY;
+    t->width = width;
+    t->height = height;
+    t->plane = (size_t)width * (size_t)height;
+    t->low = adcgs_alloc(NULL, 3 * t->plane, sizeof *t->low, error);
+    t->high = adcgs_alloc(NULL, 3 * t->plane, sizeof *t->high, error);
+    t->region = adcgs_alloc(NULL, t->plane, 1, error);
+    if (t->low && t->high && t->region)
+        return ADCGS_OK;
+    adcgs_temporal_free(out);
+    return ADCGS_ERR_MEMORY;
+}
+
+/* ---- The region ---- */
+
+void adcgs_temporal_look(adcgs_temporal *t, const float *truth)
+{
+    for (size_t i = 0; i < 3 * t->plane; i++) {
+        t->low[i] = t->looked ? fminf(t->low[i], truth[i]) : truth[i];
+        t->high[i] = t->looked ? fmaxf(t->high[i], truth[i]) : truth[i];
+    }
+    t->looked++;
+}
+
+/** out: whether any of the n values in, `stride` apart, within the reach is set. */
+static void spread(const uint8_t *in, uint8_t *out, int n, size_t stride)
+{
+    for (int i = 0; i < n; i++) {
+        const int last = ADCGS_MIN(i + ADCGS_CHANGE_REACH, n - 1);
+        uint8_t any = 0;
+        for (int j = ADCGS_MAX(i - ADCGS_CHANGE_REACH, 0); j <= last; j++)
+            any |= in[(size_t)j * stride];
+        out[(size_t)i * stride] = any;
+    }
+}
+
+adcgs_status adcgs_temporal_find_region(adcgs_temporal *t, adcgs_error *error)
+{
+    uint8_t *wide = adcgs_alloc(NULL, t->plane, 1, error);
+    t->error = adcgs_alloc(NULL, 3 * t->plane, sizeof *t->error, error);
+    t->decoded.mean = adcgs_alloc(NULL, 3 * t->plane, sizeof *t->decoded.mean, error);
+    t->truth.mean = adcgs_alloc(NULL, 3 * t->plane, sizeof *t->truth.mean, error);
+    if (!wide || !t->error || !t->decoded.mean || !t->truth.mean) {
+        adcgs_free(NULL, wide);
+        return ADCGS_ERR_MEMORY;
+    }
+    const size_t width = (size_t)t->width;
+    for (size_t i = 0; i < 3 * t->plane; i++)
+        t->region[i % t->plane] |= (double)t->high[i] - (double)t->low[i] > ADCGS_CHANGE_LEAST;
+    free_range(t);
+    for (size_t y = 0; y < (size_t)t->height; y++)
+        spread(t->region + y * width, wide + y * width, t->width, 1);
+    for (size_t x = 0; x < width; x++)
+        spread(wide + x, t->region + x, t->height, width);
+    adcgs_free(NULL, wide);
+    for (size_t i = 0; i < t->plane; i++)
+        t->moving += t->region[i];
+    return ADCGS_OK;
+}
+
+const uint8_t *adcgs_temporal_region(const adcgs_temporal *t)
+{
+    return t->region;
+}
+
+/* ---- The comparison ---- */
+
+static void take_value(moments *m, size_t i, double value, uint32_t n)
+{
+    const double away = value - m->mean[i];
+    m->mean[i] += away / n;
+    m->square += away * (value - m->mean[i]);
+}
+
+adcgs_temporal_view adcgs_temporal_add(adcgs_temporal *t, const float *decoded, const float *truth)
+{
+    double squares = 0.0, changes = 0.0;
+    t->n++;
+    for (size_t i = 0; i < 3 * t->plane; i++) {
+        const double difference = (double)decoded[i] - (double)truth[i];
+        changes += fabs(difference - t->error[i]);
+        t->error[i] = difference;
+        if (t->region[i % t->plane]) {
+            squares += difference * difference;
+        } else {
+            take_value(&t->decoded, i, (double)decoded[i], t->n);
+            take_value(&t->truth, i, (double)truth[i], t->n);
+        }
+    }
+    return (adcgs_temporal_view){
+        .dynamic_psnr = t->moving ? adcgs_psnr_from_mse(squares / (3.0 * (double)t->moving)) : (double)NAN,
+        .flicker = t->n > 1 ? changes / (3.0 * (double)t->plane) : (double)NAN,
+    };
+}
+
+adcgs_temporal_total adcgs_temporal_end(const adcgs_temporal *t)
+{
+    const double values = 3.0 * (double)(t->plane - t->moving) * t->n; /* 0 / 0 where there are none */
+    return (adcgs_temporal_total){
+        .views = t->n,
+        .dynamic_share = (double)t->moving / (double)t->plane,
+        .static_variance = t->decoded.square / values,
+        .truth_variance = t->truth.square / values,
+    };
+}

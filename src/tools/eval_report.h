@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What adcgs-eval says of the views: as text or JSON on standard output, and as CSV. One table of columns drives them. */
+#ifndef ADCGS_TOOLS_EVAL_REPORT_H
+#define ADCGS_TOOLS_EVAL_REPORT_H
+
+#include "io/atomic.h"
+#include "metric/crop.h"
+#include "tools/cli.h"
+
+/** Values of a row; not a number where there is none. */
+typedef enum adcgs_eval_column {
+    ADCGS_EVAL_PSNR,
+    ADCGS_EVAL_SSIM,
+    ADCGS_EVAL_MS_SSIM,
+    ADCGS_EVAL_MS_SSIM_SCALES,
+    ADCGS_EVAL_DYNAMIC_PSNR,
+    ADCGS_EVAL_FLICKER,
+    ADCGS_EVAL_DYNAMIC_SHARE,
+    ADCGS_EVAL_STATIC_VARIANCE,
+    ADCGS_EVAL_TRUTH_VARIANCE,
+    ADCGS_EVAL_CROP_PSNR,
+    ADCGS_EVAL_CROP_SSIM,
+    ADCGS_EVAL_MILLISECONDS,
+    ADCGS_EVAL_COLUMNS
+} adcgs_eval_column;
+
+/** Sums of a column over the rows that have a value. */
+typedef struct adcgs_eval_sum {
+    double sum;
+    uint32_t n;
+} adcgs_eval_sum;
+
+/** A camera that stays where it is. */
+typedef struct adcgs_eval_camera {
+    uint32_t camera, views;
+    double value[ADCGS_EVAL_COLUMNS]; /**< means over its views, and what only the views together give */
+} adcgs_eval_camera;
+
+typedef struct adcgs_eval_report {
+    /* Set by the caller. Strings must outlive the report. */
+    const char *file, *scene, *split, *csv; /**< csv: a file, "-" or NULL for none */
+    int measure, as_json;                   /**< flags of metric/evaluate.h */
+    const adcgs_box *box;                   /**< NULL: no crops */
+    uint64_t bytes;                         /**< of the stream */
+    int layers;
+    double decode_seconds;
+    /* Private. */
+    int as_text;
+    adcgs_json json;
+    adcgs_atomic atomic;
+    FILE *table;                            /**< of the CSV; NULL: none */
+    adcgs_eval_sum of_camera[ADCGS_EVAL_COLUMNS], of_all[ADCGS_EVAL_COLUMNS];
+    uint32_t camera;                        /**< that of_camera is of */
+    adcgs_eval_camera *cameras;
+    uint32_t n_cameras;
+} adcgs_eval_report;
+
+/** What --metrics takes: all, or names with commas between. 0, or -1 if text is neither. *measure: flags of metric/evaluate.h. */
+int adcgs_eval_parse_metrics(const char *text, int *measure);
+/** For messages: "all, or some of psnr, ...". */
+#define ADCGS_EVAL_METRICS "all, or a list of psnr, ssim, ms-ssim, dynamic-psnr, static-variance and flicker"
+
+/** Open the CSV, before anything long begins. Wants csv and as_json. A CSV on standard output is there instead of the text. */
+adcgs_status adcgs_eval_report_open(adcgs_eval_report *report, adcgs_error *error);
+/** Headings. */
+void adcgs_eval_report_begin(adcgs_eval_report *report);
+/** A view; crop may be out of sight. With the last view of a fixed camera, also the camera. */
+adcgs_status adcgs_eval_report_view(adcgs_eval_report *report, const adcgs_view_score *score, const adcgs_crop *crop,
+                                    adcgs_error *error);
+/** Means, and the end of what was written. */
+adcgs_status adcgs_eval_report_end(adcgs_eval_report *report, const adcgs_evaluation *evaluation, adcgs_error *error);
+/** Also after errors: a CSV that is not complete disappears. */
+void adcgs_eval_report_clear(adcgs_eval_report *report);
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-info --points: anchors as a point cloud. */
+#ifndef ADCGS_TOOLS_INFO_POINTS_H
+#define ADCGS_TOOLS_INFO_POINTS_H
+
+#include "io/points.h"
+#include "model/stream.h"
+
+/**
+ * The anchors of the segment that plays at the middle of the stream, in the stream's order: positions in world units, where they
+ * are before anything moves; colours at that moment, the mean over an anchor's Gaussians, each weighed by its opacity, and
+ * mid-grey where there is none to be seen.
+ */
+adcgs_status adcgs_info_points(adcgs_points *out, const adcgs_stream *stream, const char *path, adcgs_error *error);
+
+#endif

@@ -1,0 +1,96 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-eval's figures as text, CSV and JSON, of a camera that stays where it is and of cameras that move.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-eval adcgs-enc adcgs-demo-scene
+eval=./adcgs-eval
+s=$dir/s.adcgs
+
+./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+./adcgs-enc "$dir/scene" -o "$s" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 || { bad "adcgs-enc"; exit 1; }
+
+# expect CODE TEXT COMMAND...: the exit code, and one line on standard error with TEXT in it if there is one.
+expect()
+{
+    local code=$1 text=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    local got=$?
+    [ "$got" -eq "$code" ] || { bad "$* left with $got, expected $code"; cat "$dir/err"; }
+    [ -z "$text" ] || grep -q -e "$text" "$dir/err" || { bad "$*: no '$text' in its message"; cat "$dir/err"; }
+    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "$*: not one line"; cat "$dir/err"; }
+}
+
+# agree CSV JSON: each value of a row of the table is the JSON report's, but for times taken. JSON has one value a line; its
+# views, its cameras and its means come in the order of the rows.
+agree()
+{
+    awk -F, 'NR == 1 { for (i = 5; i <= NF; i++) key[i] = $i; next }
+             { for (i = 5; i <= NF; i++) if (key[i] != "milliseconds" && ($1 != "view" || !of_camera(key[i])))
+                   print key[i], ($i == "" ? "null" : $i) }
+             function of_camera(k) { return k == "dynamic_share" || k ~ /static_variance$/ }' \
+        <(sed 's/"a,""b"/ab/' "$1") >"$dir/from_csv"
+    grep -E '^ *"(psnr|ssim|ms_ssim|ms_ssim_scales|dynamic_psnr|flicker|dynamic_share|static_variance|truth_static_variance|crop_psnr|crop_ssim)": ' "$2" |
+        sed 's/^ *"\([a-z_]*\)": \([^,]*\),*$/\1 \2/' >"$dir/from_json"
+    cmp -s "$dir/from_csv" "$dir/from_json" || { bad "CSV and JSON differ"; diff "$dir/from_csv" "$dir/from_json" | head; }
+    [ "$(wc -l <"$dir/from_csv")" -gt 5 ] || bad "nothing was compared"
+}
+
+# By default, PSNR and SSIM.
+expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/plain.csv" --json
+[ "$(head -n 1 "$dir/plain.csv")" = "row,camera,name,time,psnr,ssim,milliseconds" ] || bad "heading of the table"
+[ "$(cut -d, -f 1 "$dir/plain.csv" | tr '\n' ' ')" = "row view view view mean " ] || { bad "rows"; cat "$dir/plain.csv"; }
+agree "$dir/plain.csv" "$dir/out"
+
+# Cameras that move: nothing over time.
+expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/all.csv" --json --metrics all --crop=-0.2,-0.2,-0.2,0.2,0.2,0.2
+agree "$dir/all.csv" "$dir/out"
+grep -q '"cameras": \[\]' "$dir/out" && grep -q '"flicker": null' "$dir/out" || bad "cameras that move are measured over time"
+grep -q '"ms_ssim": 0\.' "$dir/out" || bad "no MS-SSIM"
+expect 0 "" $eval "$s" "$dir/scene" --metrics flicker
+grep -q '^no camera has several views' "$dir/out" || bad "no word of cameras that move"
+
+# A camera that stays: the first pose for all. A grey picture in which a square of 8x8 moves by 8 pixels, and a name to quote.
+poses=$dir/scene/transforms_test.json
+first=$(grep -o '"transform_matrix".*\]\]' "$poses" | head -n 1)
+sed -i 's/"transform_matrix".*\]\]/'"$first"'/; s/r_001/a,"b/; s/a,"b/a,\\"b/' "$poses"
+mv "$dir/scene/test/r_001.ppm" "$dir/scene/test/a,\"b.ppm"
+t=0
+for picture in r_000 'a,"b' r_002; do
+    LC_ALL=C awk -v t=$t 'BEGIN { printf "P6\n64 64\n255\n"
+        for (y = 0; y < 64; y++) for (x = 0; x < 64; x++) {
+            v = y >= 16 && y < 24 && x >= 16 + 8 * t && x < 24 + 8 * t ? "~" : "@"
+            printf "%s%s%s", v, v, v } }' >"$dir/scene/test/$picture.ppm"
+    t=$((t + 1))
+done
+expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/all.csv" --json --metrics all
+agree "$dir/all.csv" "$dir/out"
+[ "$(cut -d, -f 1 "$dir/all.csv" | tr '\n' ' ')" = "row view view view camera mean " ] || { bad "rows"; cat "$dir/all.csv"; }
+grep -q '^view,0,"a,""b",' "$dir/all.csv" || { bad "a name with a comma and a quote"; cat "$dir/all.csv"; }
+# The square was on 24x8 pixels, which makes 30x14.
+[ "$(grep -c '"dynamic_share": 0.1025390625,' "$dir/out")" -eq 2 ] || { bad "the dynamic region"; cat "$dir/out"; }
+[ "$(grep -c '"truth_static_variance": 0,' "$dir/out")" -eq 2 ] || { bad "what stands still"; cat "$dir/out"; }
+[ "$(grep -c '"flicker": null' "$dir/out")" -eq 1 ] || { bad "flicker from the second picture on"; cat "$dir/out"; }
+[ "$(grep -c '"dynamic_psnr": [0-9]' "$dir/out")" -eq 5 ] || { bad "PSNR of what moves"; cat "$dir/out"; }
+expect 0 "" $eval "$s" "$dir/scene" --metrics psnr,static-variance
+grep -q '^camera 0, 3 views: .*static variance ' "$dir/out" || { bad "no line of the camera"; cat "$dir/out"; }
+grep -q flicker "$dir/out" && bad "flicker was not asked for"
+
+# The table on standard output, alone; and mistakes.
+expect 0 "" $eval "$s" "$dir/scene" --metrics all --csv -
+[ "$(sed 's/,[^,]*$//' "$dir/out")" = "$(sed 's/,[^,]*$//' "$dir/all.csv")" ] || { bad "another table on standard output"; cat "$dir/out"; }
+expect 2 "standard output" $eval "$s" "$dir/scene" --csv - --json
+for list in "" psnr, lpips all,x ms_ssim; do
+    expect 2 "expected all, or a list" $eval "$s" "$dir/scene" --metrics "$list"
+done
+expect 3 "cannot create" $eval "$s" "$dir/scene" --csv "$dir/nowhere/t.csv"
+expect 3 "is a folder" $eval "$s" "$dir/scene" --csv "$dir"
+if [ -w /dev/full ]; then
+    expect 3 "cannot write" $eval "$s" "$dir/scene" --csv /dev/full
+    $eval "$s" "$dir/scene" --csv - >/dev/full 2>"$dir/err" && bad "a full standard output goes unnoticed"
+    grep -q "cannot write" "$dir/err" || bad "no word of a full standard output"
+fi
+head -c 100 "$dir/scene/test/r_000.ppm" >"$dir/scene/test/r_002.ppm"
+expect 4 "r_002" $eval "$s" "$dir/scene" --csv "$dir/broken.csv"
+[ -z "$(ls "$dir" | grep broken)" ] || bad "an incomplete table stays"
+exit $failed

@@ -1,0 +1,108 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-dec: alpha and depth, camera paths, two streams side by side; adcgs-eval --beside. On a tiny stream.
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-dec adcgs-eval adcgs-enc adcgs-demo-scene
+
+# expect CODE TEXT COMMAND...: exit code, and what standard error says, in one line.
+expect()
+{
+    code=$1 text=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    got=$?
+    [ "$got" -eq "$code" ] || bad "exit code $got, expected $code: $*"
+    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
+    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "more than a line from: $*"; cat "$dir/err"; }
+}
+
+./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 ||
+    { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
+s=$dir/s.adcgs
+dec=./adcgs-dec
+
+# EXR has all that there is; its header names channels and attributes.
+expect 0 "frames of" $dec "$s" -o "$dir/f%d.exr" --float --alpha --depth --md5 --time 0:0.04
+cp "$dir/out" "$dir/md5"
+expect 0 "frames of" $dec "$s" --md5 --time 0:0.04
+cmp -s "$dir/out" "$dir/md5" || bad "frames change when alpha and depth are asked for"
+for word in worldToCamera worldToNDC screenWindowCenter adcgs/time adcgs/focal adcgs/camera software channels; do
+    grep -aq "$word" "$dir/f0.exr" || bad "no $word in the EXR"
+done
+expect 0 "frame of" $dec "$s" -o "$dir/plain.exr" --float --time 0
+[ "$(wc -c <"$dir/plain.exr")" -lt "$(wc -c <"$dir/f0.exr")" ] || bad "alpha and depth take no room"
+expect 0 "frame of" $dec "$s" -o "$dir/b.ppm" --bits 16 --time 0
+head -c 15 "$dir/b.ppm" | grep -aq 65535 || bad "--bits 16 in PPM"
+expect 0 "frame of" $dec "$s" -o "$dir/b8.ppm" --bits 8 --time 0
+$dec "$s" -o "$dir/c8.ppm" --time 0 2>/dev/null
+cmp -s "$dir/b8.ppm" "$dir/c8.ppm" || bad "--bits 8 is not the default"
+expect 2 "depth needs EXR" $dec "$s" -o "$dir/x%d.ppm" --depth
+expect 2 "alpha needs" $dec "$s" -o "$dir/x.y4m" --alpha
+expect 2 "16 bits need" $dec "$s" -o "$dir/x.y4m" --bits 16
+expect 2 "8 or 16" $dec "$s" -o "$dir/x.ppm" --bits 12
+expect 2 "excludes" $dec "$s" -o "$dir/x.exr" --bits 16 --half
+expect 2 "need --output" $dec "$s" --alpha
+
+# Paths: cameras move. (A spiral meets itself once.)
+for way in orbit spiral; do
+    expect 0 "frames of" $dec "$s" --camera $way --md5
+    [ "$(sort -u "$dir/out" | wc -l)" -ge "$(($(wc -l <"$dir/out") - 1))" ] || bad "$way stands still"
+done
+expect 0 "120 frames of" $dec "$s" --camera bullet --time 0.05 --md5
+[ "$(sort -u "$dir/out" | wc -l)" -gt 100 ] || bad "bullet stands still"
+expect 2 "one moment" $dec "$s" --camera bullet --time 0:0.1
+
+# Stored cameras as a path: it passes through each of them.
+expect 0 "" $dec "$s" --cameras "$dir/p.json"
+n=$(grep -c '"at"' "$dir/p.json")
+expect 0 "$((30 * (n - 1) + 1)) frames of" $dec "$s" --camera "$dir/p.json" --time 0 -o "$dir/path%03d.ppm"
+for i in 0 1 $((n - 1)); do
+    $dec "$s" --camera "$i" --time 0 -o "$dir/at.ppm" 2>/dev/null
+    [ "$(cmp -l "$dir/at.ppm" "$(printf '%s/path%03d.ppm' "$dir" $((30 * i)))" | wc -l)" -lt 100 ] ||
+        bad "the path misses camera $i"
+done
+cmp -s "$dir/path000.ppm" "$dir/path015.ppm" && bad "the path stands still"
+sed 's/"frame_rate": 30/"frame_rate": 24/' "$dir/p.json" >"$dir/q.json"
+expect 0 "$((24 * (n - 1) + 1)) frames of" $dec "$s" --camera "$dir/q.json" -o "$dir/q.y4m"
+head -n 1 "$dir/q.y4m" | grep -q ' F24:1 ' || bad "a path's frame rate is not the video's"
+sed 's/"smooth"/"zigzag"/' "$dir/p.json" >"$dir/q.json"
+expect 4 "q.json: interpolate: expected" $dec "$s" --camera "$dir/q.json"
+sed 's/"at": 1/"at": 0/' "$dir/p.json" >"$dir/q.json"
+expect 4 "q.json: keys\\[1\\].at: 0, expected more" $dec "$s" --camera "$dir/q.json"
+echo '{"keys":' >"$dir/q.json"
+expect 4 "q.json: line 2: malformed" $dec "$s" --camera "$dir/q.json"
+expect 2 "only" $dec "$s" --cameras "$dir/q.json" --camera orbit
+expect 3 "no/p.json" $dec "$s" --cameras "$dir/no/p.json"
+
+# Side by side: the left half is what the first stream shows alone.
+expect 0 "frame of" $dec "$s" --beside "$s" --layers 1 -o "$dir/two.ppm" --time 0
+$dec "$s" -o "$dir/one.ppm" --time 0 --layers 1 2>/dev/null
+size=$(sed -n 2p "$dir/one.ppm")
+w=${size% *}
+h=${size#* }
+[ "$(sed -n 2p "$dir/two.ppm")" = "$((2 * w + 4)) $h" ] || bad "--beside has the wrong size"
+# rows FILE BYTES SKIP TAKE: a stretch of each row of a PPM.
+rows()
+{
+    tail -c $(($2 * h)) "$1" | od -An -v -tu1 -w"$2" | awk -v a="$3" -v n="$4" '{ for (i = 1; i <= n; i++) print $(a + i) }' | md5sum
+}
+whole=$(rows "$dir/one.ppm" $((3 * w)) 0 $((3 * w)))
+[ "$(rows "$dir/two.ppm" $((6 * w + 12)) 0 $((3 * w)))" = "$whole" ] || bad "the left half differs"
+[ "$(rows "$dir/two.ppm" $((6 * w + 12)) $((3 * w + 12)) $((3 * w)))" = "$whole" ] || bad "the right half differs"
+expect 3 "nowhere" $dec "$s" --beside "$dir/nowhere" -o "$dir/x.ppm" --time 0
+expect 2 "excludes" $dec "$s" --beside "$s" -o "$dir/x.y4m" --md5
+expect 2 "need --output" $dec "$s" --beside "$s"
+
+# Evaluation: three pictures in one.
+expect 2 "needs --images" ./adcgs-eval "$s" "$dir/scene" --beside
+if ./adcgs-eval "$s" "$dir/scene" --images "$dir/views" --beside >"$dir/out" 2>&1; then
+    file=$(find "$dir/views" -name '0000-*.png')
+    got=$(od -An -tu1 -j16 -N8 "$file" | awk '{ print $3 * 256 + $4, $7 * 256 + $8 }')
+    [ "$got" = "$((3 * w + 8)) $h" ] || bad "adcgs-eval --beside writes $got"
+else
+    grep -q "cannot write .png" "$dir/out" || { bad "adcgs-eval --beside"; cat "$dir/out"; }
+fi
+[ -z "$(find "$dir" -name 'x*')" ] || bad "something was left behind"
+exit $failed

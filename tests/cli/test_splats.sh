@@ -1,0 +1,88 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Splats and points in files: adcgs-dec --splats, adcgs-enc and adcgs-eval on a PLY of splats, adcgs-info --points.
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-dec adcgs-eval adcgs-enc adcgs-info adcgs-demo-scene
+
+# expect CODE TEXT COMMAND...: exit code, and what standard error says in one line.
+expect()
+{
+    code=$1 text=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    got=$?
+    [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code: $*"; cat "$dir/err"; }
+    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
+    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "not one line from: $*"; cat "$dir/err"; }
+}
+
+# vertices FILE: how many it declares; size FILE: bytes behind its header.
+vertices() { sed -n '/^end_header/q; s/^element vertex //p' "$1"; }
+size() { sed '1,/^end_header$/d' "$1" | wc -c; }
+
+./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 ||
+    { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
+s=$dir/s.adcgs
+
+# One moment, and a span of them.
+expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/a.ply" --time 0.03
+head -n 3 "$dir/a.ply" | tail -n 1 | grep -q '^comment adcgs .*, time 0.03 s$' || bad "the header names no time"
+[ "$(vertices "$dir/a.ply")" -gt 10 ] && [ "$(size "$dir/a.ply")" -eq $((68 * $(vertices "$dir/a.ply"))) ] || bad "size of the PLY"
+expect 0 "1 file" sh -c "cat '$s' | ./adcgs-dec - --splats '$dir/b.ply' --time 0.03 --threads 1 --cpu scalar"
+cmp -s "$dir/a.ply" "$dir/b.ply" || bad "splats depend on threads, CPU or source"
+expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/first.ply"
+expect 0 "files" ./adcgs-dec "$s" --splats "$dir/t%03d.ply"
+cmp -s <"$dir/t000.ply" - "$dir/first.ply" || bad "the first moment"
+./adcgs-dec "$s" --md5 >"$dir/md5" 2>/dev/null
+[ "$(find "$dir" -name 't0*.ply' | wc -l)" -eq "$(wc -l <"$dir/md5")" ] || bad "not one file of splats for each frame"
+cmp -s "$dir/t000.ply" "$dir/t002.ply" && bad "nothing moves"
+expect 2 "%04d" ./adcgs-dec "$s" --splats "$dir/x.ply" --time 0:1
+expect 2 ".ply" ./adcgs-dec "$s" --splats "$dir/x.obj"
+expect 2 "one number" ./adcgs-dec "$s" --splats "$dir/x%d%d.ply"
+expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --md5
+expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --camera 0
+expect 3 "no/x.ply" ./adcgs-dec "$s" --splats "$dir/no/x.ply"
+
+# Splats as a scene.
+expect 0 "" ./adcgs-enc "$dir/a.ply" -o "$dir/again.adcgs" --preset draft --iterations 20 --scale 8 --threads 2
+expect 0 "" ./adcgs-eval "$dir/again.adcgs" "$dir/a.ply"
+grep -q '^mean of 20 *test views' "$dir/out" || bad "no evaluation of splats"
+expect 0 "" ./adcgs-eval "$dir/again.adcgs" "$dir/a.ply" --split val
+grep -q '^mean of 10 *val views' "$dir/out" || bad "no validation on splats"
+printf 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n' >"$dir/p.ply"
+expect 4 "p.ply: no property f_dc_0: not splats" ./adcgs-enc "$dir/p.ply" -o "$dir/x.adcgs"
+head -c 2000 "$dir/a.ply" >"$dir/cut.ply"
+expect 4 "cut.ply: .* bytes follow" ./adcgs-enc "$dir/cut.ply" -o "$dir/x.adcgs"
+printf 'ply\nformat ascii 1.0\nelement vertex 1\nproperty uint packed_position\nend_header\n1\n' >"$dir/c.ply"
+expect 5 "c.ply: a compressed PLY" ./adcgs-eval "$s" "$dir/c.ply"
+
+# Anchors as points.
+anchors=$(./adcgs-info "$s" --json | sed -n 's/.*"anchors": *\([0-9]*\).*/\1/p' | head -n 1)
+expect 0 "" ./adcgs-info "$s" --points "$dir/points.ply"
+[ "$(vertices "$dir/points.ply")" = "$anchors" ] && [ "$(size "$dir/points.ply")" -eq $((15 * anchors)) ] || bad "points as PLY"
+expect 0 "" ./adcgs-info - --points "$dir/points2.ply" <"$s"
+cmp -s "$dir/points.ply" "$dir/points2.ply" || bad "points from standard input"
+expect 2 "points goes with" ./adcgs-info "$s" --points "$dir/x.ply" --json
+expect 2 ".ply or .drc" ./adcgs-info "$s" --points "$dir/x.obj"
+expect 3 "no/x.ply" ./adcgs-info "$s" --points "$dir/no/x.ply"
+expect 0 "" ./adcgs-info "$s" --points "$dir/points.drc"
+[ "$(head -c 5 "$dir/points.drc")" = DRACO ] || bad "points as Draco"
+# The encoder reads them back as initial points.
+expect 0 "" ./adcgs-enc "$dir/scene" -o "$dir/third.adcgs" --points "$dir/points.drc" --preset draft --iterations 10 --threads 2
+# Draco is opened when a file needs it, and not before. A build without shared libraries has it inside.
+if [ -f .libs/adcgs_draco.so ]; then
+    for program in adcgs-info adcgs-dec adcgs-enc; do
+        ! readelf -d "$program" 2>/dev/null | grep -q 'NEEDED.*draco' || bad "$program loads Draco at once"
+    done
+    ! readelf -d adcgs-info 2>/dev/null | grep -q 'NEEDED.*\(stdc++\|jansson\|OpenEXR\)' || bad "adcgs-info needs more than C"
+    mkdir "$dir/none"
+    expect 5 "x.drc: its points need Draco: no adcgs_draco.so in $dir/none" \
+        env ADCGS_MODULES="$dir/none" ./adcgs-info "$s" --points "$dir/x.drc"
+    expect 5 "points.drc: its points need Draco: no adcgs_draco.so" \
+        env ADCGS_MODULES="$dir/none" ./adcgs-enc "$dir/scene" -o "$dir/x.adcgs" --points "$dir/points.drc"
+    expect 0 "" env ADCGS_MODULES="$dir/none" ./adcgs-info "$s"
+fi
+[ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || bad "something was left behind"
+exit $failed

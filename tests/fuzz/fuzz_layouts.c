@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Scenes of LLFF and COLMAP and scene files from outside. The first byte says which: L poses_bounds.npy, B a binary model of
+ * COLMAP, T the same in text, S a scene file. The files of a model follow each other, each but the last after its length in two
+ * bytes. There are two small pictures.
+ */
+#define _GNU_SOURCE
+
+#include "outside_file.h"
+
+#include "data/scene.h"
+
+#include <sys/stat.h>
+
+const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/layouts", "tests/fuzz/regressions/layouts", NULL };
+
+#define PICTURE "P5\n24 16\n255\n" /* and as many pixels, all black */
+
+/** The files of each kind; the pictures come last. */
+static const struct kind {
+    char letter;
+    const char *scene; /* "" is the folder */
+    const char *files[3];
+    int n;
+} kinds[] = {
+    { 'L', "", { "poses_bounds.npy" }, 1 },
+    { 'B', "", { "cameras.bin", "images.bin", "points3D.bin" }, 3 },
+    { 'T', "", { "cameras.txt", "images.txt", "points3D.txt" }, 3 },
+    { 'S', "/s.json", { "s.json" }, 1 },
+};
+static const char *const pictures[] = { "images/0.ppm", "images/1.ppm" };
+
+static void put_files(const char *folder, const struct kind *kind, const uint8_t *data, size_t size)
+{
+    char path[96];
+    for (int i = 0; i < kind->n; i++) {
+        size_t bytes = size;
+        if (i < kind->n - 1) {
+            bytes = size < 2 ? 0 : ADCGS_MIN(adcgs_load_le16(data), size - 2);
+            data += ADCGS_MIN(size, 2);
+            size -= ADCGS_MIN(size, 2);
+        }
+        snprintf(path, sizeof path, "%s/%s", folder, kind->files[i]);
+        write_outside_file(path, data, bytes);
+        data += bytes;
+        size -= bytes;
+    }
+}
+
+static void remove_files(const char *folder, const struct kind *kind)
+{
+    char path[96];
+    for (int i = 0; i < kind->n + 2; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, i < kind->n ? kind->files[i] : pictures[i - kind->n]);
+        unlink(path);
+    }
+    snprintf(path, sizeof path, "%s/images", folder);
+    rmdir(path);
+    rmdir(folder);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[96];
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_scene *scene;
+    const struct kind *kind = &kinds[0];
+    for (size_t i = 0; size && i < ADCGS_COUNTOF(kinds); i++)
+        kind = kinds[i].letter == *data ? &kinds[i] : kind;
+    uint8_t picture[sizeof PICTURE - 1 + 24 * 16] = PICTURE;
+    FUZZ_REQUIRE(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/images", folder);
+    FUZZ_REQUIRE(mkdir(path, 0700) == 0);
+    for (size_t i = 0; i < ADCGS_COUNTOF(pictures); i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, pictures[i]);
+        write_outside_file(path, picture, sizeof picture);
+    }
+    put_files(folder, kind, data + (size > 0), size - (size > 0));
+    snprintf(path, sizeof path, "%s%s", folder, kind->scene);
+    const adcgs_status status = adcgs_scene_open(&scene, path, NULL, &error);
+    FUZZ_REQUIRE(status == ADCGS_OK || (error.status == status && error.text[0] && !strchr(error.text, '\n')));
+    adcgs_scene_free(&scene);
+    remove_files(folder, kind);
+    return 0;
+}

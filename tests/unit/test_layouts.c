@@ -1,0 +1,490 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What holds for scenes of every layout: test views have no part in where training starts, frames can be chosen, a kind can be
+ * forced.
+ */
+#include "layout_files.h"
+
+#include "train/start.h"
+
+enum { CAMERAS = 9, MOMENTS = 4 };
+
+static adcgs_scene *scene;
+
+static void expect_good(adcgs_status status)
+{
+    if (status != ADCGS_OK)
+        fail_msg("%s", error.text);
+}
+
+/* ---- The layouts; each returns what is for testing as a pattern of its files, with one number ---- */
+
+/** Files of the test views: a picture or video by number. */
+typedef struct layout {
+    const char *name;
+    const char *scene;    /**< below the folder; "": the folder itself */
+    const char *tests;    /**< "" if tests are of numbers 0 and 8 of the pictures */
+    int first, last, step;
+    void (*put)(void);
+    int videos;
+} layout;
+
+static void put_pictures(const char *format, int n)
+{
+    for (int i = 0; i < n; i++) {
+        char name[64];
+        snprintf(name, sizeof name, format, i);
+        put_picture(name, i, RIG_WIDTH, RIG_HEIGHT);
+    }
+}
+
+static void put_frames(const char *format)
+{
+    for (int c = 0; c < CAMERAS; c++) {
+        char name[64];
+        snprintf(name, sizeof name, format, c);
+        *strrchr(name, '/') = 0;
+        put_folder(name);
+        for (int i = 0; i < MOMENTS; i++) {
+            char file[64];
+            snprintf(file, sizeof file, format, c);
+            snprintf(file + strlen(file), sizeof file - strlen(file), "%04d.ppm", i);
+            put_picture(file, c * MOMENTS + i, RIG_WIDTH, RIG_HEIGHT);
+        }
+    }
+}
+
+/** One file of transforms for every step-th camera from the first. */
+static void put_transforms(const char *name, int first, int step)
+{
+    char *text = malloc(65536);
+    assert_non_null(text);
+    size_t at = (size_t)sprintf(text, "{\"fl_x\":20,\"w\":24,\"h\":16,\"frames\":[");
+    for (int i = first; i < CAMERAS; i += step) {
+        double pose[12];
+        rig_pose(i, pose);
+        at += (size_t)sprintf(text + at, "%s{\"file_path\":\"%d.ppm\",\"time\":%g,\"transform_matrix\":%s}",
+                              i > first ? "," : "", i, i / 8.0, json_opengl(pose));
+    }
+    sprintf(text + at, "]}");
+    put_text(name, text);
+    free(text);
+}
+
+static void put_dnerf(void)
+{
+    put_pictures("%d.ppm", CAMERAS);
+    put_transforms("transforms_train.json", 1, 2);
+    put_transforms("transforms_test.json", 0, 8);
+}
+
+static void put_nerfstudio(void)
+{
+    put_pictures("%d.ppm", CAMERAS);
+    put_transforms("transforms.json", 0, 1);
+}
+
+static void put_hypernerf(void)
+{
+    char ids[256] = "", times[256] = "", name[64], text[512];
+    put_folder("rgb");
+    put_folder("rgb/1x");
+    put_folder("camera");
+    put_pictures("rgb/1x/%d.ppm", CAMERAS);
+    for (int i = 0; i < CAMERAS; i++) {
+        double p[12];
+        rig_pose(i, p);
+        if (i % 8)
+            sprintf(ids + strlen(ids), "%s\"%d\"", i > 1 ? "," : "", i);
+        sprintf(times + strlen(times), "%s\"%d\":{\"warp_id\":%d}", i ? "," : "", i, i);
+        snprintf(name, sizeof name, "camera/%d.json", i);
+        snprintf(text, sizeof text, "{\"orientation\":[[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g],[%.17g,%.17g,%.17g]],"
+                 "\"position\":[%.17g,%.17g,%.17g],\"focal_length\":20,\"principal_point\":[12,8],\"image_size\":[24,16]}",
+                 p[0], p[4], p[8], p[1], p[5], p[9], p[2], p[6], p[10], p[3], p[7], p[11]);
+        put_text(name, text);
+    }
+    snprintf(text, sizeof text, "{\"ids\":[],\"train_ids\":[%s],\"val_ids\":[\"0\",\"8\"]}", ids);
+    put_text("dataset.json", text);
+    snprintf(text, sizeof text, "{%s}", times);
+    put_text("metadata.json", text);
+    put_text("scene.json", "{\"center\":[0,0,0],\"scale\":1}");
+}
+
+static void put_llff(void)
+{
+    put_folder("images");
+    put_pictures("images/%d.ppm", CAMERAS);
+    put_poses(CAMERAS, 4);
+}
+
+static void put_neu3d(void)
+{
+    for (int c = 0; c < CAMERAS; c++) {
+        char name[64];
+        snprintf(name, sizeof name, "cam%02d", c);
+        put_folder(name);
+    }
+    put_frames("cam%02d/images/");
+    put_poses(CAMERAS, 2);
+}
+
+static void put_videos(const char *format)
+{
+    for (int c = 0; c < CAMERAS; c++) {
+        char name[64];
+        snprintf(name, sizeof name, format, c);
+        put_video(name, c, MOMENTS, RIG_WIDTH, RIG_HEIGHT);
+    }
+}
+
+static void put_neu3d_videos(void)
+{
+    put_videos("cam%02d.mp4");
+    put_poses(CAMERAS, 1);
+}
+
+static void put_colmap(void)
+{
+    put_folder("sparse");
+    put_folder("sparse/0");
+    put_folder("images");
+    put_pictures("images/%d.ppm", CAMERAS);
+    put_model_binary("sparse/0", CAMERAS, "%d.ppm");
+}
+
+static void put_colmap_videos(void)
+{
+    put_folder("sparse");
+    put_folder("videos");
+    put_videos("videos/%d.mp4");
+    put_model_text("sparse", CAMERAS, "%d.ppm", "7 PINHOLE 24 16 20 20 12 8\n");
+}
+
+static void put_scene_file(void)
+{
+    put_frames("cam%d/");
+    char *text = malloc(65536);
+    assert_non_null(text);
+    size_t at = (size_t)sprintf(text, "{\"adcgs_scene\":1,\"defaults\":{\"width\":24,\"height\":16,\"fx\":20},\"cameras\":[");
+    for (int i = 0; i < CAMERAS; i++) {
+        double pose[12];
+        rig_pose(i, pose);
+        at += (size_t)sprintf(text + at, "%s{\"name\":\"%d\",\"camera_to_world\":%s,\"images\":\"cam%d/%%04d.ppm\","
+                              "\"split\":\"%s\"}", i ? "," : "", i, json_matrix(pose), i, i ? "train" : "test");
+    }
+    sprintf(text + at, "]}");
+    put_text("scene.json", text);
+    free(text);
+}
+
+static const layout layouts[] = {
+    {"D-NeRF", "", "%d.ppm", 0, 8, 8, put_dnerf, 0},
+    {"nerfstudio", "", "%d.ppm", 0, 8, 8, put_nerfstudio, 0},
+    {"HyperNeRF", "", "rgb/1x/%d.ppm", 0, 8, 8, put_hypernerf, 0},
+    {"LLFF", "", "images/%d.ppm", 0, 8, 8, put_llff, 0},
+    {"Neu3D, pictures", "", "cam00/images/%04d.ppm", 0, MOMENTS - 1, 1, put_neu3d, 0},
+    {"Neu3D, videos", "", "cam%02d.mp4", 0, 0, 1, put_neu3d_videos, 1},
+    {"COLMAP, pictures", "", "images/%d.ppm", 0, 8, 8, put_colmap, 0},
+    {"COLMAP, videos", "", "videos/%d.mp4", 0, 0, 1, put_colmap_videos, 1},
+    {"scene file", "scene.json", "cam0/%04d.ppm", 0, MOMENTS - 1, 1, put_scene_file, 0},
+};
+
+static const char *scene_path(const layout *l)
+{
+    return *l->scene ? in(l->scene) : folder;
+}
+
+/** Make the folder anew. */
+static void begin_anew(const layout *l)
+{
+    assert_int_equal(remove_folder(NULL), 0);
+    assert_int_equal(mkdir(folder, 0777), 0);
+    l->put();
+}
+
+/* ---- Apart ---- */
+
+/** All that training begins with. */
+typedef struct start {
+    adcgs_scene *scene;
+    double origin[3], scale;
+    adcgs_fmodel *model;
+} start;
+
+static start make_start(const layout *l)
+{
+    start s;
+    expect_good(adcgs_scene_open(&s.scene, scene_path(l), NULL, &error));
+    return s;
+}
+
+static void finish_start(start *s)
+{
+    adcgs_train_config config;
+    expect_good(adcgs_train_preset(&config, "draft", &error));
+    config.start_anchors = 60;
+    adcgs_scene_frame(s->scene, s->origin, &s->scale);
+    expect_good(adcgs_train_start(&s->model, s->scene, &config, &error));
+}
+
+static void free_start(start *s)
+{
+    adcgs_scene_free(&s->scene);
+    adcgs_fmodel_free(&s->model);
+}
+
+static void expect_same(const start *a, const start *b)
+{
+    const uint32_t n = a->scene->n_views[ADCGS_SPLIT_TRAIN];
+    assert_memory_equal(a->origin, b->origin, sizeof a->origin);
+    assert_true(a->scale == b->scale && a->scene->duration == b->scene->duration && a->scene->n_times == b->scene->n_times);
+    assert_true(a->scene->frame_rate == b->scene->frame_rate && a->scene->axes == b->scene->axes);
+    assert_true(a->scene->has_alpha == b->scene->has_alpha && n == b->scene->n_views[ADCGS_SPLIT_TRAIN]);
+    for (uint32_t i = 0; i < n; i++) {
+        const adcgs_scene_view *v = &a->scene->views[ADCGS_SPLIT_TRAIN][i], *w = &b->scene->views[ADCGS_SPLIT_TRAIN][i];
+        assert_memory_equal(&v->camera, &w->camera, sizeof v->camera); /* with the near plane */
+        assert_true(v->time == w->time && v->frame == w->frame && !strcmp(v->path, w->path));
+    }
+    assert_int_equal(a->scene->points.n, b->scene->points.n);
+    assert_memory_equal(a->scene->points.position, b->scene->points.position, a->scene->points.n * sizeof(float[3]));
+    assert_int_equal(a->model->n, b->model->n);
+    assert_true(a->model->n > 16 && a->model->voxel == b->model->voxel);
+    assert_memory_equal(a->model->pos, b->model->pos, a->model->n * sizeof *a->model->pos);
+    for (int p = 0; p < ADCGS_P_COUNT; p++)
+        assert_memory_equal(a->model->param[p].p, b->model->param[p].p, a->model->param[p].n * sizeof(float));
+}
+
+enum { REPLACE, REMOVE };
+
+/** Do it to all files of the test views; how many. */
+static int touch_tests(const layout *l, int what)
+{
+    int n = 0;
+    for (int i = l->first; i <= l->last; i += l->step, n++) {
+        char name[64];
+        snprintf(name, sizeof name, l->tests, i);
+        assert_int_equal(unlink(in(name)), 0);
+        if (what == REPLACE && l->videos)
+            put_video(name, 50 + i, MOMENTS, RIG_WIDTH, RIG_HEIGHT);
+        else if (what == REPLACE)
+            put_picture(name, 50 + i, RIG_WIDTH, RIG_HEIGHT);
+    }
+    return n;
+}
+
+/** Other test views, and none at all once the scene is open, leave the start of training as it is, to the bit. */
+static void test_apart(void **state)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(layouts); i++) {
+        const layout *l = &layouts[i];
+        if (l->videos && !put_video("probe.mp4", 0, 1, RIG_WIDTH, RIG_HEIGHT)) {
+            print_message("skipped: %s: this build writes no videos\n", l->name);
+            continue;
+        }
+        begin_anew(l);
+        start first = make_start(l), second, third;
+        finish_start(&first);
+        assert_true(first.scene->n_views[ADCGS_SPLIT_TEST] > 0 && first.scene->n_views[ADCGS_SPLIT_TRAIN] > 0);
+        assert_true(touch_tests(l, REPLACE) > 0);
+        second = make_start(l);
+        finish_start(&second);
+        third = make_start(l);
+        assert_true(touch_tests(l, REMOVE) > 0);
+        finish_start(&third);
+        expect_same(&first, &second);
+        expect_same(&first, &third);
+        free_start(&first);
+        free_start(&second);
+        free_start(&third);
+    }
+}
+
+/** Training views do have a part: the test above would notice. */
+static void test_apart_notices(void **state)
+{
+    begin_anew(&layouts[3]);
+    start first = make_start(&layouts[3]), second;
+    finish_start(&first);
+    put_picture("images/4.ppm", 99, RIG_WIDTH, RIG_HEIGHT);
+    second = make_start(&layouts[3]);
+    finish_start(&second);
+    int same = first.model->n == second.model->n;
+    for (int p = 0; same && p < ADCGS_P_COUNT; p++)
+        same = !memcmp(first.model->param[p].p, second.model->param[p].p, first.model->param[p].n * sizeof(float));
+    assert_false(same);
+    free_start(&first);
+    free_start(&second);
+}
+
+/** The other test views' cameras, not only their pictures. */
+static void test_apart_poses(void **state)
+{
+    begin_anew(&layouts[0]);
+    start first = make_start(&layouts[0]), second;
+    finish_start(&first);
+    put_text("transforms_test.json", "{\"fl_x\":99,\"fps\":7,\"w\":24,\"h\":16,\"ply_file_path\":\"0.ppm\",\"frames\":["
+             "{\"file_path\":\"0.ppm\",\"time\":1,\"transform_matrix\":[[1,0,0,70],[0,1,0,0],[0,0,1,900]]}]}");
+    second = make_start(&layouts[0]);
+    finish_start(&second);
+    expect_same(&first, &second);
+    free_start(&first);
+    free_start(&second);
+}
+
+/** Frames that do not say how large they are: other sizes of test pictures do not become those of the others. */
+static void test_apart_sizes(void **state)
+{
+    const layout *l = &layouts[1];
+    begin_anew(l);
+    put_transforms("transforms.json", 0, 1);
+    char *text = malloc(65536);
+    assert_non_null(text);
+    FILE *file = fopen(in("transforms.json"), "rb");
+    const size_t n = fread(text, 1, 65535, file);
+    fclose(file);
+    text[n] = 0;
+    memset(strstr(text, "\"w\":24,"), ' ', 7);
+    memset(strstr(text, "\"h\":16,"), ' ', 7);
+    put_text("transforms.json", text);
+    free(text);
+    start first = make_start(l), second;
+    finish_start(&first);
+    put_picture("0.ppm", 0, 2 * RIG_WIDTH, 2 * RIG_HEIGHT);
+    put_picture("8.ppm", 8, 2 * RIG_WIDTH, 2 * RIG_HEIGHT);
+    second = make_start(l);
+    finish_start(&second);
+    expect_same(&first, &second);
+    assert_int_equal(second.scene->views[ADCGS_SPLIT_TEST][0].camera.width, 2 * RIG_WIDTH);
+    free_start(&first);
+    free_start(&second);
+}
+
+/* ---- Frames ---- */
+
+static void expect_range(const char *text, int64_t begin, int64_t end, int64_t step)
+{
+    adcgs_frame_range range = {9, 9, 9};
+    expect_good(adcgs_frames_parse(&range, text, &error));
+    assert_true(range.begin == begin && range.end == end && range.step == step);
+}
+
+static void test_parse_frames(void **state)
+{
+    static const char *const bad[] = {"", "7", "1:2:0", "1:2:3:4", "-1:5", "1:-5", "a:b", "1:2x", "1 :2", "1:2:", "9999999999:"};
+    adcgs_frame_range range;
+    expect_range("2:9", 2, 9, 1);
+    expect_range("2:9:3", 2, 9, 3);
+    expect_range(":", 0, 0, 1);
+    expect_range("5:", 5, 0, 1);
+    expect_range("::2", 0, 0, 2);
+    for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++)
+        if (i != 9) /* a step may be left out */
+            expect_error(adcgs_frames_parse(&range, bad[i], &error), ADCGS_ERR_USAGE, "--frames", "expected A:B");
+    expect_error(adcgs_frames_parse(&range, "5:5", &error), ADCGS_ERR_USAGE, "holds no frame", "5 is not below 5");
+    expect_error(adcgs_frames_parse(&range, "0:0", &error), ADCGS_ERR_USAGE, "holds no frame", "");
+}
+
+static void open_range(const layout *l, int64_t begin, int64_t end, int64_t step, adcgs_status expected, const char *what)
+{
+    const adcgs_scene_options options = {.frames = {begin, end, step}, .frame_rate = l->videos ? 0 : 10};
+    const adcgs_status status = adcgs_scene_open(&scene, scene_path(l), &options, &error);
+    if (expected == ADCGS_OK)
+        expect_good(status);
+    else
+        expect_error(status, expected, what, "");
+}
+
+/** Moments of single pictures: those of training 1, 3, 5, 7 and of testing 0, 8, all over 8. */
+static void test_frames_of_pictures(void **state)
+{
+    begin_anew(&layouts[0]);
+    open_range(&layouts[0], 1, 5, 2, ADCGS_OK, NULL); /* of the moments 0 1 3 5 7 8: 1 and 5 */
+    assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 2 && scene->n_views[ADCGS_SPLIT_TEST] == 0);
+    assert_string_equal(scene->views[ADCGS_SPLIT_TRAIN][1].camera.name, "5");
+    assert_true(scene->views[ADCGS_SPLIT_TRAIN][0].time == 0.0 && scene->duration == 0.1);
+    assert_true(scene->views[ADCGS_SPLIT_TRAIN][1].time == scene->duration);
+    adcgs_scene_free(&scene);
+    open_range(&layouts[0], 3, 0, 1, ADCGS_OK, NULL);
+    assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 2 && scene->n_views[ADCGS_SPLIT_TEST] == 1);
+    assert_true(scene->views[ADCGS_SPLIT_TRAIN][0].time == 0.0 && scene->views[ADCGS_SPLIT_TEST][0].time == scene->duration);
+    adcgs_scene_free(&scene);
+    open_range(&layouts[0], 6, 0, 1, ADCGS_ERR_DATA, "begins with frame 6, but there are 6");
+    open_range(&layouts[0], 5, 0, 1, ADCGS_ERR_DATA, "leaves no view for training");
+}
+
+/** Frames of cameras: the step makes frames rarer, not faster. */
+static void test_frames_of_cameras(void **state)
+{
+    static const int which[] = {4, 5, 7, 8};
+    for (size_t i = 0; i < ADCGS_COUNTOF(which); i++) {
+        const layout *l = &layouts[which[i]];
+        if (l->videos && !put_video("probe.mp4", 0, 1, RIG_WIDTH, RIG_HEIGHT))
+            continue;
+        begin_anew(l);
+        open_range(l, 1, 0, 2, ADCGS_OK, NULL); /* frames 1 and 3 */
+        const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
+        assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 2 * (CAMERAS - 1) && scene->n_views[ADCGS_SPLIT_TEST] == 2);
+        assert_true(scene->n_times == 2 && train[0].time == 0.0 && train[1].time == scene->duration);
+        assert_true(train[0].is_video == l->videos && train[1].frame == (l->videos ? 3 : 0));
+        assert_true(l->videos || strstr(train[1].path, "0003.ppm"));
+        /* Videos are at 25 frames per second, every second one is at 12.5; pictures are said to be at 10, but a scene file's
+         * frames have times of their own, at 30. */
+        assert_true(fabs(scene->duration - (l->videos ? 2 / 25.0 : *l->scene ? 2 / 30.0 : 0.1)) < 1e-12);
+        assert_true(fabs(scene->frame_rate - (l->videos ? 12.5 : 10)) < 1e-12);
+        adcgs_scene_free(&scene);
+        open_range(l, 4, 0, 1, ADCGS_ERR_DATA, "begins with frame 4, but there are 4");
+    }
+}
+
+/* ---- Kinds ---- */
+
+static void open_as(int dataset, adcgs_status expected, const char *what)
+{
+    const adcgs_scene_options options = {.dataset = dataset};
+    const adcgs_status status = adcgs_scene_open(&scene, folder, &options, &error);
+    if (expected == ADCGS_OK) {
+        expect_good(status);
+        adcgs_scene_free(&scene);
+    } else
+        expect_error(status, expected, what, folder);
+}
+
+static void test_kinds(void **state)
+{
+    begin_anew(&layouts[3]);
+    put_folder("sparse");
+    put_model_text("sparse", CAMERAS, "%d.ppm", "7 PINHOLE 24 16 20 20 12 8\n");
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error)); /* LLFF goes first */
+    assert_true(scene->near_bound == 2.01);
+    adcgs_scene_free(&scene);
+    open_as(ADCGS_DATASET_COLMAP, ADCGS_OK, NULL);
+    open_as(ADCGS_DATASET_LLFF, ADCGS_OK, NULL);
+    open_as(ADCGS_DATASET_HYPERNERF, ADCGS_ERR_IO, "dataset.json");
+    open_as(ADCGS_DATASET_TRANSFORMS, ADCGS_ERR_IO, "transforms.json");
+    open_as(ADCGS_DATASET_ADCGS, ADCGS_ERR_USAGE, "expected a scene file");
+    assert_int_equal(remove_folder(NULL), 0);
+    assert_int_equal(mkdir(folder, 0777), 0);
+    open_as(ADCGS_DATASET_AUTO, ADCGS_ERR_IO, "poses_bounds.npy, nor a COLMAP model");
+    open_as(ADCGS_DATASET_LLFF, ADCGS_ERR_IO, "poses_bounds.npy");
+    open_as(ADCGS_DATASET_COLMAP, ADCGS_ERR_DATA, "no COLMAP model");
+    put_text("scene.json", "{}");
+    const adcgs_scene_options as_llff = {.dataset = ADCGS_DATASET_LLFF}, as_file = {.dataset = ADCGS_DATASET_ADCGS};
+    expect_error(adcgs_scene_open(&scene, in("scene.json"), &as_llff, &error), ADCGS_ERR_USAGE, "a file", "of the kind llff");
+    expect_error(adcgs_scene_open(&scene, in("scene.json"), &as_file, &error), ADCGS_ERR_DATA, "adcgs_scene", "version 1");
+    expect_error(adcgs_scene_open(&scene, in("scene.json"), NULL, &error), ADCGS_ERR_DATA, "scene.json", "frames");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_apart),
+        cmocka_unit_test(test_apart_notices),
+        cmocka_unit_test(test_apart_poses),
+        cmocka_unit_test(test_apart_sizes),
+        cmocka_unit_test(test_parse_frames),
+        cmocka_unit_test(test_frames_of_pictures),
+        cmocka_unit_test(test_frames_of_cameras),
+        cmocka_unit_test(test_kinds),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,662 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Splats in PLY: what is written, read and refused; a decoder's splats there and back; splats as scenes. */
+#include "outside_files.h"
+#include "random_model.h"
+
+#include "data/harmonics.h"
+#include "data/splat_scene.h"
+#include "io/splats.h"
+#include "metric/metric.h"
+#include "render/render.h"
+#include "tools/info_points.h"
+
+#include <adcgs/adcgs.h>
+
+#include <math.h>
+
+#define NAMES 14
+static const char *const names[NAMES] = {"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+                                         "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
+
+static void expect_good(adcgs_status status)
+{
+    if (status != ADCGS_OK)
+        fail_msg("%s", error.text);
+}
+
+/* ---- Files made here ---- */
+
+/** A PLY as text: properties with `left_out` missing, `odd` of another type, n_rest of f_rest_*, then lines. */
+static void put_splats(const char *name, const char *left_out, const char *odd, const char *odd_type, int n_rest,
+                       const char *count, const char *lines)
+{
+    char text[8192];
+    int n = snprintf(text, sizeof text, "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex %s\n", count);
+    for (int i = 0; i < NAMES; i++)
+        if (!left_out || strcmp(left_out, names[i]))
+            n += snprintf(text + n, sizeof text - (size_t)n, "property %s %s\n",
+                          odd && !strcmp(odd, names[i]) ? odd_type : "float", names[i]);
+    for (int i = 0; i < n_rest; i++)
+        n += snprintf(text + n, sizeof text - (size_t)n, "property float f_rest_%d\n", i);
+    n += snprintf(text + n, sizeof text - (size_t)n, "end_header\n%s", lines);
+    put_bytes(name, text, (size_t)n);
+}
+
+#define GOOD "1 -2 0.5 0 1 -1 0 0 -1 1 2 0 0 0\n"
+
+static void test_read(void **state)
+{
+    adcgs_splats s;
+    put_splats("t.ply", NULL, "z", "double", 0, "2", GOOD "4 5 6 0 0 0 3 0 0 0 1 -1 1 -1\n");
+    expect_good(adcgs_splats_read(&s, in("t.ply"), &error));
+    assert_true(s.n == 2 && s.degree == 0 && !s.harmonics);
+    for (int a = 0; a < 3; a++) {
+        const float mean[3] = {1.0f, -2.0f, 0.5f}, f_dc[3] = {0.0f, 1.0f, -1.0f}, log_scale[3] = {0.0f, -1.0f, 1.0f};
+        assert_true(s.mean[a][0] == mean[a]);
+        assert_true(s.scale[a][0] == (float)exp((double)log_scale[a]));
+        assert_true(s.colour[a][0] == (float)(0.5 + 0.28209479177387814 * (double)f_dc[a]));
+    }
+    assert_true(s.opacity[0] == 0.5f && s.opacity[1] == (float)(1.0 / (1.0 + exp(-3.0))));
+    assert_true(s.rotation[0][0] == 1.0f && s.rotation[1][0] == 0.0f); /* 2 0 0 0 */
+    assert_true(s.rotation[0][1] == 0.5f && s.rotation[1][1] == -0.5f && s.rotation[3][1] == -0.5f);
+    adcgs_primitives p;
+    adcgs_splats_primitives(&s, &p);
+    assert_int_equal(p.n, 64);
+    for (uint32_t i = 2; i < p.n; i++)
+        assert_true(p.opacity[i] == 0.0f && p.scale[1][i] > 0.0f && p.rotation[0][i] == 1.0f);
+    adcgs_splats_free(&s);
+}
+
+static void expect_bad(adcgs_status status, const char *what)
+{
+    adcgs_splats s;
+    expect_error(adcgs_splats_read(&s, in("t.ply"), &error), status, "t.ply", what);
+    assert_true(s.n == 0 && !s.block && !s.harmonics);
+}
+
+#define BAD(left_out, odd, type, rest, count, lines, what)         \
+    do {                                                           \
+        put_splats("t.ply", left_out, odd, type, rest, count, lines); \
+        expect_bad(ADCGS_ERR_DATA, what);                          \
+    } while (0)
+
+static void test_bad(void **state)
+{
+    adcgs_splats s;
+    for (int i = 0; i < NAMES; i++)
+        BAD(names[i], NULL, NULL, 0, "1", GOOD, names[i]);
+    BAD("opacity", NULL, NULL, 0, "1", GOOD, "no property opacity");
+    for (int i = 0; i < NAMES; i++)
+        BAD(NULL, names[i], "uchar", 0, "1", GOOD, "of type uchar, expected float");
+    BAD(NULL, "rot_1", "list uchar float", 0, "1", GOOD, "no property rot_1");
+    BAD(NULL, NULL, NULL, 1, "1", GOOD, "1 properties f_rest_*, expected none, 9, 24 or 45");
+    BAD(NULL, NULL, NULL, 44, "1", GOOD GOOD GOOD GOOD, "44 properties f_rest_*");
+    BAD(NULL, NULL, NULL, 0, "0", "", "no splats");
+    BAD(NULL, NULL, NULL, 0, "3", GOOD, "bytes follow");
+    BAD(NULL, NULL, NULL, 0, "2", GOOD "1 2 3 4 5 6 7 8.88888 9.99999 10", "ends in item 1 of 2");
+    BAD(NULL, NULL, NULL, 0, "4000000000", GOOD, "bytes follow");
+    BAD(NULL, NULL, NULL, 0, "18446744073709551615", GOOD, "bytes follow");
+    BAD(NULL, NULL, NULL, 0, "1", "1 2 nan 0 0 0 0 0 0 0 1 0 0 0\n", "vertex 0: z is not a finite number");
+    BAD(NULL, NULL, NULL, 0, "2", GOOD "1 2 3 0 0 0 -inf 0 0 0 1 0 0 0\n", "vertex 1: opacity is not a finite number");
+    BAD(NULL, NULL, NULL, 0, "1", "1 2 1e39 0 0 0 0 0 0 0 1 0 0 0\n", "vertex 0: z is not a finite number");
+    BAD(NULL, NULL, NULL, 9, "1", "1 2 3 0 0 0 0 0 0 0 1 0 0 0 0 0 0 0 0 nan 0 0 0\n", "f_rest_5 is not a finite number");
+    BAD(NULL, NULL, NULL, 0, "1", "1 2 3 0 0 0 0 0 81 0 1 0 0 0\n", "scale_1 is 81");
+    BAD(NULL, NULL, NULL, 0, "1", "1 2 3 0 0 0 0 -99 0 0 1 0 0 0\n", "scale_0 is -99");
+    BAD(NULL, NULL, NULL, 0, "1", "1 2 3 0 0 0 0 0 0 0 0 0 0 0\n", "rot_0..3 are all zero");
+    BAD(NULL, NULL, NULL, 0, "1", "1 2 3 0 0 0 0 0 zero 0 1 0 0 0\n", "expected a number");
+    put_text("t.ply", "");
+    expect_bad(ADCGS_ERR_DATA, "not a PLY");
+    put_text("t.ply", "ply\n");
+    expect_bad(ADCGS_ERR_DATA, "ends early");
+    put_text("t.ply", "ply\nformat binary_little_endian 1.0\nelement chunk 1\nproperty float min_x\nelement vertex 1\n"
+                      "property uint packed_position\nproperty uint packed_rotation\nend_header\n............");
+    expect_bad(ADCGS_ERR_UNSUPPORTED, "a compressed PLY");
+    expect_error(adcgs_splats_read(&s, in("absent.ply"), &error), ADCGS_ERR_IO, "absent.ply", "No such file");
+    expect_error(adcgs_splats_alloc(&s, ADCGS_SPLATS_MAX + 1ull, "many", &error), ADCGS_ERR_DATA, "many", "at most 16777216");
+}
+
+static float any(uint64_t *state, double lo, double hi)
+{
+    return (float)(lo + (hi - lo) * (double)adcgs_random_range(state, 0, 1 << 24) / (1 << 24));
+}
+
+/** n splats of any kind in [-1,1]^3 * size + offset. */
+static adcgs_splats random_splats(uint32_t n, double size, double offset, uint64_t seed)
+{
+    adcgs_splats s;
+    expect_good(adcgs_splats_alloc(&s, n, "random", &error));
+    for (uint32_t i = 0; i < n; i++) {
+        double length = 1e-9;
+        for (int a = 0; a < 4; a++) {
+            s.rotation[a][i] = any(&seed, -1.0, 1.0);
+            length += (double)s.rotation[a][i] * (double)s.rotation[a][i];
+        }
+        for (int a = 0; a < 4; a++)
+            s.rotation[a][i] = (float)((double)s.rotation[a][i] / sqrt(length));
+        for (int a = 0; a < 3; a++) {
+            s.mean[a][i] = (float)(offset + size * (double)any(&seed, -1.0, 1.0));
+            s.scale[a][i] = (float)(size * exp((double)any(&seed, -5.0, -2.5)));
+            s.colour[a][i] = any(&seed, -0.2, 1.2);
+        }
+        s.opacity[i] = any(&seed, 0.001, 0.99);
+    }
+    return s;
+}
+
+static void near(float a, float b, double relative, double absolute)
+{
+    if (!(fabs((double)a - (double)b) <= relative * fabs((double)b) + absolute))
+        fail_msg("%.9g, expected %.9g", (double)a, (double)b);
+}
+
+/** What is read is what was written, within the rounding of the numbers in the file. */
+static void same_splats(const adcgs_splats *a, const adcgs_splats *b)
+{
+    assert_int_equal(a->n, b->n);
+    for (uint32_t i = 0; i < a->n; i++) {
+        near(a->opacity[i], b->opacity[i], 1e-6, 0.0);
+        for (int c = 0; c < 3; c++) {
+            assert_true(a->mean[c][i] == b->mean[c][i]);
+            near(a->scale[c][i], b->scale[c][i], 3e-6, 0.0); /* a logarithm of up to 32 has an error of 2^-20 */
+            near(a->colour[c][i], b->colour[c][i], 0.0, 1.3e-7 * (1.0 + fabs((double)b->colour[c][i])));
+        }
+        for (int c = 0; c < 4; c++)
+            near(a->rotation[c][i], b->rotation[c][i], 0.0, 2e-7);
+    }
+}
+
+static void test_round_trip(void **state)
+{
+    adcgs_splats s = random_splats(1000, 30.0, -500.0, 3), back;
+    expect_good(adcgs_splats_write(&s, "here", in("w.ply"), &error));
+    expect_good(adcgs_splats_read(&back, in("w.ply"), &error));
+    same_splats(&back, &s);
+    adcgs_splats_free(&back);
+    s.opacity[7] = 1.0f;
+    expect_error(adcgs_splats_write(&s, "here", in("w2.ply"), &error), ADCGS_ERR_UNSUPPORTED, "w2.ply", "splat 7");
+    assert_true(access(in("w2.ply"), F_OK) != 0);
+    s.opacity[7] = 0.5f;
+    expect_error(adcgs_splats_write(&s, "here", in("no/w.ply"), &error), ADCGS_ERR_IO, "no/w.ply", "No such");
+    adcgs_splats_free(&s);
+}
+
+/** The bytes of a file are those of the layout, property by property. */
+static void test_layout(void **state)
+{
+    static const char header[] =
+        "ply\nformat binary_little_endian 1.0\ncomment adcgs, now\nelement vertex 1\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float f_dc_0\n"
+        "property float f_dc_1\nproperty float f_dc_2\nproperty float opacity\nproperty float scale_0\n"
+        "property float scale_1\nproperty float scale_2\n"
+        "property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\nend_header\n";
+    const float dc = (float)(0.5 / 0.28209479177387814);
+    const float expected[17] = {1.0f, -2.0f, 3.0f, 0.0f, 0.0f, 0.0f, 0.0f, dc, -dc, (float)log(3.0),
+                                0.0f, (float)log(2.0), (float)log(0.25), 0.5f, -0.5f, 0.5f, 0.5f};
+    adcgs_splats s;
+    char bytes[sizeof header + sizeof expected + 1];
+    expect_good(adcgs_splats_alloc(&s, 1, "one", &error));
+    const float mean[3] = {1.0f, -2.0f, 3.0f}, scale[3] = {1.0f, 2.0f, 0.25f}, colour[3] = {0.5f, 1.0f, 0.0f};
+    for (int a = 0; a < 3; a++) {
+        *s.mean[a] = mean[a];
+        *s.scale[a] = scale[a];
+        *s.colour[a] = colour[a];
+    }
+    *s.opacity = 0.75f;
+    for (int a = 0; a < 4; a++)
+        *s.rotation[a] = a == 1 ? -0.5f : 0.5f;
+    expect_good(adcgs_splats_write(&s, "adcgs, now", in("one.ply"), &error));
+    adcgs_splats_free(&s);
+    FILE *file = fopen(in("one.ply"), "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(bytes, 1, sizeof bytes, file), sizeof header - 1 + sizeof expected);
+    fclose(file);
+    assert_memory_equal(bytes, header, sizeof header - 1);
+    for (size_t i = 0; i < 17; i++)
+        assert_true(adcgs_bits_float(adcgs_load_le32((const uint8_t *)bytes + sizeof header - 1 + 4 * i)) == expected[i]);
+}
+
+/** One byte of a good file at a time gets another value: any outcome but a crash, and one line for what is refused. */
+static void test_mutations(void **state)
+{
+    adcgs_splats s = random_splats(2, 1.0, 0.0, 5);
+    uint8_t good[2048], bytes[2048];
+    expect_good(adcgs_splats_write(&s, "good", in("m.ply"), &error));
+    adcgs_splats_free(&s);
+    FILE *file = fopen(in("m.ply"), "rb");
+    assert_non_null(file);
+    const size_t n = fread(good, 1, sizeof good, file);
+    fclose(file);
+    assert_true(n > 100 && n < sizeof good);
+    for (size_t i = 0; i < n; i++)
+        for (int v = 0; v < 256; v += 5) {
+            memcpy(bytes, good, n);
+            bytes[i] = (uint8_t)v;
+            bytes[n] = 0;
+            const adcgs_status status = adcgs_splats_parse(&s, bytes, n, "mutant", &error);
+            assert_true(status == ADCGS_OK || !strncmp(error.text, "mutant: ", 8));
+            adcgs_splats_free(&s);
+        }
+    for (size_t cut = 0; cut < n; cut++) {
+        memcpy(bytes, good, cut);
+        bytes[cut] = 0;
+        expect_error(adcgs_splats_parse(&s, bytes, cut, "cut", &error), ADCGS_ERR_DATA, "cut: ", "");
+    }
+}
+
+/* ---- A decoder's splats ---- */
+
+typedef struct fixture {
+    adcgs_stream stream;
+    adcgs_decoder *decoder;
+    adcgs_info info;
+} fixture;
+
+static int open_stream(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    adcgs_params params;
+    adcgs_buffer bytes;
+    uint64_t seed = 11;
+    adcgs_random_params(&params, 1, &seed);
+    params.k = 4;
+    params.n_fg = 4;
+    params.chunks = 2;
+    adcgs_buffer_init(&bytes);
+    if (!f || adcgs_random_stream(&f->stream, &params, 2, 90, 5, &seed, &error) != ADCGS_OK)
+        return -1;
+    f->stream.scene_scale = 2.5;
+    f->stream.scene_origin[1] = 0.75;
+    *state = f;
+    const int failed = adcgs_stream_write(&f->stream, &bytes, &error) != ADCGS_OK ||
+                       adcgs_open_memory(&f->decoder, bytes.data, bytes.size, NULL, &error) != ADCGS_OK ||
+                       adcgs_get_info(f->decoder, &f->info) != ADCGS_OK;
+    adcgs_buffer_clear(&bytes);
+    return failed;
+}
+
+static int close_stream(void **state)
+{
+    fixture *f = *state;
+    adcgs_close(&f->decoder);
+    adcgs_stream_clear(&f->stream, NULL);
+    free(f);
+    return 0;
+}
+
+/** Slot by slot what the decoder gives, in world units, without what cannot be seen. */
+static void test_take(void **state)
+{
+    const fixture *f = *state;
+    adcgs_primitives p;
+    adcgs_splats s;
+    assert_int_equal(adcgs_get_primitives(f->decoder, 0.5 * f->info.time_end, &p), ADCGS_OK);
+    expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, "taken", &error));
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < p.n; i++) {
+        if (p.opacity[i] == 0.0f)
+            continue;
+        assert_true(s.opacity[n] == p.opacity[i]);
+        for (int a = 0; a < 3; a++) {
+            assert_true(s.mean[a][n] == (float)((a == 1 ? 0.75 : 0.0) + 2.5 * (double)p.mean[a][i]));
+            assert_true(s.scale[a][n] == (float)(2.5 * (double)p.scale[a][i]));
+            assert_true(s.colour[a][n] == p.colour[a][i]);
+        }
+        for (int a = 0; a < 4; a++)
+            assert_true(s.rotation[a][n] == p.rotation[a][i]);
+        n++;
+    }
+    assert_true(n > 100 && n < p.n && s.n == n);
+    adcgs_splats_primitives(&s, &p);
+    for (uint32_t i = n; i < p.n; i++)
+        assert_true(p.opacity[i] == 0.0f);
+    adcgs_splats_free(&s);
+}
+
+/** Anchors as points: where the stream says, in the colours that the decoder gives at the middle of the stream. */
+static void test_points(void **state)
+{
+    const fixture *f = *state;
+    const double middle = 0.5 * (f->info.time_start + f->info.time_end);
+    const adcgs_model *m = &f->stream.segments[f->stream.segments[1].time_start <= middle];
+    adcgs_points points;
+    adcgs_primitives p;
+    expect_good(adcgs_info_points(&points, &f->stream, "points", &error));
+    assert_int_equal(adcgs_get_primitives(f->decoder, middle, &p), ADCGS_OK);
+    assert_int_equal(points.n, m->n);
+    uint32_t grey = 0;
+    for (uint32_t i = 0; i < m->n; i++) {
+        double sum[3] = {0, 0, 0}, weight = 0.0;
+        for (int a = 0; a < 3; a++) {
+            const double scene = (double)m->origin[a] + 0.5 * (2.0 * m->pos[3 * i + (uint32_t)a] + 1.0) * (double)m->voxel;
+            near(points.position[i][a], (float)((a == 1 ? 0.75 : 0.0) + 2.5 * scene), 2e-7, 1e-9);
+        }
+        for (uint32_t slot = i / 64 * 4 * 64 + i % 64; slot < (i / 64 + 1) * 4 * 64; slot += 64)
+            for (int c = 0; c < 3; c++) {
+                sum[c] += (double)p.opacity[slot] * (double)p.colour[c][slot];
+                weight += c ? 0.0 : (double)p.opacity[slot];
+            }
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs((weight > 0 ? 255.0 * fmin(fmax(sum[c] / weight, 0), 1) : 128.0) - points.colour[i][c]) < 0.51);
+        grey += weight == 0.0;
+    }
+    assert_true(grey < m->n && points.coloured);
+    adcgs_points_free(&points);
+}
+
+static double psnr(const float *a, const float *b, size_t n, double *variance)
+{
+    double square = 0.0, sum = 0.0, squares = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        square += pow((double)a[i] - (double)b[i], 2);
+        sum += (double)b[i];
+        squares += (double)b[i] * (double)b[i];
+    }
+    *variance = squares / (double)n - pow(sum / (double)n, 2);
+    return 10.0 * log10((double)n / fmax(square, 1e-12));
+}
+
+/** The splats themselves, in their own units, without negative colours as everyone draws a PLY; [0,1], planar. */
+static float *draw(const adcgs_primitives *p, const double origin[3], double scale, const adcgs_camera *camera)
+{
+    const size_t n = 3 * (size_t)camera->width * (size_t)camera->height;
+    const float black[3] = {0.0f, 0.0f, 0.0f};
+    float *rgb = malloc(n * sizeof *rgb), *colour = aligned_alloc(64, 3 * p->n * sizeof *colour);
+    adcgs_primitives clipped = *p;
+    adcgs_raster *raster;
+    adcgs_view view;
+    assert_true(rgb && colour);
+    for (size_t c = 0; c < 3; c++) {
+        for (uint32_t i = 0; i < p->n; i++)
+            colour[c * p->n + i] = fmaxf(p->colour[c][i], 0.0f);
+        clipped.colour[c] = colour + c * p->n;
+    }
+    expect_good(adcgs_view_init(&view, camera, origin, scale, &error));
+    expect_good(adcgs_raster_create(&raster, ADCGS_CPU_SCALAR, NULL, NULL, &error));
+    expect_good(adcgs_raster_forward(raster, &clipped, &view, black, ADCGS_SPLAT_SCENE_FILTER, rgb, 0, &error));
+    adcgs_raster_free(&raster);
+    free(colour);
+    for (size_t i = 0; i < n; i++)
+        rgb[i] = fminf(fmaxf(rgb[i], 0.0f), 1.0f);
+    return rgb;
+}
+
+static adcgs_scene *open_splats(const char *path)
+{
+    adcgs_scene *scene;
+    expect_good(adcgs_scene_open(&scene, path, NULL, &error));
+    return scene;
+}
+
+/** A picture of a scene's view and one of primitives from where the view is. */
+static void same_picture(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_primitives *p,
+                         const double origin[3], double scale)
+{
+    adcgs_camera camera;
+    float *rgb;
+    double variance;
+    expect_good(adcgs_scene_load(scene, view, 1, &rgb, &camera, &error));
+    float *expected = draw(p, origin, scale, &camera);
+    const double db = psnr(rgb, expected, 3 * (size_t)camera.width * (size_t)camera.height, &variance);
+    if (!(db > 60.0 && variance > 1e-4))
+        fail_msg("%s: %.2f dB, variance %g", view->camera.name, db, variance);
+    free(rgb);
+    free(expected);
+}
+
+/** A stream's splats, exported and read as a scene, look as the stream's do. */
+static void test_export(void **state)
+{
+    const fixture *f = *state;
+    adcgs_primitives p;
+    adcgs_splats s;
+    assert_int_equal(adcgs_get_primitives(f->decoder, 0.04, &p), ADCGS_OK);
+    expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, "e.ply", &error));
+    expect_good(adcgs_splats_write(&s, "time", in("e.ply"), &error));
+    adcgs_splats_free(&s);
+    adcgs_scene *scene = open_splats(in("e.ply"));
+    for (uint32_t i = 0; i < 20; i += 5)
+        same_picture(scene, &scene->views[ADCGS_SPLIT_TEST][i], &p, f->info.scene_origin, f->info.scene_scale);
+    adcgs_scene_free(&scene);
+}
+
+/* ---- Scenes ---- */
+
+/** Whether a camera looks straight at a point from a distance, and is a right-handed frame. */
+static void looks_at(const adcgs_camera *c, const double point[3], double distance)
+{
+    const double *m = c->cam_to_world;
+    double det = 0.0;
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        det += m[4 * i] * (m[4 * j + 1] * m[4 * k + 2] - m[4 * k + 1] * m[4 * j + 2]);
+        assert_true(fabs(m[4 * i + 3] + distance * m[4 * i + 2] - point[i]) < 1e-9 * (1.0 + distance));
+        double dot = 0.0;
+        for (int r = 0; r < 3; r++)
+            dot += m[4 * r + i] * m[4 * r + j];
+        assert_true(fabs(dot) < 1e-12);
+    }
+    assert_true(fabs(det - 1.0) < 1e-12);
+}
+
+static double between(const adcgs_camera *a, const adcgs_camera *b)
+{
+    double dot = 0.0;
+    for (int i = 0; i < 3; i++)
+        dot += a->cam_to_world[4 * i + 2] * b->cam_to_world[4 * i + 2];
+    return acos(fmin(dot, 1.0));
+}
+
+/** A splat far out and one that cannot be seen change nothing; the rest is in the middle of every view. */
+static void test_cameras(void **state)
+{
+    adcgs_splats s = random_splats(501, 2.0, 10.0, 8);
+    for (int a = 0; a < 3; a++)
+        s.mean[a][100] = 10.0f;
+    s.mean[0][7] = 1e6f;
+    s.mean[1][8] = -1e20f;
+    s.opacity[8] = 0.001f;
+    expect_good(adcgs_splats_write(&s, "c", in("c.ply"), &error));
+    adcgs_scene *scene = open_splats(in("c.ply"));
+    assert_true(scene->n_views[0] == 100 && scene->n_views[1] == 10 && scene->n_views[2] == 20);
+    assert_true(scene->n_times == 1 && scene->duration == 0.0 && !scene->has_alpha && scene->background[0] == 0.0f);
+    assert_int_equal(scene->axes, ADCGS_AXES_UNKNOWN);
+    const adcgs_camera *first = &scene->views[0][0].camera, *second = &scene->views[0][1].camera;
+    double centre[3], outer = 0.0;
+    for (int a = 0; a < 3; a++) { /* where the axes of two cameras meet */
+        const double *m = first->cam_to_world, *w = second->cam_to_world;
+        double b = 0.0, d = 0.0, e = 0.0;
+        for (int r = 0; r < 3; r++) {
+            b += m[4 * r + 2] * w[4 * r + 2];
+            d += m[4 * r + 2] * (w[4 * r + 3] - m[4 * r + 3]);
+            e += w[4 * r + 2] * (w[4 * r + 3] - m[4 * r + 3]);
+        }
+        outer = (d - b * e) / (1.0 - b * b);
+        centre[a] = m[4 * a + 3] + outer * m[4 * a + 2];
+        assert_true(fabs(centre[a] - 10.0) < 0.5);
+    }
+    assert_true(outer > 2.0 / sin(0.44) && outer < 4.0 / sin(0.43)); /* the cube's half edge is 2 */
+    double nearest = 10.0;
+    for (int split = 0; split < ADCGS_SPLITS; split++)
+        for (uint32_t i = 0; i < scene->n_views[split]; i++) {
+            const adcgs_scene_view *v = &scene->views[split][i];
+            looks_at(&v->camera, centre, i % 2 ? 0.7 * outer : outer);
+            assert_true(v->camera.near_plane > 0.0 && v->camera.near_plane < 0.05 * outer);
+            for (uint32_t j = 0; split && j < scene->n_views[0]; j++)
+                nearest = fmin(nearest, between(&v->camera, &scene->views[0][j].camera));
+        }
+    assert_true(nearest > 1e-3); /* no view to test on is one of training */
+    for (int i = 0; i < 500; i++) { /* and no direction is farther than 25 degrees from a view of training */
+        const double h = cos(0.1 + i * 0.006), r = sqrt(1 - h * h);
+        const adcgs_camera c = {.cam_to_world = {0, 0, r * cos(i), 0, 0, 0, h, 0, 0, 0, r * sin(i), 0}};
+        double least = 10.0;
+        for (uint32_t j = 0; j < 100; j++)
+            least = fmin(least, between(&c, &scene->views[0][j].camera));
+        assert_true(least < 0.44);
+    }
+    uint32_t points = 0;
+    for (uint32_t i = 0; i < s.n; i++)
+        points += s.opacity[i] > 0.1f;
+    assert_true(scene->points.n == points && scene->points.coloured && points > 400);
+    assert_true(scene->points.position[0][2] == s.mean[2][s.opacity[0] > 0.1f ? 0 : 1]);
+    adcgs_scene_free(&scene);
+    adcgs_splats_free(&s);
+}
+
+static void test_scene(void **state)
+{
+    adcgs_splats s = random_splats(300, 1.0, 0.0, 9);
+    adcgs_scene *scene;
+    const adcgs_scene_options white = {.has_background = 1, .background = {1.0f, 0.5f, 0.0f}};
+    float *rgb, *half;
+    adcgs_camera camera;
+    expect_good(adcgs_splats_write(&s, "s", in("s.ply"), &error));
+    put_text("p.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                      "end_header\n1 2 3\n");
+    expect_good(adcgs_scene_open(&scene, in("s.ply"), &white, &error));
+    expect_good(adcgs_scene_load(scene, &scene->views[0][0], 1, &rgb, NULL, &error));
+    expect_good(adcgs_scene_load(scene, &scene->views[0][0], 2, &half, &camera, &error));
+    assert_true(camera.width == 200 && camera.fx == 0.5 * scene->views[0][0].camera.fx);
+    assert_true(rgb[0] == 1.0f && rgb[400 * 400] == 0.5f && rgb[2 * 400 * 400] == 0.0f); /* a corner shows the background */
+    const size_t at = 100 * 200 + 100, from = 200 * 400 + 200;
+    near(half[at], 0.25f * (rgb[from] + rgb[from + 1] + rgb[from + 400] + rgb[from + 401]), 1e-6, 1e-7);
+    free(rgb);
+    free(half);
+    adcgs_scene_free(&scene);
+    const adcgs_scene_options points = {.points_path = in("p.ply")};
+    expect_good(adcgs_scene_open(&scene, in("s.ply"), &points, &error));
+    assert_true(scene->points.n == 1 && scene->points.position[0][2] == 3.0f);
+    adcgs_scene_free(&scene);
+    expect_error(adcgs_scene_open(&scene, in("p.ply"), NULL, &error), ADCGS_ERR_DATA, "p.ply", "not splats");
+    for (uint32_t i = 0; i < s.n; i++)
+        s.opacity[i] = 0.003f;
+    expect_good(adcgs_splats_write(&s, "s", in("s.ply"), &error));
+    expect_error(adcgs_scene_open(&scene, in("s.ply"), NULL, &error), ADCGS_ERR_DATA, "s.ply", "no splat can be seen");
+    for (uint32_t i = 0; i < s.n; i++) {
+        s.opacity[i] = 0.9f;
+        for (int a = 0; a < 3; a++)
+            s.mean[a][i] = i % 2 ? 3e38f : -3e38f;
+    }
+    expect_good(adcgs_splats_write(&s, "s", in("s.ply"), &error));
+    expect_error(adcgs_scene_open(&scene, in("s.ply"), NULL, &error), ADCGS_ERR_DATA, "s.ply", "1e-9 to 1e9");
+    adcgs_splats_free(&s);
+}
+
+/* ---- Colours that depend on the direction ---- */
+
+/** Orthonormal over the sphere; and the first three as they are signed everywhere. */
+static void test_harmonics(void **state)
+{
+    enum { STEPS = 64 };
+    double product[15][15] = {{0}}, mean[15] = {0};
+    for (int i = 0; i < STEPS; i++)
+        for (int j = 0; j < 2 * STEPS; j++) {
+            const double h = cos(M_PI * (i + 0.5) / STEPS), r = sqrt(1 - h * h), angle = M_PI * (j + 0.5) / STEPS;
+            const double d[3] = {r * cos(angle), r * sin(angle), h}, area = r * M_PI * M_PI / (STEPS * STEPS);
+            double y[15];
+            adcgs_harmonics(y, d, 3);
+            for (int a = 0; a < 15; a++) {
+                mean[a] += area * y[a];
+                for (int b = 0; b < 15; b++)
+                    product[a][b] += area * y[a] * y[b];
+            }
+        }
+    for (int a = 0; a < 15; a++) {
+        assert_true(fabs(mean[a]) < 1e-3);
+        for (int b = 0; b < 15; b++)
+            assert_true(fabs(product[a][b] - (a == b)) < 2e-3);
+    }
+    const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
+    double out[15];
+    adcgs_harmonics(out, x, 1);
+    assert_true(fabs(out[2] + sqrt(0.75 / M_PI)) < 1e-12 && out[1] == 0.0);
+    adcgs_harmonics(out, y, 1);
+    assert_true(fabs(out[0] + sqrt(0.75 / M_PI)) < 1e-12);
+    adcgs_harmonics(out, z, 1);
+    assert_true(fabs(out[1] - sqrt(0.75 / M_PI)) < 1e-12);
+}
+
+/** A splat in the middle whose green grows along z: f_rest is channel by channel, the direction that from the camera. */
+static void test_view_dependence(void **state)
+{
+    put_splats("v.ply", NULL, NULL, NULL, 9, "1", "0 0 0 0 0 0 8 -1 -1 -1 1 0 0 0  0 0 0  0 1 0  0 0 0\n");
+    adcgs_scene *scene = open_splats(in("v.ply"));
+    for (uint32_t i = 0; i < 20; i++) {
+        const adcgs_scene_view *v = &scene->views[ADCGS_SPLIT_TEST][i];
+        const size_t middle = 200 * 400 + 200, plane = 400 * 400;
+        float *rgb;
+        expect_good(adcgs_scene_load(scene, v, 1, &rgb, NULL, &error));
+        const double green = 0.5 + sqrt(0.75 / M_PI) * v->camera.cam_to_world[10];
+        near(rgb[middle], 0.99f * 0.5f, 1e-3, 0.0);
+        near(rgb[plane + middle], 0.99f * (float)fmax(green, 0.0), 1e-3, 0.0);
+        free(rgb);
+    }
+    adcgs_scene_free(&scene);
+    /* All zero is no dependence. */
+    adcgs_splats s;
+    put_splats("v.ply", NULL, NULL, NULL, 24, "1", GOOD "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 -0\n");
+    expect_good(adcgs_splats_read(&s, in("v.ply"), &error));
+    assert_true(s.degree == 0 && !s.harmonics);
+    adcgs_splats_free(&s);
+    put_splats("v.ply", NULL, NULL, NULL, 24, "1", GOOD "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24\n");
+    expect_good(adcgs_splats_read(&s, in("v.ply"), &error));
+    assert_true(s.degree == 2 && s.harmonics[0] == 1.0f && s.harmonics[23] == 24.0f);
+    adcgs_splats_free(&s);
+}
+
+/* ---- Real files ---- */
+
+static const char *real(const char *name)
+{
+    static char path[1024];
+    const char *data = getenv("ADCGS_DATA");
+    snprintf(path, sizeof path, "%s/%s", data ? data : "", name);
+    if (!data || access(path, R_OK)) {
+        print_message("skipped: no ADCGS_DATA/%s\n", name);
+        skip();
+    }
+    return path;
+}
+
+static void test_sunflower(void **state)
+{
+    const char *path = real("splats/sunflower_tile.ply");
+    adcgs_splats s, back;
+    adcgs_primitives p;
+    const double origin[3] = {0, 0, 0};
+    expect_good(adcgs_splats_read(&s, path, &error));
+    assert_true(s.n == 14051 && s.degree == 0);
+    for (uint32_t i = 0; i < s.n; i++) /* what a decoder may give */
+        s.opacity[i] = fminf(fmaxf(s.opacity[i], 1e-6f), 0.99f);
+    adcgs_scene *scene = open_splats(path);
+    adcgs_splats_primitives(&s, &p);
+    same_picture(scene, &scene->views[ADCGS_SPLIT_TEST][3], &p, origin, 1.0);
+    same_picture(scene, &scene->views[ADCGS_SPLIT_TEST][12], &p, origin, 1.0);
+    adcgs_scene_free(&scene);
+    expect_good(adcgs_splats_write(&s, "again", in("again.ply"), &error));
+    expect_good(adcgs_splats_read(&back, in("again.ply"), &error));
+    same_splats(&back, &s);
+    adcgs_splats_free(&s);
+    adcgs_splats_free(&back);
+}
+
+static void test_compressed(void **state)
+{
+    adcgs_scene *scene;
+    expect_error(adcgs_scene_open(&scene, real("splats/biker.compressed.ply"), NULL, &error), ADCGS_ERR_UNSUPPORTED,
+                 "biker.compressed.ply: a compressed PLY", "decompress");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_read),      cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_layout),    cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_mutations), cmocka_unit_test_setup_teardown(test_take, open_stream, close_stream),
+        cmocka_unit_test_setup_teardown(test_points, open_stream, close_stream),
+        cmocka_unit_test_setup_teardown(test_export, open_stream, close_stream),
+        cmocka_unit_test(test_cameras),   cmocka_unit_test(test_scene),
+        cmocka_unit_test(test_harmonics), cmocka_unit_test(test_view_dependence),
+        cmocka_unit_test(test_sunflower), cmocka_unit_test(test_compressed),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Quality over time, against plain loops over whole videos and values known beforehand; views sorted by camera. */
+#include "data/by_camera.h"
+#include "metric/metric.h"
+#include "metric/temporal.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { W = 40, H = 30, PLANE = W * H, VALUES = 3 * PLANE, FRAMES = 6 };
+
+typedef float video[FRAMES][VALUES];
+
+static video truth, decoded;
+static adcgs_error error;
+static uint32_t seed = 7;
+
+static float random_value(void)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return (float)(seed >> 8) / 16777216.0f;
+}
+
+/** A white square of 4x4 moves to the right by two pixels a picture before grey. Where it has been: x 8 to 21, y 10 to 13. */
+static void draw_square(void)
+{
+    for (int t = 0; t < FRAMES; t++)
+        for (int i = 0; i < VALUES; i++) {
+            const int x = i % W - 8 - 2 * t, y = i % PLANE / W - 10;
+            truth[t][i] = x >= 0 && x < 4 && y >= 0 && y < 4 ? 1.0f : 0.5f;
+        }
+    memcpy(decoded, truth, sizeof truth);
+}
+
+static int is_near_square(int pixel)
+{
+    const int x = pixel % W, y = pixel / W;
+    return x >= 8 - 3 && x <= 21 + 3 && y >= 10 - 3 && y <= 13 + 3;
+}
+
+/** Measure both videos. */
+static adcgs_temporal_total measure(adcgs_temporal_view views[FRAMES], uint8_t region[PLANE])
+{
+    adcgs_temporal *t;
+    assert_int_equal(adcgs_temporal_create(&t, W, H, &error), ADCGS_OK);
+    for (int i = FRAMES - 1; i >= 0; i--)
+        adcgs_temporal_look(t, truth[i]);
+    assert_int_equal(adcgs_temporal_find_region(t, &error), ADCGS_OK);
+    memcpy(region, adcgs_temporal_region(t), PLANE);
+    for (int i = 0; i < FRAMES; i++)
+        views[i] = adcgs_temporal_add(t, decoded[i], truth[i]);
+    const adcgs_temporal_total total = adcgs_temporal_end(t);
+    adcgs_temporal_free(&t);
+    assert_null(t);
+    assert_int_equal(total.views, FRAMES);
+    return total;
+}
+
+static void expect_near(double got, double expected)
+{
+    if (!(fabs(got - expected) <= 1e-12 + 1e-9 * fabs(expected)))
+        fail_msg("%.15g, expected %.15g", got, expected);
+}
+
+/** The path of the square and no more is dynamic, and identical videos are perfect. */
+static void test_square(void **state)
+{
+    adcgs_temporal_view views[FRAMES];
+    uint8_t region[PLANE];
+    draw_square();
+    const adcgs_temporal_total total = measure(views, region);
+    for (int i = 0; i < PLANE; i++)
+        assert_int_equal(region[i], is_near_square(i));
+    expect_near(total.dynamic_share, 20.0 * 10.0 / PLANE);
+    assert_true(total.static_variance == 0 && total.truth_variance == 0);
+    for (int t = 0; t < FRAMES; t++)
+        assert_true(views[t].dynamic_psnr == 99 && (t ? views[t].flicker == 0 : isnan(views[t].flicker)));
+}
+
+/** An error that does not change: it is no flicker and no variance, and only what lies inside counts as dynamic. */
+static void test_constant_shift(void **state)
+{
+    adcgs_temporal_view views[FRAMES];
+    uint8_t region[PLANE];
+    draw_square();
+    for (int t = 0; t < FRAMES; t++)
+        for (int i = 0; i < VALUES; i++)
+            decoded[t][i] += is_near_square(i % PLANE) ? 0.125f : 0.25f;
+    const adcgs_temporal_total total = measure(views, region);
+    assert_true(total.static_variance == 0 && total.truth_variance == 0);
+    for (int t = 0; t < FRAMES; t++) {
+        expect_near(views[t].dynamic_psnr, -20 * log10(0.125));
+        assert_true(!t || views[t].flicker == 0);
+    }
+}
+
+/** Pictures that are brighter by an eighth each second time: closed forms. */
+static void test_blinking(void **state)
+{
+    adcgs_temporal_view views[FRAMES];
+    uint8_t region[PLANE];
+    draw_square();
+    for (int t = 1; t < FRAMES; t += 2)
+        for (int i = 0; i < VALUES; i++)
+            decoded[t][i] += 0.125f;
+    const adcgs_temporal_total total = measure(views, region);
+    expect_near(total.static_variance, 0.0625 * 0.0625);
+    assert_true(total.truth_variance == 0);
+    for (int t = 0; t < FRAMES; t++) {
+        expect_near(views[t].dynamic_psnr, t % 2 ? -20 * log10(0.125) : 99);
+        assert_true(!t || views[t].flicker == 0.125);
+    }
+    /* The first channel of the truth blinks, by less than what counts as a change; then the third too, by more. */
+    for (int t = 1; t < FRAMES; t += 2)
+        for (int i = 0; i < PLANE; i++)
+            truth[t][i] += 0.09375f;
+    expect_near(measure(views, region).truth_variance, 0.09375 * 0.09375 / 4 / 3);
+    assert_false(region[0]);
+    for (int t = 1; t < FRAMES; t += 2)
+        for (int i = 2 * PLANE; i < VALUES; i++)
+            truth[t][i] += 0.125f;
+    const adcgs_temporal_total none = measure(views, region);
+    assert_true(none.dynamic_share == 1 && isnan(none.static_variance) && isnan(none.truth_variance));
+}
+
+static void test_still(void **state)
+{
+    adcgs_temporal_view views[FRAMES];
+    uint8_t region[PLANE];
+    for (int t = 0; t < FRAMES; t++)
+        for (int i = 0; i < VALUES; i++) {
+            truth[t][i] = (float)(i % 7) / 8;
+            decoded[t][i] = 0.5f;
+        }
+    const adcgs_temporal_total total = measure(views, region);
+    assert_true(total.dynamic_share == 0 && total.static_variance == 0 && total.truth_variance == 0);
+    for (int t = 0; t < FRAMES; t++)
+        assert_true(isnan(views[t].dynamic_psnr) && (!t || views[t].flicker == 0));
+}
+
+/** The region by its definition: for each pixel, whether any one near it changes. */
+static void reference_region(uint8_t region[PLANE])
+{
+    memset(region, 0, PLANE);
+    for (int i = 0; i < PLANE; i++)
+        for (int j = 0; j < VALUES; j++) {
+            const int dx = abs(j % W - i % W), dy = abs(j % PLANE / W - i / W);
+            for (int t = 0; dx <= 3 && dy <= 3 && t < FRAMES * FRAMES; t++)
+                region[i] |= (double)truth[t / FRAMES][j] - (double)truth[t % FRAMES][j] > 0.1;
+        }
+}
+
+/** Mean over static values of the variance of a video, in two passes over each. */
+static double reference_variance(video v, const uint8_t region[PLANE])
+{
+    double sum = 0, n = 0;
+    for (int i = 0; i < VALUES; i++) {
+        double mean = 0, square = 0;
+        for (int t = 0; t < FRAMES; t++)
+            mean += (double)v[t][i] / FRAMES;
+        for (int t = 0; t < FRAMES; t++)
+            square += ((double)v[t][i] - mean) * ((double)v[t][i] - mean) / FRAMES;
+        sum += region[i % PLANE] ? 0 : square;
+        n += !region[i % PLANE];
+    }
+    return sum / n;
+}
+
+static double reference_dynamic_psnr(int t, const uint8_t region[PLANE])
+{
+    double sum = 0, n = 0;
+    for (int i = 0; i < VALUES; i++)
+        if (region[i % PLANE]) {
+            sum += pow((double)decoded[t][i] - (double)truth[t][i], 2);
+            n++;
+        }
+    return 10 * log10(n / sum);
+}
+
+static double reference_flicker(int t)
+{
+    double sum = 0;
+    for (int i = 0; i < VALUES; i++) {
+        const double drawn = (double)decoded[t][i] - (double)decoded[t - 1][i];
+        sum += fabs(drawn - ((double)truth[t][i] - (double)truth[t - 1][i]));
+    }
+    return sum / VALUES;
+}
+
+/** Noise that moves far at a few places, some at the edges. */
+static void test_against_reference(void **state)
+{
+    adcgs_temporal_view views[FRAMES];
+    uint8_t region[PLANE], expected[PLANE];
+    for (int t = 0; t < FRAMES; t++)
+        for (int i = 0; i < VALUES; i++) {
+            const int far = i == 0 || i == 2 * PLANE + 17 * W + 20 || i == PLANE + W - 1 || i == PLANE + 29 * W + 5;
+            truth[t][i] = (float)(i % 11) / 16 + (far ? 0.4f : 0.09f) * random_value();
+            decoded[t][i] = truth[t][i] + 0.2f * random_value() - 0.1f;
+        }
+    const adcgs_temporal_total total = measure(views, region);
+    reference_region(expected);
+    assert_memory_equal(region, expected, PLANE);
+    expect_near(total.dynamic_share, (16.0 + 49 + 16 + 28) / PLANE);
+    expect_near(total.static_variance, reference_variance(decoded, region));
+    expect_near(total.truth_variance, reference_variance(truth, region));
+    for (int t = 0; t < FRAMES; t++) {
+        expect_near(views[t].dynamic_psnr, reference_dynamic_psnr(t, region));
+        if (t)
+            expect_near(views[t].flicker, reference_flicker(t));
+    }
+}
+
+/** Cameras a and b take turns, backwards in time, and c moves; a difference in any number makes another camera. */
+static void test_cameras(void **state)
+{
+    static const uint32_t expected_of[8] = {0, 1, 2, 0, 1, 3, 0, 4}, expected_order[8] = {6, 3, 0, 4, 1, 2, 5, 7};
+    adcgs_scene_view views[8] = {{.time = 0}};
+    uint32_t of[8], order[8], n;
+    for (int i = 0; i < 8; i++)
+        views[i] = (adcgs_scene_view){.camera = {.width = 8, .height = 8, .fx = 9, .fy = 9, .cx = 4, .cy = 4}, .time = 8 - i};
+    views[1].camera.cam_to_world[11] = views[4].camera.cam_to_world[11] = -3;
+    views[2].camera.cx = 5;
+    views[5].camera.height = 7;
+    views[7].camera.fy = nextafter(9, 10);
+    strcpy(views[3].camera.name, "other"); /* names are of pictures */
+    assert_int_equal(adcgs_sort_by_camera(views, 8, of, order, &n, &error), ADCGS_OK);
+    assert_int_equal(n, 5);
+    assert_memory_equal(of, expected_of, sizeof of);
+    assert_memory_equal(order, expected_order, sizeof order);
+    for (int i = 0; i < 8; i++)
+        views[i].time = 1;
+    assert_int_equal(adcgs_sort_by_camera(views, 8, of, order, &n, &error), ADCGS_OK);
+    assert_true(order[0] == 0 && order[1] == 3 && order[2] == 6 && order[3] == 1);
+    assert_int_equal(adcgs_sort_by_camera(views, 8, of, NULL, &n, &error), ADCGS_OK);
+    assert_memory_equal(of, expected_of, sizeof of);
+    assert_int_equal(adcgs_sort_by_camera(NULL, 0, of, NULL, &n, &error), ADCGS_OK);
+    assert_int_equal(n, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_square), cmocka_unit_test(test_constant_shift),    cmocka_unit_test(test_blinking),
+        cmocka_unit_test(test_still),  cmocka_unit_test(test_against_reference), cmocka_unit_test(test_cameras),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
