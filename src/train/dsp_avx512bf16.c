@@ -129,6 +129,14 @@ static int rows_next(int left)
     return (left + tiles - 1) / tiles;
 }
 
+/** Sums lie in the second cache: let the next rows come while these are worked on. */
+static inline void fetch(const sums *s, int begin, int rows)
+{
+    for (int r = begin; s->from && r < begin + rows; r++)
+        for (int c = 0; c < s->n; c += VN)
+            _mm_prefetch((const char *)(s->from + (size_t)r * s->ld + c), _MM_HINT_T0);
+}
+
 /* ---- Layers ---- */
 
 /** 32 consecutive numbers, rounded. */
@@ -254,7 +262,7 @@ INLINE void turn(__m512i r[VN])
     }
 }
 
-/** Pairs of lanes, each with its up to 64 inputs. */
+/** Pairs of lanes, each with its up to 64 inputs; the columns behind them are not used. */
 static void turn_inputs(columns *to, const float *x, int n)
 {
     for (int c = 0; c * VN < n; c++)
@@ -262,9 +270,8 @@ static void turn_inputs(columns *to, const float *x, int n)
             __m512i r[VN];
 #pragma GCC unroll 16
             for (int i = 0; i < VN; i++) {
-                const float *from = x + (size_t)(c * VN + i) * LANES + half * 2 * VN;
-                r[i] = c * VN + i < n ? pair_up(_mm512_load_ps(from), _mm512_load_ps(from + VN)) :
-                                        _mm512_setzero_si512();
+                const float *from = x + (size_t)ADCGS_MIN(c * VN + i, n - 1) * LANES + half * 2 * VN;
+                r[i] = pair_up(_mm512_load_ps(from), _mm512_load_ps(from + VN));
             }
             turn(r);
 #pragma GCC unroll 16
@@ -286,6 +293,8 @@ static void tile_grad(float *gw, size_t ldg, float *gb, const float *dy, const f
             float *at = gw + (size_t)o * ldg + i;
             const sums s = { at, at, NULL, ldg, n_in - i < LANES ? n_in - i : LANES, NULL, NULL };
             rows = rows_next(n_out - o);
+            if (o + rows < n_out)
+                fetch(&s, rows, rows_next(n_out - o - rows));
             product(rows, &s, factors[o], LANES / 2, &inputs, LANES / 2);
         }
     }
