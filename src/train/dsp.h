@@ -94,9 +94,12 @@ typedef struct adcgs_train_dsp {
      */
     void (*residual)(const struct adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
                      const float *x);
-    /** The way back: dz = dh times the leaky ReLU's slope, dx = dh + turn dz; turn: w transposed. dx may be dh. */
+    /**
+     * The way back: dz = dh times the leaky ReLU's slope, dx = dh + turn dz; turn: w transposed. dx may be dh. io: NULL, or
+     * the layer's x and, behind it, its h, for which weight gradients ask next: they may be fetched meanwhile.
+     */
     void (*residual_back)(const struct adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
-                          const adcgs_square *turn, const float *dh);
+                          const adcgs_square *turn, const float *dh, const float *io);
     /** Weights [n][n] to adcgs_square_words(n) aligned words as the two above want them; NULL if they want none. */
     void (*pack)(uint32_t *to, const float *w, int n);
     /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */

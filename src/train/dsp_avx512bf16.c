@@ -129,12 +129,15 @@ static int rows_next(int left)
     return (left + tiles - 1) / tiles;
 }
 
-/** Sums lie in the second cache: let the next rows come while these are worked on. */
-static inline void fetch(const sums *s, int begin, int rows)
+/** Let rows of n numbers come to the first cache, or only to the second, while others are worked on. */
+INLINE void fetch(int cache, const float *from, size_t ld, int rows, int n)
 {
-    for (int r = begin; s->from && r < begin + rows; r++)
-        for (int c = 0; c < s->n; c += VN)
-            _mm_prefetch((const char *)(s->from + (size_t)r * s->ld + c), _MM_HINT_T0);
+    for (int r = 0; r < rows; r++)
+        for (int c = 0; c < n; c += VN)
+            if (cache == 1)
+                _mm_prefetch((const char *)(from + (size_t)r * ld + c), _MM_HINT_T0);
+            else
+                _mm_prefetch((const char *)(from + (size_t)r * ld + c), _MM_HINT_T1);
 }
 
 /* ---- Layers ---- */
@@ -183,8 +186,8 @@ typedef struct weights {
     const uint32_t *packed;
 } weights;
 
-/** One layer: y->from and the rest are of its first row. */
-static void layer(const sums *y, const weights *w, const float *x, int n_out, int n_in)
+/** One layer: y->from and the rest are of its first row. soon: NULL or 2 n_out rows of 64 that will be asked for next. */
+static void layer(const sums *y, const weights *w, const float *x, int n_out, int n_in, const float *soon)
 {
     alignas(64) uint32_t some[ROWS][PAIRS];
     const size_t words = words_of(n_in);
@@ -200,6 +203,8 @@ static void layer(const sums *y, const weights *w, const float *x, int n_out, in
             const sums s = { y->to + at, init ? init + at : NULL, y->bias ? y->bias + o : NULL, LANES, LANES,
                              ends ? y->in + at : NULL, ends ? y->below + o : NULL };
             rows = rows_next(n_out - o);
+            if (soon && i == 0)
+                fetch(2, soon + 2 * at, LANES, 2 * rows, LANES);
             if (w->packed) {
                 product(rows, &s, w->packed + (size_t)o * words + i / 2, words, &inputs, (n + 1) / 2);
                 continue;
@@ -215,24 +220,24 @@ static void layer(const sums *y, const weights *w, const float *x, int n_out, in
 
 static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
 {
-    layer(&(sums){ y, init, bias, LANES, LANES, NULL, NULL }, &(weights){ w, ldw, NULL }, x, n_out, n_in);
+    layer(&(sums){ y, init, bias, LANES, LANES, NULL, NULL }, &(weights){ w, ldw, NULL }, x, n_out, n_in, NULL);
 }
 
 static void residual(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
                      const float *x)
 {
-    layer(&(sums){ h, NULL, bias, LANES, LANES, x, below }, &(weights){ .packed = w->packed }, x, w->n, w->n);
+    layer(&(sums){ h, NULL, bias, LANES, LANES, x, below }, &(weights){ .packed = w->packed }, x, w->n, w->n, NULL);
 }
 
 static void residual_back(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below, const adcgs_square *turn,
-                          const float *dh)
+                          const float *dh, const float *io)
 {
     for (int i = 0; i < turn->n; i++)
         for (int c = 0; c < COLS; c++) {
             const size_t at = (size_t)i * LANES + (size_t)(c * VN);
             _mm512_store_ps(dz + at, slope(_mm512_load_ps(dh + at), (__mmask16)(below[i] >> c * VN)));
         }
-    layer(&(sums){ dx, dh, NULL, LANES, LANES, NULL, NULL }, &(weights){ .packed = turn->packed }, dz, turn->n, turn->n);
+    layer(&(sums){ dx, dh, NULL, LANES, LANES, NULL, NULL }, &(weights){ .packed = turn->packed }, dz, turn->n, turn->n, io);
 }
 
 static void pack(uint32_t *to, const float *w, int n)
@@ -294,7 +299,7 @@ static void tile_grad(float *gw, size_t ldg, float *gb, const float *dy, const f
             const sums s = { at, at, NULL, ldg, n_in - i < LANES ? n_in - i : LANES, NULL, NULL };
             rows = rows_next(n_out - o);
             if (o + rows < n_out)
-                fetch(&s, rows, rows_next(n_out - o - rows));
+                fetch(1, at + (size_t)rows * ldg, ldg, rows_next(n_out - o - rows), s.n);
             product(rows, &s, factors[o], LANES / 2, &inputs, LANES / 2);
         }
     }

@@ -248,7 +248,7 @@ static void ISA(residual)(const adcgs_train_dsp *dsp, float *h, uint64_t *below,
 }
 
 static void ISA(residual_back)(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
-                               const adcgs_square *turn, const float *dh)
+                               const adcgs_square *turn, const float *dh, const float *io)
 {
     const int n = turn->n;
     for (int i = 0; i < n; i++)

@@ -8,9 +8,10 @@ void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const f
     const size_t tile = (size_t)m->width * 64;
     /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
     dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
-    for (int i = m->hidden - 1; i > 0; i--)
-        dsp->residual_back(dsp, dz, dz + (size_t)i * tile, below + (i - 1) * m->width,
-                           &(adcgs_square){ m->width, m->turn + m->w[i], adcgs_mlp_packed(m, i, 1) }, dz);
+    for (int i = m->hidden - 1; i > 0; i--) {
+        const adcgs_square turn = { m->width, m->turn + m->w[i], adcgs_mlp_packed(m, i, 1) };
+        dsp->residual_back(dsp, dz, dz + (size_t)i * tile, below + (i - 1) * m->width, &turn, dz, h + (size_t)(i - 1) * tile);
+    }
     dsp->lrelu_back(dz, h, m->width);
 }
 

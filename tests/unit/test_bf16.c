@@ -110,7 +110,7 @@ static void check_residual(const adcgs_train_dsp *dsp, int n)
     check_guards((size_t)n * L);
     float *const dx = guarded();
     memcpy(dx, dy, (size_t)(n * L) * sizeof *dx);
-    dsp->residual_back(dsp, dx, dz, below, &square, dx);
+    dsp->residual_back(dsp, dx, dz, below, &square, dx, NULL);
     for (int o = 0; o < n; o++)
         for (int l = 0; l < L; l++) {
             assert_true(dz[o * L + l] == dy[o * L + l] * (below[o] >> l & 1 ? 0x1p-6f : 1.0f));

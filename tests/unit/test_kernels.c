@@ -305,9 +305,9 @@ static void residual(call *c)
     dsp.residual(&dsp, output(c, many), below, bias, &w, given(c, many));
     spread(output(c, many), below, n);
     const float *const dh = given(c, many);
-    dsp.residual_back(&dsp, output(c, many), output(c, many), below, &w, dh);
+    dsp.residual_back(&dsp, output(c, many), output(c, many), below, &w, dh, NULL);
     float *const both = added(c, many);
-    dsp.residual_back(&dsp, both, output(c, many), below, &w, both);
+    dsp.residual_back(&dsp, both, output(c, many), below, &w, both, NULL);
 }
 
 static void rates(call *c)
