@@ -28,7 +28,7 @@ struct adcgs_pictures {
     uint32_t n;
     picture *list;
     int file;          /**< -1: none yet */
-    char *folder;      /**< of the file, for messages */
+    char *folder;      /**< of the file */
     pthread_mutex_t lock; /**< for what follows, while loading */
     uint64_t held, spooled;
 };
@@ -72,9 +72,7 @@ static void widen(float *rgb, const uint16_t *values, size_t n)
 
 static adcgs_status open_file(adcgs_pictures *p, adcgs_error *error)
 {
-    const char *const chosen = getenv("TMPDIR");
-    p->folder = strdup(chosen && *chosen ? chosen : "/var/tmp");
-    char *name = p->folder ? adcgs_path("%s/adcgs-XXXXXX", p->folder) : NULL;
+    char *name = adcgs_path("%s/adcgs-XXXXXX", p->folder);
     if (!name)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for pictures");
     p->file = mkstemp(name);
@@ -230,8 +228,11 @@ adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene,
     p->file = -1;
     pthread_mutex_init(&p->lock, NULL);
     p->list = calloc(ADCGS_MAX(p->n, 1), sizeof *p->list);
-    const adcgs_status status =
-        p->list ? load_all(p, pool, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u pictures", p->n);
+    const char *const chosen = getenv("TMPDIR");
+    p->folder = strdup(chosen && *chosen ? chosen : "/var/tmp");
+    const adcgs_status status = p->list && p->folder
+                                    ? load_all(p, pool, error)
+                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u pictures", p->n);
     if (status != ADCGS_OK)
         adcgs_pictures_free(&p);
     *out = p;
