@@ -65,6 +65,19 @@ typedef struct adcgs_rate_io {
     float *mean;            /**< rate_exact: receives the means, packed */
 } adcgs_rate_io;
 
+/** Weights of a residual layer, [n][n], and the same as adcgs_train_dsp.pack leaves them, if there is such a function. */
+typedef struct adcgs_square {
+    int n;
+    const float *w;
+    const uint32_t *packed;
+} adcgs_square;
+
+/** Words of a packed square. */
+static inline size_t adcgs_square_words(int n)
+{
+    return (size_t)n * (((size_t)n + 31) / 32 * 16);
+}
+
 typedef struct adcgs_train_dsp {
     adcgs_dense_dsp dense;
     /**
@@ -75,6 +88,20 @@ typedef struct adcgs_train_dsp {
                         int n_out, int n_in);
     /** dz[i] *= h[i] < 0 ? 2^-6 : 1 over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. */
     void (*lrelu_back)(float *dz, const float *h, int n);
+    /**
+     * A residual hidden layer: with z = bias + w x, h = x + leaky ReLU of z. Bit l of below[o]: lane l of z[o] is below 0. dsp:
+     * these kernels.
+     */
+    void (*residual)(const struct adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
+                     const float *x);
+    /**
+     * The way back: dz = dh times the leaky ReLU's slope, dx = dh + turn dz; turn: w transposed. dx may be dh. io: NULL, or
+     * the layer's x and, behind it, its h, for which weight gradients ask next: they may be fetched meanwhile.
+     */
+    void (*residual_back)(const struct adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
+                          const adcgs_square *turn, const float *dh, const float *io);
+    /** Weights [n][n] to adcgs_square_words(n) aligned words as the two above want them; NULL if they want none. */
+    void (*pack)(uint32_t *to, const float *w, int n);
     /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */
     void (*noise)(float *y, const float *p, const float *step, int n, uint32_t seed);
     /** y: what the coder makes of p, rounded in steps around the predicted mean mu; see adcgs_mean_pack(). */
@@ -82,11 +109,11 @@ typedef struct adcgs_train_dsp {
     void (*primitives)(const adcgs_group_io *io);
     void (*primitives_back)(const adcgs_group_io *io, const adcgs_group_grad *grad);
     /**
-     * n rows of a hidden layer of an entropy network: h = leaky ReLU of z, plus in where it is not NULL. hidden_exact: z, in on
-     * the integer networks' lattices, and h what they compute.
+     * n rows of a hidden layer: h = leaky ReLU of z, plus in where it is not NULL; below as in residual. hidden_exact, for
+     * entropy networks: z, in on the integer networks' lattices, and h what they compute.
      */
-    void (*hidden)(float *h, const float *z, const float *in, int n);
-    void (*hidden_exact)(float *h, const float *z, const float *in, int n);
+    void (*hidden)(float *h, uint64_t *below, const float *z, const float *in, int n);
+    void (*hidden_exact)(float *h, uint64_t *below, const float *z, const float *in, int n);
     /**
      * Bits of values and their gradients; returns the weighted sum of bits. rate: of values as they are, noisy ones that is,
      * under a Gaussian. rate_exact: as the coder does it, with the gradients straight through every rounding.

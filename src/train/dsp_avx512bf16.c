@@ -20,12 +20,17 @@ typedef struct columns {
     __m512i pair[PAIRS][COLS];
 } columns;
 
-/** Its sums: at to, rows ld apart, n columns in use. They begin with what is at from, else with bias, else with 0. */
+/**
+ * Its sums: at to, rows ld apart, n columns in use. They begin with what is at from, else with bias, else with 0. If in is given,
+ * what is stored is in plus the leaky ReLU of the sums, rows of 64, and below says which sums are below 0.
+ */
 typedef struct sums {
     float *to;
     const float *from, *bias;
     size_t ld;
     int n;
+    const float *in;
+    uint64_t *below;
 } sums;
 
 static inline __mmask16 first(int n)
@@ -33,7 +38,36 @@ static inline __mmask16 first(int n)
     return (__mmask16)(n >= VN ? 0xffff : n > 0 ? (1 << n) - 1 : 0);
 }
 
+static inline __m512 slope(__m512 x, __mmask16 below)
+{
+    return _mm512_mask_mul_ps(x, below, x, _mm512_set1_ps(0x1p-6f));
+}
+
 /* ---- The product ---- */
+
+/** The end of a residual layer, for one row. */
+INLINE void store_residual(const sums *s, int r, const __m512 acc[COLS])
+{
+    uint64_t below = 0;
+#pragma GCC unroll 4
+    for (int c = 0; c < COLS; c++) {
+        const size_t at = (size_t)r * LANES + (size_t)(c * VN);
+        const __mmask16 negative = _mm512_cmp_ps_mask(acc[c], _mm512_setzero_ps(), _CMP_LT_OQ);
+        _mm512_store_ps(s->to + at, _mm512_add_ps(_mm512_load_ps(s->in + at), slope(acc[c], negative)));
+        below |= (uint64_t)negative << c * VN;
+    }
+    s->below[r] = below;
+}
+
+INLINE void store_sums(int cols, const sums *s, int r, const __m512 acc[COLS], __mmask16 last)
+{
+#pragma GCC unroll 4
+    for (int c = 0; c < cols; c++)
+        if (c < cols - 1 || last == 0xffff)
+            _mm512_storeu_ps(s->to + (size_t)r * s->ld + c * VN, acc[c]);
+        else
+            _mm512_mask_storeu_ps(s->to + (size_t)r * s->ld + c * VN, last, acc[c]);
+}
 
 INLINE void product_tile(int rows, int cols, const sums *s, const uint32_t *a, size_t lda, const columns *b, int pairs)
 {
@@ -60,12 +94,10 @@ INLINE void product_tile(int rows, int cols, const sums *s, const uint32_t *a, s
     }
 #pragma GCC unroll 6
     for (int r = 0; r < rows; r++)
-#pragma GCC unroll 4
-        for (int c = 0; c < cols; c++)
-            if (c < cols - 1 || last == 0xffff)
-                _mm512_storeu_ps(s->to + (size_t)r * s->ld + c * VN, acc[r][c]);
-            else
-                _mm512_mask_storeu_ps(s->to + (size_t)r * s->ld + c * VN, last, acc[r][c]);
+        if (cols == COLS && s->in)
+            store_residual(s, r, acc[r]);
+        else
+            store_sums(cols, s, r, acc[r], last);
 }
 
 INLINE void product_rows(int rows, const sums *s, const uint32_t *a, size_t lda, const columns *b, int pairs)
@@ -95,6 +127,17 @@ static int rows_next(int left)
 {
     const int tiles = (left + ROWS - 1) / ROWS;
     return (left + tiles - 1) / tiles;
+}
+
+/** Let rows of n numbers come to the first cache, or only to the second, while others are worked on. */
+INLINE void fetch(int cache, const float *from, size_t ld, int rows, int n)
+{
+    for (int r = 0; r < rows; r++)
+        for (int c = 0; c < n; c += VN)
+            if (cache == 1)
+                _mm_prefetch((const char *)(from + (size_t)r * ld + c), _MM_HINT_T0);
+            else
+                _mm_prefetch((const char *)(from + (size_t)r * ld + c), _MM_HINT_T1);
 }
 
 /* ---- Layers ---- */
@@ -130,25 +173,77 @@ static void pack_inputs(columns *to, const float *x, int n)
         }
 }
 
-static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
+/** Words of a row that is packed as a whole. */
+static inline size_t words_of(int n)
 {
-    alignas(64) uint32_t weights[ROWS][PAIRS];
+    return ((size_t)n + 31) / 32 * 16;
+}
+
+/** Some rows of weights for the inputs from i on: in w, or packed, if that is not NULL. */
+typedef struct weights {
+    const float *w;
+    size_t ldw;
+    const uint32_t *packed;
+} weights;
+
+/** One layer: y->from and the rest are of its first row. soon: NULL or 2 n_out rows of 64 that will be asked for next. */
+static void layer(const sums *y, const weights *w, const float *x, int n_out, int n_in, const float *soon)
+{
+    alignas(64) uint32_t some[ROWS][PAIRS];
+    const size_t words = words_of(n_in);
     columns inputs;
+    const float *init = y->from;
     int i = 0;
     do {
         const int n = n_in - i < 2 * PAIRS ? n_in - i : 2 * PAIRS;
         pack_inputs(&inputs, x + (size_t)i * LANES, n);
         for (int o = 0, rows; o < n_out; o += rows) {
             const size_t at = (size_t)o * LANES;
-            const sums s = { y + at, init ? init + at : NULL, bias ? bias + o : NULL, LANES, LANES };
+            const int ends = y->in && i + n == n_in;
+            const sums s = { y->to + at, init ? init + at : NULL, y->bias ? y->bias + o : NULL, LANES, LANES,
+                             ends ? y->in + at : NULL, ends ? y->below + o : NULL };
             rows = rows_next(n_out - o);
+            if (soon && i == 0)
+                fetch(2, soon + 2 * at, LANES, 2 * rows, LANES);
+            if (w->packed) {
+                product(rows, &s, w->packed + (size_t)o * words + i / 2, words, &inputs, (n + 1) / 2);
+                continue;
+            }
             for (int r = 0; r < rows; r++)
-                pack_row(weights[r], w + (size_t)(o + r) * ldw + i, n);
-            product(rows, &s, weights[0], PAIRS, &inputs, (n + 1) / 2);
+                pack_row(some[r], w->w + (size_t)(o + r) * w->ldw + i, n);
+            product(rows, &s, some[0], PAIRS, &inputs, (n + 1) / 2);
         }
-        init = y;
+        init = y->to;
         i += n;
     } while (i < n_in);
+}
+
+static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
+{
+    layer(&(sums){ y, init, bias, LANES, LANES, NULL, NULL }, &(weights){ w, ldw, NULL }, x, n_out, n_in, NULL);
+}
+
+static void residual(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
+                     const float *x)
+{
+    layer(&(sums){ h, NULL, bias, LANES, LANES, x, below }, &(weights){ .packed = w->packed }, x, w->n, w->n, NULL);
+}
+
+static void residual_back(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below, const adcgs_square *turn,
+                          const float *dh, const float *io)
+{
+    for (int i = 0; i < turn->n; i++)
+        for (int c = 0; c < COLS; c++) {
+            const size_t at = (size_t)i * LANES + (size_t)(c * VN);
+            _mm512_store_ps(dz + at, slope(_mm512_load_ps(dh + at), (__mmask16)(below[i] >> c * VN)));
+        }
+    layer(&(sums){ dx, dh, NULL, LANES, LANES, NULL, NULL }, &(weights){ .packed = turn->packed }, dz, turn->n, turn->n, io);
+}
+
+static void pack(uint32_t *to, const float *w, int n)
+{
+    for (int o = 0; o < n; o++)
+        pack_row(to + (size_t)o * words_of(n), w + (size_t)o * (size_t)n, n);
 }
 
 /* ---- Weight gradients ---- */
@@ -172,7 +267,7 @@ INLINE void turn(__m512i r[VN])
     }
 }
 
-/** Pairs of lanes, each with its up to 64 inputs. */
+/** Pairs of lanes, each with its up to 64 inputs; the columns behind them are not used. */
 static void turn_inputs(columns *to, const float *x, int n)
 {
     for (int c = 0; c * VN < n; c++)
@@ -180,9 +275,8 @@ static void turn_inputs(columns *to, const float *x, int n)
             __m512i r[VN];
 #pragma GCC unroll 16
             for (int i = 0; i < VN; i++) {
-                const float *from = x + (size_t)(c * VN + i) * LANES + half * 2 * VN;
-                r[i] = c * VN + i < n ? pair_up(_mm512_load_ps(from), _mm512_load_ps(from + VN)) :
-                                        _mm512_setzero_si512();
+                const float *from = x + (size_t)ADCGS_MIN(c * VN + i, n - 1) * LANES + half * 2 * VN;
+                r[i] = pair_up(_mm512_load_ps(from), _mm512_load_ps(from + VN));
             }
             turn(r);
 #pragma GCC unroll 16
@@ -202,8 +296,10 @@ static void tile_grad(float *gw, size_t ldg, float *gb, const float *dy, const f
         turn_inputs(&inputs, x + (size_t)i * LANES, n_in - i < LANES ? n_in - i : LANES);
         for (int o = 0, rows; o < n_out; o += rows) {
             float *at = gw + (size_t)o * ldg + i;
-            const sums s = { at, at, NULL, ldg, n_in - i < LANES ? n_in - i : LANES };
+            const sums s = { at, at, NULL, ldg, n_in - i < LANES ? n_in - i : LANES, NULL, NULL };
             rows = rows_next(n_out - o);
+            if (o + rows < n_out)
+                fetch(1, at + (size_t)rows * ldg, ldg, rows_next(n_out - o - rows), s.n);
             product(rows, &s, factors[o], LANES / 2, &inputs, LANES / 2);
         }
     }
@@ -228,5 +324,8 @@ void adcgs_train_dsp_init_avx512bf16(adcgs_train_dsp *dsp);
 void adcgs_train_dsp_init_avx512bf16(adcgs_train_dsp *dsp)
 {
     dsp->dense.dense = dense;
+    dsp->residual = residual;
+    dsp->residual_back = residual_back;
+    dsp->pack = pack;
     dsp->weight_grad = weight_grad;
 }

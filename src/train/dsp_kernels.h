@@ -25,6 +25,8 @@ typedef __m512 vec;
 #define vstoreu _mm512_storeu_ps
 #define vfma _mm512_fmadd_ps
 #define vadd _mm512_add_ps
+#define vbelow(x) ((uint64_t)_mm512_cmp_ps_mask(x, _mm512_setzero_ps(), _CMP_LT_OQ))
+#define vslope(x, below) _mm512_mask_mul_ps(x, (__mmask16)(below), x, _mm512_set1_ps(0x1p-6f))
 #elif defined(__AVX2__)
 #include <immintrin.h>
 typedef __m256 vec;
@@ -36,6 +38,13 @@ typedef __m256 vec;
 #define vstoreu _mm256_storeu_ps
 #define vfma _mm256_fmadd_ps
 #define vadd _mm256_add_ps
+#define vbelow(x) ((uint64_t)_mm256_movemask_ps(_mm256_cmp_ps(x, _mm256_setzero_ps(), _CMP_LT_OQ)))
+static inline vec vslope(vec x, uint64_t below)
+{
+    const __m256i lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    const __m256i set = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32((int)(uint32_t)below), lane), lane);
+    return _mm256_blendv_ps(x, _mm256_mul_ps(x, _mm256_set1_ps(0x1p-6f)), _mm256_castsi256_ps(set));
+}
 #else
 typedef float vec;
 #define VN 1
@@ -46,6 +55,8 @@ typedef float vec;
 #define vstoreu(p, x) (*(p) = (x))
 #define vfma(a, b, c) ((a) * (b) + (c))
 #define vadd(a, b) ((a) + (b))
+#define vbelow(x) ((uint64_t)((x) < 0))
+#define vslope(x, below) ((below) & 1 ? (x) * 0x1p-6f : (x))
 #endif
 
 /* Outputs and vectors of inputs whose products stay in registers while all lanes pass by. */
@@ -211,6 +222,39 @@ static void ISA(lrelu_back)(float *restrict dz, const float *restrict h, int n)
 {
     for (int i = 0; i < n * LANES; i++)
         dz[i] *= h[i] < 0 ? 0x1p-6f : 1.0f;
+}
+
+/** Which of a row's lanes are below 0. */
+static inline uint64_t below_of(const float *row)
+{
+    uint64_t below = 0;
+    for (int l = 0; l < LANES; l += VN)
+        below |= vbelow(vload(row + l)) << l;
+    return below;
+}
+
+/* Few rows at a time, so that their sums stay in the first cache. */
+static void ISA(residual)(const adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
+                          const float *x)
+{
+    enum { ROWS = 36 };
+    const int n = w->n;
+    alignas(64) float z[ROWS * LANES];
+    for (int o = 0; o < n; o += ROWS) {
+        const int rows = n - o < ROWS ? n - o : ROWS;
+        dsp->dense.dense(z, NULL, bias + o, w->w + (size_t)o * (size_t)n, (size_t)n, x, rows, n);
+        dsp->hidden(h + (size_t)o * LANES, below + o, z, x + (size_t)o * LANES, rows);
+    }
+}
+
+static void ISA(residual_back)(const adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
+                               const adcgs_square *turn, const float *dh, const float *io)
+{
+    const int n = turn->n;
+    for (int i = 0; i < n; i++)
+        for (int l = 0; l < LANES; l += VN)
+            vstoreu(dz + i * LANES + l, vslope(vload(dh + i * LANES + l), below[i] >> l));
+    dsp->dense.dense(dx, dh, NULL, turn->w, (size_t)n, dz, n, n);
 }
 
 static void ISA(noise)(float *restrict y, const float *restrict p, const float *restrict step, int n, uint32_t seed)
@@ -583,13 +627,16 @@ static inline float nearest(float x)
     return floorf(x + 0.5f);
 }
 
-static void ISA(hidden)(float *restrict h, const float *restrict z, const float *restrict in, int n)
+static void ISA(hidden)(float *restrict h, uint64_t *restrict below, const float *restrict z, const float *restrict in, int n)
 {
     for (int i = 0; i < n * LANES; i++)
         h[i] = (z[i] < 0 ? z[i] * 0x1p-6f : z[i]) + (in ? in[i] : 0);
+    for (int i = 0; i < n; i++)
+        below[i] = below_of(z + i * LANES);
 }
 
-static void ISA(hidden_exact)(float *restrict h, const float *restrict z, const float *restrict in, int n)
+static void ISA(hidden_exact)(float *restrict h, uint64_t *restrict below, const float *restrict z, const float *restrict in,
+                              int n)
 {
     const float up = 1 << ADCGS_E24_BITS, down = 1 / up, most = ADCGS_E24_MAX * down;
     for (int i = 0; i < n * LANES; i++) {
@@ -597,6 +644,8 @@ static void ISA(hidden_exact)(float *restrict h, const float *restrict z, const 
         const float v = nearest(z[i] * up), slow = nearest(v * 0x1p-6f), a = (v > slow ? v : slow) * down;
         h[i] = adcgs_bounded(in ? a + in[i] : a, -most, most);
     }
+    for (int i = 0; i < n; i++)
+        below[i] = below_of(z + i * LANES);
 }
 
 /** A row of values as the coder sees them. */
@@ -662,6 +711,9 @@ void ISA(adcgs_train_dsp_init)(adcgs_train_dsp *dsp)
 {
     dsp->weight_grad = ISA(weight_grad);
     dsp->lrelu_back = ISA(lrelu_back);
+    dsp->residual = ISA(residual);
+    dsp->residual_back = ISA(residual_back);
+    dsp->pack = NULL;
     dsp->noise = ISA(noise);
     dsp->round = ISA(round);
     dsp->primitives = ISA(primitives);

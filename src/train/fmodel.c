@@ -51,6 +51,7 @@ void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width)
     memcpy(m->lattice, old.lattice, sizeof m->lattice);
     m->use = old.use;
     m->turn = old.turn;
+    m->packed = old.packed;
     m->entropy = old.entropy;
 }
 
@@ -115,6 +116,14 @@ void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise)
             for (int j = 0; j < mlp->in[i]; j++)
                 mlp->turn[mlp->w[i] + (size_t)j * (size_t)mlp->n_out[i] + (size_t)o] =
                     w[(size_t)o * (size_t)mlp->in[i] + (size_t)j];
+    }
+}
+
+void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp)
+{
+    for (int i = 1; mlp->n && dsp->pack && i < mlp->hidden; i++) {
+        dsp->pack(adcgs_mlp_packed(mlp, i, 0), mlp->use + mlp->w[i], mlp->width);
+        dsp->pack(adcgs_mlp_packed(mlp, i, 1), mlp->turn + mlp->w[i], mlp->width);
     }
 }
 
@@ -197,6 +206,18 @@ static void start_time_table(adcgs_fmodel *f)
         }
 }
 
+static adcgs_status alloc_weights(adcgs_mlp *m, adcgs_error *error)
+{
+    m->use = adcgs_alloc(NULL, 2 * (m->n + 16), sizeof *m->use, error);
+    if (!m->use)
+        return ADCGS_ERR_MEMORY;
+    m->turn = m->use + (m->n + 15) / 16 * 16;
+    if (m->hidden < 2 || m->entropy)
+        return ADCGS_OK;
+    m->packed = adcgs_alloc(NULL, 2 * (size_t)(m->hidden - 1) * adcgs_square_words(m->width), sizeof *m->packed, error);
+    return m->packed ? ADCGS_OK : ADCGS_ERR_MEMORY;
+}
+
 static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error *error)
 {
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
@@ -209,10 +230,7 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
         ADCGS_TRY(param_alloc(&f->param[i], n, error));
         if (!mlp->n)
             continue;
-        mlp->use = adcgs_alloc(NULL, 2 * (n + 16), sizeof *mlp->use, error);
-        if (!mlp->use)
-            return ADCGS_ERR_MEMORY;
-        mlp->turn = mlp->use + (n + 15) / 16 * 16;
+        ADCGS_TRY(alloc_weights(mlp, error));
         const int from_zero = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI || i == ADCGS_P_E_STEPS;
         mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : from_zero ? 0.0f : 0.02f, seed, (uint64_t)i);
     }
@@ -381,6 +399,7 @@ void adcgs_fmodel_free(adcgs_fmodel **model)
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         adcgs_free(NULL, f->param[i].p);
         adcgs_free(NULL, f->mlp[i].use);
+        adcgs_free(NULL, f->mlp[i].packed);
     }
     free(f);
     *model = NULL;

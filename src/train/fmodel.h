@@ -56,6 +56,7 @@ typedef struct adcgs_mlp {
     size_t n;                                        /**< parameters; 0: the network does not exist */
     float *use;   /**< [n] the weights the forward pass uses: the parameters, or their lattice values */
     float *turn;  /**< [n] the same transposed per layer: w^T [n_in][n_out] at w's offset */
+    uint32_t *packed; /**< see adcgs_mlp_packed(); NULL in an entropy network */
     int8_t lattice[ADCGS_MLP_LAYERS]; /**< exponent e of the lattice 2^-e of each layer's weights, or ADCGS_LATTICE_NONE */
     uint8_t entropy; /**< an entropy network: on the lattice it is the integer network of spec clause "E24" */
 } adcgs_mlp;
@@ -134,6 +135,13 @@ static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t 
 
 /** Copy parameters into `use` (on the lattice where lattice is set and `quantise` is nonzero) and transpose. */
 void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise);
+/** Pack the residual layers of `use` and `turn` for these kernels, if they ask for it. */
+void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp);
+/** Where the packed weights of residual layer i >= 1 lie, or the same transposed. */
+static inline uint32_t *adcgs_mlp_packed(const adcgs_mlp *mlp, int i, int turned)
+{
+    return mlp->packed ? mlp->packed + (size_t)(2 * (i - 1) + turned) * adcgs_square_words(mlp->width) : NULL;
+}
 /**
  * The weights [n] of the integer network that an entropy network's parameters stand for, as multiples of 2^-ADCGS_E24_BITS: in
  * range, and every row within the bound that makes its sums exact.

@@ -7,10 +7,10 @@
 
 /* ---- Workspace ---- */
 
+/** Hidden layers, their branches' signs, outputs. */
 static size_t rows_of(const adcgs_mlp *m)
 {
-    /* h and z per hidden layer (kept for weight gradients), output and its gradient */
-    return (size_t)(m->hidden * 2 + (m->hidden > 1 ? m->hidden - 1 : 0)) * (size_t)m->width + 2u * (size_t)m->out;
+    return (size_t)m->hidden * (size_t)m->width + adcgs_below_rows(m) + (size_t)m->out;
 }
 
 static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error *error)
@@ -82,9 +82,8 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     const adcgs_mlp *m = f->mlp;
     const size_t k = f->params.k;
     const adcgs_mlp *theta = &m[ADCGS_P_THETA], *steps = &m[ADCGS_P_E_STEPS];
-    const size_t steps_hidden = ((size_t)steps->hidden + adcgs_pass_branches(steps)) * (size_t)steps->width;
-    p->act_stride = 64 * ((size_t)theta->width + k * (rows_of(theta) - (size_t)theta->out) + rows_of(&m[ADCGS_P_OMEGA]) +
-                          rows_of(&m[ADCGS_P_VARPI]) + steps_hidden + 2 * (size_t)steps->out);
+    p->act_stride = 64 * (k * rows_of(theta) + rows_of(&m[ADCGS_P_OMEGA]) + rows_of(&m[ADCGS_P_VARPI]) + rows_of(steps) +
+                          (size_t)steps->out);
     p->scratch_stride = 64 * adcgs_pass_scratch_rows(f);
     size_t at = 0;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
@@ -136,15 +135,14 @@ adcgs_status adcgs_pass_resize(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error
 
 /* ---- Forward ---- */
 
-void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, float *a, float *out)
+void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, uint64_t *below, float *out)
 {
     const size_t tile = (size_t)m->width * 64;
     dsp->dense.lrelu(h, m->width);
     for (int i = 1; i < m->hidden; i++) {
-        float *branch = a + (size_t)(i - 1) * tile, *next = h + (size_t)i * tile;
-        const float *last = next - tile;
-        dsp->dense.dense(branch, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, last, m->width, m->width);
-        dsp->hidden(next, branch, last, m->width); /* of the branch the backward pass asks only for signs */
+        float *next = h + (size_t)i * tile;
+        dsp->residual(dsp, next, below + (i - 1) * m->width, m->use + m->b[i],
+                      &(adcgs_square){ m->width, m->use + m->w[i], adcgs_mlp_packed(m, i, 0) }, next - tile);
     }
     dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width,
                      h + (size_t)(m->hidden - 1) * tile, m->out, m->width);
@@ -191,7 +189,7 @@ static void quantise_group(const forward_job *job, uint32_t g, float *scratch)
     }
 }
 
-static void forward_theta(const forward_job *job, uint32_t g)
+static void forward_theta(const forward_job *job, uint32_t g, float *anchor)
 {
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
@@ -201,11 +199,11 @@ static void forward_theta(const forward_job *job, uint32_t g)
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
     const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * 64;
-    d->dense(act.theta_anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], fv, m->width, nv);
+    d->dense(anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], fv, m->width, nv);
     for (int k = 0; k < f->params.k; k++) {
         float *h = act.theta_h + (size_t)k * act.theta_h_stride;
-        d->dense(h, act.theta_anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
-        adcgs_mlp_tail(p->net, m, h, act.theta_a + (size_t)k * act.theta_a_stride,
+        d->dense(h, anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
+        adcgs_mlp_tail(p->net, m, h, act.theta_below + (size_t)k * act.theta_below_stride,
                        act.theta_out + (size_t)k * ADCGS_THETA_OUT * 64);
     }
 }
@@ -221,14 +219,14 @@ static void forward_deform(const forward_job *job, uint32_t g)
     const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
     if (om->n) {
         d->dense(act.omega_h, NULL, p->time_bias[0], om->use, (size_t)om->in[0], fv, om->width, nv);
-        adcgs_mlp_tail(p->net, om, act.omega_h, act.omega_a, act.omega_out);
+        adcgs_mlp_tail(p->net, om, act.omega_h, act.omega_below, act.omega_out);
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], f->code + (size_t)g * (size_t)fp * 64, va->width,
                  fp);
         if (f->params.fine_uses_fv)
             d->dense(act.varpi_h, act.varpi_h, NULL, va->use + fp, (size_t)va->in[0], fv, va->width, nv);
-        adcgs_mlp_tail(p->net, va, act.varpi_h, act.varpi_a, act.varpi_out);
+        adcgs_mlp_tail(p->net, va, act.varpi_h, act.varpi_below, act.varpi_out);
     }
 }
 
@@ -268,9 +266,10 @@ static void forward_group(void *arg, int index, int thread)
 {
     const forward_job *job = arg;
     const uint32_t g = (uint32_t)index;
-    quantise_group(job, g, job->pass->scratch + (size_t)thread * job->pass->scratch_stride);
+    float *scratch = job->pass->scratch + (size_t)thread * job->pass->scratch_stride;
+    quantise_group(job, g, scratch);
     drop_primitives(job, g);
-    forward_theta(job, g);
+    forward_theta(job, g, scratch);
     if (job->deform)
         forward_deform(job, g);
     adcgs_group_io io;
@@ -305,6 +304,8 @@ void adcgs_pass_forward(adcgs_pass *p, const adcgs_fmodel *f, float t, const adc
     forward_job job = { p, f, mode, f->params.time_rows ? mode->deform : ADCGS_DEFORM_NONE };
     p->quant = mode->quant;
     p->net = mode->bf16 ? &p->bf16 : &p->dsp;
+    for (int i = ADCGS_P_THETA; i <= ADCGS_P_VARPI; i++)
+        adcgs_mlp_pack(p->net, &f->mlp[i]);
     if (job.deform)
         forward_time(p, f, t);
     adcgs_pool_run(p->pool, forward_group, &job, (int)f->groups);

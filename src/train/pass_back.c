@@ -2,17 +2,15 @@
 /** \file The backward pass: primitives' gradients to anchors and networks. */
 #include "train/pass_layout.h"
 
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout,
-                         float *dz)
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
+                         const float *dout, float *dz)
 {
     const size_t tile = (size_t)m->width * 64;
     /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
     dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
     for (int i = m->hidden - 1; i > 0; i--) {
-        float *d = dz + (size_t)i * tile;
-        memcpy(d, dz, tile * sizeof *d);
-        dsp->lrelu_back(d, a + (size_t)(i - 1) * tile, m->width);
-        dsp->dense.dense(dz, dz, NULL, m->turn + m->w[i], (size_t)m->width, d, m->width, m->width);
+        const adcgs_square turn = { m->width, m->turn + m->w[i], adcgs_mlp_packed(m, i, 1) };
+        dsp->residual_back(dsp, dz, dz + (size_t)i * tile, below + (i - 1) * m->width, &turn, dz, h + (size_t)(i - 1) * tile);
     }
     dsp->lrelu_back(dz, h, m->width);
 }
@@ -43,77 +41,71 @@ static float *grad_at(const adcgs_fmodel *f, int group, uint32_t g)
     return f->param[group].g + (size_t)g * (size_t)adcgs_fmodel_rows(f, group) * 64;
 }
 
-static void theta_back(const backward_job *job, uint32_t g, const float *dtheta, float *scratch, float *partial)
+/**
+ * From the outputs' gradients to weights, f_g and f_v. Each primitive goes all its way while its activations are near; sum, then
+ * dz: scratch.
+ */
+static void theta_back(const backward_job *job, uint32_t g, const float *dtheta, float *sum, float *partial)
 {
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
     const adcgs_mlp *m = &f->mlp[ADCGS_P_THETA];
     const adcgs_train_dsp *dsp = p->net;
-    const int nv = f->params.n_fv, ng = f->params.n_fg, k = f->params.k, w = m->width;
+    const int nv = f->params.n_fv, ng = f->params.n_fg, w = m->width;
     const adcgs_act act = adcgs_pass_act(p, f, g);
-    const size_t tile = (size_t)w * 64, sdz = (size_t)m->hidden * tile, fg_tile = (size_t)ng * 64;
-    float *sum = scratch, *dz = scratch + tile;
+    const size_t tile = (size_t)w * 64;
+    float *dz = sum + tile, *gm = partial + p->partial_at[ADCGS_P_THETA];
     float *dfg = grad_at(f, ADCGS_P_FG, g), *dfv = grad_at(f, ADCGS_P_FV, g);
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
+    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * 64;
     memset(sum, 0, tile * sizeof *sum);
-    for (int i = 0; i < k; i++) {
-        float *d = dz + (size_t)i * sdz;
-        adcgs_mlp_tail_back(dsp, m, act.theta_h + (size_t)i * act.theta_h_stride, act.theta_a + (size_t)i * act.theta_a_stride,
-                            dtheta + (size_t)i * ADCGS_THETA_OUT * 64, d);
-        dsp->dense.dense(dfg + (size_t)i * fg_tile, dfg + (size_t)i * fg_tile, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w,
-                         d, ng, w);
+    for (size_t i = 0; i < f->params.k; i++) {
+        const float *h = act.theta_h + i * act.theta_h_stride, *dout = dtheta + i * ADCGS_THETA_OUT * 64;
+        float *d = dfg + i * (size_t)ng * 64;
+        adcgs_mlp_tail_back(dsp, m, h, act.theta_below + i * act.theta_below_stride, dout, dz);
+        dsp->dense.dense(d, d, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w, dz, ng, w);
         for (size_t j = 0; j < tile; j++)
-            sum[j] += d[j];
+            sum[j] += dz[j];
+        dsp->weight_grad(gm + nv, (size_t)m->in[0], NULL, dz, 0, fg + i * (size_t)ng * 64, 0, 1, w, ng);
+        adcgs_mlp_weight_grads(dsp, m, gm, h, 0, dz, 0, dout, 0, 1);
     }
     dsp->dense.dense(dfv, dfv, NULL, m->turn, (size_t)w, sum, nv, w);
-    float *gm = partial + p->partial_at[ADCGS_P_THETA];
-    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
-    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * (size_t)k * fg_tile;
     dsp->weight_grad(gm, (size_t)m->in[0], gm + m->b[0], sum, 0, fv, 0, 1, w, nv);
-    dsp->weight_grad(gm + nv, (size_t)m->in[0], NULL, dz, sdz, fg, fg_tile, k, w, ng);
-    adcgs_mlp_weight_grads(dsp, m, gm, act.theta_h, act.theta_h_stride, dz, sdz, dtheta, ADCGS_THETA_OUT * 64, k);
 }
 
-/** From the outputs' gradients to dz and f_v; weights follow per chunk. */
-static void deform_back(const backward_job *job, uint32_t g)
+/** The same for a network of deformation, to its weights beyond the first layer's. */
+static void tail_back(const adcgs_pass *p, const adcgs_mlp *m, const float *h, const uint64_t *below, const float *dout,
+                      float *dz, float *gm)
+{
+    adcgs_mlp_tail_back(p->net, m, h, below, dout, dz);
+    adcgs_mlp_weight_grads(p->net, m, gm, h, 0, dz, 0, dout, 0, 1);
+}
+
+static void deform_back(const backward_job *job, uint32_t g, const float *domega, const float *dvarpi, float *dz, float *partial)
 {
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
     const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
+    const adcgs_train_dsp *dsp = p->net;
     const adcgs_act act = adcgs_pass_act(p, f, g);
+    const int nv = f->params.n_fv, fp = 6 * f->params.octaves;
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
     float *dfv = grad_at(f, ADCGS_P_FV, g);
     if (om->n) {
-        adcgs_mlp_tail_back(p->net, om, act.omega_h, act.omega_a, act.omega_dout, act.omega_dz);
-        p->net->dense.dense(dfv, dfv, NULL, om->turn, (size_t)om->width, act.omega_dz, f->params.n_fv, om->width);
+        float *gm = partial + p->partial_at[ADCGS_P_OMEGA];
+        tail_back(p, om, act.omega_h, act.omega_below, domega, dz, gm);
+        dsp->weight_grad(gm, (size_t)om->in[0], gm + om->b[0], dz, 0, fv, 0, 1, om->width, nv);
+        dsp->dense.dense(dfv, dfv, NULL, om->turn, (size_t)om->width, dz, nv, om->width);
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
-        adcgs_mlp_tail_back(p->net, va, act.varpi_h, act.varpi_a, act.varpi_dout, act.varpi_dz);
-        if (f->params.fine_uses_fv)
-            p->net->dense.dense(dfv, dfv, NULL, va->turn + (size_t)(6 * f->params.octaves) * (size_t)va->width,
-                                (size_t)va->width, act.varpi_dz, f->params.n_fv, va->width);
-    }
-}
-
-static void deform_weights(const backward_job *job, uint32_t begin, int tiles, float *partial)
-{
-    const adcgs_pass *p = job->pass;
-    const adcgs_fmodel *f = job->f;
-    const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
-    const adcgs_act act = adcgs_pass_act(p, f, begin);
-    const int nv = f->params.n_fv, fp = 6 * f->params.octaves;
-    const size_t s = p->act_stride, sfv = (size_t)nv * 64, sfp = (size_t)fp * 64;
-    const float *fv = p->used[ADCGS_P_FV] + begin * sfv;
-    if (om->n) {
-        float *g = partial + p->partial_at[ADCGS_P_OMEGA];
-        p->net->weight_grad(g, (size_t)om->in[0], g + om->b[0], act.omega_dz, s, fv, sfv, tiles, om->width, nv);
-        adcgs_mlp_weight_grads(p->net, om, g, act.omega_h, s, act.omega_dz, s, act.omega_dout, s, tiles);
-    }
-    if (va->n && job->deform == ADCGS_DEFORM_ALL) {
-        float *g = partial + p->partial_at[ADCGS_P_VARPI];
-        p->net->weight_grad(g, (size_t)va->in[0], g + va->b[0], act.varpi_dz, s, f->code + begin * sfp, sfp, tiles, va->width,
-                            fp);
-        if (f->params.fine_uses_fv)
-            p->net->weight_grad(g + fp, (size_t)va->in[0], NULL, act.varpi_dz, s, fv, sfv, tiles, va->width, nv);
-        adcgs_mlp_weight_grads(p->net, va, g, act.varpi_h, s, act.varpi_dz, s, act.varpi_dout, s, tiles);
+        float *gm = partial + p->partial_at[ADCGS_P_VARPI];
+        const float *code = f->code + (size_t)g * (size_t)fp * 64;
+        tail_back(p, va, act.varpi_h, act.varpi_below, dvarpi, dz, gm);
+        dsp->weight_grad(gm, (size_t)va->in[0], gm + va->b[0], dz, 0, code, 0, 1, va->width, fp);
+        if (f->params.fine_uses_fv) {
+            dsp->weight_grad(gm + fp, (size_t)va->in[0], NULL, dz, 0, fv, 0, 1, va->width, nv);
+            dsp->dense.dense(dfv, dfv, NULL, va->turn + (size_t)fp * (size_t)va->width, (size_t)va->width, dz, nv, va->width);
+        }
     }
 }
 
@@ -122,7 +114,6 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
     const size_t at = (size_t)g * f->params.k * 64;
-    const adcgs_act act = adcgs_pass_act(p, f, g);
     adcgs_group_io io;
     adcgs_group_grad grad;
     adcgs_pass_io(p, f, g, job->deform, &io);
@@ -137,13 +128,14 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
     grad.sigma = grad_at(f, ADCGS_P_SIGMA, g);
     grad.colour = grad_at(f, ADCGS_P_COLOUR, g);
     grad.theta = scratch;
-    grad.omega = act.omega_dout;
-    grad.varpi = act.varpi_dout;
+    grad.omega = scratch + (size_t)f->params.k * ADCGS_THETA_OUT * 64;
+    grad.varpi = grad.omega + f->mlp[ADCGS_P_OMEGA].out * 64;
+    scratch = grad.varpi + f->mlp[ADCGS_P_VARPI].out * 64;
     grad.pull = p->pull ? p->pull + (size_t)g * 12 * 64 : NULL;
     p->dsp.primitives_back(&io, &grad);
-    theta_back(job, g, grad.theta, scratch + (size_t)f->params.k * ADCGS_THETA_OUT * 64, partial);
+    theta_back(job, g, grad.theta, scratch, partial);
     if (job->deform)
-        deform_back(job, g);
+        deform_back(job, g, grad.omega, grad.varpi, scratch, partial);
 }
 
 /**
@@ -203,8 +195,6 @@ static void backward_chunk(void *arg, int chunk, int thread)
         else if (adapts)
             adcgs_pass_factors_back(p, job->f, g, partial, scratch);
     }
-    if (job->deform && end > begin)
-        deform_weights(job, begin, (int)(end - begin), partial);
 }
 
 static void merge_partials(adcgs_pass *p, adcgs_fmodel *f)

@@ -9,19 +9,20 @@
 /** Groups are merged in this many fixed pieces, whatever the number of threads. */
 #define ADCGS_PASS_CHUNKS 8
 
-/** Activations of one group. h: hidden layers' outputs; a: residual branches; dz, dout: gradients, kept for weight gradients. */
+/** Activations of one group. h: hidden layers' outputs; below: what adcgs_train_dsp.residual says of the branches. */
 typedef struct adcgs_act {
-    float *theta_anchor;                      /* [width][64] */
-    float *theta_h, *theta_a, *theta_out;     /* per primitive */
-    size_t theta_h_stride, theta_a_stride;
-    float *omega_h, *omega_a, *omega_dz, *omega_out, *omega_dout;
-    float *varpi_h, *varpi_a, *varpi_dz, *varpi_out, *varpi_dout;
-    float *steps_h, *steps_a, *steps_out, *steps_dlog; /* E_q: octaves; gradient of the factors' logarithms */
+    float *theta_h, *theta_out; /* per primitive, and theta_below */
+    size_t theta_h_stride, theta_below_stride;
+    float *omega_h, *omega_out;
+    float *varpi_h, *varpi_out;
+    uint64_t *theta_below, *omega_below, *varpi_below, *steps_below;
+    float *steps_h, *steps_out, *steps_dlog; /* E_q: octaves; gradient of the factors' logarithms */
 } adcgs_act;
 
-static inline size_t adcgs_pass_branches(const adcgs_mlp *m)
+/** Rows of 64 floats that hold one word for each unit of a network's residual layers. */
+static inline size_t adcgs_below_rows(const adcgs_mlp *m)
 {
-    return m->hidden > 1 ? (size_t)(m->hidden - 1) : 0;
+    return m->hidden > 1 ? ((size_t)(m->hidden - 1) * (size_t)m->width + 31) / 32 : 0;
 }
 
 static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g)
@@ -31,25 +32,20 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
     const size_t k = f->params.k;
     adcgs_act a;
     float *at = p->act + (size_t)g * p->act_stride;
-#define TAKE(field, rows) (a.field = at, at += (size_t)(rows) * 64)
+#define TAKE(field, rows) (a.field = (void *)at, at += (size_t)(rows) * 64)
     a.theta_h_stride = (size_t)th->hidden * (size_t)th->width * 64;
-    a.theta_a_stride = adcgs_pass_branches(th) * (size_t)th->width * 64;
-    TAKE(theta_anchor, th->width);
+    a.theta_below_stride = adcgs_below_rows(th) * 32;
     TAKE(theta_h, k * (size_t)th->hidden * (size_t)th->width);
-    TAKE(theta_a, k * adcgs_pass_branches(th) * (size_t)th->width);
+    TAKE(theta_below, k * adcgs_below_rows(th));
     TAKE(theta_out, k * ADCGS_THETA_OUT);
     TAKE(omega_h, om->hidden * om->width);
-    TAKE(omega_a, adcgs_pass_branches(om) * (size_t)om->width);
-    TAKE(omega_dz, om->hidden * om->width);
+    TAKE(omega_below, adcgs_below_rows(om));
     TAKE(omega_out, om->out);
-    TAKE(omega_dout, om->out);
     TAKE(varpi_h, va->hidden * va->width);
-    TAKE(varpi_a, adcgs_pass_branches(va) * (size_t)va->width);
-    TAKE(varpi_dz, va->hidden * va->width);
+    TAKE(varpi_below, adcgs_below_rows(va));
     TAKE(varpi_out, va->out);
-    TAKE(varpi_dout, va->out);
     TAKE(steps_h, eq->hidden * eq->width);
-    TAKE(steps_a, adcgs_pass_branches(eq) * (size_t)eq->width);
+    TAKE(steps_below, adcgs_below_rows(eq));
     TAKE(steps_out, eq->out);
     TAKE(steps_dlog, eq->out);
 #undef TAKE
@@ -57,10 +53,10 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
 }
 
 /** Run layers 1.. of a network: h[0] holds layer 0's sums and is activated in place. */
-void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, float *a, float *out);
+void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, uint64_t *below, float *out);
 /** Gradients dz of every hidden layer's sums from dout. */
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const float *a, const float *dout,
-                         float *dz);
+void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
+                         const float *dout, float *dz);
 /** Weight gradients of layers 1.. over tiles of the given strides. */
 void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
                             size_t sdz, const float *dout, size_t sdout, int tiles);

@@ -60,7 +60,7 @@ void adcgs_pass_evaluate_factors(const adcgs_pass *p, const adcgs_fmodel *f, uin
     float *factor = adcgs_pass_factors(p, f, g);
     inputs(p, f, g, scratch);
     p->dsp.dense.dense(act.steps_h, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], scratch, m->width, m->in[0]);
-    adcgs_mlp_tail(&p->dsp, m, act.steps_h, act.steps_a, act.steps_out);
+    adcgs_mlp_tail(&p->dsp, m, act.steps_h, act.steps_below, act.steps_out);
     for (int i = 0; set && i < m->out * 64; i++)
         factor[i] = adcgs_exp(ln2 * adcgs_bounded(act.steps_out[i], -octaves_max, octaves_max));
 }
@@ -90,7 +90,7 @@ void adcgs_pass_factors_back(const adcgs_pass *p, adcgs_fmodel *f, uint32_t g, f
         act.steps_dlog[i] = (octaves > octaves_max && d < 0) || (octaves < -octaves_max && d > 0) ? 0 : d;
     }
     inputs(p, f, g, x);
-    adcgs_mlp_tail_back(&p->dsp, m, act.steps_h, act.steps_a, act.steps_dlog, dz);
+    adcgs_mlp_tail_back(&p->dsp, m, act.steps_h, act.steps_below, act.steps_dlog, dz);
     p->dsp.weight_grad(gm, (size_t)m->in[0], gm + m->b[0], dz, 0, x, 0, 1, m->width, m->in[0]);
     adcgs_mlp_weight_grads(&p->dsp, m, gm, act.steps_h, 0, dz, 0, act.steps_dlog, 0, 1);
     p->dsp.dense.dense(dx, NULL, NULL, m->turn, (size_t)m->width, dz, nv, m->width);

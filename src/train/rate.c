@@ -13,12 +13,14 @@
 size_t adcgs_pass_scratch_rows(const adcgs_fmodel *f)
 {
     const size_t k = f->params.k, nv = f->params.n_fv, ng = f->params.n_fg;
-    const adcgs_mlp *th = &f->mlp[ADCGS_P_THETA];
-    const size_t theta = k * ADCGS_THETA_OUT + (size_t)th->width * (1 + k * (size_t)th->hidden);
+    const adcgs_mlp *th = &f->mlp[ADCGS_P_THETA], *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
+    const size_t theta = k * ADCGS_THETA_OUT + (size_t)(th->width * (1 + th->hidden));
+    const size_t deform = (size_t)(om->out + va->out + om->width * om->hidden + va->width * va->hidden);
     const size_t w = (size_t)f->shape.entropy_width * (size_t)(f->shape.entropy_hidden + 1),
         out = 2 * (nv > ng + 6 ? nv : ng + 6);
-    const size_t rate = 2 * nv + k * ng + f->params.n_eta * 2u + k * (3 * w + 2 * out) + 2 * w + ng + 64;
-    return theta > rate ? theta : rate;
+    const size_t below = (w + 31) / 32;
+    const size_t rate = 2 * nv + k * ng + f->params.n_eta * 2u + k * (3 * w + below + 2 * out) + 2 * w + ng + 64;
+    return theta + deform > rate ? theta + deform : rate;
 }
 
 /** The group at work. x, dx: inputs of networks and their gradients. */
@@ -32,16 +34,21 @@ typedef struct job {
     double *bits;                    /* by adcgs_group */
 } job;
 
-/** Scratch of one network over `tiles` tiles: sums and outputs of hidden layers, gradients of the sums, outputs. */
+/**
+ * Scratch of one network over `tiles` tiles: sums and outputs of hidden layers, gradients of the sums, outputs, which sums are
+ * below 0.
+ */
 typedef struct net_tiles {
     float *z, *h, *dz, *out, *dout;
-    size_t sh, sout;
+    uint64_t *below;
+    size_t sh, sbelow, sout;
 } net_tiles;
 
 static net_tiles take_tiles(const adcgs_mlp *m, int tiles, float **scratch)
 {
     net_tiles t;
     t.sh = (size_t)m->hidden * (size_t)m->width * 64;
+    t.sbelow = ((size_t)m->hidden * (size_t)m->width + 31) / 32 * 32;
     t.sout = (size_t)m->out * 64;
     const size_t n = (size_t)tiles;
     t.z = *scratch;
@@ -49,7 +56,8 @@ static net_tiles take_tiles(const adcgs_mlp *m, int tiles, float **scratch)
     t.dz = t.h + n * t.sh;
     t.out = t.dz + n * t.sh;
     t.dout = t.out + n * t.sout;
-    *scratch = t.dout + n * t.sout;
+    t.below = (void *)(t.dout + n * t.sout);
+    *scratch = (float *)(t.below + n * t.sbelow);
     return t;
 }
 
@@ -89,14 +97,14 @@ static void adapted_back(const job *j, int param, int stream, int first, int row
 }
 
 /** Layers 1.. of a network; z holds layer 0's sums. */
-static void net_tail(const job *j, const adcgs_mlp *m, float *z, float *h, float *out)
+static void net_tail(const job *j, const adcgs_mlp *m, float *z, float *h, uint64_t *below, float *out)
 {
     const adcgs_train_dsp *dsp = &j->p->dsp;
     const size_t tile = (size_t)m->width * 64;
-    for (int i = 0; i < m->hidden; i++, z += tile, h += tile) {
+    for (int i = 0; i < m->hidden; i++, z += tile, h += tile, below += m->width) {
         if (i > 0)
             dsp->dense.dense(z, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, h - tile, m->width, m->width);
-        (j->exact ? dsp->hidden_exact : dsp->hidden)(h, z, i > 0 ? h - tile : NULL, m->width);
+        (j->exact ? dsp->hidden_exact : dsp->hidden)(h, below, z, i > 0 ? h - tile : NULL, m->width);
     }
     dsp->dense.dense(out, NULL, m->use + m->b[m->hidden], m->use + m->w[m->hidden], (size_t)m->width, h - tile, m->out,
                      m->width);
@@ -152,7 +160,7 @@ static void exact_factors(const job *j, float *scratch)
     const net_tiles t = take_tiles(m, 1, &scratch);
     float *factor = adcgs_pass_factors(j->p, j->f, j->group);
     j->p->dsp.dense.dense(t.z, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], j->xv, m->width, m->in[0]);
-    net_tail(j, m, t.z, t.h, t.out);
+    net_tail(j, m, t.z, t.h, t.below, t.out);
     for (int i = 0; i < m->out * 64; i++)
         factor[i] = adcgs_step_factor((int)adcgs_bounded(floorf(ADCGS_STEP_GAIN * t.out[i] + 0.5f), -ADCGS_STEP_INDEX_MAX,
                                                          ADCGS_STEP_INDEX_MAX));
@@ -174,9 +182,9 @@ static void rate_net(const job *j, int net, const float *x, float *dx, const cod
         return;
     }
     dsp->dense.dense(t.z, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], x, m->width, m->in[0]);
-    net_tail(j, m, t.z, t.h, t.out);
+    net_tail(j, m, t.z, t.h, t.below, t.out);
     rate_rows(j, c, t.out, t.dout);
-    adcgs_mlp_tail_back(dsp, m, t.z, t.z + (size_t)m->width * 64, t.dout, t.dz);
+    adcgs_mlp_tail_back(dsp, m, t.z, t.below + m->width, t.dout, t.dz);
     dsp->weight_grad(g, (size_t)m->in[0], g + m->b[0], t.dz, 0, x, 0, 1, m->width, m->in[0]);
     adcgs_mlp_weight_grads(dsp, m, g, t.h, t.sh, t.dz, t.sh, t.dout, t.sout, 1);
     dsp->dense.dense(dx, dx, NULL, m->turn, (size_t)m->width, t.dz, m->in[0], m->width);
@@ -212,13 +220,14 @@ static void rate_chunk(const job *j, int c, float *partial, float *scratch)
     for (int i = 0; i < k; i++) {
         const size_t slot = (size_t)j->group * (size_t)k + (size_t)i;
         float *z = t.z + (size_t)i * t.sh, *h = t.h + (size_t)i * t.sh, *dz = t.dz + (size_t)i * t.sh;
+        uint64_t *below = t.below + (size_t)i * t.sbelow;
         float *out = t.out + (size_t)i * t.sout, *dout = t.dout + (size_t)i * t.sout, *xg = j->xg + (size_t)i * fg_tile;
         const coded values = { ADCGS_P_FG, i * ng + before, per, (adcgs_group)(ADCGS_GROUP_FG + c), j->f->keep + slot * 64,
                                xg + (size_t)before * 64 };
         dsp->dense.dense(z, anchor, NULL, m->use + nv, (size_t)m->in[0], xg, w, before);
-        net_tail(j, m, z, h, out);
+        net_tail(j, m, z, h, below, out);
         rate_rows(j, &values, out, dout);
-        adcgs_mlp_tail_back(dsp, m, z, z + tile, dout, dz);
+        adcgs_mlp_tail_back(dsp, m, z, below + w, dout, dz);
         for (size_t q = 0; q < tile; q++)
             sum[q] += dz[q];
         if (before) {

@@ -75,6 +75,51 @@ static void check_dense(const adcgs_train_dsp *dsp, int n_out, int n_in, const f
     check_guards((size_t)n_out * L);
 }
 
+/** A sum of a layer of n units from packed weights, and the sum of magnitudes. */
+static double square_sum(int n, int o, int l, double first, const float *v, double *magnitudes)
+{
+    double sum = first;
+    *magnitudes = fabs(first);
+    for (int i = 0; i < n; i++) {
+        const double term = rounded(w[o * n + i]) * rounded(v[i * L + l]);
+        sum += term;
+        *magnitudes += fabs(term);
+    }
+    return sum;
+}
+
+/** A residual layer and the way back through it, with w in place of its transpose. */
+static void check_residual(const adcgs_train_dsp *dsp, int n)
+{
+    static _Alignas(64) uint32_t packed[MOST * LDW];
+    static _Alignas(64) float dz[MOST * L];
+    uint64_t below[MOST];
+    const adcgs_square square = {n, w, packed};
+    float *const h = guarded();
+    double magnitudes;
+    assert_true(adcgs_square_words(n) <= ADCGS_COUNTOF(packed));
+    dsp->pack(packed, w, n);
+    dsp->residual(dsp, h, below, bias, &square, x);
+    for (int o = 0; o < n; o++)
+        for (int l = 0; l < L; l++) {
+            const double z = square_sum(n, o, l, (double)bias[o], x, &magnitudes), in = (double)x[o * L + l];
+            check(h[o * L + l], in + (z < 0 ? z / 64 : z), magnitudes + fabs(in), n);
+            if (fabs(z) > magnitudes * n * 0x1p-24)
+                assert_int_equal(below[o] >> l & 1, z < 0);
+        }
+    check_guards((size_t)n * L);
+    float *const dx = guarded();
+    memcpy(dx, dy, (size_t)(n * L) * sizeof *dx);
+    dsp->residual_back(dsp, dx, dz, below, &square, dx, NULL);
+    for (int o = 0; o < n; o++)
+        for (int l = 0; l < L; l++) {
+            assert_true(dz[o * L + l] == dy[o * L + l] * (below[o] >> l & 1 ? 0x1p-6f : 1.0f));
+            const double d = square_sum(n, o, l, (double)dy[o * L + l], dz, &magnitudes);
+            check(dx[o * L + l], d, magnitudes, n);
+        }
+    check_guards((size_t)n * L);
+}
+
 static void check_gradient(const adcgs_train_dsp *dsp, int n_out, int n_in, int tiles, int with_biases)
 {
     float *const gw = guarded();
@@ -149,6 +194,15 @@ static void test_gradients(void **state)
             check_gradient(&dsp, outputs[o], inputs[i], 1 + (int)((o + i) % TILES), (int)(i & 1));
 }
 
+static void test_residual_layers(void **state)
+{
+    static const int units[] = {1, 2, 7, 31, 32, 33, 100, 128, 129, 256, 300};
+    adcgs_train_dsp dsp;
+    take_kernels(&dsp);
+    for (size_t i = 0; i < ADCGS_COUNTOF(units); i++)
+        check_residual(&dsp, units[i]);
+}
+
 /** Without the kernels, or at another level, there is one line that says so, and the kernels are those of binary32. */
 static void test_check(void **state)
 {
@@ -160,7 +214,7 @@ static void test_check(void **state)
             adcgs_train_dsp plain, dsp;
             adcgs_train_dsp_init(&plain, level);
             adcgs_train_dsp_init_bf16(&dsp, level);
-            assert_true(dsp.weight_grad == plain.weight_grad && dsp.dense.dense == plain.dense.dense);
+            assert_true(dsp.weight_grad == plain.weight_grad && dsp.dense.dense == plain.dense.dense && !dsp.pack);
         }
     }
 }
@@ -168,6 +222,6 @@ static void test_check(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_layers), cmocka_unit_test(test_gradients),
-                                       cmocka_unit_test(test_check)};
+                                       cmocka_unit_test(test_residual_layers), cmocka_unit_test(test_check)};
     return cmocka_run_group_tests_name("bf16", tests, NULL, NULL);
 }

@@ -273,6 +273,13 @@ static void weights(call *c)
     dsp.adam(p, g, m, v, many, 1e-3f, 1.5f, 3);
 }
 
+/** Bits as numbers. */
+static void spread(float *to, const uint64_t *below, int n)
+{
+    for (int i = 0; i < n * L; i++)
+        to[i] = (float)(below[i / L] >> i % L & 1);
+}
+
 static void rows(call *c)
 {
     const adcgs_train_dsp dsp = train_dsp(c);
@@ -281,7 +288,26 @@ static void rows(call *c)
     const float *const step = constant(c, (size_t)n, 0.25f);
     dsp.lrelu_back(added(c, many), given(c, many), n);
     dsp.noise(output(c, many), given(c, many), step, n, (uint32_t)c->round);
-    dsp.hidden(output(c, many), given(c, many), c->round & 1 ? given(c, many) : NULL, n);
+    uint64_t below[20];
+    dsp.hidden(output(c, many), below, given(c, many), c->round & 1 ? given(c, many) : NULL, n);
+    spread(output(c, many), below, n);
+}
+
+/** A residual layer and the way back through it, wider than what is made at a time. */
+static void residual(call *c)
+{
+    const adcgs_train_dsp dsp = train_dsp(c);
+    const int n = size_of(c, 80);
+    const size_t many = (size_t)n * L;
+    uint64_t below[80];
+    const float *const bias = given(c, (size_t)n);
+    const adcgs_square w = {n, given(c, (size_t)(n * n)), NULL};
+    dsp.residual(&dsp, output(c, many), below, bias, &w, given(c, many));
+    spread(output(c, many), below, n);
+    const float *const dh = given(c, many);
+    dsp.residual_back(&dsp, output(c, many), output(c, many), below, &w, dh, NULL);
+    float *const both = added(c, many);
+    dsp.residual_back(&dsp, both, output(c, many), below, &w, both, NULL);
 }
 
 static void rates(call *c)
@@ -317,6 +343,7 @@ typedef struct subject {
 static const subject subjects[] = {
     {"dense layers", dense, 1}, {"anchors", anchors, 1}, {"slots", slots, 1}, {"frames", frames, 1}, {"loss", loss, 1},
     {"weights", weights, 0},    {"rows", rows, 0},       {"rates", rates, 0},
+    {"residual layers", residual, 1},
 };
 
 static int same(float a, float b)
