@@ -2,10 +2,11 @@
 /** \file
  * Quality over the time of one camera that stays where it is: of what moves, of what stands still, of what flickers.
  *
- * A pixel's truth changes by the largest over the channels of its largest value less its smallest over all pictures. The
- * dynamic region holds the pixels whose truth changes by more than ADCGS_CHANGE_LEAST, and all that are at most
- * ADCGS_CHANGE_REACH pixels from one of them along both axes, which takes in blurred borders and shadows of what moves. All
- * other pixels are static.
+ * A pixel's truth changes by the largest over the channels of its largest value less its smallest over all pictures. It moves
+ * where more than half of the pixels that are at most ADCGS_CHANGE_NEAR from it along both axes change by more than
+ * ADCGS_CHANGE_LEAST: noise of coding changes pixels here and there, along sharp edges above all. The dynamic region holds the
+ * pixels that move, and all that are at most ADCGS_CHANGE_REACH from one of them along both axes, which takes in blurred
+ * borders and shadows. All other pixels are static.
  *
  * The truth comes twice: to find the region, then beside the decoded pictures. Space per pixel is that of six pictures
  * of floats, however many there are. Pictures are planar [3][height][width], range 0..1, and are not kept.
@@ -16,6 +17,7 @@
 #include "base/base.h"
 
 #define ADCGS_CHANGE_LEAST 0.1
+#define ADCGS_CHANGE_NEAR 2
 #define ADCGS_CHANGE_REACH 3
 
 typedef struct adcgs_temporal adcgs_temporal;
