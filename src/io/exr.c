@@ -130,6 +130,16 @@ static exr_result_t describe_camera(exr_context_t context, int part, const adcgs
     return EXR_ERR_SUCCESS;
 }
 
+/** What the values stand for: EXR that does not say is taken for linear light with these primaries, which are sRGB's. */
+static exr_result_t describe_colours(exr_context_t context, int part, int linear)
+{
+    static const exr_attr_chromaticities_t bt709 = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+    if (!linear)
+        return exr_attr_set_string(context, part, "oiio:ColorSpace", "sRGB");
+    const exr_result_t code = exr_attr_set_string(context, part, "oiio:ColorSpace", "Linear");
+    return code == EXR_ERR_SUCCESS ? exr_attr_set_chromaticities(context, part, "chromaticities", &bt709) : code;
+}
+
 static exr_result_t describe(exr_context_t context, const picture *p)
 {
     int part;
@@ -140,8 +150,8 @@ static exr_result_t describe(exr_context_t context, const picture *p)
         code = exr_add_channel(context, part, p->planes[i].name, p->planes[i].type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     if (code == EXR_ERR_SUCCESS)
         code = exr_attr_set_string(context, part, "software", PACKAGE_NAME " " PACKAGE_VERSION);
-    if (code == EXR_ERR_SUCCESS) /* without it EXR is linear light */
-        code = exr_attr_set_string(context, part, "oiio:ColorSpace", "sRGB");
+    if (code == EXR_ERR_SUCCESS)
+        code = describe_colours(context, part, p->options->linear);
     if (code == EXR_ERR_SUCCESS && p->options->camera)
         code = describe_camera(context, part, p->options->camera, p->options->time);
     return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
@@ -189,13 +199,24 @@ static exr_result_t write_premultiplied(FILE *file, const picture *p, const char
     return code == EXR_ERR_SUCCESS ? end : code;
 }
 
+/** As EXR has it: colours multiplied by alpha, after they went through the curve, which is for straight ones. */
+static void make_stored(adcgs_image *image, const adcgs_image_options *options)
+{
+    if (options->linear) {
+        if (options->premultiplied)
+            adcgs_image_unpremultiply(image);
+        adcgs_image_to_linear(image);
+    }
+    adcgs_image_premultiply(image);
+}
+
 adcgs_status adcgs_exr_write(FILE *file, const adcgs_image *image, const adcgs_image_options *options, const char *path,
                              adcgs_error *error)
 {
     adcgs_image copy = *image;
-    if (image->channels % 2 == 0 && !options->premultiplied) {
+    if (options->linear || (image->channels % 2 == 0 && !options->premultiplied)) {
         ADCGS_TRY(adcgs_image_copy(&copy, image, path, error));
-        adcgs_image_premultiply(&copy);
+        make_stored(&copy, options);
     }
     picture p = {.image = &copy, .options = options};
     list_planes(&p);

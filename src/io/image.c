@@ -123,6 +123,8 @@ static adcgs_status check_options(const adcgs_image_options *options, const char
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %d bits, expected 8 or 16", path, options->bits);
     if (options->depth && !is_exr(extension))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: depth needs EXR", path);
+    if (options->linear && !is_exr(extension))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: linear light needs EXR", path);
     return ADCGS_OK;
 }
 

@@ -25,6 +25,7 @@ typedef struct adcgs_image {
 /** How an image is stored, and what goes with it. All zero: EXR of binary32, else 8 bit; straight alpha; nothing more. */
 typedef struct adcgs_image_options {
     int half;                   /**< EXR: colours and alpha of binary16 */
+    int linear;                 /**< EXR: colours in linear light, as other programs expect of it; else on sRGB's curve */
     int bits;                   /**< not EXR: 8 (or 0), or 16, which PNG, TIFF, PPM and PGM have */
     int premultiplied;          /**< the image's colours are times its alpha already; else they are straight */
     const float *depth;         /**< EXR: channel Z, [height][width], always of binary32; NULL: none */
@@ -56,5 +57,7 @@ void adcgs_image_premultiply(adcgs_image *image);
 void adcgs_image_unpremultiply(adcgs_image *image);
 /** Straight colours from linear light to sRGB's curve, which goes on beyond 1 and straight below 0; alpha stays. */
 void adcgs_image_to_srgb(adcgs_image *image);
+/** The way back. */
+void adcgs_image_to_linear(adcgs_image *image);
 
 #endif

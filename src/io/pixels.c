@@ -79,12 +79,30 @@ void adcgs_image_unpremultiply(adcgs_image *image)
     }
 }
 
-void adcgs_image_to_srgb(adcgs_image *image)
+static float to_srgb(float v)
+{
+    return v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1.0f / 2.4f) - 0.055f;
+}
+
+static float to_linear(float v)
+{
+    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
+}
+
+static void bend(adcgs_image *image, float (*curve)(float))
 {
     const size_t n = (size_t)image->channels, colours = n % 2 ? n : n - 1;
     for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        for (size_t c = 0; c < colours; c++) {
-            float *v = &image->data[i * n + c];
-            *v = *v <= 0.0031308f ? 12.92f * *v : 1.055f * powf(*v, 1.0f / 2.4f) - 0.055f;
-        }
+        for (size_t c = 0; c < colours; c++)
+            image->data[i * n + c] = curve(image->data[i * n + c]);
+}
+
+void adcgs_image_to_srgb(adcgs_image *image)
+{
+    bend(image, to_srgb);
+}
+
+void adcgs_image_to_linear(adcgs_image *image)
+{
+    bend(image, to_linear);
 }

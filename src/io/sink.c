@@ -81,6 +81,7 @@ static adcgs_status write_picture(const adcgs_sink *sink, const adcgs_frame *fra
     const adcgs_sink_extras *extras = &sink->extras;
     const adcgs_depth depth = sink->config.depth;
     const adcgs_image_options options = {.half = depth != ADCGS_DEPTH_FLOAT,
+                                         .linear = sink->config.linear,
                                          .bits = depth == ADCGS_DEPTH_16 ? 16 : 8,
                                          .premultiplied = 1,
                                          .depth = extras->depth,
@@ -195,6 +196,8 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: alpha needs EXR, PNG or TIFF", config->target);
     if (config->has_z && what != &exr_kind)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: depth needs EXR", config->target);
+    if (config->linear && what != &exr_kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: linear light needs EXR", config->target);
     if (!is_image && what != &video_kind)
         return ADCGS_OK;
     if (!strcmp(config->target, "-"))

@@ -23,6 +23,7 @@ typedef struct adcgs_sink_config {
     const char *target;  /**< "-", a file, or for images a pattern with %d or %04d */
     const char *format;  /**< NULL: by the target's extension, Y4M for "-"; else y4m, raw, null or an extension */
     adcgs_depth depth;
+    int linear;          /**< EXR only: colours in linear light */
     double frame_rate;   /**< for Y4M and videos */
     int width, height;
     int frames;          /**< how many will come; more than one image needs a pattern */

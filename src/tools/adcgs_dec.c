@@ -23,11 +23,11 @@ typedef struct settings {
     const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script;
     adcgs_shots_request request;
     adcgs_config config;
-    int cpu, half, use_float, bits, alpha, depth, md5, frametimes, play;
+    int cpu, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     double opened; /**< when opening the input began, in seconds */
 } settings;
 
-#define OPTION_COUNT 23
+#define OPTION_COUNT 24
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -39,6 +39,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
         {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
          NULL},
+        {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
         {"splats", 0, ADCGS_OPTION_STRING, &s->splats, 0, 0, "FILE",
          "write the splats as PLY instead of frames: out.ply for one\nmoment (the first without --time), out%04d.ply for a span",
          NULL, NULL},
@@ -152,6 +153,7 @@ static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_
                                                : s->half       ? ADCGS_DEPTH_HALF
                                                : s->bits == 16 ? ADCGS_DEPTH_16
                                                                : ADCGS_DEPTH_DEFAULT,
+                                      .linear = s->linear,
                                       .frame_rate = shots->frame_rate,
                                       .width = canvas->shown.width,
                                       .height = canvas->shown.height,
@@ -259,11 +261,17 @@ static adcgs_status show(const adcgs_cli *cli, const settings *s, adcgs_decoder 
     return status;
 }
 
+/** Whether an option is given that says how frames are written. */
+static int shapes_output(const settings *s)
+{
+    return s->format || s->half || s->use_float || s->linear || s->bits || s->alpha || s->depth || s->beside;
+}
+
 /** What goes with the player, and what does not. */
 static adcgs_status check_play(const settings *s, adcgs_error *error)
 {
-    const int written = s->output || s->format || s->half || s->use_float || s->bits || s->alpha || s->depth || s->beside;
-    if (s->play && (written || s->splats || s->cameras || s->md5 || s->verify || s->answer || s->frametimes))
+    const int written = s->output || shapes_output(s) || s->splats || s->cameras;
+    if (s->play && (written || s->md5 || s->verify || s->answer || s->frametimes))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--play shows frames, and does nothing else with them");
     if (s->script && !s->play)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--script needs --play");
@@ -285,9 +293,9 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--answer goes with --layers, --strict, --threads and --cpu only");
     if (s->splats && (s->answer || s->cameras || frames))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--splats goes with --time, --layers, --strict, --threads and --cpu only");
-    if ((s->format || s->half || s->use_float || s->bits || s->alpha || s->depth || s->beside) && !s->output)
+    if (shapes_output(s) && !s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--format, --half, --float, --bits, --alpha, --depth and --beside need --output");
+                          "--format, --half, --float, --linear, --bits, --alpha, --depth and --beside need --output");
     if (s->bits % 8)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits %d: expected 8 or 16", s->bits);
     if (s->bits && (s->half || s->use_float))

@@ -41,11 +41,12 @@ static void log_last(watcher *w)
         return;
     w->next_log = r->iteration + 100;
     static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
+    fprintf(w->log, "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,", r->stage, r->iteration, r->iterations);
+    if (r->iteration)
+        fprintf(w->log, "\"loss\":%.6g,\"psnr\":%.4f,", r->loss, r->psnr);
     fprintf(w->log,
-            "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,\"loss\":%.6g,\"psnr\":%.4f,\"anchors\":%u,\"divide\":%d,"
-            "\"bytes\":%.0f,\"lambda\":%.6g,\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d",
-            r->stage, r->iteration, r->iterations, r->loss, r->psnr, r->anchors, r->divide, r->bytes, r->lambda, r->rate,
-            r->seconds, r->rollbacks);
+            "\"anchors\":%u,\"divide\":%d,\"bytes\":%.0f,\"lambda\":%.6g,\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d",
+            r->anchors, r->divide, r->bytes, r->lambda, r->rate, r->seconds, r->rollbacks);
     for (int i = 0; i < ADCGS_GROUPS; i++)
         fprintf(w->log, "%s\"%s\":%.0f", i ? "," : ",\"streams\":{", streams[i], r->stream[i]);
     fputs("}}\n", w->log);
@@ -58,9 +59,11 @@ static int observe(void *user, const adcgs_train_report *r)
     w->last = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
         log_last(w);
-    adcgs_progress_show(&w->progress, "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s  %d:%02d left",
-                        r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
-                        (int)r->left / 60, (int)r->left % 60);
+    if (r->iteration)
+        adcgs_progress_show(&w->progress,
+                            "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s  %d:%02d left", r->stage,
+                            r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
+                            (int)r->left / 60, (int)r->left % 60);
     if (w->o->checkpoint && r->seconds - w->saved > 60) {
         w->saved = r->seconds;
         if (adcgs_trainer_save(w->t, w->o->checkpoint, &w->error) != ADCGS_OK)

@@ -510,7 +510,7 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     r->iteration = t->iteration;
     r->iterations = t->config.iterations;
     r->anchors = t->f->n;
-    r->divide = t->divide;
+    r->divide = t->divide ? t->divide : wanted_divide(t, progress);
     r->loss = t->mean_loss;
     r->psnr = adcgs_psnr_from_mse(t->mean_mse);
     r->bytes = 0;

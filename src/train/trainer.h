@@ -24,8 +24,8 @@ typedef struct adcgs_train_report {
     const char *stage;
     uint32_t iteration, iterations;
     uint32_t anchors;
-    int divide;             /**< resolution in use: images are divided by this */
-    double loss, psnr;      /**< running means over training views */
+    int divide;             /**< resolution in use, at the start the one to come: images are divided by this */
+    double loss, psnr;      /**< running means over training views; none at iteration 0 */
     double bytes;           /**< estimated bytes of the features; 0 before rate is measured */
     double stream[ADCGS_GROUPS]; /**< the same of eta, f_v, Sigma_v, C_v (layer 0, but for its flags) and the chunks of f_g */
     double lambda;

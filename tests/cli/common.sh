@@ -13,3 +13,16 @@ need()
 
 failed=0
 bad() { echo "FAILED: $*"; failed=1; }
+
+# expect CODE TEXT COMMAND...: exit code; TEXT (a basic regular expression), if not empty, on standard error, which has
+# exactly one line if the code is not 0. What the command prints is in $dir/out and $dir/err.
+expect()
+{
+    code=$1 text=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    got=$?
+    [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code: $*"; cat "$dir/err"; }
+    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
+    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "not one line on standard error: $*"; cat "$dir/err"; }
+}

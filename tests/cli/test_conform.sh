@@ -6,8 +6,8 @@ set -u
 need adcgs-conform
 manifest=${srcdir:-.}/conformance/manifest.json
 
-# expect STATUS TEXT ARGUMENT...: the exit status, and a part of the last line on standard error.
-expect()
+# conform STATUS TEXT ARGUMENT...: the exit status, and a part of the last line on standard error.
+conform()
 {
     local status=$1 text=$2
     shift 2
@@ -19,23 +19,23 @@ expect()
     fi
 }
 
-expect 0 "" --filter 'good-geom-one-*' --junit "$dir/junit.xml" "$manifest"
+conform 0 "" --filter 'good-geom-one-*' --junit "$dir/junit.xml" "$manifest"
 grep -q '<testcase [^>]*good-geom-one-anchor' "$dir/junit.xml" || bad "no case in the JUnit report"
-expect 0 "" --list "$manifest"
+conform 0 "" --list "$manifest"
 [ "$(wc -l <"$dir/out")" -eq "$(grep -c '"id":' "$manifest")" ] || bad "not all vectors are listed"
 
-expect 2 "no vector" --filter 'nothing-*' "$manifest"
-expect 2 "" --point Q "$manifest"
-expect 2 "" --timeout 0 "$manifest"
-expect 2 "" --timeout soon "$manifest"
-expect 2 "" --no-such-option "$manifest"
-expect 2 "" "$manifest" "$manifest"
-expect 3 "nowhere" --filter 'good-geom-one-*' --junit "$dir/nowhere/junit.xml" "$manifest"
-expect 3 "nowhere.json" "$dir/nowhere.json"
+conform 2 "no vector" --filter 'nothing-*' "$manifest"
+conform 2 "" --point Q "$manifest"
+conform 2 "" --timeout 0 "$manifest"
+conform 2 "" --timeout soon "$manifest"
+conform 2 "" --no-such-option "$manifest"
+conform 2 "" "$manifest" "$manifest"
+conform 3 "nowhere" --filter 'good-geom-one-*' --junit "$dir/nowhere/junit.xml" "$manifest"
+conform 3 "nowhere.json" "$dir/nowhere.json"
 echo '{ "format": 1, "vectors": [ { "id": 7 } ] }' >"$dir/wrong.json"
-expect 4 "manifest" "$dir/wrong.json"
+conform 4 "manifest" "$dir/wrong.json"
 echo 'not JSON' >"$dir/text.json"
-expect 4 "text.json" "$dir/text.json"
-expect 1 "" --decoder 'false' --filter 'good-geom-one-*' "$manifest"
-expect 1 "" --decoder './no-such-decoder {in}' --filter 'good-geom-one-*' "$manifest"
+conform 4 "text.json" "$dir/text.json"
+conform 1 "" --decoder 'false' --filter 'good-geom-one-*' "$manifest"
+conform 1 "" --decoder './no-such-decoder {in}' --filter 'good-geom-one-*' "$manifest"
 exit $failed

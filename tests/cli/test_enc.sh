@@ -18,18 +18,6 @@ enc()
 # same A B WHAT: two streams are the same, byte for byte.
 same() { cmp "$dir/$1.adcgs" "$dir/$2.adcgs" || bad "$3"; }
 
-# expect CODE TEXT COMMAND...: exit code, and one line on standard error that says TEXT.
-expect()
-{
-    code=$1 text=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    got=$?
-    [ "$got" -eq "$code" ] || bad "exit code $got, expected $code: $*"
-    [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "not one line on standard error: $*"; cat "$dir/err"; }
-    grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
-}
-
 # json FILE: each line is a JSON object; whole FILE: the file is one. Both pass where no tool knows.
 json()
 {
@@ -85,6 +73,10 @@ cmp -s "$dir/one.adcgs" "$dir/other.adcgs" && bad "the seed changes nothing"
 json "$dir/one.log" || bad "--log is no JSON"
 [ "$(wc -l <"$dir/one.log")" -eq 7 ] || { bad "lines in the log"; cat "$dir/one.log"; }
 whole "$dir/one.out" || bad "--json is no JSON"
+# Before the first iteration nothing is measured; the resolution is known always, also where a run goes on.
+sed 1q "$dir/one.log" | grep '"iteration":0,' | grep -qv -e '"loss"' -e '"psnr"' || bad "the first line of the log tells a loss or a PSNR"
+[ "$(grep -c '"loss":0\.[0-9]*,"psnr":[1-9]' "$dir/one.log")" -eq 6 ] || { bad "losses in the log"; cat "$dir/one.log"; }
+[ "$(sed -n 's/.*"divide":\([0-9]*\),.*/\1/p' "$dir/one.log" | uniq | xargs)" = "4 2 1" ] || { bad "resolutions"; cat "$dir/one.log"; }
 # The last line knows what the streams will take: f_g's first chunk is all of layer 1 but its framing.
 chunk=$(sed -n '$s/.*"f_g1":\([0-9]*\).*/\1/p' "$dir/one.log")
 layer=$(sed -n 's/.*"layer1": \([0-9]*\).*/\1/p' "$dir/one.out")
@@ -117,6 +109,7 @@ enc threads --iterations $n --threads 5 --resume "$dir/late" --log "$dir/stop.lo
 same one threads "another stream after an interrupt, with other threads"
 json "$dir/stop.log" || bad "the log of both parts is no JSON"
 grep -q "\"iteration\":$n," "$dir/stop.log" || bad "the log was not continued"
+grep '"divide":0' "$dir/stop.log" && bad "a log without resolution"
 
 # A checkpoint goes with its options and its scene, and is checked.
 short="--preset draft --max-anchors 300 --iterations $n"

@@ -9,18 +9,6 @@ s=$dir/s.adcgs
 ./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
 ./adcgs-enc "$dir/scene" -o "$s" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 || { bad "adcgs-enc"; exit 1; }
 
-# expect CODE TEXT COMMAND...: the exit code, and one line on standard error with TEXT in it if there is one.
-expect()
-{
-    local code=$1 text=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    local got=$?
-    [ "$got" -eq "$code" ] || { bad "$* left with $got, expected $code"; cat "$dir/err"; }
-    [ -z "$text" ] || grep -q -e "$text" "$dir/err" || { bad "$*: no '$text' in its message"; cat "$dir/err"; }
-    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "$*: not one line"; cat "$dir/err"; }
-}
-
 # agree CSV JSON: each value of a row of the table is the JSON report's, but for times taken. JSON has one value a line; its
 # views, its cameras and its means come in the order of the rows.
 agree()

@@ -5,18 +5,6 @@
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-eval adcgs-enc adcgs-demo-scene
 
-# expect CODE TEXT COMMAND...: exit code, and what standard error says, in one line.
-expect()
-{
-    code=$1 text=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    got=$?
-    [ "$got" -eq "$code" ] || bad "exit code $got, expected $code: $*"
-    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
-    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "more than a line from: $*"; cat "$dir/err"; }
-}
-
 ./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
 ./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 ||
     { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
@@ -33,6 +21,18 @@ for word in worldToCamera worldToNDC screenWindowCenter adcgs/time adcgs/focal a
 done
 expect 0 "frame of" $dec "$s" -o "$dir/plain.exr" --float --time 0
 [ "$(wc -c <"$dir/plain.exr")" -lt "$(wc -c <"$dir/f0.exr")" ] || bad "alpha and depth take no room"
+# Linear light is in the file only, which says so.
+expect 0 "frames of" $dec "$s" -o "$dir/l%d.exr" --float --linear --alpha --depth --md5 --time 0:0.04
+cmp -s "$dir/out" "$dir/md5" || bad "digests change with --linear"
+cmp -s "$dir/l0.exr" "$dir/f0.exr" && bad "--linear changes nothing"
+grep -aq Linear "$dir/l0.exr" && grep -aq chromaticities "$dir/l0.exr" || bad "no linear light in the EXR's header"
+grep -aq Linear "$dir/f0.exr" && bad "linear light without --linear"
+expect 2 "x.ppm: linear light needs EXR" $dec "$s" -o "$dir/x.ppm" --linear --time 0
+expect 2 "x.png: linear light needs EXR" $dec "$s" -o "$dir/x.png" --linear --time 0
+expect 2 "linear light needs EXR" $dec "$s" -o - --linear
+expect 2 "linear light needs EXR" $dec "$s" -o "$dir/x" -f null --linear
+expect 2 "need --output" $dec "$s" --linear --md5
+expect 2 "does nothing else" $dec "$s" --play --linear
 expect 0 "frame of" $dec "$s" -o "$dir/b.ppm" --bits 16 --time 0
 head -c 15 "$dir/b.ppm" | grep -aq 65535 || bad "--bits 16 in PPM"
 expect 0 "frame of" $dec "$s" -o "$dir/b8.ppm" --bits 8 --time 0

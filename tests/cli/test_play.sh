@@ -230,15 +230,6 @@ timeout -s TERM 3 $dec "$dir/s.adcgs" --play --script "$dir/script" 2>"$dir/err"
 [ $? -eq 124 ] || bad "the player leaves by itself"
 
 # Without a display, without the module, and what goes with --play.
-expect()
-{
-    code=$1 text=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    got=$?
-    [ "$got" -eq "$code" ] && grep -q -- "$text" "$dir/err" && [ "$(wc -l <"$dir/err")" -eq 1 ] ||
-        { bad "exit code $got, expected $code and \"$text\": $*"; cat "$dir/err"; }
-}
 expect 3 "s.adcgs: no display to play on: " env -u DISPLAY SDL_VIDEODRIVER=x11 $dec "$dir/s.adcgs" --play
 if [ ! -e /dev/dri ]; then # else SDL might find a display in the bare console
     expect 3 "s.adcgs: no display to play on: none" \

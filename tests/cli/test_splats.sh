@@ -5,18 +5,6 @@
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-eval adcgs-enc adcgs-info adcgs-demo-scene
 
-# expect CODE TEXT COMMAND...: exit code, and what standard error says in one line.
-expect()
-{
-    code=$1 text=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    got=$?
-    [ "$got" -eq "$code" ] || { bad "exit code $got, expected $code: $*"; cat "$dir/err"; }
-    [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
-    [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "not one line from: $*"; cat "$dir/err"; }
-}
-
 # vertices FILE: how many it declares; size FILE: bytes behind its header.
 vertices() { sed -n '/^end_header/q; s/^element vertex //p' "$1"; }
 size() { sed '1,/^end_header$/d' "$1" | wc -c; }

@@ -21,11 +21,7 @@ refuse()
 {
     text=$1
     shift
-    ./adcgs-enc "$scene" -o "$dir/x.adcgs" --preset draft "$@" >"$dir/x.out" 2>"$dir/x.err"
-    got=$?
-    [ "$got" -eq 2 ] || bad "exit code $got, expected 2: $*"
-    [ "$(wc -l <"$dir/x.err")" -eq 1 ] || { bad "not one line on standard error: $*"; cat "$dir/x.err"; }
-    grep -q -- "$text" "$dir/x.err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/x.err"; }
+    expect 2 "$text" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --preset draft "$@"
     [ ! -e "$dir/x.adcgs" ] || bad "a file in spite of: $*"
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * EXR with alpha, depth and a camera: read back through our own reader, and channel by channel and attribute by attribute
- * through OpenEXRCore. Alpha and 16 bits in the other formats.
+ * EXR with alpha, depth and a camera, on sRGB's curve and in linear light: read back through our own reader, and channel by
+ * channel and attribute by attribute through OpenEXRCore. Alpha and 16 bits in the other formats.
  */
 #include "outside_files.h"
 
@@ -34,11 +34,11 @@ static void fill(void)
     }
 }
 
-static adcgs_status write_as(const char *name, adcgs_depth kind, int has_alpha, int has_z)
+static adcgs_status write_curve(const char *name, adcgs_depth kind, int has_alpha, int has_z, int linear)
 {
     const adcgs_frame frame = {WIDTH, HEIGHT, rgb};
-    const adcgs_sink_config config = {.target = in(name), .depth = kind, .width = WIDTH, .height = HEIGHT, .frames = 1,
-                                      .has_alpha = has_alpha, .has_z = has_z};
+    const adcgs_sink_config config = {.target = in(name), .depth = kind, .linear = linear, .width = WIDTH, .height = HEIGHT,
+                                      .frames = 1, .has_alpha = has_alpha, .has_z = has_z};
     const adcgs_sink_extras extras = {has_alpha ? alpha : NULL, has_z ? depth : NULL, &camera, 1.25};
     adcgs_sink *sink;
     ADCGS_TRY(adcgs_sink_open(&sink, &config, &error));
@@ -48,9 +48,15 @@ static adcgs_status write_as(const char *name, adcgs_depth kind, int has_alpha, 
     return status == ADCGS_OK ? adcgs_sink_close(&sink, &error) : status;
 }
 
-/** A channel of a file, every sample as binary32. */
+static adcgs_status write_as(const char *name, adcgs_depth kind, int has_alpha, int has_z)
+{
+    return write_curve(name, kind, has_alpha, has_z, 0);
+}
+
+/** A channel of a file, every sample as binary32. The others are read too: OpenEXRCore 3.1 does not always leave some out. */
 static void read_channel(const char *path, const char *name, exr_pixel_type_t type, float *out)
 {
+    static float others[PIXELS];
     exr_context_t file;
     exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
     int started = 0, found = 0, lines;
@@ -64,7 +70,7 @@ static void read_channel(const char *path, const char *name, exr_pixel_type_t ty
         for (int c = 0; c < pipe.channel_count; c++) {
             exr_coding_channel_info_t *channel = &pipe.channels[c];
             const int wanted = !strcmp(channel->channel_name, name);
-            channel->decode_to_ptr = wanted ? (uint8_t *)(out + y * WIDTH) : NULL;
+            channel->decode_to_ptr = (uint8_t *)((wanted ? out : others) + y * WIDTH);
             channel->user_bytes_per_element = 4;
             channel->user_data_type = EXR_PIXEL_FLOAT;
             channel->user_pixel_stride = 4;
@@ -81,20 +87,45 @@ static void read_channel(const char *path, const char *name, exr_pixel_type_t ty
     exr_finish(&file);
 }
 
-static void check_channels(const char *name, int half)
+/** The formula of IEC 61966-2-1, for straight colours. */
+static double linear_light(double v)
+{
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+/** What a channel of colour holds; alpha has a share of 1 where there is none. */
+static double stored(int i, int c, int has_alpha, int linear)
+{
+    const double value = rgb[3 * i + c], part = has_alpha && alpha[i] > 0.0f ? (double)alpha[i] : 1.0;
+    return linear ? part * linear_light(value / part) : value;
+}
+
+/** A half rounds to 11 bits, and to multiples of 2^-24 near 0; error is relative. */
+static void expect_sample(double got, double expected, int half, double error_before)
+{
+    const double tolerance = fabs(expected) * ((half ? 0x1p-11 : 0.0) + error_before) + (half ? 0x1p-25 : 0.0);
+    if (!(fabs(got - expected) <= tolerance))
+        fail_msg("%.9g, expected %.9g", got, expected);
+}
+
+static void check_colours(const char *name, int half, int has_alpha, int linear)
 {
     static float plane[PIXELS];
-    const exr_pixel_type_t type = half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
-    const float tolerance = half ? 5e-4f : 0.0f;
     for (int c = 0; c < 3; c++) {
         const char channel[2] = {"RGB"[c], 0};
-        read_channel(in(name), channel, type, plane);
+        read_channel(in(name), channel, half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, plane);
         for (int i = 0; i < PIXELS; i++)
-            assert_true(fabsf(plane[i] - rgb[3 * i + c]) <= tolerance);
+            expect_sample(plane[i], stored(i, c, has_alpha, linear), half, linear ? 1e-6 : 0.0);
     }
-    read_channel(in(name), "A", type, plane);
+}
+
+static void check_channels(const char *name, int half, int linear)
+{
+    static float plane[PIXELS];
+    check_colours(name, half, 1, linear);
+    read_channel(in(name), "A", half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, plane);
     for (int i = 0; i < PIXELS; i++)
-        assert_true(fabsf(plane[i] - alpha[i]) <= tolerance);
+        expect_sample(plane[i], alpha[i], half, 0.0);
     read_channel(in(name), "Z", EXR_PIXEL_FLOAT, plane);
     assert_memory_equal(plane, depth, sizeof depth);
 }
@@ -120,15 +151,59 @@ static void test_channels(void **state)
 {
     fill();
     assert_int_equal(write_as("f.exr", ADCGS_DEPTH_FLOAT, 1, 1), ADCGS_OK);
-    check_channels("f.exr", 0);
+    check_channels("f.exr", 0, 0);
     check_image("f.exr", 4, 1e-6);
     assert_int_equal(write_as("h.exr", ADCGS_DEPTH_HALF, 1, 1), ADCGS_OK);
-    check_channels("h.exr", 1);
+    check_channels("h.exr", 1, 0);
     check_image("h.exr", 4, 3e-3);
     assert_int_equal(write_as("z.exr", ADCGS_DEPTH_FLOAT, 0, 1), ADCGS_OK);
     check_image("z.exr", 3, 0.0);
     assert_int_equal(write_as("c.exr", ADCGS_DEPTH_FLOAT, 0, 0), ADCGS_OK);
     check_image("c.exr", 3, 0.0);
+}
+
+/** As fill(), with colours from -0.5 to 1.5 times alpha. */
+static void fill_beyond(void)
+{
+    fill();
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            rgb[3 * i + c] = alpha[i] * ((float)((i * 7 + c * 31) % 101) / 50.0f - 0.5f);
+}
+
+/** Colours go through the curve while they are straight; alpha and depth stay; our reader takes them back. */
+static void test_linear(void **state)
+{
+    fill_beyond();
+    assert_int_equal(write_curve("lf.exr", ADCGS_DEPTH_FLOAT, 1, 1, 1), ADCGS_OK);
+    check_channels("lf.exr", 0, 1);
+    check_image("lf.exr", 4, 3e-6);
+    assert_int_equal(write_curve("lh.exr", ADCGS_DEPTH_HALF, 1, 1, 1), ADCGS_OK);
+    check_channels("lh.exr", 1, 1);
+    check_image("lh.exr", 4, 2e-3);
+    assert_int_equal(write_curve("lc.exr", ADCGS_DEPTH_FLOAT, 0, 0, 1), ADCGS_OK);
+    check_colours("lc.exr", 0, 0, 1);
+    check_image("lc.exr", 3, 3e-6);
+    assert_int_equal(write_curve("ld.exr", ADCGS_DEPTH_DEFAULT, 0, 1, 1), ADCGS_OK);
+    check_colours("ld.exr", 1, 0, 1);
+    check_image("ld.exr", 3, 1e-3);
+}
+
+/** Colours that come straight are multiplied by alpha when they are written. */
+static void test_linear_straight(void **state)
+{
+    static float straight[4 * PIXELS], kept[4 * PIXELS];
+    const adcgs_image image = {WIDTH, HEIGHT, 4, straight};
+    const adcgs_image_options options = {.linear = 1};
+    fill_beyond();
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 4; c++)
+            straight[4 * i + c] = c == 3 ? alpha[i] : alpha[i] > 0.0f ? rgb[3 * i + c] / alpha[i] : 0.0f;
+    memcpy(kept, straight, sizeof kept);
+    assert_int_equal(adcgs_image_write_as(&image, &options, in("ls.exr"), &error), ADCGS_OK);
+    assert_memory_equal(kept, straight, sizeof kept);
+    check_colours("ls.exr", 0, 1, 1);
+    check_image("ls.exr", 4, 3e-6);
 }
 
 /* ---- Attributes ---- */
@@ -200,6 +275,26 @@ static void test_attributes(void **state)
     strcpy(camera.name, "eye");
 }
 
+/** What the samples stand for is said: sRGB's curve, or linear light and its primaries. */
+static void test_curve_named(void **state)
+{
+    exr_context_t file;
+    const exr_attribute_t *none;
+    fill();
+    assert_int_equal(write_as("s.exr", ADCGS_DEPTH_HALF, 0, 0), ADCGS_OK);
+    assert_int_equal(exr_start_read(&file, in("s.exr"), NULL), EXR_ERR_SUCCESS);
+    assert_string_equal(attribute(file, "oiio:ColorSpace", EXR_ATTR_STRING)->string->str, "sRGB");
+    assert_int_equal(exr_get_attribute_by_name(file, 0, "chromaticities", &none), EXR_ERR_NO_ATTR_BY_NAME);
+    exr_finish(&file);
+    assert_int_equal(write_curve("l.exr", ADCGS_DEPTH_HALF, 0, 0, 1), ADCGS_OK);
+    assert_int_equal(exr_start_read(&file, in("l.exr"), NULL), EXR_ERR_SUCCESS);
+    assert_string_equal(attribute(file, "oiio:ColorSpace", EXR_ATTR_STRING)->string->str, "Linear");
+    const exr_attr_chromaticities_t *c = attribute(file, "chromaticities", EXR_ATTR_CHROMATICITIES)->chromaticities;
+    assert_true(c->red_x == 0.64f && c->red_y == 0.33f && c->green_x == 0.3f && c->green_y == 0.6f);
+    assert_true(c->blue_x == 0.15f && c->blue_y == 0.06f && c->white_x == 0.3127f && c->white_y == 0.329f);
+    exr_finish(&file);
+}
+
 /* ---- Other formats ---- */
 
 static void test_sixteen_bits(void **state)
@@ -232,15 +327,17 @@ static void test_refused(void **state)
     expect_error(write_as("r.y4m", ADCGS_DEPTH_DEFAULT, 1, 0), ADCGS_ERR_USAGE, "r.y4m", "alpha needs");
     expect_error(write_as("r.y4m", ADCGS_DEPTH_16, 0, 0), ADCGS_ERR_USAGE, "r.y4m", "16 bits need");
     expect_error(write_as("r.exr", ADCGS_DEPTH_16, 0, 0), ADCGS_ERR_USAGE, "r.exr", "16 bits need");
+    expect_error(write_curve("r.png", ADCGS_DEPTH_DEFAULT, 0, 0, 1), ADCGS_ERR_USAGE, "r.png", "linear light needs EXR");
     const adcgs_status status = write_as("r.jpg", ADCGS_DEPTH_16, 0, 0);
     if (status != ADCGS_ERR_UNSUPPORTED) {
         expect_error(status, ADCGS_ERR_USAGE, "r.jpg", "16 bits");
         expect_error(write_as("r.jpg", ADCGS_DEPTH_DEFAULT, 1, 0), ADCGS_ERR_USAGE, "r.jpg", "alpha");
     }
     const adcgs_image image = {WIDTH, HEIGHT, 3, rgb};
-    const adcgs_image_options odd = {.bits = 12}, deep = {.depth = depth};
+    const adcgs_image_options odd = {.bits = 12}, deep = {.depth = depth}, linear = {.linear = 1};
     expect_error(adcgs_image_write_as(&image, &odd, in("r.png"), &error), ADCGS_ERR_USAGE, "r.png", "12 bits");
     expect_error(adcgs_image_write_as(&image, &deep, in("r.png"), &error), ADCGS_ERR_USAGE, "r.png", "depth");
+    expect_error(adcgs_image_write_as(&image, &linear, in("r.png"), &error), ADCGS_ERR_USAGE, "r.png", "linear light");
     assert_true(access(in("r.png"), F_OK) != 0 && access(in("r.jpg"), F_OK) != 0);
 }
 
@@ -248,7 +345,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_channels),
+        cmocka_unit_test(test_linear),
+        cmocka_unit_test(test_linear_straight),
         cmocka_unit_test(test_attributes),
+        cmocka_unit_test(test_curve_named),
         cmocka_unit_test(test_sixteen_bits),
         cmocka_unit_test(test_refused),
     };
