@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# A chart of the benchmark's table: gnuplot -e "table='speed.csv'; chart='speed.svg'" tests/bench/speed.gp
-set terminal svg size 1100,1100 dynamic font 'sans-serif,12'
+# A chart of the benchmark's table, without its smallest and middle sizes:
+# gnuplot -e "table='speed.csv'; chart='speed.svg'" tests/bench/speed.gp
+set terminal svg size 1100,1300 dynamic font 'sans-serif,12'
 set output chart
 set datafile separator ','
 set style fill solid 0.7 noborder
@@ -17,11 +18,11 @@ name(c) = sprintf('%s: %s%s', strcol(1), strcol(2), place(0))
 
 set title 'Percent of the most that the machine can do, one thread'
 set xrange [0:100]
-plot "< awk -F, 'NR > 1 && $14 > 0 && $8 == 1' ".table \
+plot "< awk -F, 'NR > 1 && $14 > 0 && $8 == 1 && !/bf16/ && $4 !~ /^[28]00$/ && $7 !~ /^50*$/ && $4 * $7 != 4e7' ".table \
     using (50 * $14):0:(50 * $14):(0.35):ytic(name(0)) with boxxyerror
 
 set title 'Rate of frames and iterations, a second'
 set logscale x
 set xrange [1:*]
-plot "< awk -F, '$13 == \"frame\" || $13 == \"iteration\"' ".table \
+plot "< awk -F, '$6 == 2000 && ($13 == \"frame\" || $13 == \"iteration\")' ".table \
     using ($12 / 2):0:($12 / 2):(0.35):ytic(sprintf('%s splats, %s', name(0), $8 > 1 ? sprintf('%d threads', $8) : '1 thread')) with boxxyerror
