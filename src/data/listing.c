@@ -4,6 +4,8 @@
 
 #include "data/listing.h"
 
+#include "io/extension.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -70,9 +72,9 @@ void adcgs_listing_free(adcgs_listing *listing)
 int adcgs_is_image_name(const char *name)
 {
     static const char *const ends[] = {"png", "jpg", "jpeg", "exr", "tif", "tiff", "webp", "ppm"};
-    const char *dot = strrchr(name, '.');
-    for (size_t i = 0; dot && i < ADCGS_COUNTOF(ends); i++)
-        if (!strcasecmp(dot + 1, ends[i]))
+    const char *extension = adcgs_extension(name);
+    for (size_t i = 0; i < ADCGS_COUNTOF(ends); i++)
+        if (!strcasecmp(extension, ends[i]))
             return 1;
     return 0;
 }

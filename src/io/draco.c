@@ -4,30 +4,9 @@
 
 #include "io/draco_shim.h"
 
-#if defined MODULES
+#ifdef HAVE_ENCODER
 
-static adcgs_module module = {
-    .file = "adcgs_draco.so",
-    .symbol = "adcgs_draco_table",
-    .purpose = "its points need Draco",
-    .lock = PTHREAD_MUTEX_INITIALIZER,
-};
-
-adcgs_status adcgs_draco_get(const adcgs_draco **draco, const char *path, adcgs_error *error)
-{
-    const void *table;
-    const adcgs_status status = adcgs_module_get(&module, &table, path, error);
-    *draco = table;
-    return status;
-}
-
-#elif defined HAVE_ENCODER
-
-adcgs_status adcgs_draco_get(const adcgs_draco **draco, const char *path, adcgs_error *error)
-{
-    *draco = &adcgs_draco_table;
-    return ADCGS_OK;
-}
+ADCGS_MODULE_GET(adcgs_draco_get, adcgs_draco, adcgs_draco_table, "adcgs_draco.so", "its points need Draco")
 
 #else
 

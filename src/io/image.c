@@ -5,6 +5,7 @@
 #include "io/image.h"
 
 #include "io/atomic.h"
+#include "io/extension.h"
 #include "io/file.h"
 #include "io/netpbm.h"
 #ifdef HAVE_ENCODER
@@ -15,13 +16,6 @@
 
 #include <errno.h>
 #include <strings.h>
-
-static const char *extension_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(slash ? slash : path, '.');
-    return dot ? dot + 1 : "";
-}
 
 static int is_exr(const char *extension)
 {
@@ -151,7 +145,7 @@ static adcgs_status write_open(adcgs_atomic *atomic, const adcgs_image *image, c
 adcgs_status adcgs_image_write_as(const adcgs_image *image, const adcgs_image_options *options, const char *path,
                                   adcgs_error *error)
 {
-    const char *extension = extension_of(path);
+    const char *extension = adcgs_extension(path);
     adcgs_atomic atomic;
     ADCGS_TRY(check_options(options, path, extension, error));
     ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));

@@ -36,4 +36,27 @@ typedef struct adcgs_module {
  */
 adcgs_status adcgs_module_get(adcgs_module *module, const void **table, const char *path, adcgs_error *error);
 
+/**
+ * Defines adcgs_status get(const type **out, const char *path, adcgs_error *error), which finds a table as adcgs_module_get()
+ * does, or takes the one that is linked in where config.h says that there are no modules.
+ */
+#ifdef MODULES
+#define ADCGS_MODULE_GET(get, type, table, so, what)                                                                    \
+    adcgs_status get(const type **out, const char *path, adcgs_error *error)                                            \
+    {                                                                                                                   \
+        static adcgs_module module = {.file = so, .symbol = #table, .purpose = what, .lock = PTHREAD_MUTEX_INITIALIZER}; \
+        const void *found;                                                                                              \
+        const adcgs_status status = adcgs_module_get(&module, &found, path, error);                                     \
+        *out = found;                                                                                                   \
+        return status;                                                                                                  \
+    }
+#else
+#define ADCGS_MODULE_GET(get, type, table, so, what)                         \
+    adcgs_status get(const type **out, const char *path, adcgs_error *error) \
+    {                                                                        \
+        *out = &table;                                                       \
+        return ADCGS_OK;                                                     \
+    }
+#endif
+
 #endif

@@ -4,6 +4,7 @@
 
 #include "io/atomic.h"
 #include "io/draco_shim.h"
+#include "io/extension.h"
 #include "io/points.h"
 
 #include <stdlib.h>
@@ -44,10 +45,10 @@ adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adc
 
 adcgs_status adcgs_points_write(const adcgs_points *points, const char *path, adcgs_error *error)
 {
-    const char *const dot = strrchr(path, '.');
-    if (dot && !strcasecmp(dot, ".ply"))
+    const char *const extension = adcgs_extension(path);
+    if (!strcasecmp(extension, "ply"))
         return adcgs_ply_write(points, path, error);
-    if (dot && !strcasecmp(dot, ".drc"))
+    if (!strcasecmp(extension, "drc"))
         return adcgs_draco_write(points, path, error);
     return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name of points must end in .ply or .drc", path);
 }

@@ -5,6 +5,7 @@
 #include "io/sink.h"
 
 #include "io/atomic.h"
+#include "io/extension.h"
 #include "io/image.h"
 #include "io/video.h"
 #include "io/y4m.h"
@@ -122,13 +123,6 @@ static const kind image_kind = {"image", 0, 0, NULL, image_write};
 static const kind exr_kind = {"exr", 0, 1, NULL, image_write};
 static const kind video_kind = {"video", 0, 0, NULL, video_write};
 
-static const char *extension_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(slash ? slash : path, '.');
-    return dot ? dot + 1 : "";
-}
-
 static const kind *find_kind(const char *format)
 {
     char name[16];
@@ -202,7 +196,7 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
         return ADCGS_OK;
     if (!strcmp(config->target, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "standard output takes y4m or raw, not %s", format);
-    if (!*format || strcasecmp(extension_of(config->target), format))
+    if (!*format || strcasecmp(adcgs_extension(config->target), format))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name must end in .%s", config->target,
                           *format ? format : "ppm, .exr, .y4m, ...");
     if (!is_image)
@@ -233,7 +227,7 @@ adcgs_status adcgs_sink_open(adcgs_sink **out, const adcgs_sink_config *config, 
 {
     *out = NULL;
     const int to_stdout = !strcmp(config->target, "-");
-    const char *format = config->format ? config->format : to_stdout ? "y4m" : extension_of(config->target);
+    const char *format = config->format ? config->format : to_stdout ? "y4m" : adcgs_extension(config->target);
     const kind *what = find_kind(format);
     ADCGS_TRY(check(config, what, format, error));
     adcgs_sink *sink = calloc(1, sizeof *sink);

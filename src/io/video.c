@@ -5,6 +5,7 @@
 #include "io/video.h"
 
 #include "io/atomic.h"
+#include "io/extension.h"
 #include "io/video_ffmpeg.h"
 #include "io/y4m.h"
 
@@ -35,30 +36,9 @@ static adcgs_status get_ffmpeg(const adcgs_ffmpeg **ffmpeg, const char *path, ad
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: videos need FFmpeg, which this build does without", path);
 }
 
-#elif defined MODULES
-
-static adcgs_module module = {
-    .file = "adcgs_video.so",
-    .symbol = "adcgs_ffmpeg_table",
-    .purpose = "videos need FFmpeg",
-    .lock = PTHREAD_MUTEX_INITIALIZER,
-};
-
-static adcgs_status get_ffmpeg(const adcgs_ffmpeg **ffmpeg, const char *path, adcgs_error *error)
-{
-    const void *table;
-    const adcgs_status status = adcgs_module_get(&module, &table, path, error);
-    *ffmpeg = table;
-    return status;
-}
-
 #else
 
-static adcgs_status get_ffmpeg(const adcgs_ffmpeg **ffmpeg, const char *path, adcgs_error *error)
-{
-    *ffmpeg = &adcgs_ffmpeg_table;
-    return ADCGS_OK;
-}
+static ADCGS_MODULE_GET(get_ffmpeg, adcgs_ffmpeg, adcgs_ffmpeg_table, "adcgs_video.so", "videos need FFmpeg")
 
 #endif
 
@@ -66,10 +46,9 @@ int adcgs_is_video(const char *path)
 {
     static const char *const extensions[] = {"mp4", "m4v", "mov", "mkv", "webm", "avi",  "mpg", "mpeg", "mts", "m2ts",
                                              "ts",  "wmv", "flv", "ogv", "3gp",  "ivf", "mxf", "h264", "hevc", "obu"};
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(slash ? slash : path, '.');
-    for (size_t i = 0; dot && i < ADCGS_COUNTOF(extensions); i++)
-        if (!strcasecmp(dot + 1, extensions[i]))
+    const char *extension = adcgs_extension(path);
+    for (size_t i = 0; i < ADCGS_COUNTOF(extensions); i++)
+        if (!strcasecmp(extension, extensions[i]))
             return 1;
     return 0;
 }

@@ -5,6 +5,7 @@
  */
 #include "config.h"
 
+#include "io/extension.h"
 #include "io/video_ffmpeg.h"
 #include "io/video_planes.h"
 
@@ -106,17 +107,10 @@ static adcgs_status open_io(adcgs_video_encoder *e, adcgs_error *error)
 
 /* ---- Codec and container ---- */
 
-static const char *extension_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(slash ? slash : path, '.');
-    return dot ? dot + 1 : "";
-}
-
 static adcgs_status choose(const adcgs_video_encoder *e, const char **container, const codec **chosen, const AVCodec **encoder,
                            adcgs_error *error)
 {
-    const char *extension = extension_of(e->target.path);
+    const char *extension = adcgs_extension(e->target.path);
     for (size_t i = 0; i < ADCGS_COUNTOF(containers); i++) {
         if (strcasecmp(extension, containers[i].extension))
             continue;
@@ -149,7 +143,7 @@ static void set_codec(adcgs_video_encoder *e, const codec *chosen)
     c->color_trc = AVCOL_TRC_IEC61966_2_1; /* pictures are sRGB, and so is what is learnt from them */
     c->chroma_sample_location = AVCHROMA_LOC_LEFT;
     c->gop_size = ADCGS_MIN(ADCGS_MAX((int)(KEY_SECONDS * (int64_t)rate[0] / rate[1]), 1), KEY_FRAMES_MAX);
-    c->max_b_frames = strcasecmp(extension_of(e->target.path), "avi") ? c->max_b_frames : 0; /* its packets have no times */
+    c->max_b_frames = strcasecmp(adcgs_extension(e->target.path), "avi") ? c->max_b_frames : 0; /* its packets have no times */
     c->thread_count = THREADS;
     c->flags |= AV_CODEC_FLAG_BITEXACT;
     if (e->format->oformat->flags & AVFMT_GLOBALHEADER)

@@ -5,6 +5,7 @@
 #include "play/player.h"
 
 #include "play/panel.h"
+#include "play/turn.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,7 +31,7 @@ static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
                           .number = adcgs_play_clock_frame(&state->clock), .seeks = p->seeks};
     adcgs_play_rig_view(&state->rig, state->width, state->height, &job.camera);
     if (divider > 1)
-        adcgs_play_rig_stretch(&job.camera, (state->width + divider - 1) / divider, (state->height + divider - 1) / divider);
+        adcgs_camera_stretch(&job.camera, (state->width + divider - 1) / divider, (state->height + divider - 1) / divider);
     return job;
 }
 

@@ -204,14 +204,3 @@ void adcgs_play_rig_view(const adcgs_play_rig *rig, int width, int height, adcgs
     out->cx = camera->cx * scale + (x > scale ? 0.5 * (width - camera->width * scale) : 0.0);
     out->cy = camera->cy * scale + (y > scale ? 0.5 * (height - camera->height * scale) : 0.0);
 }
-
-void adcgs_play_rig_stretch(adcgs_camera *camera, int width, int height)
-{
-    const double x = (double)width / camera->width, y = (double)height / camera->height;
-    camera->width = width;
-    camera->height = height;
-    camera->fx *= x;
-    camera->cx *= x;
-    camera->fy *= y;
-    camera->cy *= y;
-}

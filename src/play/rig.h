@@ -46,7 +46,5 @@ double adcgs_play_rig_distance(const adcgs_play_rig *rig);
  * and more at two sides where the shapes differ.
  */
 void adcgs_play_rig_view(const adcgs_play_rig *rig, int width, int height, adcgs_camera *out);
-/** The camera with its picture stretched to another size. */
-void adcgs_play_rig_stretch(adcgs_camera *camera, int width, int height);
 
 #endif

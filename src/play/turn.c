@@ -59,6 +59,17 @@ void adcgs_look_at(double pose[12], const double eye[3], const double target[3],
     }
 }
 
+void adcgs_camera_stretch(adcgs_camera *camera, int width, int height)
+{
+    const double x = (double)width / camera->width, y = (double)height / camera->height;
+    camera->width = width;
+    camera->height = height;
+    camera->fx *= x;
+    camera->cx *= x;
+    camera->fy *= y;
+    camera->cy *= y;
+}
+
 /** The component that is largest is found first: dividing by it is safe. */
 void adcgs_turn_from_pose(const double pose[12], double q[4])
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
  * \file
- * Directions and rotations of cameras, moved by hand or along a path, in
- * binary64. Quaternions are w, x, y, z; a turn is an axis times half the
+ * Directions, rotations and pictures of cameras, moved by hand or along a
+ * path, in binary64. Quaternions are w, x, y, z; a turn is an axis times half the
  * angle, so that the quaternion is its exponential.
  */
 #ifndef ADCGS_PLAY_TURN_H
@@ -22,6 +22,9 @@ int adcgs_find_up(const adcgs_info *info, double up[3]);
 
 /** A 3x4 camera-to-world matrix in OpenCV axes of an eye that sees the target in the middle; up need not be at right angles. */
 void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3]);
+
+/** Stretch what the camera sees to another size. */
+void adcgs_camera_stretch(adcgs_camera *camera, int width, int height);
 
 /** Rotation of a row-major 3x4 matrix, whose 3x3 part is orthonormal, and back; the last column stays. */
 void adcgs_turn_from_pose(const double pose[12], double q[4]);

@@ -172,17 +172,6 @@ static adcgs_status make_shots(adcgs_shots *out, const adcgs_decoder *decoder, c
     return make_from_camera(out, decoder, info, request, error);
 }
 
-void adcgs_shots_fit(adcgs_camera *camera, const int size[2])
-{
-    const double x = (double)size[0] / camera->width, y = (double)size[1] / camera->height;
-    camera->width = size[0];
-    camera->height = size[1];
-    camera->fx *= x;
-    camera->cx *= x;
-    camera->fy *= y;
-    camera->cy *= y;
-}
-
 adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_shots_request *request,
                               adcgs_error *error)
 {
@@ -195,6 +184,6 @@ adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, co
     if (!(out->frame_rate > 0.0)) /* paths may have one of their own */
         out->frame_rate = info.frame_rate;
     for (int i = 0; i < out->n && request->size[0]; i++)
-        adcgs_shots_fit(&out->shot[i].camera, request->size);
+        adcgs_camera_stretch(&out->shot[i].camera, request->size[0], request->size[1]);
     return status;
 }

@@ -51,8 +51,6 @@ adcgs_status adcgs_shots_times(adcgs_shots *out, const adcgs_info *info, const a
                                adcgs_shots_motion motion, adcgs_error *error);
 /** A camera where the stream stores none; up: that of the stream, of length 1. */
 void adcgs_shots_default(adcgs_camera *camera, const adcgs_info *info, const double up[3]);
-/** Stretch what the camera sees to another size. */
-void adcgs_shots_fit(adcgs_camera *camera, const int size[2]);
 
 /** What drawing a path round the stored cameras takes. */
 typedef struct adcgs_rig {

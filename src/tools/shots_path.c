@@ -5,6 +5,7 @@
 #include "tools/shots.h"
 
 #include "data/camera_json.h"
+#include "play/turn.h"
 #include "tools/flight.h"
 
 #include <math.h>
@@ -88,7 +89,7 @@ static adcgs_status read_key(reader *r, adcgs_flight_key *keys, size_t i)
     ADCGS_TRY(read_shot(r, key->at - keys[0].at, "key", &key->shot));
     ADCGS_TRY(check_size(r, &key->shot, &keys[0].shot));
     if (r->request->size[0]) /* lenses are comparable for one size only */
-        adcgs_shots_fit(&key->shot.camera, r->request->size);
+        adcgs_camera_stretch(&key->shot.camera, r->request->size[0], r->request->size[1]);
     return ADCGS_OK;
 }
 

@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "io/atomic.h"
+#include "play/turn.h"
 #include "tools/cli.h"
 #include "tools/shots.h"
 
@@ -56,7 +57,7 @@ adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *pa
     adcgs_json_open(&json, "keys", '[');
     for (int i = 0; i < info.cameras && status == ADCGS_OK; i++) {
         status = adcgs_get_camera(decoder, i, &camera);
-        adcgs_shots_fit(&camera, size); /* a path has one size */
+        adcgs_camera_stretch(&camera, size[0], size[1]); /* a path has one size */
         write_key(&json, &camera, i);
     }
     adcgs_json_close(&json, ']');

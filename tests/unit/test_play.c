@@ -165,7 +165,7 @@ static void test_view(void **state)
     adcgs_play_rig_view(&rig, 640, 480, &view);
     assert_memory_equal(&view, &rig.camera, sizeof view);
     adcgs_play_rig_view(&rig, 1920, 1440, &view); /* the same shape: what stretching gives, to the last bit */
-    adcgs_play_rig_stretch(&again, 1920, 1440);
+    adcgs_camera_stretch(&again, 1920, 1440);
     assert_memory_equal(&view, &again, sizeof view);
     adcgs_play_rig_view(&rig, 1000, 480, &view); /* 180 pixels more at both sides */
     assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 480.0 && view.cy == 250.0);
