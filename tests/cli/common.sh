@@ -14,6 +14,18 @@ need()
 failed=0
 bad() { echo "FAILED: $*"; failed=1; }
 
+# tiny_scene FOLDER: a scene of a few small pictures. tiny_stream ITERATIONS: one in $dir/scene, and its stream $dir/s.adcgs.
+tiny_scene()
+{
+    ./adcgs-demo-scene --scene tiny --format ppm -o "$1" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+}
+tiny_stream()
+{
+    tiny_scene "$dir/scene"
+    ./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --iterations "$1" --threads 2 >"$dir/out" 2>&1 ||
+        { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
+}
+
 # expect CODE TEXT COMMAND...: exit code; TEXT (a basic regular expression), if not empty, on standard error, which has
 # exactly one line if the code is not 0. What the command prints is in $dir/out and $dir/err.
 expect()

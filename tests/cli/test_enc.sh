@@ -59,7 +59,7 @@ interrupt()
 }
 
 scene=$dir/scene
-./adcgs-demo-scene --scene tiny --format ppm -o "$scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+tiny_scene "$scene"
 
 # The same bytes at any number of threads; other bytes from another seed; reports that parse.
 n=600
@@ -225,6 +225,15 @@ expect 2 "1 to 16" $try --k 17
 expect 2 "1 to 64" $try --scale 0
 expect 2 "0 to 256" $try --threads -1
 expect 2 "whole number" $try --seed x
+expect 2 "from 1 to 1000000000000000" $try --memory lots
+expect 2 "from 1 to 1000000000000000" $try --memory 0
+expect 2 "expected one of auto, transforms" $try --dataset blender
+expect 4 "no COLMAP model" $try --dataset colmap
+for range in x 3 0:9:0 0:9:-1 0:9:1:1; do
+    expect 2 "frames $range: expected A:B or A:B:STEP" $try --frames $range
+done
+expect 2 "5 is not below 2" $try --frames 5:2
+expect 4 "begins with frame 1000" $try --frames 1000:
 expect 2 "expected none, coarse" $try --without fine,everything
 expect 2 "one of auto" $try --cpu sse
 expect 2 "value must follow" $try --seed

@@ -6,8 +6,7 @@ need adcgs-eval adcgs-enc adcgs-demo-scene
 eval=./adcgs-eval
 s=$dir/s.adcgs
 
-./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
-./adcgs-enc "$dir/scene" -o "$s" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 || { bad "adcgs-enc"; exit 1; }
+tiny_stream 30
 
 # agree CSV JSON: each value of a row of the table is the JSON report's, but for times taken. JSON has one value a line; its
 # views, its cameras and its means come in the order of the rows.
@@ -67,6 +66,10 @@ grep -q flicker "$dir/out" && bad "flicker was not asked for"
 # The table on standard output, alone; and mistakes.
 expect 0 "" $eval "$s" "$dir/scene" --metrics all --csv -
 [ "$(sed 's/,[^,]*$//' "$dir/out")" = "$(sed 's/,[^,]*$//' "$dir/all.csv")" ] || { bad "another table on standard output"; cat "$dir/out"; }
+expect 2 "expected one of auto, transforms" $eval "$s" "$dir/scene" --dataset blender
+expect 4 "no COLMAP model" $eval "$s" "$dir/scene" --dataset colmap
+expect 2 "expected A:B or A:B:STEP" $eval "$s" "$dir/scene" --frames x
+expect 4 "begins with frame 1000" $eval "$s" "$dir/scene" --frames 1000:
 expect 2 "standard output" $eval "$s" "$dir/scene" --csv - --json
 for list in "" psnr, lpips all,x ms_ssim; do
     expect 2 "expected all, or a list" $eval "$s" "$dir/scene" --metrics "$list"

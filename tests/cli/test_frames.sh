@@ -5,9 +5,7 @@
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-eval adcgs-enc adcgs-demo-scene
 
-./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
-./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 ||
-    { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
+tiny_stream 30
 s=$dir/s.adcgs
 dec=./adcgs-dec
 

@@ -9,9 +9,7 @@ need adcgs-dec adcgs-eval adcgs-enc adcgs-info adcgs-demo-scene
 vertices() { sed -n '/^end_header/q; s/^element vertex //p' "$1"; }
 size() { sed '1,/^end_header$/d' "$1" | wc -c; }
 
-./adcgs-demo-scene --scene tiny --format ppm -o "$dir/scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
-./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --iterations 30 --threads 2 >"$dir/out" 2>&1 ||
-    { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
+tiny_stream 30
 s=$dir/s.adcgs
 
 # One moment, and a span of them.

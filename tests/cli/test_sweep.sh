@@ -31,7 +31,7 @@ while [ $# -gt 0 ]; do
         --seed) seed=$2 ;;
         --without) without=$2 ;;
         --uncompressed) raw=$2 ;;
-        --preset | --iterations | --threads | --k | --set) ;;
+        --preset | --iterations | --threads | --k | --set | --dataset | --frames) ;;
         --json) shift; continue ;;
         --) break ;;
         *) exit 2 ;;
@@ -56,7 +56,9 @@ echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750
 END
 cat >"$dir/adcgs-eval" <<'END'
 #!/bin/bash
-read -r psnr <"$3"
+echo "$*" >>"$(dirname "$0")/evaluations"
+while [ "$1" != -- ]; do shift; done
+read -r psnr <"$2"
 echo "{\"psnr\": ${psnr%??}.${psnr: -2}, \"ssim\": 0.9, \"frames_per_second\": 100}"
 END
 chmod +x "$dir/adcgs-enc" "$dir/adcgs-eval"
@@ -205,6 +207,11 @@ sweep
 [ $got -eq 2 ] || fail "no lambda accepted"
 "$dir/adcgs-sweep" scene --lambda 1 2>/dev/null
 [ $? -eq 2 ] || fail "no output accepted"
+
+# What part of which scene it is goes to both programs, which check it.
+sweep --lambda 9 --dataset colmap --frames 0:9:2 --yardsticks none
+calls 1 1 "--dataset colmap --frames 0:9:2"
+tail -n 1 "$dir/evaluations" | grep -q -e "--dataset colmap --frames 0:9:2" || fail "evaluated otherwise: $(cat "$dir/evaluations")"
 
 # The real programs on a tiny scene: a stream from a shared beginning is that of a whole run.
 for tool in adcgs-enc adcgs-eval adcgs-demo-scene; do

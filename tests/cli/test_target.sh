@@ -32,7 +32,7 @@ within() { awk -v a="$1" -v l="$2" -v h="$3" 'BEGIN { exit !(a != "" && a >= l &
 value() { tr -d '\n' <"$1" | sed -n "s/.*[{,] *\"$2\": *\([-0-9.e]*\).*/\1/p"; }
 
 scene=$dir/scene
-./adcgs-demo-scene --scene tiny --format ppm -o "$scene" >/dev/null 2>&1 || { bad "adcgs-demo-scene"; exit 1; }
+tiny_scene "$scene"
 n=1600
 
 # Sizes: never more, and less by under 3 %; the report tells.

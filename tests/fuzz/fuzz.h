@@ -31,4 +31,15 @@ extern const char *const adcgs_fuzz_seeds[];
         }                                                                                         \
     } while (0)
 
+/** A copy from malloc(), with the zero byte behind it that files are loaded with. */
+static inline uint8_t *fuzz_file(const uint8_t *data, size_t size)
+{
+    uint8_t *copy = malloc(size + 1);
+    FUZZ_REQUIRE(copy != NULL);
+    if (size > 0)
+        memcpy(copy, data, size);
+    copy[size] = 0;
+    return copy;
+}
+
 #endif

@@ -10,11 +10,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     adcgs_points points = { 0 };
     adcgs_error error = { ADCGS_OK, "" };
-    uint8_t *text = malloc(size + 1); /* with the zero byte behind it that files are loaded with */
-    FUZZ_REQUIRE(text != NULL);
-    if (size > 0)
-        memcpy(text, data, size);
-    text[size] = 0;
+    uint8_t *text = fuzz_file(data, size);
     const adcgs_status status = adcgs_ply_parse(&points, text, size, "fuzz.ply", &error);
     FUZZ_REQUIRE(status == ADCGS_OK || (error.status == status && error.text[0]));
     FUZZ_REQUIRE(status == ADCGS_OK || (points.n == 0 && points.position == NULL));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A folder of its own for each test program, and small files in it. */
+/** \file A folder of its own for each test program, and small files in it; data sets that are no part of the tree. */
 #ifndef ADCGS_TESTS_OUTSIDE_FILES_H
 #define ADCGS_TESTS_OUTSIDE_FILES_H
 
@@ -28,6 +28,21 @@ static inline const char *in(const char *name)
     static int next;
     char *path = paths[next++ % 4];
     snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+/** The path of something in the folder that ADCGS_DATA names; the test is skipped if it is not there. Lives for two calls. */
+static inline const char *real_data(const char *name)
+{
+    static char paths[2][1024];
+    static int next;
+    char *path = paths[next++ % 2];
+    const char *data = getenv("ADCGS_DATA");
+    snprintf(path, sizeof paths[0], "%s/%s", data ? data : "", name);
+    if (!data || access(path, R_OK)) {
+        print_message("skipped: no ADCGS_DATA/%s\n", name);
+        skip();
+    }
     return path;
 }
 

@@ -362,18 +362,6 @@ static void test_mutations(void **state)
 
 /* ---- Real scenes ---- */
 
-static const char *real(const char *name)
-{
-    static char path[1024];
-    const char *data = getenv("ADCGS_DATA");
-    snprintf(path, sizeof path, "%s/%s", data ? data : "", name);
-    if (!data || access(path, R_OK)) {
-        print_message("skipped: no ADCGS_DATA/%s\n", name);
-        skip();
-    }
-    return path;
-}
-
 /** The pixel that a point falls on; 0 if it is not in front of the camera and inside the frame. */
 static int find_pixel(const adcgs_camera *c, uint32_t point, size_t *pixel)
 {
@@ -451,7 +439,7 @@ static void check_published(const adcgs_camera *c, json_t *poses, const double c
 /** Cameras are those that the scene's makers published in another form, and see the points that were triangulated with them. */
 static void test_hand(void **state)
 {
-    const char *path = real("nrnerf_hand");
+    const char *path = real_data("nrnerf_hand");
     expect_good(adcgs_scene_open(&scene, path, NULL, &error));
     expect_views(75, 11);
     assert_true(scene->n_times == 75 && scene->points.n == 4630 && scene->axes == ADCGS_AXES_Y_UP && !scene->has_alpha);
@@ -483,7 +471,7 @@ static void test_hand(void **state)
 /** Three real cameras with missing moments and principal points off the middle; pictures at half size, made up. */
 static void test_windmill(void **state)
 {
-    const char *path = real("dycheck_paper-windmill_cameras");
+    const char *path = real_data("dycheck_paper-windmill_cameras");
     static const char *const parts[] = {"dataset.json", "metadata.json", "scene.json", "camera"};
     char mine[512], at[1100];
     adcgs_image image;

@@ -416,13 +416,8 @@ static void check_camera(const adcgs_scene *scene, const adcgs_camera *pinhole, 
 
 static void test_ring(void **state)
 {
-    char path[1024], file[1100];
-    const char *data = getenv("ADCGS_DATA");
-    snprintf(path, sizeof path, "%s/zju313_15f", data ? data : "");
-    if (!data || access(path, R_OK)) {
-        print_message("skipped: no ADCGS_DATA/zju313_15f\n");
-        skip();
-    }
+    char file[1100];
+    const char *path = real_data("zju313_15f");
     adcgs_scene *scene;
     double bent = 0.0;
     uint32_t inside = 0;

@@ -309,9 +309,7 @@ static void test_real_files(void **state)
     } files[] = {{"pointclouds/bun_zipper.ply", 35947},
                  {"pointclouds/garden_points.ply", 138766},
                  {"zju313_15f/points3d.ply", 1313}};
-    const char *data = getenv("ADCGS_DATA");
-    if (!data || access(data, R_OK))
-        skip();
+    const char *data = real_data(".");
     for (size_t i = 0; i < ADCGS_COUNTOF(files); i++) {
         char path[1024];
         adcgs_points points;

@@ -376,20 +376,6 @@ static void test_colmap_videos(void **state)
 
 /* ---- Real scenes ---- */
 
-static const char *real(const char *name)
-{
-    static char paths[2][1024];
-    static int next;
-    char *path = paths[next++ % 2];
-    const char *data = getenv("ADCGS_DATA");
-    snprintf(path, sizeof paths[0], "%s/%s", data ? data : "", name);
-    if (!data || access(path, R_OK)) {
-        print_message("skipped: no ADCGS_DATA/%s\n", name);
-        skip();
-    }
-    return path;
-}
-
 /** Depth of a point, and whether the picture holds it. */
 static int project(const adcgs_camera *c, const float x[3], double *depth)
 {
@@ -422,14 +408,14 @@ static double percentile(const double *values, size_t n, double share)
  */
 static void test_fern(void **state)
 {
-    expect_good(adcgs_scene_open(&scene, real("llff_fern"), NULL, &error));
+    expect_good(adcgs_scene_open(&scene, real_data("llff_fern"), NULL, &error));
     assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 17 && scene->n_views[ADCGS_SPLIT_TEST] == 3);
     assert_int_equal(scene->points.n, 10091 - 980); /* those that fewer than two training views saw are left out */
-    FILE *file = fopen(real("llff_fern/sparse/0/points3D.bin"), "rb");
+    FILE *file = fopen(real_data("llff_fern/sparse/0/points3D.bin"), "rb");
     static uint8_t data[8 << 20];
     const size_t bytes = fread(data, 1, sizeof data, file);
     fclose(file);
-    file = fopen(real("llff_fern/poses_bounds.npy"), "rb");
+    file = fopen(real_data("llff_fern/poses_bounds.npy"), "rb");
     static uint8_t poses[80 + 20 * 136];
     assert_int_equal(fread(poses, 1, sizeof poses, file), sizeof poses);
     fclose(file);
@@ -460,12 +446,13 @@ static void test_fern(void **state)
     }
     adcgs_scene_free(&scene);
     const adcgs_scene_options colmap = {.dataset = ADCGS_DATASET_COLMAP};
-    expect_error(adcgs_scene_open(&scene, real("llff_fern"), &colmap, &error), ADCGS_ERR_DATA, "images.bin: no such file", "");
+    expect_error(adcgs_scene_open(&scene, real_data("llff_fern"), &colmap, &error), ADCGS_ERR_DATA,
+                 "images.bin: no such file", "");
 }
 
 static void test_robot(void **state)
 {
-    if (adcgs_scene_open(&scene, real("synth_robot_multiview"), NULL, &error) == ADCGS_ERR_UNSUPPORTED) {
+    if (adcgs_scene_open(&scene, real_data("synth_robot_multiview"), NULL, &error) == ADCGS_ERR_UNSUPPORTED) {
         print_message("skipped: %s\n", error.text);
         skip();
     }
@@ -482,8 +469,8 @@ static void test_hand(void **state)
 {
     const adcgs_scene_options colmap = {.dataset = ADCGS_DATASET_COLMAP};
     adcgs_scene *other;
-    expect_good(adcgs_scene_open(&scene, real("nrnerf_hand"), NULL, &error));
-    expect_good(adcgs_scene_open(&other, real("nrnerf_hand"), &colmap, &error));
+    expect_good(adcgs_scene_open(&scene, real_data("nrnerf_hand"), NULL, &error));
+    expect_good(adcgs_scene_open(&other, real_data("nrnerf_hand"), &colmap, &error));
     assert_true(other->n_views[ADCGS_SPLIT_TRAIN] == 75 && other->n_views[ADCGS_SPLIT_TEST] == 11 && other->n_times == 1);
     assert_true(other->points.n == scene->points.n && other->points.coloured);
     const adcgs_scene_view *a = scene->views[ADCGS_SPLIT_TRAIN];

@@ -296,13 +296,7 @@ static void test_mutations(void **state)
 
 static void check_real(const char *name, uint32_t train, uint32_t val, uint32_t test, uint32_t times, int size)
 {
-    char path[1024];
-    const char *data = getenv("ADCGS_DATA");
-    snprintf(path, sizeof path, "%s/%s", data ? data : "", name);
-    if (!data || access(path, R_OK)) {
-        print_message("skipped: no ADCGS_DATA/%s\n", name);
-        skip();
-    }
+    const char *path = real_data(name);
     expect_good(adcgs_scene_open(&scene, path, NULL, &error));
     expect_views(train, val, test);
     assert_int_equal(scene->n_times, times);

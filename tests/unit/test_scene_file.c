@@ -232,13 +232,7 @@ static char *rows_of(json_t *matrix)
  */
 static void test_calibration(void **state)
 {
-    const char *data = getenv("ADCGS_DATA");
-    char path[1024];
-    snprintf(path, sizeof path, "%s/zju313_15f", data ? data : "");
-    if (!data || access(path, R_OK)) {
-        print_message("skipped: no ADCGS_DATA/zju313_15f\n");
-        skip();
-    }
+    const char *path = real_data("zju313_15f");
     adcgs_scene *other;
     expect_good(adcgs_scene_open(&other, path, NULL, &error));
     char file[1100];

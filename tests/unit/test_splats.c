@@ -605,21 +605,9 @@ static void test_view_dependence(void **state)
 
 /* ---- Real files ---- */
 
-static const char *real(const char *name)
-{
-    static char path[1024];
-    const char *data = getenv("ADCGS_DATA");
-    snprintf(path, sizeof path, "%s/%s", data ? data : "", name);
-    if (!data || access(path, R_OK)) {
-        print_message("skipped: no ADCGS_DATA/%s\n", name);
-        skip();
-    }
-    return path;
-}
-
 static void test_sunflower(void **state)
 {
-    const char *path = real("splats/sunflower_tile.ply");
+    const char *path = real_data("splats/sunflower_tile.ply");
     adcgs_splats s, back;
     adcgs_primitives p;
     const double origin[3] = {0, 0, 0};
@@ -642,7 +630,7 @@ static void test_sunflower(void **state)
 static void test_compressed(void **state)
 {
     adcgs_scene *scene;
-    expect_error(adcgs_scene_open(&scene, real("splats/biker.compressed.ply"), NULL, &error), ADCGS_ERR_UNSUPPORTED,
+    expect_error(adcgs_scene_open(&scene, real_data("splats/biker.compressed.ply"), NULL, &error), ADCGS_ERR_UNSUPPORTED,
                  "biker.compressed.ply: a compressed PLY", "decompress");
 }
 

@@ -244,13 +244,7 @@ static AVFrame *decode_plainly(const char *path, int nth)
 
 static void test_real(void **state)
 {
-    const char *data = getenv("ADCGS_DATA");
-    char path[512];
-    snprintf(path, sizeof path, "%s/synth_robot_multiview/cam03.mp4", data ? data : "");
-    if (access(path, R_OK)) {
-        print_message("skipped: no synth_robot_multiview in ADCGS_DATA\n");
-        skip();
-    }
+    const char *path = real_data("synth_robot_multiview/cam03.mp4");
     const geometry g = {352, 264, 2, 2, 8, 0, 0.2126, 0.0722};
     adcgs_video *video;
     expect_good(adcgs_video_open(&video, path, &error));
