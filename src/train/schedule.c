@@ -19,31 +19,31 @@ static const adcgs_train_config base = {
                .step_colour = 0.02f, .depth = 11 },
     .start_anchors = 1000,
     .max_anchors = 4000,
-    .grow_threshold = 0.0003f,
+    .densify_threshold = 0.0003f,
     .prune_opacity = 0.02f,
     .keep_opacity = 0.04f,
-    .refine_every = 100,
+    .densify_every = 100,
     .rate_period = 4,
     .network_rate = 1,
     .rigid_weight = 0.02f,
-    .area_weight = 0.02f,
+    .scale_weight = 0.02f,
     .rdo_strength = 0,
     .dropout = 0.1f,
     .still_below = 1,
     .average_last = 0.05f,
-    .window_begin = 0.1f,
-    .window_until = 0.25f,
+    .curriculum_begin = 0.1f,
+    .curriculum_until = 0.25f,
     .quarter_until = 0.25f,
     .half_until = 0.70f,
-    .area_from = 0.30f,
+    .scale_from = 0.30f,
     .deform_from = 0.01f,
     .fine_from = 0.35f,
-    .grow_from = 0.03f,
-    .grow_until = 0.50f,
+    .densify_from = 0.03f,
+    .densify_until = 0.50f,
     .noise_from = 0.25f,
     .rate_from = 0.30f,
-    .slim_at = 0.52f,
-    .slim_again = 0.76f,
+    .prune_units_at = 0.52f,
+    .prune_units_again = 0.76f,
     .decide_at = 0.52f,
     .round_from = 0.85f,
     .freeze_from = 0.96f,
@@ -81,14 +81,14 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         config->shape.theta_width = config->shape.entropy_width = 32;
         config->shape.entropy_hidden = 2;
         config->shape.omega_width = config->shape.varpi_width = 128;
-        config->window_until = config->quarter_until = config->half_until = 0;
+        config->curriculum_until = config->quarter_until = config->half_until = 0;
         config->deform_from = config->fine_from = 0.10f;
         config->noise_from = config->rate_from = 0.125f;
-        config->grow_from = 0.0125f;
-        config->grow_until = 0.3125f;
-        config->rigid_weight = config->area_weight = config->dropout = config->still_below = config->network_rate = 0;
+        config->densify_from = 0.0125f;
+        config->densify_until = 0.3125f;
+        config->rigid_weight = config->scale_weight = config->dropout = config->still_below = config->network_rate = 0;
         config->keep_opacity = config->average_last = 0;
-        config->slim_at = 2;
+        config->prune_units_at = 2;
         return ADCGS_OK;
     }
     return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown preset '%s': expected draft, fast, medium, slow or paper", name);
@@ -115,7 +115,7 @@ void adcgs_train_rates(adcgs_fmodel *f)
 
 float adcgs_train_lambda_from(const adcgs_train_config *c)
 {
-    return c->without_rate ? 2 : ADCGS_MIN(c->rate_from, c->slim_at);
+    return c->without_rate ? 2 : ADCGS_MIN(c->rate_from, c->prune_units_at);
 }
 
 const char *adcgs_train_stage(const adcgs_train_config *c, double progress)

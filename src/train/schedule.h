@@ -28,31 +28,31 @@ typedef struct adcgs_train_config {
     adcgs_train_target target;
     double target_value;   /**< bytes or dB */
     uint8_t own_anchors, own_networks; /**< max_anchors, the networks' widths were chosen by hand: no target changes them */
-    uint8_t own_rigid, own_area; /**< rigid_weight, area_from were chosen by hand: no scene changes them */
+    uint8_t own_rigid, own_scale_from; /**< rigid_weight, scale_from were chosen by hand: no scene changes them */
     float ssim_weight;
     adcgs_params params;   /**< time_rows is capped by the scene */
     adcgs_shape shape;
     uint32_t start_anchors, max_anchors;
-    float grow_threshold;  /**< of the significance-weighted screen gradient */
+    float densify_threshold;  /**< of the significance-weighted screen gradient */
     float prune_opacity;   /**< of the accumulated opacity */
     float keep_opacity;    /**< primitives of less opacity in the mean go when it is decided what stays */
-    uint32_t refine_every; /**< iterations between refinements */
+    uint32_t densify_every; /**< iterations between refinements */
     int rate_period;       /**< rate is measured on every n-th group of anchors */
     float network_rate;    /**< weight of the networks' own bits, relative to the features' */
     float rigid_weight;    /**< of the energy that keeps neighbours alike as they move; 0 where several views share a moment */
-    float area_weight;     /**< of the price of primitives' size */
+    float scale_weight;     /**< of the price of primitives' size */
     float rdo_strength;    /**< of the loss per bit when values are frozen, relative to training's; 0: the nearest levels */
     float still_below;     /**< effect of time on an anchor, of which 1 can just be seen, below which it is static */
     float dropout;         /**< share of primitives left out at random until rounding: against overfitting few views */
     /* Moments, as fractions of the run. */
     float average_last;    /**< so much of the end of rounding, and of the run, is averaged, but at most half of either stage */
-    float window_begin, window_until; /**< views trained on grow from this fraction, about the middle of time, to all */
+    float curriculum_begin, curriculum_until; /**< views trained on grow from this fraction, about the middle of time, to all */
     float quarter_until, half_until; /**< coarse-to-fine: a quarter, then half of the resolution */
-    float area_from;       /**< size has its price from here on; where several views share a moment, from the start */
-    float slim_at, slim_again; /**< hidden units are removed; the second time needs the first */
-    float deform_from, fine_from, grow_from, grow_until, noise_from, rate_from, decide_at, round_from, freeze_from;
+    float scale_from;       /**< size has its price from here on; where several views share a moment, from the start */
+    float prune_units_at, prune_units_again; /**< hidden units are removed; the second time needs the first */
+    float deform_from, fine_from, densify_from, densify_until, noise_from, rate_from, decide_at, round_from, freeze_from;
     /* Ablation switches: what is left out, see adcgs_train_leave_out(). */
-    uint8_t without_coarse, without_fine, without_rate, without_refinement, without_lattice;
+    uint8_t without_coarse, without_fine, without_rate, without_densification, without_weight_steps;
     uint8_t bf16;          /**< networks that draw are trained in bf16; see adcgs_bf16_check() */
     uint8_t without_rounding; /**< values and weights remain binary32 to the end, for a model that is stored uncompressed */
 } adcgs_train_config;

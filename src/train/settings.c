@@ -48,31 +48,31 @@ static const setting settings[] = {
     AT(REAL, ssim_weight, 0, 1),
     AT(INT, start_anchors, 1, ADCGS_ANCHORS_MAX),
     AT(INT, max_anchors, 1, ADCGS_ANCHORS_MAX),
-    AT(REAL, grow_threshold, 0, 1e6),
+    AT(REAL, densify_threshold, 0, 1e6),
     AT(REAL, prune_opacity, 0, 1),
     AT(REAL, keep_opacity, 0, 1),
-    AT(INT, refine_every, 1, 1e6),
+    AT(INT, densify_every, 1, 1e6),
     AT(INT, rate_period, 1, 1000),
     AT(REAL, rdo_strength, 0, 1000),
     AT(REAL, dropout, 0, 0.9),
     AT(REAL, network_rate, 0, 1000),
     AT(REAL, still_below, 0, 1e6),
     AT(REAL, rigid_weight, 0, 1000),
-    AT(REAL, area_weight, 0, 1000),
+    AT(REAL, scale_weight, 0, 1000),
     AT(REAL, average_last, 0, 1),
-    AT(REAL, window_begin, 0, 1),
-    AT(REAL, window_until, 0, 2),
+    AT(REAL, curriculum_begin, 0, 1),
+    AT(REAL, curriculum_until, 0, 2),
     AT(REAL, quarter_until, 0, 2),
     AT(REAL, half_until, 0, 2),
-    AT(REAL, area_from, 0, 2),
+    AT(REAL, scale_from, 0, 2),
     AT(REAL, deform_from, 0, 2),
     AT(REAL, fine_from, 0, 2),
-    AT(REAL, grow_from, 0, 2),
-    AT(REAL, grow_until, 0, 2),
+    AT(REAL, densify_from, 0, 2),
+    AT(REAL, densify_until, 0, 2),
     AT(REAL, noise_from, 0, 2),
     AT(REAL, rate_from, 0, 2),
-    AT(REAL, slim_at, 0, 2),
-    AT(REAL, slim_again, 0, 2),
+    AT(REAL, prune_units_at, 0, 2),
+    AT(REAL, prune_units_again, 0, 2),
     AT(REAL, decide_at, 0, 2),
     AT(REAL, round_from, 0, 2),
     AT(REAL, freeze_from, 0, 2),
@@ -117,7 +117,7 @@ static adcgs_status set_one(adcgs_train_config *c, const char *text, size_t leng
         put(c, s, value);
         c->own_anchors |= s->offset == offsetof(adcgs_train_config, max_anchors);
         c->own_rigid |= s->offset == offsetof(adcgs_train_config, rigid_weight);
-        c->own_area |= s->offset == offsetof(adcgs_train_config, area_from);
+        c->own_scale_from |= s->offset == offsetof(adcgs_train_config, scale_from);
         c->own_networks |= s->offset >= offsetof(adcgs_train_config, shape.theta_width) &&
                            s->offset <= offsetof(adcgs_train_config, shape.entropy_hidden);
         return ADCGS_OK;
@@ -176,12 +176,12 @@ adcgs_status adcgs_train_leave_out(adcgs_train_config *c, const char *parts, adc
     c->without_coarse = (bits & COARSE) != 0;
     c->without_fine = (bits & FINE) != 0;
     c->without_rate = (bits & RATE) != 0;
-    c->without_refinement = (bits & REFINEMENT) != 0;
-    c->without_lattice = (bits & LATTICE) != 0;
+    c->without_densification = (bits & REFINEMENT) != 0;
+    c->without_weight_steps = (bits & LATTICE) != 0;
     if (bits & ANCHORS)
         leave_out_anchors(c);
     if (bits & REMOVAL)
-        c->slim_at = c->decide_at = 2;
+        c->prune_units_at = c->decide_at = 2;
     if (bits & REFINEMENT)
         c->start_anchors = c->max_anchors;
     return ADCGS_OK;

@@ -85,8 +85,8 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
     if (several && !c->own_rigid)
         c->rigid_weight = 0;
-    if (several && !c->own_area)
-        c->area_from = 0;
+    if (several && !c->own_scale_from)
+        c->scale_from = 0;
     if (c->without_coarse)
         c->shape.omega_width = 0;
     if (c->without_fine)
@@ -251,7 +251,7 @@ static float weight_price(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
     const int landed = t->frozen && c->target == ADCGS_TARGET_SIZE;
-    return progress >= c->slim_at && !c->without_rate && !landed ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
+    return progress >= c->prune_units_at && !c->without_rate && !landed ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
 }
 
 /**
@@ -361,7 +361,7 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
                                    .seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration) };
     adcgs_loss_value value;
     adcgs_raster_grads grads = t->pass->grads;
-    if (progress >= c->grow_until) /* only growth asks for it */
+    if (progress >= c->densify_until) /* only growth asks for it */
         grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1, error));
@@ -372,8 +372,8 @@ static adcgs_status iterate(adcgs_trainer *t, double progress, adcgs_error *erro
     ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image,
                                     t->grad, &grads, error));
     accumulate_stats(t, &grads);
-    if (c->area_weight > 0 && progress >= c->area_from)
-        adcgs_area_price(&t->pass->primitives, &t->viewpoints, c->area_weight, grads.scale);
+    if (c->scale_weight > 0 && progress >= c->scale_from)
+        adcgs_area_price(&t->pass->primitives, &t->viewpoints, c->scale_weight, grads.scale);
     t->pass->pull = NULL;
     if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
         adcgs_rigid_pull(&t->rigid, t->pass, t->f, c->rigid_weight);
@@ -413,14 +413,14 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
         if (t->iteration >= WEIGH_AFTER)
             ADCGS_TRY(adcgs_trainer_weigh(t, error));
     }
-    if (t->slimmed < 2 && progress >= (t->slimmed ? c->slim_again : c->slim_at) && !c->without_rate) {
+    if (t->slimmed < 2 && progress >= (t->slimmed ? c->prune_units_again : c->prune_units_at) && !c->without_rate) {
         t->slimmed++;
         if (t->iteration >= SLIM_AFTER)
             ADCGS_TRY(adcgs_trainer_slim(t, error));
     }
     if (!t->decided && progress >= c->decide_at) {
         t->decided = 1;
-        if (!c->without_refinement)
+        if (!c->without_densification)
             ADCGS_TRY(adcgs_trainer_decide(t, error));
     }
     if (!t->quantise || c->without_rounding)
@@ -448,7 +448,7 @@ static int wanted_divide(const adcgs_trainer *t, double progress)
 /** Fraction of the views, by their distance from the middle of time, that are trained on. */
 static double window_of(const adcgs_train_config *c, double progress)
 {
-    return progress < c->window_until ? c->window_begin + (1 - c->window_begin) * progress / c->window_until : 1;
+    return progress < c->curriculum_until ? c->curriculum_begin + (1 - c->curriculum_begin) * progress / c->curriculum_until : 1;
 }
 
 static adcgs_status before_iteration(adcgs_trainer *t, double progress, adcgs_error *error)
@@ -457,8 +457,8 @@ static adcgs_status before_iteration(adcgs_trainer *t, double progress, adcgs_er
     if (wanted_divide(t, progress) != t->divide)
         ADCGS_TRY(adcgs_trainer_load_views(t, wanted_divide(t, progress), error));
     adcgs_window_grow(&t->window, window_of(c, progress), t->f);
-    if (!c->without_refinement && t->iteration && t->iteration % c->refine_every == 0 && progress >= c->grow_from &&
-        progress < c->grow_until)
+    if (!c->without_densification && t->iteration && t->iteration % c->densify_every == 0 && progress >= c->densify_from &&
+        progress < c->densify_until)
         ADCGS_TRY(adcgs_trainer_refine(t, progress, error));
     return enter_stages(t, progress, error);
 }

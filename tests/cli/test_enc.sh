@@ -159,7 +159,7 @@ expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --seed 2 
 # shellcheck disable=SC2086
 expect 4 "past its beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" $short --resume "$dir/late"
 expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --without rate
-expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,slim_at=1
+expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,prune_units_at=1
 expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
 
 # Stages left out; what a scene does not need is not in its stream.

@@ -115,7 +115,7 @@ static void checkpoints_are_checked(void **state)
     adcgs_write_uint(&b, 0, 1);
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size, &error), ADCGS_ERR_DATA);
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size - 1, &error), ADCGS_OK);
-    config.grow_until += 0.01f;
+    config.densify_until += 0.01f;
     other = make(&config, NULL);
     assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "other options"));
@@ -163,7 +163,7 @@ static void refinement_keeps_order_and_budget(void **state)
 static void refinement_prunes_what_is_not_seen(void **state)
 {
     adcgs_train_config config = all_stages_config();
-    config.grow_threshold = 1e9f;
+    config.densify_threshold = 1e9f;
     adcgs_trainer *t = make(&config, pool);
     uint32_t stop = 50, gone[3], left;
     run(t, stop_at, &stop);
@@ -461,7 +461,7 @@ static void rate_reaches_every_weight(void **state)
 {
     static const uint32_t stops[] = { 120, 180 };
     adcgs_train_config config = all_stages_config();
-    config.without_lattice = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
+    config.without_weight_steps = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
     config.network_rate = 0;
     for (size_t s = 0; s < ADCGS_COUNTOF(stops); s++) {
         adcgs_trainer *t = make(&config, pool);
@@ -697,7 +697,7 @@ static void moments_shared_by_views_change_settings(void **state)
 {
     adcgs_scene alone = *scene;
     adcgs_train_config config = small_config();
-    const float rigid = config.rigid_weight, from = config.area_from;
+    const float rigid = config.rigid_weight, from = config.scale_from;
     const adcgs_scene *alone_and_shared[] = { &alone, scene };
     assert_true(rigid > 0 && from > 0);
     alone.n_times = alone.n_views[ADCGS_SPLIT_TRAIN];
@@ -705,10 +705,10 @@ static void moments_shared_by_views_change_settings(void **state)
         for (int i = 0; i < 2; i++) {
             adcgs_trainer *t;
             if (by_hand)
-                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,area_from=0.125", &error), ADCGS_OK);
+                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,scale_from=0.125", &error), ADCGS_OK);
             assert_int_equal(adcgs_trainer_create(&t, alone_and_shared[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
             assert_true(t->config.rigid_weight == (by_hand ? 0.5f : i ? 0 : rigid));
-            assert_true(t->config.area_from == (by_hand ? 0.125f : i ? 0 : from));
+            assert_true(t->config.scale_from == (by_hand ? 0.125f : i ? 0 : from));
             adcgs_trainer_free(&t);
         }
 }
