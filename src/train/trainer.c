@@ -7,6 +7,7 @@
 #include "grad/random.h"
 #include "metric/metric.h"
 #include "train/initialise.h"
+#include "train/settings.h"
 #include "train/unit_prune.h"
 #include "train/weight_steps.h"
 
@@ -113,13 +114,15 @@ adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene,
     *out = NULL;
     if (!t)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the trainer");
+    adcgs_status status = adcgs_train_check(config, error);
     t->config = *config;
     t->scene = scene;
     t->cpu = cpu;
     t->pool = pool;
     t->lr_scale = 1;
     adcgs_buffer_init(&t->snapshot);
-    const adcgs_status status = create_parts(t, error);
+    if (status == ADCGS_OK)
+        status = create_parts(t, error);
     t->lambda = (double)t->config.lambda;
     if (status != ADCGS_OK)
         adcgs_trainer_free(&t);

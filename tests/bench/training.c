@@ -5,6 +5,7 @@
 #include "encode/encode.h"
 #include "layouts/open.h"
 #include "scenes/scenes.h"
+#include "train/settings.h"
 #include "train/trainer.h"
 
 #include <math.h>

@@ -7,6 +7,7 @@
 
 #include "layouts/open.h"
 #include "scenes/scenes.h"
+#include "train/settings.h"
 #include "train/trainer.h"
 
 static adcgs_scene *scene;
