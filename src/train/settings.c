@@ -76,9 +76,11 @@ int adcgs_setting_is_preset(const adcgs_setting *s, const adcgs_train_config *c)
 
 /* ---- Checks ---- */
 
+/** The bounds themselves are in it, as decimals and as binary32. */
 static int in_range(const adcgs_setting *s, double value)
 {
-    return value >= as_held(s, s->min) && value <= as_held(s, s->max) && (s->kind == ADCGS_SETTING_REAL || value == floor(value));
+    return value >= fmin(s->min, as_held(s, s->min)) && value <= fmax(s->max, as_held(s, s->max)) &&
+           (s->kind == ADCGS_SETTING_REAL || value == floor(value));
 }
 
 static adcgs_status fail_range(const adcgs_setting *s, const char *given, adcgs_error *error)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Whole training runs in miniature: stopping and going on, refinement, recovery
+ * Whole training runs in miniature: stopping and going on, densification, recovery
  * from what is not a number, and the numbers that end up in a stream.
  */
 #include "tiny_scene.h"
@@ -152,7 +152,7 @@ static int count_anchors(void *user, const adcgs_train_report *r)
     return 0;
 }
 
-static void refinement_keeps_order_and_budget(void **state)
+static void densification_keeps_order_and_budget(void **state)
 {
     const adcgs_train_config config = all_stages_config();
     census c = { make(&config, pool), UINT32_MAX, 0 };
@@ -162,11 +162,11 @@ static void refinement_keeps_order_and_budget(void **state)
     adcgs_trainer_free(&c.t);
 }
 
-/** Anchors that nobody saw since the last refinement go, the others stay, and their parameters with them. */
-static void refinement_prunes_what_is_not_seen(void **state)
+/** Anchors that nobody saw since the last densification go, the others stay, and their parameters with them. */
+static void densification_prunes_what_is_not_seen(void **state)
 {
     adcgs_train_config config = all_stages_config();
-    config.densify_threshold = 1e9f;
+    config.densify_threshold = 1e6f;
     adcgs_trainer *t = make(&config, pool);
     uint32_t stop = 50, gone[3], left;
     run(t, stop_at, &stop);
@@ -762,7 +762,7 @@ static void missing_things_are_found(void **state)
         assert_true(places[i].size > 0.01f && places[i].size < 0.2f && places[i].score > 0);
         assert_float_equal(places[i].rgb[0] - scene->background[0], 0.9, 2e-5); /* pictures have 16 bits */
     }
-    /* A refinement puts an anchor there, if the scene's own points may have left it out. */
+    /* Densification puts an anchor there, if the scene's own points may have left it out. */
     adcgs_scene with_points = *scene;
     with_points.points.n = ADCGS_POINTS_LEAST;
     t->scene = &with_points;
@@ -794,8 +794,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
         cmocka_unit_test(checkpoints_are_checked),
-        cmocka_unit_test(refinement_keeps_order_and_budget),
-        cmocka_unit_test(refinement_prunes_what_is_not_seen),
+        cmocka_unit_test(densification_keeps_order_and_budget),
+        cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
         cmocka_unit_test(no_number_is_rolled_back),
         cmocka_unit_test(no_number_is_rolled_back_late),
