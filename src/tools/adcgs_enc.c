@@ -33,6 +33,7 @@ typedef struct watcher {
     double saved;
     adcgs_train_report last;
     size_t uncompressed_bytes;
+    adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
     adcgs_error error;
 } watcher;
@@ -156,40 +157,43 @@ static adcgs_status write_uncompressed(watcher *w, const adcgs_model *model, adc
 
 /** What the stream tells of how it was made. */
 typedef struct notes {
-    adcgs_encode_note list[5];
+    adcgs_encode_note list[6];
+    uint32_t n;
     char seed[32], lambda[32], iterations[32];
 } notes;
 
-static void take_notes(notes *n, const adcgs_trainer *t)
+/** changes: settings that are not the preset's, "" for none. */
+static void take_notes(notes *n, const adcgs_trainer *t, const char *changes)
 {
     snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
     snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
     snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
     const adcgs_encode_note list[ADCGS_COUNTOF(n->list)] = {
         { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
-        { "iterations", n->iterations }, { "seed", n->seed },
+        { "iterations", n->iterations }, { "seed", n->seed },     { "settings", changes },
     };
     memcpy(n->list, list, sizeof list);
+    n->n = ADCGS_COUNTOF(list) - !*changes;
 }
 
 /** The bytes that the run's file would have. */
 static adcgs_status measure(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *error)
 {
+    const watcher *w = user;
     notes n;
-    (void)user;
-    take_notes(&n, t);
-    return adcgs_encode_bytes(bytes, t, -1, n.list, ADCGS_COUNTOF(n.list), error);
+    take_notes(&n, t, (const char *)w->changes.data);
+    return adcgs_encode_bytes(bytes, t, -1, n.list, n.n, error);
 }
 
 static adcgs_status write_stream(adcgs_stream *stream, watcher *w, adcgs_pool *pool, adcgs_error *error)
 {
     notes n;
     adcgs_buffer bytes;
-    take_notes(&n, w->t);
+    take_notes(&n, w->t, (const char *)w->changes.data);
     adcgs_buffer_init(&bytes);
     if (w->o->uncompressed)
         adcgs_raw_prepare(w->t->f);
-    adcgs_status status = adcgs_encode_stream(stream, w->t, n.list, ADCGS_COUNTOF(n.list), error);
+    adcgs_status status = adcgs_encode_stream(stream, w->t, n.list, n.n, error);
     if (status == ADCGS_OK)
         status = adcgs_encode_verified(stream, &bytes, w->t->cpu, pool, error);
     if (status == ADCGS_OK && w->t->config.target == ADCGS_TARGET_SIZE && bytes.size > w->o->size)
@@ -266,12 +270,15 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_cpu_level cpu;
     watcher w = { .o = o };
     adcgs_stream stream;
+    adcgs_buffer_init(&w.changes);
     adcgs_stream_init(&stream);
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
     if (status == ADCGS_OK && o->frames)
         status = adcgs_frames_parse(&scene_options.frames, o->frames, error);
     if (status == ADCGS_OK)
         status = configure(&config, o, cpu, error);
+    if (status == ADCGS_OK)
+        status = adcgs_train_changes(&config, &w.changes, error);
     if (status == ADCGS_OK)
         status = check_writable(target(o), error);
     if (status == ADCGS_OK && o->checkpoint)
@@ -290,6 +297,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK) {
         w.t->quantise = adcgs_encode_quantise_hook;
         w.t->measure = measure;
+        w.t->measure_user = &w;
         w.t->picture_memory = o->memory;
         w.t->loading = loading;
         w.t->loading_user = &w;
@@ -302,6 +310,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
                                                                   o->json }, met, error);
     if (w.log)
         fclose(w.log);
+    adcgs_buffer_clear(&w.changes);
     adcgs_stream_clear(&stream, NULL);
     adcgs_trainer_free(&w.t);
     adcgs_scene_free(&scene);

@@ -108,7 +108,8 @@ static void texts_that_are_no_settings_are_refused(void **state)
         { "dropout=0.91", "expected a number from 0 to 0.9" },
         { "slim_at=0.5", "unknown setting 'slim_at'" },
         { "k=5,,chunks=1", "unknown setting ''" },
-        { "k=00000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000004", "expected NAME" },
+        { "lambda=0.0000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000001",
+          "expected NAME=VALUE" },
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(texts); i++) {
         adcgs_train_config c = preset("draft");
