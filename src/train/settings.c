@@ -265,7 +265,7 @@ void adcgs_train_list(const adcgs_train_config *config, FILE *file)
         [ADCGS_SETTING_ANCHORS] = "Anchors",
         [ADCGS_SETTING_MOMENTS] = "Moments, as fractions of the run; beyond 1 they never come",
     };
-    fprintf(file, "Settings of preset %s: name, value, what it trades, meaning, range.\n"
+    fprintf(file, "Settings of preset %s: name, value, what it affects, meaning, range.\n"
                   "S: speed, B: bytes of the file, Q: quality, M: memory in training.\n", config->preset);
     int group = -1;
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {

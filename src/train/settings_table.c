@@ -39,7 +39,7 @@ const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "
 #define SWITCH(name, binds, help) ROW(#name, name, 0, SWITCHES, binds, 0, 0, 1, ALL(0), help)
 
 const adcgs_setting adcgs_settings[] = {
-    RUN(iterations, S | Q, 10, 1e7, { 3000, 20000, 40000, 100000, 80000 }, "length of the run; each looks at one picture"),
+    RUN(iterations, S | Q, 10, 1e7, { 3000, 20000, 40000, 100000, 80000 }, "iterations of the run; each looks at one picture"),
     RUN(seed, 0, 0, 1e15, ALL(1), "seed of every random choice"),
     RUN(scale, S | Q | M, 1, 64, ALL(1), "the pictures' width and height are divided by this"),
 
@@ -51,7 +51,7 @@ const adcgs_setting adcgs_settings[] = {
     ROW("lambda", lambda, AT(own_lambda), LOSS, WITH_LAMBDA, B | Q, 0, 1000, ALL(0.1),
         "loss per mebibyte of features and networks; more makes smaller files"),
     LOSS(network_rate, B | Q, 0, 1000, BUT_PAPER(1, 0), "weight of the networks' own bits, relative to those of features"),
-    LOSS(rate_period, S | Q, 1, 1000, ALL(4), "bits are measured on every so manyth group of 64 anchors"),
+    LOSS(rate_period, S | Q, 1, 1000, ALL(4), "bits are measured on one group of 64 anchors in so many"),
     LOSS(rdo_strength, B | Q, 0, 1000, ALL(0), "weight of bits when levels are chosen, relative to lambda; 0: nearest levels"),
     LOSS(ssim_weight, Q, 0, 1, ALL(0.2), "share of 1 - SSIM in the pictures' loss; the rest is L1"),
     ROW("rigid_weight", rigid_weight, AT(own_rigid), LOSS, ALWAYS, S | Q, 0, 1000, BUT_PAPER(0.02, 0),
