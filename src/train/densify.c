@@ -56,7 +56,7 @@ static uint32_t find_candidates(const adcgs_trainer *t, candidate *list)
         if (adcgs_anchor_of(t->f, i) >= t->f->n || !(w > 1))
             continue;
         const float score = t->stats.significance[i] / w;
-        if (score > t->config.grow_threshold)
+        if (score > t->config.densify_threshold)
             list[n++] = (candidate){ score, i };
     }
     qsort(list, n, sizeof *list, by_score);
@@ -142,7 +142,7 @@ static void dress(adcgs_fmodel *f, const adcgs_residual *places, uint32_t n)
 
 double adcgs_densify_budget(const adcgs_train_config *c, double progress)
 {
-    const double ramp = fmin(1, (progress - c->grow_from) / (0.8 * (c->grow_until - c->grow_from)));
+    const double ramp = fmin(1, (progress - c->densify_from) / (0.8 * (c->densify_until - c->densify_from)));
     const double from = ADCGS_MIN(c->start_anchors, c->max_anchors);
     return from + (c->max_anchors - from) * ramp;
 }

@@ -4,6 +4,7 @@
 
 #include "train/initialise.h"
 #include "train/rate_plan.h"
+#include "train/settings.h"
 
 #include <math.h>
 
@@ -56,6 +57,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_train_config *c = &t->config;
     const uint32_t times = t->scene->n_times;
+    ADCGS_TRY(adcgs_train_check(c, error));
     if (c->bf16)
         ADCGS_TRY(adcgs_bf16_check(t->cpu, error));
     if (c->without_coarse && c->without_fine)
@@ -70,8 +72,8 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
     if (several && !c->own_rigid)
         c->rigid_weight = 0;
-    if (several && !c->own_area)
-        c->area_from = 0;
+    if (several && !c->own_scale_from)
+        c->scale_from = 0;
     if (c->without_coarse)
         c->shape.omega_width = 0;
     if (c->without_fine)

@@ -7,6 +7,7 @@
 
 #include "layouts/open.h"
 #include "train/initialise.h"
+#include "train/settings.h"
 
 static adcgs_scene *scene;
 
