@@ -2,31 +2,6 @@
 /** \file The backward pass: primitives' gradients to anchors and networks. */
 #include "fmodel/pass_layout.h"
 
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
-                         const float *dout, float *dz)
-{
-    const size_t tile = (size_t)m->width * 64;
-    /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
-    dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
-    for (int i = m->hidden - 1; i > 0; i--) {
-        const adcgs_square turn = { m->width, m->turn + m->w[i], adcgs_mlp_packed(m, i, 1) };
-        dsp->residual_back(dsp, dz, dz + (size_t)i * tile, below + (i - 1) * m->width, &turn, dz, h + (size_t)(i - 1) * tile);
-    }
-    dsp->lrelu_back(dz, h, m->width);
-}
-
-void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
-                            size_t sdz, const float *dout, size_t sdout, int tiles)
-{
-    const size_t tile = (size_t)m->width * 64;
-    for (int i = 1; i < m->hidden; i++)
-        dsp->weight_grad(g + m->w[i], (size_t)m->width, g + m->b[i], dz + (size_t)i * tile, sdz, h + (size_t)(i - 1) * tile, sh,
-                         tiles, m->width, m->width);
-    const int last = m->hidden;
-    dsp->weight_grad(g + m->w[last], (size_t)m->width, g + m->b[last], dout, sdout, h + (size_t)(last - 1) * tile, sh, tiles,
-                     m->out, m->width);
-}
-
 typedef struct backward_job {
     adcgs_pass *pass;
     adcgs_fmodel *f;
@@ -208,6 +183,31 @@ static void merge_partials(adcgs_pass *p, adcgs_fmodel *f)
         }
 }
 
+/** The time part of the first layers: their bias gradient is the gradient of the per-frame bias vector. */
+static void time_back(adcgs_pass *p, adcgs_fmodel *f)
+{
+    const int width = f->params.time_width;
+    const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
+    float *dz = f->param[ADCGS_P_TIME].g;
+    int row;
+    const float frac = adcgs_fmodel_time_row(&f->params, p->t, &row);
+    for (int i = 0; i < 2; i++) {
+        const adcgs_mlp *m = &f->mlp[which[i]];
+        float *g = f->param[which[i]].g;
+        for (int o = 0; m->n && o < m->width; o++) {
+            const float d = g[m->b[0] + (size_t)o];
+            const size_t w = (size_t)o * (size_t)m->in[0] + (size_t)m->own;
+            for (int j = 0; j < width; j++) {
+                g[w + (size_t)j] += d * p->time_code[j];
+                const float dcode = d * m->use[w + (size_t)j];
+                dz[row * width + j] += dcode * (1 - frac);
+                if (f->params.time_rows > 1)
+                    dz[(row + 1) * width + j] += dcode * frac;
+            }
+        }
+    }
+}
+
 static void sum_rate(const adcgs_pass *p, int period, adcgs_rate *rate)
 {
     memset(rate, 0, sizeof *rate);
@@ -226,7 +226,7 @@ void adcgs_pass_backward(adcgs_pass *p, adcgs_fmodel *f, adcgs_deform deform, fl
     adcgs_pool_run(p->pool, backward_chunk, &job, p->chunks);
     merge_partials(p, f);
     if (job.deform)
-        adcgs_pass_time_back(p, f);
+        time_back(p, f);
     if (rate)
         sum_rate(p, period, rate);
 }

@@ -10,19 +10,6 @@
 #include "fmodel/pass_layout.h"
 #include "splat/steps.h"
 
-size_t adcgs_pass_scratch_rows(const adcgs_fmodel *f)
-{
-    const size_t k = f->params.k, nv = f->params.n_fv, ng = f->params.n_fg;
-    const adcgs_mlp *th = &f->mlp[ADCGS_P_THETA], *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
-    const size_t theta = k * ADCGS_THETA_OUT + (size_t)(th->width * (1 + th->hidden));
-    const size_t deform = (size_t)(om->out + va->out + om->width * om->hidden + va->width * va->hidden);
-    const size_t w = (size_t)f->shape.entropy_width * (size_t)(f->shape.entropy_hidden + 1),
-        out = 2 * (nv > ng + 6 ? nv : ng + 6);
-    const size_t below = (w + 31) / 32;
-    const size_t rate = 2 * nv + k * ng + f->params.n_eta * 2u + k * (3 * w + below + 2 * out) + 2 * w + ng + 64;
-    return theta + deform > rate ? theta + deform : rate;
-}
-
 /** The group at work. x, dx: inputs of networks and their gradients. */
 typedef struct job {
     const adcgs_pass *p;
