@@ -175,19 +175,19 @@ void adcgs_fmodel_take_steps(adcgs_fmodel *f)
 
 static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *error)
 {
-    const size_t groups = (n + 63) / 64;
+    const size_t groups = adcgs_lane_groups(n);
     f->n = n;
     f->groups = (uint32_t)groups;
     f->pos = adcgs_alloc(NULL, n, sizeof *f->pos, error);
-    f->x = adcgs_alloc(NULL, groups * 3 * 64, sizeof(float), error);
-    f->code = adcgs_alloc(NULL, groups * 64 * 6 * (size_t)(f->params.octaves + 1), sizeof(float), error);
-    f->keep = adcgs_alloc(NULL, groups * f->params.k * 64, sizeof(float), error);
-    f->moving = adcgs_alloc(NULL, groups * 64, sizeof(float), error);
-    f->live = adcgs_alloc(NULL, groups * 64, sizeof(float), error);
+    f->x = adcgs_alloc(NULL, groups * 3 * ADCGS_LANES, sizeof(float), error);
+    f->code = adcgs_alloc(NULL, groups * ADCGS_LANES * 6 * (size_t)(f->params.octaves + 1), sizeof(float), error);
+    f->keep = adcgs_alloc(NULL, groups * f->params.k * ADCGS_LANES, sizeof(float), error);
+    f->moving = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
+    f->live = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live)
         return ADCGS_ERR_MEMORY;
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
-        ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * 64, error));
+        ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * ADCGS_LANES, error));
     }
     return ADCGS_OK;
 }
@@ -198,17 +198,17 @@ static void place_anchors(adcgs_fmodel *f, const uint32_t (*pos)[3])
     memcpy(f->pos, pos, f->n * sizeof *f->pos);
     const float unit = ldexpf(1, -f->shape.depth - 1);
     for (uint32_t g = 0; g < f->groups; g++) {
-        float cube[3][64] __attribute__((aligned(64)));
-        for (uint32_t l = 0; l < 64; l++) {
-            const uint32_t i = g * 64 + l < f->n ? g * 64 + l : f->n - 1;
+        float cube[3][ADCGS_LANES] __attribute__((aligned(ADCGS_LANES)));
+        for (uint32_t l = 0; l < ADCGS_LANES; l++) {
+            const uint32_t i = g * ADCGS_LANES + l < f->n ? g * ADCGS_LANES + l : f->n - 1;
             for (int a = 0; a < 3; a++) {
                 const float odd = (float)(2 * pos[i][a] + 1);
-                f->x[((size_t)g * 3 + (size_t)a) * 64 + l] = fmaf(odd, 0.5f * f->voxel, f->origin[a]);
+                f->x[((size_t)g * 3 + (size_t)a) * ADCGS_LANES + l] = fmaf(odd, 0.5f * f->voxel, f->origin[a]);
                 cube[a][l] = odd * unit;
             }
-            f->live[g * 64 + l] = g * 64 + l < f->n ? 1.0f : 0.0f;
+            f->live[g * ADCGS_LANES + l] = g * ADCGS_LANES + l < f->n ? 1.0f : 0.0f;
         }
-        adcgs_position_code(f->code + (size_t)g * 6 * f->params.octaves * 64, &cube[0][0], f->params.octaves);
+        adcgs_position_code(f->code + (size_t)g * 6 * f->params.octaves * ADCGS_LANES, &cube[0][0], f->params.octaves);
     }
 }
 
@@ -239,10 +239,10 @@ adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params,
     }
     start_steps(f);
     place_anchors(f, pos);
-    for (size_t i = 0; i < (size_t)f->groups * 64; i++) {
+    for (size_t i = 0; i < (size_t)f->groups * ADCGS_LANES; i++) {
         f->moving[i] = params->time_rows ? f->live[i] : 0;
         for (int k = 0; k < params->k; k++)
-            f->keep[(i / 64 * params->k + (size_t)k) * 64 + i % 64] = f->live[i];
+            f->keep[(i / ADCGS_LANES * params->k + (size_t)k) * ADCGS_LANES + i % ADCGS_LANES] = f->live[i];
     }
     for (size_t i = 0; i < f->param[ADCGS_P_FG].n; i++)
         f->param[ADCGS_P_FG].p[i] = (float)(0.7 * adcgs_random_normal(seed, ADCGS_P_FG, i));
@@ -283,10 +283,10 @@ void adcgs_fmodel_free(adcgs_fmodel **model)
 /** Copy anchor `from` of old array to anchor `to` of new, rows features each. */
 static void copy_rows(float *to_array, const float *from_array, uint32_t to, uint32_t from, size_t rows)
 {
-    float *t = to_array + (size_t)(to / 64) * rows * 64 + to % 64;
-    const float *s = from_array + (size_t)(from / 64) * rows * 64 + from % 64;
+    float *t = to_array + (size_t)(to / ADCGS_LANES) * rows * ADCGS_LANES + to % ADCGS_LANES;
+    const float *s = from_array + (size_t)(from / ADCGS_LANES) * rows * ADCGS_LANES + from % ADCGS_LANES;
     for (size_t r = 0; r < rows; r++)
-        t[r * 64] = s[r * 64];
+        t[r * ADCGS_LANES] = s[r * ADCGS_LANES];
 }
 
 adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh,

@@ -11,6 +11,7 @@
 
 #include "fmodel/mlp.h"
 #include "model/model.h"
+#include "splat/rows.h"
 
 /** What is trained. The first five are per anchor, the rest are networks. */
 typedef enum adcgs_pgroup {
@@ -87,7 +88,7 @@ adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], con
 /** Slot of primitive k of an anchor, the order of spec clause "Primitives". */
 static inline size_t adcgs_fmodel_slot(const adcgs_fmodel *f, uint32_t anchor, int k)
 {
-    return ((size_t)(anchor / 64) * f->params.k + (size_t)k) * 64 + anchor % 64;
+    return adcgs_slot_of(anchor, f->params.k, k);
 }
 
 /** Where in ADCGS_P_STEP the step of a row lies; eta's is 1 and not among them. */
@@ -111,7 +112,7 @@ void adcgs_fmodel_take_steps(adcgs_fmodel *f);
 static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
 {
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
-    return f->param[group].p + ((size_t)(anchor / 64) * rows + (size_t)row) * 64 + anchor % 64;
+    return f->param[group].p + ((size_t)(anchor / ADCGS_LANES) * rows + (size_t)row) * ADCGS_LANES + anchor % ADCGS_LANES;
 }
 
 /** Give a network's hidden layers another width, at most the shape's; its parameters are left to the caller. */

@@ -147,7 +147,7 @@ void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp)
 
 void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, uint64_t *below, float *out)
 {
-    const size_t tile = (size_t)m->width * 64;
+    const size_t tile = (size_t)m->width * ADCGS_LANES;
     dsp->dense.lrelu(h, m->width);
     for (int i = 1; i < m->hidden; i++) {
         float *next = h + (size_t)i * tile;
@@ -161,7 +161,7 @@ void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, ui
 void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
                          const float *dout, float *dz)
 {
-    const size_t tile = (size_t)m->width * 64;
+    const size_t tile = (size_t)m->width * ADCGS_LANES;
     /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
     dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
     for (int i = m->hidden - 1; i > 0; i--) {
@@ -174,7 +174,7 @@ void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const f
 void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
                             size_t sdz, const float *dout, size_t sdout, int tiles)
 {
-    const size_t tile = (size_t)m->width * 64;
+    const size_t tile = (size_t)m->width * ADCGS_LANES;
     for (int i = 1; i < m->hidden; i++)
         dsp->weight_grad(g + m->w[i], (size_t)m->width, g + m->b[i], dz + (size_t)i * tile, sdz, h + (size_t)(i - 1) * tile, sh,
                          tiles, m->width, m->width);

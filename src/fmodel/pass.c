@@ -17,9 +17,9 @@ static void quantise_rows(const forward_job *job, uint32_t g, int i, float *to, 
     if (job->mode->quant == ADCGS_QUANT_NOISE)
         p->dsp.noise(to, value, step, rows, adcgs_mix32(job->mode->seed ^ (g * ADCGS_P_ANCHOR + (uint32_t)i)));
     else if (job->mode->quant == ADCGS_QUANT_ROUND)
-        p->dsp.round(to, value, step, p->mu[i] + (size_t)g * (size_t)rows * 64, rows);
+        p->dsp.round(to, value, step, p->mu[i] + (size_t)g * (size_t)rows * ADCGS_LANES, rows);
     else
-        memcpy(to, value, (size_t)rows * 64 * sizeof *value);
+        memcpy(to, value, (size_t)rows * ADCGS_LANES * sizeof *value);
 }
 
 /** f_v comes first: the steps of the others may follow from it. */
@@ -29,7 +29,7 @@ static void quantise_group(const forward_job *job, uint32_t g, float *scratch)
     const adcgs_fmodel *f = job->f;
     const int adapts = adcgs_pass_adapts(p, f);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
-        const size_t at = (size_t)g * (size_t)adcgs_fmodel_rows(f, i) * 64;
+        const size_t at = (size_t)g * (size_t)adcgs_fmodel_rows(f, i) * ADCGS_LANES;
         float *used = p->used[i] + at;
         if (adapts && adcgs_pass_factor_of(f, i, 0) >= 0) { /* in units of the factors, and back */
             adcgs_pass_divide(p, f, g, i, scratch, f->param[i].p + at);
@@ -51,14 +51,14 @@ static void forward_theta(const forward_job *job, uint32_t g, float *anchor)
     const adcgs_dense_dsp *d = &p->net->dense;
     const int nv = f->params.n_fv, ng = f->params.n_fg;
     const adcgs_act act = adcgs_pass_act(p, f, g);
-    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
-    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * 64;
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
+    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * ADCGS_LANES;
     d->dense(anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], fv, m->width, nv);
     for (int k = 0; k < f->params.k; k++) {
         float *h = act.theta_h + (size_t)k * act.theta_h_stride;
-        d->dense(h, anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * 64, m->width, ng);
+        d->dense(h, anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * ADCGS_LANES, m->width, ng);
         adcgs_mlp_tail(p->net, m, h, act.theta_below + (size_t)k * act.theta_below_stride,
-                       act.theta_out + (size_t)k * ADCGS_THETA_OUT * 64);
+                       act.theta_out + (size_t)k * ADCGS_THETA_OUT * ADCGS_LANES);
     }
 }
 
@@ -69,15 +69,15 @@ static void forward_deform(const forward_job *job, uint32_t g)
     const adcgs_dense_dsp *d = &p->net->dense;
     const int nv = f->params.n_fv, fp = 6 * f->params.octaves;
     const adcgs_act act = adcgs_pass_act(p, f, g);
-    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
     const adcgs_mlp *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
     if (om->n) {
         d->dense(act.omega_h, NULL, p->time_bias[0], om->use, (size_t)om->in[0], fv, om->width, nv);
         adcgs_mlp_tail(p->net, om, act.omega_h, act.omega_below, act.omega_out);
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
-        d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], f->code + (size_t)g * (size_t)fp * 64, va->width,
-                 fp);
+        const float *code = f->code + (size_t)g * (size_t)fp * ADCGS_LANES;
+        d->dense(act.varpi_h, NULL, p->time_bias[1], va->use, (size_t)va->in[0], code, va->width, fp);
         if (f->params.fine_uses_fv)
             d->dense(act.varpi_h, act.varpi_h, NULL, va->use + fp, (size_t)va->in[0], fv, va->width, nv);
         adcgs_mlp_tail(p->net, va, act.varpi_h, act.varpi_below, act.varpi_out);
@@ -86,7 +86,7 @@ static void forward_deform(const forward_job *job, uint32_t g)
 
 static void drop_primitives(const forward_job *job, uint32_t g)
 {
-    const size_t n = (size_t)job->f->params.k * 64, at = g * n;
+    const size_t n = (size_t)job->f->params.k * ADCGS_LANES, at = g * n;
     const uint32_t seed = adcgs_mix32(job->mode->seed ^ 0x5bd1e995u), below = (uint32_t)(job->mode->dropout * 0x1p32f);
     for (size_t i = at; i < at + n; i++)
         job->pass->keep[i] = below && adcgs_mix32(seed + (uint32_t)i) < below ? 0 : job->f->keep[i];

@@ -13,7 +13,7 @@ typedef struct backward_job {
 
 static float *grad_at(const adcgs_fmodel *f, int group, uint32_t g)
 {
-    return f->param[group].g + (size_t)g * (size_t)adcgs_fmodel_rows(f, group) * 64;
+    return f->param[group].g + (size_t)g * (size_t)adcgs_fmodel_rows(f, group) * ADCGS_LANES;
 }
 
 /**
@@ -28,20 +28,20 @@ static void theta_back(const backward_job *job, uint32_t g, const float *dtheta,
     const adcgs_train_dsp *dsp = p->net;
     const int nv = f->params.n_fv, ng = f->params.n_fg, w = m->width;
     const adcgs_act act = adcgs_pass_act(p, f, g);
-    const size_t tile = (size_t)w * 64;
+    const size_t tile = (size_t)w * ADCGS_LANES;
     float *dz = sum + tile, *gm = partial + p->partial_at[ADCGS_P_THETA];
     float *dfg = grad_at(f, ADCGS_P_FG, g), *dfv = grad_at(f, ADCGS_P_FV, g);
-    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
-    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * 64;
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
+    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * ADCGS_LANES;
     memset(sum, 0, tile * sizeof *sum);
     for (size_t i = 0; i < f->params.k; i++) {
-        const float *h = act.theta_h + i * act.theta_h_stride, *dout = dtheta + i * ADCGS_THETA_OUT * 64;
-        float *d = dfg + i * (size_t)ng * 64;
+        const float *h = act.theta_h + i * act.theta_h_stride, *dout = dtheta + i * ADCGS_THETA_OUT * ADCGS_LANES;
+        float *d = dfg + i * (size_t)ng * ADCGS_LANES;
         adcgs_mlp_tail_back(dsp, m, h, act.theta_below + i * act.theta_below_stride, dout, dz);
         dsp->dense.dense(d, d, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w, dz, ng, w);
         for (size_t j = 0; j < tile; j++)
             sum[j] += dz[j];
-        dsp->weight_grad(gm + nv, (size_t)m->in[0], NULL, dz, 0, fg + i * (size_t)ng * 64, 0, 1, w, ng);
+        dsp->weight_grad(gm + nv, (size_t)m->in[0], NULL, dz, 0, fg + i * (size_t)ng * ADCGS_LANES, 0, 1, w, ng);
         adcgs_mlp_weight_grads(dsp, m, gm, h, 0, dz, 0, dout, 0, 1);
     }
     dsp->dense.dense(dfv, dfv, NULL, m->turn, (size_t)w, sum, nv, w);
@@ -64,7 +64,7 @@ static void deform_back(const backward_job *job, uint32_t g, const float *domega
     const adcgs_train_dsp *dsp = p->net;
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const int nv = f->params.n_fv, fp = 6 * f->params.octaves;
-    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
     float *dfv = grad_at(f, ADCGS_P_FV, g);
     if (om->n) {
         float *gm = partial + p->partial_at[ADCGS_P_OMEGA];
@@ -74,7 +74,7 @@ static void deform_back(const backward_job *job, uint32_t g, const float *domega
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         float *gm = partial + p->partial_at[ADCGS_P_VARPI];
-        const float *code = f->code + (size_t)g * (size_t)fp * 64;
+        const float *code = f->code + (size_t)g * (size_t)fp * ADCGS_LANES;
         tail_back(p, va, act.varpi_h, act.varpi_below, dvarpi, dz, gm);
         dsp->weight_grad(gm, (size_t)va->in[0], gm + va->b[0], dz, 0, code, 0, 1, va->width, fp);
         if (f->params.fine_uses_fv) {
@@ -88,7 +88,7 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
 {
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
-    const size_t at = (size_t)g * f->params.k * 64;
+    const size_t at = (size_t)g * f->params.k * ADCGS_LANES;
     adcgs_group_io io;
     adcgs_group_grad grad;
     adcgs_pass_io(p, f, g, job->deform, &io);
@@ -103,10 +103,10 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
     grad.sigma = grad_at(f, ADCGS_P_SIGMA, g);
     grad.colour = grad_at(f, ADCGS_P_COLOUR, g);
     grad.theta = scratch;
-    grad.omega = scratch + (size_t)f->params.k * ADCGS_THETA_OUT * 64;
-    grad.varpi = grad.omega + f->mlp[ADCGS_P_OMEGA].out * 64;
-    scratch = grad.varpi + f->mlp[ADCGS_P_VARPI].out * 64;
-    grad.pull = p->pull ? p->pull + (size_t)g * 12 * 64 : NULL;
+    grad.omega = scratch + (size_t)f->params.k * ADCGS_THETA_OUT * ADCGS_LANES;
+    grad.varpi = grad.omega + f->mlp[ADCGS_P_OMEGA].out * ADCGS_LANES;
+    scratch = grad.varpi + f->mlp[ADCGS_P_VARPI].out * ADCGS_LANES;
+    grad.pull = p->pull ? p->pull + (size_t)g * 12 * ADCGS_LANES : NULL;
     p->dsp.primitives_back(&io, &grad);
     theta_back(job, g, grad.theta, scratch, partial);
     if (job->deform)
@@ -121,9 +121,9 @@ static void step_sums(const adcgs_fmodel *f, uint32_t g, float *const to[], floa
 {
     for (int i = 0; i < ADCGS_P_ETA; i++)
         for (int r = 0; r < adcgs_fmodel_rows(f, i); r++) {
-            const size_t at = ((size_t)g * (size_t)adcgs_fmodel_rows(f, i) + (size_t)r) * 64;
+            const size_t at = ((size_t)g * (size_t)adcgs_fmodel_rows(f, i) + (size_t)r) * ADCGS_LANES;
             float sum = 0;
-            for (size_t l = at; l < at + 64; l++)
+            for (size_t l = at; l < at + ADCGS_LANES; l++)
                 sum += f->param[i].g[l] * (to[i][l] - (from ? from[i][l] : 0));
             sums[adcgs_fmodel_step_at(f, i, r)] += scale * sum;
         }

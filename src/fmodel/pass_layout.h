@@ -26,8 +26,8 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
     const size_t k = f->params.k;
     adcgs_act a;
     float *at = p->act + (size_t)g * p->act_stride;
-#define TAKE(field, rows) (a.field = (void *)at, at += (size_t)(rows) * 64)
-    a.theta_h_stride = (size_t)th->hidden * (size_t)th->width * 64;
+#define TAKE(field, rows) (a.field = (void *)at, at += (size_t)(rows) * ADCGS_LANES)
+    a.theta_h_stride = (size_t)th->hidden * (size_t)th->width * ADCGS_LANES;
     a.theta_below_stride = adcgs_mlp_below_rows(th) * 32;
     TAKE(theta_h, k * (size_t)th->hidden * (size_t)th->width);
     TAKE(theta_below, k * adcgs_mlp_below_rows(th));
@@ -57,7 +57,7 @@ static inline int adcgs_pass_adapts(const adcgs_pass *p, const adcgs_fmodel *f)
 /** Factors of a group of anchors: [steps][64]. */
 static inline float *adcgs_pass_factors(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g)
 {
-    return p->factor + (size_t)g * (size_t)adcgs_params_steps(&f->params) * 64;
+    return p->factor + (size_t)g * (size_t)adcgs_params_steps(&f->params) * ADCGS_LANES;
 }
 /** Which of them the rows of a parameter group use; -1: none. */
 int adcgs_pass_factor_of(const adcgs_fmodel *f, int group, int row);

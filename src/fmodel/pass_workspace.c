@@ -12,43 +12,26 @@ static size_t rows_of(const adcgs_mlp *m)
 
 static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error *error)
 {
-    const size_t g = f->groups, k = f->params.k, slots = g * k * 64;
+    const size_t g = f->groups, k = f->params.k, slots = g * k * ADCGS_LANES;
     p->groups = f->groups;
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
-        const size_t n = g * (size_t)adcgs_fmodel_rows(f, i) * 64;
+        const size_t n = g * (size_t)adcgs_fmodel_rows(f, i) * ADCGS_LANES;
         p->used[i] = adcgs_alloc(NULL, n, sizeof(float), error);
         p->mu[i] = adcgs_alloc(NULL, n, sizeof(float), error);
         if (!p->used[i] || !p->mu[i])
             return ADCGS_ERR_MEMORY;
     }
-    p->factor = adcgs_alloc(NULL, g * (size_t)adcgs_params_steps(&f->params) * 64, sizeof(float), error);
+    p->factor = adcgs_alloc(NULL, g * (size_t)adcgs_params_steps(&f->params) * ADCGS_LANES, sizeof(float), error);
     p->keep = adcgs_alloc(NULL, slots, sizeof(float), error);
     p->act = adcgs_alloc(NULL, g * p->act_stride, sizeof(float), error);
-    p->prim = adcgs_alloc(NULL, slots * 14, sizeof(float), error);
-    p->grad = adcgs_alloc(NULL, slots * 16, sizeof(float), error);
-    for (size_t i = 0; p->factor && i < g * (size_t)adcgs_params_steps(&f->params) * 64; i++)
+    p->prim = adcgs_alloc(NULL, slots * ADCGS_ROWS, sizeof(float), error);
+    p->grad = adcgs_alloc(NULL, slots * ADCGS_GRAD_ROWS, sizeof(float), error);
+    for (size_t i = 0; p->factor && i < g * (size_t)adcgs_params_steps(&f->params) * ADCGS_LANES; i++)
         p->factor[i] = 1;
     if (!p->factor || !p->keep || !p->act || !p->prim || !p->grad)
         return ADCGS_ERR_MEMORY;
-    float *a = p->prim, *d = p->grad;
-    adcgs_primitives *r = &p->primitives;
-    r->n = (uint32_t)slots;
-    for (int c = 0; c < 3; c++) {
-        r->mean[c] = a + (size_t)c * slots;
-        r->scale[c] = a + (size_t)(3 + c) * slots;
-        r->colour[c] = a + (size_t)(11 + c) * slots;
-        p->grads.mean[c] = d + (size_t)c * slots;
-        p->grads.scale[c] = d + (size_t)(3 + c) * slots;
-        p->grads.colour[c] = d + (size_t)(11 + c) * slots;
-    }
-    for (int c = 0; c < 4; c++) {
-        r->rotation[c] = a + (size_t)(6 + c) * slots;
-        p->grads.rotation[c] = d + (size_t)(6 + c) * slots;
-    }
-    r->opacity = a + 10 * slots;
-    p->grads.opacity = d + 10 * slots;
-    p->grads.weight = d + 14 * slots;
-    p->grads.screen = d + 15 * slots;
+    p->primitives = adcgs_rows_primitives(p->prim, (uint32_t)slots);
+    p->grads = adcgs_raster_grads_of(p->grad, slots);
     return ADCGS_OK;
 }
 
@@ -93,9 +76,9 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     const adcgs_mlp *m = f->mlp;
     const size_t k = f->params.k;
     const adcgs_mlp *theta = &m[ADCGS_P_THETA], *steps = &m[ADCGS_P_E_STEPS];
-    p->act_stride = 64 * (k * rows_of(theta) + rows_of(&m[ADCGS_P_OMEGA]) + rows_of(&m[ADCGS_P_VARPI]) + rows_of(steps) +
+    p->act_stride = ADCGS_LANES * (k * rows_of(theta) + rows_of(&m[ADCGS_P_OMEGA]) + rows_of(&m[ADCGS_P_VARPI]) + rows_of(steps) +
                           (size_t)steps->out);
-    p->scratch_stride = 64 * scratch_rows(f);
+    p->scratch_stride = ADCGS_LANES * scratch_rows(f);
     size_t at = 0;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         p->partial_at[i] = at;
@@ -147,23 +130,21 @@ adcgs_status adcgs_pass_resize(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error
 void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs_deform deform, adcgs_group_io *io)
 {
     const adcgs_act act = adcgs_pass_act(p, f, g);
-    const size_t slots = (size_t)f->groups * f->params.k * 64, at = (size_t)g * f->params.k * 64;
+    const size_t slots = (size_t)f->groups * f->params.k * ADCGS_LANES, at = (size_t)g * f->params.k * ADCGS_LANES;
     io->k = f->params.k;
-    io->x = f->x + (size_t)g * 3 * 64;
-    io->sigma = p->used[ADCGS_P_SIGMA] + (size_t)g * ADCGS_SIGMA_N * 64;
-    io->colour = p->used[ADCGS_P_COLOUR] + (size_t)g * ADCGS_COLOUR_N * 64;
+    io->x = f->x + (size_t)g * 3 * ADCGS_LANES;
+    io->sigma = p->used[ADCGS_P_SIGMA] + (size_t)g * ADCGS_SIGMA_N * ADCGS_LANES;
+    io->colour = p->used[ADCGS_P_COLOUR] + (size_t)g * ADCGS_COLOUR_N * ADCGS_LANES;
     io->theta = act.theta_out;
     io->omega = deform && f->mlp[ADCGS_P_OMEGA].n ? act.omega_out : NULL;
     io->varpi = deform == ADCGS_DEFORM_ALL && f->mlp[ADCGS_P_VARPI].n ? act.varpi_out : NULL;
-    io->moving = f->moving + (size_t)g * 64;
+    io->moving = f->moving + (size_t)g * ADCGS_LANES;
     io->keep = p->keep + at;
     io->rotation = f->params.coarse_rotation;
-    for (int c = 0; c < 3; c++) {
-        io->mean[c] = p->prim + (size_t)c * slots + at;
-        io->scale[c] = p->prim + (size_t)(3 + c) * slots + at;
-        io->rgb[c] = p->prim + (size_t)(11 + c) * slots + at;
-    }
-    for (int c = 0; c < 4; c++)
-        io->rot[c] = p->prim + (size_t)(6 + c) * slots + at;
-    io->opacity = p->prim + 10 * slots + at;
+    const adcgs_slot_out out = adcgs_rows_at(p->prim, slots, at);
+    memcpy(io->mean, out.mean, sizeof out.mean);
+    memcpy(io->scale, out.scale, sizeof out.scale);
+    memcpy(io->rot, out.rotation, sizeof out.rotation);
+    memcpy(io->rgb, out.colour, sizeof out.colour);
+    io->opacity = out.opacity;
 }
