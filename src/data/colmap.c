@@ -258,8 +258,8 @@ static adcgs_status add_footage(reader *r, size_t index, const adcgs_footage *fo
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: the video of %.100s has %lld frames, but that of %.100s has %lld",
                           r->scene->directory, first->name, (long long)*frames, image->name, (long long)footage->frames);
     *frames = footage->frames;
-    if (index && !r->scene->frame_rate)
-        r->scene->frame_rate = footage->frame_rate;
+    if (!r->scene->rate.den)
+        r->scene->rate = footage->rate;
     ADCGS_TRY(adcgs_frames_count(r->frames, footage->frames, &count, r->scene->directory, r->error));
     ADCGS_TRY(adcgs_calibrate(&like, &camera->lens, footage->width, footage->height, footage->video, r->error));
     set_pose(&like, image);

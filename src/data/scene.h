@@ -15,8 +15,9 @@
  * - a JSON file with the field adcgs_scene, see data/scene_file.h.
  * - a PLY file of splats: a still scene, whose views are renderings of them, see data/splat_scene.h.
  *
- * Views for testing and validation are only listed: what follows from all views together (duration, near plane, axes, the
- * frame of reference, the first anchors) follows from the views for training alone.
+ * Views for testing and validation are only listed: what follows from all views together (near plane, axes, the frame of
+ * reference, the first anchors) follows from the views for training alone. Only when they were taken counts, for how long the
+ * scene is: a recording is as long as it was before some of its frames were put aside.
  *
  * Pictures taken through a lens that bends (OpenCV's model) are straightened when they are loaded: a view's camera is the
  * pinhole, its lens says how the picture was taken. Training on the rays as given would need a rasteriser of its own:
@@ -31,6 +32,7 @@
 #include "data/lens.h"
 #include "io/image.h"
 #include "io/points.h"
+#include "io/fps.h"
 
 #include <adcgs/camera.h>
 
@@ -72,8 +74,9 @@ typedef struct adcgs_scene {
     char *directory;
     uint32_t n_views[ADCGS_SPLITS];
     adcgs_scene_view *views[ADCGS_SPLITS];
-    double duration;      /**< seconds, 0 for a still scene; from the training split */
-    double frame_rate;    /**< frames per second */
+    double duration;      /**< seconds, 0 for a still scene */
+    adcgs_fps rate;      /**< frames per second of what is kept, known */
+    double intervals;     /**< between frames of the data set, from time 0 to 1 of its layout; 0: it does not say */
     uint32_t n_times;     /**< distinct times of the training split */
     double near_bound;    /**< nothing that training views show is nearer, by what the data set says; 0: it does not say */
     int has_alpha;        /**< images carry alpha, composited over background */
@@ -89,14 +92,14 @@ typedef struct adcgs_scene_options {
     const char *points_path;  /**< file of initial points, in world units, instead of the scene's own */
     int has_background;
     float background[3];
-    double frame_rate;        /**< of the frames that are kept; 0: the scene's, else 30 */
+    adcgs_fps rate;          /**< of the frames that are kept; not known: the scene's, else 30 */
     int dataset;              /**< an adcgs_dataset */
     adcgs_frame_range frames; /**< of videos, or of the distinct moments of all pictures; the first one kept is time 0 */
 } adcgs_scene_options;
 
 /**
  * Open a scene folder, its JSON file of transforms, a scene file, or a PLY file of splats. Times in [0,1] of the layout become
- * seconds: t * (n_times-1)/frame_rate. The near plane is half the near bound, or where there is none, a hundredth of the median
+ * seconds: t times the intervals between frames (frames.h), over the rate. The near plane is half the near bound, or where there is none, a hundredth of the median
  * distance of the training cameras from the centre of their views.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
  * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole and OpenCV's.

@@ -143,7 +143,7 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
 static adcgs_status read_root(place *at, adcgs_scene *scene, adcgs_transforms *out, adcgs_split split)
 {
     int found;
-    ADCGS_TRY(adcgs_json_number(&at->json, "fps", 1e-3, 1e4, &out->frame_rate, &found));
+    ADCGS_TRY(adcgs_json_fps(&at->json, "fps", &out->rate, &found));
     json_t *points = json_object_get(at->json.root, "ply_file_path");
     if (points) {
         const char *name = json_string_value(points);

@@ -77,7 +77,7 @@ static void test_single(void **state)
                             FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"fl_x\":7,\"cx\":1.5,\"cy\":2.25") ","
                             FRAME("a.ppm", "") "]}"));
     expect_views(2, 0, 1);
-    assert_true(scene->n_times == 1 && scene->duration == 0.0 && scene->frame_rate == 25.0 && !scene->has_alpha);
+    assert_true(scene->n_times == 1 && scene->duration == 0.0 && adcgs_fps_value(scene->rate) == 25.0 && !scene->has_alpha);
     assert_true(scene->background[0] == 0.0f && scene->points.n == 0);
     const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
     assert_true(c->width == 6 && c->height == 4 && c->fx == 7.0 && c->fy == 7.0 && c->cx == 1.5 && c->cy == 2.25);
@@ -113,16 +113,59 @@ static void test_split_files(void **state)
     snprintf(path, sizeof path, "%s///", folder);
     expect_good(adcgs_scene_open(&scene, path, NULL, &error));
     expect_views(4, 0, 1);
-    assert_true(scene->n_times == 3 && scene->frame_rate == 30.0 && fabs(scene->duration - 2.0 / 30.0) < 1e-12);
-    assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][0].time - 0.05) < 1e-12);
+    assert_true(scene->n_times == 3 && adcgs_fps_value(scene->rate) == 30.0 && scene->duration == 4.0 / 30.0);
+    assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][0].time - 0.1) < 1e-12);
     assert_true(scene->has_alpha && scene->background[1] == 1.0f && scene->points.n == 1);
     const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
     assert_true(c->width == 6 && c->height == 4 && fabs(c->fx - 3.0) < 1e-12 && fabs(c->fy - 3.0) < 1e-12);
     adcgs_scene_free(&scene);
 
-    const adcgs_scene_options options = {.has_background = 1, .background = {0.25f, 0.5f, 1.0f}, .frame_rate = 10.0,
+    const adcgs_scene_options options = {.has_background = 1, .background = {0.25f, 0.5f, 1.0f}, .rate = {10, 1},
                                          .points_path = in("missing.ply")};
     expect_error(adcgs_scene_open(&scene, folder, &options, &error), ADCGS_ERR_IO, "missing.ply", "No such file");
+}
+
+#define TIMED(time) FRAME("b.ppm", ",\"time\":" time)
+
+static void put_times(const char *train, const char *test)
+{
+    char text[2000];
+    snprintf(text, sizeof text, "{\"fl_x\":5%s]}", train);
+    put_text("transforms_train.json", text);
+    snprintf(text, sizeof text, "{\"fl_x\":5%s]}", test);
+    put_text("transforms_test.json", text);
+}
+
+static void expect_time(const char *train, const char *test, uint32_t num, uint32_t den, double frames)
+{
+    put_times(train, test);
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
+    assert_true(scene->rate.num == num && scene->rate.den == den && scene->duration == frames * den / num);
+    adcgs_scene_free(&scene);
+}
+
+/** All splits tell together when there were frames, and any of them at which rate. */
+static void test_duration(void **state)
+{
+    const char *const ends = ",\"frames\":[" TIMED("0") "," TIMED("1");
+    /* Every second frame is for testing; six digits are enough. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.333333") "," TIMED("0.666667") "," TIMED("1"),
+                ",\"frames\":[" TIMED("0.166667") "," TIMED("0.5") "," TIMED("0.833333"), 30, 1, 6);
+    expect_time(ends, ",\"frames\":[" TIMED("0.5"), 30, 1, 2);
+    /* Nobody shows the third of four intervals' end. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("1"), ",\"frames\":[" TIMED("0.5"), 30, 1, 4);
+    /* Moments of its own, as D-NeRF's test views have: three intervals of training, not seventeen or five. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.3333333") "," TIMED("0.6666667") "," TIMED("1"),
+                ",\"frames\":[" TIMED("0.41") "," TIMED("0.77"), 30, 1, 3);
+    expect_time(ends, ",\"fps\":29.97,\"frames\":[" TIMED("0.5"), 30000, 1001, 2);
+    expect_time(",\"fps\":\"24000/1001\",\"frames\":[" TIMED("0") "," TIMED("1"), ",\"fps\":23.976,\"frames\":[" TIMED("0.5"),
+                24000, 1001, 2);
+    put_times(",\"fps\":25,\"frames\":[" TIMED("0"), ",\"fps\":30,\"frames\":[" TIMED("0.5"));
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_test.json", "fps: 30, but 25");
+    put_times(",\"fps\":\"25/0\",\"frames\":[" TIMED("0"), ends);
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_train.json: fps", "30000/1001");
+    unlink(in("transforms_train.json"));
+    unlink(in("transforms_test.json"));
 }
 
 static void test_load(void **state)
@@ -341,7 +384,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_single, no_files),        cmocka_unit_test_teardown(test_filename_lists, no_files),
-        cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_load, no_files),
+        cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_duration, no_files),
+        cmocka_unit_test_teardown(test_load, no_files),
         cmocka_unit_test_teardown(test_bad_files, no_files),     cmocka_unit_test_teardown(test_bad_frames, no_files),
         cmocka_unit_test_teardown(test_bad_poses, no_files),     cmocka_unit_test_teardown(test_straightening, no_files),
         cmocka_unit_test_teardown(test_mixed_times, no_files),   cmocka_unit_test_teardown(test_mutations, no_files),
