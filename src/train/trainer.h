@@ -90,6 +90,8 @@ typedef struct adcgs_trainer {
     uint32_t rollbacks;
     double mean_loss, mean_mse, elapsed;
     double mean_bits[ADCGS_GROUPS];
+    uint8_t content[16];     /* of the training pictures' files; see adcgs_scene_content() */
+    int has_content;         /* it is known: they are read when a file needs it, once */
     adcgs_buffer snapshot;
 } adcgs_trainer;
 
@@ -101,12 +103,12 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *trainer, adcgs_train_observe obser
 
 /**
  * Checkpoints: everything needed to go on with identical results; atomic file, versioned, checksummed. Loading one saved with
- * other options or another scene is ADCGS_ERR_DATA; only lambda may be another while it has had no say, so that runs at several
+ * other options or another scene, pictures included, is ADCGS_ERR_DATA, which says what differs; only lambda may be another while it has had no say, so that runs at several
  * rates share their beginning, and without_lattice before weights are rounded, so that its price can be told.
  */
 adcgs_status adcgs_trainer_save(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
 adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_error *error);
-/** The same to and from memory (rollback). */
+/** The same to and from memory (rollback), where pictures are taken on trust. */
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error);
 adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, size_t size, adcgs_error *error);
 

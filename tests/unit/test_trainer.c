@@ -118,10 +118,68 @@ static void checkpoints_are_checked(void **state)
     config.grow_until += 0.01f;
     other = make(&config, NULL);
     assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
-    assert_non_null(strstr(error.text, "other options"));
+    assert_non_null(strstr(error.text, "other options: grow_until is "));
     adcgs_trainer_free(&other);
     adcgs_trainer_free(&t);
     adcgs_buffer_clear(&b);
+}
+
+static void refuse_checkpoint(const adcgs_scene *other, const char *what)
+{
+    const adcgs_train_config config = all_stages_config();
+    adcgs_trainer *t;
+    assert_int_equal(adcgs_trainer_create(&t, other, &config, adcgs_cpu_best(), NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_trainer_load(t, in("state"), &error), what ? ADCGS_ERR_DATA : ADCGS_OK);
+    if (what && (!strstr(error.text, what) || !strstr(error.text, "state: saved with another scene") || strchr(error.text, '\n')))
+        fail_msg("%s; expected %s", error.text, what);
+    adcgs_trainer_free(&t);
+}
+
+/** A file of a run goes on with the scene that it was made from, and says what of another is not the same. */
+static void checkpoints_know_their_scene(void **state)
+{
+    const adcgs_train_config config = all_stages_config();
+    adcgs_trainer *t = make(&config, NULL);
+    assert_int_equal(adcgs_trainer_save(t, in("state"), &error), ADCGS_OK);
+    adcgs_trainer_free(&t);
+    refuse_checkpoint(scene, NULL);
+
+    adcgs_scene other = *scene;
+    adcgs_scene_view views[4];
+    assert_true(other.n_views[ADCGS_SPLIT_TRAIN] > 4);
+    other.n_views[ADCGS_SPLIT_TRAIN] = 4;
+    other.views[ADCGS_SPLIT_TRAIN] = views;
+    memcpy(views, scene->views[ADCGS_SPLIT_TRAIN], sizeof views);
+    refuse_checkpoint(&other, "training views there and 4 here");
+    other = *scene;
+    other.background[1] = 0.5f;
+    refuse_checkpoint(&other, "its background");
+    adcgs_scene_view *v = &scene->views[ADCGS_SPLIT_TRAIN][3];
+    const adcgs_scene_view kept = *v;
+    v->camera.fy *= 1.001;
+    refuse_checkpoint(scene, "its cameras");
+    *v = kept;
+    v->lens.k[0] = 0.01;
+    refuse_checkpoint(scene, "its cameras");
+    *v = kept;
+    v->time += 1e-4;
+    refuse_checkpoint(scene, "its moments");
+    *v = kept;
+
+    /* One level of one sample of one picture. */
+    FILE *file = fopen(v->path, "r+b");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, -1, SEEK_END), 0);
+    const int level = fgetc(file);
+    assert_int_equal(fseek(file, -1, SEEK_END), 0);
+    fputc(level ^ 1, file);
+    fclose(file);
+    refuse_checkpoint(scene, "the training pictures' files hold something else now");
+    file = fopen(v->path, "r+b");
+    assert_int_equal(fseek(file, -1, SEEK_END), 0);
+    fputc(level, file);
+    fclose(file);
+    refuse_checkpoint(scene, NULL);
 }
 
 /* ---- Refinement ---- */
@@ -790,7 +848,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
-        cmocka_unit_test(checkpoints_are_checked),
+        cmocka_unit_test(checkpoints_are_checked), cmocka_unit_test(checkpoints_know_their_scene),
         cmocka_unit_test(refinement_keeps_order_and_budget),
         cmocka_unit_test(refinement_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
