@@ -171,12 +171,13 @@ adcgs_status adcgs_frames_intervals(const adcgs_scene *scene, uint32_t *n_times,
     double *all = find_moments(scene, ADCGS_SPLITS, &n_all), *train = find_moments(scene, ADCGS_SPLIT_TRAIN + 1, &n);
     const adcgs_status status = all && train ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (status == ADCGS_OK) {
+        const double own = find_grid(train, n), common = n > 1 ? find_grid(all, n_all) : 0.0;
         *n_times = (uint32_t)n;
-        *intervals = n > 1 ? find_grid(all, n_all) : 0.0;
-        if (*intervals <= 0.0)
-            *intervals = find_grid(train, n);
-        if (*intervals <= 0.0)
-            *intervals = (double)(n - 1);
+        *intervals = (double)(n - 1);
+        if (own > *intervals) /* with gaps */
+            *intervals = common > 0.0 ? common : own;
+        else if (!(own > 0.0) && common > 0.0)
+            *intervals = common;
     }
     free(all);
     free(train);

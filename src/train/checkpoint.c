@@ -118,9 +118,9 @@ static void walk_lambda(walk *w, adcgs_trainer *t)
     if (!t->lambda_used)
         return;
     if (target != c->target || value != c->target_value)
-        differ(w, "saved with another target, which has had its say");
+        differ(w, "saved with other options: another target, which has had its say");
     else if (adcgs_float_bits(lambda) != adcgs_float_bits(c->lambda))
-        differ(w, "saved with another lambda, which has had its say: it is %g there and %g here", (double)lambda,
+        differ(w, "saved with other options: lambda, which has had its say, is %g there and %g here", (double)lambda,
                (double)c->lambda);
 }
 
@@ -131,7 +131,7 @@ static void walk_lattice(walk *w, adcgs_trainer *t)
     visit(w, &without, sizeof without);
     visit(w, &t->rounding, sizeof t->rounding);
     if (t->rounding && without != t->config.without_lattice)
-        differ(w, "saved %s a lattice for weights, which are rounded already", without ? "without" : "with");
+        differ(w, "saved with other options: weights have been rounded %s the lattice", without ? "without" : "to");
 }
 
 static void walk_sizes(walk *w, const adcgs_params *p, const adcgs_shape *s)

@@ -113,8 +113,8 @@ static void test_split_files(void **state)
     snprintf(path, sizeof path, "%s///", folder);
     expect_good(adcgs_scene_open(&scene, path, NULL, &error));
     expect_views(4, 0, 1);
-    assert_true(scene->n_times == 3 && adcgs_fps_value(scene->rate) == 30.0 && scene->duration == 4.0 / 30.0);
-    assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][0].time - 0.1) < 1e-12);
+    assert_true(scene->n_times == 3 && adcgs_fps_value(scene->rate) == 30.0 && scene->duration == 2.0 / 30.0);
+    assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][0].time - 0.05) < 1e-12);
     assert_true(scene->has_alpha && scene->background[1] == 1.0f && scene->points.n == 1);
     const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
     assert_true(c->width == 6 && c->height == 4 && fabs(c->fx - 3.0) < 1e-12 && fabs(c->fy - 3.0) < 1e-12);
@@ -148,18 +148,23 @@ static void expect_time(const char *train, const char *test, uint32_t num, uint3
 static void test_duration(void **state)
 {
     const char *const ends = ",\"frames\":[" TIMED("0") "," TIMED("1");
-    /* Every second frame is for testing; six digits are enough. */
-    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.333333") "," TIMED("0.666667") "," TIMED("1"),
-                ",\"frames\":[" TIMED("0.166667") "," TIMED("0.5") "," TIMED("0.833333"), 30, 1, 6);
-    expect_time(ends, ",\"frames\":[" TIMED("0.5"), 30, 1, 2);
+    /* Every third frame is for testing; six digits are enough. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.166667") "," TIMED("0.5") "," TIMED("0.666667") "," TIMED("1"),
+                ",\"frames\":[" TIMED("0.333333") "," TIMED("0.833333"), 30, 1, 6);
+    /* So are the last ones. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("0.5"), ",\"frames\":[" TIMED("0.75") "," TIMED("1"), 30, 1,
+                4);
+    /* Between frames that lack none: no more of them. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.5") "," TIMED("1"), ",\"frames\":[" TIMED("0.25") "," TIMED("0.75"), 30, 1,
+                2);
     /* Nobody shows the third of four intervals' end. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("1"), ",\"frames\":[" TIMED("0.5"), 30, 1, 4);
     /* Moments of its own, as D-NeRF's test views have: three intervals of training, not seventeen or five. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.3333333") "," TIMED("0.6666667") "," TIMED("1"),
                 ",\"frames\":[" TIMED("0.41") "," TIMED("0.77"), 30, 1, 3);
-    expect_time(ends, ",\"fps\":29.97,\"frames\":[" TIMED("0.5"), 30000, 1001, 2);
+    expect_time(ends, ",\"fps\":29.97,\"frames\":[" TIMED("0.5"), 30000, 1001, 1);
     expect_time(",\"fps\":\"24000/1001\",\"frames\":[" TIMED("0") "," TIMED("1"), ",\"fps\":23.976,\"frames\":[" TIMED("0.5"),
-                24000, 1001, 2);
+                24000, 1001, 1);
     put_times(",\"fps\":25,\"frames\":[" TIMED("0"), ",\"fps\":30,\"frames\":[" TIMED("0.5"));
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_test.json", "fps: 30, but 25");
     put_times(",\"fps\":\"25/0\",\"frames\":[" TIMED("0"), ends);
