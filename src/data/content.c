@@ -43,6 +43,8 @@ adcgs_status adcgs_scene_content(const adcgs_scene *scene, adcgs_split split, ui
         const adcgs_scene_view *view = &scene->views[split][i];
         if (!last || strcmp(view->path, last)) /* views of a video follow each other */
             status = add_file(&md5, buffer, view->path, error);
+        if (status == ADCGS_OK && view->mask)
+            status = add_file(&md5, buffer, view->mask, error);
         last = view->path;
     }
     adcgs_md5_final(&md5, digest);

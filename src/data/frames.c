@@ -113,7 +113,7 @@ static void keep_views(adcgs_scene *scene, int split, const adcgs_frame_range *r
     for (uint32_t i = 0; i < scene->n_views[split]; i++) {
         const int64_t at = find_moment(moments, n, views[i].time);
         if (at < range->begin || at > last || (at - range->begin) % step) {
-            free(views[i].path);
+            adcgs_scene_view_clear(&views[i]);
             continue;
         }
         views[kept] = views[i];

@@ -55,6 +55,8 @@ static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
             if (view->is_video)
                 continue;
             ADCGS_TRY(adcgs_file_check(view->path, "an image", error));
+            if (view->mask)
+                ADCGS_TRY(adcgs_file_check(view->mask, "an image", error));
             if (s != ADCGS_SPLIT_TRAIN)
                 ADCGS_TRY(adcgs_scene_probe(view, error));
         }

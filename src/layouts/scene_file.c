@@ -180,7 +180,7 @@ static void fit_times(adcgs_scene *scene, int split, double begin, double slack)
     for (uint32_t i = 0; i < scene->n_views[split]; i++) {
         const double time = views[i].time - begin;
         if (time < -slack || time > scene->duration + slack) {
-            free(views[i].path);
+            adcgs_scene_view_clear(&views[i]);
             continue;
         }
         views[kept] = views[i];

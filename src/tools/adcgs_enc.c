@@ -15,7 +15,8 @@
 #include <sys/stat.h>
 
 typedef struct enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed, *frames, *fps;
+    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    const char *frames, *fps;
     double lambda, psnr, time_limit;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, has_lambda, has_size, has_psnr;
     uint64_t seed, size, memory;

@@ -187,7 +187,7 @@ static void walk_scene(walk *w, const adcgs_trainer *t)
     }
     visit_part(w, "cameras", cameras);
     visit_part(w, "moments", adcgs_crc32c(times, &s->duration, sizeof s->duration));
-    visit_part(w, "background and the pictures' alpha", adcgs_crc32c((uint32_t)s->has_alpha, s->background, sizeof s->background));
+    visit_part(w, "background", adcgs_crc32c((uint32_t)s->has_alpha, s->background, sizeof s->background));
     visit_part(w, "initial points", adcgs_crc32c(0, s->points.position, s->points.n * sizeof *s->points.position));
 }
 
@@ -391,7 +391,8 @@ static adcgs_status restore_file(adcgs_trainer *t, const uint8_t *data, size_t s
     ADCGS_TRY(adcgs_trainer_restore(t, data + head, size - 4 - head, error));
     ADCGS_TRY(find_content(t, error));
     if (memcmp(data + sizeof magic, t->content, sizeof t->content))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "saved with another scene: the training pictures' files hold something else now");
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "saved with another scene: the training pictures' files hold something else now");
     return ADCGS_OK;
 }
 

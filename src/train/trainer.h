@@ -103,8 +103,9 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *trainer, adcgs_train_observe obser
 
 /**
  * Checkpoints: everything needed to go on with identical results; atomic file, versioned, checksummed. Loading one saved with
- * other options or another scene, pictures included, is ADCGS_ERR_DATA, which says what differs; only lambda may be another while it has had no say, so that runs at several
- * rates share their beginning, and without_lattice before weights are rounded, so that its price can be told.
+ * other options or another scene, pictures included, is ADCGS_ERR_DATA, which says what differs; only lambda may be another
+ * while it has had no say, so that runs at several rates share their beginning, and without_lattice before weights are rounded,
+ * so that its price can be told.
  */
 adcgs_status adcgs_trainer_save(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
 adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_error *error);
@@ -113,11 +114,17 @@ adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out
 adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, size_t size, adcgs_error *error);
 
 /**
- * A training view's picture as the mean camera would have taken it; valid until the next is asked for. drawn: the model's
- * picture of it, from which the camera's exposure is followed, or NULL.
+ * A training view's picture as the mean camera would have taken it; valid until the next is asked for. Where it is masked, it
+ * is the model's own, trainer->image. drawn: that too, for the camera's exposure to be followed from, or NULL.
  */
 adcgs_status adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view, const float *drawn, const float **target,
                                   adcgs_error *error);
+/**
+ * The loss of trainer->image against a view's target: a mean over the pixels that are not masked; these have no gradient in
+ * trainer->grad, and to the windows of others they are right.
+ */
+adcgs_status adcgs_trainer_loss(adcgs_trainer *trainer, uint32_t view, const float *target, adcgs_loss_value *value,
+                                adcgs_error *error);
 /** (Re)load all training views with their size divided by an integer. */
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *trainer, int divide, adcgs_error *error);
 /** Growth and pruning by temporal significance (paper section 3.5); progress in [0,1]. */

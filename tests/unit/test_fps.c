@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Frames per second as ratios: from numbers, from text, divided. And in a stream: its times are exact, whatever the rate. */
+/** \file Frames per second as ratios: from numbers, from text, divided. And in a stream: its times are exact at any rate. */
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
@@ -35,8 +35,9 @@ static void texts_are_ratios(void **state)
         uint32_t num, den;
     } rows[] = {{"30", 30, 1}, {"29.97", 30000, 1001}, {"30000/1001", 30000, 1001}, {"60/2", 30, 1}, {"1/1000", 1, 1000},
                 {"12.5", 25, 2}, {".5", 1, 2}, {"4294967295/4294967295", 1, 1}};
-    static const char *const bad[] = {"", "/", "30/", "/1", "30/0", "0/1", "0", "-30", "30/-1", "+30", " 30", "30 ", "30fps", "nan",
-                                      "inf", "1e9", "10001", "1/1001", "30/1.5", "4294967296/4294967296", "3/1/1", "0x10/1"};
+    static const char *const bad[] = {"", "/", "30/", "/1", "30/0", "0/1", "0", "-30", "30/-1", "+30", " 30", "30 ", "30fps",
+                                      "nan", "inf", "1e9", "10001", "1/1001", "30/1.5", "4294967296/4294967296",
+                                      "3/1/1", "0x10/1"};
     adcgs_fps rate;
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++) {
         assert_int_equal(adcgs_fps_parse(rows[i].text, &rate), 0);

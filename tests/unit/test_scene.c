@@ -153,11 +153,11 @@ static void test_duration(void **state)
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.166667") "," TIMED("0.5") "," TIMED("0.666667") "," TIMED("1"),
                 ",\"frames\":[" TIMED("0.333333") "," TIMED("0.833333"), 30, 1, 6);
     /* So are the last ones. */
-    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("0.5"), ",\"frames\":[" TIMED("0.75") "," TIMED("1"), 30, 1,
-                4);
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("0.5"), ",\"frames\":[" TIMED("0.75") "," TIMED("1"),
+                30, 1, 4);
     /* Between frames that lack none: no more of them. */
-    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.5") "," TIMED("1"), ",\"frames\":[" TIMED("0.25") "," TIMED("0.75"), 30, 1,
-                2);
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.5") "," TIMED("1"), ",\"frames\":[" TIMED("0.25") "," TIMED("0.75"),
+                30, 1, 2);
     /* Nobody shows the third of four intervals' end. */
     expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("1"), ",\"frames\":[" TIMED("0.5"), 30, 1, 4);
     /* Moments of its own, as D-NeRF's test views have: three intervals of training, not seventeen or five. */
@@ -172,6 +172,60 @@ static void test_duration(void **state)
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_train.json: fps", "30000/1001");
     unlink(in("transforms_train.json"));
     unlink(in("transforms_test.json"));
+}
+
+/** Where the mask is black, nothing is seen: neither in a pixel nor, when it is reduced, in an average. */
+static void test_mask(void **state)
+{
+    adcgs_image mask;
+    float *rgb;
+    adcgs_camera camera;
+    assert_int_equal(adcgs_image_alloc(&mask, 6, 4, 1, "m", &error), ADCGS_OK);
+    for (int i = 0; i < 6 * 4; i++) /* the last three columns, and of the second pair of them one pixel */
+        mask.data[i] = i % 6 < 3 && i != 8 ? 1.0f / 255.0f : 0.0f;
+    expect_good(adcgs_image_write(&mask, in("m.pgm"), 0, &error));
+    expect_good(adcgs_image_write(&mask, in("m.tif"), 0, &error));
+    adcgs_image_free(&mask);
+    for (int tiff = 0; tiff < 2; tiff++) {
+        char json[1000];
+        snprintf(json, sizeof json, "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") ","
+                 FRAME("b.ppm", ",\"mask_path\":\"./m.%s\"") "," FRAME("b.ppm", ",\"mask_path\":null") "]}", tiff ? "tif" : "pgm");
+        expect_good(open_single(json));
+        const adcgs_scene_view *view = scene->views[ADCGS_SPLIT_TRAIN];
+        assert_true(view[0].mask && !view[1].mask && !scene->views[ADCGS_SPLIT_TEST][0].mask);
+        expect_good(adcgs_scene_load(scene, view, 1, &rgb, NULL, &error));
+        for (int i = 0; i < 3 * 24; i++)
+            assert_true(i % 6 < 3 && i % 24 != 8 ? rgb[i] == (float)(3 * (i % 24) + i / 24) / 255.0f : isnan(rgb[i]));
+        free(rgb);
+        expect_good(adcgs_scene_load(scene, view, 2, &rgb, &camera, &error));
+        assert_true(camera.width == 3 && camera.height == 2);
+        for (int c = 0; c < 3; c++) {
+            const float *plane = rgb + 6 * c;
+            /* All four pixels; one of two that are left of four, above one that has one; none. */
+            assert_true(fabsf(plane[0] - (float)(3 * 0 + 3 * 1 + 3 * 6 + 3 * 7 + 4 * c) / 4.0f / 255.0f) < 1e-6f);
+            assert_true(isnan(plane[1]) && isnan(plane[2]) && isnan(plane[5]));
+            assert_true(fabsf(plane[4] - (float)(3 * 14 + 3 * 20 + 2 * c) / 2.0f / 255.0f) < 1e-6f);
+        }
+        free(rgb);
+        adcgs_scene_free(&scene);
+    }
+    expect_bad("{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"mask_path\":\"none.png\"") "]}",
+               ADCGS_ERR_DATA, "frames[1].mask_path", "no such image: none.png");
+    expect_bad("{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"mask_path\":7") "]}", ADCGS_ERR_DATA,
+               "frames[1].mask_path", "expected the name");
+    assert_int_equal(adcgs_image_alloc(&mask, 5, 4, 1, "m", &error), ADCGS_OK);
+    memset(mask.data, 0, 20 * sizeof *mask.data);
+    expect_good(adcgs_image_write(&mask, in("m.pgm"), 0, &error));
+    adcgs_image_free(&mask);
+    const char *const narrow = "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "%s") "," FRAME("b.ppm", "%s") "]}";
+    char json[1000];
+    snprintf(json, sizeof json, narrow, "", ",\"mask_path\":\"m.pgm\"");
+    expect_good(open_single(json)); /* pictures for training are looked at when they are loaded */
+    expect_error(adcgs_scene_load(scene, scene->views[ADCGS_SPLIT_TRAIN], 1, &rgb, NULL, &error), ADCGS_ERR_DATA, "m.pgm: 5x4",
+                 "6x4");
+    adcgs_scene_free(&scene);
+    snprintf(json, sizeof json, narrow, ",\"mask_path\":\"m.pgm\"", "");
+    expect_error(open_single(json), ADCGS_ERR_DATA, "m.pgm: 5x4", "6x4");
 }
 
 static void test_load(void **state)
@@ -392,6 +446,7 @@ int main(void)
         cmocka_unit_test_teardown(test_single, no_files),        cmocka_unit_test_teardown(test_filename_lists, no_files),
         cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_duration, no_files),
         cmocka_unit_test_teardown(test_load, no_files),
+        cmocka_unit_test_teardown(test_mask, no_files),
         cmocka_unit_test_teardown(test_bad_files, no_files),     cmocka_unit_test_teardown(test_bad_frames, no_files),
         cmocka_unit_test_teardown(test_bad_poses, no_files),     cmocka_unit_test_teardown(test_straightening, no_files),
         cmocka_unit_test_teardown(test_mixed_times, no_files),   cmocka_unit_test_teardown(test_mutations, no_files),

@@ -289,7 +289,7 @@ static int give_poison(void *user, const adcgs_train_report *r)
     if (!p->given && r->iteration >= p->at) {
         p->given = 1;
         if (p->group < 0)
-            put_value(p->t, NAN);
+            put_value(p->t, INFINITY); /* NaN is a mask */
         else
             p->t->f->param[p->group].p[p->group == ADCGS_P_FG ? 64 : 0] = NAN;
     }
@@ -771,6 +771,79 @@ static void moments_shared_by_views_change_settings(void **state)
         }
 }
 
+/* ---- Masks ---- */
+
+enum { MASK_FROM = 6, MASK_UNTIL = 19 }; /* columns and rows */
+
+static int is_masked(int i, int width)
+{
+    const int x = i % width, y = i / width;
+    return x >= MASK_FROM && x < MASK_UNTIL && y >= MASK_FROM && y < MASK_UNTIL;
+}
+
+/** A copy of a view's picture with something else where the mask is, under a name of its own. */
+static void put_behind_mask(adcgs_scene_view *v, uint32_t number, float value)
+{
+    char name[64];
+    adcgs_image image;
+    assert_int_equal(adcgs_image_read(&image, v->path, &error), ADCGS_OK);
+    for (int i = 0; i < image.width * image.height; i++)
+        for (int c = 0; is_masked(i, image.width) && c < image.channels; c++)
+            image.data[i * image.channels + c] = value * (float)((i + c + (int)number) % 3) / 2;
+    snprintf(name, sizeof name, "behind_%u_%g.ppm", number, (double)value);
+    assert_int_equal(adcgs_image_write(&image, in(name), 0, &error), ADCGS_OK);
+    adcgs_image_free(&image);
+    v->path = strdup(in(name));
+}
+
+/** A run on views with a mask, and its report at the end. */
+static void run_behind_mask(float value, adcgs_buffer *end, double *psnr)
+{
+    adcgs_train_config config = small_config();
+    adcgs_scene masked = *scene;
+    const uint32_t n = masked.n_views[ADCGS_SPLIT_TRAIN];
+    adcgs_scene_view *views = calloc(n, sizeof *views);
+    masked.views[ADCGS_SPLIT_TRAIN] = views;
+    for (uint32_t i = 0; i < n; i++) {
+        views[i] = scene->views[ADCGS_SPLIT_TRAIN][i];
+        put_behind_mask(&views[i], i, value);
+        views[i].mask = strdup(in("mask.pgm"));
+    }
+    adcgs_trainer *t;
+    assert_int_equal(adcgs_trainer_create(&t, &masked, &config, adcgs_cpu_best(), pool, &error), ADCGS_OK);
+    t->quantise = adcgs_encode_quantise_hook;
+    run(t, NULL, NULL);
+    store(t, end);
+    assert_int_equal(adcgs_control_psnr(t, 4, psnr, &error), ADCGS_OK);
+    assert_true(all_finite(t->f) && t->rollbacks == 0);
+    adcgs_trainer_free(&t);
+    for (uint32_t i = 0; i < n; i++) {
+        unlink(views[i].path);
+        adcgs_scene_view_clear(&views[i]);
+    }
+    free(views);
+}
+
+/** What is behind a mask has no part in anything: whatever is there, the run ends the same, to the bit. */
+static void masked_pixels_have_no_part(void **state)
+{
+    const int side = 32; /* of the tiny scene's pictures */
+    adcgs_image mask;
+    adcgs_buffer dark, bright;
+    double psnr[2];
+    assert_int_equal(adcgs_image_alloc(&mask, side, side, 1, "mask", &error), ADCGS_OK);
+    for (int i = 0; i < side * side; i++)
+        mask.data[i] = !is_masked(i, side);
+    assert_int_equal(adcgs_image_write(&mask, in("mask.pgm"), 0, &error), ADCGS_OK);
+    adcgs_image_free(&mask);
+    run_behind_mask(0, &dark, &psnr[0]);
+    run_behind_mask(1, &bright, &psnr[1]);
+    assert_same(&dark, &bright);
+    assert_true(psnr[0] == psnr[1] && psnr[0] > 10);
+    adcgs_buffer_clear(&dark);
+    adcgs_buffer_clear(&bright);
+}
+
 /* ---- What is missing ---- */
 
 /** Every view shows the background and one dot: of the place x, or somewhere of its own. */
@@ -865,6 +938,7 @@ int main(void)
         cmocka_unit_test(averages_are_means),
         cmocka_unit_test(cameras_are_evened_out),
         cmocka_unit_test(moments_shared_by_views_change_settings),
+        cmocka_unit_test(masked_pixels_have_no_part),
         cmocka_unit_test(missing_things_are_found),
     };
     return cmocka_run_group_tests_name("trainer", tests, open_scene, close_scene);
