@@ -189,7 +189,8 @@ static void test_mask(void **state)
     for (int tiff = 0; tiff < 2; tiff++) {
         char json[1000];
         snprintf(json, sizeof json, "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") ","
-                 FRAME("b.ppm", ",\"mask_path\":\"./m.%s\"") "," FRAME("b.ppm", ",\"mask_path\":null") "]}", tiff ? "tif" : "pgm");
+                 FRAME("b.ppm", ",\"mask_path\":\"./m.%s\"") "," FRAME("b.ppm", ",\"mask_path\":null") "]}",
+                 tiff ? "tif" : "pgm");
         expect_good(open_single(json));
         const adcgs_scene_view *view = scene->views[ADCGS_SPLIT_TRAIN];
         assert_true(view[0].mask && !view[1].mask && !scene->views[ADCGS_SPLIT_TEST][0].mask);
