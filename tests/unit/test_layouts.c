@@ -217,6 +217,47 @@ static void test_apart_sizes(void **state)
     free_start(&second);
 }
 
+/* ---- Texts ---- */
+
+static int n_marked;
+
+/** Put a byte order mark before a file of text. */
+static int mark(const char *path, const struct stat *status, int kind, struct FTW *place)
+{
+    const char *end = strrchr(path, '.');
+    if (kind != FTW_F || !end || (strcmp(end, ".json") && strcmp(end, ".txt")))
+        return 0;
+    const size_t n = (size_t)status->st_size;
+    char *text = malloc(n + 1);
+    FILE *file = fopen(path, "r+b");
+    assert_true(text && file && fread(text, 1, n, file) == n);
+    rewind(file);
+    assert_true(fputs("\xef\xbb\xbf", file) >= 0 && fwrite(text, 1, n, file) == n);
+    fclose(file);
+    free(text);
+    n_marked++;
+    return 0;
+}
+
+/** What an editor has put before a text means nothing. */
+static void test_marks(void **state)
+{
+    static const int which[] = {DNERF, NERFSTUDIO, HYPERNERF, COLMAP_TEXT, SCENE_FILE};
+    for (size_t i = 0; i < ADCGS_COUNTOF(which); i++) {
+        begin_anew(&layouts[which[i]]);
+        start first = make_start(&layouts[which[i]]), second;
+        finish_start(&first);
+        n_marked = 0;
+        assert_int_equal(nftw(folder, mark, 8, FTW_PHYS), 0);
+        assert_true(n_marked > 0);
+        second = make_start(&layouts[which[i]]);
+        finish_start(&second);
+        expect_same(&first, &second);
+        free_start(&first);
+        free_start(&second);
+    }
+}
+
 /* ---- Frames ---- */
 
 static void expect_range(const char *text, int64_t begin, int64_t end, int64_t step)
@@ -337,6 +378,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_apart),
         cmocka_unit_test(test_apart_notices),
+        cmocka_unit_test(test_marks),
         cmocka_unit_test(test_apart_poses),
         cmocka_unit_test(test_apart_sizes),
         cmocka_unit_test(test_parse_frames),
