@@ -463,7 +463,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
 
 static int wanted_divide(const adcgs_trainer *t, double progress)
 {
-    return t->config.scale * (progress < t->config.quarter_until ? 4 : progress < t->config.half_until ? 2 : 1);
+    return t->config.scale * adcgs_coarse_divide(&t->config, progress);
 }
 
 /** Fraction of the views, by their distance from the middle of time, that are trained on. */
@@ -475,8 +475,11 @@ static double window_of(const adcgs_train_config *c, double progress)
 static adcgs_status before_iteration(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
-    if (wanted_divide(t, progress) != t->divide)
+    if (wanted_divide(t, progress) != t->divide) {
+        const double begin = adcgs_seconds();
         ADCGS_TRY(adcgs_trainer_load_views(t, wanted_divide(t, progress), error));
+        t->left.load = adcgs_seconds() - begin;
+    }
     adcgs_window_grow(&t->window, window_of(c, progress), t->f);
     if (!c->without_refinement && t->iteration && t->iteration % c->refine_every == 0 && progress >= c->grow_from &&
         progress < c->grow_until)
@@ -540,21 +543,25 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     r->lambda = t->lambda;
     r->seconds = t->elapsed;
     r->rate = rate;
-    r->left = progress > 0.02 ? t->elapsed * (1 - progress) / progress : 0;
+    r->left = adcgs_time_left_of(&t->left, &t->config, t->iteration, t->elapsed);
     r->rollbacks = (int)t->rollbacks;
 }
 
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
-    const double begin = adcgs_seconds() - t->elapsed;
+    const double begin = (t->started > 0 ? t->started : adcgs_seconds()) - t->elapsed;
     double last = adcgs_seconds(), rate = 0;
     uint32_t reported = t->iteration;
     *stopped = 0;
     prepare_networks(t);
     ADCGS_TRY(take_snapshot(t, error));
     for (;;) {
+        t->elapsed = adcgs_seconds() - begin;
         const double progress = progress_of(t);
         adcgs_train_report report;
+        if (progress >= 1 && !t->iteration)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "the time limit of %g s was over after %.1f s, before training began: reading "
+                              "the scene takes a part of it", t->config.time_limit, t->elapsed);
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
             const double at = adcgs_seconds();
             const double lately = at > last && t->iteration > reported ? (t->iteration - reported) / (at - last) : rate;
@@ -576,8 +583,12 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
             return ADCGS_OK;
         }
         ADCGS_TRY(before_iteration(t, progress, error));
+        t->elapsed = adcgs_seconds() - begin;
+        if (progress_of(t) >= 1) /* pictures were loaded, anchors changed, until the time was over */
+            continue;
         ADCGS_TRY(adcgs_control_step(t, progress, error));
         ADCGS_TRY(iterate(t, progress, error));
+        adcgs_time_left_add(&t->left, t->divide / t->config.scale, adcgs_seconds() - begin - t->elapsed);
         t->elapsed = adcgs_seconds() - begin;
         ADCGS_TRY(guard(t, progress, error));
     }

@@ -18,6 +18,7 @@
 #include "train/rate_control.h"
 #include "train/schedule.h"
 #include "train/time_curriculum.h"
+#include "train/time_left.h"
 
 /** What an observer is told. Bits are estimates until the stream is written. */
 typedef struct adcgs_train_report {
@@ -30,7 +31,7 @@ typedef struct adcgs_train_report {
     double stream[ADCGS_GROUPS]; /**< the same of eta, f_v, Sigma_v, C_v (layer 0, but for its flags) and the chunks of f_g */
     double lambda;
     double seconds, rate;   /**< since the start; iterations per second lately */
-    double left;            /**< seconds, estimated */
+    double left;            /**< seconds, estimated; not a number before an iteration has been seen */
     int rollbacks;
 } adcgs_train_report;
 
@@ -88,7 +89,9 @@ typedef struct adcgs_trainer {
     double lambda; /* of the rate; the configuration's unless a target steers it */
     adcgs_control control;
     uint32_t rollbacks;
-    double mean_loss, mean_mse, elapsed;
+    double mean_loss, mean_mse, elapsed; /* elapsed: seconds of all programs that have had a part in the run */
+    double started;          /* adcgs_seconds() from which this program's time counts; 0: when the run begins, or goes on */
+    adcgs_time_left left;
     double mean_bits[ADCGS_GROUPS];
     uint8_t content[16];     /* of the training pictures' files; see adcgs_scene_content() */
     int has_content;         /* it is known: they are read when a file needs it, once */

@@ -39,7 +39,7 @@ static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
     int stopped;
     if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
-    assert_int_equal(stopped, t->iteration < t->config.iterations);
+    assert_int_equal(stopped, t->iteration < t->config.iterations && !(t->config.time_limit > 0));
 }
 
 /** The state of a run less the clock. */
@@ -771,6 +771,88 @@ static void moments_shared_by_views_change_settings(void **state)
         }
 }
 
+/* ---- Time ---- */
+
+/** Seconds of an iteration of a make-believe machine: so much of it, at full resolution, is not for pixels. */
+static double true_cost(int divide, double overhead)
+{
+    return 0.01 * (overhead + (1 - overhead) / (divide * divide));
+}
+
+/** What a run still takes, told from its beginning on: never negative, never more than before by much, and near the truth. */
+static void time_left_follows_the_schedule(void **state)
+{
+    static const double overheads[] = { 0.05, 0.2, 0.6, 1 };
+    static const float halves[][2] = { { 0.25f, 0.7f }, { 0, 0 }, { 0.3f, 0.3f }, { 0, 0.5f }, { 1, 1 } };
+    enum { N = 4000 };
+    for (size_t o = 0; o < ADCGS_COUNTOF(overheads); o++)
+        for (size_t h = 0; h < ADCGS_COUNTOF(halves); h++) {
+            adcgs_train_config c = small_config();
+            adcgs_time_left left = { .load = 0 };
+            c.iterations = N;
+            c.quarter_until = halves[h][0];
+            c.half_until = halves[h][1];
+            assert_true(isnan(adcgs_time_left_of(&left, &c, 0, 0)));
+            double truth = 0, before = HUGE_VAL;
+            for (uint32_t i = 0; i < N; i++)
+                truth += true_cost(adcgs_coarse_divide(&c, (double)i / N), overheads[o]);
+            for (uint32_t i = 0; i < N; i++) {
+                const int divide = adcgs_coarse_divide(&c, (double)i / N);
+                const double cost = true_cost(divide, overheads[o]);
+                adcgs_time_left_add(&left, divide, cost);
+                truth -= cost;
+                const double told = adcgs_time_left_of(&left, &c, i + 1, 0);
+                const int last = divide == 1 || (double)i / N >= (double)halves[h][1];
+                assert_true(told >= 0 && told < 4.1 * truth + 1e-9 && told > truth / 4.1 - 1e-9);
+                assert_true(!last || fabs(told - truth) < 1e-6 * N);
+                assert_true(told <= before || divide != adcgs_coarse_divide(&c, i ? (double)(i - 1) / N : 0));
+                before = told;
+            }
+            assert_true(before < 1e-9);
+            /* A limit ends it, known or not, and what is over is not negative. */
+            c.time_limit = 7;
+            assert_true(adcgs_time_left_of(&left, &c, 0, 6.5) <= 0.5 && adcgs_time_left_of(&left, &c, 0, 99) == 0);
+            left = (adcgs_time_left){ .load = 0 };
+            assert_true(adcgs_time_left_of(&left, &c, 0, 3) == 4);
+            assert_true(adcgs_time_left_of(&left, &c, N, 3) == 0);
+        }
+}
+
+/** Loading between resolutions counts, as long as it is to come. */
+static void time_left_knows_loading(void **state)
+{
+    adcgs_train_config c = small_config();
+    adcgs_time_left left = { .cost = { 1, 1, 1 }, .load = 100 };
+    c.iterations = 10;
+    c.quarter_until = 0.2f;
+    c.half_until = 0.5f;
+    assert_true(adcgs_time_left_of(&left, &c, 0, 0) == 210);
+    assert_true(adcgs_time_left_of(&left, &c, 3, 0) == 107);
+    assert_true(adcgs_time_left_of(&left, &c, 9, 0) == 1);
+}
+
+/** The limit counts from where the program says that it began; when it is over before the first iteration, there is no run. */
+static void time_limits_count_what_was_before(void **state)
+{
+    adcgs_train_config config = small_config();
+    int stopped;
+    config.time_limit = 5;
+    adcgs_trainer *t = make(&config, pool);
+    t->started = adcgs_seconds() - 6;
+    assert_int_equal(adcgs_trainer_run(t, NULL, NULL, &stopped, &error), ADCGS_ERR_USAGE);
+    assert_int_equal(t->iteration, 0);
+    assert_true(strstr(error.text, "time limit of 5 s") && strstr(error.text, "before training began"));
+    adcgs_trainer_free(&t);
+    config.time_limit = 1000;
+    config.iterations = 100000;
+    t = make(&config, pool);
+    t->started = adcgs_seconds() - 998; /* two seconds are left */
+    const double begin = adcgs_seconds();
+    run(t, NULL, NULL);
+    assert_true(t->iteration > 0 && t->iteration < 100000 && t->elapsed >= 1000 && adcgs_seconds() - begin < 60);
+    adcgs_trainer_free(&t);
+}
+
 /* ---- Masks ---- */
 
 enum { MASK_FROM = 6, MASK_UNTIL = 19 }; /* columns and rows */
@@ -938,6 +1020,8 @@ int main(void)
         cmocka_unit_test(averages_are_means),
         cmocka_unit_test(cameras_are_evened_out),
         cmocka_unit_test(moments_shared_by_views_change_settings),
+        cmocka_unit_test(time_left_follows_the_schedule), cmocka_unit_test(time_left_knows_loading),
+        cmocka_unit_test(time_limits_count_what_was_before),
         cmocka_unit_test(masked_pixels_have_no_part),
         cmocka_unit_test(missing_things_are_found),
     };
