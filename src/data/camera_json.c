@@ -23,7 +23,7 @@ adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error
     size_t bytes;
     json_error_t where;
     *root = NULL;
-    ADCGS_TRY(adcgs_file_load(&text, &bytes, path, FILE_MAX, error));
+    ADCGS_TRY(adcgs_file_load_text(&text, &bytes, path, FILE_MAX, error));
     if (!bytes) {
         free(text);
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected JSON", path);
