@@ -6,10 +6,12 @@
 #include "encode/encode.h"
 #include "encode/raw.h"
 #include "io/atomic.h"
+#include "io/json.h"
 #include "tools/enc_report.h"
 
 #include <adcgs/adcgs.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
@@ -31,7 +33,7 @@ typedef struct watcher {
     adcgs_train_report last;
     size_t uncompressed_bytes;
     uint32_t next_log; /**< iteration */
-    adcgs_error error;
+    adcgs_error error, log_error;
 } watcher;
 
 static void log_last(watcher *w)
@@ -41,16 +43,34 @@ static void log_last(watcher *w)
         return;
     w->next_log = r->iteration + 100;
     static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
-    fprintf(w->log, "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,", r->stage, r->iteration, r->iterations);
-    if (r->iteration)
-        fprintf(w->log, "\"loss\":%.6g,\"psnr\":%.4f,", r->loss, r->psnr);
-    fprintf(w->log,
-            "\"anchors\":%u,\"divide\":%d,\"bytes\":%.0f,\"lambda\":%.6g,\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d",
-            r->anchors, r->divide, r->bytes, r->lambda, r->rate, r->seconds, r->rollbacks);
+    adcgs_json line;
+    adcgs_json_init(&line);
+    line.is_line = 1;
+    line.digits = 6;
+    adcgs_json_open(&line, NULL, '{');
+    adcgs_json_string(&line, "stage", r->stage);
+    adcgs_json_int(&line, "iteration", r->iteration);
+    adcgs_json_int(&line, "of", r->iterations);
+    if (r->iteration) {
+        adcgs_json_real(&line, "loss", r->loss);
+        adcgs_json_real(&line, "psnr", r->psnr);
+    }
+    adcgs_json_int(&line, "anchors", r->anchors);
+    adcgs_json_int(&line, "divide", r->divide);
+    adcgs_json_real(&line, "bytes", round(r->bytes));
+    adcgs_json_real(&line, "lambda", r->lambda);
+    adcgs_json_real(&line, "rate", r->rate);
+    adcgs_json_real(&line, "seconds", r->seconds);
+    adcgs_json_int(&line, "rollbacks", r->rollbacks);
+    adcgs_json_open(&line, "streams", '{');
     for (int i = 0; i < ADCGS_GROUPS; i++)
-        fprintf(w->log, "%s\"%s\":%.0f", i ? "," : ",\"streams\":{", streams[i], r->stream[i]);
-    fputs("}}\n", w->log);
-    fflush(w->log);
+        adcgs_json_real(&line, streams[i], round(r->stream[i]));
+    adcgs_json_close(&line);
+    adcgs_json_close(&line);
+    if (adcgs_json_write(&line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
+        fclose(w->log); /* the run is worth more than its log: it goes on, and says at its end what happened */
+        w->log = NULL;
+    }
 }
 
 static int observe(void *user, const adcgs_train_report *r)
@@ -301,8 +321,10 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK && o->output)
         status = adcgs_enc_report_print(cli, &(adcgs_enc_report){ o->output, w.t, w.last, w.uncompressed_bytes, o->threads,
                                                                   o->json }, met, error);
-    if (w.log)
-        fclose(w.log);
+    if (w.log && fclose(w.log))
+        adcgs_fail(&w.log_error, ADCGS_ERR_IO, "%s: cannot write the log", o->log);
+    if (w.log_error.status != ADCGS_OK)
+        adcgs_cli_note(cli, "%s; the run went on without it", w.log_error.text);
     adcgs_stream_clear(&stream, NULL);
     adcgs_trainer_free(&w.t);
     adcgs_scene_free(&scene);

@@ -88,7 +88,10 @@ static adcgs_status write_image(const report *r, const adcgs_view_score *score, 
     char *path = malloc(size);
     if (!path)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", r->set->images);
-    snprintf(path, size, "%s/%04u-%s.png", r->set->images, r->done, score->view->camera.name);
+    const int folder = snprintf(path, size, "%s/", r->set->images);
+    snprintf(path + folder, size - (size_t)folder, "%04u-%s.png", r->done, score->view->camera.name);
+    for (char *c = path + folder; *c; c++) /* whatever the name holds, the picture goes into this folder */
+        *c = *c == '/' || (unsigned char)*c < ' ' ? '_' : *c;
     const adcgs_status status = write_views(r, score, path, error);
     free(path);
     return status;

@@ -4,6 +4,8 @@
 
 #include "tools/cli.h"
 
+#include "io/text.h"
+
 #include <adcgs/version.h>
 
 #include <errno.h>
@@ -11,17 +13,27 @@
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #define OPTIONS_MAX 64
 #define HELP_COLUMN 28
+#define MESSAGE_MAX 8192
 
 static void message(const adcgs_cli *cli, const char *format, va_list arguments) ADCGS_PRINTF(2, 0);
 static void message(const adcgs_cli *cli, const char *format, va_list arguments)
 {
-    fprintf(stderr, "%s: ", cli->program);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    char text[MESSAGE_MAX], *line = NULL;
+    size_t bytes = 0;
+    vsnprintf(text, sizeof text, format, arguments);
+    FILE *memory = open_memstream(&line, &bytes); /* lines of several processes may meet: each is written at once */
+    FILE *file = memory ? memory : stderr;
+    fprintf(file, "%s: ", cli->program);
+    adcgs_text_show(file, text);
+    fputc('\n', file);
+    if (memory && !fclose(memory))
+        fwrite(line, 1, bytes, stderr);
+    free(line);
 }
 
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * What all programs share on the command line: a table of options that parses
- * itself and prints its own help, numbers with ranges, messages, progress,
- * JSON on stdout, the interrupt flag.
+ * itself and prints its own help, numbers with ranges, messages, progress, the
+ * interrupt flag.
  */
 #ifndef ADCGS_TOOLS_CLI_H
 #define ADCGS_TOOLS_CLI_H
@@ -52,6 +52,7 @@ typedef struct adcgs_cli {
  */
 int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 
+/* Messages are one line each: what a terminal would obey in the names and texts in them is shown as escapes (io/text.h). */
 /** Print "program: text" on stderr and return the exit code of error->status. */
 int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
 /** As adcgs_cli_fail() with a message of its own. */
@@ -84,22 +85,5 @@ void adcgs_progress_init(adcgs_progress *progress);
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** Wipe the line; call before any other message and at the end. */
 void adcgs_progress_clear(adcgs_progress *progress);
-
-/** Writes one JSON value to a stream. key is NULL inside an array and at the top. */
-typedef struct adcgs_json {
-    FILE *file;
-    int depth;
-    int comma; /**< the next item needs a comma before it */
-} adcgs_json;
-
-void adcgs_json_init(adcgs_json *json, FILE *file);
-void adcgs_json_open(adcgs_json *json, const char *key, char bracket);  /**< bracket: '{' or '[' */
-void adcgs_json_close(adcgs_json *json, char bracket);                  /**< bracket: '}' or ']' */
-void adcgs_json_string(adcgs_json *json, const char *key, const char *value);
-void adcgs_json_int(adcgs_json *json, const char *key, int64_t value);
-void adcgs_json_real(adcgs_json *json, const char *key, double value);  /**< null when not finite */
-void adcgs_json_bool(adcgs_json *json, const char *key, int value);
-/** Newline and flush; ADCGS_ERR_IO if anything could not be written. */
-adcgs_status adcgs_json_finish(adcgs_json *json, adcgs_error *error);
 
 #endif

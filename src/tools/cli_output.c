@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Progress, interruption and JSON for the programs. */
+/** \file Progress and interruption for the programs. */
 #include "config.h"
 
 #include "tools/cli.h"
 
-#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <unistd.h>
 
 /* A signal handler can reach nothing but static storage. */
@@ -60,89 +60,4 @@ void adcgs_progress_clear(adcgs_progress *progress)
     if (progress->shown)
         fputs("\r\033[K", stderr);
     progress->shown = 0;
-}
-
-void adcgs_json_init(adcgs_json *json, FILE *file)
-{
-    *json = (adcgs_json){.file = file};
-}
-
-static void put_string(FILE *file, const char *text)
-{
-    fputc('"', file);
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-        if (*c == '"' || *c == '\\')
-            fprintf(file, "\\%c", *c);
-        else if (*c < 0x20)
-            fprintf(file, "\\u%04x", *c);
-        else
-            fputc(*c, file);
-    }
-    fputc('"', file);
-}
-
-/** Comma, newline, indentation and key before an item. */
-static void begin_item(adcgs_json *json, const char *key)
-{
-    if (json->comma)
-        fputc(',', json->file);
-    if (json->depth)
-        fprintf(json->file, "\n%*s", 2 * json->depth, "");
-    if (key) {
-        put_string(json->file, key);
-        fputs(": ", json->file);
-    }
-    json->comma = 1;
-}
-
-void adcgs_json_open(adcgs_json *json, const char *key, char bracket)
-{
-    begin_item(json, key);
-    fputc(bracket, json->file);
-    json->depth++;
-    json->comma = 0;
-}
-
-void adcgs_json_close(adcgs_json *json, char bracket)
-{
-    json->depth--;
-    if (json->comma)
-        fprintf(json->file, "\n%*s", 2 * json->depth, "");
-    fputc(bracket, json->file);
-    json->comma = 1;
-}
-
-void adcgs_json_string(adcgs_json *json, const char *key, const char *value)
-{
-    begin_item(json, key);
-    put_string(json->file, value);
-}
-
-void adcgs_json_int(adcgs_json *json, const char *key, int64_t value)
-{
-    begin_item(json, key);
-    fprintf(json->file, "%lld", (long long)value);
-}
-
-void adcgs_json_real(adcgs_json *json, const char *key, double value)
-{
-    begin_item(json, key);
-    if (isfinite(value))
-        fprintf(json->file, "%.10g", value);
-    else
-        fputs("null", json->file);
-}
-
-void adcgs_json_bool(adcgs_json *json, const char *key, int value)
-{
-    begin_item(json, key);
-    fputs(value ? "true" : "false", json->file);
-}
-
-adcgs_status adcgs_json_finish(adcgs_json *json, adcgs_error *error)
-{
-    fputc('\n', json->file);
-    if (fflush(json->file) || ferror(json->file))
-        return adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write the JSON report");
-    return ADCGS_OK;
 }

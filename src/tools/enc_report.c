@@ -2,6 +2,8 @@
 /** \file What adcgs-enc reports of a file it has written. */
 #include "tools/enc_report.h"
 
+#include "io/json.h"
+#include "io/text.h"
 #include "metric/evaluate.h"
 
 #include <math.h>
@@ -30,7 +32,8 @@ static void print_text(const adcgs_enc_report *r, const result *x)
 {
     const adcgs_bytes *b = &x->info.bytes;
     const uint64_t features = b->layer[0] + b->layer[1] + b->layer[2] + b->layer[3] + b->layer[4];
-    fprintf(stderr, "%s: %llu bytes: networks %llu, geometry %llu, features %llu, cameras %llu, rest %llu\n", r->file,
+    adcgs_text_show(stderr, r->file);
+    fprintf(stderr, ": %llu bytes: networks %llu, geometry %llu, features %llu, cameras %llu, rest %llu\n",
             (unsigned long long)b->total, (unsigned long long)b->networks, (unsigned long long)b->geometry,
             (unsigned long long)features, (unsigned long long)b->cameras, (unsigned long long)(b->header + b->metadata));
     fprintf(stderr, "%u anchors (%u static), %u primitives; lambda %.3g; trained in %.0f s\n", x->info.anchors,
@@ -60,13 +63,13 @@ static void print_components(adcgs_json *j, const adcgs_bytes *b)
     }
     adcgs_json_int(j, "cameras", (int64_t)b->cameras);
     adcgs_json_int(j, "metadata", (int64_t)b->metadata);
-    adcgs_json_close(j, '}');
+    adcgs_json_close(j);
 }
 
 static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs_error *error)
 {
     adcgs_json j;
-    adcgs_json_init(&j, stdout);
+    adcgs_json_init(&j);
     adcgs_json_open(&j, NULL, '{');
     adcgs_json_string(&j, "file", r->file);
     adcgs_json_int(&j, "bytes", (int64_t)x->info.bytes.total);
@@ -84,7 +87,7 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
         adcgs_json_real(&j, "value", x->target.value);
         adcgs_json_real(&j, "reached", x->target.reached);
         adcgs_json_bool(&j, "met", x->target.met);
-        adcgs_json_close(&j, '}');
+        adcgs_json_close(&j);
     }
     adcgs_json_int(&j, "iterations", r->last.iteration);
     adcgs_json_real(&j, "training_seconds", r->last.seconds);
@@ -92,8 +95,8 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
     adcgs_json_string(&j, "split", adcgs_split_name(x->split));
     adcgs_json_real(&j, "psnr", x->quality.psnr);
     adcgs_json_real(&j, "ssim", x->quality.ssim);
-    adcgs_json_close(&j, '}');
-    return adcgs_json_finish(&j, error);
+    adcgs_json_close(&j);
+    return adcgs_json_write(&j, stdout, "standard output", error);
 }
 
 /** Compare with the target. The PSNR of training views is measured from the file like any other. */

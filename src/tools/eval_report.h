@@ -4,6 +4,7 @@
 #define ADCGS_TOOLS_EVAL_REPORT_H
 
 #include "io/atomic.h"
+#include "io/json.h"
 #include "metric/crop.h"
 #include "tools/cli.h"
 

@@ -106,6 +106,11 @@ adcgs_status adcgs_shots_read_path(adcgs_shots *out, const adcgs_info *info, con
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads no camera paths", request->camera);
 }
+
+adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build writes no camera paths", path);
+}
 #endif
 
 static int is_path(const char *name)

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Parsing of numbers and options, and the JSON writer. */
+/** \file Parsing of numbers and options, text made safe, and the JSON writer. */
 #include "tools/cli.h"
+
+#include "io/json.h"
+#include "io/text.h"
 
 #include <getopt.h>
 #include <setjmp.h>
@@ -114,35 +117,137 @@ static void test_mistakes(void **state)
     assert_int_equal(PARSE(&v, &first, "-V"), 0);
 }
 
-static void test_json(void **state)
+/* What is no UTF-8, as Unicode's table 3-7 has it: lone and missing continuations, overlong forms, surrogates, beyond the end. */
+static void test_utf8(void **state)
 {
-    char text[512] = {0};
-    adcgs_json json;
+    static const char *const bad[] = {"\x80", "\xbf", "\xc3", "\xc3(", "\xc0\x80", "\xc1\xbf", "\xe0\x9f\xbf", "\xe2\x82",
+                                      "\xe2(\x82", "\xed\xa0\x80", "\xed\xbf\xbf", "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80",
+                                      "\xf5\x80\x80\x80",
+                                      "\xf8\x88\x80\x80\x80", "\xfe", "\xff", ""};
+    static const struct { const char *text; int bytes; uint32_t code; } good[] = {
+        {"A", 1, 'A'}, {"\x7f", 1, 0x7f}, {"\xc2\x80", 2, 0x80}, {"\xdf\xbf", 2, 0x7ff}, {"\xe0\xa0\x80", 3, 0x800},
+        {"\xed\x9f\xbf", 3, 0xd7ff}, {"\xee\x80\x80", 3, 0xe000}, {"\xef\xbf\xbf", 3, 0xffff}, {"\xf0\x90\x80\x80", 4, 0x10000},
+        {"\xf4\x8f\xbf\xbf", 4, 0x10ffff}};
+    uint32_t code = 0;
+    for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++)
+        assert_int_equal(adcgs_utf8_next(bad[i], &code), 0);
+    for (size_t i = 0; i < ADCGS_COUNTOF(good); i++) {
+        assert_int_equal(adcgs_utf8_next(good[i].text, &code), good[i].bytes);
+        assert_int_equal(code, good[i].code);
+    }
+    char *mended = adcgs_text_utf8("a\xff\xc3\xa4\xed\xa0\x80z");
+    assert_string_equal(mended, "a\xef\xbf\xbd\xc3\xa4\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbdz");
+    free(mended);
+}
+
+/* Nothing that a terminal obeys comes through, whatever the text; the rest does as it is. */
+static void test_shown(void **state)
+{
+    static const struct { const char *text, *shown, *cell; int columns; } cases[] = {
+        {"plain \xc3\xa4\xe6\xbc\xa2", "plain \xc3\xa4\xe6\xbc\xa2", "plain \xc3\xa4\xe6\xbc\xa2", 8},
+        {"\033[2J\a", "\\x1b[2J\\x07", "\\x1b[2J\\x07", 11},
+        {"a\r\nb\tc", "a\\x0d\\x0ab\\x09c", "a\\x0d\\x0ab\\x09c", 15},
+        {"\xc2\x9b" "2J\x7f", "\\u{9b}2J\\x7f", "\\u{9b}2J\\x7f", 12},
+        {"gnp.\xe2\x80\xae" "exe", "gnp.\\u{202e}exe", "gnp.\\u{202e}exe", 15},
+        {"\xe2\x81\xa6\xe2\x80\xa8\xf3\xa0\x81\x81", "\\u{2066}\\u{2028}\\u{e0041}", "\\u{2066}\\u{2028}\\u{e0041}", 25},
+        {"\x9b" "2J\xff", "\\x9b2J\\xff", "\\x9b2J\\xff", 10},
+        {"=1+2", "=1+2", "'=1+2", 4}, {"@x", "@x", "'@x", 2}, {"+1,2", "+1,2", "\"'+1,2\"", 4},
+        {"-a\"b", "-a\"b", "\"'-a\"\"b\"", 4},
+        {"\t=1", "\\x09=1", "\\x09=1", 6}, {"", "", "", 0}};
+    for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
+        char text[100] = {0};
+        FILE *file = tmpfile();
+        assert_non_null(file);
+        assert_int_equal(adcgs_text_show(file, cases[i].text), cases[i].columns);
+        fputc('|', file);
+        adcgs_text_cell(file, cases[i].text);
+        rewind(file);
+        assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+        fclose(file);
+        const char *cell = strrchr(text, '|');
+        assert_memory_equal(text, cases[i].shown, strlen(cases[i].shown));
+        assert_int_equal(cell - text, strlen(cases[i].shown));
+        assert_string_equal(cell + 1, cases[i].cell);
+    }
+}
+
+static void write_json(adcgs_json *json, const char *expected)
+{
+    char text[1024] = {0};
     FILE *file = tmpfile();
     assert_non_null(file);
-    adcgs_json_init(&json, file);
+    assert_int_equal(adcgs_json_write(json, file, "a test", NULL), ADCGS_OK);
+    rewind(file);
+    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+    fclose(file);
+    assert_string_equal(text, expected);
+}
+
+static void test_json(void **state)
+{
+    adcgs_json json;
+    adcgs_json_init(&json);
     adcgs_json_open(&json, NULL, '{');
     adcgs_json_string(&json, "s", "a\"\\\n\xc3\xa4");
     adcgs_json_open(&json, "list", '[');
     adcgs_json_int(&json, NULL, -5);
     adcgs_json_real(&json, NULL, 0.5);
+    adcgs_json_real(&json, NULL, 30.0);
+    adcgs_json_real(&json, NULL, 1.0 / 3.0);
     adcgs_json_real(&json, NULL, -1.0 / 0.0);
-    adcgs_json_close(&json, ']');
+    adcgs_json_close(&json);
     adcgs_json_open(&json, "empty", '{');
-    adcgs_json_close(&json, '}');
+    adcgs_json_close(&json);
     adcgs_json_bool(&json, "yes", 1);
-    adcgs_json_close(&json, '}');
-    assert_int_equal(adcgs_json_finish(&json, NULL), ADCGS_OK);
-    rewind(file);
-    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+    adcgs_json_close(&json);
+    write_json(&json, "{\n  \"s\": \"a\\\"\\\\\\n\\u00E4\",\n  \"list\": [\n    -5,\n    0.5,\n    30,\n    0.3333333333,\n"
+                      "    null\n  ],\n  \"empty\": {},\n  \"yes\": true\n}\n");
+}
+
+/* Whatever bytes a string holds, JSON comes out, and no terminal obeys it; who reads it finds the characters that were some. */
+static void test_json_texts(void **state)
+{
+    adcgs_json json;
+    adcgs_json_init(&json);
+    json.is_line = 1;
+    adcgs_json_open(&json, NULL, '{');
+    adcgs_json_string(&json, "\xff", "\xff\xc0\x80\xed\xa0\x80");
+    adcgs_json_string(&json, "\033", "\xc2\x9b\xe2\x80\xae\xf0\x9f\x8e\xa5\t");
+    adcgs_json_close(&json);
+    write_json(&json, "{\"\\uFFFD\":\"\\uFFFD\\uFFFD\\uFFFD\\uFFFD\\uFFFD\\uFFFD\","
+                      "\"\\u001B\":\"\\u009B\\u202E\\uD83C\\uDFA5\\t\"}\n");
+}
+
+/* A full disk is noticed; what is nested too deep fails, and nothing is written. */
+static void test_json_failures(void **state)
+{
+    adcgs_json json;
+    adcgs_error error;
+    FILE *full = fopen("/dev/full", "w"), *file = tmpfile();
+    assert_non_null(file);
+    if (full) {
+        adcgs_json_init(&json);
+        adcgs_json_open(&json, NULL, '[');
+        adcgs_json_close(&json);
+        assert_int_equal(adcgs_json_write(&json, full, "full", &error), ADCGS_ERR_IO);
+        assert_string_equal(error.text, "full: cannot write JSON");
+        fclose(full);
+    }
+    adcgs_json_init(&json);
+    for (int i = 0; i < ADCGS_JSON_DEPTH + 1; i++)
+        adcgs_json_open(&json, NULL, '[');
+    for (int i = 0; i < ADCGS_JSON_DEPTH + 1; i++)
+        adcgs_json_close(&json);
+    assert_int_equal(adcgs_json_write(&json, file, "deep", &error), ADCGS_ERR_MEMORY);
+    assert_int_equal(ftell(file), 0);
     fclose(file);
-    assert_string_equal(text, "{\n  \"s\": \"a\\\"\\\\\\u000a\xc3\xa4\",\n  \"list\": [\n    -5,\n    0.5,\n    null\n  ],\n"
-                              "  \"empty\": {},\n  \"yes\": true\n}\n");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_numbers), cmocka_unit_test(test_options),
-                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_json)};
+                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_utf8),
+                                       cmocka_unit_test(test_shown), cmocka_unit_test(test_json),
+                                       cmocka_unit_test(test_json_texts), cmocka_unit_test(test_json_failures)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
