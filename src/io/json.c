@@ -4,7 +4,7 @@
 
 #include "io/json.h"
 
-#include "io/text.h"
+#include "cli/text.h"
 
 #include <jansson.h>
 #include <math.h>

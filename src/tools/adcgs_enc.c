@@ -7,6 +7,7 @@
 #include "encode/raw.h"
 #include "io/atomic.h"
 #include "io/json.h"
+#include "layouts/open.h"
 #include "tools/enc_report.h"
 
 #include <adcgs/adcgs.h>

@@ -5,10 +5,10 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "base/pool.h"
-#include "io/text.h"
-#include "model/input.h"
+#include "cli/cli.h"
+#include "cli/text.h"
 #include "model/model_priv.h"
-#include "tools/cli.h"
+#include "stream/input.h"
 #include "tools/info_points.h"
 #include "tools/info_report.h"
 

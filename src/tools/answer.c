@@ -6,10 +6,10 @@
 
 #include "base/cpu.h"
 #include "base/digest.h"
+#include "cli/cli.h"
 #include "io/file.h"
-#include "model/input.h"
-#include "model/stream.h"
-#include "tools/cli.h"
+#include "stream/input.h"
+#include "stream/stream.h"
 
 #include <adcgs/adcgs.h>
 

@@ -2,8 +2,8 @@
 /** \file What adcgs-enc reports of a file it has written. */
 #include "tools/enc_report.h"
 
+#include "cli/text.h"
 #include "io/json.h"
-#include "io/text.h"
 #include "metric/evaluate.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "tools/eval_report.h"
 
-#include "io/text.h"
+#include "cli/text.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #ifndef ADCGS_TOOLS_INFO_REPORT_H
 #define ADCGS_TOOLS_INFO_REPORT_H
 
-#include "model/stream.h"
+#include "stream/stream.h"
 
 /** A chunk as the elements of its header tell. */
 typedef struct adcgs_info_chunk {

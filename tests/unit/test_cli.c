@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Parsing of numbers and options, text made safe, and the JSON writer. */
-#include "tools/cli.h"
+#include "cli/cli.h"
 
+#include "cli/text.h"
 #include "io/json.h"
-#include "io/text.h"
 
 #include <getopt.h>
 #include <setjmp.h>
