@@ -82,6 +82,12 @@ int adcgs_text_show(FILE *file, const char *text)
     return show(file, text, 0);
 }
 
+void adcgs_text_column(FILE *file, const char *text, int width)
+{
+    const int shown = show(file, text, 0);
+    fprintf(file, "%*s", ADCGS_MAX(width - shown, 0), "");
+}
+
 void adcgs_text_cell(FILE *file, const char *text)
 {
     const int is_formula = *text && strchr("=+-@", *text), is_plain = !text[strcspn(text, ",\";")];

@@ -25,6 +25,8 @@ char *adcgs_text_utf8(const char *text);
  * else as \u{H...}. \return how many characters came out.
  */
 int adcgs_text_show(FILE *file, const char *text);
+/** The same with as many spaces behind it as a column of that width takes. */
+void adcgs_text_column(FILE *file, const char *text, int width);
 
 /**
  * The same as a cell of a table in CSV (RFC 4180), in quotes where it needs them. What a spreadsheet would take for a formula

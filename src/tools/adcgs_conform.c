@@ -4,10 +4,13 @@
 
 #include "base/cpu.h"
 #include "cli/cli.h"
+#include "cli/text.h"
 #include "conform/conform.h"
 
 #include <fnmatch.h>
 #include <stdlib.h>
+
+#define ID_WIDTH 36
 
 static const int thread_counts[] = {1, 2, 7};
 static const int steps[] = {0, 7};
@@ -63,9 +66,11 @@ static void check_vector(const settings *s, const adcgs_manifest *manifest, cons
     const double seconds = adcgs_seconds() - start;
     free(data);
     const char *const kind = vector->status == ADCGS_OK ? "good" : adcgs_vector_class_name(vector->status);
-    printf("%-36s %-11s %2d frames %3d runs %6.0f ms  %s", vector->id, kind, vector->n_frames, runs, 1000 * seconds,
-           adcgs_outcome_name(outcome));
-    printf(outcome == ADCGS_OUTCOME_OK ? "\n" : ": %s\n", what);
+    adcgs_text_column(stdout, vector->id, ID_WIDTH);
+    printf(" %-11s %2d frames %3d runs %6.0f ms  %s%s", kind, vector->n_frames, runs, 1000 * seconds, adcgs_outcome_name(outcome),
+           outcome == ADCGS_OUTCOME_OK ? "" : ": ");
+    adcgs_text_show(stdout, what); /* may quote answers of a program */
+    printf("\n");
     t->runs += runs;
     t->faults += outcome != ADCGS_OUTCOME_OK;
     t->outcome[outcome]++;
@@ -77,9 +82,12 @@ static void use_vector(const settings *s, const adcgs_manifest *manifest, const 
     if (s->filter && fnmatch(s->filter, vector->id, 0) != 0)
         return;
     t->vectors++;
-    if (s->list)
-        printf("%-36s %s\n", vector->id, vector->title);
-    else if (s->selftest)
+    if (s->list) {
+        adcgs_text_column(stdout, vector->id, ID_WIDTH);
+        printf(" ");
+        adcgs_text_show(stdout, vector->title);
+        printf("\n");
+    } else if (s->selftest)
         adcgs_selftest_vector(manifest, vector, &t->runs, &t->faults);
     else
         check_vector(s, manifest, vector, t);

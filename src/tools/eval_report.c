@@ -308,8 +308,8 @@ adcgs_status adcgs_eval_report_view(adcgs_eval_report *r, const adcgs_view_score
     if (r->table)
         csv_view(r, score, value);
     if (r->as_text) {
-        const int width = adcgs_text_show(stdout, score->view->camera.name);
-        printf("%*s %8.3f s", ADCGS_MAX(NAME_WIDTH - width, 0), "", score->view->time);
+        adcgs_text_column(stdout, score->view->camera.name, NAME_WIDTH);
+        printf(" %8.3f s", score->view->time);
         text_values(r, value, 0);
     }
     return score->of_camera ? report_camera(r, score->of_camera, error) : ADCGS_OK;
