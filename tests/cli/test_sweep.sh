@@ -185,14 +185,14 @@ calls 12 3 "--uncompressed"
 [ -s "$out/lambda-2-without-lattice.adcgs" ] || fail "no run without lattice"
 [ "$(wc -l <"$out/ablation.csv")" -eq 10 ] || fail "expected nine stages: $(cat "$out/ablation.csv")"
 line '^base,,,1,400000,400000,400000,33.0000' "$out/ablation.csv"
-line '^+ fine deformation,,,1,400000,400000,400000,34.0000' "$out/ablation.csv"
-line '^+ rate-distortion,2,,1,32000,32000,32000,33.5000' "$out/ablation.csv"
-line '^+ refinement,2,,1,32000,32000,32000,34.0000' "$out/ablation.csv"
+line "^'+ fine deformation,,,1,400000,400000,400000,34.0000" "$out/ablation.csv"
+line "^'+ rate-distortion,2,,1,32000,32000,32000,33.5000" "$out/ablation.csv"
+line "^'+ refinement,2,,1,32000,32000,32000,34.0000" "$out/ablation.csv"
 line '^K = 15,2,15,1,' "$out/ablation.csv"
 line 'K = 15' "$out/index.html"
 sweep --ablation
 [ $got -eq 0 ] || fail "ablation alone: $(cat "$dir/err")"
-line '^+ refinement,,,1,64000' "$out/ablation.csv"
+line "^'+ refinement,,,1,64000" "$out/ablation.csv"
 : >"$dir/calls"
 
 for list in '' 1, ,1 1,x 1,-1 "$(seq -s, 1 17)"; do
