@@ -2,6 +2,7 @@
 /** \file Training run to stream. */
 #include "encode/encode.h"
 
+#include "data/by_camera.h"
 #include "encode/quantise.h"
 #include "stream/input.h"
 
@@ -50,7 +51,7 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
         const adcgs_camera *c = &views[(uint64_t)i * all / ADCGS_ENCODE_CAMERAS_MAX].camera;
         int known = 0;
         for (uint32_t j = 0; j < s->n_cameras; j++)
-            known |= !memcmp(s->cameras[j].cam_to_world, c->cam_to_world, sizeof c->cam_to_world);
+            known |= !adcgs_camera_compare(&s->cameras[j], c);
         if (!known)
             s->cameras[s->n_cameras++] = *c;
     }

@@ -254,6 +254,15 @@ expect 3 "no/check" $try --checkpoint "$dir/no/check" --log "$dir/x.log"
 expect 3 "no/raw" $try --uncompressed "$dir/no/raw"
 expect 3 "no/log" $try --log "$dir/no/log"
 
+# Stored cameras: one pose through two lenses is two cameras.
+cp -R "$scene" "$dir/lenses"
+awk '/transform_matrix/ { if (!pose) pose = $0; sub(/,$/, "", pose); sub(/ *},?$/, "", pose)
+         printf "%s, \"camera_angle_x\": %s }%s\n", pose, n++ % 2 ? 0.5 : 0.75, /, *$/ ? "," : ""; next } { print }' \
+    "$scene/transforms_train.json" >"$dir/lenses/transforms_train.json"
+expect 0 "" ./adcgs-enc "$dir/lenses" -o "$dir/lenses.adcgs" --preset draft --iterations 10 --max-anchors 100
+./adcgs-info "$dir/lenses.adcgs" >"$dir/out"
+[ "$(grep -c '64x64, focal' "$dir/out")" -eq 2 ] || { bad "stored cameras"; cat "$dir/out"; }
+
 # A full disk, pretended by a limit on the size of files: the file that was there stays.
 cp "$dir/one.adcgs" "$dir/full.adcgs"
 expect 3 "full.adcgs" sh -c "trap '' XFSZ; ulimit -f 8; exec ./adcgs-enc '$scene' -o '$dir/full.adcgs' --preset draft --iterations 10"
