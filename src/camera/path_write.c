@@ -58,7 +58,7 @@ adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *pa
     adcgs_json_open(&json, "keys", '[');
     for (int i = 0; i < info.cameras && status == ADCGS_OK; i++) {
         status = adcgs_get_camera(decoder, i, &camera);
-        adcgs_camera_stretch(&camera, size[0], size[1]); /* a path has one size */
+        adcgs_camera_fit(&camera, size[0], size[1], 0); /* a path has one size */
         write_key(&json, &camera, i);
     }
     adcgs_json_close(&json);

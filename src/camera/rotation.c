@@ -70,6 +70,18 @@ void adcgs_camera_stretch(adcgs_camera *camera, int width, int height)
     camera->cy *= y;
 }
 
+void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill)
+{
+    const double x = (double)width / camera->width, y = (double)height / camera->height;
+    const double scale = fill == (x < y) ? y : x;
+    camera->fx *= scale;
+    camera->fy *= scale;
+    camera->cx = 0.5 * width + scale * (camera->cx - 0.5 * camera->width);
+    camera->cy = 0.5 * height + scale * (camera->cy - 0.5 * camera->height);
+    camera->width = width;
+    camera->height = height;
+}
+
 /** The component that is largest is found first: dividing by it is safe. */
 void adcgs_turn_from_pose(const double pose[12], double q[4])
 {

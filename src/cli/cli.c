@@ -58,6 +58,20 @@ int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error)
     return adcgs_cli_error(cli, error->status, "%s", error->text[0] ? error->text : adcgs_status_name(error->status));
 }
 
+adcgs_status adcgs_cli_flush(adcgs_error *error)
+{
+    if (fflush(stdout) || ferror(stdout))
+        return adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write");
+    return ADCGS_OK;
+}
+
+/** After what is printed instead of a run. */
+static int leave(const adcgs_cli *cli)
+{
+    adcgs_error error = {0};
+    return adcgs_cli_flush(&error) == ADCGS_OK ? 0 : adcgs_cli_fail(cli, &error);
+}
+
 int adcgs_parse_real(const char *text, double min, double max, double *out)
 {
     char *end;
@@ -251,14 +265,14 @@ static int print_help(const adcgs_cli *cli)
     print_option('V', "version", NULL, "print versions and exit");
     if (cli->details)
         printf("\n%s\n", cli->details);
-    return fflush(stdout) ? adcgs_status_exit_code(ADCGS_ERR_IO) : 0;
+    return leave(cli);
 }
 
 static int print_version(const adcgs_cli *cli)
 {
     printf("%s %s (library %s, bitstream %d.%d)\n", cli->program, PACKAGE_VERSION, adcgs_version_string(), ADCGS_BITSTREAM_MAJOR,
            ADCGS_BITSTREAM_MINOR);
-    return fflush(stdout) ? adcgs_status_exit_code(ADCGS_ERR_IO) : 0;
+    return leave(cli);
 }
 
 /** getopt_long()'s two descriptions from ours. Values above UCHAR_MAX stand for options without a letter. */

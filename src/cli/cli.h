@@ -57,6 +57,8 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
 /** As adcgs_cli_fail() with a message of its own. */
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
+/** ADCGS_ERR_IO unless all that was printed on standard output has arrived. */
+adcgs_status adcgs_cli_flush(adcgs_error *error);
 /** A remark that does not end the program: "program: text" on stderr. */
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(2, 3);
 

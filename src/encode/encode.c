@@ -102,6 +102,16 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
     return make_stream(s, t, NULL, notes, n_notes, error);
 }
 
+/** Serialise. What the writer refuses to store is nobody's wrong use here: the scene has it. */
+static adcgs_status write_scene(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
+{
+    const adcgs_status status = adcgs_stream_write(stream, out, error);
+    if (status != ADCGS_ERR_USAGE)
+        return status;
+    const adcgs_error why = *error;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "the scene has what a stream cannot hold: %.180s", why.text);
+}
+
 adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, double strength, const adcgs_encode_note *notes,
                                 uint32_t n_notes, adcgs_error *error)
 {
@@ -113,7 +123,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
     adcgs_buffer_init(&out);
     adcgs_status status = make_stream(&stream, t, strength >= 0 ? &rdo : NULL, notes, n_notes, error);
     if (status == ADCGS_OK)
-        status = adcgs_stream_write(&stream, &out, error);
+        status = write_scene(&stream, &out, error);
     *bytes = stream.bytes;
     adcgs_buffer_clear(&out);
     adcgs_stream_clear(&stream, NULL);
@@ -125,7 +135,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
 adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool,
                                    adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_stream_write(stream, out, error));
+    ADCGS_TRY(write_scene(stream, out, error));
     adcgs_stream back;
     adcgs_span from = { .next = out->data, .left = out->size };
     const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };

@@ -96,7 +96,7 @@ static adcgs_status begin(adcgs_video_writer *w, int width, int height, double f
 {
     long numerator, denominator;
     if (!(frame_rate >= 0.001 && frame_rate <= RATE_MAX))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %g frames per second, expected 0.001 to %g", w->path, frame_rate,
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: %g frames per second, expected 0.001 to %g", w->path, frame_rate,
                           RATE_MAX);
     adcgs_rate_ratio(frame_rate, &numerator, &denominator);
     ADCGS_TRY(adcgs_atomic_open(&w->atomic, w->path, error));

@@ -153,9 +153,11 @@ static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_run *run, c
     int code = 0;
     path_of(log, sweep, run, ".log");
     ADCGS_TRY(adcgs_sweep_spawn(c->argv, out, log, &code, error));
-    if (code != 0)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s left with %d; see %s", run->tag, c->argv[0], code, log);
-    return ADCGS_OK;
+    const adcgs_status why = code == 2   ? ADCGS_ERR_USAGE
+                             : code == 4 ? ADCGS_ERR_DATA
+                             : code == 5 ? ADCGS_ERR_UNSUPPORTED
+                                         : ADCGS_ERR_IO;
+    return code ? adcgs_fail(error, why, "%s: %s left with %d; see %s", run->tag, c->argv[0], code, log) : ADCGS_OK;
 }
 
 /** Whether an earlier sweep left this run unfinished, with these settings; if not, note that it begins now. */

@@ -189,9 +189,7 @@ static adcgs_status run(const settings *s, adcgs_error *error)
     ADCGS_TRY(adcgs_eval_report_open(&r.out, error));
     adcgs_status status = decode_and_compare(&r, error);
     adcgs_eval_report_clear(&r.out);
-    if (status == ADCGS_OK && fflush(stdout))
-        status = adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write");
-    return status;
+    return status == ADCGS_OK ? adcgs_cli_flush(error) : status;
 }
 
 int main(int argc, char **argv)

@@ -226,7 +226,7 @@ static adcgs_status print_report(const adcgs_info_report *r, const settings *s, 
         print_segments(r);
         print_extras(r);
     }
-    return fflush(stdout) ? adcgs_fail(error, ADCGS_ERR_IO, "standard output: %s", strerror(errno)) : ADCGS_OK;
+    return adcgs_cli_flush(error);
 }
 
 int main(int argc, char **argv)

@@ -41,10 +41,10 @@ grep -qF " 0 $shown 20x16" "$dir/out" || { bad "the name"; cat -v "$dir/out"; }
 grep -qF 'title = \x1b[2J' "$dir/out" || bad "the text"
 expect 0 "" ./adcgs-info --trace "$s"
 safe "$dir/out" "adcgs-info --trace"
-expect 2 "nobody" $dec "$s" --camera "$(printf 'nobody\033[2J\302\233\n')"
+expect 2 "nobody" $dec "$s" --md5 --camera "$(printf 'nobody\033[2J\302\233\n')"
 safe "$dir/err" "an unknown camera"
 printf 'x' >"$dir/$(printf 'bad\033[2J\302\233\377\n.adcgs')"
-expect 4 "bad" $dec "$dir/$(printf 'bad\033[2J\302\233\377\n.adcgs')"
+expect 4 "bad" $dec --md5 "$dir/$(printf 'bad\033[2J\302\233\377\n.adcgs')"
 safe "$dir/err" "a file's name"
 
 # JSON; a key twice is twice there.
