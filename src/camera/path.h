@@ -34,8 +34,8 @@ adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, co
 void adcgs_shots_free(adcgs_shots *shots);
 
 /**
- * What rendering through a camera ended with. ADCGS_ERR_USAGE, which is a camera that the renderer refuses, becomes ADCGS_ERR_DATA:
- * it came from a file. The message names the camera.
+ * What rendering through a camera ended with. ADCGS_ERR_USAGE, which is a camera that the renderer refuses, becomes
+ * ADCGS_ERR_DATA: it came from a file. The message names the camera.
  */
 adcgs_status adcgs_shots_rendered(const adcgs_camera *camera, adcgs_status status, adcgs_error *error);
 

@@ -26,9 +26,9 @@ void adcgs_look_at(double pose[12], const double eye[3], const double target[3],
 /** Stretch what the camera sees to another size: pixels change their shape. */
 void adcgs_camera_stretch(adcgs_camera *camera, int width, int height);
 /**
- * Enlarge or reduce what the camera sees to another size, its middle in the middle; pixels keep their shape. Where the sizes are of
- * different shapes, more is seen round it, so that all of the picture is there; fill: part of it is cut off, so that there is
- * nothing else.
+ * Enlarge or reduce what the camera sees to another size, its middle in the middle; pixels keep their shape. Where the sizes
+ * are of different shapes, more is seen round it, so that all of the picture is there; fill: part of it is cut off, so that
+ * there is nothing else.
  */
 void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill);
 

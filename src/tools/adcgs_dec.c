@@ -191,8 +191,8 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
         adcgs_cli_note(cli, "%s: the stream ends early; showing what is complete", s->input);
     ADCGS_TRY(adcgs_shots_make(&shots, from->decoder, &s->request, error));
     if (shots.outside)
-        adcgs_cli_note(cli, "%s: %d of %d frames show its first or last moment: it lasts from %g to %g s", s->input, shots.outside,
-                       shots.n, info.time_start, info.time_end);
+        adcgs_cli_note(cli, "%s: %d of %d frames show its first or last moment: it lasts from %g to %g s", s->input,
+                       shots.outside, shots.n, info.time_start, info.time_end);
     const int size[2] = {shots.shot[0].camera.width, shots.shot[0].camera.height};
     adcgs_md5_init(&all);
     adcgs_status status = adcgs_canvas_init(&canvas, size, &info, s->alpha, s->depth, from->beside != NULL, error);

@@ -6,6 +6,7 @@
 #include "cli/cli.h"
 #include "layouts/open.h"
 #include "metric/crop.h"
+#include "tools/eval_match.h"
 #include "tools/eval_report.h"
 #include "tools/mosaic.h"
 
@@ -17,6 +18,7 @@
 #include <sys/stat.h>
 
 typedef struct settings {
+    const adcgs_cli *cli;
     const char *file, *scene, *images, *crop, *frames, *csv, *metrics;
     adcgs_config config;
     adcgs_box box; /**< of --crop, where it gives numbers */
@@ -145,6 +147,7 @@ static adcgs_status compare_views(report *r, adcgs_decoder *decoder, const adcgs
         adcgs_evaluate(&e, decoder, scene, (adcgs_split)r->set->split, r->set->measure, on_view, r, error);
     adcgs_progress_clear(&r->progress);
     ADCGS_TRY(status);
+    adcgs_eval_match_pictures(r->set->cli, r->set->file, r->set->scene, &e);
     return adcgs_eval_report_end(&r->out, &e, error);
 }
 
@@ -159,8 +162,8 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
     r->out.bytes = info.bytes.total;
     r->out.layers = info.layers;
     adcgs_progress_init(&r->progress);
-    adcgs_status status = ADCGS_OK;
-    if (s->crop && !strcmp(s->crop, "points"))
+    adcgs_status status = adcgs_eval_match(s->cli, s->file, decoder, s->scene, scene, (adcgs_split)s->split, error);
+    if (status == ADCGS_OK && s->crop && !strcmp(s->crop, "points"))
         status = adcgs_box_of_points(&r->box, scene, error);
     if (status == ADCGS_OK)
         status = compare_views(r, decoder, scene, error);
@@ -220,6 +223,7 @@ int main(int argc, char **argv)
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--metrics %.100s: expected " ADCGS_EVAL_METRICS, s.metrics);
     if (s.json && s.csv && !strcmp(s.csv, "-"))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--json and --csv - both want standard output: give --csv a file");
+    s.cli = &cli;
     s.file = argv[first];
     s.scene = argv[first + 1];
     s.config.cpu = (adcgs_cpu_level)s.cpu;
