@@ -141,13 +141,15 @@ static adcgs_status open_scene(adcgs_scene **scene, const settings *s, const adc
 
 static adcgs_status compare_views(report *r, adcgs_decoder *decoder, const adcgs_scene *scene, adcgs_error *error)
 {
+    const adcgs_match match = {r->set->cli, r->set->file, r->set->scene, decoder, scene, (adcgs_split)r->set->split};
     adcgs_evaluation e;
+    ADCGS_TRY(adcgs_match_check(&match, error));
     adcgs_eval_report_begin(&r->out);
     const adcgs_status status =
         adcgs_evaluate(&e, decoder, scene, (adcgs_split)r->set->split, r->set->measure, on_view, r, error);
     adcgs_progress_clear(&r->progress);
     ADCGS_TRY(status);
-    adcgs_eval_match_pictures(r->set->cli, r->set->file, r->set->scene, &e);
+    adcgs_match_say(&match, &e);
     return adcgs_eval_report_end(&r->out, &e, error);
 }
 
@@ -162,8 +164,8 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
     r->out.bytes = info.bytes.total;
     r->out.layers = info.layers;
     adcgs_progress_init(&r->progress);
-    adcgs_status status = adcgs_eval_match(s->cli, s->file, decoder, s->scene, scene, (adcgs_split)s->split, error);
-    if (status == ADCGS_OK && s->crop && !strcmp(s->crop, "points"))
+    adcgs_status status = ADCGS_OK;
+    if (s->crop && !strcmp(s->crop, "points"))
         status = adcgs_box_of_points(&r->box, scene, error);
     if (status == ADCGS_OK)
         status = compare_views(r, decoder, scene, error);

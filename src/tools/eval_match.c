@@ -40,57 +40,58 @@ static int find_camera(const adcgs_camera *camera, const adcgs_scene *scene, dou
     return found;
 }
 
-static adcgs_status match_cameras(const adcgs_cli *cli, const char *file, const adcgs_decoder *decoder, const adcgs_info *info,
-                                  const char *scene_name, const adcgs_scene *scene)
+static void match_cameras(const adcgs_match *m, const adcgs_info *info)
 {
     int n[3] = {0, 0, 0};
-    for (int i = 0; i < info->cameras; i++) {
-        adcgs_camera camera;
-        ADCGS_TRY(adcgs_get_camera(decoder, i, &camera));
-        n[find_camera(&camera, scene, info->scene_scale)]++;
-    }
+    adcgs_camera camera;
+    for (int i = 0; i < info->cameras; i++)
+        if (adcgs_get_camera(m->decoder, i, &camera) == ADCGS_OK)
+            n[find_camera(&camera, m->scene, info->scene_scale)]++;
     if (2 * n[0] > info->cameras)
-        adcgs_cli_note(cli, "%s: %d of its %d cameras are none of %s: was it made of another scene?", file, n[0], info->cameras,
-                       scene_name);
+        adcgs_cli_note(m->cli, "%s: %d of its %d cameras are none of %s: was it made of another scene?", m->file, n[0],
+                       info->cameras, m->scene_name);
     else if (2 * n[1] > info->cameras)
-        adcgs_cli_note(cli, "%s: %d of its %d cameras have other lenses in %s: was it made of other pictures?", file, n[1],
-                       info->cameras, scene_name);
-    return ADCGS_OK;
+        adcgs_cli_note(m->cli, "%s: %d of its %d cameras have other lenses in %s: was it made of other pictures?", m->file, n[1],
+                       info->cameras, m->scene_name);
 }
 
-static adcgs_status match_times(const adcgs_cli *cli, const char *file, const adcgs_info *info, const char *scene_name,
-                                const adcgs_scene *scene, adcgs_split split, adcgs_error *error)
+/** How many views of the split are of a time that the stream has not, give or take a frame. */
+static uint32_t count_outside(const adcgs_match *m, const adcgs_info *info)
 {
     const double frame = 1.0 / info->frame_rate;
-    const uint32_t n = scene->n_views[split];
     uint32_t outside = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        const double time = scene->views[split][i].time;
+    for (uint32_t i = 0; i < m->scene->n_views[m->split]; i++) {
+        const double time = m->scene->views[m->split][i].time;
         outside += time > info->time_end + frame || time < info->time_start - frame;
     }
-    if (outside && outside == n)
+    return outside;
+}
+
+adcgs_status adcgs_match_check(const adcgs_match *m, adcgs_error *error)
+{
+    adcgs_info info;
+    ADCGS_TRY(adcgs_get_info(m->decoder, &info));
+    const uint32_t outside = count_outside(m, &info);
+    if (outside && outside == m->scene->n_views[m->split])
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%.80s lasts from %g to %g s, and no %s view of %.80s is of that time: "
-                          "another scene, or other --frames", file, info->time_start, info->time_end, adcgs_split_name(split), scene_name);
-    if (outside)
-        adcgs_cli_note(cli, "%s: lasts from %g to %g s, but %u of the %u %s views of %s are not of that time: other --frames?",
-                       file, info->time_start, info->time_end, outside, n, adcgs_split_name(split), scene_name);
+                          "another scene, or other --frames", m->file,
+                          info.time_start, info.time_end, adcgs_split_name(m->split), m->scene_name);
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_eval_match(const adcgs_cli *cli, const char *file, const adcgs_decoder *decoder, const char *scene_name,
-                              const adcgs_scene *scene, adcgs_split split, adcgs_error *error)
+void adcgs_match_say(const adcgs_match *m, const adcgs_evaluation *evaluation)
 {
     adcgs_info info;
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
-    ADCGS_TRY(match_times(cli, file, &info, scene_name, scene, split, error));
-    return match_cameras(cli, file, decoder, &info, scene_name, scene);
-}
-
-void adcgs_eval_match_pictures(const adcgs_cli *cli, const char *file, const char *scene_name,
-                               const adcgs_evaluation *evaluation)
-{
+    if (adcgs_get_info(m->decoder, &info) != ADCGS_OK)
+        return;
+    const uint32_t outside = count_outside(m, &info);
+    if (outside)
+        adcgs_cli_note(m->cli, "%s: lasts from %g to %g s, but %u of the %u %s views of %s are not of that time: other --frames?",
+                       m->file, info.time_start, info.time_end, outside, m->scene->n_views[m->split],
+                       adcgs_split_name(m->split), m->scene_name);
+    match_cameras(m, &info);
     if (evaluation->psnr < PSNR_OF_NOTHING)
-        adcgs_cli_note(cli, "%s: its views are nothing like the pictures of %s (%.1f dB): was it made of another scene?", file,
-                       scene_name, evaluation->psnr);
+        adcgs_cli_note(m->cli, "%s: its views are nothing like the pictures of %s (%.1f dB): was it made of another scene?",
+                       m->file, m->scene_name, evaluation->psnr);
 }

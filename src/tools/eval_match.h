@@ -7,11 +7,17 @@
 #include "data/scene.h"
 #include "metric/evaluate.h"
 
-/** Before the evaluation. Notes say what does not match; ADCGS_ERR_DATA if no view of the split is within the stream's time. */
-adcgs_status adcgs_eval_match(const adcgs_cli *cli, const char *file, const adcgs_decoder *decoder, const char *scene_name,
-                              const adcgs_scene *scene, adcgs_split split, adcgs_error *error);
-/** After it: a note if the pictures are nothing like the decoded views. */
-void adcgs_eval_match_pictures(const adcgs_cli *cli, const char *file, const char *scene_name,
-                               const adcgs_evaluation *evaluation);
+typedef struct adcgs_match {
+    const adcgs_cli *cli;
+    const char *file, *scene_name; /**< for messages */
+    const adcgs_decoder *decoder;
+    const adcgs_scene *scene;
+    adcgs_split split;
+} adcgs_match;
+
+/** Before the evaluation: ADCGS_ERR_DATA if no view of the split is within the stream's time. */
+adcgs_status adcgs_match_check(const adcgs_match *match, adcgs_error *error);
+/** After it: notes of what does not match. */
+void adcgs_match_say(const adcgs_match *match, const adcgs_evaluation *evaluation);
 
 #endif
