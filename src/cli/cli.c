@@ -48,6 +48,8 @@ int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *forma
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...)
 {
     va_list arguments;
+    if (cli->quiet && *cli->quiet)
+        return;
     va_start(arguments, format);
     message(cli, format, arguments);
     va_end(arguments);
@@ -261,6 +263,8 @@ static int print_help(const adcgs_cli *cli)
         const adcgs_option *option = &cli->options[i];
         print_option(option->letter, option->name, option->value, option->help);
     }
+    if (cli->quiet)
+        print_option('q', "quiet", NULL, "print neither progress nor remarks");
     print_option('h', "help", NULL, "print this text and exit");
     print_option('V', "version", NULL, "print versions and exit");
     if (cli->details)
@@ -292,8 +296,9 @@ static size_t getopt_tables(const adcgs_cli *cli, struct option *longs, char *le
     }
     longs[n] = (struct option){"help", no_argument, NULL, 'h'};
     longs[n + 1] = (struct option){"version", no_argument, NULL, 'V'};
-    longs[n + 2] = (struct option){NULL, 0, NULL, 0};
-    memcpy(letters, "hV", 3);
+    longs[n + 2] = (struct option){cli->quiet ? "quiet" : NULL, no_argument, NULL, 'q'};
+    longs[n + 3] = (struct option){NULL, 0, NULL, 0};
+    memcpy(letters, cli->quiet ? "hVq" : "hV", cli->quiet ? 4 : 3);
     return n;
 }
 
@@ -328,8 +333,8 @@ static int check_operands(const adcgs_cli *cli, int n, const char *surplus)
 
 int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
 {
-    struct option longs[OPTIONS_MAX + 3];
-    char letters[2 * OPTIONS_MAX + 4];
+    struct option longs[OPTIONS_MAX + 4];
+    char letters[2 * OPTIONS_MAX + 5];
     getopt_tables(cli, longs, letters);
     opterr = 0;
     for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
@@ -337,6 +342,10 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
             return print_help(cli);
         if (code == 'V')
             return print_version(cli);
+        if (code == 'q' && cli->quiet) {
+            *cli->quiet = 1;
+            continue;
+        }
         const char *word = argv[ADCGS_MAX(optind - 1, 1)];
         if (code == ':')
             return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: a value must follow", word);

@@ -34,7 +34,7 @@ typedef struct adcgs_option {
     int *given;         /**< set to 1 when the option is given; may be NULL */
 } adcgs_option;
 
-/** A program. --help (-h) and --version (-V) are added by themselves. */
+/** A program. --help (-h) and --version (-V) are added by themselves, and --quiet (-q) where quiet is set. */
 typedef struct adcgs_cli {
     const char *program;  /**< "adcgs-dec" */
     const char *operands; /**< "FILE|-" */
@@ -43,6 +43,7 @@ typedef struct adcgs_cli {
     const adcgs_option *options;
     size_t n_options;
     int min_operands, max_operands;
+    int *quiet; /**< set to 1 by --quiet: neither progress nor remarks are printed; NULL: no such option */
 } adcgs_cli;
 
 /**
@@ -59,7 +60,7 @@ int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
 /** ADCGS_ERR_IO unless all that was printed on standard output has arrived. */
 adcgs_status adcgs_cli_flush(adcgs_error *error);
-/** A remark that does not end the program: "program: text" on stderr. */
+/** A remark that does not end the program: "program: text" on stderr, unless --quiet was given. */
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(2, 3);
 
 /* Whole-string parsers: 0, or -1 when text is not exactly one number of the kind within [min, max]. */
@@ -76,14 +77,17 @@ void adcgs_interrupt_catch(void);
 /** The signal that came, 0 if none. */
 int adcgs_interrupted(void);
 
-/** A line on stderr that rewrites itself; silent unless stderr is a terminal. */
+/** How far a program is: on a terminal a line that rewrites itself, else a remark now and then. */
 typedef struct adcgs_progress {
-    int active, shown;
-    double last; /**< when it was drawn */
+    const adcgs_cli *cli;
+    int is_terminal, shown;
+    double last;  /**< when it was drawn */
+    double every; /**< seconds from one to the next */
 } adcgs_progress;
 
-void adcgs_progress_init(adcgs_progress *progress);
-/** At most ten times a second. */
+/** Silent with --quiet. */
+void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli);
+/** At most ten times a second on a terminal, twice a minute elsewhere. */
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** Wipe the line; call before any other message and at the end. */
 void adcgs_progress_clear(adcgs_progress *progress);

@@ -4,10 +4,15 @@
 
 #include "cli/cli.h"
 
+#include "cli/text.h"
+
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <unistd.h>
+
+#define TERMINAL_EVERY 0.1 /* seconds */
+#define LINE_EVERY 30.0
 
 /* A signal handler can reach nothing but static storage. */
 static volatile sig_atomic_t interrupted;
@@ -33,26 +38,32 @@ int adcgs_interrupted(void)
     return interrupted;
 }
 
-void adcgs_progress_init(adcgs_progress *progress)
+void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli)
 {
-    *progress = (adcgs_progress){.active = isatty(STDERR_FILENO)};
+    const int is_terminal = isatty(STDERR_FILENO);
+    *progress = (adcgs_progress){
+        .cli = cli, .is_terminal = is_terminal, .last = adcgs_seconds(), .every = is_terminal ? TERMINAL_EVERY : LINE_EVERY};
 }
 
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...)
 {
-    if (!progress->active)
-        return;
-    const double now = adcgs_seconds();
-    if (progress->shown && now - progress->last < 0.1)
-        return;
+    char text[256];
     va_list arguments;
+    const double now = adcgs_seconds();
+    if ((progress->cli->quiet && *progress->cli->quiet) || now - progress->last < progress->every)
+        return;
     va_start(arguments, format);
-    fputc('\r', stderr);
-    vfprintf(stderr, format, arguments);
-    fputs("\033[K", stderr);
+    vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     progress->last = now;
-    progress->shown = 1;
+    progress->shown = progress->is_terminal;
+    if (!progress->is_terminal) {
+        adcgs_cli_note(progress->cli, "%s", text);
+        return;
+    }
+    fputc('\r', stderr);
+    adcgs_text_show(stderr, text);
+    fputs("\033[K", stderr);
 }
 
 void adcgs_progress_clear(adcgs_progress *progress)

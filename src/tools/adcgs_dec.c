@@ -20,10 +20,11 @@
 #include <strings.h>
 
 typedef struct settings {
+    const adcgs_cli *cli;
     const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script;
     adcgs_shots_request request;
     adcgs_config config;
-    int cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int quiet, cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     double opened; /**< when opening the input began, in seconds */
 } settings;
 
@@ -121,7 +122,7 @@ static adcgs_status render(const settings *s, const streams *from, const adcgs_s
 {
     adcgs_frame *frame = &canvas->frame;
     adcgs_progress progress;
-    adcgs_progress_init(&progress);
+    adcgs_progress_init(&progress, s->cli);
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < shots->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         const double start = adcgs_seconds();
@@ -340,8 +341,10 @@ int main(int argc, char **argv)
                            .options = options,
                            .n_options = OPTION_COUNT,
                            .min_operands = 1,
-                           .max_operands = 1};
+                           .max_operands = 1,
+                           .quiet = &s.quiet};
     int first, mismatch = 0;
+    s.cli = &cli;
     const int done = adcgs_cli_parse(&cli, argc, argv, &first);
     if (done >= 0)
         return done;

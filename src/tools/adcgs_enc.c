@@ -19,7 +19,7 @@
 typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed, *frames;
     double lambda, psnr, time_limit;
-    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, has_lambda, has_size, has_psnr;
+    int quiet, iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, has_lambda, has_size, has_psnr;
     uint64_t seed, size, memory;
 } enc_options;
 
@@ -262,7 +262,7 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
     w->t->until_lambda = w->o->beginning != NULL;
     w->saved = w->t->elapsed;
     adcgs_interrupt_catch();
-    adcgs_progress_init(&w->progress);
+    adcgs_progress_init(&w->progress, cli);
     const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
     adcgs_progress_clear(&w->progress);
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
@@ -355,7 +355,7 @@ static int list_settings(const adcgs_cli *cli, const enc_options *o)
 }
 
 /** -1 to go on, else the exit code to leave with. */
-static int parse(enc_options *o, int argc, char **argv)
+static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
 {
     const adcgs_option options[] = {
         { "output", 'o', ADCGS_OPTION_STRING, &o->output, 0, 0, "FILE",
@@ -418,22 +418,23 @@ static int parse(enc_options *o, int argc, char **argv)
           "train the networks that draw in bf16, which is quicker;\nneeds a CPU with AVX512-BF16", NULL, NULL },
         { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
-    adcgs_cli cli = program;
-    cli.options = options;
-    cli.n_options = ADCGS_COUNTOF(options);
+    cli->options = options;
+    cli->n_options = ADCGS_COUNTOF(options);
+    cli->quiet = &o->quiet;
     int first;
-    const int code = adcgs_cli_parse(&cli, argc, argv, &first);
+    const int code = adcgs_cli_parse(cli, argc, argv, &first);
+    cli->n_options = 0; /* the table ends with this function */
     if (code >= 0)
         return code;
     if (o->set && !strcmp(o->set, "list"))
-        return list_settings(&cli, o);
+        return list_settings(cli, o);
     if (first >= argc)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
     if (!o->output == !o->beginning)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
                                                                   "no output: give -o FILE");
     if (o->has_lambda + o->has_size + o->has_psnr > 1)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
     o->scene = argv[first];
     return -1;
 }
@@ -441,7 +442,8 @@ static int parse(enc_options *o, int argc, char **argv)
 int main(int argc, char **argv)
 {
     enc_options o = { .preset = "fast", .scale = 1, .seed = 1 };
-    const int code = parse(&o, argc, argv);
+    adcgs_cli cli = program;
+    const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)
         return code;
     adcgs_error error = { ADCGS_OK, "" };
@@ -449,11 +451,11 @@ int main(int argc, char **argv)
     int met = 1;
     adcgs_status status = adcgs_pool_create(&pool, o.threads, &error);
     if (status == ADCGS_OK)
-        status = encode(&program, &o, pool, &met, &error);
+        status = encode(&cli, &o, pool, &met, &error);
     adcgs_pool_free(&pool);
     if (status != ADCGS_OK) {
         error.status = status;
-        return adcgs_cli_fail(&program, &error);
+        return adcgs_cli_fail(&cli, &error);
     }
     return met ? 0 : 1;
 }

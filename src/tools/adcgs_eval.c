@@ -22,7 +22,7 @@ typedef struct settings {
     const char *file, *scene, *images, *crop, *frames, *csv, *metrics;
     adcgs_config config;
     adcgs_box box; /**< of --crop, where it gives numbers */
-    int split, cpu, json, as_is, beside, dataset;
+    int quiet, split, cpu, json, as_is, beside, dataset;
     int measure; /**< of --metrics: flags of metric/evaluate.h */
 } settings;
 
@@ -163,7 +163,7 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
     r->n = scene->n_views[s->split];
     r->out.bytes = info.bytes.total;
     r->out.layers = info.layers;
-    adcgs_progress_init(&r->progress);
+    adcgs_progress_init(&r->progress, s->cli);
     adcgs_status status = ADCGS_OK;
     if (s->crop && !strcmp(s->crop, "points"))
         status = adcgs_box_of_points(&r->box, scene, error);
@@ -211,7 +211,8 @@ int main(int argc, char **argv)
                            .options = options,
                            .n_options = OPTION_COUNT,
                            .min_operands = 2,
-                           .max_operands = 2};
+                           .max_operands = 2,
+                           .quiet = &s.quiet};
     int first;
     const int done = adcgs_cli_parse(&cli, argc, argv, &first);
     if (done >= 0)

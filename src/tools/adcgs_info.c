@@ -241,8 +241,9 @@ int main(int argc, char **argv)
         { "points", 0, ADCGS_OPTION_STRING, &s.points, 0, 0, "FILE",
           "write the anchors' positions and colours, as .ply or\n.drc (Draco), instead of a report", NULL, NULL },
     };
-    const adcgs_cli cli = { "adcgs-info", "FILE|-", "Says what an adcgs stream holds and where its bytes are.", NULL, options,
-                            ADCGS_COUNTOF(options), 1, 1 };
+    const adcgs_cli cli = { .program = "adcgs-info", .operands = "FILE|-",
+                            .summary = "Says what an adcgs stream holds and where its bytes are.", .options = options,
+                            .n_options = ADCGS_COUNTOF(options), .min_operands = 1, .max_operands = 1 };
     adcgs_error error = { ADCGS_OK, "" };
     int first, code = adcgs_cli_parse(&cli, argc, argv, &first);
     if (code >= 0)

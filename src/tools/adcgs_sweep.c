@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 /* "a,b,c"; returns how many, or -1. */
@@ -88,11 +89,39 @@ static void say(const adcgs_cli *cli, const adcgs_sweep_run *r, const char *how)
                        r->figure[ADCGS_FIGURE_PSNR], r->figure[ADCGS_FIGURE_SSIM], how);
 }
 
+static int count_running(const adcgs_sweep_plan *plan)
+{
+    int n = 0;
+    for (int i = 0; i < plan->n_runs; i++)
+        n += plan->run[i].state == ADCGS_RUN_RUNS;
+    return n;
+}
+
+/** Wait until a child ends, and say meanwhile that they are at it. */
+static pid_t wait_for_child(const adcgs_cli *cli, const adcgs_sweep_plan *plan, int *state)
+{
+    const struct timespec pause = {.tv_nsec = 50000000};
+    const double start = adcgs_seconds();
+    adcgs_progress progress;
+    pid_t child;
+    int done = 0;
+    for (int i = 0; i < plan->n_runs; i++)
+        done += plan->run[i].state == ADCGS_RUN_DONE;
+    adcgs_progress_init(&progress, cli);
+    while ((child = waitpid(-1, state, WNOHANG)) == 0) {
+        adcgs_progress_show(&progress, "%d of %d runs done, %d running since %.0f s", done, plan->n_runs, count_running(plan),
+                            adcgs_seconds() - start);
+        nanosleep(&pause, NULL);
+    }
+    adcgs_progress_clear(&progress);
+    return child;
+}
+
 /** Wait for one child and take its result; returns its exit code. */
 static int reap(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
 {
     int state = 0, i = 0;
-    const pid_t child = waitpid(-1, &state, 0);
+    const pid_t child = wait_for_child(cli, plan, &state);
     while (i < plan->n_runs && (plan->run[i].state != ADCGS_RUN_RUNS || plan->run[i].child != child))
         i++;
     if (child < 0 || i == plan->n_runs)
@@ -106,14 +135,6 @@ static int reap(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan
     if (code == 0)
         say(cli, run, "");
     return code;
-}
-
-static int count_running(const adcgs_sweep_plan *plan)
-{
-    int n = 0;
-    for (int i = 0; i < plan->n_runs; i++)
-        n += plan->run[i].state == ADCGS_RUN_RUNS;
-    return n;
 }
 
 /* Run all that is not yet done, some at a time. Returns the worst exit code. */
@@ -259,7 +280,7 @@ static const adcgs_cli program = {
 };
 
 /** -1 to go on, else the exit code to leave with. */
-static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
+static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char **argv)
 {
     lists l = {.yardsticks = "all"};
     int first = 0;
@@ -288,26 +309,28 @@ static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
         {"resume", 0, ADCGS_OPTION_FLAG, &sweep->resume, 0, 0, NULL,
          "keep what an earlier sweep finished with the same\nsettings, go on with what it did not", NULL, NULL},
     };
-    adcgs_cli cli = program;
-    cli.options = options;
-    cli.n_options = ADCGS_COUNTOF(options);
-    const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
+    cli->options = options;
+    cli->n_options = ADCGS_COUNTOF(options);
+    const int leave = adcgs_cli_parse(cli, argc, argv, &first);
+    cli->n_options = 0; /* the table ends with this function */
     if (leave >= 0)
         return leave;
     if (!sweep->directory || (!l.lambdas && !sweep->ablation))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
     sweep->scene = argv[first];
-    return parse_lists(&cli, &l, sweep);
+    return parse_lists(cli, &l, sweep);
 }
 
 int main(int argc, char **argv)
 {
     char programs[ADCGS_SWEEP_PATH];
     adcgs_sweep sweep = {.programs = programs};
-    int jobs = 1;
-    const int code = parse(&sweep, &jobs, argc, argv);
+    int jobs = 1, quiet = 0;
+    adcgs_cli cli = program;
+    cli.quiet = &quiet;
+    const int code = parse(&cli, &sweep, &jobs, argc, argv);
     if (code >= 0)
         return code;
     find_programs(argv[0], programs, sizeof programs);
-    return run_sweep(&program, &sweep, jobs);
+    return run_sweep(&cli, &sweep, jobs);
 }

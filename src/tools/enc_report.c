@@ -99,9 +99,35 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
     return adcgs_json_write(&j, stdout, "standard output", error);
 }
 
+/** Views as they are measured. */
+typedef struct counter {
+    adcgs_progress progress;
+    uint32_t done, n;
+} counter;
+
+static adcgs_status count_view(void *user, const adcgs_view_score *score, adcgs_error *error)
+{
+    counter *c = user;
+    (void)score;
+    (void)error;
+    adcgs_progress_show(&c->progress, "measured  %6u/%u", ++c->done, c->n);
+    return ADCGS_OK;
+}
+
+/** PSNR and SSIM of a split's views. */
+static adcgs_status evaluate(adcgs_evaluation *out, const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene,
+                             adcgs_split split, adcgs_error *error)
+{
+    counter c = {.n = scene->n_views[split]};
+    adcgs_progress_init(&c.progress, cli);
+    const adcgs_status status = adcgs_evaluate(out, decoder, scene, split, 0, count_view, &c, error);
+    adcgs_progress_clear(&c.progress);
+    return status;
+}
+
 /** Compare with the target. The PSNR of training views is measured from the file like any other. */
-static adcgs_status judge(outcome *o, const adcgs_enc_report *r, const adcgs_info *info, adcgs_decoder *decoder,
-                          adcgs_error *error)
+static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_report *r, const adcgs_info *info,
+                          adcgs_decoder *decoder, adcgs_error *error)
 {
     const adcgs_train_config *c = &r->trainer->config;
     adcgs_evaluation e;
@@ -111,7 +137,7 @@ static adcgs_status judge(outcome *o, const adcgs_enc_report *r, const adcgs_inf
         o->reached = (double)info->bytes.total;
         o->met = o->reached <= o->value && o->reached > (1 - SIZE_WITHIN) * o->value;
     } else if (c->target == ADCGS_TARGET_PSNR) {
-        ADCGS_TRY(adcgs_evaluate(&e, decoder, r->trainer->scene, ADCGS_SPLIT_TRAIN, 0, NULL, NULL, error));
+        ADCGS_TRY(evaluate(&e, cli, decoder, r->trainer->scene, ADCGS_SPLIT_TRAIN, error));
         o->kind = "psnr";
         o->reached = e.psnr;
         o->met = fabs(o->reached - o->value) <= PSNR_WITHIN;
@@ -129,14 +155,15 @@ static void say_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const ou
                        o->value, o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
 }
 
-static adcgs_status measure(result *x, const adcgs_enc_report *r, adcgs_decoder *decoder, adcgs_error *error)
+static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_report *r, adcgs_decoder *decoder,
+                            adcgs_error *error)
 {
     const adcgs_scene *scene = r->trainer->scene;
     x->split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
                scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
     ADCGS_TRY(adcgs_get_info(decoder, &x->info));
-    ADCGS_TRY(adcgs_evaluate(&x->quality, decoder, scene, x->split, 0, NULL, NULL, error));
-    return judge(&x->target, r, &x->info, decoder, error);
+    ADCGS_TRY(evaluate(&x->quality, cli, decoder, scene, x->split, error));
+    return judge(cli, &x->target, r, &x->info, decoder, error);
 }
 
 /** What could not be measured is complete all the same. */
@@ -155,12 +182,12 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     config.threads = r->threads;
     config.cpu = r->trainer->cpu;
     ADCGS_TRY(adcgs_open_file(&decoder, r->file, &config, error));
-    adcgs_status status = measure(&x, r, decoder, error);
+    adcgs_status status = measure(cli, &x, r, decoder, error);
     if (status != ADCGS_OK)
         say_written(r, error);
     if (status == ADCGS_OK && r->json)
         status = print_json(r, &x, error);
-    else if (status == ADCGS_OK)
+    else if (status == ADCGS_OK && !*cli->quiet)
         print_text(r, &x);
     if (status == ADCGS_OK && !x.target.met)
         say_missed(cli, r, &x.target);

@@ -27,6 +27,10 @@ expect 0 "frame" $dec "$s" --verify "$whole"
 expect 1 "$whole" $dec "$s" --verify 00112233445566778899aabbccddeeff
 expect 2 "32 hex" $dec "$s" --verify 123
 
+expect 0 "" $dec "$s" --md5 --quiet --time 0:2
+[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
+expect 3 "nowhere" $dec -q "$dir/nowhere" --md5
+
 # Outputs.
 expect 0 "frame" $dec "$s" -o "$dir/f%03d.ppm"
 [ -s "$dir/f000.ppm" ] && [ "$(find "$dir" -name 'f*.ppm' | wc -l)" -eq "$n" ] || bad "numbered images"

@@ -259,7 +259,8 @@ cp -R "$scene" "$dir/lenses"
 awk '/transform_matrix/ { if (!pose) pose = $0; sub(/,$/, "", pose); sub(/ *},?$/, "", pose)
          printf "%s, \"camera_angle_x\": %s }%s\n", pose, n++ % 2 ? 0.5 : 0.75, /, *$/ ? "," : ""; next } { print }' \
     "$scene/transforms_train.json" >"$dir/lenses/transforms_train.json"
-expect 0 "" ./adcgs-enc "$dir/lenses" -o "$dir/lenses.adcgs" --preset draft --iterations 10 --max-anchors 100
+expect 0 "" ./adcgs-enc "$dir/lenses" -o "$dir/lenses.adcgs" --preset draft --iterations 10 --max-anchors 100 --quiet
+[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
 ./adcgs-info "$dir/lenses.adcgs" >"$dir/out"
 [ "$(grep -c '64x64, focal' "$dir/out")" -eq 2 ] || { bad "stored cameras"; cat "$dir/out"; }
 

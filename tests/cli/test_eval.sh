@@ -42,6 +42,8 @@ for picture in "$dir"/other/test/*.ppm; do
     { printf 'P6\n64 64\n255\n' && head -c 12288 /dev/zero; } >"$picture"
 done
 expect 0 "nothing like the pictures of" $eval "$s" "$dir/other"
+expect 0 "" $eval "$s" "$dir/other" --quiet
+[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
 
 # By default, PSNR and SSIM.
 expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/plain.csv" --json

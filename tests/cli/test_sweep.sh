@@ -110,7 +110,7 @@ calls 1 0 "--resume"
 
 # A run that fails is named, the others are written out; what it had reached is where the next attempt goes on.
 sweep --lambda 1,666,2 --yardsticks none
-[ $got -eq 3 ] || fail "a failing encoder goes unnoticed"
+[ $got -eq 4 ] || fail "a failing encoder goes unnoticed"
 line 'lambda-666' "$dir/err"
 [ "$(wc -l <"$out/sweep.csv")" -eq 3 ] || fail "the other points are not in the table"
 calls 4

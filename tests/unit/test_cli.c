@@ -53,7 +53,7 @@ static void test_numbers(void **state)
 
 typedef struct values {
     const char *text;
-    int flag, number, choice, given;
+    int flag, number, choice, given, *quiet;
     uint64_t size;
 } values;
 
@@ -68,7 +68,7 @@ static int parse(values *v, const char *const *words, int *first)
         {"size", 's', ADCGS_OPTION_SIZE, &v->size, 1, 1e6, "BYTES", "a size", NULL, NULL},
         {"colour", 0, ADCGS_OPTION_CHOICE, &v->choice, 0, 0, "NAME", "a name", choices, NULL},
     };
-    const adcgs_cli cli = {"prog", "FILE", "Does it.", NULL, options, ADCGS_COUNTOF(options), 1, 2};
+    const adcgs_cli cli = {"prog", "FILE", "Does it.", NULL, options, ADCGS_COUNTOF(options), 1, 2, v->quiet};
     static char copies[12][64];
     char *argv[13] = {copies[0]};
     int argc = 1;
@@ -98,6 +98,13 @@ static void test_options(void **state)
     assert_string_equal(v.text, "x y");
     assert_int_equal(PARSE(&v, &first, "-t", "-", "file", "--", "-f"), -1);
     assert_string_equal(v.text, "-");
+    int quiet = 0;
+    assert_int_equal(PARSE(&v, &first, "-q", "file"), 2); /* of programs that have it */
+    v.quiet = &quiet;
+    assert_int_equal(PARSE(&v, &first, "file"), -1);
+    assert_false(quiet);
+    assert_int_equal(PARSE(&v, &first, "file", "-q"), -1);
+    assert_true(quiet);
 }
 
 static void test_mistakes(void **state)
@@ -115,6 +122,51 @@ static void test_mistakes(void **state)
     assert_int_equal(PARSE(&v, &first, "--flag"), 2);
     assert_int_equal(PARSE(&v, &first, "--help"), 0);
     assert_int_equal(PARSE(&v, &first, "-V"), 0);
+}
+
+/** What the function prints on standard error, which is no terminal then. */
+static void catch_stderr(char text[512], void (*print)(const adcgs_cli *cli), const adcgs_cli *cli)
+{
+    FILE *file = tmpfile();
+    const int saved = dup(STDERR_FILENO);
+    assert_true(file && saved >= 0);
+    fflush(stderr);
+    assert_true(dup2(fileno(file), STDERR_FILENO) >= 0);
+    print(cli);
+    fflush(stderr);
+    assert_true(dup2(saved, STDERR_FILENO) >= 0);
+    close(saved);
+    rewind(file);
+    text[fread(text, 1, 511, file)] = 0;
+    fclose(file);
+}
+
+static void show_progress(const adcgs_cli *cli)
+{
+    adcgs_progress progress;
+    adcgs_progress_init(&progress, cli);
+    adcgs_progress_show(&progress, "too early");
+    assert_true(progress.every >= 10.0 && progress.every <= 60.0);
+    progress.last -= progress.every;
+    adcgs_progress_show(&progress, "step %d\033", 1);
+    adcgs_progress_show(&progress, "too early");
+    progress.last -= progress.every;
+    adcgs_progress_show(&progress, "step %d", 2);
+    adcgs_progress_clear(&progress);
+    adcgs_cli_note(cli, "done");
+}
+
+/* Without a terminal there is a plain line now and then; with --quiet nothing but what went wrong. */
+static void test_progress(void **state)
+{
+    int quiet = 0;
+    char text[512];
+    const adcgs_cli cli = {.program = "prog", .quiet = &quiet};
+    catch_stderr(text, show_progress, &cli);
+    assert_string_equal(text, "prog: step 1\\x1b\nprog: step 2\nprog: done\n");
+    quiet = 1;
+    catch_stderr(text, show_progress, &cli);
+    assert_string_equal(text, "");
 }
 
 /* What is no UTF-8, as Unicode's table 3-7 has it: lone and missing continuations, overlong forms, surrogates, beyond the end. */
@@ -246,7 +298,8 @@ static void test_json_failures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_numbers), cmocka_unit_test(test_options),
-                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_utf8),
+                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_progress),
+                                       cmocka_unit_test(test_utf8),
                                        cmocka_unit_test(test_shown), cmocka_unit_test(test_json),
                                        cmocka_unit_test(test_json_texts), cmocka_unit_test(test_json_failures)};
     return cmocka_run_group_tests(tests, NULL, NULL);
