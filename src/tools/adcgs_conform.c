@@ -9,8 +9,11 @@
 
 #include <fnmatch.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #define ID_WIDTH 36
+#define MANIFEST_HERE "conformance/manifest.json"
+#define MANIFEST_INSTALLED CONFORMANCE_DIRECTORY "/manifest.json"
 
 static const int thread_counts[] = {1, 2, 7};
 static const int steps[] = {0, 7};
@@ -130,6 +133,16 @@ static int run(const adcgs_cli *cli, settings *s, const char *path)
     return status != ADCGS_OK ? adcgs_cli_fail(cli, &error) : t.faults ? 1 : 0;
 }
 
+/** Where there is one; NULL: nowhere. */
+static const char *find_manifest(void)
+{
+    static const char *const places[] = {MANIFEST_HERE, MANIFEST_INSTALLED};
+    for (size_t i = 0; i < ADCGS_COUNTOF(places); i++)
+        if (!access(places[i], F_OK))
+            return places[i];
+    return NULL;
+}
+
 int main(int argc, char **argv)
 {
     static const char *const points[] = {"P", "M", "S", "R", NULL};
@@ -155,7 +168,9 @@ int main(int argc, char **argv)
         .program = "adcgs-conform",
         .operands = "[MANIFEST]",
         .summary = "Check a decoder against conformance vectors.",
-        .details = "MANIFEST is conformance/manifest.json unless given. Without --decoder the library is\n"
+        .details = "Without MANIFEST it is conformance/manifest.json, here or else as installed in\n"
+                   CONFORMANCE_DIRECTORY ".\n"
+                   "Without --decoder the library is\n"
                    "checked, at every CPU level that this machine has, with 1, 2 and 7 threads, with\n"
                    "the input as a whole and in pieces of few bytes.",
         .options = options,
@@ -164,5 +179,8 @@ int main(int argc, char **argv)
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;
-    return run(&cli, &s, first < argc ? argv[first] : "conformance/manifest.json");
+    const char *manifest = first < argc ? argv[first] : find_manifest();
+    if (!manifest)
+        return adcgs_cli_error(&cli, ADCGS_ERR_IO, "no manifest: neither " MANIFEST_HERE " nor " MANIFEST_INSTALLED "; give MANIFEST");
+    return run(&cli, &s, manifest);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-demo-scene: writes one of the built-in scenes. Part of the tree's own demo and tests; not installed. */
+/** \file adcgs-demo-scene: writes one of the built-in scenes, for a first try. */
 #include "cli/cli.h"
 #include "scenes/scenes.h"
 
