@@ -181,6 +181,7 @@ int main(int argc, char **argv)
         return leave;
     const char *manifest = first < argc ? argv[first] : find_manifest();
     if (!manifest)
-        return adcgs_cli_error(&cli, ADCGS_ERR_IO, "no manifest: neither " MANIFEST_HERE " nor " MANIFEST_INSTALLED "; give MANIFEST");
+        return adcgs_cli_error(&cli, ADCGS_ERR_IO,
+                               "no manifest: neither " MANIFEST_HERE " nor " MANIFEST_INSTALLED "; give MANIFEST");
     return run(&cli, &s, manifest);
 }
