@@ -56,7 +56,7 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 /* Messages are one line each: what a terminal would obey in the names and texts in them is shown as escapes (io/text.h). */
 /** Print "program: text" on stderr and return the exit code of error->status. */
 int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
-/** As adcgs_cli_fail() with a message of its own. */
+/** As adcgs_cli_fail() with a message of its own; with ADCGS_OK for what is no failure, and --quiet must not hide. */
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
 /** ADCGS_ERR_IO unless all that was printed on standard output has arrived. */
 adcgs_status adcgs_cli_flush(adcgs_error *error);
@@ -87,7 +87,7 @@ typedef struct adcgs_progress {
 
 /** Silent with --quiet. */
 void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli);
-/** At most ten times a second on a terminal, twice a minute elsewhere. */
+/** At most ten times a second on a terminal; elsewhere after 5 seconds, after 10 more, and so on up to once a minute. */
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** Wipe the line; call before any other message and at the end. */
 void adcgs_progress_clear(adcgs_progress *progress);

@@ -12,7 +12,8 @@
 #include <unistd.h>
 
 #define TERMINAL_EVERY 0.1 /* seconds */
-#define LINE_EVERY 30.0
+#define LINES_FIRST 5.0
+#define LINES_MOST 60.0
 
 /* A signal handler can reach nothing but static storage. */
 static volatile sig_atomic_t interrupted;
@@ -42,7 +43,7 @@ void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli)
 {
     const int is_terminal = isatty(STDERR_FILENO);
     *progress = (adcgs_progress){
-        .cli = cli, .is_terminal = is_terminal, .last = adcgs_seconds(), .every = is_terminal ? TERMINAL_EVERY : LINE_EVERY};
+        .cli = cli, .is_terminal = is_terminal, .last = adcgs_seconds(), .every = is_terminal ? TERMINAL_EVERY : LINES_FIRST};
 }
 
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...)
@@ -58,6 +59,7 @@ void adcgs_progress_show(adcgs_progress *progress, const char *format, ...)
     progress->last = now;
     progress->shown = progress->is_terminal;
     if (!progress->is_terminal) {
+        progress->every = ADCGS_MIN(2.0 * progress->every, LINES_MOST);
         adcgs_cli_note(progress->cli, "%s", text);
         return;
     }

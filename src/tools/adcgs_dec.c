@@ -214,7 +214,7 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
         adcgs_md5_hex(digest, hex);
         *mismatch = s->verify && strcasecmp(s->verify, hex);
         if (*mismatch)
-            adcgs_cli_note(cli, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
+            adcgs_cli_error(cli, ADCGS_OK, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
         else
             adcgs_cli_note(cli, "%s: %d frame%s of %dx%d, %.2f ms each", s->input, shots.n, shots.n == 1 ? "" : "s",
                            size[0], size[1], 1e3 * seconds / shots.n);
@@ -236,7 +236,7 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
         status = adcgs_requests_answer(&requests, s->input, *decoder, error);
     else if (fault) {
         printf("fault %s\n", fault);
-        adcgs_cli_note(cli, "%s", error->text);
+        adcgs_cli_error(cli, ADCGS_OK, "%s", error->text);
         adcgs_fail(error, status, "%.160s: a fault of class %s", s->input, fault);
     }
     adcgs_requests_clear(&requests);
@@ -249,7 +249,7 @@ static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch,
     const adcgs_dec_play how = {.input = s->input, .script = s->script, .request = s->request, .config = s->config};
     const adcgs_status status = adcgs_dec_play_run(&how, mismatch, error);
     if (*mismatch)
-        adcgs_cli_note(cli, "%s", error->text);
+        adcgs_cli_error(cli, ADCGS_OK, "%s", error->text);
     return status;
 }
 

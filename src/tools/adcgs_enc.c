@@ -249,7 +249,8 @@ static adcgs_status stop_early(const adcgs_cli *cli, watcher *w, adcgs_error *er
     }
     const adcgs_status status = adcgs_trainer_save(w->t, path, error);
     if (status == ADCGS_OK)
-        adcgs_cli_note(cli, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration, path);
+        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration,
+                        path);
     free(name);
     return status;
 }
@@ -331,7 +332,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (w.log && fclose(w.log))
         adcgs_fail(&w.log_error, ADCGS_ERR_IO, "%s: cannot write the log", o->log);
     if (w.log_error.status != ADCGS_OK)
-        adcgs_cli_note(cli, "%s; the run went on without it", w.log_error.text);
+        adcgs_cli_error(cli, ADCGS_OK, "%s; the run went on without it", w.log_error.text);
     adcgs_buffer_clear(&w.changes);
     adcgs_stream_clear(&stream, NULL);
     adcgs_trainer_free(&w.t);

@@ -148,11 +148,12 @@ static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_repo
 static void say_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const outcome *o)
 {
     if (!strcmp(o->kind, "size"))
-        adcgs_cli_note(cli, "%s: %.0f bytes, smaller than the %.0f asked for: more anchors, or a longer run, would use them",
-                       r->file, o->reached, o->value);
+        adcgs_cli_error(cli, ADCGS_OK,
+                        "%s: %.0f bytes, smaller than the %.0f asked for: more anchors, or a longer run, would use them", r->file,
+                        o->reached, o->value);
     else
-        adcgs_cli_note(cli, "%s: the training views have %.2f dB instead of the %.2f asked for: %s", r->file, o->reached,
-                       o->value, o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
+        adcgs_cli_error(cli, ADCGS_OK, "%s: the training views have %.2f dB instead of the %.2f asked for: %s", r->file,
+                        o->reached, o->value, o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
 }
 
 static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_report *r, adcgs_decoder *decoder,
