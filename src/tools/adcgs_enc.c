@@ -16,7 +16,8 @@
 #include <sys/stat.h>
 
 typedef struct enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed, *frames;
+    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    const char *frames, *fps;
     double lambda, psnr, time_limit;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json;
     int has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
@@ -275,6 +276,9 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
     if (status == ADCGS_OK && o->frames)
         status = adcgs_frames_parse(&scene_options.frames, o->frames, error);
+    if (status == ADCGS_OK && o->fps && adcgs_fps_parse(o->fps, &scene_options.rate))
+        status = adcgs_fail(error, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
+                            "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
     if (status == ADCGS_OK)
         status = configure(&config, o, cpu, error);
     if (status == ADCGS_OK)
@@ -373,6 +377,8 @@ static int parse(enc_options *o, int argc, char **argv)
         { "frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
           "take frames A, A + STEP, ... below B of videos, or such\nmoments of pictures; A, B or :STEP may be left out", NULL,
           NULL },
+        { "fps", 0, ADCGS_OPTION_STRING, &o->fps, 0, 0, "N[/D]",
+          "frames per second of the frames that are taken (default:\nthe scene's, else 30)", NULL, NULL },
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
