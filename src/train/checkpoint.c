@@ -230,15 +230,15 @@ static adcgs_status restore_anchors(walk *w, adcgs_trainer *t, adcgs_error *erro
     visit(w, &n, sizeof n);
     if (w->failed || n == 0 || n > adcgs_reader_left(w->in) / 12)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%u anchors do not fit its size", n);
-    uint32_t(*pos)[3] = malloc(n * sizeof *pos);
-    uint32_t *source = calloc(n, sizeof *source);
-    adcgs_status status = pos && source ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", n);
+    uint32_t(*pos)[3] = adcgs_alloc(NULL, n, sizeof *pos, error);
+    uint32_t *source = adcgs_alloc(NULL, n, sizeof *source, error);
+    adcgs_status status = pos && source ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         visit(w, pos, n * sizeof *pos);
         status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])pos, source, NULL, n, error);
     }
-    free(pos);
-    free(source);
+    adcgs_free(NULL, pos);
+    adcgs_free(NULL, source);
     return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
 }
 

@@ -27,7 +27,7 @@ adcgs_status adcgs_weight_step_bits(const adcgs_mlp *m, const float *p, int laye
     adcgs_range_enc enc;
     w.m = b.m = adcgs_alloc(NULL, ADCGS_MAX(n, b.rows), sizeof *w.m, error);
     if (!w.m)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     adcgs_buffer_init(&bytes);
     adcgs_range_enc_init(&enc, &bytes);
     encode_rounded(&enc, &w, p + m->w[layer]);
