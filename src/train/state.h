@@ -24,7 +24,7 @@ typedef struct adcgs_train_view {
     float t;
 } adcgs_train_view;
 
-/** Sums since the last refinement, per slot. */
+/** Sums since the last densification, per slot. */
 typedef struct adcgs_train_stats {
     float *weight;       /* Psi */
     float *significance; /* Psi times screen gradient */
