@@ -47,12 +47,12 @@ adcgs_status adcgs_mlp_alloc(adcgs_mlp *m, adcgs_error *error)
 {
     m->use = adcgs_alloc(NULL, 2 * (m->n + 16), sizeof *m->use, error);
     if (!m->use)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     m->turn = m->use + (m->n + 15) / 16 * 16;
     if (m->hidden < 2 || m->entropy)
         return ADCGS_OK;
     m->packed = adcgs_alloc(NULL, 2 * (size_t)(m->hidden - 1) * adcgs_square_words(m->width), sizeof *m->packed, error);
-    return m->packed ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return m->packed ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 void adcgs_mlp_clear(adcgs_mlp *m)

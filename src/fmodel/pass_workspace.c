@@ -2,7 +2,6 @@
 /** \file Workspace of the passes: its memory, and where things lie in it. */
 #include "fmodel/pass_layout.h"
 
-#include <stdlib.h>
 
 /** Hidden layers, their branches' signs, outputs. */
 static size_t rows_of(const adcgs_mlp *m)
@@ -19,7 +18,7 @@ static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_err
         p->used[i] = adcgs_alloc(NULL, n, sizeof(float), error);
         p->mu[i] = adcgs_alloc(NULL, n, sizeof(float), error);
         if (!p->used[i] || !p->mu[i])
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(error);
     }
     p->factor = adcgs_alloc(NULL, g * (size_t)adcgs_params_steps(&f->params) * ADCGS_LANES, sizeof(float), error);
     p->keep = adcgs_alloc(NULL, slots, sizeof(float), error);
@@ -29,23 +28,25 @@ static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_err
     for (size_t i = 0; p->factor && i < g * (size_t)adcgs_params_steps(&f->params) * ADCGS_LANES; i++)
         p->factor[i] = 1;
     if (!p->factor || !p->keep || !p->act || !p->prim || !p->grad)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     p->primitives = adcgs_rows_primitives(p->prim, (uint32_t)slots);
     p->grads = adcgs_raster_grads_of(p->grad, slots);
     return ADCGS_OK;
 }
 
+/** Nothing is left that could be freed again: a pass without groups can still be freed, or resized. */
 static void free_groups(adcgs_pass *p)
 {
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
         adcgs_free(NULL, p->used[i]);
         adcgs_free(NULL, p->mu[i]);
+        p->used[i] = p->mu[i] = NULL;
     }
-    adcgs_free(NULL, p->factor);
-    adcgs_free(NULL, p->keep);
-    adcgs_free(NULL, p->act);
-    adcgs_free(NULL, p->prim);
-    adcgs_free(NULL, p->grad);
+    float **const arrays[] = { &p->factor, &p->keep, &p->act, &p->prim, &p->grad };
+    for (size_t i = 0; i < ADCGS_COUNTOF(arrays); i++) {
+        adcgs_free(NULL, *arrays[i]);
+        *arrays[i] = NULL;
+    }
 }
 
 /** Rows of scratch of a thread: of prediction and deformation, or of the rate. */
@@ -64,10 +65,10 @@ static size_t scratch_rows(const adcgs_fmodel *f)
 
 adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
 {
-    adcgs_pass *p = calloc(1, sizeof *p);
+    adcgs_pass *p = adcgs_alloc(NULL, 1, sizeof *p, error);
     *out = NULL;
     if (!p)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the training workspace");
+        return adcgs_alloc_status(error);
     p->cpu = cpu;
     p->pool = pool;
     adcgs_train_dsp_init(&p->dsp, cpu);
@@ -97,7 +98,7 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     if (!p->scratch || !p->partial || !p->bits || !p->tables || !p->time_code || !p->time_bias[0] || !p->time_bias[1] ||
         alloc_groups(p, f, error) != ADCGS_OK) {
         adcgs_pass_free(out);
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     }
     for (int i = 0; i < ADCGS_SHAPES; i++)
         adcgs_rate_table_init(&p->tables[i], i);
@@ -117,7 +118,7 @@ void adcgs_pass_free(adcgs_pass **pass)
     adcgs_free(NULL, p->time_code);
     for (int i = 0; i < 2; i++)
         adcgs_free(NULL, p->time_bias[i]);
-    free(p);
+    adcgs_free(NULL, p);
     *pass = NULL;
 }
 
