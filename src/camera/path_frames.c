@@ -12,11 +12,12 @@
 #define ORBIT_ELEVATION 0.35
 #define ORBIT_FOCAL 1.2    /* focal length per image width */
 
-adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, adcgs_error *error)
+adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, const char *who, adcgs_error *error)
 {
     *shots = (adcgs_shots){0};
     if (!(n >= 1.0 && n <= ADCGS_SHOTS_MAX))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f frames asked for, expected 1 to %d", n, ADCGS_SHOTS_MAX);
+        return adcgs_fail(error, who ? ADCGS_ERR_DATA : ADCGS_ERR_USAGE, "%s%s%.0f frames asked for, expected 1 to %d",
+                          who ? who : "", who ? ": " : "", n, ADCGS_SHOTS_MAX);
     shots->shot = calloc((size_t)n, sizeof *shots->shot);
     if (!shots->shot)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %.0f frames", n);
