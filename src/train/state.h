@@ -93,4 +93,10 @@ void adcgs_trainer_prepare_networks(adcgs_trainer *trainer);
 /** How far the run is, in [0,1]. */
 double adcgs_trainer_progress(const adcgs_trainer *trainer);
 
+/** What a bit costs in terms of the loss: lambda is the price of a mebibyte. */
+static inline double adcgs_price_of_bit(const adcgs_trainer *t)
+{
+    return t->lambda * 0x1p-23;
+}
+
 #endif
