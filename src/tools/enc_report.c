@@ -153,7 +153,8 @@ static void say_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const ou
                         o->reached, o->value);
     else
         adcgs_cli_error(cli, ADCGS_OK, "%s: the training views have %.2f dB instead of the %.2f asked for: %s", r->file,
-                        o->reached, o->value, o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
+                        o->reached, o->value,
+                        o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
 }
 
 static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_report *r, adcgs_decoder *decoder,

@@ -69,7 +69,7 @@ tiny_scene "$scene"
 
 # The same bytes at any number of threads; other bytes from another seed; reports that parse.
 n=600
-enc one --iterations $n --threads 1 --log "$dir/one.log" --json
+enc one --iterations $n --threads 1 --log "$dir/one.log" --json --quiet
 enc two --iterations $n --threads 2
 enc seven --iterations $n --threads 7
 enc other --iterations $n --threads 2 --seed 2
@@ -90,7 +90,7 @@ layer=$(sed -n 's/.*"layer1": \([0-9]*\).*/\1/p' "$dir/one.out")
     bad "f_g1 of the log is '$chunk', layer 1 of the file has '$layer' bytes"
 grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json tells another size"
 grep -q '"lambda": 0.1' "$dir/one.out" || bad "--json does not tell lambda"
-[ ! -s "$dir/one.err" ] || { bad "messages without a terminal"; cat "$dir/one.err"; }
+[ ! -s "$dir/one.err" ] || { bad "messages with --quiet"; cat "$dir/one.err"; }
 [ ! -s "$dir/two.out" ] || bad "standard output without --json"
 ./adcgs-dec "$dir/one.adcgs" --md5 >/dev/null 2>&1 || bad "the stream does not decode"
 

@@ -10,7 +10,7 @@ enc()
 {
     code=$1 name=$2
     shift 2
-    ./adcgs-enc "$scene" -o "$dir/$name.adcgs" --preset draft --json "$@" >"$dir/$name.out" 2>"$dir/$name.err"
+    ./adcgs-enc "$scene" -o "$dir/$name.adcgs" --preset draft --json --quiet "$@" >"$dir/$name.out" 2>"$dir/$name.err"
     got=$?
     case $got in $code) ;; *) bad "exit code $got, expected $code: adcgs-enc $*"; cat "$dir/$name.err" ;; esac
     ./adcgs-dec "$dir/$name.adcgs" --md5 >/dev/null 2>&1 || bad "no stream that decodes: adcgs-enc $*"
