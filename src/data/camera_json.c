@@ -79,6 +79,22 @@ adcgs_status adcgs_json_number(const adcgs_json_place *at, const char *field, do
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_json_fps(const adcgs_json_place *at, const char *field, adcgs_fps *rate, int *found)
+{
+    const char *text = json_string_value(adcgs_json_find(at, field));
+    double value;
+    if (!text) {
+        ADCGS_TRY(adcgs_json_number(at, field, ADCGS_FPS_MIN, ADCGS_FPS_MAX, &value, found));
+        if (*found)
+            *rate = adcgs_fps_of(value);
+        return ADCGS_OK;
+    }
+    *found = 1;
+    if (adcgs_fps_parse(text, rate))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "%.32s, expected frames per second as 30, 29.97 or 30000/1001", text);
+    return ADCGS_OK;
+}
+
 /* ---- Camera models ---- */
 
 enum { N_TERMS = 8 };

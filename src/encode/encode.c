@@ -10,6 +10,9 @@
 
 #include <math.h>
 
+#define PARTS_MAX 100000   /* of a frame, that a tick may be */
+#define TICK_WITHIN 1e-6   /* of a tick: rounding of what is a whole number */
+
 adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error)
 {
     adcgs_model model;
@@ -60,15 +63,23 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
     return ADCGS_OK;
 }
 
+/**
+ * A tick is a frame, or the largest whole part of one of which the scene's duration is a whole number: so times are exact,
+ * whatever offsets cameras have.
+ */
 static void set_time(adcgs_stream *s, const adcgs_scene *scene)
 {
-    /* One tick per frame: the scene's times are then exact. */
-    s->rate_num = (uint32_t)fmax(1, rint(scene->frame_rate * 1000));
-    s->rate_den = 1000;
+    const double frames = scene->duration * (double)scene->rate.num / (double)scene->rate.den;
+    uint32_t parts = 1;
+    s->rate_num = scene->rate.num;
+    s->rate_den = scene->rate.den;
+    while (parts < PARTS_MAX && (uint64_t)s->rate_num * (parts + 1) <= UINT32_MAX &&
+           fabs(frames * parts - rint(frames * parts)) > TICK_WITHIN)
+        parts++;
     s->timebase_num = s->rate_den;
-    s->timebase_den = s->rate_num;
+    s->timebase_den = s->rate_num * parts;
     s->start_ticks = 0;
-    s->duration_ticks = (int64_t)rint(scene->duration * (double)s->rate_num / s->rate_den);
+    s->duration_ticks = (int64_t)rint(frames * parts);
 }
 
 static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,

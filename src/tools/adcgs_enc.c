@@ -18,10 +18,12 @@
 #include <sys/stat.h>
 
 typedef struct enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed, *frames;
+    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    const char *frames, *fps;
     double lambda, psnr, time_limit;
-    int quiet, iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet;
     int has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
+    double started; /* adcgs_seconds() */
     uint64_t seed, size, memory;
 } enc_options;
 
@@ -77,17 +79,28 @@ static void log_last(watcher *w)
     }
 }
 
+/** "  1:05:00 left", or nothing where it is not known. */
+static const char *describe_left(double seconds, char text[32])
+{
+    const unsigned whole = seconds >= 0 && seconds < 1e9 ? (unsigned)seconds : 0;
+    if (whole >= 3600)
+        snprintf(text, 32, "  %u:%02u:%02u left", whole / 3600, whole / 60 % 60, whole % 60);
+    else
+        snprintf(text, 32, "  %u:%02u left", whole / 60, whole % 60);
+    return isnan(seconds) ? "" : text;
+}
+
 static int observe(void *user, const adcgs_train_report *r)
 {
     watcher *w = user;
+    char left[32];
     w->last = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
         log_last(w);
     if (r->iteration)
-        adcgs_progress_show(&w->progress,
-                            "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s  %d:%02d left", r->stage,
+        adcgs_progress_show(&w->progress, "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", r->stage,
                             r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
-                            (int)r->left / 60, (int)r->left % 60);
+                            describe_left(r->left, left));
     if (w->o->checkpoint && r->seconds - w->saved > 60) {
         w->saved = r->seconds;
         if (adcgs_trainer_save(w->t, w->o->checkpoint, &w->error) != ADCGS_OK)
@@ -265,7 +278,6 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
     w->t->until_lambda = w->o->beginning != NULL;
     w->saved = w->t->elapsed;
     adcgs_interrupt_catch();
-    adcgs_progress_init(&w->progress, cli);
     const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
     adcgs_progress_clear(&w->progress);
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
@@ -290,12 +302,16 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_train_config config;
     adcgs_cpu_level cpu;
     watcher w = { .o = o };
+    adcgs_progress_init(&w.progress, cli);
     adcgs_stream stream;
     adcgs_buffer_init(&w.changes);
     adcgs_stream_init(&stream);
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
     if (status == ADCGS_OK && o->frames)
         status = adcgs_frames_parse(&scene_options.frames, o->frames, error);
+    if (status == ADCGS_OK && o->fps && adcgs_fps_parse(o->fps, &scene_options.rate))
+        status = adcgs_fail(error, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
+                            "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
     if (status == ADCGS_OK)
         status = configure(&config, o, cpu, error);
     if (status == ADCGS_OK)
@@ -308,8 +324,11 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
         status = check_writable(o->uncompressed, error);
     if (status == ADCGS_OK)
         status = adcgs_scene_open(&scene, o->scene, &scene_options, error);
-    if (status == ADCGS_OK)
+    if (status == ADCGS_OK) {
+        adcgs_progress_show(&w.progress, "scene     %u views for training, read in %.0f s", scene->n_views[ADCGS_SPLIT_TRAIN],
+                            adcgs_seconds() - o->started);
         status = adcgs_trainer_create(&w.t, scene, &config, cpu, pool, error);
+    }
     if (status == ADCGS_OK && o->log) {
         w.log = fopen(o->log, o->resume ? "a" : "w");
         if (!w.log)
@@ -322,6 +341,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
         w.t->picture_memory = o->memory;
         w.t->loading = loading;
         w.t->loading_user = &w;
+        w.t->started = o->started;
         status = train(cli, &w, error);
     }
     if (status == ADCGS_OK && o->output)
@@ -396,6 +416,8 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
         { "frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
           "take frames A, A + STEP, ... below B of videos, or such\nmoments of pictures; A, B or :STEP may be left out", NULL,
           NULL },
+        { "fps", 0, ADCGS_OPTION_STRING, &o->fps, 0, 0, "N[/D]",
+          "frames per second of the frames that are taken (default:\nthe scene's, else 30)", NULL, NULL },
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
@@ -407,7 +429,8 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
           "change settings of the preset; 'list' shows them all", NULL,
           NULL },
         { "time-limit", 0, ADCGS_OPTION_REAL, &o->time_limit, 0, ADCGS_TIME_LIMIT_MAX, "S",
-          "train for at most S seconds; the result then depends on\nthe speed of the machine", NULL, NULL },
+          "be done with training S seconds from now, reading the scene\nincluded; the result then depends on the machine's speed",
+          NULL, NULL },
         { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, seed->min, seed->max, "N", "seed of every random choice (default 1)", NULL,
           &o->has_seed },
         { "checkpoint", 0, ADCGS_OPTION_STRING, &o->checkpoint, 0, 0, "FILE",
@@ -454,7 +477,7 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    enc_options o = { .preset = "fast" };
+    enc_options o = { .preset = "fast", .started = adcgs_seconds() };
     adcgs_cli cli = program;
     const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)

@@ -125,7 +125,7 @@ for options in "--seed 2" "--lambda 3" "--k 5" "--max-anchors 299" "--without fi
 done
 sed 's/"time": *1[ ,]/"time": 0.99,/' "$scene/transforms_train.json" >"$scene/transforms.json"
 # shellcheck disable=SC2086
-expect 4 "other options" ./adcgs-enc "$scene/transforms.json" -o "$dir/x.adcgs" $short --resume "$dir/late"
+expect 4 "saved with another scene" ./adcgs-enc "$scene/transforms.json" -o "$dir/x.adcgs" $short --resume "$dir/late"
 rm "$scene/transforms.json"
 size=$(wc -c <"$dir/late")
 head -c $((size / 2)) "$dir/late" >"$dir/damaged"

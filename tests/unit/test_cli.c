@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Parsing of numbers and options, text made safe, and the JSON writer. */
+#include "config.h" /* for the declarations that it switches on in system headers */
+
 #include "cli/cli.h"
 
 #include "cli/text.h"
