@@ -68,8 +68,9 @@ static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
 /** Relative to the scene: its units may be anything. Cameras that all stand in one place see it from its extent. */
 static adcgs_status set_near_planes(adcgs_scene *scene, const char *path, adcgs_error *error)
 {
-    const double extent = adcgs_scene_extent(scene);
-    const double median = adcgs_pose_median_distance(scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN]);
+    double extent, median;
+    ADCGS_TRY(adcgs_scene_extent(scene, &extent, error));
+    ADCGS_TRY(adcgs_pose_median_distance(scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], &median, error));
     const double distance = median > ADCGS_EXTENT_NOTHING * extent ? median : extent;
     for (int s = 0; s < ADCGS_SPLITS; s++)
         for (uint32_t i = 0; i < scene->n_views[s]; i++)
@@ -128,7 +129,7 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
     for (int s = 0; s < ADCGS_SPLITS; s++) {
         char *path = adcgs_path("%s/transforms_%s.json", scene->directory, adcgs_split_name((adcgs_split)s));
         adcgs_transforms facts = {0};
-        adcgs_status status = ADCGS_OK;
+        adcgs_status status = path ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", scene->directory);
         if (adcgs_is_there(path)) {
             status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
             if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN) {
@@ -176,11 +177,7 @@ static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcg
 
 static int is_transforms(const char *folder)
 {
-    char *train = adcgs_path("%s/transforms_train.json", folder), *single = adcgs_path("%s/transforms.json", folder);
-    const int is = adcgs_is_there(train) || adcgs_is_there(single);
-    free(train);
-    free(single);
-    return is;
+    return adcgs_is_there_at("%s/transforms_train.json", folder) || adcgs_is_there_at("%s/transforms.json", folder);
 }
 
 /** The folder's layout by the files it has; ADCGS_DATASET_AUTO: none that we know. */
@@ -247,8 +244,11 @@ static adcgs_status read_points(adcgs_scene *scene, const char *listed, const ad
         return adcgs_points_read(&scene->points, options->points_path, error);
     if (listed)
         return adcgs_points_read(&scene->points, listed, error);
+    if (!adcgs_is_there_at("%s/points3d.ply", scene->directory))
+        return ADCGS_OK;
     char *customary = adcgs_path("%s/points3d.ply", scene->directory);
-    const adcgs_status status = adcgs_is_there(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
+    const adcgs_status status = customary ? adcgs_points_read(&scene->points, customary, error)
+                                          : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", scene->directory);
     free(customary);
     return status;
 }

@@ -92,15 +92,15 @@ static void visit_all(walk *w, const named_whole *whole, size_t n, const named_r
 static void walk_options(walk *w, const adcgs_train_config *c)
 {
     const named_whole whole[] = { FIELD(seed), FIELD(iterations), { "scale", (uint64_t)c->scale }, FIELD(start_anchors),
-                                  FIELD(max_anchors), FIELD(refine_every), { "rate_period", (uint64_t)c->rate_period },
-                                  FIELD(without_coarse), FIELD(without_fine), FIELD(without_rate), FIELD(without_refinement),
+                                  FIELD(max_anchors), FIELD(densify_every), { "rate_period", (uint64_t)c->rate_period },
+                                  FIELD(without_coarse), FIELD(without_fine), FIELD(without_rate), FIELD(without_densification),
                                   FIELD(without_rounding), FIELD(bf16) };
-    const named_real real[] = { FIELD(ssim_weight), FIELD(grow_threshold), FIELD(prune_opacity), FIELD(keep_opacity),
-                                FIELD(rigid_weight), FIELD(area_weight), FIELD(still_below), FIELD(rdo_strength), FIELD(dropout),
-                                FIELD(network_rate), FIELD(average_last), FIELD(window_begin), FIELD(window_until),
-                                FIELD(quarter_until), FIELD(half_until), FIELD(area_from), FIELD(deform_from), FIELD(fine_from),
-                                FIELD(grow_from), FIELD(grow_until), FIELD(noise_from), FIELD(rate_from), FIELD(slim_at),
-                                FIELD(slim_again), FIELD(decide_at), FIELD(round_from), FIELD(freeze_from) };
+    const named_real real[] = { FIELD(ssim_weight), FIELD(densify_threshold), FIELD(prune_opacity), FIELD(keep_opacity),
+                                FIELD(rigid_weight), FIELD(scale_weight), FIELD(still_below), FIELD(rdo_strength), FIELD(dropout),
+                                FIELD(network_rate), FIELD(average_last), FIELD(curriculum_begin), FIELD(curriculum_until),
+                                FIELD(quarter_until), FIELD(half_until), FIELD(scale_from), FIELD(deform_from), FIELD(fine_from),
+                                FIELD(densify_from), FIELD(densify_until), FIELD(noise_from), FIELD(rate_from), FIELD(prune_units_at),
+                                FIELD(prune_units_again), FIELD(decide_at), FIELD(round_from), FIELD(freeze_from) };
     visit_all(w, whole, ADCGS_COUNTOF(whole), real, ADCGS_COUNTOF(real));
 }
 
@@ -127,10 +127,10 @@ static void walk_lambda(walk *w, adcgs_trainer *t)
 /** Whether weights get a lattice is open until they do. */
 static void walk_lattice(walk *w, adcgs_trainer *t)
 {
-    uint8_t without = t->config.without_lattice;
+    uint8_t without = t->config.without_weight_steps;
     visit(w, &without, sizeof without);
     visit(w, &t->rounding, sizeof t->rounding);
-    if (t->rounding && without != t->config.without_lattice)
+    if (t->rounding && without != t->config.without_weight_steps)
         differ(w, "saved with other options: weights have been rounded %s the lattice", without ? "without" : "to");
 }
 
@@ -302,15 +302,15 @@ static adcgs_status restore_anchors(walk *w, adcgs_trainer *t, adcgs_error *erro
     visit(w, &n, sizeof n);
     if (w->failed || n == 0 || n > adcgs_reader_left(w->in) / 12)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%u anchors do not fit its size", n);
-    uint32_t(*pos)[3] = malloc(n * sizeof *pos);
-    uint32_t *source = calloc(n, sizeof *source);
-    adcgs_status status = pos && source ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", n);
+    uint32_t(*pos)[3] = adcgs_alloc(NULL, n, sizeof *pos, error);
+    uint32_t *source = adcgs_alloc(NULL, n, sizeof *source, error);
+    adcgs_status status = pos && source ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         visit(w, pos, n * sizeof *pos);
         status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])pos, source, NULL, n, error);
     }
-    free(pos);
-    free(source);
+    adcgs_free(NULL, pos);
+    adcgs_free(NULL, source);
     return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
 }
 

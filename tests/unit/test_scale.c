@@ -169,8 +169,9 @@ static void frames_go_with_units(void **state)
                 s.points.n = 3;
                 s.points.position = position;
             }
-            adcgs_scene_frame(&s, x, &length);
-            const double extent = adcgs_scene_extent(&s);
+            double extent;
+            assert_int_equal(adcgs_scene_frame(&s, x, &length, &error), ADCGS_OK);
+            assert_int_equal(adcgs_scene_extent(&s, &extent, &error), ADCGS_OK);
             assert_true(length > 0 && isfinite(length) && extent > 0);
             if (i < 0) {
                 memcpy(origin, x, sizeof x);
