@@ -1007,7 +1007,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
-        cmocka_unit_test(checkpoints_are_checked), cmocka_unit_test(checkpoints_know_their_scene),
+        cmocka_unit_test(checkpoints_are_checked),
+        cmocka_unit_test(checkpoints_know_their_scene),
         cmocka_unit_test(densification_keeps_order_and_budget),
         cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
