@@ -2,6 +2,7 @@
 /** \file Training run to stream. */
 #include "encode/encode.h"
 
+#include "data/by_camera.h"
 #include "encode/quantise.h"
 #include "render/render.h"
 #include "stream/input.h"
@@ -55,7 +56,7 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
         const adcgs_camera *c = &views[(uint64_t)i * all / ADCGS_ENCODE_CAMERAS_MAX].camera;
         int known = 0;
         for (uint32_t j = 0; j < s->n_cameras; j++)
-            known |= !memcmp(s->cameras[j].cam_to_world, c->cam_to_world, sizeof c->cam_to_world);
+            known |= !adcgs_camera_compare(&s->cameras[j], c);
         if (!known)
             s->cameras[s->n_cameras++] = *c;
     }
@@ -114,6 +115,16 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
     return make_stream(s, t, NULL, notes, n_notes, error);
 }
 
+/** Serialise. What the writer refuses to store is nobody's wrong use here: the scene has it. */
+static adcgs_status write_scene(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
+{
+    const adcgs_status status = adcgs_stream_write(stream, out, error);
+    if (status != ADCGS_ERR_USAGE)
+        return status;
+    const adcgs_error why = *error;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "the scene has what a stream cannot hold: %.180s", why.text);
+}
+
 adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, double strength, const adcgs_encode_note *notes,
                                 uint32_t n_notes, adcgs_error *error)
 {
@@ -125,7 +136,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
     adcgs_buffer_init(&out);
     adcgs_status status = make_stream(&stream, t, strength >= 0 ? &rdo : NULL, notes, n_notes, error);
     if (status == ADCGS_OK)
-        status = adcgs_stream_write(&stream, &out, error);
+        status = write_scene(&stream, &out, error);
     *bytes = stream.bytes;
     adcgs_buffer_clear(&out);
     adcgs_stream_clear(&stream, NULL);
@@ -137,7 +148,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
 adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool,
                                    adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_stream_write(stream, out, error));
+    ADCGS_TRY(write_scene(stream, out, error));
     adcgs_stream back;
     adcgs_span from = { .next = out->data, .left = out->size };
     const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };

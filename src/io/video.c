@@ -94,7 +94,7 @@ adcgs_status adcgs_video_read(adcgs_video *video, int64_t frame, adcgs_image *ou
 static adcgs_status begin(adcgs_video_writer *w, int width, int height, double frame_rate, adcgs_error *error)
 {
     if (!(frame_rate >= 0.001 && frame_rate <= RATE_MAX))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %g frames per second, expected 0.001 to %g", w->path, frame_rate,
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: %g frames per second, expected 0.001 to %g", w->path, frame_rate,
                           RATE_MAX);
     const adcgs_fps rate = adcgs_fps_of(frame_rate);
     ADCGS_TRY(adcgs_atomic_open(&w->atomic, w->path, error));

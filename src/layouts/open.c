@@ -209,7 +209,7 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     case ADCGS_DATASET_SPLATS:
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats (PLY)", scene->directory);
     default:
-        return adcgs_fail(error, ADCGS_ERR_IO,
+        return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
                           "metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model in sparse/0, sparse or here",
                           scene->directory);

@@ -6,6 +6,7 @@
 #include "encode/encode.h"
 #include "encode/raw.h"
 #include "io/atomic.h"
+#include "io/json.h"
 #include "layouts/open.h"
 #include "tools/enc_report.h"
 #include "train/settings.h"
@@ -38,7 +39,7 @@ typedef struct watcher {
     size_t uncompressed_bytes;
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
-    adcgs_error error;
+    adcgs_error error, log_error;
 } watcher;
 
 static void log_last(watcher *w)
@@ -48,16 +49,34 @@ static void log_last(watcher *w)
         return;
     w->next_log = r->iteration + 100;
     static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
-    fprintf(w->log, "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,", r->stage, r->iteration, r->iterations);
-    if (r->iteration)
-        fprintf(w->log, "\"loss\":%.6g,\"psnr\":%.4f,", r->loss, r->psnr);
-    fprintf(w->log,
-            "\"anchors\":%u,\"divide\":%d,\"bytes\":%.0f,\"lambda\":%.6g,\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d",
-            r->anchors, r->divide, r->bytes, r->lambda, r->rate, r->seconds, r->rollbacks);
+    adcgs_json line;
+    adcgs_json_init(&line);
+    line.is_line = 1;
+    line.digits = 6;
+    adcgs_json_open(&line, NULL, '{');
+    adcgs_json_string(&line, "stage", r->stage);
+    adcgs_json_int(&line, "iteration", r->iteration);
+    adcgs_json_int(&line, "of", r->iterations);
+    if (r->iteration) {
+        adcgs_json_real(&line, "loss", r->loss);
+        adcgs_json_real(&line, "psnr", r->psnr);
+    }
+    adcgs_json_int(&line, "anchors", r->anchors);
+    adcgs_json_int(&line, "divide", r->divide);
+    adcgs_json_real(&line, "bytes", round(r->bytes));
+    adcgs_json_real(&line, "lambda", r->lambda);
+    adcgs_json_real(&line, "rate", r->rate);
+    adcgs_json_real(&line, "seconds", r->seconds);
+    adcgs_json_int(&line, "rollbacks", r->rollbacks);
+    adcgs_json_open(&line, "streams", '{');
     for (int i = 0; i < ADCGS_GROUPS; i++)
-        fprintf(w->log, "%s\"%s\":%.0f", i ? "," : ",\"streams\":{", streams[i], r->stream[i]);
-    fputs("}}\n", w->log);
-    fflush(w->log);
+        adcgs_json_real(&line, streams[i], round(r->stream[i]));
+    adcgs_json_close(&line);
+    adcgs_json_close(&line);
+    if (adcgs_json_write(&line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
+        fclose(w->log); /* the run is worth more than its log: it goes on, and says at its end what happened */
+        w->log = NULL;
+    }
 }
 
 /** "  1:05:00 left", or nothing where it is not known. */
@@ -243,7 +262,8 @@ static adcgs_status stop_early(const adcgs_cli *cli, watcher *w, adcgs_error *er
     }
     const adcgs_status status = adcgs_trainer_save(w->t, path, error);
     if (status == ADCGS_OK)
-        adcgs_cli_note(cli, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration, path);
+        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration,
+                        path);
     free(name);
     return status;
 }
@@ -282,7 +302,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_train_config config;
     adcgs_cpu_level cpu;
     watcher w = { .o = o };
-    adcgs_progress_init_lines(&w.progress, o->quiet);
+    adcgs_progress_init(&w.progress, cli);
     adcgs_stream stream;
     adcgs_buffer_init(&w.changes);
     adcgs_stream_init(&stream);
@@ -328,9 +348,11 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
         status = write_stream(&stream, &w, pool, error);
     if (status == ADCGS_OK && o->output)
         status = adcgs_enc_report_print(cli, &(adcgs_enc_report){ o->output, w.t, w.last, w.uncompressed_bytes, o->threads,
-                                                                  o->json, o->quiet }, met, error);
-    if (w.log)
-        fclose(w.log);
+                                                                  o->json }, met, error);
+    if (w.log && fclose(w.log))
+        adcgs_fail(&w.log_error, ADCGS_ERR_IO, "%s: cannot write the log", o->log);
+    if (w.log_error.status != ADCGS_OK)
+        adcgs_cli_error(cli, ADCGS_OK, "%s; the run went on without it", w.log_error.text);
     adcgs_buffer_clear(&w.changes);
     adcgs_stream_clear(&stream, NULL);
     adcgs_trainer_free(&w.t);
@@ -357,11 +379,11 @@ static int list_settings(const adcgs_cli *cli, const enc_options *o)
     if (adcgs_train_preset(&config, o->preset, &error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
     adcgs_train_list(&config, stdout);
-    return 0;
+    return adcgs_cli_flush(&error) == ADCGS_OK ? 0 : adcgs_cli_fail(cli, &error);
 }
 
 /** -1 to go on, else the exit code to leave with. */
-static int parse(enc_options *o, int argc, char **argv)
+static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
 {
     const adcgs_setting *const lambda = adcgs_setting_find("lambda"), *const iterations = adcgs_setting_find("iterations");
     const adcgs_setting *const scale = adcgs_setting_find("scale"), *const seed = adcgs_setting_find("seed");
@@ -430,26 +452,25 @@ static int parse(enc_options *o, int argc, char **argv)
           "kernels: auto, scalar, avx2, avx512 (default auto)", adcgs_cpu_names, NULL },
         { "bf16", 0, ADCGS_OPTION_FLAG, &o->bf16, 0, 0, NULL,
           "train the networks that draw in bf16, which is quicker;\nneeds a CPU with AVX512-BF16", NULL, NULL },
-        { "quiet", 'q', ADCGS_OPTION_FLAG, &o->quiet, 0, 0, NULL, "print nothing but errors, missed targets and --json", NULL,
-          NULL },
         { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
-    adcgs_cli cli = program;
-    cli.options = options;
-    cli.n_options = ADCGS_COUNTOF(options);
+    cli->options = options;
+    cli->n_options = ADCGS_COUNTOF(options);
+    cli->quiet = &o->quiet;
     int first;
-    const int code = adcgs_cli_parse(&cli, argc, argv, &first);
+    const int code = adcgs_cli_parse(cli, argc, argv, &first);
+    cli->n_options = 0; /* the table ends with this function */
     if (code >= 0)
         return code;
     if (o->set && !strcmp(o->set, "list"))
-        return list_settings(&cli, o);
+        return list_settings(cli, o);
     if (first >= argc)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
     if (!o->output == !o->beginning)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
                                                                   "no output: give -o FILE");
     if (o->has_lambda + o->has_size + o->has_psnr > 1)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
     o->scene = argv[first];
     return -1;
 }
@@ -457,7 +478,8 @@ static int parse(enc_options *o, int argc, char **argv)
 int main(int argc, char **argv)
 {
     enc_options o = { .preset = "fast", .started = adcgs_seconds() };
-    const int code = parse(&o, argc, argv);
+    adcgs_cli cli = program;
+    const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)
         return code;
     adcgs_error error = { ADCGS_OK, "" };
@@ -465,11 +487,11 @@ int main(int argc, char **argv)
     int met = 1;
     adcgs_status status = adcgs_pool_create(&pool, o.threads, &error);
     if (status == ADCGS_OK)
-        status = encode(&program, &o, pool, &met, &error);
+        status = encode(&cli, &o, pool, &met, &error);
     adcgs_pool_free(&pool);
     if (status != ADCGS_OK) {
         error.status = status;
-        return adcgs_cli_fail(&program, &error);
+        return adcgs_cli_fail(&cli, &error);
     }
     return met ? 0 : 1;
 }

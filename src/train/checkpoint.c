@@ -96,12 +96,12 @@ static void walk_options(walk *w, const adcgs_train_config *c)
                                   FIELD(without_coarse), FIELD(without_fine), FIELD(without_rate), FIELD(without_densification),
                                   FIELD(without_rounding), FIELD(bf16) };
     const named_real real[] = { FIELD(ssim_weight), FIELD(densify_threshold), FIELD(prune_opacity), FIELD(keep_opacity),
-                                FIELD(rigid_weight), FIELD(scale_weight), FIELD(still_below), FIELD(rdo_strength), FIELD(dropout),
-                                FIELD(network_rate), FIELD(average_last), FIELD(curriculum_begin), FIELD(curriculum_until),
-                                FIELD(quarter_until), FIELD(half_until), FIELD(scale_from), FIELD(deform_from), FIELD(fine_from),
-                                FIELD(densify_from), FIELD(densify_until), FIELD(noise_from), FIELD(rate_from),
-                                FIELD(prune_units_at), FIELD(prune_units_again), FIELD(decide_at), FIELD(round_from),
-                                FIELD(freeze_from) };
+                                FIELD(rigid_weight), FIELD(scale_weight), FIELD(still_below), FIELD(rdo_strength),
+                                FIELD(dropout), FIELD(network_rate), FIELD(average_last), FIELD(curriculum_begin),
+                                FIELD(curriculum_until), FIELD(quarter_until), FIELD(half_until), FIELD(scale_from),
+                                FIELD(deform_from), FIELD(fine_from), FIELD(densify_from), FIELD(densify_until),
+                                FIELD(noise_from), FIELD(rate_from), FIELD(prune_units_at), FIELD(prune_units_again),
+                                FIELD(decide_at), FIELD(round_from), FIELD(freeze_from) };
     visit_all(w, whole, ADCGS_COUNTOF(whole), real, ADCGS_COUNTOF(real));
 }
 

@@ -2,6 +2,7 @@
 /** \file Training views. */
 #include "train/views.h"
 
+#include "camera/path.h"
 #include "grad/random.h"
 #include "render/render.h"
 
@@ -14,7 +15,8 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     ADCGS_TRY(adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error));
     for (uint32_t i = 0; i < t->n_views; i++) {
         const adcgs_camera *camera = adcgs_pictures_camera(t->pictures, i);
-        ADCGS_TRY(adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error));
+        const adcgs_status status = adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error);
+        ADCGS_TRY(adcgs_shots_rendered(camera, status, error));
         most = ADCGS_MAX(most, (size_t)camera->width * (size_t)camera->height);
     }
     t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);

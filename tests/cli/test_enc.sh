@@ -267,11 +267,24 @@ expect 4 "transforms_train.json" ./adcgs-enc "$dir/broken" -o "$dir/x.adcgs"
 expect 4 "two.adcgs" ./adcgs-enc "$dir/two.adcgs" -o "$dir/x.adcgs"
 expect 3 "no/x.adcgs" ./adcgs-enc "$scene" -o "$dir/no/x.adcgs" --log "$dir/x.log"
 expect 3 "is a folder" ./adcgs-enc "$scene" -o "$dir" --log "$dir/x.log"
+if [ -w /dev/full ]; then
+    expect 0 "/dev/full: cannot write JSON; the run went on" ./adcgs-enc "$scene" -o "$dir/unlogged.adcgs" $short --log /dev/full
+fi
 expect 3 "not a regular file" ./adcgs-enc "$scene" -o /dev/null --log "$dir/x.log"
 expect 3 "no/check" $try --checkpoint "$dir/no/check" --log "$dir/x.log"
 [ ! -e "$dir/x.log" ] || bad "a run began whose output cannot be written"
 expect 3 "no/raw" $try --uncompressed "$dir/no/raw"
 expect 3 "no/log" $try --log "$dir/no/log"
+
+# Stored cameras: one pose through two lenses is two cameras.
+cp -R "$scene" "$dir/lenses"
+awk '/transform_matrix/ { if (!pose) pose = $0; sub(/,$/, "", pose); sub(/ *},?$/, "", pose)
+         printf "%s, \"camera_angle_x\": %s }%s\n", pose, n++ % 2 ? 0.5 : 0.75, /, *$/ ? "," : ""; next } { print }' \
+    "$scene/transforms_train.json" >"$dir/lenses/transforms_train.json"
+expect 0 "" ./adcgs-enc "$dir/lenses" -o "$dir/lenses.adcgs" --preset draft --iterations 10 --max-anchors 100 --quiet
+[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
+./adcgs-info "$dir/lenses.adcgs" >"$dir/out"
+[ "$(grep -c '64x64, focal' "$dir/out")" -eq 2 ] || { bad "stored cameras"; cat "$dir/out"; }
 
 # A full disk, pretended by a limit on the size of files: the file that was there stays.
 cp "$dir/one.adcgs" "$dir/full.adcgs"
