@@ -57,8 +57,8 @@ def _generators(tree):
         _generated[key] = []
         for name in GENERATORS:
             program = os.path.join(tree.spec, "tables", name)
-            done = subprocess.run([sys.executable, "-B", program, "--check"], cwd=os.path.dirname(tree.spec), capture_output=True, text=True,
-                                  check=False)
+            done = subprocess.run([sys.executable, "-B", program, "--check"], cwd=os.path.dirname(tree.spec), capture_output=True,
+                                  text=True, check=False)
             if done.returncode != 0:
                 _generated[key].append("%s --check: %s" % (name, (done.stdout + done.stderr).strip().replace("\n", "; ")))
     return _generated[key]

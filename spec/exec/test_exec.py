@@ -13,6 +13,7 @@ from fractions import Fraction
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
+import adcgs_spec
 import machine
 from binary import F32, F64, Literal, NotationError, binary32, divide, fma, number32, pattern, power, sqrt
 from reading import Bytes, Fault
@@ -178,6 +179,28 @@ class Examples(unittest.TestCase):
                 else:
                     wanted = 2 ** 32 - 1 if value.startswith("2^32^") else int(value)
                     self.assertEqual(machine.reading.read(s, "x", "var", [], None, None, None), wanted)
+
+    def test_requests(self):
+        """REQ-CONF-012: the words that are numbers, and those that are not; whole files."""
+        table = self.clause("13-conformance.adoc").split(".Numbers in requests")[1].split("|===")[1]
+        rows = [(re.findall(r"`([^`]+)`", words), what) for words, what in re.findall(r"^\| (`.*) \| (.*)$", table, re.M)]
+        self.assertEqual(len(rows), 3)
+        for words, what in rows:
+            for word in words:
+                for kind, parse in (("integer", lambda w: adcgs_spec.integer(w, -2 ** 31, 2 ** 31 - 1)), ("number", adcgs_spec.number)):
+                    if kind in what:
+                        self.assertEqual(float(parse(word)), float(word))
+                    else:
+                        self.assertRaises(adcgs_spec.Mistake, parse, word)
+        numbers = b" 1" * 17
+        good = b"# anything \x00\xff\n\n \tmodel\r\ncamera -5 0" + numbers + b"\nframe 0 1e-3\nlayers 2\ncomplete\ncomplete"
+        requests, cameras = adcgs_spec.read_requests(good)
+        self.assertEqual([words[0] for words in requests], ["model", "camera", "frame", "layers", "complete", "complete"])
+        self.assertEqual((cameras[0].width, float(cameras[0].cam_to_world[11])), (-5, 1.0))
+        for wrong in (b"frame 0 0", b"model 1", b"camera 1 2" + numbers[2:], b"camera 1.0 2" + numbers, b"camera 2147483648 2" + numbers,
+                      b"layers 0", b"layers 1\nlayers 1", b"layers 1\ntrace", b"splats", b"splats " + 64 * b"1", b"Model", b"model\x00",
+                      b"camera 1 2" + numbers + b"\nframe 00 0", b"model\x0b"):
+            self.assertRaises(adcgs_spec.Mistake, adcgs_spec.read_requests, wrong)
 
     def test_range_decoder(self):
         """REQ-PARS-001 to REQ-PARS-008: every state of the example."""
