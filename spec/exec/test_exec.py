@@ -239,6 +239,18 @@ class Examples(unittest.TestCase):
         for line in block.split("\n"):
             self.assertTrue(line == "..." or line in trace, line)
 
+    def test_stream_bytes(self):
+        """REQ-STRM-004, REQ-STRM-034: the bound on the bytes of a stream, for which no vector is small enough."""
+        m = machine.Machine()
+        with open(os.path.join(machine.folder, "..", "conformance", "vectors", "good-geom-one-anchor.adcgs"), "rb") as file:
+            data = Bytes.at(file.read(), 0)
+        m.names["STREAM_BYTES"] = [0, len(data), 0, 0]
+        self.assertEqual(len(m.decode_stream(data, True).models), 1)
+        m.names["STREAM_BYTES"] = [0, len(data) - 1, 0, 0]
+        with self.assertRaises(Fault) as caught:
+            m.decode_stream(data, True)
+        self.assertEqual(caught.exception.kind, "limit")
+
     def test_checksum(self):
         """REQ-STRM-002: the CRC of nine digits, and of nothing."""
         wanted = re.search(r"`123456789` is\s+([0-9A-F]{8})", self.clause("06-stream.adoc")).group(1)
