@@ -3,8 +3,8 @@
 #include "config.h"
 
 #include "base/cpu.h"
-#include "tools/cli.h"
-#include "tools/conform.h"
+#include "cli/cli.h"
+#include "conform/conform.h"
 
 #include <fnmatch.h>
 #include <stdlib.h>
@@ -130,6 +130,8 @@ int main(int argc, char **argv)
          .help = "check this program in place of the library; the shell runs it, with\n{in} and {request} replaced by files"},
         {.name = "point", .kind = ADCGS_OPTION_CHOICE, .target = &s.point, .choices = points, .value = "POINT",
          .help = "the point that the program claims: P, M, S or R (default R)"},
+        {.name = "layers", .kind = ADCGS_OPTION_FLAG, .target = &s.program.layers,
+         .help = "the program claims that it can leave out layers: ask for that, too"},
         {.name = "timeout", .kind = ADCGS_OPTION_INT, .target = &s.program.timeout, .min = 1, .max = 3600, .value = "SECONDS",
          .help = "time that the program has for a vector (default 20)"},
         {.name = "filter", .kind = ADCGS_OPTION_STRING, .target = &s.filter, .value = "PATTERN",

@@ -4,8 +4,10 @@
 #include "random_model.h"
 
 #include "data/harmonics.h"
-#include "data/splat_scene.h"
+#include "data/splat_views.h"
 #include "io/splats.h"
+#include "layouts/open.h"
+#include "layouts/splat_file.h"
 #include "metric/metric.h"
 #include "render/render.h"
 #include "tools/info_points.h"
@@ -372,7 +374,7 @@ static float *draw(const adcgs_primitives *p, const double origin[3], double sca
     }
     expect_good(adcgs_view_init(&view, camera, origin, scale, &error));
     expect_good(adcgs_raster_create(&raster, ADCGS_CPU_SCALAR, NULL, NULL, &error));
-    expect_good(adcgs_raster_forward(raster, &clipped, &view, black, ADCGS_SPLAT_SCENE_FILTER, rgb, 0, &error));
+    expect_good(adcgs_raster_forward(raster, &clipped, &view, black, ADCGS_SCREEN_FILTER, rgb, 0, &error));
     adcgs_raster_free(&raster);
     free(colour);
     for (size_t i = 0; i < n; i++)

@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Growth and pruning of anchors by temporal significance (paper section 3.5). */
+#include "train/densify.h"
+
+#include "geom/geom.h"
+#include "train/anchor_set.h"
+#include "train/initialise.h"
+#include "train/residual_densify.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- A set of grid cells ---- */
+
+typedef struct cells {
+    uint64_t *key; /* cell + 1, 0: empty */
+    size_t mask;
+} cells;
+
+/** Insert a cell; returns 0 if it was there already. */
+static int cells_add(cells *c, const uint32_t pos[3])
+{
+    const uint32_t cell[3] = { pos[0] >> 2, pos[1] >> 2, pos[2] >> 2 };
+    const uint64_t key = adcgs_morton(cell) + 1;
+    size_t at = (size_t)((key * 0x9e3779b97f4a7c15u) >> 20) & c->mask;
+    while (c->key[at]) {
+        if (c->key[at] == key)
+            return 0;
+        at = (at + 1) & c->mask;
+    }
+    c->key[at] = key;
+    return 1;
+}
+
+/* ---- Growth candidates ---- */
+
+typedef struct candidate {
+    float score;
+    uint32_t slot;
+} candidate;
+
+static int by_score(const void *a, const void *b)
+{
+    const candidate *x = a, *y = b;
+    if (x->score != y->score)
+        return x->score < y->score ? 1 : -1;
+    return (x->slot > y->slot) - (x->slot < y->slot);
+}
+
+static uint32_t find_candidates(const adcgs_trainer *t, candidate *list)
+{
+    const uint32_t slots = t->pass->primitives.n;
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < slots; i++) {
+        const float w = t->stats.weight[i];
+        if (adcgs_anchor_of(t->f, i) >= t->f->n || !(w > 1))
+            continue;
+        const float score = t->stats.significance[i] / w;
+        if (score > t->config.grow_threshold)
+            list[n++] = (candidate){ score, i };
+    }
+    qsort(list, n, sizeof *list, by_score);
+    return n;
+}
+
+/** The cell of a place in scene units; 0 if it is outside the grid. */
+static int cell_of(const adcgs_fmodel *f, const float x[3], uint32_t pos[3])
+{
+    const uint32_t side = 1u << f->shape.depth;
+    int inside = 1;
+    for (int a = 0; a < 3; a++) {
+        const float v = floorf((x[a] - f->origin[a]) / f->voxel);
+        inside &= v >= 0 && v < (float)side;
+        pos[a] = inside ? (uint32_t)v : 0;
+    }
+    return inside;
+}
+
+static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const candidate *list, uint32_t n, cells *occupied)
+{
+    const float *const *mean = t->pass->primitives.mean;
+    for (uint32_t i = 0; i < n && s->n < budget; i++) {
+        const uint32_t slot = list[i].slot;
+        uint32_t pos[3];
+        if (cell_of(t->f, (const float[]){ mean[0][slot], mean[1][slot], mean[2][slot] }, pos) && cells_add(occupied, pos))
+            adcgs_anchor_set_add(s, pos, adcgs_anchor_of(t->f, slot), 1);
+    }
+}
+
+/* ---- Growth where something is missing ---- */
+
+enum { MISSING_MOST = 512 };
+
+static uint32_t nearest_anchor(const adcgs_fmodel *f, const uint32_t pos[3])
+{
+    double least = INFINITY;
+    uint32_t nearest = 0;
+    for (uint32_t i = 0; i < f->n; i++) {
+        double d = 0;
+        for (int a = 0; a < 3; a++)
+            d += pow((double)f->pos[i][a] - (double)pos[a], 2);
+        if (d < least) {
+            least = d;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+/** Take in the places that are free, moved to the front; returns how many. */
+static uint32_t sow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, adcgs_residual *places, uint32_t n, cells *occupied)
+{
+    uint32_t taken = 0;
+    for (uint32_t i = 0; i < n && s->n < budget; i++) {
+        uint32_t pos[3];
+        if (!cell_of(t->f, places[i].x, pos) || !cells_add(occupied, pos))
+            continue;
+        adcgs_anchor_set_add(s, pos, nearest_anchor(t->f, pos), 1);
+        places[taken++] = places[i];
+    }
+    return taken;
+}
+
+/** Anchors where something was missing begin as small as a pixel, in its colour, with no features. */
+static void dress(adcgs_fmodel *f, const adcgs_residual *places, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t pos[3], at = 0;
+        cell_of(f, places[i].x, pos);
+        while (at < f->n && memcmp(f->pos[at], pos, sizeof pos) != 0)
+            at++;
+        if (at == f->n)
+            continue;
+        for (int a = 0; a < 3; a++) {
+            *adcgs_fmodel_at(f, ADCGS_P_SIGMA, at, a) = *adcgs_fmodel_at(f, ADCGS_P_SIGMA, at, 3 + a) = logf(places[i].size);
+            *adcgs_fmodel_at(f, ADCGS_P_COLOUR, at, a) = places[i].rgb[a];
+        }
+        for (int a = 0; a < adcgs_fmodel_rows(f, ADCGS_P_FV); a++)
+            *adcgs_fmodel_at(f, ADCGS_P_FV, at, a) = 0;
+    }
+}
+
+double adcgs_densify_budget(const adcgs_train_config *c, double progress)
+{
+    const double ramp = fmin(1, (progress - c->grow_from) / (0.8 * (c->grow_until - c->grow_from)));
+    const double from = ADCGS_MIN(c->start_anchors, c->max_anchors);
+    return from + (c->max_anchors - from) * ramp;
+}
+
+/** What a refinement works with. */
+typedef struct workspace {
+    adcgs_anchor_set next;
+    cells occupied;
+    candidate *list;        /* [slots] */
+    adcgs_residual *missing; /* [MISSING_MOST] */
+} workspace;
+
+static void workspace_clear(workspace *w)
+{
+    adcgs_anchor_set_clear(&w->next);
+    free(w->occupied.key);
+    free(w->list);
+    free(w->missing);
+}
+
+static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_t budget, adcgs_error *error)
+{
+    const size_t anchors = (size_t)t->f->n + budget;
+    size_t buckets = 1;
+    while (buckets < 4 * anchors)
+        buckets *= 2;
+    ADCGS_TRY(adcgs_anchor_set_init(&w->next, (uint32_t)anchors + 1, error));
+    w->occupied = (cells){ calloc(buckets, sizeof *w->occupied.key), buckets - 1 };
+    w->list = malloc((size_t)t->pass->primitives.n * sizeof *w->list);
+    w->missing = malloc(MISSING_MOST * sizeof *w->missing);
+    if (w->occupied.key && w->list && w->missing)
+        return ADCGS_OK;
+    workspace_clear(w);
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for refinement");
+}
+
+static void keep_anchors(const adcgs_trainer *t, workspace *w)
+{
+    for (uint32_t i = 0; i < t->f->n; i++)
+        if (!adcgs_anchor_is_idle(t, i, 0.2)) {
+            cells_add(&w->occupied, t->f->pos[i]);
+            adcgs_anchor_set_add(&w->next, t->f->pos[i], i, 0);
+        }
+    if (!w->next.n)
+        adcgs_anchor_set_add(&w->next, t->f->pos[0], 0, 0);
+}
+
+/**
+ * Random points fill the space that cameras see; a scene's own, as matched between pictures, leave out what is plain or seldom
+ * seen. Gaps are looked for while pictures are small.
+ */
+static int leaves_gaps(const adcgs_trainer *t, double progress)
+{
+    return t->scene->points.n >= ADCGS_POINTS_LEAST && progress < t->config.quarter_until;
+}
+
+adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const uint32_t budget = (uint32_t)adcgs_densify_budget(&t->config, progress);
+    uint32_t n_missing = 0;
+    workspace w;
+    ADCGS_TRY(workspace_init(&w, t, budget, error));
+    keep_anchors(t, &w);
+    adcgs_status status = ADCGS_OK;
+    if (leaves_gaps(t, progress))
+        status = adcgs_residual_find(t, w.missing, MISSING_MOST, &n_missing, error);
+    if (status == ADCGS_OK) {
+        n_missing = sow(t, &w.next, budget, w.missing, n_missing, &w.occupied);
+        adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical places */
+        grow(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
+        status = adcgs_anchor_set_adopt(t, &w.next, error);
+    }
+    if (status == ADCGS_OK)
+        dress(t->f, w.missing, n_missing);
+    workspace_clear(&w);
+    return status;
+}

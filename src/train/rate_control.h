@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Rate control: steering lambda, so that a run ends near a size or a quality. From the moment that rate counts, lambda follows
+ * the bytes that a stream would take, or the PSNR of training views, as the quantiser of a video encoder follows the fill of its
+ * buffer: a proportional and integral controller. Only training views are looked at.
+ */
+#ifndef ADCGS_TRAIN_RATE_CONTROL_H
+#define ADCGS_TRAIN_RATE_CONTROL_H
+
+#include "train/state.h"
+
+/** Called before each iteration, while anchors are trained: measures now and then, moves lambda. */
+adcgs_status adcgs_rate_control_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
+
+#endif
