@@ -161,7 +161,7 @@ static adcgs_status print_fewer(FILE *out, const adcgs_plan *plan, const adcgs_b
     config.cpu = ADCGS_CPU_SCALAR;
     config.layers = plan->fewer[i];
     ADCGS_TRY(adcgs_open_memory(&decoder, file->data, file->size, &config, error));
-    fprintf(out, "%s{\n        \"layers\": %d", i ? ", " : ",\n        \"L\": [ ", plan->fewer[i]);
+    fprintf(out, "%s\n          { \"layers\": %d", i ? "," : ",\n        \"L\": [", plan->fewer[i]);
     adcgs_status status = print_models(out, decoder);
     if (status == ADCGS_OK)
         status = print_splats(out, plan, decoder);
