@@ -251,6 +251,50 @@ class Examples(unittest.TestCase):
             m.decode_stream(data, True)
         self.assertEqual(caught.exception.kind, "limit")
 
+    def test_numbers_of_the_trace(self):
+        """REQ-STRM-041: the rule for 9 and 17 digits, in exact arithmetic, gives what is written, and the examples of the clause."""
+        def shown(x, digits):
+            if x == 0:
+                return "-0" if math.copysign(1, x) < 0 else "0"
+            value, exponent = abs(Fraction(x)), 0
+            while value >= Fraction(10) ** (exponent + 1):
+                exponent += 1
+            while value < Fraction(10) ** exponent:
+                exponent -= 1
+            whole = round(value / Fraction(10) ** (exponent - digits + 1))
+            if whole == 10 ** digits:
+                whole, exponent = 10 ** (digits - 1), exponent + 1
+            text = str(whole)
+            if -4 <= exponent < digits:
+                text = text.rjust(digits - exponent, "0") if exponent < 0 else text
+                point = exponent + 1 if exponent >= 0 else 1
+                text = (text[:point] + "." + text[point:]).rstrip("0").rstrip(".")
+            else:
+                text = (text[0] + "." + text[1:]).rstrip("0").rstrip(".") + "e%s%02d" % ("-" if exponent < 0 else "+", abs(exponent))
+            return "-" * (x < 0) + text
+        random.seed(7)
+        for _ in range(3000):
+            u = random.getrandbits(23) | random.randrange(1, 255) << 23 | random.getrandbits(1) << 31
+            x = struct.unpack("<f", struct.pack("<I", u))[0]
+            self.assertEqual(shown(x, 9), "%.9g" % x)
+            y = random.uniform(-1, 1) * 10.0 ** random.randrange(-30, 30)
+            self.assertEqual(shown(y, 17), "%.17g" % y)
+        examples = re.search(r"^  or `-inf`.*Examples: (.*)\.$", self.clause("06-stream.adoc"), re.M).group(1)
+        for example in re.findall(r"`([^`]+)`", examples):
+            self.assertEqual(shown(float(binary32(float(example))), 9), example)
+
+    def test_seeking(self):
+        """The index is where the informative clause finds it, and the bytes that it gives are those of segments."""
+        path = os.path.join(machine.folder, "..", "conformance", "vectors", "good-seq-segments.adcgs")
+        with open(path, "rb") as file:
+            data = file.read()
+        lines = []
+        m = machine.Machine(None, lines.append)
+        n = m.decode_stream(Bytes.at(data, 0), True).head.segments
+        self.assertIn("%d chunk.type INDX" % (8 * (len(data) - 32 - (20 + 1 + 32 * n))), lines)
+        offsets = [int(line.split()[2]) for line in lines if " INDX.offset " in line]
+        self.assertEqual([8 * at for at in offsets], [int(line.split()[0]) for line in lines if line.endswith(" chunk.type SEGM")])
+
     def test_checksum(self):
         """REQ-STRM-002: the CRC of nine digits, and of nothing."""
         wanted = re.search(r"`123456789` is\s+([0-9A-F]{8})", self.clause("06-stream.adoc")).group(1)
