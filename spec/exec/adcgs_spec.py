@@ -74,7 +74,7 @@ def request_of(words, cameras):
 def read_requests(data):
     """(requests, cameras) of the bytes of a file; raises Mistake."""
     requests, cameras = [], []
-    for line in data.split(b"\n"):
+    for line in data.removeprefix(b"\xef\xbb\xbf").split(b"\n"):
         words = [word.decode("latin-1") for word in re.split(rb"[ \t\r]+", line) if word]
         if words and not words[0].startswith("#"):
             requests.append(request_of(words, cameras))

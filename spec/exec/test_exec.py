@@ -193,7 +193,7 @@ class Examples(unittest.TestCase):
                     else:
                         self.assertRaises(adcgs_spec.Mistake, parse, word)
         numbers = b" 1" * 17
-        good = b"# anything \x00\xff\n\n \tmodel\r\ncamera -5 0" + numbers + b"\nframe 0 1e-3\nlayers 2\ncomplete\ncomplete"
+        good = b"\xef\xbb\xbf# anything \x00\xff\n\n \tmodel\r\ncamera -5 0" + numbers + b"\nframe 0 1e-3\nlayers 2\ncomplete\ncomplete"
         requests, cameras = adcgs_spec.read_requests(good)
         self.assertEqual([words[0] for words in requests], ["model", "camera", "frame", "layers", "complete", "complete"])
         self.assertEqual((cameras[0].width, float(cameras[0].cam_to_world[11])), (-5, 1.0))

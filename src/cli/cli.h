@@ -76,11 +76,18 @@ int adcgs_interrupted(void);
 /** A line on stderr that rewrites itself; silent unless stderr is a terminal. */
 typedef struct adcgs_progress {
     int active, shown;
-    double last; /**< when it was drawn */
+    int lines;    /**< instead of rewriting it, write a line now and then */
+    double last;  /**< when it was drawn */
+    double pause; /**< between lines, seconds */
 } adcgs_progress;
 
 void adcgs_progress_init(adcgs_progress *progress);
-/** At most ten times a second. */
+/**
+ * For what takes long: where stderr is no terminal, lines of plain text are written after 5 seconds, after 10 more, and so on up
+ * to one each minute. quiet: nothing is ever written.
+ */
+void adcgs_progress_init_lines(adcgs_progress *progress, int quiet);
+/** At most ten times a second, or when a line is due. */
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** Wipe the line; call before any other message and at the end. */
 void adcgs_progress_clear(adcgs_progress *progress);

@@ -9,6 +9,9 @@
 #include <stdarg.h>
 #include <unistd.h>
 
+#define LINES_FIRST 5.0
+#define LINES_MOST 60.0
+
 /* A signal handler can reach nothing but static storage. */
 static volatile sig_atomic_t interrupted;
 
@@ -38,21 +41,36 @@ void adcgs_progress_init(adcgs_progress *progress)
     *progress = (adcgs_progress){.active = isatty(STDERR_FILENO)};
 }
 
+void adcgs_progress_init_lines(adcgs_progress *progress, int quiet)
+{
+    adcgs_progress_init(progress);
+    progress->lines = !progress->active && !quiet;
+    progress->active = !quiet;
+    progress->last = adcgs_seconds();
+    progress->pause = LINES_FIRST;
+}
+
+/** When something is drawn again. */
+static int is_due(const adcgs_progress *progress, double now)
+{
+    return progress->lines ? now - progress->last >= progress->pause : !progress->shown || now - progress->last >= 0.1;
+}
+
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...)
 {
-    if (!progress->active)
-        return;
     const double now = adcgs_seconds();
-    if (progress->shown && now - progress->last < 0.1)
+    if (!progress->active || !is_due(progress, now))
         return;
     va_list arguments;
     va_start(arguments, format);
-    fputc('\r', stderr);
+    if (!progress->lines)
+        fputc('\r', stderr);
     vfprintf(stderr, format, arguments);
-    fputs("\033[K", stderr);
+    fputs(progress->lines ? "\n" : "\033[K", stderr);
     va_end(arguments);
     progress->last = now;
-    progress->shown = 1;
+    progress->shown = !progress->lines;
+    progress->pause = ADCGS_MIN(2 * progress->pause, LINES_MOST);
 }
 
 void adcgs_progress_clear(adcgs_progress *progress)

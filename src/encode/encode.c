@@ -9,6 +9,9 @@
 
 #include <math.h>
 
+#define PARTS_MAX 100000   /* of a frame, that a tick may be */
+#define TICK_WITHIN 1e-6   /* of a tick: rounding of what is a whole number */
+
 adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error)
 {
     adcgs_model model;
@@ -35,9 +38,9 @@ static adcgs_status set_notes(adcgs_stream *s, const adcgs_encode_note *notes, u
         s->meta[i].key = copy_text(notes[i].key, error);
         s->meta[i].value = copy_text(notes[i].value, error);
         if (!s->meta[i].key || !s->meta[i].value)
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(error);
     }
-    return s->meta ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return s->meta ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 /** A few training cameras, spread evenly over the split; fixed cameras that recur at every time are stored once. */
@@ -47,7 +50,7 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
     const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN];
     s->cameras = adcgs_alloc(NULL, ADCGS_ENCODE_CAMERAS_MAX, sizeof *s->cameras, error);
     if (!s->cameras)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < ADCGS_ENCODE_CAMERAS_MAX; i++) {
         const adcgs_camera *c = &views[(uint64_t)i * all / ADCGS_ENCODE_CAMERAS_MAX].camera;
         int known = 0;
@@ -59,15 +62,23 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
     return ADCGS_OK;
 }
 
+/**
+ * A tick is a frame, or the largest whole part of one of which the scene's duration is a whole number: so times are exact,
+ * whatever offsets cameras have.
+ */
 static void set_time(adcgs_stream *s, const adcgs_scene *scene)
 {
-    /* One tick per frame: the scene's times are then exact. */
-    s->rate_num = (uint32_t)fmax(1, rint(scene->frame_rate * 1000));
-    s->rate_den = 1000;
+    const double frames = scene->duration * (double)scene->rate.num / (double)scene->rate.den;
+    uint32_t parts = 1;
+    s->rate_num = scene->rate.num;
+    s->rate_den = scene->rate.den;
+    while (parts < PARTS_MAX && (uint64_t)s->rate_num * (parts + 1) <= UINT32_MAX &&
+           fabs(frames * parts - rint(frames * parts)) > TICK_WITHIN)
+        parts++;
     s->timebase_num = s->rate_den;
-    s->timebase_den = s->rate_num;
+    s->timebase_den = s->rate_num * parts;
     s->start_ticks = 0;
-    s->duration_ticks = (int64_t)rint(scene->duration * (double)s->rate_num / s->rate_den);
+    s->duration_ticks = (int64_t)rint(frames * parts);
 }
 
 static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,
@@ -88,7 +99,7 @@ static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const a
     ADCGS_TRY(set_notes(s, notes, n_notes, error));
     s->segments = adcgs_alloc(NULL, 1, sizeof *s->segments, error);
     if (!s->segments)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     s->n_segments = 1;
     const adcgs_quantise_options options = { .cpu = t->cpu, .rdo = rdo };
     ADCGS_TRY(adcgs_quantise(&s->segments[0], t->f, &options, error));

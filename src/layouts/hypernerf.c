@@ -37,13 +37,8 @@ typedef struct reader {
 
 int adcgs_is_hypernerf(const char *folder)
 {
-    char *dataset = adcgs_path("%s/dataset.json", folder), *metadata = adcgs_path("%s/metadata.json", folder);
-    char *camera = adcgs_path("%s/camera", folder);
-    const int is = adcgs_is_there(dataset) && adcgs_is_there(metadata) && adcgs_is_folder(camera);
-    free(dataset);
-    free(metadata);
-    free(camera);
-    return is;
+    return adcgs_is_there_at("%s/dataset.json", folder) && adcgs_is_there_at("%s/metadata.json", folder) &&
+           adcgs_is_there_at("%s/camera/.", folder);
 }
 
 /* ---- Fields ---- */
@@ -361,6 +356,7 @@ static adcgs_status read_folder(reader *r, int with_points)
     ADCGS_TRY(read_coordinates(r));
     ADCGS_TRY(find_images(r));
     ADCGS_TRY(read_lists(r));
+    r->scene->intervals = r->last;
     r->scene->axes = adcgs_pose_axes(r->scene->views[ADCGS_SPLIT_TRAIN], r->scene->n_views[ADCGS_SPLIT_TRAIN]);
     return with_points ? read_points(r) : ADCGS_OK;
 }

@@ -44,10 +44,7 @@ static adcgs_status no_memory(const reader *r)
 
 int adcgs_is_llff(const char *folder)
 {
-    char *path = adcgs_path("%s/poses_bounds.npy", folder);
-    const int is = adcgs_is_there(path);
-    free(path);
-    return is;
+    return adcgs_is_there_at("%s/poses_bounds.npy", folder);
 }
 
 /* ---- Poses ---- */
@@ -126,18 +123,20 @@ static adcgs_status check_count(const reader *r, const char *what)
 
 /* ---- Pictures of one moment ---- */
 
-/** images or the images_N of the largest pictures, from malloc(); NULL if there is none. */
-static char *find_images(const reader *r)
+/** *path: images or the images_N of the largest pictures, from malloc(); NULL if there is none. */
+static adcgs_status find_images(const reader *r, char **path)
 {
-    char *path = adcgs_path("%s/images", r->scene->directory);
-    for (int n = 2; !adcgs_is_folder(path) && n <= DIVIDE_MAX; n++) {
-        free(path);
-        path = adcgs_path("%s/images_%d", r->scene->directory, n);
+    *path = NULL;
+    for (int n = 1; n <= DIVIDE_MAX; n++) {
+        *path = n == 1 ? adcgs_path("%s/images", r->scene->directory) : adcgs_path("%s/images_%d", r->scene->directory, n);
+        if (!*path)
+            return no_memory(r);
+        if (adcgs_is_folder(*path))
+            return ADCGS_OK;
+        free(*path);
+        *path = NULL;
     }
-    if (adcgs_is_folder(path))
-        return path;
-    free(path);
-    return NULL;
+    return ADCGS_OK;
 }
 
 static adcgs_status add_pictures(const reader *r, const char *folder)
@@ -163,7 +162,8 @@ static adcgs_status add_pictures(const reader *r, const char *folder)
 
 static adcgs_status read_still(reader *r)
 {
-    char *folder = find_images(r);
+    char *folder;
+    ADCGS_TRY(find_images(r, &folder));
     if (!folder)
         return adcgs_fail(r->error, ADCGS_ERR_DATA,
                           "%s: neither videos cam00.mp4, ... nor folders cam00, ... nor a folder images or images_N",
@@ -229,11 +229,10 @@ static adcgs_status add_camera(const reader *r, size_t index, const adcgs_footag
     ADCGS_TRY(adcgs_frames_count(r->frames, footage->frames, &count, r->scene->directory, r->error));
     const char *file = footage->video ? footage->video : footage->pictures[0];
     ADCGS_TRY(read_view(r, index, footage->width, footage->height, file, &like));
-    if (split == ADCGS_SPLIT_TRAIN) {
+    if (split == ADCGS_SPLIT_TRAIN)
         ADCGS_TRY(read_bounds(r, index));
-        if (!r->scene->frame_rate)
-            r->scene->frame_rate = footage->frame_rate;
-    }
+    if (!r->scene->rate.den)
+        r->scene->rate = footage->rate;
     return adcgs_footage_add(r->scene, split, &like, footage, r->frames, 0.0, count > 1 ? 1.0 / (double)(count - 1) : 0.0,
                              r->scene->directory, r->error);
 }
@@ -281,9 +280,7 @@ adcgs_status adcgs_llff_read(adcgs_scene *scene, const adcgs_frame_range *frames
     free(r.data);
     free(r.path);
     ADCGS_TRY(status);
-    char *points = adcgs_path("%s/points3d.ply", scene->directory);
-    if (with_points && !adcgs_is_there(points))
+    if (with_points && !adcgs_is_there_at("%s/points3d.ply", scene->directory))
         status = adcgs_colmap_read_points(scene, r.table.rows, r.fixed ? SIZE_MAX : TEST_EVERY, error);
-    free(points);
     return status;
 }

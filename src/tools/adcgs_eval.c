@@ -127,7 +127,7 @@ static adcgs_status on_view(void *user, const adcgs_view_score *score, adcgs_err
 /** Scenes give times in steps of a frame, and their alpha over a background: both are the stream's. */
 static adcgs_status open_scene(adcgs_scene **scene, const settings *s, const adcgs_info *info, adcgs_error *error)
 {
-    adcgs_scene_options options = {.has_background = !s->as_is, .frame_rate = info->frame_rate, .dataset = s->dataset};
+    adcgs_scene_options options = {.has_background = !s->as_is, .rate = adcgs_fps_of(info->frame_rate), .dataset = s->dataset};
     if (s->frames)
         ADCGS_TRY(adcgs_frames_parse(&options.frames, s->frames, error));
     memcpy(options.background, info->background, sizeof options.background);

@@ -7,6 +7,7 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "cli/cli.h"
+#include "io/file.h"
 #include "stream/input.h"
 #include "stream/stream.h"
 
@@ -164,7 +165,7 @@ adcgs_status adcgs_requests_read(adcgs_requests *out, const char *path, adcgs_er
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
     ssize_t length;
     for (int number = 1; status == ADCGS_OK && (length = getline(&line, &room, file)) >= 0; number++)
-        if (strlen(line) != (size_t)length || read_line(out, line))
+        if (strlen(line) != (size_t)length || read_line(out, line + (number == 1 ? adcgs_file_mark(line, (size_t)length) : 0)))
             status = adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: line %d is no request", path, number);
     if (status == ADCGS_OK && ferror(file))
         status = adcgs_fail(error, ADCGS_ERR_IO, "%.160s: cannot read", path);

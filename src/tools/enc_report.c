@@ -157,7 +157,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
         say_written(r, error);
     if (status == ADCGS_OK && r->json)
         status = print_json(r, &x, error);
-    else if (status == ADCGS_OK)
+    else if (status == ADCGS_OK && !r->quiet)
         print_text(r, &x);
     if (status == ADCGS_OK && !x.target.met)
         say_missed(cli, r, &x.target);

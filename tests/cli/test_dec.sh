@@ -97,6 +97,10 @@ expect 2 "frames asked" $dec "$s" --time 0:1e9
 pose='[[1,0,0,0],[0,0,-1,-4],[0,1,0,0.3],[0,0,0,1]]'
 echo "{\"fl_x\":80,\"w\":64,\"h\":48,\"frames\":[{\"time\":0,\"transform_matrix\":$pose},{\"transform_matrix\":$pose}]}" >"$dir/path.json"
 expect 0 "2 frames of 64x48" $dec "$s" --camera "$dir/path.json" --md5
+cp "$dir/out" "$dir/plain"
+sed -i '1s/^/\xef\xbb\xbf/' "$dir/path.json"
+expect 0 "2 frames of 64x48" $dec "$s" --camera "$dir/path.json" --md5
+cmp -s "$dir/out" "$dir/plain" || bad "a byte order mark changes a camera path"
 echo '{"fl_x":80,"frames":[{"time":0,"transform_matrix":[[2,0,0,0],[0,2,0,0],[0,0,2,0]]}]}' >"$dir/path.json"
 expect 4 "frames\\[0\\].transform_matrix" $dec "$s" --camera "$dir/path.json"
 echo "{\"fl_x\":80,\"k1\":0.1,\"frames\":[{\"transform_matrix\":$pose}]}" >"$dir/path.json"
@@ -149,6 +153,9 @@ END
 cmp -s "$dir/shape" "$dir/wanted" || { bad "answers are"; cat "$dir/answers"; }
 expect 0 "" $dec "$s" --answer "$dir/requests" --cpu scalar
 cmp -s "$dir/out" "$dir/answers" || bad "answers differ with --cpu scalar"
+{ printf '\357\273\277' && sed 1,2d "$dir/requests"; } >"$dir/marked"
+expect 0 "" $dec "$s" --answer "$dir/marked" --threads 2
+cmp -s "$dir/out" "$dir/answers" || bad "a byte order mark changes the answers"
 ./adcgs-info --trace "$s" >"$dir/trace"
 grep -qx "trace $(wc -l <"$dir/trace") $(md5sum <"$dir/trace" | cut -c1-32)" "$dir/answers" || bad "trace"
 $dec "$s" --camera 0 --time 0 -o - --format raw --float >"$dir/raw" 2>/dev/null

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Parsing of numbers and options, and the JSON writer. */
+#include "config.h" /* for the declarations that it switches on in system headers */
+
 #include "cli/cli.h"
 
 #include <getopt.h>
@@ -140,9 +142,48 @@ static void test_json(void **state)
                               "  \"empty\": {},\n  \"yes\": true\n}\n");
 }
 
+/** What comes out on standard error, in one run of these calls. */
+static void show_and_read(int quiet, double age, char *text, size_t size)
+{
+    adcgs_progress progress;
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    fflush(stderr);
+    const int kept = dup(STDERR_FILENO);
+    assert_true(dup2(fileno(file), STDERR_FILENO) >= 0);
+    adcgs_progress_init_lines(&progress, quiet);
+    for (int i = 0; i < 6; i++) { /* as if age seconds lay between them */
+        progress.last -= age;
+        adcgs_progress_show(&progress, "step %d", i);
+        adcgs_progress_show(&progress, "never");
+    }
+    adcgs_progress_clear(&progress);
+    fflush(stderr);
+    assert_true(dup2(kept, STDERR_FILENO) >= 0);
+    close(kept);
+    rewind(file);
+    text[fread(text, 1, size - 1, file)] = 0;
+    fclose(file);
+}
+
+/** Without a terminal, progress is whole lines, ever more rarely, and none at once or if nobody wants any. */
+static void test_progress_lines(void **state)
+{
+    char text[200];
+    show_and_read(0, 4, text, sizeof text);
+    assert_string_equal(text, "step 1\nstep 4\n"); /* after 8 and 12 seconds more, where 5 and then 10 are enough */
+    show_and_read(0, 0.5, text, sizeof text);
+    assert_string_equal(text, "");
+    show_and_read(0, 1000, text, sizeof text);
+    assert_string_equal(text, "step 0\nstep 1\nstep 2\nstep 3\nstep 4\nstep 5\n");
+    show_and_read(1, 1000, text, sizeof text);
+    assert_string_equal(text, "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_numbers), cmocka_unit_test(test_options),
-                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_json)};
+                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_progress_lines),
+                                       cmocka_unit_test(test_json)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -500,7 +500,7 @@ static adcgs_status read_script(adcgs_script *script, const char *text)
 static void test_script(void **state)
 {
     adcgs_script script;
-    assert_int_equal(read_script(&script, "# a word\n\n wait 10 frames\r\nwait 0.5 seconds\n"
+    assert_int_equal(read_script(&script, "\xef\xbb\xbf# a word\n\n wait 10 frames\r\nwait 0.5 seconds\n"
                                           "drag shift-left 1 2 3.5 -4\nkey shift-p\nkey f1\n"
                                           "size 640x480\nexpect time 0.5 1e-3\nexpect size 64x65\nquit"), ADCGS_OK);
     assert_int_equal(script.n, 9);
