@@ -10,7 +10,7 @@
 #include "base/base.h"
 #include "data/lens.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 #include <jansson.h>
 

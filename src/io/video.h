@@ -9,7 +9,7 @@
 
 #include "io/image.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 typedef struct adcgs_video adcgs_video;
 

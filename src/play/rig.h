@@ -7,7 +7,7 @@
 #ifndef ADCGS_PLAY_RIG_H
 #define ADCGS_PLAY_RIG_H
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 typedef struct adcgs_play_rig {
     adcgs_camera camera; /**< at the size that its intrinsics are for */

@@ -8,7 +8,7 @@
 #ifndef ADCGS_PLAY_TURN_H
 #define ADCGS_PLAY_TURN_H
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 double adcgs_v3_dot(const double a[3], const double b[3]);
 void adcgs_v3_cross(const double a[3], const double b[3], double out[3]);

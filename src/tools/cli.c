@@ -24,13 +24,35 @@ static void message(const adcgs_cli *cli, const char *format, va_list arguments)
     fputc('\n', stderr);
 }
 
+int adcgs_exit_code(adcgs_status status)
+{
+    switch (status) {
+    case ADCGS_OK:
+        return 0;
+    case ADCGS_ERR_USAGE:
+        return 2;
+    case ADCGS_ERR_MEMORY:
+    case ADCGS_ERR_IO:
+        return 3;
+    case ADCGS_ERR_DATA:
+    case ADCGS_ERR_TRUNCATED:
+    case ADCGS_ERR_LIMIT:
+        return 4;
+    case ADCGS_ERR_UNSUPPORTED:
+    case ADCGS_ERR_FPENV:
+        return 5;
+    default:
+        return 1;
+    }
+}
+
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
     message(cli, format, arguments);
     va_end(arguments);
-    return adcgs_status_exit_code(status);
+    return adcgs_exit_code(status);
 }
 
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...)
@@ -239,14 +261,14 @@ static int print_help(const adcgs_cli *cli)
     print_option('V', "version", NULL, "print versions and exit");
     if (cli->details)
         printf("\n%s\n", cli->details);
-    return fflush(stdout) ? adcgs_status_exit_code(ADCGS_ERR_IO) : 0;
+    return fflush(stdout) ? adcgs_exit_code(ADCGS_ERR_IO) : 0;
 }
 
 static int print_version(const adcgs_cli *cli)
 {
     printf("%s %s (library %s, bitstream %d.%d)\n", cli->program, PACKAGE_VERSION, adcgs_version_string(), ADCGS_BITSTREAM_MAJOR,
            ADCGS_BITSTREAM_MINOR);
-    return fflush(stdout) ? adcgs_status_exit_code(ADCGS_ERR_IO) : 0;
+    return fflush(stdout) ? adcgs_exit_code(ADCGS_ERR_IO) : 0;
 }
 
 /** getopt_long()'s two descriptions from ours. Values above UCHAR_MAX stand for options without a letter. */

@@ -8,6 +8,9 @@
 #include "model/input.h"
 #include "model/stream.h"
 
+#include <adcgs/decoder.h>
+#include <adcgs/frame.h>
+
 #include <stdarg.h>
 #include <stdlib.h>
 
@@ -98,12 +101,12 @@ static int models_fit(const attempt *a, const adcgs_decoder *decoder)
 {
     const adcgs_vector *const v = a->vector;
     adcgs_info info;
-    if (adcgs_get_info(decoder, &info) != ADCGS_OK || info.segments != v->n_models)
+    if (adcgs_get_info(decoder, &info, sizeof info, NULL) != ADCGS_OK || info.segments != v->n_models)
         return wrong(a, "M: %d segments, expected %d", info.segments, v->n_models);
     for (int i = 0; i < v->n_models; i++) {
         uint8_t digest[16];
         char hex[ADCGS_HEX] = "";
-        if (adcgs_get_model_digest(decoder, i, digest) == ADCGS_OK)
+        if (adcgs_get_model_digest(decoder, i, digest, NULL) == ADCGS_OK)
             adcgs_md5_hex(digest, hex);
         if (strcmp(hex, v->models[i]))
             return wrong(a, "M: model %d is %s, expected %s", i, hex, v->models[i]);
@@ -117,7 +120,7 @@ static int splats_fit(const attempt *a, adcgs_decoder *decoder)
     for (int i = 0; i < v->n_splats; i++) {
         uint8_t digest[16];
         char hex[ADCGS_HEX] = "";
-        if (adcgs_get_splat_digest(decoder, v->splats[i].time, digest) == ADCGS_OK)
+        if (adcgs_get_splat_digest(decoder, v->splats[i].time, digest, NULL) == ADCGS_OK)
             adcgs_md5_hex(digest, hex);
         if (strcmp(hex, v->splats[i].md5))
             return wrong(a, "S: splats %d are %s, expected %s", i, hex, v->splats[i].md5);
@@ -166,7 +169,7 @@ static int decode_fits(const attempt *a, int complete)
     adcgs_decoder *decoder = NULL;
     adcgs_error error = {ADCGS_OK, ""};
     adcgs_span input = input_of(a);
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.cpu = a->trial->cpu;
     config.threads = a->trial->threads;
     config.strict_end = complete;

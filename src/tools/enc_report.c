@@ -4,6 +4,8 @@
 
 #include "metric/evaluate.h"
 
+#include <adcgs/decoder.h>
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -131,7 +133,7 @@ static adcgs_status measure(result *x, const adcgs_enc_report *r, adcgs_decoder 
     const adcgs_scene *scene = r->trainer->scene;
     x->split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
                scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
-    ADCGS_TRY(adcgs_get_info(decoder, &x->info));
+    ADCGS_TRY(adcgs_get_info(decoder, &x->info, sizeof x->info, error));
     ADCGS_TRY(adcgs_evaluate(&x->quality, decoder, scene, x->split, 0, NULL, NULL, error));
     return judge(&x->target, r, &x->info, decoder, error);
 }
@@ -148,7 +150,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     adcgs_config config;
     adcgs_decoder *decoder;
     result x;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.threads = r->threads;
     config.cpu = r->trainer->cpu;
     ADCGS_TRY(adcgs_open_file(&decoder, r->file, &config, error));

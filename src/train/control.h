@@ -12,7 +12,7 @@
 
 #include "train/schedule.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 struct adcgs_trainer;
 

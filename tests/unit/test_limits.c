@@ -422,7 +422,7 @@ static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_config config;
     adcgs_decoder *d = NULL;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.threads = threads;
     const long before = atomic_load(&blocks);
     atomic_store(&left, n);
