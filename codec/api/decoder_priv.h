@@ -5,9 +5,9 @@
 
 #include "base/log.h"
 #include "base/pool.h"
-#include "model/stream.h"
 #include "render/render.h"
 #include "splat/splat.h"
+#include "stream/stream.h"
 
 #include <adcgs/decoder.h>
 

@@ -8,9 +8,9 @@
 
 #ifdef HAVE_ENCODER
 
+#include "cli/cli.h"
 #include "io/file.h"
 #include "play/play.h"
-#include "tools/cli.h"
 
 #include <adcgs/decoder.h>
 

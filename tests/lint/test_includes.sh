@@ -26,13 +26,13 @@ check()
     done
 }
 
-codec="base bits geom net model splat render api"
+codec="base bits geom net model splat render stream api"
 check codec "" $codec
-check src "$codec" io data scenes metric train encode play tools
+check src "$codec" cli io data layouts camera metric scenes grad fmodel train encode play sweep conform tools
 
 # Of the installed headers, those of the roof (decoder.h, frame.h, adcgs.h) are for codec/api; below it there are types, and what
 # base itself offers.
-if grep -nE '^ *# *include *<adcgs/' codec/{base,bits,geom,net,model,splat,render}/*.[ch] |
+if grep -nE '^ *# *include *<adcgs/' codec/{base,bits,geom,net,model,splat,render,stream}/*.[ch] |
     grep -v -E 'include <adcgs/(status|types|version|cpu|pool)\.h>' >&2; then
     echo "a room below the roof includes its headers" >&2
     faults=$((faults + 1))
