@@ -3,7 +3,9 @@
 #include "encode/encode.h"
 
 #include "encode/quantise.h"
+#include "render/render.h"
 #include "stream/input.h"
+#include "train/levels.h"
 
 #include <math.h>
 
@@ -77,7 +79,7 @@ static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const a
     memcpy(s->scene_origin, t->origin, sizeof s->scene_origin);
     s->scene_scale = t->scale;
     memcpy(s->background, scene->background, sizeof s->background);
-    s->screen_filter = 0.3f;
+    s->screen_filter = ADCGS_SCREEN_FILTER;
     s->colour_space = scene->colour_space;
     s->axes = scene->axes;
     s->units = scene->units;
@@ -108,7 +110,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
     adcgs_buffer out;
     adcgs_rdo rdo;
     if (strength >= 0)
-        ADCGS_TRY(adcgs_trainer_prices(t, strength, &rdo, error));
+        ADCGS_TRY(adcgs_level_prices(t, strength, &rdo, error));
     adcgs_buffer_init(&out);
     adcgs_status status = make_stream(&stream, t, strength >= 0 ? &rdo : NULL, notes, n_notes, error);
     if (status == ADCGS_OK)

@@ -85,7 +85,7 @@ static adcgs_status float_network(adcgs_net *net, const adcgs_mlp *m, const floa
     net->n_layers = (uint8_t)(m->hidden + 1);
     for (int i = 0; i <= m->hidden; i++) {
         adcgs_layer *layer = &net->layer[i];
-        const int exact = m->lattice[i] == ADCGS_LATTICE_NONE, e = exact ? 0 : m->lattice[i];
+        const int exact = m->weight_step[i] == ADCGS_WEIGHT_STEP_NONE, e = exact ? 0 : m->weight_step[i];
         const int32_t limit = (int32_t)ldexpf(FLOAT_WEIGHT_MAX, ADCGS_MIN(e, 16));
         const size_t biases = (i < m->hidden ? m->w[i + 1] : m->n) - m->b[i];
         ADCGS_TRY(tensor_alloc(&layer->w, (uint32_t)m->n_out[i], (uint32_t)m->in[i], e, error));

@@ -37,7 +37,7 @@ size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden
         at += (size_t)mlp->in[i] * (size_t)mlp->n_out[i];
         mlp->b[i] = at;
         at += (size_t)mlp->n_out[i];
-        mlp->lattice[i] = ADCGS_LATTICE_NONE;
+        mlp->weight_step[i] = ADCGS_WEIGHT_STEP_NONE;
     }
     mlp->n = at;
     return at;
@@ -48,7 +48,7 @@ void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width)
     adcgs_mlp *m = &f->mlp[group];
     const adcgs_mlp old = *m;
     f->param[group].n = adcgs_mlp_layout(m, old.own, old.time, width, old.hidden, old.out);
-    memcpy(m->lattice, old.lattice, sizeof m->lattice);
+    memcpy(m->weight_step, old.weight_step, sizeof m->weight_step);
     m->use = old.use;
     m->turn = old.turn;
     m->packed = old.packed;
@@ -84,7 +84,7 @@ void adcgs_mlp_integer(const adcgs_mlp *m, const float *p, float *to)
 {
     for (int i = 0; i <= m->hidden; i++) {
         const size_t inputs = (size_t)m->in[i];
-        const int e = ADCGS_MIN(m->lattice[i], ADCGS_E24_BITS);
+        const int e = ADCGS_MIN(m->weight_step[i], ADCGS_E24_BITS);
         for (size_t o = 0; o < (size_t)m->n_out[i]; o++) {
             float *w = to + m->w[i] + o * inputs, *b = to + m->b[i] + o;
             for (size_t j = 0; j < inputs; j++)
@@ -107,8 +107,8 @@ void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise)
     for (int i = 0; i <= mlp->hidden; i++) {
         const size_t n = (i < mlp->hidden ? mlp->w[i + 1] : mlp->n) - mlp->w[i]; /* weights and biases */
         float *w = mlp->use + mlp->w[i];
-        if (quantise && !mlp->entropy && mlp->lattice[i] != ADCGS_LATTICE_NONE) {
-            const float up = ldexpf(1, mlp->lattice[i]), down = ldexpf(1, -mlp->lattice[i]);
+        if (quantise && !mlp->entropy && mlp->weight_step[i] != ADCGS_WEIGHT_STEP_NONE) {
+            const float up = ldexpf(1, mlp->weight_step[i]), down = ldexpf(1, -mlp->weight_step[i]);
             for (size_t j = 0; j < n; j++)
                 w[j] = rintf(w[j] * up) * down;
         }
@@ -159,7 +159,7 @@ static void layout_networks(adcgs_fmodel *f)
         z->in[0] = p->time_width;
         z->n_out[0] = p->time_rows;
         z->n = z->b[0] = (size_t)p->time_rows * p->time_width;
-        z->lattice[0] = ADCGS_LATTICE_NONE;
+        z->weight_step[0] = ADCGS_WEIGHT_STEP_NONE;
     }
     const int w = s->entropy_width, h = s->entropy_hidden;
     adcgs_mlp_layout(&m[ADCGS_P_E_FV], p->n_eta, 0, w, h, 2 * p->n_fv);

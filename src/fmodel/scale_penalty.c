@@ -69,7 +69,7 @@ static float nearness(const adcgs_viewpoints *p, const adcgs_primitives *primiti
     return 1 / fmaxf(least, NEAREST * NEAREST);
 }
 
-double adcgs_area_price(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
+double adcgs_scale_penalty(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
                         float *const scale[3])
 {
     const float *x = primitives->scale[0], *y = primitives->scale[1], *z = primitives->scale[2];

@@ -4,7 +4,7 @@
  * rest of the run depends on; saving and loading are its two visitors.
  * A file is "ADCGSCKP", a format number, the walk, and a CRC-32C of it all.
  */
-#include "train/trainer.h"
+#include "train/checkpoint.h"
 
 #include "base/digest.h"
 #include "io/atomic.h"
@@ -128,10 +128,10 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->frozen, sizeof t->frozen);
     visit(w, &t->lr_scale, sizeof t->lr_scale);
     visit(w, &t->lambda, sizeof t->lambda);
-    visit(w, &t->control, sizeof t->control);
-    visit(w, &t->window.n, sizeof t->window.n);
-    visit(w, &t->window.first, sizeof t->window.first);
-    visit(w, &t->window.last, sizeof t->window.last);
+    visit(w, &t->rate_control, sizeof t->rate_control);
+    visit(w, &t->curriculum.n, sizeof t->curriculum.n);
+    visit(w, &t->curriculum.first, sizeof t->curriculum.first);
+    visit(w, &t->curriculum.last, sizeof t->curriculum.last);
     visit(w, &t->rollbacks, sizeof t->rollbacks);
     visit(w, &t->mean_loss, sizeof t->mean_loss);
     visit(w, &t->mean_mse, sizeof t->mean_mse);
@@ -169,7 +169,7 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
         visit(w, p->p, p->n * sizeof(float));
         visit(w, p->m, p->n * sizeof(float));
         visit(w, p->v, p->n * sizeof(float));
-        visit(w, f->mlp[i].lattice, sizeof f->mlp[i].lattice);
+        visit(w, f->mlp[i].weight_step, sizeof f->mlp[i].weight_step);
     }
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         visit(w, t->pass->mu[i], f->param[i].n * sizeof(float));
@@ -178,10 +178,10 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
 
 static void walk_average(walk *w, adcgs_trainer *t)
 {
-    adcgs_average *a = &t->average;
+    adcgs_weight_average *a = &t->average;
     uint32_t n = a->n;
     visit(w, &n, sizeof n);
-    if (n > 0 && !w->out && adcgs_average_begin(a, t->f, NULL) != ADCGS_OK)
+    if (n > 0 && !w->out && adcgs_weight_average_begin(a, t->f, NULL) != ADCGS_OK)
         w->failed = 1;
     a->n = w->failed ? 0 : n;
     if (a->n > 0)
@@ -246,9 +246,7 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     if (w.failed || adcgs_reader_left(&reader))
         return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
     adcgs_fmodel_take_steps(t->f);
-    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
-        if (t->f->mlp[i].n)
-            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);
+    adcgs_trainer_prepare_networks(t);
     return ADCGS_OK;
 }
 

@@ -316,7 +316,7 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const cloud *c, const adcgs
     return status;
 }
 
-adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
+adcgs_status adcgs_initialise(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                adcgs_error *error)
 {
     sight s;

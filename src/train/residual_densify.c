@@ -2,6 +2,8 @@
 /** \file What is missing. */
 #include "train/residual_densify.h"
 
+#include "train/views.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -32,7 +34,7 @@ static int by_difference(const void *a, const void *b)
 
 static int by_score(const void *a, const void *b)
 {
-    const adcgs_missing *p = a, *q = b;
+    const adcgs_residual *p = a, *q = b;
     return p->score != q->score ? (p->score < q->score) - (p->score > q->score) : memcmp(p->x, q->x, sizeof p->x);
 }
 
@@ -60,7 +62,7 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
         return ADCGS_ERR_MEMORY;
     l->more = l->off + plane;
     l->taken = l->more + plane;
-    ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 0, error));
+    ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 0, error));
     const float *target;
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &target, error));
     memcpy(l->taken, target, 3 * plane * sizeof *l->taken);
@@ -88,7 +90,7 @@ static int sees(const look *l, const float x[3], float *off)
 }
 
 /** Where along a pixel's ray the other cameras agree the most that something is missing. 0 if too few do. */
-static int place_of(const look *looks, int n, int own, pixel p, adcgs_missing *place)
+static int place_of(const look *looks, int n, int own, pixel p, adcgs_residual *place)
 {
     const look *l = &looks[own];
     const adcgs_view *v = &l->view->view;
@@ -118,7 +120,7 @@ static int place_of(const look *looks, int n, int own, pixel p, adcgs_missing *p
     return place->score > 0;
 }
 
-static uint32_t follow(const look *looks, int n, int own, adcgs_missing *places, uint32_t most)
+static uint32_t follow(const look *looks, int n, int own, adcgs_residual *places, uint32_t most)
 {
     const look *l = &looks[own];
     pixel *list = malloc((size_t)l->w * (size_t)l->h * sizeof *list);
@@ -140,10 +142,10 @@ static uint32_t follow(const look *looks, int n, int own, adcgs_missing *places,
     return found;
 }
 
-adcgs_status adcgs_trainer_missing(adcgs_trainer *t, adcgs_missing *places, uint32_t most, uint32_t *n, adcgs_error *error)
+adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint32_t most, uint32_t *n, adcgs_error *error)
 {
     look looks[VIEWS_MOST] = { { NULL, 0, 0, NULL, NULL, NULL } };
-    const float moment = t->views[t->window.views[t->iteration % t->window.n].index].t;
+    const float moment = t->views[t->curriculum.views[t->iteration % t->curriculum.n].index].t;
     int count = 0;
     adcgs_status status = ADCGS_OK;
     *n = 0;

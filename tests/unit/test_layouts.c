@@ -51,7 +51,7 @@ static void finish_start(start *s)
     expect_good(adcgs_train_preset(&config, "draft", &error));
     config.start_anchors = 60;
     adcgs_scene_frame(s->scene, s->origin, &s->scale);
-    expect_good(adcgs_train_start(&s->model, s->scene, &config, &error));
+    expect_good(adcgs_initialise(&s->model, s->scene, &config, &error));
 }
 
 static void free_start(start *s)
