@@ -51,12 +51,13 @@ static uint32_t ask(adcgs_decoder *d, int stored_camera)
 {
     adcgs_info info;
     adcgs_primitives primitives;
-    uint8_t digest[16], bytes[WIDTH * HEIGHT * 3];
+    uint8_t digest[16], bytes[WIDTH * HEIGHT * 3], rgba[WIDTH * HEIGHT * 4];
     float rgb[WIDTH * HEIGHT * 3];
     uint32_t crc = 0;
     FUZZ_REQUIRE(adcgs_get_info(d, &info, sizeof info, NULL) == ADCGS_OK);
     FUZZ_REQUIRE(info.segments >= 1 && info.layers >= 1 && info.frame_rate > 0 && info.scene_scale > 0);
-    (void)adcgs_get_metadata(d, "title");
+    for (int i = 0; i < info.metadata; i++)
+        FUZZ_REQUIRE(adcgs_get_metadata(d, adcgs_get_metadata_key(d, i)) != NULL);
     for (int i = 0; i < info.segments; i++) {
         FUZZ_REQUIRE(adcgs_get_model_digest(d, i, digest, NULL) == ADCGS_OK);
         crc = adcgs_crc32c(crc, digest, sizeof digest);
@@ -71,6 +72,7 @@ static uint32_t ask(adcgs_decoder *d, int stored_camera)
         for (size_t p = 0; p < ADCGS_COUNTOF(rgb); p++)
             FUZZ_REQUIRE(rgb[p] - rgb[p] == 0); /* finite */
         adcgs_frame_to_u8(&frame, bytes);
+        FUZZ_REQUIRE(adcgs_render_rgba8(d, &camera, time, ADCGS_ALPHA_STRAIGHT, rgba, 4 * WIDTH, NULL) != ADCGS_ERR_USAGE);
         crc = adcgs_crc32c(adcgs_crc32c(crc, rgb, sizeof rgb), bytes, sizeof bytes);
     }
     return crc;

@@ -295,6 +295,11 @@ static void test_writer_limits(void **state)
     longer[0] = 0;
     assert_int_equal(adcgs_stream_write(s, &out, &error), ADCGS_ERR_USAGE);
     s->meta[0].key = key;
+    const uint32_t anchors = s->segments[0].n;
+    s->segments[0].n = ADCGS_ANCHORS_MAX + 1; /* refused before anything of them is looked at */
+    assert_int_equal(adcgs_stream_write(s, &out, &error), ADCGS_ERR_LIMIT);
+    assert_non_null(strstr(error.text, "anchors is 1048577"));
+    s->segments[0].n = anchors;
     adcgs_buffer_clear(&out);
     free(many);
 }

@@ -90,7 +90,7 @@ typedef struct adcgs_info {
     int version_major;      /**< of the bitstream (clause "HEAD") */
     int version_minor;      /**< of the bitstream */
     int profile;            /**< 0 (clause "Profiles and levels") */
-    int level;              /**< 1.. : what the stream may cost (clause "Levels") */
+    int level;              /**< 1..3: what the stream may cost (clause "Levels") */
     int segments;           /**< complete time segments that can be played, at least 1 */
     uint32_t anchors;       /**< over all segments */
     uint32_t gaussians;     /**< primitives that exist, over all segments */
