@@ -46,8 +46,6 @@ static adcgs_status reserve_planar(adcgs_decoder *d, size_t floats, adcgs_error 
 static adcgs_status prepare(adcgs_decoder *d, const adcgs_camera *camera, double time, size_t planes,
                             adcgs_primitives *primitives, adcgs_view *view, adcgs_error *error)
 {
-    ADCGS_REQUIRE(d, error);
-    ADCGS_REQUIRE(camera, error);
     ADCGS_TRY(adcgs_view_init(view, camera, d->stream.scene_origin, d->stream.scene_scale, error));
     ADCGS_TRY(adcgs_decoder_primitives(d, time, primitives, error));
     if (!d->raster)
@@ -65,6 +63,7 @@ adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, do
     adcgs_primitives primitives;
     adcgs_view view;
     ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(camera, error);
     ADCGS_REQUIRE(frame, error);
     if (!frame->rgb || frame->width != camera->width || frame->height != camera->height)
@@ -125,6 +124,8 @@ adcgs_status adcgs_render_rgba8(adcgs_decoder *decoder, const adcgs_camera *came
     adcgs_primitives primitives;
     adcgs_view view;
     ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(camera, error);
     ADCGS_REQUIRE(pixels, error);
     if ((unsigned)alpha > ADCGS_ALPHA_PREMULTIPLIED)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "alpha is %d, expected 0..%d", (int)alpha, ADCGS_ALPHA_PREMULTIPLIED);
@@ -175,6 +176,8 @@ adcgs_status adcgs_render_depth(adcgs_decoder *decoder, const adcgs_camera *came
     adcgs_primitives primitives;
     adcgs_view view;
     ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(camera, error);
     ADCGS_TRY(prepare(d, camera, time, 3, &primitives, &view, error));
     ADCGS_TRY(adcgs_raster_depth(d->raster, &primitives, &view, d->stream.screen_filter, d->planar, error));
     divide_job job = { d->planar, (size_t)view.width, (size_t)view.height, d->stream.scene_scale, depth, alpha };

@@ -163,7 +163,9 @@ static void test_errors(void **state)
     ASSERT_REFUSED(adcgs_get_splat_digest(d, 0, NULL, &error), "digest");
     ASSERT_REFUSED(adcgs_render(d, &fixture_camera, 0, NULL, &error), "frame");
     ASSERT_REFUSED(adcgs_render(d, &fixture_camera, 0, &frame, &error), "frame");
-    ASSERT_REFUSED(adcgs_render_depth(NULL, &fixture_camera, 0, NULL, NULL, &error), "d is NULL");
+    ASSERT_REFUSED(adcgs_render(NULL, &fixture_camera, 0, &frame, &error), "adcgs_render: decoder");
+    ASSERT_REFUSED(adcgs_render_depth(NULL, &fixture_camera, 0, NULL, NULL, &error), "adcgs_render_depth: decoder");
+    ASSERT_REFUSED(adcgs_render_depth(d, NULL, 0, NULL, NULL, &error), "camera");
     ASSERT_REFUSED(adcgs_render_rgba8(d, &fixture_camera, 0, ADCGS_ALPHA_OPAQUE, NULL, 4, &error), "pixels");
     ASSERT_REFUSED(adcgs_pool_create(&pool, 257, &error), "257");
     ASSERT_REFUSED(adcgs_pool_wrap(&pool, 4, NULL, NULL, &error), "function");
