@@ -75,7 +75,7 @@ static void print_cameras(FILE *out, const adcgs_plan *plan)
 static adcgs_status print_props(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder, size_t bytes, adcgs_error *error)
 {
     adcgs_info info;
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     if ((int)info.truncated != (strstr(plan->recipe->id, "truncated") != NULL))
         return adcgs_fail(error, ADCGS_ERR_INTERNAL, "%s: truncated is %d", plan->recipe->id, info.truncated);
     fprintf(out, ",\n      \"props\": { \"bytes\": %zu, \"anchors\": %u, \"segments\": %d, \"frames\": %d, \"truncated\": %s }",
@@ -83,15 +83,15 @@ static adcgs_status print_props(FILE *out, const adcgs_plan *plan, adcgs_decoder
     return ADCGS_OK;
 }
 
-static adcgs_status print_models(FILE *out, adcgs_decoder *decoder)
+static adcgs_status print_models(FILE *out, adcgs_decoder *decoder, adcgs_error *error)
 {
     adcgs_info info;
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     fprintf(out, ",\n        \"M\": [");
     for (int i = 0; i < info.segments; i++) {
         uint8_t digest[16];
         char hex[33];
-        ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest));
+        ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest, error));
         adcgs_md5_hex(digest, hex);
         fprintf(out, "%s\"%s\"", i == 0 ? "" : i % 3 ? ", " : ",\n          ", hex);
     }
@@ -99,13 +99,13 @@ static adcgs_status print_models(FILE *out, adcgs_decoder *decoder)
     return ADCGS_OK;
 }
 
-static adcgs_status print_splats(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder)
+static adcgs_status print_splats(FILE *out, const adcgs_plan *plan, adcgs_decoder *decoder, adcgs_error *error)
 {
     fprintf(out, ",\n        \"S\": [");
     for (int i = 0; i < plan->n_times; i++) {
         uint8_t digest[16];
         char hex[33];
-        ADCGS_TRY(adcgs_get_splat_digest(decoder, plan->times[i], digest));
+        ADCGS_TRY(adcgs_get_splat_digest(decoder, plan->times[i], digest, error));
         adcgs_md5_hex(digest, hex);
         fprintf(out, "%s\n          { \"time\": %.17g, \"md5\": \"%s\" }", i ? "," : "", plan->times[i], hex);
     }
@@ -141,8 +141,8 @@ static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_deco
     char hex[33];
     adcgs_trace_sum_final(trace, hex);
     fprintf(out, ",\n      \"expect\": {\n        \"P\": { \"elements\": %u, \"trace_md5\": \"%s\" }", trace->lines, hex);
-    ADCGS_TRY(print_models(out, decoder));
-    ADCGS_TRY(print_splats(out, plan, decoder));
+    ADCGS_TRY(print_models(out, decoder, error));
+    ADCGS_TRY(print_splats(out, plan, decoder, error));
     fprintf(out, ",\n        \"R\": [");
     for (int t = 0; t < plan->n_times; t++)
         for (int c = 0; c < plan->n_cameras; c++)
@@ -156,15 +156,15 @@ static adcgs_status print_fewer(FILE *out, const adcgs_plan *plan, const adcgs_b
 {
     adcgs_config config;
     adcgs_decoder *decoder = NULL;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.threads = 1;
     config.cpu = ADCGS_CPU_SCALAR;
     config.layers = plan->fewer[i];
     ADCGS_TRY(adcgs_open_memory(&decoder, file->data, file->size, &config, error));
     fprintf(out, "%s\n          { \"layers\": %d", i ? "," : ",\n        \"L\": [", plan->fewer[i]);
-    adcgs_status status = print_models(out, decoder);
+    adcgs_status status = print_models(out, decoder, error);
     if (status == ADCGS_OK)
-        status = print_splats(out, plan, decoder);
+        status = print_splats(out, plan, decoder, error);
     adcgs_close(&decoder);
     fprintf(out, " }%s", i + 1 == plan->n_fewer ? " ]" : "");
     return status;
@@ -181,7 +181,7 @@ static adcgs_status print_good(FILE *out, const adcgs_plan *plan, const adcgs_bu
     if (!covers)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: covers nothing", plan->recipe->id);
     ADCGS_TRY(print_requirements(out, "covers", covers, error));
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.threads = 1;
     config.cpu = ADCGS_CPU_SCALAR;
     ADCGS_TRY(adcgs_open_memory(&decoder, file->data, file->size, &config, error));

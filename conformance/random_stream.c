@@ -56,13 +56,13 @@ static adcgs_status add_results(adcgs_md5 *md5, adcgs_decoder *decoder, const ad
 {
     adcgs_info info;
     uint8_t digest[16];
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     for (int i = 0; i < info.segments; i++) {
-        ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest));
+        ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest, error));
         adcgs_md5_update(md5, digest, sizeof digest);
     }
     for (int t = 0; t < plan->n_times; t++) {
-        ADCGS_TRY(adcgs_get_splat_digest(decoder, plan->times[t], digest));
+        ADCGS_TRY(adcgs_get_splat_digest(decoder, plan->times[t], digest, error));
         adcgs_md5_update(md5, digest, sizeof digest);
         for (int c = 0; c < plan->n_cameras; c++)
             ADCGS_TRY(add_frame(md5, decoder, &plan->cameras[c], plan->times[t], error));
@@ -79,7 +79,7 @@ static adcgs_status digest_of(const adcgs_plan *plan, const adcgs_buffer *file, 
     adcgs_span s = { .next = file->data, .left = file->size, .step = step };
     adcgs_md5_init(&md5);
     ADCGS_TRY(add_trace(&md5, file, cpu, threads, step, error));
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.cpu = cpu;
     config.threads = threads;
     ADCGS_TRY(adcgs_open_stream(&decoder, adcgs_span_read, &s, &config, error));

@@ -5,7 +5,14 @@
 
 #include "base/digest.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/frame.h>
+
+/** A sample in 8 bits (spec clause "Output conversion"). */
+static inline uint8_t adcgs_sample_u8(float v)
+{
+    const float clipped = v > 0.0f ? v < 1.0f ? v : 1.0f : 0.0f;
+    return (uint8_t)(clipped * 255.0f + 0.5f); /* not negative: truncation is floor */
+}
 
 /** Add a frame's values, as bytes of the spec's frame digest, to a digest that may hold several frames. */
 void adcgs_frame_digest_add(adcgs_md5 *md5, const adcgs_frame *frame);

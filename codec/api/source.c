@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Where streams come from: files and memory, both as sequential sources. */
-#include "base/base.h"
+#include "api/decoder_priv.h"
 #include "stream/input.h"
-
-#include <adcgs/decoder.h>
 
 #include <errno.h>
 #include <stdio.h>
 
 adcgs_status adcgs_open_file(adcgs_decoder **out, const char *path, const adcgs_config *config, adcgs_error *error)
 {
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(out, error);
     *out = NULL;
+    ADCGS_REQUIRE(path, error);
     FILE *file = fopen(path, "rb");
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
@@ -24,6 +25,9 @@ adcgs_status adcgs_open_file(adcgs_decoder **out, const char *path, const adcgs_
 adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, size_t bytes, const adcgs_config *config,
                                adcgs_error *error)
 {
+    ADCGS_OWN_ERROR(error);
+    if (bytes > 0)
+        ADCGS_REQUIRE(data, error);
     adcgs_span s = { .next = data, .left = bytes };
     return adcgs_open_stream(out, adcgs_span_read, &s, config, error);
 }

@@ -2,7 +2,7 @@
 /** \file
  * Ground: errors, memory, little-endian access, small integer helpers, the
  * clock. Knows nothing of the codec. The room's other headers: pool.h, cpu.h,
- * digest.h, fmath.h, lanes.h, strict.h.
+ * log.h, digest.h, fmath.h, lanes.h, strict.h.
  */
 #ifndef ADCGS_BASE_BASE_H
 #define ADCGS_BASE_BASE_H
@@ -13,6 +13,12 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+
+#if defined(__GNUC__)
+#define ADCGS_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
+#else
+#define ADCGS_PRINTF(fmt, args)
+#endif
 
 /* Refusals by macro. What no macro shows (contraction, flushing, rounding) is found when a decoder opens: strict.h. */
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
@@ -37,6 +43,9 @@ adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *for
 /** Put the name of an input in front of a message about its contents, in place of "stream:". error may be NULL. */
 void adcgs_error_locate(adcgs_error *error, const char *name);
 
+/** Make a line of text safe to show: control characters become question marks. */
+void adcgs_one_line(char *text);
+
 /** Return early when expr is not ADCGS_OK. */
 #define ADCGS_TRY(expr)                          \
     do {                                         \
@@ -57,7 +66,10 @@ typedef struct adcgs_memory {
  * memory may be NULL: no accounting. count * size == 0 gives a valid pointer.
  */
 void *adcgs_alloc(adcgs_memory *memory, size_t count, size_t size, adcgs_error *error);
-/** The status of a failed adcgs_alloc(), as far as its caller can know it. */
+/**
+ * The status of a failed adcgs_alloc(): what its callers return, so that a limit stays a limit. Without an error nothing is
+ * known of the reason; whoever sets a limit passes one.
+ */
 static inline adcgs_status adcgs_alloc_status(const adcgs_error *error)
 {
     return error ? error->status : ADCGS_ERR_MEMORY;

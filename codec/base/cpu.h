@@ -5,12 +5,11 @@
 
 #include "base/base.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/cpu.h>
 
 /** Resolve AUTO to the best level; ADCGS_ERR_UNSUPPORTED when the machine or the build lacks the level asked for. */
 adcgs_status adcgs_cpu_resolve(adcgs_cpu_level asked, adcgs_cpu_level *level, adcgs_error *error);
 /** "auto", "scalar", "avx2", "avx512" by level, then NULL. */
 extern const char *const adcgs_cpu_names[];
-const char *adcgs_cpu_name(adcgs_cpu_level level);
 
 #endif

@@ -20,7 +20,8 @@ void *adcgs_alloc(adcgs_memory *memory, size_t count, size_t size, adcgs_error *
 {
     const size_t overhead = ALIGNMENT + sizeof(block_header);
     if (size && count > (SIZE_MAX - overhead) / size) {
-        adcgs_fail(error, ADCGS_ERR_MEMORY, "allocation of %zu x %zu bytes exceeds the address space", count, size);
+        adcgs_fail(error, memory && memory->limit ? ADCGS_ERR_LIMIT : ADCGS_ERR_MEMORY,
+                   "allocation of %zu x %zu bytes exceeds the address space", count, size);
         return NULL;
     }
     const size_t bytes = count * size + overhead;

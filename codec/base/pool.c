@@ -6,17 +6,20 @@
  * take an index of the next one with the wrong function. The caller works too,
  * and returns when the count of finished indices reaches n; workers that slept
  * through a short run are not waited for.
+ *
+ * Threads that a caller lends get a task each, which takes indices until there
+ * are none; so it does not matter how many of the tasks really run at once.
  */
 #define _POSIX_C_SOURCE 200809L
 
 #include "base/pool.h"
 
+#include <fenv.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-#define THREADS_MAX 256
 /* About 20 to 50 microseconds of pause instructions before a thread sleeps. */
 #define SPINS 800
 /* Index part of the ticket while no run is open. */
@@ -40,7 +43,18 @@ struct adcgs_pool {
     _Atomic(adcgs_work_fn) fn;
     _Atomic(void *) arg;
     worker *workers; /* [threads - 1] */
+    pthread_mutex_t turn; /* held during a run: several decoders may share the pool */
+    adcgs_run_fn lent_run; /* the caller's threads; NULL: ours */
+    void *lent_user;
 };
+
+/* A run on threads that were lent. */
+typedef struct lent_work {
+    adcgs_work_fn fn;
+    void *arg;
+    int n;
+    atomic_int next;
+} lent_work;
 
 static void relax(void)
 {
@@ -105,6 +119,7 @@ static void *worker_main(void *arg)
     const worker *self = arg;
     adcgs_pool *pool = self->pool;
     uint32_t seen = 0;
+    fesetenv(FE_DFL_ENV); /* not the modes of the thread that made the pool */
     for (;;) {
         seen = await_run(pool, seen);
         if (atomic_load_explicit(&pool->stop, memory_order_acquire))
@@ -126,24 +141,18 @@ static adcgs_status start_workers(adcgs_pool *pool, adcgs_error *error)
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error)
+/* All but the threads. */
+static adcgs_pool *allocate(int threads, int workers)
 {
-    *out = NULL;
-    if (threads < 0 || threads > THREADS_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads asked for; 0 to %d are possible", threads, THREADS_MAX);
-    if (threads == 0) {
-        const long online = sysconf(_SC_NPROCESSORS_ONLN);
-        threads = online < 1 ? 1 : online > THREADS_MAX ? THREADS_MAX : (int)online;
-    }
     adcgs_pool *pool = calloc(1, sizeof *pool);
-    worker *workers = calloc((size_t)threads, sizeof *workers);
-    if (!pool || !workers) {
+    if (!pool)
+        return NULL;
+    pool->workers = calloc((size_t)workers + 1, sizeof *pool->workers);
+    if (!pool->workers) {
         free(pool);
-        free(workers);
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a pool of %d threads", threads);
+        return NULL;
     }
     pool->threads = threads;
-    pool->workers = workers;
     atomic_init(&pool->stop, 0);
     atomic_init(&pool->ticket, CLOSED);
     atomic_init(&pool->n, 0);
@@ -151,13 +160,43 @@ adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error
     atomic_init(&pool->fn, NULL);
     atomic_init(&pool->arg, NULL);
     pthread_mutex_init(&pool->mutex, NULL);
+    pthread_mutex_init(&pool->turn, NULL);
     pthread_cond_init(&pool->wake, NULL);
     pthread_cond_init(&pool->finished, NULL);
+    return pool;
+}
+
+adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error)
+{
+    *out = NULL;
+    if (threads < 0 || threads > ADCGS_THREADS_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads asked for; 0 to %d are possible", threads, ADCGS_THREADS_MAX);
+    if (threads == 0) {
+        const long online = sysconf(_SC_NPROCESSORS_ONLN);
+        threads = online < 1 ? 1 : online > ADCGS_THREADS_MAX ? ADCGS_THREADS_MAX : (int)online;
+    }
+    adcgs_pool *pool = allocate(threads, threads);
+    if (!pool)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a pool of %d threads", threads);
     const adcgs_status status = start_workers(pool, error);
     if (status != ADCGS_OK)
         adcgs_pool_free(&pool);
     *out = pool;
     return status;
+}
+
+adcgs_status adcgs_pool_wrap(adcgs_pool **out, int threads, adcgs_run_fn run, void *user, adcgs_error *error)
+{
+    *out = NULL;
+    if (threads < 1 || threads > ADCGS_THREADS_MAX || !run)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads lent; 1 to %d are possible, and a function that runs tasks on them",
+                          threads, ADCGS_THREADS_MAX);
+    *out = allocate(threads, 0);
+    if (!*out)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a pool of %d threads", threads);
+    (*out)->lent_run = run;
+    (*out)->lent_user = user;
+    return ADCGS_OK;
 }
 
 void adcgs_pool_free(adcgs_pool **out)
@@ -175,6 +214,7 @@ void adcgs_pool_free(adcgs_pool **out)
     pthread_cond_destroy(&pool->finished);
     pthread_cond_destroy(&pool->wake);
     pthread_mutex_destroy(&pool->mutex);
+    pthread_mutex_destroy(&pool->turn);
     free(pool->workers);
     free(pool);
 }
@@ -215,6 +255,18 @@ static void await_done(adcgs_pool *pool, int n)
     pthread_mutex_unlock(&pool->mutex);
 }
 
+/* Indices of a lent run, until there are none. The thread may be in any mode, and gets it back. */
+static void lent_task(void *work, int task)
+{
+    lent_work *w = work;
+    fenv_t modes;
+    fegetenv(&modes);
+    fesetenv(FE_DFL_ENV);
+    for (int i; (i = atomic_fetch_add_explicit(&w->next, 1, memory_order_relaxed)) < w->n;)
+        w->fn(w->arg, i, task);
+    fesetenv(&modes);
+}
+
 void adcgs_pool_run(adcgs_pool *pool, adcgs_work_fn fn, void *arg, int n)
 {
     if (!pool || pool->threads == 1 || n <= 1) {
@@ -222,7 +274,15 @@ void adcgs_pool_run(adcgs_pool *pool, adcgs_work_fn fn, void *arg, int n)
             fn(arg, i, 0);
         return;
     }
-    open_run(pool, fn, arg, n);
-    work(pool, 0);
-    await_done(pool, n);
+    pthread_mutex_lock(&pool->turn);
+    if (pool->lent_run) {
+        lent_work w = { .fn = fn, .arg = arg, .n = n };
+        atomic_init(&w.next, 0);
+        pool->lent_run(pool->lent_user, lent_task, &w, ADCGS_MIN(pool->threads, n));
+    } else {
+        open_run(pool, fn, arg, n);
+        work(pool, 0);
+        await_done(pool, n);
+    }
+    pthread_mutex_unlock(&pool->turn);
 }

@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Status codes: their names, their exit codes, and how an error message is recorded. */
+/** \file Status codes: their names, how an error message is recorded, and how other messages are said. */
 #include "base/base.h"
+#include "base/log.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 
 typedef struct status_row {
     adcgs_status status;
-    int exit_code;
     const char *name;
 } status_row;
 
 static const status_row rows[] = {
-    { ADCGS_OK, 0, "success" },
-    { ADCGS_ERR_USAGE, 2, "wrong use" },
-    { ADCGS_ERR_MEMORY, 3, "out of memory" },
-    { ADCGS_ERR_IO, 3, "input/output error" },
-    { ADCGS_ERR_DATA, 4, "invalid data" },
-    { ADCGS_ERR_TRUNCATED, 4, "truncated data" },
-    { ADCGS_ERR_UNSUPPORTED, 5, "unsupported" },
-    { ADCGS_ERR_LIMIT, 4, "limit exceeded" },
-    { ADCGS_ERR_FPENV, 5, "no strict binary32" },
-    { ADCGS_ERR_INTERNAL, 1, "internal error" },
+    { ADCGS_OK, "success" },
+    { ADCGS_ERR_USAGE, "wrong use" },
+    { ADCGS_ERR_MEMORY, "out of memory" },
+    { ADCGS_ERR_IO, "input/output error" },
+    { ADCGS_ERR_DATA, "invalid data" },
+    { ADCGS_ERR_TRUNCATED, "truncated data" },
+    { ADCGS_ERR_UNSUPPORTED, "unsupported" },
+    { ADCGS_ERR_LIMIT, "limit exceeded" },
+    { ADCGS_ERR_FPENV, "no strict binary32" },
+    { ADCGS_ERR_INTERNAL, "internal error" },
 };
 
 static const status_row *find_row(adcgs_status status)
@@ -37,9 +37,11 @@ const char *adcgs_status_name(adcgs_status status)
     return find_row(status)->name;
 }
 
-int adcgs_status_exit_code(adcgs_status status)
+void adcgs_one_line(char *text)
 {
-    return find_row(status)->exit_code;
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 127)
+            *c = '?';
 }
 
 adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *format, ...)
@@ -51,11 +53,24 @@ adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *for
         if (vsnprintf(error->text, sizeof error->text, format, args) < 0)
             error->text[0] = 0;
         va_end(args);
-        for (char *c = error->text; *c; c++)
-            if ((unsigned char)*c < ' ' || *c == 127)
-                *c = '?';
+        adcgs_one_line(error->text);
     }
     return status;
+}
+
+void adcgs_log_say(const adcgs_log *log, adcgs_log_level level, const char *format, ...)
+{
+    char text[ADCGS_ERROR_TEXT];
+    va_list args;
+    if (!log->fn)
+        return;
+    va_start(args, format);
+    const int n = vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (n < 0)
+        return;
+    adcgs_one_line(text);
+    log->fn(log->user, level, text);
 }
 
 void adcgs_error_locate(adcgs_error *error, const char *name)

@@ -45,7 +45,7 @@ static void radix_sort(item *a, item *b, size_t n)
 int adcgs_morton_sort(uint32_t *voxels, size_t n, uint32_t *order, adcgs_error *error)
 {
     if (n > UINT32_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%zu voxels to sort; at most 2^32 - 1 are possible", n);
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "%zu voxels to sort; at most 2^32 - 1 are possible", n);
     item *items = adcgs_alloc(NULL, n, 2 * sizeof *items, error);
     uint32_t *copy = adcgs_alloc(NULL, n, 3 * sizeof *copy, error);
     if (!items || !copy) {

@@ -36,7 +36,7 @@ adcgs_status adcgs_latents_create(adcgs_latents **out, const adcgs_model *model,
     adcgs_latents *l = adcgs_alloc(memory, 1, sizeof *l, error);
     *out = l;
     if (!l)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     l->memory = memory;
     for (int role = 0; role < ADCGS_ROLE_PREDICTION; role++) {
         if (!adcgs_role_required(&model->params, role))

@@ -81,7 +81,7 @@ static adcgs_status copy_tensor(adcgs_tensor *dst, const adcgs_tensor *src, adcg
     *dst = *src;
     dst->m = adcgs_alloc(memory, n, sizeof *dst->m, error);
     if (!dst->m)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     if (n > 0)
         memcpy(dst->m, src->m, n * sizeof *dst->m);
     return ADCGS_OK;
@@ -111,7 +111,7 @@ adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_e
     model->sigma = model->fv ? adcgs_alloc(memory, n, ADCGS_SIGMA_N * value, error) : NULL;
     model->colour = model->sigma ? adcgs_alloc(memory, n, ADCGS_COLOUR_N * value, error) : NULL;
     model->fg = model->colour ? adcgs_alloc(memory, n, (size_t)p->k * p->n_fg * value, error) : NULL;
-    return model->fg ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return model->fg ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory)

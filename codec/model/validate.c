@@ -211,6 +211,8 @@ static adcgs_status check_primitives(const adcgs_model *m, adcgs_error *error)
 
 static adcgs_status check_frame(const adcgs_model *m, adcgs_error *error)
 {
+    if (m->n > ADCGS_ANCHORS_MAX)
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "model: anchors is %u, the format allows %u", m->n, ADCGS_ANCHORS_MAX);
     ADCGS_TRY(check_range("anchors", m->n, 1, ADCGS_ANCHORS_MAX, error));
     ADCGS_TRY(check_range("depth", m->depth, 0, ADCGS_GEOM_DEPTH_MAX, error));
     for (int a = 0; a < 3; a++)

@@ -42,7 +42,7 @@ static adcgs_status check_level(const adcgs_net *net, const int16_t *x, adcgs_cp
     adcgs_free(NULL, scratch);
     adcgs_e24_free(&e24, NULL);
     if (!allocated)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     if (crc != ANSWER)
         return adcgs_fail(error, ADCGS_ERR_INTERNAL, "integer networks (%s): known-answer test gives 0x%08x, expected 0x%08x",
                           adcgs_cpu_name(level), crc, ANSWER);

@@ -10,7 +10,7 @@
 #include "base/base.h"
 #include "bits/range.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 #define ADCGS_NET_LAYERS_MAX 8
 #define ADCGS_NET_INPUTS_MAX 1024

@@ -59,7 +59,7 @@ static adcgs_status grow(adcgs_raster *r, room *x, uint64_t count, size_t size, 
     const size_t bytes = need + need / 4 + 64;
     x->data = adcgs_alloc(r->memory, bytes, 1, error);
     if (!x->data)
-        return error ? error->status : ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     x->bytes = bytes;
     return ADCGS_OK;
 }
@@ -72,7 +72,7 @@ adcgs_status adcgs_raster_create(adcgs_raster **out, adcgs_cpu_level cpu, adcgs_
     ADCGS_TRY(adcgs_cpu_resolve(cpu, &level, error));
     adcgs_raster *r = adcgs_alloc(memory, 1, sizeof *r, error);
     if (!r)
-        return error ? error->status : ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     r->pool = pool;
     r->memory = memory;
     r->dsp = adcgs_raster_scalar;

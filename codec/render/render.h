@@ -10,8 +10,7 @@
 #include "base/pool.h"
 #include "base/cpu.h"
 
-#include <adcgs/camera.h>
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 #define ADCGS_TILE 16
 

@@ -25,7 +25,7 @@ adcgs_status adcgs_floatnet_init(adcgs_floatnet *out, const adcgs_net *net, adcg
         return ADCGS_OK;
     out->data = adcgs_alloc(memory, adcgs_net_weights(net), sizeof(float), error);
     if (!out->data)
-        return error ? error->status : ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     out->n_layers = net->n_layers;
     float *to = out->data;
     for (int i = 0; i < net->n_layers; i++) {

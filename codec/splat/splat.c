@@ -227,7 +227,7 @@ static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
     s->time_code = get(s, s->model->params.time_width, sizeof(float), &missing, error);
     s->coarse_time = get(s, coarse, sizeof(float), &missing, error);
     s->fine_time = get(s, fine, sizeof(float), &missing, error);
-    return !missing ? ADCGS_OK : error ? error->status : ADCGS_ERR_MEMORY;
+    return !missing ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 static adcgs_status build(adcgs_splat *s, adcgs_cpu_level cpu, uint32_t *moving_index, adcgs_error *error)
@@ -265,14 +265,14 @@ adcgs_status adcgs_splat_create(adcgs_splat **out, const adcgs_model *model, adc
     ADCGS_TRY(adcgs_cpu_resolve(cpu, &level, error));
     adcgs_splat *s = adcgs_alloc(memory, 1, sizeof *s, error);
     if (!s)
-        return error ? error->status : ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     s->model = model;
     s->pool = pool;
     s->memory = memory;
     s->groups = adcgs_lane_groups(model->n);
     choose_kernels(s, level);
     uint32_t *moving_index = adcgs_alloc(memory, s->groups, sizeof *moving_index, error);
-    const adcgs_status status = moving_index ? build(s, level, moving_index, error) : error ? error->status : ADCGS_ERR_MEMORY;
+    const adcgs_status status = moving_index ? build(s, level, moving_index, error) : adcgs_alloc_status(error);
     adcgs_free(memory, moving_index);
     if (status != ADCGS_OK)
         adcgs_splat_free(&s);

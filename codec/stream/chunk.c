@@ -83,7 +83,7 @@ static adcgs_status grow(adcgs_source *source, size_t wanted, adcgs_error *error
     const size_t capacity = ADCGS_MAX(wanted, 2 * source->capacity);
     uint8_t *payload = adcgs_alloc(source->memory, capacity, 1, error);
     if (!payload)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     if (source->capacity > 0)
         memcpy(payload, source->payload, source->capacity);
     adcgs_free(source->memory, source->payload);

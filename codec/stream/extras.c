@@ -72,7 +72,7 @@ adcgs_status adcgs_cams_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory
         return adcgs_fail(p->error, ADCGS_ERR_DATA, "cams: cameras is %u, too many for %zu bytes", n, p->r.size);
     stream->cameras = adcgs_alloc(memory, n, sizeof *stream->cameras, p->error);
     if (!stream->cameras)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(p->error);
     for (; stream->n_cameras < n; stream->n_cameras++) {
         adcgs_camera *c = &stream->cameras[stream->n_cameras];
         ADCGS_TRY(parse_camera(p, c, stream->n_cameras > 0 ? c - 1 : NULL, memory));
@@ -140,7 +140,7 @@ adcgs_status adcgs_cams_write(adcgs_buffer *out, const adcgs_stream *stream, adc
 {
     const adcgs_camera *c = stream->cameras;
     if (stream->n_cameras > CAMERAS_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "cams: %u cameras, expected at most %u", stream->n_cameras, CAMERAS_MAX);
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "cams: %u cameras, expected at most %u", stream->n_cameras, CAMERAS_MAX);
     adcgs_write_varint(out, stream->n_cameras);
     for (uint32_t i = 0; i < stream->n_cameras; i++)
         ADCGS_TRY(write_camera(out, &c[i], i > 0 ? &c[i - 1] : NULL, error));
@@ -155,7 +155,7 @@ adcgs_status adcgs_meta_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory
     ADCGS_TRY(adcgs_parse_varint(p, "entries", 1, META_MAX, &n));
     stream->meta = adcgs_alloc(memory, n, sizeof *stream->meta, p->error);
     if (!stream->meta)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(p->error);
     stream->n_meta = n;
     for (uint32_t i = 0; i < n; i++) {
         ADCGS_TRY(adcgs_parse_text(p, "key", 1, META_KEY_MAX, memory, &stream->meta[i].key));
@@ -167,13 +167,14 @@ adcgs_status adcgs_meta_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory
 adcgs_status adcgs_meta_write(adcgs_buffer *out, const adcgs_stream *stream, adcgs_error *error)
 {
     if (stream->n_meta > META_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "meta: %u entries, expected at most %u", stream->n_meta, META_MAX);
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "meta: %u entries, expected at most %u", stream->n_meta, META_MAX);
     adcgs_write_varint(out, stream->n_meta);
     for (uint32_t i = 0; i < stream->n_meta; i++) {
         const size_t key = strlen(stream->meta[i].key), value = strlen(stream->meta[i].value);
         if (key < 1 || key > META_KEY_MAX || value > META_VALUE_MAX)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "meta: key of %zu bytes, value of %zu, expected 1..%u and at most %u", key,
-                              value, META_KEY_MAX, META_VALUE_MAX);
+            return adcgs_fail(error, key < 1 ? ADCGS_ERR_USAGE : ADCGS_ERR_LIMIT,
+                              "meta: key of %zu bytes, value of %zu, expected 1..%u and at most %u", key, value, META_KEY_MAX,
+                              META_VALUE_MAX);
         adcgs_write_varint(out, (uint32_t)key);
         adcgs_write_bytes(out, stream->meta[i].key, key);
         adcgs_write_varint(out, (uint32_t)value);

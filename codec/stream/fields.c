@@ -195,7 +195,7 @@ static adcgs_status trace_text(const adcgs_parse *p, uint64_t bit, const char *n
         return ADCGS_OK;
     char *text = adcgs_alloc(NULL, 4 * n + 3, 1, p->error), *end = text;
     if (!text)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(p->error);
     *end++ = '"';
     for (size_t i = 0; i < n; i++)
         if (bytes[i] < 32 || bytes[i] > 126 || bytes[i] == '"' || bytes[i] == '\\')
@@ -224,7 +224,7 @@ adcgs_status adcgs_parse_text(adcgs_parse *p, const char *name, uint32_t min, ui
         return adcgs_fail(p->error, ADCGS_ERR_DATA, "%s: %s holds a zero byte", p->chunk, name);
     *text = adcgs_alloc(memory, (size_t)length + 1, 1, p->error);
     if (!*text)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(p->error);
     if (length > 0)
         memcpy(*text, bytes, length);
     return ADCGS_OK;

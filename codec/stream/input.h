@@ -5,7 +5,7 @@
 
 #include "base/digest.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 /** Bytes in memory that are left to read. */
 typedef struct adcgs_span {

@@ -26,7 +26,7 @@ static adcgs_status add_net(adcgs_net_table *table, adcgs_net *net, adcgs_error 
         const uint32_t capacity = table->capacity ? 2 * table->capacity : 16;
         adcgs_net *nets = adcgs_alloc(table->memory, capacity, sizeof *nets, error);
         if (!nets)
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(error);
         if (table->n > 0)
             memcpy(nets, table->nets, table->n * sizeof *nets);
         adcgs_free(table->memory, table->nets);
@@ -102,7 +102,7 @@ static adcgs_status decode_tensor(adcgs_parse *p, adcgs_range_dec *d, adcgs_tens
     const size_t n = (size_t)t->rows * t->cols;
     t->m = adcgs_alloc(memory, n, sizeof *t->m, p->error);
     if (!t->m)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(p->error);
     return n > 0 ? adcgs_tensor_decode(d, t, p->error) : ADCGS_OK;
 }
 
@@ -188,7 +188,7 @@ adcgs_status adcgs_netw_parse(adcgs_parse *p, const adcgs_params *params, const 
 {
     adcgs_net *nets = adcgs_alloc(table->memory, ADCGS_ROLES, sizeof *nets, p->error);
     if (!nets)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(p->error);
     const adcgs_status status = parse_nets(p, params, limits, left, nets, table);
     for (int i = 0; i < ADCGS_ROLES; i++)
         adcgs_net_release(&nets[i], table->memory);

@@ -48,6 +48,14 @@ static adcgs_status skip_payload(stream_reader *s, const adcgs_chunk *chunk)
     return ADCGS_OK;
 }
 
+/** An ancillary chunk that this decoder does not know, or knows in an older version. */
+static adcgs_status skip_unknown(stream_reader *s, const adcgs_chunk *chunk)
+{
+    adcgs_log_say(&s->options->log, ADCGS_LOG_INFO, "%s: chunk of version %u, %u bytes, is unknown and was skipped", chunk->name,
+                  chunk->header.version, chunk->header.length);
+    return skip_payload(s, chunk);
+}
+
 static adcgs_status repeat_head(stream_reader *s, const adcgs_chunk *chunk, const adcgs_parse *p)
 {
     if (p->r.size != s->head_bytes || memcmp(p->r.data, s->head_payload, s->head_bytes) != 0)
@@ -61,7 +69,7 @@ static adcgs_status read_head(stream_reader *s, adcgs_parse *p)
     ADCGS_TRY(adcgs_head_parse(p, &s->head, s->stream));
     s->head_payload = adcgs_alloc(s->options->memory, bytes, 1, s->error);
     if (!s->head_payload)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(s->error);
     memcpy(s->head_payload, p->r.data, bytes);
     s->head_bytes = bytes;
     s->segment.limits = adcgs_level_get(s->stream->level);
@@ -159,7 +167,7 @@ static adcgs_status use_chunk(stream_reader *s, const adcgs_chunk *chunk, adcgs_
         return read_end(s, p, chunk->origin);
     default:
         if (chunk->name[0] >= 'a') /* ancillary */
-            return skip_payload(s, chunk);
+            return skip_unknown(s, chunk);
         return adcgs_fail(s->error, ADCGS_ERR_UNSUPPORTED, "%s: unknown critical chunk at byte %llu", chunk->name,
                           (unsigned long long)chunk->origin);
     }
@@ -171,7 +179,7 @@ static adcgs_status use_or_skip(stream_reader *s, const adcgs_chunk *chunk, adcg
     if (!chunk->complete && adcgs_type_layer(chunk->type) < 0)
         return ADCGS_OK;
     if (chunk->name[0] >= 'a' && chunk->header.version > 0)
-        return skip_payload(s, chunk);
+        return skip_unknown(s, chunk);
     return use_chunk(s, chunk, p);
 }
 
@@ -215,6 +223,8 @@ static adcgs_status end_early(stream_reader *s)
         return adcgs_fail(s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before the base layer of its first segment",
                           at);
     s->stream->truncated = 1;
+    adcgs_log_say(&s->options->log, ADCGS_LOG_WARNING, "stream: ends at byte %llu, before ENDC: %u segments are used",
+                  at, (unsigned)s->stream->n_segments);
     return ADCGS_OK;
 }
 
@@ -240,9 +250,7 @@ adcgs_status adcgs_stream_read(adcgs_stream *stream, adcgs_read_fn read, void *u
     s.nets.memory = options->memory;
     s.segment = (adcgs_segment){ .stream = stream, .options = options, .nets = &s.nets, .error = &why };
     adcgs_stream_init(stream);
-    adcgs_status status = read_all(&s);
-    if (status == ADCGS_ERR_MEMORY && why.status == ADCGS_ERR_LIMIT)
-        status = ADCGS_ERR_LIMIT; /* the caller's limit, not the machine's */
+    const adcgs_status status = read_all(&s);
     adcgs_segment_clear(&s.segment);
     adcgs_net_table_clear(&s.nets);
     adcgs_free(options->memory, s.head_payload);

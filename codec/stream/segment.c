@@ -224,7 +224,7 @@ adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer,
         return complete ? status : ADCGS_OK;
     slice *slices = adcgs_alloc(s->options->memory, n, sizeof *slices, s->error);
     if (!slices)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(s->error);
     status = use_slices(s, p, layer, first, slices, n, complete);
     adcgs_free(s->options->memory, slices);
     return status;
@@ -282,7 +282,7 @@ static adcgs_status append_model(adcgs_segment *s)
         const uint32_t capacity = s->capacity ? 2 * s->capacity : 1;
         adcgs_model *models = adcgs_alloc(s->options->memory, capacity, sizeof *models, s->error);
         if (!models)
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(s->error);
         if (stream->n_segments > 0)
             memcpy(models, stream->segments, stream->n_segments * sizeof *models);
         adcgs_free(s->options->memory, stream->segments);

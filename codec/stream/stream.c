@@ -76,6 +76,7 @@ void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
         .scene_scale = stream->scene_scale,
         .truncated = stream->truncated,
         .bytes = stream->bytes,
+        .metadata = (int)stream->n_meta,
     };
     for (int a = 0; a < 3; a++) {
         info->scene_origin[a] = stream->scene_origin[a];

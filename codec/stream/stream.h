@@ -6,10 +6,11 @@
 #ifndef ADCGS_STREAM_STREAM_H
 #define ADCGS_STREAM_STREAM_H
 
+#include "base/log.h"
 #include "model/latents.h"
 #include "model/model.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 typedef struct adcgs_meta {
     char *key, *value; /**< UTF-8, owned */
@@ -60,6 +61,7 @@ typedef struct adcgs_read_options {
     adcgs_cpu_level cpu;   /**< resolved */
     adcgs_pool *pool;      /**< may be NULL */
     adcgs_memory *memory;  /**< may be NULL */
+    adcgs_log log;
     int layers;            /**< 1..5, 0: all */
     int strict_end;
 } adcgs_read_options;

@@ -165,7 +165,7 @@ static adcgs_status write_layers(writer *w, uint32_t segment, const adcgs_latent
     adcgs_buffer_init(&l.data);
     l.bytes = adcgs_alloc(NULL, l.n_slices, sizeof *l.bytes, w->error);
     if (!l.bytes)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(w->error);
     for (int layer = 0; layer < adcgs_params_layers(&model->params) && status == ADCGS_OK; layer++) {
         l.data.size = 0;
         status = encode_slices(w, latents, model, layer, &l);
@@ -269,7 +269,7 @@ static adcgs_status write_at_level(adcgs_stream *stream, adcgs_buffer *out, adcg
     writer w = { .stream = stream, .out = out, .begin = out->size, .limits = adcgs_level_get(stream->level), .error = error };
     w.nets = adcgs_alloc(NULL, (size_t)stream->n_segments * ADCGS_ROLES, sizeof *w.nets, error);
     if (!w.nets)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     memset(&stream->bytes, 0, sizeof stream->bytes);
     adcgs_buffer_init(&w.index);
     const adcgs_status status = write_chunks(&w);

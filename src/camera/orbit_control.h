@@ -7,7 +7,7 @@
 #ifndef ADCGS_CAMERA_ORBIT_CONTROL_H
 #define ADCGS_CAMERA_ORBIT_CONTROL_H
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 typedef struct adcgs_play_rig {
     adcgs_camera camera; /**< at the size that its intrinsics are for */

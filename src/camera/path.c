@@ -7,6 +7,8 @@
 #include "camera/rotation.h"
 #include "cli/cli.h"
 
+#include <adcgs/decoder.h>
+
 #include <math.h>
 
 #define FULL_TURN 6.283185307179586
@@ -59,7 +61,7 @@ static adcgs_status find_stored(const adcgs_decoder *decoder, const adcgs_info *
 {
     int index;
     for (int i = 0; i < info->cameras; i++) {
-        ADCGS_TRY(adcgs_get_camera(decoder, i, camera));
+        ADCGS_TRY(adcgs_get_camera(decoder, i, camera, error));
         if (!strcmp(camera->name, wanted))
             return ADCGS_OK;
     }
@@ -68,7 +70,7 @@ static adcgs_status find_stored(const adcgs_decoder *decoder, const adcgs_info *
     if (adcgs_parse_int(wanted, 0, info->cameras - 1, &index))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: neither a stored camera's name nor an index from 0 to %d", wanted,
                           info->cameras - 1);
-    return adcgs_get_camera(decoder, index, camera);
+    return adcgs_get_camera(decoder, index, camera, error);
 }
 
 adcgs_status adcgs_shots_times(adcgs_shots *out, const adcgs_info *info, const adcgs_shots_request *request,
@@ -147,7 +149,7 @@ static adcgs_status make_from_camera(adcgs_shots *out, const adcgs_decoder *deco
     if (request->camera)
         ADCGS_TRY(find_stored(decoder, info, request->camera, &camera, error));
     else
-        ADCGS_TRY(adcgs_get_camera(decoder, 0, &camera));
+        ADCGS_TRY(adcgs_get_camera(decoder, 0, &camera, error));
     ADCGS_TRY(adcgs_shots_times(out, info, request, ADCGS_SHOTS_FIXED, error));
     for (int i = 0; i < out->n; i++)
         out->shot[i].camera = camera;
@@ -170,7 +172,7 @@ adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, co
 {
     adcgs_info info;
     *out = (adcgs_shots){0};
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     ADCGS_TRY(adcgs_shots_check_times(&info, request, error));
     const adcgs_status status = make_shots(out, decoder, &info, request, error);
     if (status != ADCGS_OK)

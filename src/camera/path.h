@@ -5,7 +5,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 typedef struct adcgs_shot {
     adcgs_camera camera;

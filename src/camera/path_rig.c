@@ -5,6 +5,8 @@
 #include "camera/rotation.h"
 #include "camera/spline.h"
 
+#include <adcgs/decoder.h>
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -53,7 +55,7 @@ adcgs_status adcgs_rig_init(adcgs_rig *rig, const adcgs_decoder *decoder, const 
     if (!info->cameras)
         adcgs_shots_default(&rig->cameras[0], info, up);
     for (int c = 0; c < info->cameras; c++) {
-        ADCGS_TRY(adcgs_get_camera(decoder, c, &rig->cameras[c]));
+        ADCGS_TRY(adcgs_get_camera(decoder, c, &rig->cameras[c], error));
         adcgs_camera_fit(&rig->cameras[c], rig->cameras[0].width, rig->cameras[0].height, 0);
     }
     memcpy(rig->focus, info->scene_origin, sizeof rig->focus);

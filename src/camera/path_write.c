@@ -7,6 +7,8 @@
 #include "io/atomic.h"
 #include "io/json.h"
 
+#include <adcgs/decoder.h>
+
 /** Camera-to-world in OpenGL axes, row by row. */
 static void write_matrix(adcgs_json *json, const double pose[12])
 {
@@ -41,12 +43,12 @@ adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *pa
     adcgs_info info;
     adcgs_atomic atomic;
     adcgs_json json;
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     if (!info.cameras)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the stream stores no cameras to write", path);
     ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
     adcgs_camera camera;
-    adcgs_status status = adcgs_get_camera(decoder, 0, &camera);
+    adcgs_status status = adcgs_get_camera(decoder, 0, &camera, error);
     const int size[2] = {camera.width, camera.height};
     adcgs_json_init(&json);
     json.digits = 17; /* a camera that is read again is the same */
@@ -57,7 +59,7 @@ adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *pa
     adcgs_json_int(&json, "h", size[1]);
     adcgs_json_open(&json, "keys", '[');
     for (int i = 0; i < info.cameras && status == ADCGS_OK; i++) {
-        status = adcgs_get_camera(decoder, i, &camera);
+        status = adcgs_get_camera(decoder, i, &camera, error);
         adcgs_camera_fit(&camera, size[0], size[1], 0); /* a path has one size */
         write_key(&json, &camera, i);
     }

@@ -10,7 +10,7 @@
 
 #include "camera/vector.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 /** Turn a vector by an angle in radians about an axis of length 1. */
 void adcgs_v3_turn(const double axis[3], double angle, double v[3]);

@@ -36,13 +36,35 @@ static void message(const adcgs_cli *cli, const char *format, va_list arguments)
     free(line);
 }
 
+int adcgs_exit_code(adcgs_status status)
+{
+    switch (status) {
+    case ADCGS_OK:
+        return 0;
+    case ADCGS_ERR_USAGE:
+        return 2;
+    case ADCGS_ERR_MEMORY:
+    case ADCGS_ERR_IO:
+        return 3;
+    case ADCGS_ERR_DATA:
+    case ADCGS_ERR_TRUNCATED:
+    case ADCGS_ERR_LIMIT:
+        return 4;
+    case ADCGS_ERR_UNSUPPORTED:
+    case ADCGS_ERR_FPENV:
+        return 5;
+    default:
+        return 1;
+    }
+}
+
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
     message(cli, format, arguments);
     va_end(arguments);
-    return adcgs_status_exit_code(status);
+    return adcgs_exit_code(status);
 }
 
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...)

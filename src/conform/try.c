@@ -8,6 +8,9 @@
 #include "stream/input.h"
 #include "stream/stream.h"
 
+#include <adcgs/decoder.h>
+#include <adcgs/frame.h>
+
 #include <stdarg.h>
 #include <stdlib.h>
 
@@ -97,12 +100,12 @@ static int parse_fits(const attempt *a, adcgs_pool *pool)
 static int models_fit(const attempt *a, const adcgs_decoder *decoder, const char models[][ADCGS_HEX], int n)
 {
     adcgs_info info;
-    if (adcgs_get_info(decoder, &info) != ADCGS_OK || info.segments != n)
+    if (adcgs_get_info(decoder, &info, sizeof info, NULL) != ADCGS_OK || info.segments != n)
         return wrong(a, "M: %d segments, expected %d", info.segments, n);
     for (int i = 0; i < n; i++) {
         uint8_t digest[16];
         char hex[ADCGS_HEX] = "";
-        if (adcgs_get_model_digest(decoder, i, digest) == ADCGS_OK)
+        if (adcgs_get_model_digest(decoder, i, digest, NULL) == ADCGS_OK)
             adcgs_md5_hex(digest, hex);
         if (strcmp(hex, models[i]))
             return wrong(a, "M: model %d is %s, expected %s", i, hex, models[i]);
@@ -114,7 +117,7 @@ static int splats_fit(const attempt *a, adcgs_decoder *decoder, int i, double ti
 {
     uint8_t digest[16];
     char hex[ADCGS_HEX] = "";
-    if (adcgs_get_splat_digest(decoder, time, digest) == ADCGS_OK)
+    if (adcgs_get_splat_digest(decoder, time, digest, NULL) == ADCGS_OK)
         adcgs_md5_hex(digest, hex);
     return strcmp(hex, md5) ? wrong(a, "S: splats %d are %s, expected %s", i, hex, md5) : 1;
 }
@@ -171,7 +174,7 @@ static int decode_fits(const attempt *a, int complete, const adcgs_fewer *fewer)
     adcgs_decoder *decoder = NULL;
     adcgs_error error = {ADCGS_OK, ""};
     adcgs_span input = input_of(a);
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.cpu = a->trial->cpu;
     config.threads = a->trial->threads;
     config.strict_end = complete;

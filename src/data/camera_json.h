@@ -11,7 +11,7 @@
 #include "data/lens.h"
 #include "io/fps.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 #include <jansson.h>
 

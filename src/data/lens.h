@@ -10,7 +10,7 @@
 
 #include "io/image.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 /**
  * The OpenCV model. A point at (x, y) = (X/Z, Y/Z) in OpenCV axes, r^2 = x^2 + y^2, is taken to

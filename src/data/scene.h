@@ -23,7 +23,7 @@
 #include "io/image.h"
 #include "io/points.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 typedef enum adcgs_split { ADCGS_SPLIT_TRAIN, ADCGS_SPLIT_VAL, ADCGS_SPLIT_TEST, ADCGS_SPLITS } adcgs_split;
 

@@ -9,7 +9,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 #define ADCGS_IMAGE_MAX 16384 /**< largest width and height */
 

@@ -10,6 +10,8 @@
 #include "io/video.h"
 #include "io/y4m.h"
 
+#include <adcgs/frame.h>
+
 #include <errno.h>
 #include <stdlib.h>
 #include <strings.h>

@@ -8,7 +8,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 typedef struct adcgs_sink adcgs_sink;
 

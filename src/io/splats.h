@@ -11,7 +11,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 #define ADCGS_SPLATS_DC 0.28209479177387814 /**< the spherical harmonic of degree 0: 1 / (2 sqrt(pi)) */
 #define ADCGS_SPLATS_MAX (1u << 24)

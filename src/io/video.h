@@ -10,7 +10,7 @@
 #include "io/image.h"
 #include "io/fps.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 typedef struct adcgs_video adcgs_video;
 

@@ -5,7 +5,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 #include <libavutil/frame.h>
 

@@ -11,7 +11,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/camera.h>
+#include <adcgs/types.h>
 
 #include <stdio.h>
 

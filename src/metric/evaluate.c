@@ -7,6 +7,9 @@
 #include "data/sort.h"
 #include "metric/metric.h"
 
+#include <adcgs/decoder.h>
+#include <adcgs/frame.h>
+
 #include <math.h>
 #include <stdlib.h>
 

@@ -9,7 +9,7 @@
 #include "data/scene.h"
 #include "metric/temporal.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 /** What to measure besides PSNR and SSIM; flags. */
 enum {

@@ -5,7 +5,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 typedef struct adcgs_play_settings {
     const char *path;            /**< of the stream: for messages, the title, and names of screenshots */

@@ -6,6 +6,9 @@
 
 #include "io/image.h"
 
+#include <adcgs/decoder.h>
+#include <adcgs/frame.h>
+
 #include <pthread.h>
 #include <stdlib.h>
 
@@ -78,7 +81,7 @@ static adcgs_status draw(adcgs_worker *w)
     const size_t samples = 3 * (size_t)camera->width * (size_t)camera->height;
     adcgs_info info;
     ADCGS_TRY(open_layers(w, r->job.layers, &r->error));
-    ADCGS_TRY(adcgs_get_info(w->decoder, &info));
+    ADCGS_TRY(adcgs_get_info(w->decoder, &info, sizeof info, &r->error));
     ADCGS_TRY(reserve(w, samples, &r->error));
     adcgs_frame frame = {.width = camera->width, .height = camera->height, .rgb = w->values};
     const double start = adcgs_seconds();

@@ -10,7 +10,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 #include <limits.h>
 

@@ -187,7 +187,7 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
     adcgs_sink *sink = NULL;
     adcgs_md5 all;
     double seconds = 0.0;
-    ADCGS_TRY(adcgs_get_info(from->decoder, &info));
+    ADCGS_TRY(adcgs_get_info(from->decoder, &info, sizeof info, error));
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; showing what is complete", s->input);
     ADCGS_TRY(adcgs_shots_make(&shots, from->decoder, &s->request, error));
@@ -331,7 +331,7 @@ int main(int argc, char **argv)
 {
     settings s = {0};
     adcgs_option options[OPTION_COUNT];
-    adcgs_config_init(&s.config);
+    adcgs_config_init(&s.config, sizeof s.config);
     make_options(&s, options);
     const adcgs_cli cli = {.program = "adcgs-dec",
                            .operands = "FILE|-",

@@ -46,9 +46,9 @@ static adcgs_status draw(const char *stream, const char *folder, const char *out
     adcgs_scene *scene = NULL;
     adcgs_info info;
     adcgs_evaluation evaluation;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     ADCGS_TRY(adcgs_open_file(&decoder, stream, &config, error));
-    adcgs_status status = adcgs_get_info(decoder, &info);
+    adcgs_status status = adcgs_get_info(decoder, &info, sizeof info, error);
     adcgs_scene_options options = {.has_background = 1, .rate = adcgs_fps_of(info.frame_rate)};
     memcpy(options.background, info.background, sizeof options.background);
     if (status == ADCGS_OK)

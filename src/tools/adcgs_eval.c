@@ -158,7 +158,7 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
     const settings *s = r->set;
     adcgs_info info;
     adcgs_scene *scene = NULL;
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     ADCGS_TRY(open_scene(&scene, s, &info, error));
     r->n = scene->n_views[s->split];
     r->out.bytes = info.bytes.total;
@@ -201,7 +201,7 @@ int main(int argc, char **argv)
 {
     settings s = {.split = ADCGS_SPLIT_TEST};
     adcgs_option options[OPTION_COUNT];
-    adcgs_config_init(&s.config);
+    adcgs_config_init(&s.config, sizeof s.config);
     make_options(&s, options);
     const adcgs_cli cli = {.program = "adcgs-eval",
                            .operands = "FILE SCENE",

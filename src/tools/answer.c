@@ -209,14 +209,14 @@ static adcgs_status answer_trace(const adcgs_requests *requests, const char *pat
     return ADCGS_OK;
 }
 
-static adcgs_status answer_model(adcgs_decoder *decoder)
+static adcgs_status answer_model(adcgs_decoder *decoder, adcgs_error *error)
 {
     adcgs_info info;
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     for (int i = 0; i < info.segments; i++) {
         uint8_t digest[16];
         char hex[33];
-        ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest));
+        ADCGS_TRY(adcgs_get_model_digest(decoder, i, digest, error));
         adcgs_md5_hex(digest, hex);
         printf("model %d %s\n", i, hex);
     }
@@ -227,9 +227,7 @@ static adcgs_status answer_splats(const adcgs_request *q, adcgs_decoder *decoder
 {
     uint8_t digest[16];
     char hex[33];
-    const adcgs_status status = adcgs_get_splat_digest(decoder, q->time, digest);
-    if (status != ADCGS_OK)
-        return adcgs_fail(error, status, "splats at %s: %s", q->text, adcgs_status_name(status));
+    ADCGS_TRY(adcgs_get_splat_digest(decoder, q->time, digest, error));
     adcgs_md5_hex(digest, hex);
     printf("splats %s %s\n", q->text, hex);
     return ADCGS_OK;
@@ -268,7 +266,7 @@ adcgs_status adcgs_requests_answer(const adcgs_requests *requests, const char *p
         if (q->kind == ADCGS_REQUEST_TRACE)
             status = answer_trace(requests, path, error);
         else if (q->kind == ADCGS_REQUEST_MODEL)
-            status = answer_model(decoder);
+            status = answer_model(decoder, error);
         else if (q->kind == ADCGS_REQUEST_SPLATS)
             status = answer_splats(q, decoder, error);
         else

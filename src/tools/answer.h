@@ -8,7 +8,7 @@
 
 #include "base/base.h"
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 typedef enum adcgs_request_kind {
     ADCGS_REQUEST_TRACE,

@@ -4,6 +4,8 @@
 
 #include "tools/canvas.h"
 
+#include <adcgs/decoder.h>
+
 #include <stdlib.h>
 
 static adcgs_status allocate(float **floats, const int size[2], size_t each, adcgs_error *error)

@@ -12,6 +12,8 @@
 #include "io/file.h"
 #include "play/play.h"
 
+#include <adcgs/decoder.h>
+
 #define STREAM_BYTES_MAX ((uint64_t)1 << 32) /* the player keeps them, to open the stream with other layers */
 
 /** What the player must know of the stream. The cameras are the caller's to free. */
@@ -21,13 +23,13 @@ static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder
     adcgs_info *const info = &settings->info;
     adcgs_shots_request request = how->request;
     adcgs_shots shots;
-    ADCGS_TRY(adcgs_get_info(decoder, info));
+    ADCGS_TRY(adcgs_get_info(decoder, info, sizeof *info, error));
     ADCGS_TRY(adcgs_shots_check_times(info, &request, error));
     *cameras = calloc((size_t)info->cameras + 1, sizeof **cameras);
     if (!*cameras)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %d cameras", how->input, info->cameras);
     for (int i = 0; i < info->cameras; i++)
-        ADCGS_TRY(adcgs_get_camera(decoder, i, &(*cameras)[i]));
+        ADCGS_TRY(adcgs_get_camera(decoder, i, &(*cameras)[i], error));
     /* Where to begin is the first of one shot; the window keeps its shape, so it is not stretched to a size. */
     request.has_times = 1;
     request.begin = request.end = info->time_start;

@@ -7,6 +7,8 @@
 #include "io/sink.h"
 #include "io/splats.h"
 
+#include <adcgs/decoder.h>
+
 #include <stdlib.h>
 
 static adcgs_status check_target(const char *target, int has_many, adcgs_error *error)
@@ -28,9 +30,7 @@ static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcg
     adcgs_primitives primitives;
     adcgs_splats splats;
     char comment[128];
-    const adcgs_status got = adcgs_get_primitives(decoder, time, &primitives);
-    if (got != ADCGS_OK)
-        return adcgs_fail(error, got, "%s: no splats at %g s: out of memory", path, time);
+    ADCGS_TRY(adcgs_get_primitives(decoder, time, &primitives, error));
     ADCGS_TRY(adcgs_splats_take(&splats, &primitives, info->scene_origin, info->scene_scale, path, error));
     snprintf(comment, sizeof comment, "adcgs %s, time %.9g s", PACKAGE_VERSION, time);
     const adcgs_status status = adcgs_splats_write(&splats, comment, path, error);
@@ -62,7 +62,7 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
     adcgs_shots shots;
     uint32_t n = 0;
     adcgs_shots_request moments = {.has_times = 1, .begin = request->begin, .end = request->end};
-    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     if (!request->has_times) {
         moments.begin = info.time_start;
         moments.end = adcgs_pattern_places(target) == 0 ? info.time_start : info.time_end;

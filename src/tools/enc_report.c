@@ -6,6 +6,8 @@
 #include "io/json.h"
 #include "metric/evaluate.h"
 
+#include <adcgs/decoder.h>
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -163,7 +165,7 @@ static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_rep
     const adcgs_scene *scene = r->trainer->scene;
     x->split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
                scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
-    ADCGS_TRY(adcgs_get_info(decoder, &x->info));
+    ADCGS_TRY(adcgs_get_info(decoder, &x->info, sizeof x->info, error));
     ADCGS_TRY(evaluate(&x->quality, cli, decoder, scene, x->split, error));
     return judge(cli, &x->target, r, &x->info, decoder, error);
 }
@@ -180,7 +182,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     adcgs_config config;
     adcgs_decoder *decoder;
     result x;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.threads = r->threads;
     config.cpu = r->trainer->cpu;
     ADCGS_TRY(adcgs_open_file(&decoder, r->file, &config, error));

@@ -7,6 +7,8 @@
 
 #include "tools/eval_match.h"
 
+#include <adcgs/decoder.h>
+
 #include <math.h>
 
 #define PLACE_WITHIN 1e-3 /* scene units, and elements of rotations: streams keep poses in binary32, scenes in decimal digits */
@@ -45,7 +47,7 @@ static void match_cameras(const adcgs_match *m, const adcgs_info *info)
     int n[3] = {0, 0, 0};
     adcgs_camera camera;
     for (int i = 0; i < info->cameras; i++)
-        if (adcgs_get_camera(m->decoder, i, &camera) == ADCGS_OK)
+        if (adcgs_get_camera(m->decoder, i, &camera, NULL) == ADCGS_OK)
             n[find_camera(&camera, m->scene, info->scene_scale)]++;
     if (2 * n[0] > info->cameras)
         adcgs_cli_note(m->cli, "%s: %d of its %d cameras are none of %s: was it made of another scene?", m->file, n[0],
@@ -70,7 +72,7 @@ static uint32_t count_outside(const adcgs_match *m, const adcgs_info *info)
 adcgs_status adcgs_match_check(const adcgs_match *m, adcgs_error *error)
 {
     adcgs_info info;
-    ADCGS_TRY(adcgs_get_info(m->decoder, &info));
+    ADCGS_TRY(adcgs_get_info(m->decoder, &info, sizeof info, error));
     const uint32_t outside = count_outside(m, &info);
     if (outside && outside == m->scene->n_views[m->split])
         return adcgs_fail(error, ADCGS_ERR_DATA,
@@ -83,7 +85,7 @@ adcgs_status adcgs_match_check(const adcgs_match *m, adcgs_error *error)
 void adcgs_match_say(const adcgs_match *m, const adcgs_evaluation *evaluation)
 {
     adcgs_info info;
-    if (adcgs_get_info(m->decoder, &info) != ADCGS_OK)
+    if (adcgs_get_info(m->decoder, &info, sizeof info, NULL) != ADCGS_OK)
         return;
     const uint32_t outside = count_outside(m, &info);
     if (outside)

@@ -3,7 +3,7 @@
 #ifndef ADCGS_TRAIN_RATE_STATE_H
 #define ADCGS_TRAIN_RATE_STATE_H
 
-#include <adcgs/decoder.h>
+#include <adcgs/types.h>
 
 struct adcgs_trainer;
 

@@ -8,6 +8,8 @@
 #include "train/settings.h"
 #include "train/trainer.h"
 
+#include <adcgs/decoder.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -111,7 +113,7 @@ static void splats_alone(void *arg)
     player *p = arg;
     adcgs_primitives primitives;
     p->next = (p->next + 1) % FRAMES;
-    bench_check(adcgs_get_primitives(p->decoder, p->length * p->next / FRAMES, &primitives), NULL);
+    bench_check(adcgs_get_primitives(p->decoder, p->length * p->next / FRAMES, &primitives, NULL), NULL);
 }
 
 static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_place place)
@@ -119,12 +121,12 @@ static void decode_and_play(const bench *b, const adcgs_buffer *stream, bench_pl
     for (int threads = 1; threads <= b->threads; threads = bench_more_threads(b, threads)) {
         player p = { .stream = stream };
         adcgs_info info;
-        adcgs_config_init(&p.config);
+        adcgs_config_init(&p.config, sizeof p.config);
         p.config.threads = threads;
         p.config.cpu = b->level;
         open_stream(&p);
-        bench_check(adcgs_get_info(p.decoder, &info), NULL);
-        bench_check(adcgs_get_camera(p.decoder, 0, &p.camera), NULL);
+        bench_check(adcgs_get_info(p.decoder, &info, sizeof info, NULL), NULL);
+        bench_check(adcgs_get_camera(p.decoder, 0, &p.camera, NULL), NULL);
         p.length = info.time_end - info.time_start;
         p.frame = (adcgs_frame){ .width = p.camera.width, .height = p.camera.height,
                                  .rgb = bench_floats(3 * (size_t)p.camera.width * (size_t)p.camera.height) };

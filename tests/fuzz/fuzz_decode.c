@@ -40,7 +40,7 @@ static adcgs_camera any_camera(const adcgs_decoder *d, int stored)
     adcgs_camera camera = { .fx = 20, .fy = 20, .cx = 10, .cy = 6, .near_plane = 0.01,
                             .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 } };
     if (stored)
-        (void)adcgs_get_camera(d, 0, &camera);
+        (void)adcgs_get_camera(d, 0, &camera, NULL);
     camera.width = WIDTH;
     camera.height = HEIGHT;
     return camera;
@@ -51,25 +51,28 @@ static uint32_t ask(adcgs_decoder *d, int stored_camera)
 {
     adcgs_info info;
     adcgs_primitives primitives;
-    uint8_t digest[16], bytes[WIDTH * HEIGHT * 3];
+    uint8_t digest[16], bytes[WIDTH * HEIGHT * 3], rgba[WIDTH * HEIGHT * 4];
     float rgb[WIDTH * HEIGHT * 3];
     uint32_t crc = 0;
-    FUZZ_REQUIRE(adcgs_get_info(d, &info) == ADCGS_OK);
+    FUZZ_REQUIRE(adcgs_get_info(d, &info, sizeof info, NULL) == ADCGS_OK);
     FUZZ_REQUIRE(info.segments >= 1 && info.layers >= 1 && info.frame_rate > 0 && info.scene_scale > 0);
-    (void)adcgs_get_metadata(d, "title");
+    for (int i = 0; i < info.metadata; i++)
+        FUZZ_REQUIRE(adcgs_get_metadata(d, adcgs_get_metadata_key(d, i)) != NULL);
     for (int i = 0; i < info.segments; i++) {
-        FUZZ_REQUIRE(adcgs_get_model_digest(d, i, digest) == ADCGS_OK);
+        FUZZ_REQUIRE(adcgs_get_model_digest(d, i, digest, NULL) == ADCGS_OK);
         crc = adcgs_crc32c(crc, digest, sizeof digest);
     }
     const adcgs_camera camera = any_camera(d, stored_camera);
     for (int i = 0; i < 2; i++) {
         const double time = i ? info.time_end : info.time_start;
         adcgs_frame frame = { WIDTH, HEIGHT, rgb };
-        if (adcgs_get_primitives(d, time, &primitives) != ADCGS_OK || adcgs_render(d, &camera, time, &frame, NULL) != ADCGS_OK)
+        if (adcgs_get_primitives(d, time, &primitives, NULL) != ADCGS_OK ||
+            adcgs_render(d, &camera, time, &frame, NULL) != ADCGS_OK)
             continue;
         for (size_t p = 0; p < ADCGS_COUNTOF(rgb); p++)
             FUZZ_REQUIRE(rgb[p] - rgb[p] == 0); /* finite */
         adcgs_frame_to_u8(&frame, bytes);
+        FUZZ_REQUIRE(adcgs_render_rgba8(d, &camera, time, ADCGS_ALPHA_STRAIGHT, rgba, 4 * WIDTH, NULL) != ADCGS_ERR_USAGE);
         crc = adcgs_crc32c(adcgs_crc32c(crc, rgb, sizeof rgb), bytes, sizeof bytes);
     }
     return crc;
@@ -103,7 +106,7 @@ static void decode_both(uint8_t *stream, size_t size, const uint8_t choice[8])
     static const size_t steps[] = { SIZE_MAX, 1, 7, 4096 };
     uint32_t crc = 0, again = 0;
     adcgs_config config;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.threads = 1 + (choice[1] % 8 == 0);
     config.cpu = (adcgs_cpu_level)(choice[2] % (adcgs_cpu_best() + 1));
     config.layers = choice[3] % 8 < 6 ? 0 : choice[3] % 6;

@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# configure --disable-encoder: the library, adcgs-dec and adcgs-info build with a C compiler and nothing else.
+# configure --disable-encoder: the library, adcgs-dec and adcgs-info build with a C compiler and nothing else. The linker is taken
+# for one that cannot version symbols: the library exports the same names then.
 set -u
 source=$(cd "${srcdir:-.}" && pwd) || exit 99
 # A tree that is configured in place cannot be configured elsewhere too.
@@ -16,7 +17,7 @@ fail()
     exit 1
 }
 
-"$source/configure" --disable-encoder --disable-static CXX=false PKG_CONFIG=false CFLAGS=-O0 >log 2>&1 || fail "configure"
+"$source/configure" --disable-encoder --disable-static CXX=false PKG_CONFIG=false CFLAGS=-O0 adcgs_cv_version_script=no >log 2>&1 || fail "configure"
 make -j2 >log 2>&1 || fail "make"
 for program in adcgs-dec adcgs-info; do
     ./$program --version >log 2>&1 || fail "$program --version"
@@ -24,4 +25,9 @@ done
 for program in adcgs-enc adcgs-eval; do
     [ ! -e $program ] || fail "$program was built"
 done
+if command -v nm >/dev/null; then
+    nm -D --defined-only .libs/libadcgs.so | awk '{ print $3 }' | sort >exported
+    sed -n 's/^ *\(adcgs_[a-z0-9_]*\);$/\1/p' "$source/codec/api/libadcgs.map" | sort | diff - exported >log ||
+        fail "recorded (<) and exported (>) without versions differ"
+fi
 exit 0

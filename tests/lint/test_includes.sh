@@ -30,6 +30,19 @@ codec="base bits geom net model splat render stream api"
 check codec "" $codec
 check src "$codec" cli io data camera layouts metric scenes grad fmodel train encode play sweep conform tools
 
+# Of the installed headers, those of the roof (decoder.h, frame.h, adcgs.h) are for codec/api; below it there are types, and what
+# base itself offers.
+if grep -nE '^ *# *include *<adcgs/' codec/{base,bits,geom,net,model,splat,render,stream}/*.[ch] |
+    grep -v -E 'include <adcgs/(status|types|version|cpu|pool)\.h>' >&2; then
+    echo "a room below the roof includes its headers" >&2
+    faults=$((faults + 1))
+fi
+if grep -n '^ *# *include <adcgs/' codec/include/adcgs/{status,types,version,cpu,pool}.h |
+    grep -v -E 'include <adcgs/(status|types)\.h>' >&2; then
+    echo "an installed header of the ground includes more than types.h and status.h" >&2
+    faults=$((faults + 1))
+fi
+
 # The installed headers stand alone.
 if grep -n '^ *# *include' codec/include/adcgs/*.h | grep -v -E 'include <(adcgs/[a-z]+|stddef|stdint)\.h>' >&2; then
     faults=$((faults + 1))

@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# libadcgs is a pure C library: it needs the C library, its mathematics and threads, and exports what its headers declare.
+# libadcgs is a pure C library: it needs the C library, its mathematics and threads, and exports what its headers declare and the
+# list in the tree records, each symbol with the version that brought it.
 set -u
 library=.libs/libadcgs.so
 [ -f "$library" ] || exit 77
@@ -16,10 +17,33 @@ fi
 
 headers="${srcdir:-.}/codec/include/adcgs"
 declared=$(cat "$headers"/*.h | tr '\n' ' ' | grep -o 'ADCGS_API [^;#]*adcgs_[a-z0-9_]*(' | sed 's/.*[ *]\(adcgs_[a-z0-9_]*\)($/\1/' | sort -u)
-exported=$(nm -D --defined-only "$library" | awk '{ print $3 }' | sed 's/@.*//' | sort -u)
-if [ "$declared" != "$exported" ]; then
-    echo "declared (<) and exported (>) differ:" >&2
-    diff <(echo "$declared") <(echo "$exported") >&2
+exported=$(nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | sed 's/@.*//' | sort -u)
+
+# compare WHAT LIST LIST
+compare()
+{
+    [ "$2" = "$3" ] && return
+    echo "$1 differ:" >&2
+    diff <(echo "$2") <(echo "$3") >&2
+    faults=1
+}
+
+# The recorded list: "name version" lines from the linker's script; without versions where the linker knows none.
+map="${srcdir:-.}/codec/api/libadcgs.map"
+recorded=$(sed -n -e 's/^\(ADCGS_[0-9.]*\) {$/\1/p' -e 's/^ *\(adcgs_[a-z0-9_]*\);$/\1/p' "$map" |
+    awk '/^ADCGS_/ { version = $1; next } { print $1, version }' | sort -u)
+versions=$(nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | sed -n 's/@@*/ /p' | sort -u)
+compare "declared (<) and exported (>)" "$declared" "$exported"
+compare "recorded (<) and declared (>)" "$(cut -d' ' -f1 <<<"$recorded" | sort -u)" "$declared"
+if grep -q '^[^#].*version-script=' Makefile; then
+    compare "recorded (<) and exported (>), with versions," "$recorded" "$versions"
+else
+    echo "symbols have no versions here"
+fi
+
+# Nothing of the programs: what they exit with, how they parse, what they print.
+if grep -n -i -E 'exit.?code|getopt|argv|stdio\.h|adcgs_cli|ADCGS_PRINTF' "$headers"/*.h >&2; then
+    echo "the installed headers hold what is the programs'" >&2
     faults=1
 fi
 

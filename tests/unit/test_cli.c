@@ -15,6 +15,14 @@
 
 #include <cmocka.h>
 
+static void test_exit_codes(void **state)
+{
+    static const int exits[] = {0, 2, 3, 3, 4, 4, 5, 4, 5, 1};
+    for (size_t i = 0; i < ADCGS_COUNTOF(exits); i++)
+        assert_int_equal(adcgs_exit_code((adcgs_status)-(int)i), exits[i]);
+    assert_int_equal(adcgs_exit_code((adcgs_status)7), 1);
+}
+
 static void test_numbers(void **state)
 {
     int i = -7, pair[2];
@@ -306,7 +314,7 @@ static void test_json_failures(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_numbers), cmocka_unit_test(test_options),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_exit_codes), cmocka_unit_test(test_numbers), cmocka_unit_test(test_options),
                                        cmocka_unit_test(test_mistakes), cmocka_unit_test(test_progress),
                                        cmocka_unit_test(test_utf8),
                                        cmocka_unit_test(test_shown), cmocka_unit_test(test_json),

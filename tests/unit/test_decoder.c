@@ -2,68 +2,15 @@
 /** \file The public decoder: every source gives the same, segments are chosen by time, frames do not depend on threads or CPU. */
 #include "config.h"
 
-#include "random_model.h"
+#include "decoder_fixture.h"
 
 #include "base/digest.h"
 #include "render/render.h"
 #include "splat/splat.h"
 
-#include <adcgs/adcgs.h>
-
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
-
-#include <cmocka.h>
-
-typedef struct fixture {
-    adcgs_stream stream;
-    adcgs_buffer bytes;
-} fixture;
-
-static int setup(void **state)
-{
-    fixture *f = calloc(1, sizeof *f);
-    adcgs_params params;
-    uint64_t seed = 11;
-    adcgs_random_params(&params, 1, &seed);
-    params.k = 4;
-    params.n_fg = 4;
-    params.chunks = 2;
-    adcgs_buffer_init(&f->bytes);
-    if (adcgs_random_stream(&f->stream, &params, 3, 90, 5, &seed, NULL) != ADCGS_OK)
-        return -1;
-    f->stream.colour_space = 1;
-    f->stream.axes = 2;
-    f->stream.units = 1;
-    f->stream.scene_scale = 2.5;
-    f->stream.scene_origin[1] = 0.75;
-    f->stream.background[0] = 0.5f;
-    *state = f;
-    return adcgs_stream_write(&f->stream, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    fixture *f = *state;
-    adcgs_stream_clear(&f->stream, NULL);
-    adcgs_buffer_clear(&f->bytes);
-    free(f);
-    return 0;
-}
-
-static adcgs_decoder *open_with(const fixture *f, const adcgs_config *config)
-{
-    adcgs_decoder *d = NULL;
-    adcgs_error error = { ADCGS_OK, "" };
-    if (adcgs_open_memory(&d, f->bytes.data, f->bytes.size, config, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-    assert_non_null(d);
-    return d;
-}
 
 /* REQ-LATN-009 */
 static void test_info(void **state)
@@ -73,7 +20,7 @@ static void test_info(void **state)
     adcgs_info info;
     adcgs_camera camera;
     uint8_t expected[16], found[16];
-    assert_int_equal(adcgs_get_info(d, &info), ADCGS_OK);
+    assert_int_equal(adcgs_get_info(d, &info, sizeof info, NULL), ADCGS_OK);
     assert_int_equal(info.segments, 3);
     assert_int_equal(info.anchors, 270);
     assert_int_equal(info.k, 4);
@@ -85,16 +32,16 @@ static void test_info(void **state)
     assert_string_equal(info.colour, "sRGB");
     assert_string_equal(info.axes, "right-handed, z up");
     assert_string_equal(info.units, "metre");
-    assert_int_equal(adcgs_get_camera(d, info.cameras, &camera), ADCGS_ERR_USAGE);
-    assert_int_equal(adcgs_get_camera(d, -1, &camera), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_get_camera(d, info.cameras, &camera, NULL), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_get_camera(d, -1, &camera, NULL), ADCGS_ERR_USAGE);
     assert_string_equal(adcgs_get_metadata(d, "key1"), f->stream.meta[1].value);
     assert_null(adcgs_get_metadata(d, "nothing"));
     for (int i = 0; i < 3; i++) {
         adcgs_model_digest(&f->stream.segments[i], expected);
-        assert_int_equal(adcgs_get_model_digest(d, i, found), ADCGS_OK);
+        assert_int_equal(adcgs_get_model_digest(d, i, found, NULL), ADCGS_OK);
         assert_memory_equal(expected, found, 16);
     }
-    assert_int_equal(adcgs_get_model_digest(d, 3, found), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_get_model_digest(d, 3, found, NULL), ADCGS_ERR_USAGE);
     adcgs_close(&d);
     assert_null(d);
     adcgs_close(&d);
@@ -114,7 +61,7 @@ static void test_sources(void **state)
     assert_int_equal(fwrite(f->bytes.data, 1, f->bytes.size, file), f->bytes.size);
     assert_int_equal(fclose(file), 0);
     assert_int_equal(adcgs_open_file(&d, path, NULL, &error), ADCGS_OK);
-    adcgs_get_model_digest(d, 2, a);
+    adcgs_get_model_digest(d, 2, a, &error);
     adcgs_model_digest(&f->stream.segments[2], b);
     assert_memory_equal(a, b, 16);
     adcgs_close(&d);
@@ -139,27 +86,27 @@ static void test_config(void **state)
     adcgs_decoder *d = NULL;
     adcgs_error error;
     adcgs_info info;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.threads = 257;
     assert_int_equal(adcgs_open_memory(&d, f->bytes.data, f->bytes.size, &config, &error), ADCGS_ERR_USAGE);
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.size = 3;
     assert_int_equal(adcgs_open_memory(&d, f->bytes.data, f->bytes.size, &config, &error), ADCGS_ERR_USAGE);
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.memory_limit = 10000;
     assert_int_equal(adcgs_open_memory(&d, f->bytes.data, f->bytes.size, &config, &error), ADCGS_ERR_LIMIT);
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.layers = 1;
     d = open_with(f, &config);
-    adcgs_get_info(d, &info);
+    adcgs_get_info(d, &info, sizeof info, &error);
     assert_int_equal(info.layers, 1);
     adcgs_close(&d);
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.strict_end = 1;
     assert_int_equal(adcgs_open_memory(&d, f->bytes.data, f->bytes.size - 1, &config, &error), ADCGS_ERR_TRUNCATED);
     config.strict_end = 0;
     assert_int_equal(adcgs_open_memory(&d, f->bytes.data, f->bytes.size - 1, &config, &error), ADCGS_OK);
-    adcgs_get_info(d, &info);
+    adcgs_get_info(d, &info, sizeof info, &error);
     assert_true(info.truncated && info.segments == 3);
     adcgs_close(&d);
 }
@@ -174,13 +121,13 @@ static void test_segments_by_time(void **state)
     };
     const int expected[] = { 0, 0, 0, 1, 1, 2, 2, 0 };
     adcgs_config config;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     for (config.layers = 0; config.layers < 2; config.layers++) {
         adcgs_decoder *d = open_with(f, &config);
         for (size_t i = 0; i < ADCGS_COUNTOF(times); i++) {
             const adcgs_model *m = &f->stream.segments[expected[i]];
             adcgs_primitives p;
-            assert_int_equal(adcgs_get_primitives(d, times[i], &p), ADCGS_OK);
+            assert_int_equal(adcgs_get_primitives(d, times[i], &p, NULL), ADCGS_OK);
             assert_int_equal(p.n, (m->n + 63) / 64 * 64 * 4);
             for (uint32_t j = 0; j < m->n; j++) /* masks tell the segments apart */
                 for (uint32_t k = 0; k < 4; k++)
@@ -206,8 +153,8 @@ static void test_digests(void **state)
     uint8_t found[3][16], expected[16];
     adcgs_md5 md5;
     for (size_t i = 0; i < 3; i++) {
-        assert_int_equal(adcgs_get_splat_digest(d, times[i], found[i]), ADCGS_OK);
-        assert_int_equal(adcgs_get_primitives(d, times[i], &p), ADCGS_OK);
+        assert_int_equal(adcgs_get_splat_digest(d, times[i], found[i], NULL), ADCGS_OK);
+        assert_int_equal(adcgs_get_primitives(d, times[i], &p, NULL), ADCGS_OK);
         adcgs_splat_digest(i ? m : &f->stream.segments[0], &p, expected);
         assert_memory_equal(found[i], expected, 16);
         for (size_t j = 0; j < i; j++)
@@ -225,9 +172,7 @@ static void test_digests(void **state)
 static void test_frames(void **state)
 {
     const fixture *f = *state;
-    adcgs_camera camera = { .width = 61, .height = 47, .fx = 60, .fy = 60, .cx = 30, .cy = 23, .near_plane = 0.1,
-                            .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0.75, 0, 0, 1, -9 } };
-    const size_t n = 3U * 61 * 47;
+    const size_t n = 3 * FIXTURE_PIXELS;
     float *first = malloc(n * sizeof *first), *other = malloc(n * sizeof *other);
     uint8_t *bytes = malloc(n);
     adcgs_error error = { ADCGS_OK, "" };
@@ -235,24 +180,24 @@ static void test_frames(void **state)
     for (int threads = 1; threads <= 7; threads += 3)
         for (int cpu = ADCGS_CPU_SCALAR; cpu <= (int)adcgs_cpu_best(); cpu++) {
             adcgs_config config;
-            adcgs_config_init(&config);
+            adcgs_config_init(&config, sizeof config);
             config.threads = threads;
             config.cpu = (adcgs_cpu_level)cpu;
             adcgs_decoder *d = open_with(f, &config);
-            adcgs_frame frame = { 61, 47, threads == 1 && cpu == 1 ? first : other };
-            if (adcgs_render(d, &camera, 0.045, &frame, &error) != ADCGS_OK)
+            adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, threads == 1 && cpu == 1 ? first : other };
+            if (adcgs_render(d, &fixture_camera, 0.045, &frame, &error) != ADCGS_OK)
                 fail_msg("%s", error.text);
             if (frame.rgb == other)
                 assert_memory_equal(first, other, n * sizeof *first);
             frame.width = 60;
-            assert_int_equal(adcgs_render(d, &camera, 0.045, &frame, &error), ADCGS_ERR_USAGE);
+            assert_int_equal(adcgs_render(d, &fixture_camera, 0.045, &frame, &error), ADCGS_ERR_USAGE);
             adcgs_close(&d);
         }
     size_t drawn = 0;
     for (size_t i = 0; i < n; i += 3)
         drawn += first[i] != 0.5f;
     assert_true(drawn > 50);
-    const adcgs_frame frame = { 61, 47, first };
+    const adcgs_frame frame = { FIXTURE_WIDTH, FIXTURE_HEIGHT, first };
     first[0] = -1;
     first[1] = 2;
     first[2] = 0.5f;

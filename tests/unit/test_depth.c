@@ -10,6 +10,8 @@
 #include "tools/canvas.h"
 #include "unit/pixels_reference.h"
 
+#include <adcgs/decoder.h>
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -173,7 +175,7 @@ static void test_decoder(void **state)
             adcgs_config config;
             adcgs_primitives primitives;
             adcgs_frame frame = {WIDTH, HEIGHT, rgb};
-            adcgs_config_init(&config);
+            adcgs_config_init(&config, sizeof config);
             config.threads = threads;
             config.cpu = (adcgs_cpu_level)cpu;
             assert_int_equal(adcgs_open_memory(&d, bytes.data, bytes.size, &config, &error), ADCGS_OK);
@@ -190,7 +192,7 @@ static void test_decoder(void **state)
             frame.rgb = again;
             assert_int_equal(adcgs_render(d, &eye, 0.01, &frame, &error), ADCGS_OK);
             assert_memory_equal(again, rgb, sizeof rgb);
-            assert_int_equal(adcgs_get_primitives(d, 0.01, &primitives), ADCGS_OK);
+            assert_int_equal(adcgs_get_primitives(d, 0.01, &primitives, &error), ADCGS_OK);
             if (first)
                 check_depth(&stream, &primitives, depth, alpha);
             check_nothing(d, &stream);
@@ -217,7 +219,7 @@ static void test_canvas(void **state)
     adcgs_frame frame = {WIDTH, HEIGHT, rgb};
     make_stream(&stream, &bytes, 2); /* few splats let light through */
     assert_int_equal(adcgs_open_memory(&d, bytes.data, bytes.size, NULL, NULL), ADCGS_OK);
-    assert_int_equal(adcgs_get_info(d, &info), ADCGS_OK);
+    assert_int_equal(adcgs_get_info(d, &info, sizeof info, NULL), ADCGS_OK);
     assert_int_equal(adcgs_render(d, &eye, 0.01, &frame, NULL), ADCGS_OK);
     assert_int_equal(adcgs_canvas_init(&canvas, size, &info, 1, 0, 0, NULL), ADCGS_OK);
     assert_int_equal(adcgs_render(d, &eye, 0.01, &canvas.frame, NULL), ADCGS_OK);

@@ -418,17 +418,20 @@ static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
     static const adcgs_camera camera = { .width = 33, .height = 20, .fx = 30, .fy = 30, .cx = 16, .cy = 10, .near_plane = 0.01,
                                          .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4 } };
     float rgb[33 * 20 * 3];
+    uint8_t pixels[33 * 20 * 4];
     adcgs_frame frame = { 33, 20, rgb };
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_config config;
     adcgs_decoder *d = NULL;
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.threads = threads;
     const long before = atomic_load(&blocks);
     atomic_store(&left, n);
     adcgs_status status = adcgs_open_memory(&d, bytes->data, bytes->size, &config, &error);
     if (status == ADCGS_OK)
         status = adcgs_render(d, &camera, 0, &frame, &error);
+    if (status == ADCGS_OK)
+        status = adcgs_render_rgba8(d, &camera, 0, ADCGS_ALPHA_PREMULTIPLIED, pixels, 4 * 33, &error);
     const int failed = atomic_load(&left) < 0;
     atomic_store(&left, -1);
     if (status != (failed ? ADCGS_ERR_MEMORY : ADCGS_OK))

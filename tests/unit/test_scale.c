@@ -12,6 +12,8 @@
 #include "train/initialise.h"
 
 #include <jansson.h>
+#include <adcgs/decoder.h>
+
 #include <math.h>
 
 /** What a short run in some units comes to. */
@@ -59,7 +61,7 @@ static double decoded_psnr(const adcgs_trainer *t, const adcgs_scene *scaled)
     assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
     if (adcgs_encode_verified(&stream, &bytes, t->cpu, pool, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
-    adcgs_config_init(&config);
+    adcgs_config_init(&config, sizeof config);
     config.cpu = t->cpu;
     assert_int_equal(adcgs_open_memory(&decoder, bytes.data, bytes.size, &config, &error), ADCGS_OK);
     assert_int_equal(adcgs_evaluate(&e, decoder, scaled, ADCGS_SPLIT_TEST, 0, NULL, NULL, &error), ADCGS_OK);

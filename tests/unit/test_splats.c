@@ -271,7 +271,7 @@ static int open_stream(void **state)
     *state = f;
     const int failed = adcgs_stream_write(&f->stream, &bytes, &error) != ADCGS_OK ||
                        adcgs_open_memory(&f->decoder, bytes.data, bytes.size, NULL, &error) != ADCGS_OK ||
-                       adcgs_get_info(f->decoder, &f->info) != ADCGS_OK;
+                       adcgs_get_info(f->decoder, &f->info, sizeof f->info, NULL) != ADCGS_OK;
     adcgs_buffer_clear(&bytes);
     return failed;
 }
@@ -291,7 +291,7 @@ static void test_take(void **state)
     const fixture *f = *state;
     adcgs_primitives p;
     adcgs_splats s;
-    assert_int_equal(adcgs_get_primitives(f->decoder, 0.5 * f->info.time_end, &p), ADCGS_OK);
+    assert_int_equal(adcgs_get_primitives(f->decoder, 0.5 * f->info.time_end, &p, NULL), ADCGS_OK);
     expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, "taken", &error));
     uint32_t n = 0;
     for (uint32_t i = 0; i < p.n; i++) {
@@ -323,7 +323,7 @@ static void test_points(void **state)
     adcgs_points points;
     adcgs_primitives p;
     expect_good(adcgs_info_points(&points, &f->stream, "points", &error));
-    assert_int_equal(adcgs_get_primitives(f->decoder, middle, &p), ADCGS_OK);
+    assert_int_equal(adcgs_get_primitives(f->decoder, middle, &p, NULL), ADCGS_OK);
     assert_int_equal(points.n, m->n);
     uint32_t grey = 0;
     for (uint32_t i = 0; i < m->n; i++) {
@@ -411,7 +411,7 @@ static void test_export(void **state)
     const fixture *f = *state;
     adcgs_primitives p;
     adcgs_splats s;
-    assert_int_equal(adcgs_get_primitives(f->decoder, 0.04, &p), ADCGS_OK);
+    assert_int_equal(adcgs_get_primitives(f->decoder, 0.04, &p, NULL), ADCGS_OK);
     expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, "e.ply", &error));
     expect_good(adcgs_splats_write(&s, "time", in("e.ply"), &error));
     adcgs_splats_free(&s);

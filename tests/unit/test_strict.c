@@ -69,7 +69,7 @@ static verdicts try_everything(adcgs_decoder *opened)
     v.open = adcgs_open_memory(&decoder, stream, stream_bytes, NULL, &v.why);
     adcgs_close(&decoder);
     v.render = render(opened, NULL);
-    v.primitives = adcgs_get_primitives(opened, 0, &primitives);
+    v.primitives = adcgs_get_primitives(opened, 0, &primitives, NULL);
     return v;
 }
 

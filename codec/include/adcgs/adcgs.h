@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Everything that libadcgs offers. */
+/** \file
+ * Everything that libadcgs offers.
+ */
 #ifndef ADCGS_ADCGS_H
 #define ADCGS_ADCGS_H
 
-#include <adcgs/camera.h>
+#include <adcgs/cpu.h>
 #include <adcgs/decoder.h>
+#include <adcgs/frame.h>
+#include <adcgs/pool.h>
 #include <adcgs/status.h>
+#include <adcgs/types.h>
 #include <adcgs/version.h>
 
 #endif

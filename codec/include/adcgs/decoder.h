@@ -2,150 +2,186 @@
 /** \file
  * Decoding: open a stream, ask what it holds, derive primitives, render frames.
  *
- * A decoder is not thread-safe by itself (one thread at a time per decoder);
- * it uses its own threads inside a call. Different decoders are independent.
- * All results are bit-identical on every CPU, CPU level and thread count.
+ * One thread at a time may use a decoder; different decoders are independent, also when they share a pool. All results are
+ * bit-identical on every CPU, CPU level and number of threads.
  *
- * Streams may come from strangers. Opening one takes memory and time that its
- * level bounds before they are spent, whatever its size: with level 1 at most 64
- * MiB, with level 2 half a GiB, and one or two seconds of one core. A frame is
- * as large as the caller wants it, and its time and memory grow with pixels times splats;
- * memory_limit bounds both (spec annex "Security and resources").
+ * Streams may come from strangers. Opening one takes memory and time that its level bounds before they are spent, whatever its
+ * size: with level 1 at most 64 MiB, with level 2 half a GiB, and one or two seconds of one core. A frame is as large as the
+ * caller wants it, and its time and memory grow with pixels times splats; memory_limit bounds both (annex "Security and
+ * resources").
+ *
+ * Unless a function says otherwise, its error may be NULL, no other pointer may be, and besides the failures that it names it
+ * can fail with ADCGS_ERR_USAGE, ADCGS_ERR_MEMORY and, where it allocates, ADCGS_ERR_LIMIT by memory_limit.
  */
 #ifndef ADCGS_DECODER_H
 #define ADCGS_DECODER_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include <adcgs/camera.h>
-#include <adcgs/status.h>
+#include <adcgs/types.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-typedef struct adcgs_decoder adcgs_decoder;
-
-/** Which variant of the kernels runs. Results never depend on it. */
-typedef enum adcgs_cpu_level {
-    ADCGS_CPU_AUTO = 0, /**< the best that this CPU and build have */
-    ADCGS_CPU_SCALAR = 1,
-    ADCGS_CPU_AVX2 = 2,
-    ADCGS_CPU_AVX512 = 3
-} adcgs_cpu_level;
-
-/** How to decode. Initialise with adcgs_config_init() and change what is needed. */
-typedef struct adcgs_config {
-    size_t size;            /**< sizeof(adcgs_config), set by adcgs_config_init() */
-    int threads;            /**< 1..256; 0: one per online CPU */
-    adcgs_cpu_level cpu;    /**< a level above what the machine has is ADCGS_ERR_UNSUPPORTED */
-    int layers;             /**< use at most this many layers, 1..5; 0: all */
-    uint64_t memory_limit;  /**< bytes a decoder may allocate; 0: the stream's level decides */
-    int strict_end;         /**< nonzero: a truncated stream is an error; zero: play what is complete */
-} adcgs_config;
-
-ADCGS_API void adcgs_config_init(adcgs_config *config);
-
-/** Bytes of one component of the file, for reports. */
-typedef struct adcgs_bytes {
-    uint64_t header;   /**< signature, chunk headers, checksums, HEAD, SEGM, INDX, ENDC, hash */
-    uint64_t networks; /**< NETW payloads */
-    uint64_t geometry; /**< GEOM payloads */
-    uint64_t layer[5]; /**< FEA0..FEA4 payloads */
-    uint64_t cameras;  /**< cams payloads */
-    uint64_t metadata; /**< meta and unknown ancillary payloads */
-    uint64_t total;    /**< the whole stream as read */
-} adcgs_bytes;
-
-/** What a stream holds. */
-typedef struct adcgs_info {
-    int version_major, version_minor;
-    int profile, level;
-    int segments;            /**< complete time segments that can be played */
-    uint32_t anchors;        /**< over all segments */
-    uint32_t gaussians;      /**< primitives kept, over all segments */
-    uint32_t static_anchors;
-    uint32_t weights;        /**< network weights and time table, over all networks */
-    int k;                   /**< primitives per anchor */
-    int layers;              /**< layers present and used, 1..5 */
-    int cameras;             /**< stored cameras */
-    double time_start, time_end; /**< seconds */
-    double frame_rate;       /**< frames per second suggested for playing, > 0 */
-    double scene_origin[3];  /**< centre of the scene, world units */
-    double scene_scale;      /**< world units per scene unit, > 0 */
-    float background[3];
-    int truncated;           /**< nonzero: the stream ended early; what was complete is usable */
-    char colour[32];         /**< transfer characteristic and primaries, e.g. "sRGB" */
-    char axes[32];           /**< world axes, e.g. "right-handed, z up" */
-    char units[32];          /**< world unit, e.g. "metre", "unknown" */
-    adcgs_bytes bytes;
-} adcgs_info;
-
-/** Returns bytes read (0 at end), or a negative number on failure. Must fill as much as it can. */
-typedef int64_t (*adcgs_read_fn)(void *user, void *buffer, size_t bytes);
+/**
+ * Set all members to their defaults. Writes size bytes, those that the caller's headers know: never more.
+ * \param config the caller's struct
+ * \param size sizeof(adcgs_config)
+ */
+ADCGS_API void adcgs_config_init(adcgs_config *config, size_t size);
 
 /**
- * Open a stream and decode it completely (all segments, all layers asked for).
- * On failure *out is NULL and error, if not NULL, says why in one line.
+ * Open a file and decode it completely: all segments, all layers asked for (clause "Stream").
+ * \param out receives the decoder, to be closed with adcgs_close(); NULL on failure
+ * \param path name of the file
+ * \param config how; NULL: all defaults. Not needed after the call, but for what it points to
+ * \param error says why it failed
+ * \return ADCGS_OK; ADCGS_ERR_IO if reading failed; ADCGS_ERR_DATA, ADCGS_ERR_TRUNCATED, ADCGS_ERR_UNSUPPORTED or ADCGS_ERR_LIMIT
+ *         (clause "Faults") if the stream is not one that can be decoded; ADCGS_ERR_UNSUPPORTED if config asks for what this
+ *         library, build or machine has not; ADCGS_ERR_FPENV if arithmetic is not what the specification demands
  */
 ADCGS_API adcgs_status adcgs_open_file(adcgs_decoder **out, const char *path, const adcgs_config *config, adcgs_error *error);
-/** As adcgs_open_file() from memory; the bytes may be freed afterwards. */
+
+/**
+ * Open a stream in memory, as adcgs_open_file() does a file.
+ * \param out receives the decoder; NULL on failure
+ * \param data the stream; not needed after the call. May be NULL if there are no bytes
+ * \param bytes its size
+ * \param config how; may be NULL
+ * \param error says why it failed
+ * \return as adcgs_open_file()
+ */
 ADCGS_API adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, size_t bytes, const adcgs_config *config,
                                          adcgs_error *error);
-/** As adcgs_open_file() from a pipe or any other sequential source; never seeks. */
+
+/**
+ * Open a stream from a pipe or any other sequential source, as adcgs_open_file() does a file. It is read in order, once, to the
+ * end of the stream and not beyond.
+ * \param out receives the decoder; NULL on failure
+ * \param read gives the bytes; not called after this call
+ * \param user for read
+ * \param config how; may be NULL
+ * \param error says why it failed
+ * \return as adcgs_open_file()
+ */
 ADCGS_API adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read, void *user, const adcgs_config *config,
                                          adcgs_error *error);
-/** Close and clear; *decoder may be NULL. */
+
+/**
+ * Close a decoder and free all it owns.
+ * \param decoder is set to NULL; may point to NULL
+ */
 ADCGS_API void adcgs_close(adcgs_decoder **decoder);
 
-ADCGS_API adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info);
-/** Camera index in [0, info.cameras). */
-ADCGS_API adcgs_status adcgs_get_camera(const adcgs_decoder *decoder, int index, adcgs_camera *camera);
-/** Text stored under a key of the `meta` chunk; NULL if there is none. Owned by the decoder. */
+/**
+ * What the stream holds. Writes size bytes, those that the caller's headers know: never more.
+ * \param decoder an open decoder
+ * \param info the caller's struct
+ * \param size sizeof(adcgs_info)
+ * \param error says why it failed
+ * \return ADCGS_OK or ADCGS_ERR_USAGE
+ */
+ADCGS_API adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size_t size, adcgs_error *error);
+
+/**
+ * A camera that the stream stores (clause "cams").
+ * \param decoder an open decoder
+ * \param index 0 .. adcgs_info.cameras - 1
+ * \param camera receives it
+ * \param error says why it failed
+ * \return ADCGS_OK, or ADCGS_ERR_USAGE if there is no such camera
+ */
+ADCGS_API adcgs_status adcgs_get_camera(const adcgs_decoder *decoder, int index, adcgs_camera *camera, adcgs_error *error);
+
+/**
+ * Text that the stream stores (clause "meta"). It comes from whoever wrote the stream: UTF-8 is promised, not checked.
+ * \param decoder an open decoder
+ * \param key of the text
+ * \return the first text of that key; NULL if there is none. Owned by the decoder
+ */
 ADCGS_API const char *adcgs_get_metadata(const adcgs_decoder *decoder, const char *key);
 
 /**
- * Splats at one moment, as structure of arrays in scene units. Slot order is
- * the stream's (spec clause "Primitives"); slots with opacity 0 draw nothing.
+ * The keys of those texts, in the stream's order.
+ * \param decoder an open decoder
+ * \param index 0 .. adcgs_info.metadata - 1
+ * \return the key; NULL if there is none. Owned by the decoder
  */
-typedef struct adcgs_primitives {
-    uint32_t n;                  /**< slots in every array */
-    const float *mean[3];        /**< centre, scene units */
-    const float *scale[3];       /**< standard deviations, scene units, > 0 */
-    const float *rotation[4];    /**< unit quaternion w, x, y, z */
-    const float *opacity;        /**< 0..0.99 */
-    const float *colour[3];      /**< RGB, not clipped */
-} adcgs_primitives;
+ADCGS_API const char *adcgs_get_metadata_key(const adcgs_decoder *decoder, int index);
 
-/** Primitives at time t (seconds; clamped to the stream's span). Valid until the next call on this decoder. */
-ADCGS_API adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time, adcgs_primitives *out);
+/**
+ * Splats at a time (clause "Primitives").
+ * \param decoder an open decoder
+ * \param time seconds; times outside the stream's span become its start or end
+ * \param out receives arrays that the decoder owns; valid until the next call on it that takes a time
+ * \param error says why it failed
+ * \return ADCGS_OK, or ADCGS_ERR_FPENV if the calling thread's modes of arithmetic were changed
+ */
+ADCGS_API adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time, adcgs_primitives *out, adcgs_error *error);
 
-/** Render at time t; frame->rgb must hold width*height*3 floats and width, height equal the camera's. */
+/**
+ * Render a frame (clause "Rendering"): what conforming decoders agree on to the bit.
+ * \param decoder an open decoder
+ * \param camera any camera, not only the stream's
+ * \param time seconds, as adcgs_get_primitives()
+ * \param frame width and height equal the camera's; rgb receives [height][width][3]
+ * \param error says why it failed
+ * \return ADCGS_OK; ADCGS_ERR_USAGE if the camera or the frame is not as described; ADCGS_ERR_LIMIT if the splats cover more
+ *         than 2^28 tiles of 16x16 pixels, counted splat by splat; ADCGS_ERR_FPENV as adcgs_get_primitives()
+ */
 ADCGS_API adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, double time, adcgs_frame *frame,
                                     adcgs_error *error);
 
-/** Depth of pixels that no splat touches, and the largest that adcgs_render_depth() gives. */
-#define ADCGS_DEPTH_FAR 1e10f
+/**
+ * Render to 8 bits a sample: R, G, B, A, each as adcgs_frame_to_u8() would convert it. Opaque pictures are those of
+ * adcgs_render(); the others take a second pass, for coverage. As deterministic as frames.
+ * \param decoder an open decoder
+ * \param camera as adcgs_render()
+ * \param time as adcgs_render()
+ * \param alpha what A is, and whether colours are multiplied by it
+ * \param pixels the first pixel of the top row; a row has 4 * width bytes
+ * \param stride bytes from a row to the one below it, at least 4 * width; negative, as large, if rows lie bottom up
+ * \param error says why it failed
+ * \return as adcgs_render()
+ */
+ADCGS_API adcgs_status adcgs_render_rgba8(adcgs_decoder *decoder, const adcgs_camera *camera, double time, adcgs_alpha alpha,
+                                          uint8_t *pixels, ptrdiff_t stride, adcgs_error *error);
 
 /**
- * Depth and coverage at time t, of the splats and with the weights of adcgs_render(), in a pass of its own that takes as long as
- * a frame. alpha: [height][width], 0..1: the sum of the splats' weights, which is 1 less the part of the background that the
- * frame shows; so a frame less (1 - alpha) times the background is its colours premultiplied by alpha. depth: [height][width],
- * world units along the camera's axis: the mean of the splats' depths by their weights; ADCGS_DEPTH_FAR where alpha is 0.
- * Either may be NULL. As deterministic as frames, but not a point of conformance.
+ * Depth and coverage, of the splats and with the weights of adcgs_render(), in a pass of its own that takes as long as a frame.
+ * A frame less (1 - alpha) times the background is its colours premultiplied by alpha. As deterministic as frames, but not a
+ * point of conformance.
+ * \param decoder an open decoder
+ * \param camera as adcgs_render()
+ * \param time as adcgs_render()
+ * \param depth receives [height][width], world units along the camera's axis: the mean of the splats' depths by their weights;
+ *        ADCGS_DEPTH_FAR where alpha is 0. May be NULL
+ * \param alpha receives [height][width], 0..1: the sum of the splats' weights, which is 1 less the part of the background that
+ *        the frame shows. May be NULL
+ * \param error says why it failed
+ * \return as adcgs_render()
  */
 ADCGS_API adcgs_status adcgs_render_depth(adcgs_decoder *decoder, const adcgs_camera *camera, double time, float *depth,
                                           float *alpha, adcgs_error *error);
 
-/** Digest (MD5) of the decoded model of one segment: conformance point M. */
-ADCGS_API adcgs_status adcgs_get_model_digest(const adcgs_decoder *decoder, int segment, uint8_t digest[16]);
+/**
+ * Conformance point M: MD5 of the decoded model of a segment (clause "Model digest").
+ * \param decoder an open decoder
+ * \param segment 0 .. adcgs_info.segments - 1
+ * \param digest receives 16 bytes
+ * \param error says why it failed
+ * \return ADCGS_OK, or ADCGS_ERR_USAGE if there is no such segment
+ */
+ADCGS_API adcgs_status adcgs_get_model_digest(const adcgs_decoder *decoder, int segment, uint8_t digest[16], adcgs_error *error);
 
-/** Digest (MD5) of the splats at time t, as adcgs_get_primitives() gives them: conformance point S. */
-ADCGS_API adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t digest[16]);
-
-/** Best CPU level this build has on this machine. */
-ADCGS_API adcgs_cpu_level adcgs_cpu_best(void);
+/**
+ * Conformance point S: MD5 of the splats at a time, as adcgs_get_primitives() gives them (clause "Splats").
+ * \param decoder an open decoder
+ * \param time as adcgs_get_primitives()
+ * \param digest receives 16 bytes
+ * \param error says why it failed
+ * \return as adcgs_get_primitives()
+ */
+ADCGS_API adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t digest[16], adcgs_error *error);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Structs that grow from version to version, between callers and a library of different age: what one side does not know is
+ * zero, which is the default of every setting.
+ */
+#include "api/decoder_priv.h"
+
+/* The struct of the first version ended in front of pool. No version has one as large as SIZE_MOST: such a size was never set. */
+#define CONFIG_SIZE_LEAST offsetof(adcgs_config, pool)
+#define SIZE_MOST 4096
+
+void adcgs_config_init(adcgs_config *config, size_t size)
+{
+    memset(config, 0, size);
+    memcpy(config, &size, ADCGS_MIN(size, sizeof size));
+}
+
+adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, adcgs_error *error)
+{
+    size_t size;
+    memset(own, 0, sizeof *own);
+    own->size = sizeof *own;
+    if (!theirs)
+        return ADCGS_OK;
+    memcpy(&size, theirs, sizeof size); /* there may be less than an adcgs_config */
+    if (size < CONFIG_SIZE_LEAST || size > SIZE_MOST)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "config: size is %zu, expected %zu: call adcgs_config_init() first", size,
+                          sizeof *own);
+    const unsigned char *bytes = (const unsigned char *)theirs;
+    for (size_t i = sizeof *own; i < size; i++)
+        if (bytes[i])
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
+                              "config: byte %zu is set, which this version of the library does not know", i);
+    memcpy(own, theirs, ADCGS_MIN(size, sizeof *own));
+    own->size = sizeof *own;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size_t size, adcgs_error *error)
+{
+    adcgs_info own;
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(info, error);
+    if (size < sizeof info->size || size > SIZE_MOST)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "info: size is %zu, expected %zu", size, sizeof own);
+    memset(&own, 0, sizeof own); /* padding, too */
+    adcgs_stream_info(&decoder->stream, &own);
+    own.size = ADCGS_MIN(size, sizeof own);
+    memset(info, 0, size);
+    memcpy(info, &own, own.size);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_get_camera(const adcgs_decoder *decoder, int index, adcgs_camera *camera, adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(camera, error);
+    if (index < 0 || (uint32_t)index >= decoder->stream.n_cameras)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "camera %d asked for; the stream has %u", index,
+                          (unsigned)decoder->stream.n_cameras);
+    *camera = decoder->stream.cameras[index];
+    return ADCGS_OK;
+}
+
+const char *adcgs_get_metadata(const adcgs_decoder *decoder, const char *key)
+{
+    for (uint32_t i = 0; decoder && key && i < decoder->stream.n_meta; i++)
+        if (strcmp(decoder->stream.meta[i].key, key) == 0)
+            return decoder->stream.meta[i].value;
+    return NULL;
+}
+
+const char *adcgs_get_metadata_key(const adcgs_decoder *decoder, int index)
+{
+    if (!decoder || index < 0 || (uint32_t)index >= decoder->stream.n_meta)
+        return NULL;
+    return decoder->stream.meta[index].key;
+}
+
+adcgs_status adcgs_get_model_digest(const adcgs_decoder *decoder, int segment, uint8_t digest[16], adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(digest, error);
+    if (segment < 0 || (uint32_t)segment >= decoder->stream.n_segments)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment,
+                          (unsigned)decoder->stream.n_segments);
+    adcgs_model_digest(&decoder->stream.segments[segment], digest);
+    return ADCGS_OK;
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The public decoder, and what the files of this room share about it. */
+#ifndef ADCGS_API_DECODER_PRIV_H
+#define ADCGS_API_DECODER_PRIV_H
+
+#include "base/log.h"
+#include "base/pool.h"
+#include "render/render.h"
+#include "splat/splat.h"
+#include "stream/stream.h"
+
+#include <adcgs/decoder.h>
+
+struct adcgs_decoder {
+    adcgs_memory memory;
+    adcgs_pool *pool;       /**< the caller's or own_pool */
+    adcgs_pool *own_pool;   /**< NULL: the caller gave one */
+    adcgs_cpu_level cpu;
+    adcgs_log log;
+    adcgs_stream stream;
+    adcgs_splat *splat;     /**< of splat_segment; NULL until the first use */
+    uint32_t splat_segment;
+    adcgs_raster *raster;   /**< NULL until the first frame */
+    float *planar;          /**< planes of [height][width], grows */
+    size_t planar_size;     /**< floats in it */
+};
+
+/**
+ * In front of everything a public function does: its caller's error may be NULL, but inside the reason of a failed allocation
+ * has to be known (adcgs_alloc_status()).
+ */
+#define ADCGS_OWN_ERROR(error)                        \
+    adcgs_error own_error_ = { .status = ADCGS_OK };  \
+    if (!(error))                                     \
+    (error) = &own_error_
+
+/** Refuse a pointer that must not be NULL. */
+#define ADCGS_REQUIRE(pointer, error)                                                      \
+    do {                                                                                   \
+        if (!(pointer))                                                                    \
+            return adcgs_fail((error), ADCGS_ERR_USAGE, "%s: %s is NULL", __func__, #pointer); \
+    } while (0)
+
+/** Set up own from a caller's struct of any version; NULL: all defaults. */
+adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, adcgs_error *error);
+
+/** Splats at a time, after a look at the modes of arithmetic. */
+adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primitives *out, adcgs_error *error);
+
+#endif

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file A random stream of three segments and its bytes, for tests of the public decoder. Included after cmocka's needs. */
+#ifndef ADCGS_TESTS_DECODER_FIXTURE_H
+#define ADCGS_TESTS_DECODER_FIXTURE_H
+
+#include "random_model.h"
+
+#include <adcgs/adcgs.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+typedef struct fixture {
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+} fixture;
+
+static int setup(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    adcgs_params params;
+    uint64_t seed = 11;
+    adcgs_random_params(&params, 1, &seed);
+    params.k = 4;
+    params.n_fg = 4;
+    params.chunks = 2;
+    adcgs_buffer_init(&f->bytes);
+    if (adcgs_random_stream(&f->stream, &params, 3, 90, 5, &seed, NULL) != ADCGS_OK)
+        return -1;
+    f->stream.colour_space = 1;
+    f->stream.axes = 2;
+    f->stream.units = 1;
+    f->stream.scene_scale = 2.5;
+    f->stream.scene_origin[1] = 0.75;
+    f->stream.background[0] = 0.5f;
+    *state = f;
+    return adcgs_stream_write(&f->stream, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
+}
+
+static int teardown(void **state)
+{
+    fixture *f = *state;
+    adcgs_stream_clear(&f->stream, NULL);
+    adcgs_buffer_clear(&f->bytes);
+    free(f);
+    return 0;
+}
+
+static adcgs_decoder *open_with(const fixture *f, const adcgs_config *config)
+{
+    adcgs_decoder *d = NULL;
+    adcgs_error error = { ADCGS_OK, "" };
+    if (adcgs_open_memory(&d, f->bytes.data, f->bytes.size, config, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    assert_non_null(d);
+    return d;
+}
+
+/** Before the scene, which fills about half of the picture. */
+#define FIXTURE_WIDTH 61
+#define FIXTURE_HEIGHT 47
+static const adcgs_camera fixture_camera = { .width = FIXTURE_WIDTH, .height = FIXTURE_HEIGHT, .fx = 60, .fy = 60, .cx = 30,
+                                             .cy = 23, .near_plane = 0.1,
+                                             .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0.75, 0, 0, 1, -9 } };
+#define FIXTURE_PIXELS ((size_t)FIXTURE_WIDTH * FIXTURE_HEIGHT)
+
+#endif
