@@ -29,5 +29,7 @@ if command -v pdftotext >/dev/null; then
     for sign in Σ η ϖ μ ≤ ⌊ √ ½ − · ∈; do
         grep -q "$sign" "$dir/text" || { echo "the PDF does not show $sign" >&2; faults=1; }
     done
+else
+    echo "skipped: signs that the PDF shows: no pdftotext"
 fi
 exit $faults
