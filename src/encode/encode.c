@@ -35,9 +35,9 @@ static adcgs_status set_notes(adcgs_stream *s, const adcgs_encode_note *notes, u
         s->meta[i].key = copy_text(notes[i].key, error);
         s->meta[i].value = copy_text(notes[i].value, error);
         if (!s->meta[i].key || !s->meta[i].value)
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(error);
     }
-    return s->meta ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return s->meta ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 /** A few training cameras, spread evenly over the split; fixed cameras that recur at every time are stored once. */
@@ -47,7 +47,7 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
     const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN];
     s->cameras = adcgs_alloc(NULL, ADCGS_ENCODE_CAMERAS_MAX, sizeof *s->cameras, error);
     if (!s->cameras)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < ADCGS_ENCODE_CAMERAS_MAX; i++) {
         const adcgs_camera *c = &views[(uint64_t)i * all / ADCGS_ENCODE_CAMERAS_MAX].camera;
         int known = 0;
@@ -88,7 +88,7 @@ static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const a
     ADCGS_TRY(set_notes(s, notes, n_notes, error));
     s->segments = adcgs_alloc(NULL, 1, sizeof *s->segments, error);
     if (!s->segments)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     s->n_segments = 1;
     const adcgs_quantise_options options = { .cpu = t->cpu, .rdo = rdo };
     ADCGS_TRY(adcgs_quantise(&s->segments[0], t->f, &options, error));

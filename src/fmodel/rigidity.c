@@ -79,7 +79,7 @@ adcgs_status adcgs_rigidity_build(adcgs_rigidity *rigid, const adcgs_fmodel *f, 
     rigid->near = adcgs_alloc(NULL, f->n, sizeof *rigid->near, error);
     rigid->pull = adcgs_alloc(NULL, (size_t)f->groups * PULL_ROWS * 64, sizeof *rigid->pull, error);
     if (!rigid->near || !rigid->pull)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     near_job job = { f, rigid };
     adcgs_pool_run(pool, near_group, &job, (int)f->groups);
     return ADCGS_OK;

@@ -37,7 +37,7 @@ adcgs_status adcgs_viewpoints_create(adcgs_viewpoints *p, const float (*camera)[
     p->n = 0;
     p->x = adcgs_alloc(NULL, 3 * (size_t)n_cameras, sizeof *p->x, error);
     if (!p->x)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < n_cameras; i++) {
         uint32_t j = 0;
         while (j < p->n && memcmp(p->x[j], camera[i], sizeof camera[i]) != 0)

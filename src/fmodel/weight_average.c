@@ -15,7 +15,7 @@ adcgs_status adcgs_weight_average_begin(adcgs_weight_average *a, const adcgs_fmo
     adcgs_weight_average_clear(a);
     a->mean = adcgs_alloc(NULL, count(f), sizeof *a->mean, error);
     if (!a->mean)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     a->size = count(f);
     return ADCGS_OK;
 }

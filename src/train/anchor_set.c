@@ -5,28 +5,27 @@
 #include "geom/geom.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 void adcgs_anchor_set_clear(adcgs_anchor_set *s)
 {
-    free(s->pos);
-    free(s->source);
-    free(s->order);
-    free(s->fresh);
+    adcgs_free(NULL, s->pos);
+    adcgs_free(NULL, s->source);
+    adcgs_free(NULL, s->order);
+    adcgs_free(NULL, s->fresh);
 }
 
 adcgs_status adcgs_anchor_set_init(adcgs_anchor_set *s, uint32_t capacity, adcgs_error *error)
 {
     s->n = 0;
     s->capacity = capacity;
-    s->pos = malloc(capacity * sizeof *s->pos);
-    s->source = malloc(capacity * sizeof *s->source);
-    s->order = malloc(capacity * sizeof *s->order);
-    s->fresh = malloc(capacity * sizeof *s->fresh);
+    s->pos = adcgs_alloc(NULL, capacity, sizeof *s->pos, error);
+    s->source = adcgs_alloc(NULL, capacity, sizeof *s->source, error);
+    s->order = adcgs_alloc(NULL, capacity, sizeof *s->order, error);
+    s->fresh = adcgs_alloc(NULL, capacity, sizeof *s->fresh, error);
     if (s->pos && s->source && s->order && s->fresh)
         return ADCGS_OK;
     adcgs_anchor_set_clear(s);
-    return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", capacity);
+    return adcgs_alloc_status(error);
 }
 
 void adcgs_anchor_set_add(adcgs_anchor_set *s, const uint32_t pos[3], uint32_t source, int fresh)
@@ -38,26 +37,26 @@ void adcgs_anchor_set_add(adcgs_anchor_set *s, const uint32_t pos[3], uint32_t s
 
 adcgs_status adcgs_anchor_set_adopt(adcgs_trainer *t, adcgs_anchor_set *s, adcgs_error *error)
 {
-    uint32_t *source = malloc(s->n * sizeof *source);
-    uint8_t *fresh = malloc(s->n);
-    if (!source || !fresh) {
-        free(source);
-        free(fresh);
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", s->n);
+    uint32_t *source = adcgs_alloc(NULL, s->n, sizeof *source, error);
+    uint8_t *fresh = adcgs_alloc(NULL, s->n, 1, error);
+    adcgs_status status = source && fresh ? ADCGS_OK : adcgs_alloc_status(error);
+    if (status == ADCGS_OK) {
+        const int sorted = adcgs_morton_sort(&s->pos[0][0], s->n, s->order, error);
+        status = sorted < 0 ? (adcgs_status)sorted : ADCGS_OK;
     }
-    adcgs_morton_sort(&s->pos[0][0], s->n, s->order, error);
-    for (uint32_t i = 0; i < s->n; i++) {
+    for (uint32_t i = 0; status == ADCGS_OK && i < s->n; i++) {
         source[i] = s->source[s->order[i]];
         fresh[i] = s->fresh[s->order[i]];
     }
-    adcgs_status status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])s->pos, source, fresh, s->n, error);
+    if (status == ADCGS_OK)
+        status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])s->pos, source, fresh, s->n, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < s->n; i++)
         for (int a = 0; fresh[i] && a < 3; a++) {
             *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, a) -= 0.6f;
             *adcgs_fmodel_at(t->f, ADCGS_P_SIGMA, i, 3 + a) -= 0.4f;
         }
-    free(source);
-    free(fresh);
+    adcgs_free(NULL, source);
+    adcgs_free(NULL, fresh);
     return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
 }
 

@@ -46,14 +46,14 @@ static void visit_same(walk *w, uint64_t value)
 /** Everything that the run depends on and no limit of time: a run may go on with another. */
 static void walk_options(walk *w, const adcgs_train_config *c)
 {
-    const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->refine_every,
+    const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->densify_every,
                                (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
-                               c->without_refinement, c->without_rounding, c->bf16 };
-    const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight,
-                           c->area_weight, c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
-                           c->window_begin, c->window_until, c->quarter_until, c->half_until, c->area_from, c->deform_from,
-                           c->fine_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->slim_at, c->slim_again,
-                           c->decide_at, c->round_from, c->freeze_from };
+                               c->without_densification, c->without_rounding, c->bf16 };
+    const float real[] = { c->ssim_weight, c->densify_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight,
+                           c->scale_weight, c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
+                           c->curriculum_begin, c->curriculum_until, c->quarter_until, c->half_until, c->scale_from,
+                           c->deform_from, c->fine_from, c->densify_from, c->densify_until, c->noise_from, c->rate_from,
+                           c->prune_units_at, c->prune_units_again, c->decide_at, c->round_from, c->freeze_from };
     for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
         visit_same(w, whole[i]);
     for (size_t i = 0; i < ADCGS_COUNTOF(real); i++)
@@ -76,10 +76,10 @@ static void walk_lambda(walk *w, adcgs_trainer *t)
 /** Whether weights get a lattice is open until they do. */
 static void walk_lattice(walk *w, adcgs_trainer *t)
 {
-    uint8_t without = t->config.without_lattice;
+    uint8_t without = t->config.without_weight_steps;
     visit(w, &without, sizeof without);
     visit(w, &t->rounding, sizeof t->rounding);
-    w->failed |= t->rounding && without != t->config.without_lattice;
+    w->failed |= t->rounding && without != t->config.without_weight_steps;
 }
 
 static void walk_sizes(walk *w, const adcgs_params *p, const adcgs_shape *s)
@@ -216,15 +216,15 @@ static adcgs_status restore_anchors(walk *w, adcgs_trainer *t, adcgs_error *erro
     visit(w, &n, sizeof n);
     if (w->failed || n == 0 || n > adcgs_reader_left(w->in) / 12)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%u anchors do not fit its size", n);
-    uint32_t(*pos)[3] = malloc(n * sizeof *pos);
-    uint32_t *source = calloc(n, sizeof *source);
-    adcgs_status status = pos && source ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", n);
+    uint32_t(*pos)[3] = adcgs_alloc(NULL, n, sizeof *pos, error);
+    uint32_t *source = adcgs_alloc(NULL, n, sizeof *source, error);
+    adcgs_status status = pos && source ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         visit(w, pos, n * sizeof *pos);
         status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])pos, source, NULL, n, error);
     }
-    free(pos);
-    free(source);
+    adcgs_free(NULL, pos);
+    adcgs_free(NULL, source);
     return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
 }
 

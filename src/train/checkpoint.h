@@ -8,7 +8,7 @@
 /**
  * Checkpoints: everything needed to go on with identical results; atomic file, versioned, checksummed. Loading one saved with
  * other options or another scene is ADCGS_ERR_DATA; only lambda may be another while it has had no say, so that runs at several
- * rates share their beginning, and without_lattice before weights are rounded, so that its price can be told.
+ * rates share their beginning, and without_weight_steps before weights are rounded, so that its price can be told.
  */
 adcgs_status adcgs_trainer_save(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
 adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_error *error);

@@ -11,7 +11,6 @@
 #include "train/views.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { PROBES = 2, MEASURE_VIEWS = 32 };
 
@@ -75,10 +74,10 @@ static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, d
 {
     adcgs_param *p = &t->f->param[group];
     const size_t rows = (size_t)adcgs_fmodel_rows(t->f, group);
-    float *still = malloc(p->n * sizeof *still);
+    float *still = adcgs_alloc(NULL, p->n, sizeof *still, error);
     double up = 0, down = 0;
     if (!still)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %zu values", p->n);
+        return adcgs_alloc_status(error);
     memcpy(still, p->p, p->n * sizeof *still);
     move_values(t, group, still, 1);
     adcgs_status status = adcgs_sample_loss(t, MEASURE_VIEWS, 1, &up, error);
@@ -86,7 +85,7 @@ static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, d
     if (status == ADCGS_OK)
         status = adcgs_sample_loss(t, MEASURE_VIEWS, 1, &down, error);
     memcpy(p->p, still, p->n * sizeof *still);
-    free(still);
+    adcgs_free(NULL, still);
     *seen = 0.5 * (up + down) - still_loss;
     *said = 0;
     for (size_t j = 0; j < p->n; j++) {

@@ -6,7 +6,6 @@
 #include "train/sample.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
 
@@ -14,16 +13,13 @@ enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
  * Largest effect of time on each anchor's primitives. 1 is half a pixel of way, or 0.03 of colour, for an opaque one, or 0.03
  * of opacity: what lies below is seen as noise, and costs every frame its networks.
  */
-static void measure_motion(adcgs_trainer *t, float *effect)
+static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
     const size_t slots = t->pass->primitives.n;
-    float *still = malloc(slots * 14 * sizeof *still);
-    if (!still) { /* without memory every anchor counts as moving: correct, only larger */
-        for (uint32_t i = 0; i < f->n; i++)
-            effect[i] = 1e9f;
-        return;
-    }
+    float *still = adcgs_alloc(NULL, slots * 14, sizeof *still, error);
+    if (!still)
+        return adcgs_alloc_status(error);
     /* Scene units per pixel of the full resolution at unit distance. */
     const float pixel = (float)t->config.scale / (t->views[0].view.fx * (float)t->divide);
     adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
@@ -46,7 +42,8 @@ static void measure_motion(adcgs_trainer *t, float *effect)
             effect[anchor] = fmaxf(effect[anchor], here);
         }
     }
-    free(still);
+    adcgs_free(NULL, still);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
@@ -69,15 +66,15 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
 static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_fmodel *f = t->f;
-    float *effect = calloc(f->n, sizeof *effect);
+    float *effect = adcgs_alloc(NULL, f->n, sizeof *effect, error);
     if (!effect)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", f->n);
-    measure_motion(t, effect);
-    for (uint32_t i = 0; i < f->n; i++)
+        return adcgs_alloc_status(error);
+    const adcgs_status status = measure_motion(t, effect, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
         if (effect[i] < t->config.still_below)
             f->moving[i] = 0;
-    free(effect);
-    return ADCGS_OK;
+    adcgs_free(NULL, effect);
+    return status;
 }
 
 /** What covers next to nothing, and large faint primitives: they cost the most time, fit single views and are soon replaced. */

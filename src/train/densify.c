@@ -56,7 +56,7 @@ static uint32_t find_candidates(const adcgs_trainer *t, candidate *list)
         if (adcgs_anchor_of(t->f, i) >= t->f->n || !(w > 1))
             continue;
         const float score = t->stats.significance[i] / w;
-        if (score > t->config.grow_threshold)
+        if (score > t->config.densify_threshold)
             list[n++] = (candidate){ score, i };
     }
     qsort(list, n, sizeof *list, by_score);
@@ -142,7 +142,7 @@ static void dress(adcgs_fmodel *f, const adcgs_residual *places, uint32_t n)
 
 double adcgs_densify_budget(const adcgs_train_config *c, double progress)
 {
-    const double ramp = fmin(1, (progress - c->grow_from) / (0.8 * (c->grow_until - c->grow_from)));
+    const double ramp = fmin(1, (progress - c->densify_from) / (0.8 * (c->densify_until - c->densify_from)));
     const double from = ADCGS_MIN(c->start_anchors, c->max_anchors);
     return from + (c->max_anchors - from) * ramp;
 }
@@ -158,9 +158,9 @@ typedef struct workspace {
 static void workspace_clear(workspace *w)
 {
     adcgs_anchor_set_clear(&w->next);
-    free(w->occupied.key);
-    free(w->list);
-    free(w->missing);
+    adcgs_free(NULL, w->occupied.key);
+    adcgs_free(NULL, w->list);
+    adcgs_free(NULL, w->missing);
 }
 
 static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_t budget, adcgs_error *error)
@@ -170,13 +170,13 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
     while (buckets < 4 * anchors)
         buckets *= 2;
     ADCGS_TRY(adcgs_anchor_set_init(&w->next, (uint32_t)anchors + 1, error));
-    w->occupied = (cells){ calloc(buckets, sizeof *w->occupied.key), buckets - 1 };
-    w->list = malloc((size_t)t->pass->primitives.n * sizeof *w->list);
-    w->missing = malloc(MISSING_MOST * sizeof *w->missing);
+    w->occupied = (cells){ adcgs_alloc(NULL, buckets, sizeof *w->occupied.key, error), buckets - 1 };
+    w->list = adcgs_alloc(NULL, t->pass->primitives.n, sizeof *w->list, error);
+    w->missing = adcgs_alloc(NULL, MISSING_MOST, sizeof *w->missing, error);
     if (w->occupied.key && w->list && w->missing)
         return ADCGS_OK;
     workspace_clear(w);
-    return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for refinement");
+    return adcgs_alloc_status(error);
 }
 
 static void keep_anchors(const adcgs_trainer *t, workspace *w)

@@ -23,10 +23,10 @@ adcgs_status adcgs_prune_anchors(adcgs_trainer *t, uint32_t keep, adcgs_error *e
 {
     const adcgs_fmodel *f = t->f;
     adcgs_anchor_set s;
-    rank *ranks = malloc(f->n * sizeof *ranks);
-    uint8_t *kept = calloc(f->n, 1);
+    rank *ranks = adcgs_alloc(NULL, f->n, sizeof *ranks, error);
+    uint8_t *kept = adcgs_alloc(NULL, f->n, 1, error);
     adcgs_status status = ranks && kept ? adcgs_anchor_set_init(&s, f->n, error)
-                                       : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", f->n);
+                                       : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         for (uint32_t i = 0; i < f->n; i++) {
             ranks[i] = (rank){ 0, i };
@@ -42,7 +42,7 @@ adcgs_status adcgs_prune_anchors(adcgs_trainer *t, uint32_t keep, adcgs_error *e
         status = adcgs_anchor_set_adopt(t, &s, error);
         adcgs_anchor_set_clear(&s);
     }
-    free(ranks);
-    free(kept);
+    adcgs_free(NULL, ranks);
+    adcgs_free(NULL, kept);
     return status;
 }

@@ -59,7 +59,7 @@ static double growth_ahead(const adcgs_trainer *t, double progress)
 {
     const double budget = adcgs_densify_budget(&t->config, progress);
     const double whole = t->config.max_anchors;
-    return progress < t->config.grow_until && t->f->n > 0.9 * budget ? fmax(1, whole / t->f->n) : 1;
+    return progress < t->config.densify_until && t->f->n > 0.9 * budget ? fmax(1, whole / t->f->n) : 1;
 }
 
 /** Log of the bytes that features take over those they may take. */

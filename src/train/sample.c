@@ -71,12 +71,11 @@ static adcgs_status full_psnr(adcgs_trainer *t, uint32_t index, double *psnr, ad
     adcgs_view view;
     float *taken;
     ADCGS_TRY(adcgs_scene_load(t->scene, &t->scene->views[ADCGS_SPLIT_TRAIN][index], 1, &taken, &camera, error));
-    float *image = malloc(3 * sizeof *image * (size_t)camera.width * (size_t)camera.height);
-    adcgs_status status = image ? adcgs_view_init(&view, &camera, t->origin, t->scale, error)
-                                : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a picture");
+    float *image = adcgs_alloc(NULL, 3 * (size_t)camera.width * (size_t)camera.height, sizeof *image, error);
+    adcgs_status status = image ? adcgs_view_init(&view, &camera, t->origin, t->scale, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
         status = picture_psnr(t, &view, taken, image, psnr, error);
-    free(image);
+    adcgs_free(NULL, image);
     free(taken);
     return status;
 }

@@ -40,14 +40,14 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
         if (t->iteration >= WEIGH_AFTER)
             ADCGS_TRY(adcgs_weigh_motion(t, error));
     }
-    if (t->slimmed < 2 && progress >= (t->slimmed ? c->slim_again : c->slim_at) && !c->without_rate) {
+    if (t->slimmed < 2 && progress >= (t->slimmed ? c->prune_units_again : c->prune_units_at) && !c->without_rate) {
         t->slimmed++;
         if (t->iteration >= UNITS_AFTER)
             ADCGS_TRY(adcgs_prune_units(t, error));
     }
     if (!t->decided && progress >= c->decide_at) {
         t->decided = 1;
-        if (!c->without_refinement)
+        if (!c->without_densification)
             ADCGS_TRY(adcgs_decide(t, error));
     }
     if (!t->quantise || c->without_rounding)
@@ -75,7 +75,7 @@ int adcgs_stages_divide(const adcgs_trainer *t, double progress)
 /** Fraction of the views, by their distance from the middle of time, that are trained on. */
 static double window_of(const adcgs_train_config *c, double progress)
 {
-    return progress < c->window_until ? c->window_begin + (1 - c->window_begin) * progress / c->window_until : 1;
+    return progress < c->curriculum_until ? c->curriculum_begin + (1 - c->curriculum_begin) * progress / c->curriculum_until : 1;
 }
 
 adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error *error)
@@ -84,8 +84,8 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     if (adcgs_stages_divide(t, progress) != t->divide)
         ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
-    if (!c->without_refinement && t->iteration && t->iteration % c->refine_every == 0 && progress >= c->grow_from &&
-        progress < c->grow_until)
+    if (!c->without_densification && t->iteration && t->iteration % c->densify_every == 0 && progress >= c->densify_from &&
+        progress < c->densify_until)
         ADCGS_TRY(adcgs_densify(t, progress, error));
     ADCGS_TRY(enter_stages(t, progress, error));
     return adcgs_rate_control_step(t, progress, error);

@@ -4,21 +4,20 @@
 
 #include "train/initialise.h"
 #include "train/rate_plan.h"
+#include "train/settings.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
 {
     const size_t slots = (size_t)t->f->groups * 64 * t->f->params.k;
     ADCGS_TRY(adcgs_pass_resize(t->pass, t->f, error));
     adcgs_free(NULL, t->stats.weight);
-    t->stats.weight = adcgs_alloc(NULL, 3 * slots, sizeof(float), error);
+    t->stats = (adcgs_train_stats){ .weight = adcgs_alloc(NULL, 3 * slots, sizeof(float), error) };
+    if (!t->stats.weight)
+        return adcgs_alloc_status(error);
     t->stats.significance = t->stats.weight + slots;
     t->stats.opacity = t->stats.weight + 2 * slots;
-    t->stats.n = 0;
-    if (!t->stats.weight)
-        return ADCGS_ERR_MEMORY;
     return t->config.rigid_weight > 0 ? adcgs_rigidity_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
 }
 
@@ -26,18 +25,16 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
 {
     const double duration = t->scene->duration;
     t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
-    t->views = calloc(t->n_views, sizeof *t->views);
-    float *times = calloc(t->n_views, sizeof *times);
-    adcgs_status status = ADCGS_OK;
-    if (!t->views || !times)
-        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u views", t->n_views);
+    t->views = adcgs_alloc(NULL, t->n_views, sizeof *t->views, error);
+    float *times = adcgs_alloc(NULL, t->n_views, sizeof *times, error);
+    adcgs_status status = t->views && times ? ADCGS_OK : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
         const double time = t->scene->views[ADCGS_SPLIT_TRAIN][i].time;
         times[i] = t->views[i].t = duration > 0 ? (float)fmin(fmax(time / duration, 0), 1) : 0;
     }
     if (status == ADCGS_OK)
         status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, error);
-    free(times);
+    adcgs_free(NULL, times);
     if (status == ADCGS_OK)
         status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, error);
     return status;
@@ -47,7 +44,7 @@ static adcgs_status create_viewpoints(adcgs_trainer *t, adcgs_error *error)
 {
     float(*x)[3] = adcgs_alloc(NULL, t->n_views, sizeof *x, error);
     if (!x)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < t->n_views; i++)
         for (int a = 0; a < 3; a++)
             x[i][a] = (float)((t->scene->views[ADCGS_SPLIT_TRAIN][i].camera.cam_to_world[4 * a + 3] - t->origin[a]) / t->scale);
@@ -60,6 +57,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_train_config *c = &t->config;
     const uint32_t times = t->scene->n_times;
+    ADCGS_TRY(adcgs_train_check(c, error));
     if (c->bf16)
         ADCGS_TRY(adcgs_bf16_check(t->cpu, error));
     if (c->without_coarse && c->without_fine)
@@ -74,14 +72,14 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
     if (several && !c->own_rigid)
         c->rigid_weight = 0;
-    if (several && !c->own_area)
-        c->area_from = 0;
+    if (several && !c->own_scale_from)
+        c->scale_from = 0;
     if (c->without_coarse)
         c->shape.omega_width = 0;
     if (c->without_fine)
         c->shape.varpi_width = 0;
     ADCGS_TRY(adcgs_rate_plan(c, error));
-    adcgs_scene_frame(t->scene, t->origin, &t->scale);
+    ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
     ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, error));
     adcgs_train_rates(t->f);
     ADCGS_TRY(adcgs_pass_create(&t->pass, t->f, t->cpu, t->pool, error));
@@ -98,10 +96,10 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
 adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                   adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
 {
-    adcgs_trainer *t = calloc(1, sizeof *t);
+    adcgs_trainer *t = adcgs_alloc(NULL, 1, sizeof *t, error);
     *out = NULL;
     if (!t)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the trainer");
+        return adcgs_alloc_status(error);
     t->config = *config;
     t->scene = scene;
     t->cpu = cpu;
@@ -131,7 +129,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     if (!t)
         return;
     adcgs_views_unload(t);
-    free(t->views);
+    adcgs_free(NULL, t->views);
     adcgs_free(NULL, t->stats.weight);
     adcgs_fmodel_free(&t->f);
     adcgs_pass_free(&t->pass);
@@ -144,7 +142,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_viewpoints_clear(&t->viewpoints);
     adcgs_weight_average_clear(&t->average);
     adcgs_buffer_clear(&t->snapshot);
-    free(t);
+    adcgs_free(NULL, t);
     *trainer = NULL;
 }
 

@@ -74,6 +74,7 @@ typedef struct adcgs_trainer {
     adcgs_buffer snapshot;
 } adcgs_trainer;
 
+/** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */
 adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                   adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 void adcgs_trainer_free(adcgs_trainer **trainer);

@@ -40,7 +40,7 @@ static float weight_price(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
     const int landed = t->frozen && c->target == ADCGS_TARGET_SIZE;
-    return progress >= c->slim_at && !c->without_rate && !landed ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
+    return progress >= c->prune_units_at && !c->without_rate && !landed ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
 }
 
 /**
@@ -130,7 +130,7 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
                                    .seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration) };
     adcgs_loss_value value;
     adcgs_raster_grads grads = t->pass->grads;
-    if (progress >= c->grow_until) /* only growth asks for it */
+    if (progress >= c->densify_until) /* only growth asks for it */
         grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 1, error));
@@ -140,8 +140,8 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
     ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
     ADCGS_TRY(adcgs_view_draw_back(t, &v->view, &grads, error));
     accumulate_stats(t, &grads);
-    if (c->area_weight > 0 && progress >= c->area_from)
-        adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->area_weight, grads.scale);
+    if (c->scale_weight > 0 && progress >= c->scale_from)
+        adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_weight, grads.scale);
     t->pass->pull = NULL;
     if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
         adcgs_rigidity_pull(&t->rigid, t->pass, t->f, c->rigid_weight);

@@ -18,7 +18,7 @@ adcgs_status adcgs_curriculum_create(adcgs_curriculum *w, const float *t, uint32
 {
     w->views = adcgs_alloc(NULL, n_views, sizeof *w->views, error);
     if (!w->views)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     w->n_views = n_views;
     w->n = 0;
     for (uint32_t i = 0; i < n_views; i++)

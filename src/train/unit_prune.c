@@ -135,7 +135,7 @@ adcgs_status adcgs_gram_take(adcgs_gram *gram, const adcgs_fmodel *f, int group,
         gram->inverse[l] = adcgs_alloc(NULL, size, sizeof(double), error);
         if (!gram->inverse[l]) {
             adcgs_gram_clear(gram);
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(error);
         }
     }
     for (uint32_t i = 0; i < SAMPLES; i++) {
@@ -316,7 +316,7 @@ adcgs_status adcgs_prune_units(adcgs_trainer *t, adcgs_error *error)
         if (!t->f->mlp[i].hidden || i == ADCGS_P_E_STEPS) /* E_q trades pictures for bits: neither alone can judge it */
             continue;
         s.best = adcgs_alloc(NULL, t->f->param[i].n, sizeof *s.best, error);
-        status = s.best ? adcgs_gram_take(&s.gram, t->f, i, error) : ADCGS_ERR_MEMORY;
+        status = s.best ? adcgs_gram_take(&s.gram, t->f, i, error) : adcgs_alloc_status(error);
         if (status == ADCGS_OK)
             status = slim_network(&s, error);
         adcgs_gram_clear(&s.gram);

@@ -21,7 +21,7 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     t->grad = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->taken = adcgs_alloc(NULL, most * 3, sizeof(float), error);
     t->divide = divide;
-    return t->image && t->grad && t->taken ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return t->image && t->grad && t->taken ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, const float *drawn, const float **target, adcgs_error *error)

@@ -27,7 +27,7 @@ adcgs_status adcgs_weight_step_bits(const adcgs_mlp *m, const float *p, int laye
     adcgs_range_enc enc;
     w.m = b.m = adcgs_alloc(NULL, ADCGS_MAX(n, b.rows), sizeof *w.m, error);
     if (!w.m)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     adcgs_buffer_init(&bytes);
     adcgs_range_enc_init(&enc, &bytes);
     encode_rounded(&enc, &w, p + m->w[layer]);
@@ -114,7 +114,7 @@ void adcgs_weight_steps_nominal(adcgs_trainer *t)
 {
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         adcgs_mlp *m = &t->f->mlp[i];
-        for (int l = 0; m->n && l <= m->hidden && (m->entropy || !t->config.without_lattice); l++)
+        for (int l = 0; m->n && l <= m->hidden && (m->entropy || !t->config.without_weight_steps); l++)
             m->weight_step[l] = (int8_t)nominal(t->f, i, l);
     }
 }
@@ -158,7 +158,7 @@ adcgs_status adcgs_weight_steps_choose(adcgs_trainer *t, adcgs_error *error)
             adcgs_mlp_prepare(m, t->f->param[i].p, 1);
     }
     /* E_q acts on pictures and features at once; its few weights keep all bits. */
-    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT && !t->config.without_lattice; i++)
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT && !t->config.without_weight_steps; i++)
         if (t->f->mlp[i].n && i != ADCGS_P_E_STEPS)
             ADCGS_TRY(choose_network(t, i, chosen[i], error));
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)

@@ -17,7 +17,7 @@ void adcgs_weight_steps_nominal(adcgs_trainer *trainer);
 /**
  * Choose the lattice of every layer: of the exponents the one whose loss, measured on some training views, and bits, counted
  * by the coders, cost the least together. An entropy network's loss is what the features' bits grow by. With
- * config.without_lattice the networks that are binary32 stay so, and the others are on the finest lattice they can have.
+ * config.without_weight_steps the networks that are binary32 stay so, and the others are on the finest lattice they can have.
  */
 adcgs_status adcgs_weight_steps_choose(adcgs_trainer *trainer, adcgs_error *error);
 

@@ -13,8 +13,8 @@ static adcgs_train_config config_for(adcgs_train_target target, double value)
     assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
     c.iterations = ITERATIONS;
     c.start_anchors = 100;
-    c.refine_every = 20;
-    c.grow_threshold = 1e-6f;
+    c.densify_every = 20;
+    c.densify_threshold = 1e-6f;
     c.freeze_from = 0.92f; /* long enough to stop in */
     c.target = target;
     c.target_value = value;

@@ -104,7 +104,7 @@ static void price_shrinks_networks(void **state)
     uint64_t bytes[2];
     for (int i = 0; i < 2; i++) {
         adcgs_train_config config = small_config();
-        config.slim_at = 0.55f;
+        config.prune_units_at = 0.55f;
         config.network_rate = i ? 300 : 0;
         adcgs_trainer *t = run_to(&config, ITERATIONS);
         adcgs_stream stream;
@@ -127,8 +127,8 @@ static void units_go_twice(void **state)
 {
     adcgs_train_config config = small_config();
     config.iterations = 1500;
-    config.slim_at = 0.7f;
-    config.slim_again = 0.8f;
+    config.prune_units_at = 0.7f;
+    config.prune_units_again = 0.8f;
     config.lambda = 0.02f;
     adcgs_trainer *t = run_to(&config, 1040);
     const size_t before = weights_of(t->f);
@@ -273,7 +273,7 @@ static void raw_networks_are_exact(void **state)
     adcgs_buffer_init(&state_of_run);
     adcgs_buffer_init(&out);
     assert_int_equal(adcgs_trainer_store(t, &state_of_run, &error), ADCGS_OK);
-    config.without_lattice = 1;
+    config.without_weight_steps = 1;
     raw = run_to(&config, 0);
     assert_int_equal(adcgs_trainer_restore(raw, state_of_run.data, state_of_run.size, &error), ADCGS_OK);
     go_on(raw, ITERATIONS);

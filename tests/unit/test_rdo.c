@@ -12,7 +12,7 @@
 
 #include <math.h>
 
-static const char small[] = "max_anchors=150,start_anchors=100,refine_every=20,k=4,n_fv=12,theta_width=16,omega_width=16,"
+static const char small[] = "max_anchors=150,start_anchors=100,densify_every=20,k=4,n_fv=12,theta_width=16,omega_width=16,"
                             "varpi_width=16,entropy_width=16,lambda=0.05";
 static adcgs_trainer *trainer; /**< stopped just before its values are frozen */
 

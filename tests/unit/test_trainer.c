@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Whole training runs in miniature: stopping and going on, refinement, recovery
+ * Whole training runs in miniature: stopping and going on, densification, recovery
  * from what is not a number, and the numbers that end up in a stream.
  */
 #include "tiny_scene.h"
@@ -118,7 +118,7 @@ static void checkpoints_are_checked(void **state)
     adcgs_write_uint(&b, 0, 1);
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size, &error), ADCGS_ERR_DATA);
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size - 1, &error), ADCGS_OK);
-    config.grow_until += 0.01f;
+    config.densify_until += 0.01f;
     other = make(&config, NULL);
     assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "other options"));
@@ -152,7 +152,7 @@ static int count_anchors(void *user, const adcgs_train_report *r)
     return 0;
 }
 
-static void refinement_keeps_order_and_budget(void **state)
+static void densification_keeps_order_and_budget(void **state)
 {
     const adcgs_train_config config = all_stages_config();
     census c = { make(&config, pool), UINT32_MAX, 0 };
@@ -162,11 +162,11 @@ static void refinement_keeps_order_and_budget(void **state)
     adcgs_trainer_free(&c.t);
 }
 
-/** Anchors that nobody saw since the last refinement go, the others stay, and their parameters with them. */
-static void refinement_prunes_what_is_not_seen(void **state)
+/** Anchors that nobody saw since the last densification go, the others stay, and their parameters with them. */
+static void densification_prunes_what_is_not_seen(void **state)
 {
     adcgs_train_config config = all_stages_config();
-    config.grow_threshold = 1e9f;
+    config.densify_threshold = 1e6f;
     adcgs_trainer *t = make(&config, pool);
     uint32_t stop = 50, gone[3], left;
     run(t, stop_at, &stop);
@@ -464,7 +464,7 @@ static void rate_reaches_every_weight(void **state)
 {
     static const uint32_t stops[] = { 120, 180 };
     adcgs_train_config config = all_stages_config();
-    config.without_lattice = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
+    config.without_weight_steps = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
     config.network_rate = 0;
     for (size_t s = 0; s < ADCGS_COUNTOF(stops); s++) {
         adcgs_trainer *t = make(&config, pool);
@@ -700,7 +700,7 @@ static void moments_shared_by_views_change_settings(void **state)
 {
     adcgs_scene alone = *scene;
     adcgs_train_config config = small_config();
-    const float rigid = config.rigid_weight, from = config.area_from;
+    const float rigid = config.rigid_weight, from = config.scale_from;
     const adcgs_scene *alone_and_shared[] = { &alone, scene };
     assert_true(rigid > 0 && from > 0);
     alone.n_times = alone.n_views[ADCGS_SPLIT_TRAIN];
@@ -708,10 +708,10 @@ static void moments_shared_by_views_change_settings(void **state)
         for (int i = 0; i < 2; i++) {
             adcgs_trainer *t;
             if (by_hand)
-                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,area_from=0.125", &error), ADCGS_OK);
+                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,scale_from=0.125", &error), ADCGS_OK);
             assert_int_equal(adcgs_trainer_create(&t, alone_and_shared[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
             assert_true(t->config.rigid_weight == (by_hand ? 0.5f : i ? 0 : rigid));
-            assert_true(t->config.area_from == (by_hand ? 0.125f : i ? 0 : from));
+            assert_true(t->config.scale_from == (by_hand ? 0.125f : i ? 0 : from));
             adcgs_trainer_free(&t);
         }
 }
@@ -762,7 +762,7 @@ static void missing_things_are_found(void **state)
         assert_true(places[i].size > 0.01f && places[i].size < 0.2f && places[i].score > 0);
         assert_float_equal(places[i].rgb[0] - scene->background[0], 0.9, 2e-5); /* pictures have 16 bits */
     }
-    /* A refinement puts an anchor there, if the scene's own points may have left it out. */
+    /* Densification puts an anchor there, if the scene's own points may have left it out. */
     adcgs_scene with_points = *scene;
     with_points.points.n = ADCGS_POINTS_LEAST;
     t->scene = &with_points;
@@ -794,8 +794,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
         cmocka_unit_test(checkpoints_are_checked),
-        cmocka_unit_test(refinement_keeps_order_and_budget),
-        cmocka_unit_test(refinement_prunes_what_is_not_seen),
+        cmocka_unit_test(densification_keeps_order_and_budget),
+        cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
         cmocka_unit_test(no_number_is_rolled_back),
         cmocka_unit_test(no_number_is_rolled_back_late),
