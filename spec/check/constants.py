@@ -155,7 +155,7 @@ def _constants(tree, text):
 def _levels(tree, text, defined):
     """Each bound of the implementation's table is a constant of the text, and a row of its table of levels."""
     faults, code = [], {}
-    table = re.search(r"levels\[ADCGS_LEVELS\] = \{(.*?)\n    \};", _read(tree, "model/chunk.c"), re.S).group(1)
+    table = re.search(r"levels\[ADCGS_LEVELS\] = \{(.*?)\n    \};", _read(tree, "stream/chunk.c"), re.S).group(1)
     for name, value in re.findall(r"\.(\w+) = ([^,}]+)", table):
         code.setdefault(name, []).append(int(_value_of(value)))
     printed = [row for clause in text.clauses for row in _printed_levels(clause)]
@@ -164,7 +164,7 @@ def _levels(tree, text, defined):
         if field in code:
             given = [_value_of(v) for v in values.strip()[1:-1].split(",")][1:]
             if given != code[field]:
-                faults.append("%s is %s in the text, %s in model/chunk.c" % (name, given, code[field]))
+                faults.append("%s is %s in the text, %s in stream/chunk.c" % (name, given, code[field]))
             if given not in printed:
                 faults.append("%s, %s, is no row of the table of levels" % (name, given))
             del code[field]
@@ -235,9 +235,9 @@ def _syntax(tree, text):
         same = [f for f in code if f[0] == element]
         seen.add(element)
         if same and (element, base, low, high) not in same:
-            faults.append("%s: %s.%s is %s %g .. %g, in model/syntax.h %s" % (where, structure, element, base, low, high, sorted(same)))
+            faults.append("%s: %s.%s is %s %g .. %g, in stream/syntax.h %s" % (where, structure, element, base, low, high, sorted(same)))
     for element in sorted({f[0] for f in code} - {e for _, e in _fields_of_text(text)}):
-        faults.append("model/syntax.h: %s is in no syntax table" % element)
+        faults.append("stream/syntax.h: %s is in no syntax table" % element)
     if not seen:
-        faults.append("no element of the syntax tables was compared with model/syntax.h")
+        faults.append("no element of the syntax tables was compared with stream/syntax.h")
     return faults

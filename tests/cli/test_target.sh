@@ -56,7 +56,7 @@ within "$(wc -c <"$dir/many.adcgs")" 11641 12000 "bytes with many anchors"
 # The same bytes with other threads, and after an interrupt (ADCGS_FULL=1: early and late); a run is bound to its target.
 enc 0 threads --size 20k --iterations $n --threads 5
 cmp "$dir/size20k.adcgs" "$dir/threads.adcgs" || bad "another stream with other threads"
-for at in 300 ${ADCGS_FULL:+700}; do
+for at in ${ADCGS_FULL:+300} 700; do
     for try in 1 2 3; do
         rm -f "$dir/stop.log" "$dir/state"
         ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft --size 20k --iterations $n --threads 2 --log "$dir/stop.log" \
