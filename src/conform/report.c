@@ -50,7 +50,9 @@ void adcgs_junit_add(adcgs_junit *junit, const adcgs_vector *vector, adcgs_outco
     junit->failures += outcome == ADCGS_OUTCOME_WRONG;
     junit->errors += outcome == ADCGS_OUTCOME_CRASHED || outcome == ADCGS_OUTCOME_TIMEOUT;
     junit->seconds += seconds;
-    fprintf(junit->memory, "  <testcase classname=\"conformance\" name=\"%s\" time=\"%.3f\"", vector->id, seconds);
+    fprintf(junit->memory, "  <testcase classname=\"conformance\" name=\"");
+    put_escaped(junit->memory, vector->id);
+    fprintf(junit->memory, "\" time=\"%.3f\"", seconds);
     if (outcome == ADCGS_OUTCOME_OK) {
         fprintf(junit->memory, "/>\n");
         return;
@@ -70,7 +72,8 @@ adcgs_status adcgs_junit_close(adcgs_junit *junit, adcgs_error *error)
     fprintf(junit->file, " errors=\"%d\" time=\"%.3f\">\n%s</testsuite>\n", junit->errors, junit->seconds,
             complete ? junit->cases : "");
     free(junit->cases);
-    if (fclose(junit->file) != 0 || !complete)
+    const int failed = ferror(junit->file);
+    if (fclose(junit->file) != 0 || failed || !complete)
         return adcgs_fail(error, ADCGS_ERR_IO, "JUnit report: cannot write");
     return ADCGS_OK;
 }
