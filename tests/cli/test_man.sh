@@ -38,4 +38,5 @@ done
 if [ -x ./adcgs-enc ] && ! "$man/settings.sh" ./adcgs-enc "$man/adcgs-enc.1" | diff "$man/adcgs-enc.1" - >&2; then
     fault "adcgs-enc.1: its settings (<) are not those of the program (>); make man-update writes them"
 fi
+command -v groff >/dev/null || echo "skipped: warnings of the pages: no groff"
 [ "$faults" -eq 0 ]

@@ -258,6 +258,6 @@ if xvfb-run -a true >/dev/null 2>&1; then
     export ASAN_OPTIONS
     pictures
 else
-    echo "xvfb-run does not work here: not tried on a display"
+    echo "skipped: pictures on a display: xvfb-run does not work here"
 fi
 exit $failed

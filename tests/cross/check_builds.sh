@@ -1,28 +1,14 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# Everything, built with another compiler, without SIMD, and with sanitizers, passes the unit tests, the replay of the fuzz
-# targets, and the vectors.
+# Everything, built without SIMD and with sanitizers, passes the unit tests, the replay of the fuzz targets, and the vectors; a
+# tarball, built with another compiler, passes `make distcheck`.
 #
-# usage: check_builds.sh [-j JOBS] [-s] [TARGET...]
-#   -j JOBS  jobs of make (default: one per processor)
-#   -s       strict: a missing compiler is a failure, not a skip
-# Builds in builds/TARGET of the working directory. One line per target; exit status 1 if one failed.
+# usage: check_builds.sh [-c CONFORM] [-s] TARGET...
+#   -c CONFORM  a native adcgs-conform, which asks the decoders (default ./adcgs-conform)
+#   -s          strict: a missing compiler is a failure, not a skip
+# Builds in builds/TARGET of the working directory, which is a build folder. One line per target; exit status 1 if one failed.
 set -u
-source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd) || exit 99
-targets=(clang portable sanitize memory)
-jobs=$(nproc 2>/dev/null || echo 2)
-missing=SKIP
-
-while getopts j:s option; do
-    case $option in
-        j) jobs=$OPTARG ;;
-        s) missing=FAIL ;;
-        *) sed -n '/^# usage/,/^# Builds/s/^# //p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
-    esac
-done
-shift $((OPTIND - 1))
-[ $# -eq 0 ] || targets=("$@")
-[ ! -f "$source/config.status" ] || { echo "check_builds.sh: the source tree is configured in place" >&2; exit 2; }
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh" || exit 99
 
 # describe TARGET: sets the arguments of configure, CC first, and the unit tests that it leaves out.
 describe()
@@ -30,7 +16,7 @@ describe()
     local findings='-fsanitize=address,undefined -fno-sanitize-recover=all'
     except=
     case $1 in
-        clang) arguments=(CC=clang CXX=clang++ CFLAGS=-O2 CXXFLAGS=-O1 --enable-werror) ;;
+        dist) arguments=(CC=clang CXX=clang++ CFLAGS=-O2 CXXFLAGS=-O1 --enable-werror) ;;
         portable)
             arguments=(CC=gcc CXX=g++ CFLAGS=-O2 CXXFLAGS=-O1 --enable-werror --disable-simd)
             # Whole trainings take 20 times as long without SIMD; that levels agree is tested by the others.
@@ -45,12 +31,43 @@ describe()
 build()
 {
     [ Makefile -nt "$source/configure" ] || "$source/configure" --disable-shared "${arguments[@]}" || return
-    make -j "$jobs"
+    make
+}
+
+# units: builds in the working directory, tests, and lets the decoder answer for all vectors.
+units()
+{
+    build >build.log 2>&1 || { line FAIL "does not build, see $PWD/build.log"; return; }
+    make -k check-units UNITS_EXCEPT="$except" VERBOSE=1 >check.log 2>&1 || { failed_tests; return; }
+    local answers
+    answers=$(ask ./adcgs-dec) || { line FAIL "$answers"; return; }
+    line PASS "$(counted); $answers, $((SECONDS - begin)) s"
+}
+
+# The tarball: whole, and good for a build elsewhere, a read-only source tree included. At the length of a short check.
+distcheck()
+{
+    local log=$PWD/check.log
+    (cd ../.. && unset ADCGS_FULL && make distcheck DISTCHECK_CONFIGURE_FLAGS="${arguments[*]}" VERBOSE=1) >"$log" 2>&1 ||
+        { failed_tests; return; }
+    line PASS "distcheck, $(counted), $((SECONDS - begin)) s"
+}
+
+failed_tests()
+{
+    line FAIL "$(grep -E '^(FAIL|ERROR): ' check.log | sort -u | tr '\n' ' ')see $PWD/check.log"
+}
+
+counted()
+{
+    local skipped
+    skipped=$(sed -n 's/^SKIP: //p' check.log | sort -u | tr '\n' ' ')
+    echo "$(sed -n 's/^# PASS: *//p' check.log) tests${skipped:+, skipped ${skipped% }}"
 }
 
 check()
 {
-    local target=$1 arguments except count begin=$SECONDS
+    local target=$1 arguments except begin=$SECONDS
     describe "$target" || return
     line()
     {
@@ -58,20 +75,12 @@ check()
     }
     command -v "${arguments[0]#CC=}" >/dev/null || { line $missing "not installed"; return; }
     mkdir -p "builds/$target" && cd "builds/$target" || return
-    build >build.log 2>&1 || { line FAIL "does not build, see $PWD/build.log"; return; }
-    make -j "$jobs" -k check-units UNITS_EXCEPT="$except" VERBOSE=1 >check.log 2>&1 ||
-        { line FAIL "$(grep -E '^(FAIL|ERROR): ' check.log | sort -u | tr '\n' ' ')see $PWD/check.log"; return; }
-    count=$(sed -n 's/^# PASS: *//p' check.log)
-    line PASS "$count tests, $((SECONDS - begin)) s"
+    case $target in
+        dist) distcheck ;;
+        *) units ;;
+    esac
 }
 
-for target in "${targets[@]}"; do
-    describe "$target" || exit 2
-done
-failed=0
-for target in "${targets[@]}"; do
-    result=$(check "$target")
-    echo "$result"
-    [[ $result == PASS:* || $result == SKIP:* ]] || failed=1
-done
-exit $failed
+parse_options "$@"
+shift $((OPTIND - 1))
+each "$@"

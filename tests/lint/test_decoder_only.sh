@@ -5,7 +5,7 @@
 set -u
 source=$(cd "${srcdir:-.}" && pwd) || exit 99
 # A tree that is configured in place cannot be configured elsewhere too.
-[ -x "$source/configure" ] && [ ! -f "$source/config.status" ] || exit 77
+[ -x "$source/configure" ] && [ ! -f "$source/config.status" ] || { echo "skipped: the source tree is configured in place"; exit 77; }
 dir=$(mktemp -d) || exit 99
 trap 'rm -rf "$dir"' EXIT
 cd "$dir" || exit 99

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: BSD-2-Clause
+# What check_cross.sh and check_builds.sh share; to be read with `.`, and then:
+#   parse_options "$@"; shift $((OPTIND - 1))    sets $source, $conform, and $missing, the word for a missing compiler
+
+# What a sanitizer finds is a crash, never to be taken for an exit code.
+export ASAN_OPTIONS=abort_on_error=1 UBSAN_OPTIONS=abort_on_error=1 MSAN_OPTIONS=abort_on_error=1
+
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd) || exit 99
+name=${0##*/}
+
+wrong_use()
+{
+    echo "$name: $*" >&2
+    exit 2
+}
+
+parse_options()
+{
+    conform=./adcgs-conform missing=SKIP
+    while getopts c:s option; do
+        case $option in
+            c) conform=$OPTARG ;;
+            s) missing=FAIL ;;
+            *) sed -n '/^# usage/,/^# Builds/s/^# //p' "$0" >&2; exit 2 ;;
+        esac
+    done
+    conform=$(realpath "$conform") && [ -x "$conform" ] || wrong_use "no adcgs-conform: $conform"
+    [ ! -f "$source/config.status" ] || wrong_use "the source tree is configured in place"
+}
+
+# levels RUN: the CPU levels at which a decoder runs here; the portable one has to.
+levels()
+{
+    local level
+    echo scalar
+    for level in avx2 avx512; do
+        $1 --cpu $level --md5 "$source/conformance/vectors/good-geom-one-anchor.adcgs" >/dev/null 2>&1 && echo $level
+    done
+}
+
+# ask RUN: a decoder answers what the manifest asks, at each of its levels. Prints how many vectors and which levels, or what failed.
+ask()
+{
+    local level vectors=0 done_levels=
+    for level in $(levels "$1"); do
+        "$conform" --decoder "$1 --cpu $level --answer {request} {in}" "$source/conformance/manifest.json" >conform-$level.log 2>&1 ||
+            { echo "$level: $(tail -n 1 conform-$level.log); see $PWD/conform-$level.log"; return 1; }
+        vectors=$(sed -n '$s/ .*//p' conform-$level.log)
+        done_levels+=" $level"
+    done
+    echo "$vectors vectors,$done_levels"
+}
+
+# each TARGET...: checks one after the other; the name may come with the prefix of make's target. Fails if one does.
+each()
+{
+    local target result failed=0
+    for target; do
+        result=$(check "${target#check-*-}")
+        echo "$result"
+        [[ $result == PASS:* || $result == SKIP:* ]] || failed=1
+    done
+    return $failed
+}
