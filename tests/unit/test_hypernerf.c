@@ -231,10 +231,10 @@ static void test_detection(void **state)
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms.json", "frames");
     unlink(in("transforms.json"));
     unlink(in("metadata.json"));
-    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_IO, "not a scene", "metadata.json");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "not a scene", "metadata.json");
     mend(state);
     assert_int_equal(rename(in("camera"), in("cameras")), 0);
-    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_IO, "not a scene", "camera/");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "not a scene", "camera/");
     assert_int_equal(rename(in("cameras"), in("camera")), 0);
 }
 

@@ -364,7 +364,7 @@ static void test_kinds(void **state)
     open_as(ADCGS_DATASET_ADCGS, ADCGS_ERR_USAGE, "expected a scene file");
     assert_int_equal(remove_folder(NULL), 0);
     assert_int_equal(mkdir(folder, 0777), 0);
-    open_as(ADCGS_DATASET_AUTO, ADCGS_ERR_IO, "poses_bounds.npy, nor a COLMAP model");
+    open_as(ADCGS_DATASET_AUTO, ADCGS_ERR_DATA, "poses_bounds.npy, nor a COLMAP model");
     open_as(ADCGS_DATASET_LLFF, ADCGS_ERR_IO, "poses_bounds.npy");
     open_as(ADCGS_DATASET_COLMAP, ADCGS_ERR_DATA, "no COLMAP model");
     put_text("scene.json", "{}");

@@ -262,7 +262,7 @@ static void test_bad_files(void **state)
 {
     expect_error(adcgs_scene_open(&scene, in("nowhere"), NULL, &error), ADCGS_ERR_IO, "nowhere", "No such file");
     expect_error(adcgs_scene_open(&scene, "", NULL, &error), ADCGS_ERR_IO, "cannot open", "");
-    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_IO, "not a scene", "transforms.json");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "not a scene", "transforms.json");
     expect_bad("{\"frames\":[\n\n,]}", ADCGS_ERR_DATA, "line 3", "malformed JSON");
     expect_bad("{\"w\":1e999}", ADCGS_ERR_DATA, "line 1", "malformed JSON");
     expect_bad("{\"w\":NaN}", ADCGS_ERR_DATA, "line 1", "malformed JSON");
