@@ -12,27 +12,27 @@
 #define ORBIT_ELEVATION 0.35
 #define ORBIT_FOCAL 1.2    /* focal length per image width */
 
-adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, const char *who, adcgs_error *error)
+adcgs_status adcgs_camera_path_alloc(adcgs_camera_path *frames, double n, const char *who, adcgs_error *error)
 {
-    *shots = (adcgs_shots){0};
-    if (!(n >= 1.0 && n <= ADCGS_SHOTS_MAX))
+    *frames = (adcgs_camera_path){0};
+    if (!(n >= 1.0 && n <= ADCGS_PATH_FRAMES_MAX))
         return adcgs_fail(error, who ? ADCGS_ERR_DATA : ADCGS_ERR_USAGE, "%s%s%.0f frames asked for, expected 1 to %d",
-                          who ? who : "", who ? ": " : "", n, ADCGS_SHOTS_MAX);
-    shots->shot = calloc((size_t)n, sizeof *shots->shot);
-    if (!shots->shot)
+                          who ? who : "", who ? ": " : "", n, ADCGS_PATH_FRAMES_MAX);
+    frames->frame = calloc((size_t)n, sizeof *frames->frame);
+    if (!frames->frame)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %.0f frames", n);
-    shots->n = (int)n;
+    frames->n = (int)n;
     return ADCGS_OK;
 }
 
-void adcgs_shots_free(adcgs_shots *shots)
+void adcgs_camera_path_free(adcgs_camera_path *frames)
 {
-    free(shots->shot);
-    *shots = (adcgs_shots){0};
+    free(frames->frame);
+    *frames = (adcgs_camera_path){0};
 }
 
 /** On the outside, looking at the scene's centre from a little above. */
-void adcgs_shots_default(adcgs_camera *camera, const adcgs_info *info, const double up[3])
+void adcgs_camera_path_default(adcgs_camera *camera, const adcgs_info *info, const double up[3])
 {
     *camera = (adcgs_camera){.width = ADCGS_ORBIT_WIDTH,
                              .height = ADCGS_ORBIT_HEIGHT,

@@ -18,19 +18,19 @@
 typedef struct reader {
     adcgs_json_place at;
     const adcgs_info *info;
-    const adcgs_shots_request *request;
+    const adcgs_camera_path_request *request;
     double near_plane; /* of cameras that do not say */
 } reader;
 
 /** A camera and its time, which is after_begin seconds into the stream if neither file nor request say. */
-static adcgs_status read_shot(const reader *r, double after_begin, const char *kind, adcgs_shot *shot)
+static adcgs_status read_shot(const reader *r, double after_begin, const char *kind, adcgs_camera_frame *frame)
 {
     const adcgs_json_place *at = &r->at;
-    adcgs_camera *camera = &shot->camera;
+    adcgs_camera *camera = &frame->camera;
     int found;
-    shot->time = r->request->has_times ? r->request->begin : r->info->time_start + after_begin;
+    frame->time = r->request->has_times ? r->request->begin : r->info->time_start + after_begin;
     if (json_object_get(at->frame, "time"))
-        ADCGS_TRY(adcgs_json_number(at, "time", -SECONDS_MAX, SECONDS_MAX, &shot->time, &found));
+        ADCGS_TRY(adcgs_json_number(at, "time", -SECONDS_MAX, SECONDS_MAX, &frame->time, &found));
     *camera = (adcgs_camera){.width = ADCGS_ORBIT_WIDTH, .height = ADCGS_ORBIT_HEIGHT, .near_plane = r->near_plane};
     snprintf(camera->name, sizeof camera->name, "%s %zu", kind, at->index);
     ADCGS_TRY(adcgs_json_size(at, camera, &found));
@@ -50,34 +50,34 @@ static adcgs_status enter(reader *r, json_t *list, size_t i)
 }
 
 /** Sizes may differ only where --size makes them one. */
-static adcgs_status check_size(const reader *r, const adcgs_shot *shot, const adcgs_shot *first)
+static adcgs_status check_size(const reader *r, const adcgs_camera_frame *frame, const adcgs_camera_frame *first)
 {
     if (!r->request->size[0] &&
-        (shot->camera.width != first->camera.width || shot->camera.height != first->camera.height))
+        (frame->camera.width != first->camera.width || frame->camera.height != first->camera.height))
         return adcgs_json_bad(&r->at, ADCGS_ERR_DATA, "w", "%s of one path must have one size; or use --size", r->at.list);
     return ADCGS_OK;
 }
 
-static adcgs_status read_frames(reader *r, adcgs_shots *out)
+static adcgs_status read_frames(reader *r, adcgs_camera_path *out)
 {
     json_t *frames;
     size_t n;
     r->at.list = "frames";
     ADCGS_TRY(adcgs_json_frames(&r->at, &frames, &n));
-    ADCGS_TRY(adcgs_shots_alloc(out, (double)n, r->at.path, r->at.error));
+    ADCGS_TRY(adcgs_camera_path_alloc(out, (double)n, r->at.path, r->at.error));
     for (size_t i = 0; i < n; i++) {
         ADCGS_TRY(enter(r, frames, i));
-        ADCGS_TRY(read_shot(r, (double)i / r->info->frame_rate, "frame", &out->shot[i]));
-        ADCGS_TRY(check_size(r, &out->shot[i], &out->shot[0]));
+        ADCGS_TRY(read_shot(r, (double)i / r->info->frame_rate, "frame", &out->frame[i]));
+        ADCGS_TRY(check_size(r, &out->frame[i], &out->frame[0]));
     }
     return ADCGS_OK;
 }
 
 /* ---- Key frames ---- */
 
-static adcgs_status read_key(reader *r, adcgs_flight_key *keys, size_t i)
+static adcgs_status read_key(reader *r, adcgs_camera_key *keys, size_t i)
 {
-    adcgs_flight_key *key = &keys[i];
+    adcgs_camera_key *key = &keys[i];
     int found = 0;
     if (json_object_get(r->at.frame, "at"))
         ADCGS_TRY(adcgs_json_number(&r->at, "at", -SECONDS_MAX, SECONDS_MAX, &key->at, &found));
@@ -86,10 +86,10 @@ static adcgs_status read_key(reader *r, adcgs_flight_key *keys, size_t i)
     if (i && !(key->at >= key[-1].at + 1e-6))
         return adcgs_json_bad(&r->at, ADCGS_ERR_DATA, "at", "%g, expected more than the %g of the key before", key->at,
                               key[-1].at);
-    ADCGS_TRY(read_shot(r, key->at - keys[0].at, "key", &key->shot));
-    ADCGS_TRY(check_size(r, &key->shot, &keys[0].shot));
+    ADCGS_TRY(read_shot(r, key->at - keys[0].at, "key", &key->frame));
+    ADCGS_TRY(check_size(r, &key->frame, &keys[0].frame));
     if (r->request->size[0]) /* lenses are comparable for one size only */
-        adcgs_camera_fit(&key->shot.camera, r->request->size[0], r->request->size[1], r->request->fill);
+        adcgs_camera_fit(&key->frame.camera, r->request->size[0], r->request->size[1], r->request->fill);
     return ADCGS_OK;
 }
 
@@ -104,24 +104,24 @@ static adcgs_status read_interpolation(const reader *r, int *linear)
 }
 
 /** A frame for each step of the frame rate, the last key included where a step meets it. */
-static adcgs_status fly(const reader *r, const adcgs_flight_key *keys, size_t n, int linear, adcgs_shots *out)
+static adcgs_status fly(const reader *r, const adcgs_camera_key *keys, size_t n, int linear, adcgs_camera_path *out)
 {
     const double begin = keys[0].at, frames = floor((keys[n - 1].at - begin) * out->frame_rate + 1e-6) + 1.0;
     const double rate = out->frame_rate;
-    adcgs_flight flight;
-    ADCGS_TRY(adcgs_shots_alloc(out, frames, r->at.path, r->at.error));
+    adcgs_camera_spline spline;
+    ADCGS_TRY(adcgs_camera_path_alloc(out, frames, r->at.path, r->at.error));
     out->frame_rate = rate;
-    ADCGS_TRY(adcgs_flight_init(&flight, keys, (int)n, linear, 0, r->at.error));
+    ADCGS_TRY(adcgs_camera_spline_init(&spline, keys, (int)n, linear, 0, r->at.error));
     for (int i = 0; i < out->n; i++) {
-        adcgs_camera *camera = &out->shot[i].camera;
-        adcgs_flight_at(&flight, begin + i / rate, &out->shot[i]);
+        adcgs_camera *camera = &out->frame[i].camera;
+        adcgs_camera_spline_at(&spline, begin + i / rate, &out->frame[i]);
         snprintf(camera->name, sizeof camera->name, "frame %d", i);
     }
-    adcgs_flight_clear(&flight);
+    adcgs_camera_spline_clear(&spline);
     return ADCGS_OK;
 }
 
-static adcgs_status read_keys(reader *r, adcgs_shots *out)
+static adcgs_status read_keys(reader *r, adcgs_camera_path *out)
 {
     json_t *list;
     size_t n;
@@ -131,7 +131,7 @@ static adcgs_status read_keys(reader *r, adcgs_shots *out)
     ADCGS_TRY(adcgs_json_number(&r->at, "frame_rate", 1e-3, 1e4, &out->frame_rate, &found));
     ADCGS_TRY(read_interpolation(r, &linear));
     ADCGS_TRY(adcgs_json_frames(&r->at, &list, &n));
-    adcgs_flight_key *keys = calloc(n, sizeof *keys);
+    adcgs_camera_key *keys = calloc(n, sizeof *keys);
     if (!keys)
         return adcgs_fail(r->at.error, ADCGS_ERR_MEMORY, "%s: out of memory for %zu keys", r->at.path, n);
     adcgs_status status = ADCGS_OK;
@@ -146,7 +146,7 @@ static adcgs_status read_keys(reader *r, adcgs_shots *out)
     return status;
 }
 
-adcgs_status adcgs_shots_read_path(adcgs_shots *out, const adcgs_info *info, const adcgs_shots_request *request,
+adcgs_status adcgs_camera_path_read(adcgs_camera_path *out, const adcgs_info *info, const adcgs_camera_path_request *request,
                                    double near_plane, adcgs_error *error)
 {
     reader r = {{.path = request->camera, .error = error}, info, request, near_plane};

@@ -53,7 +53,7 @@ adcgs_status adcgs_rig_init(adcgs_rig *rig, const adcgs_decoder *decoder, const 
     if (!rig->cameras)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %d cameras", rig->n);
     if (!info->cameras)
-        adcgs_shots_default(&rig->cameras[0], info, up);
+        adcgs_camera_path_default(&rig->cameras[0], info, up);
     for (int c = 0; c < info->cameras; c++) {
         ADCGS_TRY(adcgs_get_camera(decoder, c, &rig->cameras[c], error));
         adcgs_camera_fit(&rig->cameras[c], rig->cameras[0].width, rig->cameras[0].height, 0);
@@ -104,7 +104,7 @@ static void spiral_frame(const adcgs_rig *rig, double pose[12], double radius[3]
     }
 }
 
-void adcgs_rig_spiral(const adcgs_rig *rig, adcgs_shots *shots)
+void adcgs_rig_spiral(const adcgs_rig *rig, adcgs_camera_path *frames)
 {
     double pose[12], radius[3], focus[3], up[3];
     spiral_frame(rig, pose, radius);
@@ -112,15 +112,15 @@ void adcgs_rig_spiral(const adcgs_rig *rig, adcgs_shots *shots)
         focus[i] = pose[4 * i + 3] + rig->distance * pose[4 * i + 2];
         up[i] = -pose[4 * i + 1];
     }
-    for (int s = 0; s < shots->n; s++) {
-        const double angle = SPIRAL_TURNS * FULL_TURN * s / shots->n;
+    for (int s = 0; s < frames->n; s++) {
+        const double angle = SPIRAL_TURNS * FULL_TURN * s / frames->n;
         /* Once forward and back while going round twice. */
         const double offset[3] = {radius[0] * cos(angle), radius[1] * sin(angle), radius[2] * sin(angle / SPIRAL_TURNS)};
         double eye[3];
         for (int i = 0; i < 3; i++)
             eye[i] = pose[4 * i + 3] + offset[0] * pose[4 * i] + offset[1] * pose[4 * i + 1] + offset[2] * pose[4 * i + 2];
-        shots->shot[s].camera = rig->cameras[0];
-        adcgs_look_at(shots->shot[s].camera.cam_to_world, eye, focus, up);
+        frames->frame[s].camera = rig->cameras[0];
+        adcgs_look_at(frames->frame[s].camera.cam_to_world, eye, focus, up);
     }
 }
 
@@ -175,39 +175,39 @@ static double distance_between(const adcgs_camera *a, const adcgs_camera *b)
 }
 
 /** A key for each camera, at the length of the way there; cameras in one place are one. \return how many. */
-static int make_keys(const adcgs_rig *rig, const place *places, int closed, adcgs_flight_key *keys)
+static int make_keys(const adcgs_rig *rig, const place *places, int closed, adcgs_camera_key *keys)
 {
     int n = 0;
     for (int c = 0; c < rig->n + (closed != 0); c++) {
         const adcgs_camera *camera = &rig->cameras[places[c % rig->n].camera];
-        const double way = n ? distance_between(camera, &keys[n - 1].shot.camera) : 0.0;
+        const double way = n ? distance_between(camera, &keys[n - 1].frame.camera) : 0.0;
         if (n && way <= 1e-6 * rig->distance)
             continue;
-        keys[n] = (adcgs_flight_key){.at = n ? keys[n - 1].at + way : 0.0, .shot.camera = *camera};
+        keys[n] = (adcgs_camera_key){.at = n ? keys[n - 1].at + way : 0.0, .frame.camera = *camera};
         n++;
     }
     return n;
 }
 
-adcgs_status adcgs_rig_bullet(const adcgs_rig *rig, adcgs_shots *shots, adcgs_error *error)
+adcgs_status adcgs_rig_bullet(const adcgs_rig *rig, adcgs_camera_path *frames, adcgs_error *error)
 {
     place *places = malloc((size_t)rig->n * sizeof *places);
-    adcgs_flight_key *keys = malloc(((size_t)rig->n + 1) * sizeof *keys);
-    adcgs_flight flight = {0};
+    adcgs_camera_key *keys = malloc(((size_t)rig->n + 1) * sizeof *keys);
+    adcgs_camera_spline spline = {0};
     adcgs_status status = places && keys ? ADCGS_OK
                                          : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %d cameras", rig->n);
     if (status == ADCGS_OK) {
         const int closed = order_places(rig, places) <= RING_GAP * FULL_TURN / rig->n;
         const int n = make_keys(rig, places, closed, keys);
-        status = adcgs_flight_init(&flight, keys, n, 0, closed, error);
-        const double whole = keys[n - 1].at, last = closed || shots->n < 2 ? shots->n : shots->n - 1;
-        for (int s = 0; s < shots->n && status == ADCGS_OK; s++) {
-            const double time = shots->shot[s].time;
-            adcgs_flight_at(&flight, whole * s / last, &shots->shot[s]);
-            shots->shot[s].time = time;
+        status = adcgs_camera_spline_init(&spline, keys, n, 0, closed, error);
+        const double whole = keys[n - 1].at, last = closed || frames->n < 2 ? frames->n : frames->n - 1;
+        for (int s = 0; s < frames->n && status == ADCGS_OK; s++) {
+            const double time = frames->frame[s].time;
+            adcgs_camera_spline_at(&spline, whole * s / last, &frames->frame[s]);
+            frames->frame[s].time = time;
         }
     }
-    adcgs_flight_clear(&flight);
+    adcgs_camera_spline_clear(&spline);
     free(places);
     free(keys);
     return status;

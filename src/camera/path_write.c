@@ -38,7 +38,7 @@ static void write_key(adcgs_json *json, const adcgs_camera *camera, int index)
     adcgs_json_close(json);
 }
 
-adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *path, adcgs_error *error)
+adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const char *path, adcgs_error *error)
 {
     adcgs_info info;
     adcgs_atomic atomic;

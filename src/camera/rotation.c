@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-void adcgs_v3_turn(const double axis[3], double angle, double v[3])
+void adcgs_rotate_about(const double axis[3], double angle, double v[3])
 {
     adcgs_v3_rotate(axis, sin(angle), cos(angle), v);
 }
@@ -75,7 +75,7 @@ void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill)
 }
 
 /** The component that is largest is found first: dividing by it is safe. */
-void adcgs_turn_from_pose(const double pose[12], double q[4])
+void adcgs_rotation_from_pose(const double pose[12], double q[4])
 {
     const double m[3] = {pose[0], pose[5], pose[10]}, trace = m[0] + m[1] + m[2];
     int i = m[1] > m[0] ? 1 : 0;
@@ -98,7 +98,7 @@ void adcgs_turn_from_pose(const double pose[12], double q[4])
         q[a] /= length;
 }
 
-void adcgs_turn_to_pose(const double q[4], double pose[12])
+void adcgs_rotation_to_pose(const double q[4], double pose[12])
 {
     const double w = q[0], x = q[1], y = q[2], z = q[3];
     const double m[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
@@ -108,7 +108,7 @@ void adcgs_turn_to_pose(const double q[4], double pose[12])
         memcpy(pose + 4 * i, m[i], sizeof m[i]);
 }
 
-void adcgs_turn_multiply(const double a[4], const double b[4], double out[4])
+void adcgs_rotation_multiply(const double a[4], const double b[4], double out[4])
 {
     const double q[4] = {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
                          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
@@ -117,7 +117,7 @@ void adcgs_turn_multiply(const double a[4], const double b[4], double out[4])
     memcpy(out, q, sizeof q);
 }
 
-void adcgs_turn_exp(const double turn[3], double t, double out[4])
+void adcgs_rotation_exp(const double turn[3], double t, double out[4])
 {
     const double angle = t * sqrt(adcgs_v3_dot(turn, turn));
     const double per_turn = fabs(angle) > 1e-8 ? sin(angle) / angle * t : t;
@@ -126,11 +126,11 @@ void adcgs_turn_exp(const double turn[3], double t, double out[4])
         out[1 + i] = per_turn * turn[i];
 }
 
-void adcgs_turn_between(const double a[4], const double b[4], double turn[3])
+void adcgs_rotation_between(const double a[4], const double b[4], double turn[3])
 {
     const double back[4] = {a[0], -a[1], -a[2], -a[3]};
     double q[4];
-    adcgs_turn_multiply(back, b, q);
+    adcgs_rotation_multiply(back, b, q);
     const double sine = sqrt(adcgs_v3_dot(q + 1, q + 1)), sign = q[0] < 0.0 ? -1.0 : 1.0;
     const double per_sine = sine > 1e-12 ? atan2(sine, fabs(q[0])) / sine : 0.0;
     for (int i = 0; i < 3; i++)

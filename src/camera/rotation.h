@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
  * \file
- * Directions, rotations and pictures of cameras, moved by hand or along a
- * path, in binary64. Quaternions are w, x, y, z; a turn is an axis times half the
- * angle, so that the quaternion is its exponential.
+ * Rotations and poses of cameras, in binary64. Quaternions are w, x, y, z; a turn is an axis times half the angle, so that the
+ * quaternion is its exponential. From a matrix a quaternion comes by its largest component (Shepperd, 1978); about an axis
+ * vectors turn by Rodrigues' formula.
  */
 #ifndef ADCGS_CAMERA_ROTATION_H
 #define ADCGS_CAMERA_ROTATION_H
@@ -13,7 +13,7 @@
 #include <adcgs/types.h>
 
 /** Turn a vector by an angle in radians about an axis of length 1. */
-void adcgs_v3_turn(const double axis[3], double angle, double v[3]);
+void adcgs_rotate_about(const double axis[3], double angle, double v[3]);
 
 /** The direction that the stream calls up, of length 1; z if it does not say. \return whether it says. */
 int adcgs_find_up(const adcgs_info *info, double up[3]);
@@ -35,13 +35,13 @@ void adcgs_camera_stretch(adcgs_camera *camera, int width, int height);
 void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill);
 
 /** Rotation of a row-major 3x4 matrix, whose 3x3 part is orthonormal, and back; the last column stays. */
-void adcgs_turn_from_pose(const double pose[12], double q[4]);
-void adcgs_turn_to_pose(const double q[4], double pose[12]);
+void adcgs_rotation_from_pose(const double pose[12], double q[4]);
+void adcgs_rotation_to_pose(const double q[4], double pose[12]);
 /** out = a b; out may be either. */
-void adcgs_turn_multiply(const double a[4], const double b[4], double out[4]);
+void adcgs_rotation_multiply(const double a[4], const double b[4], double out[4]);
 /** out = exp(t times turn). */
-void adcgs_turn_exp(const double turn[3], double t, double out[4]);
+void adcgs_rotation_exp(const double turn[3], double t, double out[4]);
 /** The shortest turn from a to b: b = a exp(turn), or its negative, which is the same rotation. */
-void adcgs_turn_between(const double a[4], const double b[4], double turn[3]);
+void adcgs_rotation_between(const double a[4], const double b[4], double turn[3]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Flight of a camera through key frames. */
+/** \file Spline of a camera through key frames. */
 #include "config.h"
 
 #include "camera/spline.h"
@@ -20,14 +20,14 @@ struct adcgs_knot {
     double chord[RATES];       /* on the mean to the next knot */
 };
 
-static void make_knot(adcgs_knot *knot, const adcgs_flight_key *key)
+static void make_knot(adcgs_knot *knot, const adcgs_camera_key *key)
 {
-    const adcgs_camera *camera = &key->shot.camera;
-    const double numbers[N_NUMBERS] = {camera->fx, camera->fy, camera->cx, camera->cy, camera->near_plane, key->shot.time};
+    const adcgs_camera *camera = &key->frame.camera;
+    const double numbers[N_NUMBERS] = {camera->fx, camera->fy, camera->cx, camera->cy, camera->near_plane, key->frame.time};
     *knot = (adcgs_knot){.at = key->at};
     for (int i = 0; i < 3; i++)
         knot->position[i] = camera->cam_to_world[4 * i + 3];
-    adcgs_turn_from_pose(camera->cam_to_world, knot->rotation);
+    adcgs_rotation_from_pose(camera->cam_to_world, knot->rotation);
     memcpy(knot->numbers, numbers, sizeof numbers);
 }
 
@@ -37,7 +37,7 @@ static void make_chord(adcgs_knot *knot)
     double *chord = knot->chord;
     for (int i = 0; i < 3; i++)
         chord[POSITION + i] = next->position[i] - knot->position[i];
-    adcgs_turn_between(knot->rotation, next->rotation, chord + ROTATION);
+    adcgs_rotation_between(knot->rotation, next->rotation, chord + ROTATION);
     for (int i = 0; i < N_NUMBERS; i++)
         chord[NUMBERS + i] = next->numbers[i] - knot->numbers[i];
     for (int i = 0; i < RATES; i++)
@@ -68,7 +68,7 @@ static void make_rate(double rate[RATES], const adcgs_knot *before, const adcgs_
         rate[i] = number_rate(before->chord[i], knot->chord[i], h0, h1);
 }
 
-/** The ends of an open flight do not bend. */
+/** The ends of an open spline do not bend. */
 static void make_end_rates(adcgs_knot *knots, int n)
 {
     for (int i = 0; i < RATES; i++) {
@@ -78,14 +78,14 @@ static void make_end_rates(adcgs_knot *knots, int n)
     }
 }
 
-adcgs_status adcgs_flight_init(adcgs_flight *flight, const adcgs_flight_key *keys, int n, int linear, int closed,
+adcgs_status adcgs_camera_spline_init(adcgs_camera_spline *spline, const adcgs_camera_key *keys, int n, int linear, int closed,
                                adcgs_error *error)
 {
-    *flight = (adcgs_flight){.n = n, .linear = linear, .camera = keys[0].shot.camera};
+    *spline = (adcgs_camera_spline){.n = n, .linear = linear, .camera = keys[0].frame.camera};
     adcgs_knot *knots = malloc((size_t)n * sizeof *knots);
     if (!knots)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a camera path of %d keys", n);
-    flight->knots = knots;
+    spline->knots = knots;
     for (int i = 0; i < n; i++)
         make_knot(&knots[i], &keys[i]);
     for (int i = 0; i + 1 < n; i++)
@@ -100,24 +100,24 @@ adcgs_status adcgs_flight_init(adcgs_flight *flight, const adcgs_flight_key *key
     return ADCGS_OK;
 }
 
-void adcgs_flight_clear(adcgs_flight *flight)
+void adcgs_camera_spline_clear(adcgs_camera_spline *spline)
 {
-    free(flight->knots);
-    *flight = (adcgs_flight){0};
+    free(spline->knots);
+    *spline = (adcgs_camera_spline){0};
 }
 
 /** The last knot at or before a place that has one after it. */
-static const adcgs_knot *find_knot(const adcgs_flight *flight, double at)
+static const adcgs_knot *find_knot(const adcgs_camera_spline *spline, double at)
 {
-    int lo = 0, hi = flight->n - 1;
+    int lo = 0, hi = spline->n - 1;
     while (hi - lo > 1) {
         const int middle = lo + (hi - lo) / 2;
-        if (flight->knots[middle].at <= at)
+        if (spline->knots[middle].at <= at)
             lo = middle;
         else
             hi = middle;
     }
-    return &flight->knots[lo];
+    return &spline->knots[lo];
 }
 
 /** Cubic through a and b with rates over the whole stretch. */
@@ -135,27 +135,27 @@ static void rotation_curve(const adcgs_knot *a, const adcgs_knot *b, double h, d
 {
     const double u = 1.0 - t, third = h / 3.0;
     double start[4], end[4], w1[3], q[4];
-    adcgs_turn_exp(a->rate + ROTATION, third, start);
-    adcgs_turn_multiply(a->rotation, start, start);
-    adcgs_turn_exp(b->rate + ROTATION, -third, end);
-    adcgs_turn_multiply(b->rotation, end, end);
-    adcgs_turn_between(start, end, w1);
-    adcgs_turn_exp(a->rate + ROTATION, third * (1.0 - u * u * u), q);
-    adcgs_turn_multiply(a->rotation, q, out);
-    adcgs_turn_exp(w1, t * t * (3.0 - 2.0 * t), q);
-    adcgs_turn_multiply(out, q, out);
-    adcgs_turn_exp(b->rate + ROTATION, third * t * t * t, q);
-    adcgs_turn_multiply(out, q, out);
+    adcgs_rotation_exp(a->rate + ROTATION, third, start);
+    adcgs_rotation_multiply(a->rotation, start, start);
+    adcgs_rotation_exp(b->rate + ROTATION, -third, end);
+    adcgs_rotation_multiply(b->rotation, end, end);
+    adcgs_rotation_between(start, end, w1);
+    adcgs_rotation_exp(a->rate + ROTATION, third * (1.0 - u * u * u), q);
+    adcgs_rotation_multiply(a->rotation, q, out);
+    adcgs_rotation_exp(w1, t * t * (3.0 - 2.0 * t), q);
+    adcgs_rotation_multiply(out, q, out);
+    adcgs_rotation_exp(b->rate + ROTATION, third * t * t * t, q);
+    adcgs_rotation_multiply(out, q, out);
 }
 
-static void set_shot(const adcgs_flight *flight, const double position[3], const double rotation[4],
-                     const double numbers[N_NUMBERS], adcgs_shot *shot)
+static void set_shot(const adcgs_camera_spline *spline, const double position[3], const double rotation[4],
+                     const double numbers[N_NUMBERS], adcgs_camera_frame *frame)
 {
     const double length = sqrt(rotation[0] * rotation[0] + adcgs_v3_dot(rotation + 1, rotation + 1));
     const double unit[4] = {rotation[0] / length, rotation[1] / length, rotation[2] / length, rotation[3] / length};
-    adcgs_camera *camera = &shot->camera;
-    *camera = flight->camera;
-    adcgs_turn_to_pose(unit, camera->cam_to_world);
+    adcgs_camera *camera = &frame->camera;
+    *camera = spline->camera;
+    adcgs_rotation_to_pose(unit, camera->cam_to_world);
     for (int i = 0; i < 3; i++)
         camera->cam_to_world[4 * i + 3] = position[i];
     camera->fx = numbers[0];
@@ -163,26 +163,26 @@ static void set_shot(const adcgs_flight *flight, const double position[3], const
     camera->cx = numbers[2];
     camera->cy = numbers[3];
     camera->near_plane = numbers[4];
-    shot->time = numbers[5];
+    frame->time = numbers[5];
 }
 
-void adcgs_flight_at(const adcgs_flight *flight, double at, adcgs_shot *shot)
+void adcgs_camera_spline_at(const adcgs_camera_spline *spline, double at, adcgs_camera_frame *frame)
 {
-    const adcgs_knot *a = find_knot(flight, at), *b = flight->n > 1 ? a + 1 : a;
+    const adcgs_knot *a = find_knot(spline, at), *b = spline->n > 1 ? a + 1 : a;
     const double h = b->at - a->at, t = h > 0.0 ? fmin(fmax((at - a->at) / h, 0.0), 1.0) : 0.0;
     double position[3], rotation[4], numbers[N_NUMBERS];
     for (int i = 0; i < 3; i++)
-        position[i] = flight->linear ? (1.0 - t) * a->position[i] + t * b->position[i]
+        position[i] = spline->linear ? (1.0 - t) * a->position[i] + t * b->position[i]
                                      : hermite(a->position[i], h * a->rate[i], b->position[i], h * b->rate[i], t);
     for (int i = 0; i < N_NUMBERS; i++) {
         const int r = NUMBERS + i;
-        numbers[i] = flight->linear ? (1.0 - t) * a->numbers[i] + t * b->numbers[i]
+        numbers[i] = spline->linear ? (1.0 - t) * a->numbers[i] + t * b->numbers[i]
                                     : hermite(a->numbers[i], h * a->rate[r], b->numbers[i], h * b->rate[r], t);
     }
-    if (flight->linear && h > 0.0) {
-        adcgs_turn_exp(a->chord + ROTATION, t * h, rotation);
-        adcgs_turn_multiply(a->rotation, rotation, rotation);
+    if (spline->linear && h > 0.0) {
+        adcgs_rotation_exp(a->chord + ROTATION, t * h, rotation);
+        adcgs_rotation_multiply(a->rotation, rotation, rotation);
     } else
         rotation_curve(a, b, h, t, rotation);
-    set_shot(flight, position, rotation, numbers, shot);
+    set_shot(spline, position, rotation, numbers, frame);
 }

@@ -18,7 +18,7 @@ static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
     const adcgs_play_state *const state = &p->state;
     adcgs_play_job job = {.time = adcgs_play_clock_time(&state->clock), .layers = state->layers, .divider = divider,
                           .number = adcgs_play_clock_frame(&state->clock), .seeks = p->seeks};
-    adcgs_play_rig_view(&state->rig, state->width, state->height, &job.camera);
+    adcgs_orbit_control_view(&state->control, state->width, state->height, &job.camera);
     if (divider > 1)
         adcgs_camera_stretch(&job.camera, (state->width + divider - 1) / divider, (state->height + divider - 1) / divider);
     return job;

@@ -89,7 +89,7 @@ static int find_value(const adcgs_player *p, const char *name, double *value)
         {"time", adcgs_play_clock_time(&s->clock)}, {"frame", adcgs_play_clock_frame(&s->clock)},
         {"speed", adcgs_play_clock_factor(&s->clock)}, {"playing", s->clock.playing}, {"loop", s->clock.loop},
         {"layers", s->layers}, {"camera", s->jumped}, {"flying", s->flying}, {"help", s->help},
-        {"statistics", s->statistics}, {"bar", s->bar}, {"distance", adcgs_play_rig_distance(&s->rig)},
+        {"statistics", s->statistics}, {"bar", s->bar}, {"distance", adcgs_orbit_control_distance(&s->control)},
         {"splats", p->figures.splats}, {"divider", p->job.divider},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)

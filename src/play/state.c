@@ -36,7 +36,7 @@ void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcg
         .bar = 1,
         .moved = -STILL_AFTER,
     };
-    adcgs_play_rig_init(&state->rig, info, home);
+    adcgs_orbit_control_init(&state->control, info, home);
     adcgs_play_clock_init(&state->clock, info->time_start, info->time_end, info->frame_rate, 0.0);
 }
 
@@ -83,14 +83,14 @@ static void place_camera(adcgs_play_state *state, int index, const adcgs_camera 
 {
     state->jumped = index;
     state->flying = 0;
-    adcgs_play_rig_jump(&state->rig, camera);
+    adcgs_orbit_control_jump(&state->control, camera);
 }
 
 static void move_by_hand(adcgs_play_state *state)
 {
     state->moved = state->now;
     state->jumped = -1;
-    *state->rig.camera.name = 0; /* it is no longer that one */
+    *state->control.camera.name = 0; /* it is no longer that one */
 }
 
 static void do_play(adcgs_play_state *state, int unused)
@@ -153,7 +153,7 @@ static void do_fly(adcgs_play_state *state, int unused)
     state->held = 0;
     state->drag = ADCGS_DRAG_NONE;
     if (!state->flying)
-        adcgs_play_rig_land(&state->rig);
+        adcgs_orbit_control_land(&state->control);
     adcgs_play_say(state, state->flying ? "fly: w a s d q e and the mouse; f to stop" : "orbit");
 }
 
@@ -307,12 +307,12 @@ static void on_motion(adcgs_play_state *state, const adcgs_event *event)
         return;
     move_by_hand(state);
     if (state->flying)
-        adcgs_play_rig_look(&state->rig, turn * event->dx, turn * event->dy);
+        adcgs_orbit_control_look(&state->control, turn * event->dx, turn * event->dy);
     else if (state->drag == ADCGS_DRAG_ORBIT)
-        adcgs_play_rig_orbit(&state->rig, turn * event->dx, turn * event->dy);
+        adcgs_orbit_control_orbit(&state->control, turn * event->dx, turn * event->dy);
     else {
-        adcgs_play_rig_view(&state->rig, state->width, state->height, &view);
-        adcgs_play_rig_pan(&state->rig, event->dx / view.fx, event->dy / view.fy);
+        adcgs_orbit_control_view(&state->control, state->width, state->height, &view);
+        adcgs_orbit_control_pan(&state->control, event->dx / view.fx, event->dy / view.fy);
     }
 }
 
@@ -324,7 +324,7 @@ static void on_wheel(adcgs_play_state *state, const adcgs_event *event)
         return;
     }
     move_by_hand(state);
-    adcgs_play_rig_zoom(&state->rig, event->dy);
+    adcgs_orbit_control_zoom(&state->control, event->dy);
 }
 
 void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event)
@@ -370,6 +370,6 @@ void adcgs_play_tick(adcgs_play_state *state, double now)
         }
     if (state->held) {
         move_by_hand(state);
-        adcgs_play_rig_fly(&state->rig, by[0], by[1], by[2]);
+        adcgs_orbit_control_fly(&state->control, by[0], by[1], by[2]);
     }
 }

@@ -32,7 +32,7 @@ typedef struct adcgs_rect {
 } adcgs_rect;
 
 typedef struct adcgs_play_state {
-    adcgs_play_rig rig;
+    adcgs_orbit_control control;
     adcgs_play_clock clock;
     adcgs_camera home;            /**< what reset goes back to */
     const adcgs_camera *stored;   /**< the stream's cameras, [cameras] */

@@ -22,7 +22,7 @@
 typedef struct settings {
     const adcgs_cli *cli;
     const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script;
-    adcgs_shots_request request;
+    adcgs_camera_path_request request;
     adcgs_config config;
     int quiet, cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     double opened; /**< when opening the input began, in seconds */
@@ -109,25 +109,26 @@ typedef struct streams {
 } streams;
 
 /** What follows a frame's rendering: the picture made of it goes to the sink. */
-static adcgs_status write_frame(const streams *from, const adcgs_shot *shot, adcgs_sink *sink, adcgs_canvas *canvas, int index,
+static adcgs_status write_frame(const streams *from, const adcgs_camera_frame *frame, adcgs_sink *sink, adcgs_canvas *canvas,
+                                int index,
                                 adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_canvas_finish(canvas, from->decoder, from->beside, shot, error));
+    ADCGS_TRY(adcgs_canvas_finish(canvas, from->decoder, from->beside, frame, error));
     return adcgs_sink_write_with(sink, &canvas->shown, &canvas->extras, index, error);
 }
 
-/** Render all shots; all gets the digest of the frames together. */
-static adcgs_status render(const settings *s, const streams *from, const adcgs_shots *shots, adcgs_sink *sink,
+/** Render all frames; all gets the digest of the frames together. */
+static adcgs_status render(const settings *s, const streams *from, const adcgs_camera_path *frames, adcgs_sink *sink,
                            adcgs_canvas *canvas, adcgs_md5 *all, double *render_seconds, adcgs_error *error)
 {
     adcgs_frame *frame = &canvas->frame;
     adcgs_progress progress;
     adcgs_progress_init(&progress, s->cli);
     adcgs_status status = ADCGS_OK;
-    for (int i = 0; i < shots->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
+    for (int i = 0; i < frames->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         const double start = adcgs_seconds();
-        status = adcgs_render(from->decoder, &shots->shot[i].camera, shots->shot[i].time, frame, error);
-        status = adcgs_shots_rendered(&shots->shot[i].camera, status, error);
+        status = adcgs_render(from->decoder, &frames->frame[i].camera, frames->frame[i].time, frame, error);
+        status = adcgs_camera_path_rendered(&frames->frame[i].camera, status, error);
         const double seconds = adcgs_seconds() - start;
         *render_seconds += seconds;
         if (status == ADCGS_OK && s->frametimes && i == 0)
@@ -141,16 +142,16 @@ static adcgs_status render(const settings *s, const streams *from, const adcgs_s
         if (status == ADCGS_OK && s->verify)
             adcgs_frame_digest_add(all, frame);
         if (status == ADCGS_OK && sink)
-            status = write_frame(from, &shots->shot[i], sink, canvas, i, error);
+            status = write_frame(from, &frames->frame[i], sink, canvas, i, error);
         if (status == ADCGS_OK)
             print_row(s, hex, seconds);
-        adcgs_progress_show(&progress, "frame %d of %d, %.1f ms", i + 1, shots->n, 1e3 * seconds);
+        adcgs_progress_show(&progress, "frame %d of %d, %.1f ms", i + 1, frames->n, 1e3 * seconds);
     }
     adcgs_progress_clear(&progress);
     return status;
 }
 
-static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_shots *shots, const adcgs_canvas *canvas,
+static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_camera_path *frames, const adcgs_canvas *canvas,
                               adcgs_error *error)
 {
     const adcgs_sink_config config = {.target = s->output,
@@ -160,10 +161,10 @@ static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_
                                                : s->bits == 16 ? ADCGS_DEPTH_16
                                                                : ADCGS_DEPTH_DEFAULT,
                                       .linear = s->linear,
-                                      .frame_rate = shots->frame_rate,
+                                      .frame_rate = frames->frame_rate,
                                       .width = canvas->shown.width,
                                       .height = canvas->shown.height,
-                                      .frames = shots->n,
+                                      .frames = frames->n,
                                       .has_alpha = s->alpha,
                                       .has_z = s->depth};
     return s->output ? adcgs_sink_open(sink, &config, error) : ADCGS_OK;
@@ -182,7 +183,7 @@ static void note_size(const adcgs_cli *cli, const settings *s, const adcgs_sink 
 static adcgs_status decode(const adcgs_cli *cli, const settings *s, const streams *from, int *mismatch, adcgs_error *error)
 {
     adcgs_info info;
-    adcgs_shots shots;
+    adcgs_camera_path frames;
     adcgs_canvas canvas;
     adcgs_sink *sink = NULL;
     adcgs_md5 all;
@@ -190,19 +191,19 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
     ADCGS_TRY(adcgs_get_info(from->decoder, &info, sizeof info, error));
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; showing what is complete", s->input);
-    ADCGS_TRY(adcgs_shots_make(&shots, from->decoder, &s->request, error));
-    if (shots.outside)
+    ADCGS_TRY(adcgs_camera_path_make(&frames, from->decoder, &s->request, error));
+    if (frames.outside)
         adcgs_cli_note(cli, "%s: %d of %d frames show its first or last moment: it lasts from %g to %g s", s->input,
-                       shots.outside, shots.n, info.time_start, info.time_end);
-    const int size[2] = {shots.shot[0].camera.width, shots.shot[0].camera.height};
+                       frames.outside, frames.n, info.time_start, info.time_end);
+    const int size[2] = {frames.frame[0].camera.width, frames.frame[0].camera.height};
     adcgs_md5_init(&all);
     adcgs_status status = adcgs_canvas_init(&canvas, size, &info, s->alpha, s->depth, from->beside != NULL, error);
     if (status == ADCGS_OK)
-        status = open_sink(&sink, s, &shots, &canvas, error);
+        status = open_sink(&sink, s, &frames, &canvas, error);
     if (sink)
         note_size(cli, s, sink, &canvas.shown);
     if (status == ADCGS_OK)
-        status = render(s, from, &shots, sink, &canvas, &all, &seconds, error);
+        status = render(s, from, &frames, sink, &canvas, &all, &seconds, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = adcgs_sink_close(&sink, error);
     adcgs_sink_abort(&sink);
@@ -216,10 +217,10 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
         if (*mismatch)
             adcgs_cli_error(cli, ADCGS_OK, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
         else
-            adcgs_cli_note(cli, "%s: %d frame%s of %dx%d, %.2f ms each", s->input, shots.n, shots.n == 1 ? "" : "s",
-                           size[0], size[1], 1e3 * seconds / shots.n);
+            adcgs_cli_note(cli, "%s: %d frame%s of %dx%d, %.2f ms each", s->input, frames.n, frames.n == 1 ? "" : "s",
+                           size[0], size[1], 1e3 * seconds / frames.n);
     }
-    adcgs_shots_free(&shots);
+    adcgs_camera_path_free(&frames);
     return status;
 }
 
@@ -260,7 +261,7 @@ static adcgs_status show(const adcgs_cli *cli, const settings *s, adcgs_decoder 
     ADCGS_TRY(open_input(decoder, s->input, s, error));
     from.decoder = *decoder;
     if (s->cameras)
-        return adcgs_shots_write_path(from.decoder, s->cameras, error);
+        return adcgs_camera_path_write(from.decoder, s->cameras, error);
     if (s->splats)
         return adcgs_dec_splats(cli, from.decoder, s->input, s->splats, &s->request, error);
     adcgs_status status = s->beside ? open_input(&from.beside, s->beside, s, error) : ADCGS_OK;

@@ -52,18 +52,20 @@ static void remove_background(adcgs_canvas *canvas)
             canvas->frame.rgb[3 * i + c] -= (1.0f - canvas->alpha[i]) * canvas->background[c];
 }
 
-adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, adcgs_decoder *beside, const adcgs_shot *shot,
+adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, adcgs_decoder *beside,
+                                 const adcgs_camera_frame *frame,
                                  adcgs_error *error)
 {
-    canvas->extras = (adcgs_sink_extras){canvas->alpha, canvas->depth, &shot->camera, shot->time};
+    canvas->extras = (adcgs_sink_extras){canvas->alpha, canvas->depth, &frame->camera, frame->time};
     if (canvas->alpha || canvas->depth)
-        ADCGS_TRY(adcgs_shots_rendered(
-            &shot->camera, adcgs_render_depth(decoder, &shot->camera, shot->time, canvas->depth, canvas->alpha, error), error));
+        ADCGS_TRY(adcgs_camera_path_rendered(
+            &frame->camera,
+            adcgs_render_depth(decoder, &frame->camera, frame->time, canvas->depth, canvas->alpha, error), error));
     if (canvas->alpha)
         remove_background(canvas);
     if (beside) {
-        ADCGS_TRY(adcgs_shots_rendered(&shot->camera,
-                                       adcgs_render(beside, &shot->camera, shot->time, &canvas->second, error), error));
+        ADCGS_TRY(adcgs_camera_path_rendered(&frame->camera,
+                                       adcgs_render(beside, &frame->camera, frame->time, &canvas->second, error), error));
         canvas->extras = (adcgs_sink_extras){0}; /* no camera sees two pictures */
         adcgs_mosaic_place(&canvas->mosaic, 0, 0, (adcgs_samples){canvas->frame.rgb, 3, 1});
         adcgs_mosaic_place(&canvas->mosaic, 1, 0, (adcgs_samples){canvas->second.rgb, 3, 1});

@@ -22,7 +22,8 @@ adcgs_status adcgs_canvas_init(adcgs_canvas *canvas, const int size[2], const ad
                                adcgs_error *error);
 void adcgs_canvas_clear(adcgs_canvas *canvas);
 /** After canvas->frame has been rendered: the rest. It may change the frame's values. beside may be NULL. */
-adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, adcgs_decoder *beside, const adcgs_shot *shot,
+adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, adcgs_decoder *beside,
+                                 const adcgs_camera_frame *frame,
                                  adcgs_error *error);
 
 #endif

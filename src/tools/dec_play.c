@@ -21,27 +21,27 @@ static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder
                          adcgs_camera **cameras, adcgs_error *error)
 {
     adcgs_info *const info = &settings->info;
-    adcgs_shots_request request = how->request;
-    adcgs_shots shots;
+    adcgs_camera_path_request request = how->request;
+    adcgs_camera_path frames;
     ADCGS_TRY(adcgs_get_info(decoder, info, sizeof *info, error));
-    ADCGS_TRY(adcgs_shots_check_times(info, &request, error));
+    ADCGS_TRY(adcgs_camera_path_check_times(info, &request, error));
     *cameras = calloc((size_t)info->cameras + 1, sizeof **cameras);
     if (!*cameras)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %d cameras", how->input, info->cameras);
     for (int i = 0; i < info->cameras; i++)
         ADCGS_TRY(adcgs_get_camera(decoder, i, &(*cameras)[i], error));
-    /* Where to begin is the first of one shot; the window keeps its shape, so it is not stretched to a size. */
+    /* Where to begin is the first of one frame; the window keeps its shape, so it is not stretched to a size. */
     request.has_times = 1;
     request.begin = request.end = info->time_start;
     request.size[0] = request.size[1] = 0;
-    ADCGS_TRY(adcgs_shots_make(&shots, decoder, &request, error));
-    settings->home = shots.shot[0].camera;
-    adcgs_shots_free(&shots);
+    ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &request, error));
+    settings->home = frames.frame[0].camera;
+    adcgs_camera_path_free(&frames);
     settings->cameras = *cameras;
     return ADCGS_OK;
 }
 
-static void set_times(const adcgs_shots_request *request, adcgs_play_settings *settings)
+static void set_times(const adcgs_camera_path_request *request, adcgs_play_settings *settings)
 {
     const int is_span = request->has_times && request->begin < request->end;
     settings->begin = is_span ? request->begin : settings->info.time_start;

@@ -9,7 +9,7 @@
 typedef struct adcgs_dec_play {
     const char *input;           /**< the stream's file */
     const char *script;          /**< NULL: the user plays */
-    adcgs_shots_request request; /**< its camera is where to begin; one time is where to begin paused; the window's size */
+    adcgs_camera_path_request request; /**< its camera is where to begin; one time is where to begin paused; the window's size */
     adcgs_config config;
 } adcgs_dec_play;
 

@@ -40,28 +40,28 @@ static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcg
 }
 
 static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, const char *target,
-                              const adcgs_shots *shots, adcgs_error *error)
+                              const adcgs_camera_path *frames, adcgs_error *error)
 {
     const size_t size = strlen(target) + 128;
     char *path = malloc(size);
     if (!path)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", target);
     adcgs_status status = ADCGS_OK;
-    for (int i = 0; i < shots->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
+    for (int i = 0; i < frames->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         adcgs_pattern_format(target, i, path, size);
-        status = write_moment(n, decoder, info, shots->shot[i].time, path, error);
+        status = write_moment(n, decoder, info, frames->frame[i].time, path, error);
     }
     free(path);
     return status;
 }
 
 adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const char *target,
-                              const adcgs_shots_request *request, adcgs_error *error)
+                              const adcgs_camera_path_request *request, adcgs_error *error)
 {
     adcgs_info info;
-    adcgs_shots shots;
+    adcgs_camera_path frames;
     uint32_t n = 0;
-    adcgs_shots_request moments = {.has_times = 1, .begin = request->begin, .end = request->end};
+    adcgs_camera_path_request moments = {.has_times = 1, .begin = request->begin, .end = request->end};
     ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     if (!request->has_times) {
         moments.begin = info.time_start;
@@ -70,13 +70,13 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
     ADCGS_TRY(check_target(target, moments.end > moments.begin, error));
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; writing what is complete", input);
-    ADCGS_TRY(adcgs_shots_make(&shots, decoder, &moments, error));
-    if (shots.outside)
-        adcgs_cli_note(cli, "%s: %d of %d files show its first or last moment: it lasts from %g to %g s", input, shots.outside,
-                       shots.n, info.time_start, info.time_end);
-    const adcgs_status status = write_all(&n, decoder, &info, target, &shots, error);
+    ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &moments, error));
+    if (frames.outside)
+        adcgs_cli_note(cli, "%s: %d of %d files show its first or last moment: it lasts from %g to %g s", input, frames.outside,
+                       frames.n, info.time_start, info.time_end);
+    const adcgs_status status = write_all(&n, decoder, &info, target, &frames, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
-        adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, shots.n, shots.n == 1 ? "" : "s", n);
-    adcgs_shots_free(&shots);
+        adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);
+    adcgs_camera_path_free(&frames);
     return status;
 }

@@ -11,6 +11,6 @@
  * one moment. Without times that is the stream's first moment, for a target without a number, else all. input names the stream.
  */
 adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const char *target,
-                              const adcgs_shots_request *request, adcgs_error *error);
+                              const adcgs_camera_path_request *request, adcgs_error *error);
 
 #endif

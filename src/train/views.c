@@ -16,7 +16,7 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     for (uint32_t i = 0; i < t->n_views; i++) {
         const adcgs_camera *camera = adcgs_pictures_camera(t->pictures, i);
         const adcgs_status status = adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error);
-        ADCGS_TRY(adcgs_shots_rendered(camera, status, error));
+        ADCGS_TRY(adcgs_camera_path_rendered(camera, status, error));
         most = ADCGS_MAX(most, (size_t)camera->width * (size_t)camera->height);
     }
     t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);

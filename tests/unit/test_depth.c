@@ -209,7 +209,7 @@ static void test_decoder(void **state)
 static void test_canvas(void **state)
 {
     static float rgb[3 * PIXELS];
-    const adcgs_shot shot = {eye, 0.01};
+    const adcgs_camera_frame shot = {eye, 0.01};
     const int size[2] = {WIDTH, HEIGHT};
     adcgs_stream stream;
     adcgs_buffer bytes;

@@ -27,38 +27,38 @@ static adcgs_camera make_camera(void)
                           .cam_to_world = {1, 0, 0, 1.0, 0, 0, 1, -4.0, 0, -1, 0, 3.0}, .name = "first"};
 }
 
-static adcgs_play_rig make_rig(const char *axes)
+static adcgs_orbit_control make_rig(const char *axes)
 {
     const adcgs_info info = make_info(axes);
     const adcgs_camera camera = make_camera();
-    adcgs_play_rig rig;
-    adcgs_play_rig_init(&rig, &info, &camera);
-    return rig;
+    adcgs_orbit_control control;
+    adcgs_orbit_control_init(&control, &info, &camera);
+    return control;
 }
 
-static void column(const adcgs_play_rig *rig, int c, double v[3])
+static void column(const adcgs_orbit_control *control, int c, double v[3])
 {
     for (int i = 0; i < 3; i++)
-        v[i] = rig->camera.cam_to_world[4 * i + c];
+        v[i] = control->camera.cam_to_world[4 * i + c];
 }
 
 /** Cosine of the angle between the view and the direction to a point. */
-static double looks_at(const adcgs_play_rig *rig, const double point[3])
+static double looks_at(const adcgs_orbit_control *control, const double point[3])
 {
     double forward[3], to[3];
-    column(rig, 2, forward);
-    column(rig, 3, to);
+    column(control, 2, forward);
+    column(control, 3, to);
     for (int i = 0; i < 3; i++)
         to[i] = point[i] - to[i];
     return adcgs_v3_dot(forward, to) / sqrt(adcgs_v3_dot(to, to));
 }
 
-static void assert_rotation(const adcgs_play_rig *rig)
+static void assert_rotation(const adcgs_orbit_control *control)
 {
     double right[3], down[3], forward[3], third[3];
-    column(rig, 0, right);
-    column(rig, 1, down);
-    column(rig, 2, forward);
+    column(control, 0, right);
+    column(control, 1, down);
+    column(control, 2, forward);
     adcgs_v3_cross(right, down, third);
     for (int i = 0; i < 3; i++)
         assert_true(fabs(third[i] - forward[i]) < 1e-12);
@@ -68,35 +68,36 @@ static void assert_rotation(const adcgs_play_rig *rig)
 
 static void test_orbit(void **state)
 {
-    adcgs_play_rig rig = make_rig("right-handed, z up");
+    adcgs_orbit_control control = make_rig("right-handed, z up");
     double right[3];
     for (int i = 0; i < 20000; i++) {
-        adcgs_play_rig_orbit(&rig, 0.37 * sin(i), 0.11 * cos(3.0 * i));
-        assert_rotation(&rig);
+        adcgs_orbit_control_orbit(&control, 0.37 * sin(i), 0.11 * cos(3.0 * i));
+        assert_rotation(&control);
     }
-    assert_true(fabs(adcgs_play_rig_distance(&rig) - 6.0) < 1e-9);
-    assert_true(looks_at(&rig, rig.centre) > 1.0 - 1e-12);
-    column(&rig, 0, right);
+    assert_true(fabs(adcgs_orbit_control_distance(&control) - 6.0) < 1e-9);
+    assert_true(looks_at(&control, control.centre) > 1.0 - 1e-12);
+    column(&control, 0, right);
     assert_true(fabs(right[2]) < 1e-9); /* the horizon stays level */
     /* Dragging down shows the scene from above, at most from straight above. */
-    adcgs_play_rig_orbit(&rig, 0.0, -10.0);
-    assert_true(rig.camera.cam_to_world[11] > 3.0 + 6.0 * 0.999);
-    assert_true(looks_at(&rig, rig.centre) > 1.0 - 1e-12);
-    adcgs_play_rig_orbit(&rig, 0.0, 20.0);
-    assert_true(rig.camera.cam_to_world[11] < 3.0 - 6.0 * 0.999);
-    assert_rotation(&rig);
+    adcgs_orbit_control_orbit(&control, 0.0, -10.0);
+    assert_true(control.camera.cam_to_world[11] > 3.0 + 6.0 * 0.999);
+    assert_true(looks_at(&control, control.centre) > 1.0 - 1e-12);
+    adcgs_orbit_control_orbit(&control, 0.0, 20.0);
+    assert_true(control.camera.cam_to_world[11] < 3.0 - 6.0 * 0.999);
+    assert_rotation(&control);
 }
 
 static void test_orbit_follows_mouse(void **state)
 {
-    adcgs_play_rig rig = make_rig("right-handed, z up");
-    adcgs_play_rig_orbit(&rig, -0.1, 0.0); /* dragged to the right: the camera goes left, -x */
-    assert_true(fabs(rig.camera.cam_to_world[3] - (1.0 - 6.0 * sin(0.1))) < 1e-12);
-    assert_true(fabs(rig.camera.cam_to_world[7] - (2.0 - 6.0 * cos(0.1))) < 1e-12);
-    rig = make_rig("right-handed, z up");
-    adcgs_play_rig_look(&rig, -0.1, 0.0); /* looks to the right, +x, from where it is */
-    assert_true(fabs(rig.camera.cam_to_world[2] - sin(0.1)) < 1e-12);
-    assert_true(rig.camera.cam_to_world[3] == 1.0 && rig.camera.cam_to_world[7] == -4.0 && rig.camera.cam_to_world[11] == 3.0);
+    adcgs_orbit_control control = make_rig("right-handed, z up");
+    adcgs_orbit_control_orbit(&control, -0.1, 0.0); /* dragged to the right: the camera goes left, -x */
+    assert_true(fabs(control.camera.cam_to_world[3] - (1.0 - 6.0 * sin(0.1))) < 1e-12);
+    assert_true(fabs(control.camera.cam_to_world[7] - (2.0 - 6.0 * cos(0.1))) < 1e-12);
+    control = make_rig("right-handed, z up");
+    adcgs_orbit_control_look(&control, -0.1, 0.0); /* looks to the right, +x, from where it is */
+    assert_true(fabs(control.camera.cam_to_world[2] - sin(0.1)) < 1e-12);
+    assert_true(control.camera.cam_to_world[3] == 1.0 && control.camera.cam_to_world[7] == -4.0 &&
+                control.camera.cam_to_world[11] == 3.0);
 }
 
 static void test_up(void **state)
@@ -107,75 +108,76 @@ static void test_up(void **state)
     /* Where nobody says, the camera knows: here its own up is +z, then it is tilted by a quarter turn and is +x. */
     adcgs_info info = make_info("unknown");
     adcgs_camera camera = make_camera();
-    adcgs_play_rig rig = make_rig("unknown");
-    assert_true(rig.up[2] == 1.0);
+    adcgs_orbit_control control = make_rig("unknown");
+    assert_true(control.up[2] == 1.0);
     const double tilted[12] = {0, -1, 0, 1.0, 0, 0, 1, -4.0, -1, 0, 0, 3.0};
     memcpy(camera.cam_to_world, tilted, sizeof tilted);
-    adcgs_play_rig_init(&rig, &info, &camera);
-    assert_true(rig.up[0] == 1.0);
+    adcgs_orbit_control_init(&control, &info, &camera);
+    assert_true(control.up[0] == 1.0);
 }
 
 static void test_pan_and_zoom(void **state)
 {
-    adcgs_play_rig rig = make_rig("right-handed, z up");
-    adcgs_play_rig_orbit(&rig, 0.5, 0.3);
-    const adcgs_play_rig before = rig;
+    adcgs_orbit_control control = make_rig("right-handed, z up");
+    adcgs_orbit_control_orbit(&control, 0.5, 0.3);
+    const adcgs_orbit_control before = control;
     double right[3], down[3];
-    column(&rig, 0, right);
-    column(&rig, 1, down);
-    adcgs_play_rig_pan(&rig, 0.1, -0.05);
-    assert_true(fabs(adcgs_play_rig_distance(&rig) - 6.0) < 1e-12);
-    assert_true(looks_at(&rig, rig.target) > 1.0 - 1e-12);
+    column(&control, 0, right);
+    column(&control, 1, down);
+    adcgs_orbit_control_pan(&control, 0.1, -0.05);
+    assert_true(fabs(adcgs_orbit_control_distance(&control) - 6.0) < 1e-12);
+    assert_true(looks_at(&control, control.target) > 1.0 - 1e-12);
     /* The old target is now where it was dragged to: right by 0.1 focal lengths, up by 0.05. */
     double to[3];
     for (int i = 0; i < 3; i++)
-        to[i] = before.target[i] - rig.camera.cam_to_world[4 * i + 3];
+        to[i] = before.target[i] - control.camera.cam_to_world[4 * i + 3];
     assert_true(fabs(adcgs_v3_dot(to, right) / 6.0 - 0.1) < 1e-12 && fabs(adcgs_v3_dot(to, down) / 6.0 + 0.05) < 1e-12);
-    adcgs_play_rig_zoom(&rig, 3.0);
-    assert_true(fabs(adcgs_play_rig_distance(&rig) - 6.0 * 0.729) < 1e-12);
-    adcgs_play_rig_zoom(&rig, -3.0);
-    assert_true(fabs(adcgs_play_rig_distance(&rig) - 6.0) < 1e-9);
-    adcgs_play_rig_zoom(&rig, 1e9);
-    assert_true(adcgs_play_rig_distance(&rig) > 0.0 && adcgs_play_rig_distance(&rig) < 0.01);
+    adcgs_orbit_control_zoom(&control, 3.0);
+    assert_true(fabs(adcgs_orbit_control_distance(&control) - 6.0 * 0.729) < 1e-12);
+    adcgs_orbit_control_zoom(&control, -3.0);
+    assert_true(fabs(adcgs_orbit_control_distance(&control) - 6.0) < 1e-9);
+    adcgs_orbit_control_zoom(&control, 1e9);
+    assert_true(adcgs_orbit_control_distance(&control) > 0.0 && adcgs_orbit_control_distance(&control) < 0.01);
     for (int i = 0; i < 300; i++)
-        adcgs_play_rig_zoom(&rig, -1e3); /* never out of this world */
-    assert_true(adcgs_play_rig_distance(&rig) < 3e5 * 3.0 + 10.0);
-    assert_rotation(&rig);
+        adcgs_orbit_control_zoom(&control, -1e3); /* never out of this world */
+    assert_true(adcgs_orbit_control_distance(&control) < 3e5 * 3.0 + 10.0);
+    assert_rotation(&control);
 }
 
 static void test_fly(void **state)
 {
-    adcgs_play_rig rig = make_rig("right-handed, z up");
-    adcgs_play_rig_fly(&rig, 1.0, 0.0, 2.0); /* units of 3 */
-    assert_true(rig.camera.cam_to_world[3] == 4.0 && rig.camera.cam_to_world[7] == 2.0 && rig.camera.cam_to_world[11] == 3.0);
-    assert_memory_equal(rig.target, rig.centre, sizeof rig.target);
-    adcgs_play_rig_look(&rig, 0.3, 0.1);
-    adcgs_play_rig_land(&rig);
-    assert_true(looks_at(&rig, rig.target) > 1.0 - 1e-12);
+    adcgs_orbit_control control = make_rig("right-handed, z up");
+    adcgs_orbit_control_fly(&control, 1.0, 0.0, 2.0); /* units of 3 */
+    assert_true(control.camera.cam_to_world[3] == 4.0 && control.camera.cam_to_world[7] == 2.0 &&
+                control.camera.cam_to_world[11] == 3.0);
+    assert_memory_equal(control.target, control.centre, sizeof control.target);
+    adcgs_orbit_control_look(&control, 0.3, 0.1);
+    adcgs_orbit_control_land(&control);
+    assert_true(looks_at(&control, control.target) > 1.0 - 1e-12);
     const adcgs_camera camera = make_camera();
-    adcgs_play_rig_jump(&rig, &camera);
-    assert_memory_equal(&rig.camera, &camera, sizeof camera);
-    assert_memory_equal(rig.target, rig.centre, sizeof rig.target);
+    adcgs_orbit_control_jump(&control, &camera);
+    assert_memory_equal(&control.camera, &camera, sizeof camera);
+    assert_memory_equal(control.target, control.centre, sizeof control.target);
 }
 
 static void test_view(void **state)
 {
-    const adcgs_play_rig rig = make_rig("right-handed, z up");
-    adcgs_camera view, again = rig.camera;
-    adcgs_play_rig_view(&rig, 640, 480, &view);
-    assert_memory_equal(&view, &rig.camera, sizeof view);
-    adcgs_play_rig_view(&rig, 1920, 1440, &view); /* the same shape: what stretching gives, to the last bit */
+    const adcgs_orbit_control control = make_rig("right-handed, z up");
+    adcgs_camera view, again = control.camera;
+    adcgs_orbit_control_view(&control, 640, 480, &view);
+    assert_memory_equal(&view, &control.camera, sizeof view);
+    adcgs_orbit_control_view(&control, 1920, 1440, &view); /* the same shape: what stretching gives, to the last bit */
     adcgs_camera_stretch(&again, 1920, 1440);
     assert_memory_equal(&view, &again, sizeof view);
-    adcgs_play_rig_view(&rig, 1000, 480, &view); /* 180 pixels more at both sides */
+    adcgs_orbit_control_view(&control, 1000, 480, &view); /* 180 pixels more at both sides */
     assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 480.0 && view.cy == 250.0);
-    adcgs_play_rig_view(&rig, 320, 480, &view); /* half the size, 120 more above and below */
+    adcgs_orbit_control_view(&control, 320, 480, &view); /* half the size, 120 more above and below */
     assert_true(view.fx == 250.0 && view.fy == 255.0 && view.cx == 150.0 && view.cy == 245.0);
-    view = rig.camera;
+    view = control.camera;
     adcgs_camera_fit(&view, 320, 480, 1); /* nothing more above and below, 160 pixels less at both sides */
     assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 140.0 && view.cy == 250.0 && view.width == 320);
     adcgs_camera_fit(&view, 640, 480, 0); /* and back */
-    assert_memory_equal(&view, &rig.camera, sizeof view);
+    assert_memory_equal(&view, &control.camera, sizeof view);
 }
 
 static void test_clock(void **state)
@@ -335,7 +337,7 @@ static void test_keys(void **state)
     key(&play, '=');
     assert_int_equal(play.layers, 2);
     key(&play, '1');
-    assert_true(play.jumped == 1 && play.rig.camera.cam_to_world[3] == 7.0);
+    assert_true(play.jumped == 1 && play.control.camera.cam_to_world[3] == 7.0);
     key(&play, ']');
     assert_int_equal(play.jumped, 0);
     key(&play, '[');
@@ -343,7 +345,7 @@ static void test_keys(void **state)
     key(&play, '7'); /* there is no such camera */
     assert_true(play.jumped == 1 && strstr(play.message, "2 cameras"));
     key(&play, 'r');
-    assert_true(play.jumped == -1 && play.rig.camera.cam_to_world[3] == 1.0);
+    assert_true(play.jumped == -1 && play.control.camera.cam_to_world[3] == 1.0);
     key(&play, 'p');
     assert_int_equal(play.shot, ADCGS_SHOT_PNG);
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = ADCGS_KEY_SHIFT, .down = 1});
@@ -372,15 +374,15 @@ static void test_mouse(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
     adcgs_play_state play = make_state(cameras);
-    const adcgs_play_rig before = play.rig;
+    const adcgs_orbit_control before = play.control;
     motion(&play, 10, 10, 10, 10); /* without a button nothing moves */
-    assert_memory_equal(&play.rig, &before, sizeof before);
+    assert_memory_equal(&play.control, &before, sizeof before);
     assert_false(adcgs_play_moving(&play));
     button(&play, 1, 1, 100, 100);
     motion(&play, 200, 100, 100, 0);
-    assert_true(adcgs_play_moving(&play) && fabs(adcgs_play_rig_distance(&play.rig) - 6.0) < 1e-12);
-    assert_true(play.rig.camera.cam_to_world[3] < 1.0 && looks_at(&play.rig, play.rig.centre) > 1.0 - 1e-12);
-    assert_string_equal(play.rig.camera.name, ""); /* it is the first camera no more */
+    assert_true(adcgs_play_moving(&play) && fabs(adcgs_orbit_control_distance(&play.control) - 6.0) < 1e-12);
+    assert_true(play.control.camera.cam_to_world[3] < 1.0 && looks_at(&play.control, play.control.centre) > 1.0 - 1e-12);
+    assert_string_equal(play.control.camera.name, ""); /* it is the first camera no more */
     button(&play, 1, 0, 200, 100);
     adcgs_play_tick(&play, 51.0);
     assert_false(adcgs_play_moving(&play));
@@ -388,16 +390,16 @@ static void test_mouse(void **state)
     button(&play, 3, 1, 100, 100); /* what is under the pointer stays there: 50 pixels of 500 at a depth of 6 */
     motion(&play, 150, 100, 50, 0);
     button(&play, 3, 0, 150, 100);
-    assert_true(fabs(play.rig.camera.cam_to_world[3] - (1.0 - 0.6)) < 1e-12);
+    assert_true(fabs(play.control.camera.cam_to_world[3] - (1.0 - 0.6)) < 1e-12);
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_WHEEL, .dy = 1.0});
-    assert_true(fabs(adcgs_play_rig_distance(&play.rig) - 5.4) < 1e-9);
+    assert_true(fabs(adcgs_orbit_control_distance(&play.control) - 5.4) < 1e-9);
 }
 
 static void test_scrub(void **state)
 {
     adcgs_camera cameras[2] = {make_camera(), make_camera()};
     adcgs_play_state play = make_state(cameras);
-    const adcgs_play_rig before = play.rig;
+    const adcgs_orbit_control before = play.control;
     const adcgs_rect bar = adcgs_play_bar(&play);
     assert_true(bar.width > 400 && bar.y + bar.height == 480);
     button(&play, 1, 1, bar.width - 1, bar.y + 3);
@@ -405,7 +407,7 @@ static void test_scrub(void **state)
     motion(&play, bar.width / 3.0, 20, -9, -9); /* it is still the bar that is dragged, wherever the pointer is */
     assert_int_equal(adcgs_play_clock_frame(&play.clock), 3);
     button(&play, 1, 0, 0, 20);
-    assert_memory_equal(&play.rig, &before, sizeof before);
+    assert_memory_equal(&play.control, &before, sizeof before);
     key(&play, 'b');
     assert_int_equal(adcgs_play_bar(&play).width, 0);
 }
@@ -417,12 +419,12 @@ static void test_flight(void **state)
     key(&play, 'f');
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = 'w', .down = 1});
     adcgs_play_tick(&play, 50.5); /* half a second, a scene unit a second: 1.5 along +y */
-    assert_true(fabs(play.rig.camera.cam_to_world[7] + 2.5) < 1e-12 && adcgs_play_moving(&play));
+    assert_true(fabs(play.control.camera.cam_to_world[7] + 2.5) < 1e-12 && adcgs_play_moving(&play));
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_LOST}); /* who looks elsewhere holds no key */
     adcgs_play_tick(&play, 55.0);
-    assert_true(fabs(play.rig.camera.cam_to_world[7] + 2.5) < 1e-12);
+    assert_true(fabs(play.control.camera.cam_to_world[7] + 2.5) < 1e-12);
     motion(&play, 0, 0, 16, 0);
-    assert_true(play.rig.camera.cam_to_world[2] > 0.05); /* looks to the right */
+    assert_true(play.control.camera.cam_to_world[2] > 0.05); /* looks to the right */
     key(&play, ADCGS_KEY_ESCAPE);
     assert_true(!play.flying && !play.quit);
 }

@@ -16,21 +16,21 @@ static double uniform(uint64_t *state)
 }
 
 /** Rotation about an axis by an angle, at a position; a lens and a time of its own. */
-static adcgs_shot make_shot(const double axis[3], double angle, const double position[3], double focal, double time)
+static adcgs_camera_frame make_frame(const double axis[3], double angle, const double position[3], double focal, double time)
 {
-    adcgs_shot shot = {.camera = {.width = 64, .height = 48, .fx = focal, .fy = 1.1 * focal, .cx = 30, .cy = 20,
+    adcgs_camera_frame frame = {.camera = {.width = 64, .height = 48, .fx = focal, .fy = 1.1 * focal, .cx = 30, .cy = 20,
                                   .near_plane = 0.1},
                        .time = time};
     double unit[3] = {axis[0], axis[1], axis[2]}, q[4];
     adcgs_v3_normalise(unit);
-    adcgs_turn_exp(unit, 0.5 * angle, q);
-    adcgs_turn_to_pose(q, shot.camera.cam_to_world);
+    adcgs_rotation_exp(unit, 0.5 * angle, q);
+    adcgs_rotation_to_pose(q, frame.camera.cam_to_world);
     for (int i = 0; i < 3; i++)
-        shot.camera.cam_to_world[4 * i + 3] = position[i];
-    return shot;
+        frame.camera.cam_to_world[4 * i + 3] = position[i];
+    return frame;
 }
 
-static void random_keys(adcgs_flight_key keys[KEYS], uint64_t seed)
+static void random_keys(adcgs_camera_key keys[KEYS], uint64_t seed)
 {
     double at = -1.0;
     for (int k = 0; k < KEYS; k++) {
@@ -38,12 +38,13 @@ static void random_keys(adcgs_flight_key keys[KEYS], uint64_t seed)
         for (int i = 0; i < 6; i++)
             v[i] = 2.0 * uniform(&seed) - 1.0;
         at += 0.2 + uniform(&seed);
-        keys[k] = (adcgs_flight_key){at, make_shot(v, 6.0 * uniform(&seed), v + 3, 50.0 + 20.0 * uniform(&seed), uniform(&seed))};
+        keys[k] = (adcgs_camera_key){at,
+                                     make_frame(v, 6.0 * uniform(&seed), v + 3, 50.0 + 20.0 * uniform(&seed), uniform(&seed))};
     }
 }
 
-/** Largest difference of two shots' numbers. */
-static double difference(const adcgs_shot *a, const adcgs_shot *b)
+/** Largest difference of two frames' numbers. */
+static double difference(const adcgs_camera_frame *a, const adcgs_camera_frame *b)
 {
     double worst = fmax(fabs(a->time - b->time), fabs(a->camera.fx - b->camera.fx));
     worst = fmax(worst, fmax(fabs(a->camera.fy - b->camera.fy), fabs(a->camera.cx - b->camera.cx)));
@@ -72,16 +73,16 @@ static void test_turns(void **state)
         for (int i = 0; i < 3; i++)
             axis[i] = n < 12 ? (n / 3 % 3 == i) : 2.0 * uniform(&seed) - 1.0;
         adcgs_v3_normalise(axis);
-        adcgs_turn_exp(axis, 0.5 * angle, q);
-        adcgs_turn_to_pose(q, pose);
+        adcgs_rotation_exp(axis, 0.5 * angle, q);
+        adcgs_rotation_to_pose(q, pose);
         check_rotation(pose);
-        adcgs_turn_from_pose(pose, back);
+        adcgs_rotation_from_pose(pose, back);
         const double same = q[0] * back[0] + q[1] * back[1] + q[2] * back[2] + q[3] * back[3];
         assert_true(fabs(fabs(same) - 1.0) < 1e-12);
         const double one[4] = {1.0, 0.0, 0.0, 0.0};
-        adcgs_turn_between(one, q, turn);
+        adcgs_rotation_between(one, q, turn);
         assert_true(sqrt(adcgs_v3_dot(turn, turn)) < 1.5707963267949 + 1e-9);
-        adcgs_turn_exp(turn, 1.0, back);
+        adcgs_rotation_exp(turn, 1.0, back);
         const double whole = q[0] * back[0] + q[1] * back[1] + q[2] * back[2] + q[3] * back[3];
         assert_true(fabs(fabs(whole) - 1.0) < 1e-12);
     }
@@ -91,20 +92,20 @@ static void test_through_keys(void **state)
 {
     for (int linear = 0; linear < 2; linear++)
         for (uint64_t seed = 1; seed < 20; seed++) {
-            adcgs_flight_key keys[KEYS];
-            adcgs_flight flight;
-            adcgs_shot shot;
+            adcgs_camera_key keys[KEYS];
+            adcgs_camera_spline spline;
+            adcgs_camera_frame frame;
             random_keys(keys, seed);
-            assert_int_equal(adcgs_flight_init(&flight, keys, KEYS, linear, 0, &error), ADCGS_OK);
+            assert_int_equal(adcgs_camera_spline_init(&spline, keys, KEYS, linear, 0, &error), ADCGS_OK);
             for (int k = 0; k < KEYS; k++) {
-                adcgs_flight_at(&flight, keys[k].at, &shot);
-                assert_true(difference(&shot, &keys[k].shot) < 1e-9);
+                adcgs_camera_spline_at(&spline, keys[k].at, &frame);
+                assert_true(difference(&frame, &keys[k].frame) < 1e-9);
             }
-            adcgs_flight_at(&flight, -100.0, &shot);
-            assert_true(difference(&shot, &keys[0].shot) < 1e-9);
-            adcgs_flight_at(&flight, 100.0, &shot);
-            assert_true(difference(&shot, &keys[KEYS - 1].shot) < 1e-9);
-            adcgs_flight_clear(&flight);
+            adcgs_camera_spline_at(&spline, -100.0, &frame);
+            assert_true(difference(&frame, &keys[0].frame) < 1e-9);
+            adcgs_camera_spline_at(&spline, 100.0, &frame);
+            assert_true(difference(&frame, &keys[KEYS - 1].frame) < 1e-9);
+            adcgs_camera_spline_clear(&spline);
         }
 }
 
@@ -114,17 +115,17 @@ static void test_smooth(void **state)
     const double step = 1e-5;
     for (uint64_t seed = 1; seed < 20; seed++)
         for (int closed = 0; closed < 2; closed++) {
-            adcgs_flight_key keys[KEYS];
-            adcgs_flight flight;
-            adcgs_shot s[4];
+            adcgs_camera_key keys[KEYS];
+            adcgs_camera_spline spline;
+            adcgs_camera_frame s[4];
             random_keys(keys, seed);
             if (closed)
-                keys[KEYS - 1].shot = keys[0].shot;
-            assert_int_equal(adcgs_flight_init(&flight, keys, KEYS, 0, closed, &error), ADCGS_OK);
+                keys[KEYS - 1].frame = keys[0].frame;
+            assert_int_equal(adcgs_camera_spline_init(&spline, keys, KEYS, 0, closed, &error), ADCGS_OK);
             for (int k = 0; k + 1 < KEYS; k++)
                 for (double t = 0.0; t <= 1.0; t += 0.05) {
-                    const double a = keys[k].shot.time, b = keys[k + 1].shot.time;
-                    adcgs_flight_at(&flight, keys[k].at + t * (keys[k + 1].at - keys[k].at), &s[0]);
+                    const double a = keys[k].frame.time, b = keys[k + 1].frame.time;
+                    adcgs_camera_spline_at(&spline, keys[k].at + t * (keys[k + 1].at - keys[k].at), &s[0]);
                     check_rotation(s[0].camera.cam_to_world);
                     assert_true(s[0].time >= fmin(a, b) - 1e-12 && s[0].time <= fmax(a, b) + 1e-12);
                 }
@@ -133,10 +134,10 @@ static void test_smooth(void **state)
                 if (wraps && !closed)
                     continue;
                 const double before = k ? keys[k].at : keys[KEYS - 1].at, after = wraps ? keys[0].at : keys[k].at;
-                adcgs_flight_at(&flight, before - step, &s[0]);
-                adcgs_flight_at(&flight, before, &s[1]);
-                adcgs_flight_at(&flight, after, &s[2]);
-                adcgs_flight_at(&flight, after + step, &s[3]);
+                adcgs_camera_spline_at(&spline, before - step, &s[0]);
+                adcgs_camera_spline_at(&spline, before, &s[1]);
+                adcgs_camera_spline_at(&spline, after, &s[2]);
+                adcgs_camera_spline_at(&spline, after + step, &s[3]);
                 for (int i = 0; i < 12; i++) {
                     const double come = (s[1].camera.cam_to_world[i] - s[0].camera.cam_to_world[i]) / step;
                     const double go = (s[3].camera.cam_to_world[i] - s[2].camera.cam_to_world[i]) / step;
@@ -144,7 +145,7 @@ static void test_smooth(void **state)
                 }
                 assert_true(fabs((s[1].time - s[0].time) - (s[3].time - s[2].time)) / step < 1e-2);
             }
-            adcgs_flight_clear(&flight);
+            adcgs_camera_spline_clear(&spline);
         }
 }
 
@@ -153,43 +154,43 @@ static void test_steady(void **state)
 {
     const double axis[3] = {1.0, 2.0, -0.5};
     for (int linear = 0; linear < 2; linear++) {
-        adcgs_flight_key keys[KEYS];
-        adcgs_flight flight;
+        adcgs_camera_key keys[KEYS];
+        adcgs_camera_spline spline;
         for (int k = 0; k < KEYS; k++) {
             const double position[3] = {0.5 * k, 1.0 - k, 2.0 * k};
-            keys[k] = (adcgs_flight_key){2.0 * k, make_shot(axis, 0.9 * k, position, 50.0 + k, 0.1 * k)};
+            keys[k] = (adcgs_camera_key){2.0 * k, make_frame(axis, 0.9 * k, position, 50.0 + k, 0.1 * k)};
         }
-        assert_int_equal(adcgs_flight_init(&flight, keys, KEYS, linear, 0, &error), ADCGS_OK);
+        assert_int_equal(adcgs_camera_spline_init(&spline, keys, KEYS, linear, 0, &error), ADCGS_OK);
         for (double k = 0.0; k <= KEYS - 1; k += 0.0625) {
             const double position[3] = {0.5 * k, 1.0 - k, 2.0 * k};
-            const adcgs_shot expected = make_shot(axis, 0.9 * k, position, 50.0 + k, 0.1 * k);
-            adcgs_shot shot;
-            adcgs_flight_at(&flight, 2.0 * k, &shot);
-            assert_true(difference(&shot, &expected) < 1e-9);
+            const adcgs_camera_frame expected = make_frame(axis, 0.9 * k, position, 50.0 + k, 0.1 * k);
+            adcgs_camera_frame frame;
+            adcgs_camera_spline_at(&spline, 2.0 * k, &frame);
+            assert_true(difference(&frame, &expected) < 1e-9);
         }
-        adcgs_flight_clear(&flight);
+        adcgs_camera_spline_clear(&spline);
     }
 }
 
 /** What two keys share stays; one key is a still. */
 static void test_standstill(void **state)
 {
-    adcgs_flight_key keys[KEYS];
-    adcgs_flight flight;
-    adcgs_shot shot;
+    adcgs_camera_key keys[KEYS];
+    adcgs_camera_spline spline;
+    adcgs_camera_frame frame;
     random_keys(keys, 3);
     const double first = keys[0].at;
-    keys[3].shot = keys[2].shot;
-    assert_int_equal(adcgs_flight_init(&flight, keys, KEYS, 0, 0, &error), ADCGS_OK);
+    keys[3].frame = keys[2].frame;
+    assert_int_equal(adcgs_camera_spline_init(&spline, keys, KEYS, 0, 0, &error), ADCGS_OK);
     for (double t = 0.0; t <= 1.0; t += 0.1) {
-        adcgs_flight_at(&flight, keys[2].at + t * (keys[3].at - keys[2].at), &shot);
-        assert_true(difference(&shot, &keys[2].shot) < 1e-9);
+        adcgs_camera_spline_at(&spline, keys[2].at + t * (keys[3].at - keys[2].at), &frame);
+        assert_true(difference(&frame, &keys[2].frame) < 1e-9);
     }
-    adcgs_flight_clear(&flight);
-    assert_int_equal(adcgs_flight_init(&flight, keys, 1, 0, 0, &error), ADCGS_OK);
-    adcgs_flight_at(&flight, first + 1.0, &shot);
-    assert_true(difference(&shot, &keys[0].shot) < 1e-9);
-    adcgs_flight_clear(&flight);
+    adcgs_camera_spline_clear(&spline);
+    assert_int_equal(adcgs_camera_spline_init(&spline, keys, 1, 0, 0, &error), ADCGS_OK);
+    adcgs_camera_spline_at(&spline, first + 1.0, &frame);
+    assert_true(difference(&frame, &keys[0].frame) < 1e-9);
+    adcgs_camera_spline_clear(&spline);
 }
 
 /* ---- Round the stored cameras ---- */
@@ -229,23 +230,23 @@ static void test_bullet(void **state)
     for (int is_ring = 0; is_ring < 2; is_ring++) {
         adcgs_camera cameras[12];
         adcgs_rig rig;
-        adcgs_shots shots;
+        adcgs_camera_path frames;
         make_ring(&rig, cameras, 12, is_ring ? 6.283185307179586 : 2.0);
-        assert_int_equal(adcgs_shots_alloc(&shots, 120, NULL, &error), ADCGS_OK);
-        for (int s = 0; s < shots.n; s++)
-            shots.shot[s].time = 0.75;
-        assert_int_equal(adcgs_rig_bullet(&rig, &shots, &error), ADCGS_OK);
+        assert_int_equal(adcgs_camera_path_alloc(&frames, 120, NULL, &error), ADCGS_OK);
+        for (int s = 0; s < frames.n; s++)
+            frames.frame[s].time = 0.75;
+        assert_int_equal(adcgs_rig_bullet(&rig, &frames, &error), ADCGS_OK);
         const double step = is_ring ? 3.0 * 6.283185307179586 / 120 : 3.0 * 2.0 * 11 / 12 / 119;
-        for (int s = 0; s < shots.n; s++) {
-            const adcgs_camera *camera = &shots.shot[s].camera;
+        for (int s = 0; s < frames.n; s++) {
+            const adcgs_camera *camera = &frames.frame[s].camera;
             check_rotation(camera->cam_to_world);
-            assert_true(off_focus(camera, rig.focus) < 0.01 && shots.shot[s].time == 0.75);
+            assert_true(off_focus(camera, rig.focus) < 0.01 && frames.frame[s].time == 0.75);
             const double d[3] = {camera->cam_to_world[3] - 1.0, camera->cam_to_world[7] + 2.0, camera->cam_to_world[11] - 0.5};
             assert_true(fabs(sqrt(adcgs_v3_dot(d, d)) - 3.0) < 0.03);
-            if (s + 1 < shots.n || is_ring)
-                assert_true(fabs(way(camera, &shots.shot[(s + 1) % shots.n].camera) / step - 1.0) < 0.1);
+            if (s + 1 < frames.n || is_ring)
+                assert_true(fabs(way(camera, &frames.frame[(s + 1) % frames.n].camera) / step - 1.0) < 0.1);
         }
-        adcgs_shots_free(&shots);
+        adcgs_camera_path_free(&frames);
     }
 }
 
@@ -254,13 +255,13 @@ static void test_bullet_at_rest(void **state)
 {
     adcgs_camera cameras[4];
     adcgs_rig rig;
-    adcgs_shots shots;
+    adcgs_camera_path frames;
     make_ring(&rig, cameras, 4, 0.0);
-    assert_int_equal(adcgs_shots_alloc(&shots, 5, NULL, &error), ADCGS_OK);
-    assert_int_equal(adcgs_rig_bullet(&rig, &shots, &error), ADCGS_OK);
-    for (int s = 0; s < shots.n; s++)
-        assert_true(way(&shots.shot[s].camera, &cameras[0]) < 1e-9);
-    adcgs_shots_free(&shots);
+    assert_int_equal(adcgs_camera_path_alloc(&frames, 5, NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_rig_bullet(&rig, &frames, &error), ADCGS_OK);
+    for (int s = 0; s < frames.n; s++)
+        assert_true(way(&frames.frame[s].camera, &cameras[0]) < 1e-9);
+    adcgs_camera_path_free(&frames);
 }
 
 static void test_spiral(void **state)
@@ -269,23 +270,23 @@ static void test_spiral(void **state)
     for (int kind = 0; kind < 3; kind++) {
         adcgs_camera cameras[12];
         adcgs_rig rig;
-        adcgs_shots shots;
+        adcgs_camera_path frames;
         make_ring(&rig, cameras, kind == 2 ? 1 : 12, kind ? 6.283185307179586 : 1.0);
-        assert_int_equal(adcgs_shots_alloc(&shots, 60, NULL, &error), ADCGS_OK);
-        adcgs_rig_spiral(&rig, &shots);
+        assert_int_equal(adcgs_camera_path_alloc(&frames, 60, NULL, &error), ADCGS_OK);
+        adcgs_rig_spiral(&rig, &frames);
         double focus[3], least = 1e9, most = 0.0;
         for (int i = 0; i < 3; i++) /* the first frame looks there from three units, give or take the radius */
             focus[i] = rig.focus[i];
-        for (int s = 0; s < shots.n; s++) {
-            const adcgs_camera *camera = &shots.shot[s].camera;
+        for (int s = 0; s < frames.n; s++) {
+            const adcgs_camera *camera = &frames.frame[s].camera;
             check_rotation(camera->cam_to_world);
             assert_true(off_focus(camera, focus) < 0.05);
-            least = fmin(least, way(camera, &shots.shot[0].camera));
-            most = fmax(most, way(camera, &shots.shot[0].camera));
-            assert_true(way(camera, &shots.shot[(s + 1) % shots.n].camera) < 0.4);
+            least = fmin(least, way(camera, &frames.frame[0].camera));
+            most = fmax(most, way(camera, &frames.frame[0].camera));
+            assert_true(way(camera, &frames.frame[(s + 1) % frames.n].camera) < 0.4);
         }
         assert_true(most > 0.3 && most < 3.0);
-        adcgs_shots_free(&shots);
+        adcgs_camera_path_free(&frames);
     }
 }
 
@@ -295,34 +296,35 @@ static void test_spiral(void **state)
 
 static const adcgs_info info = {.time_start = 1.0, .time_end = 3.0, .frame_rate = 10.0, .scene_scale = 1.0};
 
-static adcgs_status read_path(const char *text, adcgs_shots_request *request, adcgs_shots *shots)
+static adcgs_status read_path(const char *text, adcgs_camera_path_request *request, adcgs_camera_path *frames)
 {
     put_text("p.json", text);
     request->camera = in("p.json");
-    *shots = (adcgs_shots){0};
-    return adcgs_shots_read_path(shots, &info, request, 0.1, &error);
+    *frames = (adcgs_camera_path){0};
+    return adcgs_camera_path_read(frames, &info, request, 0.1, &error);
 }
 
 static void test_key_file(void **state)
 {
-    adcgs_shots_request request = {0};
-    adcgs_shots shots;
+    adcgs_camera_path_request request = {0};
+    adcgs_camera_path frames;
     char text[1024];
     snprintf(text, sizeof text,
              "{\"w\":64,\"h\":48,\"frame_rate\":4,\"interpolate\":\"linear\",\"keys\":["
              "{\"at\":2,\"fl_x\":50," POSE "},{\"at\":4,\"fl_x\":60," POSE "},{\"at\":5,\"fl_x\":60,\"time\":2.5," POSE "}]}",
              0.0, 1.0, 1.0);
-    assert_int_equal(read_path(text, &request, &shots), ADCGS_OK);
-    assert_true(shots.n == 13 && shots.frame_rate == 4.0);
-    assert_true(shots.shot[4].camera.cam_to_world[3] == 0.5 && shots.shot[4].camera.fx == 55.0 && shots.shot[4].time == 2.0);
-    assert_true(shots.shot[0].time == 1.0 && shots.shot[12].time == 2.5 && fabs(shots.shot[10].time - 2.75) < 1e-12);
-    assert_true(shots.shot[0].camera.width == 64 && shots.shot[0].camera.height == 48);
-    assert_true(shots.shot[0].camera.cam_to_world[5] == -1.0); /* OpenCV axes */
-    adcgs_shots_free(&shots);
-    request = (adcgs_shots_request){.has_times = 1, .begin = 1.5, .end = 1.5, .size = {128, 96}};
-    assert_int_equal(read_path(text, &request, &shots), ADCGS_OK);
-    assert_true(shots.shot[4].time == 1.5 && shots.shot[4].camera.width == 128 && shots.shot[4].camera.fx == 110.0);
-    adcgs_shots_free(&shots);
+    assert_int_equal(read_path(text, &request, &frames), ADCGS_OK);
+    assert_true(frames.n == 13 && frames.frame_rate == 4.0);
+    assert_true(frames.frame[4].camera.cam_to_world[3] == 0.5);
+    assert_true(frames.frame[4].camera.fx == 55.0 && frames.frame[4].time == 2.0);
+    assert_true(frames.frame[0].time == 1.0 && frames.frame[12].time == 2.5 && fabs(frames.frame[10].time - 2.75) < 1e-12);
+    assert_true(frames.frame[0].camera.width == 64 && frames.frame[0].camera.height == 48);
+    assert_true(frames.frame[0].camera.cam_to_world[5] == -1.0); /* OpenCV axes */
+    adcgs_camera_path_free(&frames);
+    request = (adcgs_camera_path_request){.has_times = 1, .begin = 1.5, .end = 1.5, .size = {128, 96}};
+    assert_int_equal(read_path(text, &request, &frames), ADCGS_OK);
+    assert_true(frames.frame[4].time == 1.5 && frames.frame[4].camera.width == 128 && frames.frame[4].camera.fx == 110.0);
+    adcgs_camera_path_free(&frames);
 }
 
 static void test_bad_files(void **state)
@@ -348,8 +350,8 @@ static void test_bad_files(void **state)
         {"{\"at\":0,\"fl_x\":-1,@}", "", "keys[0].fl_x", "expected"},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++) {
-        adcgs_shots_request request = {0};
-        adcgs_shots shots;
+        adcgs_camera_path_request request = {0};
+        adcgs_camera_path frames;
         char text[2048] = "{\"fl_x\":50,\"keys\":[", pose[128];
         snprintf(pose, sizeof pose, POSE, 0.0);
         for (const char *c = bad[i].keys; *c; c++) {
@@ -359,8 +361,8 @@ static void test_bad_files(void **state)
         strcat(text, "]");
         strcat(text, bad[i].rest);
         strcat(text, "}");
-        expect_error(read_path(text, &request, &shots), ADCGS_ERR_DATA, bad[i].what, bad[i].why);
-        adcgs_shots_free(&shots);
+        expect_error(read_path(text, &request, &frames), ADCGS_ERR_DATA, bad[i].what, bad[i].why);
+        adcgs_camera_path_free(&frames);
     }
 }
 

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What both reports of adcgs-info say. */
+#include "tools/info_report.h"
+
+#include "base/digest.h"
+#include "model/model_priv.h"
+
+void adcgs_info_list_components(const adcgs_bytes *b, adcgs_info_component out[ADCGS_INFO_COMPONENTS])
+{
+    const adcgs_info_component list[ADCGS_INFO_COMPONENTS] = {
+        { "header", b->header },     { "networks", b->networks }, { "geometry", b->geometry }, { "layer0", b->layer[0] },
+        { "layer1", b->layer[1] },   { "layer2", b->layer[2] },   { "layer3", b->layer[3] },   { "layer4", b->layer[4] },
+        { "cameras", b->cameras },   { "metadata", b->metadata },
+    };
+    memcpy(out, list, sizeof list);
+}
+
+uint32_t adcgs_info_count_gaussians(const adcgs_model *m)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < m->n; i++)
+        for (unsigned bits = m->mask[i]; bits; bits &= bits - 1)
+            n++;
+    return n;
+}
+
+void adcgs_info_digest(const adcgs_info_report *r, uint32_t segment, char text[33])
+{
+    uint8_t digest[16];
+    adcgs_model_digest(&r->stream.segments[segment], digest);
+    adcgs_md5_hex(digest, text);
+}
