@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Files that are read: opening them, a whole one in memory. */
+/** \file Files that are read: opening them, a whole one in memory; whether all that was written has arrived. */
 #ifndef ADCGS_IO_FILE_H
 #define ADCGS_IO_FILE_H
 
@@ -16,5 +16,10 @@ adcgs_status adcgs_file_open(FILE **out, const char *path, adcgs_error *error);
 adcgs_status adcgs_file_check(const char *path, const char *what, adcgs_error *error);
 /** Load a regular file of at most limit bytes; the caller free()s *data, which has a zero byte after the last one. */
 adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error);
+/** The same of one that adcgs_file_open() opened and that is at its start; it stays open, and the caller's. */
+adcgs_status adcgs_file_load_open(uint8_t **data, size_t *bytes, FILE *file, const char *path, uint64_t limit,
+                                  adcgs_error *error);
+/** Write out what is held back. \return 0, or an errno that tells why something was not written, now or earlier. */
+int adcgs_file_flush(FILE *file);
 
 #endif

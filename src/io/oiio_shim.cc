@@ -3,18 +3,24 @@
 #include "config.h"
 
 /* The standard headers first: the shim's own header includes C headers inside extern "C". */
+#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <string>
 #include <vector>
 
 #include <strings.h>
+#include <unistd.h>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "io/oiio_shim.h"
@@ -156,13 +162,107 @@ bool write_samples(OIIO::ImageOutput &output, const adcgs_image *image, OIIO::Ty
 {
     std::vector<Sample> samples((size_t)image->width * (size_t)image->height * (size_t)image->channels);
     convert(image->data, samples.size(), samples.data());
-    return output.write_image(kind, samples.data()) && output.close();
+    return output.write_image(kind, samples.data());
 }
 
-adcgs_status write(const adcgs_image *image, int bits, const char *name, const char *extension, const char *path,
-                   adcgs_error *error)
+/** Write to an output that is not open yet, under a name; closed at the end. */
+adcgs_status write(OIIO::ImageOutput &output, const adcgs_image *image, int bits, const std::string &name, const char *extension,
+                   const char *path, adcgs_error *error)
 {
     const OIIO::TypeDesc kind = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
+    OIIO::ImageSpec spec(image->width, image->height, image->channels, kind);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (strcmp(output.format_name(), "tiff") != 0) /* it would become EXIF, which is lost in memory; integers are sRGB anyway */
+        spec.attribute("oiio:ColorSpace", "sRGB");
+    bool good = output.open(name, spec);
+    if (good && output.spec().format != kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no samples of %d bits", path, extension, bits);
+    if (good)
+        good = bits == 16 ? write_samples(output, image, kind, adcgs_image_to_u16)
+                          : write_samples(output, image, kind, adcgs_image_to_u8);
+    good = good && output.close();
+    if (good)
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output.geterror()).c_str());
+}
+
+/** A file of our own that is gone when this is. */
+class Temporary {
+public:
+    explicit Temporary(const std::string &extension)
+    {
+        const char *const folder = std::getenv("TMPDIR");
+        name_ = (folder && *folder ? folder : "/tmp") + std::string("/adcgs-XXXXXX.") + extension;
+        const int fd = mkstemps(&name_[0], (int)extension.size() + 1);
+        made_ = fd >= 0;
+        if (made_)
+            close(fd);
+    }
+    ~Temporary()
+    {
+        if (made_)
+            unlink(name_.c_str());
+    }
+    Temporary(const Temporary &) = delete;
+    Temporary &operator=(const Temporary &) = delete;
+    bool made() const { return made_; }
+    const std::string &name() const { return name_; }
+
+private:
+    std::string name_;
+    bool made_;
+};
+
+/** OpenImageIO does not look at everything that can fail: what cannot be read back was not written. */
+bool reads_back(const std::string &name, OIIO::Filesystem::IOProxy *proxy, const adcgs_image *image)
+{
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name, nullptr, proxy);
+    OIIO::geterror(); /* else it is printed at exit */
+    if (!input || input->spec().width != image->width || input->spec().height != image->height)
+        return false;
+    const int channels = input->spec().nchannels;
+    std::vector<uint8_t> samples((size_t)image->width * (size_t)image->height * (size_t)channels);
+    const bool good = input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, samples.data());
+    input->geterror();
+    return good;
+}
+
+adcgs_status encode_in_memory(std::vector<uint8_t> &out, OIIO::ImageOutput &output, const adcgs_image *image, int bits,
+                              const char *extension, const char *path, adcgs_error *error)
+{
+    OIIO::Filesystem::IOVecOutput writer(out);
+    if (!output.set_ioproxy(&writer))
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files are not written in memory", path, extension);
+    const std::string name = std::string("memory.") + extension;
+    ADCGS_TRY(write(output, image, bits, name, extension, path, error));
+    OIIO::Filesystem::IOMemReader reader(out.data(), out.size());
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(name);
+    OIIO::geterror();
+    if (!input || !input->supports("ioproxy") || reads_back(name, &reader, image))
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what OpenImageIO made of it does not read back", path);
+}
+
+/** For formats that OpenImageIO has in files only. */
+adcgs_status encode_in_file(std::vector<uint8_t> &out, OIIO::ImageOutput &output, const adcgs_image *image, int bits,
+                            const char *extension, const char *path, adcgs_error *error)
+{
+    const Temporary file(extension);
+    if (!file.made())
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create %s: %s", path, file.name().c_str(), strerror(errno));
+    ADCGS_TRY(write(output, image, bits, file.name(), extension, path, error));
+    const bool good = reads_back(file.name(), nullptr, image);
+    std::ifstream stream(file.name(), std::ios::binary);
+    out.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    if (good && !stream.bad())
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what came to %s does not read back", path, file.name().c_str());
+}
+
+adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension, const char *path,
+                    adcgs_error *error)
+{
+    std::vector<uint8_t> memory;
     OIIO::attribute("threads", 1);
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(extension);
     if (!output) {
@@ -171,21 +271,16 @@ adcgs_status write(const adcgs_image *image, int bits, const char *name, const c
     }
     if (image->channels % 2 == 0 && !output->supports("alpha"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no alpha; EXR, PNG and TIFF do", path, extension);
-    OIIO::ImageSpec spec(image->width, image->height, image->channels, kind);
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("jpeg:subsampling", "4:4:4");
-    if (std::string(output->format_name()) == "jpeg")
-        spec.attribute("Compression", "jpeg:95");
-    bool good = output->open(name, spec);
-    if (good && output->spec().format != kind)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no samples of %d bits", path, extension, bits);
-    if (good)
-        good = bits == 16 ? write_samples(*output, image, kind, adcgs_image_to_u16)
-                          : write_samples(*output, image, kind, adcgs_image_to_u8);
-    if (good)
-        return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output->geterror()).c_str());
+    ADCGS_TRY((output->supports("ioproxy") ? encode_in_memory : encode_in_file)(memory, *output, image, bits, extension, path,
+                                                                               error));
+    if (memory.empty())
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files hold no pictures", path, extension);
+    *data = static_cast<uint8_t *>(std::malloc(memory.size()));
+    if (!*data)
+        throw std::bad_alloc();
+    *bytes = memory.size();
+    std::memcpy(*data, memory.data(), *bytes);
+    return ADCGS_OK;
 }
 
 adcgs_status probe_c(int *width, int *height, int *channels, const char *path, adcgs_error *error) noexcept
@@ -209,12 +304,14 @@ adcgs_status read_c(adcgs_image *out, const char *path, adcgs_error *error) noex
     return status;
 }
 
-adcgs_status write_c(const adcgs_image *image, int bits, const char *name, const char *extension, const char *path,
-                     adcgs_error *error) noexcept
+adcgs_status encode_c(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension, const char *path,
+                      adcgs_error *error) noexcept
 {
-    return guarded(path, error, [&]() { return write(image, bits, name, extension, path, error); });
+    *data = nullptr;
+    *bytes = 0;
+    return guarded(path, error, [&]() { return encode(data, bytes, image, bits, extension, path, error); });
 }
 
 } // namespace
 
-extern "C" const adcgs_oiio adcgs_oiio_table = { PACKAGE_VERSION, probe_c, read_c, write_c };
+extern "C" const adcgs_oiio adcgs_oiio_table = { PACKAGE_VERSION, probe_c, read_c, encode_c };
