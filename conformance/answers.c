@@ -3,7 +3,7 @@
 #include "answers.h"
 
 #include "base/digest.h"
-#include "model/input.h"
+#include "stream/input.h"
 
 #include <adcgs/adcgs.h>
 

@@ -4,7 +4,7 @@
 
 #include "base/digest.h"
 #include "model/model_priv.h"
-#include "model/parts.h"
+#include "stream/parts.h"
 
 /** Networks in the stream so far, by id. */
 typedef struct id_table {

@@ -2,9 +2,9 @@
 /** \file Syntax elements by name: found by a trace of the stream, replaced by their bytes. */
 #include "edit.h"
 
-#include "model/input.h"
-#include "model/stream.h"
-#include "model/syntax.h"
+#include "stream/input.h"
+#include "stream/stream.h"
+#include "stream/syntax.h"
 
 #include <stdio.h>
 #include <stdlib.h>

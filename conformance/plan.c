@@ -2,7 +2,7 @@
 /** \file Settings of a recipe that are numbers, words, cameras and texts. */
 #include "plan.h"
 
-#include "model/syntax.h"
+#include "stream/syntax.h"
 #include "random_model.h"
 
 #include <stdio.h>

@@ -10,7 +10,7 @@
 #include "chunks.h"
 #include "recipe.h"
 
-#include "model/stream.h"
+#include "stream/stream.h"
 
 #define ADCGS_PLAN_SEGMENTS 20
 #define ADCGS_PLAN_CAMERAS 8

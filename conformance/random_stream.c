@@ -9,7 +9,7 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "base/pool.h"
-#include "model/input.h"
+#include "stream/input.h"
 
 #include <adcgs/adcgs.h>
 

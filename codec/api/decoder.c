@@ -3,10 +3,10 @@
 #include "base/cpu.h"
 #include "base/pool.h"
 #include "base/strict.h"
-#include "model/stream.h"
 #include "net/net.h"
 #include "render/render.h"
 #include "splat/splat.h"
+#include "stream/stream.h"
 
 #define ROWS_PER_JOB 32
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Where streams come from: files and memory, both as sequential sources. */
 #include "base/base.h"
-#include "model/input.h"
+#include "stream/input.h"
 
 #include <adcgs/decoder.h>
 

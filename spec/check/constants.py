@@ -128,7 +128,7 @@ def _numbers(source):
 CONSTANTS = (
     ("E24_MAX", "net/e24.h", r"#define ADCGS_E24_A (\d+)"),
     ("RATE", "bits/adaptive.c", r"rates\[\] = \{([^}]*)\}"),
-    ("SIGNATURE", "model/chunk.h", None),
+    ("SIGNATURE", "stream/chunk.h", None),
 )
 # Bounds of the levels: constants of the text, and the implementation's names where they differ.
 LEVEL_NAMES = {"STREAM_BYTES": "file_bytes"}
@@ -187,7 +187,7 @@ _ours = re.compile(r"^#define (ADCGS_\w+) (.+?)(?:\s*/\*.*)?$", re.M)
 
 def _macros(tree):
     found = {"ADCGS_ROLES": "12"}
-    for name in ("model/model.h", "model/latents.h", "model/syntax.h", "net/net.h", "geom/geom.h"):
+    for name in ("model/model.h", "model/latents.h", "stream/syntax.h", "net/net.h", "geom/geom.h"):
         found.update(_ours.findall(_read(tree, name)))
     return found
 
@@ -201,7 +201,7 @@ def _resolve(source, macros):
 def _fields_of_code(tree):
     """(name, descriptor, low, high) of every element that the implementation's lists give."""
     macros, found = _macros(tree), set()
-    source = _read(tree, "model/syntax.h")
+    source = _read(tree, "stream/syntax.h")
     for _, body in _list.findall(source):
         for kind, base, name, rest in _field.findall(body + "\n"):
             parts = [p.strip() for p in rest.split(",")]

@@ -1,36 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes: finding the layout, what follows from all views together, loading pictures. */
+/** \file Scenes: names of their parts, and pictures as training and measuring want them. */
 #include "config.h"
 
 #include "data/scene.h"
 
-#include "data/camera_json.h"
 #include "data/clips.h"
-#include "data/colmap.h"
-#include "data/hypernerf.h"
-#include "data/llff.h"
-#include "data/paths.h"
-#include "data/pose.h"
-#include "data/scene_file.h"
-#include "data/sort.h"
-#include "data/splat_scene.h"
-#include "data/transforms.h"
-#include "io/file.h"
+#include "data/splat_views.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-
-#define DEFAULT_FRAME_RATE 30.0
-#define NEAR_PER_DISTANCE 0.01
-#define NEAR_PER_BOUND 0.5      /* bounds are of most points, not of all */
-#define NEAR_LEAST 1e-3
-#define COLOUR_SRGB 1           /* a code of adcgs_stream */
-
-const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto", "transforms", "hypernerf", "llff", "colmap", "adcgs",
-                                                            "splats", NULL};
 
 static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
 
@@ -66,22 +44,6 @@ void adcgs_scene_free(adcgs_scene **scene)
     *scene = NULL;
 }
 
-static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_error *error)
-{
-    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
-    double *times = malloc(n * sizeof *times);
-    if (!times)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    for (uint32_t i = 0; i < n; i++)
-        times[i] = scene->views[ADCGS_SPLIT_TRAIN][i].time;
-    adcgs_sort(times, n);
-    scene->n_times = 1;
-    for (uint32_t i = 1; i < n; i++)
-        scene->n_times += times[i] - times[i - 1] > ADCGS_TIME_TOLERANCE;
-    free(times);
-    return ADCGS_OK;
-}
-
 static adcgs_status check_size(const adcgs_scene_view *view, int width, int height, adcgs_error *error)
 {
     const int bends = view->lens.width > 0;
@@ -92,257 +54,11 @@ static adcgs_status check_size(const adcgs_scene_view *view, int width, int heig
                       wanted[0], wanted[1]);
 }
 
-static adcgs_status probe(const adcgs_scene_view *view, adcgs_error *error)
+adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
 {
     int width, height, channels;
     ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, view->path, error));
     return check_size(view, width, height, error);
-}
-
-/**
- * Every picture is there, and those that are not for training have the right size: these are read last, and it is better to
- * hear of them now than when all is learnt.
- */
-static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
-{
-    for (int s = 0; s < ADCGS_SPLITS && !scene->splats; s++)
-        for (uint32_t i = 0; i < scene->n_views[s]; i++) {
-            const adcgs_scene_view *view = &scene->views[s][i];
-            if (view->is_video)
-                continue;
-            ADCGS_TRY(adcgs_file_check(view->path, "an image", error));
-            if (s != ADCGS_SPLIT_TRAIN)
-                ADCGS_TRY(probe(view, error));
-        }
-    return ADCGS_OK;
-}
-
-/** What follows from all views together: seconds, near planes, alpha, background. */
-static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
-{
-    ADCGS_TRY(check_files(scene, error));
-    ADCGS_TRY(count_times(scene, path, error));
-    if (scene->duration <= 0.0)
-        scene->duration = (scene->n_times - 1) / scene->frame_rate;
-    const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
-    const double distance = adcgs_pose_median_distance(train, scene->n_views[ADCGS_SPLIT_TRAIN]);
-    const double near_plane =
-        fmax(NEAR_LEAST, scene->near_bound > 0.0 ? NEAR_PER_BOUND * scene->near_bound : NEAR_PER_DISTANCE * distance);
-    for (int s = 0; s < ADCGS_SPLITS; s++)
-        for (uint32_t i = 0; i < scene->n_views[s]; i++) {
-            scene->views[s][i].time *= scene->duration;
-            scene->views[s][i].camera.near_plane = near_plane;
-        }
-    int width, height, channels = 3;
-    if (!scene->splats && !train[0].is_video)
-        ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
-    scene->has_alpha = channels % 2 == 0;
-    for (int c = 0; c < 3; c++)
-        scene->background[c] = options->has_background ? options->background[c] : scene->has_alpha ? 1.0f : 0.0f;
-    return ADCGS_OK;
-}
-
-/** Take what a file says besides its views. */
-static void take_facts(adcgs_scene *scene, adcgs_transforms *facts, char **points_path)
-{
-    if (!scene->frame_rate)
-        scene->frame_rate = facts->frame_rate;
-    if (!*points_path)
-        *points_path = facts->points_path;
-    else
-        free(facts->points_path);
-}
-
-/** One file per split; only the training split must exist. */
-static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_error *error)
-{
-    int has_times = 0;
-    for (int s = 0; s < ADCGS_SPLITS; s++) {
-        char *path = adcgs_path("%s/transforms_%s.json", scene->directory, split_names[s]);
-        adcgs_transforms facts = {0};
-        adcgs_status status = ADCGS_OK;
-        if (adcgs_is_there(path)) {
-            status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
-            if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN) {
-                take_facts(scene, &facts, points_path);
-                has_times = facts.has_times;
-            } else
-                free(facts.points_path); /* only the training split decides */
-            if (status == ADCGS_OK && has_times != facts.has_times)
-                status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: frames[0].time: %s, unlike in the training split", path,
-                                    has_times ? "missing" : "given");
-        }
-        free(path);
-        ADCGS_TRY(status);
-    }
-    return ADCGS_OK;
-}
-
-static adcgs_status read_single(adcgs_scene *scene, const char *path, char **points_path, adcgs_error *error)
-{
-    adcgs_transforms facts;
-    ADCGS_TRY(adcgs_transforms_read(scene, &facts, path, ADCGS_SPLITS, error));
-    take_facts(scene, &facts, points_path);
-    if (!scene->n_views[ADCGS_SPLIT_TRAIN])
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: frames: no frame is left for training", path);
-    return ADCGS_OK;
-}
-
-static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcgs_error *error)
-{
-    char *train = adcgs_path("%s/transforms_train.json", scene->directory);
-    char *single = adcgs_path("%s/transforms.json", scene->directory);
-    adcgs_status status = ADCGS_ERR_MEMORY;
-    if (!train || !single)
-        adcgs_fail(error, status, "%s: out of memory", scene->directory);
-    else
-        status = adcgs_is_there(train) ? read_splits(scene, points_path, error) : read_single(scene, single, points_path, error);
-    free(train);
-    free(single);
-    return status;
-}
-
-static int is_transforms(const char *folder)
-{
-    char *train = adcgs_path("%s/transforms_train.json", folder), *single = adcgs_path("%s/transforms.json", folder);
-    const int is = adcgs_is_there(train) || adcgs_is_there(single);
-    free(train);
-    free(single);
-    return is;
-}
-
-/** The folder's layout by the files it has; ADCGS_DATASET_AUTO: none that we know. */
-static adcgs_dataset find_dataset(const char *folder)
-{
-    return is_transforms(folder)         ? ADCGS_DATASET_TRANSFORMS
-           : adcgs_is_hypernerf(folder) ? ADCGS_DATASET_HYPERNERF
-           : adcgs_is_llff(folder)      ? ADCGS_DATASET_LLFF
-           : adcgs_is_colmap(folder)    ? ADCGS_DATASET_COLMAP
-                                        : ADCGS_DATASET_AUTO;
-}
-
-static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const adcgs_scene_options *options, adcgs_error *error)
-{
-    const int with_points = !options->points_path;
-    switch (options->dataset ? options->dataset : (int)find_dataset(scene->directory)) {
-    case ADCGS_DATASET_TRANSFORMS:
-        ADCGS_TRY(read_transforms(scene, points_path, error));
-        break;
-    case ADCGS_DATASET_HYPERNERF:
-        ADCGS_TRY(adcgs_hypernerf_read(scene, with_points, error));
-        break;
-    case ADCGS_DATASET_LLFF:
-        return adcgs_llff_read(scene, &options->frames, with_points, error);
-    case ADCGS_DATASET_COLMAP:
-        return adcgs_colmap_read(scene, &options->frames, with_points, error);
-    case ADCGS_DATASET_ADCGS:
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a scene file (JSON)", scene->directory);
-    case ADCGS_DATASET_SPLATS:
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats (PLY)", scene->directory);
-    default:
-        return adcgs_fail(error, ADCGS_ERR_IO,
-                          "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
-                          "metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model in sparse/0, sparse or here",
-                          scene->directory);
-    }
-    return adcgs_frames_keep(scene, &options->frames, scene->directory, error);
-}
-
-/** Splats, told by being a PLY file; a scene file or a file of transforms, told by the field adcgs_scene. */
-static adcgs_status read_file(adcgs_scene *scene, const char *path, char **points_path, const adcgs_scene_options *options,
-                              adcgs_error *error)
-{
-    json_t *root;
-    int is_scene_file = options->dataset == ADCGS_DATASET_ADCGS;
-    if (options->dataset == ADCGS_DATASET_SPLATS || (options->dataset == ADCGS_DATASET_AUTO && adcgs_is_ply(path)))
-        return adcgs_splat_scene_read(scene, !options->points_path, path, error);
-    if (options->dataset == ADCGS_DATASET_AUTO) {
-        ADCGS_TRY(adcgs_json_load(&root, path, error));
-        is_scene_file = json_object_get(root, "adcgs_scene") != NULL;
-        json_decref(root);
-    } else if (!is_scene_file && options->dataset != ADCGS_DATASET_TRANSFORMS)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a file, expected the folder of a scene of the kind %s", path,
-                          adcgs_dataset_names[options->dataset]);
-    if (is_scene_file)
-        return adcgs_scene_file_read(scene, path, &options->frames, !options->points_path, error);
-    ADCGS_TRY(read_single(scene, path, points_path, error));
-    return adcgs_frames_keep(scene, &options->frames, path, error);
-}
-
-static adcgs_status read_points(adcgs_scene *scene, const char *listed, const adcgs_scene_options *options, adcgs_error *error)
-{
-    if (options->points_path)
-        return adcgs_points_read(&scene->points, options->points_path, error);
-    if (listed)
-        return adcgs_points_read(&scene->points, listed, error);
-    char *customary = adcgs_path("%s/points3d.ply", scene->directory);
-    const adcgs_status status = adcgs_is_there(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
-    free(customary);
-    return status;
-}
-
-/** path without slashes at its end, or for a file the folder it is in. */
-static char *folder_of(const char *path, int is_folder)
-{
-    char *folder = strdup(path);
-    if (!folder)
-        return NULL;
-    size_t n = strlen(folder);
-    if (is_folder) {
-        while (n > 1 && folder[n - 1] == '/')
-            folder[--n] = 0;
-        return folder;
-    }
-    char *slash = strrchr(folder, '/');
-    if (slash)
-        slash[slash == folder] = 0;
-    else
-        strcpy(folder, "."); /* a name is at least one character long */
-    return folder;
-}
-
-static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, const adcgs_scene_options *options,
-                         adcgs_error *error)
-{
-    char *points_path = NULL;
-    scene->axes = ADCGS_AXES_Z_UP; /* by custom of the transforms layouts */
-    scene->colour_space = COLOUR_SRGB;
-    scene->frame_rate = options->frame_rate;
-    adcgs_status status =
-        is_folder ? read_folder(scene, &points_path, options, error) : read_file(scene, path, &points_path, options, error);
-    if (!scene->frame_rate)
-        scene->frame_rate = DEFAULT_FRAME_RATE;
-    if (!options->frame_rate)
-        scene->frame_rate /= (double)adcgs_frames_step(&options->frames);
-    if (status == ADCGS_OK)
-        status = finish_views(scene, path, options, error);
-    if (status == ADCGS_OK && !scene->points.position) /* the layout's own may be there already */
-        status = read_points(scene, points_path, options, error);
-    free(points_path);
-    return status;
-}
-
-adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error)
-{
-    static const adcgs_scene_options defaults;
-    struct stat status;
-    *out = NULL;
-    if (!*path || stat(path, &status))
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open the scene: %s", path, strerror(errno));
-    if (S_ISREG(status.st_mode) && !status.st_size)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected a scene", path);
-    adcgs_scene *scene = calloc(1, sizeof *scene);
-    if (!scene)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    scene->directory = folder_of(path, S_ISDIR(status.st_mode));
-    adcgs_status result = scene->directory ? adcgs_clips_create(&scene->clips, error)
-                                           : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    if (result == ADCGS_OK)
-        result = fill(scene, path, S_ISDIR(status.st_mode), options ? options : &defaults, error);
-    if (result != ADCGS_OK)
-        adcgs_scene_free(&scene);
-    *out = scene;
-    return result;
 }
 
 /** Colour of one pixel over the background. */
@@ -400,7 +116,7 @@ static void divide_camera(adcgs_camera *camera, int divide)
 /** Of another size than it should have, an image is refused before there is memory for its pixels. */
 static adcgs_status read_image(const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
 {
-    ADCGS_TRY(probe(view, error));
+    ADCGS_TRY(adcgs_scene_probe(view, error));
     return adcgs_image_read(image, view->path, error);
 }
 

@@ -4,17 +4,6 @@
  * in. Conventions are converted here, once: cameras are OpenCV-axed pinholes in
  * world units, times are seconds from the start of the scene.
  *
- * Layouts, told by the files that are there:
- * - a folder with transforms_train.json (and _val, _test; D-NeRF), a folder with one transforms.json (nerfstudio), or such a
- *   file itself. Without files per split, every 8th frame (0, 8, 16, ...) is for testing and the others are for training.
- *   World axes, units and colours are the dataset's own.
- * - a folder with dataset.json, metadata.json and camera/ (HyperNeRF, Nerfies). World units are the layout's working
- *   coordinates, (x - center) * scale of its scene.json.
- * - a folder with poses_bounds.npy: pictures (LLFF) or videos of fixed cameras (Neu3D), see data/llff.h.
- * - a folder with a sparse model of COLMAP, see data/colmap.h.
- * - a JSON file with the field adcgs_scene, see data/scene_file.h.
- * - a PLY file of splats: a still scene, whose views are renderings of them, see data/splat_scene.h.
- *
  * Views for testing and validation are only listed: what follows from all views together (duration, near plane, axes, the
  * frame of reference, the first anchors) follows from the views for training alone.
  *
@@ -36,21 +25,6 @@
 
 typedef enum adcgs_split { ADCGS_SPLIT_TRAIN, ADCGS_SPLIT_VAL, ADCGS_SPLIT_TEST, ADCGS_SPLITS } adcgs_split;
 
-/** Kinds of scenes; AUTO: the first of them whose files are there. */
-typedef enum adcgs_dataset {
-    ADCGS_DATASET_AUTO,
-    ADCGS_DATASET_TRANSFORMS,
-    ADCGS_DATASET_HYPERNERF,
-    ADCGS_DATASET_LLFF,
-    ADCGS_DATASET_COLMAP,
-    ADCGS_DATASET_ADCGS,  /**< the scene file */
-    ADCGS_DATASET_SPLATS, /**< a PLY file of splats */
-    ADCGS_DATASETS
-} adcgs_dataset;
-
-/** "auto", "transforms", "hypernerf", "llff", "colmap", "adcgs", and NULL at the end. */
-extern const char *const adcgs_dataset_names[ADCGS_DATASETS + 1];
-
 /** World axes, right-handed: the codes of adcgs_stream. */
 typedef enum adcgs_axes { ADCGS_AXES_UNKNOWN, ADCGS_AXES_Y_UP, ADCGS_AXES_Z_UP, ADCGS_AXES_Y_DOWN } adcgs_axes;
 
@@ -65,7 +39,7 @@ typedef struct adcgs_scene_view {
 
 typedef adcgs_points adcgs_scene_points; /**< positions in world units; as the scene gives them */
 
-/** Splats that views are renderings of; see splat_scene.h. */
+/** Splats that views are renderings of; see splat_views.h. */
 typedef struct adcgs_splat_scene adcgs_splat_scene;
 
 typedef struct adcgs_scene {
@@ -84,30 +58,15 @@ typedef struct adcgs_scene {
     struct adcgs_clips *clips; /**< videos that are open (clips.h) */
 } adcgs_scene;
 
-/** Overrides given on a command line. Zero-initialise. */
-typedef struct adcgs_scene_options {
-    const char *points_path;  /**< file of initial points, in world units, instead of the scene's own */
-    int has_background;
-    float background[3];
-    double frame_rate;        /**< of the frames that are kept; 0: the scene's, else 30 */
-    int dataset;              /**< an adcgs_dataset */
-    adcgs_frame_range frames; /**< of videos, or of the distinct moments of all pictures; the first one kept is time 0 */
-} adcgs_scene_options;
-
-/**
- * Open a scene folder, its JSON file of transforms, a scene file, or a PLY file of splats. Times in [0,1] of the layout become
- * seconds: t * (n_times-1)/frame_rate. The near plane is half the near bound, or where there is none, a hundredth of the median
- * distance of the training cameras from the centre of their views.
- * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
- * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole and OpenCV's.
- */
-adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error);
 void adcgs_scene_free(adcgs_scene **scene);
 
 /** "train", "val", "test". */
 const char *adcgs_split_name(adcgs_split split);
 /** 0, or -1 if unknown. */
 int adcgs_split_parse(const char *name, adcgs_split *split);
+
+/** The size that a picture's file has is the one that its camera, or its lens, says; ADCGS_ERR_DATA if not. */
+adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error);
 
 /**
  * Load a view's picture as planar binary32 [3][h][w], straightened, alpha composited over scene->background, box-filtered down

@@ -3,7 +3,7 @@
 #include "encode/encode.h"
 
 #include "encode/quantise.h"
-#include "model/input.h"
+#include "stream/input.h"
 
 #include <math.h>
 

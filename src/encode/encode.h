@@ -6,7 +6,7 @@
 #ifndef ADCGS_ENCODE_ENCODE_H
 #define ADCGS_ENCODE_ENCODE_H
 
-#include "model/stream.h"
+#include "stream/stream.h"
 #include "train/trainer.h"
 
 #define ADCGS_ENCODE_CAMERAS_MAX 8

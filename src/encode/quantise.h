@@ -7,8 +7,8 @@
 #ifndef ADCGS_ENCODE_QUANTISE_H
 #define ADCGS_ENCODE_QUANTISE_H
 
+#include "fmodel/rdo.h"
 #include "model/latents.h"
-#include "train/rdo.h"
 
 /**
  * Build the model of f. Anchors are f's, in their Morton order. Values that lie on levels already, as those of a frozen model

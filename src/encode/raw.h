@@ -6,7 +6,7 @@
 #ifndef ADCGS_ENCODE_RAW_H
 #define ADCGS_ENCODE_RAW_H
 
-#include "train/fmodel.h"
+#include "fmodel/fmodel.h"
 
 /**
  * Prepare a finished model for being stored uncompressed: to each channel the finest step that still reaches all its values

@@ -4,8 +4,8 @@
 
 #include "play/player.h"
 
+#include "camera/rotation.h"
 #include "play/panel.h"
-#include "play/turn.h"
 
 #include <stdio.h>
 #include <stdlib.h>

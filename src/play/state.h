@@ -6,8 +6,8 @@
 #ifndef ADCGS_PLAY_STATE_H
 #define ADCGS_PLAY_STATE_H
 
+#include "camera/orbit_control.h"
 #include "play/clock.h"
-#include "play/rig.h"
 #include "play/window.h"
 
 /* The time bar, in pixels of letters and in letters: how high it is, and the room for the time on its right. */

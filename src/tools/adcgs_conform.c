@@ -3,8 +3,8 @@
 #include "config.h"
 
 #include "base/cpu.h"
-#include "tools/cli.h"
-#include "tools/conform.h"
+#include "cli/cli.h"
+#include "conform/conform.h"
 
 #include <fnmatch.h>
 #include <stdlib.h>

@@ -4,14 +4,14 @@
 
 #include "api/frame.h"
 #include "base/cpu.h"
+#include "camera/path.h"
+#include "cli/cli.h"
 #include "io/sink.h"
-#include "model/input.h"
+#include "stream/input.h"
 #include "tools/answer.h"
 #include "tools/canvas.h"
-#include "tools/cli.h"
 #include "tools/dec_play.h"
 #include "tools/dec_splats.h"
-#include "tools/shots.h"
 
 #include <adcgs/adcgs.h>
 

@@ -3,8 +3,9 @@
  * adcgs-demo-grid: one picture to look at: some views of a scene in columns,
  * truth above, decoded in the middle, their difference below. Not installed.
  */
+#include "cli/cli.h"
+#include "layouts/open.h"
 #include "metric/evaluate.h"
-#include "tools/cli.h"
 #include "tools/mosaic.h"
 
 #include <adcgs/adcgs.h>

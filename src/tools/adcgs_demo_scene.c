@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file adcgs-demo-scene: writes one of the built-in scenes. Part of the tree's own demo and tests; not installed. */
+#include "cli/cli.h"
 #include "scenes/scenes.h"
-#include "tools/cli.h"
 
 #include <stdio.h>
 

@@ -6,6 +6,7 @@
 #include "encode/encode.h"
 #include "encode/raw.h"
 #include "io/atomic.h"
+#include "layouts/open.h"
 #include "tools/enc_report.h"
 
 #include <adcgs/adcgs.h>

@@ -3,8 +3,9 @@
 #include "config.h"
 
 #include "base/cpu.h"
+#include "cli/cli.h"
+#include "layouts/open.h"
 #include "metric/crop.h"
-#include "tools/cli.h"
 #include "tools/eval_report.h"
 #include "tools/mosaic.h"
 

@@ -5,10 +5,10 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "base/pool.h"
-#include "model/input.h"
+#include "cli/cli.h"
 #include "model/model_priv.h"
-#include "model/stream.h"
-#include "tools/cli.h"
+#include "stream/input.h"
+#include "stream/stream.h"
 #include "tools/info_points.h"
 
 #include <errno.h>

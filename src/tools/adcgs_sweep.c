@@ -2,8 +2,8 @@
 /** \file adcgs-sweep: a grid of encodings, each decoded and measured, as table and chart. */
 #include "config.h"
 
-#include "tools/cli.h"
-#include "tools/sweep.h"
+#include "cli/cli.h"
+#include "sweep/sweep.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -6,9 +6,9 @@
 
 #include "base/cpu.h"
 #include "base/digest.h"
-#include "model/input.h"
-#include "model/stream.h"
-#include "tools/cli.h"
+#include "cli/cli.h"
+#include "stream/input.h"
+#include "stream/stream.h"
 
 #include <adcgs/adcgs.h>
 

@@ -3,9 +3,9 @@
 #ifndef ADCGS_TOOLS_CANVAS_H
 #define ADCGS_TOOLS_CANVAS_H
 
+#include "camera/path.h"
 #include "io/sink.h"
 #include "tools/mosaic.h"
-#include "tools/shots.h"
 
 typedef struct adcgs_canvas {
     adcgs_frame frame;        /**< to render into */

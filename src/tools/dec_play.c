@@ -8,9 +8,9 @@
 
 #ifdef HAVE_ENCODER
 
+#include "cli/cli.h"
 #include "io/file.h"
 #include "play/play.h"
-#include "tools/cli.h"
 
 #define STREAM_BYTES_MAX ((uint64_t)1 << 32) /* the player keeps them, to open the stream with other layers */
 

@@ -3,7 +3,7 @@
 #ifndef ADCGS_TOOLS_DEC_PLAY_H
 #define ADCGS_TOOLS_DEC_PLAY_H
 
-#include "tools/shots.h"
+#include "camera/path.h"
 
 /** What the command line says about playing. */
 typedef struct adcgs_dec_play {

@@ -3,8 +3,8 @@
 #ifndef ADCGS_TOOLS_DEC_SPLATS_H
 #define ADCGS_TOOLS_DEC_SPLATS_H
 
-#include "tools/cli.h"
-#include "tools/shots.h"
+#include "camera/path.h"
+#include "cli/cli.h"
 
 /**
  * Write the splats at the moments asked for, each to a file of its own: target has one number like %04d in its name, or there is

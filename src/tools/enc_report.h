@@ -3,7 +3,7 @@
 #ifndef ADCGS_TOOLS_ENC_REPORT_H
 #define ADCGS_TOOLS_ENC_REPORT_H
 
-#include "tools/cli.h"
+#include "cli/cli.h"
 #include "train/trainer.h"
 
 typedef struct adcgs_enc_report {

@@ -3,9 +3,9 @@
 #ifndef ADCGS_TOOLS_EVAL_REPORT_H
 #define ADCGS_TOOLS_EVAL_REPORT_H
 
+#include "cli/cli.h"
 #include "io/atomic.h"
 #include "metric/crop.h"
-#include "tools/cli.h"
 
 /** Values of a row; not a number where there is none. */
 typedef enum adcgs_eval_column {

@@ -4,7 +4,7 @@
 #define ADCGS_TOOLS_INFO_POINTS_H
 
 #include "io/points.h"
-#include "model/stream.h"
+#include "stream/stream.h"
 
 /**
  * The anchors of the segment that plays at the middle of the stream, in the stream's order: positions in world units, where they

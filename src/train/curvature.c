@@ -6,7 +6,7 @@
  */
 #include "train/curvature.h"
 
-#include "train/random.h"
+#include "grad/random.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 #ifndef ADCGS_TRAIN_SCHEDULE_H
 #define ADCGS_TRAIN_SCHEDULE_H
 
-#include "train/fmodel.h"
+#include "fmodel/fmodel.h"
 
 #include <stdio.h>
 

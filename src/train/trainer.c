@@ -2,13 +2,13 @@
 /** \file The training loop. */
 #include "train/trainer.h"
 
+#include "fmodel/scale_penalty.h"
+#include "fmodel/weight_rate.h"
+#include "grad/random.h"
 #include "metric/metric.h"
-#include "train/area.h"
-#include "train/lattice.h"
-#include "train/random.h"
-#include "train/slim.h"
-#include "train/start.h"
-#include "train/weight_rate.h"
+#include "train/initialise.h"
+#include "train/unit_prune.h"
+#include "train/weight_steps.h"
 
 #include <math.h>
 #include <stdlib.h>

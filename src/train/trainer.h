@@ -8,16 +8,16 @@
 
 #include "bits/bytes.h"
 #include "data/pictures.h"
-#include "train/area.h"
-#include "train/average.h"
-#include "train/control.h"
+#include "fmodel/pass.h"
+#include "fmodel/rdo.h"
+#include "fmodel/rigidity.h"
+#include "fmodel/scale_penalty.h"
+#include "fmodel/weight_average.h"
+#include "grad/loss.h"
 #include "train/exposure.h"
-#include "train/loss.h"
-#include "train/pass.h"
-#include "train/rdo.h"
-#include "train/rigid.h"
+#include "train/rate_control.h"
 #include "train/schedule.h"
-#include "train/window.h"
+#include "train/time_curriculum.h"
 
 /** What an observer is told. Bits are estimates until the stream is written. */
 typedef struct adcgs_train_report {

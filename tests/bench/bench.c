@@ -9,7 +9,7 @@
 #include "ceilings.h"
 #include "parts.h"
 
-#include "tools/cli.h"
+#include "cli/cli.h"
 
 #include <errno.h>
 #include <unistd.h>

@@ -3,4 +3,4 @@
 #include "fast.h"
 
 #define adcgs_back_avx2 bench_fast_back_avx2
-#include "train/raster_backward_avx2.c"
+#include "grad/raster_backward_avx2.c"

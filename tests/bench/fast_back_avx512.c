@@ -3,4 +3,4 @@
 #include "fast.h"
 
 #define adcgs_back_avx512 bench_fast_back_avx512
-#include "train/raster_backward_avx512.c"
+#include "grad/raster_backward_avx512.c"

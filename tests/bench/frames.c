@@ -6,8 +6,8 @@
 #include "parts.h"
 #include "plain.h"
 
+#include "grad/loss.h"
 #include "render/sort.h"
-#include "train/loss.h"
 #include "unit/pixels_scene.h"
 
 #define OVERLAP 36.0 /* splats over a pixel, about */

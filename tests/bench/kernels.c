@@ -4,9 +4,9 @@
 
 #include "bits/range.h"
 #include "geom/geom.h"
+#include "grad/dsp.h"
+#include "grad/random.h"
 #include "net/net.h"
-#include "train/dsp.h"
-#include "train/random.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 /** \file All that training does between the anchors' parameters and the primitives, at several widths of the networks. */
 #include "parts.h"
 
-#include "train/pass.h"
+#include "fmodel/pass.h"
 #include "train/schedule.h"
 
 enum { GROUPS = 32, ANCHORS = 64 * GROUPS };

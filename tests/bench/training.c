@@ -3,6 +3,7 @@
 #include "parts.h"
 
 #include "encode/encode.h"
+#include "layouts/open.h"
 #include "scenes/scenes.h"
 #include "train/trainer.h"
 

@@ -6,7 +6,7 @@
 #include "fuzz.h"
 #include "stream_edit.h"
 
-#include "model/parts.h"
+#include "stream/parts.h"
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/headers", NULL };
 

@@ -7,7 +7,7 @@
 
 #include "outside_file.h"
 
-#include "data/hypernerf.h"
+#include "layouts/hypernerf.h"
 
 #include <sys/stat.h>
 

@@ -9,6 +9,7 @@
 #include "outside_file.h"
 
 #include "data/scene.h"
+#include "layouts/open.h"
 
 #include <sys/stat.h>
 

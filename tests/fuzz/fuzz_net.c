@@ -10,7 +10,7 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "model/model_priv.h"
-#include "model/parts.h"
+#include "stream/parts.h"
 
 #define WEIGHTS_MAX 200000U
 

@@ -9,7 +9,7 @@
 
 #include "base/digest.h"
 #include "base/pool.h"
-#include "model/input.h"
+#include "stream/input.h"
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/roundtrip", NULL };
 

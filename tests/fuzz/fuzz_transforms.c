@@ -4,7 +4,7 @@
 
 #include "outside_file.h"
 
-#include "data/transforms.h"
+#include "layouts/transforms.h"
 
 const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/transforms", "tests/fuzz/regressions/transforms", NULL };
 

@@ -3,7 +3,7 @@
 #ifndef ADCGS_TESTS_STREAM_EDIT_H
 #define ADCGS_TESTS_STREAM_EDIT_H
 
-#include "model/chunk.h"
+#include "stream/chunk.h"
 
 /** A chunk as far as it is there. */
 typedef struct adcgs_found_chunk {

@@ -26,9 +26,9 @@ check()
     done
 }
 
-codec="base bits geom net model splat render api"
+codec="base bits geom net model splat render stream api"
 check codec "" $codec
-check src "$codec" io data scenes metric train encode play tools
+check src "$codec" cli io data layouts camera metric scenes grad fmodel train encode play sweep conform tools
 
 # The installed headers stand alone.
 if grep -n '^ *# *include' codec/include/adcgs/*.h | grep -v -E 'include <(adcgs/[a-z]+|stddef|stdint)\.h>' >&2; then

@@ -12,8 +12,8 @@ faults=0
 
 # fields: float elements as bits and as values. stream, segm, extras: times, cameras. validate: their ranges.
 # clock, strict: ground that computes no symbol.
-floats=" codec/base/clock.c codec/base/strict.c codec/model/fields.c codec/model/stream.c
-codec/model/segm.c codec/model/extras.c codec/model/validate.c "
+floats=" codec/base/clock.c codec/base/strict.c codec/stream/fields.c codec/stream/stream.c
+codec/stream/segm.c codec/stream/extras.c codec/model/validate.c "
 
 integer_only()
 {
@@ -25,7 +25,7 @@ uses_floats()
     ! integer_only "$1" && grep -qE 'SSE|x87|floating|general-regs' "$dir/log"
 }
 
-for file in codec/{base,bits,geom,net,model}/*.c; do
+for file in codec/{base,bits,geom,net,model,stream}/*.c; do
     # Kernels of integer intrinsics need vector registers; they are compared with the portable one.
     [[ $file == *_avx*.c ]] && continue
     if [[ $floats == *[[:space:]]$file[[:space:]]* ]]; then

@@ -7,7 +7,7 @@
 #ifndef ADCGS_TESTS_RANDOM_MODEL_H
 #define ADCGS_TESTS_RANDOM_MODEL_H
 
-#include "model/stream.h"
+#include "stream/stream.h"
 
 /** Counter-based random numbers (SplitMix64). */
 uint64_t adcgs_random_next(uint64_t *state);

@@ -5,7 +5,7 @@
  * vector and for large ones; nothing is written beside the outputs. Skipped where the CPU has no AVX512-BF16.
  */
 #include "base/cpu.h"
-#include "train/dsp.h"
+#include "grad/dsp.h"
 #include "unit/pixels_scene.h"
 
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Parsing of numbers and options, and the JSON writer. */
-#include "tools/cli.h"
+#include "cli/cli.h"
 
 #include <getopt.h>
 #include <setjmp.h>

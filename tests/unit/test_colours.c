@@ -6,6 +6,7 @@
 #include "outside_files.h"
 
 #include "data/pictures.h"
+#include "layouts/open.h"
 
 #include <math.h>
 #include <openexr.h>

@@ -4,9 +4,9 @@
 #include "stream_edit.h"
 
 #include "base/digest.h"
-#include "model/chunk.h"
-#include "model/input.h"
 #include "model/model_priv.h"
+#include "stream/chunk.h"
+#include "stream/input.h"
 
 #include <adcgs/version.h>
 

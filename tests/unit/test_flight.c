@@ -2,8 +2,8 @@
 /** \file Camera paths: flights through key frames, paths round the stored cameras, path files good and bad. */
 #include "outside_files.h"
 
-#include "play/turn.h"
-#include "tools/flight.h"
+#include "camera/rotation.h"
+#include "camera/spline.h"
 
 #include <math.h>
 

@@ -3,6 +3,7 @@
 #include "outside_files.h"
 
 #include "data/scene.h"
+#include "layouts/open.h"
 
 #include <jansson.h>
 #include <math.h>

@@ -11,10 +11,10 @@
 
 #include "base/cpu.h"
 #include "base/pool.h"
+#include "grad/dsp.h"
+#include "grad/loss.h"
+#include "grad/raster.h"
 #include "splat/splat_isa.h"
-#include "train/dsp.h"
-#include "train/loss.h"
-#include "train/raster.h"
 #include "unit/pixels_scene.h"
 
 #include <float.h>

@@ -5,7 +5,8 @@
  */
 #include "layout_kinds.h"
 
-#include "train/start.h"
+#include "layouts/open.h"
+#include "train/initialise.h"
 
 static adcgs_scene *scene;
 

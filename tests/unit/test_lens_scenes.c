@@ -4,6 +4,7 @@
 
 #include "data/lens_model.h"
 #include "data/scene.h"
+#include "layouts/open.h"
 
 #include <math.h>
 

@@ -9,9 +9,9 @@
 #include "stream_edit.h"
 
 #include "base/cpu.h"
-#include "model/input.h"
 #include "model/model_priv.h"
-#include "model/parts.h"
+#include "stream/input.h"
+#include "stream/parts.h"
 
 #include <adcgs/adcgs.h>
 

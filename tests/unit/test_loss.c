@@ -4,7 +4,7 @@
  * two-dimensional window, its gradient against central differences of that,
  * and the same bits at every CPU level and thread count.
  */
-#include "train/loss.h"
+#include "grad/loss.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -7,10 +7,10 @@
 
 #include "encode/encode.h"
 #include "encode/quantise.h"
-#include "train/lattice.h"
-#include "train/random.h"
-#include "train/slim.h"
-#include "train/weight_rate.h"
+#include "fmodel/weight_rate.h"
+#include "grad/random.h"
+#include "train/unit_prune.h"
+#include "train/weight_steps.h"
 
 #include <math.h>
 

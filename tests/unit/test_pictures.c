@@ -3,6 +3,7 @@
 #include "outside_files.h"
 
 #include "data/pictures.h"
+#include "layouts/open.h"
 
 #include <math.h>
 #include <stdlib.h>

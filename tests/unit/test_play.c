@@ -2,12 +2,12 @@
 /** \file The player without a window: cameras moved by hand, its clock, resolution, events, scripts, letters. */
 #include "outside_files.h"
 
+#include "camera/rotation.h"
 #include "play/overlay.h"
 #include "play/panel.h"
 #include "play/scale.h"
 #include "play/script.h"
 #include "play/state.h"
-#include "play/turn.h"
 
 #include <math.h>
 

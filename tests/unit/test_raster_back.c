@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The backward pass against differences of the binary64 reference, and against itself on other CPUs and threads. */
-#include "train/raster.h"
+#include "grad/raster.h"
 #include "unit/pixels_reference.h"
 
 #include <setjmp.h>

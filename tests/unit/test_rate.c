@@ -12,8 +12,8 @@
 #include <cmocka.h>
 
 #include "encode/quantise.h"
-#include "train/pass.h"
-#include "train/random.h"
+#include "fmodel/pass.h"
+#include "grad/random.h"
 
 #include <stdlib.h>
 

@@ -5,8 +5,8 @@
 #include "encode/encode.h"
 #include "encode/quantise.h"
 #include "encode/rdo.h"
+#include "grad/random.h"
 #include "train/curvature.h"
-#include "train/random.h"
 
 #include <math.h>
 

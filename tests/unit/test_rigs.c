@@ -2,6 +2,8 @@
 /** \file LLFF, Neu3D and COLMAP: every convention on a small rig, every kind of bad input, real scenes where they are at hand. */
 #include "layout_files.h"
 
+#include "layouts/open.h"
+
 static adcgs_scene *scene;
 
 static void expect_good(adcgs_status status)

@@ -4,6 +4,7 @@
 
 #include "data/pose.h"
 #include "data/scene.h"
+#include "layouts/open.h"
 
 #include <math.h>
 

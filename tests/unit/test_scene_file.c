@@ -2,6 +2,8 @@
 /** \file The adcgs scene file: every field, every kind of bad input, a real calibration where it is at hand. */
 #include "layout_files.h"
 
+#include "layouts/open.h"
+
 #include <jansson.h>
 
 static adcgs_scene *scene;

@@ -4,8 +4,10 @@
 #include "random_model.h"
 
 #include "data/harmonics.h"
-#include "data/splat_scene.h"
+#include "data/splat_views.h"
 #include "io/splats.h"
+#include "layouts/open.h"
+#include "layouts/splat_file.h"
 #include "metric/metric.h"
 #include "render/render.h"
 #include "tools/info_points.h"

@@ -5,8 +5,8 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "base/pool.h"
-#include "model/chunk.h"
 #include "model/model_priv.h"
+#include "stream/chunk.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -10,10 +10,10 @@
 
 #include <cmocka.h>
 
-#include "train/area.h"
-#include "train/pass.h"
-#include "train/random.h"
-#include "train/rigid.h"
+#include "fmodel/pass.h"
+#include "fmodel/rigidity.h"
+#include "fmodel/scale_penalty.h"
+#include "grad/random.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -11,8 +11,8 @@
 #include "geom/geom.h"
 #include "metric/metric.h"
 #include "model/latents_priv.h"
-#include "train/missing.h"
-#include "train/start.h"
+#include "train/initialise.h"
+#include "train/residual_densify.h"
 
 #include <math.h>
 

@@ -5,6 +5,7 @@
 
 #include "outside_files.h"
 
+#include "layouts/open.h"
 #include "scenes/scenes.h"
 #include "train/trainer.h"
 

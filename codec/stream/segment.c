@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Reading one time segment. */
+#include "stream/segment.h"
+
+#include "base/digest.h"
+#include "model/model_priv.h"
+
+/** A sub-stream of a FEAx payload. */
+typedef struct slice {
+    size_t offset; /**< in the payload */
+    uint32_t bytes, crc;
+    adcgs_range_dec range;
+    adcgs_status status;
+} slice;
+
+/** What the threads of a chunk share. */
+typedef struct slice_job {
+    adcgs_segment *s;
+    slice *slices;
+    const uint8_t *payload;
+    uint32_t first;
+    int layer;
+} slice_job;
+
+static uint32_t segment_number(const adcgs_segment *s)
+{
+    return s->stream->n_segments;
+}
+
+/** Layers to decode: those the stream has, or as many as the caller wants. */
+static int layers_wanted(const adcgs_segment *s)
+{
+    const int all = adcgs_params_layers(&s->stream->params);
+    return s->options->layers > 0 ? ADCGS_MIN(s->options->layers, all) : all;
+}
+
+static void slice_span(const adcgs_segment *s, uint32_t i, uint32_t *begin, uint32_t *end)
+{
+    const uint32_t size = 1U << s->stream->slice_log2;
+    *begin = i * size;
+    *end = *begin + ADCGS_MIN(s->model.n - *begin, size);
+}
+
+/** Forget the current segment's model and decoding state. */
+static void reset(adcgs_segment *s)
+{
+    adcgs_latents_free(&s->latents);
+    adcgs_model_clear(&s->model, s->options->memory);
+    memset(s->done, 0, sizeof s->done);
+    s->n_slices = 0;
+    s->has_hash = 0;
+    s->stage = ADCGS_SEGMENT_NONE;
+}
+
+void adcgs_segment_clear(adcgs_segment *s)
+{
+    reset(s);
+    adcgs_buffer_clear(&s->index);
+}
+
+static adcgs_status check_times(const adcgs_segment *s, const int64_t ticks[2])
+{
+    const adcgs_stream *stream = s->stream;
+    if (ticks[0] < stream->start_ticks
+        || (stream->duration_ticks >= 0 && ticks[1] - stream->start_ticks > stream->duration_ticks))
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: ticks %lld..%lld lie outside the span in HEAD", (long long)ticks[0],
+                          (long long)ticks[1]);
+    if (stream->n_segments > 0 && (ticks[0] <= s->ticks[0] || ticks[0] < s->ticks[1]))
+        return adcgs_fail(s->error, ADCGS_ERR_DATA,
+                          "SEGM: start_ticks is %lld, before the end of the segment in front of it, %lld", (long long)ticks[0],
+                          (long long)s->ticks[1]);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t origin)
+{
+    int64_t ticks[2];
+    if (segment_number(s) >= s->limits->segments)
+        return adcgs_fail(s->error, ADCGS_ERR_LIMIT, "SEGM: more than %u segments, the level's limit", s->limits->segments);
+    s->model.params = s->stream->params;
+    s->stage = ADCGS_SEGMENT_STARTED;
+    s->origin = origin;
+    ADCGS_TRY(adcgs_segm_parse(p, s->stream, &s->model, &s->ids, ticks));
+    ADCGS_TRY(check_times(s, ticks));
+    s->ticks[0] = ticks[0];
+    s->ticks[1] = ticks[1];
+    return ADCGS_OK;
+}
+
+/** Whether the networks that SEGM named are there, and what they cost. */
+static adcgs_status check_nets(const adcgs_segment *s, adcgs_nets_cost *cost)
+{
+    *cost = (adcgs_nets_cost){ 0, 0 };
+    for (int role = 0; role < ADCGS_ROLES; role++) {
+        const uint32_t id = s->ids.id[role];
+        if (!(s->ids.mask >> role & 1))
+            continue;
+        if (id >= s->nets->n || s->nets->nets[id].role != role)
+            return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: network_id for %s is %u, which is no such network",
+                              adcgs_role_name(role), id);
+        adcgs_nets_cost_add(cost, &s->stream->params, role, &s->nets->nets[id]);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status copy_nets(adcgs_segment *s)
+{
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (s->ids.mask >> role & 1)
+            ADCGS_TRY(adcgs_net_copy(&s->model.net[role], &s->nets->nets[s->ids.id[role]], s->options->memory, s->error));
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
+{
+    adcgs_nets_cost cost;
+    if (s->stage != ADCGS_SEGMENT_STARTED)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected once, after SEGM");
+    ADCGS_TRY(check_nets(s, &cost));
+    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, &s->model, &s->left, &cost, s->options->memory));
+    ADCGS_TRY(copy_nets(s));
+    ADCGS_TRY(adcgs_latents_create(&s->latents, &s->model, s->options->cpu, s->options->memory, s->error));
+    s->n_slices = ((s->model.n - 1) >> s->stream->slice_log2) + 1;
+    s->stage = ADCGS_SEGMENT_PLACED;
+    return ADCGS_OK;
+}
+
+static void decode_slice(void *arg, int index, int thread)
+{
+    const slice_job *job = arg;
+    slice *one = &job->slices[index];
+    uint32_t begin, end;
+    (void)thread;
+    slice_span(job->s, job->first + (uint32_t)index, &begin, &end);
+    adcgs_range_dec_init(&one->range, job->payload + one->offset, one->bytes);
+    one->status = adcgs_latents_decode(job->s->latents, &job->s->model, job->layer, begin, end, &one->range, NULL);
+}
+
+/** Decode usable slices on all threads. The first that fails has its end looked at once more for a message. */
+static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int layer, uint32_t first, slice *slices,
+                                  uint32_t usable)
+{
+    slice_job job = { s, slices, p->r.data, first, layer };
+    adcgs_pool_run(s->options->pool, decode_slice, &job, (int)usable);
+    for (uint32_t i = 0; i < usable; i++) {
+        adcgs_error why = { ADCGS_ERR_MEMORY, "no memory for the networks' activations" };
+        if (slices[i].status == ADCGS_OK) {
+            adcgs_parse_trace_end(p, &slices[i].range);
+            continue;
+        }
+        if (slices[i].status != ADCGS_ERR_MEMORY)
+            adcgs_range_dec_finish(&slices[i].range, &why);
+        return adcgs_fail(s->error, slices[i].status, "%s: segment %u, slice %u: %.160s", p->chunk, segment_number(s), first + i,
+                          why.text);
+    }
+    s->done[layer] += usable;
+    return ADCGS_OK;
+}
+
+/** The table of contents. Offsets count from the end of the table until the caller adds its position. */
+static adcgs_status parse_slices(adcgs_parse *p, slice *slices, uint32_t n, uint64_t *total)
+{
+    *total = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        adcgs_syn_slice_crc crc;
+        ADCGS_TRY(adcgs_parse_varint(p, "slice_bytes", 0, UINT32_MAX, &slices[i].bytes));
+        ADCGS_TRY(adcgs_syn_slice_crc_parse(p, &crc));
+        slices[i].crc = crc.slice_crc;
+        slices[i].offset = (size_t)ADCGS_MIN(*total, SIZE_MAX / 2);
+        *total += slices[i].bytes;
+    }
+    return ADCGS_OK;
+}
+
+/** How many of the slices are there, with checksums that are right. */
+static adcgs_status check_slices(adcgs_segment *s, const adcgs_parse *p, slice *slices, uint32_t first, uint32_t n,
+                                 uint32_t *usable)
+{
+    for (*usable = 0; *usable < n; ++*usable) {
+        slice *one = &slices[*usable];
+        one->offset += p->r.pos;
+        if (one->offset > p->r.size || one->bytes > p->r.size - one->offset)
+            break;
+        adcgs_parse_trace(p, 8 * (uint64_t)one->offset, "slice", "%u bytes", one->bytes);
+        if (adcgs_crc32c(0, p->r.data + one->offset, one->bytes) != one->crc)
+            return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment %u, slice %u: checksum is wrong", p->chunk,
+                              segment_number(s), first + *usable);
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status use_slices(adcgs_segment *s, adcgs_parse *p, int layer, uint32_t first, slice *slices, uint32_t n,
+                               int complete)
+{
+    uint64_t total;
+    uint32_t usable = 0;
+    const adcgs_status status = parse_slices(p, slices, n, &total);
+    if (status != ADCGS_OK)
+        return complete ? status : ADCGS_OK; /* the table is cut off: nothing here can be used */
+    if (complete && total != adcgs_reader_left(&p->r))
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: slices have %llu bytes, the payload has %zu", p->chunk,
+                          (unsigned long long)total, adcgs_reader_left(&p->r));
+    ADCGS_TRY(check_slices(s, p, slices, first, n, &usable));
+    return decode_slices(s, p, layer, first, slices, usable);
+}
+
+adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer, int complete)
+{
+    uint32_t first, n;
+    if (s->stage != ADCGS_SEGMENT_PLACED)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: expected after GEOM", p->chunk);
+    if (layer >= adcgs_params_layers(&s->stream->params))
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: the parameters give the stream %d layers", p->chunk,
+                          adcgs_params_layers(&s->stream->params));
+    if (layer >= layers_wanted(s))
+        return ADCGS_OK;
+    const uint32_t ready = layer == 0 ? s->n_slices : s->done[layer - 1], next = s->done[layer];
+    if (next >= ready)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: slices of the layer below are missing", p->chunk);
+    adcgs_status status = adcgs_parse_varint(p, "first_slice", next, next, &first);
+    if (status == ADCGS_OK)
+        status = adcgs_parse_varint(p, "slices", 1, ready - next, &n);
+    if (status != ADCGS_OK)
+        return complete ? status : ADCGS_OK;
+    slice *slices = adcgs_alloc(s->options->memory, n, sizeof *slices, s->error);
+    if (!slices)
+        return ADCGS_ERR_MEMORY;
+    status = use_slices(s, p, layer, first, slices, n, complete);
+    adcgs_free(s->options->memory, slices);
+    return status;
+}
+
+adcgs_status adcgs_segment_hash(adcgs_segment *s, adcgs_parse *p)
+{
+    const uint64_t bit = 8 * (uint64_t)p->r.pos;
+    if (s->stage != ADCGS_SEGMENT_PLACED || s->has_hash)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "hash: expected once, after the layers of its segment");
+    char text[33];
+    const uint8_t *hash = adcgs_read_bytes(&p->r, sizeof s->hash);
+    if (!hash)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "hash: payload of %zu bytes, expected %zu", p->r.size, sizeof s->hash);
+    memcpy(s->hash, hash, sizeof s->hash);
+    adcgs_md5_hex(s->hash, text);
+    adcgs_parse_trace(p, bit, "md5", "%s", text);
+    s->has_hash = 1;
+    return adcgs_parse_end(p);
+}
+
+/** Fill what did not come with predicted means. */
+static adcgs_status conceal_layers(adcgs_segment *s)
+{
+    for (int layer = 1; layer < adcgs_params_layers(&s->stream->params); layer++)
+        for (uint32_t i = s->done[layer]; i < s->n_slices; i++) {
+            uint32_t begin, end;
+            slice_span(s, i, &begin, &end);
+            if (adcgs_latents_conceal(s->latents, &s->model, layer, begin, end) != ADCGS_OK)
+                return adcgs_fail(s->error, ADCGS_ERR_MEMORY, "segment %u: no memory to conceal layer %d", segment_number(s),
+                                  layer);
+        }
+    return ADCGS_OK;
+}
+
+static adcgs_status check_hash(const adcgs_segment *s)
+{
+    uint8_t digest[16];
+    char expected[33], found[33];
+    if (!s->has_hash || s->model.layers < adcgs_params_layers(&s->stream->params))
+        return ADCGS_OK;
+    adcgs_model_digest(&s->model, digest);
+    if (memcmp(digest, s->hash, sizeof digest) == 0)
+        return ADCGS_OK;
+    adcgs_md5_hex(s->hash, expected);
+    adcgs_md5_hex(digest, found);
+    return adcgs_fail(s->error, ADCGS_ERR_DATA, "hash: model of segment %u has digest %s, expected %s", segment_number(s), found,
+                      expected);
+}
+
+static adcgs_status append_model(adcgs_segment *s)
+{
+    adcgs_stream *stream = s->stream;
+    if (stream->n_segments == s->capacity) {
+        const uint32_t capacity = s->capacity ? 2 * s->capacity : 1;
+        adcgs_model *models = adcgs_alloc(s->options->memory, capacity, sizeof *models, s->error);
+        if (!models)
+            return ADCGS_ERR_MEMORY;
+        if (stream->n_segments > 0)
+            memcpy(models, stream->segments, stream->n_segments * sizeof *models);
+        adcgs_free(s->options->memory, stream->segments);
+        stream->segments = models;
+        s->capacity = capacity;
+    }
+    stream->segments[stream->n_segments++] = s->model;
+    memset(&s->model, 0, sizeof s->model);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
+{
+    const adcgs_syn_index entry = { s->ticks[0], s->ticks[1], s->origin, end - s->origin };
+    if (s->stage == ADCGS_SEGMENT_NONE)
+        return ADCGS_OK;
+    if (s->stage != ADCGS_SEGMENT_PLACED || s->done[0] < s->n_slices) {
+        if (!truncated)
+            return adcgs_fail(s->error, ADCGS_ERR_DATA, "segment %u: GEOM or slices of FEA0 are missing", segment_number(s));
+        reset(s);
+        return ADCGS_OK;
+    }
+    while (s->model.layers < adcgs_params_layers(&s->stream->params) && s->done[s->model.layers] == s->n_slices)
+        s->model.layers++;
+    ADCGS_TRY(conceal_layers(s));
+    ADCGS_TRY(check_hash(s));
+    ADCGS_TRY(adcgs_syn_index_write(&s->index, "INDX", &entry, s->error));
+    if (s->index.failed)
+        return adcgs_fail(s->error, ADCGS_ERR_MEMORY, "segment %u: no memory for its place in the index", segment_number(s));
+    ADCGS_TRY(append_model(s));
+    reset(s);
+    return ADCGS_OK;
+}

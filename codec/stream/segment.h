@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Reading one time segment: SEGM, GEOM, the slices of its layers as they come, and what is done when it ends. */
+#ifndef ADCGS_STREAM_SEGMENT_H
+#define ADCGS_STREAM_SEGMENT_H
+
+#include "stream/parts.h"
+
+/** Which of a segment's chunks have been seen. */
+typedef enum adcgs_segment_stage { ADCGS_SEGMENT_NONE, ADCGS_SEGMENT_STARTED, ADCGS_SEGMENT_PLACED } adcgs_segment_stage;
+
+/** The segment being read; lives through the whole stream. */
+typedef struct adcgs_segment {
+    adcgs_stream *stream; /**< receives the models of finished segments */
+    const adcgs_read_options *options;
+    const adcgs_level *limits;
+    uint32_t max_anchors;
+    const adcgs_net_table *nets;
+    uint32_t capacity;    /**< of stream->segments */
+    adcgs_cost left;      /**< of the level's model bytes and work */
+    adcgs_buffer index;   /**< what INDX must hold, less the count */
+    int64_t ticks[2];     /**< of the segment read last */
+
+    adcgs_segment_stage stage;
+    uint64_t origin;      /**< position of SEGM */
+    adcgs_model model;
+    adcgs_role_ids ids;
+    adcgs_latents *latents;
+    uint32_t n_slices;
+    uint32_t done[ADCGS_LAYERS]; /**< slices decoded, by layer */
+    int has_hash;
+    uint8_t hash[16];
+    adcgs_error *error;
+} adcgs_segment;
+
+adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t origin);
+adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p);
+/** FEAx; complete zero: the stream ended inside, and what is there is used. */
+adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer, int complete);
+adcgs_status adcgs_segment_hash(adcgs_segment *s, adcgs_parse *p);
+/** The segment, if one was started, ends at this position. With truncated, one without a complete layer 0 is dropped. */
+adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated);
+void adcgs_segment_clear(adcgs_segment *s);
+
+#endif

@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Writing a stream: chunk after chunk in the order of the spec clause "Stream". */
+#include "base/cpu.h"
+#include "base/digest.h"
+#include "model/model_priv.h"
+#include "stream/parts.h"
+
+#define ENDC_PAYLOAD 12
+
+typedef struct writer {
+    adcgs_stream *stream;
+    adcgs_buffer *out;
+    size_t begin;           /**< of the stream in out */
+    const adcgs_level *limits;
+    uint32_t crc_of_crcs;
+    const adcgs_net **nets; /**< written so far, by id */
+    uint32_t n_nets;
+    uint64_t weights;
+    adcgs_cost spent;       /**< of the level's model bytes and work */
+    adcgs_buffer index;     /**< payload of INDX, less the count */
+    adcgs_error *error;
+} writer;
+
+/** The sub-streams of one layer of one segment, one after the other. */
+typedef struct layer_data {
+    adcgs_buffer data;
+    uint32_t n_slices;
+    uint32_t *bytes; /**< [n_slices] */
+} layer_data;
+
+static adcgs_status end_chunk(writer *w, uint32_t type, size_t begin)
+{
+    const size_t payload = w->out->size - begin - ADCGS_CHUNK_HEADER_BYTES;
+    if (w->out->failed)
+        return adcgs_fail(w->error, ADCGS_ERR_MEMORY, "stream: no memory for the output");
+    if (payload > w->limits->chunk_bytes)
+        return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: a chunk of %zu bytes exceeds the level's limit", payload);
+    adcgs_chunk_end(w->out, begin);
+    if (w->out->failed)
+        return adcgs_fail(w->error, ADCGS_ERR_MEMORY, "stream: no memory for the output");
+    w->crc_of_crcs = adcgs_crc32c(w->crc_of_crcs, w->out->data + w->out->size - 4, 4);
+    adcgs_bytes_count(&w->stream->bytes, type, payload);
+    return ADCGS_OK;
+}
+
+static uint32_t max_anchors(const adcgs_stream *stream)
+{
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < stream->n_segments; i++)
+        most = ADCGS_MAX(most, stream->segments[i].n);
+    return most;
+}
+
+static adcgs_status write_head(writer *w)
+{
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_HEAD, 0, 0);
+    ADCGS_TRY(adcgs_head_write(w->out, w->stream, max_anchors(w->stream), w->error));
+    return end_chunk(w, ADCGS_TYPE_HEAD, begin);
+}
+
+static adcgs_status write_extras(writer *w)
+{
+    if (w->stream->n_cameras > 0) {
+        const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_cams, 0, 0);
+        ADCGS_TRY(adcgs_cams_write(w->out, w->stream, w->error));
+        ADCGS_TRY(end_chunk(w, ADCGS_TYPE_cams, begin));
+    }
+    if (w->stream->n_meta > 0) {
+        const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_meta, 0, 0);
+        ADCGS_TRY(adcgs_meta_write(w->out, w->stream, w->error));
+        ADCGS_TRY(end_chunk(w, ADCGS_TYPE_meta, begin));
+    }
+    return ADCGS_OK;
+}
+
+/** Ids for a model's networks; equal networks share one. \return how many are new. */
+static uint32_t assign_ids(writer *w, const adcgs_model *model, adcgs_role_ids *ids)
+{
+    const uint32_t before = w->n_nets;
+    for (int role = 0; role < ADCGS_ROLES; role++) {
+        const adcgs_net *net = &model->net[role];
+        uint32_t id = 0;
+        if (!net->present)
+            continue;
+        while (id < w->n_nets && !(w->nets[id]->role == role && adcgs_net_equal(w->nets[id], net)))
+            id++;
+        if (id == w->n_nets) {
+            w->nets[w->n_nets++] = net;
+            w->weights += adcgs_net_weights(net);
+            w->spent.work += adcgs_weights_work(adcgs_net_weights(net));
+        }
+        ids->mask |= (uint16_t)(1 << role);
+        ids->id[role] = (uint16_t)id;
+    }
+    return w->n_nets - before;
+}
+
+static adcgs_status check_segment(writer *w, const adcgs_model *model)
+{
+    const adcgs_level *limits = w->limits;
+    adcgs_nets_cost nets = { 0, 0 };
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (model->net[role].present)
+            adcgs_nets_cost_add(&nets, &model->params, role, &model->net[role]);
+    const adcgs_cost cost = adcgs_segment_cost(&model->params, model->n, model->depth, &nets);
+    w->spent.bytes += cost.bytes;
+    w->spent.work += cost.work;
+    if (w->spent.bytes > limits->model_bytes || w->spent.work > limits->work || w->weights > limits->weights
+        || model->depth > limits->depth || w->n_nets > limits->networks)
+        return adcgs_fail(w->error, ADCGS_ERR_LIMIT,
+                          "stream: %llu model bytes, work %llu, %llu weights, %u networks or depth %u exceed level %u",
+                          (unsigned long long)w->spent.bytes, (unsigned long long)w->spent.work, (unsigned long long)w->weights,
+                          w->n_nets, model->depth, w->stream->level);
+    return ADCGS_OK;
+}
+
+static adcgs_status encode_slices(writer *w, const adcgs_latents *latents, adcgs_model *model, int layer, layer_data *l)
+{
+    const uint32_t slice = 1U << w->stream->slice_log2;
+    for (uint32_t i = 0; i < l->n_slices; i++) {
+        const uint32_t begin = i * slice, end = ADCGS_MIN(model->n - begin, slice) + begin;
+        const size_t size = l->data.size;
+        ADCGS_TRY(adcgs_latents_encode(latents, model, layer, begin, end, &l->data, w->error));
+        l->bytes[i] = (uint32_t)(l->data.size - size);
+    }
+    return ADCGS_OK;
+}
+
+/** Slices from first on, as many as one chunk may hold. \return their number, at least one. */
+static uint32_t slices_per_chunk(const writer *w, const layer_data *l, uint32_t first)
+{
+    uint64_t payload = 10; /* two numbers in front; each slice has a length and a CRC */
+    uint32_t n = 0;
+    while (first + n < l->n_slices && (n == 0 || payload + 9 + l->bytes[first + n] <= w->limits->chunk_bytes))
+        payload += 9 + l->bytes[first + n++];
+    return n;
+}
+
+static adcgs_status write_layer(writer *w, uint32_t segment, int layer, const layer_data *l)
+{
+    static const uint8_t nothing[1]; /* all slices may be empty, and then the buffer has no bytes either */
+    const uint8_t *data = l->data.data ? l->data.data : nothing, *slice = data;
+    for (uint32_t first = 0, n; first < l->n_slices; first += n) {
+        const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_FEA(layer), segment, 0);
+        n = slices_per_chunk(w, l, first);
+        adcgs_write_varint(w->out, first);
+        adcgs_write_varint(w->out, n);
+        for (uint32_t i = first; i < first + n; i++) {
+            const adcgs_syn_slice_crc crc = { adcgs_crc32c(0, slice, l->bytes[i]) };
+            adcgs_write_varint(w->out, l->bytes[i]);
+            ADCGS_TRY(adcgs_syn_slice_crc_write(w->out, "FEA", &crc, w->error));
+            slice += l->bytes[i];
+        }
+        adcgs_write_bytes(w->out, data, (size_t)(slice - data));
+        data = slice;
+        ADCGS_TRY(end_chunk(w, ADCGS_TYPE_FEA(layer), begin));
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status write_layers(writer *w, uint32_t segment, const adcgs_latents *latents, adcgs_model *model)
+{
+    layer_data l = { .n_slices = ((model->n - 1) >> w->stream->slice_log2) + 1 };
+    adcgs_status status = ADCGS_OK;
+    adcgs_buffer_init(&l.data);
+    l.bytes = adcgs_alloc(NULL, l.n_slices, sizeof *l.bytes, w->error);
+    if (!l.bytes)
+        return ADCGS_ERR_MEMORY;
+    for (int layer = 0; layer < adcgs_params_layers(&model->params) && status == ADCGS_OK; layer++) {
+        l.data.size = 0;
+        status = encode_slices(w, latents, model, layer, &l);
+        if (status == ADCGS_OK)
+            status = write_layer(w, segment, layer, &l);
+    }
+    adcgs_buffer_clear(&l.data);
+    adcgs_free(NULL, l.bytes);
+    return status;
+}
+
+static adcgs_status write_features(writer *w, uint32_t segment, adcgs_model *model)
+{
+    adcgs_latents *latents = NULL;
+    adcgs_cpu_level cpu;
+    ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &cpu, w->error));
+    ADCGS_TRY(adcgs_latents_create(&latents, model, cpu, NULL, w->error));
+    const adcgs_status status = write_layers(w, segment, latents, model);
+    adcgs_latents_free(&latents);
+    return status;
+}
+
+static adcgs_status write_hash(writer *w, uint32_t segment, const adcgs_model *model)
+{
+    uint8_t digest[16];
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_hash, segment, ADCGS_CHUNK_LAST);
+    adcgs_model_digest(model, digest);
+    adcgs_write_bytes(w->out, digest, sizeof digest);
+    return end_chunk(w, ADCGS_TYPE_hash, begin);
+}
+
+static adcgs_status write_segment(writer *w, uint32_t segment)
+{
+    adcgs_model *model = &w->stream->segments[segment];
+    adcgs_role_ids ids = { 0 };
+    const size_t origin = w->out->size;
+    const uint32_t first_new = w->n_nets, n_new = assign_ids(w, model, &ids);
+    int n_used = 0;
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        n_used += ids.mask >> role & 1;
+    ADCGS_TRY(check_segment(w, model));
+    size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_SEGM, segment, (int)n_new == n_used ? ADCGS_CHUNK_INDEPENDENT : 0);
+    ADCGS_TRY(adcgs_segm_write(w->out, w->stream, model, &ids, w->error));
+    ADCGS_TRY(end_chunk(w, ADCGS_TYPE_SEGM, begin));
+    if (n_new > 0) {
+        begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_NETW, segment, 0);
+        ADCGS_TRY(adcgs_netw_write(w->out, w->nets + first_new, n_new, first_new, w->error));
+        ADCGS_TRY(end_chunk(w, ADCGS_TYPE_NETW, begin));
+    }
+    begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_GEOM, segment, 0);
+    ADCGS_TRY(adcgs_geom_write(w->out, model, w->error));
+    ADCGS_TRY(end_chunk(w, ADCGS_TYPE_GEOM, begin));
+    ADCGS_TRY(write_features(w, segment, model));
+    ADCGS_TRY(write_hash(w, segment, model));
+
+    adcgs_syn_index entry = { .offset = origin - w->begin, .bytes = w->out->size - origin };
+    ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_start, &entry.start_ticks, w->error));
+    ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_end, &entry.end_ticks, w->error));
+    return adcgs_syn_index_write(&w->index, "INDX", &entry, w->error);
+}
+
+/** INDX helps nobody in a stream of one segment. */
+static adcgs_status write_index(writer *w)
+{
+    if (w->stream->n_segments < 2)
+        return ADCGS_OK;
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_INDX, 0, 0);
+    adcgs_write_varint(w->out, w->stream->n_segments);
+    adcgs_write_bytes(w->out, w->index.data, w->index.size);
+    return end_chunk(w, ADCGS_TYPE_INDX, begin);
+}
+
+static adcgs_status write_end(writer *w)
+{
+    const uint64_t total = w->out->size - w->begin + ADCGS_CHUNK_BYTES + ENDC_PAYLOAD;
+    const adcgs_syn_endc endc = { .file_bytes = total, .crc_of_crcs = w->crc_of_crcs };
+    if (total > w->limits->file_bytes)
+        return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: %llu bytes exceed level %u", (unsigned long long)total,
+                          w->stream->level);
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_ENDC, 0, 0);
+    ADCGS_TRY(adcgs_syn_endc_write(w->out, "ENDC", &endc, w->error));
+    ADCGS_TRY(end_chunk(w, ADCGS_TYPE_ENDC, begin));
+    w->stream->weights = (uint32_t)w->weights;
+    adcgs_bytes_finish(&w->stream->bytes, total);
+    return ADCGS_OK;
+}
+
+static adcgs_status write_chunks(writer *w)
+{
+    adcgs_write_bytes(w->out, ADCGS_SIGNATURE, ADCGS_SIGNATURE_BYTES);
+    ADCGS_TRY(write_head(w));
+    ADCGS_TRY(write_extras(w));
+    for (uint32_t i = 0; i < w->stream->n_segments; i++)
+        ADCGS_TRY(write_segment(w, i));
+    ADCGS_TRY(write_index(w));
+    return write_end(w);
+}
+
+static adcgs_status write_at_level(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
+{
+    writer w = { .stream = stream, .out = out, .begin = out->size, .limits = adcgs_level_get(stream->level), .error = error };
+    w.nets = adcgs_alloc(NULL, (size_t)stream->n_segments * ADCGS_ROLES, sizeof *w.nets, error);
+    if (!w.nets)
+        return ADCGS_ERR_MEMORY;
+    memset(&stream->bytes, 0, sizeof stream->bytes);
+    adcgs_buffer_init(&w.index);
+    const adcgs_status status = write_chunks(&w);
+    adcgs_buffer_clear(&w.index);
+    adcgs_free(NULL, w.nets);
+    if (status != ADCGS_OK)
+        out->size = w.begin;
+    return status;
+}
+
+/** Each model by itself, then what the segments must agree on. Derives the stream's span. */
+static adcgs_status check_stream(adcgs_stream *stream, adcgs_error *error)
+{
+    int64_t start = 0, end = 0, last_start = 0, last_end = 0;
+    if (stream->n_segments < 1 || stream->timebase_num < 1 || stream->timebase_den < 1 || stream->level > ADCGS_LEVELS)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: %u segments, timebase %u/%u, level %u, expected some, positive, 0..%d",
+                          stream->n_segments, stream->timebase_num, stream->timebase_den, stream->level, ADCGS_LEVELS);
+    if (stream->slice_log2 < ADCGS_SLICE_LOG2_MIN || stream->slice_log2 > ADCGS_SLICE_LOG2_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: slice_log2 is %u, expected %d..%d", stream->slice_log2,
+                          ADCGS_SLICE_LOG2_MIN, ADCGS_SLICE_LOG2_MAX);
+    for (uint32_t i = 0; i < stream->n_segments; i++) {
+        const adcgs_model *model = &stream->segments[i];
+        ADCGS_TRY(adcgs_model_validate(model, error));
+        if (!adcgs_params_equal(&model->params, &stream->params))
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u has other parameters than the stream", i);
+        ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &start, error));
+        ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &end, error));
+        if (i > 0 && (start <= last_start || start < last_end))
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u starts before the one in front of it ends", i);
+        if (i == 0)
+            stream->start_ticks = start;
+        last_start = start;
+        last_end = end;
+    }
+    stream->duration_ticks = last_end - stream->start_ticks;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_stream_write(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
+{
+    ADCGS_TRY(check_stream(stream, error));
+    if (stream->level > 0)
+        return write_at_level(stream, out, error);
+    adcgs_status status = ADCGS_ERR_LIMIT;
+    for (int level = 1; level <= ADCGS_LEVELS && status == ADCGS_ERR_LIMIT; level++) {
+        stream->level = (uint8_t)level;
+        status = write_at_level(stream, out, error);
+    }
+    return status;
+}

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Which frames to render. */
+#include "config.h"
+
+#include "camera/path.h"
+
+#include "camera/rotation.h"
+#include "cli/cli.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define ORBIT_DISTANCE 2.5  /* scene units, when no stored camera says better */
+#define ORBIT_ELEVATION 0.35
+#define ORBIT_FOCAL 1.2     /* focal length per image width */
+#define NEAR_PER_SCALE 0.01
+#define FULL_TURN 6.283185307179586
+
+adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, adcgs_error *error)
+{
+    *shots = (adcgs_shots){0};
+    if (!(n >= 1.0 && n <= ADCGS_SHOTS_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f frames asked for, expected 1 to %d", n, ADCGS_SHOTS_MAX);
+    shots->shot = calloc((size_t)n, sizeof *shots->shot);
+    if (!shots->shot)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %.0f frames", n);
+    shots->n = (int)n;
+    return ADCGS_OK;
+}
+
+void adcgs_shots_free(adcgs_shots *shots)
+{
+    free(shots->shot);
+    *shots = (adcgs_shots){0};
+}
+
+/** On the outside, looking at the scene's centre from a little above. */
+void adcgs_shots_default(adcgs_camera *camera, const adcgs_info *info, const double up[3])
+{
+    *camera = (adcgs_camera){.width = ADCGS_ORBIT_WIDTH,
+                             .height = ADCGS_ORBIT_HEIGHT,
+                             .fx = ORBIT_FOCAL * ADCGS_ORBIT_WIDTH,
+                             .fy = ORBIT_FOCAL * ADCGS_ORBIT_WIDTH,
+                             .cx = 0.5 * ADCGS_ORBIT_WIDTH,
+                             .cy = 0.5 * ADCGS_ORBIT_HEIGHT,
+                             .near_plane = NEAR_PER_SCALE * info->scene_scale,
+                             .name = "orbit"};
+    double eye[3];
+    for (int i = 0; i < 3; i++) /* up is never x */
+        eye[i] = info->scene_origin[i] +
+                 ORBIT_DISTANCE * info->scene_scale * (up[i] * sin(ORBIT_ELEVATION) + (i == 0) * cos(ORBIT_ELEVATION));
+    adcgs_look_at(camera->cam_to_world, eye, info->scene_origin, up);
+}
+
+/** Turn a camera about the axis through the scene's centre. */
+static void turn_camera(adcgs_camera *camera, const adcgs_info *info, const double up[3], double angle)
+{
+    double *m = camera->cam_to_world;
+    for (int c = 0; c < 4; c++) {
+        double v[3];
+        for (int i = 0; i < 3; i++)
+            v[i] = m[4 * i + c] - (c == 3 ? info->scene_origin[i] : 0.0);
+        adcgs_v3_turn(up, angle, v);
+        for (int i = 0; i < 3; i++)
+            m[4 * i + c] = v[i] + (c == 3 ? info->scene_origin[i] : 0.0);
+    }
+}
+
+static adcgs_status find_stored(const adcgs_decoder *decoder, const adcgs_info *info, const char *wanted, adcgs_camera *camera,
+                                adcgs_error *error)
+{
+    int index;
+    for (int i = 0; i < info->cameras; i++) {
+        ADCGS_TRY(adcgs_get_camera(decoder, i, camera));
+        if (!strcmp(camera->name, wanted))
+            return ADCGS_OK;
+    }
+    if (!info->cameras)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: the stream stores no cameras; try --camera orbit", wanted);
+    if (adcgs_parse_int(wanted, 0, info->cameras - 1, &index))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--camera %s: neither a stored camera's name nor an index from 0 to %d", wanted,
+                          info->cameras - 1);
+    return adcgs_get_camera(decoder, index, camera);
+}
+
+adcgs_status adcgs_shots_times(adcgs_shots *out, const adcgs_info *info, const adcgs_shots_request *request,
+                               adcgs_shots_motion motion, adcgs_error *error)
+{
+    const double begin = request->has_times ? request->begin : info->time_start;
+    const double end = request->has_times ? request->end : info->time_end;
+    const int is_frozen = motion == ADCGS_SHOTS_FROZEN;
+    if (is_frozen && request->has_times && begin != end)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time: time stands still with --camera %s, expected one moment",
+                          request->camera);
+    const int is_still = is_frozen || (!request->has_times && motion == ADCGS_SHOTS_MOVING && begin == end);
+    const double n = is_still ? ADCGS_SHOTS_SECONDS * info->frame_rate : (end - begin) * info->frame_rate + 1.0;
+    ADCGS_TRY(adcgs_shots_alloc(out, fmax(floor(n + 1e-6), is_still), error));
+    for (int i = 0; i < out->n; i++)
+        out->shot[i].time = is_still ? begin : begin + i / info->frame_rate;
+    return ADCGS_OK;
+}
+
+#ifndef HAVE_ENCODER
+adcgs_status adcgs_shots_read_path(adcgs_shots *out, const adcgs_info *info, const adcgs_shots_request *request,
+                                   double near_plane, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads no camera paths", request->camera);
+}
+#endif
+
+static int is_path(const char *name)
+{
+    const size_t n = name ? strlen(name) : 0;
+    return n > 5 && !strcmp(name + n - 5, ".json");
+}
+
+static int is_named(const adcgs_shots_request *request, const char *name)
+{
+    return request->camera && !strcmp(request->camera, name);
+}
+
+static void make_orbit(adcgs_shots *out, const adcgs_rig *rig, const adcgs_info *info, const double up[3])
+{
+    for (int i = 0; i < out->n; i++) {
+        out->shot[i].camera = rig->cameras[0];
+        turn_camera(&out->shot[i].camera, info, up, FULL_TURN * i / out->n);
+    }
+}
+
+/** Paths that begin at the stored cameras, or at one of our own. */
+static adcgs_status make_from_rig(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                                  const adcgs_shots_request *request, adcgs_error *error)
+{
+    const int is_bullet = is_named(request, "bullet");
+    adcgs_rig rig;
+    double up[3];
+    adcgs_find_up(info, up);
+    ADCGS_TRY(adcgs_shots_times(out, info, request, is_bullet ? ADCGS_SHOTS_FROZEN : ADCGS_SHOTS_MOVING, error));
+    adcgs_status status = adcgs_rig_init(&rig, decoder, info, up, error);
+    if (status == ADCGS_OK && is_bullet && rig.n >= 3)
+        status = adcgs_rig_bullet(&rig, out, error);
+    else if (status == ADCGS_OK && is_named(request, "spiral"))
+        adcgs_rig_spiral(&rig, out);
+    else if (status == ADCGS_OK)
+        make_orbit(out, &rig, info, up);
+    adcgs_rig_clear(&rig);
+    return status;
+}
+
+static adcgs_status make_from_camera(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                                     const adcgs_shots_request *request, adcgs_error *error)
+{
+    adcgs_camera camera;
+    if (request->camera)
+        ADCGS_TRY(find_stored(decoder, info, request->camera, &camera, error));
+    else
+        ADCGS_TRY(adcgs_get_camera(decoder, 0, &camera));
+    ADCGS_TRY(adcgs_shots_times(out, info, request, ADCGS_SHOTS_FIXED, error));
+    for (int i = 0; i < out->n; i++)
+        out->shot[i].camera = camera;
+    return ADCGS_OK;
+}
+
+static adcgs_status make_shots(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                               const adcgs_shots_request *request, adcgs_error *error)
+{
+    if (is_path(request->camera))
+        return adcgs_shots_read_path(out, info, request, NEAR_PER_SCALE * info->scene_scale, error);
+    if (is_named(request, "orbit") || is_named(request, "spiral") || is_named(request, "bullet") ||
+        (!request->camera && !info->cameras))
+        return make_from_rig(out, decoder, info, request, error);
+    return make_from_camera(out, decoder, info, request, error);
+}
+
+adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_shots_request *request,
+                              adcgs_error *error)
+{
+    adcgs_info info;
+    *out = (adcgs_shots){0};
+    ADCGS_TRY(adcgs_get_info(decoder, &info));
+    const adcgs_status status = make_shots(out, decoder, &info, request, error);
+    if (status != ADCGS_OK)
+        adcgs_shots_free(out);
+    if (!(out->frame_rate > 0.0)) /* paths may have one of their own */
+        out->frame_rate = info.frame_rate;
+    for (int i = 0; i < out->n && request->size[0]; i++)
+        adcgs_camera_stretch(&out->shot[i].camera, request->size[0], request->size[1]);
+    return status;
+}

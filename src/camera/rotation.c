@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Directions and rotations of cameras. */
+#include "camera/rotation.h"
+
+#include <math.h>
+#include <string.h>
+
+double adcgs_v3_dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+void adcgs_v3_cross(const double a[3], const double b[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+double adcgs_v3_normalise(double v[3])
+{
+    const double length = sqrt(adcgs_v3_dot(v, v));
+    for (int i = 0; i < 3 && length > 0.0; i++)
+        v[i] /= length;
+    return length;
+}
+
+void adcgs_v3_turn(const double axis[3], double angle, double v[3])
+{
+    double side[3];
+    adcgs_v3_cross(axis, v, side);
+    const double along = adcgs_v3_dot(axis, v) * (1.0 - cos(angle));
+    for (int i = 0; i < 3; i++)
+        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + axis[i] * along;
+}
+
+int adcgs_find_up(const adcgs_info *info, double up[3])
+{
+    const int y_up = strstr(info->axes, "y up") != NULL, y_down = strstr(info->axes, "y down") != NULL;
+    up[0] = 0.0;
+    up[1] = y_up ? 1.0 : y_down ? -1.0 : 0.0;
+    up[2] = !y_up && !y_down;
+    return y_up || y_down || strstr(info->axes, "z up") != NULL;
+}
+
+void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3])
+{
+    double forward[3], right[3], down[3];
+    for (int i = 0; i < 3; i++)
+        forward[i] = target[i] - eye[i];
+    adcgs_v3_normalise(forward);
+    adcgs_v3_cross(forward, up, right);
+    adcgs_v3_normalise(right);
+    adcgs_v3_cross(forward, right, down);
+    for (int i = 0; i < 3; i++) {
+        pose[4 * i] = right[i];
+        pose[4 * i + 1] = down[i];
+        pose[4 * i + 2] = forward[i];
+        pose[4 * i + 3] = eye[i];
+    }
+}
+
+void adcgs_camera_stretch(adcgs_camera *camera, int width, int height)
+{
+    const double x = (double)width / camera->width, y = (double)height / camera->height;
+    camera->width = width;
+    camera->height = height;
+    camera->fx *= x;
+    camera->cx *= x;
+    camera->fy *= y;
+    camera->cy *= y;
+}
+
+/** The component that is largest is found first: dividing by it is safe. */
+void adcgs_turn_from_pose(const double pose[12], double q[4])
+{
+    const double m[3] = {pose[0], pose[5], pose[10]}, trace = m[0] + m[1] + m[2];
+    int i = m[1] > m[0] ? 1 : 0;
+    i = m[2] > m[i] ? 2 : i;
+    if (trace > m[i]) {
+        q[0] = 1.0 + trace;
+        for (int a = 0; a < 3; a++) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            q[1 + a] = pose[4 * c + b] - pose[4 * b + c];
+        }
+    } else {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        q[0] = pose[4 * k + j] - pose[4 * j + k];
+        q[1 + i] = 1.0 + m[i] - m[j] - m[k];
+        q[1 + j] = pose[4 * j + i] + pose[4 * i + j];
+        q[1 + k] = pose[4 * k + i] + pose[4 * i + k];
+    }
+    const double length = sqrt(q[0] * q[0] + adcgs_v3_dot(q + 1, q + 1));
+    for (int a = 0; a < 4; a++)
+        q[a] /= length;
+}
+
+void adcgs_turn_to_pose(const double q[4], double pose[12])
+{
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double m[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                            {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                            {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+    for (int i = 0; i < 3; i++)
+        memcpy(pose + 4 * i, m[i], sizeof m[i]);
+}
+
+void adcgs_turn_multiply(const double a[4], const double b[4], double out[4])
+{
+    const double q[4] = {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+                         a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+                         a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+                         a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+    memcpy(out, q, sizeof q);
+}
+
+void adcgs_turn_exp(const double turn[3], double t, double out[4])
+{
+    const double angle = t * sqrt(adcgs_v3_dot(turn, turn));
+    const double per_turn = fabs(angle) > 1e-8 ? sin(angle) / angle * t : t;
+    out[0] = cos(angle);
+    for (int i = 0; i < 3; i++)
+        out[1 + i] = per_turn * turn[i];
+}
+
+void adcgs_turn_between(const double a[4], const double b[4], double turn[3])
+{
+    const double back[4] = {a[0], -a[1], -a[2], -a[3]};
+    double q[4];
+    adcgs_turn_multiply(back, b, q);
+    const double sine = sqrt(adcgs_v3_dot(q + 1, q + 1)), sign = q[0] < 0.0 ? -1.0 : 1.0;
+    const double per_sine = sine > 1e-12 ? atan2(sine, fabs(q[0])) / sine : 0.0;
+    for (int i = 0; i < 3; i++)
+        turn[i] = sign * per_sine * q[1 + i];
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/**
+ * \file
+ * Directions, rotations and pictures of cameras, moved by hand or along a
+ * path, in binary64. Quaternions are w, x, y, z; a turn is an axis times half the
+ * angle, so that the quaternion is its exponential.
+ */
+#ifndef ADCGS_CAMERA_ROTATION_H
+#define ADCGS_CAMERA_ROTATION_H
+
+#include <adcgs/decoder.h>
+
+double adcgs_v3_dot(const double a[3], const double b[3]);
+void adcgs_v3_cross(const double a[3], const double b[3], double out[3]);
+/** To length 1. \return the length it had; a vector of length 0 stays. */
+double adcgs_v3_normalise(double v[3]);
+/** Turn a vector by an angle in radians about an axis of length 1. */
+void adcgs_v3_turn(const double axis[3], double angle, double v[3]);
+
+/** The direction that the stream calls up, of length 1; z if it does not say. \return whether it says. */
+int adcgs_find_up(const adcgs_info *info, double up[3]);
+
+/** A 3x4 camera-to-world matrix in OpenCV axes of an eye that sees the target in the middle; up need not be at right angles. */
+void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3]);
+
+/** Stretch what the camera sees to another size. */
+void adcgs_camera_stretch(adcgs_camera *camera, int width, int height);
+
+/** Rotation of a row-major 3x4 matrix, whose 3x3 part is orthonormal, and back; the last column stays. */
+void adcgs_turn_from_pose(const double pose[12], double q[4]);
+void adcgs_turn_to_pose(const double q[4], double pose[12]);
+/** out = a b; out may be either. */
+void adcgs_turn_multiply(const double a[4], const double b[4], double out[4]);
+/** out = exp(t times turn). */
+void adcgs_turn_exp(const double turn[3], double t, double out[4]);
+/** The shortest turn from a to b: b = a exp(turn), or its negative, which is the same rotation. */
+void adcgs_turn_between(const double a[4], const double b[4], double turn[3]);
+
+#endif

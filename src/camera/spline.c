@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Flight of a camera through key frames. */
+#include "config.h"
+
+#include "camera/spline.h"
+
+#include "camera/rotation.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Rates: of the position, of the rotation (a turn in the camera's own axes), of single numbers. */
+enum { POSITION = 0, ROTATION = 3, NUMBERS = 6, N_NUMBERS = 6, RATES = NUMBERS + N_NUMBERS };
+
+struct adcgs_knot {
+    double at;
+    double position[3], rotation[4];
+    double numbers[N_NUMBERS]; /* fx, fy, cx, cy, near plane, time */
+    double rate[RATES];        /* at the knot, per unit of at */
+    double chord[RATES];       /* on the mean to the next knot */
+};
+
+static void make_knot(adcgs_knot *knot, const adcgs_flight_key *key)
+{
+    const adcgs_camera *camera = &key->shot.camera;
+    const double numbers[N_NUMBERS] = {camera->fx, camera->fy, camera->cx, camera->cy, camera->near_plane, key->shot.time};
+    *knot = (adcgs_knot){.at = key->at};
+    for (int i = 0; i < 3; i++)
+        knot->position[i] = camera->cam_to_world[4 * i + 3];
+    adcgs_turn_from_pose(camera->cam_to_world, knot->rotation);
+    memcpy(knot->numbers, numbers, sizeof numbers);
+}
+
+static void make_chord(adcgs_knot *knot)
+{
+    const adcgs_knot *next = knot + 1;
+    double *chord = knot->chord;
+    for (int i = 0; i < 3; i++)
+        chord[POSITION + i] = next->position[i] - knot->position[i];
+    adcgs_turn_between(knot->rotation, next->rotation, chord + ROTATION);
+    for (int i = 0; i < N_NUMBERS; i++)
+        chord[NUMBERS + i] = next->numbers[i] - knot->numbers[i];
+    for (int i = 0; i < RATES; i++)
+        chord[i] /= next->at - knot->at;
+}
+
+/** Rate of a vector between two chords, that of the parabola through three knots; none next to a standstill. */
+static void vector_rate(const double before[3], const double after[3], double h0, double h1, double out[3])
+{
+    const int still = adcgs_v3_dot(before, before) == 0.0 || adcgs_v3_dot(after, after) == 0.0;
+    for (int i = 0; i < 3; i++)
+        out[i] = still ? 0.0 : (h1 * before[i] + h0 * after[i]) / (h0 + h1);
+}
+
+/** Rate of a number between two chords, so small that the curve does not overshoot (a weighted harmonic mean). */
+static double number_rate(double before, double after, double h0, double h1)
+{
+    const double w0 = h0 + 2.0 * h1, w1 = 2.0 * h0 + h1;
+    return before * after > 0.0 ? (w0 + w1) / (w0 / before + w1 / after) : 0.0;
+}
+
+static void make_rate(double rate[RATES], const adcgs_knot *before, const adcgs_knot *knot)
+{
+    const double h0 = before[1].at - before->at, h1 = knot[1].at - knot->at;
+    vector_rate(before->chord + POSITION, knot->chord + POSITION, h0, h1, rate + POSITION);
+    vector_rate(before->chord + ROTATION, knot->chord + ROTATION, h0, h1, rate + ROTATION);
+    for (int i = NUMBERS; i < RATES; i++)
+        rate[i] = number_rate(before->chord[i], knot->chord[i], h0, h1);
+}
+
+/** The ends of an open flight do not bend. */
+static void make_end_rates(adcgs_knot *knots, int n)
+{
+    for (int i = 0; i < RATES; i++) {
+        const double first = knots[0].chord[i], last = knots[n - 2].chord[i];
+        knots[0].rate[i] = n == 2 ? first : 0.5 * (3.0 * first - knots[1].rate[i]);
+        knots[n - 1].rate[i] = n == 2 ? last : 0.5 * (3.0 * last - knots[n - 2].rate[i]);
+    }
+}
+
+adcgs_status adcgs_flight_init(adcgs_flight *flight, const adcgs_flight_key *keys, int n, int linear, int closed,
+                               adcgs_error *error)
+{
+    *flight = (adcgs_flight){.n = n, .linear = linear, .camera = keys[0].shot.camera};
+    adcgs_knot *knots = malloc((size_t)n * sizeof *knots);
+    if (!knots)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a camera path of %d keys", n);
+    flight->knots = knots;
+    for (int i = 0; i < n; i++)
+        make_knot(&knots[i], &keys[i]);
+    for (int i = 0; i + 1 < n; i++)
+        make_chord(&knots[i]);
+    for (int i = 1; i + 1 < n; i++)
+        make_rate(knots[i].rate, &knots[i - 1], &knots[i]);
+    if (closed && n > 2) {
+        make_rate(knots[0].rate, &knots[n - 2], &knots[0]);
+        memcpy(knots[n - 1].rate, knots[0].rate, sizeof knots[0].rate);
+    } else if (n > 1)
+        make_end_rates(knots, n);
+    return ADCGS_OK;
+}
+
+void adcgs_flight_clear(adcgs_flight *flight)
+{
+    free(flight->knots);
+    *flight = (adcgs_flight){0};
+}
+
+/** The last knot at or before a place that has one after it. */
+static const adcgs_knot *find_knot(const adcgs_flight *flight, double at)
+{
+    int lo = 0, hi = flight->n - 1;
+    while (hi - lo > 1) {
+        const int middle = lo + (hi - lo) / 2;
+        if (flight->knots[middle].at <= at)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    return &flight->knots[lo];
+}
+
+/** Cubic through a and b with rates over the whole stretch. */
+static double hermite(double a, double rate_a, double b, double rate_b, double t)
+{
+    const double u = 1.0 - t;
+    return u * u * ((1.0 + 2.0 * t) * a + t * rate_a) + t * t * ((1.0 + 2.0 * u) * b - u * rate_b);
+}
+
+/**
+ * From a to b with given angular velocities over the stretch: a exp(w0 f0) exp(w1 f1) exp(w2 f2), where w0 and w2 are a third of
+ * the velocities, w1 is what then is left to turn, and the f are the cumulative cubic Bernstein polynomials.
+ */
+static void rotation_curve(const adcgs_knot *a, const adcgs_knot *b, double h, double t, double out[4])
+{
+    const double u = 1.0 - t, third = h / 3.0;
+    double start[4], end[4], w1[3], q[4];
+    adcgs_turn_exp(a->rate + ROTATION, third, start);
+    adcgs_turn_multiply(a->rotation, start, start);
+    adcgs_turn_exp(b->rate + ROTATION, -third, end);
+    adcgs_turn_multiply(b->rotation, end, end);
+    adcgs_turn_between(start, end, w1);
+    adcgs_turn_exp(a->rate + ROTATION, third * (1.0 - u * u * u), q);
+    adcgs_turn_multiply(a->rotation, q, out);
+    adcgs_turn_exp(w1, t * t * (3.0 - 2.0 * t), q);
+    adcgs_turn_multiply(out, q, out);
+    adcgs_turn_exp(b->rate + ROTATION, third * t * t * t, q);
+    adcgs_turn_multiply(out, q, out);
+}
+
+static void set_shot(const adcgs_flight *flight, const double position[3], const double rotation[4],
+                     const double numbers[N_NUMBERS], adcgs_shot *shot)
+{
+    const double length = sqrt(rotation[0] * rotation[0] + adcgs_v3_dot(rotation + 1, rotation + 1));
+    const double unit[4] = {rotation[0] / length, rotation[1] / length, rotation[2] / length, rotation[3] / length};
+    adcgs_camera *camera = &shot->camera;
+    *camera = flight->camera;
+    adcgs_turn_to_pose(unit, camera->cam_to_world);
+    for (int i = 0; i < 3; i++)
+        camera->cam_to_world[4 * i + 3] = position[i];
+    camera->fx = numbers[0];
+    camera->fy = numbers[1];
+    camera->cx = numbers[2];
+    camera->cy = numbers[3];
+    camera->near_plane = numbers[4];
+    shot->time = numbers[5];
+}
+
+void adcgs_flight_at(const adcgs_flight *flight, double at, adcgs_shot *shot)
+{
+    const adcgs_knot *a = find_knot(flight, at), *b = flight->n > 1 ? a + 1 : a;
+    const double h = b->at - a->at, t = h > 0.0 ? fmin(fmax((at - a->at) / h, 0.0), 1.0) : 0.0;
+    double position[3], rotation[4], numbers[N_NUMBERS];
+    for (int i = 0; i < 3; i++)
+        position[i] = flight->linear ? (1.0 - t) * a->position[i] + t * b->position[i]
+                                     : hermite(a->position[i], h * a->rate[i], b->position[i], h * b->rate[i], t);
+    for (int i = 0; i < N_NUMBERS; i++) {
+        const int r = NUMBERS + i;
+        numbers[i] = flight->linear ? (1.0 - t) * a->numbers[i] + t * b->numbers[i]
+                                    : hermite(a->numbers[i], h * a->rate[r], b->numbers[i], h * b->rate[r], t);
+    }
+    if (flight->linear && h > 0.0) {
+        adcgs_turn_exp(a->chord + ROTATION, t * h, rotation);
+        adcgs_turn_multiply(a->rotation, rotation, rotation);
+    } else
+        rotation_curve(a, b, h, t, rotation);
+    set_shot(flight, position, rotation, numbers, shot);
+}

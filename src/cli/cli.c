@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Options: parsing, help and messages. */
+#include "config.h"
+
+#include "cli/cli.h"
+
+#include <adcgs/version.h>
+
+#include <errno.h>
+#include <getopt.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#define OPTIONS_MAX 64
+#define HELP_COLUMN 28
+
+static void message(const adcgs_cli *cli, const char *format, va_list arguments) ADCGS_PRINTF(2, 0);
+static void message(const adcgs_cli *cli, const char *format, va_list arguments)
+{
+    fprintf(stderr, "%s: ", cli->program);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+}
+
+int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    message(cli, format, arguments);
+    va_end(arguments);
+    return adcgs_status_exit_code(status);
+}
+
+void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    message(cli, format, arguments);
+    va_end(arguments);
+}
+
+int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error)
+{
+    return adcgs_cli_error(cli, error->status, "%s", error->text[0] ? error->text : adcgs_status_name(error->status));
+}
+
+int adcgs_parse_real(const char *text, double min, double max, double *out)
+{
+    char *end;
+    const double value = strtod(text, &end);
+    if (end == text || *end || !isfinite(value) || value < min || value > max)
+        return -1;
+    *out = value;
+    return 0;
+}
+
+int adcgs_parse_int(const char *text, int min, int max, int *out)
+{
+    char *end;
+    errno = 0;
+    const long value = strtol(text, &end, 10);
+    if (end == text || *end || errno || value < min || value > max)
+        return -1;
+    *out = (int)value;
+    return 0;
+}
+
+/** Bytes that a suffix stands for: none (1), k, M, G (powers of 1000), Ki, Mi, Gi (of 1024), with or without B; else 0. */
+static uint64_t size_unit(const char *suffix)
+{
+    static const char letters[] = "kMG";
+    if (!*suffix)
+        return 1;
+    const char *found = strchr(letters, *suffix == 'K' ? 'k' : *suffix == 'm' ? 'M' : *suffix == 'g' ? 'G' : *suffix);
+    if (!found)
+        return 0;
+    const int binary = suffix[1] == 'i';
+    suffix += 1 + binary;
+    if (*suffix && strcmp(suffix, "B") != 0)
+        return 0;
+    uint64_t unit = 1;
+    for (const char *letter = letters; letter <= found; letter++)
+        unit *= binary ? 1024 : 1000;
+    return unit;
+}
+
+int adcgs_parse_size(const char *text, uint64_t min, uint64_t max, uint64_t *out)
+{
+    char *end;
+    if (*text < '0' || *text > '9') /* strtoull accepts a sign and wraps */
+        return -1;
+    errno = 0;
+    const unsigned long long whole = strtoull(text, &end, 10);
+    uint64_t digits = 0, scale = 1;
+    const char *rest = end;
+    if (*rest == '.')
+        for (rest++; *rest >= '0' && *rest <= '9' && scale < 1000000000; rest++, scale *= 10)
+            digits = 10 * digits + (uint64_t)(*rest - '0');
+    const uint64_t unit = size_unit(rest);
+    if (errno || !unit || (rest != end && (scale == 1 || unit == 1)) || whole > (UINT64_MAX - unit) / unit)
+        return -1;
+    const uint64_t value = whole * unit + digits * unit / scale;
+    if (value < min || value > max)
+        return -1;
+    *out = value;
+    return 0;
+}
+
+int adcgs_parse_pair(const char *text, int min, int max, int out[2])
+{
+    char first[16];
+    const char *x = strchr(text, 'x');
+    if (!x || (size_t)(x - text) >= sizeof first)
+        return -1;
+    memcpy(first, text, (size_t)(x - text));
+    first[x - text] = 0;
+    int pair[2];
+    if (adcgs_parse_int(first, min, max, &pair[0]) || adcgs_parse_int(x + 1, min, max, &pair[1]))
+        return -1;
+    out[0] = pair[0];
+    out[1] = pair[1];
+    return 0;
+}
+
+int adcgs_parse_times(const char *text, double *begin, double *end)
+{
+    char *stop;
+    const double a = strtod(text, &stop);
+    if (stop == text || !isfinite(a))
+        return -1;
+    double b = a;
+    if (*stop == ':' && (adcgs_parse_real(stop + 1, a, HUGE_VAL, &b)))
+        return -1;
+    if (*stop && *stop != ':')
+        return -1;
+    *begin = a;
+    *end = b;
+    return 0;
+}
+
+static int parse_choice(const adcgs_option *option, const char *text)
+{
+    for (int i = 0; option->choices[i]; i++)
+        if (!strcmp(option->choices[i], text)) {
+            *(int *)option->target = i;
+            return 0;
+        }
+    return -1;
+}
+
+static int option_set(const adcgs_option *option, const char *text)
+{
+    if (option->given)
+        *option->given = 1;
+    switch (option->kind) {
+    case ADCGS_OPTION_FLAG:
+        *(int *)option->target = 1;
+        return 0;
+    case ADCGS_OPTION_STRING:
+        *(const char **)option->target = text;
+        return 0;
+    case ADCGS_OPTION_INT:
+        return adcgs_parse_int(text, (int)option->min, (int)option->max, option->target);
+    case ADCGS_OPTION_SIZE:
+        return adcgs_parse_size(text, (uint64_t)option->min, (uint64_t)option->max, option->target);
+    case ADCGS_OPTION_REAL:
+        return adcgs_parse_real(text, option->min, option->max, option->target);
+    case ADCGS_OPTION_PAIR:
+        return adcgs_parse_pair(text, (int)option->min, (int)option->max, option->target);
+    case ADCGS_OPTION_CHOICE:
+        return parse_choice(option, text);
+    }
+    return -1;
+}
+
+/** What would have been right, for the message about a wrong value. */
+static void describe(const adcgs_option *option, char *text, size_t size)
+{
+    switch (option->kind) {
+    case ADCGS_OPTION_INT:
+        snprintf(text, size, "a whole number from %.0f to %.0f", option->min, option->max);
+        break;
+    case ADCGS_OPTION_SIZE:
+        snprintf(text, size, "a whole number from %.0f to %.0f, suffix k, M, G, KiB, MiB or GiB allowed",
+                 option->min, option->max);
+        break;
+    case ADCGS_OPTION_REAL:
+        snprintf(text, size, "a number from %g to %g", option->min, option->max);
+        break;
+    case ADCGS_OPTION_PAIR:
+        snprintf(text, size, "WIDTHxHEIGHT, each from %.0f to %.0f", option->min, option->max);
+        break;
+    case ADCGS_OPTION_CHOICE: {
+        size_t used = (size_t)snprintf(text, size, "one of");
+        for (int i = 0; option->choices[i] && used < size; i++)
+            used += (size_t)snprintf(text + used, size - used, "%s %s", i ? "," : "", option->choices[i]);
+        break;
+    }
+    default:
+        snprintf(text, size, "a value");
+    }
+}
+
+static int option_wrong(const adcgs_cli *cli, const adcgs_option *option, const char *text)
+{
+    char expected[200];
+    describe(option, expected, sizeof expected);
+    return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s %s: expected %s", option->name, text, expected);
+}
+
+static void print_option(char letter, const char *name, const char *value, const char *help)
+{
+    int width = letter ? printf("  -%c, --%s", letter, name) : printf("      --%s", name);
+    if (value)
+        width += printf(" %s", value);
+    if (width > HELP_COLUMN - 2) {
+        putchar('\n');
+        width = 0;
+    }
+    for (const char *line = help; line;) {
+        const char *end = strchr(line, '\n');
+        const int length = end ? (int)(end - line) : (int)strlen(line);
+        printf("%*s%.*s\n", HELP_COLUMN - width, "", length, line);
+        width = 0;
+        line = end ? end + 1 : NULL;
+    }
+}
+
+static int print_help(const adcgs_cli *cli)
+{
+    printf("Usage: %s [options] %s\n%s\n\nOptions:\n", cli->program, cli->operands, cli->summary);
+    for (size_t i = 0; i < cli->n_options; i++) {
+        const adcgs_option *option = &cli->options[i];
+        print_option(option->letter, option->name, option->value, option->help);
+    }
+    print_option('h', "help", NULL, "print this text and exit");
+    print_option('V', "version", NULL, "print versions and exit");
+    if (cli->details)
+        printf("\n%s\n", cli->details);
+    return fflush(stdout) ? adcgs_status_exit_code(ADCGS_ERR_IO) : 0;
+}
+
+static int print_version(const adcgs_cli *cli)
+{
+    printf("%s %s (library %s, bitstream %d.%d)\n", cli->program, PACKAGE_VERSION, adcgs_version_string(), ADCGS_BITSTREAM_MAJOR,
+           ADCGS_BITSTREAM_MINOR);
+    return fflush(stdout) ? adcgs_status_exit_code(ADCGS_ERR_IO) : 0;
+}
+
+/** getopt_long()'s two descriptions from ours. Values above UCHAR_MAX stand for options without a letter. */
+static size_t getopt_tables(const adcgs_cli *cli, struct option *longs, char *letters)
+{
+    size_t n = ADCGS_MIN(cli->n_options, (size_t)OPTIONS_MAX);
+    *letters++ = ':'; /* report a missing value as ':' */
+    for (size_t i = 0; i < n; i++) {
+        const adcgs_option *option = &cli->options[i];
+        const int takes = option->kind != ADCGS_OPTION_FLAG;
+        longs[i] = (struct option){option->name, takes ? required_argument : no_argument, NULL, UCHAR_MAX + 1 + (int)i};
+        if (option->letter) {
+            *letters++ = option->letter;
+            if (takes)
+                *letters++ = ':';
+        }
+    }
+    longs[n] = (struct option){"help", no_argument, NULL, 'h'};
+    longs[n + 1] = (struct option){"version", no_argument, NULL, 'V'};
+    longs[n + 2] = (struct option){NULL, 0, NULL, 0};
+    memcpy(letters, "hV", 3);
+    return n;
+}
+
+static const adcgs_option *find_option(const adcgs_cli *cli, int code)
+{
+    if (code > UCHAR_MAX)
+        return &cli->options[code - UCHAR_MAX - 1];
+    for (size_t i = 0; i < cli->n_options; i++)
+        if (cli->options[i].letter == code)
+            return &cli->options[i];
+    return NULL;
+}
+
+/** getopt_long() said '?'; optopt holds what it choked on: a letter, an option of ours, or 0. */
+static int wrong_option(const adcgs_cli *cli, const char *word)
+{
+    if (optopt > UCHAR_MAX || (optopt && !strncmp(word, "--", 2)))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: the option takes no value", word);
+    if (optopt)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "-%c: unknown option; try '%s --help'", optopt, cli->program);
+    return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: unknown option; try '%s --help'", word, cli->program);
+}
+
+static int check_operands(const adcgs_cli *cli, int n, const char *surplus)
+{
+    if (n < cli->min_operands)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "expected %s; try '%s --help'", cli->operands, cli->program);
+    if (n > cli->max_operands)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: one operand too many; try '%s --help'", surplus, cli->program);
+    return -1;
+}
+
+int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
+{
+    struct option longs[OPTIONS_MAX + 3];
+    char letters[2 * OPTIONS_MAX + 4];
+    getopt_tables(cli, longs, letters);
+    opterr = 0;
+    for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
+        if (code == 'h')
+            return print_help(cli);
+        if (code == 'V')
+            return print_version(cli);
+        const char *word = argv[ADCGS_MAX(optind - 1, 1)];
+        if (code == ':')
+            return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: a value must follow", word);
+        if (code == '?')
+            return wrong_option(cli, word);
+        const adcgs_option *option = find_option(cli, code);
+        if (option_set(option, optarg))
+            return option_wrong(cli, option, optarg);
+    }
+    *first = optind;
+    return check_operands(cli, argc - optind, argc - optind > cli->max_operands ? argv[optind + cli->max_operands] : "");
+}

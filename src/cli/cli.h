@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What all programs share on the command line: a table of options that parses
+ * itself and prints its own help, numbers with ranges, messages, progress,
+ * JSON on stdout, the interrupt flag.
+ */
+#ifndef ADCGS_CLI_CLI_H
+#define ADCGS_CLI_CLI_H
+
+#include "base/base.h"
+
+#include <stdio.h>
+
+typedef enum adcgs_option_kind {
+    ADCGS_OPTION_FLAG,   /**< target: int, set to 1 */
+    ADCGS_OPTION_STRING, /**< target: const char * */
+    ADCGS_OPTION_INT,    /**< target: int */
+    ADCGS_OPTION_SIZE,   /**< target: uint64_t; suffixes k, M, G are powers of 1000, KiB, MiB, GiB of 1024 */
+    ADCGS_OPTION_REAL,   /**< target: double */
+    ADCGS_OPTION_PAIR,   /**< target: int[2]; WIDTHxHEIGHT */
+    ADCGS_OPTION_CHOICE  /**< target: int, index into choices */
+} adcgs_option_kind;
+
+/** One option. Targets keep their value when the option is not given, so set the defaults there. */
+typedef struct adcgs_option {
+    const char *name;   /**< long name without dashes */
+    char letter;        /**< short name, 0: none */
+    adcgs_option_kind kind;
+    void *target;
+    double min, max;    /**< inclusive range of INT, SIZE, REAL and PAIR */
+    const char *value;  /**< what the help calls the value; NULL for a FLAG */
+    const char *help;   /**< one sentence without full stop; '\n' continues on the next line */
+    const char *const *choices; /**< names of a CHOICE, ended by NULL */
+    int *given;         /**< set to 1 when the option is given; may be NULL */
+} adcgs_option;
+
+/** A program. --help (-h) and --version (-V) are added by themselves. */
+typedef struct adcgs_cli {
+    const char *program;  /**< "adcgs-dec" */
+    const char *operands; /**< "FILE|-" */
+    const char *summary;  /**< what it does, one sentence */
+    const char *details;  /**< printed after the options; may be NULL */
+    const adcgs_option *options;
+    size_t n_options;
+    int min_operands, max_operands;
+} adcgs_cli;
+
+/**
+ * Parse argv; operands end up in argv[*first .. argc).
+ * \return -1 to go on, else the exit code to leave with (0 after --help and --version, 2 after a mistake, which has been
+ * reported).
+ */
+int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
+
+/** Print "program: text" on stderr and return the exit code of error->status. */
+int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
+/** As adcgs_cli_fail() with a message of its own. */
+int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
+/** A remark that does not end the program: "program: text" on stderr. */
+void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(2, 3);
+
+/* Whole-string parsers: 0, or -1 when text is not exactly one number of the kind within [min, max]. */
+int adcgs_parse_int(const char *text, int min, int max, int *out);
+/** Digits, or with a suffix (k, M, G, also followed by B, or Ki, Mi, Gi likewise) also a decimal fraction, rounded down: 1.5M. */
+int adcgs_parse_size(const char *text, uint64_t min, uint64_t max, uint64_t *out);
+int adcgs_parse_real(const char *text, double min, double max, double *out);
+int adcgs_parse_pair(const char *text, int min, int max, int out[2]);
+/** "T" or "A:B" in seconds; *end == *begin for the former. */
+int adcgs_parse_times(const char *text, double *begin, double *end);
+
+/** Make SIGINT and SIGTERM set a flag (a second one kills). */
+void adcgs_interrupt_catch(void);
+/** The signal that came, 0 if none. */
+int adcgs_interrupted(void);
+
+/** A line on stderr that rewrites itself; silent unless stderr is a terminal. */
+typedef struct adcgs_progress {
+    int active, shown;
+    double last; /**< when it was drawn */
+} adcgs_progress;
+
+void adcgs_progress_init(adcgs_progress *progress);
+/** At most ten times a second. */
+void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
+/** Wipe the line; call before any other message and at the end. */
+void adcgs_progress_clear(adcgs_progress *progress);
+
+/** Writes one JSON value to a stream. key is NULL inside an array and at the top. */
+typedef struct adcgs_json {
+    FILE *file;
+    int depth;
+    int comma; /**< the next item needs a comma before it */
+} adcgs_json;
+
+void adcgs_json_init(adcgs_json *json, FILE *file);
+void adcgs_json_open(adcgs_json *json, const char *key, char bracket);  /**< bracket: '{' or '[' */
+void adcgs_json_close(adcgs_json *json, char bracket);                  /**< bracket: '}' or ']' */
+void adcgs_json_string(adcgs_json *json, const char *key, const char *value);
+void adcgs_json_int(adcgs_json *json, const char *key, int64_t value);
+void adcgs_json_real(adcgs_json *json, const char *key, double value);  /**< null when not finite */
+void adcgs_json_bool(adcgs_json *json, const char *key, int value);
+/** Newline and flush; ADCGS_ERR_IO if anything could not be written. */
+adcgs_status adcgs_json_finish(adcgs_json *json, adcgs_error *error);
+
+#endif

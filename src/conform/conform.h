@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The conformance manifest (spec clause "Conformance"), trying its vectors on
+ * the library or on any program, and reports.
+ */
+#ifndef ADCGS_CONFORM_CONFORM_H
+#define ADCGS_CONFORM_CONFORM_H
+
+#include "base/base.h"
+
+#include <adcgs/adcgs.h>
+
+#include <stdio.h>
+
+#define ADCGS_VECTOR_MODELS 32
+#define ADCGS_VECTOR_CAMERAS 8
+#define ADCGS_VECTOR_TIMES 8
+#define ADCGS_VECTOR_FRAMES 64
+#define ADCGS_HEX 33
+#define ADCGS_REFUSED "refused" /**< in place of a frame's digest: its camera is */
+#define ADCGS_WHAT 400 /**< room for an explanation */
+
+typedef struct adcgs_vector {
+    char id[80], file[128], title[256];
+    char md5[ADCGS_HEX];       /**< of the file */
+    adcgs_status status;       /**< ADCGS_OK for a good vector, else how decoding has to end */
+    int level, truncated;
+    uint32_t elements;         /**< lines of the trace */
+    char trace[ADCGS_HEX];
+    int n_models, n_cameras, n_splats, n_frames;
+    char models[ADCGS_VECTOR_MODELS][ADCGS_HEX];
+    adcgs_camera cameras[ADCGS_VECTOR_CAMERAS];
+    struct {
+        double time;
+        char md5[ADCGS_HEX];
+    } splats[ADCGS_VECTOR_TIMES];
+    struct {
+        int camera;
+        double time;
+        char md5[ADCGS_HEX];
+    } frames[ADCGS_VECTOR_FRAMES];
+} adcgs_vector;
+
+typedef struct adcgs_manifest {
+    char *directory; /**< of the manifest; files are relative to it */
+    int n;
+    adcgs_vector *vectors;
+} adcgs_manifest;
+
+adcgs_status adcgs_manifest_read(adcgs_manifest *out, const char *path, adcgs_error *error);
+void adcgs_manifest_clear(adcgs_manifest *manifest);
+
+/** "data", "truncated", "unsupported", "limit": the classes of the manifest. Returns 0, or -1 if unknown. */
+int adcgs_vector_class(const char *name, adcgs_status *status);
+const char *adcgs_vector_class_name(adcgs_status status);
+
+/** The file of a vector in memory; free() it. */
+adcgs_status adcgs_vector_load(const adcgs_manifest *manifest, const adcgs_vector *vector, uint8_t **data, size_t *bytes,
+                               adcgs_error *error);
+void adcgs_hex_of(const void *data, size_t bytes, char hex[ADCGS_HEX]);
+
+/** How a vector went. A decoder that dies or hangs has not refused anything. */
+typedef enum adcgs_outcome { ADCGS_OUTCOME_OK, ADCGS_OUTCOME_WRONG, ADCGS_OUTCOME_CRASHED, ADCGS_OUTCOME_TIMEOUT } adcgs_outcome;
+const char *adcgs_outcome_name(adcgs_outcome outcome);
+
+/** One way to run the library. */
+typedef struct adcgs_trial {
+    adcgs_cpu_level cpu;
+    int threads;
+    int step; /**< 0: the input comes as it is asked for; else in pieces of 1 to step bytes */
+} adcgs_trial;
+
+/**
+ * Decode data and compare everything the vector expects, at all points; also that no more memory is taken than the level allows.
+ * Whatever is not as expected is said in what.
+ */
+adcgs_outcome adcgs_vector_try(const adcgs_vector *vector, const uint8_t *data, size_t bytes, const adcgs_trial *trial,
+                               char what[ADCGS_WHAT]);
+
+/** A decoder that is a program. */
+typedef struct adcgs_program {
+    const char *command; /**< for the shell; {in}, {request}, {out} stand for paths */
+    int point;           /**< 0 to 3: claims P, M, S or R */
+    int timeout;         /**< seconds */
+} adcgs_program;
+
+/** Have the program answer requests for everything the vector expects, and compare. */
+adcgs_outcome adcgs_program_try(const adcgs_program *program, const adcgs_manifest *manifest, const adcgs_vector *vector,
+                                char what[ADCGS_WHAT]);
+
+/** Damage streams, expectations and decoders, one at a time; print what was not noticed. Adds to the counts. */
+void adcgs_selftest_vector(const adcgs_manifest *manifest, const adcgs_vector *vector, int *runs, int *faults);
+void adcgs_selftest_program(const adcgs_manifest *manifest, int *runs, int *faults);
+
+/** Results as JUnit XML. */
+typedef struct adcgs_junit {
+    FILE *file;
+    char *cases; /**< so far */
+    size_t bytes;
+    FILE *memory;
+    int n, failures, errors;
+    double seconds;
+} adcgs_junit;
+
+/** path NULL: nothing is written. */
+adcgs_status adcgs_junit_open(adcgs_junit *junit, const char *path, adcgs_error *error);
+void adcgs_junit_add(adcgs_junit *junit, const adcgs_vector *vector, adcgs_outcome outcome, double seconds, const char *what);
+adcgs_status adcgs_junit_close(adcgs_junit *junit, adcgs_error *error);
+
+#endif

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Results of conformance runs as JUnit XML, which continuous integration displays. */
+#include "config.h"
+
+#include "conform/conform.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+static void put_escaped(FILE *out, const char *text)
+{
+    for (; *text; text++)
+        switch (*text) {
+        case '&':
+            fputs("&amp;", out);
+            break;
+        case '<':
+            fputs("&lt;", out);
+            break;
+        case '"':
+            fputs("&quot;", out);
+            break;
+        default:
+            fputc((unsigned char)*text < 32 || (unsigned char)*text > 126 ? '?' : *text, out);
+        }
+}
+
+adcgs_status adcgs_junit_open(adcgs_junit *junit, const char *path, adcgs_error *error)
+{
+    *junit = (adcgs_junit){.file = NULL};
+    if (!path)
+        return ADCGS_OK;
+    junit->file = fopen(path, "w");
+    if (!junit->file)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
+    junit->memory = open_memstream(&junit->cases, &junit->bytes);
+    if (junit->memory)
+        return ADCGS_OK;
+    fclose(junit->file);
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", path);
+}
+
+/* A wrong result is a failure; a decoder that dies or hangs is an error. */
+void adcgs_junit_add(adcgs_junit *junit, const adcgs_vector *vector, adcgs_outcome outcome, double seconds, const char *what)
+{
+    const char *const tag = outcome == ADCGS_OUTCOME_WRONG ? "failure" : "error";
+    if (!junit->file)
+        return;
+    junit->n++;
+    junit->failures += outcome == ADCGS_OUTCOME_WRONG;
+    junit->errors += outcome == ADCGS_OUTCOME_CRASHED || outcome == ADCGS_OUTCOME_TIMEOUT;
+    junit->seconds += seconds;
+    fprintf(junit->memory, "  <testcase classname=\"conformance\" name=\"%s\" time=\"%.3f\"", vector->id, seconds);
+    if (outcome == ADCGS_OUTCOME_OK) {
+        fprintf(junit->memory, "/>\n");
+        return;
+    }
+    fprintf(junit->memory, ">\n    <%s type=\"%s\" message=\"", tag, adcgs_outcome_name(outcome));
+    put_escaped(junit->memory, what);
+    fprintf(junit->memory, "\"/>\n  </testcase>\n");
+}
+
+adcgs_status adcgs_junit_close(adcgs_junit *junit, adcgs_error *error)
+{
+    if (!junit->file)
+        return ADCGS_OK;
+    const int complete = fclose(junit->memory) == 0;
+    fprintf(junit->file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    fprintf(junit->file, "<testsuite name=\"adcgs-conform\" tests=\"%d\" failures=\"%d\"", junit->n, junit->failures);
+    fprintf(junit->file, " errors=\"%d\" time=\"%.3f\">\n%s</testsuite>\n", junit->errors, junit->seconds,
+            complete ? junit->cases : "");
+    free(junit->cases);
+    if (fclose(junit->file) != 0 || !complete)
+        return adcgs_fail(error, ADCGS_ERR_IO, "JUnit report: cannot write");
+    return ADCGS_OK;
+}

@@ -1,0 +1,450 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The float model's memory, starting values and regrouping. */
+#include "fmodel/fmodel.h"
+
+#include "grad/random.h"
+#include "splat/splat.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+int adcgs_fmodel_rows(const adcgs_fmodel *f, int group)
+{
+    switch (group) {
+    case ADCGS_P_FV: return f->params.n_fv;
+    case ADCGS_P_FG: return f->params.k * f->params.n_fg;
+    case ADCGS_P_SIGMA: return ADCGS_SIGMA_N;
+    case ADCGS_P_COLOUR: return ADCGS_COLOUR_N;
+    default: return f->params.n_eta;
+    }
+}
+
+/* ---- Networks ---- */
+
+size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden, int out)
+{
+    memset(mlp, 0, sizeof *mlp);
+    mlp->own = own;
+    mlp->time = time;
+    mlp->width = width;
+    mlp->hidden = own + time ? hidden : 0;
+    mlp->out = out;
+    size_t at = 0;
+    for (int i = 0; i <= mlp->hidden; i++) {
+        mlp->in[i] = i == 0 ? own + time : width;
+        mlp->n_out[i] = i == mlp->hidden ? out : width;
+        mlp->w[i] = at;
+        at += (size_t)mlp->in[i] * (size_t)mlp->n_out[i];
+        mlp->b[i] = at;
+        at += (size_t)mlp->n_out[i];
+        mlp->lattice[i] = ADCGS_LATTICE_NONE;
+    }
+    mlp->n = at;
+    return at;
+}
+
+void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width)
+{
+    adcgs_mlp *m = &f->mlp[group];
+    const adcgs_mlp old = *m;
+    f->param[group].n = adcgs_mlp_layout(m, old.own, old.time, width, old.hidden, old.out);
+    memcpy(m->lattice, old.lattice, sizeof m->lattice);
+    m->use = old.use;
+    m->turn = old.turn;
+    m->packed = old.packed;
+    m->entropy = old.entropy;
+}
+
+/** Onto a lattice that is that of the integer networks or coarser. NaN, of a run about to be rolled back, becomes -limit. */
+static float integer_weight(float w, int e, int limit)
+{
+    const float v = rintf(ldexpf(w, e)) * (float)(1 << (ADCGS_E24_BITS - e));
+    return v > (float)-limit ? fminf(v, (float)limit) : (float)-limit;
+}
+
+/**
+ * The row bound of the decoder, A*sum|w| + |b| + 2^(s-1) <= 2^24 - 1 with any shift s of the integer networks, by halving the
+ * row: never needed by networks that train normally.
+ */
+static void bound_row(float *w, float *b, int n)
+{
+    for (;;) {
+        double sum = 0;
+        for (int i = 0; i < n; i++)
+            sum += fabs((double)w[i]);
+        if (ADCGS_E24_MAX * sum + (1 << ADCGS_E24_BITS) * fabs((double)*b) + (1 << (2 * ADCGS_E24_BITS)) < 1 << 24)
+            return;
+        for (int i = 0; i < n; i++)
+            w[i] = truncf(w[i] / 2);
+        *b = truncf(*b / 2);
+    }
+}
+
+void adcgs_mlp_integer(const adcgs_mlp *m, const float *p, float *to)
+{
+    for (int i = 0; i <= m->hidden; i++) {
+        const size_t inputs = (size_t)m->in[i];
+        const int e = ADCGS_MIN(m->lattice[i], ADCGS_E24_BITS);
+        for (size_t o = 0; o < (size_t)m->n_out[i]; o++) {
+            float *w = to + m->w[i] + o * inputs, *b = to + m->b[i] + o;
+            for (size_t j = 0; j < inputs; j++)
+                w[j] = integer_weight(p[m->w[i] + o * inputs + j], e, ADCGS_E24_MAX);
+            *b = integer_weight(p[m->b[i] + o], e, 1 << 14);
+            bound_row(w, b, m->in[i]);
+            for (size_t j = 0; j < inputs; j++)
+                w[j] = ldexpf(w[j], -ADCGS_E24_BITS);
+            *b = ldexpf(*b, -ADCGS_E24_BITS);
+        }
+    }
+}
+
+void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise)
+{
+    if (quantise && mlp->entropy)
+        adcgs_mlp_integer(mlp, p, mlp->use);
+    else
+        memcpy(mlp->use, p, mlp->n * sizeof *p);
+    for (int i = 0; i <= mlp->hidden; i++) {
+        const size_t n = (i < mlp->hidden ? mlp->w[i + 1] : mlp->n) - mlp->w[i]; /* weights and biases */
+        float *w = mlp->use + mlp->w[i];
+        if (quantise && !mlp->entropy && mlp->lattice[i] != ADCGS_LATTICE_NONE) {
+            const float up = ldexpf(1, mlp->lattice[i]), down = ldexpf(1, -mlp->lattice[i]);
+            for (size_t j = 0; j < n; j++)
+                w[j] = rintf(w[j] * up) * down;
+        }
+        for (int o = 0; o < mlp->n_out[i]; o++)
+            for (int j = 0; j < mlp->in[i]; j++)
+                mlp->turn[mlp->w[i] + (size_t)j * (size_t)mlp->n_out[i] + (size_t)o] =
+                    w[(size_t)o * (size_t)mlp->in[i] + (size_t)j];
+    }
+}
+
+void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp)
+{
+    for (int i = 1; mlp->n && dsp->pack && i < mlp->hidden; i++) {
+        dsp->pack(adcgs_mlp_packed(mlp, i, 0), mlp->use + mlp->w[i], mlp->width);
+        dsp->pack(adcgs_mlp_packed(mlp, i, 1), mlp->turn + mlp->w[i], mlp->width);
+    }
+}
+
+/** Weights uniform within +-sqrt(3/n_in) of unit gain, biases zero; the last layer scaled by `last`. */
+static void mlp_start(const adcgs_mlp *mlp, float *p, float last, uint64_t seed, uint64_t stream)
+{
+    for (int i = 0; i <= mlp->hidden; i++) {
+        const float residual = i > 0 && i < mlp->hidden ? 0.5f : 1.0f;
+        const double gain = (i == mlp->hidden ? last : residual) * sqrt(3.0 / (mlp->in[i] > 0 ? mlp->in[i] : 1));
+        for (int j = 0; j < mlp->in[i] * mlp->n_out[i]; j++)
+            p[mlp->w[i] + (size_t)j] = (float)(gain * (2 * adcgs_random_unit(seed, stream, mlp->w[i] + (uint64_t)j) - 1));
+    }
+}
+
+static void layout_networks(adcgs_fmodel *f)
+{
+    const adcgs_params *p = &f->params;
+    const adcgs_shape *s = &f->shape;
+    const int fp = 6 * p->octaves, per_chunk = p->n_fg / p->chunks;
+    adcgs_mlp *m = f->mlp;
+    adcgs_mlp_layout(&m[ADCGS_P_THETA], p->n_fv + p->n_fg, 0, s->theta_width, s->theta_hidden, ADCGS_THETA_OUT);
+    if (p->time_rows) {
+        if (s->omega_width)
+            adcgs_mlp_layout(&m[ADCGS_P_OMEGA], p->n_fv, p->time_width, s->omega_width, s->omega_hidden,
+                             p->coarse_rotation ? 12 : 9);
+        if (s->varpi_width)
+            adcgs_mlp_layout(&m[ADCGS_P_VARPI], fp + (p->fine_uses_fv ? p->n_fv : 0), p->time_width, s->varpi_width,
+                             s->varpi_hidden, ADCGS_VARPI_OUT * p->k);
+    }
+    if (p->time_rows) { /* the time table: one tensor, no bias */
+        adcgs_mlp *z = &m[ADCGS_P_TIME];
+        memset(z, 0, sizeof *z);
+        z->in[0] = p->time_width;
+        z->n_out[0] = p->time_rows;
+        z->n = z->b[0] = (size_t)p->time_rows * p->time_width;
+        z->lattice[0] = ADCGS_LATTICE_NONE;
+    }
+    const int w = s->entropy_width, h = s->entropy_hidden;
+    adcgs_mlp_layout(&m[ADCGS_P_E_FV], p->n_eta, 0, w, h, 2 * p->n_fv);
+    adcgs_mlp_layout(&m[ADCGS_P_E_SIGMA], p->n_fv, 0, w, h, 2 * ADCGS_SIGMA_N);
+    adcgs_mlp_layout(&m[ADCGS_P_E_COLOUR], p->n_fv, 0, w, h, 2 * ADCGS_COLOUR_N);
+    for (int c = 0; c < p->chunks && per_chunk; c++)
+        adcgs_mlp_layout(&m[ADCGS_P_E_FG + c], p->n_fv + c * per_chunk, 0, w, h, 2 * per_chunk);
+    if (p->adaptive_steps)
+        adcgs_mlp_layout(&m[ADCGS_P_E_STEPS], p->n_fv, 0, w, h, adcgs_params_steps(p));
+    for (int i = ADCGS_P_E_FV; i < ADCGS_P_COUNT; i++)
+        m[i].entropy = 1;
+}
+
+static const char *const names[ADCGS_P_COUNT] = { "f_v", "f_g", "sigma", "colour", "eta", "theta", "omega", "varpi", "time",
+                                                  "eta prior", "steps", "E_fv", "E_sigma", "E_colour", "E_fg1", "E_fg2", "E_fg3",
+                                                  "E_fg4", "E_q" };
+
+static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
+{
+    float *all = adcgs_alloc(NULL, 4 * (n + 16), sizeof *all, error);
+    if (!all)
+        return ADCGS_ERR_MEMORY;
+    const size_t stride = (n + 15) / 16 * 16;
+    p->n = n;
+    p->p = all;
+    p->g = all + stride;
+    p->m = all + 2 * stride;
+    p->v = all + 3 * stride;
+    return ADCGS_OK;
+}
+
+/**
+ * Waves of half a cycle and more, fainter as they quicken: neighbouring times look alike from the start, and motion
+ * begins smooth.
+ */
+static void start_time_table(adcgs_fmodel *f)
+{
+    const int rows = f->params.time_rows, width = f->params.time_width;
+    float *z = f->param[ADCGS_P_TIME].p;
+    for (int r = 0; r < rows; r++)
+        for (int j = 0; j < width; j++) {
+            const double phase = 3.14159265358979 * (0.5 + j / 2) * (rows > 1 ? (double)r / (rows - 1) - 0.5 : 0);
+            z[r * width + j] = (float)((j % 2 ? cos(phase) : sin(phase)) * 0.7 / (1 + 0.3 * j));
+        }
+}
+
+static adcgs_status alloc_weights(adcgs_mlp *m, adcgs_error *error)
+{
+    m->use = adcgs_alloc(NULL, 2 * (m->n + 16), sizeof *m->use, error);
+    if (!m->use)
+        return ADCGS_ERR_MEMORY;
+    m->turn = m->use + (m->n + 15) / 16 * 16;
+    if (m->hidden < 2 || m->entropy)
+        return ADCGS_OK;
+    m->packed = adcgs_alloc(NULL, 2 * (size_t)(m->hidden - 1) * adcgs_square_words(m->width), sizeof *m->packed, error);
+    return m->packed ? ADCGS_OK : ADCGS_ERR_MEMORY;
+}
+
+static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error *error)
+{
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
+        adcgs_mlp *mlp = &f->mlp[i];
+        size_t n = mlp->n;
+        if (i == ADCGS_P_ETA_PRIOR)
+            n = 2u * f->params.n_eta;
+        if (i == ADCGS_P_STEP)
+            n = (size_t)f->params.n_fv + f->params.n_fg + ADCGS_SIGMA_N + ADCGS_COLOUR_N;
+        ADCGS_TRY(param_alloc(&f->param[i], n, error));
+        if (!mlp->n)
+            continue;
+        ADCGS_TRY(alloc_weights(mlp, error));
+        const int from_zero = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI || i == ADCGS_P_E_STEPS;
+        mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : from_zero ? 0.0f : 0.02f, seed, (uint64_t)i);
+    }
+    start_time_table(f);
+    const adcgs_mlp *theta = &f->mlp[ADCGS_P_THETA];
+    float *b = f->param[ADCGS_P_THETA].p + theta->b[theta->hidden];
+    b[13] = -2.0f; /* opacity starts near 0.12 */
+    return ADCGS_OK;
+}
+
+/* ---- Anchors ---- */
+
+static float first_step(const adcgs_fmodel *f, int group)
+{
+    const float step[ADCGS_P_ANCHOR] = { f->shape.step_fv, f->shape.step_fg, f->shape.step_sigma, f->shape.step_colour, 1.0f };
+    return step[group];
+}
+
+static void start_steps(adcgs_fmodel *f)
+{
+    for (int i = 0; i < ADCGS_P_ETA; i++)
+        for (int r = 0; r < adcgs_fmodel_rows(f, i); r++)
+            f->param[ADCGS_P_STEP].p[adcgs_fmodel_step_at(f, i, r)] = logf(first_step(f, i));
+    for (int r = 0; r < f->params.n_eta; r++)
+        f->step[ADCGS_P_ETA][r] = first_step(f, ADCGS_P_ETA);
+    adcgs_fmodel_take_steps(f);
+}
+
+/** Rows of a group that have steps of their own. */
+static int channels_of(const adcgs_fmodel *f, int group)
+{
+    return group == ADCGS_P_FG ? f->params.n_fg : adcgs_fmodel_rows(f, group);
+}
+
+float adcgs_fmodel_finest_step(const adcgs_fmodel *f, int group, int channel)
+{
+    float most = 0x1p-20f;
+    for (int r = channel; r < adcgs_fmodel_rows(f, group); r += channels_of(f, group))
+        for (uint32_t i = 0; i < f->n; i++)
+            most = fmaxf(most, fabsf(*adcgs_fmodel_at(f, group, i, r)));
+    return most / 480;
+}
+
+void adcgs_fmodel_widen_steps(adcgs_fmodel *f)
+{
+    for (int i = 0; i < ADCGS_P_ETA; i++)
+        for (int c = 0; c < channels_of(f, i); c++) {
+            float *log_step = &f->param[ADCGS_P_STEP].p[adcgs_fmodel_step_at(f, i, c)];
+            *log_step = fmaxf(*log_step, logf(adcgs_fmodel_finest_step(f, i, c)));
+        }
+    adcgs_fmodel_take_steps(f);
+}
+
+void adcgs_fmodel_take_steps(adcgs_fmodel *f)
+{
+    const float reach = logf(64);
+    for (int i = 0; i < ADCGS_P_ETA; i++) {
+        const float middle = logf(first_step(f, i));
+        for (int r = 0; r < adcgs_fmodel_rows(f, i); r++) {
+            float *log_step = &f->param[ADCGS_P_STEP].p[adcgs_fmodel_step_at(f, i, r)];
+            *log_step = fminf(fmaxf(*log_step, middle - reach), middle + reach);
+            f->step[i][r] = expf(*log_step);
+        }
+    }
+}
+
+static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *error)
+{
+    const size_t groups = (n + 63) / 64;
+    f->n = n;
+    f->groups = (uint32_t)groups;
+    f->pos = adcgs_alloc(NULL, n, sizeof *f->pos, error);
+    f->x = adcgs_alloc(NULL, groups * 3 * 64, sizeof(float), error);
+    f->code = adcgs_alloc(NULL, groups * 64 * 6 * (size_t)(f->params.octaves + 1), sizeof(float), error);
+    f->keep = adcgs_alloc(NULL, groups * f->params.k * 64, sizeof(float), error);
+    f->moving = adcgs_alloc(NULL, groups * 64, sizeof(float), error);
+    f->live = adcgs_alloc(NULL, groups * 64, sizeof(float), error);
+    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live)
+        return ADCGS_ERR_MEMORY;
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+        ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * 64, error));
+    }
+    return ADCGS_OK;
+}
+
+/** What follows from the voxels alone: positions, position codes, padding. */
+static void place_anchors(adcgs_fmodel *f, const uint32_t (*pos)[3])
+{
+    memcpy(f->pos, pos, f->n * sizeof *f->pos);
+    const float unit = ldexpf(1, -f->shape.depth - 1);
+    for (uint32_t g = 0; g < f->groups; g++) {
+        float cube[3][64] __attribute__((aligned(64)));
+        for (uint32_t l = 0; l < 64; l++) {
+            const uint32_t i = g * 64 + l < f->n ? g * 64 + l : f->n - 1;
+            for (int a = 0; a < 3; a++) {
+                const float odd = (float)(2 * pos[i][a] + 1);
+                f->x[((size_t)g * 3 + (size_t)a) * 64 + l] = fmaf(odd, 0.5f * f->voxel, f->origin[a]);
+                cube[a][l] = odd * unit;
+            }
+            f->live[g * 64 + l] = g * 64 + l < f->n ? 1.0f : 0.0f;
+        }
+        adcgs_position_code(f->code + (size_t)g * 6 * f->params.octaves * 64, &cube[0][0], f->params.octaves);
+    }
+}
+
+adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params, const adcgs_shape *shape, const float origin[3],
+                                 float voxel, const uint32_t (*pos)[3], uint32_t n, uint64_t seed, adcgs_error *error)
+{
+    adcgs_fmodel *f = calloc(1, sizeof *f);
+    *out = NULL;
+    if (!f)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the model");
+    f->params = *params;
+    f->shape = *shape;
+    memcpy(f->origin, origin, sizeof f->origin);
+    f->voxel = voxel;
+    layout_networks(f);
+    for (int i = 0; i < ADCGS_P_COUNT; i++)
+        f->param[i].name = names[i];
+    adcgs_status status = create_networks(f, seed, error);
+    for (int i = 0; status == ADCGS_OK && i < ADCGS_P_ANCHOR; i++) {
+        f->step[i] = adcgs_alloc(NULL, (size_t)adcgs_fmodel_rows(f, i) + 1, sizeof(float), error);
+        status = f->step[i] ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    }
+    if (status == ADCGS_OK)
+        status = alloc_anchors(f, n, error);
+    if (status != ADCGS_OK) {
+        adcgs_fmodel_free(&f);
+        return status;
+    }
+    start_steps(f);
+    place_anchors(f, pos);
+    for (size_t i = 0; i < (size_t)f->groups * 64; i++) {
+        f->moving[i] = params->time_rows ? f->live[i] : 0;
+        for (int k = 0; k < params->k; k++)
+            f->keep[(i / 64 * params->k + (size_t)k) * 64 + i % 64] = f->live[i];
+    }
+    for (size_t i = 0; i < f->param[ADCGS_P_FG].n; i++)
+        f->param[ADCGS_P_FG].p[i] = (float)(0.7 * adcgs_random_normal(seed, ADCGS_P_FG, i));
+    for (size_t i = 0; i < f->param[ADCGS_P_FV].n; i++)
+        f->param[ADCGS_P_FV].p[i] = (float)(0.1 * adcgs_random_normal(seed, ADCGS_P_FV, i));
+    *out = f;
+    return ADCGS_OK;
+}
+
+static void free_anchors(adcgs_fmodel *f)
+{
+    adcgs_free(NULL, f->pos);
+    adcgs_free(NULL, f->x);
+    adcgs_free(NULL, f->code);
+    adcgs_free(NULL, f->keep);
+    adcgs_free(NULL, f->moving);
+    adcgs_free(NULL, f->live);
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        adcgs_free(NULL, f->param[i].p);
+}
+
+void adcgs_fmodel_free(adcgs_fmodel **model)
+{
+    adcgs_fmodel *f = *model;
+    if (!f)
+        return;
+    free_anchors(f);
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        adcgs_free(NULL, f->step[i]);
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
+        adcgs_free(NULL, f->param[i].p);
+        adcgs_free(NULL, f->mlp[i].use);
+        adcgs_free(NULL, f->mlp[i].packed);
+    }
+    free(f);
+    *model = NULL;
+}
+
+/** Copy anchor `from` of old array to anchor `to` of new, rows features each. */
+static void copy_rows(float *to_array, const float *from_array, uint32_t to, uint32_t from, size_t rows)
+{
+    float *t = to_array + (size_t)(to / 64) * rows * 64 + to % 64;
+    const float *s = from_array + (size_t)(from / 64) * rows * 64 + from % 64;
+    for (size_t r = 0; r < rows; r++)
+        t[r * 64] = s[r * 64];
+}
+
+adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh,
+                                  uint32_t n, adcgs_error *error)
+{
+    adcgs_fmodel old = *f;
+    adcgs_status status = alloc_anchors(f, n, error);
+    if (status != ADCGS_OK) {
+        free_anchors(f);
+        *f = old;
+        return status;
+    }
+    place_anchors(f, pos);
+    for (uint32_t j = 0; j < n; j++) {
+        for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+            const size_t rows = (size_t)adcgs_fmodel_rows(f, i);
+            copy_rows(f->param[i].p, old.param[i].p, j, source[j], rows);
+            if (!fresh || !fresh[j]) {
+                copy_rows(f->param[i].m, old.param[i].m, j, source[j], rows);
+                copy_rows(f->param[i].v, old.param[i].v, j, source[j], rows);
+            }
+        }
+        copy_rows(f->keep, old.keep, j, source[j], f->params.k);
+        copy_rows(f->moving, old.moving, j, source[j], 1);
+    }
+    free_anchors(&old);
+    return ADCGS_OK;
+}
+
+float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row)
+{
+    const int rows = params->time_rows;
+    const float u = t * (float)(rows - 1);
+    *row = rows > 1 ? (int)u < rows - 2 ? (int)u : rows - 2 : 0;
+    return rows > 1 ? u - (float)*row : 0;
+}

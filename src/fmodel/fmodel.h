@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The float model in training: anchors in groups of 64, feature-major, and
+ * networks, each a parameter group with its gradient and Adam moments.
+ *
+ * Anchor parameters are laid out [group][feature][64]; a model of n anchors has
+ * ceil(n/64) groups, the last one padded.
+ */
+#ifndef ADCGS_FMODEL_FMODEL_H
+#define ADCGS_FMODEL_FMODEL_H
+
+#include "grad/dsp.h"
+#include "model/model.h"
+
+/** What is trained. The first five are per anchor, the rest are networks. */
+typedef enum adcgs_pgroup {
+    ADCGS_P_FV,
+    ADCGS_P_FG,     /**< [group][k][n_fg][64] */
+    ADCGS_P_SIGMA,
+    ADCGS_P_COLOUR,
+    ADCGS_P_ETA,
+    ADCGS_P_ANCHOR, /**< number of per-anchor groups */
+    ADCGS_P_THETA = ADCGS_P_ANCHOR,
+    ADCGS_P_OMEGA,
+    ADCGS_P_VARPI,
+    ADCGS_P_TIME,      /**< Z [rows][width] */
+    ADCGS_P_ETA_PRIOR, /**< [2][n_eta]: mean and level of the prior, in the twins' gains */
+    ADCGS_P_STEP,      /**< natural logarithms of the quantiser steps: f_v, f_g (of one primitive), Sigma_v, C_v */
+    ADCGS_P_E_FV,
+    ADCGS_P_E_SIGMA,
+    ADCGS_P_E_COLOUR,
+    ADCGS_P_E_FG, /**< + chunk */
+    ADCGS_P_E_STEPS = ADCGS_P_E_FG + ADCGS_CHUNKS_MAX, /**< E_q: octaves by which an anchor's steps differ */
+    ADCGS_P_COUNT
+} adcgs_pgroup;
+
+/** One block of parameters. */
+typedef struct adcgs_param {
+    const char *name;
+    size_t n;
+    float *p, *g, *m, *v; /**< values, gradient, first and second moment: [n] each */
+    float lr0, lr1;       /**< learning rate at the first and last iteration, log-linear between */
+} adcgs_param;
+
+#define ADCGS_MLP_LAYERS 4
+#define ADCGS_LATTICE_NONE 127 /**< weights that are binary32 */
+
+/**
+ * Shape of a network: inputs [own | time], hidden layers of equal width (leaky ReLU; from the second on residual), linear output.
+ * Parameters in one block: per layer w [n_out][n_in] then b [n_out].
+ */
+typedef struct adcgs_mlp {
+    int own, time, width, hidden, out;
+    int in[ADCGS_MLP_LAYERS], n_out[ADCGS_MLP_LAYERS];
+    size_t w[ADCGS_MLP_LAYERS], b[ADCGS_MLP_LAYERS]; /**< offsets into the block */
+    size_t n;                                        /**< parameters; 0: the network does not exist */
+    float *use;   /**< [n] the weights the forward pass uses: the parameters, or their lattice values */
+    float *turn;  /**< [n] the same transposed per layer: w^T [n_in][n_out] at w's offset */
+    uint32_t *packed; /**< see adcgs_mlp_packed(); NULL in an entropy network */
+    int8_t lattice[ADCGS_MLP_LAYERS]; /**< exponent e of the lattice 2^-e of each layer's weights, or ADCGS_LATTICE_NONE */
+    uint8_t entropy; /**< an entropy network: on the lattice it is the integer network of spec clause "E24" */
+} adcgs_mlp;
+
+/** Widths and steps that a model is made with. Sizes in the stream are in params. */
+typedef struct adcgs_shape {
+    int theta_width, theta_hidden, omega_width, omega_hidden, varpi_width, varpi_hidden, entropy_width, entropy_hidden;
+    float step_fv, step_fg, step_sigma, step_colour; /**< quantiser steps */
+    int depth;                                       /**< bits per axis of the position grid */
+} adcgs_shape;
+
+typedef struct adcgs_fmodel {
+    adcgs_params params;
+    adcgs_shape shape;
+    float origin[3], voxel;     /**< scene units */
+    uint32_t n, groups;         /**< anchors; ceil(n/64) */
+    uint32_t (*pos)[3];         /**< [n] voxels, Morton order */
+    float *x;                   /**< [group][3][64] positions */
+    float *code;                /**< [group][6*octaves][64] f_p */
+    float *keep;                /**< [group][k][64] primitives that exist */
+    float *moving;              /**< [group][64] 1 unless static */
+    float *live;                /**< [group][64] 1 for anchors, 0 for padding */
+    adcgs_param param[ADCGS_P_COUNT];
+    adcgs_mlp mlp[ADCGS_P_COUNT]; /**< of the network groups */
+    float *step[ADCGS_P_ANCHOR];  /**< quantiser steps per feature row of a group, of ADCGS_P_STEP */
+    uint8_t density[ADCGS_GROUPS]; /**< shape of the density of each group of channels, as adcgs_model.shape */
+} adcgs_fmodel;
+
+/** Rows (features) per group of an anchor parameter. */
+int adcgs_fmodel_rows(const adcgs_fmodel *f, int group);
+
+/**
+ * Build networks and arrays for n anchors at pos (copied, must be in Morton order and distinct); values start random from
+ * seed.
+ */
+adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params, const adcgs_shape *shape, const float origin[3],
+                                 float voxel, const uint32_t (*pos)[3], uint32_t n, uint64_t seed, adcgs_error *error);
+void adcgs_fmodel_free(adcgs_fmodel **f);
+
+/**
+ * Replace the anchors: new anchor i comes from old anchor source[i] (parameters and, unless fresh[i], Adam moments copied),
+ * at pos[i] (Morton order, distinct).
+ */
+adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh,
+                                  uint32_t n, adcgs_error *error);
+
+/** Slot of primitive k of an anchor, the order of spec clause "Primitives". */
+static inline size_t adcgs_fmodel_slot(const adcgs_fmodel *f, uint32_t anchor, int k)
+{
+    return ((size_t)(anchor / 64) * f->params.k + (size_t)k) * 64 + anchor % 64;
+}
+
+/** Where in ADCGS_P_STEP the step of a row lies; eta's is 1 and not among them. */
+static inline int adcgs_fmodel_step_at(const adcgs_fmodel *f, int group, int row)
+{
+    const int nv = f->params.n_fv, ng = f->params.n_fg;
+    return group == ADCGS_P_FV ? row : group == ADCGS_P_FG ? nv + row % ng : nv + ng + (group == ADCGS_P_COLOUR ? 6 : 0) + row;
+}
+
+/**
+ * The finest step with which a stream holds all values of a channel, row `channel` of the first primitive for f_g. It holds 511
+ * steps (|yq| <= 32767 in 1/64 step) and 500 from the mean; a few are left for values that go on moving.
+ */
+float adcgs_fmodel_finest_step(const adcgs_fmodel *f, int group, int channel);
+/** Make steps that are too fine for the values of their channel as fine as can be. */
+void adcgs_fmodel_widen_steps(adcgs_fmodel *f);
+/** Renew the steps from their logarithms, which are held within a factor of 64 of where they began. */
+void adcgs_fmodel_take_steps(adcgs_fmodel *f);
+
+/** One anchor's parameter row. */
+static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
+{
+    const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
+    return f->param[group].p + ((size_t)(anchor / 64) * rows + (size_t)row) * 64 + anchor % 64;
+}
+
+/** Copy parameters into `use` (on the lattice where lattice is set and `quantise` is nonzero) and transpose. */
+void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise);
+/** Pack the residual layers of `use` and `turn` for these kernels, if they ask for it. */
+void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp);
+/** Where the packed weights of residual layer i >= 1 lie, or the same transposed. */
+static inline uint32_t *adcgs_mlp_packed(const adcgs_mlp *mlp, int i, int turned)
+{
+    return mlp->packed ? mlp->packed + (size_t)(2 * (i - 1) + turned) * adcgs_square_words(mlp->width) : NULL;
+}
+/**
+ * The weights [n] of the integer network that an entropy network's parameters stand for, as multiples of 2^-ADCGS_E24_BITS: in
+ * range, and every row within the bound that makes its sums exact.
+ */
+void adcgs_mlp_integer(const adcgs_mlp *mlp, const float *p, float *to);
+/** Give a network's hidden layers another width, at most the shape's; its parameters are left to the caller. */
+void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width);
+/** Fill in a network's layout; returns its number of parameters. */
+size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden, int out);
+
+/** Where t in [0,1] is in the time table: the row before it, and the fraction of the way to the next, if there is one. */
+float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row);
+
+#endif

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What the coder's tables say about a value, and how that changes with the
+ * value and its sigma level: the rate that training sees once it rounds.
+ */
+#include "grad/dsp.h"
+
+#include <stdlib.h>
+
+/** Bits at which a table holds little more than the smallest probability it can: its differences say nothing then. */
+#define FLAT_BITS 13
+
+static double sigma_of(double level)
+{
+    return 0.11 * pow(64 / 0.11, level / (ADCGS_SIGMA_LEVELS - 1));
+}
+
+static double upper_tail(double x)
+{
+    return 0.5 * erfc(x * 0.70710678118654752);
+}
+
+/** Bits of magnitude a at a fractional level under the density that training sees before it rounds. */
+static double smooth_bits(double a, double level)
+{
+    const double sigma = sigma_of(level), width = 1 + 4 * sigma;
+    const double inside = upper_tail((a - 0.5) / sigma) - upper_tail((a + 0.5) / sigma);
+    return -log2(inside * (1 - 0x1p-12) + 0x1p-14 * width / (width * width + a * a));
+}
+
+static double table_bits(int shape, int level, int a)
+{
+    return adcgs_value_cost(shape, level, a) * 0x1p-16;
+}
+
+/** Whether the differences of the table mean something at this cell. */
+static int is_live(int shape, int level, int a)
+{
+    return a <= adcgs_table_support(shape, level) && table_bits(shape, level, a) < FLAT_BITS;
+}
+
+/** Over a quarter of sigma to both sides, as neighbours in a wide table differ by less than they are rounded. */
+static double by_value(int shape, int level, int a)
+{
+    const int reach = (int)fmax(1, sigma_of(level) / 4);
+    if (a == 0)
+        return 0;
+    if (!is_live(shape, level, a))
+        return (smooth_bits(a + 0.01, level) - smooth_bits(a - 0.01, level)) / 0.02;
+    int high = a + reach;
+    while (!is_live(shape, level, high))
+        high--;
+    return (table_bits(shape, level, high) - table_bits(shape, level, abs(a - reach))) / (high - (a - reach));
+}
+
+static double by_level(int shape, int level, int a)
+{
+    const int low = level > 0 && is_live(shape, level - 1, a) ? level - 1 : level;
+    const int high = level < ADCGS_SIGMA_LEVELS - 1 && is_live(shape, level + 1, a) ? level + 1 : level;
+    if (!is_live(shape, level, a) || low == high)
+        return (smooth_bits(a, level + 0.01) - smooth_bits(a, level - 0.01)) / 0.02;
+    return (table_bits(shape, high, a) - table_bits(shape, low, a)) / (high - low);
+}
+
+void adcgs_rate_table_init(adcgs_rate_table *table, int shape)
+{
+    for (int level = 0; level < ADCGS_SIGMA_LEVELS; level++)
+        for (int a = 0; a < ADCGS_RATE_CELLS; a++) {
+            adcgs_rate_cell *cell = &table->cell[level][a];
+            cell->bits = level > 0 ? (float)table_bits(shape, level, a) : 0;
+            cell->by_value = (float)by_value(shape, level, a);
+            cell->by_level = (float)by_level(shape, level, a);
+        }
+}

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Neighbours move together: neighbourhoods, energy and gradient. */
+#include "fmodel/rigidity.h"
+
+#include "fmodel/pass_layout.h"
+
+#include <math.h>
+
+enum { NEAR = ADCGS_RIGID_NEAR, PULL_ROWS = 12 };
+
+/** Stretch below which the energy is quadratic: parts that slide past each other may part at a bounded price. */
+#define SOFT 0.05f
+
+/* ---- Neighbourhoods ---- */
+
+typedef struct near_job {
+    const adcgs_fmodel *f;
+    adcgs_rigid *rigid;
+} near_job;
+
+/** Put j into a list kept sorted by key, smallest first. */
+static void keep_best(uint64_t *best, int32_t *near, int n, uint64_t key, uint32_t j)
+{
+    int k = n - 1;
+    if (key >= best[k])
+        return;
+    for (; k > 0 && best[k - 1] > key; k--) {
+        best[k] = best[k - 1];
+        near[k] = near[k - 1];
+    }
+    best[k] = key;
+    near[k] = (int32_t)j;
+}
+
+/** The closest, and of those within reach the ones that a fixed lottery draws. */
+static void find_near(const adcgs_fmodel *f, uint32_t i, int32_t near[NEAR])
+{
+    const double reach = (double)ADCGS_RIGID_REACH / (double)f->voxel;
+    uint64_t best[NEAR];
+    for (int k = 0; k < NEAR; k++) {
+        best[k] = UINT64_MAX;
+        near[k] = -1;
+    }
+    for (uint32_t j = 0; j < f->n; j++) {
+        uint64_t d = 0;
+        for (int a = 0; a < 3; a++) {
+            const int64_t way = (int64_t)f->pos[i][a] - (int64_t)f->pos[j][a];
+            d += (uint64_t)(way * way);
+        }
+        if (j == i)
+            continue;
+        keep_best(best, near, ADCGS_RIGID_CLOSE, d, j);
+        if ((double)d < reach * reach)
+            keep_best(best + ADCGS_RIGID_CLOSE, near + ADCGS_RIGID_CLOSE, NEAR - ADCGS_RIGID_CLOSE,
+                      adcgs_random64(1, i, j), j);
+    }
+}
+
+static void near_group(void *arg, int group, int thread)
+{
+    (void)thread;
+    const near_job *job = arg;
+    const uint32_t begin = (uint32_t)group * 64, end = ADCGS_MIN(begin + 64, job->f->n);
+    for (uint32_t i = begin; i < end; i++)
+        find_near(job->f, i, job->rigid->near[i]);
+}
+
+void adcgs_rigid_clear(adcgs_rigid *rigid)
+{
+    adcgs_free(NULL, rigid->near);
+    adcgs_free(NULL, rigid->pull);
+    memset(rigid, 0, sizeof *rigid);
+}
+
+adcgs_status adcgs_rigid_build(adcgs_rigid *rigid, const adcgs_fmodel *f, adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_rigid_clear(rigid);
+    rigid->n = f->n;
+    rigid->near = adcgs_alloc(NULL, f->n, sizeof *rigid->near, error);
+    rigid->pull = adcgs_alloc(NULL, (size_t)f->groups * PULL_ROWS * 64, sizeof *rigid->pull, error);
+    if (!rigid->near || !rigid->pull)
+        return ADCGS_ERR_MEMORY;
+    near_job job = { f, rigid };
+    adcgs_pool_run(pool, near_group, &job, (int)f->groups);
+    return ADCGS_OK;
+}
+
+/* ---- Energy ---- */
+
+/** R - I of an anchor, row by row; its three numbers lie 64 apart, NULL for none. */
+static void turn_of(const float *r, float m[9])
+{
+    if (!r) {
+        memset(m, 0, 9 * sizeof *m);
+        return;
+    }
+    const float s = 2 / (1 + r[0] * r[0] + r[64] * r[64] + r[128] * r[128]), x = r[0], y = r[64], z = r[128];
+    m[0] = -s * (y * y + z * z);
+    m[1] = s * (x * y - z);
+    m[2] = s * (x * z + y);
+    m[3] = s * (x * y + z);
+    m[4] = -s * (x * x + z * z);
+    m[5] = s * (y * z - x);
+    m[6] = s * (x * z - y);
+    m[7] = s * (y * z + x);
+    m[8] = -s * (x * x + y * y);
+}
+
+static const float *omega_of(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t i)
+{
+    return adcgs_pass_act(p, f, i / 64).omega_out + i % 64;
+}
+
+/** One pair's energy; its force on j into force. y: place of j, 64 apart; v: from i to j. */
+static float pair(const float *y, const float *di, const float *dj, const float m[9], const float n[9], const float v[3],
+                  float force[3])
+{
+    float e[3], stretch = 0;
+    const float length = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    /* R_j y + d_j - (R_i x + d_i) - R_i (y - x) = (R_j - R_i) y + d_j - d_i */
+    for (int a = 0; a < 3; a++) {
+        e[a] = dj[a * 64] - di[a * 64] + (n[3 * a] - m[3 * a]) * y[0] + (n[3 * a + 1] - m[3 * a + 1]) * y[64] +
+               (n[3 * a + 2] - m[3 * a + 2]) * y[128];
+        stretch += e[a] * e[a];
+    }
+    const float soft = 1 + stretch / (length * SOFT * SOFT), scale = 2 * SOFT / (length * SOFT * SOFT * soft);
+    for (int a = 0; a < 3; a++)
+        force[a] = e[a] * scale;
+    return SOFT * logf(soft);
+}
+
+/** Add a force at y on a transformation: its way takes it, its matrix takes it times y. */
+static void add_force(float *pull, const float force[3], const float *y, float scale)
+{
+    for (int a = 0; a < 3; a++) {
+        pull[a * 64] += scale * force[a];
+        for (int b = 0; b < 3; b++)
+            pull[(3 + 3 * a + b) * 64] += scale * force[a] * y[b * 64];
+    }
+}
+
+double adcgs_rigid_pull(adcgs_rigid *rigid, const adcgs_pass *p, const adcgs_fmodel *f, float weight)
+{
+    const float each = weight / ((float)NEAR * (float)rigid->n);
+    const int turns = f->params.coarse_rotation;
+    double energy = 0;
+    memset(rigid->pull, 0, (size_t)f->groups * PULL_ROWS * 64 * sizeof *rigid->pull);
+    for (uint32_t i = 0; i < rigid->n; i++) {
+        const float *di = omega_of(p, f, i), *x = f->x + (size_t)(i / 64) * 3 * 64 + i % 64;
+        float *pull = rigid->pull + (size_t)(i / 64) * PULL_ROWS * 64 + i % 64, m[9], n[9];
+        if (f->moving[i] == 0)
+            continue;
+        turn_of(turns ? di + 9 * 64 : NULL, m);
+        for (int k = 0; k < NEAR; k++) {
+            const uint32_t j = (uint32_t)rigid->near[i][k];
+            if (rigid->near[i][k] < 0 || f->moving[j] == 0)
+                continue;
+            const float *dj = omega_of(p, f, j), *y = f->x + (size_t)(j / 64) * 3 * 64 + j % 64;
+            const float v[3] = { y[0] - x[0], y[64] - x[64], y[128] - x[128] };
+            float force[3];
+            turn_of(turns ? dj + 9 * 64 : NULL, n);
+            energy += pair(y, di, dj, m, n, v, force);
+            add_force(rigid->pull + (size_t)(j / 64) * PULL_ROWS * 64 + j % 64, force, y, each);
+            add_force(pull, force, y, -each);
+        }
+    }
+    return energy / ((double)NEAR * rigid->n);
+}

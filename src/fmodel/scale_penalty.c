@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Price of size. */
+#include "fmodel/scale_penalty.h"
+
+#include <math.h>
+
+/* Nothing is nearer than this to where it is seen from, scene units. */
+static const float NEAREST = 0.05f;
+
+static float distance2(const float a[3], const float b[3])
+{
+    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
+/** Half-way from a camera to the nearest other one, then the nearest but that. */
+static void add_between(adcgs_viewpoints *p, uint32_t n, uint32_t i)
+{
+    uint32_t best[2] = { i, i };
+    for (uint32_t j = 0; j < n; j++) {
+        const float d = distance2(p->x[i], p->x[j]);
+        if (j == i)
+            continue;
+        if (best[0] == i || d < distance2(p->x[i], p->x[best[0]])) {
+            best[1] = best[0];
+            best[0] = j;
+        } else if (best[1] == i || d < distance2(p->x[i], p->x[best[1]])) {
+            best[1] = j;
+        }
+    }
+    for (int k = 0; k < 2; k++, p->n++)
+        for (int a = 0; a < 3; a++)
+            p->x[p->n][a] = 0.5f * (p->x[i][a] + p->x[best[k]][a]);
+}
+
+adcgs_status adcgs_viewpoints_create(adcgs_viewpoints *p, const float (*camera)[3], uint32_t n_cameras, adcgs_error *error)
+{
+    p->n = 0;
+    p->x = adcgs_alloc(NULL, 3 * (size_t)n_cameras, sizeof *p->x, error);
+    if (!p->x)
+        return ADCGS_ERR_MEMORY;
+    for (uint32_t i = 0; i < n_cameras; i++) {
+        uint32_t j = 0;
+        while (j < p->n && memcmp(p->x[j], camera[i], sizeof camera[i]) != 0)
+            j++;
+        if (j == p->n)
+            memcpy(p->x[p->n++], camera[i], sizeof camera[i]);
+    }
+    const uint32_t n = p->n;
+    for (uint32_t i = 0; i < n; i++)
+        add_between(p, n, i);
+    return ADCGS_OK;
+}
+
+void adcgs_viewpoints_clear(adcgs_viewpoints *p)
+{
+    adcgs_free(NULL, p->x);
+    *p = (adcgs_viewpoints){ .n = 0 };
+}
+
+/** How much larger an area looks from the nearest viewpoint than at distance 1; 1 where no viewpoints are. */
+static float nearness(const adcgs_viewpoints *p, const adcgs_primitives *primitives, uint32_t i)
+{
+    if (!p->n)
+        return 1;
+    const float x[3] = { primitives->mean[0][i], primitives->mean[1][i], primitives->mean[2][i] };
+    float least = INFINITY;
+    for (uint32_t j = 0; j < p->n; j++)
+        least = fminf(least, distance2(x, p->x[j]));
+    return 1 / fmaxf(least, NEAREST * NEAREST);
+}
+
+double adcgs_area_price(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
+                        float *const scale[3])
+{
+    const float *x = primitives->scale[0], *y = primitives->scale[1], *z = primitives->scale[2];
+    uint32_t n = 0;
+    double area = 0;
+    for (uint32_t i = 0; i < primitives->n; i++)
+        n += primitives->opacity[i] > 0;
+    const float share = weight / (3 * (float)ADCGS_MAX(n, 1u));
+    for (uint32_t i = 0; i < primitives->n; i++) {
+        if (!(primitives->opacity[i] > 0))
+            continue;
+        const float each = share * nearness(viewpoints, primitives, i);
+        area += (double)each * (double)(x[i] * y[i] + y[i] * z[i] + z[i] * x[i]);
+        scale[0][i] += each * (y[i] + z[i]);
+        scale[1][i] += each * (z[i] + x[i]);
+        scale[2][i] += each * (x[i] + y[i]);
+    }
+    return area;
+}

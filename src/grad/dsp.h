@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Kernels of the trainer over groups of 64 anchors, chosen by CPU level. All
+ * tiles are feature-major [feature][64] and 64-byte aligned. Gradients
+ * accumulate unless a comment says otherwise.
+ */
+#ifndef ADCGS_GRAD_DSP_H
+#define ADCGS_GRAD_DSP_H
+
+#include "splat/dense.h"
+
+#include <math.h>
+
+/** Outputs of F_theta per primitive, of F_omega per anchor, of F_varpi per primitive. */
+enum { ADCGS_THETA_OUT = 14, ADCGS_OMEGA_OUT = 12, ADCGS_VARPI_OUT = 4 };
+
+/** One group of 64 anchors on its way to 64*k primitives. */
+typedef struct adcgs_group_io {
+    int k;
+    const float *x;      /**< [3][64] anchor positions */
+    const float *sigma;  /**< [6][64] */
+    const float *colour; /**< [3][64] */
+    const float *theta;  /**< [k][14][64] */
+    const float *omega;  /**< [12][64] (9 used without rotation) or NULL */
+    const float *varpi;  /**< [4k][64] or NULL */
+    const float *moving; /**< [64] 1 for moving, 0 for static anchors; read when omega or varpi is given */
+    const float *keep;   /**< [k][64] 1 for primitives that exist, else 0 */
+    int rotation;        /**< omega's outputs 9..11 are used */
+    float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] each */
+} adcgs_group_io;
+
+/** Gradients of the same: in from the rasteriser, out to the networks. */
+typedef struct adcgs_group_grad {
+    const float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] */
+    float *sigma, *colour;        /**< [6][64], [3][64], accumulated */
+    float *theta, *omega, *varpi; /**< overwritten; omega, varpi may be NULL as above */
+    const float *pull;            /**< [12][64] more gradient of the anchors' way and rotation matrix, or NULL */
+} adcgs_group_grad;
+
+/** What the coder's tables say about a value of magnitude `a` at a sigma level. */
+typedef struct adcgs_rate_cell {
+    float bits;     /**< that coding it takes; at level 0 nothing is coded */
+    float by_value; /**< their derivative by the magnitude */
+    float by_level; /**< and by the level */
+} adcgs_rate_cell;
+
+/** Largest magnitude of a quantised value; one more, so that a value may lie between two cells. */
+enum { ADCGS_LEVEL_MAX = 500, ADCGS_RATE_CELLS = ADCGS_LEVEL_MAX + 2 };
+typedef struct adcgs_rate_table {
+    adcgs_rate_cell cell[ADCGS_SIGMA_LEVELS][ADCGS_RATE_CELLS];
+} adcgs_rate_table;
+/** Fill in the table of a density shape. */
+void adcgs_rate_table_init(adcgs_rate_table *table, int shape);
+
+/** Rows of 64 values to be coded and what an entropy network says about them. */
+typedef struct adcgs_rate_io {
+    int n;
+    const float *y, *step;  /**< values [n][64], steps [n] */
+    const float *mu, *si;   /**< the network's outputs: [n][64] in 16 steps, [n][64] in 8 sigma levels around level 32 */
+    const float *weight;    /**< [64] of each lane, 0 for padding */
+    float scale;
+    float *dy, *dmu, *dsi;  /**< dy += scale*dbits/dy; dmu, dsi overwritten with scale*dbits/dmu, /dsi */
+    float *x;               /**< receives the values as inputs of networks that follow; may be NULL */
+    const adcgs_rate_table *table; /**< rate_exact: of the group's shape */
+    float *mean;            /**< rate_exact: receives the means, packed */
+} adcgs_rate_io;
+
+/** Weights of a residual layer, [n][n], and the same as adcgs_train_dsp.pack leaves them, if there is such a function. */
+typedef struct adcgs_square {
+    int n;
+    const float *w;
+    const uint32_t *packed;
+} adcgs_square;
+
+/** Words of a packed square. */
+static inline size_t adcgs_square_words(int n)
+{
+    return (size_t)n * (((size_t)n + 31) / 32 * 16);
+}
+
+typedef struct adcgs_train_dsp {
+    adcgs_dense_dsp dense;
+    /**
+     * gw[o][i] += sum over tiles and lanes of dy[o]*x[i]; gb[o] += sum of dy[o] (gb may be NULL).
+     * Tile t: dy + t*sy, x + t*sx.
+     */
+    void (*weight_grad)(float *gw, size_t ldg, float *gb, const float *dy, size_t sy, const float *x, size_t sx, int tiles,
+                        int n_out, int n_in);
+    /** dz[i] *= h[i] < 0 ? 2^-6 : 1 over n rows of 64; h: the leaky ReLU's output, whose sign is its input's. */
+    void (*lrelu_back)(float *dz, const float *h, int n);
+    /**
+     * A residual hidden layer: with z = bias + w x, h = x + leaky ReLU of z. Bit l of below[o]: lane l of z[o] is below 0. dsp:
+     * these kernels.
+     */
+    void (*residual)(const struct adcgs_train_dsp *dsp, float *h, uint64_t *below, const float *bias, const adcgs_square *w,
+                     const float *x);
+    /**
+     * The way back: dz = dh times the leaky ReLU's slope, dx = dh + turn dz; turn: w transposed. dx may be dh. io: NULL, or
+     * the layer's x and, behind it, its h, for which weight gradients ask next: they may be fetched meanwhile.
+     */
+    void (*residual_back)(const struct adcgs_train_dsp *dsp, float *dx, float *dz, const uint64_t *below,
+                          const adcgs_square *turn, const float *dh, const float *io);
+    /** Weights [n][n] to adcgs_square_words(n) aligned words as the two above want them; NULL if they want none. */
+    void (*pack)(uint32_t *to, const float *w, int n);
+    /** y = p + step[row] * u, u uniform in [-1/2, 1/2) from (seed, position): additive quantisation noise, n rows of 64. */
+    void (*noise)(float *y, const float *p, const float *step, int n, uint32_t seed);
+    /** y: what the coder makes of p, rounded in steps around the predicted mean mu; see adcgs_mean_pack(). */
+    void (*round)(float *y, const float *p, const float *step, const float *mu, int n);
+    void (*primitives)(const adcgs_group_io *io);
+    void (*primitives_back)(const adcgs_group_io *io, const adcgs_group_grad *grad);
+    /**
+     * n rows of a hidden layer: h = leaky ReLU of z, plus in where it is not NULL; below as in residual. hidden_exact, for
+     * entropy networks: z, in on the integer networks' lattices, and h what they compute.
+     */
+    void (*hidden)(float *h, uint64_t *below, const float *z, const float *in, int n);
+    void (*hidden_exact)(float *h, uint64_t *below, const float *z, const float *in, int n);
+    /**
+     * Bits of values and their gradients; returns the weighted sum of bits. rate: of values as they are, noisy ones that is,
+     * under a Gaussian. rate_exact: as the coder does it, with the gradients straight through every rounding.
+     */
+    double (*rate)(const adcgs_rate_io *io);
+    double (*rate_exact)(const adcgs_rate_io *io);
+    /** Adam step on n parameters; c1 = 1/(1-beta1^t), c2 = 1/(1-beta2^t); clears g. */
+    void (*adam)(float *p, float *g, float *m, float *v, size_t n, float lr, float c1, float c2);
+} adcgs_train_dsp;
+
+/** Gains between the entropy twins' outputs and the coder's quantities; the integer networks reproduce them by their shifts. */
+#define ADCGS_MU_GAIN 16.0f
+#define ADCGS_SI_GAIN 8.0f
+#define ADCGS_SI_CENTRE 32.0f
+#define ADCGS_STEP_GAIN 8.0f /**< E_q's twin yields octaves, the integer network eighths of them */
+
+/**
+ * The integer networks in the twins' units: weights, biases and activations are multiples of 2^-ADCGS_E24_BITS, weights and
+ * activations of magnitude at most ADCGS_E24_MAX of them; inputs, values in units of 16 steps, are so to a quarter of a step.
+ */
+enum { ADCGS_E24_BITS = 6, ADCGS_E24_MAX = 2047, ADCGS_E24_INPUT_SHIFT = 4 };
+
+/** x, or the nearer bound; lo where x is no number. */
+static inline float adcgs_bounded(float x, float lo, float hi)
+{
+    const float y = x > lo ? x : lo;
+    return y < hi ? y : hi;
+}
+/** A mean in 1/64 step as the passes keep it: marked where the sigma level is 0, so that the mean is all that is coded. */
+#define ADCGS_MEAN_ALONE 0x1p18f
+static inline float adcgs_mean_pack(float mean, int alone)
+{
+    return alone ? mean + ADCGS_MEAN_ALONE : mean;
+}
+static inline int adcgs_mean_alone(float packed)
+{
+    return packed > 0.5f * ADCGS_MEAN_ALONE;
+}
+
+/** What the coder makes of the twins' outputs: the mean in 1/64 step, the sigma level. */
+static inline float adcgs_coder_mean(float mu)
+{
+    return adcgs_bounded(floorf(64 * ADCGS_MU_GAIN * mu + 0.5f), -32767, 32767);
+}
+static inline float adcgs_coder_level(float si)
+{
+    return adcgs_bounded(floorf(ADCGS_SI_GAIN * si + 0.5f) + ADCGS_SI_CENTRE, 0, ADCGS_SIGMA_LEVELS - 1);
+}
+
+void adcgs_train_dsp_init(adcgs_train_dsp *dsp, adcgs_cpu_level level);
+
+/** Whether kernels of this level can have layers in bf16: ADCGS_ERR_UNSUPPORTED names what the CPU or the build lacks. */
+adcgs_status adcgs_bf16_check(adcgs_cpu_level level, adcgs_error *error);
+/** The kernels of a level; where the check passes, layers and weight gradients with factors in bf16 and sums in binary32. */
+void adcgs_train_dsp_init_bf16(adcgs_train_dsp *dsp, adcgs_cpu_level level);
+
+#endif

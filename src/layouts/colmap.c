@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Sparse models of COLMAP as scenes. */
+#include "config.h"
+
+#include "layouts/colmap.h"
+
+#include "data/paths.h"
+#include "data/pose.h"
+#include "io/file.h"
+#include "layouts/calibration.h"
+#include "layouts/colmap_model.h"
+#include "layouts/footage.h"
+#include "layouts/listing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define FILE_MAX ((uint64_t)8 << 30)
+#define TEST_EVERY 8
+#define DIVIDE_MAX 64
+
+static const char *const names[] = {"cameras", "images", "points3D"};
+enum { CAMERAS, IMAGES, POINTS, FILES };
+
+static const struct {
+    const char *end;
+    adcgs_colmap_parse *parse[FILES];
+} formats[] = {
+    {"bin", {adcgs_colmap_binary_cameras, adcgs_colmap_binary_images, adcgs_colmap_binary_points}},
+    {"txt", {adcgs_colmap_text_cameras, adcgs_colmap_text_images, adcgs_colmap_text_points}},
+};
+
+typedef struct reader {
+    adcgs_scene *scene;
+    adcgs_error *error;
+    const adcgs_frame_range *frames;
+    char *folder;                /**< of the model */
+    int format;
+    adcgs_colmap model;
+    char *pictures;              /**< their folder, with its slash */
+    adcgs_scene_view *calibrated; /**< for each camera; height 0: not yet */
+} reader;
+
+static adcgs_status no_memory(const reader *r)
+{
+    return adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->scene->directory);
+}
+
+/* ---- The files ---- */
+
+/** The folder and the format of a model in a directory; *folder is NULL if there is none, and else from malloc(). */
+static void find_model(const char *directory, char **folder, int *format)
+{
+    static const char *const places[] = {"sparse/0/", "sparse/", ""};
+    for (size_t p = 0; p < ADCGS_COUNTOF(places); p++)
+        for (*format = 0; *format < (int)ADCGS_COUNTOF(formats); ++*format)
+            for (int f = 0; f < FILES; f++) {
+                char *path = adcgs_path("%s/%s%s.%s", directory, places[p], names[f], formats[*format].end);
+                const int found = adcgs_is_there(path);
+                free(path);
+                *folder = found ? adcgs_path("%s/%s", directory, places[p]) : NULL;
+                if (found)
+                    return;
+            }
+}
+
+int adcgs_is_colmap(const char *folder)
+{
+    char *model;
+    int format;
+    find_model(folder, &model, &format);
+    free(model);
+    return model != NULL;
+}
+
+static int has_file(const reader *r, int file)
+{
+    char *path = adcgs_path("%s%s.%s", r->folder, names[file], formats[r->format].end);
+    const int has = adcgs_is_there(path);
+    free(path);
+    return has;
+}
+
+static adcgs_status read_file(reader *r, int file)
+{
+    char *path = adcgs_path("%s%s.%s", r->folder, names[file], formats[r->format].end);
+    uint8_t *data = NULL;
+    size_t bytes;
+    if (!path)
+        return no_memory(r);
+    r->model.path = path;
+    r->model.error = r->error;
+    adcgs_status status = adcgs_file_load(&data, &bytes, path, FILE_MAX, r->error);
+    if (status == ADCGS_ERR_IO && !has_file(r, file))
+        status = adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no such file; a COLMAP model has cameras, images, points3D", path);
+    if (status == ADCGS_OK)
+        status = formats[r->format].parse[file](&r->model, data, bytes);
+    if (status == ADCGS_OK && file == CAMERAS)
+        status = adcgs_colmap_sort_cameras(&r->model);
+    if (status == ADCGS_OK && file == IMAGES)
+        status = adcgs_colmap_sort_images(&r->model);
+    free(data);
+    free(path);
+    r->model.path = NULL;
+    return status;
+}
+
+static adcgs_status read_points(reader *r, size_t n, size_t period)
+{
+    ADCGS_TRY(adcgs_colmap_list_training(&r->model, n, period));
+    ADCGS_TRY(read_file(r, POINTS));
+    r->scene->points = r->model.points;
+    r->model.points = (adcgs_points){0};
+    return ADCGS_OK;
+}
+
+/* ---- Pictures ---- */
+
+/** The picture of a name in a folder: as named, or with another extension. NULL if there is none. */
+static adcgs_status find_in(const reader *r, const char *folder, const char *name, char **out)
+{
+    char *path = adcgs_path("%s%s", folder, name);
+    adcgs_status status = path ? adcgs_find_image(out, path, r->error) : no_memory(r);
+    if (status == ADCGS_OK && !*out) {
+        char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+        if (dot && (!slash || dot > slash + 1)) {
+            *dot = 0;
+            status = adcgs_find_image(out, path, r->error);
+        }
+    }
+    free(path);
+    return status;
+}
+
+/** Is a picture in this folder, which is from malloc() and ends with its slash? Then it is where they all are. */
+static adcgs_status try_folder(reader *r, char *folder, const char *name)
+{
+    char *found = NULL;
+    const adcgs_status status = folder ? find_in(r, folder, name, &found) : no_memory(r);
+    if (found)
+        r->pictures = folder;
+    else
+        free(folder);
+    free(found);
+    return status;
+}
+
+static adcgs_status find_pictures(reader *r, const char *name)
+{
+    static const char *const whole[] = {"images/", "", "input/", "rgb/1x/"};
+    const char *directory = r->scene->directory;
+    for (size_t i = 0; !r->pictures && i < ADCGS_COUNTOF(whole); i++)
+        ADCGS_TRY(try_folder(r, adcgs_path("%s/%s", directory, whole[i]), name));
+    for (int n = 2; !r->pictures && n <= DIVIDE_MAX; n++) {
+        ADCGS_TRY(try_folder(r, adcgs_path("%s/images_%d/", directory, n), name));
+        if (!r->pictures)
+            ADCGS_TRY(try_folder(r, adcgs_path("%s/rgb/%dx/", directory, n), name));
+    }
+    return r->pictures ? ADCGS_OK
+                       : adcgs_fail(r->error, ADCGS_ERR_DATA,
+                                    "%s: no image %.100s in images, here, input, images_N or rgb/Nx, and no video of it",
+                                    directory, name);
+}
+
+/** A name without its extension; folders become part of it. */
+static void set_name(adcgs_camera *camera, const char *name)
+{
+    const char *slash = strrchr(name, '/'), *dot = strrchr(name, '.');
+    const size_t n = dot && (slash ? dot > slash + 1 : dot > name) ? (size_t)(dot - name) : strlen(name);
+    snprintf(camera->name, sizeof camera->name, "%.*s", (int)n, name);
+    for (char *c = camera->name; *c; c++)
+        *c = *c == '/' ? '_' : *c;
+}
+
+/** The camera of an image; NULL, with a message, if the model has none. */
+static const adcgs_colmap_camera *find_camera(const reader *r, const adcgs_colmap_image *image)
+{
+    const adcgs_colmap_camera *camera = adcgs_colmap_find_camera(&r->model, image->camera_id);
+    if (!camera)
+        adcgs_fail(r->error, ADCGS_ERR_DATA, "%simages.%s: %.100s: there is no camera %u", r->folder, formats[r->format].end,
+                   image->name, image->camera_id);
+    return camera;
+}
+
+static void set_pose(adcgs_scene_view *view, const adcgs_colmap_image *image)
+{
+    memcpy(view->camera.cam_to_world, image->cam_to_world, sizeof image->cam_to_world);
+    set_name(&view->camera, image->name);
+}
+
+/** The first picture of a camera tells the size of them all. */
+static adcgs_status add_picture(reader *r, const adcgs_colmap_image *image, adcgs_split split)
+{
+    const adcgs_colmap_camera *camera = find_camera(r, image);
+    int width, height, channels;
+    char *path = NULL;
+    if (!camera)
+        return ADCGS_ERR_DATA;
+    ADCGS_TRY(find_in(r, r->pictures, image->name, &path));
+    if (!path)
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s%.100s: no such image", r->pictures, image->name);
+    adcgs_scene_view *calibrated = &r->calibrated[camera - r->model.cameras];
+    adcgs_status status = ADCGS_OK;
+    if (!calibrated->camera.height) {
+        status = adcgs_image_probe(&width, &height, &channels, path, r->error);
+        if (status == ADCGS_OK)
+            status = adcgs_calibrate(calibrated, &camera->lens, width, height, path, r->error);
+    }
+    if (status != ADCGS_OK) {
+        free(path);
+        return status;
+    }
+    adcgs_scene_view view = *calibrated;
+    set_pose(&view, image);
+    view.path = path;
+    return adcgs_scene_append(r->scene, split, &view, r->scene->directory, r->error);
+}
+
+static adcgs_status add_pictures(reader *r)
+{
+    ADCGS_TRY(find_pictures(r, r->model.images[0].name));
+    for (int split = 0; split < ADCGS_SPLITS; split++) /* training comes first, so that its pictures tell the size */
+        for (size_t i = 0; i < r->model.n_images; i++)
+            if (split == (i % TEST_EVERY == 0 ? ADCGS_SPLIT_TEST : ADCGS_SPLIT_TRAIN))
+                ADCGS_TRY(add_picture(r, &r->model.images[i], (adcgs_split)split));
+    return adcgs_frames_keep(r->scene, r->frames, r->scene->directory, r->error);
+}
+
+/* ---- Videos ---- */
+
+/** The video of a camera, from malloc(); NULL if there is none. */
+static char *find_video(const reader *r, const char *name)
+{
+    static const char *const ends[] = {"mp4", "mkv", "mov", "webm"};
+    const char *slash = strrchr(name, '/'), *dot = strrchr(name, '.');
+    const int all = (int)strlen(name), stem = dot && (slash ? dot > slash + 1 : dot > name) ? (int)(dot - name) : all;
+    for (size_t i = 0; i < ADCGS_COUNTOF(ends); i++)
+        for (int way = 0; way < 3; way++) {
+            const int length = way ? stem : all;
+            char *path = adcgs_path("%s/%s%.*s.%s", r->scene->directory, way < 2 ? "videos/" : "", length, name, ends[i]);
+            if (adcgs_is_there(path))
+                return path;
+            free(path);
+        }
+    return NULL;
+}
+
+/** The views of one camera; *frames is what the first has. */
+static adcgs_status add_footage(reader *r, size_t index, const adcgs_footage *footage, int64_t *frames)
+{
+    const adcgs_colmap_image *image = &r->model.images[index], *first = &r->model.images[0];
+    const adcgs_colmap_camera *camera = find_camera(r, image);
+    adcgs_scene_view like = {.time = 0.0};
+    int64_t count;
+    if (!camera)
+        return ADCGS_ERR_DATA;
+    if (index && footage->frames != *frames)
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: the video of %.100s has %lld frames, but that of %.100s has %lld",
+                          r->scene->directory, first->name, (long long)*frames, image->name, (long long)footage->frames);
+    *frames = footage->frames;
+    if (index && !r->scene->frame_rate)
+        r->scene->frame_rate = footage->frame_rate;
+    ADCGS_TRY(adcgs_frames_count(r->frames, footage->frames, &count, r->scene->directory, r->error));
+    ADCGS_TRY(adcgs_calibrate(&like, &camera->lens, footage->width, footage->height, footage->video, r->error));
+    set_pose(&like, image);
+    return adcgs_footage_add(r->scene, index ? ADCGS_SPLIT_TRAIN : ADCGS_SPLIT_TEST, &like, footage, r->frames, 0.0,
+                             count > 1 ? 1.0 / (double)(count - 1) : 0.0, r->scene->directory, r->error);
+}
+
+static adcgs_status add_videos(reader *r)
+{
+    int64_t frames = 0;
+    adcgs_status status = ADCGS_OK;
+    for (size_t i = 0; status == ADCGS_OK && i < r->model.n_images; i++) {
+        adcgs_footage footage = {0};
+        char *path = find_video(r, r->model.images[i].name);
+        status = path ? adcgs_footage_video(&footage, path, r->error)
+                      : adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: there is a video of %.100s, but none of %.100s",
+                                   r->scene->directory, r->model.images[0].name, r->model.images[i].name);
+        if (status == ADCGS_OK)
+            status = add_footage(r, i, &footage, &frames);
+        adcgs_footage_clear(&footage);
+        free(path);
+    }
+    return status;
+}
+
+/* ---- The scene ---- */
+
+static adcgs_status read_model(reader *r, int with_points)
+{
+    for (int file = 0; file < FILES; file++)
+        if (file == POINTS ? with_points : 1)
+            if (!has_file(r, file))
+                return read_file(r, file); /* says why */
+    ADCGS_TRY(read_file(r, CAMERAS));
+    if (!r->model.n_cameras)
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%scameras.%s: no cameras, expected at least one", r->folder,
+                          formats[r->format].end);
+    ADCGS_TRY(read_file(r, IMAGES));
+    if (r->model.n_images < 2)
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%simages.%s: %zu images, expected at least two: the first is for testing",
+                          r->folder, formats[r->format].end, r->model.n_images);
+    if (!(r->calibrated = calloc(r->model.n_cameras + 1, sizeof *r->calibrated)))
+        return no_memory(r);
+    char *video = find_video(r, r->model.images[0].name);
+    const int has_videos = video != NULL;
+    free(video);
+    ADCGS_TRY(has_videos ? add_videos(r) : add_pictures(r));
+    r->scene->axes = adcgs_pose_axes(r->scene->views[ADCGS_SPLIT_TRAIN], r->scene->n_views[ADCGS_SPLIT_TRAIN]);
+    return with_points ? read_points(r, 0, has_videos ? SIZE_MAX : TEST_EVERY) : ADCGS_OK;
+}
+
+static void clear(reader *r)
+{
+    adcgs_colmap_clear(&r->model);
+    free(r->calibrated);
+    free(r->pictures);
+    free(r->folder);
+}
+
+adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *frames, int with_points, adcgs_error *error)
+{
+    reader r = {.scene = scene, .error = error, .frames = frames};
+    find_model(scene->directory, &r.folder, &r.format);
+    const adcgs_status status =
+        r.folder ? read_model(&r, with_points)
+                 : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, sparse or "
+                              "here", scene->directory);
+    clear(&r);
+    return status;
+}
+
+adcgs_status adcgs_colmap_read_points(adcgs_scene *scene, size_t n, size_t period, adcgs_error *error)
+{
+    reader r = {.scene = scene, .error = error};
+    adcgs_status status = ADCGS_OK;
+    find_model(scene->directory, &r.folder, &r.format);
+    if (r.folder && has_file(&r, POINTS)) {
+        r.model.error = error;
+        if (has_file(&r, IMAGES))
+            status = read_file(&r, IMAGES);
+        if (status == ADCGS_OK)
+            status = read_points(&r, n, period);
+    }
+    clear(&r);
+    return status;
+}

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Text files of a sparse model: a line for each thing, two for an image; lines that begin with # are remarks. */
+#include "config.h"
+
+#include "layouts/colmap_model.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+typedef struct cursor {
+    char *at;   /**< in the line, which ends with a zero byte */
+    char *next; /**< the line after it */
+    char *end;
+} cursor;
+
+static void begin(adcgs_colmap *model, cursor *c, uint8_t *data, size_t bytes)
+{
+    model->unit = "line";
+    model->index = 0;
+    *c = (cursor){.next = (char *)data, .end = (char *)data + bytes};
+}
+
+/** The line that comes next, whatever it holds; 0 at the end. */
+static int next_line(adcgs_colmap *model, cursor *c)
+{
+    if (c->next >= c->end)
+        return 0;
+    c->at = c->next;
+    char *feed = memchr(c->at, '\n', (size_t)(c->end - c->at)), *stop = feed ? feed : c->end;
+    c->next = stop + 1;
+    while (stop > c->at && (stop[-1] == '\r' || stop[-1] == ' ' || stop[-1] == '\t'))
+        stop--;
+    *stop = 0;
+    model->index++;
+    return 1;
+}
+
+static void skip_blanks(cursor *c)
+{
+    while (*c->at == ' ' || *c->at == '\t')
+        c->at++;
+}
+
+/** The next line that says something. */
+static int next_entry(adcgs_colmap *model, cursor *c)
+{
+    while (next_line(model, c)) {
+        skip_blanks(c);
+        if (*c->at && *c->at != '#')
+            return 1;
+    }
+    return 0;
+}
+
+/** Is this where a field ends? */
+static int ends(const char *at)
+{
+    return !*at || *at == ' ' || *at == '\t';
+}
+
+static adcgs_status take_integer(const adcgs_colmap *model, cursor *c, const char *what, uint64_t max, uint64_t *value)
+{
+    char *end;
+    skip_blanks(c);
+    errno = 0;
+    *value = strtoull(c->at, &end, 10);
+    if (*c->at < '0' || *c->at > '9' || errno || !ends(end) || *value > max)
+        return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "%s: expected a whole number from 0 to %llu", what,
+                                (unsigned long long)max);
+    c->at = end;
+    return ADCGS_OK;
+}
+
+static adcgs_status take_numbers(const adcgs_colmap *model, cursor *c, const char *what, double *values, int n)
+{
+    for (int i = 0; i < n; i++) {
+        char *end;
+        skip_blanks(c);
+        values[i] = strtod(c->at, &end);
+        if (!*c->at || end == c->at || !ends(end))
+            return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "%s: expected %d numbers", what, n);
+        c->at = end;
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status expect_end(const adcgs_colmap *model, cursor *c)
+{
+    skip_blanks(c);
+    return *c->at ? adcgs_colmap_bad(model, ADCGS_ERR_DATA, "unexpected \"%.32s\" at the end", c->at) : ADCGS_OK;
+}
+
+adcgs_status adcgs_colmap_text_cameras(adcgs_colmap *model, uint8_t *data, size_t bytes)
+{
+    cursor c;
+    begin(model, &c, data, bytes);
+    while (next_entry(model, &c)) {
+        double params[ADCGS_COLMAP_PARAMS_MAX];
+        uint64_t id, width, height;
+        int n;
+        ADCGS_TRY(take_integer(model, &c, "CAMERA_ID", UINT32_MAX, &id));
+        skip_blanks(&c);
+        char *name = c.at;
+        while (!ends(c.at))
+            c.at++;
+        if (*c.at)
+            *c.at++ = 0;
+        const int kind = adcgs_colmap_kind(name, 0);
+        if (kind < 0)
+            return adcgs_colmap_bad(model, ADCGS_ERR_UNSUPPORTED, "unknown kind \"%.32s\" of camera", name);
+        ADCGS_TRY(adcgs_colmap_params(model, kind, &n));
+        ADCGS_TRY(take_integer(model, &c, "WIDTH", UINT32_MAX, &width));
+        ADCGS_TRY(take_integer(model, &c, "HEIGHT", UINT32_MAX, &height));
+        ADCGS_TRY(take_numbers(model, &c, "PARAMS", params, n));
+        ADCGS_TRY(expect_end(model, &c));
+        ADCGS_TRY(adcgs_colmap_add_camera(model, (uint32_t)id, kind, width, height, params));
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_colmap_text_images(adcgs_colmap *model, uint8_t *data, size_t bytes)
+{
+    cursor c;
+    begin(model, &c, data, bytes);
+    while (next_entry(model, &c)) {
+        double q[4], t[3];
+        uint64_t id, camera;
+        ADCGS_TRY(take_integer(model, &c, "IMAGE_ID", UINT32_MAX, &id));
+        ADCGS_TRY(take_numbers(model, &c, "QW, QX, QY, QZ", q, 4));
+        ADCGS_TRY(take_numbers(model, &c, "TX, TY, TZ", t, 3));
+        ADCGS_TRY(take_integer(model, &c, "CAMERA_ID", UINT32_MAX, &camera));
+        skip_blanks(&c); /* the name is the rest, blanks and all */
+        ADCGS_TRY(adcgs_colmap_add_image(model, (uint32_t)id, q, t, (uint32_t)camera, c.at));
+        next_line(model, &c); /* its features, of which there may be none */
+    }
+    return ADCGS_OK;
+}
+
+/** The images of a track: how many, and how many of them are for training. */
+static adcgs_status take_track(const adcgs_colmap *model, cursor *c, uint64_t *seen, uint64_t *training)
+{
+    *seen = *training = 0;
+    for (skip_blanks(c); *c->at; skip_blanks(c)) {
+        uint64_t image, feature;
+        ADCGS_TRY(take_integer(model, c, "TRACK", UINT32_MAX, &image));
+        ADCGS_TRY(take_integer(model, c, "TRACK", UINT32_MAX, &feature));
+        *seen += 1;
+        *training += (uint64_t)adcgs_colmap_is_training(model, (uint32_t)image);
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_colmap_text_points(adcgs_colmap *model, uint8_t *data, size_t bytes)
+{
+    cursor c;
+    uint64_t lines = 1;
+    for (size_t i = 0; i < bytes; i++)
+        lines += data[i] == '\n';
+    ADCGS_TRY(adcgs_points_alloc(&model->points, lines, model->path, model->error));
+    model->points.n = 0;
+    model->points.coloured = 1;
+    begin(model, &c, data, bytes);
+    while (next_entry(model, &c)) {
+        double position[3], deviation;
+        uint64_t id, colour[3], seen, training;
+        ADCGS_TRY(take_integer(model, &c, "POINT3D_ID", UINT64_MAX, &id));
+        ADCGS_TRY(take_numbers(model, &c, "X, Y, Z", position, 3));
+        for (int a = 0; a < 3; a++)
+            ADCGS_TRY(take_integer(model, &c, "R, G, B", 255, &colour[a]));
+        ADCGS_TRY(take_numbers(model, &c, "ERROR", &deviation, 1));
+        ADCGS_TRY(take_track(model, &c, &seen, &training));
+        ADCGS_TRY(adcgs_colmap_add_point(model, position, colour, seen, training));
+    }
+    return ADCGS_OK;
+}

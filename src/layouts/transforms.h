@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * transforms*.json of D-NeRF and nerfstudio: cameras in OpenGL axes with
+ * camera-to-world matrices, intrinsics for all frames or per frame, times in
+ * [0,1].
+ */
+#ifndef ADCGS_LAYOUTS_TRANSFORMS_H
+#define ADCGS_LAYOUTS_TRANSFORMS_H
+
+#include "data/scene.h"
+
+/** What one file says besides its views. */
+typedef struct adcgs_transforms {
+    double frame_rate; /**< 0 if it says nothing */
+    int has_times;     /**< frames carry times */
+    char *points_path; /**< NULL if it names none */
+} adcgs_transforms;
+
+/**
+ * Append the views of a file to the scene; their times are still those of the file. split ADCGS_SPLITS: the file holds all
+ * splits, told apart by its lists of file names or else by position.
+ */
+adcgs_status adcgs_transforms_read(adcgs_scene *scene, adcgs_transforms *out, const char *path, adcgs_split split,
+                                   adcgs_error *error);
+
+#endif

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file A sweep for people: tables and checks as text, and with the chart as one HTML page. */
+#include "config.h"
+
+#include "sweep/sweep.h"
+
+#include "io/atomic.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+/** Where a report goes: plain text, or HTML if html is set. */
+typedef struct sheet {
+    FILE *file;
+    int html;
+} sheet;
+
+enum { COLUMNS = 8, CELL = 64 };
+
+typedef char table_row[COLUMNS][CELL];
+
+/* ---- Paper ---- */
+
+static void put_escaped(const sheet *s, const char *text)
+{
+    for (; *text; text++)
+        if (s->html && (*text == '<' || *text == '>' || *text == '&' || *text == '"'))
+            fprintf(s->file, "&#%d;", *text);
+        else
+            fputc(*text, s->file);
+}
+
+static void heading(const sheet *s, const char *text)
+{
+    fprintf(s->file, s->html ? "<h2>" : "\n");
+    put_escaped(s, text);
+    fprintf(s->file, s->html ? "</h2>\n" : "\n");
+}
+
+/** A sentence of its own. */
+static void say(const sheet *s, const char *format, ...) ADCGS_PRINTF(2, 3);
+static void say(const sheet *s, const char *format, ...)
+{
+    char text[600];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    fprintf(s->file, s->html ? "<p>" : "");
+    put_escaped(s, text);
+    fprintf(s->file, s->html ? "</p>\n" : "\n");
+}
+
+static void put_row(const sheet *s, table_row row, const char *tag)
+{
+    static const int widths[COLUMNS] = {-26, 9, 26, 22, 8, 10, 12, 10};
+    if (s->html)
+        fprintf(s->file, "<tr>");
+    for (int i = 0; i < COLUMNS; i++)
+        if (s->html) {
+            fprintf(s->file, "<%s>", tag);
+            put_escaped(s, row[i]);
+            fprintf(s->file, "</%s>", tag);
+        } else
+            fprintf(s->file, "%*s", widths[i], row[i]);
+    fprintf(s->file, s->html ? "</tr>\n" : "\n");
+}
+
+static void open_table(const sheet *s, const char *first)
+{
+    table_row head = {"", "lambda", "bytes", "PSNR, dB", "SSIM", "networks", "training s", "frames/s"};
+    snprintf(head[0], CELL, "%s", first);
+    if (s->html)
+        fprintf(s->file, "<table>\n");
+    put_row(s, head, "th");
+}
+
+static void close_table(const sheet *s)
+{
+    if (s->html)
+        fprintf(s->file, "</table>\n");
+}
+
+/* ---- Rows ---- */
+
+static void fill_number(char cell[CELL], double value, int digits)
+{
+    if (isfinite(value))
+        snprintf(cell, CELL, "%.*f", digits, value);
+    else
+        snprintf(cell, CELL, "-");
+}
+
+static void fill_spread(char cell[CELL], const adcgs_spread *x, int digits)
+{
+    if (x->n > 1)
+        snprintf(cell, CELL, "%.*f (%.*f..%.*f)", digits, x->mean, digits, x->min, digits, x->max);
+    else
+        fill_number(cell, x->mean, digits);
+}
+
+static void print_row(const sheet *s, const adcgs_sweep_row *r)
+{
+    table_row cells;
+    snprintf(cells[0], CELL, "%s", r->name);
+    snprintf(cells[1], CELL, "%.6g", r->lambda);
+    if (r->lambda < 0)
+        snprintf(cells[1], CELL, "-");
+    fill_spread(cells[2], &r->bytes, 0);
+    fill_spread(cells[3], &r->psnr, 2);
+    fill_number(cells[4], r->ssim, 4);
+    fill_number(cells[5], 100 * r->networks, 1);
+    if (isfinite(r->networks))
+        strcat(cells[5], " %");
+    fill_number(cells[6], r->seconds, 0);
+    fill_number(cells[7], r->speed, 0);
+    put_row(s, cells, "td");
+}
+
+static void print_curves(const sheet *s, const adcgs_sweep_plan *plan)
+{
+    heading(s, "Curves and yardsticks");
+    open_table(s, "curve");
+    for (int i = 0; i < plan->n_curves; i++)
+        for (int j = 0; j < plan->curve[i].n; j++) {
+            adcgs_sweep_row row;
+            if (adcgs_sweep_row_make(&row, plan, plan->curve[i].name, plan->curve[i].cell[j], plan->curve[i].size))
+                print_row(s, &row);
+        }
+    close_table(s);
+}
+
+static void print_stages(const sheet *s, const adcgs_sweep_plan *plan)
+{
+    heading(s, "Ablation");
+    open_table(s, "stage");
+    for (int i = 0; i < plan->n_stages; i++) {
+        adcgs_sweep_row row;
+        if (adcgs_sweep_row_make(&row, plan, plan->stage[i].name, plan->stage[i].cell, plan->stage[i].size))
+            print_row(s, &row);
+    }
+    close_table(s);
+    say(s, "Stages add up from base to refinement; those before rate-distortion are stored uncompressed, 4 bytes a number, the "
+           "others as streams. Without refinement a run begins with all anchors of its budget. The last rows are the whole "
+           "method with another number of primitives per anchor, or with the weights of its networks in 32 bits.");
+}
+
+/* ---- Checks ---- */
+
+static void print_comparison(const sheet *s, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
+{
+    const adcgs_comparison c = adcgs_sweep_compare(plan, curve);
+    char rate[80] = "", place[160], rest[80] = "", smaller[80] = "";
+    if (isfinite(c.bd_rate))
+        snprintf(rate, sizeof rate, "BD-rate %+.1f %%, ", c.bd_rate);
+    if (!c.compared)
+        snprintf(place, sizeof place, "none of its points is larger than the smallest stream");
+    else if (c.above)
+        snprintf(place, sizeof place, "above it (points compared: %d; margin at fewer bytes: %.2f dB or more)", c.compared,
+                 c.margin);
+    else
+        snprintf(place, sizeof place, "NOT above it (points compared: %d; at worst %.2f dB below)", c.compared, -c.margin);
+    if (c.compared && c.beyond)
+        snprintf(rest, sizeof rest, "; points of it smaller than the smallest stream: %d", c.beyond);
+    if (isfinite(c.smaller))
+        snprintf(smaller, sizeof smaller, "; %.2f times smaller at no more than 0.1 dB below its best", c.smaller);
+    say(s, "Against %s: %s%s%s%s.", curve->name, rate, place, rest, smaller);
+}
+
+/** Why a curve has no points: a compressor that had a file and made nothing of it is missing. */
+static const char *reason(const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
+{
+    adcgs_sweep_row row;
+    const int packed = curve->size == ADCGS_FIGURE_ZSTD || curve->size == ADCGS_FIGURE_XZ;
+    return packed && adcgs_sweep_row_make(&row, plan, "", curve->cell[0], ADCGS_FIGURE_RAW) ? " (is the program installed?)" : "";
+}
+
+static void print_checks(const sheet *s, const adcgs_sweep_plan *plan)
+{
+    const adcgs_curve_facts facts = adcgs_sweep_facts(plan);
+    heading(s, "Checks");
+    if (facts.n < 2)
+        say(s, "Fewer than two points: there is no curve to check.");
+    else
+        say(s, "%s has %d points, spans a factor of %.2f in bytes and is %s in bytes and PSNR.", plan->curve[0].name, facts.n,
+            facts.span, facts.monotone ? "monotone" : "NOT monotone");
+    for (int i = 1; facts.n && i < plan->n_curves; i++) {
+        const adcgs_sweep_curve *const curve = &plan->curve[i];
+        adcgs_sweep_row row;
+        int points = 0;
+        for (int j = 0; j < curve->n; j++)
+            points += adcgs_sweep_row_make(&row, plan, "", curve->cell[j], curve->size);
+        if (points)
+            print_comparison(s, plan, curve);
+        else
+            say(s, "Against %s: no result%s.", curve->name, reason(plan, curve));
+    }
+}
+
+static void print_all(const sheet *s, const adcgs_sweep_plan *plan)
+{
+    if (plan->n_curves) {
+        print_curves(s, plan);
+        print_checks(s, plan);
+    }
+    if (plan->n_stages)
+        print_stages(s, plan);
+}
+
+void adcgs_sweep_print(FILE *file, const adcgs_sweep_plan *plan)
+{
+    const sheet s = {file, 0};
+    print_all(&s, plan);
+}
+
+/* ---- Page ---- */
+
+/** The chart without what comes before its first element. Its absence leaves the page without it. */
+static void print_chart(const sheet *s, const adcgs_sweep *sweep)
+{
+    char path[ADCGS_SWEEP_PATH], line[4096];
+    int begun = 0;
+    snprintf(path, sizeof path, "%s/sweep.svg", sweep->directory);
+    FILE *const svg = fopen(path, "r");
+    if (!svg)
+        return;
+    fprintf(s->file, "<figure>\n");
+    while (fgets(line, sizeof line, svg)) {
+        const char *const start = begun ? line : strstr(line, "<svg");
+        begun |= start != NULL;
+        if (start)
+            fputs(start, s->file);
+    }
+    fprintf(s->file, "</figure>\n");
+    fclose(svg);
+}
+
+static void print_settings(const sheet *s, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
+{
+    say(s, "Scene %s; preset %s%s%s; every figure is that of the file on disk, decoded, on views that training never saw.",
+        sweep->scene, sweep->preset ? sweep->preset : "of the encoder", sweep->set ? "; settings " : "",
+        sweep->set ? sweep->set : "");
+    if (sweep->n_seed > 1)
+        say(s, "Each figure is the mean of %d seeds, with the smallest and the largest value.", sweep->n_seed);
+    if (sweep->iterations)
+        say(s, "%d iterations of training.", sweep->iterations);
+    for (int i = 0; i < plan->n_curves; i++)
+        say(s, "%s: %s.", plan->curve[i].name, plan->curve[i].note);
+}
+
+adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, int chart, adcgs_error *error)
+{
+    char path[ADCGS_SWEEP_PATH];
+    adcgs_atomic file;
+    snprintf(path, sizeof path, "%s/index.html", sweep->directory);
+    ADCGS_TRY(adcgs_atomic_open(&file, path, error));
+    const sheet s = {file.file, 1};
+    fprintf(file.file, "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
+                       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>Rate and distortion: ");
+    put_escaped(&s, sweep->scene);
+    fprintf(file.file, "</title>\n<style>\n"
+                       "body { font: 15px/1.45 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #222; }\n"
+                       "table { border-collapse: collapse; }\nfigure { margin: 1em 0; }\nfigure svg { max-width: 100%%; }\n"
+                       "td, th { padding: 0.2em 0.8em; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }\n"
+                       "td:first-child, th:first-child { text-align: left; }\n</style>\n<h1>Rate and distortion</h1>\n");
+    if (chart)
+        print_chart(&s, sweep);
+    print_all(&s, plan);
+    heading(&s, "What is shown");
+    print_settings(&s, sweep, plan);
+    fprintf(file.file, "</html>\n");
+    if (!ferror(file.file))
+        return adcgs_atomic_commit(&file, error);
+    adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write", path);
+    adcgs_atomic_abort(&file);
+    return ADCGS_ERR_IO;
+}

@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file One run of a sweep: starts the encoder, the evaluation and the compressors, keeps what they report. */
+#include "config.h"
+
+#include "sweep/sweep.h"
+
+#include "io/atomic.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* ---- Child processes ---- */
+
+static void redirect(const char *path, int descriptor, int flags)
+{
+    const int file = open(path, O_WRONLY | O_CREAT | flags, 0666);
+    if (file < 0 || dup2(file, descriptor) < 0)
+        _exit(126);
+    close(file);
+}
+
+adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *log, int *exit_code, adcgs_error *error)
+{
+    int state = 0;
+    const pid_t child = fork();
+    if (child < 0)
+        return adcgs_fail(error, ADCGS_ERR_IO, "cannot start %s: %s", argv[0], strerror(errno));
+    if (child == 0) {
+        if (out)
+            redirect(out, STDOUT_FILENO, O_TRUNC);
+        if (log)
+            redirect(log, STDERR_FILENO, O_APPEND);
+        execvp(argv[0], argv);
+        _exit(127);
+    }
+    while (waitpid(child, &state, 0) < 0)
+        if (errno != EINTR)
+            return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s", argv[0], strerror(errno));
+    *exit_code = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+    return ADCGS_OK;
+}
+
+/** A command line under construction. Numbers live in text, strings where they come from. */
+typedef struct command {
+    char *argv[48];
+    int n, n_text;
+    char text[8][40];
+} command;
+
+static void word(command *c, const char *text)
+{
+    if (c->n + 1 < (int)ADCGS_COUNTOF(c->argv))
+        c->argv[c->n++] = (char *)(uintptr_t)text; /* exec takes pointers to char and leaves the characters alone */
+    c->argv[c->n] = NULL;
+}
+
+/** An option with its value; nothing without one. */
+static void option(command *c, const char *name, const char *value)
+{
+    if (!value || !*value)
+        return;
+    word(c, name);
+    word(c, value);
+}
+
+/** An option with a number, if it is at least `from`. */
+static void number_option(command *c, const char *name, double value, double from)
+{
+    if (value < from || c->n_text == (int)ADCGS_COUNTOF(c->text))
+        return;
+    char *const text = c->text[c->n_text++];
+    snprintf(text, sizeof c->text[0], "%.17g", value);
+    option(c, name, text);
+}
+
+/* ---- Files of a run ---- */
+
+static void path_of(char path[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *suffix)
+{
+    snprintf(path, ADCGS_SWEEP_PATH, "%s/%s%s", sweep->directory, run->tag, suffix);
+}
+
+static void drop(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *suffix)
+{
+    char path[ADCGS_SWEEP_PATH];
+    path_of(path, sweep, run, suffix);
+    unlink(path);
+}
+
+/** Bytes of a file; NaN if there is none. */
+static double size_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *suffix)
+{
+    char path[ADCGS_SWEEP_PATH];
+    struct stat s;
+    path_of(path, sweep, run, suffix);
+    return stat(path, &s) == 0 ? (double)s.st_size : (double)NAN;
+}
+
+/* What the result depends on. Neither threads nor a shared beginning do. */
+static json_t *settings_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run)
+{
+    return json_pack("{s:s, s:s, s:s, s:i, s:f, s:i, s:f, s:s, s:i, s:i, s:s*, s:s*}", "scene", sweep->scene, "preset",
+                     sweep->preset ? sweep->preset : "", "set", sweep->set ? sweep->set : "", "iterations", sweep->iterations,
+                     "lambda", run->lambda, "k", run->k, "seed", run->seed, "without", run->without, "uncompressed",
+                     run->uncompressed, "beginning", run->beginning, "dataset", sweep->dataset, "frames", sweep->frames);
+}
+
+static json_t *load(const char *path, adcgs_error *error)
+{
+    json_error_t where;
+    json_t *const root = json_load_file(path, JSON_REJECT_DUPLICATES, &where);
+    if (!root)
+        adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, where.text);
+    return root;
+}
+
+/** Write a value, which this takes, to a file. */
+static adcgs_status save(json_t *root, const char *path, adcgs_error *error)
+{
+    adcgs_atomic file;
+    adcgs_status status =
+        root ? adcgs_atomic_open(&file, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (status == ADCGS_OK) {
+        const int bad = json_dumpf(root, file.file, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+        if (!bad)
+            status = adcgs_atomic_commit(&file, error);
+        else {
+            adcgs_atomic_abort(&file);
+            status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write", path);
+        }
+    }
+    json_decref(root);
+    return status;
+}
+
+/** Whether a file of the run begins with the settings it has now. root: the file as JSON. */
+static int same_settings(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const json_t *root)
+{
+    json_t *const wanted = settings_of(sweep, run);
+    const int same = wanted && json_equal(json_object_get(root, "settings"), wanted);
+    json_decref(wanted);
+    return same;
+}
+
+/* ---- Running ---- */
+
+static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const command *c, const char *out,
+                         adcgs_error *error)
+{
+    char log[ADCGS_SWEEP_PATH];
+    int code = 0;
+    path_of(log, sweep, run, ".log");
+    ADCGS_TRY(adcgs_sweep_spawn(c->argv, out, log, &code, error));
+    if (code != 0)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s left with %d; see %s", run->tag, c->argv[0], code, log);
+    return ADCGS_OK;
+}
+
+/** Whether an earlier sweep left this run unfinished, with these settings; if not, note that it begins now. */
+static adcgs_status find_unfinished(const adcgs_sweep *sweep, const adcgs_sweep_run *run, int *found, adcgs_error *error)
+{
+    char path[ADCGS_SWEEP_PATH];
+    adcgs_error ignored;
+    path_of(path, sweep, run, ".partial.json");
+    json_t *const root = sweep->resume ? load(path, &ignored) : NULL;
+    *found = root && same_settings(sweep, run, root) && size_of(sweep, run, ".partial") > 0;
+    json_decref(root);
+    if (*found)
+        return ADCGS_OK;
+    drop(sweep, run, ".partial");
+    return save(json_pack("{s:o}", "settings", settings_of(sweep, run)), path, error);
+}
+
+static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const adcgs_sweep_run *from, const char *out,
+                           adcgs_error *error)
+{
+    char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH], begin[ADCGS_SWEEP_PATH], partial[ADCGS_SWEEP_PATH],
+        raw[ADCGS_SWEEP_PATH];
+    int unfinished;
+    command c = {.n = 0};
+    ADCGS_TRY(find_unfinished(sweep, run, &unfinished, error));
+    snprintf(program, sizeof program, "%s/adcgs-enc", sweep->programs);
+    path_of(file, sweep, run, run->beginning ? ".checkpoint" : ".adcgs");
+    path_of(partial, sweep, run, ".partial");
+    path_of(raw, sweep, run, ".raw");
+    if (from)
+        path_of(begin, sweep, from, ".checkpoint");
+    word(&c, program);
+    option(&c, run->beginning ? "--beginning" : "--output", file);
+    option(&c, "--checkpoint", partial);
+    option(&c, "--resume", unfinished ? partial : from ? begin : NULL);
+    option(&c, "--preset", sweep->preset);
+    option(&c, "--set", sweep->set);
+    option(&c, "--dataset", sweep->dataset);
+    option(&c, "--frames", sweep->frames);
+    option(&c, "--without", run->without);
+    option(&c, "--uncompressed", run->uncompressed ? raw : NULL);
+    number_option(&c, "--lambda", run->lambda, 0);
+    number_option(&c, "--k", run->k, 1);
+    number_option(&c, "--seed", run->seed, 0);
+    number_option(&c, "--iterations", sweep->iterations, 1);
+    number_option(&c, "--threads", sweep->threads, 1);
+    word(&c, "--json");
+    word(&c, "--");
+    word(&c, sweep->scene);
+    return call(sweep, run, &c, out, error);
+}
+
+static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *out, adcgs_error *error)
+{
+    char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH];
+    command c = {.n = 0};
+    snprintf(program, sizeof program, "%s/adcgs-eval", sweep->programs);
+    path_of(file, sweep, run, ".adcgs");
+    word(&c, program);
+    option(&c, "--dataset", sweep->dataset);
+    option(&c, "--frames", sweep->frames);
+    word(&c, "--json");
+    word(&c, "--");
+    word(&c, file);
+    word(&c, sweep->scene);
+    return call(sweep, run, &c, out, error);
+}
+
+/** A general-purpose compressor on the uncompressed model. That it is not installed is no fault: there is no file then. */
+static adcgs_status compress(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *program, const char *level,
+                             const char *suffix, adcgs_error *error)
+{
+    char raw[ADCGS_SWEEP_PATH], packed[ADCGS_SWEEP_PATH], log[ADCGS_SWEEP_PATH];
+    command c = {.n = 0};
+    int code = 0;
+    path_of(raw, sweep, run, ".raw");
+    path_of(packed, sweep, run, suffix);
+    path_of(log, sweep, run, ".log");
+    word(&c, program);
+    word(&c, level);
+    word(&c, "-c");
+    word(&c, raw);
+    ADCGS_TRY(adcgs_sweep_spawn(c.argv, packed, log, &code, error));
+    if (code != 0)
+        unlink(packed);
+    return ADCGS_OK;
+}
+
+/* The result file: the settings, and the programs' own reports. Written last, so that its presence means a finished run. */
+static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *encoded, const char *evaluated,
+                                 adcgs_error *error)
+{
+    char path[ADCGS_SWEEP_PATH];
+    path_of(path, sweep, run, ".json");
+    if (run->beginning)
+        return save(json_pack("{s:o}", "settings", settings_of(sweep, run)), path, error);
+    json_t *const encoder = load(encoded, error), *const evaluation = encoder ? load(evaluated, error) : NULL;
+    if (!evaluation) {
+        json_decref(encoder);
+        return ADCGS_ERR_DATA;
+    }
+    return save(json_pack("{s:o, s:o, s:o}", "settings", settings_of(sweep, run), "encoder", encoder, "evaluation", evaluation),
+                path, error);
+}
+
+adcgs_status adcgs_sweep_execute(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const adcgs_sweep_run *from,
+                                 adcgs_error *error)
+{
+    char encoded[ADCGS_SWEEP_PATH], evaluated[ADCGS_SWEEP_PATH];
+    path_of(encoded, sweep, run, ".enc.part");
+    path_of(evaluated, sweep, run, ".eval.part");
+    drop(sweep, run, ".log");
+    drop(sweep, run, ".json");
+    adcgs_status status = encode(sweep, run, from, encoded, error);
+    if (status == ADCGS_OK && !run->beginning)
+        status = evaluate(sweep, run, evaluated, error);
+    if (status == ADCGS_OK && run->uncompressed)
+        status = compress(sweep, run, "zstd", "-19", ".raw.zst", error);
+    if (status == ADCGS_OK && run->uncompressed)
+        status = compress(sweep, run, "xz", "-9e", ".raw.xz", error);
+    if (status == ADCGS_OK)
+        status = write_result(sweep, run, encoded, evaluated, error);
+    if (status == ADCGS_OK) {
+        drop(sweep, run, ".partial");
+        drop(sweep, run, ".partial.json");
+    }
+    unlink(encoded);
+    unlink(evaluated);
+    return status;
+}
+
+/* ---- Results ---- */
+
+/* A number of a report; NaN if it is not there. */
+static double number(const json_t *report, const char *name)
+{
+    const json_t *const value = json_object_get(report, name);
+    return json_is_number(value) ? json_number_value(value) : (double)NAN;
+}
+
+static void take_figures(const adcgs_sweep *sweep, adcgs_sweep_run *run, const json_t *root)
+{
+    const json_t *const encoder = json_object_get(root, "encoder"), *const evaluation = json_object_get(root, "evaluation");
+    double *const f = run->figure;
+    f[ADCGS_FIGURE_BYTES] = number(encoder, "bytes");
+    f[ADCGS_FIGURE_NETWORKS] = number(json_object_get(encoder, "components"), "networks");
+    f[ADCGS_FIGURE_NETWORKS32] = f[ADCGS_FIGURE_BYTES] - f[ADCGS_FIGURE_NETWORKS] + 4 * number(encoder, "weights");
+    f[ADCGS_FIGURE_SECONDS] = number(encoder, "training_seconds");
+    f[ADCGS_FIGURE_PSNR] = number(evaluation, "psnr");
+    f[ADCGS_FIGURE_SSIM] = number(evaluation, "ssim");
+    f[ADCGS_FIGURE_SPEED] = number(evaluation, "frames_per_second");
+    if (!run->uncompressed)
+        return;
+    f[ADCGS_FIGURE_RAW] = size_of(sweep, run, ".raw");
+    f[ADCGS_FIGURE_ZSTD] = size_of(sweep, run, ".raw.zst");
+    f[ADCGS_FIGURE_XZ] = size_of(sweep, run, ".raw.xz");
+}
+
+/** Whether the files of a run are those that its result file tells of. */
+static adcgs_status check_files(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const json_t *root, const char *path,
+                                adcgs_error *error)
+{
+    const double *const f = run->figure;
+    if (run->beginning)
+        return size_of(sweep, run, ".checkpoint") > 0 ? ADCGS_OK :
+               adcgs_fail(error, ADCGS_ERR_DATA, "%s: the state that it tells of is missing", path);
+    if (!(f[ADCGS_FIGURE_BYTES] > 0.0) || isnan(f[ADCGS_FIGURE_PSNR]))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no size or no PSNR in it", path);
+    if (size_of(sweep, run, ".adcgs") != f[ADCGS_FIGURE_BYTES])
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s/%s.adcgs: missing, or not the file that %s tells of", sweep->directory,
+                          run->tag, path);
+    if (run->uncompressed && f[ADCGS_FIGURE_RAW] != number(json_object_get(root, "encoder"), "uncompressed_bytes"))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s/%s.raw: missing, or not the file that %s tells of", sweep->directory,
+                          run->tag, path);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_run *run, adcgs_error *error)
+{
+    char path[ADCGS_SWEEP_PATH];
+    path_of(path, sweep, run, ".json");
+    json_t *const root = load(path, error);
+    if (!root)
+        return ADCGS_ERR_DATA;
+    take_figures(sweep, run, root);
+    adcgs_status status = same_settings(sweep, run, root) ? check_files(sweep, run, root, path, error) :
+                          adcgs_fail(error, ADCGS_ERR_DATA, "%s: made with other settings", path);
+    json_decref(root);
+    if (status == ADCGS_OK)
+        run->state = ADCGS_RUN_DONE;
+    else
+        for (int i = 0; i < ADCGS_FIGURE_COUNT; i++)
+            run->figure[i] = (double)NAN;
+    return status;
+}

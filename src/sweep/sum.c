@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What the runs of a sweep add up to: means over seeds, rows, and the comparison of curves. */
+#include "config.h"
+
+#include "sweep/sweep.h"
+
+#include "metric/curve.h"
+
+#include <math.h>
+
+/** A point that is this much below another still counts as equal to it. */
+#define EQUAL_DB 0.1
+/** "Fewer bytes" means fewer by more than this share. */
+#define FEWER 1e-6
+
+static adcgs_spread spread_of(const adcgs_sweep_plan *plan, int cell, adcgs_figure figure)
+{
+    const adcgs_sweep_cell *const c = &plan->cell[cell];
+    adcgs_spread s = {0, 0, (double)NAN, (double)NAN};
+    for (int i = 0; i < c->n; i++) {
+        const double x = plan->run[c->run[i]].figure[figure];
+        if (plan->run[c->run[i]].state != ADCGS_RUN_DONE || !isfinite(x))
+            continue;
+        s.n++;
+        s.mean += x;
+        s.min = fmin(s.min, x); /* of a number and a NaN these take the number */
+        s.max = fmax(s.max, x);
+    }
+    s.mean = s.n ? s.mean / s.n : (double)NAN;
+    return s;
+}
+
+int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, const char *name, int cell, adcgs_figure size)
+{
+    const adcgs_sweep_run *const first = &plan->run[plan->cell[cell].run[0]];
+    *row = (adcgs_sweep_row){.name = name,
+                             .lambda = first->lambda,
+                             .k = first->k,
+                             .bytes = spread_of(plan, cell, size),
+                             .psnr = spread_of(plan, cell, ADCGS_FIGURE_PSNR),
+                             .ssim = spread_of(plan, cell, ADCGS_FIGURE_SSIM).mean,
+                             .networks = (double)NAN,
+                             .seconds = spread_of(plan, cell, ADCGS_FIGURE_SECONDS).mean,
+                             .speed = spread_of(plan, cell, ADCGS_FIGURE_SPEED).mean};
+    if (size == ADCGS_FIGURE_BYTES)
+        row->networks = spread_of(plan, cell, ADCGS_FIGURE_NETWORKS).mean / row->bytes.mean;
+    return row->bytes.n > 0;
+}
+
+static int points_of(adcgs_curve_point points[ADCGS_SWEEP_LIST], const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
+{
+    int n = 0;
+    for (int i = 0; i < curve->n; i++) {
+        adcgs_sweep_row row;
+        if (adcgs_sweep_row_make(&row, plan, curve->name, curve->cell[i], curve->size))
+            points[n++] = (adcgs_curve_point){row.bytes.mean, row.psnr.mean};
+    }
+    return n;
+}
+
+adcgs_curve_facts adcgs_sweep_facts(const adcgs_sweep_plan *plan)
+{
+    adcgs_curve_point p[ADCGS_SWEEP_LIST];
+    adcgs_curve_facts facts = {0, 0, (double)NAN};
+    double least = (double)NAN, most = (double)NAN;
+    facts.n = plan->n_curves ? points_of(p, plan, &plan->curve[0]) : 0;
+    for (int i = 0; i < facts.n; i++) {
+        least = fmin(least, p[i].bytes);
+        most = fmax(most, p[i].bytes);
+    }
+    facts.monotone = adcgs_curve_is_monotone(p, facts.n);
+    facts.span = most / least;
+    return facts;
+}
+
+/** Bytes of the best of the other's points over those of the smallest of ours that is hardly worse. */
+static double times_smaller(const adcgs_curve_point *own, int n_own, const adcgs_curve_point *other, int n_other)
+{
+    int best = 0;
+    double least = (double)NAN;
+    for (int i = 1; i < n_other; i++)
+        if (other[i].quality > other[best].quality)
+            best = i;
+    for (int i = 0; n_other && i < n_own; i++)
+        if (own[i].quality >= other[best].quality - EQUAL_DB)
+            least = fmin(least, own[i].bytes);
+    return n_other ? other[best].bytes / least : (double)NAN;
+}
+
+adcgs_comparison adcgs_sweep_compare(const adcgs_sweep_plan *plan, const adcgs_sweep_curve *other)
+{
+    adcgs_curve_point own[ADCGS_SWEEP_LIST] = {{0, 0}}, theirs[ADCGS_SWEEP_LIST] = {{0, 0}};
+    const int n_own = points_of(own, plan, &plan->curve[0]), n = points_of(theirs, plan, other);
+    adcgs_comparison c = {.bd_rate = (double)NAN, .margin = (double)NAN};
+    double percent;
+    if (adcgs_bd_rate(theirs, n, own, n_own, &percent, NULL) == ADCGS_OK)
+        c.bd_rate = percent;
+    for (int i = 0; i < n; i++) {
+        const double quality = adcgs_curve_quality(own, n_own, theirs[i].bytes * (1 - FEWER));
+        if (isnan(quality)) {
+            c.beyond++;
+            continue;
+        }
+        c.compared++;
+        c.margin = fmin(c.margin, quality - theirs[i].quality);
+    }
+    c.above = c.compared > 0 && c.margin >= 0;
+    c.smaller = times_smaller(own, n_own, theirs, n);
+    return c;
+}

@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What a sweep leaves for other programs: tables as CSV, everything as JSON. */
+#include "config.h"
+
+#include "sweep/sweep.h"
+
+#include "cli/cli.h"
+#include "io/atomic.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- CSV ---- */
+
+static void csv_number(FILE *file, double value, int digits)
+{
+    if (isfinite(value))
+        fprintf(file, ",%.*f", digits, value);
+    else
+        fprintf(file, ",");
+}
+
+static void csv_row(FILE *file, const adcgs_sweep_row *r)
+{
+    fprintf(file, "%s,", r->name);
+    if (r->lambda >= 0)
+        fprintf(file, "%.9g", r->lambda);
+    fprintf(file, ",");
+    if (r->k)
+        fprintf(file, "%d", r->k);
+    fprintf(file, ",%d", r->bytes.n);
+    csv_number(file, r->bytes.mean, 0);
+    csv_number(file, r->bytes.min, 0);
+    csv_number(file, r->bytes.max, 0);
+    csv_number(file, r->psnr.mean, 4);
+    csv_number(file, r->psnr.min, 4);
+    csv_number(file, r->psnr.max, 4);
+    csv_number(file, r->ssim, 6);
+    csv_number(file, r->networks, 4);
+    csv_number(file, r->seconds, 2);
+    csv_number(file, r->speed, 2);
+    fprintf(file, "\n");
+}
+
+static adcgs_status finish(adcgs_atomic *file, adcgs_error *error)
+{
+    if (!ferror(file->file))
+        return adcgs_atomic_commit(file, error);
+    adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write", file->path);
+    adcgs_atomic_abort(file);
+    return ADCGS_ERR_IO;
+}
+
+static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const char *name, const char *first,
+                             adcgs_error *error)
+{
+    char path[ADCGS_SWEEP_PATH];
+    snprintf(path, sizeof path, "%s/%s", sweep->directory, name);
+    ADCGS_TRY(adcgs_atomic_open(file, path, error));
+    fprintf(file->file, "%s,lambda,k,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,training_seconds,"
+            "frames_per_second\n", first);
+    return ADCGS_OK;
+}
+
+static adcgs_status write_curves(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
+{
+    adcgs_atomic file;
+    ADCGS_TRY(csv_open(&file, sweep, "sweep.csv", "curve", error));
+    for (int i = 0; i < plan->n_curves; i++)
+        for (int j = 0; j < plan->curve[i].n; j++) {
+            adcgs_sweep_row row;
+            if (adcgs_sweep_row_make(&row, plan, plan->curve[i].name, plan->curve[i].cell[j], plan->curve[i].size))
+                csv_row(file.file, &row);
+        }
+    return finish(&file, error);
+}
+
+static adcgs_status write_stages(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
+{
+    adcgs_atomic file;
+    ADCGS_TRY(csv_open(&file, sweep, "ablation.csv", "stage", error));
+    for (int i = 0; i < plan->n_stages; i++) {
+        adcgs_sweep_row row;
+        if (adcgs_sweep_row_make(&row, plan, plan->stage[i].name, plan->stage[i].cell, plan->stage[i].size))
+            csv_row(file.file, &row);
+    }
+    return finish(&file, error);
+}
+
+/* ---- JSON ---- */
+
+static void json_spread(adcgs_json *json, const char *key, const adcgs_spread *s)
+{
+    adcgs_json_open(json, key, '{');
+    adcgs_json_real(json, "mean", s->mean);
+    adcgs_json_real(json, "min", s->min);
+    adcgs_json_real(json, "max", s->max);
+    adcgs_json_close(json, '}');
+}
+
+static void json_row(adcgs_json *json, const adcgs_sweep_row *r)
+{
+    if (r->lambda >= 0)
+        adcgs_json_real(json, "lambda", r->lambda);
+    if (r->k)
+        adcgs_json_int(json, "k", r->k);
+    adcgs_json_int(json, "seeds", r->bytes.n);
+    json_spread(json, "bytes", &r->bytes);
+    json_spread(json, "psnr", &r->psnr);
+    adcgs_json_real(json, "ssim", r->ssim);
+    if (isfinite(r->networks))
+        adcgs_json_real(json, "network_share", r->networks);
+    adcgs_json_real(json, "training_seconds", r->seconds);
+    adcgs_json_real(json, "frames_per_second", r->speed);
+}
+
+static void json_comparison(adcgs_json *json, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
+{
+    const adcgs_comparison c = adcgs_sweep_compare(plan, curve);
+    adcgs_json_open(json, "comparison", '{');
+    adcgs_json_real(json, "bd_rate", c.bd_rate);
+    adcgs_json_bool(json, "above", c.above);
+    adcgs_json_int(json, "points_compared", c.compared);
+    adcgs_json_int(json, "points_beyond", c.beyond);
+    adcgs_json_real(json, "least_margin", c.margin);
+    adcgs_json_real(json, "times_smaller", c.smaller);
+    adcgs_json_close(json, '}');
+}
+
+static void json_curves(adcgs_json *json, const adcgs_sweep_plan *plan)
+{
+    adcgs_json_open(json, "curves", '[');
+    for (int i = 0; i < plan->n_curves; i++) {
+        const adcgs_sweep_curve *const curve = &plan->curve[i];
+        adcgs_json_open(json, NULL, '{');
+        adcgs_json_string(json, "name", curve->name);
+        adcgs_json_string(json, "note", curve->note);
+        adcgs_json_bool(json, "yardstick", curve->yardstick);
+        adcgs_json_open(json, "points", '[');
+        for (int j = 0; j < curve->n; j++) {
+            adcgs_sweep_row row;
+            if (!adcgs_sweep_row_make(&row, plan, curve->name, curve->cell[j], curve->size))
+                continue;
+            adcgs_json_open(json, NULL, '{');
+            json_row(json, &row);
+            adcgs_json_close(json, '}');
+        }
+        adcgs_json_close(json, ']');
+        if (i)
+            json_comparison(json, plan, curve);
+        adcgs_json_close(json, '}');
+    }
+    adcgs_json_close(json, ']');
+}
+
+static void json_stages(adcgs_json *json, const adcgs_sweep_plan *plan)
+{
+    adcgs_json_open(json, "ablation", '[');
+    for (int i = 0; i < plan->n_stages; i++) {
+        adcgs_sweep_row row;
+        if (!adcgs_sweep_row_make(&row, plan, plan->stage[i].name, plan->stage[i].cell, plan->stage[i].size))
+            continue;
+        adcgs_json_open(json, NULL, '{');
+        adcgs_json_string(json, "stage", plan->stage[i].name);
+        adcgs_json_string(json, "stored", plan->stage[i].size == ADCGS_FIGURE_RAW ? "uncompressed" : "stream");
+        json_row(json, &row);
+        adcgs_json_close(json, '}');
+    }
+    adcgs_json_close(json, ']');
+}
+
+static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
+{
+    static const char *const names[ADCGS_FIGURE_COUNT] = {
+        "bytes", "bytes_with_32_bit_weights", "uncompressed_bytes", "zstd_bytes", "xz_bytes", "network_bytes",
+        "psnr", "ssim", "training_seconds", "frames_per_second"};
+    adcgs_json_open(json, "runs", '[');
+    for (int i = 0; i < plan->n_runs; i++) {
+        const adcgs_sweep_run *const run = &plan->run[i];
+        if (run->beginning || run->state != ADCGS_RUN_DONE)
+            continue;
+        adcgs_json_open(json, NULL, '{');
+        adcgs_json_string(json, "name", run->tag);
+        if (run->seed >= 0)
+            adcgs_json_real(json, "seed", run->seed);
+        for (int j = 0; j < ADCGS_FIGURE_COUNT; j++)
+            if (isfinite(run->figure[j]))
+                adcgs_json_real(json, names[j], run->figure[j]);
+        adcgs_json_close(json, '}');
+    }
+    adcgs_json_close(json, ']');
+}
+
+static void json_sweep(adcgs_json *json, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
+{
+    const adcgs_curve_facts facts = adcgs_sweep_facts(plan);
+    adcgs_json_open(json, NULL, '{');
+    adcgs_json_string(json, "scene", sweep->scene);
+    adcgs_json_string(json, "preset", sweep->preset ? sweep->preset : "");
+    adcgs_json_string(json, "set", sweep->set ? sweep->set : "");
+    adcgs_json_int(json, "iterations", sweep->iterations);
+    adcgs_json_open(json, "curve", '{');
+    adcgs_json_int(json, "points", facts.n);
+    adcgs_json_bool(json, "monotone", facts.monotone);
+    adcgs_json_real(json, "span", facts.span);
+    adcgs_json_close(json, '}');
+    json_curves(json, plan);
+    json_stages(json, plan);
+    json_runs(json, plan);
+    adcgs_json_close(json, '}');
+}
+
+static adcgs_status write_json(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
+{
+    char path[ADCGS_SWEEP_PATH];
+    adcgs_atomic file;
+    adcgs_json json;
+    snprintf(path, sizeof path, "%s/sweep.json", sweep->directory);
+    ADCGS_TRY(adcgs_atomic_open(&file, path, error));
+    adcgs_json_init(&json, file.file);
+    json_sweep(&json, sweep, plan);
+    const adcgs_status status = adcgs_json_finish(&json, error);
+    if (status == ADCGS_OK)
+        return finish(&file, error);
+    adcgs_atomic_abort(&file);
+    return status;
+}
+
+adcgs_status adcgs_sweep_write_tables(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
+{
+    ADCGS_TRY(write_curves(sweep, plan, error));
+    if (plan->n_stages)
+        ADCGS_TRY(write_stages(sweep, plan, error));
+    return write_json(sweep, plan, error);
+}

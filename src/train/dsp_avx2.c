@@ -1,4 +1,0 @@
-/* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The trainer's kernels for CPU level avx2. */
-#define ISA(name) name##_avx2
-#include "train/dsp_kernels.h"

@@ -1,4 +1,0 @@
-/* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The trainer's kernels for CPU level scalar. */
-#define ISA(name) name##_scalar
-#include "train/dsp_kernels.h"

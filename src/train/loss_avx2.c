@@ -1,5 +1,0 @@
-/* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The loss kernels for AVX2. */
-#define ADCGS_LANES_ISA 256
-#define KERNEL adcgs_loss_strip_avx2
-#include "train/loss_kernels.h"

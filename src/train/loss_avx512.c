@@ -1,5 +1,0 @@
-/* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The loss kernels for AVX-512. */
-#define ADCGS_LANES_ISA 512
-#define KERNEL adcgs_loss_strip_avx512
-#include "train/loss_kernels.h"

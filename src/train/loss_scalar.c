@@ -1,5 +1,0 @@
-/* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The loss kernels as portable C. */
-#define ADCGS_LANES_ISA 0
-#define KERNEL adcgs_loss_strip_scalar
-#include "train/loss_kernels.h"

@@ -1,9 +1,0 @@
-/* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Kernels of the backward pass of the renderer, AVX2 variant. */
-#define ADCGS_LANES_ISA 256
-#include "base/lanes.h"
-
-#include "train/raster_blend_kernels.h"
-#include "train/raster_project_kernels.h"
-
-const adcgs_back_dsp adcgs_back_avx2 = {blend_back, project_back};

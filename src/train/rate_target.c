@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Landing on a target: the strength of the choice of levels at which a frozen run meets it. */
+#include "train/rate_control.h"
+
+#include "train/trainer.h"
+
+#include <math.h>
+
+/** REACH: between strengths tried while only one side is known. */
+enum { TRIES = 16, PRUNINGS = 16, REACH = 8 };
+#define STRENGTH_FIRST 1.0
+/** Beyond the first a choice throws away far more than it saves, and fewer anchors are the better way to a size. */
+#define STRENGTH_MOST_SIZE 64.0
+#define STRENGTH_MOST_PSNR 1e6
+/** Shares of the anchors that one pruning leaves. */
+#define PRUNE_LEAST 0.5
+#define PRUNE_MOST 0.98
+/** Of the size, left free when values freeze: networks are still trained, and may become larger. */
+#define SIZE_MARGIN 0.01
+/** dB that networks gain after the freeze, about, and dB that are near enough. */
+#define PSNR_GAIN 0.1
+#define PSNR_NEAR 0.03
+
+/** What is accepted: values in [low, high]; a stronger choice gives lower values, of bytes as of dB. */
+typedef struct window {
+    double low, high;
+} window;
+
+/** Choose levels with a strength, and the densities that suit them; from the nearest levels on, whatever was chosen before. */
+static adcgs_status settle(adcgs_trainer *t, double strength, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_trainer_choose(t, 0, error));
+    adcgs_trainer_densities(t);
+    if (strength > 0) {
+        ADCGS_TRY(adcgs_trainer_choose(t, strength, error));
+        adcgs_trainer_densities(t);
+    }
+    return ADCGS_OK;
+}
+
+/** The bytes, or the PSNR, of the run as it stands. */
+static adcgs_status value_now(adcgs_trainer *t, double *value, adcgs_error *error)
+{
+    adcgs_bytes bytes;
+    if (t->config.target == ADCGS_TARGET_PSNR)
+        return adcgs_control_psnr(t, UINT32_MAX, value, error);
+    ADCGS_TRY(t->measure(t->measure_user, t, &bytes, error));
+    *value = (double)bytes.total;
+    return ADCGS_OK;
+}
+
+static adcgs_status try_strength(adcgs_trainer *t, double strength, double *value, adcgs_error *error)
+{
+    ADCGS_TRY(settle(t, strength, error));
+    return value_now(t, value, error);
+}
+
+/**
+ * The strength whose value lies in the window, or as close below it as some tries come; *value: what it gives. Still above
+ * the window if nothing brings it down that far.
+ */
+static adcgs_status seek(adcgs_trainer *t, const window *w, double *strength, double *value, adcgs_error *error)
+{
+    const double most = t->config.target == ADCGS_TARGET_SIZE ? STRENGTH_MOST_SIZE : STRENGTH_MOST_PSNR;
+    double weak = 0, strong = 0, next = STRENGTH_FIRST, v; /* weak: gives too much; strong: the weakest known that does not */
+    *strength = 0;
+    ADCGS_TRY(try_strength(t, 0, value, error));
+    if (*value <= w->high)
+        return ADCGS_OK;
+    for (int i = 0; i < TRIES && next <= most && (*value > w->high || *value < w->low); i++) {
+        ADCGS_TRY(try_strength(t, next, &v, error));
+        if (v <= w->high || !strong) {
+            *strength = next;
+            *value = v;
+        }
+        if (v <= w->high)
+            strong = next;
+        else
+            weak = next;
+        next = !strong ? next * REACH : weak > 0 ? sqrt(weak * strong) : strong / REACH;
+    }
+    return settle(t, *strength, error);
+}
+
+/** Drop the anchors that show least, so many that the size is met as far as the rest takes bytes in proportion. */
+static adcgs_status prune(adcgs_trainer *t, const window *w, double bytes, adcgs_error *error)
+{
+    const double fixed = ADCGS_MIN(t->control.fixed, w->high), share = (w->high - fixed) / (bytes - fixed);
+    return adcgs_trainer_prune(t, (uint32_t)(t->f->n * fmin(fmax(share, PRUNE_LEAST), PRUNE_MOST)), error);
+}
+
+/** Meet the window; a size where levels cannot be made cheap enough, with fewer anchors. */
+static adcgs_status land(adcgs_trainer *t, const window *w, adcgs_error *error)
+{
+    double strength, value;
+    ADCGS_TRY(seek(t, w, &strength, &value, error));
+    for (int i = 0; i < PRUNINGS && t->config.target == ADCGS_TARGET_SIZE && value > w->high && t->f->n > 1; i++) {
+        ADCGS_TRY(prune(t, w, value, error));
+        ADCGS_TRY(seek(t, w, &strength, &value, error));
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_control_frozen(adcgs_trainer *t, adcgs_error *error)
+{
+    const double target = t->config.target_value;
+    if (t->config.target == ADCGS_TARGET_SIZE)
+        return land(t, &(window){ (1 - 2 * SIZE_MARGIN) * target, (1 - SIZE_MARGIN) * target }, error);
+    if (t->config.target == ADCGS_TARGET_NONE)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_trainer_load_views(t, 1, error));
+    const double aim = target - PSNR_GAIN;
+    return land(t, &(window){ aim - PSNR_NEAR, aim + PSNR_NEAR }, error);
+}
+
+adcgs_status adcgs_control_finish(adcgs_trainer *t, adcgs_error *error)
+{
+    const double target = t->config.target_value;
+    window w = { (1 - 2 * SIZE_MARGIN) * target, target };
+    double now;
+    if (t->config.target == ADCGS_TARGET_NONE)
+        return ADCGS_OK;
+    if (!t->rounding)
+        ADCGS_TRY(adcgs_trainer_round(t, error));
+    if (!t->frozen)
+        ADCGS_TRY(adcgs_trainer_freeze(t, error));
+    if (t->config.target == ADCGS_TARGET_PSNR) {
+        w = (window){ target - PSNR_NEAR, target + PSNR_NEAR };
+        if (t->divide != 1)
+            ADCGS_TRY(adcgs_trainer_load_views(t, 1, error));
+    }
+    ADCGS_TRY(value_now(t, &now, error));
+    return now > w.high || now < w.low ? land(t, &w, error) : ADCGS_OK;
+}

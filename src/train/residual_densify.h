@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What is missing. Anchors grow where primitives already are, so small bright things far from all of them are never found. But
+ * where several cameras see one moment, light that is taken and not drawn has a place: the one along a pixel's ray where the
+ * other cameras miss it too.
+ */
+#ifndef ADCGS_TRAIN_RESIDUAL_DENSIFY_H
+#define ADCGS_TRAIN_RESIDUAL_DENSIFY_H
+
+#include "train/trainer.h"
+
+typedef struct adcgs_missing {
+    float x[3];   /**< scene units */
+    float rgb[3];
+    float size;   /**< of a pixel there, scene units */
+    float score;  /**< difference, summed over the cameras that agree on it */
+} adcgs_missing;
+
+/**
+ * Places where something is missing in the views nearest to one of the training's moments, the worst first; n of at most `most`.
+ * None where fewer than three views share the moment.
+ */
+adcgs_status adcgs_trainer_missing(adcgs_trainer *trainer, adcgs_missing *places, uint32_t most, uint32_t *n, adcgs_error *error);
+
+#endif
