@@ -56,6 +56,13 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
 /** As adcgs_cli_fail() with a message of its own. */
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
+/** Write out what standard output holds back. ADCGS_ERR_IO if something is lost, now or earlier. */
+adcgs_status adcgs_cli_flush(adcgs_error *error);
+/**
+ * The exit code to leave with: `code`, or that of ADCGS_ERR_IO, which is reported, when something of a run that was fine so far
+ * could not be written to standard output. The last thing that a program does.
+ */
+int adcgs_cli_leave(const adcgs_cli *cli, int code);
 /** A remark that does not end the program: "program: text" on stderr. */
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(2, 3);
 
@@ -99,7 +106,7 @@ void adcgs_json_string(adcgs_json *json, const char *key, const char *value);
 void adcgs_json_int(adcgs_json *json, const char *key, int64_t value);
 void adcgs_json_real(adcgs_json *json, const char *key, double value);  /**< null when not finite */
 void adcgs_json_bool(adcgs_json *json, const char *key, int value);
-/** Newline and flush; ADCGS_ERR_IO if anything could not be written. */
+/** Newline; standard output is flushed, ADCGS_ERR_IO if anything could not be written there. Files are their openers'. */
 adcgs_status adcgs_json_finish(adcgs_json *json, adcgs_error *error);
 
 #endif

@@ -142,7 +142,5 @@ void adcgs_json_bool(adcgs_json *json, const char *key, int value)
 adcgs_status adcgs_json_finish(adcgs_json *json, adcgs_error *error)
 {
     fputc('\n', json->file);
-    if (fflush(json->file) || ferror(json->file))
-        return adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write the JSON report");
-    return ADCGS_OK;
+    return json->file == stdout ? adcgs_cli_flush(error) : ADCGS_OK; /* who opened another looks after it */
 }

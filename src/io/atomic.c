@@ -186,8 +186,12 @@ adcgs_status adcgs_atomic_save(const char *path, const void *data, size_t bytes,
     adcgs_atomic atomic;
     ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
     setvbuf(atomic.file, NULL, _IONBF, 0); /* there is nothing to gather */
-    fwrite(data, 1, bytes, atomic.file);
-    return adcgs_atomic_commit(&atomic, error);
+    errno = 0;
+    if (fwrite(data, 1, bytes, atomic.file) == bytes)
+        return adcgs_atomic_commit(&atomic, error);
+    const int reason = errno;
+    adcgs_atomic_abort(&atomic);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, strerror(reason ? reason : EIO));
 }
 
 /** Whether the last parts of two paths are equal and so are their folders. */

@@ -10,14 +10,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <new>
 #include <string>
 #include <vector>
 
 #include <strings.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <OpenImageIO/filesystem.h>
@@ -186,43 +186,20 @@ adcgs_status write(OIIO::ImageOutput &output, const adcgs_image *image, int bits
     return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output.geterror()).c_str());
 }
 
-/** A file of our own that is gone when this is. */
-class Temporary {
-public:
-    explicit Temporary(const std::string &extension)
-    {
-        const char *const folder = std::getenv("TMPDIR");
-        name_ = (folder && *folder ? folder : "/tmp") + std::string("/adcgs-XXXXXX.") + extension;
-        const int fd = mkstemps(&name_[0], (int)extension.size() + 1);
-        made_ = fd >= 0;
-        if (made_)
-            close(fd);
-    }
-    ~Temporary()
-    {
-        if (made_)
-            unlink(name_.c_str());
-    }
-    Temporary(const Temporary &) = delete;
-    Temporary &operator=(const Temporary &) = delete;
-    bool made() const { return made_; }
-    const std::string &name() const { return name_; }
-
-private:
-    std::string name_;
-    bool made_;
-};
-
 /** OpenImageIO does not look at everything that can fail: what cannot be read back was not written. */
-bool reads_back(const std::string &name, OIIO::Filesystem::IOProxy *proxy, const adcgs_image *image)
+bool reads_back(const char *extension, const std::string &name, OIIO::Filesystem::IOProxy *proxy, const adcgs_image *image)
 {
-    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name, nullptr, proxy);
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(extension);
     OIIO::geterror(); /* else it is printed at exit */
-    if (!input || input->spec().width != image->width || input->spec().height != image->height)
-        return false;
-    const int channels = input->spec().nchannels;
-    std::vector<uint8_t> samples((size_t)image->width * (size_t)image->height * (size_t)channels);
-    const bool good = input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, samples.data());
+    if (!input || (proxy && !input->supports("ioproxy")))
+        return true; /* nobody to ask */
+    OIIO::ImageSpec spec;
+    bool good = (!proxy || input->set_ioproxy(proxy)) && input->open(name, spec) && spec.width == image->width &&
+                spec.height == image->height;
+    if (good) {
+        std::vector<uint8_t> samples((size_t)spec.width * (size_t)spec.height * (size_t)spec.nchannels);
+        good = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, samples.data());
+    }
     input->geterror();
     return good;
 }
@@ -236,28 +213,43 @@ adcgs_status encode_in_memory(std::vector<uint8_t> &out, OIIO::ImageOutput &outp
     const std::string name = std::string("memory.") + extension;
     ADCGS_TRY(write(output, image, bits, name, extension, path, error));
     OIIO::Filesystem::IOMemReader reader(out.data(), out.size());
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(name);
-    OIIO::geterror();
-    if (!input || !input->supports("ioproxy") || reads_back(name, &reader, image))
+    if (reads_back(extension, name, &reader, image))
         return ADCGS_OK;
     return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what OpenImageIO made of it does not read back", path);
 }
 
-/** For formats that OpenImageIO has in files only. */
+#ifdef MFD_CLOEXEC
+/** All that a descriptor's file holds. */
+bool load(int fd, std::vector<uint8_t> &out)
+{
+    struct stat status;
+    if (fstat(fd, &status))
+        return false;
+    out.resize((size_t)status.st_size);
+    return pread(fd, out.data(), out.size(), 0) == (ssize_t)out.size();
+}
+
+/** For formats that OpenImageIO has in files only, where it misses most errors of writing: such a file lies in memory. */
 adcgs_status encode_in_file(std::vector<uint8_t> &out, OIIO::ImageOutput &output, const adcgs_image *image, int bits,
                             const char *extension, const char *path, adcgs_error *error)
 {
-    const Temporary file(extension);
-    if (!file.made())
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create %s: %s", path, file.name().c_str(), strerror(errno));
-    ADCGS_TRY(write(output, image, bits, file.name(), extension, path, error));
-    const bool good = reads_back(file.name(), nullptr, image);
-    std::ifstream stream(file.name(), std::ios::binary);
-    out.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
-    if (good && !stream.bad())
-        return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what came to %s does not read back", path, file.name().c_str());
+    const int fd = memfd_create("adcgs", MFD_CLOEXEC);
+    if (fd < 0)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make a file in memory: %s", path, strerror(errno));
+    const std::string name = "/proc/self/fd/" + std::to_string(fd);
+    adcgs_status status = write(output, image, bits, name, extension, path, error);
+    if (status == ADCGS_OK && !(load(fd, out) && (out.empty() || reads_back(extension, name, nullptr, image))))
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what OpenImageIO made of it does not read back", path);
+    close(fd);
+    return status;
 }
+#else
+adcgs_status encode_in_file(std::vector<uint8_t> &, OIIO::ImageOutput &, const adcgs_image *, int, const char *extension,
+                            const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this system has no files in memory, which .%s files need", path, extension);
+}
+#endif
 
 adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension, const char *path,
                     adcgs_error *error)

@@ -117,7 +117,7 @@ static int run(const adcgs_cli *cli, settings *s, const char *path)
     adcgs_manifest_clear(&manifest);
     if (status == ADCGS_OK && t.vectors == 0)
         status = adcgs_fail(&error, ADCGS_ERR_USAGE, "no vector is called %s", s->filter);
-    return status != ADCGS_OK ? adcgs_cli_fail(cli, &error) : t.faults ? 1 : 0;
+    return adcgs_cli_leave(cli, status != ADCGS_OK ? adcgs_cli_fail(cli, &error) : t.faults ? 1 : 0);
 }
 
 int main(int argc, char **argv)

@@ -196,6 +196,8 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
         status = render(s, from, &shots, sink, &canvas, &all, &seconds, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = adcgs_sink_close(&sink, error);
+    if (status == ADCGS_OK)
+        status = adcgs_cli_flush(error);
     adcgs_sink_abort(&sink);
     adcgs_canvas_clear(&canvas);
     if (status == ADCGS_OK && !adcgs_interrupted()) {
@@ -345,8 +347,6 @@ int main(int argc, char **argv)
     adcgs_close(&decoder);
     if (adcgs_interrupted())
         raise(adcgs_interrupted()); /* the shell shall see why the program ended; the handler is gone by now */
-    if (status == ADCGS_OK && fflush(stdout))
-        status = adcgs_fail(&error, ADCGS_ERR_IO, "standard output: cannot write");
     error.status = status;
-    return status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : mismatch;
+    return adcgs_cli_leave(&cli, status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : mismatch);
 }

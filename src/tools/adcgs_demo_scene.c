@@ -38,7 +38,7 @@ int main(int argc, char **argv)
     for (int i = 0; list && adcgs_scenes_name(i); i++)
         printf("%-8s %s\n", adcgs_scenes_name(i), adcgs_scenes_about(i));
     if (list)
-        return 0;
+        return adcgs_cli_leave(&cli, 0);
     adcgs_error error;
     adcgs_pool *pool = NULL;
     adcgs_progress progress;

@@ -186,8 +186,6 @@ static adcgs_status run(const settings *s, adcgs_error *error)
     ADCGS_TRY(adcgs_eval_report_open(&r.out, error));
     adcgs_status status = decode_and_compare(&r, error);
     adcgs_eval_report_clear(&r.out);
-    if (status == ADCGS_OK && fflush(stdout))
-        status = adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write");
     return status;
 }
 
@@ -225,5 +223,5 @@ int main(int argc, char **argv)
     adcgs_error error = {0};
     adcgs_interrupt_catch();
     error.status = run(&s, &error);
-    return error.status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : 0;
+    return adcgs_cli_leave(&cli, error.status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : 0);
 }

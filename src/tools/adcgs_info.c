@@ -352,7 +352,7 @@ static adcgs_status print_report(const report *r, const settings *s, adcgs_error
         print_segments(r);
         print_extras(r);
     }
-    return fflush(stdout) ? adcgs_fail(error, ADCGS_ERR_IO, "standard output: %s", strerror(errno)) : ADCGS_OK;
+    return ADCGS_OK;
 }
 
 int main(int argc, char **argv)
@@ -385,5 +385,5 @@ int main(int argc, char **argv)
     free(r.chunks);
     if (status != ADCGS_OK)
         fflush(stdout);
-    return status == ADCGS_OK ? 0 : adcgs_cli_fail(&cli, &error);
+    return adcgs_cli_leave(&cli, status == ADCGS_OK ? 0 : adcgs_cli_fail(&cli, &error));
 }

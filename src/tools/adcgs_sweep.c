@@ -151,8 +151,9 @@ static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs
         adcgs_sweep_write_page(sweep, plan, chart, &error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
     adcgs_sweep_print(stdout, plan);
-    if (fflush(stdout))
-        return adcgs_cli_error(cli, ADCGS_ERR_IO, "standard output: cannot write");
+    const int code = adcgs_cli_leave(cli, 0);
+    if (code)
+        return code;
     adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s", sweep->directory,
                    plan->n_stages ? ", ablation.csv" : "",
                    chart ? ", sweep.svg" : plan->n_curves ? "; no chart (is gnuplot there?)" : "");

@@ -255,21 +255,13 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
 adcgs_status adcgs_trainer_save(const adcgs_trainer *t, const char *path, adcgs_error *error)
 {
     adcgs_buffer b;
-    adcgs_atomic atomic;
     adcgs_buffer_init(&b);
     adcgs_write_bytes(&b, magic, sizeof magic);
     adcgs_status status = adcgs_trainer_store(t, &b, error);
     if (status == ADCGS_OK) {
         adcgs_write_uint(&b, adcgs_crc32c(0, b.data, b.size), 4);
-        status = adcgs_atomic_open(&atomic, path, error);
-    }
-    if (status == ADCGS_OK) {
-        if (fwrite(b.data, 1, b.size, atomic.file) == b.size)
-            status = adcgs_atomic_commit(&atomic, error);
-        else {
-            adcgs_atomic_abort(&atomic);
-            status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the checkpoint", path);
-        }
+        status = b.failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path)
+                          : adcgs_atomic_save(path, b.data, b.size, error);
     }
     adcgs_buffer_clear(&b);
     return status;
