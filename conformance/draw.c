@@ -272,7 +272,7 @@ static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *o
         adcgs_range_enc_init(&w.range, &out->data[i]);
         if (layer == 0)
             adcgs_latents_flags(m, begin, end, draw_flag, &w);
-        status = adcgs_latents_walk(latents, m, layer, begin, end, draw_site, &w);
+        status = adcgs_latents_walk(latents, m, layer, begin, end, draw_site, &w, NULL);
         adcgs_range_enc_finish(&w.range);
     }
     adcgs_latents_free(&latents);

@@ -148,13 +148,13 @@ static void walk_chunk(const walker *w, int chunk)
 }
 
 adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
-                                adcgs_latent_visit visit, void *user)
+                                adcgs_latent_visit visit, void *user, adcgs_error *error)
 {
     const size_t lane = ADCGS_LANES * sizeof(int16_t);
     const size_t bytes = (INPUTS_MAX + ADCGS_NV_MAX) * lane + ADCGS_NV_MAX * ADCGS_LANES;
-    uint8_t *memory = adcgs_alloc(NULL, 1, bytes + latents->scratch, NULL);
+    uint8_t *memory = adcgs_alloc(NULL, 1, bytes + latents->scratch, error);
     if (!memory)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     walker w = { latents, model, visit, user, 0, 0, NULL, NULL, NULL, NULL };
     w.x = (int16_t(*)[ADCGS_LANES])memory;
     w.mu = w.x + INPUTS_MAX;

@@ -40,7 +40,7 @@ void adcgs_latents_free(adcgs_latents **latents);
  * primitives that do not exist to 0. Threads may walk disjoint ranges at once. Fails only for want of memory.
  */
 adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
-                                adcgs_latent_visit visit, void *user);
+                                adcgs_latent_visit visit, void *user, adcgs_error *error);
 
 /** Append the sub-stream of (layer, [begin,end)). ADCGS_ERR_USAGE names a value that the networks cannot give. */
 adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,

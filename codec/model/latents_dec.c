@@ -31,8 +31,7 @@ adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *mod
     decoder d = { range, model->shape };
     if (layer == 0)
         adcgs_latents_flags(model, begin, end, decode_flag, &d);
-    if (adcgs_latents_walk(latents, model, layer, begin, end, decode_site, &d) != ADCGS_OK)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "latents: no memory for the networks' activations");
+    ADCGS_TRY(adcgs_latents_walk(latents, model, layer, begin, end, decode_site, &d, error));
     return adcgs_range_dec_finish(range, error);
 }
 
@@ -48,5 +47,5 @@ adcgs_status adcgs_latents_conceal(const adcgs_latents *latents, adcgs_model *mo
         model->is_static[i] = 0;
         model->mask[i] = (uint16_t)((1U << model->params.k) - 1);
     }
-    return adcgs_latents_walk(latents, model, layer, begin, end, conceal_site, NULL);
+    return adcgs_latents_walk(latents, model, layer, begin, end, conceal_site, NULL, NULL);
 }

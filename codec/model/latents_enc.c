@@ -51,8 +51,7 @@ adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *mod
     adcgs_range_enc_init(&e.range, out);
     if (layer == 0)
         adcgs_latents_flags(model, begin, end, encode_flag, &e);
-    if (adcgs_latents_walk(latents, model, layer, begin, end, encode_site, &e) != ADCGS_OK)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "latents: no memory for the networks' activations");
+    ADCGS_TRY(adcgs_latents_walk(latents, model, layer, begin, end, encode_site, &e, error));
     ADCGS_TRY(e.status);
     adcgs_range_enc_finish(&e.range);
     return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "latents: no memory for the sub-stream") : ADCGS_OK;

@@ -15,6 +15,9 @@
 
 #define ADCGS_TILE 16
 
+/** The screen filter that streams name unless they have a reason: pixels^2 added to what a splat covers (Kerbl et al., 2023). */
+#define ADCGS_SCREEN_FILTER 0.3f
+
 /** A camera prepared for rendering: scene units, binary32. */
 typedef struct adcgs_view {
     int32_t width, height;

@@ -3,6 +3,7 @@
 #include "stream/stream.h"
 
 #include "model/model_priv.h"
+#include "render/render.h"
 
 #include <adcgs/version.h>
 
@@ -17,7 +18,7 @@ void adcgs_stream_init(adcgs_stream *stream)
         .rate_num = 30,
         .rate_den = 1,
         .scene_scale = 1,
-        .screen_filter = 0.3f,
+        .screen_filter = ADCGS_SCREEN_FILTER,
     };
 }
 

@@ -4,6 +4,7 @@
 
 #include "data/paths.h"
 
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,6 +23,16 @@ char *adcgs_path(const char *format, ...)
         va_end(arguments);
     }
     return path;
+}
+
+int adcgs_is_there_at(const char *format, ...)
+{
+    char path[PATH_MAX];
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(path, sizeof path, format, arguments);
+    va_end(arguments);
+    return length >= 0 && length < PATH_MAX && adcgs_is_there(path);
 }
 
 int adcgs_is_there(const char *path)

@@ -9,6 +9,8 @@
 char *adcgs_path(const char *format, ...) ADCGS_PRINTF(1, 2);
 /** Is there something of this name, be it a link that leads nowhere? Who opens it hears what is wrong with it. 0 for NULL. */
 int adcgs_is_there(const char *path);
+/** The same of a path that is written out only to ask: it takes no memory, so that none cannot make a file seem missing. */
+int adcgs_is_there_at(const char *format, ...) ADCGS_PRINTF(1, 2);
 /** 0 for NULL. */
 int adcgs_is_folder(const char *path);
 /** *out: the stem itself or with an extension of images, whichever is there and no folder; NULL if none is. ADCGS_ERR_MEMORY. */

@@ -7,7 +7,6 @@
 #include "data/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /** G = R^T R of the 3x3 part of a 3x4 matrix. */
 static void gram(const double pose[12], double g[3][3])
@@ -126,12 +125,13 @@ static void find_centre(const adcgs_scene_view *views, uint32_t n, double centre
     solve(a, b, centre);
 }
 
-double adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n)
+adcgs_status adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n, double *median, adcgs_error *error)
 {
     double centre[3];
-    double *distances = n ? malloc(n * sizeof *distances) : NULL;
+    double *distances = adcgs_alloc(NULL, n, sizeof *distances, error);
+    *median = 0.0;
     if (!distances)
-        return 0.0;
+        return adcgs_alloc_status(error);
     find_centre(views, n, centre);
     for (uint32_t v = 0; v < n; v++) {
         const double *p = views[v].camera.cam_to_world;
@@ -139,7 +139,8 @@ double adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n)
                             (p[11] - centre[2]) * (p[11] - centre[2]));
     }
     adcgs_sort(distances, n);
-    const double median = distances[n / 2];
-    free(distances);
-    return isfinite(median) ? median : 0.0;
+    if (n && isfinite(distances[n / 2]))
+        *median = distances[n / 2];
+    adcgs_free(NULL, distances);
+    return ADCGS_OK;
 }

@@ -16,7 +16,7 @@ const char *adcgs_pose_check(double pose[12]);
 const char *adcgs_pose_from_opengl(double pose[12]);
 
 /** Median distance of the cameras from the point nearest to all their axes; 0 if they share one position. */
-double adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n);
+adcgs_status adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n, double *median, adcgs_error *error);
 
 /** The world axis that is up in the pictures on the mean, as an adcgs_axes; unknown if that is x or z downwards. */
 uint8_t adcgs_pose_axes(const adcgs_scene_view *views, uint32_t n);

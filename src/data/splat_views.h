@@ -6,8 +6,6 @@
 #include "data/scene.h"
 #include "io/splats.h"
 
-#define ADCGS_SPLAT_SCENE_FILTER 0.3f /**< pixels^2 added to projected splats, as they are trained and shown elsewhere */
-
 struct adcgs_splat_scene {
     adcgs_splats splats; /**< in units of the radius, from the centre */
     double centre[3], radius;

@@ -3,7 +3,9 @@
 #include "encode/encode.h"
 
 #include "encode/quantise.h"
+#include "render/render.h"
 #include "stream/input.h"
+#include "train/levels.h"
 
 #include <math.h>
 
@@ -33,9 +35,9 @@ static adcgs_status set_notes(adcgs_stream *s, const adcgs_encode_note *notes, u
         s->meta[i].key = copy_text(notes[i].key, error);
         s->meta[i].value = copy_text(notes[i].value, error);
         if (!s->meta[i].key || !s->meta[i].value)
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(error);
     }
-    return s->meta ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return s->meta ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 /** A few training cameras, spread evenly over the split; fixed cameras that recur at every time are stored once. */
@@ -45,7 +47,7 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
     const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN];
     s->cameras = adcgs_alloc(NULL, ADCGS_ENCODE_CAMERAS_MAX, sizeof *s->cameras, error);
     if (!s->cameras)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < ADCGS_ENCODE_CAMERAS_MAX; i++) {
         const adcgs_camera *c = &views[(uint64_t)i * all / ADCGS_ENCODE_CAMERAS_MAX].camera;
         int known = 0;
@@ -77,7 +79,7 @@ static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const a
     memcpy(s->scene_origin, t->origin, sizeof s->scene_origin);
     s->scene_scale = t->scale;
     memcpy(s->background, scene->background, sizeof s->background);
-    s->screen_filter = 0.3f;
+    s->screen_filter = ADCGS_SCREEN_FILTER;
     s->colour_space = scene->colour_space;
     s->axes = scene->axes;
     s->units = scene->units;
@@ -86,7 +88,7 @@ static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const a
     ADCGS_TRY(set_notes(s, notes, n_notes, error));
     s->segments = adcgs_alloc(NULL, 1, sizeof *s->segments, error);
     if (!s->segments)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     s->n_segments = 1;
     const adcgs_quantise_options options = { .cpu = t->cpu, .rdo = rdo };
     ADCGS_TRY(adcgs_quantise(&s->segments[0], t->f, &options, error));
@@ -108,7 +110,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
     adcgs_buffer out;
     adcgs_rdo rdo;
     if (strength >= 0)
-        ADCGS_TRY(adcgs_trainer_prices(t, strength, &rdo, error));
+        ADCGS_TRY(adcgs_level_prices(t, strength, &rdo, error));
     adcgs_buffer_init(&out);
     adcgs_status status = make_stream(&stream, t, strength >= 0 ? &rdo : NULL, notes, n_notes, error);
     if (status == ADCGS_OK)

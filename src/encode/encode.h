@@ -32,7 +32,7 @@ adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quant
 
 /**
  * Bytes of the stream that adcgs_encode_stream() and adcgs_stream_write() would make, with the same notes, if the frozen values
- * were decided anew by adcgs_trainer_choose() with this strength: exact, from the coder itself; nothing is changed or written.
+ * were decided anew by adcgs_level_choose() with this strength: exact, from the coder itself; nothing is changed or written.
  * Takes about as long as quantising and coding once, tens of milliseconds for a few thousand anchors. More strength gives
  * fewer bytes, but not strictly: choices are greedy, so equal or slightly more is possible from one strength to the next; who
  * bisects compares with the bytes, not with an order. ADCGS_ERR_USAGE before the trainer is frozen. A negative strength, at any

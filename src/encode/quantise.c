@@ -20,7 +20,7 @@ static adcgs_status tensor_alloc(adcgs_tensor *t, uint32_t rows, uint32_t cols, 
     t->mode = 0;
     t->e = (uint8_t)e;
     t->m = adcgs_alloc(NULL, (size_t)rows * cols, sizeof *t->m, error);
-    return t->m ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return t->m ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 static void tensor_set(adcgs_tensor *t, const float *w, double scale, int32_t limit)
@@ -71,7 +71,7 @@ static adcgs_status integer_network(adcgs_net *net, const adcgs_mlp *m, const fl
 {
     float *weights = adcgs_alloc(NULL, m->n, sizeof *weights, error);
     if (!weights)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     adcgs_mlp_integer(m, p, weights);
     const adcgs_status status = entropy_network(net, m, weights, role, error);
     adcgs_free(NULL, weights);
@@ -85,7 +85,7 @@ static adcgs_status float_network(adcgs_net *net, const adcgs_mlp *m, const floa
     net->n_layers = (uint8_t)(m->hidden + 1);
     for (int i = 0; i <= m->hidden; i++) {
         adcgs_layer *layer = &net->layer[i];
-        const int exact = m->lattice[i] == ADCGS_LATTICE_NONE, e = exact ? 0 : m->lattice[i];
+        const int exact = m->weight_step[i] == ADCGS_WEIGHT_STEP_NONE, e = exact ? 0 : m->weight_step[i];
         const int32_t limit = (int32_t)ldexpf(FLOAT_WEIGHT_MAX, ADCGS_MIN(e, 16));
         const size_t biases = (i < m->hidden ? m->w[i + 1] : m->n) - m->b[i];
         ADCGS_TRY(tensor_alloc(&layer->w, (uint32_t)m->n_out[i], (uint32_t)m->in[i], e, error));
@@ -221,7 +221,7 @@ static adcgs_status walk_latents(quantiser *q, adcgs_model *model, adcgs_error *
     ADCGS_TRY(adcgs_latents_create(&latents, model, q->o->cpu, NULL, error));
     adcgs_status status = ADCGS_OK;
     for (int layer = 0; status == ADCGS_OK && layer < model->layers; layer++)
-        status = adcgs_latents_walk(latents, model, layer, 0, model->n, quantise_site, q);
+        status = adcgs_latents_walk(latents, model, layer, 0, model->n, quantise_site, q, error);
     adcgs_latents_free(&latents);
     return status;
 }
@@ -234,7 +234,7 @@ static adcgs_status quantise_latents(adcgs_model *model, const adcgs_fmodel *f, 
     float *own = options->factor ? NULL : adcgs_alloc(NULL, (size_t)f->groups * (size_t)q.steps.n * 64, sizeof *own, error);
     q.factor = (float(*)[ADCGS_LANES])(options->factor ? options->factor : own);
     q.scratch = adcgs_alloc(NULL, adcgs_steps_scratch(&q.steps), 1, error);
-    const adcgs_status status = q.factor && q.scratch ? walk_latents(&q, model, error) : ADCGS_ERR_MEMORY;
+    const adcgs_status status = q.factor && q.scratch ? walk_latents(&q, model, error) : adcgs_alloc_status(error);
     adcgs_free(NULL, own);
     adcgs_free(NULL, q.scratch);
     adcgs_steps_clear(&q.steps, NULL);

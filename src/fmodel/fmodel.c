@@ -6,7 +6,6 @@
 #include "splat/splat.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 int adcgs_fmodel_rows(const adcgs_fmodel *f, int group)
 {
@@ -37,7 +36,7 @@ size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden
         at += (size_t)mlp->in[i] * (size_t)mlp->n_out[i];
         mlp->b[i] = at;
         at += (size_t)mlp->n_out[i];
-        mlp->lattice[i] = ADCGS_LATTICE_NONE;
+        mlp->weight_step[i] = ADCGS_WEIGHT_STEP_NONE;
     }
     mlp->n = at;
     return at;
@@ -48,7 +47,7 @@ void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width)
     adcgs_mlp *m = &f->mlp[group];
     const adcgs_mlp old = *m;
     f->param[group].n = adcgs_mlp_layout(m, old.own, old.time, width, old.hidden, old.out);
-    memcpy(m->lattice, old.lattice, sizeof m->lattice);
+    memcpy(m->weight_step, old.weight_step, sizeof m->weight_step);
     m->use = old.use;
     m->turn = old.turn;
     m->packed = old.packed;
@@ -84,7 +83,7 @@ void adcgs_mlp_integer(const adcgs_mlp *m, const float *p, float *to)
 {
     for (int i = 0; i <= m->hidden; i++) {
         const size_t inputs = (size_t)m->in[i];
-        const int e = ADCGS_MIN(m->lattice[i], ADCGS_E24_BITS);
+        const int e = ADCGS_MIN(m->weight_step[i], ADCGS_E24_BITS);
         for (size_t o = 0; o < (size_t)m->n_out[i]; o++) {
             float *w = to + m->w[i] + o * inputs, *b = to + m->b[i] + o;
             for (size_t j = 0; j < inputs; j++)
@@ -107,8 +106,8 @@ void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise)
     for (int i = 0; i <= mlp->hidden; i++) {
         const size_t n = (i < mlp->hidden ? mlp->w[i + 1] : mlp->n) - mlp->w[i]; /* weights and biases */
         float *w = mlp->use + mlp->w[i];
-        if (quantise && !mlp->entropy && mlp->lattice[i] != ADCGS_LATTICE_NONE) {
-            const float up = ldexpf(1, mlp->lattice[i]), down = ldexpf(1, -mlp->lattice[i]);
+        if (quantise && !mlp->entropy && mlp->weight_step[i] != ADCGS_WEIGHT_STEP_NONE) {
+            const float up = ldexpf(1, mlp->weight_step[i]), down = ldexpf(1, -mlp->weight_step[i]);
             for (size_t j = 0; j < n; j++)
                 w[j] = rintf(w[j] * up) * down;
         }
@@ -159,7 +158,7 @@ static void layout_networks(adcgs_fmodel *f)
         z->in[0] = p->time_width;
         z->n_out[0] = p->time_rows;
         z->n = z->b[0] = (size_t)p->time_rows * p->time_width;
-        z->lattice[0] = ADCGS_LATTICE_NONE;
+        z->weight_step[0] = ADCGS_WEIGHT_STEP_NONE;
     }
     const int w = s->entropy_width, h = s->entropy_hidden;
     adcgs_mlp_layout(&m[ADCGS_P_E_FV], p->n_eta, 0, w, h, 2 * p->n_fv);
@@ -181,7 +180,7 @@ static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
 {
     float *all = adcgs_alloc(NULL, 4 * (n + 16), sizeof *all, error);
     if (!all)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     const size_t stride = (n + 15) / 16 * 16;
     p->n = n;
     p->p = all;
@@ -210,12 +209,12 @@ static adcgs_status alloc_weights(adcgs_mlp *m, adcgs_error *error)
 {
     m->use = adcgs_alloc(NULL, 2 * (m->n + 16), sizeof *m->use, error);
     if (!m->use)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     m->turn = m->use + (m->n + 15) / 16 * 16;
     if (m->hidden < 2 || m->entropy)
         return ADCGS_OK;
     m->packed = adcgs_alloc(NULL, 2 * (size_t)(m->hidden - 1) * adcgs_square_words(m->width), sizeof *m->packed, error);
-    return m->packed ? ADCGS_OK : ADCGS_ERR_MEMORY;
+    return m->packed ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error *error)
@@ -302,6 +301,8 @@ static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *erro
     const size_t groups = (n + 63) / 64;
     f->n = n;
     f->groups = (uint32_t)groups;
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        f->param[i].p = NULL; /* what they had is the caller's to free */
     f->pos = adcgs_alloc(NULL, n, sizeof *f->pos, error);
     f->x = adcgs_alloc(NULL, groups * 3 * 64, sizeof(float), error);
     f->code = adcgs_alloc(NULL, groups * 64 * 6 * (size_t)(f->params.octaves + 1), sizeof(float), error);
@@ -309,10 +310,9 @@ static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *erro
     f->moving = adcgs_alloc(NULL, groups * 64, sizeof(float), error);
     f->live = adcgs_alloc(NULL, groups * 64, sizeof(float), error);
     if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live)
-        return ADCGS_ERR_MEMORY;
-    for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
+        return adcgs_alloc_status(error);
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * 64, error));
-    }
     return ADCGS_OK;
 }
 
@@ -339,10 +339,10 @@ static void place_anchors(adcgs_fmodel *f, const uint32_t (*pos)[3])
 adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params, const adcgs_shape *shape, const float origin[3],
                                  float voxel, const uint32_t (*pos)[3], uint32_t n, uint64_t seed, adcgs_error *error)
 {
-    adcgs_fmodel *f = calloc(1, sizeof *f);
+    adcgs_fmodel *f = adcgs_alloc(NULL, 1, sizeof *f, error);
     *out = NULL;
     if (!f)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the model");
+        return adcgs_alloc_status(error);
     f->params = *params;
     f->shape = *shape;
     memcpy(f->origin, origin, sizeof f->origin);
@@ -353,7 +353,7 @@ adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params,
     adcgs_status status = create_networks(f, seed, error);
     for (int i = 0; status == ADCGS_OK && i < ADCGS_P_ANCHOR; i++) {
         f->step[i] = adcgs_alloc(NULL, (size_t)adcgs_fmodel_rows(f, i) + 1, sizeof(float), error);
-        status = f->step[i] ? ADCGS_OK : ADCGS_ERR_MEMORY;
+        status = f->step[i] ? ADCGS_OK : adcgs_alloc_status(error);
     }
     if (status == ADCGS_OK)
         status = alloc_anchors(f, n, error);
@@ -401,7 +401,7 @@ void adcgs_fmodel_free(adcgs_fmodel **model)
         adcgs_free(NULL, f->mlp[i].use);
         adcgs_free(NULL, f->mlp[i].packed);
     }
-    free(f);
+    adcgs_free(NULL, f);
     *model = NULL;
 }
 

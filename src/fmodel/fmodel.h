@@ -43,7 +43,7 @@ typedef struct adcgs_param {
 } adcgs_param;
 
 #define ADCGS_MLP_LAYERS 4
-#define ADCGS_LATTICE_NONE 127 /**< weights that are binary32 */
+#define ADCGS_WEIGHT_STEP_NONE 127 /**< weights that are binary32 */
 
 /**
  * Shape of a network: inputs [own | time], hidden layers of equal width (leaky ReLU; from the second on residual), linear output.
@@ -57,7 +57,7 @@ typedef struct adcgs_mlp {
     float *use;   /**< [n] the weights the forward pass uses: the parameters, or their lattice values */
     float *turn;  /**< [n] the same transposed per layer: w^T [n_in][n_out] at w's offset */
     uint32_t *packed; /**< see adcgs_mlp_packed(); NULL in an entropy network */
-    int8_t lattice[ADCGS_MLP_LAYERS]; /**< exponent e of the lattice 2^-e of each layer's weights, or ADCGS_LATTICE_NONE */
+    int8_t weight_step[ADCGS_MLP_LAYERS]; /**< exponent e of the step 2^-e of each layer's weights, or ADCGS_WEIGHT_STEP_NONE */
     uint8_t entropy; /**< an entropy network: on the lattice it is the integer network of spec clause "E24" */
 } adcgs_mlp;
 

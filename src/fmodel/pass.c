@@ -3,7 +3,6 @@
 #include "fmodel/pass_layout.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* ---- Workspace ---- */
 
@@ -22,7 +21,7 @@ static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_err
         p->used[i] = adcgs_alloc(NULL, n, sizeof(float), error);
         p->mu[i] = adcgs_alloc(NULL, n, sizeof(float), error);
         if (!p->used[i] || !p->mu[i])
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(error);
     }
     p->factor = adcgs_alloc(NULL, g * (size_t)adcgs_params_steps(&f->params) * 64, sizeof(float), error);
     p->keep = adcgs_alloc(NULL, slots, sizeof(float), error);
@@ -32,7 +31,7 @@ static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_err
     for (size_t i = 0; p->factor && i < g * (size_t)adcgs_params_steps(&f->params) * 64; i++)
         p->factor[i] = 1;
     if (!p->factor || !p->keep || !p->act || !p->prim || !p->grad)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     float *a = p->prim, *d = p->grad;
     adcgs_primitives *r = &p->primitives;
     r->n = (uint32_t)slots;
@@ -55,25 +54,27 @@ static adcgs_status alloc_groups(adcgs_pass *p, const adcgs_fmodel *f, adcgs_err
     return ADCGS_OK;
 }
 
+/** Nothing is left that could be freed again: a pass without groups can still be freed, or resized. */
 static void free_groups(adcgs_pass *p)
 {
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
         adcgs_free(NULL, p->used[i]);
         adcgs_free(NULL, p->mu[i]);
+        p->used[i] = p->mu[i] = NULL;
     }
-    adcgs_free(NULL, p->factor);
-    adcgs_free(NULL, p->keep);
-    adcgs_free(NULL, p->act);
-    adcgs_free(NULL, p->prim);
-    adcgs_free(NULL, p->grad);
+    float **const arrays[] = { &p->factor, &p->keep, &p->act, &p->prim, &p->grad };
+    for (size_t i = 0; i < ADCGS_COUNTOF(arrays); i++) {
+        adcgs_free(NULL, *arrays[i]);
+        *arrays[i] = NULL;
+    }
 }
 
 adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
 {
-    adcgs_pass *p = calloc(1, sizeof *p);
+    adcgs_pass *p = adcgs_alloc(NULL, 1, sizeof *p, error);
     *out = NULL;
     if (!p)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the training workspace");
+        return adcgs_alloc_status(error);
     p->cpu = cpu;
     p->pool = pool;
     adcgs_train_dsp_init(&p->dsp, cpu);
@@ -103,7 +104,7 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
     if (!p->scratch || !p->partial || !p->bits || !p->tables || !p->time_code || !p->time_bias[0] || !p->time_bias[1] ||
         alloc_groups(p, f, error) != ADCGS_OK) {
         adcgs_pass_free(out);
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     }
     for (int i = 0; i < ADCGS_SHAPES; i++)
         adcgs_rate_table_init(&p->tables[i], i);
@@ -123,7 +124,7 @@ void adcgs_pass_free(adcgs_pass **pass)
     adcgs_free(NULL, p->time_code);
     for (int i = 0; i < 2; i++)
         adcgs_free(NULL, p->time_bias[i]);
-    free(p);
+    adcgs_free(NULL, p);
     *pass = NULL;
 }
 

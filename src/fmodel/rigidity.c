@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-enum { NEAR = ADCGS_RIGID_NEAR, PULL_ROWS = 12 };
+enum { NEAR = ADCGS_RIGIDITY_NEAR, PULL_ROWS = 12 };
 
 /** Stretch below which the energy is quadratic: parts that slide past each other may part at a bounded price. */
 #define SOFT 0.05f
@@ -15,7 +15,7 @@ enum { NEAR = ADCGS_RIGID_NEAR, PULL_ROWS = 12 };
 
 typedef struct near_job {
     const adcgs_fmodel *f;
-    adcgs_rigid *rigid;
+    adcgs_rigidity *rigid;
 } near_job;
 
 /** Put j into a list kept sorted by key, smallest first. */
@@ -35,7 +35,7 @@ static void keep_best(uint64_t *best, int32_t *near, int n, uint64_t key, uint32
 /** The closest, and of those within reach the ones that a fixed lottery draws. */
 static void find_near(const adcgs_fmodel *f, uint32_t i, int32_t near[NEAR])
 {
-    const double reach = (double)ADCGS_RIGID_REACH / (double)f->voxel;
+    const double reach = (double)ADCGS_RIGIDITY_REACH / (double)f->voxel;
     uint64_t best[NEAR];
     for (int k = 0; k < NEAR; k++) {
         best[k] = UINT64_MAX;
@@ -49,9 +49,9 @@ static void find_near(const adcgs_fmodel *f, uint32_t i, int32_t near[NEAR])
         }
         if (j == i)
             continue;
-        keep_best(best, near, ADCGS_RIGID_CLOSE, d, j);
+        keep_best(best, near, ADCGS_RIGIDITY_CLOSE, d, j);
         if ((double)d < reach * reach)
-            keep_best(best + ADCGS_RIGID_CLOSE, near + ADCGS_RIGID_CLOSE, NEAR - ADCGS_RIGID_CLOSE,
+            keep_best(best + ADCGS_RIGIDITY_CLOSE, near + ADCGS_RIGIDITY_CLOSE, NEAR - ADCGS_RIGIDITY_CLOSE,
                       adcgs_random64(1, i, j), j);
     }
 }
@@ -65,21 +65,21 @@ static void near_group(void *arg, int group, int thread)
         find_near(job->f, i, job->rigid->near[i]);
 }
 
-void adcgs_rigid_clear(adcgs_rigid *rigid)
+void adcgs_rigidity_clear(adcgs_rigidity *rigid)
 {
     adcgs_free(NULL, rigid->near);
     adcgs_free(NULL, rigid->pull);
     memset(rigid, 0, sizeof *rigid);
 }
 
-adcgs_status adcgs_rigid_build(adcgs_rigid *rigid, const adcgs_fmodel *f, adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_rigidity_build(adcgs_rigidity *rigid, const adcgs_fmodel *f, adcgs_pool *pool, adcgs_error *error)
 {
-    adcgs_rigid_clear(rigid);
+    adcgs_rigidity_clear(rigid);
     rigid->n = f->n;
     rigid->near = adcgs_alloc(NULL, f->n, sizeof *rigid->near, error);
     rigid->pull = adcgs_alloc(NULL, (size_t)f->groups * PULL_ROWS * 64, sizeof *rigid->pull, error);
     if (!rigid->near || !rigid->pull)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     near_job job = { f, rigid };
     adcgs_pool_run(pool, near_group, &job, (int)f->groups);
     return ADCGS_OK;
@@ -139,7 +139,7 @@ static void add_force(float *pull, const float force[3], const float *y, float s
     }
 }
 
-double adcgs_rigid_pull(adcgs_rigid *rigid, const adcgs_pass *p, const adcgs_fmodel *f, float weight)
+double adcgs_rigidity_pull(adcgs_rigidity *rigid, const adcgs_pass *p, const adcgs_fmodel *f, float weight)
 {
     const float each = weight / ((float)NEAR * (float)rigid->n);
     const int turns = f->params.coarse_rotation;

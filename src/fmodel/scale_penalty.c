@@ -37,7 +37,7 @@ adcgs_status adcgs_viewpoints_create(adcgs_viewpoints *p, const float (*camera)[
     p->n = 0;
     p->x = adcgs_alloc(NULL, 3 * (size_t)n_cameras, sizeof *p->x, error);
     if (!p->x)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < n_cameras; i++) {
         uint32_t j = 0;
         while (j < p->n && memcmp(p->x[j], camera[i], sizeof camera[i]) != 0)
@@ -69,7 +69,7 @@ static float nearness(const adcgs_viewpoints *p, const adcgs_primitives *primiti
     return 1 / fmaxf(least, NEAREST * NEAREST);
 }
 
-double adcgs_area_price(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
+double adcgs_scale_penalty(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
                         float *const scale[3])
 {
     const float *x = primitives->scale[0], *y = primitives->scale[1], *z = primitives->scale[2];

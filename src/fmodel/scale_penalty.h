@@ -25,7 +25,7 @@ void adcgs_viewpoints_clear(adcgs_viewpoints *viewpoints);
  * deviations x, y, z in scene units, as large as it looks from the nearest viewpoint: over the square of the distance. Without
  * viewpoints all are at distance 1. Adds its gradient by the scales to scale[3] and returns it.
  */
-double adcgs_area_price(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
+double adcgs_scale_penalty(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
                         float *const scale[3]);
 
 #endif

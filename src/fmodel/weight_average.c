@@ -10,20 +10,20 @@ static size_t count(const adcgs_fmodel *f)
     return n;
 }
 
-adcgs_status adcgs_average_begin(adcgs_average *a, const adcgs_fmodel *f, adcgs_error *error)
+adcgs_status adcgs_weight_average_begin(adcgs_weight_average *a, const adcgs_fmodel *f, adcgs_error *error)
 {
-    adcgs_average_clear(a);
+    adcgs_weight_average_clear(a);
     a->mean = adcgs_alloc(NULL, count(f), sizeof *a->mean, error);
     if (!a->mean)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     a->size = count(f);
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_average_add(adcgs_average *a, const adcgs_fmodel *f, adcgs_error *error)
+adcgs_status adcgs_weight_average_add(adcgs_weight_average *a, const adcgs_fmodel *f, adcgs_error *error)
 {
     if (a->n == 0 || a->size != count(f))
-        ADCGS_TRY(adcgs_average_begin(a, f, error));
+        ADCGS_TRY(adcgs_weight_average_begin(a, f, error));
     const float share = 1 / (float)++a->n; /* 1 at first: what does not change is its own mean, to the bit */
     float *mean = a->mean;
     for (int i = 0; i < ADCGS_P_COUNT; mean += f->param[i++].n)
@@ -32,7 +32,7 @@ adcgs_status adcgs_average_add(adcgs_average *a, const adcgs_fmodel *f, adcgs_er
     return ADCGS_OK;
 }
 
-void adcgs_average_take(adcgs_average *a, adcgs_fmodel *f)
+void adcgs_weight_average_take(adcgs_weight_average *a, adcgs_fmodel *f)
 {
     const float *mean = a->mean;
     if (a->n == 0 || a->size != count(f))
@@ -42,8 +42,8 @@ void adcgs_average_take(adcgs_average *a, adcgs_fmodel *f)
     a->n = 0;
 }
 
-void adcgs_average_clear(adcgs_average *a)
+void adcgs_weight_average_clear(adcgs_weight_average *a)
 {
     adcgs_free(NULL, a->mean);
-    *a = (adcgs_average){ .n = 0 };
+    *a = (adcgs_weight_average){ .n = 0 };
 }

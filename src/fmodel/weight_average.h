@@ -9,18 +9,18 @@
 #include "fmodel/fmodel.h"
 
 /** Zero-initialise before use. */
-typedef struct adcgs_average {
+typedef struct adcgs_weight_average {
     uint32_t n;   /**< iterations in it */
     size_t size;  /**< parameters */
     float *mean;  /**< [size], groups one after the other */
-} adcgs_average;
+} adcgs_weight_average;
 
 /** Begin anew, with room for f's parameters. */
-adcgs_status adcgs_average_begin(adcgs_average *average, const adcgs_fmodel *f, adcgs_error *error);
+adcgs_status adcgs_weight_average_begin(adcgs_weight_average *average, const adcgs_fmodel *f, adcgs_error *error);
 /** Add f's parameters as they are. Begins anew if their number is another one. */
-adcgs_status adcgs_average_add(adcgs_average *average, const adcgs_fmodel *f, adcgs_error *error);
+adcgs_status adcgs_weight_average_add(adcgs_weight_average *average, const adcgs_fmodel *f, adcgs_error *error);
 /** Give f the mean, if there is one, and forget it. */
-void adcgs_average_take(adcgs_average *average, adcgs_fmodel *f);
-void adcgs_average_clear(adcgs_average *average);
+void adcgs_weight_average_take(adcgs_weight_average *average, adcgs_fmodel *f);
+void adcgs_weight_average_clear(adcgs_weight_average *average);
 
 #endif

@@ -87,7 +87,7 @@ double adcgs_weight_rate(adcgs_fmodel *f, int group, float scale)
     float *g = scale > 0 ? f->param[group].g : NULL;
     double bits = 0;
     for (int l = 0; m->n && l <= m->hidden; l++) {
-        const int e = m->lattice[l] == ADCGS_LATTICE_NONE ? ADCGS_E24_BITS : m->lattice[l];
+        const int e = m->weight_step[l] == ADCGS_WEIGHT_STEP_NONE ? ADCGS_E24_BITS : m->weight_step[l];
         const size_t end = l < m->hidden ? m->w[l + 1] : m->n;
         const float half = ldexpf(0.5f, -e);
         const tensor w = { p + m->w[l], g ? g + m->w[l] : NULL, m->n_out[l], m->in[l], half, half };

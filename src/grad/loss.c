@@ -40,13 +40,13 @@ adcgs_status adcgs_loss_create(adcgs_loss **out, adcgs_cpu_level cpu, adcgs_pool
     ADCGS_TRY(adcgs_cpu_resolve(cpu, &level, error));
     adcgs_loss *const loss = adcgs_alloc(NULL, 1, sizeof *loss, error);
     if (!loss)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     loss->pool = pool;
     loss->kernel = kernel_of(level);
     loss->scratch = adcgs_alloc(NULL, (size_t)adcgs_pool_threads(pool), sizeof *loss->scratch, error);
     if (!loss->scratch) {
         adcgs_free(NULL, loss);
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     }
     *out = loss;
     return ADCGS_OK;

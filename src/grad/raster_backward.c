@@ -26,7 +26,7 @@ adcgs_status adcgs_raster_back_create(adcgs_raster_back **out, adcgs_cpu_level c
     ADCGS_TRY(adcgs_cpu_resolve(cpu, &level, error));
     adcgs_raster_back *b = adcgs_alloc(NULL, 1, sizeof *b, error);
     if (!b)
-        return error ? error->status : ADCGS_ERR_MEMORY;
+        return error ? error->status : adcgs_alloc_status(error);
     b->pool = pool;
     b->dsp = adcgs_back_scalar;
 #ifdef HAVE_AVX2
@@ -73,7 +73,7 @@ static adcgs_status grow(adcgs_raster_back *b, size_t entries, adcgs_error *erro
     b->entries = 0;
     b->sums = adcgs_alloc(NULL, entries + entries / 4, SUM_WORDS * sizeof(float), error);
     if (!b->sums)
-        return error ? error->status : ADCGS_ERR_MEMORY;
+        return error ? error->status : adcgs_alloc_status(error);
     b->entries = entries + entries / 4;
     return ADCGS_OK;
 }

@@ -48,37 +48,27 @@ static adcgs_status no_memory(const reader *r)
 
 /* ---- The files ---- */
 
-/** The folder and the format of a model in a directory; *folder is NULL if there is none, and else from malloc(). */
-static void find_model(const char *directory, char **folder, int *format)
+/** The place of a model in a directory and its format; NULL if there is none. */
+static const char *find_model(const char *directory, int *format)
 {
     static const char *const places[] = {"sparse/0/", "sparse/", ""};
     for (size_t p = 0; p < ADCGS_COUNTOF(places); p++)
         for (*format = 0; *format < (int)ADCGS_COUNTOF(formats); ++*format)
-            for (int f = 0; f < FILES; f++) {
-                char *path = adcgs_path("%s/%s%s.%s", directory, places[p], names[f], formats[*format].end);
-                const int found = adcgs_is_there(path);
-                free(path);
-                *folder = found ? adcgs_path("%s/%s", directory, places[p]) : NULL;
-                if (found)
-                    return;
-            }
+            for (int f = 0; f < FILES; f++)
+                if (adcgs_is_there_at("%s/%s%s.%s", directory, places[p], names[f], formats[*format].end))
+                    return places[p];
+    return NULL;
 }
 
 int adcgs_is_colmap(const char *folder)
 {
-    char *model;
     int format;
-    find_model(folder, &model, &format);
-    free(model);
-    return model != NULL;
+    return find_model(folder, &format) != NULL;
 }
 
 static int has_file(const reader *r, int file)
 {
-    char *path = adcgs_path("%s%s.%s", r->folder, names[file], formats[r->format].end);
-    const int has = adcgs_is_there(path);
-    free(path);
-    return has;
+    return adcgs_is_there_at("%s%s.%s", r->folder, names[file], formats[r->format].end);
 }
 
 static adcgs_status read_file(reader *r, int file)
@@ -319,14 +309,22 @@ static void clear(reader *r)
     free(r->folder);
 }
 
+/** The model's folder and format; the former stays NULL where there is none. */
+static adcgs_status open_model(reader *r)
+{
+    const char *place = find_model(r->scene->directory, &r->format);
+    r->folder = place ? adcgs_path("%s/%s", r->scene->directory, place) : NULL;
+    return place && !r->folder ? adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->scene->directory) : ADCGS_OK;
+}
+
 adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *frames, int with_points, adcgs_error *error)
 {
     reader r = {.scene = scene, .error = error, .frames = frames};
-    find_model(scene->directory, &r.folder, &r.format);
-    const adcgs_status status =
-        r.folder ? read_model(&r, with_points)
-                 : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, sparse or "
-                              "here", scene->directory);
+    adcgs_status status = open_model(&r);
+    if (status == ADCGS_OK)
+        status = r.folder ? read_model(&r, with_points)
+                          : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, "
+                                       "sparse or here", scene->directory);
     clear(&r);
     return status;
 }
@@ -334,8 +332,7 @@ adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *fram
 adcgs_status adcgs_colmap_read_points(adcgs_scene *scene, size_t n, size_t period, adcgs_error *error)
 {
     reader r = {.scene = scene, .error = error};
-    adcgs_status status = ADCGS_OK;
-    find_model(scene->directory, &r.folder, &r.format);
+    adcgs_status status = open_model(&r);
     if (r.folder && has_file(&r, POINTS)) {
         r.model.error = error;
         if (has_file(&r, IMAGES))

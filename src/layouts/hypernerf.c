@@ -37,13 +37,8 @@ typedef struct reader {
 
 int adcgs_is_hypernerf(const char *folder)
 {
-    char *dataset = adcgs_path("%s/dataset.json", folder), *metadata = adcgs_path("%s/metadata.json", folder);
-    char *camera = adcgs_path("%s/camera", folder);
-    const int is = adcgs_is_there(dataset) && adcgs_is_there(metadata) && adcgs_is_folder(camera);
-    free(dataset);
-    free(metadata);
-    free(camera);
-    return is;
+    return adcgs_is_there_at("%s/dataset.json", folder) && adcgs_is_there_at("%s/metadata.json", folder) &&
+           adcgs_is_there_at("%s/camera/.", folder);
 }
 
 /* ---- Fields ---- */

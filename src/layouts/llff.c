@@ -44,10 +44,7 @@ static adcgs_status no_memory(const reader *r)
 
 int adcgs_is_llff(const char *folder)
 {
-    char *path = adcgs_path("%s/poses_bounds.npy", folder);
-    const int is = adcgs_is_there(path);
-    free(path);
-    return is;
+    return adcgs_is_there_at("%s/poses_bounds.npy", folder);
 }
 
 /* ---- Poses ---- */
@@ -126,18 +123,20 @@ static adcgs_status check_count(const reader *r, const char *what)
 
 /* ---- Pictures of one moment ---- */
 
-/** images or the images_N of the largest pictures, from malloc(); NULL if there is none. */
-static char *find_images(const reader *r)
+/** *path: images or the images_N of the largest pictures, from malloc(); NULL if there is none. */
+static adcgs_status find_images(const reader *r, char **path)
 {
-    char *path = adcgs_path("%s/images", r->scene->directory);
-    for (int n = 2; !adcgs_is_folder(path) && n <= DIVIDE_MAX; n++) {
-        free(path);
-        path = adcgs_path("%s/images_%d", r->scene->directory, n);
+    *path = NULL;
+    for (int n = 1; n <= DIVIDE_MAX; n++) {
+        *path = n == 1 ? adcgs_path("%s/images", r->scene->directory) : adcgs_path("%s/images_%d", r->scene->directory, n);
+        if (!*path)
+            return no_memory(r);
+        if (adcgs_is_folder(*path))
+            return ADCGS_OK;
+        free(*path);
+        *path = NULL;
     }
-    if (adcgs_is_folder(path))
-        return path;
-    free(path);
-    return NULL;
+    return ADCGS_OK;
 }
 
 static adcgs_status add_pictures(const reader *r, const char *folder)
@@ -163,7 +162,8 @@ static adcgs_status add_pictures(const reader *r, const char *folder)
 
 static adcgs_status read_still(reader *r)
 {
-    char *folder = find_images(r);
+    char *folder;
+    ADCGS_TRY(find_images(r, &folder));
     if (!folder)
         return adcgs_fail(r->error, ADCGS_ERR_DATA,
                           "%s: neither videos cam00.mp4, ... nor folders cam00, ... nor a folder images or images_N",
@@ -281,9 +281,7 @@ adcgs_status adcgs_llff_read(adcgs_scene *scene, const adcgs_frame_range *frames
     free(r.data);
     free(r.path);
     ADCGS_TRY(status);
-    char *points = adcgs_path("%s/points3d.ply", scene->directory);
-    if (with_points && !adcgs_is_there(points))
+    if (with_points && !adcgs_is_there_at("%s/points3d.ply", scene->directory))
         status = adcgs_colmap_read_points(scene, r.table.rows, r.fixed ? SIZE_MAX : TEST_EVERY, error);
-    free(points);
     return status;
 }

@@ -73,7 +73,8 @@ static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adc
     if (scene->duration <= 0.0)
         scene->duration = (scene->n_times - 1) / scene->frame_rate;
     const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
-    const double distance = adcgs_pose_median_distance(train, scene->n_views[ADCGS_SPLIT_TRAIN]);
+    double distance;
+    ADCGS_TRY(adcgs_pose_median_distance(train, scene->n_views[ADCGS_SPLIT_TRAIN], &distance, error));
     const double near_plane =
         fmax(NEAR_LEAST, scene->near_bound > 0.0 ? NEAR_PER_BOUND * scene->near_bound : NEAR_PER_DISTANCE * distance);
     for (int s = 0; s < ADCGS_SPLITS; s++)
@@ -108,7 +109,7 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
     for (int s = 0; s < ADCGS_SPLITS; s++) {
         char *path = adcgs_path("%s/transforms_%s.json", scene->directory, adcgs_split_name((adcgs_split)s));
         adcgs_transforms facts = {0};
-        adcgs_status status = ADCGS_OK;
+        adcgs_status status = path ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", scene->directory);
         if (adcgs_is_there(path)) {
             status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
             if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN) {
@@ -152,11 +153,7 @@ static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcg
 
 static int is_transforms(const char *folder)
 {
-    char *train = adcgs_path("%s/transforms_train.json", folder), *single = adcgs_path("%s/transforms.json", folder);
-    const int is = adcgs_is_there(train) || adcgs_is_there(single);
-    free(train);
-    free(single);
-    return is;
+    return adcgs_is_there_at("%s/transforms_train.json", folder) || adcgs_is_there_at("%s/transforms.json", folder);
 }
 
 /** The folder's layout by the files it has; ADCGS_DATASET_AUTO: none that we know. */
@@ -223,8 +220,11 @@ static adcgs_status read_points(adcgs_scene *scene, const char *listed, const ad
         return adcgs_points_read(&scene->points, options->points_path, error);
     if (listed)
         return adcgs_points_read(&scene->points, listed, error);
+    if (!adcgs_is_there_at("%s/points3d.ply", scene->directory))
+        return ADCGS_OK;
     char *customary = adcgs_path("%s/points3d.ply", scene->directory);
-    const adcgs_status status = adcgs_is_there(customary) ? adcgs_points_read(&scene->points, customary, error) : ADCGS_OK;
+    const adcgs_status status = customary ? adcgs_points_read(&scene->points, customary, error)
+                                          : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", scene->directory);
     free(customary);
     return status;
 }

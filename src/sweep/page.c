@@ -141,9 +141,9 @@ static void print_stages(const sheet *s, const adcgs_sweep_plan *plan)
             print_row(s, &row);
     }
     close_table(s);
-    say(s, "Stages add up from base to refinement; those before rate-distortion are stored uncompressed, 4 bytes a number, the "
-           "others as streams. Without refinement a run begins with all anchors of its budget. The last rows are the whole "
-           "method with another number of primitives per anchor, or with the weights of its networks in 32 bits.");
+    say(s, "Stages add up from base to densification; those before rate-distortion are stored uncompressed, 4 bytes a number, "
+           "the others as streams. Without densification a run begins with all anchors of its budget. The last rows are the "
+           "whole method with another number of primitives per anchor, or with the weights of its networks in 32 bits.");
 }
 
 /* ---- Checks ---- */

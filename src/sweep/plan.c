@@ -66,10 +66,10 @@ static int add_cell(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_swee
     return plan->n_cells++;
 }
 
-/** What is left out before lambda has a say. Lattices come later. */
+/** What is left out before lambda has a say. The weights' steps come later. */
 static const char *left_out_early(const adcgs_sweep_run *r)
 {
-    return !strcmp(r->without, "lattice") ? "" : r->without;
+    return !strcmp(r->without, "weight_steps") ? "" : r->without;
 }
 
 static int share_beginning(const adcgs_sweep_run *a, const adcgs_sweep_run *b)
@@ -197,15 +197,15 @@ static int add_stages(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)
     static const struct {
         const char *name, *without;
         int uncompressed, k;
-    } stages[] = {{"base", "coarse,fine,rate,refinement", 1, 0},
-                  {"+ coarse deformation", "fine,rate,refinement", 1, 0},
-                  {"+ fine deformation", "rate,refinement", 1, 0},
-                  {"+ rate-distortion", "refinement", 0, 0},
-                  {"+ refinement", "", 0, 0},
+    } stages[] = {{"base", "coarse,fine,rate,densification", 1, 0},
+                  {"+ coarse deformation", "fine,rate,densification", 1, 0},
+                  {"+ fine deformation", "rate,densification", 1, 0},
+                  {"+ rate-distortion", "densification", 0, 0},
+                  {"+ densification", "", 0, 0},
                   {"K = 5", "", 0, 5},
                   {"K = 10", "", 0, 10},
                   {"K = 15", "", 0, 15},
-                  {"32-bit networks", "lattice", 0, 0}};
+                  {"32-bit networks", "weight_steps", 0, 0}};
     for (size_t i = 0; i < ADCGS_COUNTOF(stages); i++) {
         const int k = sweep->n_k ? (int)sweep->k[0] : 0;
         const adcgs_sweep_run like = {.lambda = sweep->n_lambda ? sweep->lambda[sweep->n_lambda / 2] : -1,

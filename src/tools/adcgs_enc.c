@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "layouts/open.h"
 #include "tools/enc_report.h"
+#include "train/settings.h"
 
 #include <adcgs/adcgs.h>
 
@@ -19,7 +20,8 @@
 typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed, *frames;
     double lambda, psnr, time_limit;
-    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, has_lambda, has_size, has_psnr;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json;
+    int has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
     uint64_t seed, size, memory;
 } enc_options;
 
@@ -33,6 +35,7 @@ typedef struct watcher {
     double saved;
     adcgs_train_report last;
     size_t uncompressed_bytes;
+    adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
     adcgs_error error;
 } watcher;
@@ -91,31 +94,27 @@ static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs
     ADCGS_TRY(adcgs_train_preset(c, o->preset, error));
     if (o->set)
         ADCGS_TRY(adcgs_train_set(c, o->set, error));
-    c->seed = o->seed;
+    const struct {
+        int given;
+        const char *name;
+        double value;
+    } own[] = { { o->has_lambda, "lambda", o->lambda }, { o->has_iterations, "iterations", o->iterations },
+                { o->has_scale, "scale", o->scale }, { o->has_k, "k", o->k }, { o->has_seed, "seed", (double)o->seed },
+                { o->has_max_anchors, "max_anchors", o->max_anchors } };
+    for (size_t i = 0; i < ADCGS_COUNTOF(own); i++)
+        if (own[i].given)
+            ADCGS_TRY(adcgs_train_set_value(c, own[i].name, own[i].value, error));
     c->time_limit = o->time_limit;
-    c->scale = o->scale;
     c->bf16 = (uint8_t)o->bf16;
-    if (o->has_lambda)
-        c->lambda = (float)o->lambda;
     if (o->has_size || o->has_psnr) {
         c->target = o->has_size ? ADCGS_TARGET_SIZE : ADCGS_TARGET_PSNR;
         c->target_value = o->has_size ? (double)o->size : o->psnr;
-    }
-    if (o->iterations)
-        c->iterations = (uint32_t)o->iterations;
-    if (o->k)
-        c->params.k = (uint8_t)o->k;
-    if (o->max_anchors) {
-        c->max_anchors = (uint32_t)o->max_anchors;
-        c->own_anchors = 1;
-        c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
     }
     if (o->without)
         ADCGS_TRY(adcgs_train_leave_out(c, o->without, error));
     c->without_rate |= o->uncompressed != NULL;
     c->without_rounding |= o->uncompressed != NULL;
-    if (c->target != ADCGS_TARGET_NONE && (c->without_rate || c->without_rounding))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--size and --psnr need rate: neither --without rate nor --uncompressed");
+    ADCGS_TRY(adcgs_train_check(c, error));
     if (o->beginning && adcgs_train_lambda_from(c) >= 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--beginning: lambda has no say in this run, so its beginning has no end");
     return ADCGS_OK;
@@ -150,40 +149,43 @@ static adcgs_status write_uncompressed(watcher *w, const adcgs_model *model, adc
 
 /** What the stream tells of how it was made. */
 typedef struct notes {
-    adcgs_encode_note list[5];
+    adcgs_encode_note list[6];
+    uint32_t n;
     char seed[32], lambda[32], iterations[32];
 } notes;
 
-static void take_notes(notes *n, const adcgs_trainer *t)
+/** changes: settings that are not the preset's, "" for none. */
+static void take_notes(notes *n, const adcgs_trainer *t, const char *changes)
 {
     snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
     snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
     snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
     const adcgs_encode_note list[ADCGS_COUNTOF(n->list)] = {
         { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
-        { "iterations", n->iterations }, { "seed", n->seed },
+        { "iterations", n->iterations }, { "seed", n->seed },     { "settings", changes },
     };
     memcpy(n->list, list, sizeof list);
+    n->n = ADCGS_COUNTOF(list) - !*changes;
 }
 
 /** The bytes that the run's file would have. */
 static adcgs_status measure(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *error)
 {
+    const watcher *w = user;
     notes n;
-    (void)user;
-    take_notes(&n, t);
-    return adcgs_encode_bytes(bytes, t, -1, n.list, ADCGS_COUNTOF(n.list), error);
+    take_notes(&n, t, (const char *)w->changes.data);
+    return adcgs_encode_bytes(bytes, t, -1, n.list, n.n, error);
 }
 
 static adcgs_status write_stream(adcgs_stream *stream, watcher *w, adcgs_pool *pool, adcgs_error *error)
 {
     notes n;
     adcgs_buffer bytes;
-    take_notes(&n, w->t);
+    take_notes(&n, w->t, (const char *)w->changes.data);
     adcgs_buffer_init(&bytes);
     if (w->o->uncompressed)
         adcgs_raw_prepare(w->t->f);
-    adcgs_status status = adcgs_encode_stream(stream, w->t, n.list, ADCGS_COUNTOF(n.list), error);
+    adcgs_status status = adcgs_encode_stream(stream, w->t, n.list, n.n, error);
     if (status == ADCGS_OK)
         status = adcgs_encode_verified(stream, &bytes, w->t->cpu, pool, error);
     if (status == ADCGS_OK && w->t->config.target == ADCGS_TARGET_SIZE && bytes.size > w->o->size)
@@ -286,6 +288,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_cpu_level cpu;
     watcher w = { .o = o };
     adcgs_stream stream;
+    adcgs_buffer_init(&w.changes);
     adcgs_stream_init(&stream);
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
     if (status == ADCGS_OK && o->frames)
@@ -294,6 +297,8 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
         status = configure(&config, o, cpu, error);
     if (status == ADCGS_OK)
         status = check_distinct(o, error);
+    if (status == ADCGS_OK)
+        status = adcgs_train_changes(&config, &w.changes, error);
     if (status == ADCGS_OK)
         status = check_writable(target(o), error);
     if (status == ADCGS_OK && o->checkpoint)
@@ -312,6 +317,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK) {
         w.t->quantise = adcgs_encode_quantise_hook;
         w.t->measure = measure;
+        w.t->measure_user = &w;
         w.t->picture_memory = o->memory;
         w.t->loading = loading;
         w.t->loading_user = &w;
@@ -323,6 +329,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
         status = adcgs_enc_report_print(cli, &(adcgs_enc_report){ o->output, w.t, w.last, w.uncompressed_bytes, o->threads,
                                                                   o->json }, met, error);
     status = close_log(&w, status, error);
+    adcgs_buffer_clear(&w.changes);
     adcgs_stream_clear(&stream, NULL);
     adcgs_trainer_free(&w.t);
     adcgs_scene_free(&scene);
@@ -347,35 +354,38 @@ static int list_settings(const adcgs_cli *cli, const enc_options *o)
     adcgs_error error;
     if (adcgs_train_preset(&config, o->preset, &error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
-    adcgs_train_settings(&config, stdout);
+    adcgs_train_list(&config, stdout);
     return adcgs_cli_leave(cli, 0);
 }
 
 /** -1 to go on, else the exit code to leave with. */
 static int parse(enc_options *o, int argc, char **argv)
 {
+    const adcgs_setting *const lambda = adcgs_setting_find("lambda"), *const iterations = adcgs_setting_find("iterations");
+    const adcgs_setting *const scale = adcgs_setting_find("scale"), *const seed = adcgs_setting_find("seed");
+    const adcgs_setting *const k = adcgs_setting_find("k"), *const anchors = adcgs_setting_find("max_anchors");
     const adcgs_option options[] = {
         { "output", 'o', ADCGS_OPTION_STRING, &o->output, 0, 0, "FILE",
           "write the stream here (required, but for --beginning)", NULL, NULL },
         { "preset", 'p', ADCGS_OPTION_STRING, &o->preset, 0, 0, "NAME",
           "draft, fast, medium, slow or paper (default fast)", NULL, NULL },
-        { "lambda", 'l', ADCGS_OPTION_REAL, &o->lambda, 0, 1000, "X",
+        { "lambda", 'l', ADCGS_OPTION_REAL, &o->lambda, lambda->min, lambda->max, "X",
           "loss per mebibyte of features and networks: larger\nmakes smaller files (default: the preset's)", NULL,
           &o->has_lambda },
-        { "size", 's', ADCGS_OPTION_SIZE, &o->size, 1, 1e12, "BYTES",
+        { "size", 's', ADCGS_OPTION_SIZE, &o->size, ADCGS_TARGET_SIZE_MIN, ADCGS_TARGET_SIZE_MAX, "BYTES",
           "make the file at most this large (150k, 1.5M, 2MiB), by\nless than 3 %, instead of giving --lambda", NULL,
           &o->has_size },
-        { "psnr", 0, ADCGS_OPTION_REAL, &o->psnr, 5, 80, "DB",
+        { "psnr", 0, ADCGS_OPTION_REAL, &o->psnr, ADCGS_TARGET_PSNR_MIN, ADCGS_TARGET_PSNR_MAX, "DB",
           "make the file so small that the training views, decoded\nfrom it, have this mean PSNR, within 0.1; test views are\n"
           "never looked at", NULL, &o->has_psnr },
-        { "iterations", 'n', ADCGS_OPTION_INT, &o->iterations, 10, 10000000, "N",
-          "length of the run (default: the preset's)", NULL, NULL },
-        { "scale", 0, ADCGS_OPTION_INT, &o->scale, 1, 64, "S",
-          "divide the pictures' size by this integer (default 1)", NULL, NULL },
-        { "k", 0, ADCGS_OPTION_INT, &o->k, 1, ADCGS_K_MAX, "N",
-          "primitives per anchor, 1 to 16 (default: the preset's)", NULL, NULL },
-        { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, 1, 1000000, "N",
-          "budget of anchors (default: the preset's)", NULL, NULL },
+        { "iterations", 'n', ADCGS_OPTION_INT, &o->iterations, iterations->min, iterations->max, "N",
+          "length of the run (default: the preset's)", NULL, &o->has_iterations },
+        { "scale", 0, ADCGS_OPTION_INT, &o->scale, scale->min, scale->max, "S",
+          "divide the pictures' size by this integer (default 1)", NULL, &o->has_scale },
+        { "k", 0, ADCGS_OPTION_INT, &o->k, k->min, k->max, "N",
+          "primitives per anchor, 1 to 16 (default: the preset's)", NULL, &o->has_k },
+        { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, anchors->min, anchors->max, "N",
+          "budget of anchors (default: the preset's)", NULL, &o->has_max_anchors },
         { "dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
           "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs or splats",
           adcgs_dataset_names, NULL },
@@ -385,15 +395,17 @@ static int parse(enc_options *o, int argc, char **argv)
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
-          "leave out coarse, fine, deformation (both), rate,\nrefinement, anchors, removal or lattice", NULL, NULL },
+          "leave out coarse, fine, deformation (both), rate,\ndensification, anchors, removal or weight_steps", NULL, NULL },
         { "uncompressed", 0, ADCGS_OPTION_STRING, &o->uncompressed, 0, 0, "FILE",
           "train without rate and rounding, write the model here\nas plain binary32 numbers; the stream is then the finest", NULL,
           NULL },
         { "set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
-          "change settings of the preset; 'list' shows them", NULL, NULL },
-        { "time-limit", 0, ADCGS_OPTION_REAL, &o->time_limit, 0, 1e7, "S",
+          "change settings of the preset; 'list' shows them all", NULL,
+          NULL },
+        { "time-limit", 0, ADCGS_OPTION_REAL, &o->time_limit, 0, ADCGS_TIME_LIMIT_MAX, "S",
           "train for at most S seconds; the result then depends on\nthe speed of the machine", NULL, NULL },
-        { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, 0, 1e15, "N", "seed of every random choice (default 1)", NULL, NULL },
+        { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, seed->min, seed->max, "N", "seed of every random choice (default 1)", NULL,
+          &o->has_seed },
         { "checkpoint", 0, ADCGS_OPTION_STRING, &o->checkpoint, 0, 0, "FILE",
           "save the state of the run here every minute and when\ninterrupted (default then: the output's name.checkpoint)", NULL,
           NULL },
@@ -437,7 +449,7 @@ static int parse(enc_options *o, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    enc_options o = { .preset = "fast", .scale = 1, .seed = 1 };
+    enc_options o = { .preset = "fast" };
     const int code = parse(&o, argc, argv);
     if (code >= 0)
         return code;

@@ -4,6 +4,7 @@
 
 #include "cli/cli.h"
 #include "sweep/sweep.h"
+#include "train/settings.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -222,25 +223,41 @@ typedef struct lists {
     const char *lambdas, *ks, *seeds, *yardsticks;
 } lists;
 
+/** What every run would refuse is refused before the first. */
+static int check_settings(const adcgs_cli *cli, const adcgs_sweep *sweep)
+{
+    adcgs_train_config config;
+    adcgs_error error;
+    adcgs_status status = adcgs_train_preset(&config, sweep->preset ? sweep->preset : "fast", &error);
+    if (status == ADCGS_OK && sweep->set)
+        status = adcgs_train_set(&config, sweep->set, &error);
+    if (status == ADCGS_OK && sweep->n_k)
+        status = adcgs_train_set_value(&config, "k", sweep->k[0], &error);
+    if (status == ADCGS_OK)
+        status = adcgs_train_check(&config, &error);
+    return status == ADCGS_OK ? -1 : adcgs_cli_fail(cli, &error);
+}
+
 /** -1 to go on, else the exit code to leave with. */
 static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
 {
     const struct {
-        const char *text;
-        double min, max;
+        const char *text, *setting;
         double *out;
         int *n;
-    } each[] = {{l->lambdas, 0, 1000, sweep->lambda, &sweep->n_lambda},
-                {l->ks, 1, 16, sweep->k, &sweep->n_k},
-                {l->seeds, 0, 1e15, sweep->seed, &sweep->n_seed}};
+    } each[] = {{l->lambdas, "lambda", sweep->lambda, &sweep->n_lambda},
+                {l->ks, "k", sweep->k, &sweep->n_k},
+                {l->seeds, "seed", sweep->seed, &sweep->n_seed}};
     for (size_t i = 0; i < ADCGS_COUNTOF(each); i++) {
-        *each[i].n = each[i].text ? parse_list(each[i].text, each[i].min, each[i].max, each[i].out) : 0;
-        for (int j = 0; i > 0 && j < *each[i].n; j++)
+        const adcgs_setting *s = adcgs_setting_find(each[i].setting);
+        const int whole = s->kind != ADCGS_SETTING_REAL;
+        *each[i].n = each[i].text ? parse_list(each[i].text, s->min, s->max, each[i].out) : 0;
+        for (int j = 0; whole && j < *each[i].n; j++)
             if (each[i].out[j] != (double)(int64_t)each[i].out[j])
                 *each[i].n = -1;
         if (*each[i].n < 0)
             return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "bad list \"%s\": expected at most %d %snumbers from %g to %g, with "
-                                   "commas between", each[i].text, ADCGS_SWEEP_LIST, i ? "whole " : "", each[i].min, each[i].max);
+                                   "commas between", each[i].text, ADCGS_SWEEP_LIST, whole ? "whole " : "", s->min, s->max);
     }
     qsort(sweep->lambda, (size_t)sweep->n_lambda, sizeof *sweep->lambda, compare_double);
     sweep->yardsticks = parse_yardsticks(l->yardsticks);
@@ -264,6 +281,7 @@ static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
 {
     lists l = {.yardsticks = "all"};
     int first = 0;
+    const adcgs_setting *const iterations = adcgs_setting_find("iterations");
     const adcgs_option options[] = {
         {"output", 'o', ADCGS_OPTION_STRING, &sweep->directory, 0, 0, "DIR", "folder for all results (required)", NULL, NULL},
         {"lambda", 'l', ADCGS_OPTION_STRING, &l.lambdas, 0, 0, "A,B,C",
@@ -281,8 +299,8 @@ static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
         {"set", 0, ADCGS_OPTION_STRING, &sweep->set, 0, 0, "NAME=VALUE,...", "settings of the encoder", NULL, NULL},
         {"dataset", 0, ADCGS_OPTION_STRING, &sweep->dataset, 0, 0, "KIND", "kind of the scene, as for adcgs-enc", NULL, NULL},
         {"frames", 0, ADCGS_OPTION_STRING, &sweep->frames, 0, 0, "A:B:STEP", "frames of the scene, as for adcgs-enc", NULL, NULL},
-        {"iterations", 'n', ADCGS_OPTION_INT, &sweep->iterations, 1, 10000000, "N", "of training (default: the preset's)", NULL,
-         NULL},
+        {"iterations", 'n', ADCGS_OPTION_INT, &sweep->iterations, iterations->min, iterations->max, "N",
+         "of training (default: the preset's)", NULL, NULL},
         {"jobs", 'j', ADCGS_OPTION_INT, jobs, 1, 64, "N", "encoders at a time (default: 1)", NULL, NULL},
         {"threads", 't', ADCGS_OPTION_INT, &sweep->threads, 0, 256, "N", "threads of each encoder (default: one per CPU)", NULL,
          NULL},
@@ -298,7 +316,8 @@ static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
     if (!sweep->directory || (!l.lambdas && !sweep->ablation))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
     sweep->scene = argv[first];
-    return parse_lists(&cli, &l, sweep);
+    const int bad = parse_lists(&cli, &l, sweep);
+    return bad >= 0 ? bad : check_settings(&cli, sweep);
 }
 
 int main(int argc, char **argv)

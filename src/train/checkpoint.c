@@ -4,7 +4,7 @@
  * rest of the run depends on; saving and loading are its two visitors.
  * A file is "ADCGSCKP", a format number, the walk, and a CRC-32C of it all.
  */
-#include "train/trainer.h"
+#include "train/checkpoint.h"
 
 #include "base/digest.h"
 #include "io/atomic.h"
@@ -46,14 +46,14 @@ static void visit_same(walk *w, uint64_t value)
 /** Everything that the run depends on and no limit of time: a run may go on with another. */
 static void walk_options(walk *w, const adcgs_train_config *c)
 {
-    const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->refine_every,
+    const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->densify_every,
                                (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
-                               c->without_refinement, c->without_rounding, c->bf16 };
-    const float real[] = { c->ssim_weight, c->grow_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight,
-                           c->area_weight, c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
-                           c->window_begin, c->window_until, c->quarter_until, c->half_until, c->area_from, c->deform_from,
-                           c->fine_from, c->grow_from, c->grow_until, c->noise_from, c->rate_from, c->slim_at, c->slim_again,
-                           c->decide_at, c->round_from, c->freeze_from };
+                               c->without_densification, c->without_rounding, c->bf16 };
+    const float real[] = { c->ssim_weight, c->densify_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight,
+                           c->scale_weight, c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
+                           c->curriculum_begin, c->curriculum_until, c->quarter_until, c->half_until, c->scale_from,
+                           c->deform_from, c->fine_from, c->densify_from, c->densify_until, c->noise_from, c->rate_from,
+                           c->prune_units_at, c->prune_units_again, c->decide_at, c->round_from, c->freeze_from };
     for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
         visit_same(w, whole[i]);
     for (size_t i = 0; i < ADCGS_COUNTOF(real); i++)
@@ -76,10 +76,10 @@ static void walk_lambda(walk *w, adcgs_trainer *t)
 /** Whether weights get a lattice is open until they do. */
 static void walk_lattice(walk *w, adcgs_trainer *t)
 {
-    uint8_t without = t->config.without_lattice;
+    uint8_t without = t->config.without_weight_steps;
     visit(w, &without, sizeof without);
     visit(w, &t->rounding, sizeof t->rounding);
-    w->failed |= t->rounding && without != t->config.without_lattice;
+    w->failed |= t->rounding && without != t->config.without_weight_steps;
 }
 
 static void walk_sizes(walk *w, const adcgs_params *p, const adcgs_shape *s)
@@ -128,10 +128,10 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->frozen, sizeof t->frozen);
     visit(w, &t->lr_scale, sizeof t->lr_scale);
     visit(w, &t->lambda, sizeof t->lambda);
-    visit(w, &t->control, sizeof t->control);
-    visit(w, &t->window.n, sizeof t->window.n);
-    visit(w, &t->window.first, sizeof t->window.first);
-    visit(w, &t->window.last, sizeof t->window.last);
+    visit(w, &t->rate_control, sizeof t->rate_control);
+    visit(w, &t->curriculum.n, sizeof t->curriculum.n);
+    visit(w, &t->curriculum.first, sizeof t->curriculum.first);
+    visit(w, &t->curriculum.last, sizeof t->curriculum.last);
     visit(w, &t->rollbacks, sizeof t->rollbacks);
     visit(w, &t->mean_loss, sizeof t->mean_loss);
     visit(w, &t->mean_mse, sizeof t->mean_mse);
@@ -169,7 +169,7 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
         visit(w, p->p, p->n * sizeof(float));
         visit(w, p->m, p->n * sizeof(float));
         visit(w, p->v, p->n * sizeof(float));
-        visit(w, f->mlp[i].lattice, sizeof f->mlp[i].lattice);
+        visit(w, f->mlp[i].weight_step, sizeof f->mlp[i].weight_step);
     }
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         visit(w, t->pass->mu[i], f->param[i].n * sizeof(float));
@@ -178,10 +178,10 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
 
 static void walk_average(walk *w, adcgs_trainer *t)
 {
-    adcgs_average *a = &t->average;
+    adcgs_weight_average *a = &t->average;
     uint32_t n = a->n;
     visit(w, &n, sizeof n);
-    if (n > 0 && !w->out && adcgs_average_begin(a, t->f, NULL) != ADCGS_OK)
+    if (n > 0 && !w->out && adcgs_weight_average_begin(a, t->f, NULL) != ADCGS_OK)
         w->failed = 1;
     a->n = w->failed ? 0 : n;
     if (a->n > 0)
@@ -216,15 +216,15 @@ static adcgs_status restore_anchors(walk *w, adcgs_trainer *t, adcgs_error *erro
     visit(w, &n, sizeof n);
     if (w->failed || n == 0 || n > adcgs_reader_left(w->in) / 12)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%u anchors do not fit its size", n);
-    uint32_t(*pos)[3] = malloc(n * sizeof *pos);
-    uint32_t *source = calloc(n, sizeof *source);
-    adcgs_status status = pos && source ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u anchors", n);
+    uint32_t(*pos)[3] = adcgs_alloc(NULL, n, sizeof *pos, error);
+    uint32_t *source = adcgs_alloc(NULL, n, sizeof *source, error);
+    adcgs_status status = pos && source ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         visit(w, pos, n * sizeof *pos);
         status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])pos, source, NULL, n, error);
     }
-    free(pos);
-    free(source);
+    adcgs_free(NULL, pos);
+    adcgs_free(NULL, source);
     return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
 }
 
@@ -246,9 +246,7 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     if (w.failed || adcgs_reader_left(&reader))
         return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
     adcgs_fmodel_take_steps(t->f);
-    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
-        if (t->f->mlp[i].n)
-            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);
+    adcgs_trainer_prepare_networks(t);
     return ADCGS_OK;
 }
 

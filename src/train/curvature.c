@@ -7,9 +7,10 @@
 #include "train/curvature.h"
 
 #include "grad/random.h"
+#include "train/sample.h"
+#include "train/views.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { PROBES = 2, MEASURE_VIEWS = 32 };
 
@@ -44,12 +45,10 @@ static adcgs_status project_views(adcgs_trainer *t, float *const h[ADCGS_P_ANCHO
         const adcgs_train_view *v = &t->views[(uint64_t)i * t->n_views / n];
         const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
         adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
-        ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 1,
-                                       error));
+        ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 1, error));
         for (uint32_t probe = 0; probe < PROBES; probe++) {
             random_signs(t->grad, values, (uint32_t)adcgs_random64(t->config.seed, 4000 + probe, i));
-            ADCGS_TRY(adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f,
-                                            t->image, t->grad, &t->pass->grads, error));
+            ADCGS_TRY(adcgs_view_draw_back(t, &v->view, &t->pass->grads, error));
             adcgs_pass_backward(t->pass, t->f, ADCGS_DEFORM_ALL, 0, 0, 0, NULL);
             take_squares(t->f, h, scale);
         }
@@ -75,18 +74,18 @@ static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, d
 {
     adcgs_param *p = &t->f->param[group];
     const size_t rows = (size_t)adcgs_fmodel_rows(t->f, group);
-    float *still = malloc(p->n * sizeof *still);
+    float *still = adcgs_alloc(NULL, p->n, sizeof *still, error);
     double up = 0, down = 0;
     if (!still)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %zu values", p->n);
+        return adcgs_alloc_status(error);
     memcpy(still, p->p, p->n * sizeof *still);
     move_values(t, group, still, 1);
-    adcgs_status status = adcgs_trainer_sample_loss(t, MEASURE_VIEWS, 1, &up, error);
+    adcgs_status status = adcgs_sample_loss(t, MEASURE_VIEWS, 1, &up, error);
     move_values(t, group, still, -1);
     if (status == ADCGS_OK)
-        status = adcgs_trainer_sample_loss(t, MEASURE_VIEWS, 1, &down, error);
+        status = adcgs_sample_loss(t, MEASURE_VIEWS, 1, &down, error);
     memcpy(p->p, still, p->n * sizeof *still);
-    free(still);
+    adcgs_free(NULL, still);
     *seen = 0.5 * (up + down) - still_loss;
     *said = 0;
     for (size_t j = 0; j < p->n; j++) {
@@ -103,7 +102,7 @@ static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, d
 static adcgs_status calibrate(adcgs_trainer *t, float *const h[ADCGS_P_ANCHOR], double ratio[ADCGS_P_ANCHOR], adcgs_error *error)
 {
     double still, seen[ADCGS_P_ANCHOR], said[ADCGS_P_ANCHOR], all_seen = 0, all_said = 0;
-    ADCGS_TRY(adcgs_trainer_sample_loss(t, MEASURE_VIEWS, 1, &still, error));
+    ADCGS_TRY(adcgs_sample_loss(t, MEASURE_VIEWS, 1, &still, error));
     for (int i = 0; i < ADCGS_P_ETA; i++) {
         ADCGS_TRY(measured_move(t, i, h[i], still, &seen[i], &said[i], error));
         all_seen += seen[i];

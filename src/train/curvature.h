@@ -3,7 +3,7 @@
 #ifndef ADCGS_TRAIN_CURVATURE_H
 #define ADCGS_TRAIN_CURVATURE_H
 
-#include "train/trainer.h"
+#include "train/state.h"
 
 /** Most training views that are looked at. */
 enum { ADCGS_CURVATURE_VIEWS = 64 };

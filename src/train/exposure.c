@@ -21,13 +21,13 @@ adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *vi
     e->of = adcgs_alloc(NULL, n_views, sizeof *e->of, error);
     uint32_t n = 0;
     if (!e->of)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     ADCGS_TRY(adcgs_sort_by_camera(views, n_views, e->of, NULL, &n, error));
     if (n < 2 || n > most)
         return ADCGS_OK;
     e->cameras = adcgs_alloc(NULL, n, sizeof *e->cameras, error);
     if (!e->cameras)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < n; i++)
         e->cameras[i] = (adcgs_exposure_camera){ .gain = { 1, 1, 1 } };
     e->n = n;

@@ -46,21 +46,21 @@ static void focus_point(const adcgs_scene *scene, double focus[3])
         }
 }
 
-void adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale)
+adcgs_status adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
     focus_point(scene, origin);
-    double *distance = malloc(n * sizeof *distance);
-    *scale = 1;
+    double *distance = adcgs_alloc(NULL, n, sizeof *distance, error);
     if (!distance)
-        return;
+        return adcgs_alloc_status(error);
     for (uint32_t v = 0; v < n; v++) {
         const double *m = scene->views[ADCGS_SPLIT_TRAIN][v].camera.cam_to_world;
         distance[v] = sqrt(pow(m[3] - origin[0], 2) + pow(m[7] - origin[1], 2) + pow(m[11] - origin[2], 2));
     }
     adcgs_sort(distance, n);
     *scale = distance[n / 2] > 1e-9 ? distance[n / 2] : 1;
-    free(distance);
+    adcgs_free(NULL, distance);
+    return ADCGS_OK;
 }
 
 /* ---- What the cameras see ---- */
@@ -84,7 +84,7 @@ static adcgs_status sight_init(sight *s, const adcgs_scene *scene, adcgs_error *
     const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = all < 64 ? all : 64;
     memset(s, 0, sizeof *s);
     s->scene = scene;
-    adcgs_scene_frame(scene, s->origin, &s->scale);
+    ADCGS_TRY(adcgs_scene_frame(scene, s->origin, &s->scale, error));
     for (uint32_t i = 0; i < n; i++) {
         const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * all / n];
         const adcgs_status status = adcgs_scene_load(scene, view, 4, &s->rgb[i], &s->camera[i], error);
@@ -149,15 +149,15 @@ typedef struct cloud {
 static adcgs_status cloud_alloc(cloud *c, uint32_t capacity, adcgs_error *error)
 {
     c->n = 0;
-    c->x = malloc(((size_t)capacity + 1) * sizeof *c->x);
-    c->rgb = malloc(((size_t)capacity + 1) * sizeof *c->rgb);
-    return c->x && c->rgb ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u initial points", capacity);
+    c->x = adcgs_alloc(NULL, (size_t)capacity + 1, sizeof *c->x, error);
+    c->rgb = adcgs_alloc(NULL, (size_t)capacity + 1, sizeof *c->rgb, error);
+    return c->x && c->rgb ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
 static void cloud_clear(cloud *c)
 {
-    free(c->x);
-    free(c->rgb);
+    adcgs_free(NULL, c->x);
+    adcgs_free(NULL, c->rgb);
 }
 
 /** The scene's own points, in scene units, evenly thinned; those without a colour take that of the pictures. */
@@ -274,8 +274,9 @@ static void set_anchor(adcgs_fmodel *f, uint32_t i, const double rgb[3])
     }
 }
 
-/** One anchor per occupied voxel, Morton order; order[i] is the point anchor i came from. */
-static uint32_t voxelise(const cloud *c, double half, int depth, uint32_t (*pos)[3], uint32_t *order, adcgs_error *error)
+/** One anchor per occupied voxel, Morton order; order[i] is the point anchor i came from, of *anchors. */
+static adcgs_status voxelise(const cloud *c, double half, int depth, uint32_t (*pos)[3], uint32_t *order, uint32_t *anchors,
+                             adcgs_error *error)
 {
     const double voxel = 2 * half / (double)(1u << depth);
     for (uint32_t i = 0; i < c->n; i++)
@@ -283,7 +284,9 @@ static uint32_t voxelise(const cloud *c, double half, int depth, uint32_t (*pos)
             const double v = floor((c->x[i][a] + half) / voxel);
             pos[i][a] = (uint32_t)fmin(fmax(v, 0), (double)(1u << depth) - 1);
         }
-    adcgs_morton_sort(&pos[0][0], c->n, order, error);
+    const int sorted = adcgs_morton_sort(&pos[0][0], c->n, order, error);
+    if (sorted < 0)
+        return (adcgs_status)sorted;
     uint32_t n = 0;
     for (uint32_t i = 0; i < c->n; i++) {
         if (n && !memcmp(pos[n - 1], pos[i], sizeof pos[i]))
@@ -291,7 +294,8 @@ static uint32_t voxelise(const cloud *c, double half, int depth, uint32_t (*pos)
         memmove(pos[n], pos[i], sizeof pos[i]);
         order[n++] = order[i];
     }
-    return n;
+    *anchors = n;
+    return ADCGS_OK;
 }
 
 static adcgs_status make_anchors(adcgs_fmodel **out, const cloud *c, const adcgs_train_config *config, adcgs_error *error)
@@ -299,24 +303,22 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const cloud *c, const adcgs
     const double half = cube_half(c);
     const float origin[3] = { (float)-half, (float)-half, (float)-half };
     const float voxel = (float)(2 * half / (double)(1u << config->shape.depth));
-    uint32_t(*pos)[3] = malloc(c->n * sizeof *pos);
-    uint32_t *order = malloc(c->n * sizeof *order);
-    adcgs_status status = ADCGS_ERR_MEMORY;
-    if (pos && order) {
-        const uint32_t n = voxelise(c, half, config->shape.depth, pos, order, error);
+    uint32_t(*pos)[3] = adcgs_alloc(NULL, c->n, sizeof *pos, error);
+    uint32_t *order = adcgs_alloc(NULL, c->n, sizeof *order, error);
+    uint32_t n = 0;
+    adcgs_status status =
+        pos && order ? voxelise(c, half, config->shape.depth, pos, order, &n, error) : adcgs_alloc_status(error);
+    if (status == ADCGS_OK)
         status = adcgs_fmodel_create(out, &config->params, &config->shape, origin, voxel, (const uint32_t(*)[3])pos, n,
                                      config->seed, error);
-        for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
-            set_anchor(*out, i, c->rgb[order[i]]);
-    } else {
-        adcgs_fail(error, status, "out of memory for %u anchors", c->n);
-    }
-    free(pos);
-    free(order);
+    for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
+        set_anchor(*out, i, c->rgb[order[i]]);
+    adcgs_free(NULL, pos);
+    adcgs_free(NULL, order);
     return status;
 }
 
-adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
+adcgs_status adcgs_initialise(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                adcgs_error *error)
 {
     sight s;

@@ -10,13 +10,13 @@
 enum { ADCGS_POINTS_LEAST = 16 };
 
 /** Scene units: the cameras' common focus is the origin, their median distance from it is 1. */
-void adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale);
+adcgs_status adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale, adcgs_error *error);
 
 /**
  * First anchors: the scene's points, or random points inside the cameras' common volume; one per voxel, at most
  * config->start_anchors. Only training views are looked at.
  */
-adcgs_status adcgs_train_start(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
+adcgs_status adcgs_initialise(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                adcgs_error *error);
 
 #endif

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Landing on a target: the strength of the choice of levels at which a frozen run meets it. */
-#include "train/rate_control.h"
+#include "train/rate_target.h"
 
-#include "train/trainer.h"
+#include "train/levels.h"
+#include "train/prune.h"
+#include "train/sample.h"
+#include "train/views.h"
 
 #include <math.h>
 
@@ -29,11 +32,11 @@ typedef struct window {
 /** Choose levels with a strength, and the densities that suit them; from the nearest levels on, whatever was chosen before. */
 static adcgs_status settle(adcgs_trainer *t, double strength, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_trainer_choose(t, 0, error));
-    adcgs_trainer_densities(t);
+    ADCGS_TRY(adcgs_level_choose(t, 0, error));
+    adcgs_level_densities(t);
     if (strength > 0) {
-        ADCGS_TRY(adcgs_trainer_choose(t, strength, error));
-        adcgs_trainer_densities(t);
+        ADCGS_TRY(adcgs_level_choose(t, strength, error));
+        adcgs_level_densities(t);
     }
     return ADCGS_OK;
 }
@@ -43,7 +46,7 @@ static adcgs_status value_now(adcgs_trainer *t, double *value, adcgs_error *erro
 {
     adcgs_bytes bytes;
     if (t->config.target == ADCGS_TARGET_PSNR)
-        return adcgs_control_psnr(t, UINT32_MAX, value, error);
+        return adcgs_sample_psnr(t, UINT32_MAX, value, error);
     ADCGS_TRY(t->measure(t->measure_user, t, &bytes, error));
     *value = (double)bytes.total;
     return ADCGS_OK;
@@ -85,8 +88,8 @@ static adcgs_status seek(adcgs_trainer *t, const window *w, double *strength, do
 /** Drop the anchors that show least, so many that the size is met as far as the rest takes bytes in proportion. */
 static adcgs_status prune(adcgs_trainer *t, const window *w, double bytes, adcgs_error *error)
 {
-    const double fixed = ADCGS_MIN(t->control.fixed, w->high), share = (w->high - fixed) / (bytes - fixed);
-    return adcgs_trainer_prune(t, (uint32_t)(t->f->n * fmin(fmax(share, PRUNE_LEAST), PRUNE_MOST)), error);
+    const double fixed = ADCGS_MIN(t->rate_control.fixed, w->high), share = (w->high - fixed) / (bytes - fixed);
+    return adcgs_prune_anchors(t, (uint32_t)(t->f->n * fmin(fmax(share, PRUNE_LEAST), PRUNE_MOST)), error);
 }
 
 /** Meet the window; a size where levels cannot be made cheap enough, with fewer anchors. */
@@ -101,7 +104,7 @@ static adcgs_status land(adcgs_trainer *t, const window *w, adcgs_error *error)
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_control_frozen(adcgs_trainer *t, adcgs_error *error)
+adcgs_status adcgs_rate_target_frozen(adcgs_trainer *t, adcgs_error *error)
 {
     const double target = t->config.target_value;
     if (t->config.target == ADCGS_TARGET_SIZE)
@@ -113,17 +116,13 @@ adcgs_status adcgs_control_frozen(adcgs_trainer *t, adcgs_error *error)
     return land(t, &(window){ aim - PSNR_NEAR, aim + PSNR_NEAR }, error);
 }
 
-adcgs_status adcgs_control_finish(adcgs_trainer *t, adcgs_error *error)
+adcgs_status adcgs_rate_target_finish(adcgs_trainer *t, adcgs_error *error)
 {
     const double target = t->config.target_value;
     window w = { (1 - 2 * SIZE_MARGIN) * target, target };
     double now;
     if (t->config.target == ADCGS_TARGET_NONE)
         return ADCGS_OK;
-    if (!t->rounding)
-        ADCGS_TRY(adcgs_trainer_round(t, error));
-    if (!t->frozen)
-        ADCGS_TRY(adcgs_trainer_freeze(t, error));
     if (t->config.target == ADCGS_TARGET_PSNR) {
         w = (window){ target - PSNR_NEAR, target + PSNR_NEAR };
         if (t->divide != 1)

@@ -2,6 +2,8 @@
 /** \file What is missing. */
 #include "train/residual_densify.h"
 
+#include "train/views.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -32,7 +34,7 @@ static int by_difference(const void *a, const void *b)
 
 static int by_score(const void *a, const void *b)
 {
-    const adcgs_missing *p = a, *q = b;
+    const adcgs_residual *p = a, *q = b;
     return p->score != q->score ? (p->score < q->score) - (p->score > q->score) : memcmp(p->x, q->x, sizeof p->x);
 }
 
@@ -57,10 +59,10 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
     l->view = v;
     l->off = adcgs_alloc(NULL, 5 * plane, sizeof *l->off, error);
     if (!l->off)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     l->more = l->off + plane;
     l->taken = l->more + plane;
-    ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 0, error));
+    ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 0, error));
     const float *target;
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &target, error));
     memcpy(l->taken, target, 3 * plane * sizeof *l->taken);
@@ -88,7 +90,7 @@ static int sees(const look *l, const float x[3], float *off)
 }
 
 /** Where along a pixel's ray the other cameras agree the most that something is missing. 0 if too few do. */
-static int place_of(const look *looks, int n, int own, pixel p, adcgs_missing *place)
+static int place_of(const look *looks, int n, int own, pixel p, adcgs_residual *place)
 {
     const look *l = &looks[own];
     const adcgs_view *v = &l->view->view;
@@ -118,13 +120,14 @@ static int place_of(const look *looks, int n, int own, pixel p, adcgs_missing *p
     return place->score > 0;
 }
 
-static uint32_t follow(const look *looks, int n, int own, adcgs_missing *places, uint32_t most)
+static adcgs_status follow(const look *looks, int n, int own, adcgs_residual *places, uint32_t most, uint32_t *total,
+                           adcgs_error *error)
 {
     const look *l = &looks[own];
-    pixel *list = malloc((size_t)l->w * (size_t)l->h * sizeof *list);
+    pixel *list = adcgs_alloc(NULL, (size_t)l->w * (size_t)l->h, sizeof *list, error);
     uint32_t count = 0, found = 0;
-    if (!list) /* without memory nothing is found: as good a run as without points of its own */
-        return 0;
+    if (!list)
+        return adcgs_alloc_status(error);
     for (int i = 0; i < l->w * l->h; i++)
         if (l->more[i] > DIFFERENCE && l->off[i] == l->more[i])
             list[count++] = (pixel){ l->more[i], i };
@@ -136,23 +139,39 @@ static uint32_t follow(const look *looks, int n, int own, adcgs_missing *places,
             places[found].rgb[c] = l->taken[(size_t)c * (size_t)l->w * (size_t)l->h + (size_t)list[i].at];
         found++;
     }
-    free(list);
-    return found;
+    adcgs_free(NULL, list);
+    *total += found;
+    return ADCGS_OK;
 }
 
-adcgs_status adcgs_trainer_missing(adcgs_trainer *t, adcgs_missing *places, uint32_t most, uint32_t *n, adcgs_error *error)
+/**
+ * Whether a view, the index-th of so many at a moment, is one of the VIEWS_MOST that are looked at: spread evenly over all, and
+ * others each time.
+ */
+static int is_taken(uint32_t index, uint32_t views, uint32_t turn)
+{
+    if (views <= VIEWS_MOST)
+        return 1;
+    const uint64_t at = (index + turn) % views;
+    return (at + 1) * VIEWS_MOST / views > at * VIEWS_MOST / views;
+}
+
+adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint32_t most, uint32_t *n, adcgs_error *error)
 {
     look looks[VIEWS_MOST] = { { NULL, 0, 0, NULL, NULL, NULL } };
-    const float moment = t->views[t->window.views[t->iteration % t->window.n].index].t;
+    const float moment = t->views[t->curriculum.views[t->iteration % t->curriculum.n].index].t;
     int count = 0;
     adcgs_status status = ADCGS_OK;
     *n = 0;
     adcgs_pass_forward(t->pass, t->f, moment, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_COARSE });
-    for (uint32_t i = 0; i < t->n_views && count < VIEWS_MOST && status == ADCGS_OK; i++)
-        if (t->views[i].t == moment)
+    uint32_t there = 0, seen = 0;
+    for (uint32_t i = 0; i < t->n_views; i++)
+        there += t->views[i].t == moment;
+    for (uint32_t i = 0; i < t->n_views && status == ADCGS_OK; i++)
+        if (t->views[i].t == moment && is_taken(seen++, there, t->iteration))
             status = draw(t, &looks[count++], i, error);
     for (int i = 0; status == ADCGS_OK && count >= VIEWS_LEAST && i < count; i++)
-        *n += follow(looks, count, i, places + *n, ADCGS_MIN(most - *n, most / (uint32_t)count));
+        status = follow(looks, count, i, places + *n, ADCGS_MIN(most - *n, most / (uint32_t)count), n, error);
     qsort(places, *n, sizeof *places, by_score);
     for (int i = 0; i < count; i++)
         adcgs_free(NULL, looks[i].off);

@@ -7,19 +7,19 @@
 #ifndef ADCGS_TRAIN_RESIDUAL_DENSIFY_H
 #define ADCGS_TRAIN_RESIDUAL_DENSIFY_H
 
-#include "train/trainer.h"
+#include "train/state.h"
 
-typedef struct adcgs_missing {
+typedef struct adcgs_residual {
     float x[3];   /**< scene units */
     float rgb[3];
     float size;   /**< of a pixel there, scene units */
     float score;  /**< difference, summed over the cameras that agree on it */
-} adcgs_missing;
+} adcgs_residual;
 
 /**
  * Places where something is missing in the views nearest to one of the training's moments, the worst first; n of at most `most`.
  * None where fewer than three views share the moment.
  */
-adcgs_status adcgs_trainer_missing(adcgs_trainer *trainer, adcgs_missing *places, uint32_t most, uint32_t *n, adcgs_error *error);
+adcgs_status adcgs_residual_find(adcgs_trainer *trainer, adcgs_residual *places, uint32_t most, uint32_t *n, adcgs_error *error);
 
 #endif

@@ -1,8 +1,18 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The loss of a sample of training views, by which decisions are made. */
-#include "train/trainer.h"
+/** \file What a sample of training views says of the model. */
+#include "train/sample.h"
 
-adcgs_status adcgs_trainer_sample_loss(adcgs_trainer *t, uint32_t most, int own_time, double *loss, adcgs_error *error)
+#include "grad/random.h"
+#include "metric/metric.h"
+#include "train/views.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/** Views by which networks are judged. */
+enum { NETWORK_VIEWS = 16 };
+
+adcgs_status adcgs_sample_loss(adcgs_trainer *t, uint32_t most, int own_time, double *loss, adcgs_error *error)
 {
     const uint32_t n = ADCGS_MIN(t->n_views, most);
     *loss = 0;
@@ -11,13 +21,78 @@ adcgs_status adcgs_trainer_sample_loss(adcgs_trainer *t, uint32_t most, int own_
         const adcgs_train_view *v = &t->views[picked];
         adcgs_loss_value value;
         adcgs_pass_forward(t->pass, t->f, own_time ? v->t : 0.5f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
-        ADCGS_TRY(adcgs_raster_forward(t->raster, &t->pass->primitives, &v->view, t->scene->background, 0.3f, t->image, 0,
-                                       error));
+        ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 0, error));
         const float *target;
         ADCGS_TRY(adcgs_trainer_target(t, picked, NULL, &target, error));
         ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->view.width, v->view.height, t->config.ssim_weight, t->grad,
                                    &value, error));
         *loss += value.loss / n;
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_sample_distortion(adcgs_trainer *t, int group, double *bits, adcgs_error *error)
+{
+    if (t->f->mlp[group].entropy) {
+        adcgs_rate rate;
+        adcgs_pass_rate(t->pass, t->f, &rate);
+        *bits = rate.total;
+        return ADCGS_OK;
+    }
+    double loss;
+    ADCGS_TRY(adcgs_sample_loss(t, NETWORK_VIEWS, 1, &loss, error));
+    /* Without a price of bits the loss alone decides: no bits come near to it. */
+    *bits = loss / fmax(t->lambda * 0x1p-23, 1e-30);
+    return ADCGS_OK;
+}
+
+/** PSNR of the picture of a view, as a player would round it, against the one taken. */
+static adcgs_status picture_psnr(adcgs_trainer *t, const adcgs_view *view, const float *taken, float *image, double *psnr,
+                                 adcgs_error *error)
+{
+    const size_t values = 3 * (size_t)view->width * (size_t)view->height;
+    ADCGS_TRY(adcgs_view_draw(t, view, image, 0, error));
+    for (size_t i = 0; i < values; i++)
+        image[i] = rintf(255 * fminf(fmaxf(image[i], 0), 1)) / 255;
+    *psnr = adcgs_psnr(image, taken, values);
+    return ADCGS_OK;
+}
+
+static adcgs_status loaded_psnr(adcgs_trainer *t, uint32_t index, double *psnr, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_pictures_get(t->pictures, index, t->taken, error));
+    return picture_psnr(t, &t->views[index].view, t->taken, t->image, psnr, error);
+}
+
+/** The same of a view that is not loaded in full size. */
+static adcgs_status full_psnr(adcgs_trainer *t, uint32_t index, double *psnr, adcgs_error *error)
+{
+    adcgs_camera camera;
+    adcgs_view view;
+    float *taken;
+    ADCGS_TRY(adcgs_scene_load(t->scene, &t->scene->views[ADCGS_SPLIT_TRAIN][index], 1, &taken, &camera, error));
+    float *image = adcgs_alloc(NULL, 3 * (size_t)camera.width * (size_t)camera.height, sizeof *image, error);
+    adcgs_status status = image ? adcgs_view_init(&view, &camera, t->origin, t->scale, error) : adcgs_alloc_status(error);
+    if (status == ADCGS_OK)
+        status = picture_psnr(t, &view, taken, image, psnr, error);
+    adcgs_free(NULL, image);
+    free(taken);
+    return status;
+}
+
+adcgs_status adcgs_sample_psnr(adcgs_trainer *t, uint32_t most, double *psnr, adcgs_error *error)
+{
+    const uint32_t n = ADCGS_MIN(t->n_views, most);
+    const adcgs_pass_mode mode = { .quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NOISE,
+                                   .deform = 1,
+                                   .seed = (uint32_t)adcgs_random64(t->config.seed, 3001, 0) };
+    *psnr = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t index = (uint32_t)((uint64_t)i * t->n_views / n);
+        double one;
+        adcgs_pass_forward(t->pass, t->f, t->views[index].t, &mode);
+        ADCGS_TRY(t->divide == 1 ? loaded_psnr(t, index, &one, error) : full_psnr(t, index, &one, error));
+        *psnr += one / n;
     }
     return ADCGS_OK;
 }

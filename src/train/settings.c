@@ -1,194 +1,279 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The settings of a run by name: what a preset holds, a user may change. */
-#include "train/schedule.h"
+/** \file Settings by name: read, written, compared, listed, all from the one table. */
+#include "train/settings.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 
-typedef enum setting_kind { REAL, INT, WORD, BYTE } setting_kind;
+/* ---- One setting ---- */
 
-typedef struct setting {
-    const char *name;
-    setting_kind kind;
-    size_t offset;
-    double min, max;
-} setting;
+const adcgs_setting *adcgs_setting_find(const char *name)
+{
+    const adcgs_setting *s = adcgs_settings;
+    while (s->name && strcmp(s->name, name) != 0)
+        s++;
+    return s->name ? s : NULL;
+}
 
-#define AT(kind, field, min, max) { #field, kind, offsetof(adcgs_train_config, field), min, max }
-#define PARAM(kind, field, min, max) { #field, kind, offsetof(adcgs_train_config, params.field), min, max }
-#define SHAPE(kind, field, min, max) { #field, kind, offsetof(adcgs_train_config, shape.field), min, max }
-
-static const setting settings[] = {
-    PARAM(BYTE, k, 1, ADCGS_K_MAX),
-    PARAM(BYTE, n_fv, 1, ADCGS_NV_MAX),
-    PARAM(BYTE, n_fg, 0, ADCGS_NG_MAX),
-    PARAM(BYTE, chunks, 1, ADCGS_CHUNKS_MAX),
-    PARAM(BYTE, n_eta, 0, ADCGS_ETA_MAX),
-    PARAM(BYTE, octaves, 0, ADCGS_OCTAVES_MAX),
-    PARAM(BYTE, fine_uses_fv, 0, 1),
-    PARAM(BYTE, coarse_rotation, 0, 1),
-    PARAM(BYTE, adaptive_steps, 0, 1),
-    PARAM(WORD, time_rows, 0, ADCGS_TIME_ROWS_MAX),
-    PARAM(WORD, time_width, 0, ADCGS_TIME_WIDTH_MAX),
-    SHAPE(INT, theta_width, 1, 512),
-    SHAPE(INT, theta_hidden, 1, 3),
-    SHAPE(INT, omega_width, 0, 512),
-    SHAPE(INT, omega_hidden, 1, 3),
-    SHAPE(INT, varpi_width, 0, 512),
-    SHAPE(INT, varpi_hidden, 1, 3),
-    SHAPE(INT, entropy_width, 1, 512),
-    SHAPE(INT, entropy_hidden, 1, 3),
-    SHAPE(INT, depth, 4, 21),
-    SHAPE(REAL, step_fv, 1e-4, 10),
-    SHAPE(REAL, step_fg, 1e-4, 10),
-    SHAPE(REAL, step_sigma, 1e-4, 10),
-    SHAPE(REAL, step_colour, 1e-4, 10),
-    AT(REAL, lambda, 0, 1000),
-    AT(REAL, ssim_weight, 0, 1),
-    AT(INT, start_anchors, 1, ADCGS_ANCHORS_MAX),
-    AT(INT, max_anchors, 1, ADCGS_ANCHORS_MAX),
-    AT(REAL, grow_threshold, 0, 1e6),
-    AT(REAL, prune_opacity, 0, 1),
-    AT(REAL, keep_opacity, 0, 1),
-    AT(INT, refine_every, 1, 1e6),
-    AT(INT, rate_period, 1, 1000),
-    AT(REAL, rdo_strength, 0, 1000),
-    AT(REAL, dropout, 0, 0.9),
-    AT(REAL, network_rate, 0, 1000),
-    AT(REAL, still_below, 0, 1e6),
-    AT(REAL, rigid_weight, 0, 1000),
-    AT(REAL, area_weight, 0, 1000),
-    AT(REAL, average_last, 0, 1),
-    AT(REAL, window_begin, 0, 1),
-    AT(REAL, window_until, 0, 2),
-    AT(REAL, quarter_until, 0, 2),
-    AT(REAL, half_until, 0, 2),
-    AT(REAL, area_from, 0, 2),
-    AT(REAL, deform_from, 0, 2),
-    AT(REAL, fine_from, 0, 2),
-    AT(REAL, grow_from, 0, 2),
-    AT(REAL, grow_until, 0, 2),
-    AT(REAL, noise_from, 0, 2),
-    AT(REAL, rate_from, 0, 2),
-    AT(REAL, slim_at, 0, 2),
-    AT(REAL, slim_again, 0, 2),
-    AT(REAL, decide_at, 0, 2),
-    AT(REAL, round_from, 0, 2),
-    AT(REAL, freeze_from, 0, 2),
-};
-
-static double get(const adcgs_train_config *c, const setting *s)
+double adcgs_setting_get(const adcgs_setting *s, const adcgs_train_config *c)
 {
     const void *at = (const char *)c + s->offset;
     switch (s->kind) {
-    case REAL: return (double)*(const float *)at;
-    case INT: return *(const int *)at;
-    case WORD: return *(const uint16_t *)at;
+    case ADCGS_SETTING_REAL: return (double)*(const float *)at;
+    case ADCGS_SETTING_INT: return *(const int *)at;
+    case ADCGS_SETTING_UINT32: return *(const uint32_t *)at;
+    case ADCGS_SETTING_UINT64: return (double)*(const uint64_t *)at;
+    case ADCGS_SETTING_UINT16: return *(const uint16_t *)at;
     default: return *(const uint8_t *)at;
     }
 }
 
-static void put(adcgs_train_config *c, const setting *s, double value)
+/** value is in the setting's range. */
+static void put(const adcgs_setting *s, adcgs_train_config *c, double value)
 {
     void *at = (char *)c + s->offset;
     switch (s->kind) {
-    case REAL: *(float *)at = (float)value; break;
-    case INT: *(int *)at = (int)value; break;
-    case WORD: *(uint16_t *)at = (uint16_t)value; break;
+    case ADCGS_SETTING_REAL: *(float *)at = (float)value; break;
+    case ADCGS_SETTING_INT: *(int *)at = (int)value; break;
+    case ADCGS_SETTING_UINT32: *(uint32_t *)at = (uint32_t)value; break;
+    case ADCGS_SETTING_UINT64: *(uint64_t *)at = (uint64_t)value; break;
+    case ADCGS_SETTING_UINT16: *(uint16_t *)at = (uint16_t)value; break;
     default: *(uint8_t *)at = (uint8_t)value; break;
     }
 }
 
-static adcgs_status set_one(adcgs_train_config *c, const char *text, size_t length, adcgs_error *error)
+/** A number as the setting's field would hold it: bounds and presets are decimals, fields may be binary32. */
+static double as_held(const adcgs_setting *s, double value)
 {
-    const char *equals = memchr(text, '=', length);
-    const size_t name = equals ? (size_t)(equals - text) : length;
-    for (size_t i = 0; i < ADCGS_COUNTOF(settings); i++) {
-        const setting *s = &settings[i];
-        if (strlen(s->name) != name || memcmp(s->name, text, name) != 0)
-            continue;
-        char *end = NULL;
-        const double value = equals ? strtod(equals + 1, &end) : NAN;
-        if (!equals || end == equals + 1 || end != text + length || !(value >= s->min && value <= s->max) ||
-            (s->kind != REAL && value != floor(value)))
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "bad setting '%.*s': expected %s=%s from %g to %g", (int)length, text,
-                              s->name, s->kind == REAL ? "NUMBER" : "INTEGER", s->min, s->max);
-        put(c, s, value);
-        c->own_anchors |= s->offset == offsetof(adcgs_train_config, max_anchors);
-        c->own_rigid |= s->offset == offsetof(adcgs_train_config, rigid_weight);
-        c->own_area |= s->offset == offsetof(adcgs_train_config, area_from);
-        c->own_networks |= s->offset >= offsetof(adcgs_train_config, shape.theta_width) &&
-                           s->offset <= offsetof(adcgs_train_config, shape.entropy_hidden);
-        return ADCGS_OK;
+    return s->kind == ADCGS_SETTING_REAL ? (double)(float)value : value;
+}
+
+const char *adcgs_setting_print(const adcgs_setting *s, double value, char text[ADCGS_SETTING_TEXT])
+{
+    int digits = 1;
+    if (value == floor(value) && fabs(value) < 1e16)
+        snprintf(text, ADCGS_SETTING_TEXT, "%.0f", value);
+    else
+        do
+            snprintf(text, ADCGS_SETTING_TEXT, "%.*g", digits, value);
+        while (digits++ < 9 && as_held(s, strtod(text, NULL)) != as_held(s, value));
+    return text;
+}
+
+static size_t preset_of(const adcgs_train_config *c)
+{
+    size_t i = 0;
+    while (i + 1 < ADCGS_PRESETS && strcmp(adcgs_train_presets[i], c->preset) != 0)
+        i++;
+    return i;
+}
+
+int adcgs_setting_is_preset(const adcgs_setting *s, const adcgs_train_config *c)
+{
+    return adcgs_setting_get(s, c) == as_held(s, s->preset[preset_of(c)]);
+}
+
+/* ---- Checks ---- */
+
+/** The bounds themselves are in it, as decimals and as binary32. */
+static int in_range(const adcgs_setting *s, double value)
+{
+    return value >= fmin(s->min, as_held(s, s->min)) && value <= fmax(s->max, as_held(s, s->max)) &&
+           (s->kind == ADCGS_SETTING_REAL || value == floor(value));
+}
+
+static adcgs_status fail_range(const adcgs_setting *s, const char *given, adcgs_error *error)
+{
+    char min[ADCGS_SETTING_TEXT], max[ADCGS_SETTING_TEXT];
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "setting %s=%s: expected a %snumber from %s to %s", s->name, given,
+                      s->kind == ADCGS_SETTING_REAL ? "" : "whole ", adcgs_setting_print(s, s->min, min),
+                      adcgs_setting_print(s, s->max, max));
+}
+
+static adcgs_status check_ranges(const adcgs_train_config *c, adcgs_error *error)
+{
+    for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
+        const double value = adcgs_setting_get(s, c);
+        char text[ADCGS_SETTING_TEXT];
+        if (!in_range(s, value))
+            return fail_range(s, adcgs_setting_print(s, value, text), error);
     }
-    return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown setting '%.*s'", (int)name, text);
+    return ADCGS_OK;
+}
+
+static adcgs_status fail_relation(const adcgs_train_config *c, const char *a, const char *b, const char *expected,
+                                  adcgs_error *error)
+{
+    const adcgs_setting *x = adcgs_setting_find(a), *y = adcgs_setting_find(b);
+    char value[2][ADCGS_SETTING_TEXT];
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "settings %s=%s and %s=%s: expected %s", a,
+                      adcgs_setting_print(x, adcgs_setting_get(x, c), value[0]), b,
+                      adcgs_setting_print(y, adcgs_setting_get(y, c), value[1]), expected);
+}
+
+/** What settings owe each other. */
+static adcgs_status check_relations(const adcgs_train_config *c, adcgs_error *error)
+{
+    if (c->params.n_fg % c->params.chunks)
+        return fail_relation(c, "n_fg", "chunks", "a multiple of chunks", error);
+    if (c->params.time_rows && !c->params.time_width)
+        return fail_relation(c, "time_rows", "time_width", "rows of at least one value", error);
+    if (c->start_anchors > c->max_anchors)
+        return fail_relation(c, "start_anchors", "max_anchors", "no more to begin with than there may be", error);
+    if (c->freeze_from < c->round_from)
+        return fail_relation(c, "freeze_from", "round_from", "values to be rounded before they are final", error);
+    return ADCGS_OK;
+}
+
+static adcgs_status check_target(const adcgs_train_config *c, adcgs_error *error)
+{
+    const int size = c->target == ADCGS_TARGET_SIZE;
+    const double min = size ? ADCGS_TARGET_SIZE_MIN : ADCGS_TARGET_PSNR_MIN;
+    const double max = size ? ADCGS_TARGET_SIZE_MAX : ADCGS_TARGET_PSNR_MAX;
+    if (!(c->time_limit >= 0 && c->time_limit <= ADCGS_TIME_LIMIT_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "time limit of %g s: expected 0 to %g", c->time_limit, ADCGS_TIME_LIMIT_MAX);
+    if (c->target == ADCGS_TARGET_NONE)
+        return ADCGS_OK;
+    if (!(c->target_value >= min && c->target_value <= max))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "target of %g %s: expected %g to %g", c->target_value,
+                          size ? "bytes" : "dB", min, max);
+    if (c->without_rate || c->without_rounding)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "a size or PSNR to meet needs rate: neither --without rate nor --uncompressed");
+    if (c->own_lambda)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "lambda=%g and a size or PSNR to meet, which steers it: expected one of them",
+                          (double)c->lambda);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_train_check(const adcgs_train_config *c, adcgs_error *error)
+{
+    ADCGS_TRY(check_ranges(c, error));
+    ADCGS_TRY(check_relations(c, error));
+    return check_target(c, error);
+}
+
+/* ---- Making a configuration ---- */
+
+adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, adcgs_error *error)
+{
+    size_t i = 0;
+    while (i < ADCGS_PRESETS && strcmp(adcgs_train_presets[i], name) != 0)
+        i++;
+    if (i == ADCGS_PRESETS)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown preset '%s': expected draft, fast, medium, slow or paper", name);
+    *config = (adcgs_train_config){ .preset = adcgs_train_presets[i] };
+    for (const adcgs_setting *s = adcgs_settings; s->name; s++)
+        put(s, config, s->preset[i]);
+    return ADCGS_OK;
+}
+
+/** A value in range, chosen by hand. Fewer anchors than a preset begins with may be asked for; it then begins with these. */
+static void choose(adcgs_train_config *c, const adcgs_setting *s, double value)
+{
+    put(s, c, value);
+    if (s->own)
+        *((uint8_t *)c + s->own) = 1;
+    if (s->offset == offsetof(adcgs_train_config, max_anchors) && !c->own_start) {
+        const double start = adcgs_setting_find("start_anchors")->preset[preset_of(c)];
+        c->start_anchors = (uint32_t)fmin(start, value);
+    }
+}
+
+adcgs_status adcgs_train_set_value(adcgs_train_config *config, const char *name, double value, adcgs_error *error)
+{
+    const adcgs_setting *s = adcgs_setting_find(name);
+    char text[ADCGS_SETTING_TEXT];
+    if (!s || s->group == ADCGS_SETTING_SWITCHES)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown setting '%s': --set list shows what there is", name);
+    if (!in_range(s, value)) {
+        snprintf(text, sizeof text, "%.9g", value);
+        return fail_range(s, text, error);
+    }
+    choose(config, s, value);
+    return ADCGS_OK;
+}
+
+/** "name=value", which it may change. */
+static adcgs_status set_one(adcgs_train_config *c, char *text, adcgs_error *error)
+{
+    char *const equals = strchr(text, '='), *end = NULL;
+    if (equals)
+        *equals = 0;
+    const double value = equals ? strtod(equals + 1, &end) : 0;
+    const adcgs_setting *s = adcgs_setting_find(text);
+    if (s && s->group != ADCGS_SETTING_SWITCHES && (!equals || end == equals + 1 || *end || !in_range(s, value)))
+        return fail_range(s, equals ? equals + 1 : "", error);
+    return adcgs_train_set_value(c, text, value, error);
 }
 
 adcgs_status adcgs_train_set(adcgs_train_config *config, const char *text, adcgs_error *error)
 {
-    while (*text) {
-        const size_t length = strcspn(text, ",");
-        ADCGS_TRY(set_one(config, text, length, error));
-        text += length + (text[length] == ',');
-    }
-    if (config->params.n_fg % config->params.chunks)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "bad settings: n_fg = %d is not a multiple of chunks = %d", config->params.n_fg,
-                          config->params.chunks);
-    return ADCGS_OK;
-}
-
-/* ---- Parts left out ---- */
-
-/** Each primitive becomes an anchor of its own. */
-static void leave_out_anchors(adcgs_train_config *c)
-{
-    c->start_anchors = (uint32_t)ADCGS_MIN((uint64_t)c->start_anchors * c->params.k, ADCGS_ANCHORS_MAX);
-    c->max_anchors = (uint32_t)ADCGS_MIN((uint64_t)c->max_anchors * c->params.k, ADCGS_ANCHORS_MAX);
-    c->params.k = c->params.chunks = 1;
-    c->params.n_fg = 0;
-}
-
-adcgs_status adcgs_train_leave_out(adcgs_train_config *c, const char *parts, adcgs_error *error)
-{
-    enum { COARSE = 1, FINE = 2, RATE = 4, REFINEMENT = 8, ANCHORS = 16, LATTICE = 32, REMOVAL = 64 };
-    static const struct {
-        const char *name;
-        int bits;
-    } known[] = { { "none", 0 },           { "coarse", COARSE },         { "fine", FINE },       { "deformation", COARSE | FINE },
-                  { "rate", RATE },        { "refinement", REFINEMENT }, { "anchors", ANCHORS },
-                  { "lattice", LATTICE },  { "removal", REMOVAL } };
-    int bits = 0;
-    for (const char *at = parts;; at++) {
+    for (const char *at = text; *at;) {
         const size_t length = strcspn(at, ",");
-        size_t i = 0;
-        while (i < ADCGS_COUNTOF(known) && (strlen(known[i].name) != length || memcmp(known[i].name, at, length) != 0))
-            i++;
-        if (i == ADCGS_COUNTOF(known))
-            return adcgs_fail(error, ADCGS_ERR_USAGE,
-                              "cannot leave out '%.*s': expected none, coarse, fine, deformation, rate, refinement, anchors, "
-                              "removal or lattice", (int)length, at);
-        bits |= known[i].bits;
-        at += length;
-        if (!*at)
-            break;
+        char one[100];
+        if (length >= sizeof one)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "setting '%.60s...': expected NAME=VALUE", at);
+        memcpy(one, at, length);
+        one[length] = 0;
+        ADCGS_TRY(set_one(config, one, error));
+        at += length + (at[length] == ',');
     }
-    c->without_coarse = (bits & COARSE) != 0;
-    c->without_fine = (bits & FINE) != 0;
-    c->without_rate = (bits & RATE) != 0;
-    c->without_refinement = (bits & REFINEMENT) != 0;
-    c->without_lattice = (bits & LATTICE) != 0;
-    if (bits & ANCHORS)
-        leave_out_anchors(c);
-    if (bits & REMOVAL)
-        c->slim_at = c->decide_at = 2;
-    if (bits & REFINEMENT)
-        c->start_anchors = c->max_anchors;
     return ADCGS_OK;
 }
 
-void adcgs_train_settings(const adcgs_train_config *config, FILE *file)
+/* ---- Telling ---- */
+
+adcgs_status adcgs_train_changes(const adcgs_train_config *c, adcgs_buffer *text, adcgs_error *error)
 {
-    for (size_t i = 0; i < ADCGS_COUNTOF(settings); i++)
-        fprintf(file, "%-16s %-10.6g %g to %g\n", settings[i].name, get(config, &settings[i]), settings[i].min, settings[i].max);
+    static const char *const told_apart[] = { "lambda", "iterations", "seed" };
+    const size_t begin = text->size;
+    for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
+        char value[ADCGS_SETTING_TEXT], one[100];
+        int apart = 0;
+        for (size_t i = 0; i < ADCGS_COUNTOF(told_apart); i++)
+            apart |= !strcmp(s->name, told_apart[i]);
+        if (apart || adcgs_setting_is_preset(s, c))
+            continue;
+        const int n = snprintf(one, sizeof one, "%s%s=%s", text->size > begin ? "," : "", s->name,
+                               adcgs_setting_print(s, adcgs_setting_get(s, c), value));
+        adcgs_write_bytes(text, one, (size_t)n);
+    }
+    adcgs_write_uint(text, 0, 1);
+    return text->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the list of settings") : ADCGS_OK;
+}
+
+static void list_one(const adcgs_setting *s, const adcgs_train_config *c, FILE *file)
+{
+    static const char letters[] = "SBQM";
+    char value[ADCGS_SETTING_TEXT], min[ADCGS_SETTING_TEXT], max[ADCGS_SETTING_TEXT], trades[] = "----";
+    for (int i = 0; i < 4; i++)
+        if (s->trades & 1 << i)
+            trades[i] = letters[i];
+    fprintf(file, "  %-17s %-8s %s  %s (%s to %s)\n", s->name, adcgs_setting_print(s, adcgs_setting_get(s, c), value), trades,
+            s->help, adcgs_setting_print(s, s->min, min), adcgs_setting_print(s, s->max, max));
+}
+
+void adcgs_train_list(const adcgs_train_config *config, FILE *file)
+{
+    static const char *const titles[] = {
+        [ADCGS_SETTING_RUN] = "Run",
+        [ADCGS_SETTING_LOSS] = "Loss",
+        [ADCGS_SETTING_MODEL] = "Model",
+        [ADCGS_SETTING_NETWORKS] = "Networks",
+        [ADCGS_SETTING_STEPS] = "Grid and quantiser steps",
+        [ADCGS_SETTING_ANCHORS] = "Anchors",
+        [ADCGS_SETTING_MOMENTS] = "Moments, as fractions of the run; beyond 1 they never come",
+    };
+    fprintf(file, "Settings of preset %s: name, value, what it affects, meaning, range.\n"
+                  "S: speed, B: bytes of the file, Q: quality, M: memory in training.\n", config->preset);
+    int group = -1;
+    for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
+        if (s->group == ADCGS_SETTING_SWITCHES)
+            continue;
+        if ((int)s->group != group)
+            fprintf(file, "\n%s\n", titles[s->group]);
+        group = (int)s->group;
+        list_one(s, config, file);
+    }
 }

@@ -9,25 +9,25 @@
 
 static int nearer_the_middle(const void *a, const void *b)
 {
-    const adcgs_window_view *v = a, *w = b;
+    const adcgs_curriculum_view *v = a, *w = b;
     const float d = fabsf(v->t - 0.5f), e = fabsf(w->t - 0.5f);
     return d != e ? (d > e) - (d < e) : (v->index > w->index) - (v->index < w->index);
 }
 
-adcgs_status adcgs_window_create(adcgs_window *w, const float *t, uint32_t n_views, adcgs_error *error)
+adcgs_status adcgs_curriculum_create(adcgs_curriculum *w, const float *t, uint32_t n_views, adcgs_error *error)
 {
     w->views = adcgs_alloc(NULL, n_views, sizeof *w->views, error);
     if (!w->views)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     w->n_views = n_views;
     w->n = 0;
     for (uint32_t i = 0; i < n_views; i++)
-        w->views[i] = (adcgs_window_view){ t[i], i };
+        w->views[i] = (adcgs_curriculum_view){ t[i], i };
     qsort(w->views, n_views, sizeof *w->views, nearer_the_middle);
     return ADCGS_OK;
 }
 
-void adcgs_window_clear(adcgs_window *w)
+void adcgs_curriculum_clear(adcgs_curriculum *w)
 {
     adcgs_free(NULL, w->views);
     w->views = NULL;
@@ -40,7 +40,7 @@ static void copy_row(adcgs_fmodel *f, int to, int from)
     memcpy(z + (size_t)to * width, z + (size_t)from * width, width * sizeof *z);
 }
 
-void adcgs_window_grow(adcgs_window *w, double fraction, adcgs_fmodel *f)
+void adcgs_curriculum_grow(adcgs_curriculum *w, double fraction, adcgs_fmodel *f)
 {
     const uint32_t n = (uint32_t)ADCGS_MIN(ADCGS_MAX(ceil(fraction * w->n_views), 1), w->n_views);
     const int rows = f->params.time_rows;
@@ -61,7 +61,7 @@ void adcgs_window_grow(adcgs_window *w, double fraction, adcgs_fmodel *f)
     w->n = n;
 }
 
-uint32_t adcgs_window_pick(const adcgs_window *w, uint64_t seed, uint32_t iteration)
+uint32_t adcgs_curriculum_pick(const adcgs_curriculum *w, uint64_t seed, uint32_t iteration)
 {
     const uint32_t late = (w->n + 3) / 4, from = iteration % 2 ? w->n - late : 0;
     return w->views[from + (uint32_t)(adcgs_random64(seed, 2100, iteration) % (w->n - from))].index;

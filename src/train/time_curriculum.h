@@ -9,24 +9,24 @@
 
 #include "fmodel/fmodel.h"
 
-typedef struct adcgs_window_view {
+typedef struct adcgs_curriculum_view {
     float t;        /* in [0,1] */
     uint32_t index; /* of the view */
-} adcgs_window_view;
+} adcgs_curriculum_view;
 
-typedef struct adcgs_window {
-    adcgs_window_view *views; /* [n_views] by their distance from the middle of time */
+typedef struct adcgs_curriculum {
+    adcgs_curriculum_view *views; /* [n_views] by their distance from the middle of time */
     uint32_t n_views;
     uint32_t n;               /* how many of them are trained on; 0: not begun */
     int32_t first, last;      /* rows of the time table that these have reached */
-} adcgs_window;
+} adcgs_curriculum;
 
 /** t: time of each view, as a fraction of the scene's. */
-adcgs_status adcgs_window_create(adcgs_window *window, const float *t, uint32_t n_views, adcgs_error *error);
-void adcgs_window_clear(adcgs_window *window);
+adcgs_status adcgs_curriculum_create(adcgs_curriculum *window, const float *t, uint32_t n_views, adcgs_error *error);
+void adcgs_curriculum_clear(adcgs_curriculum *window);
 /** Take in the views of this fraction of all; rows of the time table newly reached become copies of their neighbours. */
-void adcgs_window_grow(adcgs_window *window, double fraction, adcgs_fmodel *f);
+void adcgs_curriculum_grow(adcgs_curriculum *window, double fraction, adcgs_fmodel *f);
 /** A view of the window; every other iteration one of those taken in last. */
-uint32_t adcgs_window_pick(const adcgs_window *window, uint64_t seed, uint32_t iteration);
+uint32_t adcgs_curriculum_pick(const adcgs_curriculum *window, uint64_t seed, uint32_t iteration);
 
 #endif

@@ -3,7 +3,7 @@
 #include "train/unit_prune.h"
 
 #include "grad/random.h"
-#include "train/weight_steps.h"
+#include "train/sample.h"
 
 #include <math.h>
 
@@ -135,7 +135,7 @@ adcgs_status adcgs_gram_take(adcgs_gram *gram, const adcgs_fmodel *f, int group,
         gram->inverse[l] = adcgs_alloc(NULL, size, sizeof(double), error);
         if (!gram->inverse[l]) {
             adcgs_gram_clear(gram);
-            return ADCGS_ERR_MEMORY;
+            return adcgs_alloc_status(error);
         }
     }
     for (uint32_t i = 0; i < SAMPLES; i++) {
@@ -266,7 +266,7 @@ static adcgs_status judge(slimming *s, int *better, adcgs_error *error)
     adcgs_fmodel *f = s->t->f;
     double now;
     adcgs_mlp_prepare(&f->mlp[s->group], f->param[s->group].p, 1);
-    ADCGS_TRY(adcgs_trainer_distortion(s->t, s->group, &now, error));
+    ADCGS_TRY(adcgs_sample_distortion(s->t, s->group, &now, error));
     if (s->left == s->width)
         s->before = now;
     const double lasting = f->mlp[s->group].entropy ? LASTING_BITS : LASTING;
@@ -305,7 +305,7 @@ static adcgs_status slim_network(slimming *s, adcgs_error *error)
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_trainer_slim(adcgs_trainer *t, adcgs_error *error)
+adcgs_status adcgs_prune_units(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_status status = ADCGS_OK;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
@@ -316,7 +316,7 @@ adcgs_status adcgs_trainer_slim(adcgs_trainer *t, adcgs_error *error)
         if (!t->f->mlp[i].hidden || i == ADCGS_P_E_STEPS) /* E_q trades pictures for bits: neither alone can judge it */
             continue;
         s.best = adcgs_alloc(NULL, t->f->param[i].n, sizeof *s.best, error);
-        status = s.best ? adcgs_gram_take(&s.gram, t->f, i, error) : ADCGS_ERR_MEMORY;
+        status = s.best ? adcgs_gram_take(&s.gram, t->f, i, error) : adcgs_alloc_status(error);
         if (status == ADCGS_OK)
             status = slim_network(&s, error);
         adcgs_gram_clear(&s.gram);

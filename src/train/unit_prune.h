@@ -7,7 +7,7 @@
 #ifndef ADCGS_TRAIN_UNIT_PRUNE_H
 #define ADCGS_TRAIN_UNIT_PRUNE_H
 
-#include "train/trainer.h"
+#include "train/state.h"
 
 /**
  * How a network's hidden activations go together: the inverse of the sums, over samples, of products of every two inputs of each
@@ -35,6 +35,6 @@ void adcgs_fmodel_narrow(adcgs_fmodel *f, int group, const uint8_t *keep);
  * Silence units one after the other, those first whose absence the layers after them feel least; remove those before the point
  * where what the pictures (or the features' bits) lose and the networks' bits cost the least together.
  */
-adcgs_status adcgs_trainer_slim(adcgs_trainer *trainer, adcgs_error *error);
+adcgs_status adcgs_prune_units(adcgs_trainer *trainer, adcgs_error *error);
 
 #endif

@@ -2,9 +2,11 @@
 /** \file Lattices of the networks' weights by rate and distortion. */
 #include "train/weight_steps.h"
 
+#include "train/sample.h"
+
 #include <math.h>
 
-enum { SAMPLE_VIEWS = 16, PATIENCE = 2 };
+enum { PATIENCE = 2 };
 
 /* ---- Bits ---- */
 
@@ -16,7 +18,7 @@ static void encode_rounded(adcgs_range_enc *e, adcgs_tensor *t, const float *w)
         adcgs_tensor_encode(e, t);
 }
 
-adcgs_status adcgs_lattice_bits(const adcgs_mlp *m, const float *p, int layer, int e, double *bits, adcgs_error *error)
+adcgs_status adcgs_weight_step_bits(const adcgs_mlp *m, const float *p, int layer, int e, double *bits, adcgs_error *error)
 {
     const size_t end = layer < m->hidden ? m->w[layer + 1] : m->n, n = (size_t)m->in[layer] * (size_t)m->n_out[layer];
     adcgs_tensor w = { (uint32_t)m->n_out[layer], (uint32_t)m->in[layer], 0, (uint8_t)e, NULL };
@@ -25,7 +27,7 @@ adcgs_status adcgs_lattice_bits(const adcgs_mlp *m, const float *p, int layer, i
     adcgs_range_enc enc;
     w.m = b.m = adcgs_alloc(NULL, ADCGS_MAX(n, b.rows), sizeof *w.m, error);
     if (!w.m)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     adcgs_buffer_init(&bytes);
     adcgs_range_enc_init(&enc, &bytes);
     encode_rounded(&enc, &w, p + m->w[layer]);
@@ -39,21 +41,6 @@ adcgs_status adcgs_lattice_bits(const adcgs_mlp *m, const float *p, int layer, i
 }
 
 /* ---- Choice ---- */
-
-adcgs_status adcgs_trainer_distortion(adcgs_trainer *t, int group, double *bits, adcgs_error *error)
-{
-    if (t->f->mlp[group].entropy) {
-        adcgs_rate rate;
-        adcgs_pass_rate(t->pass, t->f, &rate);
-        *bits = rate.total;
-        return ADCGS_OK;
-    }
-    double loss;
-    ADCGS_TRY(adcgs_trainer_sample_loss(t, SAMPLE_VIEWS, 1, &loss, error));
-    /* Without a price of bits the loss alone decides: no bits come near to it. */
-    *bits = loss / fmax(t->lambda * 0x1p-23, 1e-30);
-    return ADCGS_OK;
-}
 
 typedef struct search {
     adcgs_trainer *t;
@@ -69,10 +56,10 @@ static adcgs_status cost_of(const search *s, int e, double *cost, adcgs_error *e
     *cost = INFINITY;
     if (e < s->min || e > s->max)
         return ADCGS_OK;
-    m->lattice[s->layer] = (int8_t)e;
+    m->weight_step[s->layer] = (int8_t)e;
     adcgs_mlp_prepare(m, p, 1);
-    ADCGS_TRY(adcgs_trainer_distortion(s->t, s->group, &now, error));
-    ADCGS_TRY(adcgs_lattice_bits(m, p, s->layer, e, &bits, error));
+    ADCGS_TRY(adcgs_sample_distortion(s->t, s->group, &now, error));
+    ADCGS_TRY(adcgs_weight_step_bits(m, p, s->layer, e, &bits, error));
     *cost = now - s->base + bits;
     return ADCGS_OK;
 }
@@ -120,15 +107,15 @@ static int nominal(const adcgs_fmodel *f, int group, int layer)
         square += (double)p[i] * (double)p[i];
     const double rms = sqrt(square / (double)(end - begin));
     const int e = (int)ceil(log2(nominal_steps(group, layer == m->hidden) / fmax(rms, 1e-6)));
-    return ADCGS_MIN(ADCGS_MAX(e, ADCGS_LATTICE_MIN), m->entropy ? ADCGS_E24_BITS : ADCGS_LATTICE_MAX);
+    return ADCGS_MIN(ADCGS_MAX(e, ADCGS_WEIGHT_STEP_MIN), m->entropy ? ADCGS_E24_BITS : ADCGS_WEIGHT_STEP_MAX);
 }
 
-void adcgs_trainer_lattices(adcgs_trainer *t)
+void adcgs_weight_steps_nominal(adcgs_trainer *t)
 {
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         adcgs_mlp *m = &t->f->mlp[i];
-        for (int l = 0; m->n && l <= m->hidden && (m->entropy || !t->config.without_lattice); l++)
-            m->lattice[l] = (int8_t)nominal(t->f, i, l);
+        for (int l = 0; m->n && l <= m->hidden && (m->entropy || !t->config.without_weight_steps); l++)
+            m->weight_step[l] = (int8_t)nominal(t->f, i, l);
     }
 }
 
@@ -139,7 +126,7 @@ void adcgs_trainer_lattices(adcgs_trainer *t)
  */
 static int coarsest(const adcgs_fmodel *f, int group, int layer)
 {
-    return f->mlp[group].entropy ? nominal(f, group, layer) : ADCGS_LATTICE_MIN;
+    return f->mlp[group].entropy ? nominal(f, group, layer) : ADCGS_WEIGHT_STEP_MIN;
 }
 
 /** A network's layers one after the other, each with the others as they were before: their losses add up. */
@@ -147,34 +134,34 @@ static adcgs_status choose_network(adcgs_trainer *t, int group, int8_t chosen[AD
 {
     adcgs_mlp *m = &t->f->mlp[group];
     const float *p = t->f->param[group].p;
-    search s = { .t = t, .group = group, .max = m->entropy ? ADCGS_E24_BITS : ADCGS_LATTICE_MAX };
+    search s = { .t = t, .group = group, .max = m->entropy ? ADCGS_E24_BITS : ADCGS_WEIGHT_STEP_MAX };
     int8_t before[ADCGS_MLP_LAYERS];
-    memcpy(before, m->lattice, sizeof before);
-    ADCGS_TRY(adcgs_trainer_distortion(t, group, &s.base, error));
+    memcpy(before, m->weight_step, sizeof before);
+    ADCGS_TRY(adcgs_sample_distortion(t, group, &s.base, error));
     for (s.layer = 0; s.layer <= m->hidden; s.layer++) {
         s.min = coarsest(t->f, group, s.layer);
         ADCGS_TRY(choose_layer(&s, nominal(t->f, group, s.layer), &chosen[s.layer], error));
-        m->lattice[s.layer] = before[s.layer];
+        m->weight_step[s.layer] = before[s.layer];
         adcgs_mlp_prepare(m, p, 1);
     }
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_trainer_choose_lattices(adcgs_trainer *t, adcgs_error *error)
+adcgs_status adcgs_weight_steps_choose(adcgs_trainer *t, adcgs_error *error)
 {
     int8_t chosen[ADCGS_P_COUNT][ADCGS_MLP_LAYERS];
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         adcgs_mlp *m = &t->f->mlp[i];
-        memset(m->lattice, m->entropy ? ADCGS_E24_BITS : ADCGS_LATTICE_NONE, sizeof m->lattice);
-        memcpy(chosen[i], m->lattice, sizeof chosen[i]);
+        memset(m->weight_step, m->entropy ? ADCGS_E24_BITS : ADCGS_WEIGHT_STEP_NONE, sizeof m->weight_step);
+        memcpy(chosen[i], m->weight_step, sizeof chosen[i]);
         if (m->n)
             adcgs_mlp_prepare(m, t->f->param[i].p, 1);
     }
     /* E_q acts on pictures and features at once; its few weights keep all bits. */
-    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT && !t->config.without_lattice; i++)
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT && !t->config.without_weight_steps; i++)
         if (t->f->mlp[i].n && i != ADCGS_P_E_STEPS)
             ADCGS_TRY(choose_network(t, i, chosen[i], error));
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
-        memcpy(t->f->mlp[i].lattice, chosen[i], sizeof chosen[i]);
+        memcpy(t->f->mlp[i].weight_step, chosen[i], sizeof chosen[i]);
     return ADCGS_OK;
 }

@@ -3,7 +3,7 @@
 #include "parts.h"
 
 #include "fmodel/pass.h"
-#include "train/schedule.h"
+#include "train/settings.h"
 
 enum { GROUPS = 32, ANCHORS = 64 * GROUPS };
 

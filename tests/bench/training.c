@@ -5,6 +5,7 @@
 #include "encode/encode.h"
 #include "layouts/open.h"
 #include "scenes/scenes.h"
+#include "train/settings.h"
 #include "train/trainer.h"
 
 #include <math.h>
@@ -53,9 +54,9 @@ static adcgs_train_config steady(const char *preset, uint32_t anchors)
     c.iterations = 1000000;
     c.start_anchors = c.max_anchors = anchors;
     c.quarter_until = (float)YOUTH / (float)c.iterations;
-    c.window_until = c.half_until = c.area_from = 0;
-    c.deform_from = c.fine_from = c.noise_from = c.rate_from = c.grow_from = c.grow_until = 0;
-    c.slim_at = c.decide_at = c.round_from = c.freeze_from = 2;
+    c.curriculum_until = c.half_until = c.scale_from = 0;
+    c.deform_from = c.fine_from = c.noise_from = c.rate_from = c.densify_from = c.densify_until = 0;
+    c.prune_units_at = c.decide_at = c.round_from = c.freeze_from = 2;
     return c;
 }
 

@@ -18,6 +18,12 @@ enc()
 # same A B WHAT: two streams are the same, byte for byte.
 same() { cmp "$dir/$1.adcgs" "$dir/$2.adcgs" || bad "$3"; }
 
+# differ A B WHAT: two streams show something else, whatever their notes say.
+differ()
+{
+    [ "$(./adcgs-dec "$dir/$1.adcgs" --md5 2>/dev/null)" != "$(./adcgs-dec "$dir/$2.adcgs" --md5 2>/dev/null)" ] || bad "$3"
+}
+
 # json FILE: each line is a JSON object; whole FILE: the file is one. Both pass where no tool knows.
 json()
 {
@@ -137,7 +143,7 @@ if ./adcgs-enc "$scene" -o "$dir/bf16.adcgs" $short --iterations 10 --bf16 >"$di
     enc short1 --iterations $n --bf16 --threads 1
     enc short2 --iterations $n --bf16 --threads 2
     same short1 short2 "another stream with other threads, in bf16"
-    cmp -s "$dir/one.adcgs" "$dir/short1.adcgs" && bad "--bf16 changes nothing"
+    differ one short1 "--bf16 changes nothing"
     expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --bf16 --resume "$dir/late"
     expect 5 "CPU level avx512: these are of scalar" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --bf16 --cpu scalar
 else
@@ -153,13 +159,13 @@ enc shared --iterations $n --lambda 0.5 --threads 2 --resume "$dir/begin"
 same whole shared "another stream from a shared beginning"
 enc shared --iterations $n --resume "$dir/begin"
 same one shared "another stream from a shared beginning, with the preset's lambda"
-cmp -s "$dir/one.adcgs" "$dir/whole.adcgs" && bad "lambda changes nothing"
+differ one whole "lambda changes nothing"
 # shellcheck disable=SC2086
 expect 4 "other options" ./adcgs-enc "$scene" -o "$dir/x.adcgs" $short --seed 2 --resume "$dir/begin"
 # shellcheck disable=SC2086
 expect 4 "past its beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" $short --resume "$dir/late"
 expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --without rate
-expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,slim_at=1
+expect 2 "no say" ./adcgs-enc "$scene" --beginning "$dir/x.begin" --set rate_from=1,prune_units_at=1
 expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/x.begin" -o "$dir/x.adcgs"
 
 # Stages left out; what a scene does not need is not in its stream.
@@ -167,7 +173,7 @@ expect 2 "either -o FILE or --beginning" ./adcgs-enc "$scene" --beginning "$dir/
 n=60
 free="--set rigid_weight=0,still_below=0"
 networks() { ./adcgs-info "$dir/$1.adcgs" --json | tr -d '\n'; }
-for stage in coarse fine deformation rate refinement; do
+for stage in coarse fine deformation rate densification; do
     enc "$stage" --iterations $n $free --without $stage
     ./adcgs-dec "$dir/$stage.adcgs" --md5 >/dev/null 2>&1 || bad "--without $stage does not decode"
 done
@@ -176,23 +182,25 @@ networks all | grep -q 'F_omega.*F_varpi.*"Z"' || bad "a moving scene without mo
 networks coarse | grep -q F_omega && bad "--without coarse leaves F_omega in"
 networks fine | grep -q F_varpi && bad "--without fine leaves F_varpi in"
 networks deformation | grep -q 'F_omega\|F_varpi\|"Z"' && bad "--without deformation leaves networks in"
-cmp -s "$dir/all.adcgs" "$dir/rate.adcgs" && bad "--without rate changes nothing"
-cmp -s "$dir/all.adcgs" "$dir/refinement.adcgs" && bad "--without refinement changes nothing"
-enc lattice --iterations $n $free --without lattice --json
+differ all rate "--without rate changes nothing"
+differ all densification "--without densification changes nothing"
+enc refinement --iterations $n $free --without refinement
+same densification refinement "--without refinement is not --without densification"
+enc steps --iterations $n $free --without weight_steps --json
 # shellcheck disable=SC2086
 ./adcgs-enc "$scene" --beginning "$dir/begin" --preset draft --max-anchors 300 --iterations $n $free || bad "--beginning"
-enc lattice2 --iterations $n $free --without lattice --resume "$dir/begin"
-same lattice lattice2 "the beginning is not that of a run without lattice"
+enc steps2 --iterations $n $free --without weight_steps --resume "$dir/begin"
+same steps steps2 "the beginning is not that of a run without weight steps"
 enc raw --iterations $n $free --uncompressed "$dir/raw" --json
 grep -q "\"uncompressed_bytes\": $(wc -c <"$dir/raw")," "$dir/raw.out" || { bad "another uncompressed size"; cat "$dir/raw.out"; }
 # field NAME KEY: a whole number of a report.
 field() { sed -n "s/.*\"$2\": \([0-9]*\).*/\1/p" "$dir/$1.out" | head -1; }
 [ "$(field raw uncompressed_bytes)" -gt $((4 * ($(field raw anchors) * 44 + $(field raw primitives) * 8))) ] ||
     bad "the uncompressed model is too small"
-[ "$(field lattice networks)" -gt "$(field all networks)" ] || bad "--without lattice does not store 32-bit weights"
+[ "$(field steps networks)" -gt "$(field all networks)" ] || bad "--without weight_steps does not store 32-bit weights"
 enc both --iterations $n $free --without coarse,fine
 same deformation both "--without coarse,fine is not --without deformation"
-enc each --iterations $n --without anchors,refinement --json
+enc each --iterations $n --without anchors,densification --json
 grep -q '"anchors": 1[78][0-9][0-9],' "$dir/each.out" || { bad "not six times the anchors, without growth"; cat "$dir/each.out"; }
 grep -q "$(sed -n 's/.*"anchors": \([0-9]*\).*/"primitives": \1,/p' "$dir/each.out")" "$dir/each.out" || bad "not one primitive per anchor"
 ./adcgs-dec "$dir/each.adcgs" --md5 >/dev/null 2>&1 || bad "--without anchors does not decode"
@@ -204,6 +212,15 @@ done
 scene=$dir/still enc still --iterations $n
 networks still | grep -q 'F_omega\|F_varpi\|"Z"' && bad "a still scene carries deformation networks"
 ./adcgs-dec "$dir/still.adcgs" --md5 >/dev/null 2>&1 || bad "a still scene does not decode"
+
+# Options mean what settings of their names mean: a budget of anchors below those of the beginning lowers these, too.
+./adcgs-enc "$scene" -o "$dir/option.adcgs" --preset draft --max-anchors 90 --k 3 --lambda 2 --iterations 30 >/dev/null 2>&1 || bad "--k"
+./adcgs-enc "$scene" -o "$dir/set.adcgs" --preset draft --set max_anchors=90,k=3,lambda=2,iterations=30 --log "$dir/set.log" >/dev/null 2>&1
+same option set "--max-anchors, --k, --lambda and --iterations do not mean what settings mean"
+grep '"iteration": *0,' "$dir/set.log" | grep -q '"anchors": *[1-9][0-9]\?,' || { bad "more anchors than the budget"; cat "$dir/set.log"; }
+./adcgs-info "$dir/set.adcgs" | grep -q 'settings.*k=3,start_anchors=90,max_anchors=90' || bad "a stream does not tell its settings"
+./adcgs-enc --set list --preset draft >"$dir/list" || bad "--set list"
+grep -q '^  max_anchors  *1200 .*(1 to 1048576)$' "$dir/list" || { bad "another list of settings"; cat "$dir/list"; }
 
 # A scene seen at many moments in which nothing moves: the encoder finds out that motion does not pay.
 ./adcgs-demo-scene --scene still --size 48x48 --format ppm -o "$dir/rest" >/dev/null 2>&1
@@ -222,6 +239,11 @@ expect 2 "from 0 to 1000" $try --lambda nan
 expect 2 "whole number" $try --iterations 1.5
 expect 2 "whole number" $try --iterations 9
 expect 2 "1 to 16" $try --k 17
+expect 2 "setting k=17: expected a whole number from 1 to 16" $try --set k=17
+expect 2 "n_fg=9 and chunks=4: expected a multiple of chunks" $try --set n_fg=9
+expect 2 "start_anchors=700 and max_anchors=300" $try --preset draft --set start_anchors=700 --max-anchors 300
+expect 2 "unknown setting 'slim_at'" $try --set slim_at=0.5
+expect 2 "lambda=2 and a size or PSNR to meet" $try --set lambda=2 --size 100k
 expect 2 "1 to 64" $try --scale 0
 expect 2 "0 to 256" $try --threads -1
 expect 2 "whole number" $try --seed x

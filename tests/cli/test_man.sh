@@ -33,4 +33,9 @@ for program in adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-swe
         fault "$program.1: groff warns"
     fi
 done
+
+# The settings of the page are those of the program.
+if [ -x ./adcgs-enc ] && ! "$man/settings.sh" ./adcgs-enc "$man/adcgs-enc.1" | diff "$man/adcgs-enc.1" - >&2; then
+    fault "adcgs-enc.1: its settings (<) are not those of the program (>); make man-update writes them"
+fi
 [ "$faults" -eq 0 ]

@@ -38,7 +38,7 @@ while [ $# -gt 0 ]; do
     esac
     shift 2
 done
-early=${without#lattice}
+early=${without#weight_steps}
 [ -z "$resume" ] || grep -q "^begun$seed without $early$" "$resume" || exit 4
 echo "begun$seed without $early" >"${begin:-$partial}"
 [ -n "$begin" ] && exit 0
@@ -46,7 +46,7 @@ echo "begun$seed without $early" >"${begin:-$partial}"
 bytes=$((64000 / lambda))
 psnr=$((3600 - 100 * lambda + 10 * seed))
 [ "$without" = anchors ] && bytes=$((2 * bytes))
-case $without in *refinement*) psnr=$((psnr - 50 * $(tr ',' '\n' <<<"$without" | wc -l))) ;; esac
+case $without in *densification*) psnr=$((psnr - 50 * $(tr ',' '\n' <<<"$without" | wc -l))) ;; esac
 if [ -n "$raw" ]; then
     head -c 400000 /dev/zero >"$raw"
     [ -n "$without" ] || psnr=3505
@@ -98,12 +98,12 @@ sweep --lambda 1,2,4 --k 5,10 --resume --yardsticks none
 calls 0
 sweep --lambda 1,8 --k 5 --resume --yardsticks none
 calls 1 1 "--resume $out/beginning-k-5.checkpoint"
-sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 7
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 17
 calls 3 1 "--beginning"
-sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 7 --set depth=10
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 27 --set depth=10
 calls 3 3 "--set depth=10"
 truncate -s 5 "$out/lambda-8-k-5.adcgs"
-sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 7 --set depth=10
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 27 --set depth=10
 calls 1 0 "--beginning"
 sweep --lambda 8 --k 7 --yardsticks none
 calls 1 0 "--resume"
@@ -116,7 +116,7 @@ line 'lambda-666' "$dir/err"
 calls 4
 sweep --lambda 1,666,2 --yardsticks none --resume
 calls 1 1 "--resume $out/lambda-666.partial"
-sweep --lambda 1,666,2 --yardsticks none --resume --iterations 9
+sweep --lambda 1,666,2 --yardsticks none --resume --iterations 19
 calls 4 0 "--resume $out/lambda-666.partial"
 
 # Yardsticks: sizes, and how the curve compares with them.
@@ -182,17 +182,17 @@ out=$dir/stages
 sweep --lambda 1,2,4 --ablation --yardsticks none
 [ $got -eq 0 ] || fail "ablation: $(cat "$dir/err")"
 calls 12 3 "--uncompressed"
-[ -s "$out/lambda-2-without-lattice.adcgs" ] || fail "no run without lattice"
+[ -s "$out/lambda-2-without-weight_steps.adcgs" ] || fail "no run without weight steps"
 [ "$(wc -l <"$out/ablation.csv")" -eq 10 ] || fail "expected nine stages: $(cat "$out/ablation.csv")"
 line '^base,,,1,400000,400000,400000,33.0000' "$out/ablation.csv"
 line '^+ fine deformation,,,1,400000,400000,400000,34.0000' "$out/ablation.csv"
 line '^+ rate-distortion,2,,1,32000,32000,32000,33.5000' "$out/ablation.csv"
-line '^+ refinement,2,,1,32000,32000,32000,34.0000' "$out/ablation.csv"
+line '^+ densification,2,,1,32000,32000,32000,34.0000' "$out/ablation.csv"
 line '^K = 15,2,15,1,' "$out/ablation.csv"
 line 'K = 15' "$out/index.html"
 sweep --ablation
 [ $got -eq 0 ] || fail "ablation alone: $(cat "$dir/err")"
-line '^+ refinement,,,1,64000' "$out/ablation.csv"
+line '^+ densification,,,1,64000' "$out/ablation.csv"
 : >"$dir/calls"
 
 for list in '' 1, ,1 1,x 1,-1 "$(seq -s, 1 17)"; do
@@ -203,6 +203,12 @@ sweep --lambda 1 --seeds 1.5
 [ $got -eq 2 ] || fail "a seed that is not whole accepted"
 sweep --lambda 1 --yardsticks networks,zip
 [ $got -eq 2 ] || fail "an unknown yardstick accepted"
+for options in "--k 17" "--set k=17" "--set slim_at=1" "--set n_fg=9" "--preset quick" "--iterations 9"; do
+    # shellcheck disable=SC2086
+    sweep --lambda 1 $options
+    [ $got -eq 2 ] || fail "$options accepted"
+done
+[ ! -s "$dir/calls" ] || fail "a run began with settings that the encoder refuses"
 sweep
 [ $got -eq 2 ] || fail "no lambda accepted"
 "$dir/adcgs-sweep" scene --lambda 1 2>/dev/null

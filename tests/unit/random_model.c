@@ -145,7 +145,7 @@ adcgs_status adcgs_random_values(adcgs_model *m, uint64_t *state, adcgs_error *e
     if (status == ADCGS_OK)
         status = adcgs_latents_create(&latents, m, cpu, NULL, error);
     for (int layer = 0; layer < adcgs_params_layers(&m->params) && status == ADCGS_OK; layer++)
-        status = adcgs_latents_walk(latents, m, layer, 0, m->n, draw_site, state);
+        status = adcgs_latents_walk(latents, m, layer, 0, m->n, draw_site, state, error);
     adcgs_latents_free(&latents);
     return status;
 }

@@ -3,6 +3,9 @@
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
+#include "train/rate_control.h"
+#include "train/rate_plan.h"
+#include "train/sample.h"
 
 static adcgs_train_config config_for(adcgs_train_target target, double value)
 {
@@ -10,8 +13,8 @@ static adcgs_train_config config_for(adcgs_train_target target, double value)
     assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
     c.iterations = ITERATIONS;
     c.start_anchors = 100;
-    c.refine_every = 20;
-    c.grow_threshold = 1e-6f;
+    c.densify_every = 20;
+    c.densify_threshold = 1e-6f;
     c.freeze_from = 0.92f; /* long enough to stop in */
     c.target = target;
     c.target_value = value;
@@ -27,7 +30,7 @@ static void plans_grow_with_the_size(void **state)
     for (double size = 8000; size < 4e6; size *= 1.5) {
         adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, size);
         const adcgs_train_config before = c;
-        if (adcgs_control_plan(&c, &error) != ADCGS_OK)
+        if (adcgs_rate_plan(&c, &error) != ADCGS_OK)
             fail_msg("%.0f: %s", size, error.text);
         const int sum = c.shape.theta_width + c.shape.omega_width + c.shape.varpi_width + c.shape.entropy_width;
         assert_true(c.max_anchors >= anchors && sum >= widths);
@@ -46,7 +49,7 @@ static void plans_leave_what_was_chosen(void **state)
     adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, 60000);
     assert_int_equal(adcgs_train_set(&c, "max_anchors=77,theta_width=31", &error), ADCGS_OK);
     const adcgs_shape shape = c.shape;
-    assert_int_equal(adcgs_control_plan(&c, &error), ADCGS_OK);
+    assert_int_equal(adcgs_rate_plan(&c, &error), ADCGS_OK);
     assert_int_equal(c.max_anchors, 77);
     assert_int_equal(c.start_anchors, 77);
     assert_memory_equal(&shape, &c.shape, sizeof shape);
@@ -55,11 +58,11 @@ static void plans_leave_what_was_chosen(void **state)
 static void sizes_too_small_are_refused(void **state)
 {
     adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, 2500);
-    assert_int_equal(adcgs_control_plan(&c, &error), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_rate_plan(&c, &error), ADCGS_ERR_USAGE);
     assert_non_null(strstr(error.text, "too few"));
     c = config_for(ADCGS_TARGET_PSNR, 30);
     c.lambda = 0;
-    assert_int_equal(adcgs_control_plan(&c, &error), ADCGS_OK);
+    assert_int_equal(adcgs_rate_plan(&c, &error), ADCGS_OK);
     assert_true(c.lambda > 0);
 }
 
@@ -97,7 +100,7 @@ static void lambda_follows_the_bytes(void **state)
         double last = t->lambda;
         for (int i = 0; i < 40; i++) {
             t->iteration = (uint32_t)(60 + 10 * i);
-            assert_int_equal(adcgs_control_step(t, 0.3 + 0.01 * i, &error), ADCGS_OK);
+            assert_int_equal(adcgs_rate_control_step(t, 0.3 + 0.01 * i, &error), ADCGS_OK);
             assert_true(much ? t->lambda >= last : t->lambda <= last);
             last = t->lambda;
             t->stats.n = 1000;
@@ -170,7 +173,7 @@ static void runs_land_on_qualities(void **state)
     adcgs_trainer *t = make(&config, real_bytes);
     double psnr;
     run(t, NULL, NULL);
-    assert_int_equal(adcgs_control_psnr(t, UINT32_MAX, &psnr, &error), ADCGS_OK);
+    assert_int_equal(adcgs_sample_psnr(t, UINT32_MAX, &psnr, &error), ADCGS_OK);
     print_message("asked for 22 dB, got %.3f\n", psnr);
     assert_true(psnr > 21.95 && psnr < 22.05);
     adcgs_trainer_free(&t);

@@ -7,6 +7,7 @@
 
 #include "layouts/open.h"
 #include "train/initialise.h"
+#include "train/settings.h"
 
 static adcgs_scene *scene;
 
@@ -50,8 +51,8 @@ static void finish_start(start *s)
     adcgs_train_config config;
     expect_good(adcgs_train_preset(&config, "draft", &error));
     config.start_anchors = 60;
-    adcgs_scene_frame(s->scene, s->origin, &s->scale);
-    expect_good(adcgs_train_start(&s->model, s->scene, &config, &error));
+    assert_int_equal(adcgs_scene_frame(s->scene, s->origin, &s->scale, &error), ADCGS_OK);
+    expect_good(adcgs_initialise(&s->model, s->scene, &config, &error));
 }
 
 static void free_start(start *s)

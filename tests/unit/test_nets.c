@@ -52,7 +52,7 @@ static void weight_rate_has_its_gradient(void **state)
         if (!t->f->mlp[i].n)
             continue;
         randomise(t->f, i, 0.4);
-        memset(t->f->mlp[i].lattice, i % 2 ? 4 : ADCGS_LATTICE_NONE, sizeof t->f->mlp[i].lattice);
+        memset(t->f->mlp[i].weight_step, i % 2 ? 4 : ADCGS_WEIGHT_STEP_NONE, sizeof t->f->mlp[i].weight_step);
         memset(p->g, 0, p->n * sizeof *p->g);
         const double bits = adcgs_weight_rate(t->f, i, 2);
         assert_true(bits > 0 && adcgs_weight_rate(t->f, i, 0) == bits);
@@ -78,9 +78,9 @@ static void weight_rate_is_close_to_the_coder(void **state)
     for (double size = 0.02; size < 3; size *= 3) {
         double coded = 0, bits;
         randomise(t->f, ADCGS_P_VARPI, size);
-        memset(m->lattice, 6, sizeof m->lattice);
+        memset(m->weight_step, 6, sizeof m->weight_step);
         for (int l = 0; l <= m->hidden; l++) {
-            assert_int_equal(adcgs_lattice_bits(m, t->f->param[ADCGS_P_VARPI].p, l, 6, &bits, &error), ADCGS_OK);
+            assert_int_equal(adcgs_weight_step_bits(m, t->f->param[ADCGS_P_VARPI].p, l, 6, &bits, &error), ADCGS_OK);
             coded += bits;
         }
         bits = adcgs_weight_rate(t->f, ADCGS_P_VARPI, 0);
@@ -104,7 +104,7 @@ static void price_shrinks_networks(void **state)
     uint64_t bytes[2];
     for (int i = 0; i < 2; i++) {
         adcgs_train_config config = small_config();
-        config.slim_at = 0.55f;
+        config.prune_units_at = 0.55f;
         config.network_rate = i ? 300 : 0;
         adcgs_trainer *t = run_to(&config, ITERATIONS);
         adcgs_stream stream;
@@ -127,8 +127,8 @@ static void units_go_twice(void **state)
 {
     adcgs_train_config config = small_config();
     config.iterations = 1500;
-    config.slim_at = 0.7f;
-    config.slim_again = 0.8f;
+    config.prune_units_at = 0.7f;
+    config.prune_units_again = 0.8f;
     config.lambda = 0.02f;
     adcgs_trainer *t = run_to(&config, 1040);
     const size_t before = weights_of(t->f);
@@ -157,7 +157,8 @@ static void lattice_bits_are_the_files(void **state)
     double sum = 0, bits;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         for (int l = 0; t->f->mlp[i].n && l <= t->f->mlp[i].hidden; l++) {
-            assert_int_equal(adcgs_lattice_bits(&t->f->mlp[i], t->f->param[i].p, l, t->f->mlp[i].lattice[l], &bits, &error),
+            assert_int_equal(adcgs_weight_step_bits(&t->f->mlp[i], t->f->param[i].p, l, t->f->mlp[i].weight_step[l], &bits,
+                                                    &error),
                              ADCGS_OK);
             sum += bits / 8;
         }
@@ -176,8 +177,9 @@ static int sum_of_lattices(const adcgs_fmodel *f)
     int sum = 0;
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         for (int l = 0; f->mlp[i].n && l <= f->mlp[i].hidden; l++) {
-            assert_in_range(f->mlp[i].lattice[l], ADCGS_LATTICE_MIN, f->mlp[i].entropy ? ADCGS_E24_BITS : ADCGS_LATTICE_MAX);
-            sum += f->mlp[i].lattice[l];
+            assert_in_range(f->mlp[i].weight_step[l], ADCGS_WEIGHT_STEP_MIN,
+                            f->mlp[i].entropy ? ADCGS_E24_BITS : ADCGS_WEIGHT_STEP_MAX);
+            sum += f->mlp[i].weight_step[l];
         }
     return sum;
 }
@@ -193,14 +195,14 @@ static void lattices_follow_lambda(void **state)
     memcpy(before, t->f->param[ADCGS_P_OMEGA].p, t->f->param[ADCGS_P_OMEGA].n * sizeof *before);
     for (int i = 0; i < 3; i++) {
         t->lambda = (const double[]){ 1e-4, 1, 100 }[i];
-        assert_int_equal(adcgs_trainer_choose_lattices(t, &error), ADCGS_OK);
+        assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
         sum[i] = sum_of_lattices(t->f);
     }
     print_message("exponents in sum %d, %d, %d\n", sum[0], sum[1], sum[2]);
     assert_true(sum[0] >= sum[1] && sum[1] > sum[2]);
     assert_memory_equal(before, t->f->param[ADCGS_P_OMEGA].p, t->f->param[ADCGS_P_OMEGA].n * sizeof *before);
     t->lambda = 1;
-    assert_int_equal(adcgs_trainer_choose_lattices(t, &error), ADCGS_OK);
+    assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
     assert_int_equal(sum_of_lattices(t->f), sum[1]);
     free(before);
     adcgs_trainer_free(&t);
@@ -217,7 +219,7 @@ static void assert_fine(const adcgs_fmodel *f, int group, int layer)
     const double rms = sqrt(square / (double)(end - begin));
     const int farther = layer < m->hidden ? 2 : 1;
     const double steps = ldexp(layer < m->hidden ? 16 : 64, -farther);
-    assert_true(ldexp(steps, -m->lattice[layer]) <= 1.001 * rms || m->lattice[layer] >= ADCGS_E24_BITS - farther);
+    assert_true(ldexp(steps, -m->weight_step[layer]) <= 1.001 * rms || m->weight_step[layer] >= ADCGS_E24_BITS - farther);
 }
 
 /** Of all f_g the means alone are coded: their networks say sigma level 0 everywhere. */
@@ -238,7 +240,7 @@ static void lattices_outlive_their_streams(void **state)
     adcgs_trainer *t = run_to(&config, 169);
     silence_streams(t->f);
     t->lambda = 100;
-    assert_int_equal(adcgs_trainer_choose_lattices(t, &error), ADCGS_OK);
+    assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         for (int l = 0; t->f->mlp[i].entropy && t->f->mlp[i].n && l <= t->f->mlp[i].hidden; l++)
             assert_fine(t->f, i, l);
@@ -271,7 +273,7 @@ static void raw_networks_are_exact(void **state)
     adcgs_buffer_init(&state_of_run);
     adcgs_buffer_init(&out);
     assert_int_equal(adcgs_trainer_store(t, &state_of_run, &error), ADCGS_OK);
-    config.without_lattice = 1;
+    config.without_weight_steps = 1;
     raw = run_to(&config, 0);
     assert_int_equal(adcgs_trainer_restore(raw, state_of_run.data, state_of_run.size, &error), ADCGS_OK);
     go_on(raw, ITERATIONS);
@@ -424,7 +426,7 @@ static void units_go_when_bits_are_dear(void **state)
         adcgs_buffer out;
         int units = 0, all = 0;
         t->lambda = dear ? 1000 : 0;
-        assert_int_equal(adcgs_trainer_slim(t, &error), ADCGS_OK);
+        assert_int_equal(adcgs_prune_units(t, &error), ADCGS_OK);
         for (int i = ADCGS_P_THETA; i <= ADCGS_P_VARPI; i++, all += 16)
             units += t->f->mlp[i].width;
         print_message("%d of %d units left\n", units, all);

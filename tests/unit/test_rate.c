@@ -101,7 +101,7 @@ static void count_bits(counter *c, adcgs_model *model)
     *c = (counter){ .model = model };
     assert_int_equal(adcgs_latents_create(&latents, model, ADCGS_CPU_SCALAR, NULL, &error), ADCGS_OK);
     for (int layer = 0; layer < model->layers; layer++)
-        assert_int_equal(adcgs_latents_walk(latents, model, layer, 0, model->n, count_site, c), ADCGS_OK);
+        assert_int_equal(adcgs_latents_walk(latents, model, layer, 0, model->n, count_site, c, NULL), ADCGS_OK);
     adcgs_latents_free(&latents);
 }
 

@@ -7,10 +7,12 @@
 #include "encode/rdo.h"
 #include "grad/random.h"
 #include "train/curvature.h"
+#include "train/levels.h"
+#include "train/sample.h"
 
 #include <math.h>
 
-static const char small[] = "max_anchors=150,start_anchors=100,refine_every=20,k=4,n_fv=12,theta_width=16,omega_width=16,"
+static const char small[] = "max_anchors=150,start_anchors=100,densify_every=20,k=4,n_fv=12,theta_width=16,omega_width=16,"
                             "varpi_width=16,entropy_width=16,lambda=0.05";
 static adcgs_trainer *trainer; /**< stopped just before its values are frozen */
 
@@ -119,7 +121,7 @@ static double loss_moved(adcgs_trainer *t, int group, uint32_t portion, float di
     for (size_t i = 0; i < p->n; i++)
         if (adcgs_mix32((uint32_t)i) % PORTIONS == portion)
             p->p[i] += (adcgs_mix32((uint32_t)i ^ 0x9e3779b9u) & 1 ? 0.5f : -0.5f) * direction * t->f->step[group][i / 64 % rows];
-    assert_int_equal(adcgs_trainer_sample_loss(t, ADCGS_CURVATURE_VIEWS, 1, &loss, &error), ADCGS_OK);
+    assert_int_equal(adcgs_sample_loss(t, ADCGS_CURVATURE_VIEWS, 1, &loss, &error), ADCGS_OK);
     memcpy(p->p, still, bytes);
     free(still);
     return loss;
@@ -154,7 +156,7 @@ static void curvature_is_that_of_the_loss(void **state)
         assert_non_null(h[i]);
     }
     assert_int_equal(adcgs_curvature_measure(t, h, NULL, &error), ADCGS_OK);
-    assert_int_equal(adcgs_trainer_sample_loss(t, ADCGS_CURVATURE_VIEWS, 1, &still, &error), ADCGS_OK);
+    assert_int_equal(adcgs_sample_loss(t, ADCGS_CURVATURE_VIEWS, 1, &still, &error), ADCGS_OK);
     for (int i = 0; i < ADCGS_P_ETA; i++) {
         const double ratio = seen_by_said(t, i, h[i], still);
         print_message("%s: the loss bends %.2f times as said\n", f->param[i].name, ratio);
@@ -202,7 +204,7 @@ static void strength_tells_bytes(void **state)
     assert_int_equal(told[2], told[5]);
     for (size_t i = 0; i < ADCGS_COUNTOF(strengths); i++) {
         adcgs_model model;
-        assert_int_equal(adcgs_trainer_choose(t, strengths[i], &error), ADCGS_OK);
+        assert_int_equal(adcgs_level_choose(t, strengths[i], &error), ADCGS_OK);
         assert_int_equal(stream_bytes(t, &model), told[i]);
         assert_int_equal(adcgs_encode_bytes(&bytes, t, -1, &note, 1, &error), ADCGS_OK);
         assert_int_equal(bytes.total, told[i]);
@@ -223,7 +225,7 @@ static void decisions_are_kept(void **state)
     adcgs_trainer *t = copy(1);
     adcgs_model chosen, last;
     int stopped;
-    assert_int_equal(adcgs_trainer_choose(t, 5, &error), ADCGS_OK);
+    assert_int_equal(adcgs_level_choose(t, 5, &error), ADCGS_OK);
     stream_bytes(t, &chosen);
     assert_int_equal(adcgs_trainer_run(t, NULL, NULL, &stopped, &error), ADCGS_OK);
     stream_bytes(t, &last);
@@ -245,7 +247,7 @@ static void only_frozen_values_are_decided(void **state)
     adcgs_trainer *t = copy(0);
     adcgs_bytes bytes;
     assert_int_equal(adcgs_encode_bytes(&bytes, t, 1, NULL, 0, &error), ADCGS_ERR_USAGE);
-    assert_int_equal(adcgs_trainer_choose(t, 1, &error), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_level_choose(t, 1, &error), ADCGS_ERR_USAGE);
     adcgs_trainer_free(&t);
 }
 

@@ -374,7 +374,7 @@ static float *draw(const adcgs_primitives *p, const double origin[3], double sca
     }
     expect_good(adcgs_view_init(&view, camera, origin, scale, &error));
     expect_good(adcgs_raster_create(&raster, ADCGS_CPU_SCALAR, NULL, NULL, &error));
-    expect_good(adcgs_raster_forward(raster, &clipped, &view, black, ADCGS_SPLAT_SCENE_FILTER, rgb, 0, &error));
+    expect_good(adcgs_raster_forward(raster, &clipped, &view, black, ADCGS_SCREEN_FILTER, rgb, 0, &error));
     adcgs_raster_free(&raster);
     free(colour);
     for (size_t i = 0; i < n; i++)

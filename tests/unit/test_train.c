@@ -435,13 +435,13 @@ static void ref_motion(const double om[12], const double place[3], double out[3]
 }
 
 /** The energy that keeps neighbours together, by its definition, in double. */
-static double ref_rigid(const adcgs_rigid *rigid, const adcgs_fmodel *f, double t)
+static double ref_rigid(const adcgs_rigidity *rigid, const adcgs_fmodel *f, double t)
 {
     double energy = 0, om[ANCHORS][12];
     for (uint32_t i = 0; i < f->n; i++)
         ref_omega(f, i, t, om[i]);
     for (uint32_t i = 0; i < f->n; i++)
-        for (int k = 0; k < ADCGS_RIGID_NEAR; k++) {
+        for (int k = 0; k < ADCGS_RIGIDITY_NEAR; k++) {
             double y[3], by_i[3], by_j[3], length = 0, stretch = 0;
             if (rigid->near[i][k] < 0)
                 continue;
@@ -458,10 +458,10 @@ static double ref_rigid(const adcgs_rigid *rigid, const adcgs_fmodel *f, double 
                 stretch += pow(by_i[a] - by_j[a], 2);
             energy += 0.05 * log(1 + stretch / length / (0.05 * 0.05));
         }
-    return energy / ADCGS_RIGID_NEAR / f->n;
+    return energy / ADCGS_RIGIDITY_NEAR / f->n;
 }
 
-static const adcgs_rigid *rigid_under_test;
+static const adcgs_rigidity *rigid_under_test;
 
 static double rigid_energy(const adcgs_fmodel *f)
 {
@@ -471,19 +471,19 @@ static double rigid_energy(const adcgs_fmodel *f)
 static void test_rigid(void **state)
 {
     const fixture *x = *state;
-    adcgs_rigid rigid = { 0 };
+    adcgs_rigidity rigid = { 0 };
     adcgs_error error;
-    assert_int_equal(adcgs_rigid_build(&rigid, x->f, NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_rigidity_build(&rigid, x->f, NULL, &error), ADCGS_OK);
     rigid_under_test = &rigid;
     adcgs_pass_forward(x->pass, x->f, 0.4f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
     clear_gradients(x->f);
     memset(x->pass->grad, 0, 16 * (size_t)x->pass->primitives.n * sizeof(float));
-    assert_float_equal(adcgs_rigid_pull(&rigid, x->pass, x->f, 1), rigid_energy(x->f), 1e-5);
+    assert_float_equal(adcgs_rigidity_pull(&rigid, x->pass, x->f, 1), rigid_energy(x->f), 1e-5);
     x->pass->pull = rigid.pull;
     adcgs_pass_backward(x->pass, x->f, ADCGS_DEFORM_ALL, 0, 0, 0, NULL);
     x->pass->pull = NULL;
     check_gradients(x->f, rigid_energy, 0);
-    adcgs_rigid_clear(&rigid);
+    adcgs_rigidity_clear(&rigid);
 }
 
 /** Price of size: its value and its gradient by hand; what is not there neither counts nor pays. */
@@ -497,7 +497,8 @@ static void test_area(void **state)
     double area = 0;
     for (int i = 0; i < 4; i++)
         area += i == 2 ? 0 : (double)(s[0][i] * s[1][i] + s[1][i] * s[2][i] + s[2][i] * s[0][i]);
-    const double price = adcgs_area_price(&primitives, &(adcgs_viewpoints){ .n = 0 }, 0.5f, (float *const[]){ g[0], g[1], g[2] });
+    float *const to[3] = { g[0], g[1], g[2] };
+    const double price = adcgs_scale_penalty(&primitives, &(adcgs_viewpoints){ .n = 0 }, 0.5f, to);
     assert_float_equal(price, 0.5 * area / 9, 1e-6);
     for (int a = 0; a < 3; a++)
         for (int i = 0; i < 4; i++)
@@ -519,7 +520,7 @@ static void test_area_seen(void **state)
     memcpy(primitives.mean, mean, sizeof mean);
     assert_int_equal(adcgs_viewpoints_create(&viewpoints, camera, 5, &error), ADCGS_OK);
     assert_int_equal(viewpoints.n, 3 + 2 * 3);
-    adcgs_area_price(&primitives, &viewpoints, 3, (float *const[]){ g[0], g[1], g[2] });
+    adcgs_scale_penalty(&primitives, &viewpoints, 3, (float *const[]){ g[0], g[1], g[2] });
     for (int i = 0; i < 4; i++)
         assert_float_equal(g[0][i], 0.5f * larger[i], 1e-4);
     adcgs_viewpoints_clear(&viewpoints);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Whole training runs in miniature: stopping and going on, refinement, recovery
+ * Whole training runs in miniature: stopping and going on, densification, recovery
  * from what is not a number, and the numbers that end up in a stream.
  */
 #include "tiny_scene.h"
@@ -11,8 +11,11 @@
 #include "geom/geom.h"
 #include "metric/metric.h"
 #include "model/latents_priv.h"
+#include "train/decide.h"
+#include "train/densify.h"
 #include "train/initialise.h"
 #include "train/residual_densify.h"
+#include "train/views.h"
 
 #include <math.h>
 
@@ -115,7 +118,7 @@ static void checkpoints_are_checked(void **state)
     adcgs_write_uint(&b, 0, 1);
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size, &error), ADCGS_ERR_DATA);
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size - 1, &error), ADCGS_OK);
-    config.grow_until += 0.01f;
+    config.densify_until += 0.01f;
     other = make(&config, NULL);
     assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "other options"));
@@ -149,7 +152,7 @@ static int count_anchors(void *user, const adcgs_train_report *r)
     return 0;
 }
 
-static void refinement_keeps_order_and_budget(void **state)
+static void densification_keeps_order_and_budget(void **state)
 {
     const adcgs_train_config config = all_stages_config();
     census c = { make(&config, pool), UINT32_MAX, 0 };
@@ -159,11 +162,11 @@ static void refinement_keeps_order_and_budget(void **state)
     adcgs_trainer_free(&c.t);
 }
 
-/** Anchors that nobody saw since the last refinement go, the others stay, and their parameters with them. */
-static void refinement_prunes_what_is_not_seen(void **state)
+/** Anchors that nobody saw since the last densification go, the others stay, and their parameters with them. */
+static void densification_prunes_what_is_not_seen(void **state)
 {
     adcgs_train_config config = all_stages_config();
-    config.grow_threshold = 1e9f;
+    config.densify_threshold = 1e6f;
     adcgs_trainer *t = make(&config, pool);
     uint32_t stop = 50, gone[3], left;
     run(t, stop_at, &stop);
@@ -175,7 +178,7 @@ static void refinement_prunes_what_is_not_seen(void **state)
     memcpy(gone, t->f->pos[3], sizeof gone);
     left = t->f->n - (t->f->n + 60) / 64; /* less one of each group of 64 */
     const float next = *adcgs_fmodel_at(t->f, ADCGS_P_FG, 4, (int)k);
-    assert_int_equal(adcgs_trainer_refine(t, 0.4, &error), ADCGS_OK);
+    assert_int_equal(adcgs_densify(t, 0.4, &error), ADCGS_OK);
     assert_int_equal(t->f->n, left);
     for (uint32_t i = 0; i < left; i++)
         assert_memory_not_equal(t->f->pos[i], gone, sizeof gone);
@@ -199,7 +202,7 @@ static void faint_primitives_go(void **state)
             t->stats.weight[slot] = 1000.0f * (float)t->stats.n;
             t->stats.opacity[slot] = config.keep_opacity * (faint ? 0.99f : 1.01f) * (float)t->stats.n;
         }
-    assert_int_equal(adcgs_trainer_decide(t, &error), ADCGS_OK);
+    assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
     assert_int_equal(t->f->n, n - 1);
     for (uint32_t i = 0; i < t->f->n; i++)
         for (int j = 0; j < k; j++)
@@ -461,7 +464,7 @@ static void rate_reaches_every_weight(void **state)
 {
     static const uint32_t stops[] = { 120, 180 };
     adcgs_train_config config = all_stages_config();
-    config.without_lattice = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
+    config.without_weight_steps = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
     config.network_rate = 0;
     for (size_t s = 0; s < ADCGS_COUNTOF(stops); s++) {
         adcgs_trainer *t = make(&config, pool);
@@ -588,28 +591,28 @@ static void windows_grow_outwards(void **state)
 {
     const adcgs_train_config config = all_stages_config();
     adcgs_trainer *t = make(&config, pool);
-    adcgs_window *w = &t->window;
+    adcgs_curriculum *w = &t->curriculum;
     const size_t bytes = t->f->params.time_width * sizeof(float);
     const int rows = t->f->params.time_rows;
     assert_true(rows >= 6);
-    adcgs_window_grow(w, 0.1, t->f);
+    adcgs_curriculum_grow(w, 0.1, t->f);
     const int first = w->first, last = w->last;
     assert_true(w->n > 0 && w->n < t->n_views && first > 0 && last < rows - 1);
     for (int i = 0; i < 100; i++) {
-        const float at = t->views[adcgs_window_pick(w, 1, (uint32_t)i)].t * (float)(rows - 1);
+        const float at = t->views[adcgs_curriculum_pick(w, 1, (uint32_t)i)].t * (float)(rows - 1);
         assert_true(at >= (float)first && at <= (float)last);
     }
     for (int r = 0; r < rows; r++)
         time_row(t, r)[0] = (float)r;
-    adcgs_window_grow(w, 0.6, t->f);
+    adcgs_curriculum_grow(w, 0.6, t->f);
     assert_true(w->first < first && w->last > last && w->last - w->first < rows - 1);
-    adcgs_window_grow(w, 0.2, t->f); /* takes nothing back */
+    adcgs_curriculum_grow(w, 0.2, t->f); /* takes nothing back */
     for (int r = 0; r < rows; r++)
         if (r < w->first || r > w->last)
             assert_true(time_row(t, r)[0] == (float)r);
         else
             assert_memory_equal(time_row(t, r), time_row(t, r < first ? first : r > last ? last : r), bytes);
-    adcgs_window_grow(w, 1, t->f);
+    adcgs_curriculum_grow(w, 1, t->f);
     assert_true(w->n == t->n_views && w->first == 0 && w->last == rows - 1);
     adcgs_trainer_free(&t);
 }
@@ -621,25 +624,25 @@ static void averages_are_means(void **state)
     adcgs_trainer *t = make(&config, pool);
     adcgs_fmodel *f = t->f;
     adcgs_param *varied = &f->param[ADCGS_P_OMEGA], *same = &f->param[ADCGS_P_THETA];
-    adcgs_average average = { .n = 0 };
+    adcgs_weight_average average = { .n = 0 };
     const float begin = varied->p[0], kept = same->p[1];
-    adcgs_average_take(&average, f); /* of nothing: nothing */
+    adcgs_weight_average_take(&average, f); /* of nothing: nothing */
     assert_true(varied->p[0] == begin);
     for (int i = 0; i < 3; i++) {
         varied->p[0] = (const float[]){ 1, 2, 6 }[i];
-        assert_int_equal(adcgs_average_add(&average, f, &error), ADCGS_OK);
+        assert_int_equal(adcgs_weight_average_add(&average, f, &error), ADCGS_OK);
     }
-    adcgs_average_take(&average, f);
+    adcgs_weight_average_take(&average, f);
     assert_float_equal(varied->p[0], 3, 1e-6);
     assert_true(same->p[1] == kept && average.n == 0);
-    assert_int_equal(adcgs_average_add(&average, f, &error), ADCGS_OK);
+    assert_int_equal(adcgs_weight_average_add(&average, f, &error), ADCGS_OK);
     adcgs_fmodel_set_width(f, ADCGS_P_THETA, 8);
     varied->p[0] = 7;
-    assert_int_equal(adcgs_average_add(&average, f, &error), ADCGS_OK);
+    assert_int_equal(adcgs_weight_average_add(&average, f, &error), ADCGS_OK);
     assert_int_equal(average.n, 1);
-    adcgs_average_take(&average, f);
+    adcgs_weight_average_take(&average, f);
     assert_true(varied->p[0] == 7);
-    adcgs_average_clear(&average);
+    adcgs_weight_average_clear(&average);
     adcgs_trainer_free(&t);
 }
 
@@ -697,7 +700,7 @@ static void moments_shared_by_views_change_settings(void **state)
 {
     adcgs_scene alone = *scene;
     adcgs_train_config config = small_config();
-    const float rigid = config.rigid_weight, from = config.area_from;
+    const float rigid = config.rigid_weight, from = config.scale_from;
     const adcgs_scene *alone_and_shared[] = { &alone, scene };
     assert_true(rigid > 0 && from > 0);
     alone.n_times = alone.n_views[ADCGS_SPLIT_TRAIN];
@@ -705,10 +708,10 @@ static void moments_shared_by_views_change_settings(void **state)
         for (int i = 0; i < 2; i++) {
             adcgs_trainer *t;
             if (by_hand)
-                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,area_from=0.125", &error), ADCGS_OK);
+                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,scale_from=0.125", &error), ADCGS_OK);
             assert_int_equal(adcgs_trainer_create(&t, alone_and_shared[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
             assert_true(t->config.rigid_weight == (by_hand ? 0.5f : i ? 0 : rigid));
-            assert_true(t->config.area_from == (by_hand ? 0.125f : i ? 0 : from));
+            assert_true(t->config.scale_from == (by_hand ? 0.125f : i ? 0 : from));
             adcgs_trainer_free(&t);
         }
 }
@@ -745,13 +748,13 @@ static void missing_things_are_found(void **state)
     const adcgs_train_config config = all_stages_config();
     const float x[3] = { 0.1f, -0.05f, 0.12f };
     adcgs_trainer *t = make(&config, pool);
-    adcgs_missing places[MOST];
+    adcgs_residual places[MOST];
     uint32_t n;
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
-    adcgs_window_grow(&t->window, 1, t->f);
+    adcgs_curriculum_grow(&t->curriculum, 1, t->f);
     memset(t->f->keep, 0, (size_t)t->f->groups * 64 * (size_t)t->f->params.k * sizeof *t->f->keep);
     show_dot(t, x, 0);
-    assert_int_equal(adcgs_trainer_missing(t, places, MOST, &n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_residual_find(t, places, MOST, &n, &error), ADCGS_OK);
     assert_true(n > 0);
     for (uint32_t i = 0; i < n; i++) {
         for (int a = 0; a < 3; a++)
@@ -759,12 +762,12 @@ static void missing_things_are_found(void **state)
         assert_true(places[i].size > 0.01f && places[i].size < 0.2f && places[i].score > 0);
         assert_float_equal(places[i].rgb[0] - scene->background[0], 0.9, 2e-5); /* pictures have 16 bits */
     }
-    /* A refinement puts an anchor there, if the scene's own points may have left it out. */
+    /* Densification puts an anchor there, if the scene's own points may have left it out. */
     adcgs_scene with_points = *scene;
     with_points.points.n = ADCGS_POINTS_LEAST;
     t->scene = &with_points;
     t->stats.n = 1;
-    assert_int_equal(adcgs_trainer_refine(t, 0.1, &error), ADCGS_OK);
+    assert_int_equal(adcgs_densify(t, 0.1, &error), ADCGS_OK);
     int put = 0;
     for (uint32_t i = 0; i < t->f->n; i++) {
         const float *place = t->f->x + (size_t)i / 64 * 192 + i % 64;
@@ -776,12 +779,12 @@ static void missing_things_are_found(void **state)
     assert_int_equal(put, 1);
     memset(t->f->keep, 0, (size_t)t->f->groups * 64 * (size_t)t->f->params.k * sizeof *t->f->keep);
     show_dot(t, x, 1);
-    assert_int_equal(adcgs_trainer_missing(t, places, MOST, &n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_residual_find(t, places, MOST, &n, &error), ADCGS_OK);
     assert_int_equal(n, 0);
     show_dot(t, x, 0);
     for (uint32_t i = 0; i < t->n_views; i++)
         t->views[i].t = (float)i / (float)t->n_views; /* no two at a time */
-    assert_int_equal(adcgs_trainer_missing(t, places, MOST, &n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_residual_find(t, places, MOST, &n, &error), ADCGS_OK);
     assert_int_equal(n, 0);
     adcgs_trainer_free(&t);
 }
@@ -791,8 +794,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
         cmocka_unit_test(checkpoints_are_checked),
-        cmocka_unit_test(refinement_keeps_order_and_budget),
-        cmocka_unit_test(refinement_prunes_what_is_not_seen),
+        cmocka_unit_test(densification_keeps_order_and_budget),
+        cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
         cmocka_unit_test(no_number_is_rolled_back),
         cmocka_unit_test(no_number_is_rolled_back_late),

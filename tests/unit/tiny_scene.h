@@ -7,6 +7,7 @@
 
 #include "layouts/open.h"
 #include "scenes/scenes.h"
+#include "train/settings.h"
 #include "train/trainer.h"
 
 static adcgs_scene *scene;
@@ -39,8 +40,8 @@ static inline adcgs_train_config small_config(void)
     c.iterations = ITERATIONS;
     c.start_anchors = 100;
     c.max_anchors = 150;
-    c.refine_every = 20;
-    c.grow_threshold = 1e-6f;
+    c.densify_every = 20;
+    c.densify_threshold = 1e-6f;
     c.still_below = 0; /* motion takes longer to show than these runs last */
     c.params.k = 4;
     c.params.n_fv = 12;

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Checkpoints of a run, in files and in memory. */
+#ifndef ADCGS_TRAIN_CHECKPOINT_H
+#define ADCGS_TRAIN_CHECKPOINT_H
+
+#include "train/state.h"
+
+/**
+ * Checkpoints: everything needed to go on with identical results; atomic file, versioned, checksummed. Loading one saved with
+ * other options or another scene is ADCGS_ERR_DATA; only lambda may be another while it has had no say, so that runs at several
+ * rates share their beginning, and without_weight_steps before weights are rounded, so that its price can be told.
+ */
+adcgs_status adcgs_trainer_save(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
+adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_error *error);
+/** The same to and from memory (rollback). */
+adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error);
+adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, size_t size, adcgs_error *error);
+
+#endif

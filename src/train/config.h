@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * A training run as data. What each number means, its range and its value in each preset are in the table of settings
+ * (settings_table.c); configurations are made by settings.h. Every moment of a run is a fraction of its iterations, so that a
+ * preset stretches to any length.
+ */
+#ifndef ADCGS_TRAIN_CONFIG_H
+#define ADCGS_TRAIN_CONFIG_H
+
+#include "fmodel/fmodel.h"
+
+/** What a run is steered to; without a target, lambda stays as configured. */
+typedef enum adcgs_train_target {
+    ADCGS_TARGET_NONE,
+    ADCGS_TARGET_SIZE, /**< at most so many bytes of stream */
+    ADCGS_TARGET_PSNR, /**< so many dB, mean over the training views */
+} adcgs_train_target;
+
+#define ADCGS_TARGET_SIZE_MIN 1.0
+#define ADCGS_TARGET_SIZE_MAX 1e12
+#define ADCGS_TARGET_PSNR_MIN 5.0
+#define ADCGS_TARGET_PSNR_MAX 80.0
+#define ADCGS_TIME_LIMIT_MAX 1e7 /* seconds */
+
+typedef struct adcgs_train_config {
+    const char *preset;
+    double time_limit;     /**< seconds; > 0: progress is measured in time, and the result depends on the machine */
+    adcgs_train_target target;
+    double target_value;   /**< bytes or dB */
+    /* Chosen by hand: no target changes lambda, max_anchors or networks' widths, no scene rigid_weight or scale_from. */
+    uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigid, own_scale_from;
+    /* The run. */
+    uint32_t iterations;
+    uint64_t seed;
+    int scale;             /**< images are divided by this integer before training */
+    /* The loss. */
+    float lambda;          /**< loss per mebibyte (2^23 bits) of estimated features and networks */
+    float network_rate;    /**< weight of the networks' own bits, relative to the features' */
+    int rate_period;       /**< rate is measured on every n-th group of anchors */
+    float rdo_strength;    /**< of the loss per bit when values are frozen, relative to training's; 0: the nearest levels */
+    float ssim_weight;
+    float rigid_weight;    /**< of the energy that keeps neighbours alike as they move; 0 where several views share a moment */
+    float scale_weight;    /**< of the price of primitives' size */
+    float dropout;         /**< share of primitives left out at random until rounding: against overfitting few views */
+    /* The model. */
+    adcgs_params params;   /**< time_rows is capped by the scene */
+    adcgs_shape shape;
+    /* Anchors. */
+    uint32_t start_anchors, max_anchors;
+    uint32_t densify_every;  /**< iterations between densifications */
+    float densify_threshold; /**< of the significance-weighted screen gradient */
+    float prune_opacity;   /**< of the accumulated opacity */
+    float keep_opacity;    /**< primitives of less opacity in the mean go when it is decided what stays */
+    float still_below;     /**< effect of time on an anchor, of which 1 can just be seen, below which it is static */
+    /* Moments, as fractions of the run. */
+    float curriculum_begin, curriculum_until; /**< views trained on grow from this fraction, about the middle of time, to all */
+    float quarter_until, half_until; /**< coarse-to-fine: a quarter, then half of the resolution */
+    float scale_from;      /**< size has its price from here on; where several views share a moment, from the start */
+    float deform_from, fine_from, densify_from, densify_until, noise_from, rate_from;
+    float prune_units_at, prune_units_again; /**< hidden units are removed; the second time needs the first */
+    float decide_at, round_from, freeze_from;
+    float average_last;    /**< so much of the end of rounding, and of the run, is averaged, but at most half of either stage */
+    /* Switches: what is left out, see adcgs_train_leave_out(). */
+    uint8_t without_coarse, without_fine, without_rate, without_densification, without_weight_steps;
+    uint8_t without_rounding; /**< values and weights remain binary32 to the end, for a model that is stored uncompressed */
+    uint8_t bf16;          /**< networks that draw are trained in bf16; see adcgs_bf16_check() */
+} adcgs_train_config;
+
+#endif

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Decisions on what a model needs. */
+#include "train/decide.h"
+
+#include "train/anchor_set.h"
+#include "train/sample.h"
+
+#include <math.h>
+
+enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
+
+/**
+ * Largest effect of time on each anchor's primitives. 1 is half a pixel of way, or 0.03 of colour, for an opaque one, or 0.03
+ * of opacity: what lies below is seen as noise, and costs every frame its networks.
+ */
+static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error *error)
+{
+    const adcgs_fmodel *f = t->f;
+    const size_t slots = t->pass->primitives.n;
+    float *still = adcgs_alloc(NULL, slots * 14, sizeof *still, error);
+    if (!still)
+        return adcgs_alloc_status(error);
+    /* Scene units per pixel of the full resolution at unit distance. */
+    const float pixel = (float)t->config.scale / (t->views[0].view.fx * (float)t->divide);
+    adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
+    memcpy(still, t->pass->prim, slots * 14 * sizeof *still);
+    for (int step = 0; step < DECIDE_TIMES; step++) {
+        adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+        for (size_t i = 0; i < slots; i++) {
+            const uint32_t anchor = adcgs_anchor_of(f, (uint32_t)i);
+            if (anchor >= f->n || f->keep[i] == 0)
+                continue;
+            const float *now = t->pass->prim;
+            const float o = fmaxf(now[10 * slots + i], still[10 * slots + i]);
+            float shift = 0, tint = 0;
+            for (int a = 0; a < 3; a++) {
+                shift = fmaxf(shift, fabsf(now[(size_t)a * slots + i] - still[(size_t)a * slots + i]));
+                tint = fmaxf(tint, fabsf(now[(size_t)(11 + a) * slots + i] - still[(size_t)(11 + a) * slots + i]));
+            }
+            const float fade = fabsf(now[10 * slots + i] - still[10 * slots + i]);
+            const float here = fmaxf(fmaxf(o * shift / (0.5f * pixel), o * tint / 0.03f), fade / 0.03f);
+            effect[anchor] = fmaxf(effect[anchor], here);
+        }
+    }
+    adcgs_free(NULL, still);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
+{
+    const adcgs_fmodel *f = t->f;
+    double stopped, moving;
+    if (!f->params.time_rows)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 0, &stopped, error));
+    ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 1, &moving, error));
+    /* Seven bits a weight; a hundredth of the loss is what networks gain by learning the noise of each picture. */
+    const size_t weights = f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n + f->mlp[ADCGS_P_TIME].n;
+    if (stopped > 1.01 * moving + t->lambda * 7 * (double)weights * 0x1p-23)
+        return ADCGS_OK;
+    memset(f->moving, 0, (size_t)f->groups * 64 * sizeof *f->moving);
+    return ADCGS_OK;
+}
+
+/** Mark the anchors that time does not touch. */
+static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
+{
+    adcgs_fmodel *f = t->f;
+    float *effect = adcgs_alloc(NULL, f->n, sizeof *effect, error);
+    if (!effect)
+        return adcgs_alloc_status(error);
+    const adcgs_status status = measure_motion(t, effect, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
+        if (effect[i] < t->config.still_below)
+            f->moving[i] = 0;
+    adcgs_free(NULL, effect);
+    return status;
+}
+
+/** What covers next to nothing, and large faint primitives: they cost the most time, fit single views and are soon replaced. */
+static int is_superfluous(const adcgs_trainer *t, size_t slot)
+{
+    const float n = (float)t->stats.n;
+    return t->stats.weight[slot] < 0.05f * n || t->stats.opacity[slot] < t->config.keep_opacity * n;
+}
+
+adcgs_status adcgs_decide(adcgs_trainer *t, adcgs_error *error)
+{
+    adcgs_fmodel *f = t->f;
+    const int k = f->params.k;
+    if (!t->stats.n)
+        return ADCGS_OK;
+    for (uint32_t i = 0; i < f->n; i++)
+        for (int j = 0; j < k; j++) {
+            const size_t slot = adcgs_fmodel_slot(f, i, j);
+            if (is_superfluous(t, slot))
+                f->keep[slot] = 0;
+        }
+    if (f->params.time_rows)
+        ADCGS_TRY(decide_motion(t, error));
+    adcgs_anchor_set s;
+    ADCGS_TRY(adcgs_anchor_set_init(&s, f->n + 1, error));
+    for (uint32_t i = 0; i < f->n; i++) {
+        int kept = 0;
+        for (int j = 0; j < k; j++)
+            kept += f->keep[adcgs_fmodel_slot(f, i, j)] > 0;
+        if (kept && !adcgs_anchor_is_idle(t, i, 0.5))
+            adcgs_anchor_set_add(&s, f->pos[i], i, 0);
+    }
+    if (!s.n)
+        adcgs_anchor_set_add(&s, f->pos[0], 0, 0);
+    const adcgs_status status = adcgs_anchor_set_adopt(t, &s, error);
+    adcgs_anchor_set_clear(&s);
+    return status;
+}

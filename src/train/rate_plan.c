@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What fits into a size. */
+#include "train/rate_plan.h"
+
+#include <math.h>
+
+/** Bytes of headers, cameras and notes, at most about; a plausible share of networks; anchors as the coder leaves them. */
+enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
+#define NETWORKS_SHARE 0.25
+#define LAMBDA_FIRST 0.02f /* from where a target steers it */
+#define ANCHORS_GROWTH 4 /* a large size may raise a preset's budget so many times */
+
+/** Weights of all networks under a configuration. */
+static adcgs_status count_weights(const adcgs_train_config *c, size_t *weights, adcgs_error *error)
+{
+    static const float origin[3];
+    static const uint32_t place[1][3];
+    adcgs_fmodel *f;
+    *weights = 0;
+    ADCGS_TRY(adcgs_fmodel_create(&f, &c->params, &c->shape, origin, 1, place, 1, 0, error));
+    for (int i = 0; i < ADCGS_P_COUNT; i++)
+        *weights += f->mlp[i].n;
+    adcgs_fmodel_free(&f);
+    return ADCGS_OK;
+}
+
+static int narrower(int width, double factor)
+{
+    const int scaled = 4 * (int)rint(width * factor / 4);
+    return width ? ADCGS_MIN(width, ADCGS_MAX(scaled, WIDTH_LEAST)) : 0; /* 0: the network is left out */
+}
+
+/** The widest networks, of some fractions of the preset's width, that leave room for anchors. */
+static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_error *error)
+{
+    const double share = NETWORKS_SHARE * c->target_value;
+    const double room = c->own_anchors ? c->target_value - OTHER_BYTES - (double)c->max_anchors * ANCHOR_BITS / 8 : 0;
+    static const double factors[] = { 1, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125 };
+    const adcgs_shape wide = c->shape;
+    for (size_t i = 0; i < ADCGS_COUNTOF(factors); i++) {
+        size_t weights;
+        c->shape.theta_width = narrower(wide.theta_width, factors[i]);
+        c->shape.omega_width = narrower(wide.omega_width, factors[i]);
+        c->shape.varpi_width = narrower(wide.varpi_width, factors[i]);
+        c->shape.entropy_width = narrower(wide.entropy_width, factors[i]);
+        ADCGS_TRY(count_weights(c, &weights, error));
+        *bytes = (double)weights * ADCGS_WEIGHT_BITS / 8;
+        if (c->own_networks || *bytes <= fmax(share, room))
+            break;
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_rate_plan(adcgs_train_config *c, adcgs_error *error)
+{
+    double networks;
+    if (c->target != ADCGS_TARGET_NONE)
+        c->lambda = LAMBDA_FIRST;
+    if (c->target != ADCGS_TARGET_SIZE)
+        return ADCGS_OK;
+    c->keep_opacity = 0; /* the bytes are to be spent: on what is faint rather than not at all */
+    ADCGS_TRY(plan_networks(c, &networks, error));
+    const double anchors = floor((c->target_value - networks - OTHER_BYTES) * 8 / ANCHOR_BITS);
+    if (anchors < ANCHORS_LEAST)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f bytes are too few: networks, cameras and headers alone take about %.0f",
+                          c->target_value, networks + OTHER_BYTES);
+    if (!c->own_anchors)
+        c->max_anchors = (uint32_t)fmin(anchors, fmin((double)c->max_anchors * ANCHORS_GROWTH, ADCGS_ANCHORS_MAX));
+    c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
+    return ADCGS_OK;
+}

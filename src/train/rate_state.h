@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file State of rate control, and what it asks of the room that builds streams. */
+#ifndef ADCGS_TRAIN_RATE_STATE_H
+#define ADCGS_TRAIN_RATE_STATE_H
+
+#include <adcgs/decoder.h>
+
+struct adcgs_trainer;
+
+/** Exact bytes of the stream that a run would end with now, provided by the room that builds streams. */
+typedef adcgs_status (*adcgs_train_measure)(void *user, const struct adcgs_trainer *trainer, adcgs_bytes *bytes,
+                                            adcgs_error *error);
+
+/** State of the control; a checkpoint carries it. */
+typedef struct adcgs_rate_control {
+    double error;    /**< at the last step: log of bytes over room, or so much of the dB over the target; > 0 raises lambda */
+    double at;       /**< progress of the last step; 0: none yet */
+    double measured; /**< progress of the last measurement; 0: none yet */
+    double fixed;    /**< bytes beside the features */
+    double ratio;    /**< bytes of features as written over those estimated */
+    double psnr;     /**< dB, of a sample of training views */
+} adcgs_rate_control;
+
+#endif

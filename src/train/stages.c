@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The stages of a run in their order. */
+#include "train/stages.h"
+
+#include "train/decide.h"
+#include "train/densify.h"
+#include "train/freeze.h"
+#include "train/levels.h"
+#include "train/rate_control.h"
+#include "train/rate_target.h"
+#include "train/unit_prune.h"
+#include "train/views.h"
+#include "train/weight_steps.h"
+
+/* WEIGH_AFTER, UNITS_AFTER: before that many iterations motion and networks have not had their chance. */
+enum { WEIGH_AFTER = 300, UNITS_AFTER = 1000, MEANS_EVERY = 100 };
+
+static adcgs_status round_values(adcgs_trainer *t, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_weight_steps_choose(t, error));
+    t->rounding = 1;
+    adcgs_trainer_prepare_networks(t);
+    return ADCGS_OK;
+}
+
+/** Go on from where the last iterations led in the mean. */
+static void take_average(adcgs_trainer *t)
+{
+    adcgs_weight_average_take(&t->average, t->f);
+    adcgs_trainer_prepare_networks(t);
+}
+
+static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    if (progress >= adcgs_train_lambda_from(c))
+        t->lambda_used = 1;
+    if (!t->weighed && progress >= c->rate_from && !c->without_rate) {
+        t->weighed = 1;
+        if (t->iteration >= WEIGH_AFTER)
+            ADCGS_TRY(adcgs_weigh_motion(t, error));
+    }
+    if (t->slimmed < 2 && progress >= (t->slimmed ? c->prune_units_again : c->prune_units_at) && !c->without_rate) {
+        t->slimmed++;
+        if (t->iteration >= UNITS_AFTER)
+            ADCGS_TRY(adcgs_prune_units(t, error));
+    }
+    if (!t->decided && progress >= c->decide_at) {
+        t->decided = 1;
+        if (!c->without_densification)
+            ADCGS_TRY(adcgs_decide(t, error));
+    }
+    if (!t->quantise || c->without_rounding)
+        return ADCGS_OK;
+    const adcgs_quantise_options means = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
+    if (!t->rounding && progress >= c->round_from) {
+        ADCGS_TRY(round_values(t, error));
+        adcgs_level_densities(t);
+        ADCGS_TRY(t->quantise(t->f, &means, error));
+    } else if (t->rounding && !t->frozen && t->iteration % MEANS_EVERY == 0) {
+        ADCGS_TRY(t->quantise(t->f, &means, error));
+    }
+    if (t->frozen || !t->rounding || progress < c->freeze_from)
+        return ADCGS_OK;
+    take_average(t);
+    ADCGS_TRY(adcgs_freeze(t, error));
+    return adcgs_rate_target_frozen(t, error);
+}
+
+int adcgs_stages_divide(const adcgs_trainer *t, double progress)
+{
+    return t->config.scale * (progress < t->config.quarter_until ? 4 : progress < t->config.half_until ? 2 : 1);
+}
+
+/** Fraction of the views, by their distance from the middle of time, that are trained on. */
+static double window_of(const adcgs_train_config *c, double progress)
+{
+    return progress < c->curriculum_until ? c->curriculum_begin + (1 - c->curriculum_begin) * progress / c->curriculum_until : 1;
+}
+
+adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    if (adcgs_stages_divide(t, progress) != t->divide)
+        ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
+    adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
+    if (!c->without_densification && t->iteration && t->iteration % c->densify_every == 0 && progress >= c->densify_from &&
+        progress < c->densify_until)
+        ADCGS_TRY(adcgs_densify(t, progress, error));
+    ADCGS_TRY(enter_stages(t, progress, error));
+    return adcgs_rate_control_step(t, progress, error);
+}
+
+adcgs_status adcgs_stages_finish(adcgs_trainer *t, adcgs_error *error)
+{
+    take_average(t);
+    if (t->config.target == ADCGS_TARGET_NONE)
+        return ADCGS_OK;
+    if (!t->rounding)
+        ADCGS_TRY(round_values(t, error));
+    if (!t->frozen)
+        ADCGS_TRY(adcgs_freeze(t, error));
+    return adcgs_rate_target_finish(t, error);
+}

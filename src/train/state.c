@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The state of a run, made and taken apart. */
+#include "train/state.h"
+
+#include "train/initialise.h"
+#include "train/rate_plan.h"
+#include "train/settings.h"
+
+#include <math.h>
+
+adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
+{
+    const size_t slots = (size_t)t->f->groups * 64 * t->f->params.k;
+    ADCGS_TRY(adcgs_pass_resize(t->pass, t->f, error));
+    adcgs_free(NULL, t->stats.weight);
+    t->stats = (adcgs_train_stats){ .weight = adcgs_alloc(NULL, 3 * slots, sizeof(float), error) };
+    if (!t->stats.weight)
+        return adcgs_alloc_status(error);
+    t->stats.significance = t->stats.weight + slots;
+    t->stats.opacity = t->stats.weight + 2 * slots;
+    return t->config.rigid_weight > 0 ? adcgs_rigidity_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
+}
+
+static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
+{
+    const double duration = t->scene->duration;
+    t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
+    t->views = adcgs_alloc(NULL, t->n_views, sizeof *t->views, error);
+    float *times = adcgs_alloc(NULL, t->n_views, sizeof *times, error);
+    adcgs_status status = t->views && times ? ADCGS_OK : adcgs_alloc_status(error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
+        const double time = t->scene->views[ADCGS_SPLIT_TRAIN][i].time;
+        times[i] = t->views[i].t = duration > 0 ? (float)fmin(fmax(time / duration, 0), 1) : 0;
+    }
+    if (status == ADCGS_OK)
+        status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, error);
+    adcgs_free(NULL, times);
+    if (status == ADCGS_OK)
+        status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, error);
+    return status;
+}
+
+static adcgs_status create_viewpoints(adcgs_trainer *t, adcgs_error *error)
+{
+    float(*x)[3] = adcgs_alloc(NULL, t->n_views, sizeof *x, error);
+    if (!x)
+        return adcgs_alloc_status(error);
+    for (uint32_t i = 0; i < t->n_views; i++)
+        for (int a = 0; a < 3; a++)
+            x[i][a] = (float)((t->scene->views[ADCGS_SPLIT_TRAIN][i].camera.cam_to_world[4 * a + 3] - t->origin[a]) / t->scale);
+    const adcgs_status status = adcgs_viewpoints_create(&t->viewpoints, (const float(*)[3])x, t->n_views, error);
+    adcgs_free(NULL, x);
+    return status;
+}
+
+static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
+{
+    adcgs_train_config *c = &t->config;
+    const uint32_t times = t->scene->n_times;
+    ADCGS_TRY(adcgs_train_check(c, error));
+    if (c->bf16)
+        ADCGS_TRY(adcgs_bf16_check(t->cpu, error));
+    if (c->without_coarse && c->without_fine)
+        c->params.time_rows = 0;
+    if (times <= 1)
+        c->params.time_rows = 0;
+    else if (c->params.time_rows > times)
+        c->params.time_rows = (uint16_t)times;
+    if (!c->params.time_rows)
+        c->params.time_width = 0;
+    /* A camera alone finds what moves with large primitives first, and by what neighbours do. Several tell from one moment. */
+    const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
+    if (several && !c->own_rigid)
+        c->rigid_weight = 0;
+    if (several && !c->own_scale_from)
+        c->scale_from = 0;
+    if (c->without_coarse)
+        c->shape.omega_width = 0;
+    if (c->without_fine)
+        c->shape.varpi_width = 0;
+    ADCGS_TRY(adcgs_rate_plan(c, error));
+    ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
+    ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, error));
+    adcgs_train_rates(t->f);
+    ADCGS_TRY(adcgs_pass_create(&t->pass, t->f, t->cpu, t->pool, error));
+    ADCGS_TRY(adcgs_raster_create(&t->raster, t->cpu, t->pool, NULL, error));
+    ADCGS_TRY(adcgs_raster_back_create(&t->back, t->cpu, t->pool, error));
+    ADCGS_TRY(adcgs_loss_create(&t->loss, t->cpu, t->pool, error));
+    ADCGS_TRY(create_views(t, error));
+    /* Points of its own say that a scene is filmed from within: where cameras stand is free, whatever others see behind. */
+    if (several && t->scene->points.n >= ADCGS_POINTS_LEAST)
+        ADCGS_TRY(create_viewpoints(t, error));
+    return adcgs_trainer_resize(t, error);
+}
+
+adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                  adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_trainer *t = adcgs_alloc(NULL, 1, sizeof *t, error);
+    *out = NULL;
+    if (!t)
+        return adcgs_alloc_status(error);
+    t->config = *config;
+    t->scene = scene;
+    t->cpu = cpu;
+    t->pool = pool;
+    t->lr_scale = 1;
+    adcgs_buffer_init(&t->snapshot);
+    const adcgs_status status = create_parts(t, error);
+    t->lambda = (double)t->config.lambda;
+    if (status != ADCGS_OK)
+        adcgs_trainer_free(&t);
+    *out = t;
+    return status;
+}
+
+void adcgs_views_unload(adcgs_trainer *t)
+{
+    adcgs_pictures_free(&t->pictures);
+    adcgs_free(NULL, t->image);
+    adcgs_free(NULL, t->grad);
+    adcgs_free(NULL, t->taken);
+    t->image = t->grad = t->taken = NULL;
+}
+
+void adcgs_trainer_free(adcgs_trainer **trainer)
+{
+    adcgs_trainer *t = *trainer;
+    if (!t)
+        return;
+    adcgs_views_unload(t);
+    adcgs_free(NULL, t->views);
+    adcgs_free(NULL, t->stats.weight);
+    adcgs_fmodel_free(&t->f);
+    adcgs_pass_free(&t->pass);
+    adcgs_raster_free(&t->raster);
+    adcgs_raster_back_free(&t->back);
+    adcgs_loss_free(&t->loss);
+    adcgs_rigidity_clear(&t->rigid);
+    adcgs_curriculum_clear(&t->curriculum);
+    adcgs_exposure_clear(&t->exposure);
+    adcgs_viewpoints_clear(&t->viewpoints);
+    adcgs_weight_average_clear(&t->average);
+    adcgs_buffer_clear(&t->snapshot);
+    adcgs_free(NULL, t);
+    *trainer = NULL;
+}
+
+double adcgs_trainer_progress(const adcgs_trainer *t)
+{
+    const double by_count = (double)t->iteration / t->config.iterations;
+    return t->config.time_limit > 0 ? fmax(by_count, t->elapsed / t->config.time_limit) : by_count;
+}
+
+void adcgs_trainer_prepare_networks(adcgs_trainer *t)
+{
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
+        if (t->f->mlp[i].n)
+            adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, t->rounding);
+}

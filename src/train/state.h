@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The state of a run: all that the stages of training work on. Each stage has a header of its own; stages.c alone calls them.
+ */
+#ifndef ADCGS_TRAIN_STATE_H
+#define ADCGS_TRAIN_STATE_H
+
+#include "bits/bytes.h"
+#include "data/pictures.h"
+#include "fmodel/pass.h"
+#include "fmodel/rdo.h"
+#include "fmodel/rigidity.h"
+#include "fmodel/scale_penalty.h"
+#include "fmodel/weight_average.h"
+#include "grad/loss.h"
+#include "train/exposure.h"
+#include "train/rate_state.h"
+#include "train/schedule.h"
+#include "train/time_curriculum.h"
+
+typedef struct adcgs_train_view {
+    adcgs_view view;
+    float t;
+} adcgs_train_view;
+
+/** Sums since the last refinement, per slot. */
+typedef struct adcgs_train_stats {
+    float *weight;       /* Psi */
+    float *significance; /* Psi times screen gradient */
+    float *opacity;
+    uint32_t n;          /* iterations summed */
+} adcgs_train_stats;
+
+typedef struct adcgs_trainer {
+    adcgs_train_config config;
+    const adcgs_scene *scene;
+    adcgs_cpu_level cpu;
+    adcgs_pool *pool;
+    double origin[3], scale;
+    adcgs_fmodel *f;
+    adcgs_pass *pass;
+    adcgs_raster *raster;
+    adcgs_raster_back *back;
+    adcgs_loss *loss;
+    adcgs_rigidity rigid;
+    adcgs_curriculum curriculum;
+    adcgs_exposure exposure;
+    adcgs_viewpoints viewpoints;
+    uint32_t n_views;
+    adcgs_train_view *views;
+    adcgs_pictures *pictures; /* of the training views */
+    int divide;              /* of the views loaded; 0: none */
+    uint64_t picture_memory; /* bytes of them at most; 0: half of the machine's */
+    adcgs_pictures_progress loading; /* told of pictures loaded, or NULL */
+    void *loading_user;
+    float *image, *grad;
+    float *taken;            /* the view's picture in use */
+    adcgs_train_stats stats;
+    adcgs_weight_average average;
+    adcgs_train_quantise quantise; /* provided by the room that builds streams; NULL: values stay as they are */
+    adcgs_train_measure measure;   /* likewise; asked where there is a size to meet */
+    void *measure_user;
+    int until_lambda;        /* stop before the first iteration that lambda has a say in */
+    /* State that a checkpoint carries beside the model. */
+    uint32_t iteration, adam_steps;
+    uint8_t lambda_used;     /* lambda has had a say: the run is bound to it */
+    uint8_t weighed, slimmed, decided, rounding, frozen;
+    float lr_scale;
+    double lambda; /* of the rate; the configuration's unless a target steers it */
+    adcgs_rate_control rate_control;
+    uint32_t rollbacks;
+    double mean_loss, mean_mse, elapsed;
+    double mean_bits[ADCGS_GROUPS];
+    adcgs_buffer snapshot;
+} adcgs_trainer;
+
+/** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */
+adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                  adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
+void adcgs_trainer_free(adcgs_trainer **trainer);
+/** Forget the pictures that are loaded, and the room to draw them. */
+void adcgs_views_unload(adcgs_trainer *trainer);
+/** After the anchors changed: workspace and statistics. */
+adcgs_status adcgs_trainer_resize(adcgs_trainer *trainer, adcgs_error *error);
+/** Derive from the networks' parameters what passes use, rounded to the weights' steps once weights are. */
+void adcgs_trainer_prepare_networks(adcgs_trainer *trainer);
+/** How far the run is, in [0,1]. */
+double adcgs_trainer_progress(const adcgs_trainer *trainer);
+
+#endif

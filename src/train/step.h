@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file One iteration: a view, its loss, the rate and the penalties, their gradients, and Adam's step (Kingma and Ba, 2015). */
+#ifndef ADCGS_TRAIN_STEP_H
+#define ADCGS_TRAIN_STEP_H
+
+#include "train/state.h"
+
+adcgs_status adcgs_train_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
+
+#endif

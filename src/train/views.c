@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Training views. */
+#include "train/views.h"
+
+#include "grad/random.h"
+#include "render/render.h"
+
+adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error *error)
+{
+    const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
+                                           .progress = t->loading, .user = t->loading_user };
+    size_t most = 0;
+    adcgs_views_unload(t);
+    ADCGS_TRY(adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error));
+    for (uint32_t i = 0; i < t->n_views; i++) {
+        const adcgs_camera *camera = adcgs_pictures_camera(t->pictures, i);
+        ADCGS_TRY(adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error));
+        most = ADCGS_MAX(most, (size_t)camera->width * (size_t)camera->height);
+    }
+    t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);
+    t->grad = adcgs_alloc(NULL, most * 3, sizeof(float), error);
+    t->taken = adcgs_alloc(NULL, most * 3, sizeof(float), error);
+    t->divide = divide;
+    return t->image && t->grad && t->taken ? ADCGS_OK : adcgs_alloc_status(error);
+}
+
+adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, const float *drawn, const float **target, adcgs_error *error)
+{
+    const adcgs_view *v = &t->views[view].view;
+    const size_t plane = (size_t)v->width * (size_t)v->height;
+    ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
+    if (t->exposure.n && drawn)
+        adcgs_exposure_follow(&t->exposure, view, drawn, t->taken, plane);
+    if (t->exposure.n)
+        adcgs_exposure_even(&t->exposure, view, t->taken, t->taken, plane);
+    *target = t->taken;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_view_draw(adcgs_trainer *t, const adcgs_view *view, float *image, int keep, adcgs_error *error)
+{
+    return adcgs_raster_forward(t->raster, &t->pass->primitives, view, t->scene->background, ADCGS_SCREEN_FILTER, image, keep,
+                                error);
+}
+
+adcgs_status adcgs_view_draw_back(adcgs_trainer *t, const adcgs_view *view, adcgs_raster_grads *grads, adcgs_error *error)
+{
+    return adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, view, t->scene->background, ADCGS_SCREEN_FILTER,
+                                 t->image, t->grad, grads, error);
+}
+
+uint32_t adcgs_view_pick(const adcgs_trainer *t, uint32_t iteration)
+{
+    if (t->curriculum.n < t->n_views)
+        return adcgs_curriculum_pick(&t->curriculum, t->config.seed, iteration);
+    const uint32_t n = t->n_views, epoch = iteration / n;
+    int half = 1;
+    while ((uint64_t)1 << (2 * half) < n)
+        half++;
+    const uint32_t mask = (1u << half) - 1;
+    uint32_t x = iteration % n;
+    do {
+        uint32_t l = x >> half, r = x & mask;
+        for (uint32_t round = 0; round < 4; round++) {
+            const uint32_t next = l ^ ((uint32_t)adcgs_random64(t->config.seed, 2000 + round, (uint64_t)epoch << 32 | r) & mask);
+            l = r;
+            r = next;
+        }
+        x = l << half | r;
+    } while (x >= n);
+    return x;
+}

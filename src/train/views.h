@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Training views: loading their pictures, drawing them, and the gradients of what was drawn. */
+#ifndef ADCGS_TRAIN_VIEWS_H
+#define ADCGS_TRAIN_VIEWS_H
+
+#include "train/state.h"
+
+/** (Re)load all training views with their size divided by an integer. */
+adcgs_status adcgs_trainer_load_views(adcgs_trainer *trainer, int divide, adcgs_error *error);
+
+/**
+ * A training view's picture as the mean camera would have taken it; valid until the next is asked for. drawn: the model's
+ * picture of it, from which the camera's exposure is followed, or NULL.
+ */
+adcgs_status adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view, const float *drawn, const float **target,
+                                  adcgs_error *error);
+
+/**
+ * Draw the primitives of the last forward pass as a camera sees them, into image [3][height][width] (trainer->image is large
+ * enough for every training view). keep: adcgs_view_draw_back() will follow.
+ */
+adcgs_status adcgs_view_draw(adcgs_trainer *trainer, const adcgs_view *view, float *image, int keep, adcgs_error *error);
+/** From trainer->grad, the gradient of trainer->image that was drawn last and kept, to gradients of the primitives. */
+adcgs_status adcgs_view_draw_back(adcgs_trainer *trainer, const adcgs_view *view, adcgs_raster_grads *grads, adcgs_error *error);
+
+/**
+ * View of an iteration. Once all of time is trained on, every epoch visits all views once, in an order of its own (a Feistel walk
+ * over the index).
+ */
+uint32_t adcgs_view_pick(const adcgs_trainer *trainer, uint32_t iteration);
+
+#endif
