@@ -247,7 +247,8 @@ adcgs_status encode_in_file(std::vector<uint8_t> &out, OIIO::ImageOutput &output
 adcgs_status encode_in_file(std::vector<uint8_t> &, OIIO::ImageOutput &, const adcgs_image *, int, const char *extension,
                             const char *path, adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this system has no files in memory, which .%s files need", path, extension);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this system has no files in memory, which .%s files need", path,
+                      extension);
 }
 #endif
 

@@ -271,8 +271,8 @@ adcgs_status adcgs_sink_write_with(adcgs_sink *sink, const adcgs_frame *frame, c
     errno = 0;
     ADCGS_TRY(sink->what->write(sink, frame, index, error));
     if (sink->file && ferror(sink->file))
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", sink->file == stdout ? "standard output" : sink->config.target,
-                          strerror(errno ? errno : EIO));
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s",
+                          sink->file == stdout ? "standard output" : sink->config.target, strerror(errno ? errno : EIO));
     return ADCGS_OK;
 }
 

@@ -155,9 +155,11 @@ static int is_ours(const plan *p, pid_t process, int fd, off_t least)
     struct stat status;
     snprintf(name, sizeof name, "/proc/%ld/fd/%d", (long)process, fd);
     const ssize_t n = readlink(name, path, sizeof path - 1);
-    if (n < 0 || stat(name, &status) || !S_ISREG(status.st_mode) || status.st_size < least || lstat(name, &status) || !(status.st_mode & S_IWUSR))
+    if (n < 0 || stat(name, &status) || !S_ISREG(status.st_mode) || status.st_size < least)
         return 0;
     path[n] = 0;
+    if (lstat(name, &status) || !(status.st_mode & S_IWUSR)) /* the link's mode is the descriptor's */
+        return 0;
     return is_below(p, path);
 }
 
