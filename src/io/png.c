@@ -9,6 +9,7 @@
 
 #include <spng.h>
 
+#define LEVEL 4 /* zlib's; with one filter, a quarter of the time that the defaults take, for a tenth more bytes */
 #define CHUNK_MAX (64u << 20) /* bytes of a chunk besides pixels, and of all that are kept */
 
 /* ---- Errors ---- */
@@ -173,7 +174,7 @@ static int append(spng_ctx *png, void *user, void *bytes, size_t n)
     return out->failed ? SPNG_IO_ERROR : 0;
 }
 
-/** Size, and that values are sRGB; gAMA and cHRM say it once more, for those who know no sRGB, as the format advises. */
+/** Size and compression, and that values are sRGB; gAMA and cHRM say it once more, for those who know no sRGB, as the format advises. */
 static int describe(spng_ctx *png, const adcgs_image *image, int bits)
 {
     static const uint8_t types[4] = {SPNG_COLOR_TYPE_GRAYSCALE, SPNG_COLOR_TYPE_GRAYSCALE_ALPHA, SPNG_COLOR_TYPE_TRUECOLOR,
@@ -184,6 +185,8 @@ static int describe(spng_ctx *png, const adcgs_image *image, int bits)
                              .color_type = types[image->channels - 1]};
     struct spng_chrm_int primaries = {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
     int code = spng_set_ihdr(png, &head);
+    code = code ? code : spng_set_option(png, SPNG_IMG_COMPRESSION_LEVEL, LEVEL);
+    code = code ? code : spng_set_option(png, SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_PAETH);
     code = code ? code : spng_set_srgb(png, 3);
     code = code ? code : spng_set_gama_int(png, 45455);
     return code ? code : spng_set_chrm_int(png, &primaries);
