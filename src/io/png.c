@@ -174,7 +174,7 @@ static int append(spng_ctx *png, void *user, void *bytes, size_t n)
     return out->failed ? SPNG_IO_ERROR : 0;
 }
 
-/** Size and compression, and that values are sRGB; gAMA and cHRM say it once more, for those who know no sRGB, as the format advises. */
+/** Size and compression, and that values are sRGB; gAMA and cHRM say it once more, as the format advises. */
 static int describe(spng_ctx *png, const adcgs_image *image, int bits)
 {
     static const uint8_t types[4] = {SPNG_COLOR_TYPE_GRAYSCALE, SPNG_COLOR_TYPE_GRAYSCALE_ALPHA, SPNG_COLOR_TYPE_TRUECOLOR,
