@@ -9,24 +9,24 @@
 static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
 {
     for (int o = 0; o < n_out; o++) {
-        float *row = y + (size_t)o * 64;
-        for (int l = 0; l < 64; l++)
-            row[l] = init ? init[(size_t)o * 64 + (size_t)l] : bias ? bias[o] : 0.0f;
+        float *row = y + (size_t)o * ADCGS_LANES;
+        for (int l = 0; l < ADCGS_LANES; l++)
+            row[l] = init ? init[(size_t)o * ADCGS_LANES + (size_t)l] : bias ? bias[o] : 0.0f;
         for (int i = 0; i < n_in; i++)
-            for (int l = 0; l < 64; l++)
-                row[l] = fmaf(w[(size_t)o * ldw + (size_t)i], x[(size_t)i * 64 + (size_t)l], row[l]);
+            for (int l = 0; l < ADCGS_LANES; l++)
+                row[l] = fmaf(w[(size_t)o * ldw + (size_t)i], x[(size_t)i * ADCGS_LANES + (size_t)l], row[l]);
     }
 }
 
 static void lrelu(float *y, int n)
 {
-    for (size_t i = 0; i < (size_t)n * 64; i++)
+    for (size_t i = 0; i < (size_t)n * ADCGS_LANES; i++)
         y[i] = y[i] < 0.0f ? y[i] * 0x1p-6f : y[i];
 }
 
 static void residual(float *y, const float *x, int n)
 {
-    for (size_t i = 0; i < (size_t)n * 64; i++)
+    for (size_t i = 0; i < (size_t)n * ADCGS_LANES; i++)
         y[i] = x[i] + (y[i] < 0.0f ? y[i] * 0x1p-6f : y[i]);
 }
 

@@ -18,12 +18,12 @@ INLINE void dense_tile(int rows, float *y, const float *init, const float *bias,
     for (int r = 0; r < rows; r++)
 #pragma GCC unroll 4
         for (int c = 0; c < COLS; c++)
-            acc[r][c] = init ? LOAD(init + r * 64 + c * VW) : SPREAD(bias ? bias[r] : 0.0f);
+            acc[r][c] = init ? LOAD(init + r * ADCGS_LANES + c * VW) : SPREAD(bias ? bias[r] : 0.0f);
     for (int i = 0; i < n_in; i++) {
         V in[COLS];
 #pragma GCC unroll 4
         for (int c = 0; c < COLS; c++)
-            in[c] = LOAD(x + (size_t)i * 64 + c * VW);
+            in[c] = LOAD(x + (size_t)i * ADCGS_LANES + c * VW);
 #pragma GCC unroll 6
         for (int r = 0; r < rows; r++) {
             const V weight = SPREAD(w[(size_t)r * ldw + (size_t)i]);
@@ -36,13 +36,13 @@ INLINE void dense_tile(int rows, float *y, const float *init, const float *bias,
     for (int r = 0; r < rows; r++)
 #pragma GCC unroll 4
         for (int c = 0; c < COLS; c++)
-            STORE(y + r * 64 + c * VW, acc[r][c]);
+            STORE(y + r * ADCGS_LANES + c * VW, acc[r][c]);
 }
 
 static void dense_rows(int rows, float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x,
                        int n_in)
 {
-    for (int lane = 0; lane < 64; lane += COLS * VW) {
+    for (int lane = 0; lane < ADCGS_LANES; lane += COLS * VW) {
         float *out = y + lane;
         const float *start = init ? init + lane : NULL;
         switch (rows) {
@@ -75,7 +75,7 @@ static void dense(float *y, const float *init, const float *bias, const float *w
     int row = 0;
     for (int t = 0; t < tiles; t++) {
         const int rows = (n_out - row + tiles - t - 1) / (tiles - t);
-        const size_t at = (size_t)row * 64;
+        const size_t at = (size_t)row * ADCGS_LANES;
         dense_rows(rows, y + at, init ? init + at : NULL, bias ? bias + row : NULL, w + (size_t)row * ldw, ldw, x, n_in);
         row += rows;
     }
@@ -83,12 +83,12 @@ static void dense(float *y, const float *init, const float *bias, const float *w
 
 static void lrelu(float *y, int n)
 {
-    for (size_t i = 0; i < (size_t)n * 64; i += VW)
+    for (size_t i = 0; i < (size_t)n * ADCGS_LANES; i += VW)
         STORE(y + i, LRELU(LOAD(y + i)));
 }
 
 static void residual(float *y, const float *x, int n)
 {
-    for (size_t i = 0; i < (size_t)n * 64; i += VW)
+    for (size_t i = 0; i < (size_t)n * ADCGS_LANES; i += VW)
         STORE(y + i, ADDV(LOAD(x + i), LRELU(LOAD(y + i))));
 }

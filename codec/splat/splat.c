@@ -9,13 +9,13 @@
 
 #include "base/cpu.h"
 #include "splat/floatnet.h"
+#include "splat/rows.h"
 #include "splat/splat.h"
 #include "splat/splat_isa.h"
 #include "splat/steps.h"
 
 #include <math.h>
 
-#define OUT_ARRAYS 14
 /* Rows of scratch beside three buffers as wide as the widest network: Sigma_v, f_p and f_v, f_g. */
 #define INPUT_ROWS (ADCGS_SIGMA_N + 6 * ADCGS_OCTAVES_MAX + ADCGS_NV_MAX + ADCGS_NG_MAX)
 
@@ -29,7 +29,7 @@ struct adcgs_splat {
     adcgs_steps steps;
     uint32_t groups, moving; /* groups of 64 anchors; those in which an anchor moves */
     int width;               /* widest layer of the networks */
-    float *out;              /* [OUT_ARRAYS][groups*k*64] */
+    float *out;              /* [ADCGS_ROWS][groups*k*64] */
     uint32_t *moving_group;  /* [moving] */
     adcgs_anchor_lanes *anchors; /* [moving] */
     adcgs_slot_lanes *slots;     /* [moving][k] */
@@ -43,25 +43,10 @@ struct adcgs_splat {
     int has_time;
 };
 
-static size_t slot_of(const adcgs_splat *s, uint32_t group, int k)
-{
-    return ((size_t)group * s->model->params.k + (size_t)k) * 64;
-}
-
 static adcgs_slot_out slot_out(const adcgs_splat *s, uint32_t group, int k)
 {
-    const size_t n = (size_t)s->groups * s->model->params.k * 64;
-    float *at = s->out + slot_of(s, group, k);
-    adcgs_slot_out o;
-    for (int c = 0; c < 3; c++) {
-        o.mean[c] = at + (size_t)c * n;
-        o.scale[c] = at + (size_t)(3 + c) * n;
-        o.colour[c] = at + (size_t)(11 + c) * n;
-    }
-    for (int c = 0; c < 4; c++)
-        o.rotation[c] = at + (size_t)(6 + c) * n;
-    o.opacity = at + 10 * n;
-    return o;
+    const size_t per_anchor = s->model->params.k;
+    return adcgs_rows_at(s->out, s->groups * per_anchor * ADCGS_LANES, adcgs_slot_of(group * ADCGS_LANES, s->model->params.k, k));
 }
 
 /* ---- Inputs of a group ---- */
@@ -73,17 +58,17 @@ static adcgs_slot_out slot_out(const adcgs_splat *s, uint32_t group, int k)
 static void load_rows(float *rows, const int16_t *yq, size_t stride, const float *d, int channels, uint32_t first, uint32_t n,
                       const float *factor)
 {
-    memset(rows, 0, (size_t)channels * 64 * sizeof *rows);
-    for (uint32_t l = 0; l < 64 && first + l < n; l++)
+    memset(rows, 0, (size_t)channels * ADCGS_LANES * sizeof *rows);
+    for (uint32_t l = 0; l < ADCGS_LANES && first + l < n; l++)
         for (int c = 0; c < channels; c++)
-            rows[(size_t)c * 64 + l] = (float)yq[(first + l) * stride + (size_t)c] * (factor ? d[c] * factor[l] : d[c]);
+            rows[(size_t)c * ADCGS_LANES + l] = (float)yq[(first + l) * stride + (size_t)c] * (factor ? d[c] * factor[l] : d[c]);
 }
 
 static void load_positions(adcgs_anchor_lanes *a, const adcgs_model *m, uint32_t first)
 {
     const float half = 0.5f * m->voxel, cell = adcgs_bits_float((uint32_t)(127 - (m->depth + 1)) << 23);
     for (int c = 0; c < 3; c++)
-        for (uint32_t l = 0; l < 64; l++) {
+        for (uint32_t l = 0; l < ADCGS_LANES; l++) {
             const uint32_t i = first + l < m->n ? m->pos[3 * (size_t)(first + l) + (size_t)c] : 0;
             const float odd = (float)(2 * i + 1);
             a->position[c][l] = fmaf(odd, half, m->origin[c]);
@@ -91,15 +76,15 @@ static void load_positions(adcgs_anchor_lanes *a, const adcgs_model *m, uint32_t
         }
 }
 
-static void load_present(int32_t present[64], const adcgs_model *m, uint32_t first, int k)
+static void load_present(int32_t present[ADCGS_LANES], const adcgs_model *m, uint32_t first, int k)
 {
-    for (uint32_t l = 0; l < 64; l++)
+    for (uint32_t l = 0; l < ADCGS_LANES; l++)
         present[l] = first + l < m->n && (m->mask[first + l] >> k & 1);
 }
 
 /* Factors of a group's steps, by adcgs_group_steps(). */
 typedef struct adcgs_group_factors {
-    float of[ADCGS_STEPS_MAX][64];
+    float of[ADCGS_STEPS_MAX][ADCGS_LANES];
 } adcgs_group_factors;
 
 static const float *factor_of(const adcgs_model *m, const adcgs_group_factors *factors, int group)
@@ -120,8 +105,8 @@ static void load_fg(float *fg, const adcgs_model *m, uint32_t first, int k, cons
     const int n_fg = m->params.n_fg, count = n_fg / m->params.chunks;
     for (int c = 0; c < n_fg; c += count) {
         const int chunk = c / count;
-        load_rows(fg + (size_t)c * 64, m->fg + (size_t)(k * n_fg + c), (size_t)(m->params.k * n_fg), m->d_fg + c, count, first,
-                  m->n, factor_of(m, factors, ADCGS_GROUP_FG + chunk));
+        load_rows(fg + (size_t)c * ADCGS_LANES, m->fg + (size_t)(k * n_fg + c), (size_t)(m->params.k * n_fg), m->d_fg + c, count,
+                  first, m->n, factor_of(m, factors, ADCGS_GROUP_FG + chunk));
     }
 }
 
@@ -131,17 +116,18 @@ static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const 
     const adcgs_model *m = s->model;
     const adcgs_params *p = &m->params;
     const adcgs_float_layer *first = &s->prediction.layer[0];
-    const size_t rows = (size_t)s->width * 64, ldw = (size_t)first->n_in;
+    const size_t rows = (size_t)s->width * ADCGS_LANES, ldw = (size_t)first->n_in;
     float *shared = buffers, *z = buffers + rows, *other = buffers + 2 * rows;
     s->dense.dense(shared, NULL, first->b, first->w, ldw, fv, first->n_out, p->n_fv);
     for (int k = 0; k < p->k; k++) {
         adcgs_slot_lanes local, *slot = index == UINT32_MAX ? &local : s->slots + (size_t)index * p->k + k;
-        int32_t none[64], *present = index == UINT32_MAX ? none : s->present + ((size_t)index * p->k + (size_t)k) * 64;
+        int32_t none[ADCGS_LANES];
+        int32_t *present = index == UINT32_MAX ? none : s->present + ((size_t)index * p->k + (size_t)k) * ADCGS_LANES;
         const adcgs_slot_out to = slot_out(s, group, k);
-        load_fg(fg, m, group * 64, k, factors);
+        load_fg(fg, m, group * ADCGS_LANES, k, factors);
         s->dense.dense(z, shared, NULL, first->w + p->n_fv, ldw, fg, first->n_out, p->n_fg);
         s->dsp.predict(slot, anchor, adcgs_floatnet_finish(&s->prediction, &s->dense, z, other));
-        load_present(present, m, group * 64, k);
+        load_present(present, m, group * ADCGS_LANES, k);
         s->dsp.place(&to, slot, anchor, present);
     }
 }
@@ -159,10 +145,11 @@ static void canonical_group(void *arg, int index, int thread)
     adcgs_splat *s = job->splat;
     const adcgs_model *m = s->model;
     const adcgs_params *p = &m->params;
-    const uint32_t group = (uint32_t)index, moving = job->moving_index[group], first = group * 64;
+    const uint32_t group = (uint32_t)index, moving = job->moving_index[group], first = group * ADCGS_LANES;
     adcgs_anchor_lanes local, *anchor = moving == UINT32_MAX ? &local : s->anchors + moving;
-    float *sigma = s->scratch + (size_t)thread * s->scratch_rows * 64, *code = sigma + ADCGS_SIGMA_N * 64;
-    float *fv = code + (size_t)p->octaves * 6 * 64, *fg = fv + (size_t)p->n_fv * 64, *buffers = fg + (size_t)p->n_fg * 64;
+    float *sigma = s->scratch + (size_t)thread * s->scratch_rows * ADCGS_LANES, *code = sigma + ADCGS_SIGMA_N * ADCGS_LANES;
+    float *fv = code + (size_t)p->octaves * 6 * ADCGS_LANES, *fg = fv + (size_t)p->n_fv * ADCGS_LANES;
+    float *buffers = fg + (size_t)p->n_fg * ADCGS_LANES;
     adcgs_group_factors factors;
     adcgs_steps_factors(&s->steps, m, first, factors.of, buffers);
     load_positions(anchor, m, first);
@@ -174,11 +161,11 @@ static void canonical_group(void *arg, int index, int thread)
     predict_group(s, group, moving, anchor, fv, &factors, fg, buffers);
     if (moving == UINT32_MAX)
         return;
-    for (uint32_t l = 0; l < 64; l++)
-        s->moves[(size_t)moving * 64 + l] = first + l < m->n && !m->is_static[first + l];
+    for (uint32_t l = 0; l < ADCGS_LANES; l++)
+        s->moves[(size_t)moving * ADCGS_LANES + l] = first + l < m->n && !m->is_static[first + l];
     s->dsp.position_code(code, anchor->code[0], p->octaves);
-    static_part(s, s->coarse_part + (size_t)moving * (size_t)s->coarse.layer[0].n_out * 64, &s->coarse, fv, p->n_fv);
-    static_part(s, s->fine_part + (size_t)moving * (size_t)s->fine.layer[0].n_out * 64, &s->fine, code,
+    static_part(s, s->coarse_part + (size_t)moving * (size_t)s->coarse.layer[0].n_out * ADCGS_LANES, &s->coarse, fv, p->n_fv);
+    static_part(s, s->fine_part + (size_t)moving * (size_t)s->fine.layer[0].n_out * ADCGS_LANES, &s->fine, code,
                 6 * p->octaves + (p->fine_uses_fv ? p->n_fv : 0));
 }
 
@@ -186,7 +173,7 @@ static void canonical_group(void *arg, int index, int thread)
 
 static int group_moves(const adcgs_model *m, uint32_t group)
 {
-    for (uint32_t i = group * 64; i < group * 64 + 64 && i < m->n; i++)
+    for (uint32_t i = group * ADCGS_LANES; i < group * ADCGS_LANES + ADCGS_LANES && i < m->n; i++)
         if (!m->is_static[i])
             return 1;
     return 0;
@@ -224,10 +211,11 @@ static void *get(adcgs_splat *s, size_t count, size_t size, int *missing, adcgs_
 static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
 {
     const size_t k = s->model->params.k, moving = s->moving, threads = (size_t)adcgs_pool_threads(s->pool);
-    const size_t coarse = (size_t)s->coarse.layer[0].n_out, fine = (size_t)s->fine.layer[0].n_out, row = 64 * sizeof(float);
+    const size_t coarse = (size_t)s->coarse.layer[0].n_out, fine = (size_t)s->fine.layer[0].n_out;
+    const size_t row = ADCGS_LANES * sizeof(float);
     int missing = 0;
     s->scratch_rows = INPUT_ROWS + ADCGS_MAX(3 * (size_t)s->width, (adcgs_steps_scratch(&s->steps) + row - 1) / row);
-    s->out = get(s, OUT_ARRAYS * s->groups * k, row, &missing, error);
+    s->out = get(s, ADCGS_ROWS * s->groups * k, row, &missing, error);
     s->moving_group = get(s, moving, sizeof(uint32_t), &missing, error);
     s->anchors = get(s, moving, sizeof(adcgs_anchor_lanes), &missing, error);
     s->slots = get(s, moving * k, sizeof(adcgs_slot_lanes), &missing, error);
@@ -281,7 +269,7 @@ adcgs_status adcgs_splat_create(adcgs_splat **out, const adcgs_model *model, adc
     s->model = model;
     s->pool = pool;
     s->memory = memory;
-    s->groups = (model->n + 63) / 64;
+    s->groups = adcgs_lane_groups(model->n);
     choose_kernels(s, level);
     uint32_t *moving_index = adcgs_alloc(memory, s->groups, sizeof *moving_index, error);
     const adcgs_status status = moving_index ? build(s, level, moving_index, error) : error ? error->status : ADCGS_ERR_MEMORY;
@@ -342,7 +330,7 @@ static void time_part(float *to, const adcgs_floatnet *net, const float *time_co
 static const float *deform_outputs(const adcgs_splat *s, const adcgs_floatnet *net, const float *part, const float *time,
                                    float *z, float *other)
 {
-    static const _Alignas(64) float ones[64] = {
+    static const _Alignas(64) float ones[ADCGS_LANES] = {
         1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
         1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     if (!net->n_layers)
@@ -357,12 +345,12 @@ static void deform_group(void *arg, int index, int thread)
     const adcgs_splat *s = arg;
     const adcgs_params *p = &s->model->params;
     const uint32_t group = s->moving_group[index];
-    const size_t at = (size_t)index, rows = (size_t)s->width * 64;
+    const size_t at = (size_t)index, rows = (size_t)s->width * ADCGS_LANES;
     const adcgs_anchor_lanes *anchor = s->anchors + at;
-    float *z = s->scratch + (size_t)thread * s->scratch_rows * 64, *other = z + rows;
+    float *z = s->scratch + (size_t)thread * s->scratch_rows * ADCGS_LANES, *other = z + rows;
     adcgs_anchor_motion motion;
-    const float *coarse_part = s->coarse_part + at * (size_t)s->coarse.layer[0].n_out * 64;
-    const float *fine_part = s->fine_part + at * (size_t)s->fine.layer[0].n_out * 64;
+    const float *coarse_part = s->coarse_part + at * (size_t)s->coarse.layer[0].n_out * ADCGS_LANES;
+    const float *fine_part = s->fine_part + at * (size_t)s->fine.layer[0].n_out * ADCGS_LANES;
     const float *coarse = deform_outputs(s, &s->coarse, coarse_part, s->coarse_time, z, other);
     if (coarse)
         s->dsp.motion(&motion, anchor, coarse, p->coarse_rotation);
@@ -370,7 +358,8 @@ static void deform_group(void *arg, int index, int thread)
     for (int k = 0; k < p->k; k++) {
         const adcgs_slot_out to = slot_out(s, group, k);
         s->dsp.deform(&to, s->slots + at * p->k + k, anchor, coarse ? &motion : NULL, p->coarse_rotation,
-                      fine ? fine + (size_t)k * 4 * 64 : NULL, s->present + (at * p->k + (size_t)k) * 64, s->moves + at * 64);
+                      fine ? fine + (size_t)k * 4 * ADCGS_LANES : NULL, s->present + (at * p->k + (size_t)k) * ADCGS_LANES,
+                      s->moves + at * ADCGS_LANES);
     }
 }
 
@@ -385,15 +374,7 @@ adcgs_status adcgs_splat_at(adcgs_splat *s, float t, adcgs_primitives *out, adcg
         s->time = time;
         s->has_time = 1;
     }
-    const adcgs_slot_out o = slot_out(s, 0, 0);
-    *out = (adcgs_primitives){.n = s->groups * s->model->params.k * 64, .opacity = o.opacity};
-    for (int c = 0; c < 3; c++) {
-        out->mean[c] = o.mean[c];
-        out->scale[c] = o.scale[c];
-        out->colour[c] = o.colour[c];
-    }
-    for (int c = 0; c < 4; c++)
-        out->rotation[c] = o.rotation[c];
+    *out = adcgs_rows_primitives(s->out, s->groups * s->model->params.k * ADCGS_LANES);
     return ADCGS_OK;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Digest of primitives (conformance point S). */
 #include "base/digest.h"
+#include "splat/rows.h"
 #include "splat/splat.h"
 
 void adcgs_splat_digest(const adcgs_model *model, const adcgs_primitives *p, uint8_t digest[16])
@@ -13,7 +14,7 @@ void adcgs_splat_digest(const adcgs_model *model, const adcgs_primitives *p, uin
     for (uint32_t i = 0; i < model->n; i++)
         for (uint32_t k = 0; k < model->params.k; k++) {
             uint8_t bytes[4 * ADCGS_COUNTOF(arrays)];
-            const size_t slot = ((size_t)(i / 64) * model->params.k + k) * 64 + i % 64;
+            const size_t slot = adcgs_slot_of(i, model->params.k, (int)k);
             if (!(model->mask[i] >> k & 1))
                 continue;
             for (size_t a = 0; a < ADCGS_COUNTOF(arrays); a++)

@@ -3,36 +3,31 @@
 #ifndef ADCGS_SPLAT_SPLAT_ISA_H
 #define ADCGS_SPLAT_SPLAT_ISA_H
 
-#include "base/base.h"
+#include "splat/rows.h"
 
 /** Rows of 64 lanes that an anchor group needs beside the networks. */
 typedef struct adcgs_anchor_lanes {
-    _Alignas(64) float position[3][64];
-    float code[3][64];       /**< p: position in the cube, in (0,1) */
-    float extent[3][64];     /**< exp of Sigma_v 0..2 */
-    float scale[3][64];      /**< exp of Sigma_v 3..5 */
-    float colour[3][64];     /**< C_v */
+    _Alignas(64) float position[3][ADCGS_LANES];
+    float code[3][ADCGS_LANES];       /**< p: position in the cube, in (0,1) */
+    float extent[3][ADCGS_LANES];     /**< exp of Sigma_v 0..2 */
+    float scale[3][ADCGS_LANES];      /**< exp of Sigma_v 3..5 */
+    float colour[3][ADCGS_LANES];     /**< C_v */
 } adcgs_anchor_lanes;
 
 /** What a group's anchors do at one time. */
 typedef struct adcgs_anchor_motion {
-    _Alignas(64) float position[3][64]; /**< X_v + dX */
-    float scale[3][64];      /**< exp of dS */
-    float colour[3][64];     /**< dC_v */
-    float q[4][64];          /**< qr */
-    float matrix[9][64];     /**< its rotation matrix, row-major */
+    _Alignas(64) float position[3][ADCGS_LANES]; /**< X_v + dX */
+    float scale[3][ADCGS_LANES];      /**< exp of dS */
+    float colour[3][ADCGS_LANES];     /**< dC_v */
+    float q[4][ADCGS_LANES];          /**< qr */
+    float matrix[9][ADCGS_LANES];     /**< its rotation matrix, row-major */
 } adcgs_anchor_motion;
 
 /** 64 slots of one primitive index of a group. Canonical values, from the prediction. */
 typedef struct adcgs_slot_lanes {
-    _Alignas(64) float offset[3][64];
-    float scale[3][64], q[4][64], colour[3][64], logit[64];
+    _Alignas(64) float offset[3][ADCGS_LANES];
+    float scale[3][ADCGS_LANES], q[4][ADCGS_LANES], colour[3][ADCGS_LANES], logit[ADCGS_LANES];
 } adcgs_slot_lanes;
-
-/** 64 slots of the arrays that the renderer reads. */
-typedef struct adcgs_slot_out {
-    float *mean[3], *scale[3], *rotation[4], *opacity, *colour[3];
-} adcgs_slot_out;
 
 /** present, moves: [64] 0 or 1 per lane. */
 typedef struct adcgs_splat_dsp {

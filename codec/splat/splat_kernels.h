@@ -7,7 +7,7 @@
 #include "base/fmath.h"
 #include "splat/splat_isa.h"
 
-#define LANES for (int l = 0; l < 64; l++)
+#define LANES for (int l = 0; l < ADCGS_LANES; l++)
 
 /* A quaternion whose squared norm is outside cannot be normalised; it becomes the identity. */
 static inline int usable_norm(float n)
@@ -24,8 +24,8 @@ static void anchor(adcgs_anchor_lanes *a, const float *sigma)
 {
     for (int c = 0; c < 3; c++)
         LANES {
-            a->extent[c][l] = adcgs_exp(adcgs_clampf(sigma[c * 64 + l], -16.0f, 8.0f));
-            a->scale[c][l] = adcgs_exp(adcgs_clampf(sigma[(3 + c) * 64 + l], -16.0f, 8.0f));
+            a->extent[c][l] = adcgs_exp(adcgs_clampf(sigma[c * ADCGS_LANES + l], -16.0f, 8.0f));
+            a->scale[c][l] = adcgs_exp(adcgs_clampf(sigma[(3 + c) * ADCGS_LANES + l], -16.0f, 8.0f));
         }
 }
 
@@ -33,19 +33,20 @@ static void predict(adcgs_slot_lanes *s, const adcgs_anchor_lanes *a, const floa
 {
     for (int c = 0; c < 3; c++)
         LANES {
-            s->offset[c][l] = out[c * 64 + l] * a->extent[c][l];
-            s->scale[c][l] = a->scale[c][l] * adcgs_sigmoid(out[(3 + c) * 64 + l]);
-            s->colour[c][l] = a->colour[c][l] + out[(10 + c) * 64 + l];
+            s->offset[c][l] = out[c * ADCGS_LANES + l] * a->extent[c][l];
+            s->scale[c][l] = a->scale[c][l] * adcgs_sigmoid(out[(3 + c) * ADCGS_LANES + l]);
+            s->colour[c][l] = a->colour[c][l] + out[(10 + c) * ADCGS_LANES + l];
         }
     LANES {
-        const float w = out[6 * 64 + l] + 1.0f, x = out[7 * 64 + l], y = out[8 * 64 + l], z = out[9 * 64 + l];
+        const float w = out[6 * ADCGS_LANES + l] + 1.0f, x = out[7 * ADCGS_LANES + l];
+        const float y = out[8 * ADCGS_LANES + l], z = out[9 * ADCGS_LANES + l];
         const float n = norm2(w, x, y, z), root = sqrtf(n);
         const int ok = usable_norm(n);
         s->q[0][l] = ok ? w / root : 1.0f;
         s->q[1][l] = ok ? x / root : 0.0f;
         s->q[2][l] = ok ? y / root : 0.0f;
         s->q[3][l] = ok ? z / root : 0.0f;
-        s->logit[l] = out[13 * 64 + l];
+        s->logit[l] = out[13 * ADCGS_LANES + l];
     }
 }
 
@@ -90,10 +91,10 @@ static void place(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adc
 static void turn(adcgs_anchor_motion *m, const float *r)
 {
     LANES {
-        const float n = norm2(1.0f, r[l], r[64 + l], r[128 + l]), root = sqrtf(n);
+        const float n = norm2(1.0f, r[l], r[ADCGS_LANES + l], r[2 * ADCGS_LANES + l]), root = sqrtf(n);
         const int ok = usable_norm(n);
-        const float w = ok ? 1.0f / root : 1.0f, x = ok ? r[l] / root : 0.0f, y = ok ? r[64 + l] / root : 0.0f;
-        const float z = ok ? r[128 + l] / root : 0.0f, x2 = x + x, y2 = y + y, z2 = z + z;
+        const float w = ok ? 1.0f / root : 1.0f, x = ok ? r[l] / root : 0.0f, y = ok ? r[ADCGS_LANES + l] / root : 0.0f;
+        const float z = ok ? r[2 * ADCGS_LANES + l] / root : 0.0f, x2 = x + x, y2 = y + y, z2 = z + z;
         m->q[0][l] = w;
         m->q[1][l] = x;
         m->q[2][l] = y;
@@ -111,7 +112,7 @@ static void turn(adcgs_anchor_motion *m, const float *r)
 }
 
 /* A position or an offset turned by the anchor's rotation. */
-static void turn_vector(float out[3][64], const float in[3][64], const adcgs_anchor_motion *m)
+static void turn_vector(float out[3][ADCGS_LANES], const float in[3][ADCGS_LANES], const adcgs_anchor_motion *m)
 {
     for (int c = 0; c < 3; c++) {
         const float *r0 = m->matrix[3 * c], *r1 = m->matrix[3 * c + 1], *r2 = m->matrix[3 * c + 2];
@@ -124,15 +125,15 @@ static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const fl
     for (int c = 0; c < 3; c++)
         LANES {
             m->position[c][l] = a->position[c][l];
-            m->scale[c][l] = adcgs_exp(adcgs_clampf(out[(3 + c) * 64 + l], -8.0f, 8.0f));
-            m->colour[c][l] = out[(6 + c) * 64 + l];
+            m->scale[c][l] = adcgs_exp(adcgs_clampf(out[(3 + c) * ADCGS_LANES + l], -8.0f, 8.0f));
+            m->colour[c][l] = out[(6 + c) * ADCGS_LANES + l];
         }
     if (rotation) {
-        turn(m, out + 9 * 64);
+        turn(m, out + 9 * ADCGS_LANES);
         turn_vector(m->position, a->position, m);
     }
     for (int c = 0; c < 3; c++)
-        LANES m->position[c][l] += out[c * 64 + l];
+        LANES m->position[c][l] += out[c * ADCGS_LANES + l];
 }
 
 /* Product of the anchor's rotation and the primitive's; not normalised again. */
@@ -158,7 +159,7 @@ static void turn_quaternion(const adcgs_slot_out *to, const adcgs_slot_lanes *s,
 static void deform_anchor(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, int rotation,
                           const int32_t *moves)
 {
-    float turned[3][64];
+    float turned[3][ADCGS_LANES];
     if (rotation) {
         turn_vector(turned, s->offset, m);
         turn_quaternion(to, s, m, moves);
@@ -184,7 +185,7 @@ static void deform(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const ad
         LANES {
             float value = s->colour[c][l];
             value = m ? value + m->colour[c][l] : value;
-            value = final_colour(fine ? value + fine[(1 + c) * 64 + l] : value);
+            value = final_colour(fine ? value + fine[(1 + c) * ADCGS_LANES + l] : value);
             colour[l] = moves[l] ? value : colour[l];
         }
     }
@@ -202,7 +203,8 @@ static void position_code(float *out, const float *x, int octaves)
     for (int a = 0; a < 3; a++)
         for (int o = 0; o < octaves; o++) {
             const float factor = (float)(1 << o);
-            float *restrict sine = out + ((size_t)a * (size_t)octaves + (size_t)o) * 128, *restrict cosine = sine + 64;
-            LANES adcgs_sincospi(x[a * 64 + l] * factor, &sine[l], &cosine[l]);
+            float *restrict sine = out + ((size_t)a * (size_t)octaves + (size_t)o) * (2 * ADCGS_LANES);
+            float *restrict cosine = sine + ADCGS_LANES;
+            LANES adcgs_sincospi(x[a * ADCGS_LANES + l] * factor, &sine[l], &cosine[l]);
         }
 }

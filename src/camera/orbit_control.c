@@ -192,15 +192,6 @@ double adcgs_play_rig_distance(const adcgs_play_rig *rig)
 
 void adcgs_play_rig_view(const adcgs_play_rig *rig, int width, int height, adcgs_camera *out)
 {
-    const adcgs_camera *camera = &rig->camera;
-    const double x = (double)width / camera->width, y = (double)height / camera->height;
-    const double scale = ADCGS_MIN(x, y);
-    *out = *camera;
-    out->width = width;
-    out->height = height;
-    out->fx = camera->fx * scale;
-    out->fy = camera->fy * scale;
-    /* Without a difference in shape there must be no rounding either: the picture is then adcgs-dec's. */
-    out->cx = camera->cx * scale + (x > scale ? 0.5 * (width - camera->width * scale) : 0.0);
-    out->cy = camera->cy * scale + (y > scale ? 0.5 * (height - camera->height * scale) : 0.0);
+    *out = rig->camera;
+    adcgs_camera_fit(out, width, height, 0);
 }

@@ -16,11 +16,12 @@
 #define NEAR_PER_SCALE 0.01
 #define FULL_TURN 6.283185307179586
 
-adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, adcgs_error *error)
+adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, const char *who, adcgs_error *error)
 {
     *shots = (adcgs_shots){0};
     if (!(n >= 1.0 && n <= ADCGS_SHOTS_MAX))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f frames asked for, expected 1 to %d", n, ADCGS_SHOTS_MAX);
+        return adcgs_fail(error, who ? ADCGS_ERR_DATA : ADCGS_ERR_USAGE, "%s%s%.0f frames asked for, expected 1 to %d",
+                          who ? who : "", who ? ": " : "", n, ADCGS_SHOTS_MAX);
     shots->shot = calloc((size_t)n, sizeof *shots->shot);
     if (!shots->shot)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %.0f frames", n);
@@ -32,6 +33,35 @@ void adcgs_shots_free(adcgs_shots *shots)
 {
     free(shots->shot);
     *shots = (adcgs_shots){0};
+}
+
+adcgs_status adcgs_shots_rendered(const adcgs_camera *camera, adcgs_status status, adcgs_error *error)
+{
+    static const char general[] = "camera: ";
+    if (status != ADCGS_ERR_USAGE)
+        return status;
+    const adcgs_error why = *error;
+    const size_t skip = strncmp(why.text, general, sizeof general - 1) ? 0 : sizeof general - 1;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "camera \"%s\": %.150s", camera->name, why.text + skip);
+}
+
+/** Times are given in few digits, and the last frame lasts, too: a frame more or less is no mistake. */
+static int is_outside(const adcgs_info *info, double begin, double end)
+{
+    const double frame = 1.0 / info->frame_rate;
+    return begin > info->time_end + frame || end < info->time_start - frame;
+}
+
+adcgs_status adcgs_shots_check_times(const adcgs_info *info, const adcgs_shots_request *request, adcgs_error *error)
+{
+    if (request->has_times && is_outside(info, request->begin, request->end))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %g%s: the stream lasts from %g to %g s",
+                          request->begin > info->time_end ? request->begin : request->end,
+                          request->begin == request->end     ? ""
+                          : request->begin > info->time_end ? " and later"
+                                                            : " and earlier",
+                          info->time_start, info->time_end);
+    return ADCGS_OK;
 }
 
 /** On the outside, looking at the scene's centre from a little above. */
@@ -94,7 +124,7 @@ adcgs_status adcgs_shots_times(adcgs_shots *out, const adcgs_info *info, const a
                           request->camera);
     const int is_still = is_frozen || (!request->has_times && motion == ADCGS_SHOTS_MOVING && begin == end);
     const double n = is_still ? ADCGS_SHOTS_SECONDS * info->frame_rate : (end - begin) * info->frame_rate + 1.0;
-    ADCGS_TRY(adcgs_shots_alloc(out, fmax(floor(n + 1e-6), is_still), error));
+    ADCGS_TRY(adcgs_shots_alloc(out, fmax(floor(n + 1e-6), is_still), request->has_times ? NULL : "the stream", error));
     for (int i = 0; i < out->n; i++)
         out->shot[i].time = is_still ? begin : begin + i / info->frame_rate;
     return ADCGS_OK;
@@ -105,6 +135,11 @@ adcgs_status adcgs_shots_read_path(adcgs_shots *out, const adcgs_info *info, con
                                    double near_plane, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads no camera paths", request->camera);
+}
+
+adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build writes no camera paths", path);
 }
 #endif
 
@@ -178,12 +213,16 @@ adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, co
     adcgs_info info;
     *out = (adcgs_shots){0};
     ADCGS_TRY(adcgs_get_info(decoder, &info));
+    ADCGS_TRY(adcgs_shots_check_times(&info, request, error));
     const adcgs_status status = make_shots(out, decoder, &info, request, error);
     if (status != ADCGS_OK)
         adcgs_shots_free(out);
     if (!(out->frame_rate > 0.0)) /* paths may have one of their own */
         out->frame_rate = info.frame_rate;
-    for (int i = 0; i < out->n && request->size[0]; i++)
-        adcgs_camera_stretch(&out->shot[i].camera, request->size[0], request->size[1]);
+    for (int i = 0; i < out->n; i++) {
+        out->outside += info.time_start < info.time_end && is_outside(&info, out->shot[i].time, out->shot[i].time);
+        if (request->size[0])
+            adcgs_camera_fit(&out->shot[i].camera, request->size[0], request->size[1], request->fill);
+    }
     return status;
 }

@@ -14,6 +14,7 @@ typedef struct adcgs_shot {
 
 typedef struct adcgs_shots {
     int n;
+    int outside;       /**< how many are before the stream begins or after it ends; they show its first or last moment */
     double frame_rate; /**< to play them at, > 0 */
     adcgs_shot *shot;
 } adcgs_shots;
@@ -22,12 +23,21 @@ typedef struct adcgs_shots_request {
     const char *camera; /**< stored camera's name or index, orbit, spiral, bullet, or a .json file; NULL: 0, else orbit */
     int has_times;
     double begin, end;  /**< seconds; the stream's whole span without them */
-    int size[2];        /**< 0, 0: the camera's own; else its field of view is fitted to it */
+    int size[2];        /**< 0, 0: the camera's own; else what it sees is fitted to it: adcgs_camera_fit() */
+    int fill;           /**< as adcgs_camera_fit() has it */
 } adcgs_shots_request;
 
+/** ADCGS_ERR_USAGE if times are given and the stream has none of them. */
+adcgs_status adcgs_shots_check_times(const adcgs_info *info, const adcgs_shots_request *request, adcgs_error *error);
 adcgs_status adcgs_shots_make(adcgs_shots *out, const adcgs_decoder *decoder, const adcgs_shots_request *request,
                               adcgs_error *error);
 void adcgs_shots_free(adcgs_shots *shots);
+
+/**
+ * What rendering through a camera ended with. ADCGS_ERR_USAGE, which is a camera that the renderer refuses, becomes
+ * ADCGS_ERR_DATA: it came from a file. The message names the camera.
+ */
+adcgs_status adcgs_shots_rendered(const adcgs_camera *camera, adcgs_status status, adcgs_error *error);
 
 /** Write the stored cameras as a path of key frames, a second apart, for adcgs_shots_make() to read and the user to change. */
 adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *path, adcgs_error *error);
@@ -38,7 +48,8 @@ adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *pa
 #define ADCGS_ORBIT_HEIGHT 600
 #define ADCGS_SHOTS_SECONDS 4.0 /* a path round a scene that stands still */
 
-adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, adcgs_error *error);
+/** who asks for so many, for the message: a file; NULL: the user, whose wrong use it is. */
+adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, const char *who, adcgs_error *error);
 
 typedef enum adcgs_shots_motion {
     ADCGS_SHOTS_FIXED,  /**< the camera stands */

@@ -64,7 +64,7 @@ static adcgs_status read_frames(reader *r, adcgs_shots *out)
     size_t n;
     r->at.list = "frames";
     ADCGS_TRY(adcgs_json_frames(&r->at, &frames, &n));
-    ADCGS_TRY(adcgs_shots_alloc(out, (double)n, r->at.error));
+    ADCGS_TRY(adcgs_shots_alloc(out, (double)n, r->at.path, r->at.error));
     for (size_t i = 0; i < n; i++) {
         ADCGS_TRY(enter(r, frames, i));
         ADCGS_TRY(read_shot(r, (double)i / r->info->frame_rate, "frame", &out->shot[i]));
@@ -89,7 +89,7 @@ static adcgs_status read_key(reader *r, adcgs_flight_key *keys, size_t i)
     ADCGS_TRY(read_shot(r, key->at - keys[0].at, "key", &key->shot));
     ADCGS_TRY(check_size(r, &key->shot, &keys[0].shot));
     if (r->request->size[0]) /* lenses are comparable for one size only */
-        adcgs_camera_stretch(&key->shot.camera, r->request->size[0], r->request->size[1]);
+        adcgs_camera_fit(&key->shot.camera, r->request->size[0], r->request->size[1], r->request->fill);
     return ADCGS_OK;
 }
 
@@ -109,7 +109,7 @@ static adcgs_status fly(const reader *r, const adcgs_flight_key *keys, size_t n,
     const double begin = keys[0].at, frames = floor((keys[n - 1].at - begin) * out->frame_rate + 1e-6) + 1.0;
     const double rate = out->frame_rate;
     adcgs_flight flight;
-    ADCGS_TRY(adcgs_shots_alloc(out, frames, r->at.error));
+    ADCGS_TRY(adcgs_shots_alloc(out, frames, r->at.path, r->at.error));
     out->frame_rate = rate;
     ADCGS_TRY(adcgs_flight_init(&flight, keys, (int)n, linear, 0, r->at.error));
     for (int i = 0; i < out->n; i++) {

@@ -54,7 +54,7 @@ adcgs_status adcgs_rig_init(adcgs_rig *rig, const adcgs_decoder *decoder, const 
         adcgs_shots_default(&rig->cameras[0], info, up);
     for (int c = 0; c < info->cameras; c++) {
         ADCGS_TRY(adcgs_get_camera(decoder, c, &rig->cameras[c]));
-        adcgs_camera_stretch(&rig->cameras[c], rig->cameras[0].width, rig->cameras[0].height);
+        adcgs_camera_fit(&rig->cameras[c], rig->cameras[0].width, rig->cameras[0].height, 0);
     }
     memcpy(rig->focus, info->scene_origin, sizeof rig->focus);
     rig->distance = mean_distance(rig);

@@ -70,6 +70,19 @@ void adcgs_camera_stretch(adcgs_camera *camera, int width, int height)
     camera->cy *= y;
 }
 
+void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill)
+{
+    const double x = (double)width / camera->width, y = (double)height / camera->height;
+    const double scale = fill == (x < y) ? y : x;
+    camera->fx *= scale;
+    camera->fy *= scale;
+    /* Without a difference in shape nothing is rounded that need not be. */
+    camera->cx = camera->cx * scale + (x > scale || x < scale ? 0.5 * (width - camera->width * scale) : 0.0);
+    camera->cy = camera->cy * scale + (y > scale || y < scale ? 0.5 * (height - camera->height * scale) : 0.0);
+    camera->width = width;
+    camera->height = height;
+}
+
 /** The component that is largest is found first: dividing by it is safe. */
 void adcgs_turn_from_pose(const double pose[12], double q[4])
 {

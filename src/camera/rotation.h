@@ -23,8 +23,14 @@ int adcgs_find_up(const adcgs_info *info, double up[3]);
 /** A 3x4 camera-to-world matrix in OpenCV axes of an eye that sees the target in the middle; up need not be at right angles. */
 void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3]);
 
-/** Stretch what the camera sees to another size. */
+/** Stretch what the camera sees to another size: pixels change their shape. */
 void adcgs_camera_stretch(adcgs_camera *camera, int width, int height);
+/**
+ * Enlarge or reduce what the camera sees to another size, its middle in the middle; pixels keep their shape. Where the sizes
+ * are of different shapes, more is seen round it, so that all of the picture is there; fill: part of it is cut off, so that
+ * there is nothing else.
+ */
+void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill);
 
 /** Rotation of a row-major 3x4 matrix, whose 3x3 part is orthonormal, and back; the last column stays. */
 void adcgs_turn_from_pose(const double pose[12], double q[4]);

@@ -4,6 +4,7 @@
 
 #include "cli/cli.h"
 
+#include "cli/text.h"
 #include "io/file.h"
 
 #include <adcgs/version.h>
@@ -14,18 +15,28 @@
 #include <math.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #define OPTIONS_MAX 64
 #define HELP_COLUMN 28
+#define MESSAGE_MAX 8192
 
 static void message(const adcgs_cli *cli, const char *format, va_list arguments) ADCGS_PRINTF(2, 0);
 static void message(const adcgs_cli *cli, const char *format, va_list arguments)
 {
-    fprintf(stderr, "%s: ", cli->program);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    char text[MESSAGE_MAX], *line = NULL;
+    size_t bytes = 0;
+    vsnprintf(text, sizeof text, format, arguments);
+    FILE *memory = open_memstream(&line, &bytes); /* lines of several processes may meet: each is written at once */
+    FILE *file = memory ? memory : stderr;
+    fprintf(file, "%s: ", cli->program);
+    adcgs_text_show(file, text);
+    fputc('\n', file);
+    if (memory && !fclose(memory))
+        fwrite(line, 1, bytes, stderr);
+    free(line);
 }
 
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...)
@@ -40,6 +51,8 @@ int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *forma
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...)
 {
     va_list arguments;
+    if (cli->quiet && *cli->quiet)
+        return;
     va_start(arguments, format);
     message(cli, format, arguments);
     va_end(arguments);
@@ -254,6 +267,8 @@ static int print_help(const adcgs_cli *cli)
         const adcgs_option *option = &cli->options[i];
         print_option(option->letter, option->name, option->value, option->help);
     }
+    if (cli->quiet)
+        print_option('q', "quiet", NULL, "print neither progress nor remarks");
     print_option('h', "help", NULL, "print this text and exit");
     print_option('V', "version", NULL, "print versions and exit");
     if (cli->details)
@@ -285,8 +300,9 @@ static size_t getopt_tables(const adcgs_cli *cli, struct option *longs, char *le
     }
     longs[n] = (struct option){"help", no_argument, NULL, 'h'};
     longs[n + 1] = (struct option){"version", no_argument, NULL, 'V'};
-    longs[n + 2] = (struct option){NULL, 0, NULL, 0};
-    memcpy(letters, "hV", 3);
+    longs[n + 2] = (struct option){cli->quiet ? "quiet" : NULL, no_argument, NULL, 'q'};
+    longs[n + 3] = (struct option){NULL, 0, NULL, 0};
+    memcpy(letters, cli->quiet ? "hVq" : "hV", cli->quiet ? 4 : 3);
     return n;
 }
 
@@ -321,8 +337,8 @@ static int check_operands(const adcgs_cli *cli, int n, const char *surplus)
 
 int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
 {
-    struct option longs[OPTIONS_MAX + 3];
-    char letters[2 * OPTIONS_MAX + 4];
+    struct option longs[OPTIONS_MAX + 4];
+    char letters[2 * OPTIONS_MAX + 5];
     getopt_tables(cli, longs, letters);
     opterr = 0;
     signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond its limit is an error like a full disk, not the end of the program */
@@ -331,6 +347,10 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
             return print_help(cli);
         if (code == 'V')
             return print_version(cli);
+        if (code == 'q' && cli->quiet) {
+            *cli->quiet = 1;
+            continue;
+        }
         const char *word = argv[ADCGS_MAX(optind - 1, 1)];
         if (code == ':')
             return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: a value must follow", word);

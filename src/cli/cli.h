@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * What all programs share on the command line: a table of options that parses
- * itself and prints its own help, numbers with ranges, messages, progress,
- * JSON on stdout, the interrupt flag.
+ * itself and prints its own help, numbers with ranges, messages, progress, the
+ * interrupt flag.
  */
 #ifndef ADCGS_CLI_CLI_H
 #define ADCGS_CLI_CLI_H
@@ -34,7 +34,7 @@ typedef struct adcgs_option {
     int *given;         /**< set to 1 when the option is given; may be NULL */
 } adcgs_option;
 
-/** A program. --help (-h) and --version (-V) are added by themselves. */
+/** A program. --help (-h) and --version (-V) are added by themselves, and --quiet (-q) where quiet is set. */
 typedef struct adcgs_cli {
     const char *program;  /**< "adcgs-dec" */
     const char *operands; /**< "FILE|-" */
@@ -43,6 +43,7 @@ typedef struct adcgs_cli {
     const adcgs_option *options;
     size_t n_options;
     int min_operands, max_operands;
+    int *quiet; /**< set to 1 by --quiet: neither progress nor remarks are printed; NULL: no such option */
 } adcgs_cli;
 
 /**
@@ -52,18 +53,19 @@ typedef struct adcgs_cli {
  */
 int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 
+/* Messages are one line each: what a terminal would obey in the names and texts in them is shown as escapes (io/text.h). */
 /** Print "program: text" on stderr and return the exit code of error->status. */
 int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
-/** As adcgs_cli_fail() with a message of its own. */
+/** As adcgs_cli_fail() with a message of its own; with ADCGS_OK for what is no failure, and --quiet must not hide. */
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
-/** Write out what standard output holds back. ADCGS_ERR_IO if something is lost, now or earlier. */
+/** Write out what standard output holds back. ADCGS_ERR_IO unless all that was printed, now and earlier, has arrived. */
 adcgs_status adcgs_cli_flush(adcgs_error *error);
 /**
  * The exit code to leave with: `code`, or that of ADCGS_ERR_IO, which is reported, when something of a run that was fine so far
  * could not be written to standard output. The last thing that a program does.
  */
 int adcgs_cli_leave(const adcgs_cli *cli, int code);
-/** A remark that does not end the program: "program: text" on stderr. */
+/** A remark that does not end the program: "program: text" on stderr, unless --quiet was given. */
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(2, 3);
 
 /* Whole-string parsers: 0, or -1 when text is not exactly one number of the kind within [min, max]. */
@@ -80,33 +82,19 @@ void adcgs_interrupt_catch(void);
 /** The signal that came, 0 if none. */
 int adcgs_interrupted(void);
 
-/** A line on stderr that rewrites itself; silent unless stderr is a terminal. */
+/** How far a program is: on a terminal a line that rewrites itself, else a remark now and then. */
 typedef struct adcgs_progress {
-    int active, shown;
-    double last; /**< when it was drawn */
+    const adcgs_cli *cli;
+    int is_terminal, shown;
+    double last;  /**< when it was drawn */
+    double every; /**< seconds from one to the next */
 } adcgs_progress;
 
-void adcgs_progress_init(adcgs_progress *progress);
-/** At most ten times a second. */
+/** Silent with --quiet. */
+void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli);
+/** At most ten times a second on a terminal; elsewhere after 5 seconds, after 10 more, and so on up to once a minute. */
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** Wipe the line; call before any other message and at the end. */
 void adcgs_progress_clear(adcgs_progress *progress);
-
-/** Writes one JSON value to a stream. key is NULL inside an array and at the top. */
-typedef struct adcgs_json {
-    FILE *file;
-    int depth;
-    int comma; /**< the next item needs a comma before it */
-} adcgs_json;
-
-void adcgs_json_init(adcgs_json *json, FILE *file);
-void adcgs_json_open(adcgs_json *json, const char *key, char bracket);  /**< bracket: '{' or '[' */
-void adcgs_json_close(adcgs_json *json, char bracket);                  /**< bracket: '}' or ']' */
-void adcgs_json_string(adcgs_json *json, const char *key, const char *value);
-void adcgs_json_int(adcgs_json *json, const char *key, int64_t value);
-void adcgs_json_real(adcgs_json *json, const char *key, double value);  /**< null when not finite */
-void adcgs_json_bool(adcgs_json *json, const char *key, int value);
-/** Newline; standard output is flushed, ADCGS_ERR_IO if anything could not be written there. Files are their openers'. */
-adcgs_status adcgs_json_finish(adcgs_json *json, adcgs_error *error);
 
 #endif

@@ -5,9 +5,9 @@
 #include "conform/conform.h"
 
 #include "base/digest.h"
+#include "data/camera_json.h"
 
 #include <errno.h>
-#include <jansson.h>
 #include <stdlib.h>
 
 static const struct {
@@ -221,12 +221,10 @@ static adcgs_status read_root(adcgs_manifest *m, json_t *root, const char *path,
 
 adcgs_status adcgs_manifest_read(adcgs_manifest *out, const char *path, adcgs_error *error)
 {
-    json_error_t where;
+    json_t *root;
     const char *const slash = strrchr(path, '/');
     *out = (adcgs_manifest){NULL, 0, NULL};
-    json_t *const root = json_load_file(path, JSON_REJECT_DUPLICATES, &where);
-    if (!root)
-        return adcgs_fail(error, where.line < 0 ? ADCGS_ERR_IO : ADCGS_ERR_DATA, "%s: %s", path, where.text);
+    ADCGS_TRY(adcgs_json_load(&root, path, error));
     out->directory = slash ? strndup(path, (size_t)(slash - path)) : strdup(".");
     const adcgs_status status =
         out->directory ? read_root(out, root, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);

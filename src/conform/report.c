@@ -47,7 +47,9 @@ void adcgs_junit_add(adcgs_junit *junit, const adcgs_vector *vector, adcgs_outco
     junit->failures += outcome == ADCGS_OUTCOME_WRONG;
     junit->errors += outcome == ADCGS_OUTCOME_CRASHED || outcome == ADCGS_OUTCOME_TIMEOUT;
     junit->seconds += seconds;
-    fprintf(junit->memory, "  <testcase classname=\"conformance\" name=\"%s\" time=\"%.3f\"", vector->id, seconds);
+    fprintf(junit->memory, "  <testcase classname=\"conformance\" name=\"");
+    put_escaped(junit->memory, vector->id);
+    fprintf(junit->memory, "\" time=\"%.3f\"", seconds);
     if (outcome == ADCGS_OUTCOME_OK) {
         fprintf(junit->memory, "/>\n");
         return;

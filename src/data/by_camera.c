@@ -12,8 +12,7 @@ typedef struct item {
     uint32_t first; /* view of the same camera */
 } item;
 
-/** Any order of cameras will do, as long as none but equal ones are equal. */
-static int compare_cameras(const adcgs_camera *a, const adcgs_camera *b)
+int adcgs_camera_compare(const adcgs_camera *a, const adcgs_camera *b)
 {
     const double lens_a[4] = {a->fx, a->fy, a->cx, a->cy}, lens_b[4] = {b->fx, b->fy, b->cx, b->cy};
     if (a->width != b->width)
@@ -32,7 +31,7 @@ static int compare_index(const item *a, const item *b)
 static int by_camera(const void *a, const void *b)
 {
     const item *x = a, *y = b;
-    const int order = compare_cameras(&x->view->camera, &y->view->camera);
+    const int order = adcgs_camera_compare(&x->view->camera, &y->view->camera);
     return order ? order : compare_index(x, y);
 }
 
@@ -56,7 +55,7 @@ adcgs_status adcgs_sort_by_camera(const adcgs_scene_view *views, uint32_t n, uin
         items[i] = (item){.view = &views[i], .index = i};
     qsort(items, n, sizeof *items, by_camera);
     for (uint32_t i = 0; i < n; i++) {
-        const int same = i && !compare_cameras(&items[i - 1].view->camera, &items[i].view->camera);
+        const int same = i && !adcgs_camera_compare(&items[i - 1].view->camera, &items[i].view->camera);
         items[i].first = same ? items[i - 1].first : items[i].index;
     }
     qsort(items, n, sizeof *items, by_first_and_time);

@@ -5,8 +5,11 @@
 
 #include "data/scene.h"
 
+/** 0 for cameras of equal size, lens and pose, to the last bit; else an order of some kind. */
+int adcgs_camera_compare(const adcgs_camera *a, const adcgs_camera *b);
+
 /**
- * Views are of one camera if size, lens and pose are equal to the last bit.
+ * Views are of one camera if adcgs_camera_compare() finds them equal.
  * of: [n] the camera of each view; cameras are numbered from 0 in the order in which the views first show them.
  * order: [n] indices of the views, camera by camera, each in ascending time (of equal times in ascending index); may be NULL.
  * *n_cameras: how many there are; 0 for no views.

@@ -23,7 +23,7 @@ adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error
     size_t bytes;
     json_error_t where;
     *root = NULL;
-    ADCGS_TRY(adcgs_file_load(&text, &bytes, path, FILE_MAX, error));
+    ADCGS_TRY(adcgs_file_load_text(&text, &bytes, path, FILE_MAX, error));
     if (!bytes) {
         free(text);
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected JSON", path);
@@ -76,6 +76,22 @@ adcgs_status adcgs_json_number(const adcgs_json_place *at, const char *field, do
         return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "%g, expected %g to %g", v, min, max);
     *value = v;
     *found = 1;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_json_fps(const adcgs_json_place *at, const char *field, adcgs_fps *rate, int *found)
+{
+    const char *text = json_string_value(adcgs_json_find(at, field));
+    double value;
+    if (!text) {
+        ADCGS_TRY(adcgs_json_number(at, field, ADCGS_FPS_MIN, ADCGS_FPS_MAX, &value, found));
+        if (*found)
+            *rate = adcgs_fps_of(value);
+        return ADCGS_OK;
+    }
+    *found = 1;
+    if (adcgs_fps_parse(text, rate))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, field, "%.32s, expected frames per second as 30, 29.97 or 30000/1001", text);
     return ADCGS_OK;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/base.h"
 #include "data/lens.h"
+#include "io/fps.h"
 
 #include <adcgs/camera.h>
 
@@ -33,6 +34,8 @@ adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, con
 json_t *adcgs_json_find(const adcgs_json_place *at, const char *field);
 /** Such a field as a number in [min, max]. Leaves *value alone and *found 0 when it is not there. */
 adcgs_status adcgs_json_number(const adcgs_json_place *at, const char *field, double min, double max, double *value, int *found);
+/** Such a field as frames per second: a number, or a ratio as text ("30000/1001"). */
+adcgs_status adcgs_json_fps(const adcgs_json_place *at, const char *field, adcgs_fps *rate, int *found);
 /** The array of frames, not empty, of at most a million. */
 adcgs_status adcgs_json_frames(const adcgs_json_place *at, json_t **frames, size_t *n);
 

@@ -7,9 +7,11 @@
 #include "data/scene.h"
 #include "data/sort.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #define FRAME_MAX 1000000000 /* larger numbers are mistakes */
+#define GRID_WITHIN 0.25     /* of an interval */
 
 /** Digits, if there are any: 0, or -1 for a number that is too large. */
 static int take_number(const char **text, int64_t *value)
@@ -69,17 +71,17 @@ static size_t drop_repeated(double *values, size_t n)
     return kept;
 }
 
-/** The distinct times of all views, ascending, from malloc(). */
-static double *find_moments(const adcgs_scene *scene, size_t *n)
+/** The distinct times of the views of the first splits, ascending, from malloc(). */
+static double *find_moments(const adcgs_scene *scene, int splits, size_t *n)
 {
     size_t all = 0;
-    for (int s = 0; s < ADCGS_SPLITS; s++)
+    for (int s = 0; s < splits; s++)
         all += scene->n_views[s];
     double *moments = malloc((all + 1) * sizeof *moments);
     if (!moments)
         return NULL;
     all = 0;
-    for (int s = 0; s < ADCGS_SPLITS; s++)
+    for (int s = 0; s < splits; s++)
         for (uint32_t i = 0; i < scene->n_views[s]; i++)
             moments[all++] = scene->views[s][i].time;
     adcgs_sort(moments, all);
@@ -111,7 +113,7 @@ static void keep_views(adcgs_scene *scene, int split, const adcgs_frame_range *r
     for (uint32_t i = 0; i < scene->n_views[split]; i++) {
         const int64_t at = find_moment(moments, n, views[i].time);
         if (at < range->begin || at > last || (at - range->begin) % step) {
-            free(views[i].path);
+            adcgs_scene_view_clear(&views[i]);
             continue;
         }
         views[kept] = views[i];
@@ -126,15 +128,58 @@ adcgs_status adcgs_frames_keep(adcgs_scene *scene, const adcgs_frame_range *rang
     int64_t count;
     if (!range->begin && !range->end && adcgs_frames_step(range) == 1)
         return ADCGS_OK;
-    double *moments = find_moments(scene, &n);
+    double *moments = find_moments(scene, ADCGS_SPLITS, &n);
     if (!moments)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     const adcgs_status status = adcgs_frames_count(range, (int64_t)n, &count, path, error);
     for (int s = 0; status == ADCGS_OK && s < ADCGS_SPLITS; s++)
         keep_views(scene, s, range, count, moments, n);
+    if (status == ADCGS_OK)
+        scene->intervals *= moments[range->begin + (count - 1) * adcgs_frames_step(range)] - moments[range->begin];
     free(moments);
     ADCGS_TRY(status);
     if (!scene->n_views[ADCGS_SPLIT_TRAIN])
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: --frames leaves no view for training", path);
     return ADCGS_OK;
+}
+
+/* ---- How long it is ---- */
+
+/** Whether all moments are multiples of 1/n, as well as files of six digits can tell. */
+static int is_grid(const double *moments, size_t n, double intervals)
+{
+    const double within = fmin(ADCGS_TIME_TOLERANCE * intervals, GRID_WITHIN);
+    for (size_t i = 0; i < n; i++)
+        if (!(fabs(moments[i] * intervals - rint(moments[i] * intervals)) <= within))
+            return 0;
+    return 1;
+}
+
+/** The coarsest grid of which the moments fill at least half; 0: there is none. */
+static double find_grid(const double *moments, size_t n)
+{
+    for (size_t intervals = n - 1; intervals && intervals <= 2 * (n - 1); intervals++)
+        if (is_grid(moments, n, (double)intervals))
+            return (double)intervals;
+    return 0.0;
+}
+
+adcgs_status adcgs_frames_intervals(const adcgs_scene *scene, uint32_t *n_times, double *intervals, const char *path,
+                                    adcgs_error *error)
+{
+    size_t n_all = 0, n = 0;
+    double *all = find_moments(scene, ADCGS_SPLITS, &n_all), *train = find_moments(scene, ADCGS_SPLIT_TRAIN + 1, &n);
+    const adcgs_status status = all && train ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (status == ADCGS_OK) {
+        const double own = find_grid(train, n), common = n > 1 ? find_grid(all, n_all) : 0.0;
+        *n_times = (uint32_t)n;
+        *intervals = (double)(n - 1);
+        if (own > *intervals) /* with gaps */
+            *intervals = common > 0.0 ? common : own;
+        else if (!(own > 0.0) && common > 0.0)
+            *intervals = common;
+    }
+    free(all);
+    free(train);
+    return status;
 }

@@ -26,4 +26,13 @@ adcgs_status adcgs_frames_count(const adcgs_frame_range *range, int64_t n, int64
  */
 adcgs_status adcgs_frames_keep(struct adcgs_scene *scene, const adcgs_frame_range *range, const char *path, adcgs_error *error);
 
+/**
+ * How many intervals between frames the times of a scene, which are in [0,1], make of it. Views for training that fill all of
+ * a grid are the frames: others may have been made at moments in between. Where they leave gaps, because frames were put aside
+ * for tests, the frames are the grid on which the views of all splits lie, if these fill at least half of it; else the views
+ * for training decide, by their grid or by how many moments they have (*n_times). ADCGS_ERR_MEMORY, naming path.
+ */
+adcgs_status adcgs_frames_intervals(const struct adcgs_scene *scene, uint32_t *n_times, double *intervals, const char *path,
+                                    adcgs_error *error);
+
 #endif

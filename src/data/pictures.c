@@ -9,6 +9,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -20,6 +21,7 @@ typedef struct picture {
     void *values;  /**< NULL: in the file */
     uint64_t at;   /**< in the file */
     int wide;      /**< binary32, else 16 bits */
+    uint8_t *hidden; /**< [height * width] pixels that are not known, which values hold as 0; NULL: all are */
 } picture;
 
 struct adcgs_pictures {
@@ -66,6 +68,32 @@ static void widen(float *rgb, const uint16_t *values, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         rgb[i] = (float)values[i] / FULL;
+}
+
+/** Note which pixels are not known, and give them a value that can be kept. */
+static adcgs_status hide(picture *p, float *rgb, adcgs_error *error)
+{
+    const size_t plane = values_of(p) / 3;
+    free(p->hidden);
+    p->hidden = NULL;
+    for (size_t i = 0; i < plane; i++) {
+        if (!isnan(rgb[i]))
+            continue;
+        if (!p->hidden && !(p->hidden = calloc(plane, 1)))
+            return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a mask");
+        p->hidden[i] = 1;
+        for (size_t c = 0; c < 3; c++)
+            rgb[c * plane + i] = 0.0f;
+    }
+    return ADCGS_OK;
+}
+
+static void show_hidden(const picture *p, float *rgb)
+{
+    const size_t plane = values_of(p) / 3;
+    for (size_t i = 0; p->hidden && i < plane; i++)
+        for (size_t c = 0; p->hidden[i] && c < 3; c++)
+            rgb[c * plane + i] = (float)NAN;
 }
 
 /* ---- The file ---- */
@@ -127,10 +155,15 @@ static adcgs_status find_place(adcgs_pictures *p, size_t bytes, int *in_memory, 
 static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, adcgs_error *error)
 {
     int in_memory;
+    adcgs_status status = hide(to, rgb, error);
+    if (status != ADCGS_OK) {
+        free(rgb);
+        return status;
+    }
     to->wide = is_wide(rgb, values_of(to));
     if (!to->wide)
         narrow(rgb, values_of(to));
-    adcgs_status status = find_place(p, bytes_of(to), &in_memory, &to->at, error);
+    status = find_place(p, bytes_of(to), &in_memory, &to->at, error);
     if (status == ADCGS_OK && in_memory) {
         void *const fitted = realloc(rgb, bytes_of(to));
         to->values = fitted ? fitted : rgb;
@@ -244,8 +277,10 @@ void adcgs_pictures_free(adcgs_pictures **pictures)
     adcgs_pictures *p = *pictures;
     if (!p)
         return;
-    for (uint32_t i = 0; p->list && i < p->n; i++)
+    for (uint32_t i = 0; p->list && i < p->n; i++) {
         free(p->list[i].values);
+        free(p->list[i].hidden);
+    }
     if (p->file >= 0)
         close(p->file);
     pthread_mutex_destroy(&p->lock);
@@ -262,9 +297,9 @@ const adcgs_camera *adcgs_pictures_camera(const adcgs_pictures *pictures, uint32
     return &pictures->list[view].camera;
 }
 
-adcgs_status adcgs_pictures_get(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error)
+/** As they are kept. */
+static adcgs_status get_values(const adcgs_pictures *pictures, const picture *p, float *rgb, adcgs_error *error)
 {
-    const picture *p = &pictures->list[view];
     const size_t n = values_of(p);
     if (p->values && p->wide)
         memcpy(rgb, p->values, bytes_of(p));
@@ -282,6 +317,19 @@ adcgs_status adcgs_pictures_get(const adcgs_pictures *pictures, uint32_t view, f
         return status;
     }
     return ADCGS_OK;
+}
+
+adcgs_status adcgs_pictures_get(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error)
+{
+    const picture *p = &pictures->list[view];
+    ADCGS_TRY(get_values(pictures, p, rgb, error));
+    show_hidden(p, rgb);
+    return ADCGS_OK;
+}
+
+const uint8_t *adcgs_pictures_hidden(const adcgs_pictures *pictures, uint32_t view)
+{
+    return pictures->list[view].hidden;
 }
 
 adcgs_status adcgs_pictures_put(adcgs_pictures *pictures, uint32_t view, const float *rgb, adcgs_error *error)

@@ -34,8 +34,10 @@ adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene,
 void adcgs_pictures_free(adcgs_pictures **pictures);
 /** At the size of the pictures. */
 const adcgs_camera *adcgs_pictures_camera(const adcgs_pictures *pictures, uint32_t view);
-/** rgb: planar [3][height][width], the caller's. Any thread. */
+/** rgb: planar [3][height][width], the caller's, as adcgs_scene_load() gives it. Any thread. */
 adcgs_status adcgs_pictures_get(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error);
+/** [height * width] 1 where a picture is masked; NULL: nowhere. */
+const uint8_t *adcgs_pictures_hidden(const adcgs_pictures *pictures, uint32_t view);
 /** Put another picture of the same size in a view's place; no other thread may read meanwhile. */
 adcgs_status adcgs_pictures_put(adcgs_pictures *pictures, uint32_t view, const float *rgb, adcgs_error *error);
 /** That a picture will be asked for soon. Costs nothing when it is in memory. */

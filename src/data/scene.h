@@ -4,8 +4,9 @@
  * in. Conventions are converted here, once: cameras are OpenCV-axed pinholes in
  * world units, times are seconds from the start of the scene.
  *
- * Views for testing and validation are only listed: what follows from all views together (duration, near plane, axes, the
- * frame of reference, the first anchors) follows from the views for training alone.
+ * Views for testing and validation are only listed: what follows from all views together (near plane, axes, the frame of
+ * reference, the first anchors) follows from the views for training alone. Only when they were taken counts, for how long the
+ * scene is: a recording is as long as it was before some of its frames were put aside.
  *
  * Pictures taken through a lens that bends (OpenCV's model) are straightened when they are loaded: a view's camera is the
  * pinhole, its lens says how the picture was taken. Training on the rays as given would need a rasteriser of its own:
@@ -18,6 +19,7 @@
 #include "base/base.h"
 #include "data/frames.h"
 #include "data/lens.h"
+#include "io/fps.h"
 #include "io/image.h"
 #include "io/points.h"
 
@@ -32,6 +34,7 @@ typedef struct adcgs_scene_view {
     adcgs_camera camera;  /**< at the image's own size, straightened; name is the file's stem */
     double time;          /**< seconds */
     char *path;           /**< of the image or the video */
+    char *mask;           /**< of the image that says where the picture counts, or NULL */
     int is_video;
     int64_t frame;        /**< of a video, from 0 */
     adcgs_lens lens;      /**< the picture as it was taken; width 0: by the camera itself */
@@ -46,8 +49,9 @@ typedef struct adcgs_scene {
     char *directory;
     uint32_t n_views[ADCGS_SPLITS];
     adcgs_scene_view *views[ADCGS_SPLITS];
-    double duration;      /**< seconds, 0 for a still scene; from the training split */
-    double frame_rate;    /**< frames per second */
+    double duration;      /**< seconds, 0 for a still scene */
+    adcgs_fps rate;       /**< frames per second of what is kept, known */
+    double intervals;     /**< between frames of the data set, from time 0 to 1 of its layout; 0: it does not say */
     uint32_t n_times;     /**< distinct times of the training split */
     double near_bound;    /**< nothing that training views show is nearer, by what the data set says; 0: it does not say */
     int has_alpha;        /**< images carry alpha, composited over background */
@@ -59,20 +63,24 @@ typedef struct adcgs_scene {
 } adcgs_scene;
 
 void adcgs_scene_free(adcgs_scene **scene);
+/** What a view has allocated. */
+void adcgs_scene_view_clear(adcgs_scene_view *view);
 
 /** "train", "val", "test". */
 const char *adcgs_split_name(adcgs_split split);
 /** 0, or -1 if unknown. */
 int adcgs_split_parse(const char *name, adcgs_split *split);
 
-/** The size that a picture's file has is the one that its camera, or its lens, says; ADCGS_ERR_DATA if not. */
+/** The files of a picture and its mask have the size that its camera, or its lens, says; ADCGS_ERR_DATA if not. */
 adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error);
 
 /**
- * Load a view's picture as planar binary32 [3][h][w], straightened, alpha composited over scene->background, box-filtered down
- * by the integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). camera, if not NULL, gets the
- * camera at that size. The caller frees *rgb with free(). Any thread may call; frames of a video are best asked for in
- * ascending order by one thread (adcgs_view_runs_make()).
+ * Load a view's picture as planar binary32 [3][h][w], alpha composited over scene->background, straightened, box-filtered down
+ * by the integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). Where its mask is black, pixels
+ * are not seen: only others are averaged, and a pixel of which less than half is left has NaN in all channels. Who compares
+ * pictures leaves such pixels out (metric.h, adcgs_trainer_loss()). camera, if not NULL, gets the camera at that size. The caller
+ * frees *rgb with free(). Any thread may call; frames of a video are best asked for in ascending order by one thread
+ * (adcgs_view_runs_make()).
  */
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error);

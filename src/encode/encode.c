@@ -2,12 +2,16 @@
 /** \file Training run to stream. */
 #include "encode/encode.h"
 
+#include "data/by_camera.h"
 #include "encode/quantise.h"
 #include "render/render.h"
 #include "stream/input.h"
 #include "train/levels.h"
 
 #include <math.h>
+
+#define PARTS_MAX 100000   /* of a frame, that a tick may be */
+#define TICK_WITHIN 1e-6   /* of a tick: rounding of what is a whole number */
 
 adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error)
 {
@@ -52,22 +56,30 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
         const adcgs_camera *c = &views[(uint64_t)i * all / ADCGS_ENCODE_CAMERAS_MAX].camera;
         int known = 0;
         for (uint32_t j = 0; j < s->n_cameras; j++)
-            known |= !memcmp(s->cameras[j].cam_to_world, c->cam_to_world, sizeof c->cam_to_world);
+            known |= !adcgs_camera_compare(&s->cameras[j], c);
         if (!known)
             s->cameras[s->n_cameras++] = *c;
     }
     return ADCGS_OK;
 }
 
+/**
+ * A tick is a frame, or the largest whole part of one of which the scene's duration is a whole number: so times are exact,
+ * whatever offsets cameras have.
+ */
 static void set_time(adcgs_stream *s, const adcgs_scene *scene)
 {
-    /* One tick per frame: the scene's times are then exact. */
-    s->rate_num = (uint32_t)fmax(1, rint(scene->frame_rate * 1000));
-    s->rate_den = 1000;
+    const double frames = scene->duration * (double)scene->rate.num / (double)scene->rate.den;
+    uint32_t parts = 1;
+    s->rate_num = scene->rate.num;
+    s->rate_den = scene->rate.den;
+    while (parts < PARTS_MAX && (uint64_t)s->rate_num * (parts + 1) <= UINT32_MAX &&
+           fabs(frames * parts - rint(frames * parts)) > TICK_WITHIN)
+        parts++;
     s->timebase_num = s->rate_den;
-    s->timebase_den = s->rate_num;
+    s->timebase_den = s->rate_num * parts;
     s->start_ticks = 0;
-    s->duration_ticks = (int64_t)rint(scene->duration * (double)s->rate_num / s->rate_den);
+    s->duration_ticks = (int64_t)rint(frames * parts);
 }
 
 static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,
@@ -103,6 +115,16 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
     return make_stream(s, t, NULL, notes, n_notes, error);
 }
 
+/** Serialise. What the writer refuses to store is nobody's wrong use here: the scene has it. */
+static adcgs_status write_scene(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
+{
+    const adcgs_status status = adcgs_stream_write(stream, out, error);
+    if (status != ADCGS_ERR_USAGE)
+        return status;
+    const adcgs_error why = *error;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "the scene has what a stream cannot hold: %.180s", why.text);
+}
+
 adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, double strength, const adcgs_encode_note *notes,
                                 uint32_t n_notes, adcgs_error *error)
 {
@@ -114,7 +136,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
     adcgs_buffer_init(&out);
     adcgs_status status = make_stream(&stream, t, strength >= 0 ? &rdo : NULL, notes, n_notes, error);
     if (status == ADCGS_OK)
-        status = adcgs_stream_write(&stream, &out, error);
+        status = write_scene(&stream, &out, error);
     *bytes = stream.bytes;
     adcgs_buffer_clear(&out);
     adcgs_stream_clear(&stream, NULL);
@@ -126,7 +148,7 @@ adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, doub
 adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool,
                                    adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_stream_write(stream, out, error));
+    ADCGS_TRY(write_scene(stream, out, error));
     adcgs_stream back;
     adcgs_span from = { .next = out->data, .left = out->size };
     const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };

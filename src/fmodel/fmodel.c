@@ -20,121 +20,9 @@ int adcgs_fmodel_rows(const adcgs_fmodel *f, int group)
 
 /* ---- Networks ---- */
 
-size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden, int out)
-{
-    memset(mlp, 0, sizeof *mlp);
-    mlp->own = own;
-    mlp->time = time;
-    mlp->width = width;
-    mlp->hidden = own + time ? hidden : 0;
-    mlp->out = out;
-    size_t at = 0;
-    for (int i = 0; i <= mlp->hidden; i++) {
-        mlp->in[i] = i == 0 ? own + time : width;
-        mlp->n_out[i] = i == mlp->hidden ? out : width;
-        mlp->w[i] = at;
-        at += (size_t)mlp->in[i] * (size_t)mlp->n_out[i];
-        mlp->b[i] = at;
-        at += (size_t)mlp->n_out[i];
-        mlp->weight_step[i] = ADCGS_WEIGHT_STEP_NONE;
-    }
-    mlp->n = at;
-    return at;
-}
-
 void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width)
 {
-    adcgs_mlp *m = &f->mlp[group];
-    const adcgs_mlp old = *m;
-    f->param[group].n = adcgs_mlp_layout(m, old.own, old.time, width, old.hidden, old.out);
-    memcpy(m->weight_step, old.weight_step, sizeof m->weight_step);
-    m->use = old.use;
-    m->turn = old.turn;
-    m->packed = old.packed;
-    m->entropy = old.entropy;
-}
-
-/** Onto a lattice that is that of the integer networks or coarser. NaN, of a run about to be rolled back, becomes -limit. */
-static float integer_weight(float w, int e, int limit)
-{
-    const float v = rintf(ldexpf(w, e)) * (float)(1 << (ADCGS_E24_BITS - e));
-    return v > (float)-limit ? fminf(v, (float)limit) : (float)-limit;
-}
-
-/**
- * The row bound of the decoder, A*sum|w| + |b| + 2^(s-1) <= 2^24 - 1 with any shift s of the integer networks, by halving the
- * row: never needed by networks that train normally.
- */
-static void bound_row(float *w, float *b, int n)
-{
-    for (;;) {
-        double sum = 0;
-        for (int i = 0; i < n; i++)
-            sum += fabs((double)w[i]);
-        if (ADCGS_E24_MAX * sum + (1 << ADCGS_E24_BITS) * fabs((double)*b) + (1 << (2 * ADCGS_E24_BITS)) < 1 << 24)
-            return;
-        for (int i = 0; i < n; i++)
-            w[i] = truncf(w[i] / 2);
-        *b = truncf(*b / 2);
-    }
-}
-
-void adcgs_mlp_integer(const adcgs_mlp *m, const float *p, float *to)
-{
-    for (int i = 0; i <= m->hidden; i++) {
-        const size_t inputs = (size_t)m->in[i];
-        const int e = ADCGS_MIN(m->weight_step[i], ADCGS_E24_BITS);
-        for (size_t o = 0; o < (size_t)m->n_out[i]; o++) {
-            float *w = to + m->w[i] + o * inputs, *b = to + m->b[i] + o;
-            for (size_t j = 0; j < inputs; j++)
-                w[j] = integer_weight(p[m->w[i] + o * inputs + j], e, ADCGS_E24_MAX);
-            *b = integer_weight(p[m->b[i] + o], e, 1 << 14);
-            bound_row(w, b, m->in[i]);
-            for (size_t j = 0; j < inputs; j++)
-                w[j] = ldexpf(w[j], -ADCGS_E24_BITS);
-            *b = ldexpf(*b, -ADCGS_E24_BITS);
-        }
-    }
-}
-
-void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise)
-{
-    if (quantise && mlp->entropy)
-        adcgs_mlp_integer(mlp, p, mlp->use);
-    else
-        memcpy(mlp->use, p, mlp->n * sizeof *p);
-    for (int i = 0; i <= mlp->hidden; i++) {
-        const size_t n = (i < mlp->hidden ? mlp->w[i + 1] : mlp->n) - mlp->w[i]; /* weights and biases */
-        float *w = mlp->use + mlp->w[i];
-        if (quantise && !mlp->entropy && mlp->weight_step[i] != ADCGS_WEIGHT_STEP_NONE) {
-            const float up = ldexpf(1, mlp->weight_step[i]), down = ldexpf(1, -mlp->weight_step[i]);
-            for (size_t j = 0; j < n; j++)
-                w[j] = rintf(w[j] * up) * down;
-        }
-        for (int o = 0; o < mlp->n_out[i]; o++)
-            for (int j = 0; j < mlp->in[i]; j++)
-                mlp->turn[mlp->w[i] + (size_t)j * (size_t)mlp->n_out[i] + (size_t)o] =
-                    w[(size_t)o * (size_t)mlp->in[i] + (size_t)j];
-    }
-}
-
-void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp)
-{
-    for (int i = 1; mlp->n && dsp->pack && i < mlp->hidden; i++) {
-        dsp->pack(adcgs_mlp_packed(mlp, i, 0), mlp->use + mlp->w[i], mlp->width);
-        dsp->pack(adcgs_mlp_packed(mlp, i, 1), mlp->turn + mlp->w[i], mlp->width);
-    }
-}
-
-/** Weights uniform within +-sqrt(3/n_in) of unit gain, biases zero; the last layer scaled by `last`. */
-static void mlp_start(const adcgs_mlp *mlp, float *p, float last, uint64_t seed, uint64_t stream)
-{
-    for (int i = 0; i <= mlp->hidden; i++) {
-        const float residual = i > 0 && i < mlp->hidden ? 0.5f : 1.0f;
-        const double gain = (i == mlp->hidden ? last : residual) * sqrt(3.0 / (mlp->in[i] > 0 ? mlp->in[i] : 1));
-        for (int j = 0; j < mlp->in[i] * mlp->n_out[i]; j++)
-            p[mlp->w[i] + (size_t)j] = (float)(gain * (2 * adcgs_random_unit(seed, stream, mlp->w[i] + (uint64_t)j) - 1));
-    }
+    f->param[group].n = adcgs_mlp_set_width(&f->mlp[group], width);
 }
 
 static void layout_networks(adcgs_fmodel *f)
@@ -205,18 +93,6 @@ static void start_time_table(adcgs_fmodel *f)
         }
 }
 
-static adcgs_status alloc_weights(adcgs_mlp *m, adcgs_error *error)
-{
-    m->use = adcgs_alloc(NULL, 2 * (m->n + 16), sizeof *m->use, error);
-    if (!m->use)
-        return adcgs_alloc_status(error);
-    m->turn = m->use + (m->n + 15) / 16 * 16;
-    if (m->hidden < 2 || m->entropy)
-        return ADCGS_OK;
-    m->packed = adcgs_alloc(NULL, 2 * (size_t)(m->hidden - 1) * adcgs_square_words(m->width), sizeof *m->packed, error);
-    return m->packed ? ADCGS_OK : adcgs_alloc_status(error);
-}
-
 static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error *error)
 {
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
@@ -229,9 +105,9 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
         ADCGS_TRY(param_alloc(&f->param[i], n, error));
         if (!mlp->n)
             continue;
-        ADCGS_TRY(alloc_weights(mlp, error));
+        ADCGS_TRY(adcgs_mlp_alloc(mlp, error));
         const int from_zero = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI || i == ADCGS_P_E_STEPS;
-        mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : from_zero ? 0.0f : 0.02f, seed, (uint64_t)i);
+        adcgs_mlp_start(mlp, f->param[i].p, i == ADCGS_P_THETA ? 1.0f : from_zero ? 0.0f : 0.02f, seed, (uint64_t)i);
     }
     start_time_table(f);
     const adcgs_mlp *theta = &f->mlp[ADCGS_P_THETA];
@@ -298,21 +174,21 @@ void adcgs_fmodel_take_steps(adcgs_fmodel *f)
 
 static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *error)
 {
-    const size_t groups = (n + 63) / 64;
+    const size_t groups = adcgs_lane_groups(n);
     f->n = n;
     f->groups = (uint32_t)groups;
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         f->param[i].p = NULL; /* what they had is the caller's to free */
     f->pos = adcgs_alloc(NULL, n, sizeof *f->pos, error);
-    f->x = adcgs_alloc(NULL, groups * 3 * 64, sizeof(float), error);
-    f->code = adcgs_alloc(NULL, groups * 64 * 6 * (size_t)(f->params.octaves + 1), sizeof(float), error);
-    f->keep = adcgs_alloc(NULL, groups * f->params.k * 64, sizeof(float), error);
-    f->moving = adcgs_alloc(NULL, groups * 64, sizeof(float), error);
-    f->live = adcgs_alloc(NULL, groups * 64, sizeof(float), error);
+    f->x = adcgs_alloc(NULL, groups * 3 * ADCGS_LANES, sizeof(float), error);
+    f->code = adcgs_alloc(NULL, groups * ADCGS_LANES * 6 * (size_t)(f->params.octaves + 1), sizeof(float), error);
+    f->keep = adcgs_alloc(NULL, groups * f->params.k * ADCGS_LANES, sizeof(float), error);
+    f->moving = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
+    f->live = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live)
         return adcgs_alloc_status(error);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
-        ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * 64, error));
+        ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * ADCGS_LANES, error));
     return ADCGS_OK;
 }
 
@@ -322,17 +198,17 @@ static void place_anchors(adcgs_fmodel *f, const uint32_t (*pos)[3])
     memcpy(f->pos, pos, f->n * sizeof *f->pos);
     const float unit = ldexpf(1, -f->shape.depth - 1);
     for (uint32_t g = 0; g < f->groups; g++) {
-        float cube[3][64] __attribute__((aligned(64)));
-        for (uint32_t l = 0; l < 64; l++) {
-            const uint32_t i = g * 64 + l < f->n ? g * 64 + l : f->n - 1;
+        float cube[3][ADCGS_LANES] __attribute__((aligned(ADCGS_LANES)));
+        for (uint32_t l = 0; l < ADCGS_LANES; l++) {
+            const uint32_t i = g * ADCGS_LANES + l < f->n ? g * ADCGS_LANES + l : f->n - 1;
             for (int a = 0; a < 3; a++) {
                 const float odd = (float)(2 * pos[i][a] + 1);
-                f->x[((size_t)g * 3 + (size_t)a) * 64 + l] = fmaf(odd, 0.5f * f->voxel, f->origin[a]);
+                f->x[((size_t)g * 3 + (size_t)a) * ADCGS_LANES + l] = fmaf(odd, 0.5f * f->voxel, f->origin[a]);
                 cube[a][l] = odd * unit;
             }
-            f->live[g * 64 + l] = g * 64 + l < f->n ? 1.0f : 0.0f;
+            f->live[g * ADCGS_LANES + l] = g * ADCGS_LANES + l < f->n ? 1.0f : 0.0f;
         }
-        adcgs_position_code(f->code + (size_t)g * 6 * f->params.octaves * 64, &cube[0][0], f->params.octaves);
+        adcgs_position_code(f->code + (size_t)g * 6 * f->params.octaves * ADCGS_LANES, &cube[0][0], f->params.octaves);
     }
 }
 
@@ -363,10 +239,10 @@ adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params,
     }
     start_steps(f);
     place_anchors(f, pos);
-    for (size_t i = 0; i < (size_t)f->groups * 64; i++) {
+    for (size_t i = 0; i < (size_t)f->groups * ADCGS_LANES; i++) {
         f->moving[i] = params->time_rows ? f->live[i] : 0;
         for (int k = 0; k < params->k; k++)
-            f->keep[(i / 64 * params->k + (size_t)k) * 64 + i % 64] = f->live[i];
+            f->keep[(i / ADCGS_LANES * params->k + (size_t)k) * ADCGS_LANES + i % ADCGS_LANES] = f->live[i];
     }
     for (size_t i = 0; i < f->param[ADCGS_P_FG].n; i++)
         f->param[ADCGS_P_FG].p[i] = (float)(0.7 * adcgs_random_normal(seed, ADCGS_P_FG, i));
@@ -398,8 +274,7 @@ void adcgs_fmodel_free(adcgs_fmodel **model)
         adcgs_free(NULL, f->step[i]);
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         adcgs_free(NULL, f->param[i].p);
-        adcgs_free(NULL, f->mlp[i].use);
-        adcgs_free(NULL, f->mlp[i].packed);
+        adcgs_mlp_clear(&f->mlp[i]);
     }
     adcgs_free(NULL, f);
     *model = NULL;
@@ -408,10 +283,10 @@ void adcgs_fmodel_free(adcgs_fmodel **model)
 /** Copy anchor `from` of old array to anchor `to` of new, rows features each. */
 static void copy_rows(float *to_array, const float *from_array, uint32_t to, uint32_t from, size_t rows)
 {
-    float *t = to_array + (size_t)(to / 64) * rows * 64 + to % 64;
-    const float *s = from_array + (size_t)(from / 64) * rows * 64 + from % 64;
+    float *t = to_array + (size_t)(to / ADCGS_LANES) * rows * ADCGS_LANES + to % ADCGS_LANES;
+    const float *s = from_array + (size_t)(from / ADCGS_LANES) * rows * ADCGS_LANES + from % ADCGS_LANES;
     for (size_t r = 0; r < rows; r++)
-        t[r * 64] = s[r * 64];
+        t[r * ADCGS_LANES] = s[r * ADCGS_LANES];
 }
 
 adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh,

@@ -9,8 +9,9 @@
 #ifndef ADCGS_FMODEL_FMODEL_H
 #define ADCGS_FMODEL_FMODEL_H
 
-#include "grad/dsp.h"
+#include "fmodel/mlp.h"
 #include "model/model.h"
+#include "splat/rows.h"
 
 /** What is trained. The first five are per anchor, the rest are networks. */
 typedef enum adcgs_pgroup {
@@ -41,25 +42,6 @@ typedef struct adcgs_param {
     float *p, *g, *m, *v; /**< values, gradient, first and second moment: [n] each */
     float lr0, lr1;       /**< learning rate at the first and last iteration, log-linear between */
 } adcgs_param;
-
-#define ADCGS_MLP_LAYERS 4
-#define ADCGS_WEIGHT_STEP_NONE 127 /**< weights that are binary32 */
-
-/**
- * Shape of a network: inputs [own | time], hidden layers of equal width (leaky ReLU; from the second on residual), linear output.
- * Parameters in one block: per layer w [n_out][n_in] then b [n_out].
- */
-typedef struct adcgs_mlp {
-    int own, time, width, hidden, out;
-    int in[ADCGS_MLP_LAYERS], n_out[ADCGS_MLP_LAYERS];
-    size_t w[ADCGS_MLP_LAYERS], b[ADCGS_MLP_LAYERS]; /**< offsets into the block */
-    size_t n;                                        /**< parameters; 0: the network does not exist */
-    float *use;   /**< [n] the weights the forward pass uses: the parameters, or their lattice values */
-    float *turn;  /**< [n] the same transposed per layer: w^T [n_in][n_out] at w's offset */
-    uint32_t *packed; /**< see adcgs_mlp_packed(); NULL in an entropy network */
-    int8_t weight_step[ADCGS_MLP_LAYERS]; /**< exponent e of the step 2^-e of each layer's weights, or ADCGS_WEIGHT_STEP_NONE */
-    uint8_t entropy; /**< an entropy network: on the lattice it is the integer network of spec clause "E24" */
-} adcgs_mlp;
 
 /** Widths and steps that a model is made with. Sizes in the stream are in params. */
 typedef struct adcgs_shape {
@@ -106,7 +88,7 @@ adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], con
 /** Slot of primitive k of an anchor, the order of spec clause "Primitives". */
 static inline size_t adcgs_fmodel_slot(const adcgs_fmodel *f, uint32_t anchor, int k)
 {
-    return ((size_t)(anchor / 64) * f->params.k + (size_t)k) * 64 + anchor % 64;
+    return adcgs_slot_of(anchor, f->params.k, k);
 }
 
 /** Where in ADCGS_P_STEP the step of a row lies; eta's is 1 and not among them. */
@@ -130,28 +112,11 @@ void adcgs_fmodel_take_steps(adcgs_fmodel *f);
 static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t anchor, int row)
 {
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
-    return f->param[group].p + ((size_t)(anchor / 64) * rows + (size_t)row) * 64 + anchor % 64;
+    return f->param[group].p + ((size_t)(anchor / ADCGS_LANES) * rows + (size_t)row) * ADCGS_LANES + anchor % ADCGS_LANES;
 }
 
-/** Copy parameters into `use` (on the lattice where lattice is set and `quantise` is nonzero) and transpose. */
-void adcgs_mlp_prepare(adcgs_mlp *mlp, const float *p, int quantise);
-/** Pack the residual layers of `use` and `turn` for these kernels, if they ask for it. */
-void adcgs_mlp_pack(const adcgs_train_dsp *dsp, const adcgs_mlp *mlp);
-/** Where the packed weights of residual layer i >= 1 lie, or the same transposed. */
-static inline uint32_t *adcgs_mlp_packed(const adcgs_mlp *mlp, int i, int turned)
-{
-    return mlp->packed ? mlp->packed + (size_t)(2 * (i - 1) + turned) * adcgs_square_words(mlp->width) : NULL;
-}
-/**
- * The weights [n] of the integer network that an entropy network's parameters stand for, as multiples of 2^-ADCGS_E24_BITS: in
- * range, and every row within the bound that makes its sums exact.
- */
-void adcgs_mlp_integer(const adcgs_mlp *mlp, const float *p, float *to);
 /** Give a network's hidden layers another width, at most the shape's; its parameters are left to the caller. */
 void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width);
-/** Fill in a network's layout; returns its number of parameters. */
-size_t adcgs_mlp_layout(adcgs_mlp *mlp, int own, int time, int width, int hidden, int out);
-
 /** Where t in [0,1] is in the time table: the row before it, and the fraction of the way to the next, if there is one. */
 float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row);
 

@@ -39,8 +39,8 @@ typedef struct adcgs_pass {
     size_t partial_stride, partial_at[ADCGS_P_COUNT];
     int chunks;
     double *bits;                /**< [chunk][ADCGS_GROUPS] estimated bits of the last backward pass */
-    float *prim;                 /**< primitives: 14 arrays of slots */
-    float *grad;                 /**< their gradients and statistics: 16 arrays */
+    float *prim;                 /**< primitives: [ADCGS_ROWS][slots] */
+    float *grad;                 /**< their gradients: [ADCGS_GRAD_ROWS][slots] */
     adcgs_primitives primitives;
     adcgs_raster_grads grads;
     const float *pull;           /**< gradient added to that of the anchors' ways and rotations, [group][12][64]; NULL: none */

@@ -2,31 +2,6 @@
 /** \file The backward pass: primitives' gradients to anchors and networks. */
 #include "fmodel/pass_layout.h"
 
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
-                         const float *dout, float *dz)
-{
-    const size_t tile = (size_t)m->width * 64;
-    /* dz[0] carries dL/dh downwards until it becomes layer 0's own gradient. */
-    dsp->dense.dense(dz, NULL, NULL, m->turn + m->w[m->hidden], (size_t)m->out, dout, m->width, m->out);
-    for (int i = m->hidden - 1; i > 0; i--) {
-        const adcgs_square turn = { m->width, m->turn + m->w[i], adcgs_mlp_packed(m, i, 1) };
-        dsp->residual_back(dsp, dz, dz + (size_t)i * tile, below + (i - 1) * m->width, &turn, dz, h + (size_t)(i - 1) * tile);
-    }
-    dsp->lrelu_back(dz, h, m->width);
-}
-
-void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
-                            size_t sdz, const float *dout, size_t sdout, int tiles)
-{
-    const size_t tile = (size_t)m->width * 64;
-    for (int i = 1; i < m->hidden; i++)
-        dsp->weight_grad(g + m->w[i], (size_t)m->width, g + m->b[i], dz + (size_t)i * tile, sdz, h + (size_t)(i - 1) * tile, sh,
-                         tiles, m->width, m->width);
-    const int last = m->hidden;
-    dsp->weight_grad(g + m->w[last], (size_t)m->width, g + m->b[last], dout, sdout, h + (size_t)(last - 1) * tile, sh, tiles,
-                     m->out, m->width);
-}
-
 typedef struct backward_job {
     adcgs_pass *pass;
     adcgs_fmodel *f;
@@ -38,7 +13,7 @@ typedef struct backward_job {
 
 static float *grad_at(const adcgs_fmodel *f, int group, uint32_t g)
 {
-    return f->param[group].g + (size_t)g * (size_t)adcgs_fmodel_rows(f, group) * 64;
+    return f->param[group].g + (size_t)g * (size_t)adcgs_fmodel_rows(f, group) * ADCGS_LANES;
 }
 
 /**
@@ -53,20 +28,20 @@ static void theta_back(const backward_job *job, uint32_t g, const float *dtheta,
     const adcgs_train_dsp *dsp = p->net;
     const int nv = f->params.n_fv, ng = f->params.n_fg, w = m->width;
     const adcgs_act act = adcgs_pass_act(p, f, g);
-    const size_t tile = (size_t)w * 64;
+    const size_t tile = (size_t)w * ADCGS_LANES;
     float *dz = sum + tile, *gm = partial + p->partial_at[ADCGS_P_THETA];
     float *dfg = grad_at(f, ADCGS_P_FG, g), *dfv = grad_at(f, ADCGS_P_FV, g);
-    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
-    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * 64;
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
+    const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * ADCGS_LANES;
     memset(sum, 0, tile * sizeof *sum);
     for (size_t i = 0; i < f->params.k; i++) {
-        const float *h = act.theta_h + i * act.theta_h_stride, *dout = dtheta + i * ADCGS_THETA_OUT * 64;
-        float *d = dfg + i * (size_t)ng * 64;
+        const float *h = act.theta_h + i * act.theta_h_stride, *dout = dtheta + i * ADCGS_THETA_OUT * ADCGS_LANES;
+        float *d = dfg + i * (size_t)ng * ADCGS_LANES;
         adcgs_mlp_tail_back(dsp, m, h, act.theta_below + i * act.theta_below_stride, dout, dz);
         dsp->dense.dense(d, d, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w, dz, ng, w);
         for (size_t j = 0; j < tile; j++)
             sum[j] += dz[j];
-        dsp->weight_grad(gm + nv, (size_t)m->in[0], NULL, dz, 0, fg + i * (size_t)ng * 64, 0, 1, w, ng);
+        dsp->weight_grad(gm + nv, (size_t)m->in[0], NULL, dz, 0, fg + i * (size_t)ng * ADCGS_LANES, 0, 1, w, ng);
         adcgs_mlp_weight_grads(dsp, m, gm, h, 0, dz, 0, dout, 0, 1);
     }
     dsp->dense.dense(dfv, dfv, NULL, m->turn, (size_t)w, sum, nv, w);
@@ -89,7 +64,7 @@ static void deform_back(const backward_job *job, uint32_t g, const float *domega
     const adcgs_train_dsp *dsp = p->net;
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const int nv = f->params.n_fv, fp = 6 * f->params.octaves;
-    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
+    const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
     float *dfv = grad_at(f, ADCGS_P_FV, g);
     if (om->n) {
         float *gm = partial + p->partial_at[ADCGS_P_OMEGA];
@@ -99,7 +74,7 @@ static void deform_back(const backward_job *job, uint32_t g, const float *domega
     }
     if (va->n && job->deform == ADCGS_DEFORM_ALL) {
         float *gm = partial + p->partial_at[ADCGS_P_VARPI];
-        const float *code = f->code + (size_t)g * (size_t)fp * 64;
+        const float *code = f->code + (size_t)g * (size_t)fp * ADCGS_LANES;
         tail_back(p, va, act.varpi_h, act.varpi_below, dvarpi, dz, gm);
         dsp->weight_grad(gm, (size_t)va->in[0], gm + va->b[0], dz, 0, code, 0, 1, va->width, fp);
         if (f->params.fine_uses_fv) {
@@ -113,7 +88,7 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
 {
     const adcgs_pass *p = job->pass;
     const adcgs_fmodel *f = job->f;
-    const size_t at = (size_t)g * f->params.k * 64;
+    const size_t at = (size_t)g * f->params.k * ADCGS_LANES;
     adcgs_group_io io;
     adcgs_group_grad grad;
     adcgs_pass_io(p, f, g, job->deform, &io);
@@ -128,10 +103,10 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
     grad.sigma = grad_at(f, ADCGS_P_SIGMA, g);
     grad.colour = grad_at(f, ADCGS_P_COLOUR, g);
     grad.theta = scratch;
-    grad.omega = scratch + (size_t)f->params.k * ADCGS_THETA_OUT * 64;
-    grad.varpi = grad.omega + f->mlp[ADCGS_P_OMEGA].out * 64;
-    scratch = grad.varpi + f->mlp[ADCGS_P_VARPI].out * 64;
-    grad.pull = p->pull ? p->pull + (size_t)g * 12 * 64 : NULL;
+    grad.omega = scratch + (size_t)f->params.k * ADCGS_THETA_OUT * ADCGS_LANES;
+    grad.varpi = grad.omega + f->mlp[ADCGS_P_OMEGA].out * ADCGS_LANES;
+    scratch = grad.varpi + f->mlp[ADCGS_P_VARPI].out * ADCGS_LANES;
+    grad.pull = p->pull ? p->pull + (size_t)g * 12 * ADCGS_LANES : NULL;
     p->dsp.primitives_back(&io, &grad);
     theta_back(job, g, grad.theta, scratch, partial);
     if (job->deform)
@@ -146,9 +121,9 @@ static void step_sums(const adcgs_fmodel *f, uint32_t g, float *const to[], floa
 {
     for (int i = 0; i < ADCGS_P_ETA; i++)
         for (int r = 0; r < adcgs_fmodel_rows(f, i); r++) {
-            const size_t at = ((size_t)g * (size_t)adcgs_fmodel_rows(f, i) + (size_t)r) * 64;
+            const size_t at = ((size_t)g * (size_t)adcgs_fmodel_rows(f, i) + (size_t)r) * ADCGS_LANES;
             float sum = 0;
-            for (size_t l = at; l < at + 64; l++)
+            for (size_t l = at; l < at + ADCGS_LANES; l++)
                 sum += f->param[i].g[l] * (to[i][l] - (from ? from[i][l] : 0));
             sums[adcgs_fmodel_step_at(f, i, r)] += scale * sum;
         }
@@ -208,6 +183,31 @@ static void merge_partials(adcgs_pass *p, adcgs_fmodel *f)
         }
 }
 
+/** The time part of the first layers: their bias gradient is the gradient of the per-frame bias vector. */
+static void time_back(adcgs_pass *p, adcgs_fmodel *f)
+{
+    const int width = f->params.time_width;
+    const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
+    float *dz = f->param[ADCGS_P_TIME].g;
+    int row;
+    const float frac = adcgs_fmodel_time_row(&f->params, p->t, &row);
+    for (int i = 0; i < 2; i++) {
+        const adcgs_mlp *m = &f->mlp[which[i]];
+        float *g = f->param[which[i]].g;
+        for (int o = 0; m->n && o < m->width; o++) {
+            const float d = g[m->b[0] + (size_t)o];
+            const size_t w = (size_t)o * (size_t)m->in[0] + (size_t)m->own;
+            for (int j = 0; j < width; j++) {
+                g[w + (size_t)j] += d * p->time_code[j];
+                const float dcode = d * m->use[w + (size_t)j];
+                dz[row * width + j] += dcode * (1 - frac);
+                if (f->params.time_rows > 1)
+                    dz[(row + 1) * width + j] += dcode * frac;
+            }
+        }
+    }
+}
+
 static void sum_rate(const adcgs_pass *p, int period, adcgs_rate *rate)
 {
     memset(rate, 0, sizeof *rate);
@@ -226,7 +226,7 @@ void adcgs_pass_backward(adcgs_pass *p, adcgs_fmodel *f, adcgs_deform deform, fl
     adcgs_pool_run(p->pool, backward_chunk, &job, p->chunks);
     merge_partials(p, f);
     if (job.deform)
-        adcgs_pass_time_back(p, f);
+        time_back(p, f);
     if (rate)
         sum_rate(p, period, rate);
 }

@@ -19,12 +19,6 @@ typedef struct adcgs_act {
     float *steps_h, *steps_out, *steps_dlog; /* E_q: octaves; gradient of the factors' logarithms */
 } adcgs_act;
 
-/** Rows of 64 floats that hold one word for each unit of a network's residual layers. */
-static inline size_t adcgs_below_rows(const adcgs_mlp *m)
-{
-    return m->hidden > 1 ? ((size_t)(m->hidden - 1) * (size_t)m->width + 31) / 32 : 0;
-}
-
 static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g)
 {
     const adcgs_mlp *th = &f->mlp[ADCGS_P_THETA], *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
@@ -32,38 +26,28 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
     const size_t k = f->params.k;
     adcgs_act a;
     float *at = p->act + (size_t)g * p->act_stride;
-#define TAKE(field, rows) (a.field = (void *)at, at += (size_t)(rows) * 64)
-    a.theta_h_stride = (size_t)th->hidden * (size_t)th->width * 64;
-    a.theta_below_stride = adcgs_below_rows(th) * 32;
+#define TAKE(field, rows) (a.field = (void *)at, at += (size_t)(rows) * ADCGS_LANES)
+    a.theta_h_stride = (size_t)th->hidden * (size_t)th->width * ADCGS_LANES;
+    a.theta_below_stride = adcgs_mlp_below_rows(th) * 32;
     TAKE(theta_h, k * (size_t)th->hidden * (size_t)th->width);
-    TAKE(theta_below, k * adcgs_below_rows(th));
+    TAKE(theta_below, k * adcgs_mlp_below_rows(th));
     TAKE(theta_out, k * ADCGS_THETA_OUT);
     TAKE(omega_h, om->hidden * om->width);
-    TAKE(omega_below, adcgs_below_rows(om));
+    TAKE(omega_below, adcgs_mlp_below_rows(om));
     TAKE(omega_out, om->out);
     TAKE(varpi_h, va->hidden * va->width);
-    TAKE(varpi_below, adcgs_below_rows(va));
+    TAKE(varpi_below, adcgs_mlp_below_rows(va));
     TAKE(varpi_out, va->out);
     TAKE(steps_h, eq->hidden * eq->width);
-    TAKE(steps_below, adcgs_below_rows(eq));
+    TAKE(steps_below, adcgs_mlp_below_rows(eq));
     TAKE(steps_out, eq->out);
     TAKE(steps_dlog, eq->out);
 #undef TAKE
     return a;
 }
 
-/** Run layers 1.. of a network: h[0] holds layer 0's sums and is activated in place. */
-void adcgs_mlp_tail(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *h, uint64_t *below, float *out);
-/** Gradients dz of every hidden layer's sums from dout. */
-void adcgs_mlp_tail_back(const adcgs_train_dsp *dsp, const adcgs_mlp *m, const float *h, const uint64_t *below,
-                         const float *dout, float *dz);
-/** Weight gradients of layers 1.. over tiles of the given strides. */
-void adcgs_mlp_weight_grads(const adcgs_train_dsp *dsp, const adcgs_mlp *m, float *g, const float *h, size_t sh, const float *dz,
-                            size_t sdz, const float *dout, size_t sdout, int tiles);
-
+/** The arrays that prediction and deformation read and write for a group, and in deform what takes part. */
 void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs_deform deform, adcgs_group_io *io);
-void adcgs_pass_time_back(adcgs_pass *p, adcgs_fmodel *f);
-size_t adcgs_pass_scratch_rows(const adcgs_fmodel *f);
 
 /** Whether the steps of the last forward pass adapted to the anchors. */
 static inline int adcgs_pass_adapts(const adcgs_pass *p, const adcgs_fmodel *f)
@@ -73,7 +57,7 @@ static inline int adcgs_pass_adapts(const adcgs_pass *p, const adcgs_fmodel *f)
 /** Factors of a group of anchors: [steps][64]. */
 static inline float *adcgs_pass_factors(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g)
 {
-    return p->factor + (size_t)g * (size_t)adcgs_params_steps(&f->params) * 64;
+    return p->factor + (size_t)g * (size_t)adcgs_params_steps(&f->params) * ADCGS_LANES;
 }
 /** Which of them the rows of a parameter group use; -1: none. */
 int adcgs_pass_factor_of(const adcgs_fmodel *f, int group, int row);

@@ -25,18 +25,18 @@ int adcgs_pass_factor_of(const adcgs_fmodel *f, int group, int row)
 
 void adcgs_pass_divide(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int group, float *to, const float *from)
 {
-    for (int r = 0; r < adcgs_fmodel_rows(f, group); r++, to += 64, from += 64) {
-        const float *factor = adcgs_pass_factors(p, f, g) + adcgs_pass_factor_of(f, group, r) * 64;
-        for (int l = 0; l < 64; l++)
+    for (int r = 0; r < adcgs_fmodel_rows(f, group); r++, to += ADCGS_LANES, from += ADCGS_LANES) {
+        const float *factor = adcgs_pass_factors(p, f, g) + adcgs_pass_factor_of(f, group, r) * ADCGS_LANES;
+        for (int l = 0; l < ADCGS_LANES; l++)
             to[l] = from[l] / factor[l];
     }
 }
 
 void adcgs_pass_multiply(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, int group, float *to, const float *from)
 {
-    for (int r = 0; r < adcgs_fmodel_rows(f, group); r++, to += 64, from += 64) {
-        const float *factor = adcgs_pass_factors(p, f, g) + adcgs_pass_factor_of(f, group, r) * 64;
-        for (int l = 0; l < 64; l++)
+    for (int r = 0; r < adcgs_fmodel_rows(f, group); r++, to += ADCGS_LANES, from += ADCGS_LANES) {
+        const float *factor = adcgs_pass_factors(p, f, g) + adcgs_pass_factor_of(f, group, r) * ADCGS_LANES;
+        for (int l = 0; l < ADCGS_LANES; l++)
             to[l] = from[l] * factor[l];
     }
 }
@@ -45,11 +45,11 @@ void adcgs_pass_multiply(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g,
 static void inputs(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, float *x)
 {
     const int nv = f->params.n_fv;
-    const float *used = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * 64;
+    const float *used = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
     for (int r = 0; r < nv; r++) {
         const float s = 1 / (ADCGS_MU_GAIN * f->step[ADCGS_P_FV][r]);
-        for (int l = 0; l < 64; l++)
-            x[r * 64 + l] = used[r * 64 + l] * s;
+        for (int l = 0; l < ADCGS_LANES; l++)
+            x[r * ADCGS_LANES + l] = used[r * ADCGS_LANES + l] * s;
     }
 }
 
@@ -61,20 +61,20 @@ void adcgs_pass_evaluate_factors(const adcgs_pass *p, const adcgs_fmodel *f, uin
     inputs(p, f, g, scratch);
     p->dsp.dense.dense(act.steps_h, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], scratch, m->width, m->in[0]);
     adcgs_mlp_tail(&p->dsp, m, act.steps_h, act.steps_below, act.steps_out);
-    for (int i = 0; set && i < m->out * 64; i++)
+    for (int i = 0; set && i < m->out * ADCGS_LANES; i++)
         factor[i] = adcgs_exp(ln2 * adcgs_bounded(act.steps_out[i], -octaves_max, octaves_max));
 }
 
 void adcgs_pass_factors_begin(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g)
 {
     float *dlog = adcgs_pass_act(p, f, g).steps_dlog;
-    memset(dlog, 0, (size_t)f->mlp[ADCGS_P_E_STEPS].out * 64 * sizeof *dlog);
+    memset(dlog, 0, (size_t)f->mlp[ADCGS_P_E_STEPS].out * ADCGS_LANES * sizeof *dlog);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         for (int r = 0; r < adcgs_fmodel_rows(f, i); r++) {
             const int of = adcgs_pass_factor_of(f, i, r);
-            const size_t at = ((size_t)g * (size_t)adcgs_fmodel_rows(f, i) + (size_t)r) * 64;
-            for (size_t l = 0; of >= 0 && l < 64; l++)
-                dlog[(size_t)of * 64 + l] += f->param[i].g[at + l] * (p->used[i][at + l] - f->param[i].p[at + l]);
+            const size_t at = ((size_t)g * (size_t)adcgs_fmodel_rows(f, i) + (size_t)r) * ADCGS_LANES;
+            for (size_t l = 0; of >= 0 && l < ADCGS_LANES; l++)
+                dlog[(size_t)of * ADCGS_LANES + l] += f->param[i].g[at + l] * (p->used[i][at + l] - f->param[i].p[at + l]);
         }
 }
 
@@ -83,9 +83,9 @@ void adcgs_pass_factors_back(const adcgs_pass *p, adcgs_fmodel *f, uint32_t g, f
     const adcgs_mlp *m = &f->mlp[ADCGS_P_E_STEPS];
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const int nv = f->params.n_fv;
-    float *x = scratch, *dx = x + nv * 64, *dz = dx + nv * 64, *gm = partial + p->partial_at[ADCGS_P_E_STEPS];
-    float *dfv = f->param[ADCGS_P_FV].g + (size_t)g * (size_t)nv * 64;
-    for (int i = 0; i < m->out * 64; i++) { /* what is beyond the limits may come back, and go no further */
+    float *x = scratch, *dx = x + nv * ADCGS_LANES, *dz = dx + nv * ADCGS_LANES, *gm = partial + p->partial_at[ADCGS_P_E_STEPS];
+    float *dfv = f->param[ADCGS_P_FV].g + (size_t)g * (size_t)nv * ADCGS_LANES;
+    for (int i = 0; i < m->out * ADCGS_LANES; i++) { /* what is beyond the limits may come back, and go no further */
         const float d = ln2 * act.steps_dlog[i], octaves = act.steps_out[i];
         act.steps_dlog[i] = (octaves > octaves_max && d < 0) || (octaves < -octaves_max && d > 0) ? 0 : d;
     }
@@ -96,7 +96,7 @@ void adcgs_pass_factors_back(const adcgs_pass *p, adcgs_fmodel *f, uint32_t g, f
     p->dsp.dense.dense(dx, NULL, NULL, m->turn, (size_t)m->width, dz, nv, m->width);
     for (int r = 0; r < nv; r++) {
         const float s = 1 / (ADCGS_MU_GAIN * f->step[ADCGS_P_FV][r]);
-        for (int l = 0; l < 64; l++)
-            dfv[r * 64 + l] += dx[r * 64 + l] * s;
+        for (int l = 0; l < ADCGS_LANES; l++)
+            dfv[r * ADCGS_LANES + l] += dx[r * ADCGS_LANES + l] * s;
     }
 }

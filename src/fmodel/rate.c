@@ -10,19 +10,6 @@
 #include "fmodel/pass_layout.h"
 #include "splat/steps.h"
 
-size_t adcgs_pass_scratch_rows(const adcgs_fmodel *f)
-{
-    const size_t k = f->params.k, nv = f->params.n_fv, ng = f->params.n_fg;
-    const adcgs_mlp *th = &f->mlp[ADCGS_P_THETA], *om = &f->mlp[ADCGS_P_OMEGA], *va = &f->mlp[ADCGS_P_VARPI];
-    const size_t theta = k * ADCGS_THETA_OUT + (size_t)(th->width * (1 + th->hidden));
-    const size_t deform = (size_t)(om->out + va->out + om->width * om->hidden + va->width * va->hidden);
-    const size_t w = (size_t)f->shape.entropy_width * (size_t)(f->shape.entropy_hidden + 1),
-        out = 2 * (nv > ng + 6 ? nv : ng + 6);
-    const size_t below = (w + 31) / 32;
-    const size_t rate = 2 * nv + k * ng + f->params.n_eta * 2u + k * (3 * w + below + 2 * out) + 2 * w + ng + 64;
-    return theta + deform > rate ? theta + deform : rate;
-}
-
 /** The group at work. x, dx: inputs of networks and their gradients. */
 typedef struct job {
     const adcgs_pass *p;
@@ -47,9 +34,9 @@ typedef struct net_tiles {
 static net_tiles take_tiles(const adcgs_mlp *m, int tiles, float **scratch)
 {
     net_tiles t;
-    t.sh = (size_t)m->hidden * (size_t)m->width * 64;
+    t.sh = (size_t)m->hidden * (size_t)m->width * ADCGS_LANES;
     t.sbelow = ((size_t)m->hidden * (size_t)m->width + 31) / 32 * 32;
-    t.sout = (size_t)m->out * 64;
+    t.sout = (size_t)m->out * ADCGS_LANES;
     const size_t n = (size_t)tiles;
     t.z = *scratch;
     t.h = t.z + n * t.sh;
@@ -66,8 +53,8 @@ static void unscale_rows(float *g, const float *dx, const float *step, int rows)
 {
     for (int r = 0; r < rows; r++) {
         const float s = 1 / (ADCGS_MU_GAIN * step[r]);
-        for (int l = 0; l < 64; l++)
-            g[r * 64 + l] += dx[r * 64 + l] * s;
+        for (int l = 0; l < ADCGS_LANES; l++)
+            g[r * ADCGS_LANES + l] += dx[r * ADCGS_LANES + l] * s;
     }
 }
 
@@ -75,7 +62,7 @@ static void unscale_rows(float *g, const float *dx, const float *step, int rows)
 static const float *factor_of(const job *j, int stream)
 {
     const int adapts = adcgs_pass_adapts(j->p, j->f) && stream >= ADCGS_GROUP_SIGMA;
-    return adapts ? adcgs_pass_factors(j->p, j->f, j->group) + adcgs_group_steps(stream) * 64 : NULL;
+    return adapts ? adcgs_pass_factors(j->p, j->f, j->group) + adcgs_group_steps(stream) * ADCGS_LANES : NULL;
 }
 
 /**
@@ -84,15 +71,15 @@ static const float *factor_of(const job *j, int stream)
  */
 static void adapted_back(const job *j, int param, int stream, int first, int rows, const float *dv, const float *unit)
 {
-    const size_t at = ((size_t)j->group * (size_t)adcgs_fmodel_rows(j->f, param) + (size_t)first) * 64;
+    const size_t at = ((size_t)j->group * (size_t)adcgs_fmodel_rows(j->f, param) + (size_t)first) * ADCGS_LANES;
     const float *factor = factor_of(j, stream), *y = j->f->param[param].p + at;
     float *dy = j->f->param[param].g + at;
-    float *dlog = adcgs_pass_act(j->p, j->f, j->group).steps_dlog + adcgs_group_steps(stream) * 64;
+    float *dlog = adcgs_pass_act(j->p, j->f, j->group).steps_dlog + adcgs_group_steps(stream) * ADCGS_LANES;
     for (int r = 0; r < rows; r++)
-        for (int l = 0; l < 64; l++) {
-            const float d = dv[r * 64 + l] / (factor[l] * (unit ? ADCGS_MU_GAIN * unit[r] : 1));
-            dy[r * 64 + l] += d;
-            dlog[l] -= d * y[r * 64 + l];
+        for (int l = 0; l < ADCGS_LANES; l++) {
+            const float d = dv[r * ADCGS_LANES + l] / (factor[l] * (unit ? ADCGS_MU_GAIN * unit[r] : 1));
+            dy[r * ADCGS_LANES + l] += d;
+            dlog[l] -= d * y[r * ADCGS_LANES + l];
         }
 }
 
@@ -100,7 +87,7 @@ static void adapted_back(const job *j, int param, int stream, int first, int row
 static void net_tail(const job *j, const adcgs_mlp *m, float *z, float *h, uint64_t *below, float *out)
 {
     const adcgs_train_dsp *dsp = &j->p->dsp;
-    const size_t tile = (size_t)m->width * 64;
+    const size_t tile = (size_t)m->width * ADCGS_LANES;
     for (int i = 0; i < m->hidden; i++, z += tile, h += tile, below += m->width) {
         if (i > 0)
             dsp->dense.dense(z, NULL, m->use + m->b[i], m->use + m->w[i], (size_t)m->width, h - tile, m->width, m->width);
@@ -121,10 +108,10 @@ typedef struct coded {
 /** Bits of rows under a network's outputs; dout receives their gradient. Rows with a factor are coded in units of it. */
 static void rate_rows(const job *j, const coded *c, const float *out, float *dout)
 {
-    _Alignas(64) float values[ADCGS_NG_MAX * 64], gradients[ADCGS_NG_MAX * 64];
+    _Alignas(64) float values[ADCGS_NG_MAX * ADCGS_LANES], gradients[ADCGS_NG_MAX * ADCGS_LANES];
     const float *factor = factor_of(j, c->stream);
-    const size_t at = ((size_t)j->group * (size_t)adcgs_fmodel_rows(j->f, c->param) + (size_t)c->first) * 64;
-    const size_t half = (size_t)c->count * 64;
+    const size_t at = ((size_t)j->group * (size_t)adcgs_fmodel_rows(j->f, c->param) + (size_t)c->first) * ADCGS_LANES;
+    const size_t half = (size_t)c->count * ADCGS_LANES;
     adcgs_rate_io io = {
         .n = c->count,
         .y = (j->exact ? j->f->param[c->param].p : j->p->used[c->param]) + at,
@@ -141,7 +128,7 @@ static void rate_rows(const job *j, const coded *c, const float *out, float *dou
         .mean = j->p->mu[c->param] + at,
     };
     for (size_t i = 0; factor && i < half; i++) {
-        values[i] = io.y[i] / factor[i % 64];
+        values[i] = io.y[i] / factor[i % ADCGS_LANES];
         gradients[i] = 0;
     }
     if (factor) {
@@ -161,7 +148,7 @@ static void exact_factors(const job *j, float *scratch)
     float *factor = adcgs_pass_factors(j->p, j->f, j->group);
     j->p->dsp.dense.dense(t.z, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], j->xv, m->width, m->in[0]);
     net_tail(j, m, t.z, t.h, t.below, t.out);
-    for (int i = 0; i < m->out * 64; i++)
+    for (int i = 0; i < m->out * ADCGS_LANES; i++)
         factor[i] = adcgs_step_factor((int)adcgs_bounded(floorf(ADCGS_STEP_GAIN * t.out[i] + 0.5f), -ADCGS_STEP_INDEX_MAX,
                                                          ADCGS_STEP_INDEX_MAX));
 }
@@ -175,8 +162,8 @@ static void rate_net(const job *j, int net, const float *x, float *dx, const cod
     const net_tiles t = take_tiles(m, 1, &scratch);
     if (!m->hidden) { /* no inputs: the biases are the outputs */
         for (int o = 0; o < m->out; o++)
-            for (int l = 0; l < 64; l++)
-                t.out[o * 64 + l] = m->use[m->b[0] + (size_t)o];
+            for (int l = 0; l < ADCGS_LANES; l++)
+                t.out[o * ADCGS_LANES + l] = m->use[m->b[0] + (size_t)o];
         rate_rows(j, c, t.out, t.dout);
         dsp->weight_grad(g, 1, g + m->b[0], t.dout, 0, t.dout, 0, 1, m->out, 0);
         return;
@@ -197,11 +184,11 @@ static void fg_context_back(const job *j, int k, const float *dx, int before, in
     const float *step = j->f->step[ADCGS_P_FG];
     if (!adcgs_pass_adapts(j->p, j->f)) {
         const size_t slot = (size_t)j->group * (size_t)j->f->params.k + (size_t)k;
-        unscale_rows(j->f->param[ADCGS_P_FG].g + slot * (size_t)ng * 64, dx, step, before);
+        unscale_rows(j->f->param[ADCGS_P_FG].g + slot * (size_t)ng * ADCGS_LANES, dx, step, before);
         return;
     }
     for (int r = 0; r < before; r += per)
-        adapted_back(j, ADCGS_P_FG, ADCGS_GROUP_FG + r / per, k * ng + r, per, dx + r * 64, step + r);
+        adapted_back(j, ADCGS_P_FG, ADCGS_GROUP_FG + r / per, k * ng + r, per, dx + r * ADCGS_LANES, step + r);
 }
 
 /** Chunk c of f_g for all primitives of the group. */
@@ -211,9 +198,9 @@ static void rate_chunk(const job *j, int c, float *partial, float *scratch)
     const adcgs_mlp *m = &j->f->mlp[ADCGS_P_E_FG + c];
     const int nv = j->f->params.n_fv, ng = j->f->params.n_fg, per = ng / j->f->params.chunks, before = c * per;
     const int k = j->f->params.k, w = m->width;
-    const size_t fg_tile = (size_t)ng * 64, tile = (size_t)w * 64;
+    const size_t fg_tile = (size_t)ng * ADCGS_LANES, tile = (size_t)w * ADCGS_LANES;
     float *g = partial + j->p->partial_at[ADCGS_P_E_FG + c];
-    float *anchor = scratch, *sum = scratch + tile, *dx = sum + tile, *rest = dx + (size_t)(before + 1) * 64;
+    float *anchor = scratch, *sum = scratch + tile, *dx = sum + tile, *rest = dx + (size_t)(before + 1) * ADCGS_LANES;
     const net_tiles t = take_tiles(m, k, &rest);
     dsp->dense.dense(anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], j->xv, w, nv);
     memset(sum, 0, tile * sizeof *sum);
@@ -222,8 +209,8 @@ static void rate_chunk(const job *j, int c, float *partial, float *scratch)
         float *z = t.z + (size_t)i * t.sh, *h = t.h + (size_t)i * t.sh, *dz = t.dz + (size_t)i * t.sh;
         uint64_t *below = t.below + (size_t)i * t.sbelow;
         float *out = t.out + (size_t)i * t.sout, *dout = t.dout + (size_t)i * t.sout, *xg = j->xg + (size_t)i * fg_tile;
-        const coded values = { ADCGS_P_FG, i * ng + before, per, (adcgs_group)(ADCGS_GROUP_FG + c), j->f->keep + slot * 64,
-                               xg + (size_t)before * 64 };
+        const coded values = { ADCGS_P_FG, i * ng + before, per, (adcgs_group)(ADCGS_GROUP_FG + c),
+                               j->f->keep + slot * ADCGS_LANES, xg + (size_t)before * ADCGS_LANES };
         dsp->dense.dense(z, anchor, NULL, m->use + nv, (size_t)m->in[0], xg, w, before);
         net_tail(j, m, z, h, below, out);
         rate_rows(j, &values, out, dout);
@@ -246,11 +233,11 @@ static void rate_chunk(const job *j, int c, float *partial, float *scratch)
 static void rate_eta(const job *j, const coded *c, float *partial, float *scratch)
 {
     const int n = 2 * c->count;
-    float *out = scratch, *dout = out + n * 64;
+    float *out = scratch, *dout = out + n * ADCGS_LANES;
     const float *prior = j->f->param[ADCGS_P_ETA_PRIOR].p;
     for (int i = 0; i < n; i++)
-        for (int l = 0; l < 64; l++)
-            out[i * 64 + l] = prior[i];
+        for (int l = 0; l < ADCGS_LANES; l++)
+            out[i * ADCGS_LANES + l] = prior[i];
     rate_rows(j, c, out, dout);
     j->p->dsp.weight_grad(NULL, 0, partial + j->p->partial_at[ADCGS_P_ETA_PRIOR], dout, 0, dout, 0, 1, n, 0);
 }
@@ -261,17 +248,17 @@ void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, floa
     const int nv = f->params.n_fv, ng = f->params.n_fg, ne = f->params.n_eta, k = f->params.k;
     job j = { p, f, group, p->quant == ADCGS_QUANT_ROUND, scale, NULL, NULL, NULL, NULL, NULL, bits };
     j.xv = scratch;
-    j.dxv = j.xv + nv * 64;
-    j.xe = j.dxv + nv * 64;
-    j.dxe = j.xe + ne * 64;
-    j.xg = j.dxe + ne * 64;
-    float *rest = j.xg + (size_t)k * (size_t)ng * 64;
-    const float *live = f->live + (size_t)group * 64;
+    j.dxv = j.xv + nv * ADCGS_LANES;
+    j.xe = j.dxv + nv * ADCGS_LANES;
+    j.dxe = j.xe + ne * ADCGS_LANES;
+    j.xg = j.dxe + ne * ADCGS_LANES;
+    float *rest = j.xg + (size_t)k * (size_t)ng * ADCGS_LANES;
+    const float *live = f->live + (size_t)group * ADCGS_LANES;
     const coded eta = { ADCGS_P_ETA, 0, ne, ADCGS_GROUP_ETA, live, j.xe }, fv = { ADCGS_P_FV, 0, nv, ADCGS_GROUP_FV, live, j.xv };
     const coded sigma = { ADCGS_P_SIGMA, 0, ADCGS_SIGMA_N, ADCGS_GROUP_SIGMA, live, NULL };
     const coded colour = { ADCGS_P_COLOUR, 0, ADCGS_COLOUR_N, ADCGS_GROUP_COLOUR, live, NULL };
-    memset(j.dxv, 0, (size_t)nv * 64 * sizeof *j.dxv);
-    memset(j.dxe, 0, (size_t)ne * 64 * sizeof *j.dxe);
+    memset(j.dxv, 0, (size_t)nv * ADCGS_LANES * sizeof *j.dxv);
+    memset(j.dxe, 0, (size_t)ne * ADCGS_LANES * sizeof *j.dxe);
     if (ne)
         rate_eta(&j, &eta, partial, rest);
     rate_net(&j, ADCGS_P_E_FV, j.xe, j.dxe, &fv, partial, rest);
@@ -281,6 +268,6 @@ void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, floa
     rate_net(&j, ADCGS_P_E_COLOUR, j.xv, j.dxv, &colour, partial, rest);
     for (int c = 0; c < f->params.chunks && ng; c++)
         rate_chunk(&j, c, partial, rest);
-    unscale_rows(f->param[ADCGS_P_FV].g + (size_t)group * (size_t)nv * 64, j.dxv, f->step[ADCGS_P_FV], nv);
-    unscale_rows(f->param[ADCGS_P_ETA].g + (size_t)group * (size_t)ne * 64, j.dxe, f->step[ADCGS_P_ETA], ne);
+    unscale_rows(f->param[ADCGS_P_FV].g + (size_t)group * (size_t)nv * ADCGS_LANES, j.dxv, f->step[ADCGS_P_FV], nv);
+    unscale_rows(f->param[ADCGS_P_ETA].g + (size_t)group * (size_t)ne * ADCGS_LANES, j.dxe, f->step[ADCGS_P_ETA], ne);
 }

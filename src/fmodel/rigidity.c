@@ -60,7 +60,7 @@ static void near_group(void *arg, int group, int thread)
 {
     (void)thread;
     const near_job *job = arg;
-    const uint32_t begin = (uint32_t)group * 64, end = ADCGS_MIN(begin + 64, job->f->n);
+    const uint32_t begin = (uint32_t)group * ADCGS_LANES, end = ADCGS_MIN(begin + ADCGS_LANES, job->f->n);
     for (uint32_t i = begin; i < end; i++)
         find_near(job->f, i, job->rigid->near[i]);
 }
@@ -77,7 +77,7 @@ adcgs_status adcgs_rigidity_build(adcgs_rigidity *rigid, const adcgs_fmodel *f, 
     adcgs_rigidity_clear(rigid);
     rigid->n = f->n;
     rigid->near = adcgs_alloc(NULL, f->n, sizeof *rigid->near, error);
-    rigid->pull = adcgs_alloc(NULL, (size_t)f->groups * PULL_ROWS * 64, sizeof *rigid->pull, error);
+    rigid->pull = adcgs_alloc(NULL, (size_t)f->groups * PULL_ROWS * ADCGS_LANES, sizeof *rigid->pull, error);
     if (!rigid->near || !rigid->pull)
         return adcgs_alloc_status(error);
     near_job job = { f, rigid };
@@ -94,7 +94,7 @@ static void turn_of(const float *r, float m[9])
         memset(m, 0, 9 * sizeof *m);
         return;
     }
-    const float s = 2 / (1 + r[0] * r[0] + r[64] * r[64] + r[128] * r[128]), x = r[0], y = r[64], z = r[128];
+    const float x = r[0], y = r[ADCGS_LANES], z = r[2 * ADCGS_LANES], s = 2 / (1 + x * x + y * y + z * z);
     m[0] = -s * (y * y + z * z);
     m[1] = s * (x * y - z);
     m[2] = s * (x * z + y);
@@ -108,7 +108,7 @@ static void turn_of(const float *r, float m[9])
 
 static const float *omega_of(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t i)
 {
-    return adcgs_pass_act(p, f, i / 64).omega_out + i % 64;
+    return adcgs_pass_act(p, f, i / ADCGS_LANES).omega_out + i % ADCGS_LANES;
 }
 
 /** One pair's energy; its force on j into force. y: place of j, 64 apart; v: from i to j. */
@@ -119,8 +119,8 @@ static float pair(const float *y, const float *di, const float *dj, const float 
     const float length = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     /* R_j y + d_j - (R_i x + d_i) - R_i (y - x) = (R_j - R_i) y + d_j - d_i */
     for (int a = 0; a < 3; a++) {
-        e[a] = dj[a * 64] - di[a * 64] + (n[3 * a] - m[3 * a]) * y[0] + (n[3 * a + 1] - m[3 * a + 1]) * y[64] +
-               (n[3 * a + 2] - m[3 * a + 2]) * y[128];
+        e[a] = dj[a * ADCGS_LANES] - di[a * ADCGS_LANES] + (n[3 * a] - m[3 * a]) * y[0] +
+               (n[3 * a + 1] - m[3 * a + 1]) * y[ADCGS_LANES] + (n[3 * a + 2] - m[3 * a + 2]) * y[2 * ADCGS_LANES];
         stretch += e[a] * e[a];
     }
     const float soft = 1 + stretch / (length * SOFT * SOFT), scale = 2 * SOFT / (length * SOFT * SOFT * soft);
@@ -133,9 +133,9 @@ static float pair(const float *y, const float *di, const float *dj, const float 
 static void add_force(float *pull, const float force[3], const float *y, float scale)
 {
     for (int a = 0; a < 3; a++) {
-        pull[a * 64] += scale * force[a];
+        pull[a * ADCGS_LANES] += scale * force[a];
         for (int b = 0; b < 3; b++)
-            pull[(3 + 3 * a + b) * 64] += scale * force[a] * y[b * 64];
+            pull[(3 + 3 * a + b) * ADCGS_LANES] += scale * force[a] * y[b * ADCGS_LANES];
     }
 }
 
@@ -144,23 +144,23 @@ double adcgs_rigidity_pull(adcgs_rigidity *rigid, const adcgs_pass *p, const adc
     const float each = weight / ((float)NEAR * (float)rigid->n);
     const int turns = f->params.coarse_rotation;
     double energy = 0;
-    memset(rigid->pull, 0, (size_t)f->groups * PULL_ROWS * 64 * sizeof *rigid->pull);
+    memset(rigid->pull, 0, (size_t)f->groups * PULL_ROWS * ADCGS_LANES * sizeof *rigid->pull);
     for (uint32_t i = 0; i < rigid->n; i++) {
-        const float *di = omega_of(p, f, i), *x = f->x + (size_t)(i / 64) * 3 * 64 + i % 64;
-        float *pull = rigid->pull + (size_t)(i / 64) * PULL_ROWS * 64 + i % 64, m[9], n[9];
+        const float *di = omega_of(p, f, i), *x = f->x + (size_t)(i / ADCGS_LANES) * 3 * ADCGS_LANES + i % ADCGS_LANES;
+        float *pull = rigid->pull + (size_t)(i / ADCGS_LANES) * PULL_ROWS * ADCGS_LANES + i % ADCGS_LANES, m[9], n[9];
         if (f->moving[i] == 0)
             continue;
-        turn_of(turns ? di + 9 * 64 : NULL, m);
+        turn_of(turns ? di + 9 * ADCGS_LANES : NULL, m);
         for (int k = 0; k < NEAR; k++) {
             const uint32_t j = (uint32_t)rigid->near[i][k];
             if (rigid->near[i][k] < 0 || f->moving[j] == 0)
                 continue;
-            const float *dj = omega_of(p, f, j), *y = f->x + (size_t)(j / 64) * 3 * 64 + j % 64;
-            const float v[3] = { y[0] - x[0], y[64] - x[64], y[128] - x[128] };
+            const float *dj = omega_of(p, f, j), *y = f->x + (size_t)(j / ADCGS_LANES) * 3 * ADCGS_LANES + j % ADCGS_LANES;
+            const float v[3] = { y[0] - x[0], y[ADCGS_LANES] - x[ADCGS_LANES], y[2 * ADCGS_LANES] - x[2 * ADCGS_LANES] };
             float force[3];
-            turn_of(turns ? dj + 9 * 64 : NULL, n);
+            turn_of(turns ? dj + 9 * ADCGS_LANES : NULL, n);
             energy += pair(y, di, dj, m, n, v, force);
-            add_force(rigid->pull + (size_t)(j / 64) * PULL_ROWS * 64 + j % 64, force, y, each);
+            add_force(rigid->pull + (size_t)(j / ADCGS_LANES) * PULL_ROWS * ADCGS_LANES + j % ADCGS_LANES, force, y, each);
             add_force(pull, force, y, -each);
         }
     }

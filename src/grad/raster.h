@@ -8,6 +8,7 @@
 #define ADCGS_GRAD_RASTER_H
 
 #include "render/render.h"
+#include "splat/rows.h"
 
 /** Gradients per slot, overwritten; arrays [n] with n the primitives' slots, 64-byte aligned, caller-owned. */
 typedef struct adcgs_raster_grads {
@@ -16,6 +17,19 @@ typedef struct adcgs_raster_grads {
     /** length of (sum over pixels of |dL/du|, of |dL/dv|), each times half the image size; NULL: not wanted, which saves time */
     float *screen;
 } adcgs_raster_grads;
+
+#define ADCGS_GRAD_ROWS (ADCGS_ROWS + 2)
+/** All in rows [ADCGS_GRAD_ROWS][n]: those of primitives, then weight and screen. */
+static inline adcgs_raster_grads adcgs_raster_grads_of(float *rows, size_t n)
+{
+    const adcgs_slot_out o = adcgs_rows_at(rows, n, 0);
+    adcgs_raster_grads g = { .opacity = o.opacity, .weight = rows + ADCGS_ROWS * n, .screen = rows + (ADCGS_ROWS + 1) * n };
+    memcpy(g.mean, o.mean, sizeof g.mean);
+    memcpy(g.scale, o.scale, sizeof g.scale);
+    memcpy(g.rotation, o.rotation, sizeof g.rotation);
+    memcpy(g.colour, o.colour, sizeof g.colour);
+    return g;
+}
 
 typedef struct adcgs_raster_back adcgs_raster_back;
 adcgs_status adcgs_raster_back_create(adcgs_raster_back **out, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);

@@ -90,6 +90,21 @@ adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, ui
     return status;
 }
 
+size_t adcgs_file_mark(const void *text, size_t bytes)
+{
+    static const uint8_t mark[3] = {0xef, 0xbb, 0xbf};
+    return bytes >= sizeof mark && !memcmp(text, mark, sizeof mark) ? sizeof mark : 0;
+}
+
+adcgs_status adcgs_file_load_text(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_file_load(data, bytes, path, limit, error));
+    const size_t mark = adcgs_file_mark(*data, *bytes);
+    *bytes -= mark;
+    memmove(*data, *data + mark, *bytes + 1);
+    return ADCGS_OK;
+}
+
 int adcgs_file_flush(FILE *file)
 {
     const int failed = ferror(file);

@@ -21,5 +21,9 @@ adcgs_status adcgs_file_load_open(uint8_t **data, size_t *bytes, FILE *file, con
                                   adcgs_error *error);
 /** Write out what is held back. \return 0, or an errno that tells why something was not written, now or earlier. */
 int adcgs_file_flush(FILE *file);
+/** Bytes of the byte order mark that some editors put before a text in UTF-8: 3, or 0 if there is none. */
+size_t adcgs_file_mark(const void *text, size_t bytes);
+/** Load a text: as adcgs_file_load(), without that mark. */
+adcgs_status adcgs_file_load_text(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error);
 
 #endif

@@ -7,7 +7,6 @@
 #include "io/atomic.h"
 #include "io/extension.h"
 #include "io/video_ffmpeg.h"
-#include "io/y4m.h"
 
 #include <stdlib.h>
 #include <strings.h>
@@ -94,17 +93,16 @@ adcgs_status adcgs_video_read(adcgs_video *video, int64_t frame, adcgs_image *ou
 
 static adcgs_status begin(adcgs_video_writer *w, int width, int height, double frame_rate, adcgs_error *error)
 {
-    long numerator, denominator;
     if (!(frame_rate >= 0.001 && frame_rate <= RATE_MAX))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %g frames per second, expected 0.001 to %g", w->path, frame_rate,
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: %g frames per second, expected 0.001 to %g", w->path, frame_rate,
                           RATE_MAX);
-    adcgs_rate_ratio(frame_rate, &numerator, &denominator);
+    const adcgs_fps rate = adcgs_fps_of(frame_rate);
     ADCGS_TRY(adcgs_atomic_open(&w->atomic, w->path, error));
     const adcgs_video_target target = {.file = w->atomic.file,
                                        .path = w->path,
                                        .width = width,
                                        .height = height,
-                                       .rate = {(int)numerator, (int)denominator}};
+                                       .rate = {(int)rate.num, (int)rate.den}};
     return w->ffmpeg->begin(&w->encoder, w->stored, &target, error);
 }
 

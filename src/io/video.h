@@ -8,6 +8,7 @@
 #define ADCGS_IO_VIDEO_H
 
 #include "io/image.h"
+#include "io/fps.h"
 
 #include <adcgs/camera.h>
 
@@ -16,7 +17,7 @@ typedef struct adcgs_video adcgs_video;
 typedef struct adcgs_video_info {
     int width, height;    /**< as shown: rotation applied, square pixels */
     int64_t frames;       /**< counted, not believed */
-    double frame_rate;    /**< the mean one, > 0 */
+    adcgs_fps rate;      /**< the mean one, known */
 } adcgs_video_info;
 
 /** Does the name end like a video file's (mp4, mov, mkv, webm, avi, m4v, ...)? */

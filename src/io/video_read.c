@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #define AHEAD 8 /* a key frame no further than so many packets ahead is reached by decoding, not by seeking */
-#define DEFAULT_RATE 25.0
+#define DEFAULT_RATE 25
 
 struct adcgs_video_reader {
     adcgs_video_input input;
@@ -217,17 +217,24 @@ adcgs_status adcgs_video_reader_read(adcgs_video_reader *r, int64_t frame, adcgs
 
 /* ---- Opening ---- */
 
-static double mean_rate(const adcgs_video_reader *r)
+static adcgs_fps mean_rate(const adcgs_video_reader *r)
 {
-    const AVRational mean = r->input.stream->avg_frame_rate;
+    static const adcgs_fps unknown = {DEFAULT_RATE, 1};
+    const AVRational mean = r->input.stream->avg_frame_rate, tick = r->input.stream->time_base;
     const adcgs_video_index *index = &r->index;
-    if (mean.num > 0 && mean.den > 0)
-        return av_q2d(mean);
-    if (!index->timed || index->n < 2)
-        return DEFAULT_RATE;
-    const double ticks = (double)index->packet[index->shown[index->n - 1]].pts - (double)index->packet[index->shown[0]].pts;
-    const double seconds = ticks * av_q2d(r->input.stream->time_base);
-    return seconds > 0 ? (index->n - 1) / seconds : DEFAULT_RATE;
+    int num, den;
+    if (mean.num > 0 && mean.den > 0) {
+        av_reduce(&num, &den, mean.num, mean.den, INT_MAX);
+        return (adcgs_fps){(uint32_t)num, (uint32_t)den};
+    }
+    if (!index->timed || index->n < 2 || tick.num <= 0 || tick.den <= 0)
+        return unknown;
+    const int64_t first = index->packet[index->shown[0]].pts, last = index->packet[index->shown[index->n - 1]].pts;
+    const double ticks = (double)last - (double)first, intervals = (double)index->n - 1;
+    if (!(ticks >= 1 && ticks * tick.num < 0x1p62 && intervals * tick.den < 0x1p62))
+        return unknown;
+    av_reduce(&num, &den, ((int64_t)index->n - 1) * tick.den, (last - first) * tick.num, INT_MAX);
+    return num > 0 && den > 0 ? (adcgs_fps){(uint32_t)num, (uint32_t)den} : unknown;
 }
 
 static adcgs_status open_file(adcgs_video_reader *r, adcgs_error *error)
@@ -249,7 +256,7 @@ static adcgs_status open_reader(adcgs_video_reader *r, adcgs_video_info *info, a
     ADCGS_TRY(open_file(r, error));
     ADCGS_TRY(adcgs_video_input_open(&r->input, error));
     ADCGS_TRY(adcgs_video_index_make(&r->index, &r->input, error));
-    const double rate = mean_rate(r);
+    const adcgs_fps rate = mean_rate(r);
     ADCGS_TRY(rewind_input(r, error));
     ADCGS_TRY(adcgs_video_reader_read(r, 0, &first, error));
     r->width = first.width;

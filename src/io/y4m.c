@@ -4,28 +4,16 @@
 
 #include "io/y4m.h"
 
+#include "io/fps.h"
 #include "io/ycbcr.h"
 
-#include <math.h>
 #include <stdlib.h>
-
-void adcgs_rate_ratio(double rate, long *numerator, long *denominator)
-{
-    const double whole = floor(rate + 0.5), ntsc = floor(rate * 1001.0 / 1000.0 + 0.5);
-    *numerator = (long)whole;
-    *denominator = 1;
-    if (fabs(rate - whole) < 1e-6)
-        return;
-    const int is_ntsc = fabs(rate - ntsc * 1000.0 / 1001.0) < 1e-4;
-    *numerator = is_ntsc ? (long)ntsc * 1000 : (long)floor(rate * 1000.0 + 0.5);
-    *denominator = is_ntsc ? 1001 : 1000;
-}
 
 void adcgs_y4m_write_header(FILE *file, int width, int height, double frame_rate)
 {
-    long numerator, denominator;
-    adcgs_rate_ratio(frame_rate, &numerator, &denominator);
-    fprintf(file, "YUV4MPEG2 W%d H%d F%ld:%ld Ip A1:1 C444 XCOLORRANGE=LIMITED\n", width, height, numerator, denominator);
+    const adcgs_fps rate = adcgs_fps_of(frame_rate);
+    fprintf(file, "YUV4MPEG2 W%d H%d F%lu:%lu Ip A1:1 C444 XCOLORRANGE=LIMITED\n", width, height, (unsigned long)rate.num,
+            (unsigned long)rate.den);
 }
 
 static float clip(float v)

@@ -15,9 +15,6 @@
 
 #include <stdio.h>
 
-/** Frames per second as a ratio: whole rates as N:1, the 1000/1001 family exactly, all others in thousandths. */
-void adcgs_rate_ratio(double rate, long *numerator, long *denominator);
-
 /** Failures of the stream show in ferror(). */
 void adcgs_y4m_write_header(FILE *file, int width, int height, double frame_rate);
 adcgs_status adcgs_y4m_write_frame(FILE *file, const adcgs_frame *frame, adcgs_error *error);

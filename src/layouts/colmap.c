@@ -24,10 +24,11 @@ enum { CAMERAS, IMAGES, POINTS, FILES };
 
 static const struct {
     const char *end;
+    int is_text;
     adcgs_colmap_parse *parse[FILES];
 } formats[] = {
-    {"bin", {adcgs_colmap_binary_cameras, adcgs_colmap_binary_images, adcgs_colmap_binary_points}},
-    {"txt", {adcgs_colmap_text_cameras, adcgs_colmap_text_images, adcgs_colmap_text_points}},
+    {"bin", 0, {adcgs_colmap_binary_cameras, adcgs_colmap_binary_images, adcgs_colmap_binary_points}},
+    {"txt", 1, {adcgs_colmap_text_cameras, adcgs_colmap_text_images, adcgs_colmap_text_points}},
 };
 
 typedef struct reader {
@@ -80,7 +81,8 @@ static adcgs_status read_file(reader *r, int file)
         return no_memory(r);
     r->model.path = path;
     r->model.error = r->error;
-    adcgs_status status = adcgs_file_load(&data, &bytes, path, FILE_MAX, r->error);
+    adcgs_status status = formats[r->format].is_text ? adcgs_file_load_text(&data, &bytes, path, FILE_MAX, r->error)
+                                                     : adcgs_file_load(&data, &bytes, path, FILE_MAX, r->error);
     if (status == ADCGS_ERR_IO && !has_file(r, file))
         status = adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no such file; a COLMAP model has cameras, images, points3D", path);
     if (status == ADCGS_OK)
@@ -248,8 +250,8 @@ static adcgs_status add_footage(reader *r, size_t index, const adcgs_footage *fo
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: the video of %.100s has %lld frames, but that of %.100s has %lld",
                           r->scene->directory, first->name, (long long)*frames, image->name, (long long)footage->frames);
     *frames = footage->frames;
-    if (index && !r->scene->frame_rate)
-        r->scene->frame_rate = footage->frame_rate;
+    if (!r->scene->rate.den)
+        r->scene->rate = footage->rate;
     ADCGS_TRY(adcgs_frames_count(r->frames, footage->frames, &count, r->scene->directory, r->error));
     ADCGS_TRY(adcgs_calibrate(&like, &camera->lens, footage->width, footage->height, footage->video, r->error));
     set_pose(&like, image);

@@ -40,7 +40,7 @@ adcgs_status adcgs_footage_video(adcgs_footage *out, const char *path, adcgs_err
                            .frames = info->frames,
                            .width = info->width,
                            .height = info->height,
-                           .frame_rate = info->frame_rate};
+                           .rate = info->rate};
     adcgs_video_close(&video);
     return out->video ? ADCGS_OK : no_memory(path, error);
 }

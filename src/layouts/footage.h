@@ -10,7 +10,7 @@ typedef struct adcgs_footage {
     char **pictures;   /**< as many as frames */
     int64_t frames;
     int width, height; /**< of the video, or of the first picture */
-    double frame_rate; /**< of the video; 0 for pictures */
+    adcgs_fps rate;   /**< of the video; not known for pictures */
 } adcgs_footage;
 
 /** The frames of a video are counted. Errors as of adcgs_video_open(). */

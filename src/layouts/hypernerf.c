@@ -356,6 +356,7 @@ static adcgs_status read_folder(reader *r, int with_points)
     ADCGS_TRY(read_coordinates(r));
     ADCGS_TRY(find_images(r));
     ADCGS_TRY(read_lists(r));
+    r->scene->intervals = r->last;
     r->scene->axes = adcgs_pose_axes(r->scene->views[ADCGS_SPLIT_TRAIN], r->scene->n_views[ADCGS_SPLIT_TRAIN]);
     return with_points ? read_points(r) : ADCGS_OK;
 }

@@ -229,11 +229,10 @@ static adcgs_status add_camera(const reader *r, size_t index, const adcgs_footag
     ADCGS_TRY(adcgs_frames_count(r->frames, footage->frames, &count, r->scene->directory, r->error));
     const char *file = footage->video ? footage->video : footage->pictures[0];
     ADCGS_TRY(read_view(r, index, footage->width, footage->height, file, &like));
-    if (split == ADCGS_SPLIT_TRAIN) {
+    if (split == ADCGS_SPLIT_TRAIN)
         ADCGS_TRY(read_bounds(r, index));
-        if (!r->scene->frame_rate)
-            r->scene->frame_rate = footage->frame_rate;
-    }
+    if (!r->scene->rate.den)
+        r->scene->rate = footage->rate;
     return adcgs_footage_add(r->scene, split, &like, footage, r->frames, 0.0, count > 1 ? 1.0 / (double)(count - 1) : 0.0,
                              r->scene->directory, r->error);
 }

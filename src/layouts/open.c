@@ -8,7 +8,6 @@
 #include "data/clips.h"
 #include "data/paths.h"
 #include "data/pose.h"
-#include "data/sort.h"
 #include "io/file.h"
 #include "layouts/colmap.h"
 #include "layouts/hypernerf.h"
@@ -22,7 +21,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-#define DEFAULT_FRAME_RATE 30.0
+#define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
 #define NEAR_PER_DISTANCE 0.01
 #define NEAR_PER_BOUND 0.5      /* bounds are of most points, not of all */
 #define NEAR_LEAST 1e-3
@@ -31,19 +30,16 @@
 const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto", "transforms", "hypernerf", "llff", "colmap", "adcgs",
                                                             "splats", NULL};
 
-static adcgs_status count_times(adcgs_scene *scene, const char *path, adcgs_error *error)
+/** Seconds of the scene, unless the layout has said so, and how many moments are trained on. */
+static adcgs_status find_duration(adcgs_scene *scene, const char *path, int64_t step, adcgs_error *error)
 {
-    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
-    double *times = malloc(n * sizeof *times);
-    if (!times)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    for (uint32_t i = 0; i < n; i++)
-        times[i] = scene->views[ADCGS_SPLIT_TRAIN][i].time;
-    adcgs_sort(times, n);
-    scene->n_times = 1;
-    for (uint32_t i = 1; i < n; i++)
-        scene->n_times += times[i] - times[i - 1] > ADCGS_TIME_TOLERANCE;
-    free(times);
+    double intervals;
+    ADCGS_TRY(adcgs_frames_intervals(scene, &scene->n_times, &intervals, path, error));
+    if (scene->duration > 0.0)
+        return ADCGS_OK;
+    if (scene->intervals > 0.0 && scene->n_times > 1) /* of the data set: step times as many as of what is kept */
+        intervals = scene->intervals / (double)step;
+    scene->duration = intervals * (double)scene->rate.den / (double)scene->rate.num;
     return ADCGS_OK;
 }
 
@@ -59,6 +55,8 @@ static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
             if (view->is_video)
                 continue;
             ADCGS_TRY(adcgs_file_check(view->path, "an image", error));
+            if (view->mask)
+                ADCGS_TRY(adcgs_file_check(view->mask, "an image", error));
             if (s != ADCGS_SPLIT_TRAIN)
                 ADCGS_TRY(adcgs_scene_probe(view, error));
         }
@@ -69,9 +67,7 @@ static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
 static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
 {
     ADCGS_TRY(check_files(scene, error));
-    ADCGS_TRY(count_times(scene, path, error));
-    if (scene->duration <= 0.0)
-        scene->duration = (scene->n_times - 1) / scene->frame_rate;
+    ADCGS_TRY(find_duration(scene, path, adcgs_frames_step(&options->frames), error));
     const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
     double distance;
     ADCGS_TRY(adcgs_pose_median_distance(train, scene->n_views[ADCGS_SPLIT_TRAIN], &distance, error));
@@ -94,18 +90,29 @@ static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adc
 /** Take what a file says besides its views. */
 static void take_facts(adcgs_scene *scene, adcgs_transforms *facts, char **points_path)
 {
-    if (!scene->frame_rate)
-        scene->frame_rate = facts->frame_rate;
+    if (!scene->rate.den)
+        scene->rate = facts->rate;
     if (!*points_path)
         *points_path = facts->points_path;
     else
         free(facts->points_path);
 }
 
+/** Whichever file tells the rate, it is that of all. */
+static adcgs_status agree_rate(adcgs_fps *rate, adcgs_fps own, const char *path, adcgs_error *error)
+{
+    if (rate->den && own.den && (rate->num != own.num || rate->den != own.den))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: fps: %g, but %g in the file of another split", path, adcgs_fps_value(own),
+                          adcgs_fps_value(*rate));
+    *rate = own.den ? own : *rate;
+    return ADCGS_OK;
+}
+
 /** One file per split; only the training split must exist. */
 static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_error *error)
 {
     int has_times = 0;
+    adcgs_fps rate = {0, 0};
     for (int s = 0; s < ADCGS_SPLITS; s++) {
         char *path = adcgs_path("%s/transforms_%s.json", scene->directory, adcgs_split_name((adcgs_split)s));
         adcgs_transforms facts = {0};
@@ -120,10 +127,14 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
             if (status == ADCGS_OK && has_times != facts.has_times)
                 status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: frames[0].time: %s, unlike in the training split", path,
                                     has_times ? "missing" : "given");
+            if (status == ADCGS_OK)
+                status = agree_rate(&rate, facts.rate, path, error);
         }
         free(path);
         ADCGS_TRY(status);
     }
+    if (!scene->rate.den)
+        scene->rate = rate;
     return ADCGS_OK;
 }
 
@@ -185,7 +196,7 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     case ADCGS_DATASET_SPLATS:
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats (PLY)", scene->directory);
     default:
-        return adcgs_fail(error, ADCGS_ERR_IO,
+        return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
                           "metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model in sparse/0, sparse or here",
                           scene->directory);
@@ -255,13 +266,13 @@ static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, co
     char *points_path = NULL;
     scene->axes = ADCGS_AXES_Z_UP; /* by custom of the transforms layouts */
     scene->colour_space = COLOUR_SRGB;
-    scene->frame_rate = options->frame_rate;
+    scene->rate = options->rate;
     adcgs_status status =
         is_folder ? read_folder(scene, &points_path, options, error) : read_file(scene, path, &points_path, options, error);
-    if (!scene->frame_rate)
-        scene->frame_rate = DEFAULT_FRAME_RATE;
-    if (!options->frame_rate)
-        scene->frame_rate /= (double)adcgs_frames_step(&options->frames);
+    if (!scene->rate.den)
+        scene->rate = DEFAULT_FRAME_RATE;
+    if (!options->rate.den)
+        scene->rate = adcgs_fps_divide(scene->rate, adcgs_frames_step(&options->frames));
     if (status == ADCGS_OK)
         status = finish_views(scene, path, options, error);
     if (status == ADCGS_OK && !scene->points.position) /* the layout's own may be there already */

@@ -38,15 +38,15 @@ typedef struct adcgs_scene_options {
     const char *points_path;  /**< file of initial points, in world units, instead of the scene's own */
     int has_background;
     float background[3];
-    double frame_rate;        /**< of the frames that are kept; 0: the scene's, else 30 */
+    adcgs_fps rate;           /**< of the frames that are kept; not known: the scene's, else 30 */
     int dataset;              /**< an adcgs_dataset */
     adcgs_frame_range frames; /**< of videos, or of the distinct moments of all pictures; the first one kept is time 0 */
 } adcgs_scene_options;
 
 /**
  * Open a scene folder, its JSON file of transforms, a scene file, or a PLY file of splats. Times in [0,1] of the layout become
- * seconds: t * (n_times-1)/frame_rate. The near plane is half the near bound, or where there is none, a hundredth of the median
- * distance of the training cameras from the centre of their views.
+ * seconds: t times the intervals between frames (frames.h), over the rate. The near plane is half the near bound, or where
+ * there is none, a hundredth of the median distance of the training cameras from the centre of their views.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
  * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole and OpenCV's.
  */

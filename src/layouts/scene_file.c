@@ -15,7 +15,7 @@
 #define FILE_VERSION 1
 #define CAMERAS_MAX 10000
 #define FRAME_MAX 1e9
-#define DEFAULT_FRAME_RATE 30.0
+#define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
 #define WORLD_MAX 1e9
 #define UNIT_METRE 1 /* a code of adcgs_stream */
 
@@ -27,7 +27,7 @@ typedef struct reader {
     char *folder;      /**< of the file, with its slash, or "" */
     json_t *root;
     double scale;      /**< of positions */
-    double frame_rate; /**< of the whole file; 0: none */
+    adcgs_fps rate;   /**< of the whole file; not known: none */
 } reader;
 
 static const char *const root_fields[] = {"adcgs_scene", "name", "frame_rate", "scale", "unit", "up", "points", "points_scale",
@@ -90,11 +90,11 @@ static adcgs_status read_split(const adcgs_json_place *at, adcgs_split *split)
 }
 
 /** Frames per second: the camera's, else the file's, else the video's. */
-static adcgs_status read_rate(const reader *r, const adcgs_json_place *at, const adcgs_footage *footage, double *rate)
+static adcgs_status read_rate(const reader *r, const adcgs_json_place *at, const adcgs_footage *footage, adcgs_fps *rate)
 {
     int found;
-    *rate = r->frame_rate > 0.0 ? r->frame_rate : footage->frame_rate > 0.0 ? footage->frame_rate : DEFAULT_FRAME_RATE;
-    return adcgs_json_number(at, "frame_rate", 1e-3, 1e4, rate, &found);
+    *rate = r->rate.den ? r->rate : footage->rate.den ? footage->rate : DEFAULT_FRAME_RATE;
+    return adcgs_json_fps(at, "frame_rate", rate, &found);
 }
 
 /** Take a pose to world units. */
@@ -114,7 +114,8 @@ static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const
 {
     adcgs_scene_camera camera;
     adcgs_split split;
-    double rate, offset = 0.0;
+    adcgs_fps rate;
+    double offset = 0.0;
     int found;
     const char *file = footage->video ? footage->video : footage->pictures[0];
     ADCGS_TRY(adcgs_scene_camera_read(&camera, at));
@@ -123,10 +124,11 @@ static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const
     ADCGS_TRY(adcgs_json_number(at, "time_offset", -1e6, 1e6, &offset, &found));
     ADCGS_TRY(scale_pose(r, at, camera.view.camera.cam_to_world));
     ADCGS_TRY(adcgs_calibrate(&camera.view, &camera.lens, footage->width, footage->height, file, r->error));
-    if (split == ADCGS_SPLIT_TRAIN && !r->scene->frame_rate)
-        r->scene->frame_rate = rate;
-    return adcgs_footage_add(r->scene, split, &camera.view, footage, r->frames, offset + (double)r->frames->begin / rate,
-                             (double)adcgs_frames_step(r->frames) / rate, file, r->error);
+    if (split == ADCGS_SPLIT_TRAIN && !r->scene->rate.den)
+        r->scene->rate = rate;
+    return adcgs_footage_add(r->scene, split, &camera.view, footage, r->frames,
+                             offset + (double)r->frames->begin / adcgs_fps_value(rate),
+                             (double)adcgs_frames_step(r->frames) / adcgs_fps_value(rate), file, r->error);
 }
 
 static adcgs_status read_camera(const reader *r, json_t *defaults, json_t *camera, size_t index, json_t *taken)
@@ -178,7 +180,7 @@ static void fit_times(adcgs_scene *scene, int split, double begin, double slack)
     for (uint32_t i = 0; i < scene->n_views[split]; i++) {
         const double time = views[i].time - begin;
         if (time < -slack || time > scene->duration + slack) {
-            free(views[i].path);
+            adcgs_scene_view_clear(&views[i]);
             continue;
         }
         views[kept] = views[i];
@@ -214,7 +216,7 @@ static adcgs_status read_world(reader *r, const adcgs_json_place *at)
     int found;
     r->scale = 1.0;
     ADCGS_TRY(adcgs_json_number(at, "scale", 1e-9, 1e9, &r->scale, &found));
-    ADCGS_TRY(adcgs_json_number(at, "frame_rate", 1e-3, 1e4, &r->frame_rate, &found));
+    ADCGS_TRY(adcgs_json_fps(at, "frame_rate", &r->rate, &found));
     ADCGS_TRY(adcgs_scene_camera_string(at, "unit", &unit));
     if (unit && strcmp(unit, "metre"))
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "unit", "%.32s, expected metre, or nothing where it is not known", unit);

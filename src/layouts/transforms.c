@@ -44,6 +44,26 @@ static adcgs_status find_image(const place *at, char **out)
     return status;
 }
 
+/** The mask's file, NULL if the frame has none. */
+static adcgs_status find_mask(const place *at, char **out)
+{
+    json_t *item = json_object_get(at->json.frame, "mask_path");
+    const char *name = json_string_value(item);
+    *out = NULL;
+    if (!item || json_is_null(item))
+        return ADCGS_OK;
+    if (!name || !*name)
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "mask_path", "expected the name of an image");
+    *out = join(at->folder, name);
+    if (*out && adcgs_is_there(*out))
+        return ADCGS_OK;
+    free(*out);
+    if (!*out)
+        return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "mask_path", "out of memory");
+    *out = NULL;
+    return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "mask_path", "no such image: %.100s", name);
+}
+
 /** The lens and the pinhole for it; w and h are the picture's as it was taken. */
 static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene_view *view)
 {
@@ -65,7 +85,7 @@ static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene
     return status;
 }
 
-/** On failure view->path is freed. */
+/** On failure nothing of the view is left. */
 static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_view *view, adcgs_transforms *out)
 {
     int found;
@@ -81,10 +101,11 @@ static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_v
         ADCGS_TRY(adcgs_json_number(&at->json, "time", 0.0, 1.0, &view->time, &found));
     ADCGS_TRY(adcgs_json_pose(&at->json, &view->camera));
     ADCGS_TRY(find_image(at, &view->path));
-    const adcgs_status status = read_camera(at, scene, view);
+    adcgs_status status = read_camera(at, scene, view);
+    if (status == ADCGS_OK)
+        status = find_mask(at, &view->mask);
     if (status != ADCGS_OK) {
-        free(view->path);
-        view->path = NULL;
+        adcgs_scene_view_clear(view);
         return status;
     }
     adcgs_stem(view->camera.name, sizeof view->camera.name, view->path);
@@ -132,7 +153,7 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
         at->split = split == ADCGS_SPLITS ? choose_split(at) : split;
         ADCGS_TRY(read_view(at, scene, &view, out));
         if (at->split == ADCGS_SPLITS)
-            free(view.path);
+            adcgs_scene_view_clear(&view);
         else
             scene->views[at->split][scene->n_views[at->split]++] = view;
     }
@@ -143,7 +164,7 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
 static adcgs_status read_root(place *at, adcgs_scene *scene, adcgs_transforms *out, adcgs_split split)
 {
     int found;
-    ADCGS_TRY(adcgs_json_number(&at->json, "fps", 1e-3, 1e4, &out->frame_rate, &found));
+    ADCGS_TRY(adcgs_json_fps(&at->json, "fps", &out->rate, &found));
     json_t *points = json_object_get(at->json.root, "ply_file_path");
     if (points) {
         const char *name = json_string_value(points);

@@ -11,7 +11,7 @@
 
 /** What one file says besides its views. */
 typedef struct adcgs_transforms {
-    double frame_rate; /**< 0 if it says nothing */
+    adcgs_fps rate;   /**< not known if it says nothing */
     int has_times;     /**< frames carry times */
     char *points_path; /**< NULL if it names none */
 } adcgs_transforms;

@@ -2,6 +2,7 @@
 /** \file Quality of a decoded stream against a scene's pictures. */
 #include "metric/evaluate.h"
 
+#include "camera/path.h"
 #include "data/by_camera.h"
 #include "data/sort.h"
 #include "metric/metric.h"
@@ -15,7 +16,7 @@ static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_scene_view
 {
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;
     const double begin = adcgs_seconds();
-    ADCGS_TRY(adcgs_render(decoder, &view->camera, view->time, frame, error));
+    ADCGS_TRY(adcgs_shots_rendered(&view->camera, adcgs_render(decoder, &view->camera, view->time, frame, error), error));
     *seconds = adcgs_seconds() - begin;
     adcgs_frame_to_u8(frame, levels);
     for (size_t i = 0; i < pixels; i++)

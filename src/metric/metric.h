@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Quality of pictures, in double precision. Images are planar [3][height][width], range 0..1. */
+/** \file
+ * Quality of pictures, in double precision. Images are planar [3][height][width], range 0..1. Where the second has NaN, in all
+ * channels, it is not known: PSNR and SSIM are means over the other pixels, to whose windows, and to MS-SSIM, those are right.
+ */
 #ifndef ADCGS_METRIC_METRIC_H
 #define ADCGS_METRIC_METRIC_H
 
 #include "base/base.h"
 
-/** Peak signal-to-noise ratio in dB over all pixels and channels; 99 for identical pictures. */
+/** Peak signal-to-noise ratio in dB over all pixels and channels; 99 for identical pictures, and where no pixel is known. */
 double adcgs_psnr(const float *a, const float *b, size_t n);
 double adcgs_psnr_from_mse(double mse);
 /** Structural similarity: 11x11 Gaussian, sigma 1.5, zero padding, mean over pixels and channels, K1 = 0.01, K2 = 0.03. */

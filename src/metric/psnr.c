@@ -18,9 +18,12 @@ double adcgs_psnr_from_mse(double mse)
 double adcgs_psnr(const float *a, const float *b, size_t n)
 {
     double sum = 0.0;
+    size_t count = 0;
     for (size_t i = 0; i < n; i++) {
         const double difference = (double)a[i] - (double)b[i];
-        sum += difference * difference;
+        const int seen = !isnan(b[i]);
+        sum += seen ? difference * difference : 0.0;
+        count += (size_t)seen;
     }
-    return n ? adcgs_psnr_from_mse(sum / (double)n) : IDENTICAL;
+    return count ? adcgs_psnr_from_mse(sum / (double)count) : IDENTICAL;
 }

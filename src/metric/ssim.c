@@ -46,8 +46,19 @@ static void pair_fill(pair *p, const float *a, const float *b, int width, int he
     p->height = height;
     for (size_t i = 0; i < plane; i++) {
         p->a[i] = (double)a[c * plane + i];
-        p->b[i] = (double)b[c * plane + i];
+        p->b[i] = isnan(b[c * plane + i]) ? p->a[i] : (double)b[c * plane + i];
     }
+}
+
+/** Marks what is not known of a picture; how many pixels are. */
+static size_t find_hidden(uint8_t *hidden, const float *picture, size_t plane)
+{
+    size_t known = 0;
+    for (size_t i = 0; i < plane; i++) {
+        hidden[i] = isnan(picture[i]) != 0;
+        known += !hidden[i];
+    }
+    return known;
 }
 
 adcgs_status adcgs_ssim(const float *a, const float *b, int width, int height, double *ssim, adcgs_error *error)
@@ -55,12 +66,21 @@ adcgs_status adcgs_ssim(const float *a, const float *b, int width, int height, d
     pair p;
     double total = 0.0;
     ADCGS_TRY(pair_init(&p, width, height, error));
+    const size_t plane = (size_t)width * (size_t)height;
+    uint8_t *hidden = adcgs_alloc(NULL, plane, 1, error);
+    if (!hidden) {
+        pair_clear(&p);
+        return ADCGS_ERR_MEMORY;
+    }
+    const size_t known = find_hidden(hidden, b, plane);
+    p.space.hidden = known < plane ? hidden : NULL;
     for (size_t c = 0; c < 3; c++) {
         pair_fill(&p, a, b, width, height, c);
         total += adcgs_ssim_plane(&p.space, p.a, p.b, width, height, 0).similarity;
     }
     pair_clear(&p);
-    *ssim = total / (3.0 * (double)width * (double)height);
+    adcgs_free(NULL, hidden);
+    *ssim = known ? total / (3.0 * (double)known) : 1.0;
     return ADCGS_OK;
 }
 

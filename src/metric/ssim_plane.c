@@ -90,8 +90,10 @@ static void finish_row(const adcgs_ssim_space *s, adcgs_ssim_sums *sums, int row
     memset(s->row, 0, MOMENTS * width * sizeof *s->row);
     for (int y = first; y <= last; y++)
         add_scaled(s->row, ring_row(s, y, width), s->window[y - row + RADIUS], MOMENTS * width);
+    const uint8_t *const hidden = s->hidden ? s->hidden + (size_t)row * width : NULL;
     for (size_t x = margin; x + margin < width; x++)
-        add_pixel(&total, s->row + x, width);
+        if (!hidden || !hidden[x])
+            add_pixel(&total, s->row + x, width);
     sums->similarity += total.similarity;
     sums->structure += total.structure;
 }

@@ -22,6 +22,7 @@ typedef struct adcgs_ssim_space {
     double *ring;   /**< [TAPS][MOMENTS][width] */
     double *padded; /**< [MOMENTS][width + 2 RADIUS] */
     double *row;    /**< [MOMENTS][width] */
+    const uint8_t *hidden; /**< [height][width] pixels that are in no sum; NULL: all are */
 } adcgs_ssim_space;
 
 adcgs_status adcgs_ssim_space_init(adcgs_ssim_space *space, int width, adcgs_error *error);

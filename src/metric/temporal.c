@@ -158,14 +158,15 @@ adcgs_temporal_view adcgs_temporal_add(adcgs_temporal *t, const float *decoded, 
     double squares = 0.0, changes = 0.0;
     t->n++;
     for (size_t i = 0; i < 3 * t->plane; i++) {
-        const double difference = (double)decoded[i] - (double)truth[i];
+        const double seen = (double)(isnan(truth[i]) ? decoded[i] : truth[i]); /* what is not known is right */
+        const double difference = (double)decoded[i] - seen;
         changes += fabs(difference - t->error[i]);
         t->error[i] = difference;
         if (t->region[i % t->plane]) {
             squares += difference * difference;
         } else {
             take_value(&t->decoded, i, (double)decoded[i], t->n);
-            take_value(&t->truth, i, (double)truth[i], t->n);
+            take_value(&t->truth, i, seen, t->n);
         }
     }
     return (adcgs_temporal_view){

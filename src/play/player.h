@@ -49,10 +49,11 @@ typedef struct adcgs_player {
 
 /** Whether the window shows the very picture that the state stands for, at full resolution, and nothing will change it. */
 int adcgs_player_settled(const adcgs_player *player);
+/** Give the worker something to do, if it has nothing and there is something. */
+void adcgs_player_post(adcgs_player *player);
+/** Take what the worker has done, if anything: a picture into the window, a screenshot, or a failure. */
+adcgs_status adcgs_player_collect(adcgs_player *player, adcgs_error *error);
 /** Draw the window; to rgb as well, if not NULL. */
 adcgs_status adcgs_player_show(adcgs_player *player, uint8_t *rgb, adcgs_error *error);
-
-/** Do lines of the script until one has to wait. Events that it makes arrive with the others. */
-adcgs_status adcgs_script_go(adcgs_player *player, adcgs_error *error);
 
 #endif

@@ -186,7 +186,7 @@ adcgs_status adcgs_script_read(adcgs_script *out, const char *path, adcgs_error 
     uint8_t *data;
     size_t bytes;
     *out = (adcgs_script){0};
-    ADCGS_TRY(adcgs_file_load(&data, &bytes, path, SCRIPT_BYTES_MAX, error));
+    ADCGS_TRY(adcgs_file_load_text(&data, &bytes, path, SCRIPT_BYTES_MAX, error));
     adcgs_status status = memchr(data, 0, bytes) ? adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: not a text", path)
                                                  : read_lines(out, (char *)data, path, error);
     free(data);

@@ -2,7 +2,7 @@
 /** \file Doing what a script says. */
 #include "config.h"
 
-#include "play/player.h"
+#include "play/script_run.h"
 
 #include "io/image.h"
 

@@ -7,6 +7,7 @@
 #include "data/scene.h"
 #include "io/atomic.h"
 #include "io/image.h"
+#include "scenes/sine.h"
 #include "scenes/table.h"
 
 #include <errno.h>

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Procedural textures: functions of a point in an object's own coordinates, and nothing else. */
-#include "scenes/trace.h"
+#include "scenes/texture.h"
+
+#include "scenes/sine.h"
 
 /* Largest integer not above x, for |x| < 2^31; no libm. */
 static int floor_int(double x)

@@ -2,9 +2,11 @@
 /** \file Rays against shapes, and the light on what they hit. */
 #include "scenes/trace.h"
 
+#include "scenes/sine.h"
+#include "scenes/texture.h"
+
 #include <math.h>
 
-#define PI 3.14159265358979323846
 #define SAMPLES_MAX 8
 #define FAR 1e30
 
@@ -30,33 +32,6 @@ typedef struct hit {
     int object;
     double local[3], normal[3]; /* normal in local axes, not turned towards the ray */
 } hit;
-
-/* Odd Taylor polynomial of the sine within a quarter turn of zero; error below 1e-11 there. */
-static double sin_core(double x)
-{
-    const double y = x * x;
-    double s = -1.0 / 1307674368000.0;
-    s = s * y + 1.0 / 6227020800.0;
-    s = s * y - 1.0 / 39916800.0;
-    s = s * y + 1.0 / 362880.0;
-    s = s * y - 1.0 / 5040.0;
-    s = s * y + 1.0 / 120.0;
-    s = s * y - 1.0 / 6.0;
-    return x + x * y * s;
-}
-
-double adcgs_trace_sin(double turns)
-{
-    double f = turns - (double)(int)turns;
-    f = f > 0.5 ? f - 1.0 : f < -0.5 ? f + 1.0 : f;
-    f = f > 0.25 ? 0.5 - f : f < -0.25 ? -0.5 - f : f;
-    return sin_core(2.0 * PI * f);
-}
-
-double adcgs_trace_cos(double turns)
-{
-    return adcgs_trace_sin(turns + 0.25);
-}
 
 static double dot(const double a[3], const double b[3])
 {

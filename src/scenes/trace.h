@@ -50,10 +50,6 @@ typedef struct adcgs_trace_camera {
     double focal;        /**< in pixels */
 } adcgs_trace_camera;
 
-/** Sine and cosine of a number of turns, from basic arithmetic alone; error below 1e-11. */
-double adcgs_trace_sin(double turns);
-double adcgs_trace_cos(double turns);
-
 /** The camera at eye that looks at target with z up. */
 void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const double target[3]);
 
@@ -63,10 +59,5 @@ void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const dou
  */
 adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time,
                                 int width, int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error);
-
-/** The mix factor 0..1 of an object's texture at a local point. */
-double adcgs_texture_mix(const adcgs_trace_object *object, const double point[3]);
-/** Smooth noise 0..1 of unit cell size. */
-double adcgs_texture_noise(const double point[3], uint32_t seed);
 
 #endif

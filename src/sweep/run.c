@@ -4,11 +4,12 @@
 
 #include "sweep/sweep.h"
 
+#include "cli/text.h"
+#include "data/camera_json.h"
 #include "io/atomic.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -105,19 +106,14 @@ static double size_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run, cons
 /* What the result depends on. Neither threads nor a shared beginning do. */
 static json_t *settings_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run)
 {
-    return json_pack("{s:s, s:s, s:s, s:i, s:f, s:i, s:f, s:s, s:i, s:i, s:s*, s:s*}", "scene", sweep->scene, "preset",
-                     sweep->preset ? sweep->preset : "", "set", sweep->set ? sweep->set : "", "iterations", sweep->iterations,
-                     "lambda", run->lambda, "k", run->k, "seed", run->seed, "without", run->without, "uncompressed",
-                     run->uncompressed, "beginning", run->beginning, "dataset", sweep->dataset, "frames", sweep->frames);
-}
-
-static json_t *load(const char *path, adcgs_error *error)
-{
-    json_error_t where;
-    json_t *const root = json_load_file(path, JSON_REJECT_DUPLICATES, &where);
-    if (!root)
-        adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, where.text);
-    return root;
+    char *const scene = adcgs_text_utf8(sweep->scene); /* all else has been checked, and is ASCII */
+    json_t *const settings =
+        json_pack("{s:s, s:s, s:s, s:i, s:f, s:i, s:f, s:s, s:i, s:i, s:s*, s:s*}", "scene", scene, "preset",
+                  sweep->preset ? sweep->preset : "", "set", sweep->set ? sweep->set : "", "iterations", sweep->iterations,
+                  "lambda", run->lambda, "k", run->k, "seed", run->seed, "without", run->without, "uncompressed",
+                  run->uncompressed, "beginning", run->beginning, "dataset", sweep->dataset, "frames", sweep->frames);
+    free(scene);
+    return settings;
 }
 
 /** Write a value, which this takes, to a file. */
@@ -127,7 +123,8 @@ static adcgs_status save(json_t *root, const char *path, adcgs_error *error)
     adcgs_status status =
         root ? adcgs_atomic_open(&file, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (status == ADCGS_OK) {
-        const int bad = json_dumpf(root, file.file, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) && !ferror(file.file);
+        const int bad = json_dumpf(root, file.file, JSON_INDENT(2) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(12)) &&
+                        !ferror(file.file);
         if (bad) {
             adcgs_atomic_abort(&file);
             status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
@@ -156,9 +153,11 @@ static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_run *run, c
     int code = 0;
     path_of(log, sweep, run, ".log");
     ADCGS_TRY(adcgs_sweep_spawn(c->argv, out, log, &code, error));
-    if (code != 0)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s left with %d; see %s", run->tag, c->argv[0], code, log);
-    return ADCGS_OK;
+    const adcgs_status why = code == 2   ? ADCGS_ERR_USAGE
+                             : code == 4 ? ADCGS_ERR_DATA
+                             : code == 5 ? ADCGS_ERR_UNSUPPORTED
+                                         : ADCGS_ERR_IO;
+    return code ? adcgs_fail(error, why, "%s: %s left with %d; see %s", run->tag, c->argv[0], code, log) : ADCGS_OK;
 }
 
 /** Whether an earlier sweep left this run unfinished, with these settings; if not, note that it begins now. */
@@ -167,7 +166,9 @@ static adcgs_status find_unfinished(const adcgs_sweep *sweep, const adcgs_sweep_
     char path[ADCGS_SWEEP_PATH];
     adcgs_error ignored;
     path_of(path, sweep, run, ".partial.json");
-    json_t *const root = sweep->resume ? load(path, &ignored) : NULL;
+    json_t *root = NULL;
+    if (sweep->resume)
+        adcgs_json_load(&root, path, &ignored);
     *found = root && same_settings(sweep, run, root) && size_of(sweep, run, ".partial") > 0;
     json_decref(root);
     if (*found)
@@ -255,10 +256,12 @@ static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_run
     path_of(path, sweep, run, ".json");
     if (run->beginning)
         return save(json_pack("{s:o}", "settings", settings_of(sweep, run)), path, error);
-    json_t *const encoder = load(encoded, error), *const evaluation = encoder ? load(evaluated, error) : NULL;
-    if (!evaluation) {
+    json_t *encoder, *evaluation;
+    ADCGS_TRY(adcgs_json_load(&encoder, encoded, error));
+    const adcgs_status status = adcgs_json_load(&evaluation, evaluated, error);
+    if (status != ADCGS_OK) {
         json_decref(encoder);
-        return ADCGS_ERR_DATA;
+        return status;
     }
     return save(json_pack("{s:o, s:o, s:o}", "settings", settings_of(sweep, run), "encoder", encoder, "evaluation", evaluation),
                 path, error);
@@ -340,9 +343,8 @@ adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_run *run, ad
 {
     char path[ADCGS_SWEEP_PATH];
     path_of(path, sweep, run, ".json");
-    json_t *const root = load(path, error);
-    if (!root)
-        return ADCGS_ERR_DATA;
+    json_t *root;
+    ADCGS_TRY(adcgs_json_load(&root, path, error));
     take_figures(sweep, run, root);
     adcgs_status status = same_settings(sweep, run, root) ? check_files(sweep, run, root, path, error) :
                           adcgs_fail(error, ADCGS_ERR_DATA, "%s: made with other settings", path);

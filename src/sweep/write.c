@@ -4,8 +4,9 @@
 
 #include "sweep/sweep.h"
 
-#include "cli/cli.h"
+#include "cli/text.h"
 #include "io/atomic.h"
+#include "io/json.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +23,8 @@ static void csv_number(FILE *file, double value, int digits)
 
 static void csv_row(FILE *file, const adcgs_sweep_row *r)
 {
-    fprintf(file, "%s,", r->name);
+    adcgs_text_cell(file, r->name);
+    fprintf(file, ",");
     if (r->lambda >= 0)
         fprintf(file, "%.9g", r->lambda);
     fprintf(file, ",");
@@ -86,7 +88,7 @@ static void json_spread(adcgs_json *json, const char *key, const adcgs_spread *s
     adcgs_json_real(json, "mean", s->mean);
     adcgs_json_real(json, "min", s->min);
     adcgs_json_real(json, "max", s->max);
-    adcgs_json_close(json, '}');
+    adcgs_json_close(json);
 }
 
 static void json_row(adcgs_json *json, const adcgs_sweep_row *r)
@@ -115,7 +117,7 @@ static void json_comparison(adcgs_json *json, const adcgs_sweep_plan *plan, cons
     adcgs_json_int(json, "points_beyond", c.beyond);
     adcgs_json_real(json, "least_margin", c.margin);
     adcgs_json_real(json, "times_smaller", c.smaller);
-    adcgs_json_close(json, '}');
+    adcgs_json_close(json);
 }
 
 static void json_curves(adcgs_json *json, const adcgs_sweep_plan *plan)
@@ -134,14 +136,14 @@ static void json_curves(adcgs_json *json, const adcgs_sweep_plan *plan)
                 continue;
             adcgs_json_open(json, NULL, '{');
             json_row(json, &row);
-            adcgs_json_close(json, '}');
+            adcgs_json_close(json);
         }
-        adcgs_json_close(json, ']');
+        adcgs_json_close(json);
         if (i)
             json_comparison(json, plan, curve);
-        adcgs_json_close(json, '}');
+        adcgs_json_close(json);
     }
-    adcgs_json_close(json, ']');
+    adcgs_json_close(json);
 }
 
 static void json_stages(adcgs_json *json, const adcgs_sweep_plan *plan)
@@ -155,9 +157,9 @@ static void json_stages(adcgs_json *json, const adcgs_sweep_plan *plan)
         adcgs_json_string(json, "stage", plan->stage[i].name);
         adcgs_json_string(json, "stored", plan->stage[i].size == ADCGS_FIGURE_RAW ? "uncompressed" : "stream");
         json_row(json, &row);
-        adcgs_json_close(json, '}');
+        adcgs_json_close(json);
     }
-    adcgs_json_close(json, ']');
+    adcgs_json_close(json);
 }
 
 static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
@@ -177,9 +179,9 @@ static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
         for (int j = 0; j < ADCGS_FIGURE_COUNT; j++)
             if (isfinite(run->figure[j]))
                 adcgs_json_real(json, names[j], run->figure[j]);
-        adcgs_json_close(json, '}');
+        adcgs_json_close(json);
     }
-    adcgs_json_close(json, ']');
+    adcgs_json_close(json);
 }
 
 static void json_sweep(adcgs_json *json, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
@@ -194,11 +196,11 @@ static void json_sweep(adcgs_json *json, const adcgs_sweep *sweep, const adcgs_s
     adcgs_json_int(json, "points", facts.n);
     adcgs_json_bool(json, "monotone", facts.monotone);
     adcgs_json_real(json, "span", facts.span);
-    adcgs_json_close(json, '}');
+    adcgs_json_close(json);
     json_curves(json, plan);
     json_stages(json, plan);
     json_runs(json, plan);
-    adcgs_json_close(json, '}');
+    adcgs_json_close(json);
 }
 
 static adcgs_status write_json(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
@@ -208,9 +210,9 @@ static adcgs_status write_json(const adcgs_sweep *sweep, const adcgs_sweep_plan 
     adcgs_json json;
     snprintf(path, sizeof path, "%s/sweep.json", sweep->directory);
     ADCGS_TRY(adcgs_atomic_open(&file, path, error));
-    adcgs_json_init(&json, file.file);
+    adcgs_json_init(&json);
     json_sweep(&json, sweep, plan);
-    const adcgs_status status = adcgs_json_finish(&json, error);
+    const adcgs_status status = adcgs_json_write(&json, file.file, path, error);
     if (status == ADCGS_OK)
         return adcgs_atomic_commit(&file, error);
     adcgs_atomic_abort(&file);

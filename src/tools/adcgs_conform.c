@@ -4,10 +4,16 @@
 
 #include "base/cpu.h"
 #include "cli/cli.h"
+#include "cli/text.h"
 #include "conform/conform.h"
 
 #include <fnmatch.h>
 #include <stdlib.h>
+#include <unistd.h>
+
+#define ID_WIDTH 36
+#define MANIFEST_HERE "conformance/manifest.json"
+#define MANIFEST_INSTALLED CONFORMANCE_DIRECTORY "/manifest.json"
 
 static const int thread_counts[] = {1, 2, 7};
 static const int steps[] = {0, 7};
@@ -63,9 +69,11 @@ static void check_vector(const settings *s, const adcgs_manifest *manifest, cons
     const double seconds = adcgs_seconds() - start;
     free(data);
     const char *const kind = vector->status == ADCGS_OK ? "good" : adcgs_vector_class_name(vector->status);
-    printf("%-36s %-11s %2d frames %3d runs %6.0f ms  %s", vector->id, kind, vector->n_frames, runs, 1000 * seconds,
-           adcgs_outcome_name(outcome));
-    printf(outcome == ADCGS_OUTCOME_OK ? "\n" : ": %s\n", what);
+    adcgs_text_column(stdout, vector->id, ID_WIDTH);
+    printf(" %-11s %2d frames %3d runs %6.0f ms  %s%s", kind, vector->n_frames, runs, 1000 * seconds, adcgs_outcome_name(outcome),
+           outcome == ADCGS_OUTCOME_OK ? "" : ": ");
+    adcgs_text_show(stdout, what); /* may quote answers of a program */
+    printf("\n");
     t->runs += runs;
     t->faults += outcome != ADCGS_OUTCOME_OK;
     t->outcome[outcome]++;
@@ -77,9 +85,12 @@ static void use_vector(const settings *s, const adcgs_manifest *manifest, const 
     if (s->filter && fnmatch(s->filter, vector->id, 0) != 0)
         return;
     t->vectors++;
-    if (s->list)
-        printf("%-36s %s\n", vector->id, vector->title);
-    else if (s->selftest)
+    if (s->list) {
+        adcgs_text_column(stdout, vector->id, ID_WIDTH);
+        printf(" ");
+        adcgs_text_show(stdout, vector->title);
+        printf("\n");
+    } else if (s->selftest)
         adcgs_selftest_vector(manifest, vector, &t->runs, &t->faults);
     else
         check_vector(s, manifest, vector, t);
@@ -117,7 +128,19 @@ static int run(const adcgs_cli *cli, settings *s, const char *path)
     adcgs_manifest_clear(&manifest);
     if (status == ADCGS_OK && t.vectors == 0)
         status = adcgs_fail(&error, ADCGS_ERR_USAGE, "no vector is called %s", s->filter);
-    return adcgs_cli_leave(cli, status != ADCGS_OK ? adcgs_cli_fail(cli, &error) : t.faults ? 1 : 0);
+    if (status == ADCGS_OK)
+        status = adcgs_cli_flush(&error);
+    return status != ADCGS_OK ? adcgs_cli_fail(cli, &error) : t.faults ? 1 : 0;
+}
+
+/** Where there is one; NULL: nowhere. */
+static const char *find_manifest(void)
+{
+    static const char *const places[] = {MANIFEST_HERE, MANIFEST_INSTALLED};
+    for (size_t i = 0; i < ADCGS_COUNTOF(places); i++)
+        if (!access(places[i], F_OK))
+            return places[i];
+    return NULL;
 }
 
 int main(int argc, char **argv)
@@ -145,7 +168,9 @@ int main(int argc, char **argv)
         .program = "adcgs-conform",
         .operands = "[MANIFEST]",
         .summary = "Check a decoder against conformance vectors.",
-        .details = "MANIFEST is conformance/manifest.json unless given. Without --decoder the library is\n"
+        .details = "Without MANIFEST it is conformance/manifest.json, here or else as installed in\n"
+                   CONFORMANCE_DIRECTORY ".\n"
+                   "Without --decoder the library is\n"
                    "checked, at every CPU level that this machine has, with 1, 2 and 7 threads, with\n"
                    "the input as a whole and in pieces of few bytes.",
         .options = options,
@@ -154,5 +179,9 @@ int main(int argc, char **argv)
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;
-    return run(&cli, &s, first < argc ? argv[first] : "conformance/manifest.json");
+    const char *manifest = first < argc ? argv[first] : find_manifest();
+    if (!manifest)
+        return adcgs_cli_error(&cli, ADCGS_ERR_IO,
+                               "no manifest: neither " MANIFEST_HERE " nor " MANIFEST_INSTALLED "; give MANIFEST");
+    return run(&cli, &s, manifest);
 }

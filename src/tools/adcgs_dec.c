@@ -20,14 +20,15 @@
 #include <strings.h>
 
 typedef struct settings {
+    const adcgs_cli *cli;
     const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script;
     adcgs_shots_request request;
     adcgs_config config;
-    int cpu, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int quiet, cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     double opened; /**< when opening the input began, in seconds */
 } settings;
 
-#define OPTION_COUNT 24
+#define OPTION_COUNT 26
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -57,8 +58,12 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "write the stored cameras as a path's PATH.json, and nothing else", NULL, NULL},
         {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B",
          "one time, or a span at the stream's frame rate, in seconds;\nwithout it everything", NULL, NULL},
-        {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; the field of view stays", NULL,
+        {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; pixels keep their shape", NULL,
          NULL},
+        {"fit", 0, ADCGS_OPTION_FLAG, &s->fit, 0, 0, NULL,
+         "in frames of another shape show all that the camera sees,\nand more on two sides (what --size does)", NULL, NULL},
+        {"fill", 0, ADCGS_OPTION_FLAG, &s->request.fill, 0, 0, NULL,
+         "in frames of another shape show nothing but what the\ncamera sees, less on two sides", NULL, NULL},
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
         {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
          "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
@@ -117,11 +122,12 @@ static adcgs_status render(const settings *s, const streams *from, const adcgs_s
 {
     adcgs_frame *frame = &canvas->frame;
     adcgs_progress progress;
-    adcgs_progress_init(&progress);
+    adcgs_progress_init(&progress, s->cli);
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < shots->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         const double start = adcgs_seconds();
         status = adcgs_render(from->decoder, &shots->shot[i].camera, shots->shot[i].time, frame, error);
+        status = adcgs_shots_rendered(&shots->shot[i].camera, status, error);
         const double seconds = adcgs_seconds() - start;
         *render_seconds += seconds;
         if (status == ADCGS_OK && s->frametimes && i == 0)
@@ -185,6 +191,9 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; showing what is complete", s->input);
     ADCGS_TRY(adcgs_shots_make(&shots, from->decoder, &s->request, error));
+    if (shots.outside)
+        adcgs_cli_note(cli, "%s: %d of %d frames show its first or last moment: it lasts from %g to %g s", s->input,
+                       shots.outside, shots.n, info.time_start, info.time_end);
     const int size[2] = {shots.shot[0].camera.width, shots.shot[0].camera.height};
     adcgs_md5_init(&all);
     adcgs_status status = adcgs_canvas_init(&canvas, size, &info, s->alpha, s->depth, from->beside != NULL, error);
@@ -207,7 +216,7 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
         adcgs_md5_hex(digest, hex);
         *mismatch = s->verify && strcasecmp(s->verify, hex);
         if (*mismatch)
-            adcgs_cli_note(cli, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
+            adcgs_cli_error(cli, ADCGS_OK, "%s: the frames' MD5 is %s, expected %s", s->input, hex, s->verify);
         else
             adcgs_cli_note(cli, "%s: %d frame%s of %dx%d, %.2f ms each", s->input, shots.n, shots.n == 1 ? "" : "s",
                            size[0], size[1], 1e3 * seconds / shots.n);
@@ -229,7 +238,7 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
         status = adcgs_requests_answer(&requests, s->input, *decoder, error);
     else if (fault) {
         printf("fault %s\n", fault);
-        adcgs_cli_note(cli, "%s", error->text);
+        adcgs_cli_error(cli, ADCGS_OK, "%s", error->text);
         adcgs_fail(error, status, "%.160s: a fault of class %s", s->input, fault);
     }
     adcgs_requests_clear(&requests);
@@ -242,7 +251,7 @@ static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch,
     const adcgs_dec_play how = {.input = s->input, .script = s->script, .request = s->request, .config = s->config};
     const adcgs_status status = adcgs_dec_play_run(&how, mismatch, error);
     if (*mismatch)
-        adcgs_cli_note(cli, "%s", error->text);
+        adcgs_cli_error(cli, ADCGS_OK, "%s", error->text);
     return status;
 }
 
@@ -298,12 +307,19 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     if (shapes_output(s) && !s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
                           "--format, --half, --float, --linear, --bits, --alpha, --depth and --beside need --output");
+    if ((s->fit || s->request.fill) && !s->request.size[0])
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill need --size");
+    if (s->fit && s->request.fill)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill exclude each other");
     if (s->bits % 8)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits %d: expected 8 or 16", s->bits);
     if (s->bits && (s->half || s->use_float))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits excludes --half and --float");
     if (s->beside && (s->alpha || s->depth || s->md5 || s->verify || s->frametimes))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--beside excludes --alpha, --depth, --md5, --verify and --frametimes");
+    if (!s->output && !s->md5 && !s->verify && !s->frametimes && !s->answer && !s->splats && !s->cameras && !s->play)
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "no output: give -o TARGET, --md5, --verify, --frametimes, --splats, --cameras, --answer or --play");
     if (s->cameras && (frames || s->times))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--cameras goes with --layers, --strict, --threads and --cpu only");
     if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
@@ -327,8 +343,10 @@ int main(int argc, char **argv)
                            .options = options,
                            .n_options = OPTION_COUNT,
                            .min_operands = 1,
-                           .max_operands = 1};
+                           .max_operands = 1,
+                           .quiet = &s.quiet};
     int first, mismatch = 0;
+    s.cli = &cli;
     const int done = adcgs_cli_parse(&cli, argc, argv, &first);
     if (done >= 0)
         return done;
@@ -347,6 +365,8 @@ int main(int argc, char **argv)
     adcgs_close(&decoder);
     if (adcgs_interrupted())
         raise(adcgs_interrupted()); /* the shell shall see why the program ended; the handler is gone by now */
+    if (status == ADCGS_OK)
+        status = adcgs_cli_flush(&error);
     error.status = status;
-    return adcgs_cli_leave(&cli, status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : mismatch);
+    return status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : mismatch;
 }

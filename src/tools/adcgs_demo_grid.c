@@ -49,7 +49,7 @@ static adcgs_status draw(const char *stream, const char *folder, const char *out
     adcgs_config_init(&config);
     ADCGS_TRY(adcgs_open_file(&decoder, stream, &config, error));
     adcgs_status status = adcgs_get_info(decoder, &info);
-    adcgs_scene_options options = {.has_background = 1, .frame_rate = info.frame_rate};
+    adcgs_scene_options options = {.has_background = 1, .rate = adcgs_fps_of(info.frame_rate)};
     memcpy(options.background, info.background, sizeof options.background);
     if (status == ADCGS_OK)
         status = adcgs_scene_open(&scene, folder, &options, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-demo-scene: writes one of the built-in scenes. Part of the tree's own demo and tests; not installed. */
+/** \file adcgs-demo-scene: writes one of the built-in scenes, for a first try. */
 #include "cli/cli.h"
 #include "scenes/scenes.h"
 
@@ -14,7 +14,7 @@ int main(int argc, char **argv)
 {
     static const char *const formats[] = {"png", "ppm", NULL};
     const char *scene = "demo", *directory = "demo-scene";
-    int size[2] = {0, 0}, format = 0, threads = 0, list = 0, first = 0;
+    int size[2] = {0, 0}, format = 0, threads = 0, list = 0, quiet = 0, first = 0;
     const adcgs_option options[] = {
         {.name = "scene", .kind = ADCGS_OPTION_STRING, .target = &scene, .value = "NAME", .help = "which scene (default: demo)"},
         {.name = "size", .kind = ADCGS_OPTION_PAIR, .target = size, .min = 1, .max = 16384, .value = "WxH",
@@ -31,21 +31,22 @@ int main(int argc, char **argv)
                            .operands = "",
                            .summary = "Render a built-in animated scene to a folder.",
                            .options = options,
-                           .n_options = ADCGS_COUNTOF(options)};
+                           .n_options = ADCGS_COUNTOF(options),
+                           .quiet = &quiet};
     const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
     if (leave >= 0)
         return leave;
     for (int i = 0; list && adcgs_scenes_name(i); i++)
         printf("%-8s %s\n", adcgs_scenes_name(i), adcgs_scenes_about(i));
+    adcgs_error error = {ADCGS_OK, ""};
     if (list)
-        return adcgs_cli_leave(&cli, 0);
-    adcgs_error error;
+        return adcgs_cli_flush(&error) == ADCGS_OK ? 0 : adcgs_cli_fail(&cli, &error);
     adcgs_pool *pool = NULL;
     adcgs_progress progress;
     const adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .format = formats[format]};
     if (adcgs_pool_create(&pool, threads, &error) != ADCGS_OK)
         return adcgs_cli_fail(&cli, &error);
-    adcgs_progress_init(&progress);
+    adcgs_progress_init(&progress, &cli);
     const adcgs_status status = adcgs_scenes_write(directory, &wanted, pool, show, &progress, &error);
     adcgs_progress_clear(&progress);
     adcgs_pool_free(&pool);

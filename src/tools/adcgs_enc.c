@@ -6,7 +6,7 @@
 #include "encode/encode.h"
 #include "encode/raw.h"
 #include "io/atomic.h"
-#include "io/file.h"
+#include "io/json.h"
 #include "layouts/open.h"
 #include "tools/enc_report.h"
 #include "train/settings.h"
@@ -14,14 +14,17 @@
 #include <adcgs/adcgs.h>
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
 typedef struct enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed, *frames;
+    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    const char *frames, *fps;
     double lambda, psnr, time_limit;
-    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet;
     int has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
+    double started; /* adcgs_seconds() */
     uint64_t seed, size, memory;
 } enc_options;
 
@@ -37,7 +40,7 @@ typedef struct watcher {
     size_t uncompressed_bytes;
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
-    adcgs_error error;
+    adcgs_error error, log_error;
 } watcher;
 
 static void log_last(watcher *w)
@@ -47,29 +50,58 @@ static void log_last(watcher *w)
         return;
     w->next_log = r->iteration + 100;
     static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
-    fprintf(w->log, "{\"stage\":\"%s\",\"iteration\":%u,\"of\":%u,", r->stage, r->iteration, r->iterations);
-    if (r->iteration)
-        fprintf(w->log, "\"loss\":%.6g,\"psnr\":%.4f,", r->loss, r->psnr);
-    fprintf(w->log,
-            "\"anchors\":%u,\"divide\":%d,\"bytes\":%.0f,\"lambda\":%.6g,\"rate\":%.2f,\"seconds\":%.2f,\"rollbacks\":%d",
-            r->anchors, r->divide, r->bytes, r->lambda, r->rate, r->seconds, r->rollbacks);
+    adcgs_json line;
+    adcgs_json_init(&line);
+    line.is_line = 1;
+    line.digits = 6;
+    adcgs_json_open(&line, NULL, '{');
+    adcgs_json_string(&line, "stage", r->stage);
+    adcgs_json_int(&line, "iteration", r->iteration);
+    adcgs_json_int(&line, "of", r->iterations);
+    if (r->iteration) {
+        adcgs_json_real(&line, "loss", r->loss);
+        adcgs_json_real(&line, "psnr", r->psnr);
+    }
+    adcgs_json_int(&line, "anchors", r->anchors);
+    adcgs_json_int(&line, "divide", r->divide);
+    adcgs_json_real(&line, "bytes", round(r->bytes));
+    adcgs_json_real(&line, "lambda", r->lambda);
+    adcgs_json_real(&line, "rate", r->rate);
+    adcgs_json_real(&line, "seconds", r->seconds);
+    adcgs_json_int(&line, "rollbacks", r->rollbacks);
+    adcgs_json_open(&line, "streams", '{');
     for (int i = 0; i < ADCGS_GROUPS; i++)
-        fprintf(w->log, "%s\"%s\":%.0f", i ? "," : ",\"streams\":{", streams[i], r->stream[i]);
-    fputs("}}\n", w->log);
-    fflush(w->log);
+        adcgs_json_real(&line, streams[i], round(r->stream[i]));
+    adcgs_json_close(&line);
+    adcgs_json_close(&line);
+    if (adcgs_json_write(&line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
+        fclose(w->log); /* the run is worth more than its log: it goes on, and says at its end what happened */
+        w->log = NULL;
+    }
+}
+
+/** "  1:05:00 left", or nothing where it is not known. */
+static const char *describe_left(double seconds, char text[32])
+{
+    const unsigned whole = seconds >= 0 && seconds < 1e9 ? (unsigned)seconds : 0;
+    if (whole >= 3600)
+        snprintf(text, 32, "  %u:%02u:%02u left", whole / 3600, whole / 60 % 60, whole % 60);
+    else
+        snprintf(text, 32, "  %u:%02u left", whole / 60, whole % 60);
+    return isnan(seconds) ? "" : text;
 }
 
 static int observe(void *user, const adcgs_train_report *r)
 {
     watcher *w = user;
+    char left[32];
     w->last = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
         log_last(w);
     if (r->iteration)
-        adcgs_progress_show(&w->progress,
-                            "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s  %d:%02d left", r->stage,
+        adcgs_progress_show(&w->progress, "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", r->stage,
                             r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
-                            (int)r->left / 60, (int)r->left % 60);
+                            describe_left(r->left, left));
     if (w->o->checkpoint && r->seconds - w->saved > 60) {
         w->saved = r->seconds;
         if (adcgs_trainer_save(w->t, w->o->checkpoint, &w->error) != ADCGS_OK)
@@ -199,19 +231,6 @@ static adcgs_status write_stream(adcgs_stream *stream, watcher *w, adcgs_pool *p
     return status;
 }
 
-/** The log has been written line by line; what it missed is said when all the rest is done. */
-static adcgs_status close_log(watcher *w, adcgs_status status, adcgs_error *error)
-{
-    if (!w->log)
-        return status;
-    int reason = adcgs_file_flush(w->log);
-    if (fclose(w->log) && !reason)
-        reason = errno;
-    w->log = NULL;
-    return reason && status == ADCGS_OK
-               ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", w->o->log, strerror(reason)) : status;
-}
-
 /** No output may take another's place. */
 static adcgs_status check_distinct(const enc_options *o, adcgs_error *error)
 {
@@ -247,7 +266,8 @@ static adcgs_status stop_early(const adcgs_cli *cli, watcher *w, adcgs_error *er
     }
     const adcgs_status status = adcgs_trainer_save(w->t, path, error);
     if (status == ADCGS_OK)
-        adcgs_cli_note(cli, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration, path);
+        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration,
+                        path);
     free(name);
     return status;
 }
@@ -262,7 +282,6 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
     w->t->until_lambda = w->o->beginning != NULL;
     w->saved = w->t->elapsed;
     adcgs_interrupt_catch();
-    adcgs_progress_init(&w->progress);
     const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
     adcgs_progress_clear(&w->progress);
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
@@ -287,12 +306,16 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     adcgs_train_config config;
     adcgs_cpu_level cpu;
     watcher w = { .o = o };
+    adcgs_progress_init(&w.progress, cli);
     adcgs_stream stream;
     adcgs_buffer_init(&w.changes);
     adcgs_stream_init(&stream);
     adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
     if (status == ADCGS_OK && o->frames)
         status = adcgs_frames_parse(&scene_options.frames, o->frames, error);
+    if (status == ADCGS_OK && o->fps && adcgs_fps_parse(o->fps, &scene_options.rate))
+        status = adcgs_fail(error, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
+                            "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
     if (status == ADCGS_OK)
         status = configure(&config, o, cpu, error);
     if (status == ADCGS_OK)
@@ -307,8 +330,11 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
         status = check_writable(o->uncompressed, error);
     if (status == ADCGS_OK)
         status = adcgs_scene_open(&scene, o->scene, &scene_options, error);
-    if (status == ADCGS_OK)
+    if (status == ADCGS_OK) {
+        adcgs_progress_show(&w.progress, "scene     %u views for training, read in %.0f s", scene->n_views[ADCGS_SPLIT_TRAIN],
+                            adcgs_seconds() - o->started);
         status = adcgs_trainer_create(&w.t, scene, &config, cpu, pool, error);
+    }
     if (status == ADCGS_OK && o->log) {
         w.log = fopen(o->log, o->resume ? "a" : "w");
         if (!w.log)
@@ -321,6 +347,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
         w.t->picture_memory = o->memory;
         w.t->loading = loading;
         w.t->loading_user = &w;
+        w.t->started = o->started;
         status = train(cli, &w, error);
     }
     if (status == ADCGS_OK && o->output)
@@ -328,7 +355,10 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK && o->output)
         status = adcgs_enc_report_print(cli, &(adcgs_enc_report){ o->output, w.t, w.last, w.uncompressed_bytes, o->threads,
                                                                   o->json }, met, error);
-    status = close_log(&w, status, error);
+    if (w.log && fclose(w.log))
+        adcgs_fail(&w.log_error, ADCGS_ERR_IO, "%s: cannot write the log", o->log);
+    if (w.log_error.status != ADCGS_OK)
+        adcgs_cli_error(cli, ADCGS_OK, "%s; the run went on without it", w.log_error.text);
     adcgs_buffer_clear(&w.changes);
     adcgs_stream_clear(&stream, NULL);
     adcgs_trainer_free(&w.t);
@@ -355,11 +385,11 @@ static int list_settings(const adcgs_cli *cli, const enc_options *o)
     if (adcgs_train_preset(&config, o->preset, &error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
     adcgs_train_list(&config, stdout);
-    return adcgs_cli_leave(cli, 0);
+    return adcgs_cli_flush(&error) == ADCGS_OK ? 0 : adcgs_cli_fail(cli, &error);
 }
 
 /** -1 to go on, else the exit code to leave with. */
-static int parse(enc_options *o, int argc, char **argv)
+static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
 {
     const adcgs_setting *const lambda = adcgs_setting_find("lambda"), *const iterations = adcgs_setting_find("iterations");
     const adcgs_setting *const scale = adcgs_setting_find("scale"), *const seed = adcgs_setting_find("seed");
@@ -392,6 +422,8 @@ static int parse(enc_options *o, int argc, char **argv)
         { "frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
           "take frames A, A + STEP, ... below B of videos, or such\nmoments of pictures; A, B or :STEP may be left out", NULL,
           NULL },
+        { "fps", 0, ADCGS_OPTION_STRING, &o->fps, 0, 0, "N[/D]",
+          "frames per second of the frames that are taken (default:\nthe scene's, else 30)", NULL, NULL },
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
@@ -403,7 +435,8 @@ static int parse(enc_options *o, int argc, char **argv)
           "change settings of the preset; 'list' shows them all", NULL,
           NULL },
         { "time-limit", 0, ADCGS_OPTION_REAL, &o->time_limit, 0, ADCGS_TIME_LIMIT_MAX, "S",
-          "train for at most S seconds; the result then depends on\nthe speed of the machine", NULL, NULL },
+          "be done with training S seconds from now, reading the scene\nincluded; the result then depends on the machine's speed",
+          NULL, NULL },
         { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, seed->min, seed->max, "N", "seed of every random choice (default 1)", NULL,
           &o->has_seed },
         { "checkpoint", 0, ADCGS_OPTION_STRING, &o->checkpoint, 0, 0, "FILE",
@@ -427,30 +460,32 @@ static int parse(enc_options *o, int argc, char **argv)
           "train the networks that draw in bf16, which is quicker;\nneeds a CPU with AVX512-BF16", NULL, NULL },
         { "json", 0, ADCGS_OPTION_FLAG, &o->json, 0, 0, NULL, "print the result as one JSON object on stdout", NULL, NULL },
     };
-    adcgs_cli cli = program;
-    cli.options = options;
-    cli.n_options = ADCGS_COUNTOF(options);
+    cli->options = options;
+    cli->n_options = ADCGS_COUNTOF(options);
+    cli->quiet = &o->quiet;
     int first;
-    const int code = adcgs_cli_parse(&cli, argc, argv, &first);
+    const int code = adcgs_cli_parse(cli, argc, argv, &first);
+    cli->n_options = 0; /* the table ends with this function */
     if (code >= 0)
         return code;
     if (o->set && !strcmp(o->set, "list"))
-        return list_settings(&cli, o);
+        return list_settings(cli, o);
     if (first >= argc)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
     if (!o->output == !o->beginning)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
                                                                   "no output: give -o FILE");
     if (o->has_lambda + o->has_size + o->has_psnr > 1)
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
     o->scene = argv[first];
     return -1;
 }
 
 int main(int argc, char **argv)
 {
-    enc_options o = { .preset = "fast" };
-    const int code = parse(&o, argc, argv);
+    enc_options o = { .preset = "fast", .started = adcgs_seconds() };
+    adcgs_cli cli = program;
+    const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)
         return code;
     adcgs_error error = { ADCGS_OK, "" };
@@ -458,11 +493,11 @@ int main(int argc, char **argv)
     int met = 1;
     adcgs_status status = adcgs_pool_create(&pool, o.threads, &error);
     if (status == ADCGS_OK)
-        status = encode(&program, &o, pool, &met, &error);
+        status = encode(&cli, &o, pool, &met, &error);
     adcgs_pool_free(&pool);
     if (status != ADCGS_OK) {
         error.status = status;
-        return adcgs_cli_fail(&program, &error);
+        return adcgs_cli_fail(&cli, &error);
     }
-    return adcgs_cli_leave(&program, met ? 0 : 1);
+    return adcgs_cli_leave(&cli, met ? 0 : 1);
 }

@@ -6,6 +6,7 @@
 #include "cli/cli.h"
 #include "layouts/open.h"
 #include "metric/crop.h"
+#include "tools/eval_match.h"
 #include "tools/eval_report.h"
 #include "tools/mosaic.h"
 
@@ -17,10 +18,11 @@
 #include <sys/stat.h>
 
 typedef struct settings {
+    const adcgs_cli *cli;
     const char *file, *scene, *images, *crop, *frames, *csv, *metrics;
     adcgs_config config;
     adcgs_box box; /**< of --crop, where it gives numbers */
-    int split, cpu, json, as_is, beside, dataset;
+    int quiet, split, cpu, json, as_is, beside, dataset;
     int measure; /**< of --metrics: flags of metric/evaluate.h */
 } settings;
 
@@ -89,7 +91,10 @@ static adcgs_status write_image(const report *r, const adcgs_view_score *score, 
     char *path = malloc(size);
     if (!path)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", r->set->images);
-    snprintf(path, size, "%s/%04u-%s.png", r->set->images, r->done, score->view->camera.name);
+    const int folder = snprintf(path, size, "%s/", r->set->images);
+    snprintf(path + folder, size - (size_t)folder, "%04u-%s.png", r->done, score->view->camera.name);
+    for (char *c = path + folder; *c; c++) /* whatever the name holds, the picture goes into this folder */
+        *c = *c == '/' || (unsigned char)*c < ' ' ? '_' : *c;
     const adcgs_status status = write_views(r, score, path, error);
     free(path);
     return status;
@@ -127,7 +132,7 @@ static adcgs_status on_view(void *user, const adcgs_view_score *score, adcgs_err
 /** Scenes give times in steps of a frame, and their alpha over a background: both are the stream's. */
 static adcgs_status open_scene(adcgs_scene **scene, const settings *s, const adcgs_info *info, adcgs_error *error)
 {
-    adcgs_scene_options options = {.has_background = !s->as_is, .frame_rate = info->frame_rate, .dataset = s->dataset};
+    adcgs_scene_options options = {.has_background = !s->as_is, .rate = adcgs_fps_of(info->frame_rate), .dataset = s->dataset};
     if (s->frames)
         ADCGS_TRY(adcgs_frames_parse(&options.frames, s->frames, error));
     memcpy(options.background, info->background, sizeof options.background);
@@ -136,12 +141,15 @@ static adcgs_status open_scene(adcgs_scene **scene, const settings *s, const adc
 
 static adcgs_status compare_views(report *r, adcgs_decoder *decoder, const adcgs_scene *scene, adcgs_error *error)
 {
+    const adcgs_match match = {r->set->cli, r->set->file, r->set->scene, decoder, scene, (adcgs_split)r->set->split};
     adcgs_evaluation e;
+    ADCGS_TRY(adcgs_match_check(&match, error));
     adcgs_eval_report_begin(&r->out);
     const adcgs_status status =
         adcgs_evaluate(&e, decoder, scene, (adcgs_split)r->set->split, r->set->measure, on_view, r, error);
     adcgs_progress_clear(&r->progress);
     ADCGS_TRY(status);
+    adcgs_match_say(&match, &e);
     return adcgs_eval_report_end(&r->out, &e, error);
 }
 
@@ -155,7 +163,7 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
     r->n = scene->n_views[s->split];
     r->out.bytes = info.bytes.total;
     r->out.layers = info.layers;
-    adcgs_progress_init(&r->progress);
+    adcgs_progress_init(&r->progress, s->cli);
     adcgs_status status = ADCGS_OK;
     if (s->crop && !strcmp(s->crop, "points"))
         status = adcgs_box_of_points(&r->box, scene, error);
@@ -186,7 +194,7 @@ static adcgs_status run(const settings *s, adcgs_error *error)
     ADCGS_TRY(adcgs_eval_report_open(&r.out, error));
     adcgs_status status = decode_and_compare(&r, error);
     adcgs_eval_report_clear(&r.out);
-    return status;
+    return status == ADCGS_OK ? adcgs_cli_flush(error) : status;
 }
 
 int main(int argc, char **argv)
@@ -203,7 +211,8 @@ int main(int argc, char **argv)
                            .options = options,
                            .n_options = OPTION_COUNT,
                            .min_operands = 2,
-                           .max_operands = 2};
+                           .max_operands = 2,
+                           .quiet = &s.quiet};
     int first;
     const int done = adcgs_cli_parse(&cli, argc, argv, &first);
     if (done >= 0)
@@ -217,6 +226,7 @@ int main(int argc, char **argv)
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--metrics %.100s: expected " ADCGS_EVAL_METRICS, s.metrics);
     if (s.json && s.csv && !strcmp(s.csv, "-"))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--json and --csv - both want standard output: give --csv a file");
+    s.cli = &cli;
     s.file = argv[first];
     s.scene = argv[first + 1];
     s.config.cpu = (adcgs_cpu_level)s.cpu;

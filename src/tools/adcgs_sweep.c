@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "cli/cli.h"
+#include "layouts/open.h"
 #include "sweep/sweep.h"
 #include "train/settings.h"
 
@@ -10,6 +11,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 /* "a,b,c"; returns how many, or -1. */
@@ -89,11 +91,39 @@ static void say(const adcgs_cli *cli, const adcgs_sweep_run *r, const char *how)
                        r->figure[ADCGS_FIGURE_PSNR], r->figure[ADCGS_FIGURE_SSIM], how);
 }
 
+static int count_running(const adcgs_sweep_plan *plan)
+{
+    int n = 0;
+    for (int i = 0; i < plan->n_runs; i++)
+        n += plan->run[i].state == ADCGS_RUN_RUNS;
+    return n;
+}
+
+/** Wait until a child ends, and say meanwhile that they are at it. */
+static pid_t wait_for_child(const adcgs_cli *cli, const adcgs_sweep_plan *plan, int *state)
+{
+    const struct timespec pause = {.tv_nsec = 50000000};
+    const double start = adcgs_seconds();
+    adcgs_progress progress;
+    pid_t child;
+    int done = 0;
+    for (int i = 0; i < plan->n_runs; i++)
+        done += plan->run[i].state == ADCGS_RUN_DONE;
+    adcgs_progress_init(&progress, cli);
+    while ((child = waitpid(-1, state, WNOHANG)) == 0) {
+        adcgs_progress_show(&progress, "%d of %d runs done, %d running since %.0f s", done, plan->n_runs, count_running(plan),
+                            adcgs_seconds() - start);
+        nanosleep(&pause, NULL);
+    }
+    adcgs_progress_clear(&progress);
+    return child;
+}
+
 /** Wait for one child and take its result; returns its exit code. */
 static int reap(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
 {
     int state = 0, i = 0;
-    const pid_t child = waitpid(-1, &state, 0);
+    const pid_t child = wait_for_child(cli, plan, &state);
     while (i < plan->n_runs && (plan->run[i].state != ADCGS_RUN_RUNS || plan->run[i].child != child))
         i++;
     if (child < 0 || i == plan->n_runs)
@@ -107,14 +137,6 @@ static int reap(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan
     if (code == 0)
         say(cli, run, "");
     return code;
-}
-
-static int count_running(const adcgs_sweep_plan *plan)
-{
-    int n = 0;
-    for (int i = 0; i < plan->n_runs; i++)
-        n += plan->run[i].state == ADCGS_RUN_RUNS;
-    return n;
 }
 
 /* Run all that is not yet done, some at a time. Returns the worst exit code. */
@@ -152,9 +174,8 @@ static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs
         adcgs_sweep_write_page(sweep, plan, chart, &error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
     adcgs_sweep_print(stdout, plan);
-    const int code = adcgs_cli_leave(cli, 0);
-    if (code)
-        return code;
+    if (adcgs_cli_flush(&error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
     adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s", sweep->directory,
                    plan->n_stages ? ", ablation.csv" : "",
                    chart ? ", sweep.svg" : plan->n_curves ? "; no chart (is gnuplot there?)" : "");
@@ -235,6 +256,11 @@ static int check_settings(const adcgs_cli *cli, const adcgs_sweep *sweep)
         status = adcgs_train_set_value(&config, "k", sweep->k[0], &error);
     if (status == ADCGS_OK)
         status = adcgs_train_check(&config, &error);
+    adcgs_frame_range frames;
+    if (status == ADCGS_OK && sweep->frames)
+        status = adcgs_frames_parse(&frames, sweep->frames, &error);
+    if (status == ADCGS_OK && access(sweep->scene, R_OK))
+        status = adcgs_fail(&error, ADCGS_ERR_IO, "%s: cannot open the scene: %s", sweep->scene, strerror(errno));
     return status == ADCGS_OK ? -1 : adcgs_cli_fail(cli, &error);
 }
 
@@ -277,10 +303,10 @@ static const adcgs_cli program = {
 };
 
 /** -1 to go on, else the exit code to leave with. */
-static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
+static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char **argv)
 {
     lists l = {.yardsticks = "all"};
-    int first = 0;
+    int first = 0, dataset = 0, has_dataset = 0;
     const adcgs_setting *const iterations = adcgs_setting_find("iterations");
     const adcgs_option options[] = {
         {"output", 'o', ADCGS_OPTION_STRING, &sweep->directory, 0, 0, "DIR", "folder for all results (required)", NULL, NULL},
@@ -297,7 +323,8 @@ static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
         {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)", NULL,
          NULL},
         {"set", 0, ADCGS_OPTION_STRING, &sweep->set, 0, 0, "NAME=VALUE,...", "settings of the encoder", NULL, NULL},
-        {"dataset", 0, ADCGS_OPTION_STRING, &sweep->dataset, 0, 0, "KIND", "kind of the scene, as for adcgs-enc", NULL, NULL},
+        {"dataset", 0, ADCGS_OPTION_CHOICE, &dataset, 0, 0, "KIND", "kind of the scene, as for adcgs-enc", adcgs_dataset_names,
+         &has_dataset},
         {"frames", 0, ADCGS_OPTION_STRING, &sweep->frames, 0, 0, "A:B:STEP", "frames of the scene, as for adcgs-enc", NULL, NULL},
         {"iterations", 'n', ADCGS_OPTION_INT, &sweep->iterations, iterations->min, iterations->max, "N",
          "of training (default: the preset's)", NULL, NULL},
@@ -307,27 +334,30 @@ static int parse(adcgs_sweep *sweep, int *jobs, int argc, char **argv)
         {"resume", 0, ADCGS_OPTION_FLAG, &sweep->resume, 0, 0, NULL,
          "keep what an earlier sweep finished with the same\nsettings, go on with what it did not", NULL, NULL},
     };
-    adcgs_cli cli = program;
-    cli.options = options;
-    cli.n_options = ADCGS_COUNTOF(options);
-    const int leave = adcgs_cli_parse(&cli, argc, argv, &first);
+    cli->options = options;
+    cli->n_options = ADCGS_COUNTOF(options);
+    const int leave = adcgs_cli_parse(cli, argc, argv, &first);
+    cli->n_options = 0; /* the table ends with this function */
     if (leave >= 0)
         return leave;
     if (!sweep->directory || (!l.lambdas && !sweep->ablation))
-        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
     sweep->scene = argv[first];
-    const int bad = parse_lists(&cli, &l, sweep);
-    return bad >= 0 ? bad : check_settings(&cli, sweep);
+    sweep->dataset = has_dataset ? adcgs_dataset_names[dataset] : NULL;
+    const int bad = parse_lists(cli, &l, sweep);
+    return bad >= 0 ? bad : check_settings(cli, sweep);
 }
 
 int main(int argc, char **argv)
 {
     char programs[ADCGS_SWEEP_PATH];
     adcgs_sweep sweep = {.programs = programs};
-    int jobs = 1;
-    const int code = parse(&sweep, &jobs, argc, argv);
+    int jobs = 1, quiet = 0;
+    adcgs_cli cli = program;
+    cli.quiet = &quiet;
+    const int code = parse(&cli, &sweep, &jobs, argc, argv);
     if (code >= 0)
         return code;
     find_programs(argv[0], programs, sizeof programs);
-    return run_sweep(&program, &sweep, jobs);
+    return run_sweep(&cli, &sweep, jobs);
 }

@@ -7,6 +7,7 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "cli/cli.h"
+#include "io/file.h"
 #include "stream/input.h"
 #include "stream/stream.h"
 
@@ -134,7 +135,7 @@ adcgs_status adcgs_requests_read(adcgs_requests *out, const char *path, adcgs_er
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
     for (int number = 1; status == ADCGS_OK && getline(&line, &room, file) >= 0; number++)
-        if (read_line(out, line))
+        if (read_line(out, line + (number == 1 ? adcgs_file_mark(line, strlen(line)) : 0)))
             status = adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: line %d is no request", path, number);
     if (status == ADCGS_OK && ferror(file))
         status = adcgs_fail(error, ADCGS_ERR_IO, "%.160s: cannot read", path);

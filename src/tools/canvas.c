@@ -55,11 +55,13 @@ adcgs_status adcgs_canvas_finish(adcgs_canvas *canvas, adcgs_decoder *decoder, a
 {
     canvas->extras = (adcgs_sink_extras){canvas->alpha, canvas->depth, &shot->camera, shot->time};
     if (canvas->alpha || canvas->depth)
-        ADCGS_TRY(adcgs_render_depth(decoder, &shot->camera, shot->time, canvas->depth, canvas->alpha, error));
+        ADCGS_TRY(adcgs_shots_rendered(
+            &shot->camera, adcgs_render_depth(decoder, &shot->camera, shot->time, canvas->depth, canvas->alpha, error), error));
     if (canvas->alpha)
         remove_background(canvas);
     if (beside) {
-        ADCGS_TRY(adcgs_render(beside, &shot->camera, shot->time, &canvas->second, error));
+        ADCGS_TRY(adcgs_shots_rendered(&shot->camera,
+                                       adcgs_render(beside, &shot->camera, shot->time, &canvas->second, error), error));
         canvas->extras = (adcgs_sink_extras){0}; /* no camera sees two pictures */
         adcgs_mosaic_place(&canvas->mosaic, 0, 0, (adcgs_samples){canvas->frame.rgb, 3, 1});
         adcgs_mosaic_place(&canvas->mosaic, 1, 0, (adcgs_samples){canvas->second.rgb, 3, 1});

@@ -22,6 +22,7 @@ static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder
     adcgs_shots_request request = how->request;
     adcgs_shots shots;
     ADCGS_TRY(adcgs_get_info(decoder, info));
+    ADCGS_TRY(adcgs_shots_check_times(info, &request, error));
     *cameras = calloc((size_t)info->cameras + 1, sizeof **cameras);
     if (!*cameras)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %d cameras", how->input, info->cameras);
@@ -29,7 +30,7 @@ static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder
         ADCGS_TRY(adcgs_get_camera(decoder, i, &(*cameras)[i]));
     /* Where to begin is the first of one shot; the window keeps its shape, so it is not stretched to a size. */
     request.has_times = 1;
-    request.end = request.begin;
+    request.begin = request.end = info->time_start;
     request.size[0] = request.size[1] = 0;
     ADCGS_TRY(adcgs_shots_make(&shots, decoder, &request, error));
     settings->home = shots.shot[0].camera;

@@ -71,6 +71,9 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; writing what is complete", input);
     ADCGS_TRY(adcgs_shots_make(&shots, decoder, &moments, error));
+    if (shots.outside)
+        adcgs_cli_note(cli, "%s: %d of %d files show its first or last moment: it lasts from %g to %g s", input, shots.outside,
+                       shots.n, info.time_start, info.time_end);
     const adcgs_status status = write_all(&n, decoder, &info, target, &shots, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, shots.n, shots.n == 1 ? "" : "s", n);

@@ -2,6 +2,8 @@
 /** \file What adcgs-enc reports of a file it has written. */
 #include "tools/enc_report.h"
 
+#include "cli/text.h"
+#include "io/json.h"
 #include "metric/evaluate.h"
 
 #include <math.h>
@@ -30,7 +32,8 @@ static void print_text(const adcgs_enc_report *r, const result *x)
 {
     const adcgs_bytes *b = &x->info.bytes;
     const uint64_t features = b->layer[0] + b->layer[1] + b->layer[2] + b->layer[3] + b->layer[4];
-    fprintf(stderr, "%s: %llu bytes: networks %llu, geometry %llu, features %llu, cameras %llu, rest %llu\n", r->file,
+    adcgs_text_show(stderr, r->file);
+    fprintf(stderr, ": %llu bytes: networks %llu, geometry %llu, features %llu, cameras %llu, rest %llu\n",
             (unsigned long long)b->total, (unsigned long long)b->networks, (unsigned long long)b->geometry,
             (unsigned long long)features, (unsigned long long)b->cameras, (unsigned long long)(b->header + b->metadata));
     fprintf(stderr, "%u anchors (%u static), %u primitives; lambda %.3g; trained in %.0f s\n", x->info.anchors,
@@ -60,13 +63,13 @@ static void print_components(adcgs_json *j, const adcgs_bytes *b)
     }
     adcgs_json_int(j, "cameras", (int64_t)b->cameras);
     adcgs_json_int(j, "metadata", (int64_t)b->metadata);
-    adcgs_json_close(j, '}');
+    adcgs_json_close(j);
 }
 
 static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs_error *error)
 {
     adcgs_json j;
-    adcgs_json_init(&j, stdout);
+    adcgs_json_init(&j);
     adcgs_json_open(&j, NULL, '{');
     adcgs_json_string(&j, "file", r->file);
     adcgs_json_int(&j, "bytes", (int64_t)x->info.bytes.total);
@@ -84,7 +87,7 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
         adcgs_json_real(&j, "value", x->target.value);
         adcgs_json_real(&j, "reached", x->target.reached);
         adcgs_json_bool(&j, "met", x->target.met);
-        adcgs_json_close(&j, '}');
+        adcgs_json_close(&j);
     }
     adcgs_json_int(&j, "iterations", r->last.iteration);
     adcgs_json_real(&j, "training_seconds", r->last.seconds);
@@ -92,13 +95,39 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
     adcgs_json_string(&j, "split", adcgs_split_name(x->split));
     adcgs_json_real(&j, "psnr", x->quality.psnr);
     adcgs_json_real(&j, "ssim", x->quality.ssim);
-    adcgs_json_close(&j, '}');
-    return adcgs_json_finish(&j, error);
+    adcgs_json_close(&j);
+    return adcgs_json_write(&j, stdout, "standard output", error);
+}
+
+/** Views as they are measured. */
+typedef struct counter {
+    adcgs_progress progress;
+    uint32_t done, n;
+} counter;
+
+static adcgs_status count_view(void *user, const adcgs_view_score *score, adcgs_error *error)
+{
+    counter *c = user;
+    (void)score;
+    (void)error;
+    adcgs_progress_show(&c->progress, "measured  %6u/%u", ++c->done, c->n);
+    return ADCGS_OK;
+}
+
+/** PSNR and SSIM of a split's views. */
+static adcgs_status evaluate(adcgs_evaluation *out, const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene,
+                             adcgs_split split, adcgs_error *error)
+{
+    counter c = {.n = scene->n_views[split]};
+    adcgs_progress_init(&c.progress, cli);
+    const adcgs_status status = adcgs_evaluate(out, decoder, scene, split, 0, count_view, &c, error);
+    adcgs_progress_clear(&c.progress);
+    return status;
 }
 
 /** Compare with the target. The PSNR of training views is measured from the file like any other. */
-static adcgs_status judge(outcome *o, const adcgs_enc_report *r, const adcgs_info *info, adcgs_decoder *decoder,
-                          adcgs_error *error)
+static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_report *r, const adcgs_info *info,
+                          adcgs_decoder *decoder, adcgs_error *error)
 {
     const adcgs_train_config *c = &r->trainer->config;
     adcgs_evaluation e;
@@ -108,7 +137,7 @@ static adcgs_status judge(outcome *o, const adcgs_enc_report *r, const adcgs_inf
         o->reached = (double)info->bytes.total;
         o->met = o->reached <= o->value && o->reached > (1 - SIZE_WITHIN) * o->value;
     } else if (c->target == ADCGS_TARGET_PSNR) {
-        ADCGS_TRY(adcgs_evaluate(&e, decoder, r->trainer->scene, ADCGS_SPLIT_TRAIN, 0, NULL, NULL, error));
+        ADCGS_TRY(evaluate(&e, cli, decoder, r->trainer->scene, ADCGS_SPLIT_TRAIN, error));
         o->kind = "psnr";
         o->reached = e.psnr;
         o->met = fabs(o->reached - o->value) <= PSNR_WITHIN;
@@ -119,21 +148,24 @@ static adcgs_status judge(outcome *o, const adcgs_enc_report *r, const adcgs_inf
 static void say_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const outcome *o)
 {
     if (!strcmp(o->kind, "size"))
-        adcgs_cli_note(cli, "%s: %.0f bytes, smaller than the %.0f asked for: more anchors, or a longer run, would use them",
-                       r->file, o->reached, o->value);
+        adcgs_cli_error(cli, ADCGS_OK,
+                        "%s: %.0f bytes, smaller than the %.0f asked for: more anchors, or a longer run, would use them", r->file,
+                        o->reached, o->value);
     else
-        adcgs_cli_note(cli, "%s: the training views have %.2f dB instead of the %.2f asked for: %s", r->file, o->reached,
-                       o->value, o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
+        adcgs_cli_error(cli, ADCGS_OK, "%s: the training views have %.2f dB instead of the %.2f asked for: %s", r->file,
+                        o->reached, o->value,
+                        o->reached < o->value ? "the best that this run can do" : "the least that this run can do");
 }
 
-static adcgs_status measure(result *x, const adcgs_enc_report *r, adcgs_decoder *decoder, adcgs_error *error)
+static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_report *r, adcgs_decoder *decoder,
+                            adcgs_error *error)
 {
     const adcgs_scene *scene = r->trainer->scene;
     x->split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
                scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
     ADCGS_TRY(adcgs_get_info(decoder, &x->info));
-    ADCGS_TRY(adcgs_evaluate(&x->quality, decoder, scene, x->split, 0, NULL, NULL, error));
-    return judge(&x->target, r, &x->info, decoder, error);
+    ADCGS_TRY(evaluate(&x->quality, cli, decoder, scene, x->split, error));
+    return judge(cli, &x->target, r, &x->info, decoder, error);
 }
 
 /** What could not be measured is complete all the same. */
@@ -152,12 +184,12 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     config.threads = r->threads;
     config.cpu = r->trainer->cpu;
     ADCGS_TRY(adcgs_open_file(&decoder, r->file, &config, error));
-    adcgs_status status = measure(&x, r, decoder, error);
+    adcgs_status status = measure(cli, &x, r, decoder, error);
     if (status != ADCGS_OK)
         say_written(r, error);
     if (status == ADCGS_OK && r->json)
         status = print_json(r, &x, error);
-    else if (status == ADCGS_OK)
+    else if (status == ADCGS_OK && !*cli->quiet)
         print_text(r, &x);
     if (status == ADCGS_OK && !x.target.met)
         say_missed(cli, r, &x.target);

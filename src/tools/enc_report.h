@@ -11,7 +11,7 @@ typedef struct adcgs_enc_report {
     const adcgs_trainer *trainer;
     adcgs_train_report last; /**< of the training run */
     size_t uncompressed;     /**< bytes of the file of plain numbers; 0: none was asked for */
-    int threads, json;       /**< as on the command line */
+    int threads, json; /**< as on the command line */
 } adcgs_enc_report;
 
 /**

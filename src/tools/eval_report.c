@@ -4,9 +4,12 @@
 
 #include "tools/eval_report.h"
 
+#include "cli/text.h"
+
 #include <math.h>
 #include <stdlib.h>
 
+#define NAME_WIDTH 24
 #define ALWAYS 0
 #define CROP ADCGS_EVAL_COLUMNS /* beyond all flags */
 
@@ -109,19 +112,6 @@ static void make_row(double *value, const adcgs_view_score *score, const adcgs_c
 
 /* ---- CSV (RFC 4180, but for lines that end with a newline alone) ---- */
 
-static void csv_text(FILE *file, const char *text)
-{
-    const int plain = !text[strcspn(text, ",\"\r\n")];
-    if (plain) {
-        fputs(text, file);
-        return;
-    }
-    fputc('"', file);
-    for (; *text; text++)
-        fprintf(file, *text == '"' ? "\"\"" : "%c", *text);
-    fputc('"', file);
-}
-
 static void csv_heading(const adcgs_eval_report *r)
 {
     fputs("row,camera,name,time", r->table);
@@ -143,7 +133,7 @@ static void csv_values(const adcgs_eval_report *r, const double *value)
 static void csv_view(const adcgs_eval_report *r, const adcgs_view_score *score, const double *value)
 {
     fprintf(r->table, "view,%u,", score->camera);
-    csv_text(r->table, score->view->camera.name);
+    adcgs_text_cell(r->table, score->view->camera.name);
     fprintf(r->table, ",%.10g", score->view->time);
     csv_values(r, value);
 }
@@ -168,15 +158,15 @@ static void json_view(adcgs_eval_report *r, const adcgs_view_score *score, const
         adcgs_json_open(&r->json, "crop", '[');
         for (int i = 0; i < 4; i++)
             adcgs_json_int(&r->json, NULL, crop->rectangle[i]);
-        adcgs_json_close(&r->json, ']');
+        adcgs_json_close(&r->json);
     }
     json_values(r, value, 0);
-    adcgs_json_close(&r->json, '}');
+    adcgs_json_close(&r->json);
 }
 
 static void json_begin(adcgs_eval_report *r)
 {
-    adcgs_json_init(&r->json, stdout);
+    adcgs_json_init(&r->json);
     adcgs_json_open(&r->json, NULL, '{');
     adcgs_json_string(&r->json, "file", r->file);
     adcgs_json_string(&r->json, "scene", r->scene);
@@ -188,7 +178,7 @@ static void json_begin(adcgs_eval_report *r)
         adcgs_json_open(&r->json, "crop_box", '[');
         for (int i = 0; i < 6; i++)
             adcgs_json_real(&r->json, NULL, i < 3 ? r->box->low[i] : r->box->high[i - 3]);
-        adcgs_json_close(&r->json, ']');
+        adcgs_json_close(&r->json);
     }
     adcgs_json_open(&r->json, "views", '[');
 }
@@ -201,22 +191,22 @@ static void json_cameras(adcgs_eval_report *r)
         adcgs_json_int(&r->json, "camera", r->cameras[i].camera);
         adcgs_json_int(&r->json, "views", r->cameras[i].views);
         json_values(r, r->cameras[i].value, 1);
-        adcgs_json_close(&r->json, '}');
+        adcgs_json_close(&r->json);
     }
-    adcgs_json_close(&r->json, ']');
+    adcgs_json_close(&r->json);
 }
 
 static adcgs_status json_end(adcgs_eval_report *r, const double *mean, const adcgs_evaluation *e, adcgs_error *error)
 {
-    adcgs_json_close(&r->json, ']');
+    adcgs_json_close(&r->json);
     if (r->measure & ADCGS_MEASURE_TIME)
         json_cameras(r);
     if (r->box)
         adcgs_json_int(&r->json, "crop_views", r->of_all[ADCGS_EVAL_CROP_PSNR].n);
     json_values(r, mean, 1);
     adcgs_json_real(&r->json, "frames_per_second", e->frames_per_second);
-    adcgs_json_close(&r->json, '}');
-    return adcgs_json_finish(&r->json, error);
+    adcgs_json_close(&r->json);
+    return adcgs_json_write(&r->json, stdout, "standard output", error);
 }
 
 /* ---- Text ---- */
@@ -318,7 +308,8 @@ adcgs_status adcgs_eval_report_view(adcgs_eval_report *r, const adcgs_view_score
     if (r->table)
         csv_view(r, score, value);
     if (r->as_text) {
-        printf("%-24s %8.3f s", score->view->camera.name, score->view->time);
+        adcgs_text_column(stdout, score->view->camera.name, NAME_WIDTH);
+        printf(" %8.3f s", score->view->time);
         text_values(r, value, 0);
     }
     return score->of_camera ? report_camera(r, score->of_camera, error) : ADCGS_OK;
@@ -345,6 +336,7 @@ adcgs_status adcgs_eval_report_end(adcgs_eval_report *r, const adcgs_evaluation 
 void adcgs_eval_report_clear(adcgs_eval_report *r)
 {
     adcgs_atomic_abort(&r->atomic);
+    adcgs_json_clear(&r->json);
     free(r->cameras);
     r->cameras = NULL;
     r->n_cameras = 0;

@@ -5,6 +5,7 @@
 
 #include "cli/cli.h"
 #include "io/atomic.h"
+#include "io/json.h"
 #include "metric/crop.h"
 
 /** Values of a row; not a number where there is none. */

@@ -41,8 +41,10 @@ void adcgs_mosaic_place(adcgs_mosaic *mosaic, int column, int row, adcgs_samples
     for (int y = 0; y < mosaic->height; y++) {
         float *to = line_of(mosaic, column, row, y);
         for (int x = 0; x < mosaic->width; x++)
-            for (size_t c = 0; c < 3; c++)
-                *to++ = sample_of(picture, mosaic, x, y, c);
+            for (size_t c = 0; c < 3; c++) {
+                const float value = sample_of(picture, mosaic, x, y, c);
+                *to++ = isnan(value) ? 0.0f : value; /* masked: black, as in the mask */
+            }
     }
 }
 
@@ -53,7 +55,7 @@ void adcgs_mosaic_difference(adcgs_mosaic *mosaic, int column, int row, adcgs_sa
         for (int x = 0; x < mosaic->width; x++)
             for (size_t c = 0; c < 3; c++) {
                 const float off = sample_of(picture, mosaic, x, y, c) - sample_of(truth, mosaic, x, y, c);
-                *to++ = fminf(fmaxf(0.5f + ADCGS_MOSAIC_GAIN * off, 0.0f), 1.0f);
+                *to++ = isnan(off) ? 0.5f : fminf(fmaxf(0.5f + ADCGS_MOSAIC_GAIN * off, 0.0f), 1.0f);
             }
     }
 }

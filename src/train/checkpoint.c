@@ -7,19 +7,22 @@
 #include "train/checkpoint.h"
 
 #include "base/digest.h"
+#include "data/content.h"
 #include "io/atomic.h"
 #include "io/file.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 18 };
+enum { FORMAT = 19 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
     adcgs_reader *in;  /* or restoring */
     int failed;
+    char differs[160]; /* restoring: what the run and the file do not agree on; "" if they do */
 } walk;
 
 static void visit(walk *w, void *data, size_t bytes)
@@ -35,42 +38,91 @@ static void visit(walk *w, void *data, size_t bytes)
         w->failed = 1;
 }
 
+/** What differs goes into the message; the first difference says the most. */
+static void differ(walk *w, const char *format, ...) ADCGS_PRINTF(2, 3);
+static void differ(walk *w, const char *format, ...)
+{
+    va_list arguments;
+    if (w->failed || w->differs[0])
+        return;
+    va_start(arguments, format);
+    vsnprintf(w->differs, sizeof w->differs, format, arguments);
+    va_end(arguments);
+}
+
 /** A number that must be the same in the run and in the file. */
-static void visit_same(walk *w, uint64_t value)
+static void visit_same(walk *w, const char *name, uint64_t value)
 {
     uint64_t stored = value;
     visit(w, &stored, sizeof stored);
-    w->failed |= stored != value;
+    if (stored != value)
+        differ(w, "saved with other options: %s is %llu there and %llu here", name, (unsigned long long)stored,
+               (unsigned long long)value);
 }
+
+static void visit_same_real(walk *w, const char *name, float value)
+{
+    float stored = value;
+    visit(w, &stored, sizeof stored);
+    if (adcgs_float_bits(stored) != adcgs_float_bits(value))
+        differ(w, "saved with other options: %s is %g there and %g here", name, (double)stored, (double)value);
+}
+
+typedef struct named_whole {
+    const char *name;
+    uint64_t value;
+} named_whole;
+
+typedef struct named_real {
+    const char *name;
+    float value;
+} named_real;
+
+static void visit_all(walk *w, const named_whole *whole, size_t n, const named_real *real, size_t m)
+{
+    for (size_t i = 0; i < n; i++)
+        visit_same(w, whole[i].name, whole[i].value);
+    for (size_t i = 0; i < m; i++)
+        visit_same_real(w, real[i].name, real[i].value);
+}
+
+#define FIELD(name) { #name, c->name }
 
 /** Everything that the run depends on and no limit of time: a run may go on with another. */
 static void walk_options(walk *w, const adcgs_train_config *c)
 {
-    const uint64_t whole[] = { c->seed, c->iterations, (uint64_t)c->scale, c->start_anchors, c->max_anchors, c->densify_every,
-                               (uint64_t)c->rate_period, c->without_coarse, c->without_fine, c->without_rate,
-                               c->without_densification, c->without_rounding, c->bf16 };
-    const float real[] = { c->ssim_weight, c->densify_threshold, c->prune_opacity, c->keep_opacity, c->rigid_weight,
-                           c->scale_weight, c->still_below, c->rdo_strength, c->dropout, c->network_rate, c->average_last,
-                           c->curriculum_begin, c->curriculum_until, c->quarter_until, c->half_until, c->scale_from,
-                           c->deform_from, c->fine_from, c->densify_from, c->densify_until, c->noise_from, c->rate_from,
-                           c->prune_units_at, c->prune_units_again, c->decide_at, c->round_from, c->freeze_from };
-    for (size_t i = 0; i < ADCGS_COUNTOF(whole); i++)
-        visit_same(w, whole[i]);
-    for (size_t i = 0; i < ADCGS_COUNTOF(real); i++)
-        visit_same(w, adcgs_float_bits(real[i]));
+    const named_whole whole[] = { FIELD(seed), FIELD(iterations), { "scale", (uint64_t)c->scale }, FIELD(start_anchors),
+                                  FIELD(max_anchors), FIELD(densify_every), { "rate_period", (uint64_t)c->rate_period },
+                                  FIELD(without_coarse), FIELD(without_fine), FIELD(without_rate), FIELD(without_densification),
+                                  FIELD(without_rounding), FIELD(bf16) };
+    const named_real real[] = { FIELD(ssim_weight), FIELD(densify_threshold), FIELD(prune_opacity), FIELD(keep_opacity),
+                                FIELD(rigid_weight), FIELD(scale_weight), FIELD(still_below), FIELD(rdo_strength),
+                                FIELD(dropout), FIELD(network_rate), FIELD(average_last), FIELD(curriculum_begin),
+                                FIELD(curriculum_until), FIELD(quarter_until), FIELD(half_until), FIELD(scale_from),
+                                FIELD(deform_from), FIELD(fine_from), FIELD(densify_from), FIELD(densify_until),
+                                FIELD(noise_from), FIELD(rate_from), FIELD(prune_units_at), FIELD(prune_units_again),
+                                FIELD(decide_at), FIELD(round_from), FIELD(freeze_from) };
+    visit_all(w, whole, ADCGS_COUNTOF(whole), real, ADCGS_COUNTOF(real));
 }
 
 /** A run is bound to its lambda, or its target, from where that has a say; before, it may go on with another. */
 static void walk_lambda(walk *w, adcgs_trainer *t)
 {
     const adcgs_train_config *c = &t->config;
-    uint32_t lambda = adcgs_float_bits(c->lambda), target = c->target;
+    float lambda = c->lambda;
+    uint32_t target = c->target;
     double value = c->target_value;
     visit(w, &lambda, sizeof lambda);
     visit(w, &target, sizeof target);
     visit(w, &value, sizeof value);
     visit(w, &t->lambda_used, sizeof t->lambda_used);
-    w->failed |= t->lambda_used && (lambda != adcgs_float_bits(c->lambda) || target != c->target || value != c->target_value);
+    if (!t->lambda_used)
+        return;
+    if (target != c->target || value != c->target_value)
+        differ(w, "saved with other options: another target, which has had its say");
+    else if (adcgs_float_bits(lambda) != adcgs_float_bits(c->lambda))
+        differ(w, "saved with other options: lambda, which has had its say, is %g there and %g here", (double)lambda,
+               (double)c->lambda);
 }
 
 /** Whether weights get a lattice is open until they do. */
@@ -79,43 +131,78 @@ static void walk_lattice(walk *w, adcgs_trainer *t)
     uint8_t without = t->config.without_weight_steps;
     visit(w, &without, sizeof without);
     visit(w, &t->rounding, sizeof t->rounding);
-    w->failed |= t->rounding && without != t->config.without_weight_steps;
+    if (t->rounding && without != t->config.without_weight_steps)
+        differ(w, "saved with other options: weights have been rounded %s the lattice", without ? "without" : "to");
 }
 
 static void walk_sizes(walk *w, const adcgs_params *p, const adcgs_shape *s)
 {
-    const int sizes[] = { p->k, p->n_fv, p->n_fg, p->chunks, p->n_eta, p->octaves, p->fine_uses_fv, p->coarse_rotation,
-                          p->adaptive_steps, p->time_rows, p->time_width, s->theta_width, s->theta_hidden, s->omega_width,
-                          s->omega_hidden, s->varpi_width, s->varpi_hidden, s->entropy_width, s->entropy_hidden, s->depth };
-    const float steps[] = { s->step_fv, s->step_fg, s->step_sigma, s->step_colour };
-    for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++)
-        visit_same(w, (uint64_t)sizes[i]);
-    for (size_t i = 0; i < ADCGS_COUNTOF(steps); i++)
-        visit_same(w, adcgs_float_bits(steps[i]));
+    const named_whole sizes[] = { { "k", p->k }, { "n_fv", p->n_fv }, { "n_fg", p->n_fg }, { "chunks", p->chunks },
+                                  { "n_eta", p->n_eta }, { "octaves", p->octaves }, { "fine_uses_fv", p->fine_uses_fv },
+                                  { "coarse_rotation", p->coarse_rotation }, { "adaptive_steps", p->adaptive_steps },
+                                  { "time_rows", p->time_rows }, { "time_width", p->time_width },
+                                  { "theta_width", (uint64_t)s->theta_width }, { "theta_hidden", (uint64_t)s->theta_hidden },
+                                  { "omega_width", (uint64_t)s->omega_width }, { "omega_hidden", (uint64_t)s->omega_hidden },
+                                  { "varpi_width", (uint64_t)s->varpi_width }, { "varpi_hidden", (uint64_t)s->varpi_hidden },
+                                  { "entropy_width", (uint64_t)s->entropy_width },
+                                  { "entropy_hidden", (uint64_t)s->entropy_hidden }, { "depth", (uint64_t)s->depth } };
+    const named_real steps[] = { { "step_fv", s->step_fv }, { "step_fg", s->step_fg }, { "step_sigma", s->step_sigma },
+                                 { "step_colour", s->step_colour } };
+    visit_all(w, sizes, ADCGS_COUNTOF(sizes), steps, ADCGS_COUNTOF(steps));
 }
 
-/** The scene by its cameras and times; its pictures are taken on trust. */
+/** A checksum that stands for a part of the scene. */
+static void visit_part(walk *w, const char *what, uint32_t crc)
+{
+    uint32_t stored = crc;
+    visit(w, &stored, sizeof stored);
+    if (stored != crc)
+        differ(w, "saved with another scene: its %s are others than here", what);
+}
+
+static uint32_t add_camera(uint32_t crc, const adcgs_scene_view *v)
+{
+    const adcgs_camera *c = &v->camera;
+    const adcgs_lens *l = &v->lens;
+    const double numbers[] = { c->width, c->height, c->fx, c->fy, c->cx, c->cy, c->near_plane, l->width, l->height, l->fx, l->fy,
+                               l->cx, l->cy, l->skew, l->k8, l->p[0], l->p[1] };
+    crc = adcgs_crc32c(crc, numbers, sizeof numbers);
+    crc = adcgs_crc32c(crc, l->k, sizeof l->k);
+    return adcgs_crc32c(crc, c->cam_to_world, sizeof c->cam_to_world);
+}
+
+/** All of the scene but its pictures: where these lie does not matter, and what they show is read only for a file. */
 static void walk_scene(walk *w, const adcgs_trainer *t)
 {
-    uint32_t crc = 0;
+    const adcgs_scene *s = t->scene;
+    uint32_t cameras = 0, times = 0;
+    uint64_t n = t->n_views;
+    visit(w, &n, sizeof n);
+    if (n != t->n_views)
+        differ(w, "saved with another scene: %llu training views there and %u here", (unsigned long long)n, t->n_views);
     for (uint32_t i = 0; i < t->n_views; i++) {
-        const adcgs_scene_view *v = &t->scene->views[ADCGS_SPLIT_TRAIN][i];
-        crc = adcgs_crc32c(crc, v->camera.cam_to_world, sizeof v->camera.cam_to_world);
-        crc = adcgs_crc32c(crc, &v->camera.fx, sizeof v->camera.fx);
-        crc = adcgs_crc32c(crc, &v->time, sizeof v->time);
+        const adcgs_scene_view *v = &s->views[ADCGS_SPLIT_TRAIN][i];
+        cameras = add_camera(cameras, v);
+        times = adcgs_crc32c(times, &v->time, sizeof v->time);
+        times = adcgs_crc32c(times, &v->frame, sizeof v->frame);
     }
-    visit_same(w, t->n_views);
-    visit_same(w, crc);
+    visit_part(w, "cameras", cameras);
+    visit_part(w, "moments", adcgs_crc32c(times, &s->duration, sizeof s->duration));
+    visit_part(w, "background", adcgs_crc32c((uint32_t)s->has_alpha, s->background, sizeof s->background));
+    visit_part(w, "initial points", adcgs_crc32c(0, s->points.position, s->points.n * sizeof *s->points.position));
 }
 
 static void walk_config(walk *w, adcgs_trainer *t)
 {
-    visit_same(w, FORMAT);
+    uint64_t format = FORMAT;
+    visit(w, &format, sizeof format);
+    if (format != FORMAT)
+        differ(w, "saved by another version of the program");
+    walk_scene(w, t);
     walk_options(w, &t->config);
     walk_lambda(w, t);
     walk_lattice(w, t);
     walk_sizes(w, &t->f->params, &t->f->shape);
-    walk_scene(w, t);
 }
 
 static void walk_scalars(walk *w, adcgs_trainer *t)
@@ -198,7 +285,7 @@ static void walk_exposure(walk *w, adcgs_trainer *t)
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
 {
     adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the storing visitor only reads */
-    walk w = { out, NULL, 0 };
+    walk w = { .out = out };
     walk_config(&w, t);
     walk_scalars(&w, t);
     visit(&w, &t->f->n, sizeof t->f->n);
@@ -232,10 +319,12 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
 {
     adcgs_reader reader;
     adcgs_reader_init(&reader, data, size);
-    walk w = { NULL, &reader, 0 };
+    walk w = { .in = &reader };
     walk_config(&w, t);
+    if (w.differs[0])
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s", w.differs);
     if (w.failed)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "saved with other options or another scene; give the same as then");
+        return adcgs_fail(error, ADCGS_ERR_DATA, "it ends too early");
     walk_scalars(&w, t);
     if (!t->lambda_used)
         t->lambda = (double)t->config.lambda;
@@ -250,19 +339,50 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     return ADCGS_OK;
 }
 
+/* ---- Files ---- */
+
+/** The pictures' digest; they are read once, when it is first asked for. */
+static adcgs_status find_content(const adcgs_trainer *trainer, adcgs_error *error)
+{
+    adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* nothing that the run depends on */
+    if (!t->has_content)
+        ADCGS_TRY(adcgs_scene_content(t->scene, ADCGS_SPLIT_TRAIN, t->content, error));
+    t->has_content = 1;
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_trainer_save(const adcgs_trainer *t, const char *path, adcgs_error *error)
 {
     adcgs_buffer b;
+    ADCGS_TRY(find_content(t, error));
     adcgs_buffer_init(&b);
     adcgs_write_bytes(&b, magic, sizeof magic);
+    adcgs_write_bytes(&b, t->content, sizeof t->content);
     adcgs_status status = adcgs_trainer_store(t, &b, error);
-    if (status == ADCGS_OK) {
+    if (status == ADCGS_OK)
         adcgs_write_uint(&b, adcgs_crc32c(0, b.data, b.size), 4);
-        status = b.failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path)
-                          : adcgs_atomic_save(path, b.data, b.size, error);
-    }
+    if (status == ADCGS_OK && b.failed)
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint");
+    if (status == ADCGS_OK)
+        status = adcgs_atomic_save(path, b.data, b.size, error);
     adcgs_buffer_clear(&b);
     return status;
+}
+
+/** A file's contents, whole. */
+static adcgs_status restore_file(adcgs_trainer *t, const uint8_t *data, size_t size, adcgs_error *error)
+{
+    const size_t head = sizeof magic + sizeof t->content;
+    if (size < head + 4 || memcmp(data, magic, sizeof magic))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "not a checkpoint of adcgs-enc");
+    if (adcgs_crc32c(0, data, size - 4) != adcgs_load_le32(data + size - 4))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "damaged: its checksum does not match");
+    ADCGS_TRY(adcgs_trainer_restore(t, data + head, size - 4 - head, error));
+    ADCGS_TRY(find_content(t, error));
+    if (memcmp(data + sizeof magic, t->content, sizeof t->content))
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "saved with another scene: the training pictures' files hold something else now");
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_trainer_load(adcgs_trainer *t, const char *path, adcgs_error *error)
@@ -270,13 +390,7 @@ adcgs_status adcgs_trainer_load(adcgs_trainer *t, const char *path, adcgs_error 
     uint8_t *data;
     size_t size;
     ADCGS_TRY(adcgs_file_load(&data, &size, path, 1ull << 36, error));
-    adcgs_status status;
-    if (size < sizeof magic + 4 || memcmp(data, magic, sizeof magic))
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "not a checkpoint of adcgs-enc");
-    else if (adcgs_crc32c(0, data, size - 4) != adcgs_load_le32(data + size - 4))
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "damaged: its checksum does not match");
-    else
-        status = adcgs_trainer_restore(t, data + sizeof magic, size - 4 - sizeof magic, error);
+    const adcgs_status status = restore_file(t, data, size, error);
     free(data);
     if (status != ADCGS_OK)
         adcgs_error_locate(error, path);

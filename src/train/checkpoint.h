@@ -7,12 +7,13 @@
 
 /**
  * Checkpoints: everything needed to go on with identical results; atomic file, versioned, checksummed. Loading one saved with
- * other options or another scene is ADCGS_ERR_DATA; only lambda may be another while it has had no say, so that runs at several
- * rates share their beginning, and without_weight_steps before weights are rounded, so that its price can be told.
+ * other options or another scene, pictures included, is ADCGS_ERR_DATA, which says what differs; only lambda may be another
+ * while it has had no say, so that runs at several rates share their beginning, and without_weight_steps before weights are
+ * rounded, so that its price can be told.
  */
 adcgs_status adcgs_trainer_save(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
 adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_error *error);
-/** The same to and from memory (rollback). */
+/** The same to and from memory (rollback), where pictures are taken on trust. */
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error);
 adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, size_t size, adcgs_error *error);
 

@@ -17,13 +17,13 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
 {
     const adcgs_fmodel *f = t->f;
     const size_t slots = t->pass->primitives.n;
-    float *still = adcgs_alloc(NULL, slots * 14, sizeof *still, error);
+    float *still = adcgs_alloc(NULL, slots * ADCGS_ROWS, sizeof *still, error);
     if (!still)
         return adcgs_alloc_status(error);
     /* Scene units per pixel of the full resolution at unit distance. */
     const float pixel = (float)t->config.scale / (t->views[0].view.fx * (float)t->divide);
     adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
-    memcpy(still, t->pass->prim, slots * 14 * sizeof *still);
+    memcpy(still, t->pass->prim, slots * ADCGS_ROWS * sizeof *still);
     for (int step = 0; step < DECIDE_TIMES; step++) {
         adcgs_pass_forward(t->pass, f, (float)step / (DECIDE_TIMES - 1), &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
         for (size_t i = 0; i < slots; i++) {
@@ -31,13 +31,13 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
             if (anchor >= f->n || f->keep[i] == 0)
                 continue;
             const float *now = t->pass->prim;
-            const float o = fmaxf(now[10 * slots + i], still[10 * slots + i]);
+            const float o = fmaxf(now[ADCGS_ROW_OPACITY * slots + i], still[ADCGS_ROW_OPACITY * slots + i]);
             float shift = 0, tint = 0;
-            for (int a = 0; a < 3; a++) {
-                shift = fmaxf(shift, fabsf(now[(size_t)a * slots + i] - still[(size_t)a * slots + i]));
-                tint = fmaxf(tint, fabsf(now[(size_t)(11 + a) * slots + i] - still[(size_t)(11 + a) * slots + i]));
+            for (size_t a = 0; a < 3; a++) {
+                shift = fmaxf(shift, fabsf(now[(ADCGS_ROW_MEAN + a) * slots + i] - still[(ADCGS_ROW_MEAN + a) * slots + i]));
+                tint = fmaxf(tint, fabsf(now[(ADCGS_ROW_COLOUR + a) * slots + i] - still[(ADCGS_ROW_COLOUR + a) * slots + i]));
             }
-            const float fade = fabsf(now[10 * slots + i] - still[10 * slots + i]);
+            const float fade = fabsf(now[ADCGS_ROW_OPACITY * slots + i] - still[ADCGS_ROW_OPACITY * slots + i]);
             const float here = fmaxf(fmaxf(o * shift / (0.5f * pixel), o * tint / 0.03f), fade / 0.03f);
             effect[anchor] = fmaxf(effect[anchor], here);
         }
@@ -58,7 +58,7 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
     const size_t weights = f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n + f->mlp[ADCGS_P_TIME].n;
     if (stopped > 1.01 * moving + t->lambda * 7 * (double)weights * 0x1p-23)
         return ADCGS_OK;
-    memset(f->moving, 0, (size_t)f->groups * 64 * sizeof *f->moving);
+    memset(f->moving, 0, (size_t)f->groups * ADCGS_LANES * sizeof *f->moving);
     return ADCGS_OK;
 }
 

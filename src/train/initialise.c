@@ -123,6 +123,8 @@ static glimpse look_at(const sight *s, const double x[3])
         if (u < 0 || v < 0 || u >= c->width || v >= c->height)
             continue;
         const size_t plane = (size_t)c->width * (size_t)c->height, at = (size_t)v * (size_t)c->width + (size_t)u;
+        if (isnan(s->rgb[i][at])) /* masked */
+            continue;
         double off = 0;
         for (int a = 0; a < 3; a++)
             off += fabs(s->rgb[i][(size_t)a * plane + at] - s->scene->background[a]);

@@ -24,8 +24,7 @@ adcgs_status adcgs_sample_loss(adcgs_trainer *t, uint32_t most, int own_time, do
         ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 0, error));
         const float *target;
         ADCGS_TRY(adcgs_trainer_target(t, picked, NULL, &target, error));
-        ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->view.width, v->view.height, t->config.ssim_weight, t->grad,
-                                   &value, error));
+        ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
         *loss += value.loss / n;
     }
     return ADCGS_OK;

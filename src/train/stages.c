@@ -69,7 +69,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
 
 int adcgs_stages_divide(const adcgs_trainer *t, double progress)
 {
-    return t->config.scale * (progress < t->config.quarter_until ? 4 : progress < t->config.half_until ? 2 : 1);
+    return t->config.scale * adcgs_coarse_divide(&t->config, progress);
 }
 
 /** Fraction of the views, by their distance from the middle of time, that are trained on. */
@@ -81,8 +81,11 @@ static double window_of(const adcgs_train_config *c, double progress)
 adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
-    if (adcgs_stages_divide(t, progress) != t->divide)
+    if (adcgs_stages_divide(t, progress) != t->divide) {
+        const double begin = adcgs_seconds();
         ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
+        t->left.load = adcgs_seconds() - begin;
+    }
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
     if (!c->without_densification && t->iteration && t->iteration % c->densify_every == 0 && progress >= c->densify_from &&
         progress < c->densify_until)

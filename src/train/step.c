@@ -137,7 +137,7 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
     const float *target;
     ADCGS_TRY(adcgs_trainer_target(t, picked, progress >= EXPOSURE_FROM ? t->image : NULL, &target, error));
     adcgs_pictures_expect(t->pictures, adcgs_view_pick(t, t->iteration + PICTURES_AHEAD));
-    ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->view.width, v->view.height, c->ssim_weight, t->grad, &value, error));
+    ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
     ADCGS_TRY(adcgs_view_draw_back(t, &v->view, &grads, error));
     accumulate_stats(t, &grads);
     if (c->scale_weight > 0 && progress >= c->scale_from)

@@ -66,21 +66,25 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     r->lambda = t->lambda;
     r->seconds = t->elapsed;
     r->rate = rate;
-    r->left = progress > 0.02 ? t->elapsed * (1 - progress) / progress : 0;
+    r->left = adcgs_time_left_of(&t->left, &t->config, t->iteration, t->elapsed);
     r->rollbacks = (int)t->rollbacks;
 }
 
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
-    const double begin = adcgs_seconds() - t->elapsed;
+    const double begin = (t->started > 0 ? t->started : adcgs_seconds()) - t->elapsed;
     double last = adcgs_seconds(), rate = 0;
     uint32_t reported = t->iteration;
     *stopped = 0;
     adcgs_trainer_prepare_networks(t);
     ADCGS_TRY(take_snapshot(t, error));
     for (;;) {
+        t->elapsed = adcgs_seconds() - begin;
         const double progress = adcgs_trainer_progress(t);
         adcgs_train_report report;
+        if (progress >= 1 && !t->iteration)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "the time limit of %g s was over after %.1f s, before training began: "
+                              "reading the scene takes a part of it", t->config.time_limit, t->elapsed);
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
             const double at = adcgs_seconds();
             const double lately = at > last && t->iteration > reported ? (t->iteration - reported) / (at - last) : rate;
@@ -100,7 +104,11 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
             return ADCGS_OK;
         }
         ADCGS_TRY(adcgs_stages_before(t, progress, error));
+        t->elapsed = adcgs_seconds() - begin;
+        if (adcgs_trainer_progress(t) >= 1) /* pictures were loaded, anchors changed, until the time was over */
+            continue;
         ADCGS_TRY(adcgs_train_step(t, progress, error));
+        adcgs_time_left_add(&t->left, t->divide / t->config.scale, adcgs_seconds() - begin - t->elapsed);
         t->elapsed = adcgs_seconds() - begin;
         ADCGS_TRY(guard(t, progress, error));
     }

@@ -20,7 +20,7 @@ typedef struct adcgs_train_report {
     double stream[ADCGS_GROUPS]; /**< the same of eta, f_v, Sigma_v, C_v (layer 0, but for its flags) and the chunks of f_g */
     double lambda;
     double seconds, rate;   /**< since the start; iterations per second lately */
-    double left;            /**< seconds, estimated */
+    double left;            /**< seconds, estimated; not a number before an iteration has been seen */
     int rollbacks;
 } adcgs_train_report;
 

@@ -2,6 +2,7 @@
 /** \file Training views. */
 #include "train/views.h"
 
+#include "camera/path.h"
 #include "grad/random.h"
 #include "render/render.h"
 
@@ -14,7 +15,8 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     ADCGS_TRY(adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error));
     for (uint32_t i = 0; i < t->n_views; i++) {
         const adcgs_camera *camera = adcgs_pictures_camera(t->pictures, i);
-        ADCGS_TRY(adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error));
+        const adcgs_status status = adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error);
+        ADCGS_TRY(adcgs_shots_rendered(camera, status, error));
         most = ADCGS_MAX(most, (size_t)camera->width * (size_t)camera->height);
     }
     t->image = adcgs_alloc(NULL, most * 3, sizeof(float), error);
@@ -33,7 +35,28 @@ adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, const float *
         adcgs_exposure_follow(&t->exposure, view, drawn, t->taken, plane);
     if (t->exposure.n)
         adcgs_exposure_even(&t->exposure, view, t->taken, t->taken, plane);
+    const uint8_t *const hidden = adcgs_pictures_hidden(t->pictures, view);
+    for (size_t i = 0; hidden && i < plane; i++)
+        for (size_t c = 0; hidden[i] && c < 3; c++)
+            t->taken[c * plane + i] = t->image[c * plane + i];
     *target = t->taken;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_trainer_loss(adcgs_trainer *t, uint32_t view, const float *target, adcgs_loss_value *value, adcgs_error *error)
+{
+    const adcgs_view *v = &t->views[view].view;
+    const size_t plane = (size_t)v->width * (size_t)v->height;
+    const uint8_t *const hidden = adcgs_pictures_hidden(t->pictures, view);
+    size_t known = plane;
+    ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->width, v->height, t->config.ssim_weight, t->grad, value, error));
+    for (size_t i = 0; hidden && i < plane; i++) {
+        known -= hidden[i];
+        for (size_t c = 0; hidden[i] && c < 3; c++)
+            t->grad[c * plane + i] = 0;
+    }
+    value->loss *= known ? (double)plane / (double)known : 0;
+    value->mse *= known ? (double)plane / (double)known : 0;
     return ADCGS_OK;
 }
 

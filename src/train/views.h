@@ -9,11 +9,18 @@
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *trainer, int divide, adcgs_error *error);
 
 /**
- * A training view's picture as the mean camera would have taken it; valid until the next is asked for. drawn: the model's
- * picture of it, from which the camera's exposure is followed, or NULL.
+ * A training view's picture as the mean camera would have taken it; valid until the next is asked for. Where it is masked, it
+ * is the model's own, trainer->image. drawn: that too, for the camera's exposure to be followed from, or NULL.
  */
 adcgs_status adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view, const float *drawn, const float **target,
                                   adcgs_error *error);
+
+/**
+ * The loss of trainer->image against a view's target: a mean over the pixels that are not masked; these have no gradient in
+ * trainer->grad, and to the windows of others they are right.
+ */
+adcgs_status adcgs_trainer_loss(adcgs_trainer *trainer, uint32_t view, const float *target, adcgs_loss_value *value,
+                                adcgs_error *error);
 
 /**
  * Draw the primitives of the last forward pass as a camera sees them, into image [3][height][width] (trainer->image is large

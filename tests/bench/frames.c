@@ -187,7 +187,7 @@ static double difference(const float *a, const float *b, size_t n)
  */
 static void compare(frame *f)
 {
-    const size_t pixels = 3 * (size_t)f->view.width * (size_t)f->view.height, n = (size_t)f->primitives.n * 14;
+    const size_t pixels = 3 * (size_t)f->view.width * (size_t)f->view.height, n = (size_t)f->primitives.n * ADCGS_ROWS;
     float *ours = bench_floats(n);
     draw_and_back(f);
     memcpy(ours, f->grads, n * sizeof *ours);
@@ -206,17 +206,8 @@ static void make_room(frame *f)
 {
     const uint32_t n = f->primitives.n;
     const size_t values = 3 * (size_t)f->view.width * (size_t)f->view.height;
-    f->grads = bench_floats(ADCGS_MAX((size_t)n * 16, values));
-    for (size_t i = 0; i < 3; i++) {
-        f->to.mean[i] = f->grads + i * n;
-        f->to.scale[i] = f->grads + (3 + i) * n;
-        f->to.colour[i] = f->grads + (11 + i) * n;
-    }
-    for (size_t i = 0; i < 4; i++)
-        f->to.rotation[i] = f->grads + (6 + i) * n;
-    f->to.opacity = f->grads + (size_t)10 * n;
-    f->to.weight = f->grads + (size_t)14 * n;
-    f->to.screen = f->grads + (size_t)15 * n;
+    f->grads = bench_floats(ADCGS_MAX((size_t)n * ADCGS_GRAD_ROWS, values));
+    f->to = adcgs_raster_grads_of(f->grads, n);
     f->rgb = bench_floats(values);
     f->target = bench_floats(values);
     f->grad = bench_floats(values);

@@ -44,7 +44,7 @@ static void open_networks(networks *n, const bench *b, int width)
         if (n->f->mlp[i].n)
             adcgs_mlp_prepare(&n->f->mlp[i], n->f->param[i].p, 0);
     bench_check(adcgs_pass_create(&n->pass, n->f, b->level, NULL, &error), &error);
-    for (size_t i = 0; i < (size_t)n->pass->primitives.n * 14; i++) /* what a picture might ask for */
+    for (size_t i = 0; i < (size_t)n->pass->primitives.n * ADCGS_ROWS; i++) /* what a picture might ask for */
         n->pass->grad[i] = 1e-3f * (float)(i % 17) - 8e-3f;
 }
 

@@ -23,6 +23,11 @@ conform 0 "" --filter 'good-geom-one-*' --junit "$dir/junit.xml" "$manifest"
 grep -q '<testcase [^>]*good-geom-one-anchor' "$dir/junit.xml" || bad "no case in the JUnit report"
 conform 0 "" --list "$manifest"
 [ "$(wc -l <"$dir/out")" -eq "$(grep -c '"id":' "$manifest")" ] || bad "not all vectors are listed"
+cp "$dir/out" "$dir/list"
+{ printf '\357\273\277' && sed 's/"title": "/&\\u001b\\u202e/' "$manifest"; } >"$dir/marked.json"
+conform 0 "" --list "$dir/marked.json"
+sed 's/\\x1b\\u{202e}//' "$dir/out" | cmp -s - "$dir/list" && ! cmp -s "$dir/out" "$dir/list" ||
+    { bad "a byte order mark, or titles that a terminal obeys"; head -n 3 "$dir/out"; }
 
 conform 2 "no vector" --filter 'nothing-*' "$manifest"
 conform 2 "" --point Q "$manifest"

@@ -24,8 +24,12 @@ cmp -s "$dir/out" "$dir/md5" || bad "frames differ from a pipe"
 $dec "$s" -o - --format raw --float >"$dir/raw" 2>/dev/null
 whole=$(md5sum <"$dir/raw" | cut -c1-32)
 expect 0 "frame" $dec "$s" --verify "$whole"
-expect 1 "$whole" $dec "$s" --verify 00112233445566778899aabbccddeeff
+expect 1 "$whole" $dec "$s" --verify 00112233445566778899aabbccddeeff --quiet
 expect 2 "32 hex" $dec "$s" --verify 123
+
+expect 0 "" $dec "$s" --md5 --quiet --time 0:2
+[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
+expect 3 "nowhere" $dec -q "$dir/nowhere" --md5
 
 # Outputs.
 expect 0 "frame" $dec "$s" -o "$dir/f%03d.ppm"
@@ -95,29 +99,69 @@ expect 0 "frame" $dec "$s" --camera 1 --md5 --time 0
 cp "$dir/out" "$dir/first"
 expect 0 "frame" $dec "$s" --camera 0 --md5 --time 0
 cmp -s "$dir/out" "$dir/first" && bad "two cameras see the same"
-expect 2 "neither" $dec "$s" --camera nobody
-expect 2 "seconds" $dec "$s" --time 2:1
-expect 2 "WIDTHxHEIGHT" $dec "$s" --size 0x10
-expect 2 "frames asked" $dec "$s" --time 0:1e9
+expect 2 "neither" $dec "$s" --camera nobody --md5
+expect 2 "seconds" $dec "$s" --time 2:1 --md5
+expect 2 "WIDTHxHEIGHT" $dec "$s" --size 0x10 --md5
+expect 2 "frames asked" $dec "$s" --time 0:1e9 --md5
+expect 2 "no output: give -o" $dec "$s"
+expect 2 "no output: give -o" $dec "$s" --camera orbit --size 64x48
+# Times that the stream has not: none is a mistake, some are worth a word.
+expect 2 "time 99: the stream lasts from 0 to" $dec "$s" --time 99 --md5
+expect 2 "time 9 and later: the stream lasts" $dec "$s" --time 9:10 --md5
+expect 2 "time -9: the stream lasts" $dec "$s" --time=-9 --md5
+expect 2 "time 99: the stream lasts" $dec "$s" --time 99 --splats "$dir/x.ply"
+expect 0 "[1-9][0-9]* of 61 frames show its first or last moment: it lasts from 0" $dec "$s" --time 0:2 --md5
+[ "$(wc -l <"$dir/out")" -eq 61 ] || bad "frames behind the end"
+expect 0 "" $dec "$s" --md5
+! grep -q "last moment" "$dir/err" || bad "a word of times for a whole stream"
+
+# Frames of another shape: pixels keep theirs. With --fit all of the picture is in the middle, with --fill its middle is all.
+$dec "$s" --camera 0 --time 0 -o "$dir/whole.ppm" 2>/dev/null
+for way in "96x64 --fit" "96x64" "64x100 --fit" "64x32 --fill" "32x64 --fill"; do
+    # shellcheck disable=SC2086
+    expect 0 "frame" $dec "$s" --camera 0 --time 0 -o "$dir/other.ppm" --size $way
+    python3 - "$dir/whole.ppm" "$dir/other.ppm" <<'END' || bad "--size $way shows something else"
+import sys
+def read(path):
+    _, size, _, data = open(path, "rb").read().split(b"\n", 3)
+    w, h = map(int, size.split())
+    return w, h, [[data[3 * (y * w + x):3 * (y * w + x) + 3] for x in range(w)] for y in range(h)]
+(w, h, a), (v, g, b) = map(read, sys.argv[1:])
+cut_x, cut_y, off_x, off_y = max(w - v, 0) // 2, max(h - g, 0) // 2, max(v - w, 0) // 2, max(g - h, 0) // 2
+wrong = sum(max(abs(p - q) for p, q in zip(a[y + cut_y][x + cut_x], b[y + off_y][x + off_x])) > 8  # splats beyond the edge are clamped
+            for y in range(min(h, g)) for x in range(min(w, v)))
+sys.exit(wrong > 10 or len({q for row in b for q in row}) < 50)
+END
+done
+expect 0 "frame of 128x96" $dec "$s" --camera 0 --time 0 --md5 --size 128x96 --fill
+expect 2 "need --size" $dec "$s" --md5 --fill
+expect 2 "exclude" $dec "$s" --md5 --size 8x8 --fill --fit
 pose='[[1,0,0,0],[0,0,-1,-4],[0,1,0,0.3],[0,0,0,1]]'
 echo "{\"fl_x\":80,\"w\":64,\"h\":48,\"frames\":[{\"time\":0,\"transform_matrix\":$pose},{\"transform_matrix\":$pose}]}" >"$dir/path.json"
 expect 0 "2 frames of 64x48" $dec "$s" --camera "$dir/path.json" --md5
+cp "$dir/out" "$dir/plain"
+sed -i '1s/^/\xef\xbb\xbf/' "$dir/path.json"
+expect 0 "2 frames of 64x48" $dec "$s" --camera "$dir/path.json" --md5
+cmp -s "$dir/out" "$dir/plain" || bad "a byte order mark changes a camera path"
 echo '{"fl_x":80,"frames":[{"time":0,"transform_matrix":[[2,0,0,0],[0,2,0,0],[0,0,2,0]]}]}' >"$dir/path.json"
-expect 4 "frames\\[0\\].transform_matrix" $dec "$s" --camera "$dir/path.json"
+expect 4 "frames\\[0\\].transform_matrix" $dec "$s" --camera "$dir/path.json" --md5
 echo "{\"fl_x\":80,\"k1\":0.1,\"frames\":[{\"transform_matrix\":$pose}]}" >"$dir/path.json"
-expect 5 "frames\\[0\\].k1: .*pinhole" $dec "$s" --camera "$dir/path.json"
-expect 3 "nowhere.json" $dec "$s" --camera "$dir/nowhere.json"
+expect 5 "frames\\[0\\].k1: .*pinhole" $dec "$s" --camera "$dir/path.json" --md5
+echo "{\"fl_x\":1e9,\"frames\":[{\"transform_matrix\":$pose}]}" >"$dir/path.json"
+expect 4 'camera "frame 0": focal lengths 1e+09' $dec "$s" --camera "$dir/path.json" --md5
+expect 3 "nowhere.json" $dec "$s" --camera "$dir/nowhere.json" --md5
 
-# Bad input.
+# Bad input. A valid stream may store a camera that no frame can be drawn through.
+expect 4 'camera ".*": focal' $dec "${srcdir:-.}/conformance/vectors/good-sys-cams-extremes.adcgs" --md5
 expect 2 "FILE" $dec
 expect 2 "too many" $dec "$s" "$s"
-expect 2 "1 to 5" $dec "$s" --layers 6
-expect 3 "nowhere" $dec "$dir/nowhere"
-expect 4 "" $dec "$dir/f000.ppm"
+expect 2 "1 to 5" $dec "$s" --layers 6 --md5
+expect 3 "nowhere" $dec "$dir/nowhere" --md5
+expect 4 "" $dec "$dir/f000.ppm" --md5
 head -c 100 "$s" >"$dir/cut"
-expect 4 "^adcgs-dec: $dir/cut: " $dec "$dir/cut"
+expect 4 "^adcgs-dec: $dir/cut: " $dec "$dir/cut" --md5
 expect 4 "^adcgs-info: $dir/cut: " ./adcgs-info "$dir/cut"
-expect 4 "^adcgs-dec: standard input: " sh -c "$dec - <'$dir/cut'"
+expect 4 "^adcgs-dec: standard input: " sh -c "$dec - --md5 <'$dir/cut'"
 expect 0 "" $dec --help
 expect 0 "" $dec --version
 
@@ -154,6 +198,9 @@ END
 cmp -s "$dir/shape" "$dir/wanted" || { bad "answers are"; cat "$dir/answers"; }
 expect 0 "" $dec "$s" --answer "$dir/requests" --cpu scalar
 cmp -s "$dir/out" "$dir/answers" || bad "answers differ with --cpu scalar"
+{ printf '\357\273\277' && sed 1,2d "$dir/requests"; } >"$dir/marked"
+expect 0 "" $dec "$s" --answer "$dir/marked" --threads 2
+cmp -s "$dir/out" "$dir/answers" || bad "a byte order mark changes the answers"
 ./adcgs-info --trace "$s" >"$dir/trace"
 grep -qx "trace $(wc -l <"$dir/trace") $(md5sum <"$dir/trace" | cut -c1-32)" "$dir/answers" || bad "trace"
 $dec "$s" --camera 0 --time 0 -o - --format raw --float >"$dir/raw" 2>/dev/null
@@ -223,6 +270,20 @@ for box in 1,2,3 0,0,0,1,1,0 0,0,0,1,1,1,1 0,0,0,1,1,x "" point; do
 done
 expect 2 "train" ./adcgs-eval "$s" "$dir/scene" --split both
 expect 3 "nowhere" ./adcgs-eval "$s" "$dir/nowhere"
+cp -R "$dir/scene" "$dir/odd"
+sed -i 's/"camera_angle_x": [0-9.]*/"fl_x": 1e9/' "$dir"/odd/transforms_*.json
+expect 4 'camera "r_000": focal lengths 1e+09' ./adcgs-eval "$s" "$dir/odd"
+cp "$dir"/scene/transforms_*.json "$dir/odd"
+sed -i '/transform_matrix/{s/\[\[\([^,]*, [^,]*, [^,]*\), [^]]*\]/[[\1, 7e20]/;}' "$dir"/odd/transforms_*.json
+expect 4 'camera ".*": \(scene scale\|farther\)' ./adcgs-eval "$s" "$dir/odd"
+expect 4 'scene has what a stream cannot hold: .*scene_origin' ./adcgs-enc "$dir/odd" -o "$dir/x.adcgs" --preset draft --iterations 10
+if [ -w /dev/full ]; then
+    for command in "$dec --help" "./adcgs-info $s" "./adcgs-info $s --json" "./adcgs-enc --set list" "./adcgs-demo-scene --list" \
+        "$dec $s --md5" "./adcgs-eval $s $dir/scene"; do
+        $command >/dev/full 2>"$dir/err"
+        [ $? -eq 3 ] && grep -q "standard output: cannot write" "$dir/err" || { bad "a full standard output: $command"; cat "$dir/err"; }
+    done
+fi
 mkdir "$dir/empty"
-expect 3 "not a scene" ./adcgs-eval "$s" "$dir/empty"
+expect 4 "not a scene" ./adcgs-eval "$s" "$dir/empty"
 exit $failed

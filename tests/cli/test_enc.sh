@@ -69,7 +69,7 @@ tiny_scene "$scene"
 
 # The same bytes at any number of threads; other bytes from another seed; reports that parse.
 n=600
-enc one --iterations $n --threads 1 --log "$dir/one.log" --json
+enc one --iterations $n --threads 1 --log "$dir/one.log" --json --quiet
 enc two --iterations $n --threads 2
 enc seven --iterations $n --threads 7
 enc other --iterations $n --threads 2 --seed 2
@@ -90,7 +90,7 @@ layer=$(sed -n 's/.*"layer1": \([0-9]*\).*/\1/p' "$dir/one.out")
     bad "f_g1 of the log is '$chunk', layer 1 of the file has '$layer' bytes"
 grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json tells another size"
 grep -q '"lambda": 0.1' "$dir/one.out" || bad "--json does not tell lambda"
-[ ! -s "$dir/one.err" ] || { bad "messages without a terminal"; cat "$dir/one.err"; }
+[ ! -s "$dir/one.err" ] || { bad "messages with --quiet"; cat "$dir/one.err"; }
 [ ! -s "$dir/two.out" ] || bad "standard output without --json"
 ./adcgs-dec "$dir/one.adcgs" --md5 >/dev/null 2>&1 || bad "the stream does not decode"
 
@@ -125,7 +125,7 @@ for options in "--seed 2" "--lambda 3" "--k 5" "--max-anchors 299" "--without fi
 done
 sed 's/"time": *1[ ,]/"time": 0.99,/' "$scene/transforms_train.json" >"$scene/transforms.json"
 # shellcheck disable=SC2086
-expect 4 "other options" ./adcgs-enc "$scene/transforms.json" -o "$dir/x.adcgs" $short --resume "$dir/late"
+expect 4 "saved with another scene" ./adcgs-enc "$scene/transforms.json" -o "$dir/x.adcgs" $short --resume "$dir/late"
 rm "$scene/transforms.json"
 size=$(wc -c <"$dir/late")
 head -c $((size / 2)) "$dir/late" >"$dir/damaged"
@@ -267,11 +267,24 @@ expect 4 "transforms_train.json" ./adcgs-enc "$dir/broken" -o "$dir/x.adcgs"
 expect 4 "two.adcgs" ./adcgs-enc "$dir/two.adcgs" -o "$dir/x.adcgs"
 expect 3 "no/x.adcgs" ./adcgs-enc "$scene" -o "$dir/no/x.adcgs" --log "$dir/x.log"
 expect 3 "is a folder" ./adcgs-enc "$scene" -o "$dir" --log "$dir/x.log"
+if [ -w /dev/full ]; then
+    expect 0 "/dev/full: cannot write JSON; the run went on" ./adcgs-enc "$scene" -o "$dir/unlogged.adcgs" $short --log /dev/full
+fi
 expect 3 "not a regular file" ./adcgs-enc "$scene" -o /dev/null --log "$dir/x.log"
 expect 3 "no/check" $try --checkpoint "$dir/no/check" --log "$dir/x.log"
 [ ! -e "$dir/x.log" ] || bad "a run began whose output cannot be written"
 expect 3 "no/raw" $try --uncompressed "$dir/no/raw"
 expect 3 "no/log" $try --log "$dir/no/log"
+
+# Stored cameras: one pose through two lenses is two cameras.
+cp -R "$scene" "$dir/lenses"
+awk '/transform_matrix/ { if (!pose) pose = $0; sub(/,$/, "", pose); sub(/ *},?$/, "", pose)
+         printf "%s, \"camera_angle_x\": %s }%s\n", pose, n++ % 2 ? 0.5 : 0.75, /, *$/ ? "," : ""; next } { print }' \
+    "$scene/transforms_train.json" >"$dir/lenses/transforms_train.json"
+expect 0 "" ./adcgs-enc "$dir/lenses" -o "$dir/lenses.adcgs" --preset draft --iterations 10 --max-anchors 100 --quiet
+[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
+./adcgs-info "$dir/lenses.adcgs" >"$dir/out"
+[ "$(grep -c '64x64, focal' "$dir/out")" -eq 2 ] || { bad "stored cameras"; cat "$dir/out"; }
 
 # A full disk, pretended by a limit on the size of files: the file that was there stays.
 cp "$dir/one.adcgs" "$dir/full.adcgs"

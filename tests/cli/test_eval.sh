@@ -23,6 +23,28 @@ agree()
     [ "$(wc -l <"$dir/from_csv")" -gt 5 ] || bad "nothing was compared"
 }
 
+# A scene that the stream was not made of: other cameras, other lenses, other times. The right one passes without a word.
+expect 0 "" $eval "$s" "$dir/scene" --split train
+[ ! -s "$dir/err" ] || { bad "a word about the right scene"; cat "$dir/err"; }
+other() { rm -rf "$dir/other" && cp -R "$dir/scene" "$dir/other" && sed -i "$1" "$dir"/other/transforms_*.json; }
+other '/transform_matrix/s/\[\[\([^,]*, [^,]*, [^,]*\), [^]]*\]/[[\1, 0.1]/'
+expect 0 "2 of its 2 cameras are none of .*: was it made of another scene" $eval "$s" "$dir/other"
+other 's/"camera_angle_x": [0-9.]*/"camera_angle_x": 0.6/'
+expect 0 "2 of its 2 cameras have other lenses in" $eval "$s" "$dir/other"
+other s/x/x/
+awk '/"time"/ { sub(/"time": [0-9.]*/, sprintf("\"time\": %.3f", (n++) / 23)) } { print }' "$dir/scene/transforms_train.json" \
+    >"$dir/other/transforms_train.json"
+expect 0 "lasts from 0 to .*, but [12] of the 3 test views of .* are not of that time" $eval "$s" "$dir/other"
+sed -i 's/"time": [0-9.]*/"time": 1/' "$dir/other/transforms_test.json"
+expect 4 "lasts from 0 to .*, and no test view of .* is of that time" $eval "$s" "$dir/other" --json
+other s/x/x/
+for picture in "$dir"/other/test/*.ppm; do
+    { printf 'P6\n64 64\n255\n' && head -c 12288 /dev/zero; } >"$picture"
+done
+expect 0 "nothing like the pictures of" $eval "$s" "$dir/other"
+expect 0 "" $eval "$s" "$dir/other" --quiet
+[ ! -s "$dir/err" ] || { bad "--quiet is not quiet"; cat "$dir/err"; }
+
 # By default, PSNR and SSIM.
 expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/plain.csv" --json
 [ "$(head -n 1 "$dir/plain.csv")" = "row,camera,name,time,psnr,ssim,milliseconds" ] || bad "heading of the table"

@@ -114,10 +114,10 @@ faults "table" ./adcgs-eval "$s" "$dir/scene" --csv "$w/x.csv" --images "$w/view
 faults "evaluation" ./adcgs-eval "$s" "$dir/scene" --json
 faults "table printed" ./adcgs-eval "$s" "$dir/scene" --csv -
 
-# The encoder: stream, plain numbers, log; pictures that go to a file for want of memory; the beginning of a run.
-faults "encoder" ./adcgs-enc "$dir/scene" -o "$w/x.adcgs" --preset draft --iterations 10 --threads 1 --log "$w/x.log" --memory 1 \
+# The encoder: stream, plain numbers; pictures that go to a file for want of memory; the beginning of a run.
+faults "encoder" ./adcgs-enc "$dir/scene" -o "$w/x.adcgs" --preset draft --iterations 10 --threads 1 --quiet --memory 1 \
     --uncompressed "$w/x.bin"
-faults "beginning" ./adcgs-enc "$dir/scene" --beginning "$w/x.state" --preset draft --iterations 200 --threads 1
+faults "beginning" ./adcgs-enc "$dir/scene" --beginning "$w/x.state" --preset draft --iterations 200 --threads 1 --quiet
 
 # The built-in scene, conformance's report.
 ways=+

@@ -50,7 +50,7 @@ for way in orbit spiral; do
 done
 expect 0 "120 frames of" $dec "$s" --camera bullet --time 0.05 --md5
 [ "$(sort -u "$dir/out" | wc -l)" -gt 100 ] || bad "bullet stands still"
-expect 2 "one moment" $dec "$s" --camera bullet --time 0:0.1
+expect 2 "one moment" $dec "$s" --camera bullet --time 0:0.1 --md5
 
 # Stored cameras as a path: it passes through each of them.
 expect 0 "" $dec "$s" --cameras "$dir/p.json"
@@ -66,11 +66,11 @@ sed 's/"frame_rate": 30/"frame_rate": 24/' "$dir/p.json" >"$dir/q.json"
 expect 0 "$((24 * (n - 1) + 1)) frames of" $dec "$s" --camera "$dir/q.json" -o "$dir/q.y4m"
 head -n 1 "$dir/q.y4m" | grep -q ' F24:1 ' || bad "a path's frame rate is not the video's"
 sed 's/"smooth"/"zigzag"/' "$dir/p.json" >"$dir/q.json"
-expect 4 "q.json: interpolate: expected" $dec "$s" --camera "$dir/q.json"
+expect 4 "q.json: interpolate: expected" $dec "$s" --camera "$dir/q.json" --md5
 sed 's/"at": 1/"at": 0/' "$dir/p.json" >"$dir/q.json"
-expect 4 "q.json: keys\\[1\\].at: 0, expected more" $dec "$s" --camera "$dir/q.json"
+expect 4 "q.json: keys\\[1\\].at: 0, expected more" $dec "$s" --camera "$dir/q.json" --md5
 echo '{"keys":' >"$dir/q.json"
-expect 4 "q.json: line 2: malformed" $dec "$s" --camera "$dir/q.json"
+expect 4 "q.json: line 2: malformed" $dec "$s" --camera "$dir/q.json" --md5
 expect 2 "only" $dec "$s" --cameras "$dir/q.json" --camera orbit
 expect 3 "no/p.json" $dec "$s" --cameras "$dir/no/p.json"
 

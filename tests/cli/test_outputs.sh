@@ -66,8 +66,6 @@ if [ -w /dev/full ]; then
         full "full.drc: cannot write: " ./adcgs-info "$s" --points "$dir/full.drc"
     full "full.csv: cannot write: " ./adcgs-eval "$s" "$dir/scene" --csv "$dir/full.csv"
     full "full.xml: cannot write: " ./adcgs-conform "$vectors/manifest.json" --filter 'bad-geom-d*' --junit "$dir/full.xml"
-    full "/dev/full: cannot write the log: " ./adcgs-enc "$dir/scene" -o "$dir/x.adcgs" --preset draft --iterations 10 \
-        --json --log /dev/full
     for option in --output --beginning; do
         expect 3 "/dev/full: not a regular file" ./adcgs-enc "$dir/scene" $option /dev/full --preset draft --iterations 10
     done

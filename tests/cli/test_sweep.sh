@@ -62,11 +62,12 @@ read -r psnr <"$2"
 echo "{\"psnr\": ${psnr%??}.${psnr: -2}, \"ssim\": 0.9, \"frames_per_second\": 100}"
 END
 chmod +x "$dir/adcgs-enc" "$dir/adcgs-eval"
+mkdir "$dir/scene"
 
 # sweep OPTIONS...: run one, its report in report, messages in err; got is how it left.
 sweep()
 {
-    "$dir/adcgs-sweep" scene -o "$out" "$@" >"$dir/report" 2>"$dir/err" </dev/null
+    "$dir/adcgs-sweep" "$dir/scene" -o "$out" "$@" >"$dir/report" 2>"$dir/err" </dev/null
     got=$?
 }
 
@@ -110,7 +111,7 @@ calls 1 0 "--resume"
 
 # A run that fails is named, the others are written out; what it had reached is where the next attempt goes on.
 sweep --lambda 1,666,2 --yardsticks none
-[ $got -eq 3 ] || fail "a failing encoder goes unnoticed"
+[ $got -eq 4 ] || fail "a failing encoder goes unnoticed"
 line 'lambda-666' "$dir/err"
 [ "$(wc -l <"$out/sweep.csv")" -eq 3 ] || fail "the other points are not in the table"
 calls 4
@@ -185,14 +186,14 @@ calls 12 3 "--uncompressed"
 [ -s "$out/lambda-2-without-weight_steps.adcgs" ] || fail "no run without weight steps"
 [ "$(wc -l <"$out/ablation.csv")" -eq 10 ] || fail "expected nine stages: $(cat "$out/ablation.csv")"
 line '^base,,,1,400000,400000,400000,33.0000' "$out/ablation.csv"
-line '^+ fine deformation,,,1,400000,400000,400000,34.0000' "$out/ablation.csv"
-line '^+ rate-distortion,2,,1,32000,32000,32000,33.5000' "$out/ablation.csv"
-line '^+ densification,2,,1,32000,32000,32000,34.0000' "$out/ablation.csv"
+line "^'+ fine deformation,,,1,400000,400000,400000,34.0000" "$out/ablation.csv"
+line "^'+ rate-distortion,2,,1,32000,32000,32000,33.5000" "$out/ablation.csv"
+line "^'+ densification,2,,1,32000,32000,32000,34.0000" "$out/ablation.csv"
 line '^K = 15,2,15,1,' "$out/ablation.csv"
 line 'K = 15' "$out/index.html"
 sweep --ablation
 [ $got -eq 0 ] || fail "ablation alone: $(cat "$dir/err")"
-line '^+ densification,,,1,64000' "$out/ablation.csv"
+line "^'+ densification,,,1,64000" "$out/ablation.csv"
 : >"$dir/calls"
 
 for list in '' 1, ,1 1,x 1,-1 "$(seq -s, 1 17)"; do
@@ -203,18 +204,21 @@ sweep --lambda 1 --seeds 1.5
 [ $got -eq 2 ] || fail "a seed that is not whole accepted"
 sweep --lambda 1 --yardsticks networks,zip
 [ $got -eq 2 ] || fail "an unknown yardstick accepted"
-for options in "--k 17" "--set k=17" "--set slim_at=1" "--set n_fg=9" "--preset quick" "--iterations 9"; do
+for options in "--k 17" "--set k=17" "--set slim_at=1" "--set n_fg=9" "--preset quick" "--iterations 9" \
+    "--dataset blender" "--frames 5:2" "--frames x"; do
     # shellcheck disable=SC2086
     sweep --lambda 1 $options
     [ $got -eq 2 ] || fail "$options accepted"
 done
+"$dir/adcgs-sweep" "$dir/nowhere" -o "$out" --lambda 1 2>"$dir/err"
+[ $? -eq 3 ] && grep -q "nowhere: cannot open the scene" "$dir/err" && [ "$(wc -l <"$dir/err")" -eq 1 ] || fail "no scene accepted"
 [ ! -s "$dir/calls" ] || fail "a run began with settings that the encoder refuses"
 sweep
 [ $got -eq 2 ] || fail "no lambda accepted"
-"$dir/adcgs-sweep" scene --lambda 1 2>/dev/null
+"$dir/adcgs-sweep" "$dir/scene" --lambda 1 2>/dev/null
 [ $? -eq 2 ] || fail "no output accepted"
 
-# What part of which scene it is goes to both programs, which check it.
+# What part of which scene it is goes to both programs.
 sweep --lambda 9 --dataset colmap --frames 0:9:2 --yardsticks none
 calls 1 1 "--dataset colmap --frames 0:9:2"
 tail -n 1 "$dir/evaluations" | grep -q -e "--dataset colmap --frames 0:9:2" || fail "evaluated otherwise: $(cat "$dir/evaluations")"

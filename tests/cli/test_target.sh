@@ -10,7 +10,7 @@ enc()
 {
     code=$1 name=$2
     shift 2
-    ./adcgs-enc "$scene" -o "$dir/$name.adcgs" --preset draft --json "$@" >"$dir/$name.out" 2>"$dir/$name.err"
+    ./adcgs-enc "$scene" -o "$dir/$name.adcgs" --preset draft --json --quiet "$@" >"$dir/$name.out" 2>"$dir/$name.err"
     got=$?
     case $got in $code) ;; *) bad "exit code $got, expected $code: adcgs-enc $*"; cat "$dir/$name.err" ;; esac
     ./adcgs-dec "$dir/$name.adcgs" --md5 >/dev/null 2>&1 || bad "no stream that decodes: adcgs-enc $*"
@@ -109,7 +109,7 @@ refuse "need rate" --psnr 30 --uncompressed "$dir/raw"
 
 # A limit of time ends the run, with a stream that is whole and no larger than asked for. How near it comes depends on what the
 # machine does in that time; a run that has too little to show says so.
-enc '[01]' brief --time-limit 2 --iterations 1000000 --size 15k
+enc '[01]' brief --time-limit 4 --iterations 1000000 --size 15k
 least=14550 most=15000
 if [ "$got" -eq 1 ]; then
     least=1 most=14550
@@ -117,6 +117,7 @@ if [ "$got" -eq 1 ]; then
 fi
 within "$(value "$dir/brief.out" iterations)" 1 999999 "iterations within a limit of time"
 within "$(wc -c <"$dir/brief.adcgs")" $least $most "bytes within a limit of time"
-enc 0 plain --time-limit 1 --iterations 1000000
+enc 0 plain --time-limit 3 --iterations 1000000
 within "$(value "$dir/plain.out" iterations)" 1 999999 "iterations within a limit of time"
+refuse "before training began" --time-limit 0.001
 exit $failed

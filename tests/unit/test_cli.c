@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Parsing of numbers and options, and the JSON writer. */
+/** \file Parsing of numbers and options, text made safe, and the JSON writer. */
+#include "config.h" /* for the declarations that it switches on in system headers */
+
 #include "cli/cli.h"
+
+#include "cli/text.h"
+#include "io/json.h"
 
 #include <getopt.h>
 #include <setjmp.h>
@@ -50,7 +55,7 @@ static void test_numbers(void **state)
 
 typedef struct values {
     const char *text;
-    int flag, number, choice, given;
+    int flag, number, choice, given, *quiet;
     uint64_t size;
 } values;
 
@@ -65,7 +70,7 @@ static int parse(values *v, const char *const *words, int *first)
         {"size", 's', ADCGS_OPTION_SIZE, &v->size, 1, 1e6, "BYTES", "a size", NULL, NULL},
         {"colour", 0, ADCGS_OPTION_CHOICE, &v->choice, 0, 0, "NAME", "a name", choices, NULL},
     };
-    const adcgs_cli cli = {"prog", "FILE", "Does it.", NULL, options, ADCGS_COUNTOF(options), 1, 2};
+    const adcgs_cli cli = {"prog", "FILE", "Does it.", NULL, options, ADCGS_COUNTOF(options), 1, 2, v->quiet};
     static char copies[12][64];
     char *argv[13] = {copies[0]};
     int argc = 1;
@@ -95,6 +100,13 @@ static void test_options(void **state)
     assert_string_equal(v.text, "x y");
     assert_int_equal(PARSE(&v, &first, "-t", "-", "file", "--", "-f"), -1);
     assert_string_equal(v.text, "-");
+    int quiet = 0;
+    assert_int_equal(PARSE(&v, &first, "-q", "file"), 2); /* of programs that have it */
+    v.quiet = &quiet;
+    assert_int_equal(PARSE(&v, &first, "file"), -1);
+    assert_false(quiet);
+    assert_int_equal(PARSE(&v, &first, "file", "-q"), -1);
+    assert_true(quiet);
 }
 
 static void test_mistakes(void **state)
@@ -114,35 +126,190 @@ static void test_mistakes(void **state)
     assert_int_equal(PARSE(&v, &first, "-V"), 0);
 }
 
-static void test_json(void **state)
+/** What the function prints on standard error, which is no terminal then. */
+static void catch_stderr(char text[512], void (*print)(const adcgs_cli *cli), const adcgs_cli *cli)
 {
-    char text[512] = {0};
-    adcgs_json json;
+    FILE *file = tmpfile();
+    const int saved = dup(STDERR_FILENO);
+    assert_true(file && saved >= 0);
+    fflush(stderr);
+    assert_true(dup2(fileno(file), STDERR_FILENO) >= 0);
+    print(cli);
+    fflush(stderr);
+    assert_true(dup2(saved, STDERR_FILENO) >= 0);
+    close(saved);
+    rewind(file);
+    text[fread(text, 1, 511, file)] = 0;
+    fclose(file);
+}
+
+static void show_progress(const adcgs_cli *cli)
+{
+    adcgs_progress progress;
+    adcgs_progress_init(&progress, cli);
+    adcgs_progress_show(&progress, "too early");
+    assert_true(progress.every >= 5.0 && progress.every <= 10.0);
+    progress.last -= progress.every;
+    adcgs_progress_show(&progress, "step %d\033", 1);
+    adcgs_progress_show(&progress, "too early");
+    progress.last -= progress.every;
+    adcgs_progress_show(&progress, "step %d", 2);
+    for (int i = 0; i < 10; i++) {
+        progress.last -= progress.every;
+        adcgs_progress_show(&progress, "more");
+    }
+    assert_true(*cli->quiet || (progress.every >= 30.0 && progress.every <= 60.0)); /* ever more rarely, but no end of it */
+    adcgs_progress_clear(&progress);
+    adcgs_cli_note(cli, "done");
+}
+
+/* Without a terminal there is a plain line now and then; with --quiet nothing but what went wrong. */
+static void test_progress(void **state)
+{
+    int quiet = 0;
+    char text[512];
+    const adcgs_cli cli = {.program = "prog", .quiet = &quiet};
+    catch_stderr(text, show_progress, &cli);
+    assert_string_equal(text, "prog: step 1\\x1b\nprog: step 2\n"
+                              "prog: more\nprog: more\nprog: more\nprog: more\nprog: more\nprog: more\nprog: more\nprog: more\n"
+                              "prog: more\nprog: more\nprog: done\n");
+    quiet = 1;
+    catch_stderr(text, show_progress, &cli);
+    assert_string_equal(text, "");
+}
+
+/* What is no UTF-8, as Unicode's table 3-7 has it: lone and missing continuations, overlong forms, surrogates, beyond the end. */
+static void test_utf8(void **state)
+{
+    static const char *const bad[] = {"\x80", "\xbf", "\xc3", "\xc3(", "\xc0\x80", "\xc1\xbf", "\xe0\x9f\xbf", "\xe2\x82",
+                                      "\xe2(\x82", "\xed\xa0\x80", "\xed\xbf\xbf", "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80",
+                                      "\xf5\x80\x80\x80",
+                                      "\xf8\x88\x80\x80\x80", "\xfe", "\xff", ""};
+    static const struct { const char *text; int bytes; uint32_t code; } good[] = {
+        {"A", 1, 'A'}, {"\x7f", 1, 0x7f}, {"\xc2\x80", 2, 0x80}, {"\xdf\xbf", 2, 0x7ff}, {"\xe0\xa0\x80", 3, 0x800},
+        {"\xed\x9f\xbf", 3, 0xd7ff}, {"\xee\x80\x80", 3, 0xe000}, {"\xef\xbf\xbf", 3, 0xffff}, {"\xf0\x90\x80\x80", 4, 0x10000},
+        {"\xf4\x8f\xbf\xbf", 4, 0x10ffff}};
+    uint32_t code = 0;
+    for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++)
+        assert_int_equal(adcgs_utf8_next(bad[i], &code), 0);
+    for (size_t i = 0; i < ADCGS_COUNTOF(good); i++) {
+        assert_int_equal(adcgs_utf8_next(good[i].text, &code), good[i].bytes);
+        assert_int_equal(code, good[i].code);
+    }
+    char *mended = adcgs_text_utf8("a\xff\xc3\xa4\xed\xa0\x80z");
+    assert_string_equal(mended, "a\xef\xbf\xbd\xc3\xa4\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbdz");
+    free(mended);
+}
+
+/* Nothing that a terminal obeys comes through, whatever the text; the rest does as it is. */
+static void test_shown(void **state)
+{
+    static const struct { const char *text, *shown, *cell; int columns; } cases[] = {
+        {"plain \xc3\xa4\xe6\xbc\xa2", "plain \xc3\xa4\xe6\xbc\xa2", "plain \xc3\xa4\xe6\xbc\xa2", 8},
+        {"\033[2J\a", "\\x1b[2J\\x07", "\\x1b[2J\\x07", 11},
+        {"a\r\nb\tc", "a\\x0d\\x0ab\\x09c", "a\\x0d\\x0ab\\x09c", 15},
+        {"\xc2\x9b" "2J\x7f", "\\u{9b}2J\\x7f", "\\u{9b}2J\\x7f", 12},
+        {"gnp.\xe2\x80\xae" "exe", "gnp.\\u{202e}exe", "gnp.\\u{202e}exe", 15},
+        {"\xe2\x81\xa6\xe2\x80\xa8\xf3\xa0\x81\x81", "\\u{2066}\\u{2028}\\u{e0041}", "\\u{2066}\\u{2028}\\u{e0041}", 25},
+        {"\x9b" "2J\xff", "\\x9b2J\\xff", "\\x9b2J\\xff", 10},
+        {"=1+2", "=1+2", "'=1+2", 4}, {"@x", "@x", "'@x", 2}, {"+1,2", "+1,2", "\"'+1,2\"", 4},
+        {"-a\"b", "-a\"b", "\"'-a\"\"b\"", 4},
+        {"\t=1", "\\x09=1", "\\x09=1", 6}, {"", "", "", 0}};
+    for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
+        char text[100] = {0};
+        FILE *file = tmpfile();
+        assert_non_null(file);
+        assert_int_equal(adcgs_text_show(file, cases[i].text), cases[i].columns);
+        fputc('|', file);
+        adcgs_text_cell(file, cases[i].text);
+        rewind(file);
+        assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+        fclose(file);
+        const char *cell = strrchr(text, '|');
+        assert_memory_equal(text, cases[i].shown, strlen(cases[i].shown));
+        assert_int_equal(cell - text, strlen(cases[i].shown));
+        assert_string_equal(cell + 1, cases[i].cell);
+    }
+}
+
+static void write_json(adcgs_json *json, const char *expected)
+{
+    char text[1024] = {0};
     FILE *file = tmpfile();
     assert_non_null(file);
-    adcgs_json_init(&json, file);
+    assert_int_equal(adcgs_json_write(json, file, "a test", NULL), ADCGS_OK);
+    rewind(file);
+    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+    fclose(file);
+    assert_string_equal(text, expected);
+}
+
+static void test_json(void **state)
+{
+    adcgs_json json;
+    adcgs_json_init(&json);
     adcgs_json_open(&json, NULL, '{');
     adcgs_json_string(&json, "s", "a\"\\\n\xc3\xa4");
     adcgs_json_open(&json, "list", '[');
     adcgs_json_int(&json, NULL, -5);
     adcgs_json_real(&json, NULL, 0.5);
+    adcgs_json_real(&json, NULL, 30.0);
+    adcgs_json_real(&json, NULL, 1.0 / 3.0);
     adcgs_json_real(&json, NULL, -1.0 / 0.0);
-    adcgs_json_close(&json, ']');
+    adcgs_json_close(&json);
     adcgs_json_open(&json, "empty", '{');
-    adcgs_json_close(&json, '}');
+    adcgs_json_close(&json);
     adcgs_json_bool(&json, "yes", 1);
-    adcgs_json_close(&json, '}');
-    assert_int_equal(adcgs_json_finish(&json, NULL), ADCGS_OK);
-    rewind(file);
-    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+    adcgs_json_close(&json);
+    write_json(&json, "{\n  \"s\": \"a\\\"\\\\\\n\\u00E4\",\n  \"list\": [\n    -5,\n    0.5,\n    30,\n    0.3333333333,\n"
+                      "    null\n  ],\n  \"empty\": {},\n  \"yes\": true\n}\n");
+}
+
+/* Whatever bytes a string holds, JSON comes out, and no terminal obeys it; who reads it finds the characters that were some. */
+static void test_json_texts(void **state)
+{
+    adcgs_json json;
+    adcgs_json_init(&json);
+    json.is_line = 1;
+    adcgs_json_open(&json, NULL, '{');
+    adcgs_json_string(&json, "\xff", "\xff\xc0\x80\xed\xa0\x80");
+    adcgs_json_string(&json, "\033", "\xc2\x9b\xe2\x80\xae\xf0\x9f\x8e\xa5\t");
+    adcgs_json_close(&json);
+    write_json(&json, "{\"\\uFFFD\":\"\\uFFFD\\uFFFD\\uFFFD\\uFFFD\\uFFFD\\uFFFD\","
+                      "\"\\u001B\":\"\\u009B\\u202E\\uD83C\\uDFA5\\t\"}\n");
+}
+
+/* A full disk is noticed; what is nested too deep fails, and nothing is written. */
+static void test_json_failures(void **state)
+{
+    adcgs_json json;
+    adcgs_error error;
+    FILE *full = fopen("/dev/full", "w"), *file = tmpfile();
+    assert_non_null(file);
+    if (full) {
+        adcgs_json_init(&json);
+        adcgs_json_open(&json, NULL, '[');
+        adcgs_json_close(&json);
+        assert_int_equal(adcgs_json_write(&json, full, "full", &error), ADCGS_ERR_IO);
+        assert_string_equal(error.text, "full: cannot write JSON");
+        fclose(full);
+    }
+    adcgs_json_init(&json);
+    for (int i = 0; i < ADCGS_JSON_DEPTH + 1; i++)
+        adcgs_json_open(&json, NULL, '[');
+    for (int i = 0; i < ADCGS_JSON_DEPTH + 1; i++)
+        adcgs_json_close(&json);
+    assert_int_equal(adcgs_json_write(&json, file, "deep", &error), ADCGS_ERR_MEMORY);
+    assert_int_equal(ftell(file), 0);
     fclose(file);
-    assert_string_equal(text, "{\n  \"s\": \"a\\\"\\\\\\u000a\xc3\xa4\",\n  \"list\": [\n    -5,\n    0.5,\n    null\n  ],\n"
-                              "  \"empty\": {},\n  \"yes\": true\n}\n");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_numbers), cmocka_unit_test(test_options),
-                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_json)};
+                                       cmocka_unit_test(test_mistakes), cmocka_unit_test(test_progress),
+                                       cmocka_unit_test(test_utf8),
+                                       cmocka_unit_test(test_shown), cmocka_unit_test(test_json),
+                                       cmocka_unit_test(test_json_texts), cmocka_unit_test(test_json_failures)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -110,9 +110,9 @@ static void test_fields(void **state)
     const double expected[12] = {0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 2}, plain[12] = {1, 0, 0, -0.5, 0, 1, 0, 0, 0, 0, 1, -2};
     for (int i = 0; i < 12; i++)
         assert_true(a->camera.cam_to_world[i] == expected[i] && c->camera.cam_to_world[i] == plain[i]);
-    /* Times are warp ids over the largest of all; seconds as in every scene: two training times, one frame apart. */
-    assert_true(scene->n_times == 2 && scene->frame_rate == 30.0 && fabs(scene->duration - 1.0 / 30.0) < 1e-15);
-    assert_true(a->time == 0.0 && fabs(b->time - 0.375 / 30.0) < 1e-15 && fabs(c->time - 0.5 / 30.0) < 1e-15);
+    /* Times are warp ids, numbers of frames; the scene ends with the largest of all, whatever is for training. */
+    assert_true(scene->n_times == 2 && adcgs_fps_value(scene->rate) == 30.0 && scene->duration == 8.0 / 30.0);
+    assert_true(a->time == 0.0 && fabs(b->time - 3.0 / 30.0) < 1e-15 && fabs(c->time - 4.0 / 30.0) < 1e-15);
     assert_int_equal(scene->points.n, 2);
     const float points[2][3] = {{0.0f, 1.0f, 2.0f}, {-1.0f, 0.0f, 0.75f}};
     assert_memory_equal(scene->points.position, points, sizeof points);
@@ -120,11 +120,11 @@ static void test_fields(void **state)
     expect_good(adcgs_scene_load(scene, b, 1, &rgb, NULL, &error));
     free(rgb);
     adcgs_scene_free(&scene);
-    const adcgs_scene_options options = {.frame_rate = 10.0, .points_path = in("other.npy")};
+    const adcgs_scene_options options = {.rate = {10, 1}, .points_path = in("other.npy")};
     put_bytes("other.npy", NPY NUMBERS, sizeof NPY + sizeof NUMBERS - 2);
     put_text("points.npy", "not looked at");
     expect_good(adcgs_scene_open(&scene, folder, &options, &error)); /* points of one's own are in world units already */
-    assert_true(scene->duration == 0.1 && scene->points.n == 2 && scene->points.position[0][1] == 2.0f);
+    assert_true(scene->duration == 0.8 && scene->points.n == 2 && scene->points.position[0][1] == 2.0f);
     adcgs_scene_free(&scene);
 }
 
@@ -460,6 +460,7 @@ static void test_hand(void **state)
             assert_true(share_seen(c) > 0.85);
         }
     assert_true(inconsistency() < 0.5);
+    assert_true(scene->duration == 85.0 / 30.0); /* 86 pictures, test pictures among them */
     assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][10].time - scene->duration * 84.0 / 85.0) < 1e-12);
     float *rgb;
     expect_good(adcgs_scene_load(scene, &scene->views[ADCGS_SPLIT_TEST][10], 1, &rgb, NULL, &error));

@@ -219,16 +219,10 @@ static void frames(call *c)
     assert_int_equal(adcgs_raster_forward(raster, &p, &view, background, 0.3f, rgb, 1, NULL), ADCGS_OK);
     if (c->kind != EXTREME) { /* gradients of what is not a number are none */
         adcgs_raster_back *back;
-        float *const to = output(c, 15 * 256);
-        adcgs_raster_grads grads = {.opacity = to + 10 * 256, .weight = to + 14 * 256};
-        for (int i = 0; i < 3; i++) {
-            grads.mean[i] = to + i * 256;
-            grads.scale[i] = to + (3 + i) * 256;
-            grads.colour[i] = to + (11 + i) * 256;
-        }
-        for (int i = 0; i < 4; i++)
-            grads.rotation[i] = to + (6 + i) * 256;
-        memset(to, 0, 15 * 256 * sizeof *to);
+        float *const to = output(c, (ADCGS_GRAD_ROWS - 1) * 256);
+        adcgs_raster_grads grads = adcgs_raster_grads_of(to, 256);
+        grads.screen = NULL;
+        memset(to, 0, (ADCGS_GRAD_ROWS - 1) * 256 * sizeof *to);
         assert_int_equal(adcgs_raster_back_create(&back, c->level, NULL, NULL), ADCGS_OK);
         const float *const grad = given_of(c, values, ORDINARY);
         assert_int_equal(adcgs_raster_backward(back, raster, &p, &view, background, 0.3f, rgb, grad, &grads, NULL), ADCGS_OK);

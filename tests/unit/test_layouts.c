@@ -66,7 +66,8 @@ static void expect_same(const start *a, const start *b)
     const uint32_t n = a->scene->n_views[ADCGS_SPLIT_TRAIN];
     assert_memory_equal(a->origin, b->origin, sizeof a->origin);
     assert_true(a->scale == b->scale && a->scene->duration == b->scene->duration && a->scene->n_times == b->scene->n_times);
-    assert_true(a->scene->frame_rate == b->scene->frame_rate && a->scene->axes == b->scene->axes);
+    assert_true(a->scene->rate.num == b->scene->rate.num && a->scene->rate.den == b->scene->rate.den);
+    assert_true(a->scene->axes == b->scene->axes);
     assert_true(a->scene->has_alpha == b->scene->has_alpha && n == b->scene->n_views[ADCGS_SPLIT_TRAIN]);
     for (uint32_t i = 0; i < n; i++) {
         const adcgs_scene_view *v = &a->scene->views[ADCGS_SPLIT_TRAIN][i], *w = &b->scene->views[ADCGS_SPLIT_TRAIN][i];
@@ -173,14 +174,15 @@ static void test_apart_notices(void **state)
     }
 }
 
-/** The other test views' cameras, not only their pictures. */
+/** Other cameras of the test views, not only pictures, and other views of the same moments: when they are is all that counts. */
 static void test_apart_poses(void **state)
 {
     begin_anew(&layouts[DNERF]);
     start first = make_start(&layouts[DNERF]), second;
     finish_start(&first);
-    put_text("transforms_test.json", "{\"fl_x\":99,\"fps\":7,\"w\":24,\"h\":16,\"ply_file_path\":\"0.ppm\",\"frames\":["
-             "{\"file_path\":\"0.ppm\",\"time\":1,\"transform_matrix\":[[1,0,0,70],[0,1,0,0],[0,0,1,900]]}]}");
+    put_text("transforms_test.json", "{\"fl_x\":99,\"w\":24,\"h\":16,\"ply_file_path\":\"0.ppm\",\"frames\":["
+             "{\"file_path\":\"0.ppm\",\"time\":1,\"transform_matrix\":[[1,0,0,70],[0,1,0,0],[0,0,1,900]]},"
+             "{\"file_path\":\"8.ppm\",\"time\":0,\"transform_matrix\":[[1,0,0,9],[0,1,0,0],[0,0,1,-900]]}]}");
     second = make_start(&layouts[DNERF]);
     finish_start(&second);
     expect_same(&first, &second);
@@ -216,6 +218,47 @@ static void test_apart_sizes(void **state)
     free_start(&second);
 }
 
+/* ---- Texts ---- */
+
+static int n_marked;
+
+/** Put a byte order mark before a file of text. */
+static int mark(const char *path, const struct stat *status, int kind, struct FTW *place)
+{
+    const char *end = strrchr(path, '.');
+    if (kind != FTW_F || !end || (strcmp(end, ".json") && strcmp(end, ".txt")))
+        return 0;
+    const size_t n = (size_t)status->st_size;
+    char *text = malloc(n + 1);
+    FILE *file = fopen(path, "r+b");
+    assert_true(text && file && fread(text, 1, n, file) == n);
+    rewind(file);
+    assert_true(fputs("\xef\xbb\xbf", file) >= 0 && fwrite(text, 1, n, file) == n);
+    fclose(file);
+    free(text);
+    n_marked++;
+    return 0;
+}
+
+/** What an editor has put before a text means nothing. */
+static void test_marks(void **state)
+{
+    static const int which[] = {DNERF, NERFSTUDIO, HYPERNERF, COLMAP_TEXT, SCENE_FILE};
+    for (size_t i = 0; i < ADCGS_COUNTOF(which); i++) {
+        begin_anew(&layouts[which[i]]);
+        start first = make_start(&layouts[which[i]]), second;
+        finish_start(&first);
+        n_marked = 0;
+        assert_int_equal(nftw(folder, mark, 8, FTW_PHYS), 0);
+        assert_true(n_marked > 0);
+        second = make_start(&layouts[which[i]]);
+        finish_start(&second);
+        expect_same(&first, &second);
+        free_start(&first);
+        free_start(&second);
+    }
+}
+
 /* ---- Frames ---- */
 
 static void expect_range(const char *text, int64_t begin, int64_t end, int64_t step)
@@ -243,7 +286,7 @@ static void test_parse_frames(void **state)
 
 static void open_range(const layout *l, int64_t begin, int64_t end, int64_t step, adcgs_status expected, const char *what)
 {
-    const adcgs_scene_options options = {.frames = {begin, end, step}, .frame_rate = l->videos ? 0 : 10};
+    const adcgs_scene_options options = {.frames = {begin, end, step}, .rate = {10, !l->videos}};
     const adcgs_status status = adcgs_scene_open(&scene, scene_path(l), &options, &error);
     if (expected == ADCGS_OK)
         expect_good(status);
@@ -287,7 +330,7 @@ static void test_frames_of_cameras(void **state)
         /* Videos are at 25 frames per second, every second one is at 12.5; pictures are said to be at 10, but a scene file's
          * frames have times of their own, at 30. */
         assert_true(fabs(scene->duration - (l->videos ? 2 / 25.0 : *l->scene ? 2 / 30.0 : 0.1)) < 1e-12);
-        assert_true(fabs(scene->frame_rate - (l->videos ? 12.5 : 10)) < 1e-12);
+        assert_true(adcgs_fps_value(scene->rate) == (l->videos ? 12.5 : 10));
         adcgs_scene_free(&scene);
         open_range(l, 4, 0, 1, ADCGS_ERR_DATA, "begins with frame 4, but there are 4");
     }
@@ -336,6 +379,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_apart),
         cmocka_unit_test(test_apart_notices),
+        cmocka_unit_test(test_marks),
         cmocka_unit_test(test_apart_poses),
         cmocka_unit_test(test_apart_sizes),
         cmocka_unit_test(test_parse_frames),

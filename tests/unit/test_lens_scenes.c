@@ -44,6 +44,33 @@ static void put_picture(const char *name, const adcgs_lens *lens)
     adcgs_image_free(&image);
 }
 
+/** Mostly reduced before it is straightened, a picture is what it would be reduced afterwards. */
+static void check_reduced(const adcgs_scene_view *view, const float *whole, const adcgs_camera *c)
+{
+    static const int divides[] = {2, 3, 4, 6, 8};
+    for (size_t d = 0; d < ADCGS_COUNTOF(divides); d++) {
+        const int by = divides[d];
+        adcgs_camera small;
+        float *rgb;
+        double squares = 0;
+        int n = 0;
+        expect_good(adcgs_scene_load(scene, view, by, &rgb, &small, &error));
+        assert_true(small.width == (c->width + by - 1) / by && small.fx == c->fx / by && small.cy == c->cy / by);
+        for (int i = 0; i < 3 * small.width * small.height; i++) {
+            const int x = i % small.width * by, y = i / small.width % small.height * by, p = i / small.width / small.height;
+            if (x + by > c->width || y + by > c->height)
+                continue;
+            double mean = 0;
+            for (int j = 0; j < by * by; j++)
+                mean += (double)whole[(p * c->height + y + j / by) * c->width + x + j % by] / (by * by);
+            squares += pow((double)rgb[i] - mean, 2);
+            n++;
+        }
+        assert_true(n > 0 && squares / n < (by < 4 ? 1e-12 : 4e-6)); /* 54 dB of 12x9 pixels */
+        free(rgb);
+    }
+}
+
 /** The view's lens is this one; what is loaded is what its pinhole sees. */
 static void check_view(const adcgs_scene_view *view, const adcgs_lens *lens)
 {
@@ -59,6 +86,7 @@ static void check_view(const adcgs_scene_view *view, const adcgs_lens *lens)
         const int inside = x >= 2 && y >= 2 && x < c.width - 2 && y < c.height - 2;
         assert_true(fabs((double)rgb[i] - truth) < (inside ? INSIDE : EDGE));
     }
+    check_reduced(view, rgb, &c);
     const double first = ((double)rgb[0] + (double)rgb[1] + (double)rgb[c.width] + (double)rgb[c.width + 1]) / 4;
     free(rgb);
     expect_good(adcgs_scene_load(scene, view, 2, &rgb, &small, &error)); /* straightened before it is reduced */

@@ -301,7 +301,7 @@ static void outputs(adcgs_trainer *t, float *prim, double *bits)
         if (t->f->mlp[i].n)
             adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, 1);
     adcgs_pass_forward(t->pass, t->f, 0.3f, &(adcgs_pass_mode){ .deform = 1 });
-    memcpy(prim, t->pass->prim, 14 * (size_t)t->pass->primitives.n * sizeof *prim);
+    memcpy(prim, t->pass->prim, ADCGS_ROWS * (size_t)t->pass->primitives.n * sizeof *prim);
     adcgs_pass_rate(t->pass, t->f, &rate);
     *bits = rate.total;
 }
@@ -318,7 +318,7 @@ static void narrow_networks_compute_the_same(void **state)
 {
     const adcgs_train_config config = small_config();
     adcgs_trainer *t = run_to(&config, 100);
-    const size_t n = 14 * (size_t)t->pass->primitives.n;
+    const size_t n = ADCGS_ROWS * (size_t)t->pass->primitives.n;
     float *before = malloc(n * sizeof *before), *after = malloc(n * sizeof *after);
     double bits[2];
     assert_true(before && after);
@@ -359,7 +359,7 @@ static void silent_units_are_replaced(void **state)
 {
     const adcgs_train_config config = small_config();
     adcgs_trainer *t = run_to(&config, 100);
-    const size_t n = 14 * (size_t)t->pass->primitives.n;
+    const size_t n = ADCGS_ROWS * (size_t)t->pass->primitives.n;
     float *before = malloc(n * sizeof *before), *after = malloc(n * sizeof *after);
     double bits;
     assert_true(before && after);

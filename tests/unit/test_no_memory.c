@@ -50,7 +50,7 @@ static adcgs_train_config short_config(void)
     c.iterations = 24;
     c.start_anchors = 70;
     c.max_anchors = 140;
-    c.refine_every = 3;
+    c.densify_every = 3;
     c.freeze_from = 0.90f;
     c.rdo_strength = 1;
     c.still_below = 1;

@@ -171,6 +171,11 @@ static void test_view(void **state)
     assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 480.0 && view.cy == 250.0);
     adcgs_play_rig_view(&rig, 320, 480, &view); /* half the size, 120 more above and below */
     assert_true(view.fx == 250.0 && view.fy == 255.0 && view.cx == 150.0 && view.cy == 245.0);
+    view = rig.camera;
+    adcgs_camera_fit(&view, 320, 480, 1); /* nothing more above and below, 160 pixels less at both sides */
+    assert_true(view.fx == 500.0 && view.fy == 510.0 && view.cx == 140.0 && view.cy == 250.0 && view.width == 320);
+    adcgs_camera_fit(&view, 640, 480, 0); /* and back */
+    assert_memory_equal(&view, &rig.camera, sizeof view);
 }
 
 static void test_clock(void **state)
@@ -500,7 +505,7 @@ static adcgs_status read_script(adcgs_script *script, const char *text)
 static void test_script(void **state)
 {
     adcgs_script script;
-    assert_int_equal(read_script(&script, "# a word\n\n wait 10 frames\r\nwait 0.5 seconds\n"
+    assert_int_equal(read_script(&script, "\xef\xbb\xbf# a word\n\n wait 10 frames\r\nwait 0.5 seconds\n"
                                           "drag shift-left 1 2 3.5 -4\nkey shift-p\nkey f1\n"
                                           "size 640x480\nexpect time 0.5 1e-3\nexpect size 64x65\nquit"), ADCGS_OK);
     assert_int_equal(script.n, 9);

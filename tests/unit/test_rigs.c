@@ -172,7 +172,7 @@ static void test_neu3d(void **state)
     put_poses(3, 2);
     open_good();
     assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 10 && scene->n_views[ADCGS_SPLIT_TEST] == 5 && scene->n_times == 5);
-    assert_true(scene->frame_rate == 25.0 && fabs(scene->duration - 0.16) < 1e-15 && !scene->has_alpha);
+    assert_true(adcgs_fps_value(scene->rate) == 25.0 && fabs(scene->duration - 0.16) < 1e-15 && !scene->has_alpha);
     for (int f = 0; f < 5; f++) {
         const adcgs_scene_view *test = &scene->views[ADCGS_SPLIT_TEST][f], *last = &scene->views[ADCGS_SPLIT_TRAIN][5 + f];
         assert_true(test->is_video && test->frame == f && last->frame == f && fabs(test->time - f / 25.0) < 1e-15);
@@ -461,7 +461,7 @@ static void test_robot(void **state)
     if (!scene)
         fail_msg("%s", error.text);
     assert_true(scene->n_views[ADCGS_SPLIT_TRAIN] == 8 * 16 && scene->n_views[ADCGS_SPLIT_TEST] == 16 && scene->n_times == 16);
-    assert_true(scene->frame_rate == 30.0 && fabs(scene->duration - 0.5) < 1e-12);
+    assert_true(adcgs_fps_value(scene->rate) == 30.0 && fabs(scene->duration - 0.5) < 1e-12);
     const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TEST][0].camera;
     assert_true(c->width == 352 && c->height == 264 && !strcmp(c->name, "cam00"));
 }

@@ -78,7 +78,7 @@ static void test_single(void **state)
                             FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"fl_x\":7,\"cx\":1.5,\"cy\":2.25") ","
                             FRAME("a.ppm", "") "]}"));
     expect_views(2, 0, 1);
-    assert_true(scene->n_times == 1 && scene->duration == 0.0 && scene->frame_rate == 25.0 && !scene->has_alpha);
+    assert_true(scene->n_times == 1 && scene->duration == 0.0 && adcgs_fps_value(scene->rate) == 25.0 && !scene->has_alpha);
     assert_true(scene->background[0] == 0.0f && scene->points.n == 0);
     const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
     assert_true(c->width == 6 && c->height == 4 && c->fx == 7.0 && c->fy == 7.0 && c->cx == 1.5 && c->cy == 2.25);
@@ -114,16 +114,119 @@ static void test_split_files(void **state)
     snprintf(path, sizeof path, "%s///", folder);
     expect_good(adcgs_scene_open(&scene, path, NULL, &error));
     expect_views(4, 0, 1);
-    assert_true(scene->n_times == 3 && scene->frame_rate == 30.0 && fabs(scene->duration - 2.0 / 30.0) < 1e-12);
+    assert_true(scene->n_times == 3 && adcgs_fps_value(scene->rate) == 30.0 && scene->duration == 2.0 / 30.0);
     assert_true(fabs(scene->views[ADCGS_SPLIT_TEST][0].time - 0.05) < 1e-12);
     assert_true(scene->has_alpha && scene->background[1] == 1.0f && scene->points.n == 1);
     const adcgs_camera *c = &scene->views[ADCGS_SPLIT_TRAIN][0].camera;
     assert_true(c->width == 6 && c->height == 4 && fabs(c->fx - 3.0) < 1e-12 && fabs(c->fy - 3.0) < 1e-12);
     adcgs_scene_free(&scene);
 
-    const adcgs_scene_options options = {.has_background = 1, .background = {0.25f, 0.5f, 1.0f}, .frame_rate = 10.0,
+    const adcgs_scene_options options = {.has_background = 1, .background = {0.25f, 0.5f, 1.0f}, .rate = {10, 1},
                                          .points_path = in("missing.ply")};
     expect_error(adcgs_scene_open(&scene, folder, &options, &error), ADCGS_ERR_IO, "missing.ply", "No such file");
+}
+
+#define TIMED(time) FRAME("b.ppm", ",\"time\":" time)
+
+static void put_times(const char *train, const char *test)
+{
+    char text[2000];
+    snprintf(text, sizeof text, "{\"fl_x\":5%s]}", train);
+    put_text("transforms_train.json", text);
+    snprintf(text, sizeof text, "{\"fl_x\":5%s]}", test);
+    put_text("transforms_test.json", text);
+}
+
+static void expect_time(const char *train, const char *test, uint32_t num, uint32_t den, double frames)
+{
+    put_times(train, test);
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
+    assert_true(scene->rate.num == num && scene->rate.den == den && scene->duration == frames * den / num);
+    adcgs_scene_free(&scene);
+}
+
+/** All splits tell together when there were frames, and any of them at which rate. */
+static void test_duration(void **state)
+{
+    const char *const ends = ",\"frames\":[" TIMED("0") "," TIMED("1");
+    /* Every third frame is for testing; six digits are enough. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.166667") "," TIMED("0.5") "," TIMED("0.666667") "," TIMED("1"),
+                ",\"frames\":[" TIMED("0.333333") "," TIMED("0.833333"), 30, 1, 6);
+    /* So are the last ones. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("0.5"), ",\"frames\":[" TIMED("0.75") "," TIMED("1"),
+                30, 1, 4);
+    /* Between frames that lack none: no more of them. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.5") "," TIMED("1"), ",\"frames\":[" TIMED("0.25") "," TIMED("0.75"),
+                30, 1, 2);
+    /* Nobody shows the third of four intervals' end. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.25") "," TIMED("1"), ",\"frames\":[" TIMED("0.5"), 30, 1, 4);
+    /* Moments of its own, as D-NeRF's test views have: three intervals of training, not seventeen or five. */
+    expect_time(",\"frames\":[" TIMED("0") "," TIMED("0.3333333") "," TIMED("0.6666667") "," TIMED("1"),
+                ",\"frames\":[" TIMED("0.41") "," TIMED("0.77"), 30, 1, 3);
+    expect_time(ends, ",\"fps\":29.97,\"frames\":[" TIMED("0.5"), 30000, 1001, 1);
+    expect_time(",\"fps\":\"24000/1001\",\"frames\":[" TIMED("0") "," TIMED("1"), ",\"fps\":23.976,\"frames\":[" TIMED("0.5"),
+                24000, 1001, 1);
+    put_times(",\"fps\":25,\"frames\":[" TIMED("0"), ",\"fps\":30,\"frames\":[" TIMED("0.5"));
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_test.json", "fps: 30, but 25");
+    put_times(",\"fps\":\"25/0\",\"frames\":[" TIMED("0"), ends);
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "transforms_train.json: fps", "30000/1001");
+    unlink(in("transforms_train.json"));
+    unlink(in("transforms_test.json"));
+}
+
+/** Where the mask is black, nothing is seen: neither in a pixel nor, when it is reduced, in an average. */
+static void test_mask(void **state)
+{
+    adcgs_image mask;
+    float *rgb;
+    adcgs_camera camera;
+    assert_int_equal(adcgs_image_alloc(&mask, 6, 4, 1, "m", &error), ADCGS_OK);
+    for (int i = 0; i < 6 * 4; i++) /* the last three columns, and of the second pair of them one pixel */
+        mask.data[i] = i % 6 < 3 && i != 8 ? 1.0f / 255.0f : 0.0f;
+    expect_good(adcgs_image_write(&mask, in("m.pgm"), 0, &error));
+    expect_good(adcgs_image_write(&mask, in("m.tif"), 0, &error));
+    adcgs_image_free(&mask);
+    for (int tiff = 0; tiff < 2; tiff++) {
+        char json[1000];
+        snprintf(json, sizeof json, "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") ","
+                 FRAME("b.ppm", ",\"mask_path\":\"./m.%s\"") "," FRAME("b.ppm", ",\"mask_path\":null") "]}",
+                 tiff ? "tif" : "pgm");
+        expect_good(open_single(json));
+        const adcgs_scene_view *view = scene->views[ADCGS_SPLIT_TRAIN];
+        assert_true(view[0].mask && !view[1].mask && !scene->views[ADCGS_SPLIT_TEST][0].mask);
+        expect_good(adcgs_scene_load(scene, view, 1, &rgb, NULL, &error));
+        for (int i = 0; i < 3 * 24; i++)
+            assert_true(i % 6 < 3 && i % 24 != 8 ? rgb[i] == (float)(3 * (i % 24) + i / 24) / 255.0f : isnan(rgb[i]));
+        free(rgb);
+        expect_good(adcgs_scene_load(scene, view, 2, &rgb, &camera, &error));
+        assert_true(camera.width == 3 && camera.height == 2);
+        for (int c = 0; c < 3; c++) {
+            const float *plane = rgb + 6 * c;
+            /* All four pixels; one of two that are left of four, above one that has one; none. */
+            assert_true(fabsf(plane[0] - (float)(3 * 0 + 3 * 1 + 3 * 6 + 3 * 7 + 4 * c) / 4.0f / 255.0f) < 1e-6f);
+            assert_true(isnan(plane[1]) && isnan(plane[2]) && isnan(plane[5]));
+            assert_true(fabsf(plane[4] - (float)(3 * 14 + 3 * 20 + 2 * c) / 2.0f / 255.0f) < 1e-6f);
+        }
+        free(rgb);
+        adcgs_scene_free(&scene);
+    }
+    expect_bad("{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"mask_path\":\"none.png\"") "]}",
+               ADCGS_ERR_DATA, "frames[1].mask_path", "no such image: none.png");
+    expect_bad("{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") "," FRAME("b.ppm", ",\"mask_path\":7") "]}", ADCGS_ERR_DATA,
+               "frames[1].mask_path", "expected the name");
+    assert_int_equal(adcgs_image_alloc(&mask, 5, 4, 1, "m", &error), ADCGS_OK);
+    memset(mask.data, 0, 20 * sizeof *mask.data);
+    expect_good(adcgs_image_write(&mask, in("m.pgm"), 0, &error));
+    adcgs_image_free(&mask);
+    const char *const narrow = "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "%s") "," FRAME("b.ppm", "%s") "]}";
+    char json[1000];
+    snprintf(json, sizeof json, narrow, "", ",\"mask_path\":\"m.pgm\"");
+    expect_good(open_single(json)); /* pictures for training are looked at when they are loaded */
+    expect_error(adcgs_scene_load(scene, scene->views[ADCGS_SPLIT_TRAIN], 1, &rgb, NULL, &error), ADCGS_ERR_DATA, "m.pgm: 5x4",
+                 "6x4");
+    adcgs_scene_free(&scene);
+    snprintf(json, sizeof json, narrow, ",\"mask_path\":\"m.pgm\"", "");
+    expect_error(open_single(json), ADCGS_ERR_DATA, "m.pgm: 5x4", "6x4");
 }
 
 static void test_load(void **state)
@@ -342,7 +445,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_single, no_files),        cmocka_unit_test_teardown(test_filename_lists, no_files),
-        cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_load, no_files),
+        cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_duration, no_files),
+        cmocka_unit_test_teardown(test_load, no_files),
+        cmocka_unit_test_teardown(test_mask, no_files),
         cmocka_unit_test_teardown(test_bad_files, no_files),     cmocka_unit_test_teardown(test_bad_frames, no_files),
         cmocka_unit_test_teardown(test_bad_poses, no_files),     cmocka_unit_test_teardown(test_straightening, no_files),
         cmocka_unit_test_teardown(test_mixed_times, no_files),   cmocka_unit_test_teardown(test_mutations, no_files),

@@ -117,7 +117,7 @@ static void test_times(void **state)
                       "{\"name\":\"b\"," SIZE "," FOOTAGE "," IDENTITY ",\"frame_rate\":20,\"time_offset\":1.95,"
                       "\"split\":\"test\"},"
                       "{\"name\":\"c\"," SIZE ",\"images\":\"a/f002.ppm\"," IDENTITY ",\"time_offset\":2.1,\"split\":\"val\"}"));
-    assert_true(scene->units == 1 && scene->axes == ADCGS_AXES_Z_UP && scene->frame_rate == 10 && scene->n_times == 3);
+    assert_true(scene->units == 1 && scene->axes == ADCGS_AXES_Z_UP && adcgs_fps_value(scene->rate) == 10 && scene->n_times == 3);
     assert_true(fabs(scene->duration - 0.2) < 1e-12 && scene->n_views[ADCGS_SPLIT_TRAIN] == 3);
     for (uint32_t i = 0; i < 3; i++)
         assert_true(fabs(train(i)->time - 0.1 * i) < 1e-12);
@@ -127,12 +127,12 @@ static void test_times(void **state)
     assert_true(scene->n_views[ADCGS_SPLIT_VAL] == 1 && fabs(scene->views[ADCGS_SPLIT_VAL][0].time - 0.1) < 1e-12);
     assert_string_equal(scene->views[ADCGS_SPLIT_VAL][0].camera.name, "c");
     /* The stream's rate changes nothing: these times are seconds already. */
-    const adcgs_scene_options options = {.frame_rate = 7, .frames = {1, 0, 1}};
+    const adcgs_scene_options options = {.rate = {7, 1}, .frames = {1, 0, 1}};
     adcgs_scene_free(&scene);
     expect_good(adcgs_scene_open(&scene, in("s.json"), &options, &error) == ADCGS_ERR_DATA ? ADCGS_OK : ADCGS_ERR_DATA);
     put_text("s.json", FILE_OF(",\"frame_rate\":10", CAMERA("," IDENTITY)));
     expect_good(adcgs_scene_open(&scene, in("s.json"), &options, &error));
-    assert_true(scene->frame_rate == 7 && fabs(scene->duration - 0.2) < 1e-12 && train(0)->time == 0.0);
+    assert_true(adcgs_fps_value(scene->rate) == 7 && fabs(scene->duration - 0.2) < 1e-12 && train(0)->time == 0.0);
     assert_non_null(strstr(train(0)->path, "f002.ppm"));
 }
 

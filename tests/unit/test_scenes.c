@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The scene generator: its arithmetic, its independence of threads, and what its table promises. */
 #include "scenes/scenes.h"
+#include "scenes/sine.h"
 #include "scenes/table.h"
 
 #include <math.h>

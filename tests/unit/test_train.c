@@ -645,7 +645,7 @@ static void test_adaptive_start(void **state)
     for (size_t i = m->w[m->hidden]; i < m->n; i++)
         assert_true(eq->p[i] == 0);
     adcgs_mlp_prepare(&x->f->mlp[ADCGS_P_E_STEPS], eq->p, 0);
-    const size_t bytes = 14 * (size_t)x->pass->primitives.n * sizeof(float);
+    const size_t bytes = ADCGS_ROWS * (size_t)x->pass->primitives.n * sizeof(float);
     float *with = malloc(bytes);
     const adcgs_pass_mode mode = { .quant = ADCGS_QUANT_NOISE, .deform = 1, .seed = 3 };
     adcgs_pass_forward(x->pass, x->f, 0.2f, &mode);
@@ -673,7 +673,7 @@ static void test_threads(void **state)
         const adcgs_pass_mode mode = { .quant = ADCGS_QUANT_NOISE, .deform = ADCGS_DEFORM_ALL, .dropout = 0.2f, .seed = 99 };
         adcgs_pass_forward(pass, x->f, 0.7f, &mode);
         randomise(pass->grad, 16 * (size_t)pass->primitives.n, 0, 0);
-        memcpy(pass->grad, pass->prim, 14 * (size_t)pass->primitives.n * sizeof(float));
+        memcpy(pass->grad, pass->prim, ADCGS_ROWS * (size_t)pass->primitives.n * sizeof(float));
         adcgs_pass_backward(pass, x->f, ADCGS_DEFORM_ALL, 0.5f, 1, 0, &rate);
         for (int g = 0; g < ADCGS_P_COUNT; g++) {
             const size_t bytes = x->f->param[g].n * sizeof(float);

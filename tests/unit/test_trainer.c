@@ -15,6 +15,7 @@
 #include "train/densify.h"
 #include "train/initialise.h"
 #include "train/residual_densify.h"
+#include "train/sample.h"
 #include "train/views.h"
 
 #include <math.h>
@@ -42,7 +43,7 @@ static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
     int stopped;
     if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
-    assert_int_equal(stopped, t->iteration < t->config.iterations);
+    assert_int_equal(stopped, t->iteration < t->config.iterations && !(t->config.time_limit > 0));
 }
 
 /** The state of a run less the clock. */
@@ -121,10 +122,68 @@ static void checkpoints_are_checked(void **state)
     config.densify_until += 0.01f;
     other = make(&config, NULL);
     assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
-    assert_non_null(strstr(error.text, "other options"));
+    assert_non_null(strstr(error.text, "other options: densify_until is "));
     adcgs_trainer_free(&other);
     adcgs_trainer_free(&t);
     adcgs_buffer_clear(&b);
+}
+
+static void refuse_checkpoint(const adcgs_scene *other, const char *what)
+{
+    const adcgs_train_config config = all_stages_config();
+    adcgs_trainer *t;
+    assert_int_equal(adcgs_trainer_create(&t, other, &config, adcgs_cpu_best(), NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_trainer_load(t, in("state"), &error), what ? ADCGS_ERR_DATA : ADCGS_OK);
+    if (what && (!strstr(error.text, what) || !strstr(error.text, "state: saved with another scene") || strchr(error.text, '\n')))
+        fail_msg("%s; expected %s", error.text, what);
+    adcgs_trainer_free(&t);
+}
+
+/** A file of a run goes on with the scene that it was made from, and says what of another is not the same. */
+static void checkpoints_know_their_scene(void **state)
+{
+    const adcgs_train_config config = all_stages_config();
+    adcgs_trainer *t = make(&config, NULL);
+    assert_int_equal(adcgs_trainer_save(t, in("state"), &error), ADCGS_OK);
+    adcgs_trainer_free(&t);
+    refuse_checkpoint(scene, NULL);
+
+    adcgs_scene other = *scene;
+    adcgs_scene_view views[4];
+    assert_true(other.n_views[ADCGS_SPLIT_TRAIN] > 4);
+    other.n_views[ADCGS_SPLIT_TRAIN] = 4;
+    other.views[ADCGS_SPLIT_TRAIN] = views;
+    memcpy(views, scene->views[ADCGS_SPLIT_TRAIN], sizeof views);
+    refuse_checkpoint(&other, "training views there and 4 here");
+    other = *scene;
+    other.background[1] = 0.5f;
+    refuse_checkpoint(&other, "its background");
+    adcgs_scene_view *v = &scene->views[ADCGS_SPLIT_TRAIN][3];
+    const adcgs_scene_view kept = *v;
+    v->camera.fy *= 1.001;
+    refuse_checkpoint(scene, "its cameras");
+    *v = kept;
+    v->lens.k[0] = 0.01;
+    refuse_checkpoint(scene, "its cameras");
+    *v = kept;
+    v->time += 1e-4;
+    refuse_checkpoint(scene, "its moments");
+    *v = kept;
+
+    /* One level of one sample of one picture. */
+    FILE *file = fopen(v->path, "r+b");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, -1, SEEK_END), 0);
+    const int level = fgetc(file);
+    assert_int_equal(fseek(file, -1, SEEK_END), 0);
+    fputc(level ^ 1, file);
+    fclose(file);
+    refuse_checkpoint(scene, "the training pictures' files hold something else now");
+    file = fopen(v->path, "r+b");
+    assert_int_equal(fseek(file, -1, SEEK_END), 0);
+    fputc(level, file);
+    fclose(file);
+    refuse_checkpoint(scene, NULL);
 }
 
 /* ---- Refinement ---- */
@@ -234,7 +293,7 @@ static int give_poison(void *user, const adcgs_train_report *r)
     if (!p->given && r->iteration >= p->at) {
         p->given = 1;
         if (p->group < 0)
-            put_value(p->t, NAN);
+            put_value(p->t, INFINITY); /* NaN is a mask */
         else
             p->t->f->param[p->group].p[p->group == ADCGS_P_FG ? 64 : 0] = NAN;
     }
@@ -716,6 +775,161 @@ static void moments_shared_by_views_change_settings(void **state)
         }
 }
 
+/* ---- Time ---- */
+
+/** Seconds of an iteration of a make-believe machine: so much of it, at full resolution, is not for pixels. */
+static double true_cost(int divide, double overhead)
+{
+    return 0.01 * (overhead + (1 - overhead) / (divide * divide));
+}
+
+/** What a run still takes, told from its beginning on: never negative, never more than before by much, and near the truth. */
+static void time_left_follows_the_schedule(void **state)
+{
+    static const double overheads[] = { 0.05, 0.2, 0.6, 1 };
+    static const float halves[][2] = { { 0.25f, 0.7f }, { 0, 0 }, { 0.3f, 0.3f }, { 0, 0.5f }, { 1, 1 } };
+    enum { N = 4000 };
+    for (size_t o = 0; o < ADCGS_COUNTOF(overheads); o++)
+        for (size_t h = 0; h < ADCGS_COUNTOF(halves); h++) {
+            adcgs_train_config c = small_config();
+            adcgs_time_left left = { .load = 0 };
+            c.iterations = N;
+            c.quarter_until = halves[h][0];
+            c.half_until = halves[h][1];
+            assert_true(isnan(adcgs_time_left_of(&left, &c, 0, 0)));
+            double truth = 0, before = HUGE_VAL;
+            for (uint32_t i = 0; i < N; i++)
+                truth += true_cost(adcgs_coarse_divide(&c, (double)i / N), overheads[o]);
+            for (uint32_t i = 0; i < N; i++) {
+                const int divide = adcgs_coarse_divide(&c, (double)i / N);
+                const double cost = true_cost(divide, overheads[o]);
+                adcgs_time_left_add(&left, divide, cost);
+                truth -= cost;
+                const double told = adcgs_time_left_of(&left, &c, i + 1, 0);
+                const int last = divide == 1 || (double)i / N >= (double)halves[h][1];
+                assert_true(told >= 0 && told < 4.1 * truth + 1e-9 && told > truth / 4.1 - 1e-9);
+                assert_true(!last || fabs(told - truth) < 1e-6 * N);
+                assert_true(told <= before || divide != adcgs_coarse_divide(&c, i ? (double)(i - 1) / N : 0));
+                before = told;
+            }
+            assert_true(before < 1e-9);
+            /* A limit ends it, known or not, and what is over is not negative. */
+            c.time_limit = 7;
+            assert_true(adcgs_time_left_of(&left, &c, 0, 6.5) <= 0.5 && adcgs_time_left_of(&left, &c, 0, 99) == 0);
+            left = (adcgs_time_left){ .load = 0 };
+            assert_true(adcgs_time_left_of(&left, &c, 0, 3) == 4);
+            assert_true(adcgs_time_left_of(&left, &c, N, 3) == 0);
+        }
+}
+
+/** Loading between resolutions counts, as long as it is to come. */
+static void time_left_knows_loading(void **state)
+{
+    adcgs_train_config c = small_config();
+    adcgs_time_left left = { .cost = { 1, 1, 1 }, .load = 100 };
+    c.iterations = 10;
+    c.quarter_until = 0.2f;
+    c.half_until = 0.5f;
+    assert_true(adcgs_time_left_of(&left, &c, 0, 0) == 210);
+    assert_true(adcgs_time_left_of(&left, &c, 3, 0) == 107);
+    assert_true(adcgs_time_left_of(&left, &c, 9, 0) == 1);
+}
+
+/** The limit counts from where the program says that it began; when it is over before the first iteration, there is no run. */
+static void time_limits_count_what_was_before(void **state)
+{
+    adcgs_train_config config = small_config();
+    int stopped;
+    config.time_limit = 5;
+    adcgs_trainer *t = make(&config, pool);
+    t->started = adcgs_seconds() - 6;
+    assert_int_equal(adcgs_trainer_run(t, NULL, NULL, &stopped, &error), ADCGS_ERR_USAGE);
+    assert_int_equal(t->iteration, 0);
+    assert_true(strstr(error.text, "time limit of 5 s") && strstr(error.text, "before training began"));
+    adcgs_trainer_free(&t);
+    config.time_limit = 1000;
+    config.iterations = 100000;
+    t = make(&config, pool);
+    t->started = adcgs_seconds() - 998; /* two seconds are left */
+    const double begin = adcgs_seconds();
+    run(t, NULL, NULL);
+    assert_true(t->iteration > 0 && t->iteration < 100000 && t->elapsed >= 1000 && adcgs_seconds() - begin < 60);
+    adcgs_trainer_free(&t);
+}
+
+/* ---- Masks ---- */
+
+enum { MASK_FROM = 6, MASK_UNTIL = 19 }; /* columns and rows */
+
+static int is_masked(int i, int width)
+{
+    const int x = i % width, y = i / width;
+    return x >= MASK_FROM && x < MASK_UNTIL && y >= MASK_FROM && y < MASK_UNTIL;
+}
+
+/** A copy of a view's picture with something else where the mask is, under a name of its own. */
+static void put_behind_mask(adcgs_scene_view *v, uint32_t number, float value)
+{
+    char name[64];
+    adcgs_image image;
+    assert_int_equal(adcgs_image_read(&image, v->path, &error), ADCGS_OK);
+    for (int i = 0; i < image.width * image.height; i++)
+        for (int c = 0; is_masked(i, image.width) && c < image.channels; c++)
+            image.data[i * image.channels + c] = value * (float)((i + c + (int)number) % 3) / 2;
+    snprintf(name, sizeof name, "behind_%u_%g.ppm", number, (double)value);
+    assert_int_equal(adcgs_image_write(&image, in(name), 0, &error), ADCGS_OK);
+    adcgs_image_free(&image);
+    v->path = strdup(in(name));
+}
+
+/** A run on views with a mask, and its report at the end. */
+static void run_behind_mask(float value, adcgs_buffer *end, double *psnr)
+{
+    adcgs_train_config config = small_config();
+    adcgs_scene masked = *scene;
+    const uint32_t n = masked.n_views[ADCGS_SPLIT_TRAIN];
+    adcgs_scene_view *views = calloc(n, sizeof *views);
+    masked.views[ADCGS_SPLIT_TRAIN] = views;
+    for (uint32_t i = 0; i < n; i++) {
+        views[i] = scene->views[ADCGS_SPLIT_TRAIN][i];
+        put_behind_mask(&views[i], i, value);
+        views[i].mask = strdup(in("mask.pgm"));
+    }
+    adcgs_trainer *t;
+    assert_int_equal(adcgs_trainer_create(&t, &masked, &config, adcgs_cpu_best(), pool, &error), ADCGS_OK);
+    t->quantise = adcgs_encode_quantise_hook;
+    run(t, NULL, NULL);
+    store(t, end);
+    assert_int_equal(adcgs_sample_psnr(t, 4, psnr, &error), ADCGS_OK);
+    assert_true(all_finite(t->f) && t->rollbacks == 0);
+    adcgs_trainer_free(&t);
+    for (uint32_t i = 0; i < n; i++) {
+        unlink(views[i].path);
+        adcgs_scene_view_clear(&views[i]);
+    }
+    free(views);
+}
+
+/** What is behind a mask has no part in anything: whatever is there, the run ends the same, to the bit. */
+static void masked_pixels_have_no_part(void **state)
+{
+    const int side = 32; /* of the tiny scene's pictures */
+    adcgs_image mask;
+    adcgs_buffer dark, bright;
+    double psnr[2];
+    assert_int_equal(adcgs_image_alloc(&mask, side, side, 1, "mask", &error), ADCGS_OK);
+    for (int i = 0; i < side * side; i++)
+        mask.data[i] = !is_masked(i, side);
+    assert_int_equal(adcgs_image_write(&mask, in("mask.pgm"), 0, &error), ADCGS_OK);
+    adcgs_image_free(&mask);
+    run_behind_mask(0, &dark, &psnr[0]);
+    run_behind_mask(1, &bright, &psnr[1]);
+    assert_same(&dark, &bright);
+    assert_true(psnr[0] == psnr[1] && psnr[0] > 10);
+    adcgs_buffer_clear(&dark);
+    adcgs_buffer_clear(&bright);
+}
+
 /* ---- What is missing ---- */
 
 /** Every view shows the background and one dot: of the place x, or somewhere of its own. */
@@ -794,6 +1008,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
         cmocka_unit_test(checkpoints_are_checked),
+        cmocka_unit_test(checkpoints_know_their_scene),
         cmocka_unit_test(densification_keeps_order_and_budget),
         cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
@@ -810,6 +1025,9 @@ int main(void)
         cmocka_unit_test(averages_are_means),
         cmocka_unit_test(cameras_are_evened_out),
         cmocka_unit_test(moments_shared_by_views_change_settings),
+        cmocka_unit_test(time_left_follows_the_schedule), cmocka_unit_test(time_left_knows_loading),
+        cmocka_unit_test(time_limits_count_what_was_before),
+        cmocka_unit_test(masked_pixels_have_no_part),
         cmocka_unit_test(missing_things_are_found),
     };
     return cmocka_run_group_tests_name("trainer", tests, open_scene, close_scene);

@@ -249,7 +249,7 @@ static void test_real(void **state)
     adcgs_video *video;
     expect_good(adcgs_video_open(&video, path, &error));
     const adcgs_video_info *info = adcgs_video_get_info(video);
-    assert_true(info->width == 352 && info->height == 264 && info->frames == 16 && info->frame_rate == 30);
+    assert_true(info->width == 352 && info->height == 264 && info->frames == 16 && info->rate.num == 30 && info->rate.den == 1);
     for (int f = 15; f >= 0; f -= 5) {
         adcgs_image image;
         AVFrame *frame = decode_plainly(path, f);

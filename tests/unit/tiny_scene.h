@@ -50,7 +50,7 @@ static inline adcgs_train_config small_config(void)
 }
 
 /** An observer: stop at the iteration that user points to. */
-static int stop_at(void *user, const adcgs_train_report *r)
+static inline int stop_at(void *user, const adcgs_train_report *r)
 {
     return r->iteration >= *(const uint32_t *)user;
 }

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file How primitives lie in memory: arrays of as many slots, one after the other, and anchors in groups of ADCGS_LANES. */
+#ifndef ADCGS_SPLAT_ROWS_H
+#define ADCGS_SPLAT_ROWS_H
+
+#include "model/model.h"
+
+/** The arrays, in the order in which conformance point S has a primitive's numbers. */
+enum {
+    ADCGS_ROW_MEAN = 0,
+    ADCGS_ROW_SCALE = 3,
+    ADCGS_ROW_ROTATION = 6, /**< w, x, y, z */
+    ADCGS_ROW_OPACITY = 10,
+    ADCGS_ROW_COLOUR = 11,
+    ADCGS_ROWS = 14
+};
+
+/** The arrays from some slot on. */
+typedef struct adcgs_slot_out {
+    float *mean[3], *scale[3], *rotation[4], *opacity, *colour[3];
+} adcgs_slot_out;
+
+/** The arrays in rows [ADCGS_ROWS][n], from a slot on. */
+static inline adcgs_slot_out adcgs_rows_at(float *rows, size_t n, size_t slot)
+{
+    float *const at = rows + slot;
+    adcgs_slot_out o = {.opacity = at + ADCGS_ROW_OPACITY * n};
+    for (size_t c = 0; c < 3; c++) {
+        o.mean[c] = at + (ADCGS_ROW_MEAN + c) * n;
+        o.scale[c] = at + (ADCGS_ROW_SCALE + c) * n;
+        o.colour[c] = at + (ADCGS_ROW_COLOUR + c) * n;
+    }
+    for (size_t c = 0; c < 4; c++)
+        o.rotation[c] = at + (ADCGS_ROW_ROTATION + c) * n;
+    return o;
+}
+
+/** All of rows [ADCGS_ROWS][n], to be read. */
+static inline adcgs_primitives adcgs_rows_primitives(float *rows, uint32_t n)
+{
+    const adcgs_slot_out o = adcgs_rows_at(rows, n, 0);
+    return (adcgs_primitives){.n = n,
+                              .mean = {o.mean[0], o.mean[1], o.mean[2]},
+                              .scale = {o.scale[0], o.scale[1], o.scale[2]},
+                              .rotation = {o.rotation[0], o.rotation[1], o.rotation[2], o.rotation[3]},
+                              .opacity = o.opacity,
+                              .colour = {o.colour[0], o.colour[1], o.colour[2]}};
+}
+
+/** Groups that n anchors make; the last one is padded. */
+static inline uint32_t adcgs_lane_groups(uint32_t n)
+{
+    return (n + ADCGS_LANES - 1) / ADCGS_LANES;
+}
+
+/** Slot of primitive k of an anchor that has `per_anchor` of them: by group, then by k, then by anchor. */
+static inline size_t adcgs_slot_of(uint32_t anchor, int per_anchor, int k)
+{
+    return ((size_t)(anchor / ADCGS_LANES) * (size_t)per_anchor + (size_t)k) * ADCGS_LANES + anchor % ADCGS_LANES;
+}
+
+#endif

@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Pictures as training and measuring want them: read, put on the background, straightened, reduced. Where a picture is to be
+ * straightened and reduced, most of the reducing is done before: a box filter costs little, resampling much. The last whole
+ * factor is left for after it, so that what the lens takes apart is still there when it is looked at: pixels on a grid twice as
+ * fine lose next to nothing to interpolation that is seen in the end.
+ */
+#include "config.h"
+
+#include "data/scene.h"
+
+#include "data/clips.h"
+#include "data/splat_views.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define COUNTS 0.5f /* share of a pixel that must not be masked for it to count */
+
+static adcgs_status check_size(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
+{
+    const int bends = view->lens.width > 0;
+    const int wanted[2] = {bends ? view->lens.width : view->camera.width, bends ? view->lens.height : view->camera.height};
+    if (width == wanted[0] && height == wanted[1])
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as its camera says", path, width, height,
+                      wanted[0], wanted[1]);
+}
+
+static adcgs_status probe(const adcgs_scene_view *view, const char *path, adcgs_error *error)
+{
+    int width, height, channels;
+    ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, path, error));
+    return check_size(view, path, width, height, error);
+}
+
+adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
+{
+    ADCGS_TRY(probe(view, view->path, error));
+    return view->mask ? probe(view, view->mask, error) : ADCGS_OK;
+}
+
+/* ---- Reading ---- */
+
+/** Of another size than it should have, an image is refused before there is memory for its pixels. */
+static adcgs_status read_image(const adcgs_scene_view *view, const char *path, adcgs_image *image, adcgs_error *error)
+{
+    ADCGS_TRY(probe(view, path, error));
+    return adcgs_image_read(image, path, error);
+}
+
+/** As it was taken: of a file, a video or splats. */
+static adcgs_status read_picture(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
+{
+    if (scene->splats)
+        return adcgs_splat_scene_render(scene->splats, scene->background, &view->camera, image, view->path, error);
+    ADCGS_TRY(view->is_video ? adcgs_clips_read(scene->clips, view->path, view->frame, image, error)
+                             : read_image(view, view->path, image, error));
+    const adcgs_status status = check_size(view, view->path, image->width, image->height, error);
+    if (status != ADCGS_OK)
+        adcgs_image_free(image);
+    return status;
+}
+
+/* ---- Reducing ---- */
+
+/** What is reduced: colours over a background; those with a weight have it in their fourth channel, and no background. */
+typedef struct source {
+    const adcgs_image *image, *mask; /**< mask NULL: every pixel counts */
+    const float *background;         /**< NULL: the fourth channel, if there is one, is the weight */
+} source;
+
+/** Colour of one pixel over the background. */
+static inline void composite(const float *pixel, int channels, const float background[3], float rgb[3])
+{
+    const float alpha = channels % 2 ? 1.0f : pixel[channels - 1];
+    for (int c = 0; c < 3; c++) {
+        const float value = pixel[channels < 3 ? 0 : c];
+        rgb[c] = channels % 2 ? value : value * alpha + background[c] * (1.0f - alpha);
+    }
+}
+
+/** Any colour but black counts. */
+static inline int is_seen(const adcgs_image *mask, size_t pixel)
+{
+    const float *values = mask->data + pixel * (size_t)mask->channels;
+    const int colours = mask->channels < 3 ? 1 : 3;
+    int seen = 0;
+    for (int c = 0; c < colours; c++)
+        seen |= values[c] > 0.0f;
+    return seen;
+}
+
+/** Colour and weight of a pixel; whether it counts at all. */
+static inline int take(const source *s, size_t pixel, float value[4])
+{
+    const float *from = s->image->data + pixel * (size_t)s->image->channels;
+    value[3] = 1.0f;
+    if (s->mask && !is_seen(s->mask, pixel))
+        return 0;
+    if (s->background)
+        composite(from, s->image->channels, s->background, value);
+    else
+        memcpy(value, from, (size_t)s->image->channels * sizeof *value);
+    return value[3] > 0.0f;
+}
+
+/** Average of what counts in the box of source pixels under one pixel of the smaller picture; out[3]: the share that does. */
+static void average_box(const source *s, int x, int y, int divide, float out[4])
+{
+    const int right = ADCGS_MIN(x + divide, s->image->width), bottom = ADCGS_MIN(y + divide, s->image->height);
+    float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f}, value[4];
+    for (int v = y; v < bottom; v++)
+        for (int u = x; u < right; u++) {
+            if (!take(s, (size_t)v * (size_t)s->image->width + (size_t)u, value))
+                continue;
+            for (int c = 0; c < 3; c++)
+                sum[c] += value[3] * value[c];
+            sum[3] += value[3];
+        }
+    const float scale = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
+    for (int c = 0; c < 3; c++)
+        out[c] = sum[c] * scale;
+    out[3] = sum[3] / (float)((right - x) * (bottom - y));
+}
+
+static adcgs_status reduce(adcgs_image *out, const source *s, int divide, const char *path, adcgs_error *error)
+{
+    const int width = (s->image->width + divide - 1) / divide, height = (s->image->height + divide - 1) / divide;
+    const int channels = s->mask || (!s->background && s->image->channels == 4) ? 4 : 3;
+    ADCGS_TRY(adcgs_image_alloc(out, width, height, channels, path, error));
+    float *to = out->data;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++, to += channels) {
+            float value[4];
+            average_box(s, x * divide, y * divide, divide, value);
+            memcpy(to, value, (size_t)channels * sizeof *to);
+        }
+    return ADCGS_OK;
+}
+
+/** Reduce in place. */
+static adcgs_status reduce_image(adcgs_image *image, const source *s, int divide, const char *path, adcgs_error *error)
+{
+    adcgs_image out;
+    ADCGS_TRY(reduce(&out, s, divide, path, error));
+    adcgs_image_free(image);
+    *image = out;
+    return ADCGS_OK;
+}
+
+/* ---- Straightening ---- */
+
+static void divide_camera(adcgs_camera *camera, int divide)
+{
+    camera->width = (camera->width + divide - 1) / divide;
+    camera->height = (camera->height + divide - 1) / divide;
+    camera->fx /= divide;
+    camera->fy /= divide;
+    camera->cx /= divide;
+    camera->cy /= divide;
+}
+
+/** The factor that is left for after straightening: the least but 1. */
+static int last_factor(int divide)
+{
+    for (int factor = 2; factor * factor <= divide; factor++)
+        if (divide % factor == 0)
+            return factor;
+    return divide;
+}
+
+/** The image is already reduced by this. */
+static adcgs_status straighten(const adcgs_scene_view *view, adcgs_image *image, int divide, adcgs_error *error)
+{
+    adcgs_lens lens = view->lens;
+    adcgs_camera camera = view->camera;
+    divide_camera(&camera, divide);
+    lens.width = image->width;
+    lens.height = image->height;
+    lens.fx /= divide;
+    lens.fy /= divide;
+    lens.cx /= divide;
+    lens.cy /= divide;
+    lens.skew /= divide;
+    return adcgs_lens_straighten(&lens, &camera, image, view->path, error);
+}
+
+/** From the picture as it was taken, which is replaced, to one of the size wanted: colours, and with a mask their weight. */
+static adcgs_status shape(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_image *mask, int divide,
+                          adcgs_image *image, adcgs_error *error)
+{
+    const int bends = view->lens.width > 0, after = bends ? last_factor(divide) : 1, before = divide / after;
+    const source taken = {image, mask, scene->background}, straight = {image, NULL, NULL};
+    if (before > 1 || mask || image->channels != 3)
+        ADCGS_TRY(reduce_image(image, &taken, before, view->path, error));
+    if (bends)
+        ADCGS_TRY(straighten(view, image, before, error));
+    return after > 1 ? reduce_image(image, &straight, after, view->path, error) : ADCGS_OK;
+}
+
+/** Planar; what does not count is not a number. */
+static float *to_planes(const adcgs_image *image)
+{
+    const size_t plane = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
+    float *rgb = malloc(3 * plane * sizeof *rgb);
+    for (size_t i = 0; rgb && i < plane; i++)
+        for (size_t c = 0; c < 3; c++) {
+            const float *pixel = image->data + i * channels;
+            rgb[c * plane + i] = channels == 4 && pixel[3] < COUNTS ? (float)NAN : pixel[c];
+        }
+    return rgb;
+}
+
+adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                              adcgs_camera *camera, adcgs_error *error)
+{
+    adcgs_image image, mask = {.data = NULL};
+    *rgb = NULL;
+    if (divide < 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
+    ADCGS_TRY(read_picture(scene, view, &image, error));
+    adcgs_status status = view->mask ? read_image(view, view->mask, &mask, error) : ADCGS_OK;
+    if (status == ADCGS_OK)
+        status = shape(scene, view, view->mask ? &mask : NULL, divide, &image, error);
+    if (status == ADCGS_OK && !(*rgb = to_planes(&image)))
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);
+    adcgs_image_free(&image);
+    adcgs_image_free(&mask);
+    if (status == ADCGS_OK && camera) {
+        *camera = view->camera;
+        divide_camera(camera, divide);
+    }
+    return status;
+}

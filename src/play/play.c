@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The player's loop: events in, and what follows from them. */
+#include "config.h"
+
+#include "play/panel.h"
+#include "play/player.h"
+#include "play/script_run.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define HEIGHT_WANTED 480         /* of the first window; smaller cameras are enlarged by a whole number */
+#define SIDE_MAX 4096             /* of the first window, whatever the camera */
+#define REFRESH_SECONDS 0.25      /* after which figures and messages are drawn anew */
+#define WAIT_MOVING 4             /* milliseconds to wait for events */
+#define WAIT_STILL 100
+#define SHOTS_MAX 999999
+
+/** A name that no file has yet: the stream's, and a number. */
+static void name_shot(adcgs_player *p, const char *extension)
+{
+    const char *const slash = strrchr(p->settings->path, '/'), *const name = slash ? slash + 1 : p->settings->path;
+    const char *const dot = strrchr(name, '.');
+    const int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
+    for (int i = 1; i <= SHOTS_MAX; i++) {
+        snprintf(p->shot, sizeof p->shot, "%.*s-%06d.%s", length, name, i, extension);
+        if (access(p->shot, F_OK))
+            return;
+    }
+    *p->shot = 0;
+    adcgs_play_say(&p->state, "no number is left for a screenshot");
+}
+
+static void measure_window(adcgs_player *p)
+{
+    int width, height;
+    double density;
+    p->sdl->size(p->window, &width, &height, &density);
+    if (width != p->state.width || height != p->state.height)
+        p->least_divider = 1;
+    adcgs_play_resize(&p->state, width, height, density);
+}
+
+static void take_events(adcgs_player *p)
+{
+    const int moves = adcgs_play_moving(&p->state) || p->run.at < p->run.script.n;
+    adcgs_event event;
+    for (int wait = moves ? WAIT_MOVING : WAIT_STILL; p->sdl->event(p->window, wait, &event); wait = 0) {
+        const int frame = adcgs_play_clock_frame(&p->state.clock);
+        adcgs_play_event(&p->state, &event);
+        p->seeks += adcgs_play_clock_frame(&p->state.clock) != frame;
+        p->stale |= event.kind != ADCGS_EVENT_NONE;
+        if (event.kind == ADCGS_EVENT_SIZE)
+            measure_window(p);
+    }
+    if (p->captured != p->state.flying)
+        p->sdl->capture(p->window, p->state.flying);
+    p->captured = p->state.flying;
+    if (p->state.shot && !*p->shot) {
+        name_shot(p, p->state.shot == ADCGS_SHOT_EXR ? "exr" : "png");
+        p->state.shot = ADCGS_SHOT_NONE;
+    }
+}
+
+/** Screenshots that were asked for are made before the player leaves. */
+static adcgs_status loop(adcgs_player *p, adcgs_error *error)
+{
+    while ((!p->state.quit || p->state.shot || *p->shot) && !p->settings->interrupted()) {
+        take_events(p);
+        adcgs_play_tick(&p->state, adcgs_seconds());
+        ADCGS_TRY(adcgs_player_collect(p, error));
+        adcgs_player_post(p);
+        ADCGS_TRY(adcgs_script_go(p, error));
+        if (p->stale || p->state.now - p->shown > REFRESH_SECONDS)
+            ADCGS_TRY(adcgs_player_show(p, NULL, error));
+    }
+    return ADCGS_OK;
+}
+
+static void wake(void *arg)
+{
+    adcgs_player *const p = arg;
+    p->sdl->wake(p->window);
+}
+
+static adcgs_status open_window(adcgs_player *p, adcgs_error *error)
+{
+    const adcgs_play_settings *const s = p->settings;
+    const int times = (HEIGHT_WANTED + s->home.height - 1) / s->home.height;
+    const int suits[2] = {ADCGS_MIN(times * s->home.width, SIDE_MAX), ADCGS_MIN(times * s->home.height, SIDE_MAX)};
+    const int *const size = s->size[0] ? s->size : suits;
+    ADCGS_TRY(adcgs_sdl_get(&p->sdl, s->path, error));
+    ADCGS_TRY(p->sdl->open(&p->window, s->path, size[0], size[1], error));
+    measure_window(p);
+    return adcgs_worker_create(&p->worker, s->data, s->bytes, s->path, &s->config, wake, p, error);
+}
+
+static void init(adcgs_player *p, const adcgs_play_settings *s)
+{
+    *p = (adcgs_player){.settings = s, .least_divider = 1, .last_frame = -1, .stale = 1};
+    adcgs_play_clock *const clock = &p->state.clock;
+    adcgs_play_init(&p->state, &s->info, &s->home, s->cameras);
+    adcgs_play_scale_init(&p->scale);
+    if (s->config.layers)
+        p->state.layers = ADCGS_MIN(s->config.layers, p->state.layers_max);
+    adcgs_play_tick(&p->state, adcgs_seconds());
+    adcgs_play_clock_init(clock, s->begin, s->end, s->info.frame_rate, p->state.now);
+    if (clock->frames > 1)
+        adcgs_play_clock_seek(clock, (s->start - s->begin) * clock->rate / (clock->frames - 1));
+    if (!s->paused)
+        adcgs_play_clock_toggle(clock);
+    if (s->info.truncated)
+        adcgs_play_say(&p->state, "the stream ends early");
+}
+
+adcgs_status adcgs_play_run(const adcgs_play_settings *settings, int *failed, adcgs_error *error)
+{
+    adcgs_player *p = malloc(sizeof *p);
+    *failed = 0;
+    if (!p)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the player");
+    init(p, settings);
+    adcgs_status status = settings->script ? adcgs_script_read(&p->run.script, settings->script, error) : ADCGS_OK;
+    if (status == ADCGS_OK)
+        status = open_window(p, error);
+    if (status == ADCGS_OK)
+        status = loop(p, error);
+    adcgs_worker_free(&p->worker); /* first, since it wakes the window */
+    if (p->window)
+        p->sdl->close(&p->window);
+    for (int i = 0; i < ADCGS_PANELS; i++)
+        adcgs_panel_free(&p->panels[i]);
+    adcgs_script_clear(&p->run.script);
+    *failed = status == ADCGS_OK && p->run.failed;
+    free(p);
+    return status;
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Procedural textures of the ray tracer's objects. */
+#ifndef ADCGS_SCENES_TEXTURE_H
+#define ADCGS_SCENES_TEXTURE_H
+
+#include "scenes/trace.h"
+
+/** The mix factor 0..1 of an object's texture at a local point. */
+double adcgs_texture_mix(const adcgs_trace_object *object, const double point[3]);
+/** Smooth noise 0..1 of unit cell size. */
+double adcgs_texture_noise(const double point[3], uint32_t seed);
+
+#endif

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Whether a stream may have been made of a scene. What differs is worth a word:
+ * figures would be right, and mean nothing.
+ */
+#include "config.h"
+
+#include "tools/eval_match.h"
+
+#include <math.h>
+
+#define PLACE_WITHIN 1e-3 /* scene units, and elements of rotations: streams keep poses in binary32, scenes in decimal digits */
+#define LENS_WITHIN 0.02  /* of the focal length per width: pictures may have been reduced */
+#define PSNR_OF_NOTHING 10.0
+
+static int is_same_place(const adcgs_camera *a, const adcgs_camera *b, double scale)
+{
+    for (int i = 0; i < 12; i++)
+        if (!(fabs(a->cam_to_world[i] - b->cam_to_world[i]) <= PLACE_WITHIN * (i % 4 == 3 ? scale : 1.0)))
+            return 0;
+    return 1;
+}
+
+static int is_same_lens(const adcgs_camera *a, const adcgs_camera *b)
+{
+    const double x = b->fx * a->width / (a->fx * b->width), y = b->fy * a->height / (a->fy * b->height);
+    return fabs(x - 1.0) <= LENS_WITHIN && fabs(y - 1.0) <= LENS_WITHIN;
+}
+
+/** 0: no view of the scene was taken from where the camera is; 1: one was, through another lens; 2: through the same. */
+static int find_camera(const adcgs_camera *camera, const adcgs_scene *scene, double scale)
+{
+    int found = 0;
+    for (int split = 0; split < ADCGS_SPLITS; split++)
+        for (uint32_t i = 0; i < scene->n_views[split] && found < 2; i++) {
+            const adcgs_camera *const other = &scene->views[split][i].camera;
+            if (is_same_place(camera, other, scale))
+                found = is_same_lens(camera, other) ? 2 : 1;
+        }
+    return found;
+}
+
+static void match_cameras(const adcgs_match *m, const adcgs_info *info)
+{
+    int n[3] = {0, 0, 0};
+    adcgs_camera camera;
+    for (int i = 0; i < info->cameras; i++)
+        if (adcgs_get_camera(m->decoder, i, &camera) == ADCGS_OK)
+            n[find_camera(&camera, m->scene, info->scene_scale)]++;
+    if (2 * n[0] > info->cameras)
+        adcgs_cli_note(m->cli, "%s: %d of its %d cameras are none of %s: was it made of another scene?", m->file, n[0],
+                       info->cameras, m->scene_name);
+    else if (2 * n[1] > info->cameras)
+        adcgs_cli_note(m->cli, "%s: %d of its %d cameras have other lenses in %s: was it made of other pictures?", m->file, n[1],
+                       info->cameras, m->scene_name);
+}
+
+/** How many views of the split are of a time that the stream has not, give or take a frame. */
+static uint32_t count_outside(const adcgs_match *m, const adcgs_info *info)
+{
+    const double frame = 1.0 / info->frame_rate;
+    uint32_t outside = 0;
+    for (uint32_t i = 0; i < m->scene->n_views[m->split]; i++) {
+        const double time = m->scene->views[m->split][i].time;
+        outside += time > info->time_end + frame || time < info->time_start - frame;
+    }
+    return outside;
+}
+
+adcgs_status adcgs_match_check(const adcgs_match *m, adcgs_error *error)
+{
+    adcgs_info info;
+    ADCGS_TRY(adcgs_get_info(m->decoder, &info));
+    const uint32_t outside = count_outside(m, &info);
+    if (outside && outside == m->scene->n_views[m->split])
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "%.80s lasts from %g to %g s, and no %s view of %.80s is of that time: "
+                          "another scene, or other --frames", m->file,
+                          info.time_start, info.time_end, adcgs_split_name(m->split), m->scene_name);
+    return ADCGS_OK;
+}
+
+void adcgs_match_say(const adcgs_match *m, const adcgs_evaluation *evaluation)
+{
+    adcgs_info info;
+    if (adcgs_get_info(m->decoder, &info) != ADCGS_OK)
+        return;
+    const uint32_t outside = count_outside(m, &info);
+    if (outside)
+        adcgs_cli_note(m->cli, "%s: lasts from %g to %g s, but %u of the %u %s views of %s are not of that time: other --frames?",
+                       m->file, info.time_start, info.time_end, outside, m->scene->n_views[m->split],
+                       adcgs_split_name(m->split), m->scene_name);
+    match_cameras(m, &info);
+    if (evaluation->psnr < PSNR_OF_NOTHING)
+        adcgs_cli_note(m->cli, "%s: its views are nothing like the pictures of %s (%.1f dB): was it made of another scene?",
+                       m->file, m->scene_name, evaluation->psnr);
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Whether a stream may have been made of a scene: cameras, times, pictures. */
+#ifndef ADCGS_TOOLS_EVAL_MATCH_H
+#define ADCGS_TOOLS_EVAL_MATCH_H
+
+#include "cli/cli.h"
+#include "data/scene.h"
+#include "metric/evaluate.h"
+
+typedef struct adcgs_match {
+    const adcgs_cli *cli;
+    const char *file, *scene_name; /**< for messages */
+    const adcgs_decoder *decoder;
+    const adcgs_scene *scene;
+    adcgs_split split;
+} adcgs_match;
+
+/** Before the evaluation: ADCGS_ERR_DATA if no view of the split is within the stream's time. */
+adcgs_status adcgs_match_check(const adcgs_match *match, adcgs_error *error);
+/** After it: notes of what does not match. */
+void adcgs_match_say(const adcgs_match *match, const adcgs_evaluation *evaluation);
+
+#endif

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file How long a run still takes. */
+#include "train/time_left.h"
+
+#include <math.h>
+
+#define KEEP 0.98    /* of what an iteration cost before, when one more is known */
+#define OVERHEAD 0.2 /* of an iteration at full resolution, that does not depend on its pixels; until two have been seen */
+
+int adcgs_coarse_divide(const adcgs_train_config *c, double progress)
+{
+    return progress < (double)c->quarter_until ? 4 : progress < (double)c->half_until ? 2 : 1;
+}
+
+static int level_of(int divide)
+{
+    return divide >= 4 ? 2 : divide >= 2;
+}
+
+/** Of all pixels. */
+static double share_of(int level)
+{
+    return 1.0 / (double)(1 << 2 * level);
+}
+
+void adcgs_time_left_add(adcgs_time_left *left, int divide, double seconds)
+{
+    double *cost = &left->cost[level_of(divide)];
+    *cost = *cost > 0 ? KEEP * *cost + (1 - KEEP) * seconds : seconds;
+}
+
+/** Cost of a level that has not been seen: on the line through two that have, or through one and the usual overhead. */
+static double expect(const adcgs_time_left *left, int level)
+{
+    int seen[ADCGS_TIME_LEFT_LEVELS], n = 0;
+    for (int i = 0; i < ADCGS_TIME_LEFT_LEVELS; i++)
+        if (left->cost[i] > 0)
+            seen[n++] = i;
+    if (!n)
+        return (double)NAN;
+    const double x = share_of(level), x0 = share_of(seen[0]), y0 = left->cost[seen[0]];
+    const double usual = y0 * ((1 - OVERHEAD) * x + OVERHEAD) / ((1 - OVERHEAD) * x0 + OVERHEAD);
+    if (n < 2)
+        return usual;
+    const double slope = (y0 - left->cost[seen[1]]) / (x0 - share_of(seen[1])), there = y0 + slope * (x - x0);
+    /* More pixels never cost less, nor more than in proportion. */
+    return x > x0 ? fmin(fmax(there, y0), y0 * x / x0) : fmax(fmin(there, y0), y0 * x / x0);
+}
+
+/** Iterations of the run that begin before a fraction of it. */
+static double count_until(const adcgs_train_config *c, double fraction)
+{
+    return ceil(fmin(fmax(fraction, 0), 1) * c->iterations);
+}
+
+double adcgs_time_left_of(const adcgs_time_left *left, const adcgs_train_config *c, uint32_t iteration, double elapsed)
+{
+    const double quarter = count_until(c, (double)c->quarter_until);
+    const double ends[ADCGS_TIME_LEFT_LEVELS] = { c->iterations, fmax(count_until(c, (double)c->half_until), quarter), quarter };
+    double seconds = 0, at = iteration;
+    for (int level = ADCGS_TIME_LEFT_LEVELS - 1; level >= 0; level--) {
+        if (ends[level] <= at)
+            continue;
+        const double cost = left->cost[level] > 0 ? left->cost[level] : expect(left, level);
+        seconds += (ends[level] - at) * cost + (at > iteration ? left->load : 0);
+        at = ends[level];
+    }
+    if (c->time_limit > 0)
+        seconds = fmin(seconds, fmax(c->time_limit - elapsed, 0)); /* also where seconds is not known */
+    return seconds;
+}
