@@ -4,8 +4,8 @@
 
 #include "cli/cli.h"
 
+#include "cli/flush.h"
 #include "cli/text.h"
-#include "io/file.h"
 
 #include <adcgs/version.h>
 

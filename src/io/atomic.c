@@ -4,7 +4,7 @@
 
 #include "io/atomic.h"
 
-#include "io/file.h"
+#include "cli/flush.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Files that are read, and streams that were written. */
+/** \file Files that are read. */
 #include "config.h"
 
 #include "io/file.h"
@@ -103,18 +103,4 @@ adcgs_status adcgs_file_load_text(uint8_t **data, size_t *bytes, const char *pat
     *bytes -= mark;
     memmove(*data, *data + mark, *bytes + 1);
     return ADCGS_OK;
-}
-
-int adcgs_file_flush(FILE *file)
-{
-    const int failed = ferror(file);
-    errno = 0;
-    if (fflush(file))
-        return errno ? errno : EIO;
-    if (!failed && !ferror(file))
-        return 0;
-    /* A write has failed earlier, and its reason is gone by now. It is lost in any case; whoever is full still tells. */
-    clearerr(file);
-    errno = 0;
-    return (fputc('\n', file) == EOF || fflush(file)) && errno ? errno : EIO;
 }

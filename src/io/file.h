@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Files that are read: opening them, a whole one in memory; whether all that was written has arrived. */
+/** \file Files that are read: opening them, a whole one in memory. */
 #ifndef ADCGS_IO_FILE_H
 #define ADCGS_IO_FILE_H
 
@@ -19,8 +19,6 @@ adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, ui
 /** The same of one that adcgs_file_open() opened and that is at its start; it stays open, and the caller's. */
 adcgs_status adcgs_file_load_open(uint8_t **data, size_t *bytes, FILE *file, const char *path, uint64_t limit,
                                   adcgs_error *error);
-/** Write out what is held back. \return 0, or an errno that tells why something was not written, now or earlier. */
-int adcgs_file_flush(FILE *file);
 /** Bytes of the byte order mark that some editors put before a text in UTF-8: 3, or 0 if there is none. */
 size_t adcgs_file_mark(const void *text, size_t bytes);
 /** Load a text: as adcgs_file_load(), without that mark. */

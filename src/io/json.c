@@ -4,8 +4,7 @@
 
 #include "io/json.h"
 
-#include "io/file.h"
-
+#include "cli/flush.h"
 #include "cli/text.h"
 
 #include <jansson.h>

@@ -4,9 +4,9 @@
 
 #include "io/sink.h"
 
+#include "cli/flush.h"
 #include "io/atomic.h"
 #include "io/extension.h"
-#include "io/file.h"
 #include "io/image.h"
 #include "io/video.h"
 #include "io/y4m.h"
