@@ -4,6 +4,7 @@
 
 #include "cli/cli.h"
 
+#include "cli/flush.h"
 #include "cli/text.h"
 
 #include <adcgs/version.h>
@@ -12,9 +13,11 @@
 #include <getopt.h>
 #include <limits.h>
 #include <math.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #define OPTIONS_MAX 64
 #define HELP_COLUMN 28
@@ -84,16 +87,17 @@ int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error)
 
 adcgs_status adcgs_cli_flush(adcgs_error *error)
 {
-    if (fflush(stdout) || ferror(stdout))
-        return adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write");
-    return ADCGS_OK;
+    int reason = adcgs_file_flush(stdout);
+    const int copy = reason ? -1 : dup(STDOUT_FILENO);
+    if (copy >= 0 && close(copy)) /* some file systems tell only then */
+        reason = errno;
+    return reason ? adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write: %s", strerror(reason)) : ADCGS_OK;
 }
 
-/** After what is printed instead of a run. */
-static int leave(const adcgs_cli *cli)
+int adcgs_cli_leave(const adcgs_cli *cli, int code)
 {
-    adcgs_error error = {0};
-    return adcgs_cli_flush(&error) == ADCGS_OK ? 0 : adcgs_cli_fail(cli, &error);
+    adcgs_error error;
+    return adcgs_cli_flush(&error) == ADCGS_OK || code > 1 ? code : adcgs_cli_fail(cli, &error);
 }
 
 int adcgs_parse_real(const char *text, double min, double max, double *out)
@@ -291,14 +295,14 @@ static int print_help(const adcgs_cli *cli)
     print_option('V', "version", NULL, "print versions and exit");
     if (cli->details)
         printf("\n%s\n", cli->details);
-    return leave(cli);
+    return adcgs_cli_leave(cli, 0);
 }
 
 static int print_version(const adcgs_cli *cli)
 {
     printf("%s %s (library %s, bitstream %d.%d)\n", cli->program, PACKAGE_VERSION, adcgs_version_string(), ADCGS_BITSTREAM_MAJOR,
            ADCGS_BITSTREAM_MINOR);
-    return leave(cli);
+    return adcgs_cli_leave(cli, 0);
 }
 
 /** getopt_long()'s two descriptions from ours. Values above UCHAR_MAX stand for options without a letter. */
@@ -359,6 +363,7 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
     char letters[2 * OPTIONS_MAX + 5];
     getopt_tables(cli, longs, letters);
     opterr = 0;
+    signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond its limit is an error like a full disk, not the end of the program */
     for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
         if (code == 'h')
             return print_help(cli);

@@ -61,8 +61,13 @@ int adcgs_exit_code(adcgs_status status);
 int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
 /** As adcgs_cli_fail() with a message of its own; with ADCGS_OK for what is no failure, and --quiet must not hide. */
 int adcgs_cli_error(const adcgs_cli *cli, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
-/** ADCGS_ERR_IO unless all that was printed on standard output has arrived. */
+/** Write out what standard output holds back. ADCGS_ERR_IO unless all that was printed, now and earlier, has arrived. */
 adcgs_status adcgs_cli_flush(adcgs_error *error);
+/**
+ * The exit code to leave with: `code`, or that of ADCGS_ERR_IO, which is reported, when something of a run that was fine so far
+ * could not be written to standard output. The last thing that a program does.
+ */
+int adcgs_cli_leave(const adcgs_cli *cli, int code);
 /** A remark that does not end the program: "program: text" on stderr, unless --quiet was given. */
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(2, 3);
 

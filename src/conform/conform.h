@@ -7,6 +7,7 @@
 #define ADCGS_CONFORM_CONFORM_H
 
 #include "base/base.h"
+#include "io/atomic.h"
 
 #include <adcgs/adcgs.h>
 
@@ -108,7 +109,7 @@ void adcgs_selftest_program(const adcgs_manifest *manifest, int *runs, int *faul
 
 /** Results as JUnit XML. */
 typedef struct adcgs_junit {
-    FILE *file;
+    adcgs_atomic atomic; /**< the report */
     char *cases; /**< so far */
     size_t bytes;
     FILE *memory;

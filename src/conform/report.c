@@ -4,7 +4,6 @@
 
 #include "conform/conform.h"
 
-#include <errno.h>
 #include <stdlib.h>
 
 static void put_escaped(FILE *out, const char *text)
@@ -27,16 +26,14 @@ static void put_escaped(FILE *out, const char *text)
 
 adcgs_status adcgs_junit_open(adcgs_junit *junit, const char *path, adcgs_error *error)
 {
-    *junit = (adcgs_junit){.file = NULL};
+    *junit = (adcgs_junit){.n = 0};
     if (!path)
         return ADCGS_OK;
-    junit->file = fopen(path, "w");
-    if (!junit->file)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
+    ADCGS_TRY(adcgs_atomic_open(&junit->atomic, path, error));
     junit->memory = open_memstream(&junit->cases, &junit->bytes);
     if (junit->memory)
         return ADCGS_OK;
-    fclose(junit->file);
+    adcgs_atomic_abort(&junit->atomic);
     return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", path);
 }
 
@@ -44,7 +41,7 @@ adcgs_status adcgs_junit_open(adcgs_junit *junit, const char *path, adcgs_error 
 void adcgs_junit_add(adcgs_junit *junit, const adcgs_vector *vector, adcgs_outcome outcome, double seconds, const char *what)
 {
     const char *const tag = outcome == ADCGS_OUTCOME_WRONG ? "failure" : "error";
-    if (!junit->file)
+    if (!junit->memory)
         return;
     junit->n++;
     junit->failures += outcome == ADCGS_OUTCOME_WRONG;
@@ -64,16 +61,18 @@ void adcgs_junit_add(adcgs_junit *junit, const adcgs_vector *vector, adcgs_outco
 
 adcgs_status adcgs_junit_close(adcgs_junit *junit, adcgs_error *error)
 {
-    if (!junit->file)
+    if (!junit->memory)
         return ADCGS_OK;
+    FILE *const file = junit->atomic.file;
     const int complete = fclose(junit->memory) == 0;
-    fprintf(junit->file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    fprintf(junit->file, "<testsuite name=\"adcgs-conform\" tests=\"%d\" failures=\"%d\"", junit->n, junit->failures);
-    fprintf(junit->file, " errors=\"%d\" time=\"%.3f\">\n%s</testsuite>\n", junit->errors, junit->seconds,
+    junit->memory = NULL;
+    fprintf(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    fprintf(file, "<testsuite name=\"adcgs-conform\" tests=\"%d\" failures=\"%d\"", junit->n, junit->failures);
+    fprintf(file, " errors=\"%d\" time=\"%.3f\">\n%s</testsuite>\n", junit->errors, junit->seconds,
             complete ? junit->cases : "");
     free(junit->cases);
-    const int failed = ferror(junit->file);
-    if (fclose(junit->file) != 0 || failed || !complete)
-        return adcgs_fail(error, ADCGS_ERR_IO, "JUnit report: cannot write");
-    return ADCGS_OK;
+    if (complete)
+        return adcgs_atomic_commit(&junit->atomic, error);
+    adcgs_atomic_abort(&junit->atomic);
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "JUnit report: out of memory");
 }

@@ -4,23 +4,66 @@
 
 #include "io/atomic.h"
 
+#include "cli/flush.h"
+
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #define NAME_TRIES 1000
+#define LINKS_MAX 40 /* as many as Linux follows */
+#define MODE_BITS 0777
 
-/** Create "<path>.tmp<process>-<i>" anew; the extension stays last for libraries that look at it. */
-static int open_temporary(const char *path, char *name, size_t size)
+/** The length of what precedes a path's last part, with its slash. */
+static size_t folder_length(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    const char *base = slash ? slash + 1 : path;
-    const char *dot = strrchr(base, '.');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/** What a link in the folder of `name` points to, as a path from where we are. */
+static char *join(const char *name, const char *link)
+{
+    const size_t folder = *link == '/' ? 0 : folder_length(name), bytes = strlen(link) + 1;
+    char *path = malloc(folder + bytes);
+    if (path) {
+        memcpy(path, name, folder);
+        memcpy(path + folder, link, bytes);
+    }
+    return path;
+}
+
+/** Where a chain of symbolic links ends, be a file there or not. \return from malloc(); NULL, and errno, when it has no end. */
+static char *follow(const char *path)
+{
+    char link[PATH_MAX];
+    char *name = strdup(path);
+    for (int i = 0; name && i < LINKS_MAX; i++) {
+        const ssize_t n = readlink(name, link, sizeof link - 1);
+        if (n < 0)
+            return name;
+        link[n] = 0;
+        char *next = join(name, link);
+        free(name);
+        name = next;
+    }
+    if (name)
+        errno = ELOOP;
+    free(name);
+    return NULL;
+}
+
+/** Create "<target>.tmp<process>-<i>" anew; the extension stays last for whoever looks at it. */
+static int open_temporary(const char *target, char *name, size_t size)
+{
+    const size_t folder = folder_length(target);
+    const char *base = target + folder, *dot = strrchr(base, '.');
     const char *extension = dot && dot != base ? dot : "";
     for (int i = 0; i < NAME_TRIES; i++) {
-        snprintf(name, size, "%.*s.%s.tmp%ld-%d%s", (int)(base - path), path, base, (long)getpid(), i, extension);
+        snprintf(name, size, "%.*s.%s.tmp%ld-%d%s", (int)folder, target, base, (long)getpid(), i, extension);
         const int fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd >= 0 || errno != EEXIST)
             return fd;
@@ -28,52 +71,70 @@ static int open_temporary(const char *path, char *name, size_t size)
     return -1;
 }
 
+/** Give the new file the old one's owner and mode. Some file systems have neither, and only some users may: no reason to fail. */
+static void take_mode(int fd, const struct stat *old)
+{
+    struct stat new;
+    if (!fstat(fd, &new) && (new.st_uid != old->st_uid || new.st_gid != old->st_gid) && fchown(fd, old->st_uid, old->st_gid))
+        errno = 0;
+    if (fchmod(fd, old->st_mode & MODE_BITS))
+        errno = 0;
+}
+
+/** Open what is written to: the special file itself, or a temporary one beside the target. \return -1, and errno */
+static int open_file(adcgs_atomic *atomic)
+{
+    struct stat old;
+    const int exists = !stat(atomic->target, &old);
+    if (exists && !S_ISREG(old.st_mode))
+        return open(atomic->target, O_WRONLY | O_CLOEXEC);
+    if (exists && access(atomic->target, W_OK))
+        return -1;
+    const size_t size = 2 * strlen(atomic->target) + 64;
+    atomic->temporary = malloc(size);
+    const int fd = atomic->temporary ? open_temporary(atomic->target, atomic->temporary, size) : -1;
+    if (fd < 0) {
+        free(atomic->temporary);
+        atomic->temporary = NULL;
+    } else if (exists)
+        take_mode(fd, &old);
+    return fd;
+}
+
 static void forget(adcgs_atomic *atomic)
 {
     free(atomic->path);
+    free(atomic->target);
     free(atomic->temporary);
     *atomic = (adcgs_atomic){0};
 }
 
 adcgs_status adcgs_atomic_open(adcgs_atomic *atomic, const char *path, adcgs_error *error)
 {
-    *atomic = (adcgs_atomic){0};
     struct stat status;
-    const int special = !stat(path, &status) && !S_ISREG(status.st_mode);
-    if (special && S_ISDIR(status.st_mode))
+    *atomic = (adcgs_atomic){0};
+    if (!stat(path, &status) && S_ISDIR(status.st_mode))
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: is a folder, expected the name of a file", path);
-    const size_t size = 2 * strlen(path) + 64;
     atomic->path = strdup(path);
-    atomic->temporary = special ? NULL : malloc(size);
-    if (!atomic->path || (!special && !atomic->temporary)) {
-        forget(atomic);
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    }
-    const int fd = special ? open(path, O_WRONLY | O_CLOEXEC) : open_temporary(path, atomic->temporary, size);
+    atomic->target = atomic->path ? follow(path) : NULL;
+    const int fd = atomic->target ? open_file(atomic) : -1;
     atomic->file = fd < 0 ? NULL : fdopen(fd, "wb");
-    if (!atomic->file) {
-        const int reason = errno;
-        if (fd >= 0) {
-            close(fd);
-            if (atomic->temporary)
-                unlink(atomic->temporary);
-        }
-        forget(atomic);
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", path, strerror(reason));
-    }
-    return ADCGS_OK;
-}
-
-const char *adcgs_atomic_name(const adcgs_atomic *atomic)
-{
-    return atomic->temporary ? atomic->temporary : atomic->path;
+    if (atomic->file)
+        return ADCGS_OK;
+    const int reason = errno;
+    if (fd >= 0)
+        close(fd);
+    adcgs_atomic_abort(atomic);
+    if (reason == ENOMEM)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", path, strerror(reason));
 }
 
 /** The folder's entry must survive a crash too; folders that cannot be synced are left to the system. */
 static void sync_folder(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    const size_t n = folder_length(path);
+    char *folder = n ? strndup(path, n) : strdup(".");
     const int fd = folder ? open(folder, O_RDONLY | O_CLOEXEC) : -1;
     if (fd >= 0) {
         fsync(fd);
@@ -82,28 +143,31 @@ static void sync_folder(const char *path)
     free(folder);
 }
 
+/** Everything up to the rename; the file is closed. \return 0, or why it failed */
+static int finish(adcgs_atomic *atomic)
+{
+    int reason = adcgs_file_flush(atomic->file);
+    errno = 0;
+    if (!reason && atomic->temporary && fsync(fileno(atomic->file)))
+        reason = errno;
+    if (fclose(atomic->file) && !reason)
+        reason = errno;
+    atomic->file = NULL;
+    if (!reason && atomic->temporary && rename(atomic->temporary, atomic->target))
+        reason = errno;
+    return reason;
+}
+
 adcgs_status adcgs_atomic_commit(adcgs_atomic *atomic, adcgs_error *error)
 {
-    errno = 0;
-    int bad = fflush(atomic->file) || ferror(atomic->file) || (atomic->temporary && fsync(fileno(atomic->file)));
-    int reason = errno;
-    if (fclose(atomic->file) && !bad) {
-        bad = 1;
-        reason = errno;
-    }
-    atomic->file = NULL;
-    if (!bad && atomic->temporary && rename(atomic->temporary, atomic->path)) {
-        bad = 1;
-        reason = errno;
-    }
-    if (bad) {
-        const adcgs_status status =
-            adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", atomic->path, strerror(reason ? reason : EIO));
+    const int reason = finish(atomic);
+    if (reason) {
+        const adcgs_status status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", atomic->path, strerror(reason));
         adcgs_atomic_abort(atomic);
         return status;
     }
     if (atomic->temporary)
-        sync_folder(atomic->path);
+        sync_folder(atomic->target);
     forget(atomic);
     return ADCGS_OK;
 }
@@ -115,4 +179,46 @@ void adcgs_atomic_abort(adcgs_atomic *atomic)
     if (atomic->temporary)
         unlink(atomic->temporary);
     forget(atomic);
+}
+
+adcgs_status adcgs_atomic_save(const char *path, const void *data, size_t bytes, adcgs_error *error)
+{
+    adcgs_atomic atomic;
+    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
+    setvbuf(atomic.file, NULL, _IONBF, 0); /* there is nothing to gather */
+    errno = 0;
+    if (fwrite(data, 1, bytes, atomic.file) == bytes)
+        return adcgs_atomic_commit(&atomic, error);
+    const int reason = errno;
+    adcgs_atomic_abort(&atomic);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, strerror(reason ? reason : EIO));
+}
+
+/** Whether the last parts of two paths are equal and so are their folders. */
+static int same_place(const char *a, const char *b)
+{
+    struct stat status[2];
+    const char *const path[2] = {a, b};
+    if (strcmp(a + folder_length(a), b + folder_length(b)) != 0)
+        return 0;
+    for (int i = 0; i < 2; i++) {
+        char *folder = join(path[i], ".");
+        const int bad = !folder || stat(folder, &status[i]);
+        free(folder);
+        if (bad)
+            return 0;
+    }
+    return status[0].st_dev == status[1].st_dev && status[0].st_ino == status[1].st_ino;
+}
+
+int adcgs_atomic_same(const char *a, const char *b)
+{
+    struct stat first, second;
+    if (!stat(a, &first) && !stat(b, &second))
+        return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+    char *ends[2] = {follow(a), follow(b)};
+    const int same = ends[0] && ends[1] && same_place(ends[0], ends[1]);
+    free(ends[0]);
+    free(ends[1]);
+    return same;
 }

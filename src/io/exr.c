@@ -4,9 +4,9 @@
 
 #include "io/exr.h"
 
-#include <unistd.h>
-
 #include <openexr.h>
+
+#define ASPECT_MIN 1e-6 /* the library takes no others, nor larger than its inverse */
 
 /** A channel and where its samples lie; the file has them in alphabetical order. */
 typedef struct plane {
@@ -56,18 +56,22 @@ static void aim(exr_coding_channel_info_t *channels, int count, const picture *p
     }
 }
 
+/** The library's way to write: some bytes at a place of the file, which is in memory; it leaves gaps to be filled later. */
 static int64_t write_at(exr_const_context_t context, void *user, const void *buffer, uint64_t bytes, uint64_t offset,
                         exr_stream_error_func_ptr_t report)
 {
-    const int fd = fileno(user);
-    uint64_t done = 0;
-    while (done < bytes) {
-        const ssize_t n = pwrite(fd, (const uint8_t *)buffer + done, bytes - done, (off_t)(offset + done));
-        if (n <= 0)
-            return -1;
-        done += (uint64_t)n;
-    }
-    return (int64_t)done;
+    static const uint8_t gap[4096];
+    adcgs_buffer *out = user;
+    while (out->size < offset && !out->failed)
+        adcgs_write_bytes(out, gap, (size_t)ADCGS_MIN(offset - out->size, (uint64_t)sizeof gap));
+    const size_t over = out->failed ? 0 : (size_t)ADCGS_MIN(out->size - offset, bytes);
+    if (over)
+        memcpy(out->data + offset, buffer, over);
+    adcgs_write_bytes(out, (const uint8_t *)buffer + over, (size_t)(bytes - over));
+    if (!out->failed)
+        return (int64_t)bytes;
+    report(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
+    return -1;
 }
 
 /** Our matrices take columns; those of the format take rows, and its camera has y up. */
@@ -100,13 +104,14 @@ static exr_result_t describe_size(exr_context_t context, int part, const picture
     const int width = p->image->width, height = p->image->height;
     const exr_attr_box2i_t window = {.min = {{{0, 0}}}, .max = {{{width - 1, height - 1}}}};
     exr_attr_v2f_t centre = {{{0.0f, 0.0f}}};
-    float across = 1.0f;
+    float across = 1.0f, aspect = 1.0f;
     if (camera) {
         centre.x = (float)((camera->cx - 0.5 * width) / camera->fx);
         centre.y = (float)((camera->cy - 0.5 * height) / camera->fy);
         across = (float)(width / camera->fx);
+        aspect = (float)ADCGS_MIN(ADCGS_MAX(camera->fy / camera->fx, ASPECT_MIN), 1.0 / ASPECT_MIN);
     }
-    return exr_initialize_required_attr(context, part, &window, &window, 1.0f, &centre, across, EXR_LINEORDER_INCREASING_Y,
+    return exr_initialize_required_attr(context, part, &window, &window, aspect, &centre, across, EXR_LINEORDER_INCREASING_Y,
                                         EXR_COMPRESSION_ZIP);
 }
 
@@ -182,11 +187,11 @@ static exr_result_t write_chunks(exr_context_t context, const picture *p)
     return code;
 }
 
-static exr_result_t write_premultiplied(FILE *file, const picture *p, const char *path)
+static exr_result_t write_premultiplied(adcgs_buffer *out, const picture *p, const char *path)
 {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = ignore_message;
-    setup.user_data = file;
+    setup.user_data = out;
     setup.write_fn = write_at;
     exr_context_t context;
     exr_result_t code = exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, &setup);
@@ -210,8 +215,8 @@ static void make_stored(adcgs_image *image, const adcgs_image_options *options)
     adcgs_image_premultiply(image);
 }
 
-adcgs_status adcgs_exr_write(FILE *file, const adcgs_image *image, const adcgs_image_options *options, const char *path,
-                             adcgs_error *error)
+adcgs_status adcgs_exr_encode(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options, const char *path,
+                              adcgs_error *error)
 {
     adcgs_image copy = *image;
     if (options->linear || (image->channels % 2 == 0 && !options->premultiplied)) {
@@ -220,9 +225,11 @@ adcgs_status adcgs_exr_write(FILE *file, const adcgs_image *image, const adcgs_i
     }
     picture p = {.image = &copy, .options = options};
     list_planes(&p);
-    const exr_result_t code = write_premultiplied(file, &p, path);
+    const exr_result_t code = write_premultiplied(out, &p, path);
     if (copy.data != image->data)
         adcgs_image_free(&copy);
+    if (code == EXR_ERR_OUT_OF_MEMORY || out->failed)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (code != EXR_ERR_SUCCESS)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write EXR: %s", path, exr_get_default_error_message(code));
     return ADCGS_OK;

@@ -7,17 +7,17 @@
 #ifndef ADCGS_IO_EXR_H
 #define ADCGS_IO_EXR_H
 
+#include "bits/bytes.h"
 #include "io/image.h"
-
-#include <stdio.h>
 
 /**
  * Scan lines, lossless ZIP compression; path is for messages. With a camera the attributes are: worldToCamera and worldToNDC, for
  * row vectors; camera axes x right, y up, z forward; (0, 0) to (1, 1) across the picture, z/w from 0 at the near plane to 1 in
- * infinity. screenWindowCenter and screenWindowWidth, with x to the left and y up at distance 1. adcgs/focal and
- * adcgs/principal (v2d, pixels), adcgs/near (double, world units), adcgs/camera (string), adcgs/time (double, seconds).
+ * infinity. screenWindowCenter and screenWindowWidth, with x to the left and y up at distance 1. pixelAspectRatio, the width of
+ * a pixel over its height at that distance: 1 without a camera. adcgs/focal and adcgs/principal (v2d, pixels), adcgs/near
+ * (double, world units), adcgs/camera (string), adcgs/time (double, seconds). Appends to out.
  */
-adcgs_status adcgs_exr_write(FILE *file, const adcgs_image *image, const adcgs_image_options *options, const char *path,
-                             adcgs_error *error);
+adcgs_status adcgs_exr_encode(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options, const char *path,
+                              adcgs_error *error);
 
 #endif

@@ -28,22 +28,17 @@ static adcgs_status open_regular(int *fd, uint64_t *size, const char *path, adcg
     return result;
 }
 
-static adcgs_status open_sized(FILE **out, uint64_t *size, const char *path, adcgs_error *error)
+adcgs_status adcgs_file_open(FILE **out, const char *path, adcgs_error *error)
 {
     int fd;
+    uint64_t size;
     *out = NULL;
-    ADCGS_TRY(open_regular(&fd, size, path, error));
+    ADCGS_TRY(open_regular(&fd, &size, path, error));
     *out = fdopen(fd, "rb");
     if (*out)
         return ADCGS_OK;
     close(fd);
     return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-}
-
-adcgs_status adcgs_file_open(FILE **out, const char *path, adcgs_error *error)
-{
-    uint64_t size;
-    return open_sized(out, &size, path, error);
 }
 
 adcgs_status adcgs_file_check(const char *path, const char *what, adcgs_error *error)
@@ -55,14 +50,16 @@ adcgs_status adcgs_file_check(const char *path, const char *what, adcgs_error *e
     return size ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected %s", path, what);
 }
 
-adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error)
+adcgs_status adcgs_file_load_open(uint8_t **data, size_t *bytes, FILE *file, const char *path, uint64_t limit,
+                                  adcgs_error *error)
 {
-    FILE *file;
-    uint64_t size;
+    struct stat status;
     uint8_t *buffer = NULL;
     *data = NULL;
     *bytes = 0;
-    ADCGS_TRY(open_sized(&file, &size, path, error));
+    if (fstat(fileno(file), &status))
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read: %s", path, strerror(errno));
+    const uint64_t size = (uint64_t)status.st_size;
     adcgs_status result = ADCGS_OK;
     errno = 0;
     if (size > limit || size >= SIZE_MAX)
@@ -72,7 +69,6 @@ adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, ui
         result = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %llu bytes", path, (unsigned long long)size);
     else if (fread(buffer, 1, (size_t)size, file) != size)
         result = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read: %s", path, strerror(errno ? errno : EIO));
-    fclose(file);
     if (result != ADCGS_OK) {
         free(buffer);
         return result;
@@ -81,6 +77,17 @@ adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, ui
     *data = buffer;
     *bytes = (size_t)size;
     return ADCGS_OK;
+}
+
+adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error)
+{
+    FILE *file;
+    *data = NULL;
+    *bytes = 0;
+    ADCGS_TRY(adcgs_file_open(&file, path, error));
+    const adcgs_status status = adcgs_file_load_open(data, bytes, file, path, limit, error);
+    fclose(file);
+    return status;
 }
 
 size_t adcgs_file_mark(const void *text, size_t bytes)

@@ -16,6 +16,9 @@ adcgs_status adcgs_file_open(FILE **out, const char *path, adcgs_error *error);
 adcgs_status adcgs_file_check(const char *path, const char *what, adcgs_error *error);
 /** Load a regular file of at most limit bytes; the caller free()s *data, which has a zero byte after the last one. */
 adcgs_status adcgs_file_load(uint8_t **data, size_t *bytes, const char *path, uint64_t limit, adcgs_error *error);
+/** The same of one that adcgs_file_open() opened and that is at its start; it stays open, and the caller's. */
+adcgs_status adcgs_file_load_open(uint8_t **data, size_t *bytes, FILE *file, const char *path, uint64_t limit,
+                                  adcgs_error *error);
 /** Bytes of the byte order mark that some editors put before a text in UTF-8: 3, or 0 if there is none. */
 size_t adcgs_file_mark(const void *text, size_t bytes);
 /** Load a text: as adcgs_file_load(), without that mark. */

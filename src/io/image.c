@@ -4,91 +4,146 @@
 
 #include "io/image.h"
 
+#include "bits/bytes.h"
 #include "io/atomic.h"
 #include "io/extension.h"
 #include "io/file.h"
 #include "io/netpbm.h"
 #ifdef HAVE_ENCODER
 #include "io/exr.h"
+#include "io/jpeg.h"
 #include "io/oiio_shim.h"
-#include "io/whole.h"
+#include "io/png.h"
 #endif
 
 #include <errno.h>
+#include <stdlib.h>
 #include <strings.h>
+
+typedef adcgs_status prober(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error);
+typedef adcgs_status reader(FILE *file, adcgs_image *out, const char *path, adcgs_error *error);
+typedef adcgs_status encoder(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options, const char *path,
+                             adcgs_error *error);
+
+/** A format: told when it is read by how a file begins, when it is written by the name's end. */
+typedef struct format {
+    const char *magic[2];      /* NULL: not this one */
+    const char *extensions[6];
+    prober *probe;             /* NULL: another reads it */
+    reader *read;
+    encoder *encode;
+} format;
+
+/* ---- OpenImageIO, or nobody ---- */
+
+#ifdef HAVE_ENCODER
+static adcgs_status probe_foreign(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
+{
+    const adcgs_oiio *oiio;
+    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
+    return oiio->probe(width, height, channels, path, error);
+}
+
+static adcgs_status read_foreign(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
+{
+    const adcgs_oiio *oiio;
+    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
+    return oiio->read(out, path, error);
+}
+
+static adcgs_status encode_foreign(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options,
+                                   const char *path, adcgs_error *error)
+{
+    const adcgs_oiio *oiio;
+    uint8_t *data;
+    size_t bytes;
+    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
+    ADCGS_TRY(oiio->encode(&data, &bytes, image, options->bits, adcgs_extension(path), path, error));
+    adcgs_write_bytes(out, data, bytes);
+    free(data);
+    return ADCGS_OK;
+}
+#else
+static adcgs_status probe_foreign(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
+}
+
+static adcgs_status read_foreign(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
+}
+
+static adcgs_status encode_foreign(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options,
+                                   const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build writes images as PPM and PGM only", path);
+}
+#endif
+
+/* ---- The table ---- */
+
+static const format formats[] = {
+    {{"P5", "P6"}, {"ppm", "pgm"}, adcgs_netpbm_probe, adcgs_netpbm_read, adcgs_netpbm_encode},
+#ifdef HAVE_ENCODER
+    {{"\x89PNG\r\n\x1a\n"}, {"png"}, adcgs_png_probe, adcgs_png_read, adcgs_png_encode},
+    {{"\xff\xd8\xff"}, {"jpg", "jpeg", "jpe", "jfif", "jif", "jfi"}, adcgs_jpeg_probe, adcgs_jpeg_read, adcgs_jpeg_encode},
+    {{NULL}, {"exr"}, NULL, NULL, adcgs_exr_encode},
+#endif
+};
+static const format foreign = {{NULL}, {NULL}, probe_foreign, read_foreign, encode_foreign};
+
+static const format *find_reader(const uint8_t *begin, size_t n)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(formats); i++)
+        for (size_t k = 0; k < ADCGS_COUNTOF(formats[i].magic); k++) {
+            const char *magic = formats[i].magic[k];
+            if (magic && n >= strlen(magic) && !memcmp(begin, magic, strlen(magic)))
+                return &formats[i];
+        }
+    return &foreign;
+}
+
+static const format *find_writer(const char *extension)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(formats); i++)
+        for (size_t k = 0; k < ADCGS_COUNTOF(formats[i].extensions); k++)
+            if (formats[i].extensions[k] && !strcasecmp(extension, formats[i].extensions[k]))
+                return &formats[i];
+    return &foreign;
+}
 
 static int is_exr(const char *extension)
 {
     return !strcasecmp(extension, "exr");
 }
 
-/** Open for reading and tell by the first two bytes whether our own reader takes it. */
-static adcgs_status open_image(FILE **file, int *own, const char *path, adcgs_error *error)
+/* ---- Reading ---- */
+
+/** Open for reading and tell by the first bytes who reads it. */
+static adcgs_status open_image(FILE **file, const format **found, const char *path, adcgs_error *error)
 {
-    uint8_t magic[2];
+    uint8_t begin[8];
     ADCGS_TRY(adcgs_file_open(file, path, error));
     errno = 0;
-    if (fread(magic, 1, 2, *file) < 2 || fseek(*file, 0, SEEK_SET)) {
+    const size_t n = fread(begin, 1, sizeof begin, *file);
+    if (n < 2 || fseek(*file, 0, SEEK_SET)) {
         const int reason = errno;
         fclose(*file);
         return reason ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read: %s", path, strerror(reason))
                       : adcgs_fail(error, ADCGS_ERR_DATA, "%s: too short for an image", path);
     }
-    *own = magic[0] == 'P' && (magic[1] == '5' || magic[1] == '6');
+    *found = find_reader(begin, n);
     return ADCGS_OK;
 }
-
-#ifdef HAVE_ENCODER
-static adcgs_status read_foreign(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
-{
-    const adcgs_oiio *oiio;
-    ADCGS_TRY(adcgs_whole_check(file, 1, path, error));
-    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
-    return oiio->read(out, path, error);
-}
-
-static adcgs_status probe_foreign(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
-{
-    const adcgs_oiio *oiio;
-    ADCGS_TRY(adcgs_whole_check(file, 0, path, error));
-    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
-    return oiio->probe(width, height, channels, path, error);
-}
-
-static adcgs_status write_foreign(adcgs_atomic *atomic, const adcgs_image *image, const adcgs_image_options *options,
-                                  const char *path, const char *extension, adcgs_error *error)
-{
-    if (is_exr(extension))
-        return adcgs_exr_write(atomic->file, image, options, path, error);
-    const adcgs_oiio *oiio;
-    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
-    return oiio->write(image, options->bits, adcgs_atomic_name(atomic), extension, path, error);
-}
-#else
-static adcgs_status read_foreign(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
-{
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
-}
-
-static adcgs_status probe_foreign(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
-{
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
-}
-
-static adcgs_status write_foreign(adcgs_atomic *atomic, const adcgs_image *image, const adcgs_image_options *options,
-                                  const char *path, const char *extension, adcgs_error *error)
-{
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build writes images as PPM and PGM only", path);
-}
-#endif
 
 adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *error)
 {
     FILE *file;
-    int own;
+    const format *found;
     *out = (adcgs_image){0};
-    ADCGS_TRY(open_image(&file, &own, path, error));
-    const adcgs_status status = own ? adcgs_netpbm_read(file, out, path, error) : read_foreign(file, out, path, error);
+    ADCGS_TRY(open_image(&file, &found, path, error));
+    const adcgs_status status = found->read(file, out, path, error);
     fclose(file);
     return status;
 }
@@ -96,10 +151,9 @@ adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *e
 adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const char *path, adcgs_error *error)
 {
     FILE *file;
-    int own;
-    ADCGS_TRY(open_image(&file, &own, path, error));
-    adcgs_status status = own ? adcgs_netpbm_probe(file, width, height, channels, path, error)
-                              : probe_foreign(file, width, height, channels, path, error);
+    const format *found;
+    ADCGS_TRY(open_image(&file, &found, path, error));
+    adcgs_status status = found->probe(file, width, height, channels, path, error);
     fclose(file);
     if (status == ADCGS_OK && (*width < 1 || *height < 1 || *width > ADCGS_IMAGE_MAX || *height > ADCGS_IMAGE_MAX))
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected at most %dx%d", path, *width, *height,
@@ -107,7 +161,9 @@ adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const cha
     return status;
 }
 
-/** What the formats have is asked before a file is opened, except for OpenImageIO's. */
+/* ---- Writing ---- */
+
+/** What our formats have; OpenImageIO's tell themselves. */
 static adcgs_status check_options(const adcgs_image_options *options, const char *path, const char *extension,
                                   adcgs_error *error)
 {
@@ -122,9 +178,9 @@ static adcgs_status check_options(const adcgs_image_options *options, const char
     return ADCGS_OK;
 }
 
-/** Write what is opened; only EXR has premultiplied colours. */
-static adcgs_status write_open(adcgs_atomic *atomic, const adcgs_image *image, const adcgs_image_options *options,
-                               const char *path, const char *extension, adcgs_error *error)
+/** The file in memory; only EXR has premultiplied colours. */
+static adcgs_status encode_image(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options,
+                                 const char *path, const char *extension, adcgs_error *error)
 {
     adcgs_image_options set = *options;
     adcgs_image copy = *image;
@@ -134,11 +190,11 @@ static adcgs_status write_open(adcgs_atomic *atomic, const adcgs_image *image, c
         adcgs_image_unpremultiply(&copy);
         set.premultiplied = 0;
     }
-    const int own = !strcasecmp(extension, "ppm") || !strcasecmp(extension, "pgm");
-    const adcgs_status status = own ? adcgs_netpbm_write(atomic->file, &copy, set.bits, path, error)
-                                    : write_foreign(atomic, &copy, &set, path, extension, error);
+    adcgs_status status = find_writer(extension)->encode(out, &copy, &set, path, error);
     if (copy.data != image->data)
         adcgs_image_free(&copy);
+    if (status == ADCGS_OK && out->failed)
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     return status;
 }
 
@@ -146,15 +202,14 @@ adcgs_status adcgs_image_write_as(const adcgs_image *image, const adcgs_image_op
                                   adcgs_error *error)
 {
     const char *extension = adcgs_extension(path);
-    adcgs_atomic atomic;
+    adcgs_buffer bytes;
     ADCGS_TRY(check_options(options, path, extension, error));
-    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
-    const adcgs_status status = write_open(&atomic, image, options, path, extension, error);
-    if (status != ADCGS_OK) {
-        adcgs_atomic_abort(&atomic);
-        return status;
-    }
-    return adcgs_atomic_commit(&atomic, error);
+    adcgs_buffer_init(&bytes);
+    adcgs_status status = encode_image(&bytes, image, options, path, extension, error);
+    if (status == ADCGS_OK)
+        status = adcgs_atomic_save(path, bytes.data, bytes.size, error);
+    adcgs_buffer_clear(&bytes);
+    return status;
 }
 
 adcgs_status adcgs_image_write(const adcgs_image *image, const char *path, int half, adcgs_error *error)

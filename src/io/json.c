@@ -4,6 +4,7 @@
 
 #include "io/json.h"
 
+#include "cli/flush.h"
 #include "cli/text.h"
 
 #include <jansson.h>
@@ -84,10 +85,14 @@ void adcgs_json_bool(adcgs_json *json, const char *key, int value)
 adcgs_status adcgs_json_write(adcgs_json *json, FILE *file, const char *name, adcgs_error *error)
 {
     const size_t flags = (json->is_line ? JSON_COMPACT : JSON_INDENT(2)) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(json->digits);
-    const int failed = json->failed;
-    const int bad = failed || json_dumpf(json->open[0], file, flags) || fputc('\n', file) < 0 || fflush(file) || ferror(file);
+    int failed = json->failed;
+    if (!failed && !json_dumpf(json->open[0], file, flags))
+        fputc('\n', file);
+    else
+        failed |= !ferror(file);
     adcgs_json_clear(json);
     if (failed)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for JSON", name);
-    return bad ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write JSON", name) : ADCGS_OK;
+    const int reason = adcgs_file_flush(file);
+    return reason ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", name, strerror(reason)) : ADCGS_OK;
 }

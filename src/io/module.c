@@ -53,7 +53,7 @@ static void open_module(adcgs_module *m)
         open_in(m, chosen, "");
         return;
     }
-    if (program_directory(beside) && (open_in(m, beside, "/.libs") || open_in(m, beside, "/../lib/adcgs")))
+    if (program_directory(beside) && open_in(m, beside, "/../lib/adcgs"))
         return;
     *m->reason = 0; /* the place where it was installed is the one to name */
     open_in(m, MODULES_DIRECTORY, "");

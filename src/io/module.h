@@ -31,8 +31,9 @@ typedef struct adcgs_module {
 
 /**
  * The module's table, opened at the first call, for `path`, which messages name. Where it is looked for:
- * the directory that ADCGS_MODULES names, and nowhere else if that is set; then beside the running program, as
- * built and as installed; then where it was to be installed. ADCGS_ERR_UNSUPPORTED when it is in none of them.
+ * the directory that ADCGS_MODULES names, and nowhere else if that is set; then in ../lib/adcgs as seen from the running
+ * program; then where it was to be installed. Programs of the build tree take ADCGS_MODULES. ADCGS_ERR_UNSUPPORTED when it is
+ * in none of them.
  */
 adcgs_status adcgs_module_get(adcgs_module *module, const void **table, const char *path, adcgs_error *error);
 

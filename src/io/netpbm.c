@@ -110,19 +110,22 @@ static void pack_row(const float *row, size_t width, size_t held, size_t stored,
     }
 }
 
-adcgs_status adcgs_netpbm_write(FILE *file, const adcgs_image *image, int bits, const char *path, adcgs_error *error)
+adcgs_status adcgs_netpbm_encode(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options,
+                                 const char *path, adcgs_error *error)
 {
     const size_t stored = image->channels < 3 ? 1 : 3, held = (size_t)image->channels, width = (size_t)image->width;
+    const int bits = options->bits;
+    char head[64];
     uint8_t *bytes = malloc(2 * width * held);
     uint16_t *levels = malloc(width * held * sizeof *levels);
-    if (bytes && levels) {
-        fprintf(file, "P%c\n%d %d\n%d\n", stored == 3 ? '6' : '5', image->width, image->height, bits == 16 ? 65535 : 255);
-        for (int y = 0; y < image->height; y++) {
-            pack_row(image->data + (size_t)y * width * held, width, held, stored, bits, levels, bytes);
-            fwrite(bytes, stored * (size_t)bits / 8, width, file);
-        }
-    }
     const int done = bytes && levels;
+    snprintf(head, sizeof head, "P%c\n%d %d\n%d\n", stored == 3 ? '6' : '5', image->width, image->height,
+             bits == 16 ? 65535 : 255);
+    adcgs_write_bytes(out, head, strlen(head));
+    for (int y = 0; y < image->height && done; y++) {
+        pack_row(image->data + (size_t)y * width * held, width, held, stored, bits, levels, bytes);
+        adcgs_write_bytes(out, bytes, width * stored * (size_t)bits / 8);
+    }
     free(bytes);
     free(levels);
     return done ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);

@@ -3,9 +3,11 @@
 #include "config.h"
 
 /* The standard headers first: the shim's own header includes C headers inside extern "C". */
+#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -14,7 +16,11 @@
 #include <vector>
 
 #include <strings.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "io/oiio_shim.h"
@@ -156,13 +162,100 @@ bool write_samples(OIIO::ImageOutput &output, const adcgs_image *image, OIIO::Ty
 {
     std::vector<Sample> samples((size_t)image->width * (size_t)image->height * (size_t)image->channels);
     convert(image->data, samples.size(), samples.data());
-    return output.write_image(kind, samples.data()) && output.close();
+    return output.write_image(kind, samples.data());
 }
 
-adcgs_status write(const adcgs_image *image, int bits, const char *name, const char *extension, const char *path,
-                   adcgs_error *error)
+/** Write to an output that is not open yet, under a name; closed at the end. */
+adcgs_status write(OIIO::ImageOutput &output, const adcgs_image *image, int bits, const std::string &name, const char *extension,
+                   const char *path, adcgs_error *error)
 {
     const OIIO::TypeDesc kind = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
+    OIIO::ImageSpec spec(image->width, image->height, image->channels, kind);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (strcmp(output.format_name(), "tiff") != 0) /* it would become EXIF, which is lost in memory; integers are sRGB anyway */
+        spec.attribute("oiio:ColorSpace", "sRGB");
+    bool good = output.open(name, spec);
+    if (good && output.spec().format != kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no samples of %d bits", path, extension, bits);
+    if (good)
+        good = bits == 16 ? write_samples(output, image, kind, adcgs_image_to_u16)
+                          : write_samples(output, image, kind, adcgs_image_to_u8);
+    good = good && output.close();
+    if (good)
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output.geterror()).c_str());
+}
+
+/** OpenImageIO does not look at everything that can fail: what cannot be read back was not written. */
+bool reads_back(const char *extension, const std::string &name, OIIO::Filesystem::IOProxy *proxy, const adcgs_image *image)
+{
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(extension);
+    OIIO::geterror(); /* else it is printed at exit */
+    if (!input || (proxy && !input->supports("ioproxy")))
+        return true; /* nobody to ask */
+    OIIO::ImageSpec spec;
+    bool good = (!proxy || input->set_ioproxy(proxy)) && input->open(name, spec) && spec.width == image->width &&
+                spec.height == image->height;
+    if (good) {
+        std::vector<uint8_t> samples((size_t)spec.width * (size_t)spec.height * (size_t)spec.nchannels);
+        good = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, samples.data());
+    }
+    input->geterror();
+    return good;
+}
+
+adcgs_status encode_in_memory(std::vector<uint8_t> &out, OIIO::ImageOutput &output, const adcgs_image *image, int bits,
+                              const char *extension, const char *path, adcgs_error *error)
+{
+    OIIO::Filesystem::IOVecOutput writer(out);
+    if (!output.set_ioproxy(&writer))
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files are not written in memory", path, extension);
+    const std::string name = std::string("memory.") + extension;
+    ADCGS_TRY(write(output, image, bits, name, extension, path, error));
+    OIIO::Filesystem::IOMemReader reader(out.data(), out.size());
+    if (reads_back(extension, name, &reader, image))
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what OpenImageIO made of it does not read back", path);
+}
+
+#ifdef MFD_CLOEXEC
+/** All that a descriptor's file holds. */
+bool load(int fd, std::vector<uint8_t> &out)
+{
+    struct stat status;
+    if (fstat(fd, &status))
+        return false;
+    out.resize((size_t)status.st_size);
+    return pread(fd, out.data(), out.size(), 0) == (ssize_t)out.size();
+}
+
+/** For formats that OpenImageIO has in files only, where it misses most errors of writing: such a file lies in memory. */
+adcgs_status encode_in_file(std::vector<uint8_t> &out, OIIO::ImageOutput &output, const adcgs_image *image, int bits,
+                            const char *extension, const char *path, adcgs_error *error)
+{
+    const int fd = memfd_create("adcgs", MFD_CLOEXEC);
+    if (fd < 0)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make a file in memory: %s", path, strerror(errno));
+    const std::string name = "/proc/self/fd/" + std::to_string(fd);
+    adcgs_status status = write(output, image, bits, name, extension, path, error);
+    if (status == ADCGS_OK && !(load(fd, out) && (out.empty() || reads_back(extension, name, nullptr, image))))
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what OpenImageIO made of it does not read back", path);
+    close(fd);
+    return status;
+}
+#else
+adcgs_status encode_in_file(std::vector<uint8_t> &, OIIO::ImageOutput &, const adcgs_image *, int, const char *extension,
+                            const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this system has no files in memory, which .%s files need", path,
+                      extension);
+}
+#endif
+
+adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension, const char *path,
+                    adcgs_error *error)
+{
+    std::vector<uint8_t> memory;
     OIIO::attribute("threads", 1);
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(extension);
     if (!output) {
@@ -171,21 +264,16 @@ adcgs_status write(const adcgs_image *image, int bits, const char *name, const c
     }
     if (image->channels % 2 == 0 && !output->supports("alpha"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no alpha; EXR, PNG and TIFF do", path, extension);
-    OIIO::ImageSpec spec(image->width, image->height, image->channels, kind);
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("jpeg:subsampling", "4:4:4");
-    if (std::string(output->format_name()) == "jpeg")
-        spec.attribute("Compression", "jpeg:95");
-    bool good = output->open(name, spec);
-    if (good && output->spec().format != kind)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: .%s files hold no samples of %d bits", path, extension, bits);
-    if (good)
-        good = bits == 16 ? write_samples(*output, image, kind, adcgs_image_to_u16)
-                          : write_samples(*output, image, kind, adcgs_image_to_u8);
-    if (good)
-        return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output->geterror()).c_str());
+    ADCGS_TRY((output->supports("ioproxy") ? encode_in_memory : encode_in_file)(memory, *output, image, bits, extension, path,
+                                                                               error));
+    if (memory.empty())
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files hold no pictures", path, extension);
+    *data = static_cast<uint8_t *>(std::malloc(memory.size()));
+    if (!*data)
+        throw std::bad_alloc();
+    *bytes = memory.size();
+    std::memcpy(*data, memory.data(), *bytes);
+    return ADCGS_OK;
 }
 
 adcgs_status probe_c(int *width, int *height, int *channels, const char *path, adcgs_error *error) noexcept
@@ -209,12 +297,14 @@ adcgs_status read_c(adcgs_image *out, const char *path, adcgs_error *error) noex
     return status;
 }
 
-adcgs_status write_c(const adcgs_image *image, int bits, const char *name, const char *extension, const char *path,
-                     adcgs_error *error) noexcept
+adcgs_status encode_c(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension, const char *path,
+                      adcgs_error *error) noexcept
 {
-    return guarded(path, error, [&]() { return write(image, bits, name, extension, path, error); });
+    *data = nullptr;
+    *bytes = 0;
+    return guarded(path, error, [&]() { return encode(data, bytes, image, bits, extension, path, error); });
 }
 
 } // namespace
 
-extern "C" const adcgs_oiio adcgs_oiio_table = { PACKAGE_VERSION, probe_c, read_c, write_c };
+extern "C" const adcgs_oiio adcgs_oiio_table = { PACKAGE_VERSION, probe_c, read_c, encode_c };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * OpenImageIO seen from C. No exception and no C++ type crosses this border.
+ * OpenImageIO seen from C, for formats that we have no better way to. No exception and no C++ type crosses this border.
  * It brings some 250 shared libraries along, which take a decoder's time many
  * times over to load; so the shim is a module of its own, opened when the first
  * picture needs it. A build without shared libraries links it.
@@ -22,11 +22,11 @@ typedef struct adcgs_oiio {
     /** The first picture in the file, as sRGB with straight alpha. A depth channel behind the colours is left out. */
     adcgs_status (*read)(adcgs_image *out, const char *path, adcgs_error *error);
     /**
-     * With 8 or 16 bits to the file `name`, in the format that `extension` stands for; messages name `path`. ADCGS_ERR_USAGE
-     * when the format has no such samples, or no alpha and the image has.
+     * With 8 or 16 bits, in the format that `extension` stands for, into memory: the caller free()s *data. Messages name `path`.
+     * ADCGS_ERR_USAGE when the format has no such samples, or no alpha and the image has.
      */
-    adcgs_status (*write)(const adcgs_image *image, int bits, const char *name, const char *extension, const char *path,
-                          adcgs_error *error);
+    adcgs_status (*encode)(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension,
+                           const char *path, adcgs_error *error);
 } adcgs_oiio;
 
 /** The one thing that the module exports. */

@@ -31,16 +31,13 @@ adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs
 adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adcgs_error *error)
 {
     const adcgs_draco *draco;
-    adcgs_atomic atomic;
     uint8_t *data;
     size_t bytes;
     ADCGS_TRY(adcgs_draco_get(&draco, path, error));
     ADCGS_TRY(draco->encode(&data, &bytes, points, path, error));
-    const adcgs_status status = adcgs_atomic_open(&atomic, path, error);
-    if (status == ADCGS_OK)
-        fwrite(data, 1, bytes, atomic.file);
+    const adcgs_status status = adcgs_atomic_save(path, data, bytes, error);
     free(data);
-    return status == ADCGS_OK ? adcgs_atomic_commit(&atomic, error) : status;
+    return status;
 }
 
 adcgs_status adcgs_points_write(const adcgs_points *points, const char *path, adcgs_error *error)

@@ -4,6 +4,7 @@
 
 #include "io/sink.h"
 
+#include "cli/flush.h"
 #include "io/atomic.h"
 #include "io/extension.h"
 #include "io/image.h"
@@ -272,7 +273,8 @@ adcgs_status adcgs_sink_write_with(adcgs_sink *sink, const adcgs_frame *frame, c
     errno = 0;
     ADCGS_TRY(sink->what->write(sink, frame, index, error));
     if (sink->file && ferror(sink->file))
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", sink->config.target, strerror(errno ? errno : EIO));
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s",
+                          sink->file == stdout ? "standard output" : sink->config.target, strerror(errno ? errno : EIO));
     return ADCGS_OK;
 }
 
@@ -281,8 +283,9 @@ adcgs_status adcgs_sink_close(adcgs_sink **sink, adcgs_error *error)
     adcgs_status status = ADCGS_OK;
     if (!*sink)
         return ADCGS_OK;
-    if ((*sink)->file == stdout && (fflush(stdout) || ferror(stdout)))
-        status = adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write: %s", strerror(errno));
+    const int reason = (*sink)->file == stdout ? adcgs_file_flush(stdout) : 0;
+    if (reason)
+        status = adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write: %s", strerror(reason));
     else if ((*sink)->atomic.file)
         status = adcgs_atomic_commit(&(*sink)->atomic, error);
     else if ((*sink)->video)

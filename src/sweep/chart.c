@@ -13,6 +13,7 @@
 #define KB 1000.0
 /** The axis of bytes becomes logarithmic when sizes span this. */
 #define DECADE 10.0
+#define MISSING 127 /* exit code without gnuplot */
 
 typedef struct extent {
     double least, most; /* bytes; NaN: nothing to draw */
@@ -105,9 +106,8 @@ static adcgs_status write_script(const char *path, const adcgs_sweep_plan *plan,
     adcgs_atomic file;
     ADCGS_TRY(adcgs_atomic_open(&file, path, error));
     fprintf(file.file,
-            "# Drawn from here by: gnuplot sweep.gp\n"
+            "# Drawn from here by: gnuplot sweep.gp >sweep.svg\n"
             "set terminal svg size 860,620 noenhanced font 'sans-serif,12' background 'white'\n"
-            "set output 'sweep.svg.part'\n"
             "set title 'Decoded files on the test views; labels are lambda%s'\n"
             "set xlabel 'bytes on disk, kB (1000 bytes)%s'\n"
             "set ylabel 'PSNR, dB'\n"
@@ -116,17 +116,18 @@ static adcgs_status write_script(const char *path, const adcgs_sweep_plan *plan,
     if (e->most >= DECADE * e->least)
         print_log_axis(file.file, e);
     print_curves(file.file, plan, e->spreads);
-    if (!ferror(file.file))
-        return adcgs_atomic_commit(&file, error);
-    adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write", path);
-    adcgs_atomic_abort(&file);
-    return ADCGS_ERR_IO;
+    return adcgs_atomic_commit(&file, error);
 }
 
-/* gnuplot runs in the folder, so that no path has to be quoted for it. A missing gnuplot is no fault. */
+/*
+ * gnuplot runs in the folder, so that no path has to be quoted for it. A missing gnuplot is no fault. It does not notice a full
+ * disk, but cat does; and a chart is one when it has an end.
+ */
 adcgs_status adcgs_sweep_draw(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, int *chart, adcgs_error *error)
 {
-    char command[] = "cd \"$1\" && gnuplot sweep.gp && mv -f sweep.svg.part sweep.svg";
+    char command[] = "cd \"$1\" || exit 1; command -v gnuplot >/dev/null || exit 127; "
+                     "gnuplot sweep.gp | cat >sweep.svg.part && grep -q '</svg>' sweep.svg.part && "
+                     "mv -f sweep.svg.part sweep.svg || { rm -f sweep.svg.part; exit 1; }";
     char sh[] = "/bin/sh", c[] = "-c";
     char *const argv[] = {sh, c, command, sh, (char *)(uintptr_t)sweep->directory, NULL};
     char path[ADCGS_SWEEP_PATH];
@@ -143,5 +144,7 @@ adcgs_status adcgs_sweep_draw(const adcgs_sweep *sweep, const adcgs_sweep_plan *
     if (code == 0)
         unlink(path);
     *chart = code == 0;
-    return ADCGS_OK;
+    if (code == 0 || code == MISSING)
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s/sweep.svg: cannot be drawn by gnuplot, see sweep.gp.log", sweep->directory);
 }

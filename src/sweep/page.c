@@ -270,9 +270,5 @@ adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_
     heading(&s, "What is shown");
     print_settings(&s, sweep, plan);
     fprintf(file.file, "</html>\n");
-    if (!ferror(file.file))
-        return adcgs_atomic_commit(&file, error);
-    adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write", path);
-    adcgs_atomic_abort(&file);
-    return ADCGS_ERR_IO;
+    return adcgs_atomic_commit(&file, error);
 }

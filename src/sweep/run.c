@@ -123,13 +123,13 @@ static adcgs_status save(json_t *root, const char *path, adcgs_error *error)
     adcgs_status status =
         root ? adcgs_atomic_open(&file, path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (status == ADCGS_OK) {
-        const int bad = json_dumpf(root, file.file, JSON_INDENT(2) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(12));
-        if (!bad)
-            status = adcgs_atomic_commit(&file, error);
-        else {
+        const int bad = json_dumpf(root, file.file, JSON_INDENT(2) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(12)) &&
+                        !ferror(file.file);
+        if (bad) {
             adcgs_atomic_abort(&file);
-            status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write", path);
-        }
+            status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+        } else
+            status = adcgs_atomic_commit(&file, error);
     }
     json_decref(root);
     return status;

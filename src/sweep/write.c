@@ -44,15 +44,6 @@ static void csv_row(FILE *file, const adcgs_sweep_row *r)
     fprintf(file, "\n");
 }
 
-static adcgs_status finish(adcgs_atomic *file, adcgs_error *error)
-{
-    if (!ferror(file->file))
-        return adcgs_atomic_commit(file, error);
-    adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write", file->path);
-    adcgs_atomic_abort(file);
-    return ADCGS_ERR_IO;
-}
-
 static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const char *name, const char *first,
                              adcgs_error *error)
 {
@@ -74,7 +65,7 @@ static adcgs_status write_curves(const adcgs_sweep *sweep, const adcgs_sweep_pla
             if (adcgs_sweep_row_make(&row, plan, plan->curve[i].name, plan->curve[i].cell[j], plan->curve[i].size))
                 csv_row(file.file, &row);
         }
-    return finish(&file, error);
+    return adcgs_atomic_commit(&file, error);
 }
 
 static adcgs_status write_stages(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
@@ -86,7 +77,7 @@ static adcgs_status write_stages(const adcgs_sweep *sweep, const adcgs_sweep_pla
         if (adcgs_sweep_row_make(&row, plan, plan->stage[i].name, plan->stage[i].cell, plan->stage[i].size))
             csv_row(file.file, &row);
     }
-    return finish(&file, error);
+    return adcgs_atomic_commit(&file, error);
 }
 
 /* ---- JSON ---- */
@@ -223,7 +214,7 @@ static adcgs_status write_json(const adcgs_sweep *sweep, const adcgs_sweep_plan 
     json_sweep(&json, sweep, plan);
     const adcgs_status status = adcgs_json_write(&json, file.file, path, error);
     if (status == ADCGS_OK)
-        return finish(&file, error);
+        return adcgs_atomic_commit(&file, error);
     adcgs_atomic_abort(&file);
     return status;
 }

@@ -206,6 +206,8 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
         status = render(s, from, &frames, sink, &canvas, &all, &seconds, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = adcgs_sink_close(&sink, error);
+    if (status == ADCGS_OK)
+        status = adcgs_cli_flush(error);
     adcgs_sink_abort(&sink);
     adcgs_canvas_clear(&canvas);
     if (status == ADCGS_OK && !adcgs_interrupted()) {

@@ -13,6 +13,7 @@
 
 #include <adcgs/adcgs.h>
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -165,16 +166,6 @@ static adcgs_status check_writable(const char *path, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static adcgs_status write_bytes(const char *path, const adcgs_buffer *bytes, adcgs_error *error)
-{
-    adcgs_atomic file;
-    ADCGS_TRY(adcgs_atomic_open(&file, path, error));
-    if (fwrite(bytes->data, 1, bytes->size, file.file) == bytes->size)
-        return adcgs_atomic_commit(&file, error);
-    adcgs_atomic_abort(&file);
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write %zu bytes", path, bytes->size);
-}
-
 /** The model as plain numbers, next to the stream. */
 static adcgs_status write_uncompressed(watcher *w, const adcgs_model *model, adcgs_error *error)
 {
@@ -182,7 +173,7 @@ static adcgs_status write_uncompressed(watcher *w, const adcgs_model *model, adc
     adcgs_buffer_init(&bytes);
     adcgs_status status = adcgs_raw_write(model, &bytes, error);
     if (status == ADCGS_OK)
-        status = write_bytes(w->o->uncompressed, &bytes, error);
+        status = adcgs_atomic_save(w->o->uncompressed, bytes.data, bytes.size, error);
     w->uncompressed_bytes = bytes.size;
     adcgs_buffer_clear(&bytes);
     return status;
@@ -233,11 +224,24 @@ static adcgs_status write_stream(adcgs_stream *stream, watcher *w, adcgs_pool *p
         status = adcgs_fail(error, ADCGS_ERR_USAGE, "%s: not written, since a single anchor and its networks take %zu bytes",
                             w->o->output, bytes.size);
     if (status == ADCGS_OK)
-        status = write_bytes(w->o->output, &bytes, error);
+        status = adcgs_atomic_save(w->o->output, bytes.data, bytes.size, error);
     if (status == ADCGS_OK && w->o->uncompressed)
         status = write_uncompressed(w, &stream->segments[0], error);
     adcgs_buffer_clear(&bytes);
     return status;
+}
+
+/** No output may take another's place. */
+static adcgs_status check_distinct(const enc_options *o, adcgs_error *error)
+{
+    const char *const names[] = { o->output, o->beginning, o->uncompressed, o->checkpoint, o->log };
+    const char *const options[] = { "output", "beginning", "uncompressed", "checkpoint", "log" };
+    for (size_t i = 0; i < ADCGS_COUNTOF(names); i++)
+        for (size_t j = 0; j < i; j++)
+            if (names[i] && names[j] && adcgs_atomic_same(names[i], names[j]))
+                return adcgs_fail(error, ADCGS_ERR_USAGE, "--%s and --%s are the same file, %s", options[j], options[i],
+                                  names[i]);
+    return ADCGS_OK;
 }
 
 /* ---- The run ---- */
@@ -315,6 +319,8 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK)
         status = configure(&config, o, cpu, error);
     if (status == ADCGS_OK)
+        status = check_distinct(o, error);
+    if (status == ADCGS_OK)
         status = adcgs_train_changes(&config, &w.changes, error);
     if (status == ADCGS_OK)
         status = check_writable(target(o), error);
@@ -332,7 +338,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     if (status == ADCGS_OK && o->log) {
         w.log = fopen(o->log, o->resume ? "a" : "w");
         if (!w.log)
-            status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log", o->log);
+            status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
     }
     if (status == ADCGS_OK) {
         w.t->quantise = adcgs_encode_quantise_hook;
@@ -493,5 +499,5 @@ int main(int argc, char **argv)
         error.status = status;
         return adcgs_cli_fail(&cli, &error);
     }
-    return met ? 0 : 1;
+    return adcgs_cli_leave(&cli, met ? 0 : 1);
 }

@@ -233,5 +233,5 @@ int main(int argc, char **argv)
     adcgs_error error = {0};
     adcgs_interrupt_catch();
     error.status = run(&s, &error);
-    return error.status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : 0;
+    return adcgs_cli_leave(&cli, error.status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : 0);
 }

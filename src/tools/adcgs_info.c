@@ -234,5 +234,5 @@ int main(int argc, char **argv)
     free(r.chunks);
     if (status != ADCGS_OK)
         fflush(stdout);
-    return status == ADCGS_OK ? 0 : adcgs_cli_fail(&cli, &error);
+    return adcgs_cli_leave(&cli, status == ADCGS_OK ? 0 : adcgs_cli_fail(&cli, &error));
 }

@@ -319,8 +319,6 @@ static adcgs_status csv_end(adcgs_eval_report *r, const double *mean, adcgs_erro
 {
     fputs("mean,,,", r->table);
     csv_values(r, mean);
-    if (fflush(r->table) || ferror(r->table))
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the table", r->atomic.file ? r->csv : "standard output");
     return r->atomic.file ? adcgs_atomic_commit(&r->atomic, error) : ADCGS_OK;
 }
 

@@ -278,16 +278,6 @@ static adcgs_status find_content(const adcgs_trainer *trainer, adcgs_error *erro
     return ADCGS_OK;
 }
 
-static adcgs_status write_file(const adcgs_buffer *b, const char *path, adcgs_error *error)
-{
-    adcgs_atomic atomic;
-    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
-    if (fwrite(b->data, 1, b->size, atomic.file) == b->size)
-        return adcgs_atomic_commit(&atomic, error);
-    adcgs_atomic_abort(&atomic);
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the checkpoint", path);
-}
-
 adcgs_status adcgs_trainer_save(const adcgs_trainer *t, const char *path, adcgs_error *error)
 {
     adcgs_buffer b;
@@ -301,7 +291,7 @@ adcgs_status adcgs_trainer_save(const adcgs_trainer *t, const char *path, adcgs_
     if (status == ADCGS_OK && b.failed)
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint");
     if (status == ADCGS_OK)
-        status = write_file(&b, path, error);
+        status = adcgs_atomic_save(path, b.data, b.size, error);
     adcgs_buffer_clear(&b);
     return status;
 }

@@ -54,14 +54,19 @@ if [ -f .libs/adcgs_play.so ]; then
     readelf -d .libs/adcgs_play.so | grep -q 'NEEDED.*SDL' || bad "the player's module does not load SDL"
 fi
 # OpenImageIO is opened when an image needs it, and not before. A build without shared libraries has it inside.
+# PNG and JPEG need no module; what does says which, and that what is there is none.
+mkdir "$dir/none"
+for extension in png jpg exr ppm; do
+    expect 0 "frame" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/g.$extension" --time 0
+    [ -s "$dir/g.$extension" ] || bad "$extension"
+done
 if [ -f .libs/adcgs_oiio.so ]; then
-    ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*\(OpenImageIO\|stdc++\)' || bad "adcgs-dec loads OpenImageIO at once"
-    expect 0 "frame" $dec "$s" -o "$dir/g.png" --time 0
-    [ -s "$dir/g.png" ] || bad "PNG"
-    mkdir "$dir/none"
-    expect 5 "x.png: images need OpenImageIO: no adcgs_oiio.so in $dir/none" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.png" --time 0
+    ! readelf -d adcgs-dec 2>/dev/null | grep -q 'NEEDED.*\(libpng\|OpenImageIO\|stdc++\)' || bad "adcgs-dec loads OpenImageIO at once"
+    expect 0 "frame" $dec "$s" -o "$dir/g.tif" --time 0
+    [ -s "$dir/g.tif" ] || bad "TIFF"
+    expect 5 "x.tif: images need OpenImageIO: no adcgs_oiio.so in $dir/none" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.tif" --time 0
     echo "not a module" >"$dir/none/adcgs_oiio.so"
-    expect 5 "x.png: images need OpenImageIO: " env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.png" --time 0
+    expect 5 "x.tif: images need OpenImageIO: " env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/x.tif" --time 0
     expect 0 "frame" env ADCGS_MODULES="$dir/none" $dec "$s" -o "$dir/v.y4m"
 fi
 # Videos likewise, by FFmpeg.

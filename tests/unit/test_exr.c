@@ -261,6 +261,7 @@ static void test_attributes(void **state)
     assert_true(fabs(centre->x + 0.5 * width - camera.cx / camera.fx) < 1e-6);
     assert_true(fabs(centre->x - 0.5 * width - (camera.cx - WIDTH) / camera.fx) < 1e-6);
     assert_true(fabs(centre->y - (camera.cy - 0.5 * HEIGHT) / camera.fy) < 1e-6);
+    assert_true(fabs(attribute(file, "pixelAspectRatio", EXR_ATTR_FLOAT)->f - camera.fy / camera.fx) < 1e-6);
     const exr_attr_v2d_t *focal = attribute(file, "adcgs/focal", EXR_ATTR_V2D)->v2d;
     const exr_attr_v2d_t *principal = attribute(file, "adcgs/principal", EXR_ATTR_V2D)->v2d;
     assert_true(focal->x == camera.fx && focal->y == camera.fy && principal->x == camera.cx && principal->y == camera.cy);
@@ -273,6 +274,37 @@ static void test_attributes(void **state)
     camera.name[0] = 0;
     assert_int_equal(write_as("n.exr", ADCGS_DEPTH_FLOAT, 0, 0), ADCGS_OK);
     strcpy(camera.name, "eye");
+}
+
+static float aspect_of(const char *name)
+{
+    exr_context_t file;
+    assert_int_equal(exr_start_read(&file, in(name), NULL), EXR_ERR_SUCCESS);
+    const float aspect = attribute(file, "pixelAspectRatio", EXR_ATTR_FLOAT)->f;
+    exr_finish(&file);
+    return aspect;
+}
+
+/** Pixels twice as wide as high are such whose focal length counts half as many of them; without a camera they are square. */
+static void test_aspect(void **state)
+{
+    const double focal = camera.fx;
+    adcgs_image image;
+    fill();
+    camera.fx = 0.5 * camera.fy;
+    assert_int_equal(write_as("wide.exr", ADCGS_DEPTH_HALF, 0, 0), ADCGS_OK);
+    assert_true(aspect_of("wide.exr") == 2.0f);
+    camera.fx = camera.fy;
+    assert_int_equal(write_as("square.exr", ADCGS_DEPTH_HALF, 0, 0), ADCGS_OK);
+    assert_true(aspect_of("square.exr") == 1.0f);
+    camera.fx = 1e9 * camera.fy; /* beyond what the format takes */
+    assert_int_equal(write_as("thin.exr", ADCGS_DEPTH_HALF, 0, 0), ADCGS_OK);
+    assert_true(aspect_of("thin.exr") > 0.0f);
+    camera.fx = focal;
+    assert_int_equal(adcgs_image_read(&image, in("square.exr"), &error), ADCGS_OK);
+    assert_int_equal(adcgs_image_write(&image, in("none.exr"), 0, &error), ADCGS_OK);
+    assert_true(aspect_of("none.exr") == 1.0f);
+    adcgs_image_free(&image);
 }
 
 /** What the samples stand for is said: sRGB's curve, or linear light and its primaries. */
@@ -347,7 +379,7 @@ int main(void)
         cmocka_unit_test(test_channels),
         cmocka_unit_test(test_linear),
         cmocka_unit_test(test_linear_straight),
-        cmocka_unit_test(test_attributes),
+        cmocka_unit_test(test_attributes), cmocka_unit_test(test_aspect),
         cmocka_unit_test(test_curve_named),
         cmocka_unit_test(test_sixteen_bits),
         cmocka_unit_test(test_refused),

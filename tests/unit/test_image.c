@@ -210,6 +210,73 @@ static void test_atomic(void **state)
     expect_error(adcgs_atomic_open(&atomic, folder, &error), ADCGS_ERR_IO, folder, "is a folder");
 }
 
+static unsigned mode_of(const char *name)
+{
+    struct stat status;
+    assert_int_equal(lstat(in(name), &status), 0);
+    return status.st_mode & (S_IFMT | 07777);
+}
+
+static void expect_text(const char *name, const char *text)
+{
+    char held[32] = "";
+    FILE *file = fopen(in(name), "rb");
+    assert_non_null(file);
+    const size_t n = fread(held, 1, sizeof held - 1, file);
+    fclose(file);
+    held[n] = 0;
+    assert_string_equal(held, text);
+}
+
+/** A new file has what the umask leaves, one that replaces another the other's mode, and a protected one is not replaced. */
+static void test_modes(void **state)
+{
+    const mode_t before = umask(027);
+    assert_int_equal(adcgs_atomic_save(in("m"), "one", 3, &error), ADCGS_OK);
+    assert_int_equal(mode_of("m"), S_IFREG | 0640);
+    assert_int_equal(chmod(in("m"), 0604), 0);
+    assert_int_equal(adcgs_atomic_save(in("m"), "two", 3, &error), ADCGS_OK);
+    assert_int_equal(mode_of("m"), S_IFREG | 0604);
+    expect_text("m", "two");
+    umask(before);
+    assert_int_equal(chmod(in("m"), 0444), 0);
+    if (access(in("m"), W_OK)) { /* else we are root, who may */
+        expect_error(adcgs_atomic_save(in("m"), "three", 5, &error), ADCGS_ERR_IO, "m", "Permission denied");
+        expect_text("m", "two");
+    }
+}
+
+/** Through links, relative ones in another folder too, the file that they end at is written, be it there or not. */
+static void test_links(void **state)
+{
+    assert_int_equal(mkdir(in("deep"), 0777), 0);
+    put_text("end", "old");
+    assert_int_equal(symlink("../end", in("deep/near")), 0);
+    assert_int_equal(symlink("deep/near", in("far")), 0);
+    assert_int_equal(symlink("none", in("deep/dangling")), 0);
+    assert_int_equal(symlink("round", in("round")), 0);
+    const int before = count_files();
+    assert_int_equal(adcgs_atomic_save(in("far"), "new", 3, &error), ADCGS_OK);
+    assert_int_equal(adcgs_atomic_save(in("deep/dangling"), "made", 4, &error), ADCGS_OK);
+    assert_true(S_ISLNK(mode_of("far")) && S_ISLNK(mode_of("deep/near")) && S_ISREG(mode_of("end")));
+    assert_true(S_ISLNK(mode_of("deep/dangling")) && S_ISREG(mode_of("deep/none")));
+    expect_text("end", "new");
+    expect_text("deep/none", "made");
+    expect_error(adcgs_atomic_save(in("round"), "x", 1, &error), ADCGS_ERR_IO, "round", "symbolic links");
+    assert_int_equal(count_files(), before);
+}
+
+static void test_same_file(void **state)
+{
+    put_text("here", "x");
+    assert_int_equal(symlink("here", in("there")), 0);
+    assert_int_equal(symlink("later", in("soon")), 0);
+    assert_true(adcgs_atomic_same(in("here"), in("there")) && adcgs_atomic_same(in("here"), in("./here")));
+    assert_true(adcgs_atomic_same(in("later"), in("soon")) && adcgs_atomic_same(in("later"), in("deep/../later")));
+    assert_true(!adcgs_atomic_same(in("here"), in("later")) && !adcgs_atomic_same(in("later"), in("never")));
+    assert_true(!adcgs_atomic_same(in("later"), in("deep/later")) && !adcgs_atomic_same("/dev/null", "/dev/null"));
+}
+
 static void test_full_disk(void **state)
 {
     if (access("/dev/full", W_OK))
@@ -219,6 +286,7 @@ static void test_full_disk(void **state)
     for (int i = 0; i < 100000; i++)
         fputc('x', atomic.file);
     expect_error(adcgs_atomic_commit(&atomic, &error), ADCGS_ERR_IO, "/dev/full", "No space left");
+    expect_error(adcgs_atomic_save("/dev/full", "x", 1, &error), ADCGS_ERR_IO, "/dev/full", "No space left");
 }
 
 static void test_patterns(void **state)
@@ -306,6 +374,7 @@ int main(void)
         cmocka_unit_test(test_damage),      cmocka_unit_test(test_cuts),     cmocka_unit_test(test_whole),
         cmocka_unit_test(test_unwritable),
         cmocka_unit_test(test_to_u8),       cmocka_unit_test(test_atomic),   cmocka_unit_test(test_full_disk),
+        cmocka_unit_test(test_modes),       cmocka_unit_test(test_links),    cmocka_unit_test(test_same_file),
         cmocka_unit_test(test_patterns),    cmocka_unit_test(test_y4m),      cmocka_unit_test(test_sinks),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

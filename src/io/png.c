@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file PNG by libspng. */
+#include "config.h"
+
+#include "io/png.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include <spng.h>
+
+#define LEVEL 4 /* zlib's; with one filter, a quarter of the time that the defaults take, for a tenth more bytes */
+#define CHUNK_MAX (64u << 20) /* bytes of a chunk besides pixels, and of all that are kept */
+
+/* ---- Errors ---- */
+
+static adcgs_status read_failure(int code, const char *path, adcgs_error *error)
+{
+    switch (code) {
+    case SPNG_EMEM:
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    case SPNG_IO_ERROR:
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read", path);
+    case SPNG_IO_EOF:
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: the file ends early, expected PNG's chunk IEND", path);
+    default:
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: PNG: %s", path, spng_strerror(code));
+    }
+}
+
+/* ---- Reading ---- */
+
+/** What a file holds, and as what it is decoded. */
+typedef struct layout {
+    int width, height, channels;
+    int wide;   /**< samples of 16 bits */
+    int linear; /**< light, not sRGB's curve */
+    int format; /**< libspng's */
+} layout;
+
+static const struct {
+    int narrow, wide; /* formats for up to 8 bits, and for 16 */
+} formats[4] = { /* by channels */
+    {SPNG_FMT_G8, SPNG_FMT_PNG},
+    {SPNG_FMT_GA8, SPNG_FMT_GA16},
+    {SPNG_FMT_RGB8, SPNG_FMT_PNG},
+    {SPNG_FMT_RGBA8, SPNG_FMT_RGBA16},
+};
+
+/** libspng makes grey with alpha of grey with a transparent level; what is stored with alpha it gives as it is. */
+static void choose_format(layout *l, const struct spng_ihdr *head, int has_transparent)
+{
+    const int stored_alpha = head->color_type & 4, colour = head->color_type & 2;
+    l->wide = head->bit_depth == 16;
+    l->channels = (colour ? 3 : 1) + (stored_alpha || has_transparent);
+    l->format = l->wide ? formats[l->channels - 1].wide : formats[l->channels - 1].narrow;
+    if (stored_alpha)
+        l->format = SPNG_FMT_PNG;
+}
+
+/** The curve of values: sRGB, unless gAMA alone says that there is none. Other exponents pass for sRGB. */
+static int is_linear(spng_ctx *png)
+{
+    uint8_t intent;
+    double gamma;
+    return spng_get_srgb(png, &intent) && !spng_get_gama(png, &gamma) && fabs(gamma - 1.0) < 0.005;
+}
+
+static adcgs_status read_layout(spng_ctx *png, FILE *file, layout *out, const char *path, adcgs_error *error)
+{
+    struct spng_ihdr head;
+    struct spng_trns transparent;
+    int code = spng_set_crc_action(png, SPNG_CRC_ERROR, SPNG_CRC_ERROR);
+    if (!code)
+        code = spng_set_chunk_limits(png, CHUNK_MAX, CHUNK_MAX);
+    if (!code)
+        code = spng_set_png_file(png, file);
+    if (!code)
+        code = spng_get_ihdr(png, &head);
+    if (code)
+        return read_failure(code, path, error);
+    if (head.width > ADCGS_IMAGE_MAX || head.height > ADCGS_IMAGE_MAX)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %ux%u pixels, expected 1x1 to %dx%d", path, head.width, head.height,
+                          ADCGS_IMAGE_MAX, ADCGS_IMAGE_MAX);
+    code = spng_get_trns(png, &transparent);
+    if (code && code != SPNG_ECHUNKAVAIL)
+        return read_failure(code, path, error);
+    choose_format(out, &head, !code);
+    out->width = (int)head.width;
+    out->height = (int)head.height;
+    out->linear = is_linear(png);
+    return ADCGS_OK;
+}
+
+/** Samples as they are stored to values of 0 to 1. */
+static void convert(const uint8_t *samples, int wide, size_t n, float *out)
+{
+    for (size_t i = 0; i < n; i++) {
+        uint16_t sample = samples[i];
+        if (wide)
+            memcpy(&sample, samples + 2 * i, sizeof sample);
+        out[i] = (float)sample / (wide ? 65535.0f : 255.0f);
+    }
+}
+
+static adcgs_status read_pixels(spng_ctx *png, FILE *file, const layout *l, adcgs_image *out, const char *path,
+                                adcgs_error *error)
+{
+    size_t bytes;
+    const size_t values = (size_t)l->width * (size_t)l->height * (size_t)l->channels;
+    int code = spng_decoded_image_size(png, l->format, &bytes);
+    if (!code && bytes != values << l->wide)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: PNG of %zu bytes of pixels, expected %zu", path, bytes,
+                          values << l->wide);
+    uint8_t *samples = code ? NULL : malloc(bytes);
+    if (!code && !samples)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %dx%d pixels", path, l->width, l->height);
+    if (!code)
+        code = spng_decode_image(png, samples, bytes, l->format, SPNG_DECODE_TRNS);
+    if (!code)
+        code = spng_decode_chunks(png); /* what follows the pixels, so that all of the file is looked at */
+    if (!code && feof(file))
+        code = SPNG_IO_EOF; /* in the checksum of IEND, which it does without */
+    if (!code)
+        convert(samples, l->wide, values, out->data);
+    free(samples);
+    return code ? read_failure(code, path, error) : ADCGS_OK;
+}
+
+static adcgs_status open_decoder(spng_ctx **png, const char *path, adcgs_error *error)
+{
+    *png = spng_ctx_new(0);
+    return *png ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+}
+
+adcgs_status adcgs_png_probe(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
+{
+    spng_ctx *png;
+    layout l = {0};
+    ADCGS_TRY(open_decoder(&png, path, error));
+    const adcgs_status status = read_layout(png, file, &l, path, error);
+    spng_ctx_free(png);
+    *width = l.width;
+    *height = l.height;
+    *channels = l.channels;
+    return status;
+}
+
+adcgs_status adcgs_png_read(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
+{
+    spng_ctx *png;
+    layout l;
+    *out = (adcgs_image){0};
+    ADCGS_TRY(open_decoder(&png, path, error));
+    adcgs_status status = read_layout(png, file, &l, path, error);
+    if (status == ADCGS_OK)
+        status = adcgs_image_alloc(out, l.width, l.height, l.channels, path, error);
+    if (status == ADCGS_OK)
+        status = read_pixels(png, file, &l, out, path, error);
+    spng_ctx_free(png);
+    if (status != ADCGS_OK)
+        adcgs_image_free(out);
+    else if (l.linear)
+        adcgs_image_to_srgb(out);
+    return status;
+}
+
+/* ---- Writing ---- */
+
+static int append(spng_ctx *png, void *user, void *bytes, size_t n)
+{
+    adcgs_buffer *out = user;
+    adcgs_write_bytes(out, bytes, n);
+    return out->failed ? SPNG_IO_ERROR : 0;
+}
+
+/** Size and compression, and that values are sRGB; gAMA and cHRM say it once more, as the format advises. */
+static int describe(spng_ctx *png, const adcgs_image *image, int bits)
+{
+    static const uint8_t types[4] = {SPNG_COLOR_TYPE_GRAYSCALE, SPNG_COLOR_TYPE_GRAYSCALE_ALPHA, SPNG_COLOR_TYPE_TRUECOLOR,
+                                     SPNG_COLOR_TYPE_TRUECOLOR_ALPHA};
+    struct spng_ihdr head = {.width = (uint32_t)image->width,
+                             .height = (uint32_t)image->height,
+                             .bit_depth = (uint8_t)bits,
+                             .color_type = types[image->channels - 1]};
+    struct spng_chrm_int primaries = {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
+    int code = spng_set_ihdr(png, &head);
+    code = code ? code : spng_set_option(png, SPNG_IMG_COMPRESSION_LEVEL, LEVEL);
+    code = code ? code : spng_set_option(png, SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_PAETH);
+    code = code ? code : spng_set_srgb(png, 3);
+    code = code ? code : spng_set_gama_int(png, 45455);
+    return code ? code : spng_set_chrm_int(png, &primaries);
+}
+
+static int encode_rows(spng_ctx *png, const adcgs_image *image, int bits, void *row)
+{
+    const size_t values = (size_t)image->width * (size_t)image->channels;
+    int code = spng_encode_image(png, NULL, 0, SPNG_FMT_PNG, SPNG_ENCODE_PROGRESSIVE | SPNG_ENCODE_FINALIZE);
+    for (int y = 0; y < image->height && !code; y++) {
+        const float *line = image->data + (size_t)y * values;
+        if (bits == 16)
+            adcgs_image_to_u16(line, values, row);
+        else
+            adcgs_image_to_u8(line, values, row);
+        code = spng_encode_row(png, row, values * (size_t)bits / 8);
+    }
+    return code == SPNG_EOI ? 0 : code ? code : SPNG_ENOTFINAL;
+}
+
+adcgs_status adcgs_png_encode(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options, const char *path,
+                              adcgs_error *error)
+{
+    spng_ctx *png = spng_ctx_new(SPNG_CTX_ENCODER);
+    uint16_t *row = malloc((size_t)image->width * (size_t)image->channels * sizeof *row);
+    int code = png && row ? spng_set_png_stream(png, append, out) : SPNG_EMEM;
+    code = code ? code : describe(png, image, options->bits);
+    code = code ? code : encode_rows(png, image, options->bits, row);
+    spng_ctx_free(png);
+    free(row);
+    if (code == SPNG_EMEM || out->failed)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    return code ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write PNG: %s", path, spng_strerror(code)) : ADCGS_OK;
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file PNG, by libspng, which loads in a fraction of OpenImageIO's time. */
+#ifndef ADCGS_IO_PNG_H
+#define ADCGS_IO_PNG_H
+
+#include "bits/bytes.h"
+#include "io/image.h"
+
+#include <stdio.h>
+
+/** The file is at its start and stays the caller's; path is for messages. */
+adcgs_status adcgs_png_probe(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error);
+/**
+ * All kinds of PNG: palettes become RGB, transparent colours alpha, interlaced rows are put in order; with gAMA of 1 and without
+ * sRGB, values are linear light and become sRGB. ADCGS_ERR_DATA for a file that ends early and for any checksum that is wrong.
+ */
+adcgs_status adcgs_png_read(FILE *file, adcgs_image *out, const char *path, adcgs_error *error);
+/** 8 or 16 bits, straight alpha, labelled as sRGB. Appends to out; its failing is left to the caller. */
+adcgs_status adcgs_png_encode(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options, const char *path,
+                              adcgs_error *error);
+
+#endif

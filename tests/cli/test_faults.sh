@@ -1,0 +1,137 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Every call by which a program changes files fails once, and then once more with all that follow, as on a full disk: exit code
+# 3, one line that names what could not be written, files that are the old ones or whole new ones, and nothing else left behind.
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-dec adcgs-info adcgs-enc adcgs-eval adcgs-sweep adcgs-conform adcgs-demo-scene tests/cli/fail-nth
+vectors=$(cd "${srcdir:-.}/conformance" && pwd)
+tests/cli/fail-nth "$dir" "$dir/report" 1 true || exit $?
+tiny_stream 40
+s=$dir/s.adcgs w=$dir/w
+
+ways='once +'
+
+# faults NAME COMMAND...: the command writes into $w; what it prints goes to a file there, too. Of its files, those that end in
+# .log grow line by line, and the standard output does so as well; the others are to be whole.
+faults()
+{
+    name=$1
+    shift
+    rm -rf "$w" "$dir/good" && mkdir "$w"
+    "$@" >"$w/stdout.log" 2>"$dir/err" || { bad "$name"; cat "$dir/err"; return; }
+    cp -r "$w" "$dir/good"
+    for rest in $ways; do
+        [ $rest = once ] && rest=
+        n=1
+        while :; do
+            fresh
+            TMPDIR=$w tests/cli/fail-nth "$w" "$dir/report" $n$rest "$@" >"$w/stdout.log" 2>"$dir/err"
+            code=$?
+            read -r calls <"$dir/report"
+            [ "$n" -le "$calls" ] || break
+            check_fault "$name, call $n$rest of $calls"
+            n=$((n + 1 + n / 4)) # all of the first ones, then fewer and fewer
+        done
+        [ "$calls" -gt 0 ] || bad "$name: nothing is written"
+        [ "$code" -eq 0 ] || { bad "$name: exit code $code without a fault"; cat "$dir/err"; }
+    done
+}
+
+# The files that the good run wrote, with other contents, but for those that it reads. spare=yes: not every call matters.
+kept=none spare=no
+fresh()
+{
+    rm -rf "$w" && cp -r "$dir/good" "$w"
+    find "$w" -type f ! -path "$kept" -exec sh -c 'for file; do echo old >"$file"; done' sh {} +
+}
+
+# size_of FILE: its lines if it is text, else its bytes. whole FILE: it is the old one, or as long as that of the good run, in
+# which times may be others.
+size_of() { case $1 in *.tif | *.sgi | *.state) wc -c <"$1" ;; *) wc -l <"$1" ;; esac; }
+whole()
+{
+    [ "$(cat "$w/$1")" = old ] 2>/dev/null || cmp -s "$w/$1" "$dir/good/$1" ||
+        { case $1 in *.csv | *.json | *.html | *.xml | *.tif | *.sgi | *.state) : ;; *) false ;; esac &&
+              [ "$(size_of "$w/$1")" = "$(size_of "$dir/good/$1")" ]; }
+}
+
+check_fault()
+{
+    if [ "$code" -eq 0 ] && [ $spare = yes ] && diff -r "$w" "$dir/good" >/dev/null; then
+        return # another program's messages, say
+    fi
+    [ "$code" -eq 3 ] || { bad "$1: exit code $code"; cat "$dir/err"; }
+    [ "$(grep -c 'cannot' "$dir/err")" -eq 1 ] && tail -n 1 "$dir/err" | grep -q '^adcgs-.*: .*cannot' ||
+        { bad "$1: not one line that says so"; cat "$dir/err"; }
+    [ "$(cd "$w" && find . ! -name '*.gp.log' | sort)" = "$(cd "$dir/good" && find . ! -name '*.gp.log' | sort)" ] ||
+        { bad "$1: other files than before"; (cd "$w" && find . -name '*tmp*'); }
+    (cd "$w" && find . -type f ! -name '*.log') >"$dir/files"
+    while read -r file; do
+        whole "$file" || { bad "$1: $file is neither the old nor the new one"; ls -l "$w/$file" "$dir/good/$file"; }
+    done <"$dir/files"
+}
+
+# The decoder: pictures of each writer, streams, a video, splats, cameras, standard output.
+for extension in png jpg ppm exr; do
+    faults "$extension" ./adcgs-dec "$s" --time 0:0.06 --camera 0 -o "$w/%d.$extension"
+done
+ways=once
+for extension in tif sgi; do # in memory, and by way of a file
+    if ./adcgs-dec "$s" --time 0 -o "$dir/x.$extension" 2>/dev/null; then
+        faults "$extension" ./adcgs-dec "$s" --time 0 --camera 0 --size 40x30 -o "$w/x.$extension"
+    fi
+done
+ways='once +'
+faults y4m ./adcgs-dec "$s" --time 0:0.1 -o "$w/x.y4m"
+faults raw ./adcgs-dec "$s" --time 0 -o "$w/x.raw" --float
+if ./adcgs-dec "$s" --time 0 -o "$dir/x.mp4" 2>/dev/null; then
+    faults mp4 ./adcgs-dec "$s" --time 0:0.2 -o "$w/x.mp4"
+fi
+faults "standard output" ./adcgs-dec "$s" --time 0:0.1 -o -
+faults "digests" ./adcgs-dec "$s" --time 0:0.1 --md5
+faults "splats" ./adcgs-dec "$s" --time 0 --splats "$w/x.ply"
+faults "cameras" ./adcgs-dec "$s" --cameras "$w/x.json"
+
+# The player's pictures, of the scene and of its window.
+printf 'screenshot %s\ngrab %s\nquit\n' "$w/shot.png" "$w/window.ppm" >"$dir/script"
+mkdir -p "$w"
+if SDL_VIDEODRIVER=dummy ./adcgs-dec "$s" --play --script "$dir/script" >/dev/null 2>&1; then
+    faults "player" env SDL_VIDEODRIVER=dummy ./adcgs-dec "$s" --play --script "$dir/script" --threads 1
+fi
+
+# What is reported of a stream, and its anchors.
+faults "report" ./adcgs-info "$s" --bits
+faults "JSON" ./adcgs-info "$s" --json
+faults "trace" ./adcgs-info "$s" --trace
+faults "anchors" ./adcgs-info "$s" --points "$w/x.ply"
+if ./adcgs-info "$s" --points "$dir/x.drc" 2>/dev/null; then
+    faults "Draco" ./adcgs-info "$s" --points "$w/x.drc"
+fi
+
+# Evaluation: table, pictures, reports.
+faults "table" ./adcgs-eval "$s" "$dir/scene" --csv "$w/x.csv" --images "$w/views" --beside
+faults "evaluation" ./adcgs-eval "$s" "$dir/scene" --json
+faults "table printed" ./adcgs-eval "$s" "$dir/scene" --csv -
+
+# The encoder: stream, plain numbers; pictures that go to a file for want of memory; the beginning of a run.
+faults "encoder" ./adcgs-enc "$dir/scene" -o "$w/x.adcgs" --preset draft --iterations 10 --threads 1 --quiet --memory 1 \
+    --uncompressed "$w/x.bin"
+faults "beginning" ./adcgs-enc "$dir/scene" --beginning "$w/x.state" --preset draft --iterations 200 --threads 1 --quiet
+
+# The built-in scene, conformance's report.
+ways=+
+faults "scene" ./adcgs-demo-scene --scene tiny -o "$w/scene"
+ways='once +'
+faults "conformance" ./adcgs-conform "$vectors/manifest.json" --filter 'bad-geom-*' --junit "$w/x.xml"
+
+# A sweep's tables and page, of runs that have been made.
+if ./adcgs-sweep "$dir/scene" -o "$dir/sweep" --lambda 0.1 --preset draft --iterations 10 --yardsticks none >/dev/null 2>"$dir/err"; then
+    kept="$w/sweep/lambda*" spare=yes
+    faults "sweep" sh -c '[ -e "$1/sweep" ] || cp -r "$2" "$1/sweep"; shift 2; exec "$@"' sh "$w" "$dir/sweep" \
+        ./adcgs-sweep "$dir/scene" -o "$w/sweep" --lambda 0.1 --preset draft --iterations 10 --yardsticks none --resume
+else
+    bad "adcgs-sweep"
+    cat "$dir/err"
+fi
+exit $failed

@@ -1,0 +1,125 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Where programs write: devices that are full, limits, modes, links, one file for two outputs; and where modules are looked for.
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-dec adcgs-info adcgs-enc adcgs-eval adcgs-sweep adcgs-conform adcgs-demo-scene adcgs-demo-grid
+vectors=$(cd "${srcdir:-.}/conformance" && pwd)
+tiny_stream 40
+s=$dir/s.adcgs
+
+# full TEXT COMMAND...: leaves with 3 and one line that has TEXT, since a device is full.
+full()
+{
+    text=$1
+    shift
+    expect 3 "^adcgs-.*: .*$text.*No space left on device$" "$@"
+}
+
+# printed COMMAND...: the same of standard output.
+printed()
+{
+    full "standard output: cannot write: " sh -c '"$@" >/dev/full' sh "$@"
+}
+
+if [ -w /dev/full ]; then
+    for program in dec info enc eval sweep conform demo-scene demo-grid; do
+        printed ./adcgs-$program --help
+        printed ./adcgs-$program --version
+    done
+    printed ./adcgs-dec "$s" -o - --time 0
+    printed ./adcgs-dec "$s" -o - --format raw --time 0:0.1
+    printed ./adcgs-dec "$s" --md5 --time 0
+    printed ./adcgs-dec "$s" --frametimes --time 0
+    printf 'trace\n' >"$dir/requests"
+    printed ./adcgs-dec "$s" --answer "$dir/requests"
+    for option in --json --bits --trace --digest; do
+        printed ./adcgs-info "$s" $option
+    done
+    printed ./adcgs-eval "$s" "$dir/scene"
+    printed ./adcgs-eval "$s" "$dir/scene" --json
+    printed ./adcgs-eval "$s" "$dir/scene" --csv -
+    printed ./adcgs-conform "$vectors/manifest.json" --filter 'bad-geom-d*'
+    printed ./adcgs-conform "$vectors/manifest.json" --list
+    printed ./adcgs-demo-scene --list
+    printed ./adcgs-enc --set list
+    printed ./adcgs-enc "$dir/scene" -o "$dir/x.adcgs" --preset draft --iterations 10 --json
+
+    # Names that stand for the device, with the extensions that programs go by.
+    for extension in png jpg exr ppm tif sgi y4m raw mp4 ply drc json xml csv svg; do
+        ln -s /dev/full "$dir/full.$extension"
+    done
+    for extension in png jpg exr ppm y4m raw; do
+        full "full.$extension: cannot write: " ./adcgs-dec "$s" --time 0 -o "$dir/full.$extension"
+    done
+    for extension in tif sgi; do
+        ./adcgs-dec "$s" --time 0 -o "$dir/x.$extension" 2>/dev/null &&
+            full "full.$extension: cannot write: " ./adcgs-dec "$s" --time 0 -o "$dir/full.$extension"
+    done
+    if ./adcgs-dec "$s" --time 0 -o "$dir/x.mp4" 2>/dev/null; then
+        expect 3 "full.mp4: " ./adcgs-dec "$s" --time 0 -o "$dir/full.mp4"
+    fi
+    full "full.ply: cannot write: " ./adcgs-dec "$s" --time 0 --splats "$dir/full.ply"
+    full "full.json: cannot write: " ./adcgs-dec "$s" --cameras "$dir/full.json"
+    full "full.ply: cannot write: " ./adcgs-info "$s" --points "$dir/full.ply"
+    ./adcgs-info "$s" --points "$dir/x.drc" 2>/dev/null &&
+        full "full.drc: cannot write: " ./adcgs-info "$s" --points "$dir/full.drc"
+    full "full.csv: cannot write: " ./adcgs-eval "$s" "$dir/scene" --csv "$dir/full.csv"
+    full "full.xml: cannot write: " ./adcgs-conform "$vectors/manifest.json" --filter 'bad-geom-d*' --junit "$dir/full.xml"
+    for option in --output --beginning; do
+        expect 3 "/dev/full: not a regular file" ./adcgs-enc "$dir/scene" $option /dev/full --preset draft --iterations 10
+    done
+    full "full.png: cannot write: " ./adcgs-demo-grid "$s" "$dir/scene" -o "$dir/full.png"
+    [ -c /dev/full ] || bad "/dev/full is no device any more"
+fi
+
+# A file that may not grow is an error, not the end of the program, and the old one stays.
+for extension in png jpg ppm exr y4m; do
+    echo old >"$dir/limited.$extension"
+    expect 3 "limited.$extension: cannot write: File too large" \
+        sh -c 'ulimit -f 1; exec "$@"' sh ./adcgs-dec "$s" --time 0 --size 300x300 -o "$dir/limited.$extension"
+    [ "$(cat "$dir/limited.$extension")" = old ] || bad "$extension: the old file is lost at a limit"
+done
+[ -z "$(find "$dir" -name '*tmp*')" ] || bad "temporary files are left: $(find "$dir" -name '*tmp*')"
+
+# A new file has the mode that the umask leaves; an old one keeps its own. A link is followed.
+mode() { ls -l "$1" | cut -c1-10; }
+mkdir "$dir/links"
+ln -s ../target.png "$dir/links/to.png"
+for umask in 022 077; do
+    rm -f "$dir/target.png"
+    expect 0 "" sh -c 'umask $1; shift; exec "$@"' sh $umask ./adcgs-dec "$s" --time 0 -o "$dir/links/to.png"
+    case $umask in 022) want=-rw-r--r-- ;; *) want=-rw------- ;; esac
+    [ "$(mode "$dir/target.png")" = $want ] || bad "umask $umask gives $(mode "$dir/target.png")"
+    [ -h "$dir/links/to.png" ] || bad "a link is replaced"
+done
+chmod 664 "$dir/target.png"
+echo old >"$dir/target.png"
+expect 0 "" sh -c 'umask 077; exec "$@"' sh ./adcgs-dec "$s" --time 0 -o "$dir/links/to.png"
+[ "$(mode "$dir/target.png")" = -rw-rw-r-- ] || bad "the mode becomes $(mode "$dir/target.png")"
+[ "$(wc -c <"$dir/target.png")" -gt 100 ] && [ -h "$dir/links/to.png" ] || bad "not written through a link"
+
+# One file for two outputs.
+ln -s two "$dir/links/also"
+for other in "$dir/links/two" "$dir/./links/two" "$dir/links/also"; do
+    expect 2 "same file" ./adcgs-enc "$dir/scene" -o "$dir/links/two" --uncompressed "$other" --preset draft --iterations 10
+    expect 2 "same file" ./adcgs-enc "$dir/scene" -o "$dir/links/two" --log "$other" --preset draft --iterations 10
+    expect 2 "same file" ./adcgs-enc "$dir/scene" -o "$dir/links/two" --checkpoint "$other" --preset draft --iterations 10
+done
+[ ! -e "$dir/links/two" ] || bad "something is written in spite of two outputs in one file"
+
+# A program looks for modules where it is installed, not in a folder .libs beside it.
+if [ -f .libs/adcgs_oiio.so ]; then
+    mkdir -p "$dir/usr/bin/.libs"
+    cp adcgs-dec "$dir/usr/bin"
+    unset ADCGS_MODULES
+    "$dir/usr/bin/adcgs-dec" "$s" --time 0 -o "$dir/m.tif" >"$dir/out" 2>&1
+    before=$?
+    cp .libs/adcgs_oiio.so "$dir/usr/bin/.libs"
+    "$dir/usr/bin/adcgs-dec" "$s" --time 0 -o "$dir/m.tif" >"$dir/out" 2>&1
+    [ $? -eq $before ] || bad "a module is taken from .libs beside the program"
+    mkdir -p "$dir/usr/lib"
+    mv "$dir/usr/bin/.libs" "$dir/usr/lib/adcgs"
+    expect 0 "" "$dir/usr/bin/adcgs-dec" "$s" --time 0 -o "$dir/m.tif"
+fi
+exit $failed
