@@ -147,8 +147,27 @@ static adcgs_status print_expected(FILE *out, const adcgs_plan *plan, adcgs_deco
     for (int t = 0; t < plan->n_times; t++)
         for (int c = 0; c < plan->n_cameras; c++)
             ADCGS_TRY(print_frame(out, decoder, &plan->cameras[c], c, plan->times[t], t + c == 0, error));
-    fprintf(out, " ] }");
+    fprintf(out, " ]");
     return ADCGS_OK;
+}
+
+/* With no more than so many layers; frames follow from splats as ever. */
+static adcgs_status print_fewer(FILE *out, const adcgs_plan *plan, const adcgs_buffer *file, int i, adcgs_error *error)
+{
+    adcgs_config config;
+    adcgs_decoder *decoder = NULL;
+    adcgs_config_init(&config);
+    config.threads = 1;
+    config.cpu = ADCGS_CPU_SCALAR;
+    config.layers = plan->fewer[i];
+    ADCGS_TRY(adcgs_open_memory(&decoder, file->data, file->size, &config, error));
+    fprintf(out, "%s\n          { \"layers\": %d", i ? "," : ",\n        \"L\": [", plan->fewer[i]);
+    adcgs_status status = print_models(out, decoder);
+    if (status == ADCGS_OK)
+        status = print_splats(out, plan, decoder);
+    adcgs_close(&decoder);
+    fprintf(out, " }%s", i + 1 == plan->n_fewer ? " ]" : "");
+    return status;
 }
 
 /* ---- The entry ---- */
@@ -170,6 +189,9 @@ static adcgs_status print_good(FILE *out, const adcgs_plan *plan, const adcgs_bu
     print_cameras(out, plan);
     if (status == ADCGS_OK)
         status = print_expected(out, plan, decoder, trace, error);
+    for (int i = 0; i < plan->n_fewer && status == ADCGS_OK; i++)
+        status = print_fewer(out, plan, file, i, error);
+    fprintf(out, " }");
     adcgs_close(&decoder);
     return status;
 }

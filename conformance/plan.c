@@ -167,6 +167,19 @@ static adcgs_status set_ticks(adcgs_plan *plan, const adcgs_command *c, void *us
     return ADCGS_OK;
 }
 
+/* layers N ... */
+static adcgs_status set_fewer(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    (void)user;
+    ADCGS_TRY(adcgs_command_words(c, 1, ADCGS_PLAN_LAYERS, error));
+    for (plan->n_fewer = 0; plan->n_fewer < c->n - 1; plan->n_fewer++) {
+        int64_t layers;
+        ADCGS_TRY(adcgs_word_int(c->word[1 + plan->n_fewer], 1, ADCGS_LAYERS, &layers, error));
+        plan->fewer[plan->n_fewer] = (int)layers;
+    }
+    return ADCGS_OK;
+}
+
 static adcgs_status add_time(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     (void)user;
@@ -283,6 +296,7 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
         const char *verb;
         adcgs_command_fn fn;
     } others[] = { { "params", set_params }, { "anchors", set_anchors }, { "ticks", set_ticks }, { "times", add_time },
+                   { "layers", set_fewer },
                    { "camera", add_camera }, { "stored", add_stored }, { "meta", add_meta } };
     set_defaults(plan);
     plan->recipe = recipe;

@@ -14,6 +14,7 @@
 
 #define ADCGS_PLAN_SEGMENTS 20
 #define ADCGS_PLAN_CAMERAS 8
+#define ADCGS_PLAN_LAYERS 4
 #define ADCGS_PLAN_TIMES 8
 
 /** Which bits of masks, or which static flags, are set. */
@@ -60,6 +61,7 @@ typedef struct adcgs_plan {
     int n_cameras, n_times; /**< what is rendered to compare */
     adcgs_camera cameras[ADCGS_PLAN_CAMERAS];
     double times[ADCGS_PLAN_TIMES];
+    int n_fewer, fewer[ADCGS_PLAN_LAYERS]; /**< numbers of layers, fewer than there are, that are compared as well */
 } adcgs_plan;
 
 /** Settings of the recipe. */

@@ -20,6 +20,9 @@ fi
 ./adcgs-conform "$source/manifest.json" --junit "$dir/junit.xml" || exit 1
 cases=$(grep -c '<testcase ' "$dir/junit.xml")
 [ "$cases" -eq "$(ls "$source/vectors" | wc -l)" ] || { echo "the JUnit report has $cases cases" >&2; exit 1; }
+./adcgs-conform --layers --decoder './adcgs-dec {in} --answer {request}' --filter '*layers-wanted*' "$source/manifest.json" || exit 1
+./adcgs-conform --layers --decoder 'sed /layers/d {request} >{out}.1 && ./adcgs-dec {in} --answer {out}.1' \
+    --filter good-ref-layers-wanted "$source/manifest.json" && { echo "a decoder that leaves out no layers passes" >&2; exit 1; }
 ./adcgs-conform --self-test "$source/manifest.json" || exit 1
 for some in 'good-unit-*' 'good-seq-*' 'bad-unit-s*' 'unsup-*'; do
     ./adcgs-conform --decoder './adcgs-dec {in} --answer {request}' --filter "$some" "$source/manifest.json" || exit 1

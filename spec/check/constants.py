@@ -32,7 +32,8 @@ _full = {"u8": (0, 2**8 - 1), "u16": (0, 2**16 - 1), "u32": (0, 2**32 - 1), "u64
 
 def check(tree):
     text = sources.Text(tree)
-    return _tables(tree, text) + _fractions(tree, text) + _constants(tree, text) + _syntax(tree, text) + _examples_hold(tree, text)
+    return (_tables(tree, text) + _fractions(tree, text) + _constants(tree, text) + _syntax(tree, text) + _examples_hold(tree, text)
+            + _version(tree, text))
 
 
 def _read(tree, name):
@@ -42,13 +43,29 @@ def _read(tree, name):
 
 # ---- Tables ----
 
+_generated = {}  # what the generators said of the same files before: they take seconds, and the self test asks often
+
+
+def _generators(tree):
+    """A fault for each generator that would write another table."""
+    key = b""
+    for name in sorted(os.listdir(os.path.join(tree.spec, "tables"))):
+        if name.endswith((".py", ".csv")):
+            with open(os.path.join(tree.spec, "tables", name), "rb") as file:
+                key += hashlib.sha256(file.read()).digest()
+    if key not in _generated:
+        _generated[key] = []
+        for name in GENERATORS:
+            program = os.path.join(tree.spec, "tables", name)
+            done = subprocess.run([sys.executable, "-B", program, "--check"], cwd=os.path.dirname(tree.spec), capture_output=True,
+                                  text=True, check=False)
+            if done.returncode != 0:
+                _generated[key].append("%s --check: %s" % (name, (done.stdout + done.stderr).strip().replace("\n", "; ")))
+    return _generated[key]
+
+
 def _tables(tree, text):
-    faults = []
-    for name in GENERATORS:
-        done = subprocess.run([sys.executable, "-B", os.path.join(tree.spec, "tables", name), "--check"], cwd=os.path.dirname(tree.spec),
-                              capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            faults.append("%s --check: %s" % (name, (done.stdout + done.stderr).strip().replace("\n", "; ")))
+    faults = list(_generators(tree))
     printed = {}
     for clause in text.clauses:
         for found in re.finditer(r"\| `(tables/[\w.]+)` \| (\d+) \| `([0-9a-f]{64})`", "\n".join(clause.lines)):
@@ -176,6 +193,28 @@ def _printed_levels(clause):
         cells = [re.sub(r"\^(\d+)\^", r"**\1", cell.strip()) for cell in line.split("|")[2:]]
         if len(cells) == 3 and all(re.fullmatch(r"[\d* ]+", cell) for cell in cells):
             yield [_value_of(cell) for cell in cells]
+
+
+# ---- Version ----
+
+def _version(tree, text):
+    """This text's version is that of the bitstream, in all places that name it; the introduction takes it from the master document."""
+    with open(tree.master(), encoding="utf-8") as file:
+        master = file.read()
+    code = _read(tree, "include/adcgs/version.h")
+    whole = "\n".join(line for clause in text.clauses for line in clause.lines)
+    given = {
+        "version.h": ".".join(re.findall(r"^#define ADCGS_BITSTREAM_M(?:AJ|IN)OR (\d+)", code, re.M)),
+        "adcgs.adoc, revnumber": "".join(re.findall(r"^:revnumber: (\S+)$", master, re.M)),
+        "read_head": ".".join(re.findall(r"version\.version_m(?:aj|in)or == (\d+)", whole)),
+        "the semantics of HEAD_version": ".".join(re.findall(r"^\| version_m(?:aj|in)or \|[^|]*\| (\d+) in streams", whole, re.M)),
+        "the last row of the history": (re.findall(r"^\| (\d+\.\d+) \| .*$", whole, re.M) or ["none"])[-1],
+    }
+    faults = ["the version is %s in version.h, %s in %s" % (given["version.h"], version, place) for place, version in given.items()
+              if version != given["version.h"]]
+    if not re.search(r"^This is version \{revnumber\}, ", whole, re.M):
+        faults.append("the introduction does not take its version from revnumber")
+    return faults
 
 
 # ---- Syntax elements: type and range ----

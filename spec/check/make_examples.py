@@ -7,6 +7,7 @@ import sys
 
 import sources
 import watching
+from binary import Literal
 from watching import F64, camera_of
 
 # Ids of the vectors that the examples show, what is shown of each, and a word on it.
@@ -14,6 +15,8 @@ EXAMPLES = (
     ("good-geom-one-anchor", "full",
      "One anchor with one primitive; nothing moves, and there are no hyper-latents. Depth 0 leaves no choice of a position."),
     ("good-net-narrowest", "full", "Eight anchors that move, with hyper-latents and all networks, each as narrow as can be."),
+    ("good-deform-rotation", "moving",
+     "Both deformation networks, a rotation, a position code and a time code between two rows. Only what becomes of one anchor is shown."),
     ("good-seq-segments", "elements", "Several segments and an index. What the sub-streams hold is left out."),
 )
 MOST_FIRST, MOST_LAST = 40, 4  # operations shown of a long sub-stream
@@ -235,7 +238,8 @@ def pixel_tables(watch, stream, splats, entry):
     watch.keep("project", "ordered", "make_view")
     frame = machine.render(stream.head, splats, camera)
     view, drawn = watch.calls["make_view"][-1][1], watch.calls["ordered"][-1][1]
-    lines = [".The view of camera \"%s\"" % entry["name"]] + table("1,8", ("Element", "Values (patterns)"), field_rows(machine, view))
+    lines = camera_table(entry)
+    lines += [".The view of camera \"%s\"" % entry["name"]] + table("1,8", ("Element", "Values (patterns)"), field_rows(machine, view))
     for _, projected in [call for call in watch.calls["project"] if call[1] is not None][:1]:
         lines += [".Projection of the splat in slot %d" % projected.slot]
         lines += table("1,8", ("Element", "Values (patterns)"), field_rows(machine, projected))
@@ -250,6 +254,77 @@ def pixel_tables(watch, stream, splats, entry):
     lines += ["The pixel's values are %s." % ", ".join("`%s`" % patterned(machine, x) for x in frame[j][i]), ""]
     lines += ["The digest of the frame, %d × %d pixels, is `%s`." % (view.width, view.height, bytes(machine.frame_digest(frame)).hex()), ""]
     return lines
+
+
+def camera_table(entry):
+    """As a request or the manifest gives it."""
+    pose = entry["cam_to_world"]
+    rows = [("width, height", "%d, %d" % (entry["width"], entry["height"]))]
+    rows += [(names, ", ".join("%.17g" % entry[name] for name in names.split(", "))) for names in ("fx, fy", "cx, cy")]
+    rows += [("near_plane", "%.17g" % entry["near"])]
+    rows += [("row %d of cam_to_world" % i, ", ".join("%.17g" % x for x in pose[4 * i:4 * i + 4])) for i in range(3)]
+    return [".The camera \"%s\"" % entry["name"]] + table("2,7", ("Element", "Values"), [(a, "`%s`" % b) for a, b in rows])
+
+
+# ---- An anchor that moves ----
+
+def first_moving(model):
+    """Anchor and primitive, or none."""
+    if model.network[9] is None and model.network[10] is None:
+        return None
+    found = [(i, k) for i in range(model.anchors) for k in range(model.head.k) if not model.is_static[i] and model.mask[i] >> k & 1]
+    return found[0] if found else None
+
+
+def patterns(machine, values):
+    shown = ["`%s`" % patterned(machine, x) for x in values[:16]]
+    return (", ".join(shown) if shown else "none") + (", … (%d in all)" % len(values) if len(values) > 16 else "")
+
+
+def network_rows(watch, name, layers, inputs, f_t):
+    """A deformation network on its inputs: the two sums of its first layer, their sum, those of the later layers, its outputs."""
+    machine, calls = watch.machine, watch.calls["accumulate"]
+    before = len(calls)
+    y = machine.deform_outputs(layers, inputs, f_t)
+    of_anchor, of_time, *later = [result for _, result in calls[before:]]
+    rows = [("%s: inputs of the anchor" % name, inputs), ("%s: of_anchor" % name, of_anchor), ("%s: of_time" % name, of_time),
+            ("%s: sums of the first layer" % name, [a + b for a, b in zip(of_anchor, of_time)])]
+    return rows + [("%s: sums of layer %d" % (name, l), sums) for l, sums in enumerate(later, 1)], y
+
+
+def state_rows(when, position, primitive):
+    fields = [(name, value if isinstance(value, list) else [value]) for name, value in primitive.__dict__.items()]
+    return [("%s: position" % when, list(position))] + [("%s: %s" % (when, name), list(value)) for name, value in fields]
+
+
+def moving_table(watch, model, time, splats):
+    """The way of the first primitive of the first anchor that moves, from its features to its splat."""
+    machine, place = watch.machine, first_moving(model)
+    if place is None:
+        return []
+    watch.keep("accumulate")
+    i, k = place
+    networks = [machine.float_network(model.network[role]) for role in (8, 9, 10)]
+    t = machine.time_in_segment(model, F64(float(time)))
+    f_t = machine.time_code(model, t)
+    f_v = machine.features(model.fv[i], model.d_fv, Literal(1.0))
+    rows = [("t", [t]), ("f~t~", f_t), ("f~v~", f_v)]
+    primitive, position = machine.predict(model, networks[0], i, k), machine.anchor_position(model, i)
+    rows += state_rows("at rest", position, primitive)
+    if networks[1] is not None:
+        more, y = network_rows(watch, "F~ω~", networks[1], f_v, f_t)
+        rows += more
+        position = machine.move_anchor(model, i, y, position, primitive)
+    if networks[2] is not None:
+        inputs = machine.position_code(model, i) + (f_v if model.head.fine_uses_fv == 1 else [])
+        more, z = network_rows(watch, "F~ϖ~", networks[2], inputs, f_t)
+        rows += more
+        machine.change_primitive(k, z, primitive)
+    rows += state_rows("moved", position, primitive)
+    splat = machine.splat(model, i, k, position, primitive)
+    assert any(splat.__dict__ == other.__dict__ for other in splats)
+    title = ".Anchor %d and its primitive %d at %s seconds, splat in slot %d" % (i, k, time, splat.slot)
+    return [title] + table("3,8", ("Quantity", "Values (patterns)"), [(name, patterns(machine, values)) for name, values in rows])
 
 
 def nearest_drawn(frame, background):
@@ -269,6 +344,9 @@ def example(tree, text, n, name, extent, word):
     data, stream = watch.decode(path)
     machine = watch.machine
     lines = ["=== Example %d: %s" % (n, entry["title"]), "", word, "", "The conformance vector `%s`, %d bytes." % (name, len(data)), ""]
+    if extent == "moving":
+        model, time = stream.models[0], entry["expect"]["S"][-1]["time"]
+        return lines + moving_table(watch, model, time, machine.splats_of(stream, F64(float(time))))
     if extent == "full":
         lines += [".The bytes"] + hexdump(data)
     lines += [".The elements"] + element_table(watch.lines, meanings(text))
@@ -282,6 +360,7 @@ def example(tree, text, n, name, extent, word):
     if frames:
         time = frames[min(1, len(frames) - 1)]["time"]
         splats = machine.splats_of(stream, F64(float(time)))
+        lines += moving_table(watch, model, time, splats)
         lines += splat_table(machine, splats[0], time)
         lines += ["The digest of the splats is `%s`." % bytes(machine.splats_digest(splats)).hex(), ""]
         if extent == "full":

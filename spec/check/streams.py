@@ -24,12 +24,12 @@ def _start(master):
     _machine = Machine(master, _lines.append)
 
 
-def decode(path, complete=False):
+def decode(path, complete=False, layers=5):
     """The stream, and the lines of its trace."""
     _lines.clear()
     with open(path, "rb") as file:
         data = file.read()
-    return _machine.decode_stream(Bytes.at(data, 0), complete), list(_lines)
+    return _machine.decode_stream(Bytes.at(data, 0), complete, layers), list(_lines)
 
 
 def _same_trace(entry, path, lines, info):
@@ -86,6 +86,16 @@ def _check_pictures(stream, expect, cameras, counts):
     return faults
 
 
+def _check_layers(entry, path, counts):
+    """Of fewer layers than there are: models and splats."""
+    faults = []
+    for fewer in entry["expect"].get("L", []):
+        stream, _ = decode(path, False, fewer["layers"])
+        found = _check_models(stream, fewer["M"], counts) + _check_pictures(stream, {"S": fewer["S"], "R": []}, [], counts)
+        faults += ["with %d layers %s" % (fewer["layers"], fault) for fault in found]
+    return faults
+
+
 def _check_good(entry, path, info, points, counts):
     stream, lines = decode(path)
     faults, expect = [], entry["expect"]
@@ -99,6 +109,7 @@ def _check_good(entry, path, info, points, counts):
         faults += _refused(path) if stream.truncated else []
     if "splats" in points:
         faults += _check_pictures(stream, expect, entry["cameras"], counts)
+        faults += _check_layers(entry, path, counts)
     return faults
 
 

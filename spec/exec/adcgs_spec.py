@@ -3,7 +3,9 @@
 """Runs the specification: a decoder whose only source is the text of the clauses and the tables beside them."""
 import argparse
 import hashlib
+import math
 import os
+import re
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -13,6 +15,13 @@ from machine import Machine
 from reading import Bytes, Fault, Record
 
 exit_codes = {"data": 4, "limit": 4, "truncated": 4, "unsupported": 5}
+USAGE, IO = 2, 3
+_integer = re.compile(r"0|-?[1-9][0-9]*")
+_number = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+
+
+class Mistake(Exception):
+    """In the requests."""
 
 
 def load(path):
@@ -24,24 +33,66 @@ def hexadecimal(digest):
     return bytes(digest).hex()
 
 
+def integer(word, low, high):
+    if not _integer.fullmatch(word) or not low <= int(word) <= high:
+        raise Mistake("%s is no integer from %d to %d" % (word, low, high))
+    return int(word)
+
+
+def number(word):
+    if not _number.fullmatch(word) or not math.isfinite(float(word)):
+        raise Mistake("%s is no number" % word)
+    return F64(float(word))
+
+
 def camera_of(words):
     """Of a request: width, height, then binary64 numbers."""
-    numbers = [F64(float(word)) for word in words[2:]]
-    return Record(width=int(words[0]), height=int(words[1]), fx=numbers[0], fy=numbers[1], cx=numbers[2], cy=numbers[3],
-                  near_plane=numbers[4], cam_to_world=numbers[5:17])
+    numbers = [number(word) for word in words[2:]]
+    width, height = (integer(word, -2 ** 31, 2 ** 31 - 1) for word in words[:2])
+    return Record(width=width, height=height, fx=numbers[0], fy=numbers[1], cx=numbers[2], cy=numbers[3], near_plane=numbers[4],
+                  cam_to_world=numbers[5:17])
 
 
-def answer(machine, stream, request, lines):
+def request_of(words, cameras):
+    """One line; raises Mistake."""
+    lengths = {"complete": 1, "layers": 2, "camera": 20, "trace": 1, "model": 1, "splats": 2, "frame": 3}
+    if len(words) != lengths.get(words[0]):
+        raise Mistake("\"%s\" is no request" % " ".join(words))
+    if words[0] == "layers":
+        integer(words[1], 1, 5)
+    elif words[0] == "camera":
+        cameras.append(camera_of(words[1:]))
+    elif words[0] == "frame":
+        integer(words[1], 0, len(cameras) - 1)
+    if words[0] in ("splats", "frame"):
+        number(words[-1])
+        if len(words[-1]) > 63:
+            raise Mistake("a time of %d characters" % len(words[-1]))
+    return words
+
+
+def read_requests(data):
+    """(requests, cameras) of the bytes of a file; raises Mistake."""
+    requests, cameras = [], []
+    for line in data.removeprefix(b"\xef\xbb\xbf").split(b"\n"):
+        words = [word.decode("latin-1") for word in re.split(rb"[ \t\r]+", line) if word]
+        if words and not words[0].startswith("#"):
+            requests.append(request_of(words, cameras))
+    names = [words[0] for words in requests]
+    if names.count("layers") > 1 or ("layers" in names and "trace" in names):
+        raise Mistake("layers goes neither with layers nor with trace")
+    return requests, cameras
+
+
+def answer(machine, stream, request, cameras, lines):
     """The protocol of clause "Conformance": a line for each request, in order."""
-    cameras, splats = [], {}
+    splats = {}
     for words in request:
-        if words[0] in ("complete", "layers"):
+        if words[0] in ("complete", "layers", "camera"):
             continue
         if words[0] == "trace":
             text = "".join(line + "\n" for line in lines)
             print("trace %d %s" % (len(lines), hashlib.md5(text.encode("ascii")).hexdigest()))
-        elif words[0] == "camera":
-            cameras.append(camera_of(words[1:]))
         elif words[0] == "model":
             for i, model in enumerate(stream.models):
                 print("model %d %s" % (i, hexadecimal(machine.model_digest(model))))
@@ -66,10 +117,10 @@ def run(arguments):
             for name in sorted(table):
                 print("%s %s %s" % (title, name, table[name]))
         return 0
-    request, complete, layers = [], not vars(arguments).get("partial"), 5
+    request, cameras, complete, layers = [], [], not vars(arguments).get("partial"), 5
     if arguments.command == "answer":
-        with open(arguments.request, encoding="ascii") as file:
-            request = [line.split() for line in file if line.split() and not line.startswith("#")]
+        with open(arguments.request, "rb") as file:
+            request, cameras = read_requests(file.read())
         complete = ["complete"] in request
         layers = min([int(words[1]) for words in request if words[0] == "layers"], default=layers)
     stream = machine.decode_stream(load(arguments.file), complete, layers)
@@ -77,7 +128,7 @@ def run(arguments):
         for model in stream.models:
             print(hexadecimal(machine.model_digest(model)))
     elif arguments.command == "answer":
-        answer(machine, stream, request, lines)
+        answer(machine, stream, request, cameras, lines)
     elif arguments.command == "verdict":
         print("good")
     return 0
@@ -104,6 +155,12 @@ def main():
         print("fault %s" % fault.kind if arguments.command == "answer" else fault.kind)
         print("adcgs-spec: %s" % fault, file=sys.stderr)
         return exit_codes[fault.kind]
+    except Mistake as error:
+        print("adcgs-spec: %s" % error, file=sys.stderr)
+        return USAGE
+    except OSError as error:
+        print("adcgs-spec: %s" % error, file=sys.stderr)
+        return IO
     except NotationError as error:
         print("adcgs-spec: the text: %s" % error, file=sys.stderr)
         return 1

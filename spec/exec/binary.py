@@ -59,12 +59,12 @@ class Literal:
     __hash__ = None
 
 
-def _round32(x):
-    """The binary32 number nearest to x, ties to even."""
+def _round32(x, new=float.__new__, pack=_pack32.pack, unpack=_pack32.unpack):
+    """The binary32 number nearest to x, ties to even. What it calls is bound here: nothing is called more often."""
     try:
-        return float.__new__(F32, _pack32.unpack(_pack32.pack(x))[0])
+        return new(F32, unpack(pack(x))[0])
     except OverflowError:
-        return float.__new__(F32, math.copysign(math.inf, x))
+        return new(F32, math.copysign(math.inf, x))
 
 
 def _to32(x):
@@ -223,14 +223,14 @@ def sqrt(x):
 def fma(a, b, c):
     """a * b + c in binary32 with one rounding: the sum is brought to 53 bits by rounding to odd, which a second rounding to 24
     cannot spoil."""
-    product = float(_to32(a)) * float(_to32(b))  # exact: 48 bits
-    addend = float(_to32(c))
+    product = float(a if type(a) is F32 else _to32(a)) * float(b if type(b) is F32 else _to32(b))  # exact: 48 bits
+    addend = float(c if type(c) is F32 else _to32(c))
     total = product + addend
-    if not math.isfinite(total):
-        return _round32(total)
     part = total - product
-    error = (product - (total - part)) + (addend - part)  # exact
-    if error != 0 and not _u64.unpack(_pack64.pack(total))[0] & 1:
+    error = (product - (total - part)) + (addend - part)  # exact, or NaN where the sum is not finite
+    if error == 0 or error != error:
+        return _round32(total)
+    if not _u64.unpack(_pack64.pack(total))[0] & 1:
         total = math.nextafter(total, math.inf if error > 0 else -math.inf)
     return _round32(total)
 

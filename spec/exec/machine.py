@@ -22,11 +22,28 @@ class Dictionary(dict):
         return None
 
 
+def _copy(value):
+    """A copy of its own of a record or an array, without what copy.deepcopy() does for values that contain themselves: arrays of
+    contexts are a third of what decoding takes."""
+    kind = type(value)
+    if kind is Record:
+        result = Record()
+        fields = result.__dict__
+        fields.update(value.__dict__)
+        for name, field in fields.items():
+            if isinstance(field, (list, dict, Record)):
+                fields[name] = _copy(field)
+        return result
+    if kind is list:
+        return [_copy(element) for element in value]
+    return copy.deepcopy(value)
+
+
 def _array(*arguments):
     *sizes, value = arguments
     if len(sizes) == 1:
         if isinstance(value, (list, Record)):
-            return [copy.deepcopy(value) for _ in range(sizes[0])]
+            return [_copy(value) for _ in range(sizes[0])]
         return [value] * sizes[0]
     return [_array(*sizes[1:], value) for _ in range(sizes[0])]
 

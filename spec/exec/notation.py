@@ -164,8 +164,15 @@ class _Rewrite(ast.NodeTransformer):
         if isinstance(node.op, ast.Div):
             return _call_of("_divide", [node.left, node.right], node)
         if isinstance(node.op, ast.Pow):
+            base, exponent = node.left, node.right
+            if _is_integer(base) and _is_integer(exponent):  # once, not each time that it is met
+                return ast.copy_location(ast.Constant(base.value ** exponent.value), node)
             return _call_of("_power", [node.left, node.right], node)
         return node
+
+
+def _is_integer(node):
+    return isinstance(node, ast.Constant) and type(node.value) is int
 
 
 def _call_of(name, arguments, node):

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
+import adcgs_spec
 import machine
 from binary import F32, F64, Literal, NotationError, binary32, divide, fma, number32, pattern, power, sqrt
 from reading import Bytes, Fault
@@ -179,6 +180,28 @@ class Examples(unittest.TestCase):
                     wanted = 2 ** 32 - 1 if value.startswith("2^32^") else int(value)
                     self.assertEqual(machine.reading.read(s, "x", "var", [], None, None, None), wanted)
 
+    def test_requests(self):
+        """REQ-CONF-012: the words that are numbers, and those that are not; whole files."""
+        table = self.clause("13-conformance.adoc").split(".Numbers in requests")[1].split("|===")[1]
+        rows = [(re.findall(r"`([^`]+)`", words), what) for words, what in re.findall(r"^\| (`.*) \| (.*)$", table, re.M)]
+        self.assertEqual(len(rows), 3)
+        for words, what in rows:
+            for word in words:
+                for kind, parse in (("integer", lambda w: adcgs_spec.integer(w, -2 ** 31, 2 ** 31 - 1)), ("number", adcgs_spec.number)):
+                    if kind in what:
+                        self.assertEqual(float(parse(word)), float(word))
+                    else:
+                        self.assertRaises(adcgs_spec.Mistake, parse, word)
+        numbers = b" 1" * 17
+        good = b"\xef\xbb\xbf# anything \x00\xff\n\n \tmodel\r\ncamera -5 0" + numbers + b"\nframe 0 1e-3\nlayers 2\ncomplete\ncomplete"
+        requests, cameras = adcgs_spec.read_requests(good)
+        self.assertEqual([words[0] for words in requests], ["model", "camera", "frame", "layers", "complete", "complete"])
+        self.assertEqual((cameras[0].width, float(cameras[0].cam_to_world[11])), (-5, 1.0))
+        for wrong in (b"frame 0 0", b"model 1", b"camera 1 2" + numbers[2:], b"camera 1.0 2" + numbers, b"camera 2147483648 2" + numbers,
+                      b"layers 0", b"layers 1\nlayers 1", b"layers 1\ntrace", b"splats", b"splats " + 64 * b"1", b"Model", b"model\x00",
+                      b"camera 1 2" + numbers + b"\nframe 00 0", b"model\x0b"):
+            self.assertRaises(adcgs_spec.Mistake, adcgs_spec.read_requests, wrong)
+
     def test_range_decoder(self):
         """REQ-PARS-001 to REQ-PARS-008: every state of the example."""
         m, text = self.machine, self.clause("07-parsing.adoc")
@@ -215,6 +238,62 @@ class Examples(unittest.TestCase):
         trace = iter(lines)
         for line in block.split("\n"):
             self.assertTrue(line == "..." or line in trace, line)
+
+    def test_stream_bytes(self):
+        """REQ-STRM-004, REQ-STRM-034: the bound on the bytes of a stream, for which no vector is small enough."""
+        m = machine.Machine()
+        with open(os.path.join(machine.folder, "..", "conformance", "vectors", "good-geom-one-anchor.adcgs"), "rb") as file:
+            data = Bytes.at(file.read(), 0)
+        m.names["STREAM_BYTES"] = [0, len(data), 0, 0]
+        self.assertEqual(len(m.decode_stream(data, True).models), 1)
+        m.names["STREAM_BYTES"] = [0, len(data) - 1, 0, 0]
+        with self.assertRaises(Fault) as caught:
+            m.decode_stream(data, True)
+        self.assertEqual(caught.exception.kind, "limit")
+
+    def test_numbers_of_the_trace(self):
+        """REQ-STRM-041: the rule for 9 and 17 digits, in exact arithmetic, gives what is written, and the examples of the clause."""
+        def shown(x, digits):
+            if x == 0:
+                return "-0" if math.copysign(1, x) < 0 else "0"
+            value, exponent = abs(Fraction(x)), 0
+            while value >= Fraction(10) ** (exponent + 1):
+                exponent += 1
+            while value < Fraction(10) ** exponent:
+                exponent -= 1
+            whole = round(value / Fraction(10) ** (exponent - digits + 1))
+            if whole == 10 ** digits:
+                whole, exponent = 10 ** (digits - 1), exponent + 1
+            text = str(whole)
+            if -4 <= exponent < digits:
+                text = text.rjust(digits - exponent, "0") if exponent < 0 else text
+                point = exponent + 1 if exponent >= 0 else 1
+                text = (text[:point] + "." + text[point:]).rstrip("0").rstrip(".")
+            else:
+                text = (text[0] + "." + text[1:]).rstrip("0").rstrip(".") + "e%s%02d" % ("-" if exponent < 0 else "+", abs(exponent))
+            return "-" * (x < 0) + text
+        random.seed(7)
+        for _ in range(3000):
+            u = random.getrandbits(23) | random.randrange(1, 255) << 23 | random.getrandbits(1) << 31
+            x = struct.unpack("<f", struct.pack("<I", u))[0]
+            self.assertEqual(shown(x, 9), "%.9g" % x)
+            y = random.uniform(-1, 1) * 10.0 ** random.randrange(-30, 30)
+            self.assertEqual(shown(y, 17), "%.17g" % y)
+        examples = re.search(r"^  or `-inf`.*Examples: (.*)\.$", self.clause("06-stream.adoc"), re.M).group(1)
+        for example in re.findall(r"`([^`]+)`", examples):
+            self.assertEqual(shown(float(binary32(float(example))), 9), example)
+
+    def test_seeking(self):
+        """The index is where the informative clause finds it, and the bytes that it gives are those of segments."""
+        path = os.path.join(machine.folder, "..", "conformance", "vectors", "good-seq-segments.adcgs")
+        with open(path, "rb") as file:
+            data = file.read()
+        lines = []
+        m = machine.Machine(None, lines.append)
+        n = m.decode_stream(Bytes.at(data, 0), True).head.segments
+        self.assertIn("%d chunk.type INDX" % (8 * (len(data) - 32 - (20 + 1 + 32 * n))), lines)
+        offsets = [int(line.split()[2]) for line in lines if " INDX.offset " in line]
+        self.assertEqual([8 * at for at in offsets], [int(line.split()[0]) for line in lines if line.endswith(" chunk.type SEGM")])
 
     def test_checksum(self):
         """REQ-STRM-002: the CRC of nine digits, and of nothing."""

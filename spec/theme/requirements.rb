@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# Shows the numbers of requirements: in the source they are anchors, which leave no trace in print.
+# Shows the numbers of requirements: in the source they are anchors, which leave no trace in print. And puts files that belong to
+# the text into its pages, byte for byte: attached:tables/x.csv[] is a link that holds the file, in a PDF an attachment.
 require 'asciidoctor/extensions'
+require 'base64'
 
 Asciidoctor::Extensions.register do
   include_processor do
@@ -18,6 +20,48 @@ Asciidoctor::Extensions.register do
         raise "#{target} is missing"
       end
       reader
+    end
+  end
+
+  inline_macro do
+    named :attached
+    process do |parent, target, _|
+      doc, name = parent.document, File.basename(target)
+      data = File.binread File.expand_path(target, doc.attr('docdir'))
+      if doc.backend == 'pdf'
+        create_inline_pass parent, name
+      else
+        url = "data:text/csv;base64,#{Base64.strict_encode64 data}"
+        create_inline_pass parent, %(<a download="#{name}" href="#{url}">#{name}</a>)
+      end
+    end
+  end
+end
+
+if defined? Asciidoctor::PDF
+  # Puts the files that the text attaches into the PDF before it is written.
+  class AttachingConverter < Asciidoctor::Converter.for('pdf')
+    register_for 'pdf'
+
+    def convert_document(doc)
+      @attached_from = doc.attr 'docdir'
+      super
+    end
+
+    def write(pdf, target)
+      paths = Dir[File.join(@attached_from, 'tables', '*.csv')].sort
+      tree = paths.flat_map { |path| [PDF::Core::LiteralString.new(File.basename(path)), filespec(pdf, path)] }
+      pdf.names.data[:EmbeddedFiles] = pdf.ref!(Names: tree)
+      super
+    end
+
+    private
+
+    def filespec(pdf, path)
+      data, name = File.binread(path), PDF::Core::LiteralString.new(File.basename(path))
+      file = pdf.ref!(Type: :EmbeddedFile, Subtype: :'text/csv', Params: { Size: data.bytesize })
+      file.stream << data
+      pdf.ref!(Type: :Filespec, F: name, UF: name, EF: { F: file, UF: file })
     end
   end
 end

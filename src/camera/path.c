@@ -8,32 +8,8 @@
 #include "cli/cli.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#define ORBIT_DISTANCE 2.5  /* scene units, when no stored camera says better */
-#define ORBIT_ELEVATION 0.35
-#define ORBIT_FOCAL 1.2     /* focal length per image width */
-#define NEAR_PER_SCALE 0.01
 #define FULL_TURN 6.283185307179586
-
-adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, const char *who, adcgs_error *error)
-{
-    *shots = (adcgs_shots){0};
-    if (!(n >= 1.0 && n <= ADCGS_SHOTS_MAX))
-        return adcgs_fail(error, who ? ADCGS_ERR_DATA : ADCGS_ERR_USAGE, "%s%s%.0f frames asked for, expected 1 to %d",
-                          who ? who : "", who ? ": " : "", n, ADCGS_SHOTS_MAX);
-    shots->shot = calloc((size_t)n, sizeof *shots->shot);
-    if (!shots->shot)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %.0f frames", n);
-    shots->n = (int)n;
-    return ADCGS_OK;
-}
-
-void adcgs_shots_free(adcgs_shots *shots)
-{
-    free(shots->shot);
-    *shots = (adcgs_shots){0};
-}
 
 adcgs_status adcgs_shots_rendered(const adcgs_camera *camera, adcgs_status status, adcgs_error *error)
 {
@@ -62,24 +38,6 @@ adcgs_status adcgs_shots_check_times(const adcgs_info *info, const adcgs_shots_r
                                                             : " and earlier",
                           info->time_start, info->time_end);
     return ADCGS_OK;
-}
-
-/** On the outside, looking at the scene's centre from a little above. */
-void adcgs_shots_default(adcgs_camera *camera, const adcgs_info *info, const double up[3])
-{
-    *camera = (adcgs_camera){.width = ADCGS_ORBIT_WIDTH,
-                             .height = ADCGS_ORBIT_HEIGHT,
-                             .fx = ORBIT_FOCAL * ADCGS_ORBIT_WIDTH,
-                             .fy = ORBIT_FOCAL * ADCGS_ORBIT_WIDTH,
-                             .cx = 0.5 * ADCGS_ORBIT_WIDTH,
-                             .cy = 0.5 * ADCGS_ORBIT_HEIGHT,
-                             .near_plane = NEAR_PER_SCALE * info->scene_scale,
-                             .name = "orbit"};
-    double eye[3];
-    for (int i = 0; i < 3; i++) /* up is never x */
-        eye[i] = info->scene_origin[i] +
-                 ORBIT_DISTANCE * info->scene_scale * (up[i] * sin(ORBIT_ELEVATION) + (i == 0) * cos(ORBIT_ELEVATION));
-    adcgs_look_at(camera->cam_to_world, eye, info->scene_origin, up);
 }
 
 /** Turn a camera about the axis through the scene's centre. */
@@ -200,7 +158,7 @@ static adcgs_status make_shots(adcgs_shots *out, const adcgs_decoder *decoder, c
                                const adcgs_shots_request *request, adcgs_error *error)
 {
     if (is_path(request->camera))
-        return adcgs_shots_read_path(out, info, request, NEAR_PER_SCALE * info->scene_scale, error);
+        return adcgs_shots_read_path(out, info, request, ADCGS_NEAR_PER_SCALE * info->scene_scale, error);
     if (is_named(request, "orbit") || is_named(request, "spiral") || is_named(request, "bullet") ||
         (!request->camera && !info->cameras))
         return make_from_rig(out, decoder, info, request, error);

@@ -46,6 +46,7 @@ adcgs_status adcgs_shots_write_path(const adcgs_decoder *decoder, const char *pa
 #define ADCGS_SHOTS_MAX 1000000
 #define ADCGS_ORBIT_WIDTH 800
 #define ADCGS_ORBIT_HEIGHT 600
+#define ADCGS_NEAR_PER_SCALE 0.01 /* near plane of cameras that do not say, per scene unit */
 #define ADCGS_SHOTS_SECONDS 4.0 /* a path round a scene that stands still */
 
 /** who asks for so many, for the message: a file; NULL: the user, whose wrong use it is. */

@@ -5,32 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-double adcgs_v3_dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-void adcgs_v3_cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-double adcgs_v3_normalise(double v[3])
-{
-    const double length = sqrt(adcgs_v3_dot(v, v));
-    for (int i = 0; i < 3 && length > 0.0; i++)
-        v[i] /= length;
-    return length;
-}
-
 void adcgs_v3_turn(const double axis[3], double angle, double v[3])
 {
-    double side[3];
-    adcgs_v3_cross(axis, v, side);
-    const double along = adcgs_v3_dot(axis, v) * (1.0 - cos(angle));
-    for (int i = 0; i < 3; i++)
-        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + axis[i] * along;
+    adcgs_v3_rotate(axis, sin(angle), cos(angle), v);
 }
 
 int adcgs_find_up(const adcgs_info *info, double up[3])
@@ -42,12 +19,9 @@ int adcgs_find_up(const adcgs_info *info, double up[3])
     return y_up || y_down || strstr(info->axes, "z up") != NULL;
 }
 
-void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3])
+void adcgs_look_along(double pose[12], const double eye[3], const double forward[3], const double up[3])
 {
-    double forward[3], right[3], down[3];
-    for (int i = 0; i < 3; i++)
-        forward[i] = target[i] - eye[i];
-    adcgs_v3_normalise(forward);
+    double right[3], down[3];
     adcgs_v3_cross(forward, up, right);
     adcgs_v3_normalise(right);
     adcgs_v3_cross(forward, right, down);
@@ -56,6 +30,23 @@ void adcgs_look_at(double pose[12], const double eye[3], const double target[3],
         pose[4 * i + 1] = down[i];
         pose[4 * i + 2] = forward[i];
         pose[4 * i + 3] = eye[i];
+    }
+}
+
+void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3])
+{
+    double forward[3];
+    for (int i = 0; i < 3; i++)
+        forward[i] = target[i] - eye[i];
+    adcgs_v3_normalise(forward);
+    adcgs_look_along(pose, eye, forward, up);
+}
+
+void adcgs_pose_other_axes(double pose[12])
+{
+    for (int i = 0; i < 3; i++) {
+        pose[4 * i + 1] = 0.0 - pose[4 * i + 1];
+        pose[4 * i + 2] = 0.0 - pose[4 * i + 2];
     }
 }
 

@@ -8,12 +8,10 @@
 #ifndef ADCGS_CAMERA_ROTATION_H
 #define ADCGS_CAMERA_ROTATION_H
 
+#include "camera/vector.h"
+
 #include <adcgs/decoder.h>
 
-double adcgs_v3_dot(const double a[3], const double b[3]);
-void adcgs_v3_cross(const double a[3], const double b[3], double out[3]);
-/** To length 1. \return the length it had; a vector of length 0 stays. */
-double adcgs_v3_normalise(double v[3]);
 /** Turn a vector by an angle in radians about an axis of length 1. */
 void adcgs_v3_turn(const double axis[3], double angle, double v[3]);
 
@@ -22,6 +20,10 @@ int adcgs_find_up(const adcgs_info *info, double up[3]);
 
 /** A 3x4 camera-to-world matrix in OpenCV axes of an eye that sees the target in the middle; up need not be at right angles. */
 void adcgs_look_at(double pose[12], const double eye[3], const double target[3], const double up[3]);
+/** The same in a direction of length 1. */
+void adcgs_look_along(double pose[12], const double eye[3], const double forward[3], const double up[3]);
+/** From OpenCV axes (y down, looking along z) to OpenGL axes (y up, looking along -z), or back. */
+void adcgs_pose_other_axes(double pose[12]);
 
 /** Stretch what the camera sees to another size: pixels change their shape. */
 void adcgs_camera_stretch(adcgs_camera *camera, int width, int height);

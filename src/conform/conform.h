@@ -16,9 +16,20 @@
 #define ADCGS_VECTOR_CAMERAS 8
 #define ADCGS_VECTOR_TIMES 8
 #define ADCGS_VECTOR_FRAMES 64
+#define ADCGS_VECTOR_LAYERS 4
 #define ADCGS_HEX 33
 #define ADCGS_REFUSED "refused" /**< in place of a frame's digest: its camera is */
 #define ADCGS_WHAT 400 /**< room for an explanation */
+
+/** Results of a decoder of which not all layers are wanted. */
+typedef struct adcgs_fewer {
+    int layers, n_models, n_splats;
+    char models[ADCGS_VECTOR_MODELS][ADCGS_HEX];
+    struct {
+        double time;
+        char md5[ADCGS_HEX];
+    } splats[ADCGS_VECTOR_TIMES];
+} adcgs_fewer;
 
 typedef struct adcgs_vector {
     char id[80], file[128], title[256];
@@ -39,6 +50,8 @@ typedef struct adcgs_vector {
         double time;
         char md5[ADCGS_HEX];
     } frames[ADCGS_VECTOR_FRAMES];
+    int n_fewer;
+    adcgs_fewer fewer[ADCGS_VECTOR_LAYERS];
 } adcgs_vector;
 
 typedef struct adcgs_manifest {
@@ -82,6 +95,7 @@ typedef struct adcgs_program {
     const char *command; /**< for the shell; {in}, {request}, {out} stand for paths */
     int point;           /**< 0 to 3: claims P, M, S or R */
     int timeout;         /**< seconds */
+    int layers;          /**< claims that it can leave out layers */
 } adcgs_program;
 
 /** Have the program answer requests for everything the vector expects, and compare. */

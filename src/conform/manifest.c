@@ -130,20 +130,48 @@ static adcgs_status read_frames(adcgs_vector *v, const json_t *frames, adcgs_err
     return ADCGS_OK;
 }
 
+static adcgs_status read_fewer(adcgs_vector *v, json_t *entry, adcgs_error *error)
+{
+    adcgs_fewer *const to = &v->fewer[v->n_fewer++];
+    adcgs_vector *const read = calloc(1, sizeof *read); /* its lists of models and splats have the same form */
+    json_t *models, *splats;
+    json_error_t where;
+    adcgs_status status = ADCGS_OK;
+    if (!read)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "manifest: out of memory");
+    memcpy(read->id, v->id, sizeof read->id);
+    if (json_unpack_ex(entry, &where, JSON_STRICT, "{s:i, s:o, s:o}", "layers", &to->layers, "M", &models, "S", &splats) != 0)
+        status = bad(v, where.text, error);
+    if (status == ADCGS_OK)
+        status = read_models(read, models, error);
+    if (status == ADCGS_OK)
+        status = read_splats(read, splats, error);
+    to->n_models = read->n_models;
+    to->n_splats = read->n_splats;
+    memcpy(to->models, read->models, sizeof to->models);
+    memcpy(to->splats, read->splats, sizeof to->splats);
+    free(read);
+    return status;
+}
+
 static adcgs_status read_expected(adcgs_vector *v, json_t *expect, adcgs_error *error)
 {
     const char *trace;
     int elements;
-    json_t *models, *splats, *frames;
+    json_t *models, *splats, *frames, *fewer = NULL;
     json_error_t where;
-    if (json_unpack_ex(expect, &where, JSON_STRICT, "{s:{s:i, s:s}, s:o, s:o, s:o}", "P", "elements", &elements, "trace_md5",
-                       &trace, "M", &models, "S", &splats, "R", &frames) != 0)
+    if (json_unpack_ex(expect, &where, JSON_STRICT, "{s:{s:i, s:s}, s:o, s:o, s:o, s?o}", "P", "elements", &elements, "trace_md5",
+                       &trace, "M", &models, "S", &splats, "R", &frames, "L", &fewer) != 0)
         return bad(v, where.text, error);
     if (copy_hex(v->trace, trace) != 0 || elements < 1)
         return bad(v, "the trace has no elements or no MD5", error);
     v->elements = (uint32_t)elements;
     ADCGS_TRY(read_models(v, models, error));
     ADCGS_TRY(read_splats(v, splats, error));
+    if (fewer)
+        ADCGS_TRY(check_array(v, fewer, 1, ADCGS_VECTOR_LAYERS, error));
+    for (size_t i = 0; fewer && i < json_array_size(fewer); i++)
+        ADCGS_TRY(read_fewer(v, json_array_get(fewer, i), error));
     return read_frames(v, frames, error);
 }
 

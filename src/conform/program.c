@@ -149,10 +149,14 @@ static int execute(run *r, int timeout)
 
 /* ---- Requests and the answers that are expected ---- */
 
-static void put_requests(FILE *out, const adcgs_vector *v, int point, int complete)
+/* What one run asks for beside the stream. */
+typedef struct asked {
+    int point, complete;
+    const adcgs_fewer *fewer; /* NULL: all layers */
+} asked;
+
+static void put_cameras(FILE *out, const adcgs_vector *v)
 {
-    if (complete)
-        fprintf(out, "complete\n");
     for (int i = 0; i < v->n_cameras; i++) {
         const adcgs_camera *const c = &v->cameras[i];
         fprintf(out, "camera %d %d %.17g %.17g %.17g %.17g %.17g", (int)c->width, (int)c->height, c->fx, c->fy, c->cx, c->cy,
@@ -161,31 +165,58 @@ static void put_requests(FILE *out, const adcgs_vector *v, int point, int comple
             fprintf(out, " %.17g", c->cam_to_world[k]);
         fprintf(out, "\n");
     }
-    fprintf(out, "trace\n%s", point >= 1 ? "model\n" : "");
-    for (int i = 0; point >= 2 && i < v->n_splats; i++)
+}
+
+static void put_requests(FILE *out, const adcgs_vector *v, const asked *how)
+{
+    if (how->complete)
+        fprintf(out, "complete\n");
+    if (how->fewer) {
+        fprintf(out, "layers %d\nmodel\n", how->fewer->layers);
+        for (int i = 0; how->point >= 2 && i < how->fewer->n_splats; i++)
+            fprintf(out, "splats %.17g\n", how->fewer->splats[i].time);
+        return;
+    }
+    put_cameras(out, v);
+    fprintf(out, "trace\n%s", how->point >= 1 ? "model\n" : "");
+    for (int i = 0; how->point >= 2 && i < v->n_splats; i++)
         fprintf(out, "splats %.17g\n", v->splats[i].time);
-    for (int i = 0; point >= 3 && i < v->n_frames; i++)
+    for (int i = 0; how->point >= 3 && i < v->n_frames; i++)
         fprintf(out, "frame %d %.17g\n", v->frames[i].camera, v->frames[i].time);
 }
 
-static char *expected_answers(const adcgs_vector *v, int point, adcgs_status status)
+static void put_fewer(FILE *out, const adcgs_fewer *fewer, int point)
 {
-    char *text = NULL;
-    size_t bytes = 0;
-    FILE *const out = open_memstream(&text, &bytes);
-    if (!out)
-        return NULL;
-    if (status != ADCGS_OK) {
-        fprintf(out, "fault %s\n", adcgs_vector_class_name(status));
-        point = -1;
-    } else
-        fprintf(out, "trace %u %s\n", v->elements, v->trace);
+    for (int i = 0; i < fewer->n_models; i++)
+        fprintf(out, "model %d %s\n", i, fewer->models[i]);
+    for (int i = 0; point >= 2 && i < fewer->n_splats; i++)
+        fprintf(out, "splats %.17g %s\n", fewer->splats[i].time, fewer->splats[i].md5);
+}
+
+static void put_answers(FILE *out, const adcgs_vector *v, int point)
+{
+    fprintf(out, "trace %u %s\n", v->elements, v->trace);
     for (int i = 0; point >= 1 && i < v->n_models; i++)
         fprintf(out, "model %d %s\n", i, v->models[i]);
     for (int i = 0; point >= 2 && i < v->n_splats; i++)
         fprintf(out, "splats %.17g %s\n", v->splats[i].time, v->splats[i].md5);
     for (int i = 0; point >= 3 && i < v->n_frames; i++)
         fprintf(out, "frame %d %.17g %s\n", v->frames[i].camera, v->frames[i].time, v->frames[i].md5);
+}
+
+static char *expected_answers(const adcgs_vector *v, const asked *how, adcgs_status status)
+{
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *const out = open_memstream(&text, &bytes);
+    if (!out)
+        return NULL;
+    if (status != ADCGS_OK)
+        fprintf(out, "fault %s\n", adcgs_vector_class_name(status));
+    else if (how->fewer)
+        put_fewer(out, how->fewer, how->point);
+    else
+        put_answers(out, v, how->point);
     return fclose(out) == 0 ? text : NULL;
 }
 
@@ -234,15 +265,16 @@ static int read_out(run *r)
     return 0;
 }
 
-static adcgs_outcome run_once(const adcgs_program *program, const adcgs_vector *v, run *r, int complete)
+static adcgs_outcome run_once(const adcgs_program *program, const adcgs_vector *v, run *r, int complete, const adcgs_fewer *fewer)
 {
     const adcgs_status status = complete && v->truncated ? ADCGS_ERR_TRUNCATED : v->status;
+    const asked how = {.point = program->point, .complete = complete, .fewer = fewer};
     int has_out = 0;
-    char *const expected = expected_answers(v, program->point, status);
+    char *const expected = expected_answers(v, &how, status);
     FILE *const request = fopen(r->request, "w");
     adcgs_outcome outcome = wrong(r, ADCGS_OUTCOME_WRONG, "%s: cannot write", r->request);
     if (request)
-        put_requests(request, v, program->point, complete);
+        put_requests(request, v, &how);
     r->command = fill_command(program->command, r, &has_out);
     r->answers = calloc(ANSWERS_MAX + 1, 1);
     r->bytes = 0;
@@ -270,9 +302,11 @@ adcgs_outcome adcgs_program_try(const adcgs_program *program, const adcgs_manife
     snprintf(r.in, sizeof r.in, "%s/%s", manifest->directory, vector->file);
     snprintf(r.request, sizeof r.request, "%s/request", directory);
     snprintf(r.out, sizeof r.out, "%s/out", directory);
-    adcgs_outcome outcome = run_once(program, vector, &r, 0);
+    adcgs_outcome outcome = run_once(program, vector, &r, 0, NULL);
     if (outcome == ADCGS_OUTCOME_OK && vector->truncated)
-        outcome = run_once(program, vector, &r, 1);
+        outcome = run_once(program, vector, &r, 1, NULL);
+    for (int i = 0; program->layers && program->point >= 1 && outcome == ADCGS_OUTCOME_OK && i < vector->n_fewer; i++)
+        outcome = run_once(program, vector, &r, 0, &vector->fewer[i]);
     unlink(r.request);
     unlink(r.out);
     rmdir(directory);

@@ -50,6 +50,14 @@ static void damage_results(const selftest *t, const adcgs_vector *vector, adcgs_
         change_hex(v->splats[i].md5);
         must_notice(t, v, t->data, t->bytes, "digest of splats");
     }
+    for (int i = 0; i < vector->n_fewer; i++) {
+        *v = *vector;
+        change_hex(v->fewer[i].models[0]);
+        must_notice(t, v, t->data, t->bytes, "digest of a model with fewer layers");
+        *v = *vector;
+        change_hex(v->fewer[i].splats[0].md5);
+        must_notice(t, v, t->data, t->bytes, "digest of splats with fewer layers");
+    }
     for (int i = 0; i < vector->n_frames; i++) {
         *v = *vector;
         change_hex(v->frames[i].md5);

@@ -94,35 +94,29 @@ static int parse_fits(const attempt *a, adcgs_pool *pool)
 
 /* ---- M, S, R ---- */
 
-static int models_fit(const attempt *a, const adcgs_decoder *decoder)
+static int models_fit(const attempt *a, const adcgs_decoder *decoder, const char models[][ADCGS_HEX], int n)
 {
-    const adcgs_vector *const v = a->vector;
     adcgs_info info;
-    if (adcgs_get_info(decoder, &info) != ADCGS_OK || info.segments != v->n_models)
-        return wrong(a, "M: %d segments, expected %d", info.segments, v->n_models);
-    for (int i = 0; i < v->n_models; i++) {
+    if (adcgs_get_info(decoder, &info) != ADCGS_OK || info.segments != n)
+        return wrong(a, "M: %d segments, expected %d", info.segments, n);
+    for (int i = 0; i < n; i++) {
         uint8_t digest[16];
         char hex[ADCGS_HEX] = "";
         if (adcgs_get_model_digest(decoder, i, digest) == ADCGS_OK)
             adcgs_md5_hex(digest, hex);
-        if (strcmp(hex, v->models[i]))
-            return wrong(a, "M: model %d is %s, expected %s", i, hex, v->models[i]);
+        if (strcmp(hex, models[i]))
+            return wrong(a, "M: model %d is %s, expected %s", i, hex, models[i]);
     }
     return 1;
 }
 
-static int splats_fit(const attempt *a, adcgs_decoder *decoder)
+static int splats_fit(const attempt *a, adcgs_decoder *decoder, int i, double time, const char md5[ADCGS_HEX])
 {
-    const adcgs_vector *const v = a->vector;
-    for (int i = 0; i < v->n_splats; i++) {
-        uint8_t digest[16];
-        char hex[ADCGS_HEX] = "";
-        if (adcgs_get_splat_digest(decoder, v->splats[i].time, digest) == ADCGS_OK)
-            adcgs_md5_hex(digest, hex);
-        if (strcmp(hex, v->splats[i].md5))
-            return wrong(a, "S: splats %d are %s, expected %s", i, hex, v->splats[i].md5);
-    }
-    return 1;
+    uint8_t digest[16];
+    char hex[ADCGS_HEX] = "";
+    if (adcgs_get_splat_digest(decoder, time, digest) == ADCGS_OK)
+        adcgs_md5_hex(digest, hex);
+    return strcmp(hex, md5) ? wrong(a, "S: splats %d are %s, expected %s", i, hex, md5) : 1;
 }
 
 static int frame_fits(const attempt *a, int i, adcgs_decoder *decoder)
@@ -153,14 +147,25 @@ static int frame_fits(const attempt *a, int i, adcgs_decoder *decoder)
 
 static int results_fit(const attempt *a, adcgs_decoder *decoder)
 {
-    int good = models_fit(a, decoder) && splats_fit(a, decoder);
-    for (int i = 0; good && i < a->vector->n_frames; i++)
+    const adcgs_vector *const v = a->vector;
+    int good = models_fit(a, decoder, v->models, v->n_models);
+    for (int i = 0; good && i < v->n_splats; i++)
+        good = splats_fit(a, decoder, i, v->splats[i].time, v->splats[i].md5);
+    for (int i = 0; good && i < v->n_frames; i++)
         good = frame_fits(a, i, decoder);
     return good;
 }
 
-/* Through the public interface; with complete set, a truncated stream has to be refused. */
-static int decode_fits(const attempt *a, int complete)
+static int fewer_fit(const attempt *a, adcgs_decoder *decoder, const adcgs_fewer *fewer)
+{
+    int good = models_fit(a, decoder, fewer->models, fewer->n_models);
+    for (int i = 0; good && i < fewer->n_splats; i++)
+        good = splats_fit(a, decoder, i, fewer->splats[i].time, fewer->splats[i].md5);
+    return good;
+}
+
+/* Through the public interface; with complete set, a truncated stream has to be refused; fewer is NULL where all layers are wanted. */
+static int decode_fits(const attempt *a, int complete, const adcgs_fewer *fewer)
 {
     adcgs_config config;
     adcgs_decoder *decoder = NULL;
@@ -170,12 +175,18 @@ static int decode_fits(const attempt *a, int complete)
     config.cpu = a->trial->cpu;
     config.threads = a->trial->threads;
     config.strict_end = complete;
+    config.layers = fewer ? fewer->layers : 0;
     const adcgs_status status = adcgs_open_stream(&decoder, adcgs_span_read, &input, &config, &error);
     const int refused = complete && a->vector->truncated;
     int good = status_fits(a, status, refused ? ADCGS_ERR_TRUNCATED : a->vector->status, &error);
     if (good && status == ADCGS_OK)
-        good = results_fit(a, decoder);
+        good = fewer ? fewer_fit(a, decoder, fewer) : results_fit(a, decoder);
     adcgs_close(&decoder);
+    if (!good && fewer) {
+        char why[ADCGS_WHAT];
+        snprintf(why, sizeof why, "%s", a->what);
+        wrong(a, "with %d layers: %.300s", fewer->layers, why);
+    }
     return good;
 }
 
@@ -192,7 +203,9 @@ adcgs_outcome adcgs_vector_try(const adcgs_vector *vector, const uint8_t *data, 
     else if (adcgs_pool_create(&pool, trial->threads, NULL) != ADCGS_OK)
         wrong(&a, "no threads");
     else
-        good = parse_fits(&a, pool) && decode_fits(&a, 0) && (!vector->truncated || decode_fits(&a, 1));
+        good = parse_fits(&a, pool) && decode_fits(&a, 0, NULL) && (!vector->truncated || decode_fits(&a, 1, NULL));
+    for (int i = 0; good && i < vector->n_fewer; i++)
+        good = decode_fits(&a, 0, &vector->fewer[i]);
     adcgs_pool_free(&pool);
     return good ? ADCGS_OUTCOME_OK : ADCGS_OUTCOME_WRONG;
 }

@@ -2,7 +2,8 @@
 /** \file
  * Neighbours move together. Each anchor and its nearest ones should move as one rigid body: few pictures show every part at
  * every moment, and what is seen must carry along what is hidden. An energy of the training loss alone; a stream knows
- * nothing of it.
+ * nothing of it. Known as an as-rigid-as-possible energy (Sorkine and Alexa 2007, As-rigid-as-possible surface modeling, SGP);
+ * between neighbouring Gaussians in Luiten et al. 2024, Dynamic 3D Gaussians, 3DV.
  */
 #ifndef ADCGS_FMODEL_RIGIDITY_H
 #define ADCGS_FMODEL_RIGIDITY_H

@@ -2,7 +2,8 @@
 /** \file
  * Price of size. Large primitives cost every frame that is ever drawn, and few cameras do not keep them from floating
  * where nothing is, least of all before their own eyes: what shows as well when it is smaller should be smaller. A term of the
- * training loss alone; a stream knows nothing of it.
+ * training loss alone; a stream knows nothing of it. Prices of volume are in Lombardi et al. 2021, Mixture of volumetric
+ * primitives, SIGGRAPH, and Lu et al. 2024, Scaffold-GS, CVPR.
  */
 #ifndef ADCGS_FMODEL_SCALE_PENALTY_H
 #define ADCGS_FMODEL_SCALE_PENALTY_H

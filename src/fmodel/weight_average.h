@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Mean of a model's parameters over some iterations. Every iteration sees one view and steps towards it; the mean of where
- * many of them led is nearer to what suits all views than where the last one led.
+ * many of them led is nearer to what suits all views than where the last one led. Known as stochastic weight averaging (Izmailov
+ * et al. 2018, Averaging weights leads to wider optima and better generalization, UAI).
  */
 #ifndef ADCGS_FMODEL_WEIGHT_AVERAGE_H
 #define ADCGS_FMODEL_WEIGHT_AVERAGE_H

@@ -6,6 +6,7 @@
 
 #include "data/camera_json.h"
 #include "data/clips.h"
+#include "data/extent.h"
 #include "data/paths.h"
 #include "data/pose.h"
 #include "io/file.h"
@@ -23,8 +24,9 @@
 
 #define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
 #define NEAR_PER_DISTANCE 0.01
+#define DISTANCE_MIN 1e-9       /* well within what a stream can hold */
+#define DISTANCE_MAX 1e10
 #define NEAR_PER_BOUND 0.5      /* bounds are of most points, not of all */
-#define NEAR_LEAST 1e-3
 #define COLOUR_SRGB 1           /* a code of adcgs_stream */
 
 const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto", "transforms", "hypernerf", "llff", "colmap", "adcgs",
@@ -63,21 +65,32 @@ static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** What follows from all views together: seconds, near planes, alpha, background. */
+/** Relative to the scene: its units may be anything. Cameras that all stand in one place see it from its extent. */
+static adcgs_status set_near_planes(adcgs_scene *scene, const char *path, adcgs_error *error)
+{
+    double extent, median;
+    ADCGS_TRY(adcgs_scene_extent(scene, &extent, error));
+    ADCGS_TRY(adcgs_pose_median_distance(scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], &median, error));
+    const double distance = median > ADCGS_EXTENT_NOTHING * extent ? median : extent;
+    for (int s = 0; s < ADCGS_SPLITS; s++)
+        for (uint32_t i = 0; i < scene->n_views[s]; i++)
+            scene->views[s][i].camera.near_plane =
+                scene->near_bound > 0.0 ? NEAR_PER_BOUND * scene->near_bound : NEAR_PER_DISTANCE * distance;
+    if (!(distance >= DISTANCE_MIN && distance <= DISTANCE_MAX))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: cameras see the scene from a distance of %g units, expected %g to %g", path,
+                          distance, DISTANCE_MIN, DISTANCE_MAX);
+    return ADCGS_OK;
+}
+
+/** What follows from all views together: seconds, alpha, background. */
 static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
 {
     ADCGS_TRY(check_files(scene, error));
     ADCGS_TRY(find_duration(scene, path, adcgs_frames_step(&options->frames), error));
     const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
-    double distance;
-    ADCGS_TRY(adcgs_pose_median_distance(train, scene->n_views[ADCGS_SPLIT_TRAIN], &distance, error));
-    const double near_plane =
-        fmax(NEAR_LEAST, scene->near_bound > 0.0 ? NEAR_PER_BOUND * scene->near_bound : NEAR_PER_DISTANCE * distance);
     for (int s = 0; s < ADCGS_SPLITS; s++)
-        for (uint32_t i = 0; i < scene->n_views[s]; i++) {
+        for (uint32_t i = 0; i < scene->n_views[s]; i++)
             scene->views[s][i].time *= scene->duration;
-            scene->views[s][i].camera.near_plane = near_plane;
-        }
     int width, height, channels = 3;
     if (!scene->splats && !train[0].is_video)
         ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
@@ -277,6 +290,8 @@ static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, co
         status = finish_views(scene, path, options, error);
     if (status == ADCGS_OK && !scene->points.position) /* the layout's own may be there already */
         status = read_points(scene, points_path, options, error);
+    if (status == ADCGS_OK)
+        status = set_near_planes(scene, path, error);
     free(points_path);
     return status;
 }

@@ -46,7 +46,8 @@ typedef struct adcgs_scene_options {
 /**
  * Open a scene folder, its JSON file of transforms, a scene file, or a PLY file of splats. Times in [0,1] of the layout become
  * seconds: t times the intervals between frames (frames.h), over the rate. The near plane is half the near bound, or where
- * there is none, a hundredth of the median distance of the training cameras from the centre of their views.
+ * there is none, a hundredth of the median distance of the training cameras from the centre of their views, or, of cameras in one
+ * place, of what adcgs_scene_extent() says. No length is absolute: a scene in other units is the same scene.
  * \return ADCGS_ERR_IO if the scene is not there, ADCGS_ERR_DATA (naming file and field) if it contradicts itself or lacks a file
  * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole and OpenCV's.
  */

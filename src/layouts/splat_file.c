@@ -4,6 +4,7 @@
 
 #include "layouts/splat_file.h"
 
+#include "camera/rotation.h"
 #include "data/sort.h"
 #include "data/splat_views.h"
 #include "io/file.h"
@@ -94,17 +95,13 @@ static void normalise(adcgs_splat_scene *s)
 /** A camera at `distance` in the direction `out` from the centre, looking back; y points down in its picture. */
 static void aim(adcgs_camera *camera, const adcgs_splat_scene *s, const double out[3], double distance)
 {
-    const double flat = sqrt(out[0] * out[0] + out[2] * out[2]); /* not 0: no view is along y */
-    const double forward[3] = {-out[0], -out[1], -out[2]};
-    const double right[3] = {-out[2] / flat, 0.0, out[0] / flat};
-    double *m = camera->cam_to_world;
+    static const double up[3] = {0.0, -1.0, 0.0}; /* never the direction of a view */
+    double eye[3], forward[3];
     for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        m[4 * i] = right[i];
-        m[4 * i + 1] = forward[j] * right[k] - forward[k] * right[j];
-        m[4 * i + 2] = forward[i];
-        m[4 * i + 3] = s->centre[i] + distance * out[i];
+        eye[i] = s->centre[i] + distance * out[i];
+        forward[i] = -out[i];
     }
+    adcgs_look_along(camera->cam_to_world, eye, forward, up);
     camera->width = camera->height = ADCGS_SPLAT_SCENE_SIZE;
     camera->cx = camera->cy = 0.5 * ADCGS_SPLAT_SCENE_SIZE;
     camera->fx = camera->fy = 0.5 * ADCGS_SPLAT_SCENE_SIZE / tan(HALF_FIELD);

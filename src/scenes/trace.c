@@ -2,6 +2,7 @@
 /** \file Rays against shapes, and the light on what they hit. */
 #include "scenes/trace.h"
 
+#include "camera/rotation.h"
 #include "scenes/sine.h"
 #include "scenes/texture.h"
 
@@ -33,51 +34,17 @@ typedef struct hit {
     double local[3], normal[3]; /* normal in local axes, not turned towards the ray */
 } hit;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void normalise(double a[3])
-{
-    const double length = sqrt(dot(a, a));
-    for (int i = 0; i < 3; i++)
-        a[i] /= length;
-}
-
-static void cross(double out[3], const double a[3], const double b[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const double target[3])
 {
-    const double up[3] = {0.0, 0.0, 1.0};
-    double back[3], right[3], above[3];
-    for (int i = 0; i < 3; i++)
-        back[i] = eye[i] - target[i];
-    normalise(back);
-    cross(right, up, back);
-    normalise(right);
-    cross(above, back, right);
-    for (int i = 0; i < 3; i++) {
-        camera->to_world[4 * i] = right[i];
-        camera->to_world[4 * i + 1] = above[i];
-        camera->to_world[4 * i + 2] = back[i];
-        camera->to_world[4 * i + 3] = eye[i];
-    }
+    static const double up[3] = {0.0, 0.0, 1.0};
+    adcgs_look_at(camera->to_world, eye, target, up);
+    adcgs_pose_other_axes(camera->to_world);
 }
 
 /* Turn a vector about a unit axis. */
 static void rotate(double v[3], const double axis[3], double turns)
 {
-    const double s = adcgs_trace_sin(turns), c = adcgs_trace_cos(turns), d = dot(axis, v) * (1.0 - c);
-    double side[3];
-    cross(side, axis, v);
-    for (int i = 0; i < 3; i++)
-        v[i] = v[i] * c + side[i] * s + axis[i] * d;
+    adcgs_v3_rotate(axis, adcgs_trace_sin(turns), adcgs_trace_cos(turns), v);
 }
 
 static void pose_at(pose *out, const adcgs_trace_object *o, double time)
@@ -102,13 +69,14 @@ static void pose_at(pose *out, const adcgs_trace_object *o, double time)
         out->centre[1] = o->orbit[1] + s * dx + c * dy;
     }
     out->fade = time * time * (3.0 - 2.0 * time);
-    out->bound2 = o->shape == ADCGS_SHAPE_BOX ? dot(o->size, o->size) : o->size[0] * o->size[0] + o->size[2] * o->size[2];
+    const double box2 = adcgs_v3_dot(o->size, o->size), round2 = o->size[0] * o->size[0] + o->size[2] * o->size[2];
+    out->bound2 = o->shape == ADCGS_SHAPE_BOX ? box2 : round2;
 }
 
 /* Smallest t > 0 of the ray in local coordinates, with the normal there; FAR if none. */
 static double hit_ball(const double o[3], const double d[3], double radius, double normal[3])
 {
-    const double b = dot(o, d), q = b * b - dot(o, o) + radius * radius;
+    const double b = adcgs_v3_dot(o, d), q = b * b - adcgs_v3_dot(o, o) + radius * radius;
     if (q < 0.0)
         return FAR;
     const double root = sqrt(q), t = -b - root > 0.0 ? -b - root : -b + root;
@@ -196,14 +164,14 @@ static int near_object(const pose *at, const double from[3], const double direct
     double to[3];
     for (int i = 0; i < 3; i++)
         to[i] = at->centre[i] - from[i];
-    const double along = dot(to, direction), d2 = dot(to, to);
+    const double along = adcgs_v3_dot(to, direction), d2 = adcgs_v3_dot(to, to);
     return d2 < at->bound2 || (along > 0.0 && d2 - along * along < at->bound2);
 }
 
 static void to_local(const pose *at, const double v[3], double out[3])
 {
     for (int a = 0; a < 3; a++)
-        out[a] = dot(at->axes + 3 * a, v);
+        out[a] = adcgs_v3_dot(at->axes + 3 * a, v);
 }
 
 static double hit_object(const job *j, int i, const double from[3], const double direction[3], hit *out)
@@ -260,7 +228,7 @@ static void shade(const job *j, const hit *h, const double from[3], const double
         normal[i] = at->axes[i] * h->normal[0] + at->axes[3 + i] * h->normal[1] + at->axes[6 + i] * h->normal[2];
     for (int i = 0; i < 3; i++)
         point[i] = from[i] + h->t * direction[i] + 1e-6 * normal[i];
-    const double key = dot(normal, light), side = dot(normal, fill);
+    const double key = adcgs_v3_dot(normal, light), side = adcgs_v3_dot(normal, fill);
     double level = 0.42 + 0.10 * normal[2] + (side > 0.0 ? 0.12 * side : 0.0);
     if (key > 0.0 && !in_shadow(j, point, light))
         level += 0.48 * key;
@@ -293,7 +261,7 @@ static void trace_row(void *arg, int y, int thread)
             double direction[3], colour[3];
             for (int i = 0; i < 3; i++)
                 direction[i] = m[4 * i] * u + m[4 * i + 1] * v - m[4 * i + 2];
-            normalise(direction);
+            adcgs_v3_normalise(direction);
             trace_ray(j, eye, direction, k, colour);
             for (int c = 0; c < 3; c++)
                 sum[c] += colour[c];
@@ -315,7 +283,7 @@ static void spread_light(job *j)
         light[0] = 0.42 + 0.16 * ((k % s + 0.5) / s - 0.5);
         light[1] = -0.30 + 0.16 * ((k / s + 0.5) / s - 0.5);
         light[2] = 0.86;
-        normalise(light);
+        adcgs_v3_normalise(light);
     }
 }
 

@@ -153,6 +153,8 @@ int main(int argc, char **argv)
          .help = "check this program in place of the library; the shell runs it, with\n{in} and {request} replaced by files"},
         {.name = "point", .kind = ADCGS_OPTION_CHOICE, .target = &s.point, .choices = points, .value = "POINT",
          .help = "the point that the program claims: P, M, S or R (default R)"},
+        {.name = "layers", .kind = ADCGS_OPTION_FLAG, .target = &s.program.layers,
+         .help = "the program claims that it can leave out layers: ask for that, too"},
         {.name = "timeout", .kind = ADCGS_OPTION_INT, .target = &s.program.timeout, .min = 1, .max = 3600, .value = "SECONDS",
          .help = "time that the program has for a vector (default 20)"},
         {.name = "filter", .kind = ADCGS_OPTION_STRING, .target = &s.filter, .value = "PATTERN",

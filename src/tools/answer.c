@@ -19,8 +19,9 @@
 #include <stdlib.h>
 
 #define BLANKS " \t\r\n"
-/* Numbers behind the word "camera": width, height, fx, fy, cx, cy, near plane and twelve of the matrix. */
-#define CAMERA_NUMBERS 19
+#define DIGITS "0123456789"
+/* Numbers behind the word "camera" and its two integers: fx, fy, cx, cy, near plane and twelve of the matrix. */
+#define CAMERA_NUMBERS 17
 
 const char *adcgs_fault_class(adcgs_status status)
 {
@@ -53,30 +54,60 @@ static const char *word(char **rest)
     return strtok_r(NULL, BLANKS, rest);
 }
 
+/* The end of what the specification's grammar has in front of a fraction, NULL if there is none: no sign but -, no zero too many. */
+static const char *whole_end(const char *text)
+{
+    text += *text == '-';
+    const size_t digits = strspn(text, DIGITS);
+    return digits == 0 || (digits > 1 && *text == '0') ? NULL : text + digits;
+}
+
+/* Integers have one way to be written, so that what an answer repeats is what was asked. */
+static int read_integer(const char *text, int min, int max, int *out)
+{
+    const char *end = text ? whole_end(text) : NULL;
+    return !end || *end || !strcmp(text, "-0") ? -1 : adcgs_parse_int(text, min, max, out);
+}
+
+/* What strtod() takes beyond the grammar (0x10, nan, .5, 1., a plus) is no number. */
+static int read_number(const char *text, double *out)
+{
+    const char *end = text ? whole_end(text) : NULL;
+    if (end && *end == '.') {
+        const size_t digits = strspn(end + 1, DIGITS);
+        end = digits ? end + 1 + digits : NULL;
+    }
+    if (end && (*end == 'e' || *end == 'E')) {
+        end += end[1] == '-' || end[1] == '+' ? 2 : 1;
+        const size_t digits = strspn(end, DIGITS);
+        end = digits ? end + digits : NULL;
+    }
+    return !end || *end ? -1 : adcgs_parse_real(text, -HUGE_VAL, HUGE_VAL, out);
+}
+
 static int read_camera(adcgs_requests *r, char **rest)
 {
     double v[CAMERA_NUMBERS];
-    for (int i = 0; i < CAMERA_NUMBERS; i++) {
-        const char *text = word(rest);
-        if (!text || adcgs_parse_real(text, -HUGE_VAL, HUGE_VAL, &v[i]))
+    int size[2];
+    for (int i = 0; i < 2; i++)
+        if (read_integer(word(rest), INT32_MIN, INT32_MAX, &size[i]))
             return -1;
-    }
-    if (fabs(v[0]) > 1e6 || fabs(v[1]) > 1e6 || v[0] != floor(v[0]) || v[1] != floor(v[1]))
-        return -1;
+    for (int i = 0; i < CAMERA_NUMBERS; i++)
+        if (read_number(word(rest), &v[i]))
+            return -1;
     adcgs_camera *grown = one_more(r->camera, r->n_cameras, sizeof *grown);
     if (!grown)
         return -1;
     r->camera = grown;
     adcgs_camera *c = &grown[r->n_cameras++];
-    *c = (adcgs_camera){.width = (int32_t)v[0], .height = (int32_t)v[1], .fx = v[2], .fy = v[3], .cx = v[4], .cy = v[5],
-                        .near_plane = v[6]};
-    memcpy(c->cam_to_world, v + 7, sizeof c->cam_to_world);
+    *c = (adcgs_camera){.width = size[0], .height = size[1], .fx = v[0], .fy = v[1], .cx = v[2], .cy = v[3], .near_plane = v[4]};
+    memcpy(c->cam_to_world, v + 5, sizeof c->cam_to_world);
     return 0;
 }
 
 static int read_time(adcgs_request *to, const char *text)
 {
-    if (!text || strlen(text) >= sizeof to->text || adcgs_parse_real(text, -HUGE_VAL, HUGE_VAL, &to->time))
+    if (!text || strlen(text) >= sizeof to->text || read_number(text, &to->time))
         return -1;
     memcpy(to->text, text, strlen(text) + 1);
     return 0;
@@ -90,9 +121,8 @@ static int read_request(adcgs_requests *r, const char *name, char **rest)
         if (read_time(&q, word(rest)))
             return -1;
     } else if (!strcmp(name, "frame")) {
-        const char *camera = word(rest);
         q.kind = ADCGS_REQUEST_FRAME;
-        if (!camera || adcgs_parse_int(camera, 0, r->n_cameras - 1, &q.camera) || read_time(&q, word(rest)))
+        if (read_integer(word(rest), 0, r->n_cameras - 1, &q.camera) || read_time(&q, word(rest)))
             return -1;
     } else if (!strcmp(name, "trace"))
         q.kind = ADCGS_REQUEST_TRACE;
@@ -117,10 +147,9 @@ static int read_line(adcgs_requests *r, char *line)
         bad = read_camera(r, &rest);
     else if (!strcmp(name, "complete"))
         r->complete = 1;
-    else if (!strcmp(name, "layers")) {
-        const char *text = word(&rest);
-        bad = !text || adcgs_parse_int(text, 1, 5, &r->layers);
-    } else
+    else if (!strcmp(name, "layers"))
+        bad = r->layers || read_integer(word(&rest), 1, 5, &r->layers);
+    else
         bad = read_request(r, name, &rest);
     return bad || word(&rest) ? -1 : 0;
 }
@@ -134,8 +163,9 @@ adcgs_status adcgs_requests_read(adcgs_requests *out, const char *path, adcgs_er
     FILE *file = fopen(path, "r");
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
-    for (int number = 1; status == ADCGS_OK && getline(&line, &room, file) >= 0; number++)
-        if (read_line(out, line + (number == 1 ? adcgs_file_mark(line, strlen(line)) : 0)))
+    ssize_t length;
+    for (int number = 1; status == ADCGS_OK && (length = getline(&line, &room, file)) >= 0; number++)
+        if (strlen(line) != (size_t)length || read_line(out, line + (number == 1 ? adcgs_file_mark(line, (size_t)length) : 0)))
             status = adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: line %d is no request", path, number);
     if (status == ADCGS_OK && ferror(file))
         status = adcgs_fail(error, ADCGS_ERR_IO, "%.160s: cannot read", path);

@@ -21,7 +21,7 @@ typedef struct adcgs_request {
     adcgs_request_kind kind;
     int camera;      /**< of FRAME */
     double time;     /**< seconds; of SPLATS and FRAME */
-    char text[40];   /**< the time as the file has it, which the answer repeats */
+    char text[64];   /**< the time as the file has it, which the answer repeats */
 } adcgs_request;
 
 typedef struct adcgs_requests {

@@ -10,13 +10,14 @@
 #include "data/content.h"
 #include "io/atomic.h"
 #include "io/file.h"
+#include "train/settings.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 19 };
+enum { FORMAT = 20 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -50,105 +51,33 @@ static void differ(walk *w, const char *format, ...)
     va_end(arguments);
 }
 
-/** A number that must be the same in the run and in the file. */
-static void visit_same(walk *w, const char *name, uint64_t value)
-{
-    uint64_t stored = value;
-    visit(w, &stored, sizeof stored);
-    if (stored != value)
-        differ(w, "saved with other options: %s is %llu there and %llu here", name, (unsigned long long)stored,
-               (unsigned long long)value);
-}
-
-static void visit_same_real(walk *w, const char *name, float value)
-{
-    float stored = value;
-    visit(w, &stored, sizeof stored);
-    if (adcgs_float_bits(stored) != adcgs_float_bits(value))
-        differ(w, "saved with other options: %s is %g there and %g here", name, (double)stored, (double)value);
-}
-
-typedef struct named_whole {
-    const char *name;
-    uint64_t value;
-} named_whole;
-
-typedef struct named_real {
-    const char *name;
-    float value;
-} named_real;
-
-static void visit_all(walk *w, const named_whole *whole, size_t n, const named_real *real, size_t m)
-{
-    for (size_t i = 0; i < n; i++)
-        visit_same(w, whole[i].name, whole[i].value);
-    for (size_t i = 0; i < m; i++)
-        visit_same_real(w, real[i].name, real[i].value);
-}
-
-#define FIELD(name) { #name, c->name }
-
-/** Everything that the run depends on and no limit of time: a run may go on with another. */
-static void walk_options(walk *w, const adcgs_train_config *c)
-{
-    const named_whole whole[] = { FIELD(seed), FIELD(iterations), { "scale", (uint64_t)c->scale }, FIELD(start_anchors),
-                                  FIELD(max_anchors), FIELD(densify_every), { "rate_period", (uint64_t)c->rate_period },
-                                  FIELD(without_coarse), FIELD(without_fine), FIELD(without_rate), FIELD(without_densification),
-                                  FIELD(without_rounding), FIELD(bf16) };
-    const named_real real[] = { FIELD(ssim_weight), FIELD(densify_threshold), FIELD(prune_opacity), FIELD(keep_opacity),
-                                FIELD(rigid_weight), FIELD(scale_weight), FIELD(still_below), FIELD(rdo_strength),
-                                FIELD(dropout), FIELD(network_rate), FIELD(average_last), FIELD(curriculum_begin),
-                                FIELD(curriculum_until), FIELD(quarter_until), FIELD(half_until), FIELD(scale_from),
-                                FIELD(deform_from), FIELD(fine_from), FIELD(densify_from), FIELD(densify_until),
-                                FIELD(noise_from), FIELD(rate_from), FIELD(prune_units_at), FIELD(prune_units_again),
-                                FIELD(decide_at), FIELD(round_from), FIELD(freeze_from) };
-    visit_all(w, whole, ADCGS_COUNTOF(whole), real, ADCGS_COUNTOF(real));
-}
-
-/** A run is bound to its lambda, or its target, from where that has a say; before, it may go on with another. */
-static void walk_lambda(walk *w, adcgs_trainer *t)
+/** A run is bound to its target from where lambda has a say; before, it may go on with another. */
+static void walk_target(walk *w, adcgs_trainer *t)
 {
     const adcgs_train_config *c = &t->config;
-    float lambda = c->lambda;
     uint32_t target = c->target;
     double value = c->target_value;
-    visit(w, &lambda, sizeof lambda);
+    visit(w, &t->lambda_used, sizeof t->lambda_used);
     visit(w, &target, sizeof target);
     visit(w, &value, sizeof value);
-    visit(w, &t->lambda_used, sizeof t->lambda_used);
-    if (!t->lambda_used)
-        return;
-    if (target != c->target || value != c->target_value)
+    if (t->lambda_used && (target != c->target || value != c->target_value))
         differ(w, "saved with other options: another target, which has had its say");
-    else if (adcgs_float_bits(lambda) != adcgs_float_bits(c->lambda))
-        differ(w, "saved with other options: lambda, which has had its say, is %g there and %g here", (double)lambda,
-               (double)c->lambda);
 }
 
-/** Whether weights get a lattice is open until they do. */
-static void walk_lattice(walk *w, adcgs_trainer *t)
+/** All settings; a limit of time is none, and a run may go on with another. */
+static void walk_settings(walk *w, adcgs_trainer *t)
 {
-    uint8_t without = t->config.without_weight_steps;
-    visit(w, &without, sizeof without);
     visit(w, &t->rounding, sizeof t->rounding);
-    if (t->rounding && without != t->config.without_weight_steps)
-        differ(w, "saved with other options: weights have been rounded %s the lattice", without ? "without" : "to");
-}
-
-static void walk_sizes(walk *w, const adcgs_params *p, const adcgs_shape *s)
-{
-    const named_whole sizes[] = { { "k", p->k }, { "n_fv", p->n_fv }, { "n_fg", p->n_fg }, { "chunks", p->chunks },
-                                  { "n_eta", p->n_eta }, { "octaves", p->octaves }, { "fine_uses_fv", p->fine_uses_fv },
-                                  { "coarse_rotation", p->coarse_rotation }, { "adaptive_steps", p->adaptive_steps },
-                                  { "time_rows", p->time_rows }, { "time_width", p->time_width },
-                                  { "theta_width", (uint64_t)s->theta_width }, { "theta_hidden", (uint64_t)s->theta_hidden },
-                                  { "omega_width", (uint64_t)s->omega_width }, { "omega_hidden", (uint64_t)s->omega_hidden },
-                                  { "varpi_width", (uint64_t)s->varpi_width }, { "varpi_hidden", (uint64_t)s->varpi_hidden },
-                                  { "entropy_width", (uint64_t)s->entropy_width },
-                                  { "entropy_hidden", (uint64_t)s->entropy_hidden }, { "depth", (uint64_t)s->depth } };
-    const named_real steps[] = { { "step_fv", s->step_fv }, { "step_fg", s->step_fg }, { "step_sigma", s->step_sigma },
-                                 { "step_colour", s->step_colour } };
-    visit_all(w, sizes, ADCGS_COUNTOF(sizes), steps, ADCGS_COUNTOF(steps));
+    for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
+        const int bound = s->binds == ADCGS_BINDS_WITH_LAMBDA ? t->lambda_used : s->binds == ADCGS_BINDS_ALWAYS || t->rounding;
+        const double here = adcgs_setting_get(s, &t->config);
+        char texts[2][ADCGS_SETTING_TEXT];
+        double there = here;
+        visit(w, &there, sizeof there);
+        if (bound && there != here)
+            differ(w, "saved with other options: %s is %s there and %s here", s->name, adcgs_setting_print(s, there, texts[0]),
+                   adcgs_setting_print(s, here, texts[1]));
+    }
 }
 
 /** A checksum that stands for a part of the scene. */
@@ -199,10 +128,8 @@ static void walk_config(walk *w, adcgs_trainer *t)
     if (format != FORMAT)
         differ(w, "saved by another version of the program");
     walk_scene(w, t);
-    walk_options(w, &t->config);
-    walk_lambda(w, t);
-    walk_lattice(w, t);
-    walk_sizes(w, &t->f->params, &t->f->shape);
+    walk_target(w, t);
+    walk_settings(w, t);
 }
 
 static void walk_scalars(walk *w, adcgs_trainer *t)

@@ -56,7 +56,7 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 1, &moving, error));
     /* Seven bits a weight; a hundredth of the loss is what networks gain by learning the noise of each picture. */
     const size_t weights = f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n + f->mlp[ADCGS_P_TIME].n;
-    if (stopped > 1.01 * moving + t->lambda * 7 * (double)weights * 0x1p-23)
+    if (stopped > 1.01 * moving + adcgs_price_of_bit(t) * 7 * (double)weights)
         return ADCGS_OK;
     memset(f->moving, 0, (size_t)f->groups * ADCGS_LANES * sizeof *f->moving);
     return ADCGS_OK;

@@ -147,7 +147,7 @@ double adcgs_densify_budget(const adcgs_train_config *c, double progress)
     return from + (c->max_anchors - from) * ramp;
 }
 
-/** What a refinement works with. */
+/** What a densification works with. */
 typedef struct workspace {
     adcgs_anchor_set next;
     cells occupied;

@@ -2,6 +2,7 @@
 /** \file The scene's frame of reference and the first anchors. */
 #include "train/initialise.h"
 
+#include "data/extent.h"
 #include "data/sort.h"
 #include "geom/geom.h"
 #include "grad/random.h"
@@ -25,7 +26,7 @@ static int solve3(const double a[9], const double b[3], double x[3])
 }
 
 /** The point nearest to all optical axes in the least-squares sense, pulled slightly towards the points the cameras face. */
-static void focus_point(const adcgs_scene *scene, double focus[3])
+static void focus_point(const adcgs_scene *scene, double extent, double focus[3])
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
     double a[9] = { 0 }, b[3] = { 0 };
@@ -39,26 +40,29 @@ static void focus_point(const adcgs_scene *scene, double focus[3])
                 b[i] += p * c[j] / n;
             }
     }
-    if (!solve3(a, b, focus)) /* parallel axes: one unit in front of the first camera */
+    if (!solve3(a, b, focus)) /* parallel axes: in front of the first camera */
         for (int i = 0; i < 3; i++) {
             const double *m = scene->views[ADCGS_SPLIT_TRAIN][0].camera.cam_to_world;
-            focus[i] = m[4 * i + 3] + m[4 * i + 2];
+            focus[i] = m[4 * i + 3] + extent * m[4 * i + 2];
         }
 }
 
 adcgs_status adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale, adcgs_error *error)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
-    focus_point(scene, origin);
+    double extent;
+    ADCGS_TRY(adcgs_scene_extent(scene, &extent, error));
+    focus_point(scene, extent, origin);
     double *distance = adcgs_alloc(NULL, n, sizeof *distance, error);
     if (!distance)
         return adcgs_alloc_status(error);
     for (uint32_t v = 0; v < n; v++) {
         const double *m = scene->views[ADCGS_SPLIT_TRAIN][v].camera.cam_to_world;
-        distance[v] = sqrt(pow(m[3] - origin[0], 2) + pow(m[7] - origin[1], 2) + pow(m[11] - origin[2], 2));
+        const double d[3] = { m[3] - origin[0], m[7] - origin[1], m[11] - origin[2] };
+        distance[v] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     }
     adcgs_sort(distance, n);
-    *scale = distance[n / 2] > 1e-9 ? distance[n / 2] : 1;
+    *scale = distance[n / 2] > ADCGS_EXTENT_NOTHING * extent ? distance[n / 2] : extent; /* all may stand in one place */
     adcgs_free(NULL, distance);
     return ADCGS_OK;
 }

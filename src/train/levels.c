@@ -6,7 +6,7 @@ adcgs_status adcgs_level_prices(const adcgs_trainer *t, double strength, adcgs_r
 {
     if (!t->frozen)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "values are decided by rate and distortion only once they are frozen");
-    *rdo = (adcgs_rdo){ .lambda_bit = t->config.without_rate ? 0 : strength * t->lambda * 0x1p-23 };
+    *rdo = (adcgs_rdo){ .lambda_bit = t->config.without_rate ? 0 : strength * adcgs_price_of_bit(t) };
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
         rdo->target[i] = t->f->param[i].m;
         /* No picture shows eta: it is there for the sake of f_v's bits, and has no price of its own. */

@@ -41,7 +41,7 @@ adcgs_status adcgs_sample_distortion(adcgs_trainer *t, int group, double *bits, 
     double loss;
     ADCGS_TRY(adcgs_sample_loss(t, NETWORK_VIEWS, 1, &loss, error));
     /* Without a price of bits the loss alone decides: no bits come near to it. */
-    *bits = loss / fmax(t->lambda * 0x1p-23, 1e-30);
+    *bits = loss / fmax(adcgs_price_of_bit(t), 1e-30);
     return ADCGS_OK;
 }
 

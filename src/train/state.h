@@ -24,7 +24,7 @@ typedef struct adcgs_train_view {
     float t;
 } adcgs_train_view;
 
-/** Sums since the last refinement, per slot. */
+/** Sums since the last densification, per slot. */
 typedef struct adcgs_train_stats {
     float *weight;       /* Psi */
     float *significance; /* Psi times screen gradient */
@@ -92,5 +92,11 @@ adcgs_status adcgs_trainer_resize(adcgs_trainer *trainer, adcgs_error *error);
 void adcgs_trainer_prepare_networks(adcgs_trainer *trainer);
 /** How far the run is, in [0,1]. */
 double adcgs_trainer_progress(const adcgs_trainer *trainer);
+
+/** What a bit costs in terms of the loss: lambda is the price of a mebibyte. */
+static inline double adcgs_price_of_bit(const adcgs_trainer *t)
+{
+    return t->lambda * 0x1p-23;
+}
 
 #endif

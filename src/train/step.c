@@ -40,7 +40,7 @@ static float weight_price(const adcgs_trainer *t, double progress)
 {
     const adcgs_train_config *c = &t->config;
     const int landed = t->frozen && c->target == ADCGS_TARGET_SIZE;
-    return progress >= c->prune_units_at && !c->without_rate && !landed ? c->network_rate * (float)t->lambda * 0x1p-23f : 0;
+    return progress >= c->prune_units_at && !c->without_rate && !landed ? c->network_rate * (float)adcgs_price_of_bit(t) : 0;
 }
 
 /**
@@ -149,7 +149,7 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
     }
     adcgs_rate rate = { .total = 0 };
     /* Loss per bit: lambda per 2^23 bits. */
-    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)t->lambda * 0x1p-23f : 0, c->rate_period,
+    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_price_of_bit(t) : 0, c->rate_period,
                         (int)(t->iteration % (uint32_t)c->rate_period), rated ? &rate : NULL);
     const double keep = t->iteration < 100 ? 0.9 : 0.99;
     t->mean_loss = t->iteration ? keep * t->mean_loss + (1 - keep) * value.loss : value.loss;

@@ -2,7 +2,7 @@
 /** \file
  * The part of time that is trained on. A run begins with the views about the middle of time and takes in others as it goes on:
  * a row of the time table begins where its neighbour stands, so that what moves is followed from one time to the next instead
- * of being sought at all times at once.
+ * of being sought at all times at once. A curriculum (Bengio et al. 2009, Curriculum learning, ICML) over time.
  */
 #ifndef ADCGS_TRAIN_TIME_CURRICULUM_H
 #define ADCGS_TRAIN_TIME_CURRICULUM_H

@@ -3,6 +3,9 @@
  * \file
  * Narrower networks: hidden units that do not pay for their bits are removed,
  * and what the others can do of their work is given to them (decision D13).
+ * Known as structured pruning; that the others are fitted by least squares is
+ * as in He, Zhang and Sun 2017, Channel pruning, ICCV, and for single weights
+ * in Hassibi and Stork 1993, Optimal brain surgeon, NIPS.
  */
 #ifndef ADCGS_TRAIN_UNIT_PRUNE_H
 #define ADCGS_TRAIN_UNIT_PRUNE_H

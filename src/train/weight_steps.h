@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the networks' weights cost on a lattice, and which lattice is worth it (decision D6). */
+/** \file
+ * What the networks' weights cost on a lattice, and which lattice is worth it (decision D6). Known as mixed-precision
+ * quantisation (Dong et al. 2019, HAWQ, ICCV), here by rate and distortion in place of a bound on the bits.
+ */
 #ifndef ADCGS_TRAIN_WEIGHT_STEPS_H
 #define ADCGS_TRAIN_WEIGHT_STEPS_H
 

@@ -201,12 +201,39 @@ grep -qx "trace $(wc -l <"$dir/trace") $(md5sum <"$dir/trace" | cut -c1-32)" "$d
 $dec "$s" --camera 0 --time 0 -o - --format raw --float >"$dir/raw" 2>/dev/null
 md5sum <"$dir/raw" | cut -c1-32 >"$dir/whole"
 $dec "$s" --camera 0 --time 0 --md5 2>/dev/null | cmp -s - "$dir/whole" || bad "a frame's digest is not that of its samples"
-for line in frame "frame 0 0" "splats now" "splats 0 0" "layers 6" "camera 1 1" "render 0 0" \
-    "camera 1.5 1 1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 0"; do
+# REQ-CONF-012: numbers that are none, cameras that are not there, words too many or too few.
+numbers="1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 0"
+for line in frame "frame 0 0" "splats now" "splats 0 0" "layers 6" "layers 0" "layers 01" "camera 1 1" "render 0 0" "Model" \
+    "camera 1.5 1 $numbers" "camera 1e0 1 $numbers" "camera 2147483648 1 $numbers" "camera 1 1 nan ${numbers#1 }" \
+    "camera 1 1 $numbers 0"; do
     printf 'model\n%s\n' "$line" >"$dir/requests"
     expect 2 "line 2" $dec "$s" --answer "$dir/requests"
 done
-expect 3 "nowhere" $dec "$s" --answer "$dir/nowhere"
+for word in 00 +1 0x10 1. .5 1e 1e+ --1 nan inf -inf 1e999 1,5 1f - 01.5 1_0 \
+    1111111111111111111111111111111111111111111111111111111111111111; do
+    printf 'model\nsplats %s\n' "$word" >"$dir/requests"
+    expect 2 "line 2" $dec "$s" --answer "$dir/requests"
+    [ -s "$dir/out" ] && bad "an answer besides the mistake $word"
+done
+for index in 00 +0 -0 0.0 -1 1 4294967296; do
+    printf 'camera 1 1 %s\nframe %s 0\n' "$numbers" "$index" >"$dir/requests"
+    expect 2 "line 2" $dec "$s" --answer "$dir/requests"
+done
+printf 'model\nmodel\0\n' >"$dir/requests"
+expect 2 "line 2" $dec "$s" --answer "$dir/requests"
+printf 'layers 2\nlayers 2\n' >"$dir/requests"
+expect 2 "line 2" $dec "$s" --answer "$dir/requests"
+printf ' \tmodel\r\n\n  # x\nlayers 5\nsplats -2.50E-01\r\nsplats 1e-400\nsplats -0\ncomplete\ncomplete' >"$dir/requests"
+expect 0 "" $dec "$s" --answer "$dir/requests"
+[ "$(cut -d ' ' -f 1,2 "$dir/out" | tr '\n' ,)" = "model 0,splats -2.50E-01,splats 1e-400,splats -0," ] || bad "answers to odd forms"
+# REQ-CONF-015: a mistake in the requests counts before a stream that is not there or at fault, an unreadable file of requests before all.
+echo nothing >"$dir/requests"
+expect 2 "line 1" $dec "$dir/nowhere" --answer "$dir/requests"
+expect 2 "line 1" $dec "$dir/f000.ppm" --answer "$dir/requests"
+expect 3 "nowhere" $dec "$dir/f000.ppm" --answer "$dir/nowhere"
+echo model >"$dir/requests"
+expect 3 "nowhere" $dec "$dir/nowhere" --answer "$dir/requests"
+[ -s "$dir/out" ] && bad "an answer without a stream"
 expect 2 "only" $dec "$s" --answer "$dir/requests" --md5
 # faults CODE CLASS FILE: the class stands alone on standard output and ends standard error.
 faults()

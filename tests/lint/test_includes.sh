@@ -28,7 +28,7 @@ check()
 
 codec="base bits geom net model splat render stream api"
 check codec "" $codec
-check src "$codec" cli io data layouts camera metric scenes grad fmodel train encode play sweep conform tools
+check src "$codec" cli io data camera layouts metric scenes grad fmodel train encode play sweep conform tools
 
 # The installed headers stand alone.
 if grep -n '^ *# *include' codec/include/adcgs/*.h | grep -v -E 'include <(adcgs/[a-z]+|stddef|stdint)\.h>' >&2; then

@@ -32,4 +32,36 @@ if command -v pdftotext >/dev/null; then
 else
     echo "skipped: signs that the PDF shows: no pdftotext"
 fi
+# Both pages hold the tables byte for byte, and the figures.
+python3 - "$dir/1.html" "$dir/1.pdf" "$top/spec" <<'END' || faults=1
+import base64, os, re, sys, zlib
+
+def streams(data):
+    for found in re.finditer(rb"(?<!end)stream\r?\n(.*?)\r?\nendstream", data, re.S):
+        yield found.group(1)
+        try:
+            yield zlib.decompress(found.group(1))
+        except zlib.error:
+            pass
+
+with open(sys.argv[1], encoding="utf-8") as file:
+    html = file.read()
+with open(sys.argv[2], "rb") as file:
+    pdf = file.read()
+links = dict(re.findall(r'download="([^"]+)" href="data:text/csv;base64,([^"]+)"', html))
+attached = list(streams(pdf))
+faults = []
+for name in ("logistic.csv", "values.csv"):
+    with open(os.path.join(sys.argv[3], "tables", name), "rb") as file:
+        table = file.read()
+    if base64.b64decode(links.get(name, "")) != table:
+        faults.append("the page has no %s" % name)
+    if table not in attached or b"(%s)" % name.encode() not in pdf:
+        faults.append("the PDF has no attachment %s" % name)
+figures = len(os.listdir(os.path.join(sys.argv[3], "diagrams")))
+if html.count("data:image/svg+xml;base64,") != figures:
+    faults.append("the page has not %d figures" % figures)
+print("\n".join(faults), end="\n" if faults else "", file=sys.stderr)
+sys.exit(1 if faults else 0)
+END
 exit $faults

@@ -338,6 +338,51 @@ static void test_false_length(void **state)
     adcgs_stream_clear(&stream, NULL);
 }
 
+static void put_zeros(adcgs_buffer *out, size_t length)
+{
+    static const uint8_t zeros[4096];
+    const size_t begin = adcgs_chunk_begin(out, UINT32_C(0x6f72657a), 0, 0); /* zero */
+    for (size_t left = length, n; left > 0; left -= n) {
+        n = ADCGS_MIN(left, sizeof zeros);
+        adcgs_write_bytes(out, zeros, n);
+    }
+    adcgs_chunk_end(out, begin);
+}
+
+/** The stream with two chunks of zeros before its end that make it so long. */
+static void make_long(adcgs_buffer *out, const adcgs_buffer *bytes, size_t size)
+{
+    const size_t end = bytes->size - ADCGS_CHUNK_BYTES - 12; /* of what stands before ENDC */
+    adcgs_buffer_init(out);
+    adcgs_write_bytes(out, bytes->data, end);
+    put_zeros(out, 1U << 21);
+    put_zeros(out, size - bytes->size - (1U << 21) - 2 * ADCGS_CHUNK_BYTES);
+    adcgs_write_bytes(out, bytes->data + end, bytes->size - end);
+    assert_int_equal(out->size, size);
+    adcgs_repair_stream(out->data, out->size, 0);
+}
+
+/** The bound of level 1 on the bytes of a stream, for which no vector is small enough. */
+/* REQ-STRM-004, REQ-STRM-034 */
+static void test_stream_bytes(void **state)
+{
+    adcgs_buffer bytes, longer;
+    adcgs_stream stream, part;
+    adcgs_error error;
+    (void)state;
+    make_bytes(&stream, &bytes, 1, 10, 0, 8);
+    make_long(&longer, &bytes, 1U << 22);
+    assert_int_equal(read_stream(&part, longer.data, longer.size, 0, &error), ADCGS_OK);
+    adcgs_stream_clear(&part, NULL);
+    adcgs_buffer_clear(&longer);
+    make_long(&longer, &bytes, (1U << 22) + 1);
+    assert_int_equal(read_stream(&part, longer.data, longer.size, 0, &error), ADCGS_ERR_LIMIT);
+    assert_non_null(strstr(error.text, "ENDC: the stream exceeds"));
+    adcgs_buffer_clear(&longer);
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -345,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_flip_every_byte), cmocka_unit_test(test_malice),
         cmocka_unit_test(test_unknown_chunks), cmocka_unit_test(test_future_head), cmocka_unit_test(test_layers_taken_out),
         cmocka_unit_test(test_layers_left_out), cmocka_unit_test(test_false_length),
+        cmocka_unit_test(test_stream_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -122,10 +122,53 @@ static void checkpoints_are_checked(void **state)
     config.densify_until += 0.01f;
     other = make(&config, NULL);
     assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
-    assert_non_null(strstr(error.text, "other options: densify_until is "));
+    assert_non_null(strstr(error.text, "other options: densify_until is 0.5 there and 0.51 here"));
     adcgs_trainer_free(&other);
     adcgs_trainer_free(&t);
     adcgs_buffer_clear(&b);
+}
+
+/** Whatever setting is another one is named, from when on the run is bound to it. */
+static void checkpoints_name_what_differs(void **state)
+{
+    const adcgs_train_config config = all_stages_config();
+    adcgs_trainer *t = make(&config, NULL);
+    for (int later = 0; later < 2; later++) {
+        adcgs_buffer b;
+        t->lambda_used = t->rounding = (uint8_t)later;
+        store(t, &b);
+        for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
+            uint8_t *field = (uint8_t *)&t->config + s->offset;
+            char text[60];
+            *field ^= 1;
+            const adcgs_status status = adcgs_trainer_restore(t, b.data, b.size, &error);
+            *field ^= 1;
+            if (!later && s->binds != ADCGS_BINDS_ALWAYS) {
+                assert_int_equal(status, ADCGS_OK);
+                continue;
+            }
+            snprintf(text, sizeof text, "saved with other options: %s is ", s->name);
+            assert_int_equal(status, ADCGS_ERR_DATA);
+            assert_ptr_equal(strstr(error.text, text), error.text);
+        }
+        adcgs_buffer_clear(&b);
+    }
+    adcgs_trainer_free(&t);
+}
+
+/** However a configuration is made, a trainer is not made of what is out of range. */
+static void bad_configurations_make_no_trainer(void **state)
+{
+    adcgs_train_config config = small_config();
+    adcgs_trainer *t;
+    config.start_anchors = config.max_anchors + 1;
+    assert_int_equal(adcgs_trainer_create(&t, scene, &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_ERR_USAGE);
+    assert_non_null(strstr(error.text, "settings start_anchors=151 and max_anchors=150"));
+    assert_null(t);
+    config = small_config();
+    config.ssim_weight = 1.5f;
+    assert_int_equal(adcgs_trainer_create(&t, scene, &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_ERR_USAGE);
+    assert_non_null(strstr(error.text, "setting ssim_weight=1.5: expected a number from 0 to 1"));
 }
 
 static void refuse_checkpoint(const adcgs_scene *other, const char *what)
@@ -1007,8 +1050,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(restored_runs_go_on_in_lockstep),
-        cmocka_unit_test(checkpoints_are_checked),
-        cmocka_unit_test(checkpoints_know_their_scene),
+        cmocka_unit_test(checkpoints_are_checked), cmocka_unit_test(checkpoints_name_what_differs),
+        cmocka_unit_test(bad_configurations_make_no_trainer), cmocka_unit_test(checkpoints_know_their_scene),
         cmocka_unit_test(densification_keeps_order_and_budget),
         cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Memory of paths, and a camera where none is stored. */
+#include "config.h"
+
+#include "camera/path.h"
+
+#include "camera/rotation.h"
+
+#include <stdlib.h>
+
+#define ORBIT_DISTANCE 2.5 /* scene units */
+#define ORBIT_ELEVATION 0.35
+#define ORBIT_FOCAL 1.2    /* focal length per image width */
+
+adcgs_status adcgs_shots_alloc(adcgs_shots *shots, double n, const char *who, adcgs_error *error)
+{
+    *shots = (adcgs_shots){0};
+    if (!(n >= 1.0 && n <= ADCGS_SHOTS_MAX))
+        return adcgs_fail(error, who ? ADCGS_ERR_DATA : ADCGS_ERR_USAGE, "%s%s%.0f frames asked for, expected 1 to %d",
+                          who ? who : "", who ? ": " : "", n, ADCGS_SHOTS_MAX);
+    shots->shot = calloc((size_t)n, sizeof *shots->shot);
+    if (!shots->shot)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %.0f frames", n);
+    shots->n = (int)n;
+    return ADCGS_OK;
+}
+
+void adcgs_shots_free(adcgs_shots *shots)
+{
+    free(shots->shot);
+    *shots = (adcgs_shots){0};
+}
+
+/** On the outside, looking at the scene's centre from a little above. */
+void adcgs_shots_default(adcgs_camera *camera, const adcgs_info *info, const double up[3])
+{
+    *camera = (adcgs_camera){.width = ADCGS_ORBIT_WIDTH,
+                             .height = ADCGS_ORBIT_HEIGHT,
+                             .fx = ORBIT_FOCAL * ADCGS_ORBIT_WIDTH,
+                             .fy = ORBIT_FOCAL * ADCGS_ORBIT_WIDTH,
+                             .cx = 0.5 * ADCGS_ORBIT_WIDTH,
+                             .cy = 0.5 * ADCGS_ORBIT_HEIGHT,
+                             .near_plane = ADCGS_NEAR_PER_SCALE * info->scene_scale,
+                             .name = "orbit"};
+    double eye[3];
+    for (int i = 0; i < 3; i++) /* up is never x */
+        eye[i] = info->scene_origin[i] +
+                 ORBIT_DISTANCE * info->scene_scale * (up[i] * sin(ORBIT_ELEVATION) + (i == 0) * cos(ORBIT_ELEVATION));
+    adcgs_look_at(camera->cam_to_world, eye, info->scene_origin, up);
+}
