@@ -6,7 +6,7 @@ need adcgs-dec examples/render_frame examples/splat_buffer
 vectors=${srcdir:-.}/conformance/vectors
 s=$vectors/good-sys-cams.adcgs
 
-for t in 0 0.5 1e9; do
+for t in 0 0.02 0.04; do
     expect 0 "" ./examples/render_frame "$s" "$dir/frame.ppm" $t
     [ -s "$dir/err" ] && bad "render_frame warns about a complete stream"
     expect 0 "" ./adcgs-dec "$s" -o "$dir/expected.ppm" --camera 0 --time $t

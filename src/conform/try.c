@@ -167,7 +167,7 @@ static int fewer_fit(const attempt *a, adcgs_decoder *decoder, const adcgs_fewer
     return good;
 }
 
-/* Through the public interface; with complete set, a truncated stream has to be refused; fewer is NULL where all layers are wanted. */
+/* Through the public interface; a truncated stream has to be refused where complete is set; fewer: NULL for all layers. */
 static int decode_fits(const attempt *a, int complete, const adcgs_fewer *fewer)
 {
     adcgs_config config;

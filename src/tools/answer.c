@@ -54,7 +54,7 @@ static const char *word(char **rest)
     return strtok_r(NULL, BLANKS, rest);
 }
 
-/* The end of what the specification's grammar has in front of a fraction, NULL if there is none: no sign but -, no zero too many. */
+/* The end of what the grammar of requests has in front of a fraction, NULL if there is none: no sign but -, no zero too many. */
 static const char *whole_end(const char *text)
 {
     text += *text == '-';

@@ -268,7 +268,7 @@ expect 4 "two.adcgs" ./adcgs-enc "$dir/two.adcgs" -o "$dir/x.adcgs"
 expect 3 "no/x.adcgs" ./adcgs-enc "$scene" -o "$dir/no/x.adcgs" --log "$dir/x.log"
 expect 3 "is a folder" ./adcgs-enc "$scene" -o "$dir" --log "$dir/x.log"
 if [ -w /dev/full ]; then
-    expect 0 "/dev/full: cannot write JSON; the run went on" ./adcgs-enc "$scene" -o "$dir/unlogged.adcgs" $short --log /dev/full
+    expect 0 "/dev/full: cannot write: No space left on device; the run went on" ./adcgs-enc "$scene" -o "$dir/unlogged.adcgs" $short --log /dev/full
 fi
 expect 3 "not a regular file" ./adcgs-enc "$scene" -o /dev/null --log "$dir/x.log"
 expect 3 "no/check" $try --checkpoint "$dir/no/check" --log "$dir/x.log"

@@ -104,8 +104,8 @@ refuse "from 5 to 80" --psnr nan
 refuse "exclude each other" --size 20k --psnr 30
 refuse "exclude each other" --lambda 0.1 --psnr 30
 refuse "exclude each other" --lambda 0.1 --size 20k
-refuse "need rate" --size 20k --without fine,rate
-refuse "need rate" --psnr 30 --uncompressed "$dir/raw"
+refuse "needs rate" --size 20k --without fine,rate
+refuse "needs rate" --psnr 30 --uncompressed "$dir/raw"
 
 # A limit of time ends the run, with a stream that is whole and no larger than asked for. How near it comes depends on what the
 # machine does in that time; a run that has too little to show says so.

@@ -299,7 +299,7 @@ static void test_json_failures(void **state)
         adcgs_json_open(&json, NULL, '[');
         adcgs_json_close(&json);
         assert_int_equal(adcgs_json_write(&json, full, "full", &error), ADCGS_ERR_IO);
-        assert_string_equal(error.text, "full: cannot write JSON");
+        assert_string_equal(error.text, "full: cannot write: No space left on device");
         fclose(full);
     }
     adcgs_json_init(&json);
@@ -314,7 +314,8 @@ static void test_json_failures(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_exit_codes), cmocka_unit_test(test_numbers), cmocka_unit_test(test_options),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_exit_codes), cmocka_unit_test(test_numbers),
+                                       cmocka_unit_test(test_options),
                                        cmocka_unit_test(test_mistakes), cmocka_unit_test(test_progress),
                                        cmocka_unit_test(test_utf8),
                                        cmocka_unit_test(test_shown), cmocka_unit_test(test_json),

@@ -308,7 +308,7 @@ static void test_write_failures(void **state)
     expect_error(adcgs_video_write_open(&w, in("x.mpg"), 64, 48, 30, &error), ADCGS_ERR_UNSUPPORTED, "x.mpg", ".webm");
     expect_error(adcgs_video_write_open(&w, in("no/x.mp4"), 64, 48, 30, &error), ADCGS_ERR_IO, "no/x.mp4", "No such");
     expect_error(adcgs_video_write_open(&w, in("x.mp4"), 20000, 48, 30, &error), ADCGS_ERR_USAGE, "x.mp4", "20000");
-    expect_error(adcgs_video_write_open(&w, in("x.mp4"), 64, 48, 0, &error), ADCGS_ERR_USAGE, "x.mp4", "per second");
+    expect_error(adcgs_video_write_open(&w, in("x.mp4"), 64, 48, 0, &error), ADCGS_ERR_UNSUPPORTED, "x.mp4", "per second");
     assert_null(w);
     expect_good(adcgs_video_write_open(&w, in("x.mp4"), 64, 48, 30, &error));
     const adcgs_frame wrong = paint(32, 32, 0);
