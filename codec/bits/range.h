@@ -52,7 +52,7 @@ typedef struct adcgs_adaptive {
 #define ADCGS_ADAPTIVE_INIT { 32768, 0 }
 /** p1 = 32768, count = 0 for n contexts. */
 void adcgs_adaptive_init(adcgs_adaptive *contexts, size_t n);
-/** Update rule of bitstream study 3.1; shared by coder and decoder. */
+/** The rule of clause "Adaptive decisions" (decision D4); shared by coder and decoder. */
 void adcgs_adaptive_update(adcgs_adaptive *context, int bit);
 int adcgs_adaptive_dec(adcgs_range_dec *d, adcgs_adaptive *context);
 void adcgs_adaptive_enc(adcgs_range_enc *e, adcgs_adaptive *context, int bit);

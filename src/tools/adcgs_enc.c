@@ -25,6 +25,7 @@ typedef struct enc_options {
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet;
     int has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
     double started; /* adcgs_seconds() */
+    double checkpoint_every;
     uint64_t seed, size, memory;
 } enc_options;
 
@@ -36,11 +37,12 @@ typedef struct watcher {
     adcgs_progress progress;
     FILE *log;
     double saved;
+    int unsaved; /* the last checkpoint could not be written */
     adcgs_train_report last;
     size_t uncompressed_bytes;
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
-    adcgs_error error, log_error;
+    adcgs_error log_error;
 } watcher;
 
 static void log_last(watcher *w)
@@ -91,6 +93,23 @@ static const char *describe_left(double seconds, char text[32])
     return isnan(seconds) ? "" : text;
 }
 
+/** The run is worth more than its checkpoint: where one cannot be written it goes on, and tries again when the next is due. */
+static void save_now_and_then(watcher *w, double seconds)
+{
+    adcgs_error why = { ADCGS_OK, "" };
+    const int failed = w->unsaved;
+    w->saved = seconds;
+    w->unsaved = adcgs_trainer_save(w->t, w->o->checkpoint, &why) != ADCGS_OK;
+    if (w->unsaved == failed)
+        return;
+    adcgs_progress_clear(&w->progress);
+    if (w->unsaved)
+        adcgs_cli_error(w->progress.cli, ADCGS_OK, "%s; the run goes on, and tries again every %g s", why.text,
+                        w->o->checkpoint_every);
+    else
+        adcgs_cli_note(w->progress.cli, "%s: written again", w->o->checkpoint);
+}
+
 static int observe(void *user, const adcgs_train_report *r)
 {
     watcher *w = user;
@@ -102,11 +121,8 @@ static int observe(void *user, const adcgs_train_report *r)
         adcgs_progress_show(&w->progress, "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", r->stage,
                             r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
                             describe_left(r->left, left));
-    if (w->o->checkpoint && r->seconds - w->saved > 60) {
-        w->saved = r->seconds;
-        if (adcgs_trainer_save(w->t, w->o->checkpoint, &w->error) != ADCGS_OK)
-            return 1;
-    }
+    if (w->o->checkpoint && r->seconds - w->saved > w->o->checkpoint_every)
+        save_now_and_then(w, r->seconds);
     return adcgs_interrupted();
 }
 
@@ -114,7 +130,7 @@ static int loading(void *user, uint32_t done, uint32_t n)
 {
     watcher *w = user;
     adcgs_progress_show(&w->progress, "pictures  %6u/%u", done, n);
-    return adcgs_interrupted();
+    return adcgs_interrupted() && !w->t->iteration; /* later there is a run to save, which it is once they are loaded */
 }
 
 /* ---- Configuration ---- */
@@ -287,10 +303,6 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
         log_last(w);
     ADCGS_TRY(status);
-    if (w->error.status != ADCGS_OK) {
-        *error = w->error;
-        return w->error.status;
-    }
     if (!stopped)
         return ADCGS_OK;
     if (w->o->beginning && !adcgs_interrupted())
@@ -442,6 +454,8 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
         { "checkpoint", 0, ADCGS_OPTION_STRING, &o->checkpoint, 0, 0, "FILE",
           "save the state of the run here every minute and when\ninterrupted (default then: the output's name.checkpoint)", NULL,
           NULL },
+        { "checkpoint-every", 0, ADCGS_OPTION_REAL, &o->checkpoint_every, 0, 1e6, "S", "seconds between such saves (default 60)",
+          NULL, NULL },
         { "resume", 0, ADCGS_OPTION_STRING, &o->resume, 0, 0, "FILE",
           "go on from such a state; same scene, same options", NULL, NULL },
         { "beginning", 0, ADCGS_OPTION_STRING, &o->beginning, 0, 0, "FILE",
@@ -483,7 +497,7 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    enc_options o = { .preset = "fast", .started = adcgs_seconds() };
+    enc_options o = { .preset = "fast", .checkpoint_every = 60, .started = adcgs_seconds() };
     adcgs_cli cli = program;
     const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)

@@ -117,6 +117,19 @@ json "$dir/stop.log" || bad "the log of both parts is no JSON"
 grep -q "\"iteration\":$n," "$dir/stop.log" || bad "the log was not continued"
 grep '"divide":0' "$dir/stop.log" && bad "a log without resolution"
 
+# A checkpoint that cannot be written loses neither the run nor itself: the program says so once, and goes on.
+echo older >"$dir/small"
+enc_limited()
+{
+    # shellcheck disable=SC2086
+    (ulimit -f 64; exec ./adcgs-enc "$scene" -o "$dir/limited.adcgs" --preset draft --max-anchors 300 --iterations $n --threads 2 \
+        --checkpoint "$dir/small" --checkpoint-every 0)
+}
+expect 0 "small: .*; the run goes on, and tries again every 0 s" enc_limited
+[ "$(grep -c "goes on" "$dir/err")" -eq 1 ] || bad "not said once"
+[ "$(cat "$dir/small")" = older ] || bad "a checkpoint was spoilt"
+same one limited "another stream where no checkpoint could be written"
+
 # A checkpoint goes with its options and its scene, and is checked.
 short="--preset draft --max-anchors 300 --iterations $n"
 for options in "--seed 2" "--lambda 3" "--k 5" "--max-anchors 299" "--without fine" "--iterations 601" "--scale 2"; do
