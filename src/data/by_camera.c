@@ -50,7 +50,7 @@ adcgs_status adcgs_sort_by_camera(const adcgs_scene_view *views, uint32_t n, uin
 {
     item *items = adcgs_alloc(NULL, n, sizeof *items, error);
     if (!items)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (uint32_t i = 0; i < n; i++)
         items[i] = (item){.view = &views[i], .index = i};
     qsort(items, n, sizeof *items, by_camera);

@@ -151,7 +151,7 @@ adcgs_status adcgs_evaluate(adcgs_evaluation *out, adcgs_decoder *decoder, const
     double *seconds = adcgs_alloc(NULL, n, sizeof *seconds, error);
     s.of = adcgs_alloc(NULL, n, sizeof *s.of, error);
     s.order = adcgs_alloc(NULL, n, sizeof *s.order, error);
-    const adcgs_status status = seconds && s.of && s.order ? score_all(&s, out, seconds, error) : ADCGS_ERR_MEMORY;
+    const adcgs_status status = seconds && s.of && s.order ? score_all(&s, out, seconds, error) : adcgs_alloc_status(error);
     adcgs_temporal_free(&s.temporal);
     adcgs_free(NULL, seconds);
     adcgs_free(NULL, s.of);

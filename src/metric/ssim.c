@@ -32,7 +32,7 @@ static adcgs_status pair_init(pair *p, int width, int height, adcgs_error *error
     const size_t plane = (size_t)width * (size_t)height;
     p->a = adcgs_alloc(NULL, plane, sizeof *p->a, error);
     p->b = adcgs_alloc(NULL, plane, sizeof *p->b, error);
-    adcgs_status status = p->a && p->b ? adcgs_ssim_space_init(&p->space, width, error) : ADCGS_ERR_MEMORY;
+    adcgs_status status = p->a && p->b ? adcgs_ssim_space_init(&p->space, width, error) : adcgs_alloc_status(error);
     if (status != ADCGS_OK)
         pair_clear(p);
     return status;
@@ -70,7 +70,7 @@ adcgs_status adcgs_ssim(const float *a, const float *b, int width, int height, d
     uint8_t *hidden = adcgs_alloc(NULL, plane, 1, error);
     if (!hidden) {
         pair_clear(&p);
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     }
     const size_t known = find_hidden(hidden, b, plane);
     p.space.hidden = known < plane ? hidden : NULL;

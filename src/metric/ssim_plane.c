@@ -30,7 +30,7 @@ adcgs_status adcgs_ssim_space_init(adcgs_ssim_space *space, int width, adcgs_err
     if (space->ring && space->padded && space->row)
         return ADCGS_OK;
     adcgs_ssim_space_clear(space);
-    return ADCGS_ERR_MEMORY;
+    return adcgs_alloc_status(error);
 }
 
 void adcgs_ssim_space_clear(adcgs_ssim_space *space)

@@ -53,7 +53,7 @@ adcgs_status adcgs_temporal_create(adcgs_temporal **out, int width, int height, 
 {
     adcgs_temporal *t = *out = adcgs_alloc(NULL, 1, sizeof *t, error);
     if (!t)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     t->width = width;
     t->height = height;
     t->plane = (size_t)width * (size_t)height;
@@ -63,7 +63,7 @@ adcgs_status adcgs_temporal_create(adcgs_temporal **out, int width, int height, 
     if (t->low && t->high && t->region)
         return ADCGS_OK;
     adcgs_temporal_free(out);
-    return ADCGS_ERR_MEMORY;
+    return adcgs_alloc_status(error);
 }
 
 /* ---- The region ---- */
@@ -129,7 +129,7 @@ adcgs_status adcgs_temporal_find_region(adcgs_temporal *t, adcgs_error *error)
     t->truth.mean = adcgs_alloc(NULL, 3 * t->plane, sizeof *t->truth.mean, error);
     if (!scratch || !t->error || !t->decoded.mean || !t->truth.mean) {
         adcgs_free(NULL, scratch);
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     }
     for (size_t i = 0; i < 3 * t->plane; i++)
         t->region[i % t->plane] |= (double)t->high[i] - (double)t->low[i] > ADCGS_CHANGE_LEAST;

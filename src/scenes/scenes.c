@@ -200,7 +200,7 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
     ADCGS_TRY(make_directory(directory, error));
     w.rgb = adcgs_alloc(NULL, (size_t)w.width * (size_t)w.height, 3 * sizeof *w.rgb, error);
     if (!w.rgb)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     adcgs_status status = ADCGS_OK;
     for (int split = 0; status == ADCGS_OK && split < ADCGS_SPLITS; split++)
         status = write_split(&w, split);

@@ -294,7 +294,7 @@ adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const 
         return adcgs_fail(error, ADCGS_ERR_USAGE, "ray tracer: %d samples, expected 1..%d", samples, SAMPLES_MAX);
     pose *const poses = adcgs_alloc(NULL, (size_t)n, sizeof *poses, error);
     if (!poses)
-        return ADCGS_ERR_MEMORY;
+        return adcgs_alloc_status(error);
     for (int i = 0; i < n; i++)
         pose_at(&poses[i], &objects[i], time);
     job j = {.objects = objects, .poses = poses, .n = n, .width = width, .height = height, .samples = samples, .camera = camera,

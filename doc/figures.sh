@@ -1,0 +1,43 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# The table of README, section Figures: make -C build figures. Each scene that is at hand is coded with each of the settings below, one
+# thread, seed 1, and measured on the frames decoded from the file. Writes figures.md; what is there already is kept, so that
+# it can go on.
+#   FIGURES  folder of streams (default figures)     ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+set -eu
+source=$(cd "${srcdir:-.}" && pwd)
+data=${ADCGS_DATA:-$source/../shared/data}
+out=${FIGURES:-figures}
+mkdir -p "$out"
+
+# value NAME FILE: of a whole evaluation, not of a view; nothing where it is null.
+value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
+
+# row TITLE SCENE NAME OPTIONS...
+row()
+{
+    title=$1 scene=$2 name=$3
+    shift 3
+    [ -e "$scene" ] || { echo "figures: no $scene, left out" >&2; return 0; }
+    if [ ! -s "$out/$name.json" ]; then
+        echo "figures: $name" >&2
+        sh -c './adcgs-enc "$@" -q >/dev/null || exit; times' sh "$scene" -o "$out/$name.adcgs" --seed 1 --threads 1 "$@" >"$out/$name.times"
+        ./adcgs-eval "$out/$name.adcgs" "$scene" --metrics dynamic-psnr --json >"$out/$name.json.new"
+        mv "$out/$name.json.new" "$out/$name.json"
+    fi
+    seconds=$(awk -F '[m s]+' 'NR == 2 { printf "%.0f", 60 * $1 + $2 + 60 * $3 + $4 }' "$out/$name.times") # user and system, of children
+    moving=$(value dynamic_psnr "$out/$name.json")
+    printf '| %s | `%s` | %s | %.2f | %s | %.4f | %s |\n' "$title" "$*" "$(wc -c <"$out/$name.adcgs")" "$(value psnr "$out/$name.json")" \
+        "$([ -n "$moving" ] && printf '%.2f' "$moving" || echo -)" "$(value ssim "$out/$name.json")" "$seconds" >>"$out/figures.md"
+}
+
+[ -d "$out/demo" ] || ./adcgs-demo-scene -o "$out/demo" --format ppm >/dev/null
+printf '| Scene | `adcgs-enc` | File, bytes | PSNR, dB | of what moves | SSIM | CPU, s |\n|---|---|---|---|---|---|---|\n' >"$out/figures.md"
+for n in 3000 6000; do
+    row "built-in demo" "$out/demo" demo-$n -n $n
+    row '`synth_robot_dnerf`' "$data/synth_robot_dnerf" robot-$n -n $n
+    row '`synth_robot_multiview`' "$data/synth_robot_multiview" room-$n -n $n
+    row '`nrnerf_hand`' "$data/nrnerf_hand" hand-$n -n $n
+    row '`zju313_15f`' "$data/zju313_15f" zju-$n -n $n -l 0.03
+done
+cat "$out/figures.md"
