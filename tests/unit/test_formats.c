@@ -18,7 +18,7 @@ static adcgs_image image;
 
 static void read_good(const char *name, int channels)
 {
-    int width, height, probed;
+    int width = 0, height = 0, probed = 0;
     if (adcgs_image_read(&image, in(name), &error) != ADCGS_OK ||
         adcgs_image_probe(&width, &height, &probed, in(name), &error) != ADCGS_OK)
         fail_msg("%s", error.text);
