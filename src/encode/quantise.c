@@ -188,7 +188,7 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
     const float *curvature = q->o->rdo ? q->o->rdo->curvature[group] : NULL;
     for (int c = 0; c < s->count; c++) {
         const int row = base + s->first + c;
-        const size_t at = ((size_t)(s->anchor / 64) * rows + (size_t)row) * 64 + s->anchor % 64;
+        const size_t at = ((size_t)(s->anchor / ADCGS_LANES) * rows + (size_t)row) * ADCGS_LANES + s->anchor % ADCGS_LANES;
         const float d = f->step[group][row] * 0x1p-6f * factor, step = 64 * d;
         const int32_t mu = s->mu[c], most = s->si[c] ? ADCGS_LEVEL_MAX : 0; /* what every level can code, but 0 */
         const double wanted = (64.0 * target[at] / step - mu) / 64;
@@ -231,7 +231,8 @@ static adcgs_status quantise_latents(adcgs_model *model, const adcgs_fmodel *f, 
 {
     quantiser q = { .f = f, .model = model, .o = options };
     ADCGS_TRY(adcgs_steps_init(&q.steps, model, options->cpu, NULL, error));
-    float *own = options->factor ? NULL : adcgs_alloc(NULL, (size_t)f->groups * (size_t)q.steps.n * 64, sizeof *own, error);
+    const size_t factors = (size_t)f->groups * (size_t)q.steps.n * ADCGS_LANES;
+    float *own = options->factor ? NULL : adcgs_alloc(NULL, factors, sizeof *own, error);
     q.factor = (float(*)[ADCGS_LANES])(options->factor ? options->factor : own);
     q.scratch = adcgs_alloc(NULL, adcgs_steps_scratch(&q.steps), 1, error);
     const adcgs_status status = q.factor && q.scratch ? walk_latents(&q, model, error) : adcgs_alloc_status(error);

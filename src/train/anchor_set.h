@@ -23,7 +23,7 @@ adcgs_status adcgs_anchor_set_adopt(adcgs_trainer *trainer, adcgs_anchor_set *se
 /** Anchor that a slot's primitive belongs to. */
 static inline uint32_t adcgs_anchor_of(const adcgs_fmodel *f, uint32_t slot)
 {
-    return slot / (64u * f->params.k) * 64 + slot % 64;
+    return slot / (ADCGS_LANES * (uint32_t)f->params.k) * ADCGS_LANES + slot % ADCGS_LANES;
 }
 /** Whether an anchor's primitives stay transparent, or cover fewer pixels than this. */
 int adcgs_anchor_is_idle(const adcgs_trainer *trainer, uint32_t anchor, double min_pixels);

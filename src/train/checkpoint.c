@@ -171,7 +171,7 @@ static void walk_width(walk *w, adcgs_fmodel *f, int group)
 static void walk_arrays(walk *w, adcgs_trainer *t)
 {
     adcgs_fmodel *f = t->f;
-    const size_t lanes = (size_t)f->groups * 64, slots = lanes * f->params.k;
+    const size_t lanes = (size_t)f->groups * ADCGS_LANES, slots = lanes * f->params.k;
     visit(w, f->density, sizeof f->density);
     visit(w, f->keep, slots * sizeof(float));
     visit(w, f->moving, lanes * sizeof(float));

@@ -64,7 +64,7 @@ static void move_values(adcgs_trainer *t, int group, const float *still, float d
     const uint32_t seed = (uint32_t)adcgs_random64(t->config.seed, 4100, (uint64_t)group);
     for (size_t j = 0; j < f->param[group].n; j++) {
         const float sign = adcgs_mix32(seed ^ (uint32_t)j) & 1 ? direction : -direction;
-        f->param[group].p[j] = still[j] + sign * reach * f->step[group][j / 64 % rows];
+        f->param[group].p[j] = still[j] + sign * reach * f->step[group][j / ADCGS_LANES % rows];
     }
 }
 
@@ -89,7 +89,7 @@ static adcgs_status measured_move(adcgs_trainer *t, int group, const float *h, d
     *seen = 0.5 * (up + down) - still_loss;
     *said = 0;
     for (size_t j = 0; j < p->n; j++) {
-        const double d = (double)reach * (double)t->f->step[group][j / 64 % rows];
+        const double d = (double)reach * (double)t->f->step[group][j / ADCGS_LANES % rows];
         *said += 0.5 * (double)h[j] * d * d;
     }
     return status;

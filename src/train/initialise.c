@@ -69,12 +69,15 @@ adcgs_status adcgs_scene_frame(const adcgs_scene *scene, double origin[3], doubl
 
 /* ---- What the cameras see ---- */
 
+/** Views that are looked at, at most. */
+enum { SIGHTS = 64 };
+
 typedef struct sight {
     const adcgs_scene *scene;
     double origin[3], scale;
     uint32_t n;             /* views sampled */
-    float *rgb[64];         /* their pictures, reduced */
-    adcgs_camera camera[64];
+    float *rgb[SIGHTS];        /* their pictures, reduced */
+    adcgs_camera camera[SIGHTS];
 } sight;
 
 static void sight_clear(sight *s)
@@ -85,7 +88,7 @@ static void sight_clear(sight *s)
 
 static adcgs_status sight_init(sight *s, const adcgs_scene *scene, adcgs_error *error)
 {
-    const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = all < 64 ? all : 64;
+    const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = ADCGS_MIN(all, SIGHTS);
     memset(s, 0, sizeof *s);
     s->scene = scene;
     ADCGS_TRY(adcgs_scene_frame(scene, s->origin, &s->scale, error));

@@ -10,7 +10,7 @@
 
 adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
 {
-    const size_t slots = (size_t)t->f->groups * 64 * t->f->params.k;
+    const size_t slots = (size_t)t->f->groups * ADCGS_LANES * t->f->params.k;
     ADCGS_TRY(adcgs_pass_resize(t->pass, t->f, error));
     adcgs_free(NULL, t->stats.weight);
     t->stats = (adcgs_train_stats){ .weight = adcgs_alloc(NULL, 3 * slots, sizeof(float), error) };

@@ -50,7 +50,7 @@ static float weight_price(const adcgs_trainer *t, double progress)
 static void follow_means(adcgs_trainer *t)
 {
     for (int i = 0; i < ADCGS_P_ANCHOR; i++) {
-        const size_t n = (size_t)adcgs_fmodel_rows(t->f, i) * t->f->groups * 64;
+        const size_t n = (size_t)adcgs_fmodel_rows(t->f, i) * t->f->groups * ADCGS_LANES;
         const float *mu = t->pass->mu[i], *used = t->pass->used[i];
         float *p = t->f->param[i].p;
         for (size_t j = 0; j < n; j++)

@@ -63,7 +63,7 @@ static void put_inputs(const adcgs_fmodel *f, int group, const sample *s, double
         return;
     }
     for (int i = 0; group == ADCGS_P_VARPI && i < fp; i++)
-        *x++ = (double)f->code[((size_t)(s->anchor / 64) * (size_t)fp + (size_t)i) * 64 + s->anchor % 64];
+        *x++ = (double)f->code[adcgs_slot_of(s->anchor, fp, i)];
     if (group != ADCGS_P_VARPI || f->params.fine_uses_fv)
         x = put_rows(f, x, ADCGS_P_FV, s->anchor, 0, nv, f->mlp[group].entropy);
     if (group == ADCGS_P_THETA || group > ADCGS_P_E_FG)
