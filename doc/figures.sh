@@ -1,9 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The table of README, section Figures: make -C build figures. Each scene that is at hand is coded with each of the settings below, one
+# The table of README, section Figures: make -C build figures. Each scene that is at hand is coded with the settings below, one
 # thread, seed 1, and measured on the frames decoded from the file. Writes figures.md; what is there already is kept, so that
 # it can go on.
-#   FIGURES  folder of streams (default figures)     ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+#   FIGURES     folder of streams (default figures)
+#   ITERATIONS  of training (default 3000: minutes; "3000 20000" makes rows for both)
+#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
 set -eu
 source=$(cd "${srcdir:-.}" && pwd)
 data=${ADCGS_DATA:-$source/../shared/data}
@@ -33,7 +35,7 @@ row()
 
 [ -d "$out/demo" ] || ./adcgs-demo-scene -o "$out/demo" --format ppm >/dev/null
 printf '| Scene | `adcgs-enc` | File, bytes | PSNR, dB | of what moves | SSIM | CPU, s |\n|---|---|---|---|---|---|---|\n' >"$out/figures.md"
-for n in 3000 6000; do
+for n in ${ITERATIONS:-3000}; do
     row "built-in demo" "$out/demo" demo-$n -n $n
     row '`synth_robot_dnerf`' "$data/synth_robot_dnerf" robot-$n -n $n
     row '`synth_robot_multiview`' "$data/synth_robot_multiview" room-$n -n $n
