@@ -170,7 +170,7 @@ static void trainers(void **state)
 static void runs_and_streams(void **state)
 {
     (void)state;
-    each_fails(try_run, 200);
+    each_fails(try_run, 80);
 }
 
 int main(void)
