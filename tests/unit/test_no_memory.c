@@ -55,6 +55,7 @@ static adcgs_train_config short_config(void)
     c.rdo_strength = 1;
     c.still_below = 1;
     c.rigid_weight = 0.02f;
+    c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 8;
     return c;
 }
 
