@@ -56,7 +56,7 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 /** 0 fine, 1 a defect of ours, 2 usage, 3 input/output or memory, 4 invalid data, 5 unsupported. */
 int adcgs_exit_code(adcgs_status status);
 
-/* Messages are one line each: what a terminal would obey in the names and texts in them is shown as escapes (io/text.h). */
+/* Messages are one line each: what a terminal would obey in the names and texts in them is shown as escapes (cli/text.h). */
 /** Print "program: text" on stderr and return the exit code of error->status. */
 int adcgs_cli_fail(const adcgs_cli *cli, const adcgs_error *error);
 /** As adcgs_cli_fail() with a message of its own; with ADCGS_OK for what is no failure, and --quiet must not hide. */

@@ -23,8 +23,7 @@ static adcgs_status add_file(adcgs_md5 *md5, uint8_t *buffer, const char *path, 
     fclose(file);
     if (bad)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read", path);
-    for (int i = 0; i < 8; i++)
-        text[i] = (uint8_t)(size >> 8 * i);
+    adcgs_store_le64(text, size);
     adcgs_md5_update(md5, text, sizeof text);
     return ADCGS_OK;
 }

@@ -40,7 +40,7 @@ int main(int argc, char **argv)
         printf("%-8s %s\n", adcgs_scenes_name(i), adcgs_scenes_about(i));
     adcgs_error error = {ADCGS_OK, ""};
     if (list)
-        return adcgs_cli_flush(&error) == ADCGS_OK ? 0 : adcgs_cli_fail(&cli, &error);
+        return adcgs_cli_leave(&cli, 0);
     adcgs_pool *pool = NULL;
     adcgs_progress progress;
     const adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .format = formats[format]};

@@ -397,7 +397,7 @@ static int list_settings(const adcgs_cli *cli, const enc_options *o)
     if (adcgs_train_preset(&config, o->preset, &error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
     adcgs_train_list(&config, stdout);
-    return adcgs_cli_flush(&error) == ADCGS_OK ? 0 : adcgs_cli_fail(cli, &error);
+    return adcgs_cli_leave(cli, 0);
 }
 
 /** -1 to go on, else the exit code to leave with. */

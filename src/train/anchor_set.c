@@ -5,6 +5,7 @@
 #include "geom/geom.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 void adcgs_anchor_set_clear(adcgs_anchor_set *s)
 {
@@ -71,4 +72,17 @@ int adcgs_anchor_is_idle(const adcgs_trainer *t, uint32_t anchor, double min_pix
         weight += t->stats.weight[slot];
     }
     return opacity < t->config.prune_opacity * (float)t->stats.n || weight < min_pixels * t->stats.n;
+}
+
+static int by_score(const void *a, const void *b)
+{
+    const adcgs_ranked *x = a, *y = b;
+    if (x->score != y->score)
+        return x->score < y->score ? 1 : -1;
+    return (x->index > y->index) - (x->index < y->index);
+}
+
+void adcgs_rank(adcgs_ranked *list, size_t n)
+{
+    qsort(list, n, sizeof *list, by_score);
 }

@@ -20,6 +20,14 @@ void adcgs_anchor_set_add(adcgs_anchor_set *set, const uint32_t pos[3], uint32_t
 /** Sort the set, hand it to the model, and shrink what is new: half the reach, smaller primitives. */
 adcgs_status adcgs_anchor_set_adopt(adcgs_trainer *trainer, adcgs_anchor_set *set, adcgs_error *error);
 
+/** An anchor or a slot, and what it is worth. */
+typedef struct adcgs_ranked {
+    float score;
+    uint32_t index;
+} adcgs_ranked;
+/** Put the highest scores first; of equal ones, the lowest index. */
+void adcgs_rank(adcgs_ranked *list, size_t n);
+
 /** Anchor that a slot's primitive belongs to. */
 static inline uint32_t adcgs_anchor_of(const adcgs_fmodel *f, uint32_t slot)
 {

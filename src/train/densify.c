@@ -34,20 +34,7 @@ static int cells_add(cells *c, const uint32_t pos[3])
 
 /* ---- Growth candidates ---- */
 
-typedef struct candidate {
-    float score;
-    uint32_t slot;
-} candidate;
-
-static int by_score(const void *a, const void *b)
-{
-    const candidate *x = a, *y = b;
-    if (x->score != y->score)
-        return x->score < y->score ? 1 : -1;
-    return (x->slot > y->slot) - (x->slot < y->slot);
-}
-
-static uint32_t find_candidates(const adcgs_trainer *t, candidate *list)
+static uint32_t find_candidates(const adcgs_trainer *t, adcgs_ranked *list)
 {
     const uint32_t slots = t->pass->primitives.n;
     uint32_t n = 0;
@@ -57,9 +44,9 @@ static uint32_t find_candidates(const adcgs_trainer *t, candidate *list)
             continue;
         const float score = t->stats.significance[i] / w;
         if (score > t->config.densify_threshold)
-            list[n++] = (candidate){ score, i };
+            list[n++] = (adcgs_ranked){ score, i };
     }
-    qsort(list, n, sizeof *list, by_score);
+    adcgs_rank(list, n);
     return n;
 }
 
@@ -76,11 +63,11 @@ static int cell_of(const adcgs_fmodel *f, const float x[3], uint32_t pos[3])
     return inside;
 }
 
-static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const candidate *list, uint32_t n, cells *occupied)
+static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_ranked *list, uint32_t n, cells *occupied)
 {
     const float *const *mean = t->pass->primitives.mean;
     for (uint32_t i = 0; i < n && s->n < budget; i++) {
-        const uint32_t slot = list[i].slot;
+        const uint32_t slot = list[i].index;
         uint32_t pos[3];
         if (cell_of(t->f, (const float[]){ mean[0][slot], mean[1][slot], mean[2][slot] }, pos) && cells_add(occupied, pos))
             adcgs_anchor_set_add(s, pos, adcgs_anchor_of(t->f, slot), 1);
@@ -151,7 +138,7 @@ double adcgs_densify_budget(const adcgs_train_config *c, double progress)
 typedef struct workspace {
     adcgs_anchor_set next;
     cells occupied;
-    candidate *list;        /* [slots] */
+    adcgs_ranked *list;        /* [slots] */
     adcgs_residual *missing; /* [MISSING_MOST] */
 } workspace;
 

@@ -4,38 +4,23 @@
 
 #include "train/anchor_set.h"
 
-#include <stdlib.h>
-
-typedef struct rank {
-    float score;
-    uint32_t anchor;
-} rank;
-
-static int by_score(const void *a, const void *b)
-{
-    const rank *x = a, *y = b;
-    if (x->score != y->score)
-        return x->score < y->score ? 1 : -1;
-    return (x->anchor > y->anchor) - (x->anchor < y->anchor);
-}
-
 adcgs_status adcgs_prune_anchors(adcgs_trainer *t, uint32_t keep, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
     adcgs_anchor_set s;
-    rank *ranks = adcgs_alloc(NULL, f->n, sizeof *ranks, error);
+    adcgs_ranked *ranks = adcgs_alloc(NULL, f->n, sizeof *ranks, error);
     uint8_t *kept = adcgs_alloc(NULL, f->n, 1, error);
     adcgs_status status = ranks && kept ? adcgs_anchor_set_init(&s, f->n, error)
                                        : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         for (uint32_t i = 0; i < f->n; i++) {
-            ranks[i] = (rank){ 0, i };
+            ranks[i] = (adcgs_ranked){ 0, i };
             for (int j = 0; j < f->params.k; j++)
                 ranks[i].score += t->stats.weight[adcgs_fmodel_slot(f, i, j)];
         }
-        qsort(ranks, f->n, sizeof *ranks, by_score);
+        adcgs_rank(ranks, f->n);
         for (uint32_t i = 0; i < ADCGS_MIN(f->n, ADCGS_MAX(keep, 1)); i++)
-            kept[ranks[i].anchor] = 1;
+            kept[ranks[i].index] = 1;
         for (uint32_t i = 0; i < f->n; i++)
             if (kept[i])
                 adcgs_anchor_set_add(&s, f->pos[i], i, 0);

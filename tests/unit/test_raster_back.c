@@ -16,21 +16,6 @@ static float *grads_create(uint32_t n)
     return adcgs_alloc(NULL, (size_t)n * GRAD_ARRAYS, sizeof(float), NULL);
 }
 
-static adcgs_raster_grads grads_of(float *data, uint32_t n)
-{
-    adcgs_raster_grads g = {.opacity = data + (size_t)SCENE_OPACITY * n,
-                            .weight = data + (size_t)GRAD_WEIGHT * n,
-                            .screen = data + (size_t)GRAD_SCREEN * n};
-    for (size_t i = 0; i < 3; i++) {
-        g.mean[i] = data + (SCENE_MEAN + i) * n;
-        g.scale[i] = data + (SCENE_SCALE + i) * n;
-        g.colour[i] = data + (SCENE_COLOUR + i) * n;
-    }
-    for (size_t i = 0; i < 4; i++)
-        g.rotation[i] = data + (SCENE_ROTATION + i) * n;
-    return g;
-}
-
 typedef struct frame {
     adcgs_view view;
     size_t pixels;
@@ -62,7 +47,7 @@ static void run(frame *f, const scene_splats *s, float *grads, adcgs_cpu_level c
     adcgs_raster_back *back;
     adcgs_pool *pool;
     const adcgs_primitives p = scene_primitives(s);
-    adcgs_raster_grads g = grads_of(grads, s->n);
+    adcgs_raster_grads g = adcgs_raster_grads_of(grads, s->n);
     if (f->without_screen)
         g.screen = NULL;
     assert_int_equal(adcgs_pool_create(&pool, threads, NULL), ADCGS_OK);
