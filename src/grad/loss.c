@@ -67,7 +67,7 @@ static void run_strip(void *arg, int index, int thread)
     loss->kernel(&loss->strip[index], loss->scratch + thread);
 }
 
-/* L1 alone: strip->first and count are rows here. */
+/* Without SSIM: strip->first and count are rows here. */
 static void run_band(void *arg, int index, int thread)
 {
     adcgs_loss *const loss = arg;
@@ -79,7 +79,7 @@ static void run_band(void *arg, int index, int thread)
         double l1 = 0.0, mse = 0.0;
         for (size_t i = from; i < from + (size_t)s->width; i++) {
             const float d = s->image[i] - s->target[i];
-            s->grad[i] = d > 0.0f ? s->l1_scale : d < 0.0f ? -s->l1_scale : 0.0f;
+            s->grad[i] = s->square_scale * d + (d > 0.0f ? s->l1_scale : d < 0.0f ? -s->l1_scale : 0.0f);
             l1 += d < 0.0f ? -d : d;
             mse += (double)d * d;
         }
@@ -103,14 +103,14 @@ static void place_stripes(adcgs_loss_strip *s)
     s->begin = ADCGS_MAX(0, ADCGS_MIN(s->first - 2 * ADCGS_LOSS_HALO, s->width - ADCGS_LOSS_LANES * s->stripe));
 }
 
-adcgs_status adcgs_loss_image(adcgs_loss *loss, const float *image, const float *target, int width, int height, float ssim_weight,
-                              float *grad, adcgs_loss_value *value, adcgs_error *error)
+adcgs_status adcgs_loss_image(adcgs_loss *loss, const float *image, const float *target, int width, int height,
+                              const adcgs_loss_shares *shares, float *grad, adcgs_loss_value *value, adcgs_error *error)
 {
     if (width < 1 || height < 1 || width > SIZE_MAX_PIXELS || height > SIZE_MAX_PIXELS)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "loss: image of %dx%d, expected 1..%d", width, height, SIZE_MAX_PIXELS);
     const size_t plane = (size_t)width * (size_t)height;
-    const float per_value = (float)(1.0 / (CHANNELS * (double)plane));
-    const int bands = ssim_weight == 0.0f, length = bands ? height : width;
+    const float errors = (1.0f - shares->ssim) * (float)(1.0 / (CHANNELS * (double)plane));
+    const int bands = shares->ssim == 0.0f, length = bands ? height : width;
     const int unit = unit_size(length, bands ? ADCGS_MAX(BAND, height / 64)
                                              : width > ADCGS_LOSS_SPAN ? ADCGS_LOSS_STRIP : ADCGS_LOSS_SPAN);
     int n = 0;
@@ -119,7 +119,8 @@ adcgs_status adcgs_loss_image(adcgs_loss *loss, const float *image, const float 
             loss->strip[n++] = (adcgs_loss_strip){
                 .image = image + (size_t)c * plane, .target = target + (size_t)c * plane, .grad = grad + (size_t)c * plane,
                 .width = width, .height = height, .first = first, .count = ADCGS_MIN(unit, length - first),
-                .l1_scale = (1.0f - ssim_weight) * per_value, .ssim_scale = -ssim_weight * per_value};
+                .l1_scale = (1.0f - shares->square) * errors, .square_scale = shares->square / ADCGS_LOSS_EVEN * errors,
+                .ssim_scale = -shares->ssim * (float)(1.0 / (CHANNELS * (double)plane))};
     for (int i = 0; i < n && !bands; i++)
         place_stripes(&loss->strip[i]);
     adcgs_pool_run(loss->pool, bands ? run_band : run_strip, loss, n);
@@ -133,6 +134,8 @@ adcgs_status adcgs_loss_image(adcgs_loss *loss, const float *image, const float 
     value->l1 /= count;
     value->mse /= count;
     value->ssim /= count;
-    value->loss = (1.0 - (double)ssim_weight) * value->l1 + (bands ? 0.0 : (double)ssim_weight * (1.0 - value->ssim));
+    const double square = (double)shares->square, ssim = (double)shares->ssim;
+    value->loss = (1.0 - ssim) * ((1.0 - square) * value->l1 + square * value->mse / (2.0 * (double)ADCGS_LOSS_EVEN)) +
+                  (bands ? 0.0 : ssim * (1.0 - value->ssim));
     return ADCGS_OK;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * L1 and SSIM of a strip, value and gradient, in one pass down its rows. The
+ * Errors and SSIM of a strip, value and gradient, in one pass down its rows. The
  * body of loss_scalar.c, loss_avx2.c and loss_avx512.c, which define KERNEL and
  * ADCGS_LANES_ISA.
  *
@@ -231,7 +231,7 @@ LANES_INLINE void gradient_of(const adcgs_loss_strip *s, adcgs_loss_scratch *w, 
     const vf d = vf_sub(x, y), zero = vf_set1(0.0f), mine = vf_load(w->mine[i]);
     const vf scale = vf_set1(s->l1_scale), slope = vf_sub(vf_only(vf_ge(d, zero), scale), vf_only(vf_ge(zero, d), scale));
     const vf g = vf_fma(y, dc, vf_fma(vf_add(x, x), dq, dm));
-    vf_store(w->grad[r][i], vf_fma(vf_set1(s->ssim_scale), g, slope));
+    vf_store(w->grad[r][i], vf_fma(vf_set1(s->square_scale), d, vf_fma(vf_set1(s->ssim_scale), g, slope)));
     sums[SUM_L1] = vf_fma(mine, vf_abs(d), sums[SUM_L1]);
     sums[SUM_MSE] = vf_fma(vf_mul(mine, d), d, sums[SUM_MSE]);
 }

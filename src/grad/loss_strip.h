@@ -17,7 +17,7 @@ typedef struct adcgs_loss_strip {
     int width, height;           /**< of the image */
     int first, count;            /**< columns of the strip */
     int begin, stripe;           /**< first column that it reads, and columns of a stripe, an even number */
-    float l1_scale, ssim_scale;  /**< factors of the two gradients */
+    float l1_scale, square_scale, ssim_scale; /**< factors of the gradients */
     double l1, mse, ssim;        /**< out: sums over the strip's pixels */
 } adcgs_loss_strip;
 

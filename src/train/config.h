@@ -38,7 +38,7 @@ typedef struct adcgs_train_config {
     float network_rate;    /**< weight of the networks' own bits, relative to the features' */
     int rate_period;       /**< rate is measured on every n-th group of anchors */
     float rdo_strength;    /**< of the loss per bit when values are frozen, relative to training's; 0: the nearest levels */
-    float ssim_weight;
+    float ssim_weight, square_weight;
     float rigid_weight;    /**< of the energy that keeps neighbours alike as they move; 0 where several views share a moment */
     float scale_weight;    /**< of the price of primitives' size */
     float dropout;         /**< share of primitives left out at random until rounding: against overfitting few views */

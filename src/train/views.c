@@ -48,8 +48,9 @@ adcgs_status adcgs_trainer_loss(adcgs_trainer *t, uint32_t view, const float *ta
     const adcgs_view *v = &t->views[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
     const uint8_t *const hidden = adcgs_pictures_hidden(t->pictures, view);
+    const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.square_weight };
     size_t known = plane;
-    ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->width, v->height, t->config.ssim_weight, t->grad, value, error));
+    ADCGS_TRY(adcgs_loss_image(t->loss, t->image, target, v->width, v->height, &shares, t->grad, value, error));
     for (size_t i = 0; hidden && i < plane; i++) {
         known -= hidden[i];
         for (size_t c = 0; hidden[i] && c < 3; c++)

@@ -96,7 +96,8 @@ static void loss(void *arg)
 {
     frame *f = arg;
     adcgs_loss_value value;
-    bench_check(adcgs_loss_image(f->loss, f->rgb, f->target, f->view.width, f->view.height, 0.2f, f->grads, &value, NULL), NULL);
+    bench_check(adcgs_loss_image(f->loss, f->rgb, f->target, f->view.width, f->view.height, &(adcgs_loss_shares){ 0.2f, 0.9f },
+                                 f->grads, &value, NULL), NULL);
 }
 
 /* ---- Stages ---- */

@@ -237,10 +237,10 @@ static void loss(call *c)
     const size_t n = 3 * (size_t)width * (size_t)height;
     adcgs_loss *l;
     adcgs_loss_value value;
+    const adcgs_loss_shares shares = { c->round & 1 ? 0.2f : 0.0f, c->round & 2 ? 0.7f : 0.0f };
     const float *const image = given(c, n), *const target = given(c, n);
     assert_int_equal(adcgs_loss_create(&l, c->level, NULL, NULL), ADCGS_OK);
-    assert_int_equal(adcgs_loss_image(l, image, target, width, height, c->round & 1 ? 0.2f : 0.0f, output(c, n), &value, NULL),
-                     ADCGS_OK);
+    assert_int_equal(adcgs_loss_image(l, image, target, width, height, &shares, output(c, n), &value, NULL), ADCGS_OK);
     adcgs_loss_free(&l);
 }
 

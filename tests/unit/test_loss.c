@@ -15,6 +15,13 @@
 #include <cmocka.h>
 
 #define WEIGHT 0.2
+#define SQUARE 0.6
+
+/* An error without SSIM's share. */
+static double error_of(double e)
+{
+    return (1 - SQUARE) * fabs(e) + SQUARE * e * e / 0.2;
+}
 
 static double window(int dx, int dy)
 {
@@ -50,7 +57,7 @@ static adcgs_loss_value reference(const double *x, const double *y, int w, int h
         v.mse += (x[i] - y[i]) * (x[i] - y[i]) / (3 * plane);
         v.ssim += ssim_at(x + i / plane * plane, y + i / plane * plane, w, h, i % plane % w, i % plane / w) / (3 * plane);
     }
-    v.loss = (1 - WEIGHT) * v.l1 + WEIGHT * (1 - v.ssim);
+    v.loss = (1 - WEIGHT) * ((1 - SQUARE) * v.l1 + SQUARE * v.mse / 0.2) + WEIGHT * (1 - v.ssim);
     return v;
 }
 
@@ -62,7 +69,7 @@ static double slope(double *x, const double *y, int w, int h, int i)
     double side[2];
     for (int s = 0; s < 2; s++) {
         x[i] = keep + (s ? e : -e);
-        side[s] = (1 - WEIGHT) * fabs(x[i] - y[i]);
+        side[s] = (1 - WEIGHT) * error_of(x[i] - y[i]);
         for (int v = ADCGS_MAX(0, at / w - 5); v <= ADCGS_MIN(h - 1, at / w + 5); v++)
             for (int u = ADCGS_MAX(0, at % w - 5); u <= ADCGS_MIN(w - 1, at % w + 5); u++)
                 side[s] -= WEIGHT * ssim_at(x + i / plane * plane, y + i / plane * plane, w, h, u, v);
@@ -114,8 +121,9 @@ static adcgs_loss_value run(adcgs_cpu_level cpu, int threads, pictures *p, float
     adcgs_loss_value value;
     assert_int_equal(adcgs_pool_create(&pool, threads, NULL), ADCGS_OK);
     assert_int_equal(adcgs_loss_create(&loss, cpu, pool, NULL), ADCGS_OK);
+    const adcgs_loss_shares shares = { weight, (float)SQUARE };
     for (int twice = 0; twice < 2; twice++) /* the second run meets a used workspace */
-        assert_int_equal(adcgs_loss_image(loss, p->x, p->y, p->w, p->h, weight, p->grad, &value, NULL), ADCGS_OK);
+        assert_int_equal(adcgs_loss_image(loss, p->x, p->y, p->w, p->h, &shares, p->grad, &value, NULL), ADCGS_OK);
     adcgs_loss_free(&loss);
     assert_null(loss);
     adcgs_pool_free(&pool);
@@ -172,9 +180,12 @@ static void works_without_ssim(void **state)
     pictures p = make(50, 70);
     const adcgs_loss_value got = run(ADCGS_CPU_AUTO, 2, &p, 0.0f), want = reference(p.dx, p.dy, p.w, p.h);
     (void)state;
-    assert_true(fabs(got.l1 - want.l1) < 1e-7 && fabs(got.mse - want.mse) < 1e-7 && got.loss == got.l1);
-    for (int i = 0; i < 3 * p.w * p.h; i++)
-        assert_true(fabs(p.grad[i] - (p.x[i] > p.y[i] ? 1.0 : -1.0) / (3.0 * p.w * p.h)) < 1e-10);
+    assert_true(fabs(got.l1 - want.l1) < 1e-7 && fabs(got.mse - want.mse) < 1e-7);
+    assert_true(fabs(got.loss - (1 - SQUARE) * want.l1 - SQUARE * want.mse / 0.2) < 1e-7);
+    for (int i = 0; i < 3 * p.w * p.h; i++) {
+        const double e = p.dx[i] - p.dy[i], pull = (1 - SQUARE) * (e > 0 ? 1 : -1) + SQUARE * e / 0.1;
+        assert_true(fabs(p.grad[i] - pull / (3.0 * p.w * p.h)) < 1e-9);
+    }
     drop(&p);
 }
 
