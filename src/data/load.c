@@ -15,7 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define COUNTS 0.5f /* share of a pixel that must not be masked for it to count */
+#define COUNTS 0.5f /* share of a pixel that must not be masked for it to count, or must move for it to move */
 
 static adcgs_status check_size(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
 {
@@ -37,7 +37,9 @@ static adcgs_status probe(const adcgs_scene_view *view, const char *path, adcgs_
 adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
 {
     ADCGS_TRY(probe(view, view->path, error));
-    return view->mask ? probe(view, view->mask, error) : ADCGS_OK;
+    if (view->mask)
+        ADCGS_TRY(probe(view, view->mask, error));
+    return view->moving ? probe(view, view->moving, error) : ADCGS_OK;
 }
 
 /* ---- Reading ---- */
@@ -231,5 +233,36 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
         *camera = view->camera;
         divide_camera(camera, divide);
     }
+    return status;
+}
+
+/* ---- What moves ---- */
+
+/** Of any colours, which are replaced: one channel, 1 where it is not black. */
+static adcgs_status to_zero_and_one(adcgs_image *image, const char *path, adcgs_error *error)
+{
+    adcgs_image out;
+    ADCGS_TRY(adcgs_image_alloc(&out, image->width, image->height, 1, path, error));
+    for (size_t i = 0; i < (size_t)out.width * (size_t)out.height; i++)
+        out.data[i] = is_seen(image, i) ? 1.0f : 0.0f;
+    adcgs_image_free(image);
+    *image = out;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_scene_load_moving(const adcgs_scene_view *view, uint8_t **moving, adcgs_error *error)
+{
+    adcgs_image image;
+    *moving = NULL;
+    ADCGS_TRY(read_image(view, view->moving, &image, error));
+    adcgs_status status = to_zero_and_one(&image, view->moving, error);
+    if (status == ADCGS_OK && view->lens.width > 0)
+        status = straighten(view, &image, 1, error);
+    const size_t plane = (size_t)image.width * (size_t)image.height;
+    if (status == ADCGS_OK && !(*moving = malloc(plane)))
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->moving);
+    for (size_t i = 0; status == ADCGS_OK && i < plane; i++)
+        (*moving)[i] = image.data[i] >= COUNTS;
+    adcgs_image_free(&image);
     return status;
 }

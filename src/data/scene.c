@@ -30,7 +30,8 @@ void adcgs_scene_view_clear(adcgs_scene_view *view)
 {
     free(view->path);
     free(view->mask);
-    view->path = view->mask = NULL;
+    free(view->moving);
+    view->path = view->mask = view->moving = NULL;
 }
 
 void adcgs_scene_free(adcgs_scene **scene)

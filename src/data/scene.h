@@ -35,6 +35,7 @@ typedef struct adcgs_scene_view {
     double time;          /**< seconds */
     char *path;           /**< of the image or the video */
     char *mask;           /**< of the image that says where the picture counts, or NULL */
+    char *moving;         /**< of the image that says where something moves, known truth for measuring alone, or NULL */
     int is_video;
     int64_t frame;        /**< of a video, from 0 */
     adcgs_lens lens;      /**< the picture as it was taken; width 0: by the camera itself */
@@ -71,7 +72,7 @@ const char *adcgs_split_name(adcgs_split split);
 /** 0, or -1 if unknown. */
 int adcgs_split_parse(const char *name, adcgs_split *split);
 
-/** The files of a picture and its mask have the size that its camera, or its lens, says; ADCGS_ERR_DATA if not. */
+/** The files of a picture and its masks have the size that its camera, or its lens, says; ADCGS_ERR_DATA if not. */
 adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error);
 
 /**
@@ -84,5 +85,11 @@ adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
  */
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error);
+/**
+ * Load what is known of a view that has `moving`: [height][width] as its camera says, 1 where something moves, which is where
+ * that image is not black, else 0. It is straightened as the picture is, and then moves where most of a pixel does. The caller
+ * frees *moving with free(). Any thread may call.
+ */
+adcgs_status adcgs_scene_load_moving(const adcgs_scene_view *view, uint8_t **moving, adcgs_error *error);
 
 #endif

@@ -59,6 +59,8 @@ static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
             ADCGS_TRY(adcgs_file_check(view->path, "an image", error));
             if (view->mask)
                 ADCGS_TRY(adcgs_file_check(view->mask, "an image", error));
+            if (view->moving)
+                ADCGS_TRY(adcgs_file_check(view->moving, "an image", error));
             if (s != ADCGS_SPLIT_TRAIN)
                 ADCGS_TRY(adcgs_scene_probe(view, error));
         }

@@ -44,24 +44,24 @@ static adcgs_status find_image(const place *at, char **out)
     return status;
 }
 
-/** The mask's file, NULL if the frame has none. */
-static adcgs_status find_mask(const place *at, char **out)
+/** The file of a mask, as the field names it; NULL if the frame has none. */
+static adcgs_status find_mask(const place *at, const char *field, char **out)
 {
-    json_t *item = json_object_get(at->json.frame, "mask_path");
+    json_t *item = json_object_get(at->json.frame, field);
     const char *name = json_string_value(item);
     *out = NULL;
     if (!item || json_is_null(item))
         return ADCGS_OK;
     if (!name || !*name)
-        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "mask_path", "expected the name of an image");
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, field, "expected the name of an image");
     *out = join(at->folder, name);
     if (*out && adcgs_is_there(*out))
         return ADCGS_OK;
     free(*out);
     if (!*out)
-        return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "mask_path", "out of memory");
+        return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, field, "out of memory");
     *out = NULL;
-    return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "mask_path", "no such image: %.100s", name);
+    return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, field, "no such image: %.100s", name);
 }
 
 /** The lens and the pinhole for it; w and h are the picture's as it was taken. */
@@ -103,7 +103,9 @@ static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_v
     ADCGS_TRY(find_image(at, &view->path));
     adcgs_status status = read_camera(at, scene, view);
     if (status == ADCGS_OK)
-        status = find_mask(at, &view->mask);
+        status = find_mask(at, "mask_path", &view->mask);
+    if (status == ADCGS_OK)
+        status = find_mask(at, "moving_path", &view->moving);
     if (status != ADCGS_OK) {
         adcgs_scene_view_clear(view);
         return status;

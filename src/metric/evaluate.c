@@ -6,6 +6,7 @@
 #include "data/by_camera.h"
 #include "data/sort.h"
 #include "metric/metric.h"
+#include "metric/moving.h"
 
 #include <adcgs/decoder.h>
 #include <adcgs/frame.h>
@@ -72,6 +73,19 @@ static adcgs_status begin_camera(session *s, uint32_t i, adcgs_error *error)
     return look_ahead(s, i, end, error);
 }
 
+/** Where what moves is known, that counts, not what the camera's views together have it guessed to be. */
+static adcgs_status measure_moving(adcgs_view_score *score, adcgs_error *error)
+{
+    uint8_t *mask;
+    ADCGS_TRY(adcgs_scene_load_moving(score->view, &mask, error));
+    const size_t plane = (size_t)score->width * (size_t)score->height;
+    const adcgs_moving moving = adcgs_moving_measure(mask, score->decoded, score->truth, plane);
+    score->temporal.dynamic_psnr = moving.psnr;
+    score->known_share = moving.share;
+    free(mask);
+    return ADCGS_OK;
+}
+
 /** All but the speed. */
 static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_error *error)
 {
@@ -84,7 +98,8 @@ static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_err
     score->temporal = (adcgs_temporal_view){.dynamic_psnr = (double)NAN, .flicker = (double)NAN};
     if (s->temporal)
         score->temporal = adcgs_temporal_add(s->temporal, a, b);
-    return ADCGS_OK;
+    score->known_share = (double)NAN;
+    return (s->measure & ADCGS_MEASURE_DYNAMIC) && score->view->moving ? measure_moving(score, error) : ADCGS_OK;
 }
 
 /** View order[i]. */

@@ -28,7 +28,8 @@ typedef struct adcgs_view_score {
     double psnr, ssim;
     double ms_ssim;                         /**< not a number where it is not measured, as all of the next */
     int ms_ssim_scales;                     /**< 0 then */
-    adcgs_temporal_view temporal;           /**< of cameras with more than one view */
+    adcgs_temporal_view temporal;           /**< of cameras with more than one view; where what moves is known, so is its PSNR */
+    double known_share;                     /**< of the picture, that moves as is known; not a number where it is not */
     const adcgs_temporal_total *of_camera;  /**< with the last view of such a camera, else NULL */
     double seconds;                         /**< to render the frame */
     int width, height;

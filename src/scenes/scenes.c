@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where the cameras of a scene stand, and writing the scene to a folder. */
+/** \file Where the cameras of a scene stand, what moves how fast, and writing the scene to a folder. */
 #include "config.h"
 
 #include "scenes/scenes.h"
@@ -17,8 +17,9 @@
 #define OBJECTS_MAX 32
 #define SAMPLES 3
 #define PATH_BYTES 4096
-/* The focal length is HALF_WIDTH_INVERSE half widths; the layout wants the angle, 2 atan(1/2.5). */
-#define HALF_WIDTH_INVERSE 2.5
+#define MOTION_MIN 0.001
+#define MOTION_MAX 10.0
+/* The layout wants the angle: 2 atan(1 / ADCGS_SCENES_FOCAL). */
 #define CAMERA_ANGLE_X "0.7610127542247298"
 
 static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
@@ -30,13 +31,14 @@ typedef struct view {
 
 typedef struct writer {
     const adcgs_scenes_entry *scene;
+    adcgs_trace_object objects[OBJECTS_MAX]; /* the scene's, with the motion that is wanted */
     const char *directory, *format;
     int width, height;
     adcgs_pool *pool;
     adcgs_scenes_progress_fn progress;
     void *user;
     int done;
-    float *rgb;
+    float *pixels; /* of a picture, or of a mask */
     adcgs_error *error;
 } writer;
 
@@ -74,7 +76,7 @@ static void place(adcgs_trace_camera *camera, const adcgs_scenes_entry *scene, d
     const double flat = scene->distance * adcgs_trace_cos(elevation);
     const double eye[3] = {scene->target[0] + flat * adcgs_trace_sin(azimuth), scene->target[1] - flat * adcgs_trace_cos(azimuth),
                            scene->target[2] + scene->distance * adcgs_trace_sin(elevation)};
-    camera->focal = 0.5 * width * HALF_WIDTH_INVERSE;
+    camera->focal = 0.5 * width * ADCGS_SCENES_FOCAL;
     adcgs_trace_look(camera, eye, scene->target);
 }
 
@@ -118,34 +120,76 @@ static adcgs_status join(char path[PATH_BYTES], const char *directory, const cha
     return ADCGS_OK;
 }
 
-static adcgs_status write_picture(writer *w, const view *v, const char *name)
+static const char *mask_extension(const writer *w)
 {
-    adcgs_trace_object objects[OBJECTS_MAX];
-    char path[PATH_BYTES];
-    const adcgs_scenes_entry *const scene = w->scene;
-    memcpy(objects, scene->objects, (size_t)scene->n_objects * sizeof objects[0]);
-    for (int i = 0; i < scene->n_objects; i++) {
-        adcgs_trace_object *const o = &objects[i];
-        if (scene->moving >> i & 1)
-            continue;
-        memset(o->velocity, 0, sizeof o->velocity);
-        memset(o->fade, 0, sizeof o->fade);
-        o->bounces = o->spin = o->orbit_turns = 0.0;
+    return strcmp(w->format, "png") ? "pgm" : "png";
+}
+
+/* Objects that move do so `motion` times as far; the others keep the pose of time 0. */
+static void take_objects(writer *w, double motion)
+{
+    for (int i = 0; i < w->scene->n_objects; i++) {
+        adcgs_trace_object *const o = &w->objects[i];
+        const double factor = w->scene->moving >> i & 1 ? motion : 0.0;
+        *o = w->scene->objects[i];
+        for (int c = 0; c < 3; c++) {
+            o->velocity[c] *= factor;
+            o->fade[c] *= factor;
+        }
+        o->bounces *= factor;
+        o->spin *= factor;
+        o->orbit_turns *= factor;
+        o->from *= factor;
     }
-    ADCGS_TRY(join(path, w->directory, name, w->format, w->error));
-    ADCGS_TRY(adcgs_trace_render(objects, scene->n_objects, &v->camera, v->time, w->width, w->height, SAMPLES, w->pool, w->rgb,
-                                 w->error));
-    const adcgs_image image = {.width = w->width, .height = w->height, .channels = 3, .data = w->rgb};
+}
+
+static adcgs_status write_pixels(writer *w, const char *name, const char *extension, int channels)
+{
+    char path[PATH_BYTES];
+    const adcgs_image image = {.width = w->width, .height = w->height, .channels = channels, .data = w->pixels};
+    ADCGS_TRY(join(path, w->directory, name, extension, w->error));
     return adcgs_image_write(&image, path, 0, w->error);
 }
 
-static void print_frame(FILE *file, const view *v, const char *name, const char *extension, int last)
+static adcgs_status write_picture(writer *w, const view *v, const char *name)
+{
+    ADCGS_TRY(adcgs_trace_render(w->objects, w->scene->n_objects, &v->camera, v->time, w->width, w->height, SAMPLES, w->pool,
+                                 w->pixels, w->error));
+    return write_pixels(w, name, w->format, 3);
+}
+
+/* The picture of what moves. */
+static adcgs_status write_mask(writer *w, const view *v, const char *name)
+{
+    ADCGS_TRY(adcgs_trace_cover(w->objects, w->scene->n_objects, w->scene->moving, &v->camera, v->time, w->width, w->height,
+                                SAMPLES, w->pool, w->pixels, w->error));
+    return write_pixels(w, name, mask_extension(w), 1);
+}
+
+/* The layout leaves ".png" out of a picture's name; any other extension is written out. A mask's name has it always. */
+static void print_frame(const writer *w, FILE *file, const view *v, const char *name, const char *mask)
 {
     const double *const m = v->camera.to_world;
-    fprintf(file, "    { \"file_path\": \"./%s%s\", \"time\": %.12g,\n      \"transform_matrix\": [", name, extension, v->time);
+    fprintf(file, "    { \"file_path\": \"./%s%s\", \"time\": %.12g,\n", name, strcmp(w->format, "png") ? ".ppm" : "", v->time);
+    if (mask)
+        fprintf(file, "      \"moving_path\": \"./%s.%s\",\n", mask, mask_extension(w));
+    fprintf(file, "      \"transform_matrix\": [");
     for (int r = 0; r < 3; r++)
         fprintf(file, "[%.12g, %.12g, %.12g, %.12g], ", m[4 * r], m[4 * r + 1], m[4 * r + 2], m[4 * r + 3]);
-    fprintf(file, "[0, 0, 0, 1]] }%s\n", last ? "" : ",");
+    fprintf(file, "[0, 0, 0, 1]] }");
+}
+
+/* What moves is known truth: training gets none of it. */
+static adcgs_status write_view(writer *w, int split, int i, FILE *file)
+{
+    char name[32], mask[64];
+    const view v = view_at(w->scene, split, i, w->width);
+    const int has_mask = split != ADCGS_SPLIT_TRAIN && w->scene->moving;
+    snprintf(name, sizeof name, "%s/r_%03d", split_names[split], i);
+    snprintf(mask, sizeof mask, "%s_moving", name);
+    print_frame(w, file, &v, name, has_mask ? mask : NULL);
+    ADCGS_TRY(write_picture(w, &v, name));
+    return has_mask ? write_mask(w, &v, mask) : ADCGS_OK;
 }
 
 static adcgs_status write_frames(writer *w, int split, FILE *file)
@@ -153,12 +197,8 @@ static adcgs_status write_frames(writer *w, int split, FILE *file)
     const int n = split_size(w->scene, split), total = adcgs_scenes_count(w->scene->name);
     fprintf(file, "{\n  \"camera_angle_x\": " CAMERA_ANGLE_X ",\n  \"frames\": [\n");
     for (int i = 0; i < n; i++) {
-        char name[32];
-        const view v = view_at(w->scene, split, i, w->width);
-        snprintf(name, sizeof name, "%s/r_%03d", split_names[split], i);
-        /* The layout leaves ".png" out; any other extension is written out. */
-        print_frame(file, &v, name, strcmp(w->format, "png") ? ".ppm" : "", i == n - 1);
-        ADCGS_TRY(write_picture(w, &v, name));
+        ADCGS_TRY(write_view(w, split, i, file));
+        fprintf(file, i < n - 1 ? ",\n" : "\n");
         w->done++;
         if (w->progress)
             w->progress(w->user, w->done, total);
@@ -197,13 +237,17 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
                 .error = error};
     if (w.width < 1 || w.height < 1 || w.width > 16384 || w.height > 16384)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: size %dx%d, expected 1..16384 each", w.width, w.height);
+    const double motion = options->motion != 0.0 ? options->motion : 1.0;
+    if (!(motion >= MOTION_MIN && motion <= MOTION_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: motion %g, expected %g..%g", motion, MOTION_MIN, MOTION_MAX);
+    take_objects(&w, motion);
     ADCGS_TRY(make_directory(directory, error));
-    w.rgb = adcgs_alloc(NULL, (size_t)w.width * (size_t)w.height, 3 * sizeof *w.rgb, error);
-    if (!w.rgb)
+    w.pixels = adcgs_alloc(NULL, (size_t)w.width * (size_t)w.height, 3 * sizeof *w.pixels, error);
+    if (!w.pixels)
         return adcgs_alloc_status(error);
     adcgs_status status = ADCGS_OK;
     for (int split = 0; status == ADCGS_OK && split < ADCGS_SPLITS; split++)
         status = write_split(&w, split);
-    adcgs_free(NULL, w.rgb);
+    adcgs_free(NULL, w.pixels);
     return status;
 }

@@ -2,8 +2,12 @@
 /** \file
  * Scenes with known truth: small animated worlds, ray traced, written in the
  * layout of D-NeRF (transforms_{train,val,test}.json and a folder of pictures
- * each). Every byte follows from the name and the size: only + - * / and sqrt
+ * each). Every byte follows from the name, the size and the motion: only + - * / and sqrt
  * on doubles, own sine and cosine, counter-based random numbers.
+ *
+ * Beside the pictures for validation and testing of a scene in which something moves lie masks of what moves, which their frames
+ * name as moving_path: NAME_moving, white where the nearest surface is, for at least half of a pixel's samples, that of an object
+ * that moves, else black.
  */
 #ifndef ADCGS_SCENES_SCENES_H
 #define ADCGS_SCENES_SCENES_H
@@ -14,6 +18,8 @@ typedef struct adcgs_scenes_options {
     const char *name;   /**< of the scene, see adcgs_scenes_name() */
     int width, height;  /**< of the pictures; 0: the scene's own size */
     const char *format; /**< extension of the pictures: "png" or "ppm"; NULL: "png" */
+    double motion;      /**< 0.001 to 10: factor of all that moving objects do (speed, bounces, turns, orbits, change of colour)
+                             and of the times from which they are there, so that 0.1 is a tenth of the motion; 0: 1 */
 } adcgs_scenes_options;
 
 /** Name and one line about scene i; NULL past the last. */

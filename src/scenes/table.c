@@ -3,20 +3,32 @@
 #include "scenes/table.h"
 
 /* A table top under a wide sky. Everything rests on z = 0; the cameras stand on the -y side. */
+#define DOME                                                                                                    \
+    {.shape = ADCGS_SHAPE_DOME, .size = {7.0}, .texture = ADCGS_TEXTURE_NOISE, .frequency = 0.35,               \
+     .colour = {{0.42, 0.56, 0.74}, {0.86, 0.84, 0.80}}, .seed = 11}
+#define TABLE_TOP                                                                                               \
+    {.shape = ADCGS_SHAPE_FLOOR, .size = {2.6}, .texture = ADCGS_TEXTURE_CHECKER, .frequency = 1.6,             \
+     .colour = {{0.72, 0.64, 0.52}, {0.50, 0.46, 0.44}}, .detail = 0.30, .seed = 12}
+#define CRATE                                                                                                   \
+    {.shape = ADCGS_SHAPE_BOX, .size = {0.36, 0.36, 0.36}, .position = {-0.95, 0.50, 0.36},                     \
+     .texture = ADCGS_TEXTURE_PATCHES, .frequency = 6.0, .colour = {{0.15, 0.35, 0.55}, {0.90, 0.85, 0.60}},    \
+     .seed = 13}
+#define DRUM                                                                                                    \
+    {.shape = ADCGS_SHAPE_CYLINDER, .size = {0.28, 0.0, 0.52}, .position = {0.92, 0.62, 0.52},                  \
+     .texture = ADCGS_TEXTURE_STRIPES, .frequency = 4.0, .colour = {{0.85, 0.82, 0.78}, {0.22, 0.42, 0.34}},    \
+     .detail = 0.2, .seed = 14}
+#define DOTTED_BALL                                                                                             \
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.22}, .position = {-0.15, -1.00, 0.22}, .texture = ADCGS_TEXTURE_DOTS, \
+     .frequency = 7.0, .colour = {{0.92, 0.88, 0.80}, {0.75, 0.25, 0.20}}, .seed = 15}
+#define PEDESTAL                                                                                                \
+    {.shape = ADCGS_SHAPE_CYLINDER, .size = {0.42, 0.0, 0.16}, .position = {0.0, 0.15, 0.16},                   \
+     .texture = ADCGS_TEXTURE_NOISE, .frequency = 5.0, .colour = {{0.30, 0.26, 0.30}, {0.80, 0.76, 0.82}},      \
+     .seed = 16}
+#define STILL DOME, TABLE_TOP, CRATE, DRUM, DOTTED_BALL
+
 static const adcgs_trace_object stage[] = {
-    /* 0 */ {.shape = ADCGS_SHAPE_DOME, .size = {7.0}, .texture = ADCGS_TEXTURE_NOISE, .frequency = 0.35,
-             .colour = {{0.42, 0.56, 0.74}, {0.86, 0.84, 0.80}}, .seed = 11},
-    /* 1 */ {.shape = ADCGS_SHAPE_FLOOR, .size = {2.6}, .texture = ADCGS_TEXTURE_CHECKER, .frequency = 1.6,
-             .colour = {{0.72, 0.64, 0.52}, {0.50, 0.46, 0.44}}, .detail = 0.30, .seed = 12},
-    /* 2 */ {.shape = ADCGS_SHAPE_BOX, .size = {0.36, 0.36, 0.36}, .position = {-0.95, 0.50, 0.36},
-             .texture = ADCGS_TEXTURE_PATCHES, .frequency = 6.0, .colour = {{0.15, 0.35, 0.55}, {0.90, 0.85, 0.60}}, .seed = 13},
-    /* 3 */ {.shape = ADCGS_SHAPE_CYLINDER, .size = {0.28, 0.0, 0.52}, .position = {0.92, 0.62, 0.52},
-             .texture = ADCGS_TEXTURE_STRIPES, .frequency = 4.0, .colour = {{0.85, 0.82, 0.78}, {0.22, 0.42, 0.34}},
-             .detail = 0.2, .seed = 14},
-    /* 4 */ {.shape = ADCGS_SHAPE_BALL, .size = {0.22}, .position = {-0.15, -1.00, 0.22}, .texture = ADCGS_TEXTURE_DOTS,
-             .frequency = 7.0, .colour = {{0.92, 0.88, 0.80}, {0.75, 0.25, 0.20}}, .seed = 15},
-    /* 5 */ {.shape = ADCGS_SHAPE_CYLINDER, .size = {0.42, 0.0, 0.16}, .position = {0.0, 0.15, 0.16},
-             .texture = ADCGS_TEXTURE_NOISE, .frequency = 5.0, .colour = {{0.30, 0.26, 0.30}, {0.80, 0.76, 0.82}}, .seed = 16},
+    STILL,
+    PEDESTAL,
     /* 6: a ball that hops and rolls */
     {.shape = ADCGS_SHAPE_BALL, .size = {0.26}, .position = {-1.10, -0.45, 0.26}, .texture = ADCGS_TEXTURE_CHECKER,
      .frequency = 5.0, .colour = {{0.95, 0.72, 0.15}, {0.20, 0.22, 0.50}}, .seed = 17, .velocity = {1.0, -0.05, 0.0},
@@ -52,6 +64,39 @@ static const adcgs_trace_object mini[] = {
      .frequency = 3.0, .colour = {{0.80, 0.30, 0.20}, {0.95, 0.75, 0.30}}, .seed = 34, .velocity = {0.60, 0.0, 0.0}},
 };
 
+/* ---- Motion of a known size: a thing that has structure to be followed, on the demo's table ---- */
+
+#define DISTANCE 4.2
+#define VISIBLE (DISTANCE * 2.0 / ADCGS_SCENES_FOCAL) /* the picture's width at the target */
+
+/* A parcel: patches of 5 pixels of the pictures' own size, with grain. */
+#define PARCEL .shape = ADCGS_SHAPE_BOX, .texture = ADCGS_TEXTURE_PATCHES, .frequency = 9.0, .detail = 0.6,    \
+               .colour = {{0.95, 0.80, 0.35}, {0.35, 0.12, 0.20}}
+/* Along x from one side of the target to the other, as the camera in the middle of the arc has it across. */
+#define CROSSING(share)                                                                                         \
+    {PARCEL, .size = {0.26, 0.22, 0.26}, .position = {-0.5 * (share) * VISIBLE, -0.10, 0.26}, .seed = 41,      \
+     .velocity = {(share) * VISIBLE, 0.0, 0.0}}
+#define TURNING(turns)                                                                                          \
+    {PARCEL, .size = {0.34, 0.25, 0.28}, .position = {0.0, 0.15, 0.60}, .seed = 42, .spin_axis = {0.0, 0.0, 1.0}, .spin = (turns)}
+#define HALF(side, number)                                                                                      \
+    {PARCEL, .size = {0.19, 0.24, 0.28}, .position = {0.19 * (side), -0.10, 0.28}, .seed = (number),           \
+     .velocity = {0.55 * (side), 0.0, 0.0}}
+
+static const adcgs_trace_object cross5[] = {STILL, CROSSING(0.05)};
+static const adcgs_trace_object cross20[] = {STILL, CROSSING(0.20)};
+static const adcgs_trace_object cross80[] = {STILL, CROSSING(0.80)};
+static const adcgs_trace_object turn1[] = {STILL, PEDESTAL, TURNING(1.0)};
+static const adcgs_trace_object turn3[] = {STILL, PEDESTAL, TURNING(3.0)};
+static const adcgs_trace_object appear[] = {
+    STILL, PEDESTAL, {PARCEL, .size = {0.28, 0.24, 0.30}, .position = {0.0, 0.15, 0.62}, .seed = 43, .from = 0.5}};
+static const adcgs_trace_object split[] = {STILL, HALF(-1.0, 44), HALF(1.0, 45)};
+
+/* The last `movers` of an array move. 11 views for testing: none is at the very moment at which a thing appears. */
+#define MOVING(things, movers)                                                                                  \
+    .objects = things, .n_objects = (int)ADCGS_COUNTOF(things),                                                 \
+    .moving = ((1u << (movers)) - 1u) << (ADCGS_COUNTOF(things) - (movers)), .size = 160, .cameras = 12, .times = 24, \
+    .turns = 3, .n_val = 5, .n_test = 11, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}
+
 #define STAGE                                                                                                         \
     .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage), .size = 256, .cameras = 12, .times = 40, .turns = 3, .n_val = 5, \
     .n_test = 10, .distance = 4.2, .target = {0.0, 0.0, 0.35}
@@ -68,6 +113,13 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "tiny", .about = "a miniature for tests: a box and a ball that slides", .objects = mini,
      .n_objects = (int)ADCGS_COUNTOF(mini), .moving = 1 << 3, .size = 64, .cameras = 6, .times = 8, .turns = 2, .n_val = 1,
      .n_test = 3, .distance = 4.2, .target = {0.0, 0.0, 0.3}},
+    {.name = "cross5", .about = "a box crosses 5 % of the picture's width", MOVING(cross5, 1)},
+    {.name = "cross20", .about = "a box crosses 20 % of the picture's width", MOVING(cross20, 1)},
+    {.name = "cross80", .about = "a box crosses 80 % of the picture's width", MOVING(cross80, 1)},
+    {.name = "turn1", .about = "a box turns once", MOVING(turn1, 1)},
+    {.name = "turn3", .about = "a box turns three times", MOVING(turn3, 1)},
+    {.name = "appear", .about = "a box is there from half of the clip on", MOVING(appear, 1)},
+    {.name = "split", .about = "a box comes apart, and its halves slide away from each other", MOVING(split, 2)},
 };
 
 const adcgs_scenes_entry *adcgs_scenes_entry_at(int i)

@@ -5,6 +5,8 @@
 
 #include "scenes/trace.h"
 
+#define ADCGS_SCENES_FOCAL 2.5 /**< focal length of every camera, in halves of the picture's width */
+
 typedef struct adcgs_scenes_entry {
     const char *name, *about;
     const adcgs_trace_object *objects;

@@ -16,7 +16,7 @@ typedef struct pose {
     double centre[3];
     double axes[9]; /* rows are the local axes in the world */
     double fade;
-    double bound2;  /* squared radius of a ball around it */
+    double bound2;  /* squared radius of a ball around it; negative: it is not there */
 } pose;
 
 typedef struct job {
@@ -25,7 +25,8 @@ typedef struct job {
     int n, width, height, samples;
     const adcgs_trace_camera *camera;
     double light[SAMPLES_MAX * SAMPLES_MAX][3];
-    float *rgb;
+    uint32_t which; /* objects whose share is wanted */
+    float *out;     /* colours or shares */
 } job;
 
 typedef struct hit {
@@ -70,7 +71,7 @@ static void pose_at(pose *out, const adcgs_trace_object *o, double time)
     }
     out->fade = time * time * (3.0 - 2.0 * time);
     const double box2 = adcgs_v3_dot(o->size, o->size), round2 = o->size[0] * o->size[0] + o->size[2] * o->size[2];
-    out->bound2 = o->shape == ADCGS_SHAPE_BOX ? box2 : round2;
+    out->bound2 = time < o->from ? -1.0 : o->shape == ADCGS_SHAPE_BOX ? box2 : round2;
 }
 
 /* Smallest t > 0 of the ray in local coordinates, with the normal there; FAR if none. */
@@ -236,18 +237,28 @@ static void shade(const job *j, const hit *h, const double from[3], const double
         colour[c] *= level;
 }
 
-static void trace_ray(const job *j, const double from[3], const double direction[3], int sample, double colour[3])
+static hit trace_ray(const job *j, const double from[3], const double direction[3])
 {
     hit nearest = {.t = FAR};
     for (int i = 0; i < j->n; i++)
         if (near_object(&j->poses[i], from, direction))
             hit_object(j, i, from, direction, &nearest);
-    colour[0] = colour[1] = colour[2] = 0.0;
-    if (nearest.t < FAR)
-        shade(j, &nearest, from, direction, sample, colour);
+    return nearest;
 }
 
-static void trace_row(void *arg, int y, int thread)
+/* Of sample k of the pixel (x, y). */
+static void aim(const job *j, int x, int y, int k, double direction[3])
+{
+    const double *const m = j->camera->to_world;
+    const int s = j->samples;
+    const double u = (x + (k % s + 0.5) / s - 0.5 * j->width) / j->camera->focal;
+    const double v = (0.5 * j->height - y - (k / s + 0.5) / s) / j->camera->focal;
+    for (int i = 0; i < 3; i++)
+        direction[i] = m[4 * i] * u + m[4 * i + 1] * v - m[4 * i + 2];
+    adcgs_v3_normalise(direction);
+}
+
+static void colour_row(void *arg, int y, int thread)
 {
     const job *const j = arg;
     const double *const m = j->camera->to_world, eye[3] = {m[3], m[7], m[11]};
@@ -256,21 +267,37 @@ static void trace_row(void *arg, int y, int thread)
     for (int x = 0; x < j->width; x++) {
         double sum[3] = {0.0, 0.0, 0.0};
         for (int k = 0; k < s * s; k++) {
-            const double u = (x + (k % s + 0.5) / s - 0.5 * j->width) / j->camera->focal;
-            const double v = (0.5 * j->height - y - (k / s + 0.5) / s) / j->camera->focal;
-            double direction[3], colour[3];
-            for (int i = 0; i < 3; i++)
-                direction[i] = m[4 * i] * u + m[4 * i + 1] * v - m[4 * i + 2];
-            adcgs_v3_normalise(direction);
-            trace_ray(j, eye, direction, k, colour);
+            double direction[3], colour[3] = {0.0, 0.0, 0.0};
+            aim(j, x, y, k, direction);
+            const hit nearest = trace_ray(j, eye, direction);
+            if (nearest.t < FAR)
+                shade(j, &nearest, eye, direction, k, colour);
             for (int c = 0; c < 3; c++)
                 sum[c] += colour[c];
         }
-        float *const pixel = j->rgb + 3 * ((size_t)y * (size_t)j->width + (size_t)x);
+        float *const pixel = j->out + 3 * ((size_t)y * (size_t)j->width + (size_t)x);
         for (int c = 0; c < 3; c++) {
             const double mean = sum[c] / (s * s);
             pixel[c] = (float)(mean < 0.0 ? 0.0 : mean > 1.0 ? 1.0 : mean);
         }
+    }
+}
+
+static void cover_row(void *arg, int y, int thread)
+{
+    const job *const j = arg;
+    const double *const m = j->camera->to_world, eye[3] = {m[3], m[7], m[11]};
+    const int samples = j->samples * j->samples;
+    (void)thread;
+    for (int x = 0; x < j->width; x++) {
+        int covered = 0;
+        for (int k = 0; k < samples; k++) {
+            double direction[3];
+            aim(j, x, y, k, direction);
+            const hit nearest = trace_ray(j, eye, direction);
+            covered += nearest.t < FAR && (j->which >> nearest.object & 1);
+        }
+        j->out[(size_t)y * (size_t)j->width + (size_t)x] = 2 * covered >= samples ? 1.0f : 0.0f;
     }
 }
 
@@ -287,20 +314,34 @@ static void spread_light(job *j)
     }
 }
 
+static adcgs_status trace(job *j, double time, adcgs_pool *pool, adcgs_work_fn row, adcgs_error *error)
+{
+    if (j->samples < 1 || j->samples > SAMPLES_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "ray tracer: %d samples, expected 1..%d", j->samples, SAMPLES_MAX);
+    pose *const poses = adcgs_alloc(NULL, (size_t)j->n, sizeof *poses, error);
+    if (!poses)
+        return adcgs_alloc_status(error);
+    for (int i = 0; i < j->n; i++)
+        pose_at(&poses[i], &j->objects[i], time);
+    j->poses = poses;
+    spread_light(j);
+    adcgs_pool_run(pool, row, j, j->height);
+    adcgs_free(NULL, poses);
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time,
                                 int width, int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error)
 {
-    if (samples < 1 || samples > SAMPLES_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "ray tracer: %d samples, expected 1..%d", samples, SAMPLES_MAX);
-    pose *const poses = adcgs_alloc(NULL, (size_t)n, sizeof *poses, error);
-    if (!poses)
-        return adcgs_alloc_status(error);
-    for (int i = 0; i < n; i++)
-        pose_at(&poses[i], &objects[i], time);
-    job j = {.objects = objects, .poses = poses, .n = n, .width = width, .height = height, .samples = samples, .camera = camera,
-             .rgb = rgb};
-    spread_light(&j);
-    adcgs_pool_run(pool, trace_row, &j, height);
-    adcgs_free(NULL, poses);
-    return ADCGS_OK;
+    job j = {.objects = objects, .n = n, .width = width, .height = height, .samples = samples, .camera = camera, .out = rgb};
+    return trace(&j, time, pool, colour_row, error);
+}
+
+adcgs_status adcgs_trace_cover(const adcgs_trace_object *objects, int n, uint32_t which, const adcgs_trace_camera *camera,
+                               double time, int width, int height, int samples, adcgs_pool *pool, float *cover,
+                               adcgs_error *error)
+{
+    job j = {.objects = objects, .n = n, .width = width, .height = height, .samples = samples, .camera = camera, .which = which,
+             .out = cover};
+    return trace(&j, time, pool, cover_row, error);
 }

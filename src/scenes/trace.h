@@ -42,6 +42,7 @@ typedef struct adcgs_trace_object {
     double spin_axis[3], spin;   /**< unit axis, turns per unit of time */
     double orbit[2], orbit_turns; /**< circle about the point orbit (x, y) in turns per unit of time */
     double fade[3];              /**< added to both colours by time 1, smoothly */
+    double from;                 /**< before this time it is not there */
 } adcgs_trace_object;
 
 /** A camera of the tracer: OpenGL axes (x right, y up, looking along -z), as in the layout that is written. */
@@ -59,5 +60,13 @@ void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const dou
  */
 adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time,
                                 int width, int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error);
+
+/**
+ * Where some of the objects are seen: 1 where the nearest surface is, for at least half of a pixel's samples, that of an object
+ * whose bit (bit i: object i) is set in `which`, else 0; [height][width]. Samples are those of adcgs_trace_render().
+ */
+adcgs_status adcgs_trace_cover(const adcgs_trace_object *objects, int n, uint32_t which, const adcgs_trace_camera *camera,
+                               double time, int width, int height, int samples, adcgs_pool *pool, float *cover,
+                               adcgs_error *error);
 
 #endif

@@ -13,7 +13,10 @@
 #define ALWAYS 0
 #define CROP ADCGS_EVAL_COLUMNS /* beyond all flags */
 
-/** digits: of the text, -1: text does not show it. wanted: flags of which one must be set, or one of the two above. */
+/**
+ * digits: of the text, -1: text does not show it. wanted: flags of which one must be set, or one of the two above. is_of_camera:
+ * the views of a camera together have it, and single views only where more is known of them.
+ */
 typedef struct column {
     const char *key, *label, *unit;
     int digits, wanted, is_of_camera;
@@ -103,6 +106,7 @@ static void make_row(double *value, const adcgs_view_score *score, const adcgs_c
     value[ADCGS_EVAL_MS_SSIM_SCALES] = score->ms_ssim_scales;
     value[ADCGS_EVAL_DYNAMIC_PSNR] = score->temporal.dynamic_psnr;
     value[ADCGS_EVAL_FLICKER] = score->temporal.flicker;
+    value[ADCGS_EVAL_DYNAMIC_SHARE] = score->known_share;
     value[ADCGS_EVAL_MILLISECONDS] = 1e3 * score->seconds;
     if (crop->visible) {
         value[ADCGS_EVAL_CROP_PSNR] = crop->psnr;
@@ -140,11 +144,11 @@ static void csv_view(const adcgs_eval_report *r, const adcgs_view_score *score, 
 
 /* ---- JSON ---- */
 
-/** of_camera: 1: also what only the views of a camera together give. */
+/** of_camera: 1: also what only the views of a camera together give; views have it where it is known of them. */
 static void json_values(adcgs_eval_report *r, const double *value, int of_camera)
 {
     for (int c = 0; c < ADCGS_EVAL_COLUMNS; c++)
-        if (is_shown(r, c) && columns[c].is_of_camera <= of_camera)
+        if (is_shown(r, c) && (columns[c].is_of_camera <= of_camera || !isnan(value[c])))
             adcgs_json_real(&r->json, columns[c].key, value[c]);
 }
 
@@ -216,7 +220,8 @@ static void text_values(const adcgs_eval_report *r, const double *value, int whi
 {
     for (int c = 0; c < ADCGS_EVAL_COLUMNS; c++) {
         const column *k = &columns[c];
-        if (!is_shown(r, c) || k->digits < 0 || (which != 2 && k->is_of_camera != which))
+        const int is_known = !which && !isnan(value[c]);
+        if (!is_shown(r, c) || k->digits < 0 || (which != 2 && k->is_of_camera != which && !is_known))
             continue;
         if (isnan(value[c]))
             printf("%s %8s%*s", k->label, "-", (int)strlen(k->unit), "");
@@ -224,6 +229,12 @@ static void text_values(const adcgs_eval_report *r, const double *value, int whi
             printf("%s %8.*f%s", k->label, k->digits, value[c], k->unit);
     }
     printf("\n");
+}
+
+/** Nothing is asked for over time but what some view knows by itself. */
+static int only_known(const adcgs_eval_report *r)
+{
+    return (r->measure & ADCGS_MEASURE_TIME) == ADCGS_MEASURE_DYNAMIC && r->of_all[ADCGS_EVAL_DYNAMIC_SHARE].n;
 }
 
 static void text_end(const adcgs_eval_report *r, const double *mean, const adcgs_evaluation *e)
@@ -236,7 +247,7 @@ static void text_end(const adcgs_eval_report *r, const double *mean, const adcgs
         printf("the box is seen in %u views\n", r->of_all[ADCGS_EVAL_CROP_PSNR].n);
     else if (r->box)
         printf("no view sees the box\n");
-    if ((r->measure & ADCGS_MEASURE_TIME) && !r->n_cameras)
+    if ((r->measure & ADCGS_MEASURE_TIME) && !r->n_cameras && !only_known(r))
         printf("no camera has several views from one place: nothing is measured over time\n");
     printf("%llu bytes, decoded in %.3f s, %.1f frames per second\n", (unsigned long long)r->bytes, r->decode_seconds,
            e->frames_per_second);
@@ -278,6 +289,8 @@ static adcgs_status report_camera(adcgs_eval_report *r, const adcgs_temporal_tot
     *c = (adcgs_eval_camera){.camera = r->camera, .views = total->views};
     find_means(r->of_camera, c->value);
     for (int i = 0; i < 3; i++) {
+        if (!isnan(c->value[together[i]])) /* known of the views */
+            continue;
         c->value[together[i]] = values[i];
         if (!isnan(values[i]))
             add_value(&r->of_all[together[i]], values[i]);

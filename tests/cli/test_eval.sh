@@ -9,11 +9,11 @@ s=$dir/s.adcgs
 tiny_stream 30
 
 # agree CSV JSON: each value of a row of the table is the JSON report's, but for times taken. JSON has one value a line; its
-# views, its cameras and its means come in the order of the rows.
+# views, its cameras and its means come in the order of the rows. What is of cameras, views have where it is known of them.
 agree()
 {
     awk -F, 'NR == 1 { for (i = 5; i <= NF; i++) key[i] = $i; next }
-             { for (i = 5; i <= NF; i++) if (key[i] != "milliseconds" && ($1 != "view" || !of_camera(key[i])))
+             { for (i = 5; i <= NF; i++) if (key[i] != "milliseconds" && ($1 != "view" || $i != "" || !of_camera(key[i])))
                    print key[i], ($i == "" ? "null" : $i) }
              function of_camera(k) { return k == "dynamic_share" || k ~ /static_variance$/ }' \
         <(sed 's/"a,""b"/ab/' "$1") >"$dir/from_csv"
@@ -51,7 +51,42 @@ expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/plain.csv" --json
 [ "$(cut -d, -f 1 "$dir/plain.csv" | tr '\n' ' ')" = "row view view view mean " ] || { bad "rows"; cat "$dir/plain.csv"; }
 agree "$dir/plain.csv" "$dir/out"
 
-# Cameras that move: nothing over time.
+# Cameras that move, of whose views it is known what moves.
+expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/known.csv" --json --metrics dynamic-psnr
+agree "$dir/known.csv" "$dir/out"
+[ "$(head -n 1 "$dir/known.csv")" = "row,camera,name,time,psnr,ssim,dynamic_psnr,dynamic_share,milliseconds" ] || bad "heading"
+[ "$(grep -c '"dynamic_psnr": [0-9]' "$dir/out")" -eq 4 ] || { bad "PSNR of what is known to move"; cat "$dir/out"; }
+awk -F, '$1 == "view" { p += $7 / 3; s += $8 / 3; bad += !($8 > 0.02 && $8 < 0.1) } $1 == "mean" { bad += abs(p - $7) + abs(s - $8) > 1e-6 }
+         function abs(x) { return x < 0 ? -x : x } END { exit bad }' "$dir/known.csv" || { bad "mean of the views"; cat "$dir/known.csv"; }
+expect 0 "" $eval "$s" "$dir/scene" --metrics dynamic-psnr
+[ "$(grep -c 'dynamic .* dB  dynamic share ' "$dir/out")" -eq 4 ] || { bad "text of what moves"; cat "$dir/out"; }
+grep -q 'no camera' "$dir/out" && bad "a word of cameras that move"
+# All of one view moves: it is as good as the view; nothing of another.
+cp -R "$dir/scene" "$dir/known"
+fill() { { printf 'P5\n64 64\n255\n' && head -c 4096 /dev/zero | tr '\0' "$2"; } >"$dir/known/test/$1_moving.pgm"; }
+fill r_000 '\377'
+fill r_001 '\0'
+expect 0 "" $eval "$s" "$dir/known" --csv - --metrics dynamic-psnr
+awk -F, '$3 == "r_000" { bad += $5 != $7 || $8 != 1 } $3 == "r_001" { bad += $7 != "" || $8 != "0" } $3 == "r_002" { last = $7 }
+         $1 == "view" && $7 { sum += $7 } $1 == "mean" { bad += (sum / 2 - $7) ^ 2 > 1e-12 } END { exit bad || !last }' "$dir/out" ||
+    { bad "all and nothing moves"; cat "$dir/out"; }
+sed -i 's/^64 64/32 64/' "$dir/known/test/r_001_moving.pgm"
+expect 4 "r_001_moving.pgm: 32x64 pixels, expected 64x64" $eval "$s" "$dir/known"
+rm "$dir/known/test/r_002_moving.pgm"
+expect 4 "frames\[2\].moving_path: no such image" $eval "$s" "$dir/known" --metrics dynamic-psnr
+
+# A camera that stays, and of whose views it is known: its share is that of its views, and so is the mean.
+rm -rf "$dir/known"
+cp -R "$dir/scene" "$dir/known"
+sed -i 's/"transform_matrix".*\]\]/'"$(grep -o '"transform_matrix".*\]\]' "$dir/known/transforms_test.json" | head -n 1)"'/' \
+    "$dir/known/transforms_test.json"
+expect 0 "" $eval "$s" "$dir/known" --csv "$dir/known.csv" --json --metrics dynamic-psnr,static-variance
+agree "$dir/known.csv" "$dir/out"
+awk -F, '$1 == "view" { s += $8 / 3 } $1 != "row" && $1 != "view" { n++; bad += (s - $8) ^ 2 > 1e-16 || $9 == "" }
+         END { exit bad || n != 2 }' "$dir/known.csv" || { bad "a fixed camera that knows"; cat "$dir/known.csv"; }
+
+# Of no view is it known: of cameras that move, nothing over time.
+sed -i '/"moving_path"/d' "$dir"/scene/transforms_*.json
 expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/all.csv" --json --metrics all --crop=-0.2,-0.2,-0.2,0.2,0.2,0.2
 agree "$dir/all.csv" "$dir/out"
 grep -q '"cameras": \[\]' "$dir/out" && grep -q '"flicker": null' "$dir/out" || bad "cameras that move are measured over time"

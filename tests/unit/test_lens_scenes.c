@@ -154,6 +154,39 @@ static void test_frames(void **state)
     "[50,34],\"image_size\":[96,72],\"pixel_aspect_ratio\":1.05," more "}"
 #define BENT "\"skew\":2.5,\"radial_distortion\":[-0.12,0.05,-0.01]"
 
+/** Where the lens sees a point to the right of EAST, something moves: so it does in the straightened view, to a pixel. */
+#define EAST 0.1
+static void test_moving(void **state)
+{
+    const adcgs_lens lens = {TAKEN, .k = {-0.15, 0.02}};
+    const double fold = adcgs_lens_fold(&lens);
+    adcgs_image mask;
+    uint8_t *moving;
+    put_picture("a.exr", &lens);
+    expect_good(adcgs_image_alloc(&mask, WIDTH, HEIGHT, 3, "m", &error));
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        double xy[2];
+        assert_true(adcgs_lens_invert(&lens, fold, i % WIDTH + 0.5, i / WIDTH + 0.5, xy));
+        mask.data[3 * i] = mask.data[3 * i + 1] = 0;
+        mask.data[3 * i + 2] = xy[0] > EAST ? (float)(1 + i % 255) / 255.0f : 0; /* any colour but black */
+    }
+    expect_good(adcgs_image_write(&mask, in("m.ppm"), 0, &error));
+    adcgs_image_free(&mask);
+    put_text("transforms.json", "{\"fl_x\":80,\"fl_y\":82,\"cx\":50,\"cy\":34,\"k1\":-0.15,\"k2\":0.02,\"frames\":["
+             FRAME("a.exr", ",\"moving_path\":\"m.ppm\"") "," FRAME("a.exr", "") "]}");
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
+    const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TEST][0];
+    const adcgs_camera *c = &view->camera;
+    assert_int_equal(view->lens.width, WIDTH);
+    expect_good(adcgs_scene_load_moving(view, &moving, &error));
+    for (int i = 0; i < c->width * c->height; i++) {
+        const double beyond = i % c->width + 0.5 - c->cx - EAST * c->fx; /* pixels */
+        assert_true(fabs(beyond) < 1 || moving[i] == (beyond > 0));
+    }
+    free(moving);
+    adcgs_scene_free(&scene);
+}
+
 /** Of the taken picture at 1/divide of full size. */
 static adcgs_lens hypernerf_lens(int divide)
 {
@@ -216,6 +249,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_models),
         cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_moving),
         cmocka_unit_test(test_hypernerf),
         cmocka_unit_test(test_hypernerf_terms),
     };

@@ -229,6 +229,45 @@ static void test_mask(void **state)
     expect_error(open_single(json), ADCGS_ERR_DATA, "m.pgm: 5x4", "6x4");
 }
 
+/** What is known to move: any colour but black; for measuring, so that the picture itself stays as it is. */
+static void test_moving(void **state)
+{
+    adcgs_image mask;
+    uint8_t *moving;
+    float *rgb;
+    expect_good(adcgs_image_alloc(&mask, 6, 4, 1, "m", &error));
+    for (int i = 0; i < 6 * 4; i++)
+        mask.data[i] = i % 5 ? 0.0f : 1.0f / 255.0f;
+    expect_good(adcgs_image_write(&mask, in("m.pgm"), 0, &error));
+    adcgs_image_free(&mask);
+    const char *const frames = "{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "%s") "," FRAME("b.ppm", "%s") "]}";
+    char json[1000];
+    snprintf(json, sizeof json, frames, ",\"moving_path\":\"./m.pgm\"", ",\"moving_path\":null");
+    expect_good(open_single(json));
+    const adcgs_scene_view *view = scene->views[ADCGS_SPLIT_TEST];
+    assert_true(view->moving && !view->mask && !scene->views[ADCGS_SPLIT_TRAIN][0].moving);
+    expect_good(adcgs_scene_load_moving(view, &moving, &error));
+    for (int i = 0; i < 6 * 4; i++)
+        assert_int_equal(moving[i], i % 5 == 0);
+    free(moving);
+    expect_good(adcgs_scene_load(scene, view, 1, &rgb, NULL, &error));
+    for (int i = 0; i < 3 * 24; i++)
+        assert_false(isnan(rgb[i]));
+    free(rgb);
+    adcgs_scene_free(&scene);
+    snprintf(json, sizeof json, frames, "", ",\"moving_path\":\"none.png\"");
+    expect_bad(json, ADCGS_ERR_DATA, "frames[1].moving_path", "no such image: none.png");
+    snprintf(json, sizeof json, frames, ",\"moving_path\":7", "");
+    expect_bad(json, ADCGS_ERR_DATA, "frames[0].moving_path", "expected the name");
+    snprintf(json, sizeof json, frames, ",\"mask_path\":\"m.pgm\",\"moving_path\":\"\"", "");
+    expect_bad(json, ADCGS_ERR_DATA, "frames[0].moving_path", "expected the name");
+    put_text("m.pgm", "P5 5 4 255 12345678901234567890");
+    snprintf(json, sizeof json, frames, ",\"moving_path\":\"m.pgm\"", "");
+    expect_error(open_single(json), ADCGS_ERR_DATA, "m.pgm: 5x4", "6x4");
+    put_text("m.pgm", "");
+    expect_error(open_single(json), ADCGS_ERR_DATA, "m.pgm", "");
+}
+
 static void test_load(void **state)
 {
     expect_good(open_single("{\"fl_x\":5,\"frames\":[" FRAME("c", "") "," FRAME("c", ",\"w\":6,\"h\":4") "]}"));
@@ -448,6 +487,7 @@ int main(void)
         cmocka_unit_test_teardown(test_split_files, no_files),   cmocka_unit_test_teardown(test_duration, no_files),
         cmocka_unit_test_teardown(test_load, no_files),
         cmocka_unit_test_teardown(test_mask, no_files),
+        cmocka_unit_test_teardown(test_moving, no_files),
         cmocka_unit_test_teardown(test_bad_files, no_files),     cmocka_unit_test_teardown(test_bad_frames, no_files),
         cmocka_unit_test_teardown(test_bad_poses, no_files),     cmocka_unit_test_teardown(test_straightening, no_files),
         cmocka_unit_test_teardown(test_mixed_times, no_files),   cmocka_unit_test_teardown(test_mutations, no_files),

@@ -8,6 +8,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include <cmocka.h>
 
@@ -64,6 +65,181 @@ static void pictures_have_content(void **state)
     assert_true(change > 0.005 && change < 0.2);
 }
 
+/* A camera that looks at the target from the front, for pictures of size x size. */
+static adcgs_trace_camera front(int size)
+{
+    adcgs_trace_camera camera = {.focal = 0.5 * ADCGS_SCENES_FOCAL * size};
+    const double eye[3] = {0.0, -3.6, 2.5}, target[3] = {0.0, 0.0, 0.35};
+    adcgs_trace_look(&camera, eye, target);
+    return camera;
+}
+
+/* Where what moves in a scene covers that camera's picture. */
+static void cover(const adcgs_scenes_entry *scene, double time, int size, int samples, float *out)
+{
+    const adcgs_trace_camera camera = front(size);
+    assert_int_equal(adcgs_trace_cover(scene->objects, scene->n_objects, scene->moving, &camera, time, size, size, samples, NULL,
+                                       out, NULL), ADCGS_OK);
+}
+
+/* Picture of cross20 from the same place, one ray for each pixel, its box of one grey and without a pattern. */
+static void paint(float grey, float *rgb)
+{
+    const adcgs_scenes_entry *const scene = adcgs_scenes_entry_find("cross20");
+    adcgs_trace_object objects[8];
+    memcpy(objects, scene->objects, (size_t)scene->n_objects * sizeof objects[0]);
+    adcgs_trace_object *const mover = &objects[scene->n_objects - 1];
+    mover->texture = ADCGS_TEXTURE_PLAIN;
+    mover->detail = 0.0;
+    for (int c = 0; c < 3; c++)
+        mover->colour[0][c] = (double)grey;
+    const adcgs_trace_camera camera = front(SIZE);
+    assert_int_equal(adcgs_trace_render(objects, scene->n_objects, &camera, 0.4, SIZE, SIZE, 1, NULL, rgb, NULL), ADCGS_OK);
+}
+
+/* A thing is seen where its colour shows. */
+static void covered_is_what_is_seen(void **state)
+{
+    static float black[FLOATS], white[FLOATS], mask[FLOATS];
+    const adcgs_trace_camera camera = front(1);
+    int n = 0;
+    (void)state;
+    paint(0.0f, black);
+    paint(1.0f, white);
+    cover(adcgs_scenes_entry_find("cross20"), 0.4, SIZE, 1, mask);
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        assert_true(mask[i] == (float)(black[3 * i] != white[3 * i]));
+        n += mask[i] > 0.0f;
+    }
+    assert_true(n > 20 && n < SIZE * SIZE / 8);
+    assert_int_equal(adcgs_trace_cover(NULL, 0, 1, &camera, 0.0, 1, 1, 99, NULL, mask, NULL), ADCGS_ERR_USAGE);
+}
+
+/* Samples of a pixel are the pixels of a finer picture; half of them are enough. */
+static void half_of_the_samples_cover(void **state)
+{
+    static float mask[FLOATS], fine[9 * FLOATS];
+    const adcgs_scenes_entry *const scene = adcgs_scenes_entry_find("cross20");
+    (void)state;
+    for (int samples = 2; samples <= 3; samples++) {
+        int halves = 0;
+        cover(scene, 0.4, SIZE, samples, mask);
+        cover(scene, 0.4, SIZE * samples, 1, fine);
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            const float *const first = fine + i / SIZE * samples * SIZE * samples + i % SIZE * samples;
+            int sum = 0;
+            for (int k = 0; k < samples * samples; k++)
+                sum += first[k / samples * SIZE * samples + k % samples] > 0.0f;
+            assert_true(mask[i] == (float)(2 * sum >= samples * samples));
+            halves += 2 * sum == samples * samples;
+        }
+        assert_true(samples == 3 || halves);
+    }
+}
+
+enum { LARGE = 120 };
+
+/* Mean column of what moves, as a share of the width, and how many pixels it has. */
+static double middle(const char *name, double time, int *n)
+{
+    static float mask[LARGE * LARGE];
+    double sum = 0.0;
+    cover(adcgs_scenes_entry_find(name), time, LARGE, 2, mask);
+    *n = 0;
+    for (int i = 0; i < LARGE * LARGE; i++)
+        if (mask[i] > 0.0f) {
+            sum += i % LARGE + 0.5;
+            ++*n;
+        }
+    return *n ? sum / *n / LARGE : 0.5;
+}
+
+/* They go as far as their names say, and nobody hides for long. */
+static void crossings_are_as_long_as_they_say(void **state)
+{
+    static const int percent[] = {5, 20, 80};
+    (void)state;
+    for (size_t i = 0; i < ADCGS_COUNTOF(percent); i++) {
+        char name[16];
+        int n;
+        snprintf(name, sizeof name, "cross%d", percent[i]);
+        const double share = percent[i] / 100.0, from = middle(name, 0.0, &n);
+        for (int t = 1; t <= 8; t++) {
+            const double gone = middle(name, t / 8.0, &n) - from;
+            assert_true(fabs(gone - share * t / 8) < 0.1 * share);
+            assert_true(n > 250);
+        }
+    }
+}
+
+static double difference(const char *name, double time, double other)
+{
+    static float a[FLOATS], b[FLOATS];
+    double sum = 0.0;
+    render(adcgs_scenes_entry_find(name), time, NULL, a);
+    render(adcgs_scenes_entry_find(name), other, NULL, b);
+    for (int i = 0; i < FLOATS; i++)
+        sum += fabs((double)a[i] - b[i]) / FLOATS;
+    return sum;
+}
+
+/* After a whole turn all is as it was; in between no part of a turn looks like another. */
+static void boxes_turn_as_often_as_they_say(void **state)
+{
+    (void)state;
+    for (int turns = 1; turns <= 3; turns += 2) {
+        const char *const name = turns == 1 ? "turn1" : "turn3";
+        assert_true(difference(name, 0.0, 1.0 / turns) < 1e-6 && difference(name, 0.0, 1.0) < 1e-6);
+        for (int part = 1; part < 12; part++)
+            assert_true(difference(name, 0.0, part / 12.0 / turns) > 0.004);
+    }
+}
+
+/* Before its time a thing casts no shadow either: without it the picture is the same, to the bit. */
+static void what_appears_was_not_there(void **state)
+{
+    static float before[FLOATS], without[FLOATS], after[FLOATS];
+    const adcgs_scenes_entry *const scene = adcgs_scenes_entry_find("appear");
+    adcgs_scenes_entry less = *scene;
+    int n;
+    (void)state;
+    less.n_objects--;
+    render(scene, 11.0 / 23.0, NULL, before);
+    render(&less, 11.0 / 23.0, NULL, without);
+    render(scene, 12.0 / 23.0, NULL, after);
+    assert_memory_equal(before, without, sizeof before);
+    assert_memory_not_equal(before, after, sizeof before);
+    middle("appear", 0.499, &n);
+    assert_int_equal(n, 0);
+    middle("appear", 0.5, &n);
+    assert_true(n > 250);
+}
+
+/* Columns without anything that moves, between the first and the last that has some. */
+static int gap(double time)
+{
+    static float mask[LARGE * LARGE];
+    int first = LARGE, last = 0, filled = 0;
+    cover(adcgs_scenes_entry_find("split"), time, LARGE, 2, mask);
+    for (int x = 0; x < LARGE; x++) {
+        int any = 0;
+        for (int y = 0; y < LARGE; y++)
+            any |= mask[y * LARGE + x] > 0.0f;
+        filled += any;
+        first = any ? ADCGS_MIN(first, x) : first;
+        last = any ? x : last;
+    }
+    return last - first + 1 - filled;
+}
+
+static void halves_come_apart(void **state)
+{
+    (void)state;
+    assert_int_equal(gap(0.0), 0);
+    assert_in_range(gap(0.5), 12, 26);
+    assert_in_range(gap(1.0), 30, 50);
+}
+
 static void table_is_sound(void **state)
 {
     (void)state;
@@ -74,6 +250,8 @@ static void table_is_sound(void **state)
                          scene->cameras / scene->turns * scene->times + scene->n_val + scene->n_test);
         assert_true(scene->n_objects < 32 && scene->moving >> scene->n_objects == 0);
         assert_true(scene->cameras > 1 && scene->times > 1);
+        for (int k = 0; k < scene->n_objects; k++)
+            assert_true(scene->objects[k].from == 0.0 || scene->moving >> k & 1); /* what moves not is always there */
     }
     assert_null(adcgs_scenes_entry_find("no such scene"));
     assert_int_equal(adcgs_scenes_count("no such scene"), 0);
@@ -90,6 +268,13 @@ static void writing_fails_in_one_line(void **state)
     assert_non_null(strstr(error.text, "/nonexistent/folder"));
     options.format = "bmp";
     assert_int_equal(adcgs_scenes_write("/nonexistent/folder", &options, NULL, NULL, NULL, &error), ADCGS_ERR_USAGE);
+    options.format = "ppm";
+    static const double bad[] = {0.0009, 10.1, -1.0, (double)NAN};
+    for (size_t i = 0; i < ADCGS_COUNTOF(bad); i++) {
+        options.motion = bad[i];
+        assert_int_equal(adcgs_scenes_write("/nonexistent/folder", &options, NULL, NULL, NULL, &error), ADCGS_ERR_USAGE);
+        assert_non_null(strstr(error.text, "expected 0.001..10"));
+    }
 }
 
 int main(void)
@@ -97,6 +282,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sine_is_accurate),      cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(pictures_have_content), cmocka_unit_test(table_is_sound),
+        cmocka_unit_test(covered_is_what_is_seen), cmocka_unit_test(half_of_the_samples_cover),
+        cmocka_unit_test(crossings_are_as_long_as_they_say),
+        cmocka_unit_test(boxes_turn_as_often_as_they_say), cmocka_unit_test(what_appears_was_not_there),
+        cmocka_unit_test(halves_come_apart),
         cmocka_unit_test(writing_fails_in_one_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
