@@ -71,7 +71,7 @@ head -n 1 "$dir/out" | cmp -s - "$dir/md5" || bad "the first camera is another o
 tiny_stream 10
 name=$(printf '=r\033[2J\302\233\342\200\256"')
 mv "$dir/scene/test/r_000.ppm" "$dir/scene/test/$name.ppm"
-sed -i 's#test/r_000#test/=r\\u001b[2J\\u009b\\u202e\\"#' "$dir/scene/transforms_test.json"
+sed -i 's#test/r_000\.ppm#test/=r\\u001b[2J\\u009b\\u202e\\".ppm#' "$dir/scene/transforms_test.json"
 expect 0 "" ./adcgs-eval "$dir/s.adcgs" "$dir/scene" --csv "$dir/t.csv" --images "$dir/views"
 safe "$dir/out" "adcgs-eval"
 safe "$dir/t.csv" "adcgs-eval --csv"
