@@ -99,7 +99,7 @@ static adcgs_status set_steps(adcgs_plan *plan, const adcgs_command *c, void *us
     static const char *const groups[] = { "fv", "sigma", "colour", "fg", NULL };
     adcgs_model *const m = user;
     float *const d[] = { m->d_fv, m->d_sigma, m->d_colour, m->d_fg };
-    const int n[] = { m->params.n_fv, ADCGS_SIGMA_N, ADCGS_COLOUR_N, m->params.n_fg };
+    const int n[] = { m->params.n_fv, adcgs_sigma_rows(&m->params), ADCGS_COLOUR_N, m->params.n_fg };
     int group;
     int64_t form;
     double value;
@@ -135,7 +135,7 @@ static adcgs_status set_table(adcgs_plan *plan, const adcgs_command *c, void *us
 static adcgs_status fill_tables(adcgs_plan *plan, adcgs_model *m, adcgs_error *error)
 {
     fill_steps(m->d_fv, m->params.n_fv, 0, 0x1p-10);
-    fill_steps(m->d_sigma, ADCGS_SIGMA_N, 0, 0x1p-10);
+    fill_steps(m->d_sigma, adcgs_sigma_rows(&m->params), 0, 0x1p-10);
     fill_steps(m->d_colour, ADCGS_COLOUR_N, 0, 0x1p-11);
     fill_steps(m->d_fg, m->params.n_fg, 0, 0x1p-10);
     for (int i = 0; i < ADCGS_GROUPS; i++)
@@ -161,14 +161,16 @@ static int group_index(int group)
     return ADCGS_MIN(group, ADCGS_GROUP_FG);
 }
 
-/* What a picture needs: extents of e^-3.5 to e^-2.5, colours of 0 to 1; all else small. */
+/* What a picture needs: extents of e^-3.5 to e^-2.5, colours of 0 to 1, lives that may end within the segment; else small. */
 static int32_t paint(drawing *w, const adcgs_latent_site *site, int c)
 {
     const int channel = site->first + c, sigma = site->group == ADCGS_GROUP_SIGMA;
     if (!sigma && site->group != ADCGS_GROUP_COLOUR)
         return draw(&w->plan->state, -2, 2);
     const double step = 64.0 * (double)(sigma ? w->model->d_sigma[channel] : w->model->d_colour[channel]);
-    const double wanted = draw(&w->plan->state, 0, 1000) / 1000.0 - (sigma ? 3.5 : 0.0);
+    double wanted = draw(&w->plan->state, 0, 1000) / 1000.0;
+    if (sigma)
+        wanted = channel == ADCGS_SPAN_PACE ? 2 * wanted : channel >= ADCGS_SIGMA_N ? 8 * wanted - 4 : wanted - 3.5;
     return (int32_t)(wanted / step - site->mu[c] / 64.0);
 }
 

@@ -33,13 +33,18 @@ row()
         "$([ -n "$moving" ] && printf '%.2f' "$moving" || echo -)" "$(value ssim "$out/$name.json")" "$seconds" >>"$out/figures.md"
 }
 
-[ -d "$out/demo" ] || ./adcgs-demo-scene -o "$out/demo" --format ppm >/dev/null
+for made in demo cross80 turn1; do
+    [ -d "$out/$made" ] || ./adcgs-demo-scene --scene $made -o "$out/$made" --format ppm >/dev/null
+done
 printf '| Scene | `adcgs-enc` | File, bytes | PSNR, dB | of what moves | SSIM | CPU, s |\n|---|---|---|---|---|---|---|\n' >"$out/figures.md"
 for n in ${ITERATIONS:-3000}; do
     row "built-in demo" "$out/demo" demo-$n -n $n
+    row '`cross80`, built in' "$out/cross80" cross80-$n -n $n
+    row '`turn1`, built in' "$out/turn1" turn1-$n -n $n
     row '`synth_robot_dnerf`' "$data/synth_robot_dnerf" robot-$n -n $n
     row '`synth_robot_multiview`' "$data/synth_robot_multiview" room-$n -n $n
     row '`nrnerf_hand`' "$data/nrnerf_hand" hand-$n -n $n
+    row '`llff_fern`' "$data/llff_fern" fern-$n -n $n
     row '`zju313_15f`' "$data/zju313_15f" zju-$n -n $n -l 0.03
 done
 cat "$out/figures.md"

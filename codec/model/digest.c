@@ -71,6 +71,7 @@ static void visit_params(visitor *v, const adcgs_params *a, const adcgs_params *
     ITEM("fine_uses_fv", fine_uses_fv);
     ITEM("coarse_rotation", coarse_rotation);
     ITEM("adaptive_steps", adaptive_steps);
+    ITEM("spans", spans);
     ITEM("time_rows", time_rows);
     ITEM("time_width", time_width);
 }
@@ -118,7 +119,7 @@ static void visit_anchors(visitor *v, const adcgs_model *a, const adcgs_model *b
     LIST("mask", mask, n);
     LIST("eta", eta, n * p->n_eta);
     LIST("fv", fv, n * p->n_fv);
-    LIST("sigma", sigma, n * ADCGS_SIGMA_N);
+    LIST("sigma", sigma, n * (size_t)adcgs_sigma_rows(p));
     LIST("colour", colour, n * ADCGS_COLOUR_N);
     LIST("fg", fg, n * p->k * p->n_fg);
 }
@@ -135,7 +136,7 @@ static void visit_model(visitor *v, const adcgs_model *a, const adcgs_model *b)
     if (v->difference) /* the arrays differ in size */
         return;
     LIST("d_fv", d_fv, a->params.n_fv);
-    LIST("d_sigma", d_sigma, ADCGS_SIGMA_N);
+    LIST("d_sigma", d_sigma, (size_t)adcgs_sigma_rows(&a->params));
     LIST("d_colour", d_colour, ADCGS_COLOUR_N);
     LIST("d_fg", d_fg, a->params.n_fg);
     LIST("shape", shape, ADCGS_GROUPS);

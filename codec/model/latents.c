@@ -87,7 +87,11 @@ static void visit_group(const walker *w, int group, int k, int first, int count,
             memset(site.yq, 0, (size_t)count * sizeof *site.yq);
             continue;
         }
-        for (int c = 0; c < count; c++) {
+        if (group == ADCGS_GROUP_SIGMA) {
+            site.count = adcgs_sigma_coded(w->model, site.anchor);
+            memset(site.yq + site.count, 0, (size_t)(count - site.count) * sizeof *site.yq);
+        }
+        for (int c = 0; c < site.count; c++) {
             mu[c] = w->mu[c][j];
             si[c] = w->si[c][j];
         }
@@ -103,7 +107,7 @@ static void predict(const walker *w, int role)
 static void walk_base(const walker *w)
 {
     adcgs_model *m = w->model;
-    const int n_eta = m->params.n_eta, n_fv = m->params.n_fv;
+    const int n_eta = m->params.n_eta, n_fv = m->params.n_fv, n_sigma = adcgs_sigma_rows(&m->params);
     int16_t *eta = m->eta + (size_t)w->begin * (size_t)n_eta;
     int16_t *fv = m->fv + (size_t)w->begin * (size_t)n_fv;
     for (int c = 0; c < n_eta; c++)
@@ -119,7 +123,7 @@ static void walk_base(const walker *w)
 
     gather(w->x, fv, (size_t)n_fv, w->n, n_fv);
     predict(w, ADCGS_ROLE_ENTROPY_SIGMA);
-    visit_group(w, ADCGS_GROUP_SIGMA, -1, 0, ADCGS_SIGMA_N, m->sigma + (size_t)w->begin * ADCGS_SIGMA_N, ADCGS_SIGMA_N);
+    visit_group(w, ADCGS_GROUP_SIGMA, -1, 0, n_sigma, m->sigma + (size_t)w->begin * (size_t)n_sigma, (size_t)n_sigma);
     predict(w, ADCGS_ROLE_ENTROPY_COLOUR);
     visit_group(w, ADCGS_GROUP_COLOUR, -1, 0, ADCGS_COLOUR_N, m->colour + (size_t)w->begin * ADCGS_COLOUR_N, ADCGS_COLOUR_N);
 }

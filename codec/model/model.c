@@ -15,7 +15,8 @@ int adcgs_params_steps(const adcgs_params *params)
 
 uint64_t adcgs_anchor_values(const adcgs_params *params)
 {
-    return (uint64_t)params->n_eta + params->n_fv + ADCGS_SIGMA_N + ADCGS_COLOUR_N + (uint64_t)params->k * params->n_fg;
+    const uint64_t own = (uint64_t)params->n_eta + params->n_fv + (uint64_t)adcgs_sigma_rows(params) + ADCGS_COLOUR_N;
+    return own + (uint64_t)params->k * params->n_fg;
 }
 
 uint64_t adcgs_anchor_bytes(const adcgs_params *params)
@@ -33,7 +34,7 @@ void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint
         out = 2 * fv;
     } else if (role == ADCGS_ROLE_ENTROPY_SIGMA) {
         in = fv;
-        out = 2 * ADCGS_SIGMA_N;
+        out = 2 * (uint32_t)adcgs_sigma_rows(params);
     } else if (role == ADCGS_ROLE_ENTROPY_COLOUR) {
         in = fv;
         out = 2 * ADCGS_COLOUR_N;
@@ -108,7 +109,7 @@ adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_e
     model->mask = model->is_static ? adcgs_alloc(memory, n, sizeof *model->mask, error) : NULL;
     model->eta = model->mask ? adcgs_alloc(memory, n, p->n_eta * value, error) : NULL;
     model->fv = model->eta ? adcgs_alloc(memory, n, p->n_fv * value, error) : NULL;
-    model->sigma = model->fv ? adcgs_alloc(memory, n, ADCGS_SIGMA_N * value, error) : NULL;
+    model->sigma = model->fv ? adcgs_alloc(memory, n, (size_t)adcgs_sigma_rows(p) * value, error) : NULL;
     model->colour = model->sigma ? adcgs_alloc(memory, n, ADCGS_COLOUR_N * value, error) : NULL;
     model->fg = model->colour ? adcgs_alloc(memory, n, (size_t)p->k * p->n_fg * value, error) : NULL;
     return model->fg ? ADCGS_OK : adcgs_alloc_status(error);

@@ -19,6 +19,8 @@
 #define ADCGS_ETA_MAX 8
 #define ADCGS_OCTAVES_MAX 10
 #define ADCGS_SIGMA_N 6
+#define ADCGS_SPAN_N 5
+#define ADCGS_SIGMA_MAX (ADCGS_SIGMA_N + ADCGS_SPAN_N)
 #define ADCGS_COLOUR_N 3
 #define ADCGS_LAYERS 5
 #define ADCGS_ANCHORS_MAX (1U << 20)
@@ -46,6 +48,7 @@ typedef struct adcgs_params {
     uint8_t fine_uses_fv; /**< F_varpi's static inputs are [f_p, f_v] instead of f_p */
     uint8_t coarse_rotation; /**< F_omega also predicts a rotation of the anchor */
     uint8_t adaptive_steps;  /**< the steps of all but f_v adapt to the anchor, by E_q */
+    uint8_t spans;           /**< anchors that move have a span of life and a velocity, channels 6.. of Sigma_v */
     uint16_t time_rows;   /**< rows of Z; 0: the scene is still, no deformation networks */
     uint16_t time_width;  /**< columns of Z */
 } adcgs_params;
@@ -66,12 +69,12 @@ typedef struct adcgs_model {
     /* Reconstructed latents yq in 1/64 step, |yq| <= 32767. Primitives that do not exist have f_g = 0. */
     int16_t *eta;    /**< [n][n_eta] */
     int16_t *fv;     /**< [n][n_fv] */
-    int16_t *sigma;  /**< [n][6]: log extents of offsets xyz, log base scales xyz */
+    int16_t *sigma;  /**< [n][6]: log extents of offsets xyz, log base scales xyz; with spans [n][11]: see adcgs_span_channel */
     int16_t *colour; /**< [n][3] */
     int16_t *fg;     /**< [n][k][n_fg]; chunk c is channels [c*n_fg/chunks, (c+1)*n_fg/chunks) */
 
     /* value = (float)yq * (d * factor), d = step/64, normal binary32 in [2^-40, 2^10]; factor: splat/steps.h */
-    float d_fv[ADCGS_NV_MAX], d_sigma[ADCGS_SIGMA_N], d_colour[ADCGS_COLOUR_N], d_fg[ADCGS_NG_MAX];
+    float d_fv[ADCGS_NV_MAX], d_sigma[ADCGS_SIGMA_MAX], d_colour[ADCGS_COLOUR_N], d_fg[ADCGS_NG_MAX];
     uint8_t shape[ADCGS_GROUPS];          /**< 0..3: 0 Gaussian, 1: beta 1.5, 2: beta 1.25, 3: beta 1 */
     int16_t eta_mu[ADCGS_ETA_MAX];        /**< prior of eta, 1/64 step */
     uint8_t eta_si[ADCGS_ETA_MAX];
@@ -89,6 +92,19 @@ adcgs_status adcgs_model_validate(const adcgs_model *model, adcgs_error *error);
 int adcgs_model_equal(const adcgs_model *a, const adcgs_model *b, adcgs_error *error);
 /** MD5 of the canonical serialisation (spec "Model digest"). */
 void adcgs_model_digest(const adcgs_model *model, uint8_t digest[16]);
+
+/** What spans add to Sigma_v: way xyz from the middle of life to its end, middle, logarithm of the pace at which it passes. */
+enum adcgs_span_channel { ADCGS_SPAN_VELOCITY = ADCGS_SIGMA_N, ADCGS_SPAN_MIDDLE = ADCGS_SIGMA_N + 3, ADCGS_SPAN_PACE };
+/** Channels of Sigma_v. */
+static inline int adcgs_sigma_rows(const adcgs_params *params)
+{
+    return params->spans ? ADCGS_SIGMA_MAX : ADCGS_SIGMA_N;
+}
+/** Those of an anchor that are coded: what is static has no span; its values are 0. */
+static inline int adcgs_sigma_coded(const adcgs_model *model, uint32_t anchor)
+{
+    return model->params.time_rows && !model->is_static[anchor] ? adcgs_sigma_rows(&model->params) : ADCGS_SIGMA_N;
+}
 
 /** Expected n_in, n_out of a role's network under params; 0,0 if the role is absent under params. */
 void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint32_t *n_out);

@@ -47,6 +47,7 @@ adcgs_status adcgs_params_validate(const adcgs_params *p, adcgs_error *error)
     ADCGS_TRY(check_range("fine_uses_fv", p->fine_uses_fv, 0, 1, error));
     ADCGS_TRY(check_range("coarse_rotation", p->coarse_rotation, 0, 1, error));
     ADCGS_TRY(check_range("adaptive_steps", p->adaptive_steps, 0, 1, error));
+    ADCGS_TRY(check_range("spans", p->spans, 0, p->time_rows > 0, error));
     ADCGS_TRY(check_range("time_rows", p->time_rows, 0, ADCGS_TIME_ROWS_MAX, error));
     ADCGS_TRY(check_range("time_width", p->time_width, p->time_rows > 0, ADCGS_TIME_WIDTH_MAX, error));
     if (p->n_fg % p->chunks)
@@ -157,7 +158,7 @@ static adcgs_status check_steps(const char *name, const float *d, size_t n, adcg
 static adcgs_status check_tables(const adcgs_model *m, adcgs_error *error)
 {
     ADCGS_TRY(check_steps("d_fv", m->d_fv, m->params.n_fv, error));
-    ADCGS_TRY(check_steps("d_sigma", m->d_sigma, ADCGS_SIGMA_N, error));
+    ADCGS_TRY(check_steps("d_sigma", m->d_sigma, adcgs_sigma_rows(&m->params), error));
     ADCGS_TRY(check_steps("d_colour", m->d_colour, ADCGS_COLOUR_N, error));
     ADCGS_TRY(check_steps("d_fg", m->d_fg, m->params.n_fg, error));
     for (int i = 0; i < ADCGS_GROUPS; i++)
@@ -189,6 +190,17 @@ static adcgs_status check_values(const char *name, const int16_t *v, size_t n, a
     for (size_t i = 0; i < n; i++)
         if (v[i] == INT16_MIN)
             return adcgs_fail(error, ADCGS_ERR_DATA, "model: %s[%zu] is -32768, expected -32767..32767", name, i);
+    return ADCGS_OK;
+}
+
+/** That what is static has no span. */
+static adcgs_status check_spans(const adcgs_model *m, adcgs_error *error)
+{
+    const int rows = adcgs_sigma_rows(&m->params);
+    for (uint32_t i = 0; i < m->n; i++)
+        for (int c = adcgs_sigma_coded(m, i); c < rows; c++)
+            if (m->sigma[(size_t)i * (size_t)rows + (size_t)c] != 0)
+                return adcgs_fail(error, ADCGS_ERR_DATA, "model: anchor %u is static but has a span", i);
     return ADCGS_OK;
 }
 
@@ -235,9 +247,10 @@ adcgs_status adcgs_model_validate(const adcgs_model *model, adcgs_error *error)
     ADCGS_TRY(check_nets(model, error));
     ADCGS_TRY(check_positions(model, error));
     ADCGS_TRY(check_primitives(model, error));
+    ADCGS_TRY(check_spans(model, error));
     ADCGS_TRY(check_values("eta", model->eta, n * p->n_eta, error));
     ADCGS_TRY(check_values("fv", model->fv, n * p->n_fv, error));
-    ADCGS_TRY(check_values("sigma", model->sigma, n * ADCGS_SIGMA_N, error));
+    ADCGS_TRY(check_values("sigma", model->sigma, n * (size_t)adcgs_sigma_rows(p), error));
     ADCGS_TRY(check_values("colour", model->colour, n * ADCGS_COLOUR_N, error));
     return check_values("fg", model->fg, n * p->k * p->n_fg, error);
 }

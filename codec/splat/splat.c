@@ -17,7 +17,7 @@
 #include <math.h>
 
 /* Rows of scratch beside three buffers as wide as the widest network: Sigma_v, f_p and f_v, f_g. */
-#define INPUT_ROWS (ADCGS_SIGMA_N + 6 * ADCGS_OCTAVES_MAX + ADCGS_NV_MAX + ADCGS_NG_MAX)
+#define INPUT_ROWS (ADCGS_SIGMA_MAX + 6 * ADCGS_OCTAVES_MAX + ADCGS_NV_MAX + ADCGS_NG_MAX)
 
 struct adcgs_splat {
     const adcgs_model *model;
@@ -147,17 +147,18 @@ static void canonical_group(void *arg, int index, int thread)
     const adcgs_params *p = &m->params;
     const uint32_t group = (uint32_t)index, moving = job->moving_index[group], first = group * ADCGS_LANES;
     adcgs_anchor_lanes local, *anchor = moving == UINT32_MAX ? &local : s->anchors + moving;
-    float *sigma = s->scratch + (size_t)thread * s->scratch_rows * ADCGS_LANES, *code = sigma + ADCGS_SIGMA_N * ADCGS_LANES;
+    float *sigma = s->scratch + (size_t)thread * s->scratch_rows * ADCGS_LANES, *code = sigma + ADCGS_SIGMA_MAX * ADCGS_LANES;
     float *fv = code + (size_t)p->octaves * 6 * ADCGS_LANES, *fg = fv + (size_t)p->n_fv * ADCGS_LANES;
     float *buffers = fg + (size_t)p->n_fg * ADCGS_LANES;
     adcgs_group_factors factors;
     adcgs_steps_factors(&s->steps, m, first, factors.of, buffers);
     load_positions(anchor, m, first);
-    load_rows(sigma, m->sigma, ADCGS_SIGMA_N, m->d_sigma, ADCGS_SIGMA_N, first, m->n, factor_of(m, &factors, ADCGS_GROUP_SIGMA));
+    const int n_sigma = adcgs_sigma_rows(p);
+    load_rows(sigma, m->sigma, (size_t)n_sigma, m->d_sigma, n_sigma, first, m->n, factor_of(m, &factors, ADCGS_GROUP_SIGMA));
     load_rows(anchor->colour[0], m->colour, ADCGS_COLOUR_N, m->d_colour, ADCGS_COLOUR_N, first, m->n,
               factor_of(m, &factors, ADCGS_GROUP_COLOUR));
     load_rows(fv, m->fv, p->n_fv, m->d_fv, p->n_fv, first, m->n, NULL);
-    s->dsp.anchor(anchor, sigma);
+    s->dsp.anchor(anchor, sigma, p->spans);
     predict_group(s, group, moving, anchor, fv, &factors, fg, buffers);
     if (moving == UINT32_MAX)
         return;
@@ -181,9 +182,10 @@ static int group_moves(const adcgs_model *m, uint32_t group)
 
 static uint32_t count_moving(const adcgs_splat *s, uint32_t *moving_index)
 {
+    const int movers = s->coarse.n_layers || s->fine.n_layers || s->model->params.spans;
     uint32_t moving = 0;
     for (uint32_t g = 0; g < s->groups; g++)
-        moving_index[g] = (s->coarse.n_layers || s->fine.n_layers) && group_moves(s->model, g) ? moving++ : UINT32_MAX;
+        moving_index[g] = movers && group_moves(s->model, g) ? moving++ : UINT32_MAX;
     return moving;
 }
 
@@ -346,20 +348,18 @@ static void deform_group(void *arg, int index, int thread)
     const adcgs_params *p = &s->model->params;
     const uint32_t group = s->moving_group[index];
     const size_t at = (size_t)index, rows = (size_t)s->width * ADCGS_LANES;
-    const adcgs_anchor_lanes *anchor = s->anchors + at;
     float *z = s->scratch + (size_t)thread * s->scratch_rows * ADCGS_LANES, *other = z + rows;
+    const adcgs_movers movers = {s->coarse.n_layers > 0, s->coarse.n_layers > 0 && p->coarse_rotation, p->spans};
     adcgs_anchor_motion motion;
     const float *coarse_part = s->coarse_part + at * (size_t)s->coarse.layer[0].n_out * ADCGS_LANES;
     const float *fine_part = s->fine_part + at * (size_t)s->fine.layer[0].n_out * ADCGS_LANES;
     const float *coarse = deform_outputs(s, &s->coarse, coarse_part, s->coarse_time, z, other);
-    if (coarse)
-        s->dsp.motion(&motion, anchor, coarse, p->coarse_rotation);
+    s->dsp.motion(&motion, s->anchors + at, coarse, &movers, s->time);
     const float *fine = deform_outputs(s, &s->fine, fine_part, s->fine_time, z, other);
     for (int k = 0; k < p->k; k++) {
         const adcgs_slot_out to = slot_out(s, group, k);
-        s->dsp.deform(&to, s->slots + at * p->k + k, anchor, coarse ? &motion : NULL, p->coarse_rotation,
-                      fine ? fine + (size_t)k * 4 * ADCGS_LANES : NULL, s->present + (at * p->k + (size_t)k) * ADCGS_LANES,
-                      s->moves + at * ADCGS_LANES);
+        s->dsp.deform(&to, s->slots + at * p->k + k, &motion, &movers, fine ? fine + (size_t)k * 4 * ADCGS_LANES : NULL,
+                      s->present + (at * p->k + (size_t)k) * ADCGS_LANES, s->moves + at * ADCGS_LANES);
     }
 }
 
@@ -370,8 +370,8 @@ adcgs_status adcgs_splat_at(adcgs_splat *s, float t, adcgs_primitives *out, adcg
         interpolate_time(s, time);
         time_part(s->coarse_time, &s->coarse, s->time_code, s->model->params.time_width);
         time_part(s->fine_time, &s->fine, s->time_code, s->model->params.time_width);
-        adcgs_pool_run(s->pool, deform_group, s, (int)s->moving);
         s->time = time;
+        adcgs_pool_run(s->pool, deform_group, s, (int)s->moving);
         s->has_time = 1;
     }
     *out = adcgs_rows_primitives(s->out, s->groups * s->model->params.k * ADCGS_LANES);

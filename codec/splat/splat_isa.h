@@ -12,15 +12,17 @@ typedef struct adcgs_anchor_lanes {
     float extent[3][ADCGS_LANES];     /**< exp of Sigma_v 0..2 */
     float scale[3][ADCGS_LANES];      /**< exp of Sigma_v 3..5 */
     float colour[3][ADCGS_LANES];     /**< C_v */
+    float velocity[3][ADCGS_LANES], middle[ADCGS_LANES], pace[ADCGS_LANES]; /**< of spans */
 } adcgs_anchor_lanes;
 
 /** What a group's anchors do at one time. */
 typedef struct adcgs_anchor_motion {
-    _Alignas(64) float position[3][ADCGS_LANES]; /**< X_v + dX */
+    _Alignas(64) float position[3][ADCGS_LANES]; /**< X_v, turned, + dX + the way of its span */
     float scale[3][ADCGS_LANES];      /**< exp of dS */
     float colour[3][ADCGS_LANES];     /**< dC_v */
     float q[4][ADCGS_LANES];          /**< qr */
     float matrix[9][ADCGS_LANES];     /**< its rotation matrix, row-major */
+    float presence[ADCGS_LANES];      /**< of spans: how much of it is there, 0..1 */
 } adcgs_anchor_motion;
 
 /** 64 slots of one primitive index of a group. Canonical values, from the prediction. */
@@ -29,21 +31,26 @@ typedef struct adcgs_slot_lanes {
     float scale[3][ADCGS_LANES], q[4][ADCGS_LANES], colour[3][ADCGS_LANES], logit[ADCGS_LANES];
 } adcgs_slot_lanes;
 
+/** What a model has of all that may move its anchors. */
+typedef struct adcgs_movers {
+    int coarse, rotation, spans; /**< rotation: F_omega turns, too */
+} adcgs_movers;
+
 /** present, moves: [64] 0 or 1 per lane. */
 typedef struct adcgs_splat_dsp {
-    /** Sigma_v values [6][64] to extent and scale. */
-    void (*anchor)(adcgs_anchor_lanes *anchor, const float *sigma);
+    /** Sigma_v values [6][64] to extent and scale; with spans [11][64]. */
+    void (*anchor)(adcgs_anchor_lanes *anchor, const float *sigma, int spans);
     /** F_theta's outputs [14][64] to canonical values. */
     void (*predict)(adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor, const float *out);
     /** Primitives of anchors that do not move. */
     void (*place)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor,
                   const int32_t *present);
-    /** F_omega's outputs, [9][64], or [12][64] if rotation. */
-    void (*motion)(adcgs_anchor_motion *motion, const adcgs_anchor_lanes *anchor, const float *out, int rotation);
-    /** Primitives of the anchors that move; other lanes of to stay. motion and fine ([4][64]) may be NULL, not both. */
-    void (*deform)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor,
-                   const adcgs_anchor_motion *motion, int rotation, const float *fine, const int32_t *present,
-                   const int32_t *moves);
+    /** What moves at t; of F_omega's outputs, [9][64], or [12][64] if it turns, where there is one. */
+    void (*motion)(adcgs_anchor_motion *motion, const adcgs_anchor_lanes *anchor, const float *out, const adcgs_movers *movers,
+                   float t);
+    /** Primitives of the anchors that move; other lanes of to stay. fine, [4][64], may be NULL. */
+    void (*deform)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_motion *motion,
+                   const adcgs_movers *movers, const float *fine, const int32_t *present, const int32_t *moves);
     void (*position_code)(float *out, const float *x, int octaves);
 } adcgs_splat_dsp;
 

@@ -20,13 +20,21 @@ static inline float norm2(float w, float x, float y, float z)
     return fmaf(z, z, fmaf(y, y, fmaf(x, x, w * w)));
 }
 
-static void anchor(adcgs_anchor_lanes *a, const float *sigma)
+static void anchor(adcgs_anchor_lanes *a, const float *sigma, int spans)
 {
     for (int c = 0; c < 3; c++)
         LANES {
             a->extent[c][l] = adcgs_exp(adcgs_clampf(sigma[c * ADCGS_LANES + l], -16.0f, 8.0f));
             a->scale[c][l] = adcgs_exp(adcgs_clampf(sigma[(3 + c) * ADCGS_LANES + l], -16.0f, 8.0f));
         }
+    if (!spans)
+        return;
+    for (int c = 0; c < 3; c++)
+        LANES a->velocity[c][l] = sigma[(ADCGS_SPAN_VELOCITY + c) * ADCGS_LANES + l] * 0.125f;
+    LANES {
+        a->middle[l] = fmaf(sigma[ADCGS_SPAN_MIDDLE * ADCGS_LANES + l], 0.125f, 0.5f);
+        a->pace[l] = adcgs_exp(adcgs_clampf(sigma[ADCGS_SPAN_PACE * ADCGS_LANES + l], -8.0f, 8.0f));
+    }
 }
 
 static void predict(adcgs_slot_lanes *s, const adcgs_anchor_lanes *a, const float *out)
@@ -120,20 +128,35 @@ static void turn_vector(float out[3][ADCGS_LANES], const float in[3][ADCGS_LANES
     }
 }
 
-static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const float *out, int rotation)
+/* An anchor's way since the middle of its life, and how much of it is there. */
+static void live(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, float t)
 {
+    float u[ADCGS_LANES];
+    LANES {
+        u[l] = adcgs_clampf((t - a->middle[l]) * a->pace[l], -4.0f, 4.0f);
+        const float square = u[l] * u[l];
+        m->presence[l] = adcgs_exp(-(square * square));
+    }
     for (int c = 0; c < 3; c++)
+        LANES m->position[c][l] = fmaf(a->velocity[c][l], u[l], m->position[c][l]);
+}
+
+static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const float *out, const adcgs_movers *movers, float t)
+{
+    memcpy(m->position, a->position, sizeof m->position);
+    for (int c = 0; movers->coarse && c < 3; c++)
         LANES {
-            m->position[c][l] = a->position[c][l];
             m->scale[c][l] = adcgs_exp(adcgs_clampf(out[(3 + c) * ADCGS_LANES + l], -8.0f, 8.0f));
             m->colour[c][l] = out[(6 + c) * ADCGS_LANES + l];
         }
-    if (rotation) {
+    if (movers->rotation) {
         turn(m, out + 9 * ADCGS_LANES);
         turn_vector(m->position, a->position, m);
     }
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; movers->coarse && c < 3; c++)
         LANES m->position[c][l] += out[c * ADCGS_LANES + l];
+    if (movers->spans)
+        live(m, a, t);
 }
 
 /* Product of the anchor's rotation and the primitive's; not normalised again. */
@@ -156,44 +179,48 @@ static void turn_quaternion(const adcgs_slot_out *to, const adcgs_slot_lanes *s,
     }
 }
 
-static void deform_anchor(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, int rotation,
-                          const int32_t *moves)
+static void deform_shape(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m,
+                         const adcgs_movers *movers, const int32_t *moves)
 {
     float turned[3][ADCGS_LANES];
-    if (rotation) {
+    if (movers->rotation) {
         turn_vector(turned, s->offset, m);
         turn_quaternion(to, s, m, moves);
     }
     for (int c = 0; c < 3; c++) {
-        const float *offset = rotation ? turned[c] : s->offset[c];
+        const float *offset = movers->rotation ? turned[c] : s->offset[c];
         float *restrict mean = to->mean[c], *restrict scale = to->scale[c];
         LANES {
-            const float x = final_mean(m->position[c][l] + offset[l]), size = final_scale(s->scale[c][l] * m->scale[c][l]);
+            const float x = final_mean(m->position[c][l] + offset[l]);
             mean[l] = moves[l] ? x : mean[l];
+        }
+        for (int l = 0; movers->coarse && l < ADCGS_LANES; l++) {
+            const float size = final_scale(s->scale[c][l] * m->scale[c][l]);
             scale[l] = moves[l] ? size : scale[l];
         }
     }
 }
 
-static void deform(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_lanes *a, const adcgs_anchor_motion *m,
-                   int rotation, const float *fine, const int32_t *present, const int32_t *moves)
+static void deform(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, const adcgs_movers *movers,
+                   const float *fine, const int32_t *present, const int32_t *moves)
 {
-    if (m)
-        deform_anchor(to, s, m, rotation, moves);
+    if (movers->coarse || movers->spans)
+        deform_shape(to, s, m, movers, moves);
     for (int c = 0; c < 3; c++) {
         float *restrict colour = to->colour[c];
         LANES {
             float value = s->colour[c][l];
-            value = m ? value + m->colour[c][l] : value;
+            value = movers->coarse ? value + m->colour[c][l] : value;
             value = final_colour(fine ? value + fine[(1 + c) * ADCGS_LANES + l] : value);
             colour[l] = moves[l] ? value : colour[l];
         }
     }
-    if (!fine)
+    if (!fine && !movers->spans)
         return;
     float *restrict opacity = to->opacity;
     LANES {
-        const float o = final_opacity(s->logit[l] + fine[l], present[l]);
+        float o = final_opacity(fine ? s->logit[l] + fine[l] : s->logit[l], present[l]);
+        o = movers->spans ? o * m->presence[l] : o;
         opacity[l] = moves[l] ? o : opacity[l];
     }
 }

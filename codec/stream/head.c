@@ -45,6 +45,7 @@ static void params_from_head(adcgs_params *params, const adcgs_syn_head *h)
     params->fine_uses_fv = h->fine_uses_fv;
     params->coarse_rotation = h->coarse_rotation;
     params->adaptive_steps = h->adaptive_steps;
+    params->spans = h->spans;
     params->time_rows = h->time_rows;
     params->time_width = h->time_width;
 }
@@ -112,6 +113,7 @@ adcgs_status adcgs_head_write(adcgs_buffer *out, const adcgs_stream *stream, uin
         .fine_uses_fv = params->fine_uses_fv,
         .coarse_rotation = params->coarse_rotation,
         .adaptive_steps = params->adaptive_steps,
+        .spans = params->spans,
         .time_rows = params->time_rows,
         .time_width = params->time_width,
     };

@@ -112,7 +112,7 @@ adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_
         model->shape[g] = segm.shapes >> 2 * g & 3;
     ADCGS_TRY(parse_roles(p, &model->params, segm.roles, ids));
     ADCGS_TRY(parse_steps(p, model->d_fv, model->params.n_fv));
-    ADCGS_TRY(parse_steps(p, model->d_sigma, ADCGS_SIGMA_N));
+    ADCGS_TRY(parse_steps(p, model->d_sigma, adcgs_sigma_rows(&model->params)));
     ADCGS_TRY(parse_steps(p, model->d_colour, ADCGS_COLOUR_N));
     ADCGS_TRY(parse_steps(p, model->d_fg, model->params.n_fg));
     for (int i = 0; i < model->params.n_eta; i++) {
@@ -137,7 +137,7 @@ adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, con
         if (ids->mask >> role & 1)
             adcgs_write_varint(out, ids->id[role]);
     ADCGS_TRY(write_steps(out, model->d_fv, model->params.n_fv, error));
-    ADCGS_TRY(write_steps(out, model->d_sigma, ADCGS_SIGMA_N, error));
+    ADCGS_TRY(write_steps(out, model->d_sigma, adcgs_sigma_rows(&model->params), error));
     ADCGS_TRY(write_steps(out, model->d_colour, ADCGS_COLOUR_N, error));
     ADCGS_TRY(write_steps(out, model->d_fg, model->params.n_fg, error));
     for (int i = 0; i < model->params.n_eta; i++) {

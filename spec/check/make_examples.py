@@ -7,7 +7,7 @@ import sys
 
 import sources
 import watching
-from binary import Literal
+from binary import Literal, binary32
 from watching import F64, camera_of
 
 # Ids of the vectors that the examples show, what is shown of each, and a word on it.
@@ -315,13 +315,18 @@ def moving_table(watch, model, time, splats):
         more, y = network_rows(watch, "F~ω~", networks[1], f_v, f_t)
         rows += more
         position = machine.move_anchor(model, i, y, position, primitive)
+    presence = binary32(1)
+    if model.head.spans == 1:
+        life = machine.live(model, i, t, position)
+        position, presence = life.position, life.presence
+        rows += [("presence", [presence])]
     if networks[2] is not None:
         inputs = machine.position_code(model, i) + (f_v if model.head.fine_uses_fv == 1 else [])
         more, z = network_rows(watch, "F~ϖ~", networks[2], inputs, f_t)
         rows += more
         machine.change_primitive(k, z, primitive)
     rows += state_rows("moved", position, primitive)
-    splat = machine.splat(model, i, k, position, primitive)
+    splat = machine.splat(model, i, k, position, presence, primitive)
     assert any(splat.__dict__ == other.__dict__ for other in splats)
     title = ".Anchor %d and its primitive %d at %s seconds, splat in slot %d" % (i, k, time, splat.slot)
     return [title] + table("3,8", ("Quantity", "Values (patterns)"), [(name, patterns(machine, values)) for name, values in rows])

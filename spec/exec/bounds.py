@@ -71,6 +71,8 @@ class Interval:
 
     def __mul__(self, other):
         products = self.products(Interval.of(other))
+        if other is self:  # a square
+            products = [a * a for a in (self.low, self.high)] + ([0] if self.low < 0 < self.high else [])
         return Interval(min(products), max(products))
 
     def __truediv__(self, other):
@@ -258,7 +260,7 @@ def geometry(b):
 
 def stream(b):
     n, depth, weights_most = b.limit("anchors", "GEOM")[1], b.limit("depth", "GEOM")[1], b.level("WEIGHTS")
-    head = Record(**{e: b.limit(e, "HEAD")[1] for e in ("n_eta", "n_fv", "n_fg", "k")})
+    head = Record(**{e: b.limit(e, "HEAD")[1] for e in ("n_eta", "n_fv", "n_fg", "k", "spans")})
     segment = b.m.segment_bytes(head, n, weights_most)  # a network has one role: none counts twice
     b.integer("stream.segment_bytes", 0, segment)
     b.integer("stream.model_bytes", 0, b.level("MODEL_BYTES") + segment)
@@ -319,12 +321,12 @@ def networks(b):
 def splats(b):
     m = b.m
     latent, theta, omega, varpi = networks(b)
-    m.names.update(features=lambda latents, steps, factor: [latent] * 6, features_fg=lambda *_: [latent],
+    m.names.update(features=lambda latents, steps, factor: [latent] * 11, features_fg=lambda *_: [latent],
                    step_factors=lambda *_: [1, 1, 1], accumulate=lambda *_: None, outputs=lambda *_: theta)
     model = Record(fv=[None], fg=[[None]], sigma=[None], colour=[None], d_fv=None, d_fg=None, d_sigma=None, d_colour=None,
                    positions=[[Interval(0, 2 ** b.limit("depth", "GEOM")[1] - 1)] * 3],
                    voxel=Interval(0, b.limit("voxel", "GEOM")[1]),
-                   origin=[Interval(*b.limit("origin", "GEOM"))] * 3, head=Record(coarse_rotation=1, k=b.limit("k", "HEAD")[1]))
+                   origin=[Interval(*b.limit("origin", "GEOM"))] * 3, head=Record(coarse_rotation=1, spans=1, k=b.limit("k", "HEAD")[1]))
     primitive, position = m.predict(model, [Record(b=None, w=None)], 0, 0), m.anchor_position(model, 0)
     b.real("rest.position", position[0])
     for name in ("offset", "scale", "colour"):
@@ -335,7 +337,10 @@ def splats(b):
     for name in ("offset", "scale", "rotation", "colour"):
         b.real("moved." + name, getattr(primitive, name)[0])
     b.real("moved.logit", primitive.logit)
-    splat = m.splat(model, 0, 0, position, primitive)
+    life = m.live(model, 0, Interval(0, 1), position)
+    b.real("life.position", life.position[0])
+    b.real("life.presence", life.presence)
+    splat = m.splat(model, 0, 0, life.position, life.presence, primitive)
     b.real("splats.any", symmetric(Interval.peak))
     b.real("splat.opacity", splat.opacity)
     return splat

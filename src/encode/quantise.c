@@ -67,13 +67,28 @@ static adcgs_status entropy_network(adcgs_net *net, const adcgs_mlp *m, const fl
     return ADCGS_OK;
 }
 
-static adcgs_status integer_network(adcgs_net *net, const adcgs_mlp *m, const float *p, int role, adcgs_error *error)
+/** Leave out of the last layer what says where the values lie, and how far about it, of channels behind the first `rows`. */
+static void cut_channels(adcgs_mlp *m, float *weights, int rows)
 {
-    float *weights = adcgs_alloc(NULL, m->n, sizeof *weights, error);
+    const int last = m->hidden, all = m->n_out[last] / 2;
+    const size_t in = (size_t)m->in[last], n = (size_t)rows;
+    float *w = weights + m->w[last], *b = weights + m->b[last];
+    memmove(w + n * in, w + (size_t)all * in, n * in * sizeof *w);
+    memmove(b + n, b + all, n * sizeof *b);
+    m->n_out[last] = 2 * rows;
+}
+
+static adcgs_status integer_network(adcgs_net *net, const adcgs_mlp *twin, const float *p, int role, int outputs,
+                                    adcgs_error *error)
+{
+    adcgs_mlp m = *twin;
+    float *weights = adcgs_alloc(NULL, m.n, sizeof *weights, error);
     if (!weights)
         return adcgs_alloc_status(error);
-    adcgs_mlp_integer(m, p, weights);
-    const adcgs_status status = entropy_network(net, m, weights, role, error);
+    adcgs_mlp_integer(&m, p, weights);
+    if (outputs < m.n_out[m.hidden])
+        cut_channels(&m, weights, outputs / 2);
+    const adcgs_status status = entropy_network(net, &m, weights, role, error);
     adcgs_free(NULL, weights);
     return status;
 }
@@ -117,8 +132,10 @@ static adcgs_status set_networks(adcgs_model *model, const adcgs_fmodel *f, adcg
         if (!f->mlp[i].n || (deforms && !model->params.time_rows))
             continue;
         adcgs_net *net = &model->net[roles[i]];
+        uint32_t n_in, n_out; /* fewer than in training where nothing moves */
+        adcgs_role_shape(&model->params, roles[i], &n_in, &n_out);
         if (f->mlp[i].entropy)
-            ADCGS_TRY(integer_network(net, &f->mlp[i], f->param[i].p, roles[i], error));
+            ADCGS_TRY(integer_network(net, &f->mlp[i], f->param[i].p, roles[i], (int)n_out, error));
         else
             ADCGS_TRY(float_network(net, &f->mlp[i], f->param[i].p, roles[i], error));
     }
@@ -142,7 +159,7 @@ static void set_anchors(adcgs_model *model, const adcgs_fmodel *f)
 static void set_steps(adcgs_model *model, const adcgs_fmodel *f)
 {
     float *const d[4] = { model->d_fv, model->d_fg, model->d_sigma, model->d_colour };
-    const int rows[4] = { f->params.n_fv, f->params.n_fg, ADCGS_SIGMA_N, ADCGS_COLOUR_N };
+    const int rows[4] = { f->params.n_fv, f->params.n_fg, adcgs_sigma_rows(&model->params), ADCGS_COLOUR_N };
     for (int i = 0; i < 4; i++)
         for (int r = 0; r < rows[i]; r++)
             d[i][r] = f->step[i][r] * 0x1p-6f;
@@ -247,7 +264,7 @@ adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adc
     memset(model, 0, sizeof *model);
     model->params = f->params;
     if (!moves(f))
-        model->params.time_rows = model->params.time_width = 0;
+        model->params.time_rows = model->params.time_width = model->params.spans = 0;
     model->n = f->n;
     model->depth = (uint8_t)f->shape.depth;
     memcpy(model->origin, f->origin, sizeof model->origin);

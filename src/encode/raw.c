@@ -18,7 +18,7 @@ void adcgs_raw_prepare(adcgs_fmodel *f)
 {
     finest_steps(f, ADCGS_P_FV, f->params.n_fv);
     finest_steps(f, ADCGS_P_FG, f->params.n_fg);
-    finest_steps(f, ADCGS_P_SIGMA, ADCGS_SIGMA_N);
+    finest_steps(f, ADCGS_P_SIGMA, adcgs_sigma_rows(&f->params));
     finest_steps(f, ADCGS_P_COLOUR, ADCGS_COLOUR_N);
     memset(f->param[ADCGS_P_ETA].p, 0, f->param[ADCGS_P_ETA].n * sizeof(float));
     for (int i = ADCGS_P_ETA_PRIOR; i < ADCGS_P_COUNT; i++)
@@ -54,7 +54,7 @@ adcgs_status adcgs_raw_write(const adcgs_model *m, adcgs_buffer *out, adcgs_erro
     for (uint32_t i = 0; i < m->n; i++)
         put_latents(out, m->fv + (size_t)i * p->n_fv, m->d_fv, p->n_fv);
     for (uint32_t i = 0; i < m->n; i++)
-        put_latents(out, m->sigma + (size_t)i * ADCGS_SIGMA_N, m->d_sigma, ADCGS_SIGMA_N);
+        put_latents(out, m->sigma + (size_t)i * (size_t)adcgs_sigma_rows(p), m->d_sigma, adcgs_sigma_coded(m, i));
     for (uint32_t i = 0; i < m->n; i++)
         put_latents(out, m->colour + (size_t)i * ADCGS_COLOUR_N, m->d_colour, ADCGS_COLOUR_N);
     for (uint32_t i = 0; i < m->n; i++)

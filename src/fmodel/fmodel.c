@@ -2,6 +2,7 @@
 /** \file The float model's memory, starting values and regrouping. */
 #include "fmodel/fmodel.h"
 
+#include "base/fmath.h"
 #include "grad/random.h"
 #include "splat/splat.h"
 
@@ -12,7 +13,7 @@ int adcgs_fmodel_rows(const adcgs_fmodel *f, int group)
     switch (group) {
     case ADCGS_P_FV: return f->params.n_fv;
     case ADCGS_P_FG: return f->params.k * f->params.n_fg;
-    case ADCGS_P_SIGMA: return ADCGS_SIGMA_N;
+    case ADCGS_P_SIGMA: return adcgs_sigma_rows(&f->params);
     case ADCGS_P_COLOUR: return ADCGS_COLOUR_N;
     default: return f->params.n_eta;
     }
@@ -50,7 +51,7 @@ static void layout_networks(adcgs_fmodel *f)
     }
     const int w = s->entropy_width, h = s->entropy_hidden;
     adcgs_mlp_layout(&m[ADCGS_P_E_FV], p->n_eta, 0, w, h, 2 * p->n_fv);
-    adcgs_mlp_layout(&m[ADCGS_P_E_SIGMA], p->n_fv, 0, w, h, 2 * ADCGS_SIGMA_N);
+    adcgs_mlp_layout(&m[ADCGS_P_E_SIGMA], p->n_fv, 0, w, h, 2 * adcgs_sigma_rows(p));
     adcgs_mlp_layout(&m[ADCGS_P_E_COLOUR], p->n_fv, 0, w, h, 2 * ADCGS_COLOUR_N);
     for (int c = 0; c < p->chunks && per_chunk; c++)
         adcgs_mlp_layout(&m[ADCGS_P_E_FG + c], p->n_fv + c * per_chunk, 0, w, h, 2 * per_chunk);
@@ -101,7 +102,7 @@ static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error 
         if (i == ADCGS_P_ETA_PRIOR)
             n = 2u * f->params.n_eta;
         if (i == ADCGS_P_STEP)
-            n = (size_t)f->params.n_fv + f->params.n_fg + ADCGS_SIGMA_N + ADCGS_COLOUR_N;
+            n = (size_t)f->params.n_fv + f->params.n_fg + (size_t)adcgs_sigma_rows(&f->params) + ADCGS_COLOUR_N;
         ADCGS_TRY(param_alloc(&f->param[i], n, error));
         if (!mlp->n)
             continue;
@@ -248,6 +249,9 @@ adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params,
         f->param[ADCGS_P_FG].p[i] = (float)(0.7 * adcgs_random_normal(seed, ADCGS_P_FG, i));
     for (size_t i = 0; i < f->param[ADCGS_P_FV].n; i++)
         f->param[ADCGS_P_FV].p[i] = (float)(0.1 * adcgs_random_normal(seed, ADCGS_P_FV, i));
+    for (size_t i = 0; params->spans && i < (size_t)f->groups * ADCGS_LANES; i++)
+        f->param[ADCGS_P_SIGMA].p[(i / ADCGS_LANES * ADCGS_SIGMA_MAX + ADCGS_SPAN_PACE) * ADCGS_LANES + i % ADCGS_LANES] =
+            ADCGS_SPAN_WHOLE;
     *out = f;
     return ADCGS_OK;
 }
@@ -322,4 +326,14 @@ float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row)
     const float u = t * (float)(rows - 1);
     *row = rows > 1 ? (int)u < rows - 2 ? (int)u : rows - 2 : 0;
     return rows > 1 ? u - (float)*row : 0;
+}
+
+float adcgs_fmodel_presence(const adcgs_fmodel *f, uint32_t anchor, float t)
+{
+    if (!f->params.spans || f->moving[anchor] == 0)
+        return 1;
+    const float middle = *adcgs_fmodel_at(f, ADCGS_P_SIGMA, anchor, ADCGS_SPAN_MIDDLE) * 0.125f + 0.5f;
+    const float pace = expf(adcgs_clampf(*adcgs_fmodel_at(f, ADCGS_P_SIGMA, anchor, ADCGS_SPAN_PACE), -8, 8));
+    const float u = adcgs_clampf((t - middle) * pace, -4, 4);
+    return expf(-u * u * u * u);
 }

@@ -67,6 +67,9 @@ typedef struct adcgs_fmodel {
     uint8_t density[ADCGS_GROUPS]; /**< shape of the density of each group of channels, as adcgs_model.shape */
 } adcgs_fmodel;
 
+/** Pace with which a life about the middle of a segment takes all of it: 0.99 is there at its ends. */
+#define ADCGS_SPAN_WHOLE (-0.5f)
+
 /** Rows (features) per group of an anchor parameter. */
 int adcgs_fmodel_rows(const adcgs_fmodel *f, int group);
 
@@ -95,7 +98,11 @@ static inline size_t adcgs_fmodel_slot(const adcgs_fmodel *f, uint32_t anchor, i
 static inline int adcgs_fmodel_step_at(const adcgs_fmodel *f, int group, int row)
 {
     const int nv = f->params.n_fv, ng = f->params.n_fg;
-    return group == ADCGS_P_FV ? row : group == ADCGS_P_FG ? nv + row % ng : nv + ng + (group == ADCGS_P_COLOUR ? 6 : 0) + row;
+    if (group == ADCGS_P_FV)
+        return row;
+    if (group == ADCGS_P_FG)
+        return nv + row % ng;
+    return nv + ng + (group == ADCGS_P_COLOUR ? adcgs_sigma_rows(&f->params) : 0) + row;
 }
 
 /**
@@ -114,6 +121,9 @@ static inline float *adcgs_fmodel_at(const adcgs_fmodel *f, int group, uint32_t 
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
     return f->param[group].p + ((size_t)(anchor / ADCGS_LANES) * rows + (size_t)row) * ADCGS_LANES + anchor % ADCGS_LANES;
 }
+
+/** How much of an anchor is there at t in [0,1], by its span. */
+float adcgs_fmodel_presence(const adcgs_fmodel *f, uint32_t anchor, float t);
 
 /** Give a network's hidden layers another width, at most the shape's; its parameters are left to the caller. */
 void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width);

@@ -97,13 +97,16 @@ static void forward_group(void *arg, int index, int thread)
     const forward_job *job = arg;
     const uint32_t g = (uint32_t)index;
     float *scratch = job->pass->scratch + (size_t)thread * job->pass->scratch_stride;
-    quantise_group(job, g, scratch);
-    drop_primitives(job, g);
-    forward_theta(job, g, scratch);
-    if (job->deform)
+    const adcgs_deform deform = adcgs_pass_deform_of(job->f, g, job->deform);
+    if (!job->mode->other_time) {
+        quantise_group(job, g, scratch);
+        drop_primitives(job, g);
+        forward_theta(job, g, scratch);
+    }
+    if (deform)
         forward_deform(job, g);
     adcgs_group_io io;
-    adcgs_pass_io(job->pass, job->f, g, job->deform, &io);
+    adcgs_pass_io(job->pass, job->f, g, deform, &io);
     job->pass->dsp.primitives(&io);
 }
 

@@ -71,6 +71,7 @@ typedef struct adcgs_pass_mode {
     int bf16;      /**< the networks that draw, here and in the backward pass, run in bf16; the entropy networks never do */
     float dropout; /**< share of primitives left out at random: what remains may not rely on any one of them */
     uint32_t seed; /**< of noise and dropout */
+    int other_time; /**< only the time differs from the last pass: what F_theta makes of features is there */
 } adcgs_pass_mode;
 
 /** Primitives at t in [0,1] into pass->primitives. */

@@ -91,7 +91,8 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
     const size_t at = (size_t)g * f->params.k * ADCGS_LANES;
     adcgs_group_io io;
     adcgs_group_grad grad;
-    adcgs_pass_io(p, f, g, job->deform, &io);
+    const adcgs_deform deform = adcgs_pass_deform_of(f, g, job->deform);
+    adcgs_pass_io(p, f, g, deform, &io);
     for (int c = 0; c < 3; c++) {
         grad.mean[c] = p->grads.mean[c] + at;
         grad.scale[c] = p->grads.scale[c] + at;
@@ -109,7 +110,7 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
     grad.pull = p->pull ? p->pull + (size_t)g * 12 * ADCGS_LANES : NULL;
     p->dsp.primitives_back(&io, &grad);
     theta_back(job, g, grad.theta, scratch, partial);
-    if (job->deform)
+    if (deform)
         deform_back(job, g, grad.omega, grad.varpi, scratch, partial);
 }
 

@@ -49,6 +49,16 @@ static inline adcgs_act adcgs_pass_act(const adcgs_pass *p, const adcgs_fmodel *
 /** The arrays that prediction and deformation read and write for a group, and in deform what takes part. */
 void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs_deform deform, adcgs_group_io *io);
 
+/** The deformation of a group of anchors: none where nothing moves, whose networks would be evaluated in vain. */
+static inline adcgs_deform adcgs_pass_deform_of(const adcgs_fmodel *f, uint32_t g, adcgs_deform deform)
+{
+    const float *moving = f->moving + (size_t)g * ADCGS_LANES;
+    float any = 0;
+    for (int l = 0; l < ADCGS_LANES; l++)
+        any += moving[l];
+    return any > 0 ? deform : ADCGS_DEFORM_NONE;
+}
+
 /** Whether the steps of the last forward pass adapted to the anchors. */
 static inline int adcgs_pass_adapts(const adcgs_pass *p, const adcgs_fmodel *f)
 {

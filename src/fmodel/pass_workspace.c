@@ -134,7 +134,9 @@ void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs
     const size_t slots = (size_t)f->groups * f->params.k * ADCGS_LANES, at = (size_t)g * f->params.k * ADCGS_LANES;
     io->k = f->params.k;
     io->x = f->x + (size_t)g * 3 * ADCGS_LANES;
-    io->sigma = p->used[ADCGS_P_SIGMA] + (size_t)g * ADCGS_SIGMA_N * ADCGS_LANES;
+    io->sigma = p->used[ADCGS_P_SIGMA] + (size_t)g * (size_t)adcgs_sigma_rows(&f->params) * ADCGS_LANES;
+    io->spans = deform && f->params.spans;
+    io->t = p->t;
     io->colour = p->used[ADCGS_P_COLOUR] + (size_t)g * ADCGS_COLOUR_N * ADCGS_LANES;
     io->theta = act.theta_out;
     io->omega = deform && f->mlp[ADCGS_P_OMEGA].n ? act.omega_out : NULL;

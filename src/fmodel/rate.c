@@ -105,6 +105,28 @@ typedef struct coded {
     float *x; /* receives the values as inputs, or NULL */
 } coded;
 
+/** Bits of the spans, which come behind the rows of io. */
+static double rate_spans(const job *j, const adcgs_rate_io *io)
+{
+    _Alignas(64) float weight[ADCGS_LANES];
+    const float *moving = j->f->moving + (size_t)j->group * ADCGS_LANES;
+    const size_t skip = (size_t)ADCGS_SIGMA_N * ADCGS_LANES;
+    adcgs_rate_io rest = *io;
+    for (int l = 0; l < ADCGS_LANES; l++)
+        weight[l] = io->weight[l] * moving[l];
+    rest.n = ADCGS_SPAN_N;
+    rest.weight = weight;
+    rest.y += skip;
+    rest.dy += skip;
+    rest.step += ADCGS_SIGMA_N;
+    rest.mu += skip;
+    rest.si += skip;
+    rest.dmu += skip;
+    rest.dsi += skip;
+    rest.mean += skip;
+    return (j->exact ? j->p->dsp.rate_exact : j->p->dsp.rate)(&rest);
+}
+
 /** Bits of rows under a network's outputs; dout receives their gradient. Rows with a factor are coded in units of it. */
 static void rate_rows(const job *j, const coded *c, const float *out, float *dout)
 {
@@ -135,7 +157,11 @@ static void rate_rows(const job *j, const coded *c, const float *out, float *dou
         io.y = values;
         io.dy = gradients;
     }
+    const int spans = c->stream == ADCGS_GROUP_SIGMA && c->count > ADCGS_SIGMA_N; /* what is static has none */
+    io.n = spans ? ADCGS_SIGMA_N : c->count;
     j->bits[c->stream] += (j->exact ? j->p->dsp.rate_exact : j->p->dsp.rate)(&io);
+    if (spans)
+        j->bits[c->stream] += rate_spans(j, &io);
     if (factor)
         adapted_back(j, c->param, (int)c->stream, c->first, c->count, gradients, NULL);
 }
@@ -255,7 +281,7 @@ void adcgs_rate_group(const adcgs_pass *p, adcgs_fmodel *f, uint32_t group, floa
     float *rest = j.xg + (size_t)k * (size_t)ng * ADCGS_LANES;
     const float *live = f->live + (size_t)group * ADCGS_LANES;
     const coded eta = { ADCGS_P_ETA, 0, ne, ADCGS_GROUP_ETA, live, j.xe }, fv = { ADCGS_P_FV, 0, nv, ADCGS_GROUP_FV, live, j.xv };
-    const coded sigma = { ADCGS_P_SIGMA, 0, ADCGS_SIGMA_N, ADCGS_GROUP_SIGMA, live, NULL };
+    const coded sigma = { ADCGS_P_SIGMA, 0, adcgs_sigma_rows(&f->params), ADCGS_GROUP_SIGMA, live, NULL };
     const coded colour = { ADCGS_P_COLOUR, 0, ADCGS_COLOUR_N, ADCGS_GROUP_COLOUR, live, NULL };
     memset(j.dxv, 0, (size_t)nv * ADCGS_LANES * sizeof *j.dxv);
     memset(j.dxe, 0, (size_t)ne * ADCGS_LANES * sizeof *j.dxe);

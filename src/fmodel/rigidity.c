@@ -5,6 +5,7 @@
 #include "fmodel/pass_layout.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { NEAR = ADCGS_RIGIDITY_NEAR, PULL_ROWS = 12 };
 
@@ -16,15 +17,16 @@ enum { NEAR = ADCGS_RIGIDITY_NEAR, PULL_ROWS = 12 };
 typedef struct near_job {
     const adcgs_fmodel *f;
     adcgs_rigidity *rigid;
+    const uint64_t *along; /* [n] x and number of each anchor, sorted: who is near lies near there, too */
 } near_job;
 
-/** Put j into a list kept sorted by key, smallest first. */
+/** Put j into a list kept sorted by key, smallest first, then by number: the order of asking does not matter. */
 static void keep_best(uint64_t *best, int32_t *near, int n, uint64_t key, uint32_t j)
 {
     int k = n - 1;
-    if (key >= best[k])
+    if (key > best[k] || (key == best[k] && near[k] >= 0 && (int32_t)j > near[k]))
         return;
-    for (; k > 0 && best[k - 1] > key; k--) {
+    for (; k > 0 && (best[k - 1] > key || (best[k - 1] == key && near[k - 1] > (int32_t)j)); k--) {
         best[k] = best[k - 1];
         near[k] = near[k - 1];
     }
@@ -32,28 +34,41 @@ static void keep_best(uint64_t *best, int32_t *near, int n, uint64_t key, uint32
     near[k] = (int32_t)j;
 }
 
-/** The closest, and of those within reach the ones that a fixed lottery draws. */
-static void find_near(const adcgs_fmodel *f, uint32_t i, int32_t near[NEAR])
+/** What an anchor j is to i: one of the closest, or of those within reach one that the lottery draws. */
+static void consider(const adcgs_fmodel *f, uint32_t i, uint32_t j, uint64_t reach2, uint64_t best[NEAR], int32_t near[NEAR])
 {
+    uint64_t d = 0;
+    for (int a = 0; a < 3; a++) {
+        const int64_t way = (int64_t)f->pos[i][a] - (int64_t)f->pos[j][a];
+        d += (uint64_t)(way * way);
+    }
+    keep_best(best, near, ADCGS_RIGIDITY_CLOSE, d, j);
+    if (d < reach2)
+        keep_best(best + ADCGS_RIGIDITY_CLOSE, near + ADCGS_RIGIDITY_CLOSE, NEAR - ADCGS_RIGIDITY_CLOSE,
+                  adcgs_random64(1, i, j), j);
+}
+
+/** The closest, and of those within reach the ones that a fixed lottery draws; rank: the anchor's place along x. */
+static void find_near(const near_job *job, uint32_t rank)
+{
+    const adcgs_fmodel *f = job->f;
     const double reach = (double)ADCGS_RIGIDITY_REACH / (double)f->voxel;
+    const uint64_t reach2 = (uint64_t)fmin(ceil(reach * reach), 0x1p62);
+    const uint32_t i = (uint32_t)job->along[rank];
+    int32_t *near = job->rigid->near[i];
     uint64_t best[NEAR];
     for (int k = 0; k < NEAR; k++) {
         best[k] = UINT64_MAX;
         near[k] = -1;
     }
-    for (uint32_t j = 0; j < f->n; j++) {
-        uint64_t d = 0;
-        for (int a = 0; a < 3; a++) {
-            const int64_t way = (int64_t)f->pos[i][a] - (int64_t)f->pos[j][a];
-            d += (uint64_t)(way * way);
+    for (int side = -1; side <= 1; side += 2)
+        for (int64_t at = (int64_t)rank + side; at >= 0 && at < (int64_t)f->n; at += side) {
+            const uint32_t j = (uint32_t)job->along[at];
+            const int64_t way = (int64_t)f->pos[j][0] - (int64_t)f->pos[i][0];
+            if ((uint64_t)(way * way) > ADCGS_MAX(reach2, best[ADCGS_RIGIDITY_CLOSE - 1]))
+                break;
+            consider(f, i, j, reach2, best, near);
         }
-        if (j == i)
-            continue;
-        keep_best(best, near, ADCGS_RIGIDITY_CLOSE, d, j);
-        if ((double)d < reach * reach)
-            keep_best(best + ADCGS_RIGIDITY_CLOSE, near + ADCGS_RIGIDITY_CLOSE, NEAR - ADCGS_RIGIDITY_CLOSE,
-                      adcgs_random64(1, i, j), j);
-    }
 }
 
 static void near_group(void *arg, int group, int thread)
@@ -62,7 +77,13 @@ static void near_group(void *arg, int group, int thread)
     const near_job *job = arg;
     const uint32_t begin = (uint32_t)group * ADCGS_LANES, end = ADCGS_MIN(begin + ADCGS_LANES, job->f->n);
     for (uint32_t i = begin; i < end; i++)
-        find_near(job->f, i, job->rigid->near[i]);
+        find_near(job, i);
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
 }
 
 void adcgs_rigidity_clear(adcgs_rigidity *rigid)
@@ -80,8 +101,15 @@ adcgs_status adcgs_rigidity_build(adcgs_rigidity *rigid, const adcgs_fmodel *f, 
     rigid->pull = adcgs_alloc(NULL, (size_t)f->groups * PULL_ROWS * ADCGS_LANES, sizeof *rigid->pull, error);
     if (!rigid->near || !rigid->pull)
         return adcgs_alloc_status(error);
-    near_job job = { f, rigid };
+    uint64_t *along = adcgs_alloc(NULL, f->n, sizeof *along, error);
+    if (!along)
+        return adcgs_alloc_status(error);
+    for (uint32_t i = 0; i < f->n; i++)
+        along[i] = (uint64_t)f->pos[i][0] << 32 | i;
+    qsort(along, f->n, sizeof *along, by_value);
+    near_job job = { f, rigid, along };
     adcgs_pool_run(pool, near_group, &job, (int)f->groups);
+    adcgs_free(NULL, along);
     return ADCGS_OK;
 }
 

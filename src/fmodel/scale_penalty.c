@@ -6,6 +6,11 @@
 
 /* Nothing is nearer than this to where it is seen from, scene units. */
 static const float NEAREST = 0.05f;
+/* Primitives that look for their viewpoint together. */
+enum { PIECE = 64 };
+
+/* What is fainter is not there, as what has not come to life yet. */
+static const float THERE = 1e-6f;
 
 static float distance2(const float a[3], const float b[3])
 {
@@ -57,16 +62,25 @@ void adcgs_viewpoints_clear(adcgs_viewpoints *p)
     *p = (adcgs_viewpoints){ .n = 0 };
 }
 
-/** How much larger an area looks from the nearest viewpoint than at distance 1; 1 where no viewpoints are. */
-static float nearness(const adcgs_viewpoints *p, const adcgs_primitives *primitives, uint32_t i)
+/**
+ * How much larger areas look from the nearest viewpoint than at distance 1, for some primitives from first on; 1 where no
+ * viewpoints are. Primitives are the inner loop, and no fminf() is asked for NaN: so the compiler makes vectors of it.
+ */
+static void nearness(float near[PIECE], const adcgs_viewpoints *p, const adcgs_primitives *primitives, uint32_t first,
+                     uint32_t some)
 {
-    if (!p->n)
-        return 1;
-    const float x[3] = { primitives->mean[0][i], primitives->mean[1][i], primitives->mean[2][i] };
-    float least = INFINITY;
-    for (uint32_t j = 0; j < p->n; j++)
-        least = fminf(least, distance2(x, p->x[j]));
-    return 1 / fmaxf(least, NEAREST * NEAREST);
+    for (uint32_t l = 0; l < PIECE; l++)
+        near[l] = p->n ? INFINITY : 1;
+    for (uint32_t j = 0; j < p->n; j++) {
+        const float *x = primitives->mean[0] + first, *y = primitives->mean[1] + first, *z = primitives->mean[2] + first;
+        const float a = p->x[j][0], b = p->x[j][1], c = p->x[j][2];
+        for (uint32_t l = 0; l < some; l++) {
+            const float d = (x[l] - a) * (x[l] - a) + (y[l] - b) * (y[l] - b) + (z[l] - c) * (z[l] - c);
+            near[l] = d < near[l] ? d : near[l];
+        }
+    }
+    for (uint32_t l = 0; l < PIECE; l++)
+        near[l] = 1 / fmaxf(near[l], NEAREST * NEAREST);
 }
 
 double adcgs_scale_penalty(const adcgs_primitives *primitives, const adcgs_viewpoints *viewpoints, float weight,
@@ -76,16 +90,21 @@ double adcgs_scale_penalty(const adcgs_primitives *primitives, const adcgs_viewp
     uint32_t n = 0;
     double area = 0;
     for (uint32_t i = 0; i < primitives->n; i++)
-        n += primitives->opacity[i] > 0;
+        n += primitives->opacity[i] > THERE;
     const float share = weight / (3 * (float)ADCGS_MAX(n, 1u));
-    for (uint32_t i = 0; i < primitives->n; i++) {
-        if (!(primitives->opacity[i] > 0))
-            continue;
-        const float each = share * nearness(viewpoints, primitives, i);
-        area += (double)each * (double)(x[i] * y[i] + y[i] * z[i] + z[i] * x[i]);
-        scale[0][i] += each * (y[i] + z[i]);
-        scale[1][i] += each * (z[i] + x[i]);
-        scale[2][i] += each * (x[i] + y[i]);
+    for (uint32_t first = 0; first < primitives->n; first += PIECE) {
+        const uint32_t some = ADCGS_MIN(primitives->n - first, PIECE);
+        float near[PIECE];
+        nearness(near, viewpoints, primitives, first, some);
+        for (uint32_t i = first; i < first + some; i++) {
+            if (!(primitives->opacity[i] > THERE))
+                continue;
+            const float each = share * near[i - first];
+            area += (double)each * (double)(x[i] * y[i] + y[i] * z[i] + z[i] * x[i]);
+            scale[0][i] += each * (y[i] + z[i]);
+            scale[1][i] += each * (z[i] + x[i]);
+            scale[2][i] += each * (x[i] + y[i]);
+        }
     }
     return area;
 }

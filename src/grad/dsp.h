@@ -18,12 +18,14 @@ enum { ADCGS_THETA_OUT = 14, ADCGS_OMEGA_OUT = 12, ADCGS_VARPI_OUT = 4 };
 typedef struct adcgs_group_io {
     int k;
     const float *x;      /**< [3][64] anchor positions */
-    const float *sigma;  /**< [6][64] */
+    const float *sigma;  /**< [6][64]; with spans [11][64] */
+    int spans;           /**< those are in use, at time t */
+    float t;
     const float *colour; /**< [3][64] */
     const float *theta;  /**< [k][14][64] */
     const float *omega;  /**< [12][64] (9 used without rotation) or NULL */
     const float *varpi;  /**< [4k][64] or NULL */
-    const float *moving; /**< [64] 1 for moving, 0 for static anchors; read when omega or varpi is given */
+    const float *moving; /**< [64] 1 for moving, 0 for static anchors; read when omega or varpi is given, or spans */
     const float *keep;   /**< [k][64] 1 for primitives that exist, else 0 */
     int rotation;        /**< omega's outputs 9..11 are used */
     float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] each */
@@ -32,7 +34,7 @@ typedef struct adcgs_group_io {
 /** Gradients of the same: in from the rasteriser, out to the networks. */
 typedef struct adcgs_group_grad {
     const float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] */
-    float *sigma, *colour;        /**< [6][64], [3][64], accumulated */
+    float *sigma, *colour;        /**< as io's, accumulated */
     float *theta, *omega, *varpi; /**< overwritten; omega, varpi may be NULL as above */
     const float *pull;            /**< [12][64] more gradient of the anchors' way and rotation matrix, or NULL */
 } adcgs_group_grad;

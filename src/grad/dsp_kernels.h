@@ -7,6 +7,7 @@
 #include "base/fmath.h"
 #include "grad/dsp.h"
 #include "grad/random.h"
+#include "model/model.h"
 
 #include <math.h>
 #include <stdalign.h>
@@ -294,7 +295,27 @@ typedef struct anchor_terms {
     float move[3][LANES], grow[3][LANES], tint[3][LANES]; /* deltas of F_omega */
     float q[4][LANES];                      /* anchor's rotation */
     float norm[LANES];                      /* length of (1, r) */
+    float pace[LANES], u[LANES], presence[LANES]; /* of spans */
 } anchor_terms;
+
+/** Where an anchor is in its span: it goes on at its velocity, and is there as a flat top with steep ends. */
+static void ISA(span_forward)(anchor_terms *a, const adcgs_group_io *io)
+{
+    for (int l = 0; l < LANES; l++)
+        a->presence[l] = 1;
+    if (!io->spans)
+        return;
+    const float *restrict middle = io->sigma + ADCGS_SPAN_MIDDLE * LANES, *restrict pace = io->sigma + ADCGS_SPAN_PACE * LANES;
+    for (int l = 0; l < LANES; l++) {
+        a->pace[l] = adcgs_exp(adcgs_clampf(pace[l], -8, 8));
+        a->u[l] = adcgs_clampf((io->t - (middle[l] * 0.125f + 0.5f)) * a->pace[l], -4, 4);
+        const float square = a->u[l] * a->u[l];
+        a->presence[l] = io->moving[l] != 0 ? adcgs_exp(-(square * square)) : 1;
+    }
+    for (int c = 0; c < 3; c++)
+        for (int l = 0; l < LANES; l++)
+            a->move[c][l] += io->sigma[(ADCGS_SPAN_VELOCITY + c) * LANES + l] * 0.125f * a->u[l] * io->moving[l];
+}
 
 static void ISA(anchor_forward)(anchor_terms *a, const adcgs_group_io *io)
 {
@@ -322,6 +343,7 @@ static void ISA(anchor_forward)(anchor_terms *a, const adcgs_group_io *io)
         a->q[2][l] = y * inverse;
         a->q[3][l] = z * inverse;
     }
+    ISA(span_forward)(a, io);
 }
 
 static void ISA(primitives)(const adcgs_group_io *io)
@@ -369,7 +391,7 @@ static void ISA(primitives)(const adcgs_group_io *io)
         float *restrict opacity = io->opacity + k * LANES;
         for (int l = 0; l < LANES; l++) {
             const float logit = th[13 * LANES + l] + (va ? va[l] * io->moving[l] : 0);
-            opacity[l] = 0.99f * adcgs_sigmoid(logit) * keep[l];
+            opacity[l] = 0.99f * adcgs_sigmoid(logit) * keep[l] * a.presence[l];
         }
     }
 }
@@ -379,6 +401,7 @@ typedef struct anchor_grads {
     float move[3][LANES], grow[3][LANES], tint[3][LANES];
     float m[9][LANES]; /* sum of dL/dmean (x) canonical mean: gradient of the rotation matrix */
     float q[4][LANES]; /* gradient of the anchor's quaternion through the primitives' */
+    float presence[LANES];
 } anchor_grads;
 
 static void ISA(primitive_mean_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g,
@@ -476,7 +499,8 @@ static void ISA(primitive_rest_back)(const anchor_terms *a, anchor_grads *s, con
     const float *restrict go = g->opacity + k * LANES, *restrict keep = io->keep + k * LANES;
     for (int l = 0; l < LANES; l++) {
         const float sg = adcgs_sigmoid(th[13 * LANES + l] + (va ? va[l] * io->moving[l] : 0));
-        const float t = go[l] * keep[l] * 0.99f * sg * (1 - sg);
+        const float whole = go[l] * keep[l] * 0.99f * sg, t = whole * (1 - sg) * a->presence[l];
+        s->presence[l] += whole;
         dt[13 * LANES + l] = t;
         if (dv)
             dv[l] = t * io->moving[l];
@@ -509,21 +533,40 @@ static void ISA(omega_back)(const anchor_terms *a, const anchor_grads *s, const 
     }
 }
 
+static void ISA(span_back)(const anchor_terms *a, const anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g)
+{
+    const float *restrict velocity = io->sigma + ADCGS_SPAN_VELOCITY * LANES;
+    float *restrict d = g->sigma + ADCGS_SPAN_VELOCITY * LANES;
+    for (int l = 0; l < LANES; l++) {
+        const float u = a->u[l], inside = u > -4 && u < 4 ? io->moving[l] : 0;
+        float du = -4 * u * u * u * a->presence[l] * s->presence[l];
+        for (int c = 0; c < 3; c++) {
+            du += 0.125f * s->move[c][l] * velocity[c * LANES + l];
+            d[c * LANES + l] += 0.125f * s->move[c][l] * u * io->moving[l];
+        }
+        d[(ADCGS_SPAN_MIDDLE - ADCGS_SPAN_VELOCITY) * LANES + l] -= 0.125f * a->pace[l] * du * inside;
+        d[(ADCGS_SPAN_PACE - ADCGS_SPAN_VELOCITY) * LANES + l] += u * du * inside;
+    }
+}
+
 static void ISA(primitives_back)(const adcgs_group_io *io, const adcgs_group_grad *grad)
 {
     anchor_terms a;
     anchor_grads s;
     memset(&s, 0, sizeof s);
-    if (grad->pull && io->omega) {
-        memcpy(s.move, grad->pull, sizeof s.move);
-        memcpy(s.m, grad->pull + 3 * LANES, sizeof s.m);
-    }
+    const float *restrict pull = io->omega ? grad->pull : NULL;
+    if (pull)
+        memcpy(s.m, pull + 3 * LANES, sizeof s.m);
     ISA(anchor_forward)(&a, io);
     for (int k = 0; k < io->k; k++) {
         ISA(primitive_mean_back)(&a, &s, io, grad, k);
         ISA(primitive_rotation_back)(&a, &s, io, grad, k);
         ISA(primitive_rest_back)(&a, &s, io, grad, k);
     }
+    if (io->spans)
+        ISA(span_back)(&a, &s, io, grad);
+    for (int i = 0; pull && i < 3 * LANES; i++) /* of F_omega's way alone */
+        s.move[i / LANES][i % LANES] += pull[i];
     if (io->omega)
         ISA(omega_back)(&a, &s, io, grad);
 }

@@ -95,6 +95,8 @@ static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_err
     score->ms_ssim = (double)NAN;
     if (s->measure & ADCGS_MEASURE_MS_SSIM)
         ADCGS_TRY(adcgs_ms_ssim(a, b, score->width, score->height, &score->ms_ssim, &score->ms_ssim_scales, error));
+    const int fitted = s->measure & ADCGS_MEASURE_FITTED;
+    score->fitted_psnr = fitted ? adcgs_fitted_psnr(a, b, (size_t)score->width * (size_t)score->height) : (double)NAN;
     score->temporal = (adcgs_temporal_view){.dynamic_psnr = (double)NAN, .flicker = (double)NAN};
     if (s->temporal)
         score->temporal = adcgs_temporal_add(s->temporal, a, b);

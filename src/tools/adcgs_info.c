@@ -88,8 +88,9 @@ static void print_header(const adcgs_info_report *r, const char *name)
            i->scene_origin[2], i->scene_scale, i->axes, i->units);
     printf("picture     colour %s, background %g %g %g, filter %g px^2\n", i->colour, (double)i->background[0],
            (double)i->background[1], (double)i->background[2], (double)r->stream.screen_filter);
-    printf("model       %u anchors (%u static), %u Gaussians of at most %d each, %u weights, %d of %d layers\n", i->anchors,
-           i->static_anchors, i->gaussians, i->k, i->weights, i->layers, adcgs_params_layers(&r->stream.params));
+    printf("model       %u anchors (%u static%s), %u Gaussians of at most %d each, %u weights, %d of %d layers\n", i->anchors,
+           i->static_anchors, r->stream.params.spans ? ", others with spans" : "", i->gaussians, i->k, i->weights, i->layers,
+           adcgs_params_layers(&r->stream.params));
 }
 
 static void print_components(const adcgs_info_report *r)

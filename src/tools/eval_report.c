@@ -25,6 +25,7 @@ typedef struct column {
 static const column columns[ADCGS_EVAL_COLUMNS] = {
     [ADCGS_EVAL_PSNR] = {"psnr", "", " dB", 2, ALWAYS, 0},
     [ADCGS_EVAL_SSIM] = {"ssim", "", "", 4, ALWAYS, 0},
+    [ADCGS_EVAL_FITTED_PSNR] = {"fitted_psnr", "  fitted", " dB", 2, ADCGS_MEASURE_FITTED, 0},
     [ADCGS_EVAL_MS_SSIM] = {"ms_ssim", "  ms-ssim", "", 4, ADCGS_MEASURE_MS_SSIM, 0},
     [ADCGS_EVAL_MS_SSIM_SCALES] = {"ms_ssim_scales", "", "", -1, ADCGS_MEASURE_MS_SSIM, 0},
     [ADCGS_EVAL_DYNAMIC_PSNR] = {"dynamic_psnr", "  dynamic", " dB", 2, ADCGS_MEASURE_DYNAMIC, 0},
@@ -43,6 +44,7 @@ static const struct {
 } metrics[] = {
     {"psnr", 0},
     {"ssim", 0},
+    {"fitted-psnr", ADCGS_MEASURE_FITTED},
     {"ms-ssim", ADCGS_MEASURE_MS_SSIM},
     {"dynamic-psnr", ADCGS_MEASURE_DYNAMIC},
     {"static-variance", ADCGS_MEASURE_STATIC},
@@ -102,6 +104,7 @@ static void make_row(double *value, const adcgs_view_score *score, const adcgs_c
         value[c] = (double)NAN;
     value[ADCGS_EVAL_PSNR] = score->psnr;
     value[ADCGS_EVAL_SSIM] = score->ssim;
+    value[ADCGS_EVAL_FITTED_PSNR] = score->fitted_psnr;
     value[ADCGS_EVAL_MS_SSIM] = score->ms_ssim;
     value[ADCGS_EVAL_MS_SSIM_SCALES] = score->ms_ssim_scales;
     value[ADCGS_EVAL_DYNAMIC_PSNR] = score->temporal.dynamic_psnr;

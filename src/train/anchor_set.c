@@ -71,7 +71,9 @@ int adcgs_anchor_is_idle(const adcgs_trainer *t, uint32_t anchor, double min_pix
         opacity = fmaxf(opacity, t->stats.opacity[slot]);
         weight += t->stats.weight[slot];
     }
-    return opacity < t->config.prune_opacity * (float)t->stats.n || weight < min_pixels * t->stats.n;
+    /* Of the moments at which it is there. Who was not yet asked to be stays. */
+    const float n = t->stats.presence[anchor];
+    return n > 0.25f && (opacity < t->config.prune_opacity * n || weight < min_pixels * (double)n);
 }
 
 static int by_score(const void *a, const void *b)

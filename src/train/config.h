@@ -47,6 +47,7 @@ typedef struct adcgs_train_config {
     adcgs_shape shape;
     /* Anchors. */
     uint32_t start_anchors, max_anchors;
+    float span_moments;    /**< moments before and behind its own that an anchor lives, to begin with */
     uint32_t densify_every;  /**< iterations between densifications */
     float densify_threshold; /**< of the significance-weighted screen gradient */
     float prune_opacity;   /**< of the accumulated opacity */
@@ -54,6 +55,7 @@ typedef struct adcgs_train_config {
     float still_below;     /**< effect of time on an anchor, of which 1 can just be seen, below which it is static */
     /* Moments, as fractions of the run. */
     float curriculum_begin, curriculum_until; /**< views trained on grow from this fraction, about the middle of time, to all */
+    float rates_fall_from; /**< learning rates stay as they begin until here */
     float quarter_until, half_until; /**< coarse-to-fine: a quarter, then half of the resolution */
     float scale_from;      /**< size has its price from here on; where several views share a moment, from the start */
     float deform_from, fine_from, densify_from, densify_until, noise_from, rate_from;
@@ -64,6 +66,7 @@ typedef struct adcgs_train_config {
     uint8_t without_coarse, without_fine, without_rate, without_densification, without_weight_steps;
     uint8_t without_rounding; /**< values and weights remain binary32 to the end, for a model that is stored uncompressed */
     uint8_t bf16;          /**< networks that draw are trained in bf16; see adcgs_bf16_check() */
+    uint8_t stereo;        /**< pictures of cameras that stay are matched for the first anchors, where a scene brings no points */
 } adcgs_train_config;
 
 #endif

@@ -80,7 +80,7 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
 /** What covers next to nothing, and large faint primitives: they cost the most time, fit single views and are soon replaced. */
 static int is_superfluous(const adcgs_trainer *t, size_t slot)
 {
-    const float n = (float)t->stats.n;
+    const float n = t->stats.presence[adcgs_anchor_of(t->f, (uint32_t)slot)];
     return t->stats.weight[slot] < 0.05f * n || t->stats.opacity[slot] < t->config.keep_opacity * n;
 }
 

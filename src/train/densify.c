@@ -5,7 +5,9 @@
 #include "geom/geom.h"
 #include "train/anchor_set.h"
 #include "train/initialise.h"
+#include "train/moment_densify.h"
 #include "train/residual_densify.h"
+#include "train/start_points.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -76,7 +78,7 @@ static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const a
 
 /* ---- Growth where something is missing ---- */
 
-enum { MISSING_MOST = 512 };
+enum { MISSING_MOST = 512, MOMENT_MOST = 256 };
 
 static uint32_t nearest_anchor(const adcgs_fmodel *f, const uint32_t pos[3])
 {
@@ -108,14 +110,21 @@ static uint32_t sow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, adcg
     return taken;
 }
 
+/** The anchor at a place in scene units; as many as there are if there is none. */
+static uint32_t anchor_at(const adcgs_fmodel *f, const float x[3])
+{
+    uint32_t pos[3], at = 0;
+    cell_of(f, x, pos);
+    while (at < f->n && memcmp(f->pos[at], pos, sizeof pos) != 0)
+        at++;
+    return at;
+}
+
 /** Anchors where something was missing begin as small as a pixel, in its colour, with no features. */
 static void dress(adcgs_fmodel *f, const adcgs_residual *places, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
-        uint32_t pos[3], at = 0;
-        cell_of(f, places[i].x, pos);
-        while (at < f->n && memcmp(f->pos[at], pos, sizeof pos) != 0)
-            at++;
+        const uint32_t at = anchor_at(f, places[i].x);
         if (at == f->n)
             continue;
         for (int a = 0; a < 3; a++) {
@@ -124,6 +133,43 @@ static void dress(adcgs_fmodel *f, const adcgs_residual *places, uint32_t n)
         }
         for (int a = 0; a < adcgs_fmodel_rows(f, ADCGS_P_FV); a++)
             *adcgs_fmodel_at(f, ADCGS_P_FV, at, a) = 0;
+    }
+}
+
+/** The same for points of a moment: any voxel that is free will do, since neighbours may live at other moments. */
+static uint32_t sow_moments(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_stereo_point **points,
+                            uint32_t n, cells *occupied)
+{
+    uint32_t taken = 0;
+    for (uint32_t i = 0; i < n && s->n < budget; i++) {
+        const float x[3] = { (float)points[i]->x[0], (float)points[i]->x[1], (float)points[i]->x[2] };
+        uint32_t pos[3], at = 0;
+        if (!cell_of(t->f, x, pos))
+            continue;
+        while (at < s->n && memcmp(s->pos[at], pos, sizeof pos) != 0)
+            at++;
+        if (at < s->n)
+            continue;
+        cells_add(occupied, pos); /* so that nothing else grows into the same voxel */
+        adcgs_anchor_set_add(s, pos, nearest_anchor(t->f, pos), 1);
+        points[taken++] = points[i];
+    }
+    return taken;
+}
+
+static void dress_moments(adcgs_trainer *t, const adcgs_stereo_point *const *points, uint32_t n)
+{
+    const float half = t->config.span_moments * adcgs_stereo_spacing(&t->stereo);
+    for (uint32_t i = 0; i < n; i++) {
+        adcgs_residual place = { .x = { (float)points[i]->x[0], (float)points[i]->x[1], (float)points[i]->x[2] },
+                                 .size = 4 * points[i]->size };
+        const uint32_t at = anchor_at(t->f, place.x);
+        memcpy(place.rgb, points[i]->rgb, sizeof place.rgb);
+        dress(t->f, &place, 1);
+        if (at == t->f->n)
+            continue;
+        adcgs_set_span(t->f, at, points[i], half);
+        t->f->moving[at] = 1;
     }
 }
 
@@ -140,6 +186,7 @@ typedef struct workspace {
     cells occupied;
     adcgs_ranked *list;        /* [slots] */
     adcgs_residual *missing; /* [MISSING_MOST] */
+    const adcgs_stereo_point **moment; /* [MOMENT_MOST] points of moments at which something is wrong */
 } workspace;
 
 static void workspace_clear(workspace *w)
@@ -148,6 +195,7 @@ static void workspace_clear(workspace *w)
     adcgs_free(NULL, w->occupied.key);
     adcgs_free(NULL, w->list);
     adcgs_free(NULL, w->missing);
+    adcgs_free(NULL, w->moment);
 }
 
 static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_t budget, adcgs_error *error)
@@ -160,7 +208,8 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
     w->occupied = (cells){ adcgs_alloc(NULL, buckets, sizeof *w->occupied.key, error), buckets - 1 };
     w->list = adcgs_alloc(NULL, t->pass->primitives.n, sizeof *w->list, error);
     w->missing = adcgs_alloc(NULL, MISSING_MOST, sizeof *w->missing, error);
-    if (w->occupied.key && w->list && w->missing)
+    w->moment = adcgs_alloc(NULL, MOMENT_MOST, sizeof *w->moment, error);
+    if (w->occupied.key && w->list && w->missing && w->moment)
         return ADCGS_OK;
     workspace_clear(w);
     return adcgs_alloc_status(error);
@@ -189,21 +238,28 @@ static int leaves_gaps(const adcgs_trainer *t, double progress)
 adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const uint32_t budget = (uint32_t)adcgs_densify_budget(&t->config, progress);
-    uint32_t n_missing = 0;
+    uint32_t n_missing = 0, n_moment = 0;
     workspace w;
     ADCGS_TRY(workspace_init(&w, t, budget, error));
     keep_anchors(t, &w);
     adcgs_status status = ADCGS_OK;
     if (leaves_gaps(t, progress))
         status = adcgs_residual_find(t, w.missing, MISSING_MOST, &n_missing, error);
+    if (status == ADCGS_OK && t->config.params.spans && t->stereo.n_moving)
+        status = adcgs_moment_find(t, w.moment, MOMENT_MOST, &n_moment, error);
     if (status == ADCGS_OK) {
+        n_moment = sow_moments(t, &w.next, w.next.n + (budget > w.next.n ? (budget - w.next.n) / 2 : 0), w.moment, n_moment,
+                               &w.occupied);
         n_missing = sow(t, &w.next, budget, w.missing, n_missing, &w.occupied);
         adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical places */
         grow(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
         status = adcgs_anchor_set_adopt(t, &w.next, error);
     }
     if (status == ADCGS_OK)
+    {
         dress(t->f, w.missing, n_missing);
+        dress_moments(t, w.moment, n_moment);
+    }
     workspace_clear(&w);
     return status;
 }

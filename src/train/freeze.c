@@ -17,7 +17,11 @@ adcgs_status adcgs_freeze(adcgs_trainer *t, adcgs_error *error)
     const adcgs_quantise_options nearest = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor, .value = value };
     ADCGS_TRY(t->quantise(t->f, &nearest, error));
     adcgs_level_densities(t);
-    ADCGS_TRY(adcgs_curvature_measure(t, curvature, NULL, error));
+    if (t->config.rdo_strength > 0 || t->config.target != ADCGS_TARGET_NONE)
+        ADCGS_TRY(adcgs_curvature_measure(t, curvature, NULL, error));
+    else
+        for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+            memset(curvature[i], 0, t->f->param[i].n * sizeof *curvature[i]);
     t->frozen = 1;
     if (t->config.rdo_strength > 0) {
         ADCGS_TRY(adcgs_level_choose(t, (double)t->config.rdo_strength, error));

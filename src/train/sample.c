@@ -9,25 +9,46 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** Views by which networks are judged. */
+/** Views by which networks are judged; of each a quarter where it has its full size, since searches judge hundreds of times. */
 enum { NETWORK_VIEWS = 16 };
 
-adcgs_status adcgs_sample_loss(adcgs_trainer *t, uint32_t most, int own_time, double *loss, adcgs_error *error)
+/** Loss of a view, of which the model's primitives are there; of one of its quarters alone if quarter is 0 to 3. */
+static adcgs_status view_loss(adcgs_trainer *t, uint32_t picked, int quarter, double *loss, adcgs_error *error)
+{
+    adcgs_view v = t->views[picked].view;
+    adcgs_loss_value value;
+    const float *target;
+    const int whole = quarter < 0 || adcgs_pictures_hidden(t->pictures, picked);
+    if (!whole)
+        adcgs_view_crop(&v, quarter & 1 ? v.width / 2 : 0, quarter & 2 ? v.height / 2 : 0, (v.width + 1) / 2, (v.height + 1) / 2);
+    ADCGS_TRY(adcgs_view_draw(t, &v, t->image, 0, error));
+    ADCGS_TRY(adcgs_trainer_target(t, picked, NULL, &target, error));
+    if (whole)
+        ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
+    else
+        ADCGS_TRY(adcgs_trainer_loss_crop(t, picked, &v, &value, error));
+    *loss = value.loss;
+    return ADCGS_OK;
+}
+
+static adcgs_status sample_loss(adcgs_trainer *t, uint32_t most, int own_time, int quarters, double *loss, adcgs_error *error)
 {
     const uint32_t n = ADCGS_MIN(t->n_views, most);
     *loss = 0;
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t picked = (uint32_t)((uint64_t)i * t->n_views / n);
-        const adcgs_train_view *v = &t->views[picked];
-        adcgs_loss_value value;
-        adcgs_pass_forward(t->pass, t->f, own_time ? v->t : 0.5f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
-        ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 0, error));
-        const float *target;
-        ADCGS_TRY(adcgs_trainer_target(t, picked, NULL, &target, error));
-        ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
-        *loss += value.loss / n;
+        double one;
+        adcgs_pass_forward(t->pass, t->f, own_time ? t->views[picked].t : 0.5f,
+                           &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL, .other_time = i > 0 });
+        ADCGS_TRY(view_loss(t, picked, quarters ? (int)(i % 4) : -1, &one, error));
+        *loss += one / n;
     }
     return ADCGS_OK;
+}
+
+adcgs_status adcgs_sample_loss(adcgs_trainer *t, uint32_t most, int own_time, double *loss, adcgs_error *error)
+{
+    return sample_loss(t, most, own_time, 0, loss, error);
 }
 
 adcgs_status adcgs_sample_distortion(adcgs_trainer *t, int group, double *bits, adcgs_error *error)
@@ -39,7 +60,7 @@ adcgs_status adcgs_sample_distortion(adcgs_trainer *t, int group, double *bits, 
         return ADCGS_OK;
     }
     double loss;
-    ADCGS_TRY(adcgs_sample_loss(t, NETWORK_VIEWS, 1, &loss, error));
+    ADCGS_TRY(sample_loss(t, NETWORK_VIEWS, 1, t->divide == t->config.scale, &loss, error));
     /* Without a price of bits the loss alone decides: no bits come near to it. */
     *bits = loss / fmax(adcgs_price_of_bit(t), 1e-30);
     return ADCGS_OK;

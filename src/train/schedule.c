@@ -2,6 +2,8 @@
 /** \file Stages and learning rates. */
 #include "train/schedule.h"
 
+#include <math.h>
+
 void adcgs_train_rates(adcgs_fmodel *f)
 {
     static const float rates[ADCGS_P_COUNT][2] = {
@@ -19,6 +21,12 @@ void adcgs_train_rates(adcgs_fmodel *f)
         f->param[i].lr0 = rates[i][0];
         f->param[i].lr1 = rates[i][1];
     }
+}
+
+float adcgs_train_rate(const adcgs_train_config *c, float first, float last, double progress)
+{
+    const double from = (double)c->rates_fall_from;
+    return progress <= from ? first : first * powf(last / first, (float)((progress - from) / (1 - from)));
 }
 
 float adcgs_train_lambda_from(const adcgs_train_config *c)

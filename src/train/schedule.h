@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What a configuration says about moments of a run: its stages, and the learning rates, which fall exponentially from the
- * first value to the last (Adam: Kingma and Ba 2015, ICLR; rates of splats: Kerbl et al. 2023, 3D Gaussian splatting,
- * SIGGRAPH).
+ * What a configuration says about moments of a run: its stages, and the learning rates, which from a moment on fall
+ * exponentially from the first value to the last (Adam: Kingma and Ba 2015, ICLR; rates of splats: Kerbl et al. 2023, 3D
+ * Gaussian splatting, SIGGRAPH).
  */
 #ifndef ADCGS_TRAIN_SCHEDULE_H
 #define ADCGS_TRAIN_SCHEDULE_H
@@ -11,6 +11,9 @@
 
 /** Learning rates of a fresh model's parameter groups. */
 void adcgs_train_rates(adcgs_fmodel *f);
+
+/** A learning rate at a progress in [0,1], of what it is at first and at last. */
+float adcgs_train_rate(const adcgs_train_config *config, float first, float last, double progress);
 
 /** The moment from which lambda has a say; more than 1 if it never has. */
 float adcgs_train_lambda_from(const adcgs_train_config *config);

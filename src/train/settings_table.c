@@ -71,6 +71,7 @@ const adcgs_setting adcgs_settings[] = {
     MODEL(fine_uses_fv, S | B | Q, 0, 1, ALL(1), "1: the fine deformation sees f_v"),
     MODEL(coarse_rotation, S | B | Q, 0, 1, ALL(1), "1: the coarse deformation rotates, too"),
     MODEL(adaptive_steps, S | B | Q, 0, 1, ALL(0), "1: a network predicts each anchor's quantiser steps"),
+    MODEL(spans, S | B | Q, 0, 1, BUT_PAPER(1, 0), "1: what moves has spans of life, unless matching finds nothing"),
     MODEL(time_rows, B | Q, 0, ADCGS_TIME_ROWS_MAX, ALL(40), "rows of the time table, at most one per moment; 0: no motion"),
     MODEL(time_width, S | B | Q, 0, ADCGS_TIME_WIDTH_MAX, BUT_PAPER(16, 64), "values in a row of the time table"),
 
@@ -91,9 +92,12 @@ const adcgs_setting adcgs_settings[] = {
 
     /* Densification: Kerbl et al. 2023; by temporal significance: ADC-GS, section 3.5. */
     ROW("start_anchors", start_anchors, AT(own_start), ANCHORS, ALWAYS, S | Q, 1, ADCGS_ANCHORS_MAX,
-        { 600, 1000, 1000, 1000, 1000 }, "anchors to begin with; unless given, at most max_anchors"),
+        { 600, 1000, 1000, 1000, 1000 },
+        "anchors to begin with; unless given, at least 3/4 of max_anchors where pictures are matched"),
     ROW("max_anchors", max_anchors, AT(own_anchors), ANCHORS, ALWAYS, S | B | Q | M, 1, ADCGS_ANCHORS_MAX,
-        { 1200, 4000, 5000, 6000, 20000 }, "budget of anchors; their number stops growing there"),
+        { 1200, 6000, 8000, 10000, 20000 }, "budget of anchors; their number stops growing there"),
+    ANCHOR(stereo, S | Q, 0, 1, ALL(1), "1: first anchors come from matched pictures, where a scene brings no points"),
+    ANCHOR(span_moments, B | Q, 0.1, 1e4, ALL(3), "moments before and after its own that an anchor with a span begins with"),
     ANCHOR(densify_every, S | Q, 1, 1e6, ALL(100), "iterations from one densification to the next"),
     ANCHOR(densify_threshold, S | B | Q, 0, 1e6, ALL(0.0003),
            "screen gradient, weighted by temporal significance, at which anchors grow"),
@@ -106,6 +110,7 @@ const adcgs_setting adcgs_settings[] = {
      * et al. 2017. Means of the last iterations: Izmailov et al. 2018, Averaging weights, UAI. */
     MOMENT(curriculum_begin, S | Q, 1, ALL(0.1), "share of views, about the middle of time, that training begins with"),
     MOMENT(curriculum_until, S | Q, 2, BUT_PAPER(0.25, 0), "all views are trained on from here"),
+    MOMENT(rates_fall_from, S | Q, 2, BUT_PAPER(0.3, 0), "learning rates stay as they are until here, then fall"),
     MOMENT(quarter_until, S | Q, 2, BUT_PAPER(0.25, 0), "pictures have a quarter of their size until here"),
     MOMENT(half_until, S | Q, 2, BUT_PAPER(0.7, 0), "pictures have half of their size until here"),
     MOMENT(deform_from, S | Q, 2, BUT_PAPER(0.01, 0.1), "the scene moves from here"),

@@ -4,20 +4,23 @@
 
 #include "train/initialise.h"
 #include "train/rate_plan.h"
+#include "train/scene_frame.h"
 #include "train/settings.h"
+#include "train/start_points.h"
 
 #include <math.h>
 
 adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
 {
-    const size_t slots = (size_t)t->f->groups * ADCGS_LANES * t->f->params.k;
+    const size_t lanes = (size_t)t->f->groups * ADCGS_LANES, slots = lanes * t->f->params.k;
     ADCGS_TRY(adcgs_pass_resize(t->pass, t->f, error));
     adcgs_free(NULL, t->stats.weight);
-    t->stats = (adcgs_train_stats){ .weight = adcgs_alloc(NULL, 3 * slots, sizeof(float), error) };
+    t->stats = (adcgs_train_stats){ .weight = adcgs_alloc(NULL, 3 * slots + lanes, sizeof(float), error) };
     if (!t->stats.weight)
         return adcgs_alloc_status(error);
     t->stats.significance = t->stats.weight + slots;
     t->stats.opacity = t->stats.weight + 2 * slots;
+    t->stats.presence = t->stats.weight + 3 * slots;
     return t->config.rigid_weight > 0 ? adcgs_rigidity_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
 }
 
@@ -67,7 +70,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     else if (c->params.time_rows > times)
         c->params.time_rows = (uint16_t)times;
     if (!c->params.time_rows)
-        c->params.time_width = 0;
+        c->params.time_width = c->params.spans = 0;
     /* A camera alone finds what moves with large primitives first, and by what neighbours do. Several tell from one moment. */
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
     if (several && !c->own_rigid)
@@ -80,7 +83,8 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
         c->shape.varpi_width = 0;
     ADCGS_TRY(adcgs_rate_plan(c, error));
     ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
-    ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, error));
+    ADCGS_TRY(adcgs_start_match(&t->stereo, t->scene, c, t->pool, error));
+    ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, &t->stereo, error));
     adcgs_train_rates(t->f);
     ADCGS_TRY(adcgs_pass_create(&t->pass, t->f, t->cpu, t->pool, error));
     ADCGS_TRY(adcgs_raster_create(&t->raster, t->cpu, t->pool, NULL, error));
@@ -139,6 +143,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_rigidity_clear(&t->rigid);
     adcgs_curriculum_clear(&t->curriculum);
     adcgs_exposure_clear(&t->exposure);
+    adcgs_stereo_clear(&t->stereo);
     adcgs_viewpoints_clear(&t->viewpoints);
     adcgs_weight_average_clear(&t->average);
     adcgs_buffer_clear(&t->snapshot);

@@ -13,6 +13,7 @@
 #include "fmodel/scale_penalty.h"
 #include "fmodel/weight_average.h"
 #include "grad/loss.h"
+#include "stereo/stereo.h"
 #include "train/exposure.h"
 #include "train/rate_state.h"
 #include "train/schedule.h"
@@ -29,6 +30,7 @@ typedef struct adcgs_train_stats {
     float *weight;       /* Psi */
     float *significance; /* Psi times screen gradient */
     float *opacity;
+    float *presence;     /* of each anchor, [groups][64] */
     uint32_t n;          /* iterations summed */
 } adcgs_train_stats;
 
@@ -47,6 +49,7 @@ typedef struct adcgs_trainer {
     adcgs_curriculum curriculum;
     adcgs_exposure exposure;
     adcgs_viewpoints viewpoints;
+    adcgs_stereo stereo;
     uint32_t n_views;
     adcgs_train_view *views;
     adcgs_pictures *pictures; /* of the training views */

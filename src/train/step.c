@@ -72,7 +72,7 @@ static void update(adcgs_trainer *t, double progress)
         }
         if (t->f->mlp[i].n && price > 0)
             adcgs_weight_rate(t->f, i, price);
-        const float lr = t->lr_scale * p->lr0 * powf(p->lr1 / p->lr0, (float)progress);
+        const float lr = t->lr_scale * adcgs_train_rate(&t->config, p->lr0, p->lr1, progress);
         adam_job job = { t, i, lr, c1, c2 };
         adcgs_pool_run(p->n > ADAM_PIECE ? t->pool : NULL, adam_piece, &job, (int)((p->n + ADAM_PIECE - 1) / ADAM_PIECE));
     }
@@ -97,6 +97,8 @@ static void accumulate_stats(adcgs_trainer *t, const adcgs_raster_grads *grads)
     }
     for (size_t i = 0; screen && i < slots; i++)
         t->stats.significance[i] += area * weight[i] * screen[i];
+    for (uint32_t i = 0; i < t->f->groups * ADCGS_LANES; i++)
+        t->stats.presence[i] += i < t->f->n ? adcgs_fmodel_presence(t->f, i, t->pass->t) : 0;
     t->stats.n++;
 }
 

@@ -6,6 +6,8 @@
 #include "grad/random.h"
 #include "render/render.h"
 
+#include <math.h>
+
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error *error)
 {
     const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
@@ -59,6 +61,27 @@ adcgs_status adcgs_trainer_loss(adcgs_trainer *t, uint32_t view, const float *ta
     value->loss *= known ? (double)plane / (double)known : 0;
     value->mse *= known ? (double)plane / (double)known : 0;
     return ADCGS_OK;
+}
+
+void adcgs_view_crop(adcgs_view *v, int x, int y, int width, int height)
+{
+    v->cx -= (float)x;
+    v->cy -= (float)y;
+    v->width = width;
+    v->height = height;
+}
+
+adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *t, uint32_t view, const adcgs_view *crop, adcgs_loss_value *value,
+                                     adcgs_error *error)
+{
+    const adcgs_view *v = &t->views[view].view;
+    const size_t wide = (size_t)v->width, w = (size_t)crop->width, h = (size_t)crop->height;
+    const size_t x = (size_t)lrintf(v->cx - crop->cx), y = (size_t)lrintf(v->cy - crop->cy);
+    const adcgs_loss_shares shares = { t->config.ssim_weight, t->config.square_weight };
+    for (size_t c = 0; c < 3; c++) /* in place: nothing moves behind what is still to come */
+        for (size_t j = 0; j < h; j++)
+            memmove(t->taken + (c * h + j) * w, t->taken + (c * (size_t)v->height + y + j) * wide + x, w * sizeof(float));
+    return adcgs_loss_image(t->loss, t->image, t->taken, crop->width, crop->height, &shares, t->grad, value, error);
 }
 
 adcgs_status adcgs_view_draw(adcgs_trainer *t, const adcgs_view *view, float *image, int keep, adcgs_error *error)

@@ -22,6 +22,12 @@ adcgs_status adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view, const f
 adcgs_status adcgs_trainer_loss(adcgs_trainer *trainer, uint32_t view, const float *target, adcgs_loss_value *value,
                                 adcgs_error *error);
 
+/** Narrow a view to a rectangle of its picture, in which it draws the same. */
+void adcgs_view_crop(adcgs_view *view, int x, int y, int width, int height);
+/** The loss of trainer->image, drawn of a crop of a view without masks, against its part of the target, which is spent. */
+adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *trainer, uint32_t view, const adcgs_view *crop, adcgs_loss_value *value,
+                                     adcgs_error *error);
+
 /**
  * Draw the primitives of the last forward pass as a camera sees them, into image [3][height][width] (trainer->image is large
  * enough for every training view). keep: adcgs_view_draw_back() will follow.

@@ -93,11 +93,11 @@ faults "digests" ./adcgs-dec "$s" --time 0:0.1 --md5
 faults "splats" ./adcgs-dec "$s" --time 0 --splats "$w/x.ply"
 faults "cameras" ./adcgs-dec "$s" --cameras "$w/x.json"
 
-# The player's pictures, of the scene and of its window.
+# The player's pictures, of the scene and of its window, at a moment that stands still.
 printf 'screenshot %s\ngrab %s\nquit\n' "$w/shot.png" "$w/window.ppm" >"$dir/script"
 mkdir -p "$w"
-if SDL_VIDEODRIVER=dummy ./adcgs-dec "$s" --play --script "$dir/script" >/dev/null 2>&1; then
-    faults "player" env SDL_VIDEODRIVER=dummy ./adcgs-dec "$s" --play --script "$dir/script" --threads 1
+if SDL_VIDEODRIVER=dummy ./adcgs-dec "$s" --play --time 0.1 --script "$dir/script" >/dev/null 2>&1; then
+    faults "player" env SDL_VIDEODRIVER=dummy ./adcgs-dec "$s" --play --time 0.1 --script "$dir/script" --threads 1
 fi
 
 # What is reported of a stream, and its anchors.

@@ -40,6 +40,7 @@ void adcgs_random_params(adcgs_params *p, int moving, uint64_t *state)
     p->adaptive_steps = (uint8_t)draw(state, 0, 1);
     p->time_rows = (uint16_t)(moving ? draw(state, 1, 12) : 0);
     p->time_width = (uint16_t)(moving ? draw(state, 1, 9) : 0);
+    p->spans = (uint8_t)(moving ? *state >> 33 & 1 : 0);
 }
 
 /** Magnitudes stay small enough for the E24 row bound with 96 inputs and for finite binary32 networks of 4 layers. */
@@ -109,7 +110,7 @@ static void random_steps(float *d, int n, uint64_t *state)
 static void random_tables(adcgs_model *m, uint64_t *state)
 {
     random_steps(m->d_fv, m->params.n_fv, state);
-    random_steps(m->d_sigma, ADCGS_SIGMA_N, state);
+    random_steps(m->d_sigma, adcgs_sigma_rows(&m->params), state);
     random_steps(m->d_colour, ADCGS_COLOUR_N, state);
     random_steps(m->d_fg, m->params.n_fg, state);
     for (int i = 0; i < ADCGS_GROUPS; i++)

@@ -140,14 +140,22 @@ static const adcgs_splat_dsp *splat_dsp(adcgs_cpu_level level)
 
 #define FLOATS(type) (sizeof(type) / sizeof(float))
 
+/** All that may move anchors, alone and together. */
+static adcgs_movers movers_of(const call *c)
+{
+    const int coarse = c->round % 3 > 0;
+    return (adcgs_movers){coarse, coarse && c->round & 4, c->round & 1};
+}
+
 static void anchors(call *c)
 {
     const adcgs_splat_dsp *const dsp = splat_dsp(c->level);
-    const int octaves = size_of(c, 8), rotation = c->round & 1;
-    dsp->anchor((void *)added(c, FLOATS(adcgs_anchor_lanes)), given(c, 6 * L));
+    const int octaves = size_of(c, 8);
+    const adcgs_movers movers = movers_of(c);
+    dsp->anchor((void *)added(c, FLOATS(adcgs_anchor_lanes)), given(c, ADCGS_SIGMA_MAX * L), movers.spans);
     const adcgs_anchor_lanes *const anchor = (const void *)given(c, FLOATS(adcgs_anchor_lanes));
     dsp->predict((void *)added(c, FLOATS(adcgs_slot_lanes)), anchor, given(c, 14 * L));
-    dsp->motion((void *)added(c, FLOATS(adcgs_anchor_motion)), anchor, given(c, 12 * L), rotation);
+    dsp->motion((void *)added(c, FLOATS(adcgs_anchor_motion)), anchor, given(c, 12 * L), &movers, given(c, 1)[0]);
     dsp->position_code(output(c, (size_t)(6 * octaves) * L), given(c, 3 * L), octaves);
 }
 
@@ -162,6 +170,7 @@ static int32_t *flags(call *c)
 static void slots(call *c)
 {
     const adcgs_splat_dsp *const dsp = splat_dsp(c->level);
+    const adcgs_movers movers = movers_of(c);
     const adcgs_anchor_lanes *const anchor = (const void *)given(c, FLOATS(adcgs_anchor_lanes));
     const adcgs_slot_lanes *const slot = (const void *)given(c, FLOATS(adcgs_slot_lanes));
     const adcgs_anchor_motion *const motion = (const void *)given(c, FLOATS(adcgs_anchor_motion));
@@ -179,7 +188,7 @@ static void slots(call *c)
     to.opacity = rows + 13 * L;
     if (c->round & 1)
         dsp->place(&to, slot, anchor, present);
-    dsp->deform(&to, slot, anchor, c->round % 3 ? motion : NULL, c->round & 2, c->round % 3 == 1 ? NULL : fine, present, moves);
+    dsp->deform(&to, slot, motion, &movers, (movers.coarse || movers.spans) && c->round & 2 ? NULL : fine, present, moves);
 }
 
 /* ---- The renderer, and what training promises as well ---- */

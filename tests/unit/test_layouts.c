@@ -7,7 +7,9 @@
 
 #include "layouts/open.h"
 #include "train/initialise.h"
+#include "train/scene_frame.h"
 #include "train/settings.h"
+#include "train/start_points.h"
 
 static adcgs_scene *scene;
 
@@ -37,11 +39,12 @@ typedef struct start {
     adcgs_scene *scene;
     double origin[3], scale;
     adcgs_fmodel *model;
+    adcgs_stereo found;
 } start;
 
 static start make_start(const layout *l)
 {
-    start s;
+    start s = { .scale = 0 };
     expect_good(adcgs_scene_open(&s.scene, scene_path(l), NULL, &error));
     return s;
 }
@@ -52,13 +55,15 @@ static void finish_start(start *s)
     expect_good(adcgs_train_preset(&config, "draft", &error));
     config.start_anchors = 60;
     assert_int_equal(adcgs_scene_frame(s->scene, s->origin, &s->scale, &error), ADCGS_OK);
-    expect_good(adcgs_initialise(&s->model, s->scene, &config, &error));
+    expect_good(adcgs_start_match(&s->found, s->scene, &config, NULL, &error));
+    expect_good(adcgs_initialise(&s->model, s->scene, &config, &s->found, &error));
 }
 
 static void free_start(start *s)
 {
     adcgs_scene_free(&s->scene);
     adcgs_fmodel_free(&s->model);
+    adcgs_stereo_clear(&s->found);
 }
 
 static void expect_same(const start *a, const start *b)

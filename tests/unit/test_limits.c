@@ -81,7 +81,7 @@ static void make_model(adcgs_model *m, const nothing *what)
         m->d_fv[i] = 1;
     for (int i = 0; i < ADCGS_NG_MAX; i++)
         m->d_fg[i] = 1;
-    for (int i = 0; i < ADCGS_SIGMA_N; i++)
+    for (int i = 0; i < ADCGS_SIGMA_MAX; i++)
         m->d_sigma[i] = 1;
     for (int i = 0; i < ADCGS_COLOUR_N; i++)
         m->d_colour[i] = 1;

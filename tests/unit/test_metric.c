@@ -190,6 +190,33 @@ static void test_ms_ssim_values(void **state)
     free(b);
 }
 
+/** A picture of another exposure is all there; what a line cannot tell stays, and what is not known does not count. */
+static void test_fitted(void **state)
+{
+    enum { N = 50 };
+    float a[3 * N], b[3 * N];
+    double off[3 * N], square = 0;
+    (void)state;
+    for (int i = 0; i < 3 * N; i++) {
+        a[i] = (float)(i * 7 % 31) / 31;
+        off[i] = i % 2 ? 0.01 : -0.01;
+        b[i] = 0.8f * a[i] + 0.1f + 0.02f * (float)(i / N);
+    }
+    assert_true(adcgs_fitted_psnr(a, b, N) > 98 && adcgs_psnr(a, b, 3 * N) < 40);
+    for (int i = 0; i < 3 * N; i++) {
+        b[i] += (float)off[i];
+        square += off[i] * off[i] / (3 * N);
+    }
+    const double bound = adcgs_psnr_from_mse(square), fitted = adcgs_fitted_psnr(a, b, N);
+    assert_true(fitted >= bound && fitted < bound + 1);
+    for (int c = 0; c < 3; c++)
+        a[c * N] = 100, b[c * N] = NAN;
+    assert_true(fabs(adcgs_fitted_psnr(a, b, N) - fitted) < 0.5);
+    for (int i = 0; i < 3 * N; i++)
+        a[i] = 0.5f; /* nothing to fit a gain to */
+    assert_true(adcgs_fitted_psnr(a, b, N) < 30);
+}
+
 static void test_psnr(void **state)
 {
     static float a[3000], b[3000];
@@ -359,6 +386,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ssim),    cmocka_unit_test(test_ms_ssim),       cmocka_unit_test(test_ms_ssim_values),
+        cmocka_unit_test(test_fitted),
         cmocka_unit_test(test_psnr),          cmocka_unit_test(test_rectangle),
         cmocka_unit_test(test_any_box), cmocka_unit_test(test_box_of_points), cmocka_unit_test(test_crop),
     };

@@ -60,6 +60,11 @@ static adcgs_trainer *copy(int frozen)
     stop = t->iteration + (frozen ? 10 : 0);
     assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
     assert_int_equal(t->frozen, frozen);
+    float *h[ADCGS_P_ANCHOR];
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        h[i] = t->f->param[i].v;
+    if (frozen) /* the run itself, which chooses nothing by it, does without */
+        assert_int_equal(adcgs_curvature_measure(t, h, NULL, &error), ADCGS_OK);
     adcgs_buffer_clear(&b);
     return t;
 }
@@ -233,7 +238,7 @@ static void decisions_are_kept(void **state)
     assert_int_equal(chosen.n, last.n);
     assert_memory_equal(chosen.eta, last.eta, chosen.n * p->n_eta * sizeof *last.eta);
     assert_memory_equal(chosen.fv, last.fv, chosen.n * p->n_fv * sizeof *last.fv);
-    assert_memory_equal(chosen.sigma, last.sigma, chosen.n * ADCGS_SIGMA_N * sizeof *last.sigma);
+    assert_memory_equal(chosen.sigma, last.sigma, chosen.n * (size_t)adcgs_sigma_rows(p) * sizeof *last.sigma);
     assert_memory_equal(chosen.colour, last.colour, chosen.n * ADCGS_COLOUR_N * sizeof *last.colour);
     assert_memory_equal(chosen.fg, last.fg, (size_t)chosen.n * p->k * p->n_fg * sizeof *last.fg);
     adcgs_model_clear(&chosen, NULL);

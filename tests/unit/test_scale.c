@@ -9,7 +9,7 @@
 #include "layouts/open.h"
 #include "metric/evaluate.h"
 #include "metric/metric.h"
-#include "train/initialise.h"
+#include "train/scene_frame.h"
 
 #include <jansson.h>
 #include <adcgs/decoder.h>

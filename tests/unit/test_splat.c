@@ -6,6 +6,7 @@
  */
 #include "base/cpu.h"
 #include "base/fmath.h"
+#include "model/model_priv.h"
 #include "random_model.h"
 #include "splat/floatnet.h"
 #include "splat/splat.h"
@@ -168,6 +169,19 @@ static void turn(const float r[4], float position[3], float offset[3], float q[4
     q[3] = fmaf(z, s[0], fmaf(-y, s[1], fmaf(x, s[2], w * s[3])));
 }
 
+/* The way of an anchor from the middle of its life, and how much of it is there. */
+static float live(const adcgs_model *m, uint32_t anchor, float t, float position[3])
+{
+    float s[5];
+    for (size_t c = 0; c < 5; c++)
+        s[c] = valued(m, anchor, 0, m->sigma[11 * (size_t)anchor + 6 + c], m->d_sigma[6 + c]);
+    const float since = t - fmaf(s[3], 0.125f, 0.5f), pace = adcgs_exp(adcgs_clampf(s[4], -8.0f, 8.0f));
+    const float u = adcgs_clampf(since * pace, -4.0f, 4.0f), u2 = u * u, u4 = u2 * u2;
+    for (int a = 0; a < 3; a++)
+        position[a] = fmaf(s[a] * 0.125f, u, position[a]);
+    return adcgs_exp(-u4);
+}
+
 static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
 {
     float out[ADCGS_NET_WIDTH_MAX], coarse[ADCGS_NET_WIDTH_MAX], fine[ADCGS_NET_WIDTH_MAX], time[ADCGS_TIME_WIDTH_MAX];
@@ -175,6 +189,7 @@ static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
     primitive r;
     const int moves = m->params.time_rows > 0 && !m->is_static[anchor];
     const int has_coarse = moves && m->net[ADCGS_ROLE_COARSE].present, has_fine = moves && m->net[ADCGS_ROLE_FINE].present;
+    const size_t first = (m->params.spans ? 11 : 6) * (size_t)anchor;
     evaluate_prediction(m, anchor, k, out);
     if (moves)
         evaluate_time(m, t, time);
@@ -184,8 +199,8 @@ static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
         evaluate_deformation(m, ADCGS_ROLE_FINE, anchor, time, fine);
     float logit = out[13];
     for (int a = 0; a < 3; a++) {
-        const float extent = valued(m, anchor, 0, m->sigma[6 * (size_t)anchor + (size_t)a], m->d_sigma[a]);
-        const float size = valued(m, anchor, 0, m->sigma[6 * (size_t)anchor + 3 + (size_t)a], m->d_sigma[3 + a]);
+        const float extent = valued(m, anchor, 0, m->sigma[first + (size_t)a], m->d_sigma[a]);
+        const float size = valued(m, anchor, 0, m->sigma[first + 3 + (size_t)a], m->d_sigma[3 + a]);
         position[a] = fmaf((float)(2 * m->pos[3 * (size_t)anchor + (size_t)a] + 1), 0.5f * m->voxel, m->origin[a]);
         offset[a] = out[a] * adcgs_exp(adcgs_clampf(extent, -16.0f, 8.0f));
         r.v[3 + a] = adcgs_exp(adcgs_clampf(size, -16.0f, 8.0f)) * adcgs_sigmoid(out[3 + a]);
@@ -205,6 +220,7 @@ static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
             r.v[11 + a] += coarse[6 + a];
         }
     }
+    const float presence = moves && m->params.spans ? live(m, anchor, t, position) : 1.0f;
     if (has_fine) {
         logit += fine[4 * k];
         for (int a = 0; a < 3; a++)
@@ -216,7 +232,7 @@ static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
         r.v[11 + a] = adcgs_clampf(r.v[11 + a], -0x1p8f, 0x1p8f);
     }
     memcpy(r.v + 6, q, sizeof q);
-    r.v[10] = 0.99f * adcgs_sigmoid(logit);
+    r.v[10] = 0.99f * adcgs_sigmoid(logit) * presence;
     return r;
 }
 
@@ -265,6 +281,16 @@ static void check_model(const adcgs_model *m, int threads, adcgs_cpu_level cpu)
     adcgs_pool_free(&pool);
 }
 
+/* The first anchors, which so have no spans. */
+static void stand_still(adcgs_model *m, uint32_t anchors)
+{
+    const size_t rows = (size_t)adcgs_sigma_rows(&m->params);
+    memset(m->is_static, m->params.time_rows > 0, anchors);
+    for (uint32_t i = 0; m->params.spans && i < anchors; i++)
+        memset(m->sigma + i * rows + 6, 0, 5 * sizeof *m->sigma);
+    assert_int_equal(adcgs_model_validate(m, NULL), ADCGS_OK);
+}
+
 static void clear_model(adcgs_model *m)
 {
     adcgs_model_clear(m, NULL);
@@ -283,7 +309,7 @@ static void test_against_reference(void **state)
         if (adcgs_random_model(&m, &params, (uint32_t)adcgs_random_range(&random, 1, 200), 5, &random, &error) != ADCGS_OK)
             fail_msg("%s", error.text);
         if (i % 3 == 0) /* whole groups that stand still */
-            memset(m.is_static, params.time_rows > 0, ADCGS_MIN(m.n, 128));
+            stand_still(&m, ADCGS_MIN(m.n, 128));
         for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
             check_model(&m, cpu == ADCGS_CPU_SCALAR ? 1 : 3, cpu);
         clear_model(&m);
@@ -309,11 +335,13 @@ static void test_extremes(void **state)
             }
         for (size_t j = 0; j < (size_t)m.n * params.n_fv; j++)
             m.fv[j] = i & 2 ? 32767 : -32767;
-        for (size_t j = 0; j < (size_t)m.n * ADCGS_SIGMA_N; j++)
-            m.sigma[j] = i & 4 ? 32767 : -32767;
+        const int rows = adcgs_sigma_rows(&params);
+        for (uint32_t j = 0; j < m.n; j++)
+            for (int c = 0; c < adcgs_sigma_coded(&m, j); c++)
+                m.sigma[j * (size_t)rows + (size_t)c] = i & 4 ? 32767 : -32767;
         for (int c = 0; c < params.n_fv; c++)
             m.d_fv[c] = 0x1p10f;
-        for (int c = 0; c < ADCGS_SIGMA_N; c++)
+        for (int c = 0; c < rows; c++)
             m.d_sigma[c] = 0x1p10f;
         for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
             check_model(&m, 1, cpu);
@@ -405,6 +433,75 @@ static void test_adaptive_steps(void **state)
             check_model(&m, 3, cpu);
         net->sigma_offset = 1;
         assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
+        clear_model(&m);
+    }
+}
+
+/* A model of which one anchor is there for a while and goes its way, another stands still. */
+static void make_span(adcgs_model *m, int networks, float pace)
+{
+    uint64_t random = 10;
+    adcgs_params params;
+    adcgs_random_params(&params, 1, &random);
+    params.spans = 1;
+    params.adaptive_steps = params.n_fg = 0;
+    assert_int_equal(adcgs_random_model(m, &params, 70, 4, &random, NULL), ADCGS_OK);
+    for (int role = ADCGS_ROLE_COARSE; !networks && role <= ADCGS_ROLE_FINE; role++)
+        adcgs_net_release(&m->net[role], NULL);
+    const int16_t values[5] = {800, -1600, 80, 0, (int16_t)(pace * 100)};
+    for (int c = 0; c < 5; c++)
+        m->d_sigma[6 + c] = c < 4 ? 0.01f : 1.0f / 100;
+    m->is_static[0] = 0;
+    m->mask[0] = 1;
+    memcpy(m->sigma + 6, values, sizeof values);
+    m->is_static[1] = m->mask[1] = 1;
+    memset(m->sigma + 11 + 6, 0, sizeof values);
+}
+
+static void at(const adcgs_model *m, float t, uint32_t anchor, float position[3], float *opacity)
+{
+    adcgs_splat *splat;
+    adcgs_primitives p;
+    assert_int_equal(adcgs_splat_create(&splat, m, ADCGS_CPU_AUTO, NULL, NULL, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_splat_at(splat, t, &p, NULL), ADCGS_OK);
+    for (int a = 0; a < 3; a++)
+        position[a] = p.mean[a][anchor];
+    *opacity = p.opacity[anchor];
+    adcgs_splat_free(&splat);
+}
+
+/* Spans by what they mean: an anchor goes its way in straight line, is whole in the middle, fades alike on both sides. */
+/* REQ-PRIM-013, REQ-PRIM-024, REQ-LATN-012 */
+static void test_spans(void **state)
+{
+    adcgs_model m;
+    float middle[3], early[3], late[3], there, before, behind;
+    make_span(&m, 0, 2);
+    assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_OK);
+    at(&m, 0.5f, 0, middle, &there);
+    at(&m, 0.375f, 0, early, &before);
+    at(&m, 0.625f, 0, late, &behind);
+    const float u = 0.125f * expf(2), way[3] = {8 * 0.125f, -16 * 0.125f, 0.8f * 0.125f};
+    for (int a = 0; a < 3; a++) {
+        const float roundings = 1e-6f * (4 + fabsf(middle[a]));
+        assert_true(fabsf(late[a] - middle[a] - way[a] * u) < roundings);
+        assert_true(fabsf(middle[a] - early[a] - way[a] * u) < roundings);
+    }
+    assert_true(before == behind && fabsf(behind / there - expf(-u * u * u * u)) < 1e-5f);
+    at(&m, 1, 0, late, &behind);
+    assert_true(behind >= 0 && behind < 1e-30f); /* as good as gone, and stays where it was after 4 of its lengths */
+    at(&m, 0, 1, early, &before);
+    at(&m, 1, 1, late, &behind);
+    assert_memory_equal(early, late, sizeof early); /* what is static has no life that ends */
+    assert_true(before == behind && before > 0);
+    m.sigma[11 + 6] = 1;
+    assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
+    clear_model(&m);
+    for (int i = 0; i < 8; i++) { /* at the limits of the pace, and with every network there may be */
+        make_span(&m, i & 1, i & 2 ? 200 : -200);
+        m.sigma[9] = i & 4 ? 32767 : 0;
+        for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
+            check_model(&m, 3, cpu);
         clear_model(&m);
     }
 }
@@ -506,6 +603,7 @@ int main(void)
         cmocka_unit_test(test_functions),  cmocka_unit_test(test_position_code), cmocka_unit_test(test_against_reference),
         cmocka_unit_test(test_extremes),   cmocka_unit_test(test_memory_limit),  cmocka_unit_test(test_largest_networks),
         cmocka_unit_test(test_adaptive_steps), cmocka_unit_test(test_refused_networks),
+        cmocka_unit_test(test_spans),
     };
     return cmocka_run_group_tests_name("splat", tests, NULL, NULL);
 }

@@ -127,6 +127,15 @@ static void ref_omega(const adcgs_fmodel *f, uint32_t anchor, double t, double o
         om[i] *= f->moving[anchor];
 }
 
+/** Where in its life an anchor is at time t, -1 to 1 for what is well to be seen of it; 0 for what has no span. */
+static double ref_span(const adcgs_fmodel *f, uint32_t anchor, double t)
+{
+    if (!f->params.spans || f->moving[anchor] == 0)
+        return 0;
+    const double middle = 0.5 + 0.125 * value(f, ADCGS_P_SIGMA, anchor, 9);
+    return fmin(fmax((t - middle) * exp(fmin(fmax(value(f, ADCGS_P_SIGMA, anchor, 10), -8), 8)), -4), 4);
+}
+
 /** Primitive k of an anchor at time t: mean 3, scale 3, rotation 4, opacity, colour 3. */
 static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double t, double out[VALUES])
 {
@@ -143,7 +152,7 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
     memcpy(y + 6 * OCTAVES, x, NV * sizeof *x);
     time_code(f, t, y + 6 * OCTAVES + NV);
     ref_mlp(&f->mlp[ADCGS_P_VARPI], f->param[ADCGS_P_VARPI].p, y, va);
-    const double moving = f->moving[anchor];
+    const double moving = f->moving[anchor], u = ref_span(f, anchor, t);
     qr[0] = 1;
     q0[0] = th[6] + 1;
     for (int a = 0; a < 3; a++) {
@@ -158,12 +167,13 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
     product(qr, off, turned);
     product(turned, conj, back);
     for (int a = 0; a < 3; a++) {
-        out[a] = om[a] + back[1 + a];
+        out[a] = om[a] + back[1 + a] + (u != 0 ? 0.125 * u * value(f, ADCGS_P_SIGMA, anchor, 6 + a) : 0);
         out[3 + a] = exp(value(f, ADCGS_P_SIGMA, anchor, 3 + a)) * sigmoid(th[3 + a]) * exp(om[3 + a]);
         out[11 + a] = value(f, ADCGS_P_COLOUR, anchor, a) + th[10 + a] + om[6 + a] + moving * va[4 * k + 1 + a];
     }
     memcpy(out + 6, q, sizeof q);
-    out[10] = 0.99 * sigmoid(th[13] + moving * va[4 * k]) * f->keep[((size_t)(anchor / 64) * K + (size_t)k) * 64 + anchor % 64];
+    const double there = exp(-u * u * u * u) * f->keep[((size_t)(anchor / 64) * K + (size_t)k) * 64 + anchor % 64];
+    out[10] = 0.99 * sigmoid(th[13] + moving * va[4 * k]) * there;
 }
 
 static double gauss_cdf(double x)
@@ -185,7 +195,8 @@ static double ref_rows(const adcgs_fmodel *f, int net, const double *x, int grou
     double out[64], bits = 0;
     ref_mlp(&f->mlp[net], f->param[net].p, x, out);
     for (int i = 0; i < rows; i++)
-        bits += ref_bits(value(f, group, anchor, first + i), step_of(f, group, anchor, first + i), out[i], out[rows + i]);
+        bits += ref_bits(value(f, group, anchor, first + i), step_of(f, group, anchor, first + i), out[i],
+                         out[f->mlp[net].out / 2 + i]);
     return bits;
 }
 
@@ -201,7 +212,7 @@ static double ref_rate(const adcgs_fmodel *f)
         bits += ref_rows(f, ADCGS_P_E_FV, x, ADCGS_P_FV, a, 0, NV);
         for (int i = 0; i < NV; i++)
             x[i] = value(f, ADCGS_P_FV, a, i) / (16.0 * f->step[ADCGS_P_FV][i]);
-        bits += ref_rows(f, ADCGS_P_E_SIGMA, x, ADCGS_P_SIGMA, a, 0, 6);
+        bits += ref_rows(f, ADCGS_P_E_SIGMA, x, ADCGS_P_SIGMA, a, 0, f->params.spans && f->moving[a] != 0 ? 11 : 6);
         bits += ref_rows(f, ADCGS_P_E_COLOUR, x, ADCGS_P_COLOUR, a, 0, 3);
         for (int k = 0; k < K; k++) {
             if (f->keep[((size_t)(a / 64) * K + (size_t)k) * 64 + a % 64] == 0)
@@ -228,10 +239,24 @@ static void randomise(float *p, size_t n, double size, uint64_t stream)
         p[i] += (float)(size * adcgs_random_normal(7, stream, i));
 }
 
+/** Moments all over the segment and beyond it; some so far away that nothing is left to learn of when they are. */
+static void spread_lives(adcgs_fmodel *f)
+{
+    for (uint32_t a = 0; a < f->n; a++) {
+        *adcgs_fmodel_at(f, ADCGS_P_SIGMA, a, ADCGS_SPAN_MIDDLE) = 8 * ((float)(a % 13) / 10 - 0.6f);
+        *adcgs_fmodel_at(f, ADCGS_P_SIGMA, a, ADCGS_SPAN_PACE) = a == 8 ? 9.0f : (float)(a % 7) / 3 - 0.5f;
+    }
+}
+
+/** The state is a CPU level, and WITH_SPANS. */
+enum { WITH_SPANS = 16 };
+
 static int setup(void **state)
 {
+    const int spans = (uintptr_t)*state >= WITH_SPANS;
     const adcgs_params params = { .k = K, .n_fv = NV, .n_fg = NG, .chunks = CHUNKS, .n_eta = ETA, .octaves = OCTAVES,
-                                  .fine_uses_fv = 1, .coarse_rotation = 1, .adaptive_steps = 1, .time_rows = 4, .time_width = 3 };
+                                  .fine_uses_fv = 1, .coarse_rotation = 1, .adaptive_steps = 1, .spans = (uint8_t)spans,
+                                  .time_rows = 4, .time_width = 3 };
     const adcgs_shape shape = { .theta_width = 6, .theta_hidden = 2, .omega_width = 5, .omega_hidden = 3, .varpi_width = 6,
                                 .varpi_hidden = 2, .entropy_width = 6, .entropy_hidden = 2, .step_fv = 0.1f, .step_fg = 0.2f,
                                 .step_sigma = 0.1f, .step_colour = 0.05f, .depth = 8 };
@@ -249,9 +274,12 @@ static int setup(void **state)
             adcgs_mlp_prepare(&x->f->mlp[i], x->f->param[i].p, 0);
     }
     adcgs_fmodel_take_steps(x->f);
+    if (spans)
+        spread_lives(x->f);
     x->f->moving[5] = 0;
     x->f->keep[1 * 64 + 9] = 0;
-    assert_int_equal(adcgs_pass_create(&x->pass, x->f, (adcgs_cpu_level)(uintptr_t)*state, NULL, &error), ADCGS_OK);
+    const adcgs_cpu_level level = (adcgs_cpu_level)((uintptr_t)*state % WITH_SPANS);
+    assert_int_equal(adcgs_pass_create(&x->pass, x->f, level, NULL, &error), ADCGS_OK);
     *state = x;
     return 0;
 }
@@ -297,6 +325,22 @@ static void test_forward(void **state)
             for (int v = 0; v < VALUES; v++)
                 assert_float_equal(x->pass->prim[(size_t)v * slots + slot], p[v], 2e-5 * (1 + fabs(p[v])));
         }
+}
+
+/** A pass of which the time alone is another gives what a whole one gives. */
+static void test_other_time(void **state)
+{
+    const fixture *x = *state;
+    const size_t bytes = ADCGS_ROWS * (size_t)x->pass->primitives.n * sizeof(float);
+    float *whole = malloc(bytes);
+    assert_non_null(whole);
+    adcgs_pass_forward(x->pass, x->f, 0.7f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    memcpy(whole, x->pass->prim, bytes);
+    adcgs_pass_forward(x->pass, x->f, 0.2f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    assert_memory_not_equal(whole, x->pass->prim, bytes);
+    adcgs_pass_forward(x->pass, x->f, 0.7f, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL, .other_time = 1 });
+    assert_memory_equal(whole, x->pass->prim, bytes);
+    free(whole);
 }
 
 typedef double (*scalar_fn)(const adcgs_fmodel *f);
@@ -355,6 +399,15 @@ static void test_distortion_gradients(void **state)
         }
     adcgs_pass_backward(x->pass, x->f, ADCGS_DEFORM_ALL, 0, 0, 0, NULL);
     check_gradients(x->f, distortion, 0);
+}
+
+/** A group of anchors that all stand still is spared the networks of deformation: values and gradients are as they should be. */
+static void test_still_group(void **state)
+{
+    const fixture *x = *state;
+    memset(x->f->moving, 0, 64 * sizeof *x->f->moving);
+    test_forward(state);
+    test_distortion_gradients(state);
 }
 
 static void test_rate_gradients(void **state)
@@ -468,6 +521,46 @@ static double rigid_energy(const adcgs_fmodel *f)
     return ref_rigid(rigid_under_test, f, 0.4f);
 }
 
+/** The k-th anchor to i by key, then number; key is the distance, or the lottery's number of those within reach. */
+static int32_t near_by_search(const adcgs_fmodel *f, uint32_t i, int drawn, int k)
+{
+    const double reach = (double)ADCGS_RIGIDITY_REACH / (double)f->voxel;
+    uint8_t taken[ANCHORS] = { 0 };
+    int32_t best = -1;
+    for (int turn = 0; turn <= k; turn++) {
+        uint64_t least = UINT64_MAX;
+        best = -1;
+        for (uint32_t j = 0; j < ANCHORS; j++) {
+            uint64_t d = 0;
+            for (int a = 0; a < 3; a++)
+                d += (uint64_t)(((int64_t)f->pos[i][a] - f->pos[j][a]) * ((int64_t)f->pos[i][a] - f->pos[j][a]));
+            const uint64_t key = drawn ? adcgs_random64(1, i, j) : d;
+            if (j == i || taken[j] || (drawn && (double)d >= reach * reach) || key >= least)
+                continue;
+            least = key;
+            best = (int32_t)j;
+        }
+        if (best >= 0)
+            taken[best] = 1;
+    }
+    return best;
+}
+
+/** Neighbours are those that a search of all anchors finds. */
+static void test_neighbours(void **state)
+{
+    const fixture *x = *state;
+    adcgs_rigidity rigid = { 0 };
+    adcgs_error error;
+    assert_int_equal(adcgs_rigidity_build(&rigid, x->f, NULL, &error), ADCGS_OK);
+    for (uint32_t i = 0; i < ANCHORS; i++)
+        for (int k = 0; k < ADCGS_RIGIDITY_NEAR; k++) {
+            const int drawn = k >= ADCGS_RIGIDITY_CLOSE;
+            assert_int_equal(rigid.near[i][k], near_by_search(x->f, i, drawn, drawn ? k - ADCGS_RIGIDITY_CLOSE : k));
+        }
+    adcgs_rigidity_clear(&rigid);
+}
+
 static void test_rigid(void **state)
 {
     const fixture *x = *state;
@@ -524,6 +617,33 @@ static void test_area_seen(void **state)
     for (int i = 0; i < 4; i++)
         assert_float_equal(g[0][i], 0.5f * larger[i], 1e-4);
     adcgs_viewpoints_clear(&viewpoints);
+}
+
+/** Many primitives before many viewpoints: each has its nearest, wherever its place in memory. */
+static void test_area_many(void **state)
+{
+    (void)state;
+    enum { MANY = 150, SEEN_FROM = 9 };
+    static float mean[3][MANY], one[MANY], g[3][MANY], at[SEEN_FROM][3];
+    adcgs_primitives primitives = { .n = MANY, .scale = { one, one, one }, .opacity = one };
+    memset(g, 0, sizeof g);
+    for (int a = 0; a < 3; a++)
+        primitives.mean[a] = mean[a];
+    for (int i = 0; i < 3 * MANY; i++)
+        mean[i / MANY][i % MANY] = (float)adcgs_random_unit(7, 0, (uint64_t)i);
+    for (int i = 0; i < 3 * SEEN_FROM; i++)
+        at[i / 3][i % 3] = 2 * (float)adcgs_random_unit(7, 1, (uint64_t)i);
+    for (int i = 0; i < MANY; i++)
+        one[i] = 1;
+    const adcgs_viewpoints viewpoints = { .n = SEEN_FROM, .x = at };
+    adcgs_scale_penalty(&primitives, &viewpoints, 3 * MANY, (float *const[]){ g[0], g[1], g[2] });
+    for (int i = 0; i < MANY; i++) {
+        double least = INFINITY;
+        for (int j = 0; j < SEEN_FROM; j++)
+            least = fmin(least, pow((double)(mean[0][i] - at[j][0]), 2) + pow((double)(mean[1][i] - at[j][1]), 2) +
+                                    pow((double)(mean[2][i] - at[j][2]), 2));
+        assert_float_equal(g[0][i], 2 / fmax(least, 0.0025), 1e-4 * (1 + 2 / fmax(least, 0.0025)));
+    }
 }
 
 /** Forward with noise; the reference is told the noise, which no parameter changes. */
@@ -657,6 +777,19 @@ static void test_adaptive_start(void **state)
     free(with);
 }
 
+/** What is asked of one anchor is what the pass does to its primitives. */
+static void test_presence(void **state)
+{
+    const fixture *x = *state;
+    for (uint32_t a = 0; a < ANCHORS; a++) {
+        const double u = ref_span(x->f, a, 0.4f);
+        assert_float_equal(adcgs_fmodel_presence(x->f, a, 0.4f), exp(-u * u * u * u), 1e-5);
+    }
+    x->f->params.spans = 0;
+    assert_true(adcgs_fmodel_presence(x->f, 0, 0.9f) == 1);
+    x->f->params.spans = 1;
+}
+
 /** The same gradients, to the bit, with one thread and with seven. */
 static void test_threads(void **state)
 {
@@ -698,6 +831,8 @@ int main(void)
         const struct CMUnitTest tests[] = {
             { "forward", test_forward, setup, teardown, state },
             { "distortion gradients", test_distortion_gradients, setup, teardown, state },
+            { "other time", test_other_time, setup, teardown, state },
+            { "still group", test_still_group, setup, teardown, state },
             { "rate gradients", test_rate_gradients, setup, teardown, state },
             { "step gradients", test_step_gradients, setup, teardown, state },
             { "adaptive rate gradients", test_adaptive_rate_gradients, setup, teardown, state },
@@ -705,12 +840,28 @@ int main(void)
             { "adaptive limits", test_adaptive_limits, setup, teardown, state },
             { "adaptive rounding", test_adaptive_rounding, setup, teardown, state },
             { "adaptive start", test_adaptive_start, setup, teardown, state },
+            { "neighbours", test_neighbours, setup, teardown, state },
             { "rigid", test_rigid, setup, teardown, state },
             { "area", test_area, NULL, NULL, state },
             { "area as it is seen", test_area_seen, NULL, NULL, state },
+            { "area of many", test_area_many, NULL, NULL, state },
             { "threads", test_threads, setup, teardown, state },
         };
+        void *const lives = (void *)(uintptr_t)(level + WITH_SPANS);
+        const struct CMUnitTest spans[] = {
+            { "forward with spans", test_forward, setup, teardown, lives },
+            { "distortion gradients with spans", test_distortion_gradients, setup, teardown, lives },
+            { "rate gradients with spans", test_rate_gradients, setup, teardown, lives },
+            { "step gradients with spans", test_step_gradients, setup, teardown, lives },
+            { "adaptive rate gradients with spans", test_adaptive_rate_gradients, setup, teardown, lives },
+            { "adaptive gradients with spans", test_adaptive_gradients, setup, teardown, lives },
+            { "rounding with spans", test_adaptive_rounding, setup, teardown, lives },
+            { "rigid with spans", test_rigid, setup, teardown, lives },
+            { "presence", test_presence, setup, teardown, lives },
+            { "threads with spans", test_threads, setup, teardown, lives },
+        };
         failed += cmocka_run_group_tests_name("train", tests, NULL, NULL);
+        failed += cmocka_run_group_tests_name("train with spans", spans, NULL, NULL);
     }
     return failed;
 }

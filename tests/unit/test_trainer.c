@@ -11,11 +11,13 @@
 #include "geom/geom.h"
 #include "metric/metric.h"
 #include "model/latents_priv.h"
+#include "splat/splat.h"
 #include "train/decide.h"
 #include "train/densify.h"
 #include "train/initialise.h"
 #include "train/residual_densify.h"
 #include "train/sample.h"
+#include "train/start_points.h"
 #include "train/views.h"
 
 #include <math.h>
@@ -26,6 +28,7 @@ static adcgs_train_config all_stages_config(void)
     c.freeze_from = 0.92f; /* long enough to stop in */
     c.rdo_strength = 1;
     c.params.adaptive_steps = 1;
+    c.params.spans = 1;
     return c;
 }
 
@@ -302,7 +305,7 @@ static void faint_primitives_go(void **state)
             const size_t slot = adcgs_fmodel_slot(t->f, i, j);
             const int faint = j == 1 || i == 5;
             t->stats.weight[slot] = 1000.0f * (float)t->stats.n;
-            t->stats.opacity[slot] = config.keep_opacity * (faint ? 0.99f : 1.01f) * (float)t->stats.n;
+            t->stats.opacity[slot] = config.keep_opacity * (faint ? 0.99f : 1.01f) * t->stats.presence[i];
         }
     assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
     assert_int_equal(t->f->n, n - 1);
@@ -406,7 +409,7 @@ static void decoded_values_are_their_own_quantisation(void **state)
 {
     adcgs_train_config config = all_stages_config();
     for (uint32_t stop = 90; stop <= ITERATIONS; stop += 55) {
-        config.params.adaptive_steps = stop % 110 == 90;
+        config.params.adaptive_steps = config.params.spans = stop % 110 == 90;
         adcgs_trainer *t = make(&config, pool);
         adcgs_model first, second;
         float *mu[ADCGS_P_ANCHOR], *value[ADCGS_P_ANCHOR];
@@ -457,6 +460,8 @@ static void rounding_is_decoding(void **state)
                 const size_t at = (size_t)(adcgs_fmodel_at(t->f, i, a, r) - t->f->param[i].p);
                 const double want = (double)value[i][at], seen = (double)t->pass->used[i][at];
                 if (i == ADCGS_P_FG && !(model.mask[a] >> r / t->f->params.n_fg & 1))
+                    continue;
+                if (i == ADCGS_P_SIGMA && r >= adcgs_sigma_coded(&model, a))
                     continue;
                 if (is_tie((double)t->f->param[i].p[at], seen, want))
                     ties++;
@@ -594,6 +599,37 @@ static void rate_reaches_every_weight(void **state)
     }
 }
 
+/** The first view's picture of the model as it is, 32 x 32. */
+static void draw(adcgs_trainer *t, float image[3 * 32 * 32])
+{
+    adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .deform = 1 });
+    if (adcgs_raster_forward(t->raster, &t->pass->primitives, &t->views[0].view, scene->background, 0.3f, image, 0, &error))
+        fail_msg("%s", error.text);
+}
+
+/** What a decoder draws of the model's quantised values is what the trainer draws of them. */
+static void check_picture(adcgs_trainer *t)
+{
+    static float here[3 * 32 * 32], there[3 * 32 * 32];
+    float *value[ADCGS_P_ANCHOR];
+    adcgs_model model;
+    adcgs_splat *splat;
+    adcgs_primitives primitives;
+    for (int i = 0; i < ADCGS_P_ANCHOR; i++)
+        value[i] = t->f->param[i].p;
+    const adcgs_quantise_options options = { .cpu = t->cpu, .value = value };
+    assert_int_equal(adcgs_quantise(&model, t->f, &options, &error), ADCGS_OK);
+    assert_int_equal(adcgs_splat_create(&splat, &model, t->cpu, NULL, NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_splat_at(splat, 0.5f, &primitives, &error), ADCGS_OK);
+    draw(t, here);
+    if (adcgs_raster_forward(t->raster, &primitives, &t->views[0].view, scene->background, 0.3f, there, 0, &error))
+        fail_msg("%s", error.text);
+    print_message("decoded and trained: %.1f dB\n", adcgs_psnr(here, there, ADCGS_COUNTOF(here)));
+    assert_true(adcgs_psnr(here, there, ADCGS_COUNTOF(here)) > 70);
+    adcgs_splat_free(&splat);
+    adcgs_model_clear(&model, NULL);
+}
+
 /** A stream of a model in which no anchor moves has no networks, table or flags for motion. */
 static void still_models_carry_no_motion(void **state)
 {
@@ -608,23 +644,52 @@ static void still_models_carry_no_motion(void **state)
     assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
     const adcgs_model *m = &stream.segments[0];
     assert_int_equal(stream.params.time_rows + stream.params.time_width + m->params.time_rows, 0);
+    assert_int_equal(stream.params.spans + m->params.spans, 0);
+    assert_int_equal(adcgs_net_outputs(&m->net[ADCGS_ROLE_ENTROPY_SIGMA]), 12);
     assert_false(m->net[ADCGS_ROLE_COARSE].present || m->net[ADCGS_ROLE_FINE].present || m->net[ADCGS_ROLE_TIME].present);
     if (adcgs_encode_verified(&stream, &bytes, t->cpu, pool, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
+    check_picture(t);
     adcgs_buffer_clear(&bytes);
     adcgs_stream_clear(&stream, NULL);
     adcgs_trainer_free(&t);
 }
 
-/* ---- Without compression ---- */
+/* ---- Parts of pictures ---- */
 
-/** The first view's picture of the model as it is, 32 x 32. */
-static void draw(adcgs_trainer *t, float image[3 * 32 * 32])
+/** A crop of a view is drawn as it is in the whole, and its loss is that of its pixels. */
+static void crops_are_parts_of_pictures(void **state)
 {
+    enum { X = 16, Y = 9, W = 16, H = 20, SIDE = 32 };
+    static float whole[3 * SIDE * SIDE];
+    adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, pool);
+    adcgs_loss_value value;
+    const float *target;
+    double square = 0;
+    assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
+    adcgs_trainer_prepare_networks(t);
     adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .deform = 1 });
-    if (adcgs_raster_forward(t->raster, &t->pass->primitives, &t->views[0].view, scene->background, 0.3f, image, 0, &error))
-        fail_msg("%s", error.text);
+    assert_int_equal(adcgs_view_draw(t, &t->views[0].view, whole, 0, &error), ADCGS_OK);
+    adcgs_view crop = t->views[0].view;
+    assert_true(crop.width == SIDE && crop.height == SIDE);
+    adcgs_view_crop(&crop, X, Y, W, H);
+    assert_int_equal(adcgs_view_draw(t, &crop, t->image, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_trainer_target(t, 0, NULL, &target, &error), ADCGS_OK);
+    for (int c = 0; c < 3; c++)
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++) {
+                const int at = (c * SIDE + Y + y) * SIDE + X + x;
+                const float drawn = t->image[(c * H + y) * W + x];
+                assert_float_equal(drawn, whole[at], 1e-4);
+                square += (double)((drawn - target[at]) * (drawn - target[at])) / (3 * W * H);
+            }
+    assert_int_equal(adcgs_trainer_loss_crop(t, 0, &crop, &value, &error), ADCGS_OK);
+    assert_float_equal(value.mse, square, 1e-6);
+    adcgs_trainer_free(&t);
 }
+
+/* ---- Without compression ---- */
 
 /** PSNR between the picture of the model and that of its quantised values, which replace them. */
 static double loss_of_quantisation(adcgs_trainer *t, adcgs_model *model)
@@ -668,7 +733,10 @@ static void uncompressed_models_lose_nothing(void **state)
     uint32_t primitives = 0;
     for (uint32_t i = 0; i < model.n; i++)
         primitives += (uint32_t)__builtin_popcount(model.mask[i]);
-    const uint32_t numbers = model.n * (3 + config.params.n_fv + 6 + 3) + primitives * config.params.n_fg;
+    uint32_t lives = 0;
+    for (uint32_t i = 0; i < model.n; i++)
+        lives += model.is_static[i] == 0;
+    const uint32_t numbers = model.n * (3 + config.params.n_fv + 6 + 3) + 5 * lives + primitives * config.params.n_fg;
     assert_int_equal(bytes.size, 4 * (numbers + drawing_weights(&model)));
     float first[3];
     memcpy(first, bytes.data, sizeof first);
@@ -819,6 +887,20 @@ static void moments_shared_by_views_change_settings(void **state)
 }
 
 /* ---- Time ---- */
+
+/** Learning rates stay as they begin until their moment, then fall by equal factors in equal times. */
+static void rates_stay_then_fall(void **state)
+{
+    adcgs_train_config c = { .rates_fall_from = 0.5f };
+    for (int i = 0; i <= 2; i++)
+        assert_float_equal(adcgs_train_rate(&c, 8, 2, 0.25 * i), 8, 0);
+    assert_float_equal(adcgs_train_rate(&c, 8, 2, 0.75), 4, 1e-6);
+    assert_float_equal(adcgs_train_rate(&c, 8, 2, 1), 2, 1e-6);
+    c.rates_fall_from = 0;
+    assert_float_equal(adcgs_train_rate(&c, 8, 2, 0.5), 4, 1e-6);
+    c.rates_fall_from = 2;
+    assert_float_equal(adcgs_train_rate(&c, 8, 2, 1), 8, 0);
+}
 
 /** Seconds of an iteration of a make-believe machine: so much of it, at full resolution, is not for pixels. */
 static double true_cost(int divide, double overhead)
@@ -1068,6 +1150,7 @@ int main(void)
         cmocka_unit_test(averages_are_means),
         cmocka_unit_test(cameras_are_evened_out),
         cmocka_unit_test(moments_shared_by_views_change_settings),
+        cmocka_unit_test(crops_are_parts_of_pictures), cmocka_unit_test(rates_stay_then_fall),
         cmocka_unit_test(time_left_follows_the_schedule), cmocka_unit_test(time_left_knows_loading),
         cmocka_unit_test(time_limits_count_what_was_before),
         cmocka_unit_test(masked_pixels_have_no_part),

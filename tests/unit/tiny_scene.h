@@ -41,6 +41,8 @@ static inline adcgs_train_config small_config(void)
     c.start_anchors = 100;
     c.max_anchors = 150;
     c.densify_every = 20;
+    c.params.spans = 0; /* unless a test is about them */
+    c.stereo = 0;
     c.densify_threshold = 1e-6f;
     c.still_below = 0; /* motion takes longer to show than these runs last */
     c.params.k = 4;

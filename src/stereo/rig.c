@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Cameras, moments, small pictures, and what they show most of the time. */
+#include "stereo/rig.h"
+
+#include "data/by_camera.h"
+#include "data/sort.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { PIXELS_LEAST = 4096, PIXELS_MOST = 28000 }; /* of a picture; of a small one */
+#define USUAL 18              /* levels of 255 that a pixel may be off what it usually shows */
+#define USUAL_SHARE 0.55      /* of the moments that a pixel has to show it */
+#define NEAREST 0.2           /* depths, scene units: where things have been seen to be in such units */
+#define FARTHEST 8.0
+
+/** Which of the scene's views is whose, at what time. */
+typedef struct index {
+    const adcgs_scene_view *views;
+    uint32_t n, n_cameras, n_times;
+    uint32_t *of, *order;
+    double *times; /* [n_times] ascending */
+} index;
+
+static void index_clear(index *x)
+{
+    adcgs_free(NULL, x->of);
+    adcgs_free(NULL, x->order);
+    adcgs_free(NULL, x->times);
+}
+
+static adcgs_status index_init(index *x, const adcgs_scene *scene, adcgs_error *error)
+{
+    *x = (index){ .views = scene->views[ADCGS_SPLIT_TRAIN], .n = scene->n_views[ADCGS_SPLIT_TRAIN] };
+    x->of = adcgs_alloc(NULL, x->n, sizeof *x->of, error);
+    x->order = adcgs_alloc(NULL, x->n, sizeof *x->order, error);
+    x->times = adcgs_alloc(NULL, x->n, sizeof *x->times, error);
+    if (!x->of || !x->order || !x->times)
+        return adcgs_alloc_status(error);
+    ADCGS_TRY(adcgs_sort_by_camera(x->views, x->n, x->of, x->order, &x->n_cameras, error));
+    for (uint32_t i = 0; i < x->n; i++)
+        x->times[i] = x->views[i].time;
+    adcgs_sort(x->times, x->n);
+    for (uint32_t i = 0; i < x->n; i++)
+        if (!i || x->times[i] > x->times[x->n_times - 1])
+            x->times[x->n_times++] = x->times[i];
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_stereo_applies(const adcgs_scene *scene, int *applies, adcgs_error *error)
+{
+    index x;
+    const adcgs_status status = index_init(&x, scene, error);
+    const int stay = x.n_times < 2 || x.n_cameras <= x.n / 2; /* those of a still scene have a picture each */
+    const int large = x.n && (double)x.views[0].camera.width * x.views[0].camera.height >= PIXELS_LEAST;
+    *applies = status == ADCGS_OK && x.n_cameras >= 3 && stay && large && x.n >= 2 * x.n_times;
+    index_clear(&x);
+    return status;
+}
+
+/* ---- Cameras ---- */
+
+static void set_view(adcgs_stereo_view *v, const adcgs_camera *c, const adcgs_stereo_options *o)
+{
+    for (int a = 0; a < 3; a++) {
+        v->centre[a] = (c->cam_to_world[4 * a + 3] - o->origin[a]) / o->scale;
+        for (int b = 0; b < 3; b++)
+            v->rotation[3 * b + a] = c->cam_to_world[4 * a + b];
+    }
+    v->fx = c->fx;
+    v->fy = c->fy;
+    v->cx = c->cx;
+    v->cy = c->cy;
+    v->w = c->width;
+    v->h = c->height;
+}
+
+static uint8_t *to_bytes(const float *rgb, size_t plane, adcgs_error *error)
+{
+    uint8_t *bytes = adcgs_alloc(NULL, 4 * plane, 1, error);
+    for (size_t i = 0; bytes && i < plane; i++) {
+        const int known = !isnan(rgb[i]);
+        for (size_t c = 0; known && c < 3; c++)
+            bytes[4 * i + c] = (uint8_t)(fminf(fmaxf(rgb[c * plane + i], 0), 1) * 255 + 0.5f);
+        bytes[4 * i + 3] = known ? 255 : 0;
+    }
+    return bytes;
+}
+
+static adcgs_status load(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_stereo_options *o,
+                         adcgs_stereo_camera *camera, int moment, adcgs_error *error)
+{
+    float *rgb;
+    adcgs_camera small;
+    const double pixels = (double)view->camera.width * view->camera.height;
+    const int divide = ADCGS_MAX((int)ceil(sqrt(pixels / PIXELS_MOST)), 1);
+    ADCGS_TRY(adcgs_scene_load(scene, view, divide, &rgb, &small, error));
+    set_view(&camera->view, &small, o);
+    camera->shown[moment] = to_bytes(rgb, (size_t)small.width * (size_t)small.height, error);
+    free(rgb);
+    return camera->shown[moment] ? ADCGS_OK : adcgs_alloc_status(error);
+}
+
+void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float *pixels)
+{
+    const size_t n = 4 * (size_t)camera->view.w * (size_t)camera->view.h;
+    for (size_t i = 0; i < n; i++)
+        pixels[i] = camera->shown[moment][i] * (1.0f / 255);
+}
+
+/* ---- What a camera shows most of the time ---- */
+
+static uint8_t middle_of(uint8_t *values, int n)
+{
+    for (int i = 1; i < n; i++)
+        for (int j = i; j > 0 && values[j] < values[j - 1]; j--) {
+            const uint8_t swap = values[j];
+            values[j] = values[j - 1];
+            values[j - 1] = swap;
+        }
+    return values[n / 2];
+}
+
+/** The median of a pixel over the moments, and how many of these are near it. */
+static void set_usual(adcgs_stereo_camera *c, size_t pixel)
+{
+    uint8_t values[ADCGS_STEREO_MOMENTS], usual[4];
+    int n = 0, near = 0;
+    for (size_t k = 0; k < 4; k++) {
+        n = 0;
+        for (int m = 0; m < ADCGS_STEREO_MOMENTS; m++)
+            if (c->shown[m])
+                values[n++] = c->shown[m][4 * pixel + k];
+        usual[k] = middle_of(values, n);
+        c->usual[4 * pixel + k] = usual[k] * (1.0f / 255);
+    }
+    for (int m = 0; m < ADCGS_STEREO_MOMENTS; m++) {
+        int off = 0;
+        for (size_t k = 0; c->shown[m] && k < 4; k++)
+            off = ADCGS_MAX(off, abs(c->shown[m][4 * pixel + k] - usual[k]));
+        near += c->shown[m] && off <= USUAL;
+    }
+    c->changes[pixel] = near < USUAL_SHARE * n;
+}
+
+static adcgs_status find_usual(adcgs_stereo_camera *c, adcgs_error *error)
+{
+    const size_t plane = (size_t)c->view.w * (size_t)c->view.h;
+    c->usual = adcgs_alloc(NULL, 4 * plane, sizeof *c->usual, error);
+    c->changes = adcgs_alloc(NULL, plane, 1, error);
+    if (!c->usual || !c->changes)
+        return adcgs_alloc_status(error);
+    for (size_t i = 0; i < plane; i++)
+        set_usual(c, i);
+    c->view.pixels = c->usual;
+    return ADCGS_OK;
+}
+
+/* ---- Depths ---- */
+
+/** From what the data set says to where scene units end. */
+static void set_depths(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *o)
+{
+    rig->nearest = scene->near_bound > 0 ? fmax(0.9 * scene->near_bound / o->scale, 0.05) : NEAREST;
+    rig->farthest = fmax(FARTHEST, 4 * rig->nearest);
+}
+
+static float moment_of(const adcgs_scene *scene, double time)
+{
+    return scene->duration > 0 ? (float)fmin(fmax(time / scene->duration, 0), 1) : 0;
+}
+
+/** The pictures of one camera at the rig's moments; views: of that camera, ascending in time. */
+static adcgs_status load_camera(const adcgs_stereo_rig *rig, adcgs_stereo_camera *camera, const adcgs_scene *scene,
+                                const index *x, const uint32_t *views, uint32_t n, const adcgs_stereo_options *o,
+                                adcgs_error *error)
+{
+    int m = 0, loaded = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        const adcgs_scene_view *view = &x->views[views[i]];
+        const float t = moment_of(scene, view->time);
+        while (m < rig->n_moments && rig->moment[m] < t)
+            m++;
+        if (m == rig->n_moments || rig->moment[m] > t || camera->shown[m])
+            continue;
+        ADCGS_TRY(load(scene, view, o, camera, m, error));
+        loaded++;
+    }
+    return loaded ? find_usual(camera, error) : ADCGS_OK;
+}
+
+static adcgs_status load_cameras(adcgs_stereo_rig *rig, const adcgs_scene *scene, const index *x, const adcgs_stereo_options *o,
+                                 adcgs_error *error)
+{
+    uint32_t begin = 0, end;
+    for (int c = 0; c < rig->n_cameras; c++, begin = end) {
+        const uint32_t wanted = (uint32_t)((uint64_t)c * x->n_cameras / (uint64_t)rig->n_cameras);
+        while (x->of[x->order[begin]] != wanted)
+            begin++;
+        for (end = begin; end < x->n && x->of[x->order[end]] == wanted; end++)
+            ;
+        ADCGS_TRY(load_camera(rig, &rig->camera[c], scene, x, x->order + begin, end - begin, o, error));
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *options,
+                                   adcgs_error *error)
+{
+    index x;
+    adcgs_status status = index_init(&x, scene, error);
+    set_depths(rig, scene, options);
+    if (status == ADCGS_OK) {
+        rig->n_cameras = (int)ADCGS_MIN(x.n_cameras, ADCGS_STEREO_CAMERAS);
+        rig->n_moments = (int)ADCGS_MIN(x.n_times, ADCGS_STEREO_MOMENTS);
+        for (int m = 0; m < rig->n_moments; m++) {
+            const uint64_t last = (uint64_t)ADCGS_MAX(rig->n_moments - 1, 1);
+            rig->moment[m] = moment_of(scene, x.times[(uint64_t)m * (x.n_times - 1) / last]);
+        }
+        status = load_cameras(rig, scene, &x, options, error);
+    }
+    index_clear(&x);
+    return status;
+}
+
+void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig)
+{
+    for (int c = 0; c < rig->n_cameras; c++) {
+        adcgs_free(NULL, rig->camera[c].usual);
+        adcgs_free(NULL, rig->camera[c].changes);
+        for (int m = 0; m < ADCGS_STEREO_MOMENTS; m++)
+            adcgs_free(NULL, rig->camera[c].shown[m]);
+    }
+    memset(rig, 0, sizeof *rig);
+}

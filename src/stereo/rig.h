@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The cameras of a scene that stay where they are, and their pictures at a few moments, small, in scene units: what is matched.
+ */
+#ifndef ADCGS_STEREO_RIG_H
+#define ADCGS_STEREO_RIG_H
+
+#include "base/pool.h"
+#include "data/scene.h"
+#include "stereo/stereo.h"
+
+enum { ADCGS_STEREO_CAMERAS = 24, ADCGS_STEREO_MOMENTS = 16 };
+
+/** A camera and what it shows. */
+typedef struct adcgs_stereo_view {
+    double rotation[9], centre[3]; /**< rows: the camera's axes; scene units */
+    double fx, fy, cx, cy;
+    int w, h;
+    const float *pixels; /**< [h][w][4] red, green, blue, and 1 where it is known */
+} adcgs_stereo_view;
+
+typedef struct adcgs_stereo_camera {
+    adcgs_stereo_view view;                /**< pixels: what it shows most of the time */
+    float *usual;                       /**< [h][w][4] the same, its own */
+    uint8_t *changes;                   /**< [h][w] 1: there is nothing that it shows most of the time */
+    uint8_t *shown[ADCGS_STEREO_MOMENTS];  /**< [h][w][4] what it shows at a moment; NULL: no picture */
+} adcgs_stereo_camera;
+
+/** Zero-initialise before use. */
+typedef struct adcgs_stereo_rig {
+    int n_cameras, n_moments;
+    adcgs_stereo_camera camera[ADCGS_STEREO_CAMERAS];
+    float moment[ADCGS_STEREO_MOMENTS]; /**< t, ascending */
+    double nearest, farthest;        /**< depths that are looked at, scene units */
+} adcgs_stereo_rig;
+
+adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *options,
+                                   adcgs_error *error);
+void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig);
+
+/** Picture of a moment as numbers, [h][w][4]. */
+void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float *pixels);
+
+/** Where a point lies in a view: pixel coordinates, centres at + 0.5, and depth. 0 if it is behind the camera. */
+static inline int adcgs_stereo_rig_project(const adcgs_stereo_view *v, const double x[3], double at[2], double *depth)
+{
+    double p[3];
+    for (int a = 0; a < 3; a++)
+        p[a] = v->rotation[3 * a] * (x[0] - v->centre[0]) + v->rotation[3 * a + 1] * (x[1] - v->centre[1]) +
+               v->rotation[3 * a + 2] * (x[2] - v->centre[2]);
+    *depth = p[2];
+    if (!(p[2] > 1e-6))
+        return 0;
+    at[0] = v->fx * p[0] / p[2] + v->cx;
+    at[1] = v->fy * p[1] / p[2] + v->cy;
+    return at[0] >= 0 && at[1] >= 0 && at[0] < v->w && at[1] < v->h;
+}
+
+/** The point at a depth behind the centre of a pixel. */
+static inline void adcgs_stereo_rig_lift(const adcgs_stereo_view *v, int px, int py, double depth, double x[3])
+{
+    const double p[3] = { (px + 0.5 - v->cx) / v->fx * depth, (py + 0.5 - v->cy) / v->fy * depth, depth };
+    for (int a = 0; a < 3; a++)
+        x[a] = v->centre[a] + v->rotation[a] * p[0] + v->rotation[3 + a] * p[1] + v->rotation[6 + a] * p[2];
+}
+
+#endif

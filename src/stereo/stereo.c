@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What is still, what moves, and where nothing is. */
+#include "stereo/stereo.h"
+
+#include "stereo/follow.h"
+#include "stereo/fuse.h"
+#include "stereo/thin.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4 }; /* views that are matched at a moment; pixels that move; about them */
+#define AXES_ALIKE 0.6  /* cosine between axes of views that are matched */
+#define APART 0.005     /* scene units between views that tell depths */
+#define MOVED 18        /* levels of 255 off what a pixel usually shows */
+
+struct adcgs_stereo_maps {
+    int n;
+    adcgs_stereo_view view[ADCGS_STEREO_CAMERAS];
+    adcgs_depths depths[ADCGS_STEREO_CAMERAS];
+};
+
+/* ---- Neighbours ---- */
+
+static double apart(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
+{
+    double d = 0;
+    for (int i = 0; i < 3; i++)
+        d += pow(a->centre[i] - b->centre[i], 2);
+    return sqrt(d);
+}
+
+static double axes_dot(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
+{
+    return a->rotation[6] * b->rotation[6] + a->rotation[7] * b->rotation[7] + a->rotation[8] * b->rotation[8];
+}
+
+/** The nearest views that look the same way. */
+static void choose_sources(adcgs_sweep *s, const adcgs_stereo_view *views, int n, int own)
+{
+    double best[ADCGS_SWEEP_SOURCES];
+    s->view = &views[own];
+    s->n_sources = 0;
+    for (int i = 0; i < n; i++) {
+        const double d = apart(&views[own], &views[i]);
+        if (i == own || d < APART || axes_dot(&views[own], &views[i]) < AXES_ALIKE)
+            continue;
+        int k = s->n_sources;
+        if (k == ADCGS_SWEEP_SOURCES && d >= best[k - 1])
+            continue;
+        if (k < ADCGS_SWEEP_SOURCES)
+            s->n_sources++;
+        else
+            k--;
+        for (; k > 0 && best[k - 1] > d; k--) {
+            best[k] = best[k - 1];
+            s->source[k] = s->source[k - 1];
+        }
+        best[k] = d;
+        s->source[k] = &views[i];
+    }
+}
+
+/* ---- One set of views that were taken at once ---- */
+
+/** Views, the parts of them that are matched, and what is found. */
+typedef struct match {
+    int n;
+    adcgs_stereo_view *views;
+    const int (*parts)[4];     /* [n] x, y, w, h; w 0: none */
+    double nearest, farthest;
+    adcgs_depths *depths;      /* [n] */
+    adcgs_status status[ADCGS_STEREO_CAMERAS];
+    adcgs_error error[ADCGS_STEREO_CAMERAS];
+} match;
+
+static void match_one(void *arg, int i, int thread)
+{
+    match *m = arg;
+    adcgs_sweep s = { .x = m->parts[i][0], .y = m->parts[i][1], .w = m->parts[i][2], .h = m->parts[i][3] };
+    (void)thread;
+    m->status[i] = ADCGS_OK;
+    m->depths[i].view = &m->views[i];
+    choose_sources(&s, m->views, m->n, i);
+    if (!s.w || !s.n_sources)
+        return;
+    adcgs_sweep_set_planes(&s, m->nearest, m->farthest);
+    m->status[i] = adcgs_depths_find(&m->depths[i], &s, &m->error[i]);
+}
+
+static adcgs_status match_all(match *m, adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_pool_run(pool, match_one, m, m->n);
+    for (int i = 0; i < m->n; i++)
+        if (m->status[i] != ADCGS_OK)
+            return adcgs_fail(error, m->status[i], "%s", m->error[i].text);
+    return ADCGS_OK;
+}
+
+/* ---- What is still ---- */
+
+static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const adcgs_stereo_rig *rig, adcgs_pool *pool,
+                               adcgs_error *error)
+{
+    adcgs_stereo_maps *maps = out->maps;
+    const uint8_t *wanted[ADCGS_STEREO_CAMERAS];
+    uint8_t *still[ADCGS_STEREO_CAMERAS] = { NULL };
+    int parts[ADCGS_STEREO_CAMERAS][4];
+    adcgs_status status = ADCGS_OK;
+    for (int c = 0; c < rig->n_cameras && status == ADCGS_OK; c++) {
+        const adcgs_stereo_camera *camera = &rig->camera[c];
+        if (!camera->usual)
+            continue;
+        const size_t plane = (size_t)camera->view.w * (size_t)camera->view.h;
+        const int i = maps->n++;
+        maps->view[i] = camera->view;
+        memcpy(parts[i], (const int[]){ 0, 0, camera->view.w, camera->view.h }, sizeof parts[i]);
+        wanted[i] = still[i] = adcgs_alloc(NULL, plane, 1, error);
+        status = still[i] ? ADCGS_OK : adcgs_alloc_status(error);
+        for (size_t k = 0; still[i] && k < plane; k++)
+            still[i][k] = !camera->changes[k];
+    }
+    match m = { .n = maps->n, .views = maps->view, .parts = (const int(*)[4])parts, .nearest = rig->nearest,
+                .farthest = rig->farthest, .depths = maps->depths };
+    const adcgs_stereo_point like = { .t = 0.5f };
+    if (status == ADCGS_OK)
+        status = match_all(&m, pool, error);
+    if (status == ADCGS_OK)
+        status = adcgs_fuse(list, maps->depths, maps->n, wanted, &like, error);
+    for (int i = 0; i < maps->n; i++)
+        adcgs_free(NULL, still[i]);
+    return status;
+}
+
+/* ---- What moves ---- */
+
+/** Where a picture is off what is usual, and most of what is about is so too. */
+static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t *moves, int part[4])
+{
+    const int w = c->view.w, h = c->view.h;
+    int left = w, right = -1, top = h, bottom = -1, n = 0;
+    for (int i = 0; i < w * h; i++) {
+        int most = 0;
+        for (int k = 0; k < 3; k++)
+            most = ADCGS_MAX(most, abs(c->shown[moment][4 * i + k] - (int)(c->usual[4 * i + k] * 255 + 0.5f)));
+        off[i] = (uint8_t)(c->shown[moment][4 * i + 3] && (most > MOVED || c->changes[i]));
+    }
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            int sum = 0;
+            for (int b = ADCGS_MAX(y - 1, 0); b <= ADCGS_MIN(y + 1, h - 1); b++)
+                for (int a = ADCGS_MAX(x - 1, 0); a <= ADCGS_MIN(x + 1, w - 1); a++)
+                    sum += off[b * w + a];
+            if (!(moves[y * w + x] = sum >= 5))
+                continue;
+            n++;
+            left = ADCGS_MIN(left, x);
+            right = ADCGS_MAX(right, x);
+            top = ADCGS_MIN(top, y);
+            bottom = ADCGS_MAX(bottom, y);
+        }
+    left = ADCGS_MAX(left - MARGIN, 0);
+    top = ADCGS_MAX(top - MARGIN, 0);
+    right = ADCGS_MIN(right + MARGIN, w - 1);
+    bottom = ADCGS_MIN(bottom + MARGIN, h - 1);
+    memcpy(part, (const int[]){ left, top, n < MOVING_LEAST ? 0 : right - left + 1, bottom - top + 1 }, 4 * sizeof *part);
+}
+
+/** All that one moment takes. */
+typedef struct moment {
+    adcgs_stereo_view view[ADCGS_STEREO_CAMERAS];
+    int part[ADCGS_STEREO_CAMERAS][4];
+    adcgs_depths depths[ADCGS_STEREO_CAMERAS];
+    float *pixels[ADCGS_STEREO_CAMERAS];
+    uint8_t *moves[ADCGS_STEREO_CAMERAS];
+    int n;
+} moment;
+
+static adcgs_status take_moment(moment *o, const adcgs_stereo_rig *rig, int m, adcgs_error *error)
+{
+    for (int c = 0; c < rig->n_cameras; c++) {
+        const adcgs_stereo_camera *camera = &rig->camera[c];
+        if (!camera->usual || !camera->shown[m])
+            continue;
+        const size_t plane = (size_t)camera->view.w * (size_t)camera->view.h;
+        const int i = o->n++;
+        o->pixels[i] = adcgs_alloc(NULL, 4 * plane, sizeof(float), error);
+        o->moves[i] = adcgs_alloc(NULL, 2 * plane, 1, error);
+        if (!o->pixels[i] || !o->moves[i])
+            return adcgs_alloc_status(error);
+        adcgs_stereo_rig_take(camera, m, o->pixels[i]);
+        o->view[i] = camera->view;
+        o->view[i].pixels = o->pixels[i];
+        mark(camera, m, o->moves[i] + plane, o->moves[i], o->part[i]);
+    }
+    for (int i = 0; i < o->n; i++) /* not every view of many is matched */
+        if (o->n > REFERENCES && i * REFERENCES / o->n == (i + 1) * REFERENCES / o->n)
+            o->part[i][2] = 0;
+    return ADCGS_OK;
+}
+
+static void moment_free(moment *o)
+{
+    for (int i = 0; o && i < o->n; i++) {
+        adcgs_free(NULL, o->pixels[i]);
+        adcgs_free(NULL, o->moves[i]);
+        adcgs_depths_clear(&o->depths[i]);
+    }
+    adcgs_free(NULL, o);
+}
+
+/** Shadows, what is uncovered at the edge of what moves, what turns on the spot: points where what is still lies anyhow. */
+static void mark_in_place(adcgs_stereo_list *list, const adcgs_stereo_maps *maps)
+{
+    for (size_t i = 0; i < list->n; i++) {
+        const double *x = list->point[i].x;
+        double there[3];
+        int same = 0;
+        for (int k = 0; k < maps->n && same < 2; k++)
+            same += adcgs_depths_judge(&maps->depths[k], x, there) == ADCGS_VERDICT_SAME;
+        list->point[i].in_place = same >= 2;
+    }
+}
+
+static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_stereo_maps *maps, int m,
+                                uint32_t most, adcgs_pool *pool, adcgs_error *error)
+{
+    moment *o = adcgs_alloc(NULL, 1, sizeof *o, error);
+    adcgs_stereo_list found = { 0, 0, NULL };
+    if (!o)
+        return adcgs_alloc_status(error);
+    adcgs_status status = take_moment(o, rig, m, error);
+    match job = { .n = o->n, .views = o->view, .parts = (const int(*)[4])o->part, .nearest = rig->nearest,
+                  .farthest = rig->farthest, .depths = o->depths };
+    const adcgs_stereo_point like = { .t = rig->moment[m], .moves = 1 };
+    if (status == ADCGS_OK)
+        status = match_all(&job, pool, error);
+    if (status == ADCGS_OK)
+        status = adcgs_fuse(&found, o->depths, o->n, (const uint8_t *const *)o->moves, &like, error);
+    mark_in_place(&found, maps);
+    if (status == ADCGS_OK)
+        status = adcgs_stereo_thin(&found, most, error);
+    for (size_t i = 0; i < found.n && status == ADCGS_OK; i++)
+        status = adcgs_stereo_list_add(list, &found.point[i], error);
+    adcgs_stereo_list_clear(&found);
+    moment_free(o);
+    return status;
+}
+
+/* ---- All ---- */
+
+static adcgs_status find(adcgs_stereo *out, const adcgs_stereo_rig *rig, const adcgs_stereo_options *options, adcgs_pool *pool,
+                         adcgs_error *error)
+{
+    adcgs_stereo_list still = { 0, 0, NULL }, moving = { 0, 0, NULL };
+    adcgs_status status = find_still(out, &still, rig, pool, error);
+    if (status == ADCGS_OK)
+        status = adcgs_stereo_thin(&still, options->still, error);
+    for (int m = 0; m < rig->n_moments && rig->n_moments > 1 && status == ADCGS_OK && options->moving; m++)
+        status = find_moving(&moving, rig, out->maps, m, options->moving, pool, error);
+    if (status == ADCGS_OK)
+        status = adcgs_stereo_follow(moving.point, (uint32_t)moving.n, error);
+    out->still = still.point;
+    out->n_still = (uint32_t)still.n;
+    out->moving = moving.point;
+    out->n_moving = (uint32_t)moving.n;
+    return status;
+}
+
+adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options,
+                               adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_stereo_rig *rig = adcgs_alloc(NULL, 1, sizeof *rig, error);
+    *out = (adcgs_stereo){ .maps = adcgs_alloc(NULL, 1, sizeof *out->maps, error) };
+    adcgs_status status = rig && out->maps ? adcgs_stereo_rig_init(rig, scene, options, error) : adcgs_alloc_status(error);
+    if (status == ADCGS_OK) {
+        out->moment = adcgs_alloc(NULL, (size_t)rig->n_moments, sizeof *out->moment, error);
+        status = out->moment ? ADCGS_OK : adcgs_alloc_status(error);
+    }
+    if (status == ADCGS_OK) {
+        out->n_moments = (uint32_t)rig->n_moments;
+        memcpy(out->moment, rig->moment, out->n_moments * sizeof *out->moment);
+        status = find(out, rig, options, pool, error);
+    }
+    for (int i = 0; out->maps && i < out->maps->n; i++) /* the pictures go */
+        out->maps->view[i].pixels = NULL;
+    if (rig)
+        adcgs_stereo_rig_clear(rig);
+    adcgs_free(NULL, rig);
+    if (status != ADCGS_OK)
+        adcgs_stereo_clear(out);
+    return status;
+}
+
+void adcgs_stereo_clear(adcgs_stereo *s)
+{
+    for (int i = 0; s->maps && i < s->maps->n; i++)
+        adcgs_depths_clear(&s->maps->depths[i]);
+    adcgs_free(NULL, s->maps);
+    adcgs_free(NULL, s->still);
+    adcgs_free(NULL, s->moving);
+    adcgs_free(NULL, s->moment);
+    memset(s, 0, sizeof *s);
+}
+
+int adcgs_stereo_is_known(const adcgs_stereo *s, const double x[3])
+{
+    int seen = 0, known = 0;
+    for (int i = 0; s->maps && i < s->maps->n; i++) {
+        const adcgs_depths *d = &s->maps->depths[i];
+        double at[2], depth;
+        if (!d->quality || !adcgs_stereo_rig_project(d->view, x, at, &depth))
+            continue;
+        seen++;
+        known += d->quality[(int)at[1] * d->w + (int)at[0]] != ADCGS_DEPTH_NONE;
+    }
+    return 2 * known > seen;
+}

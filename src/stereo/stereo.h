@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Where things are, found by matching pictures before training: multi-view stereo. Cameras of one moment are matched over planes
+ * of equal depth (Collins 1996, A space-sweep approach to true multi-image matching, CVPR), all neighbours at once, so that a
+ * pattern that repeats finds the one depth at which all of them agree; what each camera finds is kept where others find the same.
+ *
+ * Cameras that stay where they are are matched once on what they show most of the time, which gives what is still, and moment by
+ * moment where they show something else, which gives what moves, when, and how fast. Only views for training are looked at.
+ * Deterministic for any number of threads.
+ */
+#ifndef ADCGS_STEREO_STEREO_H
+#define ADCGS_STEREO_STEREO_H
+
+#include "base/pool.h"
+#include "data/scene.h"
+
+typedef struct adcgs_stereo_point {
+    double x[3];       /**< scene units */
+    float rgb[3];
+    float t;           /**< moment, 0..1; 0.5 for what is still */
+    float velocity[3]; /**< scene units per unit of t; 0 where it is not known */
+    float size;        /**< of a pixel at the point, scene units */
+    float detail;      /**< contrast of the picture about it, 0..1 */
+    uint8_t moves;
+    uint8_t in_place;  /**< it lies where what is still lies anyhow: a shadow, what is uncovered, or what turns on the spot */
+} adcgs_stereo_point;
+
+typedef struct adcgs_stereo_options {
+    double origin[3], scale; /**< of scene units, see adcgs_scene_frame() */
+    uint32_t still;          /**< points that do not move, at most */
+    uint32_t moving;         /**< points of each moment that do, at most */
+} adcgs_stereo_options;
+
+/** Depths of what is still, which also say where nothing is. */
+typedef struct adcgs_stereo_maps adcgs_stereo_maps;
+
+/** Zero-initialise before use. */
+typedef struct adcgs_stereo {
+    uint32_t n_still, n_moving;
+    adcgs_stereo_point *still;
+    adcgs_stereo_point *moving; /**< ascending in t */
+    uint32_t n_moments;
+    float *moment;              /**< [n_moments] those that were matched, ascending in t */
+    adcgs_stereo_maps *maps;
+} adcgs_stereo;
+
+/** Whether a scene allows it: at least three cameras that stay, in the mean two of them at a time, pictures that are not tiny. */
+adcgs_status adcgs_stereo_applies(const adcgs_scene *scene, int *applies, adcgs_error *error);
+
+/** Both lists may be empty. */
+adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options,
+                               adcgs_pool *pool, adcgs_error *error);
+void adcgs_stereo_clear(adcgs_stereo *stereo);
+
+/** Time between neighbouring moments, of all time. */
+static inline float adcgs_stereo_spacing(const adcgs_stereo *stereo)
+{
+    const uint32_t n = stereo->n_moments;
+    return n > 1 ? (stereo->moment[n - 1] - stereo->moment[0]) / (float)(n - 1) : 1;
+}
+
+/** Whether most cameras that have a place, in scene units, in their pictures know a surface there, before it or behind it. */
+int adcgs_stereo_is_known(const adcgs_stereo *stereo, const double x[3]);
+
+#endif

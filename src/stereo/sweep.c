@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The plane sweep. */
+#include "stereo/sweep.h"
+
+#include <math.h>
+
+enum { RADIUS = 2, SIDE = 2 * RADIUS + 1, PLANES_LEAST = 24, PLANES_MOST = 112 };
+#define WINDOW (SIDE * SIDE)
+#define NOISE 1e-4f         /* variance that tells nothing */
+/* Cost of windows that are not alike, of colours that are not, and of a place that a neighbour does not see. */
+enum { UNLIKE_MOST = 120, COLOUR_MOST = ADCGS_SWEEP_COST - UNLIKE_MOST, UNSEEN = 2 * ADCGS_SWEEP_COST };
+#define COLOUR_OFF 0.15f    /* a difference that is as bad as any */
+#define COLOUR_SCALE (COLOUR_MOST / (3 * WINDOW * COLOUR_OFF))
+
+/* ---- Planes ---- */
+
+/** From ray and inverse depth of one view to another's picture: (u, v, 1) ~ turn (ray, 1) + inverse * move. */
+typedef struct passage {
+    float turn[9], move[3];
+    float fx, fy, cx, cy; /* of pixels counted from the first one's centre */
+} passage;
+
+static passage passage_of(const adcgs_stereo_view *from, const adcgs_stereo_view *to)
+{
+    passage p = { .fx = (float)to->fx, .fy = (float)to->fy, .cx = (float)(to->cx - 0.5), .cy = (float)(to->cy - 0.5) };
+    for (int i = 0; i < 3; i++) {
+        double move = 0;
+        for (int j = 0; j < 3; j++) {
+            double turn = 0;
+            for (int k = 0; k < 3; k++)
+                turn += to->rotation[3 * i + k] * from->rotation[3 * j + k];
+            p.turn[3 * i + j] = (float)turn;
+            move += to->rotation[3 * i + j] * (from->centre[j] - to->centre[j]);
+        }
+        p.move[i] = (float)move;
+    }
+    return p;
+}
+
+/** How far a pixel's image moves in another view from one depth to another, in pixels; 0 where it leaves the picture. */
+static double travel(const adcgs_stereo_view *v, const adcgs_stereo_view *to, int px, int py, double nearest, double farthest)
+{
+    double x[3], near_at[2] = { 0, 0 }, far_at[2] = { 0, 0 }, depth = 0;
+    adcgs_stereo_rig_lift(v, px, py, nearest, x);
+    const int sees_near = adcgs_stereo_rig_project(to, x, near_at, &depth) || depth > 1e-6;
+    adcgs_stereo_rig_lift(v, px, py, farthest, x);
+    const int sees_far = adcgs_stereo_rig_project(to, x, far_at, &depth) || depth > 1e-6;
+    return sees_near && sees_far ? hypot(near_at[0] - far_at[0], near_at[1] - far_at[1]) : 0;
+}
+
+void adcgs_sweep_set_planes(adcgs_sweep *s, double nearest, double farthest)
+{
+    double most = 0;
+    for (int i = 0; i < s->n_sources; i++)
+        most = fmax(most, travel(s->view, s->source[i], s->view->w / 2, s->view->h / 2, nearest, farthest));
+    s->planes = (int)fmin(fmax(ceil(most), PLANES_LEAST), PLANES_MOST);
+    s->first = 1 / farthest;
+    s->step = (1 / nearest - 1 / farthest) / (s->planes - 1);
+}
+
+/* ---- One neighbour, one plane ---- */
+
+/** Arrays over the part and a margin of RADIUS about it, in which its edge is repeated. */
+typedef struct field {
+    const adcgs_sweep *s;
+    int w, h;             /* with the margin */
+    float *ray[2];        /* [w], [h] of the view's pixels */
+    float *own;           /* [h][w][4] pixels of the view */
+    float *grey;          /* [h][w] of the view */
+    float *mean, *spread; /* [s->h][s->w] of the view's windows */
+    float *at[2];         /* [w] where a row of pixels lies in the neighbour */
+    float *other;         /* [w][4] and what is there */
+    uint8_t *inside;      /* [w] if it is in the picture */
+    float *sum[4];        /* [h][w] neighbour's grey, its square, its product with the view's, difference of colour */
+    float *down;          /* [s->h][w] sums of columns */
+    float *total[4];      /* [s->h][s->w] sums of windows */
+    uint8_t *seen;        /* [s->h][s->w] */
+    int16_t *cost;        /* [n_sources][s->h][s->w] */
+} field;
+
+static inline float grey_of(const float *pixel)
+{
+    return (pixel[0] + pixel[1] + pixel[2]) * (1.0f / 3);
+}
+
+/** Sums over windows. */
+static void add_windows(const field *f, const float *values, float *total)
+{
+    for (int y = 0; y < f->s->h; y++)
+        for (int x = 0; x < f->w; x++) {
+            const float *from = values + (size_t)y * (size_t)f->w + x;
+            const size_t row = (size_t)f->w;
+            f->down[y * f->w + x] = from[0] + from[row] + from[2 * row] + from[3 * row] + from[4 * row];
+        }
+    for (int y = 0; y < f->s->h; y++)
+        for (int x = 0; x < f->s->w; x++) {
+            const float *from = f->down + (size_t)y * (size_t)f->w + x;
+            total[y * f->s->w + x] = from[0] + from[1] + from[2] + from[3] + from[4];
+        }
+}
+
+static void project_row(const field *f, const passage *p, float inverse, int y)
+{
+    const float ry = f->ray[1][y];
+    const float first[3] = { p->turn[1] * ry + p->turn[2] + inverse * p->move[0],
+                             p->turn[4] * ry + p->turn[5] + inverse * p->move[1],
+                             p->turn[7] * ry + p->turn[8] + inverse * p->move[2] };
+    for (int x = 0; x < f->w; x++) {
+        const float rx = f->ray[0][x], z = first[2] + p->turn[6] * rx, over = 1 / (z > 1e-4f ? z : -1e-4f);
+        f->at[0][x] = (first[0] + p->turn[0] * rx) * over * p->fx + p->cx;
+        f->at[1][x] = over < 0 ? -1 : (first[1] + p->turn[3] * rx) * over * p->fy + p->cy;
+    }
+}
+
+/** The neighbour's pixels where a row lies in it; beside the picture, the nearest that are in it. */
+static void sample_row(const field *f, const adcgs_stereo_view *v)
+{
+    const float most_u = (float)(v->w - 1), most_v = (float)(v->h - 1);
+    const size_t row = 4 * (size_t)v->w;
+    for (int x = 0; x < f->w; x++) {
+        float u = f->at[0][x], w = f->at[1][x];
+        const int inside = u >= 0 && w >= 0 && u <= most_u && w <= most_v;
+        u = u > 0 ? ADCGS_MIN(u, most_u - 0.001f) : 0; /* also what is no number */
+        w = w > 0 ? ADCGS_MIN(w, most_v - 0.001f) : 0;
+        const int iu = (int)u, iv = (int)w;
+        const float a = u - (float)iu, b = w - (float)iv, *p = v->pixels + (size_t)iv * row + 4 * (size_t)iu, *q = p + row;
+        const float p0 = (1 - a) * (1 - b), p1 = a * (1 - b), q0 = (1 - a) * b, q1 = a * b;
+        float value[4]; /* of its own, so that compilers know that nothing else is written meanwhile */
+        for (int c = 0; c < 4; c++)
+            value[c] = p0 * p[c] + p1 * p[4 + c] + q0 * q[c] + q1 * q[4 + c];
+        memcpy(f->other + 4 * x, value, sizeof value);
+        f->inside[x] = (uint8_t)inside;
+    }
+}
+
+/** The neighbour as the view would show it if all were on the plane. */
+static void fetch(const field *f, const adcgs_stereo_view *source, const passage *p, float inverse)
+{
+    for (int y = 0; y < f->h; y++) {
+        const size_t row = (size_t)y * (size_t)f->w;
+        const float *own = f->own + 4 * row, *other = f->other, *grey = f->grey + row;
+        float *sum[4] = { f->sum[0] + row, f->sum[1] + row, f->sum[2] + row, f->sum[3] + row };
+        project_row(f, p, inverse, y);
+        sample_row(f, source);
+        for (int x = 0; x < f->w; x++) {
+            const float g = grey_of(other + 4 * x);
+            sum[0][x] = g;
+            sum[1][x] = g * g;
+            sum[2][x] = g * grey[x];
+            sum[3][x] = fabsf(other[4 * x] - own[4 * x]) + fabsf(other[4 * x + 1] - own[4 * x + 1]) +
+                        fabsf(other[4 * x + 2] - own[4 * x + 2]);
+        }
+        for (int x = 0; y >= RADIUS && y < f->h - RADIUS && x < f->s->w; x++)
+            f->seen[(y - RADIUS) * f->s->w + x] = f->inside[x + RADIUS] && other[4 * (x + RADIUS) + 3] > 0.99f &&
+                                                  own[4 * (x + RADIUS) + 3] > 0.99f;
+    }
+}
+
+/** In whole numbers, which compilers compare in lanes. */
+static void compare(const field *f, int16_t *cost)
+{
+    const int n = f->s->w * f->s->h;
+    for (int k = 0; k < 4; k++)
+        add_windows(f, f->sum[k], f->total[k]);
+    for (int i = 0; i < n; i++) {
+        const float mean = f->total[0][i] * (1.0f / WINDOW);
+        const float spread = fabsf(f->total[1][i] * (1.0f / WINDOW) - mean * mean); /* less than 0 by rounding alone */
+        const float both = f->total[2][i] * (1.0f / WINDOW) - mean * f->mean[i];
+        const float alike = both / sqrtf((spread + NOISE) * (f->spread[i] + NOISE));
+        const int unlike = (int)((1 - alike) * UNLIKE_MOST), off = (int)(f->total[3][i] * COLOUR_SCALE);
+        const int value = ADCGS_MIN(unlike, UNLIKE_MOST) + ADCGS_MIN(off, COLOUR_MOST);
+        cost[i] = (int16_t)(f->seen[i] ? value : UNSEEN);
+    }
+}
+
+/* ---- All neighbours ---- */
+
+/** Mean of the better half of those that see a place. */
+static int16_t better_half(const int16_t *cost, size_t stride, int n)
+{
+    int best[ADCGS_SWEEP_SOURCES], sum = 0, seen = 0;
+    for (int i = 0; i < n; i++) {
+        const int c = cost[(size_t)i * stride];
+        int k = seen;
+        if (c >= UNSEEN)
+            continue;
+        for (seen++; k > 0 && best[k - 1] > c; k--)
+            best[k] = best[k - 1];
+        best[k] = c;
+    }
+    if (seen < 2 && n >= 2) /* one alone proves little */
+        return (int16_t)(seen ? (best[0] + ADCGS_SWEEP_COST) / 2 : ADCGS_SWEEP_COST);
+    const int half = (seen + 1) / 2;
+    for (int i = 0; i < half; i++)
+        sum += best[i];
+    return (int16_t)(half ? sum / half : ADCGS_SWEEP_COST);
+}
+
+static void field_free(field *f)
+{
+    for (int k = 0; k < 4; k++) {
+        adcgs_free(NULL, f->sum[k]);
+        adcgs_free(NULL, f->total[k]);
+    }
+    for (int k = 0; k < 2; k++) {
+        adcgs_free(NULL, f->ray[k]);
+        adcgs_free(NULL, f->at[k]);
+    }
+    adcgs_free(NULL, f->own);
+    adcgs_free(NULL, f->other);
+    adcgs_free(NULL, f->inside);
+    adcgs_free(NULL, f->grey);
+    adcgs_free(NULL, f->mean);
+    adcgs_free(NULL, f->spread);
+    adcgs_free(NULL, f->down);
+    adcgs_free(NULL, f->seen);
+    adcgs_free(NULL, f->cost);
+}
+
+static adcgs_status field_alloc(field *f, const adcgs_sweep *s, adcgs_error *error)
+{
+    *f = (field){ .s = s, .w = s->w + 2 * RADIUS, .h = s->h + 2 * RADIUS };
+    const size_t whole = (size_t)f->w * (size_t)f->h, part = (size_t)s->w * (size_t)s->h;
+    int good = 1;
+    for (int k = 0; k < 4; k++) {
+        good &= (f->sum[k] = adcgs_alloc(NULL, whole, sizeof(float), error)) != NULL;
+        good &= (f->total[k] = adcgs_alloc(NULL, part, sizeof(float), error)) != NULL;
+    }
+    for (int k = 0; k < 2; k++) {
+        good &= (f->ray[k] = adcgs_alloc(NULL, (size_t)(k ? f->h : f->w), sizeof(float), error)) != NULL;
+        good &= (f->at[k] = adcgs_alloc(NULL, (size_t)f->w, sizeof(float), error)) != NULL;
+    }
+    good &= (f->own = adcgs_alloc(NULL, 4 * whole, sizeof *f->own, error)) != NULL;
+    good &= (f->other = adcgs_alloc(NULL, 4 * (size_t)f->w, sizeof *f->other, error)) != NULL;
+    good &= (f->inside = adcgs_alloc(NULL, (size_t)f->w, 1, error)) != NULL;
+    good &= (f->grey = adcgs_alloc(NULL, whole, sizeof *f->grey, error)) != NULL;
+    good &= (f->mean = adcgs_alloc(NULL, part, sizeof *f->mean, error)) != NULL;
+    good &= (f->spread = adcgs_alloc(NULL, part, sizeof *f->spread, error)) != NULL;
+    good &= (f->down = adcgs_alloc(NULL, (size_t)s->h * (size_t)f->w, sizeof *f->down, error)) != NULL;
+    good &= (f->seen = adcgs_alloc(NULL, part, 1, error)) != NULL;
+    good &= (f->cost = adcgs_alloc(NULL, part * (size_t)ADCGS_MAX(s->n_sources, 1), sizeof *f->cost, error)) != NULL;
+    return good ? ADCGS_OK : adcgs_alloc_status(error);
+}
+
+static void field_fill(field *f)
+{
+    const adcgs_stereo_view *v = f->s->view;
+    for (int y = 0; y < f->h; y++)
+        for (int x = 0; x < f->w; x++) {
+            const int px = ADCGS_MIN(ADCGS_MAX(f->s->x + x - RADIUS, 0), v->w - 1);
+            const int py = ADCGS_MIN(ADCGS_MAX(f->s->y + y - RADIUS, 0), v->h - 1);
+            const size_t at = (size_t)y * (size_t)f->w + (size_t)x;
+            memcpy(f->own + 4 * at, v->pixels + 4 * ((size_t)py * (size_t)v->w + (size_t)px), 4 * sizeof *f->own);
+            f->grey[at] = grey_of(f->own + 4 * at);
+            f->sum[0][at] = f->grey[at] * f->grey[at];
+            f->ray[0][x] = (float)((px + 0.5 - v->cx) / v->fx);
+            f->ray[1][y] = (float)((py + 0.5 - v->cy) / v->fy);
+        }
+    add_windows(f, f->grey, f->mean);
+    add_windows(f, f->sum[0], f->spread);
+    for (int i = 0; i < f->s->w * f->s->h; i++) {
+        f->mean[i] *= 1.0f / WINDOW;
+        f->spread[i] = fmaxf(f->spread[i] * (1.0f / WINDOW) - f->mean[i] * f->mean[i], 0);
+    }
+}
+
+adcgs_status adcgs_sweep_run(const adcgs_sweep *s, int16_t *cost, adcgs_error *error)
+{
+    field f;
+    passage way[ADCGS_SWEEP_SOURCES];
+    const size_t part = (size_t)s->w * (size_t)s->h;
+    const adcgs_status status = field_alloc(&f, s, error);
+    if (status == ADCGS_OK)
+        field_fill(&f);
+    for (int i = 0; i < s->n_sources; i++)
+        way[i] = passage_of(s->view, s->source[i]);
+    for (int k = 0; k < s->planes && status == ADCGS_OK; k++) {
+        for (int i = 0; i < s->n_sources; i++) {
+            fetch(&f, s->source[i], &way[i], (float)(s->first + k * s->step));
+            compare(&f, f.cost + (size_t)i * part);
+        }
+        for (size_t i = 0; i < part; i++)
+            cost[i * (size_t)s->planes + (size_t)k] = better_half(f.cost + i, part, s->n_sources);
+    }
+    field_free(&f);
+    return status;
+}

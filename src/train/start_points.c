@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Where anchors begin. */
+#include "train/start_points.h"
+
+#include "grad/random.h"
+#include "train/scene_frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define START_SHARE 0.75   /* of max_anchors: points that are known lie where things are; what is missing then grows */
+#define MATCHED_SHARE 0.9  /* of the points; the rest are random points where matching found nothing */
+#define MOVING_SHARE 0.25  /* of these; many more are too small to find motion */
+#define MOVING_MOST 2000   /* of a moment, that spans may grow from */
+
+/* ---- What the cameras see ---- */
+
+/** Views that are looked at, at most. */
+enum { SIGHTS = 64 };
+
+typedef struct sight {
+    const adcgs_scene *scene;
+    double origin[3], scale;
+    uint32_t n;             /* views sampled */
+    float *rgb[SIGHTS];        /* their pictures, reduced */
+    adcgs_camera camera[SIGHTS];
+} sight;
+
+static void sight_clear(sight *s)
+{
+    for (uint32_t i = 0; i < s->n; i++)
+        free(s->rgb[i]);
+}
+
+static adcgs_status sight_init(sight *s, const adcgs_scene *scene, adcgs_error *error)
+{
+    const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = ADCGS_MIN(all, SIGHTS);
+    memset(s, 0, sizeof *s);
+    s->scene = scene;
+    ADCGS_TRY(adcgs_scene_frame(scene, s->origin, &s->scale, error));
+    for (uint32_t i = 0; i < n; i++) {
+        const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * all / n];
+        const adcgs_status status = adcgs_scene_load(scene, view, 4, &s->rgb[i], &s->camera[i], error);
+        if (status != ADCGS_OK) {
+            sight_clear(s);
+            return status;
+        }
+        s->n = i + 1;
+    }
+    return ADCGS_OK;
+}
+
+typedef struct glimpse {
+    int seen;      /* views whose frame holds the point */
+    int covered;   /* of those, views whose pixel is not background */
+    double rgb[3]; /* mean colour over the covered views */
+} glimpse;
+
+static glimpse look_at(const sight *s, const double x[3])
+{
+    glimpse g = { 0, 0, { 0, 0, 0 } };
+    double world[3];
+    for (int a = 0; a < 3; a++)
+        world[a] = s->origin[a] + s->scale * x[a];
+    for (uint32_t i = 0; i < s->n; i++) {
+        const adcgs_camera *c = &s->camera[i];
+        double p[3];
+        for (int a = 0; a < 3; a++) {
+            p[a] = 0;
+            for (int b = 0; b < 3; b++)
+                p[a] += c->cam_to_world[4 * b + a] * (world[b] - c->cam_to_world[4 * b + 3]);
+        }
+        if (p[2] <= c->near_plane)
+            continue;
+        const double u = c->fx * p[0] / p[2] + c->cx, v = c->fy * p[1] / p[2] + c->cy;
+        if (u < 0 || v < 0 || u >= c->width || v >= c->height)
+            continue;
+        const size_t plane = (size_t)c->width * (size_t)c->height, at = (size_t)v * (size_t)c->width + (size_t)u;
+        if (isnan(s->rgb[i][at])) /* masked */
+            continue;
+        double off = 0;
+        for (int a = 0; a < 3; a++)
+            off += fabs(s->rgb[i][(size_t)a * plane + at] - s->scene->background[a]);
+        g.seen++;
+        if (s->scene->has_alpha && off < 0.02)
+            continue;
+        g.covered++;
+        for (int a = 0; a < 3; a++)
+            g.rgb[a] += s->rgb[i][(size_t)a * plane + at];
+    }
+    for (int a = 0; a < 3; a++)
+        g.rgb[a] = g.covered ? g.rgb[a] / g.covered : 0.5;
+    return g;
+}
+
+/* ---- Candidate points ---- */
+
+static adcgs_status alloc_points(adcgs_start_points *c, uint32_t capacity, adcgs_error *error)
+{
+    c->n = 0;
+    c->x = adcgs_alloc(NULL, (size_t)capacity + 1, sizeof *c->x, error);
+    c->rgb = adcgs_alloc(NULL, (size_t)capacity + 1, sizeof *c->rgb, error);
+    c->matched = adcgs_alloc(NULL, (size_t)capacity + 1, sizeof *c->matched, error);
+    return c->x && c->rgb && c->matched ? ADCGS_OK : adcgs_alloc_status(error);
+}
+
+void adcgs_start_points_clear(adcgs_start_points *c)
+{
+    adcgs_free(NULL, c->x);
+    adcgs_free(NULL, c->rgb);
+    adcgs_free(NULL, c->matched);
+}
+
+/** The scene's own points, in scene units, evenly thinned; those without a colour take that of the pictures. */
+static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
+{
+    const adcgs_scene_points *p = &s->scene->points;
+    const uint32_t n = p->n < wanted ? p->n : wanted;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t from = (uint32_t)((uint64_t)i * p->n / n);
+        double x[3];
+        int far = 0;
+        for (int a = 0; a < 3; a++) {
+            x[a] = (p->position[from][a] - s->origin[a]) / s->scale;
+            far |= !(fabs(x[a]) < 8);
+        }
+        if (far)
+            continue;
+        const glimpse seen = p->coloured ? (glimpse){ 0 } : look_at(s, x);
+        for (int a = 0; a < 3; a++) {
+            c->x[c->n][a] = x[a];
+            c->rgb[c->n][a] = p->coloured ? p->colour[from][a] / 255.0 : seen.rgb[a];
+        }
+        c->n++;
+    }
+}
+
+/** Reach of the random points: the volume the cameras surround, and as a share of the points what lies behind it. */
+#define NEAR_RADIUS 1.2
+#define FAR_RADIUS 4.0
+#define FAR_SHARE 0.2
+#define CORE_SHARE 0.5 /* of the points lie in the inner half of the near radius, where all cameras look */
+
+/** Uniform in a ball, or beyond it with density falling as the cube of the distance, as pictures resolve it. */
+static void random_place(double x[3], uint64_t seed, uint64_t i)
+{
+    double length;
+    do {
+        length = 0;
+        for (int a = 0; a < 3; a++) {
+            x[a] = 2 * adcgs_random_unit(seed, 1000, i * 4 + (uint64_t)a) - 1;
+            length += x[a] * x[a];
+        }
+        i ^= 0x5851f42d4c957f2du; /* rejected corners draw again */
+        seed++;
+    } while (length > 1 || length < 1e-6);
+    const double u = adcgs_random_unit(seed, 1001, i), far = NEAR_RADIUS * pow(FAR_RADIUS / NEAR_RADIUS, u / FAR_SHARE);
+    const double scale = u < FAR_SHARE ? far / sqrt(length) : u < FAR_SHARE + CORE_SHARE ? 0.5 * NEAR_RADIUS : NEAR_RADIUS;
+    for (int a = 0; a < 3; a++)
+        x[a] *= scale;
+}
+
+/**
+ * Random points that enough cameras see, and where alpha says so, that enough of them do not see through; where matched pictures
+ * tell what is there, they stay away.
+ */
+static void random_points(adcgs_start_points *c, const sight *s, const adcgs_stereo *stereo, uint32_t wanted, uint64_t seed)
+{
+    for (uint64_t i = 0; c->n < wanted && i < 400ull * wanted; i++) {
+        double x[3];
+        random_place(x, seed, i);
+        const int far = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] > NEAR_RADIUS * NEAR_RADIUS;
+        const int need = (int)s->n / (far ? 10 : 4) > 1 ? (int)s->n / (far ? 10 : 4) : 1;
+        const glimpse g = look_at(s, x);
+        if (g.seen < need || g.covered * 2 < g.seen || adcgs_stereo_is_known(stereo, x))
+            continue;
+        for (int a = 0; a < 3; a++) {
+            c->x[c->n][a] = x[a];
+            c->rgb[c->n][a] = g.rgb[a];
+        }
+        c->n++;
+    }
+}
+
+/* ---- Points that matched pictures give ---- */
+
+static void add_matched(adcgs_start_points *c, const adcgs_stereo_point *p)
+{
+    for (int a = 0; a < 3; a++) {
+        if (!(fabs(p->x[a]) < 8))
+            return;
+        c->x[c->n][a] = p->x[a];
+        c->rgb[c->n][a] = (double)p->rgb[a];
+    }
+    c->matched[c->n] = p;
+    c->n++;
+}
+
+/** The moment nearest to the middle of time. */
+static float middle_moment(const adcgs_stereo *s)
+{
+    float best = s->n_moments ? s->moment[0] : 0.5f;
+    for (uint32_t i = 1; i < s->n_moments; i++)
+        if (fabsf(s->moment[i] - 0.5f) < fabsf(best - 0.5f))
+            best = s->moment[i];
+    return best;
+}
+
+/** So many of the points of what moves, of all moments alike: of those in place, or of the others. */
+static uint32_t add_moving(adcgs_start_points *c, const adcgs_stereo *found, int in_place, uint32_t most)
+{
+    uint32_t there = 0, n = 0;
+    for (uint32_t i = 0; i < found->n_moving; i++)
+        there += found->moving[i].in_place == in_place;
+    most = ADCGS_MIN(most, there);
+    for (uint32_t i = 0, seen = 0; i < found->n_moving && n < most; i++) {
+        if (found->moving[i].in_place != in_place)
+            continue;
+        if ((uint64_t)seen++ * most / there >= n) {
+            add_matched(c, &found->moving[i]);
+            n++;
+        }
+    }
+    return n;
+}
+
+/**
+ * Points of all moments where they can live at them, those in place where others are too few, or of the one in the middle of
+ * time; the rest is what is still.
+ */
+static void matched_points(adcgs_start_points *c, const adcgs_stereo *found, uint32_t most, int spans)
+{
+    const uint32_t wanted = most > c->n ? (uint32_t)(MATCHED_SHARE * (most - c->n)) : 0, begin = c->n;
+    const uint32_t moving = ADCGS_MIN((uint32_t)(MOVING_SHARE * most), found->n_moving);
+    const float middle = middle_moment(found);
+    if (spans)
+        add_moving(c, found, 1, moving - add_moving(c, found, 0, moving));
+    for (uint32_t i = 0; !spans && i < found->n_moving; i++)
+        if (found->moving[i].t >= middle && found->moving[i].t <= middle && !found->moving[i].in_place)
+            add_matched(c, &found->moving[i]);
+    const uint32_t left = wanted - ADCGS_MIN(c->n - begin, wanted), n = ADCGS_MIN(left, found->n_still);
+    for (uint32_t i = 0; i < n; i++)
+        add_matched(c, &found->still[(uint64_t)i * found->n_still / n]);
+}
+
+static int has_points(const adcgs_scene *scene)
+{
+    return scene->points.n >= ADCGS_POINTS_LEAST;
+}
+
+/**
+ * A scene's own points, and what moves where that is matched; else what matched pictures give, and random ones where there is
+ * nothing.
+ */
+static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adcgs_train_config *config,
+                                const adcgs_stereo *found, adcgs_error *error)
+{
+    const uint32_t all = config->start_anchors, moving = config->params.spans ? (uint32_t)(MOVING_SHARE * all) : 0;
+    given_points(c, s, has_points(s->scene) ? all - moving : all);
+    if (c->n >= ADCGS_POINTS_LEAST && !moving)
+        return ADCGS_OK;
+    matched_points(c, found, all, config->params.spans);
+    if (has_points(s->scene))
+        return ADCGS_OK;
+    random_points(c, s, found, config->start_anchors, config->seed);
+    return c->n ? ADCGS_OK
+                : adcgs_fail(error, ADCGS_ERR_DATA,
+                             "%s: no volume that at least a quarter of the training cameras see: check the poses",
+                             s->scene->directory);
+}
+
+adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *scene, const adcgs_train_config *config,
+                                     const adcgs_stereo *found, adcgs_error *error)
+{
+    sight s;
+    *c = (adcgs_start_points){ .n = 0 };
+    ADCGS_TRY(sight_init(&s, scene, error));
+    adcgs_status status = alloc_points(c, config->start_anchors, error);
+    if (status == ADCGS_OK)
+        status = find_points(c, &s, config, found, error);
+    sight_clear(&s);
+    return status;
+}
+
+/* ---- Matching ---- */
+
+adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
+                               adcgs_error *error)
+{
+    int matched = 0;
+    const int given = has_points(scene);
+    adcgs_stereo_options options = { .still = 0 };
+    if (config->stereo && (!given || config->params.spans))
+        ADCGS_TRY(adcgs_stereo_applies(scene, &matched, error));
+    if ((matched || given) && !config->own_start)
+        config->start_anchors = ADCGS_MAX(config->start_anchors, (uint32_t)(START_SHARE * config->max_anchors));
+    if (matched) {
+        options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
+        options.moving = config->params.spans ? MOVING_MOST : (uint32_t)(MOVING_SHARE * options.still);
+        ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));
+        ADCGS_TRY(adcgs_stereo_find(found, scene, &options, pool, error));
+    }
+    if (config->stereo && !found->n_moving)
+        config->params.spans = 0;
+    return ADCGS_OK;
+}

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Matched pictures: points of what is still lie on the wall, those of what moves on the square, where it is at their moment, with
+ * its speed.
+ */
+#include "square_scene.h"
+
+#include "stereo/stereo.h"
+
+static const adcgs_stereo_options options = { .scale = 1, .still = 800, .moving = 60 };
+
+static adcgs_stereo find(adcgs_pool *pool)
+{
+    adcgs_stereo s;
+    if (adcgs_stereo_find(&s, &scene, &options, pool, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    return s;
+}
+
+static void what_is_still_is_the_wall(void **state)
+{
+    adcgs_stereo s = find(NULL);
+    uint32_t off = 0;
+    assert_true(s.n_still > options.still / 2 && s.n_still <= options.still);
+    for (uint32_t i = 0; i < s.n_still; i++) {
+        const adcgs_stereo_point *p = &s.still[i];
+        off += fabs(p->x[2] - WALL) > 0.05 * WALL;
+        assert_true(!p->moves && p->size > 0);
+        for (int c = 0; c < 3 && fabs(p->x[2] - WALL) < 0.01; c++)
+            assert_true(fabs((double)p->rgb[c] - texture(p->x[0], p->x[1], 20 + (uint64_t)c)) < 0.3);
+    }
+    print_message("%u still, %u off\n", s.n_still, off);
+    assert_true(off < s.n_still / 20);
+    adcgs_stereo_clear(&s);
+}
+
+static void what_moves_is_the_square(void **state)
+{
+    adcgs_stereo s = find(NULL);
+    uint32_t off = 0, fast = 0, n = 0, astray = 0;
+    assert_int_equal(s.n_moments, MOMENTS);
+    assert_true(s.n_moving > MOMENTS * options.moving / 3 && s.n_moving <= MOMENTS * options.moving);
+    for (uint32_t i = 0; i < s.n_moving; i++) {
+        const adcgs_stereo_point *p = &s.moving[i];
+        const double x = p->x[0] - square_at((double)p->t);
+        assert_true(p->moves && (!i || p->t >= s.moving[i - 1].t));
+        if (p->in_place) { /* what the square uncovers */
+            astray += fabs(p->x[2] - WALL) > 0.05 * WALL;
+            continue;
+        }
+        n++;
+        off += fabs(p->x[2] - SQUARE) > 0.05 * SQUARE || fabs(x) > HALF + 0.04 || fabs(p->x[1]) > HALF + 0.04;
+        fast += fabs((double)p->velocity[0] - SPEED) < 0.3 * SPEED && fabs((double)p->velocity[1]) < 0.3 * SPEED;
+    }
+    print_message("%u of what moves, %u off, %u as fast as they are\n", n, off, fast);
+    assert_true(n > s.n_moving / 2 && astray < (s.n_moving - n) / 4);
+    assert_true(off < n / 10);
+    assert_true(fast > n * 2 / 3);
+    adcgs_stereo_clear(&s);
+}
+
+/** What a camera sees is known; what none sees is not. */
+static void what_is_known(void **state)
+{
+    adcgs_stereo s = find(NULL);
+    assert_true(adcgs_stereo_is_known(&s, (const double[]){ 0.1, 0, 1 }));
+    assert_true(adcgs_stereo_is_known(&s, (const double[]){ 0.1, 0, 3 }));
+    assert_false(adcgs_stereo_is_known(&s, (const double[]){ 0, 0, -1 }));
+    adcgs_stereo_clear(&s);
+}
+
+static void threads_do_not_show(void **state)
+{
+    adcgs_pool *pool;
+    assert_int_equal(adcgs_pool_create(&pool, 3, &error), ADCGS_OK);
+    adcgs_stereo a = find(NULL), b = find(pool);
+    assert_int_equal(a.n_still, b.n_still);
+    assert_int_equal(a.n_moving, b.n_moving);
+    for (uint32_t i = 0; i < a.n_still; i++)
+        assert_memory_equal(a.still[i].x, b.still[i].x, sizeof a.still[i].x);
+    for (uint32_t i = 0; i < a.n_moving; i++) {
+        assert_memory_equal(a.moving[i].x, b.moving[i].x, sizeof a.moving[i].x);
+        assert_memory_equal(a.moving[i].velocity, b.moving[i].velocity, sizeof a.moving[i].velocity);
+    }
+    adcgs_stereo_clear(&a);
+    adcgs_stereo_clear(&b);
+    adcgs_pool_free(&pool);
+}
+
+static void where_it_applies(void **state)
+{
+    adcgs_scene other = scene;
+    int applies;
+    assert_int_equal(adcgs_stereo_applies(&other, &applies, &error), ADCGS_OK);
+    assert_true(applies);
+    other.n_views[ADCGS_SPLIT_TRAIN] = 2 * MOMENTS; /* two cameras */
+    assert_int_equal(adcgs_stereo_applies(&other, &applies, &error), ADCGS_OK);
+    assert_false(applies);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_still_is_the_wall), cmocka_unit_test(what_moves_is_the_square), cmocka_unit_test(what_is_known),
+        cmocka_unit_test(threads_do_not_show),       cmocka_unit_test(where_it_applies),
+    };
+    return cmocka_run_group_tests(tests, put_scene, remove_scene);
+}
