@@ -8,6 +8,7 @@
 #include <math.h>
 
 enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
+#define FAINT_SHARE 0.1
 
 /**
  * Largest effect of time on each anchor's primitives. 1 is half a pixel of way, or 0.03 of colour, for an opaque one, or 0.03
@@ -77,11 +78,40 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
     return status;
 }
 
-/** What covers next to nothing, and large faint primitives: they cost the most time, fit single views and are soon replaced. */
-static int is_superfluous(const adcgs_trainer *t, size_t slot)
+/**
+ * Primitives that go. What covers next to nothing does. So do faint ones, the faintest first: they cost the most time, fit single
+ * views and are soon replaced; but where a scene is made of them, as a dim one is, no more of them than make FAINT_SHARE of what
+ * is drawn, since nothing would replace that.
+ */
+static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
 {
-    const float n = t->stats.presence[adcgs_anchor_of(t->f, (uint32_t)slot)];
-    return t->stats.weight[slot] < 0.05f * n || t->stats.opacity[slot] < t->config.keep_opacity * n;
+    const adcgs_fmodel *f = t->f;
+    const size_t slots = t->pass->primitives.n;
+    adcgs_ranked *faint = adcgs_alloc(NULL, slots, sizeof *faint, error);
+    double drawn = 0, gone = 0;
+    size_t n = 0;
+    if (!faint)
+        return adcgs_alloc_status(error);
+    for (size_t i = 0; i < slots; i++) {
+        const uint32_t anchor = adcgs_anchor_of(f, (uint32_t)i);
+        if (anchor >= f->n || f->keep[i] == 0)
+            continue;
+        const float there = t->stats.presence[anchor], opacity = t->stats.opacity[i];
+        drawn += (double)t->stats.weight[i];
+        if (t->stats.weight[i] < 0.05f * there)
+            f->keep[i] = 0;
+        else if (opacity < t->config.keep_opacity * there)
+            faint[n++] = (adcgs_ranked){ -opacity / there, (uint32_t)i };
+    }
+    adcgs_rank(faint, n);
+    for (size_t i = 0; i < n; i++) {
+        gone += (double)t->stats.weight[faint[i].index];
+        if (gone > FAINT_SHARE * drawn)
+            break;
+        f->keep[faint[i].index] = 0;
+    }
+    adcgs_free(NULL, faint);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_decide(adcgs_trainer *t, adcgs_error *error)
@@ -90,12 +120,7 @@ adcgs_status adcgs_decide(adcgs_trainer *t, adcgs_error *error)
     const int k = f->params.k;
     if (!t->stats.n)
         return ADCGS_OK;
-    for (uint32_t i = 0; i < f->n; i++)
-        for (int j = 0; j < k; j++) {
-            const size_t slot = adcgs_fmodel_slot(f, i, j);
-            if (is_superfluous(t, slot))
-                f->keep[slot] = 0;
-        }
+    ADCGS_TRY(drop_primitives(t, error));
     if (f->params.time_rows)
         ADCGS_TRY(decide_motion(t, error));
     adcgs_anchor_set s;

@@ -102,7 +102,8 @@ const adcgs_setting adcgs_settings[] = {
     ANCHOR(densify_threshold, S | B | Q, 0, 1e6, ALL(0.0003),
            "screen gradient, weighted by temporal significance, at which anchors grow"),
     ANCHOR(prune_opacity, S | B | Q, 0, 1, ALL(0.02), "anchors whose primitives are all of less opacity go"),
-    ANCHOR(keep_opacity, S | B | Q, 0, 1, BUT_PAPER(0.04, 0), "primitives of less opacity in the mean go at decide_at"),
+    ANCHOR(keep_opacity, S | B | Q, 0, 1, BUT_PAPER(0.04, 0),
+           "primitives of less opacity in the mean go at decide_at, a tenth of what is drawn at most"),
     ANCHOR(still_below, S | B | Q, 0, 1e6, BUT_PAPER(1, 0),
            "effect of time, 1 can just be seen, below which an anchor becomes static"),
 

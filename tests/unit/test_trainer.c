@@ -291,27 +291,57 @@ static void densification_prunes_what_is_not_seen(void **state)
     adcgs_trainer_free(&t);
 }
 
+/** A run of 50 iterations, then faint primitives: those of number 1 and all of anchor 5, which weigh this to the others' 1. */
+static adcgs_trainer *make_faint(const adcgs_train_config *config, float weight)
+{
+    adcgs_trainer *t = make(config, pool);
+    uint32_t stop = 50;
+    run(t, stop_at, &stop);
+    for (uint32_t i = 0; i < t->f->n; i++)
+        for (int j = 0; j < config->params.k; j++) {
+            const size_t slot = adcgs_fmodel_slot(t->f, i, j);
+            const int faint = j == 1 || i == 5;
+            t->stats.weight[slot] = (faint ? weight : 1) * 1000.0f * (float)t->stats.n;
+            t->stats.opacity[slot] = config->keep_opacity * (faint ? 0.99f : 1.01f) * t->stats.presence[i];
+        }
+    return t;
+}
+
 /** When it is decided what stays, faint primitives go, and anchors that have no other. */
 static void faint_primitives_go(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    adcgs_trainer *t = make(&config, pool);
-    uint32_t stop = 50;
-    run(t, stop_at, &stop);
-    const int k = config.params.k;
+    adcgs_trainer *t = make_faint(&config, 0.1f);
     const uint32_t n = t->f->n;
-    for (uint32_t i = 0; i < n; i++)
-        for (int j = 0; j < k; j++) {
-            const size_t slot = adcgs_fmodel_slot(t->f, i, j);
-            const int faint = j == 1 || i == 5;
-            t->stats.weight[slot] = 1000.0f * (float)t->stats.n;
-            t->stats.opacity[slot] = config.keep_opacity * (faint ? 0.99f : 1.01f) * t->stats.presence[i];
-        }
     assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
     assert_int_equal(t->f->n, n - 1);
     for (uint32_t i = 0; i < t->f->n; i++)
-        for (int j = 0; j < k; j++)
+        for (int j = 0; j < config.params.k; j++)
             assert_true((t->f->keep[adcgs_fmodel_slot(t->f, i, j)] > 0) == (j != 1));
+    adcgs_trainer_free(&t);
+}
+
+/** Of a scene that is made of faint primitives no more than a tenth goes, the faintest. */
+static void what_faint_primitives_make_stays(void **state)
+{
+    const adcgs_train_config config = all_stages_config();
+    adcgs_trainer *t = make_faint(&config, 10);
+    const int k = config.params.k;
+    const uint32_t n = t->f->n;
+    double drawn = 0, left = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        t->stats.opacity[adcgs_fmodel_slot(t->f, i, 1)] *= i < n / 50 ? 0.5f : 1;
+        drawn += (10 + (i == 5 ? 10 : 1) * (k - 1.0)) / n;
+    }
+    assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
+    assert_int_equal(t->f->n, n);
+    for (uint32_t i = 0; i < n; i++)
+        for (int j = 0; j < k; j++) {
+            const int is_kept = t->f->keep[adcgs_fmodel_slot(t->f, i, j)] > 0;
+            left += is_kept * (j == 1 || i == 5 ? 10.0 : 1.0) / n;
+            assert_true(is_kept ? !(j == 1 && i < n / 50) : j == 1 || i == 5);
+        }
+    assert_true(left >= 0.9 * drawn && left < 0.92 * drawn);
     adcgs_trainer_free(&t);
 }
 
@@ -1137,6 +1167,7 @@ int main(void)
         cmocka_unit_test(densification_keeps_order_and_budget),
         cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
+        cmocka_unit_test(what_faint_primitives_make_stays),
         cmocka_unit_test(no_number_is_rolled_back),
         cmocka_unit_test(no_number_is_rolled_back_late),
         cmocka_unit_test(lasting_poison_ends_the_run),
