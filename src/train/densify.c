@@ -255,8 +255,7 @@ adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error
         grow(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
         status = adcgs_anchor_set_adopt(t, &w.next, error);
     }
-    if (status == ADCGS_OK)
-    {
+    if (status == ADCGS_OK) {
         dress(t->f, w.missing, n_missing);
         dress_moments(t, w.moment, n_moment);
     }

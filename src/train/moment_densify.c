@@ -29,22 +29,6 @@ static batch batch_of(const adcgs_stereo *s, float moment)
     return b;
 }
 
-/** The pixel where a view has a point; 0 if it does not. */
-static int pixel_of(const adcgs_view *v, const double x[3], size_t *at)
-{
-    float p[3];
-    for (int a = 0; a < 3; a++)
-        p[a] = v->rotation[3 * a] * (float)x[0] + v->rotation[3 * a + 1] * (float)x[1] + v->rotation[3 * a + 2] * (float)x[2] +
-               v->translation[a];
-    if (!(p[2] > v->near_plane))
-        return 0;
-    const float u = v->fx * p[0] / p[2] + v->cx, w = v->fy * p[1] / p[2] + v->cy;
-    if (!(u >= 0 && w >= 0 && u < (float)v->width && w < (float)v->height))
-        return 0;
-    *at = (size_t)w * (size_t)v->width + (size_t)u;
-    return 1;
-}
-
 /** What a view says of points: how much nearer each is to what was taken than what is drawn is. */
 static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_error *error)
 {
@@ -54,8 +38,10 @@ static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_e
     ADCGS_TRY(adcgs_view_draw(t, v, t->image, 0, error));
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &taken, error));
     for (uint32_t i = 0; i < b->n; i++) {
+        const double *place = b->point[i].x;
+        const float x[3] = { (float)place[0], (float)place[1], (float)place[2] };
         size_t at;
-        if (!pixel_of(v, b->point[i].x, &at))
+        if (!adcgs_view_pixel(v, x, &at))
             continue;
         float gain = 0;
         for (int c = 0; c < 3; c++, at += plane)

@@ -73,22 +73,6 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
     return ADCGS_OK;
 }
 
-/** What a camera makes of a place: its difference there. 0 if it does not see it. */
-static int sees(const look *l, const float x[3], float *off)
-{
-    const adcgs_view *v = &l->view->view;
-    float p[3];
-    for (int a = 0; a < 3; a++)
-        p[a] = v->rotation[3 * a] * x[0] + v->rotation[3 * a + 1] * x[1] + v->rotation[3 * a + 2] * x[2] + v->translation[a];
-    if (!(p[2] > v->near_plane))
-        return 0;
-    const float u = v->fx * p[0] / p[2] + v->cx, w = v->fy * p[1] / p[2] + v->cy;
-    if (!(u >= 0 && w >= 0 && u < (float)l->w && w < (float)l->h))
-        return 0;
-    *off = l->more[(int)w * l->w + (int)u];
-    return 1;
-}
-
 /** Where along a pixel's ray the other cameras agree the most that something is missing. 0 if too few do. */
 static int place_of(const look *looks, int n, int own, pixel p, adcgs_residual *place)
 {
@@ -104,9 +88,10 @@ static int place_of(const look *looks, int n, int own, pixel p, adcgs_residual *
         for (int a = 0; a < 3; a++)
             x[a] = v->rotation[a] * c[0] + v->rotation[3 + a] * c[1] + v->rotation[6 + a] * c[2];
         for (int i = 0; i < n; i++) {
-            float off;
-            if (i == own || !sees(&looks[i], x, &off))
+            size_t at;
+            if (i == own || !adcgs_view_pixel(&looks[i].view->view, x, &at))
                 continue;
+            const float off = looks[i].more[at];
             seen++;
             agree += off >= AGREES * p.off;
             sum += fminf(off, p.off);

@@ -63,6 +63,20 @@ adcgs_status adcgs_trainer_loss(adcgs_trainer *t, uint32_t view, const float *ta
     return ADCGS_OK;
 }
 
+int adcgs_view_pixel(const adcgs_view *v, const float x[3], size_t *at)
+{
+    float p[3];
+    for (int a = 0; a < 3; a++)
+        p[a] = v->rotation[3 * a] * x[0] + v->rotation[3 * a + 1] * x[1] + v->rotation[3 * a + 2] * x[2] + v->translation[a];
+    if (!(p[2] > v->near_plane))
+        return 0;
+    const float u = v->fx * p[0] / p[2] + v->cx, w = v->fy * p[1] / p[2] + v->cy;
+    if (!(u >= 0 && w >= 0 && u < (float)v->width && w < (float)v->height))
+        return 0;
+    *at = (size_t)w * (size_t)v->width + (size_t)u;
+    return 1;
+}
+
 void adcgs_view_crop(adcgs_view *v, int x, int y, int width, int height)
 {
     v->cx -= (float)x;

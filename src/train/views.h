@@ -22,6 +22,8 @@ adcgs_status adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view, const f
 adcgs_status adcgs_trainer_loss(adcgs_trainer *trainer, uint32_t view, const float *target, adcgs_loss_value *value,
                                 adcgs_error *error);
 
+/** The pixel, row by row, at which a view has a place in scene units; 0 if it has none. */
+int adcgs_view_pixel(const adcgs_view *view, const float x[3], size_t *at);
 /** Narrow a view to a rectangle of its picture, in which it draws the same. */
 void adcgs_view_crop(adcgs_view *view, int x, int y, int width, int height);
 /** The loss of trainer->image, drawn of a crop of a view without masks, against its part of the target, which is spent. */
