@@ -27,8 +27,8 @@ typedef struct adcgs_train_config {
     double time_limit;     /**< seconds; > 0: progress is measured in time, and the result depends on the machine */
     adcgs_train_target target;
     double target_value;   /**< bytes or dB */
-    /* Chosen by hand: no target changes lambda, max_anchors or networks' widths, no scene rigid_weight or scale_from. */
-    uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigid, own_scale_from;
+    /* Chosen by hand: no target changes lambda, max_anchors or networks' widths, no scene the others. */
+    uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigid, own_scale_from, own_square;
     /* The run. */
     uint32_t iterations;
     uint64_t seed;

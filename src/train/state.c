@@ -10,6 +10,8 @@
 
 #include <math.h>
 
+#define SQUARE_ALONE 0.5f /* square_weight, at most, where one camera sees a moment */
+
 adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
 {
     const size_t lanes = (size_t)t->f->groups * ADCGS_LANES, slots = lanes * t->f->params.k;
@@ -71,12 +73,17 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
         c->params.time_rows = (uint16_t)times;
     if (!c->params.time_rows)
         c->params.time_width = c->params.spans = 0;
-    /* A camera alone finds what moves with large primitives first, and by what neighbours do. Several tell from one moment. */
+    /*
+     * A camera alone finds what moves with large primitives first, and by what neighbours do; squares make it learn by heart the
+     * moments that it cannot explain. Several tell from one moment.
+     */
     const int several = t->scene->n_views[ADCGS_SPLIT_TRAIN] >= 2 * times;
     if (several && !c->own_rigid)
         c->rigid_weight = 0;
     if (several && !c->own_scale_from)
         c->scale_from = 0;
+    if (!several && times > 1 && !c->own_square)
+        c->square_weight = fminf(c->square_weight, SQUARE_ALONE);
     if (c->without_coarse)
         c->shape.omega_width = 0;
     if (c->without_fine)

@@ -895,23 +895,28 @@ static void cameras_are_evened_out(void **state)
     assert_int_equal(follow_cameras(near, CAMERAS * 3, even, drawn), 0);
 }
 
-/** Where several views share a moment, neighbours move as pictures say and size has its price at once, unless told otherwise. */
+/**
+ * Where several views share a moment, neighbours move as pictures say, size has its price at once and squares their whole share,
+ * unless told otherwise.
+ */
 static void moments_shared_by_views_change_settings(void **state)
 {
     adcgs_scene alone = *scene;
     adcgs_train_config config = small_config();
-    const float rigid = config.rigid_weight, from = config.scale_from;
+    const float rigid = config.rigid_weight, from = config.scale_from, square = config.square_weight;
     const adcgs_scene *alone_and_shared[] = { &alone, scene };
-    assert_true(rigid > 0 && from > 0);
+    assert_true(rigid > 0 && from > 0 && square > 0.5f);
     alone.n_times = alone.n_views[ADCGS_SPLIT_TRAIN];
     for (int by_hand = 0; by_hand < 2; by_hand++)
         for (int i = 0; i < 2; i++) {
             adcgs_trainer *t;
             if (by_hand)
-                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,scale_from=0.125", &error), ADCGS_OK);
+                assert_int_equal(adcgs_train_set(&config, "rigid_weight=0.5,scale_from=0.125,square_weight=0.75", &error),
+                                 ADCGS_OK);
             assert_int_equal(adcgs_trainer_create(&t, alone_and_shared[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
             assert_true(t->config.rigid_weight == (by_hand ? 0.5f : i ? 0 : rigid));
             assert_true(t->config.scale_from == (by_hand ? 0.125f : i ? 0 : from));
+            assert_true(t->config.square_weight == (by_hand ? 0.75f : i ? square : 0.5f));
             adcgs_trainer_free(&t);
         }
 }
