@@ -18,10 +18,9 @@ static adcgs_train_config small_config(void)
 {
     adcgs_train_config c;
     assert_int_equal(adcgs_train_preset(&c, "draft", &error), ADCGS_OK);
+    assert_int_equal(adcgs_train_set(&c, "start_anchors=200,max_anchors=300,densify_every=10,k=4,n_fv=12,theta_width=16,"
+                                         "omega_width=16,varpi_width=16,entropy_width=16", &error), ADCGS_OK);
     c.iterations = 80;
-    c.start_anchors = 200;
-    c.max_anchors = 300;
-    c.densify_every = 10;
     return c;
 }
 
