@@ -74,15 +74,26 @@ static adcgs_status begin_camera(session *s, uint32_t i, adcgs_error *error)
 }
 
 /** Where what moves is known, that counts, not what the camera's views together have it guessed to be. */
-static adcgs_status measure_moving(adcgs_view_score *score, adcgs_error *error)
+static void measure_known(adcgs_view_score *score, const uint8_t *known)
 {
-    uint8_t *mask;
-    ADCGS_TRY(adcgs_scene_load_moving(score->view, &mask, error));
     const size_t plane = (size_t)score->width * (size_t)score->height;
-    const adcgs_moving moving = adcgs_moving_measure(mask, score->decoded, score->truth, plane);
+    const adcgs_moving moving = adcgs_moving_measure(known, score->decoded, score->truth, plane);
     score->temporal.dynamic_psnr = moving.psnr;
     score->known_share = moving.share;
-    free(mask);
+}
+
+/** With the levels of the decoded picture fitted to the truth. moving: NULL where nothing is known or guessed to move. */
+static adcgs_status measure_fitted(adcgs_view_score *score, const uint8_t *moving, adcgs_error *error)
+{
+    const size_t plane = (size_t)score->width * (size_t)score->height;
+    float *fitted = adcgs_alloc(NULL, 3 * plane, sizeof *fitted, error);
+    if (!fitted)
+        return adcgs_alloc_status(error);
+    adcgs_fit_levels(fitted, score->decoded, score->truth, plane);
+    score->fitted_psnr = adcgs_psnr(fitted, score->truth, 3 * plane);
+    if (moving)
+        score->fitted_dynamic_psnr = adcgs_moving_measure(moving, fitted, score->truth, plane).psnr;
+    adcgs_free(NULL, fitted);
     return ADCGS_OK;
 }
 
@@ -90,18 +101,24 @@ static adcgs_status measure_moving(adcgs_view_score *score, adcgs_error *error)
 static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_error *error)
 {
     const float *const a = score->decoded, *const b = score->truth;
+    uint8_t *known = NULL;
+    adcgs_status status = ADCGS_OK;
     score->psnr = adcgs_psnr(a, b, (size_t)score->width * (size_t)score->height * 3);
     ADCGS_TRY(adcgs_ssim(a, b, score->width, score->height, &score->ssim, error));
-    score->ms_ssim = (double)NAN;
+    score->ms_ssim = score->fitted_psnr = score->fitted_dynamic_psnr = score->known_share = (double)NAN;
     if (s->measure & ADCGS_MEASURE_MS_SSIM)
         ADCGS_TRY(adcgs_ms_ssim(a, b, score->width, score->height, &score->ms_ssim, &score->ms_ssim_scales, error));
-    const int fitted = s->measure & ADCGS_MEASURE_FITTED;
-    score->fitted_psnr = fitted ? adcgs_fitted_psnr(a, b, (size_t)score->width * (size_t)score->height) : (double)NAN;
     score->temporal = (adcgs_temporal_view){.dynamic_psnr = (double)NAN, .flicker = (double)NAN};
     if (s->temporal)
         score->temporal = adcgs_temporal_add(s->temporal, a, b);
-    score->known_share = (double)NAN;
-    return (s->measure & ADCGS_MEASURE_DYNAMIC) && score->view->moving ? measure_moving(score, error) : ADCGS_OK;
+    if ((s->measure & ADCGS_MEASURE_MOVING) && score->view->moving) {
+        ADCGS_TRY(adcgs_scene_load_moving(score->view, &known, error));
+        measure_known(score, known);
+    }
+    if (s->measure & (ADCGS_MEASURE_FITTED | ADCGS_MEASURE_FITTED_DYNAMIC))
+        status = measure_fitted(score, known ? known : s->temporal ? adcgs_temporal_region(s->temporal) : NULL, error);
+    free(known);
+    return status;
 }
 
 /** View order[i]. */

@@ -14,11 +14,13 @@
 /** What to measure besides PSNR and SSIM; flags. */
 enum {
     ADCGS_MEASURE_MS_SSIM = 1,
-    ADCGS_MEASURE_DYNAMIC = 2, /**< PSNR of what moves; this and the next two want two passes over the truth of fixed cameras */
+    ADCGS_MEASURE_DYNAMIC = 2, /**< PSNR of what moves; those of TIME want two passes over the truth of fixed cameras */
     ADCGS_MEASURE_STATIC = 4,  /**< variance over time of what does not */
     ADCGS_MEASURE_FLICKER = 8,
     ADCGS_MEASURE_FITTED = 16, /**< PSNR after gain and black level were fitted */
-    ADCGS_MEASURE_TIME = ADCGS_MEASURE_DYNAMIC | ADCGS_MEASURE_STATIC | ADCGS_MEASURE_FLICKER,
+    ADCGS_MEASURE_FITTED_DYNAMIC = 32, /**< of what moves, after they were fitted to the whole picture */
+    ADCGS_MEASURE_MOVING = ADCGS_MEASURE_DYNAMIC | ADCGS_MEASURE_FITTED_DYNAMIC,
+    ADCGS_MEASURE_TIME = ADCGS_MEASURE_MOVING | ADCGS_MEASURE_STATIC | ADCGS_MEASURE_FLICKER,
     ADCGS_MEASURE_ALL = ADCGS_MEASURE_MS_SSIM | ADCGS_MEASURE_FITTED | ADCGS_MEASURE_TIME
 };
 
@@ -27,7 +29,7 @@ typedef struct adcgs_view_score {
     const adcgs_scene_view *view;
     uint32_t camera;                        /**< from 0 in the order of the views; equal pose and lens are one camera */
     double psnr, ssim;
-    double fitted_psnr;                     /**< as the next */
+    double fitted_psnr, fitted_dynamic_psnr; /**< as the next */
     double ms_ssim;                         /**< not a number where it is not measured, as all of the next */
     int ms_ssim_scales;                     /**< 0 then */
     adcgs_temporal_view temporal;           /**< of cameras with more than one view; where what moves is known, so is its PSNR */

@@ -12,10 +12,10 @@
 double adcgs_psnr(const float *a, const float *b, size_t n);
 double adcgs_psnr_from_mse(double mse);
 /**
- * The same of planes of n pixels after the gain and the black level of each channel of a were fitted to b by least squares: what
- * is left when a camera's exposure and white balance, which no other picture tells, are taken away.
+ * Planes of n pixels with the gain and the black level of each channel that bring a nearest to b, by least squares: what is left
+ * of their difference is not a camera's exposure and white balance, which no other picture tells.
  */
-double adcgs_fitted_psnr(const float *a, const float *b, size_t n);
+void adcgs_fit_levels(float *fitted, const float *a, const float *b, size_t n);
 /** Structural similarity: 11x11 Gaussian, sigma 1.5, zero padding, mean over pixels and channels, K1 = 0.01, K2 = 0.03. */
 adcgs_status adcgs_ssim(const float *a, const float *b, int width, int height, double *ssim, adcgs_error *error);
 

@@ -15,39 +15,33 @@ double adcgs_psnr_from_mse(double mse)
     return ADCGS_MIN(IDENTICAL, -10.0 * log10(mse));
 }
 
-/** Sums over the pixels of a channel that are known. */
-typedef struct moments {
-    double n, a, b, aa, ab, bb;
-} moments;
-
-/** What no line through a says of b: the sum of squares. */
-static double left_over(const moments *m)
+/** Of one channel: *gain and *black of the line through a that comes nearest to b where that is known. */
+static void fit_line(const float *a, const float *b, size_t n, double *gain, double *black)
 {
-    const double va = m->aa - m->a * m->a / m->n, vb = m->bb - m->b * m->b / m->n, vab = m->ab - m->a * m->b / m->n;
-    const double rest = va > 0 ? vb - vab * vab / va : vb;
-    return rest > 0 ? rest : 0;
+    double count = 0, sa = 0, sb = 0, saa = 0, sab = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double x = (double)a[i], y = (double)b[i];
+        if (isnan(b[i]))
+            continue;
+        count++;
+        sa += x;
+        sb += y;
+        saa += x * x;
+        sab += x * y;
+    }
+    const double variance = saa - sa * sa / count, both = sab - sa * sb / count;
+    *gain = variance > 0 ? both / variance : 0;
+    *black = count > 0 ? (sb - *gain * sa) / count : 0;
 }
 
-double adcgs_fitted_psnr(const float *a, const float *b, size_t n)
+void adcgs_fit_levels(float *fitted, const float *a, const float *b, size_t n)
 {
-    double sum = 0, count = 0;
-    for (size_t c = 0; c < 3; c++, a += n, b += n) {
-        moments m = {0};
-        for (size_t i = 0; i < n; i++) {
-            const double x = (double)a[i], y = (double)b[i];
-            if (isnan(b[i]))
-                continue;
-            m.n++;
-            m.a += x;
-            m.b += y;
-            m.aa += x * x;
-            m.ab += x * y;
-            m.bb += y * y;
-        }
-        sum += m.n > 0 ? left_over(&m) : 0;
-        count += m.n;
+    for (size_t c = 0; c < 3; c++, a += n, b += n, fitted += n) {
+        double gain, black;
+        fit_line(a, b, n, &gain, &black);
+        for (size_t i = 0; i < n; i++)
+            fitted[i] = (float)(gain * (double)a[i] + black);
     }
-    return count > 0 ? adcgs_psnr_from_mse(sum / count) : IDENTICAL;
 }
 
 double adcgs_psnr(const float *a, const float *b, size_t n)

@@ -29,8 +29,9 @@ static const column columns[ADCGS_EVAL_COLUMNS] = {
     [ADCGS_EVAL_MS_SSIM] = {"ms_ssim", "  ms-ssim", "", 4, ADCGS_MEASURE_MS_SSIM, 0},
     [ADCGS_EVAL_MS_SSIM_SCALES] = {"ms_ssim_scales", "", "", -1, ADCGS_MEASURE_MS_SSIM, 0},
     [ADCGS_EVAL_DYNAMIC_PSNR] = {"dynamic_psnr", "  dynamic", " dB", 2, ADCGS_MEASURE_DYNAMIC, 0},
+    [ADCGS_EVAL_FITTED_DYNAMIC_PSNR] = {"fitted_dynamic_psnr", "  fitted dynamic", " dB", 2, ADCGS_MEASURE_FITTED_DYNAMIC, 0},
     [ADCGS_EVAL_FLICKER] = {"flicker", "  flicker", "", 5, ADCGS_MEASURE_FLICKER, 0},
-    [ADCGS_EVAL_DYNAMIC_SHARE] = {"dynamic_share", "  dynamic share", "", 4, ADCGS_MEASURE_DYNAMIC | ADCGS_MEASURE_STATIC, 1},
+    [ADCGS_EVAL_DYNAMIC_SHARE] = {"dynamic_share", "  dynamic share", "", 4, ADCGS_MEASURE_MOVING | ADCGS_MEASURE_STATIC, 1},
     [ADCGS_EVAL_STATIC_VARIANCE] = {"static_variance", "  static variance", "", 8, ADCGS_MEASURE_STATIC, 1},
     [ADCGS_EVAL_TRUTH_VARIANCE] = {"truth_static_variance", "  of the truth", "", 8, ADCGS_MEASURE_STATIC, 1},
     [ADCGS_EVAL_CROP_PSNR] = {"crop_psnr", "  crop", " dB", 2, CROP, 0},
@@ -47,6 +48,7 @@ static const struct {
     {"fitted-psnr", ADCGS_MEASURE_FITTED},
     {"ms-ssim", ADCGS_MEASURE_MS_SSIM},
     {"dynamic-psnr", ADCGS_MEASURE_DYNAMIC},
+    {"fitted-dynamic-psnr", ADCGS_MEASURE_FITTED_DYNAMIC},
     {"static-variance", ADCGS_MEASURE_STATIC},
     {"flicker", ADCGS_MEASURE_FLICKER},
     {"all", ADCGS_MEASURE_ALL},
@@ -108,6 +110,7 @@ static void make_row(double *value, const adcgs_view_score *score, const adcgs_c
     value[ADCGS_EVAL_MS_SSIM] = score->ms_ssim;
     value[ADCGS_EVAL_MS_SSIM_SCALES] = score->ms_ssim_scales;
     value[ADCGS_EVAL_DYNAMIC_PSNR] = score->temporal.dynamic_psnr;
+    value[ADCGS_EVAL_FITTED_DYNAMIC_PSNR] = score->fitted_dynamic_psnr;
     value[ADCGS_EVAL_FLICKER] = score->temporal.flicker;
     value[ADCGS_EVAL_DYNAMIC_SHARE] = score->known_share;
     value[ADCGS_EVAL_MILLISECONDS] = 1e3 * score->seconds;

@@ -16,6 +16,7 @@ typedef enum adcgs_eval_column {
     ADCGS_EVAL_MS_SSIM,
     ADCGS_EVAL_MS_SSIM_SCALES,
     ADCGS_EVAL_DYNAMIC_PSNR,
+    ADCGS_EVAL_FITTED_DYNAMIC_PSNR,
     ADCGS_EVAL_FLICKER,
     ADCGS_EVAL_DYNAMIC_SHARE,
     ADCGS_EVAL_STATIC_VARIANCE,
@@ -60,7 +61,8 @@ typedef struct adcgs_eval_report {
 /** What --metrics takes: all, or names with commas between. 0, or -1 if text is neither. *measure: flags of metric/evaluate.h. */
 int adcgs_eval_parse_metrics(const char *text, int *measure);
 /** For messages: "all, or some of psnr, ...". */
-#define ADCGS_EVAL_METRICS "all, or a list of psnr, ssim, fitted-psnr, ms-ssim, dynamic-psnr, static-variance and flicker"
+#define ADCGS_EVAL_METRICS \
+    "all, or a list of psnr, ssim, fitted-psnr, ms-ssim, dynamic-psnr, fitted-dynamic-psnr, static-variance and flicker"
 
 /** Open the CSV, before anything long begins. Wants csv and as_json. A CSV on standard output is there instead of the text. */
 adcgs_status adcgs_eval_report_open(adcgs_eval_report *report, adcgs_error *error);

@@ -17,7 +17,7 @@ agree()
                    print key[i], ($i == "" ? "null" : $i) }
              function of_camera(k) { return k == "dynamic_share" || k ~ /static_variance$/ }' \
         <(sed 's/"a,""b"/ab/; s/e-0/e-/g' "$1") >"$dir/from_csv" # jansson writes e-9
-    grep -E '^ *"(psnr|ssim|fitted_psnr|ms_ssim|ms_ssim_scales|dynamic_psnr|flicker|dynamic_share|static_variance|truth_static_variance|crop_psnr|crop_ssim)": ' "$2" |
+    grep -E '^ *"(psnr|ssim|fitted_psnr|ms_ssim|ms_ssim_scales|dynamic_psnr|fitted_dynamic_psnr|flicker|dynamic_share|static_variance|truth_static_variance|crop_psnr|crop_ssim)": ' "$2" |
         sed 's/^ *"\([a-z_]*\)": \([^,]*\),*$/\1 \2/' >"$dir/from_json"
     cmp -s "$dir/from_csv" "$dir/from_json" || { bad "CSV and JSON differ"; diff "$dir/from_csv" "$dir/from_json" | head; }
     [ "$(wc -l <"$dir/from_csv")" -gt 5 ] || bad "nothing was compared"
@@ -70,6 +70,9 @@ expect 0 "" $eval "$s" "$dir/known" --csv - --metrics dynamic-psnr
 awk -F, '$3 == "r_000" { bad += $5 != $7 || $8 != 1 } $3 == "r_001" { bad += $7 != "" || $8 != "0" } $3 == "r_002" { last = $7 }
          $1 == "view" && $7 { sum += $7 } $1 == "mean" { bad += (sum / 2 - $7) ^ 2 > 1e-12 } END { exit bad || !last }' "$dir/out" ||
     { bad "all and nothing moves"; cat "$dir/out"; }
+expect 0 "" $eval "$s" "$dir/known" --csv - --metrics fitted-psnr,fitted-dynamic-psnr
+awk -F, '$3 == "r_000" { bad += $7 != $8 || $7 < $5 } $3 == "r_001" { bad += $8 != "" } $3 == "r_002" { bad += $8 == "" || $8 == $7 }
+         END { exit bad || NR != 5 }' "$dir/out" || { bad "levels are fitted to the whole picture"; cat "$dir/out"; }
 sed -i 's/^64 64/32 64/' "$dir/known/test/r_001_moving.pgm"
 expect 4 "r_001_moving.pgm: 32x64 pixels, expected 64x64" $eval "$s" "$dir/known"
 rm "$dir/known/test/r_002_moving.pgm"
