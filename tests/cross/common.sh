@@ -41,10 +41,15 @@ levels()
 # ask RUN: a decoder answers what the manifest asks, at each of its levels. Prints how many vectors and which levels, or what failed.
 ask()
 {
-    local level vectors=0 done_levels=
-    for level in $(levels "$1"); do
-        "$conform" --decoder "$1 --cpu $level --answer {request} {in}" "$source/conformance/manifest.json" >conform-$level.log 2>&1 ||
-            { echo "$level: $(tail -n 1 conform-$level.log); see $PWD/conform-$level.log"; return 1; }
+    local level all vectors=0 done_levels=
+    local -A jobs
+    all=$(levels "$1")
+    for level in $all; do
+        "$conform" --decoder "$1 --cpu $level --answer {request} {in}" "$source/conformance/manifest.json" >conform-$level.log 2>&1 &
+        jobs[$level]=$!
+    done
+    for level in $all; do
+        wait "${jobs[$level]}" || { echo "$level: $(tail -n 1 conform-$level.log); see $PWD/conform-$level.log"; return 1; }
         vectors=$(sed -n '$s/ .*//p' conform-$level.log)
         done_levels+=" $level"
     done
