@@ -9,10 +9,29 @@
 
 enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
 #define FAINT_SHARE 0.1
+#define FAINT_MEAN 0.4
+
+/**
+ * What is drawn is as opaque as this in the mean, at most 1 of FAINT_MEAN. In a scene made of faint layers none of them moves by
+ * much of a picture, but all that show one thing move together.
+ */
+static float usual_opacity(const adcgs_trainer *t)
+{
+    const adcgs_fmodel *f = t->f;
+    double drawn = 0, opacity = 0;
+    for (size_t i = 0; i < t->pass->primitives.n; i++) {
+        const uint32_t anchor = adcgs_anchor_of(f, (uint32_t)i);
+        if (anchor >= f->n || f->keep[i] == 0 || !(t->stats.presence[anchor] > 0))
+            continue;
+        drawn += (double)t->stats.weight[i];
+        opacity += (double)(t->stats.weight[i] * t->stats.opacity[i] / t->stats.presence[anchor]);
+    }
+    return drawn > 0 ? (float)fmin(1, opacity / drawn / FAINT_MEAN) : 1;
+}
 
 /**
  * Largest effect of time on each anchor's primitives. 1 is half a pixel of way, or 0.03 of colour, for an opaque one, or 0.03
- * of opacity: what lies below is seen as noise, and costs every frame its networks.
+ * of opacity, where things are opaque: what lies below is seen as noise, and costs every frame its networks.
  */
 static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error *error)
 {
@@ -22,6 +41,7 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
     if (!still)
         return adcgs_alloc_status(error);
     /* Scene units per pixel of the full resolution at unit distance. */
+    const float usual = usual_opacity(t);
     const float pixel = (float)t->config.scale / (t->views[0].view.fx * (float)t->divide);
     adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
     memcpy(still, t->pass->prim, slots * ADCGS_ROWS * sizeof *still);
@@ -40,7 +60,7 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
             }
             const float fade = fabsf(now[ADCGS_ROW_OPACITY * slots + i] - still[ADCGS_ROW_OPACITY * slots + i]);
             const float here = fmaxf(fmaxf(o * shift / (0.5f * pixel), o * tint / 0.03f), fade / 0.03f);
-            effect[anchor] = fmaxf(effect[anchor], here);
+            effect[anchor] = fmaxf(effect[anchor], here / usual);
         }
     }
     adcgs_free(NULL, still);

@@ -345,6 +345,37 @@ static void what_faint_primitives_make_stays(void **state)
     adcgs_trainer_free(&t);
 }
 
+/** How many anchors still move when that is decided after 50 iterations, where all that is drawn is so opaque. */
+static uint32_t moving_anchors(const adcgs_train_config *config, float opacity)
+{
+    adcgs_trainer *t = make(config, pool);
+    uint32_t stop = 50, moving = 0;
+    run(t, stop_at, &stop);
+    for (uint32_t i = 0; i < t->f->n; i++)
+        for (int j = 0; j < config->params.k; j++) {
+            t->stats.weight[adcgs_fmodel_slot(t->f, i, j)] = 1000.0f * (float)t->stats.n;
+            t->stats.opacity[adcgs_fmodel_slot(t->f, i, j)] = opacity * t->stats.presence[i];
+        }
+    assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
+    for (uint32_t i = 0; i < t->f->n; i++)
+        moving += t->f->moving[i] != 0;
+    adcgs_trainer_free(&t);
+    return moving;
+}
+
+/** The fainter the layers that a scene is made of, the less of one has to move. Opaque ones are all alike. */
+static void faint_layers_move_together(void **state)
+{
+    adcgs_train_config config = all_stages_config();
+    config.keep_opacity = 0;
+    config.params.spans = 0; /* what lives for a while moves anyhow */
+    config.still_below = 10;
+    const uint32_t opaque = moving_anchors(&config, 0.9f);
+    print_message("%u move where things are opaque, %u where they are faint\n", opaque, moving_anchors(&config, 0.02f));
+    assert_int_equal(moving_anchors(&config, 0.5f), opaque);
+    assert_true(moving_anchors(&config, 0.02f) > opaque);
+}
+
 /* ---- Recovery ---- */
 
 typedef struct poison {
@@ -1173,6 +1204,7 @@ int main(void)
         cmocka_unit_test(densification_prunes_what_is_not_seen),
         cmocka_unit_test(faint_primitives_go),
         cmocka_unit_test(what_faint_primitives_make_stays),
+        cmocka_unit_test(faint_layers_move_together),
         cmocka_unit_test(no_number_is_rolled_back),
         cmocka_unit_test(no_number_is_rolled_back_late),
         cmocka_unit_test(lasting_poison_ends_the_run),
