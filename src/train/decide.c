@@ -75,8 +75,11 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 0, &stopped, error));
     ADCGS_TRY(adcgs_sample_loss(t, DECIDE_VIEWS, 1, &moving, error));
-    /* Seven bits a weight; a hundredth of the loss is what networks gain by learning the noise of each picture. */
-    const size_t weights = f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n + f->mlp[ADCGS_P_TIME].n;
+    /*
+     * Seven bits a weight; hidden units that do not pay go later, and where little moves a tenth of them is left. A hundredth of
+     * the loss is what networks gain by learning the noise of each picture.
+     */
+    const size_t weights = (f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n) / 10 + f->mlp[ADCGS_P_TIME].n;
     if (stopped > 1.01 * moving + adcgs_price_of_bit(t) * 7 * (double)weights)
         return ADCGS_OK;
     memset(f->moving, 0, (size_t)f->groups * ADCGS_LANES * sizeof *f->moving);

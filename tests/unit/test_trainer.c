@@ -691,6 +691,29 @@ static void check_picture(adcgs_trainer *t)
     adcgs_model_clear(&model, NULL);
 }
 
+/** What motion has to pay is a part of its networks, since most of their hidden units go later. */
+static void motion_pays_for_little(void **state)
+{
+    const adcgs_train_config config = all_stages_config();
+    for (int much = 0; much < 2; much++) {
+        adcgs_trainer *t = make(&config, pool);
+        uint32_t stop = 90, moving = 0;
+        double stopped, moved;
+        run(t, stop_at, &stop);
+        assert_int_equal(adcgs_sample_loss(t, 32, 0, &stopped, &error), ADCGS_OK);
+        assert_int_equal(adcgs_sample_loss(t, 32, 1, &moved, &error), ADCGS_OK);
+        const double bits = 7.0 * (double)(t->f->mlp[ADCGS_P_OMEGA].n + t->f->mlp[ADCGS_P_VARPI].n + t->f->mlp[ADCGS_P_TIME].n);
+        print_message("stopped %g, moving %g\n", stopped, moved);
+        assert_true(stopped > 1.01 * moved);
+        t->lambda = (much ? 20 : 2) * (stopped - 1.01 * moved) / bits * 0x1p23;
+        assert_int_equal(adcgs_weigh_motion(t, &error), ADCGS_OK);
+        for (uint32_t i = 0; i < t->f->n; i++)
+            moving += t->f->moving[i] != 0;
+        assert_true(much ? moving == 0 : moving > 0);
+        adcgs_trainer_free(&t);
+    }
+}
+
 /** A stream of a model in which no anchor moves has no networks, table or flags for motion. */
 static void still_models_carry_no_motion(void **state)
 {
@@ -1212,6 +1235,7 @@ int main(void)
         cmocka_unit_test(rounding_is_decoding),
         cmocka_unit_test(estimated_bits_are_written_bytes),
         cmocka_unit_test(rate_reaches_every_weight),
+        cmocka_unit_test(motion_pays_for_little),
         cmocka_unit_test(still_models_carry_no_motion),
         cmocka_unit_test(uncompressed_models_lose_nothing),
         cmocka_unit_test(windows_grow_outwards),
