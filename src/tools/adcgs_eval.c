@@ -60,7 +60,8 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; figures do not depend on it",
          adcgs_cpu_names, NULL},
         {"metrics", 0, ADCGS_OPTION_STRING, &s->metrics, 0, 0, "LIST",
-         "measure besides PSNR and SSIM: all, or a list of\nfitted-psnr, ms-ssim, dynamic-psnr,\nfitted-dynamic-psnr, static-variance and flicker",
+         "measure besides PSNR and SSIM: all, or a list of\nfitted-psnr, ms-ssim, dynamic-psnr,\n"
+         "fitted-dynamic-psnr, static-variance and flicker",
          NULL, NULL},
         {"csv", 0, ADCGS_OPTION_STRING, &s->csv, 0, 0, "FILE", "write a table there, a row for each view; - prints it", NULL,
          NULL},
