@@ -40,8 +40,8 @@ static adcgs_status measure_motion(adcgs_trainer *t, float *effect, adcgs_error 
     float *still = adcgs_alloc(NULL, slots * ADCGS_ROWS, sizeof *still, error);
     if (!still)
         return adcgs_alloc_status(error);
-    /* Scene units per pixel of the full resolution at unit distance. */
     const float usual = usual_opacity(t);
+    /* Scene units per pixel of the full resolution at unit distance. */
     const float pixel = (float)t->config.scale / (t->views[0].view.fx * (float)t->divide);
     adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
     memcpy(still, t->pass->prim, slots * ADCGS_ROWS * sizeof *still);
