@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The models of a recipe: positions, flags and masks, steps and priors, and values that are coded as they are drawn. */
+/** \file The models of a recipe: positions, flags, bodies, masks, steps and priors, and values, coded as they are drawn. */
 #include "plan.h"
 #include "random_model.h"
 
@@ -80,6 +80,49 @@ static unsigned pick(adcgs_plan *plan, int how, uint32_t i, unsigned all)
     default:
         return (unsigned)(adcgs_random_next(&plan->state) | adcgs_random_next(&plan->state)) & all;
     }
+}
+
+/* ---- Bodies ---- */
+
+/* Of an anchor that is not static, which has one from 0 to most; last: the body of the one before. Random ones come in runs. */
+static int pick_body(adcgs_plan *plan, uint32_t i, int most, int last)
+{
+    switch (plan->bodies) {
+    case ADCGS_PICK_ALL:
+        return most;
+    case ADCGS_PICK_NONE:
+        return 0;
+    case ADCGS_PICK_FIRST:
+        return 1;
+    case ADCGS_PICK_TURNS:
+        return (int)(i % (unsigned)(most + 1));
+    default:
+        return draw(&plan->state, 0, 3) ? last : draw(&plan->state, 0, most);
+    }
+}
+
+/* body FIRST COUNT BODY */
+static adcgs_status set_body(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    adcgs_model *const m = user;
+    int64_t first, count, body;
+    (void)plan;
+    ADCGS_TRY(adcgs_command_words(c, 3, 3, error));
+    ADCGS_TRY(adcgs_word_int(c->word[1], 0, ADCGS_ANCHORS_MAX, &first, error));
+    ADCGS_TRY(adcgs_word_int(c->word[2], 0, ADCGS_ANCHORS_MAX, &count, error));
+    ADCGS_TRY(adcgs_word_int(c->word[3], 0, m->params.bodies, &body, error));
+    for (int64_t i = first; i < ADCGS_MIN(first + count, (int64_t)m->n); i++)
+        m->body[i] = (uint8_t)(m->is_static[i] ? 0 : body);
+    return ADCGS_OK;
+}
+
+static adcgs_status fill_bodies(adcgs_plan *plan, adcgs_model *m, adcgs_error *error)
+{
+    int last = 0;
+    for (uint32_t i = 0; m->params.bodies && i < m->n; i++)
+        if (!m->is_static[i])
+            m->body[i] = (uint8_t)(last = pick_body(plan, i, m->params.bodies, last));
+    return adcgs_plan_each(plan, "body", set_body, m, error);
 }
 
 /* ---- Steps and priors ---- */
@@ -273,8 +316,9 @@ static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *o
         const uint32_t begin = i % out->n_slices * slice, end = begin + ADCGS_MIN(m->n - begin, slice);
         adcgs_range_enc_init(&w.range, &out->data[i]);
         if (layer == 0)
-            adcgs_latents_flags(m, begin, end, draw_flag, &w);
-        status = adcgs_latents_walk(latents, m, layer, begin, end, draw_site, &w, NULL);
+            status = adcgs_latents_flags(m, begin, end, draw_flag, &w, error);
+        if (status == ADCGS_OK)
+            status = adcgs_latents_walk(latents, m, layer, begin, end, draw_site, &w, NULL);
         adcgs_range_enc_finish(&w.range);
     }
     adcgs_latents_free(&latents);
@@ -300,6 +344,7 @@ static adcgs_status draw_model(adcgs_plan *plan, uint32_t segment, adcgs_error *
         m->is_static[i] = (uint8_t)(m->params.time_rows > 0 ? pick(plan, plan->statics, i, 1) : 0);
         m->mask[i] = (uint16_t)pick(plan, plan->masks, i, (1U << m->params.k) - 1);
     }
+    ADCGS_TRY(fill_bodies(plan, m, error));
     return draw_slices(plan, m, &plan->drawn[segment], error);
 }
 

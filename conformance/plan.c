@@ -45,6 +45,7 @@ static const struct {
 } choices[] = {
     { "masks", picks, offsetof(adcgs_plan, masks) },
     { "static", picks, offsetof(adcgs_plan, statics) },
+    { "bodies", picks, offsetof(adcgs_plan, bodies) },
     { "positions", spreads, offsetof(adcgs_plan, positions) },
     { "values", fills, offsetof(adcgs_plan, values) },
     { "digest", digests, offsetof(adcgs_plan, no_digest) },
@@ -124,7 +125,7 @@ static adcgs_status set_params(adcgs_plan *plan, const adcgs_command *c, void *u
     } members[] = { { "k", &p->k, NULL }, { "n_fv", &p->n_fv, NULL }, { "n_fg", &p->n_fg, NULL }, { "chunks", &p->chunks, NULL },
                     { "n_eta", &p->n_eta, NULL }, { "octaves", &p->octaves, NULL }, { "fine_uses_fv", &p->fine_uses_fv, NULL },
                     { "coarse_rotation", &p->coarse_rotation, NULL }, { "adaptive_steps", &p->adaptive_steps, NULL },
-                    { "spans", &p->spans, NULL },
+                    { "spans", &p->spans, NULL }, { "bodies", &p->bodies, NULL },
                     { "time_rows", NULL, &p->time_rows }, { "time_width", NULL, &p->time_width } };
     (void)user;
     for (int i = 1; i < c->n; i++) {

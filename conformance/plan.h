@@ -17,7 +17,7 @@
 #define ADCGS_PLAN_LAYERS 4
 #define ADCGS_PLAN_TIMES 8
 
-/** Which bits of masks, or which static flags, are set. */
+/** Which bits of masks, or which static flags, are set; which bodies anchors have. */
 typedef enum adcgs_pick { ADCGS_PICK_RANDOM, ADCGS_PICK_ALL, ADCGS_PICK_NONE, ADCGS_PICK_FIRST, ADCGS_PICK_TURNS } adcgs_pick;
 
 /** Where the voxels are. */
@@ -54,7 +54,7 @@ typedef struct adcgs_plan {
     uint8_t depth;
     double origin[3], voxel; /**< voxel 0: the cube's edge is 2 */
     int64_t ticks[2 * ADCGS_PLAN_SEGMENTS];
-    int masks, statics, positions, values; /**< adcgs_pick, adcgs_spread, adcgs_fill */
+    int masks, statics, bodies, positions, values; /**< adcgs_pick, adcgs_spread, adcgs_fill */
     int no_digest;
     adcgs_stream stream;
     adcgs_drawn drawn[ADCGS_PLAN_SEGMENTS];

@@ -64,7 +64,8 @@ static void write_params(writer *w)
         line(w, "params adaptive_steps=1");
     line(w, "params octaves=%d fine_uses_fv=%d coarse_rotation=%d", edgy(w, 0, small ? 4 : 10), draw(w, 0, 1), draw(w, 0, 1));
     if (w->moving)
-        line(w, "params time_rows=%d time_width=%d spans=%d", rows[draw(w, 0, COUNT(rows) - 1)], edgy(w, 1, 9), draw(w, 0, 1));
+        line(w, "params time_rows=%d time_width=%d spans=%d bodies=%d", rows[draw(w, 0, COUNT(rows) - 1)], edgy(w, 1, 9),
+             draw(w, 0, 1), draw(w, 0, 1) * edgy(w, 1, 15));
 }
 
 static void write_geometry(writer *w)
@@ -154,6 +155,7 @@ static void write_values(writer *w)
     line(w, "values %s", fills[draw(w, 0, COUNT(fills) - 1)]);
     line(w, "masks %s", picks[draw(w, 0, COUNT(picks) - 1)]);
     line(w, "static %s", picks[draw(w, 0, COUNT(picks) - 1)]);
+    line(w, "bodies %s", picks[draw(w, 0, COUNT(picks) - 1)]);
     for (int i = 0; i < COUNT(groups); i++)
         if (once_in(w, 3))
             line(w, "steps %s %d 0x1.%xp-%d", groups[i], draw(w, 0, 3), (unsigned)draw(w, 0, 0xfffff), draw(w, 6, 13));

@@ -72,6 +72,7 @@ static void visit_params(visitor *v, const adcgs_params *a, const adcgs_params *
     ITEM("coarse_rotation", coarse_rotation);
     ITEM("adaptive_steps", adaptive_steps);
     ITEM("spans", spans);
+    ITEM("bodies", bodies);
     ITEM("time_rows", time_rows);
     ITEM("time_width", time_width);
 }
@@ -116,6 +117,7 @@ static void visit_anchors(visitor *v, const adcgs_model *a, const adcgs_model *b
     const adcgs_params *p = &a->params;
     LIST("pos", pos, 3 * n);
     LIST("is_static", is_static, n);
+    LIST("body", body, n);
     LIST("mask", mask, n);
     LIST("eta", eta, n * p->n_eta);
     LIST("fv", fv, n * p->n_fv);

@@ -9,6 +9,8 @@
 #include "model/model_priv.h"
 
 #define INPUTS_MAX (ADCGS_NV_MAX + ADCGS_NG_MAX)
+#define BODY_BITS 4 /* of 0..ADCGS_BODIES_MAX */
+#define BODY_TREE (1 << BODY_BITS)
 
 struct adcgs_latents {
     adcgs_memory *memory;
@@ -175,18 +177,50 @@ adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model
     return ADCGS_OK;
 }
 
-void adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_flag_fn code, void *user)
+/* What the bodies of a slice are coded with, and the last of them. */
+typedef struct body_coder {
+    adcgs_adaptive same[2], tree[BODY_TREE];
+    int last;
+} body_coder;
+
+/* The body of an anchor that is not static: that of the last one, or another. */
+static adcgs_status code_body(body_coder *b, adcgs_model *model, uint32_t anchor, adcgs_flag_fn code, void *user,
+                              adcgs_error *error)
+{
+    const int bodies = model->params.bodies, last = b->last, body = model->body[anchor];
+    if (!code(user, &b->same[last > 0], body == last)) {
+        int node = 1;
+        for (int value = BODY_TREE + body, bit = BODY_BITS - 1; bit >= 0; bit--)
+            node = 2 * node + code(user, &b->tree[node], value >> bit & 1);
+        b->last = node - BODY_TREE;
+        if (b->last > bodies || b->last == last)
+            return adcgs_fail(error, ADCGS_ERR_DATA, "body of anchor %u is %d, expected 0..%d, but not %d", anchor, b->last,
+                              bodies, last);
+    }
+    model->body[anchor] = (uint8_t)b->last;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_flag_fn code, void *user,
+                                 adcgs_error *error)
 {
     adcgs_adaptive static_context[2], mask_context[4];
+    body_coder bodies = { .last = 0 };
     const int n_k = model->params.k, moves = model->params.time_rows > 0;
     int previous_static = 0;
     uint32_t previous_mask = (1U << n_k) - 1;
     adcgs_adaptive_init(static_context, ADCGS_COUNTOF(static_context));
+    adcgs_adaptive_init(bodies.same, ADCGS_COUNTOF(bodies.same));
+    adcgs_adaptive_init(bodies.tree, ADCGS_COUNTOF(bodies.tree));
     adcgs_adaptive_init(mask_context, ADCGS_COUNTOF(mask_context));
     for (uint32_t i = begin; i < end; i++) {
         if (moves)
             previous_static = code(user, &static_context[previous_static], model->is_static[i]);
         model->is_static[i] = (uint8_t)previous_static;
+        if (model->params.bodies && !previous_static)
+            ADCGS_TRY(code_body(&bodies, model, i, code, user, error));
+        else
+            model->body[i] = 0;
         uint32_t mask = 0, left = 1;
         for (int k = 0; k < n_k; k++) {
             left = (uint32_t)code(user, &mask_context[2 * (previous_mask >> k & 1) + left], model->mask[i] >> k & 1);
@@ -195,4 +229,5 @@ void adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs
         model->mask[i] = (uint16_t)mask;
         previous_mask = mask;
     }
+    return ADCGS_OK;
 }

@@ -36,8 +36,8 @@ void adcgs_latents_free(adcgs_latents **latents);
 
 /**
  * Walk one layer (0..4) of anchors [begin, end) in coding order; begin and end are multiples of 64, or end == n.
- * Layer m needs layers < m of the same anchors final; flags and masks are final before layer 0. Layer m > 0 also sets f_g of
- * primitives that do not exist to 0. Threads may walk disjoint ranges at once. Fails only for want of memory.
+ * Layer m needs layers < m of the same anchors final; flags, bodies and masks are final before layer 0. Layer m > 0 also sets f_g
+ * of primitives that do not exist to 0. Threads may walk disjoint ranges at once. Fails only for want of memory.
  */
 adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                 adcgs_latent_visit visit, void *user, adcgs_error *error);
@@ -48,7 +48,10 @@ adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *mod
 /** Decode it with a decoder that has been started. It is finished here, and holds its final state if all is well. */
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   adcgs_range_dec *range, adcgs_error *error);
-/** What an absent layer holds: every n = 0, so yq = mu. For layer 0 also masks and flags: all present, none static. */
+/** The flags, bodies and masks with which the sub-stream of layer 0 begins, alone. */
+adcgs_status adcgs_latents_decode_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_range_dec *range,
+                                        adcgs_error *error);
+/** What an absent layer holds: every n = 0, so yq = mu. For layer 0 also masks and flags: all present, none static, no bodies. */
 adcgs_status adcgs_latents_conceal(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end);
 
 #endif

@@ -25,12 +25,19 @@ static void decode_site(void *user, const adcgs_latent_site *site)
     }
 }
 
+adcgs_status adcgs_latents_decode_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_range_dec *range,
+                                        adcgs_error *error)
+{
+    decoder d = { range, model->shape };
+    return adcgs_latents_flags(model, begin, end, decode_flag, &d, error);
+}
+
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   adcgs_range_dec *range, adcgs_error *error)
 {
     decoder d = { range, model->shape };
     if (layer == 0)
-        adcgs_latents_flags(model, begin, end, decode_flag, &d);
+        ADCGS_TRY(adcgs_latents_decode_flags(model, begin, end, range, error));
     ADCGS_TRY(adcgs_latents_walk(latents, model, layer, begin, end, decode_site, &d, error));
     return adcgs_range_dec_finish(range, error);
 }
@@ -44,7 +51,7 @@ static void conceal_site(void *user, const adcgs_latent_site *site)
 adcgs_status adcgs_latents_conceal(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end)
 {
     for (uint32_t i = begin; layer == 0 && i < end; i++) {
-        model->is_static[i] = 0;
+        model->is_static[i] = model->body[i] = 0;
         model->mask[i] = (uint16_t)((1U << model->params.k) - 1);
     }
     return adcgs_latents_walk(latents, model, layer, begin, end, conceal_site, NULL, NULL);

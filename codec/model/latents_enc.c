@@ -50,7 +50,7 @@ adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *mod
     encoder e = { .shape = model->shape, .status = ADCGS_OK, .error = error };
     adcgs_range_enc_init(&e.range, out);
     if (layer == 0)
-        adcgs_latents_flags(model, begin, end, encode_flag, &e);
+        ADCGS_TRY(adcgs_latents_flags(model, begin, end, encode_flag, &e, error));
     ADCGS_TRY(adcgs_latents_walk(latents, model, layer, begin, end, encode_site, &e, error));
     ADCGS_TRY(e.status);
     adcgs_range_enc_finish(&e.range);

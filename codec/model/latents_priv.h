@@ -8,7 +8,11 @@
 /** Code one flag with its context: a decoder returns what it read, an encoder writes and returns bit. */
 typedef int (*adcgs_flag_fn)(void *user, adcgs_adaptive *context, int bit);
 
-/** Walk static flags and masks of anchors [begin, end) in coding order; the model receives what code returns. */
-void adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_flag_fn code, void *user);
+/**
+ * Walk static flags, bodies and masks of anchors [begin, end) in coding order; the model receives what code returns. Fails where
+ * that is a body that cannot be.
+ */
+adcgs_status adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_flag_fn code, void *user,
+                                 adcgs_error *error);
 
 #endif

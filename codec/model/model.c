@@ -21,7 +21,7 @@ uint64_t adcgs_anchor_values(const adcgs_params *params)
 
 uint64_t adcgs_anchor_bytes(const adcgs_params *params)
 {
-    return 3 * sizeof(uint32_t) + sizeof(uint8_t) + sizeof(uint16_t) + adcgs_anchor_values(params) * sizeof(int16_t);
+    return 3 * sizeof(uint32_t) + 2 * sizeof(uint8_t) + sizeof(uint16_t) + adcgs_anchor_values(params) * sizeof(int16_t);
 }
 
 void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint32_t *n_out)
@@ -54,7 +54,7 @@ void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint
         in = 6U * params->octaves + (params->fine_uses_fv ? fv : 0) + width;
         out = 4U * params->k;
     } else if (role == ADCGS_ROLE_TIME && params->time_rows > 0) {
-        in = width;
+        in = width + adcgs_pose_columns(params);
         out = params->time_rows;
     }
     *n_in = in;
@@ -106,7 +106,8 @@ adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_e
     const size_t n = model->n, value = sizeof(int16_t);
     model->pos = adcgs_alloc(memory, n, 3 * sizeof *model->pos, error);
     model->is_static = model->pos ? adcgs_alloc(memory, n, sizeof *model->is_static, error) : NULL;
-    model->mask = model->is_static ? adcgs_alloc(memory, n, sizeof *model->mask, error) : NULL;
+    model->body = model->is_static ? adcgs_alloc(memory, n, sizeof *model->body, error) : NULL;
+    model->mask = model->body ? adcgs_alloc(memory, n, sizeof *model->mask, error) : NULL;
     model->eta = model->mask ? adcgs_alloc(memory, n, p->n_eta * value, error) : NULL;
     model->fv = model->eta ? adcgs_alloc(memory, n, p->n_fv * value, error) : NULL;
     model->sigma = model->fv ? adcgs_alloc(memory, n, (size_t)adcgs_sigma_rows(p) * value, error) : NULL;
@@ -119,6 +120,7 @@ void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory)
 {
     adcgs_free(memory, model->pos);
     adcgs_free(memory, model->is_static);
+    adcgs_free(memory, model->body);
     adcgs_free(memory, model->mask);
     adcgs_free(memory, model->eta);
     adcgs_free(memory, model->fv);

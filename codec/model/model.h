@@ -22,6 +22,8 @@
 #define ADCGS_SPAN_N 5
 #define ADCGS_SIGMA_MAX (ADCGS_SIGMA_N + ADCGS_SPAN_N)
 #define ADCGS_COLOUR_N 3
+#define ADCGS_BODIES_MAX 15
+#define ADCGS_POSE_N 7
 #define ADCGS_LAYERS 5
 #define ADCGS_ANCHORS_MAX (1U << 20)
 #define ADCGS_TIME_ROWS_MAX 4096
@@ -49,8 +51,9 @@ typedef struct adcgs_params {
     uint8_t coarse_rotation; /**< F_omega also predicts a rotation of the anchor */
     uint8_t adaptive_steps;  /**< the steps of all but f_v adapt to the anchor, by E_q */
     uint8_t spans;           /**< anchors that move have a span of life and a velocity, channels 6.. of Sigma_v */
+    uint8_t bodies;          /**< rigid bodies, 0..15, whose poses are the last columns of Z; 0 without a time table */
     uint16_t time_rows;   /**< rows of Z; 0: the scene is still, no deformation networks */
-    uint16_t time_width;  /**< columns of Z */
+    uint16_t time_width;  /**< columns of Z that are f_t; behind them come adcgs_pose_columns() */
 } adcgs_params;
 
 typedef struct adcgs_model {
@@ -64,6 +67,7 @@ typedef struct adcgs_model {
     uint32_t *pos;   /**< [n][3], Morton order, distinct */
 
     uint8_t *is_static; /**< [n] 1: the anchor is not deformed */
+    uint8_t *body;      /**< [n] the body that the anchor goes with, 1..bodies; 0: none, as of what is static */
     uint16_t *mask;     /**< [n] bit k: primitive k exists */
 
     /* Reconstructed latents yq in 1/64 step, |yq| <= 32767. Primitives that do not exist have f_g = 0. */
@@ -104,6 +108,18 @@ static inline int adcgs_sigma_rows(const adcgs_params *params)
 static inline int adcgs_sigma_coded(const adcgs_model *model, uint32_t anchor)
 {
     return model->params.time_rows && !model->is_static[anchor] ? adcgs_sigma_rows(&model->params) : ADCGS_SIGMA_N;
+}
+
+/** Columns of Z that are poses: of each body a quaternion less the identity, then its way, all times 16 (ADCGS_POSE_SCALE). */
+static inline uint32_t adcgs_pose_columns(const adcgs_params *params)
+{
+    return (uint32_t)params->bodies * ADCGS_POSE_N;
+}
+#define ADCGS_POSE_SCALE 0x1p-4f
+/** Where a body's pose begins in a row of Z; body from 1. */
+static inline uint32_t adcgs_pose_at(const adcgs_params *params, int body)
+{
+    return params->time_width + (uint32_t)(body - 1) * ADCGS_POSE_N;
 }
 
 /** Expected n_in, n_out of a role's network under params; 0,0 if the role is absent under params. */

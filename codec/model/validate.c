@@ -48,6 +48,7 @@ adcgs_status adcgs_params_validate(const adcgs_params *p, adcgs_error *error)
     ADCGS_TRY(check_range("coarse_rotation", p->coarse_rotation, 0, 1, error));
     ADCGS_TRY(check_range("adaptive_steps", p->adaptive_steps, 0, 1, error));
     ADCGS_TRY(check_range("spans", p->spans, 0, p->time_rows > 0, error));
+    ADCGS_TRY(check_range("bodies", p->bodies, 0, p->time_rows > 0 ? ADCGS_BODIES_MAX : 0, error));
     ADCGS_TRY(check_range("time_rows", p->time_rows, 0, ADCGS_TIME_ROWS_MAX, error));
     ADCGS_TRY(check_range("time_width", p->time_width, p->time_rows > 0, ADCGS_TIME_WIDTH_MAX, error));
     if (p->n_fg % p->chunks)
@@ -204,6 +205,16 @@ static adcgs_status check_spans(const adcgs_model *m, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** That bodies are there, and that what is static is part of none. */
+static adcgs_status check_bodies(const adcgs_model *m, adcgs_error *error)
+{
+    for (uint32_t i = 0; i < m->n; i++)
+        if (m->body[i] > m->params.bodies || (m->body[i] && m->is_static[i]))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: body of anchor %u is %u, expected 0..%u, and 0 of a static one", i,
+                              m->body[i], m->params.bodies);
+    return ADCGS_OK;
+}
+
 /** Flags, masks, and that primitives which do not exist hold zeros. */
 static adcgs_status check_primitives(const adcgs_model *m, adcgs_error *error)
 {
@@ -248,6 +259,7 @@ adcgs_status adcgs_model_validate(const adcgs_model *model, adcgs_error *error)
     ADCGS_TRY(check_positions(model, error));
     ADCGS_TRY(check_primitives(model, error));
     ADCGS_TRY(check_spans(model, error));
+    ADCGS_TRY(check_bodies(model, error));
     ADCGS_TRY(check_values("eta", model->eta, n * p->n_eta, error));
     ADCGS_TRY(check_values("fv", model->fv, n * p->n_fv, error));
     ADCGS_TRY(check_values("sigma", model->sigma, n * (size_t)adcgs_sigma_rows(p), error));

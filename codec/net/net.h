@@ -37,7 +37,7 @@ typedef enum adcgs_role {
     ADCGS_ROLE_PREDICTION = 8,    /**< F_theta (binary32) */
     ADCGS_ROLE_COARSE = 9,        /**< F_omega (binary32) */
     ADCGS_ROLE_FINE = 10,         /**< F_varpi (binary32) */
-    ADCGS_ROLE_TIME = 11,         /**< Z, the time table: one tensor [time_rows][time_width] in layer 0's w, no bias */
+    ADCGS_ROLE_TIME = 11,         /**< Z, the time table: one tensor [time_rows][time_width + poses] in layer 0's w, no bias */
     ADCGS_ROLES = 12
 } adcgs_role;
 

@@ -8,6 +8,7 @@
 #include "config.h"
 
 #include "base/cpu.h"
+#include "splat/bodies.h"
 #include "splat/floatnet.h"
 #include "splat/rows.h"
 #include "splat/splat.h"
@@ -38,7 +39,8 @@ struct adcgs_splat {
     float *coarse_part, *fine_part; /* [moving][outputs of layer 0][64]: layer 0 over the static inputs */
     float *scratch;                 /* [threads][scratch_rows][64] */
     size_t scratch_rows;
-    float *time_code, *coarse_time, *fine_time; /* f_t; bias and time's part of layer 0 */
+    float *time_code, *coarse_time, *fine_time; /* a row of Z; bias and f_t's part of layer 0 */
+    adcgs_body_pose pose[ADCGS_BODIES_MAX];
     float time;
     int has_time;
 };
@@ -182,7 +184,7 @@ static int group_moves(const adcgs_model *m, uint32_t group)
 
 static uint32_t count_moving(const adcgs_splat *s, uint32_t *moving_index)
 {
-    const int movers = s->coarse.n_layers || s->fine.n_layers || s->model->params.spans;
+    const int movers = s->coarse.n_layers || s->fine.n_layers || s->model->params.spans || s->model->params.bodies;
     uint32_t moving = 0;
     for (uint32_t g = 0; g < s->groups; g++)
         moving_index[g] = movers && group_moves(s->model, g) ? moving++ : UINT32_MAX;
@@ -210,6 +212,12 @@ static void *get(adcgs_splat *s, size_t count, size_t size, int *missing, adcgs_
     return p;
 }
 
+/* Columns of Z: f_t, and the poses. */
+static size_t time_columns(const adcgs_model *m)
+{
+    return (size_t)m->params.time_width + adcgs_pose_columns(&m->params);
+}
+
 static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
 {
     const size_t k = s->model->params.k, moving = s->moving, threads = (size_t)adcgs_pool_threads(s->pool);
@@ -226,7 +234,7 @@ static adcgs_status alloc_arrays(adcgs_splat *s, adcgs_error *error)
     s->coarse_part = get(s, moving * coarse, row, &missing, error);
     s->fine_part = get(s, moving * fine, row, &missing, error);
     s->scratch = get(s, threads * s->scratch_rows, row, &missing, error);
-    s->time_code = get(s, s->model->params.time_width, sizeof(float), &missing, error);
+    s->time_code = get(s, time_columns(s->model), sizeof(float), &missing, error);
     s->coarse_time = get(s, coarse, sizeof(float), &missing, error);
     s->fine_time = get(s, fine, sizeof(float), &missing, error);
     return !missing ? ADCGS_OK : adcgs_alloc_status(error);
@@ -240,6 +248,7 @@ static adcgs_status build(adcgs_splat *s, adcgs_cpu_level cpu, uint32_t *moving_
     for (uint32_t g = 0; g < s->groups; g++)
         if (moving_index[g] != UINT32_MAX)
             s->moving_group[moving_index[g]] = g;
+    adcgs_bodies_init(s->pose, s->model);
     canonical_job job = {s, moving_index};
     adcgs_pool_run(s->pool, canonical_group, &job, (int)s->groups);
     return ADCGS_OK;
@@ -301,11 +310,11 @@ void adcgs_splat_free(adcgs_splat **splat)
 
 /* ---- At a time ---- */
 
-/* f_t: linear interpolation between two rows of the time table. */
+/* f_t and the poses: linear interpolation between two rows of the time table. */
 static void interpolate_time(adcgs_splat *s, float t)
 {
     const adcgs_tensor *z = &s->model->net[ADCGS_ROLE_TIME].layer[0].w;
-    const size_t width = s->model->params.time_width;
+    const size_t width = time_columns(s->model);
     const float u = t * (float)(z->rows - 1);
     const uint32_t row = z->rows < 2 ? 0 : ADCGS_MIN((uint32_t)u, z->rows - 2), next = z->rows < 2 ? 0 : row + 1;
     const float fraction = u - (float)row;
@@ -351,14 +360,16 @@ static void deform_group(void *arg, int index, int thread)
     float *z = s->scratch + (size_t)thread * s->scratch_rows * ADCGS_LANES, *other = z + rows;
     const adcgs_movers movers = {s->coarse.n_layers > 0, s->coarse.n_layers > 0 && p->coarse_rotation, p->spans};
     adcgs_anchor_motion motion;
+    adcgs_body_lanes lanes;
+    const adcgs_body_lanes *bodies = adcgs_bodies_gather(&lanes, s->pose, s->model, group * ADCGS_LANES) ? &lanes : NULL;
     const float *coarse_part = s->coarse_part + at * (size_t)s->coarse.layer[0].n_out * ADCGS_LANES;
     const float *fine_part = s->fine_part + at * (size_t)s->fine.layer[0].n_out * ADCGS_LANES;
     const float *coarse = deform_outputs(s, &s->coarse, coarse_part, s->coarse_time, z, other);
-    s->dsp.motion(&motion, s->anchors + at, coarse, &movers, s->time);
+    s->dsp.motion(&motion, s->anchors + at, coarse, &movers, bodies, s->time);
     const float *fine = deform_outputs(s, &s->fine, fine_part, s->fine_time, z, other);
     for (int k = 0; k < p->k; k++) {
         const adcgs_slot_out to = slot_out(s, group, k);
-        s->dsp.deform(&to, s->slots + at * p->k + k, &motion, &movers, fine ? fine + (size_t)k * 4 * ADCGS_LANES : NULL,
+        s->dsp.deform(&to, s->slots + at * p->k + k, &motion, &movers, bodies, fine ? fine + (size_t)k * 4 * ADCGS_LANES : NULL,
                       s->present + (at * p->k + (size_t)k) * ADCGS_LANES, s->moves + at * ADCGS_LANES);
     }
 }
@@ -368,6 +379,7 @@ adcgs_status adcgs_splat_at(adcgs_splat *s, float t, adcgs_primitives *out, adcg
     const float time = t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;
     if (s->moving && !(s->has_time && s->time == time)) {
         interpolate_time(s, time);
+        adcgs_bodies_at(s->pose, &s->model->params, s->time_code);
         time_part(s->coarse_time, &s->coarse, s->time_code, s->model->params.time_width);
         time_part(s->fine_time, &s->fine, s->time_code, s->model->params.time_width);
         s->time = time;

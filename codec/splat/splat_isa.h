@@ -17,13 +17,21 @@ typedef struct adcgs_anchor_lanes {
 
 /** What a group's anchors do at one time. */
 typedef struct adcgs_anchor_motion {
-    _Alignas(64) float position[3][ADCGS_LANES]; /**< X_v, turned, + dX + the way of its span */
+    _Alignas(64) float position[3][ADCGS_LANES]; /**< X_v, turned, + dX + the way of its span, and where its body took that */
     float scale[3][ADCGS_LANES];      /**< exp of dS */
     float colour[3][ADCGS_LANES];     /**< dC_v */
     float q[4][ADCGS_LANES];          /**< qr */
     float matrix[9][ADCGS_LANES];     /**< its rotation matrix, row-major */
     float presence[ADCGS_LANES];      /**< of spans: how much of it is there, 0..1 */
 } adcgs_anchor_motion;
+
+/** The same of the bodies of a group's anchors; those without one have some other body's. */
+typedef struct adcgs_body_lanes {
+    _Alignas(64) float q[4][ADCGS_LANES];
+    float matrix[9][ADCGS_LANES];
+    float centre[3][ADCGS_LANES], place[3][ADCGS_LANES];
+    int32_t has[ADCGS_LANES]; /**< 1: the anchor has a body */
+} adcgs_body_lanes;
 
 /** 64 slots of one primitive index of a group. Canonical values, from the prediction. */
 typedef struct adcgs_slot_lanes {
@@ -45,12 +53,13 @@ typedef struct adcgs_splat_dsp {
     /** Primitives of anchors that do not move. */
     void (*place)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_lanes *anchor,
                   const int32_t *present);
-    /** What moves at t; of F_omega's outputs, [9][64], or [12][64] if it turns, where there is one. */
+    /** What moves at t; of F_omega's outputs, [9][64], or [12][64] if it turns, where there is one. bodies may be NULL. */
     void (*motion)(adcgs_anchor_motion *motion, const adcgs_anchor_lanes *anchor, const float *out, const adcgs_movers *movers,
-                   float t);
-    /** Primitives of the anchors that move; other lanes of to stay. fine, [4][64], may be NULL. */
+                   const adcgs_body_lanes *bodies, float t);
+    /** Primitives of the anchors that move; other lanes of to stay. bodies, fine, [4][64], may be NULL. */
     void (*deform)(const adcgs_slot_out *to, const adcgs_slot_lanes *slot, const adcgs_anchor_motion *motion,
-                   const adcgs_movers *movers, const float *fine, const int32_t *present, const int32_t *moves);
+                   const adcgs_movers *movers, const adcgs_body_lanes *bodies, const float *fine, const int32_t *present,
+                   const int32_t *moves);
     void (*position_code)(float *out, const float *x, int octaves);
 } adcgs_splat_dsp;
 

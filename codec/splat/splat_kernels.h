@@ -5,20 +5,10 @@
  * so that compilers vectorise it for the CPU level it is compiled for.
  */
 #include "base/fmath.h"
+#include "splat/quaternion.h"
 #include "splat/splat_isa.h"
 
 #define LANES for (int l = 0; l < ADCGS_LANES; l++)
-
-/* A quaternion whose squared norm is outside cannot be normalised; it becomes the identity. */
-static inline int usable_norm(float n)
-{
-    return n >= 0x1p-40f && n <= 0x1p100f;
-}
-
-static inline float norm2(float w, float x, float y, float z)
-{
-    return fmaf(z, z, fmaf(y, y, fmaf(x, x, w * w)));
-}
 
 static void anchor(adcgs_anchor_lanes *a, const float *sigma, int spans)
 {
@@ -48,8 +38,8 @@ static void predict(adcgs_slot_lanes *s, const adcgs_anchor_lanes *a, const floa
     LANES {
         const float w = out[6 * ADCGS_LANES + l] + 1.0f, x = out[7 * ADCGS_LANES + l];
         const float y = out[8 * ADCGS_LANES + l], z = out[9 * ADCGS_LANES + l];
-        const float n = norm2(w, x, y, z), root = sqrtf(n);
-        const int ok = usable_norm(n);
+        const float n = adcgs_norm2(w, x, y, z), root = sqrtf(n);
+        const int ok = adcgs_usable_norm(n);
         s->q[0][l] = ok ? w / root : 1.0f;
         s->q[1][l] = ok ? x / root : 0.0f;
         s->q[2][l] = ok ? y / root : 0.0f;
@@ -99,33 +89,56 @@ static void place(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adc
 static void turn(adcgs_anchor_motion *m, const float *r)
 {
     LANES {
-        const float n = norm2(1.0f, r[l], r[ADCGS_LANES + l], r[2 * ADCGS_LANES + l]), root = sqrtf(n);
-        const int ok = usable_norm(n);
+        const float n = adcgs_norm2(1.0f, r[l], r[ADCGS_LANES + l], r[2 * ADCGS_LANES + l]), root = sqrtf(n);
+        const int ok = adcgs_usable_norm(n);
         const float w = ok ? 1.0f / root : 1.0f, x = ok ? r[l] / root : 0.0f, y = ok ? r[ADCGS_LANES + l] / root : 0.0f;
-        const float z = ok ? r[2 * ADCGS_LANES + l] / root : 0.0f, x2 = x + x, y2 = y + y, z2 = z + z;
+        const float z = ok ? r[2 * ADCGS_LANES + l] / root : 0.0f;
+        float matrix[9];
+        adcgs_rotation_matrix(matrix, w, x, y, z);
         m->q[0][l] = w;
         m->q[1][l] = x;
         m->q[2][l] = y;
         m->q[3][l] = z;
-        m->matrix[0][l] = fmaf(-y2, y, fmaf(-z2, z, 1.0f));
-        m->matrix[1][l] = fmaf(x2, y, -(w * z2));
-        m->matrix[2][l] = fmaf(x2, z, w * y2);
-        m->matrix[3][l] = fmaf(x2, y, w * z2);
-        m->matrix[4][l] = fmaf(-x2, x, fmaf(-z2, z, 1.0f));
-        m->matrix[5][l] = fmaf(y2, z, -(w * x2));
-        m->matrix[6][l] = fmaf(x2, z, -(w * y2));
-        m->matrix[7][l] = fmaf(y2, z, w * x2);
-        m->matrix[8][l] = fmaf(-x2, x, fmaf(-y2, y, 1.0f));
+        m->matrix[0][l] = matrix[0];
+        m->matrix[1][l] = matrix[1];
+        m->matrix[2][l] = matrix[2];
+        m->matrix[3][l] = matrix[3];
+        m->matrix[4][l] = matrix[4];
+        m->matrix[5][l] = matrix[5];
+        m->matrix[6][l] = matrix[6];
+        m->matrix[7][l] = matrix[7];
+        m->matrix[8][l] = matrix[8];
     }
 }
 
-/* A position or an offset turned by the anchor's rotation. */
-static void turn_vector(float out[3][ADCGS_LANES], const float in[3][ADCGS_LANES], const adcgs_anchor_motion *m)
+/* Positions or offsets turned by rotation matrices; in, out: [3][64]. */
+static void turn_vector(float *restrict out, const float *restrict in, const float matrix[9][ADCGS_LANES])
 {
+    const float *x = in, *y = in + ADCGS_LANES, *z = in + 2 * ADCGS_LANES;
     for (int c = 0; c < 3; c++) {
-        const float *r0 = m->matrix[3 * c], *r1 = m->matrix[3 * c + 1], *r2 = m->matrix[3 * c + 2];
-        LANES out[c][l] = fmaf(r2[l], in[2][l], fmaf(r1[l], in[1][l], r0[l] * in[0][l]));
+        const float *r0 = matrix[3 * c], *r1 = matrix[3 * c + 1], *r2 = matrix[3 * c + 2];
+        LANES out[c * ADCGS_LANES + l] = fmaf(r2[l], z[l], fmaf(r1[l], y[l], r0[l] * x[l]));
     }
+}
+
+/* Products of quaternions, the rotation r after the rotation q, not normalised again; out, q: [4][64]. */
+static void turn_quaternion(float *restrict out, const float r[4][ADCGS_LANES], const float *restrict q)
+{
+    LANES {
+        const float rw = r[0][l], rx = r[1][l], ry = r[2][l], rz = r[3][l];
+        const float w = q[l], x = q[ADCGS_LANES + l], y = q[2 * ADCGS_LANES + l], z = q[3 * ADCGS_LANES + l];
+        out[l] = fmaf(-rz, z, fmaf(-ry, y, fmaf(-rx, x, rw * w)));
+        out[ADCGS_LANES + l] = fmaf(-rz, y, fmaf(ry, z, fmaf(rx, w, rw * x)));
+        out[2 * ADCGS_LANES + l] = fmaf(rz, x, fmaf(ry, w, fmaf(-rx, z, rw * y)));
+        out[3 * ADCGS_LANES + l] = fmaf(rz, w, fmaf(-ry, x, fmaf(rx, y, rw * z)));
+    }
+}
+
+/* Rows of what bodies have changed, and of what is as it was where an anchor has none. */
+static void keep_bodiless(float *restrict changed, const float *restrict before, const int32_t *restrict has, int rows)
+{
+    for (int c = 0; c < rows * ADCGS_LANES; c += ADCGS_LANES)
+        LANES changed[c + l] = has[l] ? changed[c + l] : before[c + l];
 }
 
 /* An anchor's way since the middle of its life, and how much of it is there. */
@@ -141,7 +154,21 @@ static void live(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, float t)
         LANES m->position[c][l] = fmaf(a->velocity[c][l], u[l], m->position[c][l]);
 }
 
-static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const float *out, const adcgs_movers *movers, float t)
+/* Anchors go with their bodies. */
+static void carry(adcgs_anchor_motion *m, const adcgs_body_lanes *b)
+{
+    float from[3][ADCGS_LANES], to[3][ADCGS_LANES];
+    for (int c = 0; c < 3; c++)
+        LANES from[c][l] = m->position[c][l] - b->centre[c][l];
+    turn_vector(to[0], from[0], b->matrix);
+    for (int c = 0; c < 3; c++)
+        LANES to[c][l] += b->place[c][l];
+    keep_bodiless(to[0], m->position[0], b->has, 3);
+    memcpy(m->position, to, sizeof to);
+}
+
+static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const float *out, const adcgs_movers *movers,
+                   const adcgs_body_lanes *bodies, float t)
 {
     memcpy(m->position, a->position, sizeof m->position);
     for (int c = 0; movers->coarse && c < 3; c++)
@@ -151,44 +178,63 @@ static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const fl
         }
     if (movers->rotation) {
         turn(m, out + 9 * ADCGS_LANES);
-        turn_vector(m->position, a->position, m);
+        turn_vector(m->position[0], a->position[0], (const float(*)[ADCGS_LANES])m->matrix);
     }
     for (int c = 0; movers->coarse && c < 3; c++)
         LANES m->position[c][l] += out[c * ADCGS_LANES + l];
     if (movers->spans)
         live(m, a, t);
+    if (bodies)
+        carry(m, bodies);
 }
 
-/* Product of the anchor's rotation and the primitive's; not normalised again. */
-static void turn_quaternion(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m,
-                            const int32_t *moves)
+/* Orientations behind the anchor's rotation and its body's. */
+static void deform_rotation(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, int rotation,
+                            const adcgs_body_lanes *bodies, const int32_t *moves)
 {
-    float *restrict ow = to->rotation[0], *restrict ox = to->rotation[1];
-    float *restrict oy = to->rotation[2], *restrict oz = to->rotation[3];
-    LANES {
-        const float rw = m->q[0][l], rx = m->q[1][l], ry = m->q[2][l], rz = m->q[3][l];
-        const float w = s->q[0][l], x = s->q[1][l], y = s->q[2][l], z = s->q[3][l];
-        const float pw = fmaf(-rz, z, fmaf(-ry, y, fmaf(-rx, x, rw * w)));
-        const float px = fmaf(-rz, y, fmaf(ry, z, fmaf(rx, w, rw * x)));
-        const float py = fmaf(rz, x, fmaf(ry, w, fmaf(-rx, z, rw * y)));
-        const float pz = fmaf(rz, w, fmaf(-ry, x, fmaf(rx, y, rw * z)));
-        ow[l] = moves[l] ? pw : ow[l];
-        ox[l] = moves[l] ? px : ox[l];
-        oy[l] = moves[l] ? py : oy[l];
-        oz[l] = moves[l] ? pz : oz[l];
+    float turned[4][ADCGS_LANES], carried[4][ADCGS_LANES];
+    const float *q = s->q[0];
+    if (rotation) {
+        turn_quaternion(turned[0], m->q, q);
+        q = turned[0];
     }
+    if (bodies) {
+        turn_quaternion(carried[0], bodies->q, q);
+        keep_bodiless(carried[0], q, bodies->has, 4);
+        q = carried[0];
+    }
+    for (int c = 0; c < 4; c++) {
+        float *restrict out = to->rotation[c];
+        LANES out[l] = moves[l] ? q[c * ADCGS_LANES + l] : out[l];
+    }
+}
+
+/* Offsets behind the same, [3][64]: those at rest, or in one of the two buffers. */
+static const float *deform_offset(float *turned, float *carried, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m,
+                                  int rotation, const adcgs_body_lanes *bodies)
+{
+    const float *offset = s->offset[0];
+    if (rotation) {
+        turn_vector(turned, offset, m->matrix);
+        offset = turned;
+    }
+    if (bodies) {
+        turn_vector(carried, offset, bodies->matrix);
+        keep_bodiless(carried, offset, bodies->has, 3);
+        offset = carried;
+    }
+    return offset;
 }
 
 static void deform_shape(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m,
-                         const adcgs_movers *movers, const int32_t *moves)
+                         const adcgs_movers *movers, const adcgs_body_lanes *bodies, const int32_t *moves)
 {
-    float turned[3][ADCGS_LANES];
-    if (movers->rotation) {
-        turn_vector(turned, s->offset, m);
-        turn_quaternion(to, s, m, moves);
-    }
+    float turned[3 * ADCGS_LANES], carried[3 * ADCGS_LANES];
+    const float *offsets = deform_offset(turned, carried, s, m, movers->rotation, bodies);
+    if (movers->rotation || bodies)
+        deform_rotation(to, s, m, movers->rotation, bodies, moves);
     for (int c = 0; c < 3; c++) {
-        const float *offset = movers->rotation ? turned[c] : s->offset[c];
+        const float *offset = offsets + (size_t)c * ADCGS_LANES;
         float *restrict mean = to->mean[c], *restrict scale = to->scale[c];
         LANES {
             const float x = final_mean(m->position[c][l] + offset[l]);
@@ -202,10 +248,10 @@ static void deform_shape(const adcgs_slot_out *to, const adcgs_slot_lanes *s, co
 }
 
 static void deform(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, const adcgs_movers *movers,
-                   const float *fine, const int32_t *present, const int32_t *moves)
+                   const adcgs_body_lanes *bodies, const float *fine, const int32_t *present, const int32_t *moves)
 {
-    if (movers->coarse || movers->spans)
-        deform_shape(to, s, m, movers, moves);
+    if (movers->coarse || movers->spans || bodies)
+        deform_shape(to, s, m, movers, bodies, moves);
     for (int c = 0; c < 3; c++) {
         float *restrict colour = to->colour[c];
         LANES {

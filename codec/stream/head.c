@@ -46,6 +46,7 @@ static void params_from_head(adcgs_params *params, const adcgs_syn_head *h)
     params->coarse_rotation = h->coarse_rotation;
     params->adaptive_steps = h->adaptive_steps;
     params->spans = h->spans;
+    params->bodies = h->bodies;
     params->time_rows = h->time_rows;
     params->time_width = h->time_width;
 }
@@ -114,6 +115,7 @@ adcgs_status adcgs_head_write(adcgs_buffer *out, const adcgs_stream *stream, uin
         .coarse_rotation = params->coarse_rotation,
         .adaptive_steps = params->adaptive_steps,
         .spans = params->spans,
+        .bodies = params->bodies,
         .time_rows = params->time_rows,
         .time_width = params->time_width,
     };

@@ -136,7 +136,19 @@ static void decode_slice(void *arg, int index, int thread)
     one->status = adcgs_latents_decode(job->s->latents, &job->s->model, job->layer, begin, end, &one->range, NULL);
 }
 
-/** Decode usable slices on all threads. The first that fails has its end looked at once more for a message. */
+/** Why decoding a slice failed: a body that cannot be, which its flags tell once more, or its end. */
+static void explain(const slice_job *job, uint32_t index, adcgs_error *why)
+{
+    const slice *one = &job->slices[index];
+    adcgs_range_dec again;
+    uint32_t begin, end;
+    slice_span(job->s, job->first + index, &begin, &end);
+    adcgs_range_dec_init(&again, job->payload + one->offset, one->bytes);
+    if (job->layer > 0 || adcgs_latents_decode_flags(&job->s->model, begin, end, &again, why) == ADCGS_OK)
+        adcgs_range_dec_finish(&one->range, why);
+}
+
+/** Decode usable slices on all threads. The first that fails is looked at once more for a message. */
 static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int layer, uint32_t first, slice *slices,
                                   uint32_t usable)
 {
@@ -149,7 +161,7 @@ static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int la
             continue;
         }
         if (slices[i].status != ADCGS_ERR_MEMORY)
-            adcgs_range_dec_finish(&slices[i].range, &why);
+            explain(&job, i, &why);
         return adcgs_fail(s->error, slices[i].status, "%s: segment %u, slice %u: %.160s", p->chunk, segment_number(s), first + i,
                           why.text);
     }

@@ -17,6 +17,7 @@ EXAMPLES = (
     ("good-net-narrowest", "full", "Eight anchors that move, with hyper-latents and all networks, each as narrow as can be."),
     ("good-deform-rotation", "moving",
      "Both deformation networks, a rotation, a position code and a time code between two rows. Only what becomes of one anchor is shown."),
+    ("good-deform-bodies-alone", "moving", "A rigid body takes an anchor along, and nothing else moves. Shown is what becomes of it."),
     ("good-seq-segments", "elements", "Several segments and an index. What the sub-streams hold is left out."),
 )
 MOST_FIRST, MOST_LAST = 40, 4  # operations shown of a long sub-stream
@@ -194,7 +195,8 @@ def latent_table(model):
     head = model.head
     rows = []
     for i in range(min(model.anchors, 2)):
-        rows += [("anchor %d" % i, "position `%s`, is_static %d, mask %d" % (model.positions[i], model.is_static[i], model.mask[i])),
+        flags = "is_static %d, body %d, mask %d" % (model.is_static[i], model.body[i], model.mask[i])
+        rows += [("anchor %d" % i, "position `%s`, %s" % (model.positions[i], flags)),
                  ("η", "`%s`" % short(model.eta[i])), ("f~v~", "`%s`" % short(model.fv[i])), ("Σ~v~", "`%s`" % short(model.sigma[i])),
                  ("C~v~", "`%s`" % short(model.colour[i]))]
         for k in range(min(head.k, 2)):
@@ -269,11 +271,11 @@ def camera_table(entry):
 # ---- An anchor that moves ----
 
 def first_moving(model):
-    """Anchor and primitive, or none."""
-    if model.network[9] is None and model.network[10] is None:
+    """Anchor and primitive, of a body if there are any, or none."""
+    if model.network[9] is None and model.network[10] is None and model.head.bodies == 0:
         return None
     found = [(i, k) for i in range(model.anchors) for k in range(model.head.k) if not model.is_static[i] and model.mask[i] >> k & 1]
-    return found[0] if found else None
+    return min(found, key=lambda place: model.body[place[0]] == 0) if found else None
 
 
 def patterns(machine, values):
@@ -306,7 +308,8 @@ def moving_table(watch, model, time, splats):
     i, k = place
     networks = [machine.float_network(model.network[role]) for role in (8, 9, 10)]
     t = machine.time_in_segment(model, F64(float(time)))
-    f_t = machine.time_code(model, t)
+    code = machine.time_code(model, t)
+    f_t = code[:model.head.time_width]
     f_v = machine.features(model.fv[i], model.d_fv, Literal(1.0))
     rows = [("t", [t]), ("f~t~", f_t), ("f~v~", f_v)]
     primitive, position = machine.predict(model, networks[0], i, k), machine.anchor_position(model, i)
@@ -320,6 +323,11 @@ def moving_table(watch, model, time, splats):
         life = machine.live(model, i, t, position)
         position, presence = life.position, life.presence
         rows += [("presence", [presence])]
+    body = model.body[i]
+    if body > 0:
+        pose, centre = machine.body_pose(model, code, body), machine.body_centre(model, body)
+        position = machine.carry(pose, centre, position, primitive)
+        rows += [("turn of the body", pose.q), ("its centre", centre), ("its way", pose.way)]
     if networks[2] is not None:
         inputs = machine.position_code(model, i) + (f_v if model.head.fine_uses_fv == 1 else [])
         more, z = network_rows(watch, "F~ϖ~", networks[2], inputs, f_t)

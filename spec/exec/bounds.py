@@ -315,12 +315,12 @@ def networks(b):
     most = {e: b.limit(e, "HEAD")[1] for e in ("n_fv", "n_fg", "octaves", "time_width")}
     fv, code, f_t = [latent] * most["n_fv"], [symmetric(1 + 2.0 ** -20)] * (6 * most["octaves"]), [of_time] * most["time_width"]
     theta = network(b, "theta", fv + [varied] * most["n_fg"], 14)
-    return varied, theta, network(b, "omega", fv + f_t, 12), network(b, "varpi", code + fv + f_t, 4)
+    return of_time, varied, theta, network(b, "omega", fv + f_t, 12), network(b, "varpi", code + fv + f_t, 4)
 
 
 def splats(b):
     m = b.m
-    latent, theta, omega, varpi = networks(b)
+    of_time, latent, theta, omega, varpi = networks(b)
     m.names.update(features=lambda latents, steps, factor: [latent] * 11, features_fg=lambda *_: [latent],
                    step_factors=lambda *_: [1, 1, 1], accumulate=lambda *_: None, outputs=lambda *_: theta)
     model = Record(fv=[None], fg=[[None]], sigma=[None], colour=[None], d_fv=None, d_fg=None, d_sigma=None, d_colour=None,
@@ -340,7 +340,14 @@ def splats(b):
     life = m.live(model, 0, Interval(0, 1), position)
     b.real("life.position", life.position[0])
     b.real("life.presence", life.presence)
-    splat = m.splat(model, 0, 0, life.position, life.presence, primitive)
+    pose = m.body_pose(Record(head=Record(time_width=0)), [of_time] * 7, 1)
+    b.rests_on("fma(binary32(low[a] + high[a] + 1), half, model.origin[a])")  # so it lies where an anchor may lie
+    position = m.carry(pose, m.anchor_position(model, 0), life.position, primitive)
+    b.real("body.way", pose.way[0])
+    b.real("body.position", position[0])
+    for name in ("offset", "rotation"):
+        b.real("body." + name, getattr(primitive, name)[0])
+    splat = m.splat(model, 0, 0, position, life.presence, primitive)
     b.real("splats.any", symmetric(Interval.peak))
     b.real("splat.opacity", splat.opacity)
     return splat

@@ -149,6 +149,7 @@ static void set_anchors(adcgs_model *model, const adcgs_fmodel *f)
     for (uint32_t i = 0; i < f->n; i++) {
         memcpy(model->pos + (size_t)i * 3, f->pos[i], sizeof f->pos[i]);
         model->is_static[i] = model->params.time_rows && f->moving[i] == 0;
+        model->body[i] = 0;
         model->mask[i] = 0;
         for (int k = 0; k < f->params.k; k++)
             if (f->keep[adcgs_fmodel_slot(f, i, k)] != 0)
@@ -264,7 +265,7 @@ adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adc
     memset(model, 0, sizeof *model);
     model->params = f->params;
     if (!moves(f))
-        model->params.time_rows = model->params.time_width = model->params.spans = 0;
+        model->params.time_rows = model->params.time_width = model->params.spans = model->params.bodies = 0;
     model->n = f->n;
     model->depth = (uint8_t)f->shape.depth;
     memcpy(model->origin, f->origin, sizeof model->origin);

@@ -23,7 +23,20 @@ typedef struct adcgs_stereo_point {
     float detail;      /**< contrast of the picture about it, 0..1 */
     uint8_t moves;
     uint8_t in_place;  /**< it lies where what is still lies anyhow: a shadow, what is uncovered, or what turns on the spot */
+    uint8_t body;      /**< the body that it is part of, from 1; 0: none */
 } adcgs_stereo_point;
+
+/** Where a rigid body is at a moment: x at rest is at R(q) (x - pivot) + pivot + way. q: w, x, y, z, of length 1. */
+typedef struct adcgs_stereo_pose {
+    double q[4], way[3];
+} adcgs_stereo_pose;
+
+/** Parts of what moves that keep their form, followed over all moments. Signs of q are such that neighbours in time are near. */
+typedef struct adcgs_stereo_body {
+    double pivot[3];         /**< scene units */
+    adcgs_stereo_pose *pose; /**< [n_moments] */
+    uint32_t n;              /**< points that are part of it */
+} adcgs_stereo_body;
 
 typedef struct adcgs_stereo_options {
     double origin[3], scale; /**< of scene units, see adcgs_scene_frame() */
@@ -41,6 +54,8 @@ typedef struct adcgs_stereo {
     adcgs_stereo_point *moving; /**< ascending in t */
     uint32_t n_moments;
     float *moment;              /**< [n_moments] those that were matched, ascending in t */
+    uint32_t n_bodies;          /**< at most ADCGS_BODIES_MAX, the largest first */
+    adcgs_stereo_body *body;
     adcgs_stereo_maps *maps;
 } adcgs_stereo;
 

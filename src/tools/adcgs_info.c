@@ -79,6 +79,7 @@ static adcgs_status read_report(adcgs_info_report *r, const settings *s, adcgs_e
 static void print_header(const adcgs_info_report *r, const char *name)
 {
     const adcgs_info *i = &r->info;
+    char bodies[24] = "";
     adcgs_text_show(stdout, name);
     printf(": adcgs stream %d.%d, profile %d, level %d%s\n", i->version_major, i->version_minor, i->profile, i->level,
            i->truncated ? ", TRUNCATED" : "");
@@ -88,9 +89,11 @@ static void print_header(const adcgs_info_report *r, const char *name)
            i->scene_origin[2], i->scene_scale, i->axes, i->units);
     printf("picture     colour %s, background %g %g %g, filter %g px^2\n", i->colour, (double)i->background[0],
            (double)i->background[1], (double)i->background[2], (double)r->stream.screen_filter);
-    printf("model       %u anchors (%u static%s), %u Gaussians of at most %d each, %u weights, %d of %d layers\n", i->anchors,
-           i->static_anchors, r->stream.params.spans ? ", others with spans" : "", i->gaussians, i->k, i->weights, i->layers,
-           adcgs_params_layers(&r->stream.params));
+    if (r->stream.params.bodies)
+        snprintf(bodies, sizeof bodies, ", %d bodies", r->stream.params.bodies);
+    printf("model       %u anchors (%u static%s%s), %u Gaussians of at most %d each, %u weights, %d of %d layers\n", i->anchors,
+           i->static_anchors, r->stream.params.spans ? ", others with spans" : "", bodies, i->gaussians, i->k, i->weights,
+           i->layers, adcgs_params_layers(&r->stream.params));
 }
 
 static void print_components(const adcgs_info_report *r)

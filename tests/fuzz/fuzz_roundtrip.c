@@ -34,6 +34,7 @@ static adcgs_params params_of(const uint8_t b[10])
     p.time_rows = b[7] & 1 ? in_range(b[7] >> 1, 1, 20) : 0;
     p.time_width = p.time_rows ? in_range(b[8], 1, 20) : 0;
     p.spans = p.time_rows ? b[6] >> 3 & 1 : 0;
+    p.bodies = p.time_rows ? b[6] >> 4 : 0;
     return p;
 }
 

@@ -41,6 +41,7 @@ void adcgs_random_params(adcgs_params *p, int moving, uint64_t *state)
     p->time_rows = (uint16_t)(moving ? draw(state, 1, 12) : 0);
     p->time_width = (uint16_t)(moving ? draw(state, 1, 9) : 0);
     p->spans = (uint8_t)(moving ? *state >> 33 & 1 : 0);
+    p->bodies = (uint8_t)(moving && *state >> 34 & 1 ? 1 + (*state >> 35) % ADCGS_BODIES_MAX : 0);
 }
 
 /** Magnitudes stay small enough for the E24 row bound with 96 inputs and for finite binary32 networks of 4 layers. */
@@ -151,6 +152,18 @@ adcgs_status adcgs_random_values(adcgs_model *m, uint64_t *state, adcgs_error *e
     return status;
 }
 
+/** Runs of anchors that have a body, or none. */
+static void random_bodies(adcgs_model *m, uint64_t *state)
+{
+    int body = 0;
+    for (uint32_t i = 0; m->params.bodies && i < m->n; i++) {
+        if (m->is_static[i])
+            continue;
+        body = draw(state, 0, 2) ? body : draw(state, 0, m->params.bodies);
+        m->body[i] = (uint8_t)body;
+    }
+}
+
 static adcgs_status random_anchors(adcgs_model *m, uint64_t *state, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
@@ -159,6 +172,7 @@ static adcgs_status random_anchors(adcgs_model *m, uint64_t *state, adcgs_error 
         m->is_static[i] = (uint8_t)(m->params.time_rows > 0 && draw(state, 0, 1));
         m->mask[i] = (uint16_t)((adcgs_random_next(state) | adcgs_random_next(state)) & ((1U << m->params.k) - 1));
     }
+    random_bodies(m, state);
     return adcgs_random_values(m, state, error);
 }
 

@@ -147,6 +147,22 @@ static adcgs_movers movers_of(const call *c)
     return (adcgs_movers){coarse, coarse && c->round & 4, c->round & 1};
 }
 
+static int32_t *flags(call *c)
+{
+    int32_t *const p = (void *)take(c, L, 0);
+    for (int i = 0; i < L; i++)
+        p[i] = scene_uniform(&c->state) < 0.7;
+    return p;
+}
+
+/** In some rounds, bodies that take some of the anchors along. */
+static const adcgs_body_lanes *bodies_of(call *c)
+{
+    adcgs_body_lanes *const bodies = (void *)given(c, FLOATS(adcgs_body_lanes));
+    memcpy(bodies->has, flags(c), sizeof bodies->has);
+    return c->round / 2 % 3 ? bodies : NULL;
+}
+
 static void anchors(call *c)
 {
     const adcgs_splat_dsp *const dsp = splat_dsp(c->level);
@@ -155,16 +171,8 @@ static void anchors(call *c)
     dsp->anchor((void *)added(c, FLOATS(adcgs_anchor_lanes)), given(c, ADCGS_SIGMA_MAX * L), movers.spans);
     const adcgs_anchor_lanes *const anchor = (const void *)given(c, FLOATS(adcgs_anchor_lanes));
     dsp->predict((void *)added(c, FLOATS(adcgs_slot_lanes)), anchor, given(c, 14 * L));
-    dsp->motion((void *)added(c, FLOATS(adcgs_anchor_motion)), anchor, given(c, 12 * L), &movers, given(c, 1)[0]);
+    dsp->motion((void *)added(c, FLOATS(adcgs_anchor_motion)), anchor, given(c, 12 * L), &movers, bodies_of(c), given(c, 1)[0]);
     dsp->position_code(output(c, (size_t)(6 * octaves) * L), given(c, 3 * L), octaves);
-}
-
-static int32_t *flags(call *c)
-{
-    int32_t *const p = (void *)take(c, L, 0);
-    for (int i = 0; i < L; i++)
-        p[i] = scene_uniform(&c->state) < 0.7;
-    return p;
 }
 
 static void slots(call *c)
@@ -174,6 +182,7 @@ static void slots(call *c)
     const adcgs_anchor_lanes *const anchor = (const void *)given(c, FLOATS(adcgs_anchor_lanes));
     const adcgs_slot_lanes *const slot = (const void *)given(c, FLOATS(adcgs_slot_lanes));
     const adcgs_anchor_motion *const motion = (const void *)given(c, FLOATS(adcgs_anchor_motion));
+    const adcgs_body_lanes *const bodies = bodies_of(c);
     const float *const fine = given(c, 4 * L);
     const int32_t *const present = flags(c), *const moves = flags(c);
     adcgs_slot_out to;
@@ -188,7 +197,8 @@ static void slots(call *c)
     to.opacity = rows + 13 * L;
     if (c->round & 1)
         dsp->place(&to, slot, anchor, present);
-    dsp->deform(&to, slot, motion, &movers, (movers.coarse || movers.spans) && c->round & 2 ? NULL : fine, present, moves);
+    const int fewer = (movers.coarse || movers.spans || bodies) && c->round & 2;
+    dsp->deform(&to, slot, motion, &movers, bodies, fewer ? NULL : fine, present, moves);
 }
 
 /* ---- The renderer, and what training promises as well ---- */

@@ -182,9 +182,31 @@ static float live(const adcgs_model *m, uint32_t anchor, float t, float position
     return adcgs_exp(-u4);
 }
 
+/* Where an anchor's body takes it: about the middle of the box of all its voxels, and from there. */
+static void take_along(const adcgs_model *m, uint32_t anchor, const float *time, float position[3], float offset[3], float q[4])
+{
+    const float *z = time + m->params.time_width + 7 * (m->body[anchor] - 1);
+    float r[4] = {fmaf(z[0], 0.0625f, 1.0f), z[1] * 0.0625f, z[2] * 0.0625f, z[3] * 0.0625f}, centre[3];
+    normalise(r);
+    for (size_t a = 0; a < 3; a++) {
+        uint32_t low = m->pos[3 * (size_t)anchor + a], high = low;
+        for (uint32_t i = 0; i < m->n; i++)
+            if (m->body[i] == m->body[anchor]) {
+                low = ADCGS_MIN(low, m->pos[3 * (size_t)i + a]);
+                high = ADCGS_MAX(high, m->pos[3 * (size_t)i + a]);
+            }
+        centre[a] = fmaf((float)(low + high + 1), 0.5f * m->voxel, m->origin[a]);
+        position[a] -= centre[a];
+    }
+    turn(r, position, offset, q);
+    for (int a = 0; a < 3; a++)
+        position[a] += centre[a] + z[4 + a] * 0.0625f;
+}
+
 static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
 {
-    float out[ADCGS_NET_WIDTH_MAX], coarse[ADCGS_NET_WIDTH_MAX], fine[ADCGS_NET_WIDTH_MAX], time[ADCGS_TIME_WIDTH_MAX];
+    float out[ADCGS_NET_WIDTH_MAX], coarse[ADCGS_NET_WIDTH_MAX], fine[ADCGS_NET_WIDTH_MAX];
+    float time[ADCGS_TIME_WIDTH_MAX + ADCGS_BODIES_MAX * ADCGS_POSE_N];
     float position[3], offset[3], q[4];
     primitive r;
     const int moves = m->params.time_rows > 0 && !m->is_static[anchor];
@@ -221,6 +243,8 @@ static primitive evaluate(const adcgs_model *m, uint32_t anchor, int k, float t)
         }
     }
     const float presence = moves && m->params.spans ? live(m, anchor, t, position) : 1.0f;
+    if (m->body[anchor])
+        take_along(m, anchor, time, position, offset, q);
     if (has_fine) {
         logit += fine[4 * k];
         for (int a = 0; a < 3; a++)
@@ -281,11 +305,12 @@ static void check_model(const adcgs_model *m, int threads, adcgs_cpu_level cpu)
     adcgs_pool_free(&pool);
 }
 
-/* The first anchors, which so have no spans. */
+/* The first anchors, which so have no spans and no bodies. */
 static void stand_still(adcgs_model *m, uint32_t anchors)
 {
     const size_t rows = (size_t)adcgs_sigma_rows(&m->params);
     memset(m->is_static, m->params.time_rows > 0, anchors);
+    memset(m->body, 0, anchors);
     for (uint32_t i = 0; m->params.spans && i < anchors; i++)
         memset(m->sigma + i * rows + 6, 0, 5 * sizeof *m->sigma);
     assert_int_equal(adcgs_model_validate(m, NULL), ADCGS_OK);
@@ -506,6 +531,98 @@ static void test_spans(void **state)
     }
 }
 
+/* Numbers of Z that bring a body at t = 1 to a quarter turn about z and a way of (0.5, -1, 0.25); at t = 0 it is at rest. */
+static void set_pose(adcgs_model *m, int body)
+{
+    const float turned[7] = {(cosf((float)PI / 4) - 1) * 16, 0, 0, sinf((float)PI / 4) * 16, 8, -16, 4};
+    adcgs_tensor *z = &m->net[ADCGS_ROLE_TIME].layer[0].w;
+    const uint32_t column = adcgs_pose_at(&m->params, body);
+    z->mode = 1;
+    z->e = 0;
+    memset(z->m, 0, (size_t)z->rows * z->cols * sizeof *z->m);
+    for (uint32_t c = 0; c < ADCGS_POSE_N; c++)
+        z->m[z->cols + column + c] = (int32_t)adcgs_float_bits(turned[c]);
+}
+
+/* Three anchors of body 2 without networks of deformation, one of none, a static one; each with one primitive. */
+static void make_body(adcgs_model *m)
+{
+    static const uint8_t bodies[5] = {2, 2, 2, 0, 0};
+    uint64_t random = 12;
+    adcgs_params params;
+    adcgs_random_params(&params, 1, &random);
+    params.spans = params.adaptive_steps = params.n_fg = 0;
+    params.bodies = 2;
+    params.time_rows = 2;
+    assert_int_equal(adcgs_random_model(m, &params, 5, 4, &random, NULL), ADCGS_OK);
+    for (int role = ADCGS_ROLE_COARSE; role <= ADCGS_ROLE_FINE; role++)
+        adcgs_net_release(&m->net[role], NULL);
+    memcpy(m->body, bodies, sizeof bodies);
+    for (int i = 0; i < 5; i++) {
+        m->is_static[i] = i == 4;
+        m->mask[i] = 1;
+    }
+    set_pose(m, 2);
+}
+
+/* Bodies by what they mean: a quarter turn about the middle of the anchors' box, and then the way; nothing else changes. */
+/* REQ-PRIM-013, REQ-PRIM-025, REQ-PRIM-026 */
+static void test_bodies(void **state)
+{
+    adcgs_model m;
+    make_body(&m);
+    assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_OK);
+    float centre[3];
+    for (size_t a = 0; a < 3; a++) {
+        const uint32_t p[3] = {m.pos[a], m.pos[3 + a], m.pos[6 + a]};
+        const uint32_t low = ADCGS_MIN(p[0], ADCGS_MIN(p[1], p[2])), high = ADCGS_MAX(p[0], ADCGS_MAX(p[1], p[2]));
+        centre[a] = m.origin[a] + m.voxel * 0.5f * (float)(low + high + 1);
+    }
+    for (uint32_t i = 0; i < 5; i++) {
+        float rest[3], moved[3], before, behind;
+        at(&m, 0, i, rest, &before);
+        at(&m, 1, i, moved, &behind);
+        const float x[3] = {rest[0] - centre[0], rest[1] - centre[1], rest[2] - centre[2]};
+        const float there[3] = {centre[0] - x[1] + 0.5f, centre[1] + x[0] - 1, centre[2] + x[2] + 0.25f};
+        for (int a = 0; a < 3; a++)
+            assert_true(fabsf(moved[a] - (m.body[i] ? there[a] : rest[a])) <= (m.body[i] ? 1e-5f * (4 + fabsf(rest[a])) : 0));
+        assert_true(before == behind);
+    }
+    for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
+        check_model(&m, 3, cpu);
+    m.body[4] = 1; /* what is static is part of none */
+    assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
+    m.body[4] = 0;
+    m.body[3] = 3;
+    assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_ERR_DATA);
+    clear_model(&m);
+}
+
+/* Bodies of any number, with all that may move anchors besides. */
+static void test_bodies_and_all(void **state)
+{
+    uint64_t random = 13;
+    for (int i = 0; i < 12; i++) {
+        adcgs_params params;
+        adcgs_model m;
+        adcgs_random_params(&params, 1, &random);
+        params.bodies = (uint8_t)(1 + i * 5 % ADCGS_BODIES_MAX);
+        params.spans = i & 1;
+        params.coarse_rotation = i >> 1 & 1;
+        params.n_fg = 0;
+        assert_int_equal(adcgs_random_model(&m, &params, 150, 4, &random, NULL), ADCGS_OK);
+        if (i % 3 == 0)
+            adcgs_net_release(&m.net[ADCGS_ROLE_COARSE], NULL);
+        if (i % 4 == 0)
+            adcgs_net_release(&m.net[ADCGS_ROLE_FINE], NULL);
+        m.net[ADCGS_ROLE_TIME].layer[0].w.e = m.net[ADCGS_ROLE_TIME].layer[0].w.mode ? 9 : 4; /* poses that show */
+        assert_int_equal(adcgs_model_validate(&m, NULL), ADCGS_OK);
+        for (adcgs_cpu_level cpu = ADCGS_CPU_SCALAR; cpu <= adcgs_cpu_best(); cpu++)
+            check_model(&m, 3, cpu);
+        clear_model(&m);
+    }
+}
+
 /* REQ-NETW-009 */
 static void test_refused_networks(void **state)
 {
@@ -603,7 +720,7 @@ int main(void)
         cmocka_unit_test(test_functions),  cmocka_unit_test(test_position_code), cmocka_unit_test(test_against_reference),
         cmocka_unit_test(test_extremes),   cmocka_unit_test(test_memory_limit),  cmocka_unit_test(test_largest_networks),
         cmocka_unit_test(test_adaptive_steps), cmocka_unit_test(test_refused_networks),
-        cmocka_unit_test(test_spans),
+        cmocka_unit_test(test_spans),      cmocka_unit_test(test_bodies),        cmocka_unit_test(test_bodies_and_all),
     };
     return cmocka_run_group_tests_name("splat", tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "base/pool.h"
+#include "model/latents.h"
 #include "model/model_priv.h"
 #include "stream/chunk.h"
 
@@ -108,6 +109,80 @@ static void test_round_trip(void **state)
         check_round_trip(&stream);
         adcgs_stream_clear(&stream, NULL);
     }
+}
+
+/** Bodies in any order, and static anchors between them, come back. */
+/* REQ-LATN-013 */
+static void test_bodies(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        adcgs_error error = { ADCGS_OK, "" };
+        adcgs_params params;
+        adcgs_stream stream;
+        uint64_t random = seed;
+        adcgs_random_params(&params, 1, &random);
+        params.bodies = (uint8_t)(seed % 3 ? ADCGS_BODIES_MAX : 1);
+        params.spans = 0;
+        check(adcgs_random_stream(&stream, &params, 1, 200, 5, &random, &error), &error);
+        adcgs_model *const m = &stream.segments[0];
+        for (uint32_t i = 0; i < m->n; i++)
+            m->body[i] = (uint8_t)(m->is_static[i] ? 0 : seed & 4 ? i / 40 % (params.bodies + 1U) : i % (params.bodies + 1U));
+        check_round_trip(&stream);
+        adcgs_stream_clear(&stream, NULL);
+    }
+}
+
+/** Flags of two anchors that are not static, with all primitives and these bodies; a negative one: the same as before. */
+static adcgs_status decode_bodies(adcgs_model *m, int first, int second, adcgs_error *error)
+{
+    adcgs_adaptive flag[1], same[2], tree[16], mask[4];
+    adcgs_range_enc e;
+    adcgs_range_dec d;
+    adcgs_buffer out;
+    adcgs_buffer_init(&out);
+    adcgs_range_enc_init(&e, &out);
+    adcgs_adaptive_init(flag, 1);
+    adcgs_adaptive_init(same, 2);
+    adcgs_adaptive_init(tree, 16);
+    adcgs_adaptive_init(mask, 4);
+    for (int i = 0; i < 2; i++) {
+        const int body = i ? second : first;
+        adcgs_adaptive_enc(&e, &flag[0], 0);
+        adcgs_adaptive_enc(&e, &same[i && first > 0], body < 0);
+        for (int node = 1, bit = 3; body >= 0 && bit >= 0; bit--) {
+            adcgs_adaptive_enc(&e, &tree[node], body >> bit & 1);
+            node = 2 * node + (body >> bit & 1);
+        }
+        for (int k = 0; k < m->params.k; k++)
+            adcgs_adaptive_enc(&e, &mask[3], 1);
+    }
+    adcgs_range_enc_finish(&e);
+    adcgs_range_dec_init(&d, out.data, out.size);
+    const adcgs_status status = adcgs_latents_decode_flags(m, 0, 2, &d, error);
+    adcgs_buffer_clear(&out);
+    return status;
+}
+
+/** What is sent is a body that there is, and another one than it might have been without sending any. */
+/* REQ-LATN-013, REQ-LATN-014 */
+static void test_bodies_refused(void **state)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_model m = { .n = 2, .params = { .k = 2, .n_fv = 1, .chunks = 1, .bodies = 5, .time_rows = 1, .time_width = 1 } };
+    (void)state;
+    check(adcgs_model_alloc(&m, NULL, &error), &error);
+    for (int first = -1; first < 16; first++)
+        for (int second = -1; second < 16; second++) {
+            const int a = first < 0 ? 0 : first, b = second < 0 ? a : second;
+            const int good = first != 0 && a <= 5 && second != a && b <= 5;
+            assert_int_equal(decode_bodies(&m, first, second, &error), good ? ADCGS_OK : ADCGS_ERR_DATA);
+            if (good)
+                assert_true(m.body[0] == a && m.body[1] == b && m.mask[0] == 3 && m.mask[1] == 3);
+            else
+                assert_non_null(strstr(error.text, first != 0 && a <= 5 ? "body of anchor 1" : "body of anchor 0"));
+        }
+    adcgs_model_clear(&m, NULL);
 }
 
 /** A model decoded with fewer layers has the layers that it has, and predicted means for the rest. */
@@ -345,7 +420,8 @@ int main(void)
         cmocka_unit_test(test_round_trip),       cmocka_unit_test(test_layers),
         cmocka_unit_test(test_threads_and_cpus), cmocka_unit_test(test_pieces_and_memory),
         cmocka_unit_test(test_trace),            cmocka_unit_test(test_writer_refuses),
-        cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_levels),           cmocka_unit_test(test_bodies),
+        cmocka_unit_test(test_bodies_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -552,7 +552,7 @@ static double flag_bytes(adcgs_model *model)
     adcgs_range_enc range;
     adcgs_buffer_init(&bytes);
     adcgs_range_enc_init(&range, &bytes);
-    adcgs_latents_flags(model, 0, model->n, write_flag, &range);
+    assert_int_equal(adcgs_latents_flags(model, 0, model->n, write_flag, &range, NULL), ADCGS_OK);
     adcgs_range_enc_finish(&range);
     const double size = (double)bytes.size;
     adcgs_buffer_clear(&bytes);
