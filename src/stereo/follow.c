@@ -22,13 +22,21 @@ static double distance2(const double x[3], const adcgs_stereo_point *q, const fl
     return d;
 }
 
-/** The nearest of a layer to a moved point. */
+/** The nearest of a layer to a moved point. *found: one that may be near, if it is less than to->n. */
 static int nearest(const layer *to, const adcgs_stereo_point *p, const double move[3], uint32_t *found)
 {
     const double x[3] = { p->x[0] + move[0], p->x[1] + move[1], p->x[2] + move[2] };
     double least = REACH * REACH;
     int any = 0;
+    if (*found < to->n) { /* the bound that it sets saves most of the others */
+        const double d = distance2(x, &to->p[*found], p->rgb);
+        any = d < least;
+        least = fmin(d, least);
+    }
     for (uint32_t j = 0; j < to->n; j++) {
+        const double across = x[0] - to->p[j].x[0];
+        if (across * across >= least)
+            continue;
         const double d = distance2(x, &to->p[j], p->rgb);
         if (d < least) {
             least = d;
@@ -46,6 +54,9 @@ static void find_neighbours(const layer *l, uint32_t (*near)[NEIGHBOURS])
         double best[NEIGHBOURS];
         int known = 0;
         for (uint32_t j = 0; j < l->n; j++) {
+            const double across = l->p[i].x[0] - l->p[j].x[0];
+            if (known == NEIGHBOURS && across * across >= best[NEIGHBOURS - 1])
+                continue;
             const double d = distance2(l->p[i].x, &l->p[j], l->p[i].rgb);
             int k = known < NEIGHBOURS ? known++ : NEIGHBOURS;
             if (k == NEIGHBOURS && d >= best[NEIGHBOURS - 1])
@@ -64,15 +75,15 @@ static void find_neighbours(const layer *l, uint32_t (*near)[NEIGHBOURS])
 
 /** Displacements of the points of one layer onto another: raw by the nearest, then the mean of neighbours, and again. */
 static void lay(const layer *from, const layer *to, double (*move)[3], double (*raw)[3], uint8_t *known,
-                uint32_t (*near)[NEIGHBOURS])
+                uint32_t *match, uint32_t (*near)[NEIGHBOURS])
 {
     memset(move, 0, from->n * sizeof *move);
+    memset(match, 0xff, from->n * sizeof *match);
     for (int round = 0; round < ROUNDS; round++) {
         for (uint32_t i = 0; i < from->n; i++) {
-            uint32_t j = 0;
-            known[i] = (uint8_t)nearest(to, &from->p[i], move[i], &j);
+            known[i] = (uint8_t)nearest(to, &from->p[i], move[i], &match[i]);
             for (int a = 0; a < 3; a++)
-                raw[i][a] = known[i] ? to->p[j].x[a] - from->p[i].x[a] : 0;
+                raw[i][a] = known[i] ? to->p[match[i]].x[a] - from->p[i].x[a] : 0;
         }
         for (uint32_t i = 0; i < from->n; i++) {
             double sum[3] = { 0, 0, 0 };
@@ -103,7 +114,7 @@ static void add_velocity(layer *l, const double (*move)[3], const uint8_t *known
 typedef struct scratch {
     double (*move)[3], (*raw)[3];
     uint8_t *known, *times;
-    uint32_t (*near)[NEIGHBOURS];
+    uint32_t *match, (*near)[NEIGHBOURS];
 } scratch;
 
 static void follow_layer(layer *l, const layer *before, const layer *after, const scratch *s)
@@ -113,7 +124,7 @@ static void follow_layer(layer *l, const layer *before, const layer *after, cons
     const layer *const others[] = { before, after };
     for (int k = 0; k < 2; k++)
         if (others[k] && others[k]->n) {
-            lay(l, others[k], s->move, s->raw, s->known, s->near);
+            lay(l, others[k], s->move, s->raw, s->known, s->match, s->near);
             add_velocity(l, (const double(*)[3])s->move, s->known, (double)(others[k]->p[0].t - l->p[0].t), s->times);
         }
     for (uint32_t i = 0; i < l->n; i++)
@@ -123,9 +134,10 @@ static void follow_layer(layer *l, const layer *before, const layer *after, cons
 
 adcgs_status adcgs_stereo_follow(adcgs_stereo_point *points, uint32_t n, adcgs_error *error)
 {
-    scratch s = { adcgs_alloc(NULL, n, sizeof *s.move, error), adcgs_alloc(NULL, n, sizeof *s.raw, error),
-                  adcgs_alloc(NULL, n, 1, error), adcgs_alloc(NULL, n, 1, error), adcgs_alloc(NULL, n, sizeof *s.near, error) };
-    const int good = s.move && s.raw && s.known && s.times && s.near;
+    scratch s = { adcgs_alloc(NULL, n, sizeof *s.move, error),  adcgs_alloc(NULL, n, sizeof *s.raw, error),
+                  adcgs_alloc(NULL, n, 1, error),               adcgs_alloc(NULL, n, 1, error),
+                  adcgs_alloc(NULL, n, sizeof *s.match, error), adcgs_alloc(NULL, n, sizeof *s.near, error) };
+    const int good = s.move && s.raw && s.known && s.times && s.match && s.near;
     layer before = { NULL, 0 };
     for (uint32_t begin = 0, end; good && begin < n; begin = end) {
         uint32_t next;
@@ -142,6 +154,7 @@ adcgs_status adcgs_stereo_follow(adcgs_stereo_point *points, uint32_t n, adcgs_e
     adcgs_free(NULL, s.raw);
     adcgs_free(NULL, s.known);
     adcgs_free(NULL, s.times);
+    adcgs_free(NULL, s.match);
     adcgs_free(NULL, s.near);
     return good ? ADCGS_OK : adcgs_alloc_status(error);
 }

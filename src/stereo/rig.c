@@ -108,6 +108,44 @@ void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float 
         pixels[i] = camera->shown[moment][i] * (1.0f / 255);
 }
 
+/** Binomial weights of 5 pixels along a line of n that are step apart; what is not known does not count. */
+static void soften_line(uint8_t *line, int n, size_t step, uint8_t *copy)
+{
+    static const int weight[5] = { 1, 4, 6, 4, 1 };
+    for (int i = 0; i < n; i++)
+        memcpy(copy + 4 * i, line + (size_t)i * step, 4);
+    for (int i = 0; i < n; i++) {
+        int sum[3] = { 0, 0, 0 }, all = 0;
+        for (int k = ADCGS_MAX(i - 2, 0); k <= ADCGS_MIN(i + 2, n - 1); k++) {
+            const int w = copy[4 * k + 3] ? weight[k - i + 2] : 0;
+            all += w;
+            for (int c = 0; c < 3; c++)
+                sum[c] += w * copy[4 * k + c];
+        }
+        for (int c = 0; c < 3 && all; c++)
+            line[(size_t)i * step + (size_t)c] = (uint8_t)((sum[c] + all / 2) / all);
+    }
+}
+
+adcgs_status adcgs_stereo_rig_soften(adcgs_stereo_rig *rig, adcgs_error *error)
+{
+    for (int c = 0; c < rig->n_cameras; c++) {
+        const int w = rig->camera[c].view.w, h = rig->camera[c].view.h;
+        uint8_t *copy = adcgs_alloc(NULL, 4 * (size_t)ADCGS_MAX(w, h), 1, error);
+        if (!copy)
+            return adcgs_alloc_status(error);
+        for (int m = 0; m < rig->n_moments; m++) {
+            uint8_t *shown = rig->camera[c].shown[m];
+            for (int y = 0; shown && y < h; y++)
+                soften_line(shown + 4 * (size_t)y * (size_t)w, w, 4, copy);
+            for (int x = 0; shown && x < w; x++)
+                soften_line(shown + 4 * (size_t)x, h, 4 * (size_t)w, copy);
+        }
+        adcgs_free(NULL, copy);
+    }
+    return ADCGS_OK;
+}
+
 /* ---- What a camera shows most of the time ---- */
 
 static uint8_t middle_of(uint8_t *values, int n)

@@ -9,7 +9,7 @@
 #include "data/scene.h"
 #include "stereo/stereo.h"
 
-enum { ADCGS_STEREO_CAMERAS = 24, ADCGS_STEREO_MOMENTS = 16 };
+enum { ADCGS_STEREO_CAMERAS = 24, ADCGS_STEREO_MOMENTS = 48 };
 
 /** A camera and what it shows. */
 typedef struct adcgs_stereo_view {
@@ -40,6 +40,9 @@ void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig);
 
 /** Picture of a moment as numbers, [h][w][4]. */
 void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float *pixels);
+
+/** Smooth the pictures of all moments, so that what is finer than a pixel or two does not disturb what is laid on them. */
+adcgs_status adcgs_stereo_rig_soften(adcgs_stereo_rig *rig, adcgs_error *error);
 
 /** Where a point lies in a view: pixel coordinates, centres at + 0.5, and depth. 0 if it is behind the camera. */
 static inline int adcgs_stereo_rig_project(const adcgs_stereo_view *v, const double x[3], double at[2], double *depth)

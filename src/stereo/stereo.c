@@ -2,6 +2,7 @@
 /** \file What is still, what moves, and where nothing is. */
 #include "stereo/stereo.h"
 
+#include "stereo/bodies.h"
 #include "stereo/follow.h"
 #include "stereo/fuse.h"
 #include "stereo/thin.h"
@@ -249,7 +250,7 @@ static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig 
 
 /* ---- All ---- */
 
-static adcgs_status find(adcgs_stereo *out, const adcgs_stereo_rig *rig, const adcgs_stereo_options *options, adcgs_pool *pool,
+static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_stereo_options *options, adcgs_pool *pool,
                          adcgs_error *error)
 {
     adcgs_stereo_list still = { 0, 0, NULL }, moving = { 0, 0, NULL };
@@ -264,7 +265,7 @@ static adcgs_status find(adcgs_stereo *out, const adcgs_stereo_rig *rig, const a
     out->n_still = (uint32_t)still.n;
     out->moving = moving.point;
     out->n_moving = (uint32_t)moving.n;
-    return status;
+    return status == ADCGS_OK ? adcgs_stereo_find_bodies(out, rig, pool, error) : status;
 }
 
 adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options,
@@ -300,6 +301,9 @@ void adcgs_stereo_clear(adcgs_stereo *s)
     adcgs_free(NULL, s->still);
     adcgs_free(NULL, s->moving);
     adcgs_free(NULL, s->moment);
+    for (uint32_t i = 0; i < s->n_bodies; i++)
+        adcgs_free(NULL, s->body[i].pose);
+    adcgs_free(NULL, s->body);
     memset(s, 0, sizeof *s);
 }
 

@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Starts, choice, growth. */
+#include "stereo/track.h"
+
+#include "stereo/direct.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum {
+    FEW = 120,           /* points of a body with which starts are tried */
+    MANY = 700,          /* with which a place is refined */
+    BEST = 6,            /* starts that are refined */
+    LOST_MOST = 4,       /* moments in a row at which a body is not found, until it is given up */
+    BODY_MOST = 6000,    /* points */
+    HOPS = 6,            /* steps of reach by which a body grows at a moment */
+    SURE = 3,            /* moments after which a point is dropped */
+    AROUND = 32
+};
+#define SHARE_GOOD 0.25  /* of points that have to be where they should be */
+#define LIGHT_GOOD 0.45  /* agreement of pictures */
+#define SHARE_SURE 0.35  /* beyond which no other starts are tried */
+#define LIGHT_SURE 0.52
+#define KEEP 0.45        /* of the moments at which it is seen that a point has to be where it should be */
+#define ABOUT 0.97       /* share of a score that is as good */
+#define APART 3.0        /* pixels between places about which turns are tried */
+#define FITS 0.5         /* agreement of pictures with a point that is where it should be, though it was not found again */
+#define TURN_STEP 0.26   /* radians between starts */
+enum { TURNS = 4 };      /* steps of it, to each side */
+
+static const adcgs_lay lay_far = { .reach = 14, .sharp = 5, .rounds = 6 };
+static const adcgs_lay lay_near = { .reach = 5, .sharp = 2.5, .rounds = 4 };
+static const adcgs_lay lay_close = { .reach = 3, .sharp = 1.5, .rounds = 5 };
+
+static uint32_t stride_for(const adcgs_body_model *m, uint32_t wanted)
+{
+    return ADCGS_MAX(m->n / wanted, 1);
+}
+
+static double score_of(const adcgs_placing *p)
+{
+    return p->share * p->light;
+}
+
+static int is_good(const adcgs_placing *p)
+{
+    return p->share > SHARE_GOOD && p->light > LIGHT_GOOD;
+}
+
+static int is_sure(const adcgs_placing *p)
+{
+    return p->share > SHARE_SURE && p->light > LIGHT_SURE;
+}
+
+double adcgs_track_centre(const adcgs_track *t, double centre[3])
+{
+    double far = 0;
+    memset(centre, 0, 3 * sizeof *centre);
+    for (uint32_t i = 0; i < t->model.n; i++)
+        for (int a = 0; a < 3; a++)
+            centre[a] += t->model.p[i].x[a] / t->model.n;
+    for (uint32_t i = 0; i < t->model.n; i++)
+        for (int a = 0; a < 3; a++)
+            far += pow(t->model.p[i].x[a] - centre[a], 2) / t->model.n;
+    return sqrt(far);
+}
+
+/* ---- One moment ---- */
+
+/** A body, the moment at which it is looked for, and the starts that fitted best so far. */
+typedef struct search {
+    const adcgs_track *t;
+    const adcgs_layers *l;
+    int moment, n;
+    adcgs_placing best[BEST];
+} search;
+
+double adcgs_track_between(const adcgs_track *t, const adcgs_rigid *a, const adcgs_rigid *b)
+{
+    double sum = 0;
+    const uint32_t stride = stride_for(&t->model, 64);
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < t->model.n; i += stride, n++) {
+        double x[3], y[3];
+        adcgs_rigid_apply(a, t->model.p[i].x, x);
+        adcgs_rigid_apply(b, t->model.p[i].x, y);
+        for (int k = 0; k < 3; k++)
+            sum += (x[k] - y[k]) * (x[k] - y[k]);
+    }
+    return n ? sqrt(sum / n) : 0;
+}
+
+static void keep_best(search *s, const adcgs_placing *p)
+{
+    int at = s->n;
+    for (int i = 0; i < s->n; i++)
+        if (adcgs_track_between(s->t, &s->best[i].at, &p->at) < 2 * s->t->model.pixel) { /* the same once more */
+            if (score_of(p) <= score_of(&s->best[i]))
+                return;
+            at = i;
+            break;
+        }
+    if (at == BEST && score_of(p) <= score_of(&s->best[BEST - 1]))
+        return;
+    at = ADCGS_MIN(at, BEST - 1);
+    s->n = ADCGS_MAX(s->n, at + 1);
+    for (; at > 0 && score_of(&s->best[at - 1]) < score_of(p); at--)
+        s->best[at] = s->best[at - 1];
+    s->best[at] = *p;
+}
+
+static void try_start(search *s, const adcgs_placing *from, const adcgs_rigid *at)
+{
+    adcgs_placing p = *from;
+    const adcgs_body_model *m = &s->t->model;
+    adcgs_lay far = lay_far, near = lay_near;
+    far.stride = near.stride = stride_for(m, FEW);
+    p.at = *at;
+    adcgs_body_lay(m, &s->l->few[s->moment], &s->l->views[s->moment], &far, &p);
+    adcgs_body_lay(m, &s->l->all[s->moment], &s->l->views[s->moment], &near, &p);
+    adcgs_direct_judge(m, &s->l->views[s->moment], near.stride, &p);
+    adcgs_body_judge(m, &s->l->all[s->moment], &s->l->views[s->moment], near.stride, &p);
+    keep_best(s, &p);
+}
+
+/** Turned in 13 directions and back. */
+static void try_turns(search *s, const adcgs_placing *from, const adcgs_rigid *base)
+{
+    double rest[3], centre[3];
+    adcgs_track_centre(s->t, rest);
+    adcgs_rigid_apply(base, rest, centre);
+    for (int k = 14; k < 27; k++) /* of 27 corners, edges and faces of a cube those of one half */
+        for (int step = -TURNS; step <= TURNS; step++) {
+            const double axis[3] = { k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1 };
+            const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+            const double angle = step * TURN_STEP / length;
+            adcgs_rigid at;
+            if (!step)
+                continue;
+            adcgs_rigid_about((const double[]){ angle * axis[0], angle * axis[1], angle * axis[2] }, centre,
+                              (const double[]){ 0, 0, 0 }, &at);
+            adcgs_rigid_then(base, &at, &at);
+            try_start(s, from, &at);
+        }
+}
+
+/** To a fraction of a pixel. */
+static void refine(const adcgs_track *t, const adcgs_layers *l, int moment, int is_close, adcgs_placing *p)
+{
+    adcgs_lay lay = lay_close;
+    const adcgs_body_model *m = &t->model;
+    lay.stride = stride_for(m, MANY);
+    if (!is_close)
+        adcgs_body_lay(m, &l->all[moment], &l->views[moment], &lay, p);
+    adcgs_direct_refine(m, &l->views[moment], lay.stride, p);
+    adcgs_direct_judge(m, &l->views[moment], lay.stride, p);
+    adcgs_body_judge(m, &l->all[moment], &l->views[moment], lay.stride, p);
+}
+
+static void choose(search *s, adcgs_placing *out)
+{
+    for (int i = 0; i < s->n; i++) {
+        refine(s->t, s->l, s->moment, 0, &s->best[i]);
+        if (!i || score_of(&s->best[i]) > score_of(out))
+            *out = s->best[i];
+    }
+}
+
+/* ---- From moment to moment ---- */
+
+/** The known moments nearest to one; -1: there is none. */
+static void find_known(const adcgs_track *t, const adcgs_layers *l, int moment, int out[2])
+{
+    out[0] = out[1] = -1;
+    for (int off = 1; off < l->n && out[1] < 0; off++)
+        for (int k = moment - off; k <= moment + off && out[1] < 0; k += 2 * off)
+            if (k >= 0 && k < l->n && t->known[k])
+                out[out[0] >= 0] = k;
+}
+
+void adcgs_track_go_on(const adcgs_track *t, const adcgs_layers *l, int moment, const int known[2], adcgs_rigid *out)
+{
+    const float *when = l->rig->moment;
+    const double span = (double)(when[known[0]] - when[known[1]]), more = (double)(when[moment] - when[known[0]]);
+    const int times = (int)fmin(fmax(round(more / span), -4), 4);
+    adcgs_rigid step;
+    adcgs_rigid_inverse(&t->place[known[1]].at, &step);
+    adcgs_rigid_then(&step, &t->place[known[0]].at, &step);
+    if (times < 0) /* a moment between the two */
+        adcgs_rigid_inverse(&step, &step);
+    *out = t->place[known[0]].at;
+    for (int i = 0; i < abs(times); i++)
+        adcgs_rigid_then(out, &step, out);
+}
+
+/** Shifted by what points near it say of themselves. */
+static void drift(const adcgs_track *t, const adcgs_layers *l, int moment, int known, adcgs_rigid *out)
+{
+    const double span = (double)(l->rig->moment[moment] - l->rig->moment[known]);
+    double sum[3] = { 0, 0, 0 }, n = 0;
+    for (uint32_t i = 0; i < t->model.n; i++) {
+        double x[3], normal[3];
+        uint32_t j = 0;
+        if (!adcgs_body_point_at(&t->model, i, &t->place[known].at, &l->views[known], x, normal) ||
+            !adcgs_body_match(&t->model, i, x, &l->all[known], &t->place[known], &j))
+            continue;
+        n++;
+        for (int a = 0; a < 3; a++)
+            sum[a] += span * (double)l->all[known].p[j].velocity[a];
+    }
+    *out = t->place[known].at;
+    for (int a = 0; a < 3 && n > 0; a++)
+        out->t[a] += sum[a] / n;
+}
+
+static void find_at(adcgs_track *t, const adcgs_layers *l, int moment, int turns)
+{
+    search s = { .t = t, .l = l, .moment = moment };
+    adcgs_rigid base[2];
+    adcgs_placing place;
+    int known[2];
+    find_known(t, l, moment, known);
+    const adcgs_placing *from = &t->place[known[0]];
+    drift(t, l, moment, known[0], &base[1]);
+    base[0] = from->at;
+    if (known[1] >= 0)
+        adcgs_track_go_on(t, l, moment, known, &base[0]);
+    try_start(&s, from, &base[0]);
+    choose(&s, &place);
+    if (known[1] < 0 || !is_sure(&place)) {
+        try_start(&s, from, &from->at);
+        try_start(&s, from, &base[1]);
+        if (turns)
+            try_turns(&s, from, &base[0]);
+        if (turns && adcgs_track_between(t, &base[0], &base[1]) > APART * t->model.pixel)
+            try_turns(&s, from, &base[1]);
+        choose(&s, &place);
+    }
+    t->known[moment] = (uint8_t)is_good(&place);
+    t->place[moment] = place;
+}
+
+/* ---- Points ---- */
+
+/** Count where points are seen and where they should be. mark: [n] those of the moment that are the body's; may be NULL. */
+static void count(adcgs_track *t, const adcgs_layers *l, int moment, uint8_t *mark)
+{
+    for (uint32_t i = 0; i < t->model.n; i++) {
+        double x[3], normal[3];
+        uint32_t j = 0;
+        if (!adcgs_body_point_at(&t->model, i, &t->place[moment].at, &l->views[moment], x, normal))
+            continue;
+        t->model.more[i].seen++;
+        const int found = adcgs_body_match(&t->model, i, x, &l->all[moment], &t->place[moment], &j);
+        if (found && mark)
+            mark[j] = 1;
+        t->model.more[i].agreed = (uint16_t)(t->model.more[i].agreed +
+            (found || adcgs_direct_point(&t->model, i, &l->views[moment], &t->place[moment]) > FITS));
+    }
+}
+
+static void drop(adcgs_body_model *m, int sure)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < m->n; i++)
+        if (m->more[i].seen < sure || m->more[i].agreed >= KEEP * m->more[i].seen) {
+            m->p[n] = m->p[i];
+            m->more[n++] = m->more[i];
+        }
+    m->n = n;
+}
+
+/** Mark what hangs together with what is marked. */
+static void spread(const adcgs_cloud *c, double reach, uint8_t *mark)
+{
+    uint32_t near[AROUND];
+    for (uint8_t hop = 1; hop <= HOPS; hop++)
+        for (uint32_t i = 0; i < c->n; i++) {
+            if (mark[i] != hop)
+                continue;
+            const uint32_t n = adcgs_cloud_within(c, c->p[i].x, reach, near, AROUND);
+            for (uint32_t k = 0; k < n; k++)
+                if (!mark[near[k]] && !c->p[near[k]].body)
+                    mark[near[k]] = (uint8_t)(hop + 1);
+        }
+}
+
+/** Add a moment's point to the body at rest. */
+static adcgs_status add_point(adcgs_track *t, const adcgs_layers *l, int moment, uint32_t i, const adcgs_rigid *back,
+                              const adcgs_cloud *own, adcgs_error *error)
+{
+    adcgs_stereo_point p = l->all[moment].p[i];
+    const float *n = l->normal[l->begin[moment] + i];
+    double x[3], turned[3];
+    uint32_t near;
+    adcgs_rigid_apply(back, p.x, x);
+    memcpy(p.x, x, sizeof x);
+    if (adcgs_cloud_within(own, x, t->model.pixel, &near, 1) || t->model.n >= BODY_MOST)
+        return ADCGS_OK;
+    adcgs_rigid_turn(back, (const double[]){ (double)n[0], (double)n[1], (double)n[2] }, turned);
+    ADCGS_TRY(adcgs_body_add(&t->model, &p, (const float[]){ (float)turned[0], (float)turned[1], (float)turned[2] }, error));
+    for (int a = 0; a < 3; a++)
+        t->model.p[t->model.n - 1].rgb[a] /= t->place[moment].gain[t->model.more[t->model.n - 1].side][a];
+    return ADCGS_OK;
+}
+
+/** What hangs together with the body becomes part of it until it proves not to go along. */
+static adcgs_status grow(adcgs_track *t, const adcgs_layers *l, int moment, adcgs_error *error)
+{
+    const adcgs_cloud *c = &l->all[moment];
+    adcgs_cloud own = { .p = NULL };
+    adcgs_rigid back;
+    uint8_t *mark = adcgs_alloc(NULL, c->n, 1, error);
+    adcgs_status status = mark ? ADCGS_OK : adcgs_alloc_status(error);
+    if (status == ADCGS_OK) {
+        count(t, l, moment, mark);
+        drop(&t->model, SURE);
+        spread(c, l->reach, mark);
+        status = adcgs_cloud_init(&own, t->model.p, t->model.n, 1, 2 * t->model.pixel, error);
+    }
+    adcgs_rigid_inverse(&t->place[moment].at, &back);
+    for (uint32_t i = 0; i < c->n && status == ADCGS_OK; i++)
+        if (mark[i]) {
+            status = add_point(t, l, moment, i, &back, &own, error);
+            own.p = t->model.p; /* it may have moved */
+        }
+    adcgs_cloud_clear(&own);
+    adcgs_free(NULL, mark);
+    return status;
+}
+
+adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, adcgs_error *error)
+{
+    t->place[start].at = adcgs_rigid_none;
+    t->known[start] = 1;
+    for (int i = 0; i < 3 * ADCGS_BODY_SIDES; i++)
+        t->place[start].gain[i / 3][i % 3] = 1;
+    for (int way = 1; way >= -1; way -= 2)
+        for (int m = start + way, lost = 0; m >= 0 && m < l->n && lost < LOST_MOST; m += way) {
+            if (!l->all[m].n || t->model.n < 3) {
+                lost++;
+                continue;
+            }
+            find_at(t, l, m, !lost);
+            lost = t->known[m] ? 0 : lost + 1;
+            if (t->known[m])
+                ADCGS_TRY(grow(t, l, m, error));
+        }
+    return ADCGS_OK;
+}
+
+/* ---- All moments once more ---- */
+
+/** Where it is, or where it should be if it goes on as before: the latter, if pictures agree about as well. */
+static void look_again(adcgs_track *t, const adcgs_layers *l, int moment, int way)
+{
+    const int known[2] = { moment - way, moment - 2 * way };
+    adcgs_placing on, *now = &t->place[moment];
+    if (known[1] < 0 || known[1] >= l->n || !t->known[known[0]] || !t->known[known[1]] || !l->all[moment].n)
+        return;
+    on = t->place[known[0]];
+    adcgs_track_go_on(t, l, moment, known, &on.at);
+    refine(t, l, moment, 0, &on);
+    if (!is_good(&on))
+        return;
+    if (t->known[moment])
+        refine(t, l, moment, 1, now);
+    if (!t->known[moment] || score_of(&on) > ABOUT * score_of(now))
+        *now = on;
+    t->known[moment] = 1;
+}
+
+void adcgs_track_look_again(adcgs_track *t, const adcgs_layers *l, int start)
+{
+    for (int m = start + 1; m < l->n; m++)
+        look_again(t, l, m, 1);
+    for (int m = start - 1; m >= 0; m--)
+        look_again(t, l, m, -1);
+}
+
+typedef struct again {
+    adcgs_track *t;
+    const adcgs_layers *l;
+} again;
+
+static void refine_one(void *arg, int moment, int thread)
+{
+    const again *a = arg;
+    adcgs_placing *p = &a->t->place[moment];
+    (void)thread;
+    if (!a->t->known[moment])
+        return;
+    refine(a->t, a->l, moment, 1, p);
+    a->t->known[moment] = (uint8_t)is_good(p);
+}
+
+void adcgs_track_refine(adcgs_track *t, const adcgs_layers *l, adcgs_pool *pool)
+{
+    again a = { t, l };
+    adcgs_pool_run(pool, refine_one, &a, l->n);
+}
+
+void adcgs_track_clean(adcgs_track *t, const adcgs_layers *l)
+{
+    for (uint32_t i = 0; i < t->model.n; i++)
+        t->model.more[i].seen = t->model.more[i].agreed = 0;
+    for (int m = 0; m < l->n; m++)
+        if (t->known[m])
+            count(t, l, m, NULL);
+    drop(&t->model, 1);
+}
