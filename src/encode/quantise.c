@@ -149,7 +149,7 @@ static void set_anchors(adcgs_model *model, const adcgs_fmodel *f)
     for (uint32_t i = 0; i < f->n; i++) {
         memcpy(model->pos + (size_t)i * 3, f->pos[i], sizeof f->pos[i]);
         model->is_static[i] = model->params.time_rows && f->moving[i] == 0;
-        model->body[i] = 0;
+        model->body[i] = model->params.bodies && !model->is_static[i] ? f->body[i] : 0;
         model->mask[i] = 0;
         for (int k = 0; k < f->params.k; k++)
             if (f->keep[adcgs_fmodel_slot(f, i, k)] != 0)

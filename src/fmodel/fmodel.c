@@ -44,9 +44,9 @@ static void layout_networks(adcgs_fmodel *f)
     if (p->time_rows) { /* the time table: one tensor, no bias */
         adcgs_mlp *z = &m[ADCGS_P_TIME];
         memset(z, 0, sizeof *z);
-        z->in[0] = p->time_width;
+        z->in[0] = adcgs_fmodel_time_columns(p);
         z->n_out[0] = p->time_rows;
-        z->n = z->b[0] = (size_t)p->time_rows * p->time_width;
+        z->n = z->b[0] = (size_t)p->time_rows * (size_t)z->in[0];
         z->weight_step[0] = ADCGS_WEIGHT_STEP_NONE;
     }
     const int w = s->entropy_width, h = s->entropy_hidden;
@@ -85,13 +85,15 @@ static adcgs_status param_alloc(adcgs_param *p, size_t n, adcgs_error *error)
  */
 static void start_time_table(adcgs_fmodel *f)
 {
-    const int rows = f->params.time_rows, width = f->params.time_width;
+    const int rows = f->params.time_rows, width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);
     float *z = f->param[ADCGS_P_TIME].p;
-    for (int r = 0; r < rows; r++)
+    for (int r = 0; r < rows; r++, z += columns) {
+        memset(z + width, 0, (size_t)(columns - width) * sizeof *z); /* at rest */
         for (int j = 0; j < width; j++) {
             const double phase = 3.14159265358979 * (0.5 + j / 2) * (rows > 1 ? (double)r / (rows - 1) - 0.5 : 0);
-            z[r * width + j] = (float)((j % 2 ? cos(phase) : sin(phase)) * 0.7 / (1 + 0.3 * j));
+            z[j] = (float)((j % 2 ? cos(phase) : sin(phase)) * 0.7 / (1 + 0.3 * j));
         }
+    }
 }
 
 static adcgs_status create_networks(adcgs_fmodel *f, uint64_t seed, adcgs_error *error)
@@ -186,7 +188,8 @@ static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *erro
     f->keep = adcgs_alloc(NULL, groups * f->params.k * ADCGS_LANES, sizeof(float), error);
     f->moving = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     f->live = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
-    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live)
+    f->body = adcgs_alloc(NULL, groups * ADCGS_LANES, 1, error);
+    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live || !f->body)
         return adcgs_alloc_status(error);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * ADCGS_LANES, error));
@@ -264,6 +267,7 @@ static void free_anchors(adcgs_fmodel *f)
     adcgs_free(NULL, f->keep);
     adcgs_free(NULL, f->moving);
     adcgs_free(NULL, f->live);
+    adcgs_free(NULL, f->body);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         adcgs_free(NULL, f->param[i].p);
 }
@@ -315,6 +319,7 @@ adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], con
         }
         copy_rows(f->keep, old.keep, j, source[j], f->params.k);
         copy_rows(f->moving, old.moving, j, source[j], 1);
+        f->body[j] = old.body[source[j]];
     }
     free_anchors(&old);
     return ADCGS_OK;

@@ -24,7 +24,7 @@ typedef enum adcgs_pgroup {
     ADCGS_P_THETA = ADCGS_P_ANCHOR,
     ADCGS_P_OMEGA,
     ADCGS_P_VARPI,
-    ADCGS_P_TIME,      /**< Z [rows][width] */
+    ADCGS_P_TIME,      /**< Z [rows][width, and poses] */
     ADCGS_P_ETA_PRIOR, /**< [2][n_eta]: mean and level of the prior, in the twins' gains */
     ADCGS_P_STEP,      /**< natural logarithms of the quantiser steps: f_v, f_g (of one primitive), Sigma_v, C_v */
     ADCGS_P_E_FV,
@@ -61,6 +61,8 @@ typedef struct adcgs_fmodel {
     float *keep;                /**< [group][k][64] primitives that exist */
     float *moving;              /**< [group][64] 1 unless static */
     float *live;                /**< [group][64] 1 for anchors, 0 for padding */
+    uint8_t *body;              /**< [group][64] the rigid body that an anchor goes with while it moves, from 1; 0: none */
+    float centre[ADCGS_BODIES_MAX][3]; /**< of the bodies, about which they turn; see bodies.h */
     adcgs_param param[ADCGS_P_COUNT];
     adcgs_mlp mlp[ADCGS_P_COUNT]; /**< of the network groups */
     float *step[ADCGS_P_ANCHOR];  /**< quantiser steps per feature row of a group, of ADCGS_P_STEP */
@@ -127,6 +129,11 @@ float adcgs_fmodel_presence(const adcgs_fmodel *f, uint32_t anchor, float t);
 
 /** Give a network's hidden layers another width, at most the shape's; its parameters are left to the caller. */
 void adcgs_fmodel_set_width(adcgs_fmodel *f, int group, int width);
+/** Columns of the time table: f_t, and behind it the bodies' poses. */
+static inline int adcgs_fmodel_time_columns(const adcgs_params *params)
+{
+    return params->time_width + (int)adcgs_pose_columns(params);
+}
 /** Where t in [0,1] is in the time table: the row before it, and the fraction of the way to the next, if there is one. */
 float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The forward pass: from parameters and a time to primitives. */
+#include "fmodel/bodies.h"
 #include "fmodel/pass_layout.h"
 
 typedef struct forward_job {
@@ -112,12 +113,13 @@ static void forward_group(void *arg, int index, int thread)
 
 static void forward_time(adcgs_pass *p, const adcgs_fmodel *f, float t)
 {
-    const int width = f->params.time_width;
+    const int width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);
     int row;
     const float frac = adcgs_fmodel_time_row(&f->params, t, &row);
-    const float *z = f->mlp[ADCGS_P_TIME].use + (size_t)row * (size_t)width;
-    for (int j = 0; j < width; j++)
-        p->time_code[j] = f->params.time_rows > 1 ? z[j] + frac * (z[j + width] - z[j]) : z[j];
+    const float *z = f->mlp[ADCGS_P_TIME].use + (size_t)row * (size_t)columns;
+    for (int j = 0; j < columns; j++)
+        p->time_code[j] = f->params.time_rows > 1 ? z[j] + frac * (z[j + columns] - z[j]) : z[j];
+    adcgs_bodies_pose(f, p->time_code, p->pose);
     const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
     for (int i = 0; i < 2; i++) {
         const adcgs_mlp *m = &f->mlp[which[i]];

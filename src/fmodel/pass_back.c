@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The backward pass: primitives' gradients to anchors and networks. */
+#include "fmodel/bodies.h"
 #include "fmodel/pass_layout.h"
 
 typedef struct backward_job {
@@ -107,6 +108,7 @@ static void backward_group(const backward_job *job, uint32_t g, float *scratch, 
     grad.omega = scratch + (size_t)f->params.k * ADCGS_THETA_OUT * ADCGS_LANES;
     grad.varpi = grad.omega + f->mlp[ADCGS_P_OMEGA].out * ADCGS_LANES;
     scratch = grad.varpi + f->mlp[ADCGS_P_VARPI].out * ADCGS_LANES;
+    grad.body = (adcgs_body_grad *)(partial + p->partial_bodies);
     grad.pull = p->pull ? p->pull + (size_t)g * 12 * ADCGS_LANES : NULL;
     p->dsp.primitives_back(&io, &grad);
     theta_back(job, g, grad.theta, scratch, partial);
@@ -184,10 +186,32 @@ static void merge_partials(adcgs_pass *p, adcgs_fmodel *f)
         }
 }
 
+/** Sums of all chunks to the poses of the rows about the time. */
+static void bodies_back(const adcgs_pass *p, adcgs_fmodel *f)
+{
+    const int columns = adcgs_fmodel_time_columns(&f->params), n = (int)adcgs_pose_columns(&f->params);
+    float sum[ADCGS_BODIES_MAX * sizeof(adcgs_body_grad) / sizeof(float)] = { 0 }, d[ADCGS_BODIES_MAX * ADCGS_POSE_N];
+    const size_t values = f->params.bodies * sizeof(adcgs_body_grad) / sizeof(float);
+    adcgs_body_grad grad[ADCGS_BODIES_MAX];
+    int row;
+    const float frac = adcgs_fmodel_time_row(&f->params, p->t, &row);
+    for (int c = 0; c < p->chunks; c++)
+        for (size_t i = 0; i < values; i++)
+            sum[i] += p->partial[(size_t)c * p->partial_stride + p->partial_bodies + i];
+    memcpy(grad, sum, values * sizeof *sum);
+    adcgs_bodies_pose_back(f, p->time_code, grad, d);
+    float *dz = f->param[ADCGS_P_TIME].g + (size_t)row * (size_t)columns + f->params.time_width;
+    for (int j = 0; j < n; j++) {
+        dz[j] += d[j] * (1 - frac);
+        if (f->params.time_rows > 1)
+            dz[columns + j] += d[j] * frac;
+    }
+}
+
 /** The time part of the first layers: their bias gradient is the gradient of the per-frame bias vector. */
 static void time_back(adcgs_pass *p, adcgs_fmodel *f)
 {
-    const int width = f->params.time_width;
+    const int width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);
     const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
     float *dz = f->param[ADCGS_P_TIME].g;
     int row;
@@ -201,9 +225,9 @@ static void time_back(adcgs_pass *p, adcgs_fmodel *f)
             for (int j = 0; j < width; j++) {
                 g[w + (size_t)j] += d * p->time_code[j];
                 const float dcode = d * m->use[w + (size_t)j];
-                dz[row * width + j] += dcode * (1 - frac);
+                dz[row * columns + j] += dcode * (1 - frac);
                 if (f->params.time_rows > 1)
-                    dz[(row + 1) * width + j] += dcode * frac;
+                    dz[(row + 1) * columns + j] += dcode * frac;
             }
         }
     }
@@ -228,6 +252,8 @@ void adcgs_pass_backward(adcgs_pass *p, adcgs_fmodel *f, adcgs_deform deform, fl
     merge_partials(p, f);
     if (job.deform)
         time_back(p, f);
+    if (job.deform && f->params.bodies)
+        bodies_back(p, f);
     if (rate)
         sum_rate(p, period, rate);
 }

@@ -85,13 +85,15 @@ adcgs_status adcgs_pass_create(adcgs_pass **out, const adcgs_fmodel *f, adcgs_cp
         p->partial_at[i] = at;
         at += (f->param[i].n + 15) / 16 * 16;
     }
+    p->partial_bodies = at;
+    at += (f->params.bodies * (sizeof(adcgs_body_grad) / sizeof(float)) + 15) / 16 * 16;
     p->partial_stride = at;
     p->chunks = ADCGS_PASS_CHUNKS;
     p->scratch = adcgs_alloc(NULL, p->scratch_stride * (size_t)adcgs_pool_threads(pool), sizeof(float), error);
     p->partial = adcgs_alloc(NULL, at * (size_t)p->chunks, sizeof(float), error);
     p->bits = adcgs_alloc(NULL, (size_t)p->chunks * ADCGS_GROUPS, sizeof(double), error);
     p->tables = adcgs_alloc(NULL, ADCGS_SHAPES, sizeof *p->tables, error);
-    p->time_code = adcgs_alloc(NULL, (size_t)f->params.time_width + 1, sizeof(float), error);
+    p->time_code = adcgs_alloc(NULL, (size_t)adcgs_fmodel_time_columns(&f->params) + 1, sizeof(float), error);
     for (int i = 0; i < 2; i++)
         p->time_bias[i] = adcgs_alloc(NULL, 1024, sizeof(float), error);
     *out = p;
@@ -128,6 +130,14 @@ adcgs_status adcgs_pass_resize(adcgs_pass *p, const adcgs_fmodel *f, adcgs_error
     return alloc_groups(p, f, error);
 }
 
+static int any_body(const adcgs_fmodel *f, uint32_t g)
+{
+    int any = 0;
+    for (size_t l = 0; f->params.bodies && l < ADCGS_LANES; l++)
+        any |= f->body[(size_t)g * ADCGS_LANES + l];
+    return any;
+}
+
 void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs_deform deform, adcgs_group_io *io)
 {
     const adcgs_act act = adcgs_pass_act(p, f, g);
@@ -144,6 +154,8 @@ void adcgs_pass_io(const adcgs_pass *p, const adcgs_fmodel *f, uint32_t g, adcgs
     io->moving = f->moving + (size_t)g * ADCGS_LANES;
     io->keep = p->keep + at;
     io->rotation = f->params.coarse_rotation;
+    io->body = deform && any_body(f, g) ? f->body + (size_t)g * ADCGS_LANES : NULL;
+    io->pose = p->pose;
     const adcgs_slot_out out = adcgs_rows_at(p->prim, slots, at);
     memcpy(io->mean, out.mean, sizeof out.mean);
     memcpy(io->scale, out.scale, sizeof out.scale);

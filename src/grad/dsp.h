@@ -14,6 +14,18 @@
 /** Outputs of F_theta per primitive, of F_omega per anchor, of F_varpi per primitive. */
 enum { ADCGS_THETA_OUT = 14, ADCGS_OMEGA_OUT = 12, ADCGS_VARPI_OUT = 4 };
 
+/** Where a body is at a time: what lies at x goes to R(q) (x - centre) + to. */
+typedef struct adcgs_body_pose {
+    float q[4], centre[3], to[3];
+} adcgs_body_pose;
+/**
+ * Sums over the anchors of a body of the gradients of its pose: of the rotation matrix, which takes places; of the quaternion,
+ * which turns primitives; of the way.
+ */
+typedef struct adcgs_body_grad {
+    float m[9], q[4], way[3];
+} adcgs_body_grad;
+
 /** One group of 64 anchors on its way to 64*k primitives. */
 typedef struct adcgs_group_io {
     int k;
@@ -28,6 +40,8 @@ typedef struct adcgs_group_io {
     const float *moving; /**< [64] 1 for moving, 0 for static anchors; read when omega or varpi is given, or spans */
     const float *keep;   /**< [k][64] 1 for primitives that exist, else 0 */
     int rotation;        /**< omega's outputs 9..11 are used */
+    const uint8_t *body; /**< [64] the body that takes an anchor along, from 1, 0: none; or NULL. Of those that move */
+    const adcgs_body_pose *pose; /**< [bodies] */
     float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] each */
 } adcgs_group_io;
 
@@ -36,7 +50,8 @@ typedef struct adcgs_group_grad {
     const float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] */
     float *sigma, *colour;        /**< as io's, accumulated */
     float *theta, *omega, *varpi; /**< overwritten; omega, varpi may be NULL as above */
-    const float *pull;            /**< [12][64] more gradient of the anchors' way and rotation matrix, or NULL */
+    const float *pull;            /**< [12][64] more gradient of omega's way and rotation matrix, or NULL */
+    adcgs_body_grad *body;        /**< [bodies], accumulated; where io has bodies */
 } adcgs_group_grad;
 
 /** What the coder's tables say about a value of magnitude `a` at a sigma level. */

@@ -293,7 +293,9 @@ static void ISA(round)(float *restrict y, const float *restrict p, const float *
 typedef struct anchor_terms {
     float extent[3][LANES], base[3][LANES]; /* exp(Sigma_v) */
     float move[3][LANES], grow[3][LANES], tint[3][LANES]; /* deltas of F_omega */
-    float q[4][LANES];                      /* anchor's rotation */
+    float own[4][LANES];                    /* rotation by F_omega */
+    float q[4][LANES];                      /* and by the body: all of it */
+    float body[4][LANES], from[3][LANES];   /* the body's rotation; the way before it, as seen from the body's centre */
     float norm[LANES];                      /* length of (1, r) */
     float pace[LANES], u[LANES], presence[LANES]; /* of spans */
 } anchor_terms;
@@ -317,6 +319,44 @@ static void ISA(span_forward)(anchor_terms *a, const adcgs_group_io *io)
             a->move[c][l] += io->sigma[(ADCGS_SPAN_VELOCITY + c) * LANES + l] * 0.125f * a->u[l] * io->moving[l];
 }
 
+/* c = a b, and conj(a) b, and a conj(b), of quaternions. */
+#define PRODUCT(c, a, b, i, j)                                                                        \
+    const float c##0 = a##0 * b##0 - (i) * (j) * (a##1 * b##1 + a##2 * b##2 + a##3 * b##3);           \
+    const float c##1 = (j) * a##0 * b##1 + (i) * a##1 * b##0 + (i) * (j) * (a##2 * b##3 - a##3 * b##2); \
+    const float c##2 = (j) * a##0 * b##2 + (i) * a##2 * b##0 + (i) * (j) * (a##3 * b##1 - a##1 * b##3); \
+    const float c##3 = (j) * a##0 * b##3 + (i) * a##3 * b##0 + (i) * (j) * (a##1 * b##2 - a##2 * b##1)
+#define QUATERNION(name, from) const float name##0 = from[0][l], name##1 = from[1][l], name##2 = from[2][l], name##3 = from[3][l]
+
+/** Bodies take along the anchors that are theirs, turned and moved as they are. */
+static void ISA(body_forward)(anchor_terms *a, const adcgs_group_io *io)
+{
+    float to[3][LANES];
+    for (int l = 0; l < LANES; l++) {
+        static const adcgs_body_pose still = { .q = { 1, 0, 0, 0 } };
+        const adcgs_body_pose *p = io->body[l] && io->moving[l] != 0 ? &io->pose[io->body[l] - 1] : &still;
+        for (int c = 0; c < 4; c++)
+            a->body[c][l] = p->q[c];
+        for (int c = 0; c < 3; c++) {
+            a->from[c][l] = a->move[c][l] - p->centre[c];
+            to[c][l] = p->to[c];
+        }
+    }
+    for (int l = 0; l < LANES; l++) {
+        QUATERNION(b, a->body);
+        QUATERNION(o, a->own);
+        ROTATION(r, b0, b1, b2, b3);
+        PRODUCT(q, b, o, 1, 1);
+        const float x = a->from[0][l], y = a->from[1][l], z = a->from[2][l];
+        a->move[0][l] = r00 * x + r01 * y + r02 * z + to[0][l];
+        a->move[1][l] = r10 * x + r11 * y + r12 * z + to[1][l];
+        a->move[2][l] = r20 * x + r21 * y + r22 * z + to[2][l];
+        a->q[0][l] = q0;
+        a->q[1][l] = q1;
+        a->q[2][l] = q2;
+        a->q[3][l] = q3;
+    }
+}
+
 static void ISA(anchor_forward)(anchor_terms *a, const adcgs_group_io *io)
 {
     for (int c = 0; c < 3; c++)
@@ -338,12 +378,16 @@ static void ISA(anchor_forward)(anchor_terms *a, const adcgs_group_io *io)
         const float z = turn ? om[11 * LANES + l] * io->moving[l] : 0;
         const float norm = sqrtf(1 + x * x + y * y + z * z), inverse = 1 / norm;
         a->norm[l] = norm;
-        a->q[0][l] = inverse;
-        a->q[1][l] = x * inverse;
-        a->q[2][l] = y * inverse;
-        a->q[3][l] = z * inverse;
+        a->own[0][l] = inverse;
+        a->own[1][l] = x * inverse;
+        a->own[2][l] = y * inverse;
+        a->own[3][l] = z * inverse;
     }
     ISA(span_forward)(a, io);
+    if (io->body)
+        ISA(body_forward)(a, io);
+    else
+        memcpy(a->q, a->own, sizeof a->q);
 }
 
 static void ISA(primitives)(const adcgs_group_io *io)
@@ -507,6 +551,61 @@ static void ISA(primitive_rest_back)(const anchor_terms *a, anchor_grads *s, con
     }
 }
 
+/**
+ * From the gradients of all that moves an anchor to those of what its body takes along, in place, and to sums for the body. With
+ * R = B O of the body and F_omega, by B: dR O^T; by O: B^T dR; quaternions likewise.
+ */
+static void ISA(body_back)(const anchor_terms *a, anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g)
+{
+    float sums[16][LANES];
+    for (int l = 0; l < LANES; l++) {
+        QUATERNION(b, a->body);
+        QUATERNION(o, a->own);
+        QUATERNION(d, s->q);
+        ROTATION(r, b0, b1, b2, b3);
+        ROTATION(w, o0, o1, o2, o3);
+        PRODUCT(e, d, o, 1, -1);
+        PRODUCT(f, b, d, -1, 1);
+        const float x = s->move[0][l], y = s->move[1][l], z = s->move[2][l];
+        const float v[3] = { a->from[0][l], a->from[1][l], a->from[2][l] }, way[3] = { x, y, z };
+        for (int i = 0; i < 3; i++) {
+            const float m0 = s->m[3 * i][l], m1 = s->m[3 * i + 1][l], m2 = s->m[3 * i + 2][l];
+            sums[3 * i][l] = m0 * w00 + m1 * w01 + m2 * w02 + way[i] * v[0];
+            sums[3 * i + 1][l] = m0 * w10 + m1 * w11 + m2 * w12 + way[i] * v[1];
+            sums[3 * i + 2][l] = m0 * w20 + m1 * w21 + m2 * w22 + way[i] * v[2];
+            sums[13 + i][l] = way[i];
+        }
+        for (int j = 0; j < 3; j++) {
+            const float m0 = s->m[j][l], m1 = s->m[3 + j][l], m2 = s->m[6 + j][l];
+            s->m[j][l] = r00 * m0 + r10 * m1 + r20 * m2;
+            s->m[3 + j][l] = r01 * m0 + r11 * m1 + r21 * m2;
+            s->m[6 + j][l] = r02 * m0 + r12 * m1 + r22 * m2;
+        }
+        sums[9][l] = e0;
+        sums[10][l] = e1;
+        sums[11][l] = e2;
+        sums[12][l] = e3;
+        s->q[0][l] = f0;
+        s->q[1][l] = f1;
+        s->q[2][l] = f2;
+        s->q[3][l] = f3;
+        s->move[0][l] = r00 * x + r10 * y + r20 * z;
+        s->move[1][l] = r01 * x + r11 * y + r21 * z;
+        s->move[2][l] = r02 * x + r12 * y + r22 * z;
+    }
+    for (int l = 0; l < LANES; l++) {
+        if (!io->body[l] || io->moving[l] == 0)
+            continue;
+        adcgs_body_grad *to = &g->body[io->body[l] - 1];
+        for (int i = 0; i < 9; i++)
+            to->m[i] += sums[i][l];
+        for (int i = 0; i < 4; i++)
+            to->q[i] += sums[9 + i][l];
+        for (int i = 0; i < 3; i++)
+            to->way[i] += sums[13 + i][l];
+    }
+}
+
 static void ISA(omega_back)(const anchor_terms *a, const anchor_grads *s, const adcgs_group_io *io, const adcgs_group_grad *g)
 {
     float *restrict d = g->omega;
@@ -519,7 +618,7 @@ static void ISA(omega_back)(const anchor_terms *a, const anchor_grads *s, const 
     if (!io->rotation)
         return;
     for (int l = 0; l < LANES; l++) {
-        const float w = a->q[0][l], x = a->q[1][l], y = a->q[2][l], z = a->q[3][l];
+        const float w = a->own[0][l], x = a->own[1][l], y = a->own[2][l], z = a->own[3][l];
         const float m00 = s->m[0][l], m01 = s->m[1][l], m02 = s->m[2][l], m10 = s->m[3][l], m11 = s->m[4][l];
         const float m12 = s->m[5][l], m20 = s->m[6][l], m21 = s->m[7][l], m22 = s->m[8][l];
         const float gw = s->q[0][l] + 2 * (z * (m10 - m01) + y * (m02 - m20) + x * (m21 - m12));
@@ -555,18 +654,18 @@ static void ISA(primitives_back)(const adcgs_group_io *io, const adcgs_group_gra
     anchor_grads s;
     memset(&s, 0, sizeof s);
     const float *restrict pull = io->omega ? grad->pull : NULL;
-    if (pull)
-        memcpy(s.m, pull + 3 * LANES, sizeof s.m);
     ISA(anchor_forward)(&a, io);
     for (int k = 0; k < io->k; k++) {
         ISA(primitive_mean_back)(&a, &s, io, grad, k);
         ISA(primitive_rotation_back)(&a, &s, io, grad, k);
         ISA(primitive_rest_back)(&a, &s, io, grad, k);
     }
+    if (io->body)
+        ISA(body_back)(&a, &s, io, grad);
     if (io->spans)
         ISA(span_back)(&a, &s, io, grad);
-    for (int i = 0; pull && i < 3 * LANES; i++) /* of F_omega's way alone */
-        s.move[i / LANES][i % LANES] += pull[i];
+    for (int i = 0; pull && i < 12 * LANES; i++) /* of F_omega alone */
+        (i < 3 * LANES ? s.move[i / LANES] : s.m[i / LANES - 3])[i % LANES] += pull[i];
     if (io->omega)
         ISA(omega_back)(&a, &s, io, grad);
 }

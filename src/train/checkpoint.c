@@ -175,6 +175,8 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
     visit(w, f->density, sizeof f->density);
     visit(w, f->keep, slots * sizeof(float));
     visit(w, f->moving, lanes * sizeof(float));
+    visit(w, f->body, lanes);
+    visit(w, f->centre, sizeof f->centre);
     visit(w, t->stats.weight, (3 * slots + lanes) * sizeof(float));
     visit(w, &t->stats.n, sizeof t->stats.n);
     for (int i = 0; i < ADCGS_P_COUNT; i++) {

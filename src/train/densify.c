@@ -3,6 +3,7 @@
 #include "train/densify.h"
 
 #include "geom/geom.h"
+#include "stereo/pose.h"
 #include "train/anchor_set.h"
 #include "train/initialise.h"
 #include "train/moment_densify.h"
@@ -136,14 +137,24 @@ static void dress(adcgs_fmodel *f, const adcgs_residual *places, uint32_t n)
     }
 }
 
+/** Where a point is while its body is at rest. */
+static void rest(const adcgs_trainer *t, const adcgs_stereo_point *point, float x[3])
+{
+    double place[3];
+    adcgs_stereo_rest(&t->stereo, point, place);
+    for (int a = 0; a < 3; a++)
+        x[a] = (float)place[a];
+}
+
 /** The same for points of a moment: any voxel that is free will do, since neighbours may live at other moments. */
 static uint32_t sow_moments(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_stereo_point **points,
                             uint32_t n, cells *occupied)
 {
     uint32_t taken = 0;
     for (uint32_t i = 0; i < n && s->n < budget; i++) {
-        const float x[3] = { (float)points[i]->x[0], (float)points[i]->x[1], (float)points[i]->x[2] };
         uint32_t pos[3], at = 0;
+        float x[3];
+        rest(t, points[i], x);
         if (!cell_of(t->f, x, pos))
             continue;
         while (at < s->n && memcmp(s->pos[at], pos, sizeof pos) != 0)
@@ -159,10 +170,10 @@ static uint32_t sow_moments(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budg
 
 static void dress_moments(adcgs_trainer *t, const adcgs_stereo_point *const *points, uint32_t n)
 {
-    const float half = t->config.span_moments * adcgs_stereo_spacing(&t->stereo);
+    const float half = adcgs_half_life(&t->config, &t->stereo);
     for (uint32_t i = 0; i < n; i++) {
-        adcgs_residual place = { .x = { (float)points[i]->x[0], (float)points[i]->x[1], (float)points[i]->x[2] },
-                                 .size = 4 * points[i]->size };
+        adcgs_residual place = { .size = 4 * points[i]->size };
+        rest(t, points[i], place.x);
         const uint32_t at = anchor_at(t->f, place.x);
         memcpy(place.rgb, points[i]->rgb, sizeof place.rgb);
         dress(t->f, &place, 1);
@@ -170,6 +181,7 @@ static void dress_moments(adcgs_trainer *t, const adcgs_stereo_point *const *poi
             continue;
         adcgs_set_span(t->f, at, points[i], half);
         t->f->moving[at] = 1;
+        t->f->body[at] = points[i]->body;
     }
 }
 

@@ -2,7 +2,9 @@
 /** \file The first anchors. */
 #include "train/initialise.h"
 
+#include "fmodel/bodies.h"
 #include "geom/geom.h"
+#include "stereo/pose.h"
 #include "train/start_points.h"
 
 #include <math.h>
@@ -46,7 +48,7 @@ void adcgs_set_span(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p, fl
     *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_MIDDLE) = 8 * (p->t - 0.5f);
     *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_PACE) = -logf(half);
     for (int a = 0; a < 3; a++)
-        *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_VELOCITY + a) = 8 * p->velocity[a] * half;
+        *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_VELOCITY + a) = p->body ? 0 : 8 * p->velocity[a] * half;
 }
 
 static void set_anchor(adcgs_fmodel *f, uint32_t i, const double rgb[3])
@@ -83,11 +85,15 @@ static adcgs_status voxelise(const adcgs_start_points *c, double half, int depth
     return ADCGS_OK;
 }
 
-/** What matching says of time: who is still will not move; of those that move, neighbours live at other moments. */
+/**
+ * What matching says of time: who is still will not move; who is part of a body lives as long as it does; of the others that
+ * move, neighbours live at other moments.
+ */
 static void set_life(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p, float half)
 {
     f->moving[i] = p->moves;
-    if (!p->moves)
+    f->body[i] = p->body;
+    if (!p->moves || p->body)
         return;
     for (int a = 0; a < 6; a++)
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, a) -= 0.5f * logf(fminf(2 * half, 1));
@@ -118,13 +124,27 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const adcgs_start_points *c
     return status;
 }
 
+/** Bodies go as they were followed. */
+static void set_poses(adcgs_fmodel *f, const adcgs_stereo *found)
+{
+    const int rows = f->params.time_rows;
+    adcgs_bodies_recentre(f);
+    for (int b = 1; b <= f->params.bodies; b++)
+        for (int row = 0; row < rows; row++) {
+            const adcgs_stereo_pose pose = adcgs_stereo_pose_at(found, (uint32_t)b - 1, rows > 1 ? (float)row / (float)(rows - 1) : 0);
+            adcgs_bodies_set_pose(f, b, row, pose.q, found->body[b - 1].pivot, pose.way);
+        }
+}
+
 adcgs_status adcgs_initialise(adcgs_fmodel **out, const adcgs_scene *scene, const adcgs_train_config *config,
                               const adcgs_stereo *found, adcgs_error *error)
 {
     adcgs_start_points points;
     adcgs_status status = adcgs_start_points_find(&points, scene, config, found, error);
     if (status == ADCGS_OK)
-        status = make_anchors(out, &points, config, config->span_moments * adcgs_stereo_spacing(found), error);
+        status = make_anchors(out, &points, config, adcgs_half_life(config, found), error);
+    if (status == ADCGS_OK)
+        set_poses(*out, found);
     adcgs_start_points_clear(&points);
     return status;
 }

@@ -3,6 +3,7 @@
 #include "train/start_points.h"
 
 #include "grad/random.h"
+#include "stereo/pose.h"
 #include "train/scene_frame.h"
 
 #include <math.h>
@@ -11,6 +12,7 @@
 #define START_SHARE 0.75   /* of max_anchors: points that are known lie where things are; what is missing then grows */
 #define MATCHED_SHARE 0.9  /* of the points; the rest are random points where matching found nothing */
 #define MOVING_SHARE 0.25  /* of these; many more are too small to find motion */
+#define SPACING_LEAST (1 / 15.0f) /* of moments: in a long clip lives are shares of it, or there would be too many */
 #define MOVING_MOST 2000   /* of a moment, that spans may grow from */
 
 /* ---- What the cameras see ---- */
@@ -184,12 +186,12 @@ static void random_points(adcgs_start_points *c, const sight *s, const adcgs_ste
 
 /* ---- Points that matched pictures give ---- */
 
-static void add_matched(adcgs_start_points *c, const adcgs_stereo_point *p)
+static void add_matched(adcgs_start_points *c, const adcgs_stereo *found, const adcgs_stereo_point *p)
 {
+    adcgs_stereo_rest(found, p, c->x[c->n]);
     for (int a = 0; a < 3; a++) {
-        if (!(fabs(p->x[a]) < 8))
+        if (!(fabs(c->x[c->n][a]) < 8))
             return;
-        c->x[c->n][a] = p->x[a];
         c->rgb[c->n][a] = (double)p->rgb[a];
     }
     c->matched[c->n] = p;
@@ -206,18 +208,33 @@ static float middle_moment(const adcgs_stereo *s)
     return best;
 }
 
-/** So many of the points of what moves, of all moments alike: of those in place, or of the others. */
-static uint32_t add_moving(adcgs_start_points *c, const adcgs_stereo *found, int in_place, uint32_t most)
+/** Kinds of what moves: part of a body, going by itself, or in place. */
+enum { OF_BODY, BY_ITSELF, IN_PLACE };
+
+static int kind_of(const adcgs_stereo_point *p)
 {
-    uint32_t there = 0, n = 0;
+    return p->body ? OF_BODY : p->in_place ? IN_PLACE : BY_ITSELF;
+}
+
+static uint32_t count_moving(const adcgs_stereo *found, int kind)
+{
+    uint32_t n = 0;
     for (uint32_t i = 0; i < found->n_moving; i++)
-        there += found->moving[i].in_place == in_place;
+        n += kind_of(&found->moving[i]) == kind;
+    return n;
+}
+
+/** So many of the points of what moves, of all moments alike. */
+static uint32_t add_moving(adcgs_start_points *c, const adcgs_stereo *found, int kind, uint32_t most)
+{
+    const uint32_t there = count_moving(found, kind);
+    uint32_t n = 0;
     most = ADCGS_MIN(most, there);
     for (uint32_t i = 0, seen = 0; i < found->n_moving && n < most; i++) {
-        if (found->moving[i].in_place != in_place)
+        if (kind_of(&found->moving[i]) != kind)
             continue;
         if ((uint64_t)seen++ * most / there >= n) {
-            add_matched(c, &found->moving[i]);
+            add_matched(c, found, &found->moving[i]);
             n++;
         }
     }
@@ -225,22 +242,36 @@ static uint32_t add_moving(adcgs_start_points *c, const adcgs_stereo *found, int
 }
 
 /**
+ * Bodies have their share, as all moments show the same of them; of what goes by itself moments need points of their own, and what
+ * is in place fills up.
+ */
+static void add_all_that_moves(adcgs_start_points *c, const adcgs_stereo *found, float half, uint32_t most)
+{
+    const double of_body = fmin(2 * (double)half, 1) * count_moving(found, OF_BODY), others = count_moving(found, BY_ITSELF);
+    uint32_t left = most;
+    if (of_body > 0)
+        left -= add_moving(c, found, OF_BODY, (uint32_t)(most * of_body / (of_body + others)));
+    left -= add_moving(c, found, BY_ITSELF, left);
+    add_moving(c, found, IN_PLACE, left);
+}
+
+/**
  * Points of all moments where they can live at them, those in place where others are too few, or of the one in the middle of
  * time; the rest is what is still.
  */
-static void matched_points(adcgs_start_points *c, const adcgs_stereo *found, uint32_t most, int spans)
+static void matched_points(adcgs_start_points *c, const adcgs_stereo *found, uint32_t most, int spans, float half)
 {
     const uint32_t wanted = most > c->n ? (uint32_t)(MATCHED_SHARE * (most - c->n)) : 0, begin = c->n;
     const uint32_t moving = ADCGS_MIN((uint32_t)(MOVING_SHARE * most), found->n_moving);
     const float middle = middle_moment(found);
     if (spans)
-        add_moving(c, found, 1, moving - add_moving(c, found, 0, moving));
+        add_all_that_moves(c, found, half, moving);
     for (uint32_t i = 0; !spans && i < found->n_moving; i++)
         if (found->moving[i].t >= middle && found->moving[i].t <= middle && !found->moving[i].in_place)
-            add_matched(c, &found->moving[i]);
+            add_matched(c, found, &found->moving[i]);
     const uint32_t left = wanted - ADCGS_MIN(c->n - begin, wanted), n = ADCGS_MIN(left, found->n_still);
     for (uint32_t i = 0; i < n; i++)
-        add_matched(c, &found->still[(uint64_t)i * found->n_still / n]);
+        add_matched(c, found, &found->still[(uint64_t)i * found->n_still / n]);
 }
 
 static int has_points(const adcgs_scene *scene)
@@ -259,7 +290,7 @@ static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adc
     given_points(c, s, has_points(s->scene) ? all - moving : all);
     if (c->n >= ADCGS_POINTS_LEAST && !moving)
         return ADCGS_OK;
-    matched_points(c, found, all, config->params.spans);
+    matched_points(c, found, all, config->params.spans, adcgs_half_life(config, found));
     if (has_points(s->scene))
         return ADCGS_OK;
     random_points(c, s, found, config->start_anchors, config->seed);
@@ -284,6 +315,11 @@ adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *s
 
 /* ---- Matching ---- */
 
+float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *found)
+{
+    return config->span_moments * fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
+}
+
 adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
                                adcgs_error *error)
 {
@@ -302,5 +338,9 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, ad
     }
     if (config->stereo && !found->n_moving)
         config->params.spans = 0;
+    const uint32_t bodies = config->params.spans ? found->n_bodies : 0;
+    config->params.bodies = (uint8_t)ADCGS_MIN(config->params.bodies, bodies);
+    for (uint32_t i = 0; i < found->n_moving; i++) /* there is no place for the smallest */
+        found->moving[i].body = found->moving[i].body > config->params.bodies ? 0 : found->moving[i].body;
     return ADCGS_OK;
 }

@@ -25,6 +25,8 @@ typedef struct adcgs_start_points {
  */
 adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
                                adcgs_error *error);
+/** How long, of all time, what moves by itself lives before its moment, and behind. */
+float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *found);
 /** At most config->start_anchors points; found, which may be empty, has to outlive them. Clear them, whatever this returns. */
 adcgs_status adcgs_start_points_find(adcgs_start_points *points, const adcgs_scene *scene, const adcgs_train_config *config,
                                      const adcgs_stereo *found, adcgs_error *error);

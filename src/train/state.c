@@ -2,6 +2,7 @@
 /** \file The state of a run, made and taken apart. */
 #include "train/state.h"
 
+#include "fmodel/bodies.h"
 #include "train/initialise.h"
 #include "train/rate_plan.h"
 #include "train/scene_frame.h"
@@ -15,6 +16,7 @@
 adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
 {
     const size_t lanes = (size_t)t->f->groups * ADCGS_LANES, slots = lanes * t->f->params.k;
+    adcgs_bodies_recentre(t->f);
     ADCGS_TRY(adcgs_pass_resize(t->pass, t->f, error));
     adcgs_free(NULL, t->stats.weight);
     t->stats = (adcgs_train_stats){ .weight = adcgs_alloc(NULL, 3 * slots + lanes, sizeof(float), error) };
@@ -72,7 +74,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     else if (c->params.time_rows > times)
         c->params.time_rows = (uint16_t)times;
     if (!c->params.time_rows)
-        c->params.time_width = c->params.spans = 0;
+        c->params.time_width = c->params.spans = c->params.bodies = 0;
     /*
      * A camera alone finds what moves with large primitives first, and by what neighbours do; squares make it learn by heart the
      * moments that it cannot explain. Several tell from one moment.

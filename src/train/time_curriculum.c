@@ -35,9 +35,9 @@ void adcgs_curriculum_clear(adcgs_curriculum *w)
 
 static void copy_row(adcgs_fmodel *f, int to, int from)
 {
-    const size_t width = f->params.time_width;
+    const size_t width = f->params.time_width, columns = (size_t)adcgs_fmodel_time_columns(&f->params);
     float *z = f->param[ADCGS_P_TIME].p;
-    memcpy(z + (size_t)to * width, z + (size_t)from * width, width * sizeof *z);
+    memcpy(z + (size_t)to * columns, z + (size_t)from * columns, width * sizeof *z); /* poses are known, or stand still */
 }
 
 void adcgs_curriculum_grow(adcgs_curriculum *w, double fraction, adcgs_fmodel *f)

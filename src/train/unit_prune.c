@@ -46,12 +46,12 @@ static double *put_rows(const adcgs_fmodel *f, double *x, int group, uint32_t an
 
 static double *put_time(const adcgs_fmodel *f, double *x, double t)
 {
-    const int width = f->params.time_width;
+    const int width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);
     int row;
     const double part = (double)adcgs_fmodel_time_row(&f->params, (float)t, &row);
-    const float *z = f->param[ADCGS_P_TIME].p + (size_t)row * (size_t)width;
+    const float *z = f->param[ADCGS_P_TIME].p + (size_t)row * (size_t)columns;
     for (int j = 0; j < width; j++)
-        *x++ = (1 - part) * (double)z[j] + (part > 0 ? part * (double)z[j + width] : 0);
+        *x++ = (1 - part) * (double)z[j] + (part > 0 ? part * (double)z[j + columns] : 0);
     return x;
 }
 

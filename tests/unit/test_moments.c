@@ -41,7 +41,8 @@ static float span_of(const adcgs_trainer *t, uint32_t anchor, int channel)
 /** Some of what moves is there for each moment and goes as fast as the square; what is on the wall will not move. */
 static void lives_begin_at_their_moments(void **state)
 {
-    const adcgs_train_config config = small_config();
+    adcgs_train_config config = small_config();
+    config.params.bodies = 0;
     adcgs_trainer *t = make(&config);
     const float half = config.span_moments / (MOMENTS - 1);
     int at_moment[MOMENTS] = { 0 }, fast = 0, moving = 0, still = 0;
@@ -62,6 +63,36 @@ static void lives_begin_at_their_moments(void **state)
         assert_true(at_moment[m] > 0);
     print_message("%d move, %d of them as fast as they should, %d stand still\n", moving, fast, still);
     assert_true(fast > moving / 2 && still > moving);
+    adcgs_trainer_free(&t);
+}
+
+/** The square is a body: its anchors live as long as it does, and go with it. */
+static void what_keeps_its_form_is_a_body(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config);
+    const adcgs_primitives *p = &t->pass->primitives;
+    float *begin = calloc(p->n, sizeof *begin);
+    int of_body = 0, along = 0;
+    assert_non_null(begin);
+    assert_int_equal(t->config.params.bodies, 1);
+    adcgs_trainer_prepare_networks(t);
+    adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    memcpy(begin, p->mean[0], p->n * sizeof *begin);
+    adcgs_pass_forward(t->pass, t->f, 1, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
+    for (uint32_t i = 0; i < t->f->n; i++) {
+        const size_t slot = adcgs_fmodel_slot(t->f, i, 0);
+        const double way = (double)(p->mean[0][slot] - begin[slot]) * t->scale;
+        if (!t->f->body[i])
+            continue;
+        of_body++;
+        along += fabs(way - SPEED) < 0.1 * SPEED;
+        for (int end = 0; end <= 1; end++)
+            assert_true(t->f->moving[i] != 0 && adcgs_fmodel_presence(t->f, i, (float)end) > 0.98f);
+    }
+    print_message("%d of a body, %d go along\n", of_body, along);
+    assert_true(of_body > 10 && along == of_body);
+    free(begin);
     adcgs_trainer_free(&t);
 }
 
@@ -138,7 +169,7 @@ static void run_until(adcgs_trainer *t, uint32_t iteration)
         fail_msg("%s", error.text);
 }
 
-/** A run with spans goes on from a checkpoint as if nothing had been, and its stream decodes to what was written. */
+/** A run with spans and bodies goes on from a checkpoint as if nothing had been, and its stream decodes to what was written. */
 static void runs_go_on_and_decode(void **state)
 {
     const adcgs_train_config config = small_config();
@@ -158,6 +189,7 @@ static void runs_go_on_and_decode(void **state)
     }
     assert_int_equal(adcgs_encode_stream(&stream, through, NULL, 0, &error), ADCGS_OK);
     assert_int_equal(stream.params.spans, 1);
+    assert_int_equal(stream.params.bodies, 1);
     if (adcgs_encode_verified(&stream, &out, adcgs_cpu_best(), NULL, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     adcgs_stream_clear(&stream, NULL);
@@ -170,7 +202,8 @@ static void runs_go_on_and_decode(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lives_begin_at_their_moments), cmocka_unit_test(spans_need_what_moves),
+        cmocka_unit_test(lives_begin_at_their_moments), cmocka_unit_test(what_keeps_its_form_is_a_body),
+        cmocka_unit_test(spans_need_what_moves),
         cmocka_unit_test(what_is_missing_is_found),     cmocka_unit_test(absence_is_no_idleness),
         cmocka_unit_test(runs_go_on_and_decode),
     };

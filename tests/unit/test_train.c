@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "fmodel/bodies.h"
 #include "fmodel/pass.h"
 #include "fmodel/rigidity.h"
 #include "fmodel/scale_penalty.h"
@@ -107,18 +108,49 @@ static void normalise(double q[4])
 
 static void time_code(const adcgs_fmodel *f, double t, double *code)
 {
-    const int rows = f->params.time_rows, width = f->params.time_width;
+    const int rows = f->params.time_rows, width = f->params.time_width, columns = width + 7 * f->params.bodies;
     const double u = t * (rows - 1);
     const int i = (int)fmin(floor(u), rows - 2);
     const float *z = f->param[ADCGS_P_TIME].p;
-    for (int j = 0; j < width; j++)
-        code[j] = z[i * width + j] + (u - i) * (z[(i + 1) * width + j] - (double)z[i * width + j]);
+    for (int j = 0; j < columns; j++)
+        code[j] = z[i * columns + j] + (u - i) * (z[(i + 1) * columns + j] - (double)z[i * columns + j]);
+}
+
+/** v turned by a quaternion of length 1. */
+static void turn(const double q[4], const double v[3], double out[3])
+{
+    const double conj[4] = { q[0], -q[1], -q[2], -q[3] }, pure[4] = { 0, v[0], v[1], v[2] };
+    double turned[4], back[4];
+    product(q, pure, turned);
+    product(turned, conj, back);
+    memcpy(out, back + 1, 3 * sizeof *out);
+}
+
+/** Its body takes an anchor's primitive along. */
+static void ref_body(const adcgs_fmodel *f, uint32_t anchor, double t, double mean[3], double rotation[4])
+{
+    double code[64], q[4], v[3], own[4];
+    const int body = f->moving[anchor] == 0 ? 0 : f->body[anchor];
+    if (!body)
+        return;
+    time_code(f, t, code);
+    const double *z = code + f->params.time_width + 7 * (body - 1);
+    for (int i = 0; i < 4; i++)
+        q[i] = z[i] / 16 + !i;
+    normalise(q);
+    for (int a = 0; a < 3; a++)
+        v[a] = mean[a] - f->centre[body - 1][a];
+    turn(q, v, mean);
+    for (int a = 0; a < 3; a++)
+        mean[a] += f->centre[body - 1][a] + z[4 + a] / 16;
+    memcpy(own, rotation, sizeof own);
+    product(q, own, rotation);
 }
 
 /** What F_omega says of an anchor at time t; nothing of one that does not move. */
 static void ref_omega(const adcgs_fmodel *f, uint32_t anchor, double t, double om[12])
 {
-    double x[64];
+    double x[128];
     for (int i = 0; i < NV; i++)
         x[i] = value(f, ADCGS_P_FV, anchor, i);
     time_code(f, t, x + NV);
@@ -146,7 +178,7 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
         x[NV + i] = value(f, ADCGS_P_FG, anchor, k * NG + i);
     ref_mlp(&f->mlp[ADCGS_P_THETA], f->param[ADCGS_P_THETA].p, x, th);
     ref_omega(f, anchor, t, om);
-    double y[64];
+    double y[128];
     for (int i = 0; i < 6 * OCTAVES; i++)
         y[i] = f->code[((size_t)(anchor / 64) * 6 * OCTAVES + (size_t)i) * 64 + anchor % 64];
     memcpy(y + 6 * OCTAVES, x, NV * sizeof *x);
@@ -172,6 +204,7 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
         out[11 + a] = value(f, ADCGS_P_COLOUR, anchor, a) + th[10 + a] + om[6 + a] + moving * va[4 * k + 1 + a];
     }
     memcpy(out + 6, q, sizeof q);
+    ref_body(f, anchor, t, out, out + 6);
     const double there = exp(-u * u * u * u) * f->keep[((size_t)(anchor / 64) * K + (size_t)k) * 64 + anchor % 64];
     out[10] = 0.99 * sigmoid(th[13] + moving * va[4 * k]) * there;
 }
@@ -248,15 +281,26 @@ static void spread_lives(adcgs_fmodel *f)
     }
 }
 
-/** The state is a CPU level, and WITH_SPANS. */
+/** The state is a CPU level, and WITH_SPANS, which comes with bodies, too. */
 enum { WITH_SPANS = 16 };
+
+/** Two bodies, and anchors of none among theirs. */
+static void spread_bodies(adcgs_fmodel *f)
+{
+    const size_t columns = (size_t)adcgs_fmodel_time_columns(&f->params), width = f->params.time_width;
+    for (uint32_t a = 0; a < f->n; a++)
+        f->body[a] = (uint8_t)(a % 3);
+    for (size_t r = 0; r < f->params.time_rows; r++)
+        randomise(f->param[ADCGS_P_TIME].p + r * columns + width, columns - width, 8, 99 + r);
+    adcgs_bodies_recentre(f);
+}
 
 static int setup(void **state)
 {
     const int spans = (uintptr_t)*state >= WITH_SPANS;
     const adcgs_params params = { .k = K, .n_fv = NV, .n_fg = NG, .chunks = CHUNKS, .n_eta = ETA, .octaves = OCTAVES,
                                   .fine_uses_fv = 1, .coarse_rotation = 1, .adaptive_steps = 1, .spans = (uint8_t)spans,
-                                  .time_rows = 4, .time_width = 3 };
+                                  .bodies = spans ? 2 : 0, .time_rows = 4, .time_width = 3 };
     const adcgs_shape shape = { .theta_width = 6, .theta_hidden = 2, .omega_width = 5, .omega_hidden = 3, .varpi_width = 6,
                                 .varpi_hidden = 2, .entropy_width = 6, .entropy_hidden = 2, .step_fv = 0.1f, .step_fg = 0.2f,
                                 .step_sigma = 0.1f, .step_colour = 0.05f, .depth = 8 };
@@ -268,15 +312,18 @@ static int setup(void **state)
     adcgs_error error;
     assert_int_equal(adcgs_fmodel_create(&x->f, &params, &shape, origin, 1.0f / 128, (const uint32_t(*)[3])pos, ANCHORS, 3,
                                          &error), ADCGS_OK);
-    for (int i = 0; i < ADCGS_P_COUNT; i++) {
+    for (int i = 0; i < ADCGS_P_COUNT; i++)
         randomise(x->f->param[i].p, x->f->param[i].n, i < ADCGS_P_ANCHOR ? 0.4 : 0.15, (uint64_t)i);
+    x->f->moving[5] = 0;
+    if (spans)
+        spread_bodies(x->f);
+    for (int i = 0; i < ADCGS_P_COUNT; i++) {
         if (x->f->mlp[i].n)
             adcgs_mlp_prepare(&x->f->mlp[i], x->f->param[i].p, 0);
     }
     adcgs_fmodel_take_steps(x->f);
     if (spans)
         spread_lives(x->f);
-    x->f->moving[5] = 0;
     x->f->keep[1 * 64 + 9] = 0;
     const adcgs_cpu_level level = (adcgs_cpu_level)((uintptr_t)*state % WITH_SPANS);
     assert_int_equal(adcgs_pass_create(&x->pass, x->f, level, NULL, &error), ADCGS_OK);
