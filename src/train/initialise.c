@@ -131,7 +131,8 @@ static void set_poses(adcgs_fmodel *f, const adcgs_stereo *found)
     adcgs_bodies_recentre(f);
     for (int b = 1; b <= f->params.bodies; b++)
         for (int row = 0; row < rows; row++) {
-            const adcgs_stereo_pose pose = adcgs_stereo_pose_at(found, (uint32_t)b - 1, rows > 1 ? (float)row / (float)(rows - 1) : 0);
+            const float t = rows > 1 ? (float)row / (float)(rows - 1) : 0;
+            const adcgs_stereo_pose pose = adcgs_stereo_pose_at(found, (uint32_t)b - 1, t);
             adcgs_bodies_set_pose(f, b, row, pose.q, found->body[b - 1].pivot, pose.way);
         }
 }

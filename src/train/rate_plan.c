@@ -15,9 +15,11 @@ static adcgs_status count_weights(const adcgs_train_config *c, size_t *weights, 
 {
     static const float origin[3];
     static const uint32_t place[1][3];
+    adcgs_params params = c->params;
     adcgs_fmodel *f;
     *weights = 0;
-    ADCGS_TRY(adcgs_fmodel_create(&f, &c->params, &c->shape, origin, 1, place, 1, 0, error));
+    params.bodies = 0; /* they are not found yet, and the fewest scenes have as many as there may be */
+    ADCGS_TRY(adcgs_fmodel_create(&f, &params, &c->shape, origin, 1, place, 1, 0, error));
     for (int i = 0; i < ADCGS_P_COUNT; i++)
         *weights += f->mlp[i].n;
     adcgs_fmodel_free(&f);

@@ -73,7 +73,7 @@ const adcgs_setting adcgs_settings[] = {
     MODEL(coarse_rotation, S | B | Q, 0, 1, ALL(1), "1: the coarse deformation rotates, too"),
     MODEL(adaptive_steps, S | B | Q, 0, 1, ALL(0), "1: a network predicts each anchor's quantiser steps"),
     MODEL(spans, S | B | Q, 0, 1, BUT_PAPER(1, 0), "1: what moves has spans of life, unless matching finds nothing"),
-    MODEL(bodies, B | Q, 0, ADCGS_BODIES_MAX, BUT_PAPER(8, 0), "rigid bodies with trajectories, at most, where matching finds any"),
+    MODEL(bodies, B | Q, 0, ADCGS_BODIES_MAX, BUT_PAPER(8, 0), "rigid bodies, at most, where matching finds any"),
     MODEL(time_rows, B | Q, 0, ADCGS_TIME_ROWS_MAX, ALL(40), "rows of the time table, at most one per moment; 0: no motion"),
     MODEL(time_width, S | B | Q, 0, ADCGS_TIME_WIDTH_MAX, BUT_PAPER(16, 64), "values in a row of the time table"),
 

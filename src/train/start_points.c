@@ -242,7 +242,7 @@ static uint32_t add_moving(adcgs_start_points *c, const adcgs_stereo *found, int
 }
 
 /**
- * Bodies have their share, as all moments show the same of them; of what goes by itself moments need points of their own, and what
+ * Of bodies all moments show the same, so their share is less; of what goes by itself moments need points of their own, and what
  * is in place fills up.
  */
 static void add_all_that_moves(adcgs_start_points *c, const adcgs_stereo *found, float half, uint32_t most)
