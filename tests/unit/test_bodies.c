@@ -32,7 +32,8 @@ static double texture(double x, double y, double width, uint64_t surface)
     const double u = x / width + 1000, v = y / width + 1000, a = u - floor(u), b = v - floor(v);
     double corner[4];
     for (int k = 0; k < 4; k++)
-        corner[k] = adcgs_random_unit(1, surface, ((uint64_t)u + (k & 1)) << 20 | ((uint64_t)v + (uint64_t)(k >> 1)));
+        corner[k] = adcgs_random_unit(1, surface, (uint64_t)(int64_t)(floor(u) + (k & 1)) << 20 ^
+                                                      (uint64_t)(int64_t)(floor(v) + (k >> 1)));
     return 0.1 + 0.8 * ((corner[0] * (1 - a) + corner[1] * a) * (1 - b) + (corner[2] * (1 - a) + corner[3] * a) * b);
 }
 
