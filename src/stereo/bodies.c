@@ -323,10 +323,10 @@ static adcgs_status try_seed(work *w, int moment, uint32_t part, verdict *is, ad
     return status;
 }
 
-static adcgs_status find_all(work *w, adcgs_error *error)
+static adcgs_status find_all(work *w, uint32_t most, adcgs_error *error)
 {
     adcgs_stereo *out = w->out;
-    for (int k = 0, vain = 0; k < TRIES && vain < VAIN && out->n_bodies < ADCGS_BODIES_MAX; k++) {
+    for (int k = 0, vain = 0; k < TRIES && vain < VAIN && out->n_bodies < ADCGS_MIN(most, ADCGS_BODIES_MAX); k++) {
         uint32_t part, n;
         int moment;
         verdict is;
@@ -367,7 +367,8 @@ static void sort_bodies(adcgs_stereo *out)
         out->moving[i].body = number[out->moving[i].body];
 }
 
-adcgs_status adcgs_stereo_find_bodies(adcgs_stereo *out, adcgs_stereo_rig *rig, adcgs_pool *pool, adcgs_error *error)
+adcgs_status adcgs_stereo_find_bodies(adcgs_stereo *out, adcgs_stereo_rig *rig, uint32_t most, adcgs_pool *pool,
+                                      adcgs_error *error)
 {
     if (rig->n_moments < KNOWN_LEAST || out->n_moving < SEED_LEAST)
         return ADCGS_OK;
@@ -384,7 +385,7 @@ adcgs_status adcgs_stereo_find_bodies(adcgs_stereo *out, adcgs_stereo_rig *rig, 
     if (status == ADCGS_OK && (!w->tried || !w->part || !out->body))
         status = adcgs_alloc_status(error);
     if (status == ADCGS_OK)
-        status = find_all(w, error);
+        status = find_all(w, most, error);
     if (status == ADCGS_OK)
         sort_bodies(out);
     adcgs_free(NULL, w->tried);

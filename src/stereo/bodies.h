@@ -10,7 +10,8 @@
 
 #include "stereo/rig.h"
 
-/** Find the bodies among what moves of out, mark their points, and set out->n_bodies and out->body. The rig is softened. */
-adcgs_status adcgs_stereo_find_bodies(adcgs_stereo *out, adcgs_stereo_rig *rig, adcgs_pool *pool, adcgs_error *error);
+/** Find `most` bodies among what moves of out, mark their points, and set out->n_bodies and out->body. The rig is softened. */
+adcgs_status adcgs_stereo_find_bodies(adcgs_stereo *out, adcgs_stereo_rig *rig, uint32_t most, adcgs_pool *pool,
+                                      adcgs_error *error);
 
 #endif

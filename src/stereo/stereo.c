@@ -265,7 +265,7 @@ static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_s
     out->n_still = (uint32_t)still.n;
     out->moving = moving.point;
     out->n_moving = (uint32_t)moving.n;
-    return status == ADCGS_OK ? adcgs_stereo_find_bodies(out, rig, pool, error) : status;
+    return status == ADCGS_OK && options->bodies ? adcgs_stereo_find_bodies(out, rig, options->bodies, pool, error) : status;
 }
 
 adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, const adcgs_stereo_options *options,

@@ -42,6 +42,7 @@ typedef struct adcgs_stereo_options {
     double origin[3], scale; /**< of scene units, see adcgs_scene_frame() */
     uint32_t still;          /**< points that do not move, at most */
     uint32_t moving;         /**< points of each moment that do, at most */
+    uint32_t bodies;         /**< rigid bodies among these, at most ADCGS_BODIES_MAX; 0: none are looked for */
 } adcgs_stereo_options;
 
 /** Depths of what is still, which also say where nothing is. */

@@ -332,15 +332,13 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, ad
         config->start_anchors = ADCGS_MAX(config->start_anchors, (uint32_t)(START_SHARE * config->max_anchors));
     if (matched) {
         options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
+        options.bodies = config->params.spans ? config->params.bodies : 0;
         options.moving = config->params.spans ? MOVING_MOST : (uint32_t)(MOVING_SHARE * options.still);
         ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));
         ADCGS_TRY(adcgs_stereo_find(found, scene, &options, pool, error));
     }
     if (config->stereo && !found->n_moving)
         config->params.spans = 0;
-    const uint32_t bodies = config->params.spans ? found->n_bodies : 0;
-    config->params.bodies = (uint8_t)ADCGS_MIN(config->params.bodies, bodies);
-    for (uint32_t i = 0; i < found->n_moving; i++) /* there is no place for the smallest */
-        found->moving[i].body = found->moving[i].body > config->params.bodies ? 0 : found->moving[i].body;
+    config->params.bodies = (uint8_t)found->n_bodies;
     return ADCGS_OK;
 }

@@ -8,6 +8,7 @@
 #include "data/scene.h"
 #include "grad/random.h"
 #include "io/image.h"
+#include "model/model.h"
 #include "stereo/stereo.h"
 
 #include <math.h>
@@ -21,7 +22,7 @@ enum { CAMERAS = 6, MOMENTS = 8, VIEWS = CAMERAS * MOMENTS, WIDTH = 104, HEIGHT 
 static adcgs_scene_view views[VIEWS];
 static adcgs_scene scene = { .views = { views }, .n_views = { VIEWS }, .duration = 1, .n_times = MOMENTS,
                              .near_bound = 0.9, .rate = { MOMENTS - 1, 1 } };
-static const adcgs_stereo_options options = { .scale = 1, .still = 300, .moving = 700 };
+static const adcgs_stereo_options options = { .scale = 1, .still = 300, .moving = 700, .bodies = ADCGS_BODIES_MAX };
 static const double half[BOXES] = { 0.2, 0.13 };
 static adcgs_stereo found; /* without threads */
 static int flickers; /* whether the boxes' looks change */
