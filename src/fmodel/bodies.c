@@ -20,7 +20,7 @@ static float read_quaternion(const float *columns, float q[4])
     return length;
 }
 
-void adcgs_bodies_pose(const adcgs_fmodel *f, const float *columns, adcgs_body_pose *pose)
+void adcgs_bodies_pose(const adcgs_fmodel *f, const float *columns, adcgs_body_place *pose)
 {
     for (int b = 0; b < f->params.bodies; b++) {
         const float *z = columns + adcgs_pose_at(&f->params, b + 1);

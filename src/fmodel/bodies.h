@@ -11,7 +11,7 @@
 #include "grad/dsp.h"
 
 /** Poses at a row of interpolated columns of the time table, from f_t on. */
-void adcgs_bodies_pose(const adcgs_fmodel *f, const float *columns, adcgs_body_pose *pose);
+void adcgs_bodies_pose(const adcgs_fmodel *f, const float *columns, adcgs_body_place *pose);
 
 /** From sums over the anchors to the gradient by the poses' columns, [7 bodies]; columns as above. */
 void adcgs_bodies_pose_back(const adcgs_fmodel *f, const float *columns, const adcgs_body_grad *grad, float *d);

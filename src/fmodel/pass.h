@@ -45,7 +45,7 @@ typedef struct adcgs_pass {
     adcgs_raster_grads grads;
     const float *pull;           /**< gradient added to that of the anchors' ways and rotations, [group][12][64]; NULL: none */
     float *time_code;            /**< columns of the time table at t: f_t, and poses */
-    adcgs_body_pose pose[ADCGS_BODIES_MAX]; /**< of the bodies at t */
+    adcgs_body_place pose[ADCGS_BODIES_MAX]; /**< of the bodies at t */
     size_t partial_bodies;       /**< where a chunk has its sums for the bodies' poses, [bodies] of adcgs_body_grad */
     float *time_bias[2];         /**< first-layer bias of omega, varpi at this time */
     float t;

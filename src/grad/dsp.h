@@ -15,9 +15,9 @@
 enum { ADCGS_THETA_OUT = 14, ADCGS_OMEGA_OUT = 12, ADCGS_VARPI_OUT = 4 };
 
 /** Where a body is at a time: what lies at x goes to R(q) (x - centre) + to. */
-typedef struct adcgs_body_pose {
+typedef struct adcgs_body_place {
     float q[4], centre[3], to[3];
-} adcgs_body_pose;
+} adcgs_body_place;
 /**
  * Sums over the anchors of a body of the gradients of its pose: of the rotation matrix, which takes places; of the quaternion,
  * which turns primitives; of the way.
@@ -41,7 +41,7 @@ typedef struct adcgs_group_io {
     const float *keep;   /**< [k][64] 1 for primitives that exist, else 0 */
     int rotation;        /**< omega's outputs 9..11 are used */
     const uint8_t *body; /**< [64] the body that takes an anchor along, from 1, 0: none; or NULL. Of those that move */
-    const adcgs_body_pose *pose; /**< [bodies] */
+    const adcgs_body_place *pose; /**< [bodies] */
     float *mean[3], *scale[3], *rot[4], *opacity, *rgb[3]; /**< [k][64] each */
 } adcgs_group_io;
 

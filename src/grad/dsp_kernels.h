@@ -332,8 +332,8 @@ static void ISA(body_forward)(anchor_terms *a, const adcgs_group_io *io)
 {
     float to[3][LANES];
     for (int l = 0; l < LANES; l++) {
-        static const adcgs_body_pose still = { .q = { 1, 0, 0, 0 } };
-        const adcgs_body_pose *p = io->body[l] && io->moving[l] != 0 ? &io->pose[io->body[l] - 1] : &still;
+        static const adcgs_body_place still = { .q = { 1, 0, 0, 0 } };
+        const adcgs_body_place *p = io->body[l] && io->moving[l] != 0 ? &io->pose[io->body[l] - 1] : &still;
         for (int c = 0; c < 4; c++)
             a->body[c][l] = p->q[c];
         for (int c = 0; c < 3; c++) {
