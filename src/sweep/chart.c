@@ -26,7 +26,7 @@ static extent measure(const adcgs_sweep_plan *plan)
     for (int i = 0; i < plan->n_curves; i++)
         for (int j = 0; j < plan->curve[i].n; j++) {
             adcgs_sweep_row row;
-            if (!adcgs_sweep_row_make(&row, plan, "", plan->curve[i].cell[j], plan->curve[i].size))
+            if (!adcgs_sweep_point(&row, plan, &plan->curve[i], j))
                 continue;
             e.least = fmin(e.least, row.bytes.min);
             e.most = fmax(e.most, row.bytes.max);
@@ -42,7 +42,7 @@ static int print_block(FILE *script, const adcgs_sweep_plan *plan, int index)
     int n = 0;
     for (int j = 0; j < curve->n; j++) {
         adcgs_sweep_row row;
-        if (!adcgs_sweep_row_make(&row, plan, curve->name, curve->cell[j], curve->size))
+        if (!adcgs_sweep_point(&row, plan, curve, j))
             continue;
         if (!n++)
             fprintf(script, "$curve%d << END\n", index);

@@ -16,7 +16,7 @@ typedef struct sheet {
     int html;
 } sheet;
 
-enum { COLUMNS = 8, CELL = 64 };
+enum { COLUMNS = 9, CELL = 64 };
 
 typedef char table_row[COLUMNS][CELL];
 
@@ -54,7 +54,7 @@ static void say(const sheet *s, const char *format, ...)
 
 static void put_row(const sheet *s, table_row row, const char *tag)
 {
-    static const int widths[COLUMNS] = {-26, 9, 26, 22, 8, 10, 12, 10};
+    static const int widths[COLUMNS] = {-26, 9, 26, 22, 12, 8, 10, 12, 10};
     if (s->html)
         fprintf(s->file, "<tr>");
     for (int i = 0; i < COLUMNS; i++)
@@ -69,7 +69,7 @@ static void put_row(const sheet *s, table_row row, const char *tag)
 
 static void open_table(const sheet *s, const char *first)
 {
-    table_row head = {"", "lambda", "bytes", "PSNR, dB", "SSIM", "networks", "training s", "frames/s"};
+    table_row head = {"", "lambda", "bytes", "PSNR, dB", "moving, dB", "SSIM", "networks", "training s", "frames/s"};
     snprintf(head[0], CELL, "%s", first);
     if (s->html)
         fprintf(s->file, "<table>\n");
@@ -109,12 +109,13 @@ static void print_row(const sheet *s, const adcgs_sweep_row *r)
         snprintf(cells[1], CELL, "-");
     fill_spread(cells[2], &r->bytes, 0);
     fill_spread(cells[3], &r->psnr, 2);
-    fill_number(cells[4], r->ssim, 4);
-    fill_number(cells[5], 100 * r->networks, 1);
+    fill_number(cells[4], r->moving, 2);
+    fill_number(cells[5], r->ssim, 4);
+    fill_number(cells[6], 100 * r->networks, 1);
     if (isfinite(r->networks))
-        strcat(cells[5], " %");
-    fill_number(cells[6], r->seconds, 0);
-    fill_number(cells[7], r->speed, 0);
+        strcat(cells[6], " %");
+    fill_number(cells[7], r->seconds, 0);
+    fill_number(cells[8], r->speed, 0);
     put_row(s, cells, "td");
 }
 
@@ -125,7 +126,7 @@ static void print_curves(const sheet *s, const adcgs_sweep_plan *plan)
     for (int i = 0; i < plan->n_curves; i++)
         for (int j = 0; j < plan->curve[i].n; j++) {
             adcgs_sweep_row row;
-            if (adcgs_sweep_row_make(&row, plan, plan->curve[i].name, plan->curve[i].cell[j], plan->curve[i].size))
+            if (adcgs_sweep_point(&row, plan, &plan->curve[i], j))
                 print_row(s, &row);
         }
     close_table(s);
@@ -151,9 +152,11 @@ static void print_stages(const sheet *s, const adcgs_sweep_plan *plan)
 static void print_comparison(const sheet *s, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
 {
     const adcgs_comparison c = adcgs_sweep_compare(plan, curve);
-    char rate[80] = "", place[160], rest[80] = "", smaller[80] = "";
+    char rate[80] = "", moving[80] = "", place[160], rest[80] = "", smaller[80] = "";
     if (isfinite(c.bd_rate))
         snprintf(rate, sizeof rate, "BD-rate %+.1f %%, ", c.bd_rate);
+    if (isfinite(c.bd_rate_moving))
+        snprintf(moving, sizeof moving, "BD-rate of what moves %+.1f %%, ", c.bd_rate_moving);
     if (!c.compared)
         snprintf(place, sizeof place, "none of its points is larger than the smallest stream");
     else if (c.above)
@@ -165,7 +168,7 @@ static void print_comparison(const sheet *s, const adcgs_sweep_plan *plan, const
         snprintf(rest, sizeof rest, "; points of it smaller than the smallest stream: %d", c.beyond);
     if (isfinite(c.smaller))
         snprintf(smaller, sizeof smaller, "; %.2f times smaller at no more than 0.1 dB below its best", c.smaller);
-    say(s, "Against %s: %s%s%s%s.", curve->name, rate, place, rest, smaller);
+    say(s, "Against %s: %s%s%s%s%s.", curve->name, rate, moving, place, rest, smaller);
 }
 
 /** Why a curve has no points: a compressor that had a file and made nothing of it is missing. */
@@ -190,7 +193,7 @@ static void print_checks(const sheet *s, const adcgs_sweep_plan *plan)
         adcgs_sweep_row row;
         int points = 0;
         for (int j = 0; j < curve->n; j++)
-            points += adcgs_sweep_row_make(&row, plan, "", curve->cell[j], curve->size);
+            points += adcgs_sweep_point(&row, plan, curve, j);
         if (points)
             print_comparison(s, plan, curve);
         else

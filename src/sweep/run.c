@@ -221,6 +221,7 @@ static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_run *ru
     word(&c, program);
     option(&c, "--dataset", sweep->dataset);
     option(&c, "--frames", sweep->frames);
+    option(&c, "--metrics", "dynamic-psnr");
     word(&c, "--json");
     word(&c, "--");
     word(&c, file);
@@ -312,6 +313,7 @@ static void take_figures(const adcgs_sweep *sweep, adcgs_sweep_run *run, const j
     f[ADCGS_FIGURE_SECONDS] = number(encoder, "training_seconds");
     f[ADCGS_FIGURE_PSNR] = number(evaluation, "psnr");
     f[ADCGS_FIGURE_SSIM] = number(evaluation, "ssim");
+    f[ADCGS_FIGURE_MOVING] = number(evaluation, "dynamic_psnr"); /* nor have it the results of earlier versions */
     f[ADCGS_FIGURE_SPEED] = number(evaluation, "frames_per_second");
     if (!run->uncompressed)
         return;

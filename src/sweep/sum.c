@@ -38,6 +38,7 @@ int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, con
                              .k = first->k,
                              .bytes = spread_of(plan, cell, size),
                              .psnr = spread_of(plan, cell, ADCGS_FIGURE_PSNR),
+                             .moving = spread_of(plan, cell, ADCGS_FIGURE_MOVING).mean,
                              .ssim = spread_of(plan, cell, ADCGS_FIGURE_SSIM).mean,
                              .networks = (double)NAN,
                              .seconds = spread_of(plan, cell, ADCGS_FIGURE_SECONDS).mean,
@@ -47,15 +48,31 @@ int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, con
     return row->bytes.n > 0;
 }
 
-static int points_of(adcgs_curve_point points[ADCGS_SWEEP_LIST], const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
+int adcgs_sweep_point(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve, int index)
+{
+    return adcgs_sweep_row_make(row, plan, curve->name, curve->cell[index], curve->size);
+}
+
+/** moving: the quality is that of what moves, NaN where it is not known. */
+static int points_of(adcgs_curve_point points[ADCGS_SWEEP_LIST], const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve,
+                     int moving)
 {
     int n = 0;
     for (int i = 0; i < curve->n; i++) {
         adcgs_sweep_row row;
-        if (adcgs_sweep_row_make(&row, plan, curve->name, curve->cell[i], curve->size))
-            points[n++] = (adcgs_curve_point){row.bytes.mean, row.psnr.mean};
+        if (adcgs_sweep_point(&row, plan, curve, i))
+            points[n++] = (adcgs_curve_point){row.bytes.mean, moving ? row.moving : row.psnr.mean};
     }
     return n;
+}
+
+/** BD-rate of the codec's own curve over another, NaN if it cannot be told. */
+static double rate_against(const adcgs_sweep_plan *plan, const adcgs_sweep_curve *other, int moving)
+{
+    adcgs_curve_point own[ADCGS_SWEEP_LIST] = {{0, 0}}, theirs[ADCGS_SWEEP_LIST] = {{0, 0}};
+    const int n_own = points_of(own, plan, &plan->curve[0], moving), n = points_of(theirs, plan, other, moving);
+    double percent;
+    return adcgs_bd_rate(theirs, n, own, n_own, &percent, NULL) == ADCGS_OK ? percent : (double)NAN;
 }
 
 adcgs_curve_facts adcgs_sweep_facts(const adcgs_sweep_plan *plan)
@@ -63,7 +80,7 @@ adcgs_curve_facts adcgs_sweep_facts(const adcgs_sweep_plan *plan)
     adcgs_curve_point p[ADCGS_SWEEP_LIST];
     adcgs_curve_facts facts = {0, 0, (double)NAN};
     double least = (double)NAN, most = (double)NAN;
-    facts.n = plan->n_curves ? points_of(p, plan, &plan->curve[0]) : 0;
+    facts.n = plan->n_curves ? points_of(p, plan, &plan->curve[0], 0) : 0;
     for (int i = 0; i < facts.n; i++) {
         least = fmin(least, p[i].bytes);
         most = fmax(most, p[i].bytes);
@@ -90,11 +107,9 @@ static double times_smaller(const adcgs_curve_point *own, int n_own, const adcgs
 adcgs_comparison adcgs_sweep_compare(const adcgs_sweep_plan *plan, const adcgs_sweep_curve *other)
 {
     adcgs_curve_point own[ADCGS_SWEEP_LIST] = {{0, 0}}, theirs[ADCGS_SWEEP_LIST] = {{0, 0}};
-    const int n_own = points_of(own, plan, &plan->curve[0]), n = points_of(theirs, plan, other);
-    adcgs_comparison c = {.bd_rate = (double)NAN, .margin = (double)NAN};
-    double percent;
-    if (adcgs_bd_rate(theirs, n, own, n_own, &percent, NULL) == ADCGS_OK)
-        c.bd_rate = percent;
+    const int n_own = points_of(own, plan, &plan->curve[0], 0), n = points_of(theirs, plan, other, 0);
+    adcgs_comparison c = {.bd_rate = rate_against(plan, other, 0), .bd_rate_moving = rate_against(plan, other, 1),
+                          .margin = (double)NAN};
     for (int i = 0; i < n; i++) {
         const double quality = adcgs_curve_quality(own, n_own, theirs[i].bytes * (1 - FEWER));
         if (isnan(quality)) {

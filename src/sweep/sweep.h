@@ -48,6 +48,7 @@ typedef enum adcgs_figure {
     ADCGS_FIGURE_NETWORKS,   /**< bytes of the networks in the stream */
     ADCGS_FIGURE_PSNR,       /**< dB; like all below of the decoded stream on the test views */
     ADCGS_FIGURE_SSIM,
+    ADCGS_FIGURE_MOVING,     /**< PSNR of what moves; NaN where nothing does */
     ADCGS_FIGURE_SECONDS,    /**< of training, a shared beginning included */
     ADCGS_FIGURE_SPEED,      /**< frames per second */
     ADCGS_FIGURE_COUNT
@@ -126,11 +127,13 @@ typedef struct adcgs_sweep_row {
     double lambda; /**< < 0: the preset's, or of no influence */
     int k;         /**< 0: the preset's */
     adcgs_spread bytes, psnr;
-    double ssim, networks, seconds, speed; /**< means; networks: their share of the stream, NaN if bytes are not its bytes */
+    double moving, ssim, networks, seconds, speed; /**< means; networks: share of the stream, NaN if bytes are not its bytes */
 } adcgs_sweep_row;
 
 /** 1 if the cell has results. */
 int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, const char *name, int cell, adcgs_figure size);
+/** The same for a point of a curve. */
+int adcgs_sweep_point(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve, int index);
 
 /** Facts about the codec's own curve. */
 typedef struct adcgs_curve_facts {
@@ -141,6 +144,7 @@ typedef struct adcgs_curve_facts {
 /** The codec's own curve against another. */
 typedef struct adcgs_comparison {
     double bd_rate;  /**< percent of bytes at equal PSNR, < 0: the codec needs fewer; NaN if it cannot be told */
+    double bd_rate_moving; /**< the same at equal PSNR of what moves */
     int compared;    /**< points of the other that are larger than the codec's smallest, and so have something to compare with */
     int beyond;      /**< the others */
     double margin;   /**< least PSNR that the codec has above such a point at fewer bytes, dB; NaN if compared is 0 */

@@ -41,6 +41,7 @@ static void csv_row(FILE *file, const adcgs_sweep_row *r)
     csv_number(file, r->networks, 4);
     csv_number(file, r->seconds, 2);
     csv_number(file, r->speed, 2);
+    csv_number(file, r->moving, 4);
     fprintf(file, "\n");
 }
 
@@ -51,7 +52,7 @@ static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const
     snprintf(path, sizeof path, "%s/%s", sweep->directory, name);
     ADCGS_TRY(adcgs_atomic_open(file, path, error));
     fprintf(file->file, "%s,lambda,k,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,training_seconds,"
-            "frames_per_second\n", first);
+            "frames_per_second,dynamic_psnr\n", first);
     return ADCGS_OK;
 }
 
@@ -62,7 +63,7 @@ static adcgs_status write_curves(const adcgs_sweep *sweep, const adcgs_sweep_pla
     for (int i = 0; i < plan->n_curves; i++)
         for (int j = 0; j < plan->curve[i].n; j++) {
             adcgs_sweep_row row;
-            if (adcgs_sweep_row_make(&row, plan, plan->curve[i].name, plan->curve[i].cell[j], plan->curve[i].size))
+            if (adcgs_sweep_point(&row, plan, &plan->curve[i], j))
                 csv_row(file.file, &row);
         }
     return adcgs_atomic_commit(&file, error);
@@ -100,6 +101,7 @@ static void json_row(adcgs_json *json, const adcgs_sweep_row *r)
     adcgs_json_int(json, "seeds", r->bytes.n);
     json_spread(json, "bytes", &r->bytes);
     json_spread(json, "psnr", &r->psnr);
+    adcgs_json_real(json, "dynamic_psnr", r->moving);
     adcgs_json_real(json, "ssim", r->ssim);
     if (isfinite(r->networks))
         adcgs_json_real(json, "network_share", r->networks);
@@ -112,6 +114,7 @@ static void json_comparison(adcgs_json *json, const adcgs_sweep_plan *plan, cons
     const adcgs_comparison c = adcgs_sweep_compare(plan, curve);
     adcgs_json_open(json, "comparison", '{');
     adcgs_json_real(json, "bd_rate", c.bd_rate);
+    adcgs_json_real(json, "bd_rate_moving", c.bd_rate_moving);
     adcgs_json_bool(json, "above", c.above);
     adcgs_json_int(json, "points_compared", c.compared);
     adcgs_json_int(json, "points_beyond", c.beyond);
@@ -132,7 +135,7 @@ static void json_curves(adcgs_json *json, const adcgs_sweep_plan *plan)
         adcgs_json_open(json, "points", '[');
         for (int j = 0; j < curve->n; j++) {
             adcgs_sweep_row row;
-            if (!adcgs_sweep_row_make(&row, plan, curve->name, curve->cell[j], curve->size))
+            if (!adcgs_sweep_point(&row, plan, curve, j))
                 continue;
             adcgs_json_open(json, NULL, '{');
             json_row(json, &row);
@@ -166,7 +169,7 @@ static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
 {
     static const char *const names[ADCGS_FIGURE_COUNT] = {
         "bytes", "bytes_with_32_bit_weights", "uncompressed_bytes", "zstd_bytes", "xz_bytes", "network_bytes",
-        "psnr", "ssim", "training_seconds", "frames_per_second"};
+        "psnr", "ssim", "dynamic_psnr", "training_seconds", "frames_per_second"};
     adcgs_json_open(json, "runs", '[');
     for (int i = 0; i < plan->n_runs; i++) {
         const adcgs_sweep_run *const run = &plan->run[i];
