@@ -103,11 +103,12 @@ static adcgs_status add_beginnings(adcgs_sweep_plan *plan, adcgs_error *error)
 
 /* ---- Curves ---- */
 
-static adcgs_sweep_curve *add_curve(adcgs_sweep_plan *plan, const char *name, const char *note, adcgs_figure size, int yardstick)
+adcgs_sweep_curve *adcgs_sweep_add_curve(adcgs_sweep_plan *plan, const char *name, const char *note, adcgs_figure size,
+                                         int yardstick)
 {
     adcgs_sweep_curve *const curve = &plan->curve[plan->n_curves++];
     snprintf(curve->name, sizeof curve->name, "%s", name);
-    curve->note = note;
+    snprintf(curve->note, sizeof curve->note, "%s", note);
     curve->size = size;
     curve->yardstick = yardstick;
     return curve;
@@ -128,7 +129,7 @@ static int add_lambdas(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_s
 /** A curve of one point; 0 if the cell could not be made. */
 static int add_point(adcgs_sweep_plan *plan, const char *name, const char *note, adcgs_figure size, int cell)
 {
-    adcgs_sweep_curve *const curve = add_curve(plan, name, note, size, 1);
+    adcgs_sweep_curve *const curve = adcgs_sweep_add_curve(plan, name, note, size, 1);
     curve->cell[curve->n++] = cell;
     return cell >= 0;
 }
@@ -137,7 +138,7 @@ static int add_own_curves(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)
 {
     for (int i = 0; i < ADCGS_MAX(sweep->n_k, 1); i++) {
         const adcgs_sweep_run like = {.k = sweep->n_k ? (int)sweep->k[i] : 0, .without = ""};
-        adcgs_sweep_curve *const curve = add_curve(plan, "adcgs", "the stream on disk", ADCGS_FIGURE_BYTES, 0);
+        adcgs_sweep_curve *const curve = adcgs_sweep_add_curve(plan, "adcgs", "the stream on disk", ADCGS_FIGURE_BYTES, 0);
         if (sweep->n_k)
             snprintf(curve->name, sizeof curve->name, "adcgs K = %d", like.k);
         if (!add_lambdas(plan, sweep, curve, like))
@@ -164,8 +165,8 @@ static int add_uncompressed(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, ad
 
 static int add_gaussians(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_sweep_run like)
 {
-    adcgs_sweep_curve *const curve =
-        add_curve(plan, "per Gaussian", "each primitive with features of its own, deformed by itself", ADCGS_FIGURE_BYTES, 1);
+    adcgs_sweep_curve *const curve = adcgs_sweep_add_curve(
+        plan, "per Gaussian", "each primitive with features of its own, deformed by itself", ADCGS_FIGURE_BYTES, 1);
     like.without = "anchors";
     if (!add_lambdas(plan, sweep, curve, like))
         return 0;
@@ -181,8 +182,8 @@ static int add_yardsticks(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)
     plain.uncompressed = 1;
     if (sweep->yardsticks & ADCGS_YARD_NETWORKS) {
         adcgs_sweep_curve *const curve =
-            add_curve(plan, "32-bit networks (same PSNR)", "the points with 4 bytes for each weight, as the paper counts",
-                      ADCGS_FIGURE_NETWORKS32, 1);
+            adcgs_sweep_add_curve(plan, "32-bit networks (same PSNR)",
+                                  "the points with 4 bytes for each weight, as the paper counts", ADCGS_FIGURE_NETWORKS32, 1);
         curve->n = plan->curve[0].n;
         memcpy(curve->cell, plan->curve[0].cell, sizeof curve->cell);
     }

@@ -50,7 +50,10 @@ int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, con
 
 int adcgs_sweep_point(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve, int index)
 {
-    return adcgs_sweep_row_make(row, plan, curve->name, curve->cell[index], curve->size);
+    if (!curve->earlier)
+        return adcgs_sweep_row_make(row, plan, curve->name, curve->cell[index], curve->size);
+    *row = curve->point[index];
+    return 1;
 }
 
 /** moving: the quality is that of what moves, NaN where it is not known. */

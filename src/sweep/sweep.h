@@ -5,8 +5,8 @@
  *
  * A run is one training, in child processes. Runs that differ in lambda alone
  * share their beginning, itself a run. A cell is the runs that differ in their seed alone. Curves are lists of cells with the
- * size to put on the axis; the first is the codec's own, the others are compared with it. Stages are the rows of
- * the ablation.
+ * size to put on the axis, or points of an earlier sweep; the first is the codec's own, the others are compared with it. Stages
+ * are the rows of the ablation.
  */
 #ifndef ADCGS_SWEEP_SWEEP_H
 #define ADCGS_SWEEP_SWEEP_H
@@ -18,8 +18,9 @@
 
 #define ADCGS_SWEEP_LIST 16    /**< values of one option */
 #define ADCGS_SWEEP_CELLS 320  /**< 16 x 16 of the grid, yardsticks, ablation */
-#define ADCGS_SWEEP_CURVES 24
+#define ADCGS_SWEEP_CURVES 32  /**< 16 of the grid, 7 yardsticks, earlier ones */
 #define ADCGS_SWEEP_STAGES 12
+#define ADCGS_SWEEP_AGAINST 8  /**< earlier sweeps to compare with */
 #define ADCGS_SWEEP_PATH 4096
 
 /** Yardsticks to measure against. */
@@ -31,6 +32,7 @@ typedef struct adcgs_sweep {
     const char *programs;    /**< folder of adcgs-enc and adcgs-eval */
     const char *preset, *set; /**< NULL: the encoder's; nothing changed */
     const char *dataset, *frames; /**< for both programs; NULL: told by files; all */
+    const char *against;     /**< folders of earlier sweeps, with commas between; NULL: none */
     int iterations;          /**< 0: the preset's */
     int threads;             /**< of each encoder; 0: one per CPU */
     int resume, ablation, yardsticks;
@@ -73,12 +75,28 @@ typedef struct adcgs_sweep_cell {
     int n, run[ADCGS_SWEEP_LIST]; /**< one for each seed */
 } adcgs_sweep_cell;
 
+/** A figure over the seeds of a cell. */
+typedef struct adcgs_spread {
+    int n;                 /**< runs that have it; 0: the rest is NaN */
+    double mean, min, max;
+} adcgs_spread;
+
+/** A line of a table: a cell with one of its sizes. */
+typedef struct adcgs_sweep_row {
+    const char *name;
+    double lambda; /**< < 0: the preset's, or of no influence */
+    int k;         /**< 0: the preset's */
+    adcgs_spread bytes, psnr;
+    double moving, ssim, networks, seconds, speed; /**< means; networks: share of the stream, NaN if bytes are not its bytes */
+} adcgs_sweep_row;
+
 typedef struct adcgs_sweep_curve {
     char name[48];
-    const char *note;  /**< how it comes about */
+    char note[256];    /**< how it comes about */
     adcgs_figure size; /**< what counts as its bytes */
-    int yardstick;
+    int yardstick, earlier;
     int n, cell[ADCGS_SWEEP_LIST];
+    adcgs_sweep_row point[ADCGS_SWEEP_LIST]; /**< of an earlier sweep, instead of cells */
 } adcgs_sweep_curve;
 
 typedef struct adcgs_sweep_stage {
@@ -99,6 +117,11 @@ typedef struct adcgs_sweep_plan {
 /** List the runs, cells, curves and stages of a sweep. The plan is the caller's, zeroed; clear it also after a failure. */
 adcgs_status adcgs_sweep_plan_make(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_error *error);
 void adcgs_sweep_plan_clear(adcgs_sweep_plan *plan);
+/** One more curve, without points; there is room for what an adcgs_sweep can ask for. */
+adcgs_sweep_curve *adcgs_sweep_add_curve(adcgs_sweep_plan *plan, const char *name, const char *note, adcgs_figure size,
+                                         int yardstick);
+/** The curves of the earlier sweeps that this one is compared with, behind those of the plan (sweep_against.c). */
+adcgs_status adcgs_sweep_add_against(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_error *error);
 
 /* ---- One run (sweep_run.c) ---- */
 
@@ -114,21 +137,6 @@ adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_run *run, ad
 adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *log, int *exit_code, adcgs_error *error);
 
 /* ---- Sums (sweep_sum.c) ---- */
-
-/** A figure over the seeds of a cell. */
-typedef struct adcgs_spread {
-    int n;                 /**< runs that have it; 0: the rest is NaN */
-    double mean, min, max;
-} adcgs_spread;
-
-/** A line of a table: a cell with one of its sizes. */
-typedef struct adcgs_sweep_row {
-    const char *name;
-    double lambda; /**< < 0: the preset's, or of no influence */
-    int k;         /**< 0: the preset's */
-    adcgs_spread bytes, psnr;
-    double moving, ssim, networks, seconds, speed; /**< means; networks: share of the stream, NaN if bytes are not its bytes */
-} adcgs_sweep_row;
 
 /** 1 if the cell has results. */
 int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, const char *name, int cell, adcgs_figure size);

@@ -185,14 +185,14 @@ static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs
 static int run_sweep(const adcgs_cli *cli, const adcgs_sweep *sweep, int jobs)
 {
     adcgs_error error;
-    if (mkdir(sweep->directory, 0777) != 0 && errno != EEXIST)
-        return adcgs_cli_error(cli, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
     adcgs_sweep_plan *const plan = calloc(1, sizeof *plan);
     if (!plan)
         return adcgs_cli_error(cli, ADCGS_ERR_MEMORY, "out of memory");
     int code = 0;
-    if (adcgs_sweep_plan_make(plan, sweep, &error) != ADCGS_OK)
+    if (adcgs_sweep_plan_make(plan, sweep, &error) != ADCGS_OK || adcgs_sweep_add_against(plan, sweep, &error) != ADCGS_OK)
         code = adcgs_cli_fail(cli, &error);
+    else if (mkdir(sweep->directory, 0777) != 0 && errno != EEXIST)
+        code = adcgs_cli_error(cli, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
     else {
         if (sweep->resume)
             take_finished(cli, sweep, plan);
@@ -318,6 +318,8 @@ static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char *
         {"yardsticks", 0, ADCGS_OPTION_STRING, &l.yardsticks, 0, 0, "NAME,...",
          "what to compare with: networks (of 32 bits; no run),\nuncompressed (two runs; by zstd and xz), gaussians (a\n"
          "curve and a run); all (default) or none", NULL, NULL},
+        {"against", 0, ADCGS_OPTION_STRING, &sweep->against, 0, 0, "DIR,...",
+         "compare with earlier sweeps of the scene, of whatever\nversion or settings, by what they wrote", NULL, NULL},
         {"ablation", 0, ADCGS_OPTION_FLAG, &sweep->ablation, 0, 0, NULL,
          "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},
         {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)", NULL,
@@ -342,6 +344,8 @@ static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char *
         return leave;
     if (!sweep->directory || (!l.lambdas && !sweep->ablation))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
+    if (sweep->against && !l.lambdas)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--against: expected --lambda, too: there is no curve to compare");
     sweep->scene = argv[first];
     sweep->dataset = has_dataset ? adcgs_dataset_names[dataset] : NULL;
     const int bad = parse_lists(cli, &l, sweep);

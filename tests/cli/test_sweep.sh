@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
 # adcgs-sweep with an encoder and an evaluation that only pretend: runs and their beginnings, yardsticks, ablation, seeds, tables,
-# checks, page, chart, resuming, failures. Then with the real ones in miniature.
+# checks, page, chart, resuming, failures, earlier sweeps. Then with the real ones in miniature.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-sweep
@@ -222,6 +222,94 @@ for page in "$out/index.html" "$dir/report"; do
 done
 : >"$dir/calls"
 
+# Against earlier sweeps: the same one is 0 %, one with a quarter more bytes -20 %, also of what moves, unless that gained what it
+# cost; where it is not known, nothing is said of it. Curves are named after what tells their folders from this one's.
+mkdir -p "$dir/more/x" "$dir/moved/x" "$dir/it's/x"
+sed 's/64000/80000/; s/16000/20000/' "$out/sweep.json" >"$dir/more/x/sweep.json"
+for bytes in 80000 20000; do line "\"mean\": $bytes" "$dir/more/x/sweep.json"; done
+# 3 dB for a factor of 4: 0.48289214 dB for 1.25.
+sed '/dynamic_psnr/{s/25/25.48289214/; s/22/22.48289214/}' "$dir/more/x/sweep.json" >"$dir/moved/x/sweep.json"
+cp "$dir/more/x/sweep.json" "$dir/it's/x/sweep.json"
+out=$dir/now/x
+sweep --lambda 1,4 --yardsticks networks --against "$dir/new/x,$dir/more/x/,$dir/moved/x,$dir/older/x,$dir/it's/x"
+[ $got -eq 0 ] || fail "--against: $(cat "$dir/err")"
+calls 3
+line 'Against new: BD-rate [+-]0\.0 %, BD-rate of what moves [+-]0\.0 %, ' "$dir/report"
+line 'Against more: BD-rate -20\.0 %, BD-rate of what moves -20\.0 %, above it (points compared: 2; ' "$dir/report"
+line 'Against moved: BD-rate -20\.0 %, BD-rate of what moves [+-]0\.0 %, ' "$dir/report"
+line 'Against older: BD-rate [+-]0\.0 %, NOT above it' "$dir/report"
+line '^more,1,,1,80000,80000,80000,35.0000,35.0000,35.0000,0.900000,.*,1.50,100.00,25.0000$' "$out/sweep.csv"
+line '^older,4,,1,16000,16000,16000,32.0000,32.0000,32.0000,0.900000,.*,1.50,100.00,$' "$out/sweep.csv"
+line "title 'more'" "$out/sweep.gp"
+line "title 'it_s'" "$out/sweep.gp"
+line "more: an earlier sweep of the scene, in $dir/more/x" "$out/index.html"
+line '<td>more</td><td>1</td><td>80000</td>' "$out/index.html"
+if command -v gnuplot >/dev/null; then line '>more<' "$out/sweep.svg"; fi
+if command -v jq >/dev/null; then
+    jq -e 'def against($name): .curves[] | select(.name == $name).comparison;
+           def near($x): . != null and (. - $x | fabs < 1e-6);
+           (.curves | length) == 7 and (.runs | length) == 2 and
+           (against("new") | (.bd_rate | near(0)) and (.bd_rate_moving | near(0))) and
+           (against("more") | (.bd_rate | near(-20)) and (.bd_rate_moving | near(-20))) and
+           (against("moved") | (.bd_rate | near(-20)) and (.bd_rate_moving | near(0))) and
+           (against("older") | (.bd_rate | near(0)) and .bd_rate_moving == null)' "$out/sweep.json" >/dev/null ||
+        fail "sweep.json: $(cat "$out/sweep.json")"
+fi
+
+# Of an earlier sweep it is its own curve, whatever it was compared with itself; seeds keep their spread.
+out=$dir/seeds
+sweep --lambda 1,4 --seeds 1,3 --yardsticks none --against "$dir/now/x"
+line '^x,1,,1,64000,.*,25.0000$' "$out/sweep.csv"
+out=$dir/now/y
+sweep --lambda 1,4 --yardsticks none --against "$dir/seeds"
+line '^seeds,4,,2,16000,16000,16000,32.2000,32.1000,32.3000,' "$out/sweep.csv"
+line 'Against seeds: BD-rate +[0-9.]* %, BD-rate of what moves +[0-9.]* %, NOT above' "$dir/report"
+line 'xyerrorlines' "$out/sweep.gp"
+: >"$dir/calls"
+
+# refused CODE TEXT FOLDERS: what is no earlier sweep of the scene is told in a line, before anything is run or made.
+refused()
+{
+    out=$dir/never
+    sweep --lambda 1,4 --against "$3"
+    [ "$got" -eq "$1" ] && grep -q -e "$2" "$dir/err" && [ "$(wc -l <"$dir/err")" -eq 1 ] || fail "$got for $3: $(cat "$dir/err")"
+    [ ! -e "$out" ] && [ ! -s "$dir/calls" ] || fail "begun in spite of $3"
+}
+# doctored TEXT SCRIPT: the same of a sweep.json changed by sed.
+doctored()
+{
+    sed "$2" "$dir/more/x/sweep.json" >"$dir/moved/x/sweep.json"
+    ! cmp -s "$dir/more/x/sweep.json" "$dir/moved/x/sweep.json" || fail "nothing changed by $2"
+    refused 4 "moved/x/sweep.json: $1" "$dir/moved/x"
+}
+refused 3 "nowhere/sweep.json: " "$dir/nowhere"
+doctored ".*malformed JSON" '$d'
+doctored "empty, expected JSON" d
+doctored "a sweep of the scene other, not of scene" 's,/scene",/other",'
+doctored "no scene" '/"scene"/d'
+doctored "no curve" 's/"curves"/"stages"/'
+doctored "no curve" 's/"yardstick": false/"yardstick": true/'
+doctored 'bytes\[0\].mean: -1, expected' 's/"mean": 80000/"mean": -1/'
+doctored 'bytes\[0\].mean: expected a number' 's/"mean": 80000/"mean": "80000"/'
+doctored 'psnr\[1\].max: 1e+06, expected' 's/"max": 32\b/"max": 1000000/'
+doctored 'points\[0\].psnr: expected mean, min and max' 's/"mean": 35\b/"mean": null/'
+doctored 'points\[1\].bytes: expected mean, min and max' 's/"min": 20000/"min": 30000/'
+doctored 'points\[0\].seeds: 99, expected' 's/"seeds": 1\b/"seeds": 99/'
+refused 2 "1 to 8 folders" ""
+refused 2 "1 to 8 folders" "$dir/more/x,"
+refused 2 "another curve is called that" "$dir/more/x,$dir/more/x,$dir/more/x"
+nine=
+for name in 1 2 3 4 5 6 7 8 9; do
+    mkdir -p "$dir/$name/x"
+    cp "$dir/more/x/sweep.json" "$dir/$name/x/"
+    nine=$nine,$dir/$name/x
+done
+refused 2 "1 to 8 folders" "${nine#,}"
+out=$dir/now/x
+sweep --lambda 1,4 --against "$dir/now/../now/x/"
+[ $got -eq 2 ] && grep -q "that this sweep writes to" "$dir/err" || fail "compared with itself: $(cat "$dir/err")"
+sweep --ablation --against "$dir/new/x"
+[ $got -eq 2 ] || fail "nothing to compare accepted"
 rm "$dir/moving"
 
 for list in '' 1, ,1 1,x 1,-1 "$(seq -s, 1 17)"; do

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The curves of earlier sweeps that a sweep is compared with, from the sweep.json that each left. Of each it is the first of the
+ * codec's own. Its points are taken as they stand there: the files that they tell of need not be there any more.
+ */
+#include "config.h"
+
+#include "sweep/sweep.h"
+
+#include "cli/text.h"
+#include "data/camera_json.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#define BYTES_MAX 1e15
+#define DB_MAX 1000.0
+#define ANY_MAX 1e12 /* of figures that are shown and no more */
+
+/* ---- Points ---- */
+
+/** A number of the place's object, which keeps its value where there is none, or null, as for what was not known. */
+static adcgs_status read_number(const adcgs_json_place *at, const char *field, double min, double max, double *value)
+{
+    int found;
+    if (json_is_null(adcgs_json_find(at, field)))
+        return ADCGS_OK;
+    return adcgs_json_number(at, field, min, max, value, &found);
+}
+
+/** A figure that no point goes without, over so many seeds. */
+static adcgs_status read_spread(const adcgs_json_place *point, const char *field, double min, double max, int seeds,
+                                adcgs_spread *s)
+{
+    adcgs_json_place at = *point;
+    at.root = at.frame = json_object_get(point->frame, field);
+    at.list = field;
+    *s = (adcgs_spread){seeds, (double)NAN, (double)NAN, (double)NAN};
+    if (!json_is_object(at.frame))
+        return adcgs_json_bad(point, ADCGS_ERR_DATA, field, "expected an object with mean, min and max");
+    ADCGS_TRY(read_number(&at, "mean", min, max, &s->mean));
+    ADCGS_TRY(read_number(&at, "min", min, max, &s->min));
+    ADCGS_TRY(read_number(&at, "max", min, max, &s->max));
+    if (!(s->min <= s->max) || isnan(s->mean))
+        return adcgs_json_bad(point, ADCGS_ERR_DATA, field, "expected mean, min and max, min not above max");
+    return ADCGS_OK;
+}
+
+static adcgs_status read_point(const adcgs_json_place *at, adcgs_sweep_row *row)
+{
+    double seeds = 0, k = 0;
+    *row = (adcgs_sweep_row){.lambda = -1, .moving = (double)NAN, .ssim = (double)NAN, .networks = (double)NAN,
+                             .seconds = (double)NAN, .speed = (double)NAN};
+    const struct {
+        const char *field;
+        double min, max, *to;
+    } fields[] = {{"seeds", 1, ADCGS_SWEEP_LIST, &seeds},   {"lambda", 0, ANY_MAX, &row->lambda},
+                  {"k", 0, INT16_MAX, &k},                  {"dynamic_psnr", -DB_MAX, DB_MAX, &row->moving},
+                  {"ssim", -1, 1, &row->ssim},              {"network_share", 0, 1, &row->networks},
+                  {"training_seconds", 0, ANY_MAX, &row->seconds}, {"frames_per_second", 0, ANY_MAX, &row->speed}};
+    for (size_t i = 0; i < ADCGS_COUNTOF(fields); i++)
+        ADCGS_TRY(read_number(at, fields[i].field, fields[i].min, fields[i].max, fields[i].to));
+    if (seeds < 1)
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "seeds", "expected a number");
+    row->k = (int)k;
+    ADCGS_TRY(read_spread(at, "bytes", 1, BYTES_MAX, (int)seeds, &row->bytes));
+    return read_spread(at, "psnr", -DB_MAX, DB_MAX, (int)seeds, &row->psnr);
+}
+
+/** points: of the curve, NULL if the file has no curve. */
+static adcgs_status read_points(const char *path, const json_t *points, adcgs_sweep_curve *curve, adcgs_error *error)
+{
+    const size_t n = json_array_size(points);
+    if (!n || n > ADCGS_SWEEP_LIST)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no curve of the codec's own with 1 to %d points", path, ADCGS_SWEEP_LIST);
+    for (size_t i = 0; i < n; i++) {
+        json_t *const point = json_array_get(points, i);
+        const adcgs_json_place at = {path, point, point, i, "points", error};
+        if (!json_is_object(point))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: points[%zu]: expected an object", path, i);
+        ADCGS_TRY(read_point(&at, &curve->point[i]));
+        curve->point[i].name = curve->name;
+    }
+    curve->n = (int)n;
+    return ADCGS_OK;
+}
+
+/** The points of the first curve that is no yardstick. */
+static const json_t *find_points(const json_t *root)
+{
+    const json_t *const curves = json_object_get(root, "curves");
+    for (size_t i = 0; i < json_array_size(curves); i++)
+        if (json_is_false(json_object_get(json_array_get(curves, i), "yardstick")))
+            return json_object_get(json_array_get(curves, i), "points");
+    return NULL;
+}
+
+/* ---- Names ---- */
+
+/** The last part of path[0..end), without slashes behind it: where it begins and its length, which is 0 if there is none. */
+static size_t part_before(const char *path, size_t end, size_t *length)
+{
+    while (end && path[end - 1] == '/')
+        end--;
+    size_t start = end;
+    while (start && path[start - 1] != '/')
+        start--;
+    *length = end - start;
+    return start;
+}
+
+static int has_curve(const adcgs_sweep_plan *plan, const char *name)
+{
+    for (int i = 0; i < plan->n_curves; i++)
+        if (!strcmp(plan->curve[i].name, name))
+            return 1;
+    return 0;
+}
+
+/** The name goes to terminals and into gnuplot's quotes: what either might obey is left out. */
+static void write_name(char *name, size_t size, const char *text, size_t length)
+{
+    snprintf(name, size, "%.*s", (int)length, text);
+    for (; *name; name++)
+        if (*name < ' ' || *name > '~' || strchr("'\"`\\", *name))
+            *name = '_';
+}
+
+/**
+ * After the folder; of curves/robot and before/robot, after the first in which they differ ("before"). After the whole path where
+ * a curve has that name.
+ */
+static adcgs_status name_curve(char *name, size_t size, const adcgs_sweep_plan *plan, const char *folder, const char *own,
+                               adcgs_error *error)
+{
+    size_t at = strlen(folder), own_at = strlen(own), length, own_length;
+    do {
+        at = part_before(folder, at, &length);
+        own_at = part_before(own, own_at, &own_length);
+    } while (length && length == own_length && !memcmp(folder + at, own + own_at, length));
+    if (!length)
+        at = part_before(folder, strlen(folder), &length);
+    write_name(name, size, folder + at, length);
+    if (has_curve(plan, name))
+        write_name(name, size, folder, strlen(folder));
+    if (has_curve(plan, name))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against %s: another curve is called that", name);
+    return ADCGS_OK;
+}
+
+/* ---- Files ---- */
+
+/** The same scene may lie elsewhere by now, but goes by the same name. */
+static adcgs_status check_scene(const adcgs_sweep *sweep, const char *path, const json_t *root, adcgs_error *error)
+{
+    const char *const scene = json_string_value(json_object_get(root, "scene"));
+    size_t n, own_n;
+    if (!scene)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no scene in it, which sweeps write there", path);
+    char *const own = adcgs_text_utf8(sweep->scene); /* as it was written */
+    if (!own)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    const size_t at = part_before(scene, strlen(scene), &n), own_at = part_before(own, strlen(own), &own_n);
+    adcgs_status status = ADCGS_OK;
+    if (n != own_n || memcmp(scene + at, own + own_at, n) != 0)
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: a sweep of the scene %.*s, not of %.*s", path, (int)n, scene + at,
+                            (int)own_n, own + own_at);
+    free(own);
+    return status;
+}
+
+static adcgs_status take_curve(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, const char *folder, const char *path,
+                               const json_t *root, adcgs_error *error)
+{
+    char name[sizeof plan->curve->name], note[sizeof plan->curve->note];
+    ADCGS_TRY(check_scene(sweep, path, root, error));
+    ADCGS_TRY(name_curve(name, sizeof name, plan, folder, sweep->directory, error));
+    snprintf(note, sizeof note, "an earlier sweep of the scene, in %s", folder);
+    adcgs_sweep_curve *const curve = adcgs_sweep_add_curve(plan, name, note, ADCGS_FIGURE_BYTES, 0);
+    curve->earlier = 1;
+    return read_points(path, find_points(root), curve, error);
+}
+
+/** A sweep writes over its own sweep.json: what was in there would be compared with itself the next time. */
+static int is_own(const adcgs_sweep *sweep, const char *folder)
+{
+    struct stat a, b;
+    return stat(sweep->directory, &a) == 0 && stat(folder, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+static adcgs_status add_earlier(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, const char *folder, adcgs_error *error)
+{
+    char path[ADCGS_SWEEP_PATH];
+    json_t *root;
+    if (is_own(sweep, folder))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against %s: the folder that this sweep writes to", folder);
+    if (snprintf(path, sizeof path, "%s/sweep.json", folder) >= (int)sizeof path)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against: a path of more than %zu bytes", sizeof path - 1);
+    ADCGS_TRY(adcgs_json_load(&root, path, error));
+    const adcgs_status status = take_curve(plan, sweep, folder, path, root, error);
+    json_decref(root);
+    return status;
+}
+
+adcgs_status adcgs_sweep_add_against(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_error *error)
+{
+    const char *at = sweep->against;
+    for (int n = 1; at; n++) {
+        char folder[ADCGS_SWEEP_PATH];
+        const size_t length = strcspn(at, ",");
+        if (!length || length >= sizeof folder || n > ADCGS_SWEEP_AGAINST)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "--against: expected 1 to %d folders, with commas between",
+                              ADCGS_SWEEP_AGAINST);
+        memcpy(folder, at, length);
+        folder[length] = '\0';
+        ADCGS_TRY(add_earlier(plan, sweep, folder, error));
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    return ADCGS_OK;
+}
