@@ -11,6 +11,7 @@ source=$(cd "${srcdir:-.}" && pwd)
 data=${ADCGS_DATA:-$source/../shared/data}
 out=${FIGURES:-figures}
 mkdir -p "$out"
+. "$source/doc/scenes.sh"
 
 # value NAME FILE: of a whole evaluation, not of a view; nothing where it is null.
 value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
@@ -33,18 +34,19 @@ row()
         "$([ -n "$moving" ] && printf '%.2f' "$moving" || echo -)" "$(value ssim "$out/$name.json")" "$seconds" >>"$out/figures.md"
 }
 
-for made in demo cross80 turn1; do
-    [ -d "$out/$made" ] || ./adcgs-demo-scene --scene $made -o "$out/$made" --format ppm >/dev/null
-done
+# row_of N TITLE SCENE NAME WEIGHT: with N iterations; the encoder's own lambda is 0.1.
+row_of()
+{
+    if [ "$5" = 1 ]; then
+        row "$2" "$3" "$4-$1" -n "$1"
+    else
+        row "$2" "$3" "$4-$1" -n "$1" -l "$(awk "BEGIN { print 0.1 * $5 }")"
+    fi
+}
+
+make_scenes "$out"
 printf '| Scene | `adcgs-enc` | File, bytes | PSNR, dB | of what moves | SSIM | CPU, s |\n|---|---|---|---|---|---|---|\n' >"$out/figures.md"
 for n in ${ITERATIONS:-3000}; do
-    row "built-in demo" "$out/demo" demo-$n -n $n
-    row '`cross80`, built in' "$out/cross80" cross80-$n -n $n
-    row '`turn1`, built in' "$out/turn1" turn1-$n -n $n
-    row '`synth_robot_dnerf`' "$data/synth_robot_dnerf" robot-$n -n $n
-    row '`synth_robot_multiview`' "$data/synth_robot_multiview" room-$n -n $n
-    row '`nrnerf_hand`' "$data/nrnerf_hand" hand-$n -n $n
-    row '`llff_fern`' "$data/llff_fern" fern-$n -n $n
-    row '`zju313_15f`' "$data/zju313_15f" zju-$n -n $n -l 0.03
+    each_scene "$out" "$data" row_of "$n"
 done
 cat "$out/figures.md"

@@ -339,6 +339,39 @@ sweep --lambda 9 --dataset colmap --frames 0:9:2 --yardsticks none
 calls 1 1 "--dataset colmap --frames 0:9:2"
 tail -n 1 "$dir/evaluations" | grep -q -e "--dataset colmap --frames 0:9:2" || fail "evaluated otherwise: $(cat "$dir/evaluations")"
 
+# All scenes by one command, before and after: a row for each that is there, with its own lambdas. Nothing is made twice.
+cat >"$dir/adcgs-demo-scene" <<'END'
+#!/bin/bash
+mkdir -p "$4"
+END
+chmod +x "$dir/adcgs-demo-scene"
+mkdir -p "$dir/data/llff_fern" "$dir/data/zju313_15f"
+touch "$dir/moving"
+: >"$dir/calls"
+source=$(cd "${srcdir:-.}" && pwd)
+curves() # CURVES [BEFORE]
+{
+    (cd "$dir" && CURVES=$1 BEFORE=${2:-} LAMBDAS=20,10 ADCGS_DATA=data srcdir=$source sh "$source/doc/curves.sh") \
+        >"$dir/report" 2>"$dir/err" || fail "curves: $(cat "$dir/err")"
+}
+curves first
+calls 15 15 "--iterations 3000 --threads 1"
+[ "$(wc -l <"$dir/report")" -eq 7 ] || fail "expected five scenes: $(cat "$dir/report")"
+line '^| Bytes, .* at lambda | 10 | 20 | BD-rate | of what moves |$' "$dir/report"
+line '^| built-in demo | 6400, 26.10, 16.10 | 3200, 16.10, 6.10 | - | - |$' "$dir/report"
+line '^| `zju313_15f`, lambda times 0.3 | 21333, 33.10, 23.10 | 10666, 30.10, 20.10 | - | - |$' "$dir/report"
+line 'no data/nrnerf_hand, left out' "$dir/err"
+curves first
+calls 0
+sed -i 's/6400/8000/; s/3200/4000/' "$dir/first/llff_fern/sweep.json"
+rm -r "$dir/first/turn1"
+curves second first
+line '^| `llff_fern` | 6400, 26.10, 16.10 | 3200, 16.10, 6.10 | -20.0 % | -20.0 % |$' "$dir/report"
+line '^| `cross80`, built in | .* | [+-]0.0 % | [+-]0.0 % |$' "$dir/report"
+line '^| `turn1`, built in | .* | - | - |$' "$dir/report"
+line 'no first/turn1 to compare with' "$dir/err"
+rm "$dir/moving"
+
 # The real programs on a tiny scene: a stream from a shared beginning is that of a whole run.
 for tool in adcgs-enc adcgs-eval adcgs-demo-scene; do
     [ -x "./$tool" ] || { echo "no $tool in $PWD: only pretended"; exit 0; }
