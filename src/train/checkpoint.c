@@ -255,8 +255,6 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     if (w.failed)
         return adcgs_fail(error, ADCGS_ERR_DATA, "it ends too early");
     walk_scalars(&w, t);
-    if (!t->lambda_used)
-        t->lambda = (double)t->config.lambda;
     ADCGS_TRY(restore_anchors(&w, t, error));
     walk_arrays(&w, t);
     walk_average(&w, t);

@@ -49,7 +49,7 @@ const adcgs_setting adcgs_settings[] = {
      * et al. 2024, Dynamic 3D Gaussians, 3DV. A price of size: Lombardi et al. 2021, Mixture of volumetric primitives, SIGGRAPH;
      * Lu et al. 2024, Scaffold-GS, CVPR. Dropout: Srivastava et al. 2014, JMLR 15. */
     ROW("lambda", lambda, AT(own_lambda), LOSS, WITH_LAMBDA, B | Q, 0, 1000, ALL(0.1),
-        "loss per mebibyte of features and networks; more makes smaller files"),
+        "loss per mebibyte of features and networks, more makes smaller files; unless given, in proportion to contrast"),
     LOSS(network_rate, B | Q, 0, 1000, BUT_PAPER(1, 0), "weight of the networks' own bits, relative to those of features"),
     LOSS(rate_period, S | Q, 1, 1000, ALL(4), "bits are measured on one group of 64 anchors in so many"),
     LOSS(rdo_strength, B | Q, 0, 1000, ALL(0), "weight of bits when levels are chosen, relative to lambda; 0: nearest levels"),

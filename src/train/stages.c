@@ -2,6 +2,7 @@
 /** \file The stages of a run in their order. */
 #include "train/stages.h"
 
+#include "train/contrast.h"
 #include "train/decide.h"
 #include "train/densify.h"
 #include "train/freeze.h"
@@ -83,7 +84,10 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     const adcgs_train_config *c = &t->config;
     if (adcgs_stages_divide(t, progress) != t->divide) {
         const double begin = adcgs_seconds();
+        const int first = !t->divide && !t->lambda_used; /* of a restored run, too: until lambda is used, it may be another */
         ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
+        if (first)
+            ADCGS_TRY(adcgs_contrast_lambda(t, error));
         t->left.load = adcgs_seconds() - begin;
     }
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);

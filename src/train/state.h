@@ -70,7 +70,7 @@ typedef struct adcgs_trainer {
     uint8_t lambda_used;     /* lambda has had a say: the run is bound to it */
     uint8_t weighed, slimmed, decided, rounding, frozen;
     float lr_scale;
-    double lambda; /* of the rate; the configuration's unless a target steers it */
+    double lambda; /* of the rate; the configuration's unless a target steers it, or contrast */
     adcgs_rate_control rate_control;
     uint32_t rollbacks;
     double mean_loss, mean_mse, elapsed; /* elapsed: seconds of all programs that have had a part in the run */

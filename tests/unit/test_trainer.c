@@ -12,6 +12,7 @@
 #include "metric/metric.h"
 #include "model/latents_priv.h"
 #include "splat/splat.h"
+#include "train/contrast.h"
 #include "train/decide.h"
 #include "train/densify.h"
 #include "train/initialise.h"
@@ -902,6 +903,44 @@ static void averages_are_means(void **state)
 
 /* ---- Brightness of cameras ---- */
 
+/** All pictures times this. */
+static void dim(adcgs_trainer *t, float by)
+{
+    for (uint32_t i = 0; i < t->n_views; i++) {
+        const size_t n = 3 * (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
+        assert_int_equal(adcgs_pictures_get(t->pictures, i, t->taken, &error), ADCGS_OK);
+        for (size_t j = 0; j < n; j++)
+            t->taken[j] *= by;
+        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+    }
+}
+
+/** What was filmed with half the light is coded twice as finely; a lambda that is asked for is taken as it is. */
+static void lambda_follows_contrast(void **state)
+{
+    adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, pool);
+    double contrast, half, lambda;
+    assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
+    assert_int_equal(adcgs_contrast(t, &contrast, &error), ADCGS_OK);
+    assert_true(contrast > 0.05 && contrast < 0.5); /* values in [0,1] deviate by 0.5 at most */
+    assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
+    lambda = t->lambda;
+    assert_float_equal(lambda, (double)config.lambda * contrast / ADCGS_CONTRAST_NOMINAL, 1e-9);
+    dim(t, 0.5f);
+    assert_int_equal(adcgs_contrast(t, &half, &error), ADCGS_OK);
+    assert_float_equal(half, contrast / 2, 1e-4 * contrast);
+    assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
+    assert_float_equal(t->lambda, lambda / 2, 1e-4 * lambda);
+    dim(t, 0); /* one colour: what is coded still has a price */
+    assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
+    assert_true(t->lambda > 0);
+    t->config.own_lambda = 1;
+    assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
+    assert_float_equal(t->lambda, config.lambda, 0);
+    adcgs_trainer_free(&t);
+}
+
 enum { CAMERAS = 3, PICTURES = 5, PLANE = 64 };
 
 /** Pictures by cameras of these gains, followed in the order they were taken; even: what the mean camera would have taken. */
@@ -1241,6 +1280,7 @@ int main(void)
         cmocka_unit_test(windows_grow_outwards),
         cmocka_unit_test(averages_are_means),
         cmocka_unit_test(cameras_are_evened_out),
+        cmocka_unit_test(lambda_follows_contrast),
         cmocka_unit_test(moments_shared_by_views_change_settings),
         cmocka_unit_test(crops_are_parts_of_pictures), cmocka_unit_test(rates_stay_then_fall),
         cmocka_unit_test(time_left_follows_the_schedule), cmocka_unit_test(time_left_knows_loading),

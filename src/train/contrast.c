@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Contrast of a scene, and what lambda makes of it. */
+#include "train/contrast.h"
+
+#include <math.h>
+
+enum { PICTURES_MOST = 64 };
+/** Pictures of one colour leave a price to be paid, too. */
+static const double LEAST = 0.1, MOST = 4;
+
+adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error)
+{
+    const uint32_t n = ADCGS_MIN(t->n_views, PICTURES_MOST);
+    double sum[3] = { 0, 0, 0 }, square = 0, count = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t view = (uint32_t)((uint64_t)i * t->n_views / n);
+        const adcgs_view *v = &t->views[view].view;
+        const size_t plane = (size_t)v->width * (size_t)v->height;
+        ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
+        for (size_t c = 0; c < 3; c++)
+            for (size_t j = c * plane; j < (c + 1) * plane; j++) {
+                sum[c] += (double)t->taken[j];
+                square += (double)t->taken[j] * (double)t->taken[j];
+            }
+        count += (double)plane;
+    }
+    double about = 0;
+    for (int c = 0; c < 3; c++)
+        about += sum[c] / count * (sum[c] / count);
+    *contrast = sqrt(fmax(square / count - about, 0) / 3);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error)
+{
+    double contrast = ADCGS_CONTRAST_NOMINAL;
+    if (!t->config.own_lambda && t->config.target == ADCGS_TARGET_NONE)
+        ADCGS_TRY(adcgs_contrast(t, &contrast, error));
+    t->lambda = (double)t->config.lambda * fmin(fmax(contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST);
+    return ADCGS_OK;
+}
