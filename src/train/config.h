@@ -41,6 +41,8 @@ typedef struct adcgs_train_config {
     float ssim_weight, square_weight;
     float rigid_weight;    /**< of the energy that keeps neighbours alike as they move; 0 where several views share a moment */
     float scale_weight;    /**< of the price of primitives' size */
+    float distortion_weight; /**< of the spread of depth along rays */
+    int distortion_period; /**< it is measured in every n-th iteration */
     float dropout;         /**< share of primitives left out at random until rounding: against overfitting few views */
     /* The model. */
     adcgs_params params;   /**< time_rows is capped by the scene */

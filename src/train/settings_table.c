@@ -59,6 +59,8 @@ const adcgs_setting adcgs_settings[] = {
     ROW("rigid_weight", rigid_weight, AT(own_rigid), LOSS, ALWAYS, S | Q, 0, 1000, BUT_PAPER(0.02, 0),
         "neighbours move alike; unless given, 0 where several views share a moment"),
     LOSS(scale_weight, S | Q, 0, 1000, BUT_PAPER(0.02, 0), "price of the primitives' size"),
+    LOSS(distortion_weight, Q, 0, 1000, ALL(0), "price of the spread of depth along rays; 0.001 helps where few cameras see much"),
+    LOSS(distortion_period, S | Q, 1, 1000, ALL(4), "that spread is measured in one iteration of so many"),
     LOSS(dropout, Q, 0, 0.9, BUT_PAPER(0.1, 0), "share of primitives left out at random, against overfitting few views"),
 
     /* Anchors: Lu et al. 2024; K primitives each, deformed by two networks: ADC-GS. eta is a hyperprior: Balle et al. 2018, ICLR.

@@ -12,6 +12,7 @@
 #include "fmodel/rigidity.h"
 #include "fmodel/scale_penalty.h"
 #include "fmodel/weight_average.h"
+#include "grad/distortion.h"
 #include "grad/loss.h"
 #include "stereo/stereo.h"
 #include "train/exposure.h"
@@ -46,6 +47,7 @@ typedef struct adcgs_trainer {
     adcgs_raster_back *back;
     adcgs_loss *loss;
     adcgs_rigidity rigid;
+    adcgs_distortion distortion;
     adcgs_curriculum curriculum;
     adcgs_exposure exposure;
     adcgs_viewpoints viewpoints;

@@ -144,6 +144,9 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
     accumulate_stats(t, &grads);
     if (c->scale_weight > 0 && progress >= c->scale_from)
         adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_weight, grads.scale);
+    if (c->distortion_weight > 0 && t->iteration % (uint32_t)c->distortion_period == 0)
+        ADCGS_TRY(adcgs_distortion_add(&t->distortion, t->raster, t->back, &t->pass->primitives, &v->view, ADCGS_SCREEN_FILTER,
+                                       c->distortion_weight * (float)c->distortion_period, &grads, NULL, error));
     t->pass->pull = NULL;
     if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
         adcgs_rigidity_pull(&t->rigid, t->pass, t->f, c->rigid_weight);
