@@ -84,6 +84,15 @@ static void add_sample(pass *p, const adcgs_sample *s, const double row[2][6], c
     }
 }
 
+/** What a view shows where a point is, at[2] its place there; 0: nothing that tells. */
+static int look(const adcgs_moment_views *views, int k, const double x[3], const double normal[3], double at[2], double *depth,
+                adcgs_sample *s)
+{
+    const adcgs_stereo_view *v = &views->camera[k]->view;
+    return adcgs_faces(v, x, normal) && adcgs_stereo_rig_project(v, x, at, depth) &&
+           adcgs_sample_take(views->camera[k], views->moment, at, s);
+}
+
 static void run(pass *p, const adcgs_body_model *m, const adcgs_moment_views *views, uint32_t stride, const adcgs_placing *place)
 {
     for (uint32_t i = 0; i < m->n; i += stride) {
@@ -94,11 +103,9 @@ static void run(pass *p, const adcgs_body_model *m, const adcgs_moment_views *vi
         if (!adcgs_body_point_at(m, i, &place->at, views, x, normal))
             continue;
         for (int k = 0; k < views->n; k++) {
-            const adcgs_stereo_view *v = &views->camera[k]->view;
-            if (!adcgs_faces(v, x, normal) || !adcgs_stereo_rig_project(v, x, at, &depth) ||
-                !adcgs_sample_take(views->camera[k], views->moment, at, &s))
+            if (!look(views, k, x, normal, at, &depth, &s))
                 continue;
-            derive(v, x, p->centre, depth, at, row);
+            derive(&views->camera[k]->view, x, p->centre, depth, at, row);
             add_sample(p, &s, (const double(*)[6])row, m->p[i].rgb, place->gain[side], side, trust);
         }
     }
@@ -173,11 +180,9 @@ double adcgs_direct_point(const adcgs_body_model *m, uint32_t i, const adcgs_mom
     int n = 0;
     adcgs_body_point_at(m, i, &place->at, views, x, normal);
     for (int k = 0; k < views->n; k++) {
-        const adcgs_stereo_view *v = &views->camera[k]->view;
         double at[2], depth, off = 0;
         adcgs_sample s;
-        if (!adcgs_faces(v, x, normal) || !adcgs_stereo_rig_project(v, x, at, &depth) ||
-            !adcgs_sample_take(views->camera[k], views->moment, at, &s))
+        if (!look(views, k, x, normal, at, &depth, &s))
             continue;
         for (int a = 0; a < 3; a++)
             off += pow((double)(place->gain[m->more[i].side][a] * m->p[i].rgb[a]) - s.rgb[a], 2);
@@ -244,9 +249,7 @@ double adcgs_direct_any_light(const adcgs_body_model *m, const adcgs_moment_view
             if (!adcgs_body_point_at(m, i, at, views, x, normal))
                 continue;
             for (int k = 0; k < views->n; k++) {
-                const adcgs_stereo_view *v = &views->camera[k]->view;
-                if (!adcgs_faces(v, x, normal) || !adcgs_stereo_rig_project(v, x, where, &depth) ||
-                    !adcgs_sample_take(views->camera[k], views->moment, where, &s))
+                if (!look(views, k, x, normal, where, &depth, &s))
                     continue;
                 light += add_line(lines[m->more[i].side], m->p[i].rgb, &s);
                 n++;

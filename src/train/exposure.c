@@ -14,7 +14,8 @@ enum { PICTURES_LEAST = 4 };
 static const double KEEP = 0.9, DOUBT = 0.03;
 static const float BURNT = 0.98f, GAIN_MOST = 4;
 
-adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *views, uint32_t n_views, adcgs_error *error)
+adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *views, uint32_t n_views, int still,
+                                   adcgs_error *error)
 {
     const uint32_t most = n_views / PICTURES_LEAST;
     adcgs_exposure_clear(e);
@@ -23,7 +24,7 @@ adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *vi
     if (!e->of)
         return adcgs_alloc_status(error);
     ADCGS_TRY(adcgs_sort_by_camera(views, n_views, e->of, NULL, &n, error));
-    if (n < 2 || n > most)
+    if (n < 2 || (n > most && !still))
         return ADCGS_OK;
     e->cameras = adcgs_alloc(NULL, n, sizeof *e->cameras, error);
     if (!e->cameras)
@@ -31,6 +32,7 @@ adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *vi
     for (uint32_t i = 0; i < n; i++)
         e->cameras[i] = (adcgs_exposure_camera){ .gain = { 1, 1, 1 } };
     e->n = n;
+    e->patient = n > most;
     return ADCGS_OK;
 }
 
@@ -68,10 +70,19 @@ static float excess(const adcgs_exposure *e, uint32_t camera, size_t channel)
     return (float)exp(off > DOUBT ? off - DOUBT : off < -DOUBT ? off + DOUBT : 0);
 }
 
+static int all_followed(const adcgs_exposure *e)
+{
+    for (uint32_t i = 0; i < e->n; i++)
+        if (!(e->cameras[i].square[0] > 0))
+            return 0;
+    return 1;
+}
+
 void adcgs_exposure_even(const adcgs_exposure *e, uint32_t view, const float *taken, float *out, size_t plane)
 {
+    const int told = !e->patient || all_followed(e);
     for (size_t c = 0; c < 3; c++) {
-        const float by = 1 / excess(e, e->of[view], c);
+        const float by = told ? 1 / excess(e, e->of[view], c) : 1;
         for (size_t i = c * plane; i < (c + 1) * plane; i++)
             out[i] = by * taken[i];
     }

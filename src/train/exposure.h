@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Brightness of cameras. Cameras filmed together seldom agree on it, by tens of percent in some sets, and a model told to match
- * them all puts haze before those that are dark. So each camera that takes several pictures has a gain per channel, which follows
- * the least squares fit of pictures drawn to pictures taken, and the model is trained on pictures divided by it, so that it shows
+ * them all puts haze before those that are dark. Nor do photographs of something that stands still, taken one by one. So each
+ * camera that takes several pictures, and each picture of a still scene, has a gain per channel, which follows the least squares fit of pictures drawn to pictures taken, and the model is trained on pictures divided by it, so that it shows
  * the mean camera. Cameras that agree within 3 % are taken as they are. Gains are of training alone, no stream holds them.
  * Known as gain compensation (Brown and Lowe 2007, Automatic panoramic image stitching using invariant features, IJCV).
  */
@@ -21,10 +21,15 @@ typedef struct adcgs_exposure {
     uint32_t n;                     /**< cameras; 0: brightness is taken as it is */
     uint32_t *of;                   /**< [views] camera of each view */
     adcgs_exposure_camera *cameras; /**< [n] */
+    int patient;                    /**< the mean says nothing until each has taken a picture: they are many */
 } adcgs_exposure;
 
-/** Sort views by camera, equal in pose and lens. Where a camera has less than four pictures in the mean, n stays 0. */
-adcgs_status adcgs_exposure_create(adcgs_exposure *exposure, const adcgs_scene_view *views, uint32_t n_views, adcgs_error *error);
+/**
+ * Sort views by camera, equal in pose and lens. Where a camera has less than four pictures in the mean, n stays 0, unless the
+ * scene is still: then a gain takes nothing from what changes over time.
+ */
+adcgs_status adcgs_exposure_create(adcgs_exposure *exposure, const adcgs_scene_view *views, uint32_t n_views, int still,
+                                   adcgs_error *error);
 void adcgs_exposure_clear(adcgs_exposure *exposure);
 /** Take note of a view's picture as drawn and as taken, [3][plane] both. */
 void adcgs_exposure_follow(adcgs_exposure *exposure, uint32_t view, const float *drawn, const float *taken, size_t plane);

@@ -43,7 +43,7 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
         status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, error);
     adcgs_free(NULL, times);
     if (status == ADCGS_OK)
-        status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, error);
+        status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, t->scene->n_times <= 1, error);
     return status;
 }
 

@@ -944,14 +944,14 @@ static void lambda_follows_contrast(void **state)
 enum { CAMERAS = 3, PICTURES = 5, PLANE = 64 };
 
 /** Pictures by cameras of these gains, followed in the order they were taken; even: what the mean camera would have taken. */
-static uint32_t follow_cameras(const float *gain, uint32_t n_views, float even[][3 * PLANE], const float *drawn)
+static uint32_t follow_cameras(const float *gain, uint32_t n_views, int still, float even[][3 * PLANE], const float *drawn)
 {
     adcgs_scene_view views[CAMERAS * PICTURES] = { { .time = 0 } };
     adcgs_exposure exposure = { .n = 0 };
     float taken[3 * PLANE];
     for (uint32_t i = 0; i < n_views; i++)
         views[i].camera.cam_to_world[3] = i % CAMERAS;
-    assert_int_equal(adcgs_exposure_create(&exposure, views, n_views, &error), ADCGS_OK);
+    assert_int_equal(adcgs_exposure_create(&exposure, views, n_views, still, &error), ADCGS_OK);
     for (int even_out = 0; even_out < 2; even_out++)
         for (uint32_t i = 0; exposure.n && i < n_views; i++) {
             for (int j = 0; j < 3 * PLANE; j++)
@@ -972,7 +972,7 @@ static void cameras_are_evened_out(void **state)
     for (int j = 0; j < 3 * PLANE; j++)
         drawn[j] = 0.1f + (float)(j * 29 % 101) / 250;
     /* Gains of mean 1 are found but for 3 %, whatever the pictures show. */
-    assert_int_equal(follow_cameras((const float[]){ 0.5f, 1, 2 }, CAMERAS * PICTURES, even, drawn), CAMERAS);
+    assert_int_equal(follow_cameras((const float[]){ 0.5f, 1, 2 }, CAMERAS * PICTURES, 0, even, drawn), CAMERAS);
     for (int i = 0; i < CAMERAS * PICTURES; i++) {
         const double left = exp(0.03 * (i % CAMERAS - 1));
         for (int j = 0; j < 3 * PLANE; j++)
@@ -980,12 +980,30 @@ static void cameras_are_evened_out(void **state)
     }
     /* Cameras that agree are left alone, to the bit. */
     const float near[] = { 0.99f, 1, 1.01f };
-    assert_int_equal(follow_cameras(near, CAMERAS * PICTURES, even, drawn), CAMERAS);
+    assert_int_equal(follow_cameras(near, CAMERAS * PICTURES, 0, even, drawn), CAMERAS);
     for (int i = 0; i < CAMERAS * PICTURES; i++)
         for (int j = 0; j < 3 * PLANE; j++)
             assert_true(even[i][j] == near[i % CAMERAS] * drawn[j]);
     /* Too few pictures a camera tell nothing of it. */
-    assert_int_equal(follow_cameras(near, CAMERAS * 3, even, drawn), 0);
+    assert_int_equal(follow_cameras(near, CAMERAS * 3, 0, even, drawn), 0);
+    /* But where all stands still one picture is enough, once there has been one of each. */
+    assert_int_equal(follow_cameras((const float[]){ 0.5f, 1, 2 }, CAMERAS, 1, even, drawn), CAMERAS);
+    for (int i = 0; i < CAMERAS; i++)
+        assert_float_equal(even[i][7], exp(0.03 * (i % CAMERAS - 1)) * (double)drawn[7], 1e-5);
+    adcgs_exposure exposure = { .n = 0 };
+    adcgs_scene_view views[2] = { { .time = 0 } };
+    float bright[3 * PLANE];
+    views[1].camera.cam_to_world[3] = 1;
+    for (int j = 0; j < 3 * PLANE; j++)
+        bright[j] = 2 * drawn[j];
+    assert_int_equal(adcgs_exposure_create(&exposure, views, 2, 1, &error), ADCGS_OK);
+    adcgs_exposure_follow(&exposure, 0, drawn, bright, PLANE);
+    adcgs_exposure_even(&exposure, 0, bright, even[0], PLANE);
+    assert_memory_equal(even[0], bright, sizeof bright);
+    adcgs_exposure_follow(&exposure, 1, drawn, drawn, PLANE);
+    adcgs_exposure_even(&exposure, 0, bright, even[0], PLANE);
+    assert_true(even[0][7] < 0.8f * bright[7]);
+    adcgs_exposure_clear(&exposure);
 }
 
 /**
