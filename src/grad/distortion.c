@@ -33,7 +33,7 @@ static adcgs_status make_room(adcgs_distortion *d, size_t slots, size_t pixels, 
     return ADCGS_OK;
 }
 
-/** 1 / z of all primitives that can be seen into inverse, 0 of the others; returns the mean of the former, 0 if there are none. */
+/** 1 / z of all primitives that can be seen into inverse, 0 of the others; returns the mean of the former, 0 without any. */
 static float inverse_depths(const adcgs_primitives *p, const adcgs_view *v, float *inverse)
 {
     double sum = 0;

@@ -26,8 +26,8 @@ void adcgs_distortion_clear(adcgs_distortion *distortion);
 /**
  * Draw the primitives with raster, then add to grads the gradient of weight times the mean over the view's pixels of
  * A^2 ln(1 + V / SOFT^2): A is what primitives cover of a pixel (as a factor it has no gradient), V the variance of u = 1 - m / z
- * over them, weighted as they blend, z the depth and m its harmonic mean over all that can be seen. u differs where cameras to the
- * sides see things shift. *energy, unless NULL: that mean. What raster keeps of an earlier picture is lost.
+ * over them, weighted as they blend, z the depth and m its harmonic mean over all that can be seen. Where u differs cameras to
+ * the sides see things shift. *energy, unless NULL: that mean. What raster keeps of an earlier picture is lost.
  */
 adcgs_status adcgs_distortion_add(adcgs_distortion *distortion, adcgs_raster *raster, adcgs_raster_back *back,
                                   const adcgs_primitives *primitives, const adcgs_view *view, float filter, float weight,

@@ -33,6 +33,7 @@ typedef struct adcgs_train_config {
     uint32_t iterations;
     uint64_t seed;
     int scale;             /**< images are divided by this integer before training */
+    float learn_features, learn_prediction, learn_motion, learn_entropy; /**< learning rates, relative to what suits most */
     /* The loss. */
     float lambda;          /**< loss per mebibyte (2^23 bits) of estimated features and networks */
     float network_rate;    /**< weight of the networks' own bits, relative to the features' */

@@ -2,9 +2,10 @@
 /** \file
  * Brightness of cameras. Cameras filmed together seldom agree on it, by tens of percent in some sets, and a model told to match
  * them all puts haze before those that are dark. Nor do photographs of something that stands still, taken one by one. So each
- * camera that takes several pictures, and each picture of a still scene, has a gain per channel, which follows the least squares fit of pictures drawn to pictures taken, and the model is trained on pictures divided by it, so that it shows
- * the mean camera. Cameras that agree within 3 % are taken as they are. Gains are of training alone, no stream holds them.
- * Known as gain compensation (Brown and Lowe 2007, Automatic panoramic image stitching using invariant features, IJCV).
+ * camera that takes several pictures, and each picture of a still scene, has a gain per channel, which follows the least squares
+ * fit of pictures drawn to pictures taken, and the model is trained on pictures divided by it, so that it shows the mean camera.
+ * Cameras that agree within 3 % are taken as they are. Gains are of training alone, no stream holds them. Known as gain
+ * compensation (Brown and Lowe 2007, Automatic panoramic image stitching using invariant features, IJCV).
  */
 #ifndef ADCGS_TRAIN_EXPOSURE_H
 #define ADCGS_TRAIN_EXPOSURE_H

@@ -4,7 +4,24 @@
 
 #include <math.h>
 
-void adcgs_train_rates(adcgs_fmodel *f)
+/** What the configuration makes of a group's rates, by what they move. */
+static float times_of(const adcgs_train_config *c, int group)
+{
+    switch (group) {
+    case ADCGS_P_FV:
+    case ADCGS_P_FG:
+    case ADCGS_P_SIGMA:
+    case ADCGS_P_COLOUR:
+    case ADCGS_P_ETA: return c->learn_features;
+    case ADCGS_P_THETA: return c->learn_prediction;
+    case ADCGS_P_OMEGA:
+    case ADCGS_P_VARPI:
+    case ADCGS_P_TIME: return c->learn_motion;
+    default: return c->learn_entropy;
+    }
+}
+
+void adcgs_train_rates(const adcgs_train_config *c, adcgs_fmodel *f)
 {
     static const float rates[ADCGS_P_COUNT][2] = {
         [ADCGS_P_FV] = { 7.5e-3f, 7.5e-4f },    [ADCGS_P_FG] = { 1.0e-2f, 1.0e-3f },     [ADCGS_P_SIGMA] = { 7.0e-3f, 7.0e-4f },
@@ -18,8 +35,8 @@ void adcgs_train_rates(adcgs_fmodel *f)
         [ADCGS_P_E_STEPS] = { 5.0e-3f, 5.0e-4f },
     };
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
-        f->param[i].lr0 = rates[i][0];
-        f->param[i].lr1 = rates[i][1];
+        f->param[i].lr0 = times_of(c, i) * rates[i][0];
+        f->param[i].lr1 = times_of(c, i) * rates[i][1];
     }
 }
 

@@ -9,8 +9,8 @@
 
 #include "train/config.h"
 
-/** Learning rates of a fresh model's parameter groups. */
-void adcgs_train_rates(adcgs_fmodel *f);
+/** Learning rates of a fresh model's parameter groups: what suits each, times what the configuration says of its kind. */
+void adcgs_train_rates(const adcgs_train_config *config, adcgs_fmodel *f);
 
 /** A learning rate at a progress in [0,1], of what it is at first and at last. */
 float adcgs_train_rate(const adcgs_train_config *config, float first, float last, double progress);

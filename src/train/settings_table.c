@@ -41,6 +41,10 @@ const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "
 const adcgs_setting adcgs_settings[] = {
     RUN(iterations, S | Q, 10, 1e7, { 3000, 20000, 40000, 100000, 80000 }, "iterations of the run; each looks at one picture"),
     RUN(seed, 0, 0, 1e15, ALL(1), "seed of every random choice"),
+    RUN(learn_features, Q, 0, 100, ALL(1), "learning rates of the anchors' values, times this"),
+    RUN(learn_prediction, Q, 0, 100, ALL(1), "learning rate of F_theta, times this"),
+    RUN(learn_motion, Q, 0, 100, ALL(1), "learning rates of F_omega, F_varpi and the time table, times this"),
+    RUN(learn_entropy, B | Q, 0, 100, ALL(1), "learning rates of quantiser steps, priors and entropy networks, times this"),
     RUN(scale, S | Q | M, 1, 64, ALL(1), "the pictures' width and height are divided by this"),
 
     /* Rate in the loss: Balle et al. 2017, End-to-end optimized image compression, ICLR. Choice of levels by rate and distortion:
@@ -59,7 +63,8 @@ const adcgs_setting adcgs_settings[] = {
     ROW("rigid_weight", rigid_weight, AT(own_rigid), LOSS, ALWAYS, S | Q, 0, 1000, BUT_PAPER(0.02, 0),
         "neighbours move alike; unless given, 0 where several views share a moment"),
     LOSS(scale_weight, S | Q, 0, 1000, BUT_PAPER(0.02, 0), "price of the primitives' size"),
-    LOSS(distortion_weight, Q, 0, 1000, ALL(0), "price of the spread of depth along rays; 0.001 helps where few cameras see much"),
+    LOSS(distortion_weight, Q, 0, 1000, ALL(0),
+         "price of depth's spread along rays; 0.001 where few cameras are learnt by heart"),
     LOSS(distortion_period, S | Q, 1, 1000, ALL(4), "that spread is measured in one iteration of so many"),
     LOSS(dropout, Q, 0, 0.9, BUT_PAPER(0.1, 0), "share of primitives left out at random, against overfitting few views"),
 

@@ -43,7 +43,8 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
         status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, error);
     adcgs_free(NULL, times);
     if (status == ADCGS_OK)
-        status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, t->scene->n_times <= 1, error);
+        status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, t->scene->n_times <= 1,
+                                       error);
     return status;
 }
 
@@ -94,7 +95,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
     ADCGS_TRY(adcgs_start_match(&t->stereo, t->scene, c, t->pool, error));
     ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, &t->stereo, error));
-    adcgs_train_rates(t->f);
+    adcgs_train_rates(c, t->f);
     ADCGS_TRY(adcgs_pass_create(&t->pass, t->f, t->cpu, t->pool, error));
     ADCGS_TRY(adcgs_raster_create(&t->raster, t->cpu, t->pool, NULL, error));
     ADCGS_TRY(adcgs_raster_back_create(&t->back, t->cpu, t->pool, error));

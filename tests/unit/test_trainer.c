@@ -1034,6 +1034,27 @@ static void moments_shared_by_views_change_settings(void **state)
 
 /* ---- Time ---- */
 
+/** What the rates of a kind are told to be is what its groups get, and no other. */
+static void rates_follow_their_kind(void **state)
+{
+    adcgs_train_config config = small_config();
+    static const int groups[] = { ADCGS_P_COLOUR, ADCGS_P_THETA, ADCGS_P_TIME, ADCGS_P_E_FV };
+    adcgs_trainer *plain = make(&config, NULL), *told;
+    const adcgs_status status =
+        adcgs_train_set(&config, "learn_features=2,learn_prediction=3,learn_motion=5,learn_entropy=7", &error);
+    assert_int_equal(status, ADCGS_OK);
+    told = make(&config, NULL);
+    for (int i = 0; i < 4; i++) {
+        const adcgs_param *p = &plain->f->param[groups[i]], *q = &told->f->param[groups[i]];
+        const float times = (const float[]){ 2, 3, 5, 7 }[i];
+        assert_true(p->lr0 > p->lr1 && p->lr1 > 0);
+        assert_float_equal(q->lr0, times * p->lr0, 1e-6);
+        assert_float_equal(q->lr1, times * p->lr1, 1e-6);
+    }
+    adcgs_trainer_free(&plain);
+    adcgs_trainer_free(&told);
+}
+
 /** Learning rates stay as they begin until their moment, then fall by equal factors in equal times. */
 static void rates_stay_then_fall(void **state)
 {
@@ -1301,6 +1322,7 @@ int main(void)
         cmocka_unit_test(lambda_follows_contrast),
         cmocka_unit_test(moments_shared_by_views_change_settings),
         cmocka_unit_test(crops_are_parts_of_pictures), cmocka_unit_test(rates_stay_then_fall),
+        cmocka_unit_test(rates_follow_their_kind),
         cmocka_unit_test(time_left_follows_the_schedule), cmocka_unit_test(time_left_knows_loading),
         cmocka_unit_test(time_limits_count_what_was_before),
         cmocka_unit_test(masked_pixels_have_no_part),
