@@ -7,6 +7,7 @@
 #include "data/sort.h"
 #include "model/model.h"
 #include "stereo/direct.h"
+#include "stereo/members.h"
 #include "stereo/merge.h"
 
 #include <math.h>
@@ -302,7 +303,7 @@ static adcgs_status refine(work *w, int start, adcgs_error *error)
         adcgs_track_look_again(&w->t, &w->l, start);
     adcgs_track_refine(&w->t, &w->l, w->pool);
     ADCGS_TRY(adcgs_track_merge(&w->t, &w->l, error));
-    adcgs_track_clean(&w->t, &w->l);
+    adcgs_members_clean(&w->t, &w->l);
     return ADCGS_OK;
 }
 

@@ -3,6 +3,7 @@
 #include "stereo/track.h"
 
 #include "stereo/direct.h"
+#include "stereo/members.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,20 +12,14 @@ enum {
     FEW = 120,           /* points of a body with which starts are tried */
     MANY = 700,          /* with which a place is refined */
     BEST = 6,            /* starts that are refined */
-    LOST_MOST = 4,       /* moments in a row at which a body is not found, until it is given up */
-    BODY_MOST = 6000,    /* points */
-    HOPS = 6,            /* steps of reach by which a body grows at a moment */
-    SURE = 3,            /* moments after which a point is dropped */
-    AROUND = 32
+    LOST_MOST = 4        /* moments in a row at which a body is not found, until it is given up */
 };
 #define SHARE_GOOD 0.25  /* of points that have to be where they should be */
 #define LIGHT_GOOD 0.45  /* agreement of pictures */
 #define SHARE_SURE 0.35  /* beyond which no other starts are tried */
 #define LIGHT_SURE 0.52
-#define KEEP 0.45        /* of the moments at which it is seen that a point has to be where it should be */
 #define ABOUT 0.97       /* share of a score that is as good */
 #define APART 3.0        /* pixels between places about which turns are tried */
-#define FITS 0.5         /* agreement of pictures with a point that is where it should be, though it was not found again */
 #define TURN_STEP 0.26   /* radians between starts */
 enum { TURNS = 4 };      /* steps of it, to each side */
 
@@ -240,95 +235,6 @@ static void find_at(adcgs_track *t, const adcgs_layers *l, int moment, int turns
     t->place[moment] = place;
 }
 
-/* ---- Points ---- */
-
-/** Count where points are seen and where they should be. mark: [n] those of the moment that are the body's; may be NULL. */
-static void count(adcgs_track *t, const adcgs_layers *l, int moment, uint8_t *mark)
-{
-    for (uint32_t i = 0; i < t->model.n; i++) {
-        double x[3], normal[3];
-        uint32_t j = 0;
-        if (!adcgs_body_point_at(&t->model, i, &t->place[moment].at, &l->views[moment], x, normal))
-            continue;
-        t->model.more[i].seen++;
-        const int found = adcgs_body_match(&t->model, i, x, &l->all[moment], &t->place[moment], &j);
-        if (found && mark)
-            mark[j] = 1;
-        t->model.more[i].agreed = (uint16_t)(t->model.more[i].agreed +
-            (found || adcgs_direct_point(&t->model, i, &l->views[moment], &t->place[moment]) > FITS));
-    }
-}
-
-static void drop(adcgs_body_model *m, int sure)
-{
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < m->n; i++)
-        if (m->more[i].seen < sure || m->more[i].agreed >= KEEP * m->more[i].seen) {
-            m->p[n] = m->p[i];
-            m->more[n++] = m->more[i];
-        }
-    m->n = n;
-}
-
-/** Mark what hangs together with what is marked. */
-static void spread(const adcgs_cloud *c, double reach, uint8_t *mark)
-{
-    uint32_t near[AROUND];
-    for (uint8_t hop = 1; hop <= HOPS; hop++)
-        for (uint32_t i = 0; i < c->n; i++) {
-            if (mark[i] != hop)
-                continue;
-            const uint32_t n = adcgs_cloud_within(c, c->p[i].x, reach, near, AROUND);
-            for (uint32_t k = 0; k < n; k++)
-                if (!mark[near[k]] && !c->p[near[k]].body)
-                    mark[near[k]] = (uint8_t)(hop + 1);
-        }
-}
-
-/** Add a moment's point to the body at rest. */
-static adcgs_status add_point(adcgs_track *t, const adcgs_layers *l, int moment, uint32_t i, const adcgs_rigid *back,
-                              const adcgs_cloud *own, adcgs_error *error)
-{
-    adcgs_stereo_point p = l->all[moment].p[i];
-    const float *n = l->normal[l->begin[moment] + i];
-    double x[3], turned[3];
-    uint32_t near;
-    adcgs_rigid_apply(back, p.x, x);
-    memcpy(p.x, x, sizeof x);
-    if (adcgs_cloud_within(own, x, t->model.pixel, &near, 1) || t->model.n >= BODY_MOST)
-        return ADCGS_OK;
-    adcgs_rigid_turn(back, (const double[]){ (double)n[0], (double)n[1], (double)n[2] }, turned);
-    ADCGS_TRY(adcgs_body_add(&t->model, &p, (const float[]){ (float)turned[0], (float)turned[1], (float)turned[2] }, error));
-    for (int a = 0; a < 3; a++)
-        t->model.p[t->model.n - 1].rgb[a] /= t->place[moment].gain[t->model.more[t->model.n - 1].side][a];
-    return ADCGS_OK;
-}
-
-/** What hangs together with the body becomes part of it until it proves not to go along. */
-static adcgs_status grow(adcgs_track *t, const adcgs_layers *l, int moment, adcgs_error *error)
-{
-    const adcgs_cloud *c = &l->all[moment];
-    adcgs_cloud own = { .p = NULL };
-    adcgs_rigid back;
-    uint8_t *mark = adcgs_alloc(NULL, c->n, 1, error);
-    adcgs_status status = mark ? ADCGS_OK : adcgs_alloc_status(error);
-    if (status == ADCGS_OK) {
-        count(t, l, moment, mark);
-        drop(&t->model, SURE);
-        spread(c, l->reach, mark);
-        status = adcgs_cloud_init(&own, t->model.p, t->model.n, 1, 2 * t->model.pixel, error);
-    }
-    adcgs_rigid_inverse(&t->place[moment].at, &back);
-    for (uint32_t i = 0; i < c->n && status == ADCGS_OK; i++)
-        if (mark[i]) {
-            status = add_point(t, l, moment, i, &back, &own, error);
-            own.p = t->model.p; /* it may have moved */
-        }
-    adcgs_cloud_clear(&own);
-    adcgs_free(NULL, mark);
-    return status;
-}
-
 adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, adcgs_error *error)
 {
     t->place[start].at = adcgs_rigid_none;
@@ -344,7 +250,7 @@ adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, a
             find_at(t, l, m, !lost);
             lost = t->known[m] ? 0 : lost + 1;
             if (t->known[m])
-                ADCGS_TRY(grow(t, l, m, error));
+                ADCGS_TRY(adcgs_members_grow(t, l, m, error));
         }
     return ADCGS_OK;
 }
@@ -398,14 +304,4 @@ void adcgs_track_refine(adcgs_track *t, const adcgs_layers *l, adcgs_pool *pool)
 {
     again a = { t, l };
     adcgs_pool_run(pool, refine_one, &a, l->n);
-}
-
-void adcgs_track_clean(adcgs_track *t, const adcgs_layers *l)
-{
-    for (uint32_t i = 0; i < t->model.n; i++)
-        t->model.more[i].seen = t->model.more[i].agreed = 0;
-    for (int m = 0; m < l->n; m++)
-        if (t->known[m])
-            count(t, l, m, NULL);
-    drop(&t->model, 1);
 }

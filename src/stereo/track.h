@@ -25,9 +25,6 @@ void adcgs_track_look_again(adcgs_track *track, const adcgs_layers *layers, int 
 /** Refine all moments against all of the body. */
 void adcgs_track_refine(adcgs_track *track, const adcgs_layers *layers, adcgs_pool *pool);
 
-/** Drop points that are seldom where they should be. */
-void adcgs_track_clean(adcgs_track *track, const adcgs_layers *layers);
-
 /** How far two places put a body's points apart, in the mean. */
 double adcgs_track_between(const adcgs_track *track, const adcgs_rigid *a, const adcgs_rigid *b);
 
