@@ -34,15 +34,8 @@ row()
         "$([ -n "$moving" ] && printf '%.2f' "$moving" || echo -)" "$(value ssim "$out/$name.json")" "$seconds" >>"$out/figures.md"
 }
 
-# row_of N TITLE SCENE NAME WEIGHT: with N iterations; the encoder's own lambda is 0.1.
-row_of()
-{
-    if [ "$5" = 1 ]; then
-        row "$2" "$3" "$4-$1" -n "$1"
-    else
-        row "$2" "$3" "$4-$1" -n "$1" -l "$(awk "BEGIN { print 0.1 * $5 }")"
-    fi
-}
+# row_of N TITLE SCENE NAME WEIGHT: with N iterations and the lambda that the encoder chooses.
+row_of() { row "$2" "$3" "$4-$1" -n "$1"; }
 
 make_scenes "$out"
 printf '| Scene | `adcgs-enc` | File, bytes | PSNR, dB | of what moves | SSIM | CPU, s |\n|---|---|---|---|---|---|---|\n' >"$out/figures.md"

@@ -10,7 +10,7 @@ make_scenes()
 }
 
 # each_scene MADE DATA COMMAND...: COMMAND TITLE SCENE NAME WEIGHT for each scene, there or not. MADE is the folder of
-# make_scenes, DATA that of the data sets; WEIGHT is what the scene's lambda is multiplied by.
+# make_scenes, DATA that of the data sets; WEIGHT is what lambdas that are given are multiplied by.
 each_scene()
 {
     made=$1 data=$2
