@@ -320,3 +320,22 @@ int adcgs_stereo_is_known(const adcgs_stereo *s, const double x[3])
     }
     return 2 * known > seen;
 }
+
+int adcgs_stereo_floats(const adcgs_stereo *s, const double x[3])
+{
+    int cameras = 0, seen = 0, same = 0, through = 0;
+    for (int i = 0; s->maps && i < s->maps->n; i++) {
+        const adcgs_depths *d = &s->maps->depths[i];
+        double at[2], depth, there[3];
+        if (!d->quality)
+            continue;
+        cameras++;
+        if (!adcgs_stereo_rig_project(d->view, x, at, &depth))
+            continue;
+        const adcgs_verdict verdict = adcgs_depths_judge(d, x, there);
+        seen++;
+        same += verdict == ADCGS_VERDICT_SAME;
+        through += verdict == ADCGS_VERDICT_BEHIND;
+    }
+    return cameras && 3 * seen <= cameras && !same && (through || !seen);
+}

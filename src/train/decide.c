@@ -3,6 +3,7 @@
 #include "train/decide.h"
 
 #include "train/anchor_set.h"
+#include "train/floaters.h"
 #include "train/sample.h"
 
 #include <math.h>
@@ -146,6 +147,7 @@ adcgs_status adcgs_decide(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(drop_primitives(t, error));
     if (f->params.time_rows)
         ADCGS_TRY(decide_motion(t, error));
+    adcgs_drop_floaters(t);
     adcgs_anchor_set s;
     ADCGS_TRY(adcgs_anchor_set_init(&s, f->n + 1, error));
     for (uint32_t i = 0; i < f->n; i++) {

@@ -5,6 +5,7 @@
 #include "geom/geom.h"
 #include "stereo/pose.h"
 #include "train/anchor_set.h"
+#include "train/floaters.h"
 #include "train/initialise.h"
 #include "train/moment_densify.h"
 #include "train/residual_densify.h"
@@ -43,7 +44,7 @@ static uint32_t find_candidates(const adcgs_trainer *t, adcgs_ranked *list)
     uint32_t n = 0;
     for (uint32_t i = 0; i < slots; i++) {
         const float w = t->stats.weight[i];
-        if (adcgs_anchor_of(t->f, i) >= t->f->n || !(w > 1))
+        if (adcgs_anchor_of(t->f, i) >= t->f->n || t->f->keep[i] == 0 || !(w > 1))
             continue;
         const float score = t->stats.significance[i] / w;
         if (score > t->config.densify_threshold)
@@ -263,6 +264,7 @@ adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error
         n_moment = sow_moments(t, &w.next, w.next.n + (budget > w.next.n ? (budget - w.next.n) / 2 : 0), w.moment, n_moment,
                                &w.occupied);
         n_missing = sow(t, &w.next, budget, w.missing, n_missing, &w.occupied);
+        adcgs_drop_floaters(t);
         adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical places */
         grow(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
         status = adcgs_anchor_set_adopt(t, &w.next, error);

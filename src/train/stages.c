@@ -5,6 +5,7 @@
 #include "train/contrast.h"
 #include "train/decide.h"
 #include "train/densify.h"
+#include "train/floaters.h"
 #include "train/freeze.h"
 #include "train/levels.h"
 #include "train/rate_control.h"
@@ -18,6 +19,7 @@ enum { WEIGH_AFTER = 300, UNITS_AFTER = 1000, MEANS_EVERY = 100 };
 
 static adcgs_status round_values(adcgs_trainer *t, adcgs_error *error)
 {
+    adcgs_drop_floaters(t);
     ADCGS_TRY(adcgs_weight_steps_choose(t, error));
     t->rounding = 1;
     adcgs_trainer_prepare_networks(t);
@@ -43,6 +45,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     }
     if (t->slimmed < 2 && progress >= (t->slimmed ? c->prune_units_again : c->prune_units_at) && !c->without_rate) {
         t->slimmed++;
+        adcgs_drop_floaters(t);
         if (t->iteration >= UNITS_AFTER)
             ADCGS_TRY(adcgs_prune_units(t, error));
     }

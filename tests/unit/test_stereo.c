@@ -67,6 +67,22 @@ static void what_is_known(void **state)
     assert_false(adcgs_stereo_is_known(&found, (const double[]){ 0, 0, -1 }));
 }
 
+/** What hangs before a single camera floats; what many would see, or one knows to be there, does not. */
+static void what_floats(void **state)
+{
+    uint32_t floats = 0;
+    for (uint32_t i = 0; i < found.n_still; i++)
+        floats += (uint32_t)adcgs_stereo_floats(&found, found.still[i].x);
+    assert_int_equal(floats, 0);
+    for (int camera = 0; camera < CAMERAS; camera++) {
+        const double *m = scene.views[ADCGS_SPLIT_TRAIN][camera * MOMENTS].camera.cam_to_world;
+        assert_true(adcgs_stereo_floats(&found, (const double[]){ m[3], m[7], 0.1 }));
+        assert_false(adcgs_stereo_floats(&found, (const double[]){ m[3], m[7], 1 }));
+    }
+    assert_true(adcgs_stereo_floats(&found, (const double[]){ 0, 0, -1 }));
+    assert_false(adcgs_stereo_floats(&(adcgs_stereo){ .maps = NULL }, (const double[]){ 0, 0, -1 }));
+}
+
 static void threads_do_not_show(void **state)
 {
     adcgs_pool *pool;
@@ -113,7 +129,8 @@ static int forget_pictures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_still_is_the_wall), cmocka_unit_test(what_moves_is_the_square), cmocka_unit_test(what_is_known),
+        cmocka_unit_test(what_is_still_is_the_wall), cmocka_unit_test(what_moves_is_the_square),
+        cmocka_unit_test(what_is_known),             cmocka_unit_test(what_floats),
         cmocka_unit_test(threads_do_not_show),       cmocka_unit_test(where_it_applies),
     };
     return cmocka_run_group_tests(tests, match_pictures, forget_pictures);
