@@ -79,9 +79,9 @@ static inline float adcgs_stereo_spacing(const adcgs_stereo *stereo)
 int adcgs_stereo_is_known(const adcgs_stereo *stereo, const double x[3]);
 
 /**
- * Whether what is still can be at a place, in scene units, only because hardly any camera would tell: no more than a third of them
- * have it in their pictures, those that know something there see through it, to something behind, and one does, or none has it in
- * its picture. A camera between the others would see it float before it.
+ * Whether what is still can be at a place, in scene units, only because hardly any camera would tell: no more than a third of
+ * them have it in their pictures, and those that know something there see through it, to something behind; one does, or none has
+ * it in its picture. A camera between the others would see it float before it.
  */
 int adcgs_stereo_floats(const adcgs_stereo *stereo, const double x[3]);
 

@@ -141,6 +141,7 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->decided, sizeof t->decided);
     visit(w, &t->frozen, sizeof t->frozen);
     visit(w, &t->lr_scale, sizeof t->lr_scale);
+    visit(w, &t->contrast, sizeof t->contrast);
     visit(w, &t->lambda, sizeof t->lambda);
     visit(w, &t->rate_control, sizeof t->rate_control);
     visit(w, &t->curriculum.n, sizeof t->curriculum.n);

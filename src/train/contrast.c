@@ -33,9 +33,9 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
 
 adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error)
 {
-    double contrast = ADCGS_CONTRAST_NOMINAL;
-    if (!t->config.own_lambda && t->config.target == ADCGS_TARGET_NONE)
-        ADCGS_TRY(adcgs_contrast(t, &contrast, error));
-    t->lambda = (double)t->config.lambda * fmin(fmax(contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST);
+    const int own = t->config.own_lambda || t->config.target != ADCGS_TARGET_NONE;
+    if (!(t->contrast > 0))
+        ADCGS_TRY(adcgs_contrast(t, &t->contrast, error));
+    t->lambda = (double)t->config.lambda * (own ? 1 : fmin(fmax(t->contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST));
     return ADCGS_OK;
 }

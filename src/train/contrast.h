@@ -14,7 +14,10 @@
 /** Of up to 64 of the training pictures that are loaded, evenly chosen, about their mean, the mean square of the channels. */
 adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error);
 
-/** Begin with the lambda that was asked for, or else with the preset's times the contrast, relative to the nominal one. */
+/**
+ * Begin with the lambda that was asked for, or else with the preset's times the contrast, relative to the nominal one. The
+ * contrast is measured by the first call of a run, and stays.
+ */
 adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error);
 
 #endif

@@ -72,6 +72,7 @@ typedef struct adcgs_trainer {
     uint8_t lambda_used;     /* lambda has had a say: the run is bound to it */
     uint8_t weighed, slimmed, decided, rounding, frozen;
     float lr_scale;
+    double contrast; /* of the pictures that training began with; 0: not known yet */
     double lambda; /* of the rate; the configuration's unless a target steers it, or contrast */
     adcgs_rate_control rate_control;
     uint32_t rollbacks;

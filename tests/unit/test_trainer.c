@@ -930,9 +930,13 @@ static void lambda_follows_contrast(void **state)
     dim(t, 0.5f);
     assert_int_equal(adcgs_contrast(t, &half, &error), ADCGS_OK);
     assert_float_equal(half, contrast / 2, 1e-4 * contrast);
+    assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK); /* it was measured, and stays */
+    assert_float_equal(t->lambda, lambda, 0);
+    t->contrast = 0;
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
     assert_float_equal(t->lambda, lambda / 2, 1e-4 * lambda);
     dim(t, 0); /* one colour: what is coded still has a price */
+    t->contrast = 0;
     assert_int_equal(adcgs_contrast_lambda(t, &error), ADCGS_OK);
     assert_true(t->lambda > 0);
     t->config.own_lambda = 1;
