@@ -412,8 +412,8 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
         { "preset", 'p', ADCGS_OPTION_STRING, &o->preset, 0, 0, "NAME",
           "draft, fast, medium, slow or paper (default fast)", NULL, NULL },
         { "lambda", 'l', ADCGS_OPTION_REAL, &o->lambda, lambda->min, lambda->max, "X",
-          "loss per mebibyte of features and networks: larger\nmakes smaller files (default: the preset's, less where\n"
-          "pictures vary less)", NULL, &o->has_lambda },
+          "loss per mebibyte of features and networks: larger\nmakes smaller files (default: the preset's, times the\n"
+          "pictures' contrast over 0.22)", NULL, &o->has_lambda },
         { "size", 's', ADCGS_OPTION_SIZE, &o->size, ADCGS_TARGET_SIZE_MIN, ADCGS_TARGET_SIZE_MAX, "BYTES",
           "make the file at most this large (150k, 1.5M, 2MiB), by\nless than 3 %, instead of giving --lambda", NULL,
           &o->has_size },
