@@ -50,7 +50,7 @@ void adcgs_exposure_follow(adcgs_exposure *e, uint32_t view, const float *drawn,
         double cross = 0, square = 0;
         for (size_t i = 0; i < plane; i++)
             if (taken[i] < BURNT) {
-                cross += (double)drawn[i] * (double)taken[i];
+                cross += (double)drawn[i] * (double)(taken[i] - camera->black[c]);
                 square += (double)drawn[i] * (double)drawn[i];
             }
         camera->cross[c] = KEEP * camera->cross[c] + cross;
@@ -82,8 +82,8 @@ void adcgs_exposure_even(const adcgs_exposure *e, uint32_t view, const float *ta
 {
     const int told = !e->patient || all_followed(e);
     for (size_t c = 0; c < 3; c++) {
-        const float by = told ? 1 / excess(e, e->of[view], c) : 1;
+        const float by = told ? 1 / excess(e, e->of[view], c) : 1, black = e->cameras[e->of[view]].black[c];
         for (size_t i = c * plane; i < (c + 1) * plane; i++)
-            out[i] = by * taken[i];
+            out[i] = by * (taken[i] - black);
     }
 }

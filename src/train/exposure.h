@@ -4,6 +4,7 @@
  * them all puts haze before those that are dark. Nor do photographs of something that stands still, taken one by one. So each
  * camera that takes several pictures, and each picture of a still scene, has a gain per channel, which follows the least squares
  * fit of pictures drawn to pictures taken, and the model is trained on pictures divided by it, so that it shows the mean camera.
+ * Black levels are known before, and taken off first.
  * Cameras that agree within 3 % are taken as they are. Gains are of training alone, no stream holds them. Known as gain
  * compensation (Brown and Lowe 2007, Automatic panoramic image stitching using invariant features, IJCV).
  */
@@ -14,7 +15,8 @@
 
 typedef struct adcgs_exposure_camera {
     double cross[3], square[3]; /* sums of drawn * taken and of drawn^2; recent pictures count more */
-    float gain[3];              /* taken / drawn */
+    float gain[3];              /* (taken - black) / drawn */
+    float black[3];             /* added to all it takes, relative to the middle camera; see black_level.h */
 } adcgs_exposure_camera;
 
 /** Zero-initialise before use. */

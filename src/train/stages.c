@@ -2,6 +2,7 @@
 /** \file The stages of a run in their order. */
 #include "train/stages.h"
 
+#include "train/black_level.h"
 #include "train/contrast.h"
 #include "train/decide.h"
 #include "train/densify.h"
@@ -91,6 +92,8 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
         ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
         if (first)
             ADCGS_TRY(adcgs_contrast_lambda(t, error));
+        if (!t->iteration)
+            ADCGS_TRY(adcgs_black_levels(t, error));
         t->left.load = adcgs_seconds() - begin;
     }
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);

@@ -12,6 +12,7 @@
 #include "metric/metric.h"
 #include "model/latents_priv.h"
 #include "splat/splat.h"
+#include "train/black_level.h"
 #include "train/contrast.h"
 #include "train/decide.h"
 #include "train/densify.h"
@@ -945,6 +946,57 @@ static void lambda_follows_contrast(void **state)
     adcgs_trainer_free(&t);
 }
 
+/**
+ * Pictures of three cameras in turns: a half of each, or of the last camera a share of its own, is within a level of a black that
+ * is the camera's, levels of 255, and the rest is bright.
+ */
+static void darken(adcgs_trainer *t, const float black[3], float last_share)
+{
+    for (uint32_t i = 0; i < t->n_views; i++) {
+        const size_t plane = (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
+        const uint32_t camera = t->exposure.of[i];
+        const float share = camera == 2 ? last_share : 0.5f;
+        for (size_t j = 0; j < 3 * plane; j++)
+            t->taken[j] = j % plane < share * (float)plane ? (black[camera] + (float)(j % 3) / 2) / 255 : 0.5f;
+        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+    }
+}
+
+/** What cameras add to all of their pictures is found where all of them see black, and only there; and it is taken off. */
+static void black_levels_are_found(void **state)
+{
+    adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config, pool);
+    adcgs_scene_view *views = calloc(t->n_views, sizeof *views);
+    assert_non_null(views);
+    for (uint32_t i = 0; i < t->n_views; i++)
+        views[i].camera.cam_to_world[3] = i % 3;
+    assert_int_equal(adcgs_exposure_create(&t->exposure, views, t->n_views, 0, &error), ADCGS_OK);
+    free(views);
+    assert_int_equal(t->exposure.n, 3);
+    assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
+    const float black[3] = { 10, 2, 16 };
+    darken(t, black, 0.5f);
+    assert_int_equal(adcgs_black_levels(t, &error), ADCGS_OK);
+    for (int i = 0; i < 3; i++)
+        for (int c = 0; c < 3; c++)
+            assert_float_equal(t->exposure.cameras[i].black[c], (black[i] - 10) / 255, 0.3 / 255);
+    const float taken[3] = { 0.5f, 0.25f, 0.125f };
+    float even[3];
+    adcgs_exposure_even(&t->exposure, 1, taken, even, 1); /* the second view is the second camera's */
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(even[c], taken[c] + 8.0f / 255, 0.3 / 255);
+    /* A camera that has too little of black, or sees a darkness of its own, says nothing of any. */
+    darken(t, black, 0.1f);
+    assert_int_equal(adcgs_black_levels(t, &error), ADCGS_OK);
+    for (int i = 0; i < 3; i++)
+        assert_true(t->exposure.cameras[i].black[0] == 0);
+    darken(t, (const float[]){ 10, 2, 40 }, 0.5f);
+    assert_int_equal(adcgs_black_levels(t, &error), ADCGS_OK);
+    assert_true(t->exposure.cameras[1].black[2] == 0);
+    adcgs_trainer_free(&t);
+}
+
 enum { CAMERAS = 3, PICTURES = 5, PLANE = 64 };
 
 /** Pictures by cameras of these gains, followed in the order they were taken; even: what the mean camera would have taken. */
@@ -1322,7 +1374,7 @@ int main(void)
         cmocka_unit_test(uncompressed_models_lose_nothing),
         cmocka_unit_test(windows_grow_outwards),
         cmocka_unit_test(averages_are_means),
-        cmocka_unit_test(cameras_are_evened_out),
+        cmocka_unit_test(black_levels_are_found), cmocka_unit_test(cameras_are_evened_out),
         cmocka_unit_test(lambda_follows_contrast),
         cmocka_unit_test(moments_shared_by_views_change_settings),
         cmocka_unit_test(crops_are_parts_of_pictures), cmocka_unit_test(rates_stay_then_fall),
