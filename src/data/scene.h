@@ -61,6 +61,7 @@ typedef struct adcgs_scene {
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
     adcgs_splat_scene *splats; /**< NULL: views are pictures; else path of a view is that of the splats */
     struct adcgs_clips *clips; /**< videos that are open (clips.h) */
+    const struct adcgs_scene *whole; /**< of which this is a part in time (part.h); NULL: it is whole */
 } adcgs_scene;
 
 void adcgs_scene_free(adcgs_scene **scene);

@@ -7,6 +7,7 @@
 #include "render/render.h"
 #include "stream/input.h"
 #include "train/levels.h"
+#include "train/scene_frame.h"
 
 #include <math.h>
 
@@ -63,50 +64,87 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
     return ADCGS_OK;
 }
 
-/**
- * A tick is a frame, or the largest whole part of one of which the scene's duration is a whole number: so times are exact,
- * whatever offsets cameras have.
- */
-static void set_time(adcgs_stream *s, const adcgs_scene *scene)
+/** Whether times of a scene are whole numbers of so many to a frame. */
+static int are_whole(const adcgs_scene *scene, const double *at, uint32_t n, uint32_t parts)
 {
-    const double frames = scene->duration * (double)scene->rate.num / (double)scene->rate.den;
+    for (uint32_t i = 0; i < n; i++) {
+        const double ticks = at[i] * (double)scene->rate.num / (double)scene->rate.den * parts;
+        if (fabs(ticks - rint(ticks)) > TICK_WITHIN)
+            return 0;
+    }
+    return 1;
+}
+
+/**
+ * A tick is a frame, or the largest whole part of one of which the scene's duration, and where it is cut, are whole numbers: so
+ * times are exact, whatever offsets cameras have.
+ */
+static void set_time(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts *cuts)
+{
     uint32_t parts = 1;
     s->rate_num = scene->rate.num;
     s->rate_den = scene->rate.den;
     while (parts < PARTS_MAX && (uint64_t)s->rate_num * (parts + 1) <= UINT32_MAX &&
-           fabs(frames * parts - rint(frames * parts)) > TICK_WITHIN)
+           !are_whole(scene, cuts->at, cuts->n + 1, parts))
         parts++;
     s->timebase_num = s->rate_den;
     s->timebase_den = s->rate_num * parts;
-    s->start_ticks = 0;
-    s->duration_ticks = (int64_t)rint(frames * parts);
 }
 
-static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,
+/** The tick that is nearest to a time of the scene, in seconds. */
+static double whole_ticks(const adcgs_stream *s, double time)
+{
+    return adcgs_ticks_to_seconds(s, (int64_t)rint(time * s->timebase_den / s->timebase_num));
+}
+
+adcgs_status adcgs_encode_begin(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts *cuts, const adcgs_encode_note *notes,
                                 uint32_t n_notes, adcgs_error *error)
 {
-    const adcgs_scene *scene = t->scene;
     adcgs_stream_init(s);
     s->level = 0; /* the lowest that fits */
-    memcpy(s->scene_origin, t->origin, sizeof s->scene_origin);
-    s->scene_scale = t->scale;
+    ADCGS_TRY(adcgs_scene_frame(scene, s->scene_origin, &s->scene_scale, error));
     memcpy(s->background, scene->background, sizeof s->background);
     s->screen_filter = ADCGS_SCREEN_FILTER;
     s->colour_space = scene->colour_space;
     s->axes = scene->axes;
     s->units = scene->units;
-    set_time(s, scene);
+    set_time(s, scene, cuts);
     ADCGS_TRY(set_cameras(s, scene, error));
     ADCGS_TRY(set_notes(s, notes, n_notes, error));
-    s->segments = adcgs_alloc(NULL, 1, sizeof *s->segments, error);
-    if (!s->segments)
-        return adcgs_alloc_status(error);
-    s->n_segments = 1;
+    s->segments = adcgs_alloc(NULL, cuts->n, sizeof *s->segments, error);
+    return s->segments ? ADCGS_OK : adcgs_alloc_status(error);
+}
+
+void adcgs_encode_place(adcgs_stream *s, const adcgs_cuts *cuts, uint32_t part, adcgs_model *model)
+{
+    adcgs_model *to = &s->segments[s->n_segments++];
+    *to = *model;
+    memset(model, 0, sizeof *model);
+    s->params = to->params;
+    to->time_start = whole_ticks(s, cuts->at[part]);
+    to->time_end = whole_ticks(s, cuts->at[part + 1]);
+}
+
+static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,
+                                uint32_t n_notes, adcgs_error *error)
+{
+    double ends[2] = { 0, t->scene->duration };
+    const adcgs_cuts cuts = { .n = 1, .at = ends };
     const adcgs_quantise_options options = { .cpu = t->cpu, .rdo = rdo };
-    ADCGS_TRY(adcgs_quantise(&s->segments[0], t->f, &options, error));
-    s->params = s->segments[0].params;
-    s->segments[0].time_end = (double)s->duration_ticks * s->timebase_num / s->timebase_den;
-    return ADCGS_OK;
+    adcgs_model model;
+    ADCGS_TRY(adcgs_encode_begin(s, t->scene, &cuts, notes, n_notes, error));
+    const adcgs_status status = adcgs_quantise(&model, t->f, &options, error);
+    adcgs_encode_place(s, &cuts, 0, &model);
+    return status;
+}
+
+adcgs_status adcgs_encode_segment(adcgs_stream *s, const adcgs_trainer *t, const adcgs_cuts *cuts, uint32_t part,
+                                  adcgs_error *error)
+{
+    adcgs_model model;
+    const adcgs_status status = adcgs_quantise(&model, t->f, &(adcgs_quantise_options){ .cpu = t->cpu }, error);
+    adcgs_encode_place(s, cuts, part, &model);
+    return status;
 }
 
 adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_encode_note *notes, uint32_t n_notes,

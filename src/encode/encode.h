@@ -6,6 +6,7 @@
 #ifndef ADCGS_ENCODE_ENCODE_H
 #define ADCGS_ENCODE_ENCODE_H
 
+#include "data/part.h"
 #include "stream/stream.h"
 #include "train/trainer.h"
 
@@ -22,6 +23,16 @@ typedef struct adcgs_encode_note {
  */
 adcgs_status adcgs_encode_stream(adcgs_stream *stream, const adcgs_trainer *trainer, const adcgs_encode_note *notes,
                                  uint32_t n_notes, adcgs_error *error);
+
+/**
+ * The same for a scene of several parts, segment by segment: a stream with all but the segments, with room for one of each part;
+ * the next of them, from a run on that part of the scene; or as a model that it takes over, as of a run that ended before.
+ */
+adcgs_status adcgs_encode_begin(adcgs_stream *stream, const adcgs_scene *scene, const adcgs_cuts *cuts,
+                                const adcgs_encode_note *notes, uint32_t n_notes, adcgs_error *error);
+adcgs_status adcgs_encode_segment(adcgs_stream *stream, const adcgs_trainer *trainer, const adcgs_cuts *cuts, uint32_t part,
+                                  adcgs_error *error);
+void adcgs_encode_place(adcgs_stream *stream, const adcgs_cuts *cuts, uint32_t part, adcgs_model *model);
 
 /** Serialise into out, decode that again and require the same model, byte for byte. */
 adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool,

@@ -127,9 +127,10 @@ static adcgs_status set_networks(adcgs_model *model, const adcgs_fmodel *f, adcg
         [ADCGS_P_E_FG + 2] = ADCGS_ROLE_ENTROPY_FG + 2, [ADCGS_P_E_FG + 3] = ADCGS_ROLE_ENTROPY_FG + 3,
         [ADCGS_P_E_STEPS] = ADCGS_ROLE_ENTROPY_STEPS,
     };
+    const int still = !adcgs_fmodel_moves(f);
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
-        const int deforms = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI || i == ADCGS_P_TIME;
-        if (!f->mlp[i].n || (deforms && !model->params.time_rows))
+        const int deforms = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI, timed = deforms || i == ADCGS_P_TIME;
+        if (!f->mlp[i].n || (timed && !model->params.time_rows) || (deforms && still))
             continue;
         adcgs_net *net = &model->net[roles[i]];
         uint32_t n_in, n_out; /* fewer than in training where nothing moves */
@@ -223,15 +224,6 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
     }
 }
 
-/** Where nothing moves, a stream carries no motion: no networks, no time table, no flags. */
-static int moves(const adcgs_fmodel *f)
-{
-    for (uint32_t i = 0; i < f->n; i++)
-        if (f->moving[i] != 0)
-            return 1;
-    return 0;
-}
-
 /** Quantise all latents of the model along the walk that defines their order. */
 static adcgs_status walk_latents(quantiser *q, adcgs_model *model, adcgs_error *error)
 {
@@ -264,7 +256,8 @@ adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adc
 {
     memset(model, 0, sizeof *model);
     model->params = f->params;
-    if (!moves(f))
+    /* Where nothing moves, a stream of one segment carries no motion: no networks, no time table, no flags. */
+    if (!f->is_part && !adcgs_fmodel_moves(f))
         model->params.time_rows = model->params.time_width = model->params.spans = model->params.bodies = 0;
     model->n = f->n;
     model->depth = (uint8_t)f->shape.depth;

@@ -55,6 +55,7 @@ typedef struct adcgs_fmodel {
     adcgs_shape shape;
     float origin[3], voxel;     /**< scene units */
     uint32_t n, groups;         /**< anchors; ceil(n/64) */
+    int is_part;                /**< of a stream of several segments: its parameters stay, though nothing may move */
     uint32_t (*pos)[3];         /**< [n] voxels, Morton order */
     float *x;                   /**< [group][3][64] positions */
     float *code;                /**< [group][6*octaves][64] f_p */
@@ -89,6 +90,15 @@ void adcgs_fmodel_free(adcgs_fmodel **f);
  */
 adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], const uint32_t *source, const uint8_t *fresh,
                                   uint32_t n, adcgs_error *error);
+
+/** Whether any anchor does. */
+static inline int adcgs_fmodel_moves(const adcgs_fmodel *f)
+{
+    for (uint32_t i = 0; i < f->n; i++)
+        if (f->moving[i] != 0)
+            return 1;
+    return 0;
+}
 
 /** Slot of primitive k of an anchor, the order of spec clause "Primitives". */
 static inline size_t adcgs_fmodel_slot(const adcgs_fmodel *f, uint32_t anchor, int k)

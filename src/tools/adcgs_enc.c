@@ -8,6 +8,7 @@
 #include "io/atomic.h"
 #include "io/json.h"
 #include "layouts/open.h"
+#include "tools/enc_parts.h"
 #include "tools/enc_report.h"
 #include "train/settings.h"
 
@@ -17,13 +18,14 @@
 #include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
     const char *frames, *fps;
-    double lambda, psnr, time_limit;
+    double lambda, psnr, time_limit, segment;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet;
-    int has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
+    int has_segment, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
     double started; /* adcgs_seconds() */
     double checkpoint_every;
     uint64_t seed, size, memory;
@@ -34,6 +36,9 @@ typedef struct enc_options {
 typedef struct watcher {
     const enc_options *o;
     adcgs_trainer *t;
+    uint32_t segment, segments; /* the one that is learnt, from 0; 0 segments: the scene is not cut */
+    char *base;   /* of what the run leaves while it lasts: the checkpoint, and where the scene is cut those of its segments */
+    char *state;  /* the checkpoint at hand */
     adcgs_progress progress;
     FILE *log;
     double saved;
@@ -58,6 +63,8 @@ static void log_last(watcher *w)
     line.digits = 6;
     adcgs_json_open(&line, NULL, '{');
     adcgs_json_string(&line, "stage", r->stage);
+    if (w->segments)
+        adcgs_json_int(&line, "segment", w->segment + 1);
     adcgs_json_int(&line, "iteration", r->iteration);
     adcgs_json_int(&line, "of", r->iterations);
     if (r->iteration) {
@@ -99,7 +106,7 @@ static void save_now_and_then(watcher *w, double seconds)
     adcgs_error why = { ADCGS_OK, "" };
     const int failed = w->unsaved;
     w->saved = seconds;
-    w->unsaved = adcgs_trainer_save(w->t, w->o->checkpoint, &why) != ADCGS_OK;
+    w->unsaved = adcgs_trainer_save(w->t, w->state, &why) != ADCGS_OK;
     if (w->unsaved == failed)
         return;
     adcgs_progress_clear(&w->progress);
@@ -107,20 +114,22 @@ static void save_now_and_then(watcher *w, double seconds)
         adcgs_cli_error(w->progress.cli, ADCGS_OK, "%s; the run goes on, and tries again every %g s", why.text,
                         w->o->checkpoint_every);
     else
-        adcgs_cli_note(w->progress.cli, "%s: written again", w->o->checkpoint);
+        adcgs_cli_note(w->progress.cli, "%s: written again", w->state);
 }
 
 static int observe(void *user, const adcgs_train_report *r)
 {
     watcher *w = user;
-    char left[32];
+    char left[32], segment[32] = "";
+    if (w->segments)
+        snprintf(segment, sizeof segment, "%u/%u ", w->segment + 1, w->segments);
     w->last = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
         log_last(w);
     if (r->iteration)
-        adcgs_progress_show(&w->progress, "%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", r->stage,
-                            r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000, r->rate,
-                            describe_left(r->left, left));
+        adcgs_progress_show(&w->progress, "%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
+                            r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000,
+                            r->rate, describe_left(r->left, left));
     if (w->o->checkpoint && r->seconds - w->saved > w->o->checkpoint_every)
         save_now_and_then(w, r->seconds);
     return adcgs_interrupted();
@@ -270,31 +279,24 @@ static const char *target(const enc_options *o)
 
 static adcgs_status stop_early(const adcgs_cli *cli, watcher *w, adcgs_error *error)
 {
-    char *name = NULL;
-    const char *path = w->o->checkpoint;
-    if (!path) {
-        const size_t n = strlen(target(w->o)) + 16;
-        name = malloc(n);
-        if (!name)
-            return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
-        snprintf(name, n, "%s.checkpoint", target(w->o));
-        path = name;
-    }
-    const adcgs_status status = adcgs_trainer_save(w->t, path, error);
-    if (status == ADCGS_OK)
+    ADCGS_TRY(adcgs_trainer_save(w->t, w->state, error));
+    if (w->segments)
+        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; go on with the same command and --resume %s",
+                        w->t->iteration, w->segment + 1, w->segments, w->base);
+    else
         adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration,
-                        path);
-    free(name);
-    return status;
+                        w->base);
+    return ADCGS_OK;
 }
 
-static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
+/** state: a checkpoint to go on from, or NULL. */
+static adcgs_status train(const adcgs_cli *cli, watcher *w, const char *state, adcgs_error *error)
 {
     int stopped;
-    if (w->o->resume)
-        ADCGS_TRY(adcgs_trainer_load(w->t, w->o->resume, error));
+    if (state)
+        ADCGS_TRY(adcgs_trainer_load(w->t, state, error));
     if (w->o->beginning && w->t->lambda_used)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: this run is past its beginning", w->o->resume);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: this run is past its beginning", state);
     w->t->until_lambda = w->o->beginning != NULL;
     w->saved = w->t->elapsed;
     adcgs_interrupt_catch();
@@ -311,70 +313,204 @@ static adcgs_status train(const adcgs_cli *cli, watcher *w, adcgs_error *error)
     return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", target(w->o));
 }
 
-static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
-{
-    adcgs_scene_options scene_options = { .points_path = o->points, .dataset = o->dataset };
-    adcgs_scene *scene = NULL;
+/** What a run is given. */
+typedef struct enc_job {
+    const adcgs_cli *cli;
+    const enc_options *o;
+    adcgs_scene *scene;
+    adcgs_cuts cuts; /* n 0: the scene is not cut */
     adcgs_train_config config;
     adcgs_cpu_level cpu;
+    adcgs_pool *pool;
+} enc_job;
+
+/** Learn a scene, or a part of it. started: adcgs_seconds() from which its time counts. */
+static adcgs_status learn(watcher *w, const enc_job *job, const adcgs_scene *scene, const char *state, double started,
+                          adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_trainer_create(&w->t, scene, &job->config, job->cpu, job->pool, error));
+    w->t->quantise = adcgs_encode_quantise_hook;
+    w->t->measure = measure;
+    w->t->measure_user = w;
+    w->t->picture_memory = job->o->memory;
+    w->t->loading = loading;
+    w->t->loading_user = w;
+    w->t->started = started;
+    return train(job->cli, w, state, error);
+}
+
+static adcgs_status report(watcher *w, const enc_job *job, double seconds, int *met, adcgs_error *error)
+{
+    return adcgs_enc_report_print(job->cli, &(adcgs_enc_report){ job->o->output, &job->config, job->cpu, job->scene, w->last,
+                                                                 seconds, w->uncompressed_bytes, job->o->threads, job->o->json },
+                                  met, error);
+}
+
+static adcgs_status encode_whole(watcher *w, const enc_job *job, int *met, adcgs_error *error)
+{
+    adcgs_stream stream;
+    ADCGS_TRY(learn(w, job, job->scene, job->o->resume, job->o->started, error));
+    if (!job->o->output)
+        return ADCGS_OK;
+    adcgs_stream_init(&stream);
+    adcgs_status status = write_stream(&stream, w, job->pool, error);
+    adcgs_stream_clear(&stream, NULL);
+    return status == ADCGS_OK ? report(w, job, w->last.seconds, met, error) : status;
+}
+
+/* ---- Segments ---- */
+
+/** Segments share their parameters, so all have a time table of as many rows as the shortest can have. */
+static adcgs_status cut_scene(enc_job *job, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_cuts_find(&job->cuts, job->scene, job->o->segment, error));
+    if (job->cuts.n == 1)
+        return ADCGS_OK;
+    job->config.params.time_rows = (uint16_t)ADCGS_MIN(job->config.params.time_rows, job->cuts.moments);
+    return ADCGS_OK;
+}
+
+/** The notes of a run that has ended, but for lambda. */
+static void expect_notes(notes *n, const watcher *w, const enc_job *job)
+{
+    const adcgs_trainer ended = { .config = job->config, .iteration = job->config.iterations };
+    take_notes(n, &ended, (const char *)w->changes.data);
+}
+
+/** Learn the part that w->segment says, from its checkpoint if there is one, and leave its stream on the disk. */
+static adcgs_status encode_part(watcher *w, const enc_job *job, double *seconds, adcgs_error *error)
+{
+    adcgs_scene part;
+    notes n;
+    ADCGS_TRY(adcgs_scene_part(&part, job->scene, &job->cuts, w->segment, error));
+    w->next_log = 0;
+    adcgs_status status = learn(w, job, &part, job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_seconds(),
+                                error);
+    *seconds += w->last.seconds;
+    if (status == ADCGS_OK) {
+        take_notes(&n, w->t, (const char *)w->changes.data);
+        status = adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
+    }
+    adcgs_trainer_free(&w->t);
+    adcgs_scene_part_clear(&part);
+    return status;
+}
+
+static adcgs_status encode_parts(watcher *w, const enc_job *job, double *seconds, adcgs_error *error)
+{
+    notes expected;
+    expect_notes(&expected, w, job);
+    for (w->segment = 0; w->segment < w->segments; w->segment++) {
+        int found = 0;
+        free(w->state);
+        w->state = NULL;
+        ADCGS_TRY(adcgs_enc_part_name(&w->state, w->base, w->segment, 0, error));
+        if (job->o->resume)
+            ADCGS_TRY(adcgs_enc_part_check(w->base, job->scene, &job->cuts, w->segment, expected.list, expected.n, job->cpu,
+                                           job->pool, &found, error));
+        if (!found)
+            ADCGS_TRY(encode_part(w, job, seconds, error));
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status write_parts(watcher *w, const enc_job *job, adcgs_error *error)
+{
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    adcgs_buffer_init(&bytes);
+    adcgs_status status = adcgs_enc_parts_join(&stream, w->base, job->scene, &job->cuts, job->cpu, job->pool, error);
+    if (status == ADCGS_OK)
+        status = adcgs_encode_verified(&stream, &bytes, job->cpu, job->pool, error);
+    if (status == ADCGS_OK)
+        status = adcgs_atomic_save(job->o->output, bytes.data, bytes.size, error);
+    if (status == ADCGS_OK)
+        adcgs_enc_parts_remove(w->base, w->segments);
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+    return status;
+}
+
+static adcgs_status encode_segments(watcher *w, const enc_job *job, int *met, adcgs_error *error)
+{
+    double seconds = 0;
+    w->segments = job->cuts.n;
+    ADCGS_TRY(encode_parts(w, job, &seconds, error));
+    ADCGS_TRY(write_parts(w, job, error));
+    return report(w, job, seconds, met, error);
+}
+
+/* ---- The program ---- */
+
+/** Learn, before anything long begins, what is wrong with the options. */
+static adcgs_status prepare(enc_job *job, watcher *w, adcgs_scene_options *scene, adcgs_error *error)
+{
+    const enc_options *o = job->o;
+    ADCGS_TRY(adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &job->cpu, error));
+    if (o->frames)
+        ADCGS_TRY(adcgs_frames_parse(&scene->frames, o->frames, error));
+    if (o->fps && adcgs_fps_parse(o->fps, &scene->rate))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
+                          "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
+    ADCGS_TRY(configure(&job->config, o, job->cpu, error));
+    ADCGS_TRY(check_distinct(o, error));
+    ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
+    ADCGS_TRY(check_writable(target(o), error));
+    if (o->checkpoint)
+        ADCGS_TRY(check_writable(o->checkpoint, error));
+    return o->uncompressed ? check_writable(o->uncompressed, error) : ADCGS_OK;
+}
+
+/** Where a run keeps its state: with --checkpoint there, else where it went on from, else beside its output. */
+static adcgs_status name_base(watcher *w, adcgs_error *error)
+{
+    const enc_options *o = w->o;
+    const char *given = o->checkpoint ? o->checkpoint : o->has_segment ? o->resume : NULL;
+    const char *const name = given ? given : target(o);
+    const size_t n = strlen(name) + 16;
+    w->base = malloc(n);
+    w->state = malloc(n);
+    if (!w->base || !w->state)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
+    snprintf(w->base, n, "%s%s", name, given ? "" : ".checkpoint");
+    memcpy(w->state, w->base, n);
+    return ADCGS_OK;
+}
+
+static adcgs_status run(enc_job *job, watcher *w, int *met, adcgs_error *error)
+{
+    const enc_options *o = job->o;
+    adcgs_scene_options scene = { .points_path = o->points, .dataset = o->dataset };
+    ADCGS_TRY(prepare(job, w, &scene, error));
+    ADCGS_TRY(name_base(w, error));
+    ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
+    adcgs_progress_show(&w->progress, "scene     %u views for training, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
+                        adcgs_seconds() - o->started);
+    if (o->has_segment)
+        ADCGS_TRY(cut_scene(job, error));
+    w->log = o->log ? fopen(o->log, o->resume ? "a" : "w") : NULL;
+    if (o->log && !w->log)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
+    return job->cuts.n > 1 ? encode_segments(w, job, met, error) : encode_whole(w, job, met, error);
+}
+
+static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
+{
+    enc_job job = { .cli = cli, .o = o, .pool = pool };
     watcher w = { .o = o };
     adcgs_progress_init(&w.progress, cli);
-    adcgs_stream stream;
     adcgs_buffer_init(&w.changes);
-    adcgs_stream_init(&stream);
-    adcgs_status status = adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &cpu, error);
-    if (status == ADCGS_OK && o->frames)
-        status = adcgs_frames_parse(&scene_options.frames, o->frames, error);
-    if (status == ADCGS_OK && o->fps && adcgs_fps_parse(o->fps, &scene_options.rate))
-        status = adcgs_fail(error, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
-                            "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
-    if (status == ADCGS_OK)
-        status = configure(&config, o, cpu, error);
-    if (status == ADCGS_OK)
-        status = check_distinct(o, error);
-    if (status == ADCGS_OK)
-        status = adcgs_train_changes(&config, &w.changes, error);
-    if (status == ADCGS_OK)
-        status = check_writable(target(o), error);
-    if (status == ADCGS_OK && o->checkpoint)
-        status = check_writable(o->checkpoint, error);
-    if (status == ADCGS_OK && o->uncompressed)
-        status = check_writable(o->uncompressed, error);
-    if (status == ADCGS_OK)
-        status = adcgs_scene_open(&scene, o->scene, &scene_options, error);
-    if (status == ADCGS_OK) {
-        adcgs_progress_show(&w.progress, "scene     %u views for training, read in %.0f s", scene->n_views[ADCGS_SPLIT_TRAIN],
-                            adcgs_seconds() - o->started);
-        status = adcgs_trainer_create(&w.t, scene, &config, cpu, pool, error);
-    }
-    if (status == ADCGS_OK && o->log) {
-        w.log = fopen(o->log, o->resume ? "a" : "w");
-        if (!w.log)
-            status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
-    }
-    if (status == ADCGS_OK) {
-        w.t->quantise = adcgs_encode_quantise_hook;
-        w.t->measure = measure;
-        w.t->measure_user = &w;
-        w.t->picture_memory = o->memory;
-        w.t->loading = loading;
-        w.t->loading_user = &w;
-        w.t->started = o->started;
-        status = train(cli, &w, error);
-    }
-    if (status == ADCGS_OK && o->output)
-        status = write_stream(&stream, &w, pool, error);
-    if (status == ADCGS_OK && o->output)
-        status = adcgs_enc_report_print(cli, &(adcgs_enc_report){ o->output, w.t, w.last, w.uncompressed_bytes, o->threads,
-                                                                  o->json }, met, error);
+    const adcgs_status status = run(&job, &w, met, error);
     if (w.log && fclose(w.log))
         adcgs_fail(&w.log_error, ADCGS_ERR_IO, "%s: cannot write the log", o->log);
     if (w.log_error.status != ADCGS_OK)
         adcgs_cli_error(cli, ADCGS_OK, "%s; the run went on without it", w.log_error.text);
     adcgs_buffer_clear(&w.changes);
-    adcgs_stream_clear(&stream, NULL);
+    free(w.base);
+    free(w.state);
     adcgs_trainer_free(&w.t);
-    adcgs_scene_free(&scene);
+    adcgs_cuts_clear(&job.cuts);
+    adcgs_scene_free(&job.scene);
     return status;
 }
 
@@ -438,6 +574,9 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
           "frames per second of the frames that are taken (default:\nthe scene's, else 30)", NULL, NULL },
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
+        { "segment", 0, ADCGS_OPTION_REAL, &o->segment, 1e-3, 1e6, "S",
+          "cut time every S seconds, at the nearest moment, and learn\neach segment by itself, with a run of its own", NULL,
+          &o->has_segment },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
           "leave out coarse, fine, deformation (both), rate,\ndensification, anchors, removal or weight_steps", NULL, NULL },
         { "uncompressed", 0, ADCGS_OPTION_STRING, &o->uncompressed, 0, 0, "FILE",
@@ -491,6 +630,9 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
                                                                   "no output: give -o FILE");
     if (o->has_lambda + o->has_size + o->has_psnr > 1)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
+    if (o->has_segment && (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --psnr, --beginning, --uncompressed and "
+                               "--time-limit");
     o->scene = argv[first];
     return -1;
 }

@@ -28,6 +28,7 @@ typedef struct result {
     adcgs_evaluation quality; /**< of the views of split */
     adcgs_split split;
     outcome target;
+    double lambda;            /**< of the last segment, as the file tells */
 } result;
 
 static void print_text(const adcgs_enc_report *r, const result *x)
@@ -38,8 +39,10 @@ static void print_text(const adcgs_enc_report *r, const result *x)
     fprintf(stderr, ": %llu bytes: networks %llu, geometry %llu, features %llu, cameras %llu, rest %llu\n",
             (unsigned long long)b->total, (unsigned long long)b->networks, (unsigned long long)b->geometry,
             (unsigned long long)features, (unsigned long long)b->cameras, (unsigned long long)(b->header + b->metadata));
+    if (x->info.segments > 1)
+        fprintf(stderr, "%d segments; ", x->info.segments);
     fprintf(stderr, "%u anchors (%u static), %u primitives; lambda %.3g; trained in %.0f s\n", x->info.anchors,
-            x->info.static_anchors, x->info.gaussians, r->trainer->lambda, r->last.seconds);
+            x->info.static_anchors, x->info.gaussians, x->lambda, r->seconds);
     fprintf(stderr, "decoded from the file, %u %s views: %.2f dB PSNR, %.4f SSIM\n", x->quality.n, adcgs_split_name(x->split),
             x->quality.psnr, x->quality.ssim);
 }
@@ -76,13 +79,14 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
     adcgs_json_string(&j, "file", r->file);
     adcgs_json_int(&j, "bytes", (int64_t)x->info.bytes.total);
     print_components(&j, &x->info.bytes);
+    adcgs_json_int(&j, "segments", x->info.segments);
     adcgs_json_int(&j, "anchors", x->info.anchors);
     adcgs_json_int(&j, "static_anchors", x->info.static_anchors);
     adcgs_json_int(&j, "primitives", x->info.gaussians);
     adcgs_json_int(&j, "weights", x->info.weights);
     if (r->uncompressed)
         adcgs_json_int(&j, "uncompressed_bytes", (int64_t)r->uncompressed);
-    adcgs_json_real(&j, "lambda", shown(r->trainer->lambda));
+    adcgs_json_real(&j, "lambda", shown(x->lambda));
     if (x->target.kind) {
         adcgs_json_open(&j, "target", '{');
         adcgs_json_string(&j, "kind", x->target.kind);
@@ -92,7 +96,7 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
         adcgs_json_close(&j);
     }
     adcgs_json_int(&j, "iterations", r->last.iteration);
-    adcgs_json_real(&j, "training_seconds", r->last.seconds);
+    adcgs_json_real(&j, "training_seconds", r->seconds);
     adcgs_json_real(&j, "training_psnr", r->last.psnr);
     adcgs_json_string(&j, "split", adcgs_split_name(x->split));
     adcgs_json_real(&j, "psnr", x->quality.psnr);
@@ -131,7 +135,7 @@ static adcgs_status evaluate(adcgs_evaluation *out, const adcgs_cli *cli, adcgs_
 static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_report *r, const adcgs_info *info,
                           adcgs_decoder *decoder, adcgs_error *error)
 {
-    const adcgs_train_config *c = &r->trainer->config;
+    const adcgs_train_config *c = r->config;
     adcgs_evaluation e;
     *o = (outcome){ .value = c->target_value, .met = 1 };
     if (c->target == ADCGS_TARGET_SIZE) {
@@ -139,7 +143,7 @@ static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_repo
         o->reached = (double)info->bytes.total;
         o->met = o->reached <= o->value && o->reached > (1 - SIZE_WITHIN) * o->value;
     } else if (c->target == ADCGS_TARGET_PSNR) {
-        ADCGS_TRY(evaluate(&e, cli, decoder, r->trainer->scene, ADCGS_SPLIT_TRAIN, error));
+        ADCGS_TRY(evaluate(&e, cli, decoder, r->scene, ADCGS_SPLIT_TRAIN, error));
         o->kind = "psnr";
         o->reached = e.psnr;
         o->met = fabs(o->reached - o->value) <= PSNR_WITHIN;
@@ -162,9 +166,11 @@ static void say_missed(const adcgs_cli *cli, const adcgs_enc_report *r, const ou
 static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_report *r, adcgs_decoder *decoder,
                             adcgs_error *error)
 {
-    const adcgs_scene *scene = r->trainer->scene;
+    const adcgs_scene *scene = r->scene;
     x->split = scene->n_views[ADCGS_SPLIT_TEST] ? ADCGS_SPLIT_TEST :
                scene->n_views[ADCGS_SPLIT_VAL]  ? ADCGS_SPLIT_VAL : ADCGS_SPLIT_TRAIN;
+    const char *const lambda = adcgs_get_metadata(decoder, "lambda");
+    x->lambda = lambda ? strtod(lambda, NULL) : 0;
     ADCGS_TRY(adcgs_get_info(decoder, &x->info, sizeof x->info, error));
     ADCGS_TRY(evaluate(&x->quality, cli, decoder, scene, x->split, error));
     return judge(cli, &x->target, r, &x->info, decoder, error);
@@ -184,7 +190,7 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     result x;
     adcgs_config_init(&config, sizeof config);
     config.threads = r->threads;
-    config.cpu = r->trainer->cpu;
+    config.cpu = r->cpu;
     ADCGS_TRY(adcgs_open_file(&decoder, r->file, &config, error));
     adcgs_status status = measure(cli, &x, r, decoder, error);
     if (status != ADCGS_OK)

@@ -8,8 +8,11 @@
 
 typedef struct adcgs_enc_report {
     const char *file;
-    const adcgs_trainer *trainer;
-    adcgs_train_report last; /**< of the training run */
+    const adcgs_train_config *config;
+    adcgs_cpu_level cpu;
+    const adcgs_scene *scene;     /**< the whole */
+    adcgs_train_report last; /**< of the training run, that of the last segment */
+    double seconds;          /**< of training, all segments together */
     size_t uncompressed;     /**< bytes of the file of plain numbers; 0: none was asked for */
     int threads, json; /**< as on the command line */
 } adcgs_enc_report;

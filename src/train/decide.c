@@ -87,6 +87,15 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** What nothing follows costs nothing in a stream that has a time table for the sake of other segments. */
+static void clear_time_table(adcgs_fmodel *f)
+{
+    adcgs_param *z = &f->param[ADCGS_P_TIME];
+    float *const values[] = { z->p, z->m, z->v };
+    for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
+        memset(values[i], 0, z->n * sizeof(float));
+}
+
 /** Mark the anchors that time does not touch. */
 static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
 {
@@ -98,6 +107,8 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
     for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
         if (effect[i] < t->config.still_below)
             f->moving[i] = 0;
+    if (f->is_part && !adcgs_fmodel_moves(f))
+        clear_time_table(f);
     adcgs_free(NULL, effect);
     return status;
 }

@@ -129,7 +129,7 @@ static void set_poses(adcgs_fmodel *f, const adcgs_stereo *found)
 {
     const int rows = f->params.time_rows;
     adcgs_bodies_recentre(f);
-    for (int b = 1; b <= f->params.bodies; b++)
+    for (int b = 1; b <= (int)found->n_bodies; b++) /* others, which only other segments have, stay at rest */
         for (int row = 0; row < rows; row++) {
             const float t = rows > 1 ? (float)row / (float)(rows - 1) : 0;
             const adcgs_stereo_pose pose = adcgs_stereo_pose_at(found, (uint32_t)b - 1, t);

@@ -42,8 +42,9 @@ static void focus_point(const adcgs_scene *scene, double extent, double focus[3]
         }
 }
 
-adcgs_status adcgs_scene_frame(const adcgs_scene *scene, double origin[3], double *scale, adcgs_error *error)
+adcgs_status adcgs_scene_frame(const adcgs_scene *part, double origin[3], double *scale, adcgs_error *error)
 {
+    const adcgs_scene *scene = part->whole ? part->whole : part;
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
     double extent;
     ADCGS_TRY(adcgs_scene_extent(scene, &extent, error));

@@ -323,11 +323,13 @@ float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *foun
 adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
                                adcgs_error *error)
 {
-    int matched = 0;
+    int matched = 0, whole = 0;
     const int given = has_points(scene);
     adcgs_stereo_options options = { .still = 0 };
-    if (config->stereo && (!given || config->params.spans))
+    if (config->stereo && (!given || config->params.spans)) {
         ADCGS_TRY(adcgs_stereo_applies(scene, &matched, error));
+        ADCGS_TRY(adcgs_stereo_applies(scene->whole ? scene->whole : scene, &whole, error));
+    }
     if ((matched || given) && !config->own_start)
         config->start_anchors = ADCGS_MAX(config->start_anchors, (uint32_t)(START_SHARE * config->max_anchors));
     if (matched) {
@@ -337,8 +339,10 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, ad
         ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));
         ADCGS_TRY(adcgs_stereo_find(found, scene, &options, pool, error));
     }
-    if (config->stereo && !found->n_moving)
+    /* Segments of a stream have the same parameters, so those of a part cannot follow what is found in it. */
+    if (config->stereo && !(scene->whole ? whole : (int)found->n_moving))
         config->params.spans = 0;
-    config->params.bodies = (uint8_t)found->n_bodies;
+    if (!scene->whole || !config->params.spans || !whole)
+        config->params.bodies = (uint8_t)found->n_bodies;
     return ADCGS_OK;
 }

@@ -95,6 +95,7 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
     ADCGS_TRY(adcgs_start_match(&t->stereo, t->scene, c, t->pool, error));
     ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, &t->stereo, error));
+    t->f->is_part = t->scene->whole != NULL;
     adcgs_train_rates(c, t->f);
     ADCGS_TRY(adcgs_pass_create(&t->pass, t->f, t->cpu, t->pool, error));
     ADCGS_TRY(adcgs_raster_create(&t->raster, t->cpu, t->pool, NULL, error));

@@ -125,7 +125,7 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
                               progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
     const int rated = progress >= c->rate_from && !c->without_rate && !t->frozen;
     const adcgs_pass_mode mode = { .quant = quant,
-                                   .deform = progress < c->deform_from && !t->f->params.bodies ? ADCGS_DEFORM_NONE :
+                                   .deform = progress < c->deform_from && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
                                              progress < c->fine_from   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
                                    .bf16 = c->bf16,
                                    .dropout = progress >= c->round_from ? 0 : c->dropout,

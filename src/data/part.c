@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Parts of a scene in time. */
+#include "data/part.h"
+
+#include "data/sort.h"
+
+#include <math.h>
+
+/** Distinct moments of the training views, ascending: n of them. */
+static adcgs_status list_moments(double **out, uint32_t *n, const adcgs_scene *scene, adcgs_error *error)
+{
+    const uint32_t views = scene->n_views[ADCGS_SPLIT_TRAIN];
+    double *moment = adcgs_alloc(NULL, views, sizeof *moment, error);
+    *out = moment;
+    *n = 0;
+    if (!moment)
+        return adcgs_alloc_status(error);
+    for (uint32_t i = 0; i < views; i++)
+        moment[i] = fmin(fmax(scene->views[ADCGS_SPLIT_TRAIN][i].time, 0), scene->duration);
+    adcgs_sort(moment, views);
+    for (uint32_t i = 0; i < views; i++)
+        if (!i || moment[i] - moment[*n - 1] > ADCGS_TIME_TOLERANCE * scene->duration)
+            moment[(*n)++] = moment[i];
+    return ADCGS_OK;
+}
+
+/** Index of the moment nearest to a time. */
+static uint32_t nearest(const double *moment, uint32_t n, double time)
+{
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < n; i++)
+        if (fabs(moment[i] - time) < fabs(moment[best] - time))
+            best = i;
+    return best;
+}
+
+static void cut(adcgs_cuts *cuts, const double *moment, uint32_t n, double duration, double seconds)
+{
+    uint32_t last = 0;
+    cuts->at[0] = 0;
+    cuts->moments = n;
+    for (double time = seconds; time + seconds / 2 <= duration; time += seconds) {
+        const uint32_t i = nearest(moment, n, time);
+        if (i <= last || i + 1 >= n)
+            continue;
+        cuts->at[++cuts->n] = moment[i];
+        cuts->moments = ADCGS_MIN(cuts->moments, i - last + 1);
+        last = i;
+    }
+    cuts->at[++cuts->n] = duration;
+    cuts->moments = ADCGS_MIN(cuts->moments, n - last);
+}
+
+adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double seconds, adcgs_error *error)
+{
+    double *moment;
+    uint32_t n;
+    adcgs_status status = list_moments(&moment, &n, scene, error);
+    if (status == ADCGS_OK && n < 2)
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: shows one moment only: there is nothing to cut", scene->directory);
+    if (status == ADCGS_OK) {
+        cuts->at = adcgs_alloc(NULL, n + 1, sizeof *cuts->at, error);
+        status = cuts->at ? ADCGS_OK : adcgs_alloc_status(error);
+    }
+    if (status == ADCGS_OK)
+        cut(cuts, moment, n, scene->duration, fmax(seconds, scene->duration / n));
+    adcgs_free(NULL, moment);
+    return status;
+}
+
+void adcgs_cuts_clear(adcgs_cuts *cuts)
+{
+    adcgs_free(NULL, cuts->at);
+    *cuts = (adcgs_cuts){ .n = 0 };
+}
+
+/** Copies of the training views from begin to end, with times from begin on. */
+static void take_views(adcgs_scene *part, const adcgs_scene *whole, double begin, double end)
+{
+    const double within = ADCGS_TIME_TOLERANCE * whole->duration;
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < whole->n_views[ADCGS_SPLIT_TRAIN]; i++) {
+        const adcgs_scene_view *v = &whole->views[ADCGS_SPLIT_TRAIN][i];
+        const double time = fmin(fmax(v->time, 0), whole->duration);
+        if (time < begin - within || time > end + within)
+            continue;
+        part->views[ADCGS_SPLIT_TRAIN][n] = *v;
+        part->views[ADCGS_SPLIT_TRAIN][n++].time = fmin(fmax(time - begin, 0), end - begin);
+    }
+    part->n_views[ADCGS_SPLIT_TRAIN] = n;
+}
+
+adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const adcgs_cuts *cuts, uint32_t index,
+                              adcgs_error *error)
+{
+    const double begin = cuts->at[index], end = cuts->at[index + 1];
+    double *moment;
+    *part = *whole;
+    part->whole = whole;
+    part->duration = end - begin;
+    memset(part->views, 0, sizeof part->views);
+    memset(part->n_views, 0, sizeof part->n_views);
+    part->views[ADCGS_SPLIT_TRAIN] = adcgs_alloc(NULL, whole->n_views[ADCGS_SPLIT_TRAIN], sizeof *part->views[0], error);
+    if (!part->views[ADCGS_SPLIT_TRAIN])
+        return adcgs_alloc_status(error);
+    take_views(part, whole, begin, end);
+    const adcgs_status status = list_moments(&moment, &part->n_times, part, error);
+    adcgs_free(NULL, moment);
+    if (status != ADCGS_OK)
+        adcgs_scene_part_clear(part);
+    return status;
+}
+
+void adcgs_scene_part_clear(adcgs_scene *part)
+{
+    adcgs_free(NULL, part->views[ADCGS_SPLIT_TRAIN]);
+    *part = (adcgs_scene){ .n_times = 0 };
+}

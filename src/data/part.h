@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Parts of a scene in time. Each is a scene of its own, whose time begins at 0, and is learnt alone: a stream holds one segment
+ * for each.
+ */
+#ifndef ADCGS_DATA_PART_H
+#define ADCGS_DATA_PART_H
+
+#include "data/scene.h"
+
+/** Where a scene is cut. Zero-initialise before use. */
+typedef struct adcgs_cuts {
+    uint32_t n;      /**< parts */
+    double *at;      /**< [n + 1] seconds, ascending: the scene's beginning, moments that training views show, its end */
+    uint32_t moments; /**< of the part that has the fewest; those at which it begins and ends are counted */
+} adcgs_cuts;
+
+/**
+ * Cut a scene at those moments of its training views that lie nearest to multiples of `seconds`, such that each part has more
+ * than one; what would be less than half a part at the end is left with the last. ADCGS_ERR_DATA if the scene shows one moment
+ * only.
+ */
+adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double seconds, adcgs_error *error);
+void adcgs_cuts_clear(adcgs_cuts *cuts);
+
+/**
+ * A part, with the training views from one cut to the next, both included, and no others: two parts share what the cut between
+ * them shows, so that they meet there. All else is shared with the whole scene, which must stay as it is for as long.
+ */
+adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const adcgs_cuts *cuts, uint32_t index,
+                              adcgs_error *error);
+/** Frees what a part has of its own. */
+void adcgs_scene_part_clear(adcgs_scene *part);
+
+#endif

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What a run of several segments leaves on the disk while it lasts. */
+#include "tools/enc_parts.h"
+
+#include "io/atomic.h"
+#include "stream/input.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+adcgs_status adcgs_enc_part_name(char **name, const char *base, uint32_t part, int is_stream, adcgs_error *error)
+{
+    const size_t n = strlen(base) + 32;
+    *name = malloc(n);
+    if (!*name)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
+    snprintf(*name, n, "%s.%u%s", base, part + 1, is_stream ? ".adcgs" : "");
+    return ADCGS_OK;
+}
+
+static void remove_one(const char *base, uint32_t part, int is_stream)
+{
+    char *name;
+    adcgs_error ignored;
+    if (adcgs_enc_part_name(&name, base, part, is_stream, &ignored) == ADCGS_OK)
+        unlink(name);
+    free(name);
+}
+
+void adcgs_enc_parts_remove(const char *base, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++)
+        remove_one(base, i, 1);
+}
+
+adcgs_status adcgs_enc_part_save(const char *base, const adcgs_cuts *cuts, uint32_t part, const adcgs_trainer *t,
+                                 const adcgs_encode_note *notes, uint32_t n_notes, adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    char *name = NULL;
+    adcgs_buffer_init(&bytes);
+    adcgs_status status = adcgs_encode_begin(&stream, t->scene->whole, cuts, notes, n_notes, error);
+    if (status == ADCGS_OK)
+        status = adcgs_encode_segment(&stream, t, cuts, part, error);
+    if (status == ADCGS_OK)
+        status = adcgs_encode_verified(&stream, &bytes, t->cpu, pool, error);
+    if (status == ADCGS_OK)
+        status = adcgs_enc_part_name(&name, base, part, 1, error);
+    if (status == ADCGS_OK)
+        status = adcgs_atomic_save(name, bytes.data, bytes.size, error);
+    if (status == ADCGS_OK)
+        remove_one(base, part, 0);
+    free(name);
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+    return status;
+}
+
+/** Read a part's stream, initialised by the caller; *found: 0 if there is no such file. */
+static adcgs_status load(adcgs_stream *stream, const char *name, adcgs_cpu_level cpu, adcgs_pool *pool, int *found,
+                         adcgs_error *error)
+{
+    const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };
+    adcgs_error why;
+    FILE *file = fopen(name, "rb");
+    *found = file != NULL;
+    if (!file)
+        return errno == ENOENT ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%s: %s", name, strerror(errno));
+    const adcgs_status status = adcgs_stream_read(stream, adcgs_file_read, file, &options, NULL, NULL, &why);
+    fclose(file);
+    return status == ADCGS_OK ? status : adcgs_fail(error, status, "%s: %.200s", name, why.text);
+}
+
+/** What is another than it would be now; NULL: nothing. */
+static const char *difference(const adcgs_stream *now, const adcgs_stream *then)
+{
+    for (int a = 0; a < 3; a++)
+        if (now->scene_origin[a] != then->scene_origin[a])
+            return "scene";
+    if (now->scene_scale != then->scene_scale || then->n_segments != 1)
+        return "scene";
+    if (now->timebase_num != then->timebase_num || now->timebase_den != then->timebase_den ||
+        now->start_ticks != then->start_ticks || now->duration_ticks != then->duration_ticks)
+        return "time";
+    if (now->n_meta != then->n_meta)
+        return "settings";
+    for (uint32_t i = 0; i < now->n_meta; i++)
+        if (strcmp(now->meta[i].key, then->meta[i].key) ||
+            (strcmp(now->meta[i].key, "lambda") && strcmp(now->meta[i].value, then->meta[i].value)))
+            return now->meta[i].key;
+    return NULL;
+}
+
+/** The ticks of a part, as writing it finds them. */
+static adcgs_status set_ticks(adcgs_stream *s, const adcgs_cuts *cuts, uint32_t part, adcgs_error *error)
+{
+    adcgs_model none;
+    int64_t end;
+    memset(&none, 0, sizeof none);
+    adcgs_encode_place(s, cuts, part, &none);
+    ADCGS_TRY(adcgs_seconds_to_ticks(s, s->segments[0].time_start, &s->start_ticks, error));
+    ADCGS_TRY(adcgs_seconds_to_ticks(s, s->segments[0].time_end, &end, error));
+    s->duration_ticks = end - s->start_ticks;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, const adcgs_cuts *cuts, uint32_t part,
+                                  const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                  int *found, adcgs_error *error)
+{
+    adcgs_stream now, then;
+    char *name;
+    *found = 0;
+    ADCGS_TRY(adcgs_enc_part_name(&name, base, part, 1, error));
+    adcgs_stream_init(&then);
+    adcgs_status status = adcgs_encode_begin(&now, scene, cuts, notes, n_notes, error);
+    if (status == ADCGS_OK)
+        status = set_ticks(&now, cuts, part, error);
+    if (status == ADCGS_OK)
+        status = load(&then, name, cpu, pool, found, error);
+    const char *const what = status == ADCGS_OK && *found ? difference(&now, &then) : NULL;
+    if (what)
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: of another run: its %s is another", name, what);
+    adcgs_stream_clear(&now, NULL);
+    adcgs_stream_clear(&then, NULL);
+    free(name);
+    return status;
+}
+
+/** Move the notes of a part to the stream. */
+static void take_notes(adcgs_stream *to, adcgs_stream *from)
+{
+    to->meta = from->meta;
+    to->n_meta = from->n_meta;
+    from->meta = NULL;
+    from->n_meta = 0;
+}
+
+static adcgs_status join_one(adcgs_stream *stream, const char *base, const adcgs_cuts *cuts, uint32_t part, adcgs_cpu_level cpu,
+                             adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_stream one;
+    char *name;
+    int found;
+    ADCGS_TRY(adcgs_enc_part_name(&name, base, part, 1, error));
+    adcgs_stream_init(&one);
+    adcgs_status status = load(&one, name, cpu, pool, &found, error);
+    if (status == ADCGS_OK && !found)
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: it is gone", name);
+    if (status == ADCGS_OK) {
+        adcgs_encode_place(stream, cuts, part, &one.segments[0]);
+        if (part + 1 == cuts->n)
+            take_notes(stream, &one);
+    }
+    adcgs_stream_clear(&one, NULL);
+    free(name);
+    return status;
+}
+
+adcgs_status adcgs_enc_parts_join(adcgs_stream *stream, const char *base, const adcgs_scene *scene, const adcgs_cuts *cuts,
+                                  adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_encode_begin(stream, scene, cuts, NULL, 0, error));
+    for (uint32_t i = 0; i < cuts->n; i++)
+        ADCGS_TRY(join_one(stream, base, cuts, i, cpu, pool, error));
+    return ADCGS_OK;
+}

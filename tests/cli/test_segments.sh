@@ -1,0 +1,111 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-enc --segment: a stream of several segments, the same however often the run was stopped, and what is left meanwhile.
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene
+
+scene=$dir/scene
+tiny_scene "$scene"
+short="--preset draft --max-anchors 300 --iterations 300"
+
+# enc NAME OPTIONS...: encode the scene to NAME.adcgs.
+enc()
+{
+    name=$1
+    shift
+    # shellcheck disable=SC2086
+    ./adcgs-enc "$scene" -o "$dir/$name.adcgs" $short "$@" >"$dir/$name.out" 2>"$dir/$name.err" ||
+        { bad "exit code $?: adcgs-enc $*"; cat "$dir/$name.err"; }
+}
+same() { cmp "$dir/$1.adcgs" "$dir/$2.adcgs" || bad "$3"; }
+spans() { ./adcgs-info "$dir/$1" | sed -n 's/^segment \([0-9]*\): \([0-9.]*\) \.\. \([0-9.]*\) s,.*/\1 \2 \3/p' | xargs; }
+left() { find "$dir" -name "$1*" | sed "s|.*/$1||" | sort | xargs; }
+
+# Moments 0, 1/30, .., 7/30 s; cut where one is nearest to a multiple. Segments touch, and nothing else is left.
+enc two --segment 0.1 --threads 1 --json --log "$dir/two.log"
+[ "$(spans two.adcgs)" = "0 0 0.1 1 0.1 0.233333" ] || { bad "spans"; spans two.adcgs; }
+grep -q '"segments": 2,' "$dir/two.out" || { bad "--json does not tell how many"; cat "$dir/two.out"; }
+grep -q '"segment":1,.*"iteration":300,' "$dir/two.log" && grep -q '"segment":2,.*"iteration":300,' "$dir/two.log" ||
+    { bad "the log does not tell segments"; cat "$dir/two.log"; }
+[ "$(left two.adcgs)" = "" ] || bad "left behind: $(left two.adcgs)"
+enc threads --segment 0.1 --threads 3
+same two threads "another stream with three threads"
+enc three --segment 0.07
+[ "$(spans three.adcgs)" = "0 0 0.0666667 1 0.0666667 0.133333 2 0.133333 0.233333" ] || { bad "spans"; spans three.adcgs; }
+for t in 0 0.1 0.15 0.23; do
+    ./adcgs-dec "$dir/two.adcgs" --camera 0 -t $t --md5 >/dev/null 2>"$dir/err" || { bad "time $t"; cat "$dir/err"; }
+done
+
+# One that is as long as the scene is none.
+enc whole
+enc long --segment 9
+same whole long "a segment longer than the scene changes it"
+
+# A run that is stopped in its second segment keeps both, and goes on from there to what never stopping gives.
+for try in 1 2 3; do
+    rm -f "$dir/stop.log"
+    # shellcheck disable=SC2086
+    ./adcgs-enc "$scene" -o "$dir/stop.adcgs" $short --segment 0.1 --log "$dir/stop.log" >"$dir/stop.out" 2>"$dir/stop.err" &
+    pid=$!
+    while kill -0 $pid 2>/dev/null && ! grep -q '"segment":2,.*"iteration":100,' "$dir/stop.log" 2>/dev/null; do
+        sleep 0.02
+    done
+    kill -INT $pid 2>/dev/null
+    wait $pid
+    got=$?
+    [ "$got" -eq 0 ] || break
+    rm -f "$dir/stop.adcgs"
+done
+[ "$got" -eq 3 ] || { bad "exit code $got after SIGINT"; cat "$dir/stop.err"; }
+grep -q "of segment 2 of 2; .*--resume $dir/stop.adcgs.checkpoint" "$dir/stop.err" || { bad "no word of it"; cat "$dir/stop.err"; }
+[ "$(left stop.adcgs)" = ".checkpoint.1.adcgs .checkpoint.2" ] || bad "left: $(left stop.adcgs)"
+[ "$(spans stop.adcgs.checkpoint.1.adcgs)" = "0 0 0.1" ] || bad "the first segment is no stream by itself"
+cp "$dir/stop.adcgs.checkpoint.1.adcgs" "$dir/first"
+cp "$dir/stop.adcgs.checkpoint.2" "$dir/second"
+enc stop --segment 0.1 --resume "$dir/stop.adcgs.checkpoint"
+same two stop "another stream after an interrupt"
+[ "$(left stop.adcgs)" = "" ] || bad "left behind: $(left stop.adcgs)"
+# Killed before anything was saved of the second segment, and as it ended, before the streams were put together.
+cp "$dir/first" "$dir/base.1.adcgs"
+enc again --segment 0.1 --resume "$dir/base"
+same two again "another stream from the first segment"
+cp "$dir/first" "$dir/base.1.adcgs"
+cp "$dir/second" "$dir/base.2"
+enc again --segment 0.1 --checkpoint "$dir/base" --resume "$dir/base"
+same two again "another stream from both"
+[ "$(left base)" = "" ] || bad "left behind: $(left base)"
+
+# What is there must be of this run.
+resume="./adcgs-enc $scene -o $dir/x.adcgs --segment 0.1 --resume $dir/base"
+cp "$dir/first" "$dir/base.1.adcgs"
+# shellcheck disable=SC2086
+{
+    expect 4 "base.1.adcgs: of another run: its seed is another" $resume $short --seed 2
+    expect 4 "its settings is another" $resume $short --k 3
+    expect 4 "its time is another" $resume $short --segment 0.07
+    expect 4 "its iterations is another" $resume $short --iterations 400
+}
+head -c 500 "$dir/first" >"$dir/base.1.adcgs"
+# shellcheck disable=SC2086
+expect 4 "base.1.adcgs: stream: ends" $resume $short
+rm "$dir/base.1.adcgs"
+
+# Where nothing is seen to move there are no networks of motion, and the time table, which all segments have, is of zeros.
+enc rest --segment 0.1 --set still_below=1000000
+./adcgs-info "$dir/rest.adcgs" >"$dir/out"
+[ "$(grep -c '^  Z  *[1-9]' "$dir/out")" -eq 2 ] || { bad "segments without time tables"; cat "$dir/out"; }
+grep -q '2 segments' "$dir/out" && ! grep -q 'F_omega\|F_varpi' "$dir/out" || { bad "a scene at rest"; cat "$dir/out"; }
+./adcgs-dec "$dir/rest.adcgs" --md5 >/dev/null 2>&1 || bad "a scene at rest does not decode"
+
+# Wrong use.
+try="./adcgs-enc $scene -o $dir/x.adcgs --segment 0.1"
+expect 2 "from 0.001 to 1e+06" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --segment 0
+for other in "--size 100k" "--psnr 30" "--uncompressed $dir/raw" "--time-limit 9"; do
+    # shellcheck disable=SC2086
+    expect 2 "segment excludes" $try $other
+done
+expect 2 "segment excludes" ./adcgs-enc "$scene" --beginning "$dir/x" --segment 0.1
+expect 4 "one moment only" $try --frames 0:1
+[ ! -e "$dir/x.adcgs" ] || bad "wrong use wrote a file"
+exit $failed
