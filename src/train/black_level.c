@@ -8,7 +8,7 @@
 /* Of values up to a quarter, four bins for a level of 255. */
 enum { BINS = 256 };
 static const float BIN = 1.0f / 1024;
-/* SPREAD: least and greatest of what is taken for one and the same black. MOST: levels beyond that are taken for something dark. */
+/* SPREAD: least and greatest of what is one and the same black. MOST: beyond that it is taken for something dark. */
 static const float SPREAD = 4.0f / 255, MOST = 0.1f;
 static const double LEAST_SHARE = 0.01, SHARE = 0.2;
 
