@@ -91,10 +91,10 @@ static void set_time(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts
     s->timebase_den = s->rate_num * parts;
 }
 
-/** The tick that is nearest to a time of the scene, in seconds. */
-static double whole_ticks(const adcgs_stream *s, double time)
+/** The tick that is nearest to a time of the scene. */
+static int64_t nearest_tick(const adcgs_stream *s, double time)
 {
-    return adcgs_ticks_to_seconds(s, (int64_t)rint(time * s->timebase_den / s->timebase_num));
+    return (int64_t)rint(time * s->timebase_den / s->timebase_num);
 }
 
 adcgs_status adcgs_encode_begin(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts *cuts, const adcgs_encode_note *notes,
@@ -117,12 +117,15 @@ adcgs_status adcgs_encode_begin(adcgs_stream *s, const adcgs_scene *scene, const
 
 void adcgs_encode_place(adcgs_stream *s, const adcgs_cuts *cuts, uint32_t part, adcgs_model *model)
 {
+    const int64_t begin = nearest_tick(s, cuts->at[part]), end = nearest_tick(s, cuts->at[part + 1]);
     adcgs_model *to = &s->segments[s->n_segments++];
     *to = *model;
     memset(model, 0, sizeof *model);
     s->params = to->params;
-    to->time_start = whole_ticks(s, cuts->at[part]);
-    to->time_end = whole_ticks(s, cuts->at[part + 1]);
+    to->time_start = adcgs_ticks_to_seconds(s, begin);
+    to->time_end = adcgs_ticks_to_seconds(s, end);
+    s->start_ticks = s->n_segments == 1 ? begin : s->start_ticks;
+    s->duration_ticks = end - s->start_ticks;
 }
 
 static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,

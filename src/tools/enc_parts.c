@@ -94,31 +94,19 @@ static const char *difference(const adcgs_stream *now, const adcgs_stream *then)
     return NULL;
 }
 
-/** The ticks of a part, as writing it finds them. */
-static adcgs_status set_ticks(adcgs_stream *s, const adcgs_cuts *cuts, uint32_t part, adcgs_error *error)
-{
-    adcgs_model none;
-    int64_t end;
-    memset(&none, 0, sizeof none);
-    adcgs_encode_place(s, cuts, part, &none);
-    ADCGS_TRY(adcgs_seconds_to_ticks(s, s->segments[0].time_start, &s->start_ticks, error));
-    ADCGS_TRY(adcgs_seconds_to_ticks(s, s->segments[0].time_end, &end, error));
-    s->duration_ticks = end - s->start_ticks;
-    return ADCGS_OK;
-}
-
 adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, const adcgs_cuts *cuts, uint32_t part,
                                   const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu, adcgs_pool *pool,
                                   int *found, adcgs_error *error)
 {
     adcgs_stream now, then;
+    adcgs_model none = { .n = 0 };
     char *name;
     *found = 0;
     ADCGS_TRY(adcgs_enc_part_name(&name, base, part, 1, error));
     adcgs_stream_init(&then);
     adcgs_status status = adcgs_encode_begin(&now, scene, cuts, notes, n_notes, error);
     if (status == ADCGS_OK)
-        status = set_ticks(&now, cuts, part, error);
+        adcgs_encode_place(&now, cuts, part, &none); /* for its time alone */
     if (status == ADCGS_OK)
         status = load(&then, name, cpu, pool, found, error);
     const char *const what = status == ADCGS_OK && *found ? difference(&now, &then) : NULL;
