@@ -128,26 +128,29 @@ void adcgs_encode_place(adcgs_stream *s, const adcgs_cuts *cuts, uint32_t part, 
     s->duration_ticks = end - s->start_ticks;
 }
 
-static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,
-                                uint32_t n_notes, adcgs_error *error)
+static adcgs_status add_segment(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_cuts *cuts,
+                                uint32_t part, adcgs_error *error)
 {
-    double ends[2] = { 0, t->scene->duration };
-    const adcgs_cuts cuts = { .n = 1, .at = ends };
     const adcgs_quantise_options options = { .cpu = t->cpu, .rdo = rdo };
     adcgs_model model;
-    ADCGS_TRY(adcgs_encode_begin(s, t->scene, &cuts, notes, n_notes, error));
     const adcgs_status status = adcgs_quantise(&model, t->f, &options, error);
-    adcgs_encode_place(s, &cuts, 0, &model);
+    adcgs_encode_place(s, cuts, part, &model);
     return status;
 }
 
 adcgs_status adcgs_encode_segment(adcgs_stream *s, const adcgs_trainer *t, const adcgs_cuts *cuts, uint32_t part,
                                   adcgs_error *error)
 {
-    adcgs_model model;
-    const adcgs_status status = adcgs_quantise(&model, t->f, &(adcgs_quantise_options){ .cpu = t->cpu }, error);
-    adcgs_encode_place(s, cuts, part, &model);
-    return status;
+    return add_segment(s, t, NULL, cuts, part, error);
+}
+
+static adcgs_status make_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_encode_note *notes,
+                                uint32_t n_notes, adcgs_error *error)
+{
+    double ends[2] = { 0, t->scene->duration };
+    const adcgs_cuts cuts = { .n = 1, .at = ends };
+    ADCGS_TRY(adcgs_encode_begin(s, t->scene, &cuts, notes, n_notes, error));
+    return add_segment(s, t, rdo, &cuts, 0, error);
 }
 
 adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const adcgs_encode_note *notes, uint32_t n_notes,

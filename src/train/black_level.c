@@ -2,8 +2,9 @@
 /** \file Black levels of cameras. */
 #include "train/black_level.h"
 
+#include "data/sort.h"
+
 #include <math.h>
-#include <stdlib.h>
 
 /* Of values up to a quarter, four bins for a level of 255. */
 enum { BINS = 256 };
@@ -57,14 +58,8 @@ static float darkest(const histogram *h)
     return -1;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /** level: room for a number of each camera. */
-static void set_levels(adcgs_exposure *e, histogram (*of)[3], float *level)
+static void set_levels(adcgs_exposure *e, histogram (*of)[3], double *level)
 {
     for (uint32_t i = 0; i < e->n; i++)
         for (size_t c = 0; c < 3; c++)
@@ -72,10 +67,10 @@ static void set_levels(adcgs_exposure *e, histogram (*of)[3], float *level)
                 goto none;
     for (size_t c = 0; c < 3; c++) {
         for (uint32_t i = 0; i < e->n; i++)
-            level[i] = e->cameras[i].black[c];
-        qsort(level, e->n, sizeof *level, compare);
+            level[i] = (double)e->cameras[i].black[c];
+        adcgs_sort(level, e->n);
         for (uint32_t i = 0; i < e->n; i++)
-            e->cameras[i].black[c] -= level[e->n / 2];
+            e->cameras[i].black[c] -= (float)level[e->n / 2];
     }
     return;
 none:
@@ -89,7 +84,7 @@ adcgs_status adcgs_black_levels(adcgs_trainer *t, adcgs_error *error)
     if (!n)
         return ADCGS_OK;
     histogram(*of)[3] = adcgs_alloc(NULL, n, sizeof *of, error);
-    float *level = adcgs_alloc(NULL, n, sizeof *level, error);
+    double *level = adcgs_alloc(NULL, n, sizeof *level, error);
     adcgs_status status = of && level ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         memset(of, 0, n * sizeof *of);
