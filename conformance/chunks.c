@@ -55,6 +55,34 @@ static void place(adcgs_chunk_list *list)
     }
 }
 
+/* Whether a NETW between the SEGM at this place and its GEOM holds the network of this id. */
+static int is_sent(const adcgs_chunk_list *list, int segm, uint32_t id)
+{
+    for (int i = segm + 1; i < list->n && !is_type(&list->chunk[i], "GEOM") && !is_type(&list->chunk[i], "SEGM"); i++) {
+        adcgs_reader r;
+        if (!is_type(&list->chunk[i], "NETW"))
+            continue;
+        adcgs_reader_init(&r, list->chunk[i].payload.data, list->chunk[i].payload.size);
+        const uint32_t first = adcgs_read_varint(&r), n = adcgs_read_varint(&r);
+        if (id >= first && id - first < n)
+            return 1;
+    }
+    return 0;
+}
+
+/* Whether the segment is a key: not predicted, and all networks that it names are sent in it. */
+static int is_key(const adcgs_chunk_list *list, int segm)
+{
+    const adcgs_buffer *const payload = &list->chunk[segm].payload;
+    adcgs_reader r;
+    adcgs_reader_init(&r, payload->data, payload->size);
+    (void)adcgs_read_bytes(&r, TICKS);
+    int key = adcgs_read_uint(&r, 1) == 0;
+    for (uint64_t roles = adcgs_read_uint(&r, 2); roles && key && !r.overrun; roles >>= 1)
+        key = !(roles & 1) || is_sent(list, segm, adcgs_read_varint(&r));
+    return key;
+}
+
 /* The payload of INDX: the times of each segment are the first elements of its SEGM. */
 static void complete_index(adcgs_chunk_list *list, adcgs_raw_chunk *index)
 {
@@ -74,6 +102,7 @@ static void complete_index(adcgs_chunk_list *list, adcgs_raw_chunk *index)
             adcgs_write_bytes(&index->payload, list->chunk[i].payload.data, ADCGS_MIN(list->chunk[i].payload.size, TICKS));
             adcgs_write_uint(&index->payload, list->chunk[i].at, 8);
             adcgs_write_uint(&index->payload, last->at + ADCGS_CHUNK_FRAME + last->payload.size - list->chunk[i].at, 8);
+            adcgs_write_uint(&index->payload, (uint64_t)is_key(list, i), 1);
         }
         place(list);
     }

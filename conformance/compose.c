@@ -24,13 +24,23 @@ static adcgs_status add(adcgs_chunk_list *list, const char *type, uint32_t segme
     return ADCGS_OK;
 }
 
+static adcgs_status add_copy(adcgs_chunk_list *list, const char *type, uint32_t segment, const adcgs_buffer *bytes,
+                             adcgs_error *error)
+{
+    adcgs_buffer *payload;
+    ADCGS_TRY(add(list, type, segment, 0, &payload, error));
+    adcgs_write_bytes(payload, bytes->data, bytes->size);
+    return ADCGS_OK;
+}
+
+/* Of a predicted segment those networks get ids that the model before it does not have. */
 static uint32_t assign_ids(id_table *table, const adcgs_model *m, adcgs_role_ids *ids)
 {
     const uint32_t before = table->n;
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const adcgs_net *const net = &m->net[role];
         uint32_t id = 0;
-        if (!net->present)
+        if (!net->present || (m->predicted && adcgs_net_equal(&(m - 1)->net[role], net)))
             continue;
         while (id < table->n && !adcgs_net_equal(table->net[id], net))
             id++;
@@ -45,7 +55,7 @@ static uint32_t assign_ids(id_table *table, const adcgs_model *m, adcgs_role_ids
 static adcgs_status add_layers(adcgs_plan *plan, uint32_t segment, adcgs_chunk_list *out, adcgs_error *error)
 {
     const adcgs_drawn *const d = &plan->drawn[segment];
-    for (int layer = 0; layer < adcgs_params_layers(&plan->stream.params); layer++) {
+    for (int layer = 0; d->n_slices > 0 && layer < adcgs_params_layers(&plan->stream.params); layer++) {
         const char type[5] = { 'F', 'E', 'A', (char)('0' + layer), 0 };
         const adcgs_buffer *const slice = d->data + (size_t)layer * d->n_slices;
         adcgs_buffer *payload;
@@ -124,7 +134,7 @@ static adcgs_status add_segment(adcgs_plan *plan, uint32_t segment, id_table *ta
     int used = 0;
     for (int role = 0; role < ADCGS_ROLES; role++)
         used += ids.mask >> role & 1;
-    ADCGS_TRY(add(out, "SEGM", segment, (int)added == used ? ADCGS_CHUNK_INDEPENDENT : 0, &payload, error));
+    ADCGS_TRY(add(out, "SEGM", segment, !m->predicted && (int)added == used ? ADCGS_CHUNK_KEY : 0, &payload, error));
     ADCGS_TRY(adcgs_segm_write(payload, &plan->stream, m, &ids, error));
     if (added > 0) {
         ADCGS_TRY(add(out, "NETW", segment, 0, &payload, error));
@@ -132,8 +142,9 @@ static adcgs_status add_segment(adcgs_plan *plan, uint32_t segment, id_table *ta
     }
     ADCGS_TRY(adcgs_plan_each(plan, "unnamed", add_unnamed, table, error));
     ADCGS_TRY(adcgs_plan_each(plan, "poke", add_poked, table, error));
-    ADCGS_TRY(add(out, "GEOM", segment, 0, &payload, error));
-    ADCGS_TRY(adcgs_geom_write(payload, m, error));
+    if (m->predicted)
+        ADCGS_TRY(add_copy(out, "KEEP", segment, &plan->drawn[segment].keep, error));
+    ADCGS_TRY(add_copy(out, "GEOM", segment, &plan->drawn[segment].geom, error));
     ADCGS_TRY(add_layers(plan, segment, out, error));
     if (plan->no_digest)
         return ADCGS_OK;
@@ -149,7 +160,7 @@ adcgs_status adcgs_plan_compose(adcgs_plan *plan, adcgs_chunk_list *out, adcgs_e
     adcgs_buffer *payload;
     uint32_t most = 0;
     for (uint32_t i = 0; i < plan->segments; i++)
-        most = ADCGS_MAX(most, plan->anchors[i]);
+        most = ADCGS_MAX(most, plan->stream.segments[i].n);
     ADCGS_TRY(add(out, "HEAD", 0, 0, &payload, error));
     ADCGS_TRY(adcgs_head_write(payload, &plan->stream, most, error));
     if (plan->stream.n_cameras > 0) {

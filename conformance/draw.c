@@ -7,6 +7,7 @@
 #include "geom/geom.h"
 #include "model/latents_priv.h"
 #include "model/model_priv.h"
+#include "stream/parts.h"
 
 #include <stdlib.h>
 
@@ -306,7 +307,7 @@ static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *o
     const int layers = adcgs_params_layers(&m->params);
     adcgs_latents *latents = NULL;
     drawing w = { .plan = plan, .model = m };
-    out->n_slices = ((m->n - 1) >> plan->stream.slice_log2) + 1;
+    out->n_slices = m->n ? ((m->n - 1) >> plan->stream.slice_log2) + 1 : 0;
     out->data = adcgs_alloc(NULL, ADCGS_LAYERS * out->n_slices, sizeof *out->data, error);
     if (!out->data)
         return ADCGS_ERR_MEMORY;
@@ -325,27 +326,62 @@ static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *o
     return status;
 }
 
-static adcgs_status draw_model(adcgs_plan *plan, uint32_t segment, adcgs_error *error)
+/* The anchors of a model, those of a predicted one beside what is kept, as chunks will have them. */
+static adcgs_status draw_anchors(adcgs_plan *plan, uint32_t segment, const adcgs_keep *kept, adcgs_error *error)
 {
     adcgs_model *const m = &plan->stream.segments[segment];
-    m->params = plan->stream.params;
-    m->n = plan->anchors[segment];
-    m->depth = plan->depth;
-    m->layers = (uint8_t)adcgs_params_layers(&m->params);
-    m->time_start = adcgs_ticks_to_seconds(&plan->stream, plan->ticks[2 * segment]);
-    m->time_end = adcgs_ticks_to_seconds(&plan->stream, plan->ticks[2 * segment + 1]);
-    if (m->depth > ADCGS_GEOM_DEPTH_MAX || m->n > UINT64_C(1) << 3 * m->depth)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%u anchors do not fit into depth %u", m->n, m->depth);
-    ADCGS_TRY(fill_tables(plan, m, error));
+    adcgs_drawn *const out = &plan->drawn[segment];
     ADCGS_TRY(adcgs_plan_nets(plan, segment, error));
     ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
     place_anchors(plan, m);
+    if (kept)
+        ADCGS_TRY(adcgs_random_settle(m, kept, m - 1, error));
     for (uint32_t i = 0; i < m->n; i++) {
         m->is_static[i] = (uint8_t)(m->params.time_rows > 0 ? pick(plan, plan->statics, i, 1) : 0);
         m->mask[i] = (uint16_t)pick(plan, plan->masks, i, (1U << m->params.k) - 1);
     }
     ADCGS_TRY(fill_bodies(plan, m, error));
-    return draw_slices(plan, m, &plan->drawn[segment], error);
+    ADCGS_TRY(adcgs_geom_write(&out->geom, m, error));
+    return draw_slices(plan, m, out, error);
+}
+
+static adcgs_status draw_key(adcgs_plan *plan, uint32_t segment, adcgs_error *error)
+{
+    adcgs_model *const m = &plan->stream.segments[segment];
+    m->params = plan->stream.params;
+    m->depth = plan->depth;
+    m->layers = (uint8_t)adcgs_params_layers(&m->params);
+    m->n = plan->anchors[segment];
+    ADCGS_TRY(fill_tables(plan, m, error));
+    return draw_anchors(plan, segment, NULL, error);
+}
+
+static adcgs_status draw_predicted(adcgs_plan *plan, uint32_t segment, adcgs_error *error)
+{
+    adcgs_model *const m = &plan->stream.segments[segment], *const before = m - 1;
+    adcgs_keep kept = { .n = 0 };
+    *m = adcgs_random_frame(before);
+    m->n = plan->anchors[segment];
+    adcgs_status status = adcgs_plan_keep(plan, before, &kept, error);
+    if (status == ADCGS_OK)
+        status = adcgs_kept_encode(&kept, before, &plan->drawn[segment].keep, error);
+    if (status == ADCGS_OK)
+        status = draw_anchors(plan, segment, &kept, error);
+    if (status == ADCGS_OK)
+        status = adcgs_kept_join(&kept, before, m, NULL, error);
+    adcgs_kept_clear(&kept, NULL);
+    return status;
+}
+
+static adcgs_status draw_model(adcgs_plan *plan, uint32_t segment, adcgs_error *error)
+{
+    adcgs_model *const m = &plan->stream.segments[segment];
+    if (plan->depth > ADCGS_GEOM_DEPTH_MAX || plan->anchors[segment] > UINT64_C(1) << 3 * plan->depth)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%u anchors do not fit into depth %u", plan->anchors[segment], plan->depth);
+    ADCGS_TRY(plan->predicted[segment] ? draw_predicted(plan, segment, error) : draw_key(plan, segment, error));
+    m->time_start = adcgs_ticks_to_seconds(&plan->stream, plan->ticks[2 * segment]);
+    m->time_end = adcgs_ticks_to_seconds(&plan->stream, plan->ticks[2 * segment + 1]);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_plan_draw(adcgs_plan *plan, adcgs_error *error)

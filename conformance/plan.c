@@ -36,6 +36,8 @@ static const char *const picks[] = { "random", "all", "none", "first", "turns", 
 static const char *const spreads[] = { "random", "dense", "plane", "line", "mixed", "ends", NULL };
 static const char *const fills[] = { "paint", "random", "zero", "edges", "escapes", "clips", NULL };
 
+static const char *const holds[] = { "random", "all", "refined", "none", "first", "turns", NULL };
+
 static const char *const digests[] = { "all", "none", NULL };
 
 static const struct {
@@ -48,6 +50,7 @@ static const struct {
     { "bodies", picks, offsetof(adcgs_plan, bodies) },
     { "positions", spreads, offsetof(adcgs_plan, positions) },
     { "values", fills, offsetof(adcgs_plan, values) },
+    { "kept", holds, offsetof(adcgs_plan, kept) },
     { "digest", digests, offsetof(adcgs_plan, no_digest) },
 };
 
@@ -146,7 +149,7 @@ static adcgs_status set_params(adcgs_plan *plan, const adcgs_command *c, void *u
     return ADCGS_OK;
 }
 
-/* Anchors per segment; the last number holds for the segments that follow. */
+/* Anchors per segment, of predicted ones the new ones; the last number holds for the segments that follow. */
 static adcgs_status set_anchors(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
     int64_t n = 1;
@@ -154,8 +157,39 @@ static adcgs_status set_anchors(adcgs_plan *plan, const adcgs_command *c, void *
     ADCGS_TRY(adcgs_command_words(c, 1, ADCGS_PLAN_SEGMENTS, error));
     for (int i = 0; i < ADCGS_PLAN_SEGMENTS; i++) {
         if (i + 1 < c->n)
-            ADCGS_TRY(adcgs_word_int(c->word[i + 1], 1, ADCGS_ANCHORS_MAX, &n, error));
+            ADCGS_TRY(adcgs_word_int(c->word[i + 1], 0, ADCGS_ANCHORS_MAX, &n, error));
         plan->anchors[i] = (uint32_t)n;
+    }
+    return ADCGS_OK;
+}
+
+/* predicted N ...: these segments, counted from 0 */
+static adcgs_status set_predicted(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    (void)user;
+    ADCGS_TRY(adcgs_command_words(c, 1, ADCGS_PLAN_SEGMENTS, error));
+    memset(plan->predicted, 0, sizeof plan->predicted);
+    for (int i = 1; i < c->n; i++) {
+        int64_t segment;
+        ADCGS_TRY(adcgs_word_int(c->word[i], 1, ADCGS_PLAN_SEGMENTS - 1, &segment, error));
+        plan->predicted[segment] = 1;
+    }
+    return ADCGS_OK;
+}
+
+/* differences HOW GROUP ...: of these groups, of all without one */
+static adcgs_status set_differences(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    static const char *const changes[] = { "small", "escapes", "clips", NULL };
+    static const char *const groups[] = { "fv", "sigma", "colour", NULL };
+    (void)user;
+    ADCGS_TRY(adcgs_command_words(c, 1, 1 + ADCGS_KEEP_GROUPS, error));
+    ADCGS_TRY(adcgs_word_choice(c->word[1], changes, &plan->differences, error));
+    plan->changed = c->n > 2 ? 0 : (1 << ADCGS_KEEP_GROUPS) - 1;
+    for (int i = 2; i < c->n; i++) {
+        int group;
+        ADCGS_TRY(adcgs_word_choice(c->word[i], groups, &group, error));
+        plan->changed |= 1 << group;
     }
     return ADCGS_OK;
 }
@@ -265,7 +299,8 @@ static adcgs_status add_meta(adcgs_plan *plan, const adcgs_command *c, void *use
 
 static void set_defaults(adcgs_plan *plan)
 {
-    *plan = (adcgs_plan){ .seed = 1, .segments = 1, .depth = 4, .origin = { -1, -1, -1 } };
+    *plan = (adcgs_plan){ .seed = 1, .segments = 1, .depth = 4, .origin = { -1, -1, -1 },
+                          .changed = (1 << ADCGS_KEEP_GROUPS) - 1 };
     adcgs_stream_init(&plan->stream);
     plan->stream.level = 1;
     plan->stream.params = (adcgs_params){ .k = 1, .n_fv = 4, .chunks = 1 };
@@ -298,7 +333,7 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
         const char *verb;
         adcgs_command_fn fn;
     } others[] = { { "params", set_params }, { "anchors", set_anchors }, { "ticks", set_ticks }, { "times", add_time },
-                   { "layers", set_fewer },
+                   { "layers", set_fewer }, { "predicted", set_predicted }, { "differences", set_differences },
                    { "camera", add_camera }, { "stored", add_stored }, { "meta", add_meta } };
     set_defaults(plan);
     plan->recipe = recipe;
@@ -310,6 +345,9 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
         ADCGS_TRY(adcgs_plan_each(plan, others[i].verb, others[i].fn, NULL, error));
     if (plan->segments < 1 || plan->segments > ADCGS_PLAN_SEGMENTS)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: 1 to %d segments", recipe->id, ADCGS_PLAN_SEGMENTS);
+    for (uint32_t i = 0; i < plan->segments; i++)
+        if (plan->anchors[i] == 0 && !plan->predicted[i])
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: segment %u has no anchors", recipe->id, i);
     default_views(plan);
     plan->state = plan->seed;
     return ADCGS_OK;
@@ -322,6 +360,8 @@ void adcgs_plan_clear(adcgs_plan *plan)
         for (uint32_t i = 0; d->data && i < ADCGS_LAYERS * d->n_slices; i++)
             adcgs_buffer_clear(&d->data[i]);
         adcgs_free(NULL, d->data);
+        adcgs_buffer_clear(&d->keep);
+        adcgs_buffer_clear(&d->geom);
     }
     adcgs_stream_clear(&plan->stream, NULL);
 }

@@ -10,6 +10,7 @@
 #include "chunks.h"
 #include "recipe.h"
 
+#include "model/keep.h"
 #include "stream/stream.h"
 
 #define ADCGS_PLAN_SEGMENTS 20
@@ -40,8 +41,26 @@ typedef enum adcgs_fill {
     ADCGS_FILL_CLIPS    /**< so far that the clip of the value is met */
 } adcgs_fill;
 
-/** The coded slices of a segment: [layer * n_slices + slice]. */
+/** What a predicted segment keeps of the one before. */
+typedef enum adcgs_hold {
+    ADCGS_HOLD_RANDOM,
+    ADCGS_HOLD_ALL,     /**< as they are */
+    ADCGS_HOLD_REFINED, /**< all, with differences */
+    ADCGS_HOLD_NONE,
+    ADCGS_HOLD_FIRST,
+    ADCGS_HOLD_TURNS    /**< dropped, as it is, refined */
+} adcgs_hold;
+
+/** Differences of what is refined. */
+typedef enum adcgs_change {
+    ADCGS_CHANGE_SMALL,   /**< a few steps, or none */
+    ADCGS_CHANGE_ESCAPES, /**< every length of code that stays within 16 bits, both signs */
+    ADCGS_CHANGE_CLIPS    /**< to the limits, in both directions */
+} adcgs_change;
+
+/** The coded parts of a segment; slices: [layer * n_slices + slice]. */
 typedef struct adcgs_drawn {
+    adcgs_buffer keep, geom; /**< payloads; keep: of a predicted segment */
     uint32_t n_slices;
     adcgs_buffer *data;
 } adcgs_drawn;
@@ -50,7 +69,9 @@ typedef struct adcgs_plan {
     adcgs_recipe *recipe;
     uint64_t seed, state;
     uint32_t segments;
-    uint32_t anchors[ADCGS_PLAN_SEGMENTS];
+    uint32_t anchors[ADCGS_PLAN_SEGMENTS]; /**< of predicted segments the new ones */
+    int predicted[ADCGS_PLAN_SEGMENTS];
+    int kept, differences, changed; /**< adcgs_hold, adcgs_change; bits: groups with differences */
     uint8_t depth;
     double origin[3], voxel; /**< voxel 0: the cube's edge is 2 */
     int64_t ticks[2 * ADCGS_PLAN_SEGMENTS];
@@ -69,6 +90,8 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
 void adcgs_plan_clear(adcgs_plan *plan);
 /** Make the models and code their features. */
 adcgs_status adcgs_plan_draw(adcgs_plan *plan, adcgs_error *error);
+/** What is kept of a model, in keep.c. The caller clears it. */
+adcgs_status adcgs_plan_keep(adcgs_plan *plan, const adcgs_model *before, adcgs_keep *kept, adcgs_error *error);
 /** All that a recipe says: settings, models, chunks, edits. plan has to be cleared also after a failure. */
 adcgs_status adcgs_plan_build(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_buffer *file, adcgs_error *error);
 /** The stream as chunks. */

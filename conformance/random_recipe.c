@@ -15,7 +15,7 @@ typedef struct writer {
     uint64_t state;
     adcgs_status status;
     adcgs_error *error;
-    int n_fg, chunks, adaptive, moving, segments, anchors, slice_log2;
+    int n_fg, chunks, adaptive, moving, segments, anchors, depth, slice_log2;
 } writer;
 
 static void line(writer *w, const char *format, ...) ADCGS_PRINTF(2, 3);
@@ -80,10 +80,36 @@ static void write_geometry(writer *w)
     w->slice_log2 = once_in(w, 6) ? 16 : draw(w, 6, 8);
     line(w, "level %d", depth > 16 ? 3 : depth > 12 ? 2 : draw(w, 1, 3));
     line(w, "depth %d", depth);
+    w->depth = depth;
     line(w, "slice_log2 %d", w->slice_log2);
     line(w, "positions %s", spreads[draw(w, 0, COUNT(spreads) - 1)]);
     if (once_in(w, 6))
         line(w, "origin %d.5 %d %d.25", draw(w, -999, 999), draw(w, -32768, 32768), draw(w, -9, 9));
+}
+
+/* Which segments are predicted, from what; new anchors always find a voxel, and no segment is left without any. */
+static void write_anchors(writer *w)
+{
+    static const char *const holds[] = { "all", "refined", "first", "random", "random", "none", "turns" };
+    static const char *const changes[] = { "small", "small", "escapes", "clips" };
+    static const char *const groups[] = { "", " fv", " sigma colour" };
+    const int roomy = 1LL << 3 * w->depth >= 1LL * w->anchors * w->segments;
+    const int hold = draw(w, 0, roomy ? COUNT(holds) - 1 : 2), predicts = once_in(w, 2);
+    char text[200] = "anchors", which[40] = "predicted";
+    size_t n = strlen(text), m = strlen(which);
+    for (int i = 0; i < w->segments; i++) {
+        const int predicted = i > 0 && predicts && draw(w, 0, 2);
+        const int lo = predicted && hold < 3 ? 0 : 1, hi = predicted && !roomy ? 0 : w->anchors;
+        n += (size_t)snprintf(text + n, sizeof text - n, " %d", i == 0 ? w->anchors : edgy(w, lo, hi));
+        if (predicted)
+            m += (size_t)snprintf(which + m, sizeof which - m, " %d", i);
+    }
+    line(w, "%s", text);
+    if (!strchr(which, ' '))
+        return;
+    line(w, "%s", which);
+    line(w, "kept %s", holds[hold]);
+    line(w, "differences %s%s", changes[draw(w, 0, COUNT(changes) - 1)], groups[draw(w, 0, COUNT(groups) - 1)]);
 }
 
 static void write_segments(writer *w)
@@ -91,10 +117,7 @@ static void write_segments(writer *w)
     int64_t tick = draw(w, -50, 50);
     w->segments = once_in(w, 2) ? 1 : draw(w, 2, 4);
     line(w, "segments %d", w->segments);
-    if (w->segments > 1)
-        line(w, "anchors %d %d %d", w->anchors, draw(w, 1, w->anchors), w->anchors);
-    else
-        line(w, "anchors %d", w->anchors);
+    write_anchors(w);
     char text[200];
     int n = snprintf(text, sizeof text, "ticks");
     for (int i = 0; i < w->segments; i++) {

@@ -84,6 +84,7 @@ typedef struct adcgs_model {
     uint8_t eta_si[ADCGS_ETA_MAX];
 
     adcgs_net net[ADCGS_ROLES];
+    uint8_t predicted; /**< coded by what it shares with the segment before; not part of equality or digest */
     uint8_t layers; /**< layers this model was decoded with, 1..5; not part of equality or digest of a complete model */
 } adcgs_model;
 

@@ -134,6 +134,9 @@ adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_erro
 int adcgs_table_support(int shape, int level);
 /** CDF of level l, 2T+3 entries, 0 .. 65536; symbol k is value k-T, the last symbol is the escape. */
 const uint32_t *adcgs_table_cdf(int shape, int level);
+/** Decode / encode what a magnitude exceeds a bound by, 0..65534: a prefix of at most 15 ones, then as many bits. */
+int32_t adcgs_excess_dec(adcgs_range_dec *d);
+void adcgs_excess_enc(adcgs_range_enc *e, int32_t excess);
 /** Decode / encode one value under level si (si == 0 is never coded: the value is 0). */
 int32_t adcgs_value_dec(adcgs_range_dec *d, int shape, int si);
 void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value);

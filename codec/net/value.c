@@ -13,6 +13,14 @@ int32_t adcgs_value_max(int shape, int si)
     return adcgs_table_support(shape, si) + 1 + 2 * ((1 << PREFIX_MAX) - 1);
 }
 
+int32_t adcgs_excess_dec(adcgs_range_dec *d)
+{
+    int prefix = 0;
+    while (prefix < PREFIX_MAX && adcgs_range_dec_bits(d, 1))
+        prefix++;
+    return (1 << prefix) - 1 + (prefix ? (int32_t)adcgs_range_dec_bits(d, prefix) : 0);
+}
+
 int32_t adcgs_value_dec(adcgs_range_dec *d, int shape, int si)
 {
     const int support = adcgs_table_support(shape, si);
@@ -20,12 +28,7 @@ int32_t adcgs_value_dec(adcgs_range_dec *d, int shape, int si)
     if (symbol <= 2 * support)
         return symbol - support;
     const uint32_t negative = adcgs_range_dec_bits(d, 1);
-    int prefix = 0;
-    while (prefix < PREFIX_MAX && adcgs_range_dec_bits(d, 1))
-        prefix++;
-    int32_t magnitude = support + (1 << prefix);
-    if (prefix)
-        magnitude += (int32_t)adcgs_range_dec_bits(d, prefix);
+    const int32_t magnitude = support + 1 + adcgs_excess_dec(d);
     return negative ? -magnitude : magnitude;
 }
 
@@ -36,6 +39,17 @@ static int prefix_of(int32_t excess)
     while (excess >= (2 << prefix) - 1)
         prefix++;
     return prefix;
+}
+
+void adcgs_excess_enc(adcgs_range_enc *e, int32_t excess)
+{
+    const int prefix = prefix_of(excess);
+    for (int i = 0; i < prefix; i++)
+        adcgs_range_enc_bits(e, 1, 1);
+    if (prefix < PREFIX_MAX)
+        adcgs_range_enc_bits(e, 0, 1);
+    if (prefix)
+        adcgs_range_enc_bits(e, (uint32_t)(excess - ((1 << prefix) - 1)), prefix);
 }
 
 void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value)
@@ -49,14 +63,7 @@ void adcgs_value_enc(adcgs_range_enc *e, int shape, int si, int32_t value)
     }
     adcgs_range_enc_symbol(e, cdf, symbols, symbols - 1);
     adcgs_range_enc_bits(e, value < 0, 1);
-    const int32_t excess = magnitude - support - 1;
-    const int prefix = prefix_of(excess);
-    for (int i = 0; i < prefix; i++)
-        adcgs_range_enc_bits(e, 1, 1);
-    if (prefix < PREFIX_MAX)
-        adcgs_range_enc_bits(e, 0, 1);
-    if (prefix)
-        adcgs_range_enc_bits(e, (uint32_t)(excess - ((1 << prefix) - 1)), prefix);
+    adcgs_excess_enc(e, magnitude - support - 1);
 }
 
 uint32_t adcgs_value_cost(int shape, int si, int32_t value)

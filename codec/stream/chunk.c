@@ -56,6 +56,11 @@ adcgs_cost adcgs_segment_cost(const adcgs_params *params, uint64_t anchors, int 
     return cost;
 }
 
+uint64_t adcgs_kept_work(uint64_t values)
+{
+    return VALUE_WORK * values;
+}
+
 uint64_t adcgs_weights_work(uint64_t weights)
 {
     return WEIGHT_WORK * weights;
@@ -209,7 +214,7 @@ void adcgs_bytes_count(adcgs_bytes *bytes, uint32_t type, uint64_t payload)
         bytes->layer[adcgs_type_layer(type)] += payload;
     else if (type == ADCGS_TYPE_NETW)
         bytes->networks += payload;
-    else if (type == ADCGS_TYPE_GEOM)
+    else if (type == ADCGS_TYPE_GEOM || type == ADCGS_TYPE_KEEP)
         bytes->geometry += payload;
     else if (type == ADCGS_TYPE_cams)
         bytes->cameras += payload;

@@ -16,6 +16,7 @@
 #define ADCGS_TYPE_HEAD ADCGS_TYPE('H', 'E', 'A', 'D')
 #define ADCGS_TYPE_NETW ADCGS_TYPE('N', 'E', 'T', 'W')
 #define ADCGS_TYPE_SEGM ADCGS_TYPE('S', 'E', 'G', 'M')
+#define ADCGS_TYPE_KEEP ADCGS_TYPE('K', 'E', 'E', 'P')
 #define ADCGS_TYPE_GEOM ADCGS_TYPE('G', 'E', 'O', 'M')
 #define ADCGS_TYPE_FEA0 ADCGS_TYPE('F', 'E', 'A', '0')
 #define ADCGS_TYPE_FEA4 ADCGS_TYPE('F', 'E', 'A', '4')
@@ -26,8 +27,8 @@
 #define ADCGS_TYPE_cams ADCGS_TYPE('c', 'a', 'm', 's')
 #define ADCGS_TYPE_meta ADCGS_TYPE('m', 'e', 't', 'a')
 
-#define ADCGS_CHUNK_INDEPENDENT 1 /**< flag of SEGM: refers to no network of an earlier segment */
-#define ADCGS_CHUNK_LAST 2        /**< flag: last chunk of its segment */
+#define ADCGS_CHUNK_KEY 1  /**< flag of SEGM: refers to nothing of an earlier segment */
+#define ADCGS_CHUNK_LAST 2 /**< flag: last chunk of its segment */
 
 /** Layer of a FEAx type, or -1. */
 int adcgs_type_layer(uint32_t type);
@@ -55,6 +56,8 @@ typedef struct adcgs_nets_cost {
 } adcgs_nets_cost;
 void adcgs_nets_cost_add(adcgs_nets_cost *cost, const adcgs_params *params, int role, const adcgs_net *net);
 adcgs_cost adcgs_segment_cost(const adcgs_params *params, uint64_t anchors, int depth, const adcgs_nets_cost *nets);
+/** The work of decoding what is kept of a model with so many values, adcgs_kept_values(). */
+uint64_t adcgs_kept_work(uint64_t values);
 /** The work of decoding this many weights, whether they are new or repeated. */
 uint64_t adcgs_weights_work(uint64_t weights);
 

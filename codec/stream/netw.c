@@ -180,6 +180,8 @@ static adcgs_status parse_nets(adcgs_parse *p, const adcgs_params *params, const
         ADCGS_TRY(parse_shape(p, params, &nets[i]));
     ADCGS_TRY(check_shapes(params, limits, nets, n, first_id, table, left, p->error));
     ADCGS_TRY(decode_values(p, nets, n, table->memory));
+    table->sent[0] = first_id;
+    table->sent[1] = first_id + n;
     return enter_nets(p, params, nets, n, first_id, table);
 }
 

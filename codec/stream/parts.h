@@ -3,6 +3,7 @@
 #ifndef ADCGS_STREAM_PARTS_H
 #define ADCGS_STREAM_PARTS_H
 
+#include "model/keep.h"
 #include "stream/chunk.h"
 
 /** The networks of a stream: a network's id is its place here. */
@@ -10,6 +11,7 @@ typedef struct adcgs_net_table {
     adcgs_net *nets;
     uint32_t n, capacity;
     uint64_t weights;
+    uint32_t sent[2]; /**< ids of the chunk read last: from, to below */
     adcgs_memory *memory;
 } adcgs_net_table;
 
@@ -30,13 +32,22 @@ typedef struct adcgs_role_ids {
     uint16_t id[ADCGS_ROLES];
 } adcgs_role_ids;
 
-/** SEGM: times, which networks, shapes, steps and the prior of eta. model->params is set. */
+/**
+ * SEGM: times, which networks, shapes, steps and the prior of eta; what a predicted segment has of the one before is taken from
+ * it. model->params is set.
+ */
 adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids,
                               int64_t ticks[2]);
 adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, const adcgs_model *model, const adcgs_role_ids *ids,
                               adcgs_error *error);
-/** GEOM: allocates the model's arrays once the counts are checked, and decodes the positions. left: of the level, is used up. */
-adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, adcgs_model *model,
+/** KEEP: what is kept of the model before. left: of the level, is used up. */
+adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const adcgs_model *before, adcgs_keep *kept,
+                              adcgs_cost *left, adcgs_memory *memory);
+/**
+ * GEOM: allocates the model's arrays once the counts are checked, and decodes the positions, of a predicted segment those of its
+ * new anchors, beside which so many are kept. left: of the level, is used up.
+ */
+adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, uint32_t kept, adcgs_model *model,
                               adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory);
 adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error);
 

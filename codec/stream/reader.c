@@ -115,7 +115,8 @@ static adcgs_status read_end(stream_reader *s, adcgs_parse *p, uint64_t origin)
 
 static int belongs_to_segment(uint32_t type)
 {
-    return type == ADCGS_TYPE_SEGM || type == ADCGS_TYPE_GEOM || type == ADCGS_TYPE_hash || adcgs_type_layer(type) >= 0;
+    return type == ADCGS_TYPE_SEGM || type == ADCGS_TYPE_KEEP || type == ADCGS_TYPE_GEOM || type == ADCGS_TYPE_hash ||
+           adcgs_type_layer(type) >= 0;
 }
 
 /** Order of chunks and versions, before any payload is looked at. */
@@ -149,10 +150,14 @@ static adcgs_status use_chunk(stream_reader *s, const adcgs_chunk *chunk, adcgs_
     case ADCGS_TYPE_HEAD:
         return s->head_payload ? repeat_head(s, chunk, p) : read_head(s, p);
     case ADCGS_TYPE_NETW:
-        return adcgs_netw_parse(p, &s->stream->params, s->segment.limits, &s->segment.left, &s->nets);
+        ADCGS_TRY(adcgs_netw_parse(p, &s->stream->params, s->segment.limits, &s->segment.left, &s->nets));
+        adcgs_segment_networks(&s->segment);
+        return ADCGS_OK;
     case ADCGS_TYPE_SEGM:
         ADCGS_TRY(adcgs_segment_finish(&s->segment, chunk->origin, 0));
         return adcgs_segment_start(&s->segment, p, chunk->origin);
+    case ADCGS_TYPE_KEEP:
+        return adcgs_segment_keep(&s->segment, p);
     case ADCGS_TYPE_GEOM:
         return adcgs_segment_place(&s->segment, p);
     case ADCGS_TYPE_hash:

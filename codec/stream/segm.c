@@ -80,13 +80,13 @@ static adcgs_status write_steps(adcgs_buffer *out, const float *d, int n, adcgs_
     return ADCGS_OK;
 }
 
-static adcgs_status parse_roles(adcgs_parse *p, const adcgs_params *params, uint16_t mask, adcgs_role_ids *ids)
+static adcgs_status parse_roles(adcgs_parse *p, const adcgs_params *params, int predicted, uint16_t mask, adcgs_role_ids *ids)
 {
     ids->mask = mask;
     for (int role = 0; role < ADCGS_ROLES; role++) {
         uint32_t id = 0;
         const int present = mask >> role & 1;
-        if (present ? !adcgs_role_allowed(params, role) : adcgs_role_required(params, role))
+        if (present ? !adcgs_role_allowed(params, role) : !predicted && adcgs_role_required(params, role))
             return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: roles is 0x%04x: network %s must be %s", mask,
                               adcgs_role_name(role), present ? "absent" : "present");
         if (present)
@@ -96,21 +96,13 @@ static adcgs_status parse_roles(adcgs_parse *p, const adcgs_params *params, uint
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids,
-                              int64_t ticks[2])
+/** What SEGM says of a segment's values. */
+static adcgs_status parse_values(adcgs_parse *p, adcgs_model *model)
 {
-    adcgs_syn_segm segm;
-    ADCGS_TRY(adcgs_syn_segm_parse(p, &segm));
-    if (segm.end_ticks < segm.start_ticks)
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: end_ticks is %lld, before start_ticks %lld", (long long)segm.end_ticks,
-                          (long long)segm.start_ticks);
-    ticks[0] = segm.start_ticks;
-    ticks[1] = segm.end_ticks;
-    model->time_start = adcgs_ticks_to_seconds(stream, segm.start_ticks);
-    model->time_end = adcgs_ticks_to_seconds(stream, segm.end_ticks);
+    adcgs_syn_shapes shapes;
+    ADCGS_TRY(adcgs_syn_shapes_parse(p, &shapes));
     for (int g = 0; g < ADCGS_GROUPS; g++)
-        model->shape[g] = segm.shapes >> 2 * g & 3;
-    ADCGS_TRY(parse_roles(p, &model->params, segm.roles, ids));
+        model->shape[g] = shapes.shapes >> 2 * g & 3;
     ADCGS_TRY(parse_steps(p, model->d_fv, model->params.n_fv));
     ADCGS_TRY(parse_steps(p, model->d_sigma, adcgs_sigma_rows(&model->params)));
     ADCGS_TRY(parse_steps(p, model->d_colour, ADCGS_COLOUR_N));
@@ -121,21 +113,54 @@ adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_
         model->eta_mu[i] = eta.eta_mu;
         model->eta_si[i] = eta.eta_si;
     }
-    return adcgs_parse_end(p);
+    return ADCGS_OK;
 }
 
-adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, const adcgs_model *model, const adcgs_role_ids *ids,
-                              adcgs_error *error)
+/** What a predicted segment has of the one before without a word: how values are coded, and the grid. */
+static void inherit_values(adcgs_model *model, const adcgs_model *before)
 {
-    adcgs_syn_segm segm = { .roles = ids->mask };
-    ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &segm.start_ticks, error));
-    ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &segm.end_ticks, error));
+    memcpy(model->shape, before->shape, sizeof model->shape);
+    memcpy(model->d_fv, before->d_fv, sizeof model->d_fv);
+    memcpy(model->d_sigma, before->d_sigma, sizeof model->d_sigma);
+    memcpy(model->d_colour, before->d_colour, sizeof model->d_colour);
+    memcpy(model->d_fg, before->d_fg, sizeof model->d_fg);
+    memcpy(model->eta_mu, before->eta_mu, sizeof model->eta_mu);
+    memcpy(model->eta_si, before->eta_si, sizeof model->eta_si);
+    memcpy(model->origin, before->origin, sizeof model->origin);
+    model->voxel = before->voxel;
+    model->depth = before->depth;
+}
+
+adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids,
+                              int64_t ticks[2])
+{
+    adcgs_syn_segm segm;
+    ADCGS_TRY(adcgs_syn_segm_parse(p, &segm));
+    ADCGS_TRY(parse_roles(p, &model->params, segm.predicted, segm.roles, ids));
+    if (!segm.predicted)
+        ADCGS_TRY(parse_values(p, model));
+    ADCGS_TRY(adcgs_parse_end(p));
+    if (segm.end_ticks < segm.start_ticks)
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: end_ticks is %lld, before start_ticks %lld", (long long)segm.end_ticks,
+                          (long long)segm.start_ticks);
+    if (segm.predicted && stream->n_segments == 0)
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: the first segment is predicted");
+    if (segm.predicted)
+        inherit_values(model, &stream->segments[stream->n_segments - 1]);
+    model->predicted = segm.predicted;
+    ticks[0] = segm.start_ticks;
+    ticks[1] = segm.end_ticks;
+    model->time_start = adcgs_ticks_to_seconds(stream, segm.start_ticks);
+    model->time_end = adcgs_ticks_to_seconds(stream, segm.end_ticks);
+    return ADCGS_OK;
+}
+
+static adcgs_status write_values(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error)
+{
+    adcgs_syn_shapes shapes = { 0 };
     for (int g = 0; g < ADCGS_GROUPS; g++)
-        segm.shapes |= (uint16_t)(model->shape[g] << 2 * g);
-    ADCGS_TRY(adcgs_syn_segm_write(out, "SEGM", &segm, error));
-    for (int role = 0; role < ADCGS_ROLES; role++)
-        if (ids->mask >> role & 1)
-            adcgs_write_varint(out, ids->id[role]);
+        shapes.shapes |= (uint16_t)(model->shape[g] << 2 * g);
+    ADCGS_TRY(adcgs_syn_shapes_write(out, "SEGM", &shapes, error));
     ADCGS_TRY(write_steps(out, model->d_fv, model->params.n_fv, error));
     ADCGS_TRY(write_steps(out, model->d_sigma, adcgs_sigma_rows(&model->params), error));
     ADCGS_TRY(write_steps(out, model->d_colour, ADCGS_COLOUR_N, error));
@@ -147,58 +172,104 @@ adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, con
     return ADCGS_OK;
 }
 
-/** Use up a segment's cost, if that much is left. */
+adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, const adcgs_model *model, const adcgs_role_ids *ids,
+                              adcgs_error *error)
+{
+    adcgs_syn_segm segm = { .predicted = model->predicted, .roles = ids->mask };
+    ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &segm.start_ticks, error));
+    ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &segm.end_ticks, error));
+    ADCGS_TRY(adcgs_syn_segm_write(out, "SEGM", &segm, error));
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (ids->mask >> role & 1)
+            adcgs_write_varint(out, ids->id[role]);
+    return model->predicted ? ADCGS_OK : write_values(out, model, error);
+}
+
+/** Use up so much, if that much is left. */
 static adcgs_status spend(const adcgs_parse *p, const adcgs_level *limits, adcgs_cost cost, adcgs_cost *left)
 {
     if (cost.bytes > left->bytes)
-        return adcgs_fail(p->error, ADCGS_ERR_LIMIT,
-                          "GEOM: the models of the stream need more than %llu bytes, the level's limit",
-                          (unsigned long long)limits->model_bytes);
+        return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "%s: the models of the stream need more than %llu bytes, the level's limit",
+                          p->chunk, (unsigned long long)limits->model_bytes);
     if (cost.work > left->work)
-        return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "GEOM: decoding the stream is more work than %llu, the level's limit",
-                          (unsigned long long)limits->work);
+        return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "%s: decoding the stream is more work than %llu, the level's limit",
+                          p->chunk, (unsigned long long)limits->work);
     left->bytes -= cost.bytes;
     left->work -= cost.work;
     return ADCGS_OK;
 }
 
-static adcgs_status check_geom(const adcgs_parse *p, const adcgs_syn_geom *g, const adcgs_level *limits, uint32_t max_anchors)
+adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const adcgs_model *before, adcgs_keep *kept,
+                              adcgs_cost *left, adcgs_memory *memory)
 {
-    if (g->anchors > max_anchors)
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: anchors is %u, HEAD allows %u", g->anchors, max_anchors);
-    if (g->depth > limits->depth)
-        return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "GEOM: depth is %u, the level allows %u", g->depth, limits->depth);
-    if (g->depth < 11 && g->anchors > UINT64_C(1) << 3 * g->depth)
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: %u anchors do not fit into a cube of depth %u", g->anchors, g->depth);
+    const adcgs_cost cost = { .work = adcgs_kept_work(adcgs_kept_values(before)) };
+    const size_t bytes = adcgs_reader_left(&p->r);
+    const uint8_t *data;
+    adcgs_range_dec d;
+    ADCGS_TRY(spend(p, limits, cost, left));
+    ADCGS_TRY(adcgs_parse_bytes(p, "modes", bytes, &data));
+    adcgs_range_dec_init(&d, data, bytes);
+    ADCGS_TRY(adcgs_kept_decode(kept, before, &d, memory, p->error));
+    adcgs_parse_trace_end(p, &d);
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, adcgs_model *model,
-                              adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory)
+static adcgs_status check_geom(const adcgs_parse *p, uint32_t anchors, uint32_t kept, int depth, const adcgs_level *limits,
+                               uint32_t max_anchors)
 {
-    adcgs_syn_geom g;
+    const uint64_t all = (uint64_t)anchors + kept;
+    if (all < 1 || all > max_anchors)
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: anchors is %u beside %u that are kept, HEAD allows 1..%u in all",
+                          anchors, kept, max_anchors);
+    if ((uint32_t)depth > limits->depth)
+        return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "GEOM: depth is %d, the level allows %u", depth, limits->depth);
+    if (depth < 11 && anchors > UINT64_C(1) << 3 * depth)
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: %u anchors do not fit into a cube of depth %d", anchors, depth);
+    return ADCGS_OK;
+}
+
+/** The anchors of a model that has room for them. */
+static adcgs_status parse_positions(adcgs_parse *p, adcgs_model *model, adcgs_memory *memory)
+{
+    const size_t bytes = adcgs_reader_left(&p->r);
     const uint8_t *data;
     adcgs_range_dec d;
-    ADCGS_TRY(adcgs_syn_geom_parse(p, &g));
-    ADCGS_TRY(check_geom(p, &g, limits, max_anchors));
-    ADCGS_TRY(spend(p, limits, adcgs_segment_cost(&model->params, g.anchors, g.depth, nets), left));
-    model->n = g.anchors;
-    model->depth = g.depth;
-    memcpy(model->origin, g.origin, sizeof model->origin);
-    model->voxel = g.voxel;
-    ADCGS_TRY(adcgs_model_alloc(model, memory, p->error));
-    const size_t bytes = adcgs_reader_left(&p->r);
     ADCGS_TRY(adcgs_parse_bytes(p, "positions", bytes, &data));
+    if (model->n == 0)
+        return bytes ? adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: %zu bytes of positions, but no new anchors", bytes) : ADCGS_OK;
     adcgs_range_dec_init(&d, data, bytes);
     ADCGS_TRY(adcgs_geom_decode_from(&d, model->n, model->depth, model->pos, memory, p->error));
     adcgs_parse_trace_end(p, &d);
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, uint32_t kept, adcgs_model *model,
+                              adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory)
+{
+    adcgs_syn_geom geom;
+    ADCGS_TRY(adcgs_syn_geom_parse(p, &geom));
+    if (!model->predicted) {
+        adcgs_syn_grid grid;
+        ADCGS_TRY(adcgs_syn_grid_parse(p, &grid));
+        model->depth = grid.depth;
+        memcpy(model->origin, grid.origin, sizeof model->origin);
+        model->voxel = grid.voxel;
+    }
+    ADCGS_TRY(check_geom(p, geom.anchors, kept, model->depth, limits, max_anchors));
+    ADCGS_TRY(spend(p, limits, adcgs_segment_cost(&model->params, (uint64_t)geom.anchors + kept, model->depth, nets), left));
+    model->n = geom.anchors;
+    ADCGS_TRY(adcgs_model_alloc(model, memory, p->error));
+    return parse_positions(p, model, memory);
+}
+
 adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error)
 {
-    adcgs_syn_geom g = { .anchors = model->n, .depth = model->depth, .voxel = model->voxel };
-    memcpy(g.origin, model->origin, sizeof g.origin);
-    ADCGS_TRY(adcgs_syn_geom_write(out, "GEOM", &g, error));
-    return adcgs_geom_encode(out, model->pos, model->n, model->depth, error);
+    const adcgs_syn_geom geom = { .anchors = model->n };
+    ADCGS_TRY(adcgs_syn_geom_write(out, "GEOM", &geom, error));
+    if (!model->predicted) {
+        adcgs_syn_grid grid = { .depth = model->depth, .voxel = model->voxel };
+        memcpy(grid.origin, model->origin, sizeof grid.origin);
+        ADCGS_TRY(adcgs_syn_grid_write(out, "GEOM", &grid, error));
+    }
+    return model->n ? adcgs_geom_encode(out, model->pos, model->n, model->depth, error) : ADCGS_OK;
 }

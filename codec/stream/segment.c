@@ -46,6 +46,8 @@ static void reset(adcgs_segment *s)
 {
     adcgs_latents_free(&s->latents);
     adcgs_model_clear(&s->model, s->options->memory);
+    adcgs_kept_clear(&s->kept, s->options->memory);
+    s->has_kept = s->sent = 0;
     memset(s->done, 0, sizeof s->done);
     s->n_slices = 0;
     s->has_hash = 0;
@@ -87,18 +89,46 @@ adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t orig
     return ADCGS_OK;
 }
 
-/** Whether the networks that SEGM named are there, and what they cost. */
+/** The model that a predicted segment is predicted from. */
+static const adcgs_model *model_before(const adcgs_segment *s)
+{
+    return &s->stream->segments[s->stream->n_segments - 1];
+}
+
+void adcgs_segment_networks(adcgs_segment *s)
+{
+    for (int role = 0; s->stage == ADCGS_SEGMENT_STARTED && role < ADCGS_ROLES; role++)
+        if (s->ids.mask >> role & 1 && s->ids.id[role] >= s->nets->sent[0] && s->ids.id[role] < s->nets->sent[1])
+            s->sent |= (uint16_t)(1U << role);
+}
+
+adcgs_status adcgs_segment_keep(adcgs_segment *s, adcgs_parse *p)
+{
+    if (s->stage != ADCGS_SEGMENT_STARTED || !s->model.predicted || s->has_kept)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "KEEP: expected once, after SEGM of a predicted segment");
+    s->has_kept = 1;
+    return adcgs_keep_parse(p, s->limits, model_before(s), &s->kept, &s->left, s->options->memory);
+}
+
+/** A segment's network: the one that SEGM named, or, in a predicted segment, the one of the segment before. NULL: none. */
+static const adcgs_net *net_of(const adcgs_segment *s, int role)
+{
+    if (s->ids.mask >> role & 1)
+        return &s->nets->nets[s->ids.id[role]];
+    return s->model.predicted && model_before(s)->net[role].present ? &model_before(s)->net[role] : NULL;
+}
+
+/** Whether the networks that SEGM named are there, and what they and those of the segment before cost. */
 static adcgs_status check_nets(const adcgs_segment *s, adcgs_nets_cost *cost)
 {
     *cost = (adcgs_nets_cost){ 0, 0 };
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const uint32_t id = s->ids.id[role];
-        if (!(s->ids.mask >> role & 1))
-            continue;
-        if (id >= s->nets->n || s->nets->nets[id].role != role)
+        if (s->ids.mask >> role & 1 && (id >= s->nets->n || s->nets->nets[id].role != role))
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: network_id for %s is %u, which is no such network",
                               adcgs_role_name(role), id);
-        adcgs_nets_cost_add(cost, &s->stream->params, role, &s->nets->nets[id]);
+        if (net_of(s, role))
+            adcgs_nets_cost_add(cost, &s->stream->params, role, net_of(s, role));
     }
     return ADCGS_OK;
 }
@@ -106,8 +136,8 @@ static adcgs_status check_nets(const adcgs_segment *s, adcgs_nets_cost *cost)
 static adcgs_status copy_nets(adcgs_segment *s)
 {
     for (int role = 0; role < ADCGS_ROLES; role++)
-        if (s->ids.mask >> role & 1)
-            ADCGS_TRY(adcgs_net_copy(&s->model.net[role], &s->nets->nets[s->ids.id[role]], s->options->memory, s->error));
+        if (net_of(s, role))
+            ADCGS_TRY(adcgs_net_copy(&s->model.net[role], net_of(s, role), s->options->memory, s->error));
     return ADCGS_OK;
 }
 
@@ -116,11 +146,16 @@ adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
     adcgs_nets_cost cost;
     if (s->stage != ADCGS_SEGMENT_STARTED)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected once, after SEGM");
+    if (s->model.predicted && !s->has_kept)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected after KEEP, the segment is predicted");
     ADCGS_TRY(check_nets(s, &cost));
-    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, &s->model, &s->left, &cost, s->options->memory));
+    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, s->kept.n, &s->model, &s->left, &cost, s->options->memory));
+    if (s->model.predicted)
+        ADCGS_TRY(adcgs_kept_check(&s->kept, model_before(s), &s->model, s->error));
     ADCGS_TRY(copy_nets(s));
     ADCGS_TRY(adcgs_latents_create(&s->latents, &s->model, s->options->cpu, s->options->memory, s->error));
-    s->n_slices = ((s->model.n - 1) >> s->stream->slice_log2) + 1;
+    s->n_slices = s->model.n ? ((s->model.n - 1) >> s->stream->slice_log2) + 1 : 0;
+    s->is_key = !s->model.predicted && s->sent == s->ids.mask;
     s->stage = ADCGS_SEGMENT_PLACED;
     return ADCGS_OK;
 }
@@ -308,7 +343,7 @@ static adcgs_status append_model(adcgs_segment *s)
 
 adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
 {
-    const adcgs_syn_index entry = { s->ticks[0], s->ticks[1], s->origin, end - s->origin };
+    const adcgs_syn_index entry = { s->ticks[0], s->ticks[1], s->origin, end - s->origin, (uint8_t)s->is_key };
     if (s->stage == ADCGS_SEGMENT_NONE)
         return ADCGS_OK;
     if (s->stage != ADCGS_SEGMENT_PLACED || s->done[0] < s->n_slices) {
@@ -320,6 +355,8 @@ adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
     while (s->model.layers < adcgs_params_layers(&s->stream->params) && s->done[s->model.layers] == s->n_slices)
         s->model.layers++;
     ADCGS_TRY(conceal_layers(s));
+    if (s->model.predicted)
+        ADCGS_TRY(adcgs_kept_join(&s->kept, model_before(s), &s->model, s->options->memory, s->error));
     ADCGS_TRY(check_hash(s));
     ADCGS_TRY(adcgs_syn_index_write(&s->index, "INDX", &entry, s->error));
     if (s->index.failed)

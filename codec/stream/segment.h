@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Reading one time segment: SEGM, GEOM, the slices of its layers as they come, and what is done when it ends. */
+/** \file Reading one time segment: SEGM, KEEP, GEOM, the slices of its layers as they come, and what is done when it ends. */
 #ifndef ADCGS_STREAM_SEGMENT_H
 #define ADCGS_STREAM_SEGMENT_H
 
@@ -22,8 +22,12 @@ typedef struct adcgs_segment {
 
     adcgs_segment_stage stage;
     uint64_t origin;      /**< position of SEGM */
-    adcgs_model model;
+    adcgs_model model;    /**< of its new anchors, until it is finished */
     adcgs_role_ids ids;
+    uint16_t sent;        /**< roles whose networks stand in the segment, before GEOM */
+    int has_kept;         /**< KEEP was read */
+    adcgs_keep kept;
+    int is_key;           /**< it needs nothing of an earlier segment */
     adcgs_latents *latents;
     uint32_t n_slices;
     uint32_t done[ADCGS_LAYERS]; /**< slices decoded, by layer */
@@ -33,6 +37,9 @@ typedef struct adcgs_segment {
 } adcgs_segment;
 
 adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t origin);
+/** A NETW, which was just entered into the table. */
+void adcgs_segment_networks(adcgs_segment *s);
+adcgs_status adcgs_segment_keep(adcgs_segment *s, adcgs_parse *p);
 adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p);
 /** FEAx; complete zero: the stream ended inside, and what is there is used. */
 adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer, int complete);

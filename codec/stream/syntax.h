@@ -76,8 +76,9 @@
 #define ADCGS_LIST_SEGM(F, V)                              \
     F(I64, start_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX) \
     F(I64, end_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX)   \
-    F(U16, shapes, 0, 65535)                               \
+    F(U8, predicted, 0, 1)                                 \
     F(U16, roles, 0, (1 << ADCGS_ROLES) - 1)
+#define ADCGS_LIST_SHAPES(F, V) F(U16, shapes, 0, 65535)
 #define ADCGS_LIST_STEP_FORM(F, V) F(U8, step_form, 0, 3)
 #define ADCGS_LIST_STEP(F, V) F(F32, step, 0x1p-40, 0x1p10)
 #define ADCGS_LIST_STEP_SHORT(F, V) F(U16, step_high, 0, 65535)
@@ -85,8 +86,8 @@
     F(I16, eta_mu, -32767, 32767) \
     F(U8, eta_si, 0, ADCGS_SIGMA_LEVELS - 1)
 
-#define ADCGS_LIST_GEOM(F, V)                \
-    F(U32, anchors, 1, ADCGS_ANCHORS_MAX)    \
+#define ADCGS_LIST_GEOM(F, V) F(U32, anchors, 0, ADCGS_ANCHORS_MAX)
+#define ADCGS_LIST_GRID(F, V)                \
     F(U8, depth, 0, ADCGS_GEOM_DEPTH_MAX)    \
     V(F32, origin, 3, -0x1p15, 0x1p15)       \
     F(F32, voxel, 0x1p-40, 0x1p10)
@@ -109,7 +110,8 @@
     F(I64, start_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX) \
     F(I64, end_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX)   \
     F(U64, offset, 0, 0x1p53)                              \
-    F(U64, bytes, 0, 0x1p53)
+    F(U64, bytes, 0, 0x1p53)                               \
+    F(U8, key, 0, 1)
 
 #define ADCGS_LIST_ENDC(F, V)      \
     F(U64, file_bytes, 0, 0x1p53)  \
@@ -127,11 +129,13 @@
     X(LAYER_BIAS, adcgs_syn_layer_bias)      \
     X(LAYER_E24, adcgs_syn_layer_e24)        \
     X(SEGM, adcgs_syn_segm)                  \
+    X(SHAPES, adcgs_syn_shapes)              \
     X(STEP_FORM, adcgs_syn_step_form)        \
     X(STEP, adcgs_syn_step)                  \
     X(STEP_SHORT, adcgs_syn_step_short)      \
     X(ETA, adcgs_syn_eta)                    \
     X(GEOM, adcgs_syn_geom)                  \
+    X(GRID, adcgs_syn_grid)                  \
     X(SLICE_CRC, adcgs_syn_slice_crc)        \
     X(CAMERA, adcgs_syn_camera)              \
     X(LENS, adcgs_syn_lens)                  \

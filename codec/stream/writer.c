@@ -13,8 +13,7 @@ typedef struct writer {
     size_t begin;           /**< of the stream in out */
     const adcgs_level *limits;
     uint32_t crc_of_crcs;
-    const adcgs_net **nets; /**< written so far, by id */
-    uint32_t n_nets;
+    uint32_t n_nets;        /**< written so far */
     uint64_t weights;
     adcgs_cost spent;       /**< of the level's model bytes and work */
     adcgs_buffer index;     /**< payload of INDX, less the count */
@@ -73,29 +72,21 @@ static adcgs_status write_extras(writer *w)
     return ADCGS_OK;
 }
 
-/** Ids for a model's networks; equal networks share one. \return how many are new. */
-static uint32_t assign_ids(writer *w, const adcgs_model *model, adcgs_role_ids *ids)
+/** Ids for a model's networks, which are sent anew but for those that a predicted one has of the one before. */
+static void assign_ids(writer *w, const adcgs_model *before, const adcgs_model *model, adcgs_role_ids *ids)
 {
-    const uint32_t before = w->n_nets;
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const adcgs_net *net = &model->net[role];
-        uint32_t id = 0;
-        if (!net->present)
+        if (!net->present || (before && adcgs_net_equal(&before->net[role], net)))
             continue;
-        while (id < w->n_nets && !(w->nets[id]->role == role && adcgs_net_equal(w->nets[id], net)))
-            id++;
-        if (id == w->n_nets) {
-            w->nets[w->n_nets++] = net;
-            w->weights += adcgs_net_weights(net);
-            w->spent.work += adcgs_weights_work(adcgs_net_weights(net));
-        }
+        w->weights += adcgs_net_weights(net);
+        w->spent.work += adcgs_weights_work(adcgs_net_weights(net));
         ids->mask |= (uint16_t)(1 << role);
-        ids->id[role] = (uint16_t)id;
+        ids->id[role] = (uint16_t)w->n_nets++;
     }
-    return w->n_nets - before;
 }
 
-static adcgs_status check_segment(writer *w, const adcgs_model *model)
+static adcgs_status check_segment(writer *w, const adcgs_model *before, const adcgs_model *model)
 {
     const adcgs_level *limits = w->limits;
     adcgs_nets_cost nets = { 0, 0 };
@@ -104,7 +95,7 @@ static adcgs_status check_segment(writer *w, const adcgs_model *model)
             adcgs_nets_cost_add(&nets, &model->params, role, &model->net[role]);
     const adcgs_cost cost = adcgs_segment_cost(&model->params, model->n, model->depth, &nets);
     w->spent.bytes += cost.bytes;
-    w->spent.work += cost.work;
+    w->spent.work += cost.work + (before ? adcgs_kept_work(adcgs_kept_values(before)) : 0);
     if (w->spent.bytes > limits->model_bytes || w->spent.work > limits->work || w->weights > limits->weights
         || model->depth > limits->depth || w->n_nets > limits->networks)
         return adcgs_fail(w->error, ADCGS_ERR_LIMIT,
@@ -197,31 +188,69 @@ static adcgs_status write_hash(writer *w, uint32_t segment, const adcgs_model *m
     return end_chunk(w, ADCGS_TYPE_hash, begin);
 }
 
+static adcgs_status write_networks(writer *w, uint32_t segment, const adcgs_model *model, const adcgs_role_ids *ids)
+{
+    const adcgs_net *nets[ADCGS_ROLES];
+    uint32_t n = 0;
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (ids->mask >> role & 1)
+            nets[n++] = &model->net[role];
+    if (n == 0)
+        return ADCGS_OK;
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_NETW, segment, 0);
+    ADCGS_TRY(adcgs_netw_write(w->out, nets, n, w->n_nets - n, w->error));
+    return end_chunk(w, ADCGS_TYPE_NETW, begin);
+}
+
+/** Where a segment's new anchors are, and their latents: those of a key are all new. */
+static adcgs_status write_anchors(writer *w, uint32_t segment, adcgs_model *added)
+{
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_GEOM, segment, 0);
+    ADCGS_TRY(adcgs_geom_write(w->out, added, w->error));
+    ADCGS_TRY(end_chunk(w, ADCGS_TYPE_GEOM, begin));
+    return added->n ? write_features(w, segment, added) : ADCGS_OK;
+}
+
+static adcgs_status write_rest(writer *w, uint32_t segment, const adcgs_keep *kept, const adcgs_model *before,
+                               const adcgs_model *model)
+{
+    adcgs_model rest;
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_KEEP, segment, 0);
+    ADCGS_TRY(adcgs_kept_encode(kept, before, w->out, w->error));
+    ADCGS_TRY(end_chunk(w, ADCGS_TYPE_KEEP, begin));
+    adcgs_status status = adcgs_kept_rest(&rest, kept, before, model, w->error);
+    if (status == ADCGS_OK)
+        status = write_anchors(w, segment, &rest);
+    adcgs_model_clear(&rest, NULL);
+    return status;
+}
+
+static adcgs_status write_predicted(writer *w, uint32_t segment, const adcgs_model *before, const adcgs_model *model)
+{
+    adcgs_keep kept = { .n = 0 };
+    adcgs_status status = adcgs_kept_find(&kept, before, model, w->error);
+    if (status == ADCGS_OK)
+        status = write_rest(w, segment, &kept, before, model);
+    adcgs_kept_clear(&kept, NULL);
+    return status;
+}
+
 static adcgs_status write_segment(writer *w, uint32_t segment)
 {
     adcgs_model *model = &w->stream->segments[segment];
+    const adcgs_model *before = model->predicted ? model - 1 : NULL;
     adcgs_role_ids ids = { 0 };
     const size_t origin = w->out->size;
-    const uint32_t first_new = w->n_nets, n_new = assign_ids(w, model, &ids);
-    int n_used = 0;
-    for (int role = 0; role < ADCGS_ROLES; role++)
-        n_used += ids.mask >> role & 1;
-    ADCGS_TRY(check_segment(w, model));
-    size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_SEGM, segment, (int)n_new == n_used ? ADCGS_CHUNK_INDEPENDENT : 0);
+    assign_ids(w, before, model, &ids);
+    ADCGS_TRY(check_segment(w, before, model));
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_SEGM, segment, before ? 0 : ADCGS_CHUNK_KEY);
     ADCGS_TRY(adcgs_segm_write(w->out, w->stream, model, &ids, w->error));
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_SEGM, begin));
-    if (n_new > 0) {
-        begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_NETW, segment, 0);
-        ADCGS_TRY(adcgs_netw_write(w->out, w->nets + first_new, n_new, first_new, w->error));
-        ADCGS_TRY(end_chunk(w, ADCGS_TYPE_NETW, begin));
-    }
-    begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_GEOM, segment, 0);
-    ADCGS_TRY(adcgs_geom_write(w->out, model, w->error));
-    ADCGS_TRY(end_chunk(w, ADCGS_TYPE_GEOM, begin));
-    ADCGS_TRY(write_features(w, segment, model));
+    ADCGS_TRY(write_networks(w, segment, model, &ids));
+    ADCGS_TRY(before ? write_predicted(w, segment, before, model) : write_anchors(w, segment, model));
     ADCGS_TRY(write_hash(w, segment, model));
 
-    adcgs_syn_index entry = { .offset = origin - w->begin, .bytes = w->out->size - origin };
+    adcgs_syn_index entry = { .offset = origin - w->begin, .bytes = w->out->size - origin, .key = !before };
     ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_start, &entry.start_ticks, w->error));
     ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_end, &entry.end_ticks, w->error));
     return adcgs_syn_index_write(&w->index, "INDX", &entry, w->error);
@@ -267,14 +296,10 @@ static adcgs_status write_chunks(writer *w)
 static adcgs_status write_at_level(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
 {
     writer w = { .stream = stream, .out = out, .begin = out->size, .limits = adcgs_level_get(stream->level), .error = error };
-    w.nets = adcgs_alloc(NULL, (size_t)stream->n_segments * ADCGS_ROLES, sizeof *w.nets, error);
-    if (!w.nets)
-        return adcgs_alloc_status(error);
     memset(&stream->bytes, 0, sizeof stream->bytes);
     adcgs_buffer_init(&w.index);
     const adcgs_status status = write_chunks(&w);
     adcgs_buffer_clear(&w.index);
-    adcgs_free(NULL, w.nets);
     if (status != ADCGS_OK)
         out->size = w.begin;
     return status;
@@ -297,6 +322,10 @@ static adcgs_status check_stream(adcgs_stream *stream, adcgs_error *error)
             return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u has other parameters than the stream", i);
         ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &start, error));
         ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &end, error));
+        if (model->predicted && i == 0)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment is predicted");
+        if (model->predicted && !adcgs_kept_possible(model - 1, model, error))
+            return ADCGS_ERR_USAGE;
         if (i > 0 && (start <= last_start || start < last_end))
             return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u starts before the one in front of it ends", i);
         if (i == 0)

@@ -6,7 +6,7 @@ import re
 
 import sources
 
-CHUNKS = {"HEAD", "SEGM", "NETW", "GEOM", "INDX", "ENDC", "FEA0", "FEA1", "FEA2", "FEA3", "FEA4", "FEA", "GEOM"}
+CHUNKS = {"HEAD", "SEGM", "NETW", "KEEP", "GEOM", "INDX", "ENDC", "FEA0", "FEA1", "FEA2", "FEA3", "FEA4", "FEA", "GEOM"}
 NAMES = {"RFC", "IEEE", "ISO", "IEC", "IETF", "BSD", "CC", "BY", "ASCII", "UTF", "BT", "US", "NOTE", "REQ", "CRLF", "URL", "ADC", "GS",
          "ADCGS", "IJCAI", "RGB", "CSV", "LF", "XOR", "ID", "II", "B2", "OR", "AND", "NOT", "NaN"}
 WIDEST = {".adoc": 260, ".py": 140, ".sh": 140, ".rb": 140, ".yml": 140}

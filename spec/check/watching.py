@@ -11,7 +11,8 @@ from machine import Machine
 from reading import Bytes, Record
 
 # Processes that only pass on what another one wants to know.
-PASSING = {"raw", "bits", "bit", "symbol", "adaptive", "value", "mixed", "tree", "uniform", "leaf", "latent", "latents", "tail",
+PASSING = {"raw", "bits", "bit", "symbol", "adaptive", "value", "excess", "difference", "mixed", "tree", "uniform", "leaf", "latent",
+           "latents", "tail",
            "decode_length", "decode_signed", "inner", "side", "one_sided", "<listcomp>"}
 
 

@@ -214,6 +214,14 @@ def values(b):
     b.integer("value.symbols", 4, 2 * support + 2)
     b.integer("value", -largest, largest)
     b.integer("latent.sum", -64 * largest - 32767, 64 * largest + 32767)
+    excess = 2 * (2 ** 15 - 1)
+    b.rests_on("magnitude = support + 1 + excess(d)")
+    b.rests_on("while prefix < 15 and bits(d, 1) == 1:")
+    b.rests_on("while magnitude < 15 and adaptive(d, contexts.more[15 * g + magnitude]) == 1:")
+    assert largest == support + 1 + excess
+    b.integer("kept.context", 0, 15 * 2 + 14)
+    b.integer("kept.difference", -15 - excess, 15 + excess)
+    b.integer("kept.sum", -32767 - 64 * (15 + excess), 32767 + 64 * (15 + excess))
     b.integer("latent", b.m.clip(-64 * largest - 32767, 32767), b.m.clip(64 * largest + 32767, 32767))
 
 
@@ -261,12 +269,16 @@ def geometry(b):
 def stream(b):
     n, depth, weights_most = b.limit("anchors", "GEOM")[1], b.limit("depth", "GEOM")[1], b.level("WEIGHTS")
     head = Record(**{e: b.limit(e, "HEAD")[1] for e in ("n_eta", "n_fv", "n_fg", "k", "spans")})
+    b.rests_on("require(n <= s.head.max_anchors, \"data\")")
+    b.integer("stream.anchors", 0, n + b.limit("max_anchors", "HEAD")[1])
     segment = b.m.segment_bytes(head, n, weights_most)  # a network has one role: none counts twice
     b.integer("stream.segment_bytes", 0, segment)
     b.integer("stream.model_bytes", 0, b.level("MODEL_BYTES") + segment)
     network_work, work = 1024 * weights_most, b.m.segment_work(head, n, depth, head.k * weights_most)
+    kept_work = b.m.kept_work(head, n)
     b.rests_on("s.work += 1024 * net.numbers")
-    b.integer("stream.work", 0, b.level("WORK") + max(network_work, work))
+    b.integer("stream.kept_work", 0, kept_work)
+    b.integer("stream.work", 0, b.level("WORK") + max(network_work, kept_work, work))
     slices = n >> b.limit("slice_log2", "HEAD")[0]
     b.integer("stream.slice_bytes", 0, slices * (2 ** 32 - 1))
     b.integer("stream.primitives", 0, n * head.k)

@@ -154,6 +154,8 @@ float adcgs_fmodel_finest_step(const adcgs_fmodel *f, int group, int channel)
 
 void adcgs_fmodel_widen_steps(adcgs_fmodel *f)
 {
+    if (f->follows)
+        return;
     for (int i = 0; i < ADCGS_P_ETA; i++)
         for (int c = 0; c < channels_of(f, i); c++) {
             float *log_step = &f->param[ADCGS_P_STEP].p[adcgs_fmodel_step_at(f, i, c)];
@@ -164,6 +166,8 @@ void adcgs_fmodel_widen_steps(adcgs_fmodel *f)
 
 void adcgs_fmodel_take_steps(adcgs_fmodel *f)
 {
+    if (f->follows) /* they are what the segment before has, to the bit */
+        return;
     const float reach = logf(64);
     for (int i = 0; i < ADCGS_P_ETA; i++) {
         const float middle = logf(first_step(f, i));
@@ -188,11 +192,14 @@ static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *erro
     f->keep = adcgs_alloc(NULL, groups * f->params.k * ADCGS_LANES, sizeof(float), error);
     f->moving = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     f->live = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
+    f->learns = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     f->body = adcgs_alloc(NULL, groups * ADCGS_LANES, 1, error);
-    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live || !f->body)
+    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live || !f->learns || !f->body)
         return adcgs_alloc_status(error);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * ADCGS_LANES, error));
+    for (size_t i = 0; i < groups * ADCGS_LANES; i++)
+        f->learns[i] = 1;
     return ADCGS_OK;
 }
 
@@ -267,6 +274,7 @@ static void free_anchors(adcgs_fmodel *f)
     adcgs_free(NULL, f->keep);
     adcgs_free(NULL, f->moving);
     adcgs_free(NULL, f->live);
+    adcgs_free(NULL, f->learns);
     adcgs_free(NULL, f->body);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         adcgs_free(NULL, f->param[i].p);
@@ -317,6 +325,8 @@ adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], con
                 copy_rows(f->param[i].v, old.param[i].v, j, source[j], rows);
             }
         }
+        if (!fresh || !fresh[j])
+            copy_rows(f->learns, old.learns, j, source[j], 1);
         copy_rows(f->keep, old.keep, j, source[j], f->params.k);
         copy_rows(f->moving, old.moving, j, source[j], 1);
         f->body[j] = old.body[source[j]];

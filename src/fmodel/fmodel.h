@@ -40,6 +40,7 @@ typedef struct adcgs_param {
     const char *name;
     size_t n;
     float *p, *g, *m, *v; /**< values, gradient, first and second moment: [n] each */
+    uint32_t steps;       /**< of Adam */
     float lr0, lr1;       /**< learning rate at the first and last iteration, log-linear between */
 } adcgs_param;
 
@@ -62,6 +63,8 @@ typedef struct adcgs_fmodel {
     float *keep;                /**< [group][k][64] primitives that exist */
     float *moving;              /**< [group][64] 1 unless static */
     float *live;                /**< [group][64] 1 for anchors, 0 for padding */
+    float *learns;              /**< [group][64] 0: the anchor's values are settled, those of the segment before; else 1 */
+    int follows;                /**< the model goes on with that of the segment before: see from_model.h */
     uint8_t *body;              /**< [group][64] the rigid body that an anchor goes with while it moves, from 1; 0: none */
     float centre[ADCGS_BODIES_MAX][3]; /**< of the bodies, about which they turn; see bodies.h */
     adcgs_param param[ADCGS_P_COUNT];

@@ -23,6 +23,15 @@ static void quantise_rows(const forward_job *job, uint32_t g, int i, float *to, 
         memcpy(to, value, (size_t)rows * ADCGS_LANES * sizeof *value);
 }
 
+/** What is settled is what it will be. */
+static void spare_settled(const adcgs_fmodel *f, uint32_t g, float *to, const float *value, int rows)
+{
+    const float *learns = f->learns + (size_t)g * ADCGS_LANES;
+    for (int r = 0; r < rows; r++, to += ADCGS_LANES, value += ADCGS_LANES)
+        for (int l = 0; l < ADCGS_LANES; l++)
+            to[l] = learns[l] != 0 ? to[l] : value[l];
+}
+
 /** f_v comes first: the steps of the others may follow from it. */
 static void quantise_group(const forward_job *job, uint32_t g, float *scratch)
 {
@@ -39,6 +48,8 @@ static void quantise_group(const forward_job *job, uint32_t g, float *scratch)
         } else {
             quantise_rows(job, g, i, used, f->param[i].p + at);
         }
+        if (f->follows && job->mode->quant == ADCGS_QUANT_NOISE)
+            spare_settled(f, g, used, f->param[i].p + at, adcgs_fmodel_rows(f, i));
         if (adapts && i == ADCGS_P_FV)
             adcgs_pass_evaluate_factors(p, f, g, job->mode->quant == ADCGS_QUANT_NOISE, scratch);
     }

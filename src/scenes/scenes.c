@@ -140,6 +140,7 @@ static void take_objects(writer *w, double motion)
         o->spin *= factor;
         o->orbit_turns *= factor;
         o->from *= factor;
+        o->until *= factor;
     }
 }
 

@@ -89,6 +89,17 @@ static const adcgs_trace_object turn1[] = {STILL, PEDESTAL, TURNING(1.0)};
 static const adcgs_trace_object turn3[] = {STILL, PEDESTAL, TURNING(3.0)};
 static const adcgs_trace_object appear[] = {
     STILL, PEDESTAL, {PARCEL, .size = {0.28, 0.24, 0.30}, .position = {0.0, 0.15, 0.62}, .seed = 43, .from = 0.5}};
+/* Ten seconds, in which a fifth of the picture moves. The parcel comes in flight, the ball goes as it rolls. */
+static const adcgs_trace_object clip[] = {
+    STILL,
+    PEDESTAL,
+    {PARCEL, .size = {0.30, 0.22, 0.26}, .position = {0.0, 0.15, 0.58}, .seed = 46, .spin_axis = {0.0, 0.0, 1.0}, .spin = 3.0},
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.26}, .position = {-1.10, -0.45, 0.26}, .texture = ADCGS_TEXTURE_CHECKER,
+     .frequency = 5.0, .colour = {{0.95, 0.72, 0.15}, {0.20, 0.22, 0.50}}, .seed = 47, .velocity = {1.0, -0.05, 0.0},
+     .bounces = 8.0, .bounce_height = 0.40, .until = 0.55},
+    {PARCEL, .size = {0.18, 0.18, 0.18}, .position = {0.2, -0.75, 0.9}, .seed = 48, .velocity = {0.9, 0.3, -0.7}, .from = 0.35},
+    {.shape = ADCGS_SHAPE_LAMP, .size = {0.7}, .position = {-0.7, -0.1, 1.0}, .from = 0.45},
+};
 static const adcgs_trace_object split[] = {STILL, HALF(-1.0, 44), HALF(1.0, 45)};
 
 /* The last `movers` of an array move. 11 views for testing: none is at the very moment at which a thing appears. */
@@ -120,6 +131,9 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "turn3", .about = "a box turns three times", MOVING(turn3, 1)},
     {.name = "appear", .about = "a box is there from half of the clip on", MOVING(appear, 1)},
     {.name = "split", .about = "a box comes apart, and its halves slide away from each other", MOVING(split, 2)},
+    {.name = "clip", .about = "ten seconds: things move, one comes, one goes, a lamp is switched on",
+     .objects = clip, .n_objects = (int)ADCGS_COUNTOF(clip), .moving = 0xf << (ADCGS_COUNTOF(clip) - 4), .size = 128,
+     .cameras = 12, .times = 300, .turns = 3, .n_val = 5, .n_test = 29, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},
 };
 
 const adcgs_scenes_entry *adcgs_scenes_entry_at(int i)

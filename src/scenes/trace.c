@@ -16,7 +16,8 @@ typedef struct pose {
     double centre[3];
     double axes[9]; /* rows are the local axes in the world */
     double fade;
-    double bound2;  /* squared radius of a ball around it; negative: it is not there */
+    double bound2;  /* squared radius of a ball around it; negative: it is not there, or not seen */
+    int shines;     /* as a lamp */
 } pose;
 
 typedef struct job {
@@ -71,7 +72,9 @@ static void pose_at(pose *out, const adcgs_trace_object *o, double time)
     }
     out->fade = time * time * (3.0 - 2.0 * time);
     const double box2 = adcgs_v3_dot(o->size, o->size), round2 = o->size[0] * o->size[0] + o->size[2] * o->size[2];
-    out->bound2 = time < o->from ? -1.0 : o->shape == ADCGS_SHAPE_BOX ? box2 : round2;
+    const int is_there = time >= o->from && (o->until == 0.0 || time < o->until), is_lamp = o->shape == ADCGS_SHAPE_LAMP;
+    out->bound2 = !is_there || is_lamp ? -1.0 : o->shape == ADCGS_SHAPE_BOX ? box2 : round2;
+    out->shines = is_there && is_lamp;
 }
 
 /* Smallest t > 0 of the ray in local coordinates, with the normal there; FAR if none. */
@@ -216,6 +219,19 @@ static void surface_colour(const job *j, const hit *h, double colour[3])
         colour[c] = (o->colour[0][c] + (o->colour[1][c] - o->colour[0][c]) * mix + o->fade[c] * j->poses[h->object].fade) * grain;
 }
 
+/* What a lamp adds to a surface that looks its way. */
+static double lamp_light(const adcgs_trace_object *lamp, const pose *at, const double point[3], const double normal[3])
+{
+    double to[3], square = 0.0;
+    for (int i = 0; i < 3; i++) {
+        to[i] = at->centre[i] - point[i];
+        square += to[i] * to[i];
+    }
+    const double facing = adcgs_v3_dot(to, normal);
+    const double share = square / (lamp->size[0] * lamp->size[0]);
+    return facing > 0.0 ? 0.45 * facing / sqrt(square) / (1.0 + share * share) : 0.0;
+}
+
 static void shade(const job *j, const hit *h, const double from[3], const double direction[3], int sample, double colour[3])
 {
     static const double fill[3] = {-0.64, -0.48, 0.6};
@@ -233,6 +249,9 @@ static void shade(const job *j, const hit *h, const double from[3], const double
     double level = 0.42 + 0.10 * normal[2] + (side > 0.0 ? 0.12 * side : 0.0);
     if (key > 0.0 && !in_shadow(j, point, light))
         level += 0.48 * key;
+    for (int i = 0; i < j->n; i++)
+        if (j->poses[i].shines)
+            level += lamp_light(&j->objects[i], &j->poses[i], point, normal);
     for (int c = 0; c < 3; c++)
         colour[c] *= level;
 }

@@ -13,7 +13,8 @@ typedef enum adcgs_trace_shape {
     ADCGS_SHAPE_BOX,      /**< size is half the edges */
     ADCGS_SHAPE_CYLINDER, /**< size[0] is the radius, size[2] half the height, axis z */
     ADCGS_SHAPE_FLOOR,    /**< the disc z = position z of radius size[0] */
-    ADCGS_SHAPE_DOME      /**< a ball seen from inside: shines by itself, casts no shadow */
+    ADCGS_SHAPE_DOME,     /**< a ball seen from inside: shines by itself, casts no shadow */
+    ADCGS_SHAPE_LAMP      /**< not seen; shines on what is about it, half as bright at the distance size[0], through everything */
 } adcgs_trace_shape;
 
 typedef enum adcgs_trace_texture {
@@ -43,6 +44,7 @@ typedef struct adcgs_trace_object {
     double orbit[2], orbit_turns; /**< circle about the point orbit (x, y) in turns per unit of time */
     double fade[3];              /**< added to both colours by time 1, smoothly */
     double from;                 /**< before this time it is not there */
+    double until;                /**< nor is it from this time on; 0: it stays */
 } adcgs_trace_object;
 
 /** A camera of the tracer: OpenGL axes (x right, y up, looking along -z), as in the layout that is written. */

@@ -20,12 +20,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#define KEY_EVERY 10.0 /* seconds from one key to the next, unless given */
+
 typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
     const char *frames, *fps;
-    double lambda, psnr, time_limit, segment;
+    double lambda, psnr, time_limit, segment, key;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet;
-    int has_segment, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
+    int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
     double started; /* adcgs_seconds() */
     double checkpoint_every;
     uint64_t seed, size, memory;
@@ -319,16 +321,20 @@ typedef struct enc_job {
     const enc_options *o;
     adcgs_scene *scene;
     adcgs_cuts cuts; /* n 0: the scene is not cut */
+    uint8_t *follows; /* [cuts.n] 1: the part is learnt from the one before */
     adcgs_train_config config;
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
 } enc_job;
 
-/** Learn a scene, or a part of it. started: adcgs_seconds() from which its time counts. */
-static adcgs_status learn(watcher *w, const enc_job *job, const adcgs_scene *scene, const char *state, double started,
-                          adcgs_error *error)
+/**
+ * Learn a scene, or a part of it, which goes on with the model before unless that is NULL. started: adcgs_seconds() from which
+ * its time counts.
+ */
+static adcgs_status learn(watcher *w, const enc_job *job, const adcgs_scene *scene, const adcgs_model *before, const char *state,
+                          double started, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_trainer_create(&w->t, scene, &job->config, job->cpu, job->pool, error));
+    ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, before, job->cpu, job->pool, error));
     w->t->quantise = adcgs_encode_quantise_hook;
     w->t->measure = measure;
     w->t->measure_user = w;
@@ -349,7 +355,7 @@ static adcgs_status report(watcher *w, const enc_job *job, double seconds, int *
 static adcgs_status encode_whole(watcher *w, const enc_job *job, int *met, adcgs_error *error)
 {
     adcgs_stream stream;
-    ADCGS_TRY(learn(w, job, job->scene, job->o->resume, job->o->started, error));
+    ADCGS_TRY(learn(w, job, job->scene, NULL, job->o->resume, job->o->started, error));
     if (!job->o->output)
         return ADCGS_OK;
     adcgs_stream_init(&stream);
@@ -367,6 +373,14 @@ static adcgs_status cut_scene(enc_job *job, adcgs_error *error)
     if (job->cuts.n == 1)
         return ADCGS_OK;
     job->config.params.time_rows = (uint16_t)ADCGS_MIN(job->config.params.time_rows, job->cuts.moments);
+    job->follows = adcgs_alloc(NULL, job->cuts.n, sizeof *job->follows, error);
+    if (!job->follows)
+        return adcgs_alloc_status(error);
+    const double *at = job->cuts.at, every = job->o->has_key ? job->o->key : KEY_EVERY;
+    for (uint32_t i = 1, key = 0; i < job->cuts.n; i++) {
+        job->follows[i] = at[i + 1] - at[key] <= every + 1e-6;
+        key = job->follows[i] ? key : i;
+    }
     return ADCGS_OK;
 }
 
@@ -381,11 +395,17 @@ static void expect_notes(notes *n, const watcher *w, const enc_job *job)
 static adcgs_status encode_part(watcher *w, const enc_job *job, double *seconds, adcgs_error *error)
 {
     adcgs_scene part;
+    adcgs_model before = { .n = 0 };
     notes n;
+    const int follows = job->follows[w->segment];
     ADCGS_TRY(adcgs_scene_part(&part, job->scene, &job->cuts, w->segment, error));
     w->next_log = 0;
-    adcgs_status status = learn(w, job, &part, job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_seconds(),
-                                error);
+    adcgs_status status =
+        follows ? adcgs_enc_part_model(&before, w->base, w->segment - 1, job->cpu, job->pool, error) : ADCGS_OK;
+    if (status == ADCGS_OK)
+        status = learn(w, job, &part, follows ? &before : NULL,
+                       job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_seconds(), error);
+    adcgs_model_clear(&before, NULL);
     *seconds += w->last.seconds;
     if (status == ADCGS_OK) {
         take_notes(&n, w->t, (const char *)w->changes.data);
@@ -419,7 +439,8 @@ static adcgs_status write_parts(watcher *w, const enc_job *job, adcgs_error *err
     adcgs_stream stream;
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
-    adcgs_status status = adcgs_enc_parts_join(&stream, w->base, job->scene, &job->cuts, job->cpu, job->pool, error);
+    adcgs_status status = adcgs_enc_parts_join(&stream, w->base, job->scene, &job->cuts, job->follows, job->cpu, job->pool,
+                                               error);
     if (status == ADCGS_OK)
         status = adcgs_encode_verified(&stream, &bytes, job->cpu, job->pool, error);
     if (status == ADCGS_OK)
@@ -510,6 +531,7 @@ static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_poo
     free(w.state);
     adcgs_trainer_free(&w.t);
     adcgs_cuts_clear(&job.cuts);
+    adcgs_free(NULL, job.follows);
     adcgs_scene_free(&job.scene);
     return status;
 }
@@ -575,8 +597,11 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
         { "points", 0, ADCGS_OPTION_STRING, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "segment", 0, ADCGS_OPTION_REAL, &o->segment, 1e-3, 1e6, "S",
-          "cut time every S seconds, at the nearest moment, and learn\neach segment by itself, with a run of its own", NULL,
-          &o->has_segment },
+          "cut time every S seconds, at the nearest moment; each segment\nis learnt from the one before, with a run of its own",
+          NULL, &o->has_segment },
+        { "key", 0, ADCGS_OPTION_REAL, &o->key, 0, 1e6, "S",
+          "with --segment: at least every S seconds a segment that needs\nno other, where playing can begin (default 10)", NULL,
+          &o->has_key },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
           "leave out coarse, fine, deformation (both), rate,\ndensification, anchors, removal or weight_steps", NULL, NULL },
         { "uncompressed", 0, ADCGS_OPTION_STRING, &o->uncompressed, 0, 0, "FILE",
@@ -630,6 +655,8 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
                                                                   "no output: give -o FILE");
     if (o->has_lambda + o->has_size + o->has_psnr > 1)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
+    if (o->has_key && !o->has_segment)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--key is for segments: give --segment, too");
     if (o->has_segment && (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --psnr, --beginning, --uncompressed and "
                                "--time-limit");

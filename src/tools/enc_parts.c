@@ -3,6 +3,8 @@
 #include "tools/enc_parts.h"
 
 #include "io/atomic.h"
+#include "model/keep.h"
+#include "model/model_priv.h"
 #include "stream/input.h"
 
 #include <errno.h>
@@ -127,32 +129,81 @@ static void take_notes(adcgs_stream *to, adcgs_stream *from)
     from->n_meta = 0;
 }
 
-static adcgs_status join_one(adcgs_stream *stream, const char *base, const adcgs_cuts *cuts, uint32_t part, adcgs_cpu_level cpu,
-                             adcgs_pool *pool, adcgs_error *error)
+/** Read a part's stream, which has to be there; the caller clears it. */
+static adcgs_status load_part(adcgs_stream *one, const char *base, uint32_t part, adcgs_cpu_level cpu, adcgs_pool *pool,
+                              adcgs_error *error)
 {
-    adcgs_stream one;
     char *name;
     int found;
+    adcgs_stream_init(one);
     ADCGS_TRY(adcgs_enc_part_name(&name, base, part, 1, error));
-    adcgs_stream_init(&one);
-    adcgs_status status = load(&one, name, cpu, pool, &found, error);
+    adcgs_status status = load(one, name, cpu, pool, &found, error);
     if (status == ADCGS_OK && !found)
         status = adcgs_fail(error, ADCGS_ERR_IO, "%s: it is gone", name);
+    free(name);
+    return status;
+}
+
+adcgs_status adcgs_enc_part_model(adcgs_model *model, const char *base, uint32_t part, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                  adcgs_error *error)
+{
+    adcgs_stream one;
+    const adcgs_status status = load_part(&one, base, part, cpu, pool, error);
+    memset(model, 0, sizeof *model);
+    if (status == ADCGS_OK) {
+        *model = one.segments[0];
+        memset(&one.segments[0], 0, sizeof *model);
+    }
+    adcgs_stream_clear(&one, NULL);
+    return status;
+}
+
+/** Where nothing moves any more, motion is none that has to be sent: it stays what it was. */
+static adcgs_status keep_motion(adcgs_model *model, const adcgs_model *before, adcgs_error *error)
+{
+    static const int roles[] = { ADCGS_ROLE_COARSE, ADCGS_ROLE_FINE, ADCGS_ROLE_TIME };
+    for (uint32_t i = 0; i < model->n; i++)
+        if (!model->is_static[i])
+            return ADCGS_OK;
+    for (size_t i = 0; i < ADCGS_COUNTOF(roles); i++) {
+        adcgs_net_release(&model->net[roles[i]], NULL);
+        if (before->net[roles[i]].present)
+            ADCGS_TRY(adcgs_net_copy(&model->net[roles[i]], &before->net[roles[i]], NULL, error));
+    }
+    return ADCGS_OK;
+}
+
+/** A part that was learnt from the one before is coded by what it shares with it. */
+static adcgs_status predict(adcgs_model *model, const adcgs_model *before, adcgs_error *error)
+{
+    adcgs_error why;
+    if (model->params.time_rows)
+        ADCGS_TRY(keep_motion(model, before, error));
+    model->predicted = (uint8_t)adcgs_kept_possible(before, model, &why);
+    return ADCGS_OK;
+}
+
+static adcgs_status join_one(adcgs_stream *stream, const char *base, const adcgs_cuts *cuts, uint32_t part, int follows,
+                             adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_stream one;
+    adcgs_status status = load_part(&one, base, part, cpu, pool, error);
+    if (status == ADCGS_OK && follows)
+        status = predict(&one.segments[0], &stream->segments[part - 1], error);
     if (status == ADCGS_OK) {
         adcgs_encode_place(stream, cuts, part, &one.segments[0]);
         if (part + 1 == cuts->n)
             take_notes(stream, &one);
     }
     adcgs_stream_clear(&one, NULL);
-    free(name);
     return status;
 }
 
 adcgs_status adcgs_enc_parts_join(adcgs_stream *stream, const char *base, const adcgs_scene *scene, const adcgs_cuts *cuts,
-                                  adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+                                  const uint8_t *follows, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_encode_begin(stream, scene, cuts, NULL, 0, error));
     for (uint32_t i = 0; i < cuts->n; i++)
-        ADCGS_TRY(join_one(stream, base, cuts, i, cpu, pool, error));
+        ADCGS_TRY(join_one(stream, base, cuts, i, follows[i], cpu, pool, error));
     return ADCGS_OK;
 }

@@ -24,9 +24,16 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
                                   const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu, adcgs_pool *pool,
                                   int *found, adcgs_error *error);
 
-/** Put the parts' streams together, in stream, cleared by the caller, also on failure; notes are those of the last part. */
+/** The model of a part's stream, which adcgs_model_clear() frees. */
+adcgs_status adcgs_enc_part_model(adcgs_model *model, const char *base, uint32_t part, adcgs_cpu_level cpu, adcgs_pool *pool,
+                                  adcgs_error *error);
+
+/**
+ * Put the parts' streams together, in stream, cleared by the caller, also on failure; notes are those of the last part.
+ * follows: [parts] 1 for those that were learnt from the one before, which become predicted segments.
+ */
 adcgs_status adcgs_enc_parts_join(adcgs_stream *stream, const char *base, const adcgs_scene *scene, const adcgs_cuts *cuts,
-                                  adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
+                                  const uint8_t *follows, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 
 /** Remove the parts' streams. */
 void adcgs_enc_parts_remove(const char *base, uint32_t n);

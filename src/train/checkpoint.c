@@ -17,7 +17,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 22 };
+enum { FORMAT = 23 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -121,6 +121,16 @@ static void walk_scene(walk *w, const adcgs_trainer *t)
     visit_part(w, "initial points", adcgs_crc32c(0, s->points.position, s->points.n * sizeof *s->points.position));
 }
 
+/** The model that it goes on with is a part of what a run is given. */
+static void walk_before(walk *w, const adcgs_trainer *t)
+{
+    uint8_t digest[sizeof t->before];
+    memcpy(digest, t->before, sizeof digest);
+    visit(w, digest, sizeof digest);
+    if (memcmp(digest, t->before, sizeof digest))
+        differ(w, "saved with another segment before it");
+}
+
 static void walk_config(walk *w, adcgs_trainer *t)
 {
     uint64_t format = FORMAT;
@@ -128,6 +138,7 @@ static void walk_config(walk *w, adcgs_trainer *t)
     if (format != FORMAT)
         differ(w, "saved by another version of the program");
     walk_scene(w, t);
+    walk_before(w, t);
     walk_target(w, t);
     walk_settings(w, t);
 }
@@ -135,11 +146,11 @@ static void walk_config(walk *w, adcgs_trainer *t)
 static void walk_scalars(walk *w, adcgs_trainer *t)
 {
     visit(w, &t->iteration, sizeof t->iteration);
-    visit(w, &t->adam_steps, sizeof t->adam_steps);
     visit(w, &t->weighed, sizeof t->weighed);
     visit(w, &t->slimmed, sizeof t->slimmed);
     visit(w, &t->decided, sizeof t->decided);
     visit(w, &t->frozen, sizeof t->frozen);
+    visit(w, &t->released, sizeof t->released);
     visit(w, &t->lr_scale, sizeof t->lr_scale);
     visit(w, &t->contrast, sizeof t->contrast);
     visit(w, &t->lambda, sizeof t->lambda);
@@ -177,12 +188,14 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
     visit(w, f->keep, slots * sizeof(float));
     visit(w, f->moving, lanes * sizeof(float));
     visit(w, f->body, lanes);
+    visit(w, f->learns, lanes * sizeof(float));
     visit(w, f->centre, sizeof f->centre);
     visit(w, t->stats.weight, (3 * slots + lanes) * sizeof(float));
     visit(w, &t->stats.n, sizeof t->stats.n);
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         adcgs_param *p = &f->param[i];
         walk_width(w, f, i);
+        visit(w, &p->steps, sizeof p->steps);
         visit(w, p->p, p->n * sizeof(float));
         visit(w, p->m, p->n * sizeof(float));
         visit(w, p->v, p->n * sizeof(float));

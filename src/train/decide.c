@@ -105,7 +105,7 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
         return adcgs_alloc_status(error);
     const adcgs_status status = measure_motion(t, effect, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
-        if (effect[i] < t->config.still_below)
+        if (effect[i] < t->config.still_below && f->learns[i] != 0)
             f->moving[i] = 0;
     if (f->is_part && !adcgs_fmodel_moves(f))
         clear_time_table(f);
@@ -129,7 +129,7 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
         return adcgs_alloc_status(error);
     for (size_t i = 0; i < slots; i++) {
         const uint32_t anchor = adcgs_anchor_of(f, (uint32_t)i);
-        if (anchor >= f->n || f->keep[i] == 0)
+        if (anchor >= f->n || f->keep[i] == 0 || f->learns[anchor] == 0)
             continue;
         const float there = t->stats.presence[anchor], opacity = t->stats.opacity[i];
         drawn += (double)t->stats.weight[i];

@@ -5,6 +5,19 @@
 #include "train/curvature.h"
 #include "train/levels.h"
 
+#define HELD 1e20f /* loss per square of a value: more than any bits are worth */
+
+/** Levels of what is settled are no matter of choice. */
+static void hold_settled(const adcgs_fmodel *f, float *const curvature[ADCGS_P_ANCHOR])
+{
+    for (int i = 0; f->follows && i < ADCGS_P_ANCHOR; i++) {
+        const size_t rows = (size_t)adcgs_fmodel_rows(f, i);
+        for (size_t j = 0; j < f->param[i].n; j++)
+            if (f->learns[j / ADCGS_LANES / rows * ADCGS_LANES + j % ADCGS_LANES] == 0)
+                curvature[i][j] = HELD;
+    }
+}
+
 adcgs_status adcgs_freeze(adcgs_trainer *t, adcgs_error *error)
 {
     float *value[ADCGS_P_ANCHOR], *curvature[ADCGS_P_ANCHOR];
@@ -22,6 +35,7 @@ adcgs_status adcgs_freeze(adcgs_trainer *t, adcgs_error *error)
     else
         for (int i = 0; i < ADCGS_P_ANCHOR; i++)
             memset(curvature[i], 0, t->f->param[i].n * sizeof *curvature[i]);
+    hold_settled(t->f, curvature);
     t->frozen = 1;
     if (t->config.rdo_strength > 0) {
         ADCGS_TRY(adcgs_level_choose(t, (double)t->config.rdo_strength, error));

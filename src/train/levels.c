@@ -30,6 +30,9 @@ adcgs_status adcgs_level_choose(adcgs_trainer *t, double strength, adcgs_error *
 void adcgs_level_densities(adcgs_trainer *t)
 {
     adcgs_rate rate;
-    adcgs_pass_densities(t->pass, t->f, &rate);
+    if (t->f->follows)
+        adcgs_pass_rate(t->pass, t->f, &rate);
+    else
+        adcgs_pass_densities(t->pass, t->f, &rate);
     memcpy(t->mean_bits, rate.bits, sizeof rate.bits);
 }

@@ -10,6 +10,7 @@
 #include "train/freeze.h"
 #include "train/levels.h"
 #include "train/rate_control.h"
+#include "train/release.h"
 #include "train/rate_target.h"
 #include "train/unit_prune.h"
 #include "train/views.h"
@@ -74,10 +75,11 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
 
 int adcgs_stages_divide(const adcgs_trainer *t, double progress)
 {
-    return t->config.scale * adcgs_coarse_divide(&t->config, progress);
+    /* What is settled was learnt in full size, and is right in no other. */
+    return t->config.scale * (t->f->follows ? 1 : adcgs_coarse_divide(&t->config, progress));
 }
 
-/** Fraction of the views, by their distance from the middle of time, that are trained on. */
+/** Fraction of the views, by their distance from where the curriculum begins, that are trained on. */
 static double window_of(const adcgs_train_config *c, double progress)
 {
     return progress < c->curriculum_until ? c->curriculum_begin + (1 - c->curriculum_begin) * progress / c->curriculum_until : 1;
@@ -97,6 +99,7 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
         t->left.load = adcgs_seconds() - begin;
     }
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
+    ADCGS_TRY(adcgs_release_step(t, progress, error));
     if (!c->without_densification && t->iteration && t->iteration % c->densify_every == 0 && progress >= c->densify_from &&
         progress < c->densify_until)
         ADCGS_TRY(adcgs_densify(t, progress, error));

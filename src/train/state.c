@@ -3,6 +3,7 @@
 #include "train/state.h"
 
 #include "fmodel/bodies.h"
+#include "train/follow.h"
 #include "train/initialise.h"
 #include "train/rate_plan.h"
 #include "train/scene_frame.h"
@@ -40,7 +41,7 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
         times[i] = t->views[i].t = duration > 0 ? (float)fmin(fmax(time / duration, 0), 1) : 0;
     }
     if (status == ADCGS_OK)
-        status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, error);
+        status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, t->f->follows, error);
     adcgs_free(NULL, times);
     if (status == ADCGS_OK)
         status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, t->scene->n_times <= 1,
@@ -61,7 +62,18 @@ static adcgs_status create_viewpoints(adcgs_trainer *t, adcgs_error *error)
     return status;
 }
 
-static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
+/** Go on with the model before. Bodies are those that there are. */
+static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_error *error)
+{
+    t->config.params = before->params;
+    adcgs_model_digest(before, t->before);
+    t->stereo.n_bodies = 0;
+    for (uint32_t i = 0; i < t->stereo.n_moving; i++)
+        t->stereo.moving[i].body = 0;
+    return adcgs_follow(&t->f, before, &t->config, t->scene->duration, t->cpu, error);
+}
+
+static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, adcgs_error *error)
 {
     adcgs_train_config *c = &t->config;
     const uint32_t times = t->scene->n_times;
@@ -94,7 +106,10 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
     ADCGS_TRY(adcgs_rate_plan(c, error));
     ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
     ADCGS_TRY(adcgs_start_match(&t->stereo, t->scene, c, t->pool, error));
-    ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, &t->stereo, error));
+    if (before)
+        ADCGS_TRY(follow(t, before, error));
+    else
+        ADCGS_TRY(adcgs_initialise(&t->f, t->scene, c, &t->stereo, error));
     t->f->is_part = t->scene->whole != NULL;
     adcgs_train_rates(c, t->f);
     ADCGS_TRY(adcgs_pass_create(&t->pass, t->f, t->cpu, t->pool, error));
@@ -111,6 +126,12 @@ static adcgs_status create_parts(adcgs_trainer *t, adcgs_error *error)
 adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                   adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
 {
+    return adcgs_trainer_create_after(out, scene, config, NULL, cpu, pool, error);
+}
+
+adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                        const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+{
     adcgs_trainer *t = adcgs_alloc(NULL, 1, sizeof *t, error);
     *out = NULL;
     if (!t)
@@ -121,7 +142,7 @@ adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene,
     t->pool = pool;
     t->lr_scale = 1;
     adcgs_buffer_init(&t->snapshot);
-    const adcgs_status status = create_parts(t, error);
+    const adcgs_status status = create_parts(t, before, error);
     t->lambda = (double)t->config.lambda;
     if (status != ADCGS_OK)
         adcgs_trainer_free(&t);

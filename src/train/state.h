@@ -68,9 +68,11 @@ typedef struct adcgs_trainer {
     void *measure_user;
     int until_lambda;        /* stop before the first iteration that lambda has a say in */
     /* State that a checkpoint carries beside the model. */
-    uint32_t iteration, adam_steps;
+    uint32_t iteration;
     uint8_t lambda_used;     /* lambda has had a say: the run is bound to it */
     uint8_t weighed, slimmed, decided, rounding, frozen;
+    uint8_t released; /* times that it was asked which settled anchors should learn */
+    uint8_t before[16]; /* digest of the model that this one goes on with; 0 without one */
     float lr_scale;
     double contrast; /* of the pictures that training began with; 0: not known yet */
     double lambda; /* of the rate; the configuration's unless a target steers it, or contrast */
@@ -89,6 +91,12 @@ typedef struct adcgs_trainer {
 /** ADCGS_ERR_USAGE for a configuration that does not pass adcgs_train_check(). */
 adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                   adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
+/**
+ * The same for a part of a scene whose model goes on with that of the part before, as a predicted segment will. before has the
+ * times of its part, in seconds of the scene; it has not to outlive the call. NULL: there is none.
+ */
+adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                        const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 void adcgs_trainer_free(adcgs_trainer **trainer);
 /** Forget the pictures that are loaded, and the room to draw them. */
 void adcgs_views_unload(adcgs_trainer *trainer);

@@ -2,6 +2,7 @@
 /** \file One iteration. */
 #include "train/step.h"
 
+#include "fmodel/from_model.h"
 #include "fmodel/weight_rate.h"
 #include "grad/random.h"
 #include "train/views.h"
@@ -58,22 +59,49 @@ static void follow_means(adcgs_trainer *t)
     }
 }
 
+/** What is settled has no gradient, and without one stays what it is. */
+static void spare_settled(adcgs_fmodel *f, int group)
+{
+    const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
+    float *g = f->param[group].g;
+    for (size_t tile = 0; tile < rows * f->groups; tile++, g += ADCGS_LANES)
+        for (size_t l = 0; l < ADCGS_LANES; l++)
+            g[l] *= f->learns[tile / rows * ADCGS_LANES + l];
+}
+
+/**
+ * Whether a group takes part: one of motion does from the first gradient that it has. Its moments begin then, and are scaled by
+ * the steps since; by those of the run, the first steps would be many times too long, and in a long run blow the scene apart.
+ * Entropy networks begin late as well, but gain by long first steps: bits fall sooner.
+ */
+static int begins(const adcgs_param *p, int group)
+{
+    const int motion = group == ADCGS_P_OMEGA || group == ADCGS_P_VARPI || group == ADCGS_P_TIME;
+    size_t i = 0;
+    while (motion && !p->steps && i < p->n && p->g[i] == 0)
+        i++;
+    return i < p->n;
+}
+
 static void update(adcgs_trainer *t, double progress)
 {
     const float price = weight_price(t, progress);
-    t->adam_steps++;
-    const float c1 = 1 / (1 - powf(0.9f, (float)t->adam_steps)), c2 = 1 / (1 - powf(0.999f, (float)t->adam_steps));
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         adcgs_param *p = &t->f->param[i];
         const int entropy = i == ADCGS_P_ETA_PRIOR || i >= ADCGS_P_E_FV;
-        if ((t->frozen && (!is_network(i) || entropy)) || (t->rounding && (i == ADCGS_P_STEP || i == ADCGS_P_E_STEPS))) {
+        if ((t->frozen && (!is_network(i) || entropy)) || (t->rounding && (i == ADCGS_P_STEP || i == ADCGS_P_E_STEPS)) ||
+            adcgs_fmodel_is_settled(t->f, i)) {
             memset(p->g, 0, p->n * sizeof *p->g);
             continue;
         }
         if (t->f->mlp[i].n && price > 0)
             adcgs_weight_rate(t->f, i, price);
-        const float lr = t->lr_scale * adcgs_train_rate(&t->config, p->lr0, p->lr1, progress);
-        adam_job job = { t, i, lr, c1, c2 };
+        if (t->f->follows && !is_network(i))
+            spare_settled(t->f, i);
+        if (!begins(p, i))
+            continue;
+        const float lr = t->lr_scale * adcgs_train_rate(&t->config, p->lr0, p->lr1, progress), n = (float)++p->steps;
+        adam_job job = { t, i, lr, 1 / (1 - powf(0.9f, n)), 1 / (1 - powf(0.999f, n)) };
         adcgs_pool_run(p->n > ADAM_PIECE ? t->pool : NULL, adam_piece, &job, (int)((p->n + ADAM_PIECE - 1) / ADAM_PIECE));
     }
     if (t->rounding && !t->frozen)
@@ -125,7 +153,8 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
                               progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
     const int rated = progress >= c->rate_from && !c->without_rate && !t->frozen;
     const adcgs_pass_mode mode = { .quant = quant,
-                                   .deform = progress < c->deform_from && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
+                                   .deform = t->f->follows ? ADCGS_DEFORM_ALL :
+                                             progress < c->deform_from && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
                                              progress < c->fine_from   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
                                    .bf16 = c->bf16,
                                    .dropout = progress >= c->round_from ? 0 : c->dropout,

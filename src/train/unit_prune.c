@@ -2,6 +2,8 @@
 /** \file Removal of hidden units, by regression and by rate and distortion. */
 #include "train/unit_prune.h"
 
+#include "fmodel/from_model.h"
+
 #include "grad/random.h"
 #include "train/sample.h"
 
@@ -313,7 +315,8 @@ adcgs_status adcgs_prune_units(adcgs_trainer *t, adcgs_error *error)
             adcgs_mlp_prepare(&t->f->mlp[i], t->f->param[i].p, 1); /* entropy networks become the coder's */
     for (int i = ADCGS_P_ANCHOR; status == ADCGS_OK && i < ADCGS_P_COUNT; i++) {
         slimming s = { .t = t, .group = i };
-        if (!t->f->mlp[i].hidden || i == ADCGS_P_E_STEPS) /* E_q trades pictures for bits: neither alone can judge it */
+        /* E_q trades pictures for bits: neither alone can judge it. */
+        if (!t->f->mlp[i].hidden || i == ADCGS_P_E_STEPS || adcgs_fmodel_is_settled(t->f, i))
             continue;
         s.best = adcgs_alloc(NULL, t->f->param[i].n, sizeof *s.best, error);
         status = s.best ? adcgs_gram_take(&s.gram, t->f, i, error) : adcgs_alloc_status(error);

@@ -2,6 +2,7 @@
 /** \file Lattices of the networks' weights by rate and distortion. */
 #include "train/weight_steps.h"
 
+#include "fmodel/from_model.h"
 #include "train/sample.h"
 
 #include <math.h>
@@ -152,6 +153,9 @@ adcgs_status adcgs_weight_steps_choose(adcgs_trainer *t, adcgs_error *error)
     int8_t chosen[ADCGS_P_COUNT][ADCGS_MLP_LAYERS];
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         adcgs_mlp *m = &t->f->mlp[i];
+        memcpy(chosen[i], m->weight_step, sizeof chosen[i]);
+        if (adcgs_fmodel_is_settled(t->f, i))
+            continue;
         memset(m->weight_step, m->entropy ? ADCGS_E24_BITS : ADCGS_WEIGHT_STEP_NONE, sizeof m->weight_step);
         memcpy(chosen[i], m->weight_step, sizeof chosen[i]);
         if (m->n)
@@ -159,7 +163,7 @@ adcgs_status adcgs_weight_steps_choose(adcgs_trainer *t, adcgs_error *error)
     }
     /* E_q acts on pictures and features at once; its few weights keep all bits. */
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT && !t->config.without_weight_steps; i++)
-        if (t->f->mlp[i].n && i != ADCGS_P_E_STEPS)
+        if (t->f->mlp[i].n && i != ADCGS_P_E_STEPS && !adcgs_fmodel_is_settled(t->f, i))
             ADCGS_TRY(choose_network(t, i, chosen[i], error));
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
         memcpy(t->f->mlp[i].weight_step, chosen[i], sizeof chosen[i]);

@@ -7,6 +7,8 @@
 
 #define ANCHORS_MAX 20000U
 #define FIXED_BYTES 21 /* elements in front of the positions */
+#define COUNT_BYTES 4  /* of these, in predicted segments, which have the grid of the one before */
+#define PREDICTED_AT 16 /* in SEGM */
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/geom", NULL };
 
@@ -42,11 +44,16 @@ static void try_positions(uint32_t n, int depth, const uint8_t *data, size_t siz
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     adcgs_found_chunk c;
+    int predicted = 0, depth = 0;
     for (size_t pos = ADCGS_SIGNATURE_BYTES; adcgs_next_chunk(data, size, &pos, &c);) {
         const uint8_t *payload = data + c.payload;
-        if (c.type == ADCGS_TYPE_GEOM && c.length >= FIXED_BYTES && adcgs_load_le32(payload) <= ANCHORS_MAX)
-            try_positions(adcgs_load_le32(payload), payload[4] % (ADCGS_GEOM_DEPTH_MAX + 2), payload + FIXED_BYTES,
-                          c.length - FIXED_BYTES);
+        const size_t fixed = predicted ? COUNT_BYTES : FIXED_BYTES;
+        if (c.type == ADCGS_TYPE_SEGM)
+            predicted = c.length > PREDICTED_AT && payload[PREDICTED_AT];
+        if (c.type != ADCGS_TYPE_GEOM || c.length < fixed || adcgs_load_le32(payload) > ANCHORS_MAX)
+            continue;
+        depth = predicted ? depth : payload[COUNT_BYTES] % (ADCGS_GEOM_DEPTH_MAX + 2);
+        try_positions(adcgs_load_le32(payload), depth, payload + fixed, c.length - fixed);
     }
     return 0;
 }

@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The payloads of all chunks, each parsed by itself whatever its checksum and
- * place; HEAD, SEGM, cams and meta that are valid are written and read again.
+ * place; HEAD, SEGM, KEEP, cams and meta that are valid are written and read
+ * again, what depends on the segment before as if that had a few anchors of 0.
  */
 #include "fuzz.h"
 #include "stream_edit.h"
 
+#include "model/keep_priv.h"
+#include "model/model_priv.h"
 #include "stream/parts.h"
+
+#define BEFORE 60U /* anchors of the segment before one that is predicted */
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/headers", NULL };
 
@@ -79,9 +84,49 @@ static void try_segm(const uint8_t *data, size_t size, const adcgs_stream *strea
         p = parse_of(out.data, out.size);
         FUZZ_REQUIRE(adcgs_segm_parse(&p, stream, &again, &same, ticks) == ADCGS_OK);
         FUZZ_REQUIRE(memcmp(model.d_fv, again.d_fv, sizeof model.d_fv) == 0 && ids.mask == same.mask);
-        FUZZ_REQUIRE(memcmp(model.eta_mu, again.eta_mu, sizeof model.eta_mu) == 0);
+        FUZZ_REQUIRE(memcmp(model.eta_mu, again.eta_mu, sizeof model.eta_mu) == 0 && model.predicted == again.predicted);
     }
     adcgs_buffer_clear(&out);
+}
+
+static void require_same(const adcgs_keep *a, const adcgs_keep *b, const adcgs_model *before)
+{
+    FUZZ_REQUIRE(a->n == b->n && memcmp(a->mode, b->mode, before->n) == 0);
+    for (int g = 0; g < ADCGS_KEEP_GROUPS; g++)
+        FUZZ_REQUIRE(memcmp(a->rows[g], b->rows[g], before->n * (size_t)adcgs_keep_channels(&before->params, g) * 2) == 0);
+}
+
+/** What is kept of the segment before: coded again, it is the same, if not in the same bytes. */
+static void try_keep(const uint8_t *data, size_t size, const adcgs_model *before)
+{
+    adcgs_keep kept = { .n = 0 }, again = { .n = 0 };
+    adcgs_cost left = { UINT64_MAX, UINT64_MAX };
+    adcgs_memory memory = { .limit = 0 };
+    adcgs_buffer out;
+    adcgs_parse p = parse_of(data, size);
+    adcgs_buffer_init(&out);
+    if (adcgs_keep_parse(&p, adcgs_level_get(1), before, &kept, &left, &memory) == ADCGS_OK) {
+        FUZZ_REQUIRE(adcgs_kept_encode(&kept, before, &out, NULL) == ADCGS_OK);
+        p = parse_of(out.data, out.size);
+        FUZZ_REQUIRE(adcgs_keep_parse(&p, adcgs_level_get(1), before, &again, &left, &memory) == ADCGS_OK);
+        require_same(&kept, &again, before);
+    }
+    adcgs_kept_clear(&kept, &memory);
+    adcgs_kept_clear(&again, &memory);
+    FUZZ_REQUIRE(memory.used == 0);
+    adcgs_buffer_clear(&out);
+}
+
+/** The segment before: all its latents are 0, or near the limits, where differences are clipped. */
+static void make_before(adcgs_model *before, const adcgs_params *params)
+{
+    adcgs_model_clear(before, NULL);
+    *before = (adcgs_model){ .params = *params, .n = BEFORE, .depth = 2 };
+    FUZZ_REQUIRE(adcgs_model_alloc(before, NULL, NULL) == ADCGS_OK);
+    for (uint32_t i = 0; i < BEFORE; i++) {
+        before->is_static[i] = params->time_rows > 0 && i % 3 == 0;
+        before->fv[i * params->n_fv] = before->colour[i * ADCGS_COLOUR_N] = i % 2 ? 32700 : -32700;
+    }
 }
 
 /** The elements that every chunk could begin with, at any place. */
@@ -108,21 +153,30 @@ static void try_elements(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    adcgs_stream stream;
+    adcgs_model before = { .n = 0 };
+    adcgs_stream stream, second; /* second: the same with a segment in front, for what is predicted */
     adcgs_found_chunk c;
     int has_head = 0;
     adcgs_stream_init(&stream);
     for (size_t pos = ADCGS_SIGNATURE_BYTES; adcgs_next_chunk(data, size, &pos, &c);) {
         const uint8_t *payload = data + c.payload;
         try_elements(payload, c.length);
-        if (c.type == ADCGS_TYPE_HEAD)
-            has_head |= try_head(payload, c.length, &stream);
-        else if (c.type == ADCGS_TYPE_cams)
+        if (c.type == ADCGS_TYPE_HEAD && try_head(payload, c.length, &stream)) {
+            has_head = 1;
+            make_before(&before, &stream.params);
+        } else if (c.type == ADCGS_TYPE_cams) {
             try_extras(payload, c.length, adcgs_cams_parse, adcgs_cams_write);
-        else if (c.type == ADCGS_TYPE_meta)
+        } else if (c.type == ADCGS_TYPE_meta) {
             try_extras(payload, c.length, adcgs_meta_parse, adcgs_meta_write);
-        else if (c.type == ADCGS_TYPE_SEGM && has_head)
-            try_segm(payload, c.length, &stream);
+        } else if (c.type == ADCGS_TYPE_SEGM && has_head) {
+            second = stream;
+            second.segments = &before;
+            second.n_segments = 1;
+            try_segm(payload, c.length, &second);
+        } else if (c.type == ADCGS_TYPE_KEEP && has_head) {
+            try_keep(payload, c.length, &before);
+        }
     }
+    adcgs_model_clear(&before, NULL);
     return 0;
 }

@@ -50,6 +50,15 @@ static int teardown(void **state)
     return 0;
 }
 
+/** Of all segments; predicted ones have as many as chance gave them. */
+static inline uint32_t fixture_anchors(const fixture *f)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < f->stream.n_segments; i++)
+        n += f->stream.segments[i].n;
+    return n;
+}
+
 static adcgs_decoder *open_with(const fixture *f, const adcgs_config *config)
 {
     adcgs_decoder *d = NULL;

@@ -4,6 +4,7 @@
 
 #include "base/cpu.h"
 #include "geom/geom.h"
+#include "model/keep_priv.h"
 #include "model/model_priv.h"
 
 #include <stdio.h>
@@ -164,10 +165,9 @@ static void random_bodies(adcgs_model *m, uint64_t *state)
     }
 }
 
+/** Flags, masks, bodies and values of anchors that have their places. */
 static adcgs_status random_anchors(adcgs_model *m, uint64_t *state, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
-    ADCGS_TRY(random_positions(m, state, error));
     for (uint32_t i = 0; i < m->n; i++) {
         m->is_static[i] = (uint8_t)(m->params.time_rows > 0 && draw(state, 0, 1));
         m->mask[i] = (uint16_t)((adcgs_random_next(state) | adcgs_random_next(state)) & ((1U << m->params.k) - 1));
@@ -191,6 +191,8 @@ adcgs_status adcgs_random_model(adcgs_model *m, const adcgs_params *params, uint
         if (adcgs_role_required(params, role) || (optional && draw(state, 0, 3)))
             ADCGS_TRY(random_net(&m->net[role], params, role, state, error));
     }
+    ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
+    ADCGS_TRY(random_positions(m, state, error));
     return random_anchors(m, state, error);
 }
 
@@ -202,6 +204,117 @@ static adcgs_status share_networks(adcgs_model *m, const adcgs_model *from, uint
             ADCGS_TRY(adcgs_net_copy(&m->net[role], &from->net[role], NULL, error));
     }
     return adcgs_random_values(m, state, error);
+}
+
+adcgs_model adcgs_random_frame(const adcgs_model *before)
+{
+    adcgs_model m = *before;
+    m.n = 0;
+    m.pos = NULL;
+    m.is_static = m.body = NULL;
+    m.mask = NULL;
+    m.eta = m.fv = m.sigma = m.colour = m.fg = NULL;
+    memset(m.net, 0, sizeof m.net);
+    m.layers = (uint8_t)adcgs_params_layers(&m.params);
+    m.predicted = 1;
+    return m;
+}
+
+static int at_place(const adcgs_model *m, uint32_t anchor, uint64_t place)
+{
+    return adcgs_morton(m->pos + 3 * (size_t)anchor) == place;
+}
+
+/** Whether an anchor of the model that is settled already, or one that is kept, has this voxel. */
+static int is_taken(const adcgs_model *m, uint32_t settled, const adcgs_keep *kept, const adcgs_model *before,
+                    const uint32_t voxel[3])
+{
+    const uint64_t place = adcgs_morton(voxel);
+    int taken = 0;
+    for (uint32_t i = 0; i < settled && !taken; i++)
+        taken = at_place(m, i, place);
+    for (uint32_t i = 0; i < before->n && !taken; i++)
+        taken = kept->mode[i] != ADCGS_KEEP_DROPPED && at_place(before, i, place);
+    return taken;
+}
+
+adcgs_status adcgs_random_settle(adcgs_model *m, const adcgs_keep *kept, const adcgs_model *before, adcgs_error *error)
+{
+    const uint32_t side = 1U << m->depth;
+    if ((uint64_t)m->n + kept->n > UINT64_C(1) << 3 * m->depth)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%u new anchors do not fit beside %u kept ones", m->n, kept->n);
+    for (uint32_t i = 0; i < m->n; i++) {
+        uint32_t *const voxel = m->pos + 3 * (size_t)i;
+        while (is_taken(m, i, kept, before, voxel))
+            for (int a = 0; a < 3 && (voxel[a] = (voxel[a] + 1) % side) == 0; a++)
+                ;
+    }
+    return adcgs_morton_sort(m->pos, m->n, NULL, error) ? ADCGS_ERR_INTERNAL : ADCGS_OK;
+}
+
+/** Some whole steps: mostly few, now and then so many that they have an escape, or meet the clip. */
+static int32_t random_steps_of(int16_t before, uint64_t *state)
+{
+    const int kind = draw(state, 0, 99);
+    const int32_t most = kind < 60 ? 0 : kind < 90 ? 3 : kind < 97 ? 100 : 1100;
+    return adcgs_clip(before + 64 * draw(state, -most, most), 32767);
+}
+
+static void random_modes(adcgs_keep *kept, const adcgs_model *before, uint64_t *state)
+{
+    const int dropped_most = draw(state, 0, 99); /* hundredths */
+    for (uint32_t i = 0; i < before->n; i++) {
+        kept->mode[i] = (uint8_t)(draw(state, 0, 99) < dropped_most ? ADCGS_KEEP_DROPPED :
+                                  draw(state, 0, 1)                 ? ADCGS_KEEP_SAME :
+                                                                      ADCGS_KEEP_REFINED);
+        kept->n += kept->mode[i] != ADCGS_KEEP_DROPPED;
+        for (int g = 0; kept->mode[i] == ADCGS_KEEP_REFINED && g < ADCGS_KEEP_GROUPS; g++) {
+            const int n = adcgs_keep_channels(&before->params, g);
+            const int coded = g == ADCGS_KEEP_SIGMA && before->is_static[i] ? ADCGS_SIGMA_N : n;
+            int16_t *const row = kept->rows[g] + (size_t)i * (size_t)n;
+            for (int c = 0; draw(state, 0, 3) && c < coded; c++)
+                row[c] = (int16_t)random_steps_of(row[c], state);
+        }
+    }
+}
+
+/** Those of the model before; of each role now and then another, also where it had none. */
+static adcgs_status random_networks(adcgs_model *m, const adcgs_model *before, uint64_t *state, adcgs_error *error)
+{
+    for (int role = 0; role < ADCGS_ROLES; role++) {
+        if (adcgs_role_allowed(&m->params, role) && draw(state, 0, 7) == 0)
+            ADCGS_TRY(random_net(&m->net[role], &m->params, role, state, error));
+        else if (before->net[role].present)
+            ADCGS_TRY(adcgs_net_copy(&m->net[role], &before->net[role], NULL, error));
+    }
+    return ADCGS_OK;
+}
+
+/** New anchors in a frame that has its networks, and then the kept ones. */
+static adcgs_status random_joined(adcgs_model *m, const adcgs_model *before, adcgs_keep *kept, uint32_t n, uint64_t *state,
+                                  adcgs_error *error)
+{
+    const uint64_t cells = UINT64_C(1) << 3 * m->depth;
+    ADCGS_TRY(adcgs_kept_alloc(kept, before, NULL, error));
+    random_modes(kept, before, state);
+    m->n = (uint32_t)ADCGS_MIN((uint64_t)draw(state, kept->n == 0, (int)n), cells - kept->n);
+    ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
+    if (m->n > 0)
+        ADCGS_TRY(random_positions(m, state, error));
+    ADCGS_TRY(adcgs_random_settle(m, kept, before, error));
+    ADCGS_TRY(random_anchors(m, state, error));
+    return adcgs_kept_join(kept, before, m, NULL, error);
+}
+
+adcgs_status adcgs_random_follower(adcgs_model *m, const adcgs_model *before, uint32_t n, uint64_t *state, adcgs_error *error)
+{
+    adcgs_keep kept = { .n = 0 };
+    *m = adcgs_random_frame(before);
+    adcgs_status status = random_networks(m, before, state, error);
+    if (status == ADCGS_OK)
+        status = random_joined(m, before, &kept, n, state, error);
+    adcgs_kept_clear(&kept, NULL);
+    return status;
 }
 
 static adcgs_status random_cameras(adcgs_stream *stream, uint64_t *state, adcgs_error *error)
@@ -247,9 +360,13 @@ adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *param
     }
     for (uint32_t i = 0; i < segments; i++) {
         adcgs_model *m = &stream->segments[i];
+        const int kind = i ? draw(state, 0, 3) : 0;
         stream->n_segments = i + 1;
-        ADCGS_TRY(adcgs_random_model(m, params, n, depth, state, error));
-        if (i % 2)
+        if (kind >= 2)
+            ADCGS_TRY(adcgs_random_follower(m, m - 1, n, state, error));
+        else
+            ADCGS_TRY(adcgs_random_model(m, params, n, depth, state, error));
+        if (kind == 1)
             ADCGS_TRY(share_networks(m, m - 1, state, error));
         m->time_start = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i);
         m->time_end = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i + draw(state, 1, 40));

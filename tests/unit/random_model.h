@@ -7,6 +7,7 @@
 #ifndef ADCGS_TESTS_RANDOM_MODEL_H
 #define ADCGS_TESTS_RANDOM_MODEL_H
 
+#include "model/keep.h"
 #include "stream/stream.h"
 
 /** Counter-based random numbers (SplitMix64). */
@@ -19,10 +20,23 @@ void adcgs_random_params(adcgs_params *params, int moving, uint64_t *state);
 /** A valid model of n anchors in a cube of depth bits per axis (n <= 2^(3 depth)), times 0..1 s. Allocated without a memory. */
 adcgs_status adcgs_random_model(adcgs_model *model, const adcgs_params *params, uint32_t n, int depth, uint64_t *state,
                                 adcgs_error *error);
-/** A stream of such models, some cameras and metadata; every second segment shares the networks of the one before. */
+/**
+ * A valid model that can follow another as a predicted segment: its anchors are some of the other's, as they are or with
+ * differences, and at most n new ones; most of its networks are the other's.
+ */
+adcgs_status adcgs_random_follower(adcgs_model *model, const adcgs_model *before, uint32_t n, uint64_t *state,
+                                   adcgs_error *error);
+/** A stream of such models, of which some are predicted, and some have the networks of the one before; cameras and metadata. */
 adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t segments, uint32_t n, int depth,
                                  uint64_t *state, adcgs_error *error);
 /** Draw all values of a model anew along the walk, for the networks, flags and masks that it has. */
 adcgs_status adcgs_random_values(adcgs_model *model, uint64_t *state, adcgs_error *error);
+
+/* Parts of a follower. */
+
+/** A model without anchors and networks, predicted from another, which it shares everything else with. */
+adcgs_model adcgs_random_frame(const adcgs_model *before);
+/** New anchors whose voxels are taken, by each other or by those kept of the model before, move to free ones; all are sorted. */
+adcgs_status adcgs_random_settle(adcgs_model *added, const adcgs_keep *kept, const adcgs_model *before, adcgs_error *error);
 
 #endif

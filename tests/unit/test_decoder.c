@@ -22,7 +22,7 @@ static void test_info(void **state)
     uint8_t expected[16], found[16];
     assert_int_equal(adcgs_get_info(d, &info, sizeof info, NULL), ADCGS_OK);
     assert_int_equal(info.segments, 3);
-    assert_int_equal(info.anchors, 270);
+    assert_int_equal(info.anchors, fixture_anchors(f));
     assert_int_equal(info.k, 4);
     assert_int_equal(info.layers, 3);
     assert_true(info.bytes.total == f->bytes.size && info.bytes.geometry > 0 && info.bytes.layer[4] == 0);

@@ -77,7 +77,7 @@ typedef struct adcgs_config {
 typedef struct adcgs_bytes {
     uint64_t header;   /**< signature, headers and checksums of chunks, HEAD, SEGM, INDX, ENDC, hash */
     uint64_t networks; /**< payloads of NETW */
-    uint64_t geometry; /**< payloads of GEOM */
+    uint64_t geometry; /**< payloads of GEOM and KEEP */
     uint64_t layer[5]; /**< payloads of FEA0..FEA4 */
     uint64_t cameras;  /**< payload of cams */
     uint64_t metadata; /**< payloads of meta and of ancillary chunks that are unknown */

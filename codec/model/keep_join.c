@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Taking a model apart into what is kept of the one before and what is new, and joining these. */
+#include "geom/geom.h"
+#include "model/keep_priv.h"
+#include "model/model_priv.h"
+
+static uint64_t place_of(const adcgs_model *model, uint32_t anchor)
+{
+    return adcgs_morton(model->pos + 3 * (size_t)anchor);
+}
+
+/** Copy one anchor's row of an array with so many values each. */
+#define COPY(array, values) \
+    memcpy(to->array + (size_t)i * (values), from->array + (size_t)j * (values), (values) * sizeof *to->array)
+
+static void copy_anchor(adcgs_model *to, uint32_t i, const adcgs_model *from, uint32_t j)
+{
+    const adcgs_params *p = &to->params;
+    COPY(pos, (size_t)3);
+    COPY(is_static, (size_t)1);
+    COPY(body, (size_t)1);
+    COPY(mask, (size_t)1);
+    COPY(eta, (size_t)p->n_eta);
+    COPY(fv, (size_t)p->n_fv);
+    COPY(sigma, (size_t)adcgs_sigma_rows(p));
+    COPY(colour, (size_t)ADCGS_COLOUR_N);
+    COPY(fg, (size_t)p->k * p->n_fg);
+}
+
+static void copy_kept(adcgs_model *to, uint32_t i, const adcgs_keep *kept, const adcgs_model *from, uint32_t j)
+{
+    copy_anchor(to, i, from, j);
+    for (int g = 0; g < ADCGS_KEEP_GROUPS; g++) {
+        const size_t n = (size_t)adcgs_keep_channels(&to->params, g);
+        memcpy(adcgs_keep_rows(to, g) + i * n, kept->rows[g] + j * n, n * sizeof(int16_t));
+    }
+}
+
+static int same_bytes(const void *a, const void *b, size_t bytes)
+{
+    return bytes == 0 || memcmp(a, b, bytes) == 0;
+}
+
+int adcgs_kept_possible(const adcgs_model *a, const adcgs_model *b, adcgs_error *why)
+{
+    const char *what = NULL;
+    if (!adcgs_params_equal(&a->params, &b->params))
+        what = "parameters";
+    else if (a->depth != b->depth || !same_bytes(a->origin, b->origin, sizeof a->origin) ||
+             !same_bytes(&a->voxel, &b->voxel, sizeof a->voxel))
+        what = "grid";
+    else if (!same_bytes(a->shape, b->shape, sizeof a->shape) || !same_bytes(a->eta_mu, b->eta_mu, sizeof a->eta_mu) ||
+             !same_bytes(a->eta_si, b->eta_si, sizeof a->eta_si))
+        what = "shapes";
+    else if (!same_bytes(a->d_fv, b->d_fv, a->params.n_fv * sizeof *a->d_fv) ||
+             !same_bytes(a->d_sigma, b->d_sigma, (size_t)adcgs_sigma_rows(&a->params) * sizeof *a->d_sigma) ||
+             !same_bytes(a->d_colour, b->d_colour, sizeof a->d_colour) ||
+             !same_bytes(a->d_fg, b->d_fg, a->params.n_fg * sizeof *a->d_fg))
+        what = "steps";
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (a->net[role].present && !b->net[role].present)
+            what = "networks";
+    if (what)
+        adcgs_fail(why, ADCGS_ERR_USAGE, "stream: a predicted segment has other %s than the one before it", what);
+    return !what;
+}
+
+/** Whether differences lead from one latent to the other, exactly. */
+static int within_reach(int32_t before, int32_t now)
+{
+    return adcgs_clip(before + 64 * adcgs_keep_difference(before, now), 32767) == now;
+}
+
+static adcgs_keep_mode mode_of(const adcgs_model *a, uint32_t i, const adcgs_model *b, uint32_t j)
+{
+    const size_t eta = a->params.n_eta, fg = (size_t)a->params.k * a->params.n_fg;
+    if (a->is_static[i] != b->is_static[j] || a->body[i] != b->body[j] || a->mask[i] != b->mask[j] ||
+        !same_bytes(a->eta + i * eta, b->eta + j * eta, eta * sizeof *a->eta) ||
+        !same_bytes(a->fg + i * fg, b->fg + j * fg, fg * sizeof *a->fg))
+        return ADCGS_KEEP_DROPPED;
+    adcgs_keep_mode mode = ADCGS_KEEP_SAME;
+    for (int g = 0; g < ADCGS_KEEP_GROUPS; g++) {
+        const size_t n = (size_t)adcgs_keep_channels(&a->params, g);
+        const int16_t *before = adcgs_keep_rows(a, g) + i * n, *now = adcgs_keep_rows(b, g) + j * n;
+        for (size_t c = 0; c < n; c++) {
+            if (!within_reach(before[c], now[c]))
+                return ADCGS_KEEP_DROPPED;
+            mode = before[c] != now[c] ? ADCGS_KEEP_REFINED : mode;
+        }
+    }
+    return mode;
+}
+
+adcgs_status adcgs_kept_find(adcgs_keep *kept, const adcgs_model *before, const adcgs_model *now, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_kept_alloc(kept, before, NULL, error));
+    for (uint32_t i = 0, j = 0; i < before->n; i++) {
+        while (j < now->n && place_of(now, j) < place_of(before, i))
+            j++;
+        kept->mode[i] = ADCGS_KEEP_DROPPED;
+        if (j == now->n || place_of(now, j) != place_of(before, i))
+            continue;
+        kept->mode[i] = (uint8_t)mode_of(before, i, now, j);
+        kept->n += kept->mode[i] != ADCGS_KEEP_DROPPED;
+        for (int g = 0; kept->mode[i] == ADCGS_KEEP_REFINED && g < ADCGS_KEEP_GROUPS; g++) {
+            const size_t n = (size_t)adcgs_keep_channels(&now->params, g);
+            memcpy(kept->rows[g] + i * n, adcgs_keep_rows(now, g) + j * n, n * sizeof(int16_t));
+        }
+    }
+    return ADCGS_OK;
+}
+
+/** All of a model but its anchors and networks. */
+static adcgs_model frame_of(const adcgs_model *model)
+{
+    adcgs_model m = *model;
+    m.pos = NULL;
+    m.is_static = m.body = NULL;
+    m.mask = NULL;
+    m.eta = m.fv = m.sigma = m.colour = m.fg = NULL;
+    memset(m.net, 0, sizeof m.net);
+    return m;
+}
+
+adcgs_status adcgs_kept_rest(adcgs_model *rest, const adcgs_keep *kept, const adcgs_model *before, const adcgs_model *now,
+                             adcgs_error *error)
+{
+    *rest = frame_of(now);
+    rest->n = now->n - kept->n;
+    ADCGS_TRY(adcgs_model_alloc(rest, NULL, error));
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (now->net[role].present)
+            ADCGS_TRY(adcgs_net_copy(&rest->net[role], &now->net[role], NULL, error));
+    uint32_t i = 0, n = 0;
+    for (uint32_t j = 0; j < now->n; j++) {
+        while (i < before->n && (kept->mode[i] == ADCGS_KEEP_DROPPED || place_of(before, i) < place_of(now, j)))
+            i++;
+        if (i == before->n || place_of(before, i) != place_of(now, j))
+            copy_anchor(rest, n++, now, j);
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_kept_check(const adcgs_keep *kept, const adcgs_model *before, const adcgs_model *added, adcgs_error *error)
+{
+    for (uint32_t i = 0, j = 0; i < before->n; i++) {
+        if (kept->mode[i] == ADCGS_KEEP_DROPPED)
+            continue;
+        while (j < added->n && place_of(added, j) < place_of(before, i))
+            j++;
+        if (j < added->n && place_of(added, j) == place_of(before, i))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "GEOM: new anchor %u is where anchor %u is kept", j, i);
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_kept_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_memory *memory,
+                             adcgs_error *error)
+{
+    adcgs_model all = frame_of(model);
+    all.n = model->n + kept->n;
+    all.layers = ADCGS_MIN(model->layers, before->layers);
+    const adcgs_status status = adcgs_model_alloc(&all, memory, error);
+    if (status != ADCGS_OK) {
+        adcgs_model_clear(&all, memory);
+        return status;
+    }
+    uint32_t i = 0, j = 0;
+    for (uint32_t n = 0; n < all.n; n++) {
+        while (i < before->n && kept->mode[i] == ADCGS_KEEP_DROPPED)
+            i++;
+        if (i < before->n && (j == model->n || place_of(before, i) < place_of(model, j))) {
+            copy_kept(&all, n, kept, before, i);
+            i++;
+        } else {
+            copy_anchor(&all, n, model, j);
+            j++;
+        }
+    }
+    memcpy(all.net, model->net, sizeof all.net);
+    memset(model->net, 0, sizeof model->net);
+    adcgs_model_clear(model, memory);
+    *model = all;
+    return ADCGS_OK;
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Going on with the segment before. */
+#include "train/follow.h"
+
+#include "fmodel/from_model.h"
+
+#include <math.h>
+
+#define GONE 0.05f  /* presence below which an anchor has lived */
+#define STRAYS 4e-3 /* scene units that an anchor goes by its own velocity, below which its place is the same in both segments */
+
+/** Whether a life is that of the whole segment, without a velocity: then it can be that of the next as well. */
+static int lives_whole(const adcgs_fmodel *f, uint32_t i)
+{
+    double way = 0;
+    for (int a = 0; a < 3; a++)
+        way = fmax(way, fabs((double)*adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_VELOCITY + a)) / 8);
+    return adcgs_fmodel_presence(f, i, 0) > 0.9f && adcgs_fmodel_presence(f, i, 1) > 0.9f && way < STRAYS;
+}
+
+/**
+ * The same life in the time of the segment that begins: t of the one before is from + ratio t. u, of which presence and way are
+ * functions, stays as it is.
+ */
+static void shift_life(adcgs_fmodel *f, uint32_t i, double from, double ratio)
+{
+    float *middle = adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_MIDDLE);
+    float *pace = adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_PACE);
+    const double t = (double)*middle / 8 + 0.5;
+    *middle = (float)(8 * ((t - from) / ratio - 0.5));
+    *pace += (float)log(ratio);
+    f->learns[i] = 1;
+}
+
+static void go_on_living(adcgs_fmodel *f, double from, double ratio)
+{
+    for (uint32_t i = 0; f->params.spans && i < f->n; i++)
+        if (f->moving[i] != 0 && !lives_whole(f, i))
+            shift_life(f, i, from, ratio);
+}
+
+/** Time begins where it ended; with the second row bodies go on as they went. */
+static void start_time_table(adcgs_fmodel *f)
+{
+    const size_t width = f->params.time_width, columns = (size_t)adcgs_fmodel_time_columns(&f->params);
+    const size_t rows = f->params.time_rows;
+    float *z = f->param[ADCGS_P_TIME].p;
+    if (rows < 2)
+        return;
+    for (size_t i = 0; i < columns; i++) {
+        const float last = z[(rows - 1) * columns + i], step = i < width ? 0 : last - z[(rows - 2) * columns + i];
+        for (size_t r = 0; r < rows; r++)
+            z[r * columns + i] = last + (float)ADCGS_MIN(r, 1) * step;
+    }
+}
+
+/** Leave out who does not live any more; one stays, whatever it is. */
+static adcgs_status drop_dead(adcgs_fmodel *f, adcgs_error *error)
+{
+    uint32_t(*pos)[3] = adcgs_alloc(NULL, f->n, sizeof *pos, error);
+    uint32_t *source = adcgs_alloc(NULL, f->n, sizeof *source, error), n = 0;
+    adcgs_status status = pos && source ? ADCGS_OK : adcgs_alloc_status(error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
+        if (f->learns[i] == 0 || fmaxf(adcgs_fmodel_presence(f, i, 0), adcgs_fmodel_presence(f, i, 0.5f)) > GONE ||
+            (n == 0 && i + 1 == f->n)) {
+            memcpy(pos[n], f->pos[i], sizeof pos[n]);
+            source[n++] = i;
+        }
+    if (status == ADCGS_OK)
+        status = adcgs_fmodel_regroup(f, (const uint32_t(*)[3])pos, source, NULL, n, error);
+    adcgs_free(NULL, pos);
+    adcgs_free(NULL, source);
+    return status;
+}
+
+adcgs_status adcgs_follow(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config, double duration,
+                          adcgs_cpu_level cpu, adcgs_error *error)
+{
+    const double then = before->time_end - before->time_start, ratio = then > 0 && duration > 0 ? duration / then : 1;
+    ADCGS_TRY(adcgs_fmodel_from_model(out, before, &config->shape, config->seed, cpu, error));
+    go_on_living(*out, 1, ratio);
+    start_time_table(*out);
+    return drop_dead(*out, error);
+}
