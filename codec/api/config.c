@@ -36,6 +36,18 @@ adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, ad
     return ADCGS_OK;
 }
 
+/** What is known of a stream without its segments. */
+static void tell_of_demand(const adcgs_decoder *d, adcgs_info *info)
+{
+    const uint32_t n = adcgs_seek_segments(d->seek);
+    const adcgs_stream *s = &d->stream;
+    const int64_t end = s->duration_ticks >= 0 ? s->start_ticks + s->duration_ticks : adcgs_seek_start(d->seek, n - 1);
+    info->segments = (int)n;
+    info->time_start = adcgs_ticks_to_seconds(s, adcgs_seek_start(d->seek, 0));
+    info->time_end = adcgs_ticks_to_seconds(s, end);
+    info->bytes.total = adcgs_seek_bytes(d->seek);
+}
+
 adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size_t size, adcgs_error *error)
 {
     adcgs_info own;
@@ -46,6 +58,8 @@ adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size
         return adcgs_fail(error, ADCGS_ERR_USAGE, "info: size is %zu, expected %zu", size, sizeof own);
     memset(&own, 0, sizeof own); /* padding, too */
     adcgs_stream_info(&decoder->stream, &own);
+    if (decoder->seek)
+        tell_of_demand(decoder, &own);
     own.size = ADCGS_MIN(size, sizeof own);
     memset(info, 0, size);
     memcpy(info, &own, own.size);
@@ -77,16 +91,4 @@ const char *adcgs_get_metadata_key(const adcgs_decoder *decoder, int index)
     if (!decoder || index < 0 || (uint32_t)index >= decoder->stream.n_meta)
         return NULL;
     return decoder->stream.meta[index].key;
-}
-
-adcgs_status adcgs_get_model_digest(const adcgs_decoder *decoder, int segment, uint8_t digest[16], adcgs_error *error)
-{
-    ADCGS_OWN_ERROR(error);
-    ADCGS_REQUIRE(decoder, error);
-    ADCGS_REQUIRE(digest, error);
-    if (segment < 0 || (uint32_t)segment >= decoder->stream.n_segments)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment,
-                          (unsigned)decoder->stream.n_segments);
-    adcgs_model_digest(&decoder->stream.segments[segment], digest);
-    return ADCGS_OK;
 }

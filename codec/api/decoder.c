@@ -23,7 +23,51 @@ static void say_opened(const adcgs_decoder *d)
                   adcgs_pool_threads(d->pool), (unsigned long long)d->memory.peak);
 }
 
-static adcgs_status open_decoder(adcgs_decoder *d, adcgs_read_fn read, void *user, const adcgs_config *config, adcgs_error *error)
+/** Where a stream comes from: in order, or from any position. */
+typedef struct origin {
+    adcgs_read_fn read;
+    adcgs_read_at_fn read_at; /**< NULL: in order only */
+    void *user;
+    uint64_t size, at;        /**< of read_at: bytes there are, and were read in order */
+} origin;
+
+/** In order from what is read at any position. */
+static int64_t read_in_order(void *user, void *buffer, size_t bytes)
+{
+    origin *o = user;
+    const size_t n = (size_t)ADCGS_MIN((uint64_t)bytes, o->size - o->at);
+    const int64_t got = n ? o->read_at(o->user, o->at, buffer, n) : 0;
+    o->at += got > 0 ? (uint64_t)got : 0;
+    return got;
+}
+
+/**
+ * Open for reading on demand, where there are segments to choose from. A stream that ends early or has a fault is one to be read
+ * whole, which tells what can be used of it, or what is wrong.
+ */
+static adcgs_status open_seek(adcgs_decoder *d, const origin *from, const adcgs_read_options *options, adcgs_error *error)
+{
+    adcgs_stream_init(&d->stream);
+    const adcgs_status status = adcgs_seek_open(&d->seek, &d->stream, from->read_at, from->user, from->size, options, error);
+    const int whole = status == ADCGS_ERR_DATA || status == ADCGS_ERR_TRUNCATED;
+    if (status == ADCGS_OK && adcgs_seek_segments(d->seek) > 1)
+        return ADCGS_OK;
+    adcgs_seek_free(&d->seek);
+    adcgs_stream_clear(&d->stream, &d->memory);
+    return whole ? ADCGS_OK : status;
+}
+
+static adcgs_status open_stream(adcgs_decoder *d, origin *from, const adcgs_read_options *options, adcgs_error *error)
+{
+    if (from->read_at)
+        ADCGS_TRY(open_seek(d, from, options, error));
+    if (d->seek)
+        return ADCGS_OK;
+    const adcgs_read_fn read = from->read_at ? read_in_order : from->read;
+    return adcgs_stream_read(&d->stream, read, from->read_at ? from : from->user, options, NULL, NULL, error);
+}
+
+static adcgs_status open_decoder(adcgs_decoder *d, origin *from, const adcgs_config *config, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_strict_check(error));
     ADCGS_TRY(adcgs_e24_check(error));
@@ -41,30 +85,45 @@ static adcgs_status open_decoder(adcgs_decoder *d, adcgs_read_fn read, void *use
         .layers = config->layers,
         .strict_end = config->strict_end,
     };
-    ADCGS_TRY(adcgs_stream_read(&d->stream, read, user, &options, NULL, NULL, error));
+    ADCGS_TRY(open_stream(d, from, &options, error));
     say_opened(d);
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read, void *user, const adcgs_config *config,
-                               adcgs_error *error)
+static adcgs_status open_from(adcgs_decoder **out, origin *from, const adcgs_config *config, adcgs_error *error)
 {
     adcgs_config own;
-    ADCGS_OWN_ERROR(error);
-    ADCGS_REQUIRE(out, error);
-    *out = NULL;
-    ADCGS_REQUIRE(read, error);
     ADCGS_TRY(adcgs_config_read(&own, config, error));
     ADCGS_TRY(check_config(&own, error));
     adcgs_decoder *d = adcgs_alloc(NULL, 1, sizeof *d, error);
     if (!d)
         return adcgs_alloc_status(error);
-    const adcgs_status status = open_decoder(d, read, user, &own, error);
+    const adcgs_status status = open_decoder(d, from, &own, error);
     if (status == ADCGS_OK)
         *out = d;
     else
         adcgs_close(&d);
     return status;
+}
+
+adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read, void *user, const adcgs_config *config,
+                               adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(out, error);
+    *out = NULL;
+    ADCGS_REQUIRE(read, error);
+    return open_from(out, &(origin){ .read = read, .user = user }, config, error);
+}
+
+adcgs_status adcgs_open_at(adcgs_decoder **out, adcgs_read_at_fn read, void *user, uint64_t bytes, const adcgs_config *config,
+                           adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(out, error);
+    *out = NULL;
+    ADCGS_REQUIRE(read, error);
+    return open_from(out, &(origin){ .read_at = read, .user = user, .size = bytes }, config, error);
 }
 
 void adcgs_close(adcgs_decoder **decoder)
@@ -75,19 +134,28 @@ void adcgs_close(adcgs_decoder **decoder)
     adcgs_splat_free(&d->splat);
     adcgs_raster_free(&d->raster);
     adcgs_free(&d->memory, d->planar);
+    adcgs_seek_free(&d->seek);
     adcgs_stream_clear(&d->stream, &d->memory);
+    if (d->file)
+        fclose(d->file);
     adcgs_pool_free(&d->own_pool);
     adcgs_free(NULL, d);
     *decoder = NULL;
 }
 
-/** The last segment that starts at or before the time; the first if none does. */
-static uint32_t segment_at(const adcgs_stream *stream, double time)
+static double start_of(const adcgs_decoder *d, uint32_t segment)
 {
-    uint32_t lo = 0, hi = stream->n_segments;
+    return d->seek ? adcgs_ticks_to_seconds(&d->stream, adcgs_seek_start(d->seek, segment)) :
+                     d->stream.segments[segment].time_start;
+}
+
+/** The last segment that starts at or before the time; the first if none does. */
+static uint32_t segment_at(const adcgs_decoder *d, double time)
+{
+    uint32_t lo = 0, hi = d->seek ? adcgs_seek_segments(d->seek) : d->stream.n_segments;
     while (hi - lo > 1) {
         const uint32_t middle = lo + (hi - lo) / 2;
-        if (stream->segments[middle].time_start <= time)
+        if (start_of(d, middle) <= time)
             lo = middle;
         else
             hi = middle;
@@ -102,11 +170,26 @@ static float normalised_time(const adcgs_model *model, double time)
     return t > 0 ? t < 1 ? (float)t : 1.0f : 0.0f; /* NaN becomes 0 */
 }
 
+/** A segment's model, which may be moved by the next call. */
+static adcgs_status decoder_segment(adcgs_decoder *d, uint32_t number, const adcgs_model **model, adcgs_error *error)
+{
+    *model = &d->stream.segments[number];
+    if (!d->seek)
+        return ADCGS_OK;
+    if (d->stream.n_segments == 1 && d->stream.first_segment == number) {
+        *model = d->stream.segments;
+        return ADCGS_OK;
+    }
+    adcgs_splat_free(&d->splat); /* of a model that goes */
+    return adcgs_seek_to(d->seek, number, model, error);
+}
+
 adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primitives *out, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
-    const uint32_t segment = segment_at(&d->stream, time);
-    const adcgs_model *model = &d->stream.segments[segment];
+    const uint32_t segment = segment_at(d, time);
+    const adcgs_model *model;
+    ADCGS_TRY(decoder_segment(d, segment, &model, error));
     if (d->splat && d->splat_segment != segment)
         adcgs_splat_free(&d->splat);
     if (!d->splat)
@@ -130,6 +213,22 @@ adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(digest, error);
     ADCGS_TRY(adcgs_decoder_primitives(decoder, time, &primitives, error));
-    adcgs_splat_digest(&decoder->stream.segments[decoder->splat_segment], &primitives, digest);
+    const adcgs_model *model;
+    ADCGS_TRY(decoder_segment(decoder, decoder->splat_segment, &model, error));
+    adcgs_splat_digest(model, &primitives, digest);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_get_model_digest(adcgs_decoder *decoder, int segment, uint8_t digest[16], adcgs_error *error)
+{
+    const adcgs_model *model;
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(digest, error);
+    const uint32_t n = decoder->seek ? adcgs_seek_segments(decoder->seek) : decoder->stream.n_segments;
+    if (segment < 0 || (uint32_t)segment >= n)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment, (unsigned)n);
+    ADCGS_TRY(decoder_segment(decoder, (uint32_t)segment, &model, error));
+    adcgs_model_digest(model, digest);
     return ADCGS_OK;
 }

@@ -7,9 +7,11 @@
 #include "base/pool.h"
 #include "render/render.h"
 #include "splat/splat.h"
-#include "stream/stream.h"
+#include "stream/seek.h"
 
 #include <adcgs/decoder.h>
+
+#include <stdio.h>
 
 struct adcgs_decoder {
     adcgs_memory memory;
@@ -18,6 +20,8 @@ struct adcgs_decoder {
     adcgs_cpu_level cpu;
     adcgs_log log;
     adcgs_stream stream;
+    adcgs_seek *seek;       /**< reads its segments on demand; NULL: all are there */
+    FILE *file;             /**< that it reads from, if that is a file opened here */
     adcgs_splat *splat;     /**< of splat_segment; NULL until the first use */
     uint32_t splat_segment;
     adcgs_raster *raster;   /**< NULL until the first frame */

@@ -1,10 +1,34 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where streams come from: files and memory, both as sequential sources. */
+/** \file Where streams come from: files and memory. */
+#define _POSIX_C_SOURCE 200809L /* files beyond 2 GiB, where long has 32 bits */
+#define _FILE_OFFSET_BITS 64
+
 #include "api/decoder_priv.h"
 #include "stream/input.h"
 
 #include <errno.h>
 #include <stdio.h>
+
+static int64_t read_file_at(void *user, uint64_t offset, void *buffer, size_t bytes)
+{
+    FILE *file = user;
+    if (offset > INT64_MAX || fseeko(file, (off_t)offset, SEEK_SET))
+        return -1;
+    const size_t n = fread(buffer, 1, bytes, file);
+    return n == 0 ? -1 : (int64_t)n;
+}
+
+/** Bytes of a file that can be read at any position; -1: it cannot. */
+static int64_t size_of(FILE *file)
+{
+    return fseeko(file, 0, SEEK_END) ? -1 : (int64_t)ftello(file);
+}
+
+static int is_on_demand(const adcgs_config *config)
+{
+    adcgs_config own;
+    return config && adcgs_config_read(&own, config, NULL) == ADCGS_OK && own.on_demand;
+}
 
 adcgs_status adcgs_open_file(adcgs_decoder **out, const char *path, const adcgs_config *config, adcgs_error *error)
 {
@@ -15,8 +39,13 @@ adcgs_status adcgs_open_file(adcgs_decoder **out, const char *path, const adcgs_
     FILE *file = fopen(path, "rb");
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
-    const adcgs_status status = adcgs_open_stream(out, adcgs_file_read, file, config, error);
-    fclose(file);
+    const int64_t size = is_on_demand(config) ? size_of(file) : -1;
+    const adcgs_status status = size >= 0 ? adcgs_open_at(out, read_file_at, file, (uint64_t)size, config, error) :
+                                            adcgs_open_stream(out, adcgs_file_read, file, config, error);
+    if (status == ADCGS_OK && (*out)->seek)
+        (*out)->file = file;
+    else
+        fclose(file);
     if (status != ADCGS_OK)
         adcgs_error_locate(error, path);
     return status;

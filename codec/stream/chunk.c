@@ -148,6 +148,14 @@ static adcgs_status parse_header(const adcgs_source *source, adcgs_chunk *chunk,
     return adcgs_syn_chunk_header_parse(&p, &chunk->header);
 }
 
+adcgs_status adcgs_chunk_header(const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES], uint64_t origin, adcgs_chunk *chunk,
+                                adcgs_error *error)
+{
+    const adcgs_source untraced = { .pos = origin };
+    *chunk = (adcgs_chunk){ .origin = origin };
+    return parse_header(&untraced, chunk, bytes, error);
+}
+
 static adcgs_status check_limits(const adcgs_chunk *chunk, const adcgs_level *limits, adcgs_error *error)
 {
     const uint64_t length = chunk->header.length, most = limits ? limits->chunk_bytes : ADCGS_HEAD_BYTES_MAX;

@@ -87,6 +87,9 @@ typedef struct adcgs_chunk {
 
 /** Fill buffer as far as the stream goes. */
 adcgs_status adcgs_source_read(adcgs_source *source, void *buffer, size_t bytes, size_t *got, adcgs_error *error);
+/** What the 16 bytes of a chunk's header at a position say. Damage is ADCGS_ERR_DATA. */
+adcgs_status adcgs_chunk_header(const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES], uint64_t origin, adcgs_chunk *chunk,
+                                adcgs_error *error);
 /** Read the next chunk; limits may be NULL (then a payload has at most ADCGS_HEAD_BYTES_MAX bytes). Damage is ADCGS_ERR_DATA. */
 adcgs_status adcgs_chunk_read(adcgs_source *source, const adcgs_level *limits, adcgs_chunk *chunk, adcgs_error *error);
 void adcgs_source_clear(adcgs_source *source);

@@ -20,20 +20,30 @@ void adcgs_net_table_clear(adcgs_net_table *table)
     *table = (adcgs_net_table){ .memory = table->memory };
 }
 
-static adcgs_status add_net(adcgs_net_table *table, adcgs_net *net, adcgs_error *error)
+/** Room for as many ids. */
+static adcgs_status reserve(adcgs_net_table *table, uint32_t n, adcgs_error *error)
 {
-    if (table->n == table->capacity) {
-        const uint32_t capacity = table->capacity ? 2 * table->capacity : 16;
-        adcgs_net *nets = adcgs_alloc(table->memory, capacity, sizeof *nets, error);
-        if (!nets)
-            return adcgs_alloc_status(error);
-        if (table->n > 0)
-            memcpy(nets, table->nets, table->n * sizeof *nets);
-        adcgs_free(table->memory, table->nets);
-        table->nets = nets;
-        table->capacity = capacity;
-    }
-    table->nets[table->n++] = *net;
+    uint32_t capacity = table->capacity ? table->capacity : 16;
+    while (capacity < n)
+        capacity *= 2;
+    if (capacity == table->capacity)
+        return ADCGS_OK;
+    adcgs_net *nets = adcgs_alloc(table->memory, capacity, sizeof *nets, error);
+    if (!nets)
+        return adcgs_alloc_status(error);
+    if (table->n > 0)
+        memcpy(nets, table->nets, table->n * sizeof *nets);
+    adcgs_free(table->memory, table->nets);
+    table->nets = nets;
+    table->capacity = capacity;
+    return ADCGS_OK;
+}
+
+static adcgs_status add_net(adcgs_net_table *table, adcgs_net *net, uint32_t id, adcgs_error *error)
+{
+    ADCGS_TRY(reserve(table, id + 1, error));
+    table->n = ADCGS_MAX(table->n, id + 1);
+    table->nets[id] = *net;
     table->weights += adcgs_net_weights(net);
     memset(net, 0, sizeof *net);
     return ADCGS_OK;
@@ -128,14 +138,20 @@ static adcgs_status decode_values(adcgs_parse *p, adcgs_net *nets, uint32_t n, a
  * What can be said before the values are decoded, so that damage costs neither time nor memory. A network that is repeated
  * has the weights of the one that it repeats; the others count.
  */
+/** The network of an id; NULL if there is none, or none was read. */
+static const adcgs_net *known(const adcgs_net_table *table, uint32_t id)
+{
+    return id < table->n && table->nets[id].present ? &table->nets[id] : NULL;
+}
+
 static adcgs_status check_shapes(const adcgs_params *params, const adcgs_level *limits, const adcgs_net *nets, uint32_t n,
                                  uint32_t first_id, const adcgs_net_table *table, adcgs_cost *left, adcgs_error *error)
 {
     uint64_t weights = table->weights;
-    if (first_id > table->n)
+    if (first_id > table->n && !table->has_gaps)
         return adcgs_fail(error, ADCGS_ERR_DATA, "NETW: network id is %u, expected at most %u", first_id, table->n);
     for (uint32_t i = 0; i < n; i++) {
-        const adcgs_net *before = first_id + i < table->n ? &table->nets[first_id + i] : NULL;
+        const adcgs_net *before = known(table, first_id + i);
         if (!adcgs_role_allowed(params, nets[i].role))
             return adcgs_fail(error, ADCGS_ERR_DATA, "NETW: role %u is not used with these parameters", nets[i].role);
         if (before && adcgs_net_weights(before) != adcgs_net_weights(&nets[i]))
@@ -159,13 +175,13 @@ static adcgs_status enter_nets(adcgs_parse *p, const adcgs_params *params, adcgs
                                adcgs_net_table *table)
 {
     for (uint32_t i = 0; i < n; i++, id++) {
-        if (id < table->n) {
+        if (known(table, id)) {
             if (!adcgs_net_equal(&nets[i], &table->nets[id]))
                 return adcgs_fail(p->error, ADCGS_ERR_DATA, "NETW: network %u is repeated with other contents", id);
             continue;
         }
         ADCGS_TRY(adcgs_net_validate(params, nets[i].role, &nets[i], p->error));
-        ADCGS_TRY(add_net(table, &nets[i], p->error));
+        ADCGS_TRY(add_net(table, &nets[i], id, p->error));
     }
     return ADCGS_OK;
 }

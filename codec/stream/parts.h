@@ -12,6 +12,7 @@ typedef struct adcgs_net_table {
     uint32_t n, capacity;
     uint64_t weights;
     uint32_t sent[2]; /**< ids of the chunk read last: from, to below */
+    int has_gaps;     /**< reading began in the middle: ids whose networks were not read may be missing */
     adcgs_memory *memory;
 } adcgs_net_table;
 

@@ -1,25 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Reading a stream: chunk after chunk from a source that cannot seek. */
+#include "stream/reader.h"
+
 #include "base/digest.h"
-#include "stream/segment.h"
 
-typedef struct stream_reader {
-    adcgs_stream *stream;
-    const adcgs_read_options *options;
-    adcgs_source source;
-    adcgs_syn_head head;
-    uint8_t *head_payload;  /**< to compare repetitions with; NULL before HEAD */
-    size_t head_bytes;
-    adcgs_net_table nets;
-    adcgs_segment segment;
-    int indexed, ended;     /**< INDX, ENDC were read */
-    uint32_t crc_of_crcs;   /**< over the chunks before the current one */
-    adcgs_trace_fn trace;
-    void *trace_user;
-    adcgs_error *error;
-} stream_reader;
-
-static adcgs_status read_signature(stream_reader *s)
+adcgs_status adcgs_stream_reader_signature(adcgs_stream_reader *s)
 {
     uint8_t bytes[ADCGS_SIGNATURE_BYTES];
     size_t got;
@@ -34,14 +19,14 @@ static adcgs_status read_signature(stream_reader *s)
 }
 
 /** The parts of a chunk that are not its payload's elements. */
-static adcgs_parse chunk_parts(const stream_reader *s, const adcgs_chunk *chunk)
+static adcgs_parse chunk_parts(const adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
     const adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk", .trace = s->trace, .trace_user = s->trace_user,
                             .error = s->error };
     return p;
 }
 
-static adcgs_status skip_payload(stream_reader *s, const adcgs_chunk *chunk)
+static adcgs_status skip_payload(adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
     const adcgs_parse p = chunk_parts(s, chunk);
     adcgs_parse_trace(&p, 8 * ADCGS_CHUNK_HEADER_BYTES, "payload", "%u bytes", chunk->header.length);
@@ -49,21 +34,21 @@ static adcgs_status skip_payload(stream_reader *s, const adcgs_chunk *chunk)
 }
 
 /** An ancillary chunk that this decoder does not know, or knows in an older version. */
-static adcgs_status skip_unknown(stream_reader *s, const adcgs_chunk *chunk)
+static adcgs_status skip_unknown(adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
     adcgs_log_say(&s->options->log, ADCGS_LOG_INFO, "%s: chunk of version %u, %u bytes, is unknown and was skipped", chunk->name,
                   chunk->header.version, chunk->header.length);
     return skip_payload(s, chunk);
 }
 
-static adcgs_status repeat_head(stream_reader *s, const adcgs_chunk *chunk, const adcgs_parse *p)
+static adcgs_status repeat_head(adcgs_stream_reader *s, const adcgs_chunk *chunk, const adcgs_parse *p)
 {
     if (p->r.size != s->head_bytes || memcmp(p->r.data, s->head_payload, s->head_bytes) != 0)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "HEAD: repeated with other contents");
     return skip_payload(s, chunk);
 }
 
-static adcgs_status read_head(stream_reader *s, adcgs_parse *p)
+static adcgs_status read_head(adcgs_stream_reader *s, adcgs_parse *p)
 {
     const size_t bytes = p->r.size;
     ADCGS_TRY(adcgs_head_parse(p, &s->head, s->stream));
@@ -78,7 +63,7 @@ static adcgs_status read_head(stream_reader *s, adcgs_parse *p)
     return ADCGS_OK;
 }
 
-static adcgs_status read_index(stream_reader *s, adcgs_parse *p, uint64_t origin)
+static adcgs_status read_index(adcgs_stream_reader *s, adcgs_parse *p, uint64_t origin)
 {
     uint32_t n;
     ADCGS_TRY(adcgs_segment_finish(&s->segment, origin, 0));
@@ -95,7 +80,7 @@ static adcgs_status read_index(stream_reader *s, adcgs_parse *p, uint64_t origin
     return adcgs_parse_end(p);
 }
 
-static adcgs_status read_end(stream_reader *s, adcgs_parse *p, uint64_t origin)
+static adcgs_status read_end(adcgs_stream_reader *s, adcgs_parse *p, uint64_t origin)
 {
     adcgs_syn_endc endc;
     ADCGS_TRY(adcgs_segment_finish(&s->segment, origin, 0));
@@ -120,9 +105,9 @@ static int belongs_to_segment(uint32_t type)
 }
 
 /** Order of chunks and versions, before any payload is looked at. */
-static adcgs_status check_chunk(stream_reader *s, const adcgs_chunk *chunk)
+static adcgs_status check_chunk(adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
-    const uint32_t type = chunk->type, number = s->stream->n_segments;
+    const uint32_t type = chunk->type, number = s->stream->first_segment + s->stream->n_segments;
     const int critical = chunk->name[0] >= 'A' && chunk->name[0] <= 'Z';
     if (!s->head_payload && type != ADCGS_TYPE_HEAD)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: the first chunk must be HEAD", chunk->name);
@@ -141,7 +126,7 @@ static adcgs_status check_chunk(stream_reader *s, const adcgs_chunk *chunk)
     return ADCGS_OK;
 }
 
-static adcgs_status use_chunk(stream_reader *s, const adcgs_chunk *chunk, adcgs_parse *p)
+static adcgs_status use_chunk(adcgs_stream_reader *s, const adcgs_chunk *chunk, adcgs_parse *p)
 {
     const uint32_t type = chunk->type;
     if (adcgs_type_layer(type) >= 0)
@@ -179,7 +164,7 @@ static adcgs_status use_chunk(stream_reader *s, const adcgs_chunk *chunk, adcgs_
 }
 
 /** Ancillary chunks of a newer version than known are skipped like unknown ones; of cut-off chunks only layers are of use. */
-static adcgs_status use_or_skip(stream_reader *s, const adcgs_chunk *chunk, adcgs_parse *p)
+static adcgs_status use_or_skip(adcgs_stream_reader *s, const adcgs_chunk *chunk, adcgs_parse *p)
 {
     if (!chunk->complete && adcgs_type_layer(chunk->type) < 0)
         return ADCGS_OK;
@@ -189,7 +174,7 @@ static adcgs_status use_or_skip(stream_reader *s, const adcgs_chunk *chunk, adcg
 }
 
 /** A chunk came to its end: its checksum counts. */
-static void end_chunk(stream_reader *s, const adcgs_chunk *chunk)
+static void end_chunk(adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
     const adcgs_parse p = chunk_parts(s, chunk);
     uint8_t crc[4];
@@ -198,7 +183,7 @@ static void end_chunk(stream_reader *s, const adcgs_chunk *chunk)
     s->crc_of_crcs = adcgs_crc32c(s->crc_of_crcs, crc, sizeof crc);
 }
 
-static adcgs_status read_chunk(stream_reader *s, int *truncated)
+adcgs_status adcgs_stream_reader_chunk(adcgs_stream_reader *s, int *truncated)
 {
     adcgs_chunk chunk;
     ADCGS_TRY(adcgs_chunk_read(&s->source, s->segment.limits, &chunk, s->error));
@@ -217,7 +202,7 @@ static adcgs_status read_chunk(stream_reader *s, int *truncated)
 }
 
 /** What the stream is worth when it ended before ENDC. */
-static adcgs_status end_early(stream_reader *s)
+static adcgs_status end_early(adcgs_stream_reader *s)
 {
     const unsigned long long at = s->source.pos;
     if (s->options->strict_end || !s->head_payload)
@@ -233,12 +218,12 @@ static adcgs_status end_early(stream_reader *s)
     return ADCGS_OK;
 }
 
-static adcgs_status read_all(stream_reader *s)
+static adcgs_status read_all(adcgs_stream_reader *s)
 {
     int truncated = 0;
-    ADCGS_TRY(read_signature(s));
+    ADCGS_TRY(adcgs_stream_reader_signature(s));
     while (!truncated && !s->ended)
-        ADCGS_TRY(read_chunk(s, &truncated));
+        ADCGS_TRY(adcgs_stream_reader_chunk(s, &truncated));
     if (truncated)
         ADCGS_TRY(end_early(s));
     s->stream->weights = (uint32_t)s->nets.weights;
@@ -246,20 +231,37 @@ static adcgs_status read_all(stream_reader *s)
     return ADCGS_OK;
 }
 
+void adcgs_stream_reader_init(adcgs_stream_reader *s, adcgs_stream *stream, adcgs_read_fn read, void *user,
+                              const adcgs_read_options *options, adcgs_error *error)
+{
+    memset(s, 0, sizeof *s);
+    s->stream = stream;
+    s->options = options;
+    s->error = error;
+    s->source = (adcgs_source){ .read = read, .user = user, .memory = options->memory };
+    s->nets.memory = options->memory;
+    s->segment = (adcgs_segment){ .stream = stream, .options = options, .nets = &s->nets, .error = error };
+}
+
+void adcgs_stream_reader_clear(adcgs_stream_reader *s)
+{
+    adcgs_segment_clear(&s->segment);
+    adcgs_net_table_clear(&s->nets);
+    adcgs_free(s->options->memory, s->head_payload);
+    adcgs_source_clear(&s->source);
+}
+
 adcgs_status adcgs_stream_read(adcgs_stream *stream, adcgs_read_fn read, void *user, const adcgs_read_options *options,
                                adcgs_trace_fn trace, void *trace_user, adcgs_error *error)
 {
     adcgs_error why = { ADCGS_OK, "" };
-    stream_reader s = { .stream = stream, .options = options, .trace = trace, .trace_user = trace_user, .error = &why };
-    s.source = (adcgs_source){ .read = read, .user = user, .memory = options->memory, .trace = trace, .trace_user = trace_user };
-    s.nets.memory = options->memory;
-    s.segment = (adcgs_segment){ .stream = stream, .options = options, .nets = &s.nets, .error = &why };
+    adcgs_stream_reader s;
     adcgs_stream_init(stream);
+    adcgs_stream_reader_init(&s, stream, read, user, options, &why);
+    s.trace = s.source.trace = trace;
+    s.trace_user = s.source.trace_user = trace_user;
     const adcgs_status status = read_all(&s);
-    adcgs_segment_clear(&s.segment);
-    adcgs_net_table_clear(&s.nets);
-    adcgs_free(options->memory, s.head_payload);
-    adcgs_source_clear(&s.source);
+    adcgs_stream_reader_clear(&s);
     if (status != ADCGS_OK) {
         adcgs_stream_clear(stream, options->memory);
         if (error)

@@ -24,7 +24,7 @@ typedef struct slice_job {
 
 static uint32_t segment_number(const adcgs_segment *s)
 {
-    return s->stream->n_segments;
+    return s->stream->first_segment + s->stream->n_segments;
 }
 
 /** Layers to decode: those the stream has, or as many as the caller wants. */
@@ -41,8 +41,7 @@ static void slice_span(const adcgs_segment *s, uint32_t i, uint32_t *begin, uint
     *end = *begin + ADCGS_MIN(s->model.n - *begin, size);
 }
 
-/** Forget the current segment's model and decoding state. */
-static void reset(adcgs_segment *s)
+void adcgs_segment_drop(adcgs_segment *s)
 {
     adcgs_latents_free(&s->latents);
     adcgs_model_clear(&s->model, s->options->memory);
@@ -56,7 +55,7 @@ static void reset(adcgs_segment *s)
 
 void adcgs_segment_clear(adcgs_segment *s)
 {
-    reset(s);
+    adcgs_segment_drop(s);
     adcgs_buffer_clear(&s->index);
 }
 
@@ -124,7 +123,7 @@ static adcgs_status check_nets(const adcgs_segment *s, adcgs_nets_cost *cost)
     *cost = (adcgs_nets_cost){ 0, 0 };
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const uint32_t id = s->ids.id[role];
-        if (s->ids.mask >> role & 1 && (id >= s->nets->n || s->nets->nets[id].role != role))
+        if (s->ids.mask >> role & 1 && (id >= s->nets->n || !s->nets->nets[id].present || s->nets->nets[id].role != role))
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: network_id for %s is %u, which is no such network",
                               adcgs_role_name(role), id);
         if (net_of(s, role))
@@ -349,7 +348,7 @@ adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
     if (s->stage != ADCGS_SEGMENT_PLACED || s->done[0] < s->n_slices) {
         if (!truncated)
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "segment %u: GEOM or slices of FEA0 are missing", segment_number(s));
-        reset(s);
+        adcgs_segment_drop(s);
         return ADCGS_OK;
     }
     while (s->model.layers < adcgs_params_layers(&s->stream->params) && s->done[s->model.layers] == s->n_slices)
@@ -362,6 +361,6 @@ adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
     if (s->index.failed)
         return adcgs_fail(s->error, ADCGS_ERR_MEMORY, "segment %u: no memory for its place in the index", segment_number(s));
     ADCGS_TRY(append_model(s));
-    reset(s);
+    adcgs_segment_drop(s);
     return ADCGS_OK;
 }

@@ -70,8 +70,6 @@ void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
         .k = stream->params.k,
         .layers = adcgs_params_layers(&stream->params),
         .cameras = (int)stream->n_cameras,
-        .time_start = stream->segments[0].time_start,
-        .time_end = stream->segments[stream->n_segments - 1].time_end,
         .frame_rate = (double)stream->rate_num / (double)stream->rate_den,
         .scene_scale = stream->scene_scale,
         .truncated = stream->truncated,
@@ -81,6 +79,10 @@ void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
     for (int a = 0; a < 3; a++) {
         info->scene_origin[a] = stream->scene_origin[a];
         info->background[a] = stream->background[a];
+    }
+    if (stream->n_segments > 0) {
+        info->time_start = stream->segments[0].time_start;
+        info->time_end = stream->segments[stream->n_segments - 1].time_end;
     }
     for (uint32_t i = 0; i < stream->n_segments; i++)
         add_segment(info, &stream->segments[i]);

@@ -34,6 +34,7 @@ typedef struct adcgs_stream {
     uint32_t n_meta;
     adcgs_meta *meta;
     uint32_t n_segments;
+    uint32_t first_segment;        /**< number of segments[0]: those before it are not kept; 0 but while segments are sought */
     adcgs_model *segments;         /**< [n_segments], in time order; time_start/end in seconds are derived from ticks */
     int truncated;
     uint32_t weights;              /**< of distinct networks; filled by reading and by writing */

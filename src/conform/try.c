@@ -97,7 +97,7 @@ static int parse_fits(const attempt *a, adcgs_pool *pool)
 
 /* ---- M, S, R ---- */
 
-static int models_fit(const attempt *a, const adcgs_decoder *decoder, const char models[][ADCGS_HEX], int n)
+static int models_fit(const attempt *a, adcgs_decoder *decoder, const char models[][ADCGS_HEX], int n)
 {
     adcgs_info info;
     if (adcgs_get_info(decoder, &info, sizeof info, NULL) != ADCGS_OK || info.segments != n)

@@ -297,6 +297,7 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     if (s->times && adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, or A:B with A not after B", s->times);
     s->request.has_times = s->times != NULL;
+    s->config.on_demand = s->times || s->play; /* what a whole clip is made of is read, and checked, as a whole */
     ADCGS_TRY(check_play(s, error));
     if (s->half && s->use_float)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");

@@ -93,6 +93,43 @@ static adcgs_status decode(const uint8_t *data, size_t size, const adcgs_config 
     return status;
 }
 
+typedef struct anywhere {
+    const uint8_t *data;
+    size_t size;
+} anywhere;
+
+static int64_t read_anywhere(void *user, uint64_t offset, void *buffer, size_t bytes)
+{
+    const anywhere *a = user;
+    FUZZ_REQUIRE(bytes > 0 && offset < a->size && bytes <= a->size - offset);
+    memcpy(buffer, a->data + offset, bytes);
+    return (int64_t)bytes;
+}
+
+/** On demand, from the last segment to the first: the models of the whole stream, if that is one; else any that pass. */
+static void seek(const uint8_t *data, size_t size, const adcgs_config *config)
+{
+    anywhere source = { data, size };
+    adcgs_decoder *d = NULL, *whole = NULL;
+    adcgs_info info, all = { .truncated = 1 };
+    if (adcgs_open_at(&d, read_anywhere, &source, size, config, NULL) != ADCGS_OK)
+        return;
+    FUZZ_REQUIRE(adcgs_get_info(d, &info, sizeof info, NULL) == ADCGS_OK && info.segments >= 1);
+    if (adcgs_open_memory(&whole, data, size, config, NULL) == ADCGS_OK)
+        FUZZ_REQUIRE(adcgs_get_info(whole, &all, sizeof all, NULL) == ADCGS_OK);
+    FUZZ_REQUIRE(all.truncated || all.segments == info.segments);
+    for (int i = info.segments - 1; i >= 0; i--) {
+        uint8_t digest[16], expected[16];
+        const adcgs_status status = adcgs_get_model_digest(d, i, digest, NULL);
+        if (all.truncated)
+            continue;
+        FUZZ_REQUIRE(status == ADCGS_OK && adcgs_get_model_digest(whole, i, expected, NULL) == ADCGS_OK);
+        FUZZ_REQUIRE(memcmp(digest, expected, sizeof digest) == 0);
+    }
+    adcgs_close(&whole);
+    adcgs_close(&d);
+}
+
 /** Level 1, or 2 if the choice says so, in place of a level above: those of level 3 may take a minute. */
 static void tame_level(uint8_t *stream, size_t size, int level)
 {
@@ -113,6 +150,8 @@ static void decode_both(uint8_t *stream, size_t size, const uint8_t choice[8])
     config.strict_end = choice[4] & 1;
     config.memory_limit = choice[4] & 2 ? (uint64_t)choice[5] << 12 : MEMORY_MOST;
     const adcgs_status status = decode(stream, size, &config, steps[choice[6] % 4], choice[4] & 4, &crc);
+    if (config.memory_limit == MEMORY_MOST)
+        seek(stream, size, &config);
     if (choice[7] % 4)
         return;
     config.threads = 3 - config.threads;

@@ -30,7 +30,8 @@ extern "C" {
 ADCGS_API void adcgs_config_init(adcgs_config *config, size_t size);
 
 /**
- * Open a file and decode it completely: all segments, all layers asked for (clause "Stream").
+ * Open a file and decode it completely: all segments, all layers asked for (clause "Stream"). With config.on_demand a file of
+ * several segments is read as adcgs_open_at() does, and stays open.
  * \param out receives the decoder, to be closed with adcgs_close(); NULL on failure
  * \param path name of the file
  * \param config how; NULL: all defaults. Not needed after the call, but for what it points to
@@ -65,6 +66,25 @@ ADCGS_API adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, 
  */
 ADCGS_API adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read, void *user, const adcgs_config *config,
                                          adcgs_error *error);
+
+/**
+ * Open a stream of which any part can be read, as over a network by ranges. Only the header and the index are read, or where
+ * there is none the headers of chunks (clause "Seeking"); a segment is read and decoded when a time or number in it is asked for,
+ * with those that it is predicted from, back to the last key before it, and takes the place of the one before. So a stream of
+ * any length takes no more memory than two of its segments. What was not read was not checked. A stream of one segment, and one
+ * that ends early, is read as adcgs_open_stream() does.
+ *
+ * Functions that take a time or the number of a segment can then fail as adcgs_open_stream() does; the decoder remains usable.
+ * \param out receives the decoder; NULL on failure
+ * \param read gives bytes at a position, as long as the decoder is open
+ * \param user for read
+ * \param bytes size of the stream
+ * \param config how; may be NULL
+ * \param error says why it failed
+ * \return as adcgs_open_stream()
+ */
+ADCGS_API adcgs_status adcgs_open_at(adcgs_decoder **out, adcgs_read_at_fn read, void *user, uint64_t bytes,
+                                     const adcgs_config *config, adcgs_error *error);
 
 /**
  * Close a decoder and free all it owns.
@@ -171,7 +191,7 @@ ADCGS_API adcgs_status adcgs_render_depth(adcgs_decoder *decoder, const adcgs_ca
  * \param error says why it failed
  * \return ADCGS_OK, or ADCGS_ERR_USAGE if there is no such segment
  */
-ADCGS_API adcgs_status adcgs_get_model_digest(const adcgs_decoder *decoder, int segment, uint8_t digest[16], adcgs_error *error);
+ADCGS_API adcgs_status adcgs_get_model_digest(adcgs_decoder *decoder, int segment, uint8_t digest[16], adcgs_error *error);
 
 /**
  * Conformance point S: MD5 of the splats at a time, as adcgs_get_primitives() gives them (clause "Splats").

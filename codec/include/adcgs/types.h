@@ -58,6 +58,12 @@ typedef void (*adcgs_log_fn)(void *user, adcgs_log_level level, const char *text
 typedef int64_t (*adcgs_read_fn)(void *user, void *buffer, size_t bytes);
 
 /**
+ * Gives `bytes` bytes of a stream, those from `offset` on, which are all there. Returns how many it gave, at least 1; a negative
+ * number on failure, which becomes ADCGS_ERR_IO. Called in the thread that called the library.
+ */
+typedef int64_t (*adcgs_read_at_fn)(void *user, uint64_t offset, void *buffer, size_t bytes);
+
+/**
  * How to decode. Set up by adcgs_config_init(), then changed as needed. In every member, zero is the default; members that a
  * caller's headers do not know yet have it, too.
  */
@@ -71,6 +77,7 @@ typedef struct adcgs_config {
     adcgs_pool *pool;      /**< threads to use, not owned: it outlives the decoder; NULL: the decoder has its own */
     adcgs_log_fn log;      /**< takes messages; NULL: there are none */
     void *log_user;        /**< for log */
+    int on_demand;         /**< nonzero: segments of a file are read when a time is asked for (adcgs_open_file()) */
 } adcgs_config;
 
 /** Bytes of a stream by what they hold (clause "Chunks"). */
@@ -84,7 +91,10 @@ typedef struct adcgs_bytes {
     uint64_t total;    /**< the stream as far as it was read: the sum of the others */
 } adcgs_bytes;
 
-/** What a stream holds. Filled by adcgs_get_info(). */
+/**
+ * What a stream holds. Filled by adcgs_get_info(). Where segments are read on demand, anchors, gaussians, static_anchors and
+ * weights are those of the segment at hand, 0 before the first, layers those asked for, and bytes.total is what was read so far.
+ */
 typedef struct adcgs_info {
     size_t size;            /**< bytes of this struct that the library filled; what lies behind them is zero */
     int version_major;      /**< of the bitstream (clause "HEAD") */
