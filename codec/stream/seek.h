@@ -13,7 +13,7 @@ typedef struct adcgs_seek adcgs_seek;
 /**
  * Read the header and find the segments; stream, initialised by the caller and owned by it, receives the header, cameras and
  * metadata that stand before the first segment, and from then on the segment at hand, if any. options is copied; what it points
- * to outlives the seeker. ADCGS_ERR_TRUNCATED if the stream ends before ENDC, of which nothing can be said without reading it all.
+ * to outlives the seeker. ADCGS_ERR_TRUNCATED if the stream ends before ENDC: nothing can be said of it without reading it all.
  */
 adcgs_status adcgs_seek_open(adcgs_seek **out, adcgs_stream *stream, adcgs_read_at_fn read, void *user, uint64_t size,
                              const adcgs_read_options *options, adcgs_error *error);

@@ -121,14 +121,20 @@ static void print_networks(const adcgs_model *m)
     }
 }
 
-static void print_segments(const adcgs_info_report *r)
+static adcgs_status print_segments(const adcgs_info_report *r, adcgs_error *error)
 {
     for (uint32_t i = 0; i < r->stream.n_segments; i++) {
         const adcgs_model *m = &r->stream.segments[i];
         printf("\nsegment %u: %g .. %g s, %u anchors, depth %u, voxel %g, %u Gaussians, %d layers\n", i, m->time_start,
                m->time_end, m->n, m->depth, (double)m->voxel, adcgs_info_count_gaussians(m), m->layers);
+        uint32_t same, refined;
+        ADCGS_TRY(adcgs_info_kept(r, i, &same, &refined, error));
+        if (m->predicted)
+            printf("  predicted from segment %u: %u anchors kept, %u refined, %u new\n", i - 1, same, refined,
+                   m->n - same - refined);
         print_networks(m);
     }
+    return ADCGS_OK;
 }
 
 static void print_extras(const adcgs_info_report *r)
@@ -201,7 +207,7 @@ static adcgs_status print_report(const adcgs_info_report *r, const settings *s, 
         print_components(r);
         if (s->bits)
             print_chunks(r);
-        print_segments(r);
+        ADCGS_TRY(print_segments(r, error));
         print_extras(r);
     }
     return adcgs_cli_flush(error);

@@ -47,7 +47,7 @@ static void json_bytes(adcgs_json *j, const adcgs_info_report *r)
     adcgs_json_close(j);
 }
 
-static void json_segments(adcgs_json *j, const adcgs_info_report *r)
+static adcgs_status json_segments(adcgs_json *j, const adcgs_info_report *r, adcgs_error *error)
 {
     char text[33];
     adcgs_json_open(j, "segments", '[');
@@ -62,6 +62,11 @@ static void json_segments(adcgs_json *j, const adcgs_info_report *r)
         adcgs_json_int(j, "depth", m->depth);
         adcgs_json_int(j, "layers", m->layers);
         adcgs_json_string(j, "digest", text);
+        uint32_t same, refined;
+        ADCGS_TRY(adcgs_info_kept(r, i, &same, &refined, error));
+        adcgs_json_bool(j, "predicted", m->predicted);
+        adcgs_json_int(j, "kept", same);
+        adcgs_json_int(j, "refined", refined);
         adcgs_json_open(j, "networks", '{');
         for (int role = 0; role < ADCGS_ROLES; role++)
             if (m->net[role].present)
@@ -70,6 +75,7 @@ static void json_segments(adcgs_json *j, const adcgs_info_report *r)
         adcgs_json_close(j);
     }
     adcgs_json_close(j);
+    return ADCGS_OK;
 }
 
 static void json_extras(adcgs_json *j, const adcgs_info_report *r)
@@ -101,7 +107,11 @@ adcgs_status adcgs_info_print_json(const adcgs_info_report *r, adcgs_error *erro
     adcgs_json_open(&j, NULL, '{');
     json_header(&j, r);
     json_bytes(&j, r);
-    json_segments(&j, r);
+    const adcgs_status status = json_segments(&j, r, error);
+    if (status != ADCGS_OK) {
+        adcgs_json_clear(&j);
+        return status;
+    }
     json_extras(&j, r);
     adcgs_json_open(&j, "chunks", '[');
     for (size_t i = 0; i < r->n_chunks; i++) {

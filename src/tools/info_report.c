@@ -3,6 +3,7 @@
 #include "tools/info_report.h"
 
 #include "base/digest.h"
+#include "model/keep.h"
 #include "model/model_priv.h"
 
 void adcgs_info_list_components(const adcgs_bytes *b, adcgs_info_component out[ADCGS_INFO_COMPONENTS])
@@ -22,6 +23,22 @@ uint32_t adcgs_info_count_gaussians(const adcgs_model *m)
         for (unsigned bits = m->mask[i]; bits; bits &= bits - 1)
             n++;
     return n;
+}
+
+adcgs_status adcgs_info_kept(const adcgs_info_report *r, uint32_t segment, uint32_t *same, uint32_t *refined, adcgs_error *error)
+{
+    const adcgs_model *now = &r->stream.segments[segment];
+    adcgs_keep kept = { .n = 0 };
+    *same = *refined = 0;
+    if (!now->predicted)
+        return ADCGS_OK;
+    const adcgs_status status = adcgs_kept_find(&kept, now - 1, now, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < now[-1].n; i++) {
+        *same += kept.mode[i] == ADCGS_KEEP_SAME;
+        *refined += kept.mode[i] == ADCGS_KEEP_REFINED;
+    }
+    adcgs_kept_clear(&kept, NULL);
+    return status;
 }
 
 void adcgs_info_digest(const adcgs_info_report *r, uint32_t segment, char text[33])

@@ -31,6 +31,9 @@ typedef struct adcgs_info_component {
 
 void adcgs_info_list_components(const adcgs_bytes *bytes, adcgs_info_component out[ADCGS_INFO_COMPONENTS]);
 uint32_t adcgs_info_count_gaussians(const adcgs_model *model);
+/** What a predicted segment has of the one before: anchors as they were, anchors with differences. Nothing of others. */
+adcgs_status adcgs_info_kept(const adcgs_info_report *report, uint32_t segment, uint32_t *same, uint32_t *refined,
+                             adcgs_error *error);
 /** The digest of a segment's model in hexadecimal digits. */
 void adcgs_info_digest(const adcgs_info_report *report, uint32_t segment, char text[33]);
 

@@ -3,6 +3,8 @@
 #include "train/follow.h"
 
 #include "fmodel/from_model.h"
+#include "train/follow_bodies.h"
+#include "train/initialise.h"
 
 #include <math.h>
 
@@ -73,12 +75,14 @@ static adcgs_status drop_dead(adcgs_fmodel *f, adcgs_error *error)
     return status;
 }
 
-adcgs_status adcgs_follow(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config, double duration,
-                          adcgs_cpu_level cpu, adcgs_error *error)
+adcgs_status adcgs_follow(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config, adcgs_stereo *found,
+                          double duration, adcgs_cpu_level cpu, adcgs_error *error)
 {
     const double then = before->time_end - before->time_start, ratio = then > 0 && duration > 0 ? duration / then : 1;
     ADCGS_TRY(adcgs_fmodel_from_model(out, before, &config->shape, config->seed, cpu, error));
     go_on_living(*out, 1, ratio);
+    ADCGS_TRY(adcgs_follow_bodies(*out, found, error));
     start_time_table(*out);
+    adcgs_set_poses(*out, found);
     return drop_dead(*out, error);
 }

@@ -7,10 +7,14 @@
 #define ADCGS_TRAIN_FOLLOW_H
 
 #include "fmodel/fmodel.h"
+#include "stereo/stereo.h"
 #include "train/config.h"
 
-/** The float model that goes on with the model before, which has the times of its part, for a part of this many seconds. */
-adcgs_status adcgs_follow(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config, double duration,
-                          adcgs_cpu_level cpu, adcgs_error *error);
+/**
+ * The float model that goes on with the model before, which has the times of its part, for a part of this many seconds. found:
+ * what matching found in this part, of which bodies get the model's numbers (follow_bodies.h).
+ */
+adcgs_status adcgs_follow(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config, adcgs_stereo *found,
+                          double duration, adcgs_cpu_level cpu, adcgs_error *error);
 
 #endif

@@ -124,13 +124,12 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const adcgs_start_points *c
     return status;
 }
 
-/** Bodies go as they were followed. */
-static void set_poses(adcgs_fmodel *f, const adcgs_stereo *found)
+void adcgs_set_poses(adcgs_fmodel *f, const adcgs_stereo *found)
 {
     const int rows = f->params.time_rows;
     adcgs_bodies_recentre(f);
     for (int b = 1; b <= (int)found->n_bodies; b++) /* others, which only other segments have, stay at rest */
-        for (int row = 0; row < rows; row++) {
+        for (int row = 0; found->body[b - 1].pose && row < rows; row++) {
             const float t = rows > 1 ? (float)row / (float)(rows - 1) : 0;
             const adcgs_stereo_pose pose = adcgs_stereo_pose_at(found, (uint32_t)b - 1, t);
             adcgs_bodies_set_pose(f, b, row, pose.q, found->body[b - 1].pivot, pose.way);
@@ -145,7 +144,7 @@ adcgs_status adcgs_initialise(adcgs_fmodel **out, const adcgs_scene *scene, cons
     if (status == ADCGS_OK)
         status = make_anchors(out, &points, config, adcgs_half_life(config, found), error);
     if (status == ADCGS_OK)
-        set_poses(*out, found);
+        adcgs_set_poses(*out, found);
     adcgs_start_points_clear(&points);
     return status;
 }

@@ -42,6 +42,8 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
     }
     if (status == ADCGS_OK)
         status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, t->f->follows, error);
+    for (uint32_t b = 0; t->f->follows && b < t->stereo.n_bodies; b++)
+        t->curriculum.known |= (uint16_t)((t->stereo.body[b].pose != NULL) << b);
     adcgs_free(NULL, times);
     if (status == ADCGS_OK)
         status = adcgs_exposure_create(&t->exposure, t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, t->scene->n_times <= 1,
@@ -62,15 +64,12 @@ static adcgs_status create_viewpoints(adcgs_trainer *t, adcgs_error *error)
     return status;
 }
 
-/** Go on with the model before. Bodies are those that there are. */
+/** Go on with the model before. */
 static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_error *error)
 {
     t->config.params = before->params;
     adcgs_model_digest(before, t->before);
-    t->stereo.n_bodies = 0;
-    for (uint32_t i = 0; i < t->stereo.n_moving; i++)
-        t->stereo.moving[i].body = 0;
-    return adcgs_follow(&t->f, before, &t->config, t->scene->duration, t->cpu, error);
+    return adcgs_follow(&t->f, before, &t->config, &t->stereo, t->scene->duration, t->cpu, error);
 }
 
 static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, adcgs_error *error)

@@ -48,13 +48,15 @@ static void copy_row(adcgs_fmodel *f, int to, int from)
     memcpy(z + (size_t)to * columns, z + (size_t)from * columns, width * sizeof *z); /* poses are known, or stand still */
 }
 
-/** Bodies go on from two rows before as they went. */
-static void go_on(adcgs_fmodel *f, int to)
+/** Bodies go on from two rows before as they went, unless their poses are known. */
+static void go_on(adcgs_fmodel *f, int to, unsigned known)
 {
-    const size_t width = f->params.time_width, columns = (size_t)adcgs_fmodel_time_columns(&f->params);
-    float *z = f->param[ADCGS_P_TIME].p + (size_t)to * columns;
-    for (size_t i = width; i < columns; i++)
-        z[i] = 2 * z[i - columns] - z[i - 2 * columns];
+    const size_t columns = (size_t)adcgs_fmodel_time_columns(&f->params);
+    for (int b = 0; b < f->params.bodies; b++) {
+        float *z = f->param[ADCGS_P_TIME].p + (size_t)to * columns + adcgs_pose_at(&f->params, b + 1);
+        for (size_t i = 0; !(known >> b & 1) && i < ADCGS_POSE_N; i++)
+            z[i] = 2 * z[i - columns] - z[i - 2 * columns];
+    }
 }
 
 void adcgs_curriculum_grow(adcgs_curriculum *w, double fraction, adcgs_fmodel *f)
@@ -75,7 +77,7 @@ void adcgs_curriculum_grow(adcgs_curriculum *w, double fraction, adcgs_fmodel *f
             if (begun || w->forward)
                 copy_row(f, w->last + 1, w->last);
             if (w->forward)
-                go_on(f, w->last + 1);
+                go_on(f, w->last + 1, w->known);
         }
     }
     w->n = n;

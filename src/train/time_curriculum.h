@@ -18,6 +18,7 @@ typedef struct adcgs_curriculum_view {
 typedef struct adcgs_curriculum {
     adcgs_curriculum_view *views; /* [n_views] by their distance from where it begins */
     int forward;              /* from the beginning of time, not from its middle */
+    uint16_t known;           /* bit b: body b + 1 has its poses already */
     uint32_t n_views;
     uint32_t n;               /* how many of them are trained on; 0: not begun */
     int32_t first, last;      /* rows of the time table that these have reached */

@@ -7,8 +7,11 @@
 
 #include "encode/encode.h"
 #include "encode/quantise.h"
+#include "camera/rotation.h"
+#include "fmodel/bodies.h"
 #include "fmodel/from_model.h"
 #include "model/keep.h"
+#include "train/follow_bodies.h"
 #include "train/release.h"
 #include "train/trainer.h"
 #include "train/views.h"
@@ -187,6 +190,112 @@ static void what_has_changed_learns(void **state)
     adcgs_model_clear(&before, NULL);
 }
 
+/* ---- Bodies ---- */
+
+/** R(q) (x - pivot) + pivot + way. */
+static void place(const adcgs_stereo_pose *p, const double pivot[3], const double x[3], double out[3])
+{
+    double r[12];
+    adcgs_rotation_to_pose(p->q, r);
+    for (int i = 0; i < 3; i++) {
+        out[i] = pivot[i] + p->way[i];
+        for (int a = 0; a < 3; a++)
+            out[i] += r[4 * i + a] * (x[a] - pivot[a]);
+    }
+}
+
+/** Where a body that turns about an axis of its own and flies is after t. */
+static adcgs_stereo_pose truth(int body, double t)
+{
+    static const double turn[2][3] = { { 0.3, -0.8, 0.5 }, { -0.2, 0.1, 0.9 } };
+    static const double way[2][3] = { { 0.2, 0.05, -0.1 }, { -0.3, 0.1, 0 } };
+    adcgs_stereo_pose p;
+    adcgs_rotation_exp(turn[body], t, p.q);
+    for (int a = 0; a < 3; a++)
+        p.way[a] = way[body][a] * t;
+    return p;
+}
+
+enum { FOUND = 3, SEEN = 4 };
+
+/**
+ * Two bodies rest somewhere and were left at t = 1. They and a third are found, in another order, by points that rest where they
+ * are at t = 1 + 2/3, with poses from there. Each is recognised, and takes what rests where it rests in the model where it goes.
+ */
+static void bodies_are_found_again(void **state)
+{
+    static const uint32_t pos[][3] = { { 10, 10, 10 }, { 14, 12, 13 }, { 40, 44, 40 }, { 46, 46, 47 } };
+    static const double pivot[3] = { 0.1, -0.2, 0.05 }, zero[3] = { 0, 0, 0 };
+    const float origin[3] = { -0.5f, -0.5f, -0.5f };
+    adcgs_train_config c = follow_config();
+    adcgs_fmodel *f;
+    (void)state;
+    c.params.bodies = 4;
+    c.params.time_rows = 2;
+    c.shape.depth = 6;
+    assert_int_equal(adcgs_fmodel_create(&f, &c.params, &c.shape, origin, 1.0f / 64, pos, 4, 1, &error), ADCGS_OK);
+    for (uint32_t i = 0; i < 4; i++)
+        f->body[i] = i < 2 ? 3 : 1; /* numbers 2 and 4 are free */
+    adcgs_bodies_recentre(f);
+    for (int b = 0; b < 2; b++) {
+        const adcgs_stereo_pose left = truth(b, 1);
+        adcgs_bodies_set_pose(f, b ? 1 : 3, 1, left.q, zero, left.way);
+    }
+
+    adcgs_stereo found = { .n_moments = SEEN, .n_bodies = FOUND, .n_moving = FOUND };
+    found.moment = adcgs_alloc(NULL, SEEN, sizeof *found.moment, &error);
+    found.body = adcgs_alloc(NULL, FOUND, sizeof *found.body, &error);
+    found.moving = adcgs_alloc(NULL, FOUND, sizeof *found.moving, &error);
+    for (int m = 0; m < SEEN; m++)
+        found.moment[m] = (float)m / (SEEN - 1);
+    for (int i = 0; i < FOUND; i++) {
+        const int b = i == 0 ? 1 : i == 2 ? 0 : -1; /* the one in the middle is new */
+        found.body[i].pose = adcgs_alloc(NULL, SEEN, sizeof *found.body[i].pose, &error);
+        memcpy(found.body[i].pivot, pivot, sizeof pivot);
+        found.moving[i] = (adcgs_stereo_point){ .x = { 0.4, 0.4, -0.4 }, .moves = 1, .body = (uint8_t)(i + 1) };
+        for (int m = 0; m < SEEN; m++) {
+            adcgs_stereo_pose *p = &found.body[i].pose[m];
+            const adcgs_stereo_pose now = truth(b < 0 ? 0 : b, 1 + m / (SEEN - 1.0)), then = truth(b < 0 ? 0 : b, 1 + 2 / 3.0);
+            const double back[4] = { then.q[0], -then.q[1], -then.q[2], -then.q[3] };
+            double at[3];
+            /* x rests at T(then) x0: it goes T(now) T(then)^-1, of which the way is that of the pivot. */
+            const adcgs_stereo_pose inverse = { { back[0], back[1], back[2], back[3] }, { 0, 0, 0 } };
+            double moved[3] = { pivot[0] - then.way[0], pivot[1] - then.way[1], pivot[2] - then.way[2] }, x0[3];
+            place(&inverse, zero, moved, x0);
+            place(&now, zero, x0, at);
+            adcgs_rotation_multiply(now.q, back, p->q);
+            for (int a = 0; a < 3; a++)
+                p->way[a] = at[a] - pivot[a];
+        }
+        if (b >= 0) { /* its point is where the middle of its anchors is at the first moment */
+            const float *centre = f->centre[b ? 0 : 2];
+            const double x[3] = { (double)centre[0], (double)centre[1], (double)centre[2] };
+            const adcgs_stereo_pose left = truth(b, 1);
+            place(&left, zero, x, found.moving[i].x);
+        }
+    }
+
+    assert_int_equal(adcgs_follow_bodies(f, &found, &error), ADCGS_OK);
+    assert_int_equal(found.n_bodies, 4);
+    assert_int_equal(found.moving[0].body, 1);
+    assert_int_equal(found.moving[1].body, 2);
+    assert_int_equal(found.moving[2].body, 3);
+    assert_true(found.body[0].pose && found.body[1].pose && found.body[2].pose && !found.body[3].pose);
+    for (int b = 0; b < 2; b++)
+        for (int m = 0; m < SEEN; m++) {
+            const adcgs_stereo_body *body = &found.body[b ? 0 : 2];
+            const adcgs_stereo_pose wanted = truth(b, 1 + m / (SEEN - 1.0));
+            const double x[3] = { 0.03, 0.21, -0.17 };
+            double here[3], there[3];
+            place(&body->pose[m], body->pivot, x, here);
+            place(&wanted, zero, x, there);
+            for (int a = 0; a < 3; a++)
+                assert_float_equal(here[a], there[a], 1e-5);
+        }
+    adcgs_stereo_clear(&found);
+    adcgs_fmodel_free(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -194,6 +303,7 @@ int main(void)
         cmocka_unit_test(what_is_settled_is_kept),
         cmocka_unit_test(stopping_changes_nothing),
         cmocka_unit_test(what_has_changed_learns),
+        cmocka_unit_test(bodies_are_found_again),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }
