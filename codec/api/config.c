@@ -58,6 +58,7 @@ adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size
         return adcgs_fail(error, ADCGS_ERR_USAGE, "info: size is %zu, expected %zu", size, sizeof own);
     memset(&own, 0, sizeof own); /* padding, too */
     adcgs_stream_info(&decoder->stream, &own);
+    own.faults = (int)ADCGS_MIN(decoder->faults, (uint32_t)INT32_MAX);
     if (decoder->seek)
         tell_of_demand(decoder, &own);
     own.size = ADCGS_MIN(size, sizeof own);

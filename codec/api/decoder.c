@@ -59,6 +59,8 @@ static adcgs_status open_seek(adcgs_decoder *d, const origin *from, const adcgs_
 
 static adcgs_status open_stream(adcgs_decoder *d, origin *from, const adcgs_read_options *options, adcgs_error *error)
 {
+    if (options->conceal)
+        return adcgs_stream_salvage(&d->stream, from->read_at, from->user, from->size, options, &d->faults, error);
     if (from->read_at)
         ADCGS_TRY(open_seek(d, from, options, error));
     if (d->seek)
@@ -84,6 +86,7 @@ static adcgs_status open_decoder(adcgs_decoder *d, origin *from, const adcgs_con
         .log = d->log,
         .layers = config->layers,
         .strict_end = config->strict_end,
+        .conceal = config->conceal != 0 && from->read_at,
     };
     ADCGS_TRY(open_stream(d, from, &options, error));
     say_opened(d);

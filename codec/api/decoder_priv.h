@@ -7,6 +7,7 @@
 #include "base/pool.h"
 #include "render/render.h"
 #include "splat/splat.h"
+#include "stream/salvage.h"
 #include "stream/seek.h"
 
 #include <adcgs/decoder.h>
@@ -21,6 +22,7 @@ struct adcgs_decoder {
     adcgs_log log;
     adcgs_stream stream;
     adcgs_seek *seek;       /**< reads its segments on demand; NULL: all are there */
+    uint32_t faults;        /**< that were concealed */
     FILE *file;             /**< that it reads from, if that is a file opened here */
     adcgs_splat *splat;     /**< of splat_segment; NULL until the first use */
     uint32_t splat_segment;

@@ -156,10 +156,14 @@ adcgs_status adcgs_meta_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory
     stream->meta = adcgs_alloc(memory, n, sizeof *stream->meta, p->error);
     if (!stream->meta)
         return adcgs_alloc_status(p->error);
-    stream->n_meta = n;
-    for (uint32_t i = 0; i < n; i++) {
-        ADCGS_TRY(adcgs_parse_text(p, "key", 1, META_KEY_MAX, memory, &stream->meta[i].key));
-        ADCGS_TRY(adcgs_parse_text(p, "value", 0, META_VALUE_MAX, memory, &stream->meta[i].value));
+    for (; stream->n_meta < n; stream->n_meta++) { /* which counts those that are complete */
+        adcgs_meta *m = &stream->meta[stream->n_meta];
+        ADCGS_TRY(adcgs_parse_text(p, "key", 1, META_KEY_MAX, memory, &m->key));
+        const adcgs_status status = adcgs_parse_text(p, "value", 0, META_VALUE_MAX, memory, &m->value);
+        if (status != ADCGS_OK) {
+            adcgs_free(memory, m->key);
+            return status;
+        }
     }
     return adcgs_parse_end(p);
 }

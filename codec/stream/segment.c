@@ -228,8 +228,11 @@ static adcgs_status check_slices(adcgs_segment *s, const adcgs_parse *p, slice *
         if (one->offset > p->r.size || one->bytes > p->r.size - one->offset)
             break;
         adcgs_parse_trace(p, 8 * (uint64_t)one->offset, "slice", "%u bytes", one->bytes);
-        if (adcgs_crc32c(0, p->r.data + one->offset, one->bytes) != one->crc)
-            return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment %u, slice %u: checksum is wrong", p->chunk,
+        if (adcgs_crc32c(0, p->r.data + one->offset, one->bytes) == one->crc)
+            continue;
+        if (s->options->conceal)
+            break;
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment %u, slice %u: checksum is wrong", p->chunk,
                               segment_number(s), first + *usable);
     }
     return ADCGS_OK;

@@ -65,6 +65,7 @@ typedef struct adcgs_read_options {
     adcgs_log log;
     int layers;            /**< 1..5, 0: all */
     int strict_end;
+    int conceal;           /**< slices behind one that is damaged are as if they had not come */
 } adcgs_read_options;
 
 /** Called for each line of the trace (spec "Trace"), in the caller's thread: absolute bit position, name, value as text. */

@@ -28,7 +28,7 @@ typedef struct settings {
     double opened; /**< when opening the input began, in seconds */
 } settings;
 
-#define OPTION_COUNT 26
+#define OPTION_COUNT 27
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -78,9 +78,19 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; frames do not depend on it",
          adcgs_cpu_names, NULL},
+        {"conceal", 0, ADCGS_OPTION_FLAG, &s->config.conceal, 0, 0, NULL,
+         "show what is whole of a damaged file, and say what is not", NULL, NULL},
         {"strict", 0, ADCGS_OPTION_FLAG, &s->config.strict_end, 0, 0, NULL, "refuse a stream that ends early", NULL, NULL},
     };
     memcpy(options, table, sizeof table);
+}
+
+/** A fault that is concealed. */
+static void tell_fault(void *user, adcgs_log_level level, const char *text)
+{
+    const settings *s = user;
+    if (level == ADCGS_LOG_WARNING)
+        adcgs_cli_note(s->cli, "%s: %s", s->input, text);
 }
 
 static adcgs_status open_input(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
@@ -297,6 +307,12 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     if (s->times && adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, or A:B with A not after B", s->times);
     s->request.has_times = s->times != NULL;
+    if (s->config.conceal && !strcmp(s->input, "-"))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: what comes in order cannot be looked at again");
+    if (s->config.conceal) {
+        s->config.log = tell_fault;
+        s->config.log_user = s;
+    }
     s->config.on_demand = s->times || s->play; /* what a whole clip is made of is read, and checked, as a whole */
     ADCGS_TRY(check_play(s, error));
     if (s->half && s->use_float)

@@ -9,6 +9,7 @@
 #include "cli/text.h"
 #include "model/model_priv.h"
 #include "stream/input.h"
+#include "tools/info_check.h"
 #include "tools/info_points.h"
 #include "tools/info_report.h"
 
@@ -16,8 +17,8 @@
 #include <stdlib.h>
 
 typedef struct settings {
-    const char *input, *points;
-    int json, bits, trace, digest;
+    const char *input, *points, *repair;
+    int json, bits, trace, digest, check;
 } settings;
 
 static void add_chunk(adcgs_info_report *r, uint64_t bit, const char *type)
@@ -213,6 +214,17 @@ static adcgs_status print_report(const adcgs_info_report *r, const settings *s, 
     return adcgs_cli_flush(error);
 }
 
+/** Exit status 1: there are faults. */
+static int check(const adcgs_cli *cli, const settings *s, adcgs_error *error)
+{
+    uint32_t faults = 0;
+    adcgs_status status = adcgs_info_check(s->input, s->repair, &faults, error);
+    if (status == ADCGS_OK)
+        status = adcgs_cli_flush(error);
+    fflush(stdout);
+    return adcgs_cli_leave(cli, status != ADCGS_OK ? adcgs_cli_fail(cli, error) : faults > 0);
+}
+
 int main(int argc, char **argv)
 {
     settings s = { .input = NULL };
@@ -224,6 +236,10 @@ int main(int argc, char **argv)
         { "digest", 'd', ADCGS_OPTION_FLAG, &s.digest, 0, 0, NULL, "print the digest of each segment's model", NULL, NULL },
         { "points", 0, ADCGS_OPTION_STRING, &s.points, 0, 0, "FILE",
           "write the anchors' positions and colours, as .ply or\n.drc (Draco), instead of a report", NULL, NULL },
+        { "check", 0, ADCGS_OPTION_FLAG, &s.check, 0, 0, NULL, "name all faults of a file, and what can be used of it", NULL,
+          NULL },
+        { "repair", 0, ADCGS_OPTION_STRING, &s.repair, 0, 0, "FILE", "the same, and write what can be used to this file", NULL,
+          NULL },
     };
     const adcgs_cli cli = { .program = "adcgs-info", .operands = "FILE|-",
                             .summary = "Says what an adcgs stream holds and where its bytes are.", .options = options,
@@ -237,6 +253,10 @@ int main(int argc, char **argv)
     r.trace = s.trace && !s.json;
     if (s.points && (s.json || s.bits || s.trace || s.digest))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--points goes with no other option");
+    if ((s.check || s.repair) && (s.json || s.bits || s.trace || s.digest || s.points))
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--check and --repair go with no other option");
+    if (s.check || s.repair)
+        return check(&cli, &s, &error);
     adcgs_status status = read_report(&r, &s, &error);
     if (status == ADCGS_OK)
         status = print_report(&r, &s, &error);

@@ -44,7 +44,8 @@ static uint32_t find_candidates(const adcgs_trainer *t, adcgs_ranked *list)
     uint32_t n = 0;
     for (uint32_t i = 0; i < slots; i++) {
         const float w = t->stats.weight[i];
-        if (adcgs_anchor_of(t->f, i) >= t->f->n || t->f->keep[i] == 0 || !(w > 1))
+        const uint32_t anchor = adcgs_anchor_of(t->f, i);
+        if (anchor >= t->f->n || t->f->learns[anchor] == 0 || t->f->keep[i] == 0 || !(w > 1))
             continue;
         const float score = t->stats.significance[i] / w;
         if (score > t->config.densify_threshold)

@@ -8,14 +8,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { TIMES = 3, MOMENTS = 16, CAMERAS = 4 };
+enum { TIMES = 3, MOMENTS = 16, CAMERAS = 4, ANCHOR_BITS = 180 };
 #define VISIBLE 0.02f /* of a colour: by so much an anchor's part of the picture is another than what it draws */
 #define SEEN 2.0f     /* pixels of all views of a moment that an anchor makes up, below which these do not tell */
+#define WORTH 4.0     /* times that the loss falls by more than squares of errors tell */
 
-/** At each of some moments: what the views of it miss where an anchor is, and how many of their pixels it makes up. */
+/** At each of some moments, first the earliest: what its views miss where an anchor is, and how many pixels it makes up. */
 typedef struct moments {
     uint32_t n;            /* moments */
     size_t anchors;
+    float views[MOMENTS];  /* that were asked */
     float (*missing)[3];   /* [n][anchors] sums over pixels */
     float *pixels;         /* [n][anchors] */
 } moments;
@@ -74,7 +76,7 @@ static adcgs_status add_moment(adcgs_trainer *t, moments *m, uint32_t index, adc
             ADCGS_TRY(add_view(t, m, (index + i) % t->n_views, error));
             asked++;
         }
-    m->n++;
+    m->views[m->n++] = (float)asked;
     return ADCGS_OK;
 }
 
@@ -84,38 +86,93 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** The mean that is missing of an anchor's pixels in the median moment of those that tell, in the channel that misses most. */
-static float median_missing(const moments *m, uint32_t anchor)
+/** What a moment's views miss where an anchor is, in the channel that misses most; 0 where they do not tell. */
+static float missing_at(const moments *m, uint32_t moment, uint32_t anchor)
 {
-    float off[MOMENTS];
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < m->n; i++) {
-        const size_t at = i * m->anchors + anchor;
-        if (m->pixels[at] < SEEN)
-            continue;
-        off[n] = 0;
-        for (int c = 0; c < 3; c++)
-            off[n] = fmaxf(off[n], fabsf(m->missing[at][c]) / m->pixels[at]);
-        n++;
-    }
-    qsort(off, n, sizeof *off, ascending);
-    return n ? off[n / 2] : 0;
+    const size_t at = moment * m->anchors + anchor;
+    float off = 0;
+    for (int c = 0; m->pixels[at] >= SEEN && c < 3; c++)
+        off = fmaxf(off, fabsf(m->missing[at][c]) / m->pixels[at]);
+    return off;
 }
 
-/** Those that stand still, or those that move. */
-static adcgs_status release(adcgs_trainer *t, int moving, adcgs_error *error)
+/** The same less what is missed at the earliest moment, which the segment before has learnt: its errors are no news. */
+static float change_at(const moments *m, uint32_t moment, uint32_t anchor)
+{
+    const size_t at = moment * m->anchors + anchor;
+    float off = 0;
+    if (m->pixels[anchor] < SEEN)
+        return missing_at(m, moment, anchor);
+    for (int c = 0; m->pixels[at] >= SEEN && c < 3; c++)
+        off = fmaxf(off, fabsf(m->missing[at][c] / m->pixels[at] - m->missing[anchor][c] / m->pixels[anchor]));
+    return off;
+}
+
+/** What moments say of an anchor: what they miss, in the median and the most, and how many pixels of a view it makes up. */
+typedef struct verdict {
+    float median, most, pixels;
+} verdict;
+
+/** Of what stands still it counts what is missed, and has not been missed at the earliest moment. */
+static verdict judge(const moments *m, uint32_t anchor, int moves)
+{
+    verdict v = { 0, 0, 0 };
+    float off[MOMENTS];
+    uint32_t n = 0;
+    for (uint32_t i = 1; i < m->n; i++) {
+        const float pixels = m->pixels[i * m->anchors + anchor], now = missing_at(m, i, anchor);
+        if (pixels < SEEN)
+            continue;
+        off[n] = moves ? now : fminf(now, change_at(m, i, anchor));
+        v.most = fmaxf(v.most, off[n++]);
+        v.pixels += pixels / m->views[i];
+    }
+    qsort(off, n, sizeof *off, ascending);
+    v.median = n ? off[n / 2] : 0;
+    v.pixels /= n ? (float)n : 1;
+    return v;
+}
+
+/** Whether what is missed can be seen, and is worth the bits of a new anchor. */
+static int is_worth(const adcgs_trainer *t, float missing, float pixels)
+{
+    const double area = (double)t->views[0].view.width * t->views[0].view.height;
+    const double gain = WORTH * (double)missing * (double)missing * (double)pixels / area;
+    return missing > VISIBLE && gain > ANCHOR_BITS * adcgs_price_of_bit(t);
+}
+
+/** Those that stand still, or those that move. *idle: nothing moves, and nothing has become another at any moment. */
+static void choose(adcgs_trainer *t, const moments *m, int moving, int *idle)
 {
     adcgs_fmodel *f = t->f;
+    *idle = 1;
+    for (uint32_t i = 0; i < f->n; i++) {
+        const verdict v = judge(m, i, moving);
+        *idle &= f->moving[i] == 0 && f->learns[i] == 0 && !is_worth(t, v.most, v.pixels);
+        if ((f->moving[i] != 0) == moving && is_worth(t, v.median, v.pixels))
+            f->learns[i] = 1;
+    }
+}
+
+static uint32_t earliest(const adcgs_trainer *t)
+{
+    uint32_t first = 0;
+    for (uint32_t i = 1; i < t->n_views; i++)
+        first = t->views[i].t < t->views[first].t ? i : first;
+    return first;
+}
+
+static adcgs_status release(adcgs_trainer *t, int moving, int *idle, adcgs_error *error)
+{
     const uint32_t n = t->n_views < MOMENTS ? t->n_views : MOMENTS;
     moments m;
-    ADCGS_TRY(moments_init(&m, f, error));
+    ADCGS_TRY(moments_init(&m, t->f, error));
     t->pass->pull = NULL;
-    adcgs_status status = ADCGS_OK;
-    for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
+    adcgs_status status = add_moment(t, &m, earliest(t), error);
+    for (uint32_t i = 1; status == ADCGS_OK && i < n; i++)
         status = add_moment(t, &m, (uint32_t)(((uint64_t)2 * i + 1) * t->n_views / (2 * n)), error);
-    for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
-        if (f->learns[i] == 0 && (f->moving[i] != 0) == moving && median_missing(&m, i) > VISIBLE)
-            f->learns[i] = 1;
+    if (status == ADCGS_OK)
+        choose(t, &m, moving, idle);
     moments_clear(&m);
     return status;
 }
@@ -129,7 +186,12 @@ static double moment_of(const adcgs_train_config *c, int time)
 
 adcgs_status adcgs_release_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
+    int idle = 0;
     if (!t->f->follows || t->released >= TIMES || progress < moment_of(&t->config, t->released))
         return ADCGS_OK;
-    return release(t, t->released++ > 0, error);
+    ADCGS_TRY(release(t, t->released > 0, &idle, error));
+    if (idle && t->released == 0) /* there is nothing to learn: the run is over */
+        t->iteration = t->config.iterations;
+    t->released++;
+    return ADCGS_OK;
 }

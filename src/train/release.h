@@ -8,7 +8,10 @@
 
 #include "train/state.h"
 
-/** Release them, at the moments of a run when that is asked. */
+/**
+ * Release them, at the moments of a run when that is asked. Where there is nothing to learn at all, the run is at its end: its
+ * iteration is the last.
+ */
 adcgs_status adcgs_release_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
 
 #endif

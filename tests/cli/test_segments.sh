@@ -37,6 +37,31 @@ for t in 0 0.1 0.15 0.23; do
     ./adcgs-dec "$dir/two.adcgs" --camera 0 -t $t --md5 >/dev/null 2>"$dir/err" || { bad "time $t"; cat "$dir/err"; }
 done
 
+# The second is predicted from the first, unless all are keys.
+./adcgs-info "$dir/two.adcgs" >"$dir/out"
+grep -q '^  predicted from segment 0: ' "$dir/out" || { bad "nothing is predicted"; cat "$dir/out"; }
+enc keys --segment 0.1 --key 0
+! ./adcgs-info "$dir/keys.adcgs" | grep -q predicted || bad "--key 0 has a predicted segment"
+[ "$(stat -c %s "$dir/two.adcgs")" -lt "$(stat -c %s "$dir/keys.adcgs")" ] || bad "predicting does not pay"
+expect 2 "give --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --key 1
+
+# One byte of the second is wrong: it is refused by name, but not where it is not asked for; the first can be shown, and saved.
+cp "$dir/two.adcgs" "$dir/hurt.adcgs"
+at=$(./adcgs-info --bits "$dir/two.adcgs" | awk '$1 == "FEA0" && $2 == 1 { print $3 + 40 }')
+printf '\377' | dd of="$dir/hurt.adcgs" bs=1 seek="$at" conv=notrunc 2>/dev/null
+expect 4 "FEA0" ./adcgs-dec "$dir/hurt.adcgs" --md5
+expect 4 "FEA0" ./adcgs-dec "$dir/hurt.adcgs" -t 0.2 --camera 0 --md5
+expect 0 "" ./adcgs-dec "$dir/hurt.adcgs" -t 0.05 --camera 0 --md5
+expect 0 "segment 1 is lost" ./adcgs-dec "$dir/hurt.adcgs" --conceal --md5
+expect 2 "needs a file" ./adcgs-dec - --conceal --md5
+expect 0 "" ./adcgs-info --check "$dir/two.adcgs"
+./adcgs-info --repair "$dir/saved.adcgs" "$dir/hurt.adcgs" >"$dir/out"
+[ $? -eq 1 ] && grep -q 'segment 1 is lost' "$dir/out" && grep -q '2 faults; 1 segment can' "$dir/out" ||
+    { bad "--repair does not say what it finds"; cat "$dir/out"; }
+[ "$(spans saved.adcgs)" = "0 0 0.1" ] || bad "what was saved is not the first segment"
+expect 0 "" ./adcgs-info --check "$dir/saved.adcgs"
+expect 2 "go with no other" ./adcgs-info --check --json "$dir/two.adcgs"
+
 # One that is as long as the scene is none.
 enc whole
 enc long --segment 9

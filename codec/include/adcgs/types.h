@@ -77,6 +77,7 @@ typedef struct adcgs_config {
     adcgs_pool *pool;      /**< threads to use, not owned: it outlives the decoder; NULL: the decoder has its own */
     adcgs_log_fn log;      /**< takes messages; NULL: there are none */
     void *log_user;        /**< for log */
+    int conceal;           /**< nonzero: of a damaged stream what is whole is used, and the log told what is not */
     int on_demand;         /**< nonzero: segments of a file are read when a time is asked for (adcgs_open_file()) */
 } adcgs_config;
 
@@ -121,6 +122,7 @@ typedef struct adcgs_info {
     char units[32];         /**< of the world: "metre" or "unknown" */
     adcgs_bytes bytes;      /**< where the stream's bytes are */
     int metadata;           /**< texts that the stream stores, for adcgs_get_metadata_key() */
+    int faults;             /**< that were concealed, where config.conceal asked for it */
 } adcgs_info;
 
 /** Longest name of a camera, bytes without the zero. */

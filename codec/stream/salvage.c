@@ -1,0 +1,321 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Reading a damaged stream. */
+#include "stream/salvage.h"
+
+#include "base/digest.h"
+#include "stream/reader.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+#define PIECE_BYTES 65536 /* of what is searched for a header */
+#define READ_AGAIN 16     /* times that a stream is read, in all: headers within damaged chunks may tell of chunks without end */
+
+typedef struct salvage {
+    adcgs_read_at_fn read;
+    void *user;
+    uint64_t size, at;  /**< bytes of the source; where the reader reads on */
+    adcgs_stream *stream;
+    adcgs_read_options options;
+    adcgs_stream_reader reader;
+    adcgs_error why;    /**< of the reader */
+    uint64_t left;      /**< bytes that may still be read */
+    uint32_t faults;
+    int is_broken;      /**< a segment was lost since the last one that needs no other */
+    uint8_t *piece;     /**< [PIECE_BYTES] */
+} salvage;
+
+static void warn(salvage *s, const char *format, ...) ADCGS_PRINTF(2, 3);
+static void warn(salvage *s, const char *format, ...)
+{
+    char text[sizeof s->why.text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    s->faults++;
+    adcgs_log_say(&s->options.log, ADCGS_LOG_WARNING, "%s", text);
+}
+
+static int64_t read_on(void *user, void *buffer, size_t bytes)
+{
+    salvage *s = user;
+    const size_t n = s->at < s->size ? (size_t)ADCGS_MIN((uint64_t)bytes, s->size - s->at) : 0;
+    const int64_t got = n ? s->read(s->user, s->at, buffer, n) : 0;
+    s->at += got > 0 ? (uint64_t)got : 0;
+    return got;
+}
+
+/** Read as many bytes as there are from a position, at most so many. */
+static adcgs_status fetch(salvage *s, uint64_t position, void *to, size_t bytes, size_t *got)
+{
+    s->at = s->reader.source.pos = position;
+    return adcgs_source_read(&s->reader.source, to, bytes, got, &s->why);
+}
+
+/** Whether these 16 bytes are the header of a chunk. That its checksum is right by chance is as good as impossible. */
+static int is_header(const uint8_t *bytes, uint64_t origin, adcgs_chunk *chunk)
+{
+    const uint8_t letter = bytes[0] | 0x20;
+    return letter >= 'a' && letter <= 'z' && adcgs_load_le32(bytes + 12) == adcgs_crc32c(0, bytes, 12) &&
+           adcgs_chunk_header(bytes, origin, chunk, NULL) == ADCGS_OK;
+}
+
+/** The next header at or behind a position, before `end`. *found: whether there is one. */
+static adcgs_status find_header(salvage *s, uint64_t position, uint64_t end, adcgs_chunk *chunk, int *found)
+{
+    *found = 0;
+    while (position + ADCGS_CHUNK_HEADER_BYTES <= end) {
+        size_t got;
+        ADCGS_TRY(fetch(s, position, s->piece, (size_t)ADCGS_MIN((uint64_t)PIECE_BYTES, end - position), &got));
+        if (got < ADCGS_CHUNK_HEADER_BYTES)
+            return ADCGS_OK;
+        for (size_t i = 0; i + ADCGS_CHUNK_HEADER_BYTES <= got; i++)
+            if (is_header(s->piece + i, position + i, chunk)) {
+                *found = 1;
+                return ADCGS_OK;
+            }
+        position += got - ADCGS_CHUNK_HEADER_BYTES + 1;
+    }
+    return ADCGS_OK;
+}
+
+/** Whether a fault is damage; other failures end the reading. */
+static int is_damage(adcgs_status status)
+{
+    return status == ADCGS_ERR_DATA || status == ADCGS_ERR_TRUNCATED;
+}
+
+static uint32_t number_at_hand(const salvage *s)
+{
+    return s->stream->first_segment + s->stream->n_segments;
+}
+
+static void lose_segment(salvage *s, const char *why)
+{
+    warn(s, "segment %u is lost: %.160s", number_at_hand(s), why);
+    adcgs_segment_drop(&s->reader.segment);
+    s->stream->first_segment++;
+    s->is_broken = 1;
+}
+
+/** The segment at hand, if any, is over. */
+static adcgs_status finish(salvage *s, uint64_t end)
+{
+    const adcgs_status status = adcgs_segment_finish(&s->reader.segment, end, 0);
+    if (!is_damage(status))
+        return status;
+    lose_segment(s, s->why.text);
+    return ADCGS_OK;
+}
+
+/** Have the reader use a chunk that is whole. */
+static adcgs_status use(salvage *s, const adcgs_chunk *chunk)
+{
+    int truncated;
+    s->at = s->reader.source.pos = chunk->origin;
+    return adcgs_stream_reader_chunk(&s->reader, &truncated);
+}
+
+static adcgs_status use_start(salvage *s, const adcgs_chunk *chunk)
+{
+    ADCGS_TRY(finish(s, chunk->origin));
+    const uint32_t ahead = (uint32_t)(uint16_t)(chunk->header.segment - number_at_hand(s));
+    if (ahead) {
+        warn(s, "segments %u to %u are lost: nothing is left of them", number_at_hand(s), number_at_hand(s) + ahead - 1);
+        s->stream->first_segment += ahead;
+        s->is_broken = 1;
+    }
+    const adcgs_status status = use(s, chunk);
+    if (is_damage(status))
+        lose_segment(s, s->why.text);
+    else if (status != ADCGS_OK)
+        return status;
+    else if (!s->reader.segment.model.predicted)
+        s->is_broken = 0;
+    else if (s->is_broken)
+        lose_segment(s, "it is predicted from one that is");
+    return ADCGS_OK;
+}
+
+/** A layer that is damaged, as far as its slices are whole. */
+static adcgs_status use_damaged_layer(salvage *s, const adcgs_chunk *chunk, size_t available)
+{
+    adcgs_parse p = { .origin = chunk->origin + ADCGS_CHUNK_HEADER_BYTES, .chunk = chunk->name, .error = &s->why };
+    adcgs_reader_init(&p.r, s->reader.source.payload, available);
+    return adcgs_segment_features(&s->reader.segment, &p, adcgs_type_layer(chunk->type), 0);
+}
+
+/** A chunk of the segment at hand. Without its base the segment is lost; a layer above, or its digest, it can do without. */
+static adcgs_status use_part(salvage *s, const adcgs_chunk *chunk, int whole, size_t available)
+{
+    const int layer = adcgs_type_layer(chunk->type);
+    adcgs_status status = ADCGS_OK;
+    if (s->reader.segment.stage == ADCGS_SEGMENT_NONE || chunk->header.segment != (number_at_hand(s) & 0xffff))
+        return ADCGS_OK; /* of one that is lost */
+    if (whole)
+        status = use(s, chunk);
+    else if (layer >= 0)
+        status = use_damaged_layer(s, chunk, available);
+    else if (chunk->type != ADCGS_TYPE_hash)
+        lose_segment(s, "its positions, or what it keeps, are damaged");
+    const adcgs_segment *at = &s->reader.segment;
+    if (status == ADCGS_OK && layer == 0 && !whole && at->stage == ADCGS_SEGMENT_PLACED && at->done[0] < at->n_slices)
+        lose_segment(s, "its base layer is damaged");
+    if (!is_damage(status))
+        return status;
+    if (layer > 0 || chunk->type == ADCGS_TYPE_hash)
+        warn(s, "segment %u: %.160s", number_at_hand(s), s->why.text);
+    else
+        lose_segment(s, s->why.text);
+    return ADCGS_OK;
+}
+
+/** A chunk that belongs to no segment. */
+static adcgs_status use_other(salvage *s, const adcgs_chunk *chunk, int whole)
+{
+    if (!whole || chunk->type == ADCGS_TYPE_INDX) /* nothing depends on the index, which tells of what may be lost */
+        return ADCGS_OK;
+    const adcgs_status status = use(s, chunk);
+    if (!is_damage(status))
+        return status;
+    warn(s, "%.200s", s->why.text);
+    return ADCGS_OK;
+}
+
+/** The end, where all that it says is right, is as good as the reader has it. */
+static adcgs_status use_end(salvage *s, const adcgs_chunk *chunk, int whole)
+{
+    ADCGS_TRY(finish(s, chunk->origin));
+    s->reader.ended = 1;
+    if (!whole)
+        return ADCGS_OK;
+    if (chunk->origin + ADCGS_CHUNK_BYTES + chunk->header.length != s->size)
+        adcgs_log_say(&s->options.log, ADCGS_LOG_INFO, "stream: bytes stand behind its end");
+    const uint32_t expected = s->reader.head.segments;
+    if (expected > number_at_hand(s)) {
+        warn(s, "segments %u to %u are lost: nothing is left of them", number_at_hand(s), expected - 1);
+        s->stream->first_segment = expected - s->stream->n_segments;
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status dispatch(salvage *s, const adcgs_chunk *chunk, int whole, size_t available)
+{
+    const uint32_t type = chunk->type;
+    if (!s->reader.head_payload && type != ADCGS_TYPE_HEAD)
+        return ADCGS_OK; /* nothing can be made of it */
+    if (type == ADCGS_TYPE_SEGM && !whole)
+        return finish(s, chunk->origin); /* its number will be missed */
+    if (type == ADCGS_TYPE_SEGM)
+        return use_start(s, chunk);
+    if (type == ADCGS_TYPE_ENDC)
+        return use_end(s, chunk, whole);
+    if (type == ADCGS_TYPE_KEEP || type == ADCGS_TYPE_GEOM || type == ADCGS_TYPE_hash || adcgs_type_layer(type) >= 0)
+        return use_part(s, chunk, whole, available);
+    return use_other(s, chunk, whole);
+}
+
+/** Whether a chunk is whole. available: bytes of its payload that there are, in the reader's memory. */
+static adcgs_status look_whole(salvage *s, const adcgs_chunk *chunk, int *whole, size_t *available)
+{
+    adcgs_chunk read;
+    s->at = s->reader.source.pos = chunk->origin;
+    adcgs_source *source = &s->reader.source;
+    const adcgs_trace_fn trace = source->trace;
+    source->trace = NULL;
+    const adcgs_status status = adcgs_chunk_read(source, s->reader.segment.limits, &read, &s->why);
+    source->trace = trace;
+    *whole = status == ADCGS_OK && read.complete;
+    *available = read.available;
+    return is_damage(status) ? ADCGS_OK : status;
+}
+
+/** Use the chunk at hand. *next: where the search for another goes on: inside of it, if it swallowed one that came too soon. */
+static adcgs_status use_chunk(salvage *s, const adcgs_chunk *chunk, uint64_t *next)
+{
+    int whole, swallowed = 0;
+    size_t available;
+    adcgs_chunk inside;
+    ADCGS_TRY(look_whole(s, chunk, &whole, &available));
+    *next = chunk->origin + ADCGS_CHUNK_BYTES + chunk->header.length;
+    if (whole)
+        return dispatch(s, chunk, 1, available);
+    warn(s, "%s at byte %llu is damaged", chunk->name, (unsigned long long)chunk->origin);
+    ADCGS_TRY(dispatch(s, chunk, 0, available));
+    const uint64_t end = ADCGS_MIN(*next, s->size);
+    ADCGS_TRY(find_header(s, chunk->origin + ADCGS_CHUNK_HEADER_BYTES, end, &inside, &swallowed));
+    *next = swallowed ? inside.origin : end;
+    return ADCGS_OK;
+}
+
+static adcgs_status check_signature(salvage *s)
+{
+    uint8_t bytes[ADCGS_SIGNATURE_BYTES];
+    size_t got;
+    ADCGS_TRY(fetch(s, 0, bytes, sizeof bytes, &got));
+    if (got < sizeof bytes || memcmp(bytes, ADCGS_SIGNATURE, sizeof bytes) != 0)
+        warn(s, "stream: its signature is damaged");
+    return ADCGS_OK;
+}
+
+static adcgs_status salvage_chunks(salvage *s)
+{
+    ADCGS_TRY(check_signature(s));
+    for (uint64_t at = ADCGS_SIGNATURE_BYTES; !s->reader.ended;) {
+        adcgs_chunk chunk;
+        int found;
+        ADCGS_TRY(find_header(s, at, s->size, &chunk, &found));
+        const uint64_t cost = found ? chunk.header.length + (chunk.origin - at) + PIECE_BYTES / 64 : 0;
+        if (cost > s->left)
+            return adcgs_fail(&s->why, ADCGS_ERR_DATA, "stream: damaged beyond all bounds at byte %llu", (unsigned long long)at);
+        s->left -= cost;
+        if (found && chunk.origin > at)
+            warn(s, "stream: %llu bytes from byte %llu on are no chunk", (unsigned long long)(chunk.origin - at),
+                 (unsigned long long)at);
+        if (!found)
+            break;
+        ADCGS_TRY(use_chunk(s, &chunk, &at));
+    }
+    return ADCGS_OK;
+}
+
+/** What is there when nothing more comes. */
+static adcgs_status end(salvage *s)
+{
+    if (!s->reader.ended && s->reader.head_payload) {
+        ADCGS_TRY(adcgs_segment_finish(&s->reader.segment, s->size, 1));
+        warn(s, "stream: ends at byte %llu, before ENDC", (unsigned long long)s->size);
+        s->stream->truncated = 1;
+    }
+    if (s->stream->n_segments == 0)
+        return adcgs_fail(&s->why, ADCGS_ERR_DATA, "stream: no segment of it can be used");
+    s->stream->first_segment = 0;
+    s->stream->weights = (uint32_t)s->reader.nets.weights;
+    adcgs_bytes_finish(&s->stream->bytes, s->size);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_stream_salvage(adcgs_stream *stream, adcgs_read_at_fn read, void *user, uint64_t size,
+                                  const adcgs_read_options *options, uint32_t *faults, adcgs_error *error)
+{
+    salvage s = { .read = read, .user = user, .size = size, .stream = stream, .options = *options };
+    s.options.conceal = 1;
+    s.left = READ_AGAIN * size + PIECE_BYTES;
+    adcgs_stream_init(stream);
+    adcgs_stream_reader_init(&s.reader, stream, read_on, &s, &s.options, &s.why);
+    s.reader.nets.has_gaps = 1;
+    s.piece = adcgs_alloc(options->memory, PIECE_BYTES, 1, &s.why);
+    adcgs_status status = s.piece ? salvage_chunks(&s) : adcgs_alloc_status(&s.why);
+    if (status == ADCGS_OK)
+        status = end(&s);
+    adcgs_free(options->memory, s.piece);
+    adcgs_stream_reader_clear(&s.reader);
+    *faults = s.faults;
+    if (status == ADCGS_OK)
+        return status;
+    adcgs_stream_clear(stream, options->memory);
+    if (error)
+        *error = s.why;
+    return status;
+}

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Checking and repairing a stream. */
+#define _POSIX_C_SOURCE 200809L
+#define _FILE_OFFSET_BITS 64
+
+#include "tools/info_check.h"
+
+#include "base/cpu.h"
+#include "cli/text.h"
+#include "io/atomic.h"
+#include "model/model_priv.h"
+#include "stream/salvage.h"
+
+#include <errno.h>
+#include <stdio.h>
+
+static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
+{
+    FILE *file = user;
+    if (fseeko(file, (off_t)offset, SEEK_SET))
+        return -1;
+    const size_t n = fread(buffer, 1, bytes, file);
+    return n ? (int64_t)n : -1;
+}
+
+static void print_fault(void *user, adcgs_log_level level, const char *text)
+{
+    if (level != ADCGS_LOG_WARNING)
+        return;
+    adcgs_text_show(stdout, user);
+    printf(": %s\n", text);
+}
+
+static void print_usable(const char *path, const adcgs_stream *s, uint32_t faults)
+{
+    const int layers = adcgs_params_layers(&s->params);
+    adcgs_text_show(stdout, path);
+    printf(": %u fault%s; %u segment%s can be used\n", faults, faults == 1 ? "" : "s", s->n_segments,
+           s->n_segments == 1 ? "" : "s");
+    for (uint32_t i = 0; faults && i < s->n_segments; i++)
+        printf("  %g .. %g s, %d of %d layers whole\n", s->segments[i].time_start, s->segments[i].time_end,
+               s->segments[i].layers, layers);
+}
+
+static adcgs_status write_repaired(adcgs_stream *s, const char *path, adcgs_error *error)
+{
+    adcgs_buffer out;
+    adcgs_buffer_init(&out);
+    s->level = 0; /* the lowest that fits */
+    adcgs_status status = adcgs_stream_write(s, &out, error);
+    if (status == ADCGS_OK)
+        status = adcgs_atomic_save(path, out.data, out.size, error);
+    adcgs_buffer_clear(&out);
+    return status;
+}
+
+static adcgs_status check_file(FILE *file, const char *path, const char *repaired, uint32_t *faults, adcgs_error *error)
+{
+    adcgs_read_options options = { .log = { print_fault, (void *)(uintptr_t)path } };
+    adcgs_stream stream;
+    if (fseeko(file, 0, SEEK_END))
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
+    const uint64_t size = (uint64_t)ftello(file);
+    ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &options.cpu, error));
+    adcgs_status status = adcgs_stream_salvage(&stream, read_at, file, size, &options, faults, error);
+    if (status != ADCGS_OK) {
+        adcgs_error_locate(error, path);
+        return status;
+    }
+    print_usable(path, &stream, *faults);
+    if (repaired)
+        status = write_repaired(&stream, repaired, error);
+    adcgs_stream_clear(&stream, NULL);
+    return status;
+}
+
+adcgs_status adcgs_info_check(const char *path, const char *repaired, uint32_t *faults, adcgs_error *error)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
+    const adcgs_status status = check_file(file, path, repaired, faults, error);
+    fclose(file);
+    return status;
+}
