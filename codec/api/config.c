@@ -56,6 +56,8 @@ adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size
     ADCGS_REQUIRE(info, error);
     if (size < sizeof info->size || size > SIZE_MOST)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "info: size is %zu, expected %zu", size, sizeof own);
+    if (decoder->push && !adcgs_push_has_head(decoder->push))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: the header has not come yet");
     memset(&own, 0, sizeof own); /* padding, too */
     adcgs_stream_info(&decoder->stream, &own);
     own.faults = (int)ADCGS_MIN(decoder->faults, (uint32_t)INT32_MAX);

@@ -69,6 +69,7 @@ static adcgs_status open_stream(adcgs_decoder *d, origin *from, const adcgs_read
     return adcgs_stream_read(&d->stream, read, from->read_at ? from : from->user, options, NULL, NULL, error);
 }
 
+/** from: NULL: bytes will be pushed. */
 static adcgs_status open_decoder(adcgs_decoder *d, origin *from, const adcgs_config *config, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_strict_check(error));
@@ -86,8 +87,12 @@ static adcgs_status open_decoder(adcgs_decoder *d, origin *from, const adcgs_con
         .log = d->log,
         .layers = config->layers,
         .strict_end = config->strict_end,
-        .conceal = config->conceal != 0 && from->read_at,
+        .conceal = config->conceal != 0 && from && from->read_at,
     };
+    if (!from) {
+        adcgs_stream_init(&d->stream);
+        return adcgs_push_create(&d->push, &d->stream, &options, error);
+    }
     ADCGS_TRY(open_stream(d, from, &options, error));
     say_opened(d);
     return ADCGS_OK;
@@ -138,6 +143,8 @@ void adcgs_close(adcgs_decoder **decoder)
     adcgs_raster_free(&d->raster);
     adcgs_free(&d->memory, d->planar);
     adcgs_seek_free(&d->seek);
+    adcgs_push_free(&d->push);
+    adcgs_model_clear(&d->unfinished, &d->memory);
     adcgs_stream_clear(&d->stream, &d->memory);
     if (d->file)
         fclose(d->file);
@@ -146,8 +153,16 @@ void adcgs_close(adcgs_decoder **decoder)
     *decoder = NULL;
 }
 
+/** Segments that can be asked for. */
+static uint32_t count_segments(const adcgs_decoder *d)
+{
+    return d->seek ? adcgs_seek_segments(d->seek) : d->stream.n_segments + (d->unfinished.n > 0);
+}
+
 static double start_of(const adcgs_decoder *d, uint32_t segment)
 {
+    if (segment == d->stream.n_segments && d->unfinished.n > 0)
+        return d->unfinished.time_start;
     return d->seek ? adcgs_ticks_to_seconds(&d->stream, adcgs_seek_start(d->seek, segment)) :
                      d->stream.segments[segment].time_start;
 }
@@ -155,7 +170,7 @@ static double start_of(const adcgs_decoder *d, uint32_t segment)
 /** The last segment that starts at or before the time; the first if none does. */
 static uint32_t segment_at(const adcgs_decoder *d, double time)
 {
-    uint32_t lo = 0, hi = d->seek ? adcgs_seek_segments(d->seek) : d->stream.n_segments;
+    uint32_t lo = 0, hi = count_segments(d);
     while (hi - lo > 1) {
         const uint32_t middle = lo + (hi - lo) / 2;
         if (start_of(d, middle) <= time)
@@ -176,7 +191,7 @@ static float normalised_time(const adcgs_model *model, double time)
 /** A segment's model, which may be moved by the next call. */
 static adcgs_status decoder_segment(adcgs_decoder *d, uint32_t number, const adcgs_model **model, adcgs_error *error)
 {
-    *model = &d->stream.segments[number];
+    *model = number < d->stream.n_segments ? &d->stream.segments[number] : &d->unfinished;
     if (!d->seek)
         return ADCGS_OK;
     if (d->stream.n_segments == 1 && d->stream.first_segment == number) {
@@ -187,9 +202,27 @@ static adcgs_status decoder_segment(adcgs_decoder *d, uint32_t number, const adc
     return adcgs_seek_to(d->seek, number, model, error);
 }
 
+/** Look at what has come since of the segment at hand. */
+static adcgs_status catch_up(adcgs_decoder *d, adcgs_error *error)
+{
+    int drawable;
+    if (!d->is_behind)
+        return ADCGS_OK;
+    adcgs_splat_free(&d->splat); /* of a model that goes, or that was moved */
+    adcgs_model_clear(&d->unfinished, &d->memory);
+    d->is_behind = 0;
+    const adcgs_status status = adcgs_push_peek(d->push, &d->unfinished, &drawable, error);
+    if (status != ADCGS_OK)
+        adcgs_model_clear(&d->unfinished, &d->memory);
+    return status;
+}
+
 adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primitives *out, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
+    ADCGS_TRY(catch_up(d, error));
+    if (count_segments(d) == 0)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: no segment that can be drawn has come yet");
     const uint32_t segment = segment_at(d, time);
     const adcgs_model *model;
     ADCGS_TRY(decoder_segment(d, segment, &model, error));
@@ -228,10 +261,50 @@ adcgs_status adcgs_get_model_digest(adcgs_decoder *decoder, int segment, uint8_t
     ADCGS_OWN_ERROR(error);
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(digest, error);
-    const uint32_t n = decoder->seek ? adcgs_seek_segments(decoder->seek) : decoder->stream.n_segments;
+    ADCGS_TRY(catch_up(decoder, error));
+    const uint32_t n = count_segments(decoder);
     if (segment < 0 || (uint32_t)segment >= n)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment, (unsigned)n);
     ADCGS_TRY(decoder_segment(decoder, (uint32_t)segment, &model, error));
     adcgs_model_digest(model, digest);
     return ADCGS_OK;
+}
+
+/* ---- Bytes as they come ---- */
+
+adcgs_status adcgs_open_push(adcgs_decoder **out, const adcgs_config *config, adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(out, error);
+    *out = NULL;
+    return open_from(out, NULL, config, error);
+}
+
+static adcgs_status require_push(const adcgs_decoder *d, adcgs_error *error)
+{
+    return d->push ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: was not opened for bytes that come");
+}
+
+adcgs_status adcgs_push(adcgs_decoder *decoder, const void *data, size_t bytes, size_t *used, adcgs_arrival *arrived,
+                        adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(used, error);
+    ADCGS_REQUIRE(arrived, error);
+    if (bytes > 0)
+        ADCGS_REQUIRE(data, error);
+    ADCGS_TRY(require_push(decoder, error));
+    const adcgs_status status = adcgs_push_take(decoder->push, data, bytes, used, arrived, error);
+    decoder->is_behind |= status != ADCGS_OK || *arrived >= ADCGS_ARRIVED_SEGMENT;
+    return status;
+}
+
+adcgs_status adcgs_push_end(adcgs_decoder *decoder, adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_TRY(require_push(decoder, error));
+    decoder->is_behind = 1;
+    return adcgs_push_finish(decoder->push, error);
 }

@@ -7,6 +7,7 @@
 #include "base/pool.h"
 #include "render/render.h"
 #include "splat/splat.h"
+#include "stream/push.h"
 #include "stream/salvage.h"
 #include "stream/seek.h"
 
@@ -22,6 +23,9 @@ struct adcgs_decoder {
     adcgs_log log;
     adcgs_stream stream;
     adcgs_seek *seek;       /**< reads its segments on demand; NULL: all are there */
+    adcgs_push_reader *push; /**< gives it its segments as bytes come; NULL: all are there */
+    adcgs_model unfinished; /**< the segment at hand of push, as far as it came; n 0: there is none */
+    int is_behind;          /**< more of it has come since */
     uint32_t faults;        /**< that were concealed */
     FILE *file;             /**< that it reads from, if that is a file opened here */
     adcgs_splat *splat;     /**< of splat_segment; NULL until the first use */

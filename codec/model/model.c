@@ -116,6 +116,42 @@ adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_e
     return model->fg ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
+/** Copy the anchors' arrays, which are there. */
+static void copy_arrays(adcgs_model *dst, const adcgs_model *src)
+{
+    const adcgs_params *p = &src->params;
+    const size_t n = src->n, value = sizeof(int16_t);
+    const struct {
+        void *to;
+        const void *from;
+        size_t bytes;
+    } arrays[] = {
+        { dst->pos, src->pos, 3 * sizeof *src->pos },          { dst->is_static, src->is_static, sizeof *src->is_static },
+        { dst->body, src->body, sizeof *src->body },           { dst->mask, src->mask, sizeof *src->mask },
+        { dst->eta, src->eta, p->n_eta * value },              { dst->fv, src->fv, p->n_fv * value },
+        { dst->sigma, src->sigma, (size_t)adcgs_sigma_rows(p) * value }, { dst->colour, src->colour, ADCGS_COLOUR_N * value },
+        { dst->fg, src->fg, (size_t)p->k * p->n_fg * value },
+    };
+    for (size_t i = 0; n && i < ADCGS_COUNTOF(arrays); i++)
+        memcpy(arrays[i].to, arrays[i].from, n * arrays[i].bytes);
+}
+
+adcgs_status adcgs_model_copy(adcgs_model *dst, const adcgs_model *src, adcgs_memory *memory, adcgs_error *error)
+{
+    *dst = *src;
+    dst->pos = NULL;
+    dst->is_static = dst->body = NULL;
+    dst->mask = NULL;
+    dst->eta = dst->fv = dst->sigma = dst->colour = dst->fg = NULL;
+    memset(dst->net, 0, sizeof dst->net);
+    ADCGS_TRY(adcgs_model_alloc(dst, memory, error));
+    copy_arrays(dst, src);
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (src->net[role].present)
+            ADCGS_TRY(adcgs_net_copy(&dst->net[role], &src->net[role], memory, error));
+    return ADCGS_OK;
+}
+
 void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory)
 {
     adcgs_free(memory, model->pos);

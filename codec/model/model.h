@@ -90,6 +90,8 @@ typedef struct adcgs_model {
 
 /** Allocate the per-anchor arrays for n anchors (n, params set by the caller first). */
 adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_error *error);
+/** A deep copy; on failure dst holds what adcgs_model_clear() frees. */
+adcgs_status adcgs_model_copy(adcgs_model *dst, const adcgs_model *src, adcgs_memory *memory, adcgs_error *error);
 void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory);
 /** Shapes, ranges, network sizes against params; E24 bounds; finite steps. Everything a decoder relies on. */
 adcgs_status adcgs_model_validate(const adcgs_model *model, adcgs_error *error);

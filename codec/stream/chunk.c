@@ -156,7 +156,7 @@ adcgs_status adcgs_chunk_header(const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES], u
     return parse_header(&untraced, chunk, bytes, error);
 }
 
-static adcgs_status check_limits(const adcgs_chunk *chunk, const adcgs_level *limits, adcgs_error *error)
+adcgs_status adcgs_chunk_check_limits(const adcgs_chunk *chunk, const adcgs_level *limits, adcgs_error *error)
 {
     const uint64_t length = chunk->header.length, most = limits ? limits->chunk_bytes : ADCGS_HEAD_BYTES_MAX;
     if (length > most)
@@ -178,7 +178,7 @@ adcgs_status adcgs_chunk_read(adcgs_source *source, const adcgs_level *limits, a
     if (chunk->ended)
         return ADCGS_OK;
     ADCGS_TRY(parse_header(source, chunk, bytes, error));
-    ADCGS_TRY(check_limits(chunk, limits, error));
+    ADCGS_TRY(adcgs_chunk_check_limits(chunk, limits, error));
     ADCGS_TRY(read_payload(source, chunk, error));
     if (chunk->available < chunk->header.length)
         return ADCGS_OK;

@@ -90,6 +90,8 @@ adcgs_status adcgs_source_read(adcgs_source *source, void *buffer, size_t bytes,
 /** What the 16 bytes of a chunk's header at a position say. Damage is ADCGS_ERR_DATA. */
 adcgs_status adcgs_chunk_header(const uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES], uint64_t origin, adcgs_chunk *chunk,
                                 adcgs_error *error);
+/** Whether a chunk may have its length, and stand where it does; limits as below. */
+adcgs_status adcgs_chunk_check_limits(const adcgs_chunk *chunk, const adcgs_level *limits, adcgs_error *error);
 /** Read the next chunk; limits may be NULL (then a payload has at most ADCGS_HEAD_BYTES_MAX bytes). Damage is ADCGS_ERR_DATA. */
 adcgs_status adcgs_chunk_read(adcgs_source *source, const adcgs_level *limits, adcgs_chunk *chunk, adcgs_error *error);
 void adcgs_source_clear(adcgs_source *source);

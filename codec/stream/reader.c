@@ -218,10 +218,11 @@ static adcgs_status end_early(adcgs_stream_reader *s)
     return ADCGS_OK;
 }
 
-static adcgs_status read_all(adcgs_stream_reader *s)
+adcgs_status adcgs_stream_reader_rest(adcgs_stream_reader *s)
 {
     int truncated = 0;
-    ADCGS_TRY(adcgs_stream_reader_signature(s));
+    if (s->source.pos < ADCGS_SIGNATURE_BYTES)
+        ADCGS_TRY(adcgs_stream_reader_signature(s));
     while (!truncated && !s->ended)
         ADCGS_TRY(adcgs_stream_reader_chunk(s, &truncated));
     if (truncated)
@@ -260,7 +261,7 @@ adcgs_status adcgs_stream_read(adcgs_stream *stream, adcgs_read_fn read, void *u
     adcgs_stream_reader_init(&s, stream, read, user, options, &why);
     s.trace = s.source.trace = trace;
     s.trace_user = s.source.trace_user = trace_user;
-    const adcgs_status status = read_all(&s);
+    const adcgs_status status = adcgs_stream_reader_rest(&s);
     adcgs_stream_reader_clear(&s);
     if (status != ADCGS_OK) {
         adcgs_stream_clear(stream, options->memory);

@@ -27,6 +27,8 @@ void adcgs_stream_reader_init(adcgs_stream_reader *reader, adcgs_stream *stream,
 void adcgs_stream_reader_clear(adcgs_stream_reader *reader);
 
 adcgs_status adcgs_stream_reader_signature(adcgs_stream_reader *reader);
+/** All that is left to read, the signature too if that was not yet read; what ends early is used as far as it goes. */
+adcgs_status adcgs_stream_reader_rest(adcgs_stream_reader *reader);
 /** Read a chunk and use it. *truncated: the stream ended inside, or before it. */
 adcgs_status adcgs_stream_reader_chunk(adcgs_stream_reader *reader, int *truncated);
 

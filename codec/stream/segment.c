@@ -296,17 +296,40 @@ adcgs_status adcgs_segment_hash(adcgs_segment *s, adcgs_parse *p)
 }
 
 /** Fill what did not come with predicted means. */
-static adcgs_status conceal_layers(adcgs_segment *s)
+static adcgs_status conceal_layers(const adcgs_segment *s, adcgs_model *model, adcgs_error *error)
 {
     for (int layer = 1; layer < adcgs_params_layers(&s->stream->params); layer++)
         for (uint32_t i = s->done[layer]; i < s->n_slices; i++) {
             uint32_t begin, end;
             slice_span(s, i, &begin, &end);
-            if (adcgs_latents_conceal(s->latents, &s->model, layer, begin, end) != ADCGS_OK)
-                return adcgs_fail(s->error, ADCGS_ERR_MEMORY, "segment %u: no memory to conceal layer %d", segment_number(s),
-                                  layer);
+            if (adcgs_latents_conceal(s->latents, model, layer, begin, end) != ADCGS_OK)
+                return adcgs_fail(error, ADCGS_ERR_MEMORY, "segment %u: no memory to conceal layer %d", segment_number(s), layer);
         }
     return ADCGS_OK;
+}
+
+/** What of a segment has come is its model: layers that are there, others concealed, what is kept joined. */
+static adcgs_status complete_model(const adcgs_segment *s, adcgs_model *model, adcgs_error *error)
+{
+    while (model->layers < adcgs_params_layers(&s->stream->params) && s->done[model->layers] == s->n_slices)
+        model->layers++;
+    ADCGS_TRY(conceal_layers(s, model, error));
+    return model->predicted ? adcgs_kept_join(&s->kept, model_before(s), model, s->options->memory, error) : ADCGS_OK;
+}
+
+static int is_drawable(const adcgs_segment *s)
+{
+    return s->stage == ADCGS_SEGMENT_PLACED && s->done[0] >= s->n_slices;
+}
+
+adcgs_status adcgs_segment_peek(const adcgs_segment *s, adcgs_model *model, int *drawable, adcgs_error *error)
+{
+    memset(model, 0, sizeof *model);
+    *drawable = is_drawable(s);
+    if (!*drawable)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_model_copy(model, &s->model, s->options->memory, error));
+    return complete_model(s, model, error);
 }
 
 static adcgs_status check_hash(const adcgs_segment *s)
@@ -348,17 +371,13 @@ adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
     const adcgs_syn_index entry = { s->ticks[0], s->ticks[1], s->origin, end - s->origin, (uint8_t)s->is_key };
     if (s->stage == ADCGS_SEGMENT_NONE)
         return ADCGS_OK;
-    if (s->stage != ADCGS_SEGMENT_PLACED || s->done[0] < s->n_slices) {
+    if (!is_drawable(s)) {
         if (!truncated)
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "segment %u: GEOM or slices of FEA0 are missing", segment_number(s));
         adcgs_segment_drop(s);
         return ADCGS_OK;
     }
-    while (s->model.layers < adcgs_params_layers(&s->stream->params) && s->done[s->model.layers] == s->n_slices)
-        s->model.layers++;
-    ADCGS_TRY(conceal_layers(s));
-    if (s->model.predicted)
-        ADCGS_TRY(adcgs_kept_join(&s->kept, model_before(s), &s->model, s->options->memory, s->error));
+    ADCGS_TRY(complete_model(s, &s->model, s->error));
     ADCGS_TRY(check_hash(s));
     ADCGS_TRY(adcgs_syn_index_write(&s->index, "INDX", &entry, s->error));
     if (s->index.failed)

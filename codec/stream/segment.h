@@ -46,6 +46,8 @@ adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer,
 adcgs_status adcgs_segment_hash(adcgs_segment *s, adcgs_parse *p);
 /** The segment, if one was started, ends at this position. With truncated, one without a complete layer 0 is dropped. */
 adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated);
+/** The segment as it would be if nothing more came; *drawable: it can be used. The caller clears the model. */
+adcgs_status adcgs_segment_peek(const adcgs_segment *s, adcgs_model *model, int *drawable, adcgs_error *error);
 /** Forget the segment that was begun, if any. */
 void adcgs_segment_drop(adcgs_segment *s);
 void adcgs_segment_clear(adcgs_segment *s);

@@ -165,7 +165,7 @@ adcgs_status adcgs_decide(adcgs_trainer *t, adcgs_error *error)
         int kept = 0;
         for (int j = 0; j < k; j++)
             kept += f->keep[adcgs_fmodel_slot(f, i, j)] > 0;
-        if (kept && !adcgs_anchor_is_idle(t, i, 0.5))
+        if (f->learns[i] == 0 || (kept && !adcgs_anchor_is_idle(t, i, 0.5)))
             adcgs_anchor_set_add(&s, f->pos[i], i, 0);
     }
     if (!s.n)

@@ -232,7 +232,7 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
 static void keep_anchors(const adcgs_trainer *t, workspace *w)
 {
     for (uint32_t i = 0; i < t->f->n; i++)
-        if (!adcgs_anchor_is_idle(t, i, 0.2)) {
+        if (t->f->learns[i] == 0 || !adcgs_anchor_is_idle(t, i, 0.2)) { /* what is settled costs nothing */
             cells_add(&w->occupied, t->f->pos[i]);
             adcgs_anchor_set_add(&w->next, t->f->pos[i], i, 0);
         }

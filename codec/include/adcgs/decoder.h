@@ -87,6 +87,40 @@ ADCGS_API adcgs_status adcgs_open_at(adcgs_decoder **out, adcgs_read_at_fn read,
                                      const adcgs_config *config, adcgs_error *error);
 
 /**
+ * Open a decoder that is given bytes as they come, with adcgs_push(). Until the first ADCGS_ARRIVED_HEADER nothing can be asked
+ * of it, until the first ADCGS_ARRIVED_SEGMENT nothing drawn (ADCGS_ERR_USAGE). Then times are served by the segments that came so
+ * far, the last as far as it came: layers that did not are concealed.
+ * \param out receives the decoder; NULL on failure
+ * \param config how; may be NULL. on_demand and conceal are of no influence
+ * \param error says why it failed
+ * \return as adcgs_open_stream(), less what the stream may cause
+ */
+ADCGS_API adcgs_status adcgs_open_push(adcgs_decoder **out, const adcgs_config *config, adcgs_error *error);
+
+/**
+ * Give bytes of the stream to a decoder that adcgs_open_push() opened, any number, in order. It takes those to the end of the
+ * part at hand at most, so that a call takes no longer than one part does, and tells what they have brought; call again with those
+ * that are left.
+ * \param decoder an open decoder
+ * \param data bytes; not needed after the call. May be NULL if there are none
+ * \param bytes how many
+ * \param used receives how many were taken; all of them, unless something has arrived or a part ends
+ * \param arrived receives what they have brought
+ * \param error says why it failed
+ * \return as adcgs_open_stream(); a failure is final, but what was there before can be drawn
+ */
+ADCGS_API adcgs_status adcgs_push(adcgs_decoder *decoder, const void *data, size_t bytes, size_t *used, adcgs_arrival *arrived,
+                                  adcgs_error *error);
+
+/**
+ * Say that no more bytes will come. Of a stream that has not ended what is complete remains, as adcgs_open_stream() has it.
+ * \param decoder an open decoder
+ * \param error says why it failed
+ * \return as adcgs_push()
+ */
+ADCGS_API adcgs_status adcgs_push_end(adcgs_decoder *decoder, adcgs_error *error);
+
+/**
  * Close a decoder and free all it owns.
  * \param decoder is set to NULL; may point to NULL
  */

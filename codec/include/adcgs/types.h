@@ -63,6 +63,15 @@ typedef int64_t (*adcgs_read_fn)(void *user, void *buffer, size_t bytes);
  */
 typedef int64_t (*adcgs_read_at_fn)(void *user, uint64_t offset, void *buffer, size_t bytes);
 
+/** What the bytes that adcgs_push() took have brought. */
+typedef enum adcgs_arrival {
+    ADCGS_ARRIVED_NOTHING = 0, /**< nothing yet: more bytes are needed */
+    ADCGS_ARRIVED_HEADER = 1,  /**< what is true of the whole stream, for adcgs_get_info() */
+    ADCGS_ARRIVED_CAMERAS = 2, /**< its cameras, for adcgs_get_camera() */
+    ADCGS_ARRIVED_SEGMENT = 3, /**< a segment that can be drawn, or more of it */
+    ADCGS_ARRIVED_END = 4      /**< the end of the stream: nothing more is taken */
+} adcgs_arrival;
+
 /**
  * How to decode. Set up by adcgs_config_init(), then changed as needed. In every member, zero is the default; members that a
  * caller's headers do not know yet have it, too.

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Reading a stream as it comes. */
+#include "stream/push.h"
+
+#include "stream/reader.h"
+
+struct adcgs_push_reader {
+    adcgs_read_options options;
+    adcgs_error error;     /**< of the reader; a failure stays */
+    adcgs_stream_reader reader;
+    uint8_t *held;         /**< what has come of the chunk at hand, or of the signature */
+    size_t n, capacity, wanted; /**< bytes held; room for; that are needed to go on */
+    size_t given;          /**< of those held, to the reader */
+    int has_signature, is_over;
+};
+
+/** What is held, to the reader. */
+static int64_t read_held(void *user, void *buffer, size_t bytes)
+{
+    adcgs_push_reader *p = user;
+    const size_t n = ADCGS_MIN(bytes, p->n - p->given);
+    if (n > 0)
+        memcpy(buffer, p->held + p->given, n);
+    p->given += n;
+    return (int64_t)n;
+}
+
+adcgs_status adcgs_push_create(adcgs_push_reader **out, adcgs_stream *stream, const adcgs_read_options *options,
+                               adcgs_error *error)
+{
+    adcgs_push_reader *p = adcgs_alloc(NULL, 1, sizeof *p, error);
+    *out = p;
+    if (!p)
+        return adcgs_alloc_status(error);
+    p->options = *options;
+    p->wanted = ADCGS_SIGNATURE_BYTES;
+    adcgs_stream_reader_init(&p->reader, stream, read_held, p, &p->options, &p->error);
+    return ADCGS_OK;
+}
+
+void adcgs_push_free(adcgs_push_reader **reader)
+{
+    adcgs_push_reader *p = *reader;
+    if (!p)
+        return;
+    adcgs_stream_reader_clear(&p->reader);
+    adcgs_free(p->options.memory, p->held);
+    adcgs_free(NULL, p);
+    *reader = NULL;
+}
+
+/** Room for what is wanted, which grows with what has come, not with what a header claims. */
+static adcgs_status reserve(adcgs_push_reader *p, size_t bytes)
+{
+    if (bytes <= p->capacity)
+        return ADCGS_OK;
+    const size_t capacity = ADCGS_MAX(bytes, 2 * p->capacity);
+    uint8_t *held = adcgs_alloc(p->options.memory, capacity, 1, &p->error);
+    if (!held)
+        return adcgs_alloc_status(&p->error);
+    if (p->n > 0)
+        memcpy(held, p->held, p->n);
+    adcgs_free(p->options.memory, p->held);
+    p->held = held;
+    p->capacity = capacity;
+    return ADCGS_OK;
+}
+
+/** What is held is used up; of what comes next the header is wanted first. */
+static void next_chunk(adcgs_push_reader *p)
+{
+    p->n = p->given = 0;
+    p->wanted = ADCGS_CHUNK_HEADER_BYTES;
+}
+
+/** A header is there: is it one, and how long is its chunk? The reader says so once more, of the same bytes. */
+static adcgs_status measure_chunk(adcgs_push_reader *p)
+{
+    adcgs_chunk chunk;
+    ADCGS_TRY(adcgs_chunk_header(p->held, p->reader.source.pos, &chunk, &p->error));
+    ADCGS_TRY(adcgs_chunk_check_limits(&chunk, p->reader.segment.limits, &p->error));
+    p->wanted = ADCGS_CHUNK_BYTES + chunk.header.length;
+    return ADCGS_OK;
+}
+
+/** What a chunk that was used means to those who watch. */
+static adcgs_arrival arrival_of(const adcgs_push_reader *p, uint32_t type, uint32_t segments_before)
+{
+    const adcgs_stream_reader *r = &p->reader;
+    if (r->ended)
+        return ADCGS_ARRIVED_END;
+    if (type == ADCGS_TYPE_HEAD)
+        return ADCGS_ARRIVED_HEADER;
+    if (type == ADCGS_TYPE_cams)
+        return ADCGS_ARRIVED_CAMERAS;
+    const int draws = r->segment.stage == ADCGS_SEGMENT_PLACED && r->segment.done[0] >= r->segment.n_slices;
+    const int part = adcgs_type_layer(type) >= 0 || type == ADCGS_TYPE_GEOM;
+    return (part && draws) || r->stream->n_segments > segments_before ? ADCGS_ARRIVED_SEGMENT : ADCGS_ARRIVED_NOTHING;
+}
+
+static adcgs_status use_held(adcgs_push_reader *p, adcgs_arrival *arrived)
+{
+    int truncated;
+    if (!p->has_signature) {
+        ADCGS_TRY(adcgs_stream_reader_signature(&p->reader));
+        p->has_signature = 1;
+        next_chunk(p);
+        return ADCGS_OK;
+    }
+    if (p->n == ADCGS_CHUNK_HEADER_BYTES)
+        return measure_chunk(p);
+    const uint32_t type = adcgs_load_le32(p->held), before = p->reader.stream->n_segments;
+    ADCGS_TRY(adcgs_stream_reader_chunk(&p->reader, &truncated));
+    *arrived = arrival_of(p, type, before);
+    p->is_over = p->reader.ended;
+    next_chunk(p);
+    return ADCGS_OK;
+}
+
+/** The reader's failure, to whoever called, now and whenever they call again. */
+static adcgs_status pass_on(const adcgs_push_reader *p, adcgs_status status, adcgs_error *error)
+{
+    if (status != ADCGS_OK && error)
+        *error = p->error;
+    return status;
+}
+
+static adcgs_status take(adcgs_push_reader *p, const uint8_t *data, size_t bytes, size_t *used, adcgs_arrival *arrived)
+{
+    while (*used < bytes && *arrived == ADCGS_ARRIVED_NOTHING && !p->is_over) {
+        const size_t n = ADCGS_MIN(bytes - *used, p->wanted - p->n);
+        ADCGS_TRY(reserve(p, p->n + n));
+        memcpy(p->held + p->n, data + *used, n);
+        p->n += n;
+        *used += n;
+        if (p->n < p->wanted)
+            return ADCGS_OK;
+        const int ends_chunk = p->n > ADCGS_CHUNK_HEADER_BYTES;
+        ADCGS_TRY(use_held(p, arrived));
+        if (ends_chunk)
+            return ADCGS_OK;
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_push_take(adcgs_push_reader *p, const uint8_t *data, size_t bytes, size_t *used, adcgs_arrival *arrived,
+                             adcgs_error *error)
+{
+    *used = 0;
+    *arrived = p->is_over && p->error.status == ADCGS_OK ? ADCGS_ARRIVED_END : ADCGS_ARRIVED_NOTHING;
+    if (p->error.status == ADCGS_OK && !p->is_over)
+        p->error.status = take(p, data, bytes, used, arrived);
+    return pass_on(p, p->error.status, error);
+}
+
+adcgs_status adcgs_push_finish(adcgs_push_reader *p, adcgs_error *error)
+{
+    if (p->error.status == ADCGS_OK && !p->is_over) {
+        p->is_over = 1;
+        p->error.status = adcgs_stream_reader_rest(&p->reader);
+    }
+    return pass_on(p, p->error.status, error);
+}
+
+int adcgs_push_has_head(const adcgs_push_reader *p)
+{
+    return p->reader.head_payload != NULL;
+}
+
+adcgs_status adcgs_push_peek(const adcgs_push_reader *p, adcgs_model *model, int *drawable, adcgs_error *error)
+{
+    return adcgs_segment_peek(&p->reader.segment, model, drawable, error);
+}
