@@ -88,8 +88,8 @@ ADCGS_API adcgs_status adcgs_open_at(adcgs_decoder **out, adcgs_read_at_fn read,
 
 /**
  * Open a decoder that is given bytes as they come, with adcgs_push(). Until the first ADCGS_ARRIVED_HEADER nothing can be asked
- * of it, until the first ADCGS_ARRIVED_SEGMENT nothing drawn (ADCGS_ERR_USAGE). Then times are served by the segments that came so
- * far, the last as far as it came: layers that did not are concealed.
+ * of it, until the first ADCGS_ARRIVED_SEGMENT nothing drawn (ADCGS_ERR_USAGE). Then times are served by the segments that came
+ * so far, the last as far as it came: layers that did not are concealed.
  * \param out receives the decoder; NULL on failure
  * \param config how; may be NULL. on_demand and conceal are of no influence
  * \param error says why it failed
@@ -99,8 +99,8 @@ ADCGS_API adcgs_status adcgs_open_push(adcgs_decoder **out, const adcgs_config *
 
 /**
  * Give bytes of the stream to a decoder that adcgs_open_push() opened, any number, in order. It takes those to the end of the
- * part at hand at most, so that a call takes no longer than one part does, and tells what they have brought; call again with those
- * that are left.
+ * part at hand at most, so that a call takes no longer than one part does, and tells what they have brought; call again with
+ * those that are left.
  * \param decoder an open decoder
  * \param data bytes; not needed after the call. May be NULL if there are none
  * \param bytes how many
