@@ -47,14 +47,17 @@ static int64_t read_in_order(void *user, void *buffer, size_t bytes)
  */
 static adcgs_status open_seek(adcgs_decoder *d, const origin *from, const adcgs_read_options *options, adcgs_error *error)
 {
+    adcgs_error why; /* a failure that reading it whole may mend is none yet */
     adcgs_stream_init(&d->stream);
-    const adcgs_status status = adcgs_seek_open(&d->seek, &d->stream, from->read_at, from->user, from->size, options, error);
-    const int whole = status == ADCGS_ERR_DATA || status == ADCGS_ERR_TRUNCATED;
+    const adcgs_status status = adcgs_seek_open(&d->seek, &d->stream, from->read_at, from->user, from->size, options, &why);
     if (status == ADCGS_OK && adcgs_seek_segments(d->seek) > 1)
         return ADCGS_OK;
     adcgs_seek_free(&d->seek);
     adcgs_stream_clear(&d->stream, &d->memory);
-    return whole ? ADCGS_OK : status;
+    if (status == ADCGS_OK || status == ADCGS_ERR_DATA || status == ADCGS_ERR_TRUNCATED)
+        return ADCGS_OK;
+    *error = why;
+    return status;
 }
 
 static adcgs_status open_stream(adcgs_decoder *d, origin *from, const adcgs_read_options *options, adcgs_error *error)

@@ -369,10 +369,15 @@ adcgs_status adcgs_seek_to(adcgs_seek *s, uint32_t number, const adcgs_model **m
 {
     adcgs_status status = go_to(s, number);
     if (status == ADCGS_ERR_DATA && !s->keeps_nets) { /* perhaps it names a network that was sent before its key */
+        const adcgs_error first = s->error;
         s->keeps_nets = 1;
         begin_at(s, 0);
-        status = go_to(s, number);
-        s->keeps_nets = status == ADCGS_OK;
+        if (go_to(s, number) == ADCGS_OK) {
+            status = ADCGS_OK;
+        } else {
+            s->keeps_nets = 0;
+            s->error = first;
+        }
     }
     if (status != ADCGS_OK)
         begin_at(s, 0);
