@@ -9,15 +9,6 @@
 #include <errno.h>
 #include <stdio.h>
 
-static int64_t read_file_at(void *user, uint64_t offset, void *buffer, size_t bytes)
-{
-    FILE *file = user;
-    if (offset > INT64_MAX || fseeko(file, (off_t)offset, SEEK_SET))
-        return -1;
-    const size_t n = fread(buffer, 1, bytes, file);
-    return n == 0 ? -1 : (int64_t)n;
-}
-
 /** Bytes of a file that can be read at any position; -1: it cannot. */
 static int64_t size_of(FILE *file)
 {
@@ -41,7 +32,7 @@ adcgs_status adcgs_open_file(adcgs_decoder **out, const char *path, const adcgs_
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
     const int64_t size = asks_for_any_order(config) ? size_of(file) : -1;
-    const adcgs_status status = size >= 0 ? adcgs_open_at(out, read_file_at, file, (uint64_t)size, config, error) :
+    const adcgs_status status = size >= 0 ? adcgs_open_at(out, adcgs_file_read_at, file, (uint64_t)size, config, error) :
                                             adcgs_open_stream(out, adcgs_file_read, file, config, error);
     if (status == ADCGS_OK && (*out)->seek)
         (*out)->file = file;

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Sources of streams, and the sum of a trace. */
+#define _POSIX_C_SOURCE 200809L /* files beyond 2 GiB, where long has 32 bits */
+#define _FILE_OFFSET_BITS 64
+
 #include "stream/input.h"
 
 #include "base/base.h"
@@ -27,6 +30,15 @@ int64_t adcgs_file_read(void *user, void *buffer, size_t bytes)
     FILE *file = user;
     const size_t n = fread(buffer, 1, bytes, file);
     return n == 0 && ferror(file) ? -1 : (int64_t)n;
+}
+
+int64_t adcgs_file_read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
+{
+    FILE *file = user;
+    if (offset > INT64_MAX || fseeko(file, (off_t)offset, SEEK_SET))
+        return -1;
+    const size_t n = fread(buffer, 1, bytes, file);
+    return n == 0 ? -1 : (int64_t)n;
 }
 
 void adcgs_trace_sum_init(adcgs_trace_sum *sum)

@@ -18,6 +18,8 @@ typedef struct adcgs_span {
 int64_t adcgs_span_read(void *user, void *buffer, size_t bytes);
 /** An adcgs_read_fn; user is a FILE open for reading. */
 int64_t adcgs_file_read(void *user, void *buffer, size_t bytes);
+/** An adcgs_read_at_fn; user is a FILE open for reading that can seek. */
+int64_t adcgs_file_read_at(void *user, uint64_t offset, void *buffer, size_t bytes);
 
 /** Number of lines and digest of the text of a trace (conformance point P). */
 typedef struct adcgs_trace_sum {

@@ -221,11 +221,7 @@ static adcgs_status look_whole(salvage *s, const adcgs_chunk *chunk, int *whole,
 {
     adcgs_chunk read;
     s->at = s->reader.source.pos = chunk->origin;
-    adcgs_source *source = &s->reader.source;
-    const adcgs_trace_fn trace = source->trace;
-    source->trace = NULL;
-    const adcgs_status status = adcgs_chunk_read(source, s->reader.segment.limits, &read, &s->why);
-    source->trace = trace;
+    const adcgs_status status = adcgs_chunk_read(&s->reader.source, s->reader.segment.limits, &read, &s->why);
     *whole = status == ADCGS_OK && read.complete;
     *available = read.available;
     return is_damage(status) ? ADCGS_OK : status;

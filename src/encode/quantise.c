@@ -119,26 +119,19 @@ static adcgs_status float_network(adcgs_net *net, const adcgs_mlp *m, const floa
 
 static adcgs_status set_networks(adcgs_model *model, const adcgs_fmodel *f, adcgs_error *error)
 {
-    static const uint8_t roles[ADCGS_P_COUNT] = {
-        [ADCGS_P_THETA] = ADCGS_ROLE_PREDICTION, [ADCGS_P_OMEGA] = ADCGS_ROLE_COARSE,       [ADCGS_P_VARPI] = ADCGS_ROLE_FINE,
-        [ADCGS_P_TIME] = ADCGS_ROLE_TIME,        [ADCGS_P_E_FV] = ADCGS_ROLE_ENTROPY_FV,
-        [ADCGS_P_E_SIGMA] = ADCGS_ROLE_ENTROPY_SIGMA, [ADCGS_P_E_COLOUR] = ADCGS_ROLE_ENTROPY_COLOUR,
-        [ADCGS_P_E_FG] = ADCGS_ROLE_ENTROPY_FG, [ADCGS_P_E_FG + 1] = ADCGS_ROLE_ENTROPY_FG + 1,
-        [ADCGS_P_E_FG + 2] = ADCGS_ROLE_ENTROPY_FG + 2, [ADCGS_P_E_FG + 3] = ADCGS_ROLE_ENTROPY_FG + 3,
-        [ADCGS_P_E_STEPS] = ADCGS_ROLE_ENTROPY_STEPS,
-    };
     const int still = !adcgs_fmodel_moves(f);
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
         const int deforms = i == ADCGS_P_OMEGA || i == ADCGS_P_VARPI, timed = deforms || i == ADCGS_P_TIME;
         if (!f->mlp[i].n || (timed && !model->params.time_rows) || (deforms && still))
             continue;
-        adcgs_net *net = &model->net[roles[i]];
+        const int role = adcgs_fmodel_role[i];
+        adcgs_net *net = &model->net[role];
         uint32_t n_in, n_out; /* fewer than in training where nothing moves */
-        adcgs_role_shape(&model->params, roles[i], &n_in, &n_out);
+        adcgs_role_shape(&model->params, role, &n_in, &n_out);
         if (f->mlp[i].entropy)
-            ADCGS_TRY(integer_network(net, &f->mlp[i], f->param[i].p, roles[i], (int)n_out, error));
+            ADCGS_TRY(integer_network(net, &f->mlp[i], f->param[i].p, role, (int)n_out, error));
         else
-            ADCGS_TRY(float_network(net, &f->mlp[i], f->param[i].p, roles[i], error));
+            ADCGS_TRY(float_network(net, &f->mlp[i], f->param[i].p, role, error));
     }
     return ADCGS_OK;
 }

@@ -83,20 +83,30 @@ void adcgs_bodies_set_pose(adcgs_fmodel *f, int body, int row, const double q[4]
 }
 
 /** Centre of the box of a body's anchors; where it is now if it has none. */
-static void find_centre(const adcgs_fmodel *f, int body, float centre[3])
+uint32_t adcgs_bodies_box(const adcgs_fmodel *f, int body, uint32_t low[3], uint32_t high[3])
 {
-    uint32_t low[3] = { UINT32_MAX, UINT32_MAX, UINT32_MAX }, high[3] = { 0 };
-    int any = 0;
+    uint32_t n = 0;
+    for (int a = 0; a < 3; a++) {
+        low[a] = UINT32_MAX;
+        high[a] = 0;
+    }
     for (uint32_t i = 0; i < f->n; i++) {
         if (f->body[i] != body || f->moving[i] == 0)
             continue;
-        any = 1;
+        n++;
         for (int a = 0; a < 3; a++) {
             low[a] = ADCGS_MIN(low[a], f->pos[i][a]);
             high[a] = ADCGS_MAX(high[a], f->pos[i][a]);
         }
     }
-    for (int a = 0; any && a < 3; a++)
+    return n;
+}
+
+static void find_centre(const adcgs_fmodel *f, int body, float centre[3])
+{
+    uint32_t low[3], high[3];
+    const uint32_t n = adcgs_bodies_box(f, body, low, high);
+    for (int a = 0; n > 0 && a < 3; a++)
         centre[a] = fmaf((float)(low[a] + high[a] + 1), 0.5f * f->voxel, f->origin[a]);
 }
 

@@ -8,6 +8,15 @@
 
 #include <math.h>
 
+const uint8_t adcgs_fmodel_role[ADCGS_P_COUNT] = {
+    [ADCGS_P_THETA] = ADCGS_ROLE_PREDICTION, [ADCGS_P_OMEGA] = ADCGS_ROLE_COARSE,       [ADCGS_P_VARPI] = ADCGS_ROLE_FINE,
+    [ADCGS_P_TIME] = ADCGS_ROLE_TIME,        [ADCGS_P_E_FV] = ADCGS_ROLE_ENTROPY_FV,
+    [ADCGS_P_E_SIGMA] = ADCGS_ROLE_ENTROPY_SIGMA, [ADCGS_P_E_COLOUR] = ADCGS_ROLE_ENTROPY_COLOUR,
+    [ADCGS_P_E_FG] = ADCGS_ROLE_ENTROPY_FG, [ADCGS_P_E_FG + 1] = ADCGS_ROLE_ENTROPY_FG + 1,
+    [ADCGS_P_E_FG + 2] = ADCGS_ROLE_ENTROPY_FG + 2, [ADCGS_P_E_FG + 3] = ADCGS_ROLE_ENTROPY_FG + 3,
+    [ADCGS_P_E_STEPS] = ADCGS_ROLE_ENTROPY_STEPS,
+};
+
 int adcgs_fmodel_rows(const adcgs_fmodel *f, int group)
 {
     switch (group) {

@@ -35,6 +35,9 @@ typedef enum adcgs_pgroup {
     ADCGS_P_COUNT
 } adcgs_pgroup;
 
+/** The role that the network of a group has in the stream; of groups without one it means nothing. */
+extern const uint8_t adcgs_fmodel_role[ADCGS_P_COUNT];
+
 /** One block of parameters. */
 typedef struct adcgs_param {
     const char *name;

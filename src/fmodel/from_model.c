@@ -7,16 +7,6 @@
 
 #include <math.h>
 
-/* Where the roles of networks are; the opposite of what quantising does. */
-static const uint8_t roles[ADCGS_P_COUNT] = {
-    [ADCGS_P_THETA] = ADCGS_ROLE_PREDICTION, [ADCGS_P_OMEGA] = ADCGS_ROLE_COARSE,       [ADCGS_P_VARPI] = ADCGS_ROLE_FINE,
-    [ADCGS_P_TIME] = ADCGS_ROLE_TIME,        [ADCGS_P_E_FV] = ADCGS_ROLE_ENTROPY_FV,
-    [ADCGS_P_E_SIGMA] = ADCGS_ROLE_ENTROPY_SIGMA, [ADCGS_P_E_COLOUR] = ADCGS_ROLE_ENTROPY_COLOUR,
-    [ADCGS_P_E_FG] = ADCGS_ROLE_ENTROPY_FG, [ADCGS_P_E_FG + 1] = ADCGS_ROLE_ENTROPY_FG + 1,
-    [ADCGS_P_E_FG + 2] = ADCGS_ROLE_ENTROPY_FG + 2, [ADCGS_P_E_FG + 3] = ADCGS_ROLE_ENTROPY_FG + 3,
-    [ADCGS_P_E_STEPS] = ADCGS_ROLE_ENTROPY_STEPS,
-};
-
 int adcgs_fmodel_is_settled(const adcgs_fmodel *f, int group)
 {
     return f->follows && (group == ADCGS_P_THETA || group == ADCGS_P_ETA_PRIOR || group == ADCGS_P_STEP || group >= ADCGS_P_E_FV);
@@ -60,8 +50,8 @@ static adcgs_status take_network(adcgs_fmodel *f, int group, const adcgs_net *ne
 static adcgs_status take_networks(adcgs_fmodel *f, const adcgs_model *model, adcgs_error *error)
 {
     for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++)
-        if (f->mlp[i].n && model->net[roles[i]].present)
-            ADCGS_TRY(take_network(f, i, &model->net[roles[i]], error));
+        if (f->mlp[i].n && model->net[adcgs_fmodel_role[i]].present)
+            ADCGS_TRY(take_network(f, i, &model->net[adcgs_fmodel_role[i]], error));
     return ADCGS_OK;
 }
 

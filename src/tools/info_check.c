@@ -9,19 +9,11 @@
 #include "cli/text.h"
 #include "io/atomic.h"
 #include "model/model_priv.h"
+#include "stream/input.h"
 #include "stream/salvage.h"
 
 #include <errno.h>
 #include <stdio.h>
-
-static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
-{
-    FILE *file = user;
-    if (fseeko(file, (off_t)offset, SEEK_SET))
-        return -1;
-    const size_t n = fread(buffer, 1, bytes, file);
-    return n ? (int64_t)n : -1;
-}
 
 static void print_fault(void *user, adcgs_log_level level, const char *text)
 {
@@ -62,7 +54,7 @@ static adcgs_status check_file(FILE *file, const char *path, const char *repaire
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
     const uint64_t size = (uint64_t)ftello(file);
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &options.cpu, error));
-    adcgs_status status = adcgs_stream_salvage(&stream, read_at, file, size, &options, faults, error);
+    adcgs_status status = adcgs_stream_salvage(&stream, adcgs_file_read_at, file, size, &options, faults, error);
     if (status != ADCGS_OK) {
         adcgs_error_locate(error, path);
         return status;

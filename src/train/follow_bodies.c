@@ -17,16 +17,8 @@ typedef struct stand {
 
 static void measure(const adcgs_fmodel *f, int body, stand *s)
 {
-    uint32_t low[3] = { UINT32_MAX, UINT32_MAX, UINT32_MAX }, high[3] = { 0 };
-    for (uint32_t i = 0; i < f->n; i++) {
-        if (f->body[i] != body || f->moving[i] == 0)
-            continue;
-        s->anchors++;
-        for (int a = 0; a < 3; a++) {
-            low[a] = ADCGS_MIN(low[a], f->pos[i][a]);
-            high[a] = ADCGS_MAX(high[a], f->pos[i][a]);
-        }
-    }
+    uint32_t low[3], high[3];
+    s->anchors = (int)adcgs_bodies_box(f, body, low, high);
     for (int a = 0; s->anchors && a < 3; a++)
         s->half = fmax(s->half, 0.5 * (double)(high[a] - low[a] + 1) * (double)f->voxel);
 }

@@ -373,3 +373,21 @@ adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *param
     }
     return ADCGS_OK;
 }
+
+adcgs_status adcgs_random_turns(adcgs_stream *stream, uint32_t segments, uint32_t n, int depth, uint32_t added, uint64_t *state,
+                                adcgs_error *error)
+{
+    stream->segments = adcgs_alloc(NULL, segments, sizeof *stream->segments, error);
+    if (!stream->segments)
+        return ADCGS_ERR_MEMORY;
+    for (uint32_t i = 0; i < segments; i++) {
+        adcgs_model *m = &stream->segments[stream->n_segments++];
+        if (i % 3)
+            ADCGS_TRY(adcgs_random_follower(m, m - 1, added, state, error));
+        else
+            ADCGS_TRY(adcgs_random_model(m, &stream->params, n, depth, state, error));
+        m->time_start = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i);
+        m->time_end = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i + 40);
+    }
+    return ADCGS_OK;
+}

@@ -29,6 +29,12 @@ adcgs_status adcgs_random_follower(adcgs_model *model, const adcgs_model *before
 /** A stream of such models, of which some are predicted, and some have the networks of the one before; cameras and metadata. */
 adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *params, uint32_t segments, uint32_t n, int depth,
                                  uint64_t *state, adcgs_error *error);
+/**
+ * The segments of a stream that has its parameters: every third a key of n anchors, the others predicted, each with at most added
+ * new anchors; one after the other in time.
+ */
+adcgs_status adcgs_random_turns(adcgs_stream *stream, uint32_t segments, uint32_t n, int depth, uint32_t added, uint64_t *state,
+                                adcgs_error *error);
 /** Draw all values of a model anew along the walk, for the networks, flags and masks that it has. */
 adcgs_status adcgs_random_values(adcgs_model *model, uint64_t *state, adcgs_error *error);
 

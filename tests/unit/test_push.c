@@ -43,15 +43,8 @@ static int setup(void **state)
     s->n_cameras = 1;
     s->cameras[0] = (adcgs_camera){ .width = 8, .height = 8, .fx = 8, .fy = 8, .cx = 4, .cy = 4, .near_plane = 0.1,
                                     .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 } };
-    s->segments = adcgs_alloc(NULL, SEGMENTS, sizeof *s->segments, NULL);
-    for (uint32_t i = 0; i < SEGMENTS; i++) {
-        adcgs_model *m = &s->segments[s->n_segments++];
-        if ((i % 3 ? adcgs_random_follower(m, m - 1, 70, &seed, NULL) :
-                     adcgs_random_model(m, &params, 80, 4, &seed, NULL)) != ADCGS_OK)
-            return -1;
-        m->time_start = adcgs_ticks_to_seconds(s, 40 * (int64_t)i);
-        m->time_end = adcgs_ticks_to_seconds(s, 40 * (int64_t)i + 40);
-    }
+    if (adcgs_random_turns(s, SEGMENTS, 80, 4, 70, &seed, NULL) != ADCGS_OK)
+        return -1;
     *state = f;
     return adcgs_stream_write(s, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
 }

@@ -42,15 +42,8 @@ static int setup(void **state)
     adcgs_stream_init(s);
     s->params = params;
     s->slice_log2 = ADCGS_SLICE_LOG2_MIN;
-    s->segments = adcgs_alloc(NULL, SEGMENTS, sizeof *s->segments, NULL);
-    for (uint32_t i = 0; i < SEGMENTS; i++) {
-        adcgs_model *m = &s->segments[s->n_segments++];
-        if ((i % 3 ? adcgs_random_follower(m, m - 1, 100, &seed, NULL) :
-                     adcgs_random_model(m, &params, 200, 5, &seed, NULL)) != ADCGS_OK)
-            return -1;
-        m->time_start = adcgs_ticks_to_seconds(s, 40 * (int64_t)i);
-        m->time_end = adcgs_ticks_to_seconds(s, 40 * (int64_t)i + 40);
-    }
+    if (adcgs_random_turns(s, SEGMENTS, 200, 5, 100, &seed, NULL) != ADCGS_OK)
+        return -1;
     *state = f;
     return adcgs_stream_write(s, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
 }

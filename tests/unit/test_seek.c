@@ -64,16 +64,10 @@ static int setup(void **state)
     adcgs_buffer_init(&f->bytes);
     adcgs_stream_init(s);
     s->params = params;
-    s->segments = adcgs_alloc(NULL, SEGMENTS, sizeof *s->segments, NULL);
-    for (uint32_t i = 0; i < SEGMENTS; i++) {
-        adcgs_model *m = &s->segments[s->n_segments++];
-        if ((i % 3 ? adcgs_random_follower(m, m - 1, 20, &seed, NULL) :
-                     adcgs_random_model(m, &params, 150, 5, &seed, NULL)) != ADCGS_OK)
-            return -1;
-        m->time_start = adcgs_ticks_to_seconds(s, 40 * (int64_t)i);
-        m->time_end = adcgs_ticks_to_seconds(s, 40 * (int64_t)i + 40);
-        adcgs_model_digest(m, f->digest[i]);
-    }
+    if (adcgs_random_turns(s, SEGMENTS, 150, 5, 20, &seed, NULL) != ADCGS_OK)
+        return -1;
+    for (int i = 0; i < SEGMENTS; i++)
+        adcgs_model_digest(&s->segments[i], f->digest[i]);
     *state = f;
     return adcgs_stream_write(s, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
 }
