@@ -122,7 +122,8 @@ adcgs_status adcgs_element_replace(adcgs_chunk_list *list, const adcgs_element *
     adcgs_write_bytes(&made, chunk->payload.data, element->offset);
     adcgs_write_bytes(&made, bytes->data, bytes->size);
     const size_t behind = element->offset + element->bytes;
-    adcgs_write_bytes(&made, chunk->payload.data + behind, chunk->payload.size - behind);
+    if (behind < chunk->payload.size)
+        adcgs_write_bytes(&made, chunk->payload.data + behind, chunk->payload.size - behind);
     adcgs_buffer_clear(&chunk->payload);
     chunk->payload = made;
     chunk->as_is = 1;

@@ -6,7 +6,8 @@
 
 void adcgs_reader_init(adcgs_reader *r, const void *data, size_t size)
 {
-    *r = (adcgs_reader){ .data = data, .size = size };
+    static const uint8_t nothing; /* an address to count from where there are no bytes */
+    *r = (adcgs_reader){ .data = size ? data : &nothing, .size = size };
 }
 
 const uint8_t *adcgs_read_bytes(adcgs_reader *r, size_t n)

@@ -28,12 +28,12 @@ parse_options()
     [ ! -f "$source/config.status" ] || wrong_use "the source tree is configured in place"
 }
 
-# levels RUN: the CPU levels at which a decoder runs here; the portable one has to.
+# levels RUN: the CPU levels, of $wanted_levels if that is set, at which a decoder runs here; the portable one has to.
 levels()
 {
     local level
     echo scalar
-    for level in avx2 avx512; do
+    for level in ${wanted_levels-avx2 avx512}; do
         $1 --cpu $level --md5 "$source/conformance/vectors/good-geom-one-anchor.adcgs" >/dev/null 2>&1 && echo $level
     done
 }
