@@ -24,11 +24,11 @@ static adcgs_status add(adcgs_chunk_list *list, const char *type, uint32_t segme
     return ADCGS_OK;
 }
 
-static adcgs_status add_copy(adcgs_chunk_list *list, const char *type, uint32_t segment, const adcgs_buffer *bytes,
+static adcgs_status add_copy(adcgs_chunk_list *list, const char *type, uint32_t segment, int flags, const adcgs_buffer *bytes,
                              adcgs_error *error)
 {
     adcgs_buffer *payload;
-    ADCGS_TRY(add(list, type, segment, 0, &payload, error));
+    ADCGS_TRY(add(list, type, segment, flags, &payload, error));
     adcgs_write_bytes(payload, bytes->data, bytes->size);
     return ADCGS_OK;
 }
@@ -52,14 +52,14 @@ static uint32_t assign_ids(id_table *table, const adcgs_model *m, adcgs_role_ids
     return before;
 }
 
-static adcgs_status add_layers(adcgs_plan *plan, uint32_t segment, adcgs_chunk_list *out, adcgs_error *error)
+static adcgs_status add_layers(adcgs_plan *plan, uint32_t segment, int tier, adcgs_chunk_list *out, adcgs_error *error)
 {
-    const adcgs_drawn *const d = &plan->drawn[segment];
+    const adcgs_drawn_tier *const d = &plan->drawn[segment].tier[tier];
     for (int layer = 0; d->n_slices > 0 && layer < adcgs_params_layers(&plan->stream.params); layer++) {
         const char type[5] = { 'F', 'E', 'A', (char)('0' + layer), 0 };
         const adcgs_buffer *const slice = d->data + (size_t)layer * d->n_slices;
         adcgs_buffer *payload;
-        ADCGS_TRY(add(out, type, segment, 0, &payload, error));
+        ADCGS_TRY(add(out, type, segment, ADCGS_CHUNK_OF_TIER(tier), &payload, error));
         adcgs_write_varint(payload, 0);
         adcgs_write_varint(payload, d->n_slices);
         for (uint32_t i = 0; i < d->n_slices; i++) {
@@ -143,9 +143,12 @@ static adcgs_status add_segment(adcgs_plan *plan, uint32_t segment, id_table *ta
     ADCGS_TRY(adcgs_plan_each(plan, "unnamed", add_unnamed, table, error));
     ADCGS_TRY(adcgs_plan_each(plan, "poke", add_poked, table, error));
     if (m->predicted)
-        ADCGS_TRY(add_copy(out, "KEEP", segment, &plan->drawn[segment].keep, error));
-    ADCGS_TRY(add_copy(out, "GEOM", segment, &plan->drawn[segment].geom, error));
-    ADCGS_TRY(add_layers(plan, segment, out, error));
+        ADCGS_TRY(add_copy(out, "KEEP", segment, 0, &plan->drawn[segment].keep, error));
+    for (int tier = 0; tier <= (m->predicted ? 0 : m->finest); tier++) {
+        const adcgs_buffer *const geom = &plan->drawn[segment].tier[tier].geom;
+        ADCGS_TRY(add_copy(out, "GEOM", segment, ADCGS_CHUNK_OF_TIER(tier), geom, error));
+        ADCGS_TRY(add_layers(plan, segment, tier, out, error));
+    }
     if (plan->no_digest)
         return ADCGS_OK;
     ADCGS_TRY(add(out, "hash", segment, ADCGS_CHUNK_LAST, &payload, error));

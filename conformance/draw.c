@@ -301,7 +301,7 @@ static int draw_flag(void *user, adcgs_adaptive *context, int bit)
     return bit;
 }
 
-static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *out, adcgs_error *error)
+static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn_tier *out, adcgs_error *error)
 {
     const uint32_t slice = 1U << plan->stream.slice_log2;
     const int layers = adcgs_params_layers(&m->params);
@@ -326,6 +326,40 @@ static adcgs_status draw_slices(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *o
     return status;
 }
 
+/* The anchors of a tier, whose places are known. */
+static adcgs_status draw_tier(adcgs_plan *plan, adcgs_model *m, int tier, adcgs_drawn_tier *out, adcgs_error *error)
+{
+    for (uint32_t i = 0; i < m->n; i++) {
+        m->is_static[i] = (uint8_t)(m->params.time_rows > 0 ? pick(plan, plan->statics, i, 1) : 0);
+        m->mask[i] = (uint16_t)pick(plan, plan->masks, i, (1U << m->params.k) - 1);
+    }
+    ADCGS_TRY(fill_bodies(plan, m, error));
+    ADCGS_TRY(adcgs_geom_write(&out->geom, m, tier, error));
+    return draw_slices(plan, m, out, error);
+}
+
+/* Sort the anchors into tiers and draw these one after the other. */
+static adcgs_status draw_tiers(adcgs_plan *plan, adcgs_model *m, adcgs_drawn *out, adcgs_error *error)
+{
+    adcgs_model all = adcgs_model_frame(m), part;
+    adcgs_status status = ADCGS_OK;
+    all.n = 0;
+    for (uint32_t i = 0; i < m->n; i++)
+        m->tier[i] = (uint8_t)(i <= m->finest ? (int)i : draw(&plan->state, 0, m->finest));
+    for (int tier = 0; tier <= m->finest && status == ADCGS_OK; tier++) {
+        status = adcgs_model_tier(&part, m, tier, NULL, error);
+        if (status == ADCGS_OK)
+            status = draw_tier(plan, &part, tier, &out->tier[tier], error);
+        if (status == ADCGS_OK)
+            status = adcgs_tiers_join(&all, &part, NULL, error);
+        adcgs_model_clear(&all, NULL);
+        all = part;
+    }
+    adcgs_model_clear(m, NULL);
+    *m = all;
+    return status;
+}
+
 /* The anchors of a model, those of a predicted one beside what is kept, as chunks will have them. */
 static adcgs_status draw_anchors(adcgs_plan *plan, uint32_t segment, const adcgs_keep *kept, adcgs_error *error)
 {
@@ -336,13 +370,7 @@ static adcgs_status draw_anchors(adcgs_plan *plan, uint32_t segment, const adcgs
     place_anchors(plan, m);
     if (kept)
         ADCGS_TRY(adcgs_random_settle(m, kept, m - 1, error));
-    for (uint32_t i = 0; i < m->n; i++) {
-        m->is_static[i] = (uint8_t)(m->params.time_rows > 0 ? pick(plan, plan->statics, i, 1) : 0);
-        m->mask[i] = (uint16_t)pick(plan, plan->masks, i, (1U << m->params.k) - 1);
-    }
-    ADCGS_TRY(fill_bodies(plan, m, error));
-    ADCGS_TRY(adcgs_geom_write(&out->geom, m, error));
-    return draw_slices(plan, m, out, error);
+    return m->finest && !kept ? draw_tiers(plan, m, out, error) : draw_tier(plan, m, 0, &out->tier[0], error);
 }
 
 static adcgs_status draw_key(adcgs_plan *plan, uint32_t segment, adcgs_error *error)
@@ -352,6 +380,9 @@ static adcgs_status draw_key(adcgs_plan *plan, uint32_t segment, adcgs_error *er
     m->depth = plan->depth;
     m->layers = (uint8_t)adcgs_params_layers(&m->params);
     m->n = plan->anchors[segment];
+    m->finest = (uint8_t)(plan->tiers ? ADCGS_MIN((uint32_t)plan->tiers, m->n) - 1 : 0);
+    for (int t = 0; t < m->finest; t++)
+        m->growth[t] = (uint8_t)plan->growth[t];
     ADCGS_TRY(fill_tables(plan, m, error));
     return draw_anchors(plan, segment, NULL, error);
 }

@@ -177,6 +177,22 @@ static adcgs_status set_predicted(adcgs_plan *plan, const adcgs_command *c, void
     return ADCGS_OK;
 }
 
+/* tiers N GROWTH ...: anchors are of the first N in turn, then of any; the last growth holds for those that follow */
+static adcgs_status set_tiers(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    int64_t n, growth = 0;
+    (void)user;
+    ADCGS_TRY(adcgs_command_words(c, 1, ADCGS_TIERS_MAX, error));
+    ADCGS_TRY(adcgs_word_int(c->word[1], 1, ADCGS_TIERS_MAX, &n, error));
+    plan->tiers = (int)n;
+    for (int i = 0; i < ADCGS_TIERS_MAX - 1; i++) {
+        if (i + 2 < c->n)
+            ADCGS_TRY(adcgs_word_int(c->word[i + 2], 0, ADCGS_GROWTH_MAX, &growth, error));
+        plan->growth[i] = (int)growth;
+    }
+    return ADCGS_OK;
+}
+
 /* differences HOW GROUP ...: of these groups, of all without one */
 static adcgs_status set_differences(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
@@ -334,6 +350,7 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
         adcgs_command_fn fn;
     } others[] = { { "params", set_params }, { "anchors", set_anchors }, { "ticks", set_ticks }, { "times", add_time },
                    { "layers", set_fewer }, { "predicted", set_predicted }, { "differences", set_differences },
+                   { "tiers", set_tiers },
                    { "camera", add_camera }, { "stored", add_stored }, { "meta", add_meta } };
     set_defaults(plan);
     plan->recipe = recipe;
@@ -353,15 +370,21 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
     return ADCGS_OK;
 }
 
+static void clear_tier(adcgs_drawn_tier *d)
+{
+    for (uint32_t i = 0; d->data && i < ADCGS_LAYERS * d->n_slices; i++)
+        adcgs_buffer_clear(&d->data[i]);
+    adcgs_free(NULL, d->data);
+    adcgs_buffer_clear(&d->geom);
+}
+
 void adcgs_plan_clear(adcgs_plan *plan)
 {
     for (int s = 0; s < ADCGS_PLAN_SEGMENTS; s++) {
         adcgs_drawn *const d = &plan->drawn[s];
-        for (uint32_t i = 0; d->data && i < ADCGS_LAYERS * d->n_slices; i++)
-            adcgs_buffer_clear(&d->data[i]);
-        adcgs_free(NULL, d->data);
+        for (int t = 0; t < ADCGS_TIERS_MAX; t++)
+            clear_tier(&d->tier[t]);
         adcgs_buffer_clear(&d->keep);
-        adcgs_buffer_clear(&d->geom);
     }
     adcgs_stream_clear(&plan->stream, NULL);
 }

@@ -58,11 +58,17 @@ typedef enum adcgs_change {
     ADCGS_CHANGE_CLIPS    /**< to the limits, in both directions */
 } adcgs_change;
 
-/** The coded parts of a segment; slices: [layer * n_slices + slice]. */
-typedef struct adcgs_drawn {
-    adcgs_buffer keep, geom; /**< payloads; keep: of a predicted segment */
+/** The coded parts of a tier; slices: [layer * n_slices + slice]. */
+typedef struct adcgs_drawn_tier {
+    adcgs_buffer geom; /**< payload */
     uint32_t n_slices;
     adcgs_buffer *data;
+} adcgs_drawn_tier;
+
+/** The coded parts of a segment. */
+typedef struct adcgs_drawn {
+    adcgs_buffer keep; /**< payload, of a predicted segment */
+    adcgs_drawn_tier tier[ADCGS_TIERS_MAX];
 } adcgs_drawn;
 
 typedef struct adcgs_plan {
@@ -72,6 +78,7 @@ typedef struct adcgs_plan {
     uint32_t anchors[ADCGS_PLAN_SEGMENTS]; /**< of predicted segments the new ones */
     int predicted[ADCGS_PLAN_SEGMENTS];
     int kept, differences, changed; /**< adcgs_hold, adcgs_change; bits: groups with differences */
+    int tiers, growth[ADCGS_TIERS_MAX - 1]; /**< of segments that are not predicted */
     uint8_t depth;
     double origin[3], voxel; /**< voxel 0: the cube's edge is 2 */
     int64_t ticks[2 * ADCGS_PLAN_SEGMENTS];

@@ -15,7 +15,7 @@ typedef struct writer {
     uint64_t state;
     adcgs_status status;
     adcgs_error *error;
-    int n_fg, chunks, adaptive, moving, segments, anchors, depth, slice_log2;
+    int n_fg, chunks, adaptive, moving, segments, anchors, depth, slice_log2, tiered;
 } writer;
 
 static void line(writer *w, const char *format, ...) ADCGS_PRINTF(2, 3);
@@ -105,6 +105,9 @@ static void write_anchors(writer *w)
             m += (size_t)snprintf(which + m, sizeof which - m, " %d", i);
     }
     line(w, "%s", text);
+    w->tiered = once_in(w, 2);
+    if (w->tiered)
+        line(w, "tiers %d %d %d %d", edgy(w, 1, 8), edgy(w, 0, 16), edgy(w, 0, 16), edgy(w, 0, 16));
     if (!strchr(which, ' '))
         return;
     line(w, "%s", which);
@@ -221,10 +224,10 @@ static void write_edits(writer *w)
         line(w, "insert HEAD after GEOM copy=HEAD");
     if (once_in(w, 8))
         line(w, "insert NETW after GEOM copy=NETW");
-    if (slices > 1 && once_in(w, 3))
+    if (slices > 1 && !w->tiered && once_in(w, 3))
         line(w, "split FEA0 %d", draw(w, 1, slices - 1));
     if (w->n_fg > 0 && once_in(w, 5))
-        line(w, slices > 1 && once_in(w, 2) ? "keep FEA%d 1" : "remove FEA%d", w->chunks);
+        line(w, slices > 1 && !w->tiered && once_in(w, 2) ? "keep FEA%d 1" : "remove FEA%d", w->chunks);
     if (once_in(w, 8))
         line(w, "tail 00112233");
 }

@@ -148,6 +148,7 @@ void adcgs_close(adcgs_decoder **decoder)
     adcgs_seek_free(&d->seek);
     adcgs_push_free(&d->push);
     adcgs_model_clear(&d->unfinished, &d->memory);
+    adcgs_model_clear(&d->coarser, &d->memory);
     adcgs_stream_clear(&d->stream, &d->memory);
     if (d->file)
         fclose(d->file);
@@ -220,6 +221,33 @@ static adcgs_status catch_up(adcgs_decoder *d, adcgs_error *error)
     return status;
 }
 
+/** Make splats of a segment's model, or of the tiers of it that are wanted. */
+static adcgs_status make_splat(adcgs_decoder *d, const adcgs_model *model, adcgs_error *error)
+{
+    adcgs_model_clear(&d->coarser, &d->memory);
+    if (d->tiers && d->tiers < model->finest + 1 - model->absent) {
+        const adcgs_status status = adcgs_model_coarser(&d->coarser, model, d->tiers, &d->memory, error);
+        if (status != ADCGS_OK) {
+            adcgs_model_clear(&d->coarser, &d->memory);
+            return status;
+        }
+        model = &d->coarser;
+    }
+    return adcgs_splat_create(&d->splat, model, d->cpu, d->pool, &d->memory, error);
+}
+
+adcgs_status adcgs_set_tiers(adcgs_decoder *decoder, int tiers, adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    if (tiers < 0)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d tiers asked for", tiers);
+    if (tiers != decoder->tiers)
+        adcgs_splat_free(&decoder->splat);
+    decoder->tiers = tiers;
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primitives *out, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
@@ -232,7 +260,7 @@ adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primi
     if (d->splat && d->splat_segment != segment)
         adcgs_splat_free(&d->splat);
     if (!d->splat)
-        ADCGS_TRY(adcgs_splat_create(&d->splat, model, d->cpu, d->pool, &d->memory, error));
+        ADCGS_TRY(make_splat(d, model, error));
     d->splat_segment = segment;
     return adcgs_splat_at(d->splat, normalised_time(model, time), out, error);
 }
@@ -254,7 +282,7 @@ adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t
     ADCGS_TRY(adcgs_decoder_primitives(decoder, time, &primitives, error));
     const adcgs_model *model;
     ADCGS_TRY(decoder_segment(decoder, decoder->splat_segment, &model, error));
-    adcgs_splat_digest(model, &primitives, digest);
+    adcgs_splat_digest(decoder->coarser.n ? &decoder->coarser : model, &primitives, digest);
     return ADCGS_OK;
 }
 

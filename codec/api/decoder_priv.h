@@ -28,6 +28,8 @@ struct adcgs_decoder {
     int is_behind;          /**< more of it has come since */
     uint32_t faults;        /**< that were concealed */
     FILE *file;             /**< that it reads from, if that is a file opened here */
+    int tiers;              /**< that are drawn at most; 0: all */
+    adcgs_model coarser;    /**< what splat is of, if the segment has more tiers; n 0: it is of the segment */
     adcgs_splat *splat;     /**< of splat_segment; NULL until the first use */
     uint32_t splat_segment;
     adcgs_raster *raster;   /**< NULL until the first frame */

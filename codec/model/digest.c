@@ -119,6 +119,7 @@ static void visit_anchors(visitor *v, const adcgs_model *a, const adcgs_model *b
     LIST("is_static", is_static, n);
     LIST("body", body, n);
     LIST("mask", mask, n);
+    LIST("tier", tier, n);
     LIST("eta", eta, n * p->n_eta);
     LIST("fv", fv, n * p->n_fv);
     LIST("sigma", sigma, n * (size_t)adcgs_sigma_rows(p));
@@ -144,6 +145,10 @@ static void visit_model(visitor *v, const adcgs_model *a, const adcgs_model *b)
     LIST("shape", shape, ADCGS_GROUPS);
     LIST("eta_mu", eta_mu, a->params.n_eta);
     LIST("eta_si", eta_si, a->params.n_eta);
+    ITEM("finest", finest);
+    if (v->difference)
+        return;
+    LIST("growth", growth, a->finest);
     visit_anchors(v, a, b);
     for (int role = 0; role < ADCGS_ROLES && !v->difference; role++)
         visit_net(v, &a->net[role], &b->net[role]);

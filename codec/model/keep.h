@@ -39,6 +39,8 @@ adcgs_status adcgs_kept_encode(const adcgs_keep *kept, const adcgs_model *before
 int adcgs_kept_possible(const adcgs_model *before, const adcgs_model *now, adcgs_error *why);
 /** What of the model before is found again in the one after it: at its place, with all that differences do not reach. */
 adcgs_status adcgs_kept_find(adcgs_keep *kept, const adcgs_model *before, const adcgs_model *now, adcgs_error *error);
+/** New anchors are of the first tier: have those be that are not found again. */
+adcgs_status adcgs_kept_renew(adcgs_model *now, const adcgs_model *before, adcgs_error *error);
 /** The anchors of a model that are not kept, with its networks and steps: what GEOM and layers hold. The caller clears it. */
 adcgs_status adcgs_kept_rest(adcgs_model *rest, const adcgs_keep *kept, const adcgs_model *before, const adcgs_model *now,
                              adcgs_error *error);

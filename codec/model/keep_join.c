@@ -4,32 +4,9 @@
 #include "model/keep_priv.h"
 #include "model/model_priv.h"
 
-static uint64_t place_of(const adcgs_model *model, uint32_t anchor)
-{
-    return adcgs_morton(model->pos + 3 * (size_t)anchor);
-}
-
-/** Copy one anchor's row of an array with so many values each. */
-#define COPY(array, values) \
-    memcpy(to->array + (size_t)i * (values), from->array + (size_t)j * (values), (values) * sizeof *to->array)
-
-static void copy_anchor(adcgs_model *to, uint32_t i, const adcgs_model *from, uint32_t j)
-{
-    const adcgs_params *p = &to->params;
-    COPY(pos, (size_t)3);
-    COPY(is_static, (size_t)1);
-    COPY(body, (size_t)1);
-    COPY(mask, (size_t)1);
-    COPY(eta, (size_t)p->n_eta);
-    COPY(fv, (size_t)p->n_fv);
-    COPY(sigma, (size_t)adcgs_sigma_rows(p));
-    COPY(colour, (size_t)ADCGS_COLOUR_N);
-    COPY(fg, (size_t)p->k * p->n_fg);
-}
-
 static void copy_kept(adcgs_model *to, uint32_t i, const adcgs_keep *kept, const adcgs_model *from, uint32_t j)
 {
-    copy_anchor(to, i, from, j);
+    adcgs_anchor_copy(to, i, from, j);
     for (int g = 0; g < ADCGS_KEEP_GROUPS; g++) {
         const size_t n = (size_t)adcgs_keep_channels(&to->params, g);
         memcpy(adcgs_keep_rows(to, g) + i * n, kept->rows[g] + j * n, n * sizeof(int16_t));
@@ -52,6 +29,8 @@ int adcgs_kept_possible(const adcgs_model *a, const adcgs_model *b, adcgs_error 
     else if (!same_bytes(a->shape, b->shape, sizeof a->shape) || !same_bytes(a->eta_mu, b->eta_mu, sizeof a->eta_mu) ||
              !same_bytes(a->eta_si, b->eta_si, sizeof a->eta_si))
         what = "shapes";
+    else if (a->finest != b->finest || !same_bytes(a->growth, b->growth, a->finest * sizeof *a->growth))
+        what = "tiers";
     else if (!same_bytes(a->d_fv, b->d_fv, a->params.n_fv * sizeof *a->d_fv) ||
              !same_bytes(a->d_sigma, b->d_sigma, (size_t)adcgs_sigma_rows(&a->params) * sizeof *a->d_sigma) ||
              !same_bytes(a->d_colour, b->d_colour, sizeof a->d_colour) ||
@@ -74,7 +53,7 @@ static int within_reach(int32_t before, int32_t now)
 static adcgs_keep_mode mode_of(const adcgs_model *a, uint32_t i, const adcgs_model *b, uint32_t j)
 {
     const size_t eta = a->params.n_eta, fg = (size_t)a->params.k * a->params.n_fg;
-    if (a->is_static[i] != b->is_static[j] || a->body[i] != b->body[j] || a->mask[i] != b->mask[j] ||
+    if (a->is_static[i] != b->is_static[j] || a->body[i] != b->body[j] || a->mask[i] != b->mask[j] || a->tier[i] != b->tier[j] ||
         !same_bytes(a->eta + i * eta, b->eta + j * eta, eta * sizeof *a->eta) ||
         !same_bytes(a->fg + i * fg, b->fg + j * fg, fg * sizeof *a->fg))
         return ADCGS_KEEP_DROPPED;
@@ -95,10 +74,10 @@ adcgs_status adcgs_kept_find(adcgs_keep *kept, const adcgs_model *before, const 
 {
     ADCGS_TRY(adcgs_kept_alloc(kept, before, NULL, error));
     for (uint32_t i = 0, j = 0; i < before->n; i++) {
-        while (j < now->n && place_of(now, j) < place_of(before, i))
+        while (j < now->n && adcgs_anchor_place(now, j) < adcgs_anchor_place(before, i))
             j++;
         kept->mode[i] = ADCGS_KEEP_DROPPED;
-        if (j == now->n || place_of(now, j) != place_of(before, i))
+        if (j == now->n || adcgs_anchor_place(now, j) != adcgs_anchor_place(before, i))
             continue;
         kept->mode[i] = (uint8_t)mode_of(before, i, now, j);
         kept->n += kept->mode[i] != ADCGS_KEEP_DROPPED;
@@ -110,33 +89,38 @@ adcgs_status adcgs_kept_find(adcgs_keep *kept, const adcgs_model *before, const 
     return ADCGS_OK;
 }
 
-/** All of a model but its anchors and networks. */
-static adcgs_model frame_of(const adcgs_model *model)
+/** Whether an anchor is kept at a place. i: of the anchors before; places are asked for in ascending order. */
+static int is_kept(const adcgs_keep *kept, const adcgs_model *before, uint32_t *i, uint64_t place)
 {
-    adcgs_model m = *model;
-    m.pos = NULL;
-    m.is_static = m.body = NULL;
-    m.mask = NULL;
-    m.eta = m.fv = m.sigma = m.colour = m.fg = NULL;
-    memset(m.net, 0, sizeof m.net);
-    return m;
+    while (*i < before->n && (kept->mode[*i] == ADCGS_KEEP_DROPPED || adcgs_anchor_place(before, *i) < place))
+        ++*i;
+    return *i < before->n && adcgs_anchor_place(before, *i) == place;
+}
+
+adcgs_status adcgs_kept_renew(adcgs_model *now, const adcgs_model *before, adcgs_error *error)
+{
+    adcgs_keep kept = { .n = 0 };
+    const adcgs_status status = adcgs_kept_find(&kept, before, now, error);
+    uint32_t i = 0;
+    for (uint32_t j = 0; status == ADCGS_OK && j < now->n; j++) {
+        if (!is_kept(&kept, before, &i, adcgs_anchor_place(now, j)))
+            now->tier[j] = 0;
+    }
+    adcgs_kept_clear(&kept, NULL);
+    return status;
 }
 
 adcgs_status adcgs_kept_rest(adcgs_model *rest, const adcgs_keep *kept, const adcgs_model *before, const adcgs_model *now,
                              adcgs_error *error)
 {
-    *rest = frame_of(now);
+    *rest = adcgs_model_frame(now);
     rest->n = now->n - kept->n;
     ADCGS_TRY(adcgs_model_alloc(rest, NULL, error));
-    for (int role = 0; role < ADCGS_ROLES; role++)
-        if (now->net[role].present)
-            ADCGS_TRY(adcgs_net_copy(&rest->net[role], &now->net[role], NULL, error));
+    ADCGS_TRY(adcgs_nets_copy(rest, now, NULL, error));
     uint32_t i = 0, n = 0;
     for (uint32_t j = 0; j < now->n; j++) {
-        while (i < before->n && (kept->mode[i] == ADCGS_KEEP_DROPPED || place_of(before, i) < place_of(now, j)))
-            i++;
-        if (i == before->n || place_of(before, i) != place_of(now, j))
-            copy_anchor(rest, n++, now, j);
+        if (!is_kept(kept, before, &i, adcgs_anchor_place(now, j)))
+            adcgs_anchor_copy(rest, n++, now, j);
     }
     return ADCGS_OK;
 }
@@ -146,9 +130,9 @@ adcgs_status adcgs_kept_check(const adcgs_keep *kept, const adcgs_model *before,
     for (uint32_t i = 0, j = 0; i < before->n; i++) {
         if (kept->mode[i] == ADCGS_KEEP_DROPPED)
             continue;
-        while (j < added->n && place_of(added, j) < place_of(before, i))
+        while (j < added->n && adcgs_anchor_place(added, j) < adcgs_anchor_place(before, i))
             j++;
-        if (j < added->n && place_of(added, j) == place_of(before, i))
+        if (j < added->n && adcgs_anchor_place(added, j) == adcgs_anchor_place(before, i))
             return adcgs_fail(error, ADCGS_ERR_DATA, "GEOM: new anchor %u is where anchor %u is kept", j, i);
     }
     return ADCGS_OK;
@@ -157,7 +141,7 @@ adcgs_status adcgs_kept_check(const adcgs_keep *kept, const adcgs_model *before,
 adcgs_status adcgs_kept_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_memory *memory,
                              adcgs_error *error)
 {
-    adcgs_model all = frame_of(model);
+    adcgs_model all = adcgs_model_frame(model);
     all.n = model->n + kept->n;
     all.layers = ADCGS_MIN(model->layers, before->layers);
     const adcgs_status status = adcgs_model_alloc(&all, memory, error);
@@ -169,11 +153,11 @@ adcgs_status adcgs_kept_join(const adcgs_keep *kept, const adcgs_model *before, 
     for (uint32_t n = 0; n < all.n; n++) {
         while (i < before->n && kept->mode[i] == ADCGS_KEEP_DROPPED)
             i++;
-        if (i < before->n && (j == model->n || place_of(before, i) < place_of(model, j))) {
+        if (i < before->n && (j == model->n || adcgs_anchor_place(before, i) < adcgs_anchor_place(model, j))) {
             copy_kept(&all, n, kept, before, i);
             i++;
         } else {
-            copy_anchor(&all, n, model, j);
+            adcgs_anchor_copy(&all, n, model, j);
             j++;
         }
     }

@@ -21,7 +21,7 @@ uint64_t adcgs_anchor_values(const adcgs_params *params)
 
 uint64_t adcgs_anchor_bytes(const adcgs_params *params)
 {
-    return 3 * sizeof(uint32_t) + 2 * sizeof(uint8_t) + sizeof(uint16_t) + adcgs_anchor_values(params) * sizeof(int16_t);
+    return 3 * sizeof(uint32_t) + 3 * sizeof(uint8_t) + sizeof(uint16_t) + adcgs_anchor_values(params) * sizeof(int16_t);
 }
 
 void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint32_t *n_out)
@@ -100,6 +100,14 @@ adcgs_status adcgs_net_copy(adcgs_net *dst, const adcgs_net *src, adcgs_memory *
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_nets_copy(adcgs_model *dst, const adcgs_model *src, adcgs_memory *memory, adcgs_error *error)
+{
+    for (int role = 0; role < ADCGS_ROLES; role++)
+        if (src->net[role].present)
+            ADCGS_TRY(adcgs_net_copy(&dst->net[role], &src->net[role], memory, error));
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_error *error)
 {
     const adcgs_params *p = &model->params;
@@ -108,7 +116,8 @@ adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_e
     model->is_static = model->pos ? adcgs_alloc(memory, n, sizeof *model->is_static, error) : NULL;
     model->body = model->is_static ? adcgs_alloc(memory, n, sizeof *model->body, error) : NULL;
     model->mask = model->body ? adcgs_alloc(memory, n, sizeof *model->mask, error) : NULL;
-    model->eta = model->mask ? adcgs_alloc(memory, n, p->n_eta * value, error) : NULL;
+    model->tier = model->mask ? adcgs_alloc(memory, n, sizeof *model->tier, error) : NULL;
+    model->eta = model->tier ? adcgs_alloc(memory, n, p->n_eta * value, error) : NULL;
     model->fv = model->eta ? adcgs_alloc(memory, n, p->n_fv * value, error) : NULL;
     model->sigma = model->fv ? adcgs_alloc(memory, n, (size_t)adcgs_sigma_rows(p) * value, error) : NULL;
     model->colour = model->sigma ? adcgs_alloc(memory, n, ADCGS_COLOUR_N * value, error) : NULL;
@@ -128,9 +137,9 @@ static void copy_arrays(adcgs_model *dst, const adcgs_model *src)
     } arrays[] = {
         { dst->pos, src->pos, 3 * sizeof *src->pos },          { dst->is_static, src->is_static, sizeof *src->is_static },
         { dst->body, src->body, sizeof *src->body },           { dst->mask, src->mask, sizeof *src->mask },
-        { dst->eta, src->eta, p->n_eta * value },              { dst->fv, src->fv, p->n_fv * value },
-        { dst->sigma, src->sigma, (size_t)adcgs_sigma_rows(p) * value }, { dst->colour, src->colour, ADCGS_COLOUR_N * value },
-        { dst->fg, src->fg, (size_t)p->k * p->n_fg * value },
+        { dst->tier, src->tier, sizeof *src->tier },           { dst->eta, src->eta, p->n_eta * value },
+        { dst->fv, src->fv, p->n_fv * value },                 { dst->sigma, src->sigma, (size_t)adcgs_sigma_rows(p) * value },
+        { dst->colour, src->colour, ADCGS_COLOUR_N * value },  { dst->fg, src->fg, (size_t)p->k * p->n_fg * value },
     };
     for (size_t i = 0; n && i < ADCGS_COUNTOF(arrays); i++)
         memcpy(arrays[i].to, arrays[i].from, n * arrays[i].bytes);
@@ -140,16 +149,13 @@ adcgs_status adcgs_model_copy(adcgs_model *dst, const adcgs_model *src, adcgs_me
 {
     *dst = *src;
     dst->pos = NULL;
-    dst->is_static = dst->body = NULL;
+    dst->is_static = dst->body = dst->tier = NULL;
     dst->mask = NULL;
     dst->eta = dst->fv = dst->sigma = dst->colour = dst->fg = NULL;
     memset(dst->net, 0, sizeof dst->net);
     ADCGS_TRY(adcgs_model_alloc(dst, memory, error));
     copy_arrays(dst, src);
-    for (int role = 0; role < ADCGS_ROLES; role++)
-        if (src->net[role].present)
-            ADCGS_TRY(adcgs_net_copy(&dst->net[role], &src->net[role], memory, error));
-    return ADCGS_OK;
+    return adcgs_nets_copy(dst, src, memory, error);
 }
 
 void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory)
@@ -158,6 +164,7 @@ void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory)
     adcgs_free(memory, model->is_static);
     adcgs_free(memory, model->body);
     adcgs_free(memory, model->mask);
+    adcgs_free(memory, model->tier);
     adcgs_free(memory, model->eta);
     adcgs_free(memory, model->fv);
     adcgs_free(memory, model->sigma);

@@ -25,6 +25,8 @@
 #define ADCGS_BODIES_MAX 15
 #define ADCGS_POSE_N 7
 #define ADCGS_LAYERS 5
+#define ADCGS_TIERS_MAX 8
+#define ADCGS_GROWTH_MAX 16
 #define ADCGS_ANCHORS_MAX (1U << 20)
 #define ADCGS_TIME_ROWS_MAX 4096
 #define ADCGS_TIME_WIDTH_MAX 512
@@ -69,6 +71,7 @@ typedef struct adcgs_model {
     uint8_t *is_static; /**< [n] 1: the anchor is not deformed */
     uint8_t *body;      /**< [n] the body that the anchor goes with, 1..bodies; 0: none, as of what is static */
     uint16_t *mask;     /**< [n] bit k: primitive k exists */
+    uint8_t *tier;      /**< [n] which set of anchors brings it, 0..finest: the first is a coarse picture of everything */
 
     /* Reconstructed latents yq in 1/64 step, |yq| <= 32767. Primitives that do not exist have f_g = 0. */
     int16_t *eta;    /**< [n][n_eta] */
@@ -83,7 +86,12 @@ typedef struct adcgs_model {
     int16_t eta_mu[ADCGS_ETA_MAX];        /**< prior of eta, 1/64 step */
     uint8_t eta_si[ADCGS_ETA_MAX];
 
+    uint8_t finest; /**< tiers behind the first, 0..ADCGS_TIERS_MAX - 1; in a model that is not predicted each brings an anchor */
+    /** [finest] 0..16: primitives are 2^(growth/8) times as large while no tier behind this one is there */
+    uint8_t growth[ADCGS_TIERS_MAX - 1];
+
     adcgs_net net[ADCGS_ROLES];
+    uint8_t absent; /**< tiers that are not there, the finest; not part of equality or digest of a complete model */
     uint8_t predicted; /**< coded by what it shares with the segment before; not part of equality or digest */
     uint8_t layers; /**< layers this model was decoded with, 1..5; not part of equality or digest of a complete model */
 } adcgs_model;
@@ -93,6 +101,16 @@ adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_e
 /** A deep copy; on failure dst holds what adcgs_model_clear() frees. */
 adcgs_status adcgs_model_copy(adcgs_model *dst, const adcgs_model *src, adcgs_memory *memory, adcgs_error *error);
 void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory);
+/**
+ * Tiers (spec clause "Tiers"). The anchors of one tier alone; the model as it is while only so many tiers, at least 1, are there.
+ * The caller clears dst, also on failure.
+ */
+adcgs_status adcgs_model_tier(adcgs_model *dst, const adcgs_model *src, int tier, adcgs_memory *memory, adcgs_error *error);
+adcgs_status adcgs_model_coarser(adcgs_model *dst, const adcgs_model *src, int tiers, adcgs_memory *memory, adcgs_error *error);
+/** ADCGS_ERR_DATA if an added anchor is where one of the tiers before is. */
+adcgs_status adcgs_tiers_check(const adcgs_model *coarser, const adcgs_model *added, adcgs_error *error);
+/** Join the anchors of the tiers before with those that a model holds, in this model. */
+adcgs_status adcgs_tiers_join(const adcgs_model *coarser, adcgs_model *model, adcgs_memory *memory, adcgs_error *error);
 /** Shapes, ranges, network sizes against params; E24 bounds; finite steps. Everything a decoder relies on. */
 adcgs_status adcgs_model_validate(const adcgs_model *model, adcgs_error *error);
 /** Byte-for-byte equality of everything the stream carries; on difference, names the first in error. */

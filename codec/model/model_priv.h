@@ -22,8 +22,17 @@ int adcgs_role_allowed(const adcgs_params *params, int role);
 /** Name of a role for messages and reports, e.g. "E_fv". */
 const char *adcgs_role_name(int role);
 
+/** All of a model but its anchors' arrays and its networks. */
+adcgs_model adcgs_model_frame(const adcgs_model *model);
+/** The Morton code of an anchor's position: anchors are in its order. */
+uint64_t adcgs_anchor_place(const adcgs_model *model, uint32_t anchor);
+/** Copy anchor j of one model to be anchor i of another with the same parameters. */
+void adcgs_anchor_copy(adcgs_model *to, uint32_t i, const adcgs_model *from, uint32_t j);
+
 /** Deep copy; on failure dst holds what adcgs_net_release() frees. */
 adcgs_status adcgs_net_copy(adcgs_net *dst, const adcgs_net *src, adcgs_memory *memory, adcgs_error *error);
+/** All networks of a model, to one that has none. */
+adcgs_status adcgs_nets_copy(adcgs_model *dst, const adcgs_model *src, adcgs_memory *memory, adcgs_error *error);
 /** Free the tensors with the memory that they came from, and zero the struct. */
 void adcgs_net_release(adcgs_net *net, adcgs_memory *memory);
 /** Whether everything that the stream carries of the two is equal. */

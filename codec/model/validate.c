@@ -215,6 +215,24 @@ static adcgs_status check_bodies(const adcgs_model *m, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** That tiers are there, and each of a model that needs no other has anchors. */
+static adcgs_status check_tiers(const adcgs_model *m, adcgs_error *error)
+{
+    uint32_t brings[ADCGS_TIERS_MAX] = { 0 };
+    ADCGS_TRY(check_range("finest", m->finest, 0, ADCGS_TIERS_MAX - 1, error));
+    ADCGS_TRY(check_range("absent", m->absent, 0, m->finest, error));
+    for (int t = 0; t < m->finest; t++)
+        ADCGS_TRY(check_range("growth", m->growth[t], 0, ADCGS_GROWTH_MAX, error));
+    for (uint32_t i = 0; i < m->n; i++) {
+        ADCGS_TRY(check_range("tier", m->tier[i], 0, m->finest - (uint32_t)m->absent, error));
+        brings[m->tier[i]]++;
+    }
+    for (int t = 0; !m->predicted && t <= m->finest - m->absent; t++)
+        if (!brings[t])
+            return adcgs_fail(error, ADCGS_ERR_DATA, "model: tier %d has no anchors", t);
+    return ADCGS_OK;
+}
+
 /** Flags, masks, and that primitives which do not exist hold zeros. */
 static adcgs_status check_primitives(const adcgs_model *m, adcgs_error *error)
 {
@@ -260,6 +278,7 @@ adcgs_status adcgs_model_validate(const adcgs_model *model, adcgs_error *error)
     ADCGS_TRY(check_primitives(model, error));
     ADCGS_TRY(check_spans(model, error));
     ADCGS_TRY(check_bodies(model, error));
+    ADCGS_TRY(check_tiers(model, error));
     ADCGS_TRY(check_values("eta", model->eta, n * p->n_eta, error));
     ADCGS_TRY(check_values("fv", model->fv, n * p->n_fv, error));
     ADCGS_TRY(check_values("sigma", model->sigma, n * (size_t)adcgs_sigma_rows(p), error));

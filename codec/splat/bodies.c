@@ -16,10 +16,15 @@ void adcgs_bodies_init(adcgs_body_pose pose[ADCGS_BODIES_MAX], const adcgs_model
 {
     uint32_t low[ADCGS_BODIES_MAX][3], high[ADCGS_BODIES_MAX][3] = {{0}};
     memset(pose, 0, ADCGS_BODIES_MAX * sizeof *pose);
+    uint8_t tier[ADCGS_BODIES_MAX]; /* the first that has anchors of the body: it is there if any of them is */
     memset(low, 0xff, sizeof low);
+    memset(tier, 0xff, sizeof tier);
+    for (uint32_t i = 0; m->params.bodies && i < m->n; i++)
+        if (m->body[i])
+            tier[m->body[i] - 1] = ADCGS_MIN(tier[m->body[i] - 1], m->tier[i]);
     for (uint32_t i = 0; m->params.bodies && i < m->n; i++) {
         const int b = m->body[i] - 1;
-        for (size_t a = 0; b >= 0 && a < 3; a++) {
+        for (size_t a = 0; b >= 0 && m->tier[i] == tier[b] && a < 3; a++) {
             low[b][a] = ADCGS_MIN(low[b][a], m->pos[3 * (size_t)i + a]);
             high[b][a] = ADCGS_MAX(high[b][a], m->pos[3 * (size_t)i + a]);
         }

@@ -112,6 +112,15 @@ static void load_fg(float *fg, const adcgs_model *m, uint32_t first, int k, cons
     }
 }
 
+/* What is missing between the anchors of the first tiers, where the others are absent, is covered by larger primitives. */
+static void grow(adcgs_anchor_lanes *anchor, const adcgs_model *m)
+{
+    const float factor = adcgs_step_factor(m->absent ? m->growth[m->finest - m->absent] : 0);
+    for (int c = 0; c < 3; c++)
+        for (int l = 0; l < ADCGS_LANES; l++)
+            anchor->scale[c][l] *= factor;
+}
+
 static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const adcgs_anchor_lanes *anchor, const float *fv,
                           const adcgs_group_factors *factors, float *fg, float *buffers)
 {
@@ -161,6 +170,7 @@ static void canonical_group(void *arg, int index, int thread)
               factor_of(m, &factors, ADCGS_GROUP_COLOUR));
     load_rows(fv, m->fv, p->n_fv, m->d_fv, p->n_fv, first, m->n, NULL);
     s->dsp.anchor(anchor, sigma, p->spans);
+    grow(anchor, m);
     predict_group(s, group, moving, anchor, fv, &factors, fg, buffers);
     if (moving == UINT32_MAX)
         return;

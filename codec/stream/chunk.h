@@ -29,6 +29,8 @@
 
 #define ADCGS_CHUNK_KEY 1  /**< flag of SEGM: refers to nothing of an earlier segment */
 #define ADCGS_CHUNK_LAST 2 /**< flag: last chunk of its segment */
+#define ADCGS_CHUNK_TIER(flags) ((flags) >> 4 & 7) /**< bits 4 to 6 of the flags of GEOM and FEAx: the tier */
+#define ADCGS_CHUNK_OF_TIER(tier) ((tier) << 4)
 
 /** Layer of a FEAx type, or -1. */
 int adcgs_type_layer(uint32_t type);

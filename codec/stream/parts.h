@@ -45,12 +45,12 @@ adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, con
 adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const adcgs_model *before, adcgs_keep *kept,
                               adcgs_cost *left, adcgs_memory *memory);
 /**
- * GEOM: allocates the model's arrays once the counts are checked, and decodes the positions, of a predicted segment those of its
- * new anchors, beside which so many are kept. left: of the level, is used up.
+ * GEOM: allocates the model's arrays once the counts are checked, and decodes the positions of a tier, of a predicted segment
+ * those of its new anchors. others: anchors beside these, of the tiers before or kept. left: of the level, is used up.
  */
-adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, uint32_t kept, adcgs_model *model,
-                              adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory);
-adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error);
+adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, uint32_t others, int tier,
+                              adcgs_model *model, adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory);
+adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, int tier, adcgs_error *error);
 
 adcgs_status adcgs_cams_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory *memory);
 adcgs_status adcgs_cams_write(adcgs_buffer *out, const adcgs_stream *stream, adcgs_error *error);

@@ -93,7 +93,7 @@ static adcgs_arrival arrival_of(const adcgs_push_reader *p, uint32_t type, uint3
         return ADCGS_ARRIVED_HEADER;
     if (type == ADCGS_TYPE_cams)
         return ADCGS_ARRIVED_CAMERAS;
-    const int draws = r->segment.stage == ADCGS_SEGMENT_PLACED && r->segment.done[0] >= r->segment.n_slices;
+    const int draws = adcgs_segment_is_drawable(&r->segment);
     const int part = adcgs_type_layer(type) >= 0 || type == ADCGS_TYPE_GEOM;
     return (part && draws) || r->stream->n_segments > segments_before ? ADCGS_ARRIVED_SEGMENT : ADCGS_ARRIVED_NOTHING;
 }

@@ -123,6 +123,10 @@ static adcgs_status check_chunk(adcgs_stream_reader *s, const adcgs_chunk *chunk
             return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: segment is %u, expected %u", chunk->name, chunk->header.segment,
                               expected);
     }
+    const int is_geom = type == ADCGS_TYPE_GEOM, tier = adcgs_segment_tier(&s->segment, is_geom);
+    if ((is_geom || adcgs_type_layer(type) >= 0) && ADCGS_CHUNK_TIER(chunk->header.flags) != tier)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: tier is %d, expected %d", chunk->name,
+                          ADCGS_CHUNK_TIER(chunk->header.flags), tier);
     return ADCGS_OK;
 }
 

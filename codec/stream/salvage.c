@@ -21,6 +21,7 @@ typedef struct salvage {
     adcgs_error why;    /**< of the reader */
     uint64_t left;      /**< bytes that may still be read */
     uint32_t faults;
+    int is_cut;         /**< tiers of the segment at hand were lost: nothing more is taken of it */
     int is_broken;      /**< a segment was lost since the last one that needs no other */
     uint8_t *piece;     /**< [PIECE_BYTES] */
 } salvage;
@@ -99,9 +100,25 @@ static void lose_segment(salvage *s, const char *why)
     s->is_broken = 1;
 }
 
+/** The tier at hand is lost, and those behind it, or with the first of them the segment. */
+static void lose_tier(salvage *s, const char *why)
+{
+    adcgs_segment *at = &s->reader.segment;
+    if (!adcgs_segment_is_drawable(at)) {
+        lose_segment(s, why);
+        return;
+    }
+    adcgs_segment_drop_tier(at);
+    s->is_cut = 1;
+    warn(s, "segment %u: its tiers from %d on are lost: %.150s", number_at_hand(s), at->tier + 1, why);
+}
+
 /** The segment at hand, if any, is over. */
 static adcgs_status finish(salvage *s, uint64_t end)
 {
+    s->is_cut = 0;
+    if (adcgs_segment_is_drawable(&s->reader.segment))
+        adcgs_segment_drop_tier(&s->reader.segment);
     const adcgs_status status = adcgs_segment_finish(&s->reader.segment, end, 0);
     if (!is_damage(status))
         return status;
@@ -151,23 +168,28 @@ static adcgs_status use_part(salvage *s, const adcgs_chunk *chunk, int whole, si
 {
     const int layer = adcgs_type_layer(chunk->type);
     adcgs_status status = ADCGS_OK;
-    if (s->reader.segment.stage == ADCGS_SEGMENT_NONE || chunk->header.segment != (number_at_hand(s) & 0xffff))
+    if (s->reader.segment.stage == ADCGS_SEGMENT_NONE || chunk->header.segment != (number_at_hand(s) & 0xffff) ||
+        s->is_cut)
         return ADCGS_OK; /* of one that is lost */
     if (whole)
         status = use(s, chunk);
-    else if (layer >= 0)
+    else if (layer >= 0 && ADCGS_CHUNK_TIER(chunk->header.flags) == adcgs_segment_tier(&s->reader.segment, 0))
         status = use_damaged_layer(s, chunk, available);
-    else if (chunk->type != ADCGS_TYPE_hash)
-        lose_segment(s, "its positions, or what it keeps, are damaged");
+    else if (chunk->type == ADCGS_TYPE_GEOM)
+        lose_tier(s, "its positions are damaged");
+    else if (chunk->type == ADCGS_TYPE_KEEP)
+        lose_segment(s, "what it keeps is damaged");
     const adcgs_segment *at = &s->reader.segment;
     if (status == ADCGS_OK && layer == 0 && !whole && at->stage == ADCGS_SEGMENT_PLACED && at->done[0] < at->n_slices)
-        lose_segment(s, "its base layer is damaged");
+        lose_tier(s, "its base layer is damaged");
     if (!is_damage(status))
         return status;
     if (layer > 0 || chunk->type == ADCGS_TYPE_hash)
         warn(s, "segment %u: %.160s", number_at_hand(s), s->why.text);
-    else
+    else if (chunk->type == ADCGS_TYPE_KEEP)
         lose_segment(s, s->why.text);
+    else
+        lose_tier(s, s->why.text);
     return ADCGS_OK;
 }
 

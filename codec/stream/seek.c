@@ -20,6 +20,8 @@ struct adcgs_seek {
     adcgs_stream *stream;
     uint32_t n, capacity;
     adcgs_syn_index *entry; /**< [n] */
+    uint64_t first;      /**< position of the first segment */
+    int by_index;        /**< the entries are those of INDX, and not yet doubted */
     uint32_t first_nets; /**< networks that stand before the first segment */
     int keeps_nets;      /**< some segment names what was sent before its key: reading began at the beginning, all is kept */
 };
@@ -227,11 +229,11 @@ static adcgs_status scan(adcgs_seek *s, uint64_t first)
 
 static adcgs_status open_seek(adcgs_seek *s)
 {
-    uint64_t first;
-    ADCGS_TRY(read_front(s, &first));
-    const adcgs_status status = read_index(s, first);
+    ADCGS_TRY(read_front(s, &s->first));
+    const adcgs_status status = read_index(s, s->first);
+    s->by_index = status == ADCGS_OK;
     if (status == ADCGS_ERR_DATA || status == ADCGS_ERR_TRUNCATED)
-        return scan(s, first);
+        return scan(s, s->first);
     return status;
 }
 
@@ -365,6 +367,20 @@ static adcgs_status go_to(adcgs_seek *s, uint32_t number)
     return ADCGS_OK;
 }
 
+/** Whether the headers of all chunks tell of the same segments at other places than the index, which is forgotten then. */
+static int doubts_index(adcgs_seek *s)
+{
+    const uint32_t n = s->n;
+    const adcgs_error why = s->error;
+    if (!s->by_index)
+        return 0;
+    s->by_index = 0;
+    if (scan(s, s->first) == ADCGS_OK && s->n == n)
+        return 1;
+    s->error = why;
+    return 0;
+}
+
 adcgs_status adcgs_seek_to(adcgs_seek *s, uint32_t number, const adcgs_model **model, adcgs_error *error)
 {
     adcgs_status status = go_to(s, number);
@@ -378,6 +394,10 @@ adcgs_status adcgs_seek_to(adcgs_seek *s, uint32_t number, const adcgs_model **m
             s->keeps_nets = 0;
             s->error = first;
         }
+    }
+    if (status == ADCGS_ERR_DATA && doubts_index(s)) {
+        begin_at(s, 0);
+        status = go_to(s, number);
     }
     if (status != ADCGS_OK)
         begin_at(s, 0);

@@ -103,6 +103,12 @@ static adcgs_status parse_values(adcgs_parse *p, adcgs_model *model)
     ADCGS_TRY(adcgs_syn_shapes_parse(p, &shapes));
     for (int g = 0; g < ADCGS_GROUPS; g++)
         model->shape[g] = shapes.shapes >> 2 * g & 3;
+    model->finest = (uint8_t)(shapes.tiers - 1);
+    for (int t = 0; t < model->finest; t++) {
+        adcgs_syn_growth growth;
+        ADCGS_TRY(adcgs_syn_growth_parse(p, &growth));
+        model->growth[t] = growth.growth;
+    }
     ADCGS_TRY(parse_steps(p, model->d_fv, model->params.n_fv));
     ADCGS_TRY(parse_steps(p, model->d_sigma, adcgs_sigma_rows(&model->params)));
     ADCGS_TRY(parse_steps(p, model->d_colour, ADCGS_COLOUR_N));
@@ -126,6 +132,8 @@ static void inherit_values(adcgs_model *model, const adcgs_model *before)
     memcpy(model->d_fg, before->d_fg, sizeof model->d_fg);
     memcpy(model->eta_mu, before->eta_mu, sizeof model->eta_mu);
     memcpy(model->eta_si, before->eta_si, sizeof model->eta_si);
+    memcpy(model->growth, before->growth, sizeof model->growth);
+    model->finest = before->finest;
     memcpy(model->origin, before->origin, sizeof model->origin);
     model->voxel = before->voxel;
     model->depth = before->depth;
@@ -145,6 +153,8 @@ adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_
                           (long long)segm.start_ticks);
     if (segm.predicted && stream->n_segments == 0)
         return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: the first segment is predicted");
+    if (segm.predicted && stream->segments[stream->n_segments - 1].absent)
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: it is predicted from a segment of which tiers are absent");
     if (segm.predicted)
         inherit_values(model, &stream->segments[stream->n_segments - 1]);
     model->predicted = segm.predicted;
@@ -157,10 +167,14 @@ adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_
 
 static adcgs_status write_values(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error)
 {
-    adcgs_syn_shapes shapes = { 0 };
+    adcgs_syn_shapes shapes = { .tiers = (uint8_t)(model->finest + 1) };
     for (int g = 0; g < ADCGS_GROUPS; g++)
         shapes.shapes |= (uint16_t)(model->shape[g] << 2 * g);
     ADCGS_TRY(adcgs_syn_shapes_write(out, "SEGM", &shapes, error));
+    for (int t = 0; t < model->finest; t++) {
+        const adcgs_syn_growth growth = { model->growth[t] };
+        ADCGS_TRY(adcgs_syn_growth_write(out, "SEGM", &growth, error));
+    }
     ADCGS_TRY(write_steps(out, model->d_fv, model->params.n_fv, error));
     ADCGS_TRY(write_steps(out, model->d_sigma, adcgs_sigma_rows(&model->params), error));
     ADCGS_TRY(write_steps(out, model->d_colour, ADCGS_COLOUR_N, error));
@@ -214,13 +228,13 @@ adcgs_status adcgs_keep_parse(adcgs_parse *p, const adcgs_level *limits, const a
     return ADCGS_OK;
 }
 
-static adcgs_status check_geom(const adcgs_parse *p, uint32_t anchors, uint32_t kept, int depth, const adcgs_level *limits,
+static adcgs_status check_geom(const adcgs_parse *p, uint32_t anchors, uint32_t others, int depth, const adcgs_level *limits,
                                uint32_t max_anchors)
 {
-    const uint64_t all = (uint64_t)anchors + kept;
+    const uint64_t all = (uint64_t)anchors + others;
     if (all < 1 || all > max_anchors)
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: anchors is %u beside %u that are kept, HEAD allows 1..%u in all",
-                          anchors, kept, max_anchors);
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: anchors is %u beside %u others, HEAD allows 1..%u in all",
+                          anchors, others, max_anchors);
     if ((uint32_t)depth > limits->depth)
         return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "GEOM: depth is %d, the level allows %u", depth, limits->depth);
     if (depth < 11 && anchors > UINT64_C(1) << 3 * depth)
@@ -243,30 +257,33 @@ static adcgs_status parse_positions(adcgs_parse *p, adcgs_model *model, adcgs_me
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, uint32_t kept, adcgs_model *model,
-                              adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory)
+adcgs_status adcgs_geom_parse(adcgs_parse *p, const adcgs_level *limits, uint32_t max_anchors, uint32_t others, int tier,
+                              adcgs_model *model, adcgs_cost *left, const adcgs_nets_cost *nets, adcgs_memory *memory)
 {
+    const uint32_t kept = model->predicted ? others : 0;
     adcgs_syn_geom geom;
     ADCGS_TRY(adcgs_syn_geom_parse(p, &geom));
-    if (!model->predicted) {
+    if (!model->predicted && tier == 0) {
         adcgs_syn_grid grid;
         ADCGS_TRY(adcgs_syn_grid_parse(p, &grid));
         model->depth = grid.depth;
         memcpy(model->origin, grid.origin, sizeof model->origin);
         model->voxel = grid.voxel;
     }
-    ADCGS_TRY(check_geom(p, geom.anchors, kept, model->depth, limits, max_anchors));
+    if (tier > 0 && geom.anchors == 0)
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: tier %d has no anchors", tier);
+    ADCGS_TRY(check_geom(p, geom.anchors, others, model->depth, limits, max_anchors));
     ADCGS_TRY(spend(p, limits, adcgs_segment_cost(&model->params, (uint64_t)geom.anchors + kept, model->depth, nets), left));
     model->n = geom.anchors;
     ADCGS_TRY(adcgs_model_alloc(model, memory, p->error));
     return parse_positions(p, model, memory);
 }
 
-adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, adcgs_error *error)
+adcgs_status adcgs_geom_write(adcgs_buffer *out, const adcgs_model *model, int tier, adcgs_error *error)
 {
     const adcgs_syn_geom geom = { .anchors = model->n };
     ADCGS_TRY(adcgs_syn_geom_write(out, "GEOM", &geom, error));
-    if (!model->predicted) {
+    if (!model->predicted && tier == 0) {
         adcgs_syn_grid grid = { .depth = model->depth, .voxel = model->voxel };
         memcpy(grid.origin, model->origin, sizeof grid.origin);
         ADCGS_TRY(adcgs_syn_grid_write(out, "GEOM", &grid, error));

@@ -45,6 +45,8 @@ void adcgs_segment_drop(adcgs_segment *s)
 {
     adcgs_latents_free(&s->latents);
     adcgs_model_clear(&s->model, s->options->memory);
+    adcgs_model_clear(&s->coarser, s->options->memory);
+    s->tier = 0;
     adcgs_kept_clear(&s->kept, s->options->memory);
     s->has_kept = s->sent = 0;
     memset(s->done, 0, sizeof s->done);
@@ -140,20 +142,85 @@ static adcgs_status copy_nets(adcgs_segment *s)
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
+/** Fill what did not come with predicted means. */
+static adcgs_status conceal_layers(const adcgs_segment *s, adcgs_model *model, adcgs_error *error)
+{
+    for (int layer = 1; layer < adcgs_params_layers(&s->stream->params); layer++)
+        for (uint32_t i = s->done[layer]; i < s->n_slices; i++) {
+            uint32_t begin, end;
+            slice_span(s, i, &begin, &end);
+            if (adcgs_latents_conceal(s->latents, model, layer, begin, end) != ADCGS_OK)
+                return adcgs_fail(error, ADCGS_ERR_MEMORY, "segment %u: no memory to conceal layer %d", segment_number(s), layer);
+        }
+    return ADCGS_OK;
+}
+
+/** What of a tier has come: layers that are there, others concealed, joined with what is kept and the tiers before. */
+static adcgs_status complete_model(const adcgs_segment *s, adcgs_model *model, adcgs_error *error)
+{
+    while (model->layers < adcgs_params_layers(&s->stream->params) && s->done[model->layers] == s->n_slices)
+        model->layers++;
+    ADCGS_TRY(conceal_layers(s, model, error));
+    if (s->coarser.n)
+        ADCGS_TRY(adcgs_tiers_join(&s->coarser, model, s->options->memory, error));
+    model->absent = (uint8_t)(model->predicted ? 0 : model->finest - s->tier);
+    return model->predicted ? adcgs_kept_join(&s->kept, model_before(s), model, s->options->memory, error) : ADCGS_OK;
+}
+
+/** The anchors of a tier, or of a predicted segment. */
+static adcgs_status place_anchors(adcgs_segment *s, adcgs_parse *p)
 {
     adcgs_nets_cost cost;
-    if (s->stage != ADCGS_SEGMENT_STARTED)
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected once, after SEGM");
-    if (s->model.predicted && !s->has_kept)
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected after KEEP, the segment is predicted");
     ADCGS_TRY(check_nets(s, &cost));
-    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, s->kept.n, &s->model, &s->left, &cost, s->options->memory));
+    if (s->tier > 0)
+        cost.weights = 0; /* these networks are there */
+    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, s->kept.n + s->coarser.n, s->tier, &s->model, &s->left, &cost,
+                               s->options->memory));
+    if (s->model.n)
+        memset(s->model.tier, s->tier, s->model.n);
     if (s->model.predicted)
         ADCGS_TRY(adcgs_kept_check(&s->kept, model_before(s), &s->model, s->error));
-    ADCGS_TRY(copy_nets(s));
+    ADCGS_TRY(adcgs_tiers_check(&s->coarser, &s->model, s->error));
+    if (s->tier == 0)
+        ADCGS_TRY(copy_nets(s));
     ADCGS_TRY(adcgs_latents_create(&s->latents, &s->model, s->options->cpu, s->options->memory, s->error));
     s->n_slices = s->model.n ? ((s->model.n - 1) >> s->stream->slice_log2) + 1 : 0;
+    return ADCGS_OK;
+}
+
+/** What has come of a tier is all there is of it: it joins those before, and the model is ready for the next. */
+static adcgs_status end_tier(adcgs_segment *s)
+{
+    adcgs_model next = adcgs_model_frame(&s->model);
+    ADCGS_TRY(complete_model(s, &s->model, s->error));
+    memcpy(next.net, s->model.net, sizeof next.net);
+    memset(s->model.net, 0, sizeof s->model.net);
+    adcgs_model_clear(&s->coarser, s->options->memory);
+    s->coarser = s->model;
+    next.n = 0;
+    next.layers = 0;
+    s->model = next;
+    adcgs_latents_free(&s->latents);
+    memset(s->done, 0, sizeof s->done);
+    s->n_slices = 0;
+    s->tier++;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
+{
+    if (s->stage == ADCGS_SEGMENT_NONE)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected after SEGM");
+    if (s->model.predicted && !s->has_kept)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected after KEEP, the segment is predicted");
+    if (s->stage == ADCGS_SEGMENT_PLACED && (s->model.predicted || s->tier == s->model.finest))
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: there is one for each tier, and there are %d",
+                          s->model.predicted ? 1 : s->model.finest + 1);
+    if (s->stage == ADCGS_SEGMENT_PLACED && s->done[0] < s->n_slices)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: slices of FEA0 of the tier before are missing");
+    if (s->stage == ADCGS_SEGMENT_PLACED)
+        ADCGS_TRY(end_tier(s));
+    ADCGS_TRY(place_anchors(s, p));
     s->is_key = !s->model.predicted && s->sent == s->ids.mask;
     s->stage = ADCGS_SEGMENT_PLACED;
     return ADCGS_OK;
@@ -295,48 +362,55 @@ adcgs_status adcgs_segment_hash(adcgs_segment *s, adcgs_parse *p)
     return adcgs_parse_end(p);
 }
 
-/** Fill what did not come with predicted means. */
-static adcgs_status conceal_layers(const adcgs_segment *s, adcgs_model *model, adcgs_error *error)
-{
-    for (int layer = 1; layer < adcgs_params_layers(&s->stream->params); layer++)
-        for (uint32_t i = s->done[layer]; i < s->n_slices; i++) {
-            uint32_t begin, end;
-            slice_span(s, i, &begin, &end);
-            if (adcgs_latents_conceal(s->latents, model, layer, begin, end) != ADCGS_OK)
-                return adcgs_fail(error, ADCGS_ERR_MEMORY, "segment %u: no memory to conceal layer %d", segment_number(s), layer);
-        }
-    return ADCGS_OK;
-}
-
-/** What of a segment has come is its model: layers that are there, others concealed, what is kept joined. */
-static adcgs_status complete_model(const adcgs_segment *s, adcgs_model *model, adcgs_error *error)
-{
-    while (model->layers < adcgs_params_layers(&s->stream->params) && s->done[model->layers] == s->n_slices)
-        model->layers++;
-    ADCGS_TRY(conceal_layers(s, model, error));
-    return model->predicted ? adcgs_kept_join(&s->kept, model_before(s), model, s->options->memory, error) : ADCGS_OK;
-}
-
-static int is_drawable(const adcgs_segment *s)
+static int tier_is_complete(const adcgs_segment *s)
 {
     return s->stage == ADCGS_SEGMENT_PLACED && s->done[0] >= s->n_slices;
+}
+
+int adcgs_segment_is_drawable(const adcgs_segment *s)
+{
+    return tier_is_complete(s) || s->coarser.n > 0;
+}
+
+int adcgs_segment_tier(const adcgs_segment *s, int is_geom)
+{
+    return s->tier + (is_geom && s->stage == ADCGS_SEGMENT_PLACED);
+}
+
+void adcgs_segment_drop_tier(adcgs_segment *s)
+{
+    adcgs_model without = s->coarser;
+    if (tier_is_complete(s) || !s->coarser.n)
+        return;
+    memcpy(without.net, s->model.net, sizeof without.net);
+    memset(s->model.net, 0, sizeof s->model.net);
+    adcgs_model_clear(&s->model, s->options->memory);
+    adcgs_latents_free(&s->latents);
+    s->model = without;
+    memset(&s->coarser, 0, sizeof s->coarser);
+    s->n_slices = 0; /* they are all there */
+    s->tier--;
 }
 
 adcgs_status adcgs_segment_peek(const adcgs_segment *s, adcgs_model *model, int *drawable, adcgs_error *error)
 {
     memset(model, 0, sizeof *model);
-    *drawable = is_drawable(s);
+    *drawable = adcgs_segment_is_drawable(s);
     if (!*drawable)
         return ADCGS_OK;
-    ADCGS_TRY(adcgs_model_copy(model, &s->model, s->options->memory, error));
-    return complete_model(s, model, error);
+    if (tier_is_complete(s)) {
+        ADCGS_TRY(adcgs_model_copy(model, &s->model, s->options->memory, error));
+        return complete_model(s, model, error);
+    }
+    ADCGS_TRY(adcgs_model_copy(model, &s->coarser, s->options->memory, error));
+    return adcgs_nets_copy(model, &s->model, s->options->memory, error);
 }
 
 static adcgs_status check_hash(const adcgs_segment *s)
 {
     uint8_t digest[16];
     char expected[33], found[33];
-    if (!s->has_hash || s->model.layers < adcgs_params_layers(&s->stream->params))
+    if (!s->has_hash || s->model.absent || s->model.layers < adcgs_params_layers(&s->stream->params))
         return ADCGS_OK;
     adcgs_model_digest(&s->model, digest);
     if (memcmp(digest, s->hash, sizeof digest) == 0)
@@ -371,9 +445,10 @@ adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
     const adcgs_syn_index entry = { s->ticks[0], s->ticks[1], s->origin, end - s->origin, (uint8_t)s->is_key };
     if (s->stage == ADCGS_SEGMENT_NONE)
         return ADCGS_OK;
-    if (!is_drawable(s)) {
-        if (!truncated)
-            return adcgs_fail(s->error, ADCGS_ERR_DATA, "segment %u: GEOM or slices of FEA0 are missing", segment_number(s));
+    if (!tier_is_complete(s) && !truncated)
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "segment %u: GEOM or slices of FEA0 are missing", segment_number(s));
+    adcgs_segment_drop_tier(s);
+    if (!tier_is_complete(s)) {
         adcgs_segment_drop(s);
         return ADCGS_OK;
     }

@@ -22,7 +22,9 @@ typedef struct adcgs_segment {
 
     adcgs_segment_stage stage;
     uint64_t origin;      /**< position of SEGM */
-    adcgs_model model;    /**< of its new anchors, until it is finished */
+    adcgs_model model;    /**< of the anchors of its last GEOM, until it is finished */
+    adcgs_model coarser;  /**< of the tiers before, joined; without networks. n = 0: there are none */
+    int tier;             /**< that the model at hand is */
     adcgs_role_ids ids;
     uint16_t sent;        /**< roles whose networks stand in the segment, before GEOM */
     int has_kept;         /**< KEEP was read */
@@ -41,13 +43,22 @@ adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t orig
 void adcgs_segment_networks(adcgs_segment *s);
 adcgs_status adcgs_segment_keep(adcgs_segment *s, adcgs_parse *p);
 adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p);
+/** The tier that a chunk, GEOM or one of FEAx, should be of. */
+int adcgs_segment_tier(const adcgs_segment *s, int is_geom);
 /** FEAx; complete zero: the stream ended inside, and what is there is used. */
 adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer, int complete);
 adcgs_status adcgs_segment_hash(adcgs_segment *s, adcgs_parse *p);
-/** The segment, if one was started, ends at this position. With truncated, one without a complete layer 0 is dropped. */
+/**
+ * The segment, if one was started, ends at this position. With truncated, one without a complete layer 0 is dropped; of one with
+ * several tiers only those are that have none.
+ */
 adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated);
 /** The segment as it would be if nothing more came; *drawable: it can be used. The caller clears the model. */
 adcgs_status adcgs_segment_peek(const adcgs_segment *s, adcgs_model *model, int *drawable, adcgs_error *error);
+/** Whether it can be used if nothing more comes. */
+int adcgs_segment_is_drawable(const adcgs_segment *s);
+/** Forget the tier that was begun, if it is not complete; the segment can be drawn without. */
+void adcgs_segment_drop_tier(adcgs_segment *s);
 /** Forget the segment that was begun, if any. */
 void adcgs_segment_drop(adcgs_segment *s);
 void adcgs_segment_clear(adcgs_segment *s);

@@ -53,6 +53,7 @@ static void add_segment(adcgs_info *info, const adcgs_model *model)
         info->static_anchors += model->is_static[i];
     }
     info->layers = ADCGS_MIN(info->layers, model->layers);
+    info->tiers = ADCGS_MAX(info->tiers, model->finest + 1);
 }
 
 void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
@@ -86,6 +87,9 @@ void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
     }
     for (uint32_t i = 0; i < stream->n_segments; i++)
         add_segment(info, &stream->segments[i]);
+    info->tiers_present = info->tiers;
+    for (uint32_t i = 0; i < stream->n_segments; i++)
+        info->tiers_present = ADCGS_MIN(info->tiers_present, info->tiers - stream->segments[i].absent);
     snprintf(info->colour, sizeof info->colour, "%s", colours[stream->colour_space]);
     snprintf(info->axes, sizeof info->axes, "%s", axes[stream->axes]);
     snprintf(info->units, sizeof info->units, "%s", units[stream->units]);

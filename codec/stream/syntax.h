@@ -78,7 +78,10 @@
     F(I64, end_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX)   \
     F(U8, predicted, 0, 1)                                 \
     F(U16, roles, 0, (1 << ADCGS_ROLES) - 1)
-#define ADCGS_LIST_SHAPES(F, V) F(U16, shapes, 0, 65535)
+#define ADCGS_LIST_SHAPES(F, V) \
+    F(U16, shapes, 0, 65535)    \
+    F(U8, tiers, 1, ADCGS_TIERS_MAX)
+#define ADCGS_LIST_GROWTH(F, V) F(U8, growth, 0, ADCGS_GROWTH_MAX)
 #define ADCGS_LIST_STEP_FORM(F, V) F(U8, step_form, 0, 3)
 #define ADCGS_LIST_STEP(F, V) F(F32, step, 0x1p-40, 0x1p10)
 #define ADCGS_LIST_STEP_SHORT(F, V) F(U16, step_high, 0, 65535)
@@ -130,6 +133,7 @@
     X(LAYER_E24, adcgs_syn_layer_e24)        \
     X(SEGM, adcgs_syn_segm)                  \
     X(SHAPES, adcgs_syn_shapes)              \
+    X(GROWTH, adcgs_syn_growth)              \
     X(STEP_FORM, adcgs_syn_step_form)        \
     X(STEP, adcgs_syn_step)                  \
     X(STEP_SHORT, adcgs_syn_step_short)      \

@@ -86,16 +86,29 @@ static void assign_ids(writer *w, const adcgs_model *before, const adcgs_model *
     }
 }
 
-static adcgs_status check_segment(writer *w, const adcgs_model *before, const adcgs_model *model)
+/** What a segment's tiers cost, which are one where it is predicted: networks do so once. */
+static void spend_tiers(writer *w, const adcgs_model *model)
 {
-    const adcgs_level *limits = w->limits;
     adcgs_nets_cost nets = { 0, 0 };
     for (int role = 0; role < ADCGS_ROLES; role++)
         if (model->net[role].present)
             adcgs_nets_cost_add(&nets, &model->params, role, &model->net[role]);
-    const adcgs_cost cost = adcgs_segment_cost(&model->params, model->n, model->depth, &nets);
-    w->spent.bytes += cost.bytes;
-    w->spent.work += cost.work + (before ? adcgs_kept_work(adcgs_kept_values(before)) : 0);
+    for (int tier = 0; tier <= (model->predicted ? 0 : model->finest); tier++) {
+        uint32_t n = model->predicted ? model->n : 0;
+        for (uint32_t i = 0; !model->predicted && i < model->n; i++)
+            n += model->tier[i] == tier;
+        const adcgs_cost cost = adcgs_segment_cost(&model->params, n, model->depth, &nets);
+        w->spent.bytes += cost.bytes;
+        w->spent.work += cost.work;
+        nets.weights = 0;
+    }
+}
+
+static adcgs_status check_segment(writer *w, const adcgs_model *before, const adcgs_model *model)
+{
+    const adcgs_level *limits = w->limits;
+    spend_tiers(w, model);
+    w->spent.work += before ? adcgs_kept_work(adcgs_kept_values(before)) : 0;
     if (w->spent.bytes > limits->model_bytes || w->spent.work > limits->work || w->weights > limits->weights
         || model->depth > limits->depth || w->n_nets > limits->networks)
         return adcgs_fail(w->error, ADCGS_ERR_LIMIT,
@@ -127,12 +140,12 @@ static uint32_t slices_per_chunk(const writer *w, const layer_data *l, uint32_t 
     return n;
 }
 
-static adcgs_status write_layer(writer *w, uint32_t segment, int layer, const layer_data *l)
+static adcgs_status write_layer(writer *w, uint32_t segment, int tier, int layer, const layer_data *l)
 {
     static const uint8_t nothing[1]; /* all slices may be empty, and then the buffer has no bytes either */
     const uint8_t *data = l->data.data ? l->data.data : nothing, *slice = data;
     for (uint32_t first = 0, n; first < l->n_slices; first += n) {
-        const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_FEA(layer), segment, 0);
+        const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_FEA(layer), segment, ADCGS_CHUNK_OF_TIER(tier));
         n = slices_per_chunk(w, l, first);
         adcgs_write_varint(w->out, first);
         adcgs_write_varint(w->out, n);
@@ -149,7 +162,7 @@ static adcgs_status write_layer(writer *w, uint32_t segment, int layer, const la
     return ADCGS_OK;
 }
 
-static adcgs_status write_layers(writer *w, uint32_t segment, const adcgs_latents *latents, adcgs_model *model)
+static adcgs_status write_layers(writer *w, uint32_t segment, int tier, const adcgs_latents *latents, adcgs_model *model)
 {
     layer_data l = { .n_slices = ((model->n - 1) >> w->stream->slice_log2) + 1 };
     adcgs_status status = ADCGS_OK;
@@ -161,20 +174,20 @@ static adcgs_status write_layers(writer *w, uint32_t segment, const adcgs_latent
         l.data.size = 0;
         status = encode_slices(w, latents, model, layer, &l);
         if (status == ADCGS_OK)
-            status = write_layer(w, segment, layer, &l);
+            status = write_layer(w, segment, tier, layer, &l);
     }
     adcgs_buffer_clear(&l.data);
     adcgs_free(NULL, l.bytes);
     return status;
 }
 
-static adcgs_status write_features(writer *w, uint32_t segment, adcgs_model *model)
+static adcgs_status write_features(writer *w, uint32_t segment, int tier, adcgs_model *model)
 {
     adcgs_latents *latents = NULL;
     adcgs_cpu_level cpu;
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &cpu, w->error));
     ADCGS_TRY(adcgs_latents_create(&latents, model, cpu, NULL, w->error));
-    const adcgs_status status = write_layers(w, segment, latents, model);
+    const adcgs_status status = write_layers(w, segment, tier, latents, model);
     adcgs_latents_free(&latents);
     return status;
 }
@@ -202,13 +215,28 @@ static adcgs_status write_networks(writer *w, uint32_t segment, const adcgs_mode
     return end_chunk(w, ADCGS_TYPE_NETW, begin);
 }
 
-/** Where a segment's new anchors are, and their latents: those of a key are all new. */
-static adcgs_status write_anchors(writer *w, uint32_t segment, adcgs_model *added)
+/** Where the anchors of a tier are, or the new ones of a predicted segment, and their latents. */
+static adcgs_status write_anchors(writer *w, uint32_t segment, int tier, adcgs_model *added)
 {
-    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_GEOM, segment, 0);
-    ADCGS_TRY(adcgs_geom_write(w->out, added, w->error));
+    const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_GEOM, segment, ADCGS_CHUNK_OF_TIER(tier));
+    ADCGS_TRY(adcgs_geom_write(w->out, added, tier, w->error));
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_GEOM, begin));
-    return added->n ? write_features(w, segment, added) : ADCGS_OK;
+    return added->n ? write_features(w, segment, tier, added) : ADCGS_OK;
+}
+
+static adcgs_status write_tiers(writer *w, uint32_t segment, adcgs_model *model)
+{
+    adcgs_status status = ADCGS_OK;
+    if (!model->finest)
+        return write_anchors(w, segment, 0, model);
+    for (int tier = 0; tier <= model->finest && status == ADCGS_OK; tier++) {
+        adcgs_model part;
+        status = adcgs_model_tier(&part, model, tier, NULL, w->error);
+        if (status == ADCGS_OK)
+            status = write_anchors(w, segment, tier, &part);
+        adcgs_model_clear(&part, NULL);
+    }
+    return status;
 }
 
 static adcgs_status write_rest(writer *w, uint32_t segment, const adcgs_keep *kept, const adcgs_model *before,
@@ -219,8 +247,12 @@ static adcgs_status write_rest(writer *w, uint32_t segment, const adcgs_keep *ke
     ADCGS_TRY(adcgs_kept_encode(kept, before, w->out, w->error));
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_KEEP, begin));
     adcgs_status status = adcgs_kept_rest(&rest, kept, before, model, w->error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < rest.n; i++)
+        if (rest.tier[i])
+            status = adcgs_fail(w->error, ADCGS_ERR_USAGE, "stream: a new anchor of segment %u is of tier %u", segment,
+                                rest.tier[i]);
     if (status == ADCGS_OK)
-        status = write_anchors(w, segment, &rest);
+        status = write_anchors(w, segment, 0, &rest);
     adcgs_model_clear(&rest, NULL);
     return status;
 }
@@ -247,7 +279,7 @@ static adcgs_status write_segment(writer *w, uint32_t segment)
     ADCGS_TRY(adcgs_segm_write(w->out, w->stream, model, &ids, w->error));
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_SEGM, begin));
     ADCGS_TRY(write_networks(w, segment, model, &ids));
-    ADCGS_TRY(before ? write_predicted(w, segment, before, model) : write_anchors(w, segment, model));
+    ADCGS_TRY(before ? write_predicted(w, segment, before, model) : write_tiers(w, segment, model));
     ADCGS_TRY(write_hash(w, segment, model));
 
     adcgs_syn_index entry = { .offset = origin - w->begin, .bytes = w->out->size - origin, .key = !before };
@@ -322,6 +354,8 @@ static adcgs_status check_stream(adcgs_stream *stream, adcgs_error *error)
             return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u has other parameters than the stream", i);
         ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &start, error));
         ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &end, error));
+        if (model->absent)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: tiers of segment %u are absent", i);
         if (model->predicted && i == 0)
             return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment is predicted");
         if (model->predicted && !adcgs_kept_possible(model - 1, model, error))

@@ -269,7 +269,7 @@ def geometry(b):
 def stream(b):
     n, depth, weights_most = b.limit("anchors", "GEOM")[1], b.limit("depth", "GEOM")[1], b.level("WEIGHTS")
     head = Record(**{e: b.limit(e, "HEAD")[1] for e in ("n_eta", "n_fv", "n_fg", "k", "spans")})
-    b.rests_on("require(n <= s.head.max_anchors, \"data\")")
+    b.rests_on("require(coded + others <= s.head.max_anchors, \"data\")")
     b.integer("stream.anchors", 0, n + b.limit("max_anchors", "HEAD")[1])
     segment = b.m.segment_bytes(head, n, weights_most)  # a network has one role: none counts twice
     b.integer("stream.segment_bytes", 0, segment)
@@ -334,7 +334,9 @@ def splats(b):
     m = b.m
     of_time, latent, theta, omega, varpi = networks(b)
     m.names.update(features=lambda latents, steps, factor: [latent] * 11, features_fg=lambda *_: [latent],
-                   step_factors=lambda *_: [1, 1, 1], accumulate=lambda *_: None, outputs=lambda *_: theta)
+                   step_factors=lambda *_: [1, 1, 1], accumulate=lambda *_: None, outputs=lambda *_: theta,
+                   growth=lambda *_: Interval(1.0, 2.0 ** (b.limit("growth", "SEGM")[1] / 8)))
+    b.rests_on("return STEP_FACTOR[model.growth[model.tiers - 1 - model.absent] + 16]")
     model = Record(fv=[None], fg=[[None]], sigma=[None], colour=[None], d_fv=None, d_fg=None, d_sigma=None, d_colour=None,
                    positions=[[Interval(0, 2 ** b.limit("depth", "GEOM")[1] - 1)] * 3],
                    voxel=Interval(0, b.limit("voxel", "GEOM")[1]),

@@ -144,11 +144,27 @@ static void set_anchors(adcgs_model *model, const adcgs_fmodel *f)
         memcpy(model->pos + (size_t)i * 3, f->pos[i], sizeof f->pos[i]);
         model->is_static[i] = model->params.time_rows && f->moving[i] == 0;
         model->body[i] = model->params.bodies && !model->is_static[i] ? f->body[i] : 0;
+        model->tier[i] = f->tier[i];
         model->mask[i] = 0;
         for (int k = 0; k < f->params.k; k++)
             if (f->keep[adcgs_fmodel_slot(f, i, k)] != 0)
                 model->mask[i] |= (uint16_t)(1u << k);
     }
+}
+
+/** Tiers, unless one has lost all its anchors. */
+static void set_tiers(adcgs_model *model, const adcgs_fmodel *f)
+{
+    uint32_t brings[ADCGS_TIERS_MAX] = { 0 };
+    model->finest = f->finest;
+    memcpy(model->growth, f->growth, sizeof model->growth);
+    for (uint32_t i = 0; i < model->n; i++)
+        brings[model->tier[i]]++;
+    for (int t = 0; t <= f->finest; t++)
+        if (!brings[t])
+            model->finest = 0;
+    if (!model->finest)
+        memset(model->tier, 0, model->n);
 }
 
 static void set_steps(adcgs_model *model, const adcgs_fmodel *f)
@@ -259,6 +275,7 @@ adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adc
     model->layers = (uint8_t)adcgs_params_layers(&f->params);
     ADCGS_TRY(adcgs_model_alloc(model, NULL, error));
     set_anchors(model, f);
+    set_tiers(model, f);
     set_steps(model, f);
     memcpy(model->shape, f->density, sizeof model->shape);
     ADCGS_TRY(set_networks(model, f, error));

@@ -82,8 +82,7 @@ void adcgs_bodies_set_pose(adcgs_fmodel *f, int body, int row, const double q[4]
         z[4 + a] = (float)(own[a] / (double)ADCGS_POSE_SCALE);
 }
 
-/** Centre of the box of a body's anchors; where it is now if it has none. */
-uint32_t adcgs_bodies_box(const adcgs_fmodel *f, int body, uint32_t low[3], uint32_t high[3])
+uint32_t adcgs_bodies_box(const adcgs_fmodel *f, int body, int tiers, uint32_t low[3], uint32_t high[3])
 {
     uint32_t n = 0;
     for (int a = 0; a < 3; a++) {
@@ -91,7 +90,7 @@ uint32_t adcgs_bodies_box(const adcgs_fmodel *f, int body, uint32_t low[3], uint
         high[a] = 0;
     }
     for (uint32_t i = 0; i < f->n; i++) {
-        if (f->body[i] != body || f->moving[i] == 0)
+        if (f->body[i] != body || f->moving[i] == 0 || f->tier[i] >= tiers)
             continue;
         n++;
         for (int a = 0; a < 3; a++) {
@@ -102,10 +101,12 @@ uint32_t adcgs_bodies_box(const adcgs_fmodel *f, int body, uint32_t low[3], uint
     return n;
 }
 
+/** Centre of the box of a body's anchors; where it is now if it has none. */
 static void find_centre(const adcgs_fmodel *f, int body, float centre[3])
 {
-    uint32_t low[3], high[3];
-    const uint32_t n = adcgs_bodies_box(f, body, low, high);
+    uint32_t low[3], high[3], n = 0;
+    for (int tiers = 1; !n && tiers <= ADCGS_TIERS_MAX; tiers++)
+        n = adcgs_bodies_box(f, body, tiers, low, high);
     for (int a = 0; n > 0 && a < 3; a++)
         centre[a] = fmaf((float)(low[a] + high[a] + 1), 0.5f * f->voxel, f->origin[a]);
 }

@@ -22,12 +22,15 @@ void adcgs_bodies_pose_back(const adcgs_fmodel *f, const float *columns, const a
  */
 void adcgs_bodies_set_pose(adcgs_fmodel *f, int body, int row, const double q[4], const double pivot[3], const double way[3]);
 
-/** The box of a body's anchors that move, from 1, in voxels, both ends in it. Returns how many there are; of none it is empty. */
-uint32_t adcgs_bodies_box(const adcgs_fmodel *f, int body, uint32_t low[3], uint32_t high[3]);
+/**
+ * The box of a body's anchors that move, from 1, of the first tiers, in voxels, both ends in it. Returns how many there are; of
+ * none it is empty.
+ */
+uint32_t adcgs_bodies_box(const adcgs_fmodel *f, int body, int tiers, uint32_t low[3], uint32_t high[3]);
 
 /**
- * Bodies turn about the middle of the box of their anchors that move, as a decoder finds it: find it again, and change the ways
- * so that all poses stay as they are.
+ * Bodies turn about the middle of the box of their anchors that move, in the first tier that has any, as a decoder finds it:
+ * find it again, and change the ways so that all poses stay as they are.
  */
 void adcgs_bodies_recentre(adcgs_fmodel *f);
 

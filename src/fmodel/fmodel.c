@@ -203,7 +203,8 @@ static adcgs_status alloc_anchors(adcgs_fmodel *f, uint32_t n, adcgs_error *erro
     f->live = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     f->learns = adcgs_alloc(NULL, groups * ADCGS_LANES, sizeof(float), error);
     f->body = adcgs_alloc(NULL, groups * ADCGS_LANES, 1, error);
-    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live || !f->learns || !f->body)
+    f->tier = adcgs_alloc(NULL, groups * ADCGS_LANES, 1, error);
+    if (!f->pos || !f->x || !f->code || !f->keep || !f->moving || !f->live || !f->learns || !f->body || !f->tier)
         return adcgs_alloc_status(error);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         ADCGS_TRY(param_alloc(&f->param[i], groups * (size_t)adcgs_fmodel_rows(f, i) * ADCGS_LANES, error));
@@ -285,6 +286,7 @@ static void free_anchors(adcgs_fmodel *f)
     adcgs_free(NULL, f->live);
     adcgs_free(NULL, f->learns);
     adcgs_free(NULL, f->body);
+    adcgs_free(NULL, f->tier);
     for (int i = 0; i < ADCGS_P_ANCHOR; i++)
         adcgs_free(NULL, f->param[i].p);
 }
@@ -339,6 +341,7 @@ adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], con
         copy_rows(f->keep, old.keep, j, source[j], f->params.k);
         copy_rows(f->moving, old.moving, j, source[j], 1);
         f->body[j] = old.body[source[j]];
+        f->tier[j] = fresh && fresh[j] ? 0 : old.tier[source[j]];
     }
     free_anchors(&old);
     return ADCGS_OK;

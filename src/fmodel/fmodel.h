@@ -69,6 +69,8 @@ typedef struct adcgs_fmodel {
     float *learns;              /**< [group][64] 0: the anchor's values are settled, those of the segment before; else 1 */
     int follows;                /**< the model goes on with that of the segment before: see from_model.h */
     uint8_t *body;              /**< [group][64] the rigid body that an anchor goes with while it moves, from 1; 0: none */
+    uint8_t *tier;              /**< [group][64] which tier brings the anchor; see train/tiers.h */
+    uint8_t finest, growth[ADCGS_TIERS_MAX - 1]; /**< as adcgs_model has them */
     float centre[ADCGS_BODIES_MAX][3]; /**< of the bodies, about which they turn; see bodies.h */
     adcgs_param param[ADCGS_P_COUNT];
     adcgs_mlp mlp[ADCGS_P_COUNT]; /**< of the network groups */

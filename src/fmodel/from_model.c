@@ -93,6 +93,7 @@ static void take_anchor(adcgs_fmodel *f, const adcgs_model *model, uint32_t a, c
                 (float)model->fg[(i * p->k + (size_t)k) * (size_t)n_fg + (size_t)c] * (model->d_fg[c] * factor[2 + c / chunk]);
     f->moving[a] = p->time_rows && !model->is_static[a];
     f->body[a] = model->body[a];
+    f->tier[a] = model->tier[a];
     f->learns[a] = 0;
     for (int k = 0; k < p->k; k++)
         f->keep[adcgs_fmodel_slot(f, a, k)] = (float)(model->mask[a] >> k & 1);
@@ -130,6 +131,8 @@ adcgs_status adcgs_fmodel_from_model(adcgs_fmodel **out, const adcgs_model *mode
     adcgs_fmodel *f = *out;
     f->follows = 1;
     memcpy(f->density, model->shape, sizeof f->density);
+    memcpy(f->growth, model->growth, sizeof f->growth);
+    f->finest = model->finest;
     take_steps(f, model);
     adcgs_status status = take_anchors(f, model, cpu, error);
     adcgs_bodies_recentre(f); /* before the poses come, which are about the centres of these anchors */

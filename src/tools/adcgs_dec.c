@@ -10,25 +10,28 @@
 #include "stream/input.h"
 #include "tools/answer.h"
 #include "tools/canvas.h"
+#include "tools/dec_budget.h"
 #include "tools/dec_play.h"
 #include "tools/dec_splats.h"
 
 #include <adcgs/adcgs.h>
 
+#include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <strings.h>
 
 typedef struct settings {
     const adcgs_cli *cli;
-    const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script;
+    const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script, *budget_text;
+    adcgs_budget budget;
     adcgs_camera_path_request request;
     adcgs_config config;
-    int quiet, cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int quiet, tiers, cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     double opened; /**< when opening the input began, in seconds */
 } settings;
 
-#define OPTION_COUNT 27
+#define OPTION_COUNT 29
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -65,6 +68,11 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"fill", 0, ADCGS_OPTION_FLAG, &s->request.fill, 0, 0, NULL,
          "in frames of another shape show nothing but what the\ncamera sees, less on two sides", NULL, NULL},
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
+        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "draw the first N tiers of the stream alone, a coarser picture",
+         NULL, NULL},
+        {"budget", 0, ADCGS_OPTION_STRING, &s->budget_text, 0, 0, "B",
+         "stop at so many bytes of the stream (40k), or draw as many\ntiers as so many splats (20000splats) or milliseconds a "
+         "frame\n(16ms) allow", NULL, NULL},
         {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
          "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
         {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "fail unless the frames together have this MD5", NULL, NULL},
@@ -93,14 +101,35 @@ static void tell_fault(void *user, adcgs_log_level level, const char *text)
         adcgs_cli_note(s->cli, "%s: %s", s->input, text);
 }
 
-static adcgs_status open_input(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
+/** Open as many bytes of a file as the budget has. */
+static adcgs_status open_part(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
 {
+    FILE *file = fopen(input, "rb");
+    if (!file)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", input, strerror(errno));
+    const adcgs_status status = adcgs_budget_open(decoder, &s->budget, file, &s->config, error);
+    fclose(file);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, input);
+    return status;
+}
+
+static adcgs_status open_stream(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
+{
+    const int part = s->budget.of == ADCGS_BUDGET_BYTES;
     if (strcmp(input, "-"))
-        return adcgs_open_file(decoder, input, &s->config, error);
-    const adcgs_status status = adcgs_open_stream(decoder, adcgs_file_read, stdin, &s->config, error);
+        return part ? open_part(decoder, input, s, error) : adcgs_open_file(decoder, input, &s->config, error);
+    const adcgs_status status = part ? adcgs_budget_open(decoder, &s->budget, stdin, &s->config, error) :
+                                       adcgs_open_stream(decoder, adcgs_file_read, stdin, &s->config, error);
     if (status != ADCGS_OK)
         adcgs_error_locate(error, "standard input");
     return status;
+}
+
+static adcgs_status open_input(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
+{
+    ADCGS_TRY(open_stream(decoder, input, s, error));
+    return adcgs_set_tiers(*decoder, s->tiers, error);
 }
 
 static void print_row(const settings *s, const char *hex, double seconds)
@@ -127,6 +156,18 @@ static adcgs_status write_frame(const streams *from, const adcgs_camera_frame *f
     return adcgs_sink_write_with(sink, &canvas->shown, &canvas->extras, index, error);
 }
 
+/** Draw what the budget allows of the first frame, in all of them. */
+static adcgs_status fit_budget(const settings *s, const streams *from, const adcgs_camera_path *frames, adcgs_canvas *canvas,
+                               adcgs_error *error)
+{
+    int tiers;
+    const adcgs_camera_frame *first = &frames->frame[0];
+    ADCGS_TRY(adcgs_budget_fit(&s->budget, from->decoder, &first->camera, first->time, &canvas->frame, &tiers, error));
+    if (tiers)
+        adcgs_cli_note(s->cli, "%s: %s allows %d tier%s", s->input, s->budget_text, tiers, tiers == 1 ? "" : "s");
+    return ADCGS_OK;
+}
+
 /** Render all frames; all gets the digest of the frames together. */
 static adcgs_status render(const settings *s, const streams *from, const adcgs_camera_path *frames, adcgs_sink *sink,
                            adcgs_canvas *canvas, adcgs_md5 *all, double *render_seconds, adcgs_error *error)
@@ -134,7 +175,7 @@ static adcgs_status render(const settings *s, const streams *from, const adcgs_c
     adcgs_frame *frame = &canvas->frame;
     adcgs_progress progress;
     adcgs_progress_init(&progress, s->cli);
-    adcgs_status status = ADCGS_OK;
+    adcgs_status status = fit_budget(s, from, frames, canvas, error);
     for (int i = 0; i < frames->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
         const double start = adcgs_seconds();
         status = adcgs_render(from->decoder, &frames->frame[i].camera, frames->frame[i].time, frame, error);
@@ -307,6 +348,10 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     if (s->times && adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, or A:B with A not after B", s->times);
     s->request.has_times = s->times != NULL;
+    if (s->budget_text)
+        ADCGS_TRY(adcgs_budget_parse(&s->budget, s->budget_text, error));
+    if (s->budget_text && (s->tiers || s->play || s->answer || s->config.conceal))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--budget excludes --tiers, --play, --answer and --conceal");
     if (s->config.conceal && !strcmp(s->input, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: what comes in order cannot be looked at again");
     if (s->config.conceal) {

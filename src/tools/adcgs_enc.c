@@ -26,7 +26,7 @@ typedef struct enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
     const char *frames, *fps;
     double lambda, psnr, time_limit, segment, key;
-    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression;
     int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
     double started; /* adcgs_seconds() */
     double checkpoint_every;
@@ -159,7 +159,7 @@ static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs
         double value;
     } own[] = { { o->has_lambda, "lambda", o->lambda }, { o->has_iterations, "iterations", o->iterations },
                 { o->has_scale, "scale", o->scale }, { o->has_k, "k", o->k }, { o->has_seed, "seed", (double)o->seed },
-                { o->has_max_anchors, "max_anchors", o->max_anchors } };
+                { o->has_max_anchors, "max_anchors", o->max_anchors }, { o->no_progression, "tiers", 1 } };
     for (size_t i = 0; i < ADCGS_COUNTOF(own); i++)
         if (own[i].given)
             ADCGS_TRY(adcgs_train_set_value(c, own[i].name, own[i].value, error));
@@ -606,6 +606,9 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
           "leave out coarse, fine, deformation (both), rate,\ndensification, anchors, removal or weight_steps", NULL, NULL },
         { "uncompressed", 0, ADCGS_OPTION_STRING, &o->uncompressed, 0, 0, "FILE",
           "train without rate and rounding, write the model here\nas plain binary32 numbers; the stream is then the finest", NULL,
+          NULL },
+        { "no-progression", 0, ADCGS_OPTION_FLAG, &o->no_progression, 0, 0, NULL,
+          "all anchors at once, instead of in tiers of which each adds\ndetail to those before; a few percent smaller", NULL,
           NULL },
         { "set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
           "change settings of the preset; 'list' shows them all", NULL,

@@ -92,9 +92,10 @@ static void print_header(const adcgs_info_report *r, const char *name)
            (double)i->background[1], (double)i->background[2], (double)r->stream.screen_filter);
     if (r->stream.params.bodies)
         snprintf(bodies, sizeof bodies, ", %d bodies", r->stream.params.bodies);
-    printf("model       %u anchors (%u static%s%s), %u Gaussians of at most %d each, %u weights, %d of %d layers\n", i->anchors,
+    printf("model       %u anchors (%u static%s%s), %u Gaussians of at most %d each, %u weights, %d of %d layers, ", i->anchors,
            i->static_anchors, r->stream.params.spans ? ", others with spans" : "", bodies, i->gaussians, i->k, i->weights,
            i->layers, adcgs_params_layers(&r->stream.params));
+    printf("%d of %d tier%s\n", i->tiers_present, i->tiers, i->tiers == 1 ? "" : "s");
 }
 
 static void print_components(const adcgs_info_report *r)

@@ -180,7 +180,7 @@ static adcgs_status predict(adcgs_model *model, const adcgs_model *before, adcgs
     if (model->params.time_rows)
         ADCGS_TRY(keep_motion(model, before, error));
     model->predicted = (uint8_t)adcgs_kept_possible(before, model, &why);
-    return ADCGS_OK;
+    return model->predicted ? adcgs_kept_renew(model, before, error) : ADCGS_OK;
 }
 
 static adcgs_status join_one(adcgs_stream *stream, const char *base, const adcgs_cuts *cuts, uint32_t part, int follows,

@@ -26,6 +26,8 @@ static void json_header(adcgs_json *j, const adcgs_info_report *r)
     adcgs_json_int(j, "weights", i->weights);
     adcgs_json_int(j, "k", i->k);
     adcgs_json_int(j, "layers", i->layers);
+    adcgs_json_int(j, "tiers", i->tiers);
+    adcgs_json_int(j, "tiers_present", i->tiers_present);
     adcgs_json_real(j, "scene_scale", i->scene_scale);
     adcgs_json_open(j, "scene_origin", '[');
     for (int a = 0; a < 3; a++)

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 23 };
+enum { FORMAT = 24 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -149,6 +149,7 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->weighed, sizeof t->weighed);
     visit(w, &t->slimmed, sizeof t->slimmed);
     visit(w, &t->decided, sizeof t->decided);
+    visit(w, &t->tiered, sizeof t->tiered);
     visit(w, &t->frozen, sizeof t->frozen);
     visit(w, &t->released, sizeof t->released);
     visit(w, &t->lr_scale, sizeof t->lr_scale);
@@ -188,7 +189,11 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
     visit(w, f->keep, slots * sizeof(float));
     visit(w, f->moving, lanes * sizeof(float));
     visit(w, f->body, lanes);
+    visit(w, f->tier, lanes);
+    visit(w, &f->finest, sizeof f->finest);
+    visit(w, f->growth, sizeof f->growth);
     visit(w, f->learns, lanes * sizeof(float));
+    w->failed |= f->finest >= ADCGS_TIERS_MAX;
     visit(w, f->centre, sizeof f->centre);
     visit(w, t->stats.weight, (3 * slots + lanes) * sizeof(float));
     visit(w, &t->stats.n, sizeof t->stats.n);

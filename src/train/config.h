@@ -44,11 +44,13 @@ typedef struct adcgs_train_config {
     float scale_weight;    /**< of the price of primitives' size */
     float distortion_weight; /**< of the spread of depth along rays */
     int distortion_period; /**< it is measured in every n-th iteration */
+    float tier_weight;     /**< of what pictures look like while tiers are absent */
     float dropout;         /**< share of primitives left out at random until rounding: against overfitting few views */
     /* The model. */
     adcgs_params params;   /**< time_rows is capped by the scene */
     adcgs_shape shape;
     /* Anchors. */
+    int tiers;             /**< sets of anchors, the first a coarse picture of everything; at most, few anchors make fewer */
     uint32_t start_anchors, max_anchors;
     float span_moments;    /**< moments before and behind its own that an anchor lives, to begin with */
     uint32_t densify_every;  /**< iterations between densifications */
@@ -63,7 +65,7 @@ typedef struct adcgs_train_config {
     float scale_from;      /**< size has its price from here on; where several views share a moment, from the start */
     float deform_from, fine_from, densify_from, densify_until, noise_from, rate_from;
     float prune_units_at, prune_units_again; /**< hidden units are removed; the second time needs the first */
-    float decide_at, round_from, freeze_from;
+    float decide_at, tiers_from, round_from, freeze_from;
     float average_last;    /**< so much of the end of rounding, and of the run, is averaged, but at most half of either stage */
     /* Switches: what is left out, see adcgs_train_leave_out(). */
     uint8_t without_coarse, without_fine, without_rate, without_densification, without_weight_steps;

@@ -18,7 +18,7 @@ typedef struct stand {
 static void measure(const adcgs_fmodel *f, int body, stand *s)
 {
     uint32_t low[3], high[3];
-    s->anchors = (int)adcgs_bodies_box(f, body, low, high);
+    s->anchors = (int)adcgs_bodies_box(f, body, ADCGS_TIERS_MAX, low, high);
     for (int a = 0; s->anchors && a < 3; a++)
         s->half = fmax(s->half, 0.5 * (double)(high[a] - low[a] + 1) * (double)f->voxel);
 }

@@ -66,6 +66,7 @@ const adcgs_setting adcgs_settings[] = {
     LOSS(distortion_weight, Q, 0, 1000, ALL(0),
          "price of depth's spread along rays; 0.001 where few cameras are learnt by heart"),
     LOSS(distortion_period, S | Q, 1, 1000, ALL(4), "that spread is measured in one iteration of so many"),
+    LOSS(tier_weight, S | B | Q, 0, 10, BUT_PAPER(0.1, 0), "weight of the pictures' loss while tiers are absent"),
     LOSS(dropout, Q, 0, 0.9, BUT_PAPER(0.1, 0), "share of primitives left out at random, against overfitting few views"),
 
     /* Anchors: Lu et al. 2024; K primitives each, deformed by two networks: ADC-GS. eta is a hyperprior: Balle et al. 2018, ICLR.
@@ -105,6 +106,8 @@ const adcgs_setting adcgs_settings[] = {
         "anchors to begin with; unless given, at least 3/4 of max_anchors where pictures are matched"),
     ROW("max_anchors", max_anchors, AT(own_anchors), ANCHORS, ALWAYS, S | B | Q | M, 1, ADCGS_ANCHORS_MAX,
         { 1200, 6000, 8000, 10000, 20000 }, "budget of anchors; their number stops growing there"),
+    ANCHOR(tiers, S | B | Q, 1, ADCGS_TIERS_MAX, BUT_PAPER(4, 1),
+           "sets of anchors that are sent one after the other, each with finer detail, at most"),
     ANCHOR(stereo, S | Q, 0, 1, ALL(1), "1: first anchors come from matched pictures, where a scene brings no points"),
     ANCHOR(span_moments, B | Q, 0.1, 1e4, ALL(3), "moments before and after its own that an anchor with a span begins with"),
     ANCHOR(densify_every, S | Q, 1, 1e6, ALL(100), "iterations from one densification to the next"),
@@ -134,6 +137,7 @@ const adcgs_setting adcgs_settings[] = {
     MOMENT(prune_units_at, S | B | Q, 2, BUT_PAPER(0.52, 2), "hidden units that do not pay go; networks' bits count from here"),
     MOMENT(prune_units_again, S | B | Q, 2, ALL(0.76), "hidden units that do not pay go once more"),
     MOMENT(decide_at, S | B | Q, 2, ALL(0.52), "primitives that never matter go, anchors that never move become static"),
+    MOMENT(tiers_from, B | Q, 2, ALL(0.6), "anchors are sorted into tiers, behind decide_at"),
     MOMENT(round_from, B | Q, 2, ALL(0.85), "values and weights are rounded from here"),
     MOMENT(freeze_from, B | Q, 2, ALL(0.96), "values are final from here, networks alone are trained"),
     MOMENT(average_last, Q, 1, BUT_PAPER(0.05, 0), "so much of the ends of rounding and of the run is averaged"),

@@ -12,6 +12,7 @@
 #include "train/rate_control.h"
 #include "train/release.h"
 #include "train/rate_target.h"
+#include "train/tiers.h"
 #include "train/unit_prune.h"
 #include "train/views.h"
 #include "train/weight_steps.h"
@@ -56,6 +57,10 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
         if (!c->without_densification)
             ADCGS_TRY(adcgs_decide(t, error));
     }
+    if (!t->tiered && progress >= c->tiers_from && t->decided && !t->f->follows) {
+        t->tiered = 1;
+        ADCGS_TRY(adcgs_tiers_assign(t, error));
+    }
     if (!t->quantise || c->without_rounding)
         return ADCGS_OK;
     const adcgs_quantise_options means = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
@@ -70,6 +75,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
         return ADCGS_OK;
     take_average(t);
     ADCGS_TRY(adcgs_freeze(t, error));
+    ADCGS_TRY(adcgs_tiers_fit(t, error));
     return adcgs_rate_target_frozen(t, error);
 }
 

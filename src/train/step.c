@@ -5,6 +5,7 @@
 #include "fmodel/from_model.h"
 #include "fmodel/weight_rate.h"
 #include "grad/random.h"
+#include "train/tiers.h"
 #include "train/views.h"
 
 #include <math.h>
@@ -185,6 +186,7 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
     /* Loss per bit: lambda per 2^23 bits. */
     adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_price_of_bit(t) : 0, c->rate_period,
                         (int)(t->iteration % (uint32_t)c->rate_period), rated ? &rate : NULL);
+    ADCGS_TRY(adcgs_tiers_learn(t, picked, &mode, error));
     const double keep = t->iteration < 100 ? 0.9 : 0.99;
     t->mean_loss = t->iteration ? keep * t->mean_loss + (1 - keep) * value.loss : value.loss;
     t->mean_mse = t->iteration ? keep * t->mean_mse + (1 - keep) * value.mse : value.mse;

@@ -65,6 +65,7 @@ static uint32_t ask(adcgs_decoder *d, int stored_camera)
     const adcgs_camera camera = any_camera(d, stored_camera);
     for (int i = 0; i < 2; i++) {
         const double time = i ? info.time_end : info.time_start;
+        FUZZ_REQUIRE(adcgs_set_tiers(d, i, NULL) == ADCGS_OK);
         adcgs_frame frame = { WIDTH, HEIGHT, rgb };
         if (adcgs_get_primitives(d, time, &primitives, NULL) != ADCGS_OK ||
             adcgs_render(d, &camera, time, &frame, NULL) != ADCGS_OK)

@@ -31,6 +31,8 @@ static int setup(void **state)
     adcgs_buffer_init(&f->bytes);
     if (adcgs_random_stream(&f->stream, &params, 3, 90, 5, &seed, NULL) != ADCGS_OK)
         return -1;
+    for (uint32_t i = 0; i < f->stream.n_segments; i++)
+        adcgs_random_one_tier(&f->stream.segments[i]);
     f->stream.colour_space = 1;
     f->stream.axes = 2;
     f->stream.units = 1;

@@ -176,6 +176,22 @@ static adcgs_status random_anchors(adcgs_model *m, uint64_t *state, adcgs_error 
     return adcgs_random_values(m, state, error);
 }
 
+/** One to three tiers, each with anchors. */
+static void random_tiers(adcgs_model *m, uint64_t *state)
+{
+    m->finest = (uint8_t)draw(state, 0, (int)ADCGS_MIN(m->n - 1, 2U));
+    for (int t = 0; t < m->finest; t++)
+        m->growth[t] = (uint8_t)draw(state, 0, ADCGS_GROWTH_MAX);
+    for (uint32_t i = 0; i < m->n; i++)
+        m->tier[i] = (uint8_t)(i <= m->finest ? (int)i : draw(state, 0, m->finest));
+}
+
+void adcgs_random_one_tier(adcgs_model *m)
+{
+    m->finest = 0;
+    memset(m->tier, 0, m->n);
+}
+
 adcgs_status adcgs_random_model(adcgs_model *m, const adcgs_params *params, uint32_t n, int depth, uint64_t *state,
                                 adcgs_error *error)
 {
@@ -193,6 +209,7 @@ adcgs_status adcgs_random_model(adcgs_model *m, const adcgs_params *params, uint
     }
     ADCGS_TRY(adcgs_model_alloc(m, NULL, error));
     ADCGS_TRY(random_positions(m, state, error));
+    random_tiers(m, state);
     return random_anchors(m, state, error);
 }
 
@@ -208,13 +225,8 @@ static adcgs_status share_networks(adcgs_model *m, const adcgs_model *from, uint
 
 adcgs_model adcgs_random_frame(const adcgs_model *before)
 {
-    adcgs_model m = *before;
+    adcgs_model m = adcgs_model_frame(before);
     m.n = 0;
-    m.pos = NULL;
-    m.is_static = m.body = NULL;
-    m.mask = NULL;
-    m.eta = m.fv = m.sigma = m.colour = m.fg = NULL;
-    memset(m.net, 0, sizeof m.net);
     m.layers = (uint8_t)adcgs_params_layers(&m.params);
     m.predicted = 1;
     return m;

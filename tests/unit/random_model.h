@@ -20,6 +20,8 @@ void adcgs_random_params(adcgs_params *params, int moving, uint64_t *state);
 /** A valid model of n anchors in a cube of depth bits per axis (n <= 2^(3 depth)), times 0..1 s. Allocated without a memory. */
 adcgs_status adcgs_random_model(adcgs_model *model, const adcgs_params *params, uint32_t n, int depth, uint64_t *state,
                                 adcgs_error *error);
+/** Have all anchors come at once, where a test is of something else. */
+void adcgs_random_one_tier(adcgs_model *model);
 /**
  * A valid model that can follow another as a predicted segment: its anchors are some of the other's, as they are or with
  * differences, and at most n new ones; most of its networks are the other's.

@@ -37,6 +37,8 @@ static void make_bytes(adcgs_stream *stream, adcgs_buffer *bytes, uint32_t segme
     if (adcgs_random_stream(stream, &params, segments, n, 4, &seed, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     stream->slice_log2 = ADCGS_SLICE_LOG2_MIN;
+    for (uint32_t i = 0; i < segments; i++)
+        adcgs_random_one_tier(&stream->segments[i]);
     if (adcgs_stream_write(stream, bytes, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
 }

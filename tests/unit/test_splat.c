@@ -182,16 +182,19 @@ static float live(const adcgs_model *m, uint32_t anchor, float t, float position
     return adcgs_exp(-u4);
 }
 
-/* Where an anchor's body takes it: about the middle of the box of all its voxels, and from there. */
+/* Where an anchor's body takes it: about the middle of the box of all its voxels in its first tier, and from there. */
 static void take_along(const adcgs_model *m, uint32_t anchor, const float *time, float position[3], float offset[3], float q[4])
 {
     const float *z = time + m->params.time_width + 7 * (m->body[anchor] - 1);
     float r[4] = {fmaf(z[0], 0.0625f, 1.0f), z[1] * 0.0625f, z[2] * 0.0625f, z[3] * 0.0625f}, centre[3];
+    int tier = ADCGS_TIERS_MAX;
     normalise(r);
+    for (uint32_t i = 0; i < m->n; i++)
+        tier = m->body[i] == m->body[anchor] ? ADCGS_MIN(tier, m->tier[i]) : tier;
     for (size_t a = 0; a < 3; a++) {
-        uint32_t low = m->pos[3 * (size_t)anchor + a], high = low;
+        uint32_t low = UINT32_MAX, high = 0;
         for (uint32_t i = 0; i < m->n; i++)
-            if (m->body[i] == m->body[anchor]) {
+            if (m->body[i] == m->body[anchor] && m->tier[i] == tier) {
                 low = ADCGS_MIN(low, m->pos[3 * (size_t)i + a]);
                 high = ADCGS_MAX(high, m->pos[3 * (size_t)i + a]);
             }
@@ -562,6 +565,7 @@ static void make_body(adcgs_model *m)
         m->is_static[i] = i == 4;
         m->mask[i] = 1;
     }
+    adcgs_random_one_tier(m);
     set_pose(m, 2);
 }
 

@@ -327,6 +327,7 @@ static void test_trace(void **state)
     trace t;
     (void)state;
     make_stream(&stream, 1, 1, 300, 12);
+    adcgs_random_one_tier(&stream.segments[0]);
     stream.slice_log2 = ADCGS_SLICE_LOG2_MIN;
     memcpy(stream.meta[0].value, "\"\\\177\n", 5); /* the four characters that a trace must not show as they are */
     adcgs_buffer_init(&bytes);

@@ -65,6 +65,64 @@ static void assert_same(const adcgs_buffer *a, const adcgs_buffer *b)
     assert_memory_equal(a->data, b->data, a->size);
 }
 
+/** Mean square of what a picture of so many tiers is off the whole one. */
+static double wrong_with(const adcgs_trainer *t, const adcgs_model *model, int tiers)
+{
+    const adcgs_view *view = &t->views[0].view;
+    const size_t n = 3 * (size_t)view->width * (size_t)view->height;
+    float *picture[2] = { calloc(n, sizeof(float)), calloc(n, sizeof(float)) };
+    double sum = 0;
+    for (int i = 0; i < 2; i++) {
+        adcgs_model part;
+        adcgs_splat *splat;
+        adcgs_primitives primitives;
+        assert_int_equal(adcgs_model_coarser(&part, model, i ? tiers : model->finest + 1, NULL, &error), ADCGS_OK);
+        assert_int_equal(adcgs_splat_create(&splat, &part, t->cpu, NULL, NULL, &error), ADCGS_OK);
+        assert_int_equal(adcgs_splat_at(splat, t->views[0].t, &primitives, &error), ADCGS_OK);
+        assert_int_equal(adcgs_raster_forward(t->raster, &primitives, view, t->scene->background, ADCGS_SCREEN_FILTER, picture[i],
+                                              0, &error), ADCGS_OK);
+        adcgs_splat_free(&splat);
+        adcgs_model_clear(&part, NULL);
+    }
+    for (size_t i = 0; i < n; i++)
+        sum += (double)(picture[0][i] - picture[1][i]) * (double)(picture[0][i] - picture[1][i]);
+    free(picture[0]);
+    free(picture[1]);
+    return sum / (double)n;
+}
+
+/** Each tier has the share of anchors that it should, and brings the picture nearer; the run does not depend on threads. */
+static void tiers_are_of_falling_worth(void **state)
+{
+    adcgs_train_config config = small_config();
+    config.start_anchors = config.max_anchors = 500;
+    config.tiers = 3;
+    adcgs_trainer *t = make(&config, pool), *alone = make(&config, NULL);
+    adcgs_stream stream;
+    adcgs_buffer ends[2];
+    uint32_t anchors[3] = { 0 };
+    (void)state;
+    run(t, NULL, NULL);
+    run(alone, NULL, NULL);
+    store(t, &ends[0]);
+    store(alone, &ends[1]);
+    assert_same(&ends[0], &ends[1]);
+    assert_int_equal(adcgs_encode_stream(&stream, t, NULL, 0, &error), ADCGS_OK);
+    const adcgs_model *m = &stream.segments[0];
+    assert_int_equal(m->finest, 2);
+    for (uint32_t i = 0; i < m->n; i++)
+        anchors[m->tier[i]]++;
+    assert_true(anchors[0] > 0.13 * m->n && anchors[0] < 0.19 * m->n && anchors[1] > 0.2 * m->n && anchors[1] < 0.28 * m->n);
+    const double coarse = wrong_with(t, m, 1), fine = wrong_with(t, m, 2);
+    assert_true(fine > 0 && fine < 0.7 * coarse);
+    assert_true(wrong_with(t, m, 3) == 0);
+    adcgs_stream_clear(&stream, NULL);
+    adcgs_buffer_clear(&ends[0]);
+    adcgs_buffer_clear(&ends[1]);
+    adcgs_trainer_free(&t);
+    adcgs_trainer_free(&alone);
+}
+
 static int all_finite(const adcgs_fmodel *f)
 {
     for (int i = 0; i < ADCGS_P_COUNT; i++)
@@ -568,6 +626,7 @@ static void estimated_bits_are_written_bytes(void **state)
     adcgs_train_config config = all_stages_config();
     config.start_anchors = config.max_anchors = 600;
     config.params.k = 6;
+    config.tiers = 1; /* each has flags and sub-streams of its own */
     adcgs_trainer *t = make(&config, pool);
     adcgs_stream stream;
     adcgs_buffer bytes;
@@ -1380,6 +1439,7 @@ int main(void)
         cmocka_unit_test(crops_are_parts_of_pictures), cmocka_unit_test(rates_stay_then_fall),
         cmocka_unit_test(rates_follow_their_kind),
         cmocka_unit_test(time_left_follows_the_schedule), cmocka_unit_test(time_left_knows_loading),
+        cmocka_unit_test(tiers_are_of_falling_worth),
         cmocka_unit_test(time_limits_count_what_was_before),
         cmocka_unit_test(masked_pixels_have_no_part),
         cmocka_unit_test(missing_things_are_found),

@@ -173,6 +173,16 @@ ADCGS_API const char *adcgs_get_metadata_key(const adcgs_decoder *decoder, int i
 ADCGS_API adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time, adcgs_primitives *out, adcgs_error *error);
 
 /**
+ * Draw the first tiers alone from now on: fewer splats, and a coarser picture, in less time (clause "Tiers"). What there is to be
+ * drawn decides which tiers there are: of a stream that has come in part, of segments that have fewer.
+ * \param decoder an open decoder
+ * \param tiers how many, at least 1; 0: all, as it was opened
+ * \param error says why it failed
+ * \return ADCGS_OK or ADCGS_ERR_USAGE
+ */
+ADCGS_API adcgs_status adcgs_set_tiers(adcgs_decoder *decoder, int tiers, adcgs_error *error);
+
+/**
  * Render a frame (clause "Rendering"): what conforming decoders agree on to the bit.
  * \param decoder an open decoder
  * \param camera any camera, not only the stream's

@@ -132,6 +132,8 @@ typedef struct adcgs_info {
     adcgs_bytes bytes;      /**< where the stream's bytes are */
     int metadata;           /**< texts that the stream stores, for adcgs_get_metadata_key() */
     int faults;             /**< that were concealed, where config.conceal asked for it */
+    int tiers;              /**< sets of anchors that the stream has (clause "Tiers"): the most that a segment has, 1..8 */
+    int tiers_present;      /**< those that are there of all segments */
 } adcgs_info;
 
 /** Longest name of a camera, bytes without the zero. */

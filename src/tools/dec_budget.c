@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What a budget allows. */
+#include "tools/dec_budget.h"
+
+#include "cli/cli.h"
+
+#include <stdlib.h>
+
+adcgs_status adcgs_budget_parse(adcgs_budget *budget, const char *text, adcgs_error *error)
+{
+    char *unit;
+    uint64_t bytes;
+    budget->most = strtod(text, &unit);
+    budget->of = !strcmp(unit, "splats") ? ADCGS_BUDGET_SPLATS : !strcmp(unit, "ms") ? ADCGS_BUDGET_TIME : ADCGS_BUDGET_BYTES;
+    if (budget->of != ADCGS_BUDGET_BYTES && budget->most > 0 && budget->most < 1e12)
+        return ADCGS_OK;
+    if (budget->of != ADCGS_BUDGET_BYTES || adcgs_parse_size(text, 1, UINT64_C(1) << 40, &bytes))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--budget %.100s: expected bytes (40k), splats (20000splats) or time (16ms)",
+                          text);
+    budget->most = (double)bytes;
+    return ADCGS_OK;
+}
+
+typedef struct source {
+    FILE *file;
+    double left;
+} source;
+
+static int64_t read_some(void *user, void *buffer, size_t bytes)
+{
+    source *const s = user;
+    const size_t n = (double)bytes < s->left ? bytes : (size_t)s->left;
+    const size_t got = n ? fread(buffer, 1, n, s->file) : 0;
+    s->left -= (double)got;
+    return got == 0 && ferror(s->file) ? -1 : (int64_t)got;
+}
+
+adcgs_status adcgs_budget_open(adcgs_decoder **decoder, const adcgs_budget *budget, FILE *file, const adcgs_config *config,
+                               adcgs_error *error)
+{
+    source from = { file, budget->most };
+    return adcgs_open_stream(decoder, read_some, &from, config, error);
+}
+
+/** What a frame costs, in the budget's unit. */
+static adcgs_status measure(const adcgs_budget *budget, adcgs_decoder *decoder, const adcgs_camera *camera, double time,
+                            adcgs_frame *frame, double *cost, adcgs_error *error)
+{
+    adcgs_primitives splats;
+    ADCGS_TRY(adcgs_get_primitives(decoder, time, &splats, error));
+    *cost = 0;
+    for (uint32_t i = 0; i < splats.n; i++)
+        *cost += splats.opacity[i] > 0;
+    if (budget->of == ADCGS_BUDGET_SPLATS)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_render(decoder, camera, time, frame, error)); /* memory is there after the first */
+    const double begin = adcgs_seconds();
+    const adcgs_status status = adcgs_render(decoder, camera, time, frame, error);
+    *cost = 1e3 * (adcgs_seconds() - begin);
+    return status;
+}
+
+adcgs_status adcgs_budget_fit(const adcgs_budget *budget, adcgs_decoder *decoder, const adcgs_camera *camera, double time,
+                              adcgs_frame *frame, int *tiers, adcgs_error *error)
+{
+    adcgs_info info;
+    double cost;
+    *tiers = 0;
+    if (budget->of != ADCGS_BUDGET_SPLATS && budget->of != ADCGS_BUDGET_TIME)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
+    for (int n = info.tiers; n > 0; n--) {
+        ADCGS_TRY(adcgs_set_tiers(decoder, n, error));
+        ADCGS_TRY(measure(budget, decoder, camera, time, frame, &cost, error));
+        *tiers = n < info.tiers ? n : 0;
+        if (cost <= budget->most)
+            break;
+    }
+    return ADCGS_OK;
+}
