@@ -53,8 +53,8 @@ double adcgs_ticks_to_seconds(const adcgs_stream *stream, int64_t ticks);
 adcgs_status adcgs_seconds_to_ticks(const adcgs_stream *stream, double seconds, int64_t *ticks, adcgs_error *error);
 
 /**
- * Append the stream to out. Validates first; segment times must be whole ticks. Derives start_ticks and duration_ticks from the
- * segments; level 0 becomes the lowest level that the stream fits; fills bytes.
+ * Append the stream to out, without the tiers that are absent. Validates first; segment times must be whole ticks. Derives
+ * start_ticks and duration_ticks from the segments; level 0 becomes the lowest level that the stream fits; fills bytes.
  */
 adcgs_status adcgs_stream_write(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error);
 

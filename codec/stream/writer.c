@@ -93,7 +93,7 @@ static void spend_tiers(writer *w, const adcgs_model *model)
     for (int role = 0; role < ADCGS_ROLES; role++)
         if (model->net[role].present)
             adcgs_nets_cost_add(&nets, &model->params, role, &model->net[role]);
-    for (int tier = 0; tier <= (model->predicted ? 0 : model->finest); tier++) {
+    for (int tier = 0; tier <= (model->predicted ? 0 : model->finest - model->absent); tier++) {
         uint32_t n = model->predicted ? model->n : 0;
         for (uint32_t i = 0; !model->predicted && i < model->n; i++)
             n += model->tier[i] == tier;
@@ -229,7 +229,7 @@ static adcgs_status write_tiers(writer *w, uint32_t segment, adcgs_model *model)
     adcgs_status status = ADCGS_OK;
     if (!model->finest)
         return write_anchors(w, segment, 0, model);
-    for (int tier = 0; tier <= model->finest && status == ADCGS_OK; tier++) {
+    for (int tier = 0; tier <= model->finest - model->absent && status == ADCGS_OK; tier++) {
         adcgs_model part;
         status = adcgs_model_tier(&part, model, tier, NULL, w->error);
         if (status == ADCGS_OK)
@@ -280,7 +280,8 @@ static adcgs_status write_segment(writer *w, uint32_t segment)
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_SEGM, begin));
     ADCGS_TRY(write_networks(w, segment, model, &ids));
     ADCGS_TRY(before ? write_predicted(w, segment, before, model) : write_tiers(w, segment, model));
-    ADCGS_TRY(write_hash(w, segment, model));
+    if (!model->absent) /* nobody would compare it */
+        ADCGS_TRY(write_hash(w, segment, model));
 
     adcgs_syn_index entry = { .offset = origin - w->begin, .bytes = w->out->size - origin, .key = !before };
     ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_start, &entry.start_ticks, w->error));
@@ -354,8 +355,8 @@ static adcgs_status check_stream(adcgs_stream *stream, adcgs_error *error)
             return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u has other parameters than the stream", i);
         ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &start, error));
         ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &end, error));
-        if (model->absent)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: tiers of segment %u are absent", i);
+        if (model->predicted && i > 0 && model[-1].absent)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u is predicted from one of which tiers are absent", i);
         if (model->predicted && i == 0)
             return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment is predicted");
         if (model->predicted && !adcgs_kept_possible(model - 1, model, error))

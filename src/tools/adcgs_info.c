@@ -10,6 +10,7 @@
 #include "model/model_priv.h"
 #include "stream/input.h"
 #include "tools/info_check.h"
+#include "tools/info_cut.h"
 #include "tools/info_points.h"
 #include "tools/info_report.h"
 
@@ -17,8 +18,9 @@
 #include <stdlib.h>
 
 typedef struct settings {
-    const char *input, *points, *repair;
-    int json, bits, trace, digest, check;
+    const char *input, *points, *repair, *output;
+    int json, bits, trace, digest, check, has_bytes;
+    uint64_t bytes;
 } settings;
 
 static void add_chunk(adcgs_info_report *r, uint64_t bit, const char *type)
@@ -241,6 +243,10 @@ int main(int argc, char **argv)
           NULL },
         { "repair", 0, ADCGS_OPTION_STRING, &s.repair, 0, 0, "FILE", "the same, and write what can be used to this file", NULL,
           NULL },
+        { "bytes", 0, ADCGS_OPTION_SIZE, &s.bytes, 1, 1e12, "N",
+          "write a stream of at most N bytes (40k) to --output:\nwithout the finest tiers, as many as have to go", NULL,
+          &s.has_bytes },
+        { "output", 'o', ADCGS_OPTION_STRING, &s.output, 0, 0, "FILE", "where --bytes writes", NULL, NULL },
     };
     const adcgs_cli cli = { .program = "adcgs-info", .operands = "FILE|-",
                             .summary = "Says what an adcgs stream holds and where its bytes are.", .options = options,
@@ -256,11 +262,15 @@ int main(int argc, char **argv)
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--points goes with no other option");
     if ((s.check || s.repair) && (s.json || s.bits || s.trace || s.digest || s.points))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--check and --repair go with no other option");
+    if (s.has_bytes != (s.output != NULL))
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--bytes and --output go together");
+    if (s.has_bytes && (s.json || s.bits || s.trace || s.digest || s.points || s.check || s.repair))
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--bytes goes with --output and no other option");
     if (s.check || s.repair)
         return check(&cli, &s, &error);
     adcgs_status status = read_report(&r, &s, &error);
     if (status == ADCGS_OK)
-        status = print_report(&r, &s, &error);
+        status = s.has_bytes ? adcgs_info_cut(&r.stream, s.bytes, s.output, &error) : print_report(&r, &s, &error);
     adcgs_stream_clear(&r.stream, NULL);
     free(r.chunks);
     if (status != ADCGS_OK)
