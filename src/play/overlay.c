@@ -66,11 +66,12 @@ static void draw_statistics(adcgs_panel *panel, const adcgs_play_state *state, c
              "size    %dx%d of %dx%d\n"
              "splats  %u\n"
              "layers  %d of %d\n"
+             "tiers   %d\n"
              "time    %.3f s, frame %d of %d\n"
              "speed   %gx%s%s\n"
              "dropped %ld",
              1e3 * figures->seconds, rate, figures->width, figures->height, state->width, state->height,
-             (unsigned)figures->splats, state->layers, state->layers_max, adcgs_play_clock_time(clock),
+             (unsigned)figures->splats, state->layers, state->layers_max, figures->tiers, adcgs_play_clock_time(clock),
              adcgs_play_clock_frame(clock), clock->frames, adcgs_play_clock_factor(clock), clock->loop ? ", loop" : "",
              state->flying ? ", flying" : "", figures->dropped);
     text_panel(panel, state, text, 0.0, 0.0, BACKGROUND);

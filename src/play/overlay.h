@@ -10,7 +10,8 @@ typedef struct adcgs_play_figures {
     double seconds;     /**< that the last picture took to draw */
     double rate;        /**< pictures in a second; 0: none came lately */
     int width, height;  /**< of the last picture */
-    uint32_t splats;    /**< of the stream, with the layers used */
+    uint32_t splats;    /**< that are drawn */
+    int tiers;          /**< of the stream, that are */
     long dropped;       /**< frames left out while playing */
 } adcgs_play_figures;
 

@@ -19,6 +19,7 @@ static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
     adcgs_play_job job = {.time = adcgs_play_clock_time(&state->clock), .layers = state->layers, .divider = divider,
                           .number = adcgs_play_clock_frame(&state->clock), .seeks = p->seeks};
     adcgs_orbit_control_view(&state->control, state->width, state->height, &job.camera);
+    job.tiers = adcgs_play_moving(state) && !*p->shot ? p->scale.tiers : p->scale.all;
     if (divider > 1)
         adcgs_camera_stretch(&job.camera, (state->width + divider - 1) / divider, (state->height + divider - 1) / divider);
     return job;
@@ -29,7 +30,7 @@ static int same_picture(const adcgs_play_job *a, const adcgs_play_job *b)
     const adcgs_camera *const c = &a->camera, *const d = &b->camera;
     return c->width == d->width && c->height == d->height && c->fx == d->fx && c->fy == d->fy && c->cx == d->cx &&
            c->cy == d->cy && c->near_plane == d->near_plane && a->time == b->time && a->number == b->number &&
-           a->layers == b->layers && !memcmp(c->cam_to_world, d->cam_to_world, sizeof c->cam_to_world);
+           a->layers == b->layers && a->tiers == b->tiers && !memcmp(c->cam_to_world, d->cam_to_world, sizeof c->cam_to_world);
 }
 
 static int wanted_divider(const adcgs_player *p)
@@ -99,6 +100,7 @@ static void count_picture(adcgs_player *p, const adcgs_play_result *result)
     f->width = result->job.camera.width;
     f->height = result->job.camera.height;
     f->splats = result->splats;
+    f->tiers = result->job.tiers;
     p->pictures++;
 }
 
@@ -118,7 +120,8 @@ static adcgs_status take_picture(adcgs_player *p, const adcgs_play_result *resul
     p->failure = ADCGS_OK;
     count_picture(p, result);
     count_dropped(p, &result->job);
-    if (adcgs_play_moving(&p->state) && result->job.divider == p->scale.divider)
+    if (adcgs_play_moving(&p->state) && result->job.divider == p->scale.divider &&
+        result->job.tiers == p->scale.tiers)
         adcgs_play_scale_took(&p->scale, result->seconds, budget(p));
     p->stale = 1;
     return p->sdl->picture(p->window, result->rgb, camera->width, camera->height, error);

@@ -90,7 +90,7 @@ static int find_value(const adcgs_player *p, const char *name, double *value)
         {"speed", adcgs_play_clock_factor(&s->clock)}, {"playing", s->clock.playing}, {"loop", s->clock.loop},
         {"layers", s->layers}, {"camera", s->jumped}, {"flying", s->flying}, {"help", s->help},
         {"statistics", s->statistics}, {"bar", s->bar}, {"distance", adcgs_orbit_control_distance(&s->control)},
-        {"splats", p->figures.splats}, {"divider", p->job.divider},
+        {"splats", p->figures.splats}, {"divider", p->job.divider}, {"tiers", p->job.tiers},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
         if (!strcmp(values[i].name, name)) {

@@ -79,16 +79,18 @@ static adcgs_status draw(adcgs_worker *w)
     adcgs_play_result *const r = &w->result;
     const adcgs_camera *const camera = &r->job.camera;
     const size_t samples = 3 * (size_t)camera->width * (size_t)camera->height;
-    adcgs_info info;
+    adcgs_primitives splats;
     ADCGS_TRY(open_layers(w, r->job.layers, &r->error));
-    ADCGS_TRY(adcgs_get_info(w->decoder, &info, sizeof info, &r->error));
+    ADCGS_TRY(adcgs_set_tiers(w->decoder, r->job.tiers, &r->error));
     ADCGS_TRY(reserve(w, samples, &r->error));
     adcgs_frame frame = {.width = camera->width, .height = camera->height, .rgb = w->values};
     const double start = adcgs_seconds();
     ADCGS_TRY(adcgs_render(w->decoder, camera, r->job.time, &frame, &r->error));
     adcgs_frame_to_u8(&frame, w->rgb);
     r->seconds = adcgs_seconds() - start;
-    r->splats = info.gaussians;
+    ADCGS_TRY(adcgs_get_primitives(w->decoder, r->job.time, &splats, &r->error)); /* they are there */
+    for (uint32_t i = 0; i < splats.n; i++)
+        r->splats += splats.opacity[i] > 0;
     r->rgb = w->rgb;
     const adcgs_image image = {.width = frame.width, .height = frame.height, .channels = 3, .data = frame.rgb};
     const adcgs_image_options options = {.half = 1, .camera = camera, .time = r->job.time};

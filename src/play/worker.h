@@ -18,6 +18,7 @@ typedef struct adcgs_play_job {
     adcgs_camera camera;
     double time;         /**< seconds */
     int layers;          /**< 1..5 */
+    int tiers;           /**< 1..8 */
     int divider;         /**< of the window's resolution; nothing to the worker */
     int number;          /**< of the frame in the stream; nothing to the worker */
     int seeks;           /**< times that the user had gone to another frame; nothing to the worker */
@@ -29,7 +30,7 @@ typedef struct adcgs_play_result {
     adcgs_status status;
     adcgs_error error;    /**< why there is no picture */
     double seconds;       /**< that drawing took */
-    uint32_t splats;      /**< of the stream with these layers */
+    uint32_t splats;      /**< that are drawn */
     const uint8_t *rgb;   /**< [height][width][3], of the camera's size */
 } adcgs_play_result;
 

@@ -66,7 +66,7 @@ const adcgs_setting adcgs_settings[] = {
     LOSS(distortion_weight, Q, 0, 1000, ALL(0),
          "price of depth's spread along rays; 0.001 where few cameras are learnt by heart"),
     LOSS(distortion_period, S | Q, 1, 1000, ALL(4), "that spread is measured in one iteration of so many"),
-    LOSS(tier_weight, S | B | Q, 0, 10, BUT_PAPER(0.1, 0), "weight of the pictures' loss while tiers are absent"),
+    LOSS(tier_weight, S | B | Q, 0, 10, BUT_PAPER(0.03, 0), "weight of the pictures' loss while tiers are absent"),
     LOSS(dropout, Q, 0, 0.9, BUT_PAPER(0.1, 0), "share of primitives left out at random, against overfitting few views"),
 
     /* Anchors: Lu et al. 2024; K primitives each, deformed by two networks: ADC-GS. eta is a hyperprior: Balle et al. 2018, ICLR.

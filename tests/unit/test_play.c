@@ -266,7 +266,7 @@ static int play_pictures(adcgs_play_scale *scale, double base, double seconds, i
 static void test_scale(void **state)
 {
     adcgs_play_scale scale;
-    adcgs_play_scale_init(&scale);
+    adcgs_play_scale_init(&scale, 1);
     assert_int_equal(play_pictures(&scale, 0.0, 0.030, 100), 0); /* fits */
     adcgs_play_scale_took(&scale, 0.2, 1.0 / 30.0);              /* one slow picture is no reason */
     assert_int_equal(play_pictures(&scale, 0.0, 0.030, 100), 0);
@@ -285,10 +285,35 @@ static void test_scale_settles(void **state)
     for (int base = 0; base <= 30; base += 5)
         for (int full = base; full < 400; full += 3) {
             adcgs_play_scale scale;
-            adcgs_play_scale_init(&scale);
+            adcgs_play_scale_init(&scale, 1);
             play_pictures(&scale, 1e-3 * base, 1e-3 * full, 200);
             assert_int_equal(play_pictures(&scale, 1e-3 * base, 1e-3 * full, 1000), 0);
         }
+}
+
+/** Behind half the resolution tiers go, one after the other, then pixels; they come back as they went, and nothing swings. */
+static void test_scale_tiers(void **state)
+{
+    (void)state;
+    for (int full = 5; full < 2000; full += 15) {
+        adcgs_play_scale scale;
+        int changes = 0;
+        adcgs_play_scale_init(&scale, 4);
+        for (int i = 0; i < 1200; i++) {
+            const adcgs_play_scale before = scale;
+            double seconds = 1e-3 * full / (scale.divider * scale.divider);
+            for (int t = scale.tiers; t < 4; t++)
+                seconds *= 0.5;
+            adcgs_play_scale_took(&scale, seconds, 1.0 / 30.0);
+            changes += i >= 200 && (before.divider != scale.divider || before.tiers != scale.tiers);
+            assert_true(scale.tiers >= 1 && scale.tiers <= 4 && (scale.tiers == 4 || scale.divider >= 2));
+            assert_true(scale.divider <= 2 || scale.tiers == 1);
+        }
+        assert_int_equal(changes, 0);
+        for (int i = 0; i < 200; i++)
+            adcgs_play_scale_took(&scale, 1e-4, 1.0 / 30.0);
+        assert_true(scale.divider == 1 && scale.tiers == 4);
+    }
 }
 
 static adcgs_play_state make_state(const adcgs_camera cameras[2])
@@ -547,7 +572,8 @@ int main(void)
         cmocka_unit_test(test_orbit), cmocka_unit_test(test_orbit_follows_mouse), cmocka_unit_test(test_up),
         cmocka_unit_test(test_pan_and_zoom), cmocka_unit_test(test_fly), cmocka_unit_test(test_view),
         cmocka_unit_test(test_clock), cmocka_unit_test(test_clock_speed), cmocka_unit_test(test_clock_steps),
-        cmocka_unit_test(test_scale), cmocka_unit_test(test_scale_settles), cmocka_unit_test(test_keys),
+        cmocka_unit_test(test_scale), cmocka_unit_test(test_scale_settles), cmocka_unit_test(test_scale_tiers),
+        cmocka_unit_test(test_keys),
         cmocka_unit_test(test_repeats), cmocka_unit_test(test_mouse), cmocka_unit_test(test_scrub), cmocka_unit_test(test_flight),
         cmocka_unit_test(test_letters), cmocka_unit_test(test_overlay), cmocka_unit_test(test_script),
         cmocka_unit_test(test_bad_scripts),
