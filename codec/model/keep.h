@@ -44,8 +44,9 @@ adcgs_status adcgs_kept_renew(adcgs_model *now, const adcgs_model *before, adcgs
 /** The anchors of a model that are not kept, with its networks and steps: what GEOM and layers hold. The caller clears it. */
 adcgs_status adcgs_kept_rest(adcgs_model *rest, const adcgs_keep *kept, const adcgs_model *before, const adcgs_model *now,
                              adcgs_error *error);
-/** ADCGS_ERR_DATA if a new anchor is where one is kept. */
-adcgs_status adcgs_kept_check(const adcgs_keep *kept, const adcgs_model *before, const adcgs_model *added, adcgs_error *error);
+/** What is kept, as a model without networks. The caller clears it, also on failure. */
+adcgs_status adcgs_kept_model(adcgs_model *stay, const adcgs_keep *kept, const adcgs_model *before, adcgs_memory *memory,
+                              adcgs_error *error);
 /** Join what is kept, and the new anchors that a model holds, in this model. */
 adcgs_status adcgs_kept_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_memory *memory,
                              adcgs_error *error);

@@ -125,45 +125,25 @@ adcgs_status adcgs_kept_rest(adcgs_model *rest, const adcgs_keep *kept, const ad
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_kept_check(const adcgs_keep *kept, const adcgs_model *before, const adcgs_model *added, adcgs_error *error)
+adcgs_status adcgs_kept_model(adcgs_model *stay, const adcgs_keep *kept, const adcgs_model *before, adcgs_memory *memory,
+                              adcgs_error *error)
 {
-    for (uint32_t i = 0, j = 0; i < before->n; i++) {
-        if (kept->mode[i] == ADCGS_KEEP_DROPPED)
-            continue;
-        while (j < added->n && adcgs_anchor_place(added, j) < adcgs_anchor_place(before, i))
-            j++;
-        if (j < added->n && adcgs_anchor_place(added, j) == adcgs_anchor_place(before, i))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "GEOM: new anchor %u is where anchor %u is kept", j, i);
-    }
+    *stay = adcgs_model_frame(before);
+    stay->n = kept->n;
+    ADCGS_TRY(adcgs_model_alloc(stay, memory, error));
+    for (uint32_t i = 0, n = 0; i < before->n; i++)
+        if (kept->mode[i] != ADCGS_KEEP_DROPPED)
+            copy_kept(stay, n++, kept, before, i);
     return ADCGS_OK;
 }
 
 adcgs_status adcgs_kept_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_memory *memory,
                              adcgs_error *error)
 {
-    adcgs_model all = adcgs_model_frame(model);
-    all.n = model->n + kept->n;
-    all.layers = ADCGS_MIN(model->layers, before->layers);
-    const adcgs_status status = adcgs_model_alloc(&all, memory, error);
-    if (status != ADCGS_OK) {
-        adcgs_model_clear(&all, memory);
-        return status;
-    }
-    uint32_t i = 0, j = 0;
-    for (uint32_t n = 0; n < all.n; n++) {
-        while (i < before->n && kept->mode[i] == ADCGS_KEEP_DROPPED)
-            i++;
-        if (i < before->n && (j == model->n || adcgs_anchor_place(before, i) < adcgs_anchor_place(model, j))) {
-            copy_kept(&all, n, kept, before, i);
-            i++;
-        } else {
-            adcgs_anchor_copy(&all, n, model, j);
-            j++;
-        }
-    }
-    memcpy(all.net, model->net, sizeof all.net);
-    memset(model->net, 0, sizeof model->net);
-    adcgs_model_clear(model, memory);
-    *model = all;
-    return ADCGS_OK;
+    adcgs_model stay;
+    adcgs_status status = adcgs_kept_model(&stay, kept, before, memory, error);
+    if (status == ADCGS_OK)
+        status = adcgs_tiers_join(&stay, model, memory, error);
+    adcgs_model_clear(&stay, memory);
+    return status;
 }

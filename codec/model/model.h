@@ -107,7 +107,7 @@ void adcgs_model_clear(adcgs_model *model, adcgs_memory *memory);
  */
 adcgs_status adcgs_model_tier(adcgs_model *dst, const adcgs_model *src, int tier, adcgs_memory *memory, adcgs_error *error);
 adcgs_status adcgs_model_coarser(adcgs_model *dst, const adcgs_model *src, int tiers, adcgs_memory *memory, adcgs_error *error);
-/** ADCGS_ERR_DATA if an added anchor is where one of the tiers before is. */
+/** ADCGS_ERR_DATA if an added anchor is where one is already, of a tier before or kept. */
 adcgs_status adcgs_tiers_check(const adcgs_model *coarser, const adcgs_model *added, adcgs_error *error);
 /** Join the anchors of the tiers before with those that a model holds, in this model. */
 adcgs_status adcgs_tiers_join(const adcgs_model *coarser, adcgs_model *model, adcgs_memory *memory, adcgs_error *error);

@@ -47,7 +47,6 @@ void adcgs_segment_drop(adcgs_segment *s)
     adcgs_model_clear(&s->model, s->options->memory);
     adcgs_model_clear(&s->coarser, s->options->memory);
     s->tier = 0;
-    adcgs_kept_clear(&s->kept, s->options->memory);
     s->has_kept = s->sent = 0;
     memset(s->done, 0, sizeof s->done);
     s->n_slices = 0;
@@ -108,7 +107,12 @@ adcgs_status adcgs_segment_keep(adcgs_segment *s, adcgs_parse *p)
     if (s->stage != ADCGS_SEGMENT_STARTED || !s->model.predicted || s->has_kept)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "KEEP: expected once, after SEGM of a predicted segment");
     s->has_kept = 1;
-    return adcgs_keep_parse(p, s->limits, model_before(s), &s->kept, &s->left, s->options->memory);
+    adcgs_keep kept = { .n = 0 };
+    adcgs_status status = adcgs_keep_parse(p, s->limits, model_before(s), &kept, &s->left, s->options->memory);
+    if (status == ADCGS_OK)
+        status = adcgs_kept_model(&s->coarser, &kept, model_before(s), s->options->memory, s->error);
+    adcgs_kept_clear(&kept, s->options->memory);
+    return status;
 }
 
 /** A segment's network: the one that SEGM named, or, in a predicted segment, the one of the segment before. NULL: none. */
@@ -164,7 +168,7 @@ static adcgs_status complete_model(const adcgs_segment *s, adcgs_model *model, a
     if (s->coarser.n)
         ADCGS_TRY(adcgs_tiers_join(&s->coarser, model, s->options->memory, error));
     model->absent = (uint8_t)(model->predicted ? 0 : model->finest - s->tier);
-    return model->predicted ? adcgs_kept_join(&s->kept, model_before(s), model, s->options->memory, error) : ADCGS_OK;
+    return ADCGS_OK;
 }
 
 /** The anchors of a tier, or of a predicted segment. */
@@ -174,12 +178,10 @@ static adcgs_status place_anchors(adcgs_segment *s, adcgs_parse *p)
     ADCGS_TRY(check_nets(s, &cost));
     if (s->tier > 0)
         cost.weights = 0; /* these networks are there */
-    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, s->kept.n + s->coarser.n, s->tier, &s->model, &s->left, &cost,
+    ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, s->coarser.n, s->tier, &s->model, &s->left, &cost,
                                s->options->memory));
     if (s->model.n)
         memset(s->model.tier, s->tier, s->model.n);
-    if (s->model.predicted)
-        ADCGS_TRY(adcgs_kept_check(&s->kept, model_before(s), &s->model, s->error));
     ADCGS_TRY(adcgs_tiers_check(&s->coarser, &s->model, s->error));
     if (s->tier == 0)
         ADCGS_TRY(copy_nets(s));
@@ -369,7 +371,7 @@ static int tier_is_complete(const adcgs_segment *s)
 
 int adcgs_segment_is_drawable(const adcgs_segment *s)
 {
-    return tier_is_complete(s) || s->coarser.n > 0;
+    return tier_is_complete(s) || s->tier > 0;
 }
 
 int adcgs_segment_tier(const adcgs_segment *s, int is_geom)
@@ -380,7 +382,7 @@ int adcgs_segment_tier(const adcgs_segment *s, int is_geom)
 void adcgs_segment_drop_tier(adcgs_segment *s)
 {
     adcgs_model without = s->coarser;
-    if (tier_is_complete(s) || !s->coarser.n)
+    if (tier_is_complete(s) || !s->tier)
         return;
     memcpy(without.net, s->model.net, sizeof without.net);
     memset(s->model.net, 0, sizeof s->model.net);

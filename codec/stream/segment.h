@@ -23,12 +23,11 @@ typedef struct adcgs_segment {
     adcgs_segment_stage stage;
     uint64_t origin;      /**< position of SEGM */
     adcgs_model model;    /**< of the anchors of its last GEOM, until it is finished */
-    adcgs_model coarser;  /**< of the tiers before, joined; without networks. n = 0: there are none */
+    adcgs_model coarser;  /**< what is kept, or the tiers before, joined; without networks. n = 0: there is none */
     int tier;             /**< that the model at hand is */
     adcgs_role_ids ids;
     uint16_t sent;        /**< roles whose networks stand in the segment, before GEOM */
     int has_kept;         /**< KEEP was read */
-    adcgs_keep kept;
     int is_key;           /**< it needs nothing of an earlier segment */
     adcgs_latents *latents;
     uint32_t n_slices;
