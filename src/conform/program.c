@@ -283,8 +283,10 @@ static adcgs_outcome run_once(const adcgs_program *program, const adcgs_vector *
             wrong(r, ADCGS_OUTCOME_WRONG, "cannot start it: %s", strerror(errno));
         else if (has_out && !r->timed_out && read_out(r) != 0)
             wrong(r, ADCGS_OUTCOME_WRONG, "%s: no such file", r->out);
-        else
+        else {
+            *r->what = 0;
             outcome = judge(r, expected, status);
+        }
     }
     free(expected);
     free(r->command);

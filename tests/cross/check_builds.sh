@@ -10,9 +10,11 @@
 set -u
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh" || exit 99
 
-# describe TARGET: sets the arguments of configure, CC first, and the unit tests that it leaves out.
+# describe TARGET: sets the arguments of configure, CC first, and the unit tests that it leaves out. Seeds of the fuzz targets are
+# changed as often as elsewhere only where sanitizers watch all of it.
 describe()
 {
+    export ADCGS_FUZZ_ROUNDS=6
     local findings='-fsanitize=address,undefined -fno-sanitize-recover=all'
     except=
     case $1 in
@@ -22,6 +24,7 @@ describe()
             # Trainings take 20 times as long without SIMD; that levels agree is tested by the others.
             except=$(printf 'tests/unit/test_%s ' trainer control moments nets rdo scale no_memory) ;;
         sanitize)
+            unset ADCGS_FUZZ_ROUNDS
             arguments=(CC=clang CXX=clang++ CFLAGS="-g1 -O1 $findings" CXXFLAGS="-O1 $findings" --disable-hardening)
             # Some 60 programs of this size: the usual linker takes ten times as long.
             ! command -v ld.gold >/dev/null || arguments+=(LDFLAGS=-fuse-ld=gold) ;;
