@@ -399,7 +399,7 @@ static adcgs_status draw_predicted(adcgs_plan *plan, uint32_t segment, adcgs_err
     if (status == ADCGS_OK)
         status = draw_anchors(plan, segment, &kept, error);
     if (status == ADCGS_OK)
-        status = adcgs_kept_join(&kept, before, m, NULL, error);
+        status = adcgs_random_join(&kept, before, m, error);
     adcgs_kept_clear(&kept, NULL);
     return status;
 }

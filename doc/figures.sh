@@ -34,8 +34,8 @@ row()
         "$([ -n "$moving" ] && printf '%.2f' "$moving" || echo -)" "$(value ssim "$out/$name.json")" "$seconds" >>"$out/figures.md"
 }
 
-# row_of N TITLE SCENE NAME WEIGHT: with N iterations and the lambda that the encoder chooses.
-row_of() { row "$2" "$3" "$4-$1" -n "$1"; }
+# row_of N TITLE SCENE NAME WEIGHT: with N iterations, the lambda that the encoder chooses, and all anchors at once.
+row_of() { row "$2" "$3" "$4-$1" -n "$1" --no-progression; }
 
 make_scenes "$out"
 printf '| Scene | `adcgs-enc` | File, bytes | PSNR, dB | of what moves | SSIM | CPU, s |\n|---|---|---|---|---|---|---|\n' >"$out/figures.md"

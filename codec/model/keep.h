@@ -47,8 +47,5 @@ adcgs_status adcgs_kept_rest(adcgs_model *rest, const adcgs_keep *kept, const ad
 /** What is kept, as a model without networks. The caller clears it, also on failure. */
 adcgs_status adcgs_kept_model(adcgs_model *stay, const adcgs_keep *kept, const adcgs_model *before, adcgs_memory *memory,
                               adcgs_error *error);
-/** Join what is kept, and the new anchors that a model holds, in this model. */
-adcgs_status adcgs_kept_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_memory *memory,
-                             adcgs_error *error);
 
 #endif

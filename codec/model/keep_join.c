@@ -136,14 +136,3 @@ adcgs_status adcgs_kept_model(adcgs_model *stay, const adcgs_keep *kept, const a
             copy_kept(stay, n++, kept, before, i);
     return ADCGS_OK;
 }
-
-adcgs_status adcgs_kept_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_memory *memory,
-                             adcgs_error *error)
-{
-    adcgs_model stay;
-    adcgs_status status = adcgs_kept_model(&stay, kept, before, memory, error);
-    if (status == ADCGS_OK)
-        status = adcgs_tiers_join(&stay, model, memory, error);
-    adcgs_model_clear(&stay, memory);
-    return status;
-}

@@ -117,8 +117,7 @@ static void lose_tier(salvage *s, const char *why)
 static adcgs_status finish(salvage *s, uint64_t end)
 {
     s->is_cut = 0;
-    if (adcgs_segment_is_drawable(&s->reader.segment))
-        adcgs_segment_drop_tier(&s->reader.segment);
+    adcgs_segment_drop_tier(&s->reader.segment);
     const adcgs_status status = adcgs_segment_finish(&s->reader.segment, end, 0);
     if (!is_damage(status))
         return status;

@@ -190,21 +190,27 @@ static adcgs_status place_anchors(adcgs_segment *s, adcgs_parse *p)
     return ADCGS_OK;
 }
 
-/** What has come of a tier is all there is of it: it joins those before, and the model is ready for the next. */
-static adcgs_status end_tier(adcgs_segment *s)
+/** The model at hand becomes one of no anchors, with its networks; what it was is the caller's. */
+static adcgs_model begin_tier(adcgs_segment *s)
 {
-    adcgs_model next = adcgs_model_frame(&s->model);
-    ADCGS_TRY(complete_model(s, &s->model, s->error));
-    memcpy(next.net, s->model.net, sizeof next.net);
-    memset(s->model.net, 0, sizeof s->model.net);
-    adcgs_model_clear(&s->coarser, s->options->memory);
-    s->coarser = s->model;
-    next.n = 0;
-    next.layers = 0;
-    s->model = next;
+    adcgs_model was = s->model;
+    s->model = adcgs_model_frame(&was);
+    memcpy(s->model.net, was.net, sizeof was.net);
+    memset(was.net, 0, sizeof was.net);
+    s->model.n = 0;
+    s->model.layers = 0;
     adcgs_latents_free(&s->latents);
     memset(s->done, 0, sizeof s->done);
     s->n_slices = 0;
+    return was;
+}
+
+/** What has come of a tier is all there is of it: it joins those before, and the model is ready for the next. */
+static adcgs_status end_tier(adcgs_segment *s)
+{
+    ADCGS_TRY(complete_model(s, &s->model, s->error));
+    adcgs_model_clear(&s->coarser, s->options->memory);
+    s->coarser = begin_tier(s);
     s->tier++;
     return ADCGS_OK;
 }
@@ -381,16 +387,10 @@ int adcgs_segment_tier(const adcgs_segment *s, int is_geom)
 
 void adcgs_segment_drop_tier(adcgs_segment *s)
 {
-    adcgs_model without = s->coarser;
     if (tier_is_complete(s) || !s->tier)
         return;
-    memcpy(without.net, s->model.net, sizeof without.net);
-    memset(s->model.net, 0, sizeof s->model.net);
-    adcgs_model_clear(&s->model, s->options->memory);
-    adcgs_latents_free(&s->latents);
-    s->model = without;
-    memset(&s->coarser, 0, sizeof s->coarser);
-    s->n_slices = 0; /* they are all there */
+    adcgs_model part = begin_tier(s); /* of no slices: they are all there */
+    adcgs_model_clear(&part, s->options->memory);
     s->tier--;
 }
 

@@ -350,8 +350,11 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     s->request.has_times = s->times != NULL;
     if (s->budget_text)
         ADCGS_TRY(adcgs_budget_parse(&s->budget, s->budget_text, error));
-    if (s->budget_text && (s->tiers || s->play || s->answer || s->config.conceal))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--budget excludes --tiers, --play, --answer and --conceal");
+    if (s->tiers && (s->play || s->answer))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--tiers excludes --play and --answer");
+    if (s->budget_text && (s->tiers || s->play || s->answer || s->config.conceal || s->splats || s->cameras || s->beside))
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--budget excludes --tiers, --play, --answer, --conceal, --splats, --cameras and --beside");
     if (s->config.conceal && !strcmp(s->input, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: what comes in order cannot be looked at again");
     if (s->config.conceal) {

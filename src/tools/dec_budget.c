@@ -47,12 +47,13 @@ static adcgs_status measure(const adcgs_budget *budget, adcgs_decoder *decoder, 
                             adcgs_frame *frame, double *cost, adcgs_error *error)
 {
     adcgs_primitives splats;
-    ADCGS_TRY(adcgs_get_primitives(decoder, time, &splats, error));
-    *cost = 0;
-    for (uint32_t i = 0; i < splats.n; i++)
-        *cost += splats.opacity[i] > 0;
-    if (budget->of == ADCGS_BUDGET_SPLATS)
+    if (budget->of == ADCGS_BUDGET_SPLATS) {
+        ADCGS_TRY(adcgs_get_primitives(decoder, time, &splats, error));
+        *cost = 0;
+        for (uint32_t i = 0; i < splats.n; i++)
+            *cost += splats.opacity[i] > 0;
         return ADCGS_OK;
+    }
     ADCGS_TRY(adcgs_render(decoder, camera, time, frame, error)); /* memory is there after the first */
     const double begin = adcgs_seconds();
     const adcgs_status status = adcgs_render(decoder, camera, time, frame, error);

@@ -43,7 +43,8 @@ build()
     make
 }
 
-# units: builds in the working directory and tests, which asks about all vectors; a build that has nothing to ask with is asked.
+# units: builds in the working directory and tests. Where there is no adcgs-conform, so that no test goes through the vectors, the
+# decoder answers for them.
 units()
 {
     build >build.log 2>&1 || { line FAIL "does not build, see $PWD/build.log"; return; }

@@ -186,6 +186,15 @@ static void random_tiers(adcgs_model *m, uint64_t *state)
         m->tier[i] = (uint8_t)(i <= m->finest ? (int)i : draw(state, 0, m->finest));
 }
 
+void adcgs_random_small_params(adcgs_params *params, int n_fg, uint64_t *state)
+{
+    adcgs_random_params(params, 1, state);
+    params->k = 2;
+    params->n_fv = 3;
+    params->chunks = 2;
+    params->n_fg = (uint8_t)n_fg;
+}
+
 void adcgs_random_one_tier(adcgs_model *m)
 {
     m->finest = 0;
@@ -302,6 +311,16 @@ static adcgs_status random_networks(adcgs_model *m, const adcgs_model *before, u
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_random_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *m, adcgs_error *error)
+{
+    adcgs_model stay;
+    adcgs_status status = adcgs_kept_model(&stay, kept, before, NULL, error);
+    if (status == ADCGS_OK)
+        status = adcgs_tiers_join(&stay, m, NULL, error);
+    adcgs_model_clear(&stay, NULL);
+    return status;
+}
+
 /** New anchors in a frame that has its networks, and then the kept ones. */
 static adcgs_status random_joined(adcgs_model *m, const adcgs_model *before, adcgs_keep *kept, uint32_t n, uint64_t *state,
                                   adcgs_error *error)
@@ -315,7 +334,7 @@ static adcgs_status random_joined(adcgs_model *m, const adcgs_model *before, adc
         ADCGS_TRY(random_positions(m, state, error));
     ADCGS_TRY(adcgs_random_settle(m, kept, before, error));
     ADCGS_TRY(random_anchors(m, state, error));
-    return adcgs_kept_join(kept, before, m, NULL, error);
+    return adcgs_random_join(kept, before, m, error);
 }
 
 adcgs_status adcgs_random_follower(adcgs_model *m, const adcgs_model *before, uint32_t n, uint64_t *state, adcgs_error *error)

@@ -17,6 +17,8 @@ int64_t adcgs_random_range(uint64_t *state, int64_t lo, int64_t hi);
 
 /** Any valid parameters; moving decides whether there is a time table. */
 void adcgs_random_params(adcgs_params *params, int moving, uint64_t *state);
+/** The same for small streams that move: two primitives, three channels of f_v, n_fg of f_g in two chunks. */
+void adcgs_random_small_params(adcgs_params *params, int n_fg, uint64_t *state);
 /** A valid model of n anchors in a cube of depth bits per axis (n <= 2^(3 depth)), times 0..1 s. Allocated without a memory. */
 adcgs_status adcgs_random_model(adcgs_model *model, const adcgs_params *params, uint32_t n, int depth, uint64_t *state,
                                 adcgs_error *error);
@@ -46,5 +48,7 @@ adcgs_status adcgs_random_values(adcgs_model *model, uint64_t *state, adcgs_erro
 adcgs_model adcgs_random_frame(const adcgs_model *before);
 /** New anchors whose voxels are taken, by each other or by those kept of the model before, move to free ones; all are sorted. */
 adcgs_status adcgs_random_settle(adcgs_model *added, const adcgs_keep *kept, const adcgs_model *before, adcgs_error *error);
+/** Join what is kept of the model before with the new anchors that a model holds, in this model. */
+adcgs_status adcgs_random_join(const adcgs_keep *kept, const adcgs_model *before, adcgs_model *model, adcgs_error *error);
 
 #endif

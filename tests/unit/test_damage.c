@@ -27,11 +27,7 @@ static void make_bytes(adcgs_stream *stream, adcgs_buffer *bytes, uint32_t segme
 {
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_params params;
-    adcgs_random_params(&params, 1, &seed);
-    params.k = 2;
-    params.n_fv = 3;
-    params.chunks = 2;
-    params.n_fg = (uint8_t)n_fg;
+    adcgs_random_small_params(&params, n_fg, &seed);
     params.octaves = 1;
     adcgs_buffer_init(bytes);
     if (adcgs_random_stream(stream, &params, segments, n, 4, &seed, &error) != ADCGS_OK)

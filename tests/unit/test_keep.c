@@ -40,11 +40,7 @@ static void write_stream(adcgs_stream *stream, adcgs_buffer *bytes)
 static adcgs_params some_params(uint64_t *seed)
 {
     adcgs_params params;
-    adcgs_random_params(&params, 1, seed);
-    params.k = 2;
-    params.n_fv = 3;
-    params.chunks = 2;
-    params.n_fg = 4;
+    adcgs_random_small_params(&params, 4, seed);
     return params;
 }
 
@@ -95,7 +91,7 @@ static adcgs_model *append_same(adcgs_stream *stream, uint32_t nth)
         kept.mode[i] = nth && i % nth == 0 ? ADCGS_KEEP_DROPPED : ADCGS_KEEP_SAME;
         kept.n += kept.mode[i] == ADCGS_KEEP_SAME;
     }
-    check(adcgs_kept_join(&kept, before, m, NULL, &error), &error);
+    check(adcgs_random_join(&kept, before, m, &error), &error);
     adcgs_kept_clear(&kept, NULL);
     return next_segment(stream);
 }

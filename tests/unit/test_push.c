@@ -30,11 +30,7 @@ static int setup(void **state)
     adcgs_params params;
     uint64_t seed = 12;
     adcgs_stream *s = &f->stream;
-    adcgs_random_params(&params, 1, &seed);
-    params.n_fv = 3;
-    params.k = 2;
-    params.n_fg = 2;
-    params.chunks = 2;
+    adcgs_random_small_params(&params, 2, &seed);
     adcgs_buffer_init(&f->bytes);
     adcgs_stream_init(s);
     s->params = params;

@@ -26,11 +26,7 @@ static void make(adcgs_stream *stream, adcgs_buffer *bytes, uint64_t seed)
 {
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_params params;
-    adcgs_random_params(&params, 1, &seed);
-    params.k = 2;
-    params.n_fv = 3;
-    params.n_fg = 2;
-    params.chunks = 2;
+    adcgs_random_small_params(&params, 2, &seed);
     adcgs_buffer_init(bytes);
     do {
         adcgs_status status = adcgs_random_stream(stream, &params, 1, 150, 4, &seed, &error);
@@ -180,6 +176,33 @@ static void test_every_prefix(void **state)
     clear(&stream, &bytes);
 }
 
+/** A layer that the first tier lacks is lacking, too, where the second is cut off. */
+static void test_layers_of_first(void **state)
+{
+    adcgs_stream stream, part;
+    adcgs_buffer bytes, cut;
+    const adcgs_read_options options = { .cpu = ADCGS_CPU_SCALAR };
+    (void)state;
+    make(&stream, &bytes, 4);
+    adcgs_buffer_init(&cut);
+    const size_t second = place_of(&bytes, 1), end = second + (place_of(&bytes, 2) - second) / 2;
+    for (size_t at = ADCGS_SIGNATURE_BYTES, next; at < second; at = next) {
+        next = at + ADCGS_CHUNK_BYTES + adcgs_load_le32(bytes.data + at + 4);
+        if (adcgs_load_le32(bytes.data + at) == ADCGS_TYPE_FEA(2)) { /* the last of the first tier */
+            adcgs_write_bytes(&cut, bytes.data, at);
+            adcgs_write_bytes(&cut, bytes.data + next, end - next);
+        }
+    }
+    adcgs_span from = { .next = cut.data, .left = cut.size };
+    assert_int_equal(adcgs_stream_read(&part, adcgs_span_read, &from, &options, NULL, NULL, NULL), ADCGS_OK);
+    assert_int_equal(part.segments[0].absent, stream.segments[0].finest);
+    assert_int_equal(part.segments[0].layers, 2);
+    check_part(&stream.segments[0], &part.segments[0]);
+    adcgs_stream_clear(&part, NULL);
+    adcgs_buffer_clear(&cut);
+    clear(&stream, &bytes);
+}
+
 /** Any byte behind the first tier may be wrong: what is left is a part of what was written. */
 static void test_damaged(void **state)
 {
@@ -209,6 +232,6 @@ static void test_damaged(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_wanted), cmocka_unit_test(test_every_prefix),
-                                        cmocka_unit_test(test_damaged) };
+                                        cmocka_unit_test(test_layers_of_first), cmocka_unit_test(test_damaged) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
