@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The module that holds libcurl: a transfer at a time over a kept connection, its bytes taken as they are wanted. */
+#include "config.h"
+
+#include "io/http_curl.h"
+
+#include <curl/curl.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <strings.h>
+#include <time.h>
+
+#define CONNECT_MS 15000L
+#define WAIT_SECONDS 30.0 /* in which less than WAIT_BYTES is nothing */
+#define WAIT_BYTES 1024
+#define POLL_MS 200       /* how soon an interrupt is noticed */
+#define REDIRECTS 5L
+#define HEAD_BYTES 65536
+
+struct adcgs_transfer {
+    CURLM *multi;
+    CURL *easy;
+    struct curl_slist *headers;
+    const char *url;
+    int (*interrupted)(void);
+    int started, done;     /**< an answer is asked for; it came to its end */
+    CURLcode result;       /**< once it did */
+    char reason[CURL_ERROR_SIZE];
+    const char *refused;   /**< what of the answer was too much; NULL: nothing */
+    adcgs_http_head head;
+    size_t head_bytes;     /**< of all heads since it was asked, those of redirects too */
+    int paused;            /**< there is more than the bytes held */
+    double waited;         /**< since WAIT_BYTES came */
+    size_t came;
+    size_t next, held;     /**< bytes[next .. held) are still to be taken */
+    uint8_t bytes[CURL_MAX_WRITE_SIZE];
+};
+
+/* ---- What an answer says of itself ---- */
+
+/** Decimal digits, up to what fits. \return whether there was one at least. */
+static int parse_number(const char **text, uint64_t *number)
+{
+    const char *const begin = *text;
+    for (*number = 0; **text >= '0' && **text <= '9'; (*text)++) {
+        if (*number > UINT64_MAX / 10 - 1)
+            return 0;
+        *number = 10 * *number + (uint64_t)(**text - '0');
+    }
+    return *text > begin;
+}
+
+/** "bytes 0-65535/100000"; with * for what is not known, or where no range is there to be had. */
+static void parse_range(adcgs_http_head *head, const char *text)
+{
+    uint64_t first = ADCGS_HTTP_UNKNOWN, last = 0, size = ADCGS_HTTP_UNKNOWN;
+    if (strncasecmp(text, "bytes ", 6))
+        return;
+    text += 6;
+    if (*text == '*')
+        text++;
+    else if (!parse_number(&text, &first) || *text++ != '-' || !parse_number(&text, &last) || last < first)
+        return;
+    if (*text++ != '/' || (*text != '*' && (!parse_number(&text, &size) || *text)))
+        return;
+    if (first != ADCGS_HTTP_UNKNOWN && last >= size)
+        return;
+    head->first = first;
+    head->last = last;
+    head->size = size;
+}
+
+/** Keep a value that goes back to the server as it is; one that is too long or no plain text is none. */
+static void keep(char *to, size_t size, const char *value)
+{
+    const size_t n = strlen(value);
+    *to = 0;
+    for (const char *c = value; *c; c++)
+        if (*c < ' ' || *c > '~')
+            return;
+    if (n < size)
+        memcpy(to, value, n + 1);
+}
+
+static void parse_line(adcgs_http_head *head, char *line)
+{
+    char *value = strchr(line, ':');
+    if (!strncmp(line, "HTTP/", 5)) /* another answer: what a redirect said counts no more */
+        *head = (adcgs_http_head){.length = ADCGS_HTTP_UNKNOWN, .first = ADCGS_HTTP_UNKNOWN, .size = ADCGS_HTTP_UNKNOWN};
+    if (!value)
+        return;
+    *value++ = 0;
+    value += strspn(value, " \t");
+    if (!strcasecmp(line, "Content-Range"))
+        parse_range(head, value);
+    else if (!strcasecmp(line, "ETag"))
+        keep(head->tag, sizeof head->tag, value);
+    else if (!strcasecmp(line, "Last-Modified"))
+        keep(head->modified, sizeof head->modified, value);
+}
+
+static size_t take_header(char *data, size_t size, size_t n, void *user)
+{
+    adcgs_transfer *const t = user;
+    char line[256];
+    t->head_bytes += n;
+    if (t->head_bytes > HEAD_BYTES) {
+        t->refused = "the head of its answer does not end";
+        return 0;
+    }
+    size_t length = n;
+    while (length > 0 && strchr(" \t\r\n", data[length - 1]))
+        length--;
+    if (length < sizeof line) { /* longer ones tell nothing that we ask for */
+        memcpy(line, data, length);
+        line[length] = 0;
+        parse_line(&t->head, line);
+    }
+    return n;
+}
+
+/** The body: held until it is taken, and no more of it comes until then. */
+static size_t take_body(char *data, size_t size, size_t n, void *user)
+{
+    adcgs_transfer *const t = user;
+    t->paused = t->next < t->held;
+    if (t->paused)
+        return CURL_WRITEFUNC_PAUSE;
+    if (n > sizeof t->bytes)
+        return 0;
+    memcpy(t->bytes, data, n);
+    t->next = 0;
+    t->held = n;
+    t->came += n;
+    return n;
+}
+
+/* ---- Waiting ---- */
+
+static double seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static adcgs_status fail(const adcgs_transfer *t, adcgs_error *error)
+{
+    const char *const why = t->refused ? t->refused : *t->reason ? t->reason : curl_easy_strerror(t->result);
+    return adcgs_fail(error, t->result == CURLE_OUT_OF_MEMORY ? ADCGS_ERR_MEMORY : ADCGS_ERR_IO, "%.160s: %s", t->url, why);
+}
+
+/** Do what can be done now; wait a little if that is nothing. */
+static adcgs_status step(adcgs_transfer *t, adcgs_error *error)
+{
+    const CURLMsg *message;
+    int running, left;
+    if (curl_multi_perform(t->multi, &running) != CURLM_OK)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot go on", t->url);
+    while ((message = curl_multi_info_read(t->multi, &left)))
+        if (message->msg == CURLMSG_DONE) {
+            t->done = 1;
+            t->result = message->data.result;
+        }
+    if (t->done || t->next < t->held)
+        return ADCGS_OK;
+    if (t->interrupted && t->interrupted())
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: interrupted", t->url);
+    curl_multi_poll(t->multi, NULL, 0, POLL_MS, NULL);
+    return ADCGS_OK;
+}
+
+/** Until there are bytes of the body, or it has ended. Time counts while we wait, not while what came is used. */
+static adcgs_status wait_for_body(adcgs_transfer *t, adcgs_error *error)
+{
+    while (!t->done && t->next == t->held) {
+        const double begin = seconds();
+        ADCGS_TRY(step(t, error));
+        t->waited += seconds() - begin;
+        if (t->came >= WAIT_BYTES)
+            t->waited = 0.0;
+        if (t->waited == 0.0)
+            t->came = 0;
+        if (t->waited > WAIT_SECONDS)
+            return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: the server sent less than %d bytes in %.0f seconds", t->url,
+                              WAIT_BYTES, WAIT_SECONDS);
+    }
+    return t->done && t->result != CURLE_OK && t->next == t->held ? fail(t, error) : ADCGS_OK;
+}
+
+/* ---- The table ---- */
+
+static void stop(adcgs_transfer *t)
+{
+    if (t->started)
+        curl_multi_remove_handle(t->multi, t->easy);
+    curl_slist_free_all(t->headers);
+    t->headers = NULL;
+    t->started = t->done = t->paused = 0;
+    t->next = t->held = t->came = t->head_bytes = 0;
+    t->waited = 0.0;
+    t->refused = NULL;
+    *t->reason = 0;
+}
+
+static void transfer_close(adcgs_transfer **transfer)
+{
+    adcgs_transfer *const t = *transfer;
+    if (!t)
+        return;
+    stop(t);
+    curl_easy_cleanup(t->easy);
+    curl_multi_cleanup(t->multi);
+    curl_global_cleanup();
+    free(t);
+    *transfer = NULL;
+}
+
+/** Protocols by name since libcurl 7.85, by bits before. What began encrypted stays so. */
+static CURLcode set_protocols(CURL *easy, int is_secure)
+{
+#if LIBCURL_VERSION_NUM >= 0x075500
+    const CURLcode result = curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, "http,https");
+    return result ? result : curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS_STR, is_secure ? "https" : "http,https");
+#else
+    const long both = CURLPROTO_HTTP | CURLPROTO_HTTPS;
+    const CURLcode result = curl_easy_setopt(easy, CURLOPT_PROTOCOLS, both);
+    return result ? result : curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS, is_secure ? (long)CURLPROTO_HTTPS : both);
+#endif
+}
+
+static CURLcode set_up(adcgs_transfer *t)
+{
+    CURL *const e = t->easy;
+    CURLcode result = set_protocols(e, !strncasecmp(t->url, "https:", 6));
+    result = result ? result : curl_easy_setopt(e, CURLOPT_URL, t->url);
+    result = result ? result : curl_easy_setopt(e, CURLOPT_USERAGENT, "adcgs/" PACKAGE_VERSION);
+    result = result ? result : curl_easy_setopt(e, CURLOPT_NOSIGNAL, 1L); /* there are other threads */
+    result = result ? result : curl_easy_setopt(e, CURLOPT_CONNECTTIMEOUT_MS, CONNECT_MS);
+    result = result ? result : curl_easy_setopt(e, CURLOPT_FOLLOWLOCATION, 1L);
+    result = result ? result : curl_easy_setopt(e, CURLOPT_MAXREDIRS, REDIRECTS);
+    result = result ? result : curl_easy_setopt(e, CURLOPT_ERRORBUFFER, t->reason);
+    result = result ? result : curl_easy_setopt(e, CURLOPT_HEADERFUNCTION, take_header);
+    result = result ? result : curl_easy_setopt(e, CURLOPT_HEADERDATA, t);
+    result = result ? result : curl_easy_setopt(e, CURLOPT_WRITEFUNCTION, take_body);
+    return result ? result : curl_easy_setopt(e, CURLOPT_WRITEDATA, t);
+}
+
+static adcgs_status transfer_open(adcgs_transfer **out, const char *url, int (*interrupted)(void), adcgs_error *error)
+{
+    adcgs_transfer *t = calloc(1, sizeof *t);
+    *out = NULL;
+    if (!t)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", url);
+    t->url = url;
+    t->interrupted = interrupted;
+    curl_global_init(CURL_GLOBAL_DEFAULT); /* counted, and undone as often */
+    t->multi = curl_multi_init();
+    t->easy = t->multi ? curl_easy_init() : NULL;
+    if (!t->easy || set_up(t) != CURLE_OK) {
+        transfer_close(&t);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot begin", url);
+    }
+    *out = t;
+    return ADCGS_OK;
+}
+
+/** "If-Range: ...": the range as long as it is of the same, else all. */
+static CURLcode set_same(adcgs_transfer *t, const char *same)
+{
+    char line[160];
+    if (!same)
+        return curl_easy_setopt(t->easy, CURLOPT_HTTPHEADER, NULL);
+    snprintf(line, sizeof line, "If-Range: %s", same);
+    t->headers = curl_slist_append(NULL, line);
+    return t->headers ? curl_easy_setopt(t->easy, CURLOPT_HTTPHEADER, t->headers) : CURLE_OUT_OF_MEMORY;
+}
+
+static adcgs_status transfer_ask(adcgs_transfer *t, const char *range, const char *same, adcgs_http_head *head,
+                                 adcgs_error *error)
+{
+    long status = 0;
+    curl_off_t length = -1;
+    stop(t);
+    if (set_same(t, same) || curl_easy_setopt(t->easy, CURLOPT_RANGE, range) || curl_multi_add_handle(t->multi, t->easy))
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot ask", t->url);
+    t->started = 1;
+    ADCGS_TRY(wait_for_body(t, error));
+    *head = t->head;
+    curl_easy_getinfo(t->easy, CURLINFO_RESPONSE_CODE, &status);
+    curl_easy_getinfo(t->easy, CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &length);
+    head->status = (int)status;
+    head->length = length < 0 ? ADCGS_HTTP_UNKNOWN : (uint64_t)length;
+    return ADCGS_OK;
+}
+
+static adcgs_status transfer_read(adcgs_transfer *t, void *buffer, size_t bytes, size_t *got, adcgs_error *error)
+{
+    *got = 0;
+    if (t->paused && t->next == t->held) {
+        t->paused = 0;
+        curl_easy_pause(t->easy, CURLPAUSE_CONT); /* which may hand over the next bytes at once */
+    }
+    ADCGS_TRY(wait_for_body(t, error));
+    *got = ADCGS_MIN(bytes, t->held - t->next);
+    memcpy(buffer, t->bytes + t->next, *got);
+    t->next += *got;
+    return ADCGS_OK;
+}
+
+const adcgs_curl adcgs_curl_table = {
+    .version = PACKAGE_VERSION,
+    .open = transfer_open,
+    .close = transfer_close,
+    .ask = transfer_ask,
+    .read = transfer_read,
+};

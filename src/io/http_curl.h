@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The module that holds libcurl: its table. It asks, waits, and tells what the answer says of itself; what to ask for, and
+ * whether an answer is one to use, is the front's business (http.c).
+ */
+#ifndef ADCGS_IO_HTTP_CURL_H
+#define ADCGS_IO_HTTP_CURL_H
+
+#include "io/module.h"
+
+#define ADCGS_HTTP_UNKNOWN UINT64_MAX
+
+/** What an answer says of itself before its body. */
+typedef struct adcgs_http_head {
+    int status;           /**< 200: all of it follows; 206: a range; 404, ... */
+    uint64_t length;      /**< bytes of the body; ADCGS_HTTP_UNKNOWN: it does not say */
+    uint64_t first, last; /**< the range; first is ADCGS_HTTP_UNKNOWN if none is named */
+    uint64_t size;        /**< of all of it; ADCGS_HTTP_UNKNOWN: it does not say */
+    char tag[128];        /**< ETag with its quotes; "": none, or one that is too long */
+    char modified[64];    /**< Last-Modified; "": none */
+} adcgs_http_head;
+
+/** A connection, and at most one answer that is being read. */
+typedef struct adcgs_transfer adcgs_transfer;
+
+typedef struct adcgs_curl {
+    const char *version; /**< of the programs that the module belongs to */
+    /** url outlives the transfer. */
+    adcgs_status (*open)(adcgs_transfer **out, const char *url, int (*interrupted)(void), adcgs_error *error);
+    void (*close)(adcgs_transfer **transfer);
+    /**
+     * Ask, and wait for the answer's head; an answer that is not read to its end is given up. range: "0-65535", NULL: all.
+     * same: an ETag or a date: all, if it has become another; NULL: the range in any case.
+     */
+    adcgs_status (*ask)(adcgs_transfer *transfer, const char *range, const char *same, adcgs_http_head *head,
+                        adcgs_error *error);
+    /** Wait for some bytes of its body: *got of them, at most `bytes`; 0 at its end. */
+    adcgs_status (*read)(adcgs_transfer *transfer, void *buffer, size_t bytes, size_t *got, adcgs_error *error);
+} adcgs_curl;
+
+/** The one thing that the module exports. */
+ADCGS_MODULE_EXPORT extern const adcgs_curl adcgs_curl_table;
+
+#endif
