@@ -7,16 +7,15 @@
 #include "camera/path.h"
 #include "cli/cli.h"
 #include "io/sink.h"
-#include "stream/input.h"
 #include "tools/answer.h"
 #include "tools/canvas.h"
 #include "tools/dec_budget.h"
+#include "tools/dec_open.h"
 #include "tools/dec_play.h"
 #include "tools/dec_splats.h"
 
 #include <adcgs/adcgs.h>
 
-#include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <strings.h>
@@ -29,6 +28,7 @@ typedef struct settings {
     adcgs_config config;
     int quiet, tiers, cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     double opened; /**< when opening the input began, in seconds */
+    adcgs_http *http, *http_beside; /**< what is read where URLs are given */
 } settings;
 
 #define OPTION_COUNT 29
@@ -101,34 +101,11 @@ static void tell_fault(void *user, adcgs_log_level level, const char *text)
         adcgs_cli_note(s->cli, "%s: %s", s->input, text);
 }
 
-/** Open as many bytes of a file as the budget has. */
-static adcgs_status open_part(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
+static adcgs_status open_input(adcgs_decoder **decoder, adcgs_http **http, const char *input, const settings *s,
+                               adcgs_error *error)
 {
-    FILE *file = fopen(input, "rb");
-    if (!file)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", input, strerror(errno));
-    const adcgs_status status = adcgs_budget_open(decoder, &s->budget, file, &s->config, error);
-    fclose(file);
-    if (status != ADCGS_OK)
-        adcgs_error_locate(error, input);
-    return status;
-}
-
-static adcgs_status open_stream(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
-{
-    const int part = s->budget.of == ADCGS_BUDGET_BYTES;
-    if (strcmp(input, "-"))
-        return part ? open_part(decoder, input, s, error) : adcgs_open_file(decoder, input, &s->config, error);
-    const adcgs_status status = part ? adcgs_budget_open(decoder, &s->budget, stdin, &s->config, error) :
-                                       adcgs_open_stream(decoder, adcgs_file_read, stdin, &s->config, error);
-    if (status != ADCGS_OK)
-        adcgs_error_locate(error, "standard input");
-    return status;
-}
-
-static adcgs_status open_input(adcgs_decoder **decoder, const char *input, const settings *s, adcgs_error *error)
-{
-    ADCGS_TRY(open_stream(decoder, input, s, error));
+    const adcgs_dec_open_config how = {.cli = s->cli, .budget = &s->budget, .config = &s->config};
+    ADCGS_TRY(adcgs_dec_open(decoder, http, input, &how, error));
     return adcgs_set_tiers(*decoder, s->tiers, error);
 }
 
@@ -284,7 +261,7 @@ static adcgs_status answer(const adcgs_cli *cli, settings *s, adcgs_decoder **de
     ADCGS_TRY(adcgs_requests_read(&requests, s->answer, error));
     s->config.strict_end |= requests.complete;
     s->config.layers = requests.layers ? requests.layers : s->config.layers;
-    adcgs_status status = open_input(decoder, s->input, s, error);
+    adcgs_status status = open_input(decoder, &s->http, s->input, s, error);
     const char *const fault = adcgs_fault_class(status);
     if (status == ADCGS_OK)
         status = adcgs_requests_answer(&requests, s->input, *decoder, error);
@@ -308,16 +285,16 @@ static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch,
 }
 
 /** Open what is to be shown, and show it. */
-static adcgs_status show(const adcgs_cli *cli, const settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
+static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
     streams from = {0};
-    ADCGS_TRY(open_input(decoder, s->input, s, error));
+    ADCGS_TRY(open_input(decoder, &s->http, s->input, s, error));
     from.decoder = *decoder;
     if (s->cameras)
         return adcgs_camera_path_write(from.decoder, s->cameras, error);
     if (s->splats)
         return adcgs_dec_splats(cli, from.decoder, s->input, s->splats, &s->request, error);
-    adcgs_status status = s->beside ? open_input(&from.beside, s->beside, s, error) : ADCGS_OK;
+    adcgs_status status = s->beside ? open_input(&from.beside, &s->http_beside, s->beside, s, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = decode(cli, s, &from, mismatch, error);
     adcgs_close(&from.beside);
@@ -402,7 +379,7 @@ int main(int argc, char **argv)
     adcgs_config_init(&s.config, sizeof s.config);
     make_options(&s, options);
     const adcgs_cli cli = {.program = "adcgs-dec",
-                           .operands = "FILE|-",
+                           .operands = "FILE|URL|-",
                            .summary = "Decode a stream and render frames from it.",
                            .details = "Exit status: 0 done, 1 MD5 or an expectation differs, 2 usage, 3 input or output,\n"
                                       "4 invalid stream, 5 unsupported.",
@@ -428,7 +405,11 @@ int main(int argc, char **argv)
         status = play(&cli, &s, &mismatch, &error);
     else if (status == ADCGS_OK)
         status = show(&cli, &s, &decoder, &mismatch, &error);
+    status = adcgs_http_explain(s.http, status, &error);
+    status = adcgs_http_explain(s.http_beside, status, &error);
     adcgs_close(&decoder);
+    adcgs_http_close(&s.http);
+    adcgs_http_close(&s.http_beside);
     if (adcgs_interrupted())
         raise(adcgs_interrupted()); /* the shell shall see why the program ended; the handler is gone by now */
     if (status == ADCGS_OK)

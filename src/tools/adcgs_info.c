@@ -7,6 +7,7 @@
 #include "base/pool.h"
 #include "cli/cli.h"
 #include "cli/text.h"
+#include "io/http.h"
 #include "model/model_priv.h"
 #include "stream/input.h"
 #include "tools/info_check.h"
@@ -55,27 +56,49 @@ static void on_element(void *user, uint64_t bit, const char *element, const char
         last->segment = (unsigned)strtoul(value, NULL, 10);
 }
 
+/** Where a stream is read from, in order. */
+typedef struct origin {
+    FILE *file;
+    adcgs_http *http;
+} origin;
+
+static adcgs_status open_origin(origin *from, const char *input, adcgs_error *error)
+{
+    *from = (origin){ .file = NULL };
+    if (adcgs_is_url(input))
+        return adcgs_http_open(&from->http, input, &(adcgs_http_config){ .limit = 0 }, error);
+    from->file = strcmp(input, "-") ? fopen(input, "rb") : stdin;
+    return from->file ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", input, strerror(errno));
+}
+
+static void close_origin(origin *from)
+{
+    if (from->file && from->file != stdin)
+        fclose(from->file);
+    adcgs_http_close(&from->http);
+}
+
 static adcgs_status read_report(adcgs_info_report *r, const settings *s, adcgs_error *error)
 {
-    const int standard_input = strcmp(s->input, "-") == 0;
-    FILE *file = standard_input ? stdin : fopen(s->input, "rb");
     adcgs_read_options options = { .layers = 0 };
-    if (!file)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", s->input, strerror(errno));
+    origin from;
+    ADCGS_TRY(open_origin(&from, s->input, error));
+    const adcgs_read_fn read = from.http ? adcgs_http_read : adcgs_file_read;
+    void *const user = from.http ? (void *)from.http : (void *)from.file;
     adcgs_status status = adcgs_cpu_resolve(ADCGS_CPU_AUTO, &options.cpu, error);
     if (status == ADCGS_OK)
         status = adcgs_pool_create(&options.pool, 0, error);
     if (status == ADCGS_OK)
-        status = adcgs_stream_read(&r->stream, adcgs_file_read, file, &options, on_element, r, error);
+        status = adcgs_stream_read(&r->stream, read, user, &options, on_element, r, error);
     if (status == ADCGS_OK && r->failed)
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "no memory for the list of chunks");
     if (status == ADCGS_OK)
         adcgs_stream_info(&r->stream, &r->info);
     adcgs_pool_free(&options.pool);
-    if (!standard_input)
-        fclose(file);
     if (status != ADCGS_OK)
-        adcgs_error_locate(error, standard_input ? "standard input" : s->input);
+        adcgs_error_locate(error, from.file == stdin ? "standard input" : s->input);
+    status = adcgs_http_explain(from.http, status, error);
+    close_origin(&from);
     return status;
 }
 
@@ -248,7 +271,7 @@ int main(int argc, char **argv)
           &s.has_bytes },
         { "output", 'o', ADCGS_OPTION_STRING, &s.output, 0, 0, "FILE", "where --bytes writes", NULL, NULL },
     };
-    const adcgs_cli cli = { .program = "adcgs-info", .operands = "FILE|-",
+    const adcgs_cli cli = { .program = "adcgs-info", .operands = "FILE|URL|-",
                             .summary = "Says what an adcgs stream holds and where its bytes are.", .options = options,
                             .n_options = ADCGS_COUNTOF(options), .min_operands = 1, .max_operands = 1 };
     adcgs_error error = { ADCGS_OK, "" };

@@ -22,7 +22,8 @@ adcgs_status adcgs_budget_parse(adcgs_budget *budget, const char *text, adcgs_er
 }
 
 typedef struct source {
-    FILE *file;
+    adcgs_read_fn read;
+    void *user;
     double left;
 } source;
 
@@ -30,15 +31,15 @@ static int64_t read_some(void *user, void *buffer, size_t bytes)
 {
     source *const s = user;
     const size_t n = (double)bytes < s->left ? bytes : (size_t)s->left;
-    const size_t got = n ? fread(buffer, 1, n, s->file) : 0;
-    s->left -= (double)got;
-    return got == 0 && ferror(s->file) ? -1 : (int64_t)got;
+    const int64_t got = n ? s->read(s->user, buffer, n) : 0;
+    s->left -= got > 0 ? (double)got : 0.0;
+    return got;
 }
 
-adcgs_status adcgs_budget_open(adcgs_decoder **decoder, const adcgs_budget *budget, FILE *file, const adcgs_config *config,
-                               adcgs_error *error)
+adcgs_status adcgs_budget_open(adcgs_decoder **decoder, const adcgs_budget *budget, adcgs_read_fn read, void *user,
+                               const adcgs_config *config, adcgs_error *error)
 {
-    source from = { file, budget->most };
+    source from = { read, user, budget->most };
     return adcgs_open_stream(decoder, read_some, &from, config, error);
 }
 

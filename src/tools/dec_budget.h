@@ -5,8 +5,6 @@
 
 #include <adcgs/adcgs.h>
 
-#include <stdio.h>
-
 typedef enum adcgs_budget_of { ADCGS_BUDGET_NONE, ADCGS_BUDGET_BYTES, ADCGS_BUDGET_SPLATS, ADCGS_BUDGET_TIME } adcgs_budget_of;
 
 typedef struct adcgs_budget {
@@ -17,8 +15,8 @@ typedef struct adcgs_budget {
 /** "40k", "20000splats", "16ms"; ADCGS_ERR_USAGE. */
 adcgs_status adcgs_budget_parse(adcgs_budget *budget, const char *text, adcgs_error *error);
 /** Open a stream of which no more bytes are read than the budget has. */
-adcgs_status adcgs_budget_open(adcgs_decoder **decoder, const adcgs_budget *budget, FILE *file, const adcgs_config *config,
-                               adcgs_error *error);
+adcgs_status adcgs_budget_open(adcgs_decoder **decoder, const adcgs_budget *budget, adcgs_read_fn read, void *user,
+                               const adcgs_config *config, adcgs_error *error);
 /**
  * Have the decoder draw as many tiers, at least one, as splats or time of this frame allow; frame: of the camera's size, is
  * drawn. *tiers receives their number, 0 if it is all of them.

@@ -10,6 +10,7 @@
 
 #include "cli/cli.h"
 #include "io/file.h"
+#include "io/http.h"
 #include "play/play.h"
 
 #include <adcgs/decoder.h>
@@ -78,7 +79,8 @@ adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_er
     memcpy(settings.size, how->request.size, sizeof settings.size);
     if (!strcmp(how->input, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--play: expected a file, which standard input is not");
-    ADCGS_TRY(adcgs_file_load(&data, &settings.bytes, how->input, STREAM_BYTES_MAX, error));
+    ADCGS_TRY(adcgs_is_url(how->input) ? adcgs_http_load(&data, &settings.bytes, how->input, adcgs_interrupted, error) :
+                                         adcgs_file_load(&data, &settings.bytes, how->input, STREAM_BYTES_MAX, error));
     settings.data = data;
     const adcgs_status status = play(how, &settings, failed, error);
     free(data);

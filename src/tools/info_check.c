@@ -8,12 +8,14 @@
 #include "base/cpu.h"
 #include "cli/text.h"
 #include "io/atomic.h"
+#include "io/http.h"
 #include "model/model_priv.h"
 #include "stream/input.h"
 #include "stream/salvage.h"
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static void print_fault(void *user, adcgs_log_level level, const char *text)
 {
@@ -46,15 +48,14 @@ static adcgs_status write_repaired(adcgs_stream *s, const char *path, adcgs_erro
     return status;
 }
 
-static adcgs_status check_file(FILE *file, const char *path, const char *repaired, uint32_t *faults, adcgs_error *error)
+/** What of a stream can be used, and to a file with it. */
+static adcgs_status check(adcgs_read_at_fn read, void *user, uint64_t size, const char *path, const char *repaired,
+                          uint32_t *faults, adcgs_error *error)
 {
     adcgs_read_options options = { .log = { print_fault, (void *)(uintptr_t)path } };
     adcgs_stream stream;
-    if (fseeko(file, 0, SEEK_END))
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
-    const uint64_t size = (uint64_t)ftello(file);
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &options.cpu, error));
-    adcgs_status status = adcgs_stream_salvage(&stream, adcgs_file_read_at, file, size, &options, faults, error);
+    adcgs_status status = adcgs_stream_salvage(&stream, read, user, size, &options, faults, error);
     if (status != ADCGS_OK) {
         adcgs_error_locate(error, path);
         return status;
@@ -66,12 +67,33 @@ static adcgs_status check_file(FILE *file, const char *path, const char *repaire
     return status;
 }
 
+static int64_t read_data(void *user, uint64_t offset, void *buffer, size_t bytes)
+{
+    memcpy(buffer, (const uint8_t *)user + offset, bytes);
+    return (int64_t)bytes;
+}
+
+/** A damaged stream is looked at again and again: what a URL names is fetched once. */
+static adcgs_status check_url(const char *url, const char *repaired, uint32_t *faults, adcgs_error *error)
+{
+    uint8_t *data;
+    size_t bytes;
+    ADCGS_TRY(adcgs_http_load(&data, &bytes, url, NULL, error));
+    const adcgs_status status = check(read_data, data, bytes, url, repaired, faults, error);
+    free(data);
+    return status;
+}
+
 adcgs_status adcgs_info_check(const char *path, const char *repaired, uint32_t *faults, adcgs_error *error)
 {
+    if (adcgs_is_url(path))
+        return check_url(path, repaired, faults, error);
     FILE *file = fopen(path, "rb");
     if (!file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno));
-    const adcgs_status status = check_file(file, path, repaired, faults, error);
+    const adcgs_status status = fseeko(file, 0, SEEK_END) ?
+                                    adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", path, strerror(errno)) :
+                                    check(adcgs_file_read_at, file, (uint64_t)ftello(file), path, repaired, faults, error);
     fclose(file);
     return status;
 }

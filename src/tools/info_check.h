@@ -6,8 +6,8 @@
 #include "stream/stream.h"
 
 /**
- * Read a file, print a line for each fault and one of what can be used, and, unless repaired is NULL, write that there as a
- * stream that is whole. *faults: how many there were.
+ * Read what a path or a URL names, print a line for each fault and one of what can be used, and, unless repaired is NULL, write
+ * that there as a stream that is whole. *faults: how many there were.
  */
 adcgs_status adcgs_info_check(const char *path, const char *repaired, uint32_t *faults, adcgs_error *error);
 

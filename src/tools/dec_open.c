@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Opening a stream, wherever it is. */
+#include "tools/dec_open.h"
+
+#include "stream/input.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+/** From what is read in order, as much as the budget has. */
+static adcgs_status open_in_order(adcgs_decoder **decoder, adcgs_read_fn read, void *user, const adcgs_dec_open_config *how,
+                                  adcgs_error *error)
+{
+    return how->budget->of == ADCGS_BUDGET_BYTES ? adcgs_budget_open(decoder, how->budget, read, user, how->config, error) :
+                                                   adcgs_open_stream(decoder, read, user, how->config, error);
+}
+
+/** Open as many bytes of a file as the budget has. */
+static adcgs_status open_part(adcgs_decoder **decoder, const char *input, const adcgs_dec_open_config *how, adcgs_error *error)
+{
+    FILE *file = fopen(input, "rb");
+    if (!file)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: %s", input, strerror(errno));
+    const adcgs_status status = open_in_order(decoder, adcgs_file_read, file, how, error);
+    fclose(file);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, input);
+    return status;
+}
+
+/** A damaged stream is looked at again and again. */
+static adcgs_status open_whole(adcgs_decoder **decoder, const char *input, const adcgs_dec_open_config *how, adcgs_error *error)
+{
+    uint8_t *data;
+    size_t bytes;
+    ADCGS_TRY(adcgs_http_load(&data, &bytes, input, adcgs_interrupted, error));
+    const adcgs_status status = adcgs_open_memory(decoder, data, bytes, how->config, error);
+    free(data);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, input);
+    return status;
+}
+
+/** By ranges where that saves bytes and the server gives them, else in order, by one request. */
+static adcgs_status open_url(adcgs_decoder **decoder, adcgs_http **http, const char *input, const adcgs_dec_open_config *how,
+                             adcgs_error *error)
+{
+    const int part = how->budget->of == ADCGS_BUDGET_BYTES;
+    const adcgs_http_config config = {.limit = part ? (uint64_t)how->budget->most : 0,
+                                      .any_order = how->config->on_demand && !part,
+                                      .interrupted = adcgs_interrupted};
+    ADCGS_TRY(adcgs_http_open(http, input, &config, error));
+    const uint64_t size = adcgs_http_size(*http);
+    if (config.any_order && !size)
+        adcgs_cli_note(how->cli, "%s: the server gives no ranges: reading all of it", input);
+    adcgs_status status = size ? adcgs_open_at(decoder, adcgs_http_read_at, *http, size, how->config, error) :
+                                 open_in_order(decoder, adcgs_http_read, *http, how, error);
+    if (status == ADCGS_OK && size)
+        return ADCGS_OK; /* it goes on reading */
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, input);
+    status = adcgs_http_explain(*http, status, error);
+    adcgs_http_close(http);
+    return status;
+}
+
+adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const char *input, const adcgs_dec_open_config *how,
+                            adcgs_error *error)
+{
+    *http = NULL;
+    if (adcgs_is_url(input))
+        return how->config->conceal ? open_whole(decoder, input, how, error) : open_url(decoder, http, input, how, error);
+    if (strcmp(input, "-"))
+        return how->budget->of == ADCGS_BUDGET_BYTES ? open_part(decoder, input, how, error) :
+                                                       adcgs_open_file(decoder, input, how->config, error);
+    const adcgs_status status = open_in_order(decoder, adcgs_file_read, stdin, how, error);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, "standard input");
+    return status;
+}
