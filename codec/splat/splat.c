@@ -14,6 +14,7 @@
 #include "splat/splat.h"
 #include "splat/splat_isa.h"
 #include "splat/steps.h"
+#include "splat/time_curve.h"
 
 #include <math.h>
 
@@ -320,17 +321,23 @@ void adcgs_splat_free(adcgs_splat **splat)
 
 /* ---- At a time ---- */
 
-/* f_t and the poses: linear interpolation between two rows of the time table. */
+/* f_t and the poses. */
 static void interpolate_time(adcgs_splat *s, float t)
 {
     const adcgs_tensor *z = &s->model->net[ADCGS_ROLE_TIME].layer[0].w;
     const size_t width = time_columns(s->model);
-    const float u = t * (float)(z->rows - 1);
-    const uint32_t row = z->rows < 2 ? 0 : ADCGS_MIN((uint32_t)u, z->rows - 2), next = z->rows < 2 ? 0 : row + 1;
-    const float fraction = u - (float)row;
+    if (z->rows == 1) {
+        for (size_t j = 0; j < width; j++)
+            s->time_code[j] = adcgs_tensor_value(z, j);
+        return;
+    }
+    const adcgs_time_place at = adcgs_time_place_of(t, z->rows);
+    const size_t row = at.row;
     for (size_t j = 0; j < width; j++) {
-        const float a = adcgs_tensor_value(z, row * width + j), b = adcgs_tensor_value(z, next * width + j);
-        s->time_code[j] = fmaf(fraction, b - a, a);
+        const float b = adcgs_tensor_value(z, row * width + j), c = adcgs_tensor_value(z, (row + 1) * width + j);
+        const float a = row > 0 ? adcgs_tensor_value(z, (row - 1) * width + j) : adcgs_time_beyond(b, c);
+        const float d = row + 2 < z->rows ? adcgs_tensor_value(z, (row + 2) * width + j) : adcgs_time_beyond(c, b);
+        s->time_code[j] = adcgs_time_blend(at.weight, a, b, c, d);
     }
 }
 

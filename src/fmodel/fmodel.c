@@ -5,6 +5,7 @@
 #include "base/fmath.h"
 #include "grad/random.h"
 #include "splat/splat.h"
+#include "splat/time_curve.h"
 
 #include <math.h>
 
@@ -347,12 +348,18 @@ adcgs_status adcgs_fmodel_regroup(adcgs_fmodel *f, const uint32_t (*pos)[3], con
     return ADCGS_OK;
 }
 
-float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row)
+adcgs_time_rows adcgs_fmodel_time_rows(const adcgs_params *params, float t)
 {
-    const int rows = params->time_rows;
-    const float u = t * (float)(rows - 1);
-    *row = rows > 1 ? (int)u < rows - 2 ? (int)u : rows - 2 : 0;
-    return rows > 1 ? u - (float)*row : 0;
+    const uint32_t rows = params->time_rows;
+    if (rows < 2)
+        return (adcgs_time_rows){ 0, 1, { 1 } };
+    const adcgs_time_place at = adcgs_time_place_of(t, rows);
+    const float *w = at.weight;
+    const int before = at.row > 0, behind = at.row + 2 < rows;
+    /* A row that is not there is twice its neighbour less the one beyond. */
+    const float b = w[1] + (before ? 0 : 2 * w[0]) - (behind ? 0 : w[3]), c = w[2] + (behind ? 0 : 2 * w[3]) - (before ? 0 : w[0]);
+    return before ? (adcgs_time_rows){ (int)at.row - 1, 3 + behind, { w[0], b, c, w[3] } } :
+                    (adcgs_time_rows){ 0, 2 + behind, { b, c, w[3] } };
 }
 
 float adcgs_fmodel_presence(const adcgs_fmodel *f, uint32_t anchor, float t)

@@ -152,7 +152,13 @@ static inline int adcgs_fmodel_time_columns(const adcgs_params *params)
 {
     return params->time_width + (int)adcgs_pose_columns(params);
 }
-/** Where t in [0,1] is in the time table: the row before it, and the fraction of the way to the next, if there is one. */
-float adcgs_fmodel_time_row(const adcgs_params *params, float t, int *row);
+/** The rows of the time table that a moment is made of. */
+typedef struct adcgs_time_rows {
+    int first, n;
+    float weight[4]; /**< [n] */
+} adcgs_time_rows;
+
+/** Those of t in [0,1] (splat/time_curve.h). */
+adcgs_time_rows adcgs_fmodel_time_rows(const adcgs_params *params, float t);
 
 #endif

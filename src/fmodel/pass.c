@@ -125,11 +125,13 @@ static void forward_group(void *arg, int index, int thread)
 static void forward_time(adcgs_pass *p, const adcgs_fmodel *f, float t)
 {
     const int width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);
-    int row;
-    const float frac = adcgs_fmodel_time_row(&f->params, t, &row);
-    const float *z = f->mlp[ADCGS_P_TIME].use + (size_t)row * (size_t)columns;
-    for (int j = 0; j < columns; j++)
-        p->time_code[j] = f->params.time_rows > 1 ? z[j] + frac * (z[j + columns] - z[j]) : z[j];
+    const adcgs_time_rows at = adcgs_fmodel_time_rows(&f->params, t);
+    const float *z = f->mlp[ADCGS_P_TIME].use + (size_t)at.first * (size_t)columns;
+    for (int j = 0; j < columns; j++) {
+        p->time_code[j] = 0;
+        for (int i = 0; i < at.n; i++)
+            p->time_code[j] += at.weight[i] * z[i * columns + j];
+    }
     adcgs_bodies_pose(f, p->time_code, p->pose);
     const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
     for (int i = 0; i < 2; i++) {

@@ -193,19 +193,16 @@ static void bodies_back(const adcgs_pass *p, adcgs_fmodel *f)
     float sum[ADCGS_BODIES_MAX * sizeof(adcgs_body_grad) / sizeof(float)] = { 0 }, d[ADCGS_BODIES_MAX * ADCGS_POSE_N];
     const size_t values = f->params.bodies * sizeof(adcgs_body_grad) / sizeof(float);
     adcgs_body_grad grad[ADCGS_BODIES_MAX];
-    int row;
-    const float frac = adcgs_fmodel_time_row(&f->params, p->t, &row);
+    const adcgs_time_rows at = adcgs_fmodel_time_rows(&f->params, p->t);
     for (int c = 0; c < p->chunks; c++)
         for (size_t i = 0; i < values; i++)
             sum[i] += p->partial[(size_t)c * p->partial_stride + p->partial_bodies + i];
     memcpy(grad, sum, values * sizeof *sum);
     adcgs_bodies_pose_back(f, p->time_code, grad, d);
-    float *dz = f->param[ADCGS_P_TIME].g + (size_t)row * (size_t)columns + f->params.time_width;
-    for (int j = 0; j < n; j++) {
-        dz[j] += d[j] * (1 - frac);
-        if (f->params.time_rows > 1)
-            dz[columns + j] += d[j] * frac;
-    }
+    float *dz = f->param[ADCGS_P_TIME].g + (size_t)at.first * (size_t)columns + f->params.time_width;
+    for (int i = 0; i < at.n; i++)
+        for (int j = 0; j < n; j++)
+            dz[i * columns + j] += d[j] * at.weight[i];
 }
 
 /** The time part of the first layers: their bias gradient is the gradient of the per-frame bias vector. */
@@ -213,9 +210,8 @@ static void time_back(adcgs_pass *p, adcgs_fmodel *f)
 {
     const int width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);
     const int which[2] = { ADCGS_P_OMEGA, ADCGS_P_VARPI };
-    float *dz = f->param[ADCGS_P_TIME].g;
-    int row;
-    const float frac = adcgs_fmodel_time_row(&f->params, p->t, &row);
+    const adcgs_time_rows at = adcgs_fmodel_time_rows(&f->params, p->t);
+    float *dz = f->param[ADCGS_P_TIME].g + (size_t)at.first * (size_t)columns;
     for (int i = 0; i < 2; i++) {
         const adcgs_mlp *m = &f->mlp[which[i]];
         float *g = f->param[which[i]].g;
@@ -225,9 +221,8 @@ static void time_back(adcgs_pass *p, adcgs_fmodel *f)
             for (int j = 0; j < width; j++) {
                 g[w + (size_t)j] += d * p->time_code[j];
                 const float dcode = d * m->use[w + (size_t)j];
-                dz[row * columns + j] += dcode * (1 - frac);
-                if (f->params.time_rows > 1)
-                    dz[(row + 1) * columns + j] += dcode * frac;
+                for (int k = 0; k < at.n; k++)
+                    dz[k * columns + j] += dcode * at.weight[k];
             }
         }
     }

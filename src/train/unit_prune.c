@@ -49,11 +49,13 @@ static double *put_rows(const adcgs_fmodel *f, double *x, int group, uint32_t an
 static double *put_time(const adcgs_fmodel *f, double *x, double t)
 {
     const int width = f->params.time_width, columns = adcgs_fmodel_time_columns(&f->params);
-    int row;
-    const double part = (double)adcgs_fmodel_time_row(&f->params, (float)t, &row);
-    const float *z = f->param[ADCGS_P_TIME].p + (size_t)row * (size_t)columns;
-    for (int j = 0; j < width; j++)
-        *x++ = (1 - part) * (double)z[j] + (part > 0 ? part * (double)z[j + columns] : 0);
+    const adcgs_time_rows at = adcgs_fmodel_time_rows(&f->params, (float)t);
+    const float *z = f->param[ADCGS_P_TIME].p + (size_t)at.first * (size_t)columns;
+    for (int j = 0; j < width; j++, x++) {
+        *x = 0;
+        for (int i = 0; i < at.n; i++)
+            *x += (double)at.weight[i] * (double)z[i * columns + j];
+    }
     return x;
 }
 

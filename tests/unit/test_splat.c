@@ -120,10 +120,23 @@ static void evaluate_time(const adcgs_model *m, float t, float *out)
     uint32_t i = 0;
     while (i + 2 < z->rows && (float)(i + 1) <= u)
         i++;
-    const uint32_t next = z->rows > 1 ? i + 1 : 0;
+    const float r = u - (float)i, s = 1 - r;
     for (uint32_t j = 0; j < z->cols; j++) {
-        const float a = adcgs_tensor_value(z, (size_t)i * z->cols + j), b = adcgs_tensor_value(z, (size_t)next * z->cols + j);
-        out[j] = fmaf(u - (float)i, b - a, a);
+        float row[4]; /* from the one before t's */
+        for (uint32_t k = 0; k < 4; k++)
+            row[k] = i + k > 0 && i + k <= z->rows ? adcgs_tensor_value(z, (size_t)(i + k - 1) * z->cols + j) : 0;
+        if (z->rows == 1) {
+            out[j] = row[1];
+            continue;
+        }
+        if (i == 0)
+            row[0] = 2 * row[1] - row[2];
+        if (i + 2 == z->rows)
+            row[3] = 2 * row[2] - row[1];
+        float sum = s * s * s * (float)(1.0 / 6) * row[0];
+        sum = fmaf(fmaf(r * r, 0.5f * r - 1, (float)(2.0 / 3)), row[1], sum);
+        sum = fmaf(fmaf(s * s, 0.5f * s - 1, (float)(2.0 / 3)), row[2], sum);
+        out[j] = fmaf(r * r * r * (float)(1.0 / 6), row[3], sum);
     }
 }
 

@@ -110,10 +110,16 @@ static void time_code(const adcgs_fmodel *f, double t, double *code)
 {
     const int rows = f->params.time_rows, width = f->params.time_width, columns = width + 7 * f->params.bodies;
     const double u = t * (rows - 1);
-    const int i = (int)fmin(floor(u), rows - 2);
     const float *z = f->param[ADCGS_P_TIME].p;
-    for (int j = 0; j < columns; j++)
-        code[j] = z[i * columns + j] + (u - i) * (z[(i + 1) * columns + j] - (double)z[i * columns + j]);
+    for (int j = 0; j < columns; j++) {
+        code[j] = 0;
+        for (int i = -1; i <= rows; i++) { /* the cubic B-spline about row i, of its distance; rows beyond go on in a line */
+            const double first = (double)z[j], last = (double)z[(rows - 1) * columns + j], d = fabs(u - i);
+            const double row = i < 0 ? 2 * first - (double)z[columns + j] :
+                               i == rows ? 2 * last - (double)z[(rows - 2) * columns + j] : (double)z[i * columns + j];
+            code[j] += row * (d < 1 ? 2.0 / 3 - d * d + d * d * d / 2 : d < 2 ? pow(2 - d, 3) / 6 : 0);
+        }
+    }
 }
 
 /** v turned by a quaternion of length 1. */

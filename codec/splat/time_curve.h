@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/**
+ * \file
+ * The time table as a curve (spec clause "Time"): a uniform cubic B-spline of its rows, whose motion is smooth where that of a
+ * line from row to row has corners, and misses what turns between two moments by the fourth power of the time between them, not
+ * by the square. Beyond the first and last row it goes on in a line, so that it begins and ends at these.
+ */
+#ifndef ADCGS_SPLAT_TIME_CURVE_H
+#define ADCGS_SPLAT_TIME_CURVE_H
+
+#include <math.h>
+#include <stdint.h>
+
+/** What is about t in [0,1]: a row, the next, one before and one behind, which may be rows that are not there; and weights. */
+typedef struct adcgs_time_place {
+    uint32_t row;
+    float weight[4]; /**< of rows row - 1 .. row + 2 */
+} adcgs_time_place;
+
+/** rows: at least 2. */
+static inline adcgs_time_place adcgs_time_place_of(float t, uint32_t rows)
+{
+    const float u = t * (float)(rows - 1);
+    const uint32_t row = (uint32_t)u < rows - 2 ? (uint32_t)u : rows - 2;
+    const float r = u - (float)row, s = 1 - r, sixth = 0x1.555556p-3f, two_thirds = 0x1.555556p-1f;
+    return (adcgs_time_place){ row,
+                               { s * s * s * sixth, fmaf(r * r, fmaf(0.5f, r, -1), two_thirds),
+                                 fmaf(s * s, fmaf(0.5f, s, -1), two_thirds), r * r * r * sixth } };
+}
+
+/** A row that is not there, from the last that is and the one before that. */
+static inline float adcgs_time_beyond(float last, float before)
+{
+    return fmaf(2, last, -before);
+}
+
+/** Rows row - 1 .. row + 2 by their weights. */
+static inline float adcgs_time_blend(const float weight[4], float a, float b, float c, float d)
+{
+    return fmaf(weight[3], d, fmaf(weight[2], c, fmaf(weight[1], b, weight[0] * a)));
+}
+
+#endif
