@@ -5,6 +5,8 @@
  */
 #include "api/decoder_priv.h"
 
+#include <math.h>
+
 /* The struct of the first version ended in front of pool. No version has one as large as SIZE_MOST: such a size was never set. */
 #define CONFIG_SIZE_LEAST offsetof(adcgs_config, pool)
 #define SIZE_MOST 4096
@@ -48,6 +50,30 @@ static void tell_of_demand(const adcgs_decoder *d, adcgs_info *info)
     info->bytes.total = adcgs_seek_bytes(d->seek);
 }
 
+/** Seconds of a tick, of which the first and the last mean infinities. */
+static double seconds_of(const adcgs_stream *s, int64_t tick)
+{
+    return tick == INT64_MIN ? -INFINITY : tick == INT64_MAX ? INFINITY : adcgs_ticks_to_seconds(s, tick);
+}
+
+/** What is known of a stream that comes, and how far it has. */
+static void tell_of_push(const adcgs_decoder *d, adcgs_info *info)
+{
+    adcgs_push_progress p;
+    adcgs_push_tell(d->push, &p);
+    info->segments = (int)p.segments;
+    info->segments_promised = (int)p.promised;
+    info->time_start = seconds_of(&d->stream, p.start);
+    info->time_final = seconds_of(&d->stream, p.final);
+    info->tiers_coming = p.tiers_drawable;
+    info->tiers = ADCGS_MAX(info->tiers, p.tiers);
+    if (p.is_over && p.segments > 0)
+        return;
+    info->time_drawable = seconds_of(&d->stream, p.drawable);
+    info->time_end = seconds_of(&d->stream, p.end);
+    info->bytes.total = p.bytes;
+}
+
 adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size_t size, adcgs_error *error)
 {
     adcgs_info own;
@@ -61,8 +87,12 @@ adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size
     memset(&own, 0, sizeof own); /* padding, too */
     adcgs_stream_info(&decoder->stream, &own);
     own.faults = (int)ADCGS_MIN(decoder->faults, (uint32_t)INT32_MAX);
+    own.time_final = INFINITY;
     if (decoder->seek)
         tell_of_demand(decoder, &own);
+    own.time_drawable = own.time_end;
+    if (decoder->push)
+        tell_of_push(decoder, &own);
     own.size = ADCGS_MIN(size, sizeof own);
     memset(info, 0, size);
     memcpy(info, &own, own.size);

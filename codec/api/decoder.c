@@ -157,24 +157,34 @@ void adcgs_close(adcgs_decoder **decoder)
     *decoder = NULL;
 }
 
-/** Segments that can be asked for. */
-static uint32_t count_segments(const adcgs_decoder *d)
+/** The first segment that can be asked for: those before it were forgotten. */
+static uint32_t first_segment(const adcgs_decoder *d)
 {
-    return d->seek ? adcgs_seek_segments(d->seek) : d->stream.n_segments + (d->unfinished.n > 0);
+    return d->seek ? 0 : d->stream.first_segment;
+}
+
+/** The number behind the last segment that can be asked for. */
+static uint32_t end_segment(const adcgs_decoder *d)
+{
+    return d->seek ? adcgs_seek_segments(d->seek) : d->stream.first_segment + d->stream.n_segments + (d->unfinished.n > 0);
+}
+
+/** Of a decoder that does not seek: one that came, or the one that comes. */
+static const adcgs_model *model_of(const adcgs_decoder *d, uint32_t segment)
+{
+    const uint32_t index = segment - d->stream.first_segment;
+    return index < d->stream.n_segments ? &d->stream.segments[index] : &d->unfinished;
 }
 
 static double start_of(const adcgs_decoder *d, uint32_t segment)
 {
-    if (segment == d->stream.n_segments && d->unfinished.n > 0)
-        return d->unfinished.time_start;
-    return d->seek ? adcgs_ticks_to_seconds(&d->stream, adcgs_seek_start(d->seek, segment)) :
-                     d->stream.segments[segment].time_start;
+    return d->seek ? adcgs_ticks_to_seconds(&d->stream, adcgs_seek_start(d->seek, segment)) : model_of(d, segment)->time_start;
 }
 
 /** The last segment that starts at or before the time; the first if none does. */
 static uint32_t segment_at(const adcgs_decoder *d, double time)
 {
-    uint32_t lo = 0, hi = count_segments(d);
+    uint32_t lo = first_segment(d), hi = end_segment(d);
     while (hi - lo > 1) {
         const uint32_t middle = lo + (hi - lo) / 2;
         if (start_of(d, middle) <= time)
@@ -195,9 +205,10 @@ static float normalised_time(const adcgs_model *model, double time)
 /** A segment's model, which may be moved by the next call. */
 static adcgs_status decoder_segment(adcgs_decoder *d, uint32_t number, const adcgs_model **model, adcgs_error *error)
 {
-    *model = number < d->stream.n_segments ? &d->stream.segments[number] : &d->unfinished;
-    if (!d->seek)
+    if (!d->seek) {
+        *model = model_of(d, number);
         return ADCGS_OK;
+    }
     if (d->stream.n_segments == 1 && d->stream.first_segment == number) {
         *model = d->stream.segments;
         return ADCGS_OK;
@@ -252,7 +263,7 @@ adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primi
 {
     ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
     ADCGS_TRY(catch_up(d, error));
-    if (count_segments(d) == 0)
+    if (end_segment(d) == 0)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: no segment that can be drawn has come yet");
     const uint32_t segment = segment_at(d, time);
     const adcgs_model *model;
@@ -293,9 +304,12 @@ adcgs_status adcgs_get_model_digest(adcgs_decoder *decoder, int segment, uint8_t
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(digest, error);
     ADCGS_TRY(catch_up(decoder, error));
-    const uint32_t n = count_segments(decoder);
-    if (segment < 0 || (uint32_t)segment >= n)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment, (unsigned)n);
+    const uint32_t first = first_segment(decoder), end = end_segment(decoder);
+    if (segment < 0 || (uint32_t)segment >= end)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment, (unsigned)end);
+    if ((uint32_t)segment < first)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; those before %u were forgotten", segment,
+                          (unsigned)first);
     ADCGS_TRY(decoder_segment(decoder, (uint32_t)segment, &model, error));
     adcgs_model_digest(model, digest);
     return ADCGS_OK;
@@ -329,6 +343,20 @@ adcgs_status adcgs_push(adcgs_decoder *decoder, const void *data, size_t bytes, 
     const adcgs_status status = adcgs_push_take(decoder->push, data, bytes, used, arrived, error);
     decoder->is_behind |= status != ADCGS_OK || *arrived >= ADCGS_ARRIVED_SEGMENT;
     return status;
+}
+
+adcgs_status adcgs_push_forget(adcgs_decoder *decoder, double time, adcgs_error *error)
+{
+    uint32_t n = 0;
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_TRY(require_push(decoder, error));
+    while (n + 1 < decoder->stream.n_segments && decoder->stream.segments[n + 1].time_start <= time)
+        n++;
+    if (n > 0)
+        adcgs_splat_free(&decoder->splat); /* of a model that goes, or is moved */
+    adcgs_stream_forget(&decoder->stream, n, &decoder->memory);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_push_end(adcgs_decoder *decoder, adcgs_error *error)

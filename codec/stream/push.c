@@ -11,7 +11,9 @@ struct adcgs_push_reader {
     uint8_t *held;         /**< what has come of the chunk at hand, or of the signature */
     size_t n, capacity, wanted; /**< bytes held; room for; that are needed to go on */
     size_t given;          /**< of those held, to the reader */
-    int has_signature, is_over;
+    int has_signature, has_start, is_over;
+    int64_t start;         /**< tick at which the first segment begins */
+    int64_t end_before;    /**< tick at which the segment before the one at hand ends */
 };
 
 /** What is held, to the reader. */
@@ -98,6 +100,15 @@ static adcgs_arrival arrival_of(const adcgs_push_reader *p, uint32_t type, uint3
     return (part && draws) || r->stream->n_segments > segments_before ? ADCGS_ARRIVED_SEGMENT : ADCGS_ARRIVED_NOTHING;
 }
 
+/** A segment has begun; the one before it, if any, ends at a tick. */
+static void note_start(adcgs_push_reader *p, int64_t end_before)
+{
+    if (!p->has_start)
+        p->start = p->reader.segment.ticks[0];
+    p->has_start = 1;
+    p->end_before = end_before;
+}
+
 static adcgs_status use_held(adcgs_push_reader *p, adcgs_arrival *arrived)
 {
     int truncated;
@@ -110,11 +121,14 @@ static adcgs_status use_held(adcgs_push_reader *p, adcgs_arrival *arrived)
     if (p->n == ADCGS_CHUNK_HEADER_BYTES)
         return measure_chunk(p);
     const uint32_t type = adcgs_load_le32(p->held), before = p->reader.stream->n_segments;
+    const int64_t end = p->reader.segment.ticks[1];
     ADCGS_TRY(adcgs_stream_reader_chunk(&p->reader, &truncated));
+    if (type == ADCGS_TYPE_SEGM)
+        note_start(p, end);
     *arrived = arrival_of(p, type, before);
     p->is_over = p->reader.ended;
     next_chunk(p);
-    return ADCGS_OK;
+    return p->is_over ? adcgs_stream_reader_rest(&p->reader) : ADCGS_OK; /* which has nothing left to read, and sums up */
 }
 
 /** The reader's failure, to whoever called, now and whenever they call again. */
@@ -165,6 +179,47 @@ adcgs_status adcgs_push_finish(adcgs_push_reader *p, adcgs_error *error)
 int adcgs_push_has_head(const adcgs_push_reader *p)
 {
     return p->reader.head_payload != NULL;
+}
+
+/** The tick before which no byte can change anything that may still come. */
+static int64_t final_tick(const adcgs_push_reader *p)
+{
+    const adcgs_stream_reader *r = &p->reader;
+    if (p->is_over || p->error.status != ADCGS_OK || r->indexed)
+        return INT64_MAX;
+    if (r->segment.stage != ADCGS_SEGMENT_NONE && adcgs_segment_is_whole(&r->segment))
+        return r->segment.ticks[1];
+    return r->stream->n_segments > 0 ? r->segment.ticks[0] : INT64_MIN;
+}
+
+/** The end of what can be drawn. */
+static int64_t drawable_tick(const adcgs_push_reader *p)
+{
+    const adcgs_segment *s = &p->reader.segment;
+    if (adcgs_segment_is_drawable(s))
+        return s->ticks[1];
+    if (p->reader.stream->n_segments == 0)
+        return INT64_MIN;
+    return s->stage == ADCGS_SEGMENT_NONE ? s->ticks[1] : p->end_before;
+}
+
+void adcgs_push_tell(const adcgs_push_reader *p, adcgs_push_progress *out)
+{
+    const adcgs_stream_reader *r = &p->reader;
+    const adcgs_stream *s = r->stream;
+    const int has_segment = r->segment.stage != ADCGS_SEGMENT_NONE;
+    *out = (adcgs_push_progress){
+        .is_over = p->is_over,
+        .bytes = r->source.pos + p->n,
+        .start = p->has_start ? p->start : s->start_ticks,
+        .end = s->duration_ticks >= 0 ? s->start_ticks + s->duration_ticks : INT64_MAX,
+        .final = final_tick(p),
+        .drawable = drawable_tick(p),
+        .segments = adcgs_stream_reader_segments(r),
+        .promised = r->head.segments,
+        .tiers = has_segment ? r->segment.model.finest + 1 : 0,
+        .tiers_drawable = has_segment ? adcgs_segment_tiers(&r->segment) : 0,
+    };
 }
 
 adcgs_status adcgs_push_peek(const adcgs_push_reader *p, adcgs_model *model, int *drawable, adcgs_error *error)

@@ -25,6 +25,20 @@ adcgs_status adcgs_push_take(adcgs_push_reader *reader, const uint8_t *data, siz
 adcgs_status adcgs_push_finish(adcgs_push_reader *reader, adcgs_error *error);
 /** Whether HEAD has come. */
 int adcgs_push_has_head(const adcgs_push_reader *reader);
+/** How much of a stream has come. */
+typedef struct adcgs_push_progress {
+    int is_over;            /**< all of it, or no more will */
+    uint64_t bytes;
+    int64_t start;          /**< tick at which the first segment begins, or before that has come what HEAD says */
+    int64_t end;            /**< tick, by HEAD; INT64_MAX: it does not say */
+    int64_t final;          /**< tick before which nothing changes any more; INT64_MIN: everything may, INT64_MAX: nothing will */
+    int64_t drawable;       /**< tick at which what can be drawn ends; INT64_MIN: nothing can */
+    uint32_t segments;      /**< complete ones, also if they were forgotten */
+    uint32_t promised;      /**< by HEAD; 0: it does not say */
+    int tiers, tiers_drawable; /**< of the segment at hand; 0: there is none */
+} adcgs_push_progress;
+/** Once HEAD has come. */
+void adcgs_push_tell(const adcgs_push_reader *reader, adcgs_push_progress *progress);
 
 /**
  * The segment at hand as far as it has come, if it can be drawn (*drawable): a model of its own, which the caller clears with the

@@ -4,6 +4,11 @@
 
 #include "base/digest.h"
 
+uint32_t adcgs_stream_reader_segments(const adcgs_stream_reader *s)
+{
+    return s->stream->first_segment + s->stream->n_segments;
+}
+
 adcgs_status adcgs_stream_reader_signature(adcgs_stream_reader *s)
 {
     uint8_t bytes[ADCGS_SIGNATURE_BYTES];
@@ -68,7 +73,8 @@ static adcgs_status read_index(adcgs_stream_reader *s, adcgs_parse *p, uint64_t 
     uint32_t n;
     ADCGS_TRY(adcgs_segment_finish(&s->segment, origin, 0));
     const adcgs_buffer *expected = &s->segment.index;
-    ADCGS_TRY(adcgs_parse_varint(p, "segments", s->stream->n_segments, s->stream->n_segments, &n));
+    const uint32_t segments = adcgs_stream_reader_segments(s);
+    ADCGS_TRY(adcgs_parse_varint(p, "segments", segments, segments, &n));
     const uint8_t *entries = p->r.data + p->r.pos;
     for (uint32_t i = 0; i < n; i++) {
         adcgs_syn_index entry;
@@ -91,8 +97,9 @@ static adcgs_status read_end(adcgs_stream_reader *s, adcgs_parse *p, uint64_t or
                           (unsigned long long)endc.file_bytes, (unsigned long long)s->source.pos);
     if (endc.crc_of_crcs != s->crc_of_crcs)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "ENDC: checksum over the chunks is wrong: a chunk was lost or exchanged");
-    if (s->stream->n_segments == 0 || (s->head.segments > 0 && s->head.segments != s->stream->n_segments))
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "ENDC: the stream has %u segments, HEAD promises %u", s->stream->n_segments,
+    const uint32_t segments = adcgs_stream_reader_segments(s);
+    if (segments == 0 || (s->head.segments > 0 && s->head.segments != segments))
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "ENDC: the stream has %u segments, HEAD promises %u", segments,
                           s->head.segments);
     s->ended = 1;
     return ADCGS_OK;
@@ -107,7 +114,7 @@ static int belongs_to_segment(uint32_t type)
 /** Order of chunks and versions, before any payload is looked at. */
 static adcgs_status check_chunk(adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
-    const uint32_t type = chunk->type, number = s->stream->first_segment + s->stream->n_segments;
+    const uint32_t type = chunk->type, number = adcgs_stream_reader_segments(s);
     const int critical = chunk->name[0] >= 'A' && chunk->name[0] <= 'Z';
     if (!s->head_payload && type != ADCGS_TYPE_HEAD)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: the first chunk must be HEAD", chunk->name);
@@ -218,7 +225,7 @@ static adcgs_status end_early(adcgs_stream_reader *s)
                           at);
     s->stream->truncated = 1;
     adcgs_log_say(&s->options->log, ADCGS_LOG_WARNING, "stream: ends at byte %llu, before ENDC: %u segments are used",
-                  at, (unsigned)s->stream->n_segments);
+                  at, (unsigned)adcgs_stream_reader_segments(s));
     return ADCGS_OK;
 }
 

@@ -26,6 +26,8 @@ void adcgs_stream_reader_init(adcgs_stream_reader *reader, adcgs_stream *stream,
                               const adcgs_read_options *options, adcgs_error *error);
 void adcgs_stream_reader_clear(adcgs_stream_reader *reader);
 
+/** Segments that were read, also those that are not kept. */
+uint32_t adcgs_stream_reader_segments(const adcgs_stream_reader *reader);
 adcgs_status adcgs_stream_reader_signature(adcgs_stream_reader *reader);
 /** All that is left to read, the signature too if that was not yet read; what ends early is used as far as it goes. */
 adcgs_status adcgs_stream_reader_rest(adcgs_stream_reader *reader);

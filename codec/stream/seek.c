@@ -286,16 +286,8 @@ uint64_t adcgs_seek_bytes(const adcgs_seek *s)
 /** Of the models in memory, keep the last, or none. */
 static void forget(adcgs_seek *s, int keep_last)
 {
-    adcgs_stream *stream = s->stream;
-    const uint32_t kept = keep_last && stream->n_segments > 0, gone = stream->n_segments - kept;
-    for (uint32_t i = 0; i < gone; i++)
-        adcgs_model_clear(&stream->segments[i], s->options.memory);
-    if (kept && gone > 0) {
-        stream->segments[0] = stream->segments[gone];
-        memset(&stream->segments[gone], 0, sizeof *stream->segments);
-    }
-    stream->first_segment += gone;
-    stream->n_segments = kept;
+    const uint32_t n = s->stream->n_segments;
+    adcgs_stream_forget(s->stream, n - (keep_last && n > 0), s->options.memory);
 }
 
 /** Networks of segments that are past. */

@@ -380,6 +380,18 @@ int adcgs_segment_is_drawable(const adcgs_segment *s)
     return tier_is_complete(s) || s->tier > 0;
 }
 
+int adcgs_segment_is_whole(const adcgs_segment *s)
+{
+    const int is_last = s->model.predicted || s->tier == s->model.finest;
+    return tier_is_complete(s) && is_last && s->done[layers_wanted(s) - 1] == s->n_slices;
+}
+
+int adcgs_segment_tiers(const adcgs_segment *s)
+{
+    const int complete = tier_is_complete(s);
+    return s->model.predicted && complete ? s->model.finest + 1 : s->tier + complete;
+}
+
 int adcgs_segment_tier(const adcgs_segment *s, int is_geom)
 {
     return s->tier + (is_geom && s->stage == ADCGS_SEGMENT_PLACED);

@@ -56,6 +56,10 @@ adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
 adcgs_status adcgs_segment_peek(const adcgs_segment *s, adcgs_model *model, int *drawable, adcgs_error *error);
 /** Whether it can be used if nothing more comes. */
 int adcgs_segment_is_drawable(const adcgs_segment *s);
+/** Whether nothing that could still come of it would change it: all its tiers are there, with all layers that are wanted. */
+int adcgs_segment_is_whole(const adcgs_segment *s);
+/** Tiers of it that can be drawn. */
+int adcgs_segment_tiers(const adcgs_segment *s);
 /** Forget the tier that was begun, if it is not complete; the segment can be drawn without. */
 void adcgs_segment_drop_tier(adcgs_segment *s);
 /** Forget the segment that was begun, if any. */

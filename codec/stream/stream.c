@@ -36,6 +36,19 @@ void adcgs_stream_clear(adcgs_stream *stream, adcgs_memory *memory)
     memset(stream, 0, sizeof *stream);
 }
 
+void adcgs_stream_forget(adcgs_stream *stream, uint32_t n, adcgs_memory *memory)
+{
+    const uint32_t kept = stream->n_segments - n;
+    if (n == 0)
+        return;
+    for (uint32_t i = 0; i < n; i++)
+        adcgs_model_clear(&stream->segments[i], memory);
+    memmove(stream->segments, stream->segments + n, kept * sizeof *stream->segments);
+    memset(stream->segments + kept, 0, n * sizeof *stream->segments);
+    stream->first_segment += n;
+    stream->n_segments = kept;
+}
+
 static int count_bits(uint32_t v)
 {
     int n = 0;

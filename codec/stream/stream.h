@@ -34,7 +34,7 @@ typedef struct adcgs_stream {
     uint32_t n_meta;
     adcgs_meta *meta;
     uint32_t n_segments;
-    uint32_t first_segment;        /**< number of segments[0]: those before it are not kept; 0 but while segments are sought */
+    uint32_t first_segment;        /**< number of segments[0]: 0 but where those before it are not kept */
     adcgs_model *segments;         /**< [n_segments], in time order; time_start/end in seconds are derived from ticks */
     int truncated;
     uint32_t weights;              /**< of distinct networks; filled by reading and by writing */
@@ -44,6 +44,8 @@ typedef struct adcgs_stream {
 /** Zero and defaults: timebase 1/1000, rate 30, slices of 1024, scale 1, filter 0.3. */
 void adcgs_stream_init(adcgs_stream *stream);
 void adcgs_stream_clear(adcgs_stream *stream, adcgs_memory *memory);
+/** Drop the first n models, n at most n_segments; the others move to the front. */
+void adcgs_stream_forget(adcgs_stream *stream, uint32_t n, adcgs_memory *memory);
 
 /** The summary that decoders and reports give, of a stream that was read or written. */
 void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info);

@@ -3,24 +3,13 @@
 #ifndef ADCGS_TESTS_DECODER_FIXTURE_H
 #define ADCGS_TESTS_DECODER_FIXTURE_H
 
-#include "random_model.h"
+#include "stream_fixture.h"
 
 #include <adcgs/adcgs.h>
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
-typedef struct fixture {
-    adcgs_stream stream;
-    adcgs_buffer bytes;
-} fixture;
-
 static int setup(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
+    fixture *f = fixture_new(state);
     adcgs_params params;
     uint64_t seed = 11; /* no segment reaches the next */
     adcgs_random_params(&params, 1, &seed);
@@ -28,7 +17,6 @@ static int setup(void **state)
     params.n_fg = 4;
     params.chunks = 2;
     params.spans = 0; /* what has no life is always there: masks can be told from opacities */
-    adcgs_buffer_init(&f->bytes);
     if (adcgs_random_stream(&f->stream, &params, 3, 90, 5, &seed, NULL) != ADCGS_OK)
         return -1;
     for (uint32_t i = 0; i < f->stream.n_segments; i++)
@@ -39,17 +27,7 @@ static int setup(void **state)
     f->stream.scene_scale = 2.5;
     f->stream.scene_origin[1] = 0.75;
     f->stream.background[0] = 0.5f;
-    *state = f;
     return adcgs_stream_write(&f->stream, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    fixture *f = *state;
-    adcgs_stream_clear(&f->stream, NULL);
-    adcgs_buffer_clear(&f->bytes);
-    free(f);
-    return 0;
 }
 
 /** Of all segments; predicted ones have as many as chance gave them. */

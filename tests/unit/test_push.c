@@ -1,57 +1,33 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Bytes as they come: cut anywhere they give what reading in order gives, every prefix of a stream too; what can be drawn on the
- * way is what a stream that ends there would show; calls take a part at a time, failures are final, what was there stays.
+ * way is what a stream that ends there would show; calls take a part at a time, failures are final, what was there stays; what
+ * is said to be final does not change, and what is past need not be kept.
  */
-#include "random_model.h"
+#include "stream_fixture.h"
 
 #include "base/digest.h"
 #include "stream/chunk.h"
 
 #include <adcgs/adcgs.h>
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
+#include <math.h>
 
 enum { SEGMENTS = 4 };
-
-typedef struct fixture {
-    adcgs_stream stream;
-    adcgs_buffer bytes;
-} fixture;
 
 /** Small, so that every prefix can be tried: a key, two that are predicted, a key; layers of several slices. */
 static int setup(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
+    fixture *f = fixture_new(state);
     adcgs_params params;
     uint64_t seed = 12;
     adcgs_stream *s = &f->stream;
     adcgs_random_small_params(&params, 2, &seed);
-    adcgs_buffer_init(&f->bytes);
-    adcgs_stream_init(s);
-    s->params = params;
-    s->slice_log2 = ADCGS_SLICE_LOG2_MIN;
     s->cameras = adcgs_alloc(NULL, 1, sizeof *s->cameras, NULL);
     s->n_cameras = 1;
     s->cameras[0] = (adcgs_camera){ .width = 8, .height = 8, .fx = 8, .fy = 8, .cx = 4, .cy = 4, .near_plane = 0.1,
                                     .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3 } };
-    if (adcgs_random_turns(s, SEGMENTS, 80, 4, 70, &seed, NULL) != ADCGS_OK)
-        return -1;
-    *state = f;
-    return adcgs_stream_write(s, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    fixture *f = *state;
-    adcgs_stream_clear(&f->stream, NULL);
-    adcgs_buffer_clear(&f->bytes);
-    free(f);
-    return 0;
+    return fixture_turns(f, &params, SEGMENTS, 80, 4, 70, &seed);
 }
 
 static adcgs_decoder *open_push(void)
@@ -223,6 +199,112 @@ static void test_damage(void **state)
     }
 }
 
+/** What is said to be final is: from then on, whatever comes, splats are those of the whole stream. */
+static void test_final(void **state)
+{
+    const fixture *f = *state;
+    adcgs_decoder *d = open_push(), *whole = NULL;
+    adcgs_info info, all;
+    double time = f->stream.segments[0].time_start;
+    uint64_t seed = 7;
+    int early = 0;
+    assert_int_equal(adcgs_open_memory(&whole, f->bytes.data, f->bytes.size, NULL, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_get_info(whole, &all, sizeof all, NULL), ADCGS_OK);
+    assert_true(isinf(all.time_final) && all.time_final > 0);
+    for (size_t at = 0; at < f->bytes.size; at++) {
+        assert_int_equal(push_all(d, f->bytes.data + at, 1, &seed, 1), ADCGS_OK);
+        if (adcgs_get_info(d, &info, sizeof info, NULL) != ADCGS_OK)
+            continue;
+        assert_true(info.time_end == all.time_end && info.bytes.total == at + 1);
+        assert_int_equal(info.segments_promised, SEGMENTS);
+        for (; time <= all.time_end && time < info.time_final; time += 1e-3) {
+            uint8_t ours[16], theirs[16];
+            assert_int_equal(adcgs_get_splat_digest(d, time, ours, NULL), ADCGS_OK);
+            assert_int_equal(adcgs_get_splat_digest(whole, time, theirs, NULL), ADCGS_OK);
+            assert_memory_equal(ours, theirs, sizeof ours);
+            early += at < f->bytes.size / 2;
+        }
+    }
+    assert_true(time > all.time_end && early > 0);
+    assert_true(info.time_start == all.time_start && info.weights == all.weights && info.segments == SEGMENTS);
+    assert_memory_equal(&info.bytes, &all.bytes, sizeof info.bytes);
+    adcgs_close(&d);
+    adcgs_close(&whole);
+}
+
+/** Push a stream and draw on the way what is final; with `forgets`, each moment is the first that is still needed. */
+static adcgs_status play_through(const fixture *f, uint64_t memory_limit, int forgets)
+{
+    const adcgs_stream *s = &f->stream;
+    adcgs_decoder *d = NULL;
+    adcgs_config config;
+    adcgs_config_init(&config, sizeof config);
+    config.threads = 1;
+    config.memory_limit = memory_limit;
+    assert_int_equal(adcgs_open_push(&d, &config, NULL), ADCGS_OK);
+    adcgs_status status = ADCGS_OK;
+    uint32_t next = 0; /* segment to be drawn */
+    for (size_t at = 0, used = 0; at < f->bytes.size && status == ADCGS_OK; at += used) {
+        adcgs_arrival arrived;
+        adcgs_info info = { .time_final = -INFINITY };
+        status = adcgs_push(d, f->bytes.data + at, f->bytes.size - at, &used, &arrived, NULL);
+        adcgs_get_info(d, &info, sizeof info, NULL);
+        for (; status == ADCGS_OK && next < s->n_segments && s->segments[next].time_start < info.time_final; next++) {
+            uint8_t digest[16], expected[16];
+            if (forgets)
+                assert_int_equal(adcgs_push_forget(d, s->segments[next].time_start, NULL), ADCGS_OK);
+            status = adcgs_get_splat_digest(d, s->segments[next].time_start, digest, NULL);
+            if (status == ADCGS_OK)
+                status = adcgs_get_model_digest(d, (int)next, digest, NULL);
+            adcgs_model_digest(&s->segments[next], expected);
+            assert_true(status != ADCGS_OK || memcmp(digest, expected, 16) == 0);
+            if (forgets && next > 1)
+                assert_int_equal(adcgs_get_model_digest(d, (int)next - 2, digest, NULL), ADCGS_ERR_USAGE);
+        }
+    }
+    if (status == ADCGS_OK) {
+        adcgs_info info;
+        assert_int_equal(next, s->n_segments);
+        assert_int_equal(adcgs_get_info(d, &info, sizeof info, NULL), ADCGS_OK);
+        assert_int_equal(info.segments, s->n_segments);
+        assert_true(info.time_start == s->segments[0].time_start);
+    }
+    adcgs_close(&d);
+    return status;
+}
+
+/** In how much memory it can be done, about. */
+static uint64_t least_memory(const fixture *f, int forgets)
+{
+    uint64_t limit = 1 << 16;
+    while (play_through(f, limit, forgets) == ADCGS_ERR_LIMIT)
+        limit += limit / 8;
+    assert_int_equal(play_through(f, limit, forgets), ADCGS_OK);
+    return limit;
+}
+
+/** What is past takes no memory. */
+static void test_forget(void **state)
+{
+    const fixture *f = *state;
+    void *other;
+    fixture *longer = fixture_new(&other);
+    adcgs_params params;
+    uint64_t seed = 8;
+    adcgs_random_small_params(&params, 2, &seed);
+    assert_int_equal(fixture_turns(longer, &params, 48, 300, 5, 20, &seed), 0);
+    assert_int_equal(play_through(f, 0, 1), ADCGS_OK);
+    const uint64_t all = least_memory(longer, 0), few = least_memory(longer, 1);
+    print_message("48 segments take %llu bytes, or %llu\n", (unsigned long long)all, (unsigned long long)few);
+    assert_true(few < all / 2); /* what is left are the networks of 16 keys */
+    teardown(&other);
+
+    adcgs_decoder *whole = NULL;
+    assert_int_equal(adcgs_open_memory(&whole, f->bytes.data, f->bytes.size, NULL, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_push_forget(whole, 0, NULL), ADCGS_ERR_USAGE);
+    adcgs_close(&whole);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -230,6 +312,8 @@ int main(void)
         cmocka_unit_test(test_every_prefix),
         cmocka_unit_test(test_arrivals),
         cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_final),
+        cmocka_unit_test(test_forget),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -3,7 +3,7 @@
  * Damaged streams: what nothing is wrong with is read as ever; bits, bytes and pieces that are wrong, missing or doubled are
  * told, and what is used of the rest is what was written.
  */
-#include "random_model.h"
+#include "stream_fixture.h"
 
 #include "base/cpu.h"
 #include "base/digest.h"
@@ -14,47 +14,20 @@
 
 #include <adcgs/adcgs.h>
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { SEGMENTS = 8 };
-
-typedef struct fixture {
-    adcgs_stream stream;
-    adcgs_buffer bytes;
-} fixture;
 
 /** Keys and predicted segments in turns of three; several slices and layers. */
 static int setup(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
+    fixture *f = fixture_new(state);
     adcgs_params params;
     uint64_t seed = 31;
-    adcgs_stream *s = &f->stream;
     adcgs_random_params(&params, 1, &seed);
     params.n_fg = 4;
     params.chunks = 2;
-    adcgs_buffer_init(&f->bytes);
-    adcgs_stream_init(s);
-    s->params = params;
-    s->slice_log2 = ADCGS_SLICE_LOG2_MIN;
-    if (adcgs_random_turns(s, SEGMENTS, 200, 5, 100, &seed, NULL) != ADCGS_OK)
-        return -1;
-    *state = f;
-    return adcgs_stream_write(s, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    fixture *f = *state;
-    adcgs_stream_clear(&f->stream, NULL);
-    adcgs_buffer_clear(&f->bytes);
-    free(f);
-    return 0;
+    return fixture_turns(f, &params, SEGMENTS, 200, 5, 100, &seed);
 }
 
 static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)

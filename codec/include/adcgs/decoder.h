@@ -113,6 +113,18 @@ ADCGS_API adcgs_status adcgs_push(adcgs_decoder *decoder, const void *data, size
                                   adcgs_error *error);
 
 /**
+ * Say that no moment before this one will be asked for again: segments that are past are freed, all but the last complete one,
+ * from which the next may be predicted. So a stream of any length takes no more memory than a few of its segments, besides its
+ * networks, which its level bounds. Times before are served by the first segment that is left. Numbers of segments stay, and the
+ * models of those that are freed cannot be asked for (ADCGS_ERR_USAGE).
+ * \param decoder an open decoder
+ * \param time seconds
+ * \param error says why it failed
+ * \return ADCGS_OK, or ADCGS_ERR_USAGE if bytes are not pushed to the decoder
+ */
+ADCGS_API adcgs_status adcgs_push_forget(adcgs_decoder *decoder, double time, adcgs_error *error);
+
+/**
  * Say that no more bytes will come. Of a stream that has not ended what is complete remains, as adcgs_open_stream() has it.
  * \param decoder an open decoder
  * \param error says why it failed

@@ -104,6 +104,8 @@ typedef struct adcgs_bytes {
 /**
  * What a stream holds. Filled by adcgs_get_info(). Where segments are read on demand, anchors, gaussians, static_anchors and
  * weights are those of the segment at hand, 0 before the first, layers those asked for, and bytes.total is what was read so far.
+ * Where bytes are pushed, until their end, these are of complete segments that are kept, segments may be 0, time_end is what the
+ * header promises, or infinity if it promises nothing, and bytes.total is what was taken so far.
  */
 typedef struct adcgs_info {
     size_t size;            /**< bytes of this struct that the library filled; what lies behind them is zero */
@@ -134,6 +136,10 @@ typedef struct adcgs_info {
     int faults;             /**< that were concealed, where config.conceal asked for it */
     int tiers;              /**< sets of anchors that the stream has (clause "Tiers"): the most that a segment has, 1..8 */
     int tiers_present;      /**< those that are there of all segments */
+    double time_final;      /**< seconds: what moments before it show stays, whatever comes; infinity: nothing more will come */
+    double time_drawable;   /**< seconds: the end of what can be drawn by now; minus infinity: nothing can */
+    int segments_promised;  /**< that a stream which is pushed will have; 0: its header does not say */
+    int tiers_coming;       /**< of the segment that bytes are pushed of, those that can be drawn; 0: none, or there is no such */
 } adcgs_info;
 
 /** Longest name of a camera, bytes without the zero. */
