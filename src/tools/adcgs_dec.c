@@ -10,12 +10,14 @@
 #include "tools/answer.h"
 #include "tools/canvas.h"
 #include "tools/dec_budget.h"
+#include "tools/dec_live.h"
 #include "tools/dec_open.h"
 #include "tools/dec_play.h"
 #include "tools/dec_splats.h"
 
 #include <adcgs/adcgs.h>
 
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <strings.h>
@@ -122,6 +124,7 @@ static void print_row(const settings *s, const char *hex, double seconds)
 /** The stream to show, and the one beside it or NULL. */
 typedef struct streams {
     adcgs_decoder *decoder, *beside;
+    adcgs_live *live; /**< where decoder gets its bytes while frames are made; NULL: it has them */
 } streams;
 
 /** What follows a frame's rendering: the picture made of it goes to the sink. */
@@ -145,15 +148,44 @@ static adcgs_status fit_budget(const settings *s, const streams *from, const adc
     return ADCGS_OK;
 }
 
+/** Which frames there are; once all of the stream is there, whatever has to be said of them. */
+static adcgs_status make_frames(const settings *s, const streams *from, adcgs_camera_path *frames, adcgs_error *error)
+{
+    adcgs_info info;
+    ADCGS_TRY(adcgs_get_info(from->decoder, &info, sizeof info, error));
+    if (info.truncated)
+        adcgs_cli_note(s->cli, "%s: the stream ends early; showing what is complete", s->input);
+    ADCGS_TRY(adcgs_camera_path_make(frames, from->decoder, &s->request, error));
+    if (frames->outside && (!from->live || from->live->over))
+        adcgs_cli_note(s->cli, "%s: %d of %d frames show its first or last moment: it lasts from %g to %g s", s->input,
+                       frames->outside, frames->n, info.time_start, info.time_end);
+    return ADCGS_OK;
+}
+
+/** Wait until a frame is as it will stay, or it is known whether there is one. */
+static adcgs_status await_frame(const settings *s, const streams *from, adcgs_camera_path *frames, int index, adcgs_error *error)
+{
+    if (!from->live || from->live->over)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_live_wait(from->live, index < frames->n ? frames->frame[index].time : INFINITY, error));
+    if (!from->live->over)
+        return ADCGS_OK;
+    adcgs_camera_path_free(frames); /* a stream may last less long than it said */
+    return make_frames(s, from, frames, error);
+}
+
 /** Render all frames; all gets the digest of the frames together. */
-static adcgs_status render(const settings *s, const streams *from, const adcgs_camera_path *frames, adcgs_sink *sink,
+static adcgs_status render(const settings *s, const streams *from, adcgs_camera_path *frames, adcgs_sink *sink,
                            adcgs_canvas *canvas, adcgs_md5 *all, double *render_seconds, adcgs_error *error)
 {
     adcgs_frame *frame = &canvas->frame;
     adcgs_progress progress;
     adcgs_progress_init(&progress, s->cli);
     adcgs_status status = fit_budget(s, from, frames, canvas, error);
-    for (int i = 0; i < frames->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
+    for (int i = 0; status == ADCGS_OK && !adcgs_interrupted(); i++) {
+        status = await_frame(s, from, frames, i, error);
+        if (status != ADCGS_OK || adcgs_interrupted() || i >= frames->n)
+            break;
         const double start = adcgs_seconds();
         status = adcgs_render(from->decoder, &frames->frame[i].camera, frames->frame[i].time, frame, error);
         status = adcgs_camera_path_rendered(&frames->frame[i].camera, status, error);
@@ -217,12 +249,7 @@ static adcgs_status decode(const adcgs_cli *cli, const settings *s, const stream
     adcgs_md5 all;
     double seconds = 0.0;
     ADCGS_TRY(adcgs_get_info(from->decoder, &info, sizeof info, error));
-    if (info.truncated)
-        adcgs_cli_note(cli, "%s: the stream ends early; showing what is complete", s->input);
-    ADCGS_TRY(adcgs_camera_path_make(&frames, from->decoder, &s->request, error));
-    if (frames.outside)
-        adcgs_cli_note(cli, "%s: %d of %d frames show its first or last moment: it lasts from %g to %g s", s->input,
-                       frames.outside, frames.n, info.time_start, info.time_end);
+    ADCGS_TRY(make_frames(s, from, &frames, error));
     const int size[2] = {frames.frame[0].camera.width, frames.frame[0].camera.height};
     adcgs_md5_init(&all);
     adcgs_status status = adcgs_canvas_init(&canvas, size, &info, s->alpha, s->depth, from->beside != NULL, error);
@@ -284,10 +311,26 @@ static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch,
     return status;
 }
 
+/** Show frames of a stream from a pipe, while it comes where that can be. */
+static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
+{
+    adcgs_live live;
+    adcgs_status status = adcgs_live_open(&live, decoder, s->input, &s->config, &s->request, error);
+    if (status == ADCGS_OK)
+        status = adcgs_set_tiers(*decoder, s->tiers, error);
+    if (status == ADCGS_OK && !adcgs_interrupted())
+        status = decode(cli, s, &(streams){*decoder, NULL, &live}, mismatch, error);
+    adcgs_live_close(&live);
+    return status;
+}
+
 /** Open what is to be shown, and show it. */
 static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
     streams from = {0};
+    const int as_clip = !s->cameras && !s->splats && !s->beside && s->budget.of == ADCGS_BUDGET_NONE;
+    if (as_clip && adcgs_pipe_is(s->input))
+        return show_live(cli, s, decoder, mismatch, error);
     ADCGS_TRY(open_input(decoder, &s->http, s->input, s, error));
     from.decoder = *decoder;
     if (s->cameras)

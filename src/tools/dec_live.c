@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Frames of a stream that is still coming. */
+#include "config.h"
+
+#include "tools/dec_live.h"
+
+#include "cli/cli.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define BUFFER_BYTES 65536
+
+/** Take bytes from the pipe, when there are some. */
+static adcgs_status fill(adcgs_live *live, adcgs_error *error)
+{
+    fflush(stdout); /* this may take long; what fails now fails again when the frames are done */
+    live->at = 0;
+    return adcgs_pipe_read(&live->pipe, live->buffer, BUFFER_BYTES, &live->n, error);
+}
+
+/** Decode what has been read to the end of one part, or read more, or note the end. */
+static adcgs_status step(adcgs_live *live, adcgs_error *error)
+{
+    adcgs_arrival arrived = ADCGS_ARRIVED_NOTHING;
+    adcgs_status status = ADCGS_OK;
+    size_t used = 0;
+    if (live->n == 0)
+        ADCGS_TRY(fill(live, error));
+    if (live->n > 0)
+        status = adcgs_push(live->decoder, live->buffer + live->at, live->n, &used, &arrived, error);
+    live->at += used;
+    live->n -= used;
+    live->over = arrived == ADCGS_ARRIVED_END || (live->pipe.ended && live->n == 0);
+    if (status == ADCGS_OK && live->over)
+        status = adcgs_push_end(live->decoder, error);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, live->pipe.name);
+    return status;
+}
+
+/** What is known of the stream; before the header nothing is, and no moment can be drawn. */
+static adcgs_info look(const adcgs_live *live)
+{
+    adcgs_info info;
+    if (adcgs_get_info(live->decoder, &info, sizeof info, NULL) != ADCGS_OK)
+        info = (adcgs_info){.time_final = -INFINITY, .time_drawable = -INFINITY};
+    return info;
+}
+
+/** Whether frames, as far as they are known by now, are those that the whole stream will have. */
+static int are_known(const adcgs_info *info, const adcgs_camera_path_request *request)
+{
+    const char *const camera = request->camera ? request->camera : "";
+    const size_t n = strlen(camera);
+    const int turns = !strcmp(camera, "orbit") || !strcmp(camera, "spiral"); /* as fast as there are frames */
+    if (!info->cameras || !strcmp(camera, "bullet") || (n > 5 && !strcmp(camera + n - 5, ".json")))
+        return 0;
+    return request->has_times || (!turns && isfinite(info->time_end));
+}
+
+adcgs_status adcgs_live_open(adcgs_live *live, adcgs_decoder **decoder, const char *path, const adcgs_config *config,
+                             const adcgs_camera_path_request *request, adcgs_error *error)
+{
+    *live = (adcgs_live){0};
+    ADCGS_TRY(adcgs_pipe_open(&live->pipe, path, error));
+    ADCGS_TRY(adcgs_open_push(decoder, config, error));
+    live->decoder = *decoder;
+    live->buffer = malloc(BUFFER_BYTES);
+    if (!live->buffer)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", live->pipe.name);
+    adcgs_info info = {.time_drawable = -INFINITY};
+    for (; !live->over && isinf(info.time_drawable) && !adcgs_interrupted(); info = look(live))
+        ADCGS_TRY(step(live, error));
+    return are_known(&info, request) ? ADCGS_OK : adcgs_live_wait(live, INFINITY, error);
+}
+
+adcgs_status adcgs_live_wait(adcgs_live *live, double time, adcgs_error *error)
+{
+    while (!live->over && !adcgs_interrupted() && (isinf(time) || !(time < look(live).time_final)))
+        ADCGS_TRY(step(live, error));
+    return live->over ? ADCGS_OK : adcgs_push_forget(live->decoder, time, error);
+}
+
+void adcgs_live_close(adcgs_live *live)
+{
+    adcgs_pipe_close(&live->pipe);
+    free(live->buffer);
+    *live = (adcgs_live){0};
+}
