@@ -18,9 +18,8 @@ static double length(const adcgs_play_clock *clock)
 
 void adcgs_play_clock_init(adcgs_play_clock *clock, double begin, double end, double rate, double now)
 {
-    const double frames = floor((end - begin) * rate + ROUNDING) + 1.0;
-    *clock = (adcgs_play_clock){.begin = begin, .rate = rate, .seen = now, .loop = 1};
-    clock->frames = (int)ADCGS_MAX(1.0, ADCGS_MIN(frames, FRAMES_MAX));
+    *clock = (adcgs_play_clock){.rate = rate, .seen = now, .reach = INFINITY, .loop = 1};
+    adcgs_play_clock_span(clock, begin, end);
 }
 
 static void go_to(adcgs_play_clock *clock, int frame)
@@ -28,13 +27,22 @@ static void go_to(adcgs_play_clock *clock, int frame)
     clock->position = frame / clock->rate;
 }
 
+void adcgs_play_clock_span(adcgs_play_clock *clock, double begin, double end)
+{
+    const double frames = floor((end - begin) * clock->rate + ROUNDING) + 1.0;
+    clock->begin = begin;
+    clock->frames = (int)ADCGS_MAX(1.0, ADCGS_MIN(frames, FRAMES_MAX));
+    if (clock->position >= length(clock))
+        go_to(clock, clock->frames - 1);
+}
+
 void adcgs_play_clock_tick(adcgs_play_clock *clock, double now)
 {
     const double passed = ADCGS_MAX(0.0, now - clock->seen);
     clock->seen = now;
-    if (!clock->playing)
+    if (!clock->playing || adcgs_play_clock_waits(clock))
         return;
-    clock->position += passed * adcgs_play_clock_factor(clock);
+    clock->position = ADCGS_MIN(clock->position + passed * adcgs_play_clock_factor(clock), clock->reach);
     if (clock->position < length(clock))
         return;
     clock->playing = clock->loop;
@@ -69,6 +77,11 @@ void adcgs_play_clock_seek(adcgs_play_clock *clock, double part)
 void adcgs_play_clock_faster(adcgs_play_clock *clock, int steps)
 {
     clock->speed = ADCGS_MAX(-ADCGS_PLAY_SPEED_MAX, ADCGS_MIN(clock->speed + steps, ADCGS_PLAY_SPEED_MAX));
+}
+
+int adcgs_play_clock_waits(const adcgs_play_clock *clock)
+{
+    return clock->playing && clock->position >= clock->reach;
 }
 
 int adcgs_play_clock_frame(const adcgs_play_clock *clock)

@@ -15,12 +15,15 @@ typedef struct adcgs_play_clock {
     int frames;      /**< at least 1 */
     double position; /**< seconds since begin, in [0, frames / rate) */
     double seen;     /**< the clock on the wall at the last tick */
+    double reach;    /**< seconds since begin that there is something to play of; behind them playing waits. Infinity: of all */
     int speed;       /**< power of two */
     int playing, loop;
 } adcgs_play_clock;
 
 /** The frames from begin to end, both included; not playing, at the first. At most 10^9 frames. */
 void adcgs_play_clock_init(adcgs_play_clock *clock, double begin, double end, double rate, double now);
+/** Other moments to play, of a stream that turned out to have them; the frame stays, if there is one of its number. */
+void adcgs_play_clock_span(adcgs_play_clock *clock, double begin, double end);
 /** Go with the clock on the wall, in seconds. Without loop, playing ends at the last frame. */
 void adcgs_play_clock_tick(adcgs_play_clock *clock, double now);
 /** Play or pause; from the end it plays from the beginning again. One frame alone never plays. */
@@ -32,6 +35,8 @@ void adcgs_play_clock_seek(adcgs_play_clock *clock, double part);
 /** Double the speed some times, or halve it. */
 void adcgs_play_clock_faster(adcgs_play_clock *clock, int steps);
 
+/** Whether it plays, but waits for something to play. */
+int adcgs_play_clock_waits(const adcgs_play_clock *clock);
 /** Number of the frame to show, from 0. */
 int adcgs_play_clock_frame(const adcgs_play_clock *clock);
 /** Its moment in seconds. */

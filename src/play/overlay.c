@@ -95,8 +95,9 @@ void adcgs_overlay_draw(adcgs_panel panels[ADCGS_PANELS], const adcgs_play_state
     draw_bar(&panels[BAR], state);
     if (state->statistics)
         draw_statistics(&panels[STATISTICS], state, figures);
-    if (*state->message && state->now < state->message_end) {
-        text_panel(&panels[MESSAGE], state, state->message, 0.0, 1.0, BACKGROUND);
+    const int has_message = *state->message && state->now < state->message_end;
+    if (has_message || (*figures->coming && state->bar)) {
+        text_panel(&panels[MESSAGE], state, has_message ? state->message : figures->coming, 0.0, 1.0, BACKGROUND);
         panels[MESSAGE].y = ADCGS_MAX(0, panels[MESSAGE].y - adcgs_play_bar(state).height);
     }
     if (state->help)

@@ -13,6 +13,7 @@ typedef struct adcgs_play_figures {
     uint32_t splats;    /**< that are drawn */
     int tiers;          /**< of the stream, that are */
     long dropped;       /**< frames left out while playing */
+    char coming[160];   /**< how much of the stream has come; "": all of it */
 } adcgs_play_figures;
 
 /** Panels, from the lowest to the uppermost; those that are not shown have width 0. Free them with adcgs_panel_free(). */

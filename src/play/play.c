@@ -20,7 +20,7 @@
 /** A name that no file has yet: the stream's, and a number. */
 static void name_shot(adcgs_player *p, const char *extension)
 {
-    const char *const slash = strrchr(p->settings->path, '/'), *const name = slash ? slash + 1 : p->settings->path;
+    const char *const path = p->settings->source.path, *const slash = strrchr(path, '/'), *const name = slash ? slash + 1 : path;
     const char *const dot = strrchr(name, '.');
     const int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
     for (int i = 1; i <= SHOTS_MAX; i++) {
@@ -67,6 +67,8 @@ static void take_events(adcgs_player *p)
 static adcgs_status loop(adcgs_player *p, adcgs_error *error)
 {
     while ((!p->state.quit || p->state.shot || *p->shot) && !p->settings->interrupted()) {
+        if (!p->come.drawable && (p->come.over || p->state.quit))
+            return ADCGS_OK; /* there will never be anything to see, or to make a screenshot of */
         take_events(p);
         adcgs_play_tick(&p->state, adcgs_seconds());
         ADCGS_TRY(adcgs_player_collect(p, error));
@@ -90,10 +92,11 @@ static adcgs_status open_window(adcgs_player *p, adcgs_error *error)
     const int times = (HEIGHT_WANTED + s->home.height - 1) / s->home.height;
     const int suits[2] = {ADCGS_MIN(times * s->home.width, SIDE_MAX), ADCGS_MIN(times * s->home.height, SIDE_MAX)};
     const int *const size = s->size[0] ? s->size : suits;
-    ADCGS_TRY(adcgs_sdl_get(&p->sdl, s->path, error));
-    ADCGS_TRY(p->sdl->open(&p->window, s->path, size[0], size[1], error));
+    ADCGS_TRY(adcgs_sdl_get(&p->sdl, s->source.path, error));
+    ADCGS_TRY(p->sdl->open(&p->window, s->source.path, size[0], size[1], error));
     measure_window(p);
-    return adcgs_worker_create(&p->worker, s->data, s->bytes, s->path, &s->config, wake, p, error);
+    ADCGS_TRY(adcgs_worker_create(&p->worker, &s->source, &s->config, wake, p, error));
+    return s->source.feed ? adcgs_feed_start(s->source.feed, wake, p, error) : ADCGS_OK;
 }
 
 static void init(adcgs_player *p, const adcgs_play_settings *s)
@@ -110,29 +113,39 @@ static void init(adcgs_player *p, const adcgs_play_settings *s)
         adcgs_play_clock_seek(clock, (s->start - s->begin) * clock->rate / (clock->frames - 1));
     if (!s->paused)
         adcgs_play_clock_toggle(clock);
-    if (s->info.truncated)
+    if (!s->source.feed)
+        adcgs_player_has_all(p);
+    else
+        clock->reach = 0.0; /* nothing has come that could be played */
+    if (s->info.truncated && !s->source.feed)
         adcgs_play_say(&p->state, "the stream ends early");
 }
 
-adcgs_status adcgs_play_run(const adcgs_play_settings *settings, int *failed, adcgs_error *error)
+adcgs_status adcgs_play_run(const adcgs_play_settings *s, int *failed, adcgs_error *error)
 {
     adcgs_player *p = malloc(sizeof *p);
     *failed = 0;
     if (!p)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the player");
-    init(p, settings);
-    adcgs_status status = settings->script ? adcgs_script_read(&p->run.script, settings->script, error) : ADCGS_OK;
+    init(p, s);
+    adcgs_status status = s->script ? adcgs_script_read(&p->run.script, s->script, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = open_window(p, error);
     if (status == ADCGS_OK)
         status = loop(p, error);
-    adcgs_worker_free(&p->worker); /* first, since it wakes the window */
+    if (s->source.feed)
+        adcgs_feed_stop(s->source.feed); /* these first, since they wake the window */
+    adcgs_worker_free(&p->worker);
     if (p->window)
         p->sdl->close(&p->window);
     for (int i = 0; i < ADCGS_PANELS; i++)
         adcgs_panel_free(&p->panels[i]);
     adcgs_script_clear(&p->run.script);
     *failed = status == ADCGS_OK && p->run.failed;
+    if (status == ADCGS_OK && !*failed && p->come.fault.status != ADCGS_OK) {
+        *error = p->come.fault;
+        status = error->status;
+    }
     free(p);
     return status;
 }

@@ -6,12 +6,83 @@
 
 #include "camera/rotation.h"
 
+#include <math.h>
+#include <stdio.h>
+
 #define HAND_SECONDS (1.0 / 30.0) /* that a picture may take while the camera is moved by hand */
 #define BUDGET_MIN (1.0 / 60.0)   /* more pictures than that nobody sees */
 #define BUDGET_MAX (1.0 / 15.0)   /* fewer are no film */
 #define REST_SECONDS 0.5          /* without a picture, after which there is no rate of them */
 
+/* ---- What has come. ---- */
+
+void adcgs_player_has_all(adcgs_player *p)
+{
+    const adcgs_play_settings *const s = p->settings;
+    p->come = (adcgs_come){.info = s->info, .bytes = s->source.bytes, .drawable = 1, .over = 1};
+}
+
+/** Whether more has come than the worker has decoded. */
+static int lags(const adcgs_player *p)
+{
+    adcgs_feed *const feed = p->settings->source.feed;
+    int ended;
+    return feed && !p->come.over && (adcgs_feed_bytes(feed, &ended) > p->come.bytes || ended);
+}
+
+/** How much, for those who watch. */
+static void describe(adcgs_player *p)
+{
+    const adcgs_info *const info = &p->come.info;
+    const double bytes = (double)p->come.bytes;
+    char segment[60] = "", tier[60] = "";
+    const int number = info->segments + (info->tiers_coming > 0);
+    if (info->segments_promised > 1)
+        snprintf(segment, sizeof segment, "segment %d of %d, ", number, info->segments_promised);
+    if (info->tiers_coming)
+        snprintf(tier, sizeof tier, "tier %d of %d, ", info->tiers_coming, info->tiers);
+    snprintf(p->figures.coming, sizeof p->figures.coming, "%s%s%.*f %s", segment, tier, bytes < 1e6 ? 0 : 1,
+             bytes / (bytes < 1e6 ? 1e3 : 1e6), bytes < 1e6 ? "KB" : "MB");
+}
+
+/** The moments to play, and how far they are there. */
+static void set_span(adcgs_player *p)
+{
+    const adcgs_info *const info = &p->come.info;
+    adcgs_play_clock *const clock = &p->state.clock;
+    const int promised = isfinite(info->time_end) && p->come.fault.status == ADCGS_OK;
+    if (!p->settings->is_span)
+        adcgs_play_clock_span(clock, info->time_start,
+                              promised ? info->time_end : ADCGS_MAX(info->time_drawable, info->time_start));
+    clock->reach = p->come.over ? INFINITY : info->time_drawable - clock->begin;
+}
+
+static void take_come(adcgs_player *p, const adcgs_come *come)
+{
+    const int ends = come->over && !p->come.over;
+    p->come = *come;
+    p->stale = 1;
+    *p->figures.coming = 0;
+    if (!come->info.size)
+        return; /* not even the header */
+    set_span(p);
+    if (come->info.tiers != p->scale.all)
+        adcgs_play_scale_init(&p->scale, come->info.tiers);
+    if (!come->over)
+        describe(p);
+    if (ends && come->fault.status != ADCGS_OK)
+        adcgs_play_say(&p->state, "%s", come->fault.text);
+    else if (ends && come->info.truncated)
+        adcgs_play_say(&p->state, "the stream ends early");
+}
+
 /* ---- What should be drawn. ---- */
+
+/** Whether a screenshot can be made. */
+static int shoots(const adcgs_player *p)
+{
+    return *p->shot && p->come.drawable;
+}
 
 static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
 {
@@ -19,7 +90,7 @@ static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
     adcgs_play_job job = {.time = adcgs_play_clock_time(&state->clock), .layers = state->layers, .divider = divider,
                           .number = adcgs_play_clock_frame(&state->clock), .seeks = p->seeks};
     adcgs_orbit_control_view(&state->control, state->width, state->height, &job.camera);
-    job.tiers = adcgs_play_moving(state) && !*p->shot ? p->scale.tiers : p->scale.all;
+    job.tiers = adcgs_play_moving(state) && !shoots(p) ? p->scale.tiers : p->scale.all;
     if (divider > 1)
         adcgs_camera_stretch(&job.camera, (state->width + divider - 1) / divider, (state->height + divider - 1) / divider);
     return job;
@@ -41,7 +112,9 @@ static int wanted_divider(const adcgs_player *p)
 int adcgs_player_settled(const adcgs_player *p)
 {
     const adcgs_play_job wanted = wanted_job(p, wanted_divider(p));
-    return !p->drawing && !*p->shot && !p->state.shot && !adcgs_play_moving(&p->state) && same_picture(&p->job, &wanted);
+    const int has_all = p->pictures > 0 || !p->settings->source.feed;
+    return !p->drawing && !*p->shot && !p->state.shot && !adcgs_play_moving(&p->state) && same_picture(&p->job, &wanted) &&
+           has_all && !lags(p);
 }
 
 static double budget(const adcgs_player *p)
@@ -53,12 +126,16 @@ static double budget(const adcgs_player *p)
 
 void adcgs_player_post(adcgs_player *p)
 {
-    adcgs_play_job job = wanted_job(p, *p->shot ? 1 : wanted_divider(p));
-    if (p->drawing || (!*p->shot && same_picture(&job, &p->job)))
+    const int shot = shoots(p);
+    adcgs_play_job job = wanted_job(p, shot ? 1 : wanted_divider(p));
+    const int same = !shot && same_picture(&job, &p->job);
+    if (p->drawing || (same && !lags(p)))
         return;
-    memcpy(job.path, p->shot, sizeof job.path);
+    job.again = same;
+    if (shot)
+        memcpy(job.path, p->shot, sizeof job.path);
     p->drawing = adcgs_worker_post(p->worker, &job);
-    if (p->drawing && !*p->shot)
+    if (p->drawing && !shot)
         p->job = job;
 }
 
@@ -134,11 +211,13 @@ adcgs_status adcgs_player_collect(adcgs_player *p, adcgs_error *error)
     if (!result)
         return ADCGS_OK;
     p->drawing = 0;
+    if (p->settings->source.feed)
+        take_come(p, &result->come);
     if (*result->job.path)
         take_shot(p, result);
     else if (result->status != ADCGS_OK)
         take_failure(p, result);
-    else
+    else if (result->rgb)
         status = take_picture(p, result, error);
     adcgs_worker_release(p->worker);
     return status;

@@ -40,6 +40,7 @@ typedef struct adcgs_player {
     double arrived;          /**< when the last picture came */
     double period;           /**< seconds between pictures, on the mean of the last ones; 0: not known */
     long pictures;           /**< shown so far */
+    adcgs_come come;         /**< how much of the stream has been decoded */
     adcgs_status failure;    /**< of the last picture for the window, if it cannot be drawn at any resolution */
     adcgs_error failure_error;
     char shot[PATH_MAX];     /**< file of the screenshot that is to be made or being made; "": none */
@@ -49,6 +50,8 @@ typedef struct adcgs_player {
 
 /** Whether the window shows the very picture that the state stands for, at full resolution, and nothing will change it. */
 int adcgs_player_settled(const adcgs_player *player);
+/** Of a stream that is all there: so it is. */
+void adcgs_player_has_all(adcgs_player *player);
 /** Give the worker something to do, if it has nothing and there is something. */
 void adcgs_player_post(adcgs_player *player);
 /** Take what the worker has done, if anything: a picture into the window, a screenshot, or a failure. */

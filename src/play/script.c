@@ -66,11 +66,23 @@ static int read_key(adcgs_script_line *to, char **rest)
 
 static int read_wait(adcgs_script_line *to, char **rest)
 {
-    if (read_numbers(rest, to->number, 1) || to->number[0] < 0.0)
+    static const struct { const char *name; adcgs_script_kind kind; } units[] = {
+        {"frames", ADCGS_SCRIPT_WAIT_FRAMES}, {"seconds", ADCGS_SCRIPT_WAIT_SECONDS}, {"bytes", ADCGS_SCRIPT_WAIT_BYTES},
+        {"tiers", ADCGS_SCRIPT_WAIT_TIERS}, {"segments", ADCGS_SCRIPT_WAIT_SEGMENTS},
+    };
+    const char *const amount = strtok_r(NULL, BLANKS, rest);
+    to->kind = ADCGS_SCRIPT_WAIT_END;
+    if (amount && !strcmp(amount, "end"))
+        return 0;
+    const char *const unit = strtok_r(NULL, BLANKS, rest);
+    if (read_number(amount, to->number) || to->number[0] < 0.0)
         return -1;
-    const char *unit = strtok_r(NULL, BLANKS, rest);
-    to->kind = unit && !strcmp(unit, "seconds") ? ADCGS_SCRIPT_WAIT_SECONDS : ADCGS_SCRIPT_WAIT_FRAMES;
-    return unit && (!strcmp(unit, "seconds") || !strcmp(unit, "frames")) ? 0 : -1;
+    for (size_t i = 0; i < ADCGS_COUNTOF(units) && unit; i++)
+        if (!strcmp(units[i].name, unit)) {
+            to->kind = units[i].kind;
+            return 0;
+        }
+    return -1;
 }
 
 static int read_drag(adcgs_script_line *to, char **rest)
@@ -115,6 +127,10 @@ static int read_arguments(adcgs_script_line *to, char **rest)
     switch (to->kind) {
     case ADCGS_SCRIPT_WAIT_FRAMES:
     case ADCGS_SCRIPT_WAIT_SECONDS:
+    case ADCGS_SCRIPT_WAIT_BYTES:
+    case ADCGS_SCRIPT_WAIT_TIERS:
+    case ADCGS_SCRIPT_WAIT_SEGMENTS:
+    case ADCGS_SCRIPT_WAIT_END:
         return read_wait(to, rest);
     case ADCGS_SCRIPT_DRAG:
         return read_drag(to, rest);

@@ -8,6 +8,10 @@
 typedef enum adcgs_script_kind {
     ADCGS_SCRIPT_WAIT_FRAMES,  /**< number[0]: pictures shown */
     ADCGS_SCRIPT_WAIT_SECONDS, /**< number[0] */
+    ADCGS_SCRIPT_WAIT_BYTES,   /**< number[0]: of the stream, decoded */
+    ADCGS_SCRIPT_WAIT_TIERS,   /**< number[0]: of the segment that is coming */
+    ADCGS_SCRIPT_WAIT_SEGMENTS, /**< number[0]: complete ones */
+    ADCGS_SCRIPT_WAIT_END,     /**< of the stream */
     ADCGS_SCRIPT_DRAG,         /**< key: button; number: from x, y to x, y */
     ADCGS_SCRIPT_MOVE,         /**< number: by dx, dy */
     ADCGS_SCRIPT_WHEEL,        /**< number[0]: steps */

@@ -55,6 +55,17 @@ static outcome wait_frames(const adcgs_player *p, const adcgs_script_line *line)
     return p->pictures - p->run.pictures >= line->number[0] || adcgs_player_settled(p) ? DONE : AGAIN;
 }
 
+/** Whether so much of the stream has come, and was decoded; no more comes than there is. */
+static outcome wait_stream(const adcgs_player *p, const adcgs_script_line *line)
+{
+    const adcgs_come *const come = &p->come;
+    const double there = line->kind == ADCGS_SCRIPT_WAIT_BYTES      ? (double)come->bytes
+                         : line->kind == ADCGS_SCRIPT_WAIT_TIERS    ? come->info.tiers_coming
+                         : line->kind == ADCGS_SCRIPT_WAIT_SEGMENTS ? come->info.segments
+                                                                    : -1.0; /* the end */
+    return come->over || there >= line->number[0] ? DONE : AGAIN;
+}
+
 static adcgs_status wrong(const adcgs_player *p, const adcgs_script_line *line, adcgs_status status, const char *what,
                           adcgs_error *error)
 {
@@ -91,6 +102,7 @@ static int find_value(const adcgs_player *p, const char *name, double *value)
         {"layers", s->layers}, {"camera", s->jumped}, {"flying", s->flying}, {"help", s->help},
         {"statistics", s->statistics}, {"bar", s->bar}, {"distance", adcgs_orbit_control_distance(&s->control)},
         {"splats", p->figures.splats}, {"divider", p->job.divider}, {"tiers", p->job.tiers},
+        {"bytes", (double)p->come.bytes}, {"segments", p->come.info.segments}, {"ended", p->come.over},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
         if (!strcmp(values[i].name, name)) {
@@ -184,6 +196,12 @@ static adcgs_status go_on(adcgs_player *p, const adcgs_script_line *line, outcom
     case ADCGS_SCRIPT_WAIT_SECONDS:
         *how = p->state.now - p->run.since >= line->number[0] ? DONE : AGAIN;
         return ADCGS_OK;
+    case ADCGS_SCRIPT_WAIT_BYTES:
+    case ADCGS_SCRIPT_WAIT_TIERS:
+    case ADCGS_SCRIPT_WAIT_SEGMENTS:
+    case ADCGS_SCRIPT_WAIT_END:
+        *how = wait_stream(p, line);
+        return ADCGS_OK;
     case ADCGS_SCRIPT_SIZE:
         *how = wait_size(p, line, error);
         return ADCGS_OK;
@@ -192,7 +210,7 @@ static adcgs_status go_on(adcgs_player *p, const adcgs_script_line *line, outcom
         return *p->shot || p->shot_status == ADCGS_OK ? ADCGS_OK
                                                       : wrong(p, line, p->shot_status, p->shot_error.text, error);
     case ADCGS_SCRIPT_GRAB:
-        *how = adcgs_player_settled(p) || p->state.clock.playing ? DONE : AGAIN;
+        *how = adcgs_player_settled(p) || p->state.clock.playing || !p->come.drawable ? DONE : AGAIN;
         return *how == DONE ? write_window(p, line->text, error) : ADCGS_OK;
     case ADCGS_SCRIPT_EXPECT:
         *how = DONE;

@@ -58,7 +58,7 @@ void adcgs_play_say(adcgs_play_state *state, const char *format, ...)
 
 int adcgs_play_moving(const adcgs_play_state *state)
 {
-    return state->clock.playing || state->now - state->moved < STILL_AFTER;
+    return (state->clock.playing && !adcgs_play_clock_waits(&state->clock)) || state->now - state->moved < STILL_AFTER;
 }
 
 int adcgs_play_text_size(const adcgs_play_state *state)

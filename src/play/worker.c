@@ -20,9 +20,7 @@ typedef enum stage {
 } stage;
 
 struct adcgs_worker {
-    const uint8_t *data;
-    size_t bytes;
-    const char *path;
+    adcgs_play_source source;
     adcgs_config config;
     void (*wake)(void *arg);
     void *arg;
@@ -33,7 +31,8 @@ struct adcgs_worker {
     pthread_cond_t changed;
     stage stage;
 
-    adcgs_decoder *decoder;
+    adcgs_intake intake;  /**< of the feed, if there is one */
+    adcgs_decoder *decoder; /**< else */
     int layers;           /**< that the decoder was opened with */
     float *values;
     uint8_t *rgb;
@@ -48,9 +47,9 @@ static adcgs_status open_layers(adcgs_worker *w, int layers, adcgs_error *error)
     if (w->decoder && w->layers == layers)
         return ADCGS_OK;
     w->config.layers = layers;
-    const adcgs_status status = adcgs_open_memory(&decoder, w->data, w->bytes, &w->config, error);
+    const adcgs_status status = adcgs_open_memory(&decoder, w->source.data, w->source.bytes, &w->config, error);
     if (status != ADCGS_OK) {
-        adcgs_error_locate(error, w->path);
+        adcgs_error_locate(error, w->source.path);
         return status;
     }
     adcgs_close(&w->decoder);
@@ -74,27 +73,46 @@ static adcgs_status reserve(adcgs_worker *w, size_t samples, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static adcgs_status draw(adcgs_worker *w)
+static adcgs_status draw(adcgs_worker *w, adcgs_decoder *decoder)
 {
     adcgs_play_result *const r = &w->result;
     const adcgs_camera *const camera = &r->job.camera;
     const size_t samples = 3 * (size_t)camera->width * (size_t)camera->height;
     adcgs_primitives splats;
-    ADCGS_TRY(open_layers(w, r->job.layers, &r->error));
-    ADCGS_TRY(adcgs_set_tiers(w->decoder, r->job.tiers, &r->error));
+    ADCGS_TRY(adcgs_set_tiers(decoder, r->job.tiers, &r->error));
     ADCGS_TRY(reserve(w, samples, &r->error));
     adcgs_frame frame = {.width = camera->width, .height = camera->height, .rgb = w->values};
     const double start = adcgs_seconds();
-    ADCGS_TRY(adcgs_render(w->decoder, camera, r->job.time, &frame, &r->error));
+    ADCGS_TRY(adcgs_render(decoder, camera, r->job.time, &frame, &r->error));
     adcgs_frame_to_u8(&frame, w->rgb);
     r->seconds = adcgs_seconds() - start;
-    ADCGS_TRY(adcgs_get_primitives(w->decoder, r->job.time, &splats, &r->error)); /* they are there */
+    ADCGS_TRY(adcgs_get_primitives(decoder, r->job.time, &splats, &r->error)); /* they are there */
     for (uint32_t i = 0; i < splats.n; i++)
         r->splats += splats.opacity[i] > 0;
     r->rgb = w->rgb;
     const adcgs_image image = {.width = frame.width, .height = frame.height, .channels = 3, .data = frame.rgb};
     const adcgs_image_options options = {.half = 1, .camera = camera, .time = r->job.time};
     return *r->job.path ? adcgs_image_write_as(&image, &options, r->job.path, &r->error) : ADCGS_OK;
+}
+
+/** Decode some of what has come, and draw if that shows. A picture for a file is of what the window's were of. */
+static adcgs_status draw_coming(adcgs_worker *w)
+{
+    adcgs_play_result *const r = &w->result;
+    int changed;
+    const adcgs_status status = adcgs_intake_take(&w->intake, r->job.layers, !*r->job.path, &changed, &r->error);
+    r->come = w->intake.come;
+    if (status != ADCGS_OK || !r->come.drawable || (r->job.again && !changed))
+        return status;
+    return draw(w, w->intake.decoder);
+}
+
+static adcgs_status do_job(adcgs_worker *w)
+{
+    if (w->source.feed)
+        return draw_coming(w);
+    ADCGS_TRY(open_layers(w, w->result.job.layers, &w->result.error));
+    return draw(w, w->decoder);
 }
 
 static void set_stage(adcgs_worker *w, stage next)
@@ -120,23 +138,22 @@ static void *work(void *arg)
 {
     adcgs_worker *const w = arg;
     while (wait_for_job(w) == BUSY) {
-        w->result.status = draw(w);
+        w->result.status = do_job(w);
         set_stage(w, DONE);
         w->wake(w->arg);
     }
     return NULL;
 }
 
-adcgs_status adcgs_worker_create(adcgs_worker **out, const uint8_t *data, size_t bytes, const char *path,
-                                 const adcgs_config *config, void (*wake)(void *arg), void *arg, adcgs_error *error)
+adcgs_status adcgs_worker_create(adcgs_worker **out, const adcgs_play_source *source, const adcgs_config *config,
+                                 void (*wake)(void *arg), void *arg, adcgs_error *error)
 {
     adcgs_worker *w = *out = calloc(1, sizeof *w);
     if (!w)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the player");
-    w->data = data;
-    w->bytes = bytes;
-    w->path = path;
+    w->source = *source;
     w->config = *config;
+    adcgs_intake_init(&w->intake, source->feed, config);
     w->wake = wake;
     w->arg = arg;
     pthread_mutex_init(&w->lock, NULL);
@@ -158,6 +175,7 @@ void adcgs_worker_free(adcgs_worker **worker)
     if (w->running)
         pthread_join(w->thread, NULL);
     adcgs_close(&w->decoder);
+    adcgs_intake_clear(&w->intake);
     pthread_cond_destroy(&w->changed);
     pthread_mutex_destroy(&w->lock);
     free(w->values);

@@ -11,6 +11,7 @@
 #include "cli/cli.h"
 #include "io/file.h"
 #include "io/http.h"
+#include "io/pipe.h"
 #include "play/play.h"
 
 #include <adcgs/decoder.h>
@@ -45,46 +46,102 @@ static adcgs_status look(const adcgs_dec_play *how, const adcgs_decoder *decoder
 static void set_times(const adcgs_camera_path_request *request, adcgs_play_settings *settings)
 {
     const int is_span = request->has_times && request->begin < request->end;
+    settings->is_span = is_span;
     settings->begin = is_span ? request->begin : settings->info.time_start;
     settings->end = is_span ? request->end : settings->info.time_end;
     settings->paused = request->has_times && !is_span;
     settings->start = settings->paused ? request->begin : settings->begin;
 }
 
+/** Decode what has come, until where to begin is known: to the cameras, or to what can be drawn if there are none before. */
+static adcgs_status decode_parts(adcgs_decoder *decoder, adcgs_feed *feed, adcgs_error *error)
+{
+    uint8_t piece[4096];
+    uint64_t taken = 0;
+    for (int ended = 0; !ended && !adcgs_interrupted();) {
+        const size_t n = adcgs_feed_copy(feed, taken, piece, sizeof piece);
+        size_t used = 0;
+        adcgs_arrival arrived;
+        if (n == 0)
+            adcgs_feed_wait(feed);
+        if (n == 0 && adcgs_feed_bytes(feed, &ended) > taken)
+            ended = 0;
+        ADCGS_TRY(adcgs_push(decoder, piece, n, &used, &arrived, error));
+        if (arrived >= ADCGS_ARRIVED_CAMERAS)
+            return ADCGS_OK;
+        taken += used;
+    }
+    return adcgs_push_end(decoder, error);
+}
+
+static adcgs_status decode_front(adcgs_decoder *decoder, adcgs_feed *feed, adcgs_error *error)
+{
+    const adcgs_status status = decode_parts(decoder, feed, error);
+    ADCGS_TRY(adcgs_feed_status(feed, error));
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, adcgs_feed_name(feed));
+    return status;
+}
+
+/** A decoder that knows what stands in front of the stream. */
+static adcgs_status open_front(adcgs_decoder **decoder, const adcgs_play_source *from, const adcgs_config *config,
+                               adcgs_error *error)
+{
+    adcgs_config all = *config;
+    all.layers = 0;
+    if (from->feed) {
+        ADCGS_TRY(adcgs_open_push(decoder, &all, error));
+        return decode_front(*decoder, from->feed, error);
+    }
+    const adcgs_status status = adcgs_open_memory(decoder, from->data, from->bytes, &all, error);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, from->path);
+    return status;
+}
+
+/** Play what settings->source names. */
 static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
-    adcgs_config all = how->config;
-    adcgs_decoder *decoder;
+    adcgs_decoder *decoder = NULL;
     adcgs_camera *cameras = NULL;
-    all.layers = 0;
-    adcgs_status status = adcgs_open_memory(&decoder, settings->data, settings->bytes, &all, error);
-    if (status != ADCGS_OK) {
-        adcgs_error_locate(error, how->input);
-        return status;
-    }
-    status = look(how, decoder, settings, &cameras, error);
+    adcgs_status status = open_front(&decoder, &settings->source, &how->config, error);
+    if (status == ADCGS_OK && !adcgs_interrupted())
+        status = look(how, decoder, settings, &cameras, error);
     adcgs_close(&decoder); /* the player opens it on its own thread */
     set_times(&how->request, settings);
-    if (status == ADCGS_OK)
+    if (status == ADCGS_OK && !adcgs_interrupted())
         status = adcgs_play_run(settings, failed, error);
     free(cameras);
     return status;
 }
 
-adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_error *error)
+static adcgs_status play_file(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
-    adcgs_play_settings settings = {.path = how->input, .config = how->config, .script = how->script,
-                                    .interrupted = adcgs_interrupted};
     uint8_t *data;
-    memcpy(settings.size, how->request.size, sizeof settings.size);
-    if (!strcmp(how->input, "-"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--play: expected a file, which standard input is not");
-    ADCGS_TRY(adcgs_is_url(how->input) ? adcgs_http_load(&data, &settings.bytes, how->input, adcgs_interrupted, error) :
-                                         adcgs_file_load(&data, &settings.bytes, how->input, STREAM_BYTES_MAX, error));
-    settings.data = data;
-    const adcgs_status status = play(how, &settings, failed, error);
+    ADCGS_TRY(adcgs_is_url(how->input) ?
+                  adcgs_http_load(&data, &settings->source.bytes, how->input, adcgs_interrupted, error) :
+                  adcgs_file_load(&data, &settings->source.bytes, how->input, STREAM_BYTES_MAX, error));
+    settings->source.data = data;
+    const adcgs_status status = play(how, settings, failed, error);
     free(data);
     return status;
+}
+
+/** From its first bytes on. */
+static adcgs_status play_pipe(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_feed_open(&settings->source.feed, how->input, error));
+    const adcgs_status status = play(how, settings, failed, error);
+    adcgs_feed_free(&settings->source.feed);
+    return status;
+}
+
+adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_error *error)
+{
+    adcgs_play_settings settings = {.source.path = strcmp(how->input, "-") ? how->input : "stream", .config = how->config,
+                                    .script = how->script, .interrupted = adcgs_interrupted};
+    memcpy(settings.size, how->request.size, sizeof settings.size);
+    return adcgs_pipe_is(how->input) ? play_pipe(how, &settings, failed, error) : play_file(how, &settings, failed, error);
 }
 
 #else

@@ -242,7 +242,7 @@ if [ -f .libs/adcgs_play.so ]; then
 fi
 expect 2 "does nothing else" $dec "$dir/s.adcgs" --play --md5
 expect 2 "needs --play" $dec "$dir/s.adcgs" --script "$dir/script"
-expect 2 "expected a file" $dec - --play
+expect 4 "standard input: ends after 0 bytes" $dec - --play </dev/null
 expect 3 "nowhere" $dec "$dir/nowhere" --play
 expect 3 "nowhere" $dec "$dir/s.adcgs" --play --script "$dir/nowhere"
 expect 4 "script" $dec "$dir/script" --play

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-dec and a stream that comes through a pipe in pieces: frames are written while it does. The next piece is sent when what
-# the last one brings is there. Runs in the build folder.
+# adcgs-dec and a stream that comes through a pipe in pieces: frames are written while it does, the player sharpens. The next piece
+# is sent when what the last one brings is there. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info adcgs-enc adcgs-demo-scene
 dec=$PWD/adcgs-dec
@@ -103,6 +103,12 @@ for options in "" "--time 0:0.15" "--time 0.2" "--time 0.1:1" "--camera 1 --size
     sed 's/^[^:]*: [^:]*: //; s/, [0-9.]* ms each//' "$dir/err" >"$dir/b"
     same a b
 done
+for name in seq-segments seq-gaps seq-duration-unknown seq-duration-longer sys-extras-late keep-chain tiers-keys; do
+    vector=${srcdir:-.}/conformance/vectors/good-$name.adcgs
+    $dec "$vector" --md5 --quiet --size 40x30 >"$dir/wanted" || bad "the vector $name"
+    $dec - --md5 --quiet --size 40x30 <"$vector" >"$dir/out" || bad "the vector $name from a pipe"
+    same out wanted
+done
 $dec "$s" -o "$dir/file.y4m" --quiet
 $dec - -o - --quiet <"$s" >"$dir/live.y4m"
 same live.y4m file.y4m
@@ -135,4 +141,177 @@ send "$s" "$whole"
 await signal2.ppm
 kill -TERM $pid
 end 143 ""
+
+# ---- The player. ----
+
+SDL_VIDEODRIVER=dummy SDL_RENDER_DRIVER=software
+export SDL_VIDEODRIVER SDL_RENDER_DRIVER
+echo quit >"$dir/script"
+$dec - --play --script "$dir/script" <"$s" 2>"$dir/err" || {
+    [ $? -eq 5 ] && { echo "skipped: the player: there is none in this build"; exit $failed; }
+    bad "the player does not start"
+    cat "$dir/err"
+}
+# shows PICTURE OPTIONS...: what adcgs-dec renders with these options of the file.
+shows()
+{
+    picture=$1
+    shift
+    $dec "$s" -o "$dir/wanted.png" --camera 0 --size 128x96 --quiet "$@" || bad "adcgs-dec $*"
+    same "$picture" wanted.png
+}
+play() { begin "$dec" "$@" --play --script script --size 128x96 --camera 0 --threads 2; }
+
+# It opens before there is anything to see, draws the first tier, then both; with a pipe that pauses keys do what they do.
+cat >"$dir/script" <<END
+wait $front bytes
+expect bytes $front
+key h
+expect help 1
+grab nothing.png
+key h
+wait 1 tiers
+expect ended 0
+expect segments 0
+screenshot one.png
+grab coming.png
+wait 2 tiers
+wait $whole bytes
+screenshot two.png
+key -
+expect layers 4
+screenshot less.png
+key +
+screenshot again.png
+wait 1 segments
+wait end
+expect ended 1
+expect segments 2
+expect tiers 2
+key end
+expect frame 7
+screenshot last.png
+wait 1 frames
+quit
+END
+play - --time 0
+send "$s" "$front"
+await nothing.png
+send "$s" "$tier"
+await coming.png
+send "$s" "$whole"
+await again.png
+send "$s" "$size"
+end 0 ""
+[ ! -s "$dir/err" ] || { bad "a message"; cat "$dir/err"; }
+shows one.png --tiers 1 --time 0
+shows less.png --time 0 --layers 4
+shows again.png --time 0
+shows two.png --time 0
+shows last.png --time 0.2333333333
+
+# So does the window by itself, where a line says how much has come unless the bar is off.
+cat >"$dir/script" <<END
+wait 1 tiers
+wait 1 frames
+grab said1.png
+key b
+grab window1.png
+wait $whole bytes
+wait 1 frames
+grab window2.png
+wait end
+key end
+wait 1 frames
+grab window.png
+quit
+END
+play - --time 0
+send "$s" "$tier"
+await window1.png
+send "$s" "$whole"
+await window2.png
+send "$s" "$size"
+end 0 ""
+! cmp -s "$dir/said1.png" "$dir/window1.png" || bad "nothing says how much has come"
+shows window1.png --tiers 1 --time 0
+shows window2.png --time 0
+shows window.png --time 0.2333333333
+
+# Playing waits for what has not come.
+cat >"$dir/script" <<END
+wait 1 tiers
+expect playing 1
+wait 1 seconds
+expect playing 1
+expect frame 3
+grab played.png
+key l
+wait end
+key home
+key space
+wait 3 frames
+quit
+END
+play pipe
+send "$s" "$whole"
+await played.png
+send "$s" "$size"
+end 0 ""
+
+# Damage is said, and what was there stays; so it is with an end that comes early, which is no failure.
+cat >"$dir/script" <<END
+wait end
+wait 1 frames
+screenshot kept.png
+key -
+screenshot kept4.png
+quit
+END
+play - --time 0
+send "$dir/damaged" "$size"
+await kept4.png
+end 4 "^adcgs-dec: standard input: "
+[ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "not one line"; cat "$dir/err"; }
+shows kept.png --time 0
+shows kept4.png --time 0 --layers 4
+rm "$dir/kept.png"
+play - --time 0
+send "$s" "$late"
+end 0 ""
+shows kept.png --time 0
+play - --time 0
+send "$dir/headless" "$front"
+end 4 "^adcgs-dec: standard input: HEAD at byte 8: "
+play -
+send "$s" "$tier"
+exec 3>&-
+end 0 ""
+play -
+send "$s" "$front"
+end 4 "^adcgs-dec: standard input: ends at byte $front, before the base layer"
+
+# It leaves, also while it waits for bytes: by a script, and by a signal.
+printf 'wait 1 tiers\nquit\n' >"$dir/script"
+play -
+send "$s" "$tier"
+while kill -0 $pid 2>/dev/null; do sleep 0.05; done # with the pipe open
+end 0 ""
+printf 'key p\nkey escape\n' >"$dir/script" # before there is a picture
+play -
+send "$s" "$front"
+while kill -0 $pid 2>/dev/null; do sleep 0.05; done
+end 0 ""
+printf 'wait 1 tiers\nscreenshot there.png\n' >"$dir/script"
+play -
+send "$s" "$tier"
+await there.png
+kill -TERM $pid
+end 143 ""
+play -
+send "$s" 100
+kill -TERM $pid
+end 143 ""
+printf 'wait some bytes\n' >"$dir/script"
+expect 2 "line 1 is no command" "$dec" - --play --script "$dir/script" <"$s"
 exit $failed

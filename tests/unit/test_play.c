@@ -208,6 +208,32 @@ static void test_clock(void **state)
     assert_int_equal(adcgs_play_clock_frame(&clock), 0);
 }
 
+/** Of a stream that is still coming: playing waits where it ends, and goes on when there is more. */
+static void test_clock_waits(void **state)
+{
+    adcgs_play_clock clock;
+    adcgs_play_clock_init(&clock, 1.0, INFINITY, 10.0, 0.0);
+    assert_true(clock.frames > 1000000);
+    adcgs_play_clock_toggle(&clock);
+    assert_false(adcgs_play_clock_waits(&clock));
+    clock.reach = -INFINITY;
+    assert_true(adcgs_play_clock_waits(&clock));
+    adcgs_play_clock_tick(&clock, 3.0);
+    assert_int_equal(adcgs_play_clock_frame(&clock), 0);
+    clock.reach = 0.4;
+    adcgs_play_clock_tick(&clock, 3.2);
+    assert_int_equal(adcgs_play_clock_frame(&clock), 2);
+    adcgs_play_clock_tick(&clock, 9.0);
+    assert_true(adcgs_play_clock_waits(&clock) && clock.playing);
+    assert_int_equal(adcgs_play_clock_frame(&clock), 4);
+    clock.reach = INFINITY;
+    adcgs_play_clock_tick(&clock, 9.1);
+    assert_int_equal(adcgs_play_clock_frame(&clock), 5);
+    adcgs_play_clock_span(&clock, 1.0, 1.3); /* it lasts less long than was thought */
+    assert_int_equal(clock.frames, 4);
+    assert_int_equal(adcgs_play_clock_frame(&clock), 3);
+}
+
 static void test_clock_speed(void **state)
 {
     adcgs_play_clock clock;
@@ -545,11 +571,17 @@ static void test_script(void **state)
     assert_true(!strcmp(l[6].text, "time") && l[6].number[0] == 0.5 && l[6].number[1] == 1e-3);
     assert_true(l[7].number[1] == 65.0 && l[8].kind == ADCGS_SCRIPT_QUIT);
     adcgs_script_clear(&script);
+    assert_int_equal(read_script(&script, "wait 3 bytes\nwait 2 tiers\nwait 4 segments\nwait end\n"), ADCGS_OK);
+    assert_true(script.n == 4 && script.lines[0].kind == ADCGS_SCRIPT_WAIT_BYTES && script.lines[0].number[0] == 3.0);
+    assert_true(script.lines[1].kind == ADCGS_SCRIPT_WAIT_TIERS && script.lines[2].kind == ADCGS_SCRIPT_WAIT_SEGMENTS);
+    assert_true(script.lines[3].kind == ADCGS_SCRIPT_WAIT_END);
+    adcgs_script_clear(&script);
 }
 
 static void test_bad_scripts(void **state)
 {
-    static const char *const bad[] = {"jump", "wait", "wait 3", "wait -1 frames", "wait x frames", "drag left 1 2 3", "key",
+    static const char *const bad[] = {"jump", "wait", "wait 3", "wait end 3", "wait 3 end", "wait -1 frames", "wait x frames",
+                                      "drag left 1 2 3", "key",
                                       "drag nose 1 2 3 4", "key enter2", "key shift-", "size 10x10", "size 640", "size 640x480x3",
                                       "size 1e5x70", "screenshot", "grab a b", "expect", "expect time", "expect time 1 2 3",
                                       "expect size 3", "quit now", "wheel nan", "wheel 1e300", "move 1"};
@@ -571,7 +603,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_orbit), cmocka_unit_test(test_orbit_follows_mouse), cmocka_unit_test(test_up),
         cmocka_unit_test(test_pan_and_zoom), cmocka_unit_test(test_fly), cmocka_unit_test(test_view),
-        cmocka_unit_test(test_clock), cmocka_unit_test(test_clock_speed), cmocka_unit_test(test_clock_steps),
+        cmocka_unit_test(test_clock), cmocka_unit_test(test_clock_waits), cmocka_unit_test(test_clock_speed),
+        cmocka_unit_test(test_clock_steps),
         cmocka_unit_test(test_scale), cmocka_unit_test(test_scale_settles), cmocka_unit_test(test_scale_tiers),
         cmocka_unit_test(test_keys),
         cmocka_unit_test(test_repeats), cmocka_unit_test(test_mouse), cmocka_unit_test(test_scrub), cmocka_unit_test(test_flight),
