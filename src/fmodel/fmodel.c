@@ -357,7 +357,8 @@ adcgs_time_rows adcgs_fmodel_time_rows(const adcgs_params *params, float t)
     const float *w = at.weight;
     const int before = at.row > 0, behind = at.row + 2 < rows;
     /* A row that is not there is twice its neighbour less the one beyond. */
-    const float b = w[1] + (before ? 0 : 2 * w[0]) - (behind ? 0 : w[3]), c = w[2] + (behind ? 0 : 2 * w[3]) - (before ? 0 : w[0]);
+    const float b = w[1] + (before ? 0 : 2 * w[0]) - (behind ? 0 : w[3]);
+    const float c = w[2] + (behind ? 0 : 2 * w[3]) - (before ? 0 : w[0]);
     return before ? (adcgs_time_rows){ (int)at.row - 1, 3 + behind, { w[0], b, c, w[3] } } :
                     (adcgs_time_rows){ 0, 2 + behind, { b, c, w[3] } };
 }
