@@ -45,6 +45,7 @@ static void tell_of_demand(const adcgs_decoder *d, adcgs_info *info)
     const adcgs_stream *s = &d->stream;
     const int64_t end = s->duration_ticks >= 0 ? s->start_ticks + s->duration_ticks : adcgs_seek_start(d->seek, n - 1);
     info->segments = (int)n;
+    info->first_segment = 0;
     info->time_start = adcgs_ticks_to_seconds(s, adcgs_seek_start(d->seek, 0));
     info->time_end = adcgs_ticks_to_seconds(s, end);
     info->bytes.total = adcgs_seek_bytes(d->seek);

@@ -69,7 +69,9 @@ static adcgs_status open_stream(adcgs_decoder *d, origin *from, const adcgs_read
     if (d->seek)
         return ADCGS_OK;
     const adcgs_read_fn read = from->read_at ? read_in_order : from->read;
-    return adcgs_stream_read(&d->stream, read, from->read_at ? from : from->user, options, NULL, NULL, error);
+    void *const user = from->read_at ? from : from->user;
+    return options->join ? adcgs_push_read(&d->stream, read, user, options, error) :
+                           adcgs_stream_read(&d->stream, read, user, options, NULL, NULL, error);
 }
 
 /** from: NULL: bytes will be pushed. */
@@ -91,6 +93,7 @@ static adcgs_status open_decoder(adcgs_decoder *d, origin *from, const adcgs_con
         .layers = config->layers,
         .strict_end = config->strict_end,
         .conceal = config->conceal != 0 && from && from->read_at,
+        .join = config->join != 0,
     };
     if (!from) {
         adcgs_stream_init(&d->stream);

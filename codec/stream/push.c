@@ -2,7 +2,13 @@
 /** \file Reading a stream as it comes. */
 #include "stream/push.h"
 
+#include "base/digest.h"
 #include "stream/reader.h"
+
+#define READ_BYTES 65536 /* at a time, of a source */
+
+/** What is looked for before chunks are used. */
+typedef enum search { SEARCH_OVER, SEARCH_HEAD, SEARCH_KEY } search;
 
 struct adcgs_push_reader {
     adcgs_read_options options;
@@ -14,6 +20,7 @@ struct adcgs_push_reader {
     int has_signature, has_start, is_over;
     int64_t start;         /**< tick at which the first segment begins */
     int64_t end_before;    /**< tick at which the segment before the one at hand ends */
+    search search;         /**< of one who joins */
 };
 
 /** What is held, to the reader. */
@@ -75,6 +82,78 @@ static void next_chunk(adcgs_push_reader *p)
     p->wanted = ADCGS_CHUNK_HEADER_BYTES;
 }
 
+/** Chunks with a segment's number, and networks: who waits for a key has no use for them. */
+static int is_of_segment(uint32_t type)
+{
+    return type == ADCGS_TYPE_SEGM || type == ADCGS_TYPE_KEEP || type == ADCGS_TYPE_GEOM || type == ADCGS_TYPE_hash ||
+           type == ADCGS_TYPE_NETW || adcgs_type_layer(type) >= 0;
+}
+
+/** What is held is passed over. */
+static void pass_over(adcgs_push_reader *p, size_t bytes)
+{
+    p->reader.source.pos += bytes;
+    p->n -= bytes;
+    memmove(p->held, p->held + bytes, p->n);
+}
+
+/** Whether what is held begins with the header of a HEAD. */
+static int is_head(const adcgs_push_reader *p, size_t *bytes)
+{
+    adcgs_chunk chunk;
+    if (adcgs_load_le32(p->held) != ADCGS_TYPE_HEAD || adcgs_chunk_header(p->held, 0, &chunk, NULL) != ADCGS_OK)
+        return 0;
+    *bytes = ADCGS_CHUNK_BYTES + chunk.header.length;
+    return chunk.header.length <= ADCGS_HEAD_BYTES_MAX;
+}
+
+static int is_whole(const uint8_t *chunk, size_t bytes)
+{
+    return adcgs_load_le32(chunk + bytes - 4) == adcgs_crc32c(0, chunk + ADCGS_CHUNK_HEADER_BYTES, bytes - ADCGS_CHUNK_BYTES);
+}
+
+/** Somewhere in a stream: go on to the next HEAD, which is used. */
+static adcgs_status search_head(adcgs_push_reader *p, adcgs_arrival *arrived)
+{
+    size_t bytes = 0;
+    int truncated;
+    p->wanted = ADCGS_CHUNK_HEADER_BYTES;
+    while (p->n >= ADCGS_CHUNK_HEADER_BYTES && !is_head(p, &bytes))
+        pass_over(p, 1);
+    if (p->n < ADCGS_CHUNK_HEADER_BYTES)
+        return ADCGS_OK;
+    p->wanted = bytes;
+    if (p->n < bytes)
+        return ADCGS_OK;
+    if (!is_whole(p->held, bytes)) {
+        pass_over(p, p->n);
+        p->wanted = ADCGS_CHUNK_HEADER_BYTES;
+        return ADCGS_OK;
+    }
+    p->search = SEARCH_KEY;
+    p->reader.joined = p->reader.nets.has_gaps = 1;
+    ADCGS_TRY(adcgs_stream_reader_chunk(&p->reader, &truncated));
+    *arrived = ADCGS_ARRIVED_HEADER;
+    next_chunk(p);
+    return ADCGS_OK;
+}
+
+/** A chunk of one who waits for a key: *use 0 if it is passed over. */
+static adcgs_status search_key(adcgs_push_reader *p, int *use)
+{
+    adcgs_chunk chunk;
+    ADCGS_TRY(adcgs_chunk_header(p->held, p->reader.source.pos, &chunk, &p->error));
+    if (chunk.type == ADCGS_TYPE_ENDC)
+        return adcgs_fail(&p->error, ADCGS_ERR_TRUNCATED, "stream: ends before a segment that needs no other");
+    const int is_key = chunk.type == ADCGS_TYPE_SEGM && chunk.header.flags & ADCGS_CHUNK_KEY;
+    *use = is_key || (!is_of_segment(chunk.type) && chunk.type != ADCGS_TYPE_INDX);
+    if (is_key) {
+        p->search = SEARCH_OVER;
+        p->reader.stream->first_segment = chunk.header.segment;
+    }
+    return ADCGS_OK;
+}
+
 /** A header is there: is it one, and how long is its chunk? The reader says so once more, of the same bytes. */
 static adcgs_status measure_chunk(adcgs_push_reader *p)
 {
@@ -86,13 +165,13 @@ static adcgs_status measure_chunk(adcgs_push_reader *p)
 }
 
 /** What a chunk that was used means to those who watch. */
-static adcgs_arrival arrival_of(const adcgs_push_reader *p, uint32_t type, uint32_t segments_before)
+static adcgs_arrival arrival_of(const adcgs_push_reader *p, uint32_t type, int had_head, uint32_t segments_before)
 {
     const adcgs_stream_reader *r = &p->reader;
     if (r->ended)
         return ADCGS_ARRIVED_END;
     if (type == ADCGS_TYPE_HEAD)
-        return ADCGS_ARRIVED_HEADER;
+        return had_head ? ADCGS_ARRIVED_NOTHING : ADCGS_ARRIVED_HEADER;
     if (type == ADCGS_TYPE_cams)
         return ADCGS_ARRIVED_CAMERAS;
     const int draws = adcgs_segment_is_drawable(&r->segment);
@@ -111,7 +190,13 @@ static void note_start(adcgs_push_reader *p, int64_t end_before)
 
 static adcgs_status use_held(adcgs_push_reader *p, adcgs_arrival *arrived)
 {
-    int truncated;
+    int truncated, use = 1;
+    if (!p->has_signature && p->options.join && memcmp(p->held, ADCGS_SIGNATURE, ADCGS_SIGNATURE_BYTES) != 0) {
+        p->has_signature = 1;
+        p->search = SEARCH_HEAD;
+    }
+    if (p->search == SEARCH_HEAD)
+        return search_head(p, arrived);
     if (!p->has_signature) {
         ADCGS_TRY(adcgs_stream_reader_signature(&p->reader));
         p->has_signature = 1;
@@ -120,12 +205,20 @@ static adcgs_status use_held(adcgs_push_reader *p, adcgs_arrival *arrived)
     }
     if (p->n == ADCGS_CHUNK_HEADER_BYTES)
         return measure_chunk(p);
+    if (p->search == SEARCH_KEY)
+        ADCGS_TRY(search_key(p, &use));
+    if (!use) {
+        pass_over(p, p->n);
+        next_chunk(p);
+        return ADCGS_OK;
+    }
     const uint32_t type = adcgs_load_le32(p->held), before = p->reader.stream->n_segments;
     const int64_t end = p->reader.segment.ticks[1];
+    const int had_head = adcgs_push_has_head(p);
     ADCGS_TRY(adcgs_stream_reader_chunk(&p->reader, &truncated));
     if (type == ADCGS_TYPE_SEGM)
         note_start(p, end);
-    *arrived = arrival_of(p, type, before);
+    *arrived = arrival_of(p, type, had_head, before);
     p->is_over = p->reader.ended;
     next_chunk(p);
     return p->is_over ? adcgs_stream_reader_rest(&p->reader) : ADCGS_OK; /* which has nothing left to read, and sums up */
@@ -167,13 +260,58 @@ adcgs_status adcgs_push_take(adcgs_push_reader *p, const uint8_t *data, size_t b
     return pass_on(p, p->error.status, error);
 }
 
+/** Nothing was found of what one who joins needs. */
+static adcgs_status end_search(adcgs_push_reader *p)
+{
+    const unsigned long long bytes = p->reader.source.pos + p->n;
+    if (p->search == SEARCH_HEAD)
+        return adcgs_fail(&p->error, ADCGS_ERR_DATA, "stream: not an adcgs stream, nor is a header of one in its %llu bytes",
+                          bytes);
+    return adcgs_fail(&p->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before a segment that needs no other", bytes);
+}
+
 adcgs_status adcgs_push_finish(adcgs_push_reader *p, adcgs_error *error)
 {
     if (p->error.status == ADCGS_OK && !p->is_over) {
         p->is_over = 1;
-        p->error.status = adcgs_stream_reader_rest(&p->reader);
+        p->error.status = p->search == SEARCH_OVER ? adcgs_stream_reader_rest(&p->reader) : end_search(p);
     }
     return pass_on(p, p->error.status, error);
+}
+
+/** Read what is wanted. *over: the source has ended, or the stream. */
+static adcgs_status read_wanted(adcgs_push_reader *p, adcgs_read_fn read, void *user, int *over)
+{
+    adcgs_arrival arrived = ADCGS_ARRIVED_NOTHING;
+    const size_t wanted = ADCGS_MIN(p->wanted - p->n, (size_t)READ_BYTES);
+    ADCGS_TRY(reserve(p, p->n + wanted));
+    const int64_t got = read(user, p->held + p->n, wanted);
+    if (got < 0 || (uint64_t)got > wanted)
+        return adcgs_fail(&p->error, ADCGS_ERR_IO, "stream: reading failed at byte %llu",
+                          (unsigned long long)(p->reader.source.pos + p->n));
+    p->n += (size_t)got;
+    *over = got == 0;
+    if (p->n == p->wanted)
+        ADCGS_TRY(use_held(p, &arrived));
+    *over |= p->is_over;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_push_read(adcgs_stream *stream, adcgs_read_fn read, void *user, const adcgs_read_options *options,
+                             adcgs_error *error)
+{
+    adcgs_push_reader *p;
+    int over = 0;
+    adcgs_stream_init(stream);
+    ADCGS_TRY(adcgs_push_create(&p, stream, options, error));
+    adcgs_status status = ADCGS_OK;
+    while (status == ADCGS_OK && !over)
+        status = p->error.status = read_wanted(p, read, user, &over);
+    status = status == ADCGS_OK ? adcgs_push_finish(p, error) : pass_on(p, status, error);
+    adcgs_push_free(&p);
+    if (status != ADCGS_OK)
+        adcgs_stream_clear(stream, options->memory);
+    return status;
 }
 
 int adcgs_push_has_head(const adcgs_push_reader *p)

@@ -2,6 +2,9 @@
 /** \file
  * A stream whose bytes come when they come, any number at a time. Each chunk is used when its last byte is there; what a segment
  * has by then can be looked at. What results in the end is what reading in order gives.
+ *
+ * With options->join the beginning may be missing: bytes that are no signature are passed over up to the next HEAD, and chunks
+ * behind that up to the next key. stream->first_segment is then the number of that segment.
  */
 #ifndef ADCGS_STREAM_PUSH_H
 #define ADCGS_STREAM_PUSH_H
@@ -23,6 +26,9 @@ adcgs_status adcgs_push_take(adcgs_push_reader *reader, const uint8_t *data, siz
                              adcgs_error *error);
 /** No more will come: what of the last chunk is there is used, as reading in order does when a stream ends. */
 adcgs_status adcgs_push_finish(adcgs_push_reader *reader, adcgs_error *error);
+/** All of a sequential source, read as adcgs_push_take() would take it, to the end of the stream and not beyond. */
+adcgs_status adcgs_push_read(adcgs_stream *stream, adcgs_read_fn read, void *user, const adcgs_read_options *options,
+                             adcgs_error *error);
 /** Whether HEAD has come. */
 int adcgs_push_has_head(const adcgs_push_reader *reader);
 /** How much of a stream has come. */

@@ -72,6 +72,9 @@ static adcgs_status read_index(adcgs_stream_reader *s, adcgs_parse *p, uint64_t 
 {
     uint32_t n;
     ADCGS_TRY(adcgs_segment_finish(&s->segment, origin, 0));
+    s->indexed |= s->joined;
+    if (s->joined)
+        return ADCGS_OK;
     const adcgs_buffer *expected = &s->segment.index;
     const uint32_t segments = adcgs_stream_reader_segments(s);
     ADCGS_TRY(adcgs_parse_varint(p, "segments", segments, segments, &n));
@@ -92,6 +95,9 @@ static adcgs_status read_end(adcgs_stream_reader *s, adcgs_parse *p, uint64_t or
     ADCGS_TRY(adcgs_segment_finish(&s->segment, origin, 0));
     ADCGS_TRY(adcgs_syn_endc_parse(p, &endc));
     ADCGS_TRY(adcgs_parse_end(p));
+    s->ended = s->joined;
+    if (s->joined)
+        return ADCGS_OK;
     if (endc.file_bytes != s->source.pos)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "ENDC: file_bytes is %llu, but the stream has %llu",
                           (unsigned long long)endc.file_bytes, (unsigned long long)s->source.pos);

@@ -15,6 +15,7 @@ typedef struct adcgs_stream_reader {
     adcgs_net_table nets;
     adcgs_segment segment;
     int indexed, ended;     /**< INDX, ENDC were read */
+    int joined;             /**< in the middle: what INDX and ENDC say of the whole cannot be checked */
     uint32_t crc_of_crcs;   /**< over the chunks before the current one */
     adcgs_trace_fn trace;
     void *trace_user;

@@ -89,6 +89,7 @@ void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
         .truncated = stream->truncated,
         .bytes = stream->bytes,
         .metadata = (int)stream->n_meta,
+        .first_segment = (int)stream->first_segment,
     };
     for (int a = 0; a < 3; a++) {
         info->scene_origin[a] = stream->scene_origin[a];

@@ -34,7 +34,7 @@ typedef struct adcgs_stream {
     uint32_t n_meta;
     adcgs_meta *meta;
     uint32_t n_segments;
-    uint32_t first_segment;        /**< number of segments[0]: 0 but where those before it are not kept */
+    uint32_t first_segment;        /**< number of segments[0]: those before it are not kept, or were missed; else 0 */
     adcgs_model *segments;         /**< [n_segments], in time order; time_start/end in seconds are derived from ticks */
     int truncated;
     uint32_t weights;              /**< of distinct networks; filled by reading and by writing */
@@ -68,6 +68,7 @@ typedef struct adcgs_read_options {
     int layers;            /**< 1..5, 0: all */
     int strict_end;
     int conceal;           /**< slices behind one that is damaged are as if they had not come */
+    int join;              /**< of a stream whose beginning is missing, what comes behind its next HEAD (push.h) */
 } adcgs_read_options;
 
 /** Called for each line of the trace (spec "Trace"), in the caller's thread: absolute bit position, name, value as text. */

@@ -3,22 +3,9 @@
 #include "base/cpu.h"
 #include "base/digest.h"
 #include "model/model_priv.h"
-#include "stream/parts.h"
+#include "stream/writer.h"
 
 #define ENDC_PAYLOAD 12
-
-typedef struct writer {
-    adcgs_stream *stream;
-    adcgs_buffer *out;
-    size_t begin;           /**< of the stream in out */
-    const adcgs_level *limits;
-    uint32_t crc_of_crcs;
-    uint32_t n_nets;        /**< written so far */
-    uint64_t weights;
-    adcgs_cost spent;       /**< of the level's model bytes and work */
-    adcgs_buffer index;     /**< payload of INDX, less the count */
-    adcgs_error *error;
-} writer;
 
 /** The sub-streams of one layer of one segment, one after the other. */
 typedef struct layer_data {
@@ -27,7 +14,7 @@ typedef struct layer_data {
     uint32_t *bytes; /**< [n_slices] */
 } layer_data;
 
-static adcgs_status end_chunk(writer *w, uint32_t type, size_t begin)
+static adcgs_status end_chunk(adcgs_writer *w, uint32_t type, size_t begin)
 {
     const size_t payload = w->out->size - begin - ADCGS_CHUNK_HEADER_BYTES;
     if (w->out->failed)
@@ -42,22 +29,14 @@ static adcgs_status end_chunk(writer *w, uint32_t type, size_t begin)
     return ADCGS_OK;
 }
 
-static uint32_t max_anchors(const adcgs_stream *stream)
-{
-    uint32_t most = 0;
-    for (uint32_t i = 0; i < stream->n_segments; i++)
-        most = ADCGS_MAX(most, stream->segments[i].n);
-    return most;
-}
-
-static adcgs_status write_head(writer *w)
+adcgs_status adcgs_writer_head(adcgs_writer *w)
 {
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_HEAD, 0, 0);
-    ADCGS_TRY(adcgs_head_write(w->out, w->stream, max_anchors(w->stream), w->error));
+    ADCGS_TRY(adcgs_head_write(w->out, w->stream, w->max_anchors, w->error));
     return end_chunk(w, ADCGS_TYPE_HEAD, begin);
 }
 
-static adcgs_status write_extras(writer *w)
+static adcgs_status write_extras(adcgs_writer *w)
 {
     if (w->stream->n_cameras > 0) {
         const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_cams, 0, 0);
@@ -73,7 +52,7 @@ static adcgs_status write_extras(writer *w)
 }
 
 /** Ids for a model's networks, which are sent anew but for those that a predicted one has of the one before. */
-static void assign_ids(writer *w, const adcgs_model *before, const adcgs_model *model, adcgs_role_ids *ids)
+static void assign_ids(adcgs_writer *w, const adcgs_model *before, const adcgs_model *model, adcgs_role_ids *ids)
 {
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const adcgs_net *net = &model->net[role];
@@ -87,7 +66,7 @@ static void assign_ids(writer *w, const adcgs_model *before, const adcgs_model *
 }
 
 /** What a segment's tiers cost, which are one where it is predicted: networks do so once. */
-static void spend_tiers(writer *w, const adcgs_model *model)
+static void spend_tiers(adcgs_writer *w, const adcgs_model *model)
 {
     adcgs_nets_cost nets = { 0, 0 };
     for (int role = 0; role < ADCGS_ROLES; role++)
@@ -104,7 +83,7 @@ static void spend_tiers(writer *w, const adcgs_model *model)
     }
 }
 
-static adcgs_status check_segment(writer *w, const adcgs_model *before, const adcgs_model *model)
+static adcgs_status check_segment(adcgs_writer *w, const adcgs_model *before, const adcgs_model *model)
 {
     const adcgs_level *limits = w->limits;
     spend_tiers(w, model);
@@ -118,7 +97,7 @@ static adcgs_status check_segment(writer *w, const adcgs_model *before, const ad
     return ADCGS_OK;
 }
 
-static adcgs_status encode_slices(writer *w, const adcgs_latents *latents, adcgs_model *model, int layer, layer_data *l)
+static adcgs_status encode_slices(adcgs_writer *w, const adcgs_latents *latents, adcgs_model *model, int layer, layer_data *l)
 {
     const uint32_t slice = 1U << w->stream->slice_log2;
     for (uint32_t i = 0; i < l->n_slices; i++) {
@@ -131,7 +110,7 @@ static adcgs_status encode_slices(writer *w, const adcgs_latents *latents, adcgs
 }
 
 /** Slices from first on, as many as one chunk may hold. \return their number, at least one. */
-static uint32_t slices_per_chunk(const writer *w, const layer_data *l, uint32_t first)
+static uint32_t slices_per_chunk(const adcgs_writer *w, const layer_data *l, uint32_t first)
 {
     uint64_t payload = 10; /* two numbers in front; each slice has a length and a CRC */
     uint32_t n = 0;
@@ -140,7 +119,7 @@ static uint32_t slices_per_chunk(const writer *w, const layer_data *l, uint32_t 
     return n;
 }
 
-static adcgs_status write_layer(writer *w, uint32_t segment, int tier, int layer, const layer_data *l)
+static adcgs_status write_layer(adcgs_writer *w, uint32_t segment, int tier, int layer, const layer_data *l)
 {
     static const uint8_t nothing[1]; /* all slices may be empty, and then the buffer has no bytes either */
     const uint8_t *data = l->data.data ? l->data.data : nothing, *slice = data;
@@ -162,7 +141,7 @@ static adcgs_status write_layer(writer *w, uint32_t segment, int tier, int layer
     return ADCGS_OK;
 }
 
-static adcgs_status write_layers(writer *w, uint32_t segment, int tier, const adcgs_latents *latents, adcgs_model *model)
+static adcgs_status write_layers(adcgs_writer *w, uint32_t segment, int tier, const adcgs_latents *latents, adcgs_model *model)
 {
     layer_data l = { .n_slices = ((model->n - 1) >> w->stream->slice_log2) + 1 };
     adcgs_status status = ADCGS_OK;
@@ -181,7 +160,7 @@ static adcgs_status write_layers(writer *w, uint32_t segment, int tier, const ad
     return status;
 }
 
-static adcgs_status write_features(writer *w, uint32_t segment, int tier, adcgs_model *model)
+static adcgs_status write_features(adcgs_writer *w, uint32_t segment, int tier, adcgs_model *model)
 {
     adcgs_latents *latents = NULL;
     adcgs_cpu_level cpu;
@@ -192,7 +171,7 @@ static adcgs_status write_features(writer *w, uint32_t segment, int tier, adcgs_
     return status;
 }
 
-static adcgs_status write_hash(writer *w, uint32_t segment, const adcgs_model *model)
+static adcgs_status write_hash(adcgs_writer *w, uint32_t segment, const adcgs_model *model)
 {
     uint8_t digest[16];
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_hash, segment, ADCGS_CHUNK_LAST);
@@ -201,7 +180,7 @@ static adcgs_status write_hash(writer *w, uint32_t segment, const adcgs_model *m
     return end_chunk(w, ADCGS_TYPE_hash, begin);
 }
 
-static adcgs_status write_networks(writer *w, uint32_t segment, const adcgs_model *model, const adcgs_role_ids *ids)
+static adcgs_status write_networks(adcgs_writer *w, uint32_t segment, const adcgs_model *model, const adcgs_role_ids *ids)
 {
     const adcgs_net *nets[ADCGS_ROLES];
     uint32_t n = 0;
@@ -216,7 +195,7 @@ static adcgs_status write_networks(writer *w, uint32_t segment, const adcgs_mode
 }
 
 /** Where the anchors of a tier are, or the new ones of a predicted segment, and their latents. */
-static adcgs_status write_anchors(writer *w, uint32_t segment, int tier, adcgs_model *added)
+static adcgs_status write_anchors(adcgs_writer *w, uint32_t segment, int tier, adcgs_model *added)
 {
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_GEOM, segment, ADCGS_CHUNK_OF_TIER(tier));
     ADCGS_TRY(adcgs_geom_write(w->out, added, tier, w->error));
@@ -224,7 +203,7 @@ static adcgs_status write_anchors(writer *w, uint32_t segment, int tier, adcgs_m
     return added->n ? write_features(w, segment, tier, added) : ADCGS_OK;
 }
 
-static adcgs_status write_tiers(writer *w, uint32_t segment, adcgs_model *model)
+static adcgs_status write_tiers(adcgs_writer *w, uint32_t segment, adcgs_model *model)
 {
     adcgs_status status = ADCGS_OK;
     if (!model->finest)
@@ -239,7 +218,7 @@ static adcgs_status write_tiers(writer *w, uint32_t segment, adcgs_model *model)
     return status;
 }
 
-static adcgs_status write_rest(writer *w, uint32_t segment, const adcgs_keep *kept, const adcgs_model *before,
+static adcgs_status write_rest(adcgs_writer *w, uint32_t segment, const adcgs_keep *kept, const adcgs_model *before,
                                const adcgs_model *model)
 {
     adcgs_model rest;
@@ -257,7 +236,7 @@ static adcgs_status write_rest(writer *w, uint32_t segment, const adcgs_keep *ke
     return status;
 }
 
-static adcgs_status write_predicted(writer *w, uint32_t segment, const adcgs_model *before, const adcgs_model *model)
+static adcgs_status write_predicted(adcgs_writer *w, uint32_t segment, const adcgs_model *before, const adcgs_model *model)
 {
     adcgs_keep kept = { .n = 0 };
     adcgs_status status = adcgs_kept_find(&kept, before, model, w->error);
@@ -267,12 +246,25 @@ static adcgs_status write_predicted(writer *w, uint32_t segment, const adcgs_mod
     return status;
 }
 
-static adcgs_status write_segment(writer *w, uint32_t segment)
+/** Bytes of the stream so far. */
+static uint64_t position(const adcgs_writer *w)
 {
-    adcgs_model *model = &w->stream->segments[segment];
-    const adcgs_model *before = model->predicted ? model - 1 : NULL;
+    return w->gone + (w->out->size - w->begin);
+}
+
+/** The segment written last ends here: at the next SEGM, or at INDX. */
+static adcgs_status index_last(adcgs_writer *w)
+{
+    if (w->n_segments == 0)
+        return ADCGS_OK;
+    w->last.bytes = position(w) - w->last.offset;
+    return adcgs_syn_index_write(&w->index, "INDX", &w->last, w->error);
+}
+
+static adcgs_status write_parts(adcgs_writer *w, const adcgs_model *before, adcgs_model *model)
+{
+    const uint32_t segment = w->n_segments;
     adcgs_role_ids ids = { 0 };
-    const size_t origin = w->out->size;
     assign_ids(w, before, model, &ids);
     ADCGS_TRY(check_segment(w, before, model));
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_SEGM, segment, before ? 0 : ADCGS_CHUNK_KEY);
@@ -280,29 +272,35 @@ static adcgs_status write_segment(writer *w, uint32_t segment)
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_SEGM, begin));
     ADCGS_TRY(write_networks(w, segment, model, &ids));
     ADCGS_TRY(before ? write_predicted(w, segment, before, model) : write_tiers(w, segment, model));
-    if (!model->absent) /* nobody would compare it */
-        ADCGS_TRY(write_hash(w, segment, model));
+    return model->absent ? ADCGS_OK : write_hash(w, segment, model); /* else nobody would compare it */
+}
 
-    adcgs_syn_index entry = { .offset = origin - w->begin, .bytes = w->out->size - origin, .key = !before };
-    ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_start, &entry.start_ticks, w->error));
-    ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_end, &entry.end_ticks, w->error));
-    return adcgs_syn_index_write(&w->index, "INDX", &entry, w->error);
+adcgs_status adcgs_writer_segment(adcgs_writer *w, const adcgs_model *before, adcgs_model *model)
+{
+    ADCGS_TRY(index_last(w));
+    w->last = (adcgs_syn_index){ .offset = position(w), .key = !before };
+    ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_start, &w->last.start_ticks, w->error));
+    ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_end, &w->last.end_ticks, w->error));
+    ADCGS_TRY(write_parts(w, before, model));
+    w->n_segments++;
+    return ADCGS_OK;
 }
 
 /** INDX helps nobody in a stream of one segment. */
-static adcgs_status write_index(writer *w)
+static adcgs_status write_index(adcgs_writer *w)
 {
-    if (w->stream->n_segments < 2)
+    if (w->n_segments < 2)
         return ADCGS_OK;
+    ADCGS_TRY(index_last(w));
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_INDX, 0, 0);
-    adcgs_write_varint(w->out, w->stream->n_segments);
+    adcgs_write_varint(w->out, w->n_segments);
     adcgs_write_bytes(w->out, w->index.data, w->index.size);
     return end_chunk(w, ADCGS_TYPE_INDX, begin);
 }
 
-static adcgs_status write_end(writer *w)
+static adcgs_status write_end(adcgs_writer *w)
 {
-    const uint64_t total = w->out->size - w->begin + ADCGS_CHUNK_BYTES + ENDC_PAYLOAD;
+    const uint64_t total = position(w) + ADCGS_CHUNK_BYTES + ENDC_PAYLOAD;
     const adcgs_syn_endc endc = { .file_bytes = total, .crc_of_crcs = w->crc_of_crcs };
     if (total > w->limits->file_bytes)
         return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: %llu bytes exceed level %u", (unsigned long long)total,
@@ -315,72 +313,63 @@ static adcgs_status write_end(writer *w)
     return ADCGS_OK;
 }
 
-static adcgs_status write_chunks(writer *w)
+adcgs_status adcgs_writer_front(adcgs_writer *w)
 {
     adcgs_write_bytes(w->out, ADCGS_SIGNATURE, ADCGS_SIGNATURE_BYTES);
-    ADCGS_TRY(write_head(w));
-    ADCGS_TRY(write_extras(w));
-    for (uint32_t i = 0; i < w->stream->n_segments; i++)
-        ADCGS_TRY(write_segment(w, i));
+    ADCGS_TRY(adcgs_writer_head(w));
+    return write_extras(w);
+}
+
+adcgs_status adcgs_writer_end(adcgs_writer *w)
+{
     ADCGS_TRY(write_index(w));
     return write_end(w);
 }
 
-static adcgs_status write_at_level(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
+void adcgs_writer_init(adcgs_writer *w, adcgs_stream *stream, uint32_t max_anchors, adcgs_buffer *out, adcgs_error *error)
 {
-    writer w = { .stream = stream, .out = out, .begin = out->size, .limits = adcgs_level_get(stream->level), .error = error };
+    *w = (adcgs_writer){ .stream = stream, .max_anchors = max_anchors, .out = out, .begin = out->size,
+                         .limits = adcgs_level_get(stream->level), .error = error };
     memset(&stream->bytes, 0, sizeof stream->bytes);
-    adcgs_buffer_init(&w.index);
-    const adcgs_status status = write_chunks(&w);
-    adcgs_buffer_clear(&w.index);
-    if (status != ADCGS_OK)
-        out->size = w.begin;
-    return status;
+    adcgs_buffer_init(&w->index);
 }
 
-/** Each model by itself, then what the segments must agree on. Derives the stream's span. */
-static adcgs_status check_stream(adcgs_stream *stream, adcgs_error *error)
+void adcgs_writer_clear(adcgs_writer *w)
 {
-    int64_t start = 0, end = 0, last_start = 0, last_end = 0;
-    if (stream->n_segments < 1 || stream->timebase_num < 1 || stream->timebase_den < 1 || stream->level > ADCGS_LEVELS)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: %u segments, timebase %u/%u, level %u, expected some, positive, 0..%d",
-                          stream->n_segments, stream->timebase_num, stream->timebase_den, stream->level, ADCGS_LEVELS);
+    adcgs_buffer_clear(&w->index);
+}
+
+/* ---- Checks ---- */
+
+adcgs_status adcgs_writer_check_head(const adcgs_stream *stream, adcgs_error *error)
+{
+    if (stream->timebase_num < 1 || stream->timebase_den < 1 || stream->level > ADCGS_LEVELS)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: timebase %u/%u, level %u, expected positive, 0..%d",
+                          stream->timebase_num, stream->timebase_den, stream->level, ADCGS_LEVELS);
     if (stream->slice_log2 < ADCGS_SLICE_LOG2_MIN || stream->slice_log2 > ADCGS_SLICE_LOG2_MAX)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: slice_log2 is %u, expected %d..%d", stream->slice_log2,
                           ADCGS_SLICE_LOG2_MIN, ADCGS_SLICE_LOG2_MAX);
-    for (uint32_t i = 0; i < stream->n_segments; i++) {
-        const adcgs_model *model = &stream->segments[i];
-        ADCGS_TRY(adcgs_model_validate(model, error));
-        if (!adcgs_params_equal(&model->params, &stream->params))
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u has other parameters than the stream", i);
-        ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &start, error));
-        ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &end, error));
-        if (model->predicted && i > 0 && model[-1].absent)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u is predicted from one of which tiers are absent", i);
-        if (model->predicted && i == 0)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment is predicted");
-        if (model->predicted && !adcgs_kept_possible(model - 1, model, error))
-            return ADCGS_ERR_USAGE;
-        if (i > 0 && (start <= last_start || start < last_end))
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u starts before the one in front of it ends", i);
-        if (i == 0)
-            stream->start_ticks = start;
-        last_start = start;
-        last_end = end;
-    }
-    stream->duration_ticks = last_end - stream->start_ticks;
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_stream_write(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
+adcgs_status adcgs_writer_check(const adcgs_stream *stream, uint32_t i, const adcgs_model *before, const adcgs_model *model,
+                                int64_t span[2], adcgs_error *error)
 {
-    ADCGS_TRY(check_stream(stream, error));
-    if (stream->level > 0)
-        return write_at_level(stream, out, error);
-    adcgs_status status = ADCGS_ERR_LIMIT;
-    for (int level = 1; level <= ADCGS_LEVELS && status == ADCGS_ERR_LIMIT; level++) {
-        stream->level = (uint8_t)level;
-        status = write_at_level(stream, out, error);
-    }
-    return status;
+    int64_t start = 0, end = 0;
+    ADCGS_TRY(adcgs_model_validate(model, error));
+    if (!adcgs_params_equal(&model->params, &stream->params))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u has other parameters than the stream", i);
+    ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &start, error));
+    ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &end, error));
+    if (model->predicted && !before)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment is predicted");
+    if (model->predicted && before->absent)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u is predicted from one of which tiers are absent", i);
+    if (model->predicted && !adcgs_kept_possible(before, model, error))
+        return ADCGS_ERR_USAGE;
+    if (i > 0 && (start <= span[0] || start < span[1]))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u starts before the one in front of it ends", i);
+    span[0] = start;
+    span[1] = end;
+    return ADCGS_OK;
 }

@@ -315,7 +315,11 @@ static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch,
 static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
     adcgs_live live;
-    adcgs_status status = adcgs_live_open(&live, decoder, s->input, &s->config, &s->request, error);
+    adcgs_config config = s->config;
+    config.join = 1;
+    adcgs_status status = adcgs_live_open(&live, decoder, s->input, &config, &s->request, error);
+    if (status == ADCGS_OK && !adcgs_interrupted())
+        status = adcgs_dec_tell_joined(cli, *decoder, live.pipe.name, error);
     if (status == ADCGS_OK)
         status = adcgs_set_tiers(*decoder, s->tiers, error);
     if (status == ADCGS_OK && !adcgs_interrupted())

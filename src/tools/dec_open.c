@@ -64,6 +64,27 @@ static adcgs_status open_url(adcgs_decoder **decoder, adcgs_http **http, const c
     return status;
 }
 
+adcgs_status adcgs_dec_tell_joined(const adcgs_cli *cli, const adcgs_decoder *decoder, const char *name, adcgs_error *error)
+{
+    adcgs_info info;
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
+    if (info.first_segment > 0)
+        adcgs_cli_note(cli, "%s: joined at segment %d, at %g s", name, info.first_segment, info.time_start);
+    return ADCGS_OK;
+}
+
+/** Standard input, whose beginning may be past; a budget of bytes counts from the first. */
+static adcgs_status open_pipe(adcgs_decoder **decoder, const adcgs_dec_open_config *how, adcgs_error *error)
+{
+    adcgs_config config = *how->config;
+    config.join = how->budget->of != ADCGS_BUDGET_BYTES;
+    const adcgs_dec_open_config joining = {.cli = how->cli, .budget = how->budget, .config = &config};
+    const adcgs_status status = open_in_order(decoder, adcgs_file_read, stdin, &joining, error);
+    if (status != ADCGS_OK)
+        adcgs_error_locate(error, "standard input");
+    return status == ADCGS_OK ? adcgs_dec_tell_joined(how->cli, *decoder, "standard input", error) : status;
+}
+
 adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const char *input, const adcgs_dec_open_config *how,
                             adcgs_error *error)
 {
@@ -73,8 +94,5 @@ adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const ch
     if (strcmp(input, "-"))
         return how->budget->of == ADCGS_BUDGET_BYTES ? open_part(decoder, input, how, error) :
                                                        adcgs_open_file(decoder, input, how->config, error);
-    const adcgs_status status = open_in_order(decoder, adcgs_file_read, stdin, how, error);
-    if (status != ADCGS_OK)
-        adcgs_error_locate(error, "standard input");
-    return status;
+    return open_pipe(decoder, how, error);
 }

@@ -160,6 +160,15 @@ static void push(const uint8_t *data, size_t size, const adcgs_config *config, s
     adcgs_close(&d);
 }
 
+/** From somewhere on, as one who comes late. */
+static void join(const uint8_t *data, size_t size, const adcgs_config *config, size_t step, uint8_t where)
+{
+    adcgs_config how = *config;
+    const size_t at = size * where / 256;
+    how.join = 1;
+    push(data + at, size - at, &how, step);
+}
+
 /** As a damaged stream: one that is whole has no faults, and its models; of any other what is found can be drawn. */
 static void conceal(const uint8_t *data, size_t size, const adcgs_config *config)
 {
@@ -210,6 +219,7 @@ static void decode_both(uint8_t *stream, size_t size, const uint8_t choice[8])
         seek(stream, size, &config);
         conceal(stream, size, &config);
         push(stream, size, &config, steps[choice[5] % 4], choice[4] & 8);
+        join(stream, size, &config, steps[choice[5] % 4], choice[6]);
     }
     if (choice[7] % 4)
         return;

@@ -56,7 +56,8 @@ ADCGS_API adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, 
 
 /**
  * Open a stream from a pipe or any other sequential source, as adcgs_open_file() does a file. It is read in order, once, to the
- * end of the stream and not beyond.
+ * end of the stream and not beyond. With config.join its beginning may be missing: bytes up to the next HEAD are passed over, and
+ * segments up to the next key; info.first_segment says how many were missed. So may it with adcgs_push().
  * \param out receives the decoder; NULL on failure
  * \param read gives the bytes; not called after this call
  * \param user for read

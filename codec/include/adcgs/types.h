@@ -88,6 +88,7 @@ typedef struct adcgs_config {
     void *log_user;        /**< for log */
     int conceal;           /**< nonzero: of a damaged stream what is whole is used, and the log told what is not */
     int on_demand;         /**< nonzero: segments of a file are read when a time is asked for (adcgs_open_file()) */
+    int join;              /**< nonzero: of a stream whose beginning is missing, what follows the next header and key is read */
 } adcgs_config;
 
 /** Bytes of a stream by what they hold (clause "Chunks"). */
@@ -140,6 +141,7 @@ typedef struct adcgs_info {
     double time_drawable;   /**< seconds: the end of what can be drawn by now; minus infinity: nothing can */
     int segments_promised;  /**< that a stream which is pushed will have; 0: its header does not say */
     int tiers_coming;       /**< of the segment that bytes are pushed of, those that can be drawn; 0: none, or there is no such */
+    int first_segment;      /**< number of the first segment that is here: above 0 where config.join missed those before it */
 } adcgs_info;
 
 /** Longest name of a camera, bytes without the zero. */

@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file A stream that grows. */
+#include "stream/grow.h"
+
+#include "stream/writer.h"
+
+#define UNKNOWN (-1) /* duration_ticks */
+
+struct adcgs_grow {
+    adcgs_writer writer;
+    int64_t span[2];      /**< ticks of the segment written last */
+    uint32_t max_anchors; /**< of the segments so far */
+    uint32_t depth;       /**< likewise */
+    uint64_t chunk_bytes; /**< of the longest payload so far */
+};
+
+adcgs_status adcgs_grow_create(adcgs_grow **out, adcgs_stream *stream, uint32_t max_anchors, adcgs_error *error)
+{
+    *out = NULL;
+    if (stream->level < 1 || stream->n_segments > 0)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: level %u and %u segments, expected a level and no segment",
+                          stream->level, stream->n_segments);
+    ADCGS_TRY(adcgs_writer_check_head(stream, error));
+    adcgs_grow *g = adcgs_alloc(NULL, 1, sizeof *g, error);
+    *out = g;
+    if (!g)
+        return adcgs_alloc_status(error);
+    stream->duration_ticks = UNKNOWN;
+    adcgs_buffer none;
+    adcgs_buffer_init(&none);
+    adcgs_writer_init(&g->writer, stream, max_anchors, &none, error);
+    const adcgs_status status = adcgs_head_write(&none, stream, max_anchors, error); /* to learn now that it cannot be */
+    adcgs_buffer_clear(&none);
+    if (status != ADCGS_OK)
+        adcgs_grow_free(out);
+    return status;
+}
+
+void adcgs_grow_free(adcgs_grow **grow)
+{
+    if (!*grow)
+        return;
+    adcgs_writer_clear(&(*grow)->writer);
+    adcgs_free(NULL, *grow);
+    *grow = NULL;
+}
+
+/** The writer goes on in this buffer. */
+static void go_on(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
+{
+    g->writer.out = out;
+    g->writer.begin = out->size;
+    g->writer.error = error;
+}
+
+/** What was appended is the caller's now. Lengths of payloads stand in the headers. */
+static void hand_over(adcgs_grow *g, int has_signature)
+{
+    adcgs_writer *w = &g->writer;
+    for (size_t at = w->begin + (has_signature ? ADCGS_SIGNATURE_BYTES : 0); at < w->out->size;) {
+        const uint32_t length = adcgs_load_le32(w->out->data + at + 4);
+        g->chunk_bytes = ADCGS_MAX(g->chunk_bytes, length);
+        at += ADCGS_CHUNK_BYTES + length;
+    }
+    w->gone += w->out->size - w->begin;
+    w->begin = w->out->size;
+}
+
+static adcgs_status write_segment(adcgs_grow *g, const adcgs_model *before, adcgs_model *model)
+{
+    adcgs_writer *w = &g->writer;
+    if (w->n_segments >= w->limits->segments)
+        return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: more than %u segments, the level's limit", w->limits->segments);
+    if (model->n > w->max_anchors)
+        return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: segment %u has %u anchors, HEAD promises at most %u", w->n_segments,
+                          model->n, w->max_anchors);
+    if (w->n_segments == 0)
+        ADCGS_TRY(adcgs_writer_front(w));
+    else if (!model->predicted)
+        ADCGS_TRY(adcgs_writer_head(w));
+    ADCGS_TRY(adcgs_writer_segment(w, model->predicted ? before : NULL, model));
+    /* There must be room for the end. */
+    const uint64_t end = w->index.size + 3 * ADCGS_CHUNK_BYTES + ADCGS_HEAD_BYTES_MAX;
+    if (w->gone + (w->out->size - w->begin) + end > w->limits->file_bytes)
+        return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: as many bytes as the level allows");
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_grow_segment(adcgs_grow *g, const adcgs_model *before, adcgs_model *model, adcgs_buffer *out,
+                                adcgs_error *error)
+{
+    adcgs_writer *w = &g->writer;
+    int64_t span[2] = { g->span[0], g->span[1] };
+    ADCGS_TRY(adcgs_writer_check(w->stream, w->n_segments, before, model, span, error));
+    if (w->n_segments == 0 && span[0] != w->stream->start_ticks)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment does not begin where the stream does");
+    go_on(g, out, error);
+    const adcgs_writer was = *w;
+    const adcgs_bytes bytes = w->stream->bytes;
+    const size_t index = w->index.size;
+    const adcgs_status status = write_segment(g, before, model);
+    if (status != ADCGS_OK) {
+        const adcgs_buffer grown = w->index; /* its memory may be another */
+        *w = was;
+        w->index = grown;
+        w->index.size = index;
+        w->stream->bytes = bytes;
+        out->size = w->begin;
+        return status;
+    }
+    hand_over(g, was.n_segments == 0);
+    g->span[0] = span[0];
+    g->span[1] = span[1];
+    g->max_anchors = ADCGS_MAX(g->max_anchors, model->n);
+    g->depth = ADCGS_MAX(g->depth, model->depth);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_grow_end(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
+{
+    if (g->writer.n_segments == 0)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: no segments, expected some");
+    go_on(g, out, error);
+    ADCGS_TRY(adcgs_writer_end(&g->writer));
+    hand_over(g, 0);
+    return ADCGS_OK;
+}
+
+uint32_t adcgs_grow_segments(const adcgs_grow *g)
+{
+    return g->writer.n_segments;
+}
+
+/** Whether the stream as it is fits a level. */
+static int fits(const adcgs_grow *g, const adcgs_level *l)
+{
+    const adcgs_writer *w = &g->writer;
+    return g->max_anchors <= l->anchors && w->n_segments <= l->segments && g->depth <= l->depth && w->weights <= l->weights &&
+           w->n_nets <= l->networks && w->gone <= l->file_bytes && g->chunk_bytes <= l->chunk_bytes &&
+           w->spent.bytes <= l->model_bytes && w->spent.work <= l->work;
+}
+
+adcgs_status adcgs_grow_settle(const adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
+{
+    adcgs_stream stream = *g->writer.stream;
+    stream.n_segments = g->writer.n_segments;
+    stream.duration_ticks = g->span[1] - stream.start_ticks;
+    for (stream.level = 1; stream.level < g->writer.stream->level && !fits(g, adcgs_level_get(stream.level)); stream.level++)
+        continue;
+    return adcgs_head_write(out, &stream, g->max_anchors, error);
+}
