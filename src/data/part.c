@@ -2,9 +2,11 @@
 /** \file Parts of a scene in time. */
 #include "data/part.h"
 
+#include "data/clips.h"
 #include "data/sort.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /** Distinct moments of the training views, ascending: n of them. */
 static adcgs_status list_moments(double **out, uint32_t *n, const adcgs_scene *scene, adcgs_error *error)
@@ -115,4 +117,43 @@ void adcgs_scene_part_clear(adcgs_scene *part)
 {
     adcgs_free(NULL, part->views[ADCGS_SPLIT_TRAIN]);
     *part = (adcgs_scene){ .n_times = 0 };
+}
+
+adcgs_status adcgs_scene_part_create(adcgs_scene **out, const adcgs_scene *whole, adcgs_error *error)
+{
+    adcgs_scene *part = *out = calloc(1, sizeof *part);
+    if (!part)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", whole->directory);
+    *part = *whole;
+    part->whole = whole;
+    part->clips = NULL;
+    memset(part->views, 0, sizeof part->views);
+    memset(part->n_views, 0, sizeof part->n_views);
+    return adcgs_clips_create(&part->clips, error);
+}
+
+void adcgs_scene_part_free(adcgs_scene **part)
+{
+    adcgs_scene *p = *part;
+    if (!p)
+        return;
+    for (int s = 0; s < ADCGS_SPLITS; s++) {
+        for (uint32_t i = 0; i < p->n_views[s]; i++)
+            adcgs_scene_view_clear(&p->views[s][i]);
+        free(p->views[s]);
+    }
+    adcgs_clips_free(&p->clips);
+    free(p);
+    *part = NULL;
+}
+
+adcgs_status adcgs_scene_part_moments(adcgs_scene *part, adcgs_error *error)
+{
+    double *moment;
+    part->n_times = 0;
+    if (!part->n_views[ADCGS_SPLIT_TRAIN])
+        return ADCGS_OK;
+    const adcgs_status status = list_moments(&moment, &part->n_times, part, error);
+    adcgs_free(NULL, moment);
+    return status;
 }

@@ -29,6 +29,15 @@ void adcgs_cuts_clear(adcgs_cuts *cuts);
  */
 adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const adcgs_cuts *cuts, uint32_t index,
                               adcgs_error *error);
+/**
+ * A part without views, which its owner appends: they have paths of their own, unlike the others, and so has the part its videos.
+ * All else is shared with the whole. adcgs_scene_part_free() frees it.
+ */
+adcgs_status adcgs_scene_part_create(adcgs_scene **part, const adcgs_scene *whole, adcgs_error *error);
+void adcgs_scene_part_free(adcgs_scene **part);
+/** Count the moments that its views show, once all of them and its duration are set. */
+adcgs_status adcgs_scene_part_moments(adcgs_scene *part, adcgs_error *error);
+
 /** Frees what a part has of its own. */
 void adcgs_scene_part_clear(adcgs_scene *part);
 

@@ -4,6 +4,8 @@
 
 #include "data/by_camera.h"
 #include "encode/quantise.h"
+#include "model/keep.h"
+#include "model/model_priv.h"
 #include "render/render.h"
 #include "stream/input.h"
 #include "train/levels.h"
@@ -126,6 +128,40 @@ void adcgs_encode_place(adcgs_stream *s, const adcgs_cuts *cuts, uint32_t part, 
     to->time_end = adcgs_ticks_to_seconds(s, end);
     s->start_ticks = s->n_segments == 1 ? begin : s->start_ticks;
     s->duration_ticks = end - s->start_ticks;
+}
+
+adcgs_status adcgs_encode_model(adcgs_model *model, const adcgs_stream *s, const adcgs_trainer *t, double begin, double end,
+                                adcgs_error *error)
+{
+    const adcgs_quantise_options options = { .cpu = t->cpu };
+    const adcgs_status status = adcgs_quantise(model, t->f, &options, error);
+    model->time_start = adcgs_ticks_to_seconds(s, nearest_tick(s, begin));
+    model->time_end = adcgs_ticks_to_seconds(s, nearest_tick(s, end));
+    return status;
+}
+
+/** Where nothing moves any more, motion is none that has to be sent: it stays what it was. */
+static adcgs_status keep_motion(adcgs_model *model, const adcgs_model *before, adcgs_error *error)
+{
+    static const int roles[] = { ADCGS_ROLE_COARSE, ADCGS_ROLE_FINE, ADCGS_ROLE_TIME };
+    for (uint32_t i = 0; i < model->n; i++)
+        if (!model->is_static[i])
+            return ADCGS_OK;
+    for (size_t i = 0; i < ADCGS_COUNTOF(roles); i++) {
+        adcgs_net_release(&model->net[roles[i]], NULL);
+        if (before->net[roles[i]].present)
+            ADCGS_TRY(adcgs_net_copy(&model->net[roles[i]], &before->net[roles[i]], NULL, error));
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_encode_predict(adcgs_model *model, const adcgs_model *before, adcgs_error *error)
+{
+    adcgs_error why;
+    if (model->params.time_rows)
+        ADCGS_TRY(keep_motion(model, before, error));
+    model->predicted = (uint8_t)adcgs_kept_possible(before, model, &why);
+    return model->predicted ? adcgs_kept_renew(model, before, error) : ADCGS_OK;
 }
 
 static adcgs_status add_segment(adcgs_stream *s, const adcgs_trainer *t, const adcgs_rdo *rdo, const adcgs_cuts *cuts,

@@ -32,6 +32,11 @@ adcgs_status adcgs_encode_begin(adcgs_stream *stream, const adcgs_scene *scene, 
                                 const adcgs_encode_note *notes, uint32_t n_notes, adcgs_error *error);
 adcgs_status adcgs_encode_segment(adcgs_stream *stream, const adcgs_trainer *trainer, const adcgs_cuts *cuts, uint32_t part,
                                   adcgs_error *error);
+/** The model of a run on a stretch of a scene, for a stream that has the scene's time. The caller clears it. */
+adcgs_status adcgs_encode_model(adcgs_model *model, const adcgs_stream *stream, const adcgs_trainer *trainer, double begin,
+                                double end, adcgs_error *error);
+/** Have a segment that was learnt from the one before be coded by what it shares with it, if it can be. */
+adcgs_status adcgs_encode_predict(adcgs_model *model, const adcgs_model *before, adcgs_error *error);
 void adcgs_encode_place(adcgs_stream *stream, const adcgs_cuts *cuts, uint32_t part, adcgs_model *model);
 
 /** Serialise into out, decode that again and require the same model, byte for byte. */

@@ -172,6 +172,23 @@ adcgs_status adcgs_atomic_commit(adcgs_atomic *atomic, adcgs_error *error)
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_atomic_show(adcgs_atomic *atomic, adcgs_error *error)
+{
+    const int reason = adcgs_file_flush(atomic->file);
+    if (!reason && !atomic->temporary)
+        return ADCGS_OK;
+    if (reason || rename(atomic->temporary, atomic->target)) {
+        const adcgs_status status =
+            adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", atomic->path, strerror(reason ? reason : errno));
+        adcgs_atomic_abort(atomic);
+        return status;
+    }
+    free(atomic->temporary);
+    atomic->temporary = NULL;
+    sync_folder(atomic->target);
+    return ADCGS_OK;
+}
+
 void adcgs_atomic_abort(adcgs_atomic *atomic)
 {
     if (atomic->file)

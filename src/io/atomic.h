@@ -28,6 +28,11 @@ typedef struct adcgs_atomic {
 adcgs_status adcgs_atomic_open(adcgs_atomic *atomic, const char *path, adcgs_error *error);
 /** Sync and rename. On failure nothing is left behind and the file of that name is as it was. Either way it is closed. */
 adcgs_status adcgs_atomic_commit(adcgs_atomic *atomic, adcgs_error *error);
+/**
+ * For a file that grows under its name: what was written so far appears, as adcgs_atomic_commit() has it appear, and what is
+ * written from then on does at once, when it is flushed. On failure it is as if nothing had been opened.
+ */
+adcgs_status adcgs_atomic_show(adcgs_atomic *atomic, adcgs_error *error);
 /** Remove the temporary file. Harmless when nothing is open. */
 void adcgs_atomic_abort(adcgs_atomic *atomic);
 /** Open, write all of the data, commit. */

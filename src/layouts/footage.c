@@ -95,8 +95,14 @@ static int find_number(const char *pattern, size_t *at, size_t *after, int *widt
     return 1;
 }
 
-/** The path of a number, from malloc(). */
-static char *number_path(const char *folder, const char *pattern, int64_t number)
+int adcgs_footage_is_row(const char *pattern)
+{
+    size_t at, after;
+    int width;
+    return strlen(pattern) <= INT_MAX / 2 && find_number(pattern, &at, &after, &width) > 0;
+}
+
+char *adcgs_footage_number(const char *folder, const char *pattern, int64_t number)
 {
     size_t at, after;
     int width;
@@ -109,7 +115,7 @@ static char *number_path(const char *folder, const char *pattern, int64_t number
 static adcgs_status add_picture(adcgs_footage *out, size_t *capacity, const char *folder, const char *pattern, int64_t number,
                                 int *found, adcgs_error *error)
 {
-    char *path = number_path(folder, pattern, number);
+    char *path = adcgs_footage_number(folder, pattern, number);
     if (path && (size_t)out->frames == *capacity) {
         const size_t more = 2 * *capacity + FIRST_CAPACITY;
         char **pictures = realloc(out->pictures, more * sizeof *pictures);
@@ -136,12 +142,12 @@ static adcgs_status add_picture(adcgs_footage *out, size_t *capacity, const char
 static adcgs_status check_gap(const char *folder, const char *pattern, int64_t missing, adcgs_error *error)
 {
     for (int64_t number = missing + 1; number <= missing + GAP_MAX; number++) {
-        char *path = number_path(folder, pattern, number);
+        char *path = adcgs_footage_number(folder, pattern, number);
         const int found = adcgs_is_there(path);
         free(path);
         if (!found)
             continue;
-        char *gap = number_path(folder, pattern, missing);
+        char *gap = adcgs_footage_number(folder, pattern, missing);
         adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such image, but there is number %lld: if they end before, give their count",
                    gap ? gap : pattern, (long long)number);
         free(gap);
@@ -222,6 +228,8 @@ adcgs_status adcgs_footage_add(adcgs_scene *scene, adcgs_split split, const adcg
     ADCGS_TRY(reserve(scene, split, count, path, error));
     for (int64_t i = 0; i < count; i++) {
         const int64_t frame = range->begin + i * adcgs_frames_step(range);
+        if (!footage->video && !footage->pictures[frame])
+            continue;
         adcgs_scene_view view = *like;
         view.time = begin + (double)i * step;
         view.is_video = footage->video != NULL;

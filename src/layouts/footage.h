@@ -7,7 +7,7 @@
 
 typedef struct adcgs_footage {
     char *video;       /**< NULL: pictures */
-    char **pictures;   /**< as many as frames */
+    char **pictures;   /**< as many as frames; NULL: one that is missing, where footage comes as it is taken */
     int64_t frames;
     int width, height; /**< of the video, or of the first picture */
     adcgs_fps rate;   /**< of the video; not known for pictures */
@@ -24,6 +24,10 @@ adcgs_status adcgs_footage_folder(adcgs_footage *out, const char *folder, adcgs_
  */
 adcgs_status adcgs_footage_pattern(adcgs_footage *out, const char *folder, const char *pattern, int64_t first, int64_t count,
                                    adcgs_error *error);
+/** Whether it is such a pattern, with a number in it. */
+int adcgs_footage_is_row(const char *pattern);
+/** The path of a number of such a pattern, from malloc(); NULL without memory. */
+char *adcgs_footage_number(const char *folder, const char *pattern, int64_t number);
 void adcgs_footage_clear(adcgs_footage *footage);
 
 /**

@@ -235,7 +235,7 @@ static adcgs_status read_file(adcgs_scene *scene, const char *path, char **point
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a file, expected the folder of a scene of the kind %s", path,
                           adcgs_dataset_names[options->dataset]);
     if (is_scene_file)
-        return adcgs_scene_file_read(scene, path, &options->frames, !options->points_path, error);
+        return adcgs_scene_file_read(scene, path, &options->frames, !options->points_path, options->taken, error);
     ADCGS_TRY(read_single(scene, path, points_path, error));
     return adcgs_frames_keep(scene, &options->frames, path, error);
 }

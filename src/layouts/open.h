@@ -17,6 +17,7 @@
 #define ADCGS_LAYOUTS_OPEN_H
 
 #include "data/scene.h"
+#include "layouts/footage.h"
 
 /** Kinds of scenes; AUTO: the first of them whose files are there. */
 typedef enum adcgs_dataset {
@@ -40,6 +41,7 @@ typedef struct adcgs_scene_options {
     float background[3];
     adcgs_fps rate;           /**< of the frames that are kept; not known: the scene's, else 30 */
     int dataset;              /**< an adcgs_dataset */
+    const adcgs_footage *taken; /**< of a scene file: as adcgs_scene_file_read() takes it; or NULL */
     adcgs_frame_range frames; /**< of videos, or of the distinct moments of all pictures; the first one kept is time 0 */
 } adcgs_scene_options;
 

@@ -28,6 +28,10 @@ typedef struct reader {
     json_t *root;
     double scale;      /**< of positions */
     adcgs_fps rate;   /**< of the whole file; not known: none */
+    const adcgs_footage *taken; /**< by the next camera for training; NULL: what lies there */
+    int listing;      /**< cameras are listed, their footage is not looked at */
+    adcgs_source_camera *sources; /**< those for training, then */
+    uint32_t n_sources;
 } reader;
 
 static const char *const root_fields[] = {"adcgs_scene", "name", "frame_rate", "scale", "unit", "up", "points", "points_scale",
@@ -58,21 +62,40 @@ static adcgs_status read_whole(const adcgs_json_place *at, const char *field, in
     return ADCGS_OK;
 }
 
+/** Where a camera's frames lie. */
+typedef struct place_of_footage {
+    const char *video, *images;
+    int64_t first, count;
+} place_of_footage;
+
+static adcgs_status find_footage(const adcgs_json_place *at, place_of_footage *where)
+{
+    *where = (place_of_footage){.first = 0};
+    ADCGS_TRY(adcgs_scene_camera_string(at, "video", &where->video));
+    ADCGS_TRY(adcgs_scene_camera_string(at, "images", &where->images));
+    ADCGS_TRY(read_whole(at, "first", &where->first));
+    ADCGS_TRY(read_whole(at, "count", &where->count));
+    if (!where->video == !where->images)
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "video", "expected either video or images");
+    if (where->video && (where->first || where->count))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, where->first ? "first" : "count",
+                              "is of images: for a video there is --frames");
+    return ADCGS_OK;
+}
+
+static const char *folder_of_images(const reader *r, const char *images)
+{
+    return *images == '/' ? "" : r->folder;
+}
+
 static adcgs_status open_footage(const reader *r, const adcgs_json_place *at, adcgs_footage *footage)
 {
-    const char *video, *images;
-    int64_t first = 0, count = 0;
-    ADCGS_TRY(adcgs_scene_camera_string(at, "video", &video));
-    ADCGS_TRY(adcgs_scene_camera_string(at, "images", &images));
-    ADCGS_TRY(read_whole(at, "first", &first));
-    ADCGS_TRY(read_whole(at, "count", &count));
-    if (!video == !images)
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "video", "expected either video or images");
-    if (video && (first || count))
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, first ? "first" : "count", "is of images: for a video there is --frames");
-    if (images)
-        return adcgs_footage_pattern(footage, *images == '/' ? "" : r->folder, images, first, count, r->error);
-    char *path = resolve(r, video);
+    place_of_footage where;
+    ADCGS_TRY(find_footage(at, &where));
+    if (where.images)
+        return adcgs_footage_pattern(footage, folder_of_images(r, where.images), where.images, where.first, where.count,
+                                     r->error);
+    char *path = resolve(r, where.video);
     const adcgs_status status = path ? adcgs_footage_video(footage, path, r->error)
                                      : adcgs_json_bad(at, ADCGS_ERR_MEMORY, "video", "out of memory");
     free(path);
@@ -109,6 +132,15 @@ static adcgs_status scale_pose(const reader *r, const adcgs_json_place *at, doub
     return ADCGS_OK;
 }
 
+/** One that is there. */
+static const char *first_file(const adcgs_footage *footage)
+{
+    int64_t i = 0;
+    while (!footage->video && i + 1 < footage->frames && !footage->pictures[i])
+        i++;
+    return footage->video ? footage->video : footage->pictures[i];
+}
+
 /** The views of a camera whose footage is known, with times in seconds. */
 static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const adcgs_footage *footage)
 {
@@ -117,7 +149,7 @@ static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const
     adcgs_fps rate;
     double offset = 0.0;
     int found;
-    const char *file = footage->video ? footage->video : footage->pictures[0];
+    const char *const file = first_file(footage);
     ADCGS_TRY(adcgs_scene_camera_read(&camera, at));
     ADCGS_TRY(read_split(at, &split));
     ADCGS_TRY(read_rate(r, at, footage, &rate));
@@ -131,7 +163,40 @@ static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const
                              (double)adcgs_frames_step(r->frames) / adcgs_fps_value(rate), file, r->error);
 }
 
-static adcgs_status read_camera(const reader *r, json_t *defaults, json_t *camera, size_t index, json_t *taken)
+/** A camera whose footage is yet to come. */
+static adcgs_status list_camera(reader *r, const adcgs_json_place *at)
+{
+    static const adcgs_footage none;
+    adcgs_source_camera *c = &r->sources[r->n_sources];
+    adcgs_scene_camera camera;
+    place_of_footage where;
+    int found;
+    ADCGS_TRY(adcgs_scene_camera_read(&camera, at)); /* to hear now of what is wrong with it */
+    ADCGS_TRY(find_footage(at, &where));
+    if (where.images && !adcgs_footage_is_row(where.images))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "images", "expected the name of an image with one %%d or %%05d or the like");
+    r->n_sources++;
+    memcpy(c->name, camera.view.camera.name, sizeof c->name);
+    c->video = where.video ? resolve(r, where.video) : NULL;
+    c->folder = where.images ? strdup(folder_of_images(r, where.images)) : NULL;
+    c->images = where.images ? strdup(where.images) : NULL;
+    if (!c->video && !(c->folder && c->images))
+        return adcgs_json_bad(at, ADCGS_ERR_MEMORY, "video", "out of memory");
+    c->first = where.first;
+    c->count = where.count;
+    ADCGS_TRY(read_rate(r, at, &none, &c->rate));
+    if (where.video && !r->rate.den && !adcgs_json_find(at, "frame_rate"))
+        c->rate = (adcgs_fps){0, 0};
+    return adcgs_json_number(at, "time_offset", -1e6, 1e6, &c->offset, &found);
+}
+
+/** What a camera for training took, which somebody says. */
+static adcgs_status take_camera(reader *r, const adcgs_json_place *at)
+{
+    return add_views(r, at, r->taken++);
+}
+
+static adcgs_status read_camera(reader *r, json_t *defaults, json_t *camera, size_t index, json_t *taken)
 {
     const adcgs_json_place at = {
         .path = r->path, .root = defaults, .frame = camera, .index = index, .list = "cameras", .error = r->error};
@@ -144,6 +209,11 @@ static adcgs_status read_camera(const reader *r, json_t *defaults, json_t *camer
         return adcgs_json_bad(&at, ADCGS_ERR_DATA, "name", "%.64s is there twice", name);
     if (name && json_object_set_new(taken, name, json_true()))
         return adcgs_json_bad(&at, ADCGS_ERR_MEMORY, "name", "out of memory");
+    adcgs_split split;
+    if (r->taken || r->sources) {
+        ADCGS_TRY(read_split(&at, &split));
+        return split != ADCGS_SPLIT_TRAIN ? ADCGS_OK : r->sources ? list_camera(r, &at) : take_camera(r, &at);
+    }
     adcgs_status status = open_footage(r, &at, &footage);
     if (status == ADCGS_OK)
         status = add_views(r, &at, &footage);
@@ -151,7 +221,7 @@ static adcgs_status read_camera(const reader *r, json_t *defaults, json_t *camer
     return status;
 }
 
-static adcgs_status read_cameras(const reader *r, const adcgs_json_place *at)
+static adcgs_status read_cameras(reader *r, const adcgs_json_place *at)
 {
     json_t *defaults = json_object_get(r->root, "defaults"), *cameras = json_object_get(r->root, "cameras");
     const size_t n = json_array_size(cameras);
@@ -161,11 +231,15 @@ static adcgs_status read_cameras(const reader *r, const adcgs_json_place *at)
     if (!n || n > CAMERAS_MAX)
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "cameras", "expected an array of 1 to %d cameras", CAMERAS_MAX);
     json_t *taken = json_object();
+    if (r->listing && !(r->sources = calloc(n, sizeof *r->sources))) {
+        json_decref(taken);
+        return adcgs_json_bad(at, ADCGS_ERR_MEMORY, "cameras", "out of memory");
+    }
     adcgs_status status = taken ? ADCGS_OK : adcgs_json_bad(at, ADCGS_ERR_MEMORY, "cameras", "out of memory");
     for (size_t i = 0; status == ADCGS_OK && i < n; i++)
         status = read_camera(r, defaults, json_array_get(cameras, i), i, taken);
     json_decref(taken);
-    if (status == ADCGS_OK && !r->scene->n_views[ADCGS_SPLIT_TRAIN])
+    if (status == ADCGS_OK && !(r->listing ? r->n_sources : r->scene->n_views[ADCGS_SPLIT_TRAIN]))
         status = adcgs_json_bad(at, ADCGS_ERR_DATA, "cameras", "none is for training");
     return status;
 }
@@ -269,22 +343,50 @@ static adcgs_status read_root(reader *r, int with_points)
     ADCGS_TRY(adcgs_scene_camera_string(&at, "name", &name));
     ADCGS_TRY(read_world(r, &at));
     ADCGS_TRY(read_cameras(r, &at));
+    if (r->listing)
+        return ADCGS_OK;
     set_times(r->scene);
     if (r->scene->axes == ADCGS_AXES_UNKNOWN)
         r->scene->axes = adcgs_pose_axes(r->scene->views[ADCGS_SPLIT_TRAIN], r->scene->n_views[ADCGS_SPLIT_TRAIN]);
     return with_points ? read_points(r, &at) : ADCGS_OK;
 }
 
-adcgs_status adcgs_scene_file_read(adcgs_scene *scene, const char *path, const adcgs_frame_range *frames, int with_points,
-                                   adcgs_error *error)
+static adcgs_status read_file(reader *r, int with_points)
 {
-    reader r = {.scene = scene, .error = error, .frames = frames, .path = path};
-    ADCGS_TRY(adcgs_json_load(&r.root, path, error));
-    const char *slash = strrchr(path, '/');
-    r.folder = adcgs_path("%.*s", slash ? (int)(slash - path + 1) : 0, path);
-    const adcgs_status status = r.folder ? read_root(&r, with_points)
-                                         : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    free(r.folder);
-    json_decref(r.root);
+    ADCGS_TRY(adcgs_json_load(&r->root, r->path, r->error));
+    const char *slash = strrchr(r->path, '/');
+    r->folder = adcgs_path("%.*s", slash ? (int)(slash - r->path + 1) : 0, r->path);
+    const adcgs_status status = r->folder ? read_root(r, with_points)
+                                          : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->path);
+    free(r->folder);
+    json_decref(r->root);
     return status;
+}
+
+adcgs_status adcgs_scene_file_read(adcgs_scene *scene, const char *path, const adcgs_frame_range *frames, int with_points,
+                                   const adcgs_footage *taken, adcgs_error *error)
+{
+    reader r = {.scene = scene, .error = error, .frames = frames, .path = path, .taken = taken};
+    return read_file(&r, with_points);
+}
+
+adcgs_status adcgs_source_cameras_read(adcgs_source_camera **out, uint32_t *n, const char *path, adcgs_error *error)
+{
+    adcgs_scene unused = {.n_times = 0};
+    reader r = {.scene = &unused, .error = error, .path = path, .listing = 1};
+    const adcgs_status status = read_file(&r, 0);
+    *out = r.sources;
+    *n = r.n_sources;
+    return status;
+}
+
+void adcgs_source_cameras_free(adcgs_source_camera **cameras, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        free((*cameras)[i].video);
+        free((*cameras)[i].folder);
+        free((*cameras)[i].images);
+    }
+    free(*cameras);
+    *cameras = NULL;
 }

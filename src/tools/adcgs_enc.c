@@ -8,8 +8,10 @@
 #include "io/atomic.h"
 #include "io/json.h"
 #include "layouts/open.h"
+#include "tools/enc_live.h"
 #include "tools/enc_parts.h"
 #include "tools/enc_report.h"
+#include "tools/enc_run.h"
 #include "train/settings.h"
 
 #include <adcgs/adcgs.h>
@@ -20,133 +22,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define KEY_EVERY 10.0 /* seconds from one key to the next, unless given */
-
-typedef struct enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
-    const char *frames, *fps;
-    double lambda, psnr, time_limit, segment, key;
-    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression;
-    int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
-    double started; /* adcgs_seconds() */
-    double checkpoint_every;
-    uint64_t seed, size, memory;
-} enc_options;
-
-/* ---- What the run shows and logs ---- */
-
-typedef struct watcher {
-    const enc_options *o;
-    adcgs_trainer *t;
-    uint32_t segment, segments; /* the one that is learnt, from 0; 0 segments: the scene is not cut */
-    char *base;   /* of what the run leaves while it lasts: the checkpoint, and where the scene is cut those of its segments */
-    char *state;  /* the checkpoint at hand */
-    adcgs_progress progress;
-    FILE *log;
-    double saved;
-    int unsaved; /* the last checkpoint could not be written */
-    adcgs_train_report last;
-    size_t uncompressed_bytes;
-    adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
-    uint32_t next_log; /**< iteration */
-    adcgs_error log_error;
-} watcher;
-
-static void log_last(watcher *w)
-{
-    const adcgs_train_report *r = &w->last;
-    if (!w->log)
-        return;
-    w->next_log = r->iteration + 100;
-    static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
-    adcgs_json line;
-    adcgs_json_init(&line);
-    line.is_line = 1;
-    line.digits = 6;
-    adcgs_json_open(&line, NULL, '{');
-    adcgs_json_string(&line, "stage", r->stage);
-    if (w->segments)
-        adcgs_json_int(&line, "segment", w->segment + 1);
-    adcgs_json_int(&line, "iteration", r->iteration);
-    adcgs_json_int(&line, "of", r->iterations);
-    if (r->iteration) {
-        adcgs_json_real(&line, "loss", r->loss);
-        adcgs_json_real(&line, "psnr", r->psnr);
-    }
-    adcgs_json_int(&line, "anchors", r->anchors);
-    adcgs_json_int(&line, "divide", r->divide);
-    adcgs_json_real(&line, "bytes", round(r->bytes));
-    adcgs_json_real(&line, "lambda", r->lambda);
-    adcgs_json_real(&line, "rate", r->rate);
-    adcgs_json_real(&line, "seconds", r->seconds);
-    adcgs_json_int(&line, "rollbacks", r->rollbacks);
-    adcgs_json_open(&line, "streams", '{');
-    for (int i = 0; i < ADCGS_GROUPS; i++)
-        adcgs_json_real(&line, streams[i], round(r->stream[i]));
-    adcgs_json_close(&line);
-    adcgs_json_close(&line);
-    if (adcgs_json_write(&line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
-        fclose(w->log); /* the run is worth more than its log: it goes on, and says at its end what happened */
-        w->log = NULL;
-    }
-}
-
-/** "  1:05:00 left", or nothing where it is not known. */
-static const char *describe_left(double seconds, char text[32])
-{
-    const unsigned whole = seconds >= 0 && seconds < 1e9 ? (unsigned)seconds : 0;
-    if (whole >= 3600)
-        snprintf(text, 32, "  %u:%02u:%02u left", whole / 3600, whole / 60 % 60, whole % 60);
-    else
-        snprintf(text, 32, "  %u:%02u left", whole / 60, whole % 60);
-    return isnan(seconds) ? "" : text;
-}
-
-/** The run is worth more than its checkpoint: where one cannot be written it goes on, and tries again when the next is due. */
-static void save_now_and_then(watcher *w, double seconds)
-{
-    adcgs_error why = { ADCGS_OK, "" };
-    const int failed = w->unsaved;
-    w->saved = seconds;
-    w->unsaved = adcgs_trainer_save(w->t, w->state, &why) != ADCGS_OK;
-    if (w->unsaved == failed)
-        return;
-    adcgs_progress_clear(&w->progress);
-    if (w->unsaved)
-        adcgs_cli_error(w->progress.cli, ADCGS_OK, "%s; the run goes on, and tries again every %g s", why.text,
-                        w->o->checkpoint_every);
-    else
-        adcgs_cli_note(w->progress.cli, "%s: written again", w->state);
-}
-
-static int observe(void *user, const adcgs_train_report *r)
-{
-    watcher *w = user;
-    char left[32], segment[32] = "";
-    if (w->segments)
-        snprintf(segment, sizeof segment, "%u/%u ", w->segment + 1, w->segments);
-    w->last = *r;
-    if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
-        log_last(w);
-    if (r->iteration)
-        adcgs_progress_show(&w->progress, "%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
-                            r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000,
-                            r->rate, describe_left(r->left, left));
-    if (w->o->checkpoint && r->seconds - w->saved > w->o->checkpoint_every)
-        save_now_and_then(w, r->seconds);
-    return adcgs_interrupted();
-}
-
-static int loading(void *user, uint32_t done, uint32_t n)
-{
-    watcher *w = user;
-    adcgs_progress_show(&w->progress, "pictures  %6u/%u", done, n);
-    return adcgs_interrupted() && !w->t->iteration; /* later there is a run to save, which it is once they are loaded */
-}
-
 /* ---- Configuration ---- */
 
-static adcgs_status configure(adcgs_train_config *c, const enc_options *o, adcgs_cpu_level cpu, adcgs_error *error)
+static adcgs_status configure(adcgs_train_config *c, const adcgs_enc_options *o, adcgs_cpu_level cpu, adcgs_error *error)
 {
     if (o->bf16)
         ADCGS_TRY(adcgs_bf16_check(cpu, error));
@@ -194,7 +72,7 @@ static adcgs_status check_writable(const char *path, adcgs_error *error)
 }
 
 /** The model as plain numbers, next to the stream. */
-static adcgs_status write_uncompressed(watcher *w, const adcgs_model *model, adcgs_error *error)
+static adcgs_status write_uncompressed(adcgs_enc_watcher *w, const adcgs_model *model, adcgs_error *error)
 {
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
@@ -206,41 +84,11 @@ static adcgs_status write_uncompressed(watcher *w, const adcgs_model *model, adc
     return status;
 }
 
-/** What the stream tells of how it was made. */
-typedef struct notes {
-    adcgs_encode_note list[6];
-    uint32_t n;
-    char seed[32], lambda[32], iterations[32];
-} notes;
-
-/** changes: settings that are not the preset's, "" for none. */
-static void take_notes(notes *n, const adcgs_trainer *t, const char *changes)
+static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_watcher *w, adcgs_pool *pool, adcgs_error *error)
 {
-    snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
-    snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
-    snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
-    const adcgs_encode_note list[ADCGS_COUNTOF(n->list)] = {
-        { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
-        { "iterations", n->iterations }, { "seed", n->seed },     { "settings", changes },
-    };
-    memcpy(n->list, list, sizeof list);
-    n->n = ADCGS_COUNTOF(list) - !*changes;
-}
-
-/** The bytes that the run's file would have. */
-static adcgs_status measure(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *error)
-{
-    const watcher *w = user;
-    notes n;
-    take_notes(&n, t, (const char *)w->changes.data);
-    return adcgs_encode_bytes(bytes, t, -1, n.list, n.n, error);
-}
-
-static adcgs_status write_stream(adcgs_stream *stream, watcher *w, adcgs_pool *pool, adcgs_error *error)
-{
-    notes n;
+    adcgs_enc_notes n;
     adcgs_buffer bytes;
-    take_notes(&n, w->t, (const char *)w->changes.data);
+    adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
     adcgs_buffer_init(&bytes);
     if (w->o->uncompressed)
         adcgs_raw_prepare(w->t->f);
@@ -259,7 +107,7 @@ static adcgs_status write_stream(adcgs_stream *stream, watcher *w, adcgs_pool *p
 }
 
 /** No output may take another's place. */
-static adcgs_status check_distinct(const enc_options *o, adcgs_error *error)
+static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *error)
 {
     const char *const names[] = { o->output, o->beginning, o->uncompressed, o->checkpoint, o->log };
     const char *const options[] = { "output", "beginning", "uncompressed", "checkpoint", "log" };
@@ -273,89 +121,17 @@ static adcgs_status check_distinct(const enc_options *o, adcgs_error *error)
 
 /* ---- The run ---- */
 
-/** What the run is for: the stream, or the state before lambda matters. */
-static const char *target(const enc_options *o)
-{
-    return o->beginning ? o->beginning : o->output;
-}
-
-static adcgs_status stop_early(const adcgs_cli *cli, watcher *w, adcgs_error *error)
-{
-    ADCGS_TRY(adcgs_trainer_save(w->t, w->state, error));
-    if (w->segments)
-        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; go on with the same command and --resume %s",
-                        w->t->iteration, w->segment + 1, w->segments, w->base);
-    else
-        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration,
-                        w->base);
-    return ADCGS_OK;
-}
-
-/** state: a checkpoint to go on from, or NULL. */
-static adcgs_status train(const adcgs_cli *cli, watcher *w, const char *state, adcgs_error *error)
-{
-    int stopped;
-    if (state)
-        ADCGS_TRY(adcgs_trainer_load(w->t, state, error));
-    if (w->o->beginning && w->t->lambda_used)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: this run is past its beginning", state);
-    w->t->until_lambda = w->o->beginning != NULL;
-    w->saved = w->t->elapsed;
-    adcgs_interrupt_catch();
-    const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
-    adcgs_progress_clear(&w->progress);
-    if (w->last.stage && w->last.iteration + 100 != w->next_log)
-        log_last(w);
-    ADCGS_TRY(status);
-    if (!stopped)
-        return ADCGS_OK;
-    if (w->o->beginning && !adcgs_interrupted())
-        return adcgs_trainer_save(w->t, w->o->beginning, error);
-    ADCGS_TRY(stop_early(cli, w, error));
-    return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", target(w->o));
-}
-
-/** What a run is given. */
-typedef struct enc_job {
-    const adcgs_cli *cli;
-    const enc_options *o;
-    adcgs_scene *scene;
-    adcgs_cuts cuts; /* n 0: the scene is not cut */
-    uint8_t *follows; /* [cuts.n] 1: the part is learnt from the one before */
-    adcgs_train_config config;
-    adcgs_cpu_level cpu;
-    adcgs_pool *pool;
-} enc_job;
-
-/**
- * Learn a scene, or a part of it, which goes on with the model before unless that is NULL. started: adcgs_seconds() from which
- * its time counts.
- */
-static adcgs_status learn(watcher *w, const enc_job *job, const adcgs_scene *scene, const adcgs_model *before, const char *state,
-                          double started, adcgs_error *error)
-{
-    ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, before, job->cpu, job->pool, error));
-    w->t->quantise = adcgs_encode_quantise_hook;
-    w->t->measure = measure;
-    w->t->measure_user = w;
-    w->t->picture_memory = job->o->memory;
-    w->t->loading = loading;
-    w->t->loading_user = w;
-    w->t->started = started;
-    return train(job->cli, w, state, error);
-}
-
-static adcgs_status report(watcher *w, const enc_job *job, double seconds, int *met, adcgs_error *error)
+static adcgs_status report(adcgs_enc_watcher *w, const adcgs_enc_job *job, double seconds, int *met, adcgs_error *error)
 {
     return adcgs_enc_report_print(job->cli, &(adcgs_enc_report){ job->o->output, &job->config, job->cpu, job->scene, w->last,
                                                                  seconds, w->uncompressed_bytes, job->o->threads, job->o->json },
                                   met, error);
 }
 
-static adcgs_status encode_whole(watcher *w, const enc_job *job, int *met, adcgs_error *error)
+static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
     adcgs_stream stream;
-    ADCGS_TRY(learn(w, job, job->scene, NULL, job->o->resume, job->o->started, error));
+    ADCGS_TRY(adcgs_enc_learn(w, job, job->scene, NULL, NULL, job->o->resume, job->o->started, error));
     if (!job->o->output)
         return ADCGS_OK;
     adcgs_stream_init(&stream);
@@ -367,7 +143,7 @@ static adcgs_status encode_whole(watcher *w, const enc_job *job, int *met, adcgs
 /* ---- Segments ---- */
 
 /** Segments share their parameters, so all have a time table of as many rows as the shortest can have. */
-static adcgs_status cut_scene(enc_job *job, adcgs_error *error)
+static adcgs_status cut_scene(adcgs_enc_job *job, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_cuts_find(&job->cuts, job->scene, job->o->segment, error));
     if (job->cuts.n == 1)
@@ -376,7 +152,7 @@ static adcgs_status cut_scene(enc_job *job, adcgs_error *error)
     job->follows = adcgs_alloc(NULL, job->cuts.n, sizeof *job->follows, error);
     if (!job->follows)
         return adcgs_alloc_status(error);
-    const double *at = job->cuts.at, every = job->o->has_key ? job->o->key : KEY_EVERY;
+    const double *at = job->cuts.at, every = job->o->has_key ? job->o->key : ADCGS_ENC_KEY_EVERY;
     for (uint32_t i = 1, key = 0; i < job->cuts.n; i++) {
         job->follows[i] = at[i + 1] - at[key] <= every + 1e-6;
         key = job->follows[i] ? key : i;
@@ -385,30 +161,30 @@ static adcgs_status cut_scene(enc_job *job, adcgs_error *error)
 }
 
 /** The notes of a run that has ended, but for lambda. */
-static void expect_notes(notes *n, const watcher *w, const enc_job *job)
+static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const adcgs_enc_job *job)
 {
     const adcgs_trainer ended = { .config = job->config, .iteration = job->config.iterations };
-    take_notes(n, &ended, (const char *)w->changes.data);
+    adcgs_enc_take_notes(n, &ended, (const char *)w->changes.data);
 }
 
 /** Learn the part that w->segment says, from its checkpoint if there is one, and leave its stream on the disk. */
-static adcgs_status encode_part(watcher *w, const enc_job *job, double *seconds, adcgs_error *error)
+static adcgs_status encode_part(adcgs_enc_watcher *w, const adcgs_enc_job *job, double *seconds, adcgs_error *error)
 {
     adcgs_scene part;
     adcgs_model before = { .n = 0 };
-    notes n;
+    adcgs_enc_notes n;
     const int follows = job->follows[w->segment];
     ADCGS_TRY(adcgs_scene_part(&part, job->scene, &job->cuts, w->segment, error));
     w->next_log = 0;
     adcgs_status status =
         follows ? adcgs_enc_part_model(&before, w->base, w->segment - 1, job->cpu, job->pool, error) : ADCGS_OK;
     if (status == ADCGS_OK)
-        status = learn(w, job, &part, follows ? &before : NULL,
+        status = adcgs_enc_learn(w, job, &part, follows ? &before : NULL, NULL,
                        job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_seconds(), error);
     adcgs_model_clear(&before, NULL);
     *seconds += w->last.seconds;
     if (status == ADCGS_OK) {
-        take_notes(&n, w->t, (const char *)w->changes.data);
+        adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
         status = adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
     }
     adcgs_trainer_free(&w->t);
@@ -416,9 +192,9 @@ static adcgs_status encode_part(watcher *w, const enc_job *job, double *seconds,
     return status;
 }
 
-static adcgs_status encode_parts(watcher *w, const enc_job *job, double *seconds, adcgs_error *error)
+static adcgs_status encode_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, double *seconds, adcgs_error *error)
 {
-    notes expected;
+    adcgs_enc_notes expected;
     expect_notes(&expected, w, job);
     for (w->segment = 0; w->segment < w->segments; w->segment++) {
         int found = 0;
@@ -434,7 +210,7 @@ static adcgs_status encode_parts(watcher *w, const enc_job *job, double *seconds
     return ADCGS_OK;
 }
 
-static adcgs_status write_parts(watcher *w, const enc_job *job, adcgs_error *error)
+static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
 {
     adcgs_stream stream;
     adcgs_buffer bytes;
@@ -452,7 +228,7 @@ static adcgs_status write_parts(watcher *w, const enc_job *job, adcgs_error *err
     return status;
 }
 
-static adcgs_status encode_segments(watcher *w, const enc_job *job, int *met, adcgs_error *error)
+static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
     double seconds = 0;
     w->segments = job->cuts.n;
@@ -464,9 +240,9 @@ static adcgs_status encode_segments(watcher *w, const enc_job *job, int *met, ad
 /* ---- The program ---- */
 
 /** Learn, before anything long begins, what is wrong with the options. */
-static adcgs_status prepare(enc_job *job, watcher *w, adcgs_scene_options *scene, adcgs_error *error)
+static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scene_options *scene, adcgs_error *error)
 {
-    const enc_options *o = job->o;
+    const adcgs_enc_options *o = job->o;
     ADCGS_TRY(adcgs_cpu_resolve((adcgs_cpu_level)o->cpu, &job->cpu, error));
     if (o->frames)
         ADCGS_TRY(adcgs_frames_parse(&scene->frames, o->frames, error));
@@ -476,18 +252,20 @@ static adcgs_status prepare(enc_job *job, watcher *w, adcgs_scene_options *scene
     ADCGS_TRY(configure(&job->config, o, job->cpu, error));
     ADCGS_TRY(check_distinct(o, error));
     ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
-    ADCGS_TRY(check_writable(target(o), error));
+    if (o->live)
+        return ADCGS_OK;
+    ADCGS_TRY(check_writable(adcgs_enc_target(o), error));
     if (o->checkpoint)
         ADCGS_TRY(check_writable(o->checkpoint, error));
     return o->uncompressed ? check_writable(o->uncompressed, error) : ADCGS_OK;
 }
 
 /** Where a run keeps its state: with --checkpoint there, else where it went on from, else beside its output. */
-static adcgs_status name_base(watcher *w, adcgs_error *error)
+static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
 {
-    const enc_options *o = w->o;
+    const adcgs_enc_options *o = w->o;
     const char *given = o->checkpoint ? o->checkpoint : o->has_segment ? o->resume : NULL;
-    const char *const name = given ? given : target(o);
+    const char *const name = given ? given : adcgs_enc_target(o);
     const size_t n = strlen(name) + 16;
     w->base = malloc(n);
     w->state = malloc(n);
@@ -498,27 +276,29 @@ static adcgs_status name_base(watcher *w, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static adcgs_status run(enc_job *job, watcher *w, int *met, adcgs_error *error)
+static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcgs_error *error)
 {
-    const enc_options *o = job->o;
+    const adcgs_enc_options *o = job->o;
     adcgs_scene_options scene = { .points_path = o->points, .dataset = o->dataset };
     ADCGS_TRY(prepare(job, w, &scene, error));
+    w->log = o->log ? fopen(o->log, o->resume ? "a" : "w") : NULL;
+    if (o->log && !w->log)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
+    if (o->live)
+        return adcgs_enc_live(w, job, error);
     ADCGS_TRY(name_base(w, error));
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     adcgs_progress_show(&w->progress, "scene     %u views for training, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
                         adcgs_seconds() - o->started);
     if (o->has_segment)
         ADCGS_TRY(cut_scene(job, error));
-    w->log = o->log ? fopen(o->log, o->resume ? "a" : "w") : NULL;
-    if (o->log && !w->log)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
     return job->cuts.n > 1 ? encode_segments(w, job, met, error) : encode_whole(w, job, met, error);
 }
 
-static adcgs_status encode(const adcgs_cli *cli, const enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
+static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
 {
-    enc_job job = { .cli = cli, .o = o, .pool = pool };
-    watcher w = { .o = o };
+    adcgs_enc_job job = { .cli = cli, .o = o, .pool = pool };
+    adcgs_enc_watcher w = { .o = o };
     adcgs_progress_init(&w.progress, cli);
     adcgs_buffer_init(&w.changes);
     const adcgs_status status = run(&job, &w, met, error);
@@ -548,7 +328,7 @@ static const adcgs_cli program = {
     .max_operands = 1,
 };
 
-static int list_settings(const adcgs_cli *cli, const enc_options *o)
+static int list_settings(const adcgs_cli *cli, const adcgs_enc_options *o)
 {
     adcgs_train_config config;
     adcgs_error error;
@@ -558,8 +338,26 @@ static int list_settings(const adcgs_cli *cli, const enc_options *o)
     return adcgs_cli_leave(cli, 0);
 }
 
+/** What --live goes with; as parse(). */
+static int check_live(const adcgs_cli *cli, adcgs_enc_options *o, const char *scene)
+{
+    o->scene = scene;
+    if (!o->has_segment)
+        o->segment = ADCGS_ENC_LIVE_SEGMENT;
+    if (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0 || o->frames || o->fps ||
+        o->checkpoint || o->resume || o->dataset)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--live excludes --size, --psnr, --beginning, --uncompressed, --time-limit, "
+                               "--frames, --fps, --checkpoint, --resume and --dataset");
+    if (o->has_delay && o->delay <= o->segment)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay %g: a segment of %g s is learnt when its end was filmed: give more "
+                               "than that, or a shorter --segment", o->delay, o->segment);
+    if (o->json && !strcmp(o->output, "-"))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--json and -o - both want standard output");
+    return -1;
+}
+
 /** -1 to go on, else the exit code to leave with. */
-static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
+static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
 {
     const adcgs_setting *const lambda = adcgs_setting_find("lambda"), *const iterations = adcgs_setting_find("iterations");
     const adcgs_setting *const scale = adcgs_setting_find("scale"), *const seed = adcgs_setting_find("seed");
@@ -602,6 +400,12 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
         { "key", 0, ADCGS_OPTION_REAL, &o->key, 0, 1e6, "S",
           "with --segment: at least every S seconds a segment that needs\nno other, where playing can begin (default 10)", NULL,
           &o->has_key },
+        { "live", 0, ADCGS_OPTION_FLAG, &o->live, 0, 0, NULL,
+          "learn footage while it comes: SCENE is a scene file, or a\nfolder with scene.json; segments, of 2 s unless --segment\n"
+          "says otherwise, are written as they are done; -o - writes to\nstandard output", NULL, NULL },
+        { "delay", 0, ADCGS_OPTION_REAL, &o->delay, 1e-3, 1e6, "S",
+          "with --live: have all written within S seconds from when it\nwas filmed; effort falls if need be", NULL,
+          &o->has_delay },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
           "leave out coarse, fine, deformation (both), rate,\ndensification, anchors, removal or weight_steps", NULL, NULL },
         { "uncompressed", 0, ADCGS_OPTION_STRING, &o->uncompressed, 0, 0, "FILE",
@@ -658,6 +462,10 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
                                                                   "no output: give -o FILE");
     if (o->has_lambda + o->has_size + o->has_psnr > 1)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
+    if (o->live)
+        return check_live(cli, o, argv[first]);
+    if (o->has_delay)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay is for what is live: give --live, too");
     if (o->has_key && !o->has_segment)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--key is for segments: give --segment, too");
     if (o->has_segment && (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0))
@@ -669,7 +477,7 @@ static int parse(adcgs_cli *cli, enc_options *o, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    enc_options o = { .preset = "fast", .checkpoint_every = 60, .started = adcgs_seconds() };
+    adcgs_enc_options o = { .preset = "fast", .checkpoint_every = 60, .started = adcgs_seconds() };
     adcgs_cli cli = program;
     const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)

@@ -3,7 +3,6 @@
 #include "tools/enc_parts.h"
 
 #include "io/atomic.h"
-#include "model/keep.h"
 #include "model/model_priv.h"
 #include "stream/input.h"
 
@@ -158,38 +157,13 @@ adcgs_status adcgs_enc_part_model(adcgs_model *model, const char *base, uint32_t
     return status;
 }
 
-/** Where nothing moves any more, motion is none that has to be sent: it stays what it was. */
-static adcgs_status keep_motion(adcgs_model *model, const adcgs_model *before, adcgs_error *error)
-{
-    static const int roles[] = { ADCGS_ROLE_COARSE, ADCGS_ROLE_FINE, ADCGS_ROLE_TIME };
-    for (uint32_t i = 0; i < model->n; i++)
-        if (!model->is_static[i])
-            return ADCGS_OK;
-    for (size_t i = 0; i < ADCGS_COUNTOF(roles); i++) {
-        adcgs_net_release(&model->net[roles[i]], NULL);
-        if (before->net[roles[i]].present)
-            ADCGS_TRY(adcgs_net_copy(&model->net[roles[i]], &before->net[roles[i]], NULL, error));
-    }
-    return ADCGS_OK;
-}
-
-/** A part that was learnt from the one before is coded by what it shares with it. */
-static adcgs_status predict(adcgs_model *model, const adcgs_model *before, adcgs_error *error)
-{
-    adcgs_error why;
-    if (model->params.time_rows)
-        ADCGS_TRY(keep_motion(model, before, error));
-    model->predicted = (uint8_t)adcgs_kept_possible(before, model, &why);
-    return model->predicted ? adcgs_kept_renew(model, before, error) : ADCGS_OK;
-}
-
 static adcgs_status join_one(adcgs_stream *stream, const char *base, const adcgs_cuts *cuts, uint32_t part, int follows,
                              adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
 {
     adcgs_stream one;
     adcgs_status status = load_part(&one, base, part, cpu, pool, error);
     if (status == ADCGS_OK && follows)
-        status = predict(&one.segments[0], &stream->segments[part - 1], error);
+        status = adcgs_encode_predict(&one.segments[0], &stream->segments[part - 1], error);
     if (status == ADCGS_OK) {
         adcgs_encode_place(stream, cuts, part, &one.segments[0]);
         if (part + 1 == cuts->n)

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Runs that end one after the other, to a stream that grows. */
+#include "encode/live.h"
+
+#include "model/model_priv.h"
+#include "stream/push.h"
+
+#define LEVEL 3 /* nobody knows how long it will be */
+
+/** Hand what was written to the reader. */
+static adcgs_status read_back(adcgs_encode_live *e, const adcgs_buffer *out, size_t begin, adcgs_error *error)
+{
+    for (size_t at = begin; at < out->size;) {
+        size_t used;
+        adcgs_arrival arrived;
+        ADCGS_TRY(adcgs_push_take(e->reader, out->data + at, out->size - at, &used, &arrived, error));
+        at += used;
+    }
+    return ADCGS_OK;
+}
+
+/** What was read of the segment that came last is what was written. */
+static adcgs_status compare(const adcgs_encode_live *e, const adcgs_model *written, adcgs_error *error)
+{
+    adcgs_model read;
+    adcgs_error difference;
+    int drawable;
+    ADCGS_TRY(adcgs_push_peek(e->reader, &read, &drawable, error));
+    const int same = drawable && adcgs_model_equal(written, &read, &difference);
+    adcgs_model_clear(&read, NULL);
+    return same     ? ADCGS_OK :
+           drawable ? adcgs_fail(error, ADCGS_ERR_INTERNAL, "the segment written decodes to another model: %s", difference.text) :
+                      adcgs_fail(error, ADCGS_ERR_INTERNAL, "the segment written cannot be decoded");
+}
+
+/** Of the models that were read, the last is enough to go on. */
+static void forget(adcgs_stream *back)
+{
+    while (back->n_segments > 1) {
+        adcgs_model_clear(&back->segments[0], NULL);
+        memmove(&back->segments[0], &back->segments[1], --back->n_segments * sizeof *back->segments);
+        memset(&back->segments[back->n_segments], 0, sizeof *back->segments);
+        back->first_segment++;
+    }
+}
+
+adcgs_status adcgs_encode_live_open(adcgs_encode_live *e, const adcgs_scene *whole, const adcgs_cuts *cuts,
+                                    uint32_t max_anchors, const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu,
+                                    adcgs_pool *pool, adcgs_error *error)
+{
+    const adcgs_read_options options = { .cpu = cpu, .pool = pool };
+    *e = (adcgs_encode_live){ .max_anchors = max_anchors };
+    adcgs_stream_init(&e->back);
+    ADCGS_TRY(adcgs_encode_begin(&e->front, whole, cuts, notes, n_notes, error));
+    e->front.level = LEVEL;
+    return adcgs_push_create(&e->reader, &e->back, &options, error);
+}
+
+/** The first segment says what all have in common. */
+static adcgs_status begin(adcgs_encode_live *e, adcgs_model *model, adcgs_error *error)
+{
+    if (e->grow)
+        return ADCGS_OK;
+    model->predicted = 0;
+    e->front.params = model->params;
+    ADCGS_TRY(adcgs_seconds_to_ticks(&e->front, model->time_start, &e->front.start_ticks, error));
+    return adcgs_grow_create(&e->grow, &e->front, ADCGS_MAX(e->max_anchors, model->n), error);
+}
+
+adcgs_status adcgs_encode_live_add(adcgs_encode_live *e, adcgs_model *model, adcgs_buffer *out, adcgs_error *error)
+{
+    const size_t size = out->size;
+    ADCGS_TRY(begin(e, model, error));
+    ADCGS_TRY(adcgs_grow_segment(e->grow, e->model.n ? &e->model : NULL, model, out, error));
+    adcgs_status status = read_back(e, out, size, error);
+    if (status == ADCGS_OK)
+        status = compare(e, model, error);
+    if (status != ADCGS_OK) {
+        out->size = size;
+        error->status = ADCGS_ERR_INTERNAL;
+        return ADCGS_ERR_INTERNAL;
+    }
+    forget(&e->back);
+    adcgs_model_clear(&e->model, NULL);
+    e->model = *model;
+    memset(model, 0, sizeof *model);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_encode_live_end(adcgs_encode_live *e, adcgs_buffer *out, adcgs_error *error)
+{
+    const size_t begin = out->size;
+    ADCGS_TRY(adcgs_grow_end(e->grow, out, error));
+    return read_back(e, out, begin, error);
+}
+
+void adcgs_encode_live_clear(adcgs_encode_live *e)
+{
+    adcgs_grow_free(&e->grow);
+    adcgs_push_free(&e->reader);
+    adcgs_stream_clear(&e->front, NULL);
+    adcgs_stream_clear(&e->back, NULL);
+    adcgs_model_clear(&e->model, NULL);
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file How long a live segment is learnt. */
+#include "config.h"
+
+#include "tools/enc_effort.h"
+
+#include <math.h>
+
+#define LEAST 200   /* iterations */
+#define SAFETY 0.85 /* of the time that is left */
+#define GUARD 0.95  /* of it, that the clock ends at */
+#define BLIND 2.0   /* seconds that must be left for a segment to be learnt by the clock, before any speed is known */
+#define NEWS 0.4    /* that effort changes by before it is said again */
+
+void adcgs_enc_effort_init(adcgs_enc_effort *e, const adcgs_enc_job *job)
+{
+    *e = (adcgs_enc_effort){ .delay = job->o->has_delay ? job->o->delay : 0, .most = job->config.iterations };
+}
+
+static void say(adcgs_enc_effort *e, const adcgs_enc_job *job, uint32_t number, double left)
+{
+    const uint32_t n = job->config.iterations, before = e->said ? e->said : e->most;
+    if (fabs((double)n - before) <= NEWS * before)
+        return;
+    e->said = n;
+    adcgs_cli_note(job->cli, "segment %u: %u iterations, with %.1f s until it is due", number + 1, n, left);
+}
+
+void adcgs_enc_effort_choose(adcgs_enc_effort *e, adcgs_enc_job *job, double came, double seconds, uint32_t number)
+{
+    const uint32_t least = ADCGS_MIN(LEAST, e->most);
+    const double left = came + e->delay - seconds - adcgs_seconds();
+    job->config.iterations = e->most;
+    job->config.time_limit = 0;
+    if (!(e->delay > 0))
+        return;
+    const double n = e->rate > 0 ? e->rate * (SAFETY * left - e->overhead) : left > BLIND ? e->most : 0;
+    job->config.iterations = n > least ? (uint32_t)fmin(n, e->most) : least;
+    job->config.time_limit = n > least ? GUARD * left : 0;
+    say(e, job, number, left);
+}
+
+void adcgs_enc_effort_learn(adcgs_enc_effort *e, const adcgs_train_report *first, const adcgs_train_report *last, double seconds)
+{
+    const double taken = last->seconds - first->seconds;
+    if (!(taken > 0) || last->iteration <= first->iteration)
+        return;
+    const double rate = (last->iteration - first->iteration) / taken, overhead = fmax(seconds - last->iteration / rate, 0);
+    e->rate = e->rate > 0 ? (e->rate + rate) / 2 : rate;
+    e->overhead = e->overhead > 0 ? (e->overhead + overhead) / 2 : overhead;
+}

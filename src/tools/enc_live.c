@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/**
+ * \file adcgs-enc --live. Memory holds the pictures of the segment that is learnt, its model and the one before; what comes
+ * meanwhile stays where it is (layouts/live.h).
+ */
+#include "config.h"
+
+#include "tools/enc_live.h"
+
+#include "encode/live.h"
+#include "io/growing.h"
+#include "layouts/live.h"
+#include "tools/enc_effort.h"
+#include "tools/enc_live_file.h"
+#include "tools/enc_live_sum.h"
+
+#include <signal.h>
+
+#define ANCHORS_MARGIN 2 /* times the budget, that HEAD has room for */
+
+typedef struct live_run {
+    adcgs_enc_watcher *w;
+    adcgs_enc_job *job;
+    adcgs_live *live;
+    adcgs_live_segment segment;
+    adcgs_encode_live stream;
+    adcgs_enc_live_file file;
+    adcgs_buffer bytes;   /* of the segment at hand */
+    int is_open;          /* the stream has a segment */
+    double key;           /* seconds at which the last key began */
+    adcgs_enc_effort effort;
+    adcgs_enc_live_sum sum;
+} live_run;
+
+/* ---- Writing ---- */
+
+static adcgs_status append(live_run *r, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_enc_live_file_append(&r->file, r->bytes.data, r->bytes.size, error));
+    r->sum.bytes += r->bytes.size;
+    r->bytes.size = 0;
+    return ADCGS_OK;
+}
+
+/** The end of the stream, and of its file. */
+static adcgs_status end_stream(live_run *r, adcgs_error *error)
+{
+    adcgs_buffer head;
+    ADCGS_TRY(adcgs_encode_live_end(&r->stream, &r->bytes, error));
+    ADCGS_TRY(append(r, error));
+    adcgs_buffer_init(&head);
+    adcgs_status status = adcgs_grow_settle(r->stream.grow, &head, error);
+    if (status == ADCGS_OK)
+        status = adcgs_enc_live_file_end(&r->file, &head, error);
+    adcgs_buffer_clear(&head);
+    adcgs_encode_live_clear(&r->stream);
+    r->is_open = 0;
+    return status;
+}
+
+/** A stream, to which the segment that was just learnt can be added. */
+static adcgs_status begin_stream(live_run *r, adcgs_error *error)
+{
+    const adcgs_enc_job *job = r->job;
+    const uint32_t times = adcgs_live_times(r->live, NULL);
+    adcgs_enc_notes n;
+    adcgs_enc_take_notes(&n, r->w->t, (const char *)r->w->changes.data);
+    r->is_open = 1;
+    r->sum.streams++;
+    adcgs_cuts cuts = { .n = times - 1, .at = adcgs_alloc(NULL, times, sizeof *cuts.at, error) };
+    if (!cuts.at)
+        return adcgs_alloc_status(error);
+    adcgs_live_times(r->live, cuts.at);
+    const adcgs_status status =
+        adcgs_encode_live_open(&r->stream, adcgs_live_whole(r->live), &cuts, ANCHORS_MARGIN * job->config.max_anchors, n.list,
+                               n.n, job->cpu, job->pool, error);
+    adcgs_cuts_clear(&cuts);
+    return status;
+}
+
+/** A stream that has all that its level allows ends, and another begins with this segment. */
+static adcgs_status begin_another(live_run *r, adcgs_model *model, adcgs_error *error)
+{
+    ADCGS_TRY(end_stream(r, error));
+    ADCGS_TRY(adcgs_enc_live_file_next(&r->file, error));
+    adcgs_cli_note(r->job->cli, "the stream is full, with %u segments; another begins: %s", r->sum.n, r->file.path);
+    ADCGS_TRY(begin_stream(r, error));
+    return adcgs_encode_live_add(&r->stream, model, &r->bytes, error);
+}
+
+/** follows: it was learnt from the one before. */
+static adcgs_status add_segment(live_run *r, int follows, adcgs_model *model, adcgs_error *error)
+{
+    const adcgs_live_segment *s = &r->segment;
+    ADCGS_TRY(adcgs_encode_model(model, &r->stream.front, r->w->t, s->begin, s->end, error));
+    if (follows)
+        ADCGS_TRY(adcgs_encode_predict(model, &r->stream.model, error));
+    const adcgs_status status = adcgs_encode_live_add(&r->stream, model, &r->bytes, error);
+    return status == ADCGS_ERR_LIMIT && r->stream.model.n ? begin_another(r, model, error) : status;
+}
+
+static adcgs_status write_segment(live_run *r, int follows, adcgs_error *error)
+{
+    adcgs_model model = { .n = 0 };
+    if (!r->is_open)
+        ADCGS_TRY(begin_stream(r, error));
+    const adcgs_status status = add_segment(r, follows, &model, error);
+    adcgs_model_clear(&model, NULL);
+    if (status == ADCGS_OK && !r->stream.model.predicted) {
+        r->key = r->segment.begin;
+        r->sum.keys++;
+    }
+    return status == ADCGS_OK ? append(r, error) : status;
+}
+
+/* ---- Learning ---- */
+
+/** Whether it is learnt from the one before: a key is not due yet, or there are too few moments for the time table of a key. */
+static int is_to_follow(const live_run *r)
+{
+    const adcgs_live_segment *s = &r->segment;
+    const double every = r->job->o->has_key ? r->job->o->key : ADCGS_ENC_KEY_EVERY;
+    return r->is_open && (s->end - r->key <= every + 1e-6 || s->scene->n_times < r->stream.front.params.time_rows);
+}
+
+static adcgs_status learn_segment(live_run *r, adcgs_error *error)
+{
+    adcgs_enc_watcher *w = r->w;
+    const int follows = is_to_follow(r);
+    const adcgs_model *before = r->is_open ? &r->stream.model : NULL;
+    const double started = adcgs_seconds();
+    if (r->is_open) /* keys have the parameters of the first */
+        r->job->config.params.time_rows = r->stream.front.params.time_rows;
+    w->segment = r->sum.n;
+    w->next_log = 0;
+    w->first = w->last = (adcgs_train_report){ .iteration = 0 };
+    adcgs_enc_effort_choose(&r->effort, r->job, r->segment.came, r->segment.end - r->segment.begin, r->sum.n);
+    ADCGS_TRY(adcgs_enc_learn(w, r->job, r->segment.scene, follows ? before : NULL, before, NULL, started, error));
+    ADCGS_TRY(write_segment(r, w->t->f->follows, error));
+    adcgs_enc_effort_learn(&r->effort, &w->first, &w->last, adcgs_seconds() - started);
+    adcgs_enc_live_sum_add(&r->sum, r->segment.begin, r->segment.end, r->segment.came, w->last.iteration);
+    return ADCGS_OK;
+}
+
+static void tell_missing(live_run *r)
+{
+    double time;
+    for (const char *name; (name = adcgs_live_missing(r->live, &time));)
+        adcgs_cli_error(r->job->cli, ADCGS_OK, "%s: no picture of %g s; this moment, and others like it, are learnt without "
+                        "(said once)", name, time);
+}
+
+static adcgs_status learn_all(live_run *r, adcgs_error *error)
+{
+    for (;;) {
+        ADCGS_TRY(adcgs_live_next(r->live, &r->segment, error));
+        if (!r->segment.scene)
+            return ADCGS_OK;
+        tell_missing(r);
+        const adcgs_status status = learn_segment(r, error);
+        adcgs_trainer_free(&r->w->t);
+        ADCGS_TRY(status);
+    }
+}
+
+/** Whether a stream whose run has failed can be ended: all that it consists of is written. */
+static int can_end(const live_run *r, adcgs_status status)
+{
+    return r->is_open && r->stream.model.n && !r->bytes.size && status != ADCGS_ERR_INTERNAL;
+}
+
+static adcgs_status run(live_run *r, adcgs_error *error)
+{
+    const adcgs_enc_options *o = r->job->o;
+    const adcgs_live_options options = { .seconds = o->segment, .unbounded = o->has_delay, .points_path = o->points,
+                                         .interrupted = adcgs_interrupted };
+    adcgs_interrupt_catch();
+    signal(SIGPIPE, SIG_IGN); /* a reader that leaves is an error of writing */
+    ADCGS_TRY(adcgs_enc_live_file_open(&r->file, o->output, error));
+    ADCGS_TRY(adcgs_live_open(&r->live, o->scene, &options, error));
+    const adcgs_status status = learn_all(r, error);
+    if (status != ADCGS_OK) {
+        adcgs_error ignored;
+        if (can_end(r, status))
+            end_stream(r, &ignored);
+        return status;
+    }
+    ADCGS_TRY(end_stream(r, error));
+    return adcgs_enc_live_sum_print(&r->sum, r->job, error);
+}
+
+adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_error *error)
+{
+    live_run r = { .w = w, .job = job };
+    w->is_live = 1;
+    adcgs_buffer_init(&r.bytes);
+    adcgs_enc_effort_init(&r.effort, job);
+    const adcgs_status status = run(&r, error);
+    adcgs_live_segment_clear(&r.segment);
+    adcgs_encode_live_clear(&r.stream);
+    adcgs_trainer_free(&w->t); /* before the scene that it was given */
+    adcgs_live_close(&r.live);
+    adcgs_enc_live_file_close(&r.file);
+    adcgs_buffer_clear(&r.bytes);
+    return status;
+}

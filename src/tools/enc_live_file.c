@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Where a live stream goes. */
+#include "config.h"
+
+#include "tools/enc_live_file.h"
+
+#include "encode/settle.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+/** The name of a stream's file, from malloc(): the number goes before the extension. */
+static char *number_name(const char *name, uint32_t number)
+{
+    const size_t n = strlen(name) + 16;
+    const char *const slash = strrchr(name, '/'), *dot = strrchr(slash ? slash : name, '.');
+    char *path = malloc(n);
+    if (!dot || dot == name || dot[-1] == '/')
+        dot = name + strlen(name);
+    if (path && number > 1 && strcmp(name, "-") != 0)
+        snprintf(path, n, "%.*s.%u%s", (int)(dot - name), name, number, dot);
+    else if (path)
+        memcpy(path, name, strlen(name) + 1);
+    return path;
+}
+
+static adcgs_status open_number(adcgs_enc_live_file *f, uint32_t number, adcgs_error *error)
+{
+    f->number = number;
+    f->path = number_name(f->name, number);
+    return f->path ? adcgs_growing_open(&f->growing, f->path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
+}
+
+adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *f, const char *name, adcgs_error *error)
+{
+    *f = (adcgs_enc_live_file){ .name = name };
+    return open_number(f, 1, error);
+}
+
+adcgs_status adcgs_enc_live_file_append(adcgs_enc_live_file *f, const void *data, size_t bytes, adcgs_error *error)
+{
+    return adcgs_growing_append(&f->growing, data, bytes, error);
+}
+
+/** The same stream with another HEAD, in the place of the one that grew. */
+static adcgs_status settle(const char *path, const adcgs_buffer *head, adcgs_error *error)
+{
+    adcgs_atomic to;
+    FILE *from = fopen(path, "rb");
+    if (!from)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read it back: %s", path, strerror(errno));
+    adcgs_status status = adcgs_atomic_open(&to, path, error);
+    if (status == ADCGS_OK)
+        status = adcgs_encode_settle(to.file, from, head->data, head->size, path, error);
+    fclose(from);
+    if (status == ADCGS_OK)
+        return adcgs_atomic_commit(&to, error);
+    adcgs_atomic_abort(&to);
+    return status;
+}
+
+adcgs_status adcgs_enc_live_file_end(adcgs_enc_live_file *f, const adcgs_buffer *head, adcgs_error *error)
+{
+    const int is_regular = f->growing.is_regular;
+    if (!is_regular)
+        return ADCGS_OK;
+    adcgs_growing_close(&f->growing);
+    return settle(f->path, head, error);
+}
+
+adcgs_status adcgs_enc_live_file_next(adcgs_enc_live_file *f, adcgs_error *error)
+{
+    if (!f->growing.is_regular)
+        return ADCGS_OK;
+    free(f->path);
+    f->path = NULL;
+    return open_number(f, f->number + 1, error);
+}
+
+void adcgs_enc_live_file_close(adcgs_enc_live_file *f)
+{
+    adcgs_growing_close(&f->growing);
+    free(f->path);
+    f->path = NULL;
+}

@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file A run of adcgs-enc. */
+#include "config.h"
+
+#include "tools/enc_run.h"
+
+#include "io/json.h"
+#include "model/model_priv.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- What the run shows and logs ---- */
+
+static void log_last(adcgs_enc_watcher *w)
+{
+    const adcgs_train_report *r = &w->last;
+    if (!w->log)
+        return;
+    w->next_log = r->iteration + 100;
+    static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
+    adcgs_json line;
+    adcgs_json_init(&line);
+    line.is_line = 1;
+    line.digits = 6;
+    adcgs_json_open(&line, NULL, '{');
+    adcgs_json_string(&line, "stage", r->stage);
+    if (w->segments || w->is_live)
+        adcgs_json_int(&line, "segment", w->segment + 1);
+    adcgs_json_int(&line, "iteration", r->iteration);
+    adcgs_json_int(&line, "of", r->iterations);
+    if (r->iteration) {
+        adcgs_json_real(&line, "loss", r->loss);
+        adcgs_json_real(&line, "psnr", r->psnr);
+    }
+    adcgs_json_int(&line, "anchors", r->anchors);
+    adcgs_json_int(&line, "divide", r->divide);
+    adcgs_json_real(&line, "bytes", round(r->bytes));
+    adcgs_json_real(&line, "lambda", r->lambda);
+    adcgs_json_real(&line, "rate", r->rate);
+    adcgs_json_real(&line, "seconds", r->seconds);
+    adcgs_json_int(&line, "rollbacks", r->rollbacks);
+    adcgs_json_open(&line, "streams", '{');
+    for (int i = 0; i < ADCGS_GROUPS; i++)
+        adcgs_json_real(&line, streams[i], round(r->stream[i]));
+    adcgs_json_close(&line);
+    adcgs_json_close(&line);
+    if (adcgs_json_write(&line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
+        fclose(w->log); /* the run is worth more than its log: it goes on, and says at its end what happened */
+        w->log = NULL;
+    }
+}
+
+/** "  1:05:00 left", or nothing where it is not known. */
+static const char *describe_left(double seconds, char text[32])
+{
+    const unsigned whole = seconds >= 0 && seconds < 1e9 ? (unsigned)seconds : 0;
+    if (whole >= 3600)
+        snprintf(text, 32, "  %u:%02u:%02u left", whole / 3600, whole / 60 % 60, whole % 60);
+    else
+        snprintf(text, 32, "  %u:%02u left", whole / 60, whole % 60);
+    return isnan(seconds) ? "" : text;
+}
+
+/** The run is worth more than its checkpoint: where one cannot be written it goes on, and tries again when the next is due. */
+static void save_now_and_then(adcgs_enc_watcher *w, double seconds)
+{
+    adcgs_error why = { ADCGS_OK, "" };
+    const int failed = w->unsaved;
+    w->saved = seconds;
+    w->unsaved = adcgs_trainer_save(w->t, w->state, &why) != ADCGS_OK;
+    if (w->unsaved == failed)
+        return;
+    adcgs_progress_clear(&w->progress);
+    if (w->unsaved)
+        adcgs_cli_error(w->progress.cli, ADCGS_OK, "%s; the run goes on, and tries again every %g s", why.text,
+                        w->o->checkpoint_every);
+    else
+        adcgs_cli_note(w->progress.cli, "%s: written again", w->state);
+}
+
+static int observe(void *user, const adcgs_train_report *r)
+{
+    adcgs_enc_watcher *w = user;
+    char left[32], segment[32] = "";
+    if (w->segments)
+        snprintf(segment, sizeof segment, "%u/%u ", w->segment + 1, w->segments);
+    else if (w->is_live)
+        snprintf(segment, sizeof segment, "%u: ", w->segment + 1);
+    w->last = *r;
+    if (r->iteration && !w->first.iteration)
+        w->first = *r;
+    if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
+        log_last(w);
+    if (r->iteration)
+        adcgs_progress_show(&w->progress, "%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
+                            r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000,
+                            r->rate, describe_left(r->left, left));
+    if (w->o->checkpoint && r->seconds - w->saved > w->o->checkpoint_every)
+        save_now_and_then(w, r->seconds);
+    return adcgs_interrupted() && !w->is_live;
+}
+
+static int loading(void *user, uint32_t done, uint32_t n)
+{
+    adcgs_enc_watcher *w = user;
+    adcgs_progress_show(&w->progress, "pictures  %6u/%u", done, n);
+    /* Later there is a run to save, which it is once they are loaded. */
+    return adcgs_interrupted() && !w->t->iteration && !w->is_live;
+}
+
+/* ---- What the stream tells ---- */
+
+/** changes: settings that are not the preset's, "" for none. */
+void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes)
+{
+    snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
+    snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
+    snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
+    const adcgs_encode_note list[ADCGS_COUNTOF(n->list)] = {
+        { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
+        { "iterations", n->iterations }, { "seed", n->seed },     { "settings", changes },
+    };
+    memcpy(n->list, list, sizeof list);
+    n->n = ADCGS_COUNTOF(list) - !*changes;
+}
+
+/** The bytes that the run's file would have. */
+static adcgs_status measure(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *error)
+{
+    const adcgs_enc_watcher *w = user;
+    adcgs_enc_notes n;
+    adcgs_enc_take_notes(&n, t, (const char *)w->changes.data);
+    return adcgs_encode_bytes(bytes, t, -1, n.list, n.n, error);
+}
+
+/* ---- Learning ---- */
+
+/** What the run is for: the stream, or the state before lambda matters. */
+const char *adcgs_enc_target(const adcgs_enc_options *o)
+{
+    return o->beginning ? o->beginning : o->output;
+}
+
+static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_trainer_save(w->t, w->state, error));
+    if (w->segments)
+        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; go on with the same command and --resume %s",
+                        w->t->iteration, w->segment + 1, w->segments, w->base);
+    else
+        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration,
+                        w->base);
+    return ADCGS_OK;
+}
+
+/** state: a checkpoint to go on from, or NULL. */
+static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char *state, adcgs_error *error)
+{
+    int stopped;
+    if (state)
+        ADCGS_TRY(adcgs_trainer_load(w->t, state, error));
+    if (w->o->beginning && w->t->lambda_used)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: this run is past its beginning", state);
+    w->t->until_lambda = w->o->beginning != NULL;
+    w->saved = w->t->elapsed;
+    if (!w->is_live)
+        adcgs_interrupt_catch();
+    const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
+    adcgs_progress_clear(&w->progress);
+    if (w->last.stage && w->last.iteration + 100 != w->next_log)
+        log_last(w);
+    ADCGS_TRY(status);
+    if (!stopped)
+        return ADCGS_OK;
+    if (w->o->beginning && !adcgs_interrupted())
+        return adcgs_trainer_save(w->t, w->o->beginning, error);
+    ADCGS_TRY(stop_early(cli, w, error));
+    return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", adcgs_enc_target(w->o));
+}
+
+adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
+                             const adcgs_model *otherwise, const char *state, double started, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, before, job->cpu, job->pool, error));
+    if (!before && otherwise && !adcgs_params_equal(&w->t->f->params, &otherwise->params)) {
+        adcgs_trainer_free(&w->t);
+        ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, otherwise, job->cpu, job->pool, error));
+    }
+    w->t->quantise = adcgs_encode_quantise_hook;
+    w->t->measure = measure;
+    w->t->measure_user = w;
+    w->t->picture_memory = job->o->memory;
+    w->t->loading = loading;
+    w->t->loading_user = w;
+    w->t->started = started;
+    return train(job->cli, w, state, error);
+}

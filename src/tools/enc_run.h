@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file A run of adcgs-enc: what it was asked for, what it shows, logs and notes, and learning itself. */
+#ifndef ADCGS_TOOLS_ENC_RUN_H
+#define ADCGS_TOOLS_ENC_RUN_H
+
+#include "cli/cli.h"
+#include "encode/encode.h"
+
+#define ADCGS_ENC_KEY_EVERY 10.0   /**< seconds from one key to the next, unless given */
+#define ADCGS_ENC_LIVE_SEGMENT 2.0 /**< seconds of a segment of what is live, unless given */
+
+/** As on the command line. */
+typedef struct adcgs_enc_options {
+    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    const char *frames, *fps;
+    double lambda, psnr, time_limit, segment, key, delay;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, live;
+    int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
+    int has_delay;
+    double started; /* adcgs_seconds() */
+    double checkpoint_every;
+    uint64_t seed, size, memory;
+} adcgs_enc_options;
+
+typedef struct adcgs_enc_watcher {
+    const adcgs_enc_options *o;
+    adcgs_trainer *t;
+    uint32_t segment, segments; /* the one that is learnt, from 0; 0 segments: the scene is not cut, or nobody knows how many */
+    int is_live; /* an interrupt ends what comes, not the run */
+    char *base;   /* of what the run leaves while it lasts: the checkpoint, and where the scene is cut those of its segments */
+    char *state;  /* the checkpoint at hand */
+    adcgs_progress progress;
+    FILE *log;
+    adcgs_train_report first; /* after the first iteration */
+    double saved;
+    int unsaved; /* the last checkpoint could not be written */
+    adcgs_train_report last;
+    size_t uncompressed_bytes;
+    adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
+    uint32_t next_log; /**< iteration */
+    adcgs_error log_error;
+} adcgs_enc_watcher;
+
+/** What the stream tells of how it was made. */
+typedef struct adcgs_enc_notes {
+    adcgs_encode_note list[6];
+    uint32_t n;
+    char seed[32], lambda[32], iterations[32];
+} adcgs_enc_notes;
+
+/** What a run is given. */
+typedef struct adcgs_enc_job {
+    const adcgs_cli *cli;
+    const adcgs_enc_options *o;
+    adcgs_scene *scene;
+    adcgs_cuts cuts; /* n 0: the scene is not cut */
+    uint8_t *follows; /* [cuts.n] 1: the part is learnt from the one before */
+    adcgs_train_config config;
+    adcgs_cpu_level cpu;
+    adcgs_pool *pool;
+} adcgs_enc_job;
+
+/** What the run is for: the stream, or the state before lambda matters. */
+const char *adcgs_enc_target(const adcgs_enc_options *o);
+/** changes: settings that are not the preset's, "" for none. The notes point into the trainer's configuration. */
+void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes);
+
+/**
+ * Learn a scene, or a part of it, which goes on with the model before unless that is NULL; w->t is the caller's then. state: a
+ * checkpoint to go on from, or NULL. started: adcgs_seconds() from which its time counts. otherwise: the model to go on with
+ * where one that begins anew had other parameters than this one, or NULL.
+ */
+adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
+                             const adcgs_model *otherwise, const char *state, double started, adcgs_error *error);
+
+#endif

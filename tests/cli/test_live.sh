@@ -1,0 +1,254 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-enc --live: footage that comes moment by moment, in pictures and through pipes, gives what it gives when it is all there;
+# the output grows by whole segments, which others can read and join; what is missing, late or damaged; ends of every kind.
+# Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-demo-scene
+
+scene=$dir/scene
+tiny_scene "$scene"
+short="--preset draft --max-anchors 300 --iterations 300 --quiet"
+live="$short --segment 0.1 --key 0.1"
+
+# scene_file FOLDER KIND: the cameras of the tiny scene, three at even moments, three at odd ones, with images or videos.
+scene_file()
+{
+    mkdir -p "$1/c0" "$1/c1" "$1/c2" "$1/c3" "$1/c4" "$1/c5"
+    awk -v kind="$2" '
+        /camera_angle_x/ { match($0, /[0-9.]+,/); half = substr($0, RSTART, RLENGTH - 1) / 2; f = 32 * cos(half) / sin(half) }
+        /transform_matrix/ && n < 6 { sub(/^ *"transform_matrix": /, ""); sub(/ }.*/, ""); pose[n++] = $0 }
+        END {
+            print "{\"adcgs_scene\": 1, \"frame_rate\": 15, \"up\": \"z\", \"cameras\": ["
+            for (i = 0; i < n; i++)
+                printf "{\"name\": \"c%d\", %s, \"time_offset\": %.12f, \"camera_to_world\": %s}%s\n", i,
+                    kind == "images" ? "\"images\": \"c" i "/%03d.ppm\"" : "\"video\": \"c" i ".y4m\"",
+                    i < 3 ? 0 : 1 / 30, pose[i], i < n - 1 ? "," : "],"
+            printf "\"defaults\": {\"width\": 64, \"height\": 64, \"fx\": %.9f, \"axes\": \"opengl\"}}\n", f
+        }' "$scene/transforms_train.json" >"$1/scene.json"
+}
+
+# view I: picture I of the scene, and where it goes: the name of its camera and its number.
+from() { printf '%s/train/r_%03d.ppm' "$scene" "$1"; }
+to() { printf 'c%d/%03d.ppm' $(($1 % 6)) $(($1 / 6)); }
+
+# put FOLDER MOMENT...: the three pictures of each of these moments, 0 to 7, come.
+put()
+{
+    folder=$1
+    shift
+    for moment; do
+        for view in $((3 * moment)) $((3 * moment + 1)) $((3 * moment + 2)); do
+            cp "$(from $view)" "$folder/coming" && mv "$folder/coming" "$folder/$(to $view)"
+        done
+    done
+}
+
+# wait_for N FILE: until the file has N segments, or the encoder, $pid, has gone.
+segments() { ./adcgs-info --json "$1" 2>/dev/null | grep -c '"predicted":'; }
+wait_for()
+{
+    while kill -0 "$pid" 2>/dev/null && [ "$(segments "$2")" -lt "$1" ]; do
+        sleep 0.02
+    done
+    [ "$(segments "$2")" -ge "$1" ] || { bad "$2 does not get $1 segments"; cat "$dir/err"; }
+}
+spans() { ./adcgs-info "$1" | sed -n 's/^segment \([0-9]*\): \([0-9.]*\) \.\. \([0-9.]*\) s,.*/\1 \2 \3/p' | xargs; }
+whole() { ./adcgs-info --check "$1" 2>&1 | grep -q ' 0 faults' || { bad "$1 is not whole"; ./adcgs-info --check "$1"; }; }
+# ended CODE: the encoder has.
+ended()
+{
+    wait "$pid"
+    got=$?
+    [ "$got" -eq "$1" ] || { bad "exit code $got, expected $1"; cat "$dir/err"; }
+}
+left() { find "$dir" -maxdepth 1 -name 'adcgs-live-*' -o -maxdepth 1 -name '*.tmp*'; }
+export TMPDIR="$dir"
+
+# All there: the segments that the same cuts give offline, as good as those. They are not the same to the bit: where the scene's
+# origin is follows from all views there, from those of the first segment here, and a mean of other numbers is rounded otherwise.
+scene_file "$dir/all" images
+put "$dir/all" 0 1 2 3 4 5 6 7
+touch "$dir/all/end"
+# shellcheck disable=SC2086
+{
+    ./adcgs-enc --live "$dir/all" -o "$dir/all.adcgs" $live 2>"$dir/err" || { bad "--live"; cat "$dir/err"; }
+    ./adcgs-enc --live "$dir/all/scene.json" -o "$dir/pair.adcgs" $short --segment 0.1166 2>"$dir/err" ||
+        { bad "--live of a file"; cat "$dir/err"; }
+    ./adcgs-enc "$dir/all/scene.json" -o "$dir/offline.adcgs" $short --segment 0.1166 2>"$dir/err" ||
+        { bad "offline"; cat "$dir/err"; }
+}
+psnr()
+{
+    ./adcgs-eval "$1" "$dir/all/scene.json" --split train --json 2>/dev/null | awk -F'[:,]' '/"psnr"/ { x = $2 } END { print x }'
+}
+[ "$(spans "$dir/pair.adcgs")" = "0 0 0.1 1 0.1 0.233333" ] || { bad "spans"; spans "$dir/pair.adcgs"; }
+[ "$(spans "$dir/pair.adcgs")" = "$(spans "$dir/offline.adcgs")" ] || { bad "not the offline spans"; spans "$dir/offline.adcgs"; }
+awk -v a="$(psnr "$dir/pair.adcgs")" -v b="$(psnr "$dir/offline.adcgs")" 'BEGIN { exit !(a > b - 1 && b > 20) }' ||
+    bad "PSNR $(psnr "$dir/pair.adcgs") live, $(psnr "$dir/offline.adcgs") offline"
+[ "$(spans "$dir/all.adcgs")" = "0 0 0.1 1 0.1 0.2 2 0.2 0.233333" ] || { bad "spans"; spans "$dir/all.adcgs"; }
+whole "$dir/all.adcgs"
+./adcgs-info --json "$dir/all.adcgs" >"$dir/out"
+[ "$(grep -c '"predicted": false' "$dir/out")" -eq 2 ] || { bad "keys"; cat "$dir/out"; }
+[ "$(left)" = "" ] || bad "left behind: $(left)"
+
+# Moment by moment: the same, whatever was waited for. The output has each segment as soon as it can.
+scene_file "$dir/slow" images
+out=$dir/slow.adcgs
+echo old >"$out"
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/slow" -o "$out" $live 2>"$dir/err" &
+pid=$!
+put "$dir/slow" 0 1 2
+[ "$(cat "$out")" = old ] || bad "the output has gone before there is another"
+put "$dir/slow" 3
+wait_for 1 "$out"
+[ "$(spans "$out")" = "0 0 0.1" ] || { bad "not the first segment"; spans "$out"; }
+cmp -n "$(stat -c %s "$out")" "$out" "$dir/all.adcgs" >/dev/null && bad "HEAD knows the end before it has come"
+./adcgs-dec "$out" --md5 >/dev/null 2>"$dir/dec.err" || { bad "a growing file is not read"; cat "$dir/dec.err"; }
+tail -c +1 -f "$out" >"$dir/followed" &
+tail=$!
+put "$dir/slow" 5 4
+head -c 5000 "$(from 18)" >"$dir/slow/$(to 18)" # this one is being written
+put "$dir/slow" 7
+kill -0 "$pid" 2>/dev/null || bad "half a picture ended the run"
+cp "$(from 19)" "$dir/slow/$(to 19)" && cp "$(from 20)" "$dir/slow/$(to 20)" && cp "$(from 18)" "$dir/slow/$(to 18)"
+wait_for 2 "$out"
+touch "$dir/slow/end"
+ended 0
+cmp "$out" "$dir/all.adcgs" || bad "another stream from footage that comes moment by moment"
+sleep 0.1
+kill "$tail"
+wait "$tail" 2>/dev/null
+./adcgs-info --digest "$dir/all.adcgs" >"$dir/digests"
+./adcgs-info --digest "$dir/followed" 2>"$dir/err" | cmp - "$dir/digests" ||
+    { bad "who follows the file gets something else"; cat "$dir/err"; }
+whole "$dir/followed"
+
+# Through standard output; who comes late joins at the next key, and sees the same from there on.
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/all" -o - $live >"$dir/piped" 2>"$dir/err" || { bad "-o -"; cat "$dir/err"; }
+./adcgs-info --digest "$dir/piped" | cmp - "$dir/digests" || bad "another stream through a pipe"
+cmp "$dir/piped" "$dir/followed" || bad "a file grows otherwise than a pipe"
+./adcgs-dec "$dir/all.adcgs" --cameras "$dir/cameras.json" || bad "--cameras"
+tail -c +3000 "$dir/piped" >"$dir/late"
+./adcgs-dec - --camera "$dir/cameras.json" -t 0.15 --md5 <"$dir/late" >"$dir/out" 2>"$dir/err" ||
+    { bad "joining"; cat "$dir/err"; }
+grep -q '^adcgs-dec: standard input: joined at segment 1, at 0.1 s$' "$dir/err" || { bad "no word of joining"; cat "$dir/err"; }
+./adcgs-dec "$dir/all.adcgs" --camera "$dir/cameras.json" -t 0.15 --md5 >"$dir/expected" 2>"$dir/err" || cat "$dir/err"
+cmp "$dir/out" "$dir/expected" || bad "who joins sees something else"
+expect 4 "not an adcgs stream, nor is a header of one" sh -c "tail -c 3000 '$dir/piped' | ./adcgs-dec - --md5"
+
+# A picture that never comes, and one that stays damaged: the others of their moments are used. It is said once for each camera.
+cp -r "$dir/all" "$dir/gaps"
+rm "$dir/gaps/c1/001.ppm" "$dir/gaps/c1/002.ppm"
+head -c 5000 "$dir/all/c4/001.ppm" >"$dir/gaps/c4/001.ppm"
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/gaps" -o "$dir/gaps.adcgs" $live 2>"$dir/err" || { bad "gaps"; cat "$dir/err"; }
+grep -q 'c1: no picture of 0.0666667 s' "$dir/err" && grep -q 'c4: no picture of 0.1 s' "$dir/err" &&
+    [ "$(wc -l <"$dir/err")" -eq 2 ] ||
+    { bad "no word of what is missing"; cat "$dir/err"; }
+[ "$(spans "$dir/gaps.adcgs")" = "$(spans "$dir/all.adcgs")" ] || bad "other spans with gaps"
+
+# A camera that falls silent is waited for no longer than a segment.
+scene_file "$dir/silent" images
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/silent" -o "$dir/silent.adcgs" $live 2>"$dir/err" &
+pid=$!
+put "$dir/silent" 0 1 2
+for view in 9 10 12 13 14 15 16 18 19 20 21 22; do # without c5
+    cp "$(from $view)" "$dir/silent/coming" && mv "$dir/silent/coming" "$dir/silent/$(to $view)"
+done
+wait_for 1 "$dir/silent.adcgs"
+touch "$dir/silent/end"
+ended 0
+grep -q 'c5: no picture of 0.1 s' "$dir/err" || { bad "no word of a camera that falls silent"; cat "$dir/err"; }
+
+# SIGINT ends what comes; what has come is learnt, and the file is whole.
+scene_file "$dir/stop" images
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/stop" -o "$dir/stop.adcgs" $live 2>"$dir/err" &
+pid=$!
+put "$dir/stop" 0 1 2 3 4 5 6
+wait_for 2 "$dir/stop.adcgs"
+kill -INT "$pid"
+ended 0
+[ "$(spans "$dir/stop.adcgs")" = "0 0 0.1 1 0.1 0.2" ] || { bad "after SIGINT"; spans "$dir/stop.adcgs"; }
+whole "$dir/stop.adcgs"
+# Killed: what is there are whole segments.
+rm "$dir/stop.adcgs"
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/stop" -o "$dir/stop.adcgs" $live 2>"$dir/err" &
+pid=$!
+wait_for 1 "$dir/stop.adcgs"
+kill -KILL "$pid"
+wait "$pid" 2>/dev/null
+expect 0 "" ./adcgs-dec "$dir/stop.adcgs" -t 0.05 --camera 0 --md5
+# Nothing that shows two moments.
+scene_file "$dir/none" images
+put "$dir/none" 0
+touch "$dir/none/end"
+# shellcheck disable=SC2086
+expect 4 "ended before it showed two moments" ./adcgs-enc --live "$dir/none" -o "$dir/none.adcgs" $live
+[ ! -e "$dir/none.adcgs" ] || bad "nothing was filmed, and a file of it is there"
+
+# A delay that leaves no time: as few iterations as there may be, in all segments.
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" $live --delay 0.11 --json >"$dir/out" 2>"$dir/err" ||
+    { bad "--delay"; cat "$dir/err"; }
+grep -q '"most_iterations": 200' "$dir/out" && grep -q '"delay": 0.11' "$dir/out" && grep -q '"segments": 3' "$dir/out" ||
+    { bad "the delay has no effect"; cat "$dir/out"; }
+./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" --preset draft --max-anchors 300 --iterations 300 --segment 0.1 --delay 100 \
+    >"$dir/out" 2>"$dir/err" || { bad "--delay"; cat "$dir/err"; }
+grep -q '3 segments of 0.233333 s together' "$dir/err" && grep -q '100 s asked for' "$dir/err" ||
+    { bad "summary"; cat "$dir/err"; }
+
+# Y4M: files that grow, and pipes. An unknown rate is the stream's own.
+rates=$dir/rates
+if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
+    scene_file "$dir/videos" videos
+    for i in 0 1 2 3 4 5; do
+        span=$([ $i -lt 3 ] && echo 0:0.2 || echo 0.033333:0.2334)
+        ./adcgs-dec "$dir/all.adcgs" --camera $i -t "$span" -o "$dir/videos/c$i.y4m" 2>"$dir/err" ||
+            { bad "Y4M"; cat "$dir/err"; }
+    done
+    touch "$dir/videos/end"
+    # shellcheck disable=SC2086
+    ./adcgs-enc --live "$dir/videos" -o "$dir/videos.adcgs" $live 2>"$dir/err" || { bad "files of Y4M"; cat "$dir/err"; }
+    [ "$(spans "$dir/videos.adcgs")" = "$(spans "$dir/all.adcgs")" ] || { bad "spans of Y4M"; spans "$dir/videos.adcgs"; }
+    whole "$dir/videos.adcgs"
+    scene_file "$dir/pipes" videos
+    for i in 0 1 2 3 4 5; do
+        mkfifo "$dir/pipes/c$i.y4m"
+    done
+    # shellcheck disable=SC2086
+    ./adcgs-enc --live "$dir/pipes" -o "$dir/pipes.adcgs" $live 2>"$dir/err" &
+    pid=$!
+    for i in 5 4 3 2 1 0; do
+        dd bs=777 if="$dir/videos/c$i.y4m" of="$dir/pipes/c$i.y4m" 2>/dev/null &
+    done
+    ended 0
+    cmp "$dir/videos.adcgs" "$dir/pipes.adcgs" || bad "another stream through pipes"
+    [ "$(left)" = "" ] || bad "left behind: $(left)"
+    echo "YUV4MPEG2 W64 H64 C999" >"$dir/videos/c3.y4m"
+    # shellcheck disable=SC2086
+    expect 5 "c3.y4m: Y4M in the colour space 999" ./adcgs-enc --live "$dir/videos" -o "$dir/x.adcgs" $live
+    echo "P6 64 64 255" >"$dir/videos/c3.y4m"
+    # shellcheck disable=SC2086
+    expect 4 "c3.y4m: expected Y4M" ./adcgs-enc --live "$dir/videos" -o "$dir/x.adcgs" $live
+fi
+
+# Wrong use.
+# shellcheck disable=SC2086
+{
+    expect 2 "give --live" ./adcgs-enc "$dir/all/scene.json" -o "$dir/x.adcgs" --delay 3
+    expect 2 "give more than that" ./adcgs-enc --live "$dir/all" -o "$dir/x.adcgs" --delay 2
+    expect 2 "both want standard output" ./adcgs-enc --live "$dir/all" -o - --json
+    for other in "--size 100k" "--psnr 30" "--uncompressed $dir/raw" "--time-limit 9" "--frames 0:3" "--fps 3" "--resume $dir/x"; do
+        expect 2 "live excludes" ./adcgs-enc --live "$dir/all" -o "$dir/x.adcgs" $other
+    done
+    expect 3 "scene.json" ./adcgs-enc --live "$scene" -o "$dir/x.adcgs" $live
+    expect 4 "adcgs_scene" ./adcgs-enc --live "$scene/transforms_train.json" -o "$dir/x.adcgs" $live
+}
+[ ! -e "$dir/x.adcgs" ] || bad "wrong use wrote a file"
+exit $failed

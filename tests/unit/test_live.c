@@ -1,0 +1,356 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What --live is made of: lengths of Y4M frames, segments of footage that comes in any order, with gaps or not at all, files that
+ * grow, and streams that are put in order when they end.
+ */
+#define _POSIX_C_SOURCE 200809L
+#include "random_model.h"
+
+#include "encode/settle.h"
+#include "io/growing.h"
+#include "io/image.h"
+#include "io/y4m_shape.h"
+#include "layouts/live.h"
+#include "stream/grow.h"
+#include "stream/input.h"
+
+#include <adcgs/adcgs.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { CAMERAS = 2, FRAMES = 12, SEGMENTS = 4 };
+
+static adcgs_error error;
+static char folder[] = "/tmp/adcgs-test-live-XXXXXX";
+static int interrupted;
+
+static int is_interrupted(void)
+{
+    return interrupted;
+}
+
+/* ---- Y4M ---- */
+
+static void expect_shape(const char *line, adcgs_status status, size_t bytes)
+{
+    adcgs_y4m_shape shape;
+    assert_int_equal(adcgs_y4m_shape_parse(&shape, line, "x.y4m", &error), status);
+    if (status == ADCGS_OK)
+        assert_int_equal(shape.frame_bytes, bytes);
+}
+
+static void test_shapes(void **state)
+{
+    adcgs_y4m_shape shape;
+    (void)state;
+    expect_shape("YUV4MPEG2 W5 H3", ADCGS_OK, 15 + 2 * 3 * 2);
+    expect_shape("YUV4MPEG2 W5 H3 C420jpeg XYSCSS=420JPEG", ADCGS_OK, 15 + 2 * 3 * 2);
+    expect_shape("YUV4MPEG2 H3 W5 C422 A1:1", ADCGS_OK, 15 + 2 * 3 * 3);
+    expect_shape("YUV4MPEG2 W5 H3 C444", ADCGS_OK, 45);
+    expect_shape("YUV4MPEG2 W5 H3 C444alpha", ADCGS_OK, 60);
+    expect_shape("YUV4MPEG2 W5 H3 C411", ADCGS_OK, 15 + 2 * 2 * 3);
+    expect_shape("YUV4MPEG2 W5 H3 Cmono", ADCGS_OK, 15);
+    expect_shape("YUV4MPEG2 W5 H3 Cmono12", ADCGS_OK, 30);
+    expect_shape("YUV4MPEG2 W5 H3 C420p10 XYSCSS=420P10", ADCGS_OK, 2 * (15 + 2 * 3 * 2));
+    expect_shape("YUV4MPEG2 W5 H3 C444p16", ADCGS_OK, 90);
+    expect_shape("YUV4MPEG2 W5 H3 C421", ADCGS_ERR_UNSUPPORTED, 0);
+    expect_shape("YUV4MPEG2 W5 H3 C420p11", ADCGS_ERR_UNSUPPORTED, 0);
+    expect_shape("YUV4MPEG2 W5", ADCGS_ERR_DATA, 0);
+    expect_shape("YUV4MPEG2 W0 H3", ADCGS_ERR_DATA, 0);
+    expect_shape("YUV4MPEG2 W99999999999999999999 H3", ADCGS_ERR_DATA, 0);
+    expect_shape("YUV4MPEG2 W-5 H3", ADCGS_ERR_DATA, 0);
+    expect_shape("P6 5 3 255", ADCGS_ERR_DATA, 0);
+    assert_int_equal(adcgs_y4m_shape_parse(&shape, "YUV4MPEG2 W5 H3 F30000:1001", "x", &error), ADCGS_OK);
+    assert_true(shape.rate.num == 30000 && shape.rate.den == 1001);
+    assert_int_equal(adcgs_y4m_shape_parse(&shape, "YUV4MPEG2 W5 H3 F0:0", "x", &error), ADCGS_OK);
+    assert_int_equal(shape.rate.den, 0);
+}
+
+/* ---- Footage ---- */
+
+static const char *in_folder(const char *format, int camera, int frame)
+{
+    static char path[128], name[64];
+    snprintf(name, sizeof name, format, camera, frame);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+static void put(int camera, int frame)
+{
+    float pixels[3 * 16] = { 0 };
+    const adcgs_image image = { 4, 4, 3, pixels };
+    pixels[0] = (float)frame / FRAMES;
+    assert_int_equal(adcgs_image_write(&image, in_folder("c%d-%02d.ppm", camera, frame), 0, &error), ADCGS_OK);
+}
+
+static void put_end(void)
+{
+    FILE *file = fopen(in_folder("end", 0, 0), "wb");
+    assert_non_null(file);
+    fclose(file);
+}
+
+static void start_again(void)
+{
+    for (int c = 0; c < CAMERAS; c++)
+        for (int i = 0; i < FRAMES; i++)
+            unlink(in_folder("c%d-%02d.ppm", c, i));
+    unlink(in_folder("end", 0, 0));
+    interrupted = 0;
+}
+
+/** Two cameras of ten frames a second, the second half a frame later. */
+static int set_up(void **state)
+{
+    static const char text[] =
+        "{\"adcgs_scene\": 1, \"frame_rate\": 10, \"up\": \"y\", \"defaults\": {\"width\": 4, \"height\": 4, \"fx\": 4},"
+        "\"cameras\": [{\"name\": \"a\", \"images\": \"c0-%02d.ppm\", \"time_offset\": 3, \"R\": [[1,0,0],[0,1,0],[0,0,1]], "
+        "\"t\": [0,0,2]}, {\"name\": \"b\", \"images\": \"c1-%02d.ppm\", \"time_offset\": 3.05, "
+        "\"R\": [[1,0,0],[0,1,0],[0,0,1]], \"t\": [1,0,2]}, {\"name\": \"c\", \"images\": \"none-%02d.ppm\", \"split\": \"test\","
+        "\"R\": [[1,0,0],[0,1,0],[0,0,1]], \"t\": [1,0,3]}]}";
+    (void)state;
+    if (!mkdtemp(folder))
+        return -1;
+    FILE *file = fopen(in_folder("scene.json", 0, 0), "wb");
+    return file && fputs(text, file) >= 0 && !fclose(file) ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    start_again();
+    unlink(in_folder("scene.json", 0, 0));
+    return rmdir(folder);
+}
+
+static adcgs_live *open_live(double seconds, int unbounded)
+{
+    adcgs_live *live = NULL;
+    const adcgs_live_options options = { .seconds = seconds, .unbounded = unbounded, .interrupted = is_interrupted };
+    assert_int_equal(adcgs_live_open(&live, folder, &options, &error), ADCGS_OK);
+    return live;
+}
+
+/** The next segment spans this, and shows so many views, times within it in ascending order for each camera. */
+static void expect_segment(adcgs_live *live, adcgs_live_segment *s, double begin, double end, uint32_t views, uint32_t moments)
+{
+    assert_int_equal(adcgs_live_next(live, s, &error), ADCGS_OK);
+    assert_non_null(s->scene);
+    assert_float_equal(s->begin, begin, 1e-6);
+    assert_float_equal(s->end, end, 1e-6);
+    assert_float_equal(s->scene->duration, end - begin, 1e-6);
+    assert_int_equal(s->scene->n_views[ADCGS_SPLIT_TRAIN], views);
+    assert_int_equal(s->scene->n_times, moments);
+    assert_ptr_equal(s->scene->whole, adcgs_live_whole(live));
+    for (uint32_t i = 0; i < views; i++) {
+        const adcgs_scene_view *v = &s->scene->views[ADCGS_SPLIT_TRAIN][i];
+        const int camera = v->camera.name[0] - 'a', frame = (int)((s->begin + v->time - (camera ? 0.05 : 0)) * 10 + 0.5);
+        assert_true(v->time >= 0 && v->time <= s->scene->duration);
+        assert_string_equal(v->path, in_folder("c%d-%02d.ppm", camera, frame));
+        assert_true(v->camera.near_plane > 0);
+    }
+}
+
+static void expect_over(adcgs_live *live, adcgs_live_segment *s)
+{
+    assert_int_equal(adcgs_live_next(live, s, &error), ADCGS_OK);
+    assert_null(s->scene);
+}
+
+/** Moments at 0, 0.05, .., 1.15; each picture may come before the one in front of it. Views at a cut are in both segments. */
+static void test_segments(void **state)
+{
+    (void)state;
+    for (int unbounded = 0; unbounded < 2; unbounded++) {
+        adcgs_live_segment s = { .scene = NULL };
+        adcgs_live *live = open_live(0.48, unbounded);
+        for (int i = 0; i < FRAMES; i++)
+            for (int c = 0; c < CAMERAS; c++)
+                put(c, i ^ 1);
+        put_end();
+        expect_segment(live, &s, 0, 0.5, 6 + 5, 11);
+        expect_segment(live, &s, 0.5, 0.95, 5 + 5, 10);
+        expect_segment(live, &s, 0.95, 1.15, 2 + 3, 5);
+        expect_over(live, &s);
+        expect_over(live, &s);
+        adcgs_live_segment_clear(&s);
+        adcgs_live_close(&live);
+        start_again();
+    }
+}
+
+/** Frames that never come, one whose file is no picture, and a camera that ends before. */
+static void test_gaps(void **state)
+{
+    adcgs_live_segment s = { .scene = NULL };
+    double time = -1;
+    (void)state;
+    for (int i = 0; i < FRAMES; i++)
+        if (i != 3 && i != 5)
+            put(0, i);
+    for (int i = 0; i < 8; i++)
+        put(1, i);
+    assert_int_equal(truncate(in_folder("c%d-%02d.ppm", 1, 1), 20), 0);
+    put_end();
+    adcgs_live *live = open_live(0.5, 0);
+    expect_segment(live, &s, 0, 0.5, 4 + 4, 8);
+    assert_string_equal(adcgs_live_missing(live, &time), "a");
+    assert_float_equal(time, 0.3, 1e-6);
+    assert_string_equal(adcgs_live_missing(live, &time), "b");
+    assert_float_equal(time, 0.15, 1e-6);
+    assert_null(adcgs_live_missing(live, &time));
+    expect_segment(live, &s, 0.5, 1, 5 + 3, 8);
+    expect_segment(live, &s, 1, 1.1, 2, 2);
+    expect_over(live, &s);
+    assert_null(adcgs_live_missing(live, &time));
+    adcgs_live_segment_clear(&s);
+    adcgs_live_close(&live);
+    start_again();
+}
+
+/** An interrupt is an end; one moment is too little; where there is no scene, and what cannot be one. */
+static void test_ends(void **state)
+{
+    adcgs_live_segment s = { .scene = NULL };
+    (void)state;
+    for (int i = 0; i < 6; i++)
+        for (int c = 0; c < CAMERAS; c++)
+            put(c, i);
+    adcgs_live *live = open_live(0.5, 0);
+    expect_segment(live, &s, 0, 0.5, 6 + 5, 11);
+    interrupted = 2;
+    assert_int_equal(adcgs_live_next(live, &s, &error), ADCGS_OK); /* what was seen behind it may make a segment, or not */
+    if (s.scene)
+        expect_over(live, &s);
+    adcgs_live_close(&live);
+    start_again();
+
+    put(0, 0);
+    put_end();
+    live = open_live(0.5, 0);
+    assert_int_equal(adcgs_live_next(live, &s, &error), ADCGS_ERR_DATA);
+    adcgs_live_close(&live);
+    start_again();
+    const adcgs_live_options options = { .seconds = 1, .interrupted = is_interrupted };
+    assert_int_equal(adcgs_live_open(&live, "/nowhere/scene.json", &options, &error), ADCGS_ERR_IO);
+    assert_null(live);
+}
+
+/* ---- Files ---- */
+
+static size_t size_of(const char *path)
+{
+    struct stat s;
+    return stat(path, &s) ? 0 : (size_t)s.st_size;
+}
+
+/** It appears with its first piece, has each at once, and stays; without one what was there before does. */
+static void test_growing(void **state)
+{
+    adcgs_growing g;
+    const char *path = in_folder("grown", 0, 0);
+    (void)state;
+    assert_int_equal(adcgs_atomic_save(path, "old", 3, &error), ADCGS_OK);
+    assert_int_equal(adcgs_growing_open(&g, path, &error), ADCGS_OK);
+    assert_int_equal(size_of(path), 3);
+    adcgs_growing_close(&g);
+    assert_int_equal(size_of(path), 3);
+    assert_int_equal(adcgs_growing_open(&g, path, &error), ADCGS_OK);
+    for (size_t n = 1; n < 4; n++) {
+        assert_int_equal(adcgs_growing_append(&g, "0123456789", 10, &error), ADCGS_OK);
+        assert_int_equal(size_of(path), 10 * n);
+    }
+    adcgs_growing_close(&g);
+    adcgs_growing_close(&g);
+    assert_int_equal(size_of(path), 30);
+    assert_int_equal(adcgs_growing_open(&g, "/dev/full", &error), ADCGS_OK);
+    assert_int_equal(adcgs_growing_append(&g, "0123456789", 10, &error), ADCGS_ERR_IO);
+    adcgs_growing_close(&g);
+    unlink(path);
+}
+
+static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
+{
+    return adcgs_file_read_at(user, offset, buffer, bytes);
+}
+
+/** A stream that grew, and the HEAD that says how long it has become. */
+static void grow(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head)
+{
+    adcgs_grow *grow;
+    adcgs_stream front;
+    uint64_t seed = 5;
+    adcgs_stream_init(s);
+    adcgs_random_small_params(&s->params, 2, &seed);
+    s->slice_log2 = ADCGS_SLICE_LOG2_MIN;
+    assert_int_equal(adcgs_random_turns(s, SEGMENTS, 80, 4, 70, &seed, &error), ADCGS_OK);
+    front = *s;
+    front.n_segments = 0;
+    front.level = 3;
+    assert_int_equal(adcgs_grow_create(&grow, &front, 500, &error), ADCGS_OK);
+    for (uint32_t i = 0; i < SEGMENTS; i++)
+        assert_int_equal(adcgs_grow_segment(grow, i ? &s->segments[i - 1] : NULL, &s->segments[i], bytes, &error), ADCGS_OK);
+    assert_int_equal(adcgs_grow_end(grow, bytes, &error), ADCGS_OK);
+    assert_int_equal(adcgs_grow_settle(grow, head, &error), ADCGS_OK);
+    adcgs_grow_free(&grow);
+}
+
+/** Settled it is a stream like any other, as long, with the same models, and those of its index, at a lower level. */
+static void test_settle(void **state)
+{
+    adcgs_stream s;
+    adcgs_buffer bytes, head;
+    adcgs_decoder *d = NULL;
+    adcgs_info info;
+    uint8_t found[16], expected[16];
+    (void)state;
+    adcgs_buffer_init(&bytes);
+    adcgs_buffer_init(&head);
+    grow(&s, &bytes, &head);
+    FILE *from = tmpfile(), *to = tmpfile();
+    assert_true(from && to && fwrite(bytes.data, 1, bytes.size, from) == bytes.size && !fseek(from, 0, SEEK_SET));
+    assert_int_equal(adcgs_encode_settle(to, from, head.data, head.size, "x", &error), ADCGS_OK);
+    assert_int_equal(ftell(to), bytes.size);
+    rewind(to);
+    assert_int_equal(adcgs_open_stream(&d, adcgs_file_read, to, NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_get_info(d, &info, sizeof info, &error), ADCGS_OK);
+    assert_int_equal(info.level, 1);
+    adcgs_close(&d);
+    assert_int_equal(adcgs_open_at(&d, read_at, to, bytes.size, NULL, &error), ADCGS_OK);
+    for (uint32_t i = 0; i < SEGMENTS; i++) {
+        adcgs_model_digest(&s.segments[i], expected);
+        assert_int_equal(adcgs_get_model_digest(d, (int)i, found, &error), ADCGS_OK);
+        assert_memory_equal(found, expected, 16);
+    }
+    adcgs_close(&d);
+    for (size_t cut = 0; cut < bytes.size; cut += 97) { /* what ends early is no such stream */
+        FILE *part = tmpfile();
+        assert_true(part && fwrite(bytes.data, 1, cut, part) == cut && !fseek(part, 0, SEEK_SET));
+        assert_int_equal(adcgs_encode_settle(to, part, head.data, head.size, "x", &error), ADCGS_ERR_DATA);
+        fclose(part);
+    }
+    rewind(from);
+    assert_int_equal(adcgs_encode_settle(to, from, head.data, head.size - 1, "x", &error), ADCGS_ERR_DATA);
+    fclose(from);
+    fclose(to);
+    adcgs_stream_clear(&s, NULL);
+    adcgs_buffer_clear(&bytes);
+    adcgs_buffer_clear(&head);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_shapes), cmocka_unit_test(test_segments), cmocka_unit_test(test_gaps),
+        cmocka_unit_test(test_ends),   cmocka_unit_test(test_growing),  cmocka_unit_test(test_settle),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
