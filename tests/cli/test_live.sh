@@ -230,6 +230,13 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
     ended 0
     cmp "$dir/videos.adcgs" "$dir/pipes.adcgs" || bad "another stream through pipes"
     [ "$(left)" = "" ] || bad "left behind: $(left)"
+    # Damage in the third frame of a camera: what was learnt before is a stream.
+    { head -c "$(($(head -n 1 "$dir/videos/c3.y4m" | wc -c) + 2 * (6 + 3 * 64 * 64)))" "$dir/videos/c3.y4m"; echo FLAME; } >"$dir/c3"
+    mv "$dir/c3" "$dir/videos/c3.y4m"
+    # shellcheck disable=SC2086
+    expect 4 "c3.y4m: damaged before frame 2, expected FRAME" ./adcgs-enc --live "$dir/videos" -o "$dir/damaged.adcgs" $live
+    [ "$(spans "$dir/damaged.adcgs")" = "0 0 0.1" ] || { bad "before the damage"; spans "$dir/damaged.adcgs"; }
+    whole "$dir/damaged.adcgs"
     echo "YUV4MPEG2 W64 H64 C999" >"$dir/videos/c3.y4m"
     # shellcheck disable=SC2086
     expect 5 "c3.y4m: Y4M in the colour space 999" ./adcgs-enc --live "$dir/videos" -o "$dir/x.adcgs" $live
