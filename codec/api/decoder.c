@@ -160,7 +160,7 @@ void adcgs_close(adcgs_decoder **decoder)
     *decoder = NULL;
 }
 
-/** The first segment that can be asked for: those before it were forgotten. */
+/** The first segment that can be asked for: those before it were forgotten, or missed. */
 static uint32_t first_segment(const adcgs_decoder *d)
 {
     return d->seek ? 0 : d->stream.first_segment;
@@ -311,7 +311,7 @@ adcgs_status adcgs_get_model_digest(adcgs_decoder *decoder, int segment, uint8_t
     if (segment < 0 || (uint32_t)segment >= end)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment, (unsigned)end);
     if ((uint32_t)segment < first)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; those before %u were forgotten", segment,
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; those before %u are not here", segment,
                           (unsigned)first);
     ADCGS_TRY(decoder_segment(decoder, (uint32_t)segment, &model, error));
     adcgs_model_digest(model, digest);

@@ -79,7 +79,7 @@ void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info)
         .version_minor = ADCGS_BITSTREAM_MINOR,
         .profile = stream->profile,
         .level = stream->level,
-        .segments = (int)stream->n_segments,
+        .segments = (int)(stream->first_segment + stream->n_segments),
         .weights = stream->weights,
         .k = stream->params.k,
         .layers = adcgs_params_layers(&stream->params),

@@ -104,7 +104,7 @@ static adcgs_status play(const adcgs_dec_play *how, adcgs_play_settings *setting
 {
     adcgs_decoder *decoder = NULL;
     adcgs_camera *cameras = NULL;
-    adcgs_status status = open_front(&decoder, &settings->source, &how->config, error);
+    adcgs_status status = open_front(&decoder, &settings->source, &settings->config, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         status = look(how, decoder, settings, &cameras, error);
     adcgs_close(&decoder); /* the player opens it on its own thread */
@@ -127,9 +127,10 @@ static adcgs_status play_file(const adcgs_dec_play *how, adcgs_play_settings *se
     return status;
 }
 
-/** From its first bytes on. */
+/** From its first bytes on, or from the next key where these are past. */
 static adcgs_status play_pipe(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
+    settings->config.join = 1;
     ADCGS_TRY(adcgs_feed_open(&settings->source.feed, how->input, error));
     const adcgs_status status = play(how, settings, failed, error);
     adcgs_feed_free(&settings->source.feed);

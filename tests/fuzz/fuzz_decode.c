@@ -166,7 +166,7 @@ static void join(const uint8_t *data, size_t size, const adcgs_config *config, s
     adcgs_config how = *config;
     const size_t at = size * where / 256;
     how.join = 1;
-    push(data + at, size - at, &how, step);
+    push(data + at, size - at, &how, step, 0);
 }
 
 /** As a damaged stream: one that is whole has no faults, and its models; of any other what is found can be drawn. */

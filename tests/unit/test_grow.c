@@ -95,10 +95,11 @@ static void check_models(const fixture *f, adcgs_decoder *d, uint32_t first)
     uint8_t expected[16], found[16];
     for (uint32_t i = first; i < SEGMENTS; i++) {
         adcgs_model_digest(&f->stream.segments[i], expected);
-        assert_int_equal(adcgs_get_model_digest(d, (int)(i - first), found, NULL), ADCGS_OK);
+        assert_int_equal(adcgs_get_model_digest(d, (int)i, found, NULL), ADCGS_OK);
         assert_memory_equal(found, expected, 16);
     }
-    assert_int_equal(adcgs_get_model_digest(d, (int)(SEGMENTS - first), found, NULL), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_get_model_digest(d, (int)first - 1, found, NULL), ADCGS_ERR_USAGE);
+    assert_int_equal(adcgs_get_model_digest(d, SEGMENTS, found, NULL), ADCGS_ERR_USAGE);
 }
 
 /** The next chunk that is no HEAD, at *at or behind it. */

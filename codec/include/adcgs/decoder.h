@@ -243,7 +243,7 @@ ADCGS_API adcgs_status adcgs_render_depth(adcgs_decoder *decoder, const adcgs_ca
 /**
  * Conformance point M: MD5 of the decoded model of a segment (clause "Model digest").
  * \param decoder an open decoder
- * \param segment 0 .. adcgs_info.segments - 1
+ * \param segment adcgs_info.first_segment .. adcgs_info.segments - 1
  * \param digest receives 16 bytes
  * \param error says why it failed
  * \return ADCGS_OK, or ADCGS_ERR_USAGE if there is no such segment

@@ -114,7 +114,7 @@ typedef struct adcgs_info {
     int version_minor;      /**< of the bitstream */
     int profile;            /**< 0 (clause "Profiles and levels") */
     int level;              /**< 1..3: what the stream may cost (clause "Levels") */
-    int segments;           /**< complete time segments that can be played, at least 1 */
+    int segments;           /**< complete time segments, at least 1; those from first_segment on can be played */
     uint32_t anchors;       /**< over all segments */
     uint32_t gaussians;     /**< primitives that exist, over all segments */
     uint32_t static_anchors; /**< anchors that never move, over all segments */
@@ -141,7 +141,7 @@ typedef struct adcgs_info {
     double time_drawable;   /**< seconds: the end of what can be drawn by now; minus infinity: nothing can */
     int segments_promised;  /**< that a stream which is pushed will have; 0: its header does not say */
     int tiers_coming;       /**< of the segment that bytes are pushed of, those that can be drawn; 0: none, or there is no such */
-    int first_segment;      /**< number of the first segment that is here: above 0 where config.join missed those before it */
+    int first_segment;      /**< number of the first segment that is here: above 0 where those before it were forgotten, or missed */
 } adcgs_info;
 
 /** Longest name of a camera, bytes without the zero. */
