@@ -128,7 +128,7 @@ static adcgs_status set_params(adcgs_plan *plan, const adcgs_command *c, void *u
     } members[] = { { "k", &p->k, NULL }, { "n_fv", &p->n_fv, NULL }, { "n_fg", &p->n_fg, NULL }, { "chunks", &p->chunks, NULL },
                     { "n_eta", &p->n_eta, NULL }, { "octaves", &p->octaves, NULL }, { "fine_uses_fv", &p->fine_uses_fv, NULL },
                     { "coarse_rotation", &p->coarse_rotation, NULL }, { "adaptive_steps", &p->adaptive_steps, NULL },
-                    { "spans", &p->spans, NULL }, { "bodies", &p->bodies, NULL },
+                    { "spans", &p->spans, NULL }, { "bodies", &p->bodies, NULL }, { "smooth_time", &p->smooth_time, NULL },
                     { "time_rows", NULL, &p->time_rows }, { "time_width", NULL, &p->time_width } };
     (void)user;
     for (int i = 1; i < c->n; i++) {

@@ -64,8 +64,8 @@ static void write_params(writer *w)
         line(w, "params adaptive_steps=1");
     line(w, "params octaves=%d fine_uses_fv=%d coarse_rotation=%d", edgy(w, 0, small ? 4 : 10), draw(w, 0, 1), draw(w, 0, 1));
     if (w->moving)
-        line(w, "params time_rows=%d time_width=%d spans=%d bodies=%d", rows[draw(w, 0, COUNT(rows) - 1)], edgy(w, 1, 9),
-             draw(w, 0, 1), draw(w, 0, 1) * edgy(w, 1, 15));
+        line(w, "params time_rows=%d time_width=%d spans=%d bodies=%d smooth_time=%d", rows[draw(w, 0, COUNT(rows) - 1)],
+             edgy(w, 1, 9), draw(w, 0, 1), draw(w, 0, 1) * edgy(w, 1, 15), draw(w, 0, 1));
 }
 
 static void write_geometry(writer *w)

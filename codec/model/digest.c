@@ -73,6 +73,7 @@ static void visit_params(visitor *v, const adcgs_params *a, const adcgs_params *
     ITEM("adaptive_steps", adaptive_steps);
     ITEM("spans", spans);
     ITEM("bodies", bodies);
+    ITEM("smooth_time", smooth_time);
     ITEM("time_rows", time_rows);
     ITEM("time_width", time_width);
 }

@@ -54,6 +54,7 @@ typedef struct adcgs_params {
     uint8_t adaptive_steps;  /**< the steps of all but f_v adapt to the anchor, by E_q */
     uint8_t spans;           /**< anchors that move have a span of life and a velocity, channels 6.. of Sigma_v */
     uint8_t bodies;          /**< rigid bodies, 0..15, whose poses are the last columns of Z; 0 without a time table */
+    uint8_t smooth_time;     /**< the time code is a spline of the rows of Z, not a line from each to the next */
     uint16_t time_rows;   /**< rows of Z; 0: the scene is still, no deformation networks */
     uint16_t time_width;  /**< columns of Z that are f_t; behind them come adcgs_pose_columns() */
 } adcgs_params;

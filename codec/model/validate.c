@@ -49,6 +49,7 @@ adcgs_status adcgs_params_validate(const adcgs_params *p, adcgs_error *error)
     ADCGS_TRY(check_range("adaptive_steps", p->adaptive_steps, 0, 1, error));
     ADCGS_TRY(check_range("spans", p->spans, 0, p->time_rows > 0, error));
     ADCGS_TRY(check_range("bodies", p->bodies, 0, p->time_rows > 0 ? ADCGS_BODIES_MAX : 0, error));
+    ADCGS_TRY(check_range("smooth_time", p->smooth_time, 0, p->time_rows > 0, error));
     ADCGS_TRY(check_range("time_rows", p->time_rows, 0, ADCGS_TIME_ROWS_MAX, error));
     ADCGS_TRY(check_range("time_width", p->time_width, p->time_rows > 0, ADCGS_TIME_WIDTH_MAX, error));
     if (p->n_fg % p->chunks)

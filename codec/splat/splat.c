@@ -335,6 +335,10 @@ static void interpolate_time(adcgs_splat *s, float t)
     const size_t row = at.row;
     for (size_t j = 0; j < width; j++) {
         const float b = adcgs_tensor_value(z, row * width + j), c = adcgs_tensor_value(z, (row + 1) * width + j);
+        if (!s->model->params.smooth_time) {
+            s->time_code[j] = fmaf(at.fraction, c - b, b);
+            continue;
+        }
         const float a = row > 0 ? adcgs_tensor_value(z, (row - 1) * width + j) : adcgs_time_beyond(b, c);
         const float d = row + 2 < z->rows ? adcgs_tensor_value(z, (row + 2) * width + j) : adcgs_time_beyond(c, b);
         s->time_code[j] = adcgs_time_blend(at.weight, a, b, c, d);

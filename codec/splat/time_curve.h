@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
  * \file
- * The time table as a curve (spec clause "Time"): a uniform cubic B-spline of its rows, whose motion is smooth where that of a
- * line from row to row has corners, and misses what turns between two moments by the fourth power of the time between them, not
- * by the square. Beyond the first and last row it goes on in a line, so that it begins and ends at these.
+ * The time table as a smooth curve (spec clause "Time"): a uniform cubic B-spline of its rows, whose motion has no corners where
+ * that of a line from row to row has one at each, and in which neighbouring moments learn from each other. Beyond the first and
+ * last row it goes on in a line, so that it begins and ends at these.
  */
 #ifndef ADCGS_SPLAT_TIME_CURVE_H
 #define ADCGS_SPLAT_TIME_CURVE_H
@@ -14,7 +14,8 @@
 /** What is about t in [0,1]: a row, the next, one before and one behind, which may be rows that are not there; and weights. */
 typedef struct adcgs_time_place {
     uint32_t row;
-    float weight[4]; /**< of rows row - 1 .. row + 2 */
+    float fraction;  /**< of the way to the next */
+    float weight[4]; /**< of rows row - 1 .. row + 2, on the smooth curve */
 } adcgs_time_place;
 
 /** rows: at least 2. */
@@ -23,7 +24,7 @@ static inline adcgs_time_place adcgs_time_place_of(float t, uint32_t rows)
     const float u = t * (float)(rows - 1);
     const uint32_t row = (uint32_t)u < rows - 2 ? (uint32_t)u : rows - 2;
     const float r = u - (float)row, s = 1 - r, sixth = 0x1.555556p-3f, two_thirds = 0x1.555556p-1f;
-    return (adcgs_time_place){ row,
+    return (adcgs_time_place){ row, r,
                                { s * s * s * sixth, fmaf(r * r, fmaf(0.5f, r, -1), two_thirds),
                                  fmaf(s * s, fmaf(0.5f, s, -1), two_thirds), r * r * r * sixth } };
 }

@@ -47,6 +47,7 @@ static void params_from_head(adcgs_params *params, const adcgs_syn_head *h)
     params->adaptive_steps = h->adaptive_steps;
     params->spans = h->spans;
     params->bodies = h->bodies;
+    params->smooth_time = h->smooth_time;
     params->time_rows = h->time_rows;
     params->time_width = h->time_width;
 }
@@ -116,6 +117,7 @@ adcgs_status adcgs_head_write(adcgs_buffer *out, const adcgs_stream *stream, uin
         .adaptive_steps = params->adaptive_steps,
         .spans = params->spans,
         .bodies = params->bodies,
+        .smooth_time = params->smooth_time,
         .time_rows = params->time_rows,
         .time_width = params->time_width,
     };

@@ -57,6 +57,7 @@
     F(U8, adaptive_steps, 0, 1)                                 \
     F(U8, spans, 0, 1)                                          \
     F(U8, bodies, 0, ADCGS_BODIES_MAX)                          \
+    F(U8, smooth_time, 0, 1)                                    \
     F(U16, time_rows, 0, ADCGS_TIME_ROWS_MAX)                   \
     F(U16, time_width, 0, ADCGS_TIME_WIDTH_MAX)
 

@@ -354,6 +354,8 @@ adcgs_time_rows adcgs_fmodel_time_rows(const adcgs_params *params, float t)
     if (rows < 2)
         return (adcgs_time_rows){ 0, 1, { 1 } };
     const adcgs_time_place at = adcgs_time_place_of(t, rows);
+    if (!params->smooth_time)
+        return (adcgs_time_rows){ (int)at.row, 2, { 1 - at.fraction, at.fraction } };
     const float *w = at.weight;
     const int before = at.row > 0, behind = at.row + 2 < rows;
     /* A row that is not there is twice its neighbour less the one beyond. */

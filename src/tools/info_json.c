@@ -21,6 +21,7 @@ static void json_header(adcgs_json *j, const adcgs_info_report *r)
     adcgs_json_int(j, "anchors", i->anchors);
     adcgs_json_int(j, "static_anchors", i->static_anchors);
     adcgs_json_int(j, "spans", r->stream.params.spans);
+    adcgs_json_int(j, "smooth_time", r->stream.params.smooth_time);
     adcgs_json_int(j, "bodies", r->stream.params.bodies);
     adcgs_json_int(j, "gaussians", i->gaussians);
     adcgs_json_int(j, "weights", i->weights);

@@ -28,7 +28,7 @@ typedef struct adcgs_train_config {
     adcgs_train_target target;
     double target_value;   /**< bytes or dB */
     /* Chosen by hand: no target changes lambda, max_anchors or networks' widths, no scene the others. */
-    uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigid, own_scale_from, own_square;
+    uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigid, own_scale_from, own_square, own_smooth;
     /* The run. */
     uint32_t iterations;
     uint64_t seed;

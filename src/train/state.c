@@ -2,6 +2,7 @@
 /** \file The state of a run, made and taken apart. */
 #include "train/state.h"
 
+#include "data/by_camera.h"
 #include "fmodel/bodies.h"
 #include "train/follow.h"
 #include "train/initialise.h"
@@ -72,6 +73,23 @@ static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_er
     return adcgs_follow(&t->f, before, &t->config, &t->stereo, t->scene->duration, t->cpu, error);
 }
 
+/**
+ * Where most cameras see each moment, moments speak for themselves, and a spline would blur what is sudden; where few do, each
+ * learns from its neighbours. All parts of a scene are as the whole is.
+ */
+static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *scene, adcgs_error *error)
+{
+    const adcgs_scene *whole = scene->whole ? scene->whole : scene;
+    const uint32_t n = whole->n_views[ADCGS_SPLIT_TRAIN];
+    uint32_t *of = adcgs_alloc(NULL, n, sizeof *of, error), cameras = 0;
+    if (!of)
+        return adcgs_alloc_status(error);
+    const adcgs_status status = adcgs_sort_by_camera(whole->views[ADCGS_SPLIT_TRAIN], n, of, NULL, &cameras, error);
+    adcgs_free(NULL, of);
+    params->smooth_time = (uint64_t)2 * n < (uint64_t)cameras * whole->n_times;
+    return status;
+}
+
 static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, adcgs_error *error)
 {
     adcgs_train_config *c = &t->config;
@@ -86,7 +104,9 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
     else if (c->params.time_rows > times)
         c->params.time_rows = (uint16_t)times;
     if (!c->params.time_rows)
-        c->params.time_width = c->params.spans = c->params.bodies = 0;
+        c->params.time_width = c->params.spans = c->params.bodies = c->params.smooth_time = 0;
+    else if (!c->own_smooth)
+        ADCGS_TRY(choose_smooth_time(&c->params, t->scene, error));
     /*
      * A camera alone finds what moves with large primitives first, and by what neighbours do; squares make it learn by heart the
      * moments that it cannot explain. Several tell from one moment.

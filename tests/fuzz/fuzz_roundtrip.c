@@ -35,6 +35,7 @@ static adcgs_params params_of(const uint8_t b[10])
     p.time_width = p.time_rows ? in_range(b[8], 1, 20) : 0;
     p.spans = p.time_rows ? b[6] >> 3 & 1 : 0;
     p.bodies = p.time_rows ? b[6] >> 4 : 0;
+    p.smooth_time = p.time_rows ? b[8] >> 7 : 0;
     return p;
 }
 

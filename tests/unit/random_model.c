@@ -43,6 +43,7 @@ void adcgs_random_params(adcgs_params *p, int moving, uint64_t *state)
     p->time_width = (uint16_t)(moving ? draw(state, 1, 9) : 0);
     p->spans = (uint8_t)(moving ? *state >> 33 & 1 : 0);
     p->bodies = (uint8_t)(moving && *state >> 34 & 1 ? 1 + (*state >> 35) % ADCGS_BODIES_MAX : 0);
+    p->smooth_time = (uint8_t)(moving ? *state >> 40 & 1 : 0);
 }
 
 /** Magnitudes stay small enough for the E24 row bound with 96 inputs and for finite binary32 networks of 4 layers. */

@@ -125,8 +125,8 @@ static void evaluate_time(const adcgs_model *m, float t, float *out)
         float row[4]; /* from the one before t's */
         for (uint32_t k = 0; k < 4; k++)
             row[k] = i + k > 0 && i + k <= z->rows ? adcgs_tensor_value(z, (size_t)(i + k - 1) * z->cols + j) : 0;
-        if (z->rows == 1) {
-            out[j] = row[1];
+        if (z->rows == 1 || !m->params.smooth_time) {
+            out[j] = z->rows == 1 ? row[1] : fmaf(r, row[2] - row[1], row[1]);
             continue;
         }
         if (i == 0)

@@ -117,7 +117,8 @@ static void time_code(const adcgs_fmodel *f, double t, double *code)
             const double first = (double)z[j], last = (double)z[(rows - 1) * columns + j], d = fabs(u - i);
             const double row = i < 0 ? 2 * first - (double)z[columns + j] :
                                i == rows ? 2 * last - (double)z[(rows - 2) * columns + j] : (double)z[i * columns + j];
-            code[j] += row * (d < 1 ? 2.0 / 3 - d * d + d * d * d / 2 : d < 2 ? pow(2 - d, 3) / 6 : 0);
+            const double smooth = d < 1 ? 2.0 / 3 - d * d + d * d * d / 2 : d < 2 ? pow(2 - d, 3) / 6 : 0;
+            code[j] += row * (f->params.smooth_time ? smooth : fmax(1 - d, 0));
         }
     }
 }
@@ -306,7 +307,8 @@ static int setup(void **state)
     const int spans = (uintptr_t)*state >= WITH_SPANS;
     const adcgs_params params = { .k = K, .n_fv = NV, .n_fg = NG, .chunks = CHUNKS, .n_eta = ETA, .octaves = OCTAVES,
                                   .fine_uses_fv = 1, .coarse_rotation = 1, .adaptive_steps = 1, .spans = (uint8_t)spans,
-                                  .bodies = spans ? 2 : 0, .time_rows = 4, .time_width = 3 };
+                                  .bodies = spans ? 2 : 0, .smooth_time = (uint8_t)spans,
+                                  .time_rows = 4, .time_width = 3 };
     const adcgs_shape shape = { .theta_width = 6, .theta_hidden = 2, .omega_width = 5, .omega_hidden = 3, .varpi_width = 6,
                                 .varpi_hidden = 2, .entropy_width = 6, .entropy_hidden = 2, .step_fv = 0.1f, .step_fg = 0.2f,
                                 .step_sigma = 0.1f, .step_colour = 0.05f, .depth = 8 };

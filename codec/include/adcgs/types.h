@@ -141,7 +141,7 @@ typedef struct adcgs_info {
     double time_drawable;   /**< seconds: the end of what can be drawn by now; minus infinity: nothing can */
     int segments_promised;  /**< that a stream which is pushed will have; 0: its header does not say */
     int tiers_coming;       /**< of the segment that bytes are pushed of, those that can be drawn; 0: none, or there is no such */
-    int first_segment;      /**< number of the first segment that is here: above 0 where those before it were forgotten, or missed */
+    int first_segment;      /**< number of the first segment that is here: above 0 where others were forgotten, or missed */
 } adcgs_info;
 
 /** Longest name of a camera, bytes without the zero. */
