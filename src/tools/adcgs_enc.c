@@ -11,6 +11,7 @@
 #include "tools/enc_live.h"
 #include "tools/enc_parts.h"
 #include "tools/enc_report.h"
+#include "tools/enc_whole.h"
 #include "tools/enc_run.h"
 #include "train/settings.h"
 
@@ -148,6 +149,7 @@ static adcgs_status cut_scene(adcgs_enc_job *job, adcgs_error *error)
     ADCGS_TRY(adcgs_cuts_find(&job->cuts, job->scene, job->o->segment, error));
     if (job->cuts.n == 1)
         return ADCGS_OK;
+    job->whole = job->config;
     job->config.params.time_rows = (uint16_t)ADCGS_MIN(job->config.params.time_rows, job->cuts.moments);
     job->follows = adcgs_alloc(NULL, job->cuts.n, sizeof *job->follows, error);
     if (!job->follows)
@@ -210,7 +212,7 @@ static adcgs_status encode_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job,
     return ADCGS_OK;
 }
 
-static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, double *seconds, adcgs_error *error)
 {
     adcgs_stream stream;
     adcgs_buffer bytes;
@@ -219,10 +221,14 @@ static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
                                                error);
     if (status == ADCGS_OK)
         status = adcgs_encode_verified(&stream, &bytes, job->cpu, job->pool, error);
+    if (status == ADCGS_OK && job->o->or_whole)
+        status = adcgs_enc_try_whole(w, job, &bytes, seconds, error);
     if (status == ADCGS_OK)
         status = adcgs_atomic_save(job->o->output, bytes.data, bytes.size, error);
-    if (status == ADCGS_OK)
-        adcgs_enc_parts_remove(w->base, w->segments);
+    if (status == ADCGS_OK) {
+        adcgs_enc_parts_remove(w->base, job->cuts.n);
+        adcgs_enc_whole_remove(w, job);
+    }
     adcgs_buffer_clear(&bytes);
     adcgs_stream_clear(&stream, NULL);
     return status;
@@ -233,7 +239,7 @@ static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *j
     double seconds = 0;
     w->segments = job->cuts.n;
     ADCGS_TRY(encode_parts(w, job, &seconds, error));
-    ADCGS_TRY(write_parts(w, job, error));
+    ADCGS_TRY(write_parts(w, job, &seconds, error));
     return report(w, job, seconds, met, error);
 }
 
@@ -345,9 +351,9 @@ static int check_live(const adcgs_cli *cli, adcgs_enc_options *o, const char *sc
     if (!o->has_segment)
         o->segment = ADCGS_ENC_LIVE_SEGMENT;
     if (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0 || o->frames || o->fps ||
-        o->checkpoint || o->resume || o->dataset)
+        o->checkpoint || o->resume || o->dataset || o->or_whole)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--live excludes --size, --psnr, --beginning, --uncompressed, --time-limit, "
-                               "--frames, --fps, --checkpoint, --resume and --dataset");
+                               "--frames, --fps, --checkpoint, --resume, --dataset and --or-whole");
     if (o->has_delay && o->delay <= o->segment)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay %g: a segment of %g s is learnt when its end was filmed: give more "
                                "than that, or a shorter --segment", o->delay, o->segment);
@@ -400,6 +406,9 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "key", 0, ADCGS_OPTION_REAL, &o->key, 0, 1e6, "S",
           "with --segment: at least every S seconds a segment that needs\nno other, where playing can begin (default 10)", NULL,
           &o->has_key },
+        { "or-whole", 0, ADCGS_OPTION_FLAG, &o->or_whole, 0, 0, NULL,
+          "with --segment: learn one segment for all of time, too, and\nwrite that if it is neither larger nor worse", NULL,
+          NULL },
         { "live", 0, ADCGS_OPTION_FLAG, &o->live, 0, 0, NULL,
           "learn footage while it comes: SCENE is a scene file, or a\nfolder with scene.json; segments, of 2 s unless --segment\n"
           "says otherwise, are written as they are done; -o - writes to\nstandard output", NULL, NULL },
@@ -466,8 +475,9 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         return check_live(cli, o, argv[first]);
     if (o->has_delay)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay is for what is live: give --live, too");
-    if (o->has_key && !o->has_segment)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--key is for segments: give --segment, too");
+    if ((o->has_key || o->or_whole) && !o->has_segment)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is for segments: give --segment, too",
+                               o->has_key ? "key" : "or-whole");
     if (o->has_segment && (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --psnr, --beginning, --uncompressed and "
                                "--time-limit");

@@ -14,7 +14,7 @@ typedef struct adcgs_enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
     const char *frames, *fps;
     double lambda, psnr, time_limit, segment, key, delay;
-    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, live;
+    int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, live, or_whole;
     int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
     int has_delay;
     double started; /* adcgs_seconds() */
@@ -56,6 +56,7 @@ typedef struct adcgs_enc_job {
     adcgs_cuts cuts; /* n 0: the scene is not cut */
     uint8_t *follows; /* [cuts.n] 1: the part is learnt from the one before */
     adcgs_train_config config;
+    adcgs_train_config whole; /* of the scene as one segment, where it is cut */
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
 } adcgs_enc_job;

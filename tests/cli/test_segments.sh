@@ -67,6 +67,30 @@ enc whole
 enc long --segment 9
 same whole long "a segment longer than the scene changes it"
 
+# One segment instead, where that is neither larger nor worse: that of a run of as many iterations; it is said which was taken.
+expect 2 "give --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --or-whole
+# better NAME OPTIONS...: which is taken, one or the segments, fits what is said of both.
+better()
+{
+    enc "$@" --or-whole
+    said=$(sed 's/.* segments: \(.*\) bytes, \(.*\) dB; one: \(.*\) bytes, \(.*\) dB: \(.*\) [a-z]* written$/\1 \2 \3 \4 \5/' \
+        "$dir/$1.err" | tail -n 4 | grep -E ' (one|the segments)$')
+    echo "$said" | awk '{ exit !(NF > 4 && ($3 <= $1 && $4 > $2 - 0.05) == ($5 == "one")) }' || bad "it is said: $said"
+}
+better better --segment 0.1
+enc longer --iterations 600
+case $said in
+    *" one") same longer better "another stream than that of a run of as many iterations" ;;
+    *) bad "the tiny scene is no better in one: $said" ;;
+esac
+enc frozen --segment 0.07 --without deformation,rate --iterations 1000
+better cut --segment 0.07 --without deformation,rate --iterations 1000
+case $said in
+    *" the segments") same frozen cut "segments, but others" ;;
+    *) bad "what cannot move is no better in segments: $said" ;;
+esac
+[ "$(left better.adcgs)" = "" ] || bad "left behind: $(left better.adcgs)"
+
 # A run that is stopped in its second segment keeps both, and goes on from there to what never stopping gives.
 for try in 1 2 3; do
     rm -f "$dir/stop.log"

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Whether one segment serves a scene better than several. */
+#include "tools/enc_whole.h"
+
+#include "metric/evaluate.h"
+#include "tools/enc_parts.h"
+
+#include <adcgs/adcgs.h>
+
+#include <stdlib.h>
+#include <unistd.h>
+
+#define AS_GOOD 0.05 /* dB: less is not seen */
+
+/** A stream, and how well it shows the training views. */
+static adcgs_status measure(double *psnr, const adcgs_buffer *bytes, const adcgs_enc_job *job, adcgs_error *error)
+{
+    adcgs_config config;
+    adcgs_decoder *decoder = NULL;
+    adcgs_evaluation result = { .n = 0 };
+    adcgs_config_init(&config, sizeof config);
+    config.cpu = job->cpu;
+    config.pool = job->pool;
+    ADCGS_TRY(adcgs_open_memory(&decoder, bytes->data, bytes->size, &config, error));
+    const adcgs_status status = adcgs_evaluate(&result, decoder, job->scene, ADCGS_SPLIT_TRAIN, 0, NULL, NULL, error);
+    adcgs_close(&decoder);
+    *psnr = result.psnr;
+    return status;
+}
+
+static adcgs_status encode(adcgs_buffer *bytes, adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+{
+    adcgs_enc_notes n;
+    adcgs_stream stream;
+    adcgs_stream_init(&stream);
+    adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
+    adcgs_status status = adcgs_encode_stream(&stream, w->t, n.list, n.n, error);
+    if (status == ADCGS_OK)
+        status = adcgs_encode_verified(&stream, bytes, job->cpu, job->pool, error);
+    adcgs_stream_clear(&stream, NULL);
+    return status;
+}
+
+static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+{
+    adcgs_enc_job whole = *job;
+    whole.config = job->whole;
+    whole.config.iterations *= job->cuts.n;
+    free(w->state);
+    w->state = NULL;
+    w->segments = w->segment = w->next_log = 0;
+    ADCGS_TRY(adcgs_enc_part_name(&w->state, w->base, job->cuts.n, 0, error));
+    adcgs_status status = adcgs_enc_learn(w, &whole, job->scene, NULL, NULL,
+                                          job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_seconds(), error);
+    if (status == ADCGS_OK)
+        status = encode(bytes, w, job, error);
+    adcgs_trainer_free(&w->t);
+    return status;
+}
+
+adcgs_status adcgs_enc_try_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_buffer *bytes, double *seconds,
+                                 adcgs_error *error)
+{
+    adcgs_buffer whole;
+    double with_parts = 0, with_one = 0;
+    adcgs_buffer_init(&whole);
+    adcgs_status status = learn_whole(&whole, w, job, error);
+    *seconds += w->last.seconds;
+    if (status == ADCGS_OK)
+        status = measure(&with_parts, bytes, job, error);
+    if (status == ADCGS_OK)
+        status = measure(&with_one, &whole, job, error);
+    const int takes = whole.size <= bytes->size && with_one > with_parts - AS_GOOD;
+    if (status == ADCGS_OK)
+        adcgs_cli_note(job->cli, "%u segments: %zu bytes, %.2f dB; one: %zu bytes, %.2f dB: %s", job->cuts.n, bytes->size,
+                       with_parts, whole.size, with_one, takes ? "one is written" : "the segments are written");
+    if (status == ADCGS_OK && takes) {
+        const adcgs_buffer parts = *bytes;
+        *bytes = whole;
+        whole = parts;
+    }
+    adcgs_buffer_clear(&whole);
+    return status;
+}
+
+void adcgs_enc_whole_remove(const adcgs_enc_watcher *w, const adcgs_enc_job *job)
+{
+    char *name;
+    adcgs_error ignored;
+    if (adcgs_enc_part_name(&name, w->base, job->cuts.n, 0, &ignored) == ADCGS_OK)
+        unlink(name);
+    free(name);
+}
