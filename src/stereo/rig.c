@@ -250,7 +250,7 @@ adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *sce
     set_depths(rig, scene, options);
     if (status == ADCGS_OK) {
         rig->n_cameras = (int)ADCGS_MIN(x.n_cameras, ADCGS_STEREO_CAMERAS);
-        rig->n_moments = (int)ADCGS_MIN(x.n_times, ADCGS_STEREO_MOMENTS);
+        rig->n_moments = (int)ADCGS_MIN(x.n_times, options->moments ? options->moments : ADCGS_STEREO_MOMENTS);
         for (int m = 0; m < rig->n_moments; m++) {
             const uint64_t last = (uint64_t)ADCGS_MAX(rig->n_moments - 1, 1);
             rig->moment[m] = moment_of(scene, x.times[(uint64_t)m * (x.n_times - 1) / last]);

@@ -9,7 +9,7 @@
 #include "data/scene.h"
 #include "stereo/stereo.h"
 
-enum { ADCGS_STEREO_CAMERAS = 24, ADCGS_STEREO_MOMENTS = 48 };
+enum { ADCGS_STEREO_CAMERAS = 24 };
 
 /** A camera and what it shows. */
 typedef struct adcgs_stereo_view {

@@ -14,6 +14,8 @@
 #include "base/pool.h"
 #include "data/scene.h"
 
+enum { ADCGS_STEREO_MOMENTS = 48 /**< that are looked at, at most */ };
+
 typedef struct adcgs_stereo_point {
     double x[3];       /**< scene units */
     float rgb[3];
@@ -42,6 +44,7 @@ typedef struct adcgs_stereo_options {
     double origin[3], scale; /**< of scene units, see adcgs_scene_frame() */
     uint32_t still;          /**< points that do not move, at most */
     uint32_t moving;         /**< points of each moment that do, at most */
+    uint32_t moments;        /**< that are looked at, evenly spread, at most; 0: ADCGS_STEREO_MOMENTS */
     uint32_t bodies;         /**< rigid bodies among these, at most ADCGS_BODIES_MAX; 0: none are looked for */
 } adcgs_stereo_options;
 

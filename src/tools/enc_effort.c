@@ -11,10 +11,15 @@
 #define GUARD 0.95  /* of it, that the clock ends at */
 #define BLIND 2.0   /* seconds that must be left for a segment to be learnt by the clock, before any speed is known */
 #define NEWS 0.4    /* that effort changes by before it is said again */
+#define MOMENTS 8   /* that are matched of a segment with a delay, and no bodies: matching takes as long as much of a run */
 
-void adcgs_enc_effort_init(adcgs_enc_effort *e, const adcgs_enc_job *job)
+void adcgs_enc_effort_init(adcgs_enc_effort *e, adcgs_enc_job *job)
 {
     *e = (adcgs_enc_effort){ .delay = job->o->has_delay ? job->o->delay : 0, .most = job->config.iterations };
+    if (!(e->delay > 0))
+        return;
+    job->config.stereo = (uint8_t)ADCGS_MIN(job->config.stereo, MOMENTS);
+    job->config.params.bodies = 0;
 }
 
 static void say(adcgs_enc_effort *e, const adcgs_enc_job *job, uint32_t number, double left)
@@ -36,7 +41,7 @@ void adcgs_enc_effort_choose(adcgs_enc_effort *e, adcgs_enc_job *job, double cam
         return;
     const double n = e->rate > 0 ? e->rate * (SAFETY * left - e->overhead) : left > BLIND ? e->most : 0;
     job->config.iterations = n > least ? (uint32_t)fmin(n, e->most) : least;
-    job->config.time_limit = n > least ? GUARD * left : 0;
+    job->config.time_limit = n > least ? GUARD * left - e->overhead : 0;
     say(e, job, number, left);
 }
 

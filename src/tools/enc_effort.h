@@ -16,9 +16,11 @@ typedef struct adcgs_enc_effort {
     uint32_t said;    /**< iterations that were told last; 0: none */
 } adcgs_enc_effort;
 
-void adcgs_enc_effort_init(adcgs_enc_effort *effort, const adcgs_enc_job *job);
+/** Where there is a delay, matching takes less of it: settings of the job's configuration change. */
+void adcgs_enc_effort_init(adcgs_enc_effort *effort, adcgs_enc_job *job);
 /**
- * Set iterations and time limit of the job's configuration for segment `number`, which takes so many seconds and came then.
+ * Set iterations and time limit, which counts from when training begins, of the job's configuration for segment `number`, which
+ * takes so many seconds and came then.
  * Says so where effort is another than it was.
  */
 void adcgs_enc_effort_choose(adcgs_enc_effort *effort, adcgs_enc_job *job, double came, double seconds, uint32_t number);

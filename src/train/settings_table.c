@@ -7,6 +7,7 @@
 #include "train/settings.h"
 
 #include "net/net.h"
+#include "stereo/stereo.h"
 
 #include <stddef.h>
 
@@ -110,7 +111,8 @@ const adcgs_setting adcgs_settings[] = {
         { 1200, 6000, 8000, 10000, 20000 }, "budget of anchors; their number stops growing there"),
     ANCHOR(tiers, S | B | Q, 1, ADCGS_TIERS_MAX, BUT_PAPER(4, 1),
            "sets of anchors that are sent one after the other, each with finer detail, at most"),
-    ANCHOR(stereo, S | Q, 0, 1, ALL(1), "1: first anchors come from matched pictures, where a scene brings no points"),
+    ANCHOR(stereo, S | Q, 0, ADCGS_STEREO_MOMENTS, ALL(ADCGS_STEREO_MOMENTS),
+           "moments at most that pictures are matched of, for first anchors and motion; 0: none"),
     ANCHOR(span_moments, B | Q, 0.1, 1e4, ALL(3), "moments before and after its own that an anchor with a span begins with"),
     ANCHOR(densify_every, S | Q, 1, 1e6, ALL(100), "iterations from one densification to the next"),
     ANCHOR(densify_threshold, S | B | Q, 0, 1e6, ALL(0.0003),

@@ -334,6 +334,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, ad
         config->start_anchors = ADCGS_MAX(config->start_anchors, (uint32_t)(START_SHARE * config->max_anchors));
     if (matched) {
         options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
+        options.moments = config->stereo;
         options.bodies = config->params.spans ? config->params.bodies : 0;
         options.moving = config->params.spans ? MOVING_MOST : (uint32_t)(MOVING_SHARE * options.still);
         ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));
