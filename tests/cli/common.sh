@@ -39,3 +39,24 @@ expect()
     [ -z "$text" ] || grep -q -- "$text" "$dir/err" || { bad "no \"$text\" in the message of: $*"; cat "$dir/err"; }
     [ "$code" -eq 0 ] || [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "not one line on standard error: $*"; cat "$dir/err"; }
 }
+
+# interrupt SIGNAL LOG TEXT COMMAND...: send a run a signal once its log has a line with TEXT (a basic regular expression); what
+# it printed is in $dir/stop.out and $dir/stop.err. Where so busy a machine was too late for that it is tried again.
+interrupt()
+{
+    signal=$1 log=$2 text=$3
+    shift 3
+    for try in 1 2 3; do
+        rm -f "$log"
+        "$@" >"$dir/stop.out" 2>"$dir/stop.err" &
+        pid=$!
+        while kill -0 $pid 2>/dev/null && ! grep -q "$text" "$log" 2>/dev/null; do
+            sleep 0.02
+        done
+        kill "-$signal" $pid 2>/dev/null
+        wait $pid
+        got=$?
+        [ "$got" -eq 0 ] || break
+    done
+    [ "$got" -eq 3 ] || { bad "exit code $got after SIG$signal, expected 3"; cat "$dir/stop.err"; }
+}

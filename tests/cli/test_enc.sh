@@ -42,26 +42,13 @@ whole()
     fi
 }
 
-# interrupt ITERATION SIGNAL OPTIONS...: stop a run once its log has reached an iteration; its messages are in stop.err.
-# A machine may be so busy that the run ends before the signal arrives; then there is nothing to look at, and it tries again.
-interrupt()
+# stop_at ITERATION SIGNAL OPTIONS...: stop a run there.
+stop_at()
 {
     from=$1 signal=$2
     shift 2
-    for try in 1 2 3; do
-        rm -f "$dir/stop.log"
-        ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft --max-anchors 300 --log "$dir/stop.log" "$@" \
-            >"$dir/stop.out" 2>"$dir/stop.err" &
-        pid=$!
-        while kill -0 $pid 2>/dev/null && ! grep -q "\"iteration\":$from," "$dir/stop.log" 2>/dev/null; do
-            sleep 0.05
-        done
-        kill "-$signal" $pid 2>/dev/null
-        wait $pid
-        got=$?
-        [ "$got" -eq 0 ] || break
-    done
-    [ "$got" -eq 3 ] || { bad "exit code $got after SIG$signal, expected 3"; cat "$dir/stop.err"; }
+    interrupt "$signal" "$dir/stop.log" "\"iteration\":$from," ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft \
+        --max-anchors 300 --log "$dir/stop.log" "$@"
 }
 
 scene=$dir/scene
@@ -103,13 +90,13 @@ rm -r "$dir/apart"
 
 # An interrupt leaves a checkpoint, says how to go on, and leaves the output alone. Going on gives what never stopping gives.
 echo precious >"$dir/stop.adcgs"
-interrupt 100 INT --iterations $n --threads 2
+stop_at 100 INT --iterations $n --threads 2
 grep -q -- "--resume $dir/stop.adcgs.checkpoint" "$dir/stop.err" || { bad "no word of --resume"; cat "$dir/stop.err"; }
 [ "$(cat "$dir/stop.adcgs")" = precious ] || bad "an interrupted run touched its output"
 enc resumed --iterations $n --threads 2 --resume "$dir/stop.adcgs.checkpoint"
 same one resumed "another stream after an interrupt"
 rm "$dir/stop.adcgs.checkpoint"
-interrupt 500 TERM --iterations $n --threads 2 --checkpoint "$dir/late"
+stop_at 500 TERM --iterations $n --threads 2 --checkpoint "$dir/late"
 [ ! -e "$dir/stop.adcgs.checkpoint" ] && [ -s "$dir/late" ] || bad "no checkpoint where --checkpoint says"
 enc threads --iterations $n --threads 5 --resume "$dir/late" --log "$dir/stop.log"
 same one threads "another stream after an interrupt, with other threads"

@@ -92,21 +92,9 @@ esac
 [ "$(left better.adcgs)" = "" ] || bad "left behind: $(left better.adcgs)"
 
 # A run that is stopped in its second segment keeps both, and goes on from there to what never stopping gives.
-for try in 1 2 3; do
-    rm -f "$dir/stop.log"
-    # shellcheck disable=SC2086
-    ./adcgs-enc "$scene" -o "$dir/stop.adcgs" $short --segment 0.1 --log "$dir/stop.log" >"$dir/stop.out" 2>"$dir/stop.err" &
-    pid=$!
-    while kill -0 $pid 2>/dev/null && ! grep -q '"segment":2,.*"iteration":100,' "$dir/stop.log" 2>/dev/null; do
-        sleep 0.02
-    done
-    kill -INT $pid 2>/dev/null
-    wait $pid
-    got=$?
-    [ "$got" -eq 0 ] || break
-    rm -f "$dir/stop.adcgs"
-done
-[ "$got" -eq 3 ] || { bad "exit code $got after SIGINT"; cat "$dir/stop.err"; }
+# shellcheck disable=SC2086
+interrupt INT "$dir/stop.log" '"segment":2,.*"iteration":100,' ./adcgs-enc "$scene" -o "$dir/stop.adcgs" $short --segment 0.1 \
+    --log "$dir/stop.log"
 grep -q "of segment 2 of 2; .*--resume $dir/stop.adcgs.checkpoint" "$dir/stop.err" || { bad "no word of it"; cat "$dir/stop.err"; }
 [ "$(left stop.adcgs)" = ".checkpoint.1.adcgs .checkpoint.2" ] || bad "left: $(left stop.adcgs)"
 [ "$(spans stop.adcgs.checkpoint.1.adcgs)" = "0 0 0.1" ] || bad "the first segment is no stream by itself"

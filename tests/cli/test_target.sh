@@ -57,18 +57,9 @@ within "$(wc -c <"$dir/many.adcgs")" 11641 12000 "bytes with many anchors"
 enc 0 threads --size 20k --iterations $n --threads 5
 cmp "$dir/size20k.adcgs" "$dir/threads.adcgs" || bad "another stream with other threads"
 for at in ${ADCGS_FULL:+300} 700; do
-    for try in 1 2 3; do
-        rm -f "$dir/stop.log" "$dir/state"
-        ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft --size 20k --iterations $n --threads 2 --log "$dir/stop.log" \
-            --checkpoint "$dir/state" >/dev/null 2>&1 &
-        pid=$!
-        while kill -0 $pid 2>/dev/null && ! grep -q "\"iteration\":$at," "$dir/stop.log" 2>/dev/null; do
-            sleep 0.05
-        done
-        kill -INT $pid 2>/dev/null
-        wait $pid
-        [ $? -eq 0 ] || break # so busy a machine that the run ended first
-    done
+    rm -f "$dir/state"
+    interrupt INT "$dir/stop.log" "\"iteration\":$at," ./adcgs-enc "$scene" -o "$dir/stop.adcgs" --preset draft --size 20k \
+        --iterations $n --threads 2 --log "$dir/stop.log" --checkpoint "$dir/state"
     enc 0 resumed --size 20k --iterations $n --resume "$dir/state"
     cmp "$dir/size20k.adcgs" "$dir/resumed.adcgs" || bad "another stream after an interrupt at $at"
 done
