@@ -1147,6 +1147,32 @@ static void moments_shared_by_views_change_settings(void **state)
         }
 }
 
+/** Time goes along a spline where several cameras see a moment, but fewer than half, unless told otherwise. */
+static void few_cameras_make_time_smooth(void **state)
+{
+    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
+    adcgs_scene alone = *scene, few = *scene;
+    const adcgs_scene *scenes[] = { scene, &alone, &few };
+    adcgs_train_config config = small_config();
+    adcgs_scene_view *views = malloc(n * sizeof *views);
+    assert_true(views && n >= 2 * scene->n_times);
+    memcpy(views, scene->views[ADCGS_SPLIT_TRAIN], n * sizeof *views);
+    for (uint32_t i = 0; i < n; i++) /* from half of time on cameras stand somewhere else, so that there are twice as many */
+        views[i].camera.cam_to_world[3] += views[i].time > scene->duration / 2 ? 0.01 : 0;
+    few.views[ADCGS_SPLIT_TRAIN] = views;
+    alone.n_times = n;
+    for (int by_hand = 0; by_hand < 2; by_hand++)
+        for (int i = 0; i < 3; i++) {
+            adcgs_trainer *t;
+            if (by_hand)
+                assert_int_equal(adcgs_train_set(&config, i ? "smooth_time=0" : "smooth_time=1", &error), ADCGS_OK);
+            assert_int_equal(adcgs_trainer_create(&t, scenes[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
+            assert_int_equal(t->f->params.smooth_time, by_hand ? !i : i == 2);
+            adcgs_trainer_free(&t);
+        }
+    free(views);
+}
+
 /* ---- Time ---- */
 
 /** What the rates of a kind are told to be is what its groups get, and no other. */
@@ -1435,7 +1461,7 @@ int main(void)
         cmocka_unit_test(averages_are_means),
         cmocka_unit_test(black_levels_are_found), cmocka_unit_test(cameras_are_evened_out),
         cmocka_unit_test(lambda_follows_contrast),
-        cmocka_unit_test(moments_shared_by_views_change_settings),
+        cmocka_unit_test(moments_shared_by_views_change_settings), cmocka_unit_test(few_cameras_make_time_smooth),
         cmocka_unit_test(crops_are_parts_of_pictures), cmocka_unit_test(rates_stay_then_fall),
         cmocka_unit_test(rates_follow_their_kind),
         cmocka_unit_test(time_left_follows_the_schedule), cmocka_unit_test(time_left_knows_loading),
