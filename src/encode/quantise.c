@@ -266,9 +266,10 @@ adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adc
     memset(model, 0, sizeof *model);
     model->params = f->params;
     /* Where nothing moves, a stream of one segment carries no motion: no networks, no time table, no flags. */
-    if (!f->is_part && !adcgs_fmodel_moves(f))
-        model->params.time_rows = model->params.time_width = model->params.spans = model->params.bodies = 0;
-        model->params.smooth_time = 0;
+    if (!f->is_part && !adcgs_fmodel_moves(f)) {
+        model->params.time_rows = model->params.time_width = 0;
+        model->params.spans = model->params.bodies = model->params.smooth_time = 0;
+    }
     model->n = f->n;
     model->depth = (uint8_t)f->shape.depth;
     memcpy(model->origin, f->origin, sizeof model->origin);

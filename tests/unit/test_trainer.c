@@ -1168,6 +1168,13 @@ static void few_cameras_make_time_smooth(void **state)
                 assert_int_equal(adcgs_train_set(&config, i ? "smooth_time=0" : "smooth_time=1", &error), ADCGS_OK);
             assert_int_equal(adcgs_trainer_create(&t, scenes[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
             assert_int_equal(t->f->params.smooth_time, by_hand ? !i : i == 2);
+            const adcgs_quantise_options how = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
+            adcgs_model model;
+            t->f->is_part = 1; /* motion stays in the stream whether anything moves or not */
+            adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .quant = ADCGS_QUANT_ROUND });
+            assert_int_equal(adcgs_quantise(&model, t->f, &how, &error), ADCGS_OK);
+            assert_int_equal(model.params.smooth_time, t->f->params.smooth_time);
+            adcgs_model_clear(&model, NULL);
             adcgs_trainer_free(&t);
         }
     free(views);
