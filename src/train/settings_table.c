@@ -85,7 +85,7 @@ const adcgs_setting adcgs_settings[] = {
     MODEL(bodies, B | Q, 0, ADCGS_BODIES_MAX, BUT_PAPER(8, 0), "rigid bodies, at most, where matching finds any"),
     MODEL(time_rows, B | Q, 0, ADCGS_TIME_ROWS_MAX, ALL(40), "rows of the time table, at most one per moment; 0: no motion"),
     ROW("smooth_time", params.smooth_time, AT(own_smooth), MODEL, ALWAYS, Q, 0, 1, BUT_PAPER(1, 0),
-        "1: time passes along a spline of these rows; unless given, where several see a moment, but less than half"),
+        "1: time passes along a spline of these rows; unless given, where less than half of the cameras see a moment"),
     MODEL(time_width, S | B | Q, 0, ADCGS_TIME_WIDTH_MAX, BUT_PAPER(16, 64), "values in a row of the time table"),
 
     NETWORK(theta_width, S | B | Q | M, 1, WIDTH_MAX, ALL(32), "hidden width of F_theta, which makes primitives of features"),

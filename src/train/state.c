@@ -74,8 +74,8 @@ static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_er
 }
 
 /**
- * Where a few of the cameras see a moment, it learns from its neighbours what it does not show. Where most do moments speak for
- * themselves, and a spline would blur what is sudden; a camera alone gains nothing. All parts of a scene are as the whole is.
+ * Where few of the cameras see a moment, it learns from its neighbours what it does not show. Where most do moments speak for
+ * themselves, and a spline would blur what is sudden. All parts of a scene are as the whole is.
  */
 static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *scene, adcgs_error *error)
 {
@@ -86,7 +86,7 @@ static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *
         return adcgs_alloc_status(error);
     const adcgs_status status = adcgs_sort_by_camera(whole->views[ADCGS_SPLIT_TRAIN], n, of, NULL, &cameras, error);
     adcgs_free(NULL, of);
-    params->smooth_time = n >= 2 * whole->n_times && (uint64_t)2 * n < (uint64_t)cameras * whole->n_times;
+    params->smooth_time = (uint64_t)2 * n < (uint64_t)cameras * whole->n_times;
     return status;
 }
 

@@ -300,7 +300,7 @@ static void test_join_damage(void **state)
     int heads[1] = { 0 };
     adcgs_buffer_init(&b);
     for (int i = 0; i < 5000; i++)
-        adcgs_write_bytes(&b, "HEADaHEA\x8B" "ADCG" + i % 7, 6);
+        adcgs_write_bytes(&b, &"HEADaHEA\x8B" "ADCG"[i % 7], 6);
     const size_t damaged = b.size;
     adcgs_write_bytes(&b, f->grown.data + key, head);
     b.data[damaged + 30] ^= 4;

@@ -1147,7 +1147,7 @@ static void moments_shared_by_views_change_settings(void **state)
         }
 }
 
-/** Time goes along a spline where several cameras see a moment, but fewer than half, unless told otherwise. */
+/** Time goes along a spline where fewer than half of the cameras see a moment, unless told otherwise. */
 static void few_cameras_make_time_smooth(void **state)
 {
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -1167,7 +1167,7 @@ static void few_cameras_make_time_smooth(void **state)
             if (by_hand)
                 assert_int_equal(adcgs_train_set(&config, i ? "smooth_time=0" : "smooth_time=1", &error), ADCGS_OK);
             assert_int_equal(adcgs_trainer_create(&t, scenes[i], &config, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
-            assert_int_equal(t->f->params.smooth_time, by_hand ? !i : i == 2);
+            assert_int_equal(t->f->params.smooth_time, by_hand ? !i : i > 0);
             const adcgs_quantise_options how = { .cpu = t->cpu, .mu = t->pass->mu, .factor = t->pass->factor };
             adcgs_model model;
             t->f->is_part = 1; /* motion stays in the stream whether anything moves or not */
