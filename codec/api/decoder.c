@@ -266,7 +266,7 @@ adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primi
 {
     ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
     ADCGS_TRY(catch_up(d, error));
-    if (end_segment(d) == 0)
+    if (end_segment(d) == first_segment(d))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: no segment that can be drawn has come yet");
     const uint32_t segment = segment_at(d, time);
     const adcgs_model *model;

@@ -287,6 +287,29 @@ static void test_join(void **state)
     }
 }
 
+/** Who joined can draw nothing before something of the key is there that can be drawn. */
+static void test_join_early(void **state)
+{
+    const fixture *f = *state;
+    const adcgs_config config = joining();
+    const double time = f->stream.segments[TURN].time_start;
+    adcgs_decoder *d = NULL;
+    adcgs_primitives primitives;
+    adcgs_arrival arrived = ADCGS_ARRIVED_NOTHING;
+    size_t at = f->at[TURN], parts = 0;
+    assert_int_equal(adcgs_open_push(&d, &config, NULL), ADCGS_OK);
+    while (arrived != ADCGS_ARRIVED_SEGMENT) {
+        size_t used;
+        assert_int_equal(adcgs_push(d, f->grown.data + at, f->grown.size - at, &used, &arrived, NULL), ADCGS_OK);
+        at += used;
+        parts++;
+        assert_int_equal(adcgs_get_primitives(d, time, &primitives, NULL),
+                         arrived == ADCGS_ARRIVED_SEGMENT ? ADCGS_OK : ADCGS_ERR_USAGE);
+    }
+    assert_true(parts > 3); /* HEAD, SEGM, GEOM, a layer */
+    adcgs_close(&d);
+}
+
 /** Garbage in front, a header that is none, one whose payload is damaged; a stream that ends before its key; nobody who joins. */
 static void test_join_damage(void **state)
 {
@@ -350,7 +373,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same), cmocka_unit_test(test_seek),        cmocka_unit_test(test_settle),
         cmocka_unit_test(test_refused), cmocka_unit_test(test_join),     cmocka_unit_test(test_join_damage),
-        cmocka_unit_test(test_not_beyond),
+        cmocka_unit_test(test_join_early), cmocka_unit_test(test_not_beyond),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
