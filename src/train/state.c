@@ -75,7 +75,8 @@ static adcgs_status follow(adcgs_trainer *t, const adcgs_model *before, adcgs_er
 
 /**
  * Where few of the cameras see a moment, it learns from its neighbours what it does not show. Where most do moments speak for
- * themselves, and a spline would blur what is sudden. All parts of a scene are as the whole is.
+ * themselves, and a spline would blur what is sudden. All parts of a scene are as the whole
+ * is. Nor has a preset a spline that is without one.
  */
 static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *scene, adcgs_error *error)
 {
@@ -86,7 +87,7 @@ static adcgs_status choose_smooth_time(adcgs_params *params, const adcgs_scene *
         return adcgs_alloc_status(error);
     const adcgs_status status = adcgs_sort_by_camera(whole->views[ADCGS_SPLIT_TRAIN], n, of, NULL, &cameras, error);
     adcgs_free(NULL, of);
-    params->smooth_time = (uint64_t)2 * n < (uint64_t)cameras * whole->n_times;
+    params->smooth_time &= (uint64_t)2 * n < (uint64_t)cameras * whole->n_times;
     return status;
 }
 

@@ -1177,6 +1177,12 @@ static void few_cameras_make_time_smooth(void **state)
             adcgs_model_clear(&model, NULL);
             adcgs_trainer_free(&t);
         }
+    adcgs_trainer *t;
+    adcgs_train_config without = small_config(); /* as preset paper */
+    without.params.smooth_time = 0;
+    assert_int_equal(adcgs_trainer_create(&t, &few, &without, ADCGS_CPU_SCALAR, pool, &error), ADCGS_OK);
+    assert_int_equal(t->f->params.smooth_time, 0);
+    adcgs_trainer_free(&t);
     free(views);
 }
 
