@@ -33,17 +33,6 @@ static adcgs_status compare(const adcgs_encode_live *e, const adcgs_model *writt
                       adcgs_fail(error, ADCGS_ERR_INTERNAL, "the segment written cannot be decoded");
 }
 
-/** Of the models that were read, the last is enough to go on. */
-static void forget(adcgs_stream *back)
-{
-    while (back->n_segments > 1) {
-        adcgs_model_clear(&back->segments[0], NULL);
-        memmove(&back->segments[0], &back->segments[1], --back->n_segments * sizeof *back->segments);
-        memset(&back->segments[back->n_segments], 0, sizeof *back->segments);
-        back->first_segment++;
-    }
-}
-
 adcgs_status adcgs_encode_live_open(adcgs_encode_live *e, const adcgs_scene *whole, const adcgs_cuts *cuts,
                                     uint32_t max_anchors, const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu,
                                     adcgs_pool *pool, adcgs_error *error)
@@ -80,7 +69,7 @@ adcgs_status adcgs_encode_live_add(adcgs_encode_live *e, adcgs_model *model, adc
         error->status = ADCGS_ERR_INTERNAL;
         return ADCGS_ERR_INTERNAL;
     }
-    forget(&e->back);
+    adcgs_stream_forget(&e->back, e->back.n_segments ? e->back.n_segments - 1 : 0, NULL); /* the last is enough to go on */
     adcgs_model_clear(&e->model, NULL);
     e->model = *model;
     memset(model, 0, sizeof *model);

@@ -87,15 +87,11 @@ static adcgs_status write_uncompressed(adcgs_enc_watcher *w, const adcgs_model *
 
 static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_watcher *w, adcgs_pool *pool, adcgs_error *error)
 {
-    adcgs_enc_notes n;
     adcgs_buffer bytes;
-    adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
     adcgs_buffer_init(&bytes);
     if (w->o->uncompressed)
         adcgs_raw_prepare(w->t->f);
-    adcgs_status status = adcgs_encode_stream(stream, w->t, n.list, n.n, error);
-    if (status == ADCGS_OK)
-        status = adcgs_encode_verified(stream, &bytes, w->t->cpu, pool, error);
+    adcgs_status status = adcgs_enc_encode(stream, &bytes, w, pool, error);
     if (status == ADCGS_OK && w->t->config.target == ADCGS_TARGET_SIZE && bytes.size > w->o->size)
         status = adcgs_fail(error, ADCGS_ERR_USAGE, "%s: not written, since a single anchor and its networks take %zu bytes",
                             w->o->output, bytes.size);
@@ -227,7 +223,8 @@ static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
         status = adcgs_atomic_save(job->o->output, bytes.data, bytes.size, error);
     if (status == ADCGS_OK) {
         adcgs_enc_parts_remove(w->base, job->cuts.n);
-        adcgs_enc_whole_remove(w, job);
+        if (job->o->or_whole)
+            adcgs_enc_part_remove(w->base, job->cuts.n, 0);
     }
     adcgs_buffer_clear(&bytes);
     adcgs_stream_clear(&stream, NULL);

@@ -21,7 +21,7 @@ adcgs_status adcgs_enc_part_name(char **name, const char *base, uint32_t part, i
     return ADCGS_OK;
 }
 
-static void remove_one(const char *base, uint32_t part, int is_stream)
+void adcgs_enc_part_remove(const char *base, uint32_t part, int is_stream)
 {
     char *name;
     adcgs_error ignored;
@@ -33,7 +33,7 @@ static void remove_one(const char *base, uint32_t part, int is_stream)
 void adcgs_enc_parts_remove(const char *base, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++)
-        remove_one(base, i, 1);
+        adcgs_enc_part_remove(base, i, 1);
 }
 
 adcgs_status adcgs_enc_part_save(const char *base, const adcgs_cuts *cuts, uint32_t part, const adcgs_trainer *t,
@@ -53,7 +53,7 @@ adcgs_status adcgs_enc_part_save(const char *base, const adcgs_cuts *cuts, uint3
     if (status == ADCGS_OK)
         status = adcgs_atomic_save(name, bytes.data, bytes.size, error);
     if (status == ADCGS_OK)
-        remove_one(base, part, 0);
+        adcgs_enc_part_remove(base, part, 0);
     free(name);
     adcgs_buffer_clear(&bytes);
     adcgs_stream_clear(&stream, NULL);

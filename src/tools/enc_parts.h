@@ -35,6 +35,8 @@ adcgs_status adcgs_enc_part_model(adcgs_model *model, const char *base, uint32_t
 adcgs_status adcgs_enc_parts_join(adcgs_stream *stream, const char *base, const adcgs_scene *scene, const adcgs_cuts *cuts,
                                   const uint8_t *follows, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 
+/** Remove a part's stream, or its checkpoint, if it is there. */
+void adcgs_enc_part_remove(const char *base, uint32_t part, int is_stream);
 /** Remove the parts' streams. */
 void adcgs_enc_parts_remove(const char *base, uint32_t n);
 

@@ -134,6 +134,15 @@ static adcgs_status measure(void *user, const adcgs_trainer *t, adcgs_bytes *byt
     return adcgs_encode_bytes(bytes, t, -1, n.list, n.n, error);
 }
 
+adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const adcgs_enc_watcher *w, adcgs_pool *pool,
+                              adcgs_error *error)
+{
+    adcgs_enc_notes n;
+    adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
+    ADCGS_TRY(adcgs_encode_stream(stream, w->t, n.list, n.n, error));
+    return adcgs_encode_verified(stream, bytes, w->t->cpu, pool, error);
+}
+
 /* ---- Learning ---- */
 
 /** What the run is for: the stream, or the state before lambda matters. */

@@ -66,6 +66,10 @@ const char *adcgs_enc_target(const adcgs_enc_options *o);
 /** changes: settings that are not the preset's, "" for none. The notes point into the trainer's configuration. */
 void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes);
 
+/** The run's stream, initialised by the caller, and its bytes, read back once. */
+adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const adcgs_enc_watcher *w, adcgs_pool *pool,
+                              adcgs_error *error);
+
 /**
  * Learn a scene, or a part of it, which goes on with the model before unless that is NULL; w->t is the caller's then. state: a
  * checkpoint to go on from, or NULL. started: adcgs_seconds() from which its time counts. otherwise: the model to go on with

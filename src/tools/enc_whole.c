@@ -28,19 +28,6 @@ static adcgs_status measure(double *psnr, const adcgs_buffer *bytes, const adcgs
     return status;
 }
 
-static adcgs_status encode(adcgs_buffer *bytes, adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
-{
-    adcgs_enc_notes n;
-    adcgs_stream stream;
-    adcgs_stream_init(&stream);
-    adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
-    adcgs_status status = adcgs_encode_stream(&stream, w->t, n.list, n.n, error);
-    if (status == ADCGS_OK)
-        status = adcgs_encode_verified(&stream, bytes, job->cpu, job->pool, error);
-    adcgs_stream_clear(&stream, NULL);
-    return status;
-}
-
 static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
 {
     adcgs_enc_job whole = *job;
@@ -52,8 +39,11 @@ static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const
     ADCGS_TRY(adcgs_enc_part_name(&w->state, w->base, job->cuts.n, 0, error));
     adcgs_status status = adcgs_enc_learn(w, &whole, job->scene, NULL, NULL,
                                           job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_seconds(), error);
+    adcgs_stream stream;
+    adcgs_stream_init(&stream);
     if (status == ADCGS_OK)
-        status = encode(bytes, w, job, error);
+        status = adcgs_enc_encode(&stream, bytes, w, job->pool, error);
+    adcgs_stream_clear(&stream, NULL);
     adcgs_trainer_free(&w->t);
     return status;
 }
@@ -81,13 +71,4 @@ adcgs_status adcgs_enc_try_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job,
     }
     adcgs_buffer_clear(&whole);
     return status;
-}
-
-void adcgs_enc_whole_remove(const adcgs_enc_watcher *w, const adcgs_enc_job *job)
-{
-    char *name;
-    adcgs_error ignored;
-    if (adcgs_enc_part_name(&name, w->base, job->cuts.n, 0, &ignored) == ADCGS_OK)
-        unlink(name);
-    free(name);
 }

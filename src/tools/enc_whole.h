@@ -9,10 +9,9 @@
  * Learn the scene as one segment, with as many iterations as its parts have had together, and compare it with the stream of the
  * parts, by bytes and by the PSNR of all training views, both decoded. Where it has no more of the one and no less of the other
  * it takes the place of that stream, in bytes; either way that is said. *seconds: grows by those of training.
- * Its checkpoint is BASE.N, where the parts' are those before; to be removed by adcgs_enc_whole_remove().
+ * Its checkpoint is that of a part behind the last.
  */
 adcgs_status adcgs_enc_try_whole(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_buffer *bytes, double *seconds,
                                  adcgs_error *error);
-void adcgs_enc_whole_remove(const adcgs_enc_watcher *watcher, const adcgs_enc_job *job);
 
 #endif
