@@ -3,7 +3,7 @@
  * Reading on demand: what a seeker gives is what reading the whole stream gives, in any order; it reads no more than it has to,
  * holds one segment, and is as hard to fool.
  */
-#include "random_model.h"
+#include "stream_fixture.h"
 
 #include "base/cpu.h"
 #include "stream/chunk.h"
@@ -12,12 +12,7 @@
 
 #include <adcgs/adcgs.h>
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { SEGMENTS = 9 };
 
@@ -42,11 +37,7 @@ static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
     return (int64_t)n;
 }
 
-typedef struct fixture {
-    adcgs_stream stream;
-    adcgs_buffer bytes;
-    uint8_t digest[SEGMENTS][16];
-} fixture;
+static uint8_t digests[SEGMENTS][16];
 
 static source source_of(const adcgs_buffer *bytes)
 {
@@ -56,29 +47,15 @@ static source source_of(const adcgs_buffer *bytes)
 /** Keys and predicted segments in turns of three. */
 static int setup(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
-    adcgs_params params;
-    uint64_t seed = 21;
+    fixture *f = fixture_new(state);
     adcgs_stream *s = &f->stream;
-    adcgs_random_params(&params, 1, &seed);
-    adcgs_buffer_init(&f->bytes);
-    adcgs_stream_init(s);
-    s->params = params;
+    uint64_t seed = 21;
+    adcgs_random_params(&s->params, 1, &seed);
     if (adcgs_random_turns(s, SEGMENTS, 150, 5, 20, &seed, NULL) != ADCGS_OK)
         return -1;
     for (int i = 0; i < SEGMENTS; i++)
-        adcgs_model_digest(&s->segments[i], f->digest[i]);
-    *state = f;
+        adcgs_model_digest(&s->segments[i], digests[i]);
     return adcgs_stream_write(s, &f->bytes, NULL) == ADCGS_OK ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    fixture *f = *state;
-    adcgs_stream_clear(&f->stream, NULL);
-    adcgs_buffer_clear(&f->bytes);
-    free(f);
-    return 0;
 }
 
 static adcgs_decoder *open_on_demand(source *s)
@@ -96,7 +73,7 @@ static void check_segment(adcgs_decoder *d, const fixture *f, int segment)
     adcgs_error error = { ADCGS_OK, "" };
     if (adcgs_get_model_digest(d, segment, digest, &error) != ADCGS_OK)
         fail_msg("segment %d: %s", segment, error.text);
-    assert_memory_equal(digest, f->digest[segment], sizeof digest);
+    assert_memory_equal(digest, digests[segment], sizeof digest);
 }
 
 /** Any order, forwards, backwards and again; models and splats are those of the whole stream. */
@@ -251,7 +228,7 @@ static void test_every_byte(void **state)
         adcgs_error error = { ADCGS_OK, "" };
         if (adcgs_open_at(&d, read_at, &s, s.size, NULL, &error) == ADCGS_OK &&
             adcgs_get_model_digest(d, 8, digest, &error) == ADCGS_OK)
-            assert_memory_equal(digest, f->digest[8], sizeof digest);
+            assert_memory_equal(digest, digests[8], sizeof digest);
         adcgs_close(&d);
         bytes.data[i] ^= 0x10;
     }
