@@ -49,8 +49,7 @@ adcgs_verdict adcgs_depths_judge(const adcgs_depths *d, const double x[3], doubl
     return ADCGS_VERDICT_SAME;
 }
 
-/** The greatest difference of brightness about a pixel. */
-static float detail_of(const adcgs_stereo_view *v, int px, int py)
+float adcgs_stereo_detail(const adcgs_stereo_view *v, int px, int py)
 {
     float least = 3, most = 0;
     for (int y = ADCGS_MAX(py - 1, 0); y <= ADCGS_MIN(py + 1, v->h - 1); y++)
@@ -90,7 +89,7 @@ static int confirm(adcgs_stereo_point *p, const adcgs_depths *depths, int n, int
         p->rgb[a] = pixel[a];
     }
     p->size = (float)(depth / d->view->fx);
-    p->detail = detail_of(d->view, px + d->x, py + d->y);
+    p->detail = adcgs_stereo_detail(d->view, px + d->x, py + d->y);
     return 1;
 }
 

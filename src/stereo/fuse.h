@@ -33,4 +33,7 @@ adcgs_verdict adcgs_depths_judge(const adcgs_depths *depths, const double x[3], 
 adcgs_status adcgs_fuse(adcgs_stereo_list *list, adcgs_depths *depths, int n, const uint8_t *const *wanted,
                         const adcgs_stereo_point *like, adcgs_error *error);
 
+/** The greatest difference of brightness about a pixel, 0..1. */
+float adcgs_stereo_detail(const adcgs_stereo_view *view, int px, int py);
+
 #endif

@@ -5,12 +5,14 @@
 #include "stereo/bodies.h"
 #include "stereo/follow.h"
 #include "stereo/fuse.h"
+#include "stereo/hull.h"
 #include "stereo/thin.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4 }; /* views that are matched at a moment; pixels that move; about them */
+/* Views that are matched at a moment; pixels that move; about them; of so many of these a point has to be matched. */
+enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4, SPARSE = 16 };
 #define AXES_ALIKE 0.6  /* cosine between axes of views that are matched */
 #define APART 0.005     /* scene units between views that tell depths */
 #define MOVED 18        /* levels of 255 off what a pixel usually shows */
@@ -223,6 +225,17 @@ static void mark_in_place(adcgs_stereo_list *list, const adcgs_stereo_maps *maps
     }
 }
 
+/** Of all views. */
+static size_t pixels_that_move(const moment *o)
+{
+    size_t n = 0;
+    for (int i = 0; i < o->n; i++)
+        for (int k = 0; k < o->view[i].w * o->view[i].h; k++)
+            n += o->moves[i][k];
+    return n;
+}
+
+/** Where cameras are too far apart for matching, or what moves too plain, silhouettes say where it is. */
 static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_stereo_maps *maps, int m,
                                 uint32_t most, adcgs_pool *pool, adcgs_error *error)
 {
@@ -238,6 +251,8 @@ static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig 
         status = match_all(&job, pool, error);
     if (status == ADCGS_OK)
         status = adcgs_fuse(&found, o->depths, o->n, (const uint8_t *const *)o->moves, &like, error);
+    if (status == ADCGS_OK && SPARSE * found.n < pixels_that_move(o))
+        status = adcgs_hull_find(&found, o->view, (const uint8_t *const *)o->moves, o->n, &like, error);
     mark_in_place(&found, maps);
     if (status == ADCGS_OK)
         status = adcgs_stereo_thin(&found, most, error);
