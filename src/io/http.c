@@ -231,6 +231,16 @@ int64_t adcgs_http_read(void *user, void *buffer, size_t bytes)
     return (int64_t)got;
 }
 
+adcgs_status adcgs_http_take(adcgs_http *h, void *buffer, size_t bytes, size_t *got, int *ended, adcgs_error *error)
+{
+    *got = 0;
+    *ended = h->left == 0;
+    if (!*ended)
+        ADCGS_TRY(h->curl->take(h->transfer, buffer, (size_t)ADCGS_MIN((uint64_t)bytes, h->left), got, ended, error));
+    h->left -= *got;
+    return ADCGS_OK;
+}
+
 static int has(const window *w, uint64_t offset)
 {
     return offset >= w->at && offset - w->at < w->held;

@@ -40,6 +40,11 @@ void adcgs_http_close(adcgs_http **http);
 uint64_t adcgs_http_size(const adcgs_http *http);
 /** An adcgs_read_fn; user is an adcgs_http. */
 int64_t adcgs_http_read(void *user, void *buffer, size_t bytes);
+/**
+ * As adcgs_http_read(), but waits a moment at most: *got is 0 if nothing came meanwhile, and at the end, which sets *ended.
+ * ADCGS_ERR_IO if reading fails.
+ */
+adcgs_status adcgs_http_take(adcgs_http *http, void *buffer, size_t bytes, size_t *got, int *ended, adcgs_error *error);
 /** An adcgs_read_at_fn; user is an adcgs_http. That what it names changes between two ranges is a failure. */
 int64_t adcgs_http_read_at(void *user, uint64_t offset, void *buffer, size_t bytes);
 /** Where one of these failed: status becomes that failure's, and error tells it instead of what the reader made of it. */

@@ -6,6 +6,7 @@
 
 #include <curl/curl.h>
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <strings.h>
@@ -171,10 +172,13 @@ static adcgs_status step(adcgs_transfer *t, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Until there are bytes of the body, or it has ended. Time counts while we wait, not while what came is used. */
-static adcgs_status wait_for_body(adcgs_transfer *t, adcgs_error *error)
+/**
+ * Until there are bytes of the body, or it has ended, or so many steps have brought nothing. Time counts while we wait, not while
+ * what came is used.
+ */
+static adcgs_status wait_for_body(adcgs_transfer *t, int steps, adcgs_error *error)
 {
-    while (!t->done && t->next == t->held) {
+    for (; steps > 0 && !t->done && t->next == t->held; steps--) {
         const double begin = seconds();
         ADCGS_TRY(step(t, error));
         t->waited += seconds() - begin;
@@ -286,7 +290,7 @@ static adcgs_status transfer_ask(adcgs_transfer *t, const char *range, const cha
     if (set_same(t, same) || curl_easy_setopt(t->easy, CURLOPT_RANGE, range) || curl_multi_add_handle(t->multi, t->easy))
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot ask", t->url);
     t->started = 1;
-    ADCGS_TRY(wait_for_body(t, error));
+    ADCGS_TRY(wait_for_body(t, INT_MAX, error));
     *head = t->head;
     curl_easy_getinfo(t->easy, CURLINFO_RESPONSE_CODE, &status);
     curl_easy_getinfo(t->easy, CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &length);
@@ -295,18 +299,30 @@ static adcgs_status transfer_ask(adcgs_transfer *t, const char *range, const cha
     return ADCGS_OK;
 }
 
-static adcgs_status transfer_read(adcgs_transfer *t, void *buffer, size_t bytes, size_t *got, adcgs_error *error)
+static adcgs_status take(adcgs_transfer *t, int steps, void *buffer, size_t bytes, size_t *got, adcgs_error *error)
 {
     *got = 0;
     if (t->paused && t->next == t->held) {
         t->paused = 0;
         curl_easy_pause(t->easy, CURLPAUSE_CONT); /* which may hand over the next bytes at once */
     }
-    ADCGS_TRY(wait_for_body(t, error));
+    ADCGS_TRY(wait_for_body(t, steps, error));
     *got = ADCGS_MIN(bytes, t->held - t->next);
     memcpy(buffer, t->bytes + t->next, *got);
     t->next += *got;
     return ADCGS_OK;
+}
+
+static adcgs_status transfer_read(adcgs_transfer *t, void *buffer, size_t bytes, size_t *got, adcgs_error *error)
+{
+    return take(t, INT_MAX, buffer, bytes, got, error);
+}
+
+static adcgs_status transfer_take(adcgs_transfer *t, void *buffer, size_t bytes, size_t *got, int *ended, adcgs_error *error)
+{
+    const adcgs_status status = take(t, 1, buffer, bytes, got, error);
+    *ended = t->done && t->next == t->held;
+    return status;
 }
 
 const adcgs_curl adcgs_curl_table = {
@@ -315,4 +331,5 @@ const adcgs_curl adcgs_curl_table = {
     .close = transfer_close,
     .ask = transfer_ask,
     .read = transfer_read,
+    .take = transfer_take,
 };

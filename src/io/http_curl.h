@@ -36,6 +36,8 @@ typedef struct adcgs_curl {
                         adcgs_error *error);
     /** Wait for some bytes of its body: *got of them, at most `bytes`; 0 at its end. */
     adcgs_status (*read)(adcgs_transfer *transfer, void *buffer, size_t bytes, size_t *got, adcgs_error *error);
+    /** As read, but *got is also 0 if nothing comes for a moment, and *ended tells whether that is the end. */
+    adcgs_status (*take)(adcgs_transfer *transfer, void *buffer, size_t bytes, size_t *got, int *ended, adcgs_error *error);
 } adcgs_curl;
 
 /** The one thing that the module exports. */

@@ -12,7 +12,7 @@
 #define BYTES_MAX ((uint64_t)1 << 32) /* as of a file that is played */
 
 struct adcgs_feed {
-    adcgs_pipe pipe;   /**< the thread's while it runs */
+    adcgs_incoming in;   /**< the thread's while it runs */
     uint8_t piece[PIECE_BYTES];
     void (*wake)(void *arg);
     void *arg;
@@ -26,13 +26,13 @@ struct adcgs_feed {
     adcgs_error error; /**< why it ended, unless its status is ADCGS_OK */
 };
 
-adcgs_status adcgs_feed_open(adcgs_feed **out, const char *path, adcgs_error *error)
+adcgs_status adcgs_feed_open(adcgs_feed **out, const char *path, int (*interrupted)(void), adcgs_error *error)
 {
     adcgs_feed *const f = *out = calloc(1, sizeof *f);
     if (!f)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", path);
     pthread_mutex_init(&f->lock, NULL);
-    const adcgs_status status = adcgs_pipe_open(&f->pipe, path, error);
+    const adcgs_status status = adcgs_incoming_open(&f->in, path, interrupted, error);
     if (status != ADCGS_OK)
         adcgs_feed_free(out);
     return status;
@@ -45,7 +45,7 @@ void adcgs_feed_free(adcgs_feed **feed)
     if (!f)
         return;
     adcgs_feed_stop(f);
-    adcgs_pipe_close(&f->pipe);
+    adcgs_incoming_close(&f->in);
     pthread_mutex_destroy(&f->lock);
     free(f->data);
     free(f);
@@ -55,13 +55,13 @@ void adcgs_feed_free(adcgs_feed **feed)
 static adcgs_status append(adcgs_feed *f, size_t n)
 {
     if (f->bytes + n > BYTES_MAX)
-        return adcgs_fail(&f->error, ADCGS_ERR_LIMIT, "%.160s: more than %llu bytes, which the player would keep", f->pipe.name,
+        return adcgs_fail(&f->error, ADCGS_ERR_LIMIT, "%.160s: more than %llu bytes, which the player would keep", f->in.name,
                           (unsigned long long)BYTES_MAX);
     if (f->bytes + n > f->room) {
         const uint64_t room = ADCGS_MAX(2 * f->room, f->bytes + n);
         uint8_t *const data = room <= SIZE_MAX ? realloc(f->data, (size_t)room) : NULL;
         if (!data)
-            return adcgs_fail(&f->error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %llu bytes", f->pipe.name,
+            return adcgs_fail(&f->error, ADCGS_ERR_MEMORY, "%.160s: out of memory for %llu bytes", f->in.name,
                               (unsigned long long)room);
         f->data = data;
         f->room = room;
@@ -76,13 +76,13 @@ static int take(adcgs_feed *f)
 {
     adcgs_error error = {.status = ADCGS_OK};
     size_t got;
-    adcgs_status status = adcgs_pipe_read(&f->pipe, f->piece, sizeof f->piece, &got, &error);
+    adcgs_status status = adcgs_incoming_read(&f->in, f->piece, sizeof f->piece, &got, &error);
     pthread_mutex_lock(&f->lock);
     if (status != ADCGS_OK)
         f->error = error;
     else if (got > 0)
         status = append(f, got);
-    f->ended = status != ADCGS_OK || f->pipe.ended;
+    f->ended = status != ADCGS_OK || f->in.ended;
     const int changed = got > 0 || f->ended;
     pthread_mutex_unlock(&f->lock);
     return changed;
@@ -121,7 +121,7 @@ adcgs_status adcgs_feed_start(adcgs_feed *f, void (*wake)(void *arg), void *arg,
     pthread_sigmask(SIG_SETMASK, &all, &before);
     f->running = !pthread_create(&f->thread, NULL, read_on, f);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return f->running ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "cannot start a thread for %.160s", f->pipe.name);
+    return f->running ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "cannot start a thread for %.160s", f->in.name);
 }
 
 void adcgs_feed_stop(adcgs_feed *f)
@@ -166,5 +166,5 @@ adcgs_status adcgs_feed_status(adcgs_feed *f, adcgs_error *error)
 
 const char *adcgs_feed_name(const adcgs_feed *f)
 {
-    return f->pipe.name;
+    return f->in.name;
 }

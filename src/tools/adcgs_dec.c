@@ -311,15 +311,15 @@ static adcgs_status play(const adcgs_cli *cli, const settings *s, int *mismatch,
     return status;
 }
 
-/** Show frames of a stream from a pipe, while it comes where that can be. */
+/** Show frames of a stream while it comes, where that can be. The beginning of what a pipe brings may be past. */
 static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
     adcgs_live live;
     adcgs_config config = s->config;
-    config.join = 1;
+    config.join = !adcgs_is_url(s->input);
     adcgs_status status = adcgs_live_open(&live, decoder, s->input, &config, &s->request, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
-        status = adcgs_dec_tell_joined(cli, *decoder, live.pipe.name, error);
+        status = adcgs_dec_tell_joined(cli, *decoder, live.in.name, error);
     if (status == ADCGS_OK)
         status = adcgs_set_tiers(*decoder, s->tiers, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
@@ -333,7 +333,7 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
 {
     streams from = {0};
     const int as_clip = !s->cameras && !s->splats && !s->beside && s->budget.of == ADCGS_BUDGET_NONE;
-    if (as_clip && adcgs_pipe_is(s->input))
+    if (as_clip && (adcgs_pipe_is(s->input) || (adcgs_is_url(s->input) && !s->config.on_demand && !s->config.conceal)))
         return show_live(cli, s, decoder, mismatch, error);
     ADCGS_TRY(open_input(decoder, &s->http, s->input, s, error));
     from.decoder = *decoder;

@@ -12,12 +12,12 @@
 
 #define BUFFER_BYTES 65536
 
-/** Take bytes from the pipe, when there are some. */
+/** Take bytes as they come, when there are some. */
 static adcgs_status fill(adcgs_live *live, adcgs_error *error)
 {
     fflush(stdout); /* this may take long; what fails now fails again when the frames are done */
     live->at = 0;
-    return adcgs_pipe_read(&live->pipe, live->buffer, BUFFER_BYTES, &live->n, error);
+    return adcgs_incoming_read(&live->in, live->buffer, BUFFER_BYTES, &live->n, error);
 }
 
 /** Decode what has been read to the end of one part, or read more, or note the end. */
@@ -32,11 +32,11 @@ static adcgs_status step(adcgs_live *live, adcgs_error *error)
         status = adcgs_push(live->decoder, live->buffer + live->at, live->n, &used, &arrived, error);
     live->at += used;
     live->n -= used;
-    live->over = arrived == ADCGS_ARRIVED_END || (live->pipe.ended && live->n == 0);
+    live->over = arrived == ADCGS_ARRIVED_END || (live->in.ended && live->n == 0);
     if (status == ADCGS_OK && live->over)
         status = adcgs_push_end(live->decoder, error);
     if (status != ADCGS_OK)
-        adcgs_error_locate(error, live->pipe.name);
+        adcgs_error_locate(error, live->in.name);
     return status;
 }
 
@@ -64,12 +64,12 @@ adcgs_status adcgs_live_open(adcgs_live *live, adcgs_decoder **decoder, const ch
                              const adcgs_camera_path_request *request, adcgs_error *error)
 {
     *live = (adcgs_live){0};
-    ADCGS_TRY(adcgs_pipe_open(&live->pipe, path, error));
+    ADCGS_TRY(adcgs_incoming_open(&live->in, path, adcgs_interrupted, error));
     ADCGS_TRY(adcgs_open_push(decoder, config, error));
     live->decoder = *decoder;
     live->buffer = malloc(BUFFER_BYTES);
     if (!live->buffer)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", live->pipe.name);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", live->in.name);
     adcgs_info info = {.time_drawable = -INFINITY};
     for (; !live->over && isinf(info.time_drawable) && !adcgs_interrupted(); info = look(live))
         ADCGS_TRY(step(live, error));
@@ -85,7 +85,7 @@ adcgs_status adcgs_live_wait(adcgs_live *live, double time, adcgs_error *error)
 
 void adcgs_live_close(adcgs_live *live)
 {
-    adcgs_pipe_close(&live->pipe);
+    adcgs_incoming_close(&live->in);
     free(live->buffer);
     *live = (adcgs_live){0};
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-dec - : a stream from a pipe, of which frames are written while it comes. */
+/** \file adcgs-dec - : a stream from a pipe or a server, of which frames are written while it comes. */
 #ifndef ADCGS_TOOLS_DEC_LIVE_H
 #define ADCGS_TOOLS_DEC_LIVE_H
 
 #include "camera/path.h"
-#include "io/pipe.h"
+#include "io/incoming.h"
 
 #include <adcgs/decoder.h>
 
 typedef struct adcgs_live {
-    adcgs_pipe pipe;
+    adcgs_incoming in;
     adcgs_decoder *decoder; /**< the caller's */
     uint8_t *buffer;        /**< bytes that were read, and not yet decoded: from at on, n of them */
     size_t at, n;

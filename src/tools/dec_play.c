@@ -11,7 +11,6 @@
 #include "cli/cli.h"
 #include "io/file.h"
 #include "io/http.h"
-#include "io/pipe.h"
 #include "play/play.h"
 
 #include <adcgs/decoder.h>
@@ -127,11 +126,11 @@ static adcgs_status play_file(const adcgs_dec_play *how, adcgs_play_settings *se
     return status;
 }
 
-/** From its first bytes on, or from the next key where these are past. */
-static adcgs_status play_pipe(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
+/** From its first bytes on, or of a pipe from the next key where these are past. */
+static adcgs_status play_coming(const adcgs_dec_play *how, adcgs_play_settings *settings, int *failed, adcgs_error *error)
 {
-    settings->config.join = 1;
-    ADCGS_TRY(adcgs_feed_open(&settings->source.feed, how->input, error));
+    settings->config.join = !adcgs_is_url(how->input);
+    ADCGS_TRY(adcgs_feed_open(&settings->source.feed, how->input, adcgs_interrupted, error));
     const adcgs_status status = play(how, settings, failed, error);
     adcgs_feed_free(&settings->source.feed);
     return status;
@@ -142,7 +141,9 @@ adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_er
     adcgs_play_settings settings = {.source.path = strcmp(how->input, "-") ? how->input : "stream", .config = how->config,
                                     .script = how->script, .interrupted = adcgs_interrupted};
     memcpy(settings.size, how->request.size, sizeof settings.size);
-    return adcgs_pipe_is(how->input) ? play_pipe(how, &settings, failed, error) : play_file(how, &settings, failed, error);
+    /* What is damaged at a URL is looked at again and again. */
+    const int comes = adcgs_pipe_is(how->input) || (adcgs_is_url(how->input) && !how->config.conceal);
+    return comes ? play_coming(how, &settings, failed, error) : play_file(how, &settings, failed, error);
 }
 
 #else

@@ -11,7 +11,7 @@ nginx=$(PATH=$PATH:/usr/sbin:/usr/local/sbin command -v nginx) || { echo "skippe
     { echo "skipped: no libcurl in this build"; exit 77; }
 vectors=${srcdir:-.}/conformance/vectors
 
-# Streams: eight segments that share nothing, of some 900 kB in all; one of tiers; one that is cut off; one of nothing.
+# Streams: eight segments that share nothing, of some 900 kB in all; two of tiers, one with a camera; one that is cut off; one of nothing.
 mkdir "$dir/recipes" "$dir/vectors" "$dir/http:"
 cat >"$dir/recipes/good-long.txt" <<'END_RECIPE'
 title "Eight segments, each a key with networks of its own"
@@ -30,6 +30,13 @@ long=$dir/long.adcgs tiers=$dir/tiers.adcgs
 mv "$dir/vectors/good-long.adcgs" "$long"
 cp "$vectors/good-tiers-slices.adcgs" "$tiers"
 cp "$vectors/good-geom-contexts.adcgs" "$dir/other.adcgs"
+{
+    sed '/^times/,$d' "${srcdir:-.}/conformance/recipes/good-tiers-slices.txt"
+    printf 'stored front 64 48 60 60 32 24 0.1 1 0 0 0 0 -1 0 0 0 0 -1 4\ntimes 0\n'
+} >"$dir/recipes/good-stored.txt"
+./conformance/make_vectors "$dir" "$dir" good-stored || { bad "make_vectors"; exit 1; }
+stored=$dir/stored.adcgs
+mv "$dir/vectors/good-stored.adcgs" "$stored"
 size=$(wc -c <"$long")
 [ "$size" -gt 800000 ] || bad "the long stream has $size bytes only"
 head -c 400000 "$long" >"$dir/cut.adcgs"
@@ -58,6 +65,8 @@ location = /text { return 200 "no stream\n"; }
 location = /nothing { return 444; }
 location = /broken { return 500; }
 location = /slow.adcgs { limit_rate 20k; alias $long; }
+location = /steady.adcgs { limit_rate 200k; alias $long; }
+location = /drip.adcgs { limit_rate 1k; alias $stored; }
 END_SERVER
 }
 
@@ -214,11 +223,53 @@ if [ -f .libs/adcgs_http.so ]; then
 fi
 if [ -f .libs/adcgs_play.so ]; then
     printf 'wait 1 frames\nexpect playing 1\nquit\n' >"$dir/script"
-    expect 0 "" env SDL_VIDEODRIVER=dummy ./adcgs-dec $at/tiers.adcgs --play --script "$dir/script"
-    expect 3 "404" env SDL_VIDEODRIVER=dummy ./adcgs-dec $at/none --play --script "$dir/script"
+    SDL_VIDEODRIVER=dummy SDL_RENDER_DRIVER=software
+    export SDL_VIDEODRIVER SDL_RENDER_DRIVER
+    expect 0 "" ./adcgs-dec $at/tiers.adcgs --play --script "$dir/script"
+    expect 3 "404" ./adcgs-dec $at/none --play --script "$dir/script"
+    expect 4 "not an adcgs stream" ./adcgs-dec $at/text --play --script "$dir/script"
+    expect 0 "" ./adcgs-dec $at/cut.adcgs --play --conceal --script "$dir/script"
+    # It opens with what there is to see, sharpens, and leaves before all has come.
+    play="--play --script $dir/script --time 0 --size 128x96 --threads 2"
+    printf 'wait 1 tiers\nexpect ended 0\nscreenshot %s/some.ppm\nquit\n' "$dir" >"$dir/script"
+    requests
+    # shellcheck disable=SC2086
+    expect 0 "" ./adcgs-dec $at/drip.adcgs $play
+    requests
+    [ $count -eq 1 ] && [ "$sum" -lt "$(wc -c <"$stored")" ] || { bad "the player waits for all"; cat "$dir/requests"; }
+    printf 'wait 1 tiers\nexpect ended 0\nwait end\nwait 1 frames\nscreenshot %s/all.ppm\nquit\n' "$dir" >"$dir/script"
+    # shellcheck disable=SC2086
+    expect 0 "" ./adcgs-dec $at/stored.adcgs $play
+    ./adcgs-dec "$stored" -t 0 --size 128x96 --quiet -o "$dir/wanted.ppm"
+    cmp "$dir/all.ppm" "$dir/wanted.ppm" || bad "the player by http shows something else in the end"
+    [ -s "$dir/some.ppm" ] && ! cmp -s "$dir/some.ppm" "$dir/all.ppm" || bad "the player by http does not sharpen"
 fi
 
-# A server that dies in the middle.
+# Frames are there as soon as those bytes are.
+requests
+./adcgs-dec $at/steady.adcgs -o "$dir/steady%d.ppm" --quiet 2>"$dir/err" &
+client=$!
+while kill -0 $client 2>/dev/null && [ ! -s "$dir/steady0.ppm" ]; do
+    sleep 0.05
+done
+kill $client 2>/dev/null && wait $client
+[ $? -eq 143 ] || { bad "frames only when all has come"; cat "$dir/err"; }
+requests
+[ $count -eq 1 ] && [ "$sum" -lt "$size" ] || { bad "frames only when all has come"; cat "$dir/requests"; }
+./adcgs-dec "$long" -t 0 -o "$dir/wanted.ppm" --quiet
+cmp "$dir/steady0.ppm" "$dir/wanted.ppm" || bad "another first frame"
+
+# A server that dies in the middle; what it sent before can be played on.
+if [ -f .libs/adcgs_play.so ]; then
+    printf 'wait 1 tiers\nscreenshot %s/alive.ppm\nwait end\nexpect ended 1\nexpect tiers 3\nscreenshot %s/dead.ppm\nquit\n' "$dir" "$dir" \
+        >"$dir/script"
+    # shellcheck disable=SC2086
+    ./adcgs-dec $at/drip.adcgs $play 2>"$dir/play.err" &
+    player=$!
+    while kill -0 $player 2>/dev/null && [ ! -s "$dir/alive.ppm" ]; do
+        sleep 0.05
+    done
+fi
 ./adcgs-dec $at/slow.adcgs -o "$dir/none.ppm" 2>"$dir/err" &
 client=$!
 sleep 0.5
@@ -226,5 +277,10 @@ kill $pid
 pid=
 wait $client
 [ $? -eq 3 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] || { bad "a server that dies"; cat "$dir/err"; }
+if [ -f .libs/adcgs_play.so ]; then
+    wait $player
+    [ $? -eq 3 ] && [ "$(wc -l <"$dir/play.err")" -eq 1 ] || { bad "a server that dies while it is played"; cat "$dir/play.err"; }
+    [ -s "$dir/dead.ppm" ] || bad "what had come cannot be played any more"
+fi
 [ ! -e "$dir/none.ppm" ] && [ ! -e "$dir/none.adcgs" ] || bad "something was written"
 exit $failed
