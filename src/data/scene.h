@@ -59,6 +59,7 @@ typedef struct adcgs_scene {
     float background[3];  /**< white for images with alpha, else black, unless given */
     adcgs_scene_points points; /**< initial points, n = 0 if the scene has none */
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
+    double origin[3], scale; /**< the frame of reference, where it is given; scale 0: it follows from the views for training */
     adcgs_splat_scene *splats; /**< NULL: views are pictures; else path of a view is that of the splats */
     struct adcgs_clips *clips; /**< videos that are open (clips.h) */
     const struct adcgs_scene *whole; /**< of which this is a part in time (part.h); NULL: it is whole */

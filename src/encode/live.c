@@ -5,6 +5,9 @@
 #include "model/model_priv.h"
 #include "stream/push.h"
 
+#include <math.h>
+
+#define NEAR 1e-5 /* of what is 1, that a stream may have rounded */
 #define LEVEL 3 /* nobody knows how long it will be */
 
 /** Hand what was written to the reader. */
@@ -43,6 +46,45 @@ adcgs_status adcgs_encode_live_open(adcgs_encode_live *e, const adcgs_scene *who
     ADCGS_TRY(adcgs_encode_begin(&e->front, whole, cuts, notes, n_notes, error));
     e->front.level = LEVEL;
     return adcgs_push_create(&e->reader, &e->back, &options, error);
+}
+
+adcgs_status adcgs_encode_live_go_on(adcgs_encode_live *e, adcgs_stream *past, uint32_t max_anchors, adcgs_cpu_level cpu,
+                                     adcgs_pool *pool, adcgs_error *error)
+{
+    const adcgs_read_options options = { .cpu = cpu, .pool = pool };
+    *e = (adcgs_encode_live){ .front = *past, .max_anchors = max_anchors };
+    past->cameras = NULL;
+    past->meta = NULL;
+    past->n_cameras = past->n_meta = 0;
+    e->front.segments = NULL;
+    e->front.n_segments = e->front.first_segment = 0;
+    e->front.level = LEVEL;
+    adcgs_stream_init(&e->back);
+    return adcgs_push_create(&e->reader, &e->back, &options, error);
+}
+
+/** Whether two poses are one, but for rounding; scale: what length is large. */
+static int are_near(const adcgs_camera *a, const adcgs_camera *b, double scale)
+{
+    for (int i = 0; i < 12; i++)
+        if (!(fabs(a->cam_to_world[i] - b->cam_to_world[i]) <= NEAR * (i % 4 == 3 ? scale : 1)))
+            return 0;
+    return 1;
+}
+
+adcgs_status adcgs_encode_live_check(const adcgs_encode_live *e, const adcgs_scene *scene, adcgs_error *error)
+{
+    for (uint32_t i = 0; i < e->front.n_cameras; i++) {
+        const adcgs_camera *const c = &e->front.cameras[i];
+        const adcgs_scene_view *v = scene->views[ADCGS_SPLIT_TRAIN], *const end = v + scene->n_views[ADCGS_SPLIT_TRAIN];
+        while (v < end && strcmp(v->camera.name, c->name) != 0)
+            v++;
+        if (v == end || v->camera.width != c->width || v->camera.height != c->height ||
+            fabs(v->camera.fx - c->fx) > NEAR * c->fx || !are_near(&v->camera, c, e->front.scene_scale))
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "the stream's camera %s is not one of the scene's: another scene cannot go on "
+                              "with it", c->name);
+    }
+    return ADCGS_OK;
 }
 
 /** The first segment says what all have in common. */

@@ -26,6 +26,14 @@ adcgs_status adcgs_encode_live_open(adcgs_encode_live *live, const adcgs_scene *
                                     uint32_t max_anchors, const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu,
                                     adcgs_pool *pool, adcgs_error *error);
 /**
+ * One that goes on: `past` is what is true of all segments of another, which becomes this one's; what it has of segments stays
+ * the caller's. Its segments are added as others are, and are then what they were.
+ */
+adcgs_status adcgs_encode_live_go_on(adcgs_encode_live *live, adcgs_stream *past, uint32_t max_anchors, adcgs_cpu_level cpu,
+                                     adcgs_pool *pool, adcgs_error *error);
+/** Whether its cameras are those of a scene: ADCGS_ERR_USAGE, naming one that is not. */
+adcgs_status adcgs_encode_live_check(const adcgs_encode_live *live, const adcgs_scene *scene, adcgs_error *error);
+/**
  * Append a segment's bytes to out; the model, of adcgs_encode_model() with the stream's front, is moved here. When the stream is
  * full (ADCGS_ERR_LIMIT) it stays the caller's, as it was. The first, if it is predicted, becomes a key.
  */

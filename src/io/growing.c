@@ -36,7 +36,7 @@ adcgs_status adcgs_growing_append(adcgs_growing *g, const void *data, size_t byt
     if (!written || reason)
         return take_back(g, reason, error);
     g->bytes += bytes;
-    if (!g->atomic.temporary)
+    if (!g->atomic.temporary || g->is_hidden)
         return ADCGS_OK;
     const adcgs_status status = adcgs_atomic_show(&g->atomic, error);
     g->file = status == ADCGS_OK ? g->file : NULL; /* else it is closed */

@@ -21,6 +21,7 @@
 struct adcgs_live {
     adcgs_live_watch watch;
     const char *points_path;
+    double origin[3], scale; /* of the stream that goes on, else 0 */
     char *path;            /* of the scene file */
     adcgs_scene *whole;    /* of the first segment */
     uint8_t *told;         /* [n] whose missing pictures were told of */
@@ -34,42 +35,47 @@ void adcgs_live_segment_clear(adcgs_live_segment *s)
     *s = (adcgs_live_segment){.scene = NULL};
 }
 
-/** What a camera took in a stretch, as the scene file's reader wants it. */
-static adcgs_status gather(adcgs_live *l, uint32_t camera, adcgs_footage *out, adcgs_error *error)
+/** What a camera took in the first stretch that is given, as the scene file's reader wants it. */
+static adcgs_status gather(adcgs_live *l, uint32_t camera, uint32_t stretch, adcgs_footage *out, adcgs_error *error)
 {
     const adcgs_live_camera *c = &l->watch.cameras[camera];
     const adcgs_live_limits limits = adcgs_live_limits_of(&l->watch, camera);
     int64_t span[2], n = 0;
-    adcgs_live_frames(&l->watch, c, 0, span);
-    *out = (adcgs_footage){.width = c->width, .height = c->height, .rate = c->rate, .frames = ADCGS_MIN(span[1], c->next)};
+    adcgs_live_frames(&l->watch, c, stretch, span);
+    *out = (adcgs_footage){.width = c->width, .height = c->height, .rate = c->rate,
+                           .frames = ADCGS_MAX(ADCGS_MIN(span[1], c->next) - span[0], 0)};
     for (int64_t i = 0; i < out->frames; i++)
-        n += adcgs_live_camera_has(c, i);
+        n += adcgs_live_camera_has(c, span[0] + i);
     if (n == 0)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: nothing of it came for the first segment", c->source->name);
     if (c->source->video) {
-        out->video = adcgs_live_camera_path(c, 0, &limits, 0);
+        out->video = adcgs_live_camera_path(c, 0, &limits, stretch);
         return out->video ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
     }
     out->pictures = calloc((size_t)out->frames, sizeof *out->pictures);
     for (int64_t i = 0; out->pictures && i < out->frames; i++)
-        if (adcgs_live_camera_has(c, i) && !(out->pictures[i] = adcgs_live_camera_path(c, i, &limits, 0)))
+        if (adcgs_live_camera_has(c, span[0] + i) && !(out->pictures[i] = adcgs_live_camera_path(c, span[0] + i, &limits, 0)))
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
     return out->pictures ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
 }
 
 /** The scene by its first segment: where cameras are, how large it is. */
-static adcgs_status open_whole(adcgs_live *l, adcgs_error *error)
+static adcgs_status open_whole(adcgs_live *l, uint32_t stretch, adcgs_error *error)
 {
     adcgs_footage *taken = calloc(l->watch.n, sizeof *taken);
     adcgs_status status = taken ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
     for (uint32_t i = 0; status == ADCGS_OK && i < l->watch.n; i++)
-        status = gather(l, i, &taken[i], error);
+        status = gather(l, i, stretch, &taken[i], error);
     const adcgs_scene_options options = {.points_path = l->points_path, .dataset = ADCGS_DATASET_ADCGS, .taken = taken};
     if (status == ADCGS_OK)
         status = adcgs_scene_open(&l->whole, l->path, &options, error);
     for (uint32_t i = 0; taken && i < l->watch.n; i++)
         adcgs_footage_clear(&taken[i]);
     free(taken);
+    if (status == ADCGS_OK) {
+        memcpy(l->whole->origin, l->origin, sizeof l->origin);
+        l->whole->scale = l->scale;
+    }
     return status;
 }
 
@@ -80,13 +86,6 @@ static const adcgs_scene_view *find_view(const adcgs_live *l, uint32_t camera)
     while (strcmp(view->camera.name, l->watch.sources[camera].name) != 0)
         view++; /* each camera has one: gather() saw to that */
     return view;
-}
-
-/** The first frame in the file that a pipe's footage of a stretch goes to. */
-static int64_t first_of_file(const adcgs_live *l, const adcgs_live_camera *c, uint32_t stretch)
-{
-    const adcgs_live_watch *w = &l->watch;
-    return stretch ? adcgs_live_camera_from(c, adcgs_live_cut(w, stretch), -adcgs_live_within(w)) : 0;
 }
 
 /** Views of a camera, appended to the segment's. */
@@ -103,7 +102,7 @@ static adcgs_status add_views(adcgs_live *l, uint32_t camera, uint32_t stretch, 
         const uint32_t file = adcgs_live_stretch(&l->watch, time);
         adcgs_scene_view view = *find_view(l, camera);
         view.time = time - s->begin;
-        view.frame = c->source->video ? i - first_of_file(l, c, file) : 0;
+        view.frame = c->source->video ? i - adcgs_live_first_of_file(&l->watch, c, file) : 0;
         view.path = adcgs_live_camera_path(c, i, &limits, file);
         if (!view.path)
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
@@ -129,7 +128,7 @@ static adcgs_status make_segment(adcgs_live *l, uint32_t stretch, adcgs_live_seg
                               .end = adcgs_live_cut(&l->watch, stretch + 1),
                               .came = l->watch.came[stretch]};
     if (!l->whole)
-        ADCGS_TRY(open_whole(l, error));
+        ADCGS_TRY(open_whole(l, stretch, error));
     ADCGS_TRY(adcgs_scene_part_create(&s->scene, l->whole, error));
     for (uint32_t i = 0; i < l->watch.n; i++)
         ADCGS_TRY(add_views(l, i, stretch, s, error));
@@ -159,7 +158,9 @@ static adcgs_status take_next(adcgs_live *l, adcgs_live_segment *s, adcgs_error 
     for (;;) {
         ADCGS_TRY(adcgs_live_await(&l->watch, error));
         if (l->watch.taken == l->watch.n_complete)
-            return l->whole ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: ended before it showed two moments", l->path);
+            return l->whole || l->watch.goes_on
+                       ? ADCGS_OK
+                       : adcgs_fail(error, ADCGS_ERR_DATA, "%s: ended before it showed two moments", l->path);
         forget(l, l->watch.taken);
         ADCGS_TRY(make_segment(l, l->watch.taken++, s, error));
         if (s->scene->n_times > 1)
@@ -258,6 +259,10 @@ adcgs_status adcgs_live_open(adcgs_live **out, const char *path, const adcgs_liv
     l->watch.seconds = options->seconds;
     l->watch.unbounded = options->unbounded;
     l->watch.interrupted = options->interrupted;
+    l->watch.goes_on = options->scale > 0;
+    memcpy(l->watch.span, options->last, sizeof options->last);
+    memcpy(l->origin, options->origin, sizeof l->origin);
+    l->scale = options->scale;
     adcgs_status status = find_paths(l, path, error);
     if (status == ADCGS_OK)
         status = prepare(l, error);

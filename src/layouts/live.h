@@ -24,9 +24,18 @@ typedef struct adcgs_live_options {
     int unbounded;   /**< pipes are read however much they bring; else whoever writes waits once segments behind them are there */
     const char *points_path; /**< initial points instead of the scene's, or NULL */
     int (*interrupted)(void); /**< whether to take no more than what was seen so far; asked now and then */
+    /**
+     * Of a stream that is to go on: seconds of its last segment's begin and end, and its frame of reference; scale 0: none. Footage
+     * before is passed over. Where the last segment ended in the middle of a stretch, since no more had come then, it is given
+     * anew, as a whole; but not if it was cut otherwise.
+     */
+    double last[2], origin[3], scale;
 } adcgs_live_options;
 
-/** path: a scene file, or a folder with one that is named scene.json. The footage need not have begun. */
+/**
+ * path: a scene file, or a folder with one that is named scene.json. The footage need not have begun. A pipe does not bring again
+ * what was before: where a stream is to go on it is an error, ADCGS_ERR_USAGE of the next segment.
+ */
 adcgs_status adcgs_live_open(adcgs_live **out, const char *path, const adcgs_live_options *options, adcgs_error *error);
 void adcgs_live_close(adcgs_live **live);
 
@@ -39,7 +48,7 @@ typedef struct adcgs_live_segment {
 
 /**
  * Wait for the next segment that shows more than one moment; the one before is cleared. Its pictures stay until the next call.
- * ADCGS_ERR_DATA where footage is no such, or one moment is all that there is in the end.
+ * ADCGS_ERR_DATA where footage is no such, or one moment is all that there is in the end and no stream is to go on.
  */
 adcgs_status adcgs_live_next(adcgs_live *live, adcgs_live_segment *segment, adcgs_error *error);
 void adcgs_live_segment_clear(adcgs_live_segment *segment);

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -32,7 +33,7 @@ void adcgs_live_camera_init(adcgs_live_camera *c, const adcgs_source_camera *sou
 
 void adcgs_live_camera_clear(adcgs_live_camera *c)
 {
-    if (c->fd >= 0)
+    if (c->fd >= 0 && !c->source->is_input)
         close(c->fd);
     if (c->spool)
         fclose(c->spool);
@@ -54,6 +55,13 @@ int64_t adcgs_live_camera_from(const adcgs_live_camera *c, double time, double w
 int adcgs_live_camera_has(const adcgs_live_camera *c, int64_t frame)
 {
     return frame >= c->base && frame < c->next && c->there[frame - c->base];
+}
+
+void adcgs_live_camera_pass_over(adcgs_live_camera *c, int64_t frame)
+{
+    c->first = frame;
+    if (!c->source->video) /* bytes of a video are read, for where a frame begins follows from them */
+        c->base = c->next = frame;
 }
 
 void adcgs_live_camera_forget(adcgs_live_camera *c, int64_t frame)
@@ -155,18 +163,31 @@ static adcgs_status look_for_picture(adcgs_live_camera *c, const adcgs_live_limi
 
 /* ---- Y4M ---- */
 
-static adcgs_status open_video(adcgs_live_camera *c, adcgs_error *error)
+/** A file or a pipe, if it is there. */
+static adcgs_status open_file(adcgs_live_camera *c, adcgs_error *error)
 {
     const char *path = c->source->video;
     struct stat s;
-    if (c->fd >= 0)
-        return ADCGS_OK;
     c->fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (c->fd < 0)
         return errno == ENOENT ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%s: %s", path, strerror(errno));
     if (fstat(c->fd, &s) || (!S_ISREG(s.st_mode) && !S_ISFIFO(s.st_mode)))
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: neither a file nor a pipe", path);
     c->is_pipe = S_ISFIFO(s.st_mode);
+    return ADCGS_OK;
+}
+
+static adcgs_status open_video(adcgs_live_camera *c, adcgs_error *error)
+{
+    if (c->fd >= 0)
+        return ADCGS_OK;
+    if (c->source->is_input) {
+        c->fd = STDIN_FILENO;
+        c->is_pipe = 1;
+    } else
+        ADCGS_TRY(open_file(c, error));
+    if (c->fd < 0)
+        return ADCGS_OK;
     c->held = malloc(HELD_BYTES);
     return c->held ? ADCGS_OK : no_memory(c, error);
 }
@@ -176,13 +197,16 @@ static adcgs_status fetch(adcgs_live_camera *c, adcgs_error *error)
 {
     if (c->held_begin < c->held_end || c->fd < 0)
         return ADCGS_OK;
+    struct pollfd input = {.fd = c->fd, .events = POLLIN};
+    if (c->source->is_input && poll(&input, 1, 0) <= 0) /* which is not ours alone, so that it may wait */
+        return ADCGS_OK;
     const ssize_t n = read(c->fd, c->held, HELD_BYTES);
     c->held_begin = c->held_end = 0;
     if (n < 0 && errno != EAGAIN && errno != EINTR)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read: %s", c->source->video, strerror(errno));
     if (n > 0)
         c->held_end = (size_t)n;
-    c->has_begun |= n > 0;
+    c->has_begun |= n > 0 || c->source->is_input;
     c->is_over |= n == 0 && c->has_begun && c->is_pipe;
     return ADCGS_OK;
 }
@@ -254,6 +278,8 @@ static adcgs_status begin_frame(adcgs_live_camera *c, const adcgs_live_limits *l
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged before frame %lld, expected FRAME", c->source->video,
                           (long long)c->next);
     c->left = c->shape.frame_bytes;
+    if (c->next < c->first)
+        return ADCGS_OK;
     ADCGS_TRY(open_spool(c, l, error));
     return fputs("FRAME\n", c->spool) >= 0 ? ADCGS_OK : spool_failed(c, l, error);
 }
@@ -261,12 +287,17 @@ static adcgs_status begin_frame(adcgs_live_camera *c, const adcgs_live_limits *l
 static adcgs_status go_on_with_frame(adcgs_live_camera *c, const adcgs_live_limits *l, int *progress, adcgs_error *error)
 {
     const size_t n = ADCGS_MIN(c->left, c->held_end - c->held_begin);
-    if (n > 0 && fwrite(c->held + c->held_begin, 1, n, c->spool) != n)
+    const int is_kept = c->next >= c->first;
+    if (is_kept && n > 0 && fwrite(c->held + c->held_begin, 1, n, c->spool) != n)
         return spool_failed(c, l, error);
     c->held_begin += n;
     c->left -= n;
     if (c->left > 0 || n == 0)
         return ADCGS_OK;
+    if (!is_kept) {
+        c->base = ++c->next;
+        return ADCGS_OK;
+    }
     return fflush(c->spool) ? spool_failed(c, l, error) : decide(c, 1, progress, error);
 }
 

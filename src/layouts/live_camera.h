@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A camera whose footage comes while it is taken: numbered pictures that appear in a folder, or a growing file or pipe of Y4M.
+ * A camera whose footage comes while it is taken: numbered pictures that appear in a folder, or a growing file, a pipe, or standard input, of Y4M.
  * Its frames are decided in order: each is there, or it is missing and nobody waits for it any more.
  *
  * Pictures stay where they are. What a pipe brings is kept in files of Y4M, one for each stretch of time, until it is learnt.
@@ -20,6 +20,7 @@ typedef struct adcgs_live_camera {
     double offset;        /**< seconds of frame 0 from the beginning of the scene */
     int width, height;    /**< of its pictures; 0: none has come yet */
     int64_t next;         /**< the first frame that is not decided */
+    int64_t first;        /**< frames before this one are passed over */
     uint8_t *there;       /**< [next - base] whether frames are there; those before base are forgotten */
     int64_t base, capacity;
     int64_t n_missing, first_missing; /**< so far; the first of them */
@@ -32,7 +33,7 @@ typedef struct adcgs_live_camera {
 
     /* Y4M. */
     int fd;               /**< -1: not open */
-    int is_pipe;
+    int is_pipe;          /**< likewise standard input, whatever that is */
     int has_begun;        /**< bytes have come */
     int waits;            /**< for bytes that have not */
     adcgs_y4m_shape shape;
@@ -67,6 +68,8 @@ double adcgs_live_camera_time(const adcgs_live_camera *camera, int64_t frame);
 int64_t adcgs_live_camera_from(const adcgs_live_camera *camera, double time, double within);
 /** Whether a frame that is decided is there. */
 int adcgs_live_camera_has(const adcgs_live_camera *camera, int64_t frame);
+/** Before any is decided: frames before this one are of no interest. */
+void adcgs_live_camera_pass_over(adcgs_live_camera *camera, int64_t frame);
 /** Forget frames before this one. */
 void adcgs_live_camera_forget(adcgs_live_camera *camera, int64_t frame);
 /** The file of a frame: a picture, or of a stretch; from malloc(), NULL without memory. */

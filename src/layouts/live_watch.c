@@ -11,6 +11,7 @@
 
 #define LOOK_EVERY 20 /* milliseconds, while nothing comes */
 #define AHEAD 3       /* stretches that are looked at: one more than a camera may be behind another */
+#define NEAR 1e-3     /* of a frame: how far times are apart that a stream has made one by rounding */
 #define HALF (0.5 + 1e-9) /* of a frame: of two that are as near the first is taken */
 
 /* ---- Time ---- */
@@ -58,6 +59,46 @@ void adcgs_live_frames(const adcgs_live_watch *l, const adcgs_live_camera *c, ui
 {
     span[0] = adcgs_live_camera_from(c, adcgs_live_cut(l, stretch), adcgs_live_within(l));
     span[1] = adcgs_live_camera_from(c, adcgs_live_cut(l, stretch + 1), -adcgs_live_within(l));
+}
+
+/* ---- Going on ---- */
+
+/**
+ * The first stretch that is given where the last segment of what was before has the watch's span: the one behind it; or, if it
+ * ended in the middle of one and began where that does, that one.
+ */
+static uint32_t first_stretch(adcgs_live_watch *l)
+{
+    const double slack = fmax(2 * adcgs_live_within(l), NEAR * find_interval(l));
+    const uint32_t i = adcgs_live_stretch(l, l->span[1] + slack);
+    const double begin = adcgs_live_cut(l, i);
+    return begin < l->span[1] - slack && fabs(begin - l->span[0]) > slack ? i + 1 : i;
+}
+
+int64_t adcgs_live_first_of_file(const adcgs_live_watch *l, const adcgs_live_camera *c, uint32_t stretch)
+{
+    return stretch ? adcgs_live_camera_from(c, adcgs_live_cut(l, stretch), -adcgs_live_within(l)) : 0;
+}
+
+/** All that was before is passed over; of a video all of a file that has something which is not. */
+static adcgs_status pass_over(adcgs_live_watch *l, adcgs_error *error)
+{
+    const uint32_t first = first_stretch(l);
+    l->is_placed = 1;
+    l->came = calloc(first + 1, sizeof *l->came);
+    if (!l->came)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
+    l->taken = l->n_complete = first;
+    for (uint32_t i = 0; i < l->n; i++) {
+        adcgs_live_camera *c = &l->cameras[i];
+        int64_t span[2];
+        adcgs_live_frames(l, c, first, span);
+        if (c->is_pipe)
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a pipe brings nothing again: a stream goes on from footage that stays, "
+                              "pictures or files", c->source->video);
+        adcgs_live_camera_pass_over(c, c->source->video ? adcgs_live_first_of_file(l, c, first ? first - 1 : 0) : span[0]);
+    }
+    return ADCGS_OK;
 }
 
 /* ---- The thread that looks for more ---- */
@@ -151,6 +192,8 @@ static adcgs_status look(adcgs_live_watch *l, int *progress, adcgs_error *error)
         l->is_over = is_end;
         return ADCGS_OK;
     }
+    if (l->goes_on && !l->is_placed)
+        ADCGS_TRY(pass_over(l, error));
     if (!stops)
         ADCGS_TRY(look_at_all(l, is_end, progress, error));
     l->is_over = 1;

@@ -14,6 +14,8 @@ typedef struct adcgs_live_watch {
     double seconds;
     int unbounded;
     int (*interrupted)(void);
+    int goes_on;           /**< from a stream whose last segment has this span */
+    double span[2];
     char *end_path;        /**< of the file that says that footage ends */
     char *folder;          /**< for what pipes bring; "" where there is none */
     uint32_t n;
@@ -30,6 +32,7 @@ typedef struct adcgs_live_watch {
     uint32_t n_complete;   /**< stretches that are */
     double *came;          /**< [n_complete] when, by adcgs_seconds() */
     double last;           /**< seconds of the last frame that is there; -INFINITY: none */
+    int is_placed;         /**< where it goes on is known */
     int is_over, stop;     /**< nothing more will come; the thread is to leave */
     adcgs_error error;     /**< of the thread */
 } adcgs_live_watch;
@@ -52,6 +55,8 @@ double adcgs_live_cut(const adcgs_live_watch *watch, uint32_t stretch);
 uint32_t adcgs_live_stretch(void *user, double time);
 /** The frames of a camera in a stretch: the first, and the first behind it. */
 void adcgs_live_frames(const adcgs_live_watch *watch, const adcgs_live_camera *camera, uint32_t stretch, int64_t span[2]);
+/** The first frame in the file that a video's footage of a stretch goes to. */
+int64_t adcgs_live_first_of_file(const adcgs_live_watch *watch, const adcgs_live_camera *camera, uint32_t stretch);
 /** What names a camera's files. */
 adcgs_live_limits adcgs_live_limits_of(adcgs_live_watch *watch, uint32_t camera);
 

@@ -177,7 +177,11 @@ static adcgs_status list_camera(reader *r, const adcgs_json_place *at)
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "images", "expected the name of an image with one %%d or %%05d or the like");
     r->n_sources++;
     memcpy(c->name, camera.view.camera.name, sizeof c->name);
-    c->video = where.video ? resolve(r, where.video) : NULL;
+    c->is_input = where.video && !strcmp(where.video, "-");
+    for (uint32_t i = 0; c->is_input && i + 1 < r->n_sources; i++)
+        if (r->sources[i].is_input)
+            return adcgs_json_bad(at, ADCGS_ERR_DATA, "video", "- is standard input, which camera %s has", r->sources[i].name);
+    c->video = c->is_input ? strdup("standard input") : where.video ? resolve(r, where.video) : NULL;
     c->folder = where.images ? strdup(folder_of_images(r, where.images)) : NULL;
     c->images = where.images ? strdup(where.images) : NULL;
     if (!c->video && !(c->folder && c->images))

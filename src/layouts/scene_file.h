@@ -24,7 +24,8 @@ adcgs_status adcgs_scene_file_read(adcgs_scene *scene, const char *path, const a
 /** A camera for training, and where what it takes will appear. */
 typedef struct adcgs_source_camera {
     char name[ADCGS_CAMERA_NAME_MAX + 1];
-    char *video;          /**< NULL: pictures */
+    char *video;          /**< NULL: pictures; "standard input" if is_input */
+    int is_input;         /**< the file says "-" */
     char *folder, *images; /**< of pictures: adcgs_footage_number() */
     int64_t first, count; /**< of pictures: number of the first, how many; 0: nobody knows */
     adcgs_fps rate;       /**< of the camera, else of the file; not known: as the video says, or that of pictures */

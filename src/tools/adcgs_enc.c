@@ -348,9 +348,9 @@ static int check_live(const adcgs_cli *cli, adcgs_enc_options *o, const char *sc
     if (!o->has_segment)
         o->segment = ADCGS_ENC_LIVE_SEGMENT;
     if (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0 || o->frames || o->fps ||
-        o->checkpoint || o->resume || o->dataset || o->or_whole)
+        o->checkpoint || o->dataset || o->or_whole)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--live excludes --size, --psnr, --beginning, --uncompressed, --time-limit, "
-                               "--frames, --fps, --checkpoint, --resume, --dataset and --or-whole");
+                               "--frames, --fps, --checkpoint, --dataset and --or-whole");
     if (o->has_delay && o->delay <= o->segment)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay %g: a segment of %g s is learnt when its end was filmed: give more "
                                "than that, or a shorter --segment", o->delay, o->segment);
@@ -408,7 +408,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
           NULL },
         { "live", 0, ADCGS_OPTION_FLAG, &o->live, 0, 0, NULL,
           "learn footage while it comes: SCENE is a scene file, or a\nfolder with scene.json; segments, of 2 s unless --segment\n"
-          "says otherwise, are written as they are done; -o - writes to\nstandard output", NULL, NULL },
+          "says otherwise, are written as they are done; -o - writes to\nstandard output; a camera's video may be -, standard input", NULL, NULL },
         { "delay", 0, ADCGS_OPTION_REAL, &o->delay, 1e-3, 1e6, "S",
           "with --live: have all written within S seconds from when it\nwas filmed; effort falls if need be", NULL,
           &o->has_delay },
@@ -434,7 +434,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "checkpoint-every", 0, ADCGS_OPTION_REAL, &o->checkpoint_every, 0, 1e6, "S", "seconds between such saves (default 60)",
           NULL, NULL },
         { "resume", 0, ADCGS_OPTION_STRING, &o->resume, 0, 0, "FILE",
-          "go on from such a state; same scene, same options", NULL, NULL },
+          "go on from such a state; same scene, same options; with\n--live: from the output that a run has left", NULL,
+          NULL },
         { "beginning", 0, ADCGS_OPTION_STRING, &o->beginning, 0, 0, "FILE",
           "train as far as lambda does not matter, save the state\nhere and leave; runs with any lambda --resume it", NULL,
           NULL },

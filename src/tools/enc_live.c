@@ -12,8 +12,10 @@
 #include "layouts/live.h"
 #include "tools/enc_effort.h"
 #include "tools/enc_live_file.h"
+#include "tools/enc_live_past.h"
 #include "tools/enc_live_sum.h"
 
+#include <math.h>
 #include <signal.h>
 
 #define ANCHORS_MARGIN 2 /* times the budget, that HEAD has room for */
@@ -25,6 +27,7 @@ typedef struct live_run {
     adcgs_live_segment segment;
     adcgs_encode_live stream;
     adcgs_enc_live_file file;
+    adcgs_enc_live_past past; /* what goes on */
     adcgs_buffer bytes;   /* of the segment at hand */
     int is_open;          /* the stream has a segment */
     double key;           /* seconds at which the last key began */
@@ -36,6 +39,7 @@ typedef struct live_run {
 
 static adcgs_status append(live_run *r, adcgs_error *error)
 {
+    r->file.growing.is_hidden = 0;
     ADCGS_TRY(adcgs_enc_live_file_append(&r->file, r->bytes.data, r->bytes.size, error));
     r->sum.bytes += r->bytes.size;
     r->bytes.size = 0;
@@ -83,7 +87,8 @@ static adcgs_status begin_another(live_run *r, adcgs_model *model, adcgs_error *
 {
     ADCGS_TRY(end_stream(r, error));
     ADCGS_TRY(adcgs_enc_live_file_next(&r->file, error));
-    adcgs_cli_note(r->job->cli, "the stream is full, with %u segments; another begins: %s", r->sum.n, r->file.path);
+    adcgs_cli_note(r->job->cli, "the stream is full, with %u segments; another begins: %s",
+                   r->past.n + r->sum.n, r->file.path);
     ADCGS_TRY(begin_stream(r, error));
     return adcgs_encode_live_add(&r->stream, model, &r->bytes, error);
 }
@@ -131,10 +136,10 @@ static adcgs_status learn_segment(live_run *r, adcgs_error *error)
     const double started = adcgs_seconds();
     if (r->is_open) /* keys have the parameters of the first */
         r->job->config.params.time_rows = r->stream.front.params.time_rows;
-    w->segment = r->sum.n;
+    w->segment = r->past.n + r->sum.n;
     w->next_log = 0;
     w->first = w->last = (adcgs_train_report){ .iteration = 0 };
-    adcgs_enc_effort_choose(&r->effort, r->job, r->segment.came, r->segment.end - r->segment.begin, r->sum.n);
+    adcgs_enc_effort_choose(&r->effort, r->job, r->segment.came, r->segment.end - r->segment.begin, w->segment);
     ADCGS_TRY(adcgs_enc_learn(w, r->job, r->segment.scene, follows ? before : NULL, before, NULL, 0, error));
     ADCGS_TRY(write_segment(r, w->t->f->follows, error));
     adcgs_enc_effort_learn(&r->effort, &w->first, &w->last, adcgs_seconds() - started);
@@ -150,10 +155,47 @@ static void tell_missing(live_run *r)
                         "(said once)", name, time);
 }
 
+/* ---- Going on ---- */
+
+/** What a run before has left. Nothing of it changes before there is a segment more. */
+static adcgs_status take_past(live_run *r, adcgs_live_options *options, adcgs_error *error)
+{
+    const adcgs_model *const last = &r->past.last;
+    ADCGS_TRY(adcgs_enc_live_past_take(&r->past, &r->stream, &r->file, ANCHORS_MARGIN * r->job->config.max_anchors, r->job,
+                                       error));
+    options->last[0] = last->time_start;
+    options->last[1] = last->time_end;
+    memcpy(options->origin, r->stream.front.scene_origin, sizeof options->origin);
+    options->scale = r->stream.front.scene_scale;
+    return ADCGS_OK;
+}
+
+/** It is known now what comes behind it. */
+static adcgs_status go_on(live_run *r, adcgs_error *error)
+{
+    const double begin = r->segment.scene ? r->segment.begin : INFINITY, end = r->past.last.time_end;
+    if (r->segment.scene)
+        ADCGS_TRY(adcgs_encode_live_check(&r->stream, adcgs_live_whole(r->live), error));
+    ADCGS_TRY(adcgs_enc_live_past_end(&r->past, &r->stream, &r->file, begin, error));
+    r->key = r->past.key;
+    r->sum.bytes = r->past.bytes;
+    r->sum.past = r->past.n;
+    r->is_open = r->stream.model.n > 0;
+    r->sum.streams = (uint32_t)r->is_open;
+    if (!r->is_open) /* its only segment is learnt anew */
+        adcgs_encode_live_clear(&r->stream);
+    else if (r->segment.scene && begin > r->stream.model.time_end + 1e-3)
+        adcgs_cli_note(r->job->cli, "nothing is learnt of what lies between %g and %g s: segments were cut otherwise before", end,
+                       begin);
+    return ADCGS_OK;
+}
+
 static adcgs_status learn_all(live_run *r, adcgs_error *error)
 {
     for (;;) {
         ADCGS_TRY(adcgs_live_next(r->live, &r->segment, error));
+        if (r->past.last.n)
+            ADCGS_TRY(go_on(r, error));
         if (!r->segment.scene)
             return ADCGS_OK;
         tell_missing(r);
@@ -166,17 +208,19 @@ static adcgs_status learn_all(live_run *r, adcgs_error *error)
 /** Whether a stream whose run has failed can be ended: all that it consists of is written. */
 static int can_end(const live_run *r, adcgs_status status)
 {
-    return r->is_open && r->stream.model.n && !r->bytes.size && status != ADCGS_ERR_INTERNAL;
+    return r->is_open && r->stream.model.n && !r->bytes.size && !r->file.growing.is_hidden && status != ADCGS_ERR_INTERNAL;
 }
 
 static adcgs_status run(live_run *r, adcgs_error *error)
 {
     const adcgs_enc_options *o = r->job->o;
-    const adcgs_live_options options = { .seconds = o->segment, .unbounded = o->has_delay, .points_path = o->points,
-                                         .interrupted = adcgs_interrupted };
+    adcgs_live_options options = { .seconds = o->segment, .unbounded = o->has_delay, .points_path = o->points,
+                                   .interrupted = adcgs_interrupted };
     adcgs_interrupt_catch();
     signal(SIGPIPE, SIG_IGN); /* a reader that leaves is an error of writing */
-    ADCGS_TRY(adcgs_enc_live_file_open(&r->file, o->output, error));
+    ADCGS_TRY(adcgs_enc_live_file_open(&r->file, o->output, o->resume, error));
+    if (o->resume)
+        ADCGS_TRY(take_past(r, &options, error));
     ADCGS_TRY(adcgs_live_open(&r->live, o->scene, &options, error));
     const adcgs_status status = learn_all(r, error);
     if (status != ADCGS_OK) {
@@ -198,6 +242,7 @@ adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_erro
     const adcgs_status status = run(&r, error);
     adcgs_live_segment_clear(&r.segment);
     adcgs_encode_live_clear(&r.stream);
+    adcgs_enc_live_past_clear(&r.past);
     adcgs_trainer_free(&w->t); /* before the scene that it was given */
     adcgs_live_close(&r.live);
     adcgs_enc_live_file_close(&r.file);

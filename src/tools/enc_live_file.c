@@ -8,6 +8,9 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <unistd.h>
+
+#define NUMBER_MAX 9999 /* of streams that follow each other */
 
 /** The name of a stream's file, from malloc(): the number goes before the extension. */
 static char *number_name(const char *name, uint32_t number)
@@ -31,10 +34,41 @@ static adcgs_status open_number(adcgs_enc_live_file *f, uint32_t number, adcgs_e
     return f->path ? adcgs_growing_open(&f->growing, f->path, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
 }
 
-adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *f, const char *name, adcgs_error *error)
+/** Which of the streams of this name has that name; 0: none. */
+static uint32_t find_number(const char *name, const char *past)
+{
+    for (uint32_t number = 1; number <= NUMBER_MAX; number++) {
+        char *const path = number_name(name, number);
+        const int is_it = path && !strcmp(path, past);
+        free(path);
+        if (is_it)
+            return number;
+    }
+    return 0;
+}
+
+/** Whether there is one behind it. */
+static int follows(const char *name, uint32_t number)
+{
+    char *const path = number_name(name, number + 1);
+    const int is_there = path && !access(path, F_OK);
+    free(path);
+    return is_there;
+}
+
+adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *f, const char *name, const char *past, adcgs_error *error)
 {
     *f = (adcgs_enc_live_file){ .name = name };
-    return open_number(f, 1, error);
+    const uint32_t number = past && strcmp(past, "-") != 0 ? find_number(name, past) : !past;
+    if (!number)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected the file that --output names, or one that followed it "
+                          "(name.2.adcgs)", past);
+    if (past && follows(name, number))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: another stream followed it, number %u: go on with the last one", past,
+                          number + 1);
+    ADCGS_TRY(open_number(f, number, error));
+    f->growing.is_hidden = past != NULL;
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_enc_live_file_append(adcgs_enc_live_file *f, const void *data, size_t bytes, adcgs_error *error)

@@ -16,8 +16,11 @@ typedef struct adcgs_enc_live_file {
     adcgs_growing growing;
 } adcgs_enc_live_file;
 
-/** name: a file, or "-" for standard output. */
-adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *file, const char *name, adcgs_error *error);
+/**
+ * name: a file, or "-" for standard output. past: the stream to go on with, which has this name or that of a further one
+ * (ADCGS_ERR_USAGE if not), and stays as it is until file->growing.is_hidden is taken back; or NULL.
+ */
+adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *file, const char *name, const char *past, adcgs_error *error);
 adcgs_status adcgs_enc_live_file_append(adcgs_enc_live_file *file, const void *data, size_t bytes, adcgs_error *error);
 /** The stream is complete; head: the payload of its HEAD, now that its end is known. A file that cannot be put in order stays. */
 adcgs_status adcgs_enc_live_file_end(adcgs_enc_live_file *file, const adcgs_buffer *head, adcgs_error *error);

@@ -24,6 +24,7 @@ void adcgs_enc_live_sum_add(adcgs_enc_live_sum *s, double begin, double end, dou
 
 static adcgs_status print_json(const adcgs_enc_live_sum *s, const adcgs_enc_options *o, adcgs_error *error)
 {
+    const double n = ADCGS_MAX(s->n, 1U);
     adcgs_json j;
     adcgs_json_init(&j);
     adcgs_json_open(&j, NULL, '{');
@@ -31,13 +32,15 @@ static adcgs_status print_json(const adcgs_enc_live_sum *s, const adcgs_enc_opti
     adcgs_json_int(&j, "bytes", (int64_t)s->bytes);
     adcgs_json_int(&j, "streams", s->streams);
     adcgs_json_int(&j, "segments", s->n);
+    if (o->resume)
+        adcgs_json_int(&j, "segments_before", s->past);
     adcgs_json_int(&j, "keys", s->keys);
     adcgs_json_real(&j, "seconds", s->end - s->begin);
-    adcgs_json_real(&j, "mean_delay", s->delay / s->n);
+    adcgs_json_real(&j, "mean_delay", s->delay / n);
     adcgs_json_real(&j, "worst_delay", s->worst);
     if (o->has_delay)
         adcgs_json_real(&j, "delay", o->delay);
-    adcgs_json_real(&j, "mean_iterations", (double)s->iterations / s->n);
+    adcgs_json_real(&j, "mean_iterations", (double)s->iterations / n);
     adcgs_json_int(&j, "least_iterations", s->least);
     adcgs_json_int(&j, "most_iterations", s->most);
     adcgs_json_close(&j);
@@ -51,12 +54,15 @@ adcgs_status adcgs_enc_live_sum_print(const adcgs_enc_live_sum *s, const adcgs_e
         return print_json(s, o, error);
     if (o->quiet)
         return ADCGS_OK;
+    const double n = ADCGS_MAX(s->n, 1U);
     adcgs_text_show(stderr, strcmp(o->output, "-") ? o->output : "standard output");
-    fprintf(stderr, ": %llu bytes; %u segments of %g s together, %u of them keys\n", (unsigned long long)s->bytes, s->n,
-            s->end - s->begin, s->keys);
-    fprintf(stderr, "delay %.2f s in the mean, %.2f s at worst", s->delay / s->n, s->worst);
+    fprintf(stderr, ": %llu bytes; ", (unsigned long long)s->bytes);
+    if (s->past)
+        fprintf(stderr, "%u segments as they were, ", s->past);
+    fprintf(stderr, "%u segments of %g s together, %u of them keys\n", s->n, s->end - s->begin, s->keys);
+    fprintf(stderr, "delay %.2f s in the mean, %.2f s at worst", s->delay / n, s->worst);
     if (o->has_delay)
         fprintf(stderr, ", %g s asked for", o->delay);
-    fprintf(stderr, "; %.0f iterations a segment, %u to %u\n", (double)s->iterations / s->n, s->least, s->most);
+    fprintf(stderr, "; %.0f iterations a segment, %u to %u\n", (double)s->iterations / n, s->least, s->most);
     return ADCGS_OK;
 }

@@ -7,7 +7,8 @@
 
 typedef struct adcgs_enc_live_sum {
     uint32_t n, keys, streams;
-    uint64_t bytes;
+    uint32_t past;               /**< segments before those, of a stream that went on */
+    uint64_t bytes;              /**< theirs, too */
     double begin, end;           /**< seconds of the scene */
     double delay, worst;         /**< seconds: the sum over segments, and the most */
     uint64_t iterations;         /**< likewise the sum */

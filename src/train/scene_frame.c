@@ -47,6 +47,11 @@ adcgs_status adcgs_scene_frame(const adcgs_scene *part, double origin[3], double
     const adcgs_scene *scene = part->whole ? part->whole : part;
     const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
     double extent;
+    if (scene->scale > 0) {
+        memcpy(origin, scene->origin, sizeof scene->origin);
+        *scale = scene->scale;
+        return ADCGS_OK;
+    }
     ADCGS_TRY(adcgs_scene_extent(scene, &extent, error));
     focus_point(scene, extent, origin);
     double *distance = adcgs_alloc(NULL, n, sizeof *distance, error);

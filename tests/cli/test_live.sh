@@ -5,65 +5,7 @@
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-demo-scene
-
-scene=$dir/scene
-tiny_scene "$scene"
-short="--preset draft --max-anchors 300 --iterations 300 --quiet"
-live="$short --segment 0.1 --key 0.1"
-
-# scene_file FOLDER KIND: the cameras of the tiny scene, three at even moments, three at odd ones, with images or videos.
-scene_file()
-{
-    mkdir -p "$1/c0" "$1/c1" "$1/c2" "$1/c3" "$1/c4" "$1/c5"
-    awk -v kind="$2" '
-        /camera_angle_x/ { match($0, /[0-9.]+,/); half = substr($0, RSTART, RLENGTH - 1) / 2; f = 32 * cos(half) / sin(half) }
-        /transform_matrix/ && n < 6 { sub(/^ *"transform_matrix": /, ""); sub(/ }.*/, ""); pose[n++] = $0 }
-        END {
-            print "{\"adcgs_scene\": 1, \"frame_rate\": 15, \"up\": \"z\", \"cameras\": ["
-            for (i = 0; i < n; i++)
-                printf "{\"name\": \"c%d\", %s, \"time_offset\": %.12f, \"camera_to_world\": %s}%s\n", i,
-                    kind == "images" ? "\"images\": \"c" i "/%03d.ppm\"" : "\"video\": \"c" i ".y4m\"",
-                    i < 3 ? 0 : 1 / 30, pose[i], i < n - 1 ? "," : "],"
-            printf "\"defaults\": {\"width\": 64, \"height\": 64, \"fx\": %.9f, \"axes\": \"opengl\"}}\n", f
-        }' "$scene/transforms_train.json" >"$1/scene.json"
-}
-
-# view I: picture I of the scene, and where it goes: the name of its camera and its number.
-from() { printf '%s/train/r_%03d.ppm' "$scene" "$1"; }
-to() { printf 'c%d/%03d.ppm' $(($1 % 6)) $(($1 / 6)); }
-
-# put FOLDER MOMENT...: the three pictures of each of these moments, 0 to 7, come.
-put()
-{
-    folder=$1
-    shift
-    for moment; do
-        for view in $((3 * moment)) $((3 * moment + 1)) $((3 * moment + 2)); do
-            cp "$(from $view)" "$folder/coming" && mv "$folder/coming" "$folder/$(to $view)"
-        done
-    done
-}
-
-# wait_for N FILE: until the file has N segments, or the encoder, $pid, has gone.
-segments() { ./adcgs-info --json "$1" 2>/dev/null | grep -c '"predicted":'; }
-wait_for()
-{
-    while kill -0 "$pid" 2>/dev/null && [ "$(segments "$2")" -lt "$1" ]; do
-        sleep 0.02
-    done
-    [ "$(segments "$2")" -ge "$1" ] || { bad "$2 does not get $1 segments"; cat "$dir/err"; }
-}
-spans() { ./adcgs-info "$1" | sed -n 's/^segment \([0-9]*\): \([0-9.]*\) \.\. \([0-9.]*\) s,.*/\1 \2 \3/p' | xargs; }
-whole() { ./adcgs-info --check "$1" 2>&1 | grep -q ' 0 faults' || { bad "$1 is not whole"; ./adcgs-info --check "$1"; }; }
-# ended CODE: the encoder has.
-ended()
-{
-    wait "$pid"
-    got=$?
-    [ "$got" -eq "$1" ] || { bad "exit code $got, expected $1"; cat "$dir/err"; }
-}
-left() { find "$dir" -maxdepth 1 -name 'adcgs-live-*' -o -maxdepth 1 -name '*.tmp*'; }
-export TMPDIR="$dir"
+. "${srcdir:-.}/tests/cli/live.sh"
 
 # All there: the segments that the same cuts give offline, as good as those. They are not the same to the bit: where the scene's
 # origin is follows from all views there, from those of the first segment here, and a mean of other numbers is rounded otherwise.
@@ -230,6 +172,33 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
     ended 0
     cmp "$dir/videos.adcgs" "$dir/pipes.adcgs" || bad "another stream through pipes"
     [ "$(left)" = "" ] || bad "left behind: $(left)"
+    # One of them through standard input, which ends as any other.
+    sed 's/"c2.y4m"/"-"/' "$dir/videos/scene.json" >"$dir/videos/input.json"
+    mv "$dir/videos/end" "$dir/end"
+    for i in 0 1 3 4 5; do
+        rm "$dir/pipes/c$i.y4m" && mkfifo "$dir/pipes/c$i.y4m"
+        cat "$dir/videos/c$i.y4m" >"$dir/pipes/c$i.y4m" &
+    done
+    cp "$dir/videos/input.json" "$dir/pipes/scene.json"
+    # shellcheck disable=SC2086
+    dd bs=777 if="$dir/videos/c2.y4m" 2>/dev/null | ./adcgs-enc --live "$dir/pipes" -o "$dir/input.adcgs" $live 2>"$dir/err" ||
+        { bad "standard input"; cat "$dir/err"; }
+    cmp "$dir/videos.adcgs" "$dir/input.adcgs" || bad "another stream through standard input"
+    mv "$dir/end" "$dir/videos/end"
+    # A camera alone, and a file as standard input.
+    sed '/"c[1-5]"/d; s/"c0.y4m"/"-"/; s/},$/}/' "$dir/videos/scene.json" | sed 's/^{"name": "c0".*/&],/; s/^"defaults/ &/' \
+        >"$dir/alone.json"
+    # shellcheck disable=SC2086
+    ./adcgs-enc --live "$dir/alone.json" -o "$dir/alone.adcgs" $live <"$dir/videos/c0.y4m" 2>"$dir/err" ||
+        { bad "one camera, of standard input"; cat "$dir/err" "$dir/alone.json"; }
+    whole "$dir/alone.adcgs"
+    # shellcheck disable=SC2086
+    {
+        expect 4 "ended before it showed two moments" ./adcgs-enc --live "$dir/alone.json" -o "$dir/x.adcgs" $live </dev/null
+        sed 's/"c0.y4m"/"-"/' "$dir/videos/input.json" >"$dir/twice.json"
+        expect 4 "cameras\[2\].*video: - is standard input, which camera c0 has" \
+            ./adcgs-enc --live "$dir/twice.json" -o "$dir/x.adcgs" $live </dev/null
+    }
     # Damage in the third frame of a camera: what was learnt before is a stream.
     { head -c "$(($(head -n 1 "$dir/videos/c3.y4m" | wc -c) + 2 * (6 + 3 * 64 * 64)))" "$dir/videos/c3.y4m"; echo FLAME; } >"$dir/c3"
     mv "$dir/c3" "$dir/videos/c3.y4m"
@@ -251,7 +220,7 @@ fi
     expect 2 "give --live" ./adcgs-enc "$dir/all/scene.json" -o "$dir/x.adcgs" --delay 3
     expect 2 "give more than that" ./adcgs-enc --live "$dir/all" -o "$dir/x.adcgs" --delay 2
     expect 2 "both want standard output" ./adcgs-enc --live "$dir/all" -o - --json
-    for other in "--size 100k" "--psnr 30" "--uncompressed $dir/raw" "--time-limit 9" "--frames 0:3" "--fps 3" "--resume $dir/x"; do
+    for other in "--size 100k" "--psnr 30" "--uncompressed $dir/raw" "--time-limit 9" "--frames 0:3" "--fps 3"; do
         expect 2 "live excludes" ./adcgs-enc --live "$dir/all" -o "$dir/x.adcgs" $other
     done
     expect 3 "scene.json" ./adcgs-enc --live "$scene" -o "$dir/x.adcgs" $live

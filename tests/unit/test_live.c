@@ -6,11 +6,13 @@
 #define _POSIX_C_SOURCE 200809L
 #include "random_model.h"
 
+#include "encode/past.h"
 #include "encode/settle.h"
 #include "io/growing.h"
 #include "io/image.h"
 #include "io/y4m_shape.h"
 #include "layouts/live.h"
+#include "model/model_priv.h"
 #include "stream/grow.h"
 #include "stream/input.h"
 
@@ -216,6 +218,43 @@ static void test_gaps(void **state)
     start_again();
 }
 
+/**
+ * Footage that a stream goes on with: from behind its last segment; anew where that was cut short, unless it was cut otherwise. What
+ * comes before may be gone.
+ */
+static void test_going_on(void **state)
+{
+    static const struct {
+        double last[2], begin;
+    } cases[] = { { { 0.5, 0.95 }, 0.95 }, { { 0.5, 0.95 - 1e-7 }, 0.95 }, { { 0.5, 0.8 }, 0.5 }, { { 0.4, 0.8 }, 0.95 },
+                  { { 0, 0.5 }, 0.5 },     { { 0, 0.15 }, 0 },             { { 0.95, 1.15 }, 0.95 }, { { 0.7, 1.2 }, 2 } };
+    (void)state;
+    for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
+        adcgs_live_segment s = { .scene = NULL };
+        adcgs_live *live = NULL;
+        const double begin = cases[i].begin;
+        const adcgs_live_options options = { .seconds = 0.48, .interrupted = is_interrupted, .origin = { 1, 2, 3 }, .scale = 4,
+                                             .last = { cases[i].last[0], cases[i].last[1] } };
+        for (int f = (int)(10 * begin + 0.01); f < FRAMES; f++)
+            for (int c = 0; c < CAMERAS; c++)
+                put(c, f);
+        put_end();
+        assert_int_equal(adcgs_live_open(&live, folder, &options, &error), ADCGS_OK);
+        if (begin < 0.4)
+            expect_segment(live, &s, 0, 0.5, 6 + 5, 11);
+        if (begin < 0.9)
+            expect_segment(live, &s, 0.5, 0.95, 5 + 5, 10);
+        if (begin < 1)
+            expect_segment(live, &s, 0.95, 1.15, 2 + 3, 5);
+        if (begin < 1)
+            assert_true(adcgs_live_whole(live)->scale == 4 && adcgs_live_whole(live)->origin[2] == 3);
+        expect_over(live, &s);
+        adcgs_live_segment_clear(&s);
+        adcgs_live_close(&live);
+        start_again();
+    }
+}
+
 /** An interrupt is an end; one moment is too little; where there is no scene, and what cannot be one. */
 static void test_ends(void **state)
 {
@@ -271,6 +310,18 @@ static void test_growing(void **state)
     adcgs_growing_close(&g);
     adcgs_growing_close(&g);
     assert_int_equal(size_of(path), 30);
+    for (int shown = 0; shown < 2; shown++) { /* hidden pieces show with the first that is not */
+        assert_int_equal(adcgs_growing_open(&g, path, &error), ADCGS_OK);
+        g.is_hidden = 1;
+        assert_int_equal(adcgs_growing_append(&g, "01234", 5, &error), ADCGS_OK);
+        assert_int_equal(adcgs_growing_append(&g, "56789", 5, &error), ADCGS_OK);
+        assert_int_equal(size_of(path), 30);
+        g.is_hidden = 0;
+        if (shown)
+            assert_int_equal(adcgs_growing_append(&g, "!", 1, &error), ADCGS_OK);
+        adcgs_growing_close(&g);
+        assert_int_equal(size_of(path), shown ? 11 : 30);
+    }
     assert_int_equal(adcgs_growing_open(&g, "/dev/full", &error), ADCGS_OK);
     assert_int_equal(adcgs_growing_append(&g, "0123456789", 10, &error), ADCGS_ERR_IO);
     adcgs_growing_close(&g);
@@ -283,7 +334,7 @@ static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
 }
 
 /** A stream that grew, and the HEAD that says how long it has become. */
-static void grow(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head)
+static void grow(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head, size_t ends[SEGMENTS])
 {
     adcgs_grow *grow;
     adcgs_stream front;
@@ -296,8 +347,10 @@ static void grow(adcgs_stream *s, adcgs_buffer *bytes, adcgs_buffer *head)
     front.n_segments = 0;
     front.level = 3;
     assert_int_equal(adcgs_grow_create(&grow, &front, 500, &error), ADCGS_OK);
-    for (uint32_t i = 0; i < SEGMENTS; i++)
+    for (uint32_t i = 0; i < SEGMENTS; i++) {
         assert_int_equal(adcgs_grow_segment(grow, i ? &s->segments[i - 1] : NULL, &s->segments[i], bytes, &error), ADCGS_OK);
+        ends[i] = bytes->size;
+    }
     assert_int_equal(adcgs_grow_end(grow, bytes, &error), ADCGS_OK);
     assert_int_equal(adcgs_grow_settle(grow, head, &error), ADCGS_OK);
     adcgs_grow_free(&grow);
@@ -314,7 +367,8 @@ static void test_settle(void **state)
     (void)state;
     adcgs_buffer_init(&bytes);
     adcgs_buffer_init(&head);
-    grow(&s, &bytes, &head);
+    size_t ends[SEGMENTS];
+    grow(&s, &bytes, &head, ends);
     FILE *from = tmpfile(), *to = tmpfile();
     assert_true(from && to && fwrite(bytes.data, 1, bytes.size, from) == bytes.size && !fseek(from, 0, SEEK_SET));
     assert_int_equal(adcgs_encode_settle(to, from, head.data, head.size, "x", &error), ADCGS_OK);
@@ -346,11 +400,68 @@ static void test_settle(void **state)
     adcgs_buffer_clear(&head);
 }
 
+/** Of a stream whose bytes are right up to `right`: the segments that are whole, each as it was. */
+static void expect_past(const adcgs_stream *s, const uint8_t *data, size_t n, size_t right, const size_t *ends)
+{
+    const char *path = in_folder("past", 0, 0);
+    adcgs_past past;
+    adcgs_model model;
+    uint32_t found = 0, whole = 0;
+    assert_int_equal(adcgs_atomic_save(path, data, n, &error), ADCGS_OK);
+    assert_int_equal(adcgs_past_open(&past, path, ADCGS_CPU_SCALAR, NULL, &error), ADCGS_OK);
+    while (whole < SEGMENTS && ends[whole] <= right)
+        whole++;
+    for (;; found++) {
+        assert_int_equal(adcgs_past_next(&past, &model, &error), ADCGS_OK);
+        if (!model.n)
+            break;
+        assert_true(found < SEGMENTS && adcgs_model_equal(&s->segments[found], &model, &error));
+        assert_true(model.time_start == s->segments[found].time_start && model.predicted == s->segments[found].predicted);
+        adcgs_model_clear(&model, NULL);
+    }
+    assert_true(found >= whole && found <= whole + 1); /* the digest behind a segment says nothing of it */
+    assert_int_equal(past.fault.status != ADCGS_OK, right < n);
+    assert_int_equal(adcgs_past_next(&past, &model, &error), ADCGS_OK);
+    assert_int_equal(model.n, 0);
+    adcgs_past_close(&past);
+    unlink(path);
+}
+
+/** Cut off, and damaged, here and there. */
+static void test_past(void **state)
+{
+    adcgs_stream s;
+    adcgs_buffer bytes, head;
+    adcgs_past past;
+    size_t ends[SEGMENTS];
+    (void)state;
+    adcgs_buffer_init(&bytes);
+    adcgs_buffer_init(&head);
+    grow(&s, &bytes, &head, ends);
+    for (size_t n = 0; n <= bytes.size; n += 53)
+        expect_past(&s, bytes.data, n, n, ends);
+    for (uint32_t i = 0; i < SEGMENTS; i++)
+        for (size_t n = ends[i] - 1; n < ends[i] + 2; n++)
+            expect_past(&s, bytes.data, n, n, ends);
+    expect_past(&s, bytes.data, bytes.size, bytes.size, ends);
+    for (size_t n = 2; n < bytes.size; n += 211) {
+        bytes.data[n] ^= 0x55;
+        expect_past(&s, bytes.data, bytes.size, n, ends);
+        bytes.data[n] ^= 0x55;
+    }
+    assert_int_equal(adcgs_past_open(&past, "/nowhere/x", ADCGS_CPU_SCALAR, NULL, &error), ADCGS_ERR_IO);
+    adcgs_past_close(&past);
+    adcgs_stream_clear(&s, NULL);
+    adcgs_buffer_clear(&bytes);
+    adcgs_buffer_clear(&head);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shapes), cmocka_unit_test(test_segments), cmocka_unit_test(test_gaps),
         cmocka_unit_test(test_ends),   cmocka_unit_test(test_growing),  cmocka_unit_test(test_settle),
+        cmocka_unit_test(test_going_on), cmocka_unit_test(test_past),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
