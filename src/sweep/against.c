@@ -176,7 +176,7 @@ static adcgs_status take_curve(adcgs_sweep_plan *plan, const adcgs_sweep *sweep,
     char name[sizeof plan->curve->name], note[sizeof plan->curve->note];
     ADCGS_TRY(check_scene(sweep, path, root, error));
     ADCGS_TRY(name_curve(name, sizeof name, plan, folder, sweep->directory, error));
-    snprintf(note, sizeof note, "an earlier sweep of the scene, in %s", folder);
+    snprintf(note, sizeof note, "an earlier sweep of the scene, in %.*s", (int)sizeof note - 40, folder); /* as much as fits */
     adcgs_sweep_curve *const curve = adcgs_sweep_add_curve(plan, name, note, ADCGS_FIGURE_BYTES, 0);
     curve->earlier = 1;
     return read_points(path, find_points(root), curve, error);
