@@ -408,7 +408,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
           NULL },
         { "live", 0, ADCGS_OPTION_FLAG, &o->live, 0, 0, NULL,
           "learn footage while it comes: SCENE is a scene file, or a\nfolder with scene.json; segments, of 2 s unless --segment\n"
-          "says otherwise, are written as they are done; -o - writes to\nstandard output; a camera's video may be -, standard input", NULL, NULL },
+          "says otherwise, are written as they are done; -o - writes to\nstandard output; a camera's video may be -, standard "
+          "input", NULL, NULL },
         { "delay", 0, ADCGS_OPTION_REAL, &o->delay, 1e-3, 1e6, "S",
           "with --live: have all written within S seconds from when it\nwas filmed; effort falls if need be", NULL,
           &o->has_delay },
@@ -476,9 +477,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     if ((o->has_key || o->or_whole) && !o->has_segment)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is for segments: give --segment, too",
                                o->has_key ? "key" : "or-whole");
-    if (o->has_segment && (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0))
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --psnr, --beginning, --uncompressed and "
-                               "--time-limit");
+    if (o->has_segment && (o->has_size || o->beginning || o->uncompressed || o->time_limit > 0))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --beginning, --uncompressed and --time-limit");
     o->scene = argv[first];
     return -1;
 }

@@ -76,6 +76,12 @@ cp -r "$scene/train" "$scene/transforms_train.json" "$dir/blind"
 scene=$dir/blind enc 0 blind --psnr 27.5 --iterations $n
 cmp "$dir/psnr.adcgs" "$dir/blind.adcgs" || bad "views for tests play a part"
 
+# Each segment has it, so all of the file has.
+enc 0 parts --psnr 26 --iterations 800 --segment 0.1
+grep -q '"segments": 2' "$dir/parts.out" && ./adcgs-info "$dir/parts.adcgs" --json | grep -q '"predicted": true' ||
+    bad "no segments with --psnr"
+within "$(tr -d ' \n' <"$dir/parts.out" | sed 's/.*"reached":\([0-9.]*\).*/\1/')" 25.9 26.1 "PSNR of segments"
+
 # What cannot be had: the nearest is written, and a line says so.
 enc 1 best --psnr 70 --iterations 100
 grep -q "best that this run can do" "$dir/best.err" && [ "$(wc -l <"$dir/best.err")" -eq 1 ] ||
@@ -96,6 +102,7 @@ refuse "exclude each other" --size 20k --psnr 30
 refuse "exclude each other" --lambda 0.1 --psnr 30
 refuse "exclude each other" --lambda 0.1 --size 20k
 refuse "needs rate" --size 20k --without fine,rate
+refuse "segment excludes --size" --size 20k --segment 0.1
 refuse "needs rate" --psnr 30 --uncompressed "$dir/raw"
 
 # A limit of time ends the run, with a stream that is whole and no larger than asked for. How near it comes depends on what the
