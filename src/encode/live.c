@@ -81,8 +81,8 @@ adcgs_status adcgs_encode_live_check(const adcgs_encode_live *e, const adcgs_sce
             v++;
         if (v == end || v->camera.width != c->width || v->camera.height != c->height ||
             fabs(v->camera.fx - c->fx) > NEAR * c->fx || !are_near(&v->camera, c, e->front.scene_scale))
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "the stream's camera %s is not one of the scene's: another scene cannot go on "
-                              "with it", c->name);
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "the stream's camera %s is not one of the scene's: another scene cannot "
+                              "go on with it", c->name);
     }
     return ADCGS_OK;
 }

@@ -23,8 +23,8 @@ adcgs_status adcgs_incoming_open(adcgs_incoming *in, const char *path, int (*int
 /** Harmless where opening failed. */
 void adcgs_incoming_close(adcgs_incoming *in);
 /**
- * Take up to `bytes` bytes as soon as there are some. After a moment without any *got is 0, as it is at the end, which sets ended.
- * ADCGS_ERR_IO if reading fails.
+ * Take up to `bytes` bytes as soon as there are some. After a moment without any *got is 0, as it is at the end, which sets
+ * ended. ADCGS_ERR_IO if reading fails.
  */
 adcgs_status adcgs_incoming_read(adcgs_incoming *in, void *buffer, size_t bytes, size_t *got, adcgs_error *error);
 

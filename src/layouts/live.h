@@ -25,9 +25,9 @@ typedef struct adcgs_live_options {
     const char *points_path; /**< initial points instead of the scene's, or NULL */
     int (*interrupted)(void); /**< whether to take no more than what was seen so far; asked now and then */
     /**
-     * Of a stream that is to go on: seconds of its last segment's begin and end, and its frame of reference; scale 0: none. Footage
-     * before is passed over. Where the last segment ended in the middle of a stretch, since no more had come then, it is given
-     * anew, as a whole; but not if it was cut otherwise.
+     * Of a stream that is to go on: seconds of its last segment's begin and end, and its frame of reference; scale 0: none.
+     * Footage before is passed over. Where the last segment ended in the middle of a stretch, since no more had come then, it is
+     * given anew, as a whole; but not if it was cut otherwise.
      */
     double last[2], origin[3], scale;
 } adcgs_live_options;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A camera whose footage comes while it is taken: numbered pictures that appear in a folder, or a growing file, a pipe, or standard input, of Y4M.
- * Its frames are decided in order: each is there, or it is missing and nobody waits for it any more.
+ * A camera whose footage comes while it is taken: numbered pictures that appear in a folder, or a growing file, a pipe, or
+ * standard input, of Y4M. Its frames are decided in order: each is there, or it is missing and nobody waits for it any more.
  *
  * Pictures stay where they are. What a pipe brings is kept in files of Y4M, one for each stretch of time, until it is learnt.
  */

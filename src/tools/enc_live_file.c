@@ -64,8 +64,8 @@ adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *f, const char *name, 
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected the file that --output names, or one that followed it "
                           "(name.2.adcgs)", past);
     if (past && follows(name, number))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: another stream followed it, number %u: go on with the last one", past,
-                          number + 1);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: another stream followed it, number %u: go on with the last one",
+                          past, number + 1);
     ADCGS_TRY(open_number(f, number, error));
     f->growing.is_hidden = past != NULL;
     return ADCGS_OK;

@@ -219,8 +219,8 @@ static void test_gaps(void **state)
 }
 
 /**
- * Footage that a stream goes on with: from behind its last segment; anew where that was cut short, unless it was cut otherwise. What
- * comes before may be gone.
+ * Footage that a stream goes on with: from behind its last segment; anew where that was cut short, unless it was cut otherwise.
+ * What comes before may be gone.
  */
 static void test_going_on(void **state)
 {
