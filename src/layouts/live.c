@@ -126,7 +126,7 @@ static adcgs_status make_segment(adcgs_live *l, uint32_t stretch, adcgs_live_seg
 {
     *s = (adcgs_live_segment){.begin = adcgs_live_cut(&l->watch, stretch),
                               .end = adcgs_live_cut(&l->watch, stretch + 1),
-                              .came = l->watch.came[stretch]};
+                              .came = l->watch.came[stretch - l->watch.n_passed]};
     if (!l->whole)
         ADCGS_TRY(open_whole(l, stretch, error));
     ADCGS_TRY(adcgs_scene_part_create(&s->scene, l->whole, error));

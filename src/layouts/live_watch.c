@@ -12,6 +12,7 @@
 #define LOOK_EVERY 20 /* milliseconds, while nothing comes */
 #define AHEAD 3       /* stretches that are looked at: one more than a camera may be behind another */
 #define NEAR 1e-3     /* of a frame: how far times are apart that a stream has made one by rounding */
+#define STRETCHES_MAX 1e9
 #define HALF (0.5 + 1e-9) /* of a frame: of two that are as near the first is taken */
 
 /* ---- Time ---- */
@@ -30,9 +31,15 @@ static double find_interval(const adcgs_live_watch *l)
     return 1 / rate;
 }
 
+/** Seconds that a stretch takes. */
+static double length(const adcgs_live_watch *l)
+{
+    return fmax(l->seconds, find_interval(l));
+}
+
 double adcgs_live_cut(const adcgs_live_watch *l, uint32_t stretch)
 {
-    const double time = stretch * fmax(l->seconds, find_interval(l));
+    const double time = stretch * length(l);
     double best = INFINITY;
     for (uint32_t i = 0; stretch && i < l->n; i++) {
         const adcgs_live_camera *c = &l->cameras[i];
@@ -47,7 +54,7 @@ double adcgs_live_cut(const adcgs_live_watch *l, uint32_t stretch)
 uint32_t adcgs_live_stretch(void *user, double time)
 {
     const adcgs_live_watch *l = user;
-    uint32_t i = (uint32_t)fmax(0, time / l->seconds - 2); /* cuts are within a frame of the multiples */
+    uint32_t i = (uint32_t)fmax(0, time / length(l) - 2); /* cuts are within a frame of the multiples */
     while (i > 0 && adcgs_live_cut(l, i) + adcgs_live_within(l) >= time)
         i--;
     while (time > adcgs_live_cut(l, i + 1) + adcgs_live_within(l))
@@ -83,12 +90,12 @@ int64_t adcgs_live_first_of_file(const adcgs_live_watch *l, const adcgs_live_cam
 /** All that was before is passed over; of a video all of a file that has something which is not. */
 static adcgs_status pass_over(adcgs_live_watch *l, adcgs_error *error)
 {
+    if (!(l->span[1] <= STRETCHES_MAX * l->seconds))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "the stream ends at %g s: expected at most %g segments of %g s", l->span[1],
+                          STRETCHES_MAX, l->seconds);
     const uint32_t first = first_stretch(l);
     l->is_placed = 1;
-    l->came = calloc(first + 1, sizeof *l->came);
-    if (!l->came)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
-    l->taken = l->n_complete = first;
+    l->taken = l->n_complete = l->n_passed = first;
     for (uint32_t i = 0; i < l->n; i++) {
         adcgs_live_camera *c = &l->cameras[i];
         int64_t span[2];
@@ -173,11 +180,13 @@ static int is_complete(const adcgs_live_watch *l, uint32_t stretch)
 static adcgs_status note_complete(adcgs_live_watch *l, adcgs_error *error)
 {
     while (l->last > adcgs_live_cut(l, l->n_complete) + adcgs_live_within(l) && is_complete(l, l->n_complete)) {
-        double *came = realloc(l->came, (l->n_complete + 1) * sizeof *came);
+        const uint32_t n = l->n_complete - l->n_passed;
+        double *came = realloc(l->came, (n + 1) * sizeof *came);
         if (!came)
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
         l->came = came;
-        came[l->n_complete++] = adcgs_seconds();
+        came[n] = adcgs_seconds();
+        l->n_complete++;
         pthread_cond_broadcast(&l->changed);
     }
     return ADCGS_OK;

@@ -30,7 +30,8 @@ typedef struct adcgs_live_watch {
     pthread_cond_t changed;
     uint32_t taken;        /**< stretches that were given, or passed over */
     uint32_t n_complete;   /**< stretches that are */
-    double *came;          /**< [n_complete] when, by adcgs_seconds() */
+    uint32_t n_passed;     /**< of them, those that a stream has which goes on */
+    double *came;          /**< [n_complete - n_passed] when the others were, by adcgs_seconds() */
     double last;           /**< seconds of the last frame that is there; -INFINITY: none */
     int is_placed;         /**< where it goes on is known */
     int is_over, stop;     /**< nothing more will come; the thread is to leave */

@@ -5,6 +5,7 @@
 #include "tools/enc_live_file.h"
 
 #include "encode/settle.h"
+#include "io/pipe.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -59,7 +60,9 @@ static int follows(const char *name, uint32_t number)
 adcgs_status adcgs_enc_live_file_open(adcgs_enc_live_file *f, const char *name, const char *past, adcgs_error *error)
 {
     *f = (adcgs_enc_live_file){ .name = name };
-    const uint32_t number = past && strcmp(past, "-") != 0 ? find_number(name, past) : !past;
+    if (past && adcgs_pipe_is(past))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected a file, which can be read back", past);
+    const uint32_t number = past ? find_number(name, past) : 1;
     if (!number)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--resume %s: expected the file that --output names, or one that followed it "
                           "(name.2.adcgs)", past);

@@ -161,6 +161,7 @@ echo nothing >"$dir/r.adcgs"
 refused 4 "no segment of it is whole.*not an adcgs stream" "$dir/all" "$dir/r.adcgs"
 head -c "$two" "$dir/piped" >"$dir/r.adcgs"
 refused 2 "expected the file that --output names" "$dir/all" "$dir/all.adcgs"
+refused 2 "expected a file, which can be read back" "$dir/all" /dev/null
 scene_file "$dir/other" images
 put "$dir/other" 0 1 2 3 4 5 6 7
 touch "$dir/other/end"
