@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SIGNATURE = 8, HEADER = 12, CRC = 4, TICKS = 16 };
+enum { SIGNATURE = 8, HEADER = 12, CRC = 4, TIMES = 20 };
 
 void adcgs_chunk_list_clear(adcgs_chunk_list *list)
 {
@@ -76,7 +76,7 @@ static int is_key(const adcgs_chunk_list *list, int segm)
     const adcgs_buffer *const payload = &list->chunk[segm].payload;
     adcgs_reader r;
     adcgs_reader_init(&r, payload->data, payload->size);
-    (void)adcgs_read_bytes(&r, TICKS);
+    (void)adcgs_read_bytes(&r, TIMES);
     int key = adcgs_read_uint(&r, 1) == 0;
     for (uint64_t roles = adcgs_read_uint(&r, 2); roles && key && !r.overrun; roles >>= 1)
         key = !(roles & 1) || is_sent(list, segm, adcgs_read_varint(&r));
@@ -99,7 +99,7 @@ static void complete_index(adcgs_chunk_list *list, adcgs_raw_chunk *index)
             while (end < list->n && !is_type(&list->chunk[end], "SEGM") && !is_type(&list->chunk[end], "INDX"))
                 end++;
             const adcgs_raw_chunk *const last = &list->chunk[end - 1];
-            adcgs_write_bytes(&index->payload, list->chunk[i].payload.data, ADCGS_MIN(list->chunk[i].payload.size, TICKS));
+            adcgs_write_bytes(&index->payload, list->chunk[i].payload.data, ADCGS_MIN(list->chunk[i].payload.size, TIMES));
             adcgs_write_uint(&index->payload, list->chunk[i].at, 8);
             adcgs_write_uint(&index->payload, last->at + ADCGS_CHUNK_FRAME + last->payload.size - list->chunk[i].at, 8);
             adcgs_write_uint(&index->payload, (uint64_t)is_key(list, i), 1);

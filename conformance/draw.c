@@ -412,6 +412,7 @@ static adcgs_status draw_model(adcgs_plan *plan, uint32_t segment, adcgs_error *
     ADCGS_TRY(plan->predicted[segment] ? draw_predicted(plan, segment, error) : draw_key(plan, segment, error));
     m->time_start = adcgs_ticks_to_seconds(&plan->stream, plan->ticks[2 * segment]);
     m->time_end = adcgs_ticks_to_seconds(&plan->stream, plan->ticks[2 * segment + 1]);
+    m->reach = adcgs_ticks_to_seconds(&plan->stream, plan->reach[segment]);
     return ADCGS_OK;
 }
 

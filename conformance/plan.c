@@ -219,6 +219,19 @@ static adcgs_status set_ticks(adcgs_plan *plan, const adcgs_command *c, void *us
     return ADCGS_OK;
 }
 
+/* reach N ... */
+static adcgs_status set_reach(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
+{
+    (void)user;
+    ADCGS_TRY(adcgs_command_words(c, 1, ADCGS_PLAN_SEGMENTS, error));
+    for (int i = 1; i < c->n; i++) {
+        int64_t ticks = 0;
+        ADCGS_TRY(adcgs_word_int(c->word[i], 0, UINT32_MAX, &ticks, error));
+        plan->reach[i - 1] = (uint32_t)ticks;
+    }
+    return ADCGS_OK;
+}
+
 /* layers N ... */
 static adcgs_status set_fewer(adcgs_plan *plan, const adcgs_command *c, void *user, adcgs_error *error)
 {
@@ -349,6 +362,7 @@ adcgs_status adcgs_plan_init(adcgs_plan *plan, adcgs_recipe *recipe, adcgs_error
         const char *verb;
         adcgs_command_fn fn;
     } others[] = { { "params", set_params }, { "anchors", set_anchors }, { "ticks", set_ticks }, { "times", add_time },
+                   { "reach", set_reach },
                    { "layers", set_fewer }, { "predicted", set_predicted }, { "differences", set_differences },
                    { "tiers", set_tiers },
                    { "camera", add_camera }, { "stored", add_stored }, { "meta", add_meta } };

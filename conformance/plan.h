@@ -82,6 +82,7 @@ typedef struct adcgs_plan {
     uint8_t depth;
     double origin[3], voxel; /**< voxel 0: the cube's edge is 2 */
     int64_t ticks[2 * ADCGS_PLAN_SEGMENTS];
+    uint32_t reach[ADCGS_PLAN_SEGMENTS]; /**< ticks */
     int masks, statics, bodies, positions, values; /**< adcgs_pick, adcgs_spread, adcgs_fill */
     int no_digest;
     adcgs_stream stream;

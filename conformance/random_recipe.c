@@ -129,6 +129,8 @@ static void write_segments(writer *w)
         tick = end;
     }
     line(w, "%s", text);
+    if (once_in(w, 2))
+        line(w, "reach %d %d %d", edgy(w, 0, 40), edgy(w, 0, 80), edgy(w, 0, 80));
     if (once_in(w, 3))
         line(w, "timebase %d %d", draw(w, 1, 2000), draw(w, 1, 90000));
     if (w->segments > 1)

@@ -43,10 +43,13 @@ static void tell_of_demand(const adcgs_decoder *d, adcgs_info *info)
 {
     const uint32_t n = adcgs_seek_segments(d->seek);
     const adcgs_stream *s = &d->stream;
-    const int64_t end = s->duration_ticks >= 0 ? s->start_ticks + s->duration_ticks : adcgs_seek_start(d->seek, n - 1);
+    int64_t first[3], last[3];
+    adcgs_seek_times(d->seek, 0, first);
+    adcgs_seek_times(d->seek, n - 1, last);
+    const int64_t end = s->duration_ticks >= 0 ? s->start_ticks + s->duration_ticks : last[1];
     info->segments = (int)n;
     info->first_segment = 0;
-    info->time_start = adcgs_ticks_to_seconds(s, adcgs_seek_start(d->seek, 0));
+    info->time_start = adcgs_ticks_to_seconds(s, first[0]);
     info->time_end = adcgs_ticks_to_seconds(s, end);
     info->bytes.total = adcgs_seek_bytes(d->seek);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The public decoder: opened, asked for splats at a time, closed. */
+/** \file The public decoder: opened, given bytes as they come, closed. */
 #include "api/decoder_priv.h"
 
 #include "base/cpu.h"
@@ -145,177 +145,18 @@ void adcgs_close(adcgs_decoder **decoder)
     adcgs_decoder *d = decoder ? *decoder : NULL;
     if (!d)
         return;
-    adcgs_splat_free(&d->splat);
+    adcgs_decoder_forget_drawn(d);
     adcgs_raster_free(&d->raster);
     adcgs_free(&d->memory, d->planar);
     adcgs_seek_free(&d->seek);
     adcgs_push_free(&d->push);
     adcgs_model_clear(&d->unfinished, &d->memory);
-    adcgs_model_clear(&d->coarser, &d->memory);
     adcgs_stream_clear(&d->stream, &d->memory);
     if (d->file)
         fclose(d->file);
     adcgs_pool_free(&d->own_pool);
     adcgs_free(NULL, d);
     *decoder = NULL;
-}
-
-/** The first segment that can be asked for: those before it were forgotten, or missed. */
-static uint32_t first_segment(const adcgs_decoder *d)
-{
-    return d->seek ? 0 : d->stream.first_segment;
-}
-
-/** The number behind the last segment that can be asked for. */
-static uint32_t end_segment(const adcgs_decoder *d)
-{
-    return d->seek ? adcgs_seek_segments(d->seek) : d->stream.first_segment + d->stream.n_segments + (d->unfinished.n > 0);
-}
-
-/** Of a decoder that does not seek: one that came, or the one that comes. */
-static const adcgs_model *model_of(const adcgs_decoder *d, uint32_t segment)
-{
-    const uint32_t index = segment - d->stream.first_segment;
-    return index < d->stream.n_segments ? &d->stream.segments[index] : &d->unfinished;
-}
-
-static double start_of(const adcgs_decoder *d, uint32_t segment)
-{
-    return d->seek ? adcgs_ticks_to_seconds(&d->stream, adcgs_seek_start(d->seek, segment)) : model_of(d, segment)->time_start;
-}
-
-/** The last segment that starts at or before the time; the first if none does. */
-static uint32_t segment_at(const adcgs_decoder *d, double time)
-{
-    uint32_t lo = first_segment(d), hi = end_segment(d);
-    while (hi - lo > 1) {
-        const uint32_t middle = lo + (hi - lo) / 2;
-        if (start_of(d, middle) <= time)
-            lo = middle;
-        else
-            hi = middle;
-    }
-    return lo;
-}
-
-static float normalised_time(const adcgs_model *model, double time)
-{
-    const double span = model->time_end - model->time_start;
-    const double t = span > 0 ? (time - model->time_start) / span : 0;
-    return t > 0 ? t < 1 ? (float)t : 1.0f : 0.0f; /* NaN becomes 0 */
-}
-
-/** A segment's model, which may be moved by the next call. */
-static adcgs_status decoder_segment(adcgs_decoder *d, uint32_t number, const adcgs_model **model, adcgs_error *error)
-{
-    if (!d->seek) {
-        *model = model_of(d, number);
-        return ADCGS_OK;
-    }
-    if (d->stream.n_segments == 1 && d->stream.first_segment == number) {
-        *model = d->stream.segments;
-        return ADCGS_OK;
-    }
-    adcgs_splat_free(&d->splat); /* of a model that goes */
-    return adcgs_seek_to(d->seek, number, model, error);
-}
-
-/** Look at what has come since of the segment at hand. */
-static adcgs_status catch_up(adcgs_decoder *d, adcgs_error *error)
-{
-    int drawable;
-    if (!d->is_behind)
-        return ADCGS_OK;
-    adcgs_splat_free(&d->splat); /* of a model that goes, or that was moved */
-    adcgs_model_clear(&d->unfinished, &d->memory);
-    d->is_behind = 0;
-    const adcgs_status status = adcgs_push_peek(d->push, &d->unfinished, &drawable, error);
-    if (status != ADCGS_OK)
-        adcgs_model_clear(&d->unfinished, &d->memory);
-    return status;
-}
-
-/** Make splats of a segment's model, or of the tiers of it that are wanted. */
-static adcgs_status make_splat(adcgs_decoder *d, const adcgs_model *model, adcgs_error *error)
-{
-    adcgs_model_clear(&d->coarser, &d->memory);
-    if (d->tiers && d->tiers < model->finest + 1 - model->absent) {
-        const adcgs_status status = adcgs_model_coarser(&d->coarser, model, d->tiers, &d->memory, error);
-        if (status != ADCGS_OK) {
-            adcgs_model_clear(&d->coarser, &d->memory);
-            return status;
-        }
-        model = &d->coarser;
-    }
-    return adcgs_splat_create(&d->splat, model, d->cpu, d->pool, &d->memory, error);
-}
-
-adcgs_status adcgs_set_tiers(adcgs_decoder *decoder, int tiers, adcgs_error *error)
-{
-    ADCGS_OWN_ERROR(error);
-    ADCGS_REQUIRE(decoder, error);
-    if (tiers < 0)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d tiers asked for", tiers);
-    if (tiers != decoder->tiers)
-        adcgs_splat_free(&decoder->splat);
-    decoder->tiers = tiers;
-    return ADCGS_OK;
-}
-
-adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primitives *out, adcgs_error *error)
-{
-    ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
-    ADCGS_TRY(catch_up(d, error));
-    if (end_segment(d) == first_segment(d))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: no segment that can be drawn has come yet");
-    const uint32_t segment = segment_at(d, time);
-    const adcgs_model *model;
-    ADCGS_TRY(decoder_segment(d, segment, &model, error));
-    if (d->splat && d->splat_segment != segment)
-        adcgs_splat_free(&d->splat);
-    if (!d->splat)
-        ADCGS_TRY(make_splat(d, model, error));
-    d->splat_segment = segment;
-    return adcgs_splat_at(d->splat, normalised_time(model, time), out, error);
-}
-
-adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time, adcgs_primitives *out, adcgs_error *error)
-{
-    ADCGS_OWN_ERROR(error);
-    ADCGS_REQUIRE(decoder, error);
-    ADCGS_REQUIRE(out, error);
-    return adcgs_decoder_primitives(decoder, time, out, error);
-}
-
-adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t digest[16], adcgs_error *error)
-{
-    adcgs_primitives primitives;
-    ADCGS_OWN_ERROR(error);
-    ADCGS_REQUIRE(decoder, error);
-    ADCGS_REQUIRE(digest, error);
-    ADCGS_TRY(adcgs_decoder_primitives(decoder, time, &primitives, error));
-    const adcgs_model *model;
-    ADCGS_TRY(decoder_segment(decoder, decoder->splat_segment, &model, error));
-    adcgs_splat_digest(decoder->coarser.n ? &decoder->coarser : model, &primitives, digest);
-    return ADCGS_OK;
-}
-
-adcgs_status adcgs_get_model_digest(adcgs_decoder *decoder, int segment, uint8_t digest[16], adcgs_error *error)
-{
-    const adcgs_model *model;
-    ADCGS_OWN_ERROR(error);
-    ADCGS_REQUIRE(decoder, error);
-    ADCGS_REQUIRE(digest, error);
-    ADCGS_TRY(catch_up(decoder, error));
-    const uint32_t first = first_segment(decoder), end = end_segment(decoder);
-    if (segment < 0 || (uint32_t)segment >= end)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment, (unsigned)end);
-    if ((uint32_t)segment < first)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; those before %u are not here", segment,
-                          (unsigned)first);
-    ADCGS_TRY(decoder_segment(decoder, (uint32_t)segment, &model, error));
-    adcgs_model_digest(model, digest);
-    return ADCGS_OK;
 }
 
 /* ---- Bytes as they come ---- */
@@ -354,10 +195,13 @@ adcgs_status adcgs_push_forget(adcgs_decoder *decoder, double time, adcgs_error 
     ADCGS_OWN_ERROR(error);
     ADCGS_REQUIRE(decoder, error);
     ADCGS_TRY(require_push(decoder, error));
-    while (n + 1 < decoder->stream.n_segments && decoder->stream.segments[n + 1].time_start <= time)
+    const adcgs_model *const segments = decoder->stream.segments;
+    while (n + 1 < decoder->stream.n_segments && segments[n + 1].time_start <= time)
         n++;
+    if (n > 0 && time < segments[n - 1].time_end + segments[n - 1].reach)
+        n--; /* the next is not yet faded in */
     if (n > 0)
-        adcgs_splat_free(&decoder->splat); /* of a model that goes, or is moved */
+        adcgs_decoder_forget_drawn(decoder); /* of models that go, or are moved */
     adcgs_stream_forget(&decoder->stream, n, &decoder->memory);
     return ADCGS_OK;
 }

@@ -15,6 +15,13 @@
 
 #include <stdio.h>
 
+/** A segment's model made ready to be drawn. */
+typedef struct adcgs_drawn {
+    adcgs_splat *splat;     /**< NULL: none is */
+    uint32_t segment;
+    adcgs_model coarser;    /**< what splat is of, if the segment has more tiers; n 0: it is of the segment */
+} adcgs_drawn;
+
 struct adcgs_decoder {
     adcgs_memory memory;
     adcgs_pool *pool;       /**< the caller's or own_pool */
@@ -29,9 +36,7 @@ struct adcgs_decoder {
     uint32_t faults;        /**< that were concealed */
     FILE *file;             /**< that it reads from, if that is a file opened here */
     int tiers;              /**< that are drawn at most; 0: all */
-    adcgs_model coarser;    /**< what splat is of, if the segment has more tiers; n 0: it is of the segment */
-    adcgs_splat *splat;     /**< of splat_segment; NULL until the first use */
-    uint32_t splat_segment;
+    adcgs_drawn drawn[2];   /**< of even and odd segments: that at hand, and in a fade the one before */
     adcgs_raster *raster;   /**< NULL until the first frame */
     float *planar;          /**< planes of [height][width], grows */
     size_t planar_size;     /**< floats in it */
@@ -56,7 +61,16 @@ struct adcgs_decoder {
 /** Set up own from a caller's struct of any version; NULL: all defaults. */
 adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, adcgs_error *error);
 
-/** Splats at a time, after a look at the modes of arithmetic. */
-adcgs_status adcgs_decoder_primitives(adcgs_decoder *d, double time, adcgs_primitives *out, adcgs_error *error);
+/** What is drawn at a time: the splats of a segment, and while it is faded into those of the segment before. */
+typedef struct adcgs_moment {
+    adcgs_primitives now, before;
+    int fades;              /**< 0: there is no `before` */
+    float weight;           /**< of what is now, 0..1 */
+} adcgs_moment;
+
+/** After a look at the modes of arithmetic. */
+adcgs_status adcgs_decoder_moment(adcgs_decoder *d, double time, adcgs_moment *out, adcgs_error *error);
+/** Before models are freed or moved. */
+void adcgs_decoder_forget_drawn(adcgs_decoder *d);
 
 #endif

@@ -42,26 +42,68 @@ static adcgs_status reserve_planar(adcgs_decoder *d, size_t floats, adcgs_error 
     return ADCGS_OK;
 }
 
-/** What all kinds of picture need: the view, the splats, a raster, and planes of the picture's size. */
-static adcgs_status prepare(adcgs_decoder *d, const adcgs_camera *camera, double time, size_t planes,
-                            adcgs_primitives *primitives, adcgs_view *view, adcgs_error *error)
+/** What is drawn for all kinds of picture. */
+typedef struct picture {
+    adcgs_moment moment;
+    adcgs_view view;
+    size_t plane;  /**< floats of one */
+    float *before; /**< three planes, of what is before in a fade */
+} picture;
+
+/** Look up what to draw; have a raster, and planes of the picture's size. */
+static adcgs_status prepare(adcgs_decoder *d, const adcgs_camera *camera, double time, size_t planes, picture *p,
+                            adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_view_init(view, camera, d->stream.scene_origin, d->stream.scene_scale, error));
-    ADCGS_TRY(adcgs_decoder_primitives(d, time, primitives, error));
+    ADCGS_TRY(adcgs_view_init(&p->view, camera, d->stream.scene_origin, d->stream.scene_scale, error));
+    ADCGS_TRY(adcgs_decoder_moment(d, time, &p->moment, error));
     if (!d->raster)
         ADCGS_TRY(adcgs_raster_create(&d->raster, d->cpu, d->pool, &d->memory, error));
-    return reserve_planar(d, planes * (size_t)view->width * (size_t)view->height, error);
+    p->plane = (size_t)p->view.width * (size_t)p->view.height;
+    ADCGS_TRY(reserve_planar(d, (planes + (p->moment.fades ? 3 : 0)) * p->plane, error));
+    p->before = d->planar + planes * p->plane;
+    return ADCGS_OK;
 }
 
-static adcgs_status draw(adcgs_decoder *d, const adcgs_primitives *primitives, const adcgs_view *view, adcgs_error *error)
+/** Three planes of one segment's picture into those of the other's, a band of rows. */
+typedef struct fade_job {
+    const float *before;
+    float *now;
+    size_t n, step; /**< floats in all, and of a band */
+    float weight;
+} fade_job;
+
+static void fade(void *arg, int index, int thread)
 {
-    return adcgs_raster_forward(d->raster, primitives, view, d->stream.background, d->stream.screen_filter, d->planar, 0, error);
+    const fade_job *job = arg;
+    const size_t begin = (size_t)index * job->step, end = ADCGS_MIN(begin + job->step, job->n);
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        job->now[i] = job->before[i] + job->weight * (job->now[i] - job->before[i]);
+}
+
+static adcgs_status draw_one(adcgs_decoder *d, const picture *p, const adcgs_primitives *primitives, int depth, float *planes,
+                             adcgs_error *error)
+{
+    return depth ? adcgs_raster_depth(d->raster, primitives, &p->view, d->stream.screen_filter, planes, error) :
+                   adcgs_raster_forward(d->raster, primitives, &p->view, d->stream.background, d->stream.screen_filter, planes, 0,
+                                        error);
+}
+
+/** Colours, or with depth the sums that depth and coverage are made of, into the first three planes. */
+static adcgs_status draw(adcgs_decoder *d, const picture *p, int depth, adcgs_error *error)
+{
+    ADCGS_TRY(draw_one(d, p, &p->moment.now, depth, d->planar, error));
+    if (!p->moment.fades)
+        return ADCGS_OK;
+    ADCGS_TRY(draw_one(d, p, &p->moment.before, depth, p->before, error));
+    fade_job job = { p->before, d->planar, 3 * p->plane, 3 * ROWS_PER_JOB * (size_t)p->view.width, p->moment.weight };
+    adcgs_pool_run(d->pool, fade, &job, (p->view.height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, double time, adcgs_frame *frame, adcgs_error *error)
 {
-    adcgs_primitives primitives;
-    adcgs_view view;
+    picture p;
     ADCGS_OWN_ERROR(error);
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(camera, error);
@@ -69,8 +111,8 @@ adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, do
     if (!frame->rgb || frame->width != camera->width || frame->height != camera->height)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "frame: size is %dx%d, expected the camera's, %dx%d", (int)frame->width,
                           (int)frame->height, (int)camera->width, (int)camera->height);
-    ADCGS_TRY(prepare(decoder, camera, time, 3, &primitives, &view, error));
-    ADCGS_TRY(draw(decoder, &primitives, &view, error));
+    ADCGS_TRY(prepare(decoder, camera, time, 3, &p, error));
+    ADCGS_TRY(draw(decoder, &p, 0, error));
     interleave_all(decoder, frame);
     return ADCGS_OK;
 }
@@ -121,26 +163,25 @@ adcgs_status adcgs_render_rgba8(adcgs_decoder *decoder, const adcgs_camera *came
                                 uint8_t *pixels, ptrdiff_t stride, adcgs_error *error)
 {
     adcgs_decoder *d = decoder;
-    adcgs_primitives primitives;
-    adcgs_view view;
+    picture p;
     ADCGS_OWN_ERROR(error);
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(camera, error);
     ADCGS_REQUIRE(pixels, error);
     if ((unsigned)alpha > ADCGS_ALPHA_PREMULTIPLIED)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "alpha is %d, expected 0..%d", (int)alpha, ADCGS_ALPHA_PREMULTIPLIED);
-    ADCGS_TRY(prepare(d, camera, time, 4, &primitives, &view, error));
-    const size_t plane = (size_t)view.width * (size_t)view.height;
-    if (stride < 4 * (ptrdiff_t)view.width && stride > -4 * (ptrdiff_t)view.width)
+    ADCGS_TRY(prepare(d, camera, time, 4, &p, error));
+    const int width = p.view.width, height = p.view.height;
+    if (stride < 4 * (ptrdiff_t)width && stride > -4 * (ptrdiff_t)width)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stride is %td bytes, expected %d or more, or their negative", stride,
-                          4 * (int)view.width);
+                          4 * width);
     if (alpha != ADCGS_ALPHA_OPAQUE) {
-        ADCGS_TRY(adcgs_raster_depth(d->raster, &primitives, &view, d->stream.screen_filter, d->planar, error));
-        memcpy(d->planar + 3 * plane, d->planar + plane, plane * sizeof *d->planar);
+        ADCGS_TRY(draw(d, &p, 1, error));
+        memcpy(d->planar + 3 * p.plane, d->planar + p.plane, p.plane * sizeof *d->planar);
     }
-    ADCGS_TRY(draw(d, &primitives, &view, error));
-    rgba8_job job = { d->planar, (size_t)view.width, (size_t)view.height, d->stream.background, alpha, pixels, stride };
-    adcgs_pool_run(d->pool, pack_rgba8, &job, (view.height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
+    ADCGS_TRY(draw(d, &p, 0, error));
+    rgba8_job job = { d->planar, (size_t)width, (size_t)height, d->stream.background, alpha, pixels, stride };
+    adcgs_pool_run(d->pool, pack_rgba8, &job, (height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
     return ADCGS_OK;
 }
 
@@ -173,14 +214,13 @@ adcgs_status adcgs_render_depth(adcgs_decoder *decoder, const adcgs_camera *came
                                 adcgs_error *error)
 {
     adcgs_decoder *d = decoder;
-    adcgs_primitives primitives;
-    adcgs_view view;
+    picture p;
     ADCGS_OWN_ERROR(error);
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(camera, error);
-    ADCGS_TRY(prepare(d, camera, time, 3, &primitives, &view, error));
-    ADCGS_TRY(adcgs_raster_depth(d->raster, &primitives, &view, d->stream.screen_filter, d->planar, error));
-    divide_job job = { d->planar, (size_t)view.width, (size_t)view.height, d->stream.scene_scale, depth, alpha };
-    adcgs_pool_run(d->pool, divide, &job, (view.height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
+    ADCGS_TRY(prepare(d, camera, time, 3, &p, error));
+    ADCGS_TRY(draw(d, &p, 1, error));
+    divide_job job = { d->planar, (size_t)p.view.width, (size_t)p.view.height, d->stream.scene_scale, depth, alpha };
+    adcgs_pool_run(d->pool, divide, &job, (p.view.height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
     return ADCGS_OK;
 }

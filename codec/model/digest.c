@@ -133,6 +133,7 @@ static void visit_model(visitor *v, const adcgs_model *a, const adcgs_model *b)
     visit_params(v, &a->params, &b->params);
     ITEM("time_start", time_start);
     ITEM("time_end", time_end);
+    ITEM("reach", reach);
     ITEM("anchors", n);
     ITEM("depth", depth);
     LIST("origin", origin, 3);

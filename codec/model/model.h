@@ -62,6 +62,7 @@ typedef struct adcgs_params {
 typedef struct adcgs_model {
     adcgs_params params;
     double time_start, time_end; /**< seconds; end >= start */
+    double reach;    /**< seconds behind the end that the model still knows, for the next segment to be faded into; 0: none */
 
     uint32_t n;      /**< anchors, >= 1 */
     uint8_t depth;   /**< 0..21 */

@@ -264,6 +264,8 @@ static adcgs_status check_frame(const adcgs_model *m, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_DATA, "model: voxel is %g, expected 2^-40..2^10", (double)m->voxel);
     if (!(m->time_start <= m->time_end && m->time_start >= -0x1p60 && m->time_end <= 0x1p60))
         return adcgs_fail(error, ADCGS_ERR_DATA, "model: times %g..%g s are not a span", m->time_start, m->time_end);
+    if (!(m->reach >= 0 && m->reach <= 0x1p60))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "model: reach is %g s, expected a duration", m->reach);
     return ADCGS_OK;
 }
 

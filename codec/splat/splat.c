@@ -395,6 +395,13 @@ static void deform_group(void *arg, int index, int thread)
     }
 }
 
+float adcgs_splat_time(const adcgs_model *model, double seconds)
+{
+    const double span = (model->time_end - model->time_start) + model->reach;
+    const double t = span > 0 ? (seconds - model->time_start) / span : 0;
+    return t > 0 ? t < 1 ? (float)t : 1.0f : 0.0f;
+}
+
 adcgs_status adcgs_splat_at(adcgs_splat *s, float t, adcgs_primitives *out, adcgs_error *error)
 {
     const float time = t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;

@@ -20,6 +20,8 @@ typedef struct adcgs_splat adcgs_splat;
 adcgs_status adcgs_splat_create(adcgs_splat **out, const adcgs_model *model, adcgs_cpu_level cpu, adcgs_pool *pool,
                                 adcgs_memory *memory, adcgs_error *error);
 void adcgs_splat_free(adcgs_splat **splat);
+/** Seconds to normalised time: 0 where the model starts, 1 where it knows no more, behind its end and reach. NaN becomes 0. */
+float adcgs_splat_time(const adcgs_model *model, double seconds);
 /** Primitives at normalised time t in [0,1] (clamped). Arrays belong to splat and change with the next call. */
 adcgs_status adcgs_splat_at(adcgs_splat *splat, float t, adcgs_primitives *out, adcgs_error *error);
 /** MD5 over the existing primitives in order of anchor, then k (conformance point S). */

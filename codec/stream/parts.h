@@ -35,10 +35,10 @@ typedef struct adcgs_role_ids {
 
 /**
  * SEGM: times, which networks, shapes, steps and the prior of eta; what a predicted segment has of the one before is taken from
- * it. model->params is set.
+ * it. model->params is set. ticks: its start, its end, its reach.
  */
 adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids,
-                              int64_t ticks[2]);
+                              int64_t ticks[3]);
 adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, const adcgs_model *model, const adcgs_role_ids *ids,
                               adcgs_error *error);
 /** KEEP: what is kept of the model before. left: of the level, is used up. */

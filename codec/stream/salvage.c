@@ -94,7 +94,8 @@ static uint32_t number_at_hand(const salvage *s)
 
 static void lose_segment(salvage *s, const char *why)
 {
-    warn(s, "segment %u is lost: %.160s", number_at_hand(s), why);
+    const int fades = s->reader.segment.stage != ADCGS_SEGMENT_NONE && s->reader.segment.ticks[2] > 0;
+    warn(s, "segment %u is lost%s: %.130s", number_at_hand(s), fades ? ", and what the next would be faded into" : "", why);
     adcgs_segment_drop(&s->reader.segment);
     s->stream->first_segment++;
     s->is_broken = 1;

@@ -7,7 +7,8 @@
 #include "stream/reader.h"
 
 #define ENDC_BYTES 32  /**< of the chunk */
-#define ENTRY_BYTES 33 /**< of a segment in INDX */
+#define ENTRY_BYTES 37 /**< of a segment in INDX */
+#define TIMES_BYTES 20 /**< of SEGM: start, end and reach, with which it begins */
 
 struct adcgs_seek {
     adcgs_read_at_fn read;
@@ -199,12 +200,14 @@ static adcgs_status read_index(adcgs_seek *s, uint64_t first)
 /** A SEGM that was met: it ends the segment before it. */
 static adcgs_status meet_segment(adcgs_seek *s, const adcgs_chunk *chunk)
 {
-    uint8_t start[8];
-    ADCGS_TRY(fetch(s, chunk->origin + ADCGS_CHUNK_HEADER_BYTES, start, ADCGS_MIN(sizeof start, (size_t)chunk->header.length)));
-    const adcgs_syn_index entry = { .start_ticks = (int64_t)adcgs_load_le64(start),
+    uint8_t times[TIMES_BYTES] = { 0 };
+    ADCGS_TRY(fetch(s, chunk->origin + ADCGS_CHUNK_HEADER_BYTES, times, ADCGS_MIN(sizeof times, (size_t)chunk->header.length)));
+    const adcgs_syn_index entry = { .start_ticks = (int64_t)adcgs_load_le64(times),
+                                    .end_ticks = (int64_t)adcgs_load_le64(times + 8),
+                                    .reach_ticks = adcgs_load_le32(times + 16),
                                     .offset = chunk->origin,
                                     .key = chunk->header.flags & ADCGS_CHUNK_KEY };
-    if (chunk->header.length < sizeof start || (s->n > 0 && entry.start_ticks <= s->entry[s->n - 1].start_ticks))
+    if (chunk->header.length < sizeof times || (s->n > 0 && entry.start_ticks <= s->entry[s->n - 1].start_ticks))
         return adcgs_fail(&s->error, ADCGS_ERR_DATA, "SEGM: too short, or not later than the segment in front of it");
     return add_entry(s, &entry);
 }
@@ -273,9 +276,17 @@ uint32_t adcgs_seek_segments(const adcgs_seek *s)
     return s->n;
 }
 
-int64_t adcgs_seek_start(const adcgs_seek *s, uint32_t number)
+void adcgs_seek_times(const adcgs_seek *s, uint32_t number, int64_t ticks[3])
 {
-    return s->entry[number].start_ticks;
+    ticks[0] = s->entry[number].start_ticks;
+    ticks[1] = s->entry[number].end_ticks;
+    ticks[2] = s->entry[number].reach_ticks;
+}
+
+const adcgs_model *adcgs_seek_at_hand(const adcgs_seek *s, uint32_t number)
+{
+    const uint32_t index = number - s->stream->first_segment;
+    return index < s->stream->n_segments ? &s->stream->segments[index] : NULL;
 }
 
 uint64_t adcgs_seek_bytes(const adcgs_seek *s)
@@ -283,11 +294,11 @@ uint64_t adcgs_seek_bytes(const adcgs_seek *s)
     return s->bytes;
 }
 
-/** Of the models in memory, keep the last, or none. */
-static void forget(adcgs_seek *s, int keep_last)
+/** Of the models in memory, keep the last, so many at most. */
+static void forget(adcgs_seek *s, uint32_t kept)
 {
     const uint32_t n = s->stream->n_segments;
-    adcgs_stream_forget(s->stream, n - (keep_last && n > 0), s->options.memory);
+    adcgs_stream_forget(s->stream, n - ADCGS_MIN(n, kept), s->options.memory);
 }
 
 /** Networks of segments that are past. */
@@ -300,9 +311,10 @@ static void forget_networks(adcgs_seek *s)
     }
 }
 
-/** Decode the next segment, of which that before it is in memory unless it is a key. */
+/** Decode the next segment, of which that before it is in memory unless it is a key; no other stays. */
 static adcgs_status decode(adcgs_seek *s, uint32_t number)
 {
+    forget(s, 1);
     const adcgs_syn_index *e = &s->entry[number];
     const uint64_t end = e->offset + e->bytes;
     adcgs_segment *segment = &s->reader.segment;
@@ -324,7 +336,6 @@ static adcgs_status decode(adcgs_seek *s, uint32_t number)
     ADCGS_TRY(adcgs_segment_finish(segment, end, 0));
     if (s->stream->n_segments != before + 1)
         return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: no segment %u at byte %llu", number, (unsigned long long)e->offset);
-    forget(s, 1);
     return ADCGS_OK;
 }
 
@@ -339,16 +350,16 @@ static void begin_at(adcgs_seek *s, uint32_t number)
         forget_networks(s);
 }
 
-/** From the last key at or before a segment, or from what is in memory, to it. */
-static adcgs_status go_to(adcgs_seek *s, uint32_t number)
+/** From the last key at or before the first of the segments that are wanted, or from what is in memory, to the last. */
+static adcgs_status go_to(adcgs_seek *s, uint32_t number, int before)
 {
     const adcgs_stream *stream = s->stream;
-    uint32_t next = number;
+    uint32_t next = number - (before != 0);
     while (next > 0 && (s->keeps_nets || !s->entry[next].key))
         next--;
-    const uint32_t at_hand = stream->first_segment; /* if any */
-    if (stream->n_segments > 0 && at_hand >= next && at_hand <= number)
-        next = at_hand + 1;
+    const uint32_t behind = stream->first_segment + stream->n_segments; /* what is in memory, if anything */
+    if (stream->n_segments > 0 && behind > next && behind <= number)
+        next = behind;
     else
         begin_at(s, next);
     for (; next <= number; next++) {
@@ -356,6 +367,7 @@ static adcgs_status go_to(adcgs_seek *s, uint32_t number)
             forget_networks(s);
         ADCGS_TRY(decode(s, next));
     }
+    forget(s, 1 + (before != 0));
     return ADCGS_OK;
 }
 
@@ -373,14 +385,14 @@ static int doubts_index(adcgs_seek *s)
     return 0;
 }
 
-adcgs_status adcgs_seek_to(adcgs_seek *s, uint32_t number, const adcgs_model **model, adcgs_error *error)
+adcgs_status adcgs_seek_to(adcgs_seek *s, uint32_t number, int before, adcgs_error *error)
 {
-    adcgs_status status = go_to(s, number);
+    adcgs_status status = go_to(s, number, before);
     if (status == ADCGS_ERR_DATA && !s->keeps_nets) { /* perhaps it names a network that was sent before its key */
         const adcgs_error first = s->error;
         s->keeps_nets = 1;
         begin_at(s, 0);
-        if (go_to(s, number) == ADCGS_OK) {
+        if (go_to(s, number, before) == ADCGS_OK) {
             status = ADCGS_OK;
         } else {
             s->keeps_nets = 0;
@@ -389,10 +401,9 @@ adcgs_status adcgs_seek_to(adcgs_seek *s, uint32_t number, const adcgs_model **m
     }
     if (status == ADCGS_ERR_DATA && doubts_index(s)) {
         begin_at(s, 0);
-        status = go_to(s, number);
+        status = go_to(s, number, before);
     }
     if (status != ADCGS_OK)
         begin_at(s, 0);
-    *model = s->stream->segments;
     return pass_on(s, status, error);
 }

@@ -140,7 +140,7 @@ static void inherit_values(adcgs_model *model, const adcgs_model *before)
 }
 
 adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_model *model, adcgs_role_ids *ids,
-                              int64_t ticks[2])
+                              int64_t ticks[3])
 {
     adcgs_syn_segm segm;
     ADCGS_TRY(adcgs_syn_segm_parse(p, &segm));
@@ -160,8 +160,21 @@ adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_
     model->predicted = segm.predicted;
     ticks[0] = segm.start_ticks;
     ticks[1] = segm.end_ticks;
+    ticks[2] = segm.reach_ticks;
     model->time_start = adcgs_ticks_to_seconds(stream, segm.start_ticks);
     model->time_end = adcgs_ticks_to_seconds(stream, segm.end_ticks);
+    model->reach = adcgs_ticks_to_seconds(stream, segm.reach_ticks);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_reach_ticks(const adcgs_stream *stream, const adcgs_model *model, uint32_t *ticks, adcgs_error *error)
+{
+    int64_t n = 0;
+    ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->reach, &n, error));
+    if (n < 0 || n > UINT32_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "SEGM: a reach of %g s is %lld ticks, expected 0..2^32 - 1", model->reach,
+                          (long long)n);
+    *ticks = (uint32_t)n;
     return ADCGS_OK;
 }
 
@@ -192,6 +205,7 @@ adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, con
     adcgs_syn_segm segm = { .predicted = model->predicted, .roles = ids->mask };
     ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &segm.start_ticks, error));
     ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &segm.end_ticks, error));
+    ADCGS_TRY(adcgs_reach_ticks(stream, model, &segm.reach_ticks, error));
     ADCGS_TRY(adcgs_syn_segm_write(out, "SEGM", &segm, error));
     for (int role = 0; role < ADCGS_ROLES; role++)
         if (ids->mask >> role & 1)

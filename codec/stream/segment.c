@@ -60,7 +60,7 @@ void adcgs_segment_clear(adcgs_segment *s)
     adcgs_buffer_clear(&s->index);
 }
 
-static adcgs_status check_times(const adcgs_segment *s, const int64_t ticks[2])
+static adcgs_status check_times(const adcgs_segment *s, const int64_t ticks[3])
 {
     const adcgs_stream *stream = s->stream;
     if (ticks[0] < stream->start_ticks
@@ -76,16 +76,16 @@ static adcgs_status check_times(const adcgs_segment *s, const int64_t ticks[2])
 
 adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t origin)
 {
-    int64_t ticks[2];
+    int64_t ticks[3];
     if (segment_number(s) >= s->limits->segments)
         return adcgs_fail(s->error, ADCGS_ERR_LIMIT, "SEGM: more than %u segments, the level's limit", s->limits->segments);
     s->model.params = s->stream->params;
     s->stage = ADCGS_SEGMENT_STARTED;
     s->origin = origin;
+    s->ticks[2] = 0;
     ADCGS_TRY(adcgs_segm_parse(p, s->stream, &s->model, &s->ids, ticks));
     ADCGS_TRY(check_times(s, ticks));
-    s->ticks[0] = ticks[0];
-    s->ticks[1] = ticks[1];
+    memcpy(s->ticks, ticks, sizeof ticks);
     return ADCGS_OK;
 }
 
@@ -456,7 +456,8 @@ static adcgs_status append_model(adcgs_segment *s)
 
 adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
 {
-    const adcgs_syn_index entry = { s->ticks[0], s->ticks[1], s->origin, end - s->origin, (uint8_t)s->is_key };
+    const adcgs_syn_index entry = { s->ticks[0], s->ticks[1], (uint32_t)s->ticks[2], s->origin, end - s->origin,
+                                    (uint8_t)s->is_key };
     if (s->stage == ADCGS_SEGMENT_NONE)
         return ADCGS_OK;
     if (!tier_is_complete(s) && !truncated)

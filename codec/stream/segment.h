@@ -18,7 +18,7 @@ typedef struct adcgs_segment {
     uint32_t capacity;    /**< of stream->segments */
     adcgs_cost left;      /**< of the level's model bytes and work */
     adcgs_buffer index;   /**< what INDX must hold, less the count */
-    int64_t ticks[2];     /**< of the segment read last */
+    int64_t ticks[3];     /**< of the segment read last: start, end, reach */
 
     adcgs_segment_stage stage;
     uint64_t origin;      /**< position of SEGM */

@@ -53,6 +53,8 @@ void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info);
 /** Seconds of a tick, and the tick of a time that a tick gives exactly (ADCGS_ERR_USAGE if none does). */
 double adcgs_ticks_to_seconds(const adcgs_stream *stream, int64_t ticks);
 adcgs_status adcgs_seconds_to_ticks(const adcgs_stream *stream, double seconds, int64_t *ticks, adcgs_error *error);
+/** Those of a segment's reach; ADCGS_ERR_USAGE as above. */
+adcgs_status adcgs_reach_ticks(const adcgs_stream *stream, const adcgs_model *model, uint32_t *ticks, adcgs_error *error);
 
 /**
  * Append the stream to out, without the tiers that are absent. Validates first; segment times must be whole ticks. Derives

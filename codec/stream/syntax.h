@@ -77,6 +77,7 @@
 #define ADCGS_LIST_SEGM(F, V)                              \
     F(I64, start_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX) \
     F(I64, end_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX)   \
+    F(U32, reach_ticks, 0, 4294967295.0)                   \
     F(U8, predicted, 0, 1)                                 \
     F(U16, roles, 0, (1 << ADCGS_ROLES) - 1)
 #define ADCGS_LIST_SHAPES(F, V) \
@@ -113,6 +114,7 @@
 #define ADCGS_LIST_INDEX(F, V)                             \
     F(I64, start_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX) \
     F(I64, end_ticks, -ADCGS_TICKS_MAX, ADCGS_TICKS_MAX)   \
+    F(U32, reach_ticks, 0, 4294967295.0)                   \
     F(U64, offset, 0, 0x1p53)                              \
     F(U64, bytes, 0, 0x1p53)                               \
     F(U8, key, 0, 1)

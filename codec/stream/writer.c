@@ -281,6 +281,7 @@ adcgs_status adcgs_writer_segment(adcgs_writer *w, const adcgs_model *before, ad
     w->last = (adcgs_syn_index){ .offset = position(w), .key = !before };
     ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_start, &w->last.start_ticks, w->error));
     ADCGS_TRY(adcgs_seconds_to_ticks(w->stream, model->time_end, &w->last.end_ticks, w->error));
+    ADCGS_TRY(adcgs_reach_ticks(w->stream, model, &w->last.reach_ticks, w->error));
     ADCGS_TRY(write_parts(w, before, model));
     w->n_segments++;
     return ADCGS_OK;
@@ -356,11 +357,13 @@ adcgs_status adcgs_writer_check(const adcgs_stream *stream, uint32_t i, const ad
                                 int64_t span[2], adcgs_error *error)
 {
     int64_t start = 0, end = 0;
+    uint32_t reach;
     ADCGS_TRY(adcgs_model_validate(model, error));
     if (!adcgs_params_equal(&model->params, &stream->params))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u has other parameters than the stream", i);
     ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_start, &start, error));
     ADCGS_TRY(adcgs_seconds_to_ticks(stream, model->time_end, &end, error));
+    ADCGS_TRY(adcgs_reach_ticks(stream, model, &reach, error));
     if (model->predicted && !before)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment is predicted");
     if (model->predicted && before->absent)

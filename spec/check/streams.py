@@ -79,7 +79,9 @@ def _check_pictures(stream, expect, cameras, counts):
             faults.append("splats at %r are %s, expected %s" % (entry["time"], given, entry["md5"]))
     for entry in expect["R"]:
         counts["frames"] += 1
-        frame = _machine.render(stream.head, at[entry["time"]], camera_of(cameras[entry["camera"]]))
+        camera = camera_of(cameras[entry["camera"]])
+        frame = _machine.render(stream.head, at[entry["time"]], camera)
+        frame = _machine.faded(stream, F64(float(entry["time"])), camera, frame)
         given = "refused" if frame is None else _hex(_machine.frame_digest(frame))
         if given != entry["md5"]:
             faults.append("the frame of camera %d at %r is %s, expected %s" % (entry["camera"], entry["time"], given, entry["md5"]))

@@ -103,7 +103,9 @@ def answer(machine, stream, request, cameras, lines):
             if words[0] == "splats":
                 print("splats %s %s" % (time, hexadecimal(machine.splats_digest(splats[time]))))
             else:
-                frame = machine.render(stream.head, splats[time], cameras[int(words[1])])
+                camera = cameras[int(words[1])]
+                frame = machine.render(stream.head, splats[time], camera)
+                frame = machine.faded(stream, F64(float(time)), camera, frame)
                 digest = "refused" if frame is None else hexadecimal(machine.frame_digest(frame))
                 print("frame %s %s %s" % (words[1], time, digest))
 

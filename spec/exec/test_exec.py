@@ -291,7 +291,7 @@ class Examples(unittest.TestCase):
         lines = []
         m = machine.Machine(None, lines.append)
         n = m.decode_stream(Bytes.at(data, 0), True).head.segments
-        self.assertIn("%d chunk.type INDX" % (8 * (len(data) - 32 - (20 + 1 + 33 * n))), lines)
+        self.assertIn("%d chunk.type INDX" % (8 * (len(data) - 32 - (20 + 1 + 37 * n))), lines)
         offsets = [int(line.split()[2]) for line in lines if " INDX.offset " in line]
         self.assertEqual([8 * at for at in offsets], [int(line.split()[0]) for line in lines if line.endswith(" chunk.type SEGM")])
 

@@ -154,6 +154,8 @@ static adcgs_status print_segments(const adcgs_info_report *r, adcgs_error *erro
         const adcgs_model *m = &r->stream.segments[i];
         printf("\nsegment %u: %g .. %g s, %u anchors, depth %u, voxel %g, %u Gaussians, %d layers\n", i, m->time_start,
                m->time_end, m->n, m->depth, (double)m->voxel, adcgs_info_count_gaussians(m), m->layers);
+        if (m->reach > 0)
+            printf("  goes on for %g s, in which the next is faded in\n", m->reach);
         uint32_t same, refined;
         ADCGS_TRY(adcgs_info_kept(r, i, &same, &refined, error));
         if (m->predicted)

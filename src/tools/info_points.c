@@ -50,14 +50,12 @@ static void colour(adcgs_points *out, const adcgs_model *m, const adcgs_primitiv
 
 static adcgs_status colour_at(adcgs_points *out, const adcgs_model *m, double time, adcgs_error *error)
 {
-    const double span = m->time_end - m->time_start;
-    const float t = span > 0.0 ? (float)((time - m->time_start) / span) : 0.0f;
     adcgs_cpu_level cpu;
     adcgs_splat *splat = NULL;
     adcgs_primitives primitives;
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &cpu, error));
     ADCGS_TRY(adcgs_splat_create(&splat, m, cpu, NULL, NULL, error));
-    const adcgs_status status = adcgs_splat_at(splat, t, &primitives, error);
+    const adcgs_status status = adcgs_splat_at(splat, adcgs_splat_time(m, time), &primitives, error);
     if (status == ADCGS_OK)
         colour(out, m, &primitives);
     adcgs_splat_free(&splat);

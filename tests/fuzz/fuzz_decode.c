@@ -46,6 +46,12 @@ static adcgs_camera any_camera(const adcgs_decoder *d, int stored)
     return camera;
 }
 
+/** A moment that may lie in a fade. */
+static double middle_of(const adcgs_info *info)
+{
+    return 0.5 * info->time_start + 0.5 * info->time_end;
+}
+
 /** Everything a decoder can be asked; returns a checksum over the answers. */
 static uint32_t ask(adcgs_decoder *d, int stored_camera)
 {
@@ -63,9 +69,9 @@ static uint32_t ask(adcgs_decoder *d, int stored_camera)
         crc = adcgs_crc32c(crc, digest, sizeof digest);
     }
     const adcgs_camera camera = any_camera(d, stored_camera);
-    for (int i = 0; i < 2; i++) {
-        const double time = i ? info.time_end : info.time_start;
-        FUZZ_REQUIRE(adcgs_set_tiers(d, i, NULL) == ADCGS_OK);
+    for (int i = 0; i < 3; i++) {
+        const double time = i == 2 ? middle_of(&info) : i ? info.time_end : info.time_start;
+        FUZZ_REQUIRE(adcgs_set_tiers(d, i % 2, NULL) == ADCGS_OK);
         adcgs_frame frame = { WIDTH, HEIGHT, rgb };
         if (adcgs_get_primitives(d, time, &primitives, NULL) != ADCGS_OK ||
             adcgs_render(d, &camera, time, &frame, NULL) != ADCGS_OK)
@@ -107,6 +113,17 @@ static int64_t read_anywhere(void *user, uint64_t offset, void *buffer, size_t b
     return (int64_t)bytes;
 }
 
+/** Read on demand or whole, a moment shows the same, also where a segment is faded in. */
+static void compare_frames(adcgs_decoder *a, adcgs_decoder *b, double time)
+{
+    float rgb[2][WIDTH * HEIGHT * 3];
+    const adcgs_camera camera = any_camera(a, 0);
+    adcgs_frame one = { WIDTH, HEIGHT, rgb[0] }, other = { WIDTH, HEIGHT, rgb[1] };
+    const adcgs_status status = adcgs_render(a, &camera, time, &one, NULL);
+    FUZZ_REQUIRE(adcgs_render(b, &camera, time, &other, NULL) == status || status != ADCGS_OK);
+    FUZZ_REQUIRE(status != ADCGS_OK || memcmp(rgb[0], rgb[1], sizeof rgb[0]) == 0);
+}
+
 /** On demand, from the last segment to the first: the models of the whole stream, if that is one; else any that pass. */
 static void seek(const uint8_t *data, size_t size, const adcgs_config *config)
 {
@@ -127,6 +144,8 @@ static void seek(const uint8_t *data, size_t size, const adcgs_config *config)
         FUZZ_REQUIRE(status == ADCGS_OK && adcgs_get_model_digest(whole, i, expected, NULL) == ADCGS_OK);
         FUZZ_REQUIRE(memcmp(digest, expected, sizeof digest) == 0);
     }
+    if (!all.truncated)
+        compare_frames(d, whole, middle_of(&info));
     adcgs_close(&whole);
     adcgs_close(&d);
 }

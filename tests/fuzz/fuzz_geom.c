@@ -8,7 +8,7 @@
 #define ANCHORS_MAX 20000U
 #define FIXED_BYTES 21 /* elements in front of the positions */
 #define COUNT_BYTES 4  /* of these, in predicted segments, which have the grid of the one before */
-#define PREDICTED_AT 16 /* in SEGM */
+#define PREDICTED_AT 20 /* in SEGM */
 
 const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/geom", NULL };
 

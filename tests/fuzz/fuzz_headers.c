@@ -72,7 +72,7 @@ static void try_segm(const uint8_t *data, size_t size, const adcgs_stream *strea
 {
     adcgs_model model = { .params = stream->params };
     adcgs_role_ids ids;
-    int64_t ticks[2];
+    int64_t ticks[3];
     adcgs_buffer out;
     adcgs_parse p = parse_of(data, size);
     if (adcgs_segm_parse(&p, stream, &model, &ids, ticks) != ADCGS_OK)

@@ -402,6 +402,7 @@ adcgs_status adcgs_random_stream(adcgs_stream *stream, const adcgs_params *param
             ADCGS_TRY(share_networks(m, m - 1, state, error));
         m->time_start = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i);
         m->time_end = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i + draw(state, 1, 40));
+        m->reach = adcgs_ticks_to_seconds(stream, i % 2 ? 0 : 30);
     }
     return ADCGS_OK;
 }
@@ -420,6 +421,7 @@ adcgs_status adcgs_random_turns(adcgs_stream *stream, uint32_t segments, uint32_
             ADCGS_TRY(adcgs_random_model(m, &stream->params, n, depth, state, error));
         m->time_start = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i);
         m->time_end = adcgs_ticks_to_seconds(stream, 40 * (int64_t)i + 40);
+        m->reach = adcgs_ticks_to_seconds(stream, i % 3 ? 7 * (i % 3) : 0);
     }
     return ADCGS_OK;
 }

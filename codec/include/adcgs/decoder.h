@@ -71,9 +71,9 @@ ADCGS_API adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read
 /**
  * Open a stream of which any part can be read, as over a network by ranges. Only the header and the index are read, or where
  * there is none the headers of chunks (clause "Seeking"); a segment is read and decoded when a time or number in it is asked for,
- * with those that it is predicted from, back to the last key before it, and takes the place of the one before. So a stream of
- * any length takes no more memory than two of its segments. What was not read was not checked. A stream of one segment, and one
- * that ends early, is read as adcgs_open_stream() does.
+ * with those that it is predicted from, back to the last key before it, and takes the place of the one before; where it is faded
+ * in, both are there. So a stream of any length takes no more memory than two of its segments. What was not read was not checked.
+ * A stream of one segment, and one that ends early, is read as adcgs_open_stream() does.
  *
  * Functions that take a time or the number of a segment can then fail as adcgs_open_stream() does; the decoder remains usable.
  * \param out receives the decoder; NULL on failure
@@ -114,10 +114,10 @@ ADCGS_API adcgs_status adcgs_push(adcgs_decoder *decoder, const void *data, size
                                   adcgs_error *error);
 
 /**
- * Say that no moment before this one will be asked for again: segments that are past are freed, all but the last complete one,
- * from which the next may be predicted. So a stream of any length takes no more memory than a few of its segments, besides its
- * networks, which its level bounds. Times before are served by the first segment that is left. Numbers of segments stay, and the
- * models of those that are freed cannot be asked for (ADCGS_ERR_USAGE).
+ * Say that no moment before this one will be asked for again: segments that are past, and into which nothing fades any more, are
+ * freed, all but the last complete one, from which the next may be predicted. So a stream of any length takes no more memory than
+ * a few of its segments, besides its networks, which its level bounds. Times before are served by the first segment that is left.
+ * Numbers of segments stay, and the models of those that are freed cannot be asked for (ADCGS_ERR_USAGE).
  * \param decoder an open decoder
  * \param time seconds
  * \param error says why it failed
@@ -176,7 +176,7 @@ ADCGS_API const char *adcgs_get_metadata(const adcgs_decoder *decoder, const cha
 ADCGS_API const char *adcgs_get_metadata_key(const adcgs_decoder *decoder, int index);
 
 /**
- * Splats at a time (clause "Primitives").
+ * Splats at a time (clause "Primitives"). While a segment is faded in they are its own; frames show the one before, too.
  * \param decoder an open decoder
  * \param time seconds; times outside the stream's span become its start or end
  * \param out receives arrays that the decoder owns; valid until the next call on it that takes a time
@@ -196,7 +196,8 @@ ADCGS_API adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time,
 ADCGS_API adcgs_status adcgs_set_tiers(adcgs_decoder *decoder, int tiers, adcgs_error *error);
 
 /**
- * Render a frame (clause "Rendering"): what conforming decoders agree on to the bit.
+ * Render a frame (clause "Rendering"): what conforming decoders agree on to the bit. It takes twice as long where a segment is
+ * faded in.
  * \param decoder an open decoder
  * \param camera any camera, not only the stream's
  * \param time seconds, as adcgs_get_primitives()

@@ -104,9 +104,9 @@ typedef struct adcgs_bytes {
 
 /**
  * What a stream holds. Filled by adcgs_get_info(). Where segments are read on demand, anchors, gaussians, static_anchors and
- * weights are those of the segment at hand, 0 before the first, layers those asked for, and bytes.total is what was read so far.
- * Where bytes are pushed, until their end, these are of complete segments that are kept, segments may be 0, time_end is what the
- * header promises, or infinity if it promises nothing, and bytes.total is what was taken so far.
+ * weights are those of the segments at hand, two in a fade, 0 before the first, layers those asked for, and bytes.total is what
+ * was read so far. Where bytes are pushed, until their end, these are of complete segments that are kept, segments may be 0,
+ * time_end is what the header promises, or infinity if it promises nothing, and bytes.total is what was taken so far.
  */
 typedef struct adcgs_info {
     size_t size;            /**< bytes of this struct that the library filled; what lies behind them is zero */

@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What is drawn at a time: which segment serves it, which one is faded into it, and their splats. */
+#include "api/decoder_priv.h"
+
+#include "base/strict.h"
+
+/** The first segment that can be asked for: those before it were forgotten, or missed. */
+static uint32_t first_segment(const adcgs_decoder *d)
+{
+    return d->seek ? 0 : d->stream.first_segment;
+}
+
+/** The number behind the last segment that can be asked for. */
+static uint32_t end_segment(const adcgs_decoder *d)
+{
+    return d->seek ? adcgs_seek_segments(d->seek) : d->stream.first_segment + d->stream.n_segments + (d->unfinished.n > 0);
+}
+
+/** Of a decoder that does not seek: one that came, or the one that comes. */
+static const adcgs_model *model_of(const adcgs_decoder *d, uint32_t segment)
+{
+    const uint32_t index = segment - d->stream.first_segment;
+    return index < d->stream.n_segments ? &d->stream.segments[index] : &d->unfinished;
+}
+
+static double start_of(const adcgs_decoder *d, uint32_t segment)
+{
+    int64_t ticks[3];
+    if (!d->seek)
+        return model_of(d, segment)->time_start;
+    adcgs_seek_times(d->seek, segment, ticks);
+    return adcgs_ticks_to_seconds(&d->stream, ticks[0]);
+}
+
+/** The moment up to which a segment's model knows what it shows. */
+static double reach_of(const adcgs_decoder *d, uint32_t segment)
+{
+    int64_t ticks[3];
+    if (!d->seek)
+        return model_of(d, segment)->time_end + model_of(d, segment)->reach;
+    adcgs_seek_times(d->seek, segment, ticks);
+    return adcgs_ticks_to_seconds(&d->stream, ticks[1]) + adcgs_ticks_to_seconds(&d->stream, ticks[2]);
+}
+
+/** The last segment that starts at or before the time; the first if none does. */
+static uint32_t segment_at(const adcgs_decoder *d, double time)
+{
+    uint32_t lo = first_segment(d), hi = end_segment(d);
+    while (hi - lo > 1) {
+        const uint32_t middle = lo + (hi - lo) / 2;
+        if (start_of(d, middle) <= time)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    return lo;
+}
+
+/** Whether the time belongs to the segment before as well, which fades into this one. */
+static int fades(const adcgs_decoder *d, uint32_t segment, double time)
+{
+    return segment > first_segment(d) && time < reach_of(d, segment - 1);
+}
+
+static void forget_drawn(adcgs_decoder *d, adcgs_drawn *drawn)
+{
+    adcgs_splat_free(&drawn->splat);
+    adcgs_model_clear(&drawn->coarser, &d->memory);
+}
+
+void adcgs_decoder_forget_drawn(adcgs_decoder *d)
+{
+    forget_drawn(d, &d->drawn[0]);
+    forget_drawn(d, &d->drawn[1]);
+}
+
+/** A segment's model that can be asked for without reading. */
+static const adcgs_model *model_at_hand(const adcgs_decoder *d, uint32_t segment)
+{
+    return d->seek ? adcgs_seek_at_hand(d->seek, segment) : model_of(d, segment);
+}
+
+/** Have a segment's model at hand, and with before that of the one in front of it. */
+static adcgs_status fetch(adcgs_decoder *d, uint32_t segment, int before, adcgs_error *error)
+{
+    if (model_at_hand(d, segment) && (!before || model_at_hand(d, segment - 1)))
+        return ADCGS_OK;
+    adcgs_decoder_forget_drawn(d);
+    return adcgs_seek_to(d->seek, segment, before, error);
+}
+
+/** Look at what has come since of the segment at hand. */
+static adcgs_status catch_up(adcgs_decoder *d, adcgs_error *error)
+{
+    int drawable;
+    if (!d->is_behind)
+        return ADCGS_OK;
+    adcgs_decoder_forget_drawn(d); /* of models that go, or were moved */
+    adcgs_model_clear(&d->unfinished, &d->memory);
+    d->is_behind = 0;
+    const adcgs_status status = adcgs_push_peek(d->push, &d->unfinished, &drawable, error);
+    if (status != ADCGS_OK)
+        adcgs_model_clear(&d->unfinished, &d->memory);
+    return status;
+}
+
+/** Splats of a segment's model, or of the tiers of it that are wanted. */
+static adcgs_status make_splat(adcgs_decoder *d, adcgs_drawn *drawn, const adcgs_model *model, adcgs_error *error)
+{
+    if (d->tiers && d->tiers < model->finest + 1 - model->absent) {
+        ADCGS_TRY(adcgs_model_coarser(&drawn->coarser, model, d->tiers, &d->memory, error));
+        model = &drawn->coarser;
+    }
+    return adcgs_splat_create(&drawn->splat, model, d->cpu, d->pool, &d->memory, error);
+}
+
+/** Splats at a time, by a segment whose model is at hand. */
+static adcgs_status primitives_of(adcgs_decoder *d, uint32_t segment, double time, adcgs_primitives *out, adcgs_error *error)
+{
+    const adcgs_model *const model = model_at_hand(d, segment);
+    adcgs_drawn *const drawn = &d->drawn[segment % 2];
+    adcgs_status status = ADCGS_OK;
+    if (!drawn->splat || drawn->segment != segment) {
+        forget_drawn(d, drawn);
+        drawn->segment = segment;
+        status = make_splat(d, drawn, model, error);
+    }
+    if (status == ADCGS_OK)
+        status = adcgs_splat_at(drawn->splat, adcgs_splat_time(model, time), out, error);
+    if (status != ADCGS_OK)
+        forget_drawn(d, drawn);
+    return status;
+}
+
+adcgs_status adcgs_set_tiers(adcgs_decoder *decoder, int tiers, adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    if (tiers < 0)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d tiers asked for", tiers);
+    if (tiers != decoder->tiers)
+        adcgs_decoder_forget_drawn(decoder);
+    decoder->tiers = tiers;
+    return ADCGS_OK;
+}
+
+/** The segment that serves a time, once there is one, and whether it is faded into then. What is not drawn then is forgotten. */
+static adcgs_status find_segment(adcgs_decoder *d, double time, uint32_t *segment, int *is_fade, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
+    ADCGS_TRY(catch_up(d, error));
+    if (end_segment(d) == first_segment(d))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: no segment that can be drawn has come yet");
+    *segment = segment_at(d, time);
+    *is_fade = fades(d, *segment, time);
+    if (!*is_fade)
+        forget_drawn(d, &d->drawn[(*segment + 1) % 2]);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_decoder_moment(adcgs_decoder *d, double time, adcgs_moment *out, adcgs_error *error)
+{
+    uint32_t segment;
+    ADCGS_TRY(find_segment(d, time, &segment, &out->fades, error));
+    ADCGS_TRY(fetch(d, segment, out->fades, error));
+    ADCGS_TRY(primitives_of(d, segment, time, &out->now, error));
+    if (!out->fades)
+        return ADCGS_OK;
+    const double start = start_of(d, segment);
+    out->weight = (float)((time - start) / (reach_of(d, segment - 1) - start));
+    return primitives_of(d, segment - 1, time, &out->before, error);
+}
+
+/** Splats at a time, by the segment that serves it, alone. */
+static adcgs_status primitives_at(adcgs_decoder *d, double time, uint32_t *segment, adcgs_primitives *out, adcgs_error *error)
+{
+    int is_fade;
+    ADCGS_TRY(find_segment(d, time, segment, &is_fade, error));
+    ADCGS_TRY(fetch(d, *segment, 0, error));
+    return primitives_of(d, *segment, time, out, error);
+}
+
+adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time, adcgs_primitives *out, adcgs_error *error)
+{
+    uint32_t segment;
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(out, error);
+    return primitives_at(decoder, time, &segment, out, error);
+}
+
+adcgs_status adcgs_get_splat_digest(adcgs_decoder *decoder, double time, uint8_t digest[16], adcgs_error *error)
+{
+    adcgs_primitives primitives;
+    uint32_t segment;
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(digest, error);
+    ADCGS_TRY(primitives_at(decoder, time, &segment, &primitives, error));
+    const adcgs_model *const coarser = &decoder->drawn[segment % 2].coarser;
+    adcgs_splat_digest(coarser->n ? coarser : model_at_hand(decoder, segment), &primitives, digest);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_get_model_digest(adcgs_decoder *decoder, int segment, uint8_t digest[16], adcgs_error *error)
+{
+    ADCGS_OWN_ERROR(error);
+    ADCGS_REQUIRE(decoder, error);
+    ADCGS_REQUIRE(digest, error);
+    ADCGS_TRY(catch_up(decoder, error));
+    const uint32_t first = first_segment(decoder), end = end_segment(decoder);
+    if (segment < 0 || (uint32_t)segment >= end)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment, (unsigned)end);
+    if ((uint32_t)segment < first)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; those before %u are not here", segment,
+                          (unsigned)first);
+    ADCGS_TRY(fetch(decoder, (uint32_t)segment, 0, error));
+    adcgs_model_digest(model_at_hand(decoder, (uint32_t)segment), digest);
+    return ADCGS_OK;
+}
