@@ -53,7 +53,20 @@ static void cut(adcgs_cuts *cuts, const double *moment, uint32_t n, double durat
     cuts->moments = ADCGS_MIN(cuts->moments, n - last);
 }
 
-adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double seconds, adcgs_error *error)
+/** How far parts reach: to the last moment within the limits. */
+static void reach_out(adcgs_cuts *cuts, const double *moment, uint32_t n, double duration, double fade)
+{
+    uint32_t next = 0;
+    for (uint32_t i = 0; i + 1 < cuts->n; i++) {
+        const double *at = cuts->at + i, shorter = fmin(at[1] - at[0], at[2] - at[1]);
+        const double until = at[1] + fmin(fade, shorter / 4) + ADCGS_TIME_TOLERANCE * duration;
+        while (next < n && moment[next] <= until)
+            next++;
+        cuts->reach[i] = moment[next - 1] - at[1]; /* the cut is a moment */
+    }
+}
+
+adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double seconds, double fade, adcgs_error *error)
 {
     double *moment;
     uint32_t n;
@@ -62,10 +75,13 @@ adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double 
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: shows one moment only: there is nothing to cut", scene->directory);
     if (status == ADCGS_OK) {
         cuts->at = adcgs_alloc(NULL, n + 1, sizeof *cuts->at, error);
-        status = cuts->at ? ADCGS_OK : adcgs_alloc_status(error);
+        cuts->reach = adcgs_alloc(NULL, n, sizeof *cuts->reach, error);
+        status = cuts->at && cuts->reach ? ADCGS_OK : adcgs_alloc_status(error);
     }
-    if (status == ADCGS_OK)
+    if (status == ADCGS_OK) {
         cut(cuts, moment, n, scene->duration, fmax(seconds, scene->duration / n));
+        reach_out(cuts, moment, n, scene->duration, fade);
+    }
     adcgs_free(NULL, moment);
     return status;
 }
@@ -73,6 +89,7 @@ adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double 
 void adcgs_cuts_clear(adcgs_cuts *cuts)
 {
     adcgs_free(NULL, cuts->at);
+    adcgs_free(NULL, cuts->reach);
     *cuts = (adcgs_cuts){ .n = 0 };
 }
 
@@ -95,7 +112,7 @@ static void take_views(adcgs_scene *part, const adcgs_scene *whole, double begin
 adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const adcgs_cuts *cuts, uint32_t index,
                               adcgs_error *error)
 {
-    const double begin = cuts->at[index], end = cuts->at[index + 1];
+    const double begin = cuts->at[index], end = cuts->at[index + 1] + (cuts->reach ? cuts->reach[index] : 0);
     double *moment;
     *part = *whole;
     part->whole = whole;

@@ -12,20 +12,23 @@
 typedef struct adcgs_cuts {
     uint32_t n;      /**< parts */
     double *at;      /**< [n + 1] seconds, ascending: the scene's beginning, moments that training views show, its end */
+    double *reach;   /**< [n] seconds that parts go on behind their ends, to such moments; 0 of the last. NULL: none */
     uint32_t moments; /**< of the part that has the fewest; those at which it begins and ends are counted */
 } adcgs_cuts;
 
 /**
  * Cut a scene at those moments of its training views that lie nearest to multiples of `seconds`, such that each part has more
- * than one; what would be less than half a part at the end is left with the last. ADCGS_ERR_DATA if the scene shows one moment
+ * than one; what would be less than half a part at the end is left with the last. Parts reach at most `fade` seconds into the
+ * next, and a quarter of the shorter of both, for the next to be faded in meanwhile. ADCGS_ERR_DATA if the scene shows one moment
  * only.
  */
-adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double seconds, adcgs_error *error);
+adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double seconds, double fade, adcgs_error *error);
 void adcgs_cuts_clear(adcgs_cuts *cuts);
 
 /**
- * A part, with the training views from one cut to the next, both included, and no others: two parts share what the cut between
- * them shows, so that they meet there. All else is shared with the whole scene, which must stay as it is for as long.
+ * A part, with the training views from one cut to the next and as far as it reaches, both ends included, and no others: two parts
+ * share at least what the cut between them shows, so that they meet there. All else is shared with the whole scene, which must
+ * stay as it is for as long.
  */
 adcgs_status adcgs_scene_part(adcgs_scene *part, const adcgs_scene *whole, const adcgs_cuts *cuts, uint32_t index,
                               adcgs_error *error);

@@ -77,9 +77,25 @@ static int are_whole(const adcgs_scene *scene, const double *at, uint32_t n, uin
     return 1;
 }
 
+/** The moment up to which a part's model knows what it shows. */
+static double reach_of(const adcgs_cuts *cuts, uint32_t part)
+{
+    return cuts->at[part + 1] + (cuts->reach ? cuts->reach[part] : 0);
+}
+
+static int are_all_whole(const adcgs_scene *scene, const adcgs_cuts *cuts, uint32_t parts)
+{
+    int whole = are_whole(scene, cuts->at, cuts->n + 1, parts);
+    for (uint32_t i = 0; i < cuts->n && whole; i++) {
+        const double until = reach_of(cuts, i);
+        whole = are_whole(scene, &until, 1, parts);
+    }
+    return whole;
+}
+
 /**
- * A tick is a frame, or the largest whole part of one of which the scene's duration, and where it is cut, are whole numbers: so
- * times are exact, whatever offsets cameras have.
+ * A tick is a frame, or the largest whole part of one of which the scene's duration, and where it is cut and parts reach to, are
+ * whole numbers: so times are exact, whatever offsets cameras have.
  */
 static void set_time(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts *cuts)
 {
@@ -87,7 +103,7 @@ static void set_time(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts
     s->rate_num = scene->rate.num;
     s->rate_den = scene->rate.den;
     while (parts < PARTS_MAX && (uint64_t)s->rate_num * (parts + 1) <= UINT32_MAX &&
-           !are_whole(scene, cuts->at, cuts->n + 1, parts))
+           !are_all_whole(scene, cuts, parts))
         parts++;
     s->timebase_num = s->rate_den;
     s->timebase_den = s->rate_num * parts;
@@ -126,6 +142,7 @@ void adcgs_encode_place(adcgs_stream *s, const adcgs_cuts *cuts, uint32_t part, 
     s->params = to->params;
     to->time_start = adcgs_ticks_to_seconds(s, begin);
     to->time_end = adcgs_ticks_to_seconds(s, end);
+    to->reach = adcgs_ticks_to_seconds(s, nearest_tick(s, reach_of(cuts, part)) - end);
     s->start_ticks = s->n_segments == 1 ? begin : s->start_ticks;
     s->duration_ticks = end - s->start_ticks;
 }

@@ -142,7 +142,7 @@ static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job,
 /** Segments share their parameters, so all have a time table of as many rows as the shortest can have. */
 static adcgs_status cut_scene(adcgs_enc_job *job, adcgs_error *error)
 {
-    ADCGS_TRY(adcgs_cuts_find(&job->cuts, job->scene, job->o->segment, error));
+    ADCGS_TRY(adcgs_cuts_find(&job->cuts, job->scene, job->o->segment, job->o->fade, error));
     if (job->cuts.n == 1)
         return ADCGS_OK;
     job->whole = job->config;
@@ -348,9 +348,9 @@ static int check_live(const adcgs_cli *cli, adcgs_enc_options *o, const char *sc
     if (!o->has_segment)
         o->segment = ADCGS_ENC_LIVE_SEGMENT;
     if (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0 || o->frames || o->fps ||
-        o->checkpoint || o->dataset || o->or_whole)
+        o->checkpoint || o->dataset || o->or_whole || o->has_fade)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--live excludes --size, --psnr, --beginning, --uncompressed, --time-limit, "
-                               "--frames, --fps, --checkpoint, --dataset and --or-whole");
+                               "--frames, --fps, --checkpoint, --dataset, --or-whole and --fade");
     if (o->has_delay && o->delay <= o->segment)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay %g: a segment of %g s is learnt when its end was filmed: give more "
                                "than that, or a shorter --segment", o->delay, o->segment);
@@ -403,6 +403,9 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "key", 0, ADCGS_OPTION_REAL, &o->key, 0, 1e6, "S",
           "with --segment: at least every S seconds a segment that needs\nno other, where playing can begin (default 10)", NULL,
           &o->has_key },
+        { "fade", 0, ADCGS_OPTION_REAL, &o->fade, 0, 1e6, "S",
+          "with --segment: fade each segment in over S seconds, while\nthe one before goes on; at most a quarter of a segment\n"
+          "(default 0.2; 0: not at all)", NULL, &o->has_fade },
         { "or-whole", 0, ADCGS_OPTION_FLAG, &o->or_whole, 0, 0, NULL,
           "with --segment: learn one segment for all of time, too, and\nwrite that if it is neither larger nor worse", NULL,
           NULL },
@@ -474,9 +477,9 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         return check_live(cli, o, argv[first]);
     if (o->has_delay)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay is for what is live: give --live, too");
-    if ((o->has_key || o->or_whole) && !o->has_segment)
+    if ((o->has_key || o->has_fade || o->or_whole) && !o->has_segment)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is for segments: give --segment, too",
-                               o->has_key ? "key" : "or-whole");
+                               o->has_key ? "key" : o->has_fade ? "fade" : "or-whole");
     if (o->has_segment && (o->has_size || o->beginning || o->uncompressed || o->time_limit > 0))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --beginning, --uncompressed and --time-limit");
     o->scene = argv[first];
@@ -485,7 +488,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    adcgs_enc_options o = { .preset = "fast", .checkpoint_every = 60, .started = adcgs_seconds() };
+    adcgs_enc_options o = { .preset = "fast", .fade = ADCGS_ENC_FADE, .checkpoint_every = 60, .started = adcgs_seconds() };
     adcgs_cli cli = program;
     const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)

@@ -84,7 +84,8 @@ static const char *difference(const adcgs_stream *now, const adcgs_stream *then)
     if (now->scene_scale != then->scene_scale || then->n_segments != 1)
         return "scene";
     if (now->timebase_num != then->timebase_num || now->timebase_den != then->timebase_den ||
-        now->start_ticks != then->start_ticks || now->duration_ticks != then->duration_ticks)
+        now->start_ticks != then->start_ticks || now->duration_ticks != then->duration_ticks ||
+        now->segments[0].reach != then->segments[0].reach)
         return "time";
     if (now->n_meta != then->n_meta)
         return "settings";

@@ -7,16 +7,17 @@
 #include "encode/encode.h"
 
 #define ADCGS_ENC_KEY_EVERY 10.0   /**< seconds from one key to the next, unless given */
+#define ADCGS_ENC_FADE 0.2         /**< seconds in which a segment is faded into the one before, unless given */
 #define ADCGS_ENC_LIVE_SEGMENT 2.0 /**< seconds of a segment of what is live, unless given */
 
 /** As on the command line. */
 typedef struct adcgs_enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
     const char *frames, *fps;
-    double lambda, psnr, time_limit, segment, key, delay;
+    double lambda, psnr, time_limit, segment, key, fade, delay;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, live, or_whole;
     int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
-    int has_delay;
+    int has_fade, has_delay;
     double started; /* adcgs_seconds() */
     double checkpoint_every;
     uint64_t seed, size, memory;

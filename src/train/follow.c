@@ -41,18 +41,21 @@ static void go_on_living(adcgs_fmodel *f, double from, double ratio)
             shift_life(f, i, from, ratio);
 }
 
-/** Time begins where it ended; with the second row bodies go on as they went. */
-static void start_time_table(adcgs_fmodel *f)
+/** Time begins at a moment, t, of what it was; with the second row bodies go on as they went. */
+static void start_time_table(adcgs_fmodel *f, double from)
 {
     const size_t width = f->params.time_width, columns = (size_t)adcgs_fmodel_time_columns(&f->params);
     const size_t rows = f->params.time_rows;
     float *z = f->param[ADCGS_P_TIME].p;
     if (rows < 2)
         return;
+    const double at = from * (double)(rows - 1);
+    const size_t row = ADCGS_MIN((size_t)at, rows - 2);
+    const float rest = (float)(at - (double)(row + 1)); /* 0 at the end */
     for (size_t i = 0; i < columns; i++) {
-        const float last = z[(rows - 1) * columns + i], step = i < width ? 0 : last - z[(rows - 2) * columns + i];
+        const float next = z[(row + 1) * columns + i], way = next - z[row * columns + i];
         for (size_t r = 0; r < rows; r++)
-            z[r * columns + i] = last + (float)ADCGS_MIN(r, 1) * step;
+            z[r * columns + i] = next + rest * way + (i < width ? 0 : (float)ADCGS_MIN(r, 1) * way);
     }
 }
 
@@ -78,11 +81,12 @@ static adcgs_status drop_dead(adcgs_fmodel *f, adcgs_error *error)
 adcgs_status adcgs_follow(adcgs_fmodel **out, const adcgs_model *before, const adcgs_train_config *config, adcgs_stereo *found,
                           double duration, adcgs_cpu_level cpu, adcgs_error *error)
 {
-    const double then = before->time_end - before->time_start, ratio = then > 0 && duration > 0 ? duration / then : 1;
+    const double end = before->time_end - before->time_start, then = end + before->reach;
+    const double from = then > 0 ? end / then : 1, ratio = then > 0 && duration > 0 ? duration / then : 1;
     ADCGS_TRY(adcgs_fmodel_from_model(out, before, &config->shape, config->seed, cpu, error));
-    go_on_living(*out, 1, ratio);
+    go_on_living(*out, from, ratio);
+    start_time_table(*out, from);
     ADCGS_TRY(adcgs_follow_bodies(*out, found, error));
-    start_time_table(*out);
     adcgs_set_poses(*out, found);
     return drop_dead(*out, error);
 }

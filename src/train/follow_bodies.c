@@ -23,12 +23,11 @@ static void measure(const adcgs_fmodel *f, int body, stand *s)
         s->half = fmax(s->half, 0.5 * (double)(high[a] - low[a] + 1) * (double)f->voxel);
 }
 
-/** How all bodies stand at the end of the model's time table. */
+/** How all bodies stand at the beginning of the model's time table. */
 static void take_stands(const adcgs_fmodel *f, stand stands[ADCGS_BODIES_MAX])
 {
-    const size_t columns = (size_t)adcgs_fmodel_time_columns(&f->params), rows = f->params.time_rows;
     adcgs_body_place place[ADCGS_BODIES_MAX];
-    adcgs_bodies_pose(f, f->param[ADCGS_P_TIME].p + (rows - 1) * columns, place);
+    adcgs_bodies_pose(f, f->param[ADCGS_P_TIME].p, place);
     for (int b = 0; b < f->params.bodies; b++) {
         stand *s = &stands[b];
         *s = (stand){ .half = NEAR };

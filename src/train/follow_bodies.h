@@ -11,7 +11,7 @@
 #include "stereo/stereo.h"
 
 /**
- * Give the bodies that were found the numbers of the model's, whose time table still ends as that of the segment before; poses
+ * Give the bodies that were found the numbers of the model's, whose time table begins where the segment before was left; poses
  * take the model's anchors from where they rest to where things are. A body that is new gets a number that is free, and goes
  * without if there is none. found->body[b - 1] is then of body b, with no poses if it was not found.
  */

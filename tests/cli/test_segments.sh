@@ -128,6 +128,33 @@ head -c 500 "$dir/first" >"$dir/base.1.adcgs"
 expect 4 "base.1.adcgs: stream: ends" $resume $short
 rm "$dir/base.1.adcgs"
 
+# Faded in: a segment goes on for as many moments as --fade allows, and a quarter of a segment has; a frame meanwhile is the same
+# from a file that is read where it has to be, from a pipe, and from one that is read whole.
+./adcgs-demo-scene --scene turn1 --format ppm -o "$dir/turn" >"$dir/out" 2>&1 || bad "adcgs-demo-scene"
+# fade NAME OPTIONS...: encode that to NAME.adcgs.
+fade()
+{
+    name=$1
+    shift
+    ./adcgs-enc "$dir/turn" -o "$dir/$name.adcgs" --preset draft --max-anchors 200 --iterations 60 --scale 4 --segment 0.4 "$@" \
+        >"$dir/out" 2>&1 || { bad "exit code $?: adcgs-enc $*"; cat "$dir/out"; }
+}
+reach() { ./adcgs-info "$dir/$1.adcgs" | sed -n 's/^  goes on for \(.*\) s, in which the next is faded in$/\1/p' | xargs; }
+fade faded --fade 0.07
+[ "$(reach faded)" = 0.0666667 ] || bad "reaches $(reach faded)"
+./adcgs-info --json "$dir/faded.adcgs" >"$dir/out"
+[ "$(grep -c '"reach": 0.0[67]' "$dir/out")" -eq 1 ] && [ "$(grep -c '"reach": 0,' "$dir/out")" -eq 1 ] || { bad "JSON"; cat "$dir/out"; }
+fade meets --fade 0
+[ "$(reach meets)" = "" ] || bad "reaches $(reach meets)"
+at=$(./adcgs-info --json "$dir/faded.adcgs" | sed -n 's/.*"time_start": \(0.[0-9]*\),/\1/p' | tail -n 1)
+for t in "$at" 0.42 0.45; do
+    ./adcgs-dec "$dir/faded.adcgs" --camera 0 -t "$t" --md5 >"$dir/sought" || bad "time $t"
+    ./adcgs-dec - --camera 0 -t "$t" --md5 <"$dir/faded.adcgs" >"$dir/piped" || bad "time $t from a pipe"
+    ./adcgs-dec "$dir/faded.adcgs" --conceal --camera 0 -t "$t" --md5 >"$dir/whole" || bad "time $t, read whole"
+    [ -s "$dir/sought" ] && cmp "$dir/sought" "$dir/piped" && cmp "$dir/sought" "$dir/whole" || bad "other frames at $t"
+done
+expect 2 "give --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --fade 1
+
 # Where nothing is seen to move there are no networks of motion, and the time table, which all segments have, is of zeros.
 enc rest --segment 0.1 --set still_below=1000000
 ./adcgs-info "$dir/rest.adcgs" >"$dir/out"

@@ -94,6 +94,30 @@ static uint32_t settled(const adcgs_fmodel *f)
     return n;
 }
 
+/** Of a segment that goes on behind its end the next begins at the end. */
+static void time_begins_where_the_next_does(void **state)
+{
+    const adcgs_train_config config = follow_config();
+    adcgs_model before;
+    adcgs_fmodel *f;
+    (void)state;
+    learn(&before, NULL);
+    before.time_end = before.reach = scene->duration / 2; /* the middle of its time is its end */
+    assert_int_equal(adcgs_fmodel_from_model(&f, &before, &config.shape, 7, adcgs_cpu_best(), &error), ADCGS_OK);
+    adcgs_trainer *t = make(&config, &before, pool);
+    const size_t rows = f->params.time_rows, columns = (size_t)adcgs_fmodel_time_columns(&f->params), below = (rows - 1) / 2;
+    const float *was = f->param[ADCGS_P_TIME].p, *is = t->f->param[ADCGS_P_TIME].p;
+    assert_true(rows > 2);
+    for (size_t i = 0; i < f->params.time_width; i++) {
+        const float middle = (was[below * columns + i] + was[(rows - 1 - below) * columns + i]) / 2;
+        for (size_t r = 0; r < rows; r++)
+            assert_float_equal(is[r * columns + i], middle, 1e-5);
+    }
+    adcgs_trainer_free(&t);
+    adcgs_fmodel_free(&f);
+    adcgs_model_clear(&before, NULL);
+}
+
 /** The model before can be followed, at least what is settled is kept of it, and stays to the bit. */
 static void what_is_settled_is_kept(void **state)
 {
@@ -239,7 +263,7 @@ static void bodies_are_found_again(void **state)
     adcgs_bodies_recentre(f);
     for (int b = 0; b < 2; b++) {
         const adcgs_stereo_pose left = truth(b, 1);
-        adcgs_bodies_set_pose(f, b ? 1 : 3, 1, left.q, zero, left.way);
+        adcgs_bodies_set_pose(f, b ? 1 : 3, 0, left.q, zero, left.way);
     }
 
     adcgs_stereo found = { .n_moments = SEEN, .n_bodies = FOUND, .n_moving = FOUND };
@@ -300,6 +324,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(float_models_come_back),
+        cmocka_unit_test(time_begins_where_the_next_does),
         cmocka_unit_test(what_is_settled_is_kept),
         cmocka_unit_test(stopping_changes_nothing),
         cmocka_unit_test(what_has_changed_learns),

@@ -28,10 +28,32 @@ static int set_up(void **state)
     return 0;
 }
 
+/** How far the first part reaches, and the one before the last; the last never does. */
+static void expect_reach(double seconds, double fade, double first, double late)
+{
+    adcgs_cuts cuts = { .n = 0 };
+    assert_int_equal(adcgs_cuts_find(&cuts, &scene, seconds, fade, &error), ADCGS_OK);
+    assert_float_equal(cuts.reach[0], first, 1e-12);
+    assert_float_equal(cuts.reach[cuts.n - 2], late, 1e-12);
+    assert_true(cuts.reach[cuts.n - 1] == 0);
+    adcgs_cuts_clear(&cuts);
+}
+
+static void parts_reach_to_moments(void **state)
+{
+    (void)state;
+    expect_reach(0.5, 0, 0, 0);
+    expect_reach(0.5, 0.09, 0, 0);
+    expect_reach(0.5, 0.1, 0.1, 0.1);
+    expect_reach(0.5, 1e6, 0.1, 0.1); /* a quarter is 0.125 */
+    expect_reach(0.4, 0.1, 0.1, 0);   /* a quarter of 0.4, and of 0.2 */
+    expect_reach(0.1, 0.1, 0, 0);
+}
+
 static void expect_cuts(double seconds, const double *at, uint32_t n, uint32_t moments)
 {
     adcgs_cuts cuts = { .n = 0 };
-    assert_int_equal(adcgs_cuts_find(&cuts, &scene, seconds, &error), ADCGS_OK);
+    assert_int_equal(adcgs_cuts_find(&cuts, &scene, seconds, 0, &error), ADCGS_OK);
     assert_int_equal(cuts.n, n);
     assert_int_equal(cuts.moments, moments);
     for (uint32_t i = 0; i <= n; i++)
@@ -52,18 +74,18 @@ static void cuts_lie_at_moments(void **state)
     expect_cuts(1e6, (const double[]){ 0, 1 }, 1, MOMENTS);
 }
 
-/** Each view is in one part, or in both that meet at its moment, with times from the part's beginning; no others are. */
+/** Each view is in one part, or in both where one reaches into the other, with times from the part's beginning; no others are. */
 static void parts_share_what_is_at_cuts(void **state)
 {
     (void)state;
     adcgs_cuts cuts = { .n = 0 };
     int seen[VIEWS] = { 0 };
-    assert_int_equal(adcgs_cuts_find(&cuts, &scene, 0.33, &error), ADCGS_OK);
+    assert_int_equal(adcgs_cuts_find(&cuts, &scene, 0.42, 0.1, &error), ADCGS_OK);
     for (uint32_t i = 0; i < cuts.n; i++) {
         adcgs_scene part;
         assert_int_equal(adcgs_scene_part(&part, &scene, &cuts, i, &error), ADCGS_OK);
         assert_ptr_equal(part.whole, &scene);
-        assert_float_equal(part.duration, cuts.at[i + 1] - cuts.at[i], 1e-12);
+        assert_float_equal(part.duration, cuts.at[i + 1] + cuts.reach[i] - cuts.at[i], 1e-12);
         assert_int_equal(part.n_views[ADCGS_SPLIT_TRAIN], CAMERAS * part.n_times);
         assert_int_equal(part.n_views[ADCGS_SPLIT_TEST], 0);
         for (uint32_t v = 0; v < part.n_views[ADCGS_SPLIT_TRAIN]; v++) {
@@ -75,7 +97,7 @@ static void parts_share_what_is_at_cuts(void **state)
         adcgs_scene_part_clear(&part);
     }
     for (int i = 0; i < VIEWS; i++)
-        assert_int_equal(seen[i], i * 7 % MOMENTS == 3 || i * 7 % MOMENTS == 7 ? 2 : 1);
+        assert_int_equal(seen[i], i * 7 % MOMENTS == 4 || i * 7 % MOMENTS == 5 ? 2 : 1);
     adcgs_cuts_clear(&cuts);
 }
 
@@ -85,7 +107,7 @@ static void one_moment_is_not_cut(void **state)
     adcgs_scene still = scene;
     adcgs_cuts cuts = { .n = 0 };
     still.n_views[ADCGS_SPLIT_TRAIN] = 1;
-    assert_int_equal(adcgs_cuts_find(&cuts, &still, 0.5, &error), ADCGS_ERR_DATA);
+    assert_int_equal(adcgs_cuts_find(&cuts, &still, 0.5, 0.1, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "one moment only"));
     adcgs_cuts_clear(&cuts);
 }
@@ -95,6 +117,7 @@ int main(void)
     const struct CMUnitTest list[] = {
         cmocka_unit_test(cuts_lie_at_moments),
         cmocka_unit_test(parts_share_what_is_at_cuts),
+        cmocka_unit_test(parts_reach_to_moments),
         cmocka_unit_test(one_moment_is_not_cut),
     };
     return cmocka_run_group_tests(list, set_up, NULL);
