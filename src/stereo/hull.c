@@ -94,7 +94,10 @@ static adcgs_status hull_init(hull *o, const adcgs_stereo_view *views, const uin
 
 /* ---- Cubes ---- */
 
-/** Of a cube, half of whose edge is given. *pixel: edge of one that would be a pixel in who sees it nearest; 0: none has it in its picture. */
+/**
+ * Of a cube, half of whose edge is given. *pixel: edge of one that would be a pixel in who sees it nearest, 0 if none has it in
+ * its picture.
+ */
 static content ask(const hull *o, const double x[3], double half, double *pixel)
 {
     int seen = 0, mixed = 0;
