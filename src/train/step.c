@@ -61,7 +61,7 @@ static void follow_means(adcgs_trainer *t)
 }
 
 /** What is settled has no gradient, and without one stays what it is. */
-static void spare_settled(adcgs_fmodel *f, int group)
+static void hold_settled(adcgs_fmodel *f, int group)
 {
     const size_t rows = (size_t)adcgs_fmodel_rows(f, group);
     float *g = f->param[group].g;
@@ -98,7 +98,7 @@ static void update(adcgs_trainer *t, double progress)
         if (t->f->mlp[i].n && price > 0)
             adcgs_weight_rate(t->f, i, price);
         if (t->f->follows && !is_network(i))
-            spare_settled(t->f, i);
+            hold_settled(t->f, i);
         if (!begins(p, i))
             continue;
         const float lr = t->lr_scale * adcgs_train_rate(&t->config, p->lr0, p->lr1, progress), n = (float)++p->steps;
