@@ -11,8 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Views that are matched at a moment; pixels that move; about them; of so many of these a point has to be matched. */
-enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4, SPARSE = 16 };
+enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4 }; /* views that are matched at a moment; pixels that move; about them */
 #define AXES_ALIKE 0.6  /* cosine between axes of views that are matched */
 #define APART 0.005     /* scene units between views that tell depths */
 #define MOVED 18        /* levels of 255 off what a pixel usually shows */
@@ -225,17 +224,16 @@ static void mark_in_place(adcgs_stereo_list *list, const adcgs_stereo_maps *maps
     }
 }
 
-/** Of all views. */
-static size_t pixels_that_move(const moment *o)
+/** Whether no view has another near enough to be matched with. */
+static int all_stand_apart(const moment *o)
 {
-    size_t n = 0;
-    for (int i = 0; i < o->n; i++)
-        for (int k = 0; k < o->view[i].w * o->view[i].h; k++)
-            n += o->moves[i][k];
-    return n;
+    adcgs_sweep s = { .n_sources = 0 };
+    for (int i = 0; i < o->n && !s.n_sources; i++)
+        choose_sources(&s, o->view, o->n, i);
+    return !s.n_sources;
 }
 
-/** Where cameras are too far apart for matching, or what moves too plain, silhouettes say where it is. */
+/** By matching; where cameras stand too far apart for it, by silhouettes. */
 static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_stereo_maps *maps, int m,
                                 uint32_t most, adcgs_pool *pool, adcgs_error *error)
 {
@@ -251,7 +249,7 @@ static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig 
         status = match_all(&job, pool, error);
     if (status == ADCGS_OK)
         status = adcgs_fuse(&found, o->depths, o->n, (const uint8_t *const *)o->moves, &like, error);
-    if (status == ADCGS_OK && SPARSE * found.n < pixels_that_move(o))
+    if (status == ADCGS_OK && all_stand_apart(o))
         status = adcgs_hull_find(&found, o->view, (const uint8_t *const *)o->moves, o->n, &like, error);
     mark_in_place(&found, maps);
     if (status == ADCGS_OK)

@@ -13,11 +13,10 @@
 enum { STEP_EVERY = 10, SAMPLE_VIEWS = 24, LAMBDA_REACH = 100 };
 #define MEASURE_EVERY 0.03 /* of the run */
 /**
- * Bytes to aim at while values are only rounded. What is too much is taken by the choice of levels when values freeze, what is
- * too little cannot be mended. But much is dear: at small sizes a twentieth of the bytes takes twice the loss that lambda would,
- * a tenth four times. PSNR to aim at: so that there is something to choose from.
+ * Bytes to aim at while values are only rounded: the choice of levels takes the rest, at less loss than lambda would.
+ * PSNR to aim at: so that there is something to choose from.
  */
-#define SIZE_LEAD 1.02
+#define SIZE_LEAD 1.06
 #define PSNR_LEAD 0.1
 /** Of the networks' bytes, what their final lattices will take less than those from the weights' sizes, about. */
 #define LATTICE_SAVES 0.2
@@ -26,9 +25,8 @@ enum { STEP_EVERY = 10, SAMPLE_VIEWS = 24, LAMBDA_REACH = 100 };
 #define PRUNE_LEAST 0.8
 enum { PRUNE_AFTER = 50 };
 /**
- * Gains of the feedback, on the error's change, which at first is all of it, and on the error itself over the whole run, twice as
- * much once values are rounded and little time is left. Bytes go with about the -0.3rd power of lambda, and take a tenth of the
- * run to get there.
+ * Gains of the feedback, on the error's change, which at first is all of it, and on the error itself over the whole run. Bytes go
+ * with about the -0.3rd power of lambda, and take a tenth of the run to get there.
  */
 #define GAIN_CHANGE 3.0
 #define GAIN_ERROR 30.0
@@ -114,8 +112,7 @@ adcgs_status adcgs_rate_control_step(adcgs_trainer *t, double progress, adcgs_er
         ADCGS_TRY(measure(t, progress, error));
     }
     const double now = c->target == ADCGS_TARGET_SIZE ? size_error(t, progress) : psnr_error(t, progress);
-    const double gain = t->rounding ? 2 * GAIN_ERROR : GAIN_ERROR;
-    t->lambda *= exp(GAIN_CHANGE * (now - s->error) + (s->at > 0 ? gain * now * (progress - s->at) : 0));
+    t->lambda *= exp(GAIN_CHANGE * (now - s->error) + (s->at > 0 ? GAIN_ERROR * now * (progress - s->at) : 0));
     t->lambda = fmin(fmax(t->lambda, (double)c->lambda / LAMBDA_REACH), (double)c->lambda * LAMBDA_REACH);
     s->error = now;
     s->at = progress;

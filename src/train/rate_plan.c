@@ -4,11 +4,8 @@
 
 #include <math.h>
 
-/**
- * Bytes of headers, cameras and notes, at most about; a plausible share of networks; anchors as the coder leaves them where bits
- * are many, and where they are few: many anchors of few bits each are better than few of many.
- */
-enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, ANCHOR_BITS_FEW = 50, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
+/** Bytes of headers, cameras and notes, at most about; a plausible share of networks; anchors as the coder leaves them. */
+enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
 #define NETWORKS_SHARE 0.25
 #define LAMBDA_FIRST 0.02f /* from where a target steers it */
 #define ANCHORS_GROWTH 4 /* a large size may raise a preset's budget so many times */
@@ -63,14 +60,14 @@ adcgs_status adcgs_rate_plan(adcgs_train_config *c, adcgs_error *error)
         c->lambda = LAMBDA_FIRST;
     if (c->target != ADCGS_TARGET_SIZE)
         return ADCGS_OK;
+    c->keep_opacity = 0; /* the bytes are to be spent: on what is faint rather than not at all */
     ADCGS_TRY(plan_networks(c, &networks, error));
-    const double bits = 8 * (c->target_value - networks - OTHER_BYTES);
-    if (bits < ANCHORS_LEAST * ANCHOR_BITS)
+    const double anchors = floor((c->target_value - networks - OTHER_BYTES) * 8 / ANCHOR_BITS);
+    if (anchors < ANCHORS_LEAST)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f bytes are too few: networks, cameras and headers alone take about %.0f",
                           c->target_value, networks + OTHER_BYTES);
-    const double usual = c->max_anchors, more = fmin(bits / ANCHOR_BITS, usual * ANCHORS_GROWTH);
     if (!c->own_anchors)
-        c->max_anchors = (uint32_t)fmin(fmin(bits / ANCHOR_BITS_FEW, fmax(usual, more)), ADCGS_ANCHORS_MAX);
+        c->max_anchors = (uint32_t)fmin(anchors, fmin((double)c->max_anchors * ANCHORS_GROWTH, ADCGS_ANCHORS_MAX));
     c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
     return ADCGS_OK;
 }
