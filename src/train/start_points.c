@@ -266,7 +266,7 @@ static void matched_points(adcgs_start_points *c, const adcgs_stereo *found, uin
     const float middle = middle_moment(found);
     if (spans)
         add_all_that_moves(c, found, half, moving);
-    for (uint32_t i = 0; !spans && i < found->n_moving; i++)
+    for (uint32_t i = 0; !spans && i < found->n_moving && c->n < most; i++)
         if (found->moving[i].t >= middle && found->moving[i].t <= middle && !found->moving[i].in_place)
             add_matched(c, found, &found->moving[i]);
     const uint32_t left = wanted - ADCGS_MIN(c->n - begin, wanted), n = ADCGS_MIN(left, found->n_still);

@@ -9,6 +9,7 @@
 #include "train/anchor_set.h"
 #include "train/moment_densify.h"
 #include "train/settings.h"
+#include "train/start_points.h"
 #include "train/trainer.h"
 #include "train/views.h"
 
@@ -199,10 +200,31 @@ static void runs_go_on_and_decode(void **state)
     adcgs_trainer_free(&after);
 }
 
+/** Without spans those of the moment in the middle begin, but no more than anchors may: there may be many of them. */
+static void one_moment_does_not_overflow(void **state)
+{
+    enum { MANY = 1000 };
+    adcgs_train_config config = small_config();
+    adcgs_stereo_point *points = calloc(MANY, sizeof *points);
+    float moment[] = { 0, 0.5f, 1 };
+    adcgs_start_points start;
+    assert_non_null(points);
+    for (int i = 0; i < MANY; i++)
+        points[i] = (adcgs_stereo_point){ .x = { 0.001 * i, 0, SQUARE }, .t = 0.5f, .size = 0.01f, .moves = 1 };
+    const adcgs_stereo many = { .n_moving = MANY, .moving = points, .n_moments = 3, .moment = moment };
+    config.params.spans = 0;
+    if (adcgs_start_points_find(&start, &scene, &config, &many, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(start.n, config.start_anchors);
+    adcgs_start_points_clear(&start);
+    free(points);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lives_begin_at_their_moments), cmocka_unit_test(what_keeps_its_form_is_a_body),
+        cmocka_unit_test(one_moment_does_not_overflow), cmocka_unit_test(lives_begin_at_their_moments),
+        cmocka_unit_test(what_keeps_its_form_is_a_body),
         cmocka_unit_test(spans_need_what_moves),
         cmocka_unit_test(what_is_missing_is_found),     cmocka_unit_test(absence_is_no_idleness),
         cmocka_unit_test(runs_go_on_and_decode),
