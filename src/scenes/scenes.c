@@ -81,6 +81,22 @@ static void place(adcgs_trace_camera *camera, const adcgs_scenes_entry *scene, d
 }
 
 /*
+ * A camera in a hand: to and fro on an arc of 50 degrees, and up and down. Views for validation and testing
+ * are from a hand's breadth or two beside it, as if by a second lens; those for testing between its moments.
+ */
+static view filmed_at(const adcgs_scenes_entry *scene, int split, int i, int width)
+{
+    static const double shift[ADCGS_SPLITS] = {0.0, 0.0, 0.5}, beside[ADCGS_SPLITS] = {0.0, -0.008, 0.010};
+    const int steps = scene->times - 1, count = split_size(scene, split);
+    const int moment = split == ADCGS_SPLIT_TRAIN ? i : (int)((double)i / count * steps);
+    view v = {.time = (moment + shift[split]) / steps};
+    const double phase = scene->swings * v.time;
+    place(&v.camera, scene, 0.07 * adcgs_trace_sin(phase) + beside[split], 0.085 + 0.025 * adcgs_trace_sin(2.3 * phase + 0.1),
+          width);
+    return v;
+}
+
+/*
  * Training cameras stand on an arc of 140 degrees at three heights and take
  * turns: each moment is seen by some of them. The others stand between them, and the test looks between the times too.
  */
@@ -90,6 +106,8 @@ static view view_at(const adcgs_scenes_entry *scene, int split, int i, int width
     static const double shift[ADCGS_SPLITS] = {0.0, 0.3, 0.5};
     const int steps = scene->times - 1, count = split_size(scene, split);
     view v;
+    if (scene->swings > 0.0)
+        return filmed_at(scene, split, i, width);
     if (split == ADCGS_SPLIT_TRAIN) {
         const int each = scene->cameras / scene->turns, moment = i / each;
         const int c = i % each * scene->turns + moment % scene->turns;

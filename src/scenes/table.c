@@ -108,6 +108,12 @@ static const adcgs_trace_object split[] = {STILL, HALF(-1.0, 44), HALF(1.0, 45)}
     .moving = ((1u << (movers)) - 1u) << (ADCGS_COUNTOF(things) - (movers)), .size = 160, .cameras = 12, .times = 24, \
     .turns = 3, .n_val = 5, .n_test = 11, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}
 
+/* The same, filmed by one camera in a hand: 90 moments, each seen once. */
+#define FILMED(things, movers)                                                                                  \
+    .objects = things, .n_objects = (int)ADCGS_COUNTOF(things),                                                 \
+    .moving = ((1u << (movers)) - 1u) << (ADCGS_COUNTOF(things) - (movers)), .size = 160, .cameras = 1, .times = 90,  \
+    .turns = 1, .swings = 1.5, .n_val = 9, .n_test = 22, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}
+
 #define STAGE                                                                                                         \
     .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage), .size = 256, .cameras = 12, .times = 40, .turns = 3, .n_val = 5, \
     .n_test = 10, .distance = 4.2, .target = {0.0, 0.0, 0.35}
@@ -131,6 +137,12 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "turn3", .about = "a box turns three times", MOVING(turn3, 1)},
     {.name = "appear", .about = "a box is there from half of the clip on", MOVING(appear, 1)},
     {.name = "split", .about = "a box comes apart, and its halves slide away from each other", MOVING(split, 2)},
+    {.name = "film-cross20", .about = "cross20 filmed by one camera, held in a hand", FILMED(cross20, 1)},
+    {.name = "film-cross80", .about = "cross80 filmed so", FILMED(cross80, 1)},
+    {.name = "film-turn1", .about = "turn1 filmed so", FILMED(turn1, 1)},
+    {.name = "film-demo", .about = "demo filmed so", .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage),
+     .moving = HOP | SPIN | PASS | FADE | ORBIT, .size = 256, .cameras = 1, .times = 120, .turns = 1, .swings = 2.0, .n_val = 9,
+     .n_test = 22, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},
     {.name = "clip", .about = "ten seconds: things move, one comes, one goes, a lamp is switched on",
      .objects = clip, .n_objects = (int)ADCGS_COUNTOF(clip), .moving = 0xf << (ADCGS_COUNTOF(clip) - 4), .size = 128,
      .cameras = 12, .times = 300, .turns = 3, .n_val = 5, .n_test = 29, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},

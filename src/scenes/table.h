@@ -15,6 +15,7 @@ typedef struct adcgs_scenes_entry {
     int size;                /**< width and height */
     int cameras, times;
     int turns; /**< each moment is seen by every turns-th camera, a different set from moment to moment; divides cameras */
+    double swings; /**< 0, or one camera alone, held in a hand, goes to and fro so many times */
     int n_val, n_test;
     double distance;         /**< of the cameras from the target */
     double target[3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Cameras, moments, small pictures, and what they show most of the time. */
+/** \file Cameras, moments, small pictures, and what they show most of the time; of a film, its pictures. */
 #include "stereo/rig.h"
 
 #include "data/by_camera.h"
@@ -20,6 +20,7 @@ typedef struct index {
     uint32_t n, n_cameras, n_times;
     uint32_t *of, *order;
     double *times; /* [n_times] ascending */
+    uint32_t *film; /* [n] the views in the order of time, if they are of one camera that goes; NULL: they are not */
 } index;
 
 static void index_clear(index *x)
@@ -27,6 +28,55 @@ static void index_clear(index *x)
     adcgs_free(NULL, x->of);
     adcgs_free(NULL, x->order);
     adcgs_free(NULL, x->times);
+    adcgs_free(NULL, x->film);
+}
+
+/* ---- A film: one camera, that goes ---- */
+
+enum { FILM_LEAST = 8, ALIKE_OF_4 = 3 }; /* pictures; of four, those that look the way that the one before does */
+#define ALIKE 0.966 /* cosine between their axes */
+
+typedef struct timed {
+    double time;
+    uint32_t view;
+} timed;
+
+static int earlier(const void *a, const void *b)
+{
+    const timed *x = a, *y = b;
+    return x->time != y->time ? (x->time > y->time) - (x->time < y->time) : (x->view > y->view) - (x->view < y->view);
+}
+
+/** Whether most views look the way that the one before does. */
+static int goes_on(const index *x, const timed *all)
+{
+    uint32_t alike = 0;
+    for (uint32_t i = 1; i < x->n; i++) {
+        const double *a = x->views[all[i - 1].view].camera.cam_to_world, *b = x->views[all[i].view].camera.cam_to_world;
+        alike += a[2] * b[2] + a[6] * b[6] + a[10] * b[10] >= ALIKE;
+    }
+    return 4 * alike >= ALIKE_OF_4 * (x->n - 1);
+}
+
+static adcgs_status find_film(index *x, adcgs_error *error)
+{
+    if (x->n < FILM_LEAST || x->n_cameras <= x->n / 2 || x->n_times < x->n)
+        return ADCGS_OK;
+    timed *all = adcgs_alloc(NULL, x->n, sizeof *all, error);
+    if (!all)
+        return adcgs_alloc_status(error);
+    for (uint32_t i = 0; i < x->n; i++)
+        all[i] = (timed){ x->views[i].time, i };
+    qsort(all, x->n, sizeof *all, earlier);
+    adcgs_status status = ADCGS_OK;
+    if (goes_on(x, all)) {
+        x->film = adcgs_alloc(NULL, x->n, sizeof *x->film, error);
+        status = x->film ? ADCGS_OK : adcgs_alloc_status(error);
+    }
+    for (uint32_t i = 0; x->film && i < x->n; i++)
+        x->film[i] = all[i].view;
+    adcgs_free(NULL, all);
+    return status;
 }
 
 static adcgs_status index_init(index *x, const adcgs_scene *scene, adcgs_error *error)
@@ -44,7 +94,7 @@ static adcgs_status index_init(index *x, const adcgs_scene *scene, adcgs_error *
     for (uint32_t i = 0; i < x->n; i++)
         if (!i || x->times[i] > x->times[x->n_times - 1])
             x->times[x->n_times++] = x->times[i];
-    return ADCGS_OK;
+    return find_film(x, error);
 }
 
 adcgs_status adcgs_stereo_applies(const adcgs_scene *scene, int *applies, adcgs_error *error)
@@ -53,7 +103,7 @@ adcgs_status adcgs_stereo_applies(const adcgs_scene *scene, int *applies, adcgs_
     const adcgs_status status = index_init(&x, scene, error);
     const int stay = x.n_times < 2 || x.n_cameras <= x.n / 2; /* those of a still scene have a picture each */
     const int large = x.n && (double)x.views[0].camera.width * x.views[0].camera.height >= PIXELS_LEAST;
-    *applies = status == ADCGS_OK && x.n_cameras >= 3 && stay && large && x.n >= 2 * x.n_times;
+    *applies = status == ADCGS_OK && large && (x.film || (x.n_cameras >= 3 && stay && x.n >= 2 * x.n_times));
     index_clear(&x);
     return status;
 }
@@ -242,15 +292,37 @@ static adcgs_status load_cameras(adcgs_stereo_rig *rig, const adcgs_scene *scene
     return ADCGS_OK;
 }
 
+static uint32_t moments_of(const adcgs_stereo_options *o)
+{
+    return o->moments ? o->moments : ADCGS_STEREO_MOMENTS;
+}
+
+/** Pictures of a film, evenly spread, as if all were taken at once by cameras that stay. */
+static adcgs_status load_film(adcgs_stereo_rig *rig, const adcgs_scene *scene, const index *x, const adcgs_stereo_options *o,
+                              adcgs_error *error)
+{
+    rig->n_cameras = rig->n_moments = (int)ADCGS_MIN(ADCGS_MIN(x->n, ADCGS_STEREO_CAMERAS), ADCGS_MAX(moments_of(o), FILM_LEAST));
+    rig->film = 1;
+    for (int c = 0; c < rig->n_cameras; c++) {
+        const uint32_t view = x->film[(uint64_t)c * (x->n - 1) / (uint64_t)(rig->n_cameras - 1)];
+        rig->moment[c] = moment_of(scene, x->views[view].time);
+        ADCGS_TRY(load(scene, &x->views[view], o, &rig->camera[c], c, error));
+        ADCGS_TRY(find_usual(&rig->camera[c], error));
+    }
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *options,
                                    adcgs_error *error)
 {
     index x;
     adcgs_status status = index_init(&x, scene, error);
     set_depths(rig, scene, options);
-    if (status == ADCGS_OK) {
+    if (status == ADCGS_OK && x.film) {
+        status = load_film(rig, scene, &x, options, error);
+    } else if (status == ADCGS_OK) {
         rig->n_cameras = (int)ADCGS_MIN(x.n_cameras, ADCGS_STEREO_CAMERAS);
-        rig->n_moments = (int)ADCGS_MIN(x.n_times, options->moments ? options->moments : ADCGS_STEREO_MOMENTS);
+        rig->n_moments = (int)ADCGS_MIN(x.n_times, moments_of(options));
         for (int m = 0; m < rig->n_moments; m++) {
             const uint64_t last = (uint64_t)ADCGS_MAX(rig->n_moments - 1, 1);
             rig->moment[m] = moment_of(scene, x.times[(uint64_t)m * (x.n_times - 1) / last]);

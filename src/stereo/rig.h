@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The cameras of a scene that stay where they are, and their pictures at a few moments, small, in scene units: what is matched.
+ * The cameras of a scene that stay where they are, or those of a film's pictures, and what they show at a few moments, small, in
+ * scene units: what is matched.
  */
 #ifndef ADCGS_STEREO_RIG_H
 #define ADCGS_STEREO_RIG_H
@@ -29,6 +30,7 @@ typedef struct adcgs_stereo_camera {
 /** Zero-initialise before use. */
 typedef struct adcgs_stereo_rig {
     int n_cameras, n_moments;
+    int film; /**< one camera that goes: camera m shows moment m alone */
     adcgs_stereo_camera camera[ADCGS_STEREO_CAMERAS];
     float moment[ADCGS_STEREO_MOMENTS]; /**< t, ascending */
     double nearest, farthest;        /**< depths that are looked at, scene units */

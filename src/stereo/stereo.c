@@ -3,6 +3,7 @@
 #include "stereo/stereo.h"
 
 #include "stereo/bodies.h"
+#include "stereo/film.h"
 #include "stereo/follow.h"
 #include "stereo/fuse.h"
 #include "stereo/hull.h"
@@ -234,11 +235,10 @@ static int all_stand_apart(const moment *o)
 }
 
 /** By matching; where cameras stand too far apart for it, by silhouettes. */
-static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_stereo_maps *maps, int m,
-                                uint32_t most, adcgs_pool *pool, adcgs_error *error)
+static adcgs_status match_moment(adcgs_stereo_list *found, const adcgs_stereo_rig *rig, int m, adcgs_pool *pool,
+                                 adcgs_error *error)
 {
     moment *o = adcgs_alloc(NULL, 1, sizeof *o, error);
-    adcgs_stereo_list found = { 0, 0, NULL };
     if (!o)
         return adcgs_alloc_status(error);
     adcgs_status status = take_moment(o, rig, m, error);
@@ -248,16 +248,25 @@ static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig 
     if (status == ADCGS_OK)
         status = match_all(&job, pool, error);
     if (status == ADCGS_OK)
-        status = adcgs_fuse(&found, o->depths, o->n, (const uint8_t *const *)o->moves, &like, error);
+        status = adcgs_fuse(found, o->depths, o->n, (const uint8_t *const *)o->moves, &like, error);
     if (status == ADCGS_OK && all_stand_apart(o))
-        status = adcgs_hull_find(&found, o->view, (const uint8_t *const *)o->moves, o->n, &like, error);
+        status = adcgs_hull_find(found, o->view, (const uint8_t *const *)o->moves, o->n, &like, error);
+    moment_free(o);
+    return status;
+}
+
+static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_stereo_maps *maps, int m,
+                                uint32_t most, adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_stereo_list found = { 0, 0, NULL };
+    adcgs_status status = rig->film ? adcgs_film_find_moving(&found, rig, maps->depths, m, error)
+                                    : match_moment(&found, rig, m, pool, error);
     mark_in_place(&found, maps);
     if (status == ADCGS_OK)
         status = adcgs_stereo_thin(&found, most, error);
     for (size_t i = 0; i < found.n && status == ADCGS_OK; i++)
         status = adcgs_stereo_list_add(list, &found.point[i], error);
     adcgs_stereo_list_clear(&found);
-    moment_free(o);
     return status;
 }
 
@@ -270,6 +279,8 @@ static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_s
     adcgs_status status = find_still(out, &still, rig, pool, error);
     if (status == ADCGS_OK)
         status = adcgs_stereo_thin(&still, options->still, error);
+    if (status == ADCGS_OK && rig->film)
+        status = adcgs_film_set_usual(rig, out->maps->depths, pool, error);
     for (int m = 0; m < rig->n_moments && rig->n_moments > 1 && status == ADCGS_OK && options->moving; m++)
         status = find_moving(&moving, rig, out->maps, m, options->moving, pool, error);
     if (status == ADCGS_OK)

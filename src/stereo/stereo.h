@@ -5,7 +5,9 @@
  * pattern that repeats finds the one depth at which all of them agree; what each camera finds is kept where others find the same.
  *
  * Cameras that stay where they are are matched once on what they show most of the time, which gives what is still, and moment by
- * moment where they show something else, which gives what moves, when, and how fast. Only views for training are looked at.
+ * moment where they show something else, which gives what moves, when, and how fast. The pictures of a film, of one camera that
+ * goes, are matched as if all were taken at once, which gives what is still, and that tells where something else is shown. Only
+ * views for training are looked at.
  * Deterministic for any number of threads.
  */
 #ifndef ADCGS_STEREO_STEREO_H
@@ -63,7 +65,10 @@ typedef struct adcgs_stereo {
     adcgs_stereo_maps *maps;
 } adcgs_stereo;
 
-/** Whether a scene allows it: at least three cameras that stay, in the mean two of them at a time, pictures that are not tiny. */
+/**
+ * Whether a scene allows it: at least three cameras that stay, in the mean two of them at a time, or a film, of one camera that
+ * goes; pictures that are not tiny.
+ */
 adcgs_status adcgs_stereo_applies(const adcgs_scene *scene, int *applies, adcgs_error *error);
 
 /** Both lists may be empty. */
