@@ -6,6 +6,8 @@
 #include <stdlib.h>
 
 enum { SEEN_LEAST = 4 }; /* other pictures that tell what is usual */
+enum { ALIKE_MOST = 128 }; /* velocities that a middle is taken of */
+#define ALIKE_REACH 0.15     /* scene units to them */
 enum { OFF_LEAST = 9, PART_LEAST = 24 }; /* pixels of five by five, and of a thing that moves */
 #define MOVED (22 / 255.0f)  /* that a pixel is off all that is usual about it */
 #define HIDDEN 1.08          /* of the depth there: what is farther is hidden */
@@ -54,6 +56,11 @@ typedef struct showing {
     adcgs_status status[ADCGS_STEREO_CAMERAS];
     adcgs_error error[ADCGS_STEREO_CAMERAS];
 } showing;
+
+static double distance2(const double a[3], const double b[3])
+{
+    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
 
 static int by_value(const void *a, const void *b)
 {
@@ -254,4 +261,54 @@ adcgs_status adcgs_film_find_moving(adcgs_stereo_list *list, const adcgs_stereo_
     adcgs_free(NULL, part);
     adcgs_free(NULL, stack);
     return status;
+}
+
+/* ---- How fast ---- */
+
+/** Points of moments m - 1 to m + 1 are points[*first .. *end - 1]; *first: where those of the moment before begin. */
+static void beside(const adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, int m, uint32_t *first,
+                   uint32_t *end)
+{
+    const float from = rig->moment[ADCGS_MAX(m - 1, 0)], to = rig->moment[ADCGS_MIN(m + 1, rig->n_moments - 1)];
+    while (*first < n && points[*first].t < from)
+        ++*first;
+    for (*end = *first; *end < n && points[*end].t <= to; ++*end)
+        ;
+}
+
+/** The middle of the velocities about a place, axis by axis. */
+static void middle_about(const adcgs_stereo_point *points, uint32_t n, const double x[3], float velocity[3])
+{
+    float values[3][ALIKE_MOST];
+    uint32_t about = 0, taken = 0, stride;
+    for (uint32_t i = 0; i < n; i++)
+        about += distance2(points[i].x, x) < ALIKE_REACH * ALIKE_REACH;
+    stride = about / ALIKE_MOST + 1;
+    for (uint32_t i = 0, k = 0; i < n; i++)
+        if (distance2(points[i].x, x) < ALIKE_REACH * ALIKE_REACH && k++ % stride == 0) {
+            for (int a = 0; a < 3; a++)
+                values[a][taken] = points[i].velocity[a];
+            taken++;
+        }
+    for (int a = 0; a < 3; a++) {
+        qsort(values[a], taken, sizeof(float), by_value);
+        velocity[a] = values[a][taken / 2];
+    }
+}
+
+adcgs_status adcgs_film_even_velocities(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, adcgs_error *error)
+{
+    float(*even)[3] = adcgs_alloc(NULL, (size_t)n + 1, sizeof *even, error);
+    uint32_t first = 0, end = 0, i = 0;
+    if (!even)
+        return adcgs_alloc_status(error);
+    for (int m = 0; m < rig->n_moments; m++) {
+        beside(points, n, rig, m, &first, &end);
+        for (; i < n && points[i].t <= rig->moment[m]; i++)
+            middle_about(points + first, end - first, points[i].x, even[i]);
+    }
+    for (i = 0; i < n; i++)
+        memcpy(points[i].velocity, even[i], sizeof even[i]);
+    adcgs_free(NULL, even);
+    return ADCGS_OK;
 }

@@ -17,4 +17,10 @@ adcgs_status adcgs_film_set_usual(adcgs_stereo_rig *rig, const adcgs_depths *dep
 adcgs_status adcgs_film_find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig *rig, const adcgs_depths *depths, int m,
                                     adcgs_error *error);
 
+/**
+ * Give each of the moving points, ascending in t, the middle of the velocities about it, at its moment and those beside: what one
+ * point is laid onto is off by a pixel or so, which over a life is much.
+ */
+adcgs_status adcgs_film_even_velocities(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig, adcgs_error *error);
+
 #endif

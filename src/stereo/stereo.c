@@ -285,6 +285,8 @@ static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_s
         status = find_moving(&moving, rig, out->maps, m, options->moving, pool, error);
     if (status == ADCGS_OK)
         status = adcgs_stereo_follow(moving.point, (uint32_t)moving.n, error);
+    if (status == ADCGS_OK && rig->film)
+        status = adcgs_film_even_velocities(moving.point, (uint32_t)moving.n, rig, error);
     out->still = still.point;
     out->n_still = (uint32_t)still.n;
     out->moving = moving.point;
@@ -304,6 +306,7 @@ adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, cons
     }
     if (status == ADCGS_OK) {
         out->n_moments = (uint32_t)rig->n_moments;
+        out->film = rig->film;
         memcpy(out->moment, rig->moment, out->n_moments * sizeof *out->moment);
         status = find(out, rig, options, pool, error);
     }

@@ -58,6 +58,7 @@ typedef struct adcgs_stereo {
     uint32_t n_still, n_moving;
     adcgs_stereo_point *still;
     adcgs_stereo_point *moving; /**< ascending in t */
+    int film;                   /**< one camera that goes: each moment is seen from one place */
     uint32_t n_moments;
     float *moment;              /**< [n_moments] those that were matched, ascending in t */
     uint32_t n_bodies;          /**< at most ADCGS_BODIES_MAX, the largest first */

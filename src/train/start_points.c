@@ -13,6 +13,7 @@
 #define MATCHED_SHARE 0.9  /* of the points; the rest are random points where matching found nothing */
 #define MOVING_SHARE 0.25  /* of these; many more are too small to find motion */
 #define SPACING_LEAST (1 / 15.0f) /* of moments: in a long clip lives are shares of it, or there would be too many */
+#define FILM_LIVES 2.7f    /* times as long where each moment is seen from one place alone: more views show an anchor */
 #define MOVING_MOST 2000   /* of a moment, that spans may grow from */
 
 /* ---- What the cameras see ---- */
@@ -317,7 +318,7 @@ adcgs_status adcgs_start_points_find(adcgs_start_points *c, const adcgs_scene *s
 
 float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *found)
 {
-    return config->span_moments * fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
+    return (found->film ? FILM_LIVES : 1) * config->span_moments * fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
 }
 
 adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
