@@ -2,6 +2,7 @@
 /** \file Where anchors begin. */
 #include "train/start_points.h"
 
+#include "data/sort.h"
 #include "grad/random.h"
 #include "stereo/pose.h"
 #include "train/scene_frame.h"
@@ -14,6 +15,7 @@
 #define MOVING_SHARE 0.25  /* of these; many more are too small to find motion */
 #define SPACING_LEAST (1 / 15.0f) /* of moments: in a long clip lives are shares of it, or there would be too many */
 #define FILM_LIVES 2.7f    /* times as long where each moment is seen from one place alone: more views show an anchor */
+#define FILM_FAR 0.4       /* within a clip, of the distance of cameras: what goes less far is found without lives */
 #define MOVING_MOST 2000   /* of a moment, that spans may grow from */
 
 /* ---- What the cameras see ---- */
@@ -321,10 +323,28 @@ float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *foun
     return (found->film ? FILM_LIVES : 1) * config->span_moments * fmaxf(adcgs_stereo_spacing(found), SPACING_LEAST);
 }
 
+/** Whether what moves before a camera goes far, in the middle of its points. */
+static adcgs_status goes_far(const adcgs_stereo *found, int *far, adcgs_error *error)
+{
+    double *speed = adcgs_alloc(NULL, (size_t)found->n_moving + 1, sizeof *speed, error);
+    uint32_t n = 0;
+    if (!speed)
+        return adcgs_alloc_status(error);
+    for (uint32_t i = 0; i < found->n_moving; i++) {
+        const float *v = found->moving[i].velocity;
+        if (!found->moving[i].in_place)
+            speed[n++] = sqrt((double)(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    }
+    adcgs_sort(speed, n);
+    *far = n && speed[n / 2] >= FILM_FAR;
+    adcgs_free(NULL, speed);
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
                                adcgs_error *error)
 {
-    int matched = 0, whole = 0;
+    int matched = 0, whole = 0, far = 1;
     const int given = has_points(scene);
     adcgs_stereo_options options = { .still = 0 };
     if (config->stereo && (!given || config->params.spans)) {
@@ -341,8 +361,10 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, ad
         ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));
         ADCGS_TRY(adcgs_stereo_find(found, scene, &options, pool, error));
     }
+    if (found->film && !found->n_bodies)
+        ADCGS_TRY(goes_far(found, &far, error));
     /* Segments of a stream have the same parameters, so those of a part cannot follow what is found in it. */
-    if (config->stereo && !(scene->whole ? whole : (int)found->n_moving))
+    if (config->stereo && !(scene->whole ? whole : far && found->n_moving))
         config->params.spans = 0;
     if (!scene->whole || !config->params.spans || !whole)
         config->params.bodies = (uint8_t)found->n_bodies;
