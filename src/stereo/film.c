@@ -2,8 +2,9 @@
 /** \file What moves before a camera that moves, too. */
 #include "stereo/film.h"
 
+#include "data/sort.h"
+
 #include <math.h>
-#include <stdlib.h>
 
 enum { SEEN_LEAST = 4 }; /* other pictures that tell what is usual */
 enum { ALIKE_MOST = 128 }; /* velocities that a middle is taken of */
@@ -62,16 +63,10 @@ static double distance2(const double a[3], const double b[3])
     return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /** What others show of a place, the median; 0 if too few see it. */
 static int usual_at(const showing *s, int own, const double x[3], float rgb[3])
 {
-    float values[3][ADCGS_STEREO_CAMERAS];
+    double values[3][ADCGS_STEREO_CAMERAS];
     int n = 0;
     for (int i = 0; i < s->rig->n_cameras; i++) {
         const adcgs_depths *d = &s->depths[i];
@@ -85,12 +80,12 @@ static int usual_at(const showing *s, int own, const double x[3], float rgb[3])
         if (!c->shown[i][4 * p + 3])
             continue;
         for (int k = 0; k < 3; k++)
-            values[k][n] = c->shown[i][4 * p + k] * (1.0f / 255);
+            values[k][n] = (double)(c->shown[i][4 * p + k] * (1.0f / 255));
         n++;
     }
     for (int k = 0; k < 3 && n >= SEEN_LEAST; k++) {
-        qsort(values[k], (size_t)n, sizeof(float), by_value);
-        rgb[k] = values[k][n / 2];
+        adcgs_sort(values[k], (size_t)n);
+        rgb[k] = (float)values[k][n / 2];
     }
     return n >= SEEN_LEAST;
 }
@@ -279,7 +274,7 @@ static void beside(const adcgs_stereo_point *points, uint32_t n, const adcgs_ste
 /** The middle of the velocities about a place, axis by axis. */
 static void middle_about(const adcgs_stereo_point *points, uint32_t n, const double x[3], float velocity[3])
 {
-    float values[3][ALIKE_MOST];
+    double values[3][ALIKE_MOST];
     uint32_t about = 0, taken = 0, stride;
     for (uint32_t i = 0; i < n; i++)
         about += distance2(points[i].x, x) < ALIKE_REACH * ALIKE_REACH;
@@ -287,12 +282,12 @@ static void middle_about(const adcgs_stereo_point *points, uint32_t n, const dou
     for (uint32_t i = 0, k = 0; i < n; i++)
         if (distance2(points[i].x, x) < ALIKE_REACH * ALIKE_REACH && k++ % stride == 0) {
             for (int a = 0; a < 3; a++)
-                values[a][taken] = points[i].velocity[a];
+                values[a][taken] = (double)points[i].velocity[a];
             taken++;
         }
     for (int a = 0; a < 3; a++) {
-        qsort(values[a], taken, sizeof(float), by_value);
-        velocity[a] = values[a][taken / 2];
+        adcgs_sort(values[a], taken);
+        velocity[a] = (float)values[a][taken / 2];
     }
 }
 
