@@ -41,7 +41,8 @@ def run_streams(name, tree, arguments, names):
         return ["where is adcgs-info? (--info)"], ""
     points = (("trace",) if "S3" in names else ()) + (("model", "splats", "verdict") if "S4" in names else ())
     if points not in _streams:
-        _streams[points] = streams.run(tree, arguments.info, points, arguments.jobs, arguments.vectors)
+        _streams[points] = streams.run(tree, arguments.info, points, arguments.jobs, arguments.vectors,
+                                        arguments.every)
     faults, counts = _streams[points]
     if points[0] == "trace" and len(points) > 1:
         faults = [fault for fault in faults if (streams.TRACE in fault) == (name == "S3")]
@@ -84,6 +85,7 @@ def main():
     parser.add_argument("--only", default=",".join(TITLES), help="checks to run, such as S1,S9")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--vectors", nargs="*", help="ids of the vectors for S3 and S4 (default: all)")
+    parser.add_argument("--every", type=int, default=1, help="only one vector in so many, of each size, for S3 and S4")
     arguments = parser.parse_args()
     tree = sources.Tree(os.path.abspath(arguments.source))
     failed = 0
