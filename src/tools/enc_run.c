@@ -40,6 +40,8 @@ static void log_last(adcgs_enc_watcher *w)
     adcgs_json_real(&line, "rate", r->rate);
     adcgs_json_real(&line, "seconds", r->seconds);
     adcgs_json_int(&line, "rollbacks", r->rollbacks);
+    if (r->attempt)
+        adcgs_json_int(&line, "attempt", r->attempt);
     adcgs_json_open(&line, "streams", '{');
     for (int i = 0; i < ADCGS_GROUPS; i++)
         adcgs_json_real(&line, streams[i], round(r->stream[i]));
@@ -82,20 +84,22 @@ static void save_now_and_then(adcgs_enc_watcher *w, double seconds)
 static int observe(void *user, const adcgs_train_report *r)
 {
     adcgs_enc_watcher *w = user;
-    char left[32], segment[32] = "";
+    char left[32], attempt[32] = "", segment[32] = "";
     if (w->segments)
         snprintf(segment, sizeof segment, "%u/%u ", w->segment + 1, w->segments);
     else if (w->is_live)
         snprintf(segment, sizeof segment, "%u: ", w->segment + 1);
+    if (r->attempt > 1)
+        snprintf(attempt, sizeof attempt, "try %d: ", r->attempt);
     w->last = *r;
     if (r->iteration && !w->first.iteration)
         w->first = *r;
-    if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back */
+    if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back, and another try */
         log_last(w);
     if (r->iteration)
-        adcgs_progress_show(&w->progress, "%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
-                            r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors, r->bytes / 1000,
-                            r->rate, describe_left(r->left, left));
+        adcgs_progress_show(&w->progress, "%s%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
+                            attempt, r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors,
+                            r->bytes / 1000, r->rate, describe_left(r->left, left));
     if (w->o->checkpoint && r->seconds - w->saved > w->o->checkpoint_every)
         save_now_and_then(w, r->seconds);
     return adcgs_interrupted() && !w->is_live;

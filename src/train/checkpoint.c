@@ -17,7 +17,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 25 };
+enum { FORMAT = 26 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -230,6 +230,23 @@ static void walk_exposure(walk *w, adcgs_trainer *t)
         visit(w, &t->exposure.cameras[i], sizeof t->exposure.cameras[i]);
 }
 
+/** What a run may go back to; it is a checkpoint itself, which has none. */
+static void walk_begin(walk *w, adcgs_trainer *t)
+{
+    uint64_t n = t->begin.size;
+    visit(w, &n, sizeof n);
+    if (w->out) {
+        visit(w, t->begin.data, n);
+        return;
+    }
+    const uint8_t *from = w->failed || n > adcgs_reader_left(w->in) ? NULL : adcgs_read_bytes(w->in, n);
+    w->failed |= !from;
+    t->begin.size = 0;
+    if (from)
+        adcgs_write_bytes(&t->begin, from, n);
+    w->failed |= t->begin.failed;
+}
+
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
 {
     adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the storing visitor only reads */
@@ -241,6 +258,7 @@ adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out
     walk_arrays(&w, t);
     walk_average(&w, t);
     walk_exposure(&w, t);
+    walk_begin(&w, t);
     return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint") : ADCGS_OK;
 }
 
@@ -278,6 +296,7 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     walk_arrays(&w, t);
     walk_average(&w, t);
     walk_exposure(&w, t);
+    walk_begin(&w, t);
     if (w.failed || adcgs_reader_left(&reader))
         return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
     adcgs_fmodel_take_steps(t->f);

@@ -16,10 +16,12 @@ enum { STEP_EVERY = 10, SAMPLE_VIEWS = 24, LAMBDA_REACH = 100 };
  * Bytes to aim at while values are only rounded: the choice of levels takes the rest, at less loss than lambda would.
  * PSNR to aim at: so that there is something to choose from.
  */
-#define SIZE_LEAD 1.06
+#define SIZE_LEAD 1.03
 #define PSNR_LEAD 0.1
-/** Of the networks' bytes, what their final lattices will take less than those from the weights' sizes, about. */
-#define LATTICE_SAVES 0.2
+/** What is left of the networks' bytes when lattices are final, and when hidden units have gone, the first time and again. */
+#define LATTICES_LEAVE 0.8
+#define UNITS_LEAVE 0.4
+#define UNITS_LEAVE_AGAIN 0.75
 /** Error that anchors are pruned for, and the least share of them that stays; iterations to know them by. */
 #define PRUNE_FROM 0.05
 #define PRUNE_LEAST 0.8
@@ -41,15 +43,25 @@ static double estimate(const adcgs_trainer *t)
     return bits / 8;
 }
 
+/** Share of the networks' bytes that will be left in the end. */
+static double networks_left(const adcgs_trainer *t)
+{
+    const adcgs_train_config *c = &t->config;
+    const double again = (double)c->prune_units_again, first = (double)c->prune_units_at * c->iterations;
+    double left = t->rounding ? 1 : LATTICES_LEAVE;
+    if (t->slimmed < 2 && again < (double)c->round_from && adcgs_train_prunes_units(c))
+        left *= t->slimmed && first >= ADCGS_UNITS_AFTER ? UNITS_LEAVE_AGAIN : UNITS_LEAVE;
+    return left;
+}
+
 static adcgs_status measure_size(adcgs_trainer *t, adcgs_error *error)
 {
     adcgs_bytes b;
     if (!t->rounding)
         adcgs_weight_steps_nominal(t);
     ADCGS_TRY(t->measure(t->measure_user, t, &b, error));
-    const double saved = t->rounding ? 0 : LATTICE_SAVES * (double)b.networks;
     const uint64_t features = b.layer[0] + b.layer[1] + b.layer[2] + b.layer[3] + b.layer[4];
-    t->rate_control.fixed = (double)(b.total - features) - saved;
+    t->rate_control.fixed = (double)(b.total - features) - (1 - networks_left(t)) * (double)b.networks;
     t->rate_control.ratio = (double)features / estimate(t);
     return ADCGS_OK;
 }
@@ -67,6 +79,18 @@ static double size_error(const adcgs_trainer *t, double progress)
 {
     const double aim = SIZE_LEAD * t->config.target_value, room = fmax(aim - t->rate_control.fixed, 0.05 * aim);
     return log(fmax(estimate(t) * t->rate_control.ratio * growth_ahead(t, progress), 1) / room);
+}
+
+adcgs_status adcgs_rate_measure_size(adcgs_trainer *t, double progress, double *off, adcgs_error *error)
+{
+    ADCGS_TRY(measure_size(t, error));
+    *off = size_error(t, progress);
+    return ADCGS_OK;
+}
+
+double adcgs_rate_bounded(const adcgs_trainer *t, double lambda)
+{
+    return fmin(fmax(lambda, (double)t->config.lambda / LAMBDA_REACH), (double)t->config.lambda * LAMBDA_REACH);
 }
 
 /** What a run gains in PSNR from some progress to its end, about. */
@@ -112,8 +136,8 @@ adcgs_status adcgs_rate_control_step(adcgs_trainer *t, double progress, adcgs_er
         ADCGS_TRY(measure(t, progress, error));
     }
     const double now = c->target == ADCGS_TARGET_SIZE ? size_error(t, progress) : psnr_error(t, progress);
-    t->lambda *= exp(GAIN_CHANGE * (now - s->error) + (s->at > 0 ? GAIN_ERROR * now * (progress - s->at) : 0));
-    t->lambda = fmin(fmax(t->lambda, (double)c->lambda / LAMBDA_REACH), (double)c->lambda * LAMBDA_REACH);
+    const double since = s->at > 0 ? progress - s->at : 0;
+    t->lambda = adcgs_rate_bounded(t, t->lambda * exp(GAIN_CHANGE * (now - s->error) + GAIN_ERROR * now * since));
     s->error = now;
     s->at = progress;
     return ADCGS_OK;

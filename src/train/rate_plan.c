@@ -5,9 +5,10 @@
 #include <math.h>
 
 /** Bytes of headers, cameras and notes, at most about; a plausible share of networks; anchors as the coder leaves them. */
-enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
+enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, FEWEST_BITS = 50, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
 #define NETWORKS_SHARE 0.25
-#define LAMBDA_FIRST 0.02f /* from where a target steers it */
+#define UNITS_STAY 0.3 /* share of the weights that is left when hidden units have gone that do not pay */
+#define LAMBDA_FIRST 0.02f /* from where a quality steers it */
 #define ANCHORS_GROWTH 4 /* a large size may raise a preset's budget so many times */
 
 /** Weights of all networks under a configuration. */
@@ -46,7 +47,7 @@ static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_er
         c->shape.varpi_width = narrower(wide.varpi_width, factors[i]);
         c->shape.entropy_width = narrower(wide.entropy_width, factors[i]);
         ADCGS_TRY(count_weights(c, &weights, error));
-        *bytes = (double)weights * ADCGS_WEIGHT_BITS / 8;
+        *bytes = (adcgs_train_prunes_units(c) ? UNITS_STAY : 1) * (double)weights * ADCGS_WEIGHT_BITS / 8;
         if (c->own_networks || *bytes <= fmax(share, room))
             break;
     }
@@ -56,18 +57,18 @@ static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_er
 adcgs_status adcgs_rate_plan(adcgs_train_config *c, adcgs_error *error)
 {
     double networks;
-    if (c->target != ADCGS_TARGET_NONE)
+    if (c->target == ADCGS_TARGET_PSNR)
         c->lambda = LAMBDA_FIRST;
     if (c->target != ADCGS_TARGET_SIZE)
         return ADCGS_OK;
-    c->keep_opacity = 0; /* the bytes are to be spent: on what is faint rather than not at all */
     ADCGS_TRY(plan_networks(c, &networks, error));
     const double anchors = floor((c->target_value - networks - OTHER_BYTES) * 8 / ANCHOR_BITS);
     if (anchors < ANCHORS_LEAST)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.0f bytes are too few: networks, cameras and headers alone take about %.0f",
                           c->target_value, networks + OTHER_BYTES);
     if (!c->own_anchors)
-        c->max_anchors = (uint32_t)fmin(anchors, fmin((double)c->max_anchors * ANCHORS_GROWTH, ADCGS_ANCHORS_MAX));
+        c->max_anchors = (uint32_t)fmax(fmin(anchors, fmin((double)c->max_anchors * ANCHORS_GROWTH, ADCGS_ANCHORS_MAX)),
+                                        fmin(anchors * ANCHOR_BITS / FEWEST_BITS, c->max_anchors));
     c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
     return ADCGS_OK;
 }

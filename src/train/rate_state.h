@@ -19,6 +19,9 @@ typedef struct adcgs_rate_control {
     double fixed;    /**< bytes beside the features */
     double ratio;    /**< bytes of features as written over those estimated */
     double psnr;     /**< dB, of a sample of training views */
+    double tried, off; /**< lambda of the last try for a size, and the logarithm of its bytes over room */
+    double early;    /**< the same of this try, shortly before it is judged */
+    uint32_t tries, looked; /**< tries that are over; whether the bytes of this one were looked at */
 } adcgs_rate_control;
 
 #endif

@@ -24,6 +24,11 @@ enum { TRIES = 16, PRUNINGS = 16, REACH = 8 };
 #define PSNR_GAIN 0.1
 #define PSNR_NEAR 0.03
 
+/** Logarithms of what steps are made finer by, and tries at it. */
+#define STEPS_REACH 1.4
+#define STEPS_FIRST 0.2
+enum { STEPS_TRIES = 8 };
+
 /** What is accepted: values in [low, high]; a stronger choice gives lower values, of bytes as of dB. */
 typedef struct window {
     double low, high;
@@ -100,6 +105,32 @@ static adcgs_status land(adcgs_trainer *t, const window *w, adcgs_error *error)
     for (int i = 0; i < PRUNINGS && t->config.target == ADCGS_TARGET_SIZE && value > w->high && t->f->n > 1; i++) {
         ADCGS_TRY(prune(t, w, value, error));
         ADCGS_TRY(seek(t, w, &strength, &value, error));
+    }
+    return ADCGS_OK;
+}
+
+static void scale_steps(adcgs_trainer *t, double by)
+{
+    adcgs_param *steps = &t->f->param[ADCGS_P_STEP];
+    for (size_t i = 0; i < steps->n; i++)
+        steps->p[i] += (float)by;
+    adcgs_fmodel_take_steps(t->f);
+    adcgs_level_densities(t);
+}
+
+adcgs_status adcgs_rate_target_steps(adcgs_trainer *t, int first, adcgs_error *error)
+{
+    const double aim = (first ? 1 + SIZE_MARGIN : 1 - SIZE_MARGIN) * t->config.target_value;
+    double low = -STEPS_REACH, high = 0, at = 0, bytes;
+    if (t->config.target != ADCGS_TARGET_SIZE || t->f->params.adaptive_steps)
+        return ADCGS_OK;
+    ADCGS_TRY(value_now(t, &bytes, error));
+    for (int i = 0; i < STEPS_TRIES && (i ? fabs(bytes / aim - 1) > SIZE_MARGIN : bytes < aim); i++) {
+        *(bytes < aim ? &high : &low) = at;
+        const double next = i ? (low + high) / 2 : -STEPS_FIRST;
+        scale_steps(t, next - at);
+        at = next;
+        ADCGS_TRY(value_now(t, &bytes, error));
     }
     return ADCGS_OK;
 }

@@ -8,6 +8,11 @@
 
 #include "train/state.h"
 
+/**
+ * Called when rounding begins, and again before values are frozen: where a size has room left, all quantiser steps become finer
+ * by one factor. What lambda has thrown away does not come back by itself.
+ */
+adcgs_status adcgs_rate_target_steps(adcgs_trainer *trainer, int first, adcgs_error *error);
 /** Called when values have just been frozen: meets the target less what training the networks will change. */
 adcgs_status adcgs_rate_target_frozen(adcgs_trainer *trainer, adcgs_error *error);
 /** Called at the end, values frozen: meets the target if it is not met, as far as that can be. */

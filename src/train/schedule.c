@@ -51,6 +51,12 @@ float adcgs_train_lambda_from(const adcgs_train_config *c)
     return c->without_rate ? 2 : ADCGS_MIN(c->rate_from, c->prune_units_at);
 }
 
+int adcgs_train_prunes_units(const adcgs_train_config *c)
+{
+    const double last = fmax((double)c->prune_units_at, (double)c->prune_units_again);
+    return !c->without_rate && last < 1 && last * c->iterations >= ADCGS_UNITS_AFTER;
+}
+
 const char *adcgs_train_stage(const adcgs_train_config *c, double progress)
 {
     if (progress < c->deform_from)

@@ -15,6 +15,10 @@ void adcgs_train_rates(const adcgs_train_config *config, adcgs_fmodel *f);
 /** A learning rate at a progress in [0,1], of what it is at first and at last. */
 float adcgs_train_rate(const adcgs_train_config *config, float first, float last, double progress);
 
+/** Before that many iterations networks have not had their chance, and hidden units stay. */
+enum { ADCGS_UNITS_AFTER = 1000 };
+/** Whether hidden units that do not pay go at all. */
+int adcgs_train_prunes_units(const adcgs_train_config *config);
 /** The moment from which lambda has a say; more than 1 if it never has. */
 float adcgs_train_lambda_from(const adcgs_train_config *config);
 

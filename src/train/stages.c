@@ -10,6 +10,7 @@
 #include "train/freeze.h"
 #include "train/levels.h"
 #include "train/rate_control.h"
+#include "train/rate_search.h"
 #include "train/release.h"
 #include "train/rate_target.h"
 #include "train/tiers.h"
@@ -17,8 +18,8 @@
 #include "train/views.h"
 #include "train/weight_steps.h"
 
-/* WEIGH_AFTER, UNITS_AFTER: before that many iterations motion and networks have not had their chance. */
-enum { WEIGH_AFTER = 300, UNITS_AFTER = 1000, MEANS_EVERY = 100 };
+/* WEIGH_AFTER: before that many iterations motion has not had its chance. */
+enum { WEIGH_AFTER = 300, MEANS_EVERY = 100 };
 
 static adcgs_status round_values(adcgs_trainer *t, adcgs_error *error)
 {
@@ -49,7 +50,7 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     if (t->slimmed < 2 && progress >= (t->slimmed ? c->prune_units_again : c->prune_units_at) && !c->without_rate) {
         t->slimmed++;
         adcgs_drop_floaters(t);
-        if (t->iteration >= UNITS_AFTER)
+        if (t->iteration >= ADCGS_UNITS_AFTER)
             ADCGS_TRY(adcgs_prune_units(t, error));
     }
     if (!t->decided && progress >= c->decide_at) {
@@ -68,12 +69,14 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
         ADCGS_TRY(round_values(t, error));
         adcgs_level_densities(t);
         ADCGS_TRY(t->quantise(t->f, &means, error));
+        ADCGS_TRY(adcgs_rate_target_steps(t, 1, error));
     } else if (t->rounding && !t->frozen && t->iteration % MEANS_EVERY == 0) {
         ADCGS_TRY(t->quantise(t->f, &means, error));
     }
     if (t->frozen || !t->rounding || progress < c->freeze_from)
         return ADCGS_OK;
     take_average(t);
+    ADCGS_TRY(adcgs_rate_target_steps(t, 0, error));
     ADCGS_TRY(adcgs_freeze(t, error));
     ADCGS_TRY(adcgs_tiers_fit(t, error));
     return adcgs_rate_target_frozen(t, error);
@@ -110,7 +113,7 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
         progress < c->densify_until)
         ADCGS_TRY(adcgs_densify(t, progress, error));
     ADCGS_TRY(enter_stages(t, progress, error));
-    return adcgs_rate_control_step(t, progress, error);
+    return adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error) : adcgs_rate_control_step(t, progress, error);
 }
 
 adcgs_status adcgs_stages_finish(adcgs_trainer *t, adcgs_error *error)

@@ -162,6 +162,7 @@ adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *
     t->pool = pool;
     t->lr_scale = 1;
     adcgs_buffer_init(&t->snapshot);
+    adcgs_buffer_init(&t->begin);
     const adcgs_status status = create_parts(t, before, error);
     t->lambda = (double)t->config.lambda;
     if (status != ADCGS_OK)
@@ -200,6 +201,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_viewpoints_clear(&t->viewpoints);
     adcgs_weight_average_clear(&t->average);
     adcgs_buffer_clear(&t->snapshot);
+    adcgs_buffer_clear(&t->begin);
     adcgs_free(NULL, t);
     *trainer = NULL;
 }

@@ -68,6 +68,7 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     r->rate = rate;
     r->left = adcgs_time_left_of(&t->left, &t->config, t->iteration, t->elapsed);
     r->rollbacks = (int)t->rollbacks;
+    r->attempt = t->begin.size ? (int)t->rate_control.tries + 1 : 0;
 }
 
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
@@ -103,8 +104,13 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
             *stopped = 1;
             return ADCGS_OK;
         }
+        const uint32_t at = t->iteration;
         ADCGS_TRY(adcgs_stages_before(t, progress, error));
         t->elapsed = adcgs_seconds() - begin;
+        if (t->iteration != at) { /* it goes on from an earlier one, which is the last good state now */
+            ADCGS_TRY(take_snapshot(t, error));
+            continue;
+        }
         if (adcgs_trainer_progress(t) >= 1) /* pictures were loaded, anchors changed, until the time was over */
             continue;
         ADCGS_TRY(adcgs_train_step(t, progress, error));

@@ -4,6 +4,7 @@
 
 #include "encode/encode.h"
 #include "train/rate_control.h"
+#include "train/rate_search.h"
 #include "train/rate_plan.h"
 #include "train/sample.h"
 
@@ -90,7 +91,8 @@ static adcgs_status pretended_bytes(void *user, const adcgs_trainer *t, adcgs_by
 /** Too many bytes raise lambda, step by step, up to a bound, where anchors go; too few lower it. */
 static void lambda_follows_the_bytes(void **state)
 {
-    const adcgs_train_config config = config_for(ADCGS_TARGET_SIZE, 60000);
+    adcgs_train_config config = config_for(ADCGS_TARGET_SIZE, 60000);
+    config.time_limit = 1000; /* nothing is sought before */
     for (int much = 0; much < 2; much++) {
         uint64_t features = much ? 200000 : 10000;
         adcgs_trainer *t = make(&config, pretended_bytes);
@@ -110,6 +112,46 @@ static void lambda_follows_the_bytes(void **state)
         assert_true(much ? t->f->n < n / 2 && t->f->n > 0 : t->f->n == n);
         adcgs_trainer_free(&t);
     }
+}
+
+/** Features of a run at its lambda: those of a room of 50,000 bytes at *user. */
+static adcgs_status bytes_of_lambda(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *e)
+{
+    uint64_t features = (uint64_t)(50000 * pow(t->lambda / *(const double *)user, -0.3));
+    return pretended_bytes(&features, t, bytes, e);
+}
+
+/** Where bytes do not suit, another lambda is tried from where rate began, until one does; not where time counts. */
+static void lambda_is_sought(void **state)
+{
+    adcgs_train_config config = config_for(ADCGS_TARGET_SIZE, 60000);
+    for (int large = 0; large < 2; large++) {
+        adcgs_trainer *t = make(&config, bytes_of_lambda);
+        double right = (double)config.lambda * (large ? 20 : 0.05);
+        uint32_t tries = 0;
+        t->measure_user = &right;
+        t->iteration = 77;
+        const float begin = t->f->param[ADCGS_P_FV].p[0];
+        while (adcgs_rate_is_sought(t)) {
+            assert_true(t->iteration == 77 && t->f->param[ADCGS_P_FV].p[0] == begin);
+            assert_int_equal(adcgs_rate_search_step(t, 0.31, &error), ADCGS_OK);
+            t->f->param[ADCGS_P_FV].p[0] = 5;
+            t->mean_bits[0] = 8.0 * 50000 * pow(t->lambda / right, -0.3);
+            t->iteration = 150;
+            assert_int_equal(adcgs_rate_search_step(t, 0.59, &error), ADCGS_OK);
+            assert_int_equal(t->iteration, 150);
+            assert_int_equal(adcgs_rate_search_step(t, 0.63, &error), ADCGS_OK);
+            tries++;
+        }
+        print_message("%u tries: %g times what was right\n", tries, t->lambda / right);
+        assert_true(tries > 1 && t->iteration == 150 && t->begin.size == 0);
+        assert_true(fabs(log(t->lambda / right)) < 0.5);
+        adcgs_trainer_free(&t);
+    }
+    config.time_limit = 1000;
+    adcgs_trainer *t = make(&config, bytes_of_lambda);
+    assert_false(adcgs_rate_is_sought(t));
+    adcgs_trainer_free(&t);
 }
 
 /* ---- Landing ---- */
@@ -224,6 +266,7 @@ int main(void)
         cmocka_unit_test(plans_leave_what_was_chosen),
         cmocka_unit_test(sizes_too_small_are_refused),
         cmocka_unit_test(lambda_follows_the_bytes),
+        cmocka_unit_test(lambda_is_sought),
         cmocka_unit_test(runs_land_on_sizes),
         cmocka_unit_test(runs_land_without_rounding),
         cmocka_unit_test(runs_land_on_qualities),

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The lambda of a size. */
+#include "train/rate_search.h"
+
+#include "train/checkpoint.h"
+#include "train/rate_control.h"
+
+#include <math.h>
+
+/**
+ * Of the run, from when it is decided what stays until its bytes are looked at, twice. How they fall meanwhile, more where lambda
+ * is large, tells how they will: by so many times as much again.
+ */
+#define LOOK_AFTER 0.06
+#define VERDICT_AFTER 0.1
+#define FALL_AHEAD 1.0
+/** Logarithms of bytes over room that lambda can be steered from, and of what one try's lambda may be of the last one's. */
+#define NEAR 0.08
+#define LEAP 4.0
+/** Bytes go with this power of lambda, about; what two tries say is believed between the others. */
+#define POWER 0.3
+#define POWER_LEAST 0.1
+#define POWER_MOST 0.6
+enum { TRIES = 4 };
+
+static double verdict_at(const adcgs_train_config *c)
+{
+    return (double)c->decide_at + VERDICT_AFTER;
+}
+
+int adcgs_rate_is_sought(const adcgs_trainer *t)
+{
+    const adcgs_train_config *c = &t->config;
+    return c->target == ADCGS_TARGET_SIZE && t->rate_control.tries < TRIES && !(c->time_limit > 0) && !c->without_rate &&
+           verdict_at(c) > (double)c->rate_from && verdict_at(c) < fmin((double)c->round_from, 1);
+}
+
+/** By the power that the last two tries tell. */
+static double next_lambda(const adcgs_trainer *t, double off)
+{
+    const adcgs_rate_control *s = &t->rate_control;
+    double power = POWER;
+    if (s->tries)
+        power = fmin(fmax((s->off - off) / log(t->lambda / s->tried), POWER_LEAST), POWER_MOST);
+    const double wanted = t->lambda * exp(fmin(fmax(off / power, -LEAP), LEAP));
+    return adcgs_rate_bounded(t, wanted);
+}
+
+static adcgs_status keep_beginning(adcgs_trainer *t, adcgs_error *error)
+{
+    adcgs_buffer begin;
+    adcgs_buffer_init(&begin);
+    const adcgs_status status = adcgs_trainer_store(t, &begin, error);
+    if (status == ADCGS_OK)
+        t->begin = begin;
+    else
+        adcgs_buffer_clear(&begin);
+    return status;
+}
+
+/** All is as it was where rate began, but for lambda and the time. */
+static adcgs_status begin_again(adcgs_trainer *t, double lambda, adcgs_error *error)
+{
+    const adcgs_rate_control tried = t->rate_control;
+    const double elapsed = t->elapsed;
+    adcgs_buffer begin = t->begin;
+    adcgs_buffer_init(&t->begin); /* what is restored has none */
+    const adcgs_status status = adcgs_trainer_restore(t, begin.data, begin.size, error);
+    adcgs_buffer_clear(&t->begin);
+    t->begin = begin;
+    t->rate_control = tried;
+    t->elapsed = elapsed;
+    t->lambda = lambda;
+    return status;
+}
+
+adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    adcgs_rate_control *s = &t->rate_control;
+    double off;
+    if (progress < (double)t->config.rate_from)
+        return ADCGS_OK;
+    if (!t->begin.size)
+        return keep_beginning(t, error);
+    if (progress < (double)t->config.decide_at + LOOK_AFTER || (s->looked && progress < verdict_at(&t->config)))
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_rate_measure_size(t, progress, &off, error));
+    if (!s->looked) {
+        s->looked = 1;
+        s->early = off;
+        return ADCGS_OK;
+    }
+    s->looked = 0;
+    s->error = off; /* steering begins where this ends */
+    s->at = progress;
+    off += FALL_AHEAD * (off - s->early);
+    const double lambda = next_lambda(t, off), tried = t->lambda;
+    const int settled = fabs(off) < NEAR || s->tries + 1 == TRIES || lambda == tried;
+    s->tries = settled ? TRIES : s->tries + 1;
+    s->tried = tried;
+    s->off = off;
+    if (!settled)
+        return begin_again(t, lambda, error);
+    adcgs_buffer_clear(&t->begin);
+    return ADCGS_OK;
+}
