@@ -33,7 +33,7 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
 
 adcgs_status adcgs_contrast_lambda(adcgs_trainer *t, adcgs_error *error)
 {
-    const int own = t->config.own_lambda || t->config.target == ADCGS_TARGET_PSNR;
+    const int own = t->config.own_lambda;
     if (!(t->contrast > 0))
         ADCGS_TRY(adcgs_contrast(t, &t->contrast, error));
     t->lambda = (double)t->config.lambda * (own ? 1 : fmin(fmax(t->contrast / ADCGS_CONTRAST_NOMINAL, LEAST), MOST));

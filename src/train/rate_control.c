@@ -2,6 +2,7 @@
 /** \file Steering lambda to a size or to a quality. */
 #include "train/rate_control.h"
 
+#include "metric/metric.h"
 #include "train/densify.h"
 #include "train/prune.h"
 #include "train/sample.h"
@@ -33,6 +34,7 @@ enum { PRUNE_AFTER = 50 };
 #define GAIN_CHANGE 3.0
 #define GAIN_ERROR 30.0
 #define GAIN_PSNR 0.3 /* of a dB as an error */
+#define PSNR_AHEAD 5.0 /* dB that views of full size would gain in a whole run */
 
 /** Bytes of features, as estimated lately. */
 static double estimate(const adcgs_trainer *t)
@@ -81,27 +83,26 @@ static double size_error(const adcgs_trainer *t, double progress)
     return log(fmax(estimate(t) * t->rate_control.ratio * growth_ahead(t, progress), 1) / room);
 }
 
-adcgs_status adcgs_rate_measure_size(adcgs_trainer *t, double progress, double *off, adcgs_error *error)
-{
-    ADCGS_TRY(measure_size(t, error));
-    *off = size_error(t, progress);
-    return ADCGS_OK;
-}
-
 double adcgs_rate_bounded(const adcgs_trainer *t, double lambda)
 {
     return fmin(fmax(lambda, (double)t->config.lambda / LAMBDA_REACH), (double)t->config.lambda * LAMBDA_REACH);
 }
 
-/** What a run gains in PSNR from some progress to its end, about. */
-static double psnr_ahead(double progress)
+/** What a run will end with, about: while views are drawn smaller than they are, what they have there. */
+static adcgs_status foresee_psnr(adcgs_trainer *t, double progress, double *psnr, adcgs_error *error)
 {
-    return 3 * (1 - progress);
+    if (t->divide > t->config.scale) {
+        *psnr = adcgs_psnr_from_mse(t->mean_mse);
+        return ADCGS_OK;
+    }
+    ADCGS_TRY(adcgs_sample_psnr(t, SAMPLE_VIEWS, psnr, error));
+    *psnr += PSNR_AHEAD * (1 - progress);
+    return ADCGS_OK;
 }
 
-static double psnr_error(const adcgs_trainer *t, double progress)
+static double psnr_error(const adcgs_trainer *t)
 {
-    return GAIN_PSNR * (t->rate_control.psnr + psnr_ahead(progress) - t->config.target_value - PSNR_LEAD);
+    return GAIN_PSNR * (t->rate_control.psnr - t->config.target_value - PSNR_LEAD);
 }
 
 static adcgs_status measure(adcgs_trainer *t, double progress, adcgs_error *error)
@@ -109,7 +110,19 @@ static adcgs_status measure(adcgs_trainer *t, double progress, adcgs_error *erro
     t->rate_control.measured = progress;
     if (t->config.target == ADCGS_TARGET_SIZE)
         return measure_size(t, error);
-    return adcgs_sample_psnr(t, SAMPLE_VIEWS, &t->rate_control.psnr, error);
+    return foresee_psnr(t, progress, &t->rate_control.psnr, error);
+}
+
+static double error_of(const adcgs_trainer *t, double progress)
+{
+    return t->config.target == ADCGS_TARGET_SIZE ? size_error(t, progress) : psnr_error(t);
+}
+
+adcgs_status adcgs_rate_measure(adcgs_trainer *t, double progress, double *off, adcgs_error *error)
+{
+    ADCGS_TRY(measure(t, progress, error));
+    *off = error_of(t, progress);
+    return ADCGS_OK;
 }
 
 /** Where lambda is as large as it may be and still too small, the anchors that show least go, some at a time. */
@@ -129,13 +142,15 @@ adcgs_status adcgs_rate_control_step(adcgs_trainer *t, double progress, adcgs_er
 {
     const adcgs_train_config *c = &t->config;
     adcgs_rate_control *s = &t->rate_control;
-    if (c->target == ADCGS_TARGET_NONE || progress < c->rate_from || t->frozen || t->iteration % STEP_EVERY || !(estimate(t) > 0))
+    const int waits = c->target == ADCGS_TARGET_PSNR && s->tries && !t->rounding; /* full size is seen, but not learnt yet */
+    if (c->target == ADCGS_TARGET_NONE || progress < c->rate_from || t->frozen || waits || t->iteration % STEP_EVERY ||
+        !(estimate(t) > 0))
         return ADCGS_OK;
     if (!s->measured || progress >= s->measured + MEASURE_EVERY) {
         ADCGS_TRY(prune(t, error));
         ADCGS_TRY(measure(t, progress, error));
     }
-    const double now = c->target == ADCGS_TARGET_SIZE ? size_error(t, progress) : psnr_error(t, progress);
+    const double now = error_of(t, progress);
     const double since = s->at > 0 ? progress - s->at : 0;
     t->lambda = adcgs_rate_bounded(t, t->lambda * exp(GAIN_CHANGE * (now - s->error) + GAIN_ERROR * now * since));
     s->error = now;

@@ -10,8 +10,11 @@
 
 #include "train/state.h"
 
-/** Measure exactly; *off: logarithm of the bytes that features take over those they may take. Bits must have been estimated. */
-adcgs_status adcgs_rate_measure_size(adcgs_trainer *trainer, double progress, double *off, adcgs_error *error);
+/**
+ * Measure exactly; *off: logarithm of the bytes that features take over those they may take, or so much of the dB over the
+ * target. Bits must have been estimated.
+ */
+adcgs_status adcgs_rate_measure(adcgs_trainer *trainer, double progress, double *off, adcgs_error *error);
 /** Within what lambda may be. */
 double adcgs_rate_bounded(const adcgs_trainer *trainer, double lambda);
 /** Called before each iteration, while anchors are trained: measures now and then, moves lambda. */

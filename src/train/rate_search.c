@@ -31,7 +31,7 @@ static double verdict_at(const adcgs_train_config *c)
 int adcgs_rate_is_sought(const adcgs_trainer *t)
 {
     const adcgs_train_config *c = &t->config;
-    return c->target == ADCGS_TARGET_SIZE && t->rate_control.tries < TRIES && !(c->time_limit > 0) && !c->without_rate &&
+    return c->target != ADCGS_TARGET_NONE && t->rate_control.tries < TRIES && !(c->time_limit > 0) && !c->without_rate &&
            verdict_at(c) > (double)c->rate_from && verdict_at(c) < fmin((double)c->round_from, 1);
 }
 
@@ -84,7 +84,7 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
         return keep_beginning(t, error);
     if (progress < (double)t->config.decide_at + LOOK_AFTER || (s->looked && progress < verdict_at(&t->config)))
         return ADCGS_OK;
-    ADCGS_TRY(adcgs_rate_measure_size(t, progress, &off, error));
+    ADCGS_TRY(adcgs_rate_measure(t, progress, &off, error));
     if (!s->looked) {
         s->looked = 1;
         s->early = off;
@@ -92,8 +92,9 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
     }
     s->looked = 0;
     s->error = off; /* steering begins where this ends */
-    s->at = progress;
-    off += FALL_AHEAD * (off - s->early);
+    s->at = t->config.target == ADCGS_TARGET_SIZE ? progress : 0;
+    if (t->config.target == ADCGS_TARGET_SIZE)
+        off += FALL_AHEAD * (off - s->early);
     const double lambda = next_lambda(t, off), tried = t->lambda;
     const int settled = fabs(off) < NEAR || s->tries + 1 == TRIES || lambda == tried;
     s->tries = settled ? TRIES : s->tries + 1;

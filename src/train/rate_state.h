@@ -18,7 +18,7 @@ typedef struct adcgs_rate_control {
     double measured; /**< progress of the last measurement; 0: none yet */
     double fixed;    /**< bytes beside the features */
     double ratio;    /**< bytes of features as written over those estimated */
-    double psnr;     /**< dB, of a sample of training views */
+    double psnr;     /**< dB that training views will have, about */
     double tried, off; /**< lambda of the last try for a size, and the logarithm of its bytes over room */
     double early;    /**< the same of this try, shortly before it is judged */
     uint32_t tries, looked; /**< tries that are over; whether the bytes of this one were looked at */
