@@ -21,6 +21,9 @@
 #define POWER 0.3
 #define POWER_LEAST 0.1
 #define POWER_MOST 0.6
+/** dB that views have less where lambda is e times as large, about, and that are added to what was missing in the end. */
+#define MISSED_POWER 1.0
+#define MISSED_DOUBT 0.1
 enum { TRIES = 4 };
 
 static double verdict_at(const adcgs_train_config *c)
@@ -102,6 +105,19 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
     s->off = off;
     if (!settled)
         return begin_again(t, lambda, error);
+    if (t->config.target == ADCGS_TARGET_SIZE)
+        adcgs_buffer_clear(&t->begin);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_rate_search_end(adcgs_trainer *t, double missing, adcgs_error *error)
+{
+    adcgs_rate_control *s = &t->rate_control;
+    if (missing > 0 && t->begin.size && !s->missed) {
+        s->missed = 1;
+        s->tries = TRIES - 1;
+        return begin_again(t, adcgs_rate_bounded(t, s->tried * exp(-(missing + MISSED_DOUBT) / MISSED_POWER)), error);
+    }
     adcgs_buffer_clear(&t->begin);
     return ADCGS_OK;
 }

@@ -15,4 +15,10 @@ int adcgs_rate_is_sought(const adcgs_trainer *trainer);
 /** Called before each iteration in which that is so. Going back, t->iteration is less than it was: progress is another then. */
 adcgs_status adcgs_rate_search_step(adcgs_trainer *trainer, double progress, adcgs_error *error);
 
+/**
+ * Called when values have been frozen, which have so many dB less than they should, less than 0 if more. Once, if they have less,
+ * a run that lambda was sought of goes back as above.
+ */
+adcgs_status adcgs_rate_search_end(adcgs_trainer *trainer, double missing, adcgs_error *error);
+
 #endif

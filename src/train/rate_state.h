@@ -22,6 +22,7 @@ typedef struct adcgs_rate_control {
     double tried, off; /**< lambda of the last try for a size, and the logarithm of its bytes over room */
     double early;    /**< the same of this try, shortly before it is judged */
     uint32_t tries, looked; /**< tries that are over; whether the bytes of this one were looked at */
+    uint32_t missed, unused; /**< whether a run fell short of a quality in the end, and was begun again; 0 */
 } adcgs_rate_control;
 
 #endif

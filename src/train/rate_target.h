@@ -13,7 +13,10 @@
  * by one factor. What lambda has thrown away does not come back by itself.
  */
 adcgs_status adcgs_rate_target_steps(adcgs_trainer *trainer, int first, adcgs_error *error);
-/** Called when values have just been frozen: meets the target less what training the networks will change. */
+/**
+ * Called when values have just been frozen: meets the target less what training the networks will change, or goes back
+ * (adcgs_rate_search_end()).
+ */
 adcgs_status adcgs_rate_target_frozen(adcgs_trainer *trainer, adcgs_error *error);
 /** Called at the end, values frozen: meets the target if it is not met, as far as that can be. */
 adcgs_status adcgs_rate_target_finish(adcgs_trainer *trainer, adcgs_error *error);

@@ -112,7 +112,10 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     if (!c->without_densification && t->iteration && t->iteration % c->densify_every == 0 && progress >= c->densify_from &&
         progress < c->densify_until)
         ADCGS_TRY(adcgs_densify(t, progress, error));
+    const uint32_t at = t->iteration;
     ADCGS_TRY(enter_stages(t, progress, error));
+    if (t->iteration != at)
+        return ADCGS_OK;
     return adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error) : adcgs_rate_control_step(t, progress, error);
 }
 

@@ -3,6 +3,7 @@
 #include "train/trainer.h"
 
 #include "metric/metric.h"
+#include "train/rate_search.h"
 #include "train/stages.h"
 #include "train/step.h"
 
@@ -68,7 +69,7 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     r->rate = rate;
     r->left = adcgs_time_left_of(&t->left, &t->config, t->iteration, t->elapsed);
     r->rollbacks = (int)t->rollbacks;
-    r->attempt = t->begin.size ? (int)t->rate_control.tries + 1 : 0;
+    r->attempt = t->begin.size && adcgs_rate_is_sought(t) ? (int)t->rate_control.tries + 1 : 0;
 }
 
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)

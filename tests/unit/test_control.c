@@ -150,6 +150,28 @@ static void lambda_is_sought(void **state)
     adcgs_trainer_free(&t);
 }
 
+/** A quality that is missed in the end is tried once more, with a smaller lambda; one that is met, or missed again, is let be. */
+static void what_was_missed_is_tried_again(void **state)
+{
+    const adcgs_train_config config = config_for(ADCGS_TARGET_PSNR, 30);
+    for (int missed = 0; missed < 2; missed++) {
+        adcgs_trainer *t = make(&config, pretended_bytes);
+        t->iteration = 77;
+        assert_int_equal(adcgs_rate_search_step(t, 0.31, &error), ADCGS_OK);
+        t->iteration = 190;
+        t->rate_control.tried = t->lambda;
+        t->rate_control.tries = 1000;
+        assert_false(adcgs_rate_is_sought(t));
+        assert_int_equal(adcgs_rate_search_end(t, missed ? 0.5 : -0.5, &error), ADCGS_OK);
+        assert_int_equal(t->iteration, missed ? 77 : 190);
+        assert_true(missed ? t->lambda < t->rate_control.tried && adcgs_rate_is_sought(t) : t->begin.size == 0);
+        t->iteration = 190;
+        assert_int_equal(adcgs_rate_search_end(t, 0.5, &error), ADCGS_OK);
+        assert_true(t->iteration == 190 && t->begin.size == 0);
+        adcgs_trainer_free(&t);
+    }
+}
+
 /* ---- Landing ---- */
 
 static adcgs_status real_bytes(void *user, const adcgs_trainer *t, adcgs_bytes *bytes, adcgs_error *e)
@@ -263,6 +285,7 @@ int main(void)
         cmocka_unit_test(sizes_too_small_are_refused),
         cmocka_unit_test(lambda_follows_the_bytes),
         cmocka_unit_test(lambda_is_sought),
+        cmocka_unit_test(what_was_missed_is_tried_again),
         cmocka_unit_test(runs_land_on_sizes),
         cmocka_unit_test(runs_land_without_rounding),
         cmocka_unit_test(runs_land_on_qualities),
