@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Rate control: steering lambda, so that a run ends near a size or a quality. From the moment that rate counts, lambda follows
- * the bytes that a stream would take, or the PSNR of training views, as the quantiser of a video encoder follows the fill of its
- * buffer: a proportional and integral controller. Only training views are looked at. Known as rate control in the lambda domain
- * (Li et al. 2014, Lambda domain rate control algorithm for High Efficiency Video Coding, IEEE Trans. Image Processing 23(9)).
+ * Rate control: steering lambda, so that a run ends near a size or a quality. Once it has been sought (rate_search.h), lambda
+ * follows the bytes that a stream would take, or the PSNR of training views, as the quantiser of a video encoder follows the
+ * fill of its buffer: a proportional and integral controller. Only training views are looked at. Known as rate control in the
+ * lambda domain (Li et al. 2014, Lambda domain rate control algorithm for High Efficiency Video Coding, IEEE Trans. Image
+ * Processing 23(9)).
  */
 #ifndef ADCGS_TRAIN_RATE_CONTROL_H
 #define ADCGS_TRAIN_RATE_CONTROL_H

@@ -4,7 +4,10 @@
 
 #include <math.h>
 
-/** Bytes of headers, cameras and notes, at most about; a plausible share of networks; anchors as the coder leaves them. */
+/**
+ * Bytes of headers, cameras and notes, at most about; bits of an anchor at a small lambda, by which a large size has room for
+ * more than a preset, and at a large one, by which a small size has room for less; a plausible share of networks.
+ */
 enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, FEWEST_BITS = 50, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
 #define NETWORKS_SHARE 0.25
 #define UNITS_STAY 0.3 /* share of the weights that is left when hidden units have gone that do not pay */

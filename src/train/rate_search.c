@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The lambda of a size. */
+/** \file The lambda of a size or a quality. */
 #include "train/rate_search.h"
 
 #include "train/checkpoint.h"

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The lambda of a size. What it throws away early does not come back, and what it keeps early hardly goes: from where rate counts
- * until it is decided what stays, a run that is to have a size has one lambda. By then its bytes are known within a few percent
- * of what they will be; where they are too many or too few, it goes back to where rate began, with a lambda that suits better.
- * From there on lambda is steered (rate_control.h).
+ * The lambda of a size or a quality. What it throws away early does not come back, and what it keeps early hardly goes: from
+ * where rate counts until it is decided what stays, a run with a target has one lambda. By then its bytes are known within a few
+ * percent of what they will be, its PSNR within some tenths; where they do not suit, it goes back to where rate began, with a
+ * lambda that suits better. From there on lambda is steered (rate_control.h).
  */
 #ifndef ADCGS_TRAIN_RATE_SEARCH_H
 #define ADCGS_TRAIN_RATE_SEARCH_H
 
 #include "train/state.h"
 
-/** Whether the lambda of a size is still sought. A run that counts time cannot go back. */
+/** Whether it is still sought. A run that counts time cannot go back. */
 int adcgs_rate_is_sought(const adcgs_trainer *trainer);
 /** Called before each iteration in which that is so. Going back, t->iteration is less than it was: progress is another then. */
 adcgs_status adcgs_rate_search_step(adcgs_trainer *trainer, double progress, adcgs_error *error);

@@ -19,8 +19,8 @@ typedef struct adcgs_rate_control {
     double fixed;    /**< bytes beside the features */
     double ratio;    /**< bytes of features as written over those estimated */
     double psnr;     /**< dB that training views will have, about */
-    double tried, off; /**< lambda of the last try for a size, and the logarithm of its bytes over room */
-    double early;    /**< the same of this try, shortly before it is judged */
+    double tried, off; /**< lambda of the last try, and its error as above */
+    double early;    /**< that of this try, shortly before it is judged */
     uint32_t tries, looked; /**< tries that are over; whether the bytes of this one were looked at */
     uint32_t missed, unused; /**< whether a run fell short of a quality in the end, and was begun again; 0 */
 } adcgs_rate_control;
