@@ -41,8 +41,7 @@ def run_streams(name, tree, arguments, names):
         return ["where is adcgs-info? (--info)"], ""
     points = (("trace",) if "S3" in names else ()) + (("model", "splats", "verdict") if "S4" in names else ())
     if points not in _streams:
-        _streams[points] = streams.run(tree, arguments.info, points, arguments.jobs, arguments.vectors,
-                                        arguments.every)
+        _streams[points] = streams.run(tree, arguments.info, points, arguments.jobs, arguments.vectors, arguments.every)
     faults, counts = _streams[points]
     if points[0] == "trace" and len(points) > 1:
         faults = [fault for fault in faults if (streams.TRACE in fault) == (name == "S3")]

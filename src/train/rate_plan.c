@@ -11,6 +11,7 @@
 enum { OTHER_BYTES = 1700, ANCHOR_BITS = 220, FEWEST_BITS = 50, ANCHORS_LEAST = 16, WIDTH_LEAST = 8 };
 #define NETWORKS_SHARE 0.25
 #define UNITS_STAY 0.3 /* share of the weights that is left when hidden units have gone that do not pay */
+#define LAMBDA_FIRST 0.1f /* from where a target seeks it */
 #define ANCHORS_GROWTH 4 /* a large size may raise a preset's budget so many times */
 
 /** Weights of all networks under a configuration. */
@@ -59,6 +60,8 @@ static adcgs_status plan_networks(adcgs_train_config *c, double *bytes, adcgs_er
 adcgs_status adcgs_rate_plan(adcgs_train_config *c, adcgs_error *error)
 {
     double networks;
+    if (c->target != ADCGS_TARGET_NONE)
+        c->lambda = LAMBDA_FIRST;
     if (c->target != ADCGS_TARGET_SIZE)
         return ADCGS_OK;
     ADCGS_TRY(plan_networks(c, &networks, error));

@@ -79,6 +79,7 @@ static adcgs_status begin_again(adcgs_trainer *t, double lambda, adcgs_error *er
 
 adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
+    const int is_size = t->config.target == ADCGS_TARGET_SIZE;
     adcgs_rate_control *s = &t->rate_control;
     double off;
     if (progress < (double)t->config.rate_from)
@@ -94,10 +95,9 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
         return ADCGS_OK;
     }
     s->looked = 0;
-    s->error = off; /* steering begins where this ends */
-    s->at = t->config.target == ADCGS_TARGET_SIZE ? progress : 0;
-    if (t->config.target == ADCGS_TARGET_SIZE)
-        off += FALL_AHEAD * (off - s->early);
+    s->error = off; /* steering begins where this ends; for a quality, much later, when values are rounded */
+    s->at = is_size ? progress : 0;
+    off += is_size ? FALL_AHEAD * (off - s->early) : 0;
     const double lambda = next_lambda(t, off), tried = t->lambda;
     const int settled = fabs(off) < NEAR || s->tries + 1 == TRIES || lambda == tried;
     s->tries = settled ? TRIES : s->tries + 1;
@@ -105,7 +105,7 @@ adcgs_status adcgs_rate_search_step(adcgs_trainer *t, double progress, adcgs_err
     s->off = off;
     if (!settled)
         return begin_again(t, lambda, error);
-    if (t->config.target == ADCGS_TARGET_SIZE)
+    if (is_size)
         adcgs_buffer_clear(&t->begin);
     return ADCGS_OK;
 }

@@ -53,8 +53,8 @@ float adcgs_train_lambda_from(const adcgs_train_config *c)
 
 int adcgs_train_prunes_units(const adcgs_train_config *c)
 {
-    const double last = fmax((double)c->prune_units_at, (double)c->prune_units_again);
-    return !c->without_rate && last < 1 && last * c->iterations >= ADCGS_UNITS_AFTER;
+    const double first = (double)c->prune_units_at, again = (double)c->prune_units_again;
+    return !c->without_rate && first < 1 && (again < 1 ? fmax(first, again) : first) * c->iterations >= ADCGS_UNITS_AFTER;
 }
 
 const char *adcgs_train_stage(const adcgs_train_config *c, double progress)

@@ -22,7 +22,7 @@ typedef struct adcgs_train_report {
     double seconds, rate;   /**< since the start; iterations per second lately */
     double left;            /**< seconds, estimated; not a number before an iteration has been seen */
     int rollbacks;
-    int attempt;            /**< at the lambda of a size, while that is sought: from 1 on; else 0 */
+    int attempt;            /**< at the lambda of a size or a quality, while that is sought: from 1 on; else 0 */
 } adcgs_train_report;
 
 /** Called often; return nonzero to stop training (a checkpoint can then be saved). */

@@ -4,8 +4,8 @@
 
 #include "encode/encode.h"
 #include "train/rate_control.h"
-#include "train/rate_search.h"
 #include "train/rate_plan.h"
+#include "train/rate_search.h"
 #include "train/sample.h"
 
 static adcgs_train_config config_for(adcgs_train_target target, double value)
@@ -62,6 +62,10 @@ static void sizes_too_small_are_refused(void **state)
     adcgs_train_config c = config_for(ADCGS_TARGET_SIZE, 2500);
     assert_int_equal(adcgs_rate_plan(&c, &error), ADCGS_ERR_USAGE);
     assert_non_null(strstr(error.text, "too few"));
+    c = config_for(ADCGS_TARGET_PSNR, 30);
+    c.lambda = 0;
+    assert_int_equal(adcgs_rate_plan(&c, &error), ADCGS_OK);
+    assert_true(c.lambda > 0);
 }
 
 /* ---- Lambda ---- */
