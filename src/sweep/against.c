@@ -49,21 +49,23 @@ static adcgs_status read_spread(const adcgs_json_place *point, const char *field
 
 static adcgs_status read_point(const adcgs_json_place *at, adcgs_sweep_row *row)
 {
-    double seeds = 0, k = 0;
-    *row = (adcgs_sweep_row){.lambda = -1, .moving = (double)NAN, .ssim = (double)NAN, .networks = (double)NAN,
-                             .seconds = (double)NAN, .speed = (double)NAN};
+    double seeds = 0, moving = (double)NAN, ssim = (double)NAN, seconds = (double)NAN, speed = (double)NAN;
+    *row = (adcgs_sweep_row){.lambda = -1, .is_stream = 1, .networks = (double)NAN};
     const struct {
         const char *field;
         double min, max, *to;
     } fields[] = {{"seeds", 1, ADCGS_SWEEP_LIST, &seeds},   {"lambda", 0, ANY_MAX, &row->lambda},
-                  {"k", 0, INT16_MAX, &k},                  {"dynamic_psnr", -DB_MAX, DB_MAX, &row->moving},
-                  {"ssim", -1, 1, &row->ssim},              {"network_share", 0, 1, &row->networks},
-                  {"training_seconds", 0, ANY_MAX, &row->seconds}, {"frames_per_second", 0, ANY_MAX, &row->speed}};
+                  {"dynamic_psnr", -DB_MAX, DB_MAX, &moving}, {"ssim", -1, 1, &ssim},
+                  {"network_share", 0, 1, &row->networks},  {"training_seconds", 0, ANY_MAX, &seconds},
+                  {"frames_per_second", 0, ANY_MAX, &speed}};
     for (size_t i = 0; i < ADCGS_COUNTOF(fields); i++)
         ADCGS_TRY(read_number(at, fields[i].field, fields[i].min, fields[i].max, fields[i].to));
     if (seeds < 1)
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "seeds", "expected a number");
-    row->k = (int)k;
+    row->moving = adcgs_spread_one(moving);
+    row->ssim = adcgs_spread_one(ssim);
+    row->seconds = adcgs_spread_one(seconds);
+    row->speed = adcgs_spread_one(speed);
     ADCGS_TRY(read_spread(at, "bytes", 1, BYTES_MAX, (int)seeds, &row->bytes));
     return read_spread(at, "psnr", -DB_MAX, DB_MAX, (int)seeds, &row->psnr);
 }
@@ -118,8 +120,7 @@ static int has_curve(const adcgs_sweep_plan *plan, const char *name)
     return 0;
 }
 
-/** The name goes to terminals and into gnuplot's quotes: what either might obey is left out. */
-static void write_name(char *name, size_t size, const char *text, size_t length)
+void adcgs_sweep_write_name(char *name, size_t size, const char *text, size_t length)
 {
     snprintf(name, size, "%.*s", (int)length, text);
     for (; *name; name++)
@@ -141,9 +142,9 @@ static adcgs_status name_curve(char *name, size_t size, const adcgs_sweep_plan *
     } while (length && length == own_length && !memcmp(folder + at, own + own_at, length));
     if (!length)
         at = part_before(folder, strlen(folder), &length);
-    write_name(name, size, folder + at, length);
+    adcgs_sweep_write_name(name, size, folder + at, length);
     if (has_curve(plan, name))
-        write_name(name, size, folder, strlen(folder));
+        adcgs_sweep_write_name(name, size, folder, strlen(folder));
     if (has_curve(plan, name))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--against %s: another curve is called that", name);
     return ADCGS_OK;

@@ -1,57 +1,132 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The chart of a sweep, drawn by gnuplot: PSNR against bytes, all curves and yardsticks. */
+/** \file The charts of a sweep that are curves: one quantity of its points against another, all curves and yardsticks. */
 #include "config.h"
 
-#include "sweep/sweep.h"
-
-#include "io/atomic.h"
+#include "sweep/charts.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
-#include <unistd.h>
 
-#define KB 1000.0
-/** The axis of bytes becomes logarithmic when sizes span this. */
+/** An axis becomes logarithmic when what it shows spans this. */
 #define DECADE 10.0
-#define MISSING 127 /* exit code without gnuplot */
 
-typedef struct extent {
-    double least, most; /* bytes; NaN: nothing to draw */
-    int spreads;        /* some point stands for several seeds */
-} extent;
+/** Something that points have, in the unit of an axis. */
+typedef struct quantity {
+    const char *label;
+    size_t at;    /**< its adcgs_spread in adcgs_sweep_row */
+    double unit;
+    int is_gain;  /**< more of it is better */
+    int of_stream; /**< what only streams have */
+} quantity;
 
-static extent measure(const adcgs_sweep_plan *plan)
+#define OF(field) offsetof(adcgs_sweep_row, field)
+static const quantity quantities[ADCGS_Q_COUNT] = {
+    [ADCGS_Q_BYTES] = {"bytes on disk, kB (1000 bytes)", OF(bytes), 1000, 0, 0},
+    [ADCGS_Q_SECONDS] = {"seconds of training", OF(seconds), 1, 0, 1},
+    [ADCGS_Q_SPEED] = {"frames per second", OF(speed), 1, 1, 1},
+    [ADCGS_Q_PSNR] = {"PSNR, dB", OF(psnr), 1, 1, 0},
+    [ADCGS_Q_MOVING] = {"PSNR of what moves, dB", OF(moving), 1, 1, 0},
+    [ADCGS_Q_SSIM] = {"SSIM", OF(ssim), 1, 1, 0},
+};
+
+/** A point of a chart. */
+typedef struct point {
+    adcgs_spread x, y; /**< in the units of the axes */
+    double lambda;
+    int curve;
+} point;
+
+/** All of a chart. */
+typedef struct cloud {
+    const quantity *x, *y;
+    point *point;
+    int n, spreads; /**< some point stands for several seeds */
+    double least, most; /**< of x */
+    int of_curve[ADCGS_SWEEP_CURVES]; /**< points of each */
+} cloud;
+
+static adcgs_spread value_of(const adcgs_sweep_row *row, const quantity *q)
 {
-    extent e = {(double)NAN, (double)NAN, 0};
+    adcgs_spread s;
+    memcpy(&s, (const char *)row + q->at, sizeof s);
+    s.mean /= q->unit;
+    s.min /= q->unit;
+    s.max /= q->unit;
+    return q->of_stream && !row->is_stream ? adcgs_spread_one((double)NAN) : s;
+}
+
+static void add_point(cloud *c, const adcgs_sweep_row *row, int curve)
+{
+    const point p = {value_of(row, c->x), value_of(row, c->y), row->lambda, curve};
+    if (!isfinite(p.x.mean) || !isfinite(p.y.mean))
+        return;
+    c->least = c->n ? fmin(c->least, p.x.min) : p.x.min;
+    c->most = c->n ? fmax(c->most, p.x.max) : p.x.max;
+    c->spreads |= p.x.n > 1 || p.y.n > 1;
+    c->of_curve[curve]++;
+    c->point[c->n++] = p;
+}
+
+static adcgs_status gather(cloud *c, const adcgs_sweep_plan *plan, adcgs_error *error)
+{
+    c->point = calloc((size_t)ADCGS_SWEEP_CURVES * ADCGS_SWEEP_LIST, sizeof *c->point);
+    if (!c->point)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a chart");
     for (int i = 0; i < plan->n_curves; i++)
         for (int j = 0; j < plan->curve[i].n; j++) {
             adcgs_sweep_row row;
-            if (!adcgs_sweep_point(&row, plan, &plan->curve[i], j))
-                continue;
-            e.least = fmin(e.least, row.bytes.min);
-            e.most = fmax(e.most, row.bytes.max);
-            e.spreads |= row.bytes.n > 1;
+            if (adcgs_sweep_point(&row, plan, &plan->curve[i], j))
+                add_point(c, &row, i);
         }
-    return e;
+    return ADCGS_OK;
 }
 
-/** One block of data for each curve that has points. Returns how many it has. */
-static int print_block(FILE *script, const adcgs_sweep_plan *plan, int index)
+/* ---- Fronts ---- */
+
+static int by_x(const void *a, const void *b)
 {
-    const adcgs_sweep_curve *const curve = &plan->curve[index];
-    int n = 0;
-    for (int j = 0; j < curve->n; j++) {
-        adcgs_sweep_row row;
-        if (!adcgs_sweep_point(&row, plan, curve, j))
+    const double x = ((const point *)a)->x.mean, y = ((const point *)b)->x.mean;
+    return (x > y) - (x < y);
+}
+
+/** Points that no other betters in both: as the block $front. Yardsticks are of other things. Returns how many there are. */
+static int print_front(FILE *script, const adcgs_sweep_plan *plan, const cloud *c)
+{
+    point sorted[ADCGS_SWEEP_CURVES * ADCGS_SWEEP_LIST];
+    double best = -INFINITY;
+    int n = 0, front = 0;
+    for (int i = 0; i < c->n; i++)
+        if (!plan->curve[c->point[i].curve].yardstick)
+            sorted[n++] = c->point[i];
+    qsort(sorted, (size_t)n, sizeof *sorted, by_x);
+    for (int i = 0; i < n; i++) {
+        const point *const p = &sorted[c->x->is_gain ? n - 1 - i : i];
+        if (p->y.mean <= best)
             continue;
-        if (!n++)
-            fprintf(script, "$curve%d << END\n", index);
-        fprintf(script, "%.3f %.3f %.3f %.4f %.4f %.4f %.9g\n", row.bytes.mean / KB, row.bytes.min / KB, row.bytes.max / KB,
-                row.psnr.mean, row.psnr.min, row.psnr.max, row.lambda);
+        best = p->y.mean;
+        if (!front++)
+            fprintf(script, "$front << END\n");
+        fprintf(script, "%.9g %.9g\n", p->x.mean, best);
     }
-    if (n)
+    if (front)
         fprintf(script, "END\n");
-    return n;
+    return front;
+}
+
+/* ---- Curves ---- */
+
+/** One block of data for each curve that has points. */
+static void print_block(FILE *script, const cloud *c, int curve)
+{
+    fprintf(script, "$curve%d << END\n", curve);
+    for (int i = 0; i < c->n; i++) {
+        const point *const p = &c->point[i];
+        if (p->curve == curve)
+            fprintf(script, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p->x.mean, p->x.min, p->x.max, p->y.mean, p->y.min, p->y.max,
+                    p->lambda);
+    }
+    fprintf(script, "END\n");
 }
 
 /** How a curve looks: the codec's own are thick with dots, the yardsticks have shapes of their own. */
@@ -70,30 +145,38 @@ static void print_plot(FILE *script, const adcgs_sweep_plan *plan, int index, in
         fprintf(script, " linewidth %s", curve->yardstick ? "1.2" : "2.2");
     fprintf(script, " title '%s'", curve->name);
     if (!curve->yardstick)
-        fprintf(script, ", \\\n  $curve%d using 1:4:(sprintf('%%g', $7)) with labels offset 0,0.9 font ',9' notitle", index);
+        fprintf(script, ", \\\n  $curve%d using 1:4:($7 < 0 ? '' : sprintf('%%g', $7)) with labels offset 0,0.9 font ',9' "
+                        "notitle", index);
 }
 
-static void print_curves(FILE *script, const adcgs_sweep_plan *plan, int spreads)
+static void print_curves(FILE *script, const adcgs_sweep_plan *plan, const cloud *c)
 {
-    int points[ADCGS_SWEEP_CURVES];
     const char *separator = "plot ";
+    int shown = 0;
     for (int i = 0; i < plan->n_curves; i++)
-        points[i] = print_block(script, plan, i);
+        if (c->of_curve[i]) {
+            print_block(script, c, i);
+            shown += !plan->curve[i].yardstick;
+        }
+    if (print_front(script, plan, c) > 1 && shown > 1) {
+        fprintf(script, "plot $front using 1:2 with lines linecolor rgb '#bbbbbb' linewidth 7 title 'best of all'");
+        separator = ", \\\n  ";
+    }
     for (int i = 0; i < plan->n_curves; i++)
-        if (points[i]) {
+        if (c->of_curve[i]) {
             fprintf(script, "%s", separator);
-            print_plot(script, plan, i, points[i], spreads);
+            print_plot(script, plan, i, c->of_curve[i], c->spreads);
             separator = ", \\\n  ";
         }
     fprintf(script, "\n");
 }
 
 /** 1, 2 and 5 of every decade. */
-static void print_log_axis(FILE *script, const extent *e)
+static void print_log_axis(FILE *script, const cloud *c)
 {
     const char *separator = "";
     fprintf(script, "set logscale x\nset xtics (");
-    for (double decade = pow(10, floor(log10(e->least / KB))); decade <= e->most / KB; decade *= 10)
+    for (double decade = pow(10, floor(log10(c->least))); decade <= c->most; decade *= 10)
         for (int i = 0; i < 3; i++) {
             fprintf(script, "%s%g", separator, decade * (i == 0 ? 1 : i == 1 ? 2 : 5));
             separator = ", ";
@@ -101,50 +184,34 @@ static void print_log_axis(FILE *script, const extent *e)
     fprintf(script, ")\n");
 }
 
-static adcgs_status write_script(const char *path, const adcgs_sweep_plan *plan, const extent *e, adcgs_error *error)
+static void print_chart(FILE *script, const char *title, const adcgs_sweep_plan *plan, const cloud *c)
 {
-    adcgs_atomic file;
-    ADCGS_TRY(adcgs_atomic_open(&file, path, error));
-    fprintf(file.file,
-            "# Drawn from here by: gnuplot sweep.gp >sweep.svg\n"
-            "set terminal svg size 860,620 noenhanced font 'sans-serif,12' background 'white'\n"
-            "set title 'Decoded files on the test views; labels are lambda%s'\n"
-            "set xlabel 'bytes on disk, kB (1000 bytes)%s'\n"
-            "set ylabel 'PSNR, dB'\n"
-            "set grid\nset key below height 1 spacing 1.15\nset offsets graph 0.05, graph 0.05, graph 0.08, graph 0.05\n",
-            e->spreads ? ", bars the spread over seeds" : "", e->most >= DECADE * e->least ? ", logarithmic" : "");
-    if (e->most >= DECADE * e->least)
-        print_log_axis(file.file, e);
-    print_curves(file.file, plan, e->spreads);
-    return adcgs_atomic_commit(&file, error);
+    const int is_log = c->least > 0 && c->most >= DECADE * c->least;
+    fprintf(script,
+            "set title '%s: decoded files on the test views; labels are lambda%s'\n"
+            "set xlabel '%s%s'\nset ylabel '%s'\nset offsets graph 0.05, graph 0.05, graph 0.08, graph 0.05\n",
+            title, c->spreads ? ", bars the spread over seeds" : "", c->x->label, is_log ? ", logarithmic" : "", c->y->label);
+    if (is_log)
+        print_log_axis(script, c);
+    print_curves(script, plan, c);
 }
 
-/*
- * gnuplot runs in the folder, so that no path has to be quoted for it. A missing gnuplot is no fault. It does not notice a full
- * disk, but cat does; and a chart is one when it has an end.
- */
-adcgs_status adcgs_sweep_draw(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, int *chart, adcgs_error *error)
+adcgs_status adcgs_chart_curves(const adcgs_chart *chart, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, int *drawn,
+                                adcgs_error *error)
 {
-    char command[] = "cd \"$1\" || exit 1; command -v gnuplot >/dev/null || exit 127; "
-                     "gnuplot sweep.gp | cat >sweep.svg.part && grep -q '</svg>' sweep.svg.part && "
-                     "mv -f sweep.svg.part sweep.svg || { rm -f sweep.svg.part; exit 1; }";
-    char sh[] = "/bin/sh", c[] = "-c";
-    char *const argv[] = {sh, c, command, sh, (char *)(uintptr_t)sweep->directory, NULL};
-    char path[ADCGS_SWEEP_PATH];
-    int code = 0;
-    const extent e = measure(plan);
-    *chart = 0;
-    if (isnan(e.least))
-        return ADCGS_OK;
-    snprintf(path, sizeof path, "%s/sweep.gp", sweep->directory);
-    ADCGS_TRY(write_script(path, plan, &e, error));
-    snprintf(path, sizeof path, "%s/sweep.gp.log", sweep->directory);
-    unlink(path);
-    ADCGS_TRY(adcgs_sweep_spawn(argv, NULL, path, &code, error));
-    if (code == 0)
-        unlink(path);
-    *chart = code == 0;
-    if (code == 0 || code == MISSING)
-        return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s/sweep.svg: cannot be drawn by gnuplot, see sweep.gp.log", sweep->directory);
+    cloud c = {.x = &quantities[chart->x], .y = &quantities[chart->y]};
+    adcgs_atomic file;
+    *drawn = 0;
+    adcgs_status status = gather(&c, plan, error);
+    if (status == ADCGS_OK && c.n) {
+        status = adcgs_chart_open(&file, sweep, chart->name, error);
+        if (status == ADCGS_OK) {
+            print_chart(file.file, chart->title, plan, &c);
+            status = adcgs_atomic_commit(&file, error);
+        }
+        if (status == ADCGS_OK)
+            status = adcgs_chart_draw(sweep, chart->name, drawn, error);
+    }
+    free(c.point);
+    return status;
 }

@@ -5,18 +5,22 @@
 #include "sweep/sweep.h"
 
 #include "io/atomic.h"
+#include "sweep/charts.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
 
 /** Where a report goes: plain text, or HTML if html is set. */
 typedef struct sheet {
     FILE *file;
     int html;
+    int first; /* width of the first column in text */
 } sheet;
 
-enum { COLUMNS = 9, CELL = 64 };
+enum { COLUMNS = 9, CELL = ADCGS_SWEEP_CHOICE + 16 };
 
 typedef char table_row[COLUMNS][CELL];
 
@@ -54,7 +58,7 @@ static void say(const sheet *s, const char *format, ...)
 
 static void put_row(const sheet *s, table_row row, const char *tag)
 {
-    static const int widths[COLUMNS] = {-26, 9, 26, 22, 12, 8, 10, 12, 10};
+    const int widths[COLUMNS] = {-s->first, 9, 26, 22, 12, 8, 10, 12, 10};
     if (s->html)
         fprintf(s->file, "<tr>");
     for (int i = 0; i < COLUMNS; i++)
@@ -72,14 +76,14 @@ static void open_table(const sheet *s, const char *first)
     table_row head = {"", "lambda", "bytes", "PSNR, dB", "moving, dB", "SSIM", "networks", "training s", "frames/s"};
     snprintf(head[0], CELL, "%s", first);
     if (s->html)
-        fprintf(s->file, "<table>\n");
+        fprintf(s->file, "<div class=\"wide\"><table>\n");
     put_row(s, head, "th");
 }
 
 static void close_table(const sheet *s)
 {
     if (s->html)
-        fprintf(s->file, "</table>\n");
+        fprintf(s->file, "</table></div>\n");
 }
 
 /* ---- Rows ---- */
@@ -109,13 +113,13 @@ static void print_row(const sheet *s, const adcgs_sweep_row *r)
         snprintf(cells[1], CELL, "-");
     fill_spread(cells[2], &r->bytes, 0);
     fill_spread(cells[3], &r->psnr, 2);
-    fill_number(cells[4], r->moving, 2);
-    fill_number(cells[5], r->ssim, 4);
+    fill_number(cells[4], r->moving.mean, 2);
+    fill_number(cells[5], r->ssim.mean, 4);
     fill_number(cells[6], 100 * r->networks, 1);
     if (isfinite(r->networks))
         strcat(cells[6], " %");
-    fill_number(cells[7], r->seconds, 0);
-    fill_number(cells[8], r->speed, 0);
+    fill_number(cells[7], r->seconds.mean, 0);
+    fill_number(cells[8], r->speed.mean, 0);
     put_row(s, cells, "td");
 }
 
@@ -213,18 +217,21 @@ static void print_all(const sheet *s, const adcgs_sweep_plan *plan)
 
 void adcgs_sweep_print(FILE *file, const adcgs_sweep_plan *plan)
 {
-    const sheet s = {file, 0};
+    size_t first = 24;
+    for (int i = 0; i < plan->n_curves; i++)
+        first = ADCGS_MAX(first, strlen(plan->curve[i].name));
+    const sheet s = {file, 0, (int)first + 2};
     print_all(&s, plan);
 }
 
 /* ---- Page ---- */
 
-/** The chart without what comes before its first element. Its absence leaves the page without it. */
-static void print_chart(const sheet *s, const adcgs_sweep *sweep)
+/** A chart without what comes before its first element. Its absence leaves the page without it. */
+static void print_chart(const sheet *s, const adcgs_sweep *sweep, const adcgs_chart *chart)
 {
     char path[ADCGS_SWEEP_PATH], line[4096];
     int begun = 0;
-    snprintf(path, sizeof path, "%s/sweep.svg", sweep->directory);
+    snprintf(path, sizeof path, "%s/%s.svg", sweep->directory, chart->name);
     FILE *const svg = fopen(path, "r");
     if (!svg)
         return;
@@ -237,6 +244,70 @@ static void print_chart(const sheet *s, const adcgs_sweep *sweep)
     }
     fprintf(s->file, "</figure>\n");
     fclose(svg);
+}
+
+/** A file in the digits of base 64 (RFC 4648). */
+static void put_base64(FILE *out, FILE *in)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    unsigned char bytes[3];
+    for (size_t n; (n = fread(bytes, 1, 3, in)) > 0;) {
+        const uint32_t all = (uint32_t)bytes[0] << 16 | (n > 1 ? (uint32_t)bytes[1] << 8 : 0) | (n > 2 ? bytes[2] : 0);
+        for (size_t i = 0; i < 4; i++)
+            fputc(i <= n ? digits[all >> (18 - 6 * i) & 63] : '=', out);
+    }
+}
+
+/** A picture that opens to its full size and closes again where one presses it: by its own link, without scripts. */
+static void print_picture(const sheet *s, const adcgs_sweep_picture *p)
+{
+    char text[200];
+    FILE *const file = p->is_there ? fopen(p->path, "rb") : NULL;
+    if (!file)
+        return;
+    const int n = snprintf(text, sizeof text, "The %s of the test views of %s: %.2f dB", p->name, p->run, p->psnr);
+    if (isfinite(p->time))
+        snprintf(text + n, sizeof text - (size_t)n, ", at %.3g s", p->time);
+    fprintf(s->file, "<figure><label><input type=\"checkbox\"><img alt=\"");
+    put_escaped(s, text);
+    fprintf(s->file, "\" src=\"data:image/png;base64,");
+    put_base64(s->file, file);
+    fprintf(s->file, "\"></label><figcaption>");
+    put_escaped(s, text);
+    fprintf(s->file, ". Truth, decoded, four times their difference; press it for full size.</figcaption></figure>\n");
+    fclose(file);
+}
+
+/** The processor by its own name, where the system tells it. */
+static void find_processor(char *name, size_t size)
+{
+    char line[256];
+    FILE *const file = fopen("/proc/cpuinfo", "r");
+    snprintf(name, size, "unknown processor");
+    while (file && fgets(line, sizeof line, file)) {
+        const char *const colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) != 0 || !colon)
+            continue;
+        snprintf(name, size, "%s", colon + 1 + strspn(colon + 1, " "));
+        name[strcspn(name, "\n")] = '\0';
+        break;
+    }
+    if (file)
+        fclose(file);
+}
+
+static void print_machine(const sheet *s, const adcgs_sweep *sweep)
+{
+    char processor[128], threads[48] = "as many threads as it has", date[32] = "";
+    const time_t now = time(NULL);
+    struct tm day;
+    find_processor(processor, sizeof processor);
+    if (sweep->threads)
+        snprintf(threads, sizeof threads, "%d thread%s", sweep->threads, sweep->threads > 1 ? "s" : "");
+    if (gmtime_r(&now, &day))
+        strftime(date, sizeof date, "%Y-%m-%d", &day);
+    say(s, "%s, %ld processors online, %s unless a curve says otherwise; seconds are by the clock; adcgs %s, %s. %s", processor,
+        sysconf(_SC_NPROCESSORS_ONLN), threads, PACKAGE_VERSION, date, sweep->command);
 }
 
 static void print_settings(const sheet *s, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
@@ -252,26 +323,41 @@ static void print_settings(const sheet *s, const adcgs_sweep *sweep, const adcgs
         say(s, "%s: %s.", plan->curve[i].name, plan->curve[i].note);
 }
 
-adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, int chart, adcgs_error *error)
+static const char style[] =
+    "body { font: 15px/1.45 sans-serif; max-width: 100em; margin: 2em auto; padding: 0 1em; color: #222; }\n"
+    ".wide { overflow-x: auto; }\ntable { border-collapse: collapse; }\n"
+    ".charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(32em, 100%), 1fr)); gap: 0 1em; }\n"
+    "figure { margin: 1em 0; min-width: 0; break-inside: avoid; }\nfigure svg, figure img { max-width: 100%; height: auto; }\n"
+    "td, th { padding: 0.2em 0.8em; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }\n"
+    "td:first-child, th:first-child { text-align: left; }\np { overflow-wrap: anywhere; }\n"
+    "label { display: block; cursor: zoom-in; overflow-x: auto; }\nlabel input { display: none; }\n"
+    "label input:checked + img { max-width: none; cursor: zoom-out; }\n"
+    "@media print { body { margin: 0; max-width: none; } td, th { padding: 0.1em 0.4em; font-size: 10px; } }\n";
+
+adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, unsigned charts, adcgs_error *error)
 {
     char path[ADCGS_SWEEP_PATH];
+    adcgs_sweep_picture picture[ADCGS_SWEEP_PICTURES];
     adcgs_atomic file;
+    ADCGS_TRY(adcgs_sweep_pictures(sweep, plan, picture, error));
     snprintf(path, sizeof path, "%s/index.html", sweep->directory);
     ADCGS_TRY(adcgs_atomic_open(&file, path, error));
-    const sheet s = {file.file, 1};
+    const sheet s = {file.file, 1, 0};
     fprintf(file.file, "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
-                       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>Rate and distortion: ");
+                       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>Rate, distortion and time: ");
     put_escaped(&s, sweep->scene);
-    fprintf(file.file, "</title>\n<style>\n"
-                       "body { font: 15px/1.45 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #222; }\n"
-                       "table { border-collapse: collapse; }\nfigure { margin: 1em 0; }\nfigure svg { max-width: 100%%; }\n"
-                       "td, th { padding: 0.2em 0.8em; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }\n"
-                       "td:first-child, th:first-child { text-align: left; }\n</style>\n<h1>Rate and distortion</h1>\n");
-    if (chart)
-        print_chart(&s, sweep);
+    fprintf(file.file, "</title>\n<style>\n%s</style>\n<h1>Rate, distortion and time</h1>\n", style);
+    fprintf(file.file, "<div class=\"charts\">\n");
+    for (int i = 0; adcgs_charts[i].name; i++)
+        if (charts & 1U << i)
+            print_chart(&s, sweep, &adcgs_charts[i]);
+    fprintf(file.file, "</div>\n");
+    for (int i = 0; i < ADCGS_SWEEP_PICTURES; i++)
+        print_picture(&s, &picture[i]);
     print_all(&s, plan);
     heading(&s, "What is shown");
     print_settings(&s, sweep, plan);
+    print_machine(&s, sweep);
     fprintf(file.file, "</html>\n");
     return adcgs_atomic_commit(&file, error);
 }

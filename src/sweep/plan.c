@@ -19,15 +19,14 @@ static void name_run(adcgs_sweep_run *r)
         at += snprintf(at, (size_t)(end - at), "lambda-own");
     else
         at += snprintf(at, (size_t)(end - at), "lambda-%.9g", r->lambda);
-    if (r->k)
-        at += snprintf(at, (size_t)(end - at), "-k-%d", r->k);
+    if (*r->choice)
+        at += snprintf(at, (size_t)(end - at), "-%s", r->choice);
     if (r->seed >= 0)
         at += snprintf(at, (size_t)(end - at), "-seed-%.0f", r->seed);
     if (*r->without)
         snprintf(at, (size_t)(end - at), "-without-%s", r->without);
-    for (; *at; at++)
-        if (*at == ',')
-            *at = '+';
+    for (char *c = r->tag; *c; c++)
+        *c = *c == ',' ? '+' : *c == ' ' || *c == '=' ? '-' : *c;
 }
 
 /** Index of the run in the plan, which adds it if there is none of its tag; -1 without memory. */
@@ -74,7 +73,7 @@ static const char *left_out_early(const adcgs_sweep_run *r)
 
 static int share_beginning(const adcgs_sweep_run *a, const adcgs_sweep_run *b)
 {
-    return a->k == b->k && a->seed == b->seed && !strcmp(left_out_early(a), left_out_early(b));
+    return !strcmp(a->choice, b->choice) && a->seed == b->seed && !strcmp(left_out_early(a), left_out_early(b));
 }
 
 /** Runs that lambda alone, or what comes after it, tells apart begin together. */
@@ -84,14 +83,15 @@ static adcgs_status add_beginnings(adcgs_sweep_plan *plan, adcgs_error *error)
     for (int i = 0; i < n; i++) {
         const adcgs_sweep_run run = plan->run[i];
         int family = 0;
-        if (run.uncompressed || run.from >= 0)
+        if (run.uncompressed || run.from >= 0 || !adcgs_sweep_choice_shares(run.choice))
             continue;
         for (int j = i; j < n; j++)
             family += !plan->run[j].uncompressed && share_beginning(&run, &plan->run[j]);
         if (family < 2)
             continue;
-        const int from =
-            add_run(plan, (adcgs_sweep_run){.beginning = 1, .k = run.k, .seed = run.seed, .without = left_out_early(&run)});
+        adcgs_sweep_run beginning = {.beginning = 1, .seed = run.seed, .without = left_out_early(&run)};
+        memcpy(beginning.choice, run.choice, sizeof run.choice);
+        const int from = add_run(plan, beginning);
         if (from < 0)
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the list of runs");
         for (int j = i; j < n; j++)
@@ -136,11 +136,12 @@ static int add_point(adcgs_sweep_plan *plan, const char *name, const char *note,
 
 static int add_own_curves(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)
 {
-    for (int i = 0; i < ADCGS_MAX(sweep->n_k, 1); i++) {
-        const adcgs_sweep_run like = {.k = sweep->n_k ? (int)sweep->k[i] : 0, .without = ""};
+    for (int i = 0; i < adcgs_sweep_grid_count(&sweep->grid); i++) {
+        adcgs_sweep_run like = {.without = ""};
+        adcgs_sweep_grid_choice(like.choice, &sweep->grid, i);
         adcgs_sweep_curve *const curve = adcgs_sweep_add_curve(plan, "adcgs", "the stream on disk", ADCGS_FIGURE_BYTES, 0);
-        if (sweep->n_k)
-            snprintf(curve->name, sizeof curve->name, "adcgs K = %d", like.k);
+        if (*like.choice)
+            snprintf(curve->name, sizeof curve->name, "adcgs %s", like.choice);
         if (!add_lambdas(plan, sweep, curve, like))
             return 0;
     }
@@ -177,7 +178,8 @@ static int add_gaussians(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs
 
 static int add_yardsticks(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)
 {
-    const adcgs_sweep_run like = {.k = sweep->n_k ? (int)sweep->k[0] : 0, .without = ""};
+    adcgs_sweep_run like = {.without = ""};
+    adcgs_sweep_grid_choice(like.choice, &sweep->grid, 0);
     adcgs_sweep_run plain = like;
     plain.uncompressed = 1;
     if (sweep->yardsticks & ADCGS_YARD_NETWORKS) {
@@ -197,22 +199,24 @@ static int add_stages(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)
 {
     static const struct {
         const char *name, *without;
-        int uncompressed, k;
-    } stages[] = {{"base", "coarse,fine,rate,densification", 1, 0},
-                  {"+ coarse deformation", "fine,rate,densification", 1, 0},
-                  {"+ fine deformation", "rate,densification", 1, 0},
-                  {"+ rate-distortion", "densification", 0, 0},
-                  {"+ densification", "", 0, 0},
-                  {"K = 5", "", 0, 5},
-                  {"K = 10", "", 0, 10},
-                  {"K = 15", "", 0, 15},
-                  {"32-bit networks", "weight_steps", 0, 0}};
+        int uncompressed;
+        const char *k;
+    } stages[] = {{"base", "coarse,fine,rate,densification", 1, NULL},
+                  {"+ coarse deformation", "fine,rate,densification", 1, NULL},
+                  {"+ fine deformation", "rate,densification", 1, NULL},
+                  {"+ rate-distortion", "densification", 0, NULL},
+                  {"+ densification", "", 0, NULL},
+                  {"K = 5", "", 0, "5"},
+                  {"K = 10", "", 0, "10"},
+                  {"K = 15", "", 0, "15"},
+                  {"32-bit networks", "weight_steps", 0, NULL}};
     for (size_t i = 0; i < ADCGS_COUNTOF(stages); i++) {
-        const int k = sweep->n_k ? (int)sweep->k[0] : 0;
-        const adcgs_sweep_run like = {.lambda = sweep->n_lambda ? sweep->lambda[sweep->n_lambda / 2] : -1,
-                                      .k = stages[i].k ? stages[i].k : k,
-                                      .uncompressed = stages[i].uncompressed,
-                                      .without = stages[i].without};
+        adcgs_sweep_run like = {.lambda = sweep->n_lambda ? sweep->lambda[sweep->n_lambda / 2] : -1,
+                                .uncompressed = stages[i].uncompressed,
+                                .without = stages[i].without};
+        adcgs_sweep_grid_choice(like.choice, &sweep->grid, 0);
+        if (stages[i].k)
+            adcgs_sweep_choice_change(like.choice, "k", stages[i].k);
         const adcgs_figure size = stages[i].uncompressed ? ADCGS_FIGURE_RAW : ADCGS_FIGURE_BYTES;
         const int cell = add_cell(plan, sweep, like);
         if (cell < 0)

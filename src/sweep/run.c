@@ -50,8 +50,9 @@ adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *
 /** A command line under construction. Numbers live in text, strings where they come from. */
 typedef struct command {
     char *argv[48];
-    int n, n_text;
-    char text[8][40];
+    int n, n_text, n_chosen;
+    char text[8][40], set[ADCGS_SWEEP_PATH];
+    char name[ADCGS_SWEEP_AXES][ADCGS_SWEEP_NAME + 2], value[ADCGS_SWEEP_AXES][ADCGS_SWEEP_NAME]; /* of the choice */
 } command;
 
 static void word(command *c, const char *text)
@@ -78,6 +79,42 @@ static void number_option(command *c, const char *name, double value, double fro
     char *const text = c->text[c->n_text++];
     snprintf(text, sizeof c->text[0], "%.17g", value);
     option(c, name, text);
+}
+
+/** An option of the choice, if it is of those in `only`; NULL: of all. */
+static void choice_options(command *c, const adcgs_sweep_run *run, const char *const *only)
+{
+    char name[ADCGS_SWEEP_NAME];
+    for (const char *at = run->choice; (at = adcgs_sweep_choice_next(at, name, c->value[c->n_chosen]));) {
+        const char *const *wanted = only;
+        while (wanted && *wanted && strcmp(*wanted, name) != 0)
+            wanted++;
+        if (!adcgs_sweep_axis_is_option(name) || (wanted && !*wanted))
+            continue;
+        snprintf(c->name[c->n_chosen], sizeof c->name[0], "--%s", name);
+        option(c, c->name[c->n_chosen], c->value[c->n_chosen]);
+        if (++c->n_chosen == ADCGS_SWEEP_AXES)
+            return;
+    }
+}
+
+/** Settings of all runs, and those of the choice behind them. */
+static void settings_option(command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run)
+{
+    char name[ADCGS_SWEEP_NAME], value[ADCGS_SWEEP_NAME];
+    int n = snprintf(c->set, sizeof c->set, "%s", sweep->set ? sweep->set : "");
+    for (const char *at = run->choice; (at = adcgs_sweep_choice_next(at, name, value)) && n < (int)sizeof c->set;)
+        if (!adcgs_sweep_axis_is_option(name))
+            n += snprintf(c->set + n, sizeof c->set - (size_t)n, "%s%s=%s", n ? "," : "", name, value);
+    option(c, "--set", c->set);
+}
+
+/** The threads of all runs, unless each choice has its own. */
+static void threads_option(command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run)
+{
+    char value[ADCGS_SWEEP_NAME];
+    if (!adcgs_sweep_choice_find(run->choice, "threads", value))
+        number_option(c, "--threads", sweep->threads, 1);
 }
 
 /* ---- Files of a run ---- */
@@ -108,9 +145,9 @@ static json_t *settings_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run)
 {
     char *const scene = adcgs_text_utf8(sweep->scene); /* all else has been checked, and is ASCII */
     json_t *const settings =
-        json_pack("{s:s, s:s, s:s, s:i, s:f, s:i, s:f, s:s, s:i, s:i, s:s*, s:s*}", "scene", scene, "preset",
+        json_pack("{s:s, s:s, s:s, s:i, s:f, s:s, s:f, s:s, s:i, s:i, s:s*, s:s*}", "scene", scene, "preset",
                   sweep->preset ? sweep->preset : "", "set", sweep->set ? sweep->set : "", "iterations", sweep->iterations,
-                  "lambda", run->lambda, "k", run->k, "seed", run->seed, "without", run->without, "uncompressed",
+                  "lambda", run->lambda, "choice", run->choice, "seed", run->seed, "without", run->without, "uncompressed",
                   run->uncompressed, "beginning", run->beginning, "dataset", sweep->dataset, "frames", sweep->frames);
     free(scene);
     return settings;
@@ -182,6 +219,7 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
 {
     char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH], begin[ADCGS_SWEEP_PATH], partial[ADCGS_SWEEP_PATH],
         raw[ADCGS_SWEEP_PATH];
+    char own[ADCGS_SWEEP_NAME];
     int unfinished;
     command c = {.n = 0};
     ADCGS_TRY(find_unfinished(sweep, run, &unfinished, error));
@@ -195,38 +233,62 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
     option(&c, run->beginning ? "--beginning" : "--output", file);
     option(&c, "--checkpoint", partial);
     option(&c, "--resume", unfinished ? partial : from ? begin : NULL);
-    option(&c, "--preset", sweep->preset);
-    option(&c, "--set", sweep->set);
+    option(&c, "--preset", adcgs_sweep_choice_find(run->choice, "preset", own) ? NULL : sweep->preset);
+    choice_options(&c, run, NULL);
+    settings_option(&c, sweep, run);
     option(&c, "--dataset", sweep->dataset);
     option(&c, "--frames", sweep->frames);
     option(&c, "--without", run->without);
     option(&c, "--uncompressed", run->uncompressed ? raw : NULL);
     number_option(&c, "--lambda", run->lambda, 0);
-    number_option(&c, "--k", run->k, 1);
     number_option(&c, "--seed", run->seed, 0);
     number_option(&c, "--iterations", sweep->iterations, 1);
-    number_option(&c, "--threads", sweep->threads, 1);
+    threads_option(&c, sweep, run);
     word(&c, "--json");
     word(&c, "--");
     word(&c, sweep->scene);
     return call(sweep, run, &c, out, error);
 }
 
+/** A command line that evaluates a run, but for what it evaluates; program and file are the caller's to hold. */
+static void begin_evaluation(command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run, char program[ADCGS_SWEEP_PATH],
+                             char file[ADCGS_SWEEP_PATH])
+{
+    static const char *const of_speed[] = {"threads", "cpu", NULL};
+    snprintf(program, ADCGS_SWEEP_PATH, "%s/adcgs-eval", sweep->programs);
+    path_of(file, sweep, run, ".adcgs");
+    word(c, program);
+    option(c, "--dataset", sweep->dataset);
+    option(c, "--frames", sweep->frames);
+    choice_options(c, run, of_speed);
+    threads_option(c, sweep, run);
+}
+
 static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *out, adcgs_error *error)
 {
     char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH];
     command c = {.n = 0};
-    snprintf(program, sizeof program, "%s/adcgs-eval", sweep->programs);
-    path_of(file, sweep, run, ".adcgs");
-    word(&c, program);
-    option(&c, "--dataset", sweep->dataset);
-    option(&c, "--frames", sweep->frames);
+    begin_evaluation(&c, sweep, run, program, file);
     option(&c, "--metrics", "dynamic-psnr");
     word(&c, "--json");
     word(&c, "--");
     word(&c, file);
     word(&c, sweep->scene);
     return call(sweep, run, &c, out, error);
+}
+
+adcgs_status adcgs_sweep_draw_views(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *folder, adcgs_error *error)
+{
+    command c = {.n = 0};
+    char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH];
+    begin_evaluation(&c, sweep, run, program, file);
+    option(&c, "--images", folder);
+    word(&c, "--beside");
+    word(&c, "--quiet");
+    word(&c, "--");
+    word(&c, file);
+    word(&c, sweep->scene);
+    return call(sweep, run, &c, "/dev/null", error);
 }
 
 /** A general-purpose compressor on the uncompressed model. That it is not installed is no fault: there is no file then. */
@@ -303,12 +365,35 @@ static double number(const json_t *report, const char *name)
     return json_is_number(value) ? json_number_value(value) : (double)NAN;
 }
 
+/** What the bytes are: the first layer, which nothing is drawn without, apart from the others. */
+static void take_components(double *f, const json_t *components)
+{
+    static const struct {
+        const char *name;
+        adcgs_figure figure;
+    } known[] = {{"networks", ADCGS_FIGURE_NETWORKS}, {"geometry", ADCGS_FIGURE_GEOMETRY}, {"layer0", ADCGS_FIGURE_BASE},
+                 {"layer", ADCGS_FIGURE_DETAIL}, {"", ADCGS_FIGURE_REST}};
+    const char *name;
+    const json_t *value;
+    for (size_t i = 0; json_object_size(components) && i < ADCGS_COUNTOF(known); i++)
+        f[known[i].figure] = 0;
+    for (void *at = json_object_iter((json_t *)(uintptr_t)components); at;
+         at = json_object_iter_next((json_t *)(uintptr_t)components, at)) {
+        size_t i = 0;
+        name = json_object_iter_key(at);
+        value = json_object_iter_value(at);
+        while (strncmp(name, known[i].name, strlen(known[i].name)) != 0)
+            i++;
+        f[known[i].figure] += json_number_value(value);
+    }
+}
+
 static void take_figures(const adcgs_sweep *sweep, adcgs_sweep_run *run, const json_t *root)
 {
     const json_t *const encoder = json_object_get(root, "encoder"), *const evaluation = json_object_get(root, "evaluation");
     double *const f = run->figure;
     f[ADCGS_FIGURE_BYTES] = number(encoder, "bytes");
-    f[ADCGS_FIGURE_NETWORKS] = number(json_object_get(encoder, "components"), "networks");
+    take_components(f, json_object_get(encoder, "components"));
     f[ADCGS_FIGURE_NETWORKS32] = f[ADCGS_FIGURE_BYTES] - f[ADCGS_FIGURE_NETWORKS] + 4 * number(encoder, "weights");
     f[ADCGS_FIGURE_SECONDS] = number(encoder, "training_seconds");
     f[ADCGS_FIGURE_PSNR] = number(evaluation, "psnr");

@@ -13,7 +13,7 @@
 /** "Fewer bytes" means fewer by more than this share. */
 #define FEWER 1e-6
 
-static adcgs_spread spread_of(const adcgs_sweep_plan *plan, int cell, adcgs_figure figure)
+adcgs_spread adcgs_sweep_spread(const adcgs_sweep_plan *plan, int cell, adcgs_figure figure)
 {
     const adcgs_sweep_cell *const c = &plan->cell[cell];
     adcgs_spread s = {0, 0, (double)NAN, (double)NAN};
@@ -35,16 +35,17 @@ int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, con
     const adcgs_sweep_run *const first = &plan->run[plan->cell[cell].run[0]];
     *row = (adcgs_sweep_row){.name = name,
                              .lambda = first->lambda,
-                             .k = first->k,
-                             .bytes = spread_of(plan, cell, size),
-                             .psnr = spread_of(plan, cell, ADCGS_FIGURE_PSNR),
-                             .moving = spread_of(plan, cell, ADCGS_FIGURE_MOVING).mean,
-                             .ssim = spread_of(plan, cell, ADCGS_FIGURE_SSIM).mean,
-                             .networks = (double)NAN,
-                             .seconds = spread_of(plan, cell, ADCGS_FIGURE_SECONDS).mean,
-                             .speed = spread_of(plan, cell, ADCGS_FIGURE_SPEED).mean};
-    if (size == ADCGS_FIGURE_BYTES)
-        row->networks = spread_of(plan, cell, ADCGS_FIGURE_NETWORKS).mean / row->bytes.mean;
+                             .is_stream = size == ADCGS_FIGURE_BYTES,
+                             .bytes = adcgs_sweep_spread(plan, cell, size),
+                             .psnr = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_PSNR),
+                             .moving = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_MOVING),
+                             .ssim = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_SSIM),
+                             .seconds = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_SECONDS),
+                             .speed = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_SPEED),
+                             .networks = (double)NAN};
+    memcpy(row->choice, first->choice, sizeof row->choice);
+    if (row->is_stream)
+        row->networks = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_NETWORKS).mean / row->bytes.mean;
     return row->bytes.n > 0;
 }
 
@@ -64,7 +65,7 @@ static int points_of(adcgs_curve_point points[ADCGS_SWEEP_LIST], const adcgs_swe
     for (int i = 0; i < curve->n; i++) {
         adcgs_sweep_row row;
         if (adcgs_sweep_point(&row, plan, curve, i))
-            points[n++] = (adcgs_curve_point){row.bytes.mean, moving ? row.moving : row.psnr.mean};
+            points[n++] = (adcgs_curve_point){row.bytes.mean, moving ? row.moving.mean : row.psnr.mean};
     }
     return n;
 }

@@ -11,17 +11,17 @@
 #ifndef ADCGS_SWEEP_SWEEP_H
 #define ADCGS_SWEEP_SWEEP_H
 
-#include "base/base.h"
+#include "sweep/grid.h"
 
 #include <stdio.h>
 #include <sys/types.h>
 
-#define ADCGS_SWEEP_LIST 16    /**< values of one option */
 #define ADCGS_SWEEP_CELLS 320  /**< 16 x 16 of the grid, yardsticks, ablation */
-#define ADCGS_SWEEP_CURVES 32  /**< 16 of the grid, 7 yardsticks, earlier ones */
+#define ADCGS_SWEEP_CURVES 40  /**< 16 of the grid, 7 yardsticks, earlier ones, other methods */
 #define ADCGS_SWEEP_STAGES 12
-#define ADCGS_SWEEP_AGAINST 8  /**< earlier sweeps to compare with */
+#define ADCGS_SWEEP_AGAINST 8  /**< earlier sweeps to compare with, and other methods */
 #define ADCGS_SWEEP_PATH 4096
+#define ADCGS_SWEEP_TAG (ADCGS_SWEEP_CHOICE + 96)
 
 /** Yardsticks to measure against. */
 enum { ADCGS_YARD_NETWORKS = 1, ADCGS_YARD_UNCOMPRESSED = 2, ADCGS_YARD_GAUSSIANS = 4, ADCGS_YARD_ALL = 7 };
@@ -30,14 +30,17 @@ enum { ADCGS_YARD_NETWORKS = 1, ADCGS_YARD_UNCOMPRESSED = 2, ADCGS_YARD_GAUSSIAN
 typedef struct adcgs_sweep {
     const char *scene, *directory;
     const char *programs;    /**< folder of adcgs-enc and adcgs-eval */
+    const char *command;     /**< the line that began it */
     const char *preset, *set; /**< NULL: the encoder's; nothing changed */
     const char *dataset, *frames; /**< for both programs; NULL: told by files; all */
     const char *against;     /**< folders of earlier sweeps, with commas between; NULL: none */
+    const char *tables;      /**< NAME=FILE of other methods' tables, with commas between; NULL: none */
     int iterations;          /**< 0: the preset's */
     int threads;             /**< of each encoder; 0: one per CPU */
     int resume, ablation, yardsticks;
-    double lambda[ADCGS_SWEEP_LIST], k[ADCGS_SWEEP_LIST], seed[ADCGS_SWEEP_LIST];
-    int n_lambda, n_k, n_seed;
+    double lambda[ADCGS_SWEEP_LIST], seed[ADCGS_SWEEP_LIST];
+    int n_lambda, n_seed;
+    adcgs_sweep_grid grid;
 } adcgs_sweep;
 
 /** What is known of a finished run; NaN where it is not. */
@@ -48,6 +51,10 @@ typedef enum adcgs_figure {
     ADCGS_FIGURE_ZSTD,       /**< that file by zstd -19 */
     ADCGS_FIGURE_XZ,         /**< that file by xz -9e */
     ADCGS_FIGURE_NETWORKS,   /**< bytes of the networks in the stream */
+    ADCGS_FIGURE_GEOMETRY,   /**< of the anchors' positions */
+    ADCGS_FIGURE_BASE,       /**< of the features without which nothing is drawn */
+    ADCGS_FIGURE_DETAIL,     /**< of the features that refine */
+    ADCGS_FIGURE_REST,       /**< of all else */
     ADCGS_FIGURE_PSNR,       /**< dB; like all below of the decoded stream on the test views */
     ADCGS_FIGURE_SSIM,
     ADCGS_FIGURE_MOVING,     /**< PSNR of what moves; NaN where nothing does */
@@ -59,11 +66,11 @@ typedef enum adcgs_figure {
 typedef enum adcgs_run_state { ADCGS_RUN_WAITS, ADCGS_RUN_RUNS, ADCGS_RUN_DONE, ADCGS_RUN_FAILED } adcgs_run_state;
 
 typedef struct adcgs_sweep_run {
-    char tag[128];          /**< names its files; runs of the same tag are one */
+    char tag[ADCGS_SWEEP_TAG]; /**< names its files; runs of the same tag are one */
     int beginning;          /**< nothing but a state for others to go on from */
     int uncompressed;       /**< stored as plain numbers too */
     double lambda, seed;    /**< < 0: not given to the encoder */
-    int k;                  /**< 0: not given */
+    char choice[ADCGS_SWEEP_CHOICE]; /**< of the grid; "" where nothing is varied */
     const char *without;    /**< parts left out; "" for none */
     int from;               /**< the run that is its beginning; -1: none */
     adcgs_run_state state;
@@ -81,17 +88,24 @@ typedef struct adcgs_spread {
     double mean, min, max;
 } adcgs_spread;
 
+/** Of a figure of which no more than the mean is known. */
+static inline adcgs_spread adcgs_spread_one(double mean)
+{
+    return (adcgs_spread){mean == mean, mean, mean, mean};
+}
+
 /** A line of a table: a cell with one of its sizes. */
 typedef struct adcgs_sweep_row {
     const char *name;
     double lambda; /**< < 0: the preset's, or of no influence */
-    int k;         /**< 0: the preset's */
-    adcgs_spread bytes, psnr;
-    double moving, ssim, networks, seconds, speed; /**< means; networks: share of the stream, NaN if bytes are not its bytes */
+    char choice[ADCGS_SWEEP_CHOICE]; /**< of the grid */
+    int is_stream; /**< bytes are those of a stream, which takes so many seconds to train and plays so fast */
+    adcgs_spread bytes, psnr, moving, ssim, seconds, speed;
+    double networks; /**< share of the stream, in the mean; NaN if it is none */
 } adcgs_sweep_row;
 
 typedef struct adcgs_sweep_curve {
-    char name[48];
+    char name[ADCGS_SWEEP_CHOICE + 16];
     char note[256];    /**< how it comes about */
     adcgs_figure size; /**< what counts as its bytes */
     int yardstick, earlier;
@@ -120,10 +134,15 @@ void adcgs_sweep_plan_clear(adcgs_sweep_plan *plan);
 /** One more curve, without points; there is room for what an adcgs_sweep can ask for. */
 adcgs_sweep_curve *adcgs_sweep_add_curve(adcgs_sweep_plan *plan, const char *name, const char *note, adcgs_figure size,
                                          int yardstick);
-/** The curves of the earlier sweeps that this one is compared with, behind those of the plan (sweep_against.c). */
+/** The curves of the earlier sweeps that this one is compared with, behind those of the plan (against.c). */
 adcgs_status adcgs_sweep_add_against(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_error *error);
 
-/* ---- One run (sweep_run.c) ---- */
+/** A curve's name goes to terminals and into gnuplot's quotes: what either might obey is replaced (against.c). */
+void adcgs_sweep_write_name(char *name, size_t size, const char *text, size_t length);
+/** The curves of other methods, from tables, behind those of the plan (add.c). */
+adcgs_status adcgs_sweep_add_tables(adcgs_sweep_plan *plan, const char *tables, adcgs_error *error);
+
+/* ---- One run (run.c) ---- */
 
 /**
  * Train and evaluate a run in child processes, then write its result file. Output of the programs goes to a log. from: the run it
@@ -136,8 +155,10 @@ adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_run *run, ad
 /** Run argv[0], stdout to the file out, stderr added to the file log (NULL: as they are). *exit_code: 127 if it did not start. */
 adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *log, int *exit_code, adcgs_error *error);
 
-/* ---- Sums (sweep_sum.c) ---- */
+/* ---- Sums (sum.c) ---- */
 
+/** A figure over the seeds of a cell. */
+adcgs_spread adcgs_sweep_spread(const adcgs_sweep_plan *plan, int cell, adcgs_figure figure);
 /** 1 if the cell has results. */
 int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, const char *name, int cell, adcgs_figure size);
 /** The same for a point of a curve. */
@@ -165,13 +186,28 @@ adcgs_comparison adcgs_sweep_compare(const adcgs_sweep_plan *plan, const adcgs_s
 
 /* ---- Output ---- */
 
-/** sweep.csv, ablation.csv and sweep.json in the folder (sweep_write.c). */
+/** sweep.csv, ablation.csv and sweep.json in the folder (write.c). */
 adcgs_status adcgs_sweep_write_tables(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error);
-/** sweep.gp and, with gnuplot, sweep.svg in the folder (sweep_chart.c). *chart: whether there is a chart. */
-adcgs_status adcgs_sweep_draw(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, int *chart, adcgs_error *error);
-/** The tables and checks as text (sweep_page.c). */
+/** A test view that the page shows: truth, decoded, and their difference. */
+enum { ADCGS_SWEEP_PICTURES = 2 };
+typedef struct adcgs_sweep_picture {
+    const char *name, *run; /**< "worst"; the run's tag */
+    char path[ADCGS_SWEEP_PATH];
+    int is_there;
+    unsigned index; /**< among the test views */
+    double psnr, time; /**< dB; seconds, NaN where it has none */
+} adcgs_sweep_picture;
+/** The worst and the middle test view of the run that stands for all, drawn anew (views_chart.c). */
+adcgs_status adcgs_sweep_pictures(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan,
+                                  adcgs_sweep_picture picture[ADCGS_SWEEP_PICTURES], adcgs_error *error);
+/** Have all test views of a run written to a folder as pictures, beside the truth (run.c). */
+adcgs_status adcgs_sweep_draw_views(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *folder, adcgs_error *error);
+
+/** The charts (charts.h) in the folder. *charts: a bit for each that is there. */
+adcgs_status adcgs_sweep_draw(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, unsigned *charts, adcgs_error *error);
+/** The tables and checks as text (page.c). */
 void adcgs_sweep_print(FILE *file, const adcgs_sweep_plan *plan);
-/** index.html in the folder: chart, tables and checks in one file (sweep_page.c). */
-adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, int chart, adcgs_error *error);
+/** index.html in the folder: those charts, pictures, tables and checks in one file (page.c). */
+adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, unsigned charts, adcgs_error *error);
 
 #endif

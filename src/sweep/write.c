@@ -28,8 +28,7 @@ static void csv_row(FILE *file, const adcgs_sweep_row *r)
     if (r->lambda >= 0)
         fprintf(file, "%.9g", r->lambda);
     fprintf(file, ",");
-    if (r->k)
-        fprintf(file, "%d", r->k);
+    adcgs_text_cell(file, r->choice);
     fprintf(file, ",%d", r->bytes.n);
     csv_number(file, r->bytes.mean, 0);
     csv_number(file, r->bytes.min, 0);
@@ -37,11 +36,11 @@ static void csv_row(FILE *file, const adcgs_sweep_row *r)
     csv_number(file, r->psnr.mean, 4);
     csv_number(file, r->psnr.min, 4);
     csv_number(file, r->psnr.max, 4);
-    csv_number(file, r->ssim, 6);
+    csv_number(file, r->ssim.mean, 6);
     csv_number(file, r->networks, 4);
-    csv_number(file, r->seconds, 2);
-    csv_number(file, r->speed, 2);
-    csv_number(file, r->moving, 4);
+    csv_number(file, r->seconds.mean, 2);
+    csv_number(file, r->speed.mean, 2);
+    csv_number(file, r->moving.mean, 4);
     fprintf(file, "\n");
 }
 
@@ -51,7 +50,7 @@ static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const
     char path[ADCGS_SWEEP_PATH];
     snprintf(path, sizeof path, "%s/%s", sweep->directory, name);
     ADCGS_TRY(adcgs_atomic_open(file, path, error));
-    fprintf(file->file, "%s,lambda,k,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,training_seconds,"
+    fprintf(file->file, "%s,lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,training_seconds,"
             "frames_per_second,dynamic_psnr\n", first);
     return ADCGS_OK;
 }
@@ -96,17 +95,17 @@ static void json_row(adcgs_json *json, const adcgs_sweep_row *r)
 {
     if (r->lambda >= 0)
         adcgs_json_real(json, "lambda", r->lambda);
-    if (r->k)
-        adcgs_json_int(json, "k", r->k);
+    if (*r->choice)
+        adcgs_json_string(json, "choice", r->choice);
     adcgs_json_int(json, "seeds", r->bytes.n);
     json_spread(json, "bytes", &r->bytes);
     json_spread(json, "psnr", &r->psnr);
-    adcgs_json_real(json, "dynamic_psnr", r->moving);
-    adcgs_json_real(json, "ssim", r->ssim);
+    adcgs_json_real(json, "dynamic_psnr", r->moving.mean);
+    adcgs_json_real(json, "ssim", r->ssim.mean);
     if (isfinite(r->networks))
         adcgs_json_real(json, "network_share", r->networks);
-    adcgs_json_real(json, "training_seconds", r->seconds);
-    adcgs_json_real(json, "frames_per_second", r->speed);
+    adcgs_json_real(json, "training_seconds", r->seconds.mean);
+    adcgs_json_real(json, "frames_per_second", r->speed.mean);
 }
 
 static void json_comparison(adcgs_json *json, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
@@ -169,6 +168,7 @@ static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
 {
     static const char *const names[ADCGS_FIGURE_COUNT] = {
         "bytes", "bytes_with_32_bit_weights", "uncompressed_bytes", "zstd_bytes", "xz_bytes", "network_bytes",
+        "position_bytes", "base_bytes", "detail_bytes", "other_bytes",
         "psnr", "ssim", "dynamic_psnr", "training_seconds", "frames_per_second"};
     adcgs_json_open(json, "runs", '[');
     for (int i = 0; i < plan->n_runs; i++) {

@@ -169,16 +169,16 @@ static void take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_
 static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
 {
     adcgs_error error;
-    int chart = 0;
-    if (adcgs_sweep_write_tables(sweep, plan, &error) != ADCGS_OK || adcgs_sweep_draw(sweep, plan, &chart, &error) != ADCGS_OK ||
-        adcgs_sweep_write_page(sweep, plan, chart, &error) != ADCGS_OK)
+    unsigned charts = 0;
+    if (adcgs_sweep_write_tables(sweep, plan, &error) != ADCGS_OK || adcgs_sweep_draw(sweep, plan, &charts, &error) != ADCGS_OK ||
+        adcgs_sweep_write_page(sweep, plan, charts, &error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
     adcgs_sweep_print(stdout, plan);
     if (adcgs_cli_flush(&error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
     adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s", sweep->directory,
                    plan->n_stages ? ", ablation.csv" : "",
-                   chart ? ", sweep.svg" : plan->n_curves ? "; no chart (is gnuplot there?)" : "");
+                   charts ? ", charts as .svg and .pdf" : plan->n_curves ? "; no chart (is gnuplot there?)" : "");
     return 0;
 }
 
@@ -189,7 +189,8 @@ static int run_sweep(const adcgs_cli *cli, const adcgs_sweep *sweep, int jobs)
     if (!plan)
         return adcgs_cli_error(cli, ADCGS_ERR_MEMORY, "out of memory");
     int code = 0;
-    if (adcgs_sweep_plan_make(plan, sweep, &error) != ADCGS_OK || adcgs_sweep_add_against(plan, sweep, &error) != ADCGS_OK)
+    if (adcgs_sweep_plan_make(plan, sweep, &error) != ADCGS_OK || adcgs_sweep_add_against(plan, sweep, &error) != ADCGS_OK ||
+        adcgs_sweep_add_tables(plan, sweep->tables, &error) != ADCGS_OK)
         code = adcgs_cli_fail(cli, &error);
     else if (mkdir(sweep->directory, 0777) != 0 && errno != EEXIST)
         code = adcgs_cli_error(cli, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
@@ -241,27 +242,42 @@ static int parse_yardsticks(const char *text)
 
 /** The lists as the user gave them; NULL: not given. */
 typedef struct lists {
-    const char *lambdas, *ks, *seeds, *yardsticks;
+    const char *lambdas, *ks, *grid, *seeds, *yardsticks;
 } lists;
 
 /** What every run would refuse is refused before the first. */
 static int check_settings(const adcgs_cli *cli, const adcgs_sweep *sweep)
 {
-    adcgs_train_config config;
     adcgs_error error;
-    adcgs_status status = adcgs_train_preset(&config, sweep->preset ? sweep->preset : "fast", &error);
-    if (status == ADCGS_OK && sweep->set)
-        status = adcgs_train_set(&config, sweep->set, &error);
-    if (status == ADCGS_OK && sweep->n_k)
-        status = adcgs_train_set_value(&config, "k", sweep->k[0], &error);
-    if (status == ADCGS_OK)
-        status = adcgs_train_check(&config, &error);
     adcgs_frame_range frames;
+    adcgs_status status = adcgs_sweep_grid_check(&sweep->grid, sweep->preset, sweep->set, &error);
     if (status == ADCGS_OK && sweep->frames)
         status = adcgs_frames_parse(&frames, sweep->frames, &error);
     if (status == ADCGS_OK && access(sweep->scene, R_OK))
         status = adcgs_fail(&error, ADCGS_ERR_IO, "%s: cannot open the scene: %s", sweep->scene, strerror(errno));
     return status == ADCGS_OK ? -1 : adcgs_cli_fail(cli, &error);
+}
+
+/** The axes of --k and --grid, of which none may have an option that says something else. -1 to go on. */
+static int parse_grid(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
+{
+    const struct {
+        const char *axis;
+        int given;
+    } twice[] = {{"preset", sweep->preset != NULL}, {"iterations", sweep->iterations != 0}, {"threads", sweep->threads != 0}};
+    char text[256], choice[ADCGS_SWEEP_CHOICE], value[ADCGS_SWEEP_NAME];
+    adcgs_error error;
+    if (l->ks && snprintf(text, sizeof text, "k=%s", l->ks) >= (int)sizeof text)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--k: expected at most %d numbers", ADCGS_SWEEP_LIST);
+    if ((l->ks && adcgs_sweep_grid_parse(&sweep->grid, text, &error) != ADCGS_OK) ||
+        (l->grid && adcgs_sweep_grid_parse(&sweep->grid, l->grid, &error) != ADCGS_OK))
+        return adcgs_cli_fail(cli, &error);
+    adcgs_sweep_grid_choice(choice, &sweep->grid, 0);
+    for (size_t i = 0; i < ADCGS_COUNTOF(twice); i++)
+        if (twice[i].given && adcgs_sweep_choice_find(choice, twice[i].axis, value))
+            return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--grid: %s has one value for all runs, by --%s", twice[i].axis,
+                                   twice[i].axis);
+    return -1;
 }
 
 /** -1 to go on, else the exit code to leave with. */
@@ -272,7 +288,6 @@ static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
         double *out;
         int *n;
     } each[] = {{l->lambdas, "lambda", sweep->lambda, &sweep->n_lambda},
-                {l->ks, "k", sweep->k, &sweep->n_k},
                 {l->seeds, "seed", sweep->seed, &sweep->n_seed}};
     for (size_t i = 0; i < ADCGS_COUNTOF(each); i++) {
         const adcgs_setting *s = adcgs_setting_find(each[i].setting);
@@ -286,6 +301,9 @@ static int parse_lists(const adcgs_cli *cli, const lists *l, adcgs_sweep *sweep)
                                    "commas between", each[i].text, ADCGS_SWEEP_LIST, whole ? "whole " : "", s->min, s->max);
     }
     qsort(sweep->lambda, (size_t)sweep->n_lambda, sizeof *sweep->lambda, compare_double);
+    const int bad = parse_grid(cli, l, sweep);
+    if (bad >= 0)
+        return bad;
     sweep->yardsticks = parse_yardsticks(l->yardsticks);
     if (sweep->yardsticks < 0)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--yardsticks %s: expected all, none, or some of networks, uncompressed and "
@@ -313,6 +331,9 @@ static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char *
         {"lambda", 'l', ADCGS_OPTION_STRING, &l.lambdas, 0, 0, "A,B,C",
          "values of the encoder's --lambda (required, but for\n--ablation)", NULL, NULL},
         {"k", 0, ADCGS_OPTION_STRING, &l.ks, 0, 0, "A,B,C", "values of the encoder's --k (default: the preset's)", NULL, NULL},
+        {"grid", 0, ADCGS_OPTION_STRING, &l.grid, 0, 0, "NAME=A,B,...",
+         "a curve for each choice of values of any settings of the\nencoder, and of preset, time-limit, segment, key, threads\n"
+         "and cpu; blanks between two such lists", NULL, NULL},
         {"seeds", 0, ADCGS_OPTION_STRING, &l.seeds, 0, 0, "A,B,C",
          "train each point with these seeds; figures are means\n(default: the encoder's seed)", NULL, NULL},
         {"yardsticks", 0, ADCGS_OPTION_STRING, &l.yardsticks, 0, 0, "NAME,...",
@@ -320,6 +341,9 @@ static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char *
          "curve and a run); all (default) or none", NULL, NULL},
         {"against", 0, ADCGS_OPTION_STRING, &sweep->against, 0, 0, "DIR,...",
          "compare with earlier sweeps of the scene, of whatever\nversion or settings, by what they wrote", NULL, NULL},
+        {"add", 0, ADCGS_OPTION_STRING, &sweep->tables, 0, 0, "NAME=FILE,...",
+         "draw other methods' tables beside, CSV with columns bytes\nand psnr, maybe ssim, dynamic_psnr, training_seconds,\n"
+         "frames_per_second, source", NULL, NULL},
         {"ablation", 0, ADCGS_OPTION_FLAG, &sweep->ablation, 0, 0, NULL,
          "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},
         {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)", NULL,
@@ -344,18 +368,28 @@ static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char *
         return leave;
     if (!sweep->directory || (!l.lambdas && !sweep->ablation))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "expected -o DIR and --lambda A,B,C; see --help");
-    if (sweep->against && !l.lambdas)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--against: expected --lambda, too: there is no curve to compare");
+    if ((sweep->against || sweep->tables) && !l.lambdas)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: expected --lambda, too: there is no curve to compare",
+                               sweep->against ? "--against" : "--add");
     sweep->scene = argv[first];
     sweep->dataset = has_dataset ? adcgs_dataset_names[dataset] : NULL;
     const int bad = parse_lists(cli, &l, sweep);
     return bad >= 0 ? bad : check_settings(cli, sweep);
 }
 
+/** The command line as text, of what is too long the beginning. */
+static void join(char *text, size_t size, int argc, char **argv)
+{
+    size_t n = 0;
+    text[0] = '\0';
+    for (int i = 0; i < argc && n < size - 1; i++)
+        n += (size_t)snprintf(text + n, size - n, "%s%s", i ? " " : "", i ? argv[i] : program.program);
+}
+
 int main(int argc, char **argv)
 {
-    char programs[ADCGS_SWEEP_PATH];
-    adcgs_sweep sweep = {.programs = programs};
+    char programs[ADCGS_SWEEP_PATH], command[480];
+    adcgs_sweep sweep = {.programs = programs, .command = command};
     int jobs = 1, quiet = 0;
     adcgs_cli cli = program;
     cli.quiet = &quiet;
@@ -363,5 +397,6 @@ int main(int argc, char **argv)
     if (code >= 0)
         return code;
     find_programs(argv[0], programs, sizeof programs);
+    join(command, sizeof command, argc, argv);
     return run_sweep(&cli, &sweep, jobs);
 }

@@ -31,7 +31,7 @@ while [ $# -gt 0 ]; do
         --seed) seed=$2 ;;
         --without) without=$2 ;;
         --uncompressed) raw=$2 ;;
-        --preset | --iterations | --threads | --k | --set | --dataset | --frames) ;;
+        --preset | --iterations | --threads | --set | --dataset | --frames | --time-limit) ;;
         --json) shift; continue ;;
         --) break ;;
         *) exit 2 ;;
@@ -88,14 +88,88 @@ sweep --lambda 4,1,2 --k 5,10 --jobs 2 --yardsticks none
 [ $got -eq 0 ] || fail "plain run: $(cat "$dir/err")"
 calls 8 6 "--resume $out/beginning-k-[0-9]*.checkpoint"
 [ "$(wc -l <"$out/sweep.csv")" -eq 7 ] || fail "expected 7 lines of table: $(cat "$out/sweep.csv")"
-line '^adcgs K = 10,2,10,1,32000,32000,32000,34.0000,34.0000,34.0000,0.900000,0.0312,1.50,100.00,$' "$out/sweep.csv"
+line '^adcgs k=10,2,k=10,1,32000,32000,32000,34.0000,34.0000,34.0000,0.900000,0.0312,1.50,100.00,$' "$out/sweep.csv"
 [ ! -e "$out/lambda-1-k-5.partial" ] && [ ! -e "$out/lambda-1-k-5.partial.json" ] || fail "a finished run left its state"
 line '3 points, spans a factor of 4.00 in bytes and is monotone' "$dir/report"
 if command -v gnuplot >/dev/null; then
-    grep -q '<svg' "$out/sweep.svg" || fail "no chart: $(cat "$out/sweep.gp.log")"
+    grep -q '<svg' "$out/rate.svg" || fail "no chart: $(cat "$out/rate.gp.log")"
     line '<svg' "$out/index.html"
 fi
-! grep -q 'set logscale' "$out/sweep.gp" || fail "a logarithmic axis for a factor of four"
+! grep -q 'set logscale' "$out/rate.gp" || fail "a logarithmic axis for a factor of four"
+
+# Charts: those that have something to show, and what no other point betters.
+for chart in rate rate-ssim time speed bytes; do
+    [ -e "$out/$chart.gp" ] || fail "no $chart.gp"
+    ! command -v gnuplot >/dev/null || for kind in svg pdf; do [ -s "$out/$chart.$kind" ] || fail "no $chart.$kind"; done
+done
+[ ! -e "$out/rate-moving.gp" ] && [ ! -e "$out/views.gp" ] || fail "a chart of what nobody knows"
+line "title 'best of all'" "$out/rate.gp"
+line '^1 1 0 0 0 0$' "$out/bytes.gp"
+line 'processors online' "$out/index.html"
+
+# Choices: a curve for each; the encoder's options by their names, its settings by theirs. What has to be done by some time does not
+# begin with others, and how fast a file plays is measured with the threads that it is said to have.
+out=$dir/grid
+sweep --lambda 1,2 --grid 'n_fv=16,32 preset=fast,medium' --yardsticks none
+[ $got -eq 0 ] || fail "choices: $(cat "$dir/err")"
+calls 12 3 "--preset medium --set n_fv=32 "
+line '^adcgs n_fv=32 preset=fast,2,n_fv=32 preset=fast,1,32000,' "$out/sweep.csv"
+line '"choice": "n_fv=16 preset=medium"' "$out/sweep.json"
+[ -s "$out/lambda-2-n_fv-32-preset-fast.adcgs" ] || fail "no file of a choice: $(ls "$out")"
+sweep --lambda 1,2 --grid 'time-limit=3,4' --set k=4 --yardsticks none
+calls 4 2 "--time-limit 4 --set k=4 "
+sweep --lambda 1 --grid 'threads=1,2' --yardsticks none
+calls 2 1 "--threads 2"
+tail -n 1 "$dir/evaluations" | grep -q -e '--threads 2' || fail "the speed of other threads: $(cat "$dir/evaluations")"
+for grid in k k= =4 k=4,,5 k=4, k=99 k=x nothing=1 lambda=1,2 seed=1 preset=quick cpu=z80 time-limit=0 'k=4 k=5' "k='4'" \
+    'k=1,2,3,4,5 n_fv=8,16,24,32' 'k=4 n_fv=8 n_fg=8 depth=9 octaves=2'; do
+    sweep --lambda 1,2 --grid "$grid"
+    [ $got -eq 2 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] || fail "--grid $grid: $got $(cat "$dir/err")"
+done
+for twice in 'iterations=100,200 --iterations 100' 'preset=fast --preset fast' 'threads=1 --threads 1' 'k=4 --k 5'; do
+    # shellcheck disable=SC2086
+    sweep --lambda 1,2 --grid $twice
+    [ $got -eq 2 ] || fail "$twice accepted"
+done
+calls 0
+
+# Tables of other methods: a curve each, where the file says so.
+out=$dir/others
+printf 'source,psnr,who,bytes,training_seconds\nA paper,33.5,x,50000,7\n,34.5,,70000,\n\n' >"$dir/other.csv"
+sweep --lambda 1,2 --yardsticks none --add "It's other=$dir/other.csv"
+[ $got -eq 0 ] || fail "--add: $(cat "$dir/err")"
+line "^It_s other,,,1,50000,50000,50000,33.5000,33.5000,33.5000,,,7.00,,$" "$out/sweep.csv"
+line "Against It_s other: .*above it (points compared: 2" "$dir/report"
+line "It_s other: another method, from $dir/other.csv; A paper" "$out/index.html"
+: >"$dir/calls"
+# spoilt TEXT TABLE: refused with that, before anything is run.
+spoilt()
+{
+    printf '%b' "$2" >"$dir/spoilt.csv"
+    sweep --lambda 1,2 --add "x=$dir/spoilt.csv"
+    [ $got -eq 4 ] && grep -q -e "spoilt.csv: $1" "$dir/err" && [ "$(wc -l <"$dir/err")" -eq 1 ] || fail "$got: $(cat "$dir/err")"
+}
+spoilt 'line 0: expected a line' ''
+spoilt 'line 1: expected columns bytes and psnr' 'bytes\n1\n'
+spoilt 'line 1: .*each once' 'bytes,psnr,psnr\n1,2,3\n'
+spoilt 'line 1: expected a point' 'bytes,psnr\n'
+spoilt 'line 2: psnr: expected a number' 'bytes,psnr\n1,x\n'
+spoilt 'line 2: bytes: expected a number' 'bytes,psnr\n-1,3\n'
+spoilt 'line 2: expected bytes and psnr' 'bytes,psnr\n1,\n'
+spoilt 'line 3: expected as many' 'bytes,psnr\n1,3\n1\n'
+spoilt 'line 2: expected no more cells' 'bytes,psnr\n1,3,4\n'
+spoilt 'line 2: expected cells without' 'bytes,psnr\n"1",3\n'
+spoilt 'line 18: expected no more than 16' "bytes,psnr\n$(yes '1,3\n' | head -17 | tr -d '\n')"
+for table in x x= "=$dir/other.csv" "x=$dir/other.csv,"; do
+    sweep --lambda 1,2 --add "$table"
+    [ $got -eq 2 ] || fail "--add $table: $got $(cat "$dir/err")"
+done
+sweep --lambda 1,2 --add "adcgs=$dir/other.csv"
+[ $got -eq 2 ] || fail "two curves of a name"
+sweep --lambda 1,2 --add "x=$dir/nowhere.csv"
+[ $got -eq 3 ] || fail "a table that is not there: $got"
+calls 0
+out=$dir/out
 
 # Going on: nothing that is there is made again, unless it belongs to other settings or is damaged. Beginnings serve later lambdas.
 sweep --lambda 1,2,4 --k 5,10 --resume --yardsticks none
@@ -138,7 +212,7 @@ line 'Against 32-bit networks (same PSNR): BD-rate -[0-9.]* %, above it (points 
 line 'Against per Gaussian: BD-rate -50.0 %, above it (points compared: 4; margin.*0.00 dB or more); 2.00 times smaller' "$dir/report"
 line 'Against uncompressed: NOT above it (points compared: 1; at worst 0.05 dB below); 6.25 times smaller' "$dir/report"
 line 'Against per Gaussian uncompressed: above it (points compared: 1; ' "$dir/report"
-line 'set logscale x' "$out/sweep.gp"
+line 'set logscale x' "$out/rate.gp"
 for packer in 'zstd:zst:zstd -19' 'xz:xz:xz -9e'; do
     IFS=: read -r tool suffix name <<<"$packer"
     if command -v "$tool" >/dev/null; then
@@ -178,7 +252,7 @@ sweep --lambda 1,2 --seeds 1,2,3 --yardsticks uncompressed
 calls 15 3 "--beginning"
 line '^adcgs,2,,3,32000,32000,32000,34.2000,34.1000,34.3000,' "$out/sweep.csv"
 line '34.20 (34.10..34.30)' "$dir/report"
-line 'xyerrorlines' "$out/sweep.gp"
+line 'xyerrorlines' "$out/rate.gp"
 line '"seed": 3' "$out/sweep.json"
 
 # Ablation: each stage once, the whole method shared with the curve; stages before rate are uncompressed.
@@ -192,7 +266,7 @@ line '^base,,,1,400000,400000,400000,33.0000' "$out/ablation.csv"
 line "^'+ fine deformation,,,1,400000,400000,400000,34.0000" "$out/ablation.csv"
 line "^'+ rate-distortion,2,,1,32000,32000,32000,33.5000" "$out/ablation.csv"
 line "^'+ densification,2,,1,32000,32000,32000,34.0000" "$out/ablation.csv"
-line '^K = 15,2,15,1,' "$out/ablation.csv"
+line '^K = 15,2,k=15,1,' "$out/ablation.csv"
 line 'K = 15' "$out/index.html"
 sweep --ablation
 [ $got -eq 0 ] || fail "ablation alone: $(cat "$dir/err")"
@@ -240,11 +314,11 @@ line 'Against moved: BD-rate -20\.0 %, BD-rate of what moves [+-]0\.0 %, ' "$dir
 line 'Against older: BD-rate [+-]0\.0 %, NOT above it' "$dir/report"
 line '^more,1,,1,80000,80000,80000,35.0000,35.0000,35.0000,0.900000,.*,1.50,100.00,25.0000$' "$out/sweep.csv"
 line '^older,4,,1,16000,16000,16000,32.0000,32.0000,32.0000,0.900000,.*,1.50,100.00,$' "$out/sweep.csv"
-line "title 'more'" "$out/sweep.gp"
-line "title 'it_s'" "$out/sweep.gp"
+line "title 'more'" "$out/rate.gp"
+line "title 'it_s'" "$out/rate.gp"
 line "more: an earlier sweep of the scene, in $dir/more/x" "$out/index.html"
 line '<td>more</td><td>1</td><td>80000</td>' "$out/index.html"
-if command -v gnuplot >/dev/null; then line '>more<' "$out/sweep.svg"; fi
+if command -v gnuplot >/dev/null; then line '>more<' "$out/rate.svg"; fi
 if command -v jq >/dev/null; then
     jq -e 'def against($name): .curves[] | select(.name == $name).comparison;
            def near($x): . != null and (. - $x | fabs < 1e-6);
@@ -264,7 +338,7 @@ out=$dir/now/y
 sweep --lambda 1,4 --yardsticks none --against "$dir/seeds"
 line '^seeds,4,,2,16000,16000,16000,32.2000,32.1000,32.3000,' "$out/sweep.csv"
 line 'Against seeds: BD-rate +[0-9.]* %, BD-rate of what moves +[0-9.]* %, NOT above' "$dir/report"
-line 'xyerrorlines' "$out/sweep.gp"
+line 'xyerrorlines' "$out/rate.gp"
 : >"$dir/calls"
 
 # refused CODE TEXT FOLDERS: what is no earlier sweep of the scene is told in a line, before anything is run or made.
@@ -381,6 +455,14 @@ small="--preset draft --iterations 60 --set max_anchors=60,start_anchors=40"
 # shellcheck disable=SC2086
 ./adcgs-sweep "$dir/tiny" -o "$dir/real" --lambda 1,30 --seeds 2 $small >"$dir/report" 2>"$dir/err" || fail "real: $(cat "$dir/err")"
 [ "$(wc -l <"$dir/real/sweep.csv")" -ge 8 ] || fail "real: $(cat "$dir/real/sweep.csv")"
+for picture in worst middle; do
+    [ -s "$dir/real/$picture.png" ] || fail "no picture of the $picture view: $(ls "$dir/real")"
+done
+[ ! -e "$dir/real/views.part" ] || fail "all pictures were left there"
+grep -o 'base64,[^"]*' "$dir/real/index.html" | head -n 1 | cut -c 8- | base64 -d | cmp - "$dir/real/worst.png" ||
+    fail "another picture on the page"
+line '^\$moving' "$dir/real/views.gp"
+line "of what moves'" "$dir/real/views.gp"
 # shellcheck disable=SC2086
 ./adcgs-enc "$dir/tiny" -o "$dir/whole.adcgs" --lambda 30 --seed 2 $small 2>"$dir/err" || fail "whole: $(cat "$dir/err")"
 cmp "$dir/whole.adcgs" "$dir/real/lambda-30-seed-2.adcgs" || fail "another stream from a shared beginning"

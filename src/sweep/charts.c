@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The list of charts, and all of them made. */
+#include "sweep/charts.h"
+
+const adcgs_chart adcgs_charts[] = {
+    {"rate", "Quality against bytes", adcgs_chart_curves, ADCGS_Q_BYTES, ADCGS_Q_PSNR},
+    {"rate-moving", "Quality of what moves against bytes", adcgs_chart_curves, ADCGS_Q_BYTES, ADCGS_Q_MOVING},
+    {"rate-ssim", "SSIM against bytes", adcgs_chart_curves, ADCGS_Q_BYTES, ADCGS_Q_SSIM},
+    {"time", "Quality against time of training", adcgs_chart_curves, ADCGS_Q_SECONDS, ADCGS_Q_PSNR},
+    {"time-moving", "Quality of what moves against time of training", adcgs_chart_curves, ADCGS_Q_SECONDS, ADCGS_Q_MOVING},
+    {"speed", "Quality against speed of playing", adcgs_chart_curves, ADCGS_Q_SPEED, ADCGS_Q_PSNR},
+    {"bytes", "Where the bytes are", adcgs_chart_bytes, 0, 0},
+    {"views", "Quality over time", adcgs_chart_views, 0, 0},
+    {.name = NULL},
+};
+
+adcgs_status adcgs_sweep_draw(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, unsigned *charts, adcgs_error *error)
+{
+    *charts = 0;
+    for (int i = 0; adcgs_charts[i].name; i++) {
+        int drawn;
+        ADCGS_TRY(adcgs_charts[i].make(&adcgs_charts[i], sweep, plan, &drawn, error));
+        *charts |= drawn ? 1U << i : 0;
+    }
+    return ADCGS_OK;
+}
