@@ -27,7 +27,8 @@ adcgs_status adcgs_chart_open(adcgs_atomic *file, const adcgs_sweep *sweep, cons
 adcgs_status adcgs_chart_draw(const adcgs_sweep *sweep, const char *name, int *drawn, adcgs_error *error)
 {
     char command[] = "cd \"$1\" || exit 1; command -v gnuplot >/dev/null || exit 127; "
-                     "if gnuplot -e 'pdf=1' \"$2.gp\" 2>/dev/null >\"$2.pdf.part\" && tail -c 7 \"$2.pdf.part\" | grep -q '%%EOF'; then "
+                     "if gnuplot -e 'pdf=1' \"$2.gp\" 2>/dev/null >\"$2.pdf.part\" && "
+                     "tail -c 7 \"$2.pdf.part\" | grep -q '%%EOF'; then "
                      "mv -f \"$2.pdf.part\" \"$2.pdf\"; else rm -f \"$2.pdf.part\"; fi; "
                      "gnuplot \"$2.gp\" | cat >\"$2.svg.part\" && grep -q '</svg>' \"$2.svg.part\" && "
                      "mv -f \"$2.svg.part\" \"$2.svg\" || { rm -f \"$2.svg.part\"; exit 1; }";

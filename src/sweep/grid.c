@@ -53,8 +53,8 @@ static adcgs_status check_option(int option, const char *value, adcgs_error *err
     if (name ? *name != NULL : adcgs_parse_real(value, min, max, &number) == 0)
         return ADCGS_OK;
     if (name)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected one of those that adcgs-enc --help names", options[option].name,
-                          value);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected one of those that adcgs-enc --help names",
+                          options[option].name, value);
     return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected a number from %g to %g", options[option].name, value, min, max);
 }
 
@@ -82,8 +82,8 @@ static adcgs_status parse_axis(adcgs_sweep_grid *grid, const char *text, size_t 
         at += n;
     }
     if (!fine)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--grid: \"%.*s\": expected at most %d of NAME=A,B,C, with at most %d values each",
-                          (int)length, text, ADCGS_SWEEP_AXES, ADCGS_SWEEP_LIST);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--grid: \"%.*s\": expected at most %d of NAME=A,B,C, with at most %d values "
+                          "each", (int)length, text, ADCGS_SWEEP_AXES, ADCGS_SWEEP_LIST);
     for (int i = 0; i < grid->n; i++)
         if (!strcmp(grid->axis[i].name, axis.name))
             return adcgs_fail(error, ADCGS_ERR_USAGE, "--grid: %s is given twice", axis.name);
@@ -177,7 +177,9 @@ static adcgs_status check_choice(const char *choice, const char *preset, const c
     for (const char *at = choice; (at = adcgs_sweep_choice_next(at, name, value));)
         if (find_option(name) >= 0)
             ADCGS_TRY(check_option(find_option(name), value, error));
-    ADCGS_TRY(adcgs_train_preset(&config, adcgs_sweep_choice_find(choice, "preset", own) ? own : preset ? preset : "fast", error));
+    if (adcgs_sweep_choice_find(choice, "preset", own))
+        preset = own;
+    ADCGS_TRY(adcgs_train_preset(&config, preset ? preset : "fast", error));
     if (set)
         ADCGS_TRY(adcgs_train_set(&config, set, error));
     for (const char *at = choice; (at = adcgs_sweep_choice_next(at, name, value));) {

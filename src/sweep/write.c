@@ -50,8 +50,8 @@ static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const
     char path[ADCGS_SWEEP_PATH];
     snprintf(path, sizeof path, "%s/%s", sweep->directory, name);
     ADCGS_TRY(adcgs_atomic_open(file, path, error));
-    fprintf(file->file, "%s,lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,training_seconds,"
-            "frames_per_second,dynamic_psnr\n", first);
+    fprintf(file->file, "%s,lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,"
+            "training_seconds,frames_per_second,dynamic_psnr\n", first);
     return ADCGS_OK;
 }
 
