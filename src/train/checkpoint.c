@@ -17,7 +17,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 26 };
+enum { FORMAT = 27 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -146,6 +146,7 @@ static void walk_config(walk *w, adcgs_trainer *t)
 static void walk_scalars(walk *w, adcgs_trainer *t)
 {
     visit(w, &t->iteration, sizeof t->iteration);
+    visit(w, &t->rested, sizeof t->rested);
     visit(w, &t->weighed, sizeof t->weighed);
     visit(w, &t->slimmed, sizeof t->slimmed);
     visit(w, &t->decided, sizeof t->decided);

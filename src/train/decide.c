@@ -5,12 +5,14 @@
 #include "train/anchor_set.h"
 #include "train/floaters.h"
 #include "train/sample.h"
+#include "train/unchanging.h"
 
 #include <math.h>
 
 enum { DECIDE_TIMES = 16, DECIDE_VIEWS = 32 };
 #define FAINT_SHARE 0.1
 #define FAINT_MEAN 0.4
+#define CHANGING_SHARE 0.01F
 
 /**
  * What is drawn is as opaque as this in the mean, at most 1 of FAINT_MEAN. In a scene made of faint layers none of them moves by
@@ -96,6 +98,20 @@ static void clear_time_table(adcgs_fmodel *f)
         memset(values[i], 0, z->n * sizeof(float));
 }
 
+adcgs_status adcgs_rest_unchanging(adcgs_trainer *t, adcgs_error *error)
+{
+    const adcgs_fmodel *f = t->f;
+    if (!f->params.time_rows || !(t->config.still_below > 0))
+        return ADCGS_OK;
+    float *const share = adcgs_alloc(NULL, f->n, sizeof *share, error);
+    const adcgs_status status = share ? adcgs_changing_share(t, share, error) : adcgs_alloc_status(error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
+        if (share[i] >= 0 && share[i] <= CHANGING_SHARE && f->learns[i] != 0)
+            f->moving[i] = 0;
+    adcgs_free(NULL, share);
+    return status;
+}
+
 /** Mark the anchors that time does not touch. */
 static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
 {
@@ -103,10 +119,12 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
     float *effect = adcgs_alloc(NULL, f->n, sizeof *effect, error);
     if (!effect)
         return adcgs_alloc_status(error);
-    const adcgs_status status = measure_motion(t, effect, error);
+    adcgs_status status = measure_motion(t, effect, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
         if (effect[i] < t->config.still_below && f->learns[i] != 0)
             f->moving[i] = 0;
+    if (status == ADCGS_OK)
+        status = adcgs_rest_unchanging(t, error);
     if (f->is_part && !adcgs_fmodel_moves(f))
         clear_time_table(f);
     adcgs_free(NULL, effect);

@@ -15,6 +15,12 @@
  */
 adcgs_status adcgs_weigh_motion(adcgs_trainer *trainer, adcgs_error *error);
 
+/**
+ * Mark anchors as static that are drawn where the pictures of resting cameras never change. Done when rate begins, so that the
+ * rest of the run makes up for what had been drawn moved; by adcgs_decide() once more, since anchors have grown then.
+ */
+adcgs_status adcgs_rest_unchanging(adcgs_trainer *trainer, adcgs_error *error);
+
 /** Drop primitives that never matter and mark anchors that never move. */
 adcgs_status adcgs_decide(adcgs_trainer *trainer, adcgs_error *error);
 

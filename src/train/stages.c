@@ -42,6 +42,10 @@ static adcgs_status enter_stages(adcgs_trainer *t, double progress, adcgs_error 
     const adcgs_train_config *c = &t->config;
     if (progress >= adcgs_train_lambda_from(c))
         t->lambda_used = 1;
+    if (!t->rested && progress >= c->rate_from && !c->without_densification) {
+        t->rested = 1;
+        ADCGS_TRY(adcgs_rest_unchanging(t, error));
+    }
     if (!t->weighed && progress >= c->decide_at && !c->without_rate) { /* motion is found late: not before the other decisions */
         t->weighed = 1;
         if (t->iteration >= WEIGH_AFTER)

@@ -70,7 +70,7 @@ typedef struct adcgs_trainer {
     /* State that a checkpoint carries beside the model. */
     uint32_t iteration;
     uint8_t lambda_used;     /* lambda has had a say: the run is bound to it */
-    uint8_t weighed, slimmed, decided, tiered, rounding, frozen;
+    uint8_t rested, weighed, slimmed, decided, tiered, rounding, frozen;
     uint8_t released; /* times that it was asked which settled anchors should learn */
     uint8_t before[16]; /* digest of the model that this one goes on with; 0 without one */
     float lr_scale;

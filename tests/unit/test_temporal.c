@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Quality over time, against plain loops over whole videos and values known beforehand; views sorted by camera. */
 #include "data/by_camera.h"
+#include "metric/changes.h"
 #include "metric/metric.h"
 #include "metric/temporal.h"
 
@@ -270,11 +271,106 @@ static void test_cameras(void **state)
     assert_int_equal(n, 0);
 }
 
+/* ---- From what on changes count ---- */
+
+enum { MANY = 24 };
+
+/** Nearly normal, of variance 1. */
+static float normal_value(void)
+{
+    float sum = -6;
+    for (int i = 0; i < 12; i++)
+        sum += random_value();
+    return sum;
+}
+
+/** Grey with noise, of which a part grows brighter by so much over all pictures; the last value of all is masked at times. */
+static adcgs_changes *make_changes(float noise, float growth, int part)
+{
+    static float picture[VALUES];
+    adcgs_changes *c;
+    assert_int_equal(adcgs_changes_create(&c, W, H, &error), ADCGS_OK);
+    for (int t = 0; t < MANY; t++) {
+        for (int i = 0; i < VALUES; i++)
+            picture[i] = 0.4f + noise * normal_value() + (i < part ? growth * (float)t / (MANY - 1) : 0);
+        if (t % 2)
+            picture[VALUES - 1] = NAN;
+        adcgs_changes_add(c, picture);
+    }
+    return c;
+}
+
+static void test_noise(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const double noise = (double[]){0.002, 0.005, 0.01}[i];
+        adcgs_changes *still = make_changes((float)noise, 0, 0), *slow = make_changes((float)noise, 0.02f, VALUES);
+        const double found = adcgs_changes_noise(still);
+        assert_true(found > 0.4 * noise && found < noise);
+        assert_true(fabs(adcgs_changes_noise(slow) / found - 1) < 0.3); /* slow changes are none */
+        adcgs_changes_free(&still);
+        adcgs_changes_free(&slow);
+    }
+}
+
+/** A slow change that nobody would call motion counts where it is worth following, and only there. */
+static void test_worth(void **state)
+{
+    (void)state;
+    const double square = 0.08 * 0.08 / 12; /* of a value that grows by 0.08 */
+    adcgs_changes *c = make_changes(0.001f, 0.08f, VALUES);
+    assert_true(adcgs_changes_least(c, 0.02, 8 * square) == ADCGS_CHANGE_LEAST);
+    assert_true(adcgs_changes_least(c, 0.02, square) < 0.06);
+    assert_true(adcgs_changes_least(c, 0.07, square) == 0.07); /* what nobody sees is never followed */
+    adcgs_changes_free(&c);
+    c = make_changes(0.001f, 0.08f, 0);
+    assert_true(adcgs_changes_least(c, 0.02, 1e-4) == ADCGS_CHANGE_LEAST); /* there is nothing to follow */
+    adcgs_changes_free(&c);
+    c = make_changes(0.015f, 0.08f, VALUES / 2);
+    assert_true(adcgs_changes_least(c, 0.02, 1e-9) > 0.03); /* nor is noise */
+    adcgs_changes_free(&c);
+}
+
+/** What changes is found, and what is about it; of what changes much a single pixel, of what changes less only more of it. */
+static void test_changing_region(void **state)
+{
+    (void)state;
+    static float picture[VALUES];
+    uint8_t region[PLANE];
+    adcgs_changes *c;
+    assert_int_equal(adcgs_changes_create(&c, W, H, &error), ADCGS_OK);
+    for (int t = 0; t < MANY; t++) {
+        for (int i = 0; i < VALUES; i++)
+            picture[i] = 0.4f + 0.002f * normal_value();
+        if (t == 7)
+            picture[10 * W + 5] += 0.2f;          /* red of a pixel */
+        if (t == 8)
+            picture[PLANE + 10 * W + 20] += 0.12f; /* green of one, less */
+        for (int i = 0; t == 9 && i < 25; i++)
+            picture[2 * PLANE + (20 + i / 5) * W + 30 + i % 5] += 0.12f; /* blue of some */
+        adcgs_changes_add(c, picture);
+    }
+    adcgs_changes_region(c, 0.1, region);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const int at = region[y * W + x];
+            if (abs(x - 5) <= 3 && abs(y - 10) <= 3)
+                assert_int_equal(at, 1);
+            else if (abs(x - 32) > 5 || abs(y - 22) > 5)
+                assert_int_equal(at, 0);
+            else if (abs(x - 32) <= 2 && abs(y - 22) <= 2)
+                assert_int_equal(at, 1);
+        }
+    adcgs_changes_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_square), cmocka_unit_test(test_constant_shift),    cmocka_unit_test(test_blinking),
         cmocka_unit_test(test_still),  cmocka_unit_test(test_against_reference), cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_noise),  cmocka_unit_test(test_worth),             cmocka_unit_test(test_changing_region),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,6 +15,7 @@
 #include "train/black_level.h"
 #include "train/contrast.h"
 #include "train/decide.h"
+#include "train/unchanging.h"
 #include "train/densify.h"
 #include "train/initialise.h"
 #include "train/residual_densify.h"
@@ -434,6 +435,39 @@ static void faint_layers_move_together(void **state)
     print_message("%u move where things are opaque, %u where they are faint\n", opaque, faint);
     assert_int_equal(moving_anchors(&config, 0.5f), opaque);
     assert_true(faint > opaque);
+}
+
+/** Anchors that are drawn where no camera's pictures ever change are static, whatever networks make of them; others move. */
+static void what_never_changes_is_static(void **state)
+{
+    adcgs_train_config config = all_stages_config();
+    config.keep_opacity = 0;
+    config.params.spans = 0;
+    config.still_below = 1e-30f; /* all that the networks move at all */
+    adcgs_trainer *t = make(&config, pool);
+    uint32_t stop = 50, changing = 0, moving = 0;
+    run(t, stop_at, &stop);
+    const uint32_t n = t->f->n;
+    float *const share = malloc(n * sizeof *share);
+    assert_non_null(share);
+    assert_int_equal(adcgs_changing_share(t, share, &error), ADCGS_OK);
+    for (uint32_t i = 0; i < n; i++) {
+        assert_true(share[i] == -1 || (share[i] >= 0 && share[i] <= 1.0001f));
+        changing += share[i] < 0 || share[i] > 0.01f;
+        for (int j = 0; j < config.params.k; j++) {
+            t->stats.weight[adcgs_fmodel_slot(t->f, i, j)] = 1000.0f * (float)t->stats.n;
+            t->stats.opacity[adcgs_fmodel_slot(t->f, i, j)] = t->stats.presence[i];
+        }
+    }
+    free(share);
+    assert_int_equal(adcgs_decide(t, &error), ADCGS_OK);
+    assert_int_equal(t->f->n, n);
+    for (uint32_t i = 0; i < n; i++)
+        moving += t->f->moving[i] != 0;
+    print_message("%u of %u are drawn where something changes\n", changing, n);
+    assert_true(changing > 0 && changing < n);
+    assert_int_equal(moving, changing);
+    adcgs_trainer_free(&t);
 }
 
 /* ---- Recovery ---- */
@@ -1460,6 +1494,7 @@ int main(void)
         cmocka_unit_test(faint_primitives_go),
         cmocka_unit_test(what_faint_primitives_make_stays),
         cmocka_unit_test(faint_layers_move_together),
+        cmocka_unit_test(what_never_changes_is_static),
         cmocka_unit_test(no_number_is_rolled_back),
         cmocka_unit_test(no_number_is_rolled_back_late),
         cmocka_unit_test(lasting_poison_ends_the_run),

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Changes over time, value by value. */
+#include "config.h"
+
+#include "metric/changes.h"
+
+#include "metric/temporal.h"
+
+#include <math.h>
+
+/* Steps from one picture to the next are counted up to this, in bins. */
+#define STEP_MOST 0.1F
+enum { STEP_BINS = 1000 };
+/* Changes that are noise of most pixels, and of any, in its standard deviations. */
+#define NOISE_RANGE 5.0
+#define NOISE_ALONE 12.0
+/* What changes by so much more than least counts alone. */
+#define ALONE 1.5
+/* The share of errors below which nothing is worth following. */
+#define WORTH 0.25
+
+struct adcgs_changes {
+    int width, height;
+    size_t values;
+    float *low, *high, *last; /* [values] the least, the largest, the one before */
+    double *sum, *square;     /* [values] */
+    uint32_t *known;          /* [values] pictures in which it is a number */
+    uint64_t steps[STEP_BINS + 1];
+};
+
+void adcgs_changes_free(adcgs_changes **changes)
+{
+    adcgs_changes *c = *changes;
+    if (!c)
+        return;
+    adcgs_free(NULL, c->low);
+    adcgs_free(NULL, c->sum);
+    adcgs_free(NULL, c->known);
+    adcgs_free(NULL, c);
+    *changes = NULL;
+}
+
+adcgs_status adcgs_changes_create(adcgs_changes **out, int width, int height, adcgs_error *error)
+{
+    const size_t values = 3 * (size_t)width * (size_t)height;
+    adcgs_changes *c = *out = adcgs_alloc(NULL, 1, sizeof *c, error);
+    if (!c)
+        return adcgs_alloc_status(error);
+    c->width = width;
+    c->height = height;
+    c->values = values;
+    c->low = adcgs_alloc(NULL, 3 * values, sizeof *c->low, error);
+    c->sum = adcgs_alloc(NULL, 2 * values, sizeof *c->sum, error);
+    c->known = adcgs_alloc(NULL, values, sizeof *c->known, error);
+    if (!c->low || !c->sum || !c->known) {
+        adcgs_changes_free(out);
+        return adcgs_alloc_status(error);
+    }
+    c->high = c->low + values;
+    c->last = c->high + values;
+    c->square = c->sum + values;
+    return ADCGS_OK;
+}
+
+void adcgs_changes_add(adcgs_changes *c, const float *picture)
+{
+    for (size_t i = 0; i < c->values; i++) {
+        const float now = picture[i];
+        if (isnan(now))
+            continue;
+        const float step = fabsf(now - c->last[i]);
+        if (c->known[i])
+            c->steps[step < STEP_MOST ? (int)(step / STEP_MOST * STEP_BINS) : STEP_BINS]++;
+        c->low[i] = c->known[i] ? fminf(c->low[i], now) : now;
+        c->high[i] = c->known[i] ? fmaxf(c->high[i], now) : now;
+        c->last[i] = now;
+        c->sum[i] += (double)now;
+        c->square[i] += (double)now * (double)now;
+        c->known[i]++;
+    }
+}
+
+/** Steps of what is at rest are normal, with twice its variance; half of them, a quarter of all, lie below the bound. */
+double adcgs_changes_noise(const adcgs_changes *c)
+{
+    static const double bound = 0.6745 * 1.4142; /* in standard deviations of the noise */
+    uint64_t all = 0, sum = 0;
+    int i = 0;
+    for (int j = 0; j <= STEP_BINS; j++)
+        all += c->steps[j];
+    while (i < STEP_BINS && 4 * (sum += c->steps[i]) < all)
+        i++;
+    return (i + 0.5) * (double)STEP_MOST / STEP_BINS / bound;
+}
+
+/** Mean square, but for noise, of how far values that change by no more than `least` are from their own means. */
+static double spread_below(const adcgs_changes *c, double least, double noise)
+{
+    double sum = 0;
+    size_t n = 0;
+    for (size_t i = 0; i < c->values; i++) {
+        if (!c->known[i] || (double)c->high[i] - (double)c->low[i] > least)
+            continue;
+        const double mean = c->sum[i] / c->known[i];
+        sum += fmax(c->square[i] / c->known[i] - mean * mean - noise * noise, 0);
+        n++;
+    }
+    return n ? sum / (double)n : 0;
+}
+
+double adcgs_changes_least(const adcgs_changes *c, double unseen, double mse)
+{
+    const double noise = adcgs_changes_noise(c), low = fmin(fmax(NOISE_RANGE * noise, unseen), ADCGS_CHANGE_LEAST);
+    double least = ADCGS_CHANGE_LEAST;
+    while (least > low && spread_below(c, least, noise) > WORTH * mse)
+        least = fmax(low, least / 2);
+    return least;
+}
+
+/** The largest change of a pixel's channels. */
+static double change_of(const adcgs_changes *c, size_t pixel)
+{
+    const size_t plane = c->values / 3;
+    float most = 0;
+    for (size_t i = pixel; i < c->values; i += plane)
+        most = fmaxf(most, c->high[i] - c->low[i]);
+    return (double)most;
+}
+
+/** Pixels within `reach` of one along both axes that have any of the bits, of all that are. */
+static int count_near(const adcgs_changes *c, const uint8_t *region, int x, int y, int reach, int bits, int *all)
+{
+    int n = 0;
+    *all = 0;
+    for (int j = ADCGS_MAX(y - reach, 0); j <= ADCGS_MIN(y + reach, c->height - 1); j++)
+        for (int i = ADCGS_MAX(x - reach, 0); i <= ADCGS_MIN(x + reach, c->width - 1); i++, ++*all)
+            n += (region[(size_t)j * (size_t)c->width + (size_t)i] & bits) != 0;
+    return n;
+}
+
+void adcgs_changes_region(const adcgs_changes *c, double least, uint8_t *region)
+{
+    enum { CHANGES = 1, MOVES = 2, NEAR = 4 };
+    const double alone = fmax(ALONE * least, NOISE_ALONE * adcgs_changes_noise(c));
+    const size_t plane = c->values / 3;
+    int all;
+    for (size_t i = 0; i < plane; i++) {
+        const double change = change_of(c, i);
+        region[i] = (uint8_t)((change > least ? CHANGES : 0) | (change > alone ? MOVES : 0));
+    }
+    for (int y = 0; y < c->height; y++)
+        for (int x = 0; x < c->width; x++)
+            if (2 * count_near(c, region, x, y, ADCGS_CHANGE_NEAR, CHANGES, &all) > all)
+                region[(size_t)y * (size_t)c->width + (size_t)x] |= MOVES;
+    for (int y = 0; y < c->height; y++)
+        for (int x = 0; x < c->width; x++)
+            if (count_near(c, region, x, y, ADCGS_CHANGE_REACH, MOVES, &all))
+                region[(size_t)y * (size_t)c->width + (size_t)x] |= NEAR;
+    for (size_t i = 0; i < plane; i++)
+        region[i] = (region[i] & NEAR) != 0;
+}

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * How many of the anchors that show what never changes are static. FILE SCENE: a pixel of a camera that stays where it is and
+ * takes several pictures changes if the metric's dynamic region has it. An anchor shows what never changes if a hundredth of all
+ * that it is drawn with, over all pictures of all such cameras, lies there at most.
+ */
+#include "config.h"
+
+#include "data/scene.h"
+#include "grad/raster.h"
+#include "layouts/open.h"
+#include "metric/temporal.h"
+#include "splat/splat.h"
+#include "stream/input.h"
+#include "stream/stream.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define SHARE 0.01
+
+typedef struct still {
+    adcgs_stream stream;
+    adcgs_scene *scene;
+    adcgs_pool *pool;
+    adcgs_cpu_level cpu;
+    adcgs_splat *splat;
+    adcgs_raster *raster;
+    adcgs_raster_back *back;
+    double *drawn, *changing; /* [anchors] weights in all pixels, in those that change */
+    float *rows;              /* gradients of all slots */
+} still;
+
+static int same_camera(const adcgs_camera *a, const adcgs_camera *b)
+{
+    return !memcmp(a->cam_to_world, b->cam_to_world, sizeof a->cam_to_world) && a->width == b->width && a->height == b->height &&
+           !memcmp(&a->fx, &b->fx, sizeof a->fx);
+}
+
+/** Weights of a picture: the gradient of the red of pixels that change, by a primitive's red, is its weight there. */
+static adcgs_status add_picture(still *s, const adcgs_scene_view *v, const uint8_t *region, adcgs_error *error)
+{
+    const adcgs_model *const m = &s->stream.segments[0];
+    const size_t pixels = (size_t)v->camera.width * (size_t)v->camera.height;
+    float *const rgb = adcgs_alloc(NULL, 6 * pixels, sizeof *rgb, error), *const grad = rgb + 3 * pixels;
+    adcgs_primitives p;
+    adcgs_view view;
+    if (!rgb)
+        return adcgs_alloc_status(error);
+    memset(grad, 0, 3 * pixels * sizeof *grad);
+    for (size_t i = 0; i < pixels; i++)
+        grad[i] = region[i];
+    adcgs_status status = adcgs_view_init(&view, &v->camera, s->stream.scene_origin, s->stream.scene_scale, error);
+    if (status == ADCGS_OK)
+        status = adcgs_splat_at(s->splat, adcgs_splat_time(m, v->time), &p, error);
+    const float black[3] = {0, 0, 0};
+    if (status == ADCGS_OK)
+        status = adcgs_raster_forward(s->raster, &p, &view, black, s->stream.screen_filter, rgb, 1, error);
+    adcgs_raster_grads g = adcgs_raster_grads_of(s->rows, p.n);
+    g.screen = NULL;
+    if (status == ADCGS_OK)
+        status = adcgs_raster_backward(s->back, s->raster, &p, &view, black, s->stream.screen_filter, rgb, grad, &g, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < p.n; i++) {
+        const uint32_t anchor = i / (64 * (uint32_t)m->params.k) * 64 + i % 64;
+        if (anchor >= m->n)
+            continue;
+        s->drawn[anchor] += (double)g.weight[i];
+        s->changing[anchor] += (double)g.colour[0][i];
+    }
+    adcgs_free(NULL, rgb);
+    return status;
+}
+
+/** All views of the camera of view `first`, of which it is the first. */
+static adcgs_status add_camera(still *s, uint32_t first, adcgs_error *error)
+{
+    const adcgs_scene_view *const v = s->scene->views[ADCGS_SPLIT_TRAIN];
+    const uint32_t n = s->scene->n_views[ADCGS_SPLIT_TRAIN];
+    adcgs_temporal *temporal;
+    ADCGS_TRY(adcgs_temporal_create(&temporal, v[first].camera.width, v[first].camera.height, error));
+    adcgs_status status = ADCGS_OK;
+    for (uint32_t i = first; status == ADCGS_OK && i < n; i++) {
+        adcgs_camera camera;
+        float *rgb = NULL;
+        if (!same_camera(&v[i].camera, &v[first].camera))
+            continue;
+        status = adcgs_scene_load(s->scene, &v[i], 1, &rgb, &camera, error);
+        if (status == ADCGS_OK)
+            adcgs_temporal_look(temporal, rgb);
+        free(rgb);
+    }
+    if (status == ADCGS_OK)
+        status = adcgs_temporal_find_region(temporal, error);
+    for (uint32_t i = first; status == ADCGS_OK && i < n; i++)
+        if (same_camera(&v[i].camera, &v[first].camera))
+            status = add_picture(s, &v[i], adcgs_temporal_region(temporal), error);
+    adcgs_temporal_free(&temporal);
+    return status;
+}
+
+static adcgs_status add_cameras(still *s, uint32_t *cameras, adcgs_error *error)
+{
+    const adcgs_scene_view *const v = s->scene->views[ADCGS_SPLIT_TRAIN];
+    for (uint32_t i = 0; i < s->scene->n_views[ADCGS_SPLIT_TRAIN]; i++) {
+        uint32_t before = 0, behind = i + 1;
+        while (before < i && !same_camera(&v[before].camera, &v[i].camera))
+            before++;
+        while (behind < s->scene->n_views[ADCGS_SPLIT_TRAIN] && !same_camera(&v[behind].camera, &v[i].camera))
+            behind++;
+        if (before < i || behind == s->scene->n_views[ADCGS_SPLIT_TRAIN])
+            continue;
+        ADCGS_TRY(add_camera(s, i, error));
+        ++*cameras;
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status measure(still *s, adcgs_error *error)
+{
+    const adcgs_model *const m = &s->stream.segments[0];
+    const size_t slots = ((size_t)m->n + 63) / 64 * 64 * (size_t)m->params.k;
+    uint32_t cameras = 0, seen = 0, all = 0, shows = 0, is_static = 0;
+    s->drawn = calloc(2 * (size_t)m->n, sizeof *s->drawn);
+    s->rows = adcgs_alloc(NULL, ADCGS_GRAD_ROWS * slots, sizeof *s->rows, error);
+    if (!s->drawn || !s->rows)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
+    s->changing = s->drawn + m->n;
+    ADCGS_TRY(adcgs_splat_create(&s->splat, m, s->cpu, s->pool, NULL, error));
+    ADCGS_TRY(adcgs_raster_create(&s->raster, s->cpu, s->pool, NULL, error));
+    ADCGS_TRY(adcgs_raster_back_create(&s->back, s->cpu, s->pool, error));
+    ADCGS_TRY(add_cameras(s, &cameras, error));
+    for (uint32_t i = 0; i < m->n; i++) {
+        const int still_here = !m->params.time_rows || m->is_static[i];
+        if (!(s->drawn[i] > 0))
+            continue;
+        seen++;
+        all += still_here != 0;
+        if (s->changing[i] > SHARE * s->drawn[i])
+            continue;
+        shows++;
+        is_static += still_here != 0;
+    }
+    printf("%u cameras; %u of %u anchors are seen, %u of them static; %u show what never changes, of these %u static (%.1f %%)\n",
+           cameras, seen, m->n, all, shows, is_static, shows ? 100.0 * is_static / shows : 0);
+    return ADCGS_OK;
+}
+
+static adcgs_status run(still *s, const char *path, const char *scene, adcgs_error *error)
+{
+    const adcgs_read_options options = {.cpu = s->cpu, .pool = s->pool};
+    const adcgs_scene_options any = {0};
+    FILE *const file = fopen(path, "rb");
+    if (!file)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s", path, strerror(errno));
+    const adcgs_status status = adcgs_stream_read(&s->stream, adcgs_file_read, file, &options, NULL, NULL, error);
+    fclose(file);
+    ADCGS_TRY(status);
+    ADCGS_TRY(adcgs_scene_open(&s->scene, scene, &any, error));
+    return measure(s, error);
+}
+
+int main(int argc, char **argv)
+{
+    still s = {.scene = NULL};
+    adcgs_error error;
+    if (argc != 3) {
+        fprintf(stderr, "expected FILE SCENE\n");
+        return 2;
+    }
+    adcgs_stream_init(&s.stream);
+    adcgs_status status = adcgs_cpu_resolve(ADCGS_CPU_AUTO, &s.cpu, &error);
+    if (status == ADCGS_OK)
+        status = run(&s, argv[1], argv[2], &error);
+    if (status != ADCGS_OK)
+        fprintf(stderr, "%s\n", error.text);
+    adcgs_splat_free(&s.splat);
+    adcgs_raster_free(&s.raster);
+    adcgs_raster_back_free(&s.back);
+    adcgs_free(NULL, s.rows);
+    free(s.drawn);
+    adcgs_scene_free(&s.scene);
+    adcgs_stream_clear(&s.stream, NULL);
+    return status == ADCGS_OK ? 0 : 1;
+}
