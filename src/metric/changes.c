@@ -93,13 +93,14 @@ double adcgs_changes_noise(const adcgs_changes *c)
     return (i + 0.5) * (double)STEP_MOST / STEP_BINS / bound;
 }
 
-/** Mean square, but for noise, of how far values that change by no more than `least` are from their own means. */
-static double spread_below(const adcgs_changes *c, double least, double noise)
+/** Mean square, but for noise, of how far values that change by more than `low` and no more than `least` are from their means. */
+static double spread_between(const adcgs_changes *c, double low, double least, double noise)
 {
     double sum = 0;
     size_t n = 0;
     for (size_t i = 0; i < c->values; i++) {
-        if (!c->known[i] || (double)c->high[i] - (double)c->low[i] > least)
+        const double change = (double)c->high[i] - (double)c->low[i];
+        if (!c->known[i] || change <= low || change > least)
             continue;
         const double mean = c->sum[i] / c->known[i];
         sum += fmax(c->square[i] / c->known[i] - mean * mean - noise * noise, 0);
@@ -112,7 +113,7 @@ double adcgs_changes_least(const adcgs_changes *c, double unseen, double mse)
 {
     const double noise = adcgs_changes_noise(c), low = fmin(fmax(NOISE_RANGE * noise, unseen), ADCGS_CHANGE_LEAST);
     double least = ADCGS_CHANGE_LEAST;
-    while (least > low && spread_below(c, least, noise) > WORTH * mse)
+    while (least > low && spread_between(c, low, least, noise) > WORTH * mse)
         least = fmax(low, least / 2);
     return least;
 }

@@ -1,0 +1,37 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Speed against accuracy against bytes: make -C build charts. adcgs-sweep codes each scene that is at hand with several lambdas
+# and several numbers of iterations, one thread, seed 1. Each scene's page is index.html in its folder; what doc/results shows of
+# it is gathered in the folder kept: charts, and the figures as CSV. What is there already is kept, so that it can go on. Folders
+# are seen from the build folder.
+#   CHARTS      folder of all of it (default charts)
+#   SCENES      of doc/scenes.sh, by their short names (default "demo cross80 room hand")
+#   LAMBDAS     default 0.1,0.4
+#   ITERATIONS  default 400,1200,3600
+#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+set -eu
+source=$(cd "${srcdir:-.}" && pwd)
+out=${CHARTS:-charts}
+failed=0
+mkdir -p "$out/scenes" "$out/kept"
+. "$source/doc/scenes.sh"
+
+# charts TITLE SCENE NAME WEIGHT
+charts()
+{
+    scene=$2 name=$3
+    case " ${SCENES:-demo cross80 room hand} " in *" $name "*) ;; *) return 0 ;; esac
+    [ -e "$scene" ] || { echo "charts: no $scene, left out" >&2; return 0; }
+    echo "charts: $name" >&2
+    ./adcgs-sweep "$scene" -o "$out/$name" -l "${LAMBDAS:-0.1,0.4}" --grid "iterations=${ITERATIONS:-400,1200,3600}" -t 1 \
+        --set tiers=1 --seeds 1 --yardsticks none --resume >"$out/$name.txt" ||
+        { echo "charts: $name failed" >&2; failed=1; return 0; }
+    for chart in rate time time-moving bytes; do
+        [ ! -e "$out/$name/$chart.svg" ] || cp "$out/$name/$chart.svg" "$out/kept/$name-$chart.svg"
+    done
+    cp "$out/$name/sweep.csv" "$out/kept/$name.csv"
+}
+
+make_scenes "$out/scenes"
+each_scene "$out/scenes" "${ADCGS_DATA:-$source/../shared/data}" charts
+exit $failed
