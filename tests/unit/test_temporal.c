@@ -324,6 +324,9 @@ static void test_worth(void **state)
     assert_true(adcgs_changes_least(c, 0.02, square) < 0.06);
     assert_true(adcgs_changes_least(c, 0.07, square) == 0.07); /* what nobody sees is never followed */
     adcgs_changes_free(&c);
+    c = make_changes(0.001f, 0.08f, VALUES / 50); /* nor is it lost among what rests */
+    assert_true(adcgs_changes_least(c, 0.02, square) < 0.06);
+    adcgs_changes_free(&c);
     c = make_changes(0.001f, 0.08f, 0);
     assert_true(adcgs_changes_least(c, 0.02, 1e-4) == ADCGS_CHANGE_LEAST); /* there is nothing to follow */
     adcgs_changes_free(&c);
