@@ -148,8 +148,8 @@ static void keep_picked(const char *folder, adcgs_sweep_picture picture[ADCGS_SW
             continue;
         snprintf(path, sizeof path, "%s/%s", folder, file->d_name);
         for (int i = 0; i < ADCGS_SWEEP_PICTURES; i++)
-            if (index == picture[i].index && (link(path, picture[i].path) == 0 || access(picture[i].path, R_OK) == 0))
-                picture[i].is_there = 1;
+            if (index == picture[i].index) /* both, where there is one view; not all file systems have links */
+                picture[i].is_there = link(path, picture[i].path) == 0 || rename(path, picture[i].path) == 0;
         unlink(path);
     }
     if (files)
