@@ -2,120 +2,16 @@
 /** \file One run of a sweep: starts the encoder, the evaluation and the compressors, keeps what they report. */
 #include "config.h"
 
-#include "sweep/sweep.h"
+#include "sweep/command.h"
 
 #include "cli/text.h"
 #include "data/camera_json.h"
 #include "io/atomic.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
-
-/* ---- Child processes ---- */
-
-static void redirect(const char *path, int descriptor, int flags)
-{
-    const int file = open(path, O_WRONLY | O_CREAT | flags, 0666);
-    if (file < 0 || dup2(file, descriptor) < 0)
-        _exit(126);
-    close(file);
-}
-
-adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *log, int *exit_code, adcgs_error *error)
-{
-    int state = 0;
-    const pid_t child = fork();
-    if (child < 0)
-        return adcgs_fail(error, ADCGS_ERR_IO, "cannot start %s: %s", argv[0], strerror(errno));
-    if (child == 0) {
-        if (out)
-            redirect(out, STDOUT_FILENO, O_TRUNC);
-        if (log)
-            redirect(log, STDERR_FILENO, O_APPEND);
-        execvp(argv[0], argv);
-        _exit(127);
-    }
-    while (waitpid(child, &state, 0) < 0)
-        if (errno != EINTR)
-            return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s", argv[0], strerror(errno));
-    *exit_code = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
-    return ADCGS_OK;
-}
-
-/** A command line under construction. Numbers live in text, strings where they come from. */
-typedef struct command {
-    char *argv[48];
-    int n, n_text, n_chosen;
-    char text[8][40], set[ADCGS_SWEEP_PATH];
-    char name[ADCGS_SWEEP_AXES][ADCGS_SWEEP_NAME + 2], value[ADCGS_SWEEP_AXES][ADCGS_SWEEP_NAME]; /* of the choice */
-} command;
-
-static void word(command *c, const char *text)
-{
-    if (c->n + 1 < (int)ADCGS_COUNTOF(c->argv))
-        c->argv[c->n++] = (char *)(uintptr_t)text; /* exec takes pointers to char and leaves the characters alone */
-    c->argv[c->n] = NULL;
-}
-
-/** An option with its value; nothing without one. */
-static void option(command *c, const char *name, const char *value)
-{
-    if (!value || !*value)
-        return;
-    word(c, name);
-    word(c, value);
-}
-
-/** An option with a number, if it is at least `from`. */
-static void number_option(command *c, const char *name, double value, double from)
-{
-    if (value < from || c->n_text == (int)ADCGS_COUNTOF(c->text))
-        return;
-    char *const text = c->text[c->n_text++];
-    snprintf(text, sizeof c->text[0], "%.17g", value);
-    option(c, name, text);
-}
-
-/** An option of the choice, if it is of those in `only`; NULL: of all. */
-static void choice_options(command *c, const adcgs_sweep_run *run, const char *const *only)
-{
-    char name[ADCGS_SWEEP_NAME];
-    for (const char *at = run->choice; (at = adcgs_sweep_choice_next(at, name, c->value[c->n_chosen]));) {
-        const char *const *wanted = only;
-        while (wanted && *wanted && strcmp(*wanted, name) != 0)
-            wanted++;
-        if (!adcgs_sweep_axis_is_option(name) || (wanted && !*wanted))
-            continue;
-        snprintf(c->name[c->n_chosen], sizeof c->name[0], "--%s", name);
-        option(c, c->name[c->n_chosen], c->value[c->n_chosen]);
-        if (++c->n_chosen == ADCGS_SWEEP_AXES)
-            return;
-    }
-}
-
-/** Settings of all runs, and those of the choice behind them. */
-static void settings_option(command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run)
-{
-    char name[ADCGS_SWEEP_NAME], value[ADCGS_SWEEP_NAME];
-    int n = snprintf(c->set, sizeof c->set, "%s", sweep->set ? sweep->set : "");
-    for (const char *at = run->choice; (at = adcgs_sweep_choice_next(at, name, value)) && n < (int)sizeof c->set;)
-        if (!adcgs_sweep_axis_is_option(name))
-            n += snprintf(c->set + n, sizeof c->set - (size_t)n, "%s%s=%s", n ? "," : "", name, value);
-    option(c, "--set", c->set);
-}
-
-/** The threads of all runs, unless each choice has its own. */
-static void threads_option(command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run)
-{
-    char value[ADCGS_SWEEP_NAME];
-    if (!adcgs_sweep_choice_find(run->choice, "threads", value))
-        number_option(c, "--threads", sweep->threads, 1);
-}
 
 /* ---- Files of a run ---- */
 
@@ -183,7 +79,7 @@ static int same_settings(const adcgs_sweep *sweep, const adcgs_sweep_run *run, c
 
 /* ---- Running ---- */
 
-static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const command *c, const char *out,
+static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const adcgs_command *c, const char *out,
                          adcgs_error *error)
 {
     char log[ADCGS_SWEEP_PATH];
@@ -221,7 +117,7 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
         raw[ADCGS_SWEEP_PATH];
     char own[ADCGS_SWEEP_NAME];
     int unfinished;
-    command c = {.n = 0};
+    adcgs_command c = {.n = 0};
     ADCGS_TRY(find_unfinished(sweep, run, &unfinished, error));
     snprintf(program, sizeof program, "%s/adcgs-enc", sweep->programs);
     path_of(file, sweep, run, run->beginning ? ".checkpoint" : ".adcgs");
@@ -229,65 +125,65 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
     path_of(raw, sweep, run, ".raw");
     if (from)
         path_of(begin, sweep, from, ".checkpoint");
-    word(&c, program);
-    option(&c, run->beginning ? "--beginning" : "--output", file);
-    option(&c, "--checkpoint", partial);
-    option(&c, "--resume", unfinished ? partial : from ? begin : NULL);
-    option(&c, "--preset", adcgs_sweep_choice_find(run->choice, "preset", own) ? NULL : sweep->preset);
-    choice_options(&c, run, NULL);
-    settings_option(&c, sweep, run);
-    option(&c, "--dataset", sweep->dataset);
-    option(&c, "--frames", sweep->frames);
-    option(&c, "--without", run->without);
-    option(&c, "--uncompressed", run->uncompressed ? raw : NULL);
-    number_option(&c, "--lambda", run->lambda, 0);
-    number_option(&c, "--seed", run->seed, 0);
-    number_option(&c, "--iterations", sweep->iterations, 1);
-    threads_option(&c, sweep, run);
-    word(&c, "--json");
-    word(&c, "--");
-    word(&c, sweep->scene);
+    adcgs_command_word(&c, program);
+    adcgs_command_option(&c, run->beginning ? "--beginning" : "--output", file);
+    adcgs_command_option(&c, "--checkpoint", partial);
+    adcgs_command_option(&c, "--resume", unfinished ? partial : from ? begin : NULL);
+    adcgs_command_option(&c, "--preset", adcgs_sweep_choice_find(run->choice, "preset", own) ? NULL : sweep->preset);
+    adcgs_command_choice(&c, run, NULL);
+    adcgs_command_settings(&c, sweep, run);
+    adcgs_command_option(&c, "--dataset", sweep->dataset);
+    adcgs_command_option(&c, "--frames", sweep->frames);
+    adcgs_command_option(&c, "--without", run->without);
+    adcgs_command_option(&c, "--uncompressed", run->uncompressed ? raw : NULL);
+    adcgs_command_number(&c, "--lambda", run->lambda, 0);
+    adcgs_command_number(&c, "--seed", run->seed, 0);
+    adcgs_command_number(&c, "--iterations", sweep->iterations, 1);
+    adcgs_command_threads(&c, sweep, run);
+    adcgs_command_word(&c, "--json");
+    adcgs_command_word(&c, "--");
+    adcgs_command_word(&c, sweep->scene);
     return call(sweep, run, &c, out, error);
 }
 
 /** A command line that evaluates a run, but for what it evaluates; program and file are the caller's to hold. */
-static void begin_evaluation(command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run, char program[ADCGS_SWEEP_PATH],
-                             char file[ADCGS_SWEEP_PATH])
+static void begin_evaluation(adcgs_command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run,
+                             char program[ADCGS_SWEEP_PATH], char file[ADCGS_SWEEP_PATH])
 {
     static const char *const of_speed[] = {"threads", "cpu", NULL};
     snprintf(program, ADCGS_SWEEP_PATH, "%s/adcgs-eval", sweep->programs);
     path_of(file, sweep, run, ".adcgs");
-    word(c, program);
-    option(c, "--dataset", sweep->dataset);
-    option(c, "--frames", sweep->frames);
-    choice_options(c, run, of_speed);
-    threads_option(c, sweep, run);
+    adcgs_command_word(c, program);
+    adcgs_command_option(c, "--dataset", sweep->dataset);
+    adcgs_command_option(c, "--frames", sweep->frames);
+    adcgs_command_choice(c, run, of_speed);
+    adcgs_command_threads(c, sweep, run);
 }
 
 static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *out, adcgs_error *error)
 {
     char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH];
-    command c = {.n = 0};
+    adcgs_command c = {.n = 0};
     begin_evaluation(&c, sweep, run, program, file);
-    option(&c, "--metrics", "dynamic-psnr");
-    word(&c, "--json");
-    word(&c, "--");
-    word(&c, file);
-    word(&c, sweep->scene);
+    adcgs_command_option(&c, "--metrics", "dynamic-psnr");
+    adcgs_command_word(&c, "--json");
+    adcgs_command_word(&c, "--");
+    adcgs_command_word(&c, file);
+    adcgs_command_word(&c, sweep->scene);
     return call(sweep, run, &c, out, error);
 }
 
 adcgs_status adcgs_sweep_draw_views(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *folder, adcgs_error *error)
 {
-    command c = {.n = 0};
+    adcgs_command c = {.n = 0};
     char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH];
     begin_evaluation(&c, sweep, run, program, file);
-    option(&c, "--images", folder);
-    word(&c, "--beside");
-    word(&c, "--quiet");
-    word(&c, "--");
-    word(&c, file);
-    word(&c, sweep->scene);
+    adcgs_command_option(&c, "--images", folder);
+    adcgs_command_word(&c, "--beside");
+    adcgs_command_word(&c, "--quiet");
+    adcgs_command_word(&c, "--");
+    adcgs_command_word(&c, file);
+    adcgs_command_word(&c, sweep->scene);
     return call(sweep, run, &c, "/dev/null", error);
 }
 
@@ -296,15 +192,15 @@ static adcgs_status compress(const adcgs_sweep *sweep, const adcgs_sweep_run *ru
                              const char *suffix, adcgs_error *error)
 {
     char raw[ADCGS_SWEEP_PATH], packed[ADCGS_SWEEP_PATH], log[ADCGS_SWEEP_PATH];
-    command c = {.n = 0};
+    adcgs_command c = {.n = 0};
     int code = 0;
     path_of(raw, sweep, run, ".raw");
     path_of(packed, sweep, run, suffix);
     path_of(log, sweep, run, ".log");
-    word(&c, program);
-    word(&c, level);
-    word(&c, "-c");
-    word(&c, raw);
+    adcgs_command_word(&c, program);
+    adcgs_command_word(&c, level);
+    adcgs_command_word(&c, "-c");
+    adcgs_command_word(&c, raw);
     ADCGS_TRY(adcgs_sweep_spawn(c.argv, packed, log, &code, error));
     if (code != 0)
         unlink(packed);
