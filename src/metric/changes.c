@@ -4,6 +4,7 @@
 
 #include "metric/changes.h"
 
+#include "metric/region.h"
 #include "metric/temporal.h"
 
 #include <math.h>
@@ -128,35 +129,19 @@ static double change_of(const adcgs_changes *c, size_t pixel)
     return (double)most;
 }
 
-/** Pixels within `reach` of one along both axes that have any of the bits, of all that are. */
-static int count_near(const adcgs_changes *c, const uint8_t *region, int x, int y, int reach, int bits, int *all)
+adcgs_status adcgs_changes_region(const adcgs_changes *c, double least, uint8_t *region, adcgs_error *error)
 {
-    int n = 0;
-    *all = 0;
-    for (int j = ADCGS_MAX(y - reach, 0); j <= ADCGS_MIN(y + reach, c->height - 1); j++)
-        for (int i = ADCGS_MAX(x - reach, 0); i <= ADCGS_MIN(x + reach, c->width - 1); i++, ++*all)
-            n += (region[(size_t)j * (size_t)c->width + (size_t)i] & bits) != 0;
-    return n;
-}
-
-void adcgs_changes_region(const adcgs_changes *c, double least, uint8_t *region)
-{
-    enum { CHANGES = 1, MOVES = 2, NEAR = 4 };
     const double alone = fmax(ALONE * least, NOISE_ALONE * adcgs_changes_noise(c));
     const size_t plane = c->values / 3;
-    int all;
-    for (size_t i = 0; i < plane; i++) {
-        const double change = change_of(c, i);
-        region[i] = (uint8_t)((change > least ? CHANGES : 0) | (change > alone ? MOVES : 0));
-    }
-    for (int y = 0; y < c->height; y++)
-        for (int x = 0; x < c->width; x++)
-            if (2 * count_near(c, region, x, y, ADCGS_CHANGE_NEAR, CHANGES, &all) > all)
-                region[(size_t)y * (size_t)c->width + (size_t)x] |= MOVES;
-    for (int y = 0; y < c->height; y++)
-        for (int x = 0; x < c->width; x++)
-            if (count_near(c, region, x, y, ADCGS_CHANGE_REACH, MOVES, &all))
-                region[(size_t)y * (size_t)c->width + (size_t)x] |= NEAR;
+    uint8_t *const scratch = adcgs_alloc(NULL, plane, 1, error);
+    if (!scratch)
+        return adcgs_alloc_status(error);
     for (size_t i = 0; i < plane; i++)
-        region[i] = (region[i] & NEAR) != 0;
+        region[i] = change_of(c, i) > least;
+    adcgs_region_majority(region, scratch, c->width, c->height, ADCGS_CHANGE_NEAR);
+    for (size_t i = 0; i < plane; i++)
+        region[i] |= change_of(c, i) > alone;
+    adcgs_region_dilate(region, scratch, c->width, c->height, ADCGS_CHANGE_REACH);
+    adcgs_free(NULL, scratch);
+    return ADCGS_OK;
 }

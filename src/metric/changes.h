@@ -35,6 +35,6 @@ double adcgs_changes_least(const adcgs_changes *changes, double unseen, double m
  * has to change, too, and what is farther about is taken in; but what changes by half as much more, and by much more than noise,
  * counts alone, so that nothing is too small to move.
  */
-void adcgs_changes_region(const adcgs_changes *changes, double least, uint8_t *region);
+adcgs_status adcgs_changes_region(const adcgs_changes *changes, double least, uint8_t *region, adcgs_error *error);
 
 #endif

@@ -9,6 +9,7 @@
 #include "metric/temporal.h"
 
 #include "metric/metric.h"
+#include "metric/region.h"
 
 #include <math.h>
 
@@ -77,50 +78,6 @@ void adcgs_temporal_look(adcgs_temporal *t, const float *truth)
     t->looked++;
 }
 
-/** out: of n values in, `stride` apart, the sums of those that are within `reach`. */
-static void sum_near(const uint8_t *in, uint8_t *out, int n, size_t stride, int reach)
-{
-    for (int i = 0; i < n; i++) {
-        const int last = ADCGS_MIN(i + reach, n - 1);
-        uint8_t sum = 0;
-        for (int j = ADCGS_MAX(i - reach, 0); j <= last; j++)
-            sum = (uint8_t)(sum + in[(size_t)j * stride]);
-        out[(size_t)i * stride] = sum;
-    }
-}
-
-/** The region becomes the numbers of its pixels within a square of 2 reach + 1 about each; scratch is as large. */
-static void count_near(adcgs_temporal *t, uint8_t *scratch, int reach)
-{
-    const size_t width = (size_t)t->width;
-    for (size_t y = 0; y < (size_t)t->height; y++)
-        sum_near(t->region + y * width, scratch + y * width, t->width, 1, reach);
-    for (size_t x = 0; x < width; x++)
-        sum_near(scratch + x, t->region + x, t->height, width, reach);
-}
-
-/** How many of n pixels in a row are within `reach` of the i-th. */
-static int row_near(int i, int n, int reach)
-{
-    return ADCGS_MIN(i + reach, n - 1) - ADCGS_MAX(i - reach, 0) + 1;
-}
-
-/** From pixels that change to the region: those that most of their neighbours go with, and what is near them. */
-static void grow_region(adcgs_temporal *t, uint8_t *scratch)
-{
-    count_near(t, scratch, ADCGS_CHANGE_NEAR);
-    for (size_t i = 0; i < t->plane; i++) {
-        const int x = (int)(i % (size_t)t->width), y = (int)(i / (size_t)t->width);
-        const int all = row_near(x, t->width, ADCGS_CHANGE_NEAR) * row_near(y, t->height, ADCGS_CHANGE_NEAR);
-        t->region[i] = 2 * t->region[i] > all;
-    }
-    count_near(t, scratch, ADCGS_CHANGE_REACH);
-    for (size_t i = 0; i < t->plane; i++) {
-        t->region[i] = t->region[i] > 0;
-        t->moving += t->region[i];
-    }
-}
-
 adcgs_status adcgs_temporal_find_region(adcgs_temporal *t, adcgs_error *error)
 {
     uint8_t *scratch = adcgs_alloc(NULL, t->plane, 1, error);
@@ -134,7 +91,10 @@ adcgs_status adcgs_temporal_find_region(adcgs_temporal *t, adcgs_error *error)
     for (size_t i = 0; i < 3 * t->plane; i++)
         t->region[i % t->plane] |= (double)t->high[i] - (double)t->low[i] > ADCGS_CHANGE_LEAST;
     free_range(t);
-    grow_region(t, scratch);
+    adcgs_region_majority(t->region, scratch, t->width, t->height, ADCGS_CHANGE_NEAR);
+    adcgs_region_dilate(t->region, scratch, t->width, t->height, ADCGS_CHANGE_REACH);
+    for (size_t i = 0; i < t->plane; i++)
+        t->moving += t->region[i];
     adcgs_free(NULL, scratch);
     return ADCGS_OK;
 }

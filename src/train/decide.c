@@ -101,7 +101,7 @@ static void clear_time_table(adcgs_fmodel *f)
 adcgs_status adcgs_rest_unchanging(adcgs_trainer *t, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
-    if (!f->params.time_rows || !(t->config.still_below > 0))
+    if (!adcgs_fmodel_moves(f) || !(t->config.still_below > 0))
         return ADCGS_OK;
     float *const share = adcgs_alloc(NULL, f->n, sizeof *share, error);
     const adcgs_status status = share ? adcgs_changing_share(t, share, error) : adcgs_alloc_status(error);

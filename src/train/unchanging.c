@@ -2,6 +2,7 @@
 /** \file Where the pictures of a camera never change, and what is drawn there. */
 #include "train/unchanging.h"
 
+#include "data/by_camera.h"
 #include "metric/changes.h"
 #include "train/anchor_set.h"
 #include "train/views.h"
@@ -11,34 +12,19 @@ enum { PICTURES_LEAST = 4, PICTURES_DRAWN = 4 };
 /* Changes that nobody sees, in standard deviations of all pictures' values. */
 #define UNSEEN 0.2
 
-static int same_camera(const adcgs_view *a, const adcgs_view *b)
-{
-    return a->width == b->width && a->height == b->height && !memcmp(a->rotation, b->rotation, sizeof a->rotation) &&
-           !memcmp(a->translation, b->translation, sizeof a->translation) && !memcmp(&a->fx, &b->fx, 4 * sizeof a->fx);
-}
-
-/** The next view of a view's camera; n_views if there is none. */
-static uint32_t next_of_camera(const adcgs_trainer *t, uint32_t view)
-{
-    uint32_t i = view + 1;
-    while (i < t->n_views && !same_camera(&t->views[i].view, &t->views[view].view))
-        i++;
-    return i;
-}
-
-/** Where the pictures of the camera of view `first` change: [height][width]. */
-static adcgs_status find_changing(const adcgs_trainer *t, uint32_t first, uint8_t *region, adcgs_error *error)
+/** Where the pictures of a camera, its n views in ascending time, change: [height][width]. */
+static adcgs_status find_changing(const adcgs_trainer *t, const uint32_t *view, uint32_t n, uint8_t *region, adcgs_error *error)
 {
     adcgs_changes *changes;
-    ADCGS_TRY(adcgs_changes_create(&changes, t->views[first].view.width, t->views[first].view.height, error));
+    ADCGS_TRY(adcgs_changes_create(&changes, t->views[view[0]].view.width, t->views[view[0]].view.height, error));
     adcgs_status status = ADCGS_OK;
-    for (uint32_t i = first; status == ADCGS_OK && i < t->n_views; i = next_of_camera(t, i)) {
-        status = adcgs_pictures_get(t->pictures, i, t->taken, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < n; i++) {
+        status = adcgs_pictures_get(t->pictures, view[i], t->taken, error);
         if (status == ADCGS_OK)
             adcgs_changes_add(changes, t->taken);
     }
     if (status == ADCGS_OK)
-        adcgs_changes_region(changes, adcgs_changes_least(changes, UNSEEN * t->contrast, t->mean_mse), region);
+        status = adcgs_changes_region(changes, adcgs_changes_least(changes, UNSEEN * t->contrast, t->mean_mse), region, error);
     adcgs_changes_free(&changes);
     return status;
 }
@@ -66,36 +52,46 @@ static adcgs_status add_picture(adcgs_trainer *t, const adcgs_train_view *v, con
     return ADCGS_OK;
 }
 
-/** Some of the n pictures of the camera of view `first`, evenly chosen. */
-static adcgs_status add_camera(adcgs_trainer *t, uint32_t first, uint32_t n, float *drawn, float *changing, adcgs_error *error)
+/** Some of a camera's n pictures, evenly chosen. */
+static adcgs_status add_camera(adcgs_trainer *t, const uint32_t *view, uint32_t n, float *drawn, float *changing,
+                               adcgs_error *error)
 {
-    const size_t pixels = (size_t)t->views[first].view.width * (size_t)t->views[first].view.height;
-    uint8_t *const region = adcgs_alloc(NULL, pixels, 1, error);
-    uint32_t seen = 0;
-    adcgs_status status = region ? find_changing(t, first, region, error) : adcgs_alloc_status(error);
-    for (uint32_t i = first; status == ADCGS_OK && i < t->n_views; i = next_of_camera(t, i), seen++)
-        if (seen * PICTURES_DRAWN / n != (seen + 1) * PICTURES_DRAWN / n)
-            status = add_picture(t, &t->views[i], region, drawn, changing, error);
+    const adcgs_view *const camera = &t->views[view[0]].view;
+    uint8_t *const region = adcgs_alloc(NULL, (size_t)camera->width * (size_t)camera->height, 1, error);
+    adcgs_status status = region ? find_changing(t, view, n, region, error) : adcgs_alloc_status(error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
+        if (i * PICTURES_DRAWN / n != (i + 1) * PICTURES_DRAWN / n)
+            status = add_picture(t, &t->views[view[i]], region, drawn, changing, error);
     adcgs_free(NULL, region);
     return status;
+}
+
+/** All cameras that take enough pictures. of, order: room for a number of each view. */
+static adcgs_status add_cameras(adcgs_trainer *t, uint32_t *of, uint32_t *order, float *drawn, float *changing,
+                                adcgs_error *error)
+{
+    uint32_t cameras, n;
+    ADCGS_TRY(adcgs_sort_by_camera(t->scene->views[ADCGS_SPLIT_TRAIN], t->n_views, of, order, &cameras, error));
+    for (uint32_t i = 0; i < t->n_views; i += n) {
+        n = 1;
+        while (i + n < t->n_views && of[order[i + n]] == of[order[i]])
+            n++;
+        if (n >= PICTURES_LEAST)
+            ADCGS_TRY(add_camera(t, order + i, n, drawn, changing, error));
+    }
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_changing_share(adcgs_trainer *t, float *share, adcgs_error *error)
 {
     float *const drawn = adcgs_alloc(NULL, t->f->n, sizeof *drawn, error);
-    adcgs_status status = drawn ? ADCGS_OK : adcgs_alloc_status(error);
+    uint32_t *const of = adcgs_alloc(NULL, 2 * (size_t)t->n_views, sizeof *of, error);
     memset(share, 0, t->f->n * sizeof *share);
-    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
-        uint32_t before = 0, n = 0;
-        while (before < i && !same_camera(&t->views[before].view, &t->views[i].view))
-            before++;
-        for (uint32_t j = i; before == i && j < t->n_views; j = next_of_camera(t, j))
-            n++;
-        if (n >= PICTURES_LEAST)
-            status = add_camera(t, i, n, drawn, share, error);
-    }
+    const adcgs_status status = drawn && of ? add_cameras(t, of, of + t->n_views, drawn, share, error) :
+                                              adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < t->f->n; i++)
         share[i] = drawn[i] > 0 ? share[i] / drawn[i] : -1;
     adcgs_free(NULL, drawn);
+    adcgs_free(NULL, of);
     return status;
 }

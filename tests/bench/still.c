@@ -6,7 +6,7 @@
  */
 #include "config.h"
 
-#include "data/scene.h"
+#include "data/by_camera.h"
 #include "grad/raster.h"
 #include "layouts/open.h"
 #include "metric/temporal.h"
@@ -31,12 +31,6 @@ typedef struct still {
     double *drawn, *changing; /* [anchors] weights in all pixels, in those that change */
     float *rows;              /* gradients of all slots */
 } still;
-
-static int same_camera(const adcgs_camera *a, const adcgs_camera *b)
-{
-    return !memcmp(a->cam_to_world, b->cam_to_world, sizeof a->cam_to_world) && a->width == b->width && a->height == b->height &&
-           !memcmp(&a->fx, &b->fx, sizeof a->fx);
-}
 
 /** Weights of a picture: the gradient of the red of pixels that change, by a primitive's red, is its weight there. */
 static adcgs_status add_picture(still *s, const adcgs_scene_view *v, const uint8_t *region, adcgs_error *error)
@@ -72,48 +66,47 @@ static adcgs_status add_picture(still *s, const adcgs_scene_view *v, const uint8
     return status;
 }
 
-/** All views of the camera of view `first`, of which it is the first. */
-static adcgs_status add_camera(still *s, uint32_t first, adcgs_error *error)
+/** A camera's n views. */
+static adcgs_status add_camera(still *s, const uint32_t *view, uint32_t n, adcgs_error *error)
 {
     const adcgs_scene_view *const v = s->scene->views[ADCGS_SPLIT_TRAIN];
-    const uint32_t n = s->scene->n_views[ADCGS_SPLIT_TRAIN];
     adcgs_temporal *temporal;
-    ADCGS_TRY(adcgs_temporal_create(&temporal, v[first].camera.width, v[first].camera.height, error));
+    ADCGS_TRY(adcgs_temporal_create(&temporal, v[view[0]].camera.width, v[view[0]].camera.height, error));
     adcgs_status status = ADCGS_OK;
-    for (uint32_t i = first; status == ADCGS_OK && i < n; i++) {
-        adcgs_camera camera;
+    for (uint32_t i = 0; status == ADCGS_OK && i < n; i++) {
         float *rgb = NULL;
-        if (!same_camera(&v[i].camera, &v[first].camera))
-            continue;
-        status = adcgs_scene_load(s->scene, &v[i], 1, &rgb, &camera, error);
+        status = adcgs_scene_load(s->scene, &v[view[i]], 1, &rgb, NULL, error);
         if (status == ADCGS_OK)
             adcgs_temporal_look(temporal, rgb);
         free(rgb);
     }
     if (status == ADCGS_OK)
         status = adcgs_temporal_find_region(temporal, error);
-    for (uint32_t i = first; status == ADCGS_OK && i < n; i++)
-        if (same_camera(&v[i].camera, &v[first].camera))
-            status = add_picture(s, &v[i], adcgs_temporal_region(temporal), error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
+        status = add_picture(s, &v[view[i]], adcgs_temporal_region(temporal), error);
     adcgs_temporal_free(&temporal);
     return status;
 }
 
+/** All cameras that take several pictures; *cameras: how many those are. */
 static adcgs_status add_cameras(still *s, uint32_t *cameras, adcgs_error *error)
 {
-    const adcgs_scene_view *const v = s->scene->views[ADCGS_SPLIT_TRAIN];
-    for (uint32_t i = 0; i < s->scene->n_views[ADCGS_SPLIT_TRAIN]; i++) {
-        uint32_t before = 0, behind = i + 1;
-        while (before < i && !same_camera(&v[before].camera, &v[i].camera))
-            before++;
-        while (behind < s->scene->n_views[ADCGS_SPLIT_TRAIN] && !same_camera(&v[behind].camera, &v[i].camera))
-            behind++;
-        if (before < i || behind == s->scene->n_views[ADCGS_SPLIT_TRAIN])
+    const uint32_t n_views = s->scene->n_views[ADCGS_SPLIT_TRAIN];
+    uint32_t *const of = adcgs_alloc(NULL, 2 * (size_t)n_views, sizeof *of, error), *const order = of + n_views, all, n;
+    if (!of)
+        return adcgs_alloc_status(error);
+    adcgs_status status = adcgs_sort_by_camera(s->scene->views[ADCGS_SPLIT_TRAIN], n_views, of, order, &all, error);
+    for (uint32_t i = 0; status == ADCGS_OK && i < n_views; i += n) {
+        n = 1;
+        while (i + n < n_views && of[order[i + n]] == of[order[i]])
+            n++;
+        if (n < 2)
             continue;
-        ADCGS_TRY(add_camera(s, i, error));
+        status = add_camera(s, order + i, n, error);
         ++*cameras;
     }
-    return ADCGS_OK;
+    adcgs_free(NULL, of);
+    return status;
 }
 
 static adcgs_status measure(still *s, adcgs_error *error)

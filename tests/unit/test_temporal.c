@@ -354,7 +354,7 @@ static void test_changing_region(void **state)
             picture[2 * PLANE + (20 + i / 5) * W + 30 + i % 5] += 0.12f; /* blue of some */
         adcgs_changes_add(c, picture);
     }
-    adcgs_changes_region(c, 0.1, region);
+    assert_int_equal(adcgs_changes_region(c, 0.1, region, &error), ADCGS_OK);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
             const int at = region[y * W + x];
