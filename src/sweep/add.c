@@ -152,9 +152,8 @@ static adcgs_status add_one(adcgs_sweep_plan *plan, const char *text, size_t len
     adcgs_sweep_write_name(name, sizeof name, text, n);
     snprintf(path, sizeof path, "%.*s", (int)(length - n - 1), equals + 1);
     snprintf(note, sizeof note, "another method, from %.150s", path);
-    for (int i = 0; i < plan->n_curves; i++)
-        if (!strcmp(plan->curve[i].name, name))
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "--add %s: another curve is called that", name);
+    if (adcgs_sweep_has_curve(plan, name))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--add %s: another curve is called that", name);
     table t = {.path = path, .file = fopen(path, "r")};
     if (!t.file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));

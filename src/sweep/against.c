@@ -112,7 +112,7 @@ static size_t part_before(const char *path, size_t end, size_t *length)
     return start;
 }
 
-static int has_curve(const adcgs_sweep_plan *plan, const char *name)
+int adcgs_sweep_has_curve(const adcgs_sweep_plan *plan, const char *name)
 {
     for (int i = 0; i < plan->n_curves; i++)
         if (!strcmp(plan->curve[i].name, name))
@@ -143,9 +143,9 @@ static adcgs_status name_curve(char *name, size_t size, const adcgs_sweep_plan *
     if (!length)
         at = part_before(folder, strlen(folder), &length);
     adcgs_sweep_write_name(name, size, folder + at, length);
-    if (has_curve(plan, name))
+    if (adcgs_sweep_has_curve(plan, name))
         adcgs_sweep_write_name(name, size, folder, strlen(folder));
-    if (has_curve(plan, name))
+    if (adcgs_sweep_has_curve(plan, name))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--against %s: another curve is called that", name);
     return ADCGS_OK;
 }

@@ -258,7 +258,7 @@ static void put_base64(FILE *out, FILE *in)
     }
 }
 
-/** A picture that opens to its full size and closes again where one presses it: by its own link, without scripts. */
+/** A picture that opens to its full size and closes again where one presses it, by a box that is not shown, without scripts. */
 static void print_picture(const sheet *s, const adcgs_sweep_picture *p)
 {
     char text[200];

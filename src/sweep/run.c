@@ -15,7 +15,7 @@
 
 /* ---- Files of a run ---- */
 
-static void path_of(char path[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *suffix)
+void adcgs_sweep_path(char path[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *suffix)
 {
     snprintf(path, ADCGS_SWEEP_PATH, "%s/%s%s", sweep->directory, run->tag, suffix);
 }
@@ -23,7 +23,7 @@ static void path_of(char path[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const
 static void drop(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *suffix)
 {
     char path[ADCGS_SWEEP_PATH];
-    path_of(path, sweep, run, suffix);
+    adcgs_sweep_path(path, sweep, run, suffix);
     unlink(path);
 }
 
@@ -32,7 +32,7 @@ static double size_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run, cons
 {
     char path[ADCGS_SWEEP_PATH];
     struct stat s;
-    path_of(path, sweep, run, suffix);
+    adcgs_sweep_path(path, sweep, run, suffix);
     return stat(path, &s) == 0 ? (double)s.st_size : (double)NAN;
 }
 
@@ -84,7 +84,7 @@ static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_run *run, c
 {
     char log[ADCGS_SWEEP_PATH];
     int code = 0;
-    path_of(log, sweep, run, ".log");
+    adcgs_sweep_path(log, sweep, run, ".log");
     ADCGS_TRY(adcgs_sweep_spawn(c->argv, out, log, &code, error));
     const adcgs_status why = code == 2   ? ADCGS_ERR_USAGE
                              : code == 4 ? ADCGS_ERR_DATA
@@ -98,7 +98,7 @@ static adcgs_status find_unfinished(const adcgs_sweep *sweep, const adcgs_sweep_
 {
     char path[ADCGS_SWEEP_PATH];
     adcgs_error ignored;
-    path_of(path, sweep, run, ".partial.json");
+    adcgs_sweep_path(path, sweep, run, ".partial.json");
     json_t *root = NULL;
     if (sweep->resume)
         adcgs_json_load(&root, path, &ignored);
@@ -120,11 +120,11 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
     adcgs_command c = {.n = 0};
     ADCGS_TRY(find_unfinished(sweep, run, &unfinished, error));
     snprintf(program, sizeof program, "%s/adcgs-enc", sweep->programs);
-    path_of(file, sweep, run, run->beginning ? ".checkpoint" : ".adcgs");
-    path_of(partial, sweep, run, ".partial");
-    path_of(raw, sweep, run, ".raw");
+    adcgs_sweep_path(file, sweep, run, run->beginning ? ".checkpoint" : ".adcgs");
+    adcgs_sweep_path(partial, sweep, run, ".partial");
+    adcgs_sweep_path(raw, sweep, run, ".raw");
     if (from)
-        path_of(begin, sweep, from, ".checkpoint");
+        adcgs_sweep_path(begin, sweep, from, ".checkpoint");
     adcgs_command_word(&c, program);
     adcgs_command_option(&c, run->beginning ? "--beginning" : "--output", file);
     adcgs_command_option(&c, "--checkpoint", partial);
@@ -152,7 +152,7 @@ static void begin_evaluation(adcgs_command *c, const adcgs_sweep *sweep, const a
 {
     static const char *const of_speed[] = {"threads", "cpu", NULL};
     snprintf(program, ADCGS_SWEEP_PATH, "%s/adcgs-eval", sweep->programs);
-    path_of(file, sweep, run, ".adcgs");
+    adcgs_sweep_path(file, sweep, run, ".adcgs");
     adcgs_command_word(c, program);
     adcgs_command_option(c, "--dataset", sweep->dataset);
     adcgs_command_option(c, "--frames", sweep->frames);
@@ -194,9 +194,9 @@ static adcgs_status compress(const adcgs_sweep *sweep, const adcgs_sweep_run *ru
     char raw[ADCGS_SWEEP_PATH], packed[ADCGS_SWEEP_PATH], log[ADCGS_SWEEP_PATH];
     adcgs_command c = {.n = 0};
     int code = 0;
-    path_of(raw, sweep, run, ".raw");
-    path_of(packed, sweep, run, suffix);
-    path_of(log, sweep, run, ".log");
+    adcgs_sweep_path(raw, sweep, run, ".raw");
+    adcgs_sweep_path(packed, sweep, run, suffix);
+    adcgs_sweep_path(log, sweep, run, ".log");
     adcgs_command_word(&c, program);
     adcgs_command_word(&c, level);
     adcgs_command_word(&c, "-c");
@@ -212,7 +212,7 @@ static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_run
                                  adcgs_error *error)
 {
     char path[ADCGS_SWEEP_PATH];
-    path_of(path, sweep, run, ".json");
+    adcgs_sweep_path(path, sweep, run, ".json");
     if (run->beginning)
         return save(json_pack("{s:o}", "settings", settings_of(sweep, run)), path, error);
     json_t *encoder, *evaluation;
@@ -230,8 +230,8 @@ adcgs_status adcgs_sweep_execute(const adcgs_sweep *sweep, const adcgs_sweep_run
                                  adcgs_error *error)
 {
     char encoded[ADCGS_SWEEP_PATH], evaluated[ADCGS_SWEEP_PATH];
-    path_of(encoded, sweep, run, ".enc.part");
-    path_of(evaluated, sweep, run, ".eval.part");
+    adcgs_sweep_path(encoded, sweep, run, ".enc.part");
+    adcgs_sweep_path(evaluated, sweep, run, ".eval.part");
     drop(sweep, run, ".log");
     drop(sweep, run, ".json");
     adcgs_status status = encode(sweep, run, from, encoded, error);
@@ -254,8 +254,7 @@ adcgs_status adcgs_sweep_execute(const adcgs_sweep *sweep, const adcgs_sweep_run
 
 /* ---- Results ---- */
 
-/* A number of a report; NaN if it is not there. */
-static double number(const json_t *report, const char *name)
+double adcgs_sweep_number(const json_t *report, const char *name)
 {
     const json_t *const value = json_object_get(report, name);
     return json_is_number(value) ? json_number_value(value) : (double)NAN;
@@ -288,14 +287,14 @@ static void take_figures(const adcgs_sweep *sweep, adcgs_sweep_run *run, const j
 {
     const json_t *const encoder = json_object_get(root, "encoder"), *const evaluation = json_object_get(root, "evaluation");
     double *const f = run->figure;
-    f[ADCGS_FIGURE_BYTES] = number(encoder, "bytes");
+    f[ADCGS_FIGURE_BYTES] = adcgs_sweep_number(encoder, "bytes");
     take_components(f, json_object_get(encoder, "components"));
-    f[ADCGS_FIGURE_NETWORKS32] = f[ADCGS_FIGURE_BYTES] - f[ADCGS_FIGURE_NETWORKS] + 4 * number(encoder, "weights");
-    f[ADCGS_FIGURE_SECONDS] = number(encoder, "training_seconds");
-    f[ADCGS_FIGURE_PSNR] = number(evaluation, "psnr");
-    f[ADCGS_FIGURE_SSIM] = number(evaluation, "ssim");
-    f[ADCGS_FIGURE_MOVING] = number(evaluation, "dynamic_psnr"); /* nor have it the results of earlier versions */
-    f[ADCGS_FIGURE_SPEED] = number(evaluation, "frames_per_second");
+    f[ADCGS_FIGURE_NETWORKS32] = f[ADCGS_FIGURE_BYTES] - f[ADCGS_FIGURE_NETWORKS] + 4 * adcgs_sweep_number(encoder, "weights");
+    f[ADCGS_FIGURE_SECONDS] = adcgs_sweep_number(encoder, "training_seconds");
+    f[ADCGS_FIGURE_PSNR] = adcgs_sweep_number(evaluation, "psnr");
+    f[ADCGS_FIGURE_SSIM] = adcgs_sweep_number(evaluation, "ssim");
+    f[ADCGS_FIGURE_MOVING] = adcgs_sweep_number(evaluation, "dynamic_psnr"); /* nor have it the results of earlier versions */
+    f[ADCGS_FIGURE_SPEED] = adcgs_sweep_number(evaluation, "frames_per_second");
     if (!run->uncompressed)
         return;
     f[ADCGS_FIGURE_RAW] = size_of(sweep, run, ".raw");
@@ -316,7 +315,7 @@ static adcgs_status check_files(const adcgs_sweep *sweep, const adcgs_sweep_run 
     if (size_of(sweep, run, ".adcgs") != f[ADCGS_FIGURE_BYTES])
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s/%s.adcgs: missing, or not the file that %s tells of", sweep->directory,
                           run->tag, path);
-    if (run->uncompressed && f[ADCGS_FIGURE_RAW] != number(json_object_get(root, "encoder"), "uncompressed_bytes"))
+    if (run->uncompressed && f[ADCGS_FIGURE_RAW] != adcgs_sweep_number(json_object_get(root, "encoder"), "uncompressed_bytes"))
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s/%s.raw: missing, or not the file that %s tells of", sweep->directory,
                           run->tag, path);
     return ADCGS_OK;
@@ -325,7 +324,7 @@ static adcgs_status check_files(const adcgs_sweep *sweep, const adcgs_sweep_run 
 adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_run *run, adcgs_error *error)
 {
     char path[ADCGS_SWEEP_PATH];
-    path_of(path, sweep, run, ".json");
+    adcgs_sweep_path(path, sweep, run, ".json");
     json_t *root;
     ADCGS_TRY(adcgs_json_load(&root, path, error));
     take_figures(sweep, run, root);

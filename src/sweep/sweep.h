@@ -16,6 +16,8 @@
 #include <stdio.h>
 #include <sys/types.h>
 
+struct json_t;
+
 #define ADCGS_SWEEP_CELLS 320  /**< 16 x 16 of the grid, yardsticks, ablation */
 #define ADCGS_SWEEP_CURVES 40  /**< 16 of the grid, 7 yardsticks, earlier ones, other methods */
 #define ADCGS_SWEEP_STAGES 12
@@ -137,6 +139,8 @@ adcgs_sweep_curve *adcgs_sweep_add_curve(adcgs_sweep_plan *plan, const char *nam
 /** The curves of the earlier sweeps that this one is compared with, behind those of the plan (against.c). */
 adcgs_status adcgs_sweep_add_against(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_error *error);
 
+/** Whether a curve is called that (against.c). */
+int adcgs_sweep_has_curve(const adcgs_sweep_plan *plan, const char *name);
 /** A curve's name goes to terminals and into gnuplot's quotes: what either might obey is replaced (against.c). */
 void adcgs_sweep_write_name(char *name, size_t size, const char *text, size_t length);
 /** The curves of other methods, from tables, behind those of the plan (add.c). */
@@ -200,6 +204,10 @@ typedef struct adcgs_sweep_picture {
 /** The worst and the middle test view of the run that stands for all, drawn anew (views_chart.c). */
 adcgs_status adcgs_sweep_pictures(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan,
                                   adcgs_sweep_picture picture[ADCGS_SWEEP_PICTURES], adcgs_error *error);
+/** The file of a run with this suffix (run.c). */
+void adcgs_sweep_path(char path[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *suffix);
+/** A number of a report, or of an object in it; NaN if it is not there (run.c). */
+double adcgs_sweep_number(const struct json_t *report, const char *name);
 /** Have all test views of a run written to a folder as pictures, beside the truth (run.c). */
 adcgs_status adcgs_sweep_draw_views(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *folder, adcgs_error *error);
 

@@ -22,19 +22,12 @@ static const adcgs_sweep_run *shown_run(const adcgs_sweep_plan *plan)
     return run->state == ADCGS_RUN_DONE ? run : NULL;
 }
 
-/** A number of a view; NaN if it has none. */
-static double number(const json_t *view, const char *name)
-{
-    const json_t *const value = json_object_get(view, name);
-    return json_is_number(value) ? json_number_value(value) : (double)NAN;
-}
-
 /** The views of a run's result; json_decref() the root. */
 static adcgs_status load_views(const adcgs_sweep *sweep, const adcgs_sweep_run *run, json_t **root, const json_t **views,
                                adcgs_error *error)
 {
     char path[ADCGS_SWEEP_PATH];
-    snprintf(path, sizeof path, "%s/%s.json", sweep->directory, run->tag);
+    adcgs_sweep_path(path, sweep, run, ".json");
     ADCGS_TRY(adcgs_json_load(root, path, error));
     *views = json_object_get(json_object_get(*root, "evaluation"), "views");
     return ADCGS_OK;
@@ -48,7 +41,7 @@ static int print_block(FILE *script, const json_t *views, const char *block, con
     int n = 0;
     for (size_t i = 0; i < json_array_size(views); i++) {
         const json_t *const view = json_array_get(views, i);
-        const double time = number(view, "time"), value = number(view, quality);
+        const double time = adcgs_sweep_number(view, "time"), value = adcgs_sweep_number(view, quality);
         if (!isfinite(time) || !isfinite(value))
             continue;
         if (!n++)
@@ -119,7 +112,7 @@ static int pick(const json_t *views, adcgs_sweep_picture picture[ADCGS_SWEEP_PIC
     ranked *const list = calloc(n + 1, sizeof *list);
     size_t known = 0;
     for (size_t i = 0; list && i < n; i++) {
-        const double psnr = number(json_array_get(views, i), "psnr");
+        const double psnr = adcgs_sweep_number(json_array_get(views, i), "psnr");
         if (isfinite(psnr))
             list[known++] = (ranked){psnr, (unsigned)i};
     }
@@ -129,7 +122,7 @@ static int pick(const json_t *views, adcgs_sweep_picture picture[ADCGS_SWEEP_PIC
         for (int i = 0; i < ADCGS_SWEEP_PICTURES; i++) {
             picture[i].psnr = chosen[i]->psnr;
             picture[i].index = chosen[i]->index;
-            picture[i].time = number(json_array_get(views, chosen[i]->index), "time");
+            picture[i].time = adcgs_sweep_number(json_array_get(views, chosen[i]->index), "time");
         }
     }
     free(list);

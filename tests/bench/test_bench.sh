@@ -3,7 +3,7 @@
 # The benchmark runs, finds its baseline drawing the same picture, and writes its table. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 bench=tests/bench/adcgs-bench
-need $bench
+need $bench tests/bench/adcgs-bench-still adcgs-demo-scene adcgs-enc
 for group in frame exactness levels decode; do
     $bench --quick --turns 3 --threads 2 --group $group --output "$dir/$group.csv" >"$dir/out" 2>&1 ||
         { bad "adcgs-bench --group $group"; cat "$dir/out"; }
@@ -12,4 +12,11 @@ for group in frame exactness levels decode; do
         { bad "the table of $group"; cat "$dir/$group.csv"; }
 done
 $bench --group nothing >"$dir/out" 2>&1 && bad "a group that is not there"
+
+# Of a tiny scene, whose six cameras take four pictures each, it tells what shows nothing that changes; of no scene nothing.
+tiny_stream 40
+still=tests/bench/adcgs-bench-still
+$still "$dir/s.adcgs" "$dir/scene" >"$dir/out" 2>&1 && grep -q '^6 cameras; .* show what never changes, of these ' "$dir/out" ||
+    { bad "$still"; cat "$dir/out"; }
+$still "$dir/s.adcgs" "$dir/nowhere" >"$dir/out" 2>&1 && bad "$still: a scene that is not there"
 exit $failed
