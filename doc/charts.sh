@@ -3,7 +3,7 @@
 # Speed against accuracy against bytes: make -C build charts. adcgs-sweep codes each scene that is at hand with several lambdas
 # and several numbers of iterations, one thread, seed 1. Each scene's page is index.html in its folder; the folder "kept" gathers
 # charts of all and their figures as CSV. What is there already is kept, so that it can go on. Folders are seen from the build
-# folder. Seconds are by the clock: the machine should have nothing else to do.
+# folder. Seconds are of processors, of runs of one thread.
 #   CHARTS      folder of all of it (default charts)
 #   SCENES      of doc/scenes.sh, by their short names (default "demo cross80 room hand")
 #   LAMBDAS     default 0.1,0.4

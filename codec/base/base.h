@@ -133,6 +133,21 @@ static inline double adcgs_bits_double(uint64_t u)
 /** Seconds of a clock that only goes forward. */
 double adcgs_seconds(void);
 
+/** Time in seconds: of that clock, and of processors, all threads of this program together. */
+typedef struct adcgs_time {
+    double clock, cpu;
+} adcgs_time;
+
+adcgs_time adcgs_time_now(void);
+static inline adcgs_time adcgs_time_less(adcgs_time a, adcgs_time b)
+{
+    return (adcgs_time){ a.clock - b.clock, a.cpu - b.cpu };
+}
+static inline adcgs_time adcgs_time_plus(adcgs_time a, adcgs_time b)
+{
+    return (adcgs_time){ a.clock + b.clock, a.cpu + b.cpu };
+}
+
 #define ADCGS_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define ADCGS_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define ADCGS_COUNTOF(a) (sizeof(a) / sizeof((a)[0]))

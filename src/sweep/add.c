@@ -25,7 +25,7 @@ static const struct {
                   [PSNR] = {"psnr", -1000, 1000},
                   [SSIM] = {"ssim", -1, 1},
                   [MOVING] = {"dynamic_psnr", -1000, 1000},
-                  [SECONDS] = {"training_seconds", 0, 1e12},
+                  [SECONDS] = {"cpu_seconds", 0, 1e12},
                   [SPEED] = {"frames_per_second", 0, 1e12},
                   [SOURCE] = {"source", 0, 0}};
 

@@ -23,7 +23,7 @@ typedef struct quantity {
 #define OF(field) offsetof(adcgs_sweep_row, field)
 static const quantity quantities[ADCGS_Q_COUNT] = {
     [ADCGS_Q_BYTES] = {"bytes on disk, kB (1000 bytes)", OF(bytes), 1000, 0, 0},
-    [ADCGS_Q_SECONDS] = {"seconds of training", OF(seconds), 1, 0, 1},
+    [ADCGS_Q_SECONDS] = {"CPU seconds of training", OF(seconds), 1, 0, 1},
     [ADCGS_Q_SPEED] = {"frames per second", OF(speed), 1, 1, 1},
     [ADCGS_Q_PSNR] = {"PSNR, dB", OF(psnr), 1, 1, 0},
     [ADCGS_Q_MOVING] = {"PSNR of what moves, dB", OF(moving), 1, 1, 0},

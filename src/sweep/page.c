@@ -306,7 +306,8 @@ static void print_machine(const sheet *s, const adcgs_sweep *sweep)
         snprintf(threads, sizeof threads, "%d thread%s", sweep->threads, sweep->threads > 1 ? "s" : "");
     if (gmtime_r(&now, &day))
         strftime(date, sizeof date, "%Y-%m-%d", &day);
-    say(s, "%s, %ld processors online, %s unless a curve says otherwise; seconds are by the clock; adcgs %s, %s. %s", processor,
+    say(s, "%s, %ld processors online, %s unless a curve says otherwise; seconds of training are of processors, all threads "
+        "together; adcgs %s, %s. %s", processor,
         sysconf(_SC_NPROCESSORS_ONLN), threads, PACKAGE_VERSION, date, sweep->command);
 }
 

@@ -290,7 +290,7 @@ static void take_figures(const adcgs_sweep *sweep, adcgs_sweep_run *run, const j
     f[ADCGS_FIGURE_BYTES] = adcgs_sweep_number(encoder, "bytes");
     take_components(f, json_object_get(encoder, "components"));
     f[ADCGS_FIGURE_NETWORKS32] = f[ADCGS_FIGURE_BYTES] - f[ADCGS_FIGURE_NETWORKS] + 4 * adcgs_sweep_number(encoder, "weights");
-    f[ADCGS_FIGURE_SECONDS] = adcgs_sweep_number(encoder, "training_seconds");
+    f[ADCGS_FIGURE_SECONDS] = adcgs_sweep_number(encoder, "cpu_seconds");
     f[ADCGS_FIGURE_PSNR] = adcgs_sweep_number(evaluation, "psnr");
     f[ADCGS_FIGURE_SSIM] = adcgs_sweep_number(evaluation, "ssim");
     f[ADCGS_FIGURE_MOVING] = adcgs_sweep_number(evaluation, "dynamic_psnr"); /* nor have it the results of earlier versions */

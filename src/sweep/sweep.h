@@ -60,7 +60,7 @@ typedef enum adcgs_figure {
     ADCGS_FIGURE_PSNR,       /**< dB; like all below of the decoded stream on the test views */
     ADCGS_FIGURE_SSIM,
     ADCGS_FIGURE_MOVING,     /**< PSNR of what moves; NaN where nothing does */
-    ADCGS_FIGURE_SECONDS,    /**< of training, a shared beginning included */
+    ADCGS_FIGURE_SECONDS,    /**< of processors, of training, a shared beginning included */
     ADCGS_FIGURE_SPEED,      /**< frames per second */
     ADCGS_FIGURE_COUNT
 } adcgs_figure;
@@ -101,7 +101,7 @@ typedef struct adcgs_sweep_row {
     const char *name;
     double lambda; /**< < 0: the preset's, or of no influence */
     char choice[ADCGS_SWEEP_CHOICE]; /**< of the grid */
-    int is_stream; /**< bytes are those of a stream, which takes so many seconds to train and plays so fast */
+    int is_stream; /**< bytes are those of a stream, which takes so many seconds of processors to train and plays so fast */
     adcgs_spread bytes, psnr, moving, ssim, seconds, speed;
     double networks; /**< share of the stream, in the mean; NaN if it is none */
 } adcgs_sweep_row;

@@ -51,7 +51,7 @@ static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const
     snprintf(path, sizeof path, "%s/%s", sweep->directory, name);
     ADCGS_TRY(adcgs_atomic_open(file, path, error));
     fprintf(file->file, "%s,lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,"
-            "training_seconds,frames_per_second,dynamic_psnr\n", first);
+            "cpu_seconds,frames_per_second,dynamic_psnr\n", first);
     return ADCGS_OK;
 }
 
@@ -104,7 +104,7 @@ static void json_row(adcgs_json *json, const adcgs_sweep_row *r)
     adcgs_json_real(json, "ssim", r->ssim.mean);
     if (isfinite(r->networks))
         adcgs_json_real(json, "network_share", r->networks);
-    adcgs_json_real(json, "training_seconds", r->seconds.mean);
+    adcgs_json_real(json, "cpu_seconds", r->seconds.mean);
     adcgs_json_real(json, "frames_per_second", r->speed.mean);
 }
 
@@ -169,7 +169,7 @@ static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
     static const char *const names[ADCGS_FIGURE_COUNT] = {
         "bytes", "bytes_with_32_bit_weights", "uncompressed_bytes", "zstd_bytes", "xz_bytes", "network_bytes",
         "position_bytes", "base_bytes", "detail_bytes", "other_bytes",
-        "psnr", "ssim", "dynamic_psnr", "training_seconds", "frames_per_second"};
+        "psnr", "ssim", "dynamic_psnr", "cpu_seconds", "frames_per_second"};
     adcgs_json_open(json, "runs", '[');
     for (int i = 0; i < plan->n_runs; i++) {
         const adcgs_sweep_run *const run = &plan->run[i];

@@ -118,10 +118,10 @@ static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *erro
 
 /* ---- The run ---- */
 
-static adcgs_status report(adcgs_enc_watcher *w, const adcgs_enc_job *job, double seconds, int *met, adcgs_error *error)
+static adcgs_status report(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time spent, int *met, adcgs_error *error)
 {
     return adcgs_enc_report_print(job->cli, &(adcgs_enc_report){ job->o->output, &job->config, job->cpu, job->scene, w->last,
-                                                                 seconds, w->uncompressed_bytes, job->o->threads, job->o->json },
+                                                                 spent, w->uncompressed_bytes, job->o->threads, job->o->json },
                                   met, error);
 }
 
@@ -134,7 +134,7 @@ static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job,
     adcgs_stream_init(&stream);
     adcgs_status status = write_stream(&stream, w, job->pool, error);
     adcgs_stream_clear(&stream, NULL);
-    return status == ADCGS_OK ? report(w, job, w->last.seconds, met, error) : status;
+    return status == ADCGS_OK ? report(w, job, w->last.spent, met, error) : status;
 }
 
 /* ---- Segments ---- */
@@ -166,7 +166,7 @@ static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const a
 }
 
 /** Learn the part that w->segment says, from its checkpoint if there is one, and leave its stream on the disk. */
-static adcgs_status encode_part(adcgs_enc_watcher *w, const adcgs_enc_job *job, double *seconds, adcgs_error *error)
+static adcgs_status encode_part(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
 {
     adcgs_scene part;
     adcgs_model before = { .n = 0 };
@@ -178,9 +178,9 @@ static adcgs_status encode_part(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
         follows ? adcgs_enc_part_model(&before, w->base, w->segment - 1, job->cpu, job->pool, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = adcgs_enc_learn(w, job, &part, follows ? &before : NULL, NULL,
-                       job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_seconds(), error);
+                       job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
     adcgs_model_clear(&before, NULL);
-    *seconds += w->last.seconds;
+    *spent = adcgs_time_plus(*spent, w->last.spent);
     if (status == ADCGS_OK) {
         adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
         status = adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
@@ -190,7 +190,7 @@ static adcgs_status encode_part(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
     return status;
 }
 
-static adcgs_status encode_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, double *seconds, adcgs_error *error)
+static adcgs_status encode_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
 {
     adcgs_enc_notes expected;
     expect_notes(&expected, w, job);
@@ -203,12 +203,12 @@ static adcgs_status encode_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job,
             ADCGS_TRY(adcgs_enc_part_check(w->base, job->scene, &job->cuts, w->segment, expected.list, expected.n, job->cpu,
                                            job->pool, &found, error));
         if (!found)
-            ADCGS_TRY(encode_part(w, job, seconds, error));
+            ADCGS_TRY(encode_part(w, job, spent, error));
     }
     return ADCGS_OK;
 }
 
-static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, double *seconds, adcgs_error *error)
+static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
 {
     adcgs_stream stream;
     adcgs_buffer bytes;
@@ -218,7 +218,7 @@ static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
     if (status == ADCGS_OK)
         status = adcgs_encode_verified(&stream, &bytes, job->cpu, job->pool, error);
     if (status == ADCGS_OK && job->o->or_whole)
-        status = adcgs_enc_try_whole(w, job, &bytes, seconds, error);
+        status = adcgs_enc_try_whole(w, job, &bytes, spent, error);
     if (status == ADCGS_OK)
         status = adcgs_atomic_save(job->o->output, bytes.data, bytes.size, error);
     if (status == ADCGS_OK) {
@@ -233,11 +233,11 @@ static adcgs_status write_parts(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
 
 static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
-    double seconds = 0;
+    adcgs_time spent = { 0, 0 };
     w->segments = job->cuts.n;
-    ADCGS_TRY(encode_parts(w, job, &seconds, error));
-    ADCGS_TRY(write_parts(w, job, &seconds, error));
-    return report(w, job, seconds, met, error);
+    ADCGS_TRY(encode_parts(w, job, &spent, error));
+    ADCGS_TRY(write_parts(w, job, &spent, error));
+    return report(w, job, spent, met, error);
 }
 
 /* ---- The program ---- */
@@ -292,7 +292,7 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(name_base(w, error));
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     adcgs_progress_show(&w->progress, "scene     %u views for training, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
-                        adcgs_seconds() - o->started);
+                        adcgs_seconds() - o->started.clock);
     if (o->has_segment)
         ADCGS_TRY(cut_scene(job, error));
     return job->cuts.n > 1 ? encode_segments(w, job, met, error) : encode_whole(w, job, met, error);
@@ -488,7 +488,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    adcgs_enc_options o = { .preset = "fast", .fade = ADCGS_ENC_FADE, .checkpoint_every = 60, .started = adcgs_seconds() };
+    adcgs_enc_options o = { .preset = "fast", .fade = ADCGS_ENC_FADE, .checkpoint_every = 60, .started = adcgs_time_now() };
     adcgs_cli cli = program;
     const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)

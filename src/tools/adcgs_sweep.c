@@ -342,7 +342,7 @@ static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char *
         {"against", 0, ADCGS_OPTION_STRING, &sweep->against, 0, 0, "DIR,...",
          "compare with earlier sweeps of the scene, of whatever\nversion or settings, by what they wrote", NULL, NULL},
         {"add", 0, ADCGS_OPTION_STRING, &sweep->tables, 0, 0, "NAME=FILE,...",
-         "draw other methods' tables beside, CSV with columns bytes\nand psnr, maybe ssim, dynamic_psnr, training_seconds,\n"
+         "draw other methods' tables beside, CSV with columns bytes\nand psnr, maybe ssim, dynamic_psnr, cpu_seconds,\n"
          "frames_per_second, source", NULL, NULL},
         {"ablation", 0, ADCGS_OPTION_FLAG, &sweep->ablation, 0, 0, NULL,
          "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},

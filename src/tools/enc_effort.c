@@ -47,7 +47,7 @@ void adcgs_enc_effort_choose(adcgs_enc_effort *e, adcgs_enc_job *job, double cam
 
 void adcgs_enc_effort_learn(adcgs_enc_effort *e, const adcgs_train_report *first, const adcgs_train_report *last, double seconds)
 {
-    const double taken = last->seconds - first->seconds;
+    const double taken = last->spent.clock - first->spent.clock;
     if (!(taken > 0) || last->iteration <= first->iteration)
         return;
     const double rate = (last->iteration - first->iteration) / taken, overhead = fmax(seconds - last->iteration / rate, 0);

@@ -140,7 +140,8 @@ static adcgs_status learn_segment(live_run *r, adcgs_error *error)
     w->next_log = 0;
     w->first = w->last = (adcgs_train_report){ .iteration = 0 };
     adcgs_enc_effort_choose(&r->effort, r->job, r->segment.came, r->segment.end - r->segment.begin, w->segment);
-    ADCGS_TRY(adcgs_enc_learn(w, r->job, r->segment.scene, follows ? before : NULL, before, NULL, 0, error));
+    ADCGS_TRY(adcgs_enc_learn(w, r->job, r->segment.scene, follows ? before : NULL, before, NULL, (adcgs_time){ 0, 0 },
+                              error));
     ADCGS_TRY(write_segment(r, w->t->f->follows, error));
     adcgs_enc_effort_learn(&r->effort, &w->first, &w->last, adcgs_seconds() - started);
     adcgs_enc_live_sum_add(&r->sum, r->segment.begin, r->segment.end, r->segment.came, w->last.iteration);

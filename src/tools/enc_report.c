@@ -41,8 +41,8 @@ static void print_text(const adcgs_enc_report *r, const result *x)
             (unsigned long long)features, (unsigned long long)b->cameras, (unsigned long long)(b->header + b->metadata));
     if (x->info.segments > 1)
         fprintf(stderr, "%d segments; ", x->info.segments);
-    fprintf(stderr, "%u anchors (%u static), %u primitives; lambda %.3g; trained in %.0f s\n", x->info.anchors,
-            x->info.static_anchors, x->info.gaussians, x->lambda, r->seconds);
+    fprintf(stderr, "%u anchors (%u static), %u primitives; lambda %.3g; trained in %.0f s (CPU %.0f s)\n", x->info.anchors,
+            x->info.static_anchors, x->info.gaussians, x->lambda, r->spent.clock, r->spent.cpu);
     fprintf(stderr, "decoded from the file, %u %s views: %.2f dB PSNR, %.4f SSIM\n", x->quality.n, adcgs_split_name(x->split),
             x->quality.psnr, x->quality.ssim);
 }
@@ -96,7 +96,8 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
         adcgs_json_close(&j);
     }
     adcgs_json_int(&j, "iterations", r->last.iteration);
-    adcgs_json_real(&j, "training_seconds", r->seconds);
+    adcgs_json_real(&j, "training_seconds", r->spent.clock);
+    adcgs_json_real(&j, "cpu_seconds", r->spent.cpu);
     adcgs_json_real(&j, "training_psnr", r->last.psnr);
     adcgs_json_string(&j, "split", adcgs_split_name(x->split));
     adcgs_json_real(&j, "psnr", x->quality.psnr);

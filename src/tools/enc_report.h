@@ -12,7 +12,7 @@ typedef struct adcgs_enc_report {
     adcgs_cpu_level cpu;
     const adcgs_scene *scene;     /**< the whole */
     adcgs_train_report last; /**< of the training run, that of the last segment */
-    double seconds;          /**< of training, all segments together */
+    adcgs_time spent;        /**< in training, all segments together */
     size_t uncompressed;     /**< bytes of the file of plain numbers; 0: none was asked for */
     int threads, json; /**< as on the command line */
 } adcgs_enc_report;

@@ -38,7 +38,8 @@ static void log_last(adcgs_enc_watcher *w)
     adcgs_json_real(&line, "bytes", round(r->bytes));
     adcgs_json_real(&line, "lambda", r->lambda);
     adcgs_json_real(&line, "rate", r->rate);
-    adcgs_json_real(&line, "seconds", r->seconds);
+    adcgs_json_real(&line, "seconds", r->spent.clock);
+    adcgs_json_real(&line, "cpu_seconds", r->spent.cpu);
     adcgs_json_int(&line, "rollbacks", r->rollbacks);
     if (r->attempt)
         adcgs_json_int(&line, "attempt", r->attempt);
@@ -100,8 +101,8 @@ static int observe(void *user, const adcgs_train_report *r)
         adcgs_progress_show(&w->progress, "%s%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
                             attempt, r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors,
                             r->bytes / 1000, r->rate, describe_left(r->left, left));
-    if (w->o->checkpoint && r->seconds - w->saved > w->o->checkpoint_every)
-        save_now_and_then(w, r->seconds);
+    if (w->o->checkpoint && r->spent.clock - w->saved > w->o->checkpoint_every)
+        save_now_and_then(w, r->spent.clock);
     return adcgs_interrupted() && !w->is_live;
 }
 
@@ -176,7 +177,7 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
     if (w->o->beginning && w->t->lambda_used)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: this run is past its beginning", state);
     w->t->until_lambda = w->o->beginning != NULL;
-    w->saved = w->t->elapsed;
+    w->saved = w->t->elapsed.clock;
     if (!w->is_live)
         adcgs_interrupt_catch();
     const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
@@ -193,7 +194,7 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
 }
 
 adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
-                             const adcgs_model *otherwise, const char *state, double started, adcgs_error *error)
+                             const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, before, job->cpu, job->pool, error));
     if (!before && otherwise && !adcgs_params_equal(&w->t->f->params, &otherwise->params)) {

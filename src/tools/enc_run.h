@@ -18,7 +18,7 @@ typedef struct adcgs_enc_options {
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, live, or_whole;
     int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
     int has_fade, has_delay;
-    double started; /* adcgs_seconds() */
+    adcgs_time started;
     double checkpoint_every;
     uint64_t seed, size, memory;
 } adcgs_enc_options;
@@ -73,10 +73,10 @@ adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const a
 
 /**
  * Learn a scene, or a part of it, which goes on with the model before unless that is NULL; w->t is the caller's then. state: a
- * checkpoint to go on from, or NULL. started: adcgs_seconds() from which its time counts. otherwise: the model to go on with
+ * checkpoint to go on from, or NULL. started: from which its time counts. otherwise: the model to go on with
  * where one that begins anew had other parameters than this one, or NULL.
  */
 adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
-                             const adcgs_model *otherwise, const char *state, double started, adcgs_error *error);
+                             const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error);
 
 #endif

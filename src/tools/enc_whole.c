@@ -38,7 +38,7 @@ static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const
     w->segments = w->segment = w->next_log = 0;
     ADCGS_TRY(adcgs_enc_part_name(&w->state, w->base, job->cuts.n, 0, error));
     adcgs_status status = adcgs_enc_learn(w, &whole, job->scene, NULL, NULL,
-                                          job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_seconds(), error);
+                                          job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
     adcgs_stream stream;
     adcgs_stream_init(&stream);
     if (status == ADCGS_OK)
@@ -48,14 +48,14 @@ static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const
     return status;
 }
 
-adcgs_status adcgs_enc_try_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_buffer *bytes, double *seconds,
+adcgs_status adcgs_enc_try_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_buffer *bytes, adcgs_time *spent,
                                  adcgs_error *error)
 {
     adcgs_buffer whole;
     double with_parts = 0, with_one = 0;
     adcgs_buffer_init(&whole);
     adcgs_status status = learn_whole(&whole, w, job, error);
-    *seconds += w->last.seconds;
+    *spent = adcgs_time_plus(*spent, w->last.spent);
     if (status == ADCGS_OK)
         status = measure(&with_parts, bytes, job, error);
     if (status == ADCGS_OK)

@@ -65,7 +65,7 @@ static adcgs_status keep_beginning(adcgs_trainer *t, adcgs_error *error)
 static adcgs_status begin_again(adcgs_trainer *t, double lambda, adcgs_error *error)
 {
     const adcgs_rate_control tried = t->rate_control;
-    const double elapsed = t->elapsed;
+    const adcgs_time elapsed = t->elapsed;
     adcgs_buffer begin = t->begin;
     adcgs_buffer_init(&t->begin); /* what is restored has none */
     const adcgs_status status = adcgs_trainer_restore(t, begin.data, begin.size, error);

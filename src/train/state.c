@@ -209,7 +209,7 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
 double adcgs_trainer_progress(const adcgs_trainer *t)
 {
     const double by_count = (double)t->iteration / t->config.iterations;
-    return t->config.time_limit > 0 ? fmax(by_count, t->elapsed / t->config.time_limit) : by_count;
+    return t->config.time_limit > 0 ? fmax(by_count, t->elapsed.clock / t->config.time_limit) : by_count;
 }
 
 void adcgs_trainer_prepare_networks(adcgs_trainer *t)

@@ -78,10 +78,11 @@ typedef struct adcgs_trainer {
     double lambda; /* of the rate; the configuration's unless a target steers it, or contrast */
     adcgs_rate_control rate_control;
     uint32_t rollbacks;
-    double mean_loss, mean_mse, elapsed; /* elapsed: seconds of all programs that have had a part in the run */
+    double mean_loss, mean_mse;
+    adcgs_time elapsed; /* of all programs that have had a part in the run */
     double mean_bits[ADCGS_GROUPS];
     /* No checkpoint has these. */
-    double started;          /* adcgs_seconds() from which this program's time counts; 0: when the run begins, or goes on */
+    adcgs_time started;      /* from which this program's time counts; clock 0: when the run begins, or goes on */
     adcgs_time_left left;
     uint8_t content[16];     /* of the training pictures' files; see adcgs_scene_content() */
     int has_content;         /* it is known: they are read when a file needs it, once */

@@ -65,28 +65,28 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     for (int i = 0; i < ADCGS_GROUPS; i++)
         r->bytes += r->stream[i] = t->mean_bits[i] / 8;
     r->lambda = t->lambda;
-    r->seconds = t->elapsed;
+    r->spent = t->elapsed;
     r->rate = rate;
-    r->left = adcgs_time_left_of(&t->left, &t->config, t->iteration, t->elapsed);
+    r->left = adcgs_time_left_of(&t->left, &t->config, t->iteration, t->elapsed.clock);
     r->rollbacks = (int)t->rollbacks;
     r->attempt = t->begin.size && adcgs_rate_is_sought(t) ? (int)t->rate_control.tries + 1 : 0;
 }
 
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
-    const double begin = (t->started > 0 ? t->started : adcgs_seconds()) - t->elapsed;
+    const adcgs_time begin = adcgs_time_less(fabs(t->started.clock) > 0 ? t->started : adcgs_time_now(), t->elapsed);
     double last = adcgs_seconds(), rate = 0;
     uint32_t reported = t->iteration;
     *stopped = 0;
     adcgs_trainer_prepare_networks(t);
     ADCGS_TRY(take_snapshot(t, error));
     for (;;) {
-        t->elapsed = adcgs_seconds() - begin;
+        t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
         const double progress = adcgs_trainer_progress(t);
         adcgs_train_report report;
         if (progress >= 1 && !t->iteration)
             return adcgs_fail(error, ADCGS_ERR_USAGE, "the time limit of %g s was over after %.1f s, before training began: "
-                              "reading the scene takes a part of it", t->config.time_limit, t->elapsed);
+                              "reading the scene takes a part of it", t->config.time_limit, t->elapsed.clock);
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
             const double at = adcgs_seconds();
             const double lately = at > last && t->iteration > reported ? (t->iteration - reported) / (at - last) : rate;
@@ -107,7 +107,7 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         }
         const uint32_t at = t->iteration;
         ADCGS_TRY(adcgs_stages_before(t, progress, error));
-        t->elapsed = adcgs_seconds() - begin;
+        t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
         if (t->iteration != at) { /* it goes on from an earlier one, which is the last good state now */
             ADCGS_TRY(take_snapshot(t, error));
             continue;
@@ -115,8 +115,8 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         if (adcgs_trainer_progress(t) >= 1) /* pictures were loaded, anchors changed, until the time was over */
             continue;
         ADCGS_TRY(adcgs_train_step(t, progress, error));
-        adcgs_time_left_add(&t->left, t->divide / t->config.scale, adcgs_seconds() - begin - t->elapsed);
-        t->elapsed = adcgs_seconds() - begin;
+        adcgs_time_left_add(&t->left, t->divide / t->config.scale, adcgs_seconds() - begin.clock - t->elapsed.clock);
+        t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
         ADCGS_TRY(guard(t, progress, error));
     }
 }

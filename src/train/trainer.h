@@ -19,7 +19,8 @@ typedef struct adcgs_train_report {
     double bytes;           /**< estimated bytes of the features; 0 before rate is measured */
     double stream[ADCGS_GROUPS]; /**< the same of eta, f_v, Sigma_v, C_v (layer 0, but for its flags) and the chunks of f_g */
     double lambda;
-    double seconds, rate;   /**< since the start; iterations per second lately */
+    adcgs_time spent;       /**< since the start */
+    double rate;            /**< iterations per second lately */
     double left;            /**< seconds, estimated; not a number before an iteration has been seen */
     int rollbacks;
     int attempt;            /**< at the lambda of a size or a quality, while that is sought: from 1 on; else 0 */

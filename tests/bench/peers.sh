@@ -3,7 +3,7 @@
 # What one would take instead, on the same pictures: peers.sh FILE SCENE OUT, from the build folder. FILE is any stream of the
 # scene; of it no more than the truth beside it is used. Writes tables for adcgs-sweep --add, OUT/hevc.csv and OUT/av1.csv, a
 # point for each of four qualities: the pictures of each training camera as a video, by FFmpeg's libx265 and libsvtav1, one
-# thread; the bytes of all videos, the mean PSNR of their pictures, seconds to write and to read them. Those are training views:
+# thread; the bytes of all videos, the mean PSNR of their pictures, CPU seconds to write and to read them. Those are training views:
 # there are no others in them. A camera that took one picture makes no video and is left out, and it says how many; so is, by
 # name, what is not installed.
 set -eu
@@ -14,6 +14,13 @@ mkdir -p "$out/truth"
 crop="crop=floor((iw-8)/6)*2:floor(ih/2)*2:0:0"
 
 need() { command -v "$1" >/dev/null || { echo "peers: no $1: $2 left out" >&2; return 1; }; }
+
+# tell_used VARIABLE: CPU seconds of all that this shell has started and that has ended; a shell of its own would not know.
+tell_used()
+{
+    times >"$out/times"
+    eval "$1=$(awk 'NR == 2 { gsub(/[ms]/, " "); print $1 * 60 + $2 + $3 * 60 + $4 }' "$out/times")"
+}
 
 # Pictures of each camera as frame-N.png in a folder of its own, in order of time.
 extract()
@@ -37,11 +44,11 @@ video()
     name=$1 encoder=$2 options=$3 qualities=$4
     ffmpeg -hide_banner -encoders 2>/dev/null | grep -q " $encoder " ||
         { echo "peers: no $encoder: $name left out" >&2; return 0; }
-    echo "bytes,psnr,training_seconds,quality,source" >"$out/$name.csv"
+    echo "bytes,psnr,cpu_seconds,quality,source" >"$out/$name.csv"
     for quality in $qualities; do
         bytes=0
         : >"$out/errors"
-        begin=$(date +%s.%N)
+        tell_used begin
         while read -r camera; do
             frames=$out/truth/$camera/frame-%04d.png
             # shellcheck disable=SC2086
@@ -54,7 +61,7 @@ video()
                 -f null - 2>>"$out/$name.log"
             cat "$out/psnr" >>"$out/errors"
         done <"$out/truth/list"
-        end=$(date +%s.%N)
+        tell_used end
         awk -v bytes="$bytes" -v begin="$begin" -v end="$end" -v quality="$quality" \
             -v source="FFmpeg $encoder; training views only" '
             { for (i = 1; i <= NF; i++) if (sub(/^psnr_avg:/, "", $i)) { sum += $i == "inf" ? 99 : $i; n++ } }

@@ -52,7 +52,7 @@ if [ -n "$raw" ]; then
     [ -n "$without" ] || psnr=3505
 fi
 { echo "$psnr"; head -c $((bytes - 5)) /dev/zero; } >"$file"
-echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"training_seconds\": 1.5}"
+echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"cpu_seconds\": 1.5}"
 END
 # The pretended evaluation finds 10 dB less where something moves, which it does while there is a file of that name.
 cat >"$dir/adcgs-eval" <<'END'
@@ -135,7 +135,7 @@ calls 0
 
 # Tables of other methods: a curve each, where the file says so.
 out=$dir/others
-printf 'source,psnr,who,bytes,training_seconds\nA paper,33.5,x,50000,7\n,34.5,,70000,\n\n' >"$dir/other.csv"
+printf 'source,psnr,who,bytes,cpu_seconds\nA paper,33.5,x,50000,7\n,34.5,,70000,\n\n' >"$dir/other.csv"
 sweep --lambda 1,2 --yardsticks none --add "It's other=$dir/other.csv"
 [ $got -eq 0 ] || fail "--add: $(cat "$dir/err")"
 line "^It_s other,,,1,50000,50000,50000,33.5000,33.5000,33.5000,,,7.00,,$" "$out/sweep.csv"

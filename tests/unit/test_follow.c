@@ -144,7 +144,7 @@ static void what_is_settled_is_kept(void **state)
 
 static void store(adcgs_trainer *t, adcgs_buffer *out)
 {
-    t->elapsed = 0;
+    t->elapsed = (adcgs_time){ 0, 0 };
     adcgs_buffer_init(out);
     assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
 }
