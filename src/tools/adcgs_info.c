@@ -14,13 +14,14 @@
 #include "tools/info_cut.h"
 #include "tools/info_points.h"
 #include "tools/info_report.h"
+#include "tools/info_why.h"
 
 #include <errno.h>
 #include <stdlib.h>
 
 typedef struct settings {
     const char *input, *points, *repair, *output;
-    int json, bits, trace, digest, check, has_bytes;
+    int json, bits, trace, digest, why, check, has_bytes;
     uint64_t bytes;
 } settings;
 
@@ -229,6 +230,10 @@ static adcgs_status print_report(const adcgs_info_report *r, const settings *s, 
         return write_points(r, s->points, error);
     if (s->json)
         return adcgs_info_print_json(r, error);
+    if (s->why) {
+        adcgs_info_why(r, s->input);
+        return adcgs_cli_flush(error);
+    }
     if (s->digest)
         print_digests(r);
     if (!s->digest && !s->trace) {
@@ -262,6 +267,7 @@ int main(int argc, char **argv)
         { "trace", 't', ADCGS_OPTION_FLAG, &s.trace, 0, 0, NULL,
           "print position in bits, name and value of every\nsyntax element", NULL, NULL },
         { "digest", 'd', ADCGS_OPTION_FLAG, &s.digest, 0, 0, NULL, "print the digest of each segment's model", NULL, NULL },
+        { "why", 'w', ADCGS_OPTION_FLAG, &s.why, 0, 0, NULL, "say why it has as many bytes as it has", NULL, NULL },
         { "points", 0, ADCGS_OPTION_STRING, &s.points, 0, 0, "FILE",
           "write the anchors' positions and colours, as .ply or\n.drc (Draco), instead of a report", NULL, NULL },
         { "check", 0, ADCGS_OPTION_FLAG, &s.check, 0, 0, NULL, "name all faults of a file, and what can be used of it", NULL,
@@ -283,6 +289,8 @@ int main(int argc, char **argv)
     adcgs_info_report r = { .trace = 0 };
     s.input = argv[first];
     r.trace = s.trace && !s.json;
+    if (s.why && (s.json || s.bits || s.trace || s.digest || s.points || s.check || s.repair || s.has_bytes))
+        return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--why goes with no other option");
     if (s.points && (s.json || s.bits || s.trace || s.digest))
         return adcgs_cli_error(&cli, ADCGS_ERR_USAGE, "--points goes with no other option");
     if ((s.check || s.repair) && (s.json || s.bits || s.trace || s.digest || s.points))

@@ -75,6 +75,12 @@ static adcgs_status load(adcgs_stream *stream, const char *name, adcgs_cpu_level
     return status == ADCGS_OK ? status : adcgs_fail(error, status, "%s: %.200s", name, why.text);
 }
 
+/** Notes that nobody knows before a run has ended. */
+static int follows_from_run(const char *key)
+{
+    return !strcmp(key, "lambda") || !strcmp(key, "decisions");
+}
+
 /** What is another than it would be now; NULL: nothing. */
 static const char *difference(const adcgs_stream *now, const adcgs_stream *then)
 {
@@ -91,7 +97,7 @@ static const char *difference(const adcgs_stream *now, const adcgs_stream *then)
         return "settings";
     for (uint32_t i = 0; i < now->n_meta; i++)
         if (strcmp(now->meta[i].key, then->meta[i].key) ||
-            (strcmp(now->meta[i].key, "lambda") && strcmp(now->meta[i].value, then->meta[i].value)))
+            (!follows_from_run(now->meta[i].key) && strcmp(now->meta[i].value, then->meta[i].value)))
             return now->meta[i].key;
     return NULL;
 }

@@ -12,6 +12,42 @@
 
 /* ---- What the run shows and logs ---- */
 
+static void log_line(adcgs_enc_watcher *w, adcgs_json *line)
+{
+    if (adcgs_json_write(line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
+        fclose(w->log); /* the run is worth more than its log: it goes on, and says at its end what happened */
+        w->log = NULL;
+    }
+}
+
+/** Begin a line: what all of them have. */
+static void open_line(adcgs_enc_watcher *w, adcgs_json *line, const char *stage)
+{
+    adcgs_json_init(line);
+    line->is_line = 1;
+    line->digits = 6;
+    adcgs_json_open(line, NULL, '{');
+    adcgs_json_string(line, "stage", stage);
+    if (w->segments || w->is_live)
+        adcgs_json_int(line, "segment", w->segment + 1);
+    adcgs_json_int(line, "iteration", w->last.iteration);
+}
+
+/** At the end of a run: why its model is as large as it is. */
+static void log_decisions(adcgs_enc_watcher *w)
+{
+    adcgs_decision list[ADCGS_DECISIONS];
+    adcgs_json line;
+    if (!w->log)
+        return;
+    adcgs_decisions_list(&w->t->decisions, list);
+    open_line(w, &line, "decisions");
+    for (int i = 0; i < ADCGS_DECISIONS; i++)
+        adcgs_json_real(&line, list[i].name, list[i].value);
+    adcgs_json_close(&line);
+    log_line(w, &line);
+}
+
 static void log_last(adcgs_enc_watcher *w)
 {
     const adcgs_train_report *r = &w->last;
@@ -20,14 +56,7 @@ static void log_last(adcgs_enc_watcher *w)
     w->next_log = r->iteration + 100;
     static const char *const streams[ADCGS_GROUPS] = { "eta", "f_v", "Sigma", "C", "f_g1", "f_g2", "f_g3", "f_g4" };
     adcgs_json line;
-    adcgs_json_init(&line);
-    line.is_line = 1;
-    line.digits = 6;
-    adcgs_json_open(&line, NULL, '{');
-    adcgs_json_string(&line, "stage", r->stage);
-    if (w->segments || w->is_live)
-        adcgs_json_int(&line, "segment", w->segment + 1);
-    adcgs_json_int(&line, "iteration", r->iteration);
+    open_line(w, &line, r->stage);
     adcgs_json_int(&line, "of", r->iterations);
     if (r->iteration) {
         adcgs_json_real(&line, "loss", r->loss);
@@ -48,10 +77,7 @@ static void log_last(adcgs_enc_watcher *w)
         adcgs_json_real(&line, streams[i], round(r->stream[i]));
     adcgs_json_close(&line);
     adcgs_json_close(&line);
-    if (adcgs_json_write(&line, w->log, w->o->log, &w->log_error) != ADCGS_OK) {
-        fclose(w->log); /* the run is worth more than its log: it goes on, and says at its end what happened */
-        w->log = NULL;
-    }
+    log_line(w, &line);
 }
 
 /** "  1:05:00 left", or nothing where it is not known. */
@@ -122,9 +148,11 @@ void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char
     snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
     snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
     snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
+    adcgs_decisions_tell(&t->decisions, n->decisions);
     const adcgs_encode_note list[ADCGS_COUNTOF(n->list)] = {
         { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
-        { "iterations", n->iterations }, { "seed", n->seed },     { "settings", changes },
+        { "iterations", n->iterations }, { "seed", n->seed },     { "decisions", n->decisions },
+        { "settings", changes },
     };
     memcpy(n->list, list, sizeof list);
     n->n = ADCGS_COUNTOF(list) - !*changes;
@@ -185,8 +213,10 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
         log_last(w);
     ADCGS_TRY(status);
-    if (!stopped)
+    if (!stopped) {
+        log_decisions(w);
         return ADCGS_OK;
+    }
     if (w->o->beginning && !adcgs_interrupted())
         return adcgs_trainer_save(w->t, w->o->beginning, error);
     ADCGS_TRY(stop_early(cli, w, error));

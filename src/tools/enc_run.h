@@ -44,9 +44,9 @@ typedef struct adcgs_enc_watcher {
 
 /** What the stream tells of how it was made. */
 typedef struct adcgs_enc_notes {
-    adcgs_encode_note list[6];
+    adcgs_encode_note list[7];
     uint32_t n;
-    char seed[32], lambda[32], iterations[32];
+    char seed[32], lambda[32], iterations[32], decisions[ADCGS_DECISIONS_TEXT];
 } adcgs_enc_notes;
 
 /** What a run is given. */

@@ -165,6 +165,7 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->mean_mse, sizeof t->mean_mse);
     visit(w, t->mean_bits, sizeof t->mean_bits);
     visit(w, &t->elapsed, sizeof t->elapsed);
+    visit(w, &t->decisions, sizeof t->decisions);
 }
 
 /** Hidden layers may be narrower than they began. */

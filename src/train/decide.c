@@ -83,6 +83,8 @@ adcgs_status adcgs_weigh_motion(adcgs_trainer *t, adcgs_error *error)
      * the loss is what networks gain by learning the noise of each picture.
      */
     const size_t weights = (f->mlp[ADCGS_P_OMEGA].n + f->mlp[ADCGS_P_VARPI].n) / 10 + f->mlp[ADCGS_P_TIME].n;
+    t->decisions.loss_still = stopped;
+    t->decisions.loss_moving = moving;
     if (stopped > 1.01 * moving + adcgs_price_of_bit(t) * 7 * (double)weights)
         return ADCGS_OK;
     memset(f->moving, 0, (size_t)f->groups * ADCGS_LANES * sizeof *f->moving);
@@ -98,6 +100,15 @@ static void clear_time_table(adcgs_fmodel *f)
         memset(values[i], 0, z->n * sizeof(float));
 }
 
+/** Make an anchor static unless it is settled; 1: it moved before. */
+static uint32_t rest(const adcgs_fmodel *f, uint32_t anchor)
+{
+    const int moved = f->moving[anchor] != 0 && f->learns[anchor] != 0;
+    if (moved)
+        f->moving[anchor] = 0;
+    return (uint32_t)moved;
+}
+
 adcgs_status adcgs_rest_unchanging(adcgs_trainer *t, adcgs_error *error)
 {
     const adcgs_fmodel *f = t->f;
@@ -106,8 +117,8 @@ adcgs_status adcgs_rest_unchanging(adcgs_trainer *t, adcgs_error *error)
     float *const share = adcgs_alloc(NULL, f->n, sizeof *share, error);
     const adcgs_status status = share ? adcgs_changing_share(t, share, error) : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
-        if (share[i] >= 0 && share[i] <= CHANGING_SHARE && f->learns[i] != 0)
-            f->moving[i] = 0;
+        if (share[i] >= 0 && share[i] <= CHANGING_SHARE)
+            t->decisions.unchanging += rest(f, i);
     adcgs_free(NULL, share);
     return status;
 }
@@ -121,8 +132,8 @@ static adcgs_status decide_motion(adcgs_trainer *t, adcgs_error *error)
         return adcgs_alloc_status(error);
     adcgs_status status = measure_motion(t, effect, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < f->n; i++)
-        if (effect[i] < t->config.still_below && f->learns[i] != 0)
-            f->moving[i] = 0;
+        if (effect[i] < t->config.still_below)
+            t->decisions.unmoved += rest(f, i);
     if (status == ADCGS_OK)
         status = adcgs_rest_unchanging(t, error);
     if (f->is_part && !adcgs_fmodel_moves(f))
@@ -151,9 +162,10 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
             continue;
         const float there = t->stats.presence[anchor], opacity = t->stats.opacity[i];
         drawn += (double)t->stats.weight[i];
-        if (t->stats.weight[i] < 0.05f * there)
+        if (t->stats.weight[i] < 0.05f * there) {
             f->keep[i] = 0;
-        else if (opacity < t->config.keep_opacity * there)
+            t->decisions.unseen++;
+        } else if (opacity < t->config.keep_opacity * there)
             faint[n++] = (adcgs_ranked){ -opacity / there, (uint32_t)i };
     }
     adcgs_rank(faint, n);
@@ -162,6 +174,7 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
         if (gone > FAINT_SHARE * drawn)
             break;
         f->keep[faint[i].index] = 0;
+        t->decisions.faint++;
     }
     adcgs_free(NULL, faint);
     return ADCGS_OK;
@@ -186,6 +199,7 @@ adcgs_status adcgs_decide(adcgs_trainer *t, adcgs_error *error)
         if (f->learns[i] == 0 || (kept && !adcgs_anchor_is_idle(t, i, 0.5)))
             adcgs_anchor_set_add(&s, f->pos[i], i, 0);
     }
+    t->decisions.idle += f->n - s.n;
     if (!s.n)
         adcgs_anchor_set_add(&s, f->pos[0], 0, 0);
     const adcgs_status status = adcgs_anchor_set_adopt(t, &s, error);

@@ -71,12 +71,14 @@ static int cell_of(const adcgs_fmodel *f, const float x[3], uint32_t pos[3])
 static void grow(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budget, const adcgs_ranked *list, uint32_t n, cells *occupied)
 {
     const float *const *mean = t->pass->primitives.mean;
-    for (uint32_t i = 0; i < n && s->n < budget; i++) {
+    uint32_t i = 0;
+    for (; i < n && s->n < budget; i++) {
         const uint32_t slot = list[i].index;
         uint32_t pos[3];
         if (cell_of(t->f, (const float[]){ mean[0][slot], mean[1][slot], mean[2][slot] }, pos) && cells_add(occupied, pos))
             adcgs_anchor_set_add(s, pos, adcgs_anchor_of(t->f, slot), 1);
     }
+    t->decisions.refused = n - i;
 }
 
 /* ---- Growth where something is missing ---- */
@@ -229,13 +231,14 @@ static adcgs_status workspace_init(workspace *w, const adcgs_trainer *t, uint32_
     return adcgs_alloc_status(error);
 }
 
-static void keep_anchors(const adcgs_trainer *t, workspace *w)
+static void keep_anchors(adcgs_trainer *t, workspace *w)
 {
     for (uint32_t i = 0; i < t->f->n; i++)
         if (t->f->learns[i] == 0 || !adcgs_anchor_is_idle(t, i, 0.2)) { /* what is settled costs nothing */
             cells_add(&w->occupied, t->f->pos[i]);
             adcgs_anchor_set_add(&w->next, t->f->pos[i], i, 0);
         }
+    t->decisions.idle += t->f->n - w->next.n;
     if (!w->next.n)
         adcgs_anchor_set_add(&w->next, t->f->pos[0], 0, 0);
 }
@@ -268,6 +271,7 @@ adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error
         adcgs_drop_floaters(t);
         adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE }); /* canonical places */
         grow(t, &w.next, budget, w.list, find_candidates(t, w.list), &w.occupied);
+        t->decisions.most = ADCGS_MAX(t->decisions.most, w.next.n);
         status = adcgs_anchor_set_adopt(t, &w.next, error);
     }
     if (status == ADCGS_OK) {

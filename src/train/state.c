@@ -140,6 +140,8 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
     /* Points of its own say that a scene is filmed from within: where cameras stand is free, whatever others see behind. */
     if (several && t->scene->points.n >= ADCGS_POINTS_LEAST)
         ADCGS_TRY(create_viewpoints(t, error));
+    t->decisions.points = t->scene->points.n + (uint64_t)t->stereo.n_still + t->stereo.n_moving;
+    t->decisions.began = t->decisions.most = t->f->n;
     return adcgs_trainer_resize(t, error);
 }
 

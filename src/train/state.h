@@ -15,6 +15,7 @@
 #include "grad/distortion.h"
 #include "grad/loss.h"
 #include "stereo/stereo.h"
+#include "train/decisions.h"
 #include "train/exposure.h"
 #include "train/rate_state.h"
 #include "train/schedule.h"
@@ -81,6 +82,7 @@ typedef struct adcgs_trainer {
     double mean_loss, mean_mse;
     adcgs_time elapsed; /* of all programs that have had a part in the run */
     double mean_bits[ADCGS_GROUPS];
+    adcgs_decisions decisions;
     /* No checkpoint has these. */
     adcgs_time started;      /* from which this program's time counts; clock 0: when the run begins, or goes on */
     adcgs_time_left left;

@@ -304,7 +304,9 @@ static adcgs_status slim_network(slimming *s, adcgs_error *error)
         since = better ? 0 : since + step;
     }
     memcpy(f->param[s->group].p, s->best, f->param[s->group].n * sizeof *s->best);
+    const int width = f->mlp[s->group].width;
     adcgs_fmodel_narrow(f, s->group, s->best_keep);
+    s->t->decisions.units += (uint32_t)(width - f->mlp[s->group].width);
     adcgs_mlp_prepare(&f->mlp[s->group], f->param[s->group].p, 1);
     return ADCGS_OK;
 }

@@ -64,17 +64,23 @@ same one two "another stream with two threads"
 same one seven "another stream with seven threads"
 cmp -s "$dir/one.adcgs" "$dir/other.adcgs" && bad "the seed changes nothing"
 json "$dir/one.log" || bad "--log is no JSON"
-[ "$(wc -l <"$dir/one.log")" -eq 7 ] || { bad "lines in the log"; cat "$dir/one.log"; }
+[ "$(wc -l <"$dir/one.log")" -eq 8 ] || { bad "lines in the log"; cat "$dir/one.log"; }
 whole "$dir/one.out" || bad "--json is no JSON"
 # Before the first iteration nothing is measured; the resolution is known always, also where a run goes on.
 sed 1q "$dir/one.log" | grep '"iteration":0,' | grep -qv -e '"loss"' -e '"psnr"' || bad "the first line of the log tells a loss or a PSNR"
 [ "$(grep -c '"loss":0\.[0-9]*,"psnr":[1-9]' "$dir/one.log")" -eq 6 ] || { bad "losses in the log"; cat "$dir/one.log"; }
 [ "$(sed -n 's/.*"divide":\([0-9]*\),.*/\1/p' "$dir/one.log" | uniq | xargs)" = "4 2 1" ] || { bad "resolutions"; cat "$dir/one.log"; }
-# The last line knows what the streams will take: f_g's first chunk is all of layer 1 but its framing.
-chunk=$(sed -n '$s/.*"f_g1":\([0-9]*\).*/\1/p' "$dir/one.log")
+# The last of them knows what the streams will take: f_g's first chunk is all of layer 1 but its framing.
+chunk=$(sed -n 's/.*"f_g1":\([0-9]*\).*/\1/p' "$dir/one.log" | tail -n 1)
 layer=$(sed -n 's/.*"layer1": \([0-9]*\).*/\1/p' "$dir/one.out")
 [ -n "$chunk" ] && [ "$layer" -ge "$chunk" ] && [ "$layer" -le $((chunk + chunk / 100 + 20)) ] ||
     bad "f_g1 of the log is '$chunk', layer 1 of the file has '$layer' bytes"
+# Why the model is as large as it is: the same in the log's last line, in the file and in words.
+most=$(sed -n '$s/.*"stage":"decisions",.*"most":\([0-9]*\),.*/\1/p' "$dir/one.log")
+[ "${most:-0}" -gt 0 ] || { bad "no decisions at the end of the log"; tail -n 1 "$dir/one.log"; }
+./adcgs-info "$dir/one.adcgs" | grep -q "decisions = .*most=$most " || bad "the file tells other decisions than the log"
+./adcgs-info --why "$dir/one.adcgs" >"$dir/why" || bad "--why fails"
+grep -q "^anchors  *[0-9]* to begin with.*; $most at most" "$dir/why" || { bad "--why does not tell the anchors"; cat "$dir/why"; }
 grep -q "\"bytes\": $(wc -c <"$dir/one.adcgs")," "$dir/one.out" || bad "--json tells another size"
 grep -q '"lambda": 0.0[0-9]' "$dir/one.out" || bad "--json does not tell lambda"
 [ ! -s "$dir/one.err" ] || { bad "messages with --quiet"; cat "$dir/one.err"; }
