@@ -5,20 +5,26 @@
 #include "scenes/scenes.h"
 
 #include "data/scene.h"
+#include "grad/random.h"
 #include "io/atomic.h"
 #include "io/image.h"
 #include "scenes/sine.h"
 #include "scenes/table.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <sys/stat.h>
 
 #define OBJECTS_MAX 32
 #define SAMPLES 3
 #define PATH_BYTES 4096
+#define MOMENTS_MAX 100000
+#define CAMERAS_MAX 1000
 #define MOTION_MIN 0.001
 #define MOTION_MAX 10.0
+#define NOISE_MAX 64.0
+#define NOISE_SEED 29
 /* The layout wants the angle: 2 atan(1 / ADCGS_SCENES_FOCAL). */
 #define CAMERA_ANGLE_X "0.7610127542247298"
 
@@ -30,7 +36,8 @@ typedef struct view {
 } view;
 
 typedef struct writer {
-    const adcgs_scenes_entry *scene;
+    adcgs_scenes_entry scene; /* as it is wanted */
+    double noise;             /* of training's pictures, 1 is white */
     adcgs_trace_object objects[OBJECTS_MAX]; /* the scene's, with the motion that is wanted */
     const char *directory, *format;
     int width, height;
@@ -61,13 +68,18 @@ static int split_size(const adcgs_scenes_entry *scene, int split)
                                       : scene->n_test;
 }
 
+static int count_pictures(const adcgs_scenes_entry *scene)
+{
+    int n = 0;
+    for (int split = 0; split < ADCGS_SPLITS; split++)
+        n += split_size(scene, split);
+    return n;
+}
+
 int adcgs_scenes_count(const char *name)
 {
     const adcgs_scenes_entry *const scene = adcgs_scenes_entry_find(name);
-    int n = 0;
-    for (int split = 0; scene && split < ADCGS_SPLITS; split++)
-        n += split_size(scene, split);
-    return n;
+    return scene ? count_pictures(scene) : 0;
 }
 
 /* Azimuth from -y and elevation in turns; part of a hemisphere around the target. */
@@ -112,7 +124,7 @@ static view view_at(const adcgs_scenes_entry *scene, int split, int i, int width
         const int each = scene->cameras / scene->turns, moment = i / each;
         const int c = i % each * scene->turns + moment % scene->turns;
         v.time = steps > 0 ? (double)moment / steps : 0.0;
-        place(&v.camera, scene, 0.39 * ((double)c / (scene->cameras - 1) - 0.5), heights[(c + c / 3) % 3], width);
+        place(&v.camera, scene, 0.39 * (scene->cameras > 1 ? (double)c / (scene->cameras - 1) - 0.5 : 0.0), heights[(c + c / 3) % 3], width);
         return v;
     }
     const double along = (i + shift[split]) / count;
@@ -146,14 +158,15 @@ static const char *mask_extension(const writer *w)
 /* Objects that move do so `motion` times as far; the others keep the pose of time 0. */
 static void take_objects(writer *w, double motion)
 {
-    for (int i = 0; i < w->scene->n_objects; i++) {
+    for (int i = 0; i < w->scene.n_objects; i++) {
         adcgs_trace_object *const o = &w->objects[i];
-        const double factor = w->scene->moving >> i & 1 ? motion : 0.0;
-        *o = w->scene->objects[i];
+        const double factor = w->scene.moving >> i & 1 ? motion : 0.0;
+        *o = w->scene.objects[i];
         for (int c = 0; c < 3; c++) {
             o->velocity[c] *= factor;
             o->fade[c] *= factor;
         }
+        o->beats *= factor;
         o->bounces *= factor;
         o->spin *= factor;
         o->orbit_turns *= factor;
@@ -170,17 +183,31 @@ static adcgs_status write_pixels(writer *w, const char *name, const char *extens
     return adcgs_image_write(&image, path, 0, w->error);
 }
 
-static adcgs_status write_picture(writer *w, const view *v, const char *name)
+/* Noise of a camera's sensor, near enough normal: the sum of twelve random numbers, in picture `number`. */
+static void add_noise(const writer *w, int number)
 {
-    ADCGS_TRY(adcgs_trace_render(w->objects, w->scene->n_objects, &v->camera, v->time, w->width, w->height, SAMPLES, w->pool,
+    const size_t n = (size_t)w->width * (size_t)w->height * 3;
+    for (size_t i = 0; i < n; i++) {
+        double sum = -6.0;
+        for (uint64_t k = 0; k < 12; k++)
+            sum += adcgs_random_unit(NOISE_SEED, (uint64_t)number, 12 * i + k);
+        w->pixels[i] = (float)fmin(fmax((double)w->pixels[i] + w->noise * sum, 0.0), 1.0);
+    }
+}
+
+static adcgs_status write_picture(writer *w, const view *v, int split, int i, const char *name)
+{
+    ADCGS_TRY(adcgs_trace_render(w->objects, w->scene.n_objects, &v->camera, v->time, w->width, w->height, SAMPLES, w->pool,
                                  w->pixels, w->error));
+    if (split == ADCGS_SPLIT_TRAIN && w->noise > 0.0)
+        add_noise(w, i);
     return write_pixels(w, name, w->format, 3);
 }
 
 /* The picture of what moves. */
 static adcgs_status write_mask(writer *w, const view *v, const char *name)
 {
-    ADCGS_TRY(adcgs_trace_cover(w->objects, w->scene->n_objects, w->scene->moving, &v->camera, v->time, w->width, w->height,
+    ADCGS_TRY(adcgs_trace_cover(w->objects, w->scene.n_objects, w->scene.moving, &v->camera, v->time, w->width, w->height,
                                 SAMPLES, w->pool, w->pixels, w->error));
     return write_pixels(w, name, mask_extension(w), 1);
 }
@@ -202,18 +229,18 @@ static void print_frame(const writer *w, FILE *file, const view *v, const char *
 static adcgs_status write_view(writer *w, int split, int i, FILE *file)
 {
     char name[32], mask[64];
-    const view v = view_at(w->scene, split, i, w->width);
-    const int has_mask = split != ADCGS_SPLIT_TRAIN && w->scene->moving;
+    const view v = view_at(&w->scene, split, i, w->width);
+    const int has_mask = split != ADCGS_SPLIT_TRAIN && w->scene.moving;
     snprintf(name, sizeof name, "%s/r_%03d", split_names[split], i);
     snprintf(mask, sizeof mask, "%s_moving", name);
     print_frame(w, file, &v, name, has_mask ? mask : NULL);
-    ADCGS_TRY(write_picture(w, &v, name));
+    ADCGS_TRY(write_picture(w, &v, split, i, name));
     return has_mask ? write_mask(w, &v, mask) : ADCGS_OK;
 }
 
 static adcgs_status write_frames(writer *w, int split, FILE *file)
 {
-    const int n = split_size(w->scene, split), total = adcgs_scenes_count(w->scene->name);
+    const int n = split_size(&w->scene, split), total = count_pictures(&w->scene);
     fprintf(file, "{\n  \"camera_angle_x\": " CAMERA_ANGLE_X ",\n  \"frames\": [\n");
     for (int i = 0; i < n; i++) {
         ADCGS_TRY(write_view(w, split, i, file));
@@ -242,6 +269,27 @@ static adcgs_status write_split(writer *w, int split)
     return status;
 }
 
+/* As many moments and cameras as are wanted. */
+static adcgs_status take_counts(adcgs_scenes_entry *scene, const adcgs_scenes_options *options, adcgs_error *error)
+{
+    if (options->moments < 0 || options->moments > MOMENTS_MAX || options->cameras < 0 || options->cameras > CAMERAS_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: %d moments, %d cameras, expected up to %d and %d", options->moments,
+                          options->cameras, MOMENTS_MAX, CAMERAS_MAX);
+    if (options->cameras && scene->swings > 0.0)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s is filmed by one camera: expected no number of cameras", scene->name);
+    const int each = scene->cameras / scene->turns; /* see a moment */
+    if (options->cameras % each)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d cameras: of scene %s %d see each moment, expected a multiple of it",
+                          options->cameras, scene->name, each);
+    if (options->cameras) {
+        scene->cameras = options->cameras;
+        scene->turns = options->cameras / each;
+    }
+    if (options->moments)
+        scene->times = options->moments;
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_options *options, adcgs_pool *pool,
                                 adcgs_scenes_progress_fn progress, void *user, adcgs_error *error)
 {
@@ -251,7 +299,7 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no scene is called \"%s\"", options->name);
     if (strcmp(format, "png") && strcmp(format, "ppm"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: format \"%s\", expected png or ppm", format);
-    writer w = {.scene = scene, .directory = directory, .format = format, .pool = pool, .progress = progress, .user = user,
+    writer w = {.scene = *scene, .noise = options->noise / 255.0, .directory = directory, .format = format, .pool = pool, .progress = progress, .user = user,
                 .width = options->width ? options->width : scene->size, .height = options->height ? options->height : scene->size,
                 .error = error};
     if (w.width < 1 || w.height < 1 || w.width > 16384 || w.height > 16384)
@@ -259,6 +307,9 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
     const double motion = options->motion != 0.0 ? options->motion : 1.0;
     if (!(motion >= MOTION_MIN && motion <= MOTION_MAX))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: motion %g, expected %g..%g", motion, MOTION_MIN, MOTION_MAX);
+    if (!(options->noise >= 0.0 && options->noise <= NOISE_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: noise of %g levels, expected 0..%g", options->noise, NOISE_MAX);
+    ADCGS_TRY(take_counts(&w.scene, options, error));
     take_objects(&w, motion);
     ADCGS_TRY(make_directory(directory, error));
     w.pixels = adcgs_alloc(NULL, (size_t)w.width * (size_t)w.height, 3 * sizeof *w.pixels, error);

@@ -18,6 +18,9 @@ typedef struct adcgs_scenes_options {
     const char *name;   /**< of the scene, see adcgs_scenes_name() */
     int width, height;  /**< of the pictures; 0: the scene's own size */
     const char *format; /**< extension of the pictures: "png" or "ppm"; NULL: "png" */
+    int moments;        /**< that training's cameras see, 1 to 100000, in the same time; 0: the scene's own */
+    int cameras;        /**< for training, 1 to 1000, as many of which see a moment as otherwise; 0: the scene's own */
+    double noise;       /**< levels of 255, 0 to 64: the deviation of what is added to each channel of training's pictures */
     double motion;      /**< 0.001 to 10: factor of all that moving objects do (speed, bounces, turns, orbits, change of colour)
                              and of the times from which they are there, so that 0.1 is a tenth of the motion; 0: 1 */
 } adcgs_scenes_options;

@@ -70,8 +70,9 @@ static const adcgs_trace_object mini[] = {
 #define VISIBLE (DISTANCE * 2.0 / ADCGS_SCENES_FOCAL) /* the picture's width at the target */
 
 /* A parcel: patches of 5 pixels of the pictures' own size, with grain. */
-#define PARCEL .shape = ADCGS_SHAPE_BOX, .texture = ADCGS_TEXTURE_PATCHES, .frequency = 9.0, .detail = 0.6,    \
-               .colour = {{0.95, 0.80, 0.35}, {0.35, 0.12, 0.20}}
+#define PATCHED .texture = ADCGS_TEXTURE_PATCHES, .frequency = 9.0, .detail = 0.6,                             \
+                .colour = {{0.95, 0.80, 0.35}, {0.35, 0.12, 0.20}}
+#define PARCEL .shape = ADCGS_SHAPE_BOX, PATCHED
 /* Along x from one side of the target to the other, as the camera in the middle of the arc has it across. */
 #define CROSSING(share)                                                                                         \
     {PARCEL, .size = {0.26, 0.22, 0.26}, .position = {-0.5 * (share) * VISIBLE, -0.10, 0.26}, .seed = 41,      \
@@ -99,6 +100,38 @@ static const adcgs_trace_object clip[] = {
      .bounces = 8.0, .bounce_height = 0.40, .until = 0.55},
     {PARCEL, .size = {0.18, 0.18, 0.18}, .position = {0.2, -0.75, 0.9}, .seed = 48, .velocity = {0.9, 0.3, -0.7}, .from = 0.35},
     {.shape = ADCGS_SHAPE_LAMP, .size = {0.7}, .position = {-0.7, -0.1, 1.0}, .from = 0.45},
+};
+/* Rungs of a ladder, from one thing that is still to many that flow; the other scenes of this size are among them. */
+#define PLAIN_DOME {.shape = ADCGS_SHAPE_DOME, .size = {7.0}, .colour = {{0.55, 0.60, 0.66}, {0.55, 0.60, 0.66}}}
+#define STANDING(x, y) {PARCEL, .size = {0.30, 0.24, 0.34}, .position = {x, y, 0.34}, .seed = 51}
+#define ARM(side, number)                                                                                       \
+    {PARCEL, .size = {0.34, 0.10, 0.08}, .position = {0.40 * (side), 0.15, 0.42}, .seed = (number),            \
+     .orbit = {0.0, 0.15}, .orbit_turns = 0.35 * (side), .spin_axis = {0.0, 0.0, 1.0}, .spin = 0.35 * (side)}
+#define DROP(x, y, to_x, to_y, hops, height, number)                                                            \
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.07}, .position = {x, y, 0.30}, .colour = {{0.25, 0.45, 0.85}, {0.60, 0.85, 0.95}},  \
+     .texture = ADCGS_TEXTURE_NOISE, .frequency = 9.0, .seed = (number), .velocity = {to_x, to_y, -0.15},      \
+     .bounces = (hops), .bounce_height = (height)}
+static const adcgs_trace_object object[] = {PLAIN_DOME, STANDING(0.0, 0.0)};
+static const adcgs_trace_object pair[] = {PLAIN_DOME, STANDING(-0.45, 0.0), STANDING(0.45, 0.0)};
+static const adcgs_trace_object table[] = {STILL};
+static const adcgs_trace_object several[] = {
+    STILL, PEDESTAL, TURNING(0.5),
+    {PARCEL, .size = {0.18, 0.18, 0.18}, .position = {-0.9, -0.45, 0.18}, .seed = 52, .velocity = {0.8, -0.3, 0.0}},
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.22}, .position = {1.0, -0.5, 0.22}, .texture = ADCGS_TEXTURE_CHECKER,
+     .frequency = 5.0, .colour = {{0.95, 0.72, 0.15}, {0.20, 0.22, 0.50}}, .seed = 53, .velocity = {-0.5, 0.1, 0.0},
+     .bounces = 1.0, .bounce_height = 0.30, .spin_axis = {0.0, 1.0, 0.0}, .spin = -0.3},
+};
+static const adcgs_trace_object hinge[] = {STILL, PEDESTAL, ARM(-1.0, 54), ARM(1.0, 55)};
+static const adcgs_trace_object soft[] = {
+    STILL, PEDESTAL,
+    {.shape = ADCGS_SHAPE_BALL, PATCHED, .size = {0.30}, .position = {0.0, 0.15, 0.62}, .seed = 56, .stretch = {0.3, 0.0, -0.3},
+     .beats = 1.0}};
+static const adcgs_trace_object drops[] = {
+    STILL, PEDESTAL,
+    DROP(0.0, 0.1, 0.6, -0.3, 1.0, 0.60, 61), DROP(0.1, 0.1, -0.6, -0.5, 1.2, 0.50, 62), DROP(0.0, 0.2, 0.2, -0.8, 1.5, 0.40, 63),
+    DROP(0.1, 0.2, -0.2, -0.7, 0.8, 0.70, 64), DROP(-0.1, 0.1, -0.8, 0.1, 1.1, 0.55, 65), DROP(0.0, 0.0, 0.8, 0.2, 1.4, 0.45, 66),
+    DROP(0.1, 0.0, 0.4, -0.6, 0.9, 0.65, 67), DROP(-0.1, 0.2, -0.4, -0.4, 1.3, 0.50, 68), DROP(-0.1, 0.0, 0.0, -0.9, 1.0, 0.60, 69),
+    DROP(0.2, 0.1, 0.7, -0.6, 1.6, 0.35, 70), DROP(-0.2, 0.1, -0.7, -0.7, 1.2, 0.45, 71), DROP(0.0, 0.3, 0.1, 0.3, 0.9, 0.75, 72),
 };
 static const adcgs_trace_object split[] = {STILL, HALF(-1.0, 44), HALF(1.0, 45)};
 
@@ -137,6 +170,13 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "turn3", .about = "a box turns three times", MOVING(turn3, 1)},
     {.name = "appear", .about = "a box is there from half of the clip on", MOVING(appear, 1)},
     {.name = "split", .about = "a box comes apart, and its halves slide away from each other", MOVING(split, 2)},
+    {.name = "object", .about = "a ladder of complexity: one parcel under a plain sky, nothing moves", MOVING(object, 0)},
+    {.name = "pair", .about = "that parcel twice", MOVING(pair, 0)},
+    {.name = "table", .about = "the table's still things alone", MOVING(table, 0)},
+    {.name = "several", .about = "on it two parcels and a ball that go their ways", MOVING(several, 3)},
+    {.name = "hinge", .about = "on it two arms on one hinge", MOVING(hinge, 2)},
+    {.name = "soft", .about = "on it a ball that is stretched and pressed", MOVING(soft, 1)},
+    {.name = "drops", .about = "on it a fountain of twelve drops", MOVING(drops, 12)},
     {.name = "film-cross20", .about = "cross20 filmed by one camera, held in a hand", FILMED(cross20, 1)},
     {.name = "film-cross80", .about = "cross80 filmed so", FILMED(cross80, 1)},
     {.name = "film-turn1", .about = "turn1 filmed so", FILMED(turn1, 1)},

@@ -15,6 +15,7 @@
 typedef struct pose {
     double centre[3];
     double axes[9]; /* rows are the local axes in the world */
+    double stretch[3]; /* along these */
     double fade;
     double bound2;  /* squared radius of a ball around it; negative: it is not there, or not seen */
     int shines;     /* as a lamp */
@@ -70,20 +71,25 @@ static void pose_at(pose *out, const adcgs_trace_object *o, double time)
         out->centre[0] = o->orbit[0] + c * dx - s * dy;
         out->centre[1] = o->orbit[1] + s * dx + c * dy;
     }
+    double longest = 1.0;
+    for (int a = 0; a < 3; a++) {
+        out->stretch[a] = 1.0 + o->stretch[a] * adcgs_trace_sin(o->beats * time);
+        longest = ADCGS_MAX(longest, out->stretch[a]);
+    }
     out->fade = time * time * (3.0 - 2.0 * time);
     const double box2 = adcgs_v3_dot(o->size, o->size), round2 = o->size[0] * o->size[0] + o->size[2] * o->size[2];
     const int is_there = time >= o->from && (o->until == 0.0 || time < o->until), is_lamp = o->shape == ADCGS_SHAPE_LAMP;
-    out->bound2 = !is_there || is_lamp ? -1.0 : o->shape == ADCGS_SHAPE_BOX ? box2 : round2;
+    out->bound2 = !is_there || is_lamp ? -1.0 : longest * longest * (o->shape == ADCGS_SHAPE_BOX ? box2 : round2);
     out->shines = is_there && is_lamp;
 }
 
 /* Smallest t > 0 of the ray in local coordinates, with the normal there; FAR if none. */
 static double hit_ball(const double o[3], const double d[3], double radius, double normal[3])
 {
-    const double b = adcgs_v3_dot(o, d), q = b * b - adcgs_v3_dot(o, o) + radius * radius;
+    const double a = adcgs_v3_dot(d, d), b = adcgs_v3_dot(o, d), q = b * b - a * (adcgs_v3_dot(o, o) - radius * radius);
     if (q < 0.0)
         return FAR;
-    const double root = sqrt(q), t = -b - root > 0.0 ? -b - root : -b + root;
+    const double root = sqrt(q), t = (-b - root > 0.0 ? -b - root : -b + root) / a;
     if (t <= 0.0)
         return FAR;
     for (int i = 0; i < 3; i++)
@@ -172,10 +178,11 @@ static int near_object(const pose *at, const double from[3], const double direct
     return d2 < at->bound2 || (along > 0.0 && d2 - along * along < at->bound2);
 }
 
+/* In the axes of the object at rest: what is stretched is seen as it was. */
 static void to_local(const pose *at, const double v[3], double out[3])
 {
     for (int a = 0; a < 3; a++)
-        out[a] = adcgs_v3_dot(at->axes + 3 * a, v);
+        out[a] = adcgs_v3_dot(at->axes + 3 * a, v) / at->stretch[a];
 }
 
 static double hit_object(const job *j, int i, const double from[3], const double direction[3], hit *out)
@@ -192,8 +199,9 @@ static double hit_object(const job *j, int i, const double from[3], const double
         out->object = i;
         for (int a = 0; a < 3; a++) {
             out->local[a] = o[a] + t * d[a];
-            out->normal[a] = normal[a];
+            out->normal[a] = normal[a] / at->stretch[a];
         }
+        adcgs_v3_normalise(out->normal);
     }
     return t;
 }

@@ -42,6 +42,7 @@ typedef struct adcgs_trace_object {
     double bounces, bounce_height;
     double spin_axis[3], spin;   /**< unit axis, turns per unit of time */
     double orbit[2], orbit_turns; /**< circle about the point orbit (x, y) in turns per unit of time */
+    double stretch[3], beats;    /**< soft: its size along local axes times 1 + stretch sin(beats time), its texture with it */
     double fade[3];              /**< added to both colours by time 1, smoothly */
     double from;                 /**< before this time it is not there */
     double until;                /**< nor is it from this time on; 0: it stays */

@@ -14,14 +14,20 @@ int main(int argc, char **argv)
 {
     static const char *const formats[] = {"png", "ppm", NULL};
     const char *scene = "demo", *directory = "demo-scene";
-    int size[2] = {0, 0}, format = 0, threads = 0, list = 0, quiet = 0, first = 0;
-    double motion = 1.0;
+    int size[2] = {0, 0}, moments = 0, cameras = 0, format = 0, threads = 0, list = 0, quiet = 0, first = 0;
+    double motion = 1.0, noise = 0.0;
     const adcgs_option options[] = {
         {.name = "scene", .kind = ADCGS_OPTION_STRING, .target = &scene, .value = "NAME", .help = "which scene (default: demo)"},
         {.name = "size", .kind = ADCGS_OPTION_PAIR, .target = size, .min = 1, .max = 16384, .value = "WxH",
          .help = "size of the pictures (default: the scene's own)"},
         {.name = "motion", .kind = ADCGS_OPTION_REAL, .target = &motion, .min = 0.001, .max = 10.0, .value = "FACTOR",
          .help = "times the motion of all that moves (default: 1)"},
+        {.name = "moments", .kind = ADCGS_OPTION_INT, .target = &moments, .min = 1, .max = 100000, .value = "N",
+         .help = "moments that are filmed, in the same time (default:\nthe scene's own)"},
+        {.name = "cameras", .kind = ADCGS_OPTION_INT, .target = &cameras, .min = 1, .max = 1000, .value = "N",
+         .help = "cameras for training (default: the scene's own)"},
+        {.name = "noise", .kind = ADCGS_OPTION_REAL, .target = &noise, .min = 0.0, .max = 64.0, .value = "LEVELS",
+         .help = "deviation of noise in training's pictures, of 255\nlevels (default: 0)"},
         {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &directory, .value = "DIR",
          .help = "folder to write (default: demo-scene)"},
         {.name = "format", .kind = ADCGS_OPTION_CHOICE, .target = &format, .value = "FORMAT", .choices = formats,
@@ -46,8 +52,8 @@ int main(int argc, char **argv)
         return adcgs_cli_leave(&cli, 0);
     adcgs_pool *pool = NULL;
     adcgs_progress progress;
-    const adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .format = formats[format],
-                                         .motion = motion};
+    const adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .moments = moments,
+                                         .cameras = cameras, .noise = noise, .format = formats[format], .motion = motion};
     if (adcgs_pool_create(&pool, threads, &error) != ADCGS_OK)
         return adcgs_cli_fail(&cli, &error);
     adcgs_progress_init(&progress, &cli);

@@ -240,6 +240,46 @@ static void halves_come_apart(void **state)
     assert_in_range(gap(1.0), 30, 50);
 }
 
+/* A ball that is stretched along x and pressed along z at a quarter of its beat, and as it was at half. */
+static void what_is_soft_changes_its_shape(void **state)
+{
+    static float mask[3][LARGE * LARGE];
+    int width[3] = {0, 0, 0}, height[3] = {0, 0, 0};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        cover(adcgs_scenes_entry_find("soft"), 0.25 * k, LARGE, 2, mask[k]);
+        for (int i = 0; i < LARGE; i++) {
+            int across = 0, down = 0;
+            for (int j = 0; j < LARGE; j++) {
+                across += mask[k][i * LARGE + j] > 0.0f;
+                down += mask[k][j * LARGE + i] > 0.0f;
+            }
+            width[k] = ADCGS_MAX(width[k], across);
+            height[k] = ADCGS_MAX(height[k], down);
+        }
+    }
+    assert_in_range(width[0] - height[0] + 2, 0, 4);
+    assert_in_range(100 * width[1] / width[0], 120, 140);
+    assert_true(height[1] < height[0] - 2);
+    assert_memory_equal(mask[0], mask[2], sizeof mask[0]);
+}
+
+/* What cannot be had is said; what can is measured where the program writes it (tests/cli/test_texts.sh). */
+static void wrong_counts_are_refused(void **state)
+{
+    static const struct {
+        adcgs_scenes_options options;
+        const char *text;
+    } wrong[] = {{{.name = "tiny", .cameras = 5}, "multiple"}, {{.name = "tiny", .noise = 65.0}, "noise of 65"},
+                 {{.name = "film-turn1", .cameras = 2}, "one camera"}, {{.name = "tiny", .moments = -1}, "-1 moments"}};
+    adcgs_error error;
+    (void)state;
+    for (size_t i = 0; i < ADCGS_COUNTOF(wrong); i++) {
+        assert_int_equal(adcgs_scenes_write("/nowhere", &wrong[i].options, NULL, NULL, NULL, &error), ADCGS_ERR_USAGE);
+        assert_non_null(strstr(error.text, wrong[i].text));
+    }
+}
+
 static void table_is_sound(void **state)
 {
     (void)state;
@@ -282,6 +322,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sine_is_accurate),      cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(pictures_have_content), cmocka_unit_test(table_is_sound),
+        cmocka_unit_test(what_is_soft_changes_its_shape), cmocka_unit_test(wrong_counts_are_refused),
         cmocka_unit_test(covered_is_what_is_seen), cmocka_unit_test(half_of_the_samples_cover),
         cmocka_unit_test(crossings_are_as_long_as_they_say),
         cmocka_unit_test(boxes_turn_as_often_as_they_say), cmocka_unit_test(what_appears_was_not_there),
