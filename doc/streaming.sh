@@ -5,7 +5,7 @@
 # keys, or predicted, or not at all. One thread, seed 1; writes prefixes.csv and segments.csv, and a chart of each by gnuplot.
 # What is there already is kept, so that it can go on. Folders are seen from the build folder.
 #   STREAMING   folder of all of it (default streaming)
-#   ITERATIONS  of training, of the clip in all (default 3000)
+#   ITERATIONS  of training, of each segment of the clip, and five times as many of the whole clip (default 3000)
 #   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
 set -eu
 source=$(cd "${srcdir:-.}" && pwd)
@@ -52,7 +52,7 @@ segments()
         [ $kind = predicted ] && key=10 || key=0
         echo "streaming: clip in $2 segments, $kind" >&2
         cut=$out/clip-$kind-$2.adcgs
-        code "$cut" "$out/scenes/clip" -n $((iterations / $2)) --segment "$1" --key $key
+        code "$cut" "$out/scenes/clip" -n "$iterations" --segment "$1" --key $key
         measure "$cut" $kind "$2"
     done
 }
@@ -62,9 +62,9 @@ make_scenes "$out/scenes"
 echo "scene,percent,bytes,psnr,moving" >"$out/prefixes.csv"
 each_scene "$out/scenes" "${ADCGS_DATA:-$source/../shared/data}" prefixes
 echo "kind,segments,bytes,psnr,moving" >"$out/segments.csv"
-code "$out/clip.adcgs" "$out/scenes/clip" -n "$iterations"
+code "$out/clip.adcgs" "$out/scenes/clip" -n $((5 * iterations))
 measure "$out/clip.adcgs" whole 1
-for seconds in 5 2 1; do
+for seconds in 5 2; do
     segments $seconds $((10 / seconds))
 done
 gnuplot -e "folder='$out'" "$source/doc/streaming.gp"

@@ -299,9 +299,9 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no scene is called \"%s\"", options->name);
     if (strcmp(format, "png") && strcmp(format, "ppm"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: format \"%s\", expected png or ppm", format);
-    writer w = {.scene = *scene, .noise = options->noise / 255.0, .directory = directory, .format = format, .pool = pool, .progress = progress, .user = user,
+    writer w = {.scene = *scene, .noise = options->noise / 255.0, .directory = directory, .format = format,
                 .width = options->width ? options->width : scene->size, .height = options->height ? options->height : scene->size,
-                .error = error};
+                .pool = pool, .progress = progress, .user = user, .error = error};
     if (w.width < 1 || w.height < 1 || w.width > 16384 || w.height > 16384)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: size %dx%d, expected 1..16384 each", w.width, w.height);
     const double motion = options->motion != 0.0 ? options->motion : 1.0;
