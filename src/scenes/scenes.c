@@ -124,7 +124,8 @@ static view view_at(const adcgs_scenes_entry *scene, int split, int i, int width
         const int each = scene->cameras / scene->turns, moment = i / each;
         const int c = i % each * scene->turns + moment % scene->turns;
         v.time = steps > 0 ? (double)moment / steps : 0.0;
-        place(&v.camera, scene, 0.39 * (scene->cameras > 1 ? (double)c / (scene->cameras - 1) - 0.5 : 0.0), heights[(c + c / 3) % 3], width);
+        const double along = scene->cameras > 1 ? (double)c / (scene->cameras - 1) - 0.5 : 0.0;
+        place(&v.camera, scene, 0.39 * along, heights[(c + c / 3) % 3], width);
         return v;
     }
     const double along = (i + shift[split]) / count;
