@@ -386,7 +386,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "k", 0, ADCGS_OPTION_INT, &o->k, k->min, k->max, "N",
           "primitives per anchor, 1 to 16 (default: the preset's)", NULL, &o->has_k },
         { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, anchors->min, anchors->max, "N",
-          "budget of anchors (default: the preset's)", NULL, &o->has_max_anchors },
+          "budget of anchors (default: by how much there is to see\nin the pictures)", NULL, &o->has_max_anchors },
         { "dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
           "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs or splats",
           adcgs_dataset_names, NULL },

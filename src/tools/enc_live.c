@@ -238,6 +238,7 @@ adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_erro
 {
     live_run r = { .w = w, .job = job };
     w->is_live = 1;
+    job->config.own_anchors = 1; /* HEAD says how many there may be before most pictures are taken */
     adcgs_buffer_init(&r.bytes);
     adcgs_enc_effort_init(&r.effort, job);
     const adcgs_status status = run(&r, error);

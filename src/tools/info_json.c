@@ -23,6 +23,7 @@ static void json_header(adcgs_json *j, const adcgs_info_report *r)
     adcgs_json_int(j, "spans", r->stream.params.spans);
     adcgs_json_int(j, "smooth_time", r->stream.params.smooth_time);
     adcgs_json_int(j, "bodies", r->stream.params.bodies);
+    adcgs_json_int(j, "time_rows", r->stream.params.time_rows);
     adcgs_json_int(j, "gaussians", i->gaussians);
     adcgs_json_int(j, "weights", i->weights);
     adcgs_json_int(j, "k", i->k);

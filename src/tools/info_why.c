@@ -36,9 +36,10 @@ static void print_bytes(const adcgs_info_report *r)
     const adcgs_info *i = &r->info;
     const adcgs_bytes *b = &i->bytes;
     const uint64_t features = b->layer[0] + b->layer[1] + b->layer[2] + b->layer[3] + b->layer[4];
+    const uint32_t moving = r->stream.params.time_rows ? i->anchors - i->static_anchors : 0;
     print_share("features", features, b->total);
     printf("  of %u anchors, %u of which move, with %u primitives, %.1f of at most %d each\n", i->anchors,
-           i->anchors - i->static_anchors, i->gaussians, (double)i->gaussians / (double)i->anchors, i->k);
+           moving, i->gaussians, (double)i->gaussians / (double)i->anchors, i->k);
     print_share("positions", b->geometry, b->total);
     printf("  %.1f bits an anchor\n", 8.0 * (double)b->geometry / (double)i->anchors);
     print_share("networks", b->networks, b->total);
@@ -52,13 +53,16 @@ static void print_bytes(const adcgs_info_report *r)
 static void print_anchors(const char *list)
 {
     const double points = find_number(list, "points"), most = find_number(list, "most");
-    const double refused = find_number(list, "refused");
-    printf("anchors     %.0f to begin with", find_number(list, "began"));
+    const double refused = find_number(list, "refused"), details = find_number(list, "details");
+    printf("anchors     %.0f allowed", find_number(list, "allowed"));
+    if (details > 0)
+        printf(" for %.0f details of a picture", details);
+    printf("; %.0f to begin with", find_number(list, "began"));
     if (points > 0)
         printf(", where %.0f points were known", points);
     printf("; %.0f at most", most);
     if (refused > 0)
-        printf(", which is all that max_anchors allows: beside %.0f primitives more would have grown", refused);
+        printf(", and beside %.0f primitives more would have grown", refused);
     printf("; %.0f of which next to nothing was to be seen went\n", find_number(list, "idle"));
 }
 

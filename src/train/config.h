@@ -51,6 +51,7 @@ typedef struct adcgs_train_config {
     adcgs_shape shape;
     /* Anchors. */
     int tiers;             /**< sets of anchors, the first a coarse picture of everything; at most, few anchors make fewer */
+    float detail_anchors;  /**< max_anchors over the square root of details, unless that was chosen by hand; 0: the preset's */
     uint32_t start_anchors, max_anchors;
     float span_moments;    /**< moments before and behind its own that an anchor lives, to begin with */
     uint32_t densify_every;  /**< iterations between densifications */

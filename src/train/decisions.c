@@ -8,7 +8,8 @@
 void adcgs_decisions_list(const adcgs_decisions *d, adcgs_decision list[ADCGS_DECISIONS])
 {
     const adcgs_decision all[ADCGS_DECISIONS] = {
-        { "points", (double)d->points }, { "began", d->began },           { "most", d->most },
+        { "details", d->details },       { "allowed", d->allowed },       { "points", (double)d->points },
+        { "began", d->began },           { "most", d->most },
         { "refused", d->refused },       { "idle", d->idle },             { "unseen", d->unseen },
         { "faint", d->faint },           { "unchanging", d->unchanging }, { "unmoved", d->unmoved },
         { "units", d->units },           { "still", d->loss_still },      { "moving", d->loss_moving },

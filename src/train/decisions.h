@@ -11,6 +11,8 @@
 
 typedef struct adcgs_decisions {
     uint64_t points;     /**< given with the scene, or matched between its pictures, to begin at */
+    uint32_t details;    /**< of a picture, where these say how many anchors there may be, and so many: max_anchors */
+    uint32_t allowed;
     uint32_t began;      /**< anchors to begin with, and the most there were at once */
     uint32_t most;
     uint32_t refused;    /**< primitives beside which more would have grown at the last densification but for max_anchors */
@@ -28,7 +30,7 @@ typedef struct adcgs_decision {
     double value;
 } adcgs_decision;
 
-enum { ADCGS_DECISIONS = 12, ADCGS_DECISIONS_TEXT = 320 };
+enum { ADCGS_DECISIONS = 14, ADCGS_DECISIONS_TEXT = 320 };
 
 void adcgs_decisions_list(const adcgs_decisions *decisions, adcgs_decision list[ADCGS_DECISIONS]);
 /** "points=18231 began=4500 ...", without those that are 0. */

@@ -4,6 +4,7 @@
 
 #include "data/by_camera.h"
 #include "fmodel/bodies.h"
+#include "train/anchor_plan.h"
 #include "train/follow.h"
 #include "train/initialise.h"
 #include "train/rate_plan.h"
@@ -123,6 +124,7 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
         c->shape.omega_width = 0;
     if (c->without_fine)
         c->shape.varpi_width = 0;
+    ADCGS_TRY(adcgs_plan_anchors(c, t->scene, &t->decisions.details, error));
     ADCGS_TRY(adcgs_rate_plan(c, error));
     ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
     ADCGS_TRY(adcgs_start_match(&t->stereo, t->scene, c, t->pool, error));
@@ -141,6 +143,7 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
     if (several && t->scene->points.n >= ADCGS_POINTS_LEAST)
         ADCGS_TRY(create_viewpoints(t, error));
     t->decisions.points = t->scene->points.n + (uint64_t)t->stereo.n_still + t->stereo.n_moving;
+    t->decisions.allowed = c->max_anchors;
     t->decisions.began = t->decisions.most = t->f->n;
     return adcgs_trainer_resize(t, error);
 }

@@ -44,7 +44,7 @@ for target in "${targets[@]}"; do
     mkdir -p "corpus/$target"
     # shellcheck disable=SC2046
     find $(seeds "$target") -type f -size -64k -exec cp -n {} "corpus/$target/" \;
-    "tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
+    "tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=120 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
         -dict="$top/tests/fuzz/adcgs.dict" -artifact_prefix="faults/$target-" "corpus/$target" >"$target.log" 2>&1
     status=$?
     printf '%-12s %s executions, %s\n' "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$target.log")" \

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file PSNR, SSIM and MS-SSIM against slow direct references; boxes and the parts of pictures that they cover. */
 #include "metric/crop.h"
+#include "metric/detail.h"
 #include "metric/metric.h"
 
 #include <math.h>
@@ -390,11 +391,70 @@ static void test_crop(void **state)
     assert_false(again.visible);
 }
 
+/* ---- How much there is to see ---- */
+
+/** Values of a picture that are alike in all channels. */
+static void grey(float *picture, int n, float (*value)(int))
+{
+    for (int i = 0; i < n; i++)
+        picture[i] = picture[n + i] = picture[2 * n + i] = value(i);
+}
+
+enum { WIDE = 33, HIGH = 18 }; /* one scale has a column without a partner */
+
+static float shade(int i)
+{
+    return 0.2f + 0.6f * (float)(i % WIDE) / WIDE;
+}
+
+/** Pixels beside each other differ by 20 and by 10 levels, and so do details of the finest scale from 0. */
+static float strong_stripes(int i)
+{
+    return 0.5f + (i % WIDE % 2 ? 20.0f : 0.0f) / 255;
+}
+
+static float faint_stripes(int i)
+{
+    return 0.5f + (i % WIDE % 2 ? 10.0f : 0.0f) / 255;
+}
+
+/** Two halves, of which the edge lies in the middle of the coarsest scale alone. */
+static float two_halves(int i)
+{
+    return i % 32 < 16 ? 0.2f : 0.8f;
+}
+
+static uint32_t details_of(float (*value)(int), int width, int height)
+{
+    static float picture[3 * WIDE * HIGH + 3 * 32 * 32];
+    uint32_t n;
+    grey(picture, width * height, value);
+    assert_int_equal(adcgs_detail(picture, width, height, &n, NULL), ADCGS_OK);
+    return n;
+}
+
+static void test_detail(void **state)
+{
+    static float gap[3 * 4] = { 0 };
+    uint32_t n;
+    (void)state;
+    assert_int_equal(details_of(strong_stripes, WIDE, HIGH), WIDE / 2 * (HIGH / 2));
+    assert_int_equal(details_of(faint_stripes, WIDE, HIGH), 0);
+    assert_int_equal(details_of(two_halves, 32, 32), 1);
+    assert_in_range(details_of(shade, WIDE, HIGH), 1, 60);
+    for (int i = 0; i < 12; i++)
+        gap[i] = i % 4 ? 0.5f : (float)NAN; /* a masked pixel is no detail */
+    assert_int_equal(adcgs_detail(gap, 2, 2, &n, NULL), ADCGS_OK);
+    assert_int_equal(n, 0);
+    assert_int_equal(adcgs_detail(gap, 1, 4, &n, NULL), ADCGS_OK);
+    assert_int_equal(n, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ssim),    cmocka_unit_test(test_ms_ssim),       cmocka_unit_test(test_ms_ssim_values),
-        cmocka_unit_test(test_fitted),
+        cmocka_unit_test(test_fitted),  cmocka_unit_test(test_detail),
         cmocka_unit_test(test_psnr),          cmocka_unit_test(test_rectangle),
         cmocka_unit_test(test_any_box), cmocka_unit_test(test_box_of_points), cmocka_unit_test(test_crop),
     };

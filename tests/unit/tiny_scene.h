@@ -40,6 +40,7 @@ static inline adcgs_train_config small_config(void)
     c.iterations = ITERATIONS;
     c.start_anchors = 100;
     c.max_anchors = 150;
+    c.detail_anchors = 0;
     c.densify_every = 20;
     c.params.spans = 0; /* unless a test is about them */
     c.stereo = 0;

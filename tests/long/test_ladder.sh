@@ -1,0 +1,98 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# The ladder: scenes of rising complexity, whose truth is known, are coded by default, and bytes and structure follow what there is
+# to model: make -C build check-long. One thread each, JOBS of them at once (default 2), about six minutes of a processor. The
+# figures stay in the folder LADDER (default ladder), and what is there is not made anew. Nothing is asked of time.
+set -u
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-demo-scene adcgs-enc adcgs-eval adcgs-info
+ladder=${LADDER:-ladder}
+iterations=${ITERATIONS:-1500}
+mkdir -p "$ladder"
+
+# rungs: NAME SCENE OPTIONS of adcgs-demo-scene
+rungs()
+{
+    cat <<EOF
+object object
+object-noise object --noise 6
+object-half object --size 80x80
+pair pair
+table table
+table-noise table --noise 6
+table-half table --size 80x80
+table-long table --moments 48
+table-cameras table --cameras 24
+cross20 cross20
+several several
+hinge hinge
+soft soft
+split split
+drops drops
+EOF
+}
+
+# climb NAME SCENE OPTIONS...: the rung's stream, and what is said of it.
+climb()
+{
+    name=$1 scene=$2
+    shift 2
+    [ ! -e "$ladder/$name.json" ] || return 0
+    ./adcgs-demo-scene --scene "$scene" "$@" --format ppm -o "$ladder/$name" -q --threads 1 &&
+        ./adcgs-enc "$ladder/$name" -o "$ladder/$name.adcgs" --threads 1 -n "$iterations" --seed 1 --no-progression -q &&
+        ./adcgs-eval "$ladder/$name.adcgs" "$ladder/$name" --metrics psnr,dynamic-psnr --json >"$ladder/$name.eval" &&
+        ./adcgs-info "$ladder/$name.adcgs" --why >"$ladder/$name.why" &&
+        ./adcgs-info "$ladder/$name.adcgs" --json >"$ladder/$name.tmp" &&
+        mv "$ladder/$name.tmp" "$ladder/$name.json" || bad "$name"
+}
+
+if [ "${1:-}" = climb ]; then
+    shift
+    climb "$@"
+    exit $failed
+fi
+rungs | xargs -P "${JOBS:-2}" -L 1 sh "$0" climb || { echo "FAIL: the ladder could not be climbed"; exit 1; }
+
+# figure RUNG NAME: a number of its report, or 0.
+figure() { sed -n "s/^ *\"$2\": \([0-9.]*\),*$/\1/p" "$ladder/$1.json" | head -n 1 | grep . || echo 0; }
+size() { wc -c <"$ladder/$1.adcgs"; }
+has_network() { grep -q "\"$2\":" "$ladder/$1.json"; }
+moving() { has_network "$1" F_omega || has_network "$1" F_varpi && echo $(($(figure "$1" anchors) - $(figure "$1" static_anchors))) || echo 0; }
+
+# at_most PERCENT RUNG OF_RUNG WHY: bytes.
+at_most()
+{
+    [ $((100 * $(size "$2"))) -le $(($1 * $(size "$3"))) ] ||
+        bad "$4: $2 has $(size "$2") bytes, more than $1 % of the $(size "$3") of $3"
+}
+
+printf '%-14s %8s %8s %8s %10s %8s\n' rung bytes anchors moving primitives networks
+rungs | while read -r name rest; do
+    printf '%-14s %8d %8d %8d %10d %8d  %s\n' "$name" "$(size "$name")" "$(figure "$name" anchors)" "$(moving "$name")" \
+        "$(figure "$name" gaussians)" "$(figure "$name" networks)" \
+        "$(sed -n 's/^ *"psnr": \([0-9.]*\).*/\1/p' "$ladder/$name.eval" | tail -n 1)"
+done | tee "$ladder/figures.txt"
+
+for name in object object-noise object-half pair table table-noise table-half table-long table-cameras; do
+    [ "$(moving $name)" -eq 0 ] || bad "nothing moves in $name, but $(moving $name) anchors do"
+    [ "$(figure $name time_rows)" -eq 0 ] || bad "$name has a time table"
+done
+for name in cross20 several hinge soft split drops; do
+    [ "$(moving $name)" -gt 0 ] || bad "what moves in $name is taken as still"
+    [ $((2 * $(moving $name))) -lt "$(figure $name anchors)" ] || bad "half of $name moves"
+done
+at_most 80 object pair "one thing costs less than two"
+at_most 199 pair object "a second copy costs less than the first"
+at_most 60 pair table "two things cost less than a table full"
+for name in cross20 several hinge soft split drops; do
+    at_most 99 table $name "what moves has its price"
+done
+at_most 99 cross20 several "one that moves costs less than three"
+at_most 110 object-noise object "noise is not learnt"
+at_most 110 table-noise table "noise is not learnt"
+at_most 80 object-half object "small pictures need less"
+at_most 80 table-half table "small pictures need less"
+at_most 103 table-long table "a still scene costs as much however long it lasts"
+at_most 110 table-cameras table "more cameras show the same"
+[ $failed -eq 0 ] && echo "PASS: the ladder" || echo "FAIL: the ladder"
+exit $failed
