@@ -25,11 +25,16 @@
 
 /* ---- Configuration ---- */
 
+/** Nothing of a model's size follows from the scene. */
+#define FIXED "detail_anchors=0,still_below=0,keep_opacity=0,decide_at=2,tiers_from=2,prune_units_at=2,prune_units_again=2"
+
 static adcgs_status configure(adcgs_train_config *c, const adcgs_enc_options *o, adcgs_cpu_level cpu, adcgs_error *error)
 {
     if (o->bf16)
         ADCGS_TRY(adcgs_bf16_check(cpu, error));
     ADCGS_TRY(adcgs_train_preset(c, o->preset, error));
+    if (o->fixed)
+        ADCGS_TRY(adcgs_train_set(c, FIXED, error));
     if (o->set)
         ADCGS_TRY(adcgs_train_set(c, o->set, error));
     const struct {
@@ -421,6 +426,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "uncompressed", 0, ADCGS_OPTION_STRING, &o->uncompressed, 0, 0, "FILE",
           "train without rate and rounding, write the model here\nas plain binary32 numbers; the stream is then the finest", NULL,
           NULL },
+        { "fixed", 0, ADCGS_OPTION_FLAG, &o->fixed, 0, 0, NULL,
+          "let the preset alone say how large the model is, not the\nscene", NULL, NULL },
         { "no-progression", 0, ADCGS_OPTION_FLAG, &o->no_progression, 0, 0, NULL,
           "all anchors at once, instead of in tiers of which each adds\ndetail to those before; a few percent smaller", NULL,
           NULL },

@@ -190,6 +190,9 @@ networks fine | grep -q F_varpi && bad "--without fine leaves F_varpi in"
 networks deformation | grep -q 'F_omega\|F_varpi\|"Z"' && bad "--without deformation leaves networks in"
 differ all rate "--without rate changes nothing"
 differ all densification "--without densification changes nothing"
+enc fixed --iterations $n --fixed
+differ all fixed "--fixed changes nothing"
+./adcgs-info "$dir/fixed.adcgs" | grep -q 'settings = .*detail_anchors=0' || bad "--fixed does not say what it means"
 enc refinement --iterations $n $free --without refinement
 same densification refinement "--without refinement is not --without densification"
 enc steps --iterations $n $free --without weight_steps --json

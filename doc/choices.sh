@@ -1,0 +1,75 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# What each choice of the encoder saves: make -C build choices. Scenes that are at hand are coded by default, then once without
+# each of the choices that it takes by the scene, then with a model of the preset's size and of the paper's; one thread, as
+# measured on the frames decoded from the file. Writes choices.md; what is there already is kept, so that it can go on.
+#   CHOICES     folder of streams (default choices)
+#   SCENES      of doc/scenes.sh, by their short names (default "demo zju")
+#   ITERATIONS  of training (default 3000)
+#   SEEDS       default 1
+#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+set -eu
+source=$(cd "${srcdir:-.}" && pwd)
+out=${CHOICES:-choices}
+mkdir -p "$out/scenes"
+. "$source/doc/scenes.sh"
+
+# choices: NAME OPTIONS of adcgs-enc, that turn one off.
+choices()
+{
+    cat <<EOF
+default
+anchors-by-detail --set detail_anchors=0
+lambda-by-contrast --lambda 0.1
+static-anchors --set still_below=0
+faint-primitives --set keep_opacity=0
+hidden-units --set prune_units_at=2,prune_units_again=2
+lives --set spans=0
+bodies --set bodies=0
+matching --set stereo=0
+weight-steps --without weight_steps
+all-of-size --fixed
+papers-size --fixed --set max_anchors=20000,k=10,n_fg=16,time_width=64,omega_width=128,varpi_width=128,entropy_width=32,entropy_hidden=2
+EOF
+}
+
+# value NAME FILE: of a whole evaluation, or of a report.
+value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
+
+# choose SCENE NAME SEED CHOICE OPTIONS...: a row.
+choose()
+{
+    scene=$1 name=$2-$4-$3 choice=$4 seed=$3
+    shift 4
+    if [ ! -s "$out/$name.eval" ]; then
+        echo "choices: $name" >&2
+        ./adcgs-enc "$scene" -o "$out/$name.adcgs" --threads 1 --seed "$seed" -n "${ITERATIONS:-3000}" --no-progression -q --json \
+            "$@" >"$out/$name.json"
+        ./adcgs-eval "$out/$name.adcgs" "$scene" --metrics psnr,dynamic-psnr --json >"$out/$name.new"
+        mv "$out/$name.new" "$out/$name.eval"
+    fi
+    moving=$(value dynamic_psnr "$out/$name.eval")
+    printf '| %s | %s | %s | %s | %s | %.2f | %s | %.0f |\n' "$choice" "$seed" "$(value bytes "$out/$name.json")" \
+        "$(value anchors "$out/$name.json")" "$(value primitives "$out/$name.json")" "$(value psnr "$out/$name.eval")" \
+        "$([ -n "$moving" ] && printf '%.2f' "$moving" || echo -)" "$(value cpu_seconds "$out/$name.json")" >>"$out/choices.md"
+}
+
+# choices_of TITLE SCENE NAME WEIGHT
+choices_of()
+{
+    case " ${SCENES:-demo zju} " in *" $3 "*) ;; *) return 0 ;; esac
+    [ -e "$2" ] || { echo "choices: no $2, left out" >&2; return 0; }
+    printf '\n%s:\n\n| Without | Seed | Bytes | Anchors | Primitives | PSNR, dB | Moving | CPU, s |\n|---|---|---|---|---|---|---|---|\n' "$1" \
+        >>"$out/choices.md"
+    for seed in ${SEEDS:-1}; do
+        choices | while read -r choice options; do
+            # shellcheck disable=SC2086
+            choose "$2" "$3" "$seed" "$choice" $options
+        done
+    done
+}
+
+make_scenes "$out/scenes"
+: >"$out/choices.md"
+each_scene "$out/scenes" "${ADCGS_DATA:-$source/../shared/data}" choices_of
+cat "$out/choices.md"
