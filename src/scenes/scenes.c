@@ -5,11 +5,11 @@
 #include "scenes/scenes.h"
 
 #include "data/scene.h"
-#include "grad/random.h"
 #include "io/atomic.h"
 #include "io/image.h"
 #include "scenes/sine.h"
 #include "scenes/table.h"
+#include "scenes/texture.h"
 
 #include <errno.h>
 #include <math.h>
@@ -187,11 +187,11 @@ static adcgs_status write_pixels(writer *w, const char *name, const char *extens
 /* Noise of a camera's sensor, near enough normal: the sum of twelve random numbers, in picture `number`. */
 static void add_noise(const writer *w, int number)
 {
-    const size_t n = (size_t)w->width * (size_t)w->height * 3;
-    for (size_t i = 0; i < n; i++) {
+    const int n = w->width * w->height * 3;
+    for (int i = 0; i < n; i++) {
         double sum = -6.0;
-        for (uint64_t k = 0; k < 12; k++)
-            sum += adcgs_random_unit(NOISE_SEED, (uint64_t)number, 12 * i + k);
+        for (int k = 0; k < 12; k++)
+            sum += adcgs_texture_random(i, k, number, NOISE_SEED);
         w->pixels[i] = (float)fmin(fmax((double)w->pixels[i] + w->noise * sum, 0.0), 1.0);
     }
 }

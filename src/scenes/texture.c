@@ -11,8 +11,7 @@ static int floor_int(double x)
     return x < (double)i ? i - 1 : i;
 }
 
-/* Random number in [0,1) of a lattice point: a function of its coordinates, so no state and no order. */
-static double lattice(int x, int y, int z, uint32_t seed)
+double adcgs_texture_random(int x, int y, int z, uint32_t seed)
 {
     uint32_t h = seed * 0x9e3779b1u + (uint32_t)x * 0x85ebca6bu;
     h = (h ^ h >> 15) * 0x2c1b3c6du + (uint32_t)y * 0xc2b2ae35u;
@@ -32,6 +31,11 @@ static double blend(double a, double b, double f)
     return a + (b - a) * f;
 }
 
+static double corner(const int cell[3], int x, int y, int z, uint32_t seed)
+{
+    return adcgs_texture_random(cell[0] + x, cell[1] + y, cell[2] + z, seed);
+}
+
 double adcgs_texture_noise(const double point[3], uint32_t seed)
 {
     int i[3];
@@ -42,8 +46,8 @@ double adcgs_texture_noise(const double point[3], uint32_t seed)
     }
     double z[2];
     for (int k = 0; k < 2; k++) {
-        const double y0 = blend(lattice(i[0], i[1], i[2] + k, seed), lattice(i[0] + 1, i[1], i[2] + k, seed), f[0]);
-        const double y1 = blend(lattice(i[0], i[1] + 1, i[2] + k, seed), lattice(i[0] + 1, i[1] + 1, i[2] + k, seed), f[0]);
+        const double y0 = blend(corner(i, 0, 0, k, seed), corner(i, 1, 0, k, seed), f[0]);
+        const double y1 = blend(corner(i, 0, 1, k, seed), corner(i, 1, 1, k, seed), f[0]);
         z[k] = blend(y0, y1, f[1]);
     }
     return blend(z[0], z[1], f[2]);
@@ -88,7 +92,7 @@ double adcgs_texture_mix(const adcgs_trace_object *object, const double point[3]
     case ADCGS_TEXTURE_RINGS:
         return 0.5 + 0.5 * adcgs_trace_sin((point[0] * point[0] + point[1] * point[1]) * object->frequency);
     case ADCGS_TEXTURE_PATCHES:
-        return lattice(floor_int(p[0]), floor_int(p[1]), floor_int(p[2]), object->seed);
+        return adcgs_texture_random(floor_int(p[0]), floor_int(p[1]), floor_int(p[2]), object->seed);
     case ADCGS_TEXTURE_DOTS:
         return dots(p);
     default:

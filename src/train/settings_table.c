@@ -74,7 +74,8 @@ const adcgs_setting adcgs_settings[] = {
      * Octaves of sines: Mildenhall et al. 2020, NeRF, ECCV. */
     MODEL(k, S | B | Q | M, 1, ADCGS_K_MAX, BUT_PAPER(6, 10), "primitives per anchor"),
     MODEL(n_fv, S | B | Q | M, 1, ADCGS_NV_MAX, ALL(32), "features of an anchor (f_v)"),
-    MODEL(n_fg, S | B | Q | M, 0, ADCGS_NG_MAX, BUT_PAPER(8, 16), "features of each primitive (f_g), a multiple of chunks"),
+    MODEL(n_fg, S | B | Q | M, 0, ADCGS_NG_MAX, { 0, 8, 8, 8, 16 },
+          "features of each primitive (f_g), a multiple of chunks; 0: none"),
     MODEL(chunks, B | Q, 1, ADCGS_CHUNKS_MAX, ALL(4), "parts of f_g, coded one after the other: the layers of a stream"),
     MODEL(n_eta, B | Q, 0, ADCGS_ETA_MAX, ALL(4), "hyperprior values of an anchor (eta)"),
     MODEL(octaves, S | Q, 0, ADCGS_OCTAVES_MAX, ALL(5), "octaves of the code of an anchor's position"),

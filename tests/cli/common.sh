@@ -22,8 +22,8 @@ tiny_scene()
 tiny_stream()
 {
     tiny_scene "$dir/scene"
-    # From random points: so short a run leaves large splats where matched ones are not.
-    ./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --set stereo=0 --iterations "$1" --threads 2 >"$dir/out" 2>&1 ||
+    # From random points: so short a run leaves large splats where matched ones are not. With f_g: there are layers.
+    ./adcgs-enc "$dir/scene" -o "$dir/s.adcgs" --preset draft --set stereo=0,n_fg=8 --iterations "$1" --threads 2 >"$dir/out" 2>&1 ||
         { bad "adcgs-enc"; cat "$dir/out"; exit 1; }
 }
 

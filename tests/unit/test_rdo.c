@@ -13,7 +13,7 @@
 #include <math.h>
 
 static const char small[] = "max_anchors=150,start_anchors=100,densify_every=20,k=4,n_fv=12,theta_width=16,omega_width=16,"
-                            "varpi_width=16,entropy_width=16,lambda=0.05,stereo=0";
+                            "varpi_width=16,entropy_width=16,lambda=0.05,stereo=0,n_fg=8";
 static adcgs_trainer *trainer; /**< stopped just before its values are frozen */
 
 static adcgs_trainer *make(void)

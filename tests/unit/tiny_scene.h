@@ -48,6 +48,7 @@ static inline adcgs_train_config small_config(void)
     c.still_below = 0; /* motion takes longer to show than these runs last */
     c.params.k = 4;
     c.params.n_fv = 12;
+    c.params.n_fg = 8; /* so that there are layers */
     c.shape.theta_width = c.shape.omega_width = c.shape.varpi_width = c.shape.entropy_width = 16;
     return c;
 }
