@@ -16,6 +16,7 @@ static adcgs_train_config config_for(adcgs_train_target target, double value)
     c.start_anchors = 100;
     c.densify_every = 20;
     c.stereo = 0; /* matches the pictures anew for each trainer; the stream's size is what counts here */
+    c.params.n_fg = 8; /* so that a size can be used up */
     c.densify_threshold = 1e-6f;
     c.freeze_from = 0.92f; /* long enough to stop in */
     c.target = target;
