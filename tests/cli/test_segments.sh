@@ -85,8 +85,8 @@ case $said in
 esac
 # Where segments win (ADCGS_FULL=1), they are what they are without.
 if [ "${ADCGS_FULL:-}" = 1 ]; then
-    enc frozen --segment 0.07 --without deformation,rate --iterations 1000
-    better cut --segment 0.07 --without deformation,rate --iterations 1000
+    enc frozen --segment 0.07 --without deformation,rate --set n_fg=8 --iterations 1000
+    better cut --segment 0.07 --without deformation,rate --set n_fg=8 --iterations 1000
     case $said in
         *" the segments") same frozen cut "segments, but others" ;;
         *) bad "what cannot move is no better in segments: $said" ;;
