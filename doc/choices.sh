@@ -33,9 +33,6 @@ papers-size --fixed --set max_anchors=20000,k=10,n_fg=16,time_width=64,omega_wid
 EOF
 }
 
-# value NAME FILE: of a whole evaluation, or of a report.
-value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
-
 # choose SCENE NAME SEED CHOICE OPTIONS...: a row.
 choose()
 {

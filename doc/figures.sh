@@ -13,9 +13,6 @@ out=${FIGURES:-figures}
 mkdir -p "$out"
 . "$source/doc/scenes.sh"
 
-# value NAME FILE: of a whole evaluation, not of a view; nothing where it is null.
-value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
-
 # row TITLE SCENE NAME OPTIONS...
 row()
 {

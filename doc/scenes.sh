@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# The scenes that figures.sh and curves.sh measure, to be read with `.` in the build folder.
+# What the scripts beside it share, to be read with `.` in the build folder: the scenes that they measure, and a report's figures.
 
 # make_scenes FOLDER: those that the project makes itself go there, unless they are there.
 make_scenes()
@@ -24,3 +24,6 @@ each_scene()
     "$@" '`llff_fern`' "$data/llff_fern" fern 1
     "$@" '`zju313_15f`' "$data/zju313_15f" zju 0.3
 }
+
+# value NAME FILE: of a report as JSON, or of a whole evaluation, not of a view; nothing where it is null.
+value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }

@@ -231,6 +231,26 @@ grep '"iteration": *0,' "$dir/set.log" | grep -q '"anchors": *[1-9][0-9]\?,' || 
 ./adcgs-enc --set list --preset draft >"$dir/list" || bad "--set list"
 grep -q '^  max_anchors  *1200 .*(1 to 1048576)$' "$dir/list" || { bad "another list of settings"; cat "$dir/list"; }
 
+# Why a stream is as large as it is goes with no other answer, and of whose encoder did not say it that is said.
+expect 2 "why goes with no other" ./adcgs-info --why --json "$dir/one.adcgs"
+expect 2 "why goes with no other" ./adcgs-info --why --bytes 20k -o "$dir/x.adcgs" "$dir/one.adcgs"
+./adcgs-info --why "${srcdir:-.}/conformance/vectors/good-deform-bodies.adcgs" >"$dir/why" || bad "--why of another encoder's stream"
+grep -q "encoder does not say" "$dir/why" || { bad "reasons that nobody gave"; cat "$dir/why"; }
+
+# Moments, cameras and noise of a built-in scene: as many pictures, and in training's alone noise as strong as was asked for.
+expect 2 "moments" ./adcgs-demo-scene --scene tiny --moments 0 -o "$dir/none"
+expect 2 "cameras" ./adcgs-demo-scene --scene tiny --cameras 1001 -o "$dir/none"
+expect 2 "multiple" ./adcgs-demo-scene --scene tiny --cameras 5 -o "$dir/none"
+expect 2 "noise" ./adcgs-demo-scene --scene tiny --noise 65 -o "$dir/none"
+./adcgs-demo-scene --scene tiny --moments 16 --cameras 9 --format ppm -o "$dir/many" -q || bad "moments and cameras"
+[ "$(find "$dir/many/train" -name '*.ppm' | wc -l)" -eq 48 ] || bad "not three pictures of each of sixteen moments"
+./adcgs-demo-scene --scene tiny --noise 8 --format ppm -o "$dir/noisy" -q || bad "noise"
+levels() { tail -c 12288 "$1" | od -An -v -tu1 -w1; }
+levels "$scene/train/r_000.ppm" >"$dir/clean.txt"
+levels "$dir/noisy/train/r_000.ppm" | paste "$dir/clean.txt" - |
+    awk '{ d = $2 - $1; square += d * d } END { exit !(square / NR > 49 && square / NR < 81) }' || bad "noise of another strength"
+cmp -s "$scene/test/r_000.ppm" "$dir/noisy/test/r_000.ppm" || bad "noise in what is tested on"
+
 # A scene seen at many moments in which nothing moves: the encoder finds out that motion does not pay.
 ./adcgs-demo-scene --scene still --size 48x48 --format ppm -o "$dir/rest" >/dev/null 2>&1
 scene=$dir/rest enc rest --iterations 2400 --max-anchors 200

@@ -57,7 +57,14 @@ rungs | xargs -P "${JOBS:-2}" -L 1 sh "$0" climb || { echo "FAIL: the ladder cou
 figure() { sed -n "s/^ *\"$2\": \([0-9.]*\),*$/\1/p" "$ladder/$1.json" | head -n 1 | grep . || echo 0; }
 size() { wc -c <"$ladder/$1.adcgs"; }
 has_network() { grep -q "\"$2\":" "$ladder/$1.json"; }
-moving() { has_network "$1" F_omega || has_network "$1" F_varpi && echo $(($(figure "$1" anchors) - $(figure "$1" static_anchors))) || echo 0; }
+moving()
+{
+    if has_network "$1" F_omega || has_network "$1" F_varpi; then
+        echo $(($(figure "$1" anchors) - $(figure "$1" static_anchors)))
+    else
+        echo 0
+    fi
+}
 
 # at_most PERCENT RUNG OF_RUNG WHY: bytes.
 at_most()

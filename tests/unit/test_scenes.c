@@ -264,7 +264,7 @@ static void what_is_soft_changes_its_shape(void **state)
     assert_memory_equal(mask[0], mask[2], sizeof mask[0]);
 }
 
-/* What cannot be had is said; what can is measured where the program writes it (tests/cli/test_texts.sh). */
+/* What cannot be had is said; what can is looked at where the program writes it (tests/cli/test_enc.sh). */
 static void wrong_counts_are_refused(void **state)
 {
     static const struct {
