@@ -25,8 +25,8 @@
 
 /* ---- Configuration ---- */
 
-/** Nothing of a model's size follows from the scene. */
-#define FIXED "detail_anchors=0,still_below=0,keep_opacity=0,decide_at=2,tiers_from=2,prune_units_at=2,prune_units_again=2"
+/** Nothing of a model's size follows from the scene: what is decided later needs these decisions. */
+#define FIXED "detail_anchors=0,still_below=0,decide_at=2,prune_units_at=2"
 
 static adcgs_status configure(adcgs_train_config *c, const adcgs_enc_options *o, adcgs_cpu_level cpu, adcgs_error *error)
 {
