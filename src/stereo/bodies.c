@@ -313,7 +313,7 @@ static adcgs_status try_seed(work *w, int moment, uint32_t part, verdict *is, ad
     w->t = (adcgs_track){ .model = { .n = 0 } };
     adcgs_status status = plant(w, moment, part, error);
     if (status == ADCGS_OK)
-        status = adcgs_track_run(&w->t, &w->l, moment, error);
+        status = adcgs_track_run(&w->t, &w->l, moment, w->pool, error);
     int known = 0;
     for (int m = 0; m < w->l.n; m++)
         known += w->t.known[m];

@@ -15,12 +15,20 @@ static uint32_t number_of(const adcgs_cloud *c, const int64_t cell[3])
     return (uint32_t)(h ^ h >> 32) & c->mask;
 }
 
+static int64_t cell_along(const adcgs_cloud *c, double x)
+{
+    return (int64_t)floor(x / c->edge);
+}
+
 static uint32_t cell_of(const adcgs_cloud *c, const double x[3])
 {
-    int64_t cell[3];
-    for (int a = 0; a < 3; a++)
-        cell[a] = (int64_t)floor(x[a] / c->edge);
-    return number_of(c, cell);
+    return number_of(c, (const int64_t[]){ cell_along(c, x[0]), cell_along(c, x[1]), cell_along(c, x[2]) });
+}
+
+static adcgs_cloud_place place_of(const adcgs_stereo_point *points, uint32_t i)
+{
+    const double *x = points[i].x;
+    return (adcgs_cloud_place){ { x[0], x[1], x[2] }, i };
 }
 
 adcgs_status adcgs_cloud_init(adcgs_cloud *c, const adcgs_stereo_point *points, uint32_t n, uint32_t stride, double edge,
@@ -38,7 +46,7 @@ adcgs_status adcgs_cloud_init(adcgs_cloud *c, const adcgs_stereo_point *points, 
     for (uint32_t k = 0; k <= c->mask; k++)
         c->first[k + 1] += c->first[k];
     for (uint32_t i = c->used; i-- > 0;) /* from the back, so that each cell's are in order once first[] has come down */
-        c->at[--c->first[cell_of(c, points[i * stride].x) + 1]] = i * stride;
+        c->at[--c->first[cell_of(c, points[i * stride].x) + 1]] = place_of(points, i * stride);
     for (uint32_t k = 0; k <= c->mask; k++)
         c->first[k] = c->first[k + 1];
     c->first[c->mask + 1] = c->used;
@@ -61,8 +69,8 @@ static walk walk_about(const adcgs_cloud *c, const double x[3], double reach)
 {
     walk w;
     for (int a = 0; a < 3; a++) {
-        w.low[a] = w.cell[a] = (int64_t)floor((x[a] - reach) / c->edge);
-        w.high[a] = (int64_t)floor((x[a] + reach) / c->edge);
+        w.low[a] = w.cell[a] = cell_along(c, x[a] - reach);
+        w.high[a] = cell_along(c, x[a] + reach);
     }
     return w;
 }
@@ -77,30 +85,69 @@ static int walk_on(walk *w)
     return 0;
 }
 
+static double distance2(const double x[3], const adcgs_cloud_place *place)
+{
+    const double d[3] = { x[0] - place->x[0], x[1] - place->x[1], x[2] - place->x[2] };
+    return adcgs_v3_dot(d, d);
+}
+
+/** What is looked for, and the best so far. */
+typedef struct query {
+    const double *x;
+    const float *rgb;
+    double tint, most; /* no farther, squared, in place alone */
+    double least;      /* squared, with colours; negative: none yet */
+    uint32_t found;
+} query;
+
+static void look_in_cell(const adcgs_cloud *c, const int64_t cell[3], query *q)
+{
+    const uint32_t k = number_of(c, cell);
+    for (uint32_t i = c->first[k]; i < c->first[k + 1]; i++) {
+        double far = distance2(q->x, &c->at[i]);
+        if (far > q->most)
+            continue;
+        const adcgs_stereo_point *p = &c->p[c->at[i].i];
+        for (int a = 0; a < 3; a++) {
+            const double off = q->tint * (double)(q->rgb[a] - p->rgb[a]);
+            far += off * off;
+        }
+        if ((q->least < 0 || far < q->least) && !p->body) {
+            q->least = far;
+            q->most = far < q->most ? far : q->most;
+            q->found = c->at[i].i;
+        }
+    }
+}
+
+/** Squared distance from a place to a cell along one axis; a little less, since places are put into cells by rounded numbers. */
+static double gap2(const adcgs_cloud *c, double x, int64_t cell)
+{
+    const double low = (double)cell * c->edge - x, high = x - (double)(cell + 1) * c->edge;
+    const double gap = (low > high ? low : high) - 1e-9 * c->edge;
+    return gap > 0 ? gap * gap : 0;
+}
+
 double adcgs_cloud_nearest(const adcgs_cloud *c, const double x[3], const float rgb[3], double reach, double tint,
                            uint32_t *found)
 {
-    double least = -1;
-    walk w = walk_about(c, x, reach);
-    do {
-        const uint32_t k = number_of(c, w.cell);
-        for (uint32_t i = c->first[k]; i < c->first[k + 1]; i++) {
-            const adcgs_stereo_point *p = &c->p[c->at[i]];
-            const double d[3] = { x[0] - p->x[0], x[1] - p->x[1], x[2] - p->x[2] };
-            double far = adcgs_v3_dot(d, d);
-            if (far > reach * reach || p->body)
-                continue;
-            for (int a = 0; a < 3; a++) {
-                const double off = tint * (double)(rgb[a] - p->rgb[a]);
-                far += off * off;
-            }
-            if (least < 0 || far < least) {
-                least = far;
-                *found = c->at[i];
-            }
+    query q = { .x = x, .rgb = rgb, .tint = tint, .most = reach * reach, .least = -1 };
+    const walk w = walk_about(c, x, reach);
+    const int64_t own[3] = { cell_along(c, x[0]), cell_along(c, x[1]), cell_along(c, x[2]) };
+    int64_t cell[3];
+    look_in_cell(c, own, &q); /* its best saves most of the others */
+    for (cell[2] = w.low[2]; cell[2] <= w.high[2]; cell[2]++) {
+        const double gap_z = gap2(c, x[2], cell[2]);
+        for (cell[1] = w.low[1]; cell[1] <= w.high[1] && gap_z <= q.most; cell[1]++) {
+            const double gap_y = gap_z + gap2(c, x[1], cell[1]);
+            for (cell[0] = w.low[0]; cell[0] <= w.high[0] && gap_y <= q.most; cell[0]++)
+                if (gap_y + gap2(c, x[0], cell[0]) <= q.most && memcmp(cell, own, sizeof cell) != 0)
+                    look_in_cell(c, cell, &q);
         }
-    } while (walk_on(&w));
-    return least;
+    }
+    if (q.least >= 0)
+        *found = q.found;
+    return q.least;
 }
 
 uint32_t adcgs_cloud_within(const adcgs_cloud *c, const double x[3], double reach, uint32_t *found, uint32_t most)
@@ -110,10 +157,8 @@ uint32_t adcgs_cloud_within(const adcgs_cloud *c, const double x[3], double reac
     do {
         const uint32_t k = number_of(c, w.cell);
         for (uint32_t i = c->first[k]; i < c->first[k + 1] && n < most; i++) {
-            const adcgs_stereo_point *p = &c->p[c->at[i]];
-            const double d[3] = { x[0] - p->x[0], x[1] - p->x[1], x[2] - p->x[2] };
-            if (adcgs_v3_dot(d, d) <= reach * reach)
-                found[n++] = c->at[i];
+            if (distance2(x, &c->at[i]) <= reach * reach)
+                found[n++] = c->at[i].i;
         }
     } while (walk_on(&w));
     return n;

@@ -8,14 +8,20 @@
 
 #include "stereo/rig.h"
 
-/** Zero-initialise before use. */
+/** Where a point is, beside its number: what lies too far away is not looked at further. */
+typedef struct adcgs_cloud_place {
+    double x[3];
+    uint32_t i;
+} adcgs_cloud_place;
+
+/** Zero-initialise before use. Points may change their colours and bodies meanwhile, but not go elsewhere. */
 typedef struct adcgs_cloud {
     const adcgs_stereo_point *p;
     uint32_t n, used;   /**< of p; of these, those in cells */
     double edge;        /**< of a cell */
     uint32_t mask;      /**< of a cell's number */
     uint32_t *first;    /**< [mask + 2] into at */
-    uint32_t *at;       /**< [used] */
+    adcgs_cloud_place *at; /**< [used] */
 } adcgs_cloud;
 
 /** Every stride'th of points, which the caller keeps. */

@@ -38,6 +38,7 @@ int adcgs_sample_take(const adcgs_stereo_camera *c, int moment, const double at[
 /** Sums of a pass over points and views. */
 typedef struct pass {
     double off;      /* difference of colours that counts half */
+    int moves;       /* whether a step is wanted: a and b */
     double centre[3];
     double a[36], b[6];
     adcgs_gain_sums gains;
@@ -59,10 +60,11 @@ static void derive(const adcgs_stereo_view *v, const double x[3], const double c
     }
 }
 
-static void add_sample(pass *p, const adcgs_sample *s, const double row[2][6], const float rgb[3], const float gain[3], int side,
-                       double trust)
+/** \return the weight of a sample, off: how much lighter the body should be than it is. */
+static double add_sample(pass *p, const adcgs_sample *s, const float rgb[3], const float gain[3], int side, double trust,
+                         double off[3])
 {
-    double off2 = 0, off[3];
+    double off2 = 0;
     for (int k = 0; k < 3; k++) {
         off[k] = (double)(gain[k] * rgb[k]) - s->rgb[k];
         off2 += off[k] * off[k];
@@ -71,9 +73,16 @@ static void add_sample(pass *p, const adcgs_sample *s, const double row[2][6], c
     p->light += trust * fits;
     p->n += trust;
     for (int k = 0; k < 3; k++) {
-        double j[6];
         p->gains.with[side][k] += weight * (double)rgb[k] * s->rgb[k];
         p->gains.own[side][k] += weight * (double)(rgb[k] * rgb[k]);
+    }
+    return weight;
+}
+
+static void add_slope(pass *p, const adcgs_sample *s, const double row[2][6], const double off[3], double weight)
+{
+    for (int k = 0; k < 3; k++) {
+        double j[6];
         for (int a = 0; a < 6; a++)
             j[a] = s->along[k] * row[0][a] + s->down[k] * row[1][a];
         for (int a = 0; a < 6; a++) {
@@ -96,7 +105,7 @@ static int look(const adcgs_moment_views *views, int k, const double x[3], const
 static void run(pass *p, const adcgs_body_model *m, const adcgs_moment_views *views, uint32_t stride, const adcgs_placing *place)
 {
     for (uint32_t i = 0; i < m->n; i += stride) {
-        double x[3], normal[3], at[2], depth, row[2][6];
+        double x[3], normal[3], at[2], depth, row[2][6], off[3];
         adcgs_sample s;
         const double trust = (m->more[i].agreed + 1.0) / (m->more[i].seen + 2.0);
         const int side = m->more[i].side;
@@ -105,8 +114,11 @@ static void run(pass *p, const adcgs_body_model *m, const adcgs_moment_views *vi
         for (int k = 0; k < views->n; k++) {
             if (!look(views, k, x, normal, at, &depth, &s))
                 continue;
+            const double weight = add_sample(p, &s, m->p[i].rgb, place->gain[side], side, trust, off);
+            if (!p->moves)
+                continue;
             derive(&views->camera[k]->view, x, p->centre, depth, at, row);
-            add_sample(p, &s, (const double(*)[6])row, m->p[i].rgb, place->gain[side], side, trust);
+            add_slope(p, &s, (const double(*)[6])row, off, weight);
         }
     }
 }
@@ -163,7 +175,7 @@ void adcgs_direct_refine(const adcgs_body_model *m, const adcgs_moment_views *vi
 {
     for (int round = 0; round < ROUNDS; round++) {
         const double along = round / (ROUNDS - 1.0);
-        pass p = { .off = OFF_FIRST + along * (OFF_LAST - OFF_FIRST) };
+        pass p = { .off = OFF_FIRST + along * (OFF_LAST - OFF_FIRST), .moves = 1 };
         const double radius = find_centre(m, &place->at, p.centre);
         run(&p, m, views, stride, place);
         const int on = step(&p, m, radius, place);

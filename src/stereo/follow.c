@@ -3,23 +3,84 @@
 #include "stereo/follow.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { ROUNDS = 6, NEIGHBOURS = 8 };
 #define COLOUR 0.5  /* scene units that a unit of difference in colour is worth */
 #define REACH 0.25  /* scene units, with colours, beyond which there is no match */
 
+/** A point where it can be found. */
+typedef struct place {
+    double x[3];
+    float rgb[3];
+    uint32_t i;
+} place;
+
 /** Points of one moment. */
 typedef struct layer {
     adcgs_stereo_point *p;
+    place *sorted; /* [n] ascending in x, so that what is too far away along it need not be looked at */
     uint32_t n;
 } layer;
 
-static double distance2(const double x[3], const adcgs_stereo_point *q, const float rgb[3])
+static double distance2(const double x[3], const float rgb[3], const double y[3], const float other[3])
 {
     double d = 0;
     for (int a = 0; a < 3; a++)
-        d += pow(x[a] - q->x[a], 2) + pow(COLOUR * (double)(rgb[a] - q->rgb[a]), 2);
+        d += pow(x[a] - y[a], 2) + pow(COLOUR * (double)(rgb[a] - other[a]), 2);
     return d;
+}
+
+static int by_x(const void *a, const void *b)
+{
+    const place *p = a, *q = b;
+    return p->x[0] != q->x[0] ? (p->x[0] > q->x[0] ? 1 : -1) : (p->i > q->i) - (p->i < q->i);
+}
+
+static void sort_layer(layer *l)
+{
+    for (uint32_t i = 0; i < l->n; i++) {
+        l->sorted[i].i = i;
+        memcpy(l->sorted[i].x, l->p[i].x, sizeof l->sorted[i].x);
+        memcpy(l->sorted[i].rgb, l->p[i].rgb, sizeof l->sorted[i].rgb);
+    }
+    qsort(l->sorted, l->n, sizeof *l->sorted, by_x);
+}
+
+/** Outwards from a place along x, by turns. */
+typedef struct walk {
+    const layer *l;
+    double x;
+    uint32_t below, above; /* sorted[0..below-1] and sorted[above..n-1] were not looked at yet */
+} walk;
+
+static walk walk_from(const layer *l, double x)
+{
+    uint32_t low = 0, high = l->n;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (l->sorted[middle].x[0] < x)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return (walk){ l, x, low, low };
+}
+
+/** The next along x, NULL if none is nearer than the root of least. */
+static const place *walk_on(walk *w, double least)
+{
+    const place *low = w->below > 0 ? &w->l->sorted[w->below - 1] : NULL;
+    const place *high = w->above < w->l->n ? &w->l->sorted[w->above] : NULL;
+    if (!low && !high)
+        return NULL;
+    const double down = low ? w->x - low->x[0] : HUGE_VAL, up = high ? high->x[0] - w->x : HUGE_VAL;
+    if (up < down) {
+        w->above++;
+        return up * up < least ? high : NULL;
+    }
+    w->below--;
+    return down * down < least ? low : NULL;
 }
 
 /** The nearest of a layer to a moved point. *found: one that may be near, if it is less than to->n. */
@@ -29,18 +90,16 @@ static int nearest(const layer *to, const adcgs_stereo_point *p, const double mo
     double least = REACH * REACH;
     int any = 0;
     if (*found < to->n) { /* the bound that it sets saves most of the others */
-        const double d = distance2(x, &to->p[*found], p->rgb);
+        const double d = distance2(x, p->rgb, to->p[*found].x, to->p[*found].rgb);
         any = d < least;
         least = fmin(d, least);
     }
-    for (uint32_t j = 0; j < to->n; j++) {
-        const double across = x[0] - to->p[j].x[0];
-        if (across * across >= least)
-            continue;
-        const double d = distance2(x, &to->p[j], p->rgb);
+    walk w = walk_from(to, x[0]);
+    for (const place *q; (q = walk_on(&w, least));) {
+        const double d = distance2(x, p->rgb, q->x, q->rgb);
         if (d < least) {
             least = d;
-            *found = j;
+            *found = q->i;
             any = 1;
         }
     }
@@ -51,13 +110,12 @@ static int nearest(const layer *to, const adcgs_stereo_point *p, const double mo
 static void find_neighbours(const layer *l, uint32_t (*near)[NEIGHBOURS])
 {
     for (uint32_t i = 0; i < l->n; i++) {
+        const adcgs_stereo_point *p = &l->p[i];
         double best[NEIGHBOURS];
         int known = 0;
-        for (uint32_t j = 0; j < l->n; j++) {
-            const double across = l->p[i].x[0] - l->p[j].x[0];
-            if (known == NEIGHBOURS && across * across >= best[NEIGHBOURS - 1])
-                continue;
-            const double d = distance2(l->p[i].x, &l->p[j], l->p[i].rgb);
+        walk w = walk_from(l, p->x[0]);
+        for (const place *q; (q = walk_on(&w, known == NEIGHBOURS ? best[NEIGHBOURS - 1] : HUGE_VAL));) {
+            const double d = distance2(p->x, p->rgb, q->x, q->rgb);
             int k = known < NEIGHBOURS ? known++ : NEIGHBOURS;
             if (k == NEIGHBOURS && d >= best[NEIGHBOURS - 1])
                 continue;
@@ -66,7 +124,7 @@ static void find_neighbours(const layer *l, uint32_t (*near)[NEIGHBOURS])
                 near[i][k] = near[i][k - 1];
             }
             best[k] = d;
-            near[i][k] = j;
+            near[i][k] = q->i;
         }
         for (; known < NEIGHBOURS; known++)
             near[i][known] = i;
@@ -115,6 +173,7 @@ typedef struct scratch {
     double (*move)[3], (*raw)[3];
     uint8_t *known, *times;
     uint32_t *match, (*near)[NEIGHBOURS];
+    place *sorted;
 } scratch;
 
 static void follow_layer(layer *l, const layer *before, const layer *after, const scratch *s)
@@ -132,23 +191,32 @@ static void follow_layer(layer *l, const layer *before, const layer *after, cons
             l->p[i].velocity[a] /= (float)ADCGS_MAX(s->times[i], 1);
 }
 
+/** The layer that begins there, and ends where t changes. */
+static layer layer_at(adcgs_stereo_point *points, place *sorted, uint32_t n, uint32_t begin)
+{
+    uint32_t end = begin;
+    while (end < n && points[end].t <= points[begin].t)
+        end++;
+    layer l = { points + begin, sorted + begin, end - begin };
+    sort_layer(&l);
+    return l;
+}
+
 adcgs_status adcgs_stereo_follow(adcgs_stereo_point *points, uint32_t n, adcgs_error *error)
 {
     scratch s = { adcgs_alloc(NULL, n, sizeof *s.move, error),  adcgs_alloc(NULL, n, sizeof *s.raw, error),
                   adcgs_alloc(NULL, n, 1, error),               adcgs_alloc(NULL, n, 1, error),
-                  adcgs_alloc(NULL, n, sizeof *s.match, error), adcgs_alloc(NULL, n, sizeof *s.near, error) };
-    const int good = s.move && s.raw && s.known && s.times && s.match && s.near;
-    layer before = { NULL, 0 };
-    for (uint32_t begin = 0, end; good && begin < n; begin = end) {
-        uint32_t next;
-        for (end = begin; end < n && points[end].t <= points[begin].t; end++)
-            ;
-        for (next = end; next < n && points[next].t <= points[end].t; next++)
-            ;
-        layer here = { points + begin, end - begin };
-        const layer after = { points + end, next - end };
+                  adcgs_alloc(NULL, n, sizeof *s.match, error), adcgs_alloc(NULL, n, sizeof *s.near, error),
+                  adcgs_alloc(NULL, n, sizeof *s.sorted, error) };
+    const int good = s.move && s.raw && s.known && s.times && s.match && s.near && s.sorted;
+    layer before = { .n = 0 }, here = { .n = 0 };
+    if (good)
+        here = layer_at(points, s.sorted, n, 0);
+    for (uint32_t end = here.n; here.n; end += here.n) {
+        const layer after = layer_at(points, s.sorted, n, end);
         follow_layer(&here, before.n ? &before : NULL, &after, &s);
         before = here;
+        here = after;
     }
     adcgs_free(NULL, s.move);
     adcgs_free(NULL, s.raw);
@@ -156,5 +224,6 @@ adcgs_status adcgs_stereo_follow(adcgs_stereo_point *points, uint32_t n, adcgs_e
     adcgs_free(NULL, s.times);
     adcgs_free(NULL, s.match);
     adcgs_free(NULL, s.near);
+    adcgs_free(NULL, s.sorted);
     return good ? ADCGS_OK : adcgs_alloc_status(error);
 }

@@ -21,7 +21,7 @@ enum {
 #define ABOUT 0.97       /* share of a score that is as good */
 #define APART 3.0        /* pixels between places about which turns are tried */
 #define TURN_STEP 0.26   /* radians between starts */
-enum { TURNS = 4 };      /* steps of it, to each side */
+enum { TURNS = 4, STARTS = 3 + 2 * 13 * 2 * TURNS }; /* steps of it, to each side; about two places in 13 directions */
 
 static const adcgs_lay lay_far = { .reach = 14, .sharp = 5, .rounds = 6 };
 static const adcgs_lay lay_near = { .reach = 5, .sharp = 2.5, .rounds = 4 };
@@ -66,7 +66,9 @@ double adcgs_track_centre(const adcgs_track *t, double centre[3])
 typedef struct search {
     const adcgs_track *t;
     const adcgs_layers *l;
-    int moment, n;
+    adcgs_pool *pool;
+    adcgs_placing *start; /* [STARTS] to be tried */
+    int moment, starts, n;
     adcgs_placing best[BEST];
 } search;
 
@@ -104,22 +106,14 @@ static void keep_best(search *s, const adcgs_placing *p)
     s->best[at] = *p;
 }
 
-static void try_start(search *s, const adcgs_placing *from, const adcgs_rigid *at)
+static void add_start(search *s, const adcgs_placing *from, const adcgs_rigid *at)
 {
-    adcgs_placing p = *from;
-    const adcgs_body_model *m = &s->t->model;
-    adcgs_lay far = lay_far, near = lay_near;
-    far.stride = near.stride = stride_for(m, FEW);
-    p.at = *at;
-    adcgs_body_lay(m, &s->l->few[s->moment], &s->l->views[s->moment], &far, &p);
-    adcgs_body_lay(m, &s->l->all[s->moment], &s->l->views[s->moment], &near, &p);
-    adcgs_direct_judge(m, &s->l->views[s->moment], near.stride, &p);
-    adcgs_body_judge(m, &s->l->all[s->moment], &s->l->views[s->moment], near.stride, &p);
-    keep_best(s, &p);
+    s->start[s->starts] = *from;
+    s->start[s->starts++].at = *at;
 }
 
 /** Turned in 13 directions and back. */
-static void try_turns(search *s, const adcgs_placing *from, const adcgs_rigid *base)
+static void add_turns(search *s, const adcgs_placing *from, const adcgs_rigid *base)
 {
     double rest[3], centre[3];
     adcgs_track_centre(s->t, rest);
@@ -135,8 +129,31 @@ static void try_turns(search *s, const adcgs_placing *from, const adcgs_rigid *b
             adcgs_rigid_about((const double[]){ angle * axis[0], angle * axis[1], angle * axis[2] }, centre,
                               (const double[]){ 0, 0, 0 }, &at);
             adcgs_rigid_then(base, &at, &at);
-            try_start(s, from, &at);
+            add_start(s, from, &at);
         }
+}
+
+static void try_start(void *arg, int i, int thread)
+{
+    const search *s = arg;
+    const adcgs_body_model *m = &s->t->model;
+    const adcgs_moment_views *views = &s->l->views[s->moment];
+    adcgs_lay far = lay_far, near = lay_near;
+    (void)thread;
+    far.stride = near.stride = stride_for(m, FEW);
+    adcgs_body_lay(m, &s->l->few[s->moment], views, &far, &s->start[i]);
+    adcgs_body_lay(m, &s->l->all[s->moment], views, &near, &s->start[i]);
+    adcgs_direct_judge(m, views, near.stride, &s->start[i]);
+    adcgs_body_judge(m, &s->l->all[s->moment], views, near.stride, &s->start[i]);
+}
+
+/** All starts that were added. */
+static void try_starts(search *s)
+{
+    adcgs_pool_run(s->pool, try_start, s, s->starts);
+    for (int i = 0; i < s->starts; i++)
+        keep_best(s, &s->start[i]);
+    s->starts = 0;
 }
 
 /** To a fraction of a pixel. */
@@ -152,13 +169,20 @@ static void refine(const adcgs_track *t, const adcgs_layers *l, int moment, int 
     adcgs_body_judge(m, &l->all[moment], &l->views[moment], lay.stride, p);
 }
 
+static void refine_best(void *arg, int i, int thread)
+{
+    search *s = arg;
+    (void)thread;
+    refine(s->t, s->l, s->moment, 0, &s->best[i]);
+}
+
 static void choose(search *s, adcgs_placing *out)
 {
-    for (int i = 0; i < s->n; i++) {
-        refine(s->t, s->l, s->moment, 0, &s->best[i]);
-        if (!i || score_of(&s->best[i]) > score_of(out))
+    adcgs_pool_run(s->pool, refine_best, s, s->n);
+    *out = s->best[0];
+    for (int i = 1; i < s->n; i++)
+        if (score_of(&s->best[i]) > score_of(out))
             *out = s->best[i];
-    }
 }
 
 /* ---- From moment to moment ---- */
@@ -208,51 +232,57 @@ static void drift(const adcgs_track *t, const adcgs_layers *l, int moment, int k
         out->t[a] += sum[a] / n;
 }
 
-static void find_at(adcgs_track *t, const adcgs_layers *l, int moment, int turns)
+/** search: all but the moment's own. */
+static void find_at(adcgs_track *t, const adcgs_layers *l, int moment, int turns, search s)
 {
-    search s = { .t = t, .l = l, .moment = moment };
     adcgs_rigid base[2];
     adcgs_placing place;
     int known[2];
+    s.moment = moment;
     find_known(t, l, moment, known);
     const adcgs_placing *from = &t->place[known[0]];
     drift(t, l, moment, known[0], &base[1]);
     base[0] = from->at;
     if (known[1] >= 0)
         adcgs_track_go_on(t, l, moment, known, &base[0]);
-    try_start(&s, from, &base[0]);
+    add_start(&s, from, &base[0]);
+    try_starts(&s);
     choose(&s, &place);
     if (known[1] < 0 || !is_sure(&place)) {
-        try_start(&s, from, &from->at);
-        try_start(&s, from, &base[1]);
+        add_start(&s, from, &from->at);
+        add_start(&s, from, &base[1]);
         if (turns)
-            try_turns(&s, from, &base[0]);
+            add_turns(&s, from, &base[0]);
         if (turns && adcgs_track_between(t, &base[0], &base[1]) > APART * t->model.pixel)
-            try_turns(&s, from, &base[1]);
+            add_turns(&s, from, &base[1]);
+        try_starts(&s);
         choose(&s, &place);
     }
     t->known[moment] = (uint8_t)is_good(&place);
     t->place[moment] = place;
 }
 
-adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, adcgs_error *error)
+adcgs_status adcgs_track_run(adcgs_track *t, const adcgs_layers *l, int start, adcgs_pool *pool, adcgs_error *error)
 {
+    search s = { .t = t, .l = l, .pool = pool, .start = adcgs_alloc(NULL, STARTS, sizeof *s.start, error) };
+    adcgs_status status = s.start ? ADCGS_OK : adcgs_alloc_status(error);
     t->place[start].at = adcgs_rigid_none;
     t->known[start] = 1;
     for (int i = 0; i < 3 * ADCGS_BODY_SIDES; i++)
         t->place[start].gain[i / 3][i % 3] = 1;
     for (int way = 1; way >= -1; way -= 2)
-        for (int m = start + way, lost = 0; m >= 0 && m < l->n && lost < LOST_MOST; m += way) {
+        for (int m = start + way, lost = 0; m >= 0 && m < l->n && lost < LOST_MOST && status == ADCGS_OK; m += way) {
             if (!l->all[m].n || t->model.n < 3) {
                 lost++;
                 continue;
             }
-            find_at(t, l, m, !lost);
+            find_at(t, l, m, !lost, s);
             lost = t->known[m] ? 0 : lost + 1;
             if (t->known[m])
-                ADCGS_TRY(adcgs_members_grow(t, l, m, error));
+                status = adcgs_members_grow(t, l, m, error);
         }
-    return ADCGS_OK;
+    adcgs_free(NULL, s.start);
+    return status;
 }
 
 /* ---- All moments once more ---- */

@@ -17,7 +17,7 @@ typedef struct adcgs_track {
 } adcgs_track;
 
 /** Follow model, which is at rest at a moment, to all others. */
-adcgs_status adcgs_track_run(adcgs_track *track, const adcgs_layers *layers, int start, adcgs_error *error);
+adcgs_status adcgs_track_run(adcgs_track *track, const adcgs_layers *layers, int start, adcgs_pool *pool, adcgs_error *error);
 
 /** Where a body was lost, or leapt, see whether it went on as before. */
 void adcgs_track_look_again(adcgs_track *track, const adcgs_layers *layers, int start);
