@@ -45,7 +45,7 @@ void adcgs_role_shape(const adcgs_params *params, int role, uint32_t *n_in, uint
         in = fv;
         out = (uint32_t)adcgs_params_steps(params);
     } else if (role == ADCGS_ROLE_PREDICTION) {
-        in = fv + params->n_fg;
+        in = fv + (uint32_t)adcgs_slot_inputs(params) + params->n_fg;
         out = 14;
     } else if (role == ADCGS_ROLE_COARSE && params->time_rows > 0) {
         in = fv + width;

@@ -133,6 +133,12 @@ static inline int adcgs_sigma_coded(const adcgs_model *model, uint32_t anchor)
     return model->params.time_rows && !model->is_static[anchor] ? adcgs_sigma_rows(&model->params) : ADCGS_SIGMA_N;
 }
 
+/** Inputs of F_theta that tell an anchor's primitives apart: 1 for the one that is meant, 0 for the others. */
+static inline int adcgs_slot_inputs(const adcgs_params *params)
+{
+    return params->k > 1 ? params->k : 0;
+}
+
 /** Columns of Z that are poses: of each body a quaternion less the identity, then its way, all times 16 (ADCGS_POSE_SCALE). */
 static inline uint32_t adcgs_pose_columns(const adcgs_params *params)
 {

@@ -24,6 +24,13 @@ typedef struct adcgs_dense_dsp {
     void (*residual)(float *y, const float *x, int n);
 } adcgs_dense_dsp;
 
+/** The rows of an input that is 1 in every lane. */
+static inline void adcgs_dense_ones(float one[ADCGS_LANES])
+{
+    for (int l = 0; l < ADCGS_LANES; l++)
+        one[l] = 1;
+}
+
 /** level must be resolved. */
 void adcgs_dense_dsp_init(adcgs_dense_dsp *dsp, adcgs_cpu_level level);
 

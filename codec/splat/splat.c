@@ -17,6 +17,7 @@
 #include "splat/time_curve.h"
 
 #include <math.h>
+#include <stdalign.h>
 
 /* Rows of scratch beside three buffers as wide as the widest network: Sigma_v, f_p and f_v, f_g. */
 #define INPUT_ROWS (ADCGS_SIGMA_MAX + 6 * ADCGS_OCTAVES_MAX + ADCGS_NV_MAX + ADCGS_NG_MAX)
@@ -130,6 +131,9 @@ static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const 
     const adcgs_float_layer *first = &s->prediction.layer[0];
     const size_t rows = (size_t)s->width * ADCGS_LANES, ldw = (size_t)first->n_in;
     float *shared = buffers, *z = buffers + rows, *other = buffers + 2 * rows;
+    const int slots = adcgs_slot_inputs(p);
+    alignas(64) float one[ADCGS_LANES];
+    adcgs_dense_ones(one);
     s->dense.dense(shared, NULL, first->b, first->w, ldw, fv, first->n_out, p->n_fv);
     for (int k = 0; k < p->k; k++) {
         adcgs_slot_lanes local, *slot = index == UINT32_MAX ? &local : s->slots + (size_t)index * p->k + k;
@@ -137,7 +141,8 @@ static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const 
         int32_t *present = index == UINT32_MAX ? none : s->present + ((size_t)index * p->k + (size_t)k) * ADCGS_LANES;
         const adcgs_slot_out to = slot_out(s, group, k);
         load_fg(fg, m, group * ADCGS_LANES, k, factors);
-        s->dense.dense(z, shared, NULL, first->w + p->n_fv, ldw, fg, first->n_out, p->n_fg);
+        s->dense.dense(z, shared, NULL, first->w + p->n_fv + k, ldw, one, first->n_out, slots > 0);
+        s->dense.dense(z, z, NULL, first->w + p->n_fv + slots, ldw, fg, first->n_out, p->n_fg);
         s->dsp.predict(slot, anchor, adcgs_floatnet_finish(&s->prediction, &s->dense, z, other));
         load_present(present, m, group * ADCGS_LANES, k);
         s->dsp.place(&to, slot, anchor, present);

@@ -325,8 +325,9 @@ def networks(b):
     of_time = fma(Interval(0, 1), weight - weight, weight)
     b.real("time.code", of_time)
     most = {e: b.limit(e, "HEAD")[1] for e in ("n_fv", "n_fg", "octaves", "time_width")}
+    b.rests_on("accumulate(sums, layers[0].w, len(fv) + k, [binary32(1)])")
     fv, code, f_t = [latent] * most["n_fv"], [symmetric(1 + 2.0 ** -20)] * (6 * most["octaves"]), [of_time] * most["time_width"]
-    theta = network(b, "theta", fv + [varied] * most["n_fg"], 14)
+    theta = network(b, "theta", fv + [Interval(1, 1)] + [varied] * most["n_fg"], 14)
     return of_time, varied, theta, network(b, "omega", fv + f_t, 12), network(b, "varpi", code + fv + f_t, 4)
 
 

@@ -40,9 +40,9 @@ static void layout_networks(adcgs_fmodel *f)
 {
     const adcgs_params *p = &f->params;
     const adcgs_shape *s = &f->shape;
-    const int fp = 6 * p->octaves, per_chunk = p->n_fg / p->chunks;
+    const int fp = 6 * p->octaves, per_chunk = p->n_fg / p->chunks, own = p->n_fv + adcgs_slot_inputs(p) + p->n_fg;
     adcgs_mlp *m = f->mlp;
-    adcgs_mlp_layout(&m[ADCGS_P_THETA], p->n_fv + p->n_fg, 0, s->theta_width, s->theta_hidden, ADCGS_THETA_OUT);
+    adcgs_mlp_layout(&m[ADCGS_P_THETA], own, 0, s->theta_width, s->theta_hidden, ADCGS_THETA_OUT);
     if (p->time_rows) {
         if (s->omega_width)
             adcgs_mlp_layout(&m[ADCGS_P_OMEGA], p->n_fv, p->time_width, s->omega_width, s->omega_hidden,
@@ -266,8 +266,6 @@ adcgs_status adcgs_fmodel_create(adcgs_fmodel **out, const adcgs_params *params,
         for (int k = 0; k < params->k; k++)
             f->keep[(i / ADCGS_LANES * params->k + (size_t)k) * ADCGS_LANES + i % ADCGS_LANES] = f->live[i];
     }
-    for (size_t i = 0; i < f->param[ADCGS_P_FG].n; i++)
-        f->param[ADCGS_P_FG].p[i] = (float)(0.7 * adcgs_random_normal(seed, ADCGS_P_FG, i));
     for (size_t i = 0; i < f->param[ADCGS_P_FV].n; i++)
         f->param[ADCGS_P_FV].p[i] = (float)(0.1 * adcgs_random_normal(seed, ADCGS_P_FV, i));
     for (size_t i = 0; params->spans && i < (size_t)f->groups * ADCGS_LANES; i++)

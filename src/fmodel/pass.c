@@ -3,6 +3,8 @@
 #include "fmodel/bodies.h"
 #include "fmodel/pass_layout.h"
 
+#include <stdalign.h>
+
 typedef struct forward_job {
     adcgs_pass *pass;
     const adcgs_fmodel *f;
@@ -65,10 +67,14 @@ static void forward_theta(const forward_job *job, uint32_t g, float *anchor)
     const adcgs_act act = adcgs_pass_act(p, f, g);
     const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
     const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * ADCGS_LANES;
+    const int slots = adcgs_slot_inputs(&f->params);
+    alignas(64) float one[ADCGS_LANES];
+    adcgs_dense_ones(one);
     d->dense(anchor, NULL, m->use + m->b[0], m->use, (size_t)m->in[0], fv, m->width, nv);
     for (int k = 0; k < f->params.k; k++) {
         float *h = act.theta_h + (size_t)k * act.theta_h_stride;
-        d->dense(h, anchor, NULL, m->use + nv, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * ADCGS_LANES, m->width, ng);
+        d->dense(h, anchor, NULL, m->use + nv + k, (size_t)m->in[0], one, m->width, slots > 0); /* of its slot, if it has one */
+        d->dense(h, h, NULL, m->use + nv + slots, (size_t)m->in[0], fg + (size_t)k * (size_t)ng * ADCGS_LANES, m->width, ng);
         adcgs_mlp_tail(p->net, m, h, act.theta_below + (size_t)k * act.theta_below_stride,
                        act.theta_out + (size_t)k * ADCGS_THETA_OUT * ADCGS_LANES);
     }

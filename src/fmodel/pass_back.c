@@ -3,6 +3,8 @@
 #include "fmodel/bodies.h"
 #include "fmodel/pass_layout.h"
 
+#include <stdalign.h>
+
 typedef struct backward_job {
     adcgs_pass *pass;
     adcgs_fmodel *f;
@@ -34,15 +36,20 @@ static void theta_back(const backward_job *job, uint32_t g, const float *dtheta,
     float *dfg = grad_at(f, ADCGS_P_FG, g), *dfv = grad_at(f, ADCGS_P_FV, g);
     const float *fv = p->used[ADCGS_P_FV] + (size_t)g * (size_t)nv * ADCGS_LANES;
     const float *fg = p->used[ADCGS_P_FG] + (size_t)g * f->params.k * (size_t)ng * ADCGS_LANES;
+    const int slots = adcgs_slot_inputs(&f->params);
+    alignas(64) float one[ADCGS_LANES];
+    adcgs_dense_ones(one);
     memset(sum, 0, tile * sizeof *sum);
     for (size_t i = 0; i < f->params.k; i++) {
         const float *h = act.theta_h + i * act.theta_h_stride, *dout = dtheta + i * ADCGS_THETA_OUT * ADCGS_LANES;
         float *d = dfg + i * (size_t)ng * ADCGS_LANES;
         adcgs_mlp_tail_back(dsp, m, h, act.theta_below + i * act.theta_below_stride, dout, dz);
-        dsp->dense.dense(d, d, NULL, m->turn + (size_t)nv * (size_t)w, (size_t)w, dz, ng, w);
+        dsp->dense.dense(d, d, NULL, m->turn + (size_t)(nv + slots) * (size_t)w, (size_t)w, dz, ng, w);
         for (size_t j = 0; j < tile; j++)
             sum[j] += dz[j];
-        dsp->weight_grad(gm + nv, (size_t)m->in[0], NULL, dz, 0, fg + i * (size_t)ng * ADCGS_LANES, 0, 1, w, ng);
+        if (slots)
+            dsp->weight_grad(gm + nv + i, (size_t)m->in[0], NULL, dz, 0, one, 0, 1, w, 1);
+        dsp->weight_grad(gm + nv + slots, (size_t)m->in[0], NULL, dz, 0, fg + i * (size_t)ng * ADCGS_LANES, 0, 1, w, ng);
         adcgs_mlp_weight_grads(dsp, m, gm, h, 0, dz, 0, dout, 0, 1);
     }
     dsp->dense.dense(dfv, dfv, NULL, m->turn, (size_t)w, sum, nv, w);

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 28 };
+enum { FORMAT = 29 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */

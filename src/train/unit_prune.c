@@ -70,8 +70,11 @@ static void put_inputs(const adcgs_fmodel *f, int group, const sample *s, double
         *x++ = (double)f->code[adcgs_slot_of(s->anchor, fp, i)];
     if (group != ADCGS_P_VARPI || f->params.fine_uses_fv)
         x = put_rows(f, x, ADCGS_P_FV, s->anchor, 0, nv, f->mlp[group].entropy);
+    const int slots = group == ADCGS_P_THETA ? adcgs_slot_inputs(&f->params) : 0;
+    for (int i = 0; i < slots; i++)
+        *x++ = i == s->k;
     if (group == ADCGS_P_THETA || group > ADCGS_P_E_FG)
-        x = put_rows(f, x, ADCGS_P_FG, s->anchor, s->k * ng, f->mlp[group].own - nv, f->mlp[group].entropy);
+        x = put_rows(f, x, ADCGS_P_FG, s->anchor, s->k * ng, f->mlp[group].own - nv - slots, f->mlp[group].entropy);
     if (f->mlp[group].time)
         put_time(f, x, s->t);
 }

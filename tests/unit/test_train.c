@@ -181,8 +181,10 @@ static void ref_primitive(const adcgs_fmodel *f, uint32_t anchor, int k, double 
     double x[64], th[14], om[12], va[4 * K], q0[4], qr[4], q[4], off[4] = { 0 }, turned[4], back[4];
     for (int i = 0; i < NV; i++)
         x[i] = value(f, ADCGS_P_FV, anchor, i);
+    for (int i = 0; i < K; i++)
+        x[NV + i] = i == k;
     for (int i = 0; i < NG; i++)
-        x[NV + i] = value(f, ADCGS_P_FG, anchor, k * NG + i);
+        x[NV + K + i] = value(f, ADCGS_P_FG, anchor, k * NG + i);
     ref_mlp(&f->mlp[ADCGS_P_THETA], f->param[ADCGS_P_THETA].p, x, th);
     ref_omega(f, anchor, t, om);
     double y[128];
