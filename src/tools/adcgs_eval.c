@@ -22,7 +22,7 @@ typedef struct settings {
     const char *file, *scene, *images, *crop, *frames, *csv, *metrics;
     adcgs_config config;
     adcgs_box box; /**< of --crop, where it gives numbers */
-    int quiet, split, cpu, json, as_is, beside, dataset;
+    int quiet, split, cpu, json, as_is, beside, dataset, tiers;
     int measure; /**< of --metrics: flags of metric/evaluate.h */
 } settings;
 
@@ -37,7 +37,7 @@ typedef struct report {
 
 static const char *const splits[] = {"train", "val", "test", NULL}; /* in the order of adcgs_split */
 
-#define OPTION_COUNT 13
+#define OPTION_COUNT 14
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -49,6 +49,8 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"frames", 0, ADCGS_OPTION_STRING, &s->frames, 0, 0, "A:B:STEP",
          "the frames that the stream was made of, as for adcgs-enc", NULL, NULL},
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
+        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "draw the first N tiers of the stream alone, a coarser picture",
+         NULL, NULL},
         {"images", 0, ADCGS_OPTION_STRING, &s->images, 0, 0, "DIR", "write the decoded views there as PNG", NULL, NULL},
         {"beside", 0, ADCGS_OPTION_FLAG, &s->beside, 0, 0, NULL,
          "in these pictures: truth, decoded view, and four times their\ndifference round grey, side by side", NULL, NULL},
@@ -181,7 +183,9 @@ static adcgs_status decode_and_compare(report *r, adcgs_error *error)
     const double start = adcgs_seconds();
     ADCGS_TRY(adcgs_open_file(&decoder, r->set->file, &r->set->config, error));
     r->out.decode_seconds = adcgs_seconds() - start;
-    const adcgs_status status = compare(r, decoder, error);
+    adcgs_status status = adcgs_set_tiers(decoder, r->set->tiers, error);
+    if (status == ADCGS_OK)
+        status = compare(r, decoder, error);
     adcgs_close(&decoder);
     return status;
 }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 # adcgs-eval's figures as text, CSV and JSON, of a camera that stays where it is and of cameras that move.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-eval adcgs-enc adcgs-demo-scene
+need adcgs-eval adcgs-enc adcgs-info adcgs-demo-scene
 eval=./adcgs-eval
 s=$dir/s.adcgs
 
@@ -50,6 +50,18 @@ expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/plain.csv" --json
 [ "$(head -n 1 "$dir/plain.csv")" = "row,camera,name,time,psnr,ssim,milliseconds" ] || bad "heading of the table"
 [ "$(cut -d, -f 1 "$dir/plain.csv" | tr '\n' ' ')" = "row view view view mean " ] || { bad "rows"; cat "$dir/plain.csv"; }
 agree "$dir/plain.csv" "$dir/out"
+
+# The first tiers alone are what a file is that ends before the next; more than there are is all of them.
+./adcgs-enc "$dir/scene" -o "$dir/t.adcgs" --preset draft --set tiers=3,stereo=0 --iterations 30 --threads 2 >/dev/null 2>&1
+ends=$(./adcgs-info --json "$dir/t.adcgs" | grep -A 2 '"type": "GEOM"' | sed -n 's/.*"offset": \([0-9]*\),.*/\1/p' | sed -n 2p)
+head -c "${ends:-0}" "$dir/t.adcgs" >"$dir/cut.adcgs"
+figures() { $eval "$@" "$dir/scene" --csv - -q | cut -d, -f 1-6 >"$dir/figures" && [ "$(wc -l <"$dir/figures")" -eq 5 ]; }
+figures "$dir/t.adcgs" --tiers 1 && mv "$dir/figures" "$dir/first" && figures "$dir/cut.adcgs" &&
+    cmp "$dir/first" "$dir/figures" || bad "the first tier is not that of a file which ends behind it"
+figures "$dir/t.adcgs" && mv "$dir/figures" "$dir/whole" && figures "$dir/t.adcgs" --tiers 8 && cmp "$dir/whole" "$dir/figures" ||
+    bad "eight tiers are not all"
+! cmp -s "$dir/first" "$dir/whole" || bad "--tiers changes nothing"
+expect 2 "from 1 to 8" $eval "$dir/t.adcgs" "$dir/scene" --tiers 9
 
 # Cameras that move, of whose views it is known what moves.
 expect 0 "" $eval "$s" "$dir/scene" --csv "$dir/known.csv" --json --metrics dynamic-psnr
