@@ -10,7 +10,9 @@ const adcgs_chart adcgs_charts[] = {
     {"time-moving", "Quality of what moves against CPU time of training", adcgs_chart_curves, ADCGS_Q_SECONDS, ADCGS_Q_MOVING},
     {"speed", "Quality against speed of playing", adcgs_chart_curves, ADCGS_Q_SPEED, ADCGS_Q_PSNR},
     {"bytes", "Where the bytes are", adcgs_chart_bytes, 0, 0},
+    {"portions", "Quality of a part of the stream", adcgs_chart_portions, 0, 0},
     {"views", "Quality over time", adcgs_chart_views, 0, 0},
+    {"errors", "Quality view by view", adcgs_chart_errors, 0, 0},
     {.name = NULL},
 };
 

@@ -35,6 +35,10 @@ adcgs_chart_make adcgs_chart_curves;
 adcgs_chart_make adcgs_chart_bytes;
 /** Quality of each test view over time, of one run. */
 adcgs_chart_make adcgs_chart_views;
+/** Quality of each test view, camera by camera, of one run. */
+adcgs_chart_make adcgs_chart_errors;
+/** Quality of what is decoded from a part of the stream, of one run. */
+adcgs_chart_make adcgs_chart_portions;
 
 /** All, in the order of the page; the end has no name. */
 extern const adcgs_chart adcgs_charts[];

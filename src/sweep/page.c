@@ -226,7 +226,7 @@ void adcgs_sweep_print(FILE *file, const adcgs_sweep_plan *plan)
 
 /* ---- Page ---- */
 
-/** A chart without what comes before its first element. Its absence leaves the page without it. */
+/** A chart without what comes before its first element, to press as pictures are. Its absence leaves the page without it. */
 static void print_chart(const sheet *s, const adcgs_sweep *sweep, const adcgs_chart *chart)
 {
     char path[ADCGS_SWEEP_PATH], line[4096];
@@ -235,14 +235,14 @@ static void print_chart(const sheet *s, const adcgs_sweep *sweep, const adcgs_ch
     FILE *const svg = fopen(path, "r");
     if (!svg)
         return;
-    fprintf(s->file, "<figure>\n");
+    fprintf(s->file, "<figure><label><input type=\"checkbox\">");
     while (fgets(line, sizeof line, svg)) {
         const char *const start = begun ? line : strstr(line, "<svg");
         begun |= start != NULL;
         if (start)
             fputs(start, s->file);
     }
-    fprintf(s->file, "</figure>\n");
+    fprintf(s->file, "</label></figure>\n");
     fclose(svg);
 }
 
@@ -332,7 +332,7 @@ static const char style[] =
     "td, th { padding: 0.2em 0.8em; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }\n"
     "td:first-child, th:first-child { text-align: left; }\np { overflow-wrap: anywhere; }\n"
     "label { display: block; cursor: zoom-in; overflow-x: auto; }\nlabel input { display: none; }\n"
-    "label input:checked + img { max-width: none; cursor: zoom-out; }\n"
+    "label input:checked + img, label input:checked + svg { max-width: none; cursor: zoom-out; }\n"
     "@media print { body { margin: 0; max-width: none; } td, th { padding: 0.1em 0.4em; font-size: 10px; } }\n";
 
 adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, unsigned charts, adcgs_error *error)
@@ -348,6 +348,8 @@ adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_
                        "<meta name=\"viewport\" content=\"width=device-width\">\n<title>Rate, distortion and time: ");
     put_escaped(&s, sweep->scene);
     fprintf(file.file, "</title>\n<style>\n%s</style>\n<h1>Rate, distortion and time</h1>\n", style);
+    if (charts)
+        say(&s, "Press a chart for its full size.");
     fprintf(file.file, "<div class=\"charts\">\n");
     for (int i = 0; adcgs_charts[i].name; i++)
         if (charts & 1U << i)

@@ -237,6 +237,8 @@ adcgs_status adcgs_sweep_plan_make(adcgs_sweep_plan *plan, const adcgs_sweep *sw
 void adcgs_sweep_plan_clear(adcgs_sweep_plan *plan)
 {
     free(plan->run);
+    free(plan->shown.view);
+    plan->shown = (adcgs_sweep_shown){.run = NULL};
     plan->run = NULL;
     plan->n_runs = plan->capacity = 0;
 }

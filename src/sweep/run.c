@@ -2,7 +2,7 @@
 /** \file One run of a sweep: starts the encoder, the evaluation and the compressors, keeps what they report. */
 #include "config.h"
 
-#include "sweep/command.h"
+#include "sweep/run.h"
 
 #include "cli/text.h"
 #include "data/camera_json.h"
@@ -36,8 +36,8 @@ static double size_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run, cons
     return stat(path, &s) == 0 ? (double)s.st_size : (double)NAN;
 }
 
-/* What the result depends on. Neither threads nor a shared beginning do. */
-static json_t *settings_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run)
+/* Neither threads nor a shared beginning change a result. */
+json_t *adcgs_sweep_settings(const adcgs_sweep *sweep, const adcgs_sweep_run *run)
 {
     char *const scene = adcgs_text_utf8(sweep->scene); /* all else has been checked, and is ASCII */
     json_t *const settings =
@@ -49,8 +49,7 @@ static json_t *settings_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run)
     return settings;
 }
 
-/** Write a value, which this takes, to a file. */
-static adcgs_status save(json_t *root, const char *path, adcgs_error *error)
+adcgs_status adcgs_sweep_save(json_t *root, const char *path, adcgs_error *error)
 {
     adcgs_atomic file;
     adcgs_status status =
@@ -68,10 +67,9 @@ static adcgs_status save(json_t *root, const char *path, adcgs_error *error)
     return status;
 }
 
-/** Whether a file of the run begins with the settings it has now. root: the file as JSON. */
-static int same_settings(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const json_t *root)
+int adcgs_sweep_same_settings(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const json_t *root)
 {
-    json_t *const wanted = settings_of(sweep, run);
+    json_t *const wanted = adcgs_sweep_settings(sweep, run);
     const int same = wanted && json_equal(json_object_get(root, "settings"), wanted);
     json_decref(wanted);
     return same;
@@ -79,8 +77,8 @@ static int same_settings(const adcgs_sweep *sweep, const adcgs_sweep_run *run, c
 
 /* ---- Running ---- */
 
-static adcgs_status call(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const adcgs_command *c, const char *out,
-                         adcgs_error *error)
+adcgs_status adcgs_sweep_call(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const adcgs_command *c, const char *out,
+                              adcgs_error *error)
 {
     char log[ADCGS_SWEEP_PATH];
     int code = 0;
@@ -102,12 +100,12 @@ static adcgs_status find_unfinished(const adcgs_sweep *sweep, const adcgs_sweep_
     json_t *root = NULL;
     if (sweep->resume)
         adcgs_json_load(&root, path, &ignored);
-    *found = root && same_settings(sweep, run, root) && size_of(sweep, run, ".partial") > 0;
+    *found = root && adcgs_sweep_same_settings(sweep, run, root) && size_of(sweep, run, ".partial") > 0;
     json_decref(root);
     if (*found)
         return ADCGS_OK;
     drop(sweep, run, ".partial");
-    return save(json_pack("{s:o}", "settings", settings_of(sweep, run)), path, error);
+    return adcgs_sweep_save(json_pack("{s:o}", "settings", adcgs_sweep_settings(sweep, run)), path, error);
 }
 
 static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const adcgs_sweep_run *from, const char *out,
@@ -143,16 +141,15 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
     adcgs_command_word(&c, "--json");
     adcgs_command_word(&c, "--");
     adcgs_command_word(&c, sweep->scene);
-    return call(sweep, run, &c, out, error);
+    return adcgs_sweep_call(sweep, run, &c, out, error);
 }
 
-/** A command line that evaluates a run, but for what it evaluates; program and file are the caller's to hold. */
+/** A command line that evaluates a run's stream, but for which and what; program is the caller's to hold. */
 static void begin_evaluation(adcgs_command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run,
-                             char program[ADCGS_SWEEP_PATH], char file[ADCGS_SWEEP_PATH])
+                             char program[ADCGS_SWEEP_PATH])
 {
     static const char *const of_speed[] = {"threads", "cpu", NULL};
     snprintf(program, ADCGS_SWEEP_PATH, "%s/adcgs-eval", sweep->programs);
-    adcgs_sweep_path(file, sweep, run, ".adcgs");
     adcgs_command_word(c, program);
     adcgs_command_option(c, "--dataset", sweep->dataset);
     adcgs_command_option(c, "--frames", sweep->frames);
@@ -160,31 +157,35 @@ static void begin_evaluation(adcgs_command *c, const adcgs_sweep *sweep, const a
     adcgs_command_threads(c, sweep, run);
 }
 
-static adcgs_status evaluate(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *out, adcgs_error *error)
+adcgs_status adcgs_sweep_evaluate(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *file, const char *option,
+                                  int count, const char *out, adcgs_error *error)
 {
-    char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH];
+    char program[ADCGS_SWEEP_PATH];
     adcgs_command c = {.n = 0};
-    begin_evaluation(&c, sweep, run, program, file);
+    begin_evaluation(&c, sweep, run, program);
+    if (option)
+        adcgs_command_number(&c, option, count, 1);
     adcgs_command_option(&c, "--metrics", "dynamic-psnr");
     adcgs_command_word(&c, "--json");
     adcgs_command_word(&c, "--");
     adcgs_command_word(&c, file);
     adcgs_command_word(&c, sweep->scene);
-    return call(sweep, run, &c, out, error);
+    return adcgs_sweep_call(sweep, run, &c, out, error);
 }
 
 adcgs_status adcgs_sweep_draw_views(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *folder, adcgs_error *error)
 {
     adcgs_command c = {.n = 0};
     char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH];
-    begin_evaluation(&c, sweep, run, program, file);
+    begin_evaluation(&c, sweep, run, program);
+    adcgs_sweep_path(file, sweep, run, ".adcgs");
     adcgs_command_option(&c, "--images", folder);
     adcgs_command_word(&c, "--beside");
     adcgs_command_word(&c, "--quiet");
     adcgs_command_word(&c, "--");
     adcgs_command_word(&c, file);
     adcgs_command_word(&c, sweep->scene);
-    return call(sweep, run, &c, "/dev/null", error);
+    return adcgs_sweep_call(sweep, run, &c, "/dev/null", error);
 }
 
 /** A general-purpose compressor on the uncompressed model. That it is not installed is no fault: there is no file then. */
@@ -214,7 +215,7 @@ static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_run
     char path[ADCGS_SWEEP_PATH];
     adcgs_sweep_path(path, sweep, run, ".json");
     if (run->beginning)
-        return save(json_pack("{s:o}", "settings", settings_of(sweep, run)), path, error);
+        return adcgs_sweep_save(json_pack("{s:o}", "settings", adcgs_sweep_settings(sweep, run)), path, error);
     json_t *encoder, *evaluation;
     ADCGS_TRY(adcgs_json_load(&encoder, encoded, error));
     const adcgs_status status = adcgs_json_load(&evaluation, evaluated, error);
@@ -222,21 +223,23 @@ static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_run
         json_decref(encoder);
         return status;
     }
-    return save(json_pack("{s:o, s:o, s:o}", "settings", settings_of(sweep, run), "encoder", encoder, "evaluation", evaluation),
-                path, error);
+    return adcgs_sweep_save(json_pack("{s:o, s:o, s:o}", "settings", adcgs_sweep_settings(sweep, run), "encoder", encoder,
+                                      "evaluation", evaluation), path, error);
 }
 
 adcgs_status adcgs_sweep_execute(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const adcgs_sweep_run *from,
                                  adcgs_error *error)
 {
-    char encoded[ADCGS_SWEEP_PATH], evaluated[ADCGS_SWEEP_PATH];
+    char encoded[ADCGS_SWEEP_PATH], evaluated[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH];
     adcgs_sweep_path(encoded, sweep, run, ".enc.part");
     adcgs_sweep_path(evaluated, sweep, run, ".eval.part");
+    adcgs_sweep_path(file, sweep, run, ".adcgs");
     drop(sweep, run, ".log");
     drop(sweep, run, ".json");
+    drop(sweep, run, ".portions.json"); /* of the stream that is made anew */
     adcgs_status status = encode(sweep, run, from, encoded, error);
     if (status == ADCGS_OK && !run->beginning)
-        status = evaluate(sweep, run, evaluated, error);
+        status = adcgs_sweep_evaluate(sweep, run, file, NULL, 0, evaluated, error);
     if (status == ADCGS_OK && run->uncompressed)
         status = compress(sweep, run, "zstd", "-19", ".raw.zst", error);
     if (status == ADCGS_OK && run->uncompressed)
@@ -328,8 +331,8 @@ adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_run *run, ad
     json_t *root;
     ADCGS_TRY(adcgs_json_load(&root, path, error));
     take_figures(sweep, run, root);
-    adcgs_status status = same_settings(sweep, run, root) ? check_files(sweep, run, root, path, error) :
-                          adcgs_fail(error, ADCGS_ERR_DATA, "%s: made with other settings", path);
+    adcgs_status status = adcgs_sweep_same_settings(sweep, run, root) ? check_files(sweep, run, root, path, error) :
+                              adcgs_fail(error, ADCGS_ERR_DATA, "%s: made with other settings", path);
     json_decref(root);
     if (status == ADCGS_OK)
         run->state = ADCGS_RUN_DONE;

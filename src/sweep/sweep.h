@@ -13,15 +13,16 @@
 
 #include "sweep/grid.h"
 
+#include <adcgs/types.h>
+
 #include <stdio.h>
 #include <sys/types.h>
-
-struct json_t;
 
 #define ADCGS_SWEEP_CELLS 320  /**< 16 x 16 of the grid, yardsticks, ablation */
 #define ADCGS_SWEEP_CURVES 40  /**< 16 of the grid, 7 yardsticks, earlier ones, other methods */
 #define ADCGS_SWEEP_STAGES 12
 #define ADCGS_SWEEP_AGAINST 8  /**< earlier sweeps to compare with, and other methods */
+#define ADCGS_SWEEP_PORTIONS 24 /**< 5 layers, 8 tiers, ten tenths of the bytes */
 #define ADCGS_SWEEP_PATH 4096
 #define ADCGS_SWEEP_TAG (ADCGS_SWEEP_CHOICE + 96)
 
@@ -121,6 +122,35 @@ typedef struct adcgs_sweep_stage {
     int cell;
 } adcgs_sweep_stage;
 
+/** A test view. */
+typedef struct adcgs_sweep_view {
+    char name[ADCGS_CAMERA_NAME_MAX + 1];
+    int camera; /**< views of one come one after the other, in the order of their times */
+    double time, psnr, moving; /**< seconds, dB; NaN where they are not known */
+} adcgs_sweep_view;
+
+/** What a stream can be cut to: its first layers, its first tiers, or its first bytes. */
+typedef enum adcgs_portion_kind {
+    ADCGS_PORTION_LAYERS, ADCGS_PORTION_TIERS, ADCGS_PORTION_PERCENT, ADCGS_PORTION_COUNT
+} adcgs_portion_kind;
+
+/** A part of a stream, and how good the test views are that are decoded from it. */
+typedef struct adcgs_sweep_portion {
+    adcgs_portion_kind kind;
+    int count;           /**< layers, tiers, or percent of the bytes */
+    double bytes;        /**< that it comprises */
+    int is_known;        /**< measured */
+    double psnr, moving; /**< NaN where nothing can be decoded from it */
+} adcgs_sweep_portion;
+
+/** The run that stands for all, looked at more closely. */
+typedef struct adcgs_sweep_shown {
+    const adcgs_sweep_run *run; /**< NULL: none, and nothing below */
+    adcgs_sweep_view *view;
+    int n_views, n_portions;
+    adcgs_sweep_portion portion[ADCGS_SWEEP_PORTIONS];
+} adcgs_sweep_shown;
+
 typedef struct adcgs_sweep_plan {
     adcgs_sweep_run *run;
     int n_runs, capacity;
@@ -128,6 +158,7 @@ typedef struct adcgs_sweep_plan {
     adcgs_sweep_curve curve[ADCGS_SWEEP_CURVES];
     adcgs_sweep_stage stage[ADCGS_SWEEP_STAGES];
     int n_cells, n_curves, n_stages;
+    adcgs_sweep_shown shown;
 } adcgs_sweep_plan;
 
 /** List the runs, cells, curves and stages of a sweep. The plan is the caller's, zeroed; clear it also after a failure. */
@@ -158,6 +189,17 @@ adcgs_status adcgs_sweep_execute(const adcgs_sweep *sweep, const adcgs_sweep_run
 adcgs_status adcgs_sweep_load(const adcgs_sweep *sweep, adcgs_sweep_run *run, adcgs_error *error);
 /** Run argv[0], stdout to the file out, stderr added to the file log (NULL: as they are). *exit_code: 127 if it did not start. */
 adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *log, int *exit_code, adcgs_error *error);
+
+/* ---- The run that stands for all ---- */
+
+/** Choose it, when all have run, and take the views of its result (shown.c). */
+adcgs_status adcgs_sweep_show(const adcgs_sweep *sweep, adcgs_sweep_plan *plan, adcgs_error *error);
+/** What a kind of portion is called, in files and in charts (shown.c). */
+const char *adcgs_portion_name(adcgs_portion_kind kind);
+/** List what its stream can be cut to; what was measured before is known (portions.c). */
+adcgs_status adcgs_sweep_list_portions(const adcgs_sweep *sweep, adcgs_sweep_plan *plan, adcgs_error *error);
+/** Measure one of these, unless it is known, and keep that in a file (portions.c). */
+adcgs_status adcgs_sweep_measure_portion(const adcgs_sweep *sweep, adcgs_sweep_plan *plan, int index, adcgs_error *error);
 
 /* ---- Sums (sum.c) ---- */
 
@@ -190,7 +232,7 @@ adcgs_comparison adcgs_sweep_compare(const adcgs_sweep_plan *plan, const adcgs_s
 
 /* ---- Output ---- */
 
-/** sweep.csv, ablation.csv and sweep.json in the folder (write.c). */
+/** sweep.csv, ablation.csv, portions.csv, views.csv and sweep.json in the folder (write.c). */
 adcgs_status adcgs_sweep_write_tables(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error);
 /** A test view that the page shows: truth, decoded, and their difference. */
 enum { ADCGS_SWEEP_PICTURES = 2 };
@@ -204,12 +246,6 @@ typedef struct adcgs_sweep_picture {
 /** The worst and the middle test view of the run that stands for all, drawn anew (views_chart.c). */
 adcgs_status adcgs_sweep_pictures(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan,
                                   adcgs_sweep_picture picture[ADCGS_SWEEP_PICTURES], adcgs_error *error);
-/** The file of a run with this suffix (run.c). */
-void adcgs_sweep_path(char path[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *suffix);
-/** A number of a report, or of an object in it; NaN if it is not there (run.c). */
-double adcgs_sweep_number(const struct json_t *report, const char *name);
-/** Have all test views of a run written to a folder as pictures, beside the truth (run.c). */
-adcgs_status adcgs_sweep_draw_views(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *folder, adcgs_error *error);
 
 /** The charts (charts.h) in the folder. *charts: a bit for each that is there. */
 adcgs_status adcgs_sweep_draw(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, unsigned *charts, adcgs_error *error);

@@ -44,21 +44,24 @@ static void csv_row(FILE *file, const adcgs_sweep_row *r)
     fprintf(file, "\n");
 }
 
-static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const char *name, const char *first,
+static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const char *name, const char *heading,
                              adcgs_error *error)
 {
     char path[ADCGS_SWEEP_PATH];
     snprintf(path, sizeof path, "%s/%s", sweep->directory, name);
     ADCGS_TRY(adcgs_atomic_open(file, path, error));
-    fprintf(file->file, "%s,lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,"
-            "cpu_seconds,frames_per_second,dynamic_psnr\n", first);
+    fprintf(file->file, "%s\n", heading);
     return ADCGS_OK;
 }
+
+/** Columns of csv_row(), behind the name. */
+#define ROW_COLUMNS "lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,cpu_seconds," \
+    "frames_per_second,dynamic_psnr"
 
 static adcgs_status write_curves(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
 {
     adcgs_atomic file;
-    ADCGS_TRY(csv_open(&file, sweep, "sweep.csv", "curve", error));
+    ADCGS_TRY(csv_open(&file, sweep, "sweep.csv", "curve," ROW_COLUMNS, error));
     for (int i = 0; i < plan->n_curves; i++)
         for (int j = 0; j < plan->curve[i].n; j++) {
             adcgs_sweep_row row;
@@ -71,11 +74,44 @@ static adcgs_status write_curves(const adcgs_sweep *sweep, const adcgs_sweep_pla
 static adcgs_status write_stages(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
 {
     adcgs_atomic file;
-    ADCGS_TRY(csv_open(&file, sweep, "ablation.csv", "stage", error));
+    ADCGS_TRY(csv_open(&file, sweep, "ablation.csv", "stage," ROW_COLUMNS, error));
     for (int i = 0; i < plan->n_stages; i++) {
         adcgs_sweep_row row;
         if (adcgs_sweep_row_make(&row, plan, plan->stage[i].name, plan->stage[i].cell, plan->stage[i].size))
             csv_row(file.file, &row);
+    }
+    return adcgs_atomic_commit(&file, error);
+}
+
+static adcgs_status write_portions(const adcgs_sweep *sweep, const adcgs_sweep_shown *shown, adcgs_error *error)
+{
+    adcgs_atomic file;
+    ADCGS_TRY(csv_open(&file, sweep, "portions.csv", "run,of,count,bytes,psnr,dynamic_psnr", error));
+    for (int i = 0; i < shown->n_portions; i++) {
+        const adcgs_sweep_portion *const p = &shown->portion[i];
+        if (!p->is_known)
+            continue;
+        fprintf(file.file, "%s,%s,%d", shown->run->tag, adcgs_portion_name(p->kind), p->count);
+        csv_number(file.file, p->bytes, 0);
+        csv_number(file.file, p->psnr, 4);
+        csv_number(file.file, p->moving, 4);
+        fprintf(file.file, "\n");
+    }
+    return adcgs_atomic_commit(&file, error);
+}
+
+static adcgs_status write_views(const adcgs_sweep *sweep, const adcgs_sweep_shown *shown, adcgs_error *error)
+{
+    adcgs_atomic file;
+    ADCGS_TRY(csv_open(&file, sweep, "views.csv", "run,camera,view,time,psnr,dynamic_psnr", error));
+    for (int i = 0; i < shown->n_views; i++) {
+        const adcgs_sweep_view *const v = &shown->view[i];
+        fprintf(file.file, "%s,%d,", shown->run->tag, v->camera);
+        adcgs_text_cell(file.file, v->name);
+        csv_number(file.file, v->time, 6);
+        csv_number(file.file, v->psnr, 4);
+        csv_number(file.file, v->moving, 4);
+        fprintf(file.file, "\n");
     }
     return adcgs_atomic_commit(&file, error);
 }
@@ -187,6 +223,40 @@ static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
     adcgs_json_close(json);
 }
 
+/** What was measured of the run that stands for all. */
+static void json_shown(adcgs_json *json, const adcgs_sweep_shown *shown)
+{
+    adcgs_json_open(json, "shown", '{');
+    adcgs_json_string(json, "run", shown->run->tag);
+    adcgs_json_open(json, "portions", '[');
+    for (int i = 0; i < shown->n_portions; i++) {
+        const adcgs_sweep_portion *const p = &shown->portion[i];
+        if (!p->is_known)
+            continue;
+        adcgs_json_open(json, NULL, '{');
+        adcgs_json_string(json, "of", adcgs_portion_name(p->kind));
+        adcgs_json_int(json, "count", p->count);
+        adcgs_json_real(json, "bytes", p->bytes);
+        adcgs_json_real(json, "dynamic_psnr", p->moving);
+        adcgs_json_real(json, "psnr", p->psnr);
+        adcgs_json_close(json);
+    }
+    adcgs_json_close(json);
+    adcgs_json_open(json, "views", '[');
+    for (int i = 0; i < shown->n_views; i++) {
+        const adcgs_sweep_view *const v = &shown->view[i];
+        adcgs_json_open(json, NULL, '{');
+        adcgs_json_int(json, "camera", v->camera);
+        adcgs_json_string(json, "view", v->name);
+        adcgs_json_real(json, "time", v->time);
+        adcgs_json_real(json, "dynamic_psnr", v->moving);
+        adcgs_json_real(json, "psnr", v->psnr);
+        adcgs_json_close(json);
+    }
+    adcgs_json_close(json);
+    adcgs_json_close(json);
+}
+
 static void json_sweep(adcgs_json *json, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
 {
     const adcgs_curve_facts facts = adcgs_sweep_facts(plan);
@@ -203,6 +273,8 @@ static void json_sweep(adcgs_json *json, const adcgs_sweep *sweep, const adcgs_s
     json_curves(json, plan);
     json_stages(json, plan);
     json_runs(json, plan);
+    if (plan->shown.run)
+        json_shown(json, &plan->shown);
     adcgs_json_close(json);
 }
 
@@ -227,5 +299,9 @@ adcgs_status adcgs_sweep_write_tables(const adcgs_sweep *sweep, const adcgs_swee
     ADCGS_TRY(write_curves(sweep, plan, error));
     if (plan->n_stages)
         ADCGS_TRY(write_stages(sweep, plan, error));
+    if (plan->shown.n_portions)
+        ADCGS_TRY(write_portions(sweep, &plan->shown, error));
+    if (plan->shown.n_views)
+        ADCGS_TRY(write_views(sweep, &plan->shown, error));
     return write_json(sweep, plan, error);
 }

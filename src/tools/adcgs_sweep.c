@@ -5,13 +5,12 @@
 #include "cli/cli.h"
 #include "layouts/open.h"
 #include "sweep/sweep.h"
+#include "tools/sweep_run.h"
 #include "train/settings.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 /* "a,b,c"; returns how many, or -1. */
@@ -50,122 +49,6 @@ static void find_programs(const char *argv0, char *out, size_t size)
 
 /* ---- Running ---- */
 
-static int start(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_sweep_run *run)
-{
-    const pid_t child = fork();
-    if (child == 0) {
-        adcgs_error error;
-        const adcgs_sweep_run *const from = run->from >= 0 ? &plan->run[run->from] : NULL;
-        const adcgs_status status = adcgs_sweep_execute(sweep, run, from, &error);
-        _exit(status == ADCGS_OK ? 0 : adcgs_cli_fail(cli, &error));
-    }
-    run->child = child;
-    run->state = child < 0 ? ADCGS_RUN_FAILED : ADCGS_RUN_RUNS;
-    return child < 0 ? adcgs_cli_error(cli, ADCGS_ERR_IO, "cannot start a process: %s", strerror(errno)) : 0;
-}
-
-/** A run that can start now, NULL if there is none. Beginnings come when the first run that needs them would. */
-static adcgs_sweep_run *next_run(adcgs_sweep_plan *plan)
-{
-    for (int i = 0; i < plan->n_runs; i++) {
-        adcgs_sweep_run *const run = &plan->run[i];
-        if (run->beginning || run->state != ADCGS_RUN_WAITS)
-            continue;
-        adcgs_sweep_run *const from = run->from >= 0 ? &plan->run[run->from] : NULL;
-        if (!from || from->state == ADCGS_RUN_DONE)
-            return run;
-        if (from->state == ADCGS_RUN_WAITS)
-            return from;
-        if (from->state == ADCGS_RUN_FAILED)
-            run->state = ADCGS_RUN_FAILED;
-    }
-    return NULL;
-}
-
-static void say(const adcgs_cli *cli, const adcgs_sweep_run *r, const char *how)
-{
-    if (r->beginning)
-        adcgs_cli_note(cli, "%s: trained%s", r->tag, how);
-    else
-        adcgs_cli_note(cli, "%s: %.0f bytes, %.2f dB PSNR, %.4f SSIM%s", r->tag, r->figure[ADCGS_FIGURE_BYTES],
-                       r->figure[ADCGS_FIGURE_PSNR], r->figure[ADCGS_FIGURE_SSIM], how);
-}
-
-static int count_running(const adcgs_sweep_plan *plan)
-{
-    int n = 0;
-    for (int i = 0; i < plan->n_runs; i++)
-        n += plan->run[i].state == ADCGS_RUN_RUNS;
-    return n;
-}
-
-/** Wait until a child ends, and say meanwhile that they are at it. */
-static pid_t wait_for_child(const adcgs_cli *cli, const adcgs_sweep_plan *plan, int *state)
-{
-    const struct timespec pause = {.tv_nsec = 50000000};
-    const double start = adcgs_seconds();
-    adcgs_progress progress;
-    pid_t child;
-    int done = 0;
-    for (int i = 0; i < plan->n_runs; i++)
-        done += plan->run[i].state == ADCGS_RUN_DONE;
-    adcgs_progress_init(&progress, cli);
-    while ((child = waitpid(-1, state, WNOHANG)) == 0) {
-        adcgs_progress_show(&progress, "%d of %d runs done, %d running since %.0f s", done, plan->n_runs, count_running(plan),
-                            adcgs_seconds() - start);
-        nanosleep(&pause, NULL);
-    }
-    adcgs_progress_clear(&progress);
-    return child;
-}
-
-/** Wait for one child and take its result; returns its exit code. */
-static int reap(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
-{
-    int state = 0, i = 0;
-    const pid_t child = wait_for_child(cli, plan, &state);
-    while (i < plan->n_runs && (plan->run[i].state != ADCGS_RUN_RUNS || plan->run[i].child != child))
-        i++;
-    if (child < 0 || i == plan->n_runs)
-        return 0;
-    adcgs_sweep_run *const run = &plan->run[i];
-    const int code = WIFEXITED(state) ? WEXITSTATUS(state) : 128;
-    adcgs_error error;
-    run->state = ADCGS_RUN_FAILED;
-    if (code == 0 && adcgs_sweep_load(sweep, run, &error) != ADCGS_OK)
-        return adcgs_cli_fail(cli, &error);
-    if (code == 0)
-        say(cli, run, "");
-    return code;
-}
-
-/* Run all that is not yet done, some at a time. Returns the worst exit code. */
-static int run_all(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan, int jobs)
-{
-    int worst = 0;
-    for (;;) {
-        adcgs_sweep_run *run;
-        int code = 0;
-        while (code == 0 && count_running(plan) < jobs && !adcgs_interrupted() && (run = next_run(plan)))
-            code = start(cli, sweep, plan, run);
-        worst = ADCGS_MAX(worst, code);
-        if (!count_running(plan))
-            break;
-        code = reap(cli, sweep, plan);
-        worst = ADCGS_MAX(worst, code);
-    }
-    return adcgs_interrupted() ? ADCGS_MAX(worst, 3) : worst;
-}
-
-static void take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
-{
-    for (int i = 0; i < plan->n_runs; i++) {
-        adcgs_error ignored;
-        if (adcgs_sweep_load(sweep, &plan->run[i], &ignored) == ADCGS_OK)
-            say(cli, &plan->run[i], " (from before)");
-    }
-}
-
 static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
 {
     adcgs_error error;
@@ -176,8 +59,9 @@ static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs
     adcgs_sweep_print(stdout, plan);
     if (adcgs_cli_flush(&error) != ADCGS_OK)
         return adcgs_cli_fail(cli, &error);
-    adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s", sweep->directory,
-                   plan->n_stages ? ", ablation.csv" : "",
+    adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s%s%s", sweep->directory,
+                   plan->n_stages ? ", ablation.csv" : "", plan->shown.n_portions ? ", portions.csv" : "",
+                   plan->shown.n_views ? ", views.csv" : "",
                    charts ? ", charts as .svg and .pdf" : plan->n_curves ? "; no chart (is gnuplot there?)" : "");
     return 0;
 }
@@ -196,10 +80,11 @@ static int run_sweep(const adcgs_cli *cli, const adcgs_sweep *sweep, int jobs)
         code = adcgs_cli_error(cli, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
     else {
         if (sweep->resume)
-            take_finished(cli, sweep, plan);
+            adcgs_sweep_take_finished(cli, sweep, plan);
         adcgs_interrupt_catch();
-        const int ran = run_all(cli, sweep, plan, jobs), written = write_all(cli, sweep, plan);
-        code = ADCGS_MAX(ran, written);
+        const int ran = adcgs_sweep_run_all(cli, sweep, plan, jobs), shown = adcgs_sweep_show_one(cli, sweep, plan),
+                  written = write_all(cli, sweep, plan);
+        code = ADCGS_MAX(ADCGS_MAX(ran, shown), written);
     }
     adcgs_sweep_plan_clear(plan);
     free(plan);
@@ -315,7 +200,7 @@ static const adcgs_cli program = {
     .program = "adcgs-sweep",
     .operands = "SCENE",
     .summary = "Encode a scene at several rates, measure each decoded file, draw the curve.",
-    .details = "Runs adcgs-enc and adcgs-eval from the folder that adcgs-sweep itself lies in.",
+    .details = "Runs adcgs-enc, adcgs-eval and adcgs-info from the folder that adcgs-sweep itself lies in.",
     .min_operands = 1,
     .max_operands = 1,
 };

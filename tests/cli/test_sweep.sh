@@ -54,17 +54,46 @@ fi
 { echo "$psnr"; head -c $((bytes - 5)) /dev/zero; } >"$file"
 echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"cpu_seconds\": 1.5}"
 END
-# The pretended evaluation finds 10 dB less where something moves, which it does while there is a file of that name.
+# The pretended evaluation finds 10 dB less where something moves, which it does while there is a file of that name; 1 dB less for
+# each of three layers and 2 for each of two tiers that it does without, nothing in a beginning of less than 4000 bytes; and no
+# memory for tiers while there is a file "broken". There are views while there is a file of that name: two cameras, two moments.
 cat >"$dir/adcgs-eval" <<'END'
 #!/bin/bash
-here=$(dirname "$0") moving=null
+here=$(dirname "$0") moving=null layers=3 tiers=2 views=
 echo "$*" >>"$here/evaluations"
-while [ "$1" != -- ]; do shift; done
+while [ "$1" != -- ]; do
+    case $1 in
+        --layers) layers=$2 ;;
+        --tiers) tiers=$2; [ ! -e "$here/broken" ] || exit 3 ;;
+    esac
+    shift
+done
+case $2 in *.prefix.part) [ "$(wc -c <"$2")" -ge 4000 ] || exit 4 ;; esac
 read -r psnr <"$2"
+psnr=$((psnr - 100 * (3 - layers) - 200 * (2 - tiers)))
 [ ! -e "$here/moving" ] || moving=$((${psnr%??} - 10)).${psnr: -2}
-echo "{\"psnr\": ${psnr%??}.${psnr: -2}, \"ssim\": 0.9, \"dynamic_psnr\": $moving, \"frames_per_second\": 100}"
+for view in 0,0,31 0,0.5,32 1,0,33 1,0.5,34; do
+    IFS=, read -r camera time value <<<"$view"
+    views="$views${views:+, }{\"name\": \"it's $camera\", \"camera\": $camera, \"time\": $time"
+    views="$views, \"psnr\": $value, \"dynamic_psnr\": 2$camera}"
+done
+[ -e "$here/views" ] || views=
+echo "{\"views\": [$views], \"psnr\": ${psnr%??}.${psnr: -2}, \"ssim\": 0.9,"
+echo "\"dynamic_psnr\": $moving, \"frames_per_second\": 100}"
 END
-chmod +x "$dir/adcgs-enc" "$dir/adcgs-eval"
+# Chunks of two tiers of three layers; of one of each while there is a file "flat". What a chunk takes follows its type.
+cat >"$dir/adcgs-info" <<'END'
+#!/bin/bash
+here=$(dirname "$0") layers=3 tiers=2 at=0
+chunks="SEGM:100 GEOM:100 FEA0:800 FEA1:500 FEA2:500 GEOM:100 FEA0:400 FEA1:100 FEA2:300 hash:36 ENDC:32"
+[ ! -e "$here/flat" ] || layers=1 tiers=1 chunks="SEGM:100 GEOM:100 FEA0:800 hash:36 ENDC:32"
+for chunk in $chunks; do
+    list="$list${list:+, }{\"type\": \"${chunk%:*}\", \"offset\": $at}"
+    at=$((at + ${chunk#*:}))
+done
+echo "{\"layers\": $layers, \"tiers\": $tiers, \"chunks\": [$list]}"
+END
+chmod +x "$dir/adcgs-enc" "$dir/adcgs-eval" "$dir/adcgs-info"
 mkdir "$dir/scene"
 
 # sweep OPTIONS...: run one, its report in report, messages in err; got is how it left.
@@ -120,7 +149,8 @@ sweep --lambda 1,2 --grid 'time-limit=3,4' --set k=4 --yardsticks none
 calls 4 2 "--time-limit 4 --set k=4 "
 sweep --lambda 1 --grid 'threads=1,2' --yardsticks none
 calls 2 1 "--threads 2"
-tail -n 1 "$dir/evaluations" | grep -q -e '--threads 2' || fail "the speed of other threads: $(cat "$dir/evaluations")"
+grep -q -e '^--threads 2 .*/lambda-1-threads-2.adcgs ' "$dir/evaluations" ||
+    fail "the speed of other threads: $(cat "$dir/evaluations")"
 for grid in k k= =4 k=4,,5 k=4, k=99 k=x nothing=1 lambda=1,2 seed=1 preset=quick cpu=z80 time-limit=0 'k=4 k=5' "k='4'" \
     'k=1,2,3,4,5 n_fv=8,16,24,32' 'k=4 n_fv=8 n_fg=8 depth=9 octaves=2'; do
     sweep --lambda 1,2 --grid "$grid"
@@ -413,6 +443,80 @@ sweep --lambda 9 --dataset colmap --frames 0:9:2 --yardsticks none
 calls 1 1 "--dataset colmap --frames 0:9:2"
 tail -n 1 "$dir/evaluations" | grep -q -e "--dataset colmap --frames 0:9:2" || fail "evaluated otherwise: $(cat "$dir/evaluations")"
 
+# Parts of the stream of the middle lambda, 32000 bytes: bytes as its chunks tell, the whole as the run itself was measured, and
+# nothing where nothing can be drawn. A measurement that fails spoils nothing else, and is all that is left to do.
+# measured N: so many measurements of parts since the last look.
+measured()
+{
+    [ "$(grep -c -e '--json' "$dir/evaluations")" -eq "$1" ] || fail "expected $1 measurements: $(cat "$dir/evaluations")"
+    : >"$dir/evaluations"
+}
+out=$dir/portions
+touch "$dir/moving" "$dir/views" "$dir/broken"
+: >"$dir/evaluations"
+sweep --lambda 1,2,4 --yardsticks none
+[ $got -eq 3 ] && [ -s "$out/index.html" ] || fail "a part that cannot be measured: $got $(cat "$dir/err")"
+line '^lambda-2,layers,2,31164,33.0000,23.0000$' "$out/portions.csv"
+! grep -q '^lambda-2,tiers,1,' "$out/portions.csv" || fail "measured without memory"
+measured 6 # three runs, two layers, and the tier without memory
+rm "$dir/broken"
+sweep --lambda 1,2,4 --yardsticks none --resume
+[ $got -eq 0 ] || fail "portions: $(cat "$dir/err")"
+measured 10
+cat >"$dir/expected" <<'END'
+run,of,count,bytes,psnr,dynamic_psnr
+lambda-2,layers,1,30564,32.0000,22.0000
+lambda-2,layers,2,31164,33.0000,23.0000
+lambda-2,layers,3,32000,34.0000,24.0000
+lambda-2,tiers,1,31064,32.0000,22.0000
+lambda-2,tiers,2,32000,34.0000,24.0000
+lambda-2,percent,10,3200,,
+END
+for percent in 20 30 40 50 60 70 80 90 100; do
+    echo "lambda-2,percent,$percent,$((320 * percent)),34.0000,24.0000"
+done >>"$dir/expected"
+cmp "$dir/expected" "$out/portions.csv" || fail "parts: $(cat "$out/portions.csv")"
+printf 'run,camera,view,time,psnr,dynamic_psnr\n' >"$dir/expected"
+for view in "0,it's 0,0.000000,31" "0,it's 0,0.500000,32" "1,it's 1,0.000000,33" "1,it's 1,0.500000,34"; do
+    echo "lambda-2,$view.0000,2${view%%,*}.0000"
+done >>"$dir/expected"
+cmp "$dir/expected" "$out/views.csv" || fail "views: $(cat "$out/views.csv")"
+[ -z "$(find "$out" -name '*.part')" ] || fail "left behind: $(ls "$out")"
+if command -v jq >/dev/null; then
+    jq -e '.shown | .run == "lambda-2" and (.portions | length) == 15 and (.views | length) == 4 and
+           (.portions[] | select(.of == "percent" and .count == 10).psnr) == null and
+           (.portions[] | select(.of == "tiers" and .count == 1) | .bytes == 31064 and .dynamic_psnr == 22) and
+           .views[3].camera == 1' "$out/sweep.json" >/dev/null || fail "sweep.json: $(cat "$out/sweep.json")"
+fi
+# named FILE NAME...: the chart as a picture says all of these, and so does the page.
+named()
+{
+    chart=$1
+    shift
+    command -v gnuplot >/dev/null || return 0
+    [ -s "$out/$chart.pdf" ] || fail "no $chart.pdf"
+    for name; do
+        line ">$name<" "$out/$chart.svg"
+        line ">$name<" "$out/index.html"
+    done
+}
+named portions 'first layers' 'first tiers' 'first bytes of the file' 'first tiers, what moves' '100 %'
+named errors 'camera' 'it_s 1' 'PSNR, dB' 'PSNR of what moves, dB'
+line '^0.5 1 0.25 0.75 0.5 1.5 34$' "$out/errors.gp"
+sweep --lambda 1,2,4 --yardsticks none --resume
+measured 0
+sweep --lambda 1,2,4 --yardsticks none
+measured 15 # of streams that are made anew everything
+
+# One layer and one tier are no choice. Of one view of each camera the names tell.
+touch "$dir/flat"
+sed -i 's/0,0.5,32 1,0,33 1,0.5,34/1,0.5,32/' "$dir/adcgs-eval"
+sweep --lambda 1,2 --yardsticks none
+! grep -q 'layers,\|tiers,' "$out/portions.csv" && ! grep -q 'first layers' "$out/portions.gp" || fail "a choice of one"
+named portions 'first bytes of the file'
+named errors "it_s 0" "mean 31.50 dB" "mean 20.50 dB"
+rm "$dir/moving" "$dir/views" "$dir/flat"
+
 # All scenes by one command, before and after: a row for each that is there, with its own lambdas. Nothing is made twice.
 cat >"$dir/adcgs-demo-scene" <<'END'
 #!/bin/bash
@@ -466,4 +570,30 @@ line "of what moves'" "$dir/real/views.gp"
 # shellcheck disable=SC2086
 ./adcgs-enc "$dir/tiny" -o "$dir/whole.adcgs" --lambda 30 --seed 2 $small 2>"$dir/err" || fail "whole: $(cat "$dir/err")"
 cmp "$dir/whole.adcgs" "$dir/real/lambda-30-seed-2.adcgs" || fail "another stream from a shared beginning"
+
+# Parts are what adcgs-eval measures of so many layers and tiers, and of a file cut by other means; fewer tiers take the bytes of a
+# stream that has no more.
+./adcgs-sweep "$dir/tiny" -o "$dir/parts" --lambda 0.3 --yardsticks none --preset draft --iterations 60 --set n_fg=8 \
+    >"$dir/report" 2>"$dir/err" || fail "parts: $(cat "$dir/err")"
+stream=$dir/parts/lambda-0.3.adcgs
+# part PART COLUMN: of the table. same PART FILE OPTIONS...: the PSNR of a part is that of the file.
+part() { grep "^lambda-0.3,$1," "$dir/parts/portions.csv" | cut -d, "-f$2"; }
+same()
+{
+    part=$1 file=$2
+    shift 2
+    psnr=$(./adcgs-eval "$file" "$dir/tiny" --csv - "$@" | awk -F, '$1 == "mean" { printf "%.4f", $5 }')
+    [ "$(part "$part" 5)" = "$psnr" ] || fail "$part: $psnr dB, but $(cat "$dir/parts/portions.csv")"
+}
+same layers,2 "$stream" --layers 2
+same tiers,1 "$stream" --tiers 1
+./adcgs-info "$stream" --bytes $(($(wc -c <"$stream") - 1)) -o "$dir/cut.adcgs" || fail "cannot be cut"
+same tiers,1 "$dir/cut.adcgs"
+[ "$(part tiers,1 4)" -eq "$(wc -c <"$dir/cut.adcgs")" ] || fail "bytes of a tier: $(cat "$dir/parts/portions.csv")"
+head -c "$(part percent,60 4)" "$stream" >"$dir/prefix"
+same percent,60 "$dir/prefix" -q
+same percent,100 "$stream"
+[ "$(part percent,100 5)" = "$(awk -F, 'NR == 2 { print $8 }' "$dir/parts/sweep.csv")" ] || fail "the whole is another"
+awk -F, 'NR > 1 { bad += $2 == of && $4 <= bytes; of = $2; bytes = $4 } END { exit bad }' "$dir/parts/portions.csv" ||
+    fail "more is smaller: $(cat "$dir/parts/portions.csv")"
 exit 0
