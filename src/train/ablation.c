@@ -7,6 +7,7 @@ static void leave_out_anchors(adcgs_train_config *c)
 {
     c->start_anchors = (uint32_t)ADCGS_MIN((uint64_t)c->start_anchors * c->params.k, ADCGS_ANCHORS_MAX);
     c->max_anchors = (uint32_t)ADCGS_MIN((uint64_t)c->max_anchors * c->params.k, ADCGS_ANCHORS_MAX);
+    c->detail_anchors *= (float)c->params.k;
     c->params.k = c->params.chunks = 1;
     c->params.n_fg = 0;
 }
@@ -22,8 +23,10 @@ static void leave_out(adcgs_train_config *c, int bits)
     c->without_weight_steps = (bits & WEIGHT_STEPS) != 0;
     if (bits & ANCHORS)
         leave_out_anchors(c);
-    if (bits & REMOVAL)
+    if (bits & REMOVAL) {
         c->prune_units_at = c->decide_at = 2;
+        c->still_below = 0; /* what pictures do not change is found before */
+    }
     if (bits & DENSIFICATION)
         c->start_anchors = c->max_anchors;
 }

@@ -221,6 +221,7 @@ static void parts_are_left_out(void **state)
     assert_int_equal(adcgs_train_leave_out(&c, "anchors,densification,removal", &error), ADCGS_OK);
     assert_true(c.params.k == 1 && c.params.n_fg == 0 && c.max_anchors == 60000 && c.start_anchors == 60000);
     assert_true(c.without_densification && !c.without_rate && c.prune_units_at == 2 && c.decide_at == 2);
+    assert_true(c.still_below <= 0 && c.detail_anchors >= 6 * preset("slow").detail_anchors);
     assert_int_equal(adcgs_train_check(&c, &error), ADCGS_OK);
     expect_refused(adcgs_train_leave_out(&c, "fine,", &error), "cannot leave out ''");
 }
