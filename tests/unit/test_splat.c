@@ -100,12 +100,15 @@ static void evaluate_prediction(const adcgs_model *m, uint32_t anchor, int k, fl
 {
     const adcgs_net *net = &m->net[ADCGS_ROLE_PREDICTION];
     const adcgs_params *p = &m->params;
+    const uint32_t slots = p->k > 1 ? p->k : 0;
     for (uint32_t o = 0; o < net->layer[0].w.rows; o++) {
         float sum = adcgs_tensor_value(&net->layer[0].b, o);
         for (uint32_t i = 0; i < p->n_fv; i++)
             sum = fmaf(weight(&net->layer[0], o, i), (float)m->fv[(size_t)anchor * p->n_fv + i] * m->d_fv[i], sum);
+        if (slots)
+            sum += weight(&net->layer[0], o, p->n_fv + (uint32_t)k);
         for (uint32_t i = 0; i < p->n_fg; i++)
-            sum = fmaf(weight(&net->layer[0], o, p->n_fv + i),
+            sum = fmaf(weight(&net->layer[0], o, p->n_fv + slots + i),
                        valued(m, anchor, 2 + i / (p->n_fg / p->chunks), m->fg[((size_t)anchor * p->k + (size_t)k) * p->n_fg + i],
                               m->d_fg[i]), sum);
         out[o] = sum;
