@@ -204,7 +204,7 @@ static adcgs_train_config roomy_config(adcgs_train_target target, double value)
 {
     adcgs_train_config c = config_for(target, value);
     c.own_anchors = 1;
-    c.max_anchors = 400;
+    c.max_anchors = 800;
     return c;
 }
 
