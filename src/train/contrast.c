@@ -19,15 +19,17 @@ adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_erro
         ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
         for (size_t c = 0; c < 3; c++)
             for (size_t j = c * plane; j < (c + 1) * plane; j++) {
+                if (isnan(t->taken[j])) /* behind a mask, or beyond what a lens shows */
+                    continue;
                 sum[c] += (double)t->taken[j];
                 square += (double)t->taken[j] * (double)t->taken[j];
+                count += c == 0;
             }
-        count += (double)plane;
     }
     double about = 0;
     for (int c = 0; c < 3; c++)
-        about += sum[c] / count * (sum[c] / count);
-    *contrast = sqrt(fmax(square / count - about, 0) / 3);
+        about += sum[c] / fmax(count, 1) * (sum[c] / fmax(count, 1));
+    *contrast = sqrt(fmax(square / fmax(count, 1) - about, 0) / 3);
     return ADCGS_OK;
 }
 

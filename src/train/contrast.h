@@ -11,7 +11,10 @@
 /** Standard deviation of the training pictures' values at which the presets' lambda holds as it is. */
 #define ADCGS_CONTRAST_NOMINAL 0.22
 
-/** Of up to 64 of the training pictures that are loaded, evenly chosen, about their mean, the mean square of the channels. */
+/**
+ * Of up to 64 of the training pictures that are loaded, evenly chosen, about their mean, the mean square of the channels. What is
+ * behind masks has no part in it; 0 where all is.
+ */
 adcgs_status adcgs_contrast(const adcgs_trainer *t, double *contrast, adcgs_error *error);
 
 /**
