@@ -43,6 +43,8 @@ void adcgs_train_rates(const adcgs_train_config *c, adcgs_fmodel *f)
 float adcgs_train_rate(const adcgs_train_config *c, float first, float last, double progress)
 {
     const double from = (double)c->rates_fall_from;
+    if (!(first > 0)) /* what is not to learn */
+        return 0;
     return progress <= from ? first : first * powf(last / first, (float)((progress - from) / (1 - from)));
 }
 

@@ -23,6 +23,30 @@ static adcgs_trainer *make(const adcgs_train_config *config)
 
 /* ---- Steps ---- */
 
+/** A rate of 0 leaves a group what it is, and is no reason to give up. */
+static void what_does_not_learn_stays(void **state)
+{
+    adcgs_train_config config = small_config();
+    int stopped;
+    (void)state;
+    assert_int_equal(adcgs_train_set(&config, "learn_prediction=0", &error), ADCGS_OK);
+    for (int i = 0; i <= 10; i++)
+        assert_float_equal(adcgs_train_rate(&config, 0, 0, i / 10.0), 0, 0);
+    config.prune_units_at = config.prune_units_again = 2;
+    config.without_rounding = 1;
+    adcgs_trainer *t = make(&config);
+    const adcgs_param *p = &t->f->param[ADCGS_P_THETA];
+    float *before = calloc(p->n, sizeof *before);
+    memcpy(before, p->p, p->n * sizeof *before);
+    if (adcgs_trainer_run(t, NULL, NULL, &stopped, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(t->rollbacks, 0);
+    for (size_t i = 0; i < p->n; i++)
+        assert_float_equal(p->p[i], before[i], 1e-6); /* a mean of equal values may be off by a rounding */
+    free(before);
+    adcgs_trainer_free(&t);
+}
+
 /* ---- Points and pictures ---- */
 
 /** Pixels that are not known have no part in the contrast, and so none in lambda. */
@@ -50,6 +74,7 @@ static void contrast_is_of_what_is_known(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_does_not_learn_stays),
         cmocka_unit_test(contrast_is_of_what_is_known),
     };
     return cmocka_run_group_tests_name("recovery", tests, open_scene, close_scene);
