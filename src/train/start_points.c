@@ -16,6 +16,7 @@
 #define SPACING_LEAST (1 / 15.0f) /* of moments: in a long clip lives are shares of it, or there would be too many */
 #define FILM_LIVES 2.7f    /* times as long where each moment is seen from one place alone: more views show an anchor */
 #define FILM_FAR 0.4       /* within a clip, of the distance of cameras: what goes less far is found without lives */
+#define POINTS_LOOKED_AT 1000 /* for whether cameras see any */
 #define MOVING_MOST 2000   /* of a moment, that spans may grow from */
 
 /* ---- What the cameras see ---- */
@@ -116,6 +117,28 @@ void adcgs_start_points_clear(adcgs_start_points *c)
     adcgs_free(NULL, c->matched);
 }
 
+/** One of the scene's own points in scene units; 0 if it is too far off. */
+static int given_point(double x[3], const sight *s, uint32_t i)
+{
+    int far = 0;
+    for (int a = 0; a < 3; a++) {
+        x[a] = (s->scene->points.position[i][a] - s->origin[a]) / s->scale;
+        far |= !(fabs(x[a]) < 8);
+    }
+    return !far;
+}
+
+/** Whether a camera sees any of the scene's own points, of which so many are looked at. */
+static int sees_points(const sight *s, uint32_t most)
+{
+    const uint32_t n = ADCGS_MIN(s->scene->points.n, most);
+    double x[3];
+    for (uint32_t i = 0; i < n; i++)
+        if (given_point(x, s, (uint32_t)((uint64_t)i * s->scene->points.n / n)) && look_at(s, x).seen)
+            return 1;
+    return 0;
+}
+
 /** The scene's own points, in scene units, evenly thinned; those without a colour take that of the pictures. */
 static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
 {
@@ -124,12 +147,7 @@ static void given_points(adcgs_start_points *c, const sight *s, uint32_t wanted)
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t from = (uint32_t)((uint64_t)i * p->n / n);
         double x[3];
-        int far = 0;
-        for (int a = 0; a < 3; a++) {
-            x[a] = (p->position[from][a] - s->origin[a]) / s->scale;
-            far |= !(fabs(x[a]) < 8);
-        }
-        if (far)
+        if (!given_point(x, s, from))
             continue;
         const glimpse seen = p->coloured ? (glimpse){ 0 } : look_at(s, x);
         for (int a = 0; a < 3; a++) {
@@ -290,11 +308,18 @@ static adcgs_status find_points(adcgs_start_points *c, const sight *s, const adc
                                 const adcgs_stereo *found, adcgs_error *error)
 {
     const uint32_t all = config->start_anchors, moving = config->params.spans ? (uint32_t)(MOVING_SHARE * all) : 0;
-    given_points(c, s, has_points(s->scene) ? all - moving : all);
+    /* Nothing is learnt of what no camera sees. A part of a scene may be of another place than its points. */
+    const int given = has_points(s->scene) && sees_points(s, all);
+    if (has_points(s->scene) && !given && !s->scene->whole && !sees_points(s, POINTS_LOOKED_AT))
+        return adcgs_fail(error, ADCGS_ERR_DATA,
+                          "%s: no training camera sees any of the %u initial points: expected them in the poses' units and axes",
+                          s->scene->directory, s->scene->points.n);
+    if (given || !has_points(s->scene))
+        given_points(c, s, given ? all - moving : all);
     if (c->n >= ADCGS_POINTS_LEAST && !moving)
         return ADCGS_OK;
     matched_points(c, found, all, config->params.spans, adcgs_half_life(config, found));
-    if (has_points(s->scene))
+    if (given)
         return ADCGS_OK;
     random_points(c, s, found, config->start_anchors, config->seed);
     return c->n ? ADCGS_OK

@@ -49,6 +49,35 @@ static void what_does_not_learn_stays(void **state)
 
 /* ---- Points and pictures ---- */
 
+enum { POINTS = 100 };
+
+/** So many points about a place. */
+static void put_points(adcgs_scene *s, float at)
+{
+    assert_int_equal(adcgs_points_alloc(&s->points, POINTS, "points", &error), ADCGS_OK);
+    for (int i = 0; i < POINTS; i++)
+        for (int a = 0; a < 3; a++)
+            s->points.position[i][a] = at + 0.01f * (float)(i * (a + 1) % 10);
+}
+
+/** Points in other units than the poses' would be anchors that no picture says anything of. */
+static void points_that_no_camera_sees_are_refused(void **state)
+{
+    static const float places[] = { 0, 1000, -20, 1e30f };
+    const adcgs_train_config config = small_config();
+    (void)state;
+    for (size_t i = 0; i < ADCGS_COUNTOF(places); i++) {
+        adcgs_scene with = *scene;
+        adcgs_trainer *t;
+        put_points(&with, places[i]);
+        const adcgs_status status = adcgs_trainer_create(&t, &with, &config, adcgs_cpu_best(), pool, &error);
+        assert_int_equal(status, i ? ADCGS_ERR_DATA : ADCGS_OK);
+        assert_true(!i || strstr(error.text, "units")); /* of the points, or of what follows from them */
+        adcgs_trainer_free(&t);
+        adcgs_points_free(&with.points);
+    }
+}
+
 /** Pixels that are not known have no part in the contrast, and so none in lambda. */
 static void contrast_is_of_what_is_known(void **state)
 {
@@ -75,6 +104,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_does_not_learn_stays),
+        cmocka_unit_test(points_that_no_camera_sees_are_refused),
         cmocka_unit_test(contrast_is_of_what_is_known),
     };
     return cmocka_run_group_tests_name("recovery", tests, open_scene, close_scene);
