@@ -5,6 +5,7 @@
 #include "tools/enc_run.h"
 
 #include "io/json.h"
+#include "metric/metric.h"
 #include "model/model_priv.h"
 
 #include <math.h>
@@ -196,6 +197,18 @@ static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs
     return ADCGS_OK;
 }
 
+/** What the user would not know from figures alone. */
+static void remark(const adcgs_cli *cli, const adcgs_enc_watcher *w)
+{
+    const adcgs_trainer *t = w->t;
+    if (t->rollbacks)
+        adcgs_cli_note(cli, "training began to diverge; it went on from before, with half the learning rates%s",
+                       t->rollbacks > 1 ? ", more than once" : "");
+    if (adcgs_trainer_is_lost(t))
+        adcgs_cli_note(cli, "the training views are drawn with %.1f dB, where one colour for all would have %.1f: check %s",
+                       w->last.psnr, adcgs_psnr_from_mse(t->contrast * t->contrast), "poses, points and settings");
+}
+
 /** state: a checkpoint to go on from, or NULL. */
 static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char *state, adcgs_error *error)
 {
@@ -214,6 +227,7 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
         log_last(w);
     ADCGS_TRY(status);
     if (!stopped) {
+        remark(cli, w);
         log_decisions(w);
         return ADCGS_OK;
     }

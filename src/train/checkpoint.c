@@ -17,7 +17,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 29 };
+enum { FORMAT = 30 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -163,6 +163,7 @@ static void walk_scalars(walk *w, adcgs_trainer *t)
     visit(w, &t->rollbacks, sizeof t->rollbacks);
     visit(w, &t->mean_loss, sizeof t->mean_loss);
     visit(w, &t->mean_mse, sizeof t->mean_mse);
+    visit(w, &t->least_mse, sizeof t->least_mse);
     visit(w, t->mean_bits, sizeof t->mean_bits);
     visit(w, &t->elapsed, sizeof t->elapsed);
     visit(w, &t->decisions, sizeof t->decisions);

@@ -80,6 +80,7 @@ typedef struct adcgs_trainer {
     adcgs_rate_control rate_control;
     uint32_t rollbacks;
     double mean_loss, mean_mse;
+    double least_mse; /* the least that mean_mse has been; 0 before the first iteration */
     adcgs_time elapsed; /* of all programs that have had a part in the run */
     double mean_bits[ADCGS_GROUPS];
     adcgs_decisions decisions;

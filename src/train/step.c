@@ -190,6 +190,7 @@ adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *er
     const double keep = t->iteration < 100 ? 0.9 : 0.99;
     t->mean_loss = t->iteration ? keep * t->mean_loss + (1 - keep) * value.loss : value.loss;
     t->mean_mse = t->iteration ? keep * t->mean_mse + (1 - keep) * value.mse : value.mse;
+    t->least_mse = t->iteration ? fmin(t->least_mse, t->mean_mse) : t->mean_mse;
     for (int i = 0; rated && i < ADCGS_GROUPS; i++)
         t->mean_bits[i] = t->mean_bits[i] > 0 ? 0.95 * t->mean_bits[i] + 0.05 * rate.bits[i] : rate.bits[i];
     update(t, progress);

@@ -9,7 +9,12 @@
 
 #include <math.h>
 
-enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, ROLLBACKS_MAX = 4 };
+enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, ROLLBACKS_MAX = 4, MEANS_AFTER = 100 };
+/*
+ * LOST_BY: times the pictures' deviation, by which one colour for all of them is off. LOST_LEAST: of that deviation, since
+ * pictures of one colour have none. BLOWN_BY: times the least error that there was.
+ */
+static const double LOST_BY = 2, LOST_LEAST = 0.1, BLOWN_BY = 4;
 
 /** Whether every parameter is a number. A splat that is none vanishes from the pictures, so the loss alone may not tell. */
 static int is_finite(const adcgs_trainer *t)
@@ -31,6 +36,21 @@ static adcgs_status take_snapshot(adcgs_trainer *t, adcgs_error *error)
     return adcgs_trainer_store(t, &t->snapshot, error);
 }
 
+int adcgs_trainer_is_lost(const adcgs_trainer *t)
+{
+    const double off = LOST_BY * fmax(t->contrast, LOST_LEAST);
+    return t->mean_mse > off * off;
+}
+
+/**
+ * Whether steps were too long: pictures that were learnt are lost. Where nothing is drawn any more there are no gradients, and
+ * no way back but to an earlier state. In the beginning the means are of few pictures, which says little.
+ */
+static int is_blown(const adcgs_trainer *t)
+{
+    return t->iteration >= MEANS_AFTER && t->mean_mse > BLOWN_BY * t->least_mse && adcgs_trainer_is_lost(t);
+}
+
 /** NaN, infinity, or a loss far above what it was: go back to the last good state with smaller steps. */
 static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
 {
@@ -38,13 +58,13 @@ static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
     /* Also before what follows from the parameters is fixed: at the end, and when the stage changes. */
     const int due = t->iteration % CHECK_EVERY == 0 || progress >= 1 ||
                     adcgs_train_stage(&t->config, progress) != adcgs_train_stage(&t->config, before);
-    if (isfinite(t->mean_loss) && t->mean_loss <= 4 && (!due || is_finite(t)))
+    if (isfinite(t->mean_loss) && t->mean_loss <= 4 && !is_blown(t) && (!due || is_finite(t)))
         return t->iteration % SNAPSHOT_EVERY == 0 ? take_snapshot(t, error) : ADCGS_OK;
     const uint32_t rollbacks = t->rollbacks + 1;
     const float lr = t->lr_scale * 0.5f;
     if (rollbacks > ROLLBACKS_MAX)
         return adcgs_fail(error, ADCGS_ERR_DATA,
-                          "training diverged at iteration %u (loss %g) after %u rollbacks: check poses and exposure",
+                          "training diverged at iteration %u (loss %g) after %u rollbacks: check poses, exposure and settings",
                           t->iteration, t->mean_loss, t->rollbacks);
     ADCGS_TRY(adcgs_trainer_restore(t, t->snapshot.data, t->snapshot.size, error));
     t->rollbacks = rollbacks;

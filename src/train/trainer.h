@@ -29,6 +29,9 @@ typedef struct adcgs_train_report {
 /** Called often; return nonzero to stop training (a checkpoint can then be saved). */
 typedef int (*adcgs_train_observe)(void *user, const adcgs_train_report *report);
 
+/** Whether training views are drawn so badly that one colour for all of them would be much better: something went wrong. */
+int adcgs_trainer_is_lost(const adcgs_trainer *trainer);
+
 /** Train to the end, or (*stopped = 1) until observe says stop or lambda would have a say. */
 adcgs_status adcgs_trainer_run(adcgs_trainer *trainer, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error);
 

@@ -23,6 +23,24 @@ static adcgs_trainer *make(const adcgs_train_config *config)
 
 /* ---- Steps ---- */
 
+/** What blows the scene apart at once is found out and taken back, until steps are short enough. */
+static void lost_pictures_are_learnt_anew(void **state)
+{
+    static const char *const too_long[] = { "learn_prediction=100", "learn_motion=100", "learn_prediction=10" };
+    (void)state;
+    for (size_t i = 0; i < ADCGS_COUNTOF(too_long); i++) {
+        adcgs_train_config config = small_config();
+        assert_int_equal(adcgs_train_set(&config, too_long[i], &error), ADCGS_OK);
+        adcgs_trainer *t = make(&config);
+        int stopped;
+        if (adcgs_trainer_run(t, NULL, NULL, &stopped, &error) != ADCGS_OK)
+            fail_msg("%s: %s", too_long[i], error.text);
+        assert_true(i < 2 ? t->rollbacks > 0 : t->rollbacks == 0);
+        assert_true(!adcgs_trainer_is_lost(t));
+        adcgs_trainer_free(&t);
+    }
+}
+
 /** A rate of 0 leaves a group what it is, and is no reason to give up. */
 static void what_does_not_learn_stays(void **state)
 {
@@ -103,6 +121,7 @@ static void contrast_is_of_what_is_known(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lost_pictures_are_learnt_anew),
         cmocka_unit_test(what_does_not_learn_stays),
         cmocka_unit_test(points_that_no_camera_sees_are_refused),
         cmocka_unit_test(contrast_is_of_what_is_known),
