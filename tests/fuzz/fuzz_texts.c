@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Small files from outside that say what to do, and texts of command lines. The first byte says which: C a camera path, L a scene
+ * file of footage that is yet to come, P a script of the player, R requests for digests, A a table of another method, J the
+ * sweep.json of an earlier sweep, G a grid, F a range of frames, N frames per second, Y the first line of Y4M.
+ */
+#define _GNU_SOURCE
+
+#include "outside_file.h"
+
+#include "camera/path.h"
+#include "data/frames.h"
+#include "io/fps.h"
+#include "io/y4m_shape.h"
+#include "layouts/scene_file.h"
+#include "play/script.h"
+#include "sweep/sweep.h"
+#include "tools/answer.h"
+
+#include <math.h>
+#include <sys/stat.h>
+
+const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/texts", "tests/fuzz/regressions/texts", NULL };
+
+typedef adcgs_status reader(const char *path, adcgs_error *error);
+
+static adcgs_status read_camera_path(const char *path, adcgs_error *error)
+{
+    const adcgs_info info = { .time_start = 0, .time_end = 2, .frame_rate = 10 };
+    const adcgs_camera_path_request requests[] = { { .camera = path }, { .camera = path, .size = { 40, 30 } } };
+    adcgs_status status = ADCGS_OK;
+    for (size_t i = 0; i < ADCGS_COUNTOF(requests); i++) {
+        adcgs_camera_path frames = { .n = 0 };
+        status = adcgs_camera_path_read(&frames, &info, &requests[i], 0.01, error);
+        for (int j = 0; status == ADCGS_OK && j < frames.n; j++) {
+            FUZZ_REQUIRE(isfinite(frames.frame[j].time) && frames.frame[j].camera.width > 0 && frames.frame[j].camera.height > 0);
+            for (int a = 0; a < 12; a++)
+                FUZZ_REQUIRE(isfinite(frames.frame[j].camera.cam_to_world[a]));
+        }
+        adcgs_camera_path_free(&frames);
+    }
+    return status;
+}
+
+static adcgs_status read_sources(const char *path, adcgs_error *error)
+{
+    adcgs_source_camera *cameras = NULL;
+    uint32_t n = 0;
+    const adcgs_status status = adcgs_source_cameras_read(&cameras, &n, path, error);
+    FUZZ_REQUIRE(status != ADCGS_OK || (n > 0 && cameras));
+    adcgs_source_cameras_free(&cameras, n);
+    return status;
+}
+
+static adcgs_status read_script(const char *path, adcgs_error *error)
+{
+    adcgs_script script = { .n = 0 };
+    const adcgs_status status = adcgs_script_read(&script, path, error);
+    adcgs_script_clear(&script);
+    return status;
+}
+
+static adcgs_status read_requests(const char *path, adcgs_error *error)
+{
+    adcgs_requests requests = { .n = 0 };
+    const adcgs_status status = adcgs_requests_read(&requests, path, error);
+    for (int i = 0; status == ADCGS_OK && i < requests.n; i++)
+        FUZZ_REQUIRE(requests.request[i].kind != ADCGS_REQUEST_FRAME ||
+                     (requests.request[i].camera >= 0 && requests.request[i].camera < requests.n_cameras));
+    adcgs_requests_clear(&requests);
+    return status;
+}
+
+/** A plan is a megabyte; nothing but curves is added to it. */
+static adcgs_status read_curves(const char *path, int is_table, adcgs_error *error)
+{
+    adcgs_sweep_plan *plan = calloc(1, sizeof *plan);
+    char text[128];
+    FUZZ_REQUIRE(plan != NULL);
+    adcgs_status status;
+    if (is_table) {
+        snprintf(text, sizeof text, "other=%s", path);
+        status = adcgs_sweep_add_tables(plan, text, error);
+    } else {
+        snprintf(text, sizeof text, "%.*s", (int)(strrchr(path, '/') - path), path);
+        const adcgs_sweep sweep = { .scene = "data/robot", .directory = "/tmp/adcgs-none", .against = text };
+        status = adcgs_sweep_add_against(plan, &sweep, error);
+    }
+    FUZZ_REQUIRE(status != ADCGS_OK || (plan->n_curves == 1 && plan->curve[0].n > 0));
+    for (int i = 0; status == ADCGS_OK && i < plan->curve[0].n; i++)
+        FUZZ_REQUIRE(plan->curve[0].point[i].bytes.mean >= 1 && isfinite(plan->curve[0].point[i].psnr.mean));
+    adcgs_sweep_plan_clear(plan);
+    free(plan);
+    return status;
+}
+
+static adcgs_status read_table(const char *path, adcgs_error *error)
+{
+    return read_curves(path, 1, error);
+}
+
+static adcgs_status read_earlier(const char *path, adcgs_error *error)
+{
+    return read_curves(path, 0, error);
+}
+
+static const struct kind {
+    char letter;
+    const char *name;
+    reader *read;
+} kinds[] = {
+    { 'C', "path.json", read_camera_path }, { 'L', "scene.json", read_sources }, { 'P', "script", read_script },
+    { 'R', "requests", read_requests },     { 'A', "table.csv", read_table },    { 'J', "sweep.json", read_earlier },
+};
+
+static void check(adcgs_status status, const adcgs_error *error)
+{
+    FUZZ_REQUIRE(status == ADCGS_OK || (error->status == status && error->text[0] && !strchr(error->text, '\n')));
+}
+
+/** Texts that are no files: data ends with a zero byte. */
+static void parse_text(char letter, const char *text)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_frame_range range = { 0, 0, 0 };
+    adcgs_sweep_grid grid = { .n = 0 };
+    adcgs_y4m_shape shape;
+    adcgs_fps rate;
+    int64_t count;
+    if (letter == 'G') {
+        const adcgs_status status = adcgs_sweep_grid_parse(&grid, text, &error);
+        check(status, &error);
+        for (int i = 0; status == ADCGS_OK && i < ADCGS_MIN(adcgs_sweep_grid_count(&grid), 16); i++) {
+            char choice[ADCGS_SWEEP_CHOICE];
+            adcgs_sweep_grid_choice(choice, &grid, i);
+        }
+        if (status == ADCGS_OK)
+            check(adcgs_sweep_grid_check(&grid, "draft", NULL, &error), &error);
+    } else if (letter == 'F') {
+        const adcgs_status status = adcgs_frames_parse(&range, text, &error);
+        check(status, &error);
+        if (status == ADCGS_OK)
+            check(adcgs_frames_count(&range, 1000, &count, "fuzz", &error), &error);
+    } else if (letter == 'N') {
+        if (!adcgs_fps_parse(text, &rate))
+            FUZZ_REQUIRE(rate.num > 0 && rate.den > 0 && isfinite(adcgs_fps_value(rate)));
+    } else if (letter == 'Y') {
+        const adcgs_status status = adcgs_y4m_shape_parse(&shape, text, "fuzz.y4m", &error);
+        check(status, &error);
+        FUZZ_REQUIRE(status != ADCGS_OK || (shape.width > 0 && shape.height > 0 && shape.frame_bytes > 0));
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char folder[] = "/tmp/adcgs-fuzz-XXXXXX", path[64];
+    adcgs_error error = { ADCGS_OK, "" };
+    const char letter = size ? (char)*data : 'C';
+    const size_t bytes = size - (size > 0);
+    uint8_t *text = fuzz_file(data + (size > 0), bytes);
+    parse_text(letter, (const char *)text);
+    for (size_t i = 0; i < ADCGS_COUNTOF(kinds); i++) {
+        if (kinds[i].letter != letter)
+            continue;
+        FUZZ_REQUIRE(mkdtemp(folder));
+        snprintf(path, sizeof path, "%s/%s", folder, kinds[i].name);
+        write_outside_file(path, text, bytes);
+        check(kinds[i].read(path, &error), &error);
+        unlink(path);
+        rmdir(folder);
+    }
+    free(text);
+    return 0;
+}
