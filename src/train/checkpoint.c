@@ -10,6 +10,7 @@
 #include "data/content.h"
 #include "io/atomic.h"
 #include "io/file.h"
+#include "train/checkpoint_check.h"
 #include "train/settings.h"
 
 #include <stdarg.h>
@@ -277,6 +278,10 @@ static adcgs_status restore_anchors(walk *w, adcgs_trainer *t, adcgs_error *erro
     adcgs_status status = pos && source ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK) {
         visit(w, pos, n * sizeof *pos);
+        const char *const wrong = adcgs_checkpoint_check_places(t->f, (const uint32_t(*)[3])pos, n);
+        status = wrong ? adcgs_fail(error, ADCGS_ERR_DATA, "%s", wrong) : ADCGS_OK;
+    }
+    if (status == ADCGS_OK) {
         status = adcgs_fmodel_regroup(t->f, (const uint32_t(*)[3])pos, source, NULL, n, error);
     }
     adcgs_free(NULL, pos);
@@ -302,6 +307,9 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
     walk_begin(&w, t);
     if (w.failed || adcgs_reader_left(&reader))
         return adcgs_fail(error, ADCGS_ERR_DATA, "its length does not match its contents");
+    const char *const wrong = adcgs_checkpoint_check(t);
+    if (wrong)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s", wrong);
     adcgs_fmodel_take_steps(t->f);
     adcgs_trainer_prepare_networks(t);
     return ADCGS_OK;

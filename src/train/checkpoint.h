@@ -7,7 +7,8 @@
 
 /**
  * Checkpoints: everything needed to go on with identical results; atomic file, versioned, checksummed. Loading one saved with
- * other options or another scene, pictures included, is ADCGS_ERR_DATA, which says what differs; only lambda may be another
+ * other options or another scene, pictures included, is ADCGS_ERR_DATA, which says what differs, and
+ * so is one that no run can have left; only lambda may be another
  * while it has had no say, so that runs at several rates share their beginning, and without_weight_steps before weights are
  * rounded, so that its price can be told: the table of settings says from when on a run is bound to each.
  */

@@ -118,6 +118,59 @@ static void contrast_is_of_what_is_known(void **state)
     adcgs_trainer_free(&t);
 }
 
+/* ---- Checkpoints ---- */
+
+/** Spoil what a checkpoint of this run will hold; 0 if there is no such way. */
+static int spoil(adcgs_trainer *t, int way)
+{
+    adcgs_fmodel *f = t->f;
+    switch (way) {
+    case 0: t->curriculum.n = t->n_views + 1; break;
+    case 1: t->curriculum.last = f->params.time_rows; break;
+    case 2: t->curriculum.first = -1; break;
+    case 3: f->body[1] = (uint8_t)(f->params.bodies + 1); break;
+    case 4: f->tier[2] = (uint8_t)(f->finest + 1); break;
+    case 5: f->density[0] = 200; break;
+    case 6: f->growth[0] = 255; break;
+    case 7: f->pos[3][1] = 1U << f->shape.depth; break;
+    case 8: memcpy(f->pos[3], f->pos[2], sizeof f->pos[3]); break;
+    case 9: f->keep[5] = 0.5f; break;
+    case 10: f->moving[5] = NAN; break;
+    case 11: f->mlp[ADCGS_P_THETA].weight_step[0] = -1; break;
+    case 12: t->lr_scale = INFINITY; break;
+    case 13: t->lambda = NAN; break;
+    case 14: t->slimmed = 3; break;
+    case 15: t->frozen = 1; break;
+    case 16: t->elapsed.clock = -1; break;
+    default: return 0;
+    }
+    return 1;
+}
+
+/** What no run can have left is refused, as far as later stages would reach beyond an array for it. */
+static void impossible_checkpoints_are_refused(void **state)
+{
+    const adcgs_train_config config = small_config();
+    uint32_t stop = 30;
+    int stopped, way = 0, more = 1;
+    (void)state;
+    for (; more; way++) {
+        adcgs_trainer *t = make(&config), *other = make(&config);
+        adcgs_buffer bytes;
+        assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
+        more = spoil(t, way);
+        adcgs_buffer_init(&bytes);
+        assert_int_equal(adcgs_trainer_store(t, &bytes, &error), ADCGS_OK);
+        const adcgs_status status = adcgs_trainer_restore(other, bytes.data, bytes.size, &error);
+        if (status != (more ? ADCGS_ERR_DATA : ADCGS_OK))
+            fail_msg("way %d: %d", way, status);
+        adcgs_buffer_clear(&bytes);
+        adcgs_trainer_free(&t);
+        adcgs_trainer_free(&other);
+    }
+    assert_int_equal(way, 18);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -125,6 +178,7 @@ int main(void)
         cmocka_unit_test(what_does_not_learn_stays),
         cmocka_unit_test(points_that_no_camera_sees_are_refused),
         cmocka_unit_test(contrast_is_of_what_is_known),
+        cmocka_unit_test(impossible_checkpoints_are_refused),
     };
     return cmocka_run_group_tests_name("recovery", tests, open_scene, close_scene);
 }
