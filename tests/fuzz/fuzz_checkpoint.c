@@ -71,7 +71,7 @@ static void configure(adcgs_train_config *c, adcgs_error *error)
 static adcgs_trainer *make(adcgs_error *error)
 {
     adcgs_trainer *t;
-    FUZZ_REQUIRE(adcgs_trainer_create(&t, scene, &config, ADCGS_CPU_SCALAR, NULL, error) == ADCGS_OK);
+    FUZZ_REQUIRE(adcgs_trainer_create(&t, scene, &config, adcgs_cpu_best(), NULL, error) == ADCGS_OK);
     t->quantise = adcgs_encode_quantise_hook;
     return t;
 }
@@ -171,9 +171,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check(status, &error);
     if (status == ADCGS_OK)
         go_on(t);
-    if (status == ADCGS_OK) /* what a run leaves can be restored again, what a failure leaves need not */
-        FUZZ_REQUIRE(adcgs_trainer_restore(t, saved[0].data, saved[0].size, &error) == ADCGS_OK);
-    else if (!strstr(error.text, "saved with") && !strstr(error.text, "a checkpoint") && !strstr(error.text, "damaged"))
-        adcgs_trainer_free(&used);
+    /* What a run, or a failure, has left can be restored again. */
+    FUZZ_REQUIRE(adcgs_trainer_restore(t, saved[0].data, saved[0].size, &error) == ADCGS_OK);
     return 0;
 }
