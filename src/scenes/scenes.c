@@ -25,6 +25,9 @@
 #define MOTION_MAX 10.0
 #define NOISE_MAX 64.0
 #define NOISE_SEED 29
+#define ARC 0.39 /* turns, on which training's cameras stand */
+#define WATCH_MAX 1000
+#define ASIDE_MAX 0.5
 /* The layout wants the angle: 2 atan(1 / ADCGS_SCENES_FOCAL). */
 #define CAMERA_ANGLE_X "0.7610127542247298"
 
@@ -33,11 +36,15 @@ static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
 typedef struct view {
     adcgs_trace_camera camera;
     double time;
+    int number; /* of its camera */
 } view;
 
 typedef struct writer {
     adcgs_scenes_entry scene; /* as it is wanted */
     double noise;             /* of training's pictures, 1 is white */
+    int watch;                /* views for validation of one camera that stays */
+    double aside;             /* turns from the arc to the cameras for testing */
+    adcgs_spoil spoil;
     adcgs_trace_object objects[OBJECTS_MAX]; /* the scene's, with the motion that is wanted */
     const char *directory, *format;
     int width, height;
@@ -112,20 +119,21 @@ static view filmed_at(const adcgs_scenes_entry *scene, int split, int i, int wid
  * Training cameras stand on an arc of 140 degrees at three heights and take
  * turns: each moment is seen by some of them. The others stand between them, and the test looks between the times too.
  */
-static view view_at(const adcgs_scenes_entry *scene, int split, int i, int width)
+static view view_on_arc(const adcgs_scenes_entry *scene, int split, int i, int width)
 {
     static const double heights[3] = {0.050, 0.120, 0.085};
     static const double shift[ADCGS_SPLITS] = {0.0, 0.3, 0.5};
     const int steps = scene->times - 1, count = split_size(scene, split);
-    view v;
+    view v = {.time = 0.0};
     if (scene->swings > 0.0)
         return filmed_at(scene, split, i, width);
     if (split == ADCGS_SPLIT_TRAIN) {
         const int each = scene->cameras / scene->turns, moment = i / each;
         const int c = i % each * scene->turns + moment % scene->turns;
         v.time = steps > 0 ? (double)moment / steps : 0.0;
+        v.number = c;
         const double along = scene->cameras > 1 ? (double)c / (scene->cameras - 1) - 0.5 : 0.0;
-        place(&v.camera, scene, 0.39 * along, heights[(c + c / 3) % 3], width);
+        place(&v.camera, scene, ARC * along, heights[(c + c / 3) % 3], width);
         return v;
     }
     const double along = (i + shift[split]) / count;
@@ -133,6 +141,19 @@ static view view_at(const adcgs_scenes_entry *scene, int split, int i, int width
     const double moment = (double)(i * 7 % count) / count * steps;
     v.time = steps > 0 ? ((double)(int)moment + (split == ADCGS_SPLIT_TEST ? 0.5 : 0.0)) / steps : 0.0;
     place(&v.camera, scene, 0.36 * (along - 0.5), 0.065 + 0.040 * (double)(i * 3 % 5) / 4.0, width);
+    return v;
+}
+
+/* Those that are wanted of one camera that stays, or from far beside, are not where the scene has them. */
+static view view_at(const writer *w, int split, int i)
+{
+    view v = view_on_arc(&w->scene, split, i, w->width);
+    if (split == ADCGS_SPLIT_VAL && w->watch) {
+        v.time = (double)i / (w->watch - 1);
+        place(&v.camera, &w->scene, 0.02, 0.080, w->width);
+    } else if (split == ADCGS_SPLIT_TEST && w->aside > 0.0) {
+        place(&v.camera, &w->scene, 0.5 * ARC + w->aside, 0.065 + 0.040 * (double)(i * 3 % 5) / 4.0, w->width);
+    }
     return v;
 }
 
@@ -166,7 +187,9 @@ static void take_objects(writer *w, double motion)
         for (int c = 0; c < 3; c++) {
             o->velocity[c] *= factor;
             o->fade[c] *= factor;
+            o->slide[c] *= factor;
         }
+        o->zigs *= factor;
         o->beats *= factor;
         o->bounces *= factor;
         o->spin *= factor;
@@ -196,10 +219,21 @@ static void add_noise(const writer *w, int number)
     }
 }
 
+static adcgs_spoil_picture picture_of(const writer *w, const view *v, int i)
+{
+    const adcgs_spoil_picture picture = {.camera = v->number, .cameras = w->scene.cameras, .number = i, .width = w->width,
+                                         .time = v->time, .step = w->scene.times > 1 ? 1.0 / (w->scene.times - 1) : 0.0};
+    return picture;
+}
+
 static adcgs_status write_picture(writer *w, const view *v, int split, int i, const char *name)
 {
-    ADCGS_TRY(adcgs_trace_render(w->objects, w->scene.n_objects, &v->camera, v->time, w->width, w->height, SAMPLES, w->pool,
+    const adcgs_spoil_picture picture = picture_of(w, v, i);
+    const double time = split == ADCGS_SPLIT_TRAIN ? adcgs_spoil_time(&w->spoil, &picture) : v->time;
+    ADCGS_TRY(adcgs_trace_render(w->objects, w->scene.n_objects, &v->camera, time, w->width, w->height, SAMPLES, w->pool,
                                  w->pixels, w->error));
+    if (split == ADCGS_SPLIT_TRAIN)
+        adcgs_spoil_pixels(&w->spoil, &picture, w->pixels, (size_t)w->width * (size_t)w->height);
     if (split == ADCGS_SPLIT_TRAIN && w->noise > 0.0)
         add_noise(w, i);
     return write_pixels(w, name, w->format, 3);
@@ -230,27 +264,41 @@ static void print_frame(const writer *w, FILE *file, const view *v, const char *
 static adcgs_status write_view(writer *w, int split, int i, FILE *file)
 {
     char name[32], mask[64];
-    const view v = view_at(&w->scene, split, i, w->width);
+    const view v = view_at(w, split, i);
+    view said = v;
+    const adcgs_spoil_picture picture = picture_of(w, &v, i);
     const int has_mask = split != ADCGS_SPLIT_TRAIN && w->scene.moving;
     snprintf(name, sizeof name, "%s/r_%03d", split_names[split], i);
     snprintf(mask, sizeof mask, "%s_moving", name);
-    print_frame(w, file, &v, name, has_mask ? mask : NULL);
+    if (split == ADCGS_SPLIT_TRAIN)
+        adcgs_spoil_pose(&w->spoil, &picture, v.camera.focal, said.camera.to_world);
+    print_frame(w, file, &said, name, has_mask ? mask : NULL);
     ADCGS_TRY(write_picture(w, &v, split, i, name));
     return has_mask ? write_mask(w, &v, mask) : ADCGS_OK;
+}
+
+static int is_hidden(const writer *w, int split, int i)
+{
+    const view v = view_at(w, split, i);
+    const adcgs_spoil_picture picture = picture_of(w, &v, i);
+    return split == ADCGS_SPLIT_TRAIN && adcgs_spoil_hides(&w->spoil, &picture);
 }
 
 static adcgs_status write_frames(writer *w, int split, FILE *file)
 {
     const int n = split_size(&w->scene, split), total = count_pictures(&w->scene);
-    fprintf(file, "{\n  \"camera_angle_x\": " CAMERA_ANGLE_X ",\n  \"frames\": [\n");
+    int written = 0;
+    fprintf(file, "{\n  \"camera_angle_x\": " CAMERA_ANGLE_X ",\n  \"frames\": [");
     for (int i = 0; i < n; i++) {
-        ADCGS_TRY(write_view(w, split, i, file));
-        fprintf(file, i < n - 1 ? ",\n" : "\n");
+        if (!is_hidden(w, split, i)) {
+            fprintf(file, written++ ? ",\n" : "\n");
+            ADCGS_TRY(write_view(w, split, i, file));
+        }
         w->done++;
         if (w->progress)
             w->progress(w->user, w->done, total);
     }
-    fprintf(file, "  ]\n}\n");
+    fprintf(file, "\n  ]\n}\n");
     return ADCGS_OK;
 }
 
@@ -279,15 +327,28 @@ static adcgs_status take_counts(adcgs_scenes_entry *scene, const adcgs_scenes_op
     if (options->cameras && scene->swings > 0.0)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s is filmed by one camera: expected no number of cameras", scene->name);
     const int each = scene->cameras / scene->turns; /* see a moment */
-    if (options->cameras % each)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d cameras: of scene %s %d see each moment, expected a multiple of it",
+    if (options->cameras > each && options->cameras % each)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d cameras: of scene %s %d see each moment, expected a multiple, or fewer",
                           options->cameras, scene->name, each);
     if (options->cameras) {
         scene->cameras = options->cameras;
-        scene->turns = options->cameras / each;
+        scene->turns = ADCGS_MAX(options->cameras / each, 1);
     }
     if (options->moments)
         scene->times = options->moments;
+    if (options->watch)
+        scene->n_val = options->watch;
+    return ADCGS_OK;
+}
+
+static adcgs_status check_views(const adcgs_scenes_options *options, adcgs_error *error)
+{
+    if (options->watch && (options->watch < 2 || options->watch > WATCH_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: %d views to watch, expected 2..%d", options->watch, WATCH_MAX);
+    if (!(options->aside >= 0.0 && options->aside <= ASIDE_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: tests %g turns aside, expected 0..%g", options->aside, ASIDE_MAX);
+    if (!(options->noise >= 0.0 && options->noise <= NOISE_MAX))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: noise of %g levels, expected 0..%g", options->noise, NOISE_MAX);
     return ADCGS_OK;
 }
 
@@ -300,7 +361,8 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no scene is called \"%s\"", options->name);
     if (strcmp(format, "png") && strcmp(format, "ppm"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: format \"%s\", expected png or ppm", format);
-    writer w = {.scene = *scene, .noise = options->noise / 255.0, .directory = directory, .format = format,
+    writer w = {.scene = *scene, .noise = options->noise / 255.0, .watch = options->watch,
+                .aside = options->aside, .spoil = options->spoil, .directory = directory, .format = format,
                 .width = options->width ? options->width : scene->size, .height = options->height ? options->height : scene->size,
                 .pool = pool, .progress = progress, .user = user, .error = error};
     if (w.width < 1 || w.height < 1 || w.width > 16384 || w.height > 16384)
@@ -308,8 +370,7 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
     const double motion = options->motion != 0.0 ? options->motion : 1.0;
     if (!(motion >= MOTION_MIN && motion <= MOTION_MAX))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: motion %g, expected %g..%g", motion, MOTION_MIN, MOTION_MAX);
-    if (!(options->noise >= 0.0 && options->noise <= NOISE_MAX))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: noise of %g levels, expected 0..%g", options->noise, NOISE_MAX);
+    ADCGS_TRY(check_views(options, error));
     ADCGS_TRY(take_counts(&w.scene, options, error));
     take_objects(&w, motion);
     ADCGS_TRY(make_directory(directory, error));

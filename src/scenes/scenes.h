@@ -12,14 +12,18 @@
 #ifndef ADCGS_SCENES_SCENES_H
 #define ADCGS_SCENES_SCENES_H
 
-#include "base/pool.h"
+#include "scenes/spoil.h"
 
 typedef struct adcgs_scenes_options {
     const char *name;   /**< of the scene, see adcgs_scenes_name() */
     int width, height;  /**< of the pictures; 0: the scene's own size */
     const char *format; /**< extension of the pictures: "png" or "ppm"; NULL: "png" */
     int moments;        /**< that training's cameras see, 1 to 100000, in the same time; 0: the scene's own */
-    int cameras;        /**< for training, 1 to 1000, as many of which see a moment as otherwise; 0: the scene's own */
+    int cameras;        /**< for training, 1 to 1000, as many of which see a moment as otherwise, or all of them, if they are
+                             fewer; 0: the scene's own */
+    int watch;          /**< 0, or so many views for validation, 2 to 1000, one after the other, of one camera that stays */
+    double aside;       /**< 0, or so many turns, to 0.5, beside the last of training's cameras are those for testing */
+    adcgs_spoil spoil;  /**< what is wrong with training's pictures and cameras */
     double noise;       /**< levels of 255, 0 to 64: the deviation of what is added to each channel of training's pictures */
     double motion;      /**< 0.001 to 10: factor of all that moving objects do (speed, bounces, turns, orbits, change of colour)
                              and of the times from which they are there, so that 0.1 is a tenth of the motion; 0: 1 */

@@ -137,6 +137,64 @@ static const adcgs_trace_object drops[] = {
 };
 static const adcgs_trace_object split[] = {STILL, HALF(-1.0, 44), HALF(1.0, 45)};
 
+/* ---- What methods fail at, one difficulty each; how hard it is, their names or --motion say ---- */
+
+/* To and fro, as fast as it goes: twice the share of the picture's width in a clip for each zig. */
+#define ZIGZAG(share, up, times)                                                                                \
+    {PARCEL, .size = {0.24, 0.22, 0.24}, .position = {-0.5 * (share) * VISIBLE, -0.10, 0.24}, .seed = 81,      \
+     .zigzag = {(share) * VISIBLE, 0.0, up}, .zigs = (times)}
+#define BLINK(moments)                                                                                          \
+    {PARCEL, .size = {0.28, 0.24, 0.30}, .position = {0.0, 0.15, 0.62}, .seed = 82, .from = 11.75 / 23.0,       \
+     .until = (11.75 + (moments)) / 23.0}
+/* Upright, on a circle that turns; so many pixels of a picture that is 160 wide are as thick as they. */
+#define ROD(pixels, x, y)                                                                                       \
+    {.shape = ADCGS_SHAPE_CYLINDER, .size = {0.5 * (pixels) * VISIBLE / 160.0, 0.0, 0.45}, .position = {x, y, 0.77}, \
+     .colour = {{0.16, 0.10, 0.22}, {0.16, 0.10, 0.22}}, .orbit = {0.0, 0.15}, .orbit_turns = 0.3}
+#define RODS(pixels)                                                                                            \
+    ROD(pixels, 0.36, 0.15), ROD(pixels, 0.11, 0.49), ROD(pixels, -0.29, 0.36), ROD(pixels, -0.29, -0.06),      \
+        ROD(pixels, 0.11, -0.19)
+#define PANE(share, kind)                                                                                       \
+    {.shape = ADCGS_SHAPE_BALL, .size = {0.36}, .position = {-0.35, -0.50, 0.40}, .texture = ADCGS_TEXTURE_NOISE, \
+     .frequency = 4.0, .colour = {{0.70, 0.30, 0.35}, {0.90, 0.75, 0.55}}, .seed = 83, \
+     .velocity = {0.70, 0.0, 0.0}, .kind = (share)}
+#define FLAME(x, y, z, radius, speed, pulse, number)                                                            \
+    {.shape = ADCGS_SHAPE_BALL, .size = {radius}, .position = {x, y, z}, .texture = ADCGS_TEXTURE_NOISE, .frequency = 5.0, \
+     .colour = {{0.75, 0.15, 0.05}, {1.0, 0.85, 0.35}}, .seed = (number), .stretch = {-0.15, -0.15, 0.35}, .beats = (pulse), \
+     .slide = {0.2, 0.0, speed}, .glows = 1}
+
+static const adcgs_trace_object race[] = {STILL, ZIGZAG(0.80, 0.0, 1.0)};
+static const adcgs_trace_object bounce[] = {STILL, ZIGZAG(0.20, 0.5, 1.0)};
+static const adcgs_trace_object collide[] = {
+    STILL,
+    {PARCEL, .size = {0.20, 0.22, 0.24}, .position = {-0.85, -0.10, 0.24}, .seed = 84, .zigzag = {0.64, 0.0, 0.0}, .zigs = 1.0},
+    {PARCEL, .size = {0.20, 0.22, 0.24}, .position = {0.85, -0.10, 0.24}, .seed = 85, .zigzag = {-0.64, 0.0, 0.0}, .zigs = 1.0}};
+static const adcgs_trace_object merge[] = {
+    STILL,
+    {PARCEL, .size = {0.19, 0.24, 0.28}, .position = {-0.74, -0.10, 0.28}, .seed = 86, .zigzag = {0.55, 0.0, 0.0}, .zigs = 1.0},
+    {PARCEL, .size = {0.19, 0.24, 0.28}, .position = {0.74, -0.10, 0.28}, .seed = 87, .zigzag = {-0.55, 0.0, 0.0}, .zigs = 1.0}};
+static const adcgs_trace_object wall[] = {
+    STILL,
+    {.shape = ADCGS_SHAPE_BOX, .size = {0.42, 0.05, 0.42}, .position = {0.0, -0.55, 0.42}, .texture = ADCGS_TEXTURE_RINGS,
+     .frequency = 14.0, .colour = {{0.55, 0.60, 0.50}, {0.30, 0.36, 0.42}}, .seed = 88},
+    CROSSING(0.50)};
+static const adcgs_trace_object blink1[] = {STILL, PEDESTAL, BLINK(1)};
+static const adcgs_trace_object blink2[] = {STILL, PEDESTAL, BLINK(2)};
+static const adcgs_trace_object blink5[] = {STILL, PEDESTAL, BLINK(5)};
+static const adcgs_trace_object rods4[] = {STILL, PEDESTAL, RODS(4.0)};
+static const adcgs_trace_object rods2[] = {STILL, PEDESTAL, RODS(2.0)};
+static const adcgs_trace_object rods1[] = {STILL, PEDESTAL, RODS(1.0)};
+static const adcgs_trace_object slide[] = {
+    STILL, {PARCEL, .size = {0.34, 0.28, 0.34}, .position = {0.0, -0.10, 0.34}, .seed = 89, .slide = {0.25, 0.0, 0.10}}};
+static const adcgs_trace_object glass30[] = {STILL, PANE(0.3, clear)};
+static const adcgs_trace_object glass60[] = {STILL, PANE(0.6, clear)};
+static const adcgs_trace_object glass90[] = {STILL, PANE(0.9, clear)};
+static const adcgs_trace_object mirror30[] = {STILL, PANE(0.3, mirror)};
+static const adcgs_trace_object mirror60[] = {STILL, PANE(0.6, mirror)};
+static const adcgs_trace_object mirror90[] = {STILL, PANE(0.9, mirror)};
+static const adcgs_trace_object fire[] = {
+    STILL, PEDESTAL, FLAME(0.0, 0.15, 0.66, 0.28, 2.0, 5.0, 91), FLAME(-0.16, 0.05, 0.52, 0.20, 2.6, 7.0, 92),
+    FLAME(0.17, 0.10, 0.54, 0.21, 2.3, 6.0, 93)};
+
 /* The last `movers` of an array move. 11 views for testing: none is at the very moment at which a thing appears. */
 #define MOVING(things, movers)                                                                                  \
     .objects = things, .n_objects = (int)ADCGS_COUNTOF(things),                                                 \
@@ -185,6 +243,25 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "film-demo", .about = "demo filmed so", .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage),
      .moving = HOP | SPIN | PASS | FADE | ORBIT, .size = 256, .cameras = 1, .times = 120, .turns = 1, .swings = 2.0, .n_val = 9,
      .n_test = 22, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},
+    {.name = "race", .about = "a box goes to and fro over 80 % of the picture's width", MOVING(race, 1)},
+    {.name = "bounce", .about = "a box goes up a ramp and back, with sharp turns", MOVING(bounce, 1)},
+    {.name = "collide", .about = "two boxes meet and go back", MOVING(collide, 2)},
+    {.name = "merge", .about = "two halves become one box, and part again", MOVING(merge, 2)},
+    {.name = "wall", .about = "a box passes behind a wall", MOVING(wall, 1)},
+    {.name = "blink1", .about = "a box is there for one moment", MOVING(blink1, 1)},
+    {.name = "blink2", .about = "for two", MOVING(blink2, 1)},
+    {.name = "blink5", .about = "for five", MOVING(blink5, 1)},
+    {.name = "rods4", .about = "five upright rods go round; each is four pixels thick", MOVING(rods4, 5)},
+    {.name = "rods2", .about = "two pixels", MOVING(rods2, 5)},
+    {.name = "rods1", .about = "one pixel", MOVING(rods1, 5)},
+    {.name = "slide", .about = "a box stays, and its pattern moves over it", MOVING(slide, 1)},
+    {.name = "glass30", .about = "a moving ball whose sides let 30 % of the light through", MOVING(glass30, 1)},
+    {.name = "glass60", .about = "60 %", MOVING(glass60, 1)},
+    {.name = "glass90", .about = "90 %", MOVING(glass90, 1)},
+    {.name = "mirror30", .about = "a moving ball that reflects 30 % of the light", MOVING(mirror30, 1)},
+    {.name = "mirror60", .about = "60 %", MOVING(mirror60, 1)},
+    {.name = "mirror90", .about = "90 %", MOVING(mirror90, 1)},
+    {.name = "fire", .about = "a fire that flickers", MOVING(fire, 3)},
     {.name = "clip", .about = "ten seconds: things move, one comes, one goes, a lamp is switched on",
      .objects = clip, .n_objects = (int)ADCGS_COUNTOF(clip), .moving = 0xf << (ADCGS_COUNTOF(clip) - 4), .size = 128,
      .cameras = 12, .times = 300, .turns = 3, .n_val = 5, .n_test = 29, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},

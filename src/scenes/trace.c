@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Rays against shapes, and the light on what they hit. */
+/** \file Things at one moment, rays among them, and the light on what these hit. */
 #include "scenes/trace.h"
 
 #include "camera/rotation.h"
+#include "scenes/shapes.h"
 #include "scenes/sine.h"
 #include "scenes/texture.h"
 
 #include <math.h>
 
 #define SAMPLES_MAX 8
-#define FAR 1e30
+#define DEPTH_MAX 6 /* surfaces that a ray goes through or comes back from, and the last */
 
 /* An object at one moment. */
 typedef struct pose {
     double centre[3];
     double axes[9]; /* rows are the local axes in the world */
     double stretch[3]; /* along these */
+    double slide[3];   /* how far its texture has gone */
     double fade;
     double bound2;  /* squared radius of a ball around it; negative: it is not there, or not seen */
     int shines;     /* as a lamp */
@@ -34,7 +36,7 @@ typedef struct job {
 typedef struct hit {
     double t;
     int object;
-    double local[3], normal[3]; /* normal in local axes, not turned towards the ray */
+    double painted[3], normal[3]; /* where its texture is looked up; the normal in local axes, not turned towards the ray */
 } hit;
 
 void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const double target[3])
@@ -50,6 +52,13 @@ static void rotate(double v[3], const double axis[3], double turns)
     adcgs_v3_rotate(axis, adcgs_trace_sin(turns), adcgs_trace_cos(turns), v);
 }
 
+/* To 1 and back, in straight lines: 0 at whole numbers, 1 between them. */
+static double there_and_back(double x)
+{
+    const double f = 2.0 * (x - (double)(int)x);
+    return f <= 1.0 ? f : 2.0 - f;
+}
+
 static void pose_at(pose *out, const adcgs_trace_object *o, double time)
 {
     static const double x_axis[3] = {1.0, 0.0, 0.0};
@@ -59,7 +68,8 @@ static void pose_at(pose *out, const adcgs_trace_object *o, double time)
             axis[i] = a == i ? 1.0 : 0.0;
         rotate(axis, x_axis, o->tilt);
         rotate(axis, o->spin_axis, o->spin * time);
-        out->centre[a] = o->position[a] + o->velocity[a] * time;
+        out->centre[a] = o->position[a] + o->velocity[a] * time + o->zigzag[a] * there_and_back(o->zigs * time);
+        out->slide[a] = o->slide[a] * time;
     }
     if (o->bounces > 0.0) {
         const double phase = o->bounces * time, f = phase - (double)(int)phase;
@@ -81,91 +91,6 @@ static void pose_at(pose *out, const adcgs_trace_object *o, double time)
     const int is_there = time >= o->from && (o->until == 0.0 || time < o->until), is_lamp = o->shape == ADCGS_SHAPE_LAMP;
     out->bound2 = !is_there || is_lamp ? -1.0 : longest * longest * (o->shape == ADCGS_SHAPE_BOX ? box2 : round2);
     out->shines = is_there && is_lamp;
-}
-
-/* Smallest t > 0 of the ray in local coordinates, with the normal there; FAR if none. */
-static double hit_ball(const double o[3], const double d[3], double radius, double normal[3])
-{
-    const double a = adcgs_v3_dot(d, d), b = adcgs_v3_dot(o, d), q = b * b - a * (adcgs_v3_dot(o, o) - radius * radius);
-    if (q < 0.0)
-        return FAR;
-    const double root = sqrt(q), t = (-b - root > 0.0 ? -b - root : -b + root) / a;
-    if (t <= 0.0)
-        return FAR;
-    for (int i = 0; i < 3; i++)
-        normal[i] = (o[i] + t * d[i]) / radius;
-    return t;
-}
-
-static double hit_box(const double o[3], const double d[3], const double half[3], double normal[3])
-{
-    double enter = -FAR, leave = FAR;
-    int axis = 0;
-    for (int i = 0; i < 3; i++) {
-        const double slope = d[i] != 0.0 ? 1.0 / d[i] : FAR, middle = -o[i] * slope;
-        const double reach = half[i] * (slope < 0.0 ? -slope : slope);
-        if (middle - reach > enter) {
-            enter = middle - reach;
-            axis = i;
-        }
-        leave = ADCGS_MIN(leave, middle + reach);
-    }
-    if (enter >= leave || enter <= 0.0)
-        return FAR;
-    normal[0] = normal[1] = normal[2] = 0.0;
-    normal[axis] = d[axis] > 0.0 ? -1.0 : 1.0;
-    return enter;
-}
-
-static double hit_cylinder(const double o[3], const double d[3], const double size[3], double normal[3])
-{
-    const double radius = size[0], half = size[2];
-    const double a = d[0] * d[0] + d[1] * d[1], b = o[0] * d[0] + o[1] * d[1];
-    const double q = b * b - a * (o[0] * o[0] + o[1] * o[1] - radius * radius);
-    if (q >= 0.0 && a > 1e-12) {
-        const double t = (-b - sqrt(q)) / a, z = o[2] + t * d[2];
-        if (t > 0.0 && z >= -half && z <= half) {
-            normal[0] = (o[0] + t * d[0]) / radius;
-            normal[1] = (o[1] + t * d[1]) / radius;
-            normal[2] = 0.0;
-            return t;
-        }
-    }
-    if (d[2] == 0.0)
-        return FAR;
-    const double cap = d[2] < 0.0 ? half : -half, t = (cap - o[2]) / d[2];
-    const double x = o[0] + t * d[0], y = o[1] + t * d[1];
-    if (t <= 0.0 || x * x + y * y > radius * radius)
-        return FAR;
-    normal[0] = normal[1] = 0.0;
-    normal[2] = d[2] < 0.0 ? 1.0 : -1.0;
-    return t;
-}
-
-static double hit_floor(const double o[3], const double d[3], double radius, double normal[3])
-{
-    if (d[2] == 0.0)
-        return FAR;
-    const double t = -o[2] / d[2], x = o[0] + t * d[0], y = o[1] + t * d[1];
-    if (t <= 0.0 || x * x + y * y > radius * radius)
-        return FAR;
-    normal[0] = normal[1] = 0.0;
-    normal[2] = 1.0;
-    return t;
-}
-
-static double hit_shape(const adcgs_trace_object *object, const double o[3], const double d[3], double normal[3])
-{
-    switch (object->shape) {
-    case ADCGS_SHAPE_BOX:
-        return hit_box(o, d, object->size, normal);
-    case ADCGS_SHAPE_CYLINDER:
-        return hit_cylinder(o, d, object->size, normal);
-    case ADCGS_SHAPE_FLOOR:
-        return hit_floor(o, d, object->size[0], normal);
-    default:
-        return hit_ball(o, d, object->size[0], normal);
-    }
 }
 
 /* Does the ray pass through the ball around the object, in front of its origin? */
@@ -193,12 +118,12 @@ static double hit_object(const job *j, int i, const double from[3], const double
         relative[a] = from[a] - at->centre[a];
     to_local(at, relative, o);
     to_local(at, direction, d);
-    const double t = hit_shape(&j->objects[i], o, d, normal);
+    const double t = adcgs_shapes_hit(&j->objects[i], o, d, normal);
     if (t < out->t) {
         out->t = t;
         out->object = i;
         for (int a = 0; a < 3; a++) {
-            out->local[a] = o[a] + t * d[a];
+            out->painted[a] = o[a] + t * d[a] - at->slide[a];
             out->normal[a] = normal[a] / at->stretch[a];
         }
         adcgs_v3_normalise(out->normal);
@@ -206,12 +131,17 @@ static double hit_object(const job *j, int i, const double from[3], const double
     return t;
 }
 
+static int casts_shadow(const adcgs_trace_object *object)
+{
+    return object->shape < ADCGS_SHAPE_FLOOR && !object->glows && object->clear < 0.5;
+}
+
 static int in_shadow(const job *j, const double point[3], const double light[3])
 {
     for (int i = 0; i < j->n; i++) {
-        hit h = {.t = FAR};
-        if (j->objects[i].shape < ADCGS_SHAPE_FLOOR && near_object(&j->poses[i], point, light) &&
-            hit_object(j, i, point, light, &h) < FAR)
+        hit h = {.t = ADCGS_SHAPES_FAR};
+        if (casts_shadow(&j->objects[i]) && near_object(&j->poses[i], point, light) &&
+            hit_object(j, i, point, light, &h) < ADCGS_SHAPES_FAR)
             return 1;
     }
     return 0;
@@ -220,8 +150,8 @@ static int in_shadow(const job *j, const double point[3], const double light[3])
 static void surface_colour(const job *j, const hit *h, double colour[3])
 {
     const adcgs_trace_object *const o = &j->objects[h->object];
-    const double mix = adcgs_texture_mix(o, h->local);
-    const double fine[3] = {h->local[0] * 9.0, h->local[1] * 9.0, h->local[2] * 9.0};
+    const double mix = adcgs_texture_mix(o, h->painted);
+    const double fine[3] = {h->painted[0] * 9.0, h->painted[1] * 9.0, h->painted[2] * 9.0};
     const double grain = o->detail > 0.0 ? 1.0 + o->detail * (adcgs_texture_noise(fine, o->seed + 77u) - 0.5) : 1.0;
     for (int c = 0; c < 3; c++)
         colour[c] = (o->colour[0][c] + (o->colour[1][c] - o->colour[0][c]) * mix + o->fade[c] * j->poses[h->object].fade) * grain;
@@ -240,17 +170,23 @@ static double lamp_light(const adcgs_trace_object *lamp, const pose *at, const d
     return facing > 0.0 ? 0.45 * facing / sqrt(square) / (1.0 + share * share) : 0.0;
 }
 
+/* Of what is hit, in the world. */
+static void turn_normal(const job *j, const hit *h, double normal[3])
+{
+    const pose *const at = &j->poses[h->object];
+    for (int i = 0; i < 3; i++)
+        normal[i] = at->axes[i] * h->normal[0] + at->axes[3 + i] * h->normal[1] + at->axes[6 + i] * h->normal[2];
+}
+
 static void shade(const job *j, const hit *h, const double from[3], const double direction[3], int sample, double colour[3])
 {
     static const double fill[3] = {-0.64, -0.48, 0.6};
     surface_colour(j, h, colour);
-    if (j->objects[h->object].shape == ADCGS_SHAPE_DOME)
+    if (j->objects[h->object].shape == ADCGS_SHAPE_DOME || j->objects[h->object].glows)
         return;
-    const pose *const at = &j->poses[h->object];
     const double *const light = j->light[sample];
     double normal[3], point[3];
-    for (int i = 0; i < 3; i++)
-        normal[i] = at->axes[i] * h->normal[0] + at->axes[3 + i] * h->normal[1] + at->axes[6 + i] * h->normal[2];
+    turn_normal(j, h, normal);
     for (int i = 0; i < 3; i++)
         point[i] = from[i] + h->t * direction[i] + 1e-6 * normal[i];
     const double key = adcgs_v3_dot(normal, light), side = adcgs_v3_dot(normal, fill);
@@ -266,7 +202,7 @@ static void shade(const job *j, const hit *h, const double from[3], const double
 
 static hit trace_ray(const job *j, const double from[3], const double direction[3])
 {
-    hit nearest = {.t = FAR};
+    hit nearest = {.t = ADCGS_SHAPES_FAR};
     for (int i = 0; i < j->n; i++)
         if (near_object(&j->poses[i], from, direction))
             hit_object(j, i, from, direction, &nearest);
@@ -285,6 +221,48 @@ static void aim(const job *j, int x, int y, int k, double direction[3])
     adcgs_v3_normalise(direction);
 }
 
+/* Its tongues have an edge. */
+static double gaps_of_flame(double mix)
+{
+    const double x = (0.62 - mix) / 0.24;
+    return x <= 0.0 ? 0.0 : x >= 1.0 ? 1.0 : x;
+}
+
+/* The share of the light that comes from beyond, or out of the mirror; the ray goes on from there. */
+static double go_on(const job *j, const hit *h, double from[3], double direction[3])
+{
+    const adcgs_trace_object *const o = &j->objects[h->object];
+    const double through = o->glows ? gaps_of_flame(adcgs_texture_mix(o, h->painted)) : o->clear;
+    double normal[3];
+    for (int i = 0; i < 3; i++)
+        from[i] += (h->t + (o->mirror > 0.0 ? 0.0 : 1e-6)) * direction[i];
+    if (o->mirror == 0.0)
+        return through;
+    turn_normal(j, h, normal);
+    const double along = adcgs_v3_dot(direction, normal);
+    for (int i = 0; i < 3; i++) {
+        from[i] += 1e-6 * normal[i];
+        direction[i] -= 2.0 * along * normal[i];
+    }
+    return o->mirror;
+}
+
+static void trace_colour(const job *j, const double eye[3], const double towards[3], int sample, double colour[3])
+{
+    double from[3] = {eye[0], eye[1], eye[2]}, direction[3] = {towards[0], towards[1], towards[2]}, weight = 1.0;
+    for (int depth = 0; depth < DEPTH_MAX && weight > 0.0; depth++) {
+        const hit nearest = trace_ray(j, from, direction);
+        double own[3];
+        if (nearest.t >= ADCGS_SHAPES_FAR)
+            return;
+        shade(j, &nearest, from, direction, sample, own);
+        const double share = go_on(j, &nearest, from, direction);
+        for (int c = 0; c < 3; c++)
+            colour[c] += weight * (1.0 - share) * own[c];
+        weight *= share;
+    }
+}
+
 static void colour_row(void *arg, int y, int thread)
 {
     const job *const j = arg;
@@ -296,9 +274,7 @@ static void colour_row(void *arg, int y, int thread)
         for (int k = 0; k < s * s; k++) {
             double direction[3], colour[3] = {0.0, 0.0, 0.0};
             aim(j, x, y, k, direction);
-            const hit nearest = trace_ray(j, eye, direction);
-            if (nearest.t < FAR)
-                shade(j, &nearest, eye, direction, k, colour);
+            trace_colour(j, eye, direction, k, colour);
             for (int c = 0; c < 3; c++)
                 sum[c] += colour[c];
         }
@@ -322,7 +298,7 @@ static void cover_row(void *arg, int y, int thread)
             double direction[3];
             aim(j, x, y, k, direction);
             const hit nearest = trace_ray(j, eye, direction);
-            covered += nearest.t < FAR && (j->which >> nearest.object & 1);
+            covered += nearest.t < ADCGS_SHAPES_FAR && (j->which >> nearest.object & 1);
         }
         j->out[(size_t)y * (size_t)j->width + (size_t)x] = 2 * covered >= samples ? 1.0f : 0.0f;
     }

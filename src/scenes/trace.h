@@ -43,6 +43,11 @@ typedef struct adcgs_trace_object {
     double spin_axis[3], spin;   /**< unit axis, turns per unit of time */
     double orbit[2], orbit_turns; /**< circle about the point orbit (x, y) in turns per unit of time */
     double stretch[3], beats;    /**< soft: its size along local axes times 1 + stretch sin(beats time), its texture with it */
+    double zigzag[3], zigs;      /**< to there and back in straight lines, so many times per unit of time, with sharp turns */
+    double slide[3];             /**< of its texture over it while itself it stays, units per unit of time */
+    double clear;                /**< glass: the share of what is behind that is seen through each of its sides, not bent */
+    double mirror;               /**< the share of what it reflects */
+    int glows;                   /**< fire: shines by itself, casts no shadow; it has gaps where its texture's mix is small */
     double fade[3];              /**< added to both colours by time 1, smoothly */
     double from;                 /**< before this time it is not there */
     double until;                /**< nor is it from this time on; 0: it stays */

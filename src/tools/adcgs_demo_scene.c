@@ -13,9 +13,9 @@ static void show(void *user, int done, int total)
 int main(int argc, char **argv)
 {
     static const char *const formats[] = {"png", "ppm", NULL};
-    const char *scene = "demo", *directory = "demo-scene";
-    int size[2] = {0, 0}, moments = 0, cameras = 0, format = 0, threads = 0, list = 0, quiet = 0, first = 0;
-    double motion = 1.0, noise = 0.0;
+    const char *scene = "demo", *directory = "demo-scene", *spoil = NULL;
+    int size[2] = {0, 0}, moments = 0, cameras = 0, watch = 0, format = 0, threads = 0, list = 0, quiet = 0, first = 0;
+    double motion = 1.0, noise = 0.0, aside = 0.0;
     const adcgs_option options[] = {
         {.name = "scene", .kind = ADCGS_OPTION_STRING, .target = &scene, .value = "NAME", .help = "which scene (default: demo)"},
         {.name = "size", .kind = ADCGS_OPTION_PAIR, .target = size, .min = 1, .max = 16384, .value = "WxH",
@@ -28,6 +28,13 @@ int main(int argc, char **argv)
          .help = "cameras for training (default: the scene's own)"},
         {.name = "noise", .kind = ADCGS_OPTION_REAL, .target = &noise, .min = 0.0, .max = 64.0, .value = "LEVELS",
          .help = "deviation of noise in training's pictures, of 255\nlevels (default: 0)"},
+        {.name = "spoil", .kind = ADCGS_OPTION_STRING, .target = &spoil, .value = "NAME=X,...",
+         .help = "spoil training's views, each by so much: exposure,\nwhite, step, pose, shake, wrongpose, axes, sync,\n"
+                 "drop, twice, before, inside, after"},
+        {.name = "watch", .kind = ADCGS_OPTION_INT, .target = &watch, .min = 2, .max = 1000, .value = "N",
+         .help = "views for validation: N, one after the other, of one\ncamera that stays"},
+        {.name = "aside", .kind = ADCGS_OPTION_REAL, .target = &aside, .min = 0.0, .max = 0.5, .value = "TURNS",
+         .help = "test from so far beside the last of training's\ncameras (default 0: from among them)"},
         {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &directory, .value = "DIR",
          .help = "folder to write (default: demo-scene)"},
         {.name = "format", .kind = ADCGS_OPTION_CHOICE, .target = &format, .value = "FORMAT", .choices = formats,
@@ -52,8 +59,10 @@ int main(int argc, char **argv)
         return adcgs_cli_leave(&cli, 0);
     adcgs_pool *pool = NULL;
     adcgs_progress progress;
-    const adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .moments = moments,
-                                         .cameras = cameras, .noise = noise, .format = formats[format], .motion = motion};
+    adcgs_scenes_options wanted = {.name = scene, .width = size[0], .height = size[1], .moments = moments, .cameras = cameras,
+                                   .watch = watch, .aside = aside, .noise = noise, .format = formats[format], .motion = motion};
+    if (adcgs_spoil_parse(&wanted.spoil, spoil, &error) != ADCGS_OK)
+        return adcgs_cli_fail(&cli, &error);
     if (adcgs_pool_create(&pool, threads, &error) != ADCGS_OK)
         return adcgs_cli_fail(&cli, &error);
     adcgs_progress_init(&progress, &cli);

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Where a ray meets a shape. */
+#ifndef ADCGS_SCENES_SHAPES_H
+#define ADCGS_SCENES_SHAPES_H
+
+#include "scenes/trace.h"
+
+#define ADCGS_SHAPES_FAR 1e30
+
+/** Smallest t > 0 at which the ray o + t d meets the object, in its local coordinates, and the normal there; ADCGS_SHAPES_FAR if
+    nowhere. */
+double adcgs_shapes_hit(const adcgs_trace_object *object, const double o[3], const double d[3], double normal[3]);
+
+#endif
