@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-2-Clause
+# Runs of the failure suite, to be read with `.` in the build folder, after classes.sh: a scene, its stream, what is measured of it.
+#   STABILITY   folder of all of it (default stability)
+#   ITERATIONS  of training (default 800)
+stability=${STABILITY:-stability}
+iterations=${ITERATIONS:-800}
+common="--size 96x96 --moments 24 --watch 24 --format ppm --threads 1 -q"
+
+# field N LINE: of a class.
+field() { printf '%s\n' "$2" | cut -d '|' -f "$1"; }
+
+# options_of OPTIONS STRENGTH: of adcgs-demo-scene.
+options_of()
+{
+    if [ "$2" = 0 ]; then
+        printf '%s\n' "$1" | sed 's/ --\(spoil\|noise\|aside\) [^ ]*@//; s/@/0/'
+    else
+        printf '%s\n' "$1" | sed "s/@/$2/"
+    fi
+}
+
+# run_name OPTIONS: of a scene's folder; scenes made alike are one.
+run_name() { printf '%s\n' "$1" | sed 's/--scene //; s/ --/-/g; s/ /-/g'; }
+
+# value NAME FILE: of a report as JSON, or of a whole evaluation, not of a view; nothing where it is null.
+value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
+
+# run OPTIONS SEED: unless it is there. What the encoder says is kept without its progress. A refusal is a result, too.
+run()
+{
+    scene=$stability/scenes/$(run_name "$1")
+    stem=$stability/runs/$(run_name "$1")-$2
+    [ ! -e "$stem.done" ] || return 0
+    mkdir -p "$stability/scenes" "$stability/runs"
+    echo "stability: $(run_name "$1"), seed $2" >&2
+    # shellcheck disable=SC2086
+    [ -e "$scene/done" ] || { ./adcgs-demo-scene $common $1 -o "$scene" && : >"$scene/done"; } || return 1
+    code=0
+    ./adcgs-enc "$scene" -o "$stem.adcgs" --threads 1 --seed "$2" -n "$iterations" --json --log "$stem.log" >"$stem.json" \
+        2>"$stem.err" || code=$?
+    grep -v '^adcgs-enc: [a-z]*  *[0-9]*\/[0-9]' "$stem.err" >"$stem.said"
+    if [ $code -eq 0 ]; then
+        rm -rf "$stem.views"
+        ./adcgs-eval "$stem.adcgs" "$scene" --metrics fitted-psnr,dynamic-psnr,fitted-dynamic-psnr --json --csv "$stem.csv" \
+            --images "$stem.views" --beside >"$stem.test" 2>>"$stem.said" || echo "adcgs-eval fails" >>"$stem.said"
+        ./adcgs-eval "$stem.adcgs" "$scene" --split val --metrics static-variance,flicker --json >"$stem.val" 2>>"$stem.said" ||
+            echo "adcgs-eval fails" >>"$stem.said"
+    else
+        echo "adcgs-enc leaves with $code" >>"$stem.said"
+        for part in test val csv; do
+            : >"$stem.$part"
+        done
+    fi
+    : >"$stem.done"
+}
