@@ -5,6 +5,7 @@
 #include "cli/text.h"
 #include "io/json.h"
 #include "metric/evaluate.h"
+#include "tools/enc_doubt.h"
 
 #include <adcgs/decoder.h>
 
@@ -200,6 +201,8 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
         status = print_json(r, &x, error);
     else if (status == ADCGS_OK && !*cli->quiet)
         print_text(r, &x);
+    if (status == ADCGS_OK)
+        adcgs_enc_doubt(cli, decoder, r->scene, x.split == ADCGS_SPLIT_TRAIN ? (double)NAN : x.quality.psnr, r->file);
     if (status == ADCGS_OK && !x.target.met)
         say_missed(cli, r, &x.target);
     *met = status != ADCGS_OK || x.target.met;

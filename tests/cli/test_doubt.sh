@@ -1,0 +1,34 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-enc says which camera cannot be where it is said to be, that axes are wrong and that cameras are too few; of a scene in order,
+# and quietly, it says nothing.
+set -u
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-demo-scene
+
+# learn NAME OPTIONS...: of adcgs-demo-scene; what the encoder says is in $dir/NAME.err.
+learn()
+{
+    name=$1
+    shift
+    ./adcgs-demo-scene --scene cross20 --size 64x64 --moments 12 --format ppm -o "$dir/$name" -q "$@" || bad "adcgs-demo-scene $*"
+    ./adcgs-enc "$dir/$name" -o "$dir/$name.adcgs" --iterations 400 --threads 2 ${quiet:-} >"$dir/out" 2>"$dir/$name.err" ||
+        bad "adcgs-enc of $name"
+}
+doubts='is its pose right\|axes and times right\|is a guess'
+
+learn right
+grep "$doubts" "$dir/right.err" && bad "doubts of a scene that is in order"
+learn pose --spoil wrongpose=30
+# The camera in the middle of the arc takes r_002, of the third of the moments that it sees the first.
+grep -q "the camera of view r_002 has .* dB, the median camera .*is its pose right" "$dir/pose.err" ||
+    { bad "nothing of a wrong pose"; cat "$dir/pose.err"; }
+[ "$(grep -c "is its pose right" "$dir/pose.err")" -eq 1 ] || bad "other cameras are in doubt, too"
+learn axes --spoil axes=1
+grep -q "training views have .* dB, others .*axes and times right" "$dir/axes.err" || { bad "nothing of wrong axes"; cat "$dir/axes.err"; }
+learn few --cameras 2
+grep -q "filmed by 2 cameras: what is seen from elsewhere is a guess" "$dir/few.err" || { bad "nothing of few cameras"; cat "$dir/few.err"; }
+quiet=-q
+learn quiet --spoil wrongpose=30
+[ ! -s "$dir/quiet.err" ] || { bad "--quiet is not quiet"; cat "$dir/quiet.err"; }
+[ $failed -eq 0 ]
