@@ -56,8 +56,9 @@ page_class()
 {
     class=$(field 1 "$1") measure=$(field 5 "$1")
     grep -q "^$class," "$stability/stability.csv" || return 0
+    chart=$stability/charts/$(echo "$class" | tr ' ' -).svg
     summary "$stability/stability.csv" "$class" "$measure" >"$stability/class.txt"
-    gnuplot -e "data='$stability/class.txt'; chart='$stability/class.svg'; unit='$(field 4 "$1")'" "$here/charts.gp" || return 1
+    gnuplot -e "data='$stability/class.txt'; chart='$chart'; unit='$(field 4 "$1")'" "$here/charts.gp" || return 1
     at=$(breaks "$stability/stability.csv" "$class" "$measure")
     printf '<section><div class="what"><h2>%s</h2>\n' "$class"
     if [ "$at" = - ]; then
@@ -71,7 +72,7 @@ page_class()
         stem=$stability/runs/$(run_name "$(options_of "$(field 2 "$1")" "$strength")")-$2
         [ ! -s "$stem.said" ] || printf '<p class="said">%s: %s</p>\n' "$strength" "$(text <"$stem.said" | tr '\n' ' ')"
     done
-    printf '</div><div class="chart">%s</div><div>' "$(sed '1,/<svg/{/<?xml/d;/<!DOCTYPE/d;/ *"http.*dtd">/d}' "$stability/class.svg")"
+    printf '</div><div class="chart">%s</div><div>' "$(sed '1,/<svg/{/<?xml/d;/<!DOCTYPE/d;/ *"http.*dtd">/d}' "$chart")"
     page_figures "$class"
     echo '<div class="views">'
     page_views "$1" "$2"
@@ -81,9 +82,10 @@ page_class()
 # page SEEDS...
 page()
 {
+    mkdir -p "$stability/charts"
     page_head "$*"
     classes | while IFS= read -r line; do
         page_class "$line" "$1"
     done
-    rm -f "$stability/class.txt" "$stability/class.svg"
+    rm -f "$stability/class.txt"
 }

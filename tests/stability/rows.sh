@@ -15,7 +15,7 @@ least()
 # shown MEASURE STEM: the picture of the worst view, as adcgs-eval numbers them.
 shown()
 {
-    worst=$(least "$([ "$1" = all ] && echo psnr || echo dynamic_psnr)" "$2.csv")
+    worst=$(least "$(case $1 in all | fitted) echo psnr ;; *) echo dynamic_psnr ;; esac)" "$2.csv")
     [ -n "$worst" ] && find "$2.views" -name "$(printf '%04d' "${worst#* }")-*.png" | head -n 1
 }
 
@@ -66,7 +66,7 @@ all_rows()
 # summary TABLE CLASS MEASURE: a line for each strength, the mean over seeds of what is measured, its spread, and that of all.
 summary()
 {
-    awk -F, -v class="$2" -v measure="$3" 'BEGIN { column = measure == "all" ? 4 : measure == "moving" ? 5 : 7 }
+    awk -F, -v class="$2" -v measure="$3" 'BEGIN { column = measure == "all" ? 4 : measure == "moving" ? 5 : measure == "fitted" ? 8 : 7 }
         $1 == class && $column != "" {
             if (!($2 in n)) { order[++count] = $2; low[$2] = high[$2] = $column }
             n[$2]++; sum[$2] += $column; all[$2] += $4; moving[$2] += $5; worst[$2] += $7

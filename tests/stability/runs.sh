@@ -43,7 +43,7 @@ run()
         rm -rf "$stem.views"
         ./adcgs-eval "$stem.adcgs" "$scene" --metrics fitted-psnr,dynamic-psnr,fitted-dynamic-psnr --json --csv "$stem.csv" \
             --images "$stem.views" --beside >"$stem.test" 2>>"$stem.said" || echo "adcgs-eval fails" >>"$stem.said"
-        ./adcgs-eval "$stem.adcgs" "$scene" --split val --metrics static-variance,flicker --json >"$stem.val" 2>>"$stem.said" ||
+        ./adcgs-eval "$stem.adcgs" "$scene" --split val --metrics static-variance,flicker --json >"$stem.val" 2>"$stem.err" ||
             echo "adcgs-eval fails" >>"$stem.said"
     else
         echo "adcgs-enc leaves with $code" >>"$stem.said"
@@ -51,5 +51,6 @@ run()
             : >"$stem.$part"
         done
     fi
+    sed "s|$stability/[a-z]*/||g" "$stem.said" >"$stem.err" && mv "$stem.err" "$stem.said"
     : >"$stem.done"
 }
