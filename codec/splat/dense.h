@@ -24,7 +24,7 @@ typedef struct adcgs_dense_dsp {
     void (*residual)(float *y, const float *x, int n);
 } adcgs_dense_dsp;
 
-/** The rows of an input that is 1 in every lane. */
+/** The row of an input that is 1 in every lane; one is 64-byte aligned. */
 static inline void adcgs_dense_ones(float one[ADCGS_LANES])
 {
     for (int l = 0; l < ADCGS_LANES; l++)

@@ -2,10 +2,10 @@
 /** \file Cameras that are not where they are said to be show in the training views: the others outvote them. */
 #include "tools/enc_doubt.h"
 
+#include "data/sort.h"
 #include "metric/evaluate.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define VIEWS 96         /* that are measured at most */
 #define CAMERAS_FEW 3    /* which stay: what is between them is a guess */
@@ -30,19 +30,13 @@ static adcgs_status count(void *user, const adcgs_view_score *score, adcgs_error
     return ADCGS_OK;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void say_odd(const adcgs_cli *cli, const tally *tallies, int cameras, const char *file)
 {
     double mean[VIEWS], sorted[VIEWS];
     int named = 0;
     for (int i = 0; i < cameras; i++)
         sorted[i] = mean[i] = tallies[i].sum / tallies[i].n;
-    qsort(sorted, (size_t)cameras, sizeof *sorted, ascending);
+    adcgs_sort(sorted, (size_t)cameras);
     const double median = sorted[cameras / 2], quartile = sorted[cameras / 4];
     const double odd = fmin(median - DB_ODD, quartile - SPREADS * (median - quartile));
     for (int i = 0; i < cameras && cameras >= CAMERAS_MANY && named < NAMED; i++)
