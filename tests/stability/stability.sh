@@ -5,7 +5,7 @@
 # stability.html. What is there is not made anew, so that it can go on. About half an hour of one processor for each seed.
 #   STABILITY   folder of all of it (default stability)
 #   ITERATIONS  of training (default 800)
-#   SEEDS       default 1; 1,2,3 for the spread (behind make: make -C build stability SEEDS=1,2,3)
+#   SEEDS       default 1; 1,2,3 for the spread
 #   CLASSES     a basic regular expression of those that are wanted (default all)
 set -u
 here=$(cd "${srcdir:-.}" && pwd)/tests/stability
