@@ -67,6 +67,8 @@ static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
                           "training diverged at iteration %u (loss %g) after %u rollbacks: check poses, exposure and settings",
                           t->iteration, t->mean_loss, t->rollbacks);
     ADCGS_TRY(adcgs_trainer_restore(t, t->snapshot.data, t->snapshot.size, error));
+    if (!t->iteration)
+        t->divide = 0; /* what the pictures tell in the beginning, contrast and black levels, is asked anew */
     t->rollbacks = rollbacks;
     t->lr_scale = lr;
     return ADCGS_OK;

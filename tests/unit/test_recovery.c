@@ -37,6 +37,7 @@ static void lost_pictures_are_learnt_anew(void **state)
             fail_msg("%s: %s", too_long[i], error.text);
         assert_true(i < 2 ? t->rollbacks > 0 : t->rollbacks == 0);
         assert_true(!adcgs_trainer_is_lost(t));
+        assert_true(t->contrast > 0 && t->lambda < (double)config.lambda); /* also where it went back to the beginning */
         adcgs_trainer_free(&t);
     }
 }
