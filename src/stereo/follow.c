@@ -210,7 +210,7 @@ adcgs_status adcgs_stereo_follow(adcgs_stereo_point *points, uint32_t n, adcgs_e
                   adcgs_alloc(NULL, n, sizeof *s.sorted, error) };
     const int good = s.move && s.raw && s.known && s.times && s.match && s.near && s.sorted;
     layer before = { .n = 0 }, here = { .n = 0 };
-    if (good)
+    if (good && n)
         here = layer_at(points, s.sorted, n, 0);
     for (uint32_t end = here.n; here.n; end += here.n) {
         const layer after = layer_at(points, s.sorted, n, end);
