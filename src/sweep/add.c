@@ -125,6 +125,7 @@ static adcgs_status read_point(table *t, adcgs_sweep_curve *curve, adcgs_error *
                                                  .ssim = adcgs_spread_one(value[SSIM]),
                                                  .seconds = adcgs_spread_one(value[SECONDS]),
                                                  .speed = adcgs_spread_one(value[SPEED]),
+                                                 .objective = adcgs_spread_one((double)NAN),
                                                  .networks = (double)NAN};
     return ADCGS_OK;
 }

@@ -49,7 +49,8 @@ static adcgs_status read_spread(const adcgs_json_place *point, const char *field
 
 static adcgs_status read_point(const adcgs_json_place *at, adcgs_sweep_row *row)
 {
-    double seeds = 0, moving = (double)NAN, ssim = (double)NAN, seconds = (double)NAN, speed = (double)NAN;
+    double seeds = 0, moving = (double)NAN, ssim = (double)NAN, seconds = (double)NAN, speed = (double)NAN,
+           objective = (double)NAN;
     *row = (adcgs_sweep_row){.lambda = -1, .is_stream = 1, .networks = (double)NAN};
     const struct {
         const char *field;
@@ -57,7 +58,8 @@ static adcgs_status read_point(const adcgs_json_place *at, adcgs_sweep_row *row)
     } fields[] = {{"seeds", 1, ADCGS_SWEEP_LIST, &seeds},   {"lambda", 0, ANY_MAX, &row->lambda},
                   {"dynamic_psnr", -DB_MAX, DB_MAX, &moving}, {"ssim", -1, 1, &ssim},
                   {"network_share", 0, 1, &row->networks},  {"cpu_seconds", 0, ANY_MAX, &seconds},
-                  {"frames_per_second", 0, ANY_MAX, &speed}};
+                  {"frames_per_second", 0, ANY_MAX, &speed},
+                  {"objective", 0, ANY_MAX, &objective}};
     for (size_t i = 0; i < ADCGS_COUNTOF(fields); i++)
         ADCGS_TRY(read_number(at, fields[i].field, fields[i].min, fields[i].max, fields[i].to));
     if (seeds < 1)
@@ -66,6 +68,7 @@ static adcgs_status read_point(const adcgs_json_place *at, adcgs_sweep_row *row)
     row->ssim = adcgs_spread_one(ssim);
     row->seconds = adcgs_spread_one(seconds);
     row->speed = adcgs_spread_one(speed);
+    row->objective = adcgs_spread_one(objective);
     ADCGS_TRY(read_spread(at, "bytes", 1, BYTES_MAX, (int)seeds, &row->bytes));
     return read_spread(at, "psnr", -DB_MAX, DB_MAX, (int)seeds, &row->psnr);
 }

@@ -20,7 +20,7 @@ typedef struct sheet {
     int first; /* width of the first column in text */
 } sheet;
 
-enum { COLUMNS = 9, CELL = ADCGS_SWEEP_CHOICE + 16 };
+enum { COLUMNS = 10, CELL = ADCGS_SWEEP_CHOICE + 16 };
 
 typedef char table_row[COLUMNS][CELL];
 
@@ -58,7 +58,7 @@ static void say(const sheet *s, const char *format, ...)
 
 static void put_row(const sheet *s, table_row row, const char *tag)
 {
-    const int widths[COLUMNS] = {-s->first, 9, 26, 22, 12, 8, 10, 12, 10};
+    const int widths[COLUMNS] = {-s->first, 9, 26, 22, 12, 8, 10, 12, 10, 11};
     if (s->html)
         fprintf(s->file, "<tr>");
     for (int i = 0; i < COLUMNS; i++)
@@ -73,7 +73,7 @@ static void put_row(const sheet *s, table_row row, const char *tag)
 
 static void open_table(const sheet *s, const char *first)
 {
-    table_row head = {"", "lambda", "bytes", "PSNR, dB", "moving, dB", "SSIM", "networks", "training s", "frames/s"};
+    table_row head = {"", "lambda", "bytes", "PSNR, dB", "moving, dB", "SSIM", "networks", "training s", "frames/s", "objective"};
     snprintf(head[0], CELL, "%s", first);
     if (s->html)
         fprintf(s->file, "<div class=\"wide\"><table>\n");
@@ -120,6 +120,7 @@ static void print_row(const sheet *s, const adcgs_sweep_row *r)
         strcat(cells[6], " %");
     fill_number(cells[7], r->seconds.mean, 0);
     fill_number(cells[8], r->speed.mean, 0);
+    fill_number(cells[9], r->objective.mean, 5);
     put_row(s, cells, "td");
 }
 

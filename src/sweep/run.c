@@ -298,6 +298,7 @@ static void take_figures(const adcgs_sweep *sweep, adcgs_sweep_run *run, const j
     f[ADCGS_FIGURE_SSIM] = adcgs_sweep_number(evaluation, "ssim");
     f[ADCGS_FIGURE_MOVING] = adcgs_sweep_number(evaluation, "dynamic_psnr"); /* nor have it the results of earlier versions */
     f[ADCGS_FIGURE_SPEED] = adcgs_sweep_number(evaluation, "frames_per_second");
+    f[ADCGS_FIGURE_OBJECTIVE] = adcgs_sweep_number(encoder, "objective");
     if (!run->uncompressed)
         return;
     f[ADCGS_FIGURE_RAW] = size_of(sweep, run, ".raw");

@@ -42,6 +42,7 @@ int adcgs_sweep_row_make(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, con
                              .ssim = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_SSIM),
                              .seconds = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_SECONDS),
                              .speed = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_SPEED),
+                             .objective = adcgs_sweep_spread(plan, cell, ADCGS_FIGURE_OBJECTIVE),
                              .networks = (double)NAN};
     memcpy(row->choice, first->choice, sizeof row->choice);
     if (row->is_stream)

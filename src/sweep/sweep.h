@@ -63,6 +63,7 @@ typedef enum adcgs_figure {
     ADCGS_FIGURE_MOVING,     /**< PSNR of what moves; NaN where nothing does */
     ADCGS_FIGURE_SECONDS,    /**< of processors, of training, a shared beginning included */
     ADCGS_FIGURE_SPEED,      /**< frames per second */
+    ADCGS_FIGURE_OBJECTIVE,  /**< what training makes small: loss of the training views, and lambda times all bytes */
     ADCGS_FIGURE_COUNT
 } adcgs_figure;
 
@@ -103,7 +104,7 @@ typedef struct adcgs_sweep_row {
     double lambda; /**< < 0: the preset's, or of no influence */
     char choice[ADCGS_SWEEP_CHOICE]; /**< of the grid */
     int is_stream; /**< bytes are those of a stream, which takes so many seconds of processors to train and plays so fast */
-    adcgs_spread bytes, psnr, moving, ssim, seconds, speed;
+    adcgs_spread bytes, psnr, moving, ssim, seconds, speed, objective;
     double networks; /**< share of the stream, in the mean; NaN if it is none */
 } adcgs_sweep_row;
 

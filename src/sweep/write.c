@@ -41,6 +41,7 @@ static void csv_row(FILE *file, const adcgs_sweep_row *r)
     csv_number(file, r->seconds.mean, 2);
     csv_number(file, r->speed.mean, 2);
     csv_number(file, r->moving.mean, 4);
+    csv_number(file, r->objective.mean, 6);
     fprintf(file, "\n");
 }
 
@@ -56,7 +57,7 @@ static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const
 
 /** Columns of csv_row(), behind the name. */
 #define ROW_COLUMNS "lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,cpu_seconds," \
-    "frames_per_second,dynamic_psnr"
+    "frames_per_second,dynamic_psnr,objective"
 
 static adcgs_status write_curves(const adcgs_sweep *sweep, const adcgs_sweep_plan *plan, adcgs_error *error)
 {
@@ -142,6 +143,8 @@ static void json_row(adcgs_json *json, const adcgs_sweep_row *r)
         adcgs_json_real(json, "network_share", r->networks);
     adcgs_json_real(json, "cpu_seconds", r->seconds.mean);
     adcgs_json_real(json, "frames_per_second", r->speed.mean);
+    if (isfinite(r->objective.mean))
+        adcgs_json_real(json, "objective", r->objective.mean);
 }
 
 static void json_comparison(adcgs_json *json, const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
@@ -205,7 +208,7 @@ static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
     static const char *const names[ADCGS_FIGURE_COUNT] = {
         "bytes", "bytes_with_32_bit_weights", "uncompressed_bytes", "zstd_bytes", "xz_bytes", "network_bytes",
         "position_bytes", "base_bytes", "detail_bytes", "other_bytes",
-        "psnr", "ssim", "dynamic_psnr", "cpu_seconds", "frames_per_second"};
+        "psnr", "ssim", "dynamic_psnr", "cpu_seconds", "frames_per_second", "objective"};
     adcgs_json_open(json, "runs", '[');
     for (int i = 0; i < plan->n_runs; i++) {
         const adcgs_sweep_run *const run = &plan->run[i];

@@ -100,6 +100,9 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
     adcgs_json_real(&j, "training_seconds", r->spent.clock);
     adcgs_json_real(&j, "cpu_seconds", r->spent.cpu);
     adcgs_json_real(&j, "training_psnr", r->last.psnr);
+    adcgs_json_real(&j, "loss", r->last.loss);
+    if (x->lambda >= 0)
+        adcgs_json_real(&j, "objective", r->last.loss + x->lambda * (double)x->info.bytes.total / (1 << 20));
     adcgs_json_string(&j, "split", adcgs_split_name(x->split));
     adcgs_json_real(&j, "psnr", x->quality.psnr);
     adcgs_json_real(&j, "ssim", x->quality.ssim);

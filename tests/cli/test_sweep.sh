@@ -52,7 +52,7 @@ if [ -n "$raw" ]; then
     [ -n "$without" ] || psnr=3505
 fi
 { echo "$psnr"; head -c $((bytes - 5)) /dev/zero; } >"$file"
-echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"cpu_seconds\": 1.5}"
+echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"cpu_seconds\": 1.5, \"objective\": 0.025}"
 END
 # The pretended evaluation finds 10 dB less where something moves, which it does while there is a file of that name; 1 dB less for
 # each of three layers and 2 for each of two tiers that it does without, nothing in a beginning of less than 4000 bytes; and no
@@ -117,7 +117,7 @@ sweep --lambda 4,1,2 --k 5,10 --jobs 2 --yardsticks none
 [ $got -eq 0 ] || fail "plain run: $(cat "$dir/err")"
 calls 8 6 "--resume $out/beginning-k-[0-9]*.checkpoint"
 [ "$(wc -l <"$out/sweep.csv")" -eq 7 ] || fail "expected 7 lines of table: $(cat "$out/sweep.csv")"
-line '^adcgs k=10,2,k=10,1,32000,32000,32000,34.0000,34.0000,34.0000,0.900000,0.0312,1.50,100.00,$' "$out/sweep.csv"
+line '^adcgs k=10,2,k=10,1,32000,32000,32000,34.0000,34.0000,34.0000,0.900000,0.0312,1.50,100.00,,0.025000$' "$out/sweep.csv"
 [ ! -e "$out/lambda-1-k-5.partial" ] && [ ! -e "$out/lambda-1-k-5.partial.json" ] || fail "a finished run left its state"
 line '3 points, spans a factor of 4.00 in bytes and is monotone' "$dir/report"
 if command -v gnuplot >/dev/null; then
@@ -168,7 +168,7 @@ out=$dir/others
 printf 'source,psnr,who,bytes,cpu_seconds\nA paper,33.5,x,50000,7\n,34.5,,70000,\n\n' >"$dir/other.csv"
 sweep --lambda 1,2 --yardsticks none --add "It's other=$dir/other.csv"
 [ $got -eq 0 ] || fail "--add: $(cat "$dir/err")"
-line "^It_s other,,,1,50000,50000,50000,33.5000,33.5000,33.5000,,,7.00,,$" "$out/sweep.csv"
+line "^It_s other,,,1,50000,50000,50000,33.5000,33.5000,33.5000,,,7.00,,,$" "$out/sweep.csv"
 line "Against It_s other: .*above it (points compared: 2" "$dir/report"
 line "It_s other: another method, from $dir/other.csv; A paper" "$out/index.html"
 : >"$dir/calls"
@@ -313,12 +313,12 @@ cp -r "$dir/old" "$dir/older"
 touch "$dir/moving"
 sweep --lambda 1,4 --yardsticks none --resume
 calls 0
-line '^adcgs,4,,1,16000,16000,16000,32.0000,.*,100.00,$' "$out/sweep.csv"
+line '^adcgs,4,,1,16000,16000,16000,32.0000,.*,100.00,,0.025000$' "$out/sweep.csv"
 out=$dir/new/x
 sweep --lambda 1,4 --yardsticks none
 [ $got -eq 0 ] || fail "what moves: $(cat "$dir/err")"
 tail -n 1 "$dir/evaluations" | grep -q -e '--metrics dynamic-psnr' || fail "nobody asked for what moves"
-line '^adcgs,4,,1,16000,16000,16000,32.0000,.*,100.00,22.0000$' "$out/sweep.csv"
+line '^adcgs,4,,1,16000,16000,16000,32.0000,.*,100.00,22.0000,0.025000$' "$out/sweep.csv"
 line '"dynamic_psnr": 22' "$out/sweep.json"
 for page in "$out/index.html" "$dir/report"; do
     line 'moving, dB' "$page"
@@ -342,8 +342,8 @@ line 'Against new: BD-rate [+-]0\.0 %, BD-rate of what moves [+-]0\.0 %, ' "$dir
 line 'Against more: BD-rate -20\.0 %, BD-rate of what moves -20\.0 %, above it (points compared: 2; ' "$dir/report"
 line 'Against moved: BD-rate -20\.0 %, BD-rate of what moves [+-]0\.0 %, ' "$dir/report"
 line 'Against older: BD-rate [+-]0\.0 %, NOT above it' "$dir/report"
-line '^more,1,,1,80000,80000,80000,35.0000,35.0000,35.0000,0.900000,.*,1.50,100.00,25.0000$' "$out/sweep.csv"
-line '^older,4,,1,16000,16000,16000,32.0000,32.0000,32.0000,0.900000,.*,1.50,100.00,$' "$out/sweep.csv"
+line '^more,1,,1,80000,80000,80000,35.0000,35.0000,35.0000,0.900000,.*,1.50,100.00,25.0000,0.025000$' "$out/sweep.csv"
+line '^older,4,,1,16000,16000,16000,32.0000,32.0000,32.0000,0.900000,.*,1.50,100.00,,0.025000$' "$out/sweep.csv"
 line "title 'more'" "$out/rate.gp"
 line "title 'it_s'" "$out/rate.gp"
 line "more: an earlier sweep of the scene, in $dir/more/x" "$out/index.html"
@@ -363,7 +363,7 @@ fi
 # Of an earlier sweep it is its own curve, whatever it was compared with itself; seeds keep their spread.
 out=$dir/seeds
 sweep --lambda 1,4 --seeds 1,3 --yardsticks none --against "$dir/now/x"
-line '^x,1,,1,64000,.*,25.0000$' "$out/sweep.csv"
+line '^x,1,,1,64000,.*,25.0000,0.025000$' "$out/sweep.csv"
 out=$dir/now/y
 sweep --lambda 1,4 --yardsticks none --against "$dir/seeds"
 line '^seeds,4,,2,16000,16000,16000,32.2000,32.1000,32.3000,' "$out/sweep.csv"

@@ -1,0 +1,84 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# The size that the encoder finds for a scene, beside a grid of sizes and beside the preset's, of which nothing is taken away:
+# make -C build sizes. adcgs-sweep codes each scene that is at hand, one thread, seed 1; the first curve is the default's. Each
+# scene's page is index.html in its folder; the folder "kept" gathers charts and figures of all, and sizes.md, which tells how
+# far the default's objective lies above the least of the grid. What is there already is kept, so that it can go on.
+#   SIZES       folder of all of it (default sizes)
+#   SCENES      object, table, or of doc/scenes.sh, by their short names (default "object table cross80 zju")
+#   LAMBDAS     default 0.1,0.4
+#   GRID        the default's choice first (default "k=6,3,10 detail_anchors=50,25,100")
+#   FIXED       settings of adcgs-enc --fixed
+#   ITERATIONS  of training (default 1500)
+#   JOBS        runs at a time (default 1)
+#   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
+set -eu
+source=$(cd "${srcdir:-.}" && pwd)
+out=${SIZES:-sizes}
+failed=0
+mkdir -p "$out/scenes" "$out/kept"
+. "$source/doc/scenes.sh"
+
+# sweep FOLDER SCENE OPTIONS...
+sweep()
+{
+    folder=$1 scene=$2
+    shift 2
+    mkdir -p "$out/$folder"
+    ./adcgs-sweep "$scene" -o "$out/$folder" -l "${LAMBDAS:-0.1,0.4}" -n "${ITERATIONS:-1500}" -t 1 -j "${JOBS:-1}" --seeds 1 \
+        --yardsticks none --resume "$@" >"$out/$folder.txt"
+}
+
+# table FILE TITLE: of each lambda, the default, the least objective of the grid, and the fixed size; a row each.
+table()
+{
+    awk -F, -v scene="$2" '
+    function row(what, l, r) {
+        printf "| %s | %s | %s | %s | %.2f | %s | %.0f | %+.1f %% |\n", scene, l, what, bytes[r], psnr[r],
+            moving[r] == "" ? "-" : sprintf("%.2f", moving[r]), seconds[r], 100 * (objective[r] / objective[least[l]] - 1)
+    }
+    NR > 1 && NF > 15 {
+        bytes[NR] = $5; psnr[NR] = $8; seconds[NR] = $13; moving[NR] = $15; objective[NR] = $16
+        if ($1 == "fixed") { fixed[$2] = NR; next }
+        if (!($2 in own)) { own[$2] = NR; order[++n] = $2 }
+        if (!($2 in least) || objective[NR] < objective[least[$2]]) { least[$2] = NR; name[$2] = $3 }
+        total[$2] += $13
+    }
+    END {
+        for (i = 1; i <= n; i++) {
+            l = order[i]
+            row("default", l, own[l])
+            row("best of the grid, " name[l] sprintf(" (grid: %.0f s)", total[l]), l, least[l])
+            if (l in fixed) row("fixed", l, fixed[l])
+        }
+    }' "$1"
+}
+
+# sizes TITLE SCENE NAME WEIGHT
+sizes()
+{
+    title=$1 scene=$2 name=$3
+    case " ${SCENES:-object table cross80 zju} " in *" $name "*) ;; *) return 0 ;; esac
+    [ -e "$scene" ] || { echo "sizes: no $scene, left out" >&2; return 0; }
+    echo "sizes: $name" >&2
+    { sweep "$name/fixed" "$scene" --set "tiers=1,${FIXED:-detail_anchors=0,still_below=0,decide_at=2,prune_units_at=2}" &&
+        sweep "$name" "$scene" --grid "${GRID:-k=6,3,10 detail_anchors=50,25,100}" --set tiers=1 --against "$out/$name/fixed"; } ||
+        { echo "sizes: $name failed" >&2; failed=1; return 0; }
+    for chart in rate time; do
+        cp "$out/$name/$chart.svg" "$out/kept/$name-sizes-$chart.svg"
+    done
+    cp "$out/$name/sweep.csv" "$out/kept/$name-sizes.csv"
+    table "$out/$name/sweep.csv" "$title" >>"$out/kept/sizes.md"
+}
+
+make_scenes "$out/scenes"
+for made in object table; do
+    [ -d "$out/scenes/$made" ] || ./adcgs-demo-scene --scene $made -o "$out/scenes/$made" --format ppm >/dev/null
+done
+printf '| Scene | Lambda | Size | Bytes | PSNR, dB | Moving | CPU, s | Objective |\n|---|---|---|---|---|---|---|---|\n' \
+    >"$out/kept/sizes.md"
+sizes '`object`' "$out/scenes/object" object 1
+sizes '`table`' "$out/scenes/table" table 1
+each_scene "$out/scenes" "${ADCGS_DATA:-$source/../shared/data}" sizes
+cat "$out/kept/sizes.md"
+exit $failed
