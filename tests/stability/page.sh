@@ -23,7 +23,7 @@ h2 { font-size: 16px; margin: 0 0 0.3em; } p { margin: 0.3em 0; } .broken { colo
 views that training never saw, in dB. A class breaks at the first strength at which what is measured of it is 3 dB below that of the
 first, or below 20 dB. Pictures: the worst view of each strength, its truth, decoded, and four times the difference. Static variance
 (in millionths; true in brackets) and flicker (in thousandths) are of a camera that stays; anchors are those at the end, and the most
-there were.</p>
+there were; beside that, anchors and bytes over training, a line for each strength.</p>
 EOF
 }
 
@@ -51,12 +51,37 @@ page_views()
     done
 }
 
+# growth LINE SEED: anchors and kilobytes over training, a block for each strength, for growth.gp.
+growth()
+{
+    for strength in $(field 3 "$1"); do
+        log=$stability/runs/$(run_name "$(options_of "$(field 2 "$1")" "$strength")")-$2.log
+        [ -s "$log" ] || continue
+        printf '"%s"\n' "$strength"
+        sed -n 's/.*"iteration":\([0-9]*\).*"anchors":\([0-9]*\).*"bytes":\([0-9]*\).*/\1 \2 \3/p' "$log" |
+            awk '{ print $1, $2, $3 / 1000 }'
+        printf '\n\n'
+    done
+}
+
+# svg FILE: as it is part of a page.
+svg() { sed '1,/<svg/{/<?xml/d;/<!DOCTYPE/d;/ *"http.*dtd">/d}' "$1"; }
+
+# page_growth LINE SEED NAME
+page_growth()
+{
+    growth "$1" "$2" >"$stability/class.txt"
+    strengths=$(grep -c '^"' "$stability/class.txt")
+    [ "$strengths" -eq 0 ] || gnuplot -e "data='$stability/class.txt'; chart='$stability/charts/$3-growth.svg'; n=$strengths" \
+        "$here/growth.gp" && svg "$stability/charts/$3-growth.svg"
+}
+
 # page_class LINE SEED
 page_class()
 {
     class=$(field 1 "$1") measure=$(field 5 "$1")
     grep -q "^$class," "$stability/stability.csv" || return 0
-    chart=$stability/charts/$(echo "$class" | tr ' ' -).svg
+    name=$(echo "$class" | tr ' ' -) chart=$stability/charts/$(echo "$class" | tr ' ' -).svg
     summary "$stability/stability.csv" "$class" "$measure" >"$stability/class.txt"
     gnuplot -e "data='$stability/class.txt'; chart='$chart'; unit='$(field 4 "$1")'" "$here/charts.gp" || return 1
     at=$(breaks "$stability/stability.csv" "$class" "$measure")
@@ -72,7 +97,7 @@ page_class()
         stem=$stability/runs/$(run_name "$(options_of "$(field 2 "$1")" "$strength")")-$2
         [ ! -s "$stem.said" ] || printf '<p class="said">%s: %s</p>\n' "$strength" "$(text <"$stem.said" | tr '\n' ' ')"
     done
-    printf '</div><div class="chart">%s</div><div>' "$(sed '1,/<svg/{/<?xml/d;/<!DOCTYPE/d;/ *"http.*dtd">/d}' "$chart")"
+    printf '</div><div class="chart">%s%s</div><div>' "$(svg "$chart")" "$(page_growth "$1" "$2" "$name")"
     page_figures "$class"
     echo '<div class="views">'
     page_views "$1" "$2"
