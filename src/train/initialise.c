@@ -5,9 +5,12 @@
 #include "fmodel/bodies.h"
 #include "geom/geom.h"
 #include "stereo/pose.h"
+#include "train/spacing.h"
 #include "train/start_points.h"
 
 #include <math.h>
+
+static const double ALONE = 0.1; /* the size of the only anchor */
 
 /** A cube around the points, at least the unit ball's half, at most +-8. */
 static double cube_half(const adcgs_start_points *c)
@@ -19,30 +22,6 @@ static double cube_half(const adcgs_start_points *c)
     return fmin(half, 8);
 }
 
-/** Mean distance to the three nearest other anchors. */
-static double spacing(const adcgs_fmodel *f, uint32_t i)
-{
-    double best[3] = { 1e9, 1e9, 1e9 };
-    for (uint32_t j = 0; j < f->n; j++) {
-        double d = 0;
-        for (int a = 0; a < 3; a++)
-            d += pow((double)f->pos[i][a] - (double)f->pos[j][a], 2);
-        if (j == i || d >= best[2])
-            continue;
-        best[2] = d;
-        for (int a = 2; a > 0 && best[a] < best[a - 1]; a--) {
-            const double swap = best[a];
-            best[a] = best[a - 1];
-            best[a - 1] = swap;
-        }
-    }
-    const int known = f->n > 3 ? 3 : (int)f->n - 1;
-    double sum = 0;
-    for (int a = 0; a < known; a++)
-        sum += sqrt(best[a]);
-    return known ? sum / known * f->voxel : 0.1;
-}
-
 void adcgs_set_span(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p, float half)
 {
     *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_MIDDLE) = 8 * (p->t - 0.5f);
@@ -51,9 +30,10 @@ void adcgs_set_span(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p, fl
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_VELOCITY + a) = p->body ? 0 : 8 * p->velocity[a] * half;
 }
 
-static void set_anchor(adcgs_fmodel *f, uint32_t i, const double rgb[3])
+/** spacing: mean distance to the nearest others, in voxels; 0 where there are none. */
+static void set_anchor(adcgs_fmodel *f, uint32_t i, const double rgb[3], double spacing)
 {
-    const double d = fmin(fmax(spacing(f, i), 2 * (double)f->voxel), 1.0);
+    const double d = fmin(fmax(f->n > 1 ? spacing * (double)f->voxel : ALONE, 2 * (double)f->voxel), 1.0);
     for (int a = 0; a < 3; a++) {
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, a) = (float)log(d);
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, 3 + a) = (float)log(d);
@@ -108,19 +88,23 @@ static adcgs_status make_anchors(adcgs_fmodel **out, const adcgs_start_points *c
     const float voxel = (float)(2 * half / (double)(1u << config->shape.depth));
     uint32_t(*pos)[3] = adcgs_alloc(NULL, c->n, sizeof *pos, error);
     uint32_t *order = adcgs_alloc(NULL, c->n, sizeof *order, error);
+    double *spacing = adcgs_alloc(NULL, c->n, sizeof *spacing, error);
     uint32_t n = 0;
     adcgs_status status =
-        pos && order ? voxelise(c, half, config->shape.depth, pos, order, &n, error) : adcgs_alloc_status(error);
+        pos && order && spacing ? voxelise(c, half, config->shape.depth, pos, order, &n, error) : adcgs_alloc_status(error);
+    if (status == ADCGS_OK)
+        status = adcgs_spacings((const uint32_t(*)[3])pos, n, spacing, error);
     if (status == ADCGS_OK)
         status = adcgs_fmodel_create(out, &config->params, &config->shape, origin, voxel, (const uint32_t(*)[3])pos, n,
                                      config->seed, error);
     for (uint32_t i = 0; status == ADCGS_OK && i < n; i++) {
-        set_anchor(*out, i, c->rgb[order[i]]);
+        set_anchor(*out, i, c->rgb[order[i]], spacing[i]);
         if (config->params.spans && c->matched[order[i]])
             set_life(*out, i, c->matched[order[i]], half_life);
     }
     adcgs_free(NULL, pos);
     adcgs_free(NULL, order);
+    adcgs_free(NULL, spacing);
     return status;
 }
 
