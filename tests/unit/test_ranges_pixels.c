@@ -84,6 +84,16 @@ static float draw_extent(const adcgs_camera *c, double depth, uint64_t *random)
     return (float)fmin(fmax(extent, 0x1p-20), 0x1p10);
 }
 
+/* Far longer than thick, and not too long for the picture, so that its sides cross many blocks. */
+static void make_needle(scene_splats *s, uint32_t i, const adcgs_camera *c, double depth, uint64_t *random)
+{
+    const double pixel = depth / c->fx;
+    for (int a = 0; a < 3; a++) {
+        const double extent = pixel * (a ? ranges_size(random, -12, -2) : ranges_size(random, 0, 9));
+        scene_array(s, SCENE_SCALE + a)[i] = (float)fmin(fmax(extent, 0x1p-20), 0x1p10);
+    }
+}
+
 static float draw_opacity(uint64_t *random)
 {
     static const float limits[] = {0x1.010102p-8f, 0x1.0101p-8f, 0x1.010104p-8f, 0x1.fae148p-1f, 0.0f, 0x1p-149f};
@@ -104,6 +114,8 @@ static void draw_splat(scene_splats *s, uint32_t i, const adcgs_camera *c, uint6
         scene_array(s, SCENE_SCALE + a)[i] = draw_extent(c, depth, random);
         scene_array(s, SCENE_COLOUR + a)[i] = (float)ranges_signed(random, -149, 8);
     }
+    if (ranges_chance(random, 0.3))
+        make_needle(s, i, c, depth, random);
     scene_random_rotation(s, i, random);
     if (ranges_chance(random, 0.2)) /* edge-on to something */
         for (int a = 0; a < 4; a++)
