@@ -23,6 +23,7 @@ TITLES = {
     "S7": "requirements are numbered, cited and indexed",
     "S8": "examples are what the text yields",
     "S9": "links, terms, lines",
+    "S10": "strict binary32 is as far from exact arithmetic as the annex says",
 }
 
 
@@ -73,6 +74,9 @@ def run_check(name, tree, arguments, names=()):
         import hygiene
         import make_requirements
         return hygiene.requirements(tree) + make_requirements.check(tree), ""
+    if name == "S10":
+        import accuracy
+        return accuracy.check(tree, arguments.vectors), ""
     import make_examples
     return make_examples.check(tree), ""
 

@@ -153,6 +153,9 @@ FAULTS = [
     Fault("S9", "spec/clauses/08-geometry.adoc", r"^The idea:", "The idea: " + "very " * 50, "columns"),
     Fault("S9", "spec/clauses/08-geometry.adoc", r"^// SPDX.*\n", "//\n", "no licence line"),
     Fault("S9", "spec/adcgs.adoc", r"^include::clauses/08-geometry\.adoc\[\]$", "", "not included"),
+    # S10: a number of the annex
+    Fault("S10", "spec/clauses/annex-accuracy.adoc", r"(`good-deform-bodies` \| )1", r"\g<1>2", "good-deform-bodies: position",
+          vectors=["good-deform-bodies"]),
 ]
 
 

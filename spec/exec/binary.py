@@ -18,6 +18,12 @@ class NotationError(Exception):
     """The text asks for something that its own conventions do not define."""
 
 
+class Format(float):
+    """A number of some format."""
+
+    __slots__ = ()
+
+
 class Literal:
     """A constant with a point or exponent: takes the format of the operand it meets."""
 
@@ -37,7 +43,7 @@ class Literal:
             return other.value
         if type(other) is int:
             return other
-        if type(other) in (F32, F64):
+        if isinstance(other, Format):
             return float(other)
         raise NotationError("a constant compared with %r" % (other,))
 
@@ -103,10 +109,10 @@ def _quotient(a, b):
     return math.copysign(math.inf, a) * math.copysign(1.0, b)
 
 
-def _class(convert, finish):
+def number_class(convert, finish):
     """The operators of a format: operands through convert, results through finish."""
 
-    class Number(float):
+    class Number(Format):
         __slots__ = ()
 
         def __add__(self, other):
@@ -172,9 +178,9 @@ def _class(convert, finish):
     return Number
 
 
-F32 = _class(_to32, _round32)
+F32 = number_class(_to32, _round32)
 F32.__name__ = F32.__qualname__ = "F32"
-F64 = _class(_to64, lambda x: float.__new__(F64, x))
+F64 = number_class(_to64, lambda x: float.__new__(F64, x))
 F64.__name__ = F64.__qualname__ = "F64"
 
 

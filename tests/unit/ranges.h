@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Numbers over the whole of a range: as many of each power of two, and the limits themselves often. */
+#ifndef TESTS_RANGES_H
+#define TESTS_RANGES_H
+
+#include "unit/pixels_scene.h"
+
+static inline int ranges_chance(uint64_t *state, double p)
+{
+    return scene_uniform(state) < p;
+}
+
+/** Between 2^low and 2^high; each limit once in eight times. */
+static inline double ranges_size(uint64_t *state, double low, double high)
+{
+    const double at = 1.25 * scene_uniform(state) - 0.125;
+    return exp2(at < 0 ? low : at > 1 ? high : low + at * (high - low));
+}
+
+/** The same with either sign, or 0. */
+static inline double ranges_signed(uint64_t *state, double low, double high)
+{
+    const double x = ranges_chance(state, 0.05) ? 0.0 : ranges_size(state, low, high);
+    return ranges_chance(state, 0.5) ? -x : x;
+}
+
+/** Between two numbers, evenly; each once in eight times. */
+static inline double ranges_between(uint64_t *state, double low, double high)
+{
+    const double at = 1.25 * scene_uniform(state) - 0.125;
+    return at < 0 ? low : at > 1 ? high : low + at * (high - low);
+}
+
+#endif
