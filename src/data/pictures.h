@@ -10,6 +10,7 @@
 #define ADCGS_DATA_PICTURES_H
 
 #include "base/pool.h"
+#include "data/glance.h"
 #include "data/scene.h"
 
 typedef struct adcgs_pictures adcgs_pictures;
@@ -21,6 +22,7 @@ typedef struct adcgs_pictures_config {
     adcgs_split split;
     int divide;        /**< sizes are divided by this, see adcgs_scene_load() */
     uint64_t memory;   /**< bytes of pictures in memory at most; 0: half of what the machine has */
+    adcgs_glance *glances; /**< [views] taken of each picture as it is loaded; or NULL */
     adcgs_pictures_progress progress; /**< or NULL */
     void *user;
 } adcgs_pictures_config;
