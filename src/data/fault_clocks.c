@@ -16,13 +16,14 @@
 
 #define CAMERAS 3   /* two that differ do not say which is wrong */
 #define MOMENTS 12  /* changes in common, at any shift */
+#define STRONG 4    /* of them that stand out: where something happens once, a camera may only have seen it later */
 #define REACH 2     /* changes to either side, whose median is what is smooth */
 /*
  * Correlations with the mean of the others. Of unspoilt footage cameras that agree so well are never off (generated scenes that
  * four cameras film, real rigs of 4 and 21: the most that another shift gains is 0.2); where one is late by 1 to 5 frames it gains
  * 0.6 and more. Where nothing jerks cameras do not agree, and nothing is said.
  */
-#define AGREE 0.6   /* the median camera in step */
+#define AGREE 0.8   /* the median of the others with each other */
 #define MATCH 0.7   /* the camera in doubt, at its shift */
 #define GAIN 0.4    /* of this, by the shift */
 #define UNIQUE 0.2  /* of this, over shifts that are not next to it: what repeats is in step in many ways */
@@ -51,7 +52,7 @@ static double median_around(const double *values, uint32_t n, uint32_t at)
 static int sharpen(double *values, uint32_t n, double *buffer)
 {
     double sum = 0.0, square = 0.0;
-    uint32_t count = 0;
+    uint32_t count = 0, strong = 0;
     for (uint32_t i = 0; i < n; i++)
         buffer[i] = isnan(values[i]) ? values[i] : values[i] - median_around(values, n, i);
     for (uint32_t i = 0; i < n; i++)
@@ -63,7 +64,9 @@ static int sharpen(double *values, uint32_t n, double *buffer)
     const double mean = count ? sum / count : 0.0, deviation = count ? sqrt(fmax(square / count - mean * mean, 0.0)) : 0.0;
     for (uint32_t i = 0; i < n; i++)
         values[i] = deviation > 0.0 ? (buffer[i] - mean) / deviation : (double)NAN;
-    return count >= MOMENTS && deviation > 0.0;
+    for (uint32_t i = 0; i < n; i++)
+        strong += fabs(values[i]) >= 0.5;
+    return count >= MOMENTS && strong >= STRONG;
 }
 
 /** Of a camera with a mean, which it follows by so many steps; NaN where they have too little in common. */
@@ -86,15 +89,15 @@ static double correlate(const double *a, const double *b, uint32_t n, int late)
     return count >= MOMENTS && va > 0.0 && vb > 0.0 ? (s[4] - s[0] * s[1] / count) / sqrt(va * vb) : (double)NAN;
 }
 
-/** Mean of all cameras but one. */
-static void take_mean(signals *s, uint32_t without)
+/** Mean of all cameras but one, or two. */
+static void take_mean(signals *s, uint32_t without, uint32_t and_without)
 {
     for (uint32_t i = 0; i < s->steps; i++) {
         double sum = 0.0;
         uint32_t count = 0;
         for (uint32_t c = 0; c < s->cameras; c++) {
             const double value = s->values[(size_t)c * s->steps + i];
-            if (c == without || isnan(value))
+            if (c == without || c == and_without || isnan(value))
                 continue;
             sum += value;
             count++;
@@ -106,7 +109,7 @@ static void take_mean(signals *s, uint32_t without)
 /** How late a camera is, in steps, with what that gains and its correlation there; gain 0: in step, or nobody knows. */
 static int find_shift(const double *values, const signals *s, double *gain, double *match)
 {
-    const int most = (int)s->steps - MOMENTS;
+    const int most = (int)ADCGS_MIN(s->steps - MOMENTS, s->steps / 2);
     int late = 0;
     double best = correlate(values, s->mean, s->steps, 0), other = -1.0;
     const double now = best;
@@ -128,16 +131,29 @@ static int find_shift(const double *values, const signals *s, double *gain, doub
     return late;
 }
 
+/** How well all cameras but one agree among each other: the median correlation of one with the others. agreed: [cameras]. */
+static double agreement(signals *s, uint32_t without, double *agreed)
+{
+    uint32_t n = 0;
+    for (uint32_t c = 0; c < s->cameras; c++) {
+        if (c == without)
+            continue;
+        take_mean(s, without, c);
+        const double r = correlate(s->values + (size_t)c * s->steps, s->mean, s->steps, 0);
+        agreed[n++] = isnan(r) ? -1.0 : r;
+    }
+    adcgs_sort(agreed, n);
+    return n % 2 ? agreed[n / 2] : 0.5 * (agreed[n / 2 - 1] + agreed[n / 2]);
+}
+
 static void judge(adcgs_fault *f, signals *s, double *agreed)
 {
     for (uint32_t c = 0; c < s->cameras; c++) {
         double gain, match;
-        take_mean(s, c);
+        take_mean(s, c, c);
         const double *const values = s->values + (size_t)c * s->steps;
         const int late = find_shift(values, s, &gain, &match);
-        const double now = correlate(values, s->mean, s->steps, 0);
-        agreed[c] = isnan(now) ? -1.0 : now;
-        if (match < MATCH || gain < GAIN)
+        if (match < MATCH || gain < GAIN || agreement(s, c, agreed) < AGREE)
             continue;
         f->cameras++;
         if (f->cameras > 1 && gain <= f->to)
@@ -148,8 +164,7 @@ static void judge(adcgs_fault *f, signals *s, double *agreed)
         f->count = (uint32_t)abs(late);
     }
     f->from = f->to = 0.0;
-    adcgs_sort(agreed, s->cameras);
-    if (agreed[s->cameras / 2] < AGREE || 2 * f->cameras >= s->cameras)
+    if (2 * f->cameras >= s->cameras)
         f->cameras = 0;
 }
 

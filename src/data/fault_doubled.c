@@ -10,33 +10,40 @@
 
 #define SAME 0.1   /* of the change before and behind: noise alone is more, and what stops for a moment comes to it slowly */
 #define ONWARDS 0.5 /* of these changes, that pictures around differ by: what goes to and fro, or comes and goes, may rest in between */
-#define COPIES 3   /* that one picture may have: what rests for longer rests */
+#define COPIES 2    /* that one picture may have: what rests for longer rests, or is hidden */
+#define PICTURES 2  /* of a camera that have copies: one may be where something that moved is hidden for a moment */
 #define FEW 6      /* pictures of a camera of which nothing can be said */
+
+/** How many copies follow picture i, which has one before it, until the next that differs; 0: none, or something only rests. */
+static uint32_t copies_of(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t i)
+{
+    const adcgs_glance *const before = &glances[order[i - 1]], *const it = &glances[order[i]];
+    const double change = adcgs_glance_difference(before, it);
+    double inside = 0.0, next = 0.0;
+    uint32_t copies = 0;
+    for (; i + copies + 1 < n && copies <= COPIES; copies++) {
+        next = adcgs_glance_difference(&glances[order[i + copies]], &glances[order[i + copies + 1]]);
+        if (!(next <= SAME * change))
+            break;
+        inside = fmax(inside, next);
+    }
+    if (!copies || copies > COPIES || i + copies + 1 >= n || !(change > 0.0 && inside <= SAME * next))
+        return 0;
+    return adcgs_glance_difference(before, &glances[order[i + copies + 1]]) >= ONWARDS * fmax(change, next) ? copies : 0;
+}
 
 /** Of one camera: how many of its pictures are the one before, and the first of them. */
 static uint32_t count_copies(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t *first)
 {
-    uint32_t count = 0;
-    for (uint32_t i = 1; i + 2 < n; i++) { /* order[i] and its copies, between two others */
-        const adcgs_glance *const before = &glances[order[i - 1]], *const it = &glances[order[i]];
-        const double change = adcgs_glance_difference(before, it);
-        uint32_t copies = 0;
-        while (copies < COPIES && i + copies + 2 < n &&
-               adcgs_glance_difference(it, &glances[order[i + copies + 1]]) <= SAME * change)
-            copies++;
-        const adcgs_glance *const behind = &glances[order[i + copies + 1]];
-        const double next = adcgs_glance_difference(&glances[order[i + copies]], behind);
-        double inside = 0.0;
-        for (uint32_t k = 0; k < copies; k++)
-            inside = fmax(inside, adcgs_glance_difference(&glances[order[i + k]], &glances[order[i + k + 1]]));
-        if (!copies || !(change > 0.0 && inside <= SAME * next) ||
-            !(adcgs_glance_difference(before, behind) >= ONWARDS * fmax(change, next)))
-            continue;
-        *first = count ? *first : order[i + 1];
+    uint32_t count = 0, pictures = 0;
+    for (uint32_t i = 1; i + 2 < n; i++) {
+        const uint32_t copies = copies_of(glances, order, n, i);
+        *first = copies && !count ? order[i + 1] : *first;
+        pictures += copies > 0;
         count += copies;
         i += copies;
     }
-    return count;
+    return pictures >= PICTURES ? count : 0;
 }
 
 adcgs_status adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error)
