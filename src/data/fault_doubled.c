@@ -9,7 +9,7 @@
 #include <math.h>
 
 #define SAME 0.1   /* of the change before and behind: noise alone is more, and what stops for a moment comes to it slowly */
-#define ONWARDS 0.5 /* of these changes, that pictures around differ by: what goes to and fro, or comes and goes, may rest in between */
+#define ONWARDS 0.5 /* of these changes, that pictures around differ by: what goes to and fro, or comes and goes, may rest */
 #define COPIES 2    /* that one picture may have: what rests for longer rests, or is hidden */
 #define PICTURES 2  /* of a camera that have copies: one may be where something that moved is hidden for a moment */
 #define FEW 6      /* pictures of a camera of which nothing can be said */

@@ -15,8 +15,8 @@
 #define FEW 6       /* pictures of which nothing can be said */
 
 /**
- * The median of the steps between n ascending times that differ; 0 where it is not regular, or where they are few. *median: in any
- * case, 0 where there is none.
+ * The median of the steps between n ascending times that differ; 0 where it is not regular, or where they are few. *median: in
+ * any case, 0 where there is none.
  */
 static double regular_step(const double *times, uint32_t n, double *steps, double *median)
 {
@@ -95,8 +95,8 @@ static void look_at_cameras(adcgs_fault *f, const adcgs_scene_view *views, const
 }
 
 /**
- * Of all cameras at once. Where these take turns a moment of the scene is shorter than the step of a camera; where their clocks are
- * not tied together steps of the scene are of any length, but none is longer than those of a camera.
+ * Of all cameras at once. Where these take turns a moment of the scene is shorter than the step of a camera; where their clocks
+ * are not tied together steps of the scene are of any length, but none is longer than those of a camera.
  */
 static void look_at_moments(adcgs_fault *f, const adcgs_scene_view *views, uint32_t n, uint32_t cameras, space *s,
                             double least_step)
@@ -126,8 +126,8 @@ static int is_known(const adcgs_scene_view *views, const adcgs_tracks *tracks, c
 }
 
 /**
- * Training's views, then those of other splits that training's cameras took; *views: room for all. Of a camera that moves it is not
- * known which of the others it took.
+ * Training's views, then those of other splits that training's cameras took; *views: room for all. Of a camera that moves it is
+ * not known which of the others it took.
  */
 static adcgs_status gather(const adcgs_scene *scene, adcgs_scene_view *views, uint32_t *n, space *s, adcgs_error *error)
 {
@@ -168,7 +168,8 @@ adcgs_status adcgs_fault_gaps(adcgs_fault *fault, const adcgs_scene *scene, adcg
     space s = {.times = adcgs_alloc(NULL, most, sizeof *s.times, error), .steps = adcgs_alloc(NULL, most, sizeof *s.steps, error),
                .aside = adcgs_alloc(NULL, most, sizeof *s.aside, error)};
     *fault = (adcgs_fault){.cameras = 0};
-    const adcgs_status status = views && s.times && s.steps && s.aside ? look(fault, scene, views, &s, error) : adcgs_alloc_status(error);
+    const int has_room = views && s.times && s.steps && s.aside;
+    const adcgs_status status = has_room ? look(fault, scene, views, &s, error) : adcgs_alloc_status(error);
     adcgs_free(NULL, views);
     adcgs_free(NULL, s.times);
     adcgs_free(NULL, s.steps);

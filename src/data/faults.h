@@ -13,7 +13,7 @@
 typedef struct adcgs_fault {
     uint32_t cameras;             /**< that have it; 0: none has */
     uint32_t of;                  /**< cameras that could be judged; of one that moves and took everything 1 */
-    const char *path;             /**< of the view of the camera that has it worst where it begins, the scene's; NULL: all have it */
+    const char *path;             /**< of the view where it begins, of the camera that has it worst; NULL: all have it */
     uint32_t count;               /**< times that camera has it */
     double from, to;              /**< where it is worst */
     double size;                  /**< how bad it is there; see the functions */
@@ -26,14 +26,14 @@ typedef struct adcgs_fault {
 adcgs_status adcgs_fault_gaps(adcgs_fault *fault, const adcgs_scene *scene, adcgs_error *error);
 
 /**
- * Pictures that are the one before once more, while those around differ. glances: of the training views. count and view are of the
- * camera that has most; size: how many all cameras have.
+ * Pictures that are the one before once more, while those around differ. glances: of the training views. count and path are of
+ * the camera that has most; size: how many all cameras have.
  */
 adcgs_status adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error);
 
 /**
- * A camera's pictures are all brighter or darker by one factor from one moment on, or at one moment. size: the factor. cameras are
- * those that have one at the same time.
+ * A camera's pictures are all brighter or darker by one factor from one moment on, or at one moment. size: the factor. cameras
+ * are those that have one at the same time.
  */
 adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error);
 

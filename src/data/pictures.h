@@ -22,9 +22,9 @@ typedef struct adcgs_pictures_config {
     adcgs_split split;
     int divide;        /**< sizes are divided by this, see adcgs_scene_load() */
     uint64_t memory;   /**< bytes of pictures in memory at most; 0: half of what the machine has */
-    adcgs_glance *glances; /**< [views] taken of each picture as it is loaded; or NULL */
     adcgs_pictures_progress progress; /**< or NULL */
     void *user;
+    adcgs_glance *glances; /**< [views] taken of each picture as it is loaded; or NULL */
 } adcgs_pictures_config;
 
 /**

@@ -16,7 +16,8 @@ film()
 # look NAME: learn next to nothing from it; what the encoder says is in $dir/NAME.err.
 look()
 {
-    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 ${quiet:-} >"$dir/out" 2>"$dir/$1.err" ||
+    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 ${quiet:-} >"$dir/out" \
+        2>"$dir/$1.err" ||
         { bad "adcgs-enc of $1"; cat "$dir/$1.err"; }
 }
 # says NAME TEXT: once, and of the others nothing.
@@ -57,9 +58,9 @@ for scene in demo cross80 pass table film-cross80; do
 done
 
 film twice --scene cross20 --cameras 4 --spoil twice=0.2
-says twice '^adcgs-enc: train/r_[0-9]*.ppm: the picture at 0.[0-9]* s is the one before it once more, as are 17 others, 4 of this camera'
+says twice 'ppm: the picture at 0.[0-9]* s is the one before it once more, as are 17 others, 4 of this camera: doubled frames?'
 film drop --scene cross80 --spoil drop=0.3
-says drop 'train/r_004.ppm: its camera has no picture between 0.067 and 0.667 s, where 2 would be expected; there are gaps of another camera'
+says drop 'r_004.ppm: its camera has no picture between 0.067 and 0.667 s, where 2 would be expected; there are gaps of another'
 film inside --scene cross80 --spoil inside=0.2
 says inside 'inside: no camera has a picture between 0.[0-9]* and 0.[0-9]* s: what moves there is a guess'
 film hand --scene film-cross80 --spoil inside=0.3
