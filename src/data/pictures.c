@@ -188,6 +188,8 @@ static adcgs_status load(adcgs_pictures *p, uint32_t view, adcgs_error *error)
     float *rgb;
     ADCGS_TRY(adcgs_scene_load(p->scene, &p->scene->views[p->config.split][view], p->config.divide, &rgb, &p->list[view].camera,
                                error));
+    if (p->config.glances)
+        adcgs_glance_take(&p->config.glances[view], rgb, p->list[view].camera.width, p->list[view].camera.height);
     return keep(p, &p->list[view], rgb, error);
 }
 

@@ -10,6 +10,7 @@
 #define ADCGS_DATA_PICTURES_H
 
 #include "base/pool.h"
+#include "data/glance.h"
 #include "data/scene.h"
 
 typedef struct adcgs_pictures adcgs_pictures;
@@ -23,6 +24,7 @@ typedef struct adcgs_pictures_config {
     uint64_t memory;   /**< bytes of pictures in memory at most; 0: half of what the machine has */
     adcgs_pictures_progress progress; /**< or NULL */
     void *user;
+    adcgs_glance *glances; /**< [views] taken of each picture as it is loaded; or NULL */
 } adcgs_pictures_config;
 
 /**

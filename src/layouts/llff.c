@@ -102,12 +102,17 @@ static adcgs_status read_view(const reader *r, size_t row, int width, int height
     return adcgs_calibrate(view, &lens, width, height, file, r->error);
 }
 
-/** A training view's bounds count for the scene's. */
-static adcgs_status read_bounds(const reader *r, size_t row)
+/** Those of every row are checked; a training view's count for the scene's. */
+static adcgs_status read_bounds(const reader *r, size_t row, adcgs_split split)
 {
     const double near = adcgs_npy_value(&r->table, row, 15), far = adcgs_npy_value(&r->table, row, 16);
-    if (!(near > 0.0 && near < far && far <= WORLD_MAX))
-        return bad_row(r, row, "bounds: expected 0 < near < far");
+    if (!(near > 0.0 && near < far && far <= WORLD_MAX)) {
+        char text[128];
+        snprintf(text, sizeof text, "bounds of depth %g and %g, expected 0 < near < far <= %g", near, far, WORLD_MAX);
+        return bad_row(r, row, text);
+    }
+    if (split != ADCGS_SPLIT_TRAIN)
+        return ADCGS_OK;
     double *bound = &r->scene->near_bound;
     *bound = *bound > 0.0 ? fmin(*bound, near) : near;
     return ADCGS_OK;
@@ -149,8 +154,8 @@ static adcgs_status add_pictures(const reader *r, const char *folder)
         const adcgs_split split = i % TEST_EVERY == 0 ? ADCGS_SPLIT_TEST : ADCGS_SPLIT_TRAIN;
         adcgs_scene_view view;
         status = read_view(r, i, width, height, path, &view);
-        if (status == ADCGS_OK && split == ADCGS_SPLIT_TRAIN)
-            status = read_bounds(r, i);
+        if (status == ADCGS_OK)
+            status = read_bounds(r, i, split);
         if (status == ADCGS_OK && !(view.path = adcgs_path("%s/%s", folder, r->cameras.names[i])))
             status = no_memory(r);
         if (status == ADCGS_OK)
@@ -229,8 +234,7 @@ static adcgs_status add_camera(const reader *r, size_t index, const adcgs_footag
     ADCGS_TRY(adcgs_frames_count(r->frames, footage->frames, &count, r->scene->directory, r->error));
     const char *file = footage->video ? footage->video : footage->pictures[0];
     ADCGS_TRY(read_view(r, index, footage->width, footage->height, file, &like));
-    if (split == ADCGS_SPLIT_TRAIN)
-        ADCGS_TRY(read_bounds(r, index));
+    ADCGS_TRY(read_bounds(r, index, split));
     if (!r->scene->rate.den)
         r->scene->rate = footage->rate;
     return adcgs_footage_add(r->scene, split, &like, footage, r->frames, 0.0, count > 1 ? 1.0 / (double)(count - 1) : 0.0,

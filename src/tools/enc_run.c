@@ -7,6 +7,7 @@
 #include "io/json.h"
 #include "metric/metric.h"
 #include "model/model_priv.h"
+#include "tools/enc_footage.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -109,6 +110,16 @@ static void save_now_and_then(adcgs_enc_watcher *w, double seconds)
         adcgs_cli_note(w->progress.cli, "%s: written again", w->state);
 }
 
+/** As soon as pictures are there, and before hours are spent on them. Nobody asks what is live once more. */
+static void look_at_footage(adcgs_enc_watcher *w)
+{
+    if (w->looked || !w->t->glances || w->is_live)
+        return;
+    w->looked = 1;
+    adcgs_progress_clear(&w->progress);
+    adcgs_enc_doubt_footage(w->progress.cli, w->t->scene, w->t->glances, w->begins, &w->doubted);
+}
+
 static int observe(void *user, const adcgs_train_report *r)
 {
     adcgs_enc_watcher *w = user;
@@ -119,6 +130,7 @@ static int observe(void *user, const adcgs_train_report *r)
         snprintf(segment, sizeof segment, "%u: ", w->segment + 1);
     if (r->attempt > 1)
         snprintf(attempt, sizeof attempt, "try %d: ", r->attempt);
+    look_at_footage(w);
     w->last = *r;
     if (r->iteration && !w->first.iteration)
         w->first = *r;
@@ -245,6 +257,8 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
         adcgs_trainer_free(&w->t);
         ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, otherwise, job->cpu, job->pool, error));
     }
+    w->looked = 0;
+    w->begins = scene->whole && job->cuts.n ? job->cuts.at[w->segment] : 0;
     w->t->quantise = adcgs_encode_quantise_hook;
     w->t->measure = measure;
     w->t->measure_user = w;

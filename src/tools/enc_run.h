@@ -40,6 +40,9 @@ typedef struct adcgs_enc_watcher {
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
     adcgs_error log_error;
+    double begins;    /* of what is learnt, in the scene */
+    int looked;       /* at its footage */
+    unsigned doubted; /* kinds of doubts of footage that were told */
 } adcgs_enc_watcher;
 
 /** What the stream tells of how it was made. */

@@ -46,7 +46,7 @@ static int teardown(void **state)
 
 static adcgs_status load(adcgs_pictures **pictures, uint64_t memory, int divide, adcgs_pictures_progress progress, void *user)
 {
-    const adcgs_pictures_config config = {ADCGS_SPLIT_TRAIN, divide, memory, progress, user};
+    const adcgs_pictures_config config = {ADCGS_SPLIT_TRAIN, divide, memory, progress, user, NULL};
     return adcgs_pictures_load(pictures, scene, &config, pool, &error);
 }
 

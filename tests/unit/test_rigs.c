@@ -101,8 +101,13 @@ static void test_bad_poses(void **state)
                  {26, 1e300, "row 1: height and width"},
                  {31, NAN, "row 1: the focal length"},
                  {31, -5, "row 1: the focal length"},
-                 {32, -1, "row 1: bounds"},
-                 {33, 0.5, "row 1: bounds"},
+                 {32, -1, "poses_bounds.npy: row 1: bounds of depth -1 and "},
+                 {32, NAN, "row 1: bounds of depth nan and "},
+                 {33, 0.5, " and 0.5, expected 0 < near < far"},
+                 {33, NAN, " and nan, expected 0 < near < far"},
+                 {33, INFINITY, " and inf, expected 0 < near < far <= 1e+09"},
+                 {15, NAN, "row 0: bounds of depth nan and "}, /* of a view for testing */
+                 {16, 0.5, "row 0: bounds of depth"},
                  {21, 10, "another shape"},
                  {17, 3, "row 1: the matrix is"}};
     for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {

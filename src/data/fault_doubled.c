@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Pictures of a camera that come twice. */
+#include "config.h"
+
+#include "data/faults.h"
+
+#include "data/tracks.h"
+
+#include <math.h>
+
+#define SAME 0.1   /* of the change before and behind: noise alone is more, and what stops for a moment comes to it slowly */
+#define ONWARDS 0.5 /* of these changes, that pictures around differ by: what goes to and fro, or comes and goes, may rest */
+#define COPIES 2    /* that one picture may have: what rests for longer rests, or is hidden */
+#define PICTURES 2  /* of a camera that have copies: one may be where something that moved is hidden for a moment */
+#define FEW 6      /* pictures of a camera of which nothing can be said */
+
+/** How many copies follow picture i, which has one before it, until the next that differs; 0: none, or something only rests. */
+static uint32_t copies_of(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t i)
+{
+    const adcgs_glance *const before = &glances[order[i - 1]], *const it = &glances[order[i]];
+    const double change = adcgs_glance_difference(before, it);
+    double inside = 0.0, next = 0.0;
+    uint32_t copies = 0;
+    for (; i + copies + 1 < n && copies <= COPIES; copies++) {
+        next = adcgs_glance_difference(&glances[order[i + copies]], &glances[order[i + copies + 1]]);
+        if (!(next <= SAME * change))
+            break;
+        inside = fmax(inside, next);
+    }
+    if (!copies || copies > COPIES || i + copies + 1 >= n || !(change > 0.0 && inside <= SAME * next))
+        return 0;
+    return adcgs_glance_difference(before, &glances[order[i + copies + 1]]) >= ONWARDS * fmax(change, next) ? copies : 0;
+}
+
+/** Of one camera: how many of its pictures are the one before, and the first of them. */
+static uint32_t count_copies(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t *first)
+{
+    uint32_t count = 0, pictures = 0;
+    for (uint32_t i = 1; i + 2 < n; i++) {
+        const uint32_t copies = copies_of(glances, order, n, i);
+        *first = copies && !count ? order[i + 1] : *first;
+        pictures += copies > 0;
+        count += copies;
+        i += copies;
+    }
+    return pictures >= PICTURES ? count : 0;
+}
+
+adcgs_status adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error)
+{
+    const adcgs_scene_view *const views = scene->views[ADCGS_SPLIT_TRAIN];
+    adcgs_tracks tracks;
+    *fault = (adcgs_fault){.cameras = 0};
+    ADCGS_TRY(adcgs_tracks_find(&tracks, views, scene->n_views[ADCGS_SPLIT_TRAIN], error));
+    for (uint32_t c = 0; c < tracks.n; c++) {
+        const uint32_t n = tracks.begin[c + 1] - tracks.begin[c];
+        uint32_t first = 0;
+        if (n < FEW)
+            continue;
+        const uint32_t count = count_copies(glances, tracks.order + tracks.begin[c], n, &first);
+        fault->of++;
+        fault->cameras += count > 0;
+        fault->size += count;
+        if (count > fault->count) {
+            fault->count = count;
+            fault->path = views[first].path;
+            fault->from = fault->to = views[first].time;
+        }
+    }
+    adcgs_tracks_clear(&tracks);
+    return ADCGS_OK;
+}

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Steps of light. What differs between cameras for all of the time is none: they see different things, and their gains are
+ * fitted in training.
+ */
+#include "config.h"
+
+#include "data/faults.h"
+
+#include "data/tracks.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define STEP 0.077      /* the logarithm of 1.08 */
+#define ALONE (1.0 / 3) /* of a step, that what comes before and behind may be: more, and the light changes all the time */
+#define SPREAD (1.0 / 3) /* of a step, that half of a picture's cells may differ by: more, and something else is seen */
+#define FEW 6           /* pictures of a camera of which nothing can be said */
+
+typedef struct step {
+    double from, to; /* times between which it is */
+    double size;     /* logarithm of the factor; 0: none */
+    uint32_t count;  /* of this camera */
+    uint32_t view;   /* the first behind it */
+} step;
+
+/** From a picture to the next; 0 where that is no step of light. */
+static double step_between(const adcgs_glance *a, const adcgs_glance *b, double *any)
+{
+    double spread;
+    *any = adcgs_glance_brighter(a, b, &spread);
+    return fabs(*any) >= STEP && spread <= SPREAD * fabs(*any) ? *any : 0.0;
+}
+
+/** The greatest of one camera's. A flash is a step and a step back. */
+static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n)
+{
+    step out = {.size = 0.0};
+    double before = 0.0, at, behind = 0.0;
+    (void)step_between(&glances[order[0]], &glances[order[1]], &before);
+    for (uint32_t i = 1; i + 2 < n; i++, before = at) {
+        const double size = step_between(&glances[order[i]], &glances[order[i + 1]], &at);
+        (void)step_between(&glances[order[i + 1]], &glances[order[i + 2]], &behind);
+        const double back = fmin(fabs(behind), fabs(behind + at));
+        if (!(fabs(size) > 0.0 && fabs(before) <= ALONE * fabs(size) && back <= ALONE * fabs(size)))
+            continue;
+        out.count++;
+        if (fabs(size) > fabs(out.size)) {
+            out.size = size;
+            out.view = order[i + 1];
+            out.from = views[order[i]].time;
+            out.to = views[order[i + 1]].time;
+        }
+    }
+    return out;
+}
+
+/** How many cameras have a step of the same sign in the time of that one. */
+static uint32_t count_like(const step *steps, uint32_t n, const step *one)
+{
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < n; c++)
+        count += steps[c].size * one->size > 0.0 && steps[c].from < one->to && steps[c].to > one->from;
+    return count;
+}
+
+static void judge(adcgs_fault *f, const adcgs_scene_view *views, const step *steps, uint32_t n)
+{
+    for (uint32_t c = 0; c < n; c++) {
+        const uint32_t like = fabs(steps[c].size) > 0.0 ? count_like(steps, n, &steps[c]) : 0;
+        if (like < f->cameras || !like || (like == f->cameras && fabs(steps[c].size) <= fabs(f->size)))
+            continue;
+        f->cameras = like;
+        f->path = views[steps[c].view].path;
+        f->count = steps[c].count;
+        f->from = steps[c].from;
+        f->to = steps[c].to;
+        f->size = steps[c].size;
+    }
+    f->size = exp(f->size);
+}
+
+adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error)
+{
+    const adcgs_scene_view *const views = scene->views[ADCGS_SPLIT_TRAIN];
+    adcgs_tracks tracks;
+    *fault = (adcgs_fault){.cameras = 0};
+    ADCGS_TRY(adcgs_tracks_find(&tracks, views, scene->n_views[ADCGS_SPLIT_TRAIN], error));
+    step *const steps = adcgs_alloc(NULL, (size_t)tracks.n + 1, sizeof *steps, error);
+    const adcgs_status status = steps ? ADCGS_OK : adcgs_alloc_status(error);
+    for (uint32_t c = 0; steps && c < tracks.n; c++) {
+        const uint32_t n = tracks.begin[c + 1] - tracks.begin[c];
+        if (n >= FEW)
+            steps[fault->of++] = find_step(views, glances, tracks.order + tracks.begin[c], n);
+    }
+    if (steps)
+        judge(fault, views, steps, fault->of);
+    adcgs_free(NULL, steps);
+    adcgs_tracks_clear(&tracks);
+    return status;
+}

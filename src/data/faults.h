@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Faults of footage that times and pictures at a glance show before anything is learnt. What is looked for is rare in footage in
+ * order: where it could be either, nothing is found.
+ */
+#ifndef ADCGS_DATA_FAULTS_H
+#define ADCGS_DATA_FAULTS_H
+
+#include "data/glance.h"
+#include "data/scene.h"
+
+/** What was found. Times are those of the views. */
+typedef struct adcgs_fault {
+    uint32_t cameras;             /**< that have it; 0: none has */
+    uint32_t of;                  /**< cameras that could be judged; of one that moves and took everything 1 */
+    const char *path;             /**< of the view where it begins, of the camera that has it worst; NULL: all have it */
+    uint32_t count;               /**< times that camera has it */
+    double from, to;              /**< where it is worst */
+    double size;                  /**< how bad it is there; see the functions */
+} adcgs_fault;
+
+/**
+ * No picture for a time in which others of the camera came regularly. Views of all splits count as taken. If nobody took anything
+ * in that time, cameras and of are equal. size: pictures that are missing, by the median step.
+ */
+adcgs_status adcgs_fault_gaps(adcgs_fault *fault, const adcgs_scene *scene, adcgs_error *error);
+
+/**
+ * Pictures that are the one before once more, while those around differ. glances: of the training views. count and path are of
+ * the camera that has most; size: how many all cameras have.
+ */
+adcgs_status adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error);
+
+/**
+ * A camera's pictures are all brighter or darker by one factor from one moment on, or at one moment. size: the factor. cameras
+ * are those that have one at the same time.
+ */
+adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error);
+
+/** Changes of a camera's pictures come as those of all others do, but at other moments. size: seconds that it is late. */
+adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error);
+
+#endif

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Faults of footage in words. */
+#include "tools/enc_footage.h"
+
+#include "data/faults.h"
+
+#include <stdlib.h>
+
+enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8 };
+
+/** A file as seen from the scene. */
+static const char *short_name(const adcgs_scene *scene, const char *path)
+{
+    const size_t length = strlen(scene->directory);
+    if (strncmp(path, scene->directory, length) != 0 || path[length] != '/')
+        return path;
+    path += length + 1;
+    return strncmp(path, "./", 2) ? path : path + 2;
+}
+
+/** ", and N other cameras", or nothing; what: the words before the number. */
+static const char *others(char text[64], const char *what, const adcgs_fault *f)
+{
+    *text = '\0';
+    if (f->cameras == 2)
+        snprintf(text, 64, "%s another camera", what);
+    else if (f->cameras > 2)
+        snprintf(text, 64, "%s %u other cameras", what, f->cameras - 1);
+    return text;
+}
+
+static void say_gaps(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
+{
+    char more[64];
+    if (!f->path)
+        adcgs_cli_note(cli, "%s: no camera has a picture between %.3f and %.3f s: what moves there is a guess", scene->directory,
+                       f->from, f->to);
+    else
+        adcgs_cli_note(cli, "%s: its camera has no picture between %.3f and %.3f s, where %.0f would be expected%s",
+                       short_name(scene, f->path), f->from, f->to, f->size, others(more, "; there are gaps of", f));
+}
+
+static void say_doubled(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
+{
+    char more[64] = "";
+    if (f->size > 1)
+        snprintf(more, sizeof more, ", as are %.0f others, %u of this camera", f->size - 1, f->count - 1);
+    adcgs_cli_note(cli, "%s: the picture at %.3f s is the one before it once more%s: doubled frames?", short_name(scene, f->path),
+                   begins + f->from, more);
+}
+
+static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
+{
+    char more[64];
+    adcgs_cli_note(cli, "%s: at %.3f s the pictures of %s become %.2f times as bright%s: does exposure, or the light, change?",
+                   short_name(scene, f->path), begins + f->to, f->cameras == f->of && f->of > 1 ? "all cameras" : "its camera",
+                   f->size, f->cameras == f->of ? "" : others(more, ", and those of", f));
+}
+
+static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
+{
+    char more[64];
+    adcgs_cli_note(cli, "%s: what happens seems %u frame%s %s in its camera than in others%s: are clocks in step?",
+                   short_name(scene, f->path), f->count, f->count > 1 ? "s" : "", f->size > 0 ? "later" : "earlier",
+                   others(more, "; so it does in", f));
+}
+
+void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_glance *glances, double begins,
+                             unsigned *told)
+{
+    const adcgs_scene *const whole = scene->whole ? scene->whole : scene;
+    adcgs_fault gaps, doubled, light, clocks;
+    adcgs_error error;
+    if (*cli->quiet)
+        return;
+    if (!(*told & GAPS) && adcgs_fault_gaps(&gaps, whole, &error) == ADCGS_OK && gaps.cameras)
+        say_gaps(cli, whole, &gaps);
+    *told |= GAPS; /* of the whole scene, once */
+    if (!(*told & DOUBLED) && adcgs_fault_doubled(&doubled, scene, glances, &error) == ADCGS_OK && doubled.cameras) {
+        say_doubled(cli, whole, &doubled, begins);
+        *told |= DOUBLED;
+    }
+    if (!(*told & LIGHT) && adcgs_fault_light(&light, scene, glances, &error) == ADCGS_OK && light.cameras) {
+        say_light(cli, whole, &light, begins);
+        *told |= LIGHT;
+    }
+    if (!(*told & CLOCKS) && adcgs_fault_clocks(&clocks, scene, glances, &error) == ADCGS_OK && clocks.cameras) {
+        say_clocks(cli, whole, &clocks);
+        *told |= CLOCKS;
+    }
+}

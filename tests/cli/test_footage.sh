@@ -1,0 +1,78 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-enc says, before it learns from it, what is wrong with footage: pictures that come twice or are missing, steps of light, a
+# clock that is off. Of footage in order, where much moves, comes, goes and is hidden, and quietly, it says nothing.
+set -u
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-demo-scene
+
+# film NAME OPTIONS...: of adcgs-demo-scene. What is learnt from it first is a quarter as large.
+film()
+{
+    name=$1
+    shift
+    ./adcgs-demo-scene --size "${size:-32x32}" --format ppm --threads 2 -o "$dir/$name" -q "$@" || bad "adcgs-demo-scene $*"
+}
+# look NAME: learn next to nothing from it; what the encoder says is in $dir/NAME.err.
+look()
+{
+    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 ${quiet:-} >"$dir/out" \
+        2>"$dir/$1.err" ||
+        { bad "adcgs-enc of $1"; cat "$dir/$1.err"; }
+}
+# says NAME TEXT: once, and of the others nothing.
+doubts='has a picture between\|has no picture between\|doubled frames\|times as bright\|clocks in step'
+says()
+{
+    look "$1"
+    [ "$(grep -c -- "$2" "$dir/$1.err")" -eq 1 ] || { bad "not once \"$2\" of $1"; cat "$dir/$1.err"; }
+    [ "$(grep -c "$doubts" "$dir/$1.err")" -eq 1 ] || { bad "more doubts than one of $1"; cat "$dir/$1.err"; }
+}
+silent()
+{
+    look "$1"
+    grep "$doubts" "$dir/$1.err" && bad "doubts of $1"
+}
+# late NAME CAMERA FRAMES: of four cameras' pictures in turn; those that camera took come so many moments too late.
+late()
+{
+    awk -v camera="$2" -v frames="$3" '{
+        at = index($0, "train/r_")
+        n = at ? substr($0, at + 8, 3) + 0 : -1
+        if (n >= 0 && n % 4 == camera) {
+            from = n - 4 * frames
+            $0 = substr($0, 1, at + 7) sprintf("%03d", from < 0 ? camera : from) substr($0, at + 11)
+        }
+        print
+    }' "$dir/$1/transforms_train.json" >"$dir/late.json" && mv "$dir/late.json" "$dir/$1/transforms_train.json"
+}
+
+# The four that each see all moments; and the twelve that take turns.
+for scene in appear blink2 pass turn3; do
+    film "$scene" --scene $scene --cameras 4
+    silent "$scene"
+done
+for scene in demo cross80 pass table film-cross80; do
+    film "$scene-12" --scene $scene
+    silent "$scene-12"
+done
+
+film twice --scene cross20 --cameras 4 --spoil twice=0.2
+says twice 'ppm: the picture at 0.[0-9]* s is the one before it once more, as are 17 others, 4 of this camera: doubled frames?'
+film drop --scene cross80 --spoil drop=0.3
+says drop 'r_004.ppm: its camera has no picture between 0.067 and 0.667 s, where 2 would be expected; there are gaps of another'
+film inside --scene cross80 --spoil inside=0.2
+says inside 'inside: no camera has a picture between 0.[0-9]* and 0.[0-9]* s: what moves there is a guess'
+film hand --scene film-cross80 --spoil inside=0.3
+says hand 'its camera has no picture between .* s, where 26 would be expected$'
+film step --scene cross20 --spoil step=0.2
+says step 'the pictures of all cameras become 0.87 times as bright: does exposure, or the light, change?'
+size=64x64
+film sync --scene clip --moments 60 --cameras 4
+silent sync
+late sync 1 2
+says sync 'train/r_001.ppm: what happens seems 2 frames later in its camera than in others: are clocks in step?'
+quiet=-q
+look step
+[ ! -s "$dir/step.err" ] || { bad "--quiet is not quiet"; cat "$dir/step.err"; }
+[ $failed -eq 0 ]
