@@ -3,6 +3,7 @@
 #include "tools/enc_doubt.h"
 
 #include "data/sort.h"
+#include "grad/random.h"
 #include "metric/evaluate.h"
 
 #include <math.h>
@@ -55,10 +56,10 @@ void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_s
     adcgs_error error;
     if (*cli->quiet || !n)
         return;
-    /* One of each stretch of views, not at equal distances: cameras may come in turns. */
+    /* One of each stretch of views, anywhere in it: cameras may come in turns. */
     for (uint32_t i = 0; i < n; i++) {
         const uint64_t from = (uint64_t)all * i / n, until = (uint64_t)all * (i + 1) / n;
-        picked[i] = scene->views[ADCGS_SPLIT_TRAIN][from + 7919u * i % (until - from)];
+        picked[i] = scene->views[ADCGS_SPLIT_TRAIN][from + adcgs_random64(0, 0, i) % (until - from)];
     }
     some.views[ADCGS_SPLIT_TRAIN] = picked;
     some.n_views[ADCGS_SPLIT_TRAIN] = n;

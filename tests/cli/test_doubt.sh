@@ -28,6 +28,8 @@ learn axes --spoil axes=1
 grep -q "training views have .* dB, others .*axes and times right" "$dir/axes.err" || { bad "nothing of wrong axes"; cat "$dir/axes.err"; }
 learn few --cameras 2
 grep -q "filmed by 2 cameras: what is seen from elsewhere is a guess" "$dir/few.err" || { bad "nothing of few cameras"; cat "$dir/few.err"; }
+learn four --cameras 4 --moments 48 # more views than are measured, cameras in turn
+grep "filmed by" "$dir/four.err" && bad "four cameras are not seen"
 quiet=-q
 learn quiet --spoil wrongpose=30
 [ ! -s "$dir/quiet.err" ] || { bad "--quiet is not quiet"; cat "$dir/quiet.err"; }
