@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "io/file.h"
+#include "io/glb.h"
 #include "io/ply.h"
 #include "io/splats_ply.h"
 #include "io/spz.h"
@@ -21,7 +22,7 @@ int adcgs_splats_is(const char *path)
         return 0;
     const size_t n = fread(start, 1, sizeof start, file);
     fclose(file);
-    return adcgs_ply_is(start, n) || adcgs_spz_is(start, n);
+    return adcgs_ply_is(start, n) || adcgs_spz_is(start, n) || adcgs_glb_is(start, n);
 }
 
 /** Colours that do not bend are of degree 0. */
@@ -42,7 +43,8 @@ adcgs_status adcgs_splats_parse(adcgs_splats *out, const uint8_t *data, size_t b
     const adcgs_status status =
         adcgs_ply_is(data, bytes)   ? adcgs_splats_parse_ply(out, data, bytes, path, error)
         : adcgs_spz_is(data, bytes) ? adcgs_spz_parse(out, data, bytes, path, error)
-                                    : adcgs_fail(error, ADCGS_ERR_DATA, "%s: not splats, expected a file of PLY or SPZ", path);
+        : adcgs_glb_is(data, bytes) ? adcgs_glb_parse(out, data, bytes, path, error)
+                                    : adcgs_fail(error, ADCGS_ERR_DATA, "%s: not splats, expected PLY, SPZ or GLB", path);
     if (status == ADCGS_OK)
         drop_zeros(out);
     else

@@ -38,7 +38,7 @@ expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --camera 0
 expect 3 "no/x.ply" ./adcgs-dec "$s" --splats "$dir/no/x.ply"
 
 # Other formats, and back as scenes: the views of both are nearly those of the PLY. y is up there.
-for format in spz; do
+for format in spz glb; do
     ./adcgs-dec "$s" --splats "$dir/a.$format" --time 0.03 2>"$dir/err"
     case $?,$(cat "$dir/err") in
         0,*) ;;
