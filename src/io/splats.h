@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Splats at one moment, in memory and in files. The formats are PLY
- * (io/splats_ply.h), SPZ (io/spz.h) and GLB (io/glb.h); what a file begins with
- * tells a reader which it is, and its name's ending tells a writer.
+ * (io/splats_ply.h), SPZ (io/spz.h), GLB (io/glb.h) and, to be written only,
+ * SOG (io/sog.h); what a file begins with tells a reader which it is, and its
+ * name's ending tells a writer.
  */
 #ifndef ADCGS_IO_SPLATS_H
 #define ADCGS_IO_SPLATS_H
@@ -14,7 +15,7 @@
 #define ADCGS_SPLATS_DC 0.28209479177387814 /**< the spherical harmonic of degree 0: 1 / (2 sqrt(pi)) */
 #define ADCGS_SPLATS_MAX (1u << 24)
 #define ADCGS_SPLATS_DEGREE_MAX 3
-#define ADCGS_SPLATS_NAMES ".ply, .spz or .glb" /**< what names of files may end in, for messages */
+#define ADCGS_SPLATS_NAMES ".ply, .spz, .glb or .sog" /**< what names of files may end in, for messages */
 
 /** World axes, right-handed: codes of adcgs_stream. */
 enum { ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLATS_Y_DOWN };

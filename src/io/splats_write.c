@@ -5,6 +5,7 @@
 #include "io/atomic.h"
 #include "io/extension.h"
 #include "io/glb.h"
+#include "io/sog.h"
 #include "io/splats_ply.h"
 #include "io/spz.h"
 
@@ -18,7 +19,8 @@ static const struct {
     const char *extension;
     put_fn put;
     int turns; /**< what it writes has y up, if it is known what has */
-} formats[] = {{"ply", adcgs_splats_put_ply, 0}, {"spz", adcgs_spz_put, 1}, {"glb", adcgs_glb_put, 1}};
+} formats[] = {{"ply", adcgs_splats_put_ply, 0}, {"spz", adcgs_spz_put, 1}, {"glb", adcgs_glb_put, 1},
+             {"sog", adcgs_sog_put, 1}};
 
 #define FORMATS (sizeof formats / sizeof *formats)
 

@@ -47,7 +47,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          NULL},
         {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
         {"splats", 0, ADCGS_OPTION_STRING, &s->splats, 0, 0, "FILE",
-         "write the splats instead of frames, as .ply, .spz or .glb:\nout.ply for one moment (the first without --time),\n"
+         "write the splats instead of frames, as .ply, .spz, .glb or .sog:\nout.ply for one moment (the first without --time),\n"
          "out%04d.ply for a span",
          NULL, NULL},
         {"f-rest", 0, ADCGS_OPTION_INT, &s->rest_degree, 1, 3, "DEGREE",

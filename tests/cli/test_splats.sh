@@ -38,7 +38,7 @@ expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --camera 0
 expect 3 "no/x.ply" ./adcgs-dec "$s" --splats "$dir/no/x.ply"
 
 # Other formats, and back as scenes: the views of both are nearly those of the PLY. y is up there.
-for format in spz glb; do
+for format in spz glb sog; do
     ./adcgs-dec "$s" --splats "$dir/a.$format" --time 0.03 2>"$dir/err"
     case $?,$(cat "$dir/err") in
         0,*) ;;
@@ -49,6 +49,7 @@ for format in spz glb; do
     cmp -s "$dir/a.$format" "$dir/b.$format" || bad "splats as $format depend on threads or CPU"
     expect 0 "files" ./adcgs-dec "$s" --splats "$dir/t%03d.$format"
     [ "$(find "$dir" -name "t0*.$format" | wc -l)" -eq "$(wc -l <"$dir/md5")" ] || bad "not one $format for each frame"
+    [ $format != sog ] || continue # which is only written
     expect 0 "" ./adcgs-enc "$dir/a.$format" -o "$dir/up.adcgs" --preset draft --iterations 10 --scale 8 --threads 2
     ./adcgs-info "$dir/up.adcgs" | grep -q 'y up' || bad "$format: y is not up"
     head -c $(($(wc -c <"$dir/a.$format") - 7)) "$dir/a.$format" >"$dir/cut.$format"
