@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats in memory, taken from a decoder, and written as PLY. */
+/** \file Splats in memory, and taken from a decoder. */
 #include "config.h"
 
 #include "io/splats.h"
-
-#include "io/atomic.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define ARRAYS 14
 #define ALIGN 64
-#define WRITTEN 17 /* floats of a splat in a file */
 
 static void place(adcgs_splats *s, float *block, size_t slots)
 {
@@ -90,48 +87,4 @@ adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primit
         out->opacity[i] = 0.0f;
     out->n = n;
     return ADCGS_OK;
-}
-
-static void put_header(FILE *file, uint32_t n, const char *comment)
-{
-    static const char *const names[WRITTEN] = {"x",      "y",       "z",       "nx",      "ny",      "nz",
-                                               "f_dc_0", "f_dc_1",  "f_dc_2",  "opacity", "scale_0", "scale_1",
-                                               "scale_2", "rot_0",  "rot_1",   "rot_2",   "rot_3"};
-    fprintf(file, "ply\nformat binary_little_endian 1.0\ncomment %s\nelement vertex %u\n", comment, n);
-    for (int i = 0; i < WRITTEN; i++)
-        fprintf(file, "property float %s\n", names[i]);
-    fputs("end_header\n", file);
-}
-
-/** The numbers before their activations, each rounded once. */
-static void put_splat(FILE *file, const adcgs_splats *s, uint32_t i)
-{
-    float values[WRITTEN] = {0};
-    uint8_t record[4 * WRITTEN];
-    const double opacity = (double)s->opacity[i];
-    values[9] = (float)log(opacity / (1.0 - opacity));
-    for (int a = 0; a < 3; a++) {
-        values[a] = s->mean[a][i];
-        values[6 + a] = (float)(((double)s->colour[a][i] - 0.5) / ADCGS_SPLATS_DC);
-        values[10 + a] = (float)log((double)s->scale[a][i]);
-    }
-    for (int a = 0; a < 4; a++)
-        values[13 + a] = s->rotation[a][i];
-    for (int j = 0; j < WRITTEN; j++)
-        adcgs_store_le32(record + 4 * j, adcgs_float_bits(values[j]));
-    fwrite(record, sizeof record, 1, file);
-}
-
-adcgs_status adcgs_splats_write(const adcgs_splats *splats, const char *comment, const char *path, adcgs_error *error)
-{
-    adcgs_atomic atomic;
-    for (uint32_t i = 0; i < splats->n; i++)
-        if (!(splats->opacity[i] > 0.0f && splats->opacity[i] < 1.0f))
-            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: splat %u: an opacity of %g has no logit", path, i,
-                              (double)splats->opacity[i]);
-    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
-    put_header(atomic.file, splats->n, comment);
-    for (uint32_t i = 0; i < splats->n; i++)
-        put_splat(atomic.file, splats, i);
-    return adcgs_atomic_commit(&atomic, error);
 }

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Splats at one moment in files: the PLY of 3D Gaussian splatting, with one
- * vertex per splat and the properties x y z, nx ny nz (zero, unused), f_dc_0..2,
- * f_rest_*, opacity, scale_0..2 and rot_0..3. Its numbers are those before the
- * activations: colour = 0.5 + ADCGS_SPLATS_DC f_dc, opacity a logit, scales
- * natural logarithms, the quaternion w x y z of any length.
+ * Splats at one moment, in memory and in files. The formats are PLY
+ * (io/splats_ply.h), SPZ (io/spz.h), GLB (io/glb.h) and, to be written only,
+ * SOG (io/sog.h); what a file begins with tells a reader which it is, and its
+ * name's ending tells a writer.
  */
 #ifndef ADCGS_IO_SPLATS_H
 #define ADCGS_IO_SPLATS_H
@@ -16,6 +15,10 @@
 #define ADCGS_SPLATS_DC 0.28209479177387814 /**< the spherical harmonic of degree 0: 1 / (2 sqrt(pi)) */
 #define ADCGS_SPLATS_MAX (1u << 24)
 #define ADCGS_SPLATS_DEGREE_MAX 3
+#define ADCGS_SPLATS_NAMES ".ply, .spz, .glb or .sog" /**< what names of files may end in, for messages */
+
+/** World axes, right-handed: codes of adcgs_stream. */
+enum { ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLATS_Y_DOWN };
 
 /**
  * Arrays as in adcgs_primitives, but in world units: 64-byte aligned and as long as the next multiple of 64, where what is behind
@@ -23,6 +26,7 @@
  */
 typedef struct adcgs_splats {
     uint32_t n;
+    uint8_t axes;      /**< ADCGS_SPLATS_Y_UP..., as far as the file or the stream tells */
     float *mean[3], *scale[3], *rotation[4]; /**< world units; standard deviations, > 0; unit quaternion w x y z */
     float *opacity;    /**< 0..1 */
     float *colour[3];  /**< 0.5 + ADCGS_SPLATS_DC f_dc: RGB seen from everywhere, not clipped */
@@ -44,20 +48,30 @@ void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out);
 adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primitives, const double origin[3], double scale,
                                const char *path, adcgs_error *error);
 
+/** Whether the file begins as one of splats does; of PLY, any. */
+int adcgs_splats_is(const char *path);
 /**
- * Read a PLY of splats: text, or binary of either byte order; float or double properties. The properties may stand in any order;
- * nx, ny, nz and unknown ones are skipped; f_rest_* must be none, 9, 24 or 45, and are dropped if all are zero.
- * \return ADCGS_ERR_UNSUPPORTED for a compressed PLY, ADCGS_ERR_DATA, naming what is wrong where, if it is something else, has no
- * splats, lacks a property, ends early or holds a number that is not finite or a scale outside e^-80..e^80.
+ * Read a file of splats. Harmonics that are all zero are dropped.
+ * \return ADCGS_ERR_UNSUPPORTED for what the format has and we do not take, ADCGS_ERR_DATA, naming what is wrong where, if it is
+ * something else, has no splats, ends early or holds a number that is none.
  */
 adcgs_status adcgs_splats_read(adcgs_splats *out, const char *path, adcgs_error *error);
 /** As adcgs_splats_read() from memory, with a zero byte behind the data. */
 adcgs_status adcgs_splats_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 
+/** How to write them. */
+typedef struct adcgs_splats_style {
+    const char *comment; /**< a line without its end, for formats that have a place for one */
+    int rest_degree;     /**< 1..3: PLY gets f_rest_* of so high a degree, all zero, for programs that insist on them; 0: none */
+} adcgs_splats_style;
+
+/** ADCGS_ERR_USAGE unless the name ends in what tells a format that takes this style; in any case, ".PLY" too. */
+adcgs_status adcgs_splats_check_name(const char *path, const adcgs_splats_style *style, adcgs_error *error);
 /**
- * Write a binary little-endian PLY of splats without f_rest_*; only colours of degree 0 are written. `comment` is a line of its
- * header without its end. Atomic.
+ * Write a file of the format that its name tells; only colours of degree 0 are written. Where a format says which way is up, what
+ * knows its own is turned. Atomic.
  */
-adcgs_status adcgs_splats_write(const adcgs_splats *splats, const char *comment, const char *path, adcgs_error *error);
+adcgs_status adcgs_splats_write(const adcgs_splats *splats, const adcgs_splats_style *style, const char *path,
+                                adcgs_error *error);
 
 #endif

@@ -1,162 +1,53 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats from PLY: which properties they are, and from logits and logarithms to what is drawn. */
+/** \file Reading splats: the format that a file begins as. */
 #include "config.h"
 
-#include "io/splats.h"
-
 #include "io/file.h"
+#include "io/glb.h"
 #include "io/ply.h"
+#include "io/splats_ply.h"
+#include "io/spz.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define FILE_MAX ((uint64_t)8 << 30)
-#define LOG_SCALE_MAX 80.0f
+#define BEGINNING 4 /* bytes that tell a format */
 
-/* Roles of properties; f_rest_i has the role REST + i. */
-enum { MEAN, DC = 3, OPACITY = 6, SCALE = 7, ROTATION = 10, REST = 14, REST_MAX = 45 };
-
-static const char *const names[REST] = {"x",       "y",       "z",       "f_dc_0",  "f_dc_1", "f_dc_2", "opacity",
-                                        "scale_0", "scale_1", "scale_2", "rot_0",   "rot_1",  "rot_2",  "rot_3"};
-
-typedef struct taker {
-    adcgs_splats *out;
-    float *to[REST];
-    size_t n_rest;
-    int fault;      /**< role of the first number that is not finite, or -1 */
-    uint64_t where; /**< its vertex */
-    int bends;      /**< some f_rest_* is not zero */
-} taker;
-
-static void take(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
+int adcgs_splats_is(const char *path)
 {
-    taker *t = user;
-    const float v = (float)value;
-    if (t->fault < 0 && !isfinite(v)) {
-        t->fault = property->role;
-        t->where = vertex;
-    }
-    if (property->role < REST)
-        t->to[property->role][vertex] = v;
-    else {
-        t->out->harmonics[vertex * t->n_rest + (size_t)(property->role - REST)] = v;
-        t->bends |= v != 0.0f;
-    }
+    uint8_t start[BEGINNING];
+    FILE *file;
+    if (adcgs_file_open(&file, path, NULL) != ADCGS_OK)
+        return 0;
+    const size_t n = fread(start, 1, sizeof start, file);
+    fclose(file);
+    return adcgs_ply_is(start, n) || adcgs_spz_is(start, n) || adcgs_glb_is(start, n);
 }
 
-static adcgs_status give_role(adcgs_ply *ply, const char *name, int role)
+/** Colours that do not bend are of degree 0. */
+static void drop_zeros(adcgs_splats *s)
 {
-    adcgs_ply_property *p = adcgs_ply_find(ply, name);
-    if (!p)
-        return adcgs_fail(ply->error, ADCGS_ERR_DATA,
-                          "%s: no property %s: not splats, which have x, y, z, f_dc_0..2, opacity, scale_0..2 and rot_0..3",
-                          ply->path, name);
-    if (p->type != ADCGS_PLY_FLOAT32 && p->type != ADCGS_PLY_FLOAT64)
-        return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: the property %s is of type %s, expected float or double", ply->path,
-                          name, adcgs_ply_type_name(p->type));
-    p->role = role;
-    return ADCGS_OK;
-}
-
-/** f_rest_0, f_rest_1, ... as far as they go. */
-static adcgs_status find_rest(adcgs_ply *ply, int *out, size_t *n_rest)
-{
-    char name[32];
-    for (*n_rest = 0; *n_rest < REST_MAX; ++*n_rest) {
-        snprintf(name, sizeof name, "f_rest_%zu", *n_rest);
-        if (!adcgs_ply_find(ply, name))
-            break;
-        ADCGS_TRY(give_role(ply, name, REST + (int)*n_rest));
-    }
-    for (int degree = 0; degree <= ADCGS_SPLATS_DEGREE_MAX; degree++)
-        if (*n_rest == 3 * ((size_t)(degree + 1) * (size_t)(degree + 1) - 1)) {
-            *out = degree;
-            return ADCGS_OK;
-        }
-    return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: %zu properties f_rest_*, expected none, 9, 24 or 45", ply->path, *n_rest);
-}
-
-/** From what the file holds to what is drawn. \return ADCGS_ERR_DATA for a scale or a rotation that is none. */
-static adcgs_status activate(adcgs_splats *s, uint32_t i, const char *path, adcgs_error *error)
-{
-    double length = 0.0;
-    for (int a = 0; a < 3; a++) {
-        if (!(fabsf(s->scale[a][i]) <= LOG_SCALE_MAX))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: vertex %u: scale_%d is %g, expected a logarithm from -80 to 80", path,
-                              i, a, (double)s->scale[a][i]);
-        s->scale[a][i] = (float)exp((double)s->scale[a][i]);
-        s->colour[a][i] = (float)(0.5 + ADCGS_SPLATS_DC * (double)s->colour[a][i]);
-    }
-    s->opacity[i] = (float)(1.0 / (1.0 + exp(-(double)s->opacity[i])));
-    for (int a = 0; a < 4; a++)
-        length += (double)s->rotation[a][i] * (double)s->rotation[a][i];
-    if (!(length > 0.0))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: vertex %u: rot_0..3 are all zero, expected a quaternion", path, i);
-    for (int a = 0; a < 4; a++)
-        s->rotation[a][i] = (float)((double)s->rotation[a][i] / sqrt(length));
-    return ADCGS_OK;
-}
-
-static adcgs_status read_vertices(adcgs_ply *ply, taker *t)
-{
-    adcgs_splats *s = t->out;
-    ADCGS_TRY(adcgs_ply_vertices(ply, take, t));
-    if (t->fault >= REST)
-        return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: vertex %llu: f_rest_%d is not a finite number", ply->path,
-                          (unsigned long long)t->where, t->fault - REST);
-    if (t->fault >= 0)
-        return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: vertex %llu: %s is not a finite number", ply->path,
-                          (unsigned long long)t->where, names[t->fault]);
-    for (uint32_t i = 0; i < s->n; i++)
-        ADCGS_TRY(activate(s, i, ply->path, ply->error));
-    if (!t->bends) {
-        free(s->harmonics);
-        s->harmonics = NULL;
-        s->degree = 0;
-    }
-    return ADCGS_OK;
-}
-
-static adcgs_status read_splats(adcgs_ply *ply, adcgs_splats *out)
-{
-    taker t = {.out = out, .fault = -1};
-    int degree = 0;
-    if (adcgs_ply_find(ply, "packed_position"))
-        return adcgs_fail(ply->error, ADCGS_ERR_UNSUPPORTED,
-                          "%s: a compressed PLY (it has packed_position), expected one of plain splats: decompress it first",
-                          ply->path);
-    for (int role = 0; role < REST; role++)
-        ADCGS_TRY(give_role(ply, names[role], role));
-    ADCGS_TRY(find_rest(ply, &degree, &t.n_rest));
-    if (!ply->vertex.count)
-        return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: no splats", ply->path);
-    ADCGS_TRY(adcgs_splats_alloc(out, ply->vertex.count, ply->path, ply->error));
-    out->degree = degree;
-    out->harmonics = t.n_rest ? malloc(out->n * t.n_rest * sizeof *out->harmonics) : NULL;
-    if (t.n_rest && !out->harmonics)
-        return adcgs_fail(ply->error, ADCGS_ERR_MEMORY, "%s: out of memory for %u splats", ply->path, out->n);
-    for (int a = 0; a < 3; a++) {
-        t.to[MEAN + a] = out->mean[a];
-        t.to[DC + a] = out->colour[a];
-        t.to[SCALE + a] = out->scale[a];
-    }
-    t.to[OPACITY] = out->opacity;
-    for (int a = 0; a < 4; a++)
-        t.to[ROTATION + a] = out->rotation[a];
-    return read_vertices(ply, &t);
+    const size_t n = (size_t)s->n * 3 * (size_t)((s->degree + 1) * (s->degree + 1) - 1);
+    for (size_t i = 0; i < n; i++)
+        if (s->harmonics[i] != 0.0f)
+            return;
+    free(s->harmonics);
+    s->harmonics = NULL;
+    s->degree = 0;
 }
 
 adcgs_status adcgs_splats_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
 {
-    adcgs_ply *ply;
     *out = (adcgs_splats){0};
-    if (!adcgs_ply_is(data, bytes))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a PLY file", path);
-    ADCGS_TRY(adcgs_ply_open(&ply, data, bytes, path, error));
-    const adcgs_status status = read_splats(ply, out);
-    adcgs_ply_close(&ply);
-    if (status != ADCGS_OK)
+    const adcgs_status status =
+        adcgs_ply_is(data, bytes)   ? adcgs_splats_parse_ply(out, data, bytes, path, error)
+        : adcgs_spz_is(data, bytes) ? adcgs_spz_parse(out, data, bytes, path, error)
+        : adcgs_glb_is(data, bytes) ? adcgs_glb_parse(out, data, bytes, path, error)
+                                    : adcgs_fail(error, ADCGS_ERR_DATA, "%s: not splats, expected PLY, SPZ or GLB", path);
+    if (status == ADCGS_OK)
+        drop_zeros(out);
+    else
         adcgs_splats_free(out);
     return status;
 }

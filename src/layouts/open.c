@@ -10,6 +10,7 @@
 #include "data/paths.h"
 #include "data/pose.h"
 #include "io/file.h"
+#include "io/splats.h"
 #include "layouts/colmap.h"
 #include "layouts/hypernerf.h"
 #include "layouts/llff.h"
@@ -209,7 +210,7 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     case ADCGS_DATASET_ADCGS:
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a scene file (JSON)", scene->directory);
     case ADCGS_DATASET_SPLATS:
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats (PLY)", scene->directory);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats", scene->directory);
     default:
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
@@ -219,13 +220,13 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     return adcgs_frames_keep(scene, &options->frames, scene->directory, error);
 }
 
-/** Splats, told by being a PLY file; a scene file or a file of transforms, told by the field adcgs_scene. */
+/** Splats, told by what the file begins with; a scene file or a file of transforms, told by the field adcgs_scene. */
 static adcgs_status read_file(adcgs_scene *scene, const char *path, char **points_path, const adcgs_scene_options *options,
                               adcgs_error *error)
 {
     json_t *root;
     int is_scene_file = options->dataset == ADCGS_DATASET_ADCGS;
-    if (options->dataset == ADCGS_DATASET_SPLATS || (options->dataset == ADCGS_DATASET_AUTO && adcgs_is_ply(path)))
+    if (options->dataset == ADCGS_DATASET_SPLATS || (options->dataset == ADCGS_DATASET_AUTO && adcgs_splats_is(path)))
         return adcgs_splat_scene_read(scene, !options->points_path, path, error);
     if (options->dataset == ADCGS_DATASET_AUTO) {
         ADCGS_TRY(adcgs_json_load(&root, path, error));

@@ -7,7 +7,6 @@
 #include "camera/rotation.h"
 #include "data/sort.h"
 #include "data/splat_views.h"
-#include "io/file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,17 +23,6 @@
 #define RADIUS_MAX 1e9
 
 static const uint32_t n_views[ADCGS_SPLITS] = {100, 10, 20};
-
-int adcgs_is_ply(const char *path)
-{
-    char start[4];
-    FILE *file;
-    if (adcgs_file_open(&file, path, NULL) != ADCGS_OK)
-        return 0;
-    const size_t n = fread(start, 1, sizeof start, file);
-    fclose(file);
-    return n == sizeof start && !memcmp(start, "ply", 3) && (start[3] == '\n' || start[3] == '\r');
-}
 
 /* ---- Where the splats are ---- */
 
@@ -92,10 +80,10 @@ static void normalise(adcgs_splat_scene *s)
 
 /* ---- Cameras ---- */
 
-/** A camera at `distance` in the direction `out` from the centre, looking back; y points down in its picture. */
+/** A camera at `distance` in the direction `out` from the centre, looking back; y points down in its picture unless it is up. */
 static void aim(adcgs_camera *camera, const adcgs_splat_scene *s, const double out[3], double distance)
 {
-    static const double up[3] = {0.0, -1.0, 0.0}; /* never the direction of a view */
+    const double up[3] = {0.0, s->splats.axes == ADCGS_SPLATS_Y_UP ? 1.0 : -1.0, 0.0}; /* never the direction of a view */
     double eye[3], forward[3];
     for (int i = 0; i < 3; i++) {
         eye[i] = s->centre[i] + distance * out[i];
@@ -180,6 +168,6 @@ adcgs_status adcgs_splat_scene_read(adcgs_scene *scene, int want_points, const c
     normalise(s);
     for (int split = 0; split < ADCGS_SPLITS; split++)
         ADCGS_TRY(add_views(scene, split, path, error));
-    scene->axes = ADCGS_AXES_UNKNOWN;
+    scene->axes = s->splats.axes;
     return ADCGS_OK;
 }

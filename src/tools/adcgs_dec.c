@@ -28,12 +28,12 @@ typedef struct settings {
     adcgs_budget budget;
     adcgs_camera_path_request request;
     adcgs_config config;
-    int quiet, tiers, cpu, fit, half, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int quiet, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     double opened; /**< when opening the input began, in seconds */
     adcgs_http *http, *http_beside; /**< what is read where URLs are given */
 } settings;
 
-#define OPTION_COUNT 29
+#define OPTION_COUNT 30
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -47,8 +47,11 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          NULL},
         {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
         {"splats", 0, ADCGS_OPTION_STRING, &s->splats, 0, 0, "FILE",
-         "write the splats as PLY instead of frames: out.ply for one\nmoment (the first without --time), out%04d.ply for a span",
+         "write the splats instead of frames, as .ply, .spz, .glb or .sog:\nout.ply for one moment (the first without --time),\n"
+         "out%04d.ply for a span",
          NULL, NULL},
+        {"f-rest", 0, ADCGS_OPTION_INT, &s->rest_degree, 1, 3, "DEGREE",
+         "with --splats: give PLY the zeros of harmonics of this degree,\nfor programs that insist on them", NULL, NULL},
         {"bits", 0, ADCGS_OPTION_INT, &s->bits, 8, 16, "N", "bits of a sample in PNG, TIFF and PPM: 8 or 16", NULL, NULL},
         {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
          "leave the background out and write alpha: premultiplied in\nEXR, straight in PNG and TIFF", NULL, NULL},
@@ -339,8 +342,10 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
     from.decoder = *decoder;
     if (s->cameras)
         return adcgs_camera_path_write(from.decoder, s->cameras, error);
-    if (s->splats)
-        return adcgs_dec_splats(cli, from.decoder, s->input, s->splats, &s->request, error);
+    if (s->splats) {
+        const adcgs_dec_splats_config how = {.target = s->splats, .rest_degree = s->rest_degree};
+        return adcgs_dec_splats(cli, from.decoder, s->input, &how, &s->request, error);
+    }
     adcgs_status status = s->beside ? open_input(&from.beside, &s->http_beside, s->beside, s, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = decode(cli, s, &from, mismatch, error);
@@ -393,7 +398,10 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     if (s->answer && (frames || s->times || s->cameras))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--answer goes with --layers, --strict, --threads and --cpu only");
     if (s->splats && (s->answer || s->cameras || frames))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--splats goes with --time, --layers, --strict, --threads and --cpu only");
+        return adcgs_fail(error, ADCGS_ERR_USAGE,
+                          "--splats goes with --f-rest, --time, --layers, --strict, --threads and --cpu only");
+    if (s->rest_degree && !s->splats)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--f-rest needs --splats");
     if (shapes_output(s) && !s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
                           "--format, --half, --float, --linear, --bits, --alpha, --depth and --beside need --output");

@@ -331,7 +331,7 @@ static const adcgs_cli program = {
     .operands = "SCENE",
     .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
     .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D or COLMAP,\n"
-               "a transforms.json, a scene file, or a PLY file of splats, of which it renders views.",
+               "a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), of which it renders views.",
     .min_operands = 0,
     .max_operands = 1,
 };

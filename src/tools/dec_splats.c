@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file adcgs-dec --splats: the splats of moments as PLY files. */
+/** \file adcgs-dec --splats: the splats of moments as files. */
 #include "config.h"
 
 #include "tools/dec_splats.h"
@@ -11,12 +11,10 @@
 
 #include <stdlib.h>
 
-static adcgs_status check_target(const char *target, int has_many, adcgs_error *error)
+static adcgs_status check_target(const char *target, const adcgs_splats_style *style, int has_many, adcgs_error *error)
 {
-    const size_t n = strlen(target);
     const int places = adcgs_pattern_places(target);
-    if (n < 5 || strcmp(target + n - 4, ".ply"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name of splats must end in .ply", target);
+    ADCGS_TRY(adcgs_splats_check_name(target, style, error));
     if (places < 0 || places > 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: expected one number like %%04d in the name", target);
     if (!places && has_many)
@@ -24,40 +22,56 @@ static adcgs_status check_target(const char *target, int has_many, adcgs_error *
     return ADCGS_OK;
 }
 
-static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, double time, const char *path,
-                                 adcgs_error *error)
+/** The code of what adcgs_info says in words. */
+static uint8_t axes_of(const adcgs_info *info)
+{
+    static const struct {
+        const char *words;
+        uint8_t code;
+    } table[] = {{", y up", ADCGS_SPLATS_Y_UP}, {", z up", ADCGS_SPLATS_Z_UP}, {", y down", ADCGS_SPLATS_Y_DOWN}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (strstr(info->axes, table[i].words))
+            return table[i].code;
+    return ADCGS_SPLATS_UP_UNKNOWN;
+}
+
+static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, double time, int rest_degree,
+                                 const char *path, adcgs_error *error)
 {
     adcgs_primitives primitives;
     adcgs_splats splats;
     char comment[128];
+    const adcgs_splats_style style = {.comment = comment, .rest_degree = rest_degree};
     ADCGS_TRY(adcgs_get_primitives(decoder, time, &primitives, error));
     ADCGS_TRY(adcgs_splats_take(&splats, &primitives, info->scene_origin, info->scene_scale, path, error));
+    splats.axes = axes_of(info);
     snprintf(comment, sizeof comment, "adcgs %s, time %.9g s", PACKAGE_VERSION, time);
-    const adcgs_status status = adcgs_splats_write(&splats, comment, path, error);
+    const adcgs_status status = adcgs_splats_write(&splats, &style, path, error);
     *n = splats.n;
     adcgs_splats_free(&splats);
     return status;
 }
 
-static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, const char *target,
+static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, const adcgs_dec_splats_config *how,
                               const adcgs_camera_path *frames, adcgs_error *error)
 {
-    const size_t size = strlen(target) + 128;
+    const size_t size = strlen(how->target) + 128;
     char *path = malloc(size);
     if (!path)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", target);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", how->target);
     adcgs_status status = ADCGS_OK;
     for (int i = 0; i < frames->n && status == ADCGS_OK && !adcgs_interrupted(); i++) {
-        adcgs_pattern_format(target, i, path, size);
-        status = write_moment(n, decoder, info, frames->frame[i].time, path, error);
+        adcgs_pattern_format(how->target, i, path, size);
+        status = write_moment(n, decoder, info, frames->frame[i].time, how->rest_degree, path, error);
     }
     free(path);
     return status;
 }
 
-adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input, const char *target,
-                              const adcgs_camera_path_request *request, adcgs_error *error)
+adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, const char *input,
+                              const adcgs_dec_splats_config *how, const adcgs_camera_path_request *request, adcgs_error *error)
 {
+    const adcgs_splats_style style = {.rest_degree = how->rest_degree};
     adcgs_info info;
     adcgs_camera_path frames;
     uint32_t n = 0;
@@ -65,16 +79,16 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
     ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     if (!request->has_times) {
         moments.begin = info.time_start;
-        moments.end = adcgs_pattern_places(target) == 0 ? info.time_start : info.time_end;
+        moments.end = adcgs_pattern_places(how->target) == 0 ? info.time_start : info.time_end;
     }
-    ADCGS_TRY(check_target(target, moments.end > moments.begin, error));
+    ADCGS_TRY(check_target(how->target, &style, moments.end > moments.begin, error));
     if (info.truncated)
         adcgs_cli_note(cli, "%s: the stream ends early; writing what is complete", input);
     ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &moments, error));
     if (frames.outside)
         adcgs_cli_note(cli, "%s: %d of %d files show its first or last moment: it lasts from %g to %g s", input, frames.outside,
                        frames.n, info.time_start, info.time_end);
-    const adcgs_status status = write_all(&n, decoder, &info, target, &frames, error);
+    const adcgs_status status = write_all(&n, decoder, &info, how, &frames, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);
     adcgs_camera_path_free(&frames);

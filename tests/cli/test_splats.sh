@@ -26,10 +26,35 @@ cmp -s <"$dir/t000.ply" - "$dir/first.ply" || bad "the first moment"
 cmp -s "$dir/t000.ply" "$dir/t002.ply" && bad "nothing moves"
 expect 2 "%04d" ./adcgs-dec "$s" --splats "$dir/x.ply" --time 0:1
 expect 2 ".ply" ./adcgs-dec "$s" --splats "$dir/x.obj"
+expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/rest.PLY" --f-rest 3 --time 0.03
+[ "$(size "$dir/rest.PLY")" -eq $((248 * $(vertices "$dir/a.ply"))) ] || bad "size of the PLY with f_rest_*"
+grep -q '^property float f_rest_44$' "$dir/rest.PLY" || bad "no f_rest_44"
+expect 2 "only PLY" ./adcgs-dec "$s" --splats "$dir/x.spz" --f-rest 1
+expect 2 "--f-rest needs --splats" ./adcgs-dec "$s" --md5 --f-rest 1
+expect 2 "f-rest" ./adcgs-dec "$s" --splats "$dir/x.ply" --f-rest 4
 expect 2 "one number" ./adcgs-dec "$s" --splats "$dir/x%d%d.ply"
 expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --md5
 expect 2 "--splats goes with" ./adcgs-dec "$s" --splats "$dir/x.ply" --camera 0
 expect 3 "no/x.ply" ./adcgs-dec "$s" --splats "$dir/no/x.ply"
+
+# Other formats, and back as scenes: the views of both are nearly those of the PLY. y is up there.
+for format in spz glb sog; do
+    ./adcgs-dec "$s" --splats "$dir/a.$format" --time 0.03 2>"$dir/err"
+    case $?,$(cat "$dir/err") in
+        0,*) ;;
+        5,*"this build has no"*) echo "skipped: this build has no $format"; continue ;;
+        *) bad "splats as $format"; cat "$dir/err"; continue ;;
+    esac
+    expect 0 "1 file" ./adcgs-dec "$s" --splats "$dir/b.$format" --time 0.03 --threads 1 --cpu scalar
+    cmp -s "$dir/a.$format" "$dir/b.$format" || bad "splats as $format depend on threads or CPU"
+    expect 0 "files" ./adcgs-dec "$s" --splats "$dir/t%03d.$format"
+    [ "$(find "$dir" -name "t0*.$format" | wc -l)" -eq "$(wc -l <"$dir/md5")" ] || bad "not one $format for each frame"
+    [ $format != sog ] || continue # which is only written
+    expect 0 "" ./adcgs-enc "$dir/a.$format" -o "$dir/up.adcgs" --preset draft --iterations 10 --scale 8 --threads 2
+    ./adcgs-info "$dir/up.adcgs" | grep -q 'y up' || bad "$format: y is not up"
+    head -c $(($(wc -c <"$dir/a.$format") - 7)) "$dir/a.$format" >"$dir/cut.$format"
+    expect 4 "cut.$format: " ./adcgs-enc "$dir/cut.$format" -o "$dir/x.adcgs"
+done
 
 # Splats as a scene.
 expect 0 "" ./adcgs-enc "$dir/a.ply" -o "$dir/again.adcgs" --preset draft --iterations 20 --scale 8 --threads 2

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Splats in PLY: what is written, read and refused; a decoder's splats there and back; splats as scenes. */
 #include "outside_files.h"
-#include "random_model.h"
+#include "random_splats.h"
 
 #include "data/harmonics.h"
 #include "data/splat_views.h"
@@ -19,12 +19,6 @@
 #define NAMES 14
 static const char *const names[NAMES] = {"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
                                          "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
-
-static void expect_good(adcgs_status status)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
 
 /* ---- Files made here ---- */
 
@@ -107,7 +101,7 @@ static void test_bad(void **state)
     BAD(NULL, NULL, NULL, 0, "1", "1 2 3 0 0 0 0 0 0 0 0 0 0 0\n", "rot_0..3 are all zero");
     BAD(NULL, NULL, NULL, 0, "1", "1 2 3 0 0 0 0 0 zero 0 1 0 0 0\n", "expected a number");
     put_text("t.ply", "");
-    expect_bad(ADCGS_ERR_DATA, "not a PLY");
+    expect_bad(ADCGS_ERR_DATA, "not splats");
     put_text("t.ply", "ply\n");
     expect_bad(ADCGS_ERR_DATA, "ends early");
     put_text("t.ply", "ply\nformat binary_little_endian 1.0\nelement chunk 1\nproperty float min_x\nelement vertex 1\n"
@@ -115,40 +109,6 @@ static void test_bad(void **state)
     expect_bad(ADCGS_ERR_UNSUPPORTED, "a compressed PLY");
     expect_error(adcgs_splats_read(&s, in("absent.ply"), &error), ADCGS_ERR_IO, "absent.ply", "No such file");
     expect_error(adcgs_splats_alloc(&s, ADCGS_SPLATS_MAX + 1ull, "many", &error), ADCGS_ERR_DATA, "many", "at most 16777216");
-}
-
-static float any(uint64_t *state, double lo, double hi)
-{
-    return (float)(lo + (hi - lo) * (double)adcgs_random_range(state, 0, 1 << 24) / (1 << 24));
-}
-
-/** n splats of any kind in [-1,1]^3 * size + offset. */
-static adcgs_splats random_splats(uint32_t n, double size, double offset, uint64_t seed)
-{
-    adcgs_splats s;
-    expect_good(adcgs_splats_alloc(&s, n, "random", &error));
-    for (uint32_t i = 0; i < n; i++) {
-        double length = 1e-9;
-        for (int a = 0; a < 4; a++) {
-            s.rotation[a][i] = any(&seed, -1.0, 1.0);
-            length += (double)s.rotation[a][i] * (double)s.rotation[a][i];
-        }
-        for (int a = 0; a < 4; a++)
-            s.rotation[a][i] = (float)((double)s.rotation[a][i] / sqrt(length));
-        for (int a = 0; a < 3; a++) {
-            s.mean[a][i] = (float)(offset + size * (double)any(&seed, -1.0, 1.0));
-            s.scale[a][i] = (float)(size * exp((double)any(&seed, -5.0, -2.5)));
-            s.colour[a][i] = any(&seed, -0.2, 1.2);
-        }
-        s.opacity[i] = any(&seed, 0.001, 0.99);
-    }
-    return s;
-}
-
-static void near(float a, float b, double relative, double absolute)
-{
-    if (!(fabs((double)a - (double)b) <= relative * fabs((double)b) + absolute))
-        fail_msg("%.9g, expected %.9g", (double)a, (double)b);
 }
 
 /** What is read is what was written, within the rounding of the numbers in the file. */
@@ -170,15 +130,39 @@ static void same_splats(const adcgs_splats *a, const adcgs_splats *b)
 static void test_round_trip(void **state)
 {
     adcgs_splats s = random_splats(1000, 30.0, -500.0, 3), back;
-    expect_good(adcgs_splats_write(&s, "here", in("w.ply"), &error));
+    expect_good(write_splats(&s, in("w.ply")));
     expect_good(adcgs_splats_read(&back, in("w.ply"), &error));
     same_splats(&back, &s);
     adcgs_splats_free(&back);
     s.opacity[7] = 1.0f;
-    expect_error(adcgs_splats_write(&s, "here", in("w2.ply"), &error), ADCGS_ERR_UNSUPPORTED, "w2.ply", "splat 7");
+    expect_error(write_splats(&s, in("w2.ply")), ADCGS_ERR_UNSUPPORTED, "w2.ply", "splat 7");
     assert_true(access(in("w2.ply"), F_OK) != 0);
     s.opacity[7] = 0.5f;
-    expect_error(adcgs_splats_write(&s, "here", in("no/w.ply"), &error), ADCGS_ERR_IO, "no/w.ply", "No such");
+    expect_error(write_splats(&s, in("no/w.ply")), ADCGS_ERR_IO, "no/w.ply", "No such");
+    adcgs_splats_free(&s);
+}
+
+/** f_rest_* for programs that insist on them: zeros, which reading drops. */
+static void test_rest(void **state)
+{
+    static const size_t rest[] = {0, 9, 24, 45};
+    adcgs_splats s = random_splats(20, 1.0, 0.0, 4), back;
+    for (int degree = 0; degree <= 3; degree++) {
+        const adcgs_splats_style style = {.comment = "here", .rest_degree = degree};
+        size_t bytes;
+        expect_good(adcgs_splats_write(&s, &style, in("r.ply"), &error));
+        uint8_t *const file = load("r.ply", &bytes);
+        size_t header = 0;
+        while (header + 11 < bytes && memcmp(file + header, "end_header\n", 11))
+            header++;
+        assert_int_equal(bytes, header + 11 + 4 * 20 * (17 + rest[degree]));
+        assert_true(!degree == !strstr((char *)file, "property float f_dc_2\nproperty float f_rest_0\n"));
+        free(file);
+        expect_good(adcgs_splats_read(&back, in("r.ply"), &error));
+        assert_true(back.degree == 0 && !back.harmonics);
+        same_splats(&back, &s);
+        adcgs_splats_free(&back);
+    }
     adcgs_splats_free(&s);
 }
 
@@ -186,7 +170,7 @@ static void test_round_trip(void **state)
 static void test_layout(void **state)
 {
     static const char header[] =
-        "ply\nformat binary_little_endian 1.0\ncomment adcgs, now\nelement vertex 1\nproperty float x\nproperty float y\n"
+        "ply\nformat binary_little_endian 1.0\ncomment here\nelement vertex 1\nproperty float x\nproperty float y\n"
         "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float f_dc_0\n"
         "property float f_dc_1\nproperty float f_dc_2\nproperty float opacity\nproperty float scale_0\n"
         "property float scale_1\nproperty float scale_2\n"
@@ -206,7 +190,7 @@ static void test_layout(void **state)
     *s.opacity = 0.75f;
     for (int a = 0; a < 4; a++)
         *s.rotation[a] = a == 1 ? -0.5f : 0.5f;
-    expect_good(adcgs_splats_write(&s, "adcgs, now", in("one.ply"), &error));
+    expect_good(write_splats(&s, in("one.ply")));
     adcgs_splats_free(&s);
     FILE *file = fopen(in("one.ply"), "rb");
     assert_non_null(file);
@@ -222,7 +206,7 @@ static void test_mutations(void **state)
 {
     adcgs_splats s = random_splats(2, 1.0, 0.0, 5);
     uint8_t good[2048], bytes[2048];
-    expect_good(adcgs_splats_write(&s, "good", in("m.ply"), &error));
+    expect_good(write_splats(&s, in("m.ply")));
     adcgs_splats_free(&s);
     FILE *file = fopen(in("m.ply"), "rb");
     assert_non_null(file);
@@ -413,7 +397,7 @@ static void test_export(void **state)
     adcgs_splats s;
     assert_int_equal(adcgs_get_primitives(f->decoder, 0.04, &p, NULL), ADCGS_OK);
     expect_good(adcgs_splats_take(&s, &p, f->info.scene_origin, f->info.scene_scale, "e.ply", &error));
-    expect_good(adcgs_splats_write(&s, "time", in("e.ply"), &error));
+    expect_good(write_splats(&s, in("e.ply")));
     adcgs_splats_free(&s);
     adcgs_scene *scene = open_splats(in("e.ply"));
     for (uint32_t i = 0; i < 20; i += 5)
@@ -457,7 +441,7 @@ static void test_cameras(void **state)
     s.mean[0][7] = 1e6f;
     s.mean[1][8] = -1e20f;
     s.opacity[8] = 0.001f;
-    expect_good(adcgs_splats_write(&s, "c", in("c.ply"), &error));
+    expect_good(write_splats(&s, in("c.ply")));
     adcgs_scene *scene = open_splats(in("c.ply"));
     assert_true(scene->n_views[0] == 100 && scene->n_views[1] == 10 && scene->n_views[2] == 20);
     assert_true(scene->n_times == 1 && scene->duration == 0.0 && !scene->has_alpha && scene->background[0] == 0.0f);
@@ -511,7 +495,7 @@ static void test_scene(void **state)
     const adcgs_scene_options white = {.has_background = 1, .background = {1.0f, 0.5f, 0.0f}};
     float *rgb, *half;
     adcgs_camera camera;
-    expect_good(adcgs_splats_write(&s, "s", in("s.ply"), &error));
+    expect_good(write_splats(&s, in("s.ply")));
     put_text("p.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                       "end_header\n1 2 3\n");
     expect_good(adcgs_scene_open(&scene, in("s.ply"), &white, &error));
@@ -531,14 +515,14 @@ static void test_scene(void **state)
     expect_error(adcgs_scene_open(&scene, in("p.ply"), NULL, &error), ADCGS_ERR_DATA, "p.ply", "not splats");
     for (uint32_t i = 0; i < s.n; i++)
         s.opacity[i] = 0.003f;
-    expect_good(adcgs_splats_write(&s, "s", in("s.ply"), &error));
+    expect_good(write_splats(&s, in("s.ply")));
     expect_error(adcgs_scene_open(&scene, in("s.ply"), NULL, &error), ADCGS_ERR_DATA, "s.ply", "no splat can be seen");
     for (uint32_t i = 0; i < s.n; i++) {
         s.opacity[i] = 0.9f;
         for (int a = 0; a < 3; a++)
             s.mean[a][i] = i % 2 ? 3e38f : -3e38f;
     }
-    expect_good(adcgs_splats_write(&s, "s", in("s.ply"), &error));
+    expect_good(write_splats(&s, in("s.ply")));
     expect_error(adcgs_scene_open(&scene, in("s.ply"), NULL, &error), ADCGS_ERR_DATA, "s.ply", "1e-9 to 1e9");
     adcgs_splats_free(&s);
 }
@@ -622,7 +606,7 @@ static void test_sunflower(void **state)
     same_picture(scene, &scene->views[ADCGS_SPLIT_TEST][3], &p, origin, 1.0);
     same_picture(scene, &scene->views[ADCGS_SPLIT_TEST][12], &p, origin, 1.0);
     adcgs_scene_free(&scene);
-    expect_good(adcgs_splats_write(&s, "again", in("again.ply"), &error));
+    expect_good(write_splats(&s, in("again.ply")));
     expect_good(adcgs_splats_read(&back, in("again.ply"), &error));
     same_splats(&back, &s);
     adcgs_splats_free(&s);
@@ -640,7 +624,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_read),      cmocka_unit_test(test_bad),
-        cmocka_unit_test(test_layout),    cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_layout),    cmocka_unit_test(test_round_trip), cmocka_unit_test(test_rest),
         cmocka_unit_test(test_mutations), cmocka_unit_test_setup_teardown(test_take, open_stream, close_stream),
         cmocka_unit_test_setup_teardown(test_points, open_stream, close_stream),
         cmocka_unit_test_setup_teardown(test_export, open_stream, close_stream),

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The numbers of a GLB file: an attribute's accessor, held against what is there before anything is read. */
+#ifndef ADCGS_IO_GLB_NUMBERS_H
+#define ADCGS_IO_GLB_NUMBERS_H
+
+#include "base/base.h"
+
+#include <jansson.h>
+
+typedef struct adcgs_glb {
+    const char *path;
+    adcgs_error *error;
+    json_t *root;       /**< the caller's to free */
+    json_t *attributes; /**< of the primitive, in root */
+    const uint8_t *numbers; /**< the binary chunk; NULL without one */
+    size_t n_bytes;
+} adcgs_glb;
+
+typedef struct adcgs_glb_view {
+    const uint8_t *at;
+    size_t stride;
+    uint32_t count;  /**< 1 to ADCGS_SPLATS_MAX */
+    int type;        /**< of components, a code of glTF */
+    int is_normal;   /**< integers stand for -1..1 or 0..1 */
+} adcgs_glb_view;
+
+/** An attribute, which must be there with so many components: all that the view has is in the binary chunk. */
+adcgs_status adcgs_glb_find(adcgs_glb_view *view, const adcgs_glb *glb, const char *name, int components);
+/** Component c of element i, both as there are. */
+double adcgs_glb_number(const adcgs_glb_view *view, uint32_t i, int c);
+
+#endif

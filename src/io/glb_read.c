@@ -1,0 +1,344 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Splats from GLB: its chunks, the primitive that is splats, and its attributes' numbers. */
+#include "config.h"
+
+#include "io/glb.h"
+
+#include "io/glb_numbers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define TEXT_MAX ((size_t)16 << 20) /* of JSON: that of splats is a few kilobytes, and jansson takes some 20 times as much */
+#define SCALE_MIN 1.8048514e-35f    /* e^-80: what is flat gets so much */
+#define SCALE_MAX 5.5406223e34
+
+int adcgs_glb_is(const uint8_t *data, size_t bytes)
+{
+    return bytes >= 4 && !memcmp(data, "glTF", 4);
+}
+
+static adcgs_status bad(const adcgs_glb *g, adcgs_status status, const char *what)
+{
+    return adcgs_fail(g->error, status, "%s: glTF: %s", g->path, what);
+}
+
+/* ---- Chunks ---- */
+
+/** The chunk at *at, which then is behind it. */
+static adcgs_status next_chunk(const adcgs_glb *g, const uint8_t **at, const uint8_t *end, const uint8_t **data, size_t *bytes,
+                               uint32_t *type)
+{
+    if (end - *at < ADCGS_GLB_CHUNK)
+        return bad(g, ADCGS_ERR_DATA, "the file ends where a chunk should begin");
+    *bytes = adcgs_load_le32(*at);
+    *type = adcgs_load_le32(*at + 4);
+    *data = *at + ADCGS_GLB_CHUNK;
+    if (*bytes > (size_t)(end - *data))
+        return adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: a chunk of %zu bytes, but %td follow", g->path, *bytes,
+                          end - *data);
+    *at = *data + *bytes;
+    return ADCGS_OK;
+}
+
+static adcgs_status parse_text(adcgs_glb *g, const uint8_t *text, size_t bytes)
+{
+    json_error_t where;
+    if (bytes > TEXT_MAX)
+        return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: %zu bytes of JSON, expected at most %zu", g->path, bytes,
+                          TEXT_MAX);
+    g->root = json_loadb((const char *)text, bytes, JSON_REJECT_DUPLICATES, &where);
+    if (!g->root)
+        return adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: line %d: malformed JSON: %s", g->path, where.line, where.text);
+    const char *const version = json_string_value(json_object_get(json_object_get(g->root, "asset"), "version"));
+    if (!version || strncmp(version, "2.", 2))
+        return bad(g, ADCGS_ERR_DATA, "asset.version: expected 2.0");
+    return ADCGS_OK;
+}
+
+static adcgs_status open_chunks(adcgs_glb *g, const uint8_t *data, size_t bytes)
+{
+    const uint8_t *at = data + ADCGS_GLB_HEADER, *chunk;
+    size_t size;
+    uint32_t type;
+    if (bytes < ADCGS_GLB_HEADER || adcgs_load_le32(data + 4) != 2)
+        return bad(g, ADCGS_ERR_DATA, "expected the header of version 2");
+    const uint32_t length = adcgs_load_le32(data + 8);
+    if (length > bytes || length < ADCGS_GLB_HEADER)
+        return adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %u bytes by its header, but the file has %zu", g->path, length,
+                          bytes);
+    ADCGS_TRY(next_chunk(g, &at, data + length, &chunk, &size, &type));
+    if (type != ADCGS_GLB_JSON)
+        return bad(g, ADCGS_ERR_DATA, "the first chunk is not JSON");
+    ADCGS_TRY(parse_text(g, chunk, size));
+    while (at < data + length && !g->numbers) {
+        ADCGS_TRY(next_chunk(g, &at, data + length, &chunk, &size, &type));
+        if (type == ADCGS_GLB_BINARY) {
+            g->numbers = chunk;
+            g->n_bytes = size;
+        }
+    }
+    return ADCGS_OK;
+}
+
+/* ---- The primitive ---- */
+
+static adcgs_status check_required(const adcgs_glb *g)
+{
+    size_t i;
+    json_t *value;
+    json_array_foreach(json_object_get(g->root, "extensionsRequired"), i, value) {
+        const char *const name = json_string_value(value);
+        if (!name || (strcmp(name, ADCGS_GLB_SPLATS) && strcmp(name, "KHR_mesh_quantization")))
+            return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: needs the extension %s, which we do not have", g->path,
+                              name ? name : "?");
+    }
+    return ADCGS_OK;
+}
+
+/** A text of the extension that may be missing, and then is what is expected. */
+static adcgs_status expect_text(const adcgs_glb *g, json_t *splats, const char *key, const char *expected)
+{
+    const char *const text = json_string_value(json_object_get(splats, key));
+    if (text && strcmp(text, expected))
+        return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: %s: %s, expected %s", g->path, key, text, expected);
+    return ADCGS_OK;
+}
+
+static adcgs_status check_primitive(const adcgs_glb *g, json_t *primitive, json_t *splats)
+{
+    const json_t *const mode = json_object_get(primitive, "mode");
+    json_t *const packed = json_object_get(splats, "extensions");
+    if (!json_is_integer(mode) || json_integer_value(mode))
+        return bad(g, ADCGS_ERR_DATA, "splats with a mode that is not 0 (points)");
+    if (json_object_size(packed))
+        return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: splats by the extension %s, expected plain ones", g->path,
+                          json_object_iter_key(json_object_iter(packed)));
+    ADCGS_TRY(expect_text(g, splats, "kernel", ADCGS_GLB_KERNEL));
+    return expect_text(g, splats, "colorSpace", ADCGS_GLB_COLOURS);
+}
+
+/** The one primitive of splats; the index of its mesh. */
+static adcgs_status find_primitive(const adcgs_glb *g, json_t **out, size_t *mesh)
+{
+    size_t m, p;
+    json_t *value, *primitive;
+    *out = NULL;
+    *mesh = 0;
+    json_array_foreach(json_object_get(g->root, "meshes"), m, value) {
+        json_array_foreach(json_object_get(value, "primitives"), p, primitive) {
+            json_t *const splats = json_object_get(json_object_get(primitive, "extensions"), ADCGS_GLB_SPLATS);
+            if (!splats)
+                continue;
+            if (*out)
+                return bad(g, ADCGS_ERR_UNSUPPORTED, "several primitives of splats, expected one");
+            ADCGS_TRY(check_primitive(g, primitive, splats));
+            *out = primitive;
+            *mesh = m;
+        }
+    }
+    return *out ? ADCGS_OK : bad(g, ADCGS_ERR_DATA, "no splats: no primitive with " ADCGS_GLB_SPLATS);
+}
+
+/* ---- Nodes ---- */
+
+/** Whether an array, if there is one, holds these numbers. */
+static int holds(json_t *array, const double *numbers, size_t n)
+{
+    for (size_t i = 0; array && i < n; i++)
+        if (json_number_value(json_array_get(array, i)) != numbers[i])
+            return 0;
+    return 1;
+}
+
+static int stays(json_t *node)
+{
+    static const double one[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, none[3], ones[3] = {1, 1, 1};
+    static const double upright[4] = {0, 0, 0, 1};
+    return holds(json_object_get(node, "matrix"), one, 16) && holds(json_object_get(node, "translation"), none, 3) &&
+           holds(json_object_get(node, "rotation"), upright, 4) && holds(json_object_get(node, "scale"), ones, 3);
+}
+
+/** No node moves the mesh. parents: index of each node's parent, the count of nodes for none. */
+static adcgs_status check_nodes(const adcgs_glb *g, json_t *nodes, size_t *parents, size_t mesh)
+{
+    const size_t n = json_array_size(nodes);
+    size_t i, j, uses = 0;
+    json_t *node, *child;
+    for (i = 0; i < n; i++)
+        parents[i] = n;
+    json_array_foreach(nodes, i, node) {
+        json_array_foreach(json_object_get(node, "children"), j, child) {
+            const json_int_t index = json_is_integer(child) ? json_integer_value(child) : -1;
+            if (index < 0 || (size_t)index >= n)
+                return bad(g, ADCGS_ERR_DATA, "a child of a node that there is not");
+            parents[index] = i;
+        }
+    }
+    json_array_foreach(nodes, i, node) {
+        const json_t *const used = json_object_get(node, "mesh");
+        if (!json_is_integer(used) || (uint64_t)json_integer_value(used) != mesh)
+            continue;
+        if (uses++)
+            return bad(g, ADCGS_ERR_UNSUPPORTED, "splats of several nodes, expected one");
+        size_t steps = 0;
+        for (size_t at = i; at < n; at = parents[at])
+            if (steps++ > n)
+                return bad(g, ADCGS_ERR_DATA, "nodes that are their own parents");
+            else if (!stays(json_array_get(nodes, at)))
+                return bad(g, ADCGS_ERR_UNSUPPORTED, "a node moves the splats, expected none that does");
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status check_place(const adcgs_glb *g, size_t mesh)
+{
+    json_t *const nodes = json_object_get(g->root, "nodes");
+    size_t *const parents = malloc((json_array_size(nodes) + 1) * sizeof *parents);
+    const adcgs_status status = parents ? check_nodes(g, nodes, parents, mesh) : bad(g, ADCGS_ERR_MEMORY, "out of memory");
+    free(parents);
+    return status;
+}
+
+/* ---- Splats ---- */
+
+/* What becomes of an attribute's finite numbers. \return NULL, or what was expected of them. */
+
+static const char *put_position(adcgs_splats *s, uint32_t i, int k, const double v[4])
+{
+    for (int a = 0; a < 3; a++)
+        s->mean[a][i] = (float)v[a];
+    return NULL;
+}
+
+static const char *put_rotation(adcgs_splats *s, uint32_t i, int k, const double v[4])
+{
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
+    for (int a = 0; a < 4 && length > 0.0; a++)
+        s->rotation[(a + 1) % 4][i] = (float)(v[a] / length);
+    return length > 0.0 ? NULL : "a quaternion";
+}
+
+static const char *put_scale(adcgs_splats *s, uint32_t i, int k, const double v[4])
+{
+    for (int a = 0; a < 3; a++) {
+        if (!(v[a] >= 0.0 && v[a] <= SCALE_MAX))
+            return "numbers from 0 to e^80";
+        s->scale[a][i] = fmaxf((float)v[a], SCALE_MIN);
+    }
+    return NULL;
+}
+
+static const char *put_opacity(adcgs_splats *s, uint32_t i, int k, const double v[4])
+{
+    s->opacity[i] = (float)v[0];
+    return v[0] >= 0.0 && v[0] <= 1.0 ? NULL : "a number from 0 to 1";
+}
+
+static const char *put_colour(adcgs_splats *s, uint32_t i, int k, const double v[4])
+{
+    for (int c = 0; c < 3; c++)
+        s->colour[c][i] = (float)(0.5 + ADCGS_SPLATS_DC * v[c]);
+    return NULL;
+}
+
+/** The k-th coefficient above degree 0. */
+static const char *put_harmonic(adcgs_splats *s, uint32_t i, int k, const double v[4])
+{
+    const size_t per = (size_t)((s->degree + 1) * (s->degree + 1) - 1);
+    for (size_t c = 0; c < 3; c++)
+        s->harmonics[(3 * i + c) * per + (size_t)k] = (float)v[c];
+    return NULL;
+}
+
+typedef const char *(*put_fn)(adcgs_splats *s, uint32_t i, int k, const double v[4]);
+
+static adcgs_status find(adcgs_glb_view *view, const adcgs_glb *g, const adcgs_splats *s, const char *name, int components)
+{
+    ADCGS_TRY(adcgs_glb_find(view, g, name, components));
+    return view->count == s->n ? ADCGS_OK
+                               : adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %s: %u of them, expected %u", g->path, name,
+                                            view->count, s->n);
+}
+
+static adcgs_status take(const adcgs_glb *g, adcgs_splats *s, const char *name, int components, put_fn put, int k)
+{
+    adcgs_glb_view view;
+    ADCGS_TRY(find(&view, g, s, name, components));
+    for (uint32_t i = 0; i < s->n; i++) {
+        double v[4] = {0};
+        const char *wrong = NULL;
+        for (int c = 0; c < components; c++) {
+            v[c] = adcgs_glb_number(&view, i, c);
+            wrong = isfinite(v[c]) ? wrong : "finite numbers";
+        }
+        wrong = wrong ? wrong : put(s, i, k, v);
+        if (wrong)
+            return adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: splat %u: %s: expected %s", g->path, i, name, wrong);
+    }
+    return ADCGS_OK;
+}
+
+static const char *harmonic_name(char out[64], int degree, int n)
+{
+    snprintf(out, 64, ADCGS_GLB_SPLATS ":SH_DEGREE_%d_COEF_%d", degree, n);
+    return out;
+}
+
+/** The degree is that of the last coefficients that are there; there is no memory for them before all are. */
+static adcgs_status take_harmonics(const adcgs_glb *g, adcgs_splats *s)
+{
+    adcgs_glb_view view;
+    char name[64];
+    while (s->degree < ADCGS_SPLATS_DEGREE_MAX && json_object_get(g->attributes, harmonic_name(name, s->degree + 1, 0)))
+        s->degree++;
+    for (int degree = 1; degree <= s->degree; degree++)
+        for (int j = 0; j <= 2 * degree; j++)
+            ADCGS_TRY(find(&view, g, s, harmonic_name(name, degree, j), 3));
+    if (!s->degree)
+        return ADCGS_OK;
+    const size_t n = (size_t)s->n * 3 * (size_t)((s->degree + 1) * (s->degree + 1) - 1);
+    s->harmonics = malloc(n * sizeof *s->harmonics);
+    if (!s->harmonics)
+        return bad(g, ADCGS_ERR_MEMORY, "out of memory for harmonics");
+    for (int degree = 1, k = 0; degree <= s->degree; degree++)
+        for (int j = 0; j <= 2 * degree; j++, k++)
+            ADCGS_TRY(take(g, s, harmonic_name(name, degree, j), 3, put_harmonic, k));
+    return ADCGS_OK;
+}
+
+static adcgs_status take_splats(const adcgs_glb *g, adcgs_splats *s)
+{
+    adcgs_glb_view view;
+    char name[64];
+    ADCGS_TRY(adcgs_glb_find(&view, g, "POSITION", 3));
+    ADCGS_TRY(adcgs_splats_alloc(s, view.count, g->path, g->error));
+    s->axes = ADCGS_SPLATS_Y_UP;
+    ADCGS_TRY(take(g, s, "POSITION", 3, put_position, 0));
+    ADCGS_TRY(take(g, s, ADCGS_GLB_SPLATS ":ROTATION", 4, put_rotation, 0));
+    ADCGS_TRY(take(g, s, ADCGS_GLB_SPLATS ":SCALE", 3, put_scale, 0));
+    ADCGS_TRY(take(g, s, ADCGS_GLB_SPLATS ":OPACITY", 1, put_opacity, 0));
+    ADCGS_TRY(take(g, s, harmonic_name(name, 0, 0), 3, put_colour, 0));
+    return take_harmonics(g, s);
+}
+
+static adcgs_status read_file(adcgs_glb *g, adcgs_splats *out, const uint8_t *data, size_t bytes)
+{
+    json_t *primitive;
+    size_t mesh;
+    ADCGS_TRY(open_chunks(g, data, bytes));
+    ADCGS_TRY(check_required(g));
+    ADCGS_TRY(find_primitive(g, &primitive, &mesh));
+    ADCGS_TRY(check_place(g, mesh));
+    g->attributes = json_object_get(primitive, "attributes");
+    return take_splats(g, out);
+}
+
+adcgs_status adcgs_glb_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
+{
+    adcgs_glb g = {.path = path, .error = error};
+    const adcgs_status status = read_file(&g, out, data, bytes);
+    json_decref(g.root);
+    return status;
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The PLY of 3D Gaussian splatting, with one vertex per splat and the
+ * properties x y z, nx ny nz (zero, unused), f_dc_0..2, f_rest_*, opacity,
+ * scale_0..2 and rot_0..3. Its numbers are those before the activations:
+ * colour = 0.5 + ADCGS_SPLATS_DC f_dc, opacity a logit, scales natural
+ * logarithms, the quaternion w x y z of any length.
+ */
+#ifndef ADCGS_IO_SPLATS_PLY_H
+#define ADCGS_IO_SPLATS_PLY_H
+
+#include "io/splats.h"
+
+#include <stdio.h>
+
+/**
+ * What adcgs_splats_parse() does with what adcgs_ply_is(): text, or binary of either byte order; float or double properties, in
+ * any order; nx, ny, nz and unknown ones are skipped; f_rest_* must be none, 9, 24 or 45. ADCGS_ERR_UNSUPPORTED for a compressed
+ * PLY, ADCGS_ERR_DATA also for a scale outside e^-80..e^80. On failure the caller clears *out.
+ */
+adcgs_status adcgs_splats_parse_ply(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
+/**
+ * Binary and little-endian, to a file that is open; its errors are the caller's to see. ADCGS_ERR_UNSUPPORTED for an opacity of 0
+ * or 1.
+ */
+adcgs_status adcgs_splats_put_ply(const adcgs_splats *splats, const adcgs_splats_style *style, FILE *file, const char *path,
+                                  adcgs_error *error);
+
+#endif

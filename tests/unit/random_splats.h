@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Splats of any kind, and files of them, for the tests of their formats. */
+#ifndef ADCGS_TESTS_RANDOM_SPLATS_H
+#define ADCGS_TESTS_RANDOM_SPLATS_H
+
+#include "outside_files.h"
+#include "random_model.h"
+
+#include "io/file.h"
+#include "io/splats.h"
+
+#include <math.h>
+
+static inline void expect_good(adcgs_status status)
+{
+    if (status != ADCGS_OK)
+        fail_msg("%s", error.text);
+}
+
+static inline void near(float a, float b, double relative, double absolute)
+{
+    if (!(fabs((double)a - (double)b) <= relative * fabs((double)b) + absolute))
+        fail_msg("%.9g, expected %.9g", (double)a, (double)b);
+}
+
+static inline float any(uint64_t *state, double lo, double hi)
+{
+    return (float)(lo + (hi - lo) * (double)adcgs_random_range(state, 0, 1 << 24) / (1 << 24));
+}
+
+/** n splats of any kind in [-1,1]^3 * size + offset. */
+static inline adcgs_splats random_splats(uint32_t n, double size, double offset, uint64_t seed)
+{
+    adcgs_splats s;
+    expect_good(adcgs_splats_alloc(&s, n, "random", &error));
+    for (uint32_t i = 0; i < n; i++) {
+        double length = 1e-9;
+        for (int a = 0; a < 4; a++) {
+            s.rotation[a][i] = any(&seed, -1.0, 1.0);
+            length += (double)s.rotation[a][i] * (double)s.rotation[a][i];
+        }
+        for (int a = 0; a < 4; a++)
+            s.rotation[a][i] = (float)((double)s.rotation[a][i] / sqrt(length));
+        for (int a = 0; a < 3; a++) {
+            s.mean[a][i] = (float)(offset + size * (double)any(&seed, -1.0, 1.0));
+            s.scale[a][i] = (float)(size * exp((double)any(&seed, -5.0, -2.5)));
+            s.colour[a][i] = any(&seed, -0.2, 1.2);
+        }
+        s.opacity[i] = any(&seed, 0.001, 0.99);
+    }
+    return s;
+}
+
+static inline adcgs_status write_splats(const adcgs_splats *splats, const char *path)
+{
+    return adcgs_splats_write(splats, &(adcgs_splats_style){.comment = "here"}, path, &error);
+}
+
+/** A file of the folder; the caller frees it. */
+static inline uint8_t *load(const char *name, size_t *bytes)
+{
+    uint8_t *data = NULL;
+    expect_good(adcgs_file_load(&data, bytes, in(name), 1 << 24, &error));
+    return data;
+}
+
+/** From a splat's middle along one of its axes, as far as it is long. */
+static inline void tip(double out[3], const adcgs_splats *s, uint32_t i, int axis)
+{
+    const double w = (double)s->rotation[0][i], x = (double)s->rotation[1][i], y = (double)s->rotation[2][i];
+    const double z = (double)s->rotation[3][i];
+    const double m[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                            {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                            {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+    for (int a = 0; a < 3; a++)
+        out[a] = (double)s->mean[a][i] + (double)s->scale[axis][i] * m[a][axis];
+}
+
+/**
+ * PlayCanvas' splat-transform (npm) on a file of the folder; the test is skipped without it. ADCGS_SPLAT_TRANSFORM may be its
+ * command, otherwise it is looked for on the path.
+ */
+static inline void splat_transform(const char *from, const char *options, const char *to)
+{
+    const char *const given = getenv("ADCGS_SPLAT_TRANSFORM"), *const command = given ? given : "splat-transform";
+    char line[2048];
+    snprintf(line, sizeof line, "%s --version >/dev/null 2>&1", command);
+    if (system(line)) {
+        print_message("skipped: no splat-transform, and no ADCGS_SPLAT_TRANSFORM\n");
+        skip();
+    }
+    snprintf(line, sizeof line, "%s -w %s %s %s >%s 2>&1", command, options, in(from), in(to), in("splat-transform.log"));
+    if (system(line))
+        fail_msg("%s", line);
+}
+
+#endif

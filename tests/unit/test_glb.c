@@ -1,0 +1,311 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Splats in GLB: what comes back of what is written; files made here of other kinds of numbers; what is refused; another
+ * program's files.
+ */
+#include "outside_files.h"
+#include "random_splats.h"
+
+#include <math.h>
+
+#define NAME "KHR_gaussian_splatting"
+
+/** What is read is what was written, but for the rounding of binary32. */
+static void same_splats(const adcgs_splats *a, const adcgs_splats *b, double relative)
+{
+    assert_int_equal(a->n, b->n);
+    for (uint32_t i = 0; i < a->n; i++) {
+        near(a->opacity[i], b->opacity[i], relative, 0.0);
+        for (int c = 0; c < 3; c++) {
+            assert_true(a->mean[c][i] == b->mean[c][i]);
+            near(a->scale[c][i], b->scale[c][i], relative, 0.0);
+            near(a->colour[c][i], b->colour[c][i], 0.0, 1.3e-7 * (1.0 + fabs((double)b->colour[c][i])));
+        }
+        for (int c = 0; c < 4; c++)
+            near(a->rotation[c][i], b->rotation[c][i], 0.0, 2e-7);
+    }
+}
+
+static void test_round_trip(void **state)
+{
+    adcgs_splats s = random_splats(1000, 30.0, -500.0, 3), back;
+    size_t bytes;
+    expect_good(write_splats(&s, in("w.glb")));
+    uint8_t *const file = load("w.glb", &bytes);
+    assert_true(!memcmp(file, "glTF\2\0\0\0", 8) && adcgs_load_le32(file + 8) == bytes && bytes % 4 == 0);
+    assert_memory_equal(file + 16, "JSON", 4);
+    const size_t text = adcgs_load_le32(file + 12);
+    assert_true(text % 4 == 0 && adcgs_load_le32(file + 20 + text) == 56 * 1000 && bytes == 28 + text + 56 * 1000);
+    assert_memory_equal(file + 24 + text, "BIN\0", 4);
+    free(file);
+    expect_good(adcgs_splats_read(&back, in("w.glb"), &error));
+    same_splats(&back, &s, 0.0);
+    assert_true(back.axes == ADCGS_SPLATS_Y_UP && !back.degree && !back.harmonics);
+    adcgs_splats_free(&back);
+    s.n = 0;
+    expect_error(write_splats(&s, in("none.glb")), ADCGS_ERR_UNSUPPORTED, "none.glb", "at least one splat");
+    expect_error(write_splats(&s, in("no/w.glb")), ADCGS_ERR_IO, "no/w.glb", "No such");
+    assert_true(access(in("none.glb"), F_OK) != 0);
+    adcgs_splats_free(&s);
+}
+
+/* ---- Files made here ---- */
+
+/** A file of a text and numbers; its bytes. */
+static size_t make(uint8_t *to, const char *text, const uint8_t *numbers, size_t n)
+{
+    const size_t length = (strlen(text) + 3) / 4 * 4;
+    memcpy(to, "glTF\2\0\0", 8);
+    adcgs_store_le32(to + 8, (uint32_t)(28 + length + n));
+    adcgs_store_le32(to + 12, (uint32_t)length);
+    memcpy(to + 16, "JSON", 4);
+    memset(to + 20, ' ', length);
+    memcpy(to + 20, text, strlen(text));
+    adcgs_store_le32(to + 20 + length, (uint32_t)n);
+    memcpy(to + 24 + length, "BIN", 4);
+    if (n)
+        memcpy(to + 28 + length, numbers, n);
+    to[28 + length + n] = 0;
+    return 28 + length + n;
+}
+
+/* Two splats: positions of floats in records of 16 bytes, rotations of int16, scales of uint8, opacities of uint16, colours of
+ * floats; then, all of zeros but the last, coefficients of degree 1. */
+#define VIEW(at, bytes) "{\"buffer\":0,\"byteOffset\":" #at ",\"byteLength\":" #bytes "}"
+#define ACCESSOR(view, kind, type) "{\"bufferView\":" #view ",\"componentType\":" #kind ",\"count\":2,\"type\":\"" type "\"}"
+#define NORMAL(view, kind, type) \
+    "{\"bufferView\":" #view ",\"componentType\":" #kind ",\"normalized\":true,\"count\":2,\"type\":\"" type "\"}"
+static const char good[] =
+    "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"" NAME "\"],\"buffers\":[{\"byteLength\":134}],\"bufferViews\":["
+    "{\"buffer\":0,\"byteLength\":28,\"byteStride\":16}," VIEW(28, 16) "," VIEW(44, 6) "," VIEW(50, 4) "," VIEW(54, 32)
+    "," VIEW(86, 48) "],\"accessors\":[" ACCESSOR(0, 5126, "VEC3") "," NORMAL(1, 5122, "VEC4") "," NORMAL(2, 5121, "VEC3")
+    "," NORMAL(3, 5123, "SCALAR") ",{\"bufferView\":4,\"byteOffset\":8,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"},"
+    ACCESSOR(5, 5126, "VEC3") ",{\"bufferView\":5,\"byteOffset\":24,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"}],"
+    "\"nodes\":[{\"children\":[1]},{\"mesh\":1,\"scale\":[1,1,1],\"rotation\":[0,0,0,1]}],"
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":7}}]},{\"primitives\":[{\"attributes\":{"
+    "\"POSITION\":0,\"" NAME ":ROTATION\":1,\"" NAME ":SCALE\":2,\"" NAME ":OPACITY\":3,\"" NAME ":SH_DEGREE_0_COEF_0\":4,\""
+    NAME ":SH_DEGREE_1_COEF_0\":5,\"" NAME ":SH_DEGREE_1_COEF_1\":5,\"" NAME ":SH_DEGREE_1_COEF_2\":6},\"mode\":0,"
+    "\"extensions\":{\"" NAME "\":{\"kernel\":\"ellipse\",\"colorSpace\":\"srgb_rec709_display\"}}}]}]}";
+
+static void put_floats(uint8_t *to, const float *values, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        adcgs_store_le32(to + 4 * i, adcgs_float_bits(values[i]));
+}
+
+static void fill_numbers(uint8_t numbers[134])
+{
+    static const float first[3] = {1, 2, 3}, second[3] = {-4, 5, 6}, dc[6] = {0, 1, -1, 2, 0.5f, 0}, last[6] = {1, 2, 3, 4, 5, 6};
+    static const uint8_t rest[] = {0,    0,    0,   0, 0,    0,    255, 127,  /* rotations: w is 1 */
+                                   0,    128,  0,   0, 0,    0,    1,   0,    /* x is -1, rounded twice */
+                                   255,  51,   1,   0, 128,  2,              /* scales */
+                                   255,  255,  51,  51};                      /* opacities: 1, 0.2 */
+    memset(numbers, 0, 134);
+    put_floats(numbers, first, 3);
+    put_floats(numbers + 16, second, 3);
+    memcpy(numbers + 28, rest, sizeof rest);
+    put_floats(numbers + 62, dc, 6);
+    put_floats(numbers + 110, last, 6);
+}
+
+static void test_kinds(void **state)
+{
+    uint8_t numbers[134], file[4096];
+    adcgs_splats s;
+    fill_numbers(numbers);
+    const size_t bytes = make(file, good, numbers, sizeof numbers);
+    expect_good(adcgs_splats_parse(&s, file, bytes, "k.glb", &error));
+    assert_true(s.n == 2 && s.degree == 1 && s.axes == ADCGS_SPLATS_Y_UP);
+    assert_true(s.mean[0][0] == 1.0f && s.mean[2][0] == 3.0f && s.mean[0][1] == -4.0f && s.mean[2][1] == 6.0f);
+    assert_true(s.rotation[0][0] == 1.0f && s.rotation[1][1] == -1.0f);
+    assert_true(s.scale[0][0] == 1.0f && s.scale[1][0] == 0.2f && s.scale[2][0] == (float)(1 / 255.0));
+    assert_true(s.scale[0][1] > 1e-35f && s.scale[0][1] < 2e-35f); /* flat */
+    assert_true(s.opacity[0] == 1.0f && s.opacity[1] == (float)(0x3333 / 65535.0));
+    near(s.colour[1][0], (float)(0.5 + ADCGS_SPLATS_DC), 1e-7, 0.0);
+    near(s.colour[0][1], (float)(0.5 + 2 * ADCGS_SPLATS_DC), 1e-7, 0.0);
+    for (int i = 0; i < 18; i++) /* coefficient 2 of each channel */
+        assert_true(s.harmonics[i] == (i % 3 == 2 ? (float)(i / 3 + 1) : 0.0f));
+    adcgs_splats_free(&s);
+}
+
+/* ---- What is refused ---- */
+
+static void expect_bad(const char *text, const uint8_t *numbers, size_t n, adcgs_status status, const char *what)
+{
+    uint8_t file[4096];
+    adcgs_splats s;
+    const size_t bytes = make(file, text, numbers, n);
+    expect_error(adcgs_splats_parse(&s, file, bytes, "b.glb", &error), status, "b.glb: ", what);
+    assert_true(!s.n && !s.block && !s.harmonics);
+}
+
+/** The good text with the first place of one of its parts replaced. */
+static void test_bad_text(void **state)
+{
+    static const struct {
+        const char *part, *instead;
+        adcgs_status status;
+        const char *what;
+    } cases[] = {
+        {"\"2.0\"", "\"1.0\"", ADCGS_ERR_DATA, "asset.version"},
+        {"{\"asset\"", "[\"asset\"", ADCGS_ERR_DATA, "line 1: malformed JSON"},
+        {"\"extensionsUsed\"", "\"extensionsRequired\":[\"EXT_odd\"],\"u\"", ADCGS_ERR_UNSUPPORTED, "extension EXT_odd"},
+        {"\"byteLength\":134", "\"byteLength\":135", ADCGS_ERR_DATA, "a buffer of 135 bytes, but the binary chunk has 134"},
+        {"\"byteLength\":134", "\"byteLength\":-1", ADCGS_ERR_DATA, "byteLength: expected a whole number"},
+        {"\"byteLength\":134", "\"byteLength\":1e300", ADCGS_ERR_DATA, "byteLength: expected a whole number"},
+        {"\"byteLength\":134", "\"byteLength\":9999999999999999", ADCGS_ERR_DATA, "byteLength: expected a whole number"},
+        {"\"byteLength\":134", "\"byteLength\":134,\"uri\":\"a.bin\"", ADCGS_ERR_UNSUPPORTED, "a buffer outside of the file"},
+        {"{\"buffer\":0", "{\"buffer\":1", ADCGS_ERR_DATA, "no buffers 1"},
+        {"\"byteLength\":28", "\"byteLength\":27", ADCGS_ERR_DATA, "POSITION: an accessor beyond its view"},
+        {"\"byteLength\":28", "\"byteLength\":1000", ADCGS_ERR_DATA, "POSITION: a view beyond its buffer"},
+        {"\"byteStride\":16", "\"byteStride\":11", ADCGS_ERR_DATA, "byteStride"},
+        {"\"byteStride\":16", "\"byteStride\":9007199254740992", ADCGS_ERR_DATA, "byteStride"},
+        {"\"byteStride\":16", "\"byteStride\":16,\"extensions\":{}", ADCGS_ERR_UNSUPPORTED, "packed by another extension"},
+        {"\"componentType\":5126", "\"componentType\":5125", ADCGS_ERR_DATA, "componentType"},
+        {"\"count\":2", "\"count\":0", ADCGS_ERR_DATA, "POSITION: 0 of them, expected 1 to 16777216"},
+        {"\"count\":2", "\"count\":16777217", ADCGS_ERR_DATA, "POSITION: 16777217 of them, expected 1 to"},
+        {"\"count\":2", "\"count\":16777216", ADCGS_ERR_DATA, "POSITION: an accessor beyond its view"},
+        {"\"count\":2", "\"count\":1", ADCGS_ERR_DATA, "ROTATION: 2 of them, expected 1"},
+        {"\"VEC3\"", "\"VEC2\"", ADCGS_ERR_DATA, "POSITION: of type VEC2, expected VEC3"},
+        {"\"VEC3\"", "\"VEC3\",\"sparse\":{}", ADCGS_ERR_UNSUPPORTED, "a sparse accessor"},
+        {"\"bufferView\":0", "\"bufferView\":6", ADCGS_ERR_DATA, "POSITION: no bufferViews 6"},
+        {"\"bufferView\":0,", "", ADCGS_ERR_DATA, "bufferView: expected a whole number"},
+        {"\"POSITION\":0", "\"POSITION\":7", ADCGS_ERR_DATA, "POSITION: no accessors 7"},
+        {NAME ":ROTATION", NAME ":ROT", ADCGS_ERR_DATA, "ROTATION: not there"},
+        {NAME ":OPACITY", NAME ":O", ADCGS_ERR_DATA, "OPACITY: not there"},
+        {NAME ":SH_DEGREE_0_COEF_0", NAME ":SH", ADCGS_ERR_DATA, "SH_DEGREE_0_COEF_0: not there"},
+        {NAME ":SH_DEGREE_1_COEF_2", NAME ":SH", ADCGS_ERR_DATA, "SH_DEGREE_1_COEF_2: not there"},
+        {"\"mode\":0,", "", ADCGS_ERR_DATA, "not 0 (points)"},
+        {"\"extensions\":{\"" NAME "\"", "\"extensions\":{\"other\"", ADCGS_ERR_DATA, "no splats: no primitive with"},
+        {"\"kernel\":\"ellipse\"", "\"kernel\":\"cube\"", ADCGS_ERR_UNSUPPORTED, "kernel: cube, expected ellipse"},
+        {"srgb_rec709", "lin_rec709", ADCGS_ERR_UNSUPPORTED, "colorSpace: lin_rec709_display, expected srgb"},
+        {"\"kernel\"", "\"extensions\":{\"EXT_packed\":{}},\"k\"", ADCGS_ERR_UNSUPPORTED, "by the extension EXT_packed"},
+        {"\"scale\":[1,1,1]", "\"scale\":[1,2,1]", ADCGS_ERR_UNSUPPORTED, "a node moves the splats"},
+        {"{\"children\":[1]}", "{\"children\":[1],\"translation\":[0,0,1]}", ADCGS_ERR_UNSUPPORTED, "a node moves the splats"},
+        {"{\"children\":[1]}", "{\"children\":[1],\"matrix\":[1]}", ADCGS_ERR_UNSUPPORTED, "a node moves the splats"},
+        {"{\"children\":[1]}", "{\"children\":[2]}", ADCGS_ERR_DATA, "a child of a node that there is not"},
+        {"{\"mesh\":1,", "{\"children\":[0],\"mesh\":1,", ADCGS_ERR_DATA, "their own parents"},
+        {"{\"children\":[1]}", "{\"mesh\":1}", ADCGS_ERR_UNSUPPORTED, "splats of several nodes"},
+        {"{\"primitives\":[", "{\"primitives\":[{\"mode\":0,\"extensions\":{\"" NAME "\":{}}},", ADCGS_ERR_UNSUPPORTED,
+         "several primitives of splats"},
+    };
+    uint8_t numbers[134];
+    char text[4096];
+    fill_numbers(numbers);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const char *const at = strstr(good, cases[i].part);
+        assert_non_null(at);
+        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, cases[i].instead, at + strlen(cases[i].part));
+        expect_bad(text, numbers, sizeof numbers, cases[i].status, cases[i].what);
+    }
+    expect_bad(good, numbers, 0, ADCGS_ERR_DATA, "the binary chunk has 0");
+}
+
+static void test_bad_numbers(void **state)
+{
+    static const struct {
+        size_t at;
+        uint32_t value; /* a word */
+        const char *what;
+    } cases[] = {{4, 0x7f800000, "splat 0: POSITION: expected finite numbers"},
+                 {24, 0x7fc00000, "splat 1: POSITION: expected finite numbers"},
+                 {32, 0, "splat 0: " NAME ":ROTATION: expected a quaternion"},
+                 {66, 0xff800000, "splat 0: " NAME ":SH_DEGREE_0_COEF_0: expected finite numbers"},
+                 {126, 0x7f800000, "splat 1: " NAME ":SH_DEGREE_1_COEF_2: expected finite numbers"}};
+    uint8_t numbers[134];
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        fill_numbers(numbers);
+        adcgs_store_le32(numbers + cases[i].at, cases[i].value);
+        expect_bad(good, numbers, sizeof numbers, ADCGS_ERR_DATA, cases[i].what);
+    }
+    /* Floats for what was integers, which can be out of range. */
+    static const float values[3][3] = {{1, -0.5f, 1}, {1e35f, 1, 1}, {1, 1, 1}};
+    for (int k = 0; k < 3; k++) {
+        adcgs_splats s = random_splats(1, 1.0, 0.0, 4);
+        for (int a = 0; a < 3; a++)
+            s.scale[a][0] = values[k][a];
+        s.opacity[0] = 1.5f;
+        expect_good(write_splats(&s, in("b.glb")));
+        adcgs_splats_free(&s);
+        expect_error(adcgs_splats_read(&s, in("b.glb"), &error), ADCGS_ERR_DATA, "b.glb: ",
+                     k == 2 ? "OPACITY: expected a number from 0 to 1" : "SCALE: expected numbers from 0 to e^80");
+    }
+}
+
+/** Headers and chunks; every cut; one byte at a time with another value: any outcome but a crash, a line for what is refused. */
+static void test_damage(void **state)
+{
+    static const struct {
+        size_t at;
+        uint8_t value;
+        const char *what;
+    } cases[] = {{4, 1, "the header of version 2"}, {8, 3, "bytes by its header"}, {11, 255, "bytes by its header"},
+                 {14, 255, "a chunk of"}, {16, 'K', "the first chunk is not JSON"}};
+    uint8_t numbers[134], file[4096], part[4096];
+    adcgs_splats s;
+    fill_numbers(numbers);
+    const size_t bytes = make(file, good, numbers, sizeof numbers);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        memcpy(part, file, bytes + 1);
+        if (cases[i].at == 8)
+            part[9] = 0;
+        part[cases[i].at] = cases[i].value;
+        expect_error(adcgs_splats_parse(&s, part, bytes, "b.glb", &error), ADCGS_ERR_DATA, "b.glb: ", cases[i].what);
+    }
+    for (size_t cut = 0; cut < bytes; cut++) {
+        uint8_t *const less = malloc(cut + 1);
+        memcpy(less, file, cut);
+        less[cut] = 0;
+        for (int mend = 0; mend < (cut >= 12 ? 2 : 1); mend++) {
+            if (mend)
+                adcgs_store_le32(less + 8, (uint32_t)cut);
+            expect_error(adcgs_splats_parse(&s, less, cut, "cut", &error), ADCGS_ERR_DATA, "cut: ", "");
+        }
+        free(less);
+    }
+    for (size_t i = 0; i < bytes; i++)
+        for (int v = 0; v < 256; v += 5) {
+            memcpy(part, file, bytes + 1);
+            part[i] = (uint8_t)v;
+            const adcgs_status status = adcgs_splats_parse(&s, part, bytes, "mutant", &error);
+            assert_true(status == ADCGS_OK || !strncmp(error.text, "mutant: ", 8));
+            adcgs_splats_free(&s);
+        }
+}
+
+/* ---- Files of others ---- */
+
+/** What PlayCanvas' program makes of our PLY, with and without harmonics. */
+static void test_splat_transform(void **state)
+{
+    adcgs_splats s = random_splats(500, 1.0, 0.0, 77), theirs;
+    expect_good(write_splats(&s, in("a.ply")));
+    splat_transform("a.ply", "", "c.glb");
+    expect_good(adcgs_splats_read(&theirs, in("c.glb"), &error));
+    /* PLY has no direction that is up: they take what it has by y down, x right, and turn it about z. */
+    for (uint32_t i = 0; i < s.n; i++) {
+        assert_true(theirs.mean[0][i] == -s.mean[0][i] && theirs.mean[1][i] == -s.mean[1][i]);
+        assert_true(theirs.mean[2][i] == s.mean[2][i]);
+        near(theirs.opacity[i], s.opacity[i], 1e-5, 0.0);
+        for (int a = 0; a < 3; a++) {
+            double is[3], was[3];
+            near(theirs.scale[a][i], s.scale[a][i], 1e-5, 0.0);
+            near(theirs.colour[a][i], s.colour[a][i], 0.0, 1e-6);
+            tip(is, &theirs, i, a);
+            tip(was, &s, i, a);
+            for (int b = 0; b < 3; b++)
+                near((float)is[b], (float)(b < 2 ? -was[b] : was[b]), 0.0, 1e-5);
+        }
+    }
+    adcgs_splats_free(&s);
+    adcgs_splats_free(&theirs);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_round_trip),  cmocka_unit_test(test_kinds),  cmocka_unit_test(test_bad_text),
+        cmocka_unit_test(test_bad_numbers), cmocka_unit_test(test_damage), cmocka_unit_test(test_splat_transform),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
