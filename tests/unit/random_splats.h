@@ -76,20 +76,30 @@ static inline void tip(double out[3], const adcgs_splats *s, uint32_t i, int axi
         out[a] = (double)s->mean[a][i] + (double)s->scale[axis][i] * m[a][axis];
 }
 
-/**
- * PlayCanvas' splat-transform (npm) on a file of the folder; the test is skipped without it. ADCGS_SPLAT_TRANSFORM may be its
- * command, otherwise it is looked for on the path.
- */
-static inline void splat_transform(const char *from, const char *options, const char *to)
+/** PlayCanvas' splat-transform (npm). ADCGS_SPLAT_TRANSFORM may be its command, otherwise it is looked for on the path. */
+static inline const char *splat_transform_command(void)
 {
-    const char *const given = getenv("ADCGS_SPLAT_TRANSFORM"), *const command = given ? given : "splat-transform";
-    char line[2048];
-    snprintf(line, sizeof line, "%s --version >/dev/null 2>&1", command);
+    const char *const given = getenv("ADCGS_SPLAT_TRANSFORM");
+    return given ? given : "splat-transform";
+}
+
+/** To begin a test with that wants it, before it owns anything: the test is skipped without it. */
+static inline void need_splat_transform(void)
+{
+    char line[1024];
+    snprintf(line, sizeof line, "%s --version >/dev/null 2>&1", splat_transform_command());
     if (system(line)) {
         print_message("skipped: no splat-transform, and no ADCGS_SPLAT_TRANSFORM\n");
         skip();
     }
-    snprintf(line, sizeof line, "%s -w %s %s %s >%s 2>&1", command, options, in(from), in(to), in("splat-transform.log"));
+}
+
+/** It, on a file of the folder. */
+static inline void splat_transform(const char *from, const char *options, const char *to)
+{
+    char line[2048];
+    snprintf(line, sizeof line, "%s -w %s %s %s >%s 2>&1", splat_transform_command(), options, in(from), in(to),
+             in("splat-transform.log"));
     if (system(line))
         fail_msg("%s", line);
 }

@@ -278,6 +278,7 @@ static void test_damage(void **state)
 /** What PlayCanvas' program makes of our PLY, with and without harmonics. */
 static void test_splat_transform(void **state)
 {
+    need_splat_transform();
     adcgs_splats s = random_splats(500, 1.0, 0.0, 77), theirs;
     expect_good(write_splats(&s, in("a.ply")));
     splat_transform("a.ply", "", "c.glb");

@@ -174,6 +174,7 @@ static void test_codebook(void **state)
 
 static void test_splat_transform(void **state)
 {
+    need_splat_transform();
     adcgs_splats s = random_splats(N, 5.0, 2.0, 6), theirs;
     expect_good(write_splats(&s, in("a.sog")));
     splat_transform("a.sog", "", "b.ply");

@@ -390,6 +390,7 @@ static void test_biker(void **state)
 /** PlayCanvas' program reads what we write, as we do; and what it writes of our PLY, by Niantic's own code, we read. */
 static void test_splat_transform(void **state)
 {
+    need_splat_transform();
     adcgs_splats s = random_splats(500, 1.0, 0.0, 77), ours, theirs;
     expect_good(write_splats(&s, in("a.spz")));
     expect_good(write_splats(&s, in("a.ply")));
