@@ -270,17 +270,17 @@ static adcgs_status build(adcgs_splat *s, adcgs_cpu_level cpu, uint32_t *moving_
     return ADCGS_OK;
 }
 
-static void choose_kernels(adcgs_splat *s, adcgs_cpu_level level)
+void adcgs_splat_dsp_init(adcgs_splat_dsp *dsp, adcgs_cpu_level level)
 {
-    adcgs_dense_dsp_init(&s->dense, level);
-    s->dsp = adcgs_splat_scalar;
+    (void)level; /* without SIMD */
+    *dsp = adcgs_splat_scalar;
 #ifdef HAVE_AVX2
     if (level >= ADCGS_CPU_AVX2)
-        s->dsp = adcgs_splat_avx2;
+        *dsp = adcgs_splat_avx2;
 #endif
 #ifdef HAVE_AVX512
     if (level >= ADCGS_CPU_AVX512)
-        s->dsp = adcgs_splat_avx512;
+        *dsp = adcgs_splat_avx512;
 #endif
 }
 
@@ -297,7 +297,8 @@ adcgs_status adcgs_splat_create(adcgs_splat **out, const adcgs_model *model, adc
     s->pool = pool;
     s->memory = memory;
     s->groups = adcgs_lane_groups(model->n);
-    choose_kernels(s, level);
+    adcgs_dense_dsp_init(&s->dense, level);
+    adcgs_splat_dsp_init(&s->dsp, level);
     uint32_t *moving_index = adcgs_alloc(memory, s->groups, sizeof *moving_index, error);
     const adcgs_status status = moving_index ? build(s, level, moving_index, error) : adcgs_alloc_status(error);
     adcgs_free(memory, moving_index);
@@ -425,8 +426,7 @@ adcgs_status adcgs_splat_at(adcgs_splat *s, float t, adcgs_primitives *out, adcg
 
 void adcgs_position_code(float *out, const float *x, int octaves)
 {
-    const adcgs_cpu_level level = adcgs_cpu_best();
-    adcgs_splat s;
-    choose_kernels(&s, level);
-    s.dsp.position_code(out, x, octaves);
+    adcgs_splat_dsp dsp;
+    adcgs_splat_dsp_init(&dsp, adcgs_cpu_best());
+    dsp.position_code(out, x, octaves);
 }

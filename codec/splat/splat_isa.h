@@ -65,4 +65,7 @@ typedef struct adcgs_splat_dsp {
 
 extern const adcgs_splat_dsp adcgs_splat_scalar, adcgs_splat_avx2, adcgs_splat_avx512;
 
+/** The kernels for a resolved level. */
+void adcgs_splat_dsp_init(adcgs_splat_dsp *dsp, adcgs_cpu_level level);
+
 #endif

@@ -124,20 +124,6 @@ static void dense(call *c)
     dsp.residual(added(c, (size_t)n_out * L), given(c, (size_t)n_out * L), n_out);
 }
 
-static const adcgs_splat_dsp *splat_dsp(adcgs_cpu_level level)
-{
-#ifdef HAVE_AVX512
-    if (level == ADCGS_CPU_AVX512)
-        return &adcgs_splat_avx512;
-#endif
-#ifdef HAVE_AVX2
-    if (level == ADCGS_CPU_AVX2)
-        return &adcgs_splat_avx2;
-#endif
-    (void)level;
-    return &adcgs_splat_scalar;
-}
-
 #define FLOATS(type) (sizeof(type) / sizeof(float))
 
 /** All that may move anchors, alone and together. */
@@ -165,19 +151,20 @@ static const adcgs_body_lanes *bodies_of(call *c)
 
 static void anchors(call *c)
 {
-    const adcgs_splat_dsp *const dsp = splat_dsp(c->level);
+    adcgs_splat_dsp dsp;
     const int octaves = size_of(c, 8);
     const adcgs_movers movers = movers_of(c);
-    dsp->anchor((void *)added(c, FLOATS(adcgs_anchor_lanes)), given(c, ADCGS_SIGMA_MAX * L), movers.spans);
+    adcgs_splat_dsp_init(&dsp, c->level);
+    dsp.anchor((void *)added(c, FLOATS(adcgs_anchor_lanes)), given(c, ADCGS_SIGMA_MAX * L), movers.spans);
     const adcgs_anchor_lanes *const anchor = (const void *)given(c, FLOATS(adcgs_anchor_lanes));
-    dsp->predict((void *)added(c, FLOATS(adcgs_slot_lanes)), anchor, given(c, 14 * L));
-    dsp->motion((void *)added(c, FLOATS(adcgs_anchor_motion)), anchor, given(c, 12 * L), &movers, bodies_of(c), given(c, 1)[0]);
-    dsp->position_code(output(c, (size_t)(6 * octaves) * L), given(c, 3 * L), octaves);
+    dsp.predict((void *)added(c, FLOATS(adcgs_slot_lanes)), anchor, given(c, 14 * L));
+    dsp.motion((void *)added(c, FLOATS(adcgs_anchor_motion)), anchor, given(c, 12 * L), &movers, bodies_of(c), given(c, 1)[0]);
+    dsp.position_code(output(c, (size_t)(6 * octaves) * L), given(c, 3 * L), octaves);
 }
 
 static void slots(call *c)
 {
-    const adcgs_splat_dsp *const dsp = splat_dsp(c->level);
+    adcgs_splat_dsp dsp;
     const adcgs_movers movers = movers_of(c);
     const adcgs_anchor_lanes *const anchor = (const void *)given(c, FLOATS(adcgs_anchor_lanes));
     const adcgs_slot_lanes *const slot = (const void *)given(c, FLOATS(adcgs_slot_lanes));
@@ -195,10 +182,11 @@ static void slots(call *c)
     for (int i = 0; i < 4; i++)
         to.rotation[i] = rows + (9 + i) * L;
     to.opacity = rows + 13 * L;
+    adcgs_splat_dsp_init(&dsp, c->level);
     if (c->round & 1)
-        dsp->place(&to, slot, anchor, present);
+        dsp.place(&to, slot, anchor, present);
     const int fewer = (movers.coarse || movers.spans || bodies) && c->round & 2;
-    dsp->deform(&to, slot, motion, &movers, bodies, fewer ? NULL : fine, present, moves);
+    dsp.deform(&to, slot, motion, &movers, bodies, fewer ? NULL : fine, present, moves);
 }
 
 /* ---- The renderer, and what training promises as well ---- */

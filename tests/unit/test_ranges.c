@@ -191,20 +191,6 @@ static void test_same_functions(void **state)
 
 /* ---- What makes splats ---- */
 
-static const adcgs_splat_dsp *dsp_at(adcgs_cpu_level level)
-{
-#ifdef HAVE_AVX512
-    if (level == ADCGS_CPU_AVX512)
-        return &adcgs_splat_avx512;
-#endif
-#ifdef HAVE_AVX2
-    if (level == ADCGS_CPU_AVX2)
-        return &adcgs_splat_avx2;
-#endif
-    (void)level;
-    return &adcgs_splat_scalar;
-}
-
 /* What a group of anchors is given: everything at any place of its range. */
 typedef struct given {
     _Alignas(64) float sigma[11][L];
@@ -289,19 +275,20 @@ static void draw(given *g, uint64_t *random)
 
 static void make(made *m, const given *g, adcgs_cpu_level level)
 {
-    const adcgs_splat_dsp *const dsp = dsp_at(level);
+    adcgs_splat_dsp dsp;
     const adcgs_slot_out to = adcgs_rows_at(m->rows, L, 0);
     const adcgs_body_lanes *const bodies = g->with_bodies ? &g->bodies : NULL;
     memset(m, 0, sizeof *m);
     memcpy(m->anchor.position, g->position, sizeof g->position);
     memcpy(m->anchor.code, g->code, sizeof g->code);
     memcpy(m->anchor.colour, g->colour, sizeof g->colour);
-    dsp->anchor(&m->anchor, g->sigma[0], g->movers.spans);
-    dsp->predict(&m->slot, &m->anchor, g->theta[0]);
-    dsp->place(&to, &m->slot, &m->anchor, g->present);
-    dsp->motion(&m->motion, &m->anchor, g->omega[0], &g->movers, bodies, g->t);
-    dsp->deform(&to, &m->slot, &m->motion, &g->movers, bodies, g->with_fine ? g->varpi[0] : NULL, g->present, g->moves);
-    dsp->position_code(m->code, g->code[0], g->octaves);
+    adcgs_splat_dsp_init(&dsp, level);
+    dsp.anchor(&m->anchor, g->sigma[0], g->movers.spans);
+    dsp.predict(&m->slot, &m->anchor, g->theta[0]);
+    dsp.place(&to, &m->slot, &m->anchor, g->present);
+    dsp.motion(&m->motion, &m->anchor, g->omega[0], &g->movers, bodies, g->t);
+    dsp.deform(&to, &m->slot, &m->motion, &g->movers, bodies, g->with_fine ? g->varpi[0] : NULL, g->present, g->moves);
+    dsp.position_code(m->code, g->code[0], g->octaves);
 }
 
 /* Magnitudes of n numbers; NaN is in no range. */
