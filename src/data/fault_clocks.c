@@ -9,7 +9,6 @@
 #include "data/faults.h"
 
 #include "data/sort.h"
-#include "data/tracks.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -215,7 +214,7 @@ static void take_signals(signals *s, const adcgs_tracks *tracks, const adcgs_sce
     }
 }
 
-static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_tracks *tracks, const adcgs_scene *scene,
+static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_tracks *tracks, const adcgs_scene_view *views,
                          const adcgs_glance *glances, adcgs_error *error)
 {
     double *const agreed = adcgs_alloc(NULL, tracks->n, sizeof *agreed, error);
@@ -224,7 +223,7 @@ static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_tracks *tracks,
     s->first = adcgs_alloc(NULL, tracks->n, sizeof *s->first, error);
     const adcgs_status status = agreed && s->values && s->mean && s->first ? ADCGS_OK : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
-        take_signals(s, tracks, scene->views[ADCGS_SPLIT_TRAIN], glances);
+        take_signals(s, tracks, views, glances);
     f->of = s->cameras;
     if (status == ADCGS_OK && s->cameras >= CAMERAS)
         judge(f, s, agreed);
@@ -235,23 +234,19 @@ static adcgs_status look(adcgs_fault *f, signals *s, const adcgs_tracks *tracks,
     return status;
 }
 
-adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error)
+adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+                                const adcgs_glance *glances, adcgs_error *error)
 {
-    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
-    adcgs_tracks tracks;
-    signals s = {.cameras = 0};
     *fault = (adcgs_fault){.cameras = 0};
-    ADCGS_TRY(adcgs_tracks_find(&tracks, scene->views[ADCGS_SPLIT_TRAIN], n, error));
-    adcgs_status status = ADCGS_OK;
-    if (tracks.n >= CAMERAS) {
-        s.times = adcgs_alloc(NULL, n, sizeof *s.times, error);
-        status = s.times ? ADCGS_OK : adcgs_alloc_status(error);
-        if (status == ADCGS_OK)
-            take_times(&s, scene->views[ADCGS_SPLIT_TRAIN], n);
-        if (status == ADCGS_OK && s.steps >= MOMENTS)
-            status = look(fault, &s, &tracks, scene, glances, error);
-        adcgs_free(NULL, s.times);
-    }
-    adcgs_tracks_clear(&tracks);
+    if (tracks->n < CAMERAS)
+        return ADCGS_OK;
+    const uint32_t n = tracks->begin[tracks->n];
+    signals s = {.times = adcgs_alloc(NULL, n, sizeof *s.times, error)};
+    adcgs_status status = s.times ? ADCGS_OK : adcgs_alloc_status(error);
+    if (status == ADCGS_OK)
+        take_times(&s, views, n);
+    if (status == ADCGS_OK && s.steps >= MOMENTS)
+        status = look(fault, &s, tracks, views, glances, error);
+    adcgs_free(NULL, s.times);
     return status;
 }

@@ -4,8 +4,6 @@
 
 #include "data/faults.h"
 
-#include "data/tracks.h"
-
 #include <math.h>
 
 #define SAME 0.1   /* of the change before and behind: noise alone is more, and what stops for a moment comes to it slowly */
@@ -46,18 +44,16 @@ static uint32_t count_copies(const adcgs_glance *glances, const uint32_t *order,
     return pictures >= PICTURES ? count : 0;
 }
 
-adcgs_status adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error)
+void adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+                         const adcgs_glance *glances)
 {
-    const adcgs_scene_view *const views = scene->views[ADCGS_SPLIT_TRAIN];
-    adcgs_tracks tracks;
     *fault = (adcgs_fault){.cameras = 0};
-    ADCGS_TRY(adcgs_tracks_find(&tracks, views, scene->n_views[ADCGS_SPLIT_TRAIN], error));
-    for (uint32_t c = 0; c < tracks.n; c++) {
-        const uint32_t n = tracks.begin[c + 1] - tracks.begin[c];
+    for (uint32_t c = 0; c < tracks->n; c++) {
+        const uint32_t n = tracks->begin[c + 1] - tracks->begin[c];
         uint32_t first = 0;
         if (n < FEW)
             continue;
-        const uint32_t count = count_copies(glances, tracks.order + tracks.begin[c], n, &first);
+        const uint32_t count = count_copies(glances, tracks->order + tracks->begin[c], n, &first);
         fault->of++;
         fault->cameras += count > 0;
         fault->size += count;
@@ -67,6 +63,4 @@ adcgs_status adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene *scene, c
             fault->from = fault->to = views[first].time;
         }
     }
-    adcgs_tracks_clear(&tracks);
-    return ADCGS_OK;
 }

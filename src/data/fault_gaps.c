@@ -6,7 +6,6 @@
 
 #include "data/by_camera.h"
 #include "data/sort.h"
-#include "data/tracks.h"
 
 #include <math.h>
 

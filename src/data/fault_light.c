@@ -7,10 +7,7 @@
 
 #include "data/faults.h"
 
-#include "data/tracks.h"
-
 #include <math.h>
-#include <stdlib.h>
 
 #define STEP 0.077      /* the logarithm of 1.08 */
 #define ALONE (1.0 / 3) /* of a step, that what comes before and behind may be: more, and the light changes all the time */
@@ -36,11 +33,11 @@ static double step_between(const adcgs_glance *a, const adcgs_glance *b, double 
 static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n)
 {
     step out = {.size = 0.0};
-    double before = 0.0, at, behind = 0.0;
+    double before = 0.0, at = 0.0, behind = 0.0, next;
     (void)step_between(&glances[order[0]], &glances[order[1]], &before);
-    for (uint32_t i = 1; i + 2 < n; i++, before = at) {
-        const double size = step_between(&glances[order[i]], &glances[order[i + 1]], &at);
-        (void)step_between(&glances[order[i + 1]], &glances[order[i + 2]], &behind);
+    double size = step_between(&glances[order[1]], &glances[order[2]], &at);
+    for (uint32_t i = 1; i + 2 < n; i++, before = at, at = behind, size = next) {
+        next = step_between(&glances[order[i + 1]], &glances[order[i + 2]], &behind);
         const double back = fmin(fabs(behind), fabs(behind + at));
         if (!(fabs(size) > 0.0 && fabs(before) <= ALONE * fabs(size) && back <= ALONE * fabs(size)))
             continue;
@@ -80,22 +77,19 @@ static void judge(adcgs_fault *f, const adcgs_scene_view *views, const step *ste
     f->size = exp(f->size);
 }
 
-adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error)
+adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+                               const adcgs_glance *glances, adcgs_error *error)
 {
-    const adcgs_scene_view *const views = scene->views[ADCGS_SPLIT_TRAIN];
-    adcgs_tracks tracks;
+    step *const steps = adcgs_alloc(NULL, (size_t)tracks->n + 1, sizeof *steps, error);
     *fault = (adcgs_fault){.cameras = 0};
-    ADCGS_TRY(adcgs_tracks_find(&tracks, views, scene->n_views[ADCGS_SPLIT_TRAIN], error));
-    step *const steps = adcgs_alloc(NULL, (size_t)tracks.n + 1, sizeof *steps, error);
-    const adcgs_status status = steps ? ADCGS_OK : adcgs_alloc_status(error);
-    for (uint32_t c = 0; steps && c < tracks.n; c++) {
-        const uint32_t n = tracks.begin[c + 1] - tracks.begin[c];
+    if (!steps)
+        return adcgs_alloc_status(error);
+    for (uint32_t c = 0; c < tracks->n; c++) {
+        const uint32_t n = tracks->begin[c + 1] - tracks->begin[c];
         if (n >= FEW)
-            steps[fault->of++] = find_step(views, glances, tracks.order + tracks.begin[c], n);
+            steps[fault->of++] = find_step(views, glances, tracks->order + tracks->begin[c], n);
     }
-    if (steps)
-        judge(fault, views, steps, fault->of);
+    judge(fault, views, steps, fault->of);
     adcgs_free(NULL, steps);
-    adcgs_tracks_clear(&tracks);
-    return status;
+    return ADCGS_OK;
 }

@@ -7,7 +7,7 @@
 #define ADCGS_DATA_FAULTS_H
 
 #include "data/glance.h"
-#include "data/scene.h"
+#include "data/tracks.h"
 
 /** What was found. Times are those of the views. */
 typedef struct adcgs_fault {
@@ -26,18 +26,21 @@ typedef struct adcgs_fault {
 adcgs_status adcgs_fault_gaps(adcgs_fault *fault, const adcgs_scene *scene, adcgs_error *error);
 
 /**
- * Pictures that are the one before once more, while those around differ. glances: of the training views. count and path are of
- * the camera that has most; size: how many all cameras have.
+ * Pictures that are the one before once more, while those around differ. tracks, glances: of these views, here and below. count
+ * and path are of the camera that has most; size: how many all cameras have.
  */
-adcgs_status adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error);
+void adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+                         const adcgs_glance *glances);
 
 /**
  * A camera's pictures are all brighter or darker by one factor from one moment on, or at one moment. size: the factor. cameras
  * are those that have one at the same time.
  */
-adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error);
+adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+                               const adcgs_glance *glances, adcgs_error *error);
 
 /** Changes of a camera's pictures come as those of all others do, but at other moments. size: seconds that it is late. */
-adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene *scene, const adcgs_glance *glances, adcgs_error *error);
+adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+                                const adcgs_glance *glances, adcgs_error *error);
 
 #endif

@@ -65,27 +65,44 @@ static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adc
                    others(more, "; so it does in", f));
 }
 
+/** What pictures show, each kind until it was told. */
+static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_tracks *tracks,
+                             const adcgs_glance *glances, double begins, unsigned *told)
+{
+    const adcgs_scene_view *const views = scene->views[ADCGS_SPLIT_TRAIN];
+    adcgs_fault f;
+    adcgs_error error;
+    if (!(*told & DOUBLED)) {
+        adcgs_fault_doubled(&f, views, tracks, glances);
+        if (f.cameras) {
+            say_doubled(cli, whole, &f, begins);
+            *told |= DOUBLED;
+        }
+    }
+    if (!(*told & LIGHT) && adcgs_fault_light(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
+        say_light(cli, whole, &f, begins);
+        *told |= LIGHT;
+    }
+    if (!(*told & CLOCKS) && adcgs_fault_clocks(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
+        say_clocks(cli, whole, &f);
+        *told |= CLOCKS;
+    }
+}
+
 void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_glance *glances, double begins,
                              unsigned *told)
 {
     const adcgs_scene *const whole = scene->whole ? scene->whole : scene;
-    adcgs_fault gaps, doubled, light, clocks;
+    adcgs_fault gaps;
+    adcgs_tracks tracks;
     adcgs_error error;
     if (*cli->quiet)
         return;
     if (!(*told & GAPS) && adcgs_fault_gaps(&gaps, whole, &error) == ADCGS_OK && gaps.cameras)
         say_gaps(cli, whole, &gaps);
     *told |= GAPS; /* of the whole scene, once */
-    if (!(*told & DOUBLED) && adcgs_fault_doubled(&doubled, scene, glances, &error) == ADCGS_OK && doubled.cameras) {
-        say_doubled(cli, whole, &doubled, begins);
-        *told |= DOUBLED;
-    }
-    if (!(*told & LIGHT) && adcgs_fault_light(&light, scene, glances, &error) == ADCGS_OK && light.cameras) {
-        say_light(cli, whole, &light, begins);
-        *told |= LIGHT;
-    }
-    if (!(*told & CLOCKS) && adcgs_fault_clocks(&clocks, scene, glances, &error) == ADCGS_OK && clocks.cameras) {
-        say_clocks(cli, whole, &clocks);
-        *told |= CLOCKS;
-    }
+    if (adcgs_tracks_find(&tracks, scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], &error) != ADCGS_OK)
+        return;
+    look_at_pictures(cli, scene, whole, &tracks, glances, begins, told);
+    adcgs_tracks_clear(&tracks);
 }
