@@ -20,8 +20,7 @@ mkdir -p "$out/scenes" "$out/kept"
 charts()
 {
     scene=$2 name=$3
-    case " ${SCENES:-demo cross80 room hand} " in *" $name "*) ;; *) return 0 ;; esac
-    [ -e "$scene" ] || { echo "charts: no $scene, left out" >&2; return 0; }
+    wanted charts "${SCENES:-demo cross80 room hand}" "$scene" "$name" || return 0
     echo "charts: $name" >&2
     ./adcgs-sweep "$scene" -o "$out/$name" -l "${LAMBDAS:-0.1,0.4}" --grid "iterations=${ITERATIONS:-400,1200,3600}" -t 1 \
         --set tiers=1 --seeds 1 --yardsticks none --resume >"$out/$name.txt" ||

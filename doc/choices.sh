@@ -54,8 +54,7 @@ choose()
 # choices_of TITLE SCENE NAME WEIGHT
 choices_of()
 {
-    case " ${SCENES:-demo zju} " in *" $3 "*) ;; *) return 0 ;; esac
-    [ -e "$2" ] || { echo "choices: no $2, left out" >&2; return 0; }
+    wanted choices "${SCENES:-demo zju}" "$2" "$3" || return 0
     printf '\n%s:\n\n| Without | Seed | Bytes | Anchors | Primitives | PSNR, dB | Moving | CPU, s |\n|---|---|---|---|---|---|---|---|\n' "$1" \
         >>"$out/choices.md"
     for seed in ${SEEDS:-1}; do

@@ -25,5 +25,12 @@ each_scene()
     "$@" '`zju313_15f`' "$data/zju313_15f" zju 0.3
 }
 
+# wanted TOOL SCENES SCENE NAME: whether a scene is one of those that are asked for by their short names, and is there.
+wanted()
+{
+    case " $2 " in *" $4 "*) ;; *) return 1 ;; esac
+    [ -e "$3" ] || { echo "$1: no $3, left out" >&2; return 1; }
+}
+
 # value NAME FILE: of a report as JSON, or of a whole evaluation, not of a view; nothing where it is null.
 value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }

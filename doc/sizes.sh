@@ -8,7 +8,6 @@
 #   SCENES      object, table, or of doc/scenes.sh, by their short names (default "object table cross80 zju")
 #   LAMBDAS     default 0.1,0.4
 #   GRID        the default's choice first (default "k=6,3,10 detail_anchors=50,25,100")
-#   FIXED       settings of adcgs-enc --fixed
 #   ITERATIONS  of training (default 1500)
 #   JOBS        runs at a time (default 1)
 #   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
@@ -18,6 +17,9 @@ out=${SIZES:-sizes}
 failed=0
 mkdir -p "$out/scenes" "$out/kept"
 . "$source/doc/scenes.sh"
+# What adcgs-enc --fixed sets, which adcgs-sweep takes as settings.
+fixed=$(sed -n 's/^#define FIXED "\(.*\)"$/\1/p' "$source/src/tools/adcgs_enc.c")
+[ -n "$fixed" ] || { echo "sizes: no settings of --fixed" >&2; exit 1; }
 
 # sweep FOLDER SCENE OPTIONS...
 sweep()
@@ -58,11 +60,10 @@ table()
 sizes()
 {
     title=$1 scene=$2 name=$3
-    case " ${SCENES:-object table cross80 zju} " in *" $name "*) ;; *) return 0 ;; esac
-    [ -e "$scene" ] || { echo "sizes: no $scene, left out" >&2; return 0; }
+    wanted sizes "${SCENES:-object table cross80 zju}" "$scene" "$name" || return 0
     echo "sizes: $name" >&2
-    { sweep "$name/fixed" "$scene" --set "tiers=1,${FIXED:-detail_anchors=0,still_below=0,decide_at=2,prune_units_at=2}" &&
-        sweep "$name" "$scene" --grid "${GRID:-k=6,3,10 detail_anchors=50,25,100}" --set tiers=1 --against "$out/$name/fixed"; } ||
+    { sweep "$name/fixed" "$scene" --set "tiers=1,$fixed" &&
+        sweep "$name" "$scene" --set tiers=1 --grid "${GRID:-k=6,3,10 detail_anchors=50,25,100}" --against "$out/$name/fixed"; } ||
         { echo "sizes: $name failed" >&2; failed=1; return 0; }
     for chart in rate time; do
         cp "$out/$name/$chart.svg" "$out/kept/$name-sizes-$chart.svg"
