@@ -6,6 +6,7 @@
 
 #ifdef HAVE_SOG
 
+#include "geom/geom.h"
 #include "io/codebook.h"
 #include "io/json.h"
 #include "io/zip.h"
@@ -16,16 +17,11 @@
 
 #define PLACE_MAX 65535.0
 
-typedef struct place {
-    uint64_t key;     /**< along the curve */
-    uint32_t i;       /**< of the splat */
-    uint16_t at[3];   /**< of its position in what 16 bits hold */
-} place;
-
 typedef struct writer {
     const adcgs_splats *s;
     adcgs_zip zip;
-    place *places;    /**< [n], in their order in the pictures */
+    uint32_t (*at)[3]; /**< [n] positions in what 16 bits hold, z y x, along Morton's curve, in which x comes first here */
+    uint32_t *order;  /**< [n] splats in that order, which is that of the pictures */
     double low[3], high[3]; /**< of the logarithms of positions */
     float scales[ADCGS_CODEBOOK], colours[ADCGS_CODEBOOK];
     int width, height;
@@ -54,12 +50,6 @@ static float scale_of(const adcgs_splats *s, uint32_t i, int a)
 
 /* ---- Places ---- */
 
-static int compare(const void *a, const void *b)
-{
-    const place *const x = a, *const y = b;
-    return x->key != y->key ? (x->key > y->key) - (x->key < y->key) : (x->i > y->i) - (x->i < y->i);
-}
-
 static void find_bounds(writer *w)
 {
     for (int a = 0; a < 3; a++) {
@@ -71,19 +61,15 @@ static void find_bounds(writer *w)
     }
 }
 
-static void find_places(writer *w)
+/** \return 0 where there was no memory. */
+static int find_places(writer *w)
 {
-    for (uint32_t i = 0; i < w->s->n; i++) {
-        place *const p = &w->places[i];
-        *p = (place){.i = i};
+    for (uint32_t i = 0; i < w->s->n; i++)
         for (int a = 0; a < 3; a++) {
             const double span = w->high[a] > w->low[a] ? w->high[a] - w->low[a] : 1.0;
-            p->at[a] = (uint16_t)floor(PLACE_MAX * (log_of(w->s->mean[a][i]) - w->low[a]) / span + 0.5);
-            for (int bit = 0; bit < 16; bit++)
-                p->key |= (uint64_t)(p->at[a] >> bit & 1) << (3 * bit + a);
+            w->at[i][2 - a] = (uint32_t)floor(PLACE_MAX * (log_of(w->s->mean[a][i]) - w->low[a]) / span + 0.5);
         }
-    }
-    qsort(w->places, w->s->n, sizeof *w->places, compare);
+    return adcgs_morton_sort(&w->at[0][0], w->s->n, w->order, NULL) >= 0;
 }
 
 /** One of values of all splats and channels. */
@@ -99,25 +85,25 @@ static int make_book(float *book, const adcgs_splats *s, float (*value)(const ad
 
 /* ---- Pictures ---- */
 
-static void paint_low(uint8_t *to, const writer *w, const place *p)
+static void paint_low(uint8_t *to, const writer *w, uint32_t k)
 {
     for (int a = 0; a < 3; a++)
-        to[a] = (uint8_t)p->at[a];
+        to[a] = (uint8_t)w->at[k][2 - a];
 }
 
-static void paint_high(uint8_t *to, const writer *w, const place *p)
+static void paint_high(uint8_t *to, const writer *w, uint32_t k)
 {
     for (int a = 0; a < 3; a++)
-        to[a] = (uint8_t)(p->at[a] >> 8);
+        to[a] = (uint8_t)(w->at[k][2 - a] >> 8);
 }
 
 /** The three smaller components, and in alpha which of w x y z is the largest, which counts as positive. */
-static void paint_rotation(uint8_t *to, const writer *w, const place *p)
+static void paint_rotation(uint8_t *to, const writer *w, uint32_t k)
 {
     double q[4];
     int largest = 0;
     for (int a = 0; a < 4; a++) {
-        q[a] = (double)w->s->rotation[a][p->i];
+        q[a] = (double)w->s->rotation[a][w->order[k]];
         largest = fabs(q[a]) > fabs(q[largest]) ? a : largest;
     }
     for (int a = 0; a < 4; a++)
@@ -126,21 +112,21 @@ static void paint_rotation(uint8_t *to, const writer *w, const place *p)
     *to = (uint8_t)(252 + largest);
 }
 
-static void paint_scale(uint8_t *to, const writer *w, const place *p)
+static void paint_scale(uint8_t *to, const writer *w, uint32_t k)
 {
     for (int a = 0; a < 3; a++)
-        to[a] = adcgs_codebook_find(w->scales, scale_of(w->s, p->i, a));
+        to[a] = adcgs_codebook_find(w->scales, scale_of(w->s, w->order[k], a));
 }
 
-static void paint_colour(uint8_t *to, const writer *w, const place *p)
+static void paint_colour(uint8_t *to, const writer *w, uint32_t k)
 {
     for (int c = 0; c < 3; c++)
-        to[c] = adcgs_codebook_find(w->colours, colour_of(w->s, p->i, c));
-    to[3] = to_byte(255.0 * (double)w->s->opacity[p->i]);
+        to[c] = adcgs_codebook_find(w->colours, colour_of(w->s, w->order[k], c));
+    to[3] = to_byte(255.0 * (double)w->s->opacity[w->order[k]]);
 }
 
 /** \return 0 where there was no memory. */
-static int add_picture(writer *w, const char *name, void (*paint)(uint8_t *to, const writer *w, const place *p))
+static int add_picture(writer *w, const char *name, void (*paint)(uint8_t *to, const writer *w, uint32_t k))
 {
     uint8_t *packed = NULL;
     const size_t pixels = (size_t)w->width * (size_t)w->height;
@@ -149,7 +135,7 @@ static int add_picture(writer *w, const char *name, void (*paint)(uint8_t *to, c
         memset(to, 0, 3);
         to[3] = 255;
         if (k < w->s->n)
-            paint(to, w, &w->places[k]);
+            paint(to, w, (uint32_t)k);
     }
     const size_t bytes = WebPEncodeLosslessRGBA(w->pixels, w->width, w->height, 4 * w->width, &packed);
     if (bytes)
@@ -238,13 +224,13 @@ static int fill(writer *w)
     const uint32_t n = w->s->n;
     w->width = 4 * (int)ceil(sqrt((double)n) / 4.0); /* 4096 at most, and multiples of 4, as others write them */
     w->height = 4 * (int)ceil((double)n / w->width / 4.0);
-    w->places = malloc(n * sizeof *w->places);
+    w->at = malloc(n * sizeof *w->at);
+    w->order = malloc(n * sizeof *w->order);
     w->pixels = malloc((size_t)4 * (size_t)w->width * (size_t)w->height);
-    if (!w->places || !w->pixels || !make_book(w->scales, w->s, scale_of) || !make_book(w->colours, w->s, colour_of))
+    if (!w->at || !w->order || !w->pixels || !make_book(w->scales, w->s, scale_of) || !make_book(w->colours, w->s, colour_of))
         return 0;
     find_bounds(w);
-    find_places(w);
-    return add_pictures(w);
+    return find_places(w) && add_pictures(w);
 }
 
 adcgs_status adcgs_sog_put(const adcgs_splats *splats, const adcgs_splats_style *style, FILE *file, const char *path,
@@ -257,7 +243,8 @@ adcgs_status adcgs_sog_put(const adcgs_splats *splats, const adcgs_splats_style 
                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %u splats", path, splats->n);
     if (status == ADCGS_OK)
         adcgs_zip_end(&w.zip);
-    free(w.places);
+    free(w.at);
+    free(w.order);
     free(w.pixels);
     return status;
 }
