@@ -3,6 +3,7 @@
 #ifndef TESTS_RANGES_H
 #define TESTS_RANGES_H
 
+#include "base/fmath.h"
 #include "unit/pixels_scene.h"
 
 static inline int ranges_chance(uint64_t *state, double p)
@@ -29,6 +30,16 @@ static inline double ranges_between(uint64_t *state, double low, double high)
 {
     const double at = 1.25 * scene_uniform(state) - 0.125;
     return at < 0 ? low : at > 1 ? high : low + at * (high - low);
+}
+
+/** As the specification has it (`opacity_of`). */
+static inline float ranges_opacity_of(float power)
+{
+    const float m = power + ADCGS_ROUND_MAGIC, f = power - (m - ADCGS_ROUND_MAGIC);
+    float p = fmaf(0x1.409102p-7f, f, 0x1.ca9008p-5f);
+    p = fmaf(p, f, 0x1.ebf1b4p-3f);
+    p = fmaf(p, f, 0x1.62dfcap-1f);
+    return adcgs_scale2(fmaf(p, f, 1.0f), m);
 }
 
 #endif

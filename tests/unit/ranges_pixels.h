@@ -125,15 +125,6 @@ static inline int ranges_compare(const void *a, const void *b)
     return x->z != y->z ? (x->z < y->z ? -1 : 1) : x->slot < y->slot ? -1 : x->slot > y->slot;
 }
 
-static inline float ranges_opacity_of(float power)
-{
-    const float m = power + ADCGS_ROUND_MAGIC, f = power - (m - ADCGS_ROUND_MAGIC);
-    float p = fmaf(0x1.409102p-7f, f, 0x1.ca9008p-5f);
-    p = fmaf(p, f, 0x1.ebf1b4p-3f);
-    p = fmaf(p, f, 0x1.62dfcap-1f);
-    return adcgs_scale2(fmaf(p, f, 1.0f), m);
-}
-
 /** A pixel, and how many splats changed it. */
 typedef struct blended {
     float x, y, t, colour[3];

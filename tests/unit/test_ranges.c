@@ -54,16 +54,6 @@ static float cospi(float x)
     return c;
 }
 
-/* As the specification has it (`opacity_of`). */
-static float opacity_of(float power)
-{
-    const float m = power + ADCGS_ROUND_MAGIC, f = power - (m - ADCGS_ROUND_MAGIC);
-    float p = fmaf(0x1.409102p-7f, f, 0x1.ca9008p-5f);
-    p = fmaf(p, f, 0x1.ebf1b4p-3f);
-    p = fmaf(p, f, 0x1.62dfcap-1f);
-    return adcgs_scale2(fmaf(p, f, 1.0f), m);
-}
-
 typedef struct function {
     const char *name;
     float (*computed)(float x);
@@ -82,7 +72,7 @@ static const function functions[] = {
     {"log2", adcgs_log2, log2, 0x1.010102p-8f, 1, 2.65, 3.09e-7, 0, 0},
     {"sinpi", sinpi, exact_sinpi, 0, 0x1p20f, 0, 8.5e-8, 0, -1},
     {"cospi", cospi, exact_cospi, 0, 0x1p20f, 0, 8.5e-8, 0, -1},
-    {"opacity_of", opacity_of, exp2, -0x1.ffa37cp+2f, -0x1p-7f, 54.1, 3.63e-6, 1, 1},
+    {"opacity_of", ranges_opacity_of, exp2, -0x1.ffa37cp+2f, -0x1p-7f, 54.1, 3.63e-6, 1, 1},
 };
 
 /* The place of a finite number in the order of all of them, and back. */
