@@ -96,8 +96,6 @@ void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, con
     adcgs_fault gaps;
     adcgs_tracks tracks;
     adcgs_error error;
-    if (*cli->quiet)
-        return;
     if (!(*told & GAPS) && adcgs_fault_gaps(&gaps, whole, &error) == ADCGS_OK && gaps.cameras)
         say_gaps(cli, whole, &gaps);
     *told |= GAPS; /* of the whole scene, once */

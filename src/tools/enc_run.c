@@ -110,14 +110,20 @@ static void save_now_and_then(adcgs_enc_watcher *w, double seconds)
         adcgs_cli_note(w->progress.cli, "%s: written again", w->state);
 }
 
-/** As soon as pictures are there, and before hours are spent on them. Nobody asks what is live once more. */
+static void forget_glances(adcgs_enc_watcher *w)
+{
+    adcgs_free(NULL, w->glances);
+    w->t->glances = w->glances = NULL;
+}
+
+/** As soon as pictures are there, and before hours are spent on them. */
 static void look_at_footage(adcgs_enc_watcher *w)
 {
-    if (w->looked || !w->t->glances || w->is_live)
+    if (!w->glances || !w->t->divide)
         return;
-    w->looked = 1;
     adcgs_progress_clear(&w->progress);
-    adcgs_enc_doubt_footage(w->progress.cli, w->t->scene, w->t->glances, w->begins, &w->doubted);
+    adcgs_enc_doubt_footage(w->progress.cli, w->t->scene, w->glances, w->begins, &w->doubted);
+    forget_glances(w);
 }
 
 static int observe(void *user, const adcgs_train_report *r)
@@ -257,7 +263,11 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
         adcgs_trainer_free(&w->t);
         ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, otherwise, job->cpu, job->pool, error));
     }
-    w->looked = 0;
+    if (!*job->cli->quiet && !w->is_live) { /* nobody asks what is live once more */
+        w->t->glances = w->glances = adcgs_alloc(NULL, w->t->n_views, sizeof *w->glances, error);
+        if (!w->glances)
+            return adcgs_alloc_status(error);
+    }
     w->begins = scene->whole && job->cuts.n ? job->cuts.at[w->segment] : 0;
     w->t->quantise = adcgs_encode_quantise_hook;
     w->t->measure = measure;
@@ -266,5 +276,7 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
     w->t->loading = loading;
     w->t->loading_user = w;
     w->t->started = started;
-    return train(job->cli, w, state, error);
+    const adcgs_status status = train(job->cli, w, state, error);
+    forget_glances(w);
+    return status;
 }

@@ -41,7 +41,7 @@ typedef struct adcgs_enc_watcher {
     uint32_t next_log; /**< iteration */
     adcgs_error log_error;
     double begins;    /* of what is learnt, in the scene */
-    int looked;       /* at its footage */
+    adcgs_glance *glances; /* until its footage has been looked at; NULL: nobody wants to know */
     unsigned doubted; /* kinds of doubts of footage that were told */
 } adcgs_enc_watcher;
 

@@ -192,7 +192,6 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
         return;
     adcgs_views_unload(t);
     adcgs_free(NULL, t->views);
-    adcgs_free(NULL, t->glances);
     adcgs_free(NULL, t->stats.weight);
     adcgs_fmodel_free(&t->f);
     adcgs_pass_free(&t->pass);

@@ -60,7 +60,7 @@ typedef struct adcgs_trainer {
     uint64_t picture_memory; /* bytes of them at most; 0: half of the machine's */
     adcgs_pictures_progress loading; /* told of pictures loaded, or NULL */
     void *loading_user;
-    adcgs_glance *glances;   /* [n_views] as they were first loaded; NULL: none has been */
+    adcgs_glance *glances;   /* [n_views] taken of pictures that are loaded, whoever asks keeps them; NULL: nobody does */
     float *image, *grad;
     float *taken;            /* the view's picture in use */
     adcgs_train_stats stats;

@@ -10,12 +10,8 @@
 
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error *error)
 {
-    const int first = !t->glances;
-    if (first && !(t->glances = adcgs_alloc(NULL, t->n_views, sizeof *t->glances, error)))
-        return adcgs_alloc_status(error);
     const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
-                                           .progress = t->loading, .user = t->loading_user,
-                                           .glances = first ? t->glances : NULL };
+                                           .progress = t->loading, .user = t->loading_user, .glances = t->glances };
     size_t most = 0;
     adcgs_views_unload(t);
     ADCGS_TRY(adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error));
