@@ -41,6 +41,13 @@ end()
     [ "$got" -eq "$1" ] || { bad "exit code $got, expected $1"; cat "$dir/err"; }
     [ -z "$2" ] || grep -q -- "$2" "$dir/err" || { bad "no \"$2\" in the message"; cat "$dir/err"; }
 }
+# end_by_signal: with the pipe open, whose end must not come first.
+end_by_signal()
+{
+    kill -TERM $pid
+    while kill -0 $pid 2>/dev/null; do sleep 0.05; done
+    end 143 ""
+}
 # send FILE UPTO: its bytes that were not yet sent.
 send()
 {
@@ -139,8 +146,7 @@ expect 4 "^adcgs-dec: standard input: ends at byte 0, before HEAD\|inside the si
 begin "$dec" - -o signal%d.ppm --quiet
 send "$s" "$whole"
 await signal2.ppm
-kill -TERM $pid
-end 143 ""
+end_by_signal
 
 # ---- The player. ----
 
@@ -306,12 +312,10 @@ printf 'wait 1 tiers\nscreenshot there.png\n' >"$dir/script"
 play -
 send "$s" "$tier"
 await there.png
-kill -TERM $pid
-end 143 ""
+end_by_signal
 play -
 send "$s" 100
-kill -TERM $pid
-end 143 ""
+end_by_signal
 printf 'wait some bytes\n' >"$dir/script"
 expect 2 "line 1 is no command" "$dec" - --play --script "$dir/script" <"$s"
 exit $failed
