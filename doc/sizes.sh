@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
 # The size that the encoder finds for a scene, beside a grid of sizes and beside the preset's, of which nothing is taken away:
-# make -C build sizes. adcgs-sweep codes each scene that is at hand, one thread, seed 1; the first curve is the default's. Each
+# make -C build sizes. adcgs-sweep codes each scene that is at hand, one thread; the first curve is the default's. Each
 # scene's page is index.html in its folder; the folder "kept" gathers charts and figures of all, and sizes.md, which tells how
 # far the default's objective lies above the least of the grid. What is there already is kept, so that it can go on.
 #   SIZES       folder of all of it (default sizes)
@@ -9,6 +9,7 @@
 #   LAMBDAS     default 0.1,0.4
 #   GRID        the default's choice first (default "k=6,3,10 detail_anchors=50,25,100")
 #   ITERATIONS  of training (default 1500)
+#   SEEDS       of which the means are shown (default 1)
 #   JOBS        runs at a time (default 1)
 #   ADCGS_DATA  folder of data sets (default ../shared/data beside the sources)
 set -eu
@@ -27,7 +28,7 @@ sweep()
     folder=$1 scene=$2
     shift 2
     mkdir -p "$out/$folder"
-    ./adcgs-sweep "$scene" -o "$out/$folder" -l "${LAMBDAS:-0.1,0.4}" -n "${ITERATIONS:-1500}" -t 1 -j "${JOBS:-1}" --seeds 1 \
+    ./adcgs-sweep "$scene" -o "$out/$folder" -l "${LAMBDAS:-0.1,0.4}" -n "${ITERATIONS:-1500}" -t 1 -j "${JOBS:-1}" --seeds "${SEEDS:-1}" \
         --yardsticks none --resume "$@" >"$out/$folder.txt"
 }
 

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 enum { VIEWS_MOST = 32, VIEWS_LEAST = 3, PIXELS_MOST = 256, DEPTHS = 256 };
+enum { SLACK = 3 /* steps of depth between neighbours */, VOTES_LEAST = 3 };
 #define DIFFERENCE 0.08f /* of a pixel that is followed */
 #define NEAREST 0.25f    /* of a ray, scene units */
 #define FARTHEST 8.0f
@@ -73,58 +74,131 @@ static adcgs_status draw(adcgs_trainer *t, look *l, uint32_t index, adcgs_error 
     return ADCGS_OK;
 }
 
-/** Where along a pixel's ray the other cameras agree the most that something is missing. 0 if too few do. */
-static int place_of(const look *looks, int n, int own, pixel p, adcgs_residual *place)
+/** The rays of a view's pixels at which something is missing, and what the other cameras say of places along them. */
+typedef struct rays {
+    uint32_t n;
+    pixel pixel[PIXELS_MOST];
+    float agreed[PIXELS_MOST][DEPTHS]; /* how much all that have the place in their pictures miss, too; 0: not all of them do */
+    uint8_t alone[PIXELS_MOST][DEPTHS]; /* only one has it in its picture */
+    uint8_t about[PIXELS_MOST][DEPTHS]; /* that is so somewhere near that depth */
+} rays;
+
+static float depth_of(int step)
 {
-    const look *l = &looks[own];
-    const adcgs_view *v = &l->view->view;
-    const float ray[2] = { ((float)(p.at % l->w) + 0.5f - v->cx) / v->fx, ((float)(p.at / l->w) + 0.5f - v->cy) / v->fy };
-    place->score = 0;
-    for (int step = 0; step < DEPTHS; step++) {
-        const float share = (float)step / (DEPTHS - 1), d = 1 / (1 / NEAREST + share * (1 / FARTHEST - 1 / NEAREST));
-        const float c[3] = { ray[0] * d - v->translation[0], ray[1] * d - v->translation[1], d - v->translation[2] };
-        float x[3], sum = 0;
-        int seen = 0, agree = 0;
-        for (int a = 0; a < 3; a++)
-            x[a] = v->rotation[a] * c[0] + v->rotation[3 + a] * c[1] + v->rotation[6 + a] * c[2];
-        for (int i = 0; i < n; i++) {
-            size_t at;
-            if (i == own || !adcgs_view_pixel(&looks[i].view->view, x, &at))
-                continue;
-            const float off = looks[i].more[at];
-            seen++;
-            agree += off >= AGREES * p.off;
-            sum += fminf(off, p.off);
-        }
-        if (agree < VIEWS_LEAST - 1 || 4 * agree < 3 * seen || sum <= place->score)
-            continue;
-        memcpy(place->x, x, sizeof x);
-        place->score = sum;
-        place->size = d / v->fx;
-    }
-    return place->score > 0;
+    return 1 / (1 / FARTHEST + (float)step / (DEPTHS - 1) * (1 / NEAREST - 1 / FARTHEST));
 }
 
-static adcgs_status follow(const look *looks, int n, int own, adcgs_residual *places, uint32_t most, uint32_t *total,
-                           adcgs_error *error)
+/** The place at a depth along a pixel's ray. */
+static void lift(const look *l, int at, float d, float x[3])
 {
-    const look *l = &looks[own];
+    const adcgs_view *v = &l->view->view;
+    const float ray[2] = { ((float)(at % l->w) + 0.5f - v->cx) / v->fx, ((float)(at / l->w) + 0.5f - v->cy) / v->fy };
+    const float c[3] = { ray[0] * d - v->translation[0], ray[1] * d - v->translation[1], d - v->translation[2] };
+    for (int a = 0; a < 3; a++)
+        x[a] = v->rotation[a] * c[0] + v->rotation[3 + a] * c[1] + v->rotation[6 + a] * c[2];
+}
+
+/** Ask the other cameras whether they miss something at places along a pixel's ray. */
+static void ask(const look *looks, int n, int own, rays *r, uint32_t i)
+{
+    const pixel p = r->pixel[i];
+    memset(r->about[i], 0, sizeof r->about[i]);
+    for (int step = 0; step < DEPTHS; step++) {
+        float x[3], sum = 0;
+        int seen = 0, agree = 0;
+        lift(&looks[own], p.at, depth_of(step), x);
+        for (int k = 0; k < n; k++) {
+            size_t at;
+            if (k == own || !adcgs_view_pixel(&looks[k].view->view, x, &at))
+                continue;
+            seen++;
+            agree += looks[k].more[at] >= AGREES * p.off;
+            sum += fminf(looks[k].more[at], p.off);
+        }
+        r->alone[i][step] = seen == 1;
+        r->agreed[i][step] = agree > 0 && (seen == 1 || agree > 1) && 4 * agree >= 3 * seen ? sum : 0;
+        for (int d = ADCGS_MAX(step - SLACK, 0); r->agreed[i][step] > 0 && d <= ADCGS_MIN(step + SLACK, DEPTHS - 1); d++)
+            r->about[i][d] = 1;
+    }
+}
+
+/** Count the pixels near one whose rays have a place at about a depth, too, for each depth; returns how many are near. */
+static int count_near(const rays *r, uint32_t i, int w, int votes[DEPTHS])
+{
+    const int px = r->pixel[i].at % w, py = r->pixel[i].at / w;
+    int n = 0;
+    memset(votes, 0, DEPTHS * sizeof *votes);
+    for (uint32_t k = 0; k < r->n; k++) {
+        const int dx = r->pixel[k].at % w - px, dy = r->pixel[k].at / w - py;
+        if (k == i || 64 * (dx * dx + dy * dy) > w * w)
+            continue;
+        n++;
+        for (int step = 0; step < DEPTHS; step++)
+            votes[step] += r->about[k][step];
+    }
+    return n;
+}
+
+/**
+ * The step of depth at which something is missing along a pixel's ray, -1 if there is none: where the most cameras agree, and the
+ * most of the pixels about it have something, too, since what is near in a picture is mostly near in depth. Two cameras alone are
+ * not believed without such neighbours.
+ */
+static int settle(const rays *r, uint32_t i, int w, float *score)
+{
+    int votes[DEPTHS], first = -1, last = -1;
+    const int near = count_near(r, i, w, votes);
+    *score = 0;
+    for (int step = 0; step < DEPTHS; step++) { /* the farthest first: what is too near is in the way of other cameras */
+        const float s = r->agreed[i][step] * (float)(1 + votes[step]) / (float)(1 + near);
+        if (r->alone[i][step] && (votes[step] < VOTES_LEAST || 2 * votes[step] < near))
+            continue;
+        if (s > *score) {
+            *score = s;
+            first = last = step;
+        } else if (s >= *score && last == step - 1)
+            last = step;
+    }
+    return *score > 0 ? (first + last) / 2 : -1;
+}
+
+/** The pixels of a view at which the most is missing. */
+static adcgs_status pick(rays *r, const look *l, adcgs_error *error)
+{
     pixel *list = adcgs_alloc(NULL, (size_t)l->w * (size_t)l->h, sizeof *list, error);
-    uint32_t count = 0, found = 0;
+    uint32_t count = 0;
     if (!list)
         return adcgs_alloc_status(error);
     for (int i = 0; i < l->w * l->h; i++)
         if (l->more[i] > DIFFERENCE && l->off[i] == l->more[i])
             list[count++] = (pixel){ l->more[i], i };
     qsort(list, count, sizeof *list, by_difference);
-    for (uint32_t i = 0; i < ADCGS_MIN(count, PIXELS_MOST) && found < most; i++) {
-        if (!place_of(looks, n, own, list[i], &places[found]))
-            continue;
-        for (int c = 0; c < 3; c++)
-            places[found].rgb[c] = l->taken[(size_t)c * (size_t)l->w * (size_t)l->h + (size_t)list[i].at];
-        found++;
-    }
+    r->n = ADCGS_MIN(count, PIXELS_MOST);
+    memcpy(r->pixel, list, r->n * sizeof *list);
     adcgs_free(NULL, list);
+    return ADCGS_OK;
+}
+
+static adcgs_status follow(const look *looks, int n, int own, rays *r, adcgs_residual *places, uint32_t most, uint32_t *total,
+                           adcgs_error *error)
+{
+    const look *l = &looks[own];
+    const size_t plane = (size_t)l->w * (size_t)l->h;
+    uint32_t found = 0;
+    ADCGS_TRY(pick(r, l, error));
+    for (uint32_t i = 0; i < r->n; i++)
+        ask(looks, n, own, r, i);
+    for (uint32_t i = 0; i < r->n && found < most; i++) {
+        adcgs_residual *p = &places[found];
+        const int step = settle(r, i, l->w, &p->score);
+        if (step < 0)
+            continue;
+        found++;
+        lift(l, r->pixel[i].at, depth_of(step), p->x);
+        p->size = depth_of(step) / l->view->view.fx;
+        for (int c = 0; c < 3; c++)
+            p->rgb[c] = l->taken[(size_t)c * plane + (size_t)r->pixel[i].at];
+    }
     *total += found;
     return ADCGS_OK;
 }
@@ -147,7 +221,10 @@ adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint3
     const float moment = t->views[t->curriculum.views[t->iteration % t->curriculum.n].index].t;
     int count = 0;
     adcgs_status status = ADCGS_OK;
+    rays *r = adcgs_alloc(NULL, 1, sizeof *r, error);
     *n = 0;
+    if (!r)
+        return adcgs_alloc_status(error);
     adcgs_pass_forward(t->pass, t->f, moment, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_COARSE });
     uint32_t there = 0, seen = 0;
     for (uint32_t i = 0; i < t->n_views; i++)
@@ -156,9 +233,10 @@ adcgs_status adcgs_residual_find(adcgs_trainer *t, adcgs_residual *places, uint3
         if (t->views[i].t == moment && is_taken(seen++, there, t->iteration))
             status = draw(t, &looks[count++], i, error);
     for (int i = 0; status == ADCGS_OK && count >= VIEWS_LEAST && i < count; i++)
-        status = follow(looks, count, i, places + *n, ADCGS_MIN(most - *n, most / (uint32_t)count), n, error);
+        status = follow(looks, count, i, r, places + *n, ADCGS_MIN(most - *n, most / (uint32_t)count), n, error);
     qsort(places, *n, sizeof *places, by_score);
     for (int i = 0; i < count; i++)
         adcgs_free(NULL, looks[i].off);
+    adcgs_free(NULL, r);
     return status;
 }
