@@ -24,6 +24,7 @@ typedef enum adcgs_spoil_kind {
     ADCGS_SPOIL_BEFORE,   /**< share of the time, at its beginning, from which there is no picture */
     ADCGS_SPOIL_INSIDE,   /**< in the middle */
     ADCGS_SPOIL_AFTER,    /**< at the end */
+    ADCGS_SPOIL_TINT,     /**< stops: in the second half of the time red is half of that brighter, and blue darker */
     ADCGS_SPOILS
 } adcgs_spoil_kind;
 

@@ -28,7 +28,7 @@ expect 2 "aside" ./adcgs-demo-scene --aside 0.51 -o "$dir/none"
 scene true
 scene nothing --spoil pose=0,exposure=0,drop=0 --threads 1
 diff -r "$dir/true" "$dir/nothing" >/dev/null || bad "faults of strength 0 show"
-all=exposure=0.5,white=0.2,step=1,pose=1,shake=1,wrongpose=10,axes=1,sync=1,drop=0.2,twice=0.2,before=0.1,inside=0.2,after=0.1
+all=exposure=0.5,white=0.2,step=1,pose=1,shake=1,wrongpose=10,axes=1,sync=1,drop=0.2,twice=0.2,before=0.1,inside=0.2,after=0.1,tint=1
 scene spoilt --spoil $all --threads 1
 scene again --spoil $all --threads 2
 diff -r "$dir/spoilt" "$dir/again" >/dev/null || bad "faults depend on threads"
@@ -46,7 +46,7 @@ for fault in pose=2 shake=2 wrongpose=20 axes=2; do
 done
 [ "$(places pose=2 train)" -eq 6 ] || bad "cameras do not stay: $(places pose=2 train) places"
 [ "$(places shake=2 train)" -eq 24 ] || bad "shaken cameras stay"
-for fault in exposure=1 white=1 step=1 sync=1 twice=0.5; do
+for fault in exposure=1 white=1 step=1 tint=1 sync=1 twice=0.5; do
     scene $fault --spoil $fault
     diff -r "$dir/true/train" "$dir/$fault/train" >/dev/null && bad "$fault changes no picture"
     cmp -s "$dir/true/transforms_train.json" "$dir/$fault/transforms_train.json" || bad "$fault changes poses"

@@ -116,6 +116,7 @@ static void other_axes_are_others(void **state)
 static void gains_are_a_cameras(void **state)
 {
     const adcgs_spoil exposure = spoilt("exposure=1"), white = spoilt("white=1"), step = spoilt("step=1");
+    const adcgs_spoil tint = spoilt("tint=2");
     double least = 9.0, most = 0.0;
     (void)state;
     for (int camera = 0; camera < 12; camera++) {
@@ -133,6 +134,11 @@ static void gains_are_a_cameras(void **state)
         adcgs_spoil_pixels(&step, &early, other, 1);
         adcgs_spoil_pixels(&step, &late, again, 1);
         assert_true(other[0] == 0.25f && fabsf(again[0] - 0.125f) < 1e-6f);
+        again[0] = again[1] = again[2] = 0.25f;
+        adcgs_spoil_pixels(&tint, &early, again, 1);
+        assert_true(again[0] == 0.25f && again[2] == 0.25f);
+        adcgs_spoil_pixels(&tint, &late, again, 1);
+        assert_true(fabsf(again[0] - 0.5f) < 1e-6f && again[1] == 0.25f && fabsf(again[2] - 0.125f) < 1e-6f);
     }
     assert_true(least >= 0.125 && least < 0.2 && most > 0.33 && most <= 0.5);
 }
