@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Steps of light. What differs between cameras for all of the time is none: they see different things, and their gains are
- * fitted in training.
+ * Steps of light, and of its colour. What differs between cameras for all of the time is none: they see different things, and
+ * their gains are fitted in training.
  */
 #include "config.h"
 
@@ -22,22 +22,23 @@ typedef struct step {
 } step;
 
 /** From a picture to the next; 0 where that is no step of light. */
-static double step_between(const adcgs_glance *a, const adcgs_glance *b, double *any)
+static double step_between(const adcgs_glance *a, const adcgs_glance *b, adcgs_glance_light light, double *any)
 {
     double spread;
-    *any = adcgs_glance_brighter(a, b, &spread);
+    *any = adcgs_glance_compare(a, b, light, &spread);
     return fabs(*any) >= STEP && spread <= SPREAD * fabs(*any) ? *any : 0.0;
 }
 
 /** The greatest of one camera's. A flash is a step and a step back. */
-static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n)
+static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n,
+                      adcgs_glance_light light)
 {
     step out = {.size = 0.0};
     double before = 0.0, at = 0.0, behind = 0.0, next;
-    (void)step_between(&glances[order[0]], &glances[order[1]], &before);
-    double size = step_between(&glances[order[1]], &glances[order[2]], &at);
+    (void)step_between(&glances[order[0]], &glances[order[1]], light, &before);
+    double size = step_between(&glances[order[1]], &glances[order[2]], light, &at);
     for (uint32_t i = 1; i + 2 < n; i++, before = at, at = behind, size = next) {
-        next = step_between(&glances[order[i + 1]], &glances[order[i + 2]], &behind);
+        next = step_between(&glances[order[i + 1]], &glances[order[i + 2]], light, &behind);
         const double back = fmin(fabs(behind), fabs(behind + at));
         if (!(fabs(size) > 0.0 && fabs(before) <= ALONE * fabs(size) && back <= ALONE * fabs(size)))
             continue;
@@ -61,6 +62,7 @@ static uint32_t count_like(const step *steps, uint32_t n, const step *one)
     return count;
 }
 
+/** What most cameras have, the greatest of it; its size is still a logarithm. */
 static void judge(adcgs_fault *f, const adcgs_scene_view *views, const step *steps, uint32_t n)
 {
     for (uint32_t c = 0; c < n; c++) {
@@ -74,7 +76,6 @@ static void judge(adcgs_fault *f, const adcgs_scene_view *views, const step *ste
         f->to = steps[c].to;
         f->size = steps[c].size;
     }
-    f->size = exp(f->size);
 }
 
 adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
@@ -84,12 +85,18 @@ adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views
     *fault = (adcgs_fault){.cameras = 0};
     if (!steps)
         return adcgs_alloc_status(error);
-    for (uint32_t c = 0; c < tracks->n; c++) {
-        const uint32_t n = tracks->begin[c + 1] - tracks->begin[c];
-        if (n >= FEW)
-            steps[fault->of++] = find_step(views, glances, tracks->order + tracks->begin[c], n);
+    for (int light = 0; light < ADCGS_LIGHTS; light++) { /* the greatest: what becomes redder may be brighter, too */
+        adcgs_fault found = {.light = (adcgs_glance_light)light};
+        for (uint32_t c = 0; c < tracks->n; c++) {
+            const uint32_t n = tracks->begin[c + 1] - tracks->begin[c];
+            if (n >= FEW)
+                steps[found.of++] = find_step(views, glances, tracks->order + tracks->begin[c], n, found.light);
+        }
+        judge(&found, views, steps, found.of);
+        if (!light || fabs(found.size) > fabs(fault->size))
+            *fault = found;
     }
-    judge(fault, views, steps, fault->of);
+    fault->size = exp(fault->size);
     adcgs_free(NULL, steps);
     return ADCGS_OK;
 }

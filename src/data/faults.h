@@ -17,6 +17,7 @@ typedef struct adcgs_fault {
     uint32_t count;               /**< times that camera has it */
     double from, to;              /**< where it is worst */
     double size;                  /**< how bad it is there; see the functions */
+    adcgs_glance_light light;     /**< of a step of light, what pictures become */
 } adcgs_fault;
 
 /**
@@ -33,8 +34,15 @@ void adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene_view *views, cons
                          const adcgs_glance *glances);
 
 /**
- * A camera's pictures are all brighter or darker by one factor from one moment on, or at one moment. size: the factor. cameras
- * are those that have one at the same time.
+ * Pictures that are those before them in time once more, but of another camera, whose pictures are others. path is the first of
+ * them; count: how many one camera has at most; size: how many all have. Of one camera nothing is said.
+ */
+adcgs_status adcgs_fault_copied(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+                                const adcgs_glance *glances, adcgs_error *error);
+
+/**
+ * A camera's pictures are all brighter or darker, or redder or bluer, by one factor from one moment on, or at one moment. size:
+ * the factor. cameras are those that have one at the same time.
  */
 adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
                                const adcgs_glance *glances, adcgs_error *error);

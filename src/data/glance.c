@@ -9,33 +9,50 @@
 #include <math.h>
 #include <stddef.h>
 
-#define DARK 0.02f  /* black levels and rounding have their say below */
-#define LIGHT 0.95f /* what is cut off at white does not brighten any more */
+#define DARK 0.02   /* black levels and rounding have their say below */
+#define LIGHT 0.95  /* what is cut off at white does not brighten any more */
 #define FEW 32      /* cells: fewer are one thing, not the light */
 
-/** Mean of the pixels from x0 to x1 in rows y0 to y1; NaN where less than half of them are known. */
-static float mean_of(const float *rgb, size_t width, size_t height, size_t x0, size_t x1, size_t y0, size_t y1)
+/** Means of the channels of the pixels from x0 to x1 in rows y0 to y1; NaN where less than half of them are known. */
+static void mean_of(double mean[3], const float *rgb, size_t width, size_t height, size_t x0, size_t x1, size_t y0, size_t y1)
 {
     const size_t plane = width * height;
-    double sum = 0.0;
+    double sum[3] = {0.0, 0.0, 0.0};
     size_t known = 0;
     for (size_t y = y0; y < y1; y++)
         for (size_t i = y * width + x0; i < y * width + x1; i++) {
-            const float grey = rgb[i] + rgb[plane + i] + rgb[2 * plane + i];
-            if (isnan(grey))
+            if (isnan(rgb[i] + rgb[plane + i] + rgb[2 * plane + i]))
                 continue;
-            sum += (double)grey;
+            for (size_t c = 0; c < 3; c++)
+                sum[c] += (double)rgb[c * plane + i];
             known++;
         }
-    return known && 2 * known >= (x1 - x0) * (y1 - y0) ? (float)(sum / (3.0 * (double)known)) : (float)NAN;
+    for (int c = 0; c < 3; c++)
+        mean[c] = known && 2 * known >= (x1 - x0) * (y1 - y0) ? sum[c] / (double)known : (double)NAN;
+}
+
+static int is_lit(double value)
+{
+    return value > DARK && value < LIGHT;
 }
 
 void adcgs_glance_take(adcgs_glance *glance, const float *rgb, int width, int height)
 {
     const size_t side = ADCGS_GLANCE_SIDE, w = (size_t)width, h = (size_t)height;
+    double tints[ADCGS_GLANCE_TINTS][3] = {{0.0}}, mean[3];
     for (size_t y = 0; y < side; y++)
-        for (size_t x = 0; x < side; x++) /* of a picture that is smaller some cells have no pixel */
-            glance->cells[y * side + x] = mean_of(rgb, w, h, x * w / side, (x + 1) * w / side, y * h / side, (y + 1) * h / side);
+        for (size_t x = 0; x < side; x++) { /* of a picture that is smaller some cells have no pixel */
+            double *const tint = tints[y / 2 * ADCGS_GLANCE_TINT_SIDE + x / 2];
+            mean_of(mean, rgb, w, h, x * w / side, (x + 1) * w / side, y * h / side, (y + 1) * h / side);
+            glance->cells[y * side + x] = (float)((mean[0] + mean[1] + mean[2]) / 3.0);
+            for (int c = 0; c < 3; c++)
+                tint[c] += 0.25 * mean[c];
+        }
+    for (int i = 0; i < ADCGS_GLANCE_TINTS; i++)
+        for (int c = 0; c < 2; c++) {
+            const double green = tints[i][1], other = tints[i][2 * c];
+            glance->tints[c][i] = is_lit(green) && is_lit(other) ? (float)log(other / green) : (float)NAN;
+        }
 }
 
 double adcgs_glance_difference(const adcgs_glance *a, const adcgs_glance *b)
@@ -52,15 +69,27 @@ double adcgs_glance_difference(const adcgs_glance *a, const adcgs_glance *b)
     return n ? sum / n : (double)NAN;
 }
 
-double adcgs_glance_brighter(const adcgs_glance *a, const adcgs_glance *b, double *spread)
+/** Logarithms of the ratios of cells that say something. */
+static size_t take_ratios(double *ratios, const adcgs_glance *a, const adcgs_glance *b, adcgs_glance_light light)
+{
+    size_t n = 0;
+    if (light == ADCGS_LIGHT_BRIGHTER) {
+        for (int i = 0; i < ADCGS_GLANCE_CELLS; i++)
+            if (is_lit((double)a->cells[i]) && is_lit((double)b->cells[i]))
+                ratios[n++] = log((double)b->cells[i] / (double)a->cells[i]);
+        return n;
+    }
+    const float *const x = a->tints[light - ADCGS_LIGHT_REDDER], *const y = b->tints[light - ADCGS_LIGHT_REDDER];
+    for (int i = 0; i < ADCGS_GLANCE_TINTS; i++)
+        if (!isnan(y[i] - x[i]))
+            ratios[n++] = (double)y[i] - (double)x[i];
+    return n;
+}
+
+double adcgs_glance_compare(const adcgs_glance *a, const adcgs_glance *b, adcgs_glance_light light, double *spread)
 {
     double ratios[ADCGS_GLANCE_CELLS];
-    size_t n = 0;
-    for (int i = 0; i < ADCGS_GLANCE_CELLS; i++) {
-        const float x = a->cells[i], y = b->cells[i];
-        if (x > DARK && y > DARK && x < LIGHT && y < LIGHT)
-            ratios[n++] = log((double)y / (double)x);
-    }
+    const size_t n = take_ratios(ratios, a, b, light);
     *spread = (double)NAN;
     if (n < FEW)
         return (double)NAN;

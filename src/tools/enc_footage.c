@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8 };
+enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8, COPIED = 16 };
 
 /** A file as seen from the scene. */
 static const char *short_name(const adcgs_scene *scene, const char *path)
@@ -40,21 +40,39 @@ static void say_gaps(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs
                        short_name(scene, f->path), f->from, f->to, f->size, others(more, "; there are gaps of", f));
 }
 
+/** ", as are N others", or nothing. */
+static const char *so_are(char text[64], double n)
+{
+    snprintf(text, 64, n > 0 ? ", as is another" : "");
+    if (n > 1)
+        snprintf(text, 64, ", as are %.0f others", n);
+    return text;
+}
+
 static void say_doubled(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
 {
-    char more[64] = "";
+    char more[64], of_this[64] = "";
     if (f->size > 1)
-        snprintf(more, sizeof more, ", as are %.0f others, %u of this camera", f->size - 1, f->count - 1);
-    adcgs_cli_note(cli, "%s: the picture at %.3f s is the one before it once more%s: doubled frames?", short_name(scene, f->path),
-                   begins + f->from, more);
+        snprintf(of_this, sizeof of_this, ", %u of this camera", f->count - 1);
+    adcgs_cli_note(cli, "%s: the picture at %.3f s is the one before it once more%s%s: doubled frames?",
+                   short_name(scene, f->path), begins + f->from, so_are(more, f->size - 1), of_this);
+}
+
+static void say_copied(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
+{
+    char more[64];
+    adcgs_cli_note(cli, "%s: the picture at %.3f s is that of another camera before it once more%s: are files mixed up?",
+                   short_name(scene, f->path), begins + f->from, so_are(more, f->size - 1));
 }
 
 static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
 {
+    static const char *const what[ADCGS_LIGHTS][2] = { { "bright", "exposure" }, { "red beside green", "white balance" },
+                                                       { "blue beside green", "white balance" } };
     char more[64];
-    adcgs_cli_note(cli, "%s: at %.3f s the pictures of %s become %.2f times as bright%s: does exposure, or the light, change?",
+    adcgs_cli_note(cli, "%s: at %.3f s the pictures of %s become %.2f times as %s%s: does %s, or the light, change?",
                    short_name(scene, f->path), begins + f->to, f->cameras == f->of && f->of > 1 ? "all cameras" : "its camera",
-                   f->size, f->cameras == f->of ? "" : others(more, ", and those of", f));
+                   f->size, what[f->light][0], f->cameras == f->of ? "" : others(more, ", and those of", f), what[f->light][1]);
 }
 
 static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
@@ -78,6 +96,10 @@ static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, con
             say_doubled(cli, whole, &f, begins);
             *told |= DOUBLED;
         }
+    }
+    if (!(*told & COPIED) && adcgs_fault_copied(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
+        say_copied(cli, whole, &f, begins);
+        *told |= COPIED;
     }
     if (!(*told & LIGHT) && adcgs_fault_light(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
         say_light(cli, whole, &f, begins);

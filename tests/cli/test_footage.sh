@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc says, before it learns from it, what is wrong with footage: pictures that come twice or are missing, steps of light, a
-# clock that is off. Of footage in order, where much moves, comes, goes and is hidden, and quietly, it says nothing.
+# adcgs-enc says, before it learns from it, what is wrong with footage: pictures that come twice, are another camera's or are
+# missing, steps of light and of its colour, a clock that is off. Of footage in order, where much moves, comes, goes and is hidden, and quietly, it says nothing.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-demo-scene
@@ -21,7 +21,7 @@ look()
         { bad "adcgs-enc of $1"; cat "$dir/$1.err"; }
 }
 # says NAME TEXT: once, and of the others nothing.
-doubts='has a picture between\|has no picture between\|doubled frames\|times as bright\|clocks in step'
+doubts='has a picture between\|has no picture between\|doubled frames\|files mixed up\|times as \|clocks in step'
 says()
 {
     look "$1"
@@ -59,6 +59,15 @@ done
 
 film twice --scene cross20 --cameras 4 --spoil twice=0.2
 says twice 'ppm: the picture at 0.[0-9]* s is the one before it once more, as are 17 others, 4 of this camera: doubled frames?'
+# Frames that come twice where cameras take turns, and where one moves: 12 and 13, 30 and 31 are the same.
+for name in turns hand2; do
+    film $name --scene "$([ $name = turns ] && echo cross80 || echo film-cross80)"
+    for frame in 012 030; do
+        cp "$dir/$name/train/r_$frame.ppm" "$dir/$name/train/r_$(printf %03d $((10#$frame + 1))).ppm"
+    done
+done
+says turns 'r_013.ppm: the picture at 0.[0-9]* s is that of another camera before it once more, as is another: are files mixed up?'
+says hand2 'r_013.ppm: the picture at 0.[0-9]* s is the one before it once more, as is another, 1 of this camera: doubled frames?'
 film drop --scene cross80 --spoil drop=0.3
 says drop 'r_004.ppm: its camera has no picture between 0.067 and 0.667 s, where 2 would be expected; there are gaps of another'
 film inside --scene cross80 --spoil inside=0.2
@@ -67,6 +76,8 @@ film hand --scene film-cross80 --spoil inside=0.3
 says hand 'its camera has no picture between .* s, where 26 would be expected$'
 film step --scene cross20 --spoil step=0.2
 says step 'the pictures of all cameras become 0.87 times as bright: does exposure, or the light, change?'
+film tint --scene cross20 --spoil tint=0.4
+says tint 'the pictures of all cameras become 0.87 times as blue beside green: does white balance, or the light, change?'
 size=64x64
 film sync --scene clip --moments 60 --cameras 4
 silent sync

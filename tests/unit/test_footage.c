@@ -1,0 +1,533 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Faults of footage, on made-up pictures at a glance: each is found at its threshold and not just under it; of what moves as it
+ * likes, and of next to nothing, nothing is said.
+ */
+#include "data/faults.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { CAMERAS = 6, MOMENTS = 48, MOST = CAMERAS * MOMENTS, SEEDS = 100 };
+
+static adcgs_error error;
+
+/* What was taken; views' paths are their numbers. */
+static struct {
+    uint32_t n;
+    adcgs_scene_view views[MOST];
+    adcgs_glance glances[MOST];
+    char names[MOST][8];
+} film;
+
+static uint32_t random_state;
+
+static double draw(void)
+{
+    random_state = random_state * 1664525u + 1013904223u;
+    return (double)(random_state >> 8) / 16777216.0;
+}
+
+/* A picture by a camera, in shades that are its own, somewhat brighter: 0.3 to 0.6, and plain tints. */
+static adcgs_glance *take(int camera, double time, double brighter)
+{
+    adcgs_scene_view *const view = &film.views[film.n];
+    adcgs_glance *const glance = &film.glances[film.n];
+    assert_true(film.n < MOST);
+    snprintf(film.names[film.n], sizeof film.names[0], "%u", film.n);
+    *view = (adcgs_scene_view){.camera = {.width = 64, .height = 64, .fx = 50.0 + camera}, .time = time,
+                               .path = film.names[film.n]};
+    for (int i = 0; i < ADCGS_GLANCE_CELLS; i++)
+        glance->cells[i] = (float)(0.3 + 0.3 * ((i * (camera + 7) * 37) % 101) / 101.0 + brighter);
+    for (int i = 0; i < ADCGS_GLANCE_TINTS; i++)
+        glance->tints[0][i] = glance->tints[1][i] = 0.01f * (float)(i % 10);
+    film.n++;
+    return glance;
+}
+
+static void begin(void)
+{
+    film.n = 0;
+}
+
+static adcgs_fault find(char which)
+{
+    adcgs_fault fault = {.cameras = 99};
+    adcgs_tracks tracks;
+    adcgs_status status = ADCGS_OK;
+    adcgs_scene scene = {.directory = "here", .views = {film.views}, .n_views = {film.n}};
+    assert_int_equal(adcgs_tracks_find(&tracks, film.views, film.n, &error), ADCGS_OK);
+    switch (which) {
+    case 'g': status = adcgs_fault_gaps(&fault, &scene, &error); break;
+    case 'd': adcgs_fault_doubled(&fault, film.views, &tracks, film.glances); break;
+    case 'x': status = adcgs_fault_copied(&fault, film.views, &tracks, film.glances, &error); break;
+    case 'l': status = adcgs_fault_light(&fault, film.views, &tracks, film.glances, &error); break;
+    default: status = adcgs_fault_clocks(&fault, film.views, &tracks, film.glances, &error); break;
+    }
+    assert_int_equal(status, ADCGS_OK);
+    assert_true(fault.cameras <= fault.of && isfinite(fault.from) && isfinite(fault.to) && isfinite(fault.size));
+    adcgs_tracks_clear(&tracks);
+    return fault;
+}
+
+static const char all[] = "gdxlc";
+
+static void expect_silence(const char *which)
+{
+    for (; *which; which++) {
+        const adcgs_fault fault = find(*which);
+        if (fault.cameras)
+            print_error("fault '%c' at view %s, time %g, size %g\n", *which, fault.path ? fault.path : "-", fault.to, fault.size);
+        assert_int_equal(fault.cameras, 0);
+    }
+}
+
+/* ---- Next to nothing ---- */
+
+static void of_little_nothing_is_said(void **state)
+{
+    (void)state;
+    begin();
+    expect_silence(all);
+    for (int n = 1; n < 8; n++) { /* a camera of a few pictures, which all are one; then at one time */
+        begin();
+        for (int i = 0; i < n; i++)
+            take(0, i, 0.0);
+        expect_silence(all);
+        begin();
+        for (int i = 0; i < n; i++)
+            take(0, 3.0, 0.02 * i * i);
+        expect_silence(all);
+        begin();
+        for (int i = 0; i < n; i++) /* a picture each */
+            take(i % CAMERAS, i, 0.0);
+        expect_silence(all);
+    }
+    begin();
+    for (int i = 0; i < MOST; i++) { /* all see the same, which rests */
+        take(0, i / CAMERAS, 0.0);
+        film.views[i].camera.fx = 50.0 + i % CAMERAS;
+    }
+    expect_silence(all);
+}
+
+static void what_is_not_known_says_nothing(void **state)
+{
+    (void)state;
+    begin();
+    for (int i = 0; i < MOST; i++) {
+        adcgs_glance *const glance = take(i % CAMERAS, i / CAMERAS, draw() * 0.1);
+        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+            if (i % 3 == 0 || k >= 31)
+                glance->cells[k] = NAN;
+        for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
+            if (i % 3 == 0 || k >= 31)
+                glance->tints[0][k] = glance->tints[1][k] = NAN;
+    }
+    expect_silence(all);
+    for (int i = 0; i < MOST; i++) /* nothing of any */
+        memset(&film.glances[i], 0xff, sizeof film.glances[i]);
+    expect_silence(all);
+}
+
+/* ---- Gaps ---- */
+
+/* One camera, a step of 1 but for one. */
+static void film_with_gap(double gap)
+{
+    begin();
+    for (int i = 0; i < 20; i++)
+        take(0, i < 8 ? i : i - 1 + gap, 0.0);
+}
+
+static void gaps_are_found(void **state)
+{
+    (void)state;
+    film_with_gap(2.5);
+    expect_silence("g");
+    film_with_gap(2.501);
+    adcgs_fault fault = find('g');
+    assert_true(fault.cameras == 1 && fault.of == 1 && fault.count == 1 && fault.size == 2.0);
+    assert_true(fault.from == 7.0 && fabs(fault.to - 9.501) < 1e-9);
+    assert_string_equal(fault.path, "7");
+    for (int near = 11; near <= 12; near++) { /* of 20 steps, so many are alike: 0.6 are regular */
+        double time = 0.0;
+        begin();
+        for (int i = 0; i <= 20; i++, time += i <= near ? 1.0 : 4.0)
+            take(0, time, 0.0);
+        fault = find('g');
+        assert_int_equal(fault.cameras, near == 12);
+        assert_true(near != 12 || fault.count == 8);
+    }
+    begin(); /* six pictures, and five of one camera that stays */
+    for (int i = 0; i < 6; i++)
+        take(0, i < 3 ? i : i + 4, 0.0);
+    assert_true(find('g').cameras == 1 && find('g').size == 4.0);
+    film.n = 5;
+    expect_silence("g");
+}
+
+static void gaps_of_all_are_the_scenes(void **state)
+{
+    (void)state;
+    begin(); /* cameras in turn: each takes every third, and nobody from 20 to 24 */
+    for (int i = 0; i < MOMENTS; i++)
+        if (i <= 20 || i >= 24)
+            take(i % 3, i, 0.0);
+    expect_silence("g"); /* it is not longer than the steps of a camera, by half */
+    begin();
+    for (int i = 0; i < MOMENTS; i++)
+        if (i <= 20 || i >= 26)
+            take(i % 3, i, 0.0);
+    const adcgs_fault fault = find('g');
+    assert_true(fault.cameras == 3 && fault.of == 3 && !fault.path && fault.size == 5.0);
+    assert_true(fault.from == 20.0 && fault.to == 26.0);
+}
+
+/* Of a camera that moves, what was put aside for tests is not missing. */
+static void what_was_put_aside_is_no_gap(void **state)
+{
+    static adcgs_scene_view aside[4];
+    adcgs_scene scene = {.directory = "here", .views = {film.views, NULL, aside}, .n_views = {0, 0, 4}};
+    adcgs_fault fault;
+    (void)state;
+    begin();
+    for (int i = 0; i < 20; i++) {
+        take(0, i < 8 ? i : i + 4, 0.0);
+        film.views[i].camera.fx = 50.0 + 0.1 * i;
+    }
+    scene.n_views[ADCGS_SPLIT_TRAIN] = film.n;
+    for (int i = 0; i < 4; i++)
+        aside[i].time = 8.0 + i;
+    for (uint32_t n = 0; n <= 4; n++) { /* two of four were there: that is half */
+        scene.n_views[ADCGS_SPLIT_TEST] = n;
+        assert_int_equal(adcgs_fault_gaps(&fault, &scene, &error), ADCGS_OK);
+        assert_int_equal(fault.cameras, n < 2);
+    }
+}
+
+/* ---- Pictures twice ---- */
+
+/* One camera, what it shows goes on by 0.01 a picture; `by` of that at those that come once more, `copies` times each. */
+static void film_twice(int pictures, double by, int copies)
+{
+    double shown = 0.0, step = 0.01;
+    begin();
+    for (int i = 0; i < 24; i++) {
+        const int at = i % 8, again = i / 8 < pictures && at >= 4 && at < 4 + copies;
+        shown += again ? by * step : step;
+        take(0, i, shown);
+    }
+}
+
+static void doubled_pictures_are_found(void **state)
+{
+    (void)state;
+    film_twice(2, 0.105, 1);
+    expect_silence("d");
+    film_twice(2, 0.095, 1);
+    adcgs_fault fault = find('d');
+    assert_true(fault.cameras == 1 && fault.of == 1 && fault.count == 2 && fault.size == 2.0 && fault.from == 4.0);
+    film_twice(1, 0.0, 1); /* one may be where something was hidden */
+    expect_silence("d");
+    film_twice(3, 0.0, 2);
+    fault = find('d');
+    assert_true(fault.count == 6);
+    film_twice(3, 0.0, 3); /* that long it rests */
+    expect_silence("d");
+}
+
+/* What goes to and fro may rest where it turns. */
+static void what_turns_may_rest(void **state)
+{
+    (void)state;
+    for (int back = 0; back < 2; back++) {
+        begin();
+        for (int i = 0; i < 24; i++)
+            take(0, i, 0.01 * (i % 8 < 5 ? i % 8 : back ? 9 - i % 8 : i % 8 - 1));
+        assert_int_equal(find('d').cameras, !back);
+    }
+}
+
+/* One camera that moves took all: its picture comes once more, from elsewhere as it is said. */
+static void doubled_pictures_of_one_that_moves(void **state)
+{
+    (void)state;
+    film_twice(2, 0.0, 1);
+    for (uint32_t i = 0; i < film.n; i++)
+        film.views[i].camera.fx = 50.0 + 0.1 * i;
+    assert_int_equal(find('d').count, 2);
+    film_twice(0, 0.0, 1);
+    for (uint32_t i = 0; i < film.n; i++)
+        film.views[i].camera.fx = 50.0 + 0.1 * i;
+    expect_silence(all);
+    begin(); /* a camera anywhere each time, as D-NeRF has it, and no copy but two */
+    for (int i = 0; i < 40; i++) {
+        take(i == 11 || i == 22 ? i - 1 : i, i, 0.0);
+        film.views[i].camera.fx = 50.0 + 0.1 * i;
+    }
+    assert_int_equal(find('d').count, 2);
+}
+
+/* ---- Pictures of another camera ---- */
+
+/* Cameras in turn; picture `at` is the one before once more, off by so much. */
+static void film_in_turn(int at, double off, int cameras)
+{
+    begin();
+    for (int i = 0; i < MOMENTS; i++) {
+        const int copy = i == at, of = copy ? i - 1 : i;
+        take(of % cameras, i, 0.002 * of + off * copy);
+        film.views[i].camera.fx = 50.0 + i % cameras;
+    }
+}
+
+static void pictures_of_others_are_found(void **state)
+{
+    (void)state;
+    film_in_turn(-1, 0.0, 4);
+    expect_silence(all);
+    const double usual = adcgs_glance_difference(&film.glances[21], &film.glances[17]), /* of the copy and its camera's others */
+        other = fmin(adcgs_glance_difference(&film.glances[20], &film.glances[17]),
+                     adcgs_glance_difference(&film.glances[20], &film.glances[25]));
+    assert_true(usual < 0.1 * other);
+    film_in_turn(21, 0.0, 4);
+    adcgs_fault fault = find('x');
+    assert_true(fault.cameras == 1 && fault.of == 4 && fault.count == 1 && fault.size == 1.0 && fault.to == 21.0);
+    assert_string_equal(fault.path, "21");
+    film_in_turn(21, 0.09 * other, 4);
+    assert_int_equal(find('x').cameras, 1);
+    film_in_turn(21, 0.12 * other, 4);
+    expect_silence("x");
+    for (int at = 4; at < MOMENTS; at++) { /* wherever it is but in the first turn, which has none before */
+        film_in_turn(at, 0.0, 4);
+        assert_true(find('x').size == 1.0 && find('x').to == at);
+    }
+}
+
+/* Two cameras in one place, before which much changes; a slate, or a cap, that is before all of them. */
+static void what_all_see_is_no_copy(void **state)
+{
+    (void)state;
+    begin();
+    for (int i = 0; i < MOMENTS; i++) {
+        take(0, i, 0.0);
+        film.views[i].camera.fx = 50.0 + i % 2;
+        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+            film.glances[i].cells[k] = (float)(0.3 + 0.2 * sin(k * (i / 2 + 1)));
+    }
+    expect_silence("x");
+    film_in_turn(-1, 0.0, 4);
+    for (int i = 20; i < 24; i++)
+        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+            film.glances[i].cells[k] = 0.001f * (float)(k % 2);
+    expect_silence("x");
+}
+
+/* ---- Light ---- */
+
+/*
+ * Cameras that each see all moments. From moment `at` on, of `until`, pictures are by exp(size) brighter or of another tint, in
+ * all cells or but for `off` of these in a hundred, which are twice so far off; cameras: how many of three.
+ */
+static void film_light(adcgs_glance_light light, double size, int at, int until, int off, int cameras)
+{
+    begin();
+    for (int i = 0; i < 3 * 16; i++) {
+        adcgs_glance *const glance = take(i % 3, i / 3, 0.0);
+        if (i % 3 >= cameras || i / 3 < at || i / 3 >= until)
+            continue;
+        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+            if (light == ADCGS_LIGHT_BRIGHTER)
+                glance->cells[k] *= (float)exp(k % 100 < off ? 2.0 * size : size);
+        for (int k = 0; k < ADCGS_GLANCE_TINTS && light > ADCGS_LIGHT_BRIGHTER; k++)
+            glance->tints[light - ADCGS_LIGHT_REDDER][k] += (float)(k % 100 < off ? 2.0 * size : size);
+    }
+}
+
+static void steps_of_light_are_found(void **state)
+{
+    (void)state;
+    for (int light = 0; light < ADCGS_LIGHTS; light++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            film_light((adcgs_glance_light)light, sign * 0.0767, 8, 99, 0, 3);
+            expect_silence("l");
+            for (int cameras = 1; cameras <= 3; cameras++) {
+                film_light((adcgs_glance_light)light, sign * 0.0773, 8, 99, 0, cameras);
+                const adcgs_fault fault = find('l');
+                assert_true((int)fault.cameras == cameras && fault.of == 3 && fault.count == 1 && (int)fault.light == light);
+                assert_true(fault.from == 7.0 && fault.to == 8.0 && fabs(log(fault.size) - sign * 0.0773) < 1e-5);
+            }
+            film_light((adcgs_glance_light)light, sign * 0.2, 8, 9, 0, 3); /* a flash */
+            assert_int_equal(find('l').cameras, 3);
+            film_light((adcgs_glance_light)light, sign * 0.2, 8, 99, 49, 3); /* in half of the cells it is more */
+            assert_int_equal(find('l').cameras, 3);
+            film_light((adcgs_glance_light)light, sign * 0.2, 1, 99, 0, 3); /* at the ends it may be anything */
+            expect_silence("l");
+        }
+}
+
+/* More than half of the cells go to either side of it, by a third: something else is seen. */
+static void what_moves_is_no_light(void **state)
+{
+    (void)state;
+    for (int spread = 0; spread < 2; spread++) {
+        film_light(ADCGS_LIGHT_BRIGHTER, 0.2, 8, 99, 0, 3);
+        for (uint32_t i = 24; i < film.n; i++)
+            for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+                film.glances[i].cells[k] *= (float)exp((k % 10 < 4 ? 0.0 : k % 2 ? 0.2 : -0.2) * (spread ? 0.35 : 0.32));
+        assert_int_equal(find('l').cameras, spread ? 0 : 3);
+    }
+}
+
+/* The light that changes all the time, by a third of the step and more, has no steps. */
+static void light_that_changes_all_the_time(void **state)
+{
+    (void)state;
+    for (int much = 0; much < 2; much++) {
+        film_light(ADCGS_LIGHT_BRIGHTER, 0.2, 8, 99, 0, 3);
+        for (uint32_t i = 0; i < film.n; i++)
+            for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+                film.glances[i].cells[k] *= (float)exp((much ? 0.11 : 0.09) * (film.views[i].time - 8.0));
+        assert_int_equal(find('l').cameras, much ? 0 : 3);
+    }
+}
+
+/* What becomes redder and a little brighter has become redder. */
+static void the_greatest_step_is_told(void **state)
+{
+    (void)state;
+    film_light(ADCGS_LIGHT_REDDER, 0.3, 8, 99, 0, 3);
+    for (uint32_t i = 24; i < film.n; i++)
+        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+            film.glances[i].cells[k] *= (float)exp(0.1);
+    assert_true(find('l').light == ADCGS_LIGHT_REDDER && find('l').cameras == 3);
+}
+
+/* ---- Clocks ---- */
+
+/* What jerks at moments that are the same for all cameras but some, which are late; jerks: how many of them stand out. */
+static void film_clocks(int cameras, int moments, int late, int of, int jerks)
+{
+    double jerk[MOMENTS + 32], shown[CAMERAS] = {0.0};
+    random_state = 5;
+    for (int i = 0; i < MOMENTS + 32; i++)
+        jerk[i] = 0.001;
+    for (int i = 0, at = 17; i < jerks; i++, at += 2 + (int)(3.0 * draw()))
+        if (at < MOMENTS + 32)
+            jerk[at] = 0.02 + 0.02 * draw();
+    begin();
+    for (int i = 0; i < moments; i++)
+        for (int c = 0; c < cameras; c++) {
+            const double step = jerk[16 + i - (c < of ? late : 0)] * (1.0 + 0.2 * c);
+            shown[c] += shown[c] > 0.05 ? -step : step;
+            take(c, i, shown[c]);
+        }
+}
+
+static void clocks_that_are_off_are_found(void **state)
+{
+    (void)state;
+    for (int late = -5; late <= 5; late++) {
+        film_clocks(4, 40, late, 1, 30);
+        const adcgs_fault fault = find('c');
+        assert_true(fault.of == 4 && fault.cameras == (late != 0));
+        if (late)
+            assert_true((int)fault.count == abs(late) && fault.size == late && !strcmp(fault.path, "0"));
+    }
+    film_clocks(3, 40, 2, 1, 30);
+    assert_int_equal(find('c').cameras, 1);
+    film_clocks(2, 40, 2, 1, 30); /* of two nobody knows which */
+    expect_silence("c");
+    film_clocks(4, 40, 2, 2, 30); /* nor of two and two */
+    expect_silence("c");
+}
+
+static void too_little_tells_no_clock(void **state)
+{
+    (void)state;
+    film_clocks(4, 12, 0, 0, 30); /* eleven changes */
+    assert_int_equal(find('c').of, 0);
+    film_clocks(4, 13, 0, 0, 30);
+    assert_int_equal(find('c').of, 4);
+    film_clocks(4, 40, 2, 1, 2); /* what happens twice may only be seen later */
+    expect_silence("c");
+    film_clocks(4, 40, 2, 1, 6);
+    assert_int_equal(find('c').cameras, 1);
+}
+
+/* What repeats is in step in many ways. */
+static void what_repeats_tells_no_clock(void **state)
+{
+    (void)state;
+    begin();
+    for (int i = 0; i < 40; i++)
+        for (int c = 0; c < 4; c++)
+            take(c, i, (i + (c == 0)) % 4 < 2 ? 0.0 : 0.05);
+    expect_silence("c");
+}
+
+/* ---- What moves as it likes ---- */
+
+/* Blobs on ways that are smooth, by cameras that see it from elsewhere, with a sensor's noise: `turns` of them see a moment. */
+static void film_anything(uint32_t seed, int cameras, int turns, int moves)
+{
+    double way[4][8];
+    random_state = seed * 7919u + 1u;
+    for (int b = 0; b < 4; b++)
+        for (int k = 0; k < 8; k++)
+            way[b][k] = draw();
+    begin();
+    for (int i = 0; i < MOMENTS; i++)
+        for (int k = 0; k < cameras / turns; k++) {
+            const int c = (i + k * turns) % cameras;
+            adcgs_glance *const glance = take(moves ? 0 : c, i, 0.0);
+            film.views[film.n - 1].camera.fx = 50.0 + (moves ? 0.01 * i : c);
+            for (int b = 0; b < 4; b++) {
+                const double t = (double)i / MOMENTS, *w = way[b];
+                const double x = 16 + 12 * sin(6.2832 * (w[0] + 3 * w[1] * t)) + 2 * c + (moves ? 0.2 * i : 0);
+                const double y = 16 + 12 * sin(6.2832 * (w[2] + 3 * w[3] * t)), r = 2 + 4 * w[4];
+                for (int p = 0; p < ADCGS_GLANCE_CELLS; p++) {
+                    const double dx = p % ADCGS_GLANCE_SIDE - x, dy = p / ADCGS_GLANCE_SIDE - y;
+                    const double share = 1.0 / (1.0 + exp(2.0 * (sqrt(dx * dx + dy * dy) - r)));
+                    glance->cells[p] += (float)(share * (w[5] - 0.5));
+                    glance->tints[0][p % ADCGS_GLANCE_TINTS] += (float)(share * (w[6] - 0.5));
+                    glance->tints[1][p % ADCGS_GLANCE_TINTS] += (float)(share * (w[7] - 0.5));
+                }
+            }
+            for (int p = 0; p < ADCGS_GLANCE_CELLS; p++)
+                glance->cells[p] += (float)(0.002 * (draw() - 0.5));
+        }
+}
+
+static void what_moves_as_it_likes_has_no_fault(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 0; seed < SEEDS; seed++) {
+        film_anything(seed, 4, 1 + (int)(seed % 2) * 3, 0); /* all see all, or in turn */
+        expect_silence(all);
+        film_anything(seed, 1, 1, (int)(seed % 2)); /* one that stays, or moves */
+        expect_silence(all);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(of_little_nothing_is_said),          cmocka_unit_test(what_is_not_known_says_nothing),
+        cmocka_unit_test(gaps_are_found),                     cmocka_unit_test(gaps_of_all_are_the_scenes),
+        cmocka_unit_test(what_was_put_aside_is_no_gap),       cmocka_unit_test(doubled_pictures_are_found),
+        cmocka_unit_test(what_turns_may_rest),                cmocka_unit_test(doubled_pictures_of_one_that_moves),
+        cmocka_unit_test(pictures_of_others_are_found),       cmocka_unit_test(what_all_see_is_no_copy),
+        cmocka_unit_test(steps_of_light_are_found),           cmocka_unit_test(what_moves_is_no_light),
+        cmocka_unit_test(light_that_changes_all_the_time),    cmocka_unit_test(the_greatest_step_is_told),
+        cmocka_unit_test(clocks_that_are_off_are_found),      cmocka_unit_test(too_little_tells_no_clock),
+        cmocka_unit_test(what_repeats_tells_no_clock),        cmocka_unit_test(what_moves_as_it_likes_has_no_fault),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
