@@ -104,6 +104,24 @@ void adcgs_source_clear(adcgs_source *source)
     source->capacity = 0;
 }
 
+int64_t adcgs_seekable_read(void *user, void *buffer, size_t bytes)
+{
+    adcgs_seekable *s = user;
+    const size_t n = s->at < s->size ? (size_t)ADCGS_MIN((uint64_t)bytes, s->size - s->at) : 0;
+    const int64_t got = n > 0 ? s->read(s->user, s->at, buffer, n) : 0;
+    if (got > 0 && (uint64_t)got <= n) {
+        s->at += (uint64_t)got;
+        s->bytes += (uint64_t)got;
+    }
+    return got;
+}
+
+void adcgs_source_move(adcgs_source *source, uint64_t position)
+{
+    adcgs_seekable *s = source->user;
+    s->at = source->pos = position;
+}
+
 static adcgs_status read_payload(adcgs_source *source, adcgs_chunk *chunk, adcgs_error *error)
 {
     const size_t length = chunk->header.length;

@@ -75,6 +75,14 @@ typedef struct adcgs_source {
     void *trace_user;
 } adcgs_source;
 
+/** A stream of known size that can be read anywhere: what a source's user is, with adcgs_seekable_read(). */
+typedef struct adcgs_seekable {
+    adcgs_read_at_fn read;
+    void *user;
+    uint64_t size, at; /**< bytes there are; where the next ones are read */
+    uint64_t bytes;    /**< read so far */
+} adcgs_seekable;
+
 /** A chunk as read. The stream may have ended inside it. */
 typedef struct adcgs_chunk {
     uint32_t type;
@@ -97,6 +105,10 @@ adcgs_status adcgs_chunk_check_limits(const adcgs_chunk *chunk, const adcgs_leve
 /** Read the next chunk; limits may be NULL (then a payload has at most ADCGS_HEAD_BYTES_MAX bytes). Damage is ADCGS_ERR_DATA. */
 adcgs_status adcgs_chunk_read(adcgs_source *source, const adcgs_level *limits, adcgs_chunk *chunk, adcgs_error *error);
 void adcgs_source_clear(adcgs_source *source);
+/** An adcgs_read_fn; user is an adcgs_seekable. */
+int64_t adcgs_seekable_read(void *user, void *buffer, size_t bytes);
+/** A source whose user is an adcgs_seekable goes on at this position. */
+void adcgs_source_move(adcgs_source *source, uint64_t position);
 
 /** Frame a chunk: everything appended to out between the two calls is its payload. */
 size_t adcgs_chunk_begin(adcgs_buffer *out, uint32_t type, uint32_t segment, int flags);

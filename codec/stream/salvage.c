@@ -12,9 +12,7 @@
 #define READ_AGAIN 16     /* times that a stream is read, in all: headers within damaged chunks may tell of chunks without end */
 
 typedef struct salvage {
-    adcgs_read_at_fn read;
-    void *user;
-    uint64_t size, at;  /**< bytes of the source; where the reader reads on */
+    adcgs_seekable input;
     adcgs_stream *stream;
     adcgs_read_options options;
     adcgs_stream_reader reader;
@@ -38,19 +36,10 @@ static void warn(salvage *s, const char *format, ...)
     adcgs_log_say(&s->options.log, ADCGS_LOG_WARNING, "%s", text);
 }
 
-static int64_t read_on(void *user, void *buffer, size_t bytes)
-{
-    salvage *s = user;
-    const size_t n = s->at < s->size ? (size_t)ADCGS_MIN((uint64_t)bytes, s->size - s->at) : 0;
-    const int64_t got = n ? s->read(s->user, s->at, buffer, n) : 0;
-    s->at += got > 0 ? (uint64_t)got : 0;
-    return got;
-}
-
 /** Read as many bytes as there are from a position, at most so many. */
 static adcgs_status fetch(salvage *s, uint64_t position, void *to, size_t bytes, size_t *got)
 {
-    s->at = s->reader.source.pos = position;
+    adcgs_source_move(&s->reader.source, position);
     return adcgs_source_read(&s->reader.source, to, bytes, got, &s->why);
 }
 
@@ -130,7 +119,7 @@ static adcgs_status finish(salvage *s, uint64_t end)
 static adcgs_status use(salvage *s, const adcgs_chunk *chunk)
 {
     int truncated;
-    s->at = s->reader.source.pos = chunk->origin;
+    adcgs_source_move(&s->reader.source, chunk->origin);
     return adcgs_stream_reader_chunk(&s->reader, &truncated);
 }
 
@@ -212,7 +201,7 @@ static adcgs_status use_end(salvage *s, const adcgs_chunk *chunk, int whole)
     s->reader.ended = 1;
     if (!whole)
         return ADCGS_OK;
-    if (chunk->origin + ADCGS_CHUNK_BYTES + chunk->header.length != s->size)
+    if (chunk->origin + ADCGS_CHUNK_BYTES + chunk->header.length != s->input.size)
         adcgs_log_say(&s->options.log, ADCGS_LOG_INFO, "stream: bytes stand behind its end");
     const uint32_t expected = s->reader.head.segments;
     if (expected > number_at_hand(s)) {
@@ -242,7 +231,7 @@ static adcgs_status dispatch(salvage *s, const adcgs_chunk *chunk, int whole, si
 static adcgs_status look_whole(salvage *s, const adcgs_chunk *chunk, int *whole, size_t *available)
 {
     adcgs_chunk read;
-    s->at = s->reader.source.pos = chunk->origin;
+    adcgs_source_move(&s->reader.source, chunk->origin);
     const adcgs_status status = adcgs_chunk_read(&s->reader.source, s->reader.segment.limits, &read, &s->why);
     *whole = status == ADCGS_OK && read.complete;
     *available = read.available;
@@ -261,7 +250,7 @@ static adcgs_status use_chunk(salvage *s, const adcgs_chunk *chunk, uint64_t *ne
         return dispatch(s, chunk, 1, available);
     warn(s, "%s at byte %llu is damaged", chunk->name, (unsigned long long)chunk->origin);
     ADCGS_TRY(dispatch(s, chunk, 0, available));
-    const uint64_t end = ADCGS_MIN(*next, s->size);
+    const uint64_t end = ADCGS_MIN(*next, s->input.size);
     ADCGS_TRY(find_header(s, chunk->origin + ADCGS_CHUNK_HEADER_BYTES, end, &inside, &swallowed));
     *next = swallowed ? inside.origin : end;
     return ADCGS_OK;
@@ -283,7 +272,7 @@ static adcgs_status salvage_chunks(salvage *s)
     for (uint64_t at = ADCGS_SIGNATURE_BYTES; !s->reader.ended;) {
         adcgs_chunk chunk;
         int found;
-        ADCGS_TRY(find_header(s, at, s->size, &chunk, &found));
+        ADCGS_TRY(find_header(s, at, s->input.size, &chunk, &found));
         const uint64_t cost = found ? chunk.header.length + (chunk.origin - at) + PIECE_BYTES / 64 : 0;
         if (cost > s->left)
             return adcgs_fail(&s->why, ADCGS_ERR_DATA, "stream: damaged beyond all bounds at byte %llu", (unsigned long long)at);
@@ -302,26 +291,26 @@ static adcgs_status salvage_chunks(salvage *s)
 static adcgs_status end(salvage *s)
 {
     if (!s->reader.ended && s->reader.head_payload) {
-        ADCGS_TRY(adcgs_segment_finish(&s->reader.segment, s->size, 1));
-        warn(s, "stream: ends at byte %llu, before ENDC", (unsigned long long)s->size);
+        ADCGS_TRY(adcgs_segment_finish(&s->reader.segment, s->input.size, 1));
+        warn(s, "stream: ends at byte %llu, before ENDC", (unsigned long long)s->input.size);
         s->stream->truncated = 1;
     }
     if (s->stream->n_segments == 0)
         return adcgs_fail(&s->why, ADCGS_ERR_DATA, "stream: no segment of it can be used");
     s->stream->first_segment = 0;
     s->stream->weights = (uint32_t)s->reader.nets.weights;
-    adcgs_bytes_finish(&s->stream->bytes, s->size);
+    adcgs_bytes_finish(&s->stream->bytes, s->input.size);
     return ADCGS_OK;
 }
 
 adcgs_status adcgs_stream_salvage(adcgs_stream *stream, adcgs_read_at_fn read, void *user, uint64_t size,
                                   const adcgs_read_options *options, uint32_t *faults, adcgs_error *error)
 {
-    salvage s = { .read = read, .user = user, .size = size, .stream = stream, .options = *options };
+    salvage s = { .input = { .read = read, .user = user, .size = size }, .stream = stream, .options = *options };
     s.options.conceal = 1;
     s.left = READ_AGAIN * size + PIECE_BYTES;
     adcgs_stream_init(stream);
-    adcgs_stream_reader_init(&s.reader, stream, read_on, &s, &s.options, &s.why);
+    adcgs_stream_reader_init(&s.reader, stream, adcgs_seekable_read, &s.input, &s.options, &s.why);
     s.reader.nets.has_gaps = 1;
     s.piece = adcgs_alloc(options->memory, PIECE_BYTES, 1, &s.why);
     adcgs_status status = s.piece ? salvage_chunks(&s) : adcgs_alloc_status(&s.why);

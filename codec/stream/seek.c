@@ -11,10 +11,7 @@
 #define TIMES_BYTES 20 /**< of SEGM: start, end and reach, with which it begins */
 
 struct adcgs_seek {
-    adcgs_read_at_fn read;
-    void *user;
-    uint64_t size, at;   /**< bytes of the source; where the next ones are read */
-    uint64_t bytes;      /**< read so far */
+    adcgs_seekable input;
     adcgs_read_options options;
     adcgs_error error;   /**< of the reader */
     adcgs_stream_reader reader;
@@ -26,26 +23,6 @@ struct adcgs_seek {
     uint32_t first_nets; /**< networks that stand before the first segment */
     int keeps_nets;      /**< some segment names what was sent before its key: reading began at the beginning, all is kept */
 };
-
-static int64_t read_on(void *user, void *buffer, size_t bytes)
-{
-    adcgs_seek *s = user;
-    const size_t n = (size_t)ADCGS_MIN((uint64_t)bytes, s->size - s->at);
-    if (n == 0)
-        return 0;
-    const int64_t got = s->read(s->user, s->at, buffer, n);
-    if (got > 0 && (uint64_t)got <= n) {
-        s->at += (uint64_t)got;
-        s->bytes += (uint64_t)got;
-    }
-    return got;
-}
-
-/** The next chunk that the reader reads is the one at this position. */
-static void move_to(adcgs_seek *s, uint64_t position)
-{
-    s->at = s->reader.source.pos = position;
-}
 
 /** The reader's failure, to whoever called. */
 static adcgs_status pass_on(const adcgs_seek *s, adcgs_status status, adcgs_error *error)
@@ -59,9 +36,10 @@ static adcgs_status pass_on(const adcgs_seek *s, adcgs_status status, adcgs_erro
 static adcgs_status fetch(adcgs_seek *s, uint64_t position, void *to, size_t bytes)
 {
     size_t got = 0;
-    if (position > s->size || bytes > s->size - position)
-        return adcgs_fail(&s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before ENDC", (unsigned long long)s->size);
-    move_to(s, position);
+    if (position > s->input.size || bytes > s->input.size - position)
+        return adcgs_fail(&s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before ENDC",
+                          (unsigned long long)s->input.size);
+    adcgs_source_move(&s->reader.source, position);
     ADCGS_TRY(adcgs_source_read(&s->reader.source, to, bytes, &got, &s->error));
     return got == bytes ? ADCGS_OK :
                           adcgs_fail(&s->error, ADCGS_ERR_IO, "stream: reading failed at byte %llu",
@@ -74,9 +52,9 @@ static adcgs_status look_at(adcgs_seek *s, uint64_t position, adcgs_chunk *chunk
     uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES];
     ADCGS_TRY(fetch(s, position, bytes, sizeof bytes));
     ADCGS_TRY(adcgs_chunk_header(bytes, position, chunk, &s->error));
-    if (chunk->header.length > s->size || position + ADCGS_CHUNK_BYTES + chunk->header.length > s->size)
-        return adcgs_fail(&s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, inside %s", (unsigned long long)s->size,
-                          chunk->name);
+    if (chunk->header.length > s->input.size || position + ADCGS_CHUNK_BYTES + chunk->header.length > s->input.size)
+        return adcgs_fail(&s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, inside %s",
+                          (unsigned long long)s->input.size, chunk->name);
     return ADCGS_OK;
 }
 
@@ -88,17 +66,17 @@ static uint64_t behind(const adcgs_chunk *chunk)
 static adcgs_status use_chunk(adcgs_seek *s, uint64_t position)
 {
     int truncated;
-    move_to(s, position);
+    adcgs_source_move(&s->reader.source, position);
     ADCGS_TRY(adcgs_stream_reader_chunk(&s->reader, &truncated));
     return truncated ? adcgs_fail(&s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, inside a chunk",
-                                  (unsigned long long)s->size) :
+                                  (unsigned long long)s->input.size) :
                        ADCGS_OK;
 }
 
 /** All that stands before the first segment. first: its position. */
 static adcgs_status read_front(adcgs_seek *s, uint64_t *first)
 {
-    move_to(s, 0);
+    adcgs_source_move(&s->reader.source, 0);
     ADCGS_TRY(adcgs_stream_reader_signature(&s->reader));
     for (uint64_t at = ADCGS_SIGNATURE_BYTES;;) {
         adcgs_chunk chunk;
@@ -150,7 +128,7 @@ static uint64_t index_position(const adcgs_seek *s)
 {
     const uint64_t n = s->reader.head.segments, payload = var_bytes((uint32_t)n) + ENTRY_BYTES * n;
     const uint64_t behind_it = ENDC_BYTES + ADCGS_CHUNK_BYTES + payload;
-    return n > 0 && s->size > behind_it ? s->size - behind_it : 0;
+    return n > 0 && s->input.size > behind_it ? s->input.size - behind_it : 0;
 }
 
 /** The payload of INDX: all segments, one behind the other in the stream and in time. */
@@ -181,7 +159,7 @@ static adcgs_status read_index(adcgs_seek *s, uint64_t first)
     if (at < first)
         return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: there is none");
     ADCGS_TRY(look_at(s, at, &chunk));
-    if (chunk.type != ADCGS_TYPE_INDX || chunk.header.version > 0 || behind(&chunk) != s->size - ENDC_BYTES)
+    if (chunk.type != ADCGS_TYPE_INDX || chunk.header.version > 0 || behind(&chunk) != s->input.size - ENDC_BYTES)
         return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: there is none");
     uint8_t *payload = adcgs_alloc(s->options.memory, chunk.header.length, 1, &s->error);
     if (!payload)
@@ -247,12 +225,10 @@ adcgs_status adcgs_seek_open(adcgs_seek **out, adcgs_stream *stream, adcgs_read_
     *out = NULL;
     if (!s)
         return adcgs_alloc_status(error);
-    s->read = read;
-    s->user = user;
-    s->size = size;
+    s->input = (adcgs_seekable){ .read = read, .user = user, .size = size };
     s->options = *options;
     s->stream = stream;
-    adcgs_stream_reader_init(&s->reader, stream, read_on, s, &s->options, &s->error);
+    adcgs_stream_reader_init(&s->reader, stream, adcgs_seekable_read, &s->input, &s->options, &s->error);
     const adcgs_status status = pass_on(s, open_seek(s), error);
     if (status != ADCGS_OK)
         adcgs_seek_free(&s);
@@ -291,7 +267,7 @@ const adcgs_model *adcgs_seek_at_hand(const adcgs_seek *s, uint32_t number)
 
 uint64_t adcgs_seek_bytes(const adcgs_seek *s)
 {
-    return s->bytes;
+    return s->input.bytes;
 }
 
 /** Of the models in memory, keep the last, so many at most. */
