@@ -196,16 +196,15 @@ static const adcgs_trace_object fire[] = {
     FLAME(0.17, 0.10, 0.54, 0.21, 2.3, 6.0, 93)};
 
 /* The last `movers` of an array move. 11 views for testing: none is at the very moment at which a thing appears. */
-#define MOVING(things, movers)                                                                                  \
+#define LAST_MOVE(things, movers)                                                                               \
     .objects = things, .n_objects = (int)ADCGS_COUNTOF(things),                                                 \
-    .moving = ((1u << (movers)) - 1u) << (ADCGS_COUNTOF(things) - (movers)), .size = 160, .cameras = 12, .times = 24, \
-    .turns = 3, .n_val = 5, .n_test = 11, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}
+    .moving = ((1u << (movers)) - 1u) << (ADCGS_COUNTOF(things) - (movers)), .size = 160, .distance = DISTANCE, \
+    .target = {0.0, 0.0, 0.35}
+#define MOVING(things, movers) LAST_MOVE(things, movers), .cameras = 12, .times = 24, .turns = 3, .n_val = 5, .n_test = 11
 
 /* The same, filmed by one camera in a hand: 90 moments, each seen once. */
-#define FILMED(things, movers)                                                                                  \
-    .objects = things, .n_objects = (int)ADCGS_COUNTOF(things),                                                 \
-    .moving = ((1u << (movers)) - 1u) << (ADCGS_COUNTOF(things) - (movers)), .size = 160, .cameras = 1, .times = 90,  \
-    .turns = 1, .swings = 1.5, .n_val = 9, .n_test = 22, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}
+#define FILMED(things, movers)                                                                                    \
+    LAST_MOVE(things, movers), .cameras = 1, .times = 90, .turns = 1, .swings = 1.5, .n_val = 9, .n_test = 22
 
 #define STAGE                                                                                                         \
     .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage), .size = 256, .cameras = 12, .times = 40, .turns = 3, .n_val = 5, \
