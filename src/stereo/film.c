@@ -54,7 +54,6 @@ static float *fill(const adcgs_stereo_view *v, const adcgs_depths *d, adcgs_erro
 typedef struct showing {
     adcgs_stereo_rig *rig;
     const adcgs_depths *depths;
-    adcgs_status status[ADCGS_STEREO_CAMERAS];
     adcgs_error error[ADCGS_STEREO_CAMERAS];
 } showing;
 
@@ -96,7 +95,6 @@ static void show_usual(void *arg, int i, int thread)
     adcgs_stereo_camera *c = &s->rig->camera[i];
     float *inverse = fill(&c->view, &s->depths[i], &s->error[i]);
     (void)thread;
-    s->status[i] = inverse ? ADCGS_OK : adcgs_alloc_status(&s->error[i]);
     for (int y = 0; inverse && y < c->view.h; y++)
         for (int x = 0; x < c->view.w; x++) {
             const int p = y * c->view.w + x;
@@ -112,15 +110,12 @@ static void show_usual(void *arg, int i, int thread)
 adcgs_status adcgs_film_set_usual(adcgs_stereo_rig *rig, const adcgs_depths *depths, adcgs_pool *pool, adcgs_error *error)
 {
     showing *s = adcgs_alloc(NULL, 1, sizeof *s, error);
-    adcgs_status status = ADCGS_OK;
     if (!s)
         return adcgs_alloc_status(error);
     s->rig = rig;
     s->depths = depths;
     adcgs_pool_run(pool, show_usual, s, rig->n_cameras);
-    for (int i = 0; i < rig->n_cameras && status == ADCGS_OK; i++)
-        if (s->status[i] != ADCGS_OK)
-            status = adcgs_fail(error, s->status[i], "%s", s->error[i].text);
+    const adcgs_status status = adcgs_stereo_first_failure(s->error, rig->n_cameras, error);
     adcgs_free(NULL, s);
     return status;
 }

@@ -46,6 +46,15 @@ void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float 
 /** Smooth the pictures of all moments, so that what is finer than a pixel or two does not disturb what is laid on them. */
 adcgs_status adcgs_stereo_rig_soften(adcgs_stereo_rig *rig, adcgs_error *error);
 
+/** The first failure of n jobs that ran side by side, each with an error of its own that began as zeros. */
+static inline adcgs_status adcgs_stereo_first_failure(const adcgs_error *errors, int n, adcgs_error *error)
+{
+    int i = 0;
+    while (i < n && errors[i].status == ADCGS_OK)
+        i++;
+    return i < n ? adcgs_fail(error, errors[i].status, "%s", errors[i].text) : ADCGS_OK;
+}
+
 /** Where a point lies in a view: pixel coordinates, centres at + 0.5, and depth. 0 if it is behind the camera. */
 static inline int adcgs_stereo_rig_project(const adcgs_stereo_view *v, const double x[3], double at[2], double *depth)
 {

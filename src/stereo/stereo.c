@@ -73,7 +73,6 @@ typedef struct match {
     const int (*parts)[4];     /* [n] x, y, w, h; w 0: none */
     double nearest, farthest;
     adcgs_depths *depths;      /* [n] */
-    adcgs_status status[ADCGS_STEREO_CAMERAS];
     adcgs_error error[ADCGS_STEREO_CAMERAS];
 } match;
 
@@ -82,22 +81,18 @@ static void match_one(void *arg, int i, int thread)
     match *m = arg;
     adcgs_sweep s = { .x = m->parts[i][0], .y = m->parts[i][1], .w = m->parts[i][2], .h = m->parts[i][3] };
     (void)thread;
-    m->status[i] = ADCGS_OK;
     m->depths[i].view = &m->views[i];
     choose_sources(&s, m->views, m->n, i);
     if (!s.w || !s.n_sources)
         return;
     adcgs_sweep_set_planes(&s, m->nearest, m->farthest);
-    m->status[i] = adcgs_depths_find(&m->depths[i], &s, &m->error[i]);
+    (void)adcgs_depths_find(&m->depths[i], &s, &m->error[i]);
 }
 
 static adcgs_status match_all(match *m, adcgs_pool *pool, adcgs_error *error)
 {
     adcgs_pool_run(pool, match_one, m, m->n);
-    for (int i = 0; i < m->n; i++)
-        if (m->status[i] != ADCGS_OK)
-            return adcgs_fail(error, m->status[i], "%s", m->error[i].text);
-    return ADCGS_OK;
+    return adcgs_stereo_first_failure(m->error, m->n, error);
 }
 
 /* ---- What is still ---- */
