@@ -22,7 +22,7 @@ typedef struct adcgs_rate_control {
     double tried, off; /**< lambda of the last try, and its error as above */
     double early;    /**< that of this try, shortly before it is judged */
     uint32_t tries, looked; /**< tries that are over; whether the bytes of this one were looked at */
-    uint32_t missed, unused; /**< whether a run fell short of a quality in the end, and was begun again; 0 */
+    uint64_t missed; /**< whether a run fell short of a quality in the end, and was begun again; so wide that there is no gap */
 } adcgs_rate_control;
 
 #endif
