@@ -38,86 +38,15 @@ struct adcgs_transfer {
     uint8_t bytes[CURL_MAX_WRITE_SIZE];
 };
 
-/* ---- What an answer says of itself ---- */
-
-/** Decimal digits, up to what fits. \return whether there was one at least. */
-static int parse_number(const char **text, uint64_t *number)
-{
-    const char *const begin = *text;
-    for (*number = 0; **text >= '0' && **text <= '9'; (*text)++) {
-        if (*number > UINT64_MAX / 10 - 1)
-            return 0;
-        *number = 10 * *number + (uint64_t)(**text - '0');
-    }
-    return *text > begin;
-}
-
-/** "bytes 0-65535/100000"; with * for what is not known, or where no range is there to be had. */
-static void parse_range(adcgs_http_head *head, const char *text)
-{
-    uint64_t first = ADCGS_HTTP_UNKNOWN, last = 0, size = ADCGS_HTTP_UNKNOWN;
-    if (strncasecmp(text, "bytes ", 6))
-        return;
-    text += 6;
-    if (*text == '*')
-        text++;
-    else if (!parse_number(&text, &first) || *text++ != '-' || !parse_number(&text, &last) || last < first)
-        return;
-    if (*text++ != '/' || (*text != '*' && (!parse_number(&text, &size) || *text)))
-        return;
-    if (first != ADCGS_HTTP_UNKNOWN && last >= size)
-        return;
-    head->first = first;
-    head->last = last;
-    head->size = size;
-}
-
-/** Keep a value that goes back to the server as it is; one that is too long or no plain text is none. */
-static void keep(char *to, size_t size, const char *value)
-{
-    const size_t n = strlen(value);
-    *to = 0;
-    for (const char *c = value; *c; c++)
-        if (*c < ' ' || *c > '~')
-            return;
-    if (n < size)
-        memcpy(to, value, n + 1);
-}
-
-static void parse_line(adcgs_http_head *head, char *line)
-{
-    char *value = strchr(line, ':');
-    if (!strncmp(line, "HTTP/", 5)) /* another answer: what a redirect said counts no more */
-        *head = (adcgs_http_head){.length = ADCGS_HTTP_UNKNOWN, .first = ADCGS_HTTP_UNKNOWN, .size = ADCGS_HTTP_UNKNOWN};
-    if (!value)
-        return;
-    *value++ = 0;
-    value += strspn(value, " \t");
-    if (!strcasecmp(line, "Content-Range"))
-        parse_range(head, value);
-    else if (!strcasecmp(line, "ETag"))
-        keep(head->tag, sizeof head->tag, value);
-    else if (!strcasecmp(line, "Last-Modified"))
-        keep(head->modified, sizeof head->modified, value);
-}
-
 static size_t take_header(char *data, size_t size, size_t n, void *user)
 {
     adcgs_transfer *const t = user;
-    char line[256];
     t->head_bytes += n;
     if (t->head_bytes > HEAD_BYTES) {
         t->refused = "the head of its answer does not end";
         return 0;
     }
-    size_t length = n;
-    while (length > 0 && strchr(" \t\r\n", data[length - 1]))
-        length--;
-    if (length < sizeof line) { /* longer ones tell nothing that we ask for */
-        memcpy(line, data, length);
-        line[length] = 0;
-        parse_line(&t->head, line);
-    }
+    adcgs_http_head_line(&t->head, data, n);
     return n;
 }
 

@@ -6,19 +6,8 @@
 #ifndef ADCGS_IO_HTTP_CURL_H
 #define ADCGS_IO_HTTP_CURL_H
 
+#include "io/http_head.h"
 #include "io/module.h"
-
-#define ADCGS_HTTP_UNKNOWN UINT64_MAX
-
-/** What an answer says of itself before its body. */
-typedef struct adcgs_http_head {
-    int status;           /**< 200: all of it follows; 206: a range; 404, ... */
-    uint64_t length;      /**< bytes of the body; ADCGS_HTTP_UNKNOWN: it does not say */
-    uint64_t first, last; /**< the range; first is ADCGS_HTTP_UNKNOWN if none is named */
-    uint64_t size;        /**< of all of it; ADCGS_HTTP_UNKNOWN: it does not say */
-    char tag[128];        /**< ETag with its quotes; "": none, or one that is too long */
-    char modified[64];    /**< Last-Modified; "": none */
-} adcgs_http_head;
 
 /** A connection, and at most one answer that is being read. */
 typedef struct adcgs_transfer adcgs_transfer;
