@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Scenes of LLFF and COLMAP and scene files from outside. The first byte says which: L poses_bounds.npy, B a binary model of
- * COLMAP, T the same in text, S a scene file. The files of a model follow each other, each but the last after its length in two
- * bytes. There are two small pictures.
+ * Scenes of LLFF and COLMAP, scene files and splats from outside. The first byte says which: L poses_bounds.npy, B a binary model
+ * of COLMAP, T the same in text, S a scene file, G splats as a scene. The files of a model follow each other, each but the last
+ * after its length in two bytes. There are two small pictures.
  */
 #define _GNU_SOURCE
 
@@ -28,6 +28,7 @@ static const struct kind {
     { 'B', "", { "cameras.bin", "images.bin", "points3D.bin" }, 3 },
     { 'T', "", { "cameras.txt", "images.txt", "points3D.txt" }, 3 },
     { 'S', "/s.json", { "s.json" }, 1 },
+    { 'G', "/s.ply", { "s.ply" }, 1 },
 };
 static const char *const pictures[] = { "images/0.ppm", "images/1.ppm" };
 

@@ -2,7 +2,8 @@
 /** \file
  * Small files from outside that say what to do, and texts of command lines. The first byte says which: C a camera path, L a scene
  * file of footage that is yet to come, P a script of the player, R requests for digests, A a table of another method, J the
- * sweep.json of an earlier sweep, G a grid, F a range of frames, N frames per second, Y the first line of Y4M.
+ * sweep.json of an earlier sweep, G a grid, F a range of frames, N frames per second, Y the first line of Y4M, S settings of the
+ * trainer, O what spoils a scene, B a budget; H the lines of a web server's answer.
  */
 #define _GNU_SOURCE
 
@@ -11,11 +12,15 @@
 #include "camera/path.h"
 #include "data/frames.h"
 #include "io/fps.h"
+#include "io/http_head.h"
 #include "io/y4m_shape.h"
 #include "layouts/scene_file.h"
 #include "play/script.h"
+#include "scenes/spoil.h"
 #include "sweep/sweep.h"
 #include "tools/answer.h"
+#include "tools/dec_budget.h"
+#include "train/settings.h"
 
 #include <math.h>
 #include <sys/stat.h>
@@ -118,38 +123,96 @@ static void check(adcgs_status status, const adcgs_error *error)
     FUZZ_REQUIRE(status == ADCGS_OK || (error->status == status && error->text[0] && !strchr(error->text, '\n')));
 }
 
-/** Texts that are no files: data ends with a zero byte. */
-static void parse_text(char letter, const char *text)
+static void parse_grid(const char *text)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_sweep_grid grid = { .n = 0 };
+    const adcgs_status status = adcgs_sweep_grid_parse(&grid, text, &error);
+    check(status, &error);
+    for (int i = 0; status == ADCGS_OK && i < ADCGS_MIN(adcgs_sweep_grid_count(&grid), 16); i++) {
+        char choice[ADCGS_SWEEP_CHOICE];
+        adcgs_sweep_grid_choice(choice, &grid, i);
+    }
+    if (status == ADCGS_OK)
+        check(adcgs_sweep_grid_check(&grid, "draft", NULL, &error), &error);
+}
+
+static void parse_frames(const char *text)
 {
     adcgs_error error = { ADCGS_OK, "" };
     adcgs_frame_range range = { 0, 0, 0 };
-    adcgs_sweep_grid grid = { .n = 0 };
-    adcgs_y4m_shape shape;
-    adcgs_fps rate;
     int64_t count;
-    if (letter == 'G') {
-        const adcgs_status status = adcgs_sweep_grid_parse(&grid, text, &error);
-        check(status, &error);
-        for (int i = 0; status == ADCGS_OK && i < ADCGS_MIN(adcgs_sweep_grid_count(&grid), 16); i++) {
-            char choice[ADCGS_SWEEP_CHOICE];
-            adcgs_sweep_grid_choice(choice, &grid, i);
-        }
-        if (status == ADCGS_OK)
-            check(adcgs_sweep_grid_check(&grid, "draft", NULL, &error), &error);
-    } else if (letter == 'F') {
-        const adcgs_status status = adcgs_frames_parse(&range, text, &error);
-        check(status, &error);
-        if (status == ADCGS_OK)
-            check(adcgs_frames_count(&range, 1000, &count, "fuzz", &error), &error);
-    } else if (letter == 'N') {
-        if (!adcgs_fps_parse(text, &rate))
-            FUZZ_REQUIRE(rate.num > 0 && rate.den > 0 && isfinite(adcgs_fps_value(rate)));
-    } else if (letter == 'Y') {
-        const adcgs_status status = adcgs_y4m_shape_parse(&shape, text, "fuzz.y4m", &error);
-        check(status, &error);
-        FUZZ_REQUIRE(status != ADCGS_OK || (shape.width > 0 && shape.height > 0 && shape.frame_bytes > 0));
-    }
+    const adcgs_status status = adcgs_frames_parse(&range, text, &error);
+    check(status, &error);
+    if (status == ADCGS_OK)
+        check(adcgs_frames_count(&range, 1000, &count, "fuzz", &error), &error);
 }
+
+static void parse_rate(const char *text)
+{
+    adcgs_fps rate;
+    if (!adcgs_fps_parse(text, &rate))
+        FUZZ_REQUIRE(rate.num > 0 && rate.den > 0 && isfinite(adcgs_fps_value(rate)));
+}
+
+static void parse_shape(const char *text)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_y4m_shape shape;
+    const adcgs_status status = adcgs_y4m_shape_parse(&shape, text, "fuzz.y4m", &error);
+    check(status, &error);
+    FUZZ_REQUIRE(status != ADCGS_OK || (shape.width > 0 && shape.height > 0 && shape.frame_bytes > 0));
+}
+
+static void parse_settings(const char *text)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_train_config config;
+    FUZZ_REQUIRE(adcgs_train_preset(&config, "draft", &error) == ADCGS_OK);
+    check(adcgs_train_set(&config, text, &error), &error);
+}
+
+static void parse_spoil(const char *text)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_spoil spoil;
+    const adcgs_status status = adcgs_spoil_parse(&spoil, text, &error);
+    check(status, &error);
+    for (int i = 0; status == ADCGS_OK && i < ADCGS_SPOILS; i++)
+        FUZZ_REQUIRE(spoil.strength[i] >= 0 && spoil.strength[i] <= 180);
+}
+
+static void parse_budget(const char *text)
+{
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_budget budget;
+    const adcgs_status status = adcgs_budget_parse(&budget, text, &error);
+    check(status, &error);
+    FUZZ_REQUIRE(status != ADCGS_OK || (budget.of != ADCGS_BUDGET_NONE && budget.most > 0 && budget.most < 2e12));
+}
+
+/** A range is one of bytes that there are; what goes back to the server is one line. */
+static void parse_head(const char *text)
+{
+    adcgs_http_head head = { .first = ADCGS_HTTP_UNKNOWN, .size = ADCGS_HTTP_UNKNOWN };
+    for (const char *end; *text; text = end) {
+        end = strchr(text, '\n');
+        end = end ? end + 1 : text + strlen(text);
+        adcgs_http_head_line(&head, text, (size_t)(end - text));
+    }
+    FUZZ_REQUIRE(head.first == ADCGS_HTTP_UNKNOWN || (head.first <= head.last && head.last < head.size));
+    FUZZ_REQUIRE(memchr(head.tag, 0, sizeof head.tag) && memchr(head.modified, 0, sizeof head.modified));
+    FUZZ_REQUIRE(!strpbrk(head.tag, "\r\n") && !strpbrk(head.modified, "\r\n"));
+}
+
+/** Texts that are no files. */
+static const struct {
+    char letter;
+    void (*parse)(const char *text);
+} texts[] = {
+    { 'G', parse_grid },     { 'F', parse_frames }, { 'N', parse_rate },   { 'Y', parse_shape },
+    { 'S', parse_settings }, { 'O', parse_spoil },  { 'B', parse_budget }, { 'H', parse_head },
+};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -158,7 +221,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const char letter = size ? (char)*data : 'C';
     const size_t bytes = size - (size > 0);
     uint8_t *text = fuzz_file(data + (size > 0), bytes);
-    parse_text(letter, (const char *)text);
+    for (size_t i = 0; i < ADCGS_COUNTOF(texts); i++)
+        if (texts[i].letter == letter)
+            texts[i].parse((const char *)text);
     for (size_t i = 0; i < ADCGS_COUNTOF(kinds); i++) {
         if (kinds[i].letter != letter)
             continue;

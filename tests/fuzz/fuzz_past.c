@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * What a live run has left, from outside, when it is to go on: each segment that it gives can be written and read again, and
+ * behind the last it gives none, however often it is asked.
+ */
+#define _GNU_SOURCE
+
+#include "outside_file.h"
+
+#include "encode/live.h"
+#include "encode/past.h"
+
+const char *const adcgs_fuzz_seeds[] = { "conformance/vectors", "tests/fuzz/regressions/past", NULL };
+
+enum { ANCHORS = 4096 };
+
+static void check(adcgs_status status, const adcgs_error *error)
+{
+    FUZZ_REQUIRE(status == ADCGS_OK || (error->status == status && error->text[0] && !strchr(error->text, '\n')));
+}
+
+/** As adcgs-enc goes on with it: the last segment is held back. */
+static void go_on(adcgs_past *past)
+{
+    adcgs_encode_live live = { .max_anchors = 0 };
+    adcgs_model model, last = { .n = 0 };
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_status status = ADCGS_OK;
+    uint32_t n = 0;
+    while (status == ADCGS_OK) {
+        adcgs_buffer bytes;
+        adcgs_buffer_init(&bytes);
+        status = adcgs_past_next(past, &model, &error);
+        check(status, &error);
+        if (status != ADCGS_OK || !model.n)
+            break;
+        status = n++ ? adcgs_encode_live_add(&live, &last, &bytes, &error) :
+                       adcgs_encode_live_go_on(&live, &past->stream, ANCHORS, ADCGS_CPU_SCALAR, NULL, &error);
+        check(status, &error);
+        FUZZ_REQUIRE(status != ADCGS_ERR_INTERNAL); /* else it is not what was read */
+        adcgs_model_clear(&last, NULL);
+        adcgs_buffer_clear(&bytes);
+        last = model;
+    }
+    if (status == ADCGS_OK)
+        FUZZ_REQUIRE(adcgs_past_next(past, &model, &error) == ADCGS_OK && !model.n);
+    adcgs_model_clear(&last, NULL);
+    adcgs_encode_live_clear(&live);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/adcgs-fuzz-XXXXXX";
+    adcgs_error error = { ADCGS_OK, "" };
+    adcgs_past past;
+    const int file = mkstemp(path);
+    FUZZ_REQUIRE(file >= 0 && write(file, data, size) == (ssize_t)size && close(file) == 0);
+    FUZZ_REQUIRE(adcgs_past_open(&past, path, ADCGS_CPU_SCALAR, NULL, &error) == ADCGS_OK);
+    go_on(&past);
+    adcgs_past_close(&past);
+    unlink(path);
+    return 0;
+}
