@@ -10,6 +10,8 @@
 #include "data/scene.h"
 #include "stereo/stereo.h"
 
+#include <math.h>
+
 enum { ADCGS_STEREO_CAMERAS = 24 };
 
 /** A camera and what it shows. */
@@ -53,6 +55,21 @@ static inline adcgs_status adcgs_stereo_first_failure(const adcgs_error *errors,
     while (i < n && errors[i].status == ADCGS_OK)
         i++;
     return i < n ? adcgs_fail(error, errors[i].status, "%s", errors[i].text) : ADCGS_OK;
+}
+
+/** How far apart views were taken, in scene units. */
+static inline double adcgs_stereo_apart(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
+{
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += (a->centre[i] - b->centre[i]) * (a->centre[i] - b->centre[i]);
+    return sqrt(square);
+}
+
+/** The cosine between the ways that they look. */
+static inline double adcgs_stereo_axes_dot(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
+{
+    return a->rotation[6] * b->rotation[6] + a->rotation[7] * b->rotation[7] + a->rotation[8] * b->rotation[8];
 }
 
 /** Where a point lies in a view: pixel coordinates, centres at + 0.5, and depth. 0 if it is behind the camera. */

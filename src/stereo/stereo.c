@@ -7,6 +7,7 @@
 #include "stereo/follow.h"
 #include "stereo/fuse.h"
 #include "stereo/hull.h"
+#include "stereo/poses.h"
 #include "stereo/thin.h"
 
 #include <math.h>
@@ -25,19 +26,6 @@ struct adcgs_stereo_maps {
 
 /* ---- Neighbours ---- */
 
-static double apart(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
-{
-    double d = 0;
-    for (int i = 0; i < 3; i++)
-        d += pow(a->centre[i] - b->centre[i], 2);
-    return sqrt(d);
-}
-
-static double axes_dot(const adcgs_stereo_view *a, const adcgs_stereo_view *b)
-{
-    return a->rotation[6] * b->rotation[6] + a->rotation[7] * b->rotation[7] + a->rotation[8] * b->rotation[8];
-}
-
 /** The nearest views that look the same way. */
 static void choose_sources(adcgs_sweep *s, const adcgs_stereo_view *views, int n, int own)
 {
@@ -45,8 +33,8 @@ static void choose_sources(adcgs_sweep *s, const adcgs_stereo_view *views, int n
     s->view = &views[own];
     s->n_sources = 0;
     for (int i = 0; i < n; i++) {
-        const double d = apart(&views[own], &views[i]);
-        if (i == own || d < APART || axes_dot(&views[own], &views[i]) < AXES_ALIKE)
+        const double d = adcgs_stereo_apart(&views[own], &views[i]);
+        if (i == own || d < APART || adcgs_stereo_axes_dot(&views[own], &views[i]) < AXES_ALIKE)
             continue;
         int k = s->n_sources;
         if (k == ADCGS_SWEEP_SOURCES && d >= best[k - 1])
@@ -303,6 +291,10 @@ adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, cons
         out->n_moments = (uint32_t)rig->n_moments;
         out->film = rig->film;
         memcpy(out->moment, rig->moment, out->n_moments * sizeof *out->moment);
+        status = adcgs_stereo_poses_off(rig, &out->poses, pool, error);
+    }
+    if (status == ADCGS_OK) {
+        out->poses.pixels = (double)scene->views[ADCGS_SPLIT_TRAIN][0].camera.width / rig->camera[0].view.w;
         status = find(out, rig, options, pool, error);
     }
     for (int i = 0; out->maps && i < out->maps->n; i++) /* the pictures go */

@@ -50,6 +50,16 @@ typedef struct adcgs_stereo_options {
     uint32_t bodies;         /**< rigid bodies among these, at most ADCGS_BODIES_MAX; 0: none are looked for */
 } adcgs_stereo_options;
 
+/**
+ * How far poses are off. What one camera shows lies on a line in another's picture, wherever it is in space; where matches lie
+ * beside it, poses or lenses are wrong.
+ */
+typedef struct adcgs_stereo_off {
+    int pairs;     /**< of cameras that have enough in common; none: nothing is known */
+    double median; /**< over these, of the distance of most of a pair's matches to one side, in pixels of what is matched */
+    double pixels; /**< of the pictures as they are, to one of these */
+} adcgs_stereo_off;
+
 /** Depths of what is still, which also say where nothing is. */
 typedef struct adcgs_stereo_maps adcgs_stereo_maps;
 
@@ -63,6 +73,7 @@ typedef struct adcgs_stereo {
     float *moment;              /**< [n_moments] those that were matched, ascending in t */
     uint32_t n_bodies;          /**< at most ADCGS_BODIES_MAX, the largest first */
     adcgs_stereo_body *body;
+    adcgs_stereo_off poses;
     adcgs_stereo_maps *maps;
 } adcgs_stereo;
 

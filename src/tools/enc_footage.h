@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a run says about a scene's footage before it learns: pictures that are doubled or missing, light, clocks. */
+/** \file What a run says about a scene's footage before it learns: pictures that are doubled or missing, light, clocks, poses. */
 #ifndef ADCGS_TOOLS_ENC_FOOTAGE_H
 #define ADCGS_TOOLS_ENC_FOOTAGE_H
 
 #include "cli/cli.h"
 #include "data/glance.h"
 #include "data/scene.h"
+#include "stereo/stereo.h"
 
 /**
  * Note, unless --quiet, faults of footage that are found (data/faults.h), one line for each kind. scene: what is learnt at a
- * time, glances are of its training views; it begins at `begins` seconds of the whole. *told: kinds told of before, for one
- * part of a scene after the other; 0 to begin with. Where there is no memory for it nothing is said.
+ * time, which begins at `begins` seconds of the whole; poses are by its matched pictures, glances are of its training views.
+ * *told: kinds told of before, for one part of a scene after the other; 0 to begin with. Where there is no memory for it nothing
+ * is said.
  */
-void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_glance *glances, double begins,
-                             unsigned *told);
+void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_off *poses,
+                             const adcgs_glance *glances, double begins, unsigned *told);
 
 #endif

@@ -83,6 +83,33 @@ static void what_floats(void **state)
     assert_false(adcgs_stereo_floats(&(adcgs_stereo){ .maps = NULL }, (const double[]){ 0, 0, -1 }));
 }
 
+/** Turned by so many pixels up, and down, by turns, for as long as they are looked at. */
+static double off_by(double pixels)
+{
+    const double turn = pixels / FOCAL;
+    for (int i = 0; i < VIEWS; i++) {
+        const double a = i / MOMENTS % 2 ? turn : -turn;
+        const double rows[9] = { 1, 0, 0, 0, cos(a), -sin(a), 0, sin(a), cos(a) };
+        for (int k = 0; k < 9; k++)
+            views[i].camera.cam_to_world[4 * (k / 3) + k % 3] = rows[k];
+    }
+    adcgs_stereo s = find(NULL);
+    const double median = s.poses.median;
+    assert_true(s.poses.pixels == 1 && s.poses.pairs >= CAMERAS);
+    adcgs_stereo_clear(&s);
+    return median;
+}
+
+/** Where poses are as they are said to be, matches lie on their lines; else as far beside them as poses are off each other. */
+static void poses_that_are_off_are_noticed(void **state)
+{
+    assert_true(found.poses.median < 0.1);
+    const double little = off_by(0.25), much = off_by(0.75), again = off_by(0);
+    print_message("off by %.3f, by 0.5: %.3f, by 1.5: %.3f\n", found.poses.median, little, much);
+    assert_true(little > 0.2 && little < 0.9 && much > 1.1 && much < 2);
+    assert_true(again == found.poses.median);
+}
+
 static void threads_do_not_show(void **state)
 {
     adcgs_pool *pool;
@@ -91,6 +118,7 @@ static void threads_do_not_show(void **state)
     adcgs_stereo b = find(pool);
     assert_int_equal(a.n_still, b.n_still);
     assert_int_equal(a.n_moving, b.n_moving);
+    assert_memory_equal(&a.poses, &b.poses, sizeof a.poses);
     for (uint32_t i = 0; i < a.n_still; i++)
         assert_memory_equal(a.still[i].x, b.still[i].x, sizeof a.still[i].x);
     for (uint32_t i = 0; i < a.n_moving; i++) {
@@ -132,6 +160,7 @@ int main(void)
         cmocka_unit_test(what_is_still_is_the_wall), cmocka_unit_test(what_moves_is_the_square),
         cmocka_unit_test(what_is_known),             cmocka_unit_test(what_floats),
         cmocka_unit_test(threads_do_not_show),       cmocka_unit_test(where_it_applies),
+        cmocka_unit_test(poses_that_are_off_are_noticed),
     };
     return cmocka_run_group_tests(tests, match_pictures, forget_pictures);
 }
