@@ -14,6 +14,11 @@
 #include <stdint.h>
 #include <string.h>
 
+/* WebAssembly with its SIMD, which then is the level "scalar". */
+#if defined(__wasm_simd128__) && !defined(ADCGS_PORTABLE)
+#define ADCGS_WASM 1
+#endif
+
 #if defined(__GNUC__)
 #define ADCGS_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
 #else

@@ -13,6 +13,12 @@
 
 #include <math.h>
 
+/* Where the C library's would be called, and slow: the same numbers in line. */
+#ifdef ADCGS_WASM
+#include "base/fma_wasm.h"
+#define fmaf adcgs_fma1
+#endif
+
 /* Adding and subtracting 1.5 * 2^23 rounds to an integer, whose low bits stand in the sum's significand. */
 #define ADCGS_ROUND_MAGIC 0x1.8p23f
 

@@ -3,9 +3,10 @@
  * Sixteen binary32 lanes, for kernels that are written once and compiled per
  * CPU level. The including file defines ADCGS_LANES_ISA as 512 (one AVX-512
  * register), 256 (two AVX registers) or 0 (what every machine of the kind has:
- * four NEON registers of 64-bit ARM, else portable C; ADCGS_PORTABLE asks for
- * the latter). Every operation means the same in all, to the bit: minimum and maximum are `a < b ? a : b`
- * and `a > b ? a : b`, comparisons with NaN are false.
+ * four NEON registers of 64-bit ARM, four of WebAssembly's SIMD, else portable
+ * C; ADCGS_PORTABLE asks for the latter). Every operation means the same in
+ * all, to the bit: minimum and maximum are `a < b ? a : b` and `a > b ? a : b`,
+ * comparisons with NaN are false.
  */
 #ifndef ADCGS_BASE_LANES_H
 #define ADCGS_BASE_LANES_H
@@ -17,8 +18,13 @@
 #else
 #define LANES_NEON 0
 #endif
+#if !ADCGS_LANES_ISA && defined(ADCGS_WASM)
+#define LANES_WASM 1
+#else
+#define LANES_WASM 0
+#endif
 
-#if ADCGS_LANES_ISA || LANES_NEON
+#if ADCGS_LANES_ISA || LANES_NEON || LANES_WASM
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 #else
 /* Sixteen loops in a row, all unrolled: the compiler may choose. */
@@ -31,6 +37,8 @@
 #include "base/lanes_avx2.h"
 #elif LANES_NEON
 #include "base/lanes_neon.h"
+#elif LANES_WASM
+#include "base/lanes_wasm.h"
 #else
 #include "base/lanes_portable.h"
 #endif

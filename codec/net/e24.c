@@ -26,7 +26,11 @@ static adcgs_e24_fn kernel_of(adcgs_cpu_level cpu)
     if (cpu >= ADCGS_CPU_AVX2)
         return adcgs_e24_eval_avx2;
 #endif
+#ifdef ADCGS_WASM
+    return adcgs_e24_eval_wasm;
+#else
     return adcgs_e24_eval_scalar;
+#endif
 }
 
 static adcgs_status check_shapes(const adcgs_net *net, adcgs_error *error)

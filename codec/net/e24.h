@@ -26,5 +26,6 @@ struct adcgs_e24 {
 void adcgs_e24_eval_scalar(const adcgs_e24 *net, const int16_t *x, int16_t *mu, uint8_t *si, uint32_t *scratch);
 void adcgs_e24_eval_avx2(const adcgs_e24 *net, const int16_t *x, int16_t *mu, uint8_t *si, uint32_t *scratch);
 void adcgs_e24_eval_avx512(const adcgs_e24 *net, const int16_t *x, int16_t *mu, uint8_t *si, uint32_t *scratch);
+void adcgs_e24_eval_wasm(const adcgs_e24 *net, const int16_t *x, int16_t *mu, uint8_t *si, uint32_t *scratch);
 
 #endif

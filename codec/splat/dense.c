@@ -4,7 +4,7 @@
 
 #include "splat/dense_isa.h"
 
-#include <math.h>
+#include "base/fmath.h"
 
 static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
 {
@@ -33,6 +33,9 @@ static void residual(float *y, const float *x, int n)
 void adcgs_dense_dsp_init(adcgs_dense_dsp *dsp, adcgs_cpu_level level)
 {
     *dsp = (adcgs_dense_dsp){dense, lrelu, residual};
+#ifdef ADCGS_WASM
+    *dsp = adcgs_dense_wasm;
+#endif
 #ifdef HAVE_AVX2
     if (level >= ADCGS_CPU_AVX2)
         *dsp = adcgs_dense_avx2;

@@ -5,6 +5,6 @@
 
 #include "splat/dense.h"
 
-extern const adcgs_dense_dsp adcgs_dense_avx2, adcgs_dense_avx512;
+extern const adcgs_dense_dsp adcgs_dense_avx2, adcgs_dense_avx512, adcgs_dense_wasm;
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef ADCGS_SPLAT_QUATERNION_H
 #define ADCGS_SPLAT_QUATERNION_H
 
-#include <math.h>
+#include "base/fmath.h"
 
 /** A quaternion whose squared norm is outside cannot be normalised; it becomes the identity. */
 static inline int adcgs_usable_norm(float n)

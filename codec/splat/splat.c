@@ -8,6 +8,7 @@
 #include "config.h"
 
 #include "base/cpu.h"
+#include "base/fmath.h"
 #include "splat/bodies.h"
 #include "splat/floatnet.h"
 #include "splat/rows.h"
@@ -16,7 +17,6 @@
 #include "splat/steps.h"
 #include "splat/time_curve.h"
 
-#include <math.h>
 #include <stdalign.h>
 
 /* Rows of scratch beside three buffers as wide as the widest network: Sigma_v, f_p and f_v, f_g. */

@@ -8,8 +8,7 @@
 #ifndef ADCGS_SPLAT_TIME_CURVE_H
 #define ADCGS_SPLAT_TIME_CURVE_H
 
-#include <math.h>
-#include <stdint.h>
+#include "base/fmath.h"
 
 /** What is about t in [0,1]: a row, the next, one before and one behind, which may be rows that are not there; and weights. */
 typedef struct adcgs_time_place {

@@ -16,5 +16,5 @@ while read -r file; do
     head -n 4 "$file" | grep -q '\\file' || fault "$file: no \\file comment"
     grep -nHP '\t|[ \r]$' "$file" >&2 && fault "$file: tab or trailing blank"
     LC_ALL=C.UTF-8 grep -nHP '^.{131}' "$file" >&2 && fault "$file: line of over 130 columns"
-done < <(find codec src tests conformance -name '*.[ch]' -o -name '*.cc')
+done < <(find codec src tests conformance web -name '*.[ch]' -o -name '*.cc')
 [ "$faults" -eq 0 ]

@@ -34,7 +34,7 @@ typedef struct adcgs_pool adcgs_pool;
 /** Which variant of the kernels runs. Results never depend on it. */
 typedef enum adcgs_cpu_level {
     ADCGS_CPU_AUTO = 0,   /**< the best that this CPU and build have */
-    ADCGS_CPU_SCALAR = 1, /**< portable C; on 64-bit ARM with NEON */
+    ADCGS_CPU_SCALAR = 1, /**< portable C; on 64-bit ARM with NEON, on WebAssembly with its SIMD */
     ADCGS_CPU_AVX2 = 2,   /**< AVX2 and FMA */
     ADCGS_CPU_AVX512 = 3  /**< AVX-512 F, DQ, BW, VL */
 } adcgs_cpu_level;
