@@ -2,7 +2,9 @@
 /** \file Letters of 5x7 pixels for what ASCII can print, some of which reach two rows further down. */
 #include "config.h"
 
-#include "play/panel.h"
+#include "play/font.h"
+
+#include "base/base.h"
 
 #define FIRST 0x20
 

@@ -4,6 +4,7 @@
 #define ADCGS_PLAY_OVERLAY_H
 
 #include "play/state.h"
+#include "play/window.h"
 
 /** What the state does not know. */
 typedef struct adcgs_play_figures {

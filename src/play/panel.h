@@ -1,18 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Drawing on panels: rectangles and text in a font of our own. */
+/** \file Drawing on panels: rectangles and text. */
 #ifndef ADCGS_PLAY_PANEL_H
 #define ADCGS_PLAY_PANEL_H
 
+#include "play/font.h"
 #include "play/window.h"
-
-#define ADCGS_GLYPH_WIDTH 5
-#define ADCGS_GLYPH_HEIGHT 9 /**< two of it below the line */
-/* What a letter takes up with the space around it. */
-#define ADCGS_CELL_WIDTH 6
-#define ADCGS_CELL_HEIGHT 11
-
-/** Rows of a letter, from the top, 0x10 being the leftmost pixel. What ASCII cannot print gives a question mark. */
-const uint8_t *adcgs_glyph(char letter);
 
 /** A panel of this size, all of one colour (0xRRGGBBAA). On failure the panel has width 0 and shows nothing. */
 void adcgs_panel_init(adcgs_panel *panel, int width, int height, uint32_t colour);

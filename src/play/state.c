@@ -4,7 +4,7 @@
 
 #include "play/state.h"
 
-#include "play/panel.h"
+#include "play/font.h"
 
 #include <math.h>
 #include <stdarg.h>

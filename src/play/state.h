@@ -6,9 +6,10 @@
 #ifndef ADCGS_PLAY_STATE_H
 #define ADCGS_PLAY_STATE_H
 
+#include "base/base.h"
 #include "camera/orbit_control.h"
 #include "play/clock.h"
-#include "play/window.h"
+#include "play/event.h"
 
 /* The time bar, in pixels of letters and in letters: how high it is, and the room for the time on its right. */
 #define ADCGS_PLAY_BAR_HEIGHT 14
