@@ -1,0 +1,34 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# The decoder as WebAssembly, run by node's WASI, gives every conformance vector the same digests.
+#
+# usage: check_wasm.sh [-c CONFORM] [-s] TARGET...
+#   -c CONFORM  a native adcgs-conform, which asks the decoders (default ./adcgs-conform)
+#   -s          strict: a missing node is a failure, not a skip
+# Builds nothing: TARGET is relaxed or exact, a module of web/ in the working directory. One line per target.
+set -u
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh" || exit 99
+
+check()
+{
+    local target=$1 node module=web/adcgs-answer-$1.wasm log=conform-wasm-$1.log run begin=$SECONDS
+    line()
+    {
+        printf '%s: wasm-%-8s  %s\n' "$1" "$target" "$2"
+    }
+    [ -f "$module" ] || { line SKIP "no compiler for WebAssembly"; return; }
+    node=$(command -v node || command -v nodejs) || { line $missing "node is not installed"; return; }
+    # Node 20 has relaxed SIMD where it is asked for; older ones do not know the module, newer ones not the question.
+    for run in "$node --no-warnings --experimental-wasm-relaxed-simd" "$node --no-warnings" ""; do
+        [ -n "$run" ] || { line SKIP "node $("$node" --version) does not know what the module needs"; return; }
+        $run -e 'process.exit(WebAssembly.validate(require("fs").readFileSync(process.argv[1])) ? 0 : 1)' "$module" 2>/dev/null &&
+            break
+    done
+    "$conform" --timeout 60 --decoder "$run $source/tests/web/answer.mjs $module {request} {in}" \
+        "$source/conformance/manifest.json" >"$log" 2>&1 || { line FAIL "$(tail -n 1 "$log"); see $PWD/$log"; return; }
+    line PASS "node $("$node" --version): $(sed -n '$s/ .*//p' "$log") vectors, $((SECONDS - begin)) s"
+}
+
+parse_options "$@"
+shift $((OPTIND - 1))
+each "$@"

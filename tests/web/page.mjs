@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-2-Clause
+// The page in a browser, against the programs: node page.mjs chromium|firefox COMMAND FOLDER [full]; in the build folder. FOLDER
+// has s.adcgs, cut.adcgs, bad.adcgs, share.html (s.adcgs in it) and player.html. Prints what differs; exits with 1 if something
+// does.
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { openBrowser } from './browser.mjs';
+
+const [kind, command, folder, full] = process.argv.slice(2);
+const shots = process.env.ADCGS_SHOTS; // a folder for pictures to look at
+let failed = 0;
+
+function check(condition, text) {
+    if (!condition) {
+        console.log(`FAILED: ${kind}: ${text}`);
+        failed = 1;
+    }
+}
+
+function same(got, expected, text) {
+    const [a, b] = [got, expected].map(value => JSON.stringify(value));
+    check(a === b, `${text}: ${a}, expected ${b}`);
+}
+
+const native = (...options) =>
+    execFileSync('./adcgs-dec', ['--quiet', '--md5', ...options], { encoding: 'utf8' }).trim().split('\n');
+const at = name => join(folder, name);
+const urlOf = (name, query = '') => pathToFileURL(at(name)).href + query;
+
+const HELPERS = `
+const sleep = ms => new Promise(done => setTimeout(done, ms));
+const until = async (what, why) => {
+    for (let i = 0; i < 3000; i++) {
+        if (what())
+            return;
+        await sleep(20);
+    }
+    throw new Error('no ' + why + ': ' + JSON.stringify(adcgs.state) + ' ' + adcgs.message + ' ' + JSON.stringify(adcgs.notes));
+};
+const settled = () => until(() => adcgs.state === 'failed' || (adcgs.state === 'complete' && adcgs.picture), 'picture');
+const pointer = (type, x, y, id = 1, kind = 'mouse') => document.getElementById('stage').dispatchEvent(new PointerEvent(type,
+    { pointerId: id, pointerType: kind, clientX: x, clientY: y, button: 0, buttons: 1, bubbles: true }));
+Element.prototype.setPointerCapture = () => undefined; // those of pointers that are not there
+const key = name => ['keydown', 'keyup'].forEach(type => document.getElementById('exact').dispatchEvent(
+    new KeyboardEvent(type, { key: name, bubbles: true, cancelable: true })));
+const drop = (bytes, name) => {
+    const files = new DataTransfer();
+    files.items.add(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], name));
+    window.dispatchEvent(new DragEvent('drop', { dataTransfer: files, bubbles: true, cancelable: true }));
+};
+const report = () => {
+    const { state, message, picture, notes, module } = adcgs;
+    return { state, message, picture, notes, module };
+};
+`;
+
+let browser;
+const run = script => browser.run(HELPERS + script);
+async function go(url) {
+    await browser.go(url);
+    await run(`await until(() => window.adcgs && (adcgs.view || adcgs.state === 'failed'), 'page');`);
+}
+async function shot(name) {
+    if (shots)
+        await browser.shot(join(shots, `${kind}-${name}.png`));
+}
+
+/** The page's exact picture against the program's. */
+function samePicture(picture, file, text, ...options) {
+    const time = String(picture.time);
+    same(picture.digest, native(file, '--time', time, '--size', `${picture.width}x${picture.height}`, ...options)[0], text);
+}
+
+async function digests() {
+    const expected = native(at('s.adcgs')), n = full ? expected.length : 3;
+    for (const query of [`?md5=${n}`, '?md5=2&module=exact']) {
+        await go(urlOf('share.html', query));
+        await run(`await until(() => document.querySelector('#digests')?.dataset.done, 'digests');`);
+        const got = await run(`return document.getElementById('digests').textContent.trim().split('\\n');`);
+        same(got, expected.slice(0, got.length), `frames of share.html${query}`);
+        check(got.length >= 2, 'too few frames');
+        const { module } = await run('return report();');
+        same(module, query.includes('exact') ? 'exact' : 'relaxed', 'the module that draws');
+    }
+}
+
+async function controls() {
+    await go(urlOf('share.html'));
+    await run('await settled();');
+    let { picture } = await run('return report();');
+    samePicture(picture, at('s.adcgs'), 'the first picture');
+    await shot('share');
+    // The time bar, to its end.
+    picture = await run(`const bar = document.getElementById('time');
+        bar.value = bar.max;
+        bar.dispatchEvent(new Event('input'));
+        await until(() => adcgs.picture.time > 0, 'last frame');
+        return adcgs.picture;`);
+    samePicture(picture, at('s.adcgs'), 'the picture at the end of the time bar');
+    // Keys that the player has.
+    const before = await run(`key('Home'); await until(() => adcgs.picture.time === 0, 'first frame');
+        key('i'); key('l'); key('h'); await sleep(100);
+        return ['statistics', 'help'].map(id => document.getElementById(id).hidden).concat(adcgs.view.call.view_loop());`);
+    same(before, [false, false, 0], 'statistics, help and loop by their keys');
+    await shot('help');
+    // Playing, and what it costs.
+    const played = await run(`key('h'); key('l'); key(' '); const n = adcgs.view.call.view_frame();
+        await until(() => adcgs.view.call.view_frame() > n , 'playing');
+        key(' ');
+        return !adcgs.view.call.view_playing();`);
+    check(played, 'playing');
+    // A screenshot and the facts.
+    const saved = await run(`HTMLAnchorElement.prototype.click = function () { adcgs.link = this.download; };
+        key('Home'); await until(() => adcgs.picture.time === 0, 'first frame');
+        key('p'); await until(() => adcgs.saved, 'screenshot');
+        document.getElementById('more').click();
+        return [adcgs.link, adcgs.saved.bytes > 100, document.getElementById('facts').hidden,
+                document.getElementById('facts').textContent.includes('geometry')];`);
+    same(saved, ['s-0.000.png', true, false, true], 'screenshot and facts');
+    await shot('facts');
+}
+
+/** Orbit, then compare the GPU's picture with the exact one. */
+async function gpu() {
+    await go(urlOf('share.html'));
+    const result = await run(`await settled();
+        if (!adcgs.gpu)
+            return { none: adcgs.notes.join() };
+        pointer('pointerdown', 300, 200);
+        for (let i = 0; i < 8; i++) {
+            pointer('pointermove', 300 + 4 * i, 200 + i);
+            await sleep(30);
+        }
+        // Held still it is drawn again and again, in the end sorted for this view.
+        let shown = 0, fast = null;
+        await until(() => {
+            pointer('pointermove', 328, 207);
+            shown += adcgs.gpu.sorted === adcgs.gpu.n && !document.getElementById('fast').hidden ? 1 : 0;
+            fast = shown > 5 && !document.getElementById('fast').hidden ? adcgs.gpu.pixels() : null;
+            return fast;
+        }, 'picture of the GPU');
+        const n = adcgs.pictures, exact = document.getElementById('exact');
+        pointer('pointerup', 328, 207);
+        await until(() => adcgs.pictures > n && exact.style.opacity === '1', 'exact picture');
+        const slow = exact.getContext('2d').getImageData(0, 0, exact.width, exact.height).data;
+        let sum = 0;
+        for (let i = 0; i < slow.length; i++)
+            sum += (slow[i] - fast[i]) ** 2;
+        const psnr = 10 * Math.log10(255 * 255 / (sum / (0.75 * slow.length)));
+        return { same: slow.length === fast.length, psnr, ...adcgs.fast };`);
+    if (result.none) {
+        console.log(`skipped: the GPU's picture in ${kind}: ${result.none}`);
+        return;
+    }
+    check(result.same && result.psnr >= 40, `the GPU's picture has ${result.psnr} dB against the exact one`);
+    console.log(`${kind}: GPU ${result.psnr.toFixed(1)} dB, ${result.n} splats`);
+    await shot('orbit');
+}
+
+async function dropped() {
+    await go(urlOf('player.html'));
+    await shot('empty');
+    const drops = [['s.adcgs', 'complete', /^$/], ['cut.adcgs', 'complete', /ends early/],
+                   ['bad.adcgs', 'complete', /damaged/, '--conceal'], ['none.adcgs', 'failed', /none\.adcgs: ./],
+                   ['s.adcgs', 'complete', /^$/]];
+    for (const [name, state, message, ...options] of drops) {
+        const bytes = name === 'none.adcgs' ? Buffer.alloc(3000) : readFileSync(at(name));
+        const got = await run(`drop('${bytes.toString('base64')}', '${name}'); await sleep(50); await settled(); await sleep(300);
+            await until(() => adcgs.state === 'failed' || adcgs.picture, 'picture'); return report();`);
+        same(got.state, state, `${name} dropped`);
+        check(message.test(got.message), `${name} dropped: "${got.message}"`);
+        if (state === 'complete')
+            samePicture(got.picture, at(name), `${name} dropped`, ...options);
+    }
+}
+
+/** A server that gives the stream in small pieces. */
+function serve() {
+    const server = createServer((request, response) => {
+        const name = new URL(request.url, 'http://host').pathname.slice(1);
+        if (name === 'player.html') {
+            response.setHeader('content-type', 'text/html');
+            response.end(readFileSync(at(name)));
+        } else if (name === 's.adcgs') {
+            const data = readFileSync(at(name));
+            let sent = 0;
+            const more = () => {
+                if (sent >= data.length)
+                    return response.end();
+                response.write(data.subarray(sent, sent += Math.ceil(data.length / 40)));
+                setTimeout(more, 60);
+            };
+            response.setHeader('content-length', data.length);
+            more();
+        } else {
+            response.statusCode = 404;
+            response.end();
+        }
+    });
+    return new Promise(resolve => server.listen(0, '127.0.0.1', () => resolve(server)));
+}
+
+async function served() {
+    const server = await serve(), host = `http://127.0.0.1:${server.address().port}`;
+    await go(`${host}/player.html?src=s.adcgs`);
+    const early = await run(`await until(() => adcgs.pictures > 0, 'picture'); return report();`);
+    same(early.state, 'loading', 'a picture while the stream comes');
+    const late = await run('await settled(); await sleep(300); return { pictures: adcgs.pictures, ...report() };');
+    check(late.pictures > 1, `${late.pictures} pictures while the stream came`);
+    samePicture(late.picture, at('s.adcgs'), 'the picture of a stream that has come');
+    await go(`${host}/player.html?src=other.adcgs`);
+    const missing = await run(`await until(() => adcgs.state === 'failed', 'failure'); return report();`);
+    check(/404/.test(missing.message), `a stream that is not there: "${missing.message}"`);
+    server.close();
+    server.closeAllConnections();
+}
+
+/** Without WebGL2: moving pictures come from the decoder, and it is said. */
+async function withoutGpu() {
+    await go(urlOf('share.html', '?draw=exact'));
+    const got = await run(`await settled(); const n = adcgs.pictures;
+        pointer('pointerdown', 300, 200);
+        for (let i = 0; i < 10; i++) {
+            pointer('pointermove', 300 + 6 * i, 200);
+            await sleep(40);
+        }
+        pointer('pointerup', 360, 200);
+        await until(() => adcgs.pictures > n + 1 && adcgs.drawn.exact, 'pictures');
+        return report();`);
+    check(got.notes.some(note => /drawn exactly/.test(note)), 'it does not say that WebGL2 is missing');
+}
+
+/** At a phone's width, with fingers. */
+async function phone() {
+    await browser.close();
+    browser = await open(360, 640);
+    await go(urlOf('share.html'));
+    const got = await run(`await settled();
+        const wide = document.documentElement.scrollWidth > innerWidth, n = adcgs.pictures, place = adcgs.picture.digest;
+        const fingers = (type, d) => [[1, 180 - d], [2, 180 + d]].forEach(([id, x]) => pointer(type, x, 200, id, 'touch'));
+        fingers('pointerdown', 20);
+        for (let d = 20; d < 80; d += 10) {
+            fingers('pointermove', d);
+            await sleep(20);
+        }
+        fingers('pointerup', 80);
+        await until(() => adcgs.picture.digest !== place && adcgs.drawn.exact, 'picture nearer by');
+        return { wide, width: innerWidth };`);
+    same(got.wide, false, `the page at ${got.width} pixels`);
+    await shot('phone');
+}
+
+let profiles = 0;
+function open(width, height) {
+    const profile = at(`profile-${kind}-${++profiles}`);
+    mkdirSync(profile);
+    return openBrowser(kind, command, profile, { width, height, flags: ['--enable-unsafe-swiftshader'] });
+}
+
+browser = await open(800, 600);
+try {
+    for (const part of full ? [digests, controls, gpu, dropped, served, withoutGpu, phone] : [digests, controls, dropped])
+        await part().catch(e => check(false, `${part.name}: ${e.message}`));
+} finally {
+    await browser.close();
+}
+process.exitCode = failed;

@@ -1,0 +1,30 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# The page in the browsers that are here: frames to the bit, controls, files dropped, cut off and damaged. With ADCGS_FULL=1 also
+# pictures of the GPU, a server, a phone's width, and each browser; else the first one. ADCGS_CHROMIUM and ADCGS_FIREFOX may name
+# them, ADCGS_SHOTS a folder for pictures to look at. Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-share adcgs-dec adcgs-enc adcgs-demo-scene
+page=$PWD/web/adcgs-page.html
+[ -f "$page" ] || { echo "skipped: no page for browsers in this build"; exit 77; }
+node=$(command -v node || command -v nodejs) || { echo "skipped: no node, which drives browsers"; exit 77; }
+chromium=${ADCGS_CHROMIUM-$(command -v chromium)} firefox=${ADCGS_FIREFOX-$(command -v firefox-esr || command -v firefox)}
+[ -n "$chromium$firefox" ] || { echo "skipped: neither chromium nor firefox-esr"; exit 77; }
+
+tiny_stream 40
+./adcgs-share -q --page "$page" "$dir/s.adcgs" -o "$dir/share.html" || bad "adcgs-share"
+./adcgs-share -q --page "$page" -o "$dir/player.html" || bad "adcgs-share without a scene"
+bytes=$(wc -c <"$dir/s.adcgs")
+head -c $((bytes * 3 / 4)) "$dir/s.adcgs" >"$dir/cut.adcgs"
+cp "$dir/s.adcgs" "$dir/bad.adcgs"
+printf '\377\377\377\377' | dd of="$dir/bad.adcgs" bs=1 seek=$((bytes * 9 / 10)) conv=notrunc 2>/dev/null
+
+# The browser's home is the test's, which goes at the end.
+export HOME=$dir XDG_CONFIG_HOME=$dir/config XDG_CACHE_HOME=$dir/cache
+for kind in chromium firefox; do
+    command=${!kind}
+    [ -n "$command" ] || { echo "skipped: the page in $kind: not installed"; continue; }
+    "$node" "${srcdir:-.}/tests/web/page.mjs" $kind "$command" "$dir" ${ADCGS_FULL:+full} || bad "$kind"
+    [ -n "${ADCGS_FULL-}" ] || break
+done
+exit $failed

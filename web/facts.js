@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-2-Clause
+// What the file holds, as a table and a chart of its bytes. Texts come from whoever wrote the file: they are text, never markup.
+'use strict';
+
+function element(name, text, className) {
+    const made = document.createElement(name);
+    if (text !== undefined)
+        made.textContent = text;
+    if (className)
+        made.className = className;
+    return made;
+}
+
+function rowOf(table, name, ...cells) {
+    const row = table.appendChild(element('tr'));
+    row.append(element('th', name), ...cells.map(cell => cell instanceof Node ? cell : element('td', cell)));
+}
+
+function grouped(n) {
+    return Number(n).toLocaleString('en');
+}
+
+/** A bar for each part of the file, as long as its share. */
+function bytesChart(bytes) {
+    const table = element('table'), largest = Math.max(1, ...Object.keys(bytes).filter(k => k !== 'total').map(k => bytes[k]));
+    for (const [name, value] of Object.entries(bytes)) {
+        if (name === 'total' || !value)
+            continue;
+        const bar = element('div', undefined, 'part'), cell = element('td');
+        bar.style.width = `${100 * value / largest}%`;
+        cell.style.width = '45%';
+        cell.append(bar);
+        rowOf(table, name, element('td', grouped(value), 'number'), cell);
+    }
+    rowOf(table, 'total', element('td', grouped(bytes.total), 'number'), '');
+    return table;
+}
+
+/** notes: what this browser lacks, and what is wrong with the file. */
+function showFacts(into, name, facts, notes) {
+    const table = element('table');
+    const end = facts.time_end === null ? '…' : facts.time_end;
+    const tiers = facts.tiers > 1 ? `, ${facts.tiers_present} of ${facts.tiers} tiers` : '';
+    rowOf(table, 'file', name);
+    rowOf(table, 'stream', `${facts.version}, level ${facts.level}`);
+    rowOf(table, 'time', `${facts.time_start} … ${end} s, ${facts.frame_rate} frames/s`);
+    const promised = facts.segments_promised > facts.segments ? ` of ${facts.segments_promised}` : '';
+    rowOf(table, 'segments', `${facts.segments}${promised}`);
+    rowOf(table, 'anchors', `${grouped(facts.anchors)} (${grouped(facts.static_anchors)} static)`);
+    rowOf(table, 'splats', grouped(facts.gaussians));
+    rowOf(table, 'weights', grouped(facts.weights));
+    rowOf(table, 'layers', `${facts.layers}${tiers}`);
+    rowOf(table, 'cameras', String(facts.cameras));
+    rowOf(table, 'colour', facts.colour);
+    rowOf(table, 'axes', facts.axes);
+    for (const [key, value] of facts.metadata)
+        rowOf(table, key, value);
+    into.replaceChildren(table, element('h2', 'Bytes'), bytesChart(facts.bytes));
+    if (notes.length)
+        into.append(element('h2', 'Notes'), ...notes.map(note => element('div', note)));
+}

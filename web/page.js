@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-2-Clause
+// The page: a scene comes, and what should be seen is drawn: by the GPU while it moves, exactly when it rests.
+'use strict';
+
+const $ = id => document.getElementById(id);
+
+/** What tests and curious people may look at. */
+const page = window.adcgs = {
+    state: 'empty',       // empty, loading, complete, failed
+    module: null,         // that draws
+    name: '', total: 0,
+    facts: null, notes: [],
+    picture: null,        // the last exact one: width, height, time, digest, ms
+    pictures: 0,
+    listing: false,       // check.js asks for pictures: no others meanwhile
+    opened: 0, first: 0,  // milliseconds: when a scene began to come, and how long until its first picture
+    fast: {},             // milliseconds of the last picture of the GPU: pack, sort, draw
+    get view() { return view; },
+    get gpu() { return gpu; },
+};
+
+let worker, view, gpu = null;
+let reading = 0;                // number of the scene that is read; pieces of others are dropped
+let information = null;         // the last report of the worker
+let generation = 0;             // of what there is to draw
+let shownKey = '', asked = false, drawing = false, packing = false;
+let saves = false;              // a screenshot is wanted
+let packed = { time: null, generation: -1, direction: [0, 0, 0] };
+
+function setState(state) {
+    page.state = document.documentElement.dataset.state = state;
+}
+
+function say(text) {
+    page.message = text;
+    $('message').textContent = text;
+}
+
+function fail(text) {
+    setState('failed');
+    say(text);
+}
+
+function note(text) {
+    if (!page.notes.includes(text))
+        page.notes.push(text);
+}
+
+// ---- A scene comes. ----
+
+async function openScene(getSource) {
+    const number = ++reading;
+    setState('loading');
+    say('');
+    information = null;
+    shownKey = '';
+    Object.assign(page, { name: '', total: 0, facts: null, picture: null, drawn: null, first: 0, opened: performance.now() });
+    page.notes = page.notes.filter(text => !text.startsWith('file: '));
+    worker.postMessage({ kind: 'open', number });
+    try {
+        const source = await getSource();
+        Object.assign(page, { name: source.name, total: source.total || 0 });
+        await readStream(source.stream, bytes => {
+            if (number === reading)
+                worker.postMessage({ kind: 'bytes', bytes }, [bytes.buffer]);
+        });
+    } catch (e) {
+        if (number === reading)
+            note('file: ' + e.message);
+    }
+    if (number === reading)
+        worker.postMessage({ kind: 'end' });
+}
+
+/** The view knows the stream by copies of what the worker's instance found. */
+function takeReport(report) {
+    const first = information === null || !information.home;
+    information = report;
+    page.facts = report.facts || null;
+    generation++;
+    if (report.home) {
+        const over = report.ended ? 1 : 0, { info, home, cameras } = report;
+        if (first)
+            view.with([info, home, cameras], (i, h, c) => view.call.view_open(i, h, c, over));
+        else
+            view.with([info], i => view.call.view_span(i, over));
+    }
+    if (report.ended)
+        finish(report);
+    $('empty').hidden = true;
+    showControls();
+    if (page.facts)
+        showFacts($('facts'), page.name, page.facts, page.notes);
+    wake();
+}
+
+function finish(report) {
+    if (report.failed)
+        note('file: ' + report.failed);
+    if (report.fault && report.fault !== report.failed)
+        note('file: ' + report.fault);
+    const wrong = page.notes.filter(text => text.startsWith('file: ')).map(text => text.slice(6));
+    if (!report.drawable)
+        fail(`${page.name || 'stream'}: ${wrong[0] || 'it ends before anything can be drawn'}`);
+    else if (report.failed || (report.facts && report.facts.faults))
+        say(`${page.name}: damaged; showing what is whole (${wrong[0]})`);
+    else if (report.facts && report.facts.truncated)
+        say(`${page.name}: it ends early; showing what is complete`);
+    if (report.drawable)
+        setState('complete');
+}
+
+// ---- What should be drawn. ----
+
+function fitCanvas() {
+    const stage = $('stage'), dense = window.devicePixelRatio || 1;
+    const pixels = length => Math.max(1, Math.round(length * dense));
+    view.call.view_resize(pixels(stage.clientWidth), pixels(stage.clientHeight), dense);
+}
+
+function cameraOf(divider) {
+    return view.copy(view.call.view_camera(divider), view.call.page_camera_size());
+}
+
+function directionOf(camera) {
+    const numbers = new DataView(camera.buffer);
+    return CAMERA.FORWARD.map(at => numbers.getFloat64(at, true));
+}
+
+function ask(exact) {
+    const divider = exact ? 1 : view.call.view_divider(), camera = cameraOf(divider), time = view.call.view_time();
+    const key = [generation, time, exact, divider, camera.subarray(0, 144).join()].join();
+    if (drawing || page.listing || (key === shownKey && !saves))
+        return;
+    drawing = true;
+    shownKey = key;
+    worker.postMessage({ kind: 'draw', camera, time, tiers: exact ? 0 : view.call.view_tiers(), digest: exact, exact, saves });
+}
+
+/** The GPU's picture of the present view, of the splats that were packed last. */
+function drawFast() {
+    const start = performance.now(), time = view.call.view_time(), direction = directionOf(cameraOf(1));
+    const turned = direction.some((d, i) => Math.abs(d - packed.direction[i]) > 1e-4);
+    if (!packing && (packed.time !== time || packed.generation !== generation)) {
+        packing = true;
+        packed = { time, generation, direction };
+        worker.postMessage({ kind: 'splats', time, direction });
+    } else if (!packing && turned) {
+        packing = true;
+        packed.direction = direction;
+        worker.postMessage({ kind: 'sort', direction });
+    }
+    const uniforms = view.call.view_uniforms();
+    if (!gpu.n || !uniforms)
+        return;
+    const camera = new DataView(cameraOf(1).buffer);
+    gpu.draw(view.floats(uniforms, 21), camera.getInt32(CAMERA.WIDTH, true), camera.getInt32(CAMERA.HEIGHT, true),
+             page.facts.background, information.filter);
+    page.fast.drawMs = performance.now() - start;
+    $('fast').hidden = false;
+    $('exact').style.opacity = 0;
+    shownKey = '';
+}
+
+function wake() {
+    if (asked)
+        return;
+    asked = true;
+    requestAnimationFrame(step);
+}
+
+function step() {
+    asked = false;
+    if (!information || !information.home)
+        return;
+    view.call.view_tick(performance.now() / 1000);
+    fitCanvas();
+    const moving = view.call.view_moving() && !saves;
+    if (gpu && gpu.lost)
+        dropGpu('WebGL2 was lost');
+    if (moving && gpu)
+        drawFast();
+    else
+        ask(!moving);
+    if (view.call.view_shot()) {
+        saves = true;
+        wake();
+    }
+    showControls();
+    if (moving || view.call.view_playing())
+        wake();
+}
+
+function dropGpu(why) {
+    gpu = null;
+    $('fast').hidden = true;
+    note(`${why}: pictures that move are drawn exactly, and smaller where that takes long`);
+}
+
+// ---- What was drawn. ----
+
+function takePicture(m) {
+    drawing = false;
+    if (m.status !== OK) {
+        say(m.error);
+        return;
+    }
+    const canvas = $('exact');
+    canvas.width = m.width;
+    canvas.height = m.height;
+    canvas.getContext('2d').putImageData(new ImageData(new Uint8ClampedArray(m.pixels), m.width, m.height), 0, 0);
+    canvas.style.opacity = 1;
+    $('fast').hidden = true;
+    page.pictures++;
+    page.first = page.first || performance.now() - page.opened;
+    if (m.exact)
+        page.picture = { width: m.width, height: m.height, time: m.time, digest: m.digest, ms: m.ms };
+    else
+        view.call.view_took(m.ms / 1000);
+    page.drawn = { width: m.width, height: m.height, ms: m.ms, exact: m.exact };
+    $('digest').textContent = m.digest;
+    $('what').textContent = `${m.exact ? 'exact' : 'moving'} ${m.width}×${m.height}, ${m.time.toFixed(3)} s, ` +
+        `${m.ms.toFixed(0)} ms by the ${page.module} module${m.digest ? '; MD5' : ''}`;
+    if (m.saves)
+        download();
+    wake();
+}
+
+function download() {
+    saves = false;
+    const name = `${page.name.replace(/\.adcgs$/, '') || 'scene'}-${page.picture.time.toFixed(3)}.png`;
+    $('exact').toBlob(blob => {
+        const link = element('a');
+        link.href = URL.createObjectURL(blob);
+        link.download = name;
+        link.click();
+        setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+        page.saved = { name, bytes: blob.size };
+    });
+    say(name);
+}
+
+function takeSplats(m) {
+    packing = false;
+    if (!gpu)
+        return;
+    if (m.texels)
+        gpu.take(m.texels, m.n);
+    if (m.n === gpu.n)
+        gpu.sort(m.indices);
+    page.fast = { ...page.fast, n: m.n, packMs: m.packMs || page.fast.packMs, sortMs: m.sortMs };
+    wake();
+}
+
+function onReply(m) {
+    switch (m.kind) {
+    case 'ready': page.module = m.module; break;
+    case 'grown': takeReport(m); break;
+    case 'drawn': takePicture(m); break;
+    case 'splats':
+    case 'sorted': takeSplats(m); break;
+    case 'broken': fail(m.error); break;
+    }
+}
+
+// ---- Beginning. ----
+
+async function start() {
+    const modules = { relaxed: await unpack('relaxed'), exact: await unpack('exact-module') };
+    const which = chooseModule(modules, null);
+    if (!which)
+        throw new Error('this browser has no WebAssembly with SIMD: nothing can be drawn');
+    if (which === 'exact')
+        note('no relaxed SIMD: the exact module draws, some five times slower');
+    view = await Engine.create(modules[which]);
+    worker = new Worker(URL.createObjectURL(new Blob([$('worker-text').textContent], { type: 'text/javascript' })));
+    worker.onmessage = event => onReply(event.data);
+    worker.onerror = event => fail(`worker: ${event.message}`);
+    const parameters = new URLSearchParams(location.search);
+    if (parameters.get('module') === 'exact')
+        delete modules.relaxed;
+    worker.postMessage({ kind: 'modules', modules });
+    try {
+        if (parameters.get('draw') === 'exact')
+            throw new Error('draw=exact');
+        gpu = new Gpu($('fast'));
+    } catch (e) {
+        dropGpu(e.message);
+    }
+    listen();
+    const embedded = embeddedScene(), source = parameters.get('src');
+    if (source)
+        openScene(() => sceneAt(source));
+    else if (embedded)
+        openScene(async () => embedded);
+    if (parameters.has('md5'))
+        listDigests(Number(parameters.get('md5')) || 1);
+}
+
+window.addEventListener('DOMContentLoaded', () => start().catch(e => fail(e.message)));

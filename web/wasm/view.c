@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The page's camera, clock and keys: the player's state, moved by events. One in an instance. */
+#include "config.h"
+
+#include "camera/rotation.h"
+#include "play/scale.h"
+#include "play/state.h"
+#include "render/render.h"
+#include "wasm/export.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define HAND_SECONDS (1.0 / 30.0) /* that a picture may take while the camera is moved by hand */
+#define BUDGET_MAX (1.0 / 8.0)    /* a film of fewer pictures is none; browsers are slower than what the player runs on */
+
+static struct {
+    adcgs_play_state state;
+    double origin[3], unit; /* of the scene */
+    adcgs_play_scale scale;
+    adcgs_camera view;
+    adcgs_camera *cameras;
+} page;
+
+/** The moments to play, and how far they are there, from what is known of the stream by now. */
+void PAGE_EXPORT(view_span)(const adcgs_info *info, int over)
+{
+    adcgs_play_clock *const clock = &page.state.clock;
+    adcgs_play_clock_span(clock, info->time_start,
+                          isfinite(info->time_end) ? info->time_end : ADCGS_MAX(info->time_drawable, info->time_start));
+    clock->reach = over ? INFINITY : info->time_drawable - clock->begin;
+    if (info->tiers != page.scale.all)
+        adcgs_play_scale_init(&page.scale, info->tiers);
+}
+
+/** A scene, with its first view and n stored cameras. \return 0, or less if there is no memory. */
+int PAGE_EXPORT(view_open)(const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *cameras, int over)
+{
+    const int statistics = page.state.statistics;
+    free(page.cameras);
+    page.cameras = calloc((size_t)info->cameras + 1, sizeof *page.cameras);
+    if (!page.cameras)
+        return -1;
+    memcpy(page.cameras, cameras, (size_t)info->cameras * sizeof *cameras);
+    adcgs_play_init(&page.state, info, home, page.cameras);
+    page.state.statistics = statistics;
+    adcgs_play_scale_init(&page.scale, info->tiers);
+    memcpy(page.origin, info->scene_origin, sizeof page.origin);
+    page.unit = info->scene_scale;
+    view_span(info, over);
+    return 0;
+}
+
+void PAGE_EXPORT(view_resize)(int width, int height, double density)
+{
+    adcgs_play_resize(&page.state, width, height, density);
+}
+
+/** kind and key as window.h has them. The page's time bar is no part of the picture. */
+void PAGE_EXPORT(view_event)(int kind, int key, int down, int again, int button, double x, double y, double dx, double dy)
+{
+    const adcgs_event event = {.kind = (adcgs_event_kind)kind, .key = key, .down = down, .again = again, .button = button,
+                               .x = x, .y = y, .dx = dx, .dy = dy};
+    const int bar = page.state.bar;
+    if (event.kind == ADCGS_EVENT_KEY) {
+        adcgs_play_event(&page.state, &event);
+        return;
+    }
+    page.state.bar = 0;
+    adcgs_play_event(&page.state, &event);
+    page.state.bar = bar;
+}
+
+/** Fingers have no buttons: they pan, in pixels, and go nearer, in steps of the wheel. */
+void PAGE_EXPORT(view_pinch)(double dx, double dy, double steps)
+{
+    adcgs_orbit_control *const control = &page.state.control;
+    adcgs_orbit_control_view(control, page.state.width, page.state.height, &page.view);
+    adcgs_orbit_control_pan(control, dx / page.view.fx, dy / page.view.fy);
+    adcgs_orbit_control_zoom(control, steps);
+    page.state.moved = page.state.now;
+    page.state.jumped = -1;
+}
+
+void PAGE_EXPORT(view_tick)(double now)
+{
+    adcgs_play_tick(&page.state, now);
+}
+
+/** A part of the whole, 0 to 1. */
+void PAGE_EXPORT(view_seek)(double part)
+{
+    adcgs_play_clock_seek(&page.state.clock, part);
+    page.state.moved = page.state.now;
+}
+
+/** The camera for the picture: a divider makes it coarser. */
+const adcgs_camera *PAGE_EXPORT(view_camera)(int divider)
+{
+    const int width = page.state.width, height = page.state.height;
+    adcgs_orbit_control_view(&page.state.control, width, height, &page.view);
+    if (divider > 1)
+        adcgs_camera_stretch(&page.view, (width + divider - 1) / divider, (height + divider - 1) / divider);
+    return &page.view;
+}
+
+/**
+ * The same camera for a shader: rotation and translation from the scene's units, fx, fy, cx, cy, near plane, and four limits, in
+ * all 21 numbers; NULL if it cannot be drawn.
+ */
+const float *PAGE_EXPORT(view_uniforms)(void)
+{
+    static adcgs_view view;
+    _Static_assert(sizeof view == 2 * sizeof(int32_t) + 21 * sizeof(float), "what the shader takes lies in a row");
+    return adcgs_view_init(&view, view_camera(1), page.origin, page.unit, NULL) == ADCGS_OK ? view.rotation : NULL;
+}
+
+/** A picture took so long: the next ones may be coarser. */
+void PAGE_EXPORT(view_took)(double seconds)
+{
+    const adcgs_play_clock *const clock = &page.state.clock;
+    const double each = clock->playing ? 1.0 / (clock->rate * adcgs_play_clock_factor(clock)) : HAND_SECONDS;
+    adcgs_play_scale_took(&page.scale, seconds, ADCGS_MAX(HAND_SECONDS, ADCGS_MIN(each, BUDGET_MAX)));
+}
+
+/* ---- What can be read off. ---- */
+
+int PAGE_EXPORT(view_divider)(void) { return page.scale.divider; }
+int PAGE_EXPORT(view_tiers)(void) { return page.scale.tiers; }
+int PAGE_EXPORT(view_moving)(void) { return adcgs_play_moving(&page.state) || page.state.held != 0; }
+int PAGE_EXPORT(view_playing)(void) { return page.state.clock.playing; }
+int PAGE_EXPORT(view_waits)(void) { return adcgs_play_clock_waits(&page.state.clock); }
+int PAGE_EXPORT(view_loop)(void) { return page.state.clock.loop; }
+int PAGE_EXPORT(view_frame)(void) { return adcgs_play_clock_frame(&page.state.clock); }
+int PAGE_EXPORT(view_frames)(void) { return page.state.clock.frames; }
+double PAGE_EXPORT(view_time)(void) { return adcgs_play_clock_time(&page.state.clock); }
+double PAGE_EXPORT(view_factor)(void) { return adcgs_play_clock_factor(&page.state.clock); }
+int PAGE_EXPORT(view_layers)(void) { return page.state.layers; }
+int PAGE_EXPORT(view_flying)(void) { return page.state.flying; }
+int PAGE_EXPORT(view_statistics)(void) { return page.state.statistics; }
+int PAGE_EXPORT(view_bar)(void) { return page.state.bar; }
+int PAGE_EXPORT(view_help)(void) { return page.state.help; }
+
+/** Whether a screenshot was asked for; once. */
+int PAGE_EXPORT(view_shot)(void)
+{
+    const int shot = page.state.shot != ADCGS_SHOT_NONE;
+    page.state.shot = ADCGS_SHOT_NONE;
+    return shot;
+}
+
+/** Empty when there is none. */
+const char *PAGE_EXPORT(view_message)(void)
+{
+    return page.state.now < page.state.message_end ? page.state.message : "";
+}
+
+/** Lines of the help page: keys and text, each line ended by a line feed, with a tab between. */
+const char *PAGE_EXPORT(view_help_lines)(void)
+{
+    static char text[2000];
+    size_t used = 0;
+    int n;
+    const adcgs_play_help *const lines = adcgs_play_help_lines(&n);
+    for (int i = 0; i < n && used < sizeof text; i++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s\t%s\n", lines[i].keys, lines[i].text);
+    return text;
+}

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-2-Clause
+// The worker: decodes what comes, draws exact frames, and packs and sorts splats for the GPU. Messages are done in their order.
+'use strict';
+
+let modules, engine, which;
+let pieces = [], received = 0;   // the stream, to open it again
+let ended = false, failed = null; // no more will come; what the decoder said when it gave up
+let drawable = false;
+let order = null;                // a reader of the messages, so that each waits for the one before
+
+async function useModule(but) {
+    which = chooseModule(modules, but);
+    if (!which)
+        throw new Error(but ? 'this browser’s WebAssembly does not compute as the specification demands'
+                            : 'this browser has no WebAssembly with SIMD');
+    engine = await Engine.create(modules[which]);
+    return engine.call.page_open();
+}
+
+/** The module that computes exactly. If the faster one does not fuse, the other one begins anew. */
+async function begin() {
+    let status = await useModule(null);
+    if (status === ERR_FPENV && which === 'relaxed')
+        status = await useModule('relaxed');
+    if (status !== OK)
+        throw new Error(engine.text(engine.call.page_error()));
+    postMessage({ kind: 'ready', module: which });
+}
+
+function whole() {
+    const all = new Uint8Array(received);
+    let at = 0;
+    for (const piece of pieces) {
+        all.set(piece, at);
+        at += piece.length;
+    }
+    pieces = [all];
+    return all;
+}
+
+/** What is known by now, for the page. */
+function report(arrived) {
+    const call = engine.call, at = call.page_info();
+    const message = { kind: 'grown', arrived, received, ended, drawable, failed, fault: engine.text(call.page_fault()) };
+    if (at) {
+        message.info = engine.copy(at, call.page_info_size());
+        message.facts = JSON.parse(engine.text(call.page_facts()) || 'null');
+        const cameras = call.page_cameras(), home = drawable ? call.page_home() : 0;
+        if (cameras && home) {
+            message.cameras = engine.copy(cameras, message.facts.cameras * call.page_camera_size());
+            message.home = engine.copy(home, call.page_camera_size());
+            message.filter = call.page_filter();
+        }
+    }
+    postMessage(message);
+}
+
+function push(bytes) {
+    return engine.with([bytes], at => engine.call.page_push(at, bytes.length));
+}
+
+function take(bytes) {
+    pieces.push(bytes);
+    received += bytes.length;
+    if (failed)
+        return;
+    const arrived = push(bytes);
+    if (arrived < 0)
+        failed = engine.text(engine.call.page_error());
+    drawable = drawable || arrived >= ARRIVED_SEGMENT;
+    if (arrived !== 0)
+        report(arrived);
+}
+
+/** All has come that will: of a damaged stream, what is whole is shown. */
+function end() {
+    ended = true;
+    if (!failed && engine.call.page_end() !== OK)
+        failed = engine.text(engine.call.page_error());
+    if (failed) {
+        const all = whole();
+        if (engine.with([all], at => engine.call.page_reopen(at, all.length, 0, 1)) === OK)
+            drawable = true;
+    }
+    report(0);
+}
+
+/** The same bytes in the other module, once the faster one is found out. */
+async function fallBack() {
+    if (which !== 'relaxed' || await useModule('relaxed') !== OK)
+        return false;
+    const all = whole();
+    push(all);
+    if (ended)
+        end();
+    postMessage({ kind: 'ready', module: which });
+    return true;
+}
+
+async function draw(m) {
+    const call = engine.call, start = performance.now();
+    let status = engine.with([m.camera], at => call.page_draw(at, m.time, m.tiers, m.digest ? 1 : 0));
+    if (status === ERR_FPENV && await fallBack())
+        return draw(m);
+    const reply = { kind: 'drawn', id: m.id, time: m.time, status, exact: m.exact, saves: m.saves };
+    const size = new DataView(m.camera.buffer, m.camera.byteOffset);
+    reply.width = size.getInt32(CAMERA.WIDTH, true);
+    reply.height = size.getInt32(CAMERA.HEIGHT, true);
+    if (status === OK) {
+        reply.pixels = engine.copy(call.page_pixels(), 4 * reply.width * reply.height).buffer;
+        reply.digest = engine.text(call.page_digest());
+    } else {
+        reply.error = engine.text(call.page_error());
+    }
+    reply.ms = performance.now() - start;
+    postMessage(reply, reply.pixels ? [reply.pixels] : []);
+}
+
+function sorted(d) {
+    return engine.copy(engine.call.page_sort(d[0], d[1], d[2]), 4 * splats).buffer;
+}
+
+let splats = 0;
+function pack(m) {
+    const start = performance.now();
+    splats = Math.max(0, engine.call.page_pack(m.time));
+    const texels = splats ? engine.copy(engine.call.page_texels(), 64 * splats).buffer : new ArrayBuffer(0);
+    const packed = performance.now(), indices = sorted(m.direction);
+    postMessage({ kind: 'splats', time: m.time, n: splats, texels, indices, packMs: packed - start,
+                  sortMs: performance.now() - packed }, [texels, indices]);
+}
+
+function sort(m) {
+    const start = performance.now(), indices = sorted(m.direction);
+    postMessage({ kind: 'sorted', n: splats, indices, sortMs: performance.now() - start }, [indices]);
+}
+
+function setLayers(m) {
+    const all = whole();
+    if (ended && engine.with([all], at => engine.call.page_reopen(at, all.length, m.layers, failed ? 1 : 0)) === OK)
+        report(0);
+}
+
+async function handle(m) {
+    switch (m.kind) {
+    case 'modules': modules = m.modules; break;
+    case 'open':
+        pieces = [];
+        received = splats = 0;
+        ended = drawable = false;
+        failed = null;
+        await begin();
+        break;
+    case 'bytes': take(m.bytes); break;
+    case 'end': end(); break;
+    case 'draw': await draw(m); break;
+    case 'splats': pack(m); break;
+    case 'sort': sort(m); break;
+    case 'layers': setLayers(m); break;
+    }
+}
+
+onmessage = event => {
+    order = Promise.resolve(order).then(() => handle(event.data)).catch(e => postMessage({ kind: 'broken', error: e.message }));
+};
