@@ -29,13 +29,13 @@ function press(key) {
 function onKey(event, down) {
     const key = KEYS[event.key] || (event.key.length === 1 ? event.key.toLowerCase().charCodeAt(0) : 0);
     const elsewhere = event.target.tagName === 'INPUT' || (event.target.tagName === 'BUTTON' && event.key === ' ');
-    if (!key || event.ctrlKey || event.metaKey || event.altKey || elsewhere)
+    if (!key || !opened() || event.ctrlKey || event.metaKey || event.altKey || elsewhere)
         return;
     if (key === KEYS.Escape && !view.call.view_help() && !view.call.view_flying())
         return;
     const layers = view.call.view_layers();
     send(KEY, { key, down, again: event.repeat });
-    if (opened() && layers !== view.call.view_layers())
+    if (layers !== view.call.view_layers())
         worker.postMessage({ kind: 'layers', layers: view.call.view_layers() });
     event.preventDefault();
 }
@@ -55,7 +55,14 @@ function placeOf(event) {
     return { x: (event.clientX - box.left) * dense, y: (event.clientY - box.top) * dense };
 }
 
+/** On the picture, not on what is laid over it. */
+function isOnPicture(event) {
+    return !event.target.closest('#empty, #facts, #help');
+}
+
 function onDown(event) {
+    if (!isOnPicture(event))
+        return;
     const at = placeOf(event);
     $('stage').setPointerCapture(event.pointerId);
     $('exact').focus({ preventScroll: true });
@@ -140,7 +147,7 @@ function showMessage() {
 
 function showControls() {
     const open = opened();
-    for (const id of ['play', 'time', 'loop', 'reset', 'fly', 'shot', 'more'])
+    for (const id of ['play', 'time', 'loop', 'reset', 'fly', 'shot', 'more', 'keys'])
         $(id).disabled = !open;
     if (!open)
         return;
@@ -177,6 +184,8 @@ function listen() {
     stage.addEventListener('pointercancel', onUp);
     stage.addEventListener('contextmenu', event => event.preventDefault());
     stage.addEventListener('wheel', event => {
+        if (!isOnPicture(event))
+            return;
         event.preventDefault();
         send(WHEEL, { dy: -event.deltaY / (event.deltaMode ? 3 : WHEEL_STEP) });
     }, { passive: false });

@@ -39,11 +39,11 @@ function bytesChart(bytes) {
 /** notes: what this browser lacks, and what is wrong with the file. */
 function showFacts(into, name, facts, notes) {
     const table = element('table');
-    const end = facts.time_end === null ? '…' : facts.time_end;
+    const seconds = value => value === null ? '…' : Number(value.toFixed(3));
     const tiers = facts.tiers > 1 ? `, ${facts.tiers_present} of ${facts.tiers} tiers` : '';
     rowOf(table, 'file', name);
     rowOf(table, 'stream', `${facts.version}, level ${facts.level}`);
-    rowOf(table, 'time', `${facts.time_start} … ${end} s, ${facts.frame_rate} frames/s`);
+    rowOf(table, 'time', `${seconds(facts.time_start)} to ${seconds(facts.time_end)} s, ${seconds(facts.frame_rate)} frames/s`);
     const promised = facts.segments_promised > facts.segments ? ` of ${facts.segments_promised}` : '';
     rowOf(table, 'segments', `${facts.segments}${promised}`);
     rowOf(table, 'anchors', `${grouped(facts.anchors)} (${grouped(facts.static_anchors)} static)`);
