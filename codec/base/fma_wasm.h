@@ -40,13 +40,13 @@ FMA_INLINE float adcgs_fma1(float a, float b, float c)
 #define FMA_TIE 0x10000000u
 #define FMA_NORMAL (897u << 21)
 
-/* p + c, rounded to odd; sum: the same rounded to nearest. The error of that is exact (Knuth's TwoSum). */
+/* p + c, rounded to odd; sum: the same rounded to nearest. The error of that is exact (Knuth's TwoSum), and of infinity NaN. */
 static __attribute__((noinline, unused)) double adcgs_sum_to_odd(double p, double c, double sum)
 {
     const double part = sum - p, error = (p - (sum - part)) + (c - part);
     uint64_t bits;
     memcpy(&bits, &sum, sizeof bits);
-    if (error != 0.0 && !(bits & 1))
+    if ((error < 0.0 || error > 0.0) && !(bits & 1))
         bits += (error > 0.0) == (sum > 0.0) ? 1 : (uint64_t)-1;
     memcpy(&sum, &bits, sizeof sum);
     return sum;
