@@ -276,7 +276,8 @@ function open(width, height, flags = []) {
 
 browser = await open(800, 600);
 try {
-    for (const part of full ? [digests, controls, gpu, dropped, served, withoutGpu, phone, notFused] : [digests, controls, dropped])
+    const parts = full ? [digests, controls, gpu, dropped, served, withoutGpu, phone, notFused] : [digests, controls, dropped];
+    for (const part of parts)
         await part().catch(e => check(false, `${part.name}: ${e.message}`));
 } finally {
     await browser.close();
