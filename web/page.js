@@ -159,6 +159,8 @@ function drawFast() {
     page.fast.drawMs = performance.now() - start;
     $('fast').hidden = false;
     $('exact').style.opacity = 0;
+    $('what').textContent = `moving ${gpu.canvas.width}×${gpu.canvas.height}, by WebGL2: not exact`;
+    $('digest').textContent = '';
     shownKey = '';
 }
 

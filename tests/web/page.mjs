@@ -142,7 +142,7 @@ async function gpu() {
             fast = shown > 5 && !document.getElementById('fast').hidden ? adcgs.gpu.pixels() : null;
             return fast;
         }, 'picture of the GPU');
-        const n = adcgs.pictures, exact = document.getElementById('exact');
+        const n = adcgs.pictures, exact = document.getElementById('exact'), line = document.getElementById('line').textContent;
         pointer('pointerup', 328, 207);
         await until(() => adcgs.pictures > n && exact.style.opacity === '1', 'exact picture');
         const slow = exact.getContext('2d').getImageData(0, 0, exact.width, exact.height).data;
@@ -150,12 +150,13 @@ async function gpu() {
         for (let i = 0; i < slow.length; i++)
             sum += (slow[i] - fast[i]) ** 2;
         const psnr = 10 * Math.log10(255 * 255 / (sum / (0.75 * slow.length)));
-        return { same: slow.length === fast.length, psnr, ...adcgs.fast };`);
+        return { same: slow.length === fast.length, psnr, line, ...adcgs.fast };`);
     if (result.none) {
         console.log(`skipped: the GPU's picture in ${kind}: ${result.none}`);
         return;
     }
     check(result.same && result.psnr >= 40, `the GPU's picture has ${result.psnr} dB against the exact one`);
+    check(/not exact\s*$/.test(result.line), `below the GPU's picture stands "${result.line}"`);
     console.log(`${kind}: GPU ${result.psnr.toFixed(1)} dB, ${result.n} splats`);
     await shot('orbit');
 }
