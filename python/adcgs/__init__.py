@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Streams of moving Gaussian splats: libadcgs for Python, by ctypes and NumPy.
+
+    import adcgs
+
+    with adcgs.open("my.adcgs") as stream:
+        splats = stream.splats(0.5)                # means, quats, scales, opacities, colors: gsplat's words
+        frame = stream.render(0.5, camera=0)       # float32 [height, width, 3], bit-exact
+        for time, frame in stream.frames():
+            ...
+
+help(adcgs.open) says how to open a stream, help(adcgs.Decoder) what can be asked of it. Arrays are NumPy's; what gives none
+(info, cameras, metadata, digests of models and splats) works without it. ADCGS_LIBRARY names another libadcgs.so than the one
+that was installed with this package.
+"""
+from ._library import lib as _lib
+from .camera import Camera
+from .decoder import (Bytes, Decoder, Info, Pool, PushDecoder, Splats, frame_digest, frame_to_u8, open, open_push)
+from .errors import (DataError, Error, FloatError, InternalError, LimitError, NoMemoryError, ReadError, TruncatedError,
+                     UnsupportedError, UsageError)
+
+__version__ = _lib.adcgs_version_string().decode()
+
+
+def cpu_best():
+    """The best CPU level that this library has on this machine: "scalar", "avx2" or "avx512"."""
+    return _lib.adcgs_cpu_name(_lib.adcgs_cpu_best()).decode()
+
+
+__all__ = ["Bytes", "Camera", "DataError", "Decoder", "Error", "FloatError", "Info", "InternalError", "LimitError",
+           "NoMemoryError", "Pool", "PushDecoder", "ReadError", "Splats", "TruncatedError", "UnsupportedError", "UsageError",
+           "cpu_best", "frame_digest", "frame_to_u8", "open", "open_push"]

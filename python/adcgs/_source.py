@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""What a decoder is opened from: a file's name, bytes, or an object to read from."""
+import ctypes
+import os
+
+from . import _structs as s
+from ._library import call, lib
+from .errors import Error
+
+
+class Source:
+    """An object with read(), and seek() where parts of it are asked for, behind the library's callbacks. What it raises is kept:
+    a callback cannot raise through the library."""
+
+    def __init__(self, file):
+        self.file = file
+        self.raised = None
+        self.read = s.READ_FN(self._read)
+        self.read_at = s.READ_AT_FN(self._read_at)
+
+    def size(self):
+        return self.file.seek(0, os.SEEK_END)
+
+    def _give(self, buffer, size):
+        data = self.file.read(size)
+        if data is None or len(data) > size:
+            raise OSError("read() gave nothing to wait for, or more than was asked for")
+        ctypes.memmove(buffer, bytes(data), len(data))
+        return len(data)
+
+    def _read(self, _, buffer, size):
+        try:
+            return self._give(buffer, size)
+        except BaseException as error:
+            self.raised = error
+            return -1
+
+    def _read_at(self, _, offset, buffer, size):
+        try:
+            self.file.seek(offset)
+            return self._give(buffer, size)
+        except BaseException as error:
+            self.raised = error
+            return -1
+
+    def call(self, function, *arguments):
+        """As call(); what the object raised is raised instead of the failure that it became."""
+        self.raised = None
+        try:
+            call(function, *arguments)
+        except Error:
+            if self.raised is not None:
+                raise self.raised
+            raise
+
+
+def open_source(handle, source, config):
+    """Open a decoder. Returns what must be kept while it is open, or None."""
+    out, how = ctypes.byref(handle), ctypes.byref(config)
+    if isinstance(source, (str, os.PathLike)):
+        call(lib.adcgs_open_file, out, os.fsencode(source), how)
+        return None
+    if isinstance(source, (bytes, bytearray, memoryview)):
+        data = bytes(source)
+        call(lib.adcgs_open_memory, out, data, len(data), how)
+        return None
+    if not hasattr(source, "read"):
+        raise TypeError(f"expected a path, bytes or an object with read(), not {type(source).__name__}")
+    kept = Source(source)
+    if config.on_demand:
+        kept.call(lib.adcgs_open_at, out, kept.read_at, None, kept.size(), how)
+    else:
+        kept.call(lib.adcgs_open_stream, out, kept.read, None, how)
+    return kept

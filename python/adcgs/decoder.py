@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Decoders: open a stream, ask what it holds, take its splats, render frames."""
+import collections
+import ctypes
+import math
+
+from . import _structs as s
+from ._library import call, digest, lib
+from ._numpy import numpy
+from ._source import open_source
+from .camera import Camera, from_struct, to_struct
+
+Splats = collections.namedtuple("Splats", "means quats scales opacities colors")
+Splats.__doc__ = """Splats at one moment, float32, in gsplat's words: what gsplat.rasterization() takes, with sh_degree None.
+
+means      [N, 3]  centres
+quats      [N, 4]  unit quaternions w x y z, from a splat's axes to the world's
+scales     [N, 3]  standard deviations along a splat's axes, above 0 (not their logarithms)
+opacities  [N]     0 to 0.99 (not logits)
+colors     [N, 3]  RGB in the stream's transfer characteristic (Info.colour), 0 black to 1 white, not clipped
+"""
+Bytes = collections.namedtuple("Bytes", [name for name, _ in s.adcgs_bytes._fields_])
+Info = collections.namedtuple("Info", [name for name, _ in s.adcgs_info._fields_ if name != "size"])
+Info.__doc__ = """What a stream holds: the members of adcgs_info (adcgs_get_info(3)). Times are in seconds, scene_origin in world
+units; world = scene_origin + scene_scale * scene."""
+
+
+class Pool:
+    """Threads that several decoders share. threads: 1 to 256, counting the one that calls; 0: one for each processor."""
+
+    def __init__(self, threads=0):
+        self._handle = ctypes.c_void_p()
+        call(lib.adcgs_pool_create, ctypes.byref(self._handle), threads)
+
+    def __del__(self):
+        lib.adcgs_pool_free(ctypes.byref(self._handle))
+
+    @property
+    def threads(self):
+        """How many."""
+        return lib.adcgs_pool_threads(self._handle)
+
+
+def _plain(value):
+    """A struct's member as Python has it."""
+    if isinstance(value, s.adcgs_bytes):
+        return Bytes(*(_plain(getattr(value, name)) for name in Bytes._fields))
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return tuple(value) if isinstance(value, ctypes.Array) else value
+
+
+def _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand, join, pool, log):
+    config = s.adcgs_config()
+    lib.adcgs_config_init(ctypes.byref(config), ctypes.sizeof(config))
+    if cpu not in s.CPU_LEVELS:
+        raise ValueError(f"cpu: {cpu}: expected one of {', '.join(s.CPU_LEVELS)}")
+    config.threads, config.cpu, config.layers, config.memory_limit = threads, s.CPU_LEVELS.index(cpu), layers, memory_limit
+    config.strict_end, config.conceal, config.on_demand, config.join = strict, conceal, on_demand, join
+    if pool is not None:
+        config.pool = pool._handle
+    if log is not None:
+        config.log = s.LOG_FN(lambda _, level, text: log(s.LOG_LEVELS.get(level, "info"), text.decode("utf-8", "replace")))
+    return config
+
+
+class Decoder:
+    """A stream that was opened, by open(). One thread at a time may use it; different decoders are independent. It is closed at
+    the end of a with statement, by close(), or with its last reference. What fails raises an Error with the library's one
+    line."""
+
+    def __init__(self, config, pool):
+        self._handle = ctypes.c_void_p()
+        self._source = None
+        self._config, self._pool = config, pool  # the library calls the one's log, and uses the other
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def __del__(self):
+        self.close()
+
+    def close(self):
+        """Free all it owns. Arrays that it gave stay."""
+        lib.adcgs_close(ctypes.byref(self._handle))
+        self._source = None
+
+    def _call(self, function, *arguments):
+        if not self._handle:
+            raise ValueError("the decoder is closed")
+        (self._source.call if self._source else call)(function, self._handle, *arguments)
+
+    # ---- what the stream holds ----
+
+    @property
+    def info(self):
+        """An Info, as of now."""
+        info = s.adcgs_info()
+        self._call(lib.adcgs_get_info, ctypes.byref(info), ctypes.sizeof(info))
+        return Info(*(_plain(getattr(info, name)) for name in Info._fields))
+
+    @property
+    def cameras(self):
+        """The stored cameras, a list of Camera."""
+        return [self.camera(i) for i in range(self.info.cameras)]
+
+    def camera(self, which):
+        """A stored camera by its number, or by its name; a Camera is given back."""
+        if isinstance(which, Camera):
+            return which
+        if isinstance(which, str):
+            for camera in self.cameras:
+                if camera.name == which:
+                    return camera
+            raise KeyError(f"{which}: no stored camera has that name")
+        camera = s.adcgs_camera()
+        self._call(lib.adcgs_get_camera, which, ctypes.byref(camera))
+        return from_struct(camera)
+
+    @property
+    def metadata(self):
+        """Texts that the stream stores, a dict; of a key that comes twice the first. They are whoever's that wrote the stream."""
+        texts = {}
+        for i in range(self.info.metadata):
+            key = lib.adcgs_get_metadata_key(self._handle, i)
+            texts[_plain(key)] = _plain(lib.adcgs_get_metadata(self._handle, key))
+        return texts
+
+    def times(self, begin=None, end=None):
+        """Moments from begin to end, both in seconds and included, at the stream's frame rate; without them all of the stream."""
+        info = self.info
+        begin = info.time_start if begin is None else begin
+        end = info.time_end if end is None else end
+        return [begin + i / info.frame_rate for i in range(math.floor((end - begin) * info.frame_rate + 1.0 + 1e-6))]
+
+    # ---- splats ----
+
+    def set_tiers(self, tiers):
+        """Draw the first tiers alone from now on, a coarser picture in less time; 0: all."""
+        self._call(lib.adcgs_set_tiers, tiers)
+
+    def splats(self, time, units="world", draws_nothing=False):
+        """Splats at a time in seconds; times outside the stream's span become its start or end.
+
+        units          "world", or "scene": what the decoder computes, not placed and scaled
+        draws_nothing  True: all slots of the stream, also those of opacity 0, so that a slot is the same splat at all times
+        """
+        np = numpy()
+        primitives, info = s.adcgs_primitives(), self.info
+        if units not in ("world", "scene"):
+            raise ValueError(f"units: {units}: expected world or scene")
+        self._call(lib.adcgs_get_primitives, time, ctypes.byref(primitives))
+
+        def take(*arrays):
+            return np.stack([np.ctypeslib.as_array(array, (primitives.n,)) for array in arrays], axis=-1)
+
+        means, scales = take(*primitives.mean), take(*primitives.scale)
+        with np.errstate(over="ignore", under="ignore"):
+            if units == "world":
+                means = (np.array(info.scene_origin) + info.scene_scale * means.astype(np.float64)).astype(np.float32)
+                scales = (info.scene_scale * scales.astype(np.float64)).astype(np.float32)
+        out = Splats(means, take(*primitives.rotation), scales, take(primitives.opacity)[:, 0], take(*primitives.colour))
+        if draws_nothing:
+            return out
+        kept = (out.opacities > 0) & np.isfinite(means).all(1) & np.isfinite(scales).all(1)
+        kept &= (scales >= np.finfo(np.float32).tiny).all(1)
+        return Splats(*(array[kept] for array in out))
+
+    # ---- frames ----
+
+    def render(self, time, camera=0):
+        """A frame, float32 [height, width, 3]: RGB in the stream's transfer characteristic, 0 black to 1 white, not clipped. It
+        is the same to the last bit on every machine. camera: a Camera, or a stored one's number or name."""
+        camera = to_struct(self.camera(camera))
+        out = self._array(camera, 3)
+        frame = s.adcgs_frame(camera.width, camera.height, out.ctypes.data)
+        self._call(lib.adcgs_render, ctypes.byref(camera), time, ctypes.byref(frame))
+        return out
+
+    def render_rgba8(self, time, camera=0, alpha="straight"):
+        """A picture, uint8 [height, width, 4]. alpha: "straight" or "premultiplied": A is what the splats cover, and there is no
+        background; "opaque": the frame, and 255."""
+        if alpha not in s.ALPHAS:
+            raise ValueError(f"alpha: {alpha}: expected one of {', '.join(s.ALPHAS)}")
+        camera = to_struct(self.camera(camera))
+        out = self._array(camera, 4, "uint8")
+        self._call(lib.adcgs_render_rgba8, ctypes.byref(camera), time, s.ALPHAS.index(alpha), out.ctypes.data, 4 * camera.width)
+        return out
+
+    def render_depth(self, time, camera=0):
+        """(depth, alpha), float32 [height, width] each: world units along the camera's axis, 1e10 where alpha is 0; what the
+        splats cover, 0 to 1."""
+        camera = to_struct(self.camera(camera))
+        depth, alpha = self._array(camera), self._array(camera)
+        self._call(lib.adcgs_render_depth, ctypes.byref(camera), time, depth.ctypes.data, alpha.ctypes.data)
+        return depth, alpha
+
+    def rasterize(self, time, viewmats, Ks, width, height, near_plane=0.01):
+        """Frames as gsplat.rasterization() gives them: (colors [C, height, width, 3], alphas [C, height, width, 1]), float32, the
+        stream's background behind the splats. viewmats [C, 4, 4] go from world to camera; Ks [C, 3, 3] are in pixels."""
+        np = numpy()
+        cameras = [Camera.from_gsplat(viewmat, K, width, height, near_plane) for viewmat, K in zip(viewmats, Ks, strict=True)]
+        colors = np.empty((len(cameras), height, width, 3), np.float32)
+        alphas = np.empty((len(cameras), height, width, 1), np.float32)
+        for i, camera in enumerate(cameras):
+            colors[i] = self.render(time, camera)
+            alphas[i, :, :, 0] = self.render_depth(time, camera)[1]
+        return colors, alphas
+
+    def frames(self, camera=0, times=None):
+        """Yield (time, frame), as render() gives it, for each of times, in seconds; without them for times()."""
+        camera = self.camera(camera)
+        for time in self.times() if times is None else times:
+            yield time, self.render(time, camera)
+
+    def _array(self, camera, samples=None, kind="float32"):
+        if not 1 <= camera.width <= 16384 or not 1 <= camera.height <= 16384:
+            raise ValueError(f"a camera of {camera.width}x{camera.height} pixels: expected 1 to 16384 each")
+        return numpy().empty((camera.height, camera.width) + ((samples,) if samples else ()), kind)
+
+    # ---- conformance ----
+
+    def model_digest(self, segment):
+        """MD5 of a segment's decoded model (point M), 32 hexadecimal digits."""
+        out = digest()
+        self._call(lib.adcgs_get_model_digest, segment, out)
+        return bytes(out).hex()
+
+    def splat_digest(self, time):
+        """MD5 of the splats at a time (point S), 32 hexadecimal digits."""
+        out = digest()
+        self._call(lib.adcgs_get_splat_digest, time, out)
+        return bytes(out).hex()
+
+
+class PushDecoder(Decoder):
+    """A decoder that is given bytes as they come, by open_push(). Until the first "header" nothing can be asked of it, until the
+    first "segment" nothing drawn; then times are served by what came so far."""
+
+    def push(self, data):
+        """Give it bytes, any number, in order. Returns what they have brought, a list of "header", "cameras", "segment" (one that
+        can be drawn, or more of it) and "end". A failure is final, but what was there before can be drawn."""
+        data, at, brought = bytes(data), 0, []
+        used, arrived = ctypes.c_size_t(), ctypes.c_int()
+        start = ctypes.cast(ctypes.c_char_p(data), ctypes.c_void_p).value or 0
+        while at < len(data) and brought[-1:] != ["end"]:
+            self._call(lib.adcgs_push, start + at, len(data) - at, ctypes.byref(used), ctypes.byref(arrived))
+            at += used.value
+            if arrived.value:
+                brought.append(s.ARRIVALS[arrived.value])
+        return brought
+
+    def end(self):
+        """Say that no more bytes will come: of a stream that has not ended what is complete remains."""
+        self._call(lib.adcgs_push_end)
+
+    def forget(self, time):
+        """Say that no moment before this one, in seconds, will be asked for again: what is past is freed."""
+        self._call(lib.adcgs_push_forget, time)
+
+
+def open(source, *, threads=0, cpu="auto", layers=0, tiers=0, memory_limit=0, strict=False, conceal=False, on_demand=False,
+         join=False, pool=None, log=None):
+    """Open a stream: a file's name, bytes, or an object with read(), which is read to the stream's end. Returns a Decoder.
+
+    threads       1 to 256; 0: one for each processor
+    cpu           "auto", "scalar", "avx2", "avx512": which kernels; results never depend on it
+    layers        use at most so many, 1 to 5; 0: all
+    tiers         draw the first tiers alone, 1 to 8; 0: all
+    memory_limit  bytes that the decoder may allocate; 0: the stream's level decides
+    strict        refuse a stream that ends early; without it what is complete can be shown
+    conceal       of a damaged stream use what is whole; log is told what is not
+    on_demand     read a segment when a time in it is asked for; of an object with read(), by seek()
+    join          of an object with read(): its beginning may be missing
+    pool          a Pool to use instead of threads of its own
+    log           log(level, text): takes messages; level is "warning" or "info"
+    """
+    config = _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand, join, pool, log)
+    decoder = Decoder(config, pool)
+    decoder._source = open_source(decoder._handle, source, config)
+    if tiers:
+        decoder.set_tiers(tiers)
+    return decoder
+
+
+def open_push(*, threads=0, cpu="auto", layers=0, memory_limit=0, strict=False, join=False, pool=None, log=None):
+    """Open a PushDecoder; what can be said is as for open()."""
+    decoder = PushDecoder(_make_config(threads, cpu, layers, memory_limit, strict, False, False, join, pool, log), pool)
+    call(lib.adcgs_open_push, ctypes.byref(decoder._handle), ctypes.byref(decoder._config))
+    return decoder
+
+
+def frame_digest(frame):
+    """MD5 of a frame (point R), float32 [height, width, 3], as adcgs-dec --md5 prints it."""
+    out, (array, struct) = digest(), _frame(frame)
+    lib.adcgs_frame_digest(ctypes.byref(struct), out)
+    return bytes(out).hex()
+
+
+def frame_to_u8(frame):
+    """A frame, float32 [height, width, 3], as uint8: floor(clip(v, 0, 1) * 255 + 0.5)."""
+    array, struct = _frame(frame)
+    out = numpy().empty(array.shape, "uint8")
+    lib.adcgs_frame_to_u8(ctypes.byref(struct), out.ctypes.data)
+    return out
+
+
+def _frame(frame):
+    """The array, which must stay, and its struct."""
+    array = numpy().ascontiguousarray(frame, "float32")
+    if array.ndim != 3 or array.shape[2] != 3:
+        raise ValueError(f"expected a frame [height, width, 3], not {list(array.shape)}")
+    return array, s.adcgs_frame(array.shape[1], array.shape[0], array.ctypes.data)
