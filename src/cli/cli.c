@@ -4,6 +4,7 @@
 
 #include "cli/cli.h"
 
+#include "cli/completion.h"
 #include "cli/flush.h"
 #include "cli/text.h"
 
@@ -97,6 +98,7 @@ static int option_set(const adcgs_option *option, const char *text)
         *(int *)option->target = 1;
         return 0;
     case ADCGS_OPTION_STRING:
+    case ADCGS_OPTION_FILE:
         *(const char **)option->target = text;
         return 0;
     case ADCGS_OPTION_INT:
@@ -247,6 +249,10 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
     char letters[2 * OPTIONS_MAX + 5];
     getopt_tables(cli, longs, letters);
     opterr = 0;
+    if (argc == 2 && !strcmp(argv[1], "--completion")) {
+        adcgs_cli_print_completion(cli);
+        return adcgs_cli_leave(cli, 0);
+    }
     signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond its limit is an error like a full disk, not the end of the program */
     for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
         if (code == 'h')

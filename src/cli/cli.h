@@ -14,6 +14,7 @@
 typedef enum adcgs_option_kind {
     ADCGS_OPTION_FLAG,   /**< target: int, set to 1 */
     ADCGS_OPTION_STRING, /**< target: const char * */
+    ADCGS_OPTION_FILE,   /**< as STRING: the name of a file or folder */
     ADCGS_OPTION_INT,    /**< target: int */
     ADCGS_OPTION_SIZE,   /**< target: uint64_t; suffixes k, M, G are powers of 1000, KiB, MiB, GiB of 1024 */
     ADCGS_OPTION_REAL,   /**< target: double */
@@ -30,11 +31,14 @@ typedef struct adcgs_option {
     double min, max;    /**< inclusive range of INT, SIZE, REAL and PAIR */
     const char *value;  /**< what the help calls the value; NULL for a FLAG */
     const char *help;   /**< one sentence without full stop; '\n' continues on the next line */
-    const char *const *choices; /**< names of a CHOICE, ended by NULL */
+    const char *const *choices; /**< names of a CHOICE, ended by NULL; what a STRING or FILE may be, or be made of, for completion */
     int *given;         /**< set to 1 when the option is given; may be NULL */
 } adcgs_option;
 
-/** A program. --help (-h) and --version (-V) are added by themselves, and --quiet (-q) where quiet is set. */
+/**
+ * A program. --help (-h) and --version (-V) are added by themselves, and --quiet (-q) where quiet is set. --completion alone, which
+ * the help is silent about, prints the table for the shell (cli/completion.h).
+ */
 typedef struct adcgs_cli {
     const char *program;  /**< "adcgs-dec" */
     const char *operands; /**< "FILE|-" */
@@ -48,8 +52,8 @@ typedef struct adcgs_cli {
 
 /**
  * Parse argv; operands end up in argv[*first .. argc).
- * \return -1 to go on, else the exit code to leave with (0 after --help and --version, 2 after a mistake, which has been
- * reported).
+ * \return -1 to go on, else the exit code to leave with (0 after --help, --version and --completion, 2 after a mistake, which has
+ * been reported).
  */
 int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first);
 

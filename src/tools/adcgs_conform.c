@@ -160,7 +160,7 @@ int main(int argc, char **argv)
         {.name = "filter", .kind = ADCGS_OPTION_STRING, .target = &s.filter, .value = "PATTERN",
          .help = "only vectors whose name matches, as in 'bad-geom-*'"},
         {.name = "list", .kind = ADCGS_OPTION_FLAG, .target = &s.list, .help = "print names and titles, check nothing"},
-        {.name = "junit", .kind = ADCGS_OPTION_STRING, .target = &s.junit, .value = "FILE",
+        {.name = "junit", .kind = ADCGS_OPTION_FILE, .target = &s.junit, .value = "FILE",
          .help = "write the results as JUnit XML"},
         {.name = "self-test", .kind = ADCGS_OPTION_FLAG, .target = &s.selftest,
          .help = "damage each expectation and each stream in memory, one at a time, and run\nprograms that lie, die and hang; "

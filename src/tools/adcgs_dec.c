@@ -36,17 +36,18 @@ typedef struct settings {
 #define OPTION_COUNT 30
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
+    static const char *const formats[] = {"y4m", "raw", "null", NULL}, *const ways[] = {"orbit", "spiral", "bullet", NULL};
     const adcgs_option table[OPTION_COUNT] = {
-        {"output", 'o', ADCGS_OPTION_STRING, &s->output, 0, 0, "TARGET",
+        {"output", 'o', ADCGS_OPTION_FILE, &s->output, 0, 0, "TARGET",
          "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
          "or - for standard output", NULL, NULL},
         {"format", 'f', ADCGS_OPTION_STRING, &s->format, 0, 0, "NAME",
-         "y4m, raw, null, an image's or a video's extension;\nwithout it the target's name decides, and - is y4m", NULL, NULL},
+         "y4m, raw, null, an image's or a video's extension;\nwithout it the target's name decides, and - is y4m", formats, NULL},
         {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
         {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
          NULL},
         {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
-        {"splats", 0, ADCGS_OPTION_STRING, &s->splats, 0, 0, "FILE",
+        {"splats", 0, ADCGS_OPTION_FILE, &s->splats, 0, 0, "FILE",
          "write the splats instead of frames, as .ply, .spz, .glb or .sog:\nout.ply for one moment (the first without --time),\n"
          "out%04d.ply for a span",
          NULL, NULL},
@@ -56,13 +57,13 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
          "leave the background out and write alpha: premultiplied in\nEXR, straight in PNG and TIFF", NULL, NULL},
         {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
-        {"beside", 0, ADCGS_OPTION_STRING, &s->beside, 0, 0, "OTHER",
+        {"beside", 0, ADCGS_OPTION_FILE, &s->beside, 0, 0, "OTHER",
          "show the frames of another stream to the right, through the\nsame cameras at the same times", NULL, NULL},
-        {"camera", 'c', ADCGS_OPTION_STRING, &s->request.camera, 0, 0, "WHICH",
+        {"camera", 'c', ADCGS_OPTION_FILE, &s->request.camera, 0, 0, "WHICH",
          "stored camera's name or index, orbit, spiral, bullet, or a path\nFILE.json; without it camera 0, or orbit if none is "
          "stored",
-         NULL, NULL},
-        {"cameras", 0, ADCGS_OPTION_STRING, &s->cameras, 0, 0, "PATH",
+         ways, NULL},
+        {"cameras", 0, ADCGS_OPTION_FILE, &s->cameras, 0, 0, "PATH",
          "write the stored cameras as a path's PATH.json, and nothing else", NULL, NULL},
         {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B",
          "one time, or a span at the stream's frame rate, in seconds;\nwithout it everything", NULL, NULL},
@@ -81,12 +82,12 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
          "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
         {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "fail unless the frames together have this MD5", NULL, NULL},
-        {"answer", 0, ADCGS_OPTION_STRING, &s->answer, 0, 0, "REQUESTS",
+        {"answer", 0, ADCGS_OPTION_FILE, &s->answer, 0, 0, "REQUESTS",
          "answer a file of requests for digests, as the specification's\nclause on conformance says", NULL, NULL},
         {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL,
          "print the milliseconds from opening to the first frame,\nthen those that each frame took to render", NULL, NULL},
         {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a camera to move", NULL, NULL},
-        {"script", 0, ADCGS_OPTION_STRING, &s->script, 0, 0, "COMMANDS", "with --play: do what this file says, as a user would",
+        {"script", 0, ADCGS_OPTION_FILE, &s->script, 0, 0, "COMMANDS", "with --play: do what this file says, as a user would",
          NULL, NULL},
         {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
         {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; frames do not depend on it",

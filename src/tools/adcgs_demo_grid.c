@@ -72,7 +72,7 @@ int main(int argc, char **argv)
     const char *output = "grid.png";
     int columns = 5, first = 0;
     const adcgs_option options[] = {
-        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &output, .value = "FILE",
+        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_FILE, .target = &output, .value = "FILE",
          .help = "picture to write (default: grid.png)"},
         {.name = "columns", .kind = ADCGS_OPTION_INT, .target = &columns, .min = 1, .max = 64, .value = "N",
          .help = "number of test views (default: 5)"},

@@ -5,6 +5,8 @@
 
 #include <stdio.h>
 
+#define SCENES_MAX 64 /* that completion knows */
+
 static void show(void *user, int done, int total)
 {
     adcgs_progress_show(user, "picture %d of %d", done, total);
@@ -13,11 +15,15 @@ static void show(void *user, int done, int total)
 int main(int argc, char **argv)
 {
     static const char *const formats[] = {"png", "ppm", NULL};
+    const char *scenes[SCENES_MAX + 1] = {0};
+    for (int i = 0; i < SCENES_MAX && adcgs_scenes_name(i); i++)
+        scenes[i] = adcgs_scenes_name(i);
     const char *scene = "demo", *directory = "demo-scene", *spoil = NULL;
     int size[2] = {0, 0}, moments = 0, cameras = 0, watch = 0, format = 0, threads = 0, list = 0, quiet = 0, first = 0;
     double motion = 1.0, noise = 0.0, aside = 0.0;
     const adcgs_option options[] = {
-        {.name = "scene", .kind = ADCGS_OPTION_STRING, .target = &scene, .value = "NAME", .help = "which scene (default: demo)"},
+        {.name = "scene", .kind = ADCGS_OPTION_STRING, .target = &scene, .value = "NAME", .choices = scenes,
+         .help = "which scene (default: demo)"},
         {.name = "size", .kind = ADCGS_OPTION_PAIR, .target = size, .min = 1, .max = 16384, .value = "WxH",
          .help = "size of the pictures (default: the scene's own)"},
         {.name = "motion", .kind = ADCGS_OPTION_REAL, .target = &motion, .min = 0.001, .max = 10.0, .value = "FACTOR",
@@ -35,7 +41,7 @@ int main(int argc, char **argv)
          .help = "views for validation: N, one after the other, of one\ncamera that stays"},
         {.name = "aside", .kind = ADCGS_OPTION_REAL, .target = &aside, .min = 0.0, .max = 0.5, .value = "TURNS",
          .help = "test from so far beside the last of training's\ncameras (default 0: from among them)"},
-        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &directory, .value = "DIR",
+        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_FILE, .target = &directory, .value = "DIR",
          .help = "folder to write (default: demo-scene)"},
         {.name = "format", .kind = ADCGS_OPTION_CHOICE, .target = &format, .value = "FORMAT", .choices = formats,
          .help = "format of the pictures: png or ppm (default: png)"},

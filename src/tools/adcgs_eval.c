@@ -51,7 +51,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
         {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "draw the first N tiers of the stream alone, a coarser picture",
          NULL, NULL},
-        {"images", 0, ADCGS_OPTION_STRING, &s->images, 0, 0, "DIR", "write the decoded views there as PNG", NULL, NULL},
+        {"images", 0, ADCGS_OPTION_FILE, &s->images, 0, 0, "DIR", "write the decoded views there as PNG", NULL, NULL},
         {"beside", 0, ADCGS_OPTION_FLAG, &s->beside, 0, 0, NULL,
          "in these pictures: truth, decoded view, and four times their\ndifference round grey, side by side", NULL, NULL},
         {"crop", 0, ADCGS_OPTION_STRING, &s->crop, 0, 0, "BOX",
@@ -65,7 +65,7 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "measure besides PSNR and SSIM: all, or a list of\nfitted-psnr, ms-ssim, dynamic-psnr,\n"
          "fitted-dynamic-psnr, static-variance and flicker",
          NULL, NULL},
-        {"csv", 0, ADCGS_OPTION_STRING, &s->csv, 0, 0, "FILE", "write a table there, a row for each view; - prints it", NULL,
+        {"csv", 0, ADCGS_OPTION_FILE, &s->csv, 0, 0, "FILE", "write a table there, a row for each view; - prints it", NULL,
          NULL},
         {"json", 0, ADCGS_OPTION_FLAG, &s->json, 0, 0, NULL, "print one JSON object", NULL, NULL},
     };

@@ -211,29 +211,31 @@ static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char *
     lists l = {.yardsticks = "all"};
     int first = 0, dataset = 0, has_dataset = 0;
     const adcgs_setting *const iterations = adcgs_setting_find("iterations");
+    const char *names[ADCGS_SETTING_NAMES + 1];
+    adcgs_setting_names(names);
     const adcgs_option options[] = {
-        {"output", 'o', ADCGS_OPTION_STRING, &sweep->directory, 0, 0, "DIR", "folder for all results (required)", NULL, NULL},
+        {"output", 'o', ADCGS_OPTION_FILE, &sweep->directory, 0, 0, "DIR", "folder for all results (required)", NULL, NULL},
         {"lambda", 'l', ADCGS_OPTION_STRING, &l.lambdas, 0, 0, "A,B,C",
          "values of the encoder's --lambda (required, but for\n--ablation)", NULL, NULL},
         {"k", 0, ADCGS_OPTION_STRING, &l.ks, 0, 0, "A,B,C", "values of the encoder's --k (default: the preset's)", NULL, NULL},
         {"grid", 0, ADCGS_OPTION_STRING, &l.grid, 0, 0, "NAME=A,B,...",
          "a curve for each choice of values of any settings of the\nencoder, and of preset, time-limit, segment, key, threads\n"
-         "and cpu; blanks between two such lists", NULL, NULL},
+         "and cpu; blanks between two such lists", names, NULL},
         {"seeds", 0, ADCGS_OPTION_STRING, &l.seeds, 0, 0, "A,B,C",
          "train each point with these seeds; figures are means\n(default: the encoder's seed)", NULL, NULL},
         {"yardsticks", 0, ADCGS_OPTION_STRING, &l.yardsticks, 0, 0, "NAME,...",
          "what to compare with: networks (of 32 bits; no run),\nuncompressed (two runs; by zstd and xz), gaussians (a\n"
          "curve and a run); all (default) or none", NULL, NULL},
-        {"against", 0, ADCGS_OPTION_STRING, &sweep->against, 0, 0, "DIR,...",
+        {"against", 0, ADCGS_OPTION_FILE, &sweep->against, 0, 0, "DIR,...",
          "compare with earlier sweeps of the scene, of whatever\nversion or settings, by what they wrote", NULL, NULL},
         {"add", 0, ADCGS_OPTION_STRING, &sweep->tables, 0, 0, "NAME=FILE,...",
          "draw other methods' tables beside, CSV with columns bytes\nand psnr, maybe ssim, dynamic_psnr, cpu_seconds,\n"
          "frames_per_second, source", NULL, NULL},
         {"ablation", 0, ADCGS_OPTION_FLAG, &sweep->ablation, 0, 0, NULL,
          "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},
-        {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)", NULL,
-         NULL},
-        {"set", 0, ADCGS_OPTION_STRING, &sweep->set, 0, 0, "NAME=VALUE,...", "settings of the encoder", NULL, NULL},
+        {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)",
+         adcgs_train_presets, NULL},
+        {"set", 0, ADCGS_OPTION_STRING, &sweep->set, 0, 0, "NAME=VALUE,...", "settings of the encoder", names, NULL},
         {"dataset", 0, ADCGS_OPTION_CHOICE, &dataset, 0, 0, "KIND", "kind of the scene, as for adcgs-enc", adcgs_dataset_names,
          &has_dataset},
         {"frames", 0, ADCGS_OPTION_STRING, &sweep->frames, 0, 0, "A:B:STEP", "frames of the scene, as for adcgs-enc", NULL, NULL},

@@ -16,6 +16,15 @@ const adcgs_setting *adcgs_setting_find(const char *name)
     return s->name ? s : NULL;
 }
 
+void adcgs_setting_names(const char *names[ADCGS_SETTING_NAMES + 1])
+{
+    int n = 0;
+    for (const adcgs_setting *s = adcgs_settings; s->name && n < ADCGS_SETTING_NAMES; s++)
+        if (s->group != ADCGS_SETTING_SWITCHES)
+            names[n++] = s->name;
+    names[n] = NULL;
+}
+
 double adcgs_setting_get(const adcgs_setting *s, const adcgs_train_config *c)
 {
     const void *at = (const char *)c + s->offset;

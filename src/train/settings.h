@@ -57,6 +57,10 @@ extern const adcgs_setting adcgs_settings[];
 /** Names of the presets, NULL-terminated, quickest first. */
 extern const char *const adcgs_train_presets[];
 
+/** Most settings that have names. */
+#define ADCGS_SETTING_NAMES 120
+/** The names of all that adcgs_train_set() changes, ended by NULL. */
+void adcgs_setting_names(const char *names[ADCGS_SETTING_NAMES + 1]);
 /** The row of that name; NULL if there is none. Names of the program itself are always there. */
 const adcgs_setting *adcgs_setting_find(const char *name);
 double adcgs_setting_get(const adcgs_setting *setting, const adcgs_train_config *config);

@@ -1,0 +1,78 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# The shell completes options, their values, settings and files, from the tables that the programs print.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-dec adcgs-info
+script=$(cd "${srcdir:-.}" && pwd)/share/adcgs.bash
+here=$PWD
+. "$script"
+cd "$dir" || exit 99
+mkdir folder
+: >film.adcgs
+: >'film two.adcgs'
+: >notes.txt
+
+# offered LINE: what the function offers for a line with the cursor at its end, in words as bash makes them: cut at = and :, too.
+offered()
+{
+    COMP_LINE=$1 COMP_POINT=${#1}
+    read -ra COMP_WORDS <<<"$(sed 's/[=:][=:]*/ & /g' <<<"$1")"
+    [[ $1 == *[[:blank:]] ]] && COMP_WORDS+=("")
+    COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+    _adcgs "$here/${1%% *}" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"
+    printf '%s\n' ${COMPREPLY[@]+"${COMPREPLY[@]}"} | LC_ALL=C sort | paste -s -d '|'
+}
+wants()
+{
+    got=$(offered "$1")
+    [ "$got" = "$2" ] || bad "$1: offered '$got', expected '$2'"
+}
+
+wants "adcgs-dec film.adcgs --fr" "--frametimes"
+wants "adcgs-dec --ca" "--camera|--cameras"
+wants "adcgs-dec film.adcgs --cpu a" "auto|avx2|avx512"
+wants "adcgs-dec film.adcgs --cpu=av" "avx2|avx512"
+wants "adcgs-dec film.adcgs -c or" "orbit"
+wants "adcgs-dec film.adcgs --camera f" "film two.adcgs|film.adcgs|folder"
+wants "adcgs-dec film.adcgs --output n" "notes.txt"
+wants "adcgs-dec film.adcgs --output=n" "notes.txt"
+wants "adcgs-dec film.adcgs --threads " ""
+wants "adcgs-dec film.adcgs --time n" ""
+wants "adcgs-dec film.adcgs --md5 n" "notes.txt"
+wants "adcgs-info fo" "folder"
+wants "adcgs-enc scene -p s" "slow"
+wants "adcgs-enc scene --set lamb" "lambda="
+wants "adcgs-enc scene --set lambda=0.1,rdo" "0.1,rdo_strength="
+wants "adcgs-enc scene --set=lambda=0.1,rdo" "0.1,rdo_strength="
+wants "adcgs-enc scene --set lambda=" ""
+case $(offered "adcgs-enc --") in
+    *--bf16*--help*--preset*--quiet*--set*--version*) ;;
+    *) bad "not all options: $(offered "adcgs-enc --")" ;;
+esac
+# The parts of a word that bash cuts at ':' as well.
+wants "adcgs-dec http://host/n" ""
+
+# Each program prints its whole table: the options of its help, all of them.
+cd "$here" || exit 99
+for program in adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-info adcgs-sweep; do
+    [ -x "./$program" ] || continue
+    "./$program" --completion | cut -f 1 | grep -v '^-$' | sort -u >"$dir/table"
+    "./$program" --help | grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+' | grep -o -E -e '--.*' | sort -u >"$dir/help"
+    cmp "$dir/table" "$dir/help" || bad "$program: table and help differ"
+    [ "$("./$program" --completion | awk -F '\t' 'NF != 6' | wc -l)" -eq 0 ] || bad "$program: rows of other than six columns"
+    grep -q "^complete .* $program\( \|$\)" "$script" || bad "$program is not completed"
+done
+# Every setting that --set list tells.
+./adcgs-enc --set list | sed -n 's/^  *\([a-z][a-z0-9_]*\)  *[0-9].*/\1/p' | sort >"$dir/listed"
+./adcgs-enc --completion | awk -F '\t' '$1 == "--set" { print $5 }' | tr ' ' '\n' | sort >"$dir/offered"
+[ -s "$dir/listed" ] && [ "$(comm -23 "$dir/listed" "$dir/offered")" = "" ] || bad "settings: $(comm -3 "$dir/listed" "$dir/offered")"
+
+# As installed: bash-completion finds the script by the program's name.
+unset MAKEFLAGS MFLAGS MAKELEVEL
+if [ -f Makefile ]; then
+    ${MAKE:-make} install-dist_completionsDATA install-data-hook DESTDIR="$dir/to" >"$dir/log" 2>&1 || { bad install; cat "$dir/log"; }
+    cmp "$script" "$(find "$dir/to" -name adcgs-dec)" || bad "adcgs-dec's completion"
+    ${MAKE:-make} uninstall-hook uninstall-dist_completionsDATA DESTDIR="$dir/to" >"$dir/log" 2>&1 || { bad uninstall; cat "$dir/log"; }
+    [ -z "$(find "$dir/to" -name 'adcgs*' ! -type d)" ] || bad "left behind: $(find "$dir/to" -name 'adcgs*')"
+fi
+exit $failed
