@@ -39,6 +39,18 @@ void adcgs_camera_path_free(adcgs_camera_path *frames);
  */
 adcgs_status adcgs_camera_path_rendered(const adcgs_camera *camera, adcgs_status status, adcgs_error *error);
 
+/** A key frame of a path. */
+typedef struct adcgs_camera_key {
+    double at; /**< where on the path, in seconds or any other unit; each more than the one before */
+    adcgs_camera_frame frame;
+} adcgs_camera_key;
+
+/**
+ * Write key frames of one size as a path for adcgs_camera_path_make() to read; has_times: with their times, which are the
+ * scene's. Atomic.
+ */
+adcgs_status adcgs_camera_keys_write(const adcgs_camera_key *keys, int n, int has_times, double frame_rate, const char *path,
+                                     adcgs_error *error);
 /** Write the stored cameras as a path of key frames, a second apart, for adcgs_camera_path_make() to read and users to change. */
 adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const char *path, adcgs_error *error);
 

@@ -16,11 +16,6 @@
 
 #include "camera/path.h"
 
-typedef struct adcgs_camera_key {
-    double at; /**< where on the path, in seconds or any other unit; each more than the one before */
-    adcgs_camera_frame frame;
-} adcgs_camera_key;
-
 typedef struct adcgs_knot adcgs_knot;
 
 typedef struct adcgs_camera_spline {

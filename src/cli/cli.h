@@ -31,13 +31,13 @@ typedef struct adcgs_option {
     double min, max;    /**< inclusive range of INT, SIZE, REAL and PAIR */
     const char *value;  /**< what the help calls the value; NULL for a FLAG */
     const char *help;   /**< one sentence without full stop; '\n' continues on the next line */
-    const char *const *choices; /**< names of a CHOICE, ended by NULL; what a STRING or FILE may be, or be made of, for completion */
+    const char *const *choices; /**< names of a CHOICE, ended by NULL; words of a STRING or FILE, for completion alone */
     int *given;         /**< set to 1 when the option is given; may be NULL */
 } adcgs_option;
 
 /**
- * A program. --help (-h) and --version (-V) are added by themselves, and --quiet (-q) where quiet is set. --completion alone, which
- * the help is silent about, prints the table for the shell (cli/completion.h).
+ * A program. --help (-h) and --version (-V) are added by themselves, and --quiet (-q) where quiet is set. --completion alone,
+ * which the help is silent about, prints the table for the shell (cli/completion.h).
  */
 typedef struct adcgs_cli {
     const char *program;  /**< "adcgs-dec" */

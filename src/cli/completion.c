@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-static void print_row(const char *name, char letter, const char *kind, const char *value, const char *const *words, const char *help)
+static void print_row(const char *name, char letter, const char *kind, const char *value, const char *const *words,
+                      const char *help)
 {
     const char letters[3] = {'-', letter, 0};
     printf("%s%s\t%s\t%s\t%s\t", name ? "--" : "-", name ? name : "", letters, kind, value ? value : "-");

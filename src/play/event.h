@@ -13,7 +13,8 @@ enum {
     ADCGS_KEY_PAGE_UP,
     ADCGS_KEY_PAGE_DOWN,
     ADCGS_KEY_F1,
-    ADCGS_KEY_SHIFT
+    ADCGS_KEY_SHIFT,
+    ADCGS_KEY_F11
 };
 
 typedef enum adcgs_event_kind {

@@ -4,6 +4,7 @@
 
 #include "play/overlay.h"
 
+#include "play/actions.h"
 #include "play/panel.h"
 
 #include <stdio.h>
@@ -96,8 +97,11 @@ void adcgs_overlay_draw(adcgs_panel panels[ADCGS_PANELS], const adcgs_play_state
     if (state->statistics)
         draw_statistics(&panels[STATISTICS], state, figures);
     const int has_message = *state->message && state->now < state->message_end;
-    if (has_message || (*figures->coming && state->bar)) {
-        text_panel(&panels[MESSAGE], state, has_message ? state->message : figures->coming, 0.0, 1.0, BACKGROUND);
+    char recording[40];
+    snprintf(recording, sizeof recording, "recording, %ld frames", state->recorded);
+    if (has_message || state->record || (*figures->coming && state->bar)) {
+        const char *const text = has_message ? state->message : state->record ? recording : figures->coming;
+        text_panel(&panels[MESSAGE], state, text, 0.0, 1.0, BACKGROUND);
         panels[MESSAGE].y = ADCGS_MAX(0, panels[MESSAGE].y - adcgs_play_bar(state).height);
     }
     if (state->help)

@@ -2,35 +2,19 @@
 /** \file The player's loop: events in, and what follows from them. */
 #include "config.h"
 
+#include "play/actions.h"
+#include "play/files.h"
 #include "play/panel.h"
 #include "play/player.h"
 #include "play/script_run.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #define HEIGHT_WANTED 480         /* of the first window; smaller cameras are enlarged by a whole number */
 #define SIDE_MAX 4096             /* of the first window, whatever the camera */
 #define REFRESH_SECONDS 0.25      /* after which figures and messages are drawn anew */
 #define WAIT_MOVING 4             /* milliseconds to wait for events */
 #define WAIT_STILL 100
-#define SHOTS_MAX 999999
-
-/** A name that no file has yet: the stream's, and a number. */
-static void name_shot(adcgs_player *p, const char *extension)
-{
-    const char *const path = p->settings->source.path, *const slash = strrchr(path, '/'), *const name = slash ? slash + 1 : path;
-    const char *const dot = strrchr(name, '.');
-    const int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
-    for (int i = 1; i <= SHOTS_MAX; i++) {
-        snprintf(p->shot, sizeof p->shot, "%.*s-%06d.%s", length, name, i, extension);
-        if (access(p->shot, F_OK))
-            return;
-    }
-    *p->shot = 0;
-    adcgs_play_say(&p->state, "no number is left for a screenshot");
-}
 
 static void measure_window(adcgs_player *p)
 {
@@ -44,7 +28,7 @@ static void measure_window(adcgs_player *p)
 
 static void take_events(adcgs_player *p)
 {
-    const int moves = adcgs_play_moving(&p->state) || p->run.at < p->run.script.n;
+    const int moves = adcgs_play_moving(&p->state) || p->state.record || p->run.at < p->run.script.n;
     adcgs_event event;
     for (int wait = moves ? WAIT_MOVING : WAIT_STILL; p->sdl->event(p->window, wait, &event); wait = 0) {
         const int frame = adcgs_play_clock_frame(&p->state.clock);
@@ -57,9 +41,60 @@ static void take_events(adcgs_player *p)
     if (p->captured != p->state.flying)
         p->sdl->capture(p->window, p->state.flying);
     p->captured = p->state.flying;
-    if (p->state.shot && !*p->shot) {
-        name_shot(p, p->state.shot == ADCGS_SHOT_EXR ? "exr" : "png");
-        p->state.shot = ADCGS_SHOT_NONE;
+    if (p->full != p->state.full)
+        p->sdl->fullscreen(p->window, p->state.full);
+    p->full = p->state.full;
+}
+
+/* ---- What events ask for that goes to files. ---- */
+
+static void begin_shot(adcgs_player *p)
+{
+    if (!p->state.shot || *p->shot)
+        return;
+    if (!adcgs_play_free_name(p->shot, p->settings->source.path, p->state.shot == ADCGS_SHOT_EXR ? "exr" : "png"))
+        adcgs_play_say(&p->state, "no number is left for a screenshot");
+    p->state.shot = ADCGS_SHOT_NONE;
+}
+
+static void set_key_frame(adcgs_player *p)
+{
+    const adcgs_play_settings *const s = p->settings;
+    adcgs_play_state *const state = &p->state;
+    const double time = adcgs_play_clock_time(&state->clock);
+    adcgs_camera camera;
+    adcgs_error error;
+    if (!state->key_frame)
+        return;
+    adcgs_orbit_control_view(&state->control, state->width, state->height, &camera);
+    const adcgs_status status =
+        state->key_frame > 0 ? adcgs_key_frames_add(&p->keys, &camera, time, s->source.path, s->info.frame_rate, &error)
+                             : adcgs_key_frames_take_back(&p->keys, s->info.frame_rate, &error);
+    if (status != ADCGS_OK)
+        adcgs_play_say(state, "%s", error.text);
+    else if (p->keys.n)
+        adcgs_play_say(state, "%d key frame%s: %s", p->keys.n, p->keys.n == 1 ? "" : "s", p->keys.path);
+    else
+        adcgs_play_say(state, "no key frames");
+    state->key_frame = 0;
+}
+
+/** Begin or end the video; who draws has it meanwhile. */
+static void follow_recording(adcgs_player *p)
+{
+    adcgs_recording *const r = &p->recording;
+    if (p->drawing || p->state.record == (r->sink != NULL))
+        return;
+    const adcgs_status status = r->sink ? adcgs_recording_end(r)
+                                        : adcgs_recording_begin(r, p->settings->source.path, p->state.width, p->state.height,
+                                                                p->settings->info.frame_rate);
+    p->state.recorded = r->frames;
+    if (status != ADCGS_OK) {
+        p->state.record = 0;
+        adcgs_play_say(&p->state, "%s", r->error.text);
+    } else if (!r->sink) {
+        adcgs_play_say(&p->state, "%s: %ld frames", r->path, r->frames);
+        *r->path = 0; /* the next has another name */
     }
 }
 
@@ -70,11 +105,14 @@ static adcgs_status loop(adcgs_player *p, adcgs_error *error)
         if (!p->come.drawable && (p->come.over || p->state.quit))
             return ADCGS_OK; /* there will never be anything to see, or to make a screenshot of */
         take_events(p);
-        adcgs_play_tick(&p->state, adcgs_seconds());
+        begin_shot(p);
+        set_key_frame(p);
         ADCGS_TRY(adcgs_player_collect(p, error));
+        follow_recording(p);
+        adcgs_play_tick(&p->state, adcgs_recording_now(&p->recording)); /* a frame that was collected is a step of time */
         adcgs_player_post(p);
         ADCGS_TRY(adcgs_script_go(p, error));
-        if (p->stale || p->state.now - p->shown > REFRESH_SECONDS)
+        if (p->stale || adcgs_seconds() - p->shown > REFRESH_SECONDS)
             ADCGS_TRY(adcgs_player_show(p, NULL, error));
     }
     return ADCGS_OK;
@@ -136,10 +174,15 @@ adcgs_status adcgs_play_run(const adcgs_play_settings *s, int *failed, adcgs_err
     if (s->source.feed)
         adcgs_feed_stop(s->source.feed); /* these first, since they wake the window */
     adcgs_worker_free(&p->worker);
+    if (adcgs_recording_end(&p->recording) != ADCGS_OK && status == ADCGS_OK) {
+        *error = p->recording.error;
+        status = error->status;
+    }
     if (p->window)
         p->sdl->close(&p->window);
     for (int i = 0; i < ADCGS_PANELS; i++)
         adcgs_panel_free(&p->panels[i]);
+    adcgs_key_frames_clear(&p->keys);
     adcgs_script_clear(&p->run.script);
     *failed = status == ADCGS_OK && p->run.failed;
     if (status == ADCGS_OK && !*failed && p->come.fault.status != ADCGS_OK) {

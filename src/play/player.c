@@ -5,6 +5,7 @@
 #include "play/player.h"
 
 #include "camera/rotation.h"
+#include "play/actions.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -84,13 +85,20 @@ static int shoots(const adcgs_player *p)
     return *p->shot && p->come.drawable;
 }
 
+/** Whether the next picture is a frame of a video. */
+static int records(const adcgs_player *p)
+{
+    return p->recording.sink && p->state.record && p->come.drawable && !*p->shot;
+}
+
 static adcgs_play_job wanted_job(const adcgs_player *p, int divider)
 {
     const adcgs_play_state *const state = &p->state;
     adcgs_play_job job = {.time = adcgs_play_clock_time(&state->clock), .layers = state->layers, .divider = divider,
                           .number = adcgs_play_clock_frame(&state->clock), .seeks = p->seeks};
-    adcgs_orbit_control_view(&state->control, state->width, state->height, &job.camera);
-    job.tiers = adcgs_play_moving(state) && !shoots(p) ? p->scale.tiers : p->scale.all;
+    const int films = records(p), width = films ? p->recording.width : state->width;
+    adcgs_orbit_control_view(&state->control, width, films ? p->recording.height : state->height, &job.camera);
+    job.tiers = adcgs_play_moving(state) && !shoots(p) && !films ? p->scale.tiers : p->scale.all;
     if (divider > 1)
         adcgs_camera_stretch(&job.camera, (state->width + divider - 1) / divider, (state->height + divider - 1) / divider);
     return job;
@@ -106,6 +114,8 @@ static int same_picture(const adcgs_play_job *a, const adcgs_play_job *b)
 
 static int wanted_divider(const adcgs_player *p)
 {
+    if (records(p))
+        return 1;
     return adcgs_play_moving(&p->state) ? ADCGS_MAX(p->least_divider, p->scale.divider) : p->least_divider;
 }
 
@@ -113,8 +123,8 @@ int adcgs_player_settled(const adcgs_player *p)
 {
     const adcgs_play_job wanted = wanted_job(p, wanted_divider(p));
     const int has_all = p->pictures > 0 || !p->settings->source.feed;
-    return !p->drawing && !*p->shot && !p->state.shot && !adcgs_play_moving(&p->state) && same_picture(&p->job, &wanted) &&
-           has_all && !lags(p);
+    const int waits = p->drawing || *p->shot || p->state.shot || p->state.record || adcgs_play_moving(&p->state);
+    return !waits && same_picture(&p->job, &wanted) && has_all && !lags(p);
 }
 
 static double budget(const adcgs_player *p)
@@ -126,15 +136,18 @@ static double budget(const adcgs_player *p)
 
 void adcgs_player_post(adcgs_player *p)
 {
-    const int shot = shoots(p);
+    const int shot = shoots(p), films = records(p);
     adcgs_play_job job = wanted_job(p, shot ? 1 : wanted_divider(p));
-    const int same = !shot && same_picture(&job, &p->job);
-    if (p->drawing || (same && !lags(p)))
+    const int same = !shot && !films && same_picture(&job, &p->job);
+    if (p->drawing || (same && !lags(p)) || (films && !adcgs_recording_due(&p->recording)))
         return;
+    job.sink = films ? p->recording.sink : NULL;
     job.again = same;
     if (shot)
         memcpy(job.path, p->shot, sizeof job.path);
     p->drawing = adcgs_worker_post(p->worker, &job);
+    if (p->drawing && films)
+        adcgs_recording_posted(&p->recording);
     if (p->drawing && !shot)
         p->job = job;
 }
@@ -150,6 +163,19 @@ static void take_shot(adcgs_player *p, const adcgs_play_result *result)
     else
         adcgs_play_say(&p->state, "%s", result->error.text);
     *p->shot = 0;
+}
+
+/** A frame of the video is there, or there will be none. \return whether the picture can be shown, too. */
+static int take_frame(adcgs_player *p, const adcgs_play_result *result)
+{
+    if (result->status == ADCGS_OK) {
+        p->state.recorded = ++p->recording.frames;
+        return 1;
+    }
+    adcgs_recording_fail(&p->recording, &result->error);
+    p->state.record = 0;
+    adcgs_play_say(&p->state, "%s", result->error.text);
+    return 0;
 }
 
 /** What cannot be drawn for lack of memory is drawn smaller; the player goes on in any case. */
@@ -213,7 +239,10 @@ adcgs_status adcgs_player_collect(adcgs_player *p, adcgs_error *error)
     p->drawing = 0;
     if (p->settings->source.feed)
         take_come(p, &result->come);
-    if (*result->job.path)
+    const int shows = !result->job.sink || take_frame(p, result);
+    if (!shows)
+        p->job.camera.width = 0; /* it is drawn again, for the window alone */
+    else if (*result->job.path)
         take_shot(p, result);
     else if (result->status != ADCGS_OK)
         take_failure(p, result);

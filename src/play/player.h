@@ -3,8 +3,10 @@
 #ifndef ADCGS_PLAY_PLAYER_H
 #define ADCGS_PLAY_PLAYER_H
 
+#include "play/key_frames.h"
 #include "play/overlay.h"
 #include "play/play.h"
+#include "play/recording.h"
 #include "play/scale.h"
 #include "play/script.h"
 #include "play/worker.h"
@@ -33,6 +35,9 @@ typedef struct adcgs_player {
     int least_divider;       /**< pictures any larger cannot be drawn */
     int drawing;             /**< the worker has a job */
     int captured;            /**< the window holds the mouse */
+    int full;                /**< the window has the whole screen */
+    adcgs_key_frames keys;   /**< those that the user has set */
+    adcgs_recording recording;
     int last_frame;          /**< the frame shown last while playing; -1: none */
     int seeks, last_seeks;   /**< times that an event changed the frame: by now, and when that one was posted */
     int stale;               /**< what the window shows is not the last word */

@@ -51,7 +51,7 @@ static int read_key(adcgs_script_line *to, char **rest)
     static const struct { const char *name; int key; } names[] = {
         {"space", ' '}, {"escape", ADCGS_KEY_ESCAPE}, {"left", ADCGS_KEY_LEFT}, {"right", ADCGS_KEY_RIGHT},
         {"home", ADCGS_KEY_HOME}, {"end", ADCGS_KEY_END}, {"pageup", ADCGS_KEY_PAGE_UP}, {"pagedown", ADCGS_KEY_PAGE_DOWN},
-        {"f1", ADCGS_KEY_F1}, {"shift", ADCGS_KEY_SHIFT},
+        {"f1", ADCGS_KEY_F1}, {"f11", ADCGS_KEY_F11}, {"shift", ADCGS_KEY_SHIFT},
     };
     const char *name = take_shift(strtok_r(NULL, BLANKS, rest), &to->shift);
     if (!name)
@@ -146,6 +146,7 @@ static int read_arguments(adcgs_script_line *to, char **rest)
         return read_size(strtok_r(NULL, BLANKS, rest), to->number);
     case ADCGS_SCRIPT_SCREENSHOT:
     case ADCGS_SCRIPT_GRAB:
+    case ADCGS_SCRIPT_RECORD:
         return read_text(to, rest);
     case ADCGS_SCRIPT_EXPECT:
         return read_expect(to, rest);
@@ -162,7 +163,8 @@ static int read_command(adcgs_script_line *to, char *line)
         {"wait", ADCGS_SCRIPT_WAIT_FRAMES}, {"drag", ADCGS_SCRIPT_DRAG}, {"move", ADCGS_SCRIPT_MOVE},
         {"wheel", ADCGS_SCRIPT_WHEEL}, {"key", ADCGS_SCRIPT_KEY}, {"hold", ADCGS_SCRIPT_HOLD},
         {"release", ADCGS_SCRIPT_RELEASE}, {"size", ADCGS_SCRIPT_SIZE}, {"screenshot", ADCGS_SCRIPT_SCREENSHOT},
-        {"grab", ADCGS_SCRIPT_GRAB}, {"expect", ADCGS_SCRIPT_EXPECT}, {"quit", ADCGS_SCRIPT_QUIT},
+        {"grab", ADCGS_SCRIPT_GRAB}, {"record", ADCGS_SCRIPT_RECORD}, {"expect", ADCGS_SCRIPT_EXPECT},
+        {"quit", ADCGS_SCRIPT_QUIT},
     };
     char *rest = NULL;
     const char *const name = strtok_r(line, BLANKS, &rest);

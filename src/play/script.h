@@ -21,6 +21,7 @@ typedef enum adcgs_script_kind {
     ADCGS_SCRIPT_SIZE,         /**< number: width, height */
     ADCGS_SCRIPT_SCREENSHOT,   /**< text: file */
     ADCGS_SCRIPT_GRAB,         /**< text: file */
+    ADCGS_SCRIPT_RECORD,       /**< text: file */
     ADCGS_SCRIPT_EXPECT,       /**< text: of what; number: value, tolerance */
     ADCGS_SCRIPT_QUIT
 } adcgs_script_kind;

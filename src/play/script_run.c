@@ -100,7 +100,8 @@ static int find_value(const adcgs_player *p, const char *name, double *value)
         {"time", adcgs_play_clock_time(&s->clock)}, {"frame", adcgs_play_clock_frame(&s->clock)},
         {"speed", adcgs_play_clock_factor(&s->clock)}, {"playing", s->clock.playing}, {"loop", s->clock.loop},
         {"layers", s->layers}, {"camera", s->jumped}, {"flying", s->flying}, {"help", s->help},
-        {"statistics", s->statistics}, {"bar", s->bar}, {"distance", adcgs_orbit_control_distance(&s->control)},
+        {"statistics", s->statistics}, {"bar", s->bar}, {"full", s->full}, {"keys", p->keys.n},
+        {"recording", s->record}, {"recorded", (double)s->recorded}, {"distance", adcgs_orbit_control_distance(&s->control)},
         {"splats", p->figures.splats}, {"divider", p->job.divider}, {"tiers", p->job.tiers},
         {"bytes", (double)p->come.bytes}, {"segments", p->come.info.segments}, {"ended", p->come.over},
     };
@@ -175,6 +176,11 @@ static outcome begin(adcgs_player *p, const adcgs_script_line *line)
     case ADCGS_SCRIPT_SIZE:
         p->sdl->resize(p->window, (int)line->number[0], (int)line->number[1]);
         return AGAIN;
+    case ADCGS_SCRIPT_RECORD:
+        if (!p->recording.sink)
+            snprintf(p->recording.path, sizeof p->recording.path, "%s", line->text);
+        p->state.record = 1;
+        return AGAIN;
     case ADCGS_SCRIPT_QUIT:
         p->state.quit = 1;
         return DONE_TAKE_EVENTS;
@@ -209,8 +215,11 @@ static adcgs_status go_on(adcgs_player *p, const adcgs_script_line *line, outcom
         *how = *p->shot ? AGAIN : DONE;
         return *p->shot || p->shot_status == ADCGS_OK ? ADCGS_OK
                                                       : wrong(p, line, p->shot_status, p->shot_error.text, error);
+    case ADCGS_SCRIPT_RECORD:
+        *how = p->recording.sink ? DONE : AGAIN;
+        return p->state.record ? ADCGS_OK : wrong(p, line, p->recording.status, p->recording.error.text, error);
     case ADCGS_SCRIPT_GRAB:
-        *how = adcgs_player_settled(p) || p->state.clock.playing || !p->come.drawable ? DONE : AGAIN;
+        *how = adcgs_player_settled(p) || p->state.clock.playing || p->state.record || !p->come.drawable ? DONE : AGAIN;
         return *how == DONE ? write_window(p, line->text, error) : ADCGS_OK;
     case ADCGS_SCRIPT_EXPECT:
         *how = DONE;

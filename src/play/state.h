@@ -55,14 +55,13 @@ typedef struct adcgs_play_state {
     double message_end;           /**< when it goes away */
 
     adcgs_play_shot shot;         /**< asked for; who takes it sets it back */
+    int key_frame;                /**< asked for: 1 one more, -1 the last one back; who does it sets it back */
+    int record;                   /**< a video is to be written of what is shown */
+    long recorded;                /**< frames that it has by now */
+    int full;                     /**< the window is to have the whole screen */
     int quit;
     double now;                   /**< the clock on the wall at the last tick */
 } adcgs_play_state;
-
-/** A line of the help page. */
-typedef struct adcgs_play_help {
-    const char *keys, *text;
-} adcgs_play_help;
 
 /** Begins at the home camera, paused at the first frame. stored must live as long as the state. */
 void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *stored);
@@ -72,15 +71,11 @@ void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event);
 /** What passing time does: now is in seconds. */
 void adcgs_play_tick(adcgs_play_state *state, double now);
 
-/** Show a message for a few seconds. */
-void adcgs_play_say(adcgs_play_state *state, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** Whether the picture moves: playing, flying, or moved by hand just now. */
 int adcgs_play_moving(const adcgs_play_state *state);
 /** Where the time bar is in the window, without the time on its right; of width 0 when there is none. */
 adcgs_rect adcgs_play_bar(const adcgs_play_state *state);
 /** Pixels of the window in a pixel of a letter. */
 int adcgs_play_text_size(const adcgs_play_state *state);
-/** The help page: n lines. */
-const adcgs_play_help *adcgs_play_help_lines(int *n);
 
 #endif

@@ -37,6 +37,8 @@ typedef struct adcgs_sdl {
     void (*push)(adcgs_curriculum *window, const adcgs_event *event);
     /** End the waiting in event(). */
     void (*wake)(adcgs_curriculum *window);
+    /** Take the whole screen, or give it back. */
+    void (*fullscreen)(adcgs_curriculum *window, int on);
     /** Hide the pointer and report all its ways, for looking round. */
     void (*capture)(adcgs_curriculum *window, int on);
     /** Take an RGB picture, [height][width][3], which show() scales to the window. */

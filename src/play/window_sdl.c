@@ -23,7 +23,7 @@ struct adcgs_curriculum {
 /* Keys that have another number with SDL; what says something in ASCII has the same. */
 static const struct { int key; SDL_Keycode code; } keys[] = {
     {ADCGS_KEY_LEFT, SDLK_LEFT}, {ADCGS_KEY_RIGHT, SDLK_RIGHT}, {ADCGS_KEY_HOME, SDLK_HOME}, {ADCGS_KEY_END, SDLK_END},
-    {ADCGS_KEY_PAGE_UP, SDLK_PAGEUP}, {ADCGS_KEY_PAGE_DOWN, SDLK_PAGEDOWN}, {ADCGS_KEY_F1, SDLK_F1},
+    {ADCGS_KEY_PAGE_UP, SDLK_PAGEUP}, {ADCGS_KEY_PAGE_DOWN, SDLK_PAGEDOWN}, {ADCGS_KEY_F1, SDLK_F1}, {ADCGS_KEY_F11, SDLK_F11},
     {ADCGS_KEY_SHIFT, SDLK_LSHIFT}, {ADCGS_KEY_SHIFT, SDLK_RSHIFT}, {'+', SDLK_KP_PLUS}, {'-', SDLK_KP_MINUS},
 };
 
@@ -249,6 +249,11 @@ static void window_wake(adcgs_curriculum *w)
     SDL_PushEvent(&event);
 }
 
+static void window_fullscreen(adcgs_curriculum *w, int on)
+{
+    SDL_SetWindowFullscreen(w->window, on ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+}
+
 static void window_capture(adcgs_curriculum *w, int on)
 {
     SDL_SetRelativeMouseMode(on ? SDL_TRUE : SDL_FALSE);
@@ -310,6 +315,7 @@ const adcgs_sdl adcgs_play_table = {
     .event = window_event,
     .push = window_push,
     .wake = window_wake,
+    .fullscreen = window_fullscreen,
     .capture = window_capture,
     .picture = window_picture,
     .show = window_show,

@@ -90,6 +90,8 @@ static adcgs_status draw(adcgs_worker *w, adcgs_decoder *decoder)
     for (uint32_t i = 0; i < splats.n; i++)
         r->splats += splats.opacity[i] > 0;
     r->rgb = w->rgb;
+    if (r->job.sink)
+        ADCGS_TRY(adcgs_sink_write(r->job.sink, &frame, r->job.number, &r->error));
     const adcgs_image image = {.width = frame.width, .height = frame.height, .channels = 3, .data = frame.rgb};
     const adcgs_image_options options = {.half = 1, .camera = camera, .time = r->job.time};
     return *r->job.path ? adcgs_image_write_as(&image, &options, r->job.path, &r->error) : ADCGS_OK;

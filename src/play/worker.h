@@ -9,6 +9,7 @@
 #ifndef ADCGS_PLAY_WORKER_H
 #define ADCGS_PLAY_WORKER_H
 
+#include "io/sink.h"
 #include "play/intake.h"
 
 #include <limits.h>
@@ -22,6 +23,7 @@ typedef struct adcgs_play_job {
     int number;          /**< of the frame in the stream; nothing to the worker */
     int seeks;           /**< times that the user had gone to another frame; nothing to the worker */
     int again;           /**< of a stream that is coming: the picture that was drawn last, to be drawn only if it has changed */
+    adcgs_sink *sink;    /**< a video to write the picture to; NULL: none */
     char path[PATH_MAX]; /**< a file to write the picture to; "": none */
 } adcgs_play_job;
 

@@ -210,6 +210,89 @@ END
     printf 'screenshot x.foo\nquit\n' | play 5 "^adcgs-dec: script: line 1: .*x.foo"
 }
 
+# frames Y4M BYTES: the MD5 of each of its frames, of so many bytes, those that are equal to the one before left out.
+frames()
+{
+    rm -rf "$dir/split"
+    mkdir "$dir/split"
+    tail -c "+$(($(head -n 1 "$1" | wc -c) + 1))" "$1" | (cd "$dir/split" && split -a 4 -b $((6 + $2)))
+    (cd "$dir/split" && md5sum -- * | cut -d ' ' -f 1 | uniq)
+}
+
+files()
+{
+    rm -f "$dir"/s-0* "$dir"/*.y4m
+    # Key frames are a path, written after each; the frame at a key is what was seen there.
+    play 0 "" --size 128x96 --time 0.1 --camera 1 <<'END'
+key b
+expect keys 0
+key shift-k
+key k
+expect keys 1
+wait 1 frames
+screenshot first.png
+key right
+drag left 60 40 90 50
+key k
+expect keys 2
+key k
+expect keys 3
+key shift-k
+expect keys 2
+wait 1 frames
+screenshot second.png
+key q
+END
+    [ -f "$dir/s-000001.json" ] && [ ! -e "$dir/s-000002.json" ] || bad "key frames are not in one file"
+    $dec "$dir/s.adcgs" --camera "$dir/s-000001.json" -o "$dir/key%d.png" --threads 2 2>/dev/null || bad "the path is not read"
+    cmp "$dir/key0.png" "$dir/first.png" || bad "the path's first frame, on $where"
+    cmp "$dir/key1.png" "$dir/second.png" || bad "the path's last frame, on $where"
+    [ ! -e "$dir/key2.png" ] || bad "keys a frame apart have frames between them"
+    # All taken back: no file.
+    printf 'key k\nkey shift-k\nexpect keys 0\nquit\n' | play 0 "" --time 0
+    [ ! -e "$dir/s-000002.json" ] || bad "a path without keys is left"
+
+    # A video has each frame once or more, whatever drawing takes, at all of the resolution: until the key, or the end.
+    play 0 "" --size 128x96 --time 0:0.2333333333 <<'END'
+key space
+key home
+key l
+record film.y4m
+expect recording 1
+key space
+wait 0.4 seconds
+key v
+wait 1 frames
+expect recording 0
+record still.y4m
+wait 3 frames
+expect recorded 3 2
+key v
+key v
+wait 1 frames
+key q
+END
+    $dec "$dir/s.adcgs" -o "$dir/wanted.y4m" --size 128x96 --threads 2 2>/dev/null
+    bytes=$((($(tail -c "+$(($(head -n 1 "$dir/wanted.y4m" | wc -c) + 1))" "$dir/wanted.y4m" | wc -c)) / 8 - 6))
+    [ "$(frames "$dir/film.y4m" $bytes)" = "$(frames "$dir/wanted.y4m" $bytes)" ] || bad "the video's frames, on $where"
+    [ "$(frames "$dir/still.y4m" $bytes | wc -l)" -eq 1 ] || bad "the still video, on $where"
+    set -- "$dir"/s-000001.[my]*
+    [ -s "$1" ] || bad "the key's video, on $where"
+    printf 'record no/such.y4m\nquit\n' | play 3 "^adcgs-dec: script: line 1: .*no/such.y4m"
+    printf 'record x.png\nquit\n' | play 2 "^adcgs-dec: script: line 1: x.png"
+
+    # The whole screen, and back.
+    play 0 "" --size 128x96 --time 0 <<'END'
+key f11
+expect full 1
+wait 1 frames
+key escape
+expect full 0
+wait 1 frames
+key q
+END
+}
+
 where="the dummy driver" display=
 SDL_VIDEODRIVER=dummy SDL_RENDER_DRIVER=software
 export SDL_VIDEODRIVER SDL_RENDER_DRIVER
@@ -221,6 +304,7 @@ $dec "$dir/s.adcgs" --play --script "$dir/script" 2>"$dir/err" || {
 }
 pictures
 behaviour
+files
 
 # A user who says nothing: the player goes on until a signal comes, also when its script has ended.
 echo "wait 1 frames" >"$dir/script"

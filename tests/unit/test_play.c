@@ -3,6 +3,7 @@
 #include "outside_files.h"
 
 #include "camera/rotation.h"
+#include "play/actions.h"
 #include "play/overlay.h"
 #include "play/panel.h"
 #include "play/scale.h"
@@ -402,10 +403,36 @@ static void test_keys(void **state)
     adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = ADCGS_KEY_SHIFT, .down = 1});
     key(&play, 'p');
     assert_int_equal(play.shot, ADCGS_SHOT_EXR);
+    key(&play, 'k'); /* with shift, still */
+    assert_int_equal(play.key_frame, -1);
+    adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = ADCGS_KEY_SHIFT, .down = 0});
+    key(&play, 'k');
+    assert_int_equal(play.key_frame, 1);
+    key(&play, 'v');
+    assert_true(play.record);
+    key(&play, 'v');
+    assert_false(play.record);
+    key(&play, ADCGS_KEY_F11);
     key(&play, 'h');
     key(&play, ADCGS_KEY_ESCAPE);
-    assert_true(!play.help && !play.quit);
+    assert_true(!play.help && play.full && !play.quit);
     key(&play, ADCGS_KEY_ESCAPE);
+    assert_true(!play.full && !play.quit);
+    key(&play, ADCGS_KEY_ESCAPE);
+    assert_true(play.quit);
+}
+
+/** q leaves, but in flight it goes down. */
+static void test_quit(void **state)
+{
+    adcgs_camera cameras[2] = {make_camera(), make_camera()};
+    adcgs_play_state play = make_state(cameras);
+    key(&play, 'f');
+    adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = 'q', .down = 1});
+    assert_true(play.held && !play.quit);
+    adcgs_play_event(&play, &(adcgs_event){.kind = ADCGS_EVENT_KEY, .key = 'q', .down = 0});
+    key(&play, 'f');
+    key(&play, 'q');
     assert_true(play.quit);
 }
 
@@ -606,7 +633,7 @@ int main(void)
         cmocka_unit_test(test_clock), cmocka_unit_test(test_clock_waits), cmocka_unit_test(test_clock_speed),
         cmocka_unit_test(test_clock_steps),
         cmocka_unit_test(test_scale), cmocka_unit_test(test_scale_settles), cmocka_unit_test(test_scale_tiers),
-        cmocka_unit_test(test_keys),
+        cmocka_unit_test(test_keys), cmocka_unit_test(test_quit),
         cmocka_unit_test(test_repeats), cmocka_unit_test(test_mouse), cmocka_unit_test(test_scrub), cmocka_unit_test(test_flight),
         cmocka_unit_test(test_letters), cmocka_unit_test(test_overlay), cmocka_unit_test(test_script),
         cmocka_unit_test(test_bad_scripts),

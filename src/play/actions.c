@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file What keys do: a table, and the page that tells of it. */
+#include "config.h"
+
+#include "play/actions.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+#define MESSAGE_SECONDS 3.0
+
+void adcgs_play_say(adcgs_play_state *state, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(state->message, sizeof state->message, format, arguments);
+    va_end(arguments);
+    state->message_end = state->now + MESSAGE_SECONDS;
+}
+
+static void place_camera(adcgs_play_state *state, int index, const adcgs_camera *camera)
+{
+    state->jumped = index;
+    state->flying = 0;
+    adcgs_orbit_control_jump(&state->control, camera);
+}
+
+static void do_play(adcgs_play_state *state, int unused)
+{
+    adcgs_play_clock_toggle(&state->clock);
+}
+
+static void do_step(adcgs_play_state *state, int frames)
+{
+    adcgs_play_clock_step(&state->clock, frames);
+}
+
+static void do_seek(adcgs_play_state *state, int end)
+{
+    adcgs_play_clock_seek(&state->clock, end);
+}
+
+static void do_speed(adcgs_play_state *state, int steps)
+{
+    adcgs_play_clock_faster(&state->clock, steps);
+    adcgs_play_say(state, "speed %gx", adcgs_play_clock_factor(&state->clock));
+}
+
+static void do_loop(adcgs_play_state *state, int unused)
+{
+    state->clock.loop = !state->clock.loop;
+    adcgs_play_say(state, state->clock.loop ? "loop" : "no loop");
+}
+
+static void do_layers(adcgs_play_state *state, int more)
+{
+    state->layers = ADCGS_MAX(1, ADCGS_MIN(state->layers + more, state->layers_max));
+    adcgs_play_say(state, "%d of %d layers", state->layers, state->layers_max);
+}
+
+static void do_camera(adcgs_play_state *state, int index)
+{
+    if (index >= state->cameras) {
+        adcgs_play_say(state, "the stream stores %d camera%s", state->cameras, state->cameras == 1 ? "" : "s");
+        return;
+    }
+    place_camera(state, index, &state->stored[index]);
+    adcgs_play_say(state, "camera %d %s", index, state->stored[index].name);
+}
+
+static void do_next(adcgs_play_state *state, int step)
+{
+    const int from = state->jumped >= 0 ? state->jumped : step > 0 ? -1 : 0;
+    do_camera(state, state->cameras ? (from + step + state->cameras) % state->cameras : 0);
+}
+
+static void do_reset(adcgs_play_state *state, int unused)
+{
+    place_camera(state, -1, &state->home);
+}
+
+static void do_fly(adcgs_play_state *state, int unused)
+{
+    state->flying = !state->flying;
+    state->held = 0;
+    state->drag = ADCGS_DRAG_NONE;
+    if (!state->flying)
+        adcgs_orbit_control_land(&state->control);
+    adcgs_play_say(state, state->flying ? "fly: w a s d q e and the mouse; f to stop" : "orbit");
+}
+
+static void do_shot(adcgs_play_state *state, int unused)
+{
+    state->shot = state->shift ? ADCGS_SHOT_EXR : ADCGS_SHOT_PNG;
+}
+
+static void do_statistics(adcgs_play_state *state, int unused)
+{
+    state->statistics = !state->statistics;
+}
+
+static void do_bar(adcgs_play_state *state, int unused)
+{
+    state->bar = !state->bar;
+}
+
+static void do_help(adcgs_play_state *state, int unused)
+{
+    state->help = !state->help;
+}
+
+static void do_escape(adcgs_play_state *state, int unused)
+{
+    if (state->help)
+        state->help = 0;
+    else if (state->flying)
+        do_fly(state, 0);
+    else if (state->full)
+        state->full = 0;
+    else
+        state->quit = 1;
+}
+
+static void do_quit(adcgs_play_state *state, int unused)
+{
+    state->quit = 1;
+}
+
+static void do_full(adcgs_play_state *state, int unused)
+{
+    state->full = !state->full;
+}
+
+static void do_key_frame(adcgs_play_state *state, int unused)
+{
+    state->key_frame = state->shift ? -1 : 1;
+}
+
+static void do_record(adcgs_play_state *state, int unused)
+{
+    state->record = !state->record;
+}
+
+static const struct action {
+    int key, repeats;
+    void (*act)(adcgs_play_state *state, int value);
+    int value;
+} actions[] = {
+    {' ', 0, do_play, 0},
+    {ADCGS_KEY_LEFT, 1, do_step, -1},
+    {ADCGS_KEY_RIGHT, 1, do_step, 1},
+    {ADCGS_KEY_HOME, 0, do_seek, 0},
+    {ADCGS_KEY_END, 0, do_seek, 1},
+    {',', 0, do_speed, -1},
+    {'.', 0, do_speed, 1},
+    {'l', 0, do_loop, 0},
+    {'-', 0, do_layers, -1},
+    {'+', 0, do_layers, 1},
+    {'=', 0, do_layers, 1}, /* + without shift on many keyboards */
+    {'[', 1, do_next, -1},
+    {']', 1, do_next, 1},
+    {ADCGS_KEY_PAGE_UP, 1, do_next, -1},
+    {ADCGS_KEY_PAGE_DOWN, 1, do_next, 1},
+    {'r', 0, do_reset, 0},
+    {'f', 0, do_fly, 0},
+    {'p', 0, do_shot, 0},
+    {'i', 0, do_statistics, 0},
+    {'b', 0, do_bar, 0},
+    {'h', 0, do_help, 0},
+    {ADCGS_KEY_F1, 0, do_help, 0},
+    {'k', 0, do_key_frame, 0},
+    {'v', 0, do_record, 0},
+    {ADCGS_KEY_F11, 0, do_full, 0},
+    {'q', 0, do_quit, 0},
+    {ADCGS_KEY_ESCAPE, 0, do_escape, 0},
+};
+
+static const adcgs_play_help help_lines[] = {
+    {"left drag", "orbit about the scene"},
+    {"right drag", "pan; also shift and drag"},
+    {"wheel", "nearer and farther"},
+    {"f", "fly: w a s d q e, mouse looks"},
+    {"r", "back to the first view"},
+    {"0 .. 9", "a stored camera"},
+    {"[ ]", "stored cameras in turn"},
+    {"space", "play, pause"},
+    {"left right", "a frame back, a frame on"},
+    {"home end", "first frame, last frame"},
+    {", .", "slower, faster"},
+    {"l", "loop"},
+    {"- +", "fewer layers, more layers"},
+    {"p", "screenshot; with shift EXR"},
+    {"k", "key frame; shift: take it back"},
+    {"v", "video: begin, end"},
+    {"i", "statistics"},
+    {"b", "time bar"},
+    {"F11", "the whole screen"},
+    {"h F1", "this page"},
+    {"escape q", "leave"},
+};
+
+const adcgs_play_help *adcgs_play_help_lines(int *n)
+{
+    *n = (int)ADCGS_COUNTOF(help_lines);
+    return help_lines;
+}
+
+void adcgs_play_act(adcgs_play_state *state, int key, int again)
+{
+    if (key >= '0' && key <= '9' && !again)
+        do_camera(state, key - '0');
+    for (size_t i = 0; i < ADCGS_COUNTOF(actions); i++)
+        if (actions[i].key == key && (!again || actions[i].repeats))
+            actions[i].act(state, actions[i].value);
+}
