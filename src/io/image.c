@@ -201,7 +201,7 @@ static adcgs_status encode_image(adcgs_buffer *out, const adcgs_image *image, co
 adcgs_status adcgs_image_write_as(const adcgs_image *image, const adcgs_image_options *options, const char *path,
                                   adcgs_error *error)
 {
-    const char *extension = adcgs_extension(path);
+    const char *extension = options->format ? options->format : adcgs_extension(path);
     adcgs_buffer bytes;
     ADCGS_TRY(check_options(options, path, extension, error));
     adcgs_buffer_init(&bytes);

@@ -26,6 +26,7 @@ typedef struct adcgs_image {
 
 /** How an image is stored, and what goes with it. All zero: EXR of binary32, else 8 bit; straight alpha; nothing more. */
 typedef struct adcgs_image_options {
+    const char *format;         /**< what a name of it would end in: "png"; NULL: what the name ends in */
     int half;                   /**< EXR: colours and alpha of binary16 */
     int linear;                 /**< EXR: colours in linear light, as other programs expect of it; else on sRGB's curve */
     int bits;                   /**< not EXR: 8 (or 0), or 16, which PNG, TIFF, PPM and PGM have */

@@ -84,7 +84,8 @@ static adcgs_status write_picture(const adcgs_sink *sink, const adcgs_frame *fra
 {
     const adcgs_sink_extras *extras = &sink->extras;
     const adcgs_depth depth = sink->config.depth;
-    const adcgs_image_options options = {.half = depth != ADCGS_DEPTH_FLOAT,
+    const adcgs_image_options options = {.format = sink->config.format,
+                                         .half = depth != ADCGS_DEPTH_FLOAT,
                                          .linear = sink->config.linear,
                                          .bits = depth == ADCGS_DEPTH_16 ? 16 : 8,
                                          .premultiplied = 1,
@@ -199,7 +200,8 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
         return ADCGS_OK;
     if (!strcmp(config->target, "-"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "standard output takes y4m or raw, not %s", format);
-    if (!*format || strcasecmp(adcgs_extension(config->target), format))
+    const int names_it = is_image && config->format && *config->format;
+    if (!names_it && (!*format || strcasecmp(adcgs_extension(config->target), format)))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name must end in .%s", config->target,
                           *format ? format : "ppm, .exr, .y4m, ...");
     if (!is_image)

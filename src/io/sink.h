@@ -21,7 +21,8 @@ typedef enum adcgs_depth {
 
 typedef struct adcgs_sink_config {
     const char *target;  /**< "-", a file, or for images a pattern with %d or %04d */
-    const char *format;  /**< NULL: by the target's extension, Y4M for "-"; else y4m, raw, null or an extension */
+    const char *format;  /**< NULL: by the target's extension, Y4M for "-"; else y4m, raw, null, what images end in, whatever
+                              these do, or an extension that a video must have */
     adcgs_depth depth;
     int linear;          /**< EXR only: colours in linear light */
     double frame_rate;   /**< for Y4M and videos */

@@ -29,6 +29,7 @@ typedef struct settings {
     adcgs_camera_path_request request;
     adcgs_config config;
     int quiet, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    double part;   /**< of the stream: the moment to show; negative: none was given so */
     double opened; /**< when opening the input began, in seconds */
     adcgs_http *http, *http_beside; /**< what is read where URLs are given */
 } settings;
@@ -65,8 +66,9 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          ways, NULL},
         {"cameras", 0, ADCGS_OPTION_FILE, &s->cameras, 0, 0, "PATH",
          "write the stored cameras as a path's PATH.json, and nothing else", NULL, NULL},
-        {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B",
-         "one time, or a span at the stream's frame rate, in seconds;\nwithout it everything", NULL, NULL},
+        {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B|N%",
+         "one time, or a span at the stream's frame rate, in seconds,\nor the frame at N percent of the stream; without it "
+         "everything", NULL, NULL},
         {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; pixels keep their shape", NULL,
          NULL},
         {"fit", 0, ADCGS_OPTION_FLAG, &s->fit, 0, 0, NULL,
@@ -332,15 +334,28 @@ static adcgs_status show_live(const adcgs_cli *cli, const settings *s, adcgs_dec
     return status;
 }
 
+/** What --time N% stands for: one of the stream's frames. */
+static adcgs_status place_moment(settings *s, const adcgs_decoder *decoder, adcgs_error *error)
+{
+    adcgs_info info;
+    if (s->part < 0.0)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
+    const double last = floor((info.time_end - info.time_start) * info.frame_rate + 1e-6);
+    s->request.begin = s->request.end = info.time_start + floor(s->part * last + 0.5) / info.frame_rate;
+    return ADCGS_OK;
+}
+
 /** Open what is to be shown, and show it. */
 static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
     streams from = {0};
-    const int as_clip = !s->cameras && !s->splats && !s->beside && s->budget.of == ADCGS_BUDGET_NONE;
+    const int as_clip = !s->cameras && !s->splats && !s->beside && s->budget.of == ADCGS_BUDGET_NONE && s->part < 0.0;
     if (as_clip && (adcgs_pipe_is(s->input) || (adcgs_is_url(s->input) && !s->config.on_demand && !s->config.conceal)))
         return show_live(cli, s, decoder, mismatch, error);
     ADCGS_TRY(open_input(decoder, &s->http, s->input, s, error));
     from.decoder = *decoder;
+    ADCGS_TRY(place_moment(s, from.decoder, error));
     if (s->cameras)
         return adcgs_camera_path_write(from.decoder, s->cameras, error);
     if (s->splats) {
@@ -371,13 +386,30 @@ static adcgs_status check_play(const settings *s, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** T, A:B or N%. */
+static adcgs_status check_times(settings *s, adcgs_error *error)
+{
+    char *end;
+    s->part = -1.0;
+    s->request.has_times = s->times != NULL;
+    if (!s->times)
+        return ADCGS_OK;
+    const double percent = strtod(s->times, &end);
+    if (end != s->times && !strcmp(end, "%") && percent >= 0.0 && percent <= 100.0)
+        s->part = percent / 100.0;
+    else if (adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, A:B with A not after B, or 0%% to 100%%",
+                          s->times);
+    if (s->play && s->part >= 0.0)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: --play takes seconds", s->times);
+    return ADCGS_OK;
+}
+
 /** What the option table cannot check. */
 static adcgs_status check_settings(settings *s, adcgs_error *error)
 {
     s->config.cpu = (adcgs_cpu_level)s->cpu;
-    if (s->times && adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, or A:B with A not after B", s->times);
-    s->request.has_times = s->times != NULL;
+    ADCGS_TRY(check_times(s, error));
     if (s->budget_text)
         ADCGS_TRY(adcgs_budget_parse(&s->budget, s->budget_text, error));
     if (s->tiers && (s->play || s->answer))
