@@ -115,7 +115,7 @@ static adcgs_status image_write(adcgs_sink *sink, const adcgs_frame *frame, int 
 
 static adcgs_status video_write(adcgs_sink *sink, const adcgs_frame *frame, int index, adcgs_error *error)
 {
-    return adcgs_video_write_frame(sink->video, frame, error);
+    return adcgs_video_write_frame_with(sink->video, frame, sink->extras.alpha, error);
 }
 
 static const kind kinds[] = {
@@ -190,8 +190,11 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: half samples need EXR", config->target);
     if (config->depth == ADCGS_DEPTH_16 && what != &image_kind)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: 16 bits need PNG, TIFF or PPM", config->target);
-    if (config->has_alpha && (!is_image || !strcasecmp(format, "ppm") || !strcasecmp(format, "pgm")))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: alpha needs EXR, PNG or TIFF", config->target);
+    const int flat = is_image ? !strcasecmp(format, "ppm") || !strcasecmp(format, "pgm") : what != &video_kind;
+    if (config->has_alpha && flat)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: alpha needs EXR, PNG, TIFF or a video", config->target);
+    if (config->video && what != &video_kind)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: codecs and their options are for videos", config->target);
     if (config->has_z && what != &exr_kind)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: depth needs EXR", config->target);
     if (config->linear && what != &exr_kind)
@@ -218,8 +221,12 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
 static adcgs_status open_target(adcgs_sink *sink, adcgs_error *error)
 {
     const adcgs_sink_config *config = &sink->config;
-    if (sink->what == &video_kind)
-        return adcgs_video_write_open(&sink->video, config->target, config->width, config->height, config->frame_rate, error);
+    if (sink->what == &video_kind) {
+        adcgs_video_style style = config->video ? *config->video : (adcgs_video_style){0};
+        style.has_alpha = config->has_alpha;
+        return adcgs_video_write_open_as(&sink->video, config->target, config->width, config->height, config->frame_rate, &style,
+                                         error);
+    }
     if (!sink->what->is_stream)
         return ADCGS_OK;
     if (strcmp(config->target, "-"))

@@ -6,7 +6,7 @@
 #ifndef ADCGS_IO_SINK_H
 #define ADCGS_IO_SINK_H
 
-#include "base/base.h"
+#include "io/video.h"
 
 #include <adcgs/types.h>
 
@@ -28,7 +28,8 @@ typedef struct adcgs_sink_config {
     double frame_rate;   /**< for Y4M and videos */
     int width, height;
     int frames;          /**< how many will come; more than one image needs a pattern */
-    int has_alpha;       /**< frames come with alpha, which EXR, PNG and TIFF take */
+    int has_alpha;       /**< frames come with alpha, which EXR, PNG, TIFF and some videos take */
+    const adcgs_video_style *video; /**< how a video is coded, but for alpha; NULL: as its container has it */
     int has_z;           /**< frames come with depth, which EXR takes */
 } adcgs_sink_config;
 

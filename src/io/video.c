@@ -91,7 +91,8 @@ adcgs_status adcgs_video_read(adcgs_video *video, int64_t frame, adcgs_image *ou
 
 /* ---- Writing ---- */
 
-static adcgs_status begin(adcgs_video_writer *w, int width, int height, double frame_rate, adcgs_error *error)
+static adcgs_status begin(adcgs_video_writer *w, int width, int height, double frame_rate, const adcgs_video_style *style,
+                          adcgs_error *error)
 {
     if (!(frame_rate >= 0.001 && frame_rate <= RATE_MAX))
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: %g frames per second, expected 0.001 to %g", w->path, frame_rate,
@@ -102,12 +103,19 @@ static adcgs_status begin(adcgs_video_writer *w, int width, int height, double f
                                        .path = w->path,
                                        .width = width,
                                        .height = height,
+                                       .style = *style,
                                        .rate = {(int)rate.num, (int)rate.den}};
     return w->ffmpeg->begin(&w->encoder, w->stored, &target, error);
 }
 
 adcgs_status adcgs_video_write_open(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
                                     adcgs_error *error)
+{
+    return adcgs_video_write_open_as(out, path, width, height, frame_rate, &(const adcgs_video_style){0}, error);
+}
+
+adcgs_status adcgs_video_write_open_as(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
+                                       const adcgs_video_style *style, adcgs_error *error)
 {
     const adcgs_ffmpeg *ffmpeg;
     *out = NULL;
@@ -117,7 +125,7 @@ adcgs_status adcgs_video_write_open(adcgs_video_writer **out, const char *path, 
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     w->ffmpeg = ffmpeg;
     w->path = strdup(path);
-    const adcgs_status status = w->path ? begin(w, width, height, frame_rate, error)
+    const adcgs_status status = w->path ? begin(w, width, height, frame_rate, style, error)
                                         : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (status != ADCGS_OK)
         adcgs_video_write_abort(&w);
@@ -133,7 +141,13 @@ void adcgs_video_write_size(const adcgs_video_writer *writer, int *width, int *h
 
 adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, adcgs_error *error)
 {
-    return writer->ffmpeg->add(writer->encoder, frame, error);
+    return adcgs_video_write_frame_with(writer, frame, NULL, error);
+}
+
+adcgs_status adcgs_video_write_frame_with(adcgs_video_writer *writer, const adcgs_frame *frame, const float *alpha,
+                                          adcgs_error *error)
+{
+    return writer->ffmpeg->add(writer->encoder, frame, alpha, error);
 }
 
 adcgs_status adcgs_video_write_close(adcgs_video_writer **writer, adcgs_error *error)

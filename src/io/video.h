@@ -37,12 +37,29 @@ const adcgs_video_info *adcgs_video_get_info(const adcgs_video *video);
 adcgs_status adcgs_video_read(adcgs_video *video, int64_t frame, adcgs_image *out, adcgs_error *error);
 
 typedef struct adcgs_video_writer adcgs_video_writer;
-/** Container and codec by the name's end: H.264 or what FFmpeg has for it; BT.709, limited range, tagged as such. */
+
+/** How a video is coded. All zero: by its container, H.264 or what FFmpeg has for it, with little loss. */
+typedef struct adcgs_video_style {
+    const char *codec;   /**< what FFmpeg calls an encoder or a codec, or what people do; NULL: by the container */
+    const char *options; /**< for the encoder, as FFmpeg's: "name=value:name=value"; also pix_fmt. NULL: none */
+    double crf;          /**< a constant rate factor, where has_crf says so */
+    int has_crf;
+    uint64_t bit_rate;   /**< bits in a second; 0: by quality */
+    int has_alpha;       /**< frames come with alpha, which the codec must have */
+} adcgs_video_style;
+
+/** Container by the name's end; BT.709 of limited range, or RGB, tagged as such. */
 adcgs_status adcgs_video_write_open(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
                                     adcgs_error *error);
+/** As adcgs_video_write_open(), in a style, whose strings are not needed afterwards. */
+adcgs_status adcgs_video_write_open_as(adcgs_video_writer **out, const char *path, int width, int height, double frame_rate,
+                                       const adcgs_video_style *style, adcgs_error *error);
 /** The size of the pictures in the file: the frames', or where the codec takes even sizes only, one row or column more. */
 void adcgs_video_write_size(const adcgs_video_writer *writer, int *width, int *height);
 adcgs_status adcgs_video_write_frame(adcgs_video_writer *writer, const adcgs_frame *frame, adcgs_error *error);
+/** With alpha, [height][width], by which the colours are premultiplied; the file has them straight. NULL: opaque. */
+adcgs_status adcgs_video_write_frame_with(adcgs_video_writer *writer, const adcgs_frame *frame, const float *alpha,
+                                          adcgs_error *error);
 /** Complete the file. On failure, and after adcgs_video_write_abort(), nothing is left behind. */
 adcgs_status adcgs_video_write_close(adcgs_video_writer **writer, adcgs_error *error);
 void adcgs_video_write_abort(adcgs_video_writer **writer);

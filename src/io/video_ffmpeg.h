@@ -20,6 +20,7 @@ typedef struct adcgs_video_target {
     const char *path;     /**< its name's end says the container; for messages; outlives the encoder */
     int width, height;    /**< of the frames */
     int rate[2];          /**< frames per second: numerator and denominator, > 0 */
+    adcgs_video_style style; /**< its strings are not looked at after begin() */
 } adcgs_video_target;
 
 typedef struct adcgs_ffmpeg {
@@ -29,7 +30,7 @@ typedef struct adcgs_ffmpeg {
     adcgs_status (*read)(adcgs_video_reader *reader, int64_t frame, adcgs_image *out, adcgs_error *error);
     /** stored: the size of the pictures in the file, which some codecs make even. */
     adcgs_status (*begin)(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target, adcgs_error *error);
-    adcgs_status (*add)(adcgs_video_encoder *encoder, const adcgs_frame *frame, adcgs_error *error);
+    adcgs_status (*add)(adcgs_video_encoder *encoder, const adcgs_frame *frame, const float *alpha, adcgs_error *error);
     /** What is still to come, and the container's end. */
     adcgs_status (*end)(adcgs_video_encoder *encoder, adcgs_error *error);
     void (*free)(adcgs_video_encoder **encoder);
@@ -44,7 +45,8 @@ void adcgs_video_reader_close(adcgs_video_reader **reader);
 adcgs_status adcgs_video_reader_read(adcgs_video_reader *reader, int64_t frame, adcgs_image *out, adcgs_error *error);
 adcgs_status adcgs_video_encoder_begin(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target,
                                        adcgs_error *error);
-adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *encoder, const adcgs_frame *frame, adcgs_error *error);
+adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *encoder, const adcgs_frame *frame, const float *alpha,
+                                     adcgs_error *error);
 adcgs_status adcgs_video_encoder_end(adcgs_video_encoder *encoder, adcgs_error *error);
 void adcgs_video_encoder_free(adcgs_video_encoder **encoder);
 

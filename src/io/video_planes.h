@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Rendered frames as planes of 8-bit 4:2:0, BT.709, limited range, chroma beside luma on the left. */
+/**
+ * \file
+ * Rendered frames as FFmpeg stores them: RGB of full range, or BT.709 of limited range, chroma beside luma on the left; of 8 to
+ * 16 bits a sample; alpha, which is straight, of full range.
+ */
 #ifndef ADCGS_IO_VIDEO_PLANES_H
 #define ADCGS_IO_VIDEO_PLANES_H
 
@@ -9,7 +13,12 @@
 
 #include <libavutil/frame.h>
 
-/** Fill the planes of a frame of FFmpeg's, at least as large; what is larger repeats the last row and column. */
-adcgs_status adcgs_video_planes(AVFrame *to, const adcgs_frame *from, adcgs_error *error);
+/** Whether frames can be had in that format. */
+int adcgs_video_planes_take(enum AVPixelFormat format);
+/**
+ * Fill a frame of FFmpeg's of such a format, at least as large; what is larger repeats the last row and column. With alpha, which
+ * may be NULL, colours come premultiplied by it.
+ */
+adcgs_status adcgs_video_planes(AVFrame *to, const adcgs_frame *from, const float *alpha, adcgs_error *error);
 
 #endif

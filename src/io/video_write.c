@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file
- * Writing films: the container by the name's end, the first of its codecs that
- * this build of FFmpeg can encode. The same frames give the same bytes.
- */
+/** \file Writing films. The same frames give the same bytes, unless the user chose the codec. */
 #include "config.h"
 
 #include "io/extension.h"
-#include "io/video_ffmpeg.h"
+#include "io/video_codec.h"
 #include "io/video_planes.h"
 
 #include <errno.h>
-#include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
+#include <libavutil/pixdesc.h>
 #include <stdlib.h>
 #include <strings.h>
 
@@ -19,7 +16,6 @@
 #define THREADS 4            /* a fixed number, since what encoders write depends on it */
 #define KEY_SECONDS 2        /* between key frames */
 #define KEY_FRAMES_MAX 250
-#define BITS_PER_PIXEL 1     /* for encoders that know no constant quality */
 
 struct adcgs_video_encoder {
     adcgs_video_target target;
@@ -31,30 +27,6 @@ struct adcgs_video_encoder {
     AVPacket *packet;
     int64_t frames;
     int reason; /* errno of the first write that failed */
-};
-
-typedef struct codec {
-    const char *name, *options; /* as FFmpeg's encoder and its options, for little loss */
-    int even;                   /* sizes must be */
-} codec;
-
-/* Without mb-tree: its AVX-512 code in x264 reads memory nobody has set, and the same frames would not give the same bytes. */
-static const codec h264 = {"libx264", "preset=medium:crf=12:x264-params=mbtree=0", 1};
-static const codec openh264 = {"libopenh264", "", 1};
-static const codec vp9 = {"libvpx-vp9", "crf=12:b=0:deadline=good:cpu-used=2:row-mt=1", 0};
-static const codec av1 = {"libaom-av1", "crf=12:b=0:cpu-used=6:row-mt=1", 0};
-static const codec mpeg4 = {"mpeg4", "flags=+qscale:global_quality=236", 0};
-
-static const struct {
-    const char *extension, *name;
-    const codec *codecs[6];
-} containers[] = {
-    {"mp4", "mp4", {&h264, &openh264, &vp9, &av1, &mpeg4}},
-    {"m4v", "mp4", {&h264, &openh264, &mpeg4}},
-    {"mov", "mov", {&h264, &openh264, &mpeg4}},
-    {"mkv", "matroska", {&h264, &openh264, &vp9, &av1, &mpeg4}},
-    {"webm", "webm", {&vp9, &av1}},
-    {"avi", "avi", {&h264, &openh264, &mpeg4}},
 };
 
 /* ---- The file ---- */
@@ -107,65 +79,49 @@ static adcgs_status open_io(adcgs_video_encoder *e, adcgs_error *error)
 
 /* ---- Codec and container ---- */
 
-static adcgs_status choose(const adcgs_video_encoder *e, const char **container, const codec **chosen, const AVCodec **encoder,
-                           adcgs_error *error)
-{
-    const char *extension = adcgs_extension(e->target.path);
-    for (size_t i = 0; i < ADCGS_COUNTOF(containers); i++) {
-        if (strcasecmp(extension, containers[i].extension))
-            continue;
-        *container = containers[i].name;
-        for (const codec *const *c = containers[i].codecs; *c; c++)
-            if ((*encoder = avcodec_find_encoder_by_name((*c)->name))) {
-                *chosen = *c;
-                return ADCGS_OK;
-            }
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of FFmpeg has no encoder for .%s", e->target.path,
-                          extension);
-    }
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: videos are written as .mp4, .m4v, .mov, .mkv, .webm or .avi",
-                      e->target.path);
-}
-
-static void set_codec(adcgs_video_encoder *e, const codec *chosen)
+static void set_codec(adcgs_video_encoder *e, const adcgs_video_codec *chosen)
 {
     AVCodecContext *c = e->codec;
+    const int is_rgb = (av_pix_fmt_desc_get(chosen->format)->flags & AV_PIX_FMT_FLAG_RGB) != 0;
     const int *rate = e->target.rate;
     c->width = chosen->even ? (e->target.width + 1) & ~1 : e->target.width;
     c->height = chosen->even ? (e->target.height + 1) & ~1 : e->target.height;
-    c->pix_fmt = AV_PIX_FMT_YUV420P;
+    c->pix_fmt = chosen->format;
     c->sample_aspect_ratio = (AVRational){1, 1};
     c->framerate = (AVRational){rate[0], rate[1]};
     c->time_base = av_inv_q(c->framerate);
-    c->color_range = AVCOL_RANGE_MPEG;
-    c->colorspace = AVCOL_SPC_BT709;
+    c->color_range = is_rgb ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+    c->colorspace = is_rgb ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
     c->color_primaries = AVCOL_PRI_BT709;
     c->color_trc = AVCOL_TRC_IEC61966_2_1; /* pictures are sRGB, and so is what is learnt from them */
-    c->chroma_sample_location = AVCHROMA_LOC_LEFT;
+    c->chroma_sample_location = is_rgb ? AVCHROMA_LOC_UNSPECIFIED : AVCHROMA_LOC_LEFT;
     c->gop_size = ADCGS_MIN(ADCGS_MAX((int)(KEY_SECONDS * (int64_t)rate[0] / rate[1]), 1), KEY_FRAMES_MAX);
     c->max_b_frames = strcasecmp(adcgs_extension(e->target.path), "avi") ? c->max_b_frames : 0; /* its packets have no times */
     c->thread_count = THREADS;
     c->flags |= AV_CODEC_FLAG_BITEXACT;
     if (e->format->oformat->flags & AVFMT_GLOBALHEADER)
         c->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    if (!*chosen->options)
-        c->bit_rate = (int64_t)c->width * c->height * BITS_PER_PIXEL * rate[0] / rate[1];
+    if (chosen->bit_rate)
+        c->bit_rate = chosen->bit_rate;
 }
 
-static int open_codec(adcgs_video_encoder *e, const codec *chosen, const AVCodec *encoder)
+static adcgs_status open_codec(adcgs_video_encoder *e, adcgs_video_codec *chosen, adcgs_error *error)
 {
-    AVDictionary *options = NULL;
-    e->codec = avcodec_alloc_context3(encoder);
+    e->codec = avcodec_alloc_context3(chosen->encoder);
     e->frame = av_frame_alloc();
     e->packet = av_packet_alloc();
     if (!e->codec || !e->frame || !e->packet)
-        return AVERROR(ENOMEM);
+        return fail(e, AVERROR(ENOMEM), "", error);
     set_codec(e, chosen);
-    int code = av_dict_parse_string(&options, chosen->options, "=", ":", 0);
-    if (code >= 0)
-        code = avcodec_open2(e->codec, encoder, &options);
-    av_dict_free(&options);
-    return code;
+    const int code = avcodec_open2(e->codec, chosen->encoder, &chosen->options);
+    if (code < 0)
+        return fail(e, code, e->target.style.options || e->target.style.has_crf ? "encode with these options"
+                                                                                : "encode pictures of this size", error);
+    const AVDictionaryEntry *const unknown = av_dict_get(chosen->options, "", NULL, AV_DICT_IGNORE_SUFFIX);
+    if (unknown)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the encoder %s has no option %s", e->target.path, chosen->encoder->name,
+                          unknown->key);
+    return ADCGS_OK;
 }
 
 static int open_frame(adcgs_video_encoder *e)
@@ -191,32 +147,39 @@ static int open_container(adcgs_video_encoder *e)
     e->stream->time_base = e->codec->time_base;
     e->stream->avg_frame_rate = e->codec->framerate;
     e->stream->sample_aspect_ratio = e->codec->sample_aspect_ratio;
+    if (e->target.style.has_alpha) /* WebM's beside the pictures, which it must be told */
+        av_dict_set(&e->stream->metadata, "alpha_mode", "1", 0);
     const int code = avcodec_parameters_from_context(e->stream->codecpar, e->codec);
     return code < 0 ? code : avformat_write_header(e->format, NULL);
 }
 
-static adcgs_status begin(adcgs_video_encoder *e, adcgs_error *error)
+static adcgs_status begin_with(adcgs_video_encoder *e, adcgs_video_codec *chosen, adcgs_error *error)
 {
-    const char *container = NULL;
-    const codec *chosen = NULL;
-    const AVCodec *encoder = NULL;
-    if (e->target.width < 1 || e->target.height < 1 || e->target.width > ADCGS_IMAGE_MAX || e->target.height > ADCGS_IMAGE_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %dx%d pixels, expected at most %dx%d", e->target.path, e->target.width,
-                          e->target.height, ADCGS_IMAGE_MAX, ADCGS_IMAGE_MAX);
-    ADCGS_TRY(choose(e, &container, &chosen, &encoder, error));
     ADCGS_TRY(open_io(e, error));
-    int code = avformat_alloc_output_context2(&e->format, NULL, container, NULL);
+    int code = avformat_alloc_output_context2(&e->format, NULL, chosen->container, NULL);
     if (code < 0)
         return fail(e, code, "write this container", error);
     e->format->pb = e->io;
     e->format->flags |= AVFMT_FLAG_CUSTOM_IO | AVFMT_FLAG_BITEXACT;
-    code = open_codec(e, chosen, encoder);
-    if (code >= 0)
-        code = open_frame(e);
+    ADCGS_TRY(open_codec(e, chosen, error));
+    code = open_frame(e);
     if (code < 0)
         return fail(e, code, "encode pictures of this size", error);
     code = open_container(e);
     return code < 0 ? fail(e, code, "begin the file", error) : ADCGS_OK;
+}
+
+static adcgs_status begin(adcgs_video_encoder *e, adcgs_error *error)
+{
+    adcgs_video_codec chosen;
+    if (e->target.width < 1 || e->target.height < 1 || e->target.width > ADCGS_IMAGE_MAX || e->target.height > ADCGS_IMAGE_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %dx%d pixels, expected at most %dx%d", e->target.path, e->target.width,
+                          e->target.height, ADCGS_IMAGE_MAX, ADCGS_IMAGE_MAX);
+    adcgs_status status = adcgs_video_choose(&chosen, &e->target, error);
+    if (status == ADCGS_OK)
+        status = begin_with(e, &chosen, error);
+    adcgs_video_codec_clear(&chosen);
+    return status;
 }
 
 adcgs_status adcgs_video_encoder_begin(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target,
@@ -277,7 +240,8 @@ static adcgs_status encode(adcgs_video_encoder *e, const AVFrame *frame, adcgs_e
     return fail(e, code, "encode", error);
 }
 
-adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *e, const adcgs_frame *frame, adcgs_error *error)
+adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *e, const adcgs_frame *frame, const float *alpha,
+                                     adcgs_error *error)
 {
     if (frame->width != e->target.width || frame->height != e->target.height)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels among those of %dx%d", e->target.path,
@@ -285,7 +249,7 @@ adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *e, const adcgs_frame *
     const int code = av_frame_make_writable(e->frame); /* the encoder may hold the last one */
     if (code < 0)
         return fail(e, code, "encode", error);
-    ADCGS_TRY(adcgs_video_planes(e->frame, frame, error));
+    ADCGS_TRY(adcgs_video_planes(e->frame, frame, alpha, error));
     e->frame->pts = e->frames++;
     return encode(e, e->frame, error);
 }

@@ -26,6 +26,7 @@ typedef struct settings {
     const adcgs_cli *cli;
     const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script, *budget_text;
     adcgs_budget budget;
+    adcgs_video_style video;
     adcgs_camera_path_request request;
     adcgs_config config;
     int quiet, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
@@ -34,10 +35,11 @@ typedef struct settings {
     adcgs_http *http, *http_beside; /**< what is read where URLs are given */
 } settings;
 
-#define OPTION_COUNT 30
+#define OPTION_COUNT 34
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     static const char *const formats[] = {"y4m", "raw", "null", NULL}, *const ways[] = {"orbit", "spiral", "bullet", NULL};
+    static const char *const codecs[] = {"h264", "hevc", "vp9", "av1", "mpeg4", "ffv1", "prores", "qtrle", NULL};
     const adcgs_option table[OPTION_COUNT] = {
         {"output", 'o', ADCGS_OPTION_FILE, &s->output, 0, 0, "TARGET",
          "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
@@ -56,8 +58,17 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          "with --splats: give PLY the zeros of harmonics of this degree,\nfor programs that insist on them", NULL, NULL},
         {"bits", 0, ADCGS_OPTION_INT, &s->bits, 8, 16, "N", "bits of a sample in PNG, TIFF and PPM: 8 or 16", NULL, NULL},
         {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
-         "leave the background out and write alpha: premultiplied in\nEXR, straight in PNG and TIFF", NULL, NULL},
+         "leave the background out and write alpha: premultiplied in\nEXR, straight in PNG, TIFF and videos", NULL, NULL},
         {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
+        {"codec", 0, ADCGS_OPTION_STRING, &s->video.codec, 0, 0, "NAME",
+         "a video's codec: h264, hevc, vp9, av1, ffv1, prores, qtrle or\nwhat FFmpeg calls an encoder; without it the name "
+         "decides", codecs, NULL},
+        {"crf", 0, ADCGS_OPTION_REAL, &s->video.crf, 0, 63, "Q", "a video's constant rate factor: less is better, and larger",
+         NULL, &s->video.has_crf},
+        {"bitrate", 0, ADCGS_OPTION_SIZE, &s->video.bit_rate, 1000, 1e10, "BITS",
+         "a video's bits per second (8M) instead of a quality", NULL, NULL},
+        {"codec-options", 0, ADCGS_OPTION_STRING, &s->video.options, 0, 0, "NAME=VALUE:...",
+         "options of FFmpeg's for the encoder, and pix_fmt", NULL, NULL},
         {"beside", 0, ADCGS_OPTION_FILE, &s->beside, 0, 0, "OTHER",
          "show the frames of another stream to the right, through the\nsame cameras at the same times", NULL, NULL},
         {"camera", 'c', ADCGS_OPTION_FILE, &s->request.camera, 0, 0, "WHICH",
@@ -217,6 +228,11 @@ static adcgs_status render(const settings *s, const streams *from, adcgs_camera_
     return status;
 }
 
+static int has_style(const settings *s)
+{
+    return s->video.codec || s->video.has_crf || s->video.bit_rate || s->video.options;
+}
+
 static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_camera_path *frames, const adcgs_canvas *canvas,
                               adcgs_error *error)
 {
@@ -232,6 +248,7 @@ static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_
                                       .height = canvas->shown.height,
                                       .frames = frames->n,
                                       .has_alpha = s->alpha,
+                                      .video = has_style(s) ? &s->video : NULL,
                                       .has_z = s->depth};
     return s->output ? adcgs_sink_open(sink, &config, error) : ADCGS_OK;
 }
@@ -372,7 +389,8 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
 /** Whether an option is given that says how frames are written. */
 static int shapes_output(const settings *s)
 {
-    return s->format || s->half || s->use_float || s->linear || s->bits || s->alpha || s->depth || s->beside;
+    return s->format || s->half || s->use_float || s->linear || s->bits || s->alpha || s->depth || s->beside ||
+           has_style(s);
 }
 
 /** What goes with the player, and what does not. */
@@ -437,7 +455,10 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--f-rest needs --splats");
     if (shapes_output(s) && !s->output)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--format, --half, --float, --linear, --bits, --alpha, --depth and --beside need --output");
+                          "--format, --half, --float, --linear, --bits, --alpha, --depth, --codec, --crf, --bitrate, "
+                          "--codec-options and --beside need --output");
+    if (s->video.has_crf && s->video.bit_rate)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--crf and --bitrate exclude each other");
     if ((s->fit || s->request.fill) && !s->request.size[0])
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill need --size");
     if (s->fit && s->request.fill)

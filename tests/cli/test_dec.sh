@@ -73,6 +73,9 @@ fi
 expect 2 "standard output takes y4m" $dec "$s" -o - --format mp4
 expect 2 "must end in .mp4" $dec "$s" -o "$dir/x.mkv" --format mp4
 expect 2 "float" $dec "$s" -o "$dir/x.mp4" --float
+expect 2 "codecs and their options are for videos" $dec "$s" -o "$dir/x%d.png" --crf 20
+expect 2 "exclude each other" $dec "$s" -o "$dir/x.mp4" --crf 20 --bitrate 1M
+expect 2 "need --output" $dec "$s" --md5 --codec ffv1
 if grep -q "define HAVE_FFMPEG" config.h; then
     for ext in mp4 mov mkv webm avi; do
         expect 0 "frame" $dec "$s" -o "$dir/c.$ext"
@@ -82,6 +85,14 @@ if grep -q "define HAVE_FFMPEG" config.h; then
     cp "$dir/c.mp4" "$dir/again.mp4"
     expect 0 "frame" $dec "$s" -o "$dir/c.mp4" --format mp4 --threads 1
     cmp -s "$dir/c.mp4" "$dir/again.mp4" || bad "the same frames give another video"
+    # Codec, rate, options, alpha.
+    expect 0 "frame" $dec "$s" -o "$dir/lossless.mkv" --codec ffv1 --time 0
+    expect 0 "frame" $dec "$s" -o "$dir/alpha.mov" --codec qtrle --alpha --time 0
+    expect 0 "frame" $dec "$s" -o "$dir/rate.avi" --codec mpeg4 --bitrate 100k --codec-options bf=0:trellis=0
+    [ -s "$dir/lossless.mkv" ] && [ -s "$dir/alpha.mov" ] && [ -s "$dir/rate.avi" ] || bad "codecs by name"
+    expect 5 "x.mp4: .mp4 holds no ffv1" $dec "$s" -o "$dir/x.mp4" --codec ffv1
+    expect 5 "x.mp4: .mp4 has no alpha here" $dec "$s" -o "$dir/x.mp4" --alpha
+    expect 2 "the encoder mpeg4 has no option crf" $dec "$s" -o "$dir/x.avi" --codec mpeg4 --crf 20
     expect 0 "stored as 52x40" $dec "$s" -o "$dir/odd.mp4" --size 51x39 --time 0
     expect 3 "x.mp4" $dec "$s" -o "$dir/no/x.mp4" --time 0
     expect 5 ".webm or .avi" $dec "$s" -o "$dir/x.mpg" --time 0
