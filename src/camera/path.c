@@ -92,12 +92,13 @@ adcgs_status adcgs_camera_path_times(adcgs_camera_path *out, const adcgs_info *i
 
 #ifndef HAVE_ENCODER
 adcgs_status adcgs_camera_path_read(adcgs_camera_path *out, const adcgs_info *info, const adcgs_camera_path_request *request,
-                                   double near_plane, adcgs_error *error)
+                                   const adcgs_camera *like, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads no camera paths", request->camera);
 }
 
-adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const char *path, adcgs_error *error)
+adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const adcgs_camera_path *frames, adcgs_rotation_order order,
+                                     const char *path, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build writes no camera paths", path);
 }
@@ -105,8 +106,12 @@ adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const char *p
 
 static int is_path(const char *name)
 {
-    const size_t n = name ? strlen(name) : 0;
-    return n > 5 && !strcmp(name + n - 5, ".json");
+    static const char *const endings[] = {"json", "chan", "usda", "usd", "usdc"};
+    const char *const dot = name ? strrchr(name, '.') : NULL;
+    for (size_t i = 0; i < ADCGS_COUNTOF(endings) && dot && dot > name; i++)
+        if (!strcmp(dot + 1, endings[i]))
+            return 1;
+    return 0;
 }
 
 static int is_named(const adcgs_camera_path_request *request, const char *name)
@@ -156,11 +161,25 @@ static adcgs_status make_from_camera(adcgs_camera_path *out, const adcgs_decoder
     return ADCGS_OK;
 }
 
+/** A path from a file; what it does not say is as in the first stored camera, or one of our own. */
+static adcgs_status make_from_file(adcgs_camera_path *out, const adcgs_decoder *decoder, const adcgs_info *info,
+                                   const adcgs_camera_path_request *request, adcgs_error *error)
+{
+    adcgs_camera like;
+    double up[3];
+    adcgs_find_up(info, up);
+    adcgs_camera_path_default(&like, info, up);
+    if (info->cameras)
+        ADCGS_TRY(adcgs_get_camera(decoder, 0, &like, error));
+    like.near_plane = ADCGS_NEAR_PER_SCALE * info->scene_scale;
+    return adcgs_camera_path_read(out, info, request, &like, error);
+}
+
 static adcgs_status make_shots(adcgs_camera_path *out, const adcgs_decoder *decoder, const adcgs_info *info,
                                const adcgs_camera_path_request *request, adcgs_error *error)
 {
     if (is_path(request->camera))
-        return adcgs_camera_path_read(out, info, request, ADCGS_NEAR_PER_SCALE * info->scene_scale, error);
+        return make_from_file(out, decoder, info, request, error);
     if (is_named(request, "orbit") || is_named(request, "spiral") || is_named(request, "bullet") ||
         (!request->camera && !info->cameras))
         return make_from_rig(out, decoder, info, request, error);

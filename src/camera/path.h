@@ -19,8 +19,22 @@ typedef struct adcgs_camera_path {
     adcgs_camera_frame *frame;
 } adcgs_camera_path;
 
+/** Which axis a rotation by three angles turns about first, second, third: rows of adcgs_rotation_orders. */
+typedef enum adcgs_rotation_order {
+    ADCGS_ROTATION_XYZ,
+    ADCGS_ROTATION_XZY,
+    ADCGS_ROTATION_YXZ,
+    ADCGS_ROTATION_YZX,
+    ADCGS_ROTATION_ZXY,
+    ADCGS_ROTATION_ZYX
+} adcgs_rotation_order;
+
+/** Their names, "xyz" and so on, ended by NULL. */
+extern const char *const adcgs_rotation_orders[];
+
 typedef struct adcgs_camera_path_request {
-    const char *camera; /**< stored camera's name or index, orbit, spiral, bullet, or a .json file; NULL: 0, else orbit */
+    const char *camera; /**< stored camera's name or index, orbit, spiral, bullet, or a path's file; NULL: 0, else orbit */
+    adcgs_rotation_order order; /**< of the angles in a .chan file */
     int has_times;
     double begin, end;  /**< seconds; the stream's whole span without them */
     int size[2];        /**< 0, 0: the camera's own; else what it sees is fitted to it: adcgs_camera_fit() */
@@ -46,13 +60,14 @@ typedef struct adcgs_camera_key {
 } adcgs_camera_key;
 
 /**
- * Write key frames of one size as a path for adcgs_camera_path_make() to read; has_times: with their times, which are the
- * scene's. Atomic.
+ * Write key frames of one size as a path for adcgs_camera_path_make() to read, in the format that its name tells: .chan, .usda,
+ * else JSON. has_times: with their times, which are the scene's. order: of angles in a .chan file. Atomic.
  */
-adcgs_status adcgs_camera_keys_write(const adcgs_camera_key *keys, int n, int has_times, double frame_rate, const char *path,
-                                     adcgs_error *error);
-/** Write the stored cameras as a path of key frames, a second apart, for adcgs_camera_path_make() to read and users to change. */
-adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const char *path, adcgs_error *error);
+adcgs_status adcgs_camera_keys_write(const adcgs_camera_key *keys, int n, int has_times, const adcgs_info *info,
+                                     double frame_rate, adcgs_rotation_order order, const char *path, adcgs_error *error);
+/** The same of frames, or where these are NULL of the stored cameras, a second apart, to begin one's own path with. */
+adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const adcgs_camera_path *frames, adcgs_rotation_order order,
+                                     const char *path, adcgs_error *error);
 
 /* What follows is for the files of this part alone. */
 #define ADCGS_PATH_FRAMES_MAX 1000000
@@ -97,11 +112,12 @@ void adcgs_rig_spiral(const adcgs_rig *rig, adcgs_camera_path *frames);
 adcgs_status adcgs_rig_bullet(const adcgs_rig *rig, adcgs_camera_path *frames, adcgs_error *error);
 
 /**
- * A path from {"frames": [{"time": seconds, "transform_matrix": camera-to-world in OpenGL axes}], "fl_x": ..., "w": ...,
- * "h": ...}. Frames without a time follow each other at the stream's frame rate. With "keys" in place of "frames" each also has
- * "at", seconds along the path, and frames are made between them at "frame_rate".
+ * A path from a file: .chan, USD, or JSON: {"frames": [{"time": seconds, "transform_matrix": camera-to-world in OpenGL axes}],
+ * "fl_x": ..., "w": ..., "h": ...}. Frames without a time follow each other at the stream's frame rate. With "keys" in place of
+ * "frames" each also has "at", seconds along the path, and frames are made between them at "frame_rate". like: a camera for what
+ * other formats do not say, and the near plane of all.
  */
 adcgs_status adcgs_camera_path_read(adcgs_camera_path *out, const adcgs_info *info, const adcgs_camera_path_request *request,
-                                   double near_plane, adcgs_error *error);
+                                    const adcgs_camera *like, adcgs_error *error);
 
 #endif

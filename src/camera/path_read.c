@@ -2,10 +2,9 @@
 /** \file Camera paths from JSON files. */
 #include "config.h"
 
-#include "camera/path.h"
+#include "camera/path_files.h"
 
 #include "camera/rotation.h"
-#include "camera/spline.h"
 #include "data/camera_json.h"
 
 #include <math.h>
@@ -14,9 +13,10 @@
 
 #define SECONDS_MAX 1e9
 
-/** What a path is read for. */
+/** What a path is read for, and where we are in it. */
 typedef struct reader {
     adcgs_json_place at;
+    const adcgs_path_reader *of;
     const adcgs_info *info;
     const adcgs_camera_path_request *request;
     double near_plane; /* of cameras that do not say */
@@ -103,24 +103,6 @@ static adcgs_status read_interpolation(const reader *r, int *linear)
     return ADCGS_OK;
 }
 
-/** A frame for each step of the frame rate, the last key included where a step meets it. */
-static adcgs_status fly(const reader *r, const adcgs_camera_key *keys, size_t n, int linear, adcgs_camera_path *out)
-{
-    const double begin = keys[0].at, frames = floor((keys[n - 1].at - begin) * out->frame_rate + 1e-6) + 1.0;
-    const double rate = out->frame_rate;
-    adcgs_camera_spline spline;
-    ADCGS_TRY(adcgs_camera_path_alloc(out, frames, r->at.path, r->at.error));
-    out->frame_rate = rate;
-    ADCGS_TRY(adcgs_camera_spline_init(&spline, keys, (int)n, linear, 0, r->at.error));
-    for (int i = 0; i < out->n; i++) {
-        adcgs_camera *camera = &out->frame[i].camera;
-        adcgs_camera_spline_at(&spline, begin + i / rate, &out->frame[i]);
-        snprintf(camera->name, sizeof camera->name, "frame %d", i);
-    }
-    adcgs_camera_spline_clear(&spline);
-    return ADCGS_OK;
-}
-
 static adcgs_status read_keys(reader *r, adcgs_camera_path *out)
 {
     json_t *list;
@@ -141,18 +123,15 @@ static adcgs_status read_keys(reader *r, adcgs_camera_path *out)
             status = read_key(r, keys, i);
     }
     if (status == ADCGS_OK)
-        status = fly(r, keys, n, linear, out);
+        status = adcgs_path_fly(r->of, keys, n, linear, out);
     free(keys);
     return status;
 }
 
-adcgs_status adcgs_camera_path_read(adcgs_camera_path *out, const adcgs_info *info, const adcgs_camera_path_request *request,
-                                   double near_plane, adcgs_error *error)
+adcgs_status adcgs_path_json_read(adcgs_camera_path *out, const adcgs_path_reader *of)
 {
-    reader r = {{.path = request->camera, .error = error}, info, request, near_plane};
-    if (request->has_times && request->begin != request->end)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time: a camera path takes one time, or none if it has its own");
-    ADCGS_TRY(adcgs_json_load(&r.at.root, request->camera, error));
+    reader r = {{.path = of->path, .error = of->error}, of, of->info, of->request, of->like->near_plane};
+    ADCGS_TRY(adcgs_json_load(&r.at.root, of->path, of->error));
     const int has_keys = json_object_get(r.at.root, "keys") != NULL;
     adcgs_status status;
     if (has_keys && json_object_get(r.at.root, "frames"))

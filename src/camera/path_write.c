@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Key frames as the file of a path, and the stored cameras as key frames to start from. */
+/** \file Key frames as the JSON file of a path. */
 #include "config.h"
 
-#include "camera/path.h"
-#include "camera/rotation.h"
+#include "camera/path_files.h"
 #include "io/atomic.h"
 #include "io/json.h"
-
-#include <adcgs/decoder.h>
-
-#include <stdlib.h>
 
 /** Camera-to-world in OpenGL axes, row by row. */
 static void write_matrix(adcgs_json *json, const double pose[12])
@@ -43,8 +38,8 @@ static void write_key(adcgs_json *json, const adcgs_camera_key *key, int has_tim
     adcgs_json_close(json);
 }
 
-adcgs_status adcgs_camera_keys_write(const adcgs_camera_key *keys, int n, int has_times, double frame_rate, const char *path,
-                                     adcgs_error *error)
+adcgs_status adcgs_path_json_write(const adcgs_camera_key *keys, int n, int has_times, double frame_rate, const char *path,
+                                   adcgs_error *error)
 {
     adcgs_atomic atomic;
     adcgs_json json;
@@ -66,27 +61,5 @@ adcgs_status adcgs_camera_keys_write(const adcgs_camera_key *keys, int n, int ha
     if (status == ADCGS_OK)
         return adcgs_atomic_commit(&atomic, error);
     adcgs_atomic_abort(&atomic);
-    return status;
-}
-
-adcgs_status adcgs_camera_path_write(const adcgs_decoder *decoder, const char *path, adcgs_error *error)
-{
-    adcgs_info info;
-    ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
-    if (!info.cameras)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the stream stores no cameras to write", path);
-    adcgs_camera_key *const keys = calloc((size_t)info.cameras, sizeof *keys);
-    if (!keys)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %d cameras", path, info.cameras);
-    adcgs_status status = ADCGS_OK;
-    for (int i = 0; i < info.cameras && status == ADCGS_OK; i++) {
-        adcgs_camera *const camera = &keys[i].frame.camera, *const first = &keys[0].frame.camera;
-        keys[i].at = i;
-        status = adcgs_get_camera(decoder, i, camera, error);
-        adcgs_camera_fit(camera, first->width, first->height, 0); /* a path has one size */
-    }
-    if (status == ADCGS_OK)
-        status = adcgs_camera_keys_write(keys, info.cameras, 0, info.frame_rate, path, error);
-    free(keys);
     return status;
 }

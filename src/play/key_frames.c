@@ -12,9 +12,9 @@
 
 #define KEY_SECONDS 1.0 /* from a key to one that is not later */
 
-static adcgs_status write_keys(const adcgs_key_frames *keys, double frame_rate, adcgs_error *error)
+static adcgs_status write_keys(const adcgs_key_frames *keys, const adcgs_info *info, adcgs_error *error)
 {
-    return adcgs_camera_keys_write(keys->key, keys->n, 1, frame_rate, keys->path, error);
+    return adcgs_camera_keys_write(keys->key, keys->n, 1, info, info->frame_rate, ADCGS_ROTATION_XYZ, keys->path, error);
 }
 
 static adcgs_status reserve(adcgs_key_frames *keys, adcgs_error *error)
@@ -31,7 +31,7 @@ static adcgs_status reserve(adcgs_key_frames *keys, adcgs_error *error)
 }
 
 adcgs_status adcgs_key_frames_add(adcgs_key_frames *keys, const adcgs_camera *camera, double time, const char *stream,
-                                  double frame_rate, adcgs_error *error)
+                                  const adcgs_info *info, adcgs_error *error)
 {
     ADCGS_TRY(reserve(keys, error));
     if (!*keys->path && !adcgs_play_free_name(keys->path, stream, "json"))
@@ -45,18 +45,18 @@ adcgs_status adcgs_key_frames_add(adcgs_key_frames *keys, const adcgs_camera *ca
         adcgs_camera_fit(&key->frame.camera, first->width, first->height, 0); /* a path has one size */
     }
     keys->n++;
-    const adcgs_status status = write_keys(keys, frame_rate, error);
+    const adcgs_status status = write_keys(keys, info, error);
     keys->n -= status != ADCGS_OK; /* as in the file */
     return status;
 }
 
-adcgs_status adcgs_key_frames_take_back(adcgs_key_frames *keys, double frame_rate, adcgs_error *error)
+adcgs_status adcgs_key_frames_take_back(adcgs_key_frames *keys, const adcgs_info *info, adcgs_error *error)
 {
     if (!keys->n)
         return ADCGS_OK;
     keys->n--;
     if (keys->n)
-        return write_keys(keys, frame_rate, error);
+        return write_keys(keys, info, error);
     remove(keys->path);
     *keys->path = 0;
     return ADCGS_OK;

@@ -15,12 +15,12 @@ typedef struct adcgs_key_frames {
 
 /**
  * One more, and write all to the file, which gets a name with the first. Along the path a key is as far behind the one before as
- * its moment is, or a second where it is not later. stream names the file, and frame_rate is the path's.
+ * its moment is, or a second where it is not later. stream names the file, and the path has its frame rate.
  */
 adcgs_status adcgs_key_frames_add(adcgs_key_frames *keys, const adcgs_camera *camera, double time, const char *stream,
-                                  double frame_rate, adcgs_error *error);
+                                  const adcgs_info *info, adcgs_error *error);
 /** The last one back; with the first the file goes. Harmless when there is none. */
-adcgs_status adcgs_key_frames_take_back(adcgs_key_frames *keys, double frame_rate, adcgs_error *error);
+adcgs_status adcgs_key_frames_take_back(adcgs_key_frames *keys, const adcgs_info *info, adcgs_error *error);
 void adcgs_key_frames_clear(adcgs_key_frames *keys);
 
 #endif

@@ -68,8 +68,8 @@ static void set_key_frame(adcgs_player *p)
         return;
     adcgs_orbit_control_view(&state->control, state->width, state->height, &camera);
     const adcgs_status status =
-        state->key_frame > 0 ? adcgs_key_frames_add(&p->keys, &camera, time, s->source.path, s->info.frame_rate, &error)
-                             : adcgs_key_frames_take_back(&p->keys, s->info.frame_rate, &error);
+        state->key_frame > 0 ? adcgs_key_frames_add(&p->keys, &camera, time, s->source.path, &s->info, &error)
+                             : adcgs_key_frames_take_back(&p->keys, &s->info, &error);
     if (status != ADCGS_OK)
         adcgs_play_say(state, "%s", error.text);
     else if (p->keys.n)

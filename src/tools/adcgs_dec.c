@@ -29,13 +29,13 @@ typedef struct settings {
     adcgs_video_style video;
     adcgs_camera_path_request request;
     adcgs_config config;
-    int quiet, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
+    int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
     double part;   /**< of the stream: the moment to show; negative: none was given so */
     double opened; /**< when opening the input began, in seconds */
     adcgs_http *http, *http_beside; /**< what is read where URLs are given */
 } settings;
 
-#define OPTION_COUNT 34
+#define OPTION_COUNT 35
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     static const char *const formats[] = {"y4m", "raw", "null", NULL}, *const ways[] = {"orbit", "spiral", "bullet", NULL};
@@ -72,11 +72,14 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"beside", 0, ADCGS_OPTION_FILE, &s->beside, 0, 0, "OTHER",
          "show the frames of another stream to the right, through the\nsame cameras at the same times", NULL, NULL},
         {"camera", 'c', ADCGS_OPTION_FILE, &s->request.camera, 0, 0, "WHICH",
-         "stored camera's name or index, orbit, spiral, bullet, or a path\nFILE.json; without it camera 0, or orbit if none is "
-         "stored",
+         "stored camera's name or index, orbit, spiral, bullet, or a path\n(.json, .chan, .usda); without it camera 0, or orbit "
+         "if none\nis stored",
          ways, NULL},
         {"cameras", 0, ADCGS_OPTION_FILE, &s->cameras, 0, 0, "PATH",
-         "write the stored cameras as a path's PATH.json, and nothing else", NULL, NULL},
+         "write the stored cameras as a path, or the path that --camera\nnames, as PATH.json, .chan or .usda, and nothing else",
+         NULL, NULL},
+        {"rotation-order", 0, ADCGS_OPTION_CHOICE, &s->order, 0, 0, "ORDER",
+         "of the angles in .chan files: xyz (the default), zxy, ...", adcgs_rotation_orders, NULL},
         {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B|N%",
          "one time, or a span at the stream's frame rate, in seconds,\nor the frame at N percent of the stream; without it "
          "everything", NULL, NULL},
@@ -363,6 +366,18 @@ static adcgs_status place_moment(settings *s, const adcgs_decoder *decoder, adcg
     return ADCGS_OK;
 }
 
+/** The stored cameras as a path, or a path as another file. */
+static adcgs_status write_cameras(const settings *s, const adcgs_decoder *decoder, adcgs_error *error)
+{
+    adcgs_camera_path frames;
+    if (!s->request.camera)
+        return adcgs_camera_path_write(decoder, NULL, s->request.order, s->cameras, error);
+    ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &s->request, error));
+    const adcgs_status status = adcgs_camera_path_write(decoder, &frames, s->request.order, s->cameras, error);
+    adcgs_camera_path_free(&frames);
+    return status;
+}
+
 /** Open what is to be shown, and show it. */
 static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **decoder, int *mismatch, adcgs_error *error)
 {
@@ -374,7 +389,7 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
     from.decoder = *decoder;
     ADCGS_TRY(place_moment(s, from.decoder, error));
     if (s->cameras)
-        return adcgs_camera_path_write(from.decoder, s->cameras, error);
+        return write_cameras(s, from.decoder, error);
     if (s->splats) {
         const adcgs_dec_splats_config how = {.target = s->splats, .rest_degree = s->rest_degree};
         return adcgs_dec_splats(cli, from.decoder, s->input, &how, &s->request, error);
@@ -472,8 +487,11 @@ static adcgs_status check_settings(settings *s, adcgs_error *error)
     if (!s->output && !s->md5 && !s->verify && !s->frametimes && !s->answer && !s->splats && !s->cameras && !s->play)
         return adcgs_fail(error, ADCGS_ERR_USAGE,
                           "no output: give -o TARGET, --md5, --verify, --frametimes, --splats, --cameras, --answer or --play");
-    if (s->cameras && (frames || s->times))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--cameras goes with --layers, --strict, --threads and --cpu only");
+    const int renders = s->output || s->md5 || s->verify || s->frametimes;
+    if (s->cameras && (renders || (!s->request.camera && (frames || s->times))))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--cameras writes cameras, and renders nothing: it goes with --camera, and "
+                                                  "with --time and --size where that is given");
+    s->request.order = (adcgs_rotation_order)s->order;
     if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output takes");
     if (s->verify && (strlen(s->verify) != 32 || strspn(s->verify, "0123456789abcdefABCDEF") != 32))

@@ -71,8 +71,30 @@ sed 's/"at": 1/"at": 0/' "$dir/p.json" >"$dir/q.json"
 expect 4 "q.json: keys\\[1\\].at: 0, expected more" $dec "$s" --camera "$dir/q.json" --md5
 echo '{"keys":' >"$dir/q.json"
 expect 4 "q.json: line 2: malformed" $dec "$s" --camera "$dir/q.json" --md5
-expect 2 "only" $dec "$s" --cameras "$dir/q.json" --camera orbit
 expect 3 "no/p.json" $dec "$s" --cameras "$dir/no/p.json"
+expect 2 "renders nothing" $dec "$s" --cameras "$dir/x.json" --md5
+expect 2 "renders nothing" $dec "$s" --cameras "$dir/x.json" --time 0
+# A path as the file of each format gives the frames that it gives itself; .chan knows no times, and an order of its angles.
+$dec "$s" --camera spiral --size 64x48 --md5 --quiet >"$dir/spiral"
+for format in json usda chan; do
+    expect 0 "" $dec "$s" --camera spiral --size 64x48 --cameras "$dir/spiral.$format"
+    $dec "$s" --camera "$dir/spiral.$format" --size 64x48 -o "$dir/$format%d.ppm" --quiet || bad "frames of a path as $format"
+done
+$dec "$s" --camera "$dir/spiral.usda" --md5 --quiet >"$dir/again"
+cmp "$dir/spiral" "$dir/again" || bad "frames of a path as USD"
+for i in 0 3 7; do
+    for format in usda chan; do
+        [ "$(cmp -l "$dir/json$i.ppm" "$dir/$format$i.ppm" | wc -l)" -lt 100 ] || bad "frame $i of a path as $format"
+    done
+done
+expect 0 "" $dec "$s" --camera spiral --cameras "$dir/zxy.chan" --rotation-order zxy
+cmp -s "$dir/zxy.chan" "$dir/spiral.chan" && bad "the order of rotations does nothing"
+$dec "$s" --camera "$dir/zxy.chan" --rotation-order zxy --size 64x48 --md5 --quiet >"$dir/zxy"
+$dec "$s" --camera "$dir/spiral.chan" --size 64x48 --md5 --quiet >"$dir/angles"
+[ "$(wc -l <"$dir/zxy")" -eq 8 ] && [ "$(wc -l <"$dir/angles")" -eq 8 ] || bad "frames of .chan"
+expect 4 "bad.chan: line 1: expected a frame's number" sh -c "echo 1 2 >'$dir/bad.chan'; exec $dec '$s' --camera '$dir/bad.chan' --md5"
+expect 5 "x.usdc: USD is written as text" $dec "$s" --cameras "$dir/x.usdc"
+expect 0 "" $dec "$s" --cameras "$dir/stored.chan"
 
 # Side by side: the left half is what the first stream shows alone.
 expect 0 "frame of" $dec "$s" --beside "$s" --layers 1 -o "$dir/two.ppm" --time 0

@@ -301,7 +301,7 @@ static adcgs_status read_path(const char *text, adcgs_camera_path_request *reque
     put_text("p.json", text);
     request->camera = in("p.json");
     *frames = (adcgs_camera_path){0};
-    return adcgs_camera_path_read(frames, &info, request, 0.1, &error);
+    return adcgs_camera_path_read(frames, &info, request, &(adcgs_camera){.near_plane = 0.1}, &error);
 }
 
 static void test_key_file(void **state)
