@@ -5,7 +5,7 @@
 #include "data/splat_views.h"
 
 #include "base/cpu.h"
-#include "data/harmonics.h"
+#include "io/harmonics.h"
 #include "render/render.h"
 
 #include <math.h>

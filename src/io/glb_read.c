@@ -4,7 +4,8 @@
 
 #include "io/glb.h"
 
-#include "io/glb_numbers.h"
+#include "io/glb_nodes.h"
+#include "io/splats_move.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -141,66 +142,6 @@ static adcgs_status find_primitive(const adcgs_glb *g, json_t **out, size_t *mes
     return *out ? ADCGS_OK : bad(g, ADCGS_ERR_DATA, "no splats: no primitive with " ADCGS_GLB_SPLATS);
 }
 
-/* ---- Nodes ---- */
-
-/** Whether an array, if there is one, holds these numbers. */
-static int holds(json_t *array, const double *numbers, size_t n)
-{
-    for (size_t i = 0; array && i < n; i++)
-        if (json_number_value(json_array_get(array, i)) != numbers[i])
-            return 0;
-    return 1;
-}
-
-static int stays(json_t *node)
-{
-    static const double one[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, none[3], ones[3] = {1, 1, 1};
-    static const double upright[4] = {0, 0, 0, 1};
-    return holds(json_object_get(node, "matrix"), one, 16) && holds(json_object_get(node, "translation"), none, 3) &&
-           holds(json_object_get(node, "rotation"), upright, 4) && holds(json_object_get(node, "scale"), ones, 3);
-}
-
-/** No node moves the mesh. parents: index of each node's parent, the count of nodes for none. */
-static adcgs_status check_nodes(const adcgs_glb *g, json_t *nodes, size_t *parents, size_t mesh)
-{
-    const size_t n = json_array_size(nodes);
-    size_t i, j, uses = 0;
-    json_t *node, *child;
-    for (i = 0; i < n; i++)
-        parents[i] = n;
-    json_array_foreach(nodes, i, node) {
-        json_array_foreach(json_object_get(node, "children"), j, child) {
-            const json_int_t index = json_is_integer(child) ? json_integer_value(child) : -1;
-            if (index < 0 || (size_t)index >= n)
-                return bad(g, ADCGS_ERR_DATA, "a child of a node that there is not");
-            parents[index] = i;
-        }
-    }
-    json_array_foreach(nodes, i, node) {
-        const json_t *const used = json_object_get(node, "mesh");
-        if (!json_is_integer(used) || (uint64_t)json_integer_value(used) != mesh)
-            continue;
-        if (uses++)
-            return bad(g, ADCGS_ERR_UNSUPPORTED, "splats of several nodes, expected one");
-        size_t steps = 0;
-        for (size_t at = i; at < n; at = parents[at])
-            if (steps++ > n)
-                return bad(g, ADCGS_ERR_DATA, "nodes that are their own parents");
-            else if (!stays(json_array_get(nodes, at)))
-                return bad(g, ADCGS_ERR_UNSUPPORTED, "a node moves the splats, expected none that does");
-    }
-    return ADCGS_OK;
-}
-
-static adcgs_status check_place(const adcgs_glb *g, size_t mesh)
-{
-    json_t *const nodes = json_object_get(g->root, "nodes");
-    size_t *const parents = malloc((json_array_size(nodes) + 1) * sizeof *parents);
-    const adcgs_status status = parents ? check_nodes(g, nodes, parents, mesh) : bad(g, ADCGS_ERR_MEMORY, "out of memory");
-    free(parents);
-    return status;
-}
-
 /* ---- Splats ---- */
 
 /* What becomes of an attribute's finite numbers. \return NULL, or what was expected of them. */
@@ -291,6 +232,8 @@ static adcgs_status take_harmonics(const adcgs_glb *g, adcgs_splats *s)
 {
     adcgs_glb_view view;
     char name[64];
+    if (json_object_get(g->attributes, harmonic_name(name, ADCGS_SPLATS_DEGREE_MAX + 1, 0)))
+        return bad(g, ADCGS_ERR_UNSUPPORTED, "harmonics of degree 4, expected at most 3");
     while (s->degree < ADCGS_SPLATS_DEGREE_MAX && json_object_get(g->attributes, harmonic_name(name, s->degree + 1, 0)))
         s->degree++;
     for (int degree = 1; degree <= s->degree; degree++)
@@ -327,12 +270,15 @@ static adcgs_status read_file(adcgs_glb *g, adcgs_splats *out, const uint8_t *da
 {
     json_t *primitive;
     size_t mesh;
+    double place[12];
+    int moves;
     ADCGS_TRY(open_chunks(g, data, bytes));
     ADCGS_TRY(check_required(g));
     ADCGS_TRY(find_primitive(g, &primitive, &mesh));
-    ADCGS_TRY(check_place(g, mesh));
+    ADCGS_TRY(adcgs_glb_place(place, &moves, g, mesh));
     g->attributes = json_object_get(primitive, "attributes");
-    return take_splats(g, out);
+    ADCGS_TRY(take_splats(g, out));
+    return moves ? adcgs_splats_move(out, place, g->path, g->error) : ADCGS_OK;
 }
 
 adcgs_status adcgs_glb_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)

@@ -6,6 +6,9 @@
 #include "outside_files.h"
 #include "random_splats.h"
 
+#include "io/harmonics.h"
+#include "io/splats_move.h"
+
 #include <math.h>
 
 #define NAME "KHR_gaussian_splatting"
@@ -128,6 +131,120 @@ static void test_kinds(void **state)
     adcgs_splats_free(&s);
 }
 
+/* ---- Nodes ---- */
+
+/** With harmonics of all degrees. */
+static void make_splats(adcgs_splats *s)
+{
+    uint64_t seed = 9;
+    *s = random_splats(40, 1.0, 0.0, 5);
+    s->degree = 3;
+    s->harmonics = malloc(40 * 45 * sizeof *s->harmonics);
+    assert_non_null(s->harmonics);
+    for (int i = 0; i < 40 * 45; i++)
+        s->harmonics[i] = any(&seed, -1.0, 1.0);
+}
+
+/** m m^T of an ellipsoid: rotation times scales. */
+static void covariance(const adcgs_splats *s, uint32_t i, double out[9])
+{
+    const double w = s->rotation[0][i], x = s->rotation[1][i], y = s->rotation[2][i], z = s->rotation[3][i];
+    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+                         2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                         2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+    for (int a = 0; a < 9; a++) {
+        out[a] = 0.0;
+        for (int k = 0; k < 3; k++)
+            out[a] += r[3 * (a / 3) + k] * r[3 * (a % 3) + k] * s->scale[k][i] * s->scale[k][i];
+    }
+}
+
+static double colour(const adcgs_splats *s, uint32_t i, int channel, const double direction[3])
+{
+    double values[ADCGS_HARMONICS_MAX], sum = s->colour[channel][i];
+    const int n = (s->degree + 1) * (s->degree + 1) - 1;
+    adcgs_harmonics(values, direction, s->degree);
+    for (int k = 0; k < n; k++)
+        sum += values[k] * s->harmonics[(3 * i + (uint32_t)channel) * (uint32_t)n + (uint32_t)k];
+    return sum;
+}
+
+/** A matrix moves means and ellipsoids as it moves points, and colours go along with its rotation. */
+static void check_moved(const double m[12], const double rotation[9])
+{
+    adcgs_splats before, after;
+    make_splats(&before);
+    make_splats(&after);
+    expect_good(adcgs_splats_move(&after, m, "m", &error));
+    for (uint32_t i = 0; i < before.n; i++) {
+        double a[9], b[9], largest = 0.0;
+        covariance(&before, i, a);
+        covariance(&after, i, b);
+        for (int r = 0; r < 3; r++) {
+            double mean = m[4 * r + 3];
+            for (int c = 0; c < 3; c++)
+                mean += m[4 * r + c] * before.mean[c][i];
+            assert_true(fabs(after.mean[r][i] - mean) < 1e-5 * (1.0 + fabs(mean)));
+            largest = fmax(largest, b[4 * r]);
+        }
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++) {
+                double expected = 0.0;
+                for (int k = 0; k < 9; k++)
+                    expected += m[4 * r + k / 3] * a[k] * m[4 * c + k % 3];
+                if (fabs(b[3 * r + c] - expected) > 1e-5 * largest)
+                    fail_msg("splat %u: %g, expected %g", i, b[3 * r + c], expected);
+            }
+        for (int n = 0; n < 5 && rotation; n++) {
+            const double d[3] = {sin(n + 0.3) * cos(2.0 * n), sin(n + 0.3) * sin(2.0 * n), cos(n + 0.3)};
+            double local[3];
+            for (int c = 0; c < 3; c++)
+                local[c] = rotation[c] * d[0] + rotation[3 + c] * d[1] + rotation[6 + c] * d[2];
+            assert_true(fabs(colour(&after, i, n % 3, d) - colour(&before, i, n % 3, local)) < 1e-4);
+        }
+    }
+    adcgs_splats_free(&before);
+    adcgs_splats_free(&after);
+}
+
+static void test_moves(void **state)
+{
+    static const double turn[9] = {2 / 3., -1 / 3., 2 / 3., 2 / 3., 2 / 3., -1 / 3., -1 / 3., 2 / 3., 2 / 3.};
+    static const double mirror[9] = {-2 / 3., -1 / 3., 2 / 3., -2 / 3., 2 / 3., -1 / 3., 1 / 3., 2 / 3., 2 / 3.};
+    double m[12] = {0, 0, 0, 5, 0, 0, 0, -6, 0, 0, 0, 7};
+    for (int i = 0; i < 9; i++)
+        m[4 * (i / 3) + i % 3] = 2.5 * turn[i];
+    check_moved(m, turn);
+    for (int i = 0; i < 9; i++)
+        m[4 * (i / 3) + i % 3] = 2.5 * mirror[i];
+    check_moved(m, mirror);
+    for (int i = 0; i < 9; i++) /* columns of unequal sizes */
+        m[4 * (i / 3) + i % 3] = (0.5 + i % 3) * turn[i];
+    check_moved(m, NULL);
+}
+
+/** Parents come before children: a file's nodes are a matrix and a rotation with a size. */
+static void test_nodes(void **state)
+{
+    uint8_t numbers[134], file[4096];
+    char text[4096];
+    adcgs_splats s;
+    fill_numbers(numbers);
+    const char *const parent = strstr(good, "{\"children\":[1]}"), *const child = strstr(good, "\"scale\":[1,1,1]");
+    snprintf(text, sizeof text, "%.*s{\"children\":[1],\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,10,20,30,1]}%.*s"
+             "\"translation\":[1,0,0],\"rotation\":[0,0,0.7071067811865476,0.7071067811865476],\"q\":[0,0,0,1]%s",
+             (int)(parent - good), good, (int)(child - parent - 16), parent + 16, strstr(child, "}"));
+    const size_t bytes = make(file, text, numbers, sizeof numbers);
+    expect_good(adcgs_splats_parse(&s, file, bytes, "n.glb", &error));
+    /* (1, 2, 3) turned a quarter about z is (-2, 1, 3); one on, twice as large, and on. */
+    near(s.mean[0][0], 8.0f, 1e-6, 0.0);
+    near(s.mean[1][0], 22.0f, 1e-6, 0.0);
+    near(s.mean[2][0], 36.0f, 1e-6, 0.0);
+    near(s.scale[0][0], 2.0f, 1e-6, 0.0);
+    near(s.rotation[3][0], 0.70710678f, 1e-6, 0.0);
+    adcgs_splats_free(&s);
+}
+
 /* ---- What is refused ---- */
 
 static void expect_bad(const char *text, const uint8_t *numbers, size_t n, adcgs_status status, const char *what)
@@ -180,9 +297,14 @@ static void test_bad_text(void **state)
         {"\"kernel\":\"ellipse\"", "\"kernel\":\"cube\"", ADCGS_ERR_UNSUPPORTED, "kernel: cube, expected ellipse"},
         {"srgb_rec709", "lin_rec709", ADCGS_ERR_UNSUPPORTED, "colorSpace: lin_rec709_display, expected srgb"},
         {"\"kernel\"", "\"extensions\":{\"EXT_packed\":{}},\"k\"", ADCGS_ERR_UNSUPPORTED, "by the extension EXT_packed"},
-        {"\"scale\":[1,1,1]", "\"scale\":[1,2,1]", ADCGS_ERR_UNSUPPORTED, "a node moves the splats"},
-        {"{\"children\":[1]}", "{\"children\":[1],\"translation\":[0,0,1]}", ADCGS_ERR_UNSUPPORTED, "a node moves the splats"},
-        {"{\"children\":[1]}", "{\"children\":[1],\"matrix\":[1]}", ADCGS_ERR_UNSUPPORTED, "a node moves the splats"},
+        {"\"scale\":[1,1,1]", "\"scale\":[1,0,1]", ADCGS_ERR_DATA, "a matrix that flattens"},
+        {"\"scale\":[1,1,1]", "\"scale\":[1,1]", ADCGS_ERR_DATA, "a node's scale: expected 3 numbers"},
+        {"\"scale\":[1,1,1]", "\"scale\":[1,\"a\",1]", ADCGS_ERR_DATA, "a node's scale: expected 3 numbers"},
+        {"\"scale\":[1,1,1]", "\"scale\":[1e38,1e38,1e38]", ADCGS_ERR_DATA, "splat 0 is moved beyond"},
+        {"\"rotation\":[0,0,0,1]", "\"rotation\":[0,0,0,0]", ADCGS_ERR_DATA, "a node's rotation: expected a quaternion"},
+        {"{\"children\":[1]}", "{\"children\":[1],\"matrix\":[1]}", ADCGS_ERR_DATA, "a node's matrix: expected 16 numbers"},
+        {"{\"children\":[1]}", "{\"children\":[1],\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]}", ADCGS_ERR_DATA, "a last row"},
+        {NAME ":SH_DEGREE_1_COEF_0", NAME ":SH_DEGREE_4_COEF_0", ADCGS_ERR_UNSUPPORTED, "harmonics of degree 4"},
         {"{\"children\":[1]}", "{\"children\":[2]}", ADCGS_ERR_DATA, "a child of a node that there is not"},
         {"{\"mesh\":1,", "{\"children\":[0],\"mesh\":1,", ADCGS_ERR_DATA, "their own parents"},
         {"{\"children\":[1]}", "{\"mesh\":1}", ADCGS_ERR_UNSUPPORTED, "splats of several nodes"},
@@ -306,6 +428,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trip),  cmocka_unit_test(test_kinds),  cmocka_unit_test(test_bad_text),
+        cmocka_unit_test(test_moves),       cmocka_unit_test(test_nodes),
         cmocka_unit_test(test_bad_numbers), cmocka_unit_test(test_damage), cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -3,7 +3,7 @@
 #include "outside_files.h"
 #include "random_splats.h"
 
-#include "data/harmonics.h"
+#include "io/harmonics.h"
 #include "data/splat_views.h"
 #include "io/splats.h"
 #include "layouts/open.h"

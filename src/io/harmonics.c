@@ -2,7 +2,7 @@
 /** \file Spherical harmonics as 3D Gaussian splatting orders and signs them. */
 #include "config.h"
 
-#include "data/harmonics.h"
+#include "io/harmonics.h"
 
 /* The square roots of rationals over pi that make each harmonic's square integrate to 1 over the sphere. */
 #define C1 0.4886025119029199  /* sqrt(3 / 4 pi) */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Spherical harmonics as 3D Gaussian splatting orders and signs them. */
-#ifndef ADCGS_DATA_HARMONICS_H
-#define ADCGS_DATA_HARMONICS_H
+#ifndef ADCGS_IO_HARMONICS_H
+#define ADCGS_IO_HARMONICS_H
 
 #define ADCGS_HARMONICS_MAX 15 /**< of the degrees 1 to 3 */
 
