@@ -3,7 +3,6 @@
 #include "config.h"
 
 #include "api/frame.h"
-#include "base/cpu.h"
 #include "camera/path.h"
 #include "cli/cli.h"
 #include "io/sink.h"
@@ -13,6 +12,7 @@
 #include "tools/dec_live.h"
 #include "tools/dec_open.h"
 #include "tools/dec_play.h"
+#include "tools/dec_settings.h"
 #include "tools/dec_splats.h"
 
 #include <adcgs/adcgs.h>
@@ -22,106 +22,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
-typedef struct settings {
-    const adcgs_cli *cli;
-    const char *input, *output, *format, *times, *verify, *answer, *splats, *beside, *cameras, *script, *budget_text;
-    adcgs_budget budget;
-    adcgs_video_style video;
-    adcgs_camera_path_request request;
-    adcgs_config config;
-    int quiet, order, tiers, cpu, fit, half, rest_degree, use_float, linear, bits, alpha, depth, md5, frametimes, play;
-    double part;   /**< of the stream: the moment to show; negative: none was given so */
-    double opened; /**< when opening the input began, in seconds */
-    adcgs_http *http, *http_beside; /**< what is read where URLs are given */
-} settings;
-
-#define OPTION_COUNT 35
-static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
-{
-    static const char *const formats[] = {"y4m", "raw", "null", NULL}, *const ways[] = {"orbit", "spiral", "bullet", NULL};
-    static const char *const codecs[] = {"h264", "hevc", "vp9", "av1", "mpeg4", "ffv1", "prores", "qtrle", NULL};
-    const adcgs_option table[OPTION_COUNT] = {
-        {"output", 'o', ADCGS_OPTION_FILE, &s->output, 0, 0, "TARGET",
-         "write frames: frame%04d.png (.exr .tif .jpg .ppm),\nclip.mp4 (.mov .mkv .webm .avi), clip.y4m, pixels.raw,\n"
-         "or - for standard output", NULL, NULL},
-        {"format", 'f', ADCGS_OPTION_STRING, &s->format, 0, 0, "NAME",
-         "y4m, raw, null, an image's or a video's extension;\nwithout it the target's name decides, and - is y4m", formats, NULL},
-        {"half", 0, ADCGS_OPTION_FLAG, &s->half, 0, 0, NULL, "16-bit float samples in EXR (the default there)", NULL, NULL},
-        {"float", 0, ADCGS_OPTION_FLAG, &s->use_float, 0, 0, NULL, "32-bit float samples in EXR and raw, unrounded", NULL,
-         NULL},
-        {"linear", 0, ADCGS_OPTION_FLAG, &s->linear, 0, 0, NULL, "linear light in EXR instead of sRGB's curve", NULL, NULL},
-        {"splats", 0, ADCGS_OPTION_FILE, &s->splats, 0, 0, "FILE",
-         "write the splats instead of frames, as .ply, .spz, .glb or .sog:\nout.ply for one moment (the first without --time),\n"
-         "out%04d.ply for a span",
-         NULL, NULL},
-        {"f-rest", 0, ADCGS_OPTION_INT, &s->rest_degree, 1, 3, "DEGREE",
-         "with --splats: give PLY the zeros of harmonics of this degree,\nfor programs that insist on them", NULL, NULL},
-        {"bits", 0, ADCGS_OPTION_INT, &s->bits, 8, 16, "N", "bits of a sample in PNG, TIFF and PPM: 8 or 16", NULL, NULL},
-        {"alpha", 0, ADCGS_OPTION_FLAG, &s->alpha, 0, 0, NULL,
-         "leave the background out and write alpha: premultiplied in\nEXR, straight in PNG, TIFF and videos", NULL, NULL},
-        {"depth", 0, ADCGS_OPTION_FLAG, &s->depth, 0, 0, NULL, "write depth as channel Z of EXR, in world units", NULL, NULL},
-        {"codec", 0, ADCGS_OPTION_STRING, &s->video.codec, 0, 0, "NAME",
-         "a video's codec: h264, hevc, vp9, av1, ffv1, prores, qtrle or\nwhat FFmpeg calls an encoder; without it the name "
-         "decides", codecs, NULL},
-        {"crf", 0, ADCGS_OPTION_REAL, &s->video.crf, 0, 63, "Q", "a video's constant rate factor: less is better, and larger",
-         NULL, &s->video.has_crf},
-        {"bitrate", 0, ADCGS_OPTION_SIZE, &s->video.bit_rate, 1000, 1e10, "BITS",
-         "a video's bits per second (8M) instead of a quality", NULL, NULL},
-        {"codec-options", 0, ADCGS_OPTION_STRING, &s->video.options, 0, 0, "NAME=VALUE:...",
-         "options of FFmpeg's for the encoder, and pix_fmt", NULL, NULL},
-        {"beside", 0, ADCGS_OPTION_FILE, &s->beside, 0, 0, "OTHER",
-         "show the frames of another stream to the right, through the\nsame cameras at the same times", NULL, NULL},
-        {"camera", 'c', ADCGS_OPTION_FILE, &s->request.camera, 0, 0, "WHICH",
-         "stored camera's name or index, orbit, spiral, bullet, or a path\n(.json, .chan, .usda); without it camera 0, or orbit "
-         "if none\nis stored",
-         ways, NULL},
-        {"cameras", 0, ADCGS_OPTION_FILE, &s->cameras, 0, 0, "PATH",
-         "write the stored cameras as a path, or the path that --camera\nnames, as PATH.json, .chan or .usda, and nothing else",
-         NULL, NULL},
-        {"rotation-order", 0, ADCGS_OPTION_CHOICE, &s->order, 0, 0, "ORDER",
-         "of the angles in .chan files: xyz (the default), zxy, ...", adcgs_rotation_orders, NULL},
-        {"time", 't', ADCGS_OPTION_STRING, &s->times, 0, 0, "T|A:B|N%",
-         "one time, or a span at the stream's frame rate, in seconds,\nor the frame at N percent of the stream; without it "
-         "everything", NULL, NULL},
-        {"size", 's', ADCGS_OPTION_PAIR, s->request.size, 1, 16384, "WxH", "size of the frames; pixels keep their shape", NULL,
-         NULL},
-        {"fit", 0, ADCGS_OPTION_FLAG, &s->fit, 0, 0, NULL,
-         "in frames of another shape show all that the camera sees,\nand more on two sides (what --size does)", NULL, NULL},
-        {"fill", 0, ADCGS_OPTION_FLAG, &s->request.fill, 0, 0, NULL,
-         "in frames of another shape show nothing but what the\ncamera sees, less on two sides", NULL, NULL},
-        {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
-        {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "draw the first N tiers of the stream alone, a coarser picture",
-         NULL, NULL},
-        {"budget", 0, ADCGS_OPTION_STRING, &s->budget_text, 0, 0, "B",
-         "stop at so many bytes of the stream (40k), or draw as many\ntiers as so many splats (20000splats) or milliseconds a "
-         "frame\n(16ms) allow", NULL, NULL},
-        {"md5", 0, ADCGS_OPTION_FLAG, &s->md5, 0, 0, NULL,
-         "print the MD5 of each frame: its RGB values as little-endian\nbinary32, row by row", NULL, NULL},
-        {"verify", 0, ADCGS_OPTION_STRING, &s->verify, 0, 0, "MD5", "fail unless the frames together have this MD5", NULL, NULL},
-        {"answer", 0, ADCGS_OPTION_FILE, &s->answer, 0, 0, "REQUESTS",
-         "answer a file of requests for digests, as the specification's\nclause on conformance says", NULL, NULL},
-        {"frametimes", 0, ADCGS_OPTION_FLAG, &s->frametimes, 0, 0, NULL,
-         "print the milliseconds from opening to the first frame,\nthen those that each frame took to render", NULL, NULL},
-        {"play", 0, ADCGS_OPTION_FLAG, &s->play, 0, 0, NULL, "show the stream in a window, with a camera to move", NULL, NULL},
-        {"script", 0, ADCGS_OPTION_FILE, &s->script, 0, 0, "COMMANDS", "with --play: do what this file says, as a user would",
-         NULL, NULL},
-        {"threads", 0, ADCGS_OPTION_INT, &s->config.threads, 1, 256, "N", "threads; without it one per processor", NULL, NULL},
-        {"cpu", 0, ADCGS_OPTION_CHOICE, &s->cpu, 0, 0, "LEVEL", "auto, scalar, avx2 or avx512; frames do not depend on it",
-         adcgs_cpu_names, NULL},
-        {"conceal", 0, ADCGS_OPTION_FLAG, &s->config.conceal, 0, 0, NULL,
-         "show what is whole of a damaged file, and say what is not", NULL, NULL},
-        {"strict", 0, ADCGS_OPTION_FLAG, &s->config.strict_end, 0, 0, NULL, "refuse a stream that ends early", NULL, NULL},
-    };
-    memcpy(options, table, sizeof table);
-}
-
-/** A fault that is concealed. */
-static void tell_fault(void *user, adcgs_log_level level, const char *text)
-{
-    const settings *s = user;
-    if (level == ADCGS_LOG_WARNING)
-        adcgs_cli_note(s->cli, "%s: %s", s->input, text);
-}
+typedef adcgs_dec_settings settings;
 
 static adcgs_status open_input(adcgs_decoder **decoder, adcgs_http **http, const char *input, const settings *s,
                                adcgs_error *error)
@@ -231,11 +132,6 @@ static adcgs_status render(const settings *s, const streams *from, adcgs_camera_
     return status;
 }
 
-static int has_style(const settings *s)
-{
-    return s->video.codec || s->video.has_crf || s->video.bit_rate || s->video.options;
-}
-
 static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_camera_path *frames, const adcgs_canvas *canvas,
                               adcgs_error *error)
 {
@@ -251,7 +147,7 @@ static adcgs_status open_sink(adcgs_sink **sink, const settings *s, const adcgs_
                                       .height = canvas->shown.height,
                                       .frames = frames->n,
                                       .has_alpha = s->alpha,
-                                      .video = has_style(s) ? &s->video : NULL,
+                                      .video = adcgs_dec_has_style(s) ? &s->video : NULL,
                                       .has_z = s->depth};
     return s->output ? adcgs_sink_open(sink, &config, error) : ADCGS_OK;
 }
@@ -401,117 +297,19 @@ static adcgs_status show(const adcgs_cli *cli, settings *s, adcgs_decoder **deco
     return status;
 }
 
-/** Whether an option is given that says how frames are written. */
-static int shapes_output(const settings *s)
-{
-    return s->format || s->half || s->use_float || s->linear || s->bits || s->alpha || s->depth || s->beside ||
-           has_style(s);
-}
-
-/** What goes with the player, and what does not. */
-static adcgs_status check_play(const settings *s, adcgs_error *error)
-{
-    const int written = s->output || shapes_output(s) || s->splats || s->cameras;
-    if (s->play && (written || s->md5 || s->verify || s->answer || s->frametimes))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--play shows frames, and does nothing else with them");
-    if (s->script && !s->play)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--script needs --play");
-    return ADCGS_OK;
-}
-
-/** T, A:B or N%. */
-static adcgs_status check_times(settings *s, adcgs_error *error)
-{
-    char *end;
-    s->part = -1.0;
-    s->request.has_times = s->times != NULL;
-    if (!s->times)
-        return ADCGS_OK;
-    const double percent = strtod(s->times, &end);
-    if (end != s->times && !strcmp(end, "%") && percent >= 0.0 && percent <= 100.0)
-        s->part = percent / 100.0;
-    else if (adcgs_parse_times(s->times, &s->request.begin, &s->request.end))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: expected seconds, A:B with A not after B, or 0%% to 100%%",
-                          s->times);
-    if (s->play && s->part >= 0.0)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time %s: --play takes seconds", s->times);
-    return ADCGS_OK;
-}
-
-/** What the option table cannot check. */
-static adcgs_status check_settings(settings *s, adcgs_error *error)
-{
-    s->config.cpu = (adcgs_cpu_level)s->cpu;
-    ADCGS_TRY(check_times(s, error));
-    if (s->budget_text)
-        ADCGS_TRY(adcgs_budget_parse(&s->budget, s->budget_text, error));
-    if (s->tiers && (s->play || s->answer))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--tiers excludes --play and --answer");
-    if (s->budget_text && (s->tiers || s->play || s->answer || s->config.conceal || s->splats || s->cameras || s->beside))
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--budget excludes --tiers, --play, --answer, --conceal, --splats, --cameras and --beside");
-    if (s->config.conceal && !strcmp(s->input, "-"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--conceal needs a file: what comes in order cannot be looked at again");
-    if (s->config.conceal) {
-        s->config.log = tell_fault;
-        s->config.log_user = s;
-    }
-    s->config.on_demand = s->times || s->play; /* what a whole clip is made of is read, and checked, as a whole */
-    ADCGS_TRY(check_play(s, error));
-    if (s->half && s->use_float)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--half and --float exclude each other");
-    const int frames = s->output || s->request.camera || s->request.size[0] || s->md5 || s->verify || s->frametimes;
-    if (s->answer && (frames || s->times || s->cameras))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--answer goes with --layers, --strict, --threads and --cpu only");
-    if (s->splats && (s->answer || s->cameras || frames))
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--splats goes with --f-rest, --time, --layers, --strict, --threads and --cpu only");
-    if (s->rest_degree && !s->splats)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--f-rest needs --splats");
-    if (shapes_output(s) && !s->output)
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "--format, --half, --float, --linear, --bits, --alpha, --depth, --codec, --crf, --bitrate, "
-                          "--codec-options and --beside need --output");
-    if (s->video.has_crf && s->video.bit_rate)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--crf and --bitrate exclude each other");
-    if ((s->fit || s->request.fill) && !s->request.size[0])
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill need --size");
-    if (s->fit && s->request.fill)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fit and --fill exclude each other");
-    if (s->bits % 8)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits %d: expected 8 or 16", s->bits);
-    if (s->bits && (s->half || s->use_float))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--bits excludes --half and --float");
-    if (s->beside && (s->alpha || s->depth || s->md5 || s->verify || s->frametimes))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--beside excludes --alpha, --depth, --md5, --verify and --frametimes");
-    if (!s->output && !s->md5 && !s->verify && !s->frametimes && !s->answer && !s->splats && !s->cameras && !s->play)
-        return adcgs_fail(error, ADCGS_ERR_USAGE,
-                          "no output: give -o TARGET, --md5, --verify, --frametimes, --splats, --cameras, --answer or --play");
-    const int renders = s->output || s->md5 || s->verify || s->frametimes;
-    if (s->cameras && (renders || (!s->request.camera && (frames || s->times))))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--cameras writes cameras, and renders nothing: it goes with --camera, and "
-                                                  "with --time and --size where that is given");
-    s->request.order = (adcgs_rotation_order)s->order;
-    if (s->output && !strcmp(s->output, "-") && (s->md5 || s->frametimes))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--md5 and --frametimes need standard output, which --output takes");
-    if (s->verify && (strlen(s->verify) != 32 || strspn(s->verify, "0123456789abcdefABCDEF") != 32))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--verify %s: expected 32 hexadecimal digits", s->verify);
-    return ADCGS_OK;
-}
-
 int main(int argc, char **argv)
 {
     settings s = {0};
-    adcgs_option options[OPTION_COUNT];
+    adcgs_option options[ADCGS_DEC_OPTIONS];
     adcgs_config_init(&s.config, sizeof s.config);
-    make_options(&s, options);
+    adcgs_dec_options(&s, options);
     const adcgs_cli cli = {.program = "adcgs-dec",
                            .operands = "FILE|URL|-",
                            .summary = "Decode a stream and render frames from it.",
                            .details = "Exit status: 0 done, 1 MD5 or an expectation differs, 2 usage, 3 input or output,\n"
                                       "4 invalid stream, 5 unsupported.",
                            .options = options,
-                           .n_options = OPTION_COUNT,
+                           .n_options = ADCGS_DEC_OPTIONS,
                            .min_operands = 1,
                            .max_operands = 1,
                            .quiet = &s.quiet};
@@ -523,7 +321,7 @@ int main(int argc, char **argv)
     s.input = argv[first];
     adcgs_error error = {0};
     adcgs_decoder *decoder = NULL;
-    adcgs_status status = check_settings(&s, &error);
+    adcgs_status status = adcgs_dec_check(&s, &error);
     adcgs_interrupt_catch();
     s.opened = adcgs_seconds();
     if (status == ADCGS_OK && s.answer)
