@@ -32,11 +32,12 @@ typedef adcgs_status reader(const char *path, adcgs_error *error);
 static adcgs_status read_camera_path(const char *path, adcgs_error *error)
 {
     const adcgs_info info = { .time_start = 0, .time_end = 2, .frame_rate = 10 };
+    const adcgs_camera like = { .width = 32, .height = 24, .fx = 30, .fy = 30, .cx = 16, .cy = 12, .near_plane = 0.01 };
     const adcgs_camera_path_request requests[] = { { .camera = path }, { .camera = path, .size = { 40, 30 } } };
     adcgs_status status = ADCGS_OK;
     for (size_t i = 0; i < ADCGS_COUNTOF(requests); i++) {
         adcgs_camera_path frames = { .n = 0 };
-        status = adcgs_camera_path_read(&frames, &info, &requests[i], 0.01, error);
+        status = adcgs_camera_path_read(&frames, &info, &requests[i], &like, error);
         for (int j = 0; status == ADCGS_OK && j < frames.n; j++) {
             FUZZ_REQUIRE(isfinite(frames.frame[j].time) && frames.frame[j].camera.width > 0 && frames.frame[j].camera.height > 0);
             for (int a = 0; a < 12; a++)
@@ -114,7 +115,8 @@ static const struct kind {
     const char *name;
     reader *read;
 } kinds[] = {
-    { 'C', "path.json", read_camera_path }, { 'L', "scene.json", read_sources }, { 'P', "script", read_script },
+    { 'C', "path.json", read_camera_path }, { 'H', "path.chan", read_camera_path }, { 'U', "path.usda", read_camera_path },
+    { 'L', "scene.json", read_sources }, { 'P', "script", read_script },
     { 'R', "requests", read_requests },     { 'A', "table.csv", read_table },    { 'J', "sweep.json", read_earlier },
 };
 
