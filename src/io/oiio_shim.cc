@@ -21,6 +21,8 @@
 #include <unistd.h>
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include "io/oiio_shim.h"
@@ -276,6 +278,57 @@ adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int
     return ADCGS_OK;
 }
 
+/* ---- Photos ---- */
+
+#define FILM_WIDTH 36.0f /* millimetres of what focal lengths are equivalent to */
+
+adcgs_status tell(adcgs_photo *photo, const char *path, adcgs_error *error)
+{
+    std::unique_ptr<OIIO::ImageInput> input;
+    ADCGS_TRY(open_input(input, path, error));
+    const OIIO::ImageSpec &spec = input->spec();
+    const int turn = spec.get_int_attribute("Orientation", ADCGS_PHOTO_UPRIGHT);
+    photo->turn = turn >= 1 && turn <= 8 ? turn : ADCGS_PHOTO_UPRIGHT;
+    const float film = spec.get_float_attribute("Exif:FocalLengthIn35mmFilm");
+    const float lens = spec.get_float_attribute("Exif:FocalLength");
+    photo->focal = film > 1.0f && film < 10000.0f ? film / FILM_WIDTH : 0.0;
+    const std::string make = spec.get_string_attribute("Make"), model = spec.get_string_attribute("Model");
+    if (!make.empty() || !model.empty())
+        snprintf(photo->camera, sizeof photo->camera, "%.32s %.32s %g", make.c_str(), model.c_str(), lens > 0.0f ? lens : 0.0f);
+    return ADCGS_OK;
+}
+
+/** What is left of work on pictures in the library's own memory. */
+adcgs_status take(adcgs_image *image, const OIIO::ImageBuf &from, const char *path, adcgs_error *error)
+{
+    const OIIO::ImageSpec &spec = from.spec();
+    adcgs_image made;
+    if (from.has_error())
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, first_line(from.geterror()).c_str());
+    ADCGS_TRY(adcgs_image_alloc(&made, spec.width, spec.height, spec.nchannels, path, error));
+    const OIIO::ROI all(spec.x, spec.x + spec.width, spec.y, spec.y + spec.height);
+    if (!from.get_pixels(all, OIIO::TypeDesc::FLOAT, made.data)) {
+        adcgs_image_free(&made);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, first_line(from.geterror()).c_str());
+    }
+    adcgs_image_free(image);
+    *image = made;
+    return ADCGS_OK;
+}
+
+adcgs_status shape(adcgs_image *image, int turn, int width, int height, const char *path, adcgs_error *error)
+{
+    OIIO::attribute("threads", 1);
+    OIIO::ImageBuf at(OIIO::ImageSpec(image->width, image->height, image->channels, OIIO::TypeDesc::FLOAT), image->data);
+    if (turn != ADCGS_PHOTO_UPRIGHT) {
+        at.set_orientation(turn);
+        at = OIIO::ImageBufAlgo::reorient(at);
+    }
+    if (at.spec().width != width || at.spec().height != height)
+        at = OIIO::ImageBufAlgo::resize(at, "", 0.0f, OIIO::ROI(0, width, 0, height, 0, 1, 0, at.nchannels()));
+    return take(image, at, path, error);
+}
+
 adcgs_status probe_c(int *width, int *height, int *channels, const char *path, adcgs_error *error) noexcept
 {
     return guarded(path, error, [&]() -> adcgs_status {
@@ -305,6 +358,16 @@ adcgs_status encode_c(uint8_t **data, size_t *bytes, const adcgs_image *image, i
     return guarded(path, error, [&]() { return encode(data, bytes, image, bits, extension, path, error); });
 }
 
+adcgs_status tell_c(adcgs_photo *photo, const char *path, adcgs_error *error) noexcept
+{
+    return guarded(path, error, [&]() { return tell(photo, path, error); });
+}
+
+adcgs_status shape_c(adcgs_image *image, int turn, int width, int height, const char *path, adcgs_error *error) noexcept
+{
+    return guarded(path, error, [&]() { return shape(image, turn, width, height, path, error); });
+}
+
 } // namespace
 
-extern "C" const adcgs_oiio adcgs_oiio_table = { PACKAGE_VERSION, probe_c, read_c, encode_c };
+extern "C" const adcgs_oiio adcgs_oiio_table = { PACKAGE_VERSION, probe_c, read_c, encode_c, tell_c, shape_c };

@@ -14,6 +14,7 @@ extern "C" {
 
 #include "io/image.h"
 #include "io/module.h"
+#include "io/photo.h"
 
 /** What the module offers. What a build of OpenImageIO cannot do gives ADCGS_ERR_UNSUPPORTED. Any thread may call. */
 typedef struct adcgs_oiio {
@@ -27,6 +28,9 @@ typedef struct adcgs_oiio {
      */
     adcgs_status (*encode)(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension,
                            const char *path, adcgs_error *error);
+    /** Fill in what the header says besides the size. What is no number there is as if it were not there. */
+    adcgs_status (*tell)(adcgs_photo *photo, const char *path, adcgs_error *error);
+    adcgs_status (*shape)(adcgs_image *image, int turn, int width, int height, const char *path, adcgs_error *error);
 } adcgs_oiio;
 
 /** The one thing that the module exports. */

@@ -8,6 +8,7 @@
 #include "io/extension.h"
 #include "io/video_ffmpeg.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <strings.h>
 
@@ -87,6 +88,12 @@ const adcgs_video_info *adcgs_video_get_info(const adcgs_video *video)
 adcgs_status adcgs_video_read(adcgs_video *video, int64_t frame, adcgs_image *out, adcgs_error *error)
 {
     return video->ffmpeg->read(video->reader, frame, out, error);
+}
+
+double adcgs_video_time(const adcgs_video *video, int64_t frame)
+{
+    const double time = video->ffmpeg->time(video->reader, frame);
+    return isnan(time) ? (double)frame / adcgs_fps_value(video->info.rate) : time;
 }
 
 /* ---- Writing ---- */

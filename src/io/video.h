@@ -36,6 +36,9 @@ const adcgs_video_info *adcgs_video_get_info(const adcgs_video *video);
  */
 adcgs_status adcgs_video_read(adcgs_video *video, int64_t frame, adcgs_image *out, adcgs_error *error);
 
+/** Seconds from the first frame to this one, as the file says; by the mean rate where it does not say. */
+double adcgs_video_time(const adcgs_video *video, int64_t frame);
+
 typedef struct adcgs_video_writer adcgs_video_writer;
 
 /** How a video is coded. All zero: by its container, H.264 or what FFmpeg has for it, with little loss. */

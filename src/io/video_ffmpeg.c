@@ -9,6 +9,7 @@ const adcgs_ffmpeg adcgs_ffmpeg_table = {
     .open = adcgs_video_reader_open,
     .close = adcgs_video_reader_close,
     .read = adcgs_video_reader_read,
+    .time = adcgs_video_reader_time,
     .begin = adcgs_video_encoder_begin,
     .add = adcgs_video_encoder_add,
     .end = adcgs_video_encoder_end,

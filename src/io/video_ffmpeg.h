@@ -28,6 +28,8 @@ typedef struct adcgs_ffmpeg {
     adcgs_status (*open)(adcgs_video_reader **out, adcgs_video_info *info, const char *path, adcgs_error *error);
     void (*close)(adcgs_video_reader **reader);
     adcgs_status (*read)(adcgs_video_reader *reader, int64_t frame, adcgs_image *out, adcgs_error *error);
+    /** Seconds since the first frame; not a number where the file does not say. */
+    double (*time)(const adcgs_video_reader *reader, int64_t frame);
     /** stored: the size of the pictures in the file, which some codecs make even. */
     adcgs_status (*begin)(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target, adcgs_error *error);
     adcgs_status (*add)(adcgs_video_encoder *encoder, const adcgs_frame *frame, const float *alpha, adcgs_error *error);
@@ -43,6 +45,7 @@ ADCGS_MODULE_EXPORT extern const adcgs_ffmpeg adcgs_ffmpeg_table;
 adcgs_status adcgs_video_reader_open(adcgs_video_reader **out, adcgs_video_info *info, const char *path, adcgs_error *error);
 void adcgs_video_reader_close(adcgs_video_reader **reader);
 adcgs_status adcgs_video_reader_read(adcgs_video_reader *reader, int64_t frame, adcgs_image *out, adcgs_error *error);
+double adcgs_video_reader_time(const adcgs_video_reader *reader, int64_t frame);
 adcgs_status adcgs_video_encoder_begin(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target,
                                        adcgs_error *error);
 adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *encoder, const adcgs_frame *frame, const float *alpha,

@@ -11,6 +11,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -213,6 +214,14 @@ adcgs_status adcgs_video_reader_read(adcgs_video_reader *r, int64_t frame, adcgs
     adcgs_image_free(out);
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as in the first", r->name, width, height, r->width,
                       r->height);
+}
+
+double adcgs_video_reader_time(const adcgs_video_reader *r, int64_t frame)
+{
+    if (!r->index.timed || frame < 0 || frame >= r->index.n)
+        return NAN;
+    const double first = (double)r->index.packet[r->index.shown[0]].pts, at = (double)r->index.packet[r->index.shown[frame]].pts;
+    return (at - first) * av_q2d(r->input.stream->time_base);
 }
 
 /* ---- Opening ---- */

@@ -6,37 +6,22 @@
 
 #include "data/paths.h"
 #include "data/pose.h"
-#include "io/file.h"
 #include "layouts/calibration.h"
-#include "layouts/colmap_model.h"
+#include "layouts/colmap_files.h"
 #include "layouts/footage.h"
 #include "layouts/listing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FILE_MAX ((uint64_t)8 << 30)
 #define TEST_EVERY 8
 #define DIVIDE_MAX 64
-
-static const char *const names[] = {"cameras", "images", "points3D"};
-enum { CAMERAS, IMAGES, POINTS, FILES };
-
-static const struct {
-    const char *end;
-    int is_text;
-    adcgs_colmap_parse *parse[FILES];
-} formats[] = {
-    {"bin", 0, {adcgs_colmap_binary_cameras, adcgs_colmap_binary_images, adcgs_colmap_binary_points}},
-    {"txt", 1, {adcgs_colmap_text_cameras, adcgs_colmap_text_images, adcgs_colmap_text_points}},
-};
 
 typedef struct reader {
     adcgs_scene *scene;
     adcgs_error *error;
     const adcgs_frame_range *frames;
-    char *folder;                /**< of the model */
-    int format;
+    adcgs_colmap_place place;     /**< of the model */
     adcgs_colmap model;
     char *pictures;              /**< their folder, with its slash */
     adcgs_scene_view *calibrated; /**< for each camera; height 0: not yet */
@@ -49,58 +34,21 @@ static adcgs_status no_memory(const reader *r)
 
 /* ---- The files ---- */
 
-/** The place of a model in a directory and its format; NULL if there is none. */
-static const char *find_model(const char *directory, int *format)
+static adcgs_status read_file(reader *r, adcgs_colmap_file file)
 {
-    static const char *const places[] = {"sparse/0/", "sparse/", ""};
-    for (size_t p = 0; p < ADCGS_COUNTOF(places); p++)
-        for (*format = 0; *format < (int)ADCGS_COUNTOF(formats); ++*format)
-            for (int f = 0; f < FILES; f++)
-                if (adcgs_is_there_at("%s/%s%s.%s", directory, places[p], names[f], formats[*format].end))
-                    return places[p];
-    return NULL;
+    return adcgs_colmap_load(&r->model, &r->place, file, r->error);
 }
 
-int adcgs_is_colmap(const char *folder)
+/** As adcgs_fail(), after the file's name. */
+static adcgs_status bad_file(const reader *r, const char *file, const char *what)
 {
-    int format;
-    return find_model(folder, &format) != NULL;
-}
-
-static int has_file(const reader *r, int file)
-{
-    return adcgs_is_there_at("%s%s.%s", r->folder, names[file], formats[r->format].end);
-}
-
-static adcgs_status read_file(reader *r, int file)
-{
-    char *path = adcgs_path("%s%s.%s", r->folder, names[file], formats[r->format].end);
-    uint8_t *data = NULL;
-    size_t bytes;
-    if (!path)
-        return no_memory(r);
-    r->model.path = path;
-    r->model.error = r->error;
-    adcgs_status status = formats[r->format].is_text ? adcgs_file_load_text(&data, &bytes, path, FILE_MAX, r->error)
-                                                     : adcgs_file_load(&data, &bytes, path, FILE_MAX, r->error);
-    if (status == ADCGS_ERR_IO && !has_file(r, file))
-        status = adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no such file; a COLMAP model has cameras, images, points3D", path);
-    if (status == ADCGS_OK)
-        status = formats[r->format].parse[file](&r->model, data, bytes);
-    if (status == ADCGS_OK && file == CAMERAS)
-        status = adcgs_colmap_sort_cameras(&r->model);
-    if (status == ADCGS_OK && file == IMAGES)
-        status = adcgs_colmap_sort_images(&r->model);
-    free(data);
-    free(path);
-    r->model.path = NULL;
-    return status;
+    return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s%s.%s: %s", r->place.folder, file, adcgs_colmap_end(&r->place), what);
 }
 
 static adcgs_status read_points(reader *r, size_t n, size_t period)
 {
     ADCGS_TRY(adcgs_colmap_list_training(&r->model, n, period));
-    ADCGS_TRY(read_file(r, POINTS));
+    ADCGS_TRY(read_file(r, ADCGS_COLMAP_POINTS));
     r->scene->points = r->model.points;
     r->model.points = (adcgs_points){0};
     return ADCGS_OK;
@@ -169,8 +117,8 @@ static const adcgs_colmap_camera *find_camera(const reader *r, const adcgs_colma
 {
     const adcgs_colmap_camera *camera = adcgs_colmap_find_camera(&r->model, image->camera_id);
     if (!camera)
-        adcgs_fail(r->error, ADCGS_ERR_DATA, "%simages.%s: %.100s: there is no camera %u", r->folder, formats[r->format].end,
-                   image->name, image->camera_id);
+        adcgs_fail(r->error, ADCGS_ERR_DATA, "%simages.%s: %.100s: there is no camera %u", r->place.folder,
+                   adcgs_colmap_end(&r->place), image->name, image->camera_id);
     return camera;
 }
 
@@ -281,18 +229,17 @@ static adcgs_status add_videos(reader *r)
 
 static adcgs_status read_model(reader *r, int with_points)
 {
-    for (int file = 0; file < FILES; file++)
-        if (file == POINTS ? with_points : 1)
-            if (!has_file(r, file))
-                return read_file(r, file); /* says why */
-    ADCGS_TRY(read_file(r, CAMERAS));
+    const adcgs_colmap_file files[] = {ADCGS_COLMAP_CAMERAS, ADCGS_COLMAP_IMAGES, ADCGS_COLMAP_POINTS};
+    for (size_t i = 0; i < ADCGS_COUNTOF(files) - !with_points; i++)
+        if (!adcgs_colmap_has(&r->place, files[i]))
+            return read_file(r, files[i]); /* says why */
+    ADCGS_TRY(read_file(r, ADCGS_COLMAP_CAMERAS));
     if (!r->model.n_cameras)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%scameras.%s: no cameras, expected at least one", r->folder,
-                          formats[r->format].end);
-    ADCGS_TRY(read_file(r, IMAGES));
+        return bad_file(r, "cameras", "no cameras, expected at least one");
+    ADCGS_TRY(read_file(r, ADCGS_COLMAP_IMAGES));
     if (r->model.n_images < 2)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%simages.%s: %zu images, expected at least two: the first is for testing",
-                          r->folder, formats[r->format].end, r->model.n_images);
+        return bad_file(r, "images", r->model.n_images ? "1 image, expected at least two: the first is for testing"
+                                                       : "0 images, expected at least two: the first is for testing");
     if (!(r->calibrated = calloc(r->model.n_cameras + 1, sizeof *r->calibrated)))
         return no_memory(r);
     char *video = find_video(r, r->model.images[0].name);
@@ -308,23 +255,15 @@ static void clear(reader *r)
     adcgs_colmap_clear(&r->model);
     free(r->calibrated);
     free(r->pictures);
-    free(r->folder);
-}
-
-/** The model's folder and format; the former stays NULL where there is none. */
-static adcgs_status open_model(reader *r)
-{
-    const char *place = find_model(r->scene->directory, &r->format);
-    r->folder = place ? adcgs_path("%s/%s", r->scene->directory, place) : NULL;
-    return place && !r->folder ? adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->scene->directory) : ADCGS_OK;
+    adcgs_colmap_leave(&r->place);
 }
 
 adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *frames, int with_points, adcgs_error *error)
 {
     reader r = {.scene = scene, .error = error, .frames = frames};
-    adcgs_status status = open_model(&r);
+    adcgs_status status = adcgs_colmap_find(&r.place, scene->directory, error);
     if (status == ADCGS_OK)
-        status = r.folder ? read_model(&r, with_points)
+        status = r.place.folder ? read_model(&r, with_points)
                           : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, "
                                        "sparse or here", scene->directory);
     clear(&r);
@@ -334,11 +273,10 @@ adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *fram
 adcgs_status adcgs_colmap_read_points(adcgs_scene *scene, size_t n, size_t period, adcgs_error *error)
 {
     reader r = {.scene = scene, .error = error};
-    adcgs_status status = open_model(&r);
-    if (r.folder && has_file(&r, POINTS)) {
-        r.model.error = error;
-        if (has_file(&r, IMAGES))
-            status = read_file(&r, IMAGES);
+    adcgs_status status = adcgs_colmap_find(&r.place, scene->directory, error);
+    if (r.place.folder && adcgs_colmap_has(&r.place, ADCGS_COLMAP_POINTS)) {
+        if (adcgs_colmap_has(&r.place, ADCGS_COLMAP_IMAGES))
+            status = read_file(&r, ADCGS_COLMAP_IMAGES);
         if (status == ADCGS_OK)
             status = read_points(&r, n, period);
     }

@@ -129,23 +129,23 @@ adcgs_status adcgs_colmap_binary_points(adcgs_colmap *model, uint8_t *data, size
     model->points.n = 0;
     model->points.coloured = 1;
     for (model->index = 0; model->index < n; model->index++) {
-        double position[3], deviation;
+        adcgs_colmap_track track = {.seen = 0};
+        double position[3];
         if (left(&c) < POINT_BYTES)
             return ends_early(model);
         take64(&c); /* its id, which nothing else needs */
         take_numbers(&c, position, 3);
         const uint64_t colour[3] = {c.at[0], c.at[1], c.at[2]};
         c.at += 3;
-        take_numbers(&c, &deviation, 1);
-        const uint64_t seen = take64(&c);
-        uint64_t training = 0;
-        if (seen > left(&c) / TRACK_BYTES)
+        take_numbers(&c, &track.deviation, 1);
+        track.seen = take64(&c);
+        if (track.seen > left(&c) / TRACK_BYTES)
             return ends_early(model);
-        for (uint64_t i = 0; i < seen; i++) {
-            training += (uint64_t)adcgs_colmap_is_training(model, take32(&c));
+        for (uint64_t i = 0; i < track.seen; i++) {
+            track.training += (uint64_t)adcgs_colmap_is_training(model, take32(&c));
             c.at += 4;
         }
-        ADCGS_TRY(adcgs_colmap_add_point(model, position, colour, seen, training));
+        ADCGS_TRY(adcgs_colmap_add_point(model, position, colour, &track));
     }
     return finish(model, &c);
 }

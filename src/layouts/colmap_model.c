@@ -249,8 +249,8 @@ int adcgs_colmap_is_training(const adcgs_colmap *model, uint32_t image)
     return model->n_training && bsearch(&image, model->training, model->n_training, sizeof image, compare_ids);
 }
 
-adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3], const uint64_t colour[3], uint64_t seen,
-                                    uint64_t training)
+adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3], const uint64_t colour[3],
+                                    const adcgs_colmap_track *track)
 {
     for (int a = 0; a < 3; a++) {
         if (!(fabs(position[a]) <= WORLD_MAX))
@@ -259,7 +259,12 @@ adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3
             return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "a colour is %llu, expected at most 255",
                                     (unsigned long long)colour[a]);
     }
-    if (model->training && seen && training < 2)
+    if (track->seen) {
+        model->tracked++;
+        model->seen += track->seen;
+        model->deviation += track->deviation;
+    }
+    if (model->training && track->seen && track->training < 2)
         return ADCGS_OK;
     for (int a = 0; a < 3; a++) {
         model->points.position[model->points.n][a] = (float)position[a];

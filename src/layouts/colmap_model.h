@@ -24,6 +24,8 @@ typedef struct adcgs_colmap {
     adcgs_colmap_image *images;   /**< in the order of the file, then sorted by name */
     size_t n_cameras, n_images;
     adcgs_points points;
+    uint64_t tracked, seen;       /**< points with a track, and pictures in all tracks together */
+    double deviation;             /**< sum of what the former are off on average, in pixels */
     uint32_t *training;           /**< ids of the images for training, ascending; NULL: not known */
     size_t n_training;
     /* Where reading is, for messages. */
@@ -47,12 +49,15 @@ adcgs_status adcgs_colmap_add_camera(adcgs_colmap *model, uint32_t id, int kind,
 /** q: w, x, y, z of the rotation, world to camera; t: translation. */
 adcgs_status adcgs_colmap_add_image(adcgs_colmap *model, uint32_t id, const double q[4], const double t[3], uint32_t camera_id,
                                     const char *name);
-/**
- * seen: images in the point's track; training: those of them that are for training. A point that fewer than two of these see
- * is left out, where tracks are known. There must be room.
- */
-adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3], const uint64_t colour[3], uint64_t seen,
-                                    uint64_t training);
+/** What a point's track says. */
+typedef struct adcgs_colmap_track {
+    double deviation;        /**< mean distance, in pixels, of the point from where it was seen */
+    uint64_t seen, training; /**< images, and those of them that are for training */
+} adcgs_colmap_track;
+
+/** A point that fewer than two images for training see is left out, where tracks are known. There must be room. */
+adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3], const uint64_t colour[3],
+                                    const adcgs_colmap_track *track);
 /**
  * Of the model's images, sorted before, all but every period-th by name, beginning with the first, are for training. Without
  * images there are n of them, with ids from 1 in the order of their names, as COLMAP gives them.

@@ -137,15 +137,14 @@ adcgs_status adcgs_colmap_text_images(adcgs_colmap *model, uint8_t *data, size_t
 }
 
 /** The images of a track: how many, and how many of them are for training. */
-static adcgs_status take_track(const adcgs_colmap *model, cursor *c, uint64_t *seen, uint64_t *training)
+static adcgs_status take_track(const adcgs_colmap *model, cursor *c, adcgs_colmap_track *track)
 {
-    *seen = *training = 0;
     for (skip_blanks(c); *c->at; skip_blanks(c)) {
         uint64_t image, feature;
         ADCGS_TRY(take_integer(model, c, "TRACK", UINT32_MAX, &image));
         ADCGS_TRY(take_integer(model, c, "TRACK", UINT32_MAX, &feature));
-        *seen += 1;
-        *training += (uint64_t)adcgs_colmap_is_training(model, (uint32_t)image);
+        track->seen++;
+        track->training += (uint64_t)adcgs_colmap_is_training(model, (uint32_t)image);
     }
     return ADCGS_OK;
 }
@@ -161,15 +160,16 @@ adcgs_status adcgs_colmap_text_points(adcgs_colmap *model, uint8_t *data, size_t
     model->points.coloured = 1;
     begin(model, &c, data, bytes);
     while (next_entry(model, &c)) {
-        double position[3], deviation;
-        uint64_t id, colour[3], seen, training;
+        adcgs_colmap_track track = {.seen = 0};
+        double position[3];
+        uint64_t id, colour[3];
         ADCGS_TRY(take_integer(model, &c, "POINT3D_ID", UINT64_MAX, &id));
         ADCGS_TRY(take_numbers(model, &c, "X, Y, Z", position, 3));
         for (int a = 0; a < 3; a++)
             ADCGS_TRY(take_integer(model, &c, "R, G, B", 255, &colour[a]));
-        ADCGS_TRY(take_numbers(model, &c, "ERROR", &deviation, 1));
-        ADCGS_TRY(take_track(model, &c, &seen, &training));
-        ADCGS_TRY(adcgs_colmap_add_point(model, position, colour, seen, training));
+        ADCGS_TRY(take_numbers(model, &c, "ERROR", &track.deviation, 1));
+        ADCGS_TRY(take_track(model, &c, &track));
+        ADCGS_TRY(adcgs_colmap_add_point(model, position, colour, &track));
     }
     return ADCGS_OK;
 }

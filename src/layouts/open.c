@@ -55,11 +55,11 @@ static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
     for (int s = 0; s < ADCGS_SPLITS && !scene->splats; s++)
         for (uint32_t i = 0; i < scene->n_views[s]; i++) {
             const adcgs_scene_view *view = &scene->views[s][i];
+            if (view->mask)
+                ADCGS_TRY(adcgs_file_check(view->mask, "an image", error));
             if (view->is_video)
                 continue;
             ADCGS_TRY(adcgs_file_check(view->path, "an image", error));
-            if (view->mask)
-                ADCGS_TRY(adcgs_file_check(view->mask, "an image", error));
             if (view->moving)
                 ADCGS_TRY(adcgs_file_check(view->moving, "an image", error));
             if (s != ADCGS_SPLIT_TRAIN)
@@ -190,7 +190,21 @@ static adcgs_dataset find_dataset(const char *folder)
            : adcgs_is_hypernerf(folder) ? ADCGS_DATASET_HYPERNERF
            : adcgs_is_llff(folder)      ? ADCGS_DATASET_LLFF
            : adcgs_is_colmap(folder)    ? ADCGS_DATASET_COLMAP
+           : adcgs_is_there_at("%s/scene.json", folder) ? ADCGS_DATASET_ADCGS
                                         : ADCGS_DATASET_AUTO;
+}
+
+/** A scene file in its folder. */
+static adcgs_status read_scene_json(adcgs_scene *scene, const adcgs_scene_options *options, adcgs_error *error)
+{
+    if (!adcgs_is_there_at("%s/scene.json", scene->directory))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a scene file, or scene.json in it", scene->directory);
+    char *path = adcgs_path("%s/scene.json", scene->directory);
+    const adcgs_status status =
+        path ? adcgs_scene_file_read(scene, path, &options->frames, !options->points_path, options->taken, error)
+             : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", scene->directory);
+    free(path);
+    return status;
 }
 
 static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const adcgs_scene_options *options, adcgs_error *error)
@@ -208,7 +222,7 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     case ADCGS_DATASET_COLMAP:
         return adcgs_colmap_read(scene, &options->frames, with_points, error);
     case ADCGS_DATASET_ADCGS:
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a scene file (JSON)", scene->directory);
+        return read_scene_json(scene, options, error);
     case ADCGS_DATASET_SPLATS:
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats", scene->directory);
     default:

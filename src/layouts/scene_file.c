@@ -39,8 +39,8 @@ static const char *const root_fields[] = {"adcgs_scene", "name", "frame_rate", "
 /* Of a camera; the first of them cannot be shared. */
 static const char *const camera_fields[] = {
     "name", "camera_to_world", "world_to_camera", "R", "t", "video", "axes", "pixel_centre", "width", "height", "fx", "fy", "cx",
-    "cy", "skew", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "images", "first", "count", "frame_rate", "time_offset",
-    "split", NULL};
+    "cy", "skew", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "images", "masks", "first", "count", "frame_rate",
+    "time_offset", "split", NULL};
 #define OWN_FIELDS 6
 
 /** A name in the file, from malloc(). */
@@ -141,6 +141,22 @@ static const char *first_file(const adcgs_footage *footage)
     return footage->video ? footage->video : footage->pictures[i];
 }
 
+/** Give views from the first of them on their masks: one for all, or each its own, by the number of its frame. */
+static adcgs_status add_masks(const reader *r, const adcgs_json_place *at, adcgs_split split, uint32_t first_view)
+{
+    const char *masks;
+    int64_t first = 0;
+    ADCGS_TRY(adcgs_scene_camera_string(at, "masks", &masks));
+    ADCGS_TRY(read_whole(at, "first", &first));
+    for (uint32_t i = first_view; masks && i < r->scene->n_views[split]; i++) {
+        const int64_t frame = r->frames->begin + (int64_t)(i - first_view) * adcgs_frames_step(r->frames);
+        r->scene->views[split][i].mask = adcgs_footage_number(folder_of_images(r, masks), masks, first + frame);
+        if (!r->scene->views[split][i].mask)
+            return adcgs_json_bad(at, ADCGS_ERR_MEMORY, "masks", "out of memory");
+    }
+    return ADCGS_OK;
+}
+
 /** The views of a camera whose footage is known, with times in seconds. */
 static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const adcgs_footage *footage)
 {
@@ -158,9 +174,11 @@ static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const
     ADCGS_TRY(adcgs_calibrate(&camera.view, &camera.lens, footage->width, footage->height, file, r->error));
     if (split == ADCGS_SPLIT_TRAIN && !r->scene->rate.den)
         r->scene->rate = rate;
-    return adcgs_footage_add(r->scene, split, &camera.view, footage, r->frames,
-                             offset + (double)r->frames->begin / adcgs_fps_value(rate),
-                             (double)adcgs_frames_step(r->frames) / adcgs_fps_value(rate), file, r->error);
+    const uint32_t before = r->scene->n_views[split];
+    ADCGS_TRY(adcgs_footage_add(r->scene, split, &camera.view, footage, r->frames,
+                                offset + (double)r->frames->begin / adcgs_fps_value(rate),
+                                (double)adcgs_frames_step(r->frames) / adcgs_fps_value(rate), file, r->error));
+    return add_masks(r, at, split, before);
 }
 
 /** A camera whose footage is yet to come. */
@@ -170,8 +188,12 @@ static adcgs_status list_camera(reader *r, const adcgs_json_place *at)
     adcgs_source_camera *c = &r->sources[r->n_sources];
     adcgs_scene_camera camera;
     place_of_footage where;
+    const char *masks;
     int found;
     ADCGS_TRY(adcgs_scene_camera_read(&camera, at)); /* to hear now of what is wrong with it */
+    ADCGS_TRY(adcgs_scene_camera_string(at, "masks", &masks));
+    if (masks && adcgs_footage_is_row(masks))
+        return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "masks", "one for each picture, which what is live has not");
     ADCGS_TRY(find_footage(at, &where));
     if (where.images && !adcgs_footage_is_row(where.images))
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "images", "expected the name of an image with one %%d or %%05d or the like");

@@ -28,7 +28,7 @@ check()
 
 codec="base bits geom net model splat render stream api"
 check codec "" $codec
-check src "$codec" cli io data camera layouts metric scenes grad fmodel stereo train encode play sweep conform tools
+check src "$codec" cli io data camera layouts metric scenes grad fmodel stereo train encode play sweep conform import tools
 
 # Of the installed headers, those of the roof (decoder.h, frame.h, adcgs.h) are for codec/api; below it there are types, and what
 # base itself offers.

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file From footage to a scene, step by step, and the folder that appears whole. */
+#include "config.h"
+
+#include "import/import.h"
+
+#include "data/paths.h"
+#include "import/poses.h"
+#include "import/write.h"
+#include "io/atomic.h"
+#include "io/file.h"
+
+#include <errno.h>
+#include <ftw.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define UNFINISHED ".importing"
+#define STAMP "footage.txt" /* what a folder that is not finished is made of */
+#define STAMP_MAX ((uint64_t)1 << 28)
+
+static const char *const kinds[] = {"pictures", "film", "rig"};
+
+static adcgs_status no_memory(const adcgs_import_job *job)
+{
+    return adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", job->options->output);
+}
+
+/* ---- The folder ---- */
+
+static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *place)
+{
+    (void)status;
+    (void)kind;
+    (void)place;
+    return remove(path);
+}
+
+/** All of a folder, links as such. */
+static adcgs_status remove_tree(const char *path, adcgs_error *error)
+{
+    if (nftw(path, remove_entry, 8, FTW_DEPTH | FTW_PHYS) && errno != ENOENT)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot remove: %s", path, strerror(errno));
+    return ADCGS_OK;
+}
+
+static adcgs_status remove_below(const adcgs_import_job *job, const char *name)
+{
+    char *path;
+    ADCGS_TRY(adcgs_import_path(&path, job, name));
+    const adcgs_status status = remove_tree(path, job->error);
+    free(path);
+    return status;
+}
+
+static void stamp_file(FILE *out, const char *path)
+{
+    struct stat s;
+    if (!stat(path, &s))
+        fprintf(out, "%s %lld %lld\n", path, (long long)s.st_size, (long long)s.st_mtime);
+}
+
+/** What the footage is, and what is to be made of it: with the same, what an unfinished run has made can be gone on with. */
+static adcgs_status write_stamp(const adcgs_import_job *job, char **text, size_t *bytes)
+{
+    const adcgs_import_options *o = job->options;
+    FILE *out = open_memstream(text, bytes);
+    if (!out)
+        return no_memory(job);
+    fprintf(out, "adcgs-import %s %d %d %d %d %u/%u\n", PACKAGE_VERSION, o->side, o->frames, o->lens, (int)job->shots.kind,
+            o->fps.num, o->fps.den);
+    if (o->masks)
+        stamp_file(out, o->masks);
+    for (uint32_t i = 0; i < job->shots.n_cameras; i++)
+        if (job->shots.cameras[i].video)
+            stamp_file(out, job->shots.cameras[i].video);
+    for (uint32_t i = 0; i < job->shots.n; i++)
+        if (job->shots.shots[i].path)
+            stamp_file(out, job->shots.shots[i].path);
+    return fclose(out) ? no_memory(job) : ADCGS_OK;
+}
+
+/** Is the folder there one of ours, of the same footage? */
+static int goes_on(const char *path, const char *text, size_t bytes)
+{
+    adcgs_error unused;
+    uint8_t *data;
+    size_t n;
+    if (adcgs_file_load(&data, &n, path, STAMP_MAX, &unused) != ADCGS_OK)
+        return 0;
+    const int same = n == bytes && !memcmp(data, text, n);
+    free(data);
+    return same;
+}
+
+/** A folder of that name, empty or with what a run of the same footage has left; one that is nobody's of us is not touched. */
+static adcgs_status open_folder(const adcgs_import_job *job, const char *stamp, const char *text, size_t bytes)
+{
+    if (adcgs_is_there(job->folder) && !adcgs_is_there(stamp) && rmdir(job->folder))
+        return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: is there, and not what an import has left: move it away",
+                          job->folder);
+    if (adcgs_is_there(job->folder) && !goes_on(stamp, text, bytes))
+        ADCGS_TRY(remove_tree(job->folder, job->error));
+    if (mkdir(job->folder, 0777) && errno != EEXIST)
+        return adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", job->folder, strerror(errno));
+    ADCGS_TRY(adcgs_atomic_save(stamp, text, bytes, job->error));
+    ADCGS_TRY(remove_below(job, "sparse")); /* a new log for a new run */
+    return remove_below(job, "colmap.log");
+}
+
+static adcgs_status begin(const adcgs_import_job *job)
+{
+    char *stamp, *text = NULL;
+    size_t bytes = 0;
+    ADCGS_TRY(adcgs_import_path(&stamp, job, STAMP));
+    adcgs_status status = write_stamp(job, &text, &bytes);
+    if (status == ADCGS_OK)
+        status = open_folder(job, stamp, text, bytes);
+    free(text);
+    free(stamp);
+    return status;
+}
+
+/** Of a rig the pictures were for COLMAP alone. */
+static adcgs_status finish(const adcgs_import_job *job)
+{
+    static const char *const scaffolding[] = {"sparse", "database.db", "database.db-shm", "database.db-wal", "colmap.log", STAMP};
+    if (job->shots.kind == ADCGS_FOOTAGE_RIG)
+        ADCGS_TRY(remove_below(job, "images"));
+    for (uint32_t i = 0; job->shots.kind == ADCGS_FOOTAGE_RIG && job->options->masks && i < job->shots.n_cameras; i++) {
+        char *name = adcgs_path("masks/%s", job->shots.cameras[i].name);
+        const adcgs_status status = name ? remove_below(job, name) : no_memory(job);
+        free(name);
+        ADCGS_TRY(status);
+    }
+    for (size_t i = 0; i < ADCGS_COUNTOF(scaffolding); i++)
+        ADCGS_TRY(remove_below(job, scaffolding[i]));
+    if (rename(job->folder, job->options->output))
+        return adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot rename to %s: %s", job->folder, job->options->output,
+                          strerror(errno));
+    return ADCGS_OK;
+}
+
+/* ---- The steps ---- */
+
+static void report_footage(const adcgs_import_job *job)
+{
+    const adcgs_shots *shots = &job->shots;
+    adcgs_import_report *r = job->report;
+    const adcgs_shot_camera *first = &shots->cameras[0];
+    r->kind = kinds[shots->kind];
+    r->pictures = shots->n;
+    r->is_numbered = shots->is_numbered && shots->kind == ADCGS_FOOTAGE_PICTURES;
+    for (uint32_t i = 0; i < shots->n; i++)
+        r->seconds = fmax(r->seconds, shots->shots[i].time);
+    if (shots->kind == ADCGS_FOOTAGE_RIG)
+        r->seconds = (double)(first->frames - 1) / adcgs_fps_value(first->rate);
+}
+
+static adcgs_status make_scene(adcgs_import_job *job, const adcgs_colmap_program *program)
+{
+    adcgs_poses poses;
+    ADCGS_TRY(begin(job));
+    ADCGS_TRY(adcgs_import_pictures(job));
+    ADCGS_TRY(adcgs_import_poses(job, program));
+    ADCGS_TRY(adcgs_poses_read(&poses, job));
+    adcgs_status status = job->shots.kind == ADCGS_FOOTAGE_RIG ? adcgs_import_videos(job) : ADCGS_OK;
+    if (status == ADCGS_OK)
+        status = adcgs_import_write(&poses, job);
+    adcgs_poses_clear(&poses);
+    return status == ADCGS_OK ? finish(job) : status;
+}
+
+static adcgs_status run(adcgs_import_job *job)
+{
+    const adcgs_import_options *o = job->options;
+    adcgs_colmap_program program;
+    if (adcgs_is_there(o->output))
+        return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: is there already", o->output);
+    ADCGS_TRY(adcgs_import_ask(&program, o, job->error));
+    ADCGS_TRY(adcgs_shots_list(&job->shots, o, job->progress, job->error));
+    report_footage(job);
+    if (!(job->folder = adcgs_path("%s" UNFINISHED, o->output)) || !(job->log = adcgs_path("%s/colmap.log", job->folder)))
+        return no_memory(job);
+    return make_scene(job, &program);
+}
+
+adcgs_status adcgs_import(const adcgs_import_options *options, adcgs_progress *progress, adcgs_import_report *report,
+                          adcgs_error *error)
+{
+    adcgs_import_job job = {.options = options, .progress = progress, .report = report, .error = error};
+    *report = (adcgs_import_report){.kind = ""};
+    const adcgs_status status = run(&job);
+    adcgs_shots_clear(&job.shots);
+    free(job.folder);
+    free(job.log);
+    return status;
+}

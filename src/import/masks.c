@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Masks that come with pictures: found by name, and made like them. */
+#include "config.h"
+
+#include "import/pictures.h"
+
+#include "data/paths.h"
+#include "io/image.h"
+#include "io/photo.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define SHAPE_TOLERANCE 0.01
+
+/** A mask by the name it would have without its extension, or with it; NULL if there is none. */
+static adcgs_status find(const adcgs_import_job *job, const char *name, int length, char **out)
+{
+    char *path = adcgs_path("%s/%.*s", job->options->masks, length, name);
+    const adcgs_status status = path ? adcgs_find_image(out, path, job->error)
+                                     : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", job->options->masks);
+    free(path);
+    return status;
+}
+
+/** A picture's own by the name of its file, whole or without its end, or by that of the one that is made; else its camera's. */
+static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_shot *shot, char **out)
+{
+    const char *slash = shot->path ? strrchr(shot->path, '/') : NULL, *file = slash ? slash + 1 : shot->path;
+    const char *const camera = job->shots.cameras[shot->camera].name;
+    *out = NULL;
+    if (file) {
+        const char *dot = strrchr(file, '.');
+        ADCGS_TRY(find(job, file, dot && dot > file ? (int)(dot - file) : (int)strlen(file), out));
+        char *whole = *out ? NULL : adcgs_path("%s/%s.png", job->options->masks, file); /* COLMAP's way */
+        if (adcgs_is_there(whole))
+            *out = whole;
+        else
+            free(whole);
+    }
+    if (!*out)
+        ADCGS_TRY(find(job, shot->stem, (int)strlen(shot->stem), out));
+    return *out ? ADCGS_OK : find(job, camera, (int)strlen(camera), out);
+}
+
+/** It has the shape of the picture before that is turned. */
+static adcgs_status check_shape(const adcgs_import_job *job, const adcgs_shot *shot, const char *path, const adcgs_image *mask)
+{
+    const int lies = adcgs_photo_lies(shot->turn);
+    const int width = lies ? shot->height : shot->width, height = lies ? shot->width : shot->height;
+    const double ratio = (double)mask->width * height / ((double)mask->height * width);
+    return fabs(ratio - 1.0) <= SHAPE_TOLERANCE
+               ? ADCGS_OK
+               : adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: %dx%d pixels, another shape than its picture, which is made %dx%d",
+                            path, mask->width, mask->height, width, height);
+}
+
+/** All that is not black counts: between the two, and only there, a smaller mask may have something else. */
+static void make_plain(adcgs_image *mask, float threshold)
+{
+    const int colours = mask->channels < 3 ? 1 : 3;
+    for (size_t i = 0, n = (size_t)mask->width * (size_t)mask->height; i < n; i++) {
+        const float *at = mask->data + i * (size_t)mask->channels;
+        const float most = colours == 1 ? at[0] : fmaxf(at[0], fmaxf(at[1], at[2]));
+        mask->data[i] = most > threshold;
+    }
+    mask->channels = 1;
+}
+
+static adcgs_status make_mask(const adcgs_import_job *job, const adcgs_shot *shot, const char *from, const char *to)
+{
+    adcgs_image mask;
+    ADCGS_TRY(adcgs_image_read(&mask, from, job->error));
+    adcgs_status status = check_shape(job, shot, from, &mask);
+    make_plain(&mask, 0.0f);
+    if (status == ADCGS_OK)
+        status = adcgs_photo_shape(&mask, shot->turn, shot->width, shot->height, from, job->error);
+    make_plain(&mask, 0.5f);
+    if (status == ADCGS_OK)
+        status = adcgs_image_write(&mask, to, 0, job->error);
+    adcgs_image_free(&mask);
+    return status;
+}
+
+adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_shot *shot)
+{
+    char *from;
+    ADCGS_TRY(find_mask(job, shot, &from));
+    if (!from)
+        return ADCGS_OK;
+    job->has_masks = 1;
+    char *to = adcgs_path("%s/masks/%s/%s.%s.png", job->folder, job->shots.cameras[shot->camera].name, shot->stem, shot->end);
+    adcgs_status status = !to                  ? adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", from)
+                          : adcgs_is_there(to) ? ADCGS_OK
+                                               : make_mask(job, shot, from, to);
+    free(to);
+    free(from);
+    return status;
+}
+
+adcgs_status adcgs_import_camera_mask(adcgs_import_job *job, uint32_t camera)
+{
+    const char *const name = job->shots.cameras[camera].name;
+    adcgs_image mask;
+    char *from;
+    ADCGS_TRY(find(job, name, (int)strlen(name), &from));
+    if (!from)
+        return ADCGS_OK;
+    char *to = adcgs_path("%s/masks/%s.png", job->folder, name);
+    adcgs_status status = to ? adcgs_image_read(&mask, from, job->error)
+                             : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", from);
+    if (status == ADCGS_OK) {
+        status = adcgs_image_write(&mask, to, 0, job->error);
+        adcgs_image_free(&mask);
+    }
+    free(to);
+    free(from);
+    return status;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Pictures as a camera leaves them, by OpenImageIO. */
+#include "config.h"
+
+#include "io/photo.h"
+
+#include "io/file.h"
+#include "io/oiio_shim.h"
+
+adcgs_status adcgs_photo_probe(adcgs_photo *out, const char *path, adcgs_error *error)
+{
+    const adcgs_oiio *oiio;
+    int channels;
+    *out = (adcgs_photo){.turn = ADCGS_PHOTO_UPRIGHT};
+    ADCGS_TRY(adcgs_file_check(path, "an image", error));
+    ADCGS_TRY(adcgs_image_probe(&out->width, &out->height, &channels, path, error));
+    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
+    return oiio->tell(out, path, error);
+}
+
+int adcgs_photo_lies(int turn)
+{
+    return turn > 4;
+}
+
+adcgs_status adcgs_photo_shape(adcgs_image *image, int turn, int width, int height, const char *path, adcgs_error *error)
+{
+    const adcgs_oiio *oiio;
+    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
+    return oiio->shape(image, turn, width, height, path, error);
+}

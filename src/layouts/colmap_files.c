@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The three files of a sparse model. */
+#include "config.h"
+
+#include "layouts/colmap_files.h"
+
+#include "data/paths.h"
+#include "io/file.h"
+#include "layouts/colmap.h"
+
+#include <stdlib.h>
+
+#define FILE_MAX ((uint64_t)8 << 30)
+#define FILES 3
+
+static const char *const names[FILES] = {"cameras", "images", "points3D"};
+
+static const struct {
+    const char *end;
+    int is_text;
+    adcgs_colmap_parse *parse[FILES];
+} formats[] = {
+    {"bin", 0, {adcgs_colmap_binary_cameras, adcgs_colmap_binary_images, adcgs_colmap_binary_points}},
+    {"txt", 1, {adcgs_colmap_text_cameras, adcgs_colmap_text_images, adcgs_colmap_text_points}},
+};
+
+/** The place of a model in a directory and its format; NULL if there is none. */
+static const char *find_model(const char *directory, int *format)
+{
+    static const char *const places[] = {"sparse/0/", "sparse/", ""};
+    for (size_t p = 0; p < ADCGS_COUNTOF(places); p++)
+        for (*format = 0; *format < (int)ADCGS_COUNTOF(formats); ++*format)
+            for (int f = 0; f < FILES; f++)
+                if (adcgs_is_there_at("%s/%s%s.%s", directory, places[p], names[f], formats[*format].end))
+                    return places[p];
+    return NULL;
+}
+
+int adcgs_is_colmap(const char *folder)
+{
+    int format;
+    return find_model(folder, &format) != NULL;
+}
+
+adcgs_status adcgs_colmap_find(adcgs_colmap_place *out, const char *directory, adcgs_error *error)
+{
+    const char *place = find_model(directory, &out->format);
+    out->folder = place ? adcgs_path("%s/%s", directory, place) : NULL;
+    return place && !out->folder ? adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", directory) : ADCGS_OK;
+}
+
+void adcgs_colmap_leave(adcgs_colmap_place *place)
+{
+    free(place->folder);
+    place->folder = NULL;
+}
+
+int adcgs_colmap_has(const adcgs_colmap_place *place, adcgs_colmap_file file)
+{
+    return adcgs_is_there_at("%s%s.%s", place->folder, names[file], formats[place->format].end);
+}
+
+const char *adcgs_colmap_end(const adcgs_colmap_place *place)
+{
+    return formats[place->format].end;
+}
+
+adcgs_status adcgs_colmap_load(adcgs_colmap *model, const adcgs_colmap_place *place, adcgs_colmap_file file, adcgs_error *error)
+{
+    char *path = adcgs_path("%s%s.%s", place->folder, names[file], formats[place->format].end);
+    uint8_t *data = NULL;
+    size_t bytes;
+    if (!path)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", place->folder);
+    model->path = path;
+    model->error = error;
+    adcgs_status status = formats[place->format].is_text ? adcgs_file_load_text(&data, &bytes, path, FILE_MAX, error)
+                                                         : adcgs_file_load(&data, &bytes, path, FILE_MAX, error);
+    if (status == ADCGS_ERR_IO && !adcgs_colmap_has(place, file))
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such file; a COLMAP model has cameras, images, points3D", path);
+    if (status == ADCGS_OK)
+        status = formats[place->format].parse[file](model, data, bytes);
+    if (status == ADCGS_OK && file == ADCGS_COLMAP_CAMERAS)
+        status = adcgs_colmap_sort_cameras(model);
+    if (status == ADCGS_OK && file == ADCGS_COLMAP_IMAGES)
+        status = adcgs_colmap_sort_images(model);
+    free(data);
+    free(path);
+    model->path = NULL;
+    return status;
+}

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file adcgs-import: makes a scene of pictures or videos whose cameras nobody knows. */
+#include "config.h"
+
+#include "cli/text.h"
+#include "import/import.h"
+#include "io/json.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define SIDE 1600   /* pixels: what is larger costs training more than it shows */
+#define FRAMES 300  /* of a film */
+#define TEST_EVERY 8
+
+/* What poses are no good beyond. */
+#define POSED_WELL 0.8 /* of the pictures */
+#define ERROR_FINE 1.5 /* pixels */
+#define TRACK_FINE 3.0 /* pictures */
+#define SPREAD_FINE 0.02
+
+typedef struct arguments {
+    adcgs_import_options import;
+    const char *fps;
+    int json, quiet;
+} arguments;
+
+/* ---- What came of it ---- */
+
+static void print_text(const adcgs_import_report *r, const char *output)
+{
+    adcgs_text_show(stdout, output);
+    if (r->cameras)
+        printf(": %u of %u cameras that stand, %.2f s; %dx%d\n", r->found, r->cameras, r->seconds, r->width, r->height);
+    else
+        printf(": %u of %u pictures, %.2f s; %dx%d\n", r->posed, r->pictures, r->seconds, r->width, r->height);
+    printf("poses: %u points, %.2f pixels off on average, each in %.1f pictures", r->points, r->error, r->track);
+    if (r->cameras)
+        printf("; cameras' moments %.2g %% apart", 100.0 * r->spread);
+    printf("\nnext: adcgs-enc %s/scene.json -o FILE\n", output);
+}
+
+static adcgs_status print_json(const adcgs_import_report *r, const char *output, adcgs_error *error)
+{
+    adcgs_json j;
+    adcgs_json_init(&j);
+    adcgs_json_open(&j, NULL, '{');
+    adcgs_json_string(&j, "scene", output);
+    adcgs_json_string(&j, "kind", r->kind);
+    adcgs_json_int(&j, "pictures", r->pictures);
+    adcgs_json_int(&j, "posed", r->posed);
+    if (r->cameras) {
+        adcgs_json_int(&j, "cameras", r->cameras);
+        adcgs_json_int(&j, "cameras_posed", r->found);
+        adcgs_json_real(&j, "spread", r->spread);
+    }
+    adcgs_json_int(&j, "models", r->models);
+    adcgs_json_int(&j, "points", r->points);
+    adcgs_json_real(&j, "reprojection_error", r->error);
+    adcgs_json_real(&j, "track_length", r->track);
+    adcgs_json_real(&j, "seconds", r->seconds);
+    adcgs_json_int(&j, "width", r->width);
+    adcgs_json_int(&j, "height", r->height);
+    adcgs_json_close(&j);
+    return adcgs_json_write(&j, stdout, "standard output", error);
+}
+
+/** What better footage, or another look at it, would help. */
+static void warn(const adcgs_cli *cli, const adcgs_import_report *r)
+{
+    if (r->found < r->cameras)
+        adcgs_cli_note(cli, "of %u of %u cameras no pose was found: they are left out", r->cameras - r->found, r->cameras);
+    else if (!r->cameras && r->posed < POSED_WELL * r->pictures)
+        adcgs_cli_note(cli, "of %u of %u pictures no pose was found, and they are left out: sharper pictures that share more do "
+                       "better, or --frames more of a video", r->pictures - r->posed, r->pictures);
+    if (r->models > 1)
+        adcgs_cli_note(cli, "the pictures fell into %u scenes that share no points: the largest was taken", r->models);
+    if (r->error > ERROR_FINE)
+        adcgs_cli_note(cli, "points are %.1f pixels off on average, expected less than %g: poses or lens are not exact; try another "
+                       "--lens, or masks on what moves", r->error, ERROR_FINE);
+    if (r->track < TRACK_FINE)
+        adcgs_cli_note(cli, "a point is in %.1f pictures on average, expected %g or more: pictures share little", r->track,
+                       TRACK_FINE);
+    if (r->spread > SPREAD_FINE)
+        adcgs_cli_note(cli, "cameras' poses of different moments are %.1f %% of the rig's size apart: do they stand still?",
+                       100.0 * r->spread);
+    if (r->is_numbered)
+        adcgs_cli_note(cli, "names of the pictures only count: if they are frames of a video, --fps N keeps their times; now "
+                       "this is a scene in which nothing moves");
+}
+
+/* ---- Command line ---- */
+
+static const adcgs_cli program = {
+    .program = "adcgs-import",
+    .operands = "PHOTOS|VIDEO|VIDEOS...",
+    .summary = "Make a scene that adcgs-enc learns from, of pictures or videos whose cameras nobody knows.",
+    .details = "Operands are pictures or folders of pictures; or the video of one camera that moves; or videos of\n"
+               "cameras that stand and run in step. COLMAP finds the cameras.",
+    .min_operands = 1,
+    .max_operands = 100000,
+};
+
+/** -1 to go on, else the exit code to leave with. */
+static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
+{
+    static const char *const lenses[] = {"auto", "pinhole", "radial", "opencv", NULL};
+    adcgs_import_options *o = &a->import;
+    const adcgs_option options[] = {
+        {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &o->output, .value = "FOLDER",
+         .help = "the scene's folder, which is made (required)"},
+        {.name = "fps", .kind = ADCGS_OPTION_STRING, .target = &a->fps, .value = "N[/D]",
+         .help = "pictures are frames of a film, so many a second, in the\norder of their names (default: all of one time)"},
+        {.name = "frames", .kind = ADCGS_OPTION_INT, .target = &o->frames, .min = 3, .max = 10000, .value = "N",
+         .help = "take at most N frames of a camera that moves, evenly\n(default 300)"},
+        {.name = "side", .kind = ADCGS_OPTION_INT, .target = &o->side, .min = 64, .max = 16384, .value = "PIXELS",
+         .help = "reduce pictures that are wider or higher (default 1600)"},
+        {.name = "masks", .kind = ADCGS_OPTION_STRING, .target = &o->masks, .value = "FOLDER",
+         .help = "pictures' masks, by their names or by those of cameras:\nwhat is black there is neither matched nor learnt"},
+        {.name = "lens", .kind = ADCGS_OPTION_CHOICE, .target = &o->lens, .choices = lenses, .value = "KIND",
+         .help = "auto, pinhole, radial or opencv (default auto: opencv\nwhere cameras have pictures enough, else radial)"},
+        {.name = "test", .kind = ADCGS_OPTION_INT, .target = &o->test_every, .min = 0, .max = 10000, .value = "N",
+         .help = "put every Nth view, or camera that stands, aside for\ntesting (default 8; 0: none)"},
+        {.name = "colmap", .kind = ADCGS_OPTION_STRING, .target = &o->colmap, .value = "PROGRAM",
+         .help = "COLMAP, if it is not colmap on the path"},
+        {.name = "threads", .letter = 't', .kind = ADCGS_OPTION_INT, .target = &o->threads, .min = 0, .max = 256, .value = "N",
+         .help = "threads of COLMAP (default: one per CPU)"},
+        {.name = "json", .kind = ADCGS_OPTION_FLAG, .target = &a->json, .help = "print the result as one JSON object on stdout"},
+    };
+    int first;
+    cli->options = options;
+    cli->n_options = ADCGS_COUNTOF(options);
+    cli->quiet = &a->quiet;
+    const int code = adcgs_cli_parse(cli, argc, argv, &first);
+    cli->n_options = 0; /* the table ends with this function */
+    if (code >= 0)
+        return code;
+    o->inputs = argv + first;
+    o->n_inputs = argc - first;
+    if (!o->output || !*o->output)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "no output: give -o FOLDER");
+    if (a->fps && adcgs_fps_parse(a->fps, &o->fps))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--fps %.64s: expected frames per second from %g to %g, as 30, 29.97 or "
+                               "30000/1001", a->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
+    return -1;
+}
+
+static int import(const adcgs_cli *cli, const arguments *a)
+{
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_import_report report;
+    adcgs_progress progress;
+    adcgs_progress_init(&progress, cli);
+    adcgs_interrupt_catch();
+    const adcgs_status status = adcgs_import(&a->import, &progress, &report, &error);
+    adcgs_progress_clear(&progress);
+    if (status != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    warn(cli, &report);
+    if (!a->json)
+        print_text(&report, a->import.output);
+    else if (print_json(&report, a->import.output, &error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    return adcgs_cli_leave(cli, 0);
+}
+
+int main(int argc, char **argv)
+{
+    arguments a = {.import = {.colmap = "colmap", .side = SIDE, .frames = FRAMES, .test_every = TEST_EVERY}};
+    adcgs_cli cli = program;
+    const int code = parse(&cli, &a, argc, argv);
+    if (code >= 0)
+        return code;
+    char *output = strdup(a.import.output);
+    if (!output)
+        return adcgs_cli_error(&cli, ADCGS_ERR_MEMORY, "out of memory");
+    for (size_t n = strlen(output); n > 1 && output[n - 1] == '/'; n--) /* beside it, not in it, is what is unfinished */
+        output[n - 1] = 0;
+    a.import.output = output;
+    const int leave = import(&cli, &a);
+    free(output);
+    return leave;
+}
