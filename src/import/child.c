@@ -27,8 +27,10 @@ typedef struct listener {
 
 static void take_bytes(listener *l, const char *bytes, size_t n)
 {
-    if (l->log)
+    if (l->log) {
         fwrite(bytes, 1, n, l->log);
+        fflush(l->log); /* who waits may look */
+    }
     for (size_t i = 0; i < n; i++)
         if (bytes[i] == '\n' || bytes[i] == '\r') {
             l->text[l->n] = 0;
@@ -88,10 +90,8 @@ adcgs_status adcgs_child_run(char *const argv[], FILE *log, adcgs_child_line lin
     pid_t child;
     if (pipe2(ends, O_CLOEXEC))
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot start: %s", argv[0], strerror(errno));
-    if (log) {
+    if (log)
         write_command(log, argv);
-        fflush(log);
-    }
     const int reason = start(&child, argv, ends[1]);
     close(ends[1]);
     if (!reason)
@@ -103,8 +103,6 @@ adcgs_status adcgs_child_run(char *const argv[], FILE *log, adcgs_child_line lin
     while (waitpid(child, &state, 0) < 0)
         if (errno != EINTR)
             return adcgs_fail(error, ADCGS_ERR_IO, "%s: %s", argv[0], strerror(errno));
-    if (log)
-        fflush(log);
     *code = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
     return ADCGS_OK;
 }

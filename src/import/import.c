@@ -70,8 +70,8 @@ static adcgs_status write_stamp(const adcgs_import_job *job, char **text, size_t
     FILE *out = open_memstream(text, bytes);
     if (!out)
         return no_memory(job);
-    fprintf(out, "adcgs-import %s %d %d %d %d %u/%u\n", PACKAGE_VERSION, o->side, o->frames, o->lens, (int)job->shots.kind,
-            o->fps.num, o->fps.den);
+    fprintf(out, "adcgs-import %s %d %d %d %d %d %u/%u\n", PACKAGE_VERSION, o->side, o->frames, o->lens, o->own_lens,
+            (int)job->shots.kind, o->fps.num, o->fps.den);
     if (o->masks)
         stamp_file(out, o->masks);
     for (uint32_t i = 0; i < job->shots.n_cameras; i++)
@@ -131,7 +131,7 @@ static adcgs_status finish(const adcgs_import_job *job)
     if (job->shots.kind == ADCGS_FOOTAGE_RIG)
         ADCGS_TRY(remove_below(job, "images"));
     for (uint32_t i = 0; job->shots.kind == ADCGS_FOOTAGE_RIG && job->options->masks && i < job->shots.n_cameras; i++) {
-        char *name = adcgs_path("masks/%s", job->shots.cameras[i].name);
+        char *name = adcgs_path("masks/%s", job->shots.cameras[i].folder);
         const adcgs_status status = name ? remove_below(job, name) : no_memory(job);
         free(name);
         ADCGS_TRY(status);

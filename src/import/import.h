@@ -29,6 +29,7 @@ typedef struct adcgs_import_options {
     int frames;          /**< of a moving camera's video at most */
     int test_every;      /**< every so many views, or cameras that stand, for testing; 0: none */
     int lens;            /**< adcgs_import_lens */
+    int own_lens;        /**< each camera of a rig has intrinsics of its own */
     int threads;         /**< of COLMAP; 0: one per processor */
     adcgs_fps fps;       /**< of pictures that were taken one after the other; not known: at one time */
 } adcgs_import_options;

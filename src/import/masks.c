@@ -89,7 +89,7 @@ adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_shot *shot)
     if (!from)
         return ADCGS_OK;
     job->has_masks = 1;
-    char *to = adcgs_path("%s/masks/%s/%s.%s.png", job->folder, job->shots.cameras[shot->camera].name, shot->stem, shot->end);
+    char *to = adcgs_path("%s/masks/%s/%s.%s.png", job->folder, job->shots.cameras[shot->camera].folder, shot->stem, shot->end);
     adcgs_status status = !to                  ? adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", from)
                           : adcgs_is_there(to) ? ADCGS_OK
                                                : make_mask(job, shot, from, to);

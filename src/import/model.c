@@ -78,7 +78,7 @@ static int by_name(const void *name, const void *image)
 static const adcgs_colmap_image *find_image(const adcgs_poses *poses, const adcgs_shots *shots, const adcgs_shot *shot)
 {
     char name[2 * ADCGS_SHOT_NAME + 16];
-    snprintf(name, sizeof name, "%s/%s.%s", shots->cameras[shot->camera].name, shot->stem, shot->end);
+    snprintf(name, sizeof name, "%s/%s.%s", shots->cameras[shot->camera].folder, shot->stem, shot->end);
     return poses->model.n_images ? bsearch(name, poses->model.images, poses->model.n_images, sizeof *poses->model.images, by_name)
                                  : NULL;
 }

@@ -124,7 +124,7 @@ static adcgs_status make_shots(adcgs_import_job *job, uint32_t camera, uint32_t 
 
 static adcgs_status make_camera_folder(const adcgs_import_job *job, const char *parent, uint32_t camera)
 {
-    char *name = adcgs_path("%s/%s", parent, job->shots.cameras[camera].name);
+    char *name = adcgs_path("%s/%s", parent, job->shots.cameras[camera].folder);
     const adcgs_status status = name ? adcgs_import_make_folder(job, name)
                                      : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", parent);
     free(name);

@@ -27,7 +27,7 @@ adcgs_status adcgs_import_make_folder(const adcgs_import_job *job, const char *n
 adcgs_status adcgs_import_goes_on(const adcgs_import_job *job);
 
 /**
- * images/CAMERA/STEM.END of all shots, and masks/CAMERA/STEM.END.png, as COLMAP calls them, of those that have one.
+ * images/FOLDER/STEM.END of all shots, and masks/FOLDER/STEM.END.png, as COLMAP calls them, of those that have one.
  * What is there already, of a run before, stays.
  */
 adcgs_status adcgs_import_pictures(adcgs_import_job *job);

@@ -127,9 +127,14 @@ adcgs_status adcgs_import_ask(adcgs_colmap_program *out, const adcgs_import_opti
 static const char *lens_model(const adcgs_import_job *job)
 {
     static const char *const models[] = {NULL, "PINHOLE", "SIMPLE_RADIAL", "OPENCV"};
+    const adcgs_shot_camera *cameras = job->shots.cameras;
     int has_many = 1;
-    for (uint32_t i = 0; i < job->shots.n_cameras; i++)
-        has_many &= job->shots.cameras[i].shots >= OPENCV_LEAST;
+    for (uint32_t i = 0; i < job->shots.n_cameras; i++) {
+        uint32_t sharing = 0;
+        for (uint32_t j = 0; j < job->shots.n_cameras; j++)
+            sharing += strcmp(cameras[i].folder, cameras[j].folder) ? 0 : cameras[j].shots;
+        has_many &= sharing >= OPENCV_LEAST;
+    }
     return models[job->options->lens ? job->options->lens : has_many ? ADCGS_IMPORT_OPENCV : ADCGS_IMPORT_RADIAL];
 }
 

@@ -25,7 +25,7 @@ void adcgs_shots_clear(adcgs_shots *shots)
 
 char *adcgs_shot_path(const adcgs_shots *shots, const adcgs_shot *shot, const char *folder)
 {
-    return adcgs_path("%s/%s/%s.%s", folder, shots->cameras[shot->camera].name, shot->stem, shot->end);
+    return adcgs_path("%s/%s/%s.%s", folder, shots->cameras[shot->camera].folder, shot->stem, shot->end);
 }
 
 void adcgs_shot_fit(int *width, int *height, int side)
@@ -86,7 +86,7 @@ adcgs_shot *adcgs_shots_add(adcgs_shots *shots, uint32_t camera, const char *ste
     adcgs_shot *shot = &all[shots->n];
     *shot = (adcgs_shot){.camera = camera, .turn = ADCGS_PHOTO_UPRIGHT};
     clean_name(shot->stem, stem);
-    if (shots->kind == ADCGS_FOOTAGE_PICTURES) /* frames have numbers */
+    if (shots->kind != ADCGS_FOOTAGE_FILM || !shots->cameras[camera].video) /* frames of one film have numbers */
         make_unique(shot->stem, all[0].stem, shots->n, sizeof *all);
     shots->n++;
     shots->cameras[camera].shots++;
@@ -103,6 +103,7 @@ adcgs_shot_camera *adcgs_shots_add_camera(adcgs_shots *shots, const char *name, 
     *camera = (adcgs_shot_camera){.frames = 0};
     clean_name(camera->name, name);
     make_unique(camera->name, all[0].name, shots->n_cameras, sizeof *all);
+    memcpy(camera->folder, camera->name, sizeof camera->folder);
     shots->n_cameras++;
     return camera;
 }

@@ -9,9 +9,10 @@
 
 typedef enum adcgs_footage_kind { ADCGS_FOOTAGE_PICTURES, ADCGS_FOOTAGE_FILM, ADCGS_FOOTAGE_RIG } adcgs_footage_kind;
 
-/** A camera, or what may be one: its pictures share their intrinsics. */
+/** A camera, or what may be one. */
 typedef struct adcgs_shot_camera {
-    char name[ADCGS_SHOT_NAME]; /**< of the folder of its pictures; no two are the same */
+    char name[ADCGS_SHOT_NAME];   /**< no two are the same */
+    char folder[ADCGS_SHOT_NAME]; /**< of its pictures: those in one folder share their intrinsics */
     char *video;                /**< that it filmed; NULL: pictures */
     int64_t frames;             /**< of the video */
     adcgs_fps rate;
@@ -44,7 +45,7 @@ typedef struct adcgs_shots {
 adcgs_status adcgs_shots_list(adcgs_shots *out, const adcgs_import_options *options, adcgs_progress *progress,
                               adcgs_error *error);
 void adcgs_shots_clear(adcgs_shots *shots);
-/** Its picture below a folder, "CAMERA/STEM.END", from malloc(); NULL without memory. */
+/** Its picture below a folder, "FOLDER/STEM.END", from malloc(); NULL without memory. */
 char *adcgs_shot_path(const adcgs_shots *shots, const adcgs_shot *shot, const char *folder);
 /** Width and height that a picture is to have, of at most so many pixels a side. */
 void adcgs_shot_fit(int *width, int *height, int side);
@@ -59,6 +60,7 @@ adcgs_shot_camera *adcgs_shots_add_camera(adcgs_shots *shots, const char *name, 
 adcgs_status adcgs_shots_pictures(adcgs_shots *shots, const adcgs_import_options *options, adcgs_progress *progress,
                                   adcgs_error *error);
 adcgs_status adcgs_shots_film(adcgs_shots *shots, const char *path, const adcgs_import_options *options, adcgs_error *error);
-adcgs_status adcgs_shots_rig(adcgs_shots *shots, char *const *paths, int n, adcgs_progress *progress, adcgs_error *error);
+adcgs_status adcgs_shots_rig(adcgs_shots *shots, const adcgs_import_options *options, adcgs_progress *progress,
+                             adcgs_error *error);
 
 #endif

@@ -20,5 +20,5 @@ adcgs_status adcgs_shots_list(adcgs_shots *out, const adcgs_import_options *opti
         return adcgs_fail(error, ADCGS_ERR_USAGE, "--fps is for pictures: a video says itself when its frames were taken");
     return !videos       ? adcgs_shots_pictures(out, options, progress, error)
            : videos == 1 ? adcgs_shots_film(out, options->inputs[0], options, error)
-                         : adcgs_shots_rig(out, options->inputs, options->n_inputs, progress, error);
+                         : adcgs_shots_rig(out, options, progress, error);
 }

@@ -13,7 +13,8 @@
 #define MOMENTS 3 /* of cameras that stand: what one moment has too little of to tell where they are, others may have */
 
 /** A camera for a video that is open. */
-static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs_video *video, adcgs_error *error)
+static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs_video *video, const adcgs_import_options *options,
+                               adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
     char stem[256];
@@ -21,6 +22,8 @@ static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs
     adcgs_shot_camera *camera = adcgs_shots_add_camera(shots, stem, error);
     if (!camera)
         return error->status;
+    if (shots->kind == ADCGS_FOOTAGE_RIG && !options->own_lens) /* cameras of a rig are of one make, as a rule */
+        snprintf(camera->folder, sizeof camera->folder, "lens-%dx%d", info->width, info->height);
     camera->frames = info->frames;
     camera->rate = info->rate;
     camera->video = strdup(path);
@@ -43,11 +46,12 @@ static adcgs_status add_frame(adcgs_shots *shots, const adcgs_video *video, int6
 }
 
 /** So many frames, the first and others at an even step behind it. */
-static adcgs_status add_frames(adcgs_shots *shots, const char *path, const adcgs_video *video, int64_t most, adcgs_error *error)
+static adcgs_status add_frames(adcgs_shots *shots, const char *path, const adcgs_video *video, const adcgs_import_options *options,
+                               adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
-    const int64_t step = (info->frames + most - 1) / most;
-    ADCGS_TRY(add_camera(shots, path, video, error));
+    const int64_t step = (info->frames + options->frames - 1) / options->frames;
+    ADCGS_TRY(add_camera(shots, path, video, options, error));
     for (int64_t frame = 0; frame < info->frames; frame += step)
         ADCGS_TRY(add_frame(shots, video, frame, error));
     shots->rate = adcgs_fps_divide(info->rate, step);
@@ -59,16 +63,17 @@ adcgs_status adcgs_shots_film(adcgs_shots *shots, const char *path, const adcgs_
     adcgs_video *video;
     shots->kind = ADCGS_FOOTAGE_FILM;
     ADCGS_TRY(adcgs_video_open(&video, path, error));
-    const adcgs_status status = add_frames(shots, path, video, options->frames, error);
+    const adcgs_status status = add_frames(shots, path, video, options, error);
     adcgs_video_close(&video);
     return status;
 }
 
 /** Frames at moments that all cameras have, if they are as long as the first. */
-static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcgs_video *video, adcgs_error *error)
+static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcgs_video *video, const adcgs_import_options *options,
+                                adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
-    ADCGS_TRY(add_camera(shots, path, video, error));
+    ADCGS_TRY(add_camera(shots, path, video, options, error));
     const adcgs_shot_camera *first = &shots->cameras[0];
     if (info->frames != first->frames || fabs(adcgs_fps_value(info->rate) / adcgs_fps_value(first->rate) - 1.0) > 0.001)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %lld frames, %.6g a second, but %s has %lld, %.6g: expected videos that "
@@ -83,14 +88,17 @@ static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcg
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_shots_rig(adcgs_shots *shots, char *const *paths, int n, adcgs_progress *progress, adcgs_error *error)
+adcgs_status adcgs_shots_rig(adcgs_shots *shots, const adcgs_import_options *options, adcgs_progress *progress,
+                             adcgs_error *error)
 {
+    char *const *const paths = options->inputs;
+    const int n = options->n_inputs;
     shots->kind = ADCGS_FOOTAGE_RIG;
     for (int i = 0; i < n; i++) {
         adcgs_video *video;
         adcgs_progress_show(progress, "looking   %6d/%d videos", i, n);
         ADCGS_TRY(adcgs_video_open(&video, paths[i], error));
-        const adcgs_status status = add_moments(shots, paths[i], video, error);
+        const adcgs_status status = add_moments(shots, paths[i], video, options, error);
         adcgs_video_close(&video);
         ADCGS_TRY(status);
     }

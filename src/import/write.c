@@ -67,9 +67,9 @@ static adcgs_status write_footage(adcgs_json *json, const adcgs_import_job *job,
         ADCGS_TRY(write_file(json, "video", job, adcgs_path("videos/%s.%s", camera->name, adcgs_extension(camera->video))));
         return write_file(json, "masks", job, adcgs_path("masks/%s.png", camera->name));
     }
-    ADCGS_TRY(write_file(json, "images", job, adcgs_path("images/%s/%s.%s", camera->name, shot->stem, shot->end)));
+    ADCGS_TRY(write_file(json, "images", job, adcgs_path("images/%s/%s.%s", camera->folder, shot->stem, shot->end)));
     write_number(json, "time_offset", shot->time);
-    return write_file(json, "masks", job, adcgs_path("masks/%s/%s.%s.png", camera->name, shot->stem, shot->end));
+    return write_file(json, "masks", job, adcgs_path("masks/%s/%s.%s.png", camera->folder, shot->stem, shot->end));
 }
 
 static adcgs_status write_camera(adcgs_json *json, const adcgs_import_job *job, const adcgs_posed *posed)

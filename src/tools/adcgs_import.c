@@ -76,8 +76,8 @@ static void warn(const adcgs_cli *cli, const adcgs_import_report *r)
     if (r->models > 1)
         adcgs_cli_note(cli, "the pictures fell into %u scenes that share no points: the largest was taken", r->models);
     if (r->error > ERROR_FINE)
-        adcgs_cli_note(cli, "points are %.1f pixels off on average, expected less than %g: poses or lens are not exact; try another "
-                       "--lens, or masks on what moves", r->error, ERROR_FINE);
+        adcgs_cli_note(cli, "points are %.1f pixels off on average, expected less than %g: poses or lens are not exact; try "
+                       "another --lens, or masks on what moves", r->error, ERROR_FINE);
     if (r->track < TRACK_FINE)
         adcgs_cli_note(cli, "a point is in %.1f pictures on average, expected %g or more: pictures share little", r->track,
                        TRACK_FINE);
@@ -119,6 +119,8 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
          .help = "pictures' masks, by their names or by those of cameras:\nwhat is black there is neither matched nor learnt"},
         {.name = "lens", .kind = ADCGS_OPTION_CHOICE, .target = &o->lens, .choices = lenses, .value = "KIND",
          .help = "auto, pinhole, radial or opencv (default auto: opencv\nwhere cameras have pictures enough, else radial)"},
+        {.name = "own-lens", .kind = ADCGS_OPTION_FLAG, .target = &o->own_lens,
+         .help = "each camera of a rig has a lens unlike the others'"},
         {.name = "test", .kind = ADCGS_OPTION_INT, .target = &o->test_every, .min = 0, .max = 10000, .value = "N",
          .help = "put every Nth view, or camera that stands, aside for\ntesting (default 8; 0: none)"},
         {.name = "colmap", .kind = ADCGS_OPTION_STRING, .target = &o->colmap, .value = "PROGRAM",

@@ -1,0 +1,147 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# adcgs-import with a stand-in for COLMAP that knows where the cameras are: what it is called with, poses, times, tests, masks,
+# turned and large pictures, rigs, and everything that can go wrong. With the true one where it is installed, if ADCGS_FULL=1.
+set -u
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-import adcgs-enc tests/cli/make-scenes
+top=$(cd "${srcdir:-.}" && pwd)
+export FAKE=$dir/fake
+fake=$top/tests/cli/fake-colmap
+tests/cli/make-scenes "$dir" >"$dir/kinds" || { bad "make-scenes"; exit 1; }
+
+# import CODE TEXT ARGUMENTS...: of adcgs-import with the stand-in, into $dir/s, which is not there before.
+import()
+{
+    code=$1 text=$2
+    shift 2
+    rm -rf "$dir/s" "$FAKE.calls"
+    expect "$code" "$text" ./adcgs-import --colmap "$fake" -o "$dir/s" "$@"
+}
+# plain: the scene file in one line, without blanks, tiny numbers as 0.
+plain() { tr -d ' \n' <"$dir/s/scene.json" | sed -E 's/-?[0-9.]+e-[0-9]+/0/g; s/-0([],])/0\1/g'; }
+has() { plain | grep -qF -- "$1" || { bad "no $1 in the scene file"; cat "$dir/s/scene.json"; }; }
+called() { grep -q -- "$1" "$FAKE.calls" || { bad "COLMAP was not called with $1"; cat "$FAKE.calls"; }; }
+none() { [ ! -e "$1" ] || bad "$1 is there"; }
+
+# Pictures of the LLFF scene: 24x16, numbered.
+pictures=$dir/llff/images
+first=$(find "$pictures" -type f | sort | head -n 1)
+stem=${first##*/} stem=${stem%.*}
+n=$(find "$pictures" -type f | wc -l)
+import 0 'names of the pictures only count' "$pictures"
+grep -q "^$dir/s: $n of $n pictures, 0.00 s; 24x16$" "$dir/out" || { bad "report"; cat "$dir/out"; }
+grep -q '^poses: 20 points, 0.50 pixels off on average, each in 4.0 pictures$' "$dir/out" || { bad "quality"; cat "$dir/out"; }
+none "$dir/s.importing"
+none "$dir/s/sparse"
+none "$dir/s/colmap.log"
+# The third camera is at x = 2; its y, which is down, has become -z, and what it looks along y.
+has '"camera_to_world":[[1,0,0,2],[0,0,1,0],[0,-1,0,0]]'
+has '"width":24,"height":16,"fx":20,"fy":21,"cx":12,"cy":8,"k1":0.01,"camera_to_world"'
+has '"up":"z","points":"points.ply"'
+[ "$(plain | grep -o '"split":"test"' | wc -l)" -eq $(((n + 3) / 8)) ] || bad "views for testing"
+plain | grep -q 'time_offset\|frame_rate' && bad "pictures of one time have times"
+called 'feature_extractor .*--ImageReader.single_camera_per_folder 1 .*--ImageReader.camera_model OPENCV .*--SiftExtraction.use_gpu 0'
+called 'exhaustive_matcher .*--SiftMatching.use_gpu 0'
+expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
+
+# A film: times, and every second frame of more than are wanted.
+import 0 '' --fps 10 --test 2 --lens radial --threads 3 "$pictures"
+has '"frame_rate":"10/1"'
+has '"time_offset":0.2,'
+[ "$(plain | grep -o '"split":"test"' | wc -l)" -eq $((n / 2)) ] || bad "every second view for testing"
+called 'camera_model SIMPLE_RADIAL .*num_threads 3'
+FAKE_HOW=new import 0 '' --fps 30000/1001 --test 0 --json "$pictures"
+called '--FeatureExtraction.use_gpu 0'
+called '--FeatureMatching.use_gpu 0'
+grep -q '"kind": "film"' "$dir/out" || { bad "JSON"; cat "$dir/out"; }
+plain | grep -q split && bad "views for testing with --test 0"
+
+# Of two models the larger one; a picture that has no pose is left out.
+FAKE_HOW=two import 0 'fell into 2 scenes' --fps 10 "$pictures"
+grep -q "$((n - 1)) of $n pictures" "$dir/out" || { bad "the larger model"; cat "$dir/out"; }
+FAKE_HOW=loose import 0 'points are 2.5 pixels off' --fps 10 "$pictures"
+
+# Turned by EXIF, and too large: 1036x776 lies on its side, 1600 pixels are enough for it, 200 are not.
+mkdir "$dir/turned" "$dir/masks"
+for i in 1 2 3; do
+    {
+        head -c 2 "$top/doc/demo.jpg"
+        printf '\377\341\0\042Exif\0\0MM\0\052\0\0\0\010\0\001\001\022\0\003\0\0\0\001\0\006\0\0\0\0\0\0'
+        tail -c +3 "$top/doc/demo.jpg"
+    } >"$dir/turned/view $i.jpg"
+done
+import 0 '' "$dir/turned" --side 200
+grep -q '; 150x200$' "$dir/out" || { bad "turned and reduced"; cat "$dir/out"; }
+cp "$top/doc/demo.jpg" "$dir/turned/upright.jpg"
+import 0 '' "$dir/turned"
+grep -q '; 1036x776$' "$dir/out" || { bad "not turned, not reduced"; cat "$dir/out"; }
+cmp -s "$top/doc/demo.jpg" "$dir/s/images/camera1/upright.jpg" || bad "a picture that is upright is not as it was given"
+[ "$(ls "$dir/s/images")" = "$(printf 'camera1\ncamera2')" ] || bad "pictures that lie and stand are of one camera"
+[ -f "$dir/s/images/camera2/view_1.jpg" ] || bad "names of pictures"
+
+# Masks: one is there, for COLMAP and for the scene.
+{ printf 'P6 24 16 255\n'; head -c 1152 /dev/zero; } >"$dir/masks/$stem.ppm"
+import 0 '' --fps 10 --masks "$dir/masks" "$pictures"
+called '--ImageReader.mask_path'
+[ "$(plain | grep -o '"masks":' | wc -l)" -eq 1 ] || { bad "masks of the scene"; cat "$dir/s/scene.json"; }
+expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
+{ printf 'P6 4 16 255\n'; head -c 192 /dev/zero; } >"$dir/masks/$stem.ppm"
+import 4 'another shape' --fps 10 --masks "$dir/masks" "$pictures"
+rm "$dir"/masks/*
+import 4 'no mask there has the name' --fps 10 --masks "$dir/masks" "$pictures"
+rm -rf "$dir/s.importing"
+
+# Videos: of one camera that moves, and of some that stand.
+if grep -q '^neu3d-videos' "$dir/kinds"; then
+    import 0 '' "$dir/neu3d-videos/cam03.mp4" --frames 3000
+    has '"name":"cam03_000000","images":"images/cam03/cam03_000000.jpg"'
+    has '"name":"cam03_000002","images":"images/cam03/cam03_000002.jpg","time_offset":0.08,'
+    has '"frame_rate":"25/1"'
+    import 0 '' "$dir"/neu3d-videos/cam*.mp4
+    grep -q "^$dir/s: 9 of 9 cameras that stand, 0.12 s" "$dir/out" || { bad "rig"; cat "$dir/out"; }
+    has '"name":"cam01","video":"videos/cam01.mp4"'
+    has '"camera_to_world":[[1,0,0,4],[0,0,1,0],[0,-1,0,0]]' # of its three pictures at 3, 4 and 5
+    cmp -s "$dir/neu3d-videos/cam01.mp4" "$dir/s/videos/cam01.mp4" || bad "the video is not the one that was given"
+    none "$dir/s/images"
+    expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
+    import 2 'not both' "$dir/neu3d-videos/cam03.mp4" "$pictures"
+    import 2 'says itself' --fps 3 "$dir/neu3d-videos/cam03.mp4"
+else
+    echo "skipped: videos: this build writes none"
+fi
+
+# What goes wrong, in one line; what COLMAP said stays, and what was made before is gone on with.
+FAKE_HOW=fail import 4 'mapper failed with exit code 1: ERROR: no space for cameras; what it said is in .*s.importing/colmap.log' "$pictures"
+grep -q 'no space for cameras' "$dir/s.importing/colmap.log" || bad "no log"
+none "$dir/s"
+echo old >"$dir/s.importing/images/camera1/$stem.png"
+import 0 '' --fps 10 "$pictures"
+grep -rq old "$dir/s/images" && bad "footage of other options was gone on with"
+FAKE_HOW=none import 4 'COLMAP found no cameras' "$pictures"
+echo mine >"$dir/s.importing/images/camera1/more.txt"
+FAKE_HOW=few import 4 "COLMAP found where 2 of $n pictures were, expected at least 3" "$pictures"
+[ -f "$dir/s.importing/images/camera1/more.txt" ] || bad "the same footage was begun anew"
+rm -rf "$dir/s.importing"
+import 4 'expected at least three' "$(find "$pictures" -type f | head -n 1)"
+import 3 'nowhere' "$dir/nowhere"
+import 4 'no picture in this folder' "$dir/masks"
+printf 'no picture' >"$dir/masks/a.jpg"
+import 4 'a.jpg' "$dir/masks"
+mkdir "$dir/s.importing" && touch "$dir/s.importing/precious"
+import 2 'not what an import has left' "$pictures"
+[ -f "$dir/s.importing/precious" ] || bad "a folder of others was emptied"
+rm -rf "$dir/s.importing"
+expect 2 'is there already' ./adcgs-import --colmap "$fake" -o "$dir/masks" "$pictures"
+expect 2 'give -o' ./adcgs-import "$pictures"
+expect 5 'install COLMAP' ./adcgs-import --colmap "$dir/no-such" -o "$dir/s" "$pictures"
+expect 5 'not COLMAP\|no --database_path' ./adcgs-import --colmap true -o "$dir/s" "$pictures"
+
+# An interrupt ends COLMAP, too.
+FAKE_HOW=hang ./adcgs-import --colmap "$fake" -o "$dir/s" "$pictures" >"$dir/out" 2>"$dir/err" &
+pid=$!
+while kill -0 $pid 2>/dev/null && ! grep -qs Processed "$dir/s.importing/colmap.log"; do sleep 0.05; done
+kill -INT $pid
+wait $pid
+[ $? -eq 3 ] && grep -q 'interrupted; the same command goes on' "$dir/err" || { bad "interrupt"; cat "$dir/err"; }
+[ $failed -eq 0 ]
