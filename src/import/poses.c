@@ -123,18 +123,16 @@ adcgs_status adcgs_import_ask(adcgs_colmap_program *out, const adcgs_import_opti
 
 /* ---- The steps ---- */
 
-/** What can be told of the cameras' lenses from what there is. */
+/**
+ * What can be told of the cameras' lenses from what there is: of those of a rig, which see the scene from few places, a model of
+ * many numbers is whatever makes few pictures agree.
+ */
 static const char *lens_model(const adcgs_import_job *job)
 {
     static const char *const models[] = {NULL, "PINHOLE", "SIMPLE_RADIAL", "OPENCV"};
-    const adcgs_shot_camera *cameras = job->shots.cameras;
-    int has_many = 1;
-    for (uint32_t i = 0; i < job->shots.n_cameras; i++) {
-        uint32_t sharing = 0;
-        for (uint32_t j = 0; j < job->shots.n_cameras; j++)
-            sharing += strcmp(cameras[i].folder, cameras[j].folder) ? 0 : cameras[j].shots;
-        has_many &= sharing >= OPENCV_LEAST;
-    }
+    int has_many = job->shots.kind != ADCGS_FOOTAGE_RIG;
+    for (uint32_t i = 0; i < job->shots.n_cameras; i++)
+        has_many &= job->shots.cameras[i].shots >= OPENCV_LEAST;
     return models[job->options->lens ? job->options->lens : has_many ? ADCGS_IMPORT_OPENCV : ADCGS_IMPORT_RADIAL];
 }
 

@@ -9,7 +9,6 @@
 #include "io/photo.h"
 #include "layouts/listing.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 #include <strings.h>
 
@@ -78,29 +77,6 @@ static adcgs_status add_folder(adcgs_shots *shots, const char *folder, const adc
     return status;
 }
 
-/** The number at the end of a name, and how much of the name is before it; -1 without one. */
-static long long number_of(const char *stem, size_t *before)
-{
-    *before = strlen(stem);
-    while (*before && isdigit((unsigned char)stem[*before - 1]))
-        --*before;
-    return stem[*before] ? strtoll(stem + *before, NULL, 10) : -1;
-}
-
-/** Names that only count, in even steps, are those of frames. */
-static int only_count(const adcgs_shots *shots)
-{
-    size_t before, other;
-    const adcgs_shot *s = shots->shots;
-    if (shots->n < 3)
-        return 0;
-    const long long first = number_of(s[0].stem, &before), step = number_of(s[1].stem, &other) - first;
-    for (uint32_t i = 0; i < shots->n; i++)
-        if (number_of(s[i].stem, &other) != first + step * i || other != before || strncmp(s[i].stem, s[0].stem, before))
-            return 0;
-    return first >= 0 && step > 0;
-}
-
 adcgs_status adcgs_shots_pictures(adcgs_shots *shots, const adcgs_import_options *options, adcgs_progress *progress,
                                   adcgs_error *error)
 {
@@ -109,7 +85,10 @@ adcgs_status adcgs_shots_pictures(adcgs_shots *shots, const adcgs_import_options
     for (int i = 0; i < options->n_inputs; i++)
         ADCGS_TRY(adcgs_is_folder(options->inputs[i]) ? add_folder(shots, options->inputs[i], options, progress, error)
                                                       : add_picture(shots, options->inputs[i], options, error));
-    shots->is_numbered = only_count(shots);
+    adcgs_counting counting = {.n = 0};
+    for (uint32_t i = 0; i < shots->n; i++)
+        adcgs_counting_add(&counting, shots->shots[i].stem);
+    shots->is_numbered = adcgs_counting_holds(&counting);
     return shots->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u pictures, expected at least three",
                                                  options->inputs[0], shots->n);
 }

@@ -13,8 +13,8 @@
 #define MOMENTS 3 /* of cameras that stand: what one moment has too little of to tell where they are, others may have */
 
 /** A camera for a video that is open. */
-static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs_video *video, const adcgs_import_options *options,
-                               adcgs_error *error)
+static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs_video *video,
+                               const adcgs_import_options *options, adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
     char stem[256];
@@ -46,8 +46,8 @@ static adcgs_status add_frame(adcgs_shots *shots, const adcgs_video *video, int6
 }
 
 /** So many frames, the first and others at an even step behind it. */
-static adcgs_status add_frames(adcgs_shots *shots, const char *path, const adcgs_video *video, const adcgs_import_options *options,
-                               adcgs_error *error)
+static adcgs_status add_frames(adcgs_shots *shots, const char *path, const adcgs_video *video,
+                               const adcgs_import_options *options, adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
     const int64_t step = (info->frames + options->frames - 1) / options->frames;
@@ -69,8 +69,8 @@ adcgs_status adcgs_shots_film(adcgs_shots *shots, const char *path, const adcgs_
 }
 
 /** Frames at moments that all cameras have, if they are as long as the first. */
-static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcgs_video *video, const adcgs_import_options *options,
-                                adcgs_error *error)
+static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcgs_video *video,
+                                const adcgs_import_options *options, adcgs_error *error)
 {
     const adcgs_video_info *info = adcgs_video_get_info(video);
     ADCGS_TRY(add_camera(shots, path, video, options, error));

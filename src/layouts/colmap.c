@@ -128,6 +128,15 @@ static void set_pose(adcgs_scene_view *view, const adcgs_colmap_image *image)
     set_name(&view->camera, image->name);
 }
 
+/** Its mask in masks/, by the picture's name, whole or without its end, if there is one. */
+static adcgs_status add_mask(reader *r, const char *name, adcgs_scene_view *view)
+{
+    char *folder = adcgs_path("%s/masks/", r->scene->directory);
+    const adcgs_status status = folder ? find_in(r, folder, name, &view->mask) : no_memory(r);
+    free(folder);
+    return status;
+}
+
 /** The first picture of a camera tells the size of them all. */
 static adcgs_status add_picture(reader *r, const adcgs_colmap_image *image, adcgs_split split)
 {
@@ -153,7 +162,8 @@ static adcgs_status add_picture(reader *r, const adcgs_colmap_image *image, adcg
     adcgs_scene_view view = *calibrated;
     set_pose(&view, image);
     view.path = path;
-    return adcgs_scene_append(r->scene, split, &view, r->scene->directory, r->error);
+    ADCGS_TRY(adcgs_scene_append(r->scene, split, &view, r->scene->directory, r->error));
+    return add_mask(r, image->name, &r->scene->views[split][r->scene->n_views[split] - 1]);
 }
 
 static adcgs_status add_pictures(reader *r)
@@ -163,6 +173,13 @@ static adcgs_status add_pictures(reader *r)
         for (size_t i = 0; i < r->model.n_images; i++)
             if (split == (i % TEST_EVERY == 0 ? ADCGS_SPLIT_TEST : ADCGS_SPLIT_TRAIN))
                 ADCGS_TRY(add_picture(r, &r->model.images[i], (adcgs_split)split));
+    adcgs_counting counting = {.n = 0};
+    for (size_t i = 0; i < r->model.n_images; i++) {
+        adcgs_camera named;
+        set_name(&named, r->model.images[i].name);
+        adcgs_counting_add(&counting, named.name);
+    }
+    r->scene->counts = adcgs_counting_holds(&counting);
     return adcgs_frames_keep(r->scene, r->frames, r->scene->directory, r->error);
 }
 

@@ -9,6 +9,8 @@
  * - With a video for each image, videos/NAME.mp4, videos/STEM.mp4 or STEM.mp4 (STEM is NAME without its extension; .mkv, .mov
  *   and .webm do as well), the images are fixed cameras. The first by name is for testing, the others are for training.
  *
+ * Masks lie in masks/ under the names of the pictures, with ".png" behind them, as COLMAP takes them, or without their own end.
+ *
  * The model's points are the scene's, with their colours; where tracks are there, those that fewer than two images for training
  * have seen are left out.
  */

@@ -87,3 +87,30 @@ void adcgs_stem(char *out, size_t size, const char *path)
     if (dot && dot != out)
         *dot = 0;
 }
+
+#define COUNTING_LEAST 3
+
+void adcgs_counting_add(adcgs_counting *counting, const char *stem)
+{
+    size_t before = strlen(stem);
+    while (before && stem[before - 1] >= '0' && stem[before - 1] <= '9')
+        before--;
+    const long long number = strtoll(stem + before, NULL, 10);
+    if (!stem[before] || before >= sizeof counting->before)
+        counting->is_other = 1;
+    else if (!counting->n)
+        snprintf(counting->before, sizeof counting->before, "%.*s", (int)before, stem);
+    else if (strlen(counting->before) != before || strncmp(stem, counting->before, before))
+        counting->is_other = 1;
+    else if (counting->n == 1)
+        counting->step = number - counting->last;
+    else if (number - counting->last != counting->step)
+        counting->is_other = 1;
+    counting->last = number;
+    counting->n++;
+}
+
+int adcgs_counting_holds(const adcgs_counting *counting)
+{
+    return counting->n >= COUNTING_LEAST && counting->step > 0 && !counting->is_other;
+}

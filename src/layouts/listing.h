@@ -20,4 +20,16 @@ int adcgs_is_image_name(const char *name);
 /** A name without folder and extension, cut where out ends. */
 void adcgs_stem(char *out, size_t size, const char *path);
 
+/** Names that come one after the other. All zero: none yet. */
+typedef struct adcgs_counting {
+    char before[64];       /**< what they all begin with */
+    long long last, step;  /**< of their numbers */
+    uint32_t n;
+    int is_other;          /**< one of them is no text with a number behind it, or not the next */
+} adcgs_counting;
+
+void adcgs_counting_add(adcgs_counting *counting, const char *stem);
+/** Whether there are some, and they are one text with numbers behind it that go up in even steps, as those of frames. */
+int adcgs_counting_holds(const adcgs_counting *counting);
+
 #endif

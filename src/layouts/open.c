@@ -11,8 +11,10 @@
 #include "data/pose.h"
 #include "io/file.h"
 #include "io/splats.h"
+#include "io/video.h"
 #include "layouts/colmap.h"
 #include "layouts/hypernerf.h"
+#include "layouts/listing.h"
 #include "layouts/llff.h"
 #include "layouts/scene_file.h"
 #include "layouts/splat_file.h"
@@ -183,6 +185,19 @@ static int is_transforms(const char *folder)
     return adcgs_is_there_at("%s/transforms_train.json", folder) || adcgs_is_there_at("%s/transforms.json", folder);
 }
 
+/** Is there scene.json, and is it ours? */
+static int has_scene_file(const char *folder)
+{
+    adcgs_error unused;
+    json_t *root = NULL;
+    char *path = adcgs_path("%s/scene.json", folder);
+    const int is_ours = adcgs_is_there(path) && adcgs_json_load(&root, path, &unused) == ADCGS_OK &&
+                        json_object_get(root, "adcgs_scene") != NULL;
+    json_decref(root);
+    free(path);
+    return is_ours;
+}
+
 /** The folder's layout by the files it has; ADCGS_DATASET_AUTO: none that we know. */
 static adcgs_dataset find_dataset(const char *folder)
 {
@@ -190,7 +205,7 @@ static adcgs_dataset find_dataset(const char *folder)
            : adcgs_is_hypernerf(folder) ? ADCGS_DATASET_HYPERNERF
            : adcgs_is_llff(folder)      ? ADCGS_DATASET_LLFF
            : adcgs_is_colmap(folder)    ? ADCGS_DATASET_COLMAP
-           : adcgs_is_there_at("%s/scene.json", folder) ? ADCGS_DATASET_ADCGS
+           : has_scene_file(folder)     ? ADCGS_DATASET_ADCGS
                                         : ADCGS_DATASET_AUTO;
 }
 
@@ -205,6 +220,30 @@ static adcgs_status read_scene_json(adcgs_scene *scene, const adcgs_scene_option
              : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", scene->directory);
     free(path);
     return status;
+}
+
+#define HINT "; adcgs-import makes one of footage"
+
+static int is_footage(const char *name)
+{
+    return adcgs_is_image_name(name) || adcgs_is_video(name);
+}
+
+/** Pictures or videos, and nothing that says where their cameras were. */
+static int has_footage(const char *folder)
+{
+    adcgs_listing listing;
+    adcgs_error unused;
+    if (adcgs_listing_read(&listing, folder, is_footage, &unused) != ADCGS_OK)
+        return 0;
+    const int found = listing.n > 0;
+    adcgs_listing_free(&listing);
+    return found;
+}
+
+static adcgs_status bare(const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a scene: nothing says where its cameras were" HINT, path);
 }
 
 static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const adcgs_scene_options *options, adcgs_error *error)
@@ -228,8 +267,8 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     default:
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
-                          "metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model in sparse/0, sparse or here",
-                          scene->directory);
+                          "metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model%s",
+                          scene->directory, has_footage(scene->directory) ? HINT : " in sparse/0, sparse or here");
     }
     return adcgs_frames_keep(scene, &options->frames, scene->directory, error);
 }
@@ -242,6 +281,8 @@ static adcgs_status read_file(adcgs_scene *scene, const char *path, char **point
     int is_scene_file = options->dataset == ADCGS_DATASET_ADCGS;
     if (options->dataset == ADCGS_DATASET_SPLATS || (options->dataset == ADCGS_DATASET_AUTO && adcgs_splats_is(path)))
         return adcgs_splat_scene_read(scene, !options->points_path, path, error);
+    if (options->dataset == ADCGS_DATASET_AUTO && is_footage(path))
+        return bare(path, error);
     if (options->dataset == ADCGS_DATASET_AUTO) {
         ADCGS_TRY(adcgs_json_load(&root, path, error));
         is_scene_file = json_object_get(root, "adcgs_scene") != NULL;

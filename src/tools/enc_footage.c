@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8, COPIED = 16, POSES = 32 };
+enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8, COPIED = 16, POSES = 32, TIMES = 64 };
 
 /* Scenes in order are off by 0.06 of a pixel, where cameras are few and far apart by 0.17; with errors of a pixel, by 1. */
 #define POSES_OFF 0.4 /* of a pixel of the pictures that are matched */
@@ -121,6 +121,13 @@ static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, con
     }
 }
 
+/** Pictures that have no times and look as if they should. */
+static void say_times(const adcgs_cli *cli, const adcgs_scene *scene)
+{
+    adcgs_cli_note(cli, "%s: names of the pictures only count: if they are frames of a video, this is not what was filmed, but a "
+                   "scene in which nothing moves; adcgs-import makes one with times", scene->directory);
+}
+
 void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_off *poses,
                              const adcgs_glance *glances, double begins, unsigned *told)
 {
@@ -130,7 +137,9 @@ void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, con
     adcgs_error error;
     if (!(*told & GAPS) && adcgs_fault_gaps(&gaps, whole, &error) == ADCGS_OK && gaps.cameras)
         say_gaps(cli, whole, &gaps);
-    *told |= GAPS; /* of the whole scene, once */
+    if (!(*told & TIMES) && whole->counts)
+        say_times(cli, whole);
+    *told |= GAPS | TIMES; /* of the whole scene, once */
     if (!(*told & POSES) && poses->pairs >= POSES_PAIRS && poses->median >= POSES_OFF) {
         say_poses(cli, whole, poses);
         *told |= POSES;

@@ -144,4 +144,51 @@ while kill -0 $pid 2>/dev/null && ! grep -qs Processed "$dir/s.importing/colmap.
 kill -INT $pid
 wait $pid
 [ $? -eq 3 ] && grep -q 'interrupted; the same command goes on' "$dir/err" || { bad "interrupt"; cat "$dir/err"; }
+
+# adcgs-enc says who makes scenes of bare footage, and doubts frames of a video that have no times.
+expect 4 'adcgs-import makes one' ./adcgs-enc "$pictures" -o "$dir/s.adcgs"
+expect 4 'adcgs-import makes one' ./adcgs-enc "$top/doc/demo.jpg" -o "$dir/s.adcgs"
+expect 4 'adcgs-import makes one' ./adcgs-enc "$dir/neu3d-videos/cam03.mp4" -o "$dir/s.adcgs"
+colmap=$dir/numbered
+mkdir -p "$colmap/images"
+cp "$pictures"/[0-5].* "$colmap/images"
+for name in frame_1 other; do
+    (cd "$colmap/images" && i=0 && for f in *; do mv "$f" "${name}0$i.ppm" && i=$((i + 1)); done)
+    rm -rf "$colmap/sparse"
+    "$fake" mapper --image_path "$colmap/images" --output_path "$colmap/sparse" >"$dir/out"
+    expect 0 'if they are frames of a video' ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2
+    mv "$colmap/images/${name}03.ppm" "$colmap/images/${name}09.ppm"
+    sed -i "s/${name}03/${name}09/" "$colmap/sparse/0/images.txt"
+    ./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 2>&1 | grep 'frames of a video' &&
+        bad "doubts of pictures that do not count"
+done
+
+# Masks of a COLMAP scene, and one for a whole row of pictures of a scene file: as large as the pictures, and looked at.
+mkdir "$colmap/masks"
+{ printf 'P6 24 16 255\n'; head -c 576 /dev/zero; head -c 576 /dev/zero | tr '\0' x; } >"$colmap/masks/other01.ppm"
+rm -f "$dir/plain.adcgs"
+./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q 2>"$dir/err" || { bad "masks"; cat "$dir/err"; }
+cp "$dir/s.adcgs" "$dir/masked.adcgs"
+mv "$colmap/masks/other01.ppm" "$colmap/masks/other01.ppm.ppm"
+./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "masks with COLMAP's names"
+cmp -s "$dir/s.adcgs" "$dir/masked.adcgs" || bad "COLMAP's names of masks are other masks"
+rm "$colmap"/masks/*
+./adcgs-enc "$colmap" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "without masks"
+cmp -s "$dir/s.adcgs" "$dir/masked.adcgs" && bad "a mask of COLMAP's changes nothing"
+import 0 '' --fps 10 "$pictures"
+{ printf 'P6 24 16 255\n'; head -c 576 /dev/zero; head -c 576 /dev/zero | tr '\0' x; } >"$dir/s/mask.ppm"
+./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "a scene file"
+sed -i 's/"fx"/"masks": "mask.ppm", "fx"/' "$dir/s/scene.json"
+./adcgs-enc "$dir/s" -o "$dir/t.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q || bad "masks of a scene file"
+cmp -s "$dir/s.adcgs" "$dir/t.adcgs" && bad "masks of a scene file change nothing"
+sed -i 's/mask.ppm/nowhere.ppm/' "$dir/s/scene.json"
+expect 3 'nowhere.ppm' ./adcgs-enc "$dir/s" -o "$dir/t.adcgs" --preset draft --set stereo=0 -n 10 --threads 2
+
+# The true one: a patterned box, filmed by a camera that goes round it.
+if [ -z "${ADCGS_FULL:-}" ] || ! command -v colmap >/dev/null; then
+    echo "skipped: COLMAP itself: ADCGS_FULL=1 where it is installed"
+elif ./adcgs-demo-scene --scene still --size 320x240 --moments 40 -q -o "$dir/still"; then
+    ./adcgs-import "$dir/still/train" --fps 10 --side 1600 -o "$dir/true" --json -q >"$dir/out" 2>"$dir/err" || { bad "COLMAP"; cat "$dir/err"; }
+    cat "$dir/out"
+fi
 [ $failed -eq 0 ]
