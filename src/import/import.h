@@ -11,13 +11,8 @@
 #include "cli/cli.h"
 #include "io/fps.h"
 
-typedef enum adcgs_import_lens {
-    ADCGS_IMPORT_AUTO,
-    ADCGS_IMPORT_PINHOLE,
-    ADCGS_IMPORT_RADIAL,
-    ADCGS_IMPORT_OPENCV,
-    ADCGS_IMPORT_FISHEYE
-} adcgs_import_lens;
+/** With more numbers a lens is told better from many pictures; few may agree on whatever they are. */
+typedef enum adcgs_import_lens { ADCGS_IMPORT_RADIAL, ADCGS_IMPORT_PINHOLE, ADCGS_IMPORT_OPENCV } adcgs_import_lens;
 
 typedef struct adcgs_import_options {
     char *const *inputs; /**< files and folders, as on the command line */

@@ -13,7 +13,6 @@
 #define WORDS_MAX 32
 #define EXHAUSTIVE_MOST 80 /* of a film with more pictures only those that are near each other in time are matched */
 #define OVERLAP "12"       /* pictures before and behind; and at twice, four times ... as far */
-#define OPENCV_LEAST 8     /* pictures of a camera from which four numbers of distortion can be told */
 #define SMALLEST_MODEL "3"
 
 static const char *const renamed[][2] = {
@@ -123,18 +122,8 @@ adcgs_status adcgs_import_ask(adcgs_colmap_program *out, const adcgs_import_opti
 
 /* ---- The steps ---- */
 
-/**
- * What can be told of the cameras' lenses from what there is: of those of a rig, which see the scene from few places, a model of
- * many numbers is whatever makes few pictures agree.
- */
-static const char *lens_model(const adcgs_import_job *job)
-{
-    static const char *const models[] = {NULL, "PINHOLE", "SIMPLE_RADIAL", "OPENCV"};
-    int has_many = job->shots.kind != ADCGS_FOOTAGE_RIG;
-    for (uint32_t i = 0; i < job->shots.n_cameras; i++)
-        has_many &= job->shots.cameras[i].shots >= OPENCV_LEAST;
-    return models[job->options->lens ? job->options->lens : has_many ? ADCGS_IMPORT_OPENCV : ADCGS_IMPORT_RADIAL];
-}
+/** COLMAP's names of adcgs_import_lens. */
+static const char *const lens_models[] = {"SIMPLE_RADIAL", "PINHOLE", "OPENCV"};
 
 typedef struct places {
     char *database, *images, *masks, *sparse;
@@ -149,7 +138,7 @@ static adcgs_status extract(adcgs_import_job *job, const adcgs_colmap_program *p
     if (job->has_masks)
         add_option(&s, "--ImageReader.mask_path", p->masks);
     add_option(&s, "--ImageReader.single_camera_per_folder", "1");
-    add_option(&s, "--ImageReader.camera_model", lens_model(job));
+    add_option(&s, "--ImageReader.camera_model", lens_models[job->options->lens]);
     if (job->shots.cameras[0].focal > 0.0) { /* where the picture that is made does not say */
         snprintf(focal, sizeof focal, "%.6g", job->shots.cameras[0].focal);
         add_option(&s, "--ImageReader.default_focal_length_factor", focal);
