@@ -99,7 +99,7 @@ typedef struct adcgs_progress {
 
 /** Silent with --quiet. */
 void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli);
-/** At most ten times a second on a terminal; elsewhere after 5 seconds, after 10 more, and so on up to once a minute. */
+/** At most ten times a second on a terminal; elsewhere after 5 seconds, after 10 more, and so on up to every 30 seconds. */
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** Wipe the line; call before any other message and at the end. */
 void adcgs_progress_clear(adcgs_progress *progress);

@@ -13,7 +13,7 @@
 
 #define TERMINAL_EVERY 0.1 /* seconds */
 #define LINES_FIRST 5.0
-#define LINES_MOST 60.0
+#define LINES_MOST 30.0
 
 /* A signal handler can reach nothing but static storage. */
 static volatile sig_atomic_t interrupted;

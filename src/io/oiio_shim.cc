@@ -316,14 +316,36 @@ adcgs_status take(adcgs_image *image, const OIIO::ImageBuf &from, const char *pa
     return ADCGS_OK;
 }
 
+/** As EXIF has it. The library's own reorient() takes two of the eight for each other (2.4). */
+OIIO::ImageBuf upright(const OIIO::ImageBuf &at, int turn)
+{
+    using namespace OIIO::ImageBufAlgo;
+    switch (turn) {
+    case 2:
+        return flop(at);
+    case 3:
+        return rotate180(at);
+    case 4:
+        return flip(at);
+    case 5:
+        return transpose(at);
+    case 6:
+        return rotate90(at);
+    case 7:
+        return rotate180(transpose(at));
+    case 8:
+        return rotate270(at);
+    default:
+        return at;
+    }
+}
+
 adcgs_status shape(adcgs_image *image, int turn, int width, int height, const char *path, adcgs_error *error)
 {
     OIIO::attribute("threads", 1);
     OIIO::ImageBuf at(OIIO::ImageSpec(image->width, image->height, image->channels, OIIO::TypeDesc::FLOAT), image->data);
-    if (turn != ADCGS_PHOTO_UPRIGHT) {
-        at.set_orientation(turn);
-        at = OIIO::ImageBufAlgo::reorient(at);
-    }
+    if (turn != ADCGS_PHOTO_UPRIGHT)
+        at = upright(at, turn);
     if (at.spec().width != width || at.spec().height != height)
         at = OIIO::ImageBufAlgo::resize(at, "", 0.0f, OIIO::ROI(0, width, 0, height, 0, 1, 0, at.nchannels()));
     return take(image, at, path, error);

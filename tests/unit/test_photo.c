@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Photos made upright and smaller: where each pixel goes for each way EXIF says, and that what is even stays even. */
+#include "outside_files.h"
+
+#include "io/photo.h"
+
+#include <math.h>
+
+enum { WIDTH = 3, HEIGHT = 2 };
+
+static void make(adcgs_image *image, int width, int height, float step)
+{
+    assert_int_equal(adcgs_image_alloc(image, width, height, 1, "x", &error), ADCGS_OK);
+    for (int i = 0; i < width * height; i++)
+        image->data[i] = step * (float)i;
+}
+
+/** The first row of what is stored is, upright, at the top, top, bottom, bottom; or at the left, right, right, left. */
+static void test_turns(void **state)
+{
+    for (int turn = 1; turn <= 8; turn++) {
+        const int lies = adcgs_photo_lies(turn), width = lies ? HEIGHT : WIDTH, height = lies ? WIDTH : HEIGHT;
+        const int from_bottom = turn == 3 || turn == 4 || turn == 7 || turn == 8;
+        const int from_right = turn == 2 || turn == 3 || turn == 6 || turn == 7;
+        adcgs_image image;
+        make(&image, WIDTH, HEIGHT, 0.125f);
+        assert_int_equal(adcgs_photo_shape(&image, turn, width, height, "x", &error), ADCGS_OK);
+        assert_int_equal(image.width, width);
+        assert_int_equal(image.height, height);
+        for (int y = 0; y < height; y++)
+            for (int x = 0; x < width; x++) {
+                const int across = from_right ? width - 1 - x : x, down = from_bottom ? height - 1 - y : y;
+                const int at = lies ? across * WIDTH + down : down * WIDTH + across;
+                assert_true(image.data[y * width + x] == 0.125f * (float)at);
+            }
+        adcgs_image_free(&image);
+    }
+}
+
+/** Colour of one kind stays that; the mean of all stays what it is. */
+static void test_smaller(void **state)
+{
+    adcgs_image image;
+    double before = 0.0, after = 0.0;
+    make(&image, 64, 48, 0.0f);
+    for (int i = 0; i < 64 * 48; i++)
+        image.data[i] = 0.5f;
+    assert_int_equal(adcgs_photo_shape(&image, 6, 20, 27, "x", &error), ADCGS_OK);
+    for (int i = 0; i < 20 * 27; i++)
+        assert_true(fabs(image.data[i] - 0.5) < 1e-5);
+    adcgs_image_free(&image);
+    make(&image, 64, 48, 1e-4f);
+    for (int i = 0; i < 64 * 48; i++)
+        before += image.data[i] / (64 * 48);
+    assert_int_equal(adcgs_photo_shape(&image, ADCGS_PHOTO_UPRIGHT, 32, 24, "x", &error), ADCGS_OK);
+    for (int i = 0; i < 32 * 24; i++)
+        after += image.data[i] / (32 * 24);
+    assert_true(fabs(before - after) < 1e-3);
+    adcgs_image_free(&image);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_turns), cmocka_unit_test(test_smaller)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
