@@ -22,7 +22,7 @@ typedef struct listener {
     void *user;
     char text[512];
     size_t n;
-    int stop;
+    int stop, is_told;
 } listener;
 
 static void take_bytes(listener *l, const char *bytes, size_t n)
@@ -35,7 +35,7 @@ static void take_bytes(listener *l, const char *bytes, size_t n)
         if (bytes[i] == '\n' || bytes[i] == '\r') {
             l->text[l->n] = 0;
             l->n = 0;
-            l->stop |= l->line(l->user, l->text);
+            l->stop |= l->line(l->user, l->text) != 0;
         } else if (l->n + 1 < sizeof l->text)
             l->text[l->n++] = bytes[i];
 }
@@ -53,10 +53,10 @@ static void listen(listener *l, int fd, pid_t child)
         if (n > 0)
             take_bytes(l, bytes, (size_t)n);
         else
-            l->stop |= l->line(l->user, "");
-        if (l->stop == 1) {
+            l->stop |= l->line(l->user, "") != 0;
+        if (l->stop && !l->is_told) {
             kill(child, SIGTERM);
-            l->stop = 2; /* it has been told */
+            l->is_told = 1;
         }
     }
 }

@@ -141,9 +141,11 @@ expect 5 'not COLMAP\|no --database_path' ./adcgs-import --colmap true -o "$dir/
 FAKE_HOW=hang ./adcgs-import --colmap "$fake" -o "$dir/s" "$pictures" >"$dir/out" 2>"$dir/err" &
 pid=$!
 while kill -0 $pid 2>/dev/null && ! grep -qs Processed "$dir/s.importing/colmap.log"; do sleep 0.05; done
+began=$SECONDS
 kill -INT $pid
 wait $pid
 [ $? -eq 3 ] && grep -q 'interrupted; the same command goes on' "$dir/err" || { bad "interrupt"; cat "$dir/err"; }
+[ $((SECONDS - began)) -lt 30 ] || bad "COLMAP went on after an interrupt"
 
 # adcgs-enc says who makes scenes of bare footage, and doubts frames of a video that have no times.
 expect 4 'adcgs-import makes one' ./adcgs-enc "$pictures" -o "$dir/s.adcgs"
