@@ -31,6 +31,8 @@ function onKey(event, down) {
     const elsewhere = event.target.tagName === 'INPUT' || (event.target.tagName === 'BUTTON' && event.key === ' ');
     if (!key || !opened() || event.ctrlKey || event.metaKey || event.altKey || elsewhere)
         return;
+    if (event.key === 'k' || event.key === 'v' || (event.key === 'q' && !view.call.view_flying())) // of windows alone
+        return;
     if (key === KEYS.Escape && !view.call.view_help() && !view.call.view_flying())
         return;
     const layers = view.call.view_layers();
@@ -115,7 +117,7 @@ function showHelp() {
     const lines = view.text(view.call.view_help_lines()).trim().split('\n').map(line => line.split('\t'));
     const table = element('table');
     const touch = [['one finger', 'orbit'], ['two fingers', 'pan, nearer and farther']];
-    for (const [keys, text] of lines.filter(line => line[0] !== 'escape').concat(touch))
+    for (const [keys, text] of lines.concat(touch))
         rowOf(table, '', element('td', keys), element('td', keys === 'p' ? 'screenshot' : text));
     table.querySelectorAll('th').forEach(cell => cell.remove());
     $('help').replaceChildren(table);

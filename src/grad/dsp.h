@@ -137,7 +137,10 @@ typedef struct adcgs_train_dsp {
      */
     double (*rate)(const adcgs_rate_io *io);
     double (*rate_exact)(const adcgs_rate_io *io);
-    /** Adam step on n parameters; c1 = 1/(1-beta1^t), c2 = 1/(1-beta2^t); clears g. */
+    /**
+     * Adam step on n parameters; c1 = 1/(1-beta1^t), c2 = 1/(1-beta2^t); clears g. No step is longer than lr: where gradients
+     * grow at once, as when pictures become larger, their mean square is behind for a thousand steps.
+     */
     void (*adam)(float *p, float *g, float *m, float *v, size_t n, float lr, float c1, float c2);
 } adcgs_train_dsp;
 

@@ -843,7 +843,8 @@ static void ISA(adam)(float *restrict p, float *restrict g, float *restrict m, f
     for (size_t i = 0; i < n; i++) {
         m[i] = 0.9f * m[i] + 0.1f * g[i];
         v[i] = 0.999f * v[i] + 0.001f * (g[i] * g[i]);
-        p[i] -= lr * (m[i] * c1) / (sqrtf(v[i] * c2) + 1e-15f);
+        const float step = m[i] * c1 / (sqrtf(v[i] * c2) + 1e-15f), low = step < -1 ? -1 : step;
+        p[i] -= lr * (low > 1 ? 1 : low);
         g[i] = 0;
     }
 }

@@ -8,6 +8,7 @@
 /** A line of the help page. */
 typedef struct adcgs_play_help {
     const char *keys, *text;
+    int window; /**< of windows alone: in a page of a browser there is nothing that these keys do */
 } adcgs_play_help;
 
 /** What a key does that is pressed; again: that is being held. */

@@ -5,6 +5,7 @@
 #include "play/state.h"
 
 #include "play/actions.h"
+#include "play/font.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 
 #include "camera/rotation.h"
 #include "play/scale.h"
-#include "play/state.h"
+#include "play/actions.h"
 #include "render/render.h"
 #include "wasm/export.h"
 
@@ -164,6 +164,7 @@ const char *PAGE_EXPORT(view_help_lines)(void)
     int n;
     const adcgs_play_help *const lines = adcgs_play_help_lines(&n);
     for (int i = 0; i < n && used < sizeof text; i++)
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s\t%s\n", lines[i].keys, lines[i].text);
+        if (!lines[i].window)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s\t%s\n", lines[i].keys, lines[i].text);
     return text;
 }
