@@ -79,16 +79,15 @@ static adcgs_status walk(const search *s, int *e, double *least, int step, adcgs
     return ADCGS_OK;
 }
 
-/** Around the nominal exponent: coarser as long as that pays, else finer. */
+/** Around the nominal exponent, both ways: where it is far too coarse a loss that wavers may fall with a coarser one, too. */
 static adcgs_status choose_layer(const search *s, int from, int8_t *chosen, adcgs_error *error)
 {
-    int e = from;
+    int coarser = from, finer = from;
     double least;
-    ADCGS_TRY(cost_of(s, e, &least, error));
-    ADCGS_TRY(walk(s, &e, &least, -1, error));
-    if (e == from)
-        ADCGS_TRY(walk(s, &e, &least, 1, error));
-    *chosen = (int8_t)e;
+    ADCGS_TRY(cost_of(s, from, &least, error));
+    ADCGS_TRY(walk(s, &coarser, &least, -1, error));
+    ADCGS_TRY(walk(s, &finer, &least, 1, error));
+    *chosen = (int8_t)(finer > from ? finer : coarser);
     return ADCGS_OK;
 }
 

@@ -10,6 +10,7 @@
 #include "fmodel/weight_rate.h"
 #include "grad/random.h"
 #include "train/unit_prune.h"
+#include "train/sample.h"
 #include "train/weight_steps.h"
 
 #include <math.h>
@@ -205,6 +206,59 @@ static void lattices_follow_lambda(void **state)
     assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
     assert_int_equal(sum_of_lattices(t->f), sum[1]);
     free(before);
+    adcgs_trainer_free(&t);
+}
+
+/** What a layer of a network costs on a lattice, in bits, while all others have all of theirs. */
+static double cost_on(adcgs_trainer *t, int group, int layer, int e)
+{
+    double distortion, bits;
+    for (int i = ADCGS_P_ANCHOR; i < ADCGS_P_COUNT; i++) {
+        adcgs_mlp *m = &t->f->mlp[i];
+        memset(m->weight_step, m->entropy ? ADCGS_E24_BITS : ADCGS_WEIGHT_STEP_NONE, sizeof m->weight_step);
+    }
+    t->f->mlp[group].weight_step[layer] = (int8_t)e;
+    adcgs_trainer_prepare_networks(t);
+    adcgs_mlp_prepare(&t->f->mlp[group], t->f->param[group].p, 1);
+    assert_int_equal(adcgs_sample_distortion(t, group, &distortion, &error), ADCGS_OK);
+    assert_int_equal(adcgs_weight_step_bits(&t->f->mlp[group], t->f->param[group].p, layer, e, &bits, &error), ADCGS_OK);
+    return distortion + bits;
+}
+
+/** F_theta's lattices about the nominal ones cost no less than those that are chosen. */
+static void assert_cheapest(adcgs_trainer *t)
+{
+    const int last = t->f->mlp[ADCGS_P_THETA].hidden;
+    int8_t nominal[ADCGS_MLP_LAYERS], chosen[ADCGS_MLP_LAYERS];
+    adcgs_weight_steps_nominal(t);
+    memcpy(nominal, t->f->mlp[ADCGS_P_THETA].weight_step, sizeof nominal);
+    assert_int_equal(adcgs_weight_steps_choose(t, &error), ADCGS_OK);
+    memcpy(chosen, t->f->mlp[ADCGS_P_THETA].weight_step, sizeof chosen);
+    for (int l = 0; l <= last; l++) {
+        const double cost = cost_on(t, ADCGS_P_THETA, l, chosen[l]);
+        for (int e = ADCGS_MAX(nominal[l] - 2, ADCGS_WEIGHT_STEP_MIN); e <= ADCGS_MIN(nominal[l] + 2, ADCGS_WEIGHT_STEP_MAX); e++)
+            assert_true(cost <= cost_on(t, ADCGS_P_THETA, l, e));
+    }
+}
+
+/**
+ * Where a large weight makes even the nominal lattice far too coarse, and a coarser one happens to lose less, finer ones are
+ * looked at as well.
+ */
+static void no_lattice_about_the_nominal_is_cheaper(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = run_to(&config, 169);
+    const adcgs_mlp *m = &t->f->mlp[ADCGS_P_THETA];
+    t->lambda = 0.01; /* every loss counts */
+    assert_cheapest(t);
+    for (int l = 0; l <= m->hidden; l++)
+        for (int times = 1; times <= 16; times *= 4) {
+            float *const p = t->f->param[ADCGS_P_THETA].p + m->w[l], before = *p;
+            *p = 10.0f * (float)times;
+            assert_cheapest(t);
+            *p = before;
+        }
     adcgs_trainer_free(&t);
 }
 
@@ -454,6 +508,7 @@ int main(void)
         cmocka_unit_test(units_go_twice),
         cmocka_unit_test(lattice_bits_are_the_files),
         cmocka_unit_test(lattices_follow_lambda),
+        cmocka_unit_test(no_lattice_about_the_nominal_is_cheaper),
         cmocka_unit_test(lattices_outlive_their_streams),
         cmocka_unit_test(silent_values_follow_their_means),
         cmocka_unit_test(raw_networks_are_exact),

@@ -307,7 +307,7 @@ static void test_bad_text(void **state)
     bad_line("cameras.txt", "7 PINHOLE 24 16 nan 20 12 8\n", "parameter 1");
     bad_line("cameras.txt", "-7 PINHOLE 24 16 20 20 12 8\n", "CAMERA_ID");
     bad_line("cameras.txt", "7 PINHOLE 24 16 20 20 12 8\n7 PINHOLE 24 16 20 20 12 8\n", "camera 7 is listed twice");
-    bad_line("images.txt", "1 1 0 0 0 0 0 0 7 00.ppm\n", "1 images, expected at least two");
+    bad_line("images.txt", "1 1 0 0 0 0 0 0 7 00.ppm\n", "1 image, expected at least two");
     bad_line("images.txt", "1 1 0 0 0 0 0 0 7 00.ppm\n\n2 1 0 0 0 0 0 0 8 01.ppm\n\n", "01.ppm: there is no camera 8");
     bad_line("images.txt", "1 1 0 0 0 0 0 0 7 00.ppm\n\n2 1 0 0 0 0 0 0 7 00.ppm\n\n", "00.ppm is listed twice");
     bad_line("images.txt", "1 1 0 0 0 0 0 0 7 ../00.ppm\n", "expected the name of an image below the folder");
