@@ -25,7 +25,7 @@ describe()
         sanitize)
             ADCGS_FUZZ_ROUNDS=10
             arguments=(CC=clang CXX=clang++ CFLAGS="-g1 -O1 $findings" CXXFLAGS="-O1 $findings" --enable-werror
-                --disable-hardening)
+                --disable-hardening --without-web)
             # Some 60 programs of this size: the usual linker takes ten times as long.
             ! command -v ld.gold >/dev/null || arguments+=(LDFLAGS=-fuse-ld=gold) ;;
         # Libraries that are not instrumented would look uninitialised: the decoder needs none. AVX-512's kernels
