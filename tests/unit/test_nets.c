@@ -251,14 +251,10 @@ static void no_lattice_about_the_nominal_is_cheaper(void **state)
     adcgs_trainer *t = run_to(&config, 169);
     const adcgs_mlp *m = &t->f->mlp[ADCGS_P_THETA];
     t->lambda = 0.01; /* every loss counts */
-    assert_cheapest(t);
-    for (int l = 0; l <= m->hidden; l++)
-        for (int times = 1; times <= 16; times *= 4) {
-            float *const p = t->f->param[ADCGS_P_THETA].p + m->w[l], before = *p;
-            *p = 10.0f * (float)times;
-            assert_cheapest(t);
-            *p = before;
-        }
+    for (int times = 1; times <= 16; times *= 4) {
+        t->f->param[ADCGS_P_THETA].p[m->w[m->hidden]] = 10.0f * (float)times;
+        assert_cheapest(t);
+    }
     adcgs_trainer_free(&t);
 }
 
