@@ -2,6 +2,8 @@
 /** \file Directions and rotations of cameras. */
 #include "camera/rotation.h"
 
+#include "io/quaternion.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -100,12 +102,10 @@ void adcgs_rotation_from_pose(const double pose[12], double q[4])
 
 void adcgs_rotation_to_pose(const double q[4], double pose[12])
 {
-    const double w = q[0], x = q[1], y = q[2], z = q[3];
-    const double m[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                            {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                            {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+    double m[9];
+    adcgs_quaternion_matrix(q, m);
     for (int i = 0; i < 3; i++)
-        memcpy(pose + 4 * i, m[i], sizeof m[i]);
+        memcpy(pose + 4 * i, m + 3 * i, 3 * sizeof *m);
 }
 
 void adcgs_rotation_multiply(const double a[4], const double b[4], double out[4])

@@ -4,6 +4,8 @@
 
 #include "io/glb_nodes.h"
 
+#include "io/quaternion.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -41,17 +43,14 @@ static void multiply(const double a[12], const double b[12], double out[12])
 /** By translation, rotation x y z w, and scale. */
 static adcgs_status compose(const adcgs_glb *g, json_t *node, double out[12])
 {
-    double t[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+    double t[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1}, turn[9];
     ADCGS_TRY(numbers(g, node, "translation", t, 3));
     ADCGS_TRY(numbers(g, node, "rotation", q, 4));
     ADCGS_TRY(numbers(g, node, "scale", s, 3));
     const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length > 0.0))
         return bad(g, ADCGS_ERR_DATA, "a node's rotation: expected a quaternion");
-    const double x = q[0] / length, y = q[1] / length, z = q[2] / length, w = q[3] / length;
-    const double turn[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-                            2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                            2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+    adcgs_quaternion_matrix((const double[]){q[3] / length, q[0] / length, q[1] / length, q[2] / length}, turn);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             out[4 * i + j] = turn[3 * i + j] * s[j];

@@ -5,6 +5,7 @@
 #include "io/splats_move.h"
 
 #include "io/harmonics.h"
+#include "io/quaternion.h"
 
 #include <math.h>
 
@@ -74,10 +75,11 @@ static void quaternion_of(const m3 *r, double q[4])
 
 static m3 rotation_of(const double q[4])
 {
-    const double w = q[0], x = q[1], y = q[2], z = q[3];
-    return (m3){{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                 {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                 {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
+    double m[9];
+    m3 r;
+    adcgs_quaternion_matrix(q, m);
+    memcpy(r.m, m, sizeof r.m);
+    return r;
 }
 
 static double dot_columns(const m3 *b, int i, int j)

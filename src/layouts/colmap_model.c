@@ -5,6 +5,7 @@
 #include "layouts/colmap_model.h"
 
 #include "data/pose.h"
+#include "io/quaternion.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -164,10 +165,8 @@ static int invert_pose(const double q[4], const double t[3], double pose[12])
     const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length >= 1e-6 && length <= WORLD_MAX))
         return 0;
-    const double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
-    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-                         2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                         2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+    double r[9];
+    adcgs_quaternion_matrix((const double[]){q[0] / length, q[1] / length, q[2] / length, q[3] / length}, r);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             pose[4 * i + j] = r[3 * j + i];

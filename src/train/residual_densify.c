@@ -79,8 +79,8 @@ typedef struct rays {
     uint32_t n;
     pixel pixel[PIXELS_MOST];
     float agreed[PIXELS_MOST][DEPTHS]; /* how much all that have the place in their pictures miss, too; 0: not all of them do */
-    uint8_t alone[PIXELS_MOST][DEPTHS]; /* only one has it in its picture */
-    uint8_t about[PIXELS_MOST][DEPTHS]; /* that is so somewhere near that depth */
+    uint8_t alone[PIXELS_MOST][DEPTHS];  /* only one has it in its picture */
+    uint8_t about[PIXELS_MOST][DEPTHS];  /* they agree somewhere near that depth */
 } rays;
 
 static float depth_of(int step)
