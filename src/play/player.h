@@ -24,7 +24,7 @@ typedef struct adcgs_script_run {
 typedef struct adcgs_player {
     const adcgs_play_settings *settings;
     const adcgs_sdl *sdl;
-    adcgs_curriculum *window;
+    adcgs_window *window;
     adcgs_worker *worker;
     adcgs_play_state state;
     adcgs_play_figures figures;

@@ -10,7 +10,7 @@
 
 #define SMALLEST 64 /* pixels in width or height */
 
-struct adcgs_curriculum {
+struct adcgs_window {
     SDL_Window *window;
     SDL_Renderer *renderer;
     SDL_Texture *picture;
@@ -56,9 +56,9 @@ static void fit_screen(int *width, int *height)
     *height = ADCGS_MAX(SMALLEST, (int)(*height * scale));
 }
 
-static void window_close(adcgs_curriculum **window)
+static void window_close(adcgs_window **window)
 {
-    adcgs_curriculum *w = *window;
+    adcgs_window *w = *window;
     *window = NULL;
     if (!w)
         return;
@@ -99,7 +99,7 @@ static int init_video(void)
     return SDL_SetError("none of SDL's drivers finds one");
 }
 
-static adcgs_status open_parts(adcgs_curriculum *w, const char *title, int width, int height, adcgs_error *error)
+static adcgs_status open_parts(adcgs_window *w, const char *title, int width, int height, adcgs_error *error)
 {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); /* the program has its own */
     SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
@@ -120,7 +120,7 @@ static adcgs_status open_parts(adcgs_curriculum *w, const char *title, int width
     return ADCGS_OK;
 }
 
-static adcgs_status window_open(adcgs_curriculum **out, const char *title, int width, int height, adcgs_error *error)
+static adcgs_status window_open(adcgs_window **out, const char *title, int width, int height, adcgs_error *error)
 {
     *out = calloc(1, sizeof **out);
     if (!*out)
@@ -131,7 +131,7 @@ static adcgs_status window_open(adcgs_curriculum **out, const char *title, int w
     return status;
 }
 
-static void window_size(const adcgs_curriculum *w, int *width, int *height, double *density)
+static void window_size(const adcgs_window *w, int *width, int *height, double *density)
 {
     int points = 0, unused;
     SDL_GetWindowSize(w->window, &points, &unused);
@@ -142,7 +142,7 @@ static void window_size(const adcgs_curriculum *w, int *width, int *height, doub
     *density = points > 0 ? (double)*width / points : 1.0;
 }
 
-static double density_of(const adcgs_curriculum *w)
+static double density_of(const adcgs_window *w)
 {
     int width, height;
     double density;
@@ -150,7 +150,7 @@ static double density_of(const adcgs_curriculum *w)
     return density;
 }
 
-static void window_resize(adcgs_curriculum *w, int width, int height)
+static void window_resize(adcgs_window *w, int width, int height)
 {
     const double density = density_of(w);
     SDL_SetWindowSize(w->window, (int)(width / density + 0.5), (int)(height / density + 0.5));
@@ -189,7 +189,7 @@ static void translate_mouse(const SDL_Event *from, double density, adcgs_event *
     }
 }
 
-static int window_event(adcgs_curriculum *w, int milliseconds, adcgs_event *out)
+static int window_event(adcgs_window *w, int milliseconds, adcgs_event *out)
 {
     SDL_Event from;
     *out = (adcgs_event){.kind = ADCGS_EVENT_NONE};
@@ -217,7 +217,7 @@ static int window_event(adcgs_curriculum *w, int milliseconds, adcgs_event *out)
     return 1;
 }
 
-static void window_push(adcgs_curriculum *w, const adcgs_event *event)
+static void window_push(adcgs_window *w, const adcgs_event *event)
 {
     const double density = density_of(w);
     const Sint32 x = (Sint32)(event->x / density), y = (Sint32)(event->y / density);
@@ -243,24 +243,24 @@ static void window_push(adcgs_curriculum *w, const adcgs_event *event)
     SDL_PushEvent(&to);
 }
 
-static void window_wake(adcgs_curriculum *w)
+static void window_wake(adcgs_window *w)
 {
     SDL_Event event = {.type = w->wake_event};
     SDL_PushEvent(&event);
 }
 
-static void window_fullscreen(adcgs_curriculum *w, int on)
+static void window_fullscreen(adcgs_window *w, int on)
 {
     SDL_SetWindowFullscreen(w->window, on ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
 }
 
-static void window_capture(adcgs_curriculum *w, int on)
+static void window_capture(adcgs_window *w, int on)
 {
     SDL_SetRelativeMouseMode(on ? SDL_TRUE : SDL_FALSE);
 }
 
 /** A texture of this size, kept while the size stays. \return 0 if there is none. */
-static int need_texture(adcgs_curriculum *w, SDL_Texture **texture, Uint32 format, int size[2], int width, int height)
+static int need_texture(adcgs_window *w, SDL_Texture **texture, Uint32 format, int size[2], int width, int height)
 {
     if (*texture && size[0] == width && size[1] == height)
         return 1;
@@ -272,7 +272,7 @@ static int need_texture(adcgs_curriculum *w, SDL_Texture **texture, Uint32 forma
     return *texture != NULL;
 }
 
-static adcgs_status window_picture(adcgs_curriculum *w, const uint8_t *rgb, int width, int height, adcgs_error *error)
+static adcgs_status window_picture(adcgs_window *w, const uint8_t *rgb, int width, int height, adcgs_error *error)
 {
     if (!need_texture(w, &w->picture, SDL_PIXELFORMAT_RGB24, w->picture_size, width, height) ||
         SDL_UpdateTexture(w->picture, NULL, rgb, 3 * width))
@@ -280,7 +280,7 @@ static adcgs_status window_picture(adcgs_curriculum *w, const uint8_t *rgb, int 
     return ADCGS_OK;
 }
 
-static int draw_panel(adcgs_curriculum *w, int index, const adcgs_panel *panel)
+static int draw_panel(adcgs_window *w, int index, const adcgs_panel *panel)
 {
     const SDL_Rect place = {panel->x, panel->y, panel->width, panel->height};
     SDL_Texture **const texture = &w->panel[index];
@@ -290,7 +290,7 @@ static int draw_panel(adcgs_curriculum *w, int index, const adcgs_panel *panel)
            !SDL_RenderCopy(w->renderer, *texture, NULL, &place);
 }
 
-static adcgs_status window_show(adcgs_curriculum *w, const adcgs_panel panels[ADCGS_PANELS], uint8_t *rgb, adcgs_error *error)
+static adcgs_status window_show(adcgs_window *w, const adcgs_panel panels[ADCGS_PANELS], uint8_t *rgb, adcgs_error *error)
 {
     int width, height;
     double density;
