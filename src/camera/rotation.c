@@ -76,28 +76,12 @@ void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill)
     camera->height = height;
 }
 
-/** The component that is largest is found first: dividing by it is safe. */
 void adcgs_rotation_from_pose(const double pose[12], double q[4])
 {
-    const double m[3] = {pose[0], pose[5], pose[10]}, trace = m[0] + m[1] + m[2];
-    int i = m[1] > m[0] ? 1 : 0;
-    i = m[2] > m[i] ? 2 : i;
-    if (trace > m[i]) {
-        q[0] = 1.0 + trace;
-        for (int a = 0; a < 3; a++) {
-            const int b = (a + 1) % 3, c = (a + 2) % 3;
-            q[1 + a] = pose[4 * c + b] - pose[4 * b + c];
-        }
-    } else {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        q[0] = pose[4 * k + j] - pose[4 * j + k];
-        q[1 + i] = 1.0 + m[i] - m[j] - m[k];
-        q[1 + j] = pose[4 * j + i] + pose[4 * i + j];
-        q[1 + k] = pose[4 * k + i] + pose[4 * i + k];
-    }
-    const double length = sqrt(q[0] * q[0] + adcgs_v3_dot(q + 1, q + 1));
-    for (int a = 0; a < 4; a++)
-        q[a] /= length;
+    double m[9];
+    for (int i = 0; i < 3; i++)
+        memcpy(m + 3 * i, pose + 4 * i, 3 * sizeof *m);
+    adcgs_quaternion_of(m, q);
 }
 
 void adcgs_rotation_to_pose(const double q[4], double pose[12])

@@ -30,21 +30,23 @@ static uint32_t copies_of(const adcgs_glance *glances, const uint32_t *order, ui
     return adcgs_glance_difference(before, &glances[order[i + copies + 1]]) >= ONWARDS * fmax(change, next) ? copies : 0;
 }
 
-/** Of one camera: how many of its pictures are the one before, and the first of them. */
-static uint32_t count_copies(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t *first)
+/** Of one camera: how many of its pictures are the one before, and the first of them. shows: as below. */
+static uint32_t count_copies(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t *first, uint32_t *shows)
 {
     uint32_t count = 0, pictures = 0;
     for (uint32_t i = 1; i + 2 < n; i++) {
         const uint32_t copies = copies_of(glances, order, n, i);
         *first = copies && !count ? order[i + 1] : *first;
         pictures += copies > 0;
+        for (uint32_t k = 1; shows && k <= copies; k++)
+            shows[order[i + k]] = order[i];
         count += copies;
         i += copies;
     }
     return pictures >= PICTURES ? count : 0;
 }
 
-void adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+void adcgs_fault_doubled(adcgs_fault *fault, uint32_t *shows, const adcgs_scene_view *views, const adcgs_tracks *tracks,
                          const adcgs_glance *glances)
 {
     *fault = (adcgs_fault){.cameras = 0};
@@ -53,7 +55,10 @@ void adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene_view *views, cons
         uint32_t first = 0;
         if (n < FEW)
             continue;
-        const uint32_t count = count_copies(glances, tracks->order + tracks->begin[c], n, &first);
+        const uint32_t *const order = tracks->order + tracks->begin[c];
+        const uint32_t count = count_copies(glances, order, n, &first, NULL);
+        if (count && shows)
+            count_copies(glances, order, n, &first, shows);
         fault->of++;
         fault->cameras += count > 0;
         fault->size += count;

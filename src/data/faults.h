@@ -28,9 +28,10 @@ adcgs_status adcgs_fault_gaps(adcgs_fault *fault, const adcgs_scene *scene, adcg
 
 /**
  * Pictures that are the one before once more, while those around differ. tracks, glances: of these views, here and below. count
- * and path are of the camera that has most; size: how many all cameras have.
+ * and path are of the camera that has most; size: how many all cameras have. shows: [views] of these pictures the view that they
+ * are of becomes the one before; others stay as they are; or NULL.
  */
-void adcgs_fault_doubled(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+void adcgs_fault_doubled(adcgs_fault *fault, uint32_t *shows, const adcgs_scene_view *views, const adcgs_tracks *tracks,
                          const adcgs_glance *glances);
 
 /**

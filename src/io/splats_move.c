@@ -55,22 +55,13 @@ static int polar(const m3 *a, m3 *q)
     return 1;
 }
 
-/** w x y z of a rotation, by its largest component (Shepperd, 1978). */
+/** w x y z of a rotation. */
 static void quaternion_of(const m3 *r, double q[4])
 {
-    const double (*const m)[3] = r->m;
-    const double squares[4] = {m[0][0] + m[1][1] + m[2][2], m[0][0] - m[1][1] - m[2][2], m[1][1] - m[0][0] - m[2][2],
-                               m[2][2] - m[0][0] - m[1][1]};
-    int at = 0;
-    for (int i = 1; i < 4; i++)
-        at = squares[i] > squares[at] ? i : at;
-    const double twice = sqrt(1.0 + squares[at]);
-    const double sums[4][4] = {{twice * twice, m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]},
-                               {m[2][1] - m[1][2], twice * twice, m[0][1] + m[1][0], m[0][2] + m[2][0]},
-                               {m[0][2] - m[2][0], m[0][1] + m[1][0], twice * twice, m[1][2] + m[2][1]},
-                               {m[1][0] - m[0][1], m[0][2] + m[2][0], m[1][2] + m[2][1], twice * twice}};
-    for (int i = 0; i < 4; i++)
-        q[i] = 0.5 * sums[at][i] / twice;
+    double m[9];
+    for (int i = 0; i < 9; i++)
+        m[i] = r->m[i / 3][i % 3];
+    adcgs_quaternion_of(m, q);
 }
 
 static m3 rotation_of(const double q[4])

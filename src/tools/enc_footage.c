@@ -58,7 +58,7 @@ static void say_doubled(const adcgs_cli *cli, const adcgs_scene *scene, const ad
     char more[64], of_this[64] = "";
     if (f->size > 1)
         snprintf(of_this, sizeof of_this, ", %u of this camera", f->count - 1);
-    adcgs_cli_note(cli, "%s: the picture at %.3f s is the one before it once more%s%s: doubled frames?",
+    adcgs_cli_note(cli, "%s: the picture at %.3f s is the one before it once more%s%s: doubled frames? (--set retime_doubled)",
                    short_name(scene, f->path), begins + f->from, so_are(more, f->size - 1), of_this);
 }
 
@@ -101,7 +101,7 @@ static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, con
     adcgs_fault f;
     adcgs_error error;
     if (!(*told & DOUBLED)) {
-        adcgs_fault_doubled(&f, views, tracks, glances);
+        adcgs_fault_doubled(&f, NULL, views, tracks, glances);
         if (f.cameras) {
             say_doubled(cli, whole, &f, begins);
             *told |= DOUBLED;

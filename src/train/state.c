@@ -31,17 +31,20 @@ adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
     return t->config.rigid_weight > 0 ? adcgs_rigidity_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
 }
 
-static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
+float adcgs_trainer_time(const adcgs_trainer *t, double seconds)
 {
     const double duration = t->scene->duration;
+    return duration > 0 ? (float)fmin(fmax(seconds / duration, 0), 1) : 0;
+}
+
+static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
+{
     t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
     t->views = adcgs_alloc(NULL, t->n_views, sizeof *t->views, error);
     float *times = adcgs_alloc(NULL, t->n_views, sizeof *times, error);
     adcgs_status status = t->views && times ? ADCGS_OK : adcgs_alloc_status(error);
-    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++) {
-        const double time = t->scene->views[ADCGS_SPLIT_TRAIN][i].time;
-        times[i] = t->views[i].t = duration > 0 ? (float)fmin(fmax(time / duration, 0), 1) : 0;
-    }
+    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++)
+        times[i] = t->views[i].t = adcgs_trainer_time(t, t->scene->views[ADCGS_SPLIT_TRAIN][i].time);
     if (status == ADCGS_OK)
         status = adcgs_curriculum_create(&t->curriculum, times, t->n_views, t->f->follows, error);
     for (uint32_t b = 0; t->f->follows && b < t->stereo.n_bodies; b++)

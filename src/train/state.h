@@ -110,6 +110,8 @@ void adcgs_views_unload(adcgs_trainer *trainer);
 adcgs_status adcgs_trainer_resize(adcgs_trainer *trainer, adcgs_error *error);
 /** Derive from the networks' parameters what passes use, rounded to the weights' steps once weights are. */
 void adcgs_trainer_prepare_networks(adcgs_trainer *trainer);
+/** A time of the scene in the model's, [0,1]. */
+float adcgs_trainer_time(const adcgs_trainer *trainer, double seconds);
 /** How far the run is, in [0,1]. */
 double adcgs_trainer_progress(const adcgs_trainer *trainer);
 

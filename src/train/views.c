@@ -5,16 +5,32 @@
 #include "camera/path.h"
 #include "grad/random.h"
 #include "render/render.h"
+#include "train/doubled.h"
 
 #include <math.h>
 
+static adcgs_status load_pictures(adcgs_trainer *t, int divide, adcgs_error *error)
+{
+    adcgs_glance *glances = t->glances;
+    if (!glances && t->config.retime_doubled)
+        glances = adcgs_alloc(NULL, t->n_views, sizeof *glances, error);
+    if (!glances && t->config.retime_doubled)
+        return adcgs_alloc_status(error);
+    const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
+                                           .progress = t->loading, .user = t->loading_user, .glances = glances };
+    adcgs_status status = adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error);
+    if (status == ADCGS_OK && t->config.retime_doubled)
+        status = adcgs_doubled_retime(t, glances, error);
+    if (glances != t->glances)
+        adcgs_free(NULL, glances);
+    return status;
+}
+
 adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error *error)
 {
-    const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
-                                           .progress = t->loading, .user = t->loading_user, .glances = t->glances };
     size_t most = 0;
     adcgs_views_unload(t);
-    ADCGS_TRY(adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error));
+    ADCGS_TRY(load_pictures(t, divide, error));
     for (uint32_t i = 0; i < t->n_views; i++) {
         const adcgs_camera *camera = adcgs_pictures_camera(t->pictures, i);
         const adcgs_status status = adcgs_view_init(&t->views[i].view, camera, t->origin, t->scale, error);

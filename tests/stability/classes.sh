@@ -28,6 +28,7 @@ sensor noise|--scene cross20 --noise @|0 6 16|levels of 255|all|16:27.5|noise is
 exposure|--scene cross20 --spoil exposure=@|0 0.2 0.8|stops between cameras|fitted|0.2:28.5|gains of cameras are fitted in training; without them the mean camera is not the true one, hence fitted PSNR
 white balance|--scene cross20 --spoil white=@|0 0.2 0.8|stops between cameras|fitted|0.8:26|as exposure, a gain per channel
 step of light|--scene cross20 --spoil step=@|0 0.2 0.8|stops, half of the time|fitted|none: fails from here on, all has to change at one moment|gains are of cameras, not of moments: all anchors have to darken at once, which costs sharpness, and the truth of tests does not darken
+step of tint|--scene cross20 --spoil tint=@|0 0.2 0.8|stops between red and blue, half of the time|fitted|0.2:29.5|as a step of light: all anchors have to change at one moment, and the truth of tests does not
 pose of cameras|--scene cross20 --spoil pose=@|0 0.3 1 3|pixels of 96|all|0.3:28|poses are taken as they are: beyond a pixel rays of a point meet nowhere, and views between the cameras are haze
 pose of pictures|--scene cross20 --spoil shake=@|0 0.3 1 3|pixels of 96|all|0.3:25|no camera stays, so nothing is matched in the way of cameras that do, and errors average to a blur
 one wrong pose|--scene cross20 --spoil wrongpose=@|0 2 20|degrees, one of 12 cameras|all|20:26.5|eleven cameras outvote it, and clutter before it alone pays for its pictures; the encoder names it
@@ -40,6 +41,7 @@ before the first picture|--scene cross80 --spoil before=@|0 0.1 0.3|of the time|
 no picture inside|--scene cross80 --spoil inside=@|0 0.2 0.5|of the time|worst|0.2:21|a short gap is gone through in a line; in a long one it fades from one place to the other
 after the last picture|--scene cross80 --spoil after=@|0 0.1 0.3|of the time|worst|none: beyond what was seen it fails: nobody saw it, and it stays frozen|the last moment stays, frozen
 dropped pictures|--scene cross80 --spoil drop=@|0 0.3 0.8|of the pictures|moving|0.3:21|at 0.8 about one picture of each moment is left, from which nothing can be matched, so what moves is lost
+doubled, all cameras see all|--scene cross80 --cameras 4 --spoil twice=@|0 0.2 0.5|of the pictures|moving|0.2:21.3|such pictures are told from others and learnt as of the time that they show; what is matched is still off
 doubled pictures|--scene cross80 --spoil twice=@|0 0.2 0.5|of the pictures|moving|0.2:20|a picture that comes twice shows what moves where it was a moment before: it is drawn over both places
 EOF
 }

@@ -4,6 +4,7 @@
  * likes, and of next to nothing, nothing is said.
  */
 #include "data/faults.h"
+#include "train/doubled.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -64,7 +65,7 @@ static adcgs_fault find(char which)
     assert_int_equal(adcgs_tracks_find(&tracks, film.views, film.n, &error), ADCGS_OK);
     switch (which) {
     case 'g': status = adcgs_fault_gaps(&fault, &scene, &error); break;
-    case 'd': adcgs_fault_doubled(&fault, film.views, &tracks, film.glances); break;
+    case 'd': adcgs_fault_doubled(&fault, NULL, film.views, &tracks, film.glances); break;
     case 'x': status = adcgs_fault_copied(&fault, film.views, &tracks, film.glances, &error); break;
     case 'l': status = adcgs_fault_light(&fault, film.views, &tracks, film.glances, &error); break;
     default: status = adcgs_fault_clocks(&fault, film.views, &tracks, film.glances, &error); break;
@@ -240,6 +241,23 @@ static void doubled_pictures_are_found(void **state)
     assert_true(fault.count == 6);
     film_twice(3, 0.0, 3); /* that long it rests */
     expect_silence("d");
+}
+
+/* They are learnt as of the time that they show; all others as of their own. */
+static void doubled_pictures_are_of_the_time_before(void **state)
+{
+    (void)state;
+    adcgs_train_view views[MOST];
+    const adcgs_scene scene = {.duration = 24.0, .views = {film.views}, .n_views = {24}};
+    adcgs_trainer trainer = {.scene = &scene, .n_views = 24, .views = views};
+    for (int pictures = 1; pictures <= 3; pictures++) {
+        film_twice(pictures, 0.0, 2);
+        assert_int_equal(adcgs_doubled_retime(&trainer, film.glances, &error), ADCGS_OK);
+        for (int i = 0; i < 24; i++) {
+            const int copies = pictures > 1 && i / 8 < pictures && (i % 8 == 4 || i % 8 == 5) ? i % 8 - 3 : 0;
+            assert_true(views[i].t == (float)((i - copies) / 24.0));
+        }
+    }
 }
 
 /* What goes to and fro may rest where it turns. */
@@ -522,6 +540,7 @@ int main(void)
         cmocka_unit_test(of_little_nothing_is_said),          cmocka_unit_test(what_is_not_known_says_nothing),
         cmocka_unit_test(gaps_are_found),                     cmocka_unit_test(gaps_of_all_are_the_scenes),
         cmocka_unit_test(what_was_put_aside_is_no_gap),       cmocka_unit_test(doubled_pictures_are_found),
+        cmocka_unit_test(doubled_pictures_are_of_the_time_before),
         cmocka_unit_test(what_turns_may_rest),                cmocka_unit_test(doubled_pictures_of_one_that_moves),
         cmocka_unit_test(pictures_of_others_are_found),       cmocka_unit_test(what_all_see_is_no_copy),
         cmocka_unit_test(steps_of_light_are_found),           cmocka_unit_test(what_moves_is_no_light),
