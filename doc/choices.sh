@@ -25,6 +25,7 @@ static-anchors --set still_below=0
 faint-primitives --set keep_opacity=0
 hidden-units --set prune_units_at=2,prune_units_again=2
 lives --set spans=0
+span-ends --set span_ends=0
 bodies --set bodies=0
 matching --set stereo=0
 weight-steps --without weight_steps

@@ -42,6 +42,8 @@ adcgs_verdict adcgs_depths_judge(const adcgs_depths *d, const double x[3], doubl
     const double inverse = (double)d->inverse[py * d->w + px], off = 1 / depth - inverse;
     if (off > BEHIND * d->step)
         return ADCGS_VERDICT_BEHIND;
+    if (off < -BEHIND * d->step)
+        return ADCGS_VERDICT_HIDDEN;
     if (fabs(off) > SAME * d->step)
         return ADCGS_VERDICT_UNKNOWN;
     for (int a = 0; a < 3; a++)

@@ -20,7 +20,8 @@ void adcgs_stereo_list_clear(adcgs_stereo_list *list);
 typedef enum adcgs_verdict {
     ADCGS_VERDICT_UNKNOWN,
     ADCGS_VERDICT_SAME,
-    ADCGS_VERDICT_BEHIND /**< the view sees through it, to something behind */
+    ADCGS_VERDICT_BEHIND, /**< the view sees through it, to something behind */
+    ADCGS_VERDICT_HIDDEN  /**< the view sees something before it */
 } adcgs_verdict;
 
 /** *there: the place on the view's own ray, if it is the same. */

@@ -31,7 +31,8 @@ adcgs_stereo_pose adcgs_stereo_pose_at(const adcgs_stereo *s, uint32_t body, flo
 
 void adcgs_stereo_rest(const adcgs_stereo *s, const adcgs_stereo_point *p, double x[3])
 {
-    memcpy(x, p->x, 3 * sizeof *x);
+    for (int a = 0; a < 3; a++)
+        x[a] = p->x[a] + (p->body ? 0 : (double)p->velocity[a] * (double)p->shift);
     if (!p->body)
         return;
     const adcgs_stereo_body *body = &s->body[p->body - 1];

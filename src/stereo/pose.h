@@ -8,7 +8,7 @@
 /** Pose of a body, from 0, at t in [0,1]: between the moments that were matched, or that of the nearest. */
 adcgs_stereo_pose adcgs_stereo_pose_at(const adcgs_stereo *stereo, uint32_t body, float t);
 
-/** Where a point is while its body is at rest; where it is if it has none. */
+/** Where a point is while its body is at rest; if it has none, in the middle of its life. */
 void adcgs_stereo_rest(const adcgs_stereo *stereo, const adcgs_stereo_point *point, double x[3]);
 
 #endif

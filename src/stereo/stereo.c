@@ -7,6 +7,7 @@
 #include "stereo/follow.h"
 #include "stereo/fuse.h"
 #include "stereo/hull.h"
+#include "stereo/lives.h"
 #include "stereo/poses.h"
 #include "stereo/thin.h"
 
@@ -270,6 +271,8 @@ static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_s
         status = adcgs_stereo_follow(moving.point, (uint32_t)moving.n, error);
     if (status == ADCGS_OK && rig->film)
         status = adcgs_film_even_velocities(moving.point, (uint32_t)moving.n, rig, error);
+    if (status == ADCGS_OK && !rig->film)
+        adcgs_stereo_find_ends(moving.point, (uint32_t)moving.n, rig, out->maps->depths, pool);
     out->still = still.point;
     out->n_still = (uint32_t)still.n;
     out->moving = moving.point;

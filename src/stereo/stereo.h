@@ -24,6 +24,8 @@ typedef struct adcgs_stereo_point {
     float t;           /**< moment, 0..1; 0.5 for what is still */
     float velocity[3]; /**< scene units per unit of t; 0 where it is not known */
     float size;        /**< of a pixel at the point, scene units */
+    float end[2];      /**< how long before and behind t it stays as it goes, of all time; 0: nothing tells of an end */
+    float life, shift; /**< for who makes it an anchor: half of its life to begin with, and from t to the middle of that */
     float detail;      /**< contrast of the picture about it, 0..1 */
     uint8_t moves;
     uint8_t in_place;  /**< it lies where what is still lies anyhow: a shadow, what is uncovered, or what turns on the spot */

@@ -53,6 +53,7 @@ typedef struct adcgs_train_config {
     int tiers;             /**< sets of anchors, the first a coarse picture of everything; at most, few anchors make fewer */
     float detail_anchors;  /**< max_anchors over the square root of details, unless that was chosen by hand; 0: the preset's */
     uint32_t start_anchors, max_anchors;
+    uint8_t span_ends;     /**< these lives end earlier where pictures show what is behind */
     float span_moments;    /**< moments before and behind its own that an anchor lives, to begin with */
     uint32_t densify_every;  /**< iterations between densifications */
     float densify_threshold; /**< of the significance-weighted screen gradient */

@@ -174,7 +174,6 @@ static uint32_t sow_moments(adcgs_trainer *t, adcgs_anchor_set *s, uint32_t budg
 
 static void dress_moments(adcgs_trainer *t, const adcgs_stereo_point *const *points, uint32_t n)
 {
-    const float half = adcgs_half_life(&t->config, &t->stereo);
     for (uint32_t i = 0; i < n; i++) {
         adcgs_residual place = { .size = 4 * points[i]->size };
         rest(t, points[i], place.x);
@@ -183,7 +182,7 @@ static void dress_moments(adcgs_trainer *t, const adcgs_stereo_point *const *poi
         dress(t->f, &place, 1);
         if (at == t->f->n)
             continue;
-        adcgs_set_span(t->f, at, points[i], half);
+        adcgs_set_span(t->f, at, points[i]);
         t->f->moving[at] = 1;
         t->f->body[at] = points[i]->body;
     }

@@ -22,12 +22,12 @@ static double cube_half(const adcgs_start_points *c)
     return fmin(half, 8);
 }
 
-void adcgs_set_span(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p, float half)
+void adcgs_set_span(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p)
 {
-    *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_MIDDLE) = 8 * (p->t - 0.5f);
-    *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_PACE) = -logf(half);
+    *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_MIDDLE) = 8 * (p->t + p->shift - 0.5f);
+    *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_PACE) = -logf(p->life);
     for (int a = 0; a < 3; a++)
-        *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_VELOCITY + a) = p->body ? 0 : 8 * p->velocity[a] * half;
+        *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, ADCGS_SPAN_VELOCITY + a) = p->body ? 0 : 8 * p->velocity[a] * p->life;
 }
 
 /** spacing: mean distance to the nearest others, in voxels; 0 where there are none. */
@@ -77,7 +77,7 @@ static void set_life(adcgs_fmodel *f, uint32_t i, const adcgs_stereo_point *p, f
         return;
     for (int a = 0; a < 6; a++)
         *adcgs_fmodel_at(f, ADCGS_P_SIGMA, i, a) -= 0.5f * logf(fminf(2 * half, 1));
-    adcgs_set_span(f, i, p, half);
+    adcgs_set_span(f, i, p);
 }
 
 static adcgs_status make_anchors(adcgs_fmodel **out, const adcgs_start_points *c, const adcgs_train_config *config,

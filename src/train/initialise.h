@@ -16,6 +16,6 @@ adcgs_status adcgs_initialise(adcgs_fmodel **out, const adcgs_scene *scene, cons
 /** Let bodies go as they were followed; those that were not stay as they are. */
 void adcgs_set_poses(adcgs_fmodel *f, const adcgs_stereo *found);
 /** Let an anchor live about a point's moment, for `half` of all time before it and behind, and move as the point does. */
-void adcgs_set_span(adcgs_fmodel *f, uint32_t anchor, const adcgs_stereo_point *point, float half);
+void adcgs_set_span(adcgs_fmodel *f, uint32_t anchor, const adcgs_stereo_point *point);
 
 #endif

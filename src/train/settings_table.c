@@ -118,6 +118,7 @@ const adcgs_setting adcgs_settings[] = {
     ANCHOR(stereo, S | Q, 0, ADCGS_STEREO_MOMENTS, ALL(ADCGS_STEREO_MOMENTS),
            "moments at most that pictures are matched of, for first anchors and motion; 0: none"),
     ANCHOR(span_moments, B | Q, 0.1, 1e4, ALL(3), "moments before and after its own that an anchor with a span begins with"),
+    ANCHOR(span_ends, Q, 0, 1, BUT_PAPER(1, 0), "1: but it ends where most cameras show what is behind it"),
     ANCHOR(densify_every, S | Q, 1, 1e6, ALL(100), "iterations from one densification to the next"),
     ANCHOR(densify_threshold, S | B | Q, 0, 1e6, ALL(0.0003),
            "screen gradient, weighted by temporal significance, at which anchors grow"),

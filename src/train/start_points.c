@@ -366,6 +366,20 @@ static adcgs_status goes_far(const adcgs_stereo *found, int *far, adcgs_error *e
     return ADCGS_OK;
 }
 
+/** Lives to begin with: as long before as behind, but for ends that are known. Bodies stay as they go. */
+static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
+{
+    const float half = adcgs_half_life(config, found);
+    for (uint32_t i = 0; i < found->n_moving; i++) {
+        adcgs_stereo_point *p = &found->moving[i];
+        const int ends = config->span_ends && !p->body;
+        const float before = ends && p->end[0] > 0 ? fminf(p->end[0], half) : half;
+        const float behind = ends && p->end[1] > 0 ? fminf(p->end[1], half) : half;
+        p->life = 0.5f * (before + behind);
+        p->shift = 0.5f * (behind - before);
+    }
+}
+
 adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
                                adcgs_error *error)
 {
@@ -386,6 +400,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, ad
         ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));
         ADCGS_TRY(adcgs_stereo_find(found, scene, &options, pool, error));
     }
+    set_lives(found, config);
     if (found->film && !found->n_bodies)
         ADCGS_TRY(goes_far(found, &far, error));
     /* Segments of a stream have the same parameters, so those of a part cannot follow what is found in it. */

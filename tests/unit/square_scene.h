@@ -44,21 +44,27 @@ static double colour_at(const adcgs_camera *c, double t, double px, double py, i
                                            : texture(m[3] + WALL * ray[0], m[7] + WALL * ray[1], 20 + (uint64_t)channel);
 }
 
+/** What the view's camera shows at a time, in its file; at none (NaN) the wall alone. */
+static void put_picture(const adcgs_scene_view *v, double t)
+{
+    adcgs_image image;
+    assert_int_equal(adcgs_image_alloc(&image, WIDTH, HEIGHT, 3, v->path, &error), ADCGS_OK);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        image.data[i] = (float)colour_at(&v->camera, t, i / 3 % WIDTH + 0.5, i / 3 / WIDTH + 0.5, i % 3);
+    assert_int_equal(adcgs_image_write(&image, v->path, 0, &error), ADCGS_OK);
+    adcgs_image_free(&image);
+}
+
 static void put_view(adcgs_scene_view *v, int camera, int moment)
 {
     char name[32];
-    adcgs_image image;
     v->time = moment / (MOMENTS - 1.0);
     v->camera = (adcgs_camera){ .width = WIDTH, .height = HEIGHT, .fx = FOCAL, .fy = FOCAL, .cx = WIDTH / 2, .cy = HEIGHT / 2,
                                 .near_plane = 0.01, .cam_to_world = { 1, 0, 0, 0.15 * (camera % 3 - 1), 0, 1, 0,
                                                                       0.15 * (camera / 3) - 0.075, 0, 0, 1, 0 } };
     snprintf(name, sizeof name, "%d-%d.ppm", camera, moment);
     v->path = strdup(in(name));
-    assert_int_equal(adcgs_image_alloc(&image, WIDTH, HEIGHT, 3, name, &error), ADCGS_OK);
-    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
-        image.data[i] = (float)colour_at(&v->camera, v->time, i / 3 % WIDTH + 0.5, i / 3 / WIDTH + 0.5, i % 3);
-    assert_int_equal(adcgs_image_write(&image, v->path, 0, &error), ADCGS_OK);
-    adcgs_image_free(&image);
+    put_picture(v, v->time);
 }
 
 static int put_scene(void **state)

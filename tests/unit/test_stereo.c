@@ -83,6 +83,37 @@ static void what_floats(void **state)
     assert_false(adcgs_stereo_floats(&(adcgs_stereo){ .maps = NULL }, (const double[]){ 0, 0, -1 }));
 }
 
+/** Share of the square's points of a moment that end so many moments before it and behind. */
+static double ending(const adcgs_stereo *s, int moment, double before, double behind)
+{
+    const double ends[2] = { before / (MOMENTS - 1), behind / (MOMENTS - 1) };
+    uint32_t n = 0, right = 0;
+    for (uint32_t i = 0; i < s->n_moving; i++) {
+        const adcgs_stereo_point *p = &s->moving[i];
+        if (p->in_place || fabs((double)p->t * (MOMENTS - 1) - moment) > 0.1)
+            continue;
+        n++;
+        right += fabs((double)p->end[0] - ends[0]) < 0.01 && fabs((double)p->end[1] - ends[1]) < 0.01;
+    }
+    return n ? (double)right / n : 0;
+}
+
+/** What is there at two moments ends half a moment before them and behind; of what stays there is no end. */
+static void what_comes_and_goes_has_ends(void **state)
+{
+    (void)state;
+    for (int i = 0; i < VIEWS; i++)
+        put_picture(&views[i], i % MOMENTS / 2 == 2 ? views[i].time : NAN);
+    adcgs_stereo s = find(NULL);
+    for (int i = 0; i < VIEWS; i++)
+        put_picture(&views[i], views[i].time);
+    const double first = ending(&s, 4, 0.5, 1.5), second = ending(&s, 5, 1.5, 0.5), stays = ending(&found, 4, 0, 0);
+    print_message("right: %.2f, %.2f; of what stays %.2f\n", first, second, stays);
+    assert_true(first > 0.8 && second > 0.8);
+    assert_true(stays > 0.6); /* at its edges velocities need not be off by much */
+    adcgs_stereo_clear(&s);
+}
+
 /** Turned by so many pixels up, and down, by turns, for as long as they are looked at. */
 static double off_by(double pixels)
 {
@@ -160,7 +191,7 @@ int main(void)
         cmocka_unit_test(what_is_still_is_the_wall), cmocka_unit_test(what_moves_is_the_square),
         cmocka_unit_test(what_is_known),             cmocka_unit_test(what_floats),
         cmocka_unit_test(threads_do_not_show),       cmocka_unit_test(where_it_applies),
-        cmocka_unit_test(poses_that_are_off_are_noticed),
+        cmocka_unit_test(poses_that_are_off_are_noticed), cmocka_unit_test(what_comes_and_goes_has_ends),
     };
     return cmocka_run_group_tests(tests, match_pictures, forget_pictures);
 }

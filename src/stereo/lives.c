@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file How long points stay as they go. */
+#include "config.h"
+
+#include "stereo/lives.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { REACH = 3, OFF_USUAL = 18, OFF_LEAST = 3, PART = 256 }; /* moments; levels of 255; of nine pixels; points of a job */
+#define USUAL_SHARE 0.8 /* of the cameras that have the place in their pictures */
+
+typedef struct job {
+    adcgs_stereo_point *points;
+    uint32_t n;
+    const adcgs_stereo_rig *rig;
+    const adcgs_depths *still; /* of each camera that has what it usually shows, in order */
+} job;
+
+/** Whether a camera shows what it usually does about a pixel. */
+static int shows_usual(const adcgs_stereo_camera *c, int moment, int px, int py)
+{
+    int off = 0;
+    for (int y = ADCGS_MAX(py - 1, 0); y <= ADCGS_MIN(py + 1, c->view.h - 1); y++)
+        for (int x = ADCGS_MAX(px - 1, 0); x <= ADCGS_MIN(px + 1, c->view.w - 1); x++) {
+            const int i = y * c->view.w + x;
+            int most = 0;
+            for (int k = 0; k < 3; k++)
+                most = ADCGS_MAX(most, abs(c->shown[moment][4 * i + k] - (int)(c->usual[4 * i + k] * 255 + 0.5f)));
+            off += c->changes[i] || !c->shown[moment][4 * i + 3] || most > OFF_USUAL;
+        }
+    return off < OFF_LEAST;
+}
+
+/** Whether a place would hide what most cameras show at a moment. */
+static int is_gone(const job *j, int moment, const double x[3])
+{
+    int seen = 0, usual = 0, map = 0;
+    for (int c = 0; c < j->rig->n_cameras; c++) {
+        const adcgs_stereo_camera *camera = &j->rig->camera[c];
+        double at[2], depth, there[3];
+        if (!camera->usual)
+            continue;
+        const adcgs_depths *still = &j->still[map++];
+        if (!camera->shown[moment] || !adcgs_stereo_rig_project(&camera->view, x, at, &depth) ||
+            adcgs_depths_judge(still, x, there) == ADCGS_VERDICT_HIDDEN)
+            continue;
+        seen++;
+        usual += shows_usual(camera, moment, (int)at[0], (int)at[1]);
+    }
+    return usual >= 2 && usual >= USUAL_SHARE * seen;
+}
+
+static void find_ends(void *arg, int part, int thread)
+{
+    const job *j = arg;
+    const adcgs_stereo_rig *rig = j->rig;
+    (void)thread;
+    for (uint32_t i = (uint32_t)part * PART; i < j->n && i < ((uint32_t)part + 1) * PART; i++) {
+        adcgs_stereo_point *p = &j->points[i];
+        int moment = 0;
+        while (moment + 1 < rig->n_moments && rig->moment[moment] < p->t)
+            moment++;
+        for (int side = 0; side < 2; side++) {
+            const int step = side ? 1 : -1;
+            p->end[side] = 0;
+            for (int k = 1, m = moment + step; k <= REACH && m >= 0 && m < rig->n_moments && !(p->end[side] > 0); k++, m += step) {
+                double x[3];
+                for (int a = 0; a < 3; a++)
+                    x[a] = p->x[a] + (double)p->velocity[a] * (double)(rig->moment[m] - p->t);
+                if (is_gone(j, m, x))
+                    p->end[side] = fabsf(0.5f * (rig->moment[m] + rig->moment[m - step]) - p->t);
+            }
+        }
+    }
+}
+
+void adcgs_stereo_find_ends(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig,
+                            const adcgs_depths *still, adcgs_pool *pool)
+{
+    job j = { .points = points, .n = n, .rig = rig, .still = still };
+    adcgs_pool_run(pool, find_ends, &j, (int)((n + PART - 1) / PART));
+}
