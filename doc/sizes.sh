@@ -18,9 +18,6 @@ out=${SIZES:-sizes}
 failed=0
 mkdir -p "$out/scenes" "$out/kept"
 . "$source/doc/scenes.sh"
-# What adcgs-enc --fixed sets, which adcgs-sweep takes as settings.
-fixed=$(sed -n 's/^#define FIXED "\(.*\)"$/\1/p' "$source/src/tools/adcgs_enc.c")
-[ -n "$fixed" ] || { echo "sizes: no settings of --fixed" >&2; exit 1; }
 
 # sweep FOLDER SCENE OPTIONS...
 sweep()
@@ -63,7 +60,7 @@ sizes()
     title=$1 scene=$2 name=$3
     wanted sizes "${SCENES:-object table cross80 zju}" "$scene" "$name" || return 0
     echo "sizes: $name" >&2
-    { sweep "$name/fixed" "$scene" --set "tiers=1,$fixed" &&
+    { sweep "$name/fixed" "$scene" --fixed --set tiers=1 &&
         sweep "$name" "$scene" --set tiers=1 --grid "${GRID:-k=6,3,10 detail_anchors=50,25,100}" --against "$out/$name/fixed"; } ||
         { echo "sizes: $name failed" >&2; failed=1; return 0; }
     for chart in rate time; do

@@ -314,9 +314,9 @@ static void print_machine(const sheet *s, const adcgs_sweep *sweep)
 
 static void print_settings(const sheet *s, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
 {
-    say(s, "Scene %s; preset %s%s%s; every figure is that of the file on disk, decoded, on views that training never saw.",
-        sweep->scene, sweep->preset ? sweep->preset : "of the encoder", sweep->set ? "; settings " : "",
-        sweep->set ? sweep->set : "");
+    say(s, "Scene %s; preset %s%s%s%s; every figure is that of the file on disk, decoded, on views that training never saw.",
+        sweep->scene, sweep->preset ? sweep->preset : "of the encoder", sweep->fixed ? ", sizes fixed" : "",
+        sweep->set ? "; settings " : "", sweep->set ? sweep->set : "");
     if (sweep->n_seed > 1)
         say(s, "Each figure is the mean of %d seeds, with the smallest and the largest value.", sweep->n_seed);
     if (sweep->iterations)

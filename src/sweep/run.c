@@ -45,6 +45,8 @@ json_t *adcgs_sweep_settings(const adcgs_sweep *sweep, const adcgs_sweep_run *ru
                   sweep->preset ? sweep->preset : "", "set", sweep->set ? sweep->set : "", "iterations", sweep->iterations,
                   "lambda", run->lambda, "choice", run->choice, "seed", run->seed, "without", run->without, "uncompressed",
                   run->uncompressed, "beginning", run->beginning, "dataset", sweep->dataset, "frames", sweep->frames);
+    if (sweep->fixed)
+        json_object_set_new(settings, "fixed", json_true());
     free(scene);
     return settings;
 }
@@ -129,6 +131,8 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
     adcgs_command_option(&c, "--resume", unfinished ? partial : from ? begin : NULL);
     adcgs_command_option(&c, "--preset", adcgs_sweep_choice_find(run->choice, "preset", own) ? NULL : sweep->preset);
     adcgs_command_choice(&c, run, NULL);
+    if (sweep->fixed)
+        adcgs_command_word(&c, "--fixed");
     adcgs_command_settings(&c, sweep, run);
     adcgs_command_option(&c, "--dataset", sweep->dataset);
     adcgs_command_option(&c, "--frames", sweep->frames);

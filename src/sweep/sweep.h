@@ -41,6 +41,7 @@ typedef struct adcgs_sweep {
     int iterations;          /**< 0: the preset's */
     int threads;             /**< of each encoder; 0: one per CPU */
     int resume, ablation, yardsticks;
+    int fixed;               /**< sizes do not follow from the scene */
     double lambda[ADCGS_SWEEP_LIST], seed[ADCGS_SWEEP_LIST];
     int n_lambda, n_seed;
     adcgs_sweep_grid grid;

@@ -235,6 +235,7 @@ static int parse(adcgs_cli *cli, adcgs_sweep *sweep, int *jobs, int argc, char *
          "train the stages of the method one after another, and\n5, 10 and 15 primitives per anchor (nine runs)", NULL, NULL},
         {"preset", 'p', ADCGS_OPTION_STRING, &sweep->preset, 0, 0, "NAME", "preset of the encoder (default: its own)",
          adcgs_train_presets, NULL},
+        {"fixed", 0, ADCGS_OPTION_FLAG, &sweep->fixed, 0, 0, NULL, "sizes of the preset, as adcgs-enc --fixed", NULL, NULL},
         {"set", 0, ADCGS_OPTION_STRING, &sweep->set, 0, 0, "NAME=VALUE,...", "settings of the encoder", names, NULL},
         {"dataset", 0, ADCGS_OPTION_CHOICE, &dataset, 0, 0, "KIND", "kind of the scene, as for adcgs-enc", adcgs_dataset_names,
          &has_dataset},

@@ -32,7 +32,7 @@ while [ $# -gt 0 ]; do
         --without) without=$2 ;;
         --uncompressed) raw=$2 ;;
         --preset | --iterations | --threads | --set | --dataset | --frames | --time-limit) ;;
-        --json) shift; continue ;;
+        --json | --fixed) shift; continue ;;
         --) break ;;
         *) exit 2 ;;
     esac
@@ -210,6 +210,13 @@ sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 17
 calls 3 1 "--beginning"
 sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 27 --set depth=10
 calls 3 3 "--set depth=10"
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 27 --fixed --set depth=10
+calls 3 3 "--fixed --set depth=10,k=5"
+line 'sizes fixed; settings depth=10' "$out/index.html"
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 27 --fixed --set depth=10
+calls 0
+sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 27 --set depth=10
+calls 3
 truncate -s 5 "$out/lambda-8-k-5.adcgs"
 sweep --lambda 1,8 --k 5 --resume --yardsticks none --iterations 27 --set depth=10
 calls 1 0 "--beginning"
