@@ -115,16 +115,24 @@ int adcgs_sweep_run_all(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sw
     return adcgs_interrupted() ? ADCGS_MAX(worst, 3) : worst;
 }
 
-void adcgs_sweep_take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
+/* ---- What is there already ---- */
+
+int adcgs_sweep_take_finished(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
 {
+    int n = 0;
     for (int i = 0; i < plan->n_runs; i++) {
         adcgs_error ignored;
-        if (adcgs_sweep_load(sweep, &plan->run[i], &ignored) == ADCGS_OK)
-            say(cli, &plan->run[i], " (from before)");
+        if (adcgs_sweep_load(sweep, &plan->run[i], &ignored) != ADCGS_OK)
+            continue;
+        say(cli, &plan->run[i], " (from before)");
+        n++;
     }
+    return n;
 }
 
-int adcgs_sweep_show_one(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
+/* ---- What is made of it ---- */
+
+static int show_one(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
 {
     adcgs_error error;
     adcgs_progress progress;
@@ -142,4 +150,27 @@ int adcgs_sweep_show_one(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_s
     if (adcgs_interrupted())
         return 3;
     return status == ADCGS_OK ? 0 : adcgs_cli_fail(cli, &error);
+}
+
+static int write_all(const adcgs_cli *cli, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)
+{
+    adcgs_error error;
+    unsigned charts = 0;
+    if (adcgs_sweep_write_tables(sweep, plan, &error) != ADCGS_OK || adcgs_sweep_draw(sweep, plan, &charts, &error) != ADCGS_OK ||
+        adcgs_sweep_write_page(sweep, plan, charts, &error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    adcgs_sweep_print(stdout, plan);
+    if (adcgs_cli_flush(&error) != ADCGS_OK)
+        return adcgs_cli_fail(cli, &error);
+    adcgs_cli_note(cli, "wrote %s/index.html, sweep.csv, sweep.json%s%s%s%s", sweep->directory,
+                   plan->n_stages ? ", ablation.csv" : "", plan->shown.n_portions ? ", portions.csv" : "",
+                   plan->shown.n_views ? ", views.csv" : "",
+                   charts ? ", charts as .svg and .pdf" : plan->n_curves ? "; no chart (is gnuplot there?)" : "");
+    return 0;
+}
+
+int adcgs_sweep_finish(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sweep_plan *plan)
+{
+    const int shown = show_one(cli, sweep, plan), written = write_all(cli, sweep, plan);
+    return ADCGS_MAX(shown, written);
 }

@@ -5,115 +5,10 @@
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-sweep
-cp ./adcgs-sweep "$dir/adcgs-sweep" || exit 99
-out=$dir/out
-
-fail()
-{
-    bad "$*"
-    exit 1
-}
-
-# The pretended encoder: 64000 bytes over lambda at 36 - lambda dB, with features for each primitive twice that; 0.1 dB a seed; half a
-# dB less for each part left out of the method. An uncompressed model has 400000 zeros and 35.05 dB. It lists its calls, goes
-# on from nothing but what it began, and refuses lambda 666 half way.
-cat >"$dir/adcgs-enc" <<'END'
-#!/bin/bash
-here=$(dirname "$0") lambda=1 seed=0 without= raw= begin= resume= partial=
-echo "$*" >>"$here/calls"
-while [ $# -gt 0 ]; do
-    case $1 in
-        --output) file=$2 ;;
-        --beginning) begin=$2 ;;
-        --checkpoint) partial=$2 ;;
-        --resume) resume=$2 ;;
-        --lambda) lambda=${2%.*} ;;
-        --seed) seed=$2 ;;
-        --without) without=$2 ;;
-        --uncompressed) raw=$2 ;;
-        --preset | --iterations | --threads | --set | --dataset | --frames | --time-limit) ;;
-        --json | --fixed) shift; continue ;;
-        --) break ;;
-        *) exit 2 ;;
-    esac
-    shift 2
-done
-early=${without#weight_steps}
-[ -z "$resume" ] || grep -q "^begun$seed without $early$" "$resume" || exit 4
-echo "begun$seed without $early" >"${begin:-$partial}"
-[ -n "$begin" ] && exit 0
-[ "$lambda" = 666 ] && exit 4
-bytes=$((64000 / lambda))
-psnr=$((3600 - 100 * lambda + 10 * seed))
-[ "$without" = anchors ] && bytes=$((2 * bytes))
-case $without in *densification*) psnr=$((psnr - 50 * $(tr ',' '\n' <<<"$without" | wc -l))) ;; esac
-if [ -n "$raw" ]; then
-    head -c 400000 /dev/zero >"$raw"
-    [ -n "$without" ] || psnr=3505
-fi
-{ echo "$psnr"; head -c $((bytes - 5)) /dev/zero; } >"$file"
-echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"cpu_seconds\": 1.5, \"objective\": 0.025}"
-END
-# The pretended evaluation finds 10 dB less where something moves, which it does while there is a file of that name; 1 dB less for
-# each of three layers and 2 for each of two tiers that it does without, nothing in a beginning of less than 4000 bytes; and no
-# memory for tiers while there is a file "broken". There are views while there is a file of that name: two cameras, two moments.
-cat >"$dir/adcgs-eval" <<'END'
-#!/bin/bash
-here=$(dirname "$0") moving=null layers=3 tiers=2 views=
-echo "$*" >>"$here/evaluations"
-while [ "$1" != -- ]; do
-    case $1 in
-        --layers) layers=$2 ;;
-        --tiers) tiers=$2; [ ! -e "$here/broken" ] || exit 3 ;;
-    esac
-    shift
-done
-case $2 in *.prefix.part) [ "$(wc -c <"$2")" -ge 4000 ] || exit 4 ;; esac
-read -r psnr <"$2"
-psnr=$((psnr - 100 * (3 - layers) - 200 * (2 - tiers)))
-[ ! -e "$here/moving" ] || moving=$((${psnr%??} - 10)).${psnr: -2}
-for view in 0,0,31 0,0.5,32 1,0,33 1,0.5,34; do
-    IFS=, read -r camera time value <<<"$view"
-    views="$views${views:+, }{\"name\": \"it's $camera\", \"camera\": $camera, \"time\": $time"
-    views="$views, \"psnr\": $value, \"dynamic_psnr\": 2$camera}"
-done
-[ -e "$here/views" ] || views=
-echo "{\"views\": [$views], \"psnr\": ${psnr%??}.${psnr: -2}, \"ssim\": 0.9,"
-echo "\"dynamic_psnr\": $moving, \"frames_per_second\": 100}"
-END
-# Chunks of two tiers of three layers; of one of each while there is a file "flat". What a chunk takes follows its type.
-cat >"$dir/adcgs-info" <<'END'
-#!/bin/bash
-here=$(dirname "$0") layers=3 tiers=2 at=0
-chunks="SEGM:100 GEOM:100 FEA0:800 FEA1:500 FEA2:500 GEOM:100 FEA0:400 FEA1:100 FEA2:300 hash:36 ENDC:32"
-[ ! -e "$here/flat" ] || layers=1 tiers=1 chunks="SEGM:100 GEOM:100 FEA0:800 hash:36 ENDC:32"
-for chunk in $chunks; do
-    list="$list${list:+, }{\"type\": \"${chunk%:*}\", \"offset\": $at}"
-    at=$((at + ${chunk#*:}))
-done
-echo "{\"layers\": $layers, \"tiers\": $tiers, \"chunks\": [$list]}"
-END
-chmod +x "$dir/adcgs-enc" "$dir/adcgs-eval" "$dir/adcgs-info"
-mkdir "$dir/scene"
-
-# sweep OPTIONS...: run one, its report in report, messages in err; got is how it left.
-sweep()
-{
-    "$dir/adcgs-sweep" "$dir/scene" -o "$out" "$@" >"$dir/report" 2>"$dir/err" </dev/null
-    got=$?
-}
-
-# calls N TEXT: so many calls of the encoder since the last look, of those so many with TEXT.
-calls()
-{
-    [ "$(wc -l <"$dir/calls")" -eq "$1" ] || fail "expected $1 calls: $(cat "$dir/calls")"
-    [ $# -eq 1 ] || [ "$(grep -c -e "$3" "$dir/calls")" -eq "$2" ] || fail "expected $2 calls with '$3': $(cat "$dir/calls")"
-    : >"$dir/calls"
-}
-line() { grep -q "$1" "$2" || fail "no '$1' in $2: $(cat "$2")"; }
+. "${srcdir:-.}/tests/cli/pretend.sh"
 
 # A grid: runs that lambda alone tells apart begin together.
-sweep --lambda 4,1,2 --k 5,10 --jobs 2 --yardsticks none
+drawn=$PATH sweep --lambda 4,1,2 --k 5,10 --jobs 2 --yardsticks none
 [ $got -eq 0 ] || fail "plain run: $(cat "$dir/err")"
 calls 8 6 "--resume $out/beginning-k-[0-9]*.checkpoint"
 [ "$(wc -l <"$out/sweep.csv")" -eq 7 ] || fail "expected 7 lines of table: $(cat "$out/sweep.csv")"
@@ -271,11 +166,10 @@ truncate -s 7 "$out/uncompressed.raw"
 sweep --lambda 1,2,4,8 --resume
 calls 1 1 "--uncompressed"
 
-# Programs that are not installed are said to be missing, and no fault. PATH holds what the pretended programs need.
-mkdir "$dir/bin"
-for tool in bash dirname grep tr wc head sh mv; do ln -s "$(command -v $tool)" "$dir/bin/$tool"; done
+# Programs that are not installed are said to be missing, and no fault.
+rm -f "$dir/bin/zstd" "$dir/bin/xz"
 out=$dir/poor
-PATH=$dir/bin sweep --lambda 1,2 --yardsticks uncompressed
+sweep --lambda 1,2 --yardsticks uncompressed
 [ $got -eq 0 ] || fail "without zstd: $(cat "$dir/err")"
 line 'Against zstd -19: no result (is the program installed?)' "$dir/report"
 line 'no chart (is gnuplot there?)' "$dir/err"
@@ -342,7 +236,7 @@ for bytes in 80000 20000; do line "\"mean\": $bytes" "$dir/more/x/sweep.json"; d
 sed '/dynamic_psnr/{s/25/25.48289214/; s/22/22.48289214/}' "$dir/more/x/sweep.json" >"$dir/moved/x/sweep.json"
 cp "$dir/more/x/sweep.json" "$dir/it's/x/sweep.json"
 out=$dir/now/x
-sweep --lambda 1,4 --yardsticks networks --against "$dir/new/x,$dir/more/x/,$dir/moved/x,$dir/older/x,$dir/it's/x"
+drawn=$PATH sweep --lambda 1,4 --yardsticks networks --against "$dir/new/x,$dir/more/x/,$dir/moved/x,$dir/older/x,$dir/it's/x"
 [ $got -eq 0 ] || fail "--against: $(cat "$dir/err")"
 calls 3
 line 'Against new: BD-rate [+-]0\.0 %, BD-rate of what moves [+-]0\.0 %, ' "$dir/report"
@@ -467,7 +361,7 @@ line '^lambda-2,layers,2,31164,33.0000,23.0000$' "$out/portions.csv"
 ! grep -q '^lambda-2,tiers,1,' "$out/portions.csv" || fail "measured without memory"
 measured 6 # three runs, two layers, and the tier without memory
 rm "$dir/broken"
-sweep --lambda 1,2,4 --yardsticks none --resume
+drawn=$PATH sweep --lambda 1,2,4 --yardsticks none --resume
 [ $got -eq 0 ] || fail "portions: $(cat "$dir/err")"
 measured 10
 cat >"$dir/expected" <<'END'
@@ -518,7 +412,7 @@ measured 15 # of streams that are made anew everything
 # One layer and one tier are no choice. Of one view of each camera the names tell.
 touch "$dir/flat"
 sed -i 's/0,0.5,32 1,0,33 1,0.5,34/1,0.5,32/' "$dir/adcgs-eval"
-sweep --lambda 1,2 --yardsticks none
+drawn=$PATH sweep --lambda 1,2 --yardsticks none
 ! grep -q 'layers,\|tiers,' "$out/portions.csv" && ! grep -q 'first layers' "$out/portions.gp" || fail "a choice of one"
 named portions 'first bytes of the file'
 named errors "it_s 0" "mean 31.50 dB" "mean 20.50 dB"
@@ -536,7 +430,7 @@ touch "$dir/moving"
 source=$(cd "${srcdir:-.}" && pwd)
 curves() # CURVES [BEFORE]
 {
-    (cd "$dir" && CURVES=$1 BEFORE=${2:-} LAMBDAS=20,10 ADCGS_DATA=data srcdir=$source sh "$source/doc/curves.sh") \
+    (cd "$dir" && PATH=$dir/bin CURVES=$1 BEFORE=${2:-} LAMBDAS=20,10 ADCGS_DATA=data srcdir=$source sh "$source/doc/curves.sh") \
         >"$dir/report" 2>"$dir/err" || fail "curves: $(cat "$dir/err")"
 }
 curves first
@@ -580,7 +474,7 @@ cmp "$dir/whole.adcgs" "$dir/real/lambda-30-seed-2.adcgs" || fail "another strea
 
 # Parts are what adcgs-eval measures of so many layers and tiers, and of a file cut by other means; fewer tiers take the bytes of a
 # stream that has no more.
-./adcgs-sweep "$dir/tiny" -o "$dir/parts" --lambda 0.3 --yardsticks none --preset draft --iterations 60 --set n_fg=8 \
+PATH=$dir/bin ./adcgs-sweep "$dir/tiny" -o "$dir/parts" --lambda 0.3 --yardsticks none --preset draft --iterations 60 --set n_fg=8 \
     >"$dir/report" 2>"$dir/err" || fail "parts: $(cat "$dir/err")"
 stream=$dir/parts/lambda-0.3.adcgs
 # part PART COLUMN: of the table. same PART FILE OPTIONS...: the PSNR of a part is that of the file.

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Files that say who is at something, on whatever machine. */
+#include "config.h"
+
+#include "io/claim.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define BEAT 10   /* seconds from one touch to the next */
+#define STALE 90  /* seconds without one after which nobody is there */
+#define TRIES 5   /* while others come and go */
+#define TEXT_MAX 400
+
+typedef struct owner {
+    char host[80], place[120]; /* its name; which kernel and which numbers of processes */
+    long process;
+} owner;
+
+struct adcgs_claim {
+    char *path, *what, *mine; /* mine: a name of our own beside path */
+    char text[TEXT_MAX];      /* what is in the file */
+    pthread_t beat;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    int beats, ends;
+};
+
+/* ---- What is written there ---- */
+
+/** A line of a file of the system without its end, or "-". */
+static void read_line(const char *path, char *out, size_t size)
+{
+    FILE *const file = fopen(path, "r");
+    if (!file || !fgets(out, (int)size, file))
+        snprintf(out, size, "-");
+    out[strcspn(out, "\n")] = '\0';
+    if (file)
+        fclose(file);
+}
+
+/** Numbers of processes mean the same where both are equal: since the machine started, in one container. */
+static void find_own(owner *own)
+{
+    char boot[48], space[64];
+    const ssize_t n = readlink("/proc/self/ns/pid", space, sizeof space - 1);
+    space[n > 0 ? n : 0] = '\0';
+    read_line("/proc/sys/kernel/random/boot_id", boot, sizeof boot);
+    snprintf(own->place, sizeof own->place, "%s/%s", boot, n > 0 ? space : "-");
+    own->process = (long)getpid();
+    if (gethostname(own->host, sizeof own->host))
+        snprintf(own->host, sizeof own->host, "-");
+    own->host[sizeof own->host - 1] = '\0';
+}
+
+/** Read a claim and who it is of; -1 if it is gone. What is not written yet is of nobody by name. */
+static int read_claim(const char *path, char text[TEXT_MAX], owner *who, struct stat *s)
+{
+    const int fd = open(path, O_RDONLY | O_CLOEXEC); /* opening asks the server anew */
+    const ssize_t n = fd < 0 || fstat(fd, s) ? -1 : read(fd, text, TEXT_MAX - 1);
+    if (fd >= 0)
+        close(fd);
+    if (n < 0)
+        return -1;
+    text[n] = '\0';
+    *who = (owner){ .host = "another machine" };
+    if (sscanf(text, "%79s %ld %119s", who->host, &who->process, who->place) != 3)
+        *who = (owner){ .host = "another machine" };
+    return 0;
+}
+
+/** Make a file that is not there yet; 0, or -1 and errno. */
+static int create(const char *path, const char *text)
+{
+    const size_t n = strlen(text);
+    const int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd < 0)
+        return -1;
+    errno = 0;
+    const int bad = write(fd, text, n) != (ssize_t)n, reason = errno ? errno : EIO;
+    if (!close(fd) && !bad)
+        return 0;
+    unlink(path);
+    errno = reason;
+    return -1;
+}
+
+/* ---- Who is there ---- */
+
+static int is_gone(const owner *who)
+{
+    owner own;
+    find_own(&own);
+    if (own.place[0] == '-' || strcmp(own.place, who->place) != 0 || who->process <= 0)
+        return 0;
+    return who->process == own.process || (kill((pid_t)who->process, 0) && errno == ESRCH);
+}
+
+typedef enum answer { NOBODY, DEAD, ALIVE, UNKNOWN } answer;
+
+/** Whether somebody is there; leaves a file under our own name, whose time is that of the file system. */
+static answer look(const adcgs_claim *c, owner *who, double *age)
+{
+    char text[TEXT_MAX];
+    struct stat theirs, ours;
+    unlink(c->mine);
+    if (create(c->mine, c->text) || stat(c->mine, &ours))
+        return UNKNOWN;
+    if (read_claim(c->path, text, who, &theirs))
+        return NOBODY;
+    *age = difftime(ours.st_mtime, theirs.st_mtime);
+    return *age > STALE || is_gone(who) ? DEAD : ALIVE;
+}
+
+static adcgs_status refuse(const adcgs_claim *c, const owner *who, double age, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: process %ld on %s is at it; it touched %s %.0f s ago", c->what, who->process,
+                      who->host, c->path, age > 0 ? age : 0.0);
+}
+
+/* ---- Claims ---- */
+
+static void clear(adcgs_claim *c)
+{
+    if (c) {
+        free(c->path);
+        free(c->what);
+        free(c->mine);
+        free(c);
+    }
+}
+
+static adcgs_claim *make(const char *path, const char *what)
+{
+    owner own;
+    adcgs_claim *const c = calloc(1, sizeof *c);
+    const size_t n = strlen(path) + sizeof own.host + 32;
+    find_own(&own);
+    if (c && (c->path = strdup(path)) && (c->what = strdup(what)) && (c->mine = malloc(n))) {
+        snprintf(c->mine, n, "%s.%s-%ld", path, own.host, own.process);
+        snprintf(c->text, sizeof c->text, "%s %ld %s %ld\n", own.host, own.process, own.place, (long)time(NULL));
+        return c;
+    }
+    clear(c);
+    return NULL;
+}
+
+static int is_ours(const adcgs_claim *c)
+{
+    char text[TEXT_MAX];
+    owner who;
+    struct stat s;
+    return !read_claim(c->path, text, &who, &s) && !strcmp(text, c->text);
+}
+
+/** Touches the file, until it is told to end or the file is another's. */
+static void *keep_alive(void *argument)
+{
+    adcgs_claim *const c = argument;
+    struct timespec until;
+    pthread_mutex_lock(&c->lock);
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_sec += BEAT;
+    while (!c->ends) {
+        if (pthread_cond_timedwait(&c->changed, &c->lock, &until) != ETIMEDOUT)
+            continue;
+        if (!is_ours(c))
+            break;
+        utimensat(AT_FDCWD, c->path, NULL, 0); /* the server's time, not ours */
+        clock_gettime(CLOCK_REALTIME, &until);
+        until.tv_sec += BEAT;
+    }
+    pthread_mutex_unlock(&c->lock);
+    return NULL;
+}
+
+static adcgs_status begin(adcgs_claim *c, adcgs_error *error)
+{
+    pthread_mutex_init(&c->lock, NULL);
+    pthread_cond_init(&c->changed, NULL);
+    c->beats = !pthread_create(&c->beat, NULL, keep_alive, c);
+    return c->beats ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: cannot start a thread", c->path);
+}
+
+/** Others may find the same dead claim: who renames last has it, and the one before sees that. */
+static int take_over(const adcgs_claim *c)
+{
+    const struct timespec while_others_rename = { .tv_nsec = 300000000 };
+    if (rename(c->mine, c->path))
+        return 0;
+    nanosleep(&while_others_rename, NULL);
+    return is_ours(c);
+}
+
+static adcgs_status take(adcgs_claim *c, adcgs_error *error)
+{
+    owner who = { .process = 0 };
+    double age = 0;
+    for (int i = 0; i < TRIES; i++) {
+        if (!create(c->path, c->text))
+            return ADCGS_OK;
+        if (errno != EEXIST)
+            break;
+        const answer found = look(c, &who, &age);
+        if (found == UNKNOWN)
+            break;
+        if (found == ALIVE)
+            return refuse(c, &who, age, error);
+        if (found == DEAD && take_over(c))
+            return ADCGS_OK;
+    }
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", c->path, strerror(errno));
+}
+
+adcgs_status adcgs_claim_take(adcgs_claim **claim, const char *path, const char *what, adcgs_error *error)
+{
+    adcgs_claim *const c = make(path, what);
+    *claim = NULL;
+    if (!c)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    adcgs_status status = take(c, error);
+    unlink(c->mine);
+    if (status == ADCGS_OK) {
+        *claim = c;
+        status = begin(c, error);
+        if (status != ADCGS_OK)
+            adcgs_claim_release(claim);
+    } else
+        clear(c);
+    return status;
+}
+
+adcgs_status adcgs_claim_absent(const char *path, const char *what, adcgs_error *error)
+{
+    owner who;
+    double age = 0;
+    if (access(path, F_OK))
+        return ADCGS_OK;
+    adcgs_claim *const c = make(path, what);
+    if (!c)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    const answer found = look(c, &who, &age);
+    const adcgs_status status =
+        found == ALIVE     ? refuse(c, &who, age, error)
+        : found == UNKNOWN ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", c->mine, strerror(errno))
+                           : ADCGS_OK;
+    unlink(c->mine);
+    clear(c);
+    return status;
+}
+
+adcgs_status adcgs_claim_check(const adcgs_claim *claim, adcgs_error *error)
+{
+    return is_ours(claim) ? ADCGS_OK :
+           adcgs_fail(error, ADCGS_ERR_IO, "%s: %s is gone or another's: this process was taken for dead", claim->what,
+                      claim->path);
+}
+
+void adcgs_claim_release(adcgs_claim **claim)
+{
+    adcgs_claim *const c = *claim;
+    *claim = NULL;
+    if (!c)
+        return;
+    pthread_mutex_lock(&c->lock);
+    c->ends = 1;
+    pthread_cond_signal(&c->changed);
+    pthread_mutex_unlock(&c->lock);
+    if (c->beats)
+        pthread_join(c->beat, NULL);
+    if (is_ours(c))
+        unlink(c->path);
+    pthread_cond_destroy(&c->changed);
+    pthread_mutex_destroy(&c->lock);
+    clear(c);
+}

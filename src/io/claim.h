@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Whose turn it is, on a file system that several machines share: a small file
+ * that says which process of which machine is at something, for the time that
+ * it is. Locks of the system are not asked for; not every such file system has
+ * them, and those of a machine that is gone may stay.
+ *
+ * The file is made as one that must not be there yet, and touched every ten seconds while its process lives. It counts no more
+ * when its process is known to be gone, on the same machine, or when it has not been touched for a minute and a half by the clock
+ * of the file system; whoever comes next then renames its own over it. So after kill -9 nothing has to be removed by hand.
+ */
+#ifndef ADCGS_IO_CLAIM_H
+#define ADCGS_IO_CLAIM_H
+
+#include "base/base.h"
+
+typedef struct adcgs_claim adcgs_claim;
+
+/** Make the file. ADCGS_ERR_IO, with the name of who is at it, where somebody is. what: what it stands for, for that message. */
+adcgs_status adcgs_claim_take(adcgs_claim **claim, const char *path, const char *what, adcgs_error *error);
+/** Make sure that nobody else is at something; the message is that of adcgs_claim_take(). */
+adcgs_status adcgs_claim_absent(const char *path, const char *what, adcgs_error *error);
+/** Whether it is still ours: one that slept too long, with its machine, finds another's. */
+adcgs_status adcgs_claim_check(const adcgs_claim *claim, adcgs_error *error);
+/** Remove the file, if it is ours. Accepts what points to NULL. */
+void adcgs_claim_release(adcgs_claim **claim);
+
+#endif

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: BSD-2-Clause
+# An encoder, an evaluation and what tells of streams that only pretend, in $dir beside an adcgs-sweep that is real; to be read with
+# `.` after common.sh.
+cp ./adcgs-sweep "$dir/adcgs-sweep" || exit 99
+out=$dir/out
+mkdir "$dir/scene"
+
+# The pretended encoder: 64000 bytes over lambda at 36 - lambda dB, with features for each primitive twice that; 0.1 dB a seed; half a
+# dB less for each part left out of the method. An uncompressed model has 400000 zeros and 35.05 dB. It lists its calls, goes
+# on from nothing but what it began, and refuses lambda 666 half way. It does not end while there is a file "slow".
+cat >"$dir/adcgs-enc" <<'END'
+#!/bin/bash
+here=$(dirname "$0") lambda=1 seed=0 without= raw= begin= resume= partial=
+echo "$*" >>"$here/calls"
+while [ $# -gt 0 ]; do
+    case $1 in
+        --output) file=$2 ;;
+        --beginning) begin=$2 ;;
+        --checkpoint) partial=$2 ;;
+        --resume) resume=$2 ;;
+        --lambda) lambda=${2%.*} ;;
+        --seed) seed=$2 ;;
+        --without) without=$2 ;;
+        --uncompressed) raw=$2 ;;
+        --preset | --iterations | --threads | --set | --dataset | --frames | --time-limit) ;;
+        --json | --fixed) shift; continue ;;
+        --) break ;;
+        *) exit 2 ;;
+    esac
+    shift 2
+done
+early=${without#weight_steps}
+[ -z "$resume" ] || grep -q "^begun$seed without $early$" "$resume" || exit 4
+echo "begun$seed without $early" >"${begin:-$partial}"
+[ -n "$begin" ] && exit 0
+[ "$lambda" = 666 ] && exit 4
+while [ -e "$here/slow" ]; do sleep 0.05; done
+bytes=$((64000 / lambda))
+psnr=$((3600 - 100 * lambda + 10 * seed))
+[ "$without" = anchors ] && bytes=$((2 * bytes))
+case $without in *densification*) psnr=$((psnr - 50 * $(tr ',' '\n' <<<"$without" | wc -l))) ;; esac
+if [ -n "$raw" ]; then
+    head -c 400000 /dev/zero >"$raw"
+    [ -n "$without" ] || psnr=3505
+fi
+{ echo "$psnr"; head -c $((bytes - 5)) /dev/zero; } >"$file"
+echo "{\"bytes\": $bytes, \"components\": {\"networks\": 1000}, \"weights\": 750, \"uncompressed_bytes\": 400000, \"cpu_seconds\": 1.5, \"objective\": 0.025}"
+END
+# The pretended evaluation finds 10 dB less where something moves, which it does while there is a file of that name; 1 dB less for
+# each of three layers and 2 for each of two tiers that it does without, nothing in a beginning of less than 4000 bytes; and no
+# memory for tiers while there is a file "broken". There are views while there is a file of that name: two cameras, two moments.
+cat >"$dir/adcgs-eval" <<'END'
+#!/bin/bash
+here=$(dirname "$0") moving=null layers=3 tiers=2 views=
+echo "$*" >>"$here/evaluations"
+while [ "$1" != -- ]; do
+    case $1 in
+        --layers) layers=$2 ;;
+        --tiers) tiers=$2; [ ! -e "$here/broken" ] || exit 3 ;;
+    esac
+    shift
+done
+case $2 in *.prefix.part) [ "$(wc -c <"$2")" -ge 4000 ] || exit 4 ;; esac
+read -r psnr <"$2"
+psnr=$((psnr - 100 * (3 - layers) - 200 * (2 - tiers)))
+[ ! -e "$here/moving" ] || moving=$((${psnr%??} - 10)).${psnr: -2}
+for view in 0,0,31 0,0.5,32 1,0,33 1,0.5,34; do
+    IFS=, read -r camera time value <<<"$view"
+    views="$views${views:+, }{\"name\": \"it's $camera\", \"camera\": $camera, \"time\": $time"
+    views="$views, \"psnr\": $value, \"dynamic_psnr\": 2$camera}"
+done
+[ -e "$here/views" ] || views=
+echo "{\"views\": [$views], \"psnr\": ${psnr%??}.${psnr: -2}, \"ssim\": 0.9,"
+echo "\"dynamic_psnr\": $moving, \"frames_per_second\": 100}"
+END
+# Chunks of two tiers of three layers; of one of each while there is a file "flat". What a chunk takes follows its type.
+cat >"$dir/adcgs-info" <<'END'
+#!/bin/bash
+here=$(dirname "$0") layers=3 tiers=2 at=0
+chunks="SEGM:100 GEOM:100 FEA0:800 FEA1:500 FEA2:500 GEOM:100 FEA0:400 FEA1:100 FEA2:300 hash:36 ENDC:32"
+[ ! -e "$here/flat" ] || layers=1 tiers=1 chunks="SEGM:100 GEOM:100 FEA0:800 hash:36 ENDC:32"
+for chunk in $chunks; do
+    list="$list${list:+, }{\"type\": \"${chunk%:*}\", \"offset\": $at}"
+    at=$((at + ${chunk#*:}))
+done
+echo "{\"layers\": $layers, \"tiers\": $tiers, \"chunks\": [$list]}"
+END
+chmod +x "$dir/adcgs-enc" "$dir/adcgs-eval" "$dir/adcgs-info"
+
+fail()
+{
+    bad "$*"
+    exit 1
+}
+
+# Drawing takes longer than all else: there is no gnuplot in $dir/bin.
+mkdir "$dir/bin"
+IFS=: read -ra folders <<<"$PATH"
+for folder in "${folders[@]}"; do
+    ln -s "$folder"/* "$dir/bin" 2>/dev/null
+done
+rm -f "$dir"/bin/gnuplot*
+
+# sweep OPTIONS...: run one, its report in report, messages in err; got is how it left. With charts: drawn=$PATH sweep OPTIONS...
+sweep()
+{
+    PATH=${drawn-$dir/bin} "$dir/adcgs-sweep" "$dir/scene" -o "$out" "$@" >"$dir/report" 2>"$dir/err" </dev/null
+    got=$?
+}
+
+# calls N TEXT: so many calls of the encoder since the last look, of those so many with TEXT.
+calls()
+{
+    [ "$(wc -l <"$dir/calls")" -eq "$1" ] || fail "expected $1 calls: $(cat "$dir/calls")"
+    [ $# -eq 1 ] || [ "$(grep -c -e "$3" "$dir/calls")" -eq "$2" ] || fail "expected $2 calls with '$3': $(cat "$dir/calls")"
+    : >"$dir/calls"
+}
+line() { grep -q "$1" "$2" || fail "no '$1' in $2: $(cat "$2")"; }

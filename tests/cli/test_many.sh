@@ -1,0 +1,179 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-2-Clause
+# A sweep on many machines: its list of commands, each obeyed by itself, in any order, twice and again; what is collected of them is
+# what one process makes; of two that want the same, one refuses and names the other. Encoder and evaluation only pretend.
+set -u
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-sweep
+. "${srcdir:-.}/tests/cli/pretend.sh"
+
+# Charts follow from the scripts that gnuplot draws, which are compared anyway.
+if [ -n "${ADCGS_FULL:-}" ]; then drawn=$PATH; else PATH=$dir/bin; fi
+# many CODE TEXT COMMAND...: expect, of the copy of the program, and no further if it is not so.
+many()
+{
+    expect "$1" "$2" "$dir/adcgs-sweep" "${@:3}"
+    [ $failed -eq 0 ] || exit 1
+}
+# obey FILE: each of its lines by a shell of its own, the last first.
+obey()
+{
+    while read -r command; do
+        sh -c "$command" 2>>"$dir/err" </dev/null || fail "$command: $(cat "$dir/err")"
+    done < <(tac "$1")
+}
+# same ONE OTHER: folders of a sweep hold the same files, but for logs, beginnings, and what says of which sweep it is a folder.
+same() { diff -r -x "*.log" -x "beginning*" -x command.txt "$1" "$2" >"$dir/diff" || fail "not the same: $(head "$dir/diff")"; }
+
+out=$dir/all # expect writes to $dir/out
+# One process, then one for each run: the same tables, charts, page and streams. Nobody begins together with others.
+whole=(--lambda 1,2,4 --seeds 1,2 --ablation --grid "k=5,10" --preset fast --fixed --set depth=10)
+touch "$dir/views" "$dir/moving"
+sweep "${whole[@]}"
+[ $got -eq 0 ] || fail "one process: $(cat "$dir/err")"
+runs=$(($(wc -l <"$dir/calls") - $(grep -c -e --beginning "$dir/calls")))
+mv "$out" "$dir/one"
+: >"$dir/calls"
+sweep "${whole[@]}" --list
+[ $got -eq 0 ] && [ ! -s "$dir/err" ] || fail "--list: $(cat "$dir/err")"
+calls 0
+mv "$dir/report" "$dir/list"
+[ "$(sort -u "$dir/list" | wc -l)" -eq $runs ] || fail "expected $runs commands: $(cat "$dir/list")"
+grep -qxF -e "$dir/adcgs-sweep --lambda 1,2,4 --grid k=5,10 --seeds 1,2 --ablation --preset fast --fixed --set depth=10 --output $out \
+--run lambda-4-k-10-seed-2 $dir/scene" "$dir/list" || fail "another list: $(cat "$dir/list")"
+obey "$dir/list"
+calls $runs 0 "--resume\|--beginning"
+many 0 "lambda-1-k-5-seed-1: .* (from before)" --collect "$out"
+same "$dir/one" "$out"
+[ "$(ls "$out"/*.running* 2>/dev/null)" = "" ] || fail "who was at it is still said: $(ls "$out")"
+
+# Again: nothing is run; one process that goes on finds everything, and says the same.
+obey "$dir/list"
+sweep "${whole[@]}" --resume --list
+[ $got -eq 0 ] && [ ! -s "$dir/report" ] || fail "finished runs are listed: $(cat "$dir/report")"
+sweep "${whole[@]}" --resume
+[ $got -eq 0 ] || fail "one process behind many: $(cat "$dir/err")"
+calls 0
+same "$dir/one" "$out"
+rm "$dir/views" "$dir/moving"
+
+# What a shell might obey is in quotes, in the list and in what --collect goes by.
+mkdir "$dir/it's a \$scene"
+out="$dir/two  blanks"
+many 0 '' "$dir/it's a \$scene" -o "$out" -l 1 --yardsticks none --list
+obey "$dir/out"
+many 0 '' --collect "$out" -q
+grep -q '"scene": ".*/it.s a \$scene"' "$out/sweep.json" || fail "another scene: $(cat "$out/sweep.json")"
+
+# Some are finished: the rest is named, and so are who is at it and where it failed, which goes on from there.
+out=$dir/some
+: >"$dir/calls"
+sweep --lambda 1,2,666 --yardsticks none --list
+sed -n 1p "$dir/report" | sh 2>"$dir/err" || fail "one of them: $(cat "$dir/err")"
+third=$(sed -n 3p "$dir/report")
+for k in 1 2; do
+    sh -c "$third" 2>"$dir/err"
+    [ $? -eq 4 ] || fail "a failing encoder goes unnoticed: $(cat "$dir/err")"
+done
+calls 3 1 "--resume $out/lambda-666.partial"
+"$dir/adcgs-sweep" --collect "$out" >"$dir/report" 2>"$dir/err"
+[ $? -eq 1 ] || fail "not all are there: $(cat "$dir/err")"
+line 'lambda-1: 64000 bytes' "$dir/err"
+line 'lambda-2: not begun' "$dir/err"
+line "lambda-666: begun, not finished, and nobody is at it; see $out/lambda-666.log" "$dir/err"
+[ "$(wc -l <"$out/sweep.csv")" -eq 2 ] || fail "expected one point: $(cat "$out/sweep.csv")"
+sweep --lambda 1,2,666 --yardsticks none --list --resume
+[ "$(wc -l <"$dir/report")" -eq 2 ] || fail "expected what is missing: $(cat "$dir/report")"
+
+# A beginning that one process left is used.
+out=$dir/begun
+sweep --lambda 1,2 --yardsticks none
+: >"$dir/calls"
+many 0 '' "$dir/scene" -o "$out" --lambda 1,2,4 --yardsticks none --run lambda-4
+calls 1 1 "--resume $out/beginning.checkpoint"
+
+# Two at one run, two at one folder: the second refuses, by name, and what is there stays. Others, and --collect, go on.
+out=$dir/claims
+host=$(uname -n)
+sweep --lambda 1,2 --yardsticks none --list
+mv "$dir/report" "$dir/list"
+touch "$dir/slow"
+setsid "$dir/adcgs-sweep" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none --run lambda-1 --quiet 2>"$dir/slow.err" &
+first=$!
+until grep -qs "^$host " "$out/lambda-1.running" && [ -s "$dir/calls" ]; do sleep 0.05; done
+grep -q "^$host $first " "$out/lambda-1.running" || fail "of another process: $(cat "$out/lambda-1.running")"
+name="process $first on $host is at it; it touched $out/lambda-1.running [0-9]* s ago"
+: >"$dir/calls"
+many 3 "claims/lambda-1: $name" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none --run lambda-1
+many 3 "claims/lambda-1: $name" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none
+calls 0
+"$dir/adcgs-sweep" --collect "$out" -q >"$dir/report" 2>"$dir/err"
+[ $? -eq 1 ] || fail "--collect beside a run: $(cat "$dir/err")"
+line "lambda-1: not finished: $out/lambda-1: $name" "$dir/err"
+line 'lambda-2: not begun' "$dir/err"
+
+# kill -9 leaves that behind, and nobody minds.
+kill -KILL -- "-$first"
+wait $first 2>/dev/null
+[ -e "$out/lambda-1.running" ] || fail "kill -9 removes files"
+rm "$dir/slow"
+: >"$dir/calls"
+obey "$dir/list"
+calls 2
+many 0 '' --collect "$out"
+[ "$(ls "$out"/*.running* 2>/dev/null)" = "" ] || fail "who was at it is still said: $(ls "$out")"
+
+# Of another machine it counts until it has not been touched for long. No more is known than what is there.
+echo 'node7 17 other/pid:[1] 5' >"$out/lambda-1.running"
+rm "$out/lambda-1.json"
+one=("$dir/scene" -o "$out" --lambda 1,2 --yardsticks none --run lambda-1)
+many 3 'lambda-1: process 17 on node7 is at it' "${one[@]}"
+grep -q node7 "$out/lambda-1.running" || fail "another's is gone"
+touch -d '2 minutes ago' "$out/lambda-1.running"
+many 0 'lambda-1: 64000 bytes' "${one[@]}"
+[ ! -e "$out/lambda-1.running" ] || fail "it stays when it is done"
+: >"$out/lambda-1.running"
+many 3 'lambda-1: process 0 on another machine is at it' "${one[@]}"
+rm "$out/lambda-1.running"
+
+# Whoever has the folder has all its runs. What was taken for dead and is not finds another's.
+for taken in sweep:"${one[*]}" collect:"--collect $out"; do
+    echo 'node7 17 other/pid:[1] 5' >"$out/${taken%%:*}.running"
+    # shellcheck disable=SC2086
+    many 3 "claims/${taken%%:*}: process 17 on node7" ${taken#*:}
+    many 3 "claims/${taken%%:*}: process 17 on node7" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none
+    rm "$out/${taken%%:*}.running"
+    [ ! -e "$out/lambda-1.running" ] && [ ! -e "$out/sweep.running" ] || fail "refused, and still at it: $(ls "$out")"
+done
+rm "$out/lambda-1.json"
+touch "$dir/slow"
+: >"$dir/calls"
+"$dir/adcgs-sweep" "${one[@]}" --quiet 2>"$dir/slow.err" &
+until [ -s "$dir/calls" ]; do sleep 0.05; done
+echo 'node7 17 other/pid:[1] 5' >"$out/lambda-1.running"
+rm "$dir/slow"
+wait $!
+[ $? -eq 3 ] && grep -q "lambda-1: $out/lambda-1.running is gone or another's" "$dir/slow.err" || fail "$(cat "$dir/slow.err")"
+grep -q node7 "$out/lambda-1.running" || fail "another's is gone"
+
+# What it cannot be asked for, and folders that are none.
+many 2 '--run lambda-3: expected one of the runs' "$dir/scene" -o "$out" -l 1 --run lambda-3
+many 2 'expected one of them' "$dir/scene" -o "$out" -l 1 --run lambda-1 --list
+many 2 '--jobs: has no say with --list' "$dir/scene" -o "$out" -l 1 -j 2 --list
+many 2 '--jobs: has no say with --run' "$dir/scene" -o "$out" -l 1 -j 1 --run lambda-1
+mkdir "$dir/line
+break"
+many 2 'without line breaks' "$dir/line
+break" -o "$out" -l 1 --list
+for more in scene '-l 1' --list --resume "-o $dir"; do
+    # shellcheck disable=SC2086
+    many 2 '--collect: expected nothing else' --collect "$out" $more
+done
+many 3 'nowhere/command.txt' --collect "$dir/nowhere"
+printf -- '--lambda\n1' >"$out/command.txt"
+many 4 'command.txt: line 2: expected the words' --collect "$out"
+printf -- '--collect\nx\n' >"$out/command.txt"
+many 4 'command.txt: expected a sweep of all runs' --collect "$out"
+printf -- '--lambda\n1\n--output\nx\n--\n%s\n' "$dir/gone" >"$out/command.txt"
+many 3 'gone: cannot open the scene' --collect "$out"
+exit 0
