@@ -14,13 +14,12 @@
 #include <time.h>
 #include <unistd.h>
 
-#define BEAT 10   /* seconds from one touch to the next */
-#define STALE 90  /* seconds without one after which nobody is there */
-#define TRIES 5   /* while others come and go */
+#define BEAT 10 /* seconds from one touch to the next */
+#define TRIES 5 /* while others come and go */
 #define TEXT_MAX 400
 
 typedef struct owner {
-    char host[80], place[120]; /* its name; which kernel and which numbers of processes */
+    char host[80], since[32], place[120]; /* place: which kernel, and which numbers of processes */
     long process;
 } owner;
 
@@ -49,6 +48,8 @@ static void read_line(const char *path, char *out, size_t size)
 /** Numbers of processes mean the same where both are equal: since the machine started, in one container. */
 static void find_own(owner *own)
 {
+    const time_t now = time(NULL);
+    struct tm utc;
     char boot[48], space[64];
     const ssize_t n = readlink("/proc/self/ns/pid", space, sizeof space - 1);
     space[n > 0 ? n : 0] = '\0';
@@ -58,9 +59,10 @@ static void find_own(owner *own)
     if (gethostname(own->host, sizeof own->host))
         snprintf(own->host, sizeof own->host, "-");
     own->host[sizeof own->host - 1] = '\0';
+    strftime(own->since, sizeof own->since, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
 }
 
-/** Read a claim and who it is of; -1 if it is gone. What is not written yet is of nobody by name. */
+/** Read a claim and who it is of; -1 if it is gone. What is not written yet has no name. */
 static int read_claim(const char *path, char text[TEXT_MAX], owner *who, struct stat *s)
 {
     const int fd = open(path, O_RDONLY | O_CLOEXEC); /* opening asks the server anew */
@@ -70,9 +72,9 @@ static int read_claim(const char *path, char text[TEXT_MAX], owner *who, struct 
     if (n < 0)
         return -1;
     text[n] = '\0';
-    *who = (owner){ .host = "another machine" };
-    if (sscanf(text, "%79s %ld %119s", who->host, &who->process, who->place) != 3)
-        *who = (owner){ .host = "another machine" };
+    *who = (owner){ .host = "" };
+    if (sscanf(text, "%79s %ld %31s %119s", who->host, &who->process, who->since, who->place) < 3)
+        *who = (owner){ .host = "?", .since = "?" };
     return 0;
 }
 
@@ -98,7 +100,7 @@ static int is_gone(const owner *who)
 {
     owner own;
     find_own(&own);
-    if (own.place[0] == '-' || strcmp(own.place, who->place) != 0 || who->process <= 0)
+    if (strcmp(own.host, who->host) != 0 || (who->place[0] && strcmp(own.place, who->place) != 0) || who->process <= 0)
         return 0;
     return who->process == own.process || (kill((pid_t)who->process, 0) && errno == ESRCH);
 }
@@ -116,13 +118,13 @@ static answer look(const adcgs_claim *c, owner *who, double *age)
     if (read_claim(c->path, text, who, &theirs))
         return NOBODY;
     *age = difftime(ours.st_mtime, theirs.st_mtime);
-    return *age > STALE || is_gone(who) ? DEAD : ALIVE;
+    return *age > ADCGS_CLAIM_SECONDS || is_gone(who) ? DEAD : ALIVE;
 }
 
 static adcgs_status refuse(const adcgs_claim *c, const owner *who, double age, adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: process %ld on %s is at it; it touched %s %.0f s ago", c->what, who->process,
-                      who->host, c->path, age > 0 ? age : 0.0);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: another run has %s: process %ld on %s, since %s, seen %.0f s ago", c->path, c->what,
+                      who->process, who->host, who->since, age > 0 ? age : 0.0);
 }
 
 /* ---- Claims ---- */
@@ -145,7 +147,7 @@ static adcgs_claim *make(const char *path, const char *what)
     find_own(&own);
     if (c && (c->path = strdup(path)) && (c->what = strdup(what)) && (c->mine = malloc(n))) {
         snprintf(c->mine, n, "%s.%s-%ld", path, own.host, own.process);
-        snprintf(c->text, sizeof c->text, "%s %ld %s %ld\n", own.host, own.process, own.place, (long)time(NULL));
+        snprintf(c->text, sizeof c->text, "%s %ld %s %s\n", own.host, own.process, own.since, own.place);
         return c;
     }
     clear(c);
@@ -181,11 +183,16 @@ static void *keep_alive(void *argument)
     return NULL;
 }
 
+/** Signals are for other threads. */
 static adcgs_status begin(adcgs_claim *c, adcgs_error *error)
 {
+    sigset_t all, before;
     pthread_mutex_init(&c->lock, NULL);
     pthread_cond_init(&c->changed, NULL);
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
     c->beats = !pthread_create(&c->beat, NULL, keep_alive, c);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
     return c->beats ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: cannot start a thread", c->path);
 }
 
@@ -231,7 +238,7 @@ adcgs_status adcgs_claim_take(adcgs_claim **claim, const char *path, const char 
         *claim = c;
         status = begin(c, error);
         if (status != ADCGS_OK)
-            adcgs_claim_release(claim);
+            adcgs_claim_drop(claim);
     } else
         clear(c);
     return status;
@@ -259,11 +266,11 @@ adcgs_status adcgs_claim_absent(const char *path, const char *what, adcgs_error 
 adcgs_status adcgs_claim_check(const adcgs_claim *claim, adcgs_error *error)
 {
     return is_ours(claim) ? ADCGS_OK :
-           adcgs_fail(error, ADCGS_ERR_IO, "%s: %s is gone or another's: this process was taken for dead", claim->what,
-                      claim->path);
+           adcgs_fail(error, ADCGS_ERR_IO, "%s: %s is another's by now: this process was taken for dead", claim->path,
+                      claim->what);
 }
 
-void adcgs_claim_release(adcgs_claim **claim)
+void adcgs_claim_drop(adcgs_claim **claim)
 {
     adcgs_claim *const c = *claim;
     *claim = NULL;

@@ -15,8 +15,8 @@
 
 #define WORDS "command.txt" /* what the folder is a sweep of: a word a line */
 #define WORDS_MAX 100000
-#define ALL "sweep"
-#define TABLES "collect"
+#define ALL "sweep"     /* the name of the claim of all runs */
+#define TABLES "tables" /* and of what is written of them */
 
 /* ---- Who is at what ---- */
 
@@ -26,25 +26,24 @@ adcgs_status adcgs_sweep_make_folder(const adcgs_sweep *sweep, adcgs_error *erro
            adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", sweep->directory, strerror(errno));
 }
 
-/** The file that says who is at it, and what to call it. */
-static void name_claim(char path[ADCGS_SWEEP_PATH], char what[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const char *name)
+/** The file that says who is at it. */
+static void name_claim(char path[ADCGS_SWEEP_PATH], const adcgs_sweep *sweep, const char *name)
 {
     snprintf(path, ADCGS_SWEEP_PATH, "%s/%s.running", sweep->directory, name);
-    snprintf(what, ADCGS_SWEEP_PATH, "%s/%s", sweep->directory, name);
 }
 
 static adcgs_status claim(adcgs_claim **c, const adcgs_sweep *sweep, const char *name, adcgs_error *error)
 {
-    char path[ADCGS_SWEEP_PATH], what[ADCGS_SWEEP_PATH];
-    name_claim(path, what, sweep, name);
-    return adcgs_claim_take(c, path, what, error);
+    char path[ADCGS_SWEEP_PATH];
+    name_claim(path, sweep, name);
+    return adcgs_claim_take(c, path, name, error);
 }
 
 static adcgs_status absent(const adcgs_sweep *sweep, const char *name, adcgs_error *error)
 {
-    char path[ADCGS_SWEEP_PATH], what[ADCGS_SWEEP_PATH];
-    name_claim(path, what, sweep, name);
-    return adcgs_claim_absent(path, what, error);
+    char path[ADCGS_SWEEP_PATH];
+    name_claim(path, sweep, name);
+    return adcgs_claim_absent(path, name, error);
 }
 
 /* Whoever comes says so first and looks afterwards, here and in a single run: of two at a time one at least sees the other. */
@@ -61,8 +60,8 @@ adcgs_status adcgs_sweep_claim_all(adcgs_sweep_claims *claims, const adcgs_sweep
 
 void adcgs_sweep_unclaim(adcgs_sweep_claims *claims)
 {
-    adcgs_claim_release(&claims->tables);
-    adcgs_claim_release(&claims->runs);
+    adcgs_claim_drop(&claims->tables);
+    adcgs_claim_drop(&claims->runs);
 }
 
 /* ---- What the folder is a sweep of ---- */
@@ -191,7 +190,7 @@ int adcgs_sweep_run_one(const adcgs_cli *cli, const adcgs_sweep_request *request
         return adcgs_cli_fail(cli, &error);
     keep_only(&sweep, plan, index);
     const int code = run_claimed(cli, &sweep, plan, at);
-    adcgs_claim_release(&at);
+    adcgs_claim_drop(&at);
     return code;
 }
 
@@ -227,6 +226,6 @@ int adcgs_sweep_collect(const adcgs_cli *cli, const adcgs_sweep *sweep, adcgs_sw
             missing = 1;
         }
     const int code = adcgs_sweep_finish(cli, sweep, plan);
-    adcgs_claim_release(&at);
+    adcgs_claim_drop(&at);
     return code ? code : missing;
 }

@@ -102,14 +102,14 @@ setsid "$dir/adcgs-sweep" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none 
 first=$!
 until grep -qs "^$host " "$out/lambda-1.running" && [ -s "$dir/calls" ]; do sleep 0.05; done
 grep -q "^$host $first " "$out/lambda-1.running" || fail "of another process: $(cat "$out/lambda-1.running")"
-name="process $first on $host is at it; it touched $out/lambda-1.running [0-9]* s ago"
+name="claims/lambda-1.running: another run has lambda-1: process $first on $host, since 20[-0-9T:]*Z, seen [0-9]* s ago"
 : >"$dir/calls"
-many 3 "claims/lambda-1: $name" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none --run lambda-1
-many 3 "claims/lambda-1: $name" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none
+many 3 "$name" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none --run lambda-1
+many 3 "$name" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none
 calls 0
 "$dir/adcgs-sweep" --collect "$out" -q >"$dir/report" 2>"$dir/err"
 [ $? -eq 1 ] || fail "--collect beside a run: $(cat "$dir/err")"
-line "lambda-1: not finished: $out/lambda-1: $name" "$dir/err"
+line "lambda-1: not finished: .*$name" "$dir/err"
 line 'lambda-2: not begun' "$dir/err"
 
 # kill -9 leaves that behind, and nobody minds.
@@ -124,24 +124,26 @@ many 0 '' --collect "$out"
 [ "$(ls "$out"/*.running* 2>/dev/null)" = "" ] || fail "who was at it is still said: $(ls "$out")"
 
 # Of another machine it counts until it has not been touched for long. No more is known than what is there.
-echo 'node7 17 other/pid:[1] 5' >"$out/lambda-1.running"
+echo 'node7 17 2026-01-01T00:00:00Z other/pid:[1]' >"$out/lambda-1.running"
 rm "$out/lambda-1.json"
 one=("$dir/scene" -o "$out" --lambda 1,2 --yardsticks none --run lambda-1)
-many 3 'lambda-1: process 17 on node7 is at it' "${one[@]}"
+many 3 'another run has lambda-1: process 17 on node7, since 2026' "${one[@]}"
 grep -q node7 "$out/lambda-1.running" || fail "another's is gone"
 touch -d '2 minutes ago' "$out/lambda-1.running"
 many 0 'lambda-1: 64000 bytes' "${one[@]}"
 [ ! -e "$out/lambda-1.running" ] || fail "it stays when it is done"
 : >"$out/lambda-1.running"
-many 3 'lambda-1: process 0 on another machine is at it' "${one[@]}"
-rm "$out/lambda-1.running"
+many 3 'another run has lambda-1: process 0 on ?, since' "${one[@]}"
+echo "$host 999999999 2026-01-01T00:00:00Z" >"$out/lambda-1.running"
+many 0 'lambda-1: 64000 bytes' "${one[@]}" # no such process here, whichever it was
+[ ! -e "$out/lambda-1.running" ] || fail "it stays when it is done"
 
 # Whoever has the folder has all its runs. What was taken for dead and is not finds another's.
-for taken in sweep:"${one[*]}" collect:"--collect $out"; do
-    echo 'node7 17 other/pid:[1] 5' >"$out/${taken%%:*}.running"
+for taken in sweep:"${one[*]}" tables:"--collect $out"; do
+    echo 'node7 17 2026-01-01T00:00:00Z other/pid:[1]' >"$out/${taken%%:*}.running"
     # shellcheck disable=SC2086
-    many 3 "claims/${taken%%:*}: process 17 on node7" ${taken#*:}
-    many 3 "claims/${taken%%:*}: process 17 on node7" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none
+    many 3 "${taken%%:*}.running: another run has ${taken%%:*}: process 17 on node7" ${taken#*:}
+    many 3 "${taken%%:*}.running: another run has ${taken%%:*}: process 17 on node7" "$dir/scene" -o "$out" --lambda 1,2 --yardsticks none
     rm "$out/${taken%%:*}.running"
     [ ! -e "$out/lambda-1.running" ] && [ ! -e "$out/sweep.running" ] || fail "refused, and still at it: $(ls "$out")"
 done
@@ -150,10 +152,10 @@ touch "$dir/slow"
 : >"$dir/calls"
 "$dir/adcgs-sweep" "${one[@]}" --quiet 2>"$dir/slow.err" &
 until [ -s "$dir/calls" ]; do sleep 0.05; done
-echo 'node7 17 other/pid:[1] 5' >"$out/lambda-1.running"
+echo 'node7 17 2026-01-01T00:00:00Z other/pid:[1]' >"$out/lambda-1.running"
 rm "$dir/slow"
 wait $!
-[ $? -eq 3 ] && grep -q "lambda-1: $out/lambda-1.running is gone or another's" "$dir/slow.err" || fail "$(cat "$dir/slow.err")"
+[ $? -eq 3 ] && grep -q "$out/lambda-1.running: lambda-1 is another's by now" "$dir/slow.err" || fail "$(cat "$dir/slow.err")"
 grep -q node7 "$out/lambda-1.running" || fail "another's is gone"
 
 # What it cannot be asked for, and folders that are none.
