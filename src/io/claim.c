@@ -123,8 +123,8 @@ static answer look(const adcgs_claim *c, owner *who, double *age)
 
 static adcgs_status refuse(const adcgs_claim *c, const owner *who, double age, adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: another run has %s: process %ld on %s, since %s, seen %.0f s ago", c->path, c->what,
-                      who->process, who->host, who->since, age > 0 ? age : 0.0);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: another run has %s: process %ld on %s, since %s, seen %.0f s ago", c->path,
+                      c->what, who->process, who->host, who->since, age > 0 ? age : 0.0);
 }
 
 /* ---- Claims ---- */

@@ -5,9 +5,9 @@
  * it is. Locks of the system are not asked for; not every such file system has
  * them, and those of a machine that is gone may stay.
  *
- * The file is made as one that must not be there yet, and a thread touches it every ten seconds while its process lives. It counts
- * no more when its process is known to be gone, on the same machine, or when it has not been touched for a minute by the clock of
- * the file system; whoever comes next then renames its own over it. So after kill -9 nothing has to be removed by hand.
+ * The file is made as one that must not be there yet, and a thread touches it every ten seconds while its process lives. It
+ * counts no more when its process is known to be gone, on the same machine, or when it has not been touched for a minute by the
+ * clock of the file system; whoever comes next then renames its own over it. So after kill -9 nothing has to be removed by hand.
  */
 #ifndef ADCGS_IO_CLAIM_H
 #define ADCGS_IO_CLAIM_H
