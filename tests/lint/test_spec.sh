@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
 # The specification builds to HTML and PDF without a warning (a missing glyph is one), and the PDF shows what only some fonts
-# have. ADCGS_FULL=1: twice, to the same bytes.
+# have. ADCGS_FULL=1: once more by make html pdf, to the same bytes.
 set -u
 command -v asciidoctor >/dev/null && command -v asciidoctor-pdf >/dev/null || { echo "skipped: no asciidoctor"; exit 77; }
 top=$(cd "${srcdir:-.}" && pwd) || exit 99
@@ -17,12 +17,13 @@ build()
     grep -E 'WARN|ERROR|possible invalid reference' "$dir/log" >&2 && faults=1
 }
 
-for n in 1 ${ADCGS_FULL:+2}; do
-    build asciidoctor $n.html
-    build asciidoctor-pdf $n.pdf
-    cmp "$dir/1.html" "$dir/$n.html" || faults=1
-    cmp "$dir/1.pdf" "$dir/$n.pdf" || faults=1
-done
+build asciidoctor 1.html
+build asciidoctor-pdf 1.pdf
+if [ "${ADCGS_FULL:-}" = 1 ]; then
+    make html pdf >"$dir/log" 2>&1 || { cat "$dir/log"; faults=1; }
+    cmp "$dir/1.html" spec/adcgs.html || faults=1
+    cmp "$dir/1.pdf" spec/adcgs.pdf || faults=1
+fi
 grep -q '>REQ-PARS-001<' "$dir/1.html" || { echo "requirements have no numbers in print" >&2; faults=1; }
 if command -v pdftotext >/dev/null; then
     pdftotext "$dir/1.pdf" "$dir/text" || faults=1
