@@ -15,9 +15,9 @@ touch "$dir/all/end"
 # shellcheck disable=SC2086
 {
     ./adcgs-enc --live "$dir/all" -o "$dir/all.adcgs" $live 2>"$dir/err" || { bad "--live"; cat "$dir/err"; }
-    ./adcgs-enc --live "$dir/all/scene.json" -o "$dir/pair.adcgs" $short --segment 0.1166 2>"$dir/err" ||
+    ./adcgs-enc --live "$dir/all/scene.json" -o "$dir/pair.adcgs" $short --iterations 300 --segment 0.1166 2>"$dir/err" ||
         { bad "--live of a file"; cat "$dir/err"; }
-    ./adcgs-enc "$dir/all/scene.json" -o "$dir/offline.adcgs" $short --segment 0.1166 2>"$dir/err" ||
+    ./adcgs-enc "$dir/all/scene.json" -o "$dir/offline.adcgs" $short --iterations 300 --segment 0.1166 2>"$dir/err" ||
         { bad "offline"; cat "$dir/err"; }
 }
 psnr()
@@ -136,11 +136,11 @@ expect 4 "ended before it showed two moments" ./adcgs-enc --live "$dir/none" -o 
 
 # A delay that leaves no time: as few iterations as there may be, in all segments.
 # shellcheck disable=SC2086
-./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" $live --delay 0.11 --json >"$dir/out" 2>"$dir/err" ||
+./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" $live --iterations 300 --delay 0.11 --json >"$dir/out" 2>"$dir/err" ||
     { bad "--delay"; cat "$dir/err"; }
 grep -q '"most_iterations": 200' "$dir/out" && grep -q '"delay": 0.11' "$dir/out" && grep -q '"segments": 3' "$dir/out" ||
     { bad "the delay has no effect"; cat "$dir/out"; }
-./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" --preset draft --max-anchors 300 --iterations 300 --segment 0.1 --delay 100 \
+./adcgs-enc --live "$dir/all" -o "$dir/late.adcgs" --preset draft --max-anchors 300 --iterations 60 --segment 0.1 --delay 100 \
     >"$dir/out" 2>"$dir/err" || { bad "--delay"; cat "$dir/err"; }
 grep -q '3 segments of 0.233333 s together' "$dir/err" && grep -q '100 s asked for' "$dir/err" ||
     { bad "summary"; cat "$dir/err"; }

@@ -7,7 +7,7 @@ need adcgs-enc adcgs-dec adcgs-info adcgs-demo-scene
 
 scene=$dir/scene
 tiny_scene "$scene"
-short="--preset draft --max-anchors 300 --iterations 300"
+short="--preset draft --max-anchors 300 --iterations 200"
 
 # enc NAME OPTIONS...: encode the scene to NAME.adcgs.
 enc()
@@ -26,12 +26,12 @@ left() { find "$dir" -name "$1*" | sed "s|.*/$1||" | sort | xargs; }
 enc two --segment 0.1 --threads 1 --json --log "$dir/two.log"
 [ "$(spans two.adcgs)" = "0 0 0.1 1 0.1 0.233333" ] || { bad "spans"; spans two.adcgs; }
 grep -q '"segments": 2,' "$dir/two.out" || { bad "--json does not tell how many"; cat "$dir/two.out"; }
-grep -q '"segment":1,.*"iteration":300,' "$dir/two.log" && grep -q '"segment":2,.*"iteration":300,' "$dir/two.log" ||
+grep -q '"segment":1,.*"iteration":200,' "$dir/two.log" && grep -q '"segment":2,.*"iteration":200,' "$dir/two.log" ||
     { bad "the log does not tell segments"; cat "$dir/two.log"; }
 [ "$(left two.adcgs)" = "" ] || bad "left behind: $(left two.adcgs)"
 enc threads --segment 0.1 --threads 3
 same two threads "another stream with three threads"
-enc three --segment 0.07
+enc three --segment 0.07 --iterations 60
 [ "$(spans three.adcgs)" = "0 0 0.0666667 1 0.0666667 0.133333 2 0.133333 0.233333" ] || { bad "spans"; spans three.adcgs; }
 for t in 0 0.1 0.15 0.23; do
     ./adcgs-dec "$dir/two.adcgs" --camera 0 -t $t --md5 >/dev/null 2>"$dir/err" || { bad "time $t"; cat "$dir/err"; }
@@ -63,8 +63,8 @@ expect 0 "" ./adcgs-info --check "$dir/saved.adcgs"
 expect 2 "go with no other" ./adcgs-info --check --json "$dir/two.adcgs"
 
 # One that is as long as the scene is none.
-enc whole
-enc long --segment 9
+enc whole --iterations 60
+enc long --iterations 60 --segment 9
 same whole long "a segment longer than the scene changes it"
 
 # One segment instead, where that is neither larger nor worse: that of a run of as many iterations; it is said which was taken.
@@ -78,7 +78,7 @@ better()
     echo "$said" | awk '{ exit !(NF > 4 && ($3 <= $1 && $4 > $2 - 0.05) == ($5 == "one")) }' || bad "it is said: $said"
 }
 better better --segment 0.1
-enc longer --iterations 600
+enc longer --iterations 400
 case $said in
     *" one") same longer better "another stream than that of a run of as many iterations" ;;
     *) bad "the tiny scene is no better in one: $said" ;;
@@ -133,13 +133,13 @@ rm "$dir/base.1.adcgs"
 
 # Faded in: a segment goes on for as many moments as --fade allows, and a quarter of a segment has; a frame meanwhile is the same
 # from a file that is read where it has to be, from a pipe, and from one that is read whole.
-./adcgs-demo-scene --scene turn1 --format ppm -o "$dir/turn" >"$dir/out" 2>&1 || bad "adcgs-demo-scene"
+./adcgs-demo-scene --scene turn1 --size 40x40 --format ppm -o "$dir/turn" >"$dir/out" 2>&1 || bad "adcgs-demo-scene"
 # fade NAME OPTIONS...: encode that to NAME.adcgs.
 fade()
 {
     name=$1
     shift
-    ./adcgs-enc "$dir/turn" -o "$dir/$name.adcgs" --preset draft --max-anchors 200 --iterations 60 --scale 4 --segment 0.4 "$@" \
+    ./adcgs-enc "$dir/turn" -o "$dir/$name.adcgs" --preset draft --max-anchors 200 --iterations 60 --segment 0.4 "$@" \
         >"$dir/out" 2>&1 || { bad "exit code $?: adcgs-enc $*"; cat "$dir/out"; }
 }
 reach() { ./adcgs-info "$dir/$1.adcgs" | sed -n 's/^  goes on for \(.*\) s, in which the next is faded in$/\1/p' | xargs; }
@@ -159,7 +159,7 @@ done
 expect 2 "give --segment" ./adcgs-enc "$scene" -o "$dir/x.adcgs" --fade 1
 
 # Where nothing is seen to move there are no networks of motion, and the time table, which all segments have, is of zeros.
-enc rest --segment 0.1 --set still_below=1000000
+enc rest --segment 0.1 --set still_below=1000000 --iterations 60
 ./adcgs-info "$dir/rest.adcgs" >"$dir/out"
 [ "$(grep -c '^  Z  *[1-9]' "$dir/out")" -eq 2 ] || { bad "segments without time tables"; cat "$dir/out"; }
 grep -q '2 segments' "$dir/out" && ! grep -q 'F_omega\|F_varpi' "$dir/out" || { bad "a scene at rest"; cat "$dir/out"; }
