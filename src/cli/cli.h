@@ -84,10 +84,12 @@ int adcgs_parse_pair(const char *text, int min, int max, int out[2]);
 /** "T" or "A:B" in seconds; *end == *begin for the former. */
 int adcgs_parse_times(const char *text, double *begin, double *end);
 
-/** Make SIGINT and SIGTERM set a flag (a second one kills). */
-void adcgs_interrupt_catch(void);
-/** The signal that came, 0 if none. */
+/** Make the first so many of SIGINT and SIGTERM set a flag; one more kills. */
+void adcgs_interrupt_catch(int most);
+/** The signal that came last, 0 if none. */
 int adcgs_interrupted(void);
+/** How many came. */
+int adcgs_interrupts(void);
 
 /** How far a program is: on a terminal a line that rewrites itself, else a remark now and then. */
 typedef struct adcgs_progress {

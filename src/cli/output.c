@@ -16,17 +16,20 @@
 #define LINES_MOST 30.0
 
 /* A signal handler can reach nothing but static storage. */
-static volatile sig_atomic_t interrupted;
+static volatile sig_atomic_t interrupted, interrupts, interrupts_most;
+static const int numbers[] = {SIGINT, SIGTERM};
 
 static void on_signal(int number)
 {
     interrupted = number;
-    signal(number, SIG_DFL);
+    interrupts = interrupts + 1;
+    for (size_t i = 0; interrupts >= interrupts_most && i < ADCGS_COUNTOF(numbers); i++)
+        signal(numbers[i], SIG_DFL);
 }
 
-void adcgs_interrupt_catch(void)
+void adcgs_interrupt_catch(int most)
 {
-    const int numbers[] = {SIGINT, SIGTERM};
+    interrupts_most = most;
     for (size_t i = 0; i < ADCGS_COUNTOF(numbers); i++) {
         struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
         sigemptyset(&action.sa_mask);
@@ -37,6 +40,11 @@ void adcgs_interrupt_catch(void)
 int adcgs_interrupted(void)
 {
     return interrupted;
+}
+
+int adcgs_interrupts(void)
+{
+    return interrupts;
 }
 
 void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli)

@@ -322,7 +322,7 @@ int main(int argc, char **argv)
     adcgs_error error = {0};
     adcgs_decoder *decoder = NULL;
     adcgs_status status = adcgs_dec_check(&s, &error);
-    adcgs_interrupt_catch();
+    adcgs_interrupt_catch(1);
     s.opened = adcgs_seconds();
     if (status == ADCGS_OK && s.answer)
         status = answer(&cli, &s, &decoder, &error);

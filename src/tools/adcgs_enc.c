@@ -133,13 +133,17 @@ static adcgs_status report(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs
 static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
     adcgs_stream stream;
-    ADCGS_TRY(adcgs_enc_learn(w, job, job->scene, NULL, NULL, job->o->resume, job->o->started, error));
+    ADCGS_TRY(adcgs_enc_learn(w, job, job->scene, NULL, NULL, job->o->finish ? job->o->finish : job->o->resume,
+                              job->o->started, error));
     if (!job->o->output)
         return ADCGS_OK;
     adcgs_stream_init(&stream);
     adcgs_status status = write_stream(&stream, w, job->pool, error);
     adcgs_stream_clear(&stream, NULL);
-    return status == ADCGS_OK ? report(w, job, w->last.spent, met, error) : status;
+    if (status == ADCGS_OK)
+        status = report(w, job, w->last.spent, met, error);
+    *met &= !w->cut_short;
+    return status;
 }
 
 /* ---- Segments ---- */
@@ -289,7 +293,7 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     const adcgs_enc_options *o = job->o;
     adcgs_scene_options scene = { .points_path = o->points, .dataset = o->dataset };
     ADCGS_TRY(prepare(job, w, &scene, error));
-    w->log = o->log ? fopen(o->log, o->resume ? "a" : "w") : NULL;
+    w->log = o->log ? fopen(o->log, o->resume || o->finish ? "a" : "w") : NULL;
     if (o->log && !w->log)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
     if (o->live)
@@ -448,6 +452,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "resume", 0, ADCGS_OPTION_FILE, &o->resume, 0, 0, "FILE",
           "go on from such a state; same scene, same options; with\n--live: from the output that a run has left", NULL,
           NULL },
+        { "finish", 0, ADCGS_OPTION_FILE, &o->finish, 0, 0, "FILE",
+          "make a file of such a state as it is, without training on;\nsame scene, same options", NULL, NULL },
         { "beginning", 0, ADCGS_OPTION_FILE, &o->beginning, 0, 0, "FILE",
           "train as far as lambda does not matter, save the state\nhere and leave; runs with any lambda --resume it", NULL,
           NULL },
@@ -481,6 +487,9 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
                                                                   "no output: give -o FILE");
     if (o->has_lambda + o->has_size + o->has_psnr > 1)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--lambda, --size and --psnr exclude each other");
+    if (o->finish && (o->resume || o->beginning || o->checkpoint || o->has_segment || o->live || o->time_limit > 0))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--finish excludes --resume, --beginning, --checkpoint, --segment, --live "
+                               "and --time-limit");
     if (o->live)
         return check_live(cli, o, argv[first]);
     if (o->has_delay)

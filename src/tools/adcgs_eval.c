@@ -237,7 +237,7 @@ int main(int argc, char **argv)
     s.scene = argv[first + 1];
     s.config.cpu = (adcgs_cpu_level)s.cpu;
     adcgs_error error = {0};
-    adcgs_interrupt_catch();
+    adcgs_interrupt_catch(1);
     error.status = run(&s, &error);
     return adcgs_cli_leave(&cli, error.status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : 0);
 }

@@ -153,7 +153,7 @@ static int import(const adcgs_cli *cli, const arguments *a)
     adcgs_import_report report;
     adcgs_progress progress;
     adcgs_progress_init(&progress, cli);
-    adcgs_interrupt_catch();
+    adcgs_interrupt_catch(1);
     const adcgs_status status = adcgs_import(&a->import, &progress, &report, &error);
     adcgs_progress_clear(&progress);
     if (status != ADCGS_OK)

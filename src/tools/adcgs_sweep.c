@@ -53,7 +53,7 @@ static int obey(const adcgs_cli *cli, const adcgs_sweep_request *request, const 
     int code = 0;
     if (!plan)
         return adcgs_cli_error(cli, ADCGS_ERR_MEMORY, "out of memory");
-    adcgs_interrupt_catch();
+    adcgs_interrupt_catch(1);
     if (adcgs_sweep_plan_make(plan, sweep, &error) != ADCGS_OK || adcgs_sweep_add_against(plan, sweep, &error) != ADCGS_OK ||
         adcgs_sweep_add_tables(plan, sweep->tables, &error) != ADCGS_OK || adcgs_sweep_make_folder(sweep, &error) != ADCGS_OK)
         code = adcgs_cli_fail(cli, &error);

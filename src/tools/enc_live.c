@@ -217,7 +217,7 @@ static adcgs_status run(live_run *r, adcgs_error *error)
     const adcgs_enc_options *o = r->job->o;
     adcgs_live_options options = { .seconds = o->segment, .unbounded = o->has_delay, .points_path = o->points,
                                    .interrupted = adcgs_interrupted };
-    adcgs_interrupt_catch();
+    adcgs_interrupt_catch(1);
     signal(SIGPIPE, SIG_IGN); /* a reader that leaves is an error of writing */
     ADCGS_TRY(adcgs_enc_live_file_open(&r->file, o->output, o->resume, error));
     if (o->resume)

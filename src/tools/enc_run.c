@@ -203,15 +203,36 @@ const char *adcgs_enc_target(const adcgs_enc_options *o)
     return o->beginning ? o->beginning : o->output;
 }
 
+/** Whether there is something to make a file of, should it be wanted; segments behind the one that is learnt would be missing. */
+static int is_ready(const adcgs_enc_watcher *w)
+{
+    return w->o->output && !w->segments && w->t->iteration;
+}
+
 static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
 {
+    if (is_ready(w) && adcgs_interrupts() < 2)
+        adcgs_cli_error(cli, ADCGS_OK, "interrupted: the state is being saved; a second interrupt makes a file of what there is");
     ADCGS_TRY(adcgs_trainer_save(w->t, w->state, error));
     if (w->segments)
         adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; go on with the same command and --resume %s",
                         w->t->iteration, w->segment + 1, w->segments, w->base);
     else
-        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s", w->t->iteration,
-                        w->base);
+        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s%s", w->t->iteration,
+                        w->base, is_ready(w) ? "; or --finish it: a file of what there is" : "");
+    return ADCGS_OK;
+}
+
+/** Make of a run, wherever it stands, what can be written. */
+static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
+{
+    adcgs_progress_show(&w->progress, "finish    what there is of %u iterations", w->t->iteration);
+    const adcgs_status status = adcgs_trainer_finish(w->t, &w->last, error);
+    adcgs_progress_clear(&w->progress);
+    ADCGS_TRY(status);
+    adcgs_cli_note(cli, "a file of what there is after iteration %u of %u", w->t->iteration, w->t->config.iterations);
+    log_last(w);
+    log_decisions(w);
     return ADCGS_OK;
 }
 
@@ -237,8 +258,10 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: this run is past its beginning", state);
     w->t->until_lambda = w->o->beginning != NULL;
     w->saved = w->t->elapsed.clock;
+    if (w->o->finish)
+        return finish(cli, w, error);
     if (!w->is_live)
-        adcgs_interrupt_catch();
+        adcgs_interrupt_catch(w->o->output && !w->segments ? 2 : 1);
     const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
     adcgs_progress_clear(&w->progress);
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
@@ -252,6 +275,9 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
     if (w->o->beginning && !adcgs_interrupted())
         return adcgs_trainer_save(w->t, w->o->beginning, error);
     ADCGS_TRY(stop_early(cli, w, error));
+    w->cut_short = is_ready(w) && adcgs_interrupts() > 1;
+    if (w->cut_short)
+        return finish(cli, w, error);
     return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", adcgs_enc_target(w->o));
 }
 

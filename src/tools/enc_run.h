@@ -12,7 +12,7 @@
 
 /** As on the command line. */
 typedef struct adcgs_enc_options {
-    const char *scene, *output, *preset, *checkpoint, *resume, *log, *points, *set, *without, *beginning, *uncompressed;
+    const char *scene, *output, *preset, *checkpoint, *resume, *finish, *log, *points, *set, *without, *beginning, *uncompressed;
     const char *frames, *fps;
     double lambda, psnr, time_limit, segment, key, fade, delay;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, fixed, live, or_whole;
@@ -35,6 +35,7 @@ typedef struct adcgs_enc_watcher {
     adcgs_train_report first; /* after the first iteration */
     double saved;
     int unsaved; /* the last checkpoint could not be written */
+    int cut_short; /* by interrupts: it was made a file of before its end */
     adcgs_train_report last;
     size_t uncompressed_bytes;
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
@@ -76,7 +77,7 @@ adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const a
 
 /**
  * Learn a scene, or a part of it, which goes on with the model before unless that is NULL; w->t is the caller's then. state: a
- * checkpoint to go on from, or NULL. started: from which its time counts. otherwise: the model to go on with
+ * checkpoint to go on from, or to be done with, or NULL. started: from which its time counts. otherwise: the model to go on with
  * where one that begins anew had other parameters than this one, or NULL.
  */
 adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,

@@ -98,19 +98,26 @@ static double window_of(const adcgs_train_config *c, double progress)
     return progress < c->curriculum_until ? c->curriculum_begin + (1 - c->curriculum_begin) * progress / c->curriculum_until : 1;
 }
 
+/** Pictures of the size that is due. */
+static adcgs_status load_views(adcgs_trainer *t, double progress, adcgs_error *error)
+{
+    const double begin = adcgs_seconds();
+    const int first = !t->divide && !t->lambda_used; /* of a restored run, too: until lambda is used, it may be another */
+    if (adcgs_stages_divide(t, progress) == t->divide)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
+    if (first)
+        ADCGS_TRY(adcgs_contrast_lambda(t, error));
+    if (!t->iteration)
+        ADCGS_TRY(adcgs_black_levels(t, error));
+    t->left.load = adcgs_seconds() - begin;
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
-    if (adcgs_stages_divide(t, progress) != t->divide) {
-        const double begin = adcgs_seconds();
-        const int first = !t->divide && !t->lambda_used; /* of a restored run, too: until lambda is used, it may be another */
-        ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
-        if (first)
-            ADCGS_TRY(adcgs_contrast_lambda(t, error));
-        if (!t->iteration)
-            ADCGS_TRY(adcgs_black_levels(t, error));
-        t->left.load = adcgs_seconds() - begin;
-    }
+    ADCGS_TRY(load_views(t, progress, error));
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
     ADCGS_TRY(adcgs_release_step(t, progress, error));
     if (!c->without_densification && t->iteration && t->iteration % c->densify_every == 0 && progress >= c->densify_from &&
@@ -121,6 +128,14 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     if (t->iteration != at)
         return ADCGS_OK;
     return adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error) : adcgs_rate_control_step(t, progress, error);
+}
+
+adcgs_status adcgs_stages_skip(adcgs_trainer *t, adcgs_error *error)
+{
+    adcgs_buffer_clear(&t->begin);
+    ADCGS_TRY(load_views(t, 1, error));
+    adcgs_curriculum_grow(&t->curriculum, 1, t->f);
+    return enter_stages(t, 1, error);
 }
 
 adcgs_status adcgs_stages_finish(adcgs_trainer *t, adcgs_error *error)

@@ -94,9 +94,31 @@ static void fill_report(const adcgs_trainer *t, double progress, double rate, ad
     r->attempt = t->begin.size && adcgs_rate_is_sought(t) ? (int)t->rate_control.tries + 1 : 0;
 }
 
+/** When this program began, were all that the run has taken its own. */
+static adcgs_time begin_of(const adcgs_trainer *t)
+{
+    return adcgs_time_less(fabs(t->started.clock) > 0 ? t->started : adcgs_time_now(), t->elapsed);
+}
+
+adcgs_status adcgs_trainer_finish(adcgs_trainer *t, adcgs_train_report *report, adcgs_error *error)
+{
+    const adcgs_time begin = begin_of(t);
+    if (!t->iteration)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "nothing to make a file of: the run is before its first iteration");
+    if (!is_finite(t))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "nothing to make a file of: training has diverged at iteration %u, from where a "
+                          "run that goes on goes back", t->iteration);
+    adcgs_trainer_prepare_networks(t);
+    ADCGS_TRY(adcgs_stages_skip(t, error));
+    ADCGS_TRY(adcgs_stages_finish(t, error));
+    t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
+    fill_report(t, 1, 0, report);
+    return ADCGS_OK;
+}
+
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
-    const adcgs_time begin = adcgs_time_less(fabs(t->started.clock) > 0 ? t->started : adcgs_time_now(), t->elapsed);
+    const adcgs_time begin = begin_of(t);
     double last = adcgs_seconds(), rate = 0;
     uint32_t reported = t->iteration;
     *stopped = 0;

@@ -35,4 +35,10 @@ int adcgs_trainer_is_lost(const adcgs_trainer *trainer);
 /** Train to the end, or (*stopped = 1) until observe says stop or lambda would have a say. */
 adcgs_status adcgs_trainer_run(adcgs_trainer *trainer, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error);
 
+/**
+ * Be done with a run that has been loaded or stopped, without an iteration more: what its end would have done that can be done
+ * now is. ADCGS_ERR_DATA before the first iteration.
+ */
+adcgs_status adcgs_trainer_finish(adcgs_trainer *trainer, adcgs_train_report *report, adcgs_error *error);
+
 #endif

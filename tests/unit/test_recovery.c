@@ -119,6 +119,45 @@ static void contrast_is_of_what_is_known(void **state)
     adcgs_trainer_free(&t);
 }
 
+/* ---- Ends ---- */
+
+/** Wherever a run stands it can be made what the stream holds at once, but before it has begun, and where it has diverged. */
+static void a_run_ends_wherever_it_stands(void **state)
+{
+    static const uint32_t stops[] = { 10, 50, 110, 150, 185, 198 };
+    const adcgs_train_config config = small_config();
+    adcgs_train_report report;
+    adcgs_trainer *t = make(&config);
+    (void)state;
+    assert_int_equal(adcgs_trainer_finish(t, &report, &error), ADCGS_ERR_DATA);
+    assert_non_null(strstr(error.text, "before its first iteration"));
+    for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
+        uint32_t stop = stops[i];
+        int stopped;
+        adcgs_stream stream;
+        assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
+        adcgs_trainer *other = make(&config);
+        adcgs_buffer bytes;
+        adcgs_buffer_init(&bytes);
+        assert_int_equal(adcgs_trainer_store(t, &bytes, &error), ADCGS_OK);
+        assert_int_equal(adcgs_trainer_restore(other, bytes.data, bytes.size, &error), ADCGS_OK);
+        if (adcgs_trainer_finish(other, &report, &error) != ADCGS_OK)
+            fail_msg("at %u: %s", t->iteration, error.text);
+        assert_true(other->frozen && other->rounding && other->decided && other->divide == 1);
+        assert_int_equal(report.iteration, t->iteration);
+        bytes.size = 0;
+        assert_int_equal(adcgs_encode_stream(&stream, other, NULL, 0, &error), ADCGS_OK);
+        assert_int_equal(adcgs_encode_verified(&stream, &bytes, t->cpu, pool, &error), ADCGS_OK);
+        adcgs_stream_clear(&stream, NULL);
+        adcgs_buffer_clear(&bytes);
+        adcgs_trainer_free(&other);
+    }
+    t->f->param[ADCGS_P_FV].p[0] = NAN;
+    assert_int_equal(adcgs_trainer_finish(t, &report, &error), ADCGS_ERR_DATA);
+    assert_non_null(strstr(error.text, "has diverged at iteration 200"));
+    adcgs_trainer_free(&t);
+}
+
 /* ---- Checkpoints ---- */
 
 /** Spoil what a checkpoint of this run will hold; 0 if there is no such way. */
@@ -179,6 +218,7 @@ int main(void)
         cmocka_unit_test(what_does_not_learn_stays),
         cmocka_unit_test(points_that_no_camera_sees_are_refused),
         cmocka_unit_test(contrast_is_of_what_is_known),
+        cmocka_unit_test(a_run_ends_wherever_it_stands),
         cmocka_unit_test(impossible_checkpoints_are_refused),
     };
     return cmocka_run_group_tests_name("recovery", tests, open_scene, close_scene);

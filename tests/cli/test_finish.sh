@@ -1,0 +1,113 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# A run that is interrupted can be made a file of as it is: from its checkpoint by --finish, and by a second interrupt; neither
+# they nor a third, nor a damaged checkpoint, lose anything. Runs in the build folder.
+. "${srcdir:-.}/tests/cli/common.sh"
+need adcgs-enc adcgs-dec adcgs-eval adcgs-info adcgs-demo-scene
+
+n=400
+scene=$dir/scene
+tiny_scene "$scene"
+run="./adcgs-enc $scene --preset draft --max-anchors 300 --set stereo=0 --iterations $n"
+
+# shows FILE DB: a file is whole, and shows the test views as well as that.
+shows()
+{
+    expect 0 "" ./adcgs-info --check "$1"
+    ./adcgs-eval "$1" "$scene" --json >"$dir/out" 2>"$dir/err" || { bad "adcgs-eval $1"; cat "$dir/err"; }
+    awk -v least="$2" -F '[:,]' '/"psnr"/ { last = $2 } END { exit !(last >= least) }' "$dir/out" || { bad "$1 shows less than $2 dB"; cat "$dir/out"; }
+}
+
+# One interrupt says what a second one would have done, and what can be done now.
+state=$dir/stop.adcgs.checkpoint
+echo precious >"$dir/stop.adcgs"
+# shellcheck disable=SC2086
+interrupt INT "$dir/stop.log" '"iteration":200,' $run -o "$dir/stop.adcgs" --threads 2 --log "$dir/stop.log"
+grep -q 'a second interrupt makes a file' "$dir/stop.err" || { bad "no word of a second interrupt"; cat "$dir/stop.err"; }
+grep -q -- "--resume $state; or --finish it" "$dir/stop.err" || { bad "no word of --finish"; cat "$dir/stop.err"; }
+[ "$(cat "$dir/stop.adcgs")" = precious ] || bad "one interrupt touched the output"
+cp "$state" "$dir/kept"
+
+# The file is decoded, measured and told like any other; threads do not matter, and the run can still go on.
+# shellcheck disable=SC2086
+expect 0 'what there is after iteration 2[0-9]* of 400' $run -o "$dir/stop.adcgs" --threads 2 --finish "$state" --log "$dir/stop.log"
+grep -q 'decoded from the file, 3 test views: 2[0-9]' "$dir/err" || { bad "no report"; cat "$dir/err"; }
+grep -q '"stage":"decisions"' "$dir/stop.log" || bad "the log does not tell its end"
+shows "$dir/stop.adcgs" 20
+./adcgs-info "$dir/stop.adcgs" | grep -q 'iterations = 2[0-9]*$' || bad "the file does not tell the iterations that it had"
+# shellcheck disable=SC2086
+expect 0 "" $run -o "$dir/other.adcgs" --threads 5 --finish "$state" -q
+cmp "$dir/stop.adcgs" "$dir/other.adcgs" || bad "another file with other threads"
+cmp "$state" "$dir/kept" || bad "a file was made, and the checkpoint is another"
+if [ -n "${ADCGS_FULL-}" ]; then
+    # shellcheck disable=SC2086
+    interrupt INT "$dir/size.log" '"iteration":200,' $run -o "$dir/size.adcgs" --threads 2 --size 12k --log "$dir/size.log"
+    # shellcheck disable=SC2086
+    expect 0 "" $run -o "$dir/size.adcgs" --threads 2 --size 12k --finish "$dir/size.adcgs.checkpoint"
+    [ "$(wc -c <"$dir/size.adcgs")" -le 12000 ] || bad "a size was missed"
+    shows "$dir/size.adcgs" 18
+fi
+
+# Two interrupts: the state is saved, and the file is what --finish makes of it. Their two signals cannot become one.
+for try in 1 2 3; do
+    rm -f "$dir/two.log"
+    # shellcheck disable=SC2086
+    $run -o "$dir/two.adcgs" --threads 2 --log "$dir/two.log" >"$dir/out" 2>"$dir/err" &
+    pid=$!
+    while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":200,' "$dir/two.log" 2>/dev/null; do sleep 0.02; done
+    kill -INT $pid
+    kill -TERM $pid
+    wait $pid
+    code=$?
+    [ $code -eq 0 ] || break
+done 2>/dev/null
+[ $code -eq 1 ] || { bad "exit code $code after two interrupts, expected 1"; cat "$dir/err"; }
+shows "$dir/two.adcgs" 20
+# shellcheck disable=SC2086
+expect 0 "" $run -o "$dir/other.adcgs" --threads 2 --finish "$dir/two.adcgs.checkpoint"
+cmp "$dir/two.adcgs" "$dir/other.adcgs" || bad "two interrupts and --finish make different files"
+
+# A third one, while the file is made: it ends the program, and leaves the state and what was there before.
+echo precious >"$dir/three.adcgs"
+for try in 1 2 3; do
+    rm -f "$dir/three.log"
+    # shellcheck disable=SC2086
+    $run -o "$dir/three.adcgs" --threads 1 --log "$dir/three.log" >"$dir/out" 2>"$dir/err" &
+    pid=$!
+    while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":200,' "$dir/three.log" 2>/dev/null; do sleep 0.02; done
+    kill -INT $pid
+    kill -TERM $pid
+    while kill -0 $pid 2>/dev/null && ! grep -q 'stopped at' "$dir/err"; do sleep 0.01; done
+    kill -TERM $pid
+    wait $pid
+    code=$?
+    [ $code -gt 1 ] && break
+    echo precious >"$dir/three.adcgs"
+done 2>/dev/null
+[ $code -eq 143 ] || { bad "exit code $code after three interrupts, expected 143"; cat "$dir/err"; }
+[ "$(cat "$dir/three.adcgs")" = precious ] || bad "a third interrupt touched the output"
+[ "$(find "$dir" -name 'three.adcgs*' | wc -l)" -eq 2 ] || { bad "left behind"; ls "$dir"; }
+# shellcheck disable=SC2086
+expect 0 "" $run -o "$dir/three.adcgs" --threads 2 --finish "$dir/three.adcgs.checkpoint"
+
+# What cannot be made a file of: one line, and the output stays.
+echo precious >"$dir/x.adcgs"
+head -c 3000 "$dir/kept" >"$dir/damaged"
+cp "$dir/kept" "$dir/flipped"
+printf '\377\377' | dd of="$dir/flipped" bs=1 seek=5000 conv=notrunc 2>/dev/null
+for what in "damaged" "flipped"; do
+    # shellcheck disable=SC2086
+    expect 4 "$dir/$what: damaged: its checksum" $run -o "$dir/x.adcgs" --finish "$dir/$what"
+done
+# shellcheck disable=SC2086
+{
+    expect 4 "not a checkpoint" $run -o "$dir/x.adcgs" --finish "$dir/stop.adcgs"
+    expect 3 "nowhere" $run -o "$dir/x.adcgs" --finish "$dir/nowhere"
+    expect 4 "saved with other options: seed" $run -o "$dir/x.adcgs" --seed 2 --finish "$dir/kept"
+    for other in "--resume $dir/kept" "--checkpoint $dir/y" "--segment 0.1" "--time-limit 9" "--live"; do
+        expect 2 "finish excludes" $run -o "$dir/x.adcgs" --finish "$dir/kept" $other
+    done
+    expect 2 "finish excludes\|either" $run --beginning "$dir/x.adcgs" --finish "$dir/kept"
+}
+[ "$(cat "$dir/x.adcgs")" = precious ] || bad "what failed touched the output"
+exit $failed
