@@ -97,13 +97,23 @@ typedef struct adcgs_progress {
     int is_terminal, shown;
     double last;  /**< when it was drawn */
     double every; /**< seconds from one to the next */
+    double grace; /**< that adcgs_progress_keep() leaves a line to come by itself */
+    char said[256]; /**< what was given last, drawn or not; "": nothing that still holds */
+    double said_at;
+    struct adcgs_pulse *pulse; /**< NULL unless it is kept */
 } adcgs_progress;
 
 /** Silent with --quiet. */
 void adcgs_progress_init(adcgs_progress *progress, const adcgs_cli *cli);
-/** At most ten times a second on a terminal; elsewhere after 5 seconds, after 10 more, and so on up to every 30 seconds. */
+/** At most ten times a second on a terminal; elsewhere after 5 seconds, after 10 more, and so on up to every 25 seconds. */
 void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCGS_PRINTF(2, 3);
 /** Wipe the line; call before any other message and at the end. */
 void adcgs_progress_clear(adcgs_progress *progress);
+/**
+ * From now on, and until adcgs_progress_end(), a line comes every 30 seconds at least where there is no terminal, also while
+ * nothing is shown: then it is the last one once more, with its age. It stays where it is in memory meanwhile.
+ */
+void adcgs_progress_keep(adcgs_progress *progress);
+void adcgs_progress_end(adcgs_progress *progress);
 
 #endif

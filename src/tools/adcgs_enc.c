@@ -111,8 +111,8 @@ static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_watcher *w, adc
 /** No output may take another's place. */
 static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *error)
 {
-    const char *const names[] = { o->output, o->beginning, o->uncompressed, o->checkpoint, o->log };
-    const char *const options[] = { "output", "beginning", "uncompressed", "checkpoint", "log" };
+    const char *const names[] = { o->output, o->beginning, o->uncompressed, o->checkpoint, o->log, o->preview };
+    const char *const options[] = { "output", "beginning", "uncompressed", "checkpoint", "log", "preview" };
     for (size_t i = 0; i < ADCGS_COUNTOF(names); i++)
         for (size_t j = 0; j < i; j++)
             if (names[i] && names[j] && adcgs_atomic_same(names[i], names[j]))
@@ -302,6 +302,8 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     adcgs_progress_show(&w->progress, "scene     %u views for training, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
                         adcgs_seconds() - o->started.clock);
+    if (o->preview)
+        ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
     if (o->has_segment)
         ADCGS_TRY(cut_scene(job, error));
     return job->cuts.n > 1 ? encode_segments(w, job, met, error) : encode_whole(w, job, met, error);
@@ -310,10 +312,12 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
 static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
 {
     adcgs_enc_job job = { .cli = cli, .o = o, .pool = pool };
-    adcgs_enc_watcher w = { .o = o };
+    adcgs_enc_watcher w = { .o = o, .preview = { .path = o->preview } };
     adcgs_progress_init(&w.progress, cli);
+    adcgs_progress_keep(&w.progress);
     adcgs_buffer_init(&w.changes);
     const adcgs_status status = run(&job, &w, met, error);
+    adcgs_progress_end(&w.progress);
     if (w.log && fclose(w.log))
         adcgs_fail(&w.log_error, ADCGS_ERR_IO, "%s: cannot write the log", o->log);
     if (w.log_error.status != ADCGS_OK)
@@ -459,6 +463,9 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
           NULL },
         { "log", 0, ADCGS_OPTION_FILE, &o->log, 0, 0, "FILE",
           "write progress as JSON lines; appended with --resume", NULL, NULL },
+        { "preview", 0, ADCGS_OPTION_FILE, &o->preview, 0, 0, "FILE",
+          "keep a picture here (PNG, JPEG, ...) of a view as it was\ntaken and as the model shows it, anew every 30 seconds",
+          NULL, NULL },
         { "memory", 0, ADCGS_OPTION_SIZE, &o->memory, 1, 1e15, "BYTES",
           "keep at most so much of the pictures in memory (2G), the\nothers in a file in TMPDIR (default: half of the\n"
           "machine's); the result does not depend on it", NULL, NULL },

@@ -146,6 +146,8 @@ static int observe(void *user, const adcgs_train_report *r)
         adcgs_progress_show(&w->progress, "%s%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
                             attempt, r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors,
                             r->bytes / 1000, r->rate, describe_left(r->left, left));
+    if (r->iteration)
+        adcgs_enc_preview_show(&w->preview, w->t, r->stage, &w->progress);
     if (w->o->checkpoint && r->spent.clock - w->saved > w->o->checkpoint_every)
         save_now_and_then(w, r->spent.clock);
     return adcgs_interrupted() && !w->is_live;
@@ -230,6 +232,7 @@ static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_err
     const adcgs_status status = adcgs_trainer_finish(w->t, &w->last, error);
     adcgs_progress_clear(&w->progress);
     ADCGS_TRY(status);
+    adcgs_enc_preview_show(&w->preview, w->t, NULL, &w->progress);
     adcgs_cli_note(cli, "a file of what there is after iteration %u of %u", w->t->iteration, w->t->config.iterations);
     log_last(w);
     log_decisions(w);
@@ -268,6 +271,7 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
         log_last(w);
     ADCGS_TRY(status);
     if (!stopped) {
+        adcgs_enc_preview_show(&w->preview, w->t, NULL, &w->progress);
         remark(cli, w);
         log_decisions(w);
         return ADCGS_OK;
@@ -284,6 +288,7 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
 adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error)
 {
+    adcgs_progress_show(&w->progress, "start     %u views: where things are", scene->n_views[ADCGS_SPLIT_TRAIN]);
     ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, before, job->cpu, job->pool, error));
     if (!before && otherwise && !adcgs_params_equal(&w->t->f->params, &otherwise->params)) {
         adcgs_trainer_free(&w->t);

@@ -5,6 +5,7 @@
 
 #include "cli/cli.h"
 #include "encode/encode.h"
+#include "tools/enc_preview.h"
 
 #define ADCGS_ENC_KEY_EVERY 10.0   /**< seconds from one key to the next, unless given */
 #define ADCGS_ENC_FADE 0.2         /**< seconds in which a segment is faded into the one before, unless given */
@@ -13,7 +14,7 @@
 /** As on the command line. */
 typedef struct adcgs_enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *finish, *log, *points, *set, *without, *beginning, *uncompressed;
-    const char *frames, *fps;
+    const char *preview, *frames, *fps;
     double lambda, psnr, time_limit, segment, key, fade, delay;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, fixed, live, or_whole;
     int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
@@ -34,6 +35,7 @@ typedef struct adcgs_enc_watcher {
     FILE *log;
     adcgs_train_report first; /* after the first iteration */
     double saved;
+    adcgs_enc_preview preview;
     int unsaved; /* the last checkpoint could not be written */
     int cut_short; /* by interrupts: it was made a file of before its end */
     adcgs_train_report last;

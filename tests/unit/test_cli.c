@@ -8,9 +8,11 @@
 #include "io/json.h"
 
 #include <getopt.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -166,8 +168,33 @@ static void show_progress(const adcgs_cli *cli)
         progress.last -= progress.every;
         adcgs_progress_show(&progress, "more");
     }
-    assert_true(*cli->quiet || (progress.every >= 30.0 && progress.every <= 60.0)); /* ever more rarely, but no end of it */
+    assert_true(*cli->quiet || progress.every + progress.grace == 30.0); /* ever more rarely, but no end of it */
     adcgs_progress_clear(&progress);
+    adcgs_cli_note(cli, "done");
+}
+
+static void rest(double seconds)
+{
+    const struct timespec time = {.tv_sec = (time_t)seconds, .tv_nsec = (long)(1e9 * (seconds - floor(seconds)))};
+    nanosleep(&time, NULL);
+}
+
+/** What is kept says by itself that it lasts, once what it shows does not come in time; nothing when nothing is shown. */
+static void keep_progress(const adcgs_cli *cli)
+{
+    adcgs_progress progress;
+    adcgs_progress_init(&progress, cli);
+    progress.last = adcgs_seconds();
+    progress.every = 0.05;
+    progress.grace = 0.05;
+    adcgs_progress_keep(&progress);
+    rest(0.15);
+    adcgs_progress_show(&progress, "step %d", 1);
+    rest(1.0);
+    adcgs_progress_clear(&progress);
+    rest(0.3);
+    adcgs_progress_end(&progress);
+    adcgs_progress_end(&progress);
     adcgs_cli_note(cli, "done");
 }
 
@@ -184,6 +211,13 @@ static void test_progress(void **state)
     quiet = 1;
     catch_stderr(text, show_progress, &cli);
     assert_string_equal(text, "");
+    catch_stderr(text, keep_progress, &cli);
+    assert_string_equal(text, "");
+    quiet = 0;
+    catch_stderr(text, keep_progress, &cli);
+    const char *const at = strstr(text, "prog: step 1 (0 s ago)\n");
+    assert_true(at && (at == text || !strncmp(text, "prog: step 1\n", 13)));
+    assert_non_null(strstr(text, "ago)\nprog: done\n"));
 }
 
 /* What is no UTF-8, as Unicode's table 3-7 has it: lone and missing continuations, overlong forms, surrogates, beyond the end. */
