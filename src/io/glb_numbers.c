@@ -78,6 +78,17 @@ static adcgs_status get_bytes(const finder *f, json_t *view, const uint8_t **at,
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_glb_bytes(const uint8_t **at, size_t *bytes, const adcgs_glb *glb, json_t *object, const char *name)
+{
+    const finder f = {glb, name};
+    json_t *view;
+    uint64_t length;
+    ADCGS_TRY(get_element(&f, "bufferViews", object, "bufferView", &view));
+    ADCGS_TRY(get_bytes(&f, view, at, &length));
+    *bytes = (size_t)length;
+    return ADCGS_OK;
+}
+
 static adcgs_status check_type(const finder *f, json_t *accessor, int components)
 {
     static const char *const types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};

@@ -26,6 +26,8 @@ typedef struct adcgs_glb_view {
 
 /** An attribute, which must be there with so many components: all that the view has is in the binary chunk. */
 adcgs_status adcgs_glb_find(adcgs_glb_view *view, const adcgs_glb *glb, const char *name, int components);
+/** The bytes of the view that an object of the file names; `name` is what the object is, for messages. */
+adcgs_status adcgs_glb_bytes(const uint8_t **at, size_t *bytes, const adcgs_glb *glb, json_t *object, const char *name);
 /** Component c of element i, both as there are. */
 double adcgs_glb_number(const adcgs_glb_view *view, uint32_t i, int c);
 

@@ -5,6 +5,7 @@
 #include "io/glb.h"
 
 #include "io/glb_nodes.h"
+#include "io/glb_spz.h"
 #include "io/splats_move.h"
 
 #include <math.h>
@@ -85,13 +86,20 @@ static adcgs_status open_chunks(adcgs_glb *g, const uint8_t *data, size_t bytes)
 
 /* ---- The primitive ---- */
 
+/** What materials say does not change splats. */
+static int is_known(const char *extension)
+{
+    return !strcmp(extension, ADCGS_GLB_SPLATS) || adcgs_glb_is_spz(extension) || !strcmp(extension, "KHR_mesh_quantization") ||
+           !strcmp(extension, "KHR_materials_unlit");
+}
+
 static adcgs_status check_required(const adcgs_glb *g)
 {
     size_t i;
     json_t *value;
     json_array_foreach(json_object_get(g->root, "extensionsRequired"), i, value) {
         const char *const name = json_string_value(value);
-        if (!name || (strcmp(name, ADCGS_GLB_SPLATS) && strcmp(name, "KHR_mesh_quantization")))
+        if (!name || !is_known(name))
             return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: needs the extension %s, which we do not have", g->path,
                               name ? name : "?");
     }
@@ -107,15 +115,24 @@ static adcgs_status expect_text(const adcgs_glb *g, json_t *splats, const char *
     return ADCGS_OK;
 }
 
+/** How splats are packed, NULL where they are plain. */
+static json_t *packing_of(json_t *splats, const char **name)
+{
+    void *const first = json_object_iter(json_object_get(splats, "extensions"));
+    *name = first ? json_object_iter_key(first) : NULL;
+    return first ? json_object_iter_value(first) : NULL;
+}
+
 static adcgs_status check_primitive(const adcgs_glb *g, json_t *primitive, json_t *splats)
 {
     const json_t *const mode = json_object_get(primitive, "mode");
-    json_t *const packed = json_object_get(splats, "extensions");
+    const char *packing;
+    packing_of(splats, &packing);
     if (!json_is_integer(mode) || json_integer_value(mode))
         return bad(g, ADCGS_ERR_DATA, "splats with a mode that is not 0 (points)");
-    if (json_object_size(packed))
-        return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: splats by the extension %s, expected plain ones", g->path,
-                          json_object_iter_key(json_object_iter(packed)));
+    if (packing && !adcgs_glb_is_spz(packing))
+        return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: splats by the extension %s, expected plain ones, or SPZ",
+                          g->path, packing);
     ADCGS_TRY(expect_text(g, splats, "kernel", ADCGS_GLB_KERNEL));
     return expect_text(g, splats, "colorSpace", ADCGS_GLB_COLOURS);
 }
@@ -268,16 +285,18 @@ static adcgs_status take_splats(const adcgs_glb *g, adcgs_splats *s)
 
 static adcgs_status read_file(adcgs_glb *g, adcgs_splats *out, const uint8_t *data, size_t bytes)
 {
-    json_t *primitive;
+    json_t *primitive, *packed;
     size_t mesh;
     double place[12];
+    const char *packing;
     int moves;
     ADCGS_TRY(open_chunks(g, data, bytes));
     ADCGS_TRY(check_required(g));
     ADCGS_TRY(find_primitive(g, &primitive, &mesh));
     ADCGS_TRY(adcgs_glb_place(place, &moves, g, mesh));
     g->attributes = json_object_get(primitive, "attributes");
-    ADCGS_TRY(take_splats(g, out));
+    packed = packing_of(json_object_get(json_object_get(primitive, "extensions"), ADCGS_GLB_SPLATS), &packing);
+    ADCGS_TRY(packed ? adcgs_glb_take_spz(out, g, packed) : take_splats(g, out));
     return moves ? adcgs_splats_move(out, place, g->path, g->error) : ADCGS_OK;
 }
 

@@ -245,6 +245,65 @@ static void test_nodes(void **state)
     adcgs_splats_free(&s);
 }
 
+/* ---- SPZ within ---- */
+
+#define SPZ NAME "_compression_spz"
+static const char packed[] =
+    "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"" NAME "\",\"" SPZ "_2\",\"KHR_materials_unlit\"],"
+    "\"buffers\":[{\"byteLength\":%zu}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":8,\"byteLength\":%zu}],"
+    "\"accessors\":[{\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\"}],"
+    "\"nodes\":[{\"mesh\":0,\"translation\":[1,2,3]}],"
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":0,\"extensions\":{\"" NAME
+    "\":{\"extensions\":{\"%s\":{\"bufferView\":%d}}}}}]}]}";
+
+/** A GLB file that has an SPZ file in it, behind eight bytes; expects the parser to say so of it. */
+static void read_packed(adcgs_splats *s, const uint8_t *spz, size_t bytes, uint32_t n, const char *name, int view,
+                        adcgs_status status, const char *what)
+{
+    char text[2048];
+    uint8_t *const numbers = calloc(bytes + 8, 1), *const file = malloc(bytes + 4096);
+    assert_true(numbers && file);
+    memcpy(numbers + 8, spz, bytes);
+    snprintf(text, sizeof text, packed, bytes + 8, bytes, n, name, view);
+    const size_t size = make(file, text, numbers, bytes + 8);
+    if (status == ADCGS_OK)
+        expect_good(adcgs_splats_parse(s, file, size, "p.glb", &error));
+    else
+        expect_error(adcgs_splats_parse(s, file, size, "p.glb", &error), status, "p.glb: ", what);
+    free(numbers);
+    free(file);
+}
+
+static void test_packed(void **state)
+{
+#ifndef HAVE_SPZ
+    skip();
+#endif
+    static const double place[12] = {-1, 0, 0, 1, 0, 1, 0, 2, 0, 0, -1, 3};
+    adcgs_splats s, plain, back;
+    size_t bytes;
+    make_splats(&s);
+    expect_good(write_splats(&s, in("a.spz")));
+    uint8_t *const spz = load("a.spz", &bytes);
+    expect_good(adcgs_splats_read(&plain, in("a.spz"), &error));
+    expect_good(adcgs_splats_move(&plain, place, "a.spz", &error));
+    for (int old = 0; old < 2; old++) {
+        read_packed(&back, spz, bytes, s.n, old ? SPZ : SPZ "_2", 0, ADCGS_OK, "");
+        same_splats(&back, &plain, 1e-6);
+        assert_true(back.axes == ADCGS_SPLATS_Y_UP && back.degree == plain.degree);
+        adcgs_splats_free(&back);
+    }
+    read_packed(&back, spz, bytes, s.n + 1, SPZ "_2", 0, ADCGS_ERR_DATA, "POSITION: 41 of them, but the SPZ has 40");
+    read_packed(&back, spz, bytes, s.n, SPZ "_2", 1, ADCGS_ERR_DATA, SPZ "_2: no bufferViews 1");
+    read_packed(&back, spz, bytes, s.n, "EXT_odd", 0, ADCGS_ERR_UNSUPPORTED, "by the extension EXT_odd, expected plain");
+    read_packed(&back, spz, bytes - 9, s.n, SPZ "_2", 0, ADCGS_ERR_DATA, "SPZ");
+    for (size_t n = 0; n < 32; n++)
+        read_packed(&back, spz, n, s.n, SPZ "_2", 0, ADCGS_ERR_DATA, n < 4 ? "that is not SPZ" : "SPZ");
+    adcgs_splats_free(&s);
+    adcgs_splats_free(&plain);
+    free(spz);
+}
+
 /* ---- What is refused ---- */
 
 static void expect_bad(const char *text, const uint8_t *numbers, size_t n, adcgs_status status, const char *what)
@@ -428,7 +487,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trip),  cmocka_unit_test(test_kinds),  cmocka_unit_test(test_bad_text),
-        cmocka_unit_test(test_moves),       cmocka_unit_test(test_nodes),
+        cmocka_unit_test(test_moves),       cmocka_unit_test(test_nodes), cmocka_unit_test(test_packed),
         cmocka_unit_test(test_bad_numbers), cmocka_unit_test(test_damage), cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
