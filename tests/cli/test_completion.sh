@@ -3,7 +3,8 @@
 # The shell completes options, their values, settings and files, from the tables that the programs print.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-dec adcgs-info
-script=$(cd "${srcdir:-.}" && pwd)/share/adcgs.bash
+functions=$(cd "${srcdir:-.}" && pwd)/share
+script=$functions/adcgs.bash
 here=$PWD
 . "$script"
 cd "$dir" || exit 99
@@ -54,25 +55,55 @@ wants "adcgs-dec http://host/n" ""
 
 # Each program prints its whole table: the options of its help, all of them.
 cd "$here" || exit 99
-for program in adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-info adcgs-sweep; do
+for program in adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-share adcgs-sweep; do
     [ -x "./$program" ] || continue
     "./$program" --completion | cut -f 1 | grep -v '^-$' | sort -u >"$dir/table"
     "./$program" --help | grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+' | grep -o -E -e '--.*' | sort -u >"$dir/help"
     cmp "$dir/table" "$dir/help" || bad "$program: table and help differ"
     [ "$("./$program" --completion | awk -F '\t' 'NF != 6' | wc -l)" -eq 0 ] || bad "$program: rows of other than six columns"
-    grep -q "^complete .* $program\( \|$\)" "$script" || bad "$program is not completed"
+    sed -n '/^complete /,$p' "$script" | grep -q " $program\( \|$\)" || bad "$program is not completed"
+    sed 1q "$functions/_adcgs" | grep -q "^#compdef.* $program\( \|$\)" || bad "zsh does not complete $program"
 done
 # Every setting that --set list tells.
 ./adcgs-enc --set list | sed -n 's/^  *\([a-z][a-z0-9_]*\)  *[0-9].*/\1/p' | sort >"$dir/listed"
 ./adcgs-enc --completion | awk -F '\t' '$1 == "--set" { print $5 }' | tr ' ' '\n' | sort >"$dir/offered"
 [ -s "$dir/listed" ] && [ "$(comm -23 "$dir/listed" "$dir/offered")" = "" ] || bad "settings: $(comm -3 "$dir/listed" "$dir/offered")"
 
+# The same in zsh, of a terminal that is none.
+if command -v zsh >/dev/null; then
+    cat >"$dir/wanted" <<'END'
+--frametimes|adcgs-dec film.adcgs --fr
+--camera|--cameras|adcgs-dec --ca
+auto|avx2|avx512|adcgs-dec film.adcgs --cpu a
+avx2|avx512|adcgs-dec film.adcgs --cpu=av
+orbit|adcgs-dec film.adcgs -c or
+film.adcgs|folder|adcgs-dec film.adcgs --camera f
+notes.txt|adcgs-dec film.adcgs --output n
+notes.txt|adcgs-dec film.adcgs --output=n
+|adcgs-dec film.adcgs --threads 
+notes.txt|adcgs-dec film.adcgs --md5 n
+folder|adcgs-info fo
+slow|adcgs-enc scene -p s
+lambda|adcgs-enc scene --set lamb
+rdo_strength|adcgs-enc scene --set lambda=0.1,rdo
+rdo_strength|adcgs-enc scene --set=lambda=0.1,rdo
+END
+    rm "$dir/film two.adcgs" # zsh would quote it
+    mapfile -t lines < <(sed 's/.*|//' "$dir/wanted")
+    (cd "$dir" && HOME=$dir PATH=$here:$PATH timeout 120 zsh -f "$functions/../tests/cli/offers.zsh" "$functions" "${lines[@]}") \
+        >"$dir/offered"
+    paste -d '|' "$dir/offered" <(printf '%s\n' "${lines[@]}") | diff "$dir/wanted" - || bad "what zsh offers"
+else
+    echo "skipped: zsh is not installed"
+fi
+
 # As installed: bash-completion finds the script by the program's name.
 unset MAKEFLAGS MFLAGS MAKELEVEL
 if [ -f Makefile ]; then
-    ${MAKE:-make} install-dist_completionsDATA install-data-hook DESTDIR="$dir/to" >"$dir/log" 2>&1 || { bad install; cat "$dir/log"; }
+    ${MAKE:-make} install-dist_completionsDATA install-dist_zshDATA install-data-hook DESTDIR="$dir/to" >"$dir/log" 2>&1 || { bad install; cat "$dir/log"; }
     cmp "$script" "$(find "$dir/to" -name adcgs-dec)" || bad "adcgs-dec's completion"
-    ${MAKE:-make} uninstall-hook uninstall-dist_completionsDATA DESTDIR="$dir/to" >"$dir/log" 2>&1 || { bad uninstall; cat "$dir/log"; }
-    [ -z "$(find "$dir/to" -name 'adcgs*' ! -type d)" ] || bad "left behind: $(find "$dir/to" -name 'adcgs*')"
+    cmp "$functions/_adcgs" "$(find "$dir/to" -path '*/zsh/site-functions/_adcgs')" || bad "zsh's functions"
+    ${MAKE:-make} uninstall-hook uninstall-dist_zshDATA uninstall-dist_completionsDATA DESTDIR="$dir/to" >"$dir/log" 2>&1 || { bad uninstall; cat "$dir/log"; }
+    [ -z "$(find "$dir/to" -name '*adcgs*' ! -type d)" ] || bad "left behind: $(find "$dir/to" -name '*adcgs*')"
 fi
 exit $failed
