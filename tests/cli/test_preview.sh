@@ -6,7 +6,7 @@ need adcgs-enc adcgs-demo-scene
 
 scene=$dir/scene
 tiny_scene "$scene"
-run="./adcgs-enc $scene --preset draft --max-anchors 300 --set stereo=0 --iterations 200 --threads 2"
+run="./adcgs-enc $scene --preset draft --max-anchors 300 --set stereo=0 --iterations 60 --threads 2"
 
 # likeness FILE: PSNR in dB of the right half of a PPM against its left half.
 likeness()
@@ -40,13 +40,15 @@ expect 2 "before training began" $run -o "$dir/x.adcgs" --preview "$dir/early.pp
     expect 3 "no/p.png" $run -o "$dir/x.adcgs" --preview "$dir/no/p.png"
     expect 2 "same file" $run -o "$dir/x.adcgs" --preview "$dir/x.adcgs"
 }
-mkdir "$dir/gone"
-# shellcheck disable=SC2086
-$run -o "$dir/late.adcgs" --preview "$dir/gone/p.ppm" --log "$dir/log" >"$dir/out" 2>"$dir/err" &
-pid=$!
-while kill -0 $pid 2>/dev/null && [ ! -s "$dir/log" ]; do sleep 0.01; done
-mv "$dir/gone" "$dir/elsewhere"
-wait $pid || { bad "a preview that cannot be written ends the run"; cat "$dir/err"; }
-[ "$(grep -c 'gone/p.ppm: .*; the run goes on' "$dir/err")" -eq 1 ] || { bad "not said once"; cat "$dir/err"; }
-cmp "$dir/without.adcgs" "$dir/late.adcgs" || bad "another stream where no preview could be written"
+if [ -n "${ADCGS_FULL-}" ]; then
+    mkdir "$dir/gone"
+    # shellcheck disable=SC2086
+    $run -o "$dir/late.adcgs" --preview "$dir/gone/p.ppm" --log "$dir/log" >"$dir/out" 2>"$dir/err" &
+    pid=$!
+    while kill -0 $pid 2>/dev/null && [ ! -s "$dir/log" ]; do sleep 0.01; done
+    mv "$dir/gone" "$dir/elsewhere"
+    wait $pid || { bad "a preview that cannot be written ends the run"; cat "$dir/err"; }
+    [ "$(grep -c 'gone/p.ppm: .*; the run goes on' "$dir/err")" -eq 1 ] || { bad "not said once"; cat "$dir/err"; }
+    cmp "$dir/without.adcgs" "$dir/late.adcgs" || bad "another stream where no preview could be written"
+fi
 exit $failed
