@@ -103,37 +103,43 @@ static const char *const terms[N_TERMS] = {"k1", "k2", "k3", "k4", "k5", "k6", "
 /** The models by which pictures are made from a pinhole's, and how many of k1 .. k6 and of p1, p2 they have. */
 typedef struct model {
     const char *name;
-    int n_radial, n_tangential;
+    int n_radial, n_tangential, is_fisheye;
 } model;
 
-static const model models[] = {{"OPENCV", 4, 2},      {"PINHOLE", 0, 0},  {"SIMPLE_PINHOLE", 0, 0},
-                               {"SIMPLE_RADIAL", 1, 0}, {"RADIAL", 2, 0}, {"FULL_OPENCV", 6, 2}};
+static const model models[] = {
+    {"OPENCV", 4, 2, 0},        {"OPENCV_FISHEYE", 4, 0, 1},        {"PINHOLE", 0, 0, 0},
+    {"SIMPLE_PINHOLE", 0, 0, 0}, {"SIMPLE_RADIAL", 1, 0, 0},         {"RADIAL", 2, 0, 0},
+    {"FULL_OPENCV", 6, 2, 0},   {"SIMPLE_RADIAL_FISHEYE", 1, 0, 1}, {"RADIAL_FISHEYE", 2, 0, 1},
+};
 
-/** Without a name, OPENCV. */
+/** Without a name, the first, or the second if the file says that it is a fisheye. */
 static adcgs_status find_model(const adcgs_json_place *at, const model **out)
 {
     json_t *item = adcgs_json_find(at, "camera_model");
-    const char *name = item ? json_string_value(item) : models[0].name;
+    const int is_fisheye = json_is_true(adcgs_json_find(at, "is_fisheye"));
+    const char *name = item ? json_string_value(item) : models[is_fisheye].name;
     if (!name)
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "camera_model", "expected a string");
     for (size_t i = 0; i < ADCGS_COUNTOF(models); i++)
         if (!strcmp(name, models[i].name)) {
             *out = &models[i];
+            if (is_fisheye && !models[i].is_fisheye)
+                return adcgs_json_bad(at, ADCGS_ERR_DATA, "is_fisheye", "true, but camera_model is %s", name);
             return ADCGS_OK;
         }
-    return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "camera_model",
-                          "%.32s is not supported, expected PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or FULL_OPENCV", name);
+    return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "camera_model", "%.32s is not supported, expected PINHOLE, SIMPLE_RADIAL, "
+                          "RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE", name);
 }
 
 /** What instant-ngp has for other projections, and skew, which has no agreed meaning here. */
 static adcgs_status refuse_others(const adcgs_json_place *at)
 {
-    static const char *const kinds[] = {"is_fisheye", "ftheta_p0", "latlong", "equirectangular"};
+    static const char *const kinds[] = {"ftheta_p0", "latlong", "equirectangular"};
     static const char *const skews[] = {"sk_x", "sk_y"};
     for (size_t i = 0; i < ADCGS_COUNTOF(kinds); i++) {
         json_t *item = adcgs_json_find(at, kinds[i]);
         if (item && !json_is_false(item) && !json_is_null(item))
-            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, kinds[i], "fisheye and panoramic cameras are not supported");
+            return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, kinds[i], "f-theta and panoramic cameras are not supported");
     }
     for (size_t i = 0; i < ADCGS_COUNTOF(skews); i++) {
         double value = 0.0;
@@ -226,6 +232,8 @@ adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *cam
     const model *its;
     double values[N_TERMS];
     ADCGS_TRY(read_terms(at, &its, values));
+    if (its->is_fisheye)
+        return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "camera_model", "%s, expected a pinhole camera", its->name);
     for (int i = 0; i < N_TERMS; i++)
         if (values[i] != 0.0)
             return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, terms[i], "lens distortion %g, expected a pinhole camera",
@@ -239,11 +247,13 @@ adcgs_status adcgs_json_lens(const adcgs_json_place *at, adcgs_lens *lens)
     const model *its;
     double values[N_TERMS];
     ADCGS_TRY(read_terms(at, &its, values));
+    if (its->is_fisheye && !adcgs_json_find(at, "fl_x"))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "fl_x", "missing: of a fisheye lens angles say too little");
     ADCGS_TRY(read_pinhole(at, &camera));
     *lens = (adcgs_lens){.width = camera.width, .height = camera.height, .fx = camera.fx, .fy = camera.fy, .cx = camera.cx,
-                         .cy = camera.cy, .p = {values[6], values[7]}};
+                         .cy = camera.cy, .p = {values[6], values[7]}, .is_fisheye = its->is_fisheye};
     memcpy(lens->k, values, sizeof lens->k);
-    if (its->n_radial == 4) { /* nerfstudio's polynomial */
+    if (its == &models[0]) { /* nerfstudio's polynomial */
         lens->k8 = lens->k[3];
         lens->k[3] = 0.0;
     }

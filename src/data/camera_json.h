@@ -45,7 +45,8 @@ adcgs_status adcgs_json_size(const adcgs_json_place *at, adcgs_camera *camera, i
 adcgs_status adcgs_json_intrinsics(const adcgs_json_place *at, adcgs_camera *camera);
 /**
  * The same for a lens whose size is set, with its distortion in the meaning of nerfstudio: k1 to k3, p1 and p2 are OpenCV's, k4
- * is the factor of r^8. Only camera_model FULL_OPENCV, which is COLMAP's, has k4 to k6 below the line.
+ * is the factor of r^8. Only camera_model FULL_OPENCV, which is COLMAP's, has k4 to k6 below the line. OPENCV_FISHEYE and what
+ * COLMAP has of it with fewer terms are OpenCV's fisheye model, and so is is_fisheye, which instant-ngp writes.
  */
 adcgs_status adcgs_json_lens(const adcgs_json_place *at, adcgs_lens *lens);
 /** The frame's transform_matrix, converted to OpenCV axes. */

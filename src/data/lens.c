@@ -32,8 +32,21 @@ static void list_terms(const adcgs_lens *lens, double above[ABOVE], double below
 
 /* ---- Projection ---- */
 
+/** The angle from the axis is bent: factor is its length in the picture over that of the direction. */
+static bent bend_angle(const adcgs_lens *lens, double x, double y)
+{
+    const double *k = lens->k, r = hypot(x, y), a = atan(r), s = a * a;
+    const double factor = r > 0.0 ? a / r * (1.0 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3])))) : 1.0;
+    const double growth = 1.0 + s * (3.0 * k[0] + s * (5.0 * k[1] + s * (7.0 * k[2] + s * 9.0 * k[3])));
+    const double slope = r > 0.0 ? (growth / (1.0 + r * r) - factor) / (r * r) : 0.0; /* the factor's derivative by r, over r */
+    return (bent){.x = x * factor, .y = y * factor, .xx = factor + x * x * slope, .xy = x * y * slope,
+                  .yy = factor + y * y * slope};
+}
+
 static bent bend(const adcgs_lens *lens, double x, double y)
 {
+    if (lens->is_fisheye)
+        return bend_angle(lens, x, y);
     const double *k = lens->k, p1 = lens->p[0], p2 = lens->p[1], s = x * x + y * y;
     const double above = 1.0 + s * (k[0] + s * (k[1] + s * (k[2] + s * lens->k8)));
     const double below = 1.0 + s * (k[3] + s * (k[4] + s * k[5])), share = 1.0 / below, factor = above * share;
@@ -113,8 +126,21 @@ static int find_roots(const double *p, int degree, double end, double roots[DEGR
     return n;
 }
 
+/** The bent angle grows with the angle a, s = a^2, while 1 + 3 k1 s + 5 k2 s^2 + 7 k3 s^3 + 9 k4 s^4 > 0. */
+static double find_fold_of_angle(const adcgs_lens *lens)
+{
+    const double *k = lens->k, growth[] = {1.0, 3.0 * k[0], 5.0 * k[1], 7.0 * k[2], 9.0 * k[3]}, widest = atan(sqrt(REACH));
+    double roots[DEGREE];
+    if (!find_roots(growth, ADCGS_COUNTOF(growth) - 1, widest * widest, roots))
+        return REACH;
+    const double r = tan(sqrt(roots[0]));
+    return r * r;
+}
+
 double adcgs_lens_fold(const adcgs_lens *lens)
 {
+    if (lens->is_fisheye)
+        return find_fold_of_angle(lens);
     double above[ABOVE], below[BELOW], growth[DEGREE + 1] = {0.0}, roots[DEGREE], fold = REACH;
     list_terms(lens, above, below);
     /* With s = r^2, r A(s)/B(s) grows while (A + 2 s A') B - 2 s A B' > 0. */

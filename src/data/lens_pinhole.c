@@ -12,6 +12,7 @@
 #define PROBES 32        /* places along a side of the picture where the lens is tried */
 #define RASTER 128       /* cells along the longer side, in the search for the rectangle */
 #define LEAST_SHARE 10   /* at least one in so many pixels must be left */
+#define FISHEYE_REACH 1.7320508075688772 /* tan of 60 degrees: further out a pinhole's pixels tell little apart */
 #define FOCAL_LEAST 1e-3
 #define NUMBER_MOST 1e9  /* of focal lengths and what is added to pixels: whole numbers of such a size are exact */
 
@@ -23,6 +24,7 @@ typedef struct area {
 typedef struct search {
     const adcgs_lens *lens;
     double fold;
+    double reach; /**< how far from the axis, to each side, the pinhole may see */
     area box; /**< around all that the picture sees */
 } search;
 
@@ -30,8 +32,9 @@ typedef struct search {
 static int is_covered(const search *s, double u, double v)
 {
     const adcgs_lens *l = s->lens;
+    const double x = (u - l->cx) / l->fx, y = (v - l->cy) / l->fy;
     double at[2];
-    return adcgs_lens_see(l, s->fold, (u - l->cx) / l->fx, (v - l->cy) / l->fy, at) && at[0] >= -CORNER_SLACK &&
+    return fabs(x) <= s->reach && fabs(y) <= s->reach && adcgs_lens_see(l, s->fold, x, y, at) && at[0] >= -CORNER_SLACK &&
            at[1] >= -CORNER_SLACK && at[0] <= l->width + CORNER_SLACK && at[1] <= l->height + CORNER_SLACK;
 }
 
@@ -49,6 +52,17 @@ static int moves(const adcgs_lens *lens)
     return 0;
 }
 
+/** Around a direction, or what may be left of it, too. */
+static void widen(search *s, double x, double y)
+{
+    const adcgs_lens *l = s->lens;
+    const double at[2] = {fmax(fmin(x, s->reach), -s->reach) * l->fx + l->cx, fmax(fmin(y, s->reach), -s->reach) * l->fy + l->cy};
+    for (int axis = 0; axis < 2; axis++) {
+        s->box.side[axis] = fmin(s->box.side[axis], floor(at[axis]));
+        s->box.side[2 + axis] = fmax(s->box.side[2 + axis], ceil(at[axis]));
+    }
+}
+
 /** What the edge of the picture sees; 0 if the model folds there. */
 static int find_box(search *s)
 {
@@ -58,13 +72,13 @@ static int find_box(search *s)
         for (int edge = 0; edge < 4; edge++) {
             const double along = (double)i / PROBES, u = edge < 2 ? along : edge - 2, v = edge < 2 ? edge : along;
             double at[2];
-            if (!adcgs_lens_invert(l, s->fold, l->width * u, l->height * v, at))
+            if (adcgs_lens_invert(l, s->fold, l->width * u, l->height * v, at))
+                widen(s, at[0], at[1]);
+            else if (s->fold > 2.0 * s->reach * s->reach) { /* looks aside, or behind: where the pinhole sees nothing folds */
+                widen(s, s->reach, s->reach);
+                widen(s, -s->reach, -s->reach);
+            } else
                 return 0;
-            for (int axis = 0; axis < 2; axis++) {
-                const double x = axis ? at[1] * l->fy + l->cy : at[0] * l->fx + l->cx;
-                s->box.side[axis] = fmin(s->box.side[axis], floor(x));
-                s->box.side[2 + axis] = fmax(s->box.side[2 + axis], ceil(x));
-            }
         }
     for (int axis = 0; axis < 2; axis++) {
         double *low = &s->box.side[axis], *high = &s->box.side[2 + axis];
@@ -191,7 +205,7 @@ adcgs_status adcgs_lens_pinhole(adcgs_lens *lens, adcgs_camera *camera, const ch
                           path, lens->fx, lens->fy, lens->cx, lens->cy, lens->skew, NUMBER_MOST, FOCAL_LEAST);
     const int bends = moves(lens);
     if (bends) {
-        search s = {.lens = lens, .fold = adcgs_lens_fold(lens)};
+        search s = {.lens = lens, .fold = adcgs_lens_fold(lens), .reach = lens->is_fisheye ? FISHEYE_REACH : HUGE_VAL};
         ADCGS_TRY(find_area(&s, &a, path, error));
     }
     camera->width = (int32_t)(a.side[2] - a.side[0]);

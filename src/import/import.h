@@ -12,7 +12,12 @@
 #include "io/fps.h"
 
 /** With more numbers a lens is told better from many pictures; few may agree on whatever they are. */
-typedef enum adcgs_import_lens { ADCGS_IMPORT_RADIAL, ADCGS_IMPORT_PINHOLE, ADCGS_IMPORT_OPENCV } adcgs_import_lens;
+typedef enum adcgs_import_lens {
+    ADCGS_IMPORT_RADIAL,
+    ADCGS_IMPORT_PINHOLE,
+    ADCGS_IMPORT_OPENCV,
+    ADCGS_IMPORT_FISHEYE,
+} adcgs_import_lens;
 
 typedef struct adcgs_import_options {
     char *const *inputs; /**< files and folders, as on the command line */

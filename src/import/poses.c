@@ -14,6 +14,7 @@
 #define EXHAUSTIVE_MOST 80 /* of a film with more pictures only those that are near each other in time are matched */
 #define OVERLAP "12"       /* pictures before and behind; and at twice, four times ... as far */
 #define SMALLEST_MODEL "3"
+#define FISHEYE_FOCAL 0.4 /* of the longer side: what COLMAP begins with where nothing says more, for half a world and less */
 
 static const char *const renamed[][2] = {
     {"--SiftExtraction.use_gpu", "--FeatureExtraction.use_gpu"},
@@ -123,7 +124,7 @@ adcgs_status adcgs_import_ask(adcgs_colmap_program *out, const adcgs_import_opti
 /* ---- The steps ---- */
 
 /** COLMAP's names of adcgs_import_lens. */
-static const char *const lens_models[] = {"SIMPLE_RADIAL", "PINHOLE", "OPENCV"};
+static const char *const lens_models[] = {"SIMPLE_RADIAL", "PINHOLE", "OPENCV", "OPENCV_FISHEYE"};
 
 typedef struct places {
     char *database, *images, *masks, *sparse;
@@ -131,6 +132,8 @@ typedef struct places {
 
 static adcgs_status extract(adcgs_import_job *job, const adcgs_colmap_program *program, const places *p)
 {
+    const double known = job->shots.cameras[0].focal;
+    const double said = known > 0.0 ? known : job->options->lens == ADCGS_IMPORT_FISHEYE ? FISHEYE_FOCAL : 0.0;
     char threads[16], focal[32];
     step s = begin(job, program, "feature_extractor", "features", "Processed file");
     add_option(&s, "--database_path", p->database);
@@ -139,8 +142,8 @@ static adcgs_status extract(adcgs_import_job *job, const adcgs_colmap_program *p
         add_option(&s, "--ImageReader.mask_path", p->masks);
     add_option(&s, "--ImageReader.single_camera_per_folder", "1");
     add_option(&s, "--ImageReader.camera_model", lens_models[job->options->lens]);
-    if (job->shots.cameras[0].focal > 0.0) { /* where the picture that is made does not say */
-        snprintf(focal, sizeof focal, "%.6g", job->shots.cameras[0].focal);
+    if (said > 0.0) { /* where the picture that is made does not say */
+        snprintf(focal, sizeof focal, "%.6g", said);
         add_option(&s, "--ImageReader.default_focal_length_factor", focal);
     }
     add_option(&s, "--SiftExtraction.use_gpu", "0");

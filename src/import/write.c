@@ -42,6 +42,8 @@ static void write_lens(adcgs_json *json, const adcgs_lens *lens)
     adcgs_json_real(json, "fy", lens->fy);
     adcgs_json_real(json, "cx", lens->cx);
     adcgs_json_real(json, "cy", lens->cy);
+    if (lens->is_fisheye)
+        adcgs_json_string(json, "lens", "fisheye");
     for (size_t i = 0; i < ADCGS_COUNTOF(radial); i++)
         write_number(json, radial[i], lens->k[i]);
     for (size_t i = 0; i < ADCGS_COUNTOF(tangential); i++)

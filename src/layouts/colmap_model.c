@@ -40,23 +40,24 @@ adcgs_status adcgs_colmap_bad(const adcgs_colmap *model, adcgs_status status, co
 
 enum { FX, FY, CX, CY, K1, K2, P1, P2, K3, K4, K5, K6, BOTH }; /* BOTH: one focal length for both axes */
 
-/** What the parameters of a kind are, in their order; without any: not a pinhole with the OpenCV model. */
+/** What the parameters of a kind are, in their order; without any: neither of OpenCV's models. */
 static const struct kind {
     const char *name;
     int n, params[ADCGS_COLMAP_PARAMS_MAX];
+    int is_fisheye;
 } kinds[] = {
-    {"SIMPLE_PINHOLE", 3, {BOTH, CX, CY}},
-    {"PINHOLE", 4, {FX, FY, CX, CY}},
-    {"SIMPLE_RADIAL", 4, {BOTH, CX, CY, K1}},
-    {"RADIAL", 5, {BOTH, CX, CY, K1, K2}},
-    {"OPENCV", 8, {FX, FY, CX, CY, K1, K2, P1, P2}},
-    {"OPENCV_FISHEYE", 0, {0}},
-    {"FULL_OPENCV", 12, {FX, FY, CX, CY, K1, K2, P1, P2, K3, K4, K5, K6}},
-    {"FOV", 0, {0}},
-    {"SIMPLE_RADIAL_FISHEYE", 0, {0}},
-    {"RADIAL_FISHEYE", 0, {0}},
-    {"THIN_PRISM_FISHEYE", 0, {0}},
-    {"RAD_TAN_THIN_PRISM_FISHEYE", 0, {0}},
+    {"SIMPLE_PINHOLE", 3, {BOTH, CX, CY}, 0},
+    {"PINHOLE", 4, {FX, FY, CX, CY}, 0},
+    {"SIMPLE_RADIAL", 4, {BOTH, CX, CY, K1}, 0},
+    {"RADIAL", 5, {BOTH, CX, CY, K1, K2}, 0},
+    {"OPENCV", 8, {FX, FY, CX, CY, K1, K2, P1, P2}, 0},
+    {"OPENCV_FISHEYE", 8, {FX, FY, CX, CY, K1, K2, K3, K4}, 1},
+    {"FULL_OPENCV", 12, {FX, FY, CX, CY, K1, K2, P1, P2, K3, K4, K5, K6}, 0},
+    {"FOV", 0, {0}, 0},
+    {"SIMPLE_RADIAL_FISHEYE", 4, {BOTH, CX, CY, K1}, 1},
+    {"RADIAL_FISHEYE", 5, {BOTH, CX, CY, K1, K2}, 1},
+    {"THIN_PRISM_FISHEYE", 0, {0}, 1},
+    {"RAD_TAN_THIN_PRISM_FISHEYE", 0, {0}, 1},
 };
 
 int adcgs_colmap_kind(const char *name, int64_t number)
@@ -119,6 +120,7 @@ adcgs_status adcgs_colmap_add_camera(adcgs_colmap *model, uint32_t id, int kind,
                                 (unsigned long long)height, ADCGS_IMAGE_MAX);
     camera.lens.width = (int32_t)width;
     camera.lens.height = (int32_t)height;
+    camera.lens.is_fisheye = kinds[kind].is_fisheye;
     for (int i = 0; i < kinds[kind].n; i++) {
         if (!(fabs(params[i]) <= WORLD_MAX))
             return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "parameter %d of %s is %g", i + 1, kinds[kind].name, params[i]);

@@ -59,11 +59,19 @@ static adcgs_status read_size(const adcgs_json_place *at, const char *field, int
 static adcgs_status read_distortion(const adcgs_json_place *at, adcgs_lens *lens)
 {
     static const char *const radial[6] = {"k1", "k2", "k3", "k4", "k5", "k6"}, *const tangential[2] = {"p1", "p2"};
+    const char *kind;
     int found;
-    for (int i = 0; i < 6; i++)
-        ADCGS_TRY(adcgs_json_number(at, radial[i], -WORLD_MAX, WORLD_MAX, &lens->k[i], &found));
-    for (int i = 0; i < 2; i++)
-        ADCGS_TRY(adcgs_json_number(at, tangential[i], -WORLD_MAX, WORLD_MAX, &lens->p[i], &found));
+    ADCGS_TRY(adcgs_scene_camera_string(at, "lens", &kind));
+    if (kind && strcmp(kind, "opencv") && strcmp(kind, "fisheye"))
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "lens", "%.32s, expected opencv or fisheye", kind);
+    lens->is_fisheye = kind && *kind == 'f';
+    for (int i = 0; i < 8; i++) {
+        const char *name = i < 6 ? radial[i] : tangential[i - 6];
+        double *value = i < 6 ? &lens->k[i] : &lens->p[i - 6];
+        ADCGS_TRY(adcgs_json_number(at, name, -WORLD_MAX, WORLD_MAX, value, &found));
+        if (*value != 0.0 && lens->is_fisheye && i >= 4)
+            return adcgs_json_bad(at, ADCGS_ERR_DATA, name, "%g, but a fisheye lens has k1 to k4 alone", *value);
+    }
     return adcgs_json_number(at, "skew", -WORLD_MAX, WORLD_MAX, &lens->skew, &found);
 }
 

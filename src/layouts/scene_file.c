@@ -39,7 +39,7 @@ static const char *const root_fields[] = {"adcgs_scene", "name", "frame_rate", "
 /* Of a camera; the first of them cannot be shared. */
 static const char *const camera_fields[] = {
     "name", "camera_to_world", "world_to_camera", "R", "t", "video", "axes", "pixel_centre", "width", "height", "fx", "fy", "cx",
-    "cy", "skew", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "images", "masks", "first", "count", "frame_rate",
+    "cy", "skew", "lens", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "images", "masks", "first", "count", "frame_rate",
     "time_offset", "split", NULL};
 #define OWN_FIELDS 6
 

@@ -104,7 +104,7 @@ static const adcgs_cli program = {
 /** -1 to go on, else the exit code to leave with. */
 static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
 {
-    static const char *const lenses[] = {"radial", "pinhole", "opencv", NULL};
+    static const char *const lenses[] = {"radial", "pinhole", "opencv", "fisheye", NULL};
     adcgs_import_options *o = &a->import;
     const adcgs_option options[] = {
         {.name = "output", .letter = 'o', .kind = ADCGS_OPTION_STRING, .target = &o->output, .value = "FOLDER",
@@ -118,7 +118,7 @@ static int parse(adcgs_cli *cli, arguments *a, int argc, char **argv)
         {.name = "masks", .kind = ADCGS_OPTION_STRING, .target = &o->masks, .value = "FOLDER",
          .help = "pictures' masks, by their names or by those of cameras:\nwhat is black there is neither matched nor learnt"},
         {.name = "lens", .kind = ADCGS_OPTION_CHOICE, .target = &o->lens, .choices = lenses, .value = "KIND",
-         .help = "radial, pinhole or opencv (default radial)"},
+         .help = "radial, pinhole, opencv or fisheye (default radial)"},
         {.name = "own-lens", .kind = ADCGS_OPTION_FLAG, .target = &o->own_lens,
          .help = "each camera of a rig has a lens unlike the others'"},
         {.name = "test", .kind = ADCGS_OPTION_INT, .target = &o->test_every, .min = 0, .max = 10000, .value = "N",

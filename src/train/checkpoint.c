@@ -95,7 +95,7 @@ static uint32_t add_camera(uint32_t crc, const adcgs_scene_view *v)
     const adcgs_camera *c = &v->camera;
     const adcgs_lens *l = &v->lens;
     const double numbers[] = { c->width, c->height, c->fx, c->fy, c->cx, c->cy, c->near_plane, l->width, l->height, l->fx, l->fy,
-                               l->cx, l->cy, l->skew, l->k8, l->p[0], l->p[1] };
+                               l->cx, l->cy, l->skew, l->k8, l->p[0], l->p[1], (double)l->is_fisheye };
     crc = adcgs_crc32c(crc, numbers, sizeof numbers);
     crc = adcgs_crc32c(crc, l->k, sizeof l->k);
     return adcgs_crc32c(crc, c->cam_to_world, sizeof c->cam_to_world);

@@ -104,6 +104,20 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
     has '"camera_to_world":[[1,0,0,4],[0,0,1,0],[0,-1,0,0]]' # of its three pictures at 3, 4 and 5
     cmp -s "$dir/neu3d-videos/cam01.mp4" "$dir/s/videos/cam01.mp4" || bad "the video is not the one that was given"
     none "$dir/s/images"
+    [ "$(plain | grep -o '"fx":20,"fy":21,"cx":12,"cy":8,"k1":0.01,"camera' | wc -l)" -eq 9 ] || bad "cameras of a rig share their lens"
+    for kind in opencv fisheye; do # each of its own lens, of both kinds
+        import 0 '' "$dir"/neu3d-videos/cam*.mp4 --own-lens --lens $kind
+        called "camera_model $([ $kind = opencv ] && echo 'OPENCV ' || echo OPENCV_FISHEYE)"
+        lens=$([ $kind = opencv ] || echo '"lens":"fisheye",')
+        for i in {0..8}; do
+            split=$([ $i != 4 ] || echo '"split":"test",')
+            size="\"width\":24,\"height\":16,\"fx\":$((20 + i)),\"fy\":$((21 + i)),\"cx\":12,\"cy\":8"
+            has "\"name\":\"cam0$i\",\"video\":\"videos/cam0$i.mp4\",$split$size,$lens\"k1\":0.01,"
+        done
+        expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
+        expect 0 '' ./adcgs-eval "$dir/s.adcgs" "$dir/s"
+    done
+    called 'default_focal_length_factor 0.4'
     expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
     import 2 'not both' "$dir/neu3d-videos/cam03.mp4" "$pictures"
     import 2 'says itself' --fps 3 "$dir/neu3d-videos/cam03.mp4"

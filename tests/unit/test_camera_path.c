@@ -366,13 +366,29 @@ static void test_bad_files(void **state)
     }
 }
 
+/** Cameras that draw are pinholes. */
+static void test_bent_lenses(void **state)
+{
+    static const char *const bent[][2] = {{"\"k1\":0.1", "distortion 0.1"}, {"\"is_fisheye\":true", "OPENCV_FISHEYE"},
+                                          {"\"camera_model\":\"RADIAL_FISHEYE\"", "RADIAL_FISHEYE"}};
+    for (size_t i = 0; i < ADCGS_COUNTOF(bent); i++) {
+        adcgs_camera_path_request request = {0};
+        adcgs_camera_path frames;
+        char text[512], pose[128];
+        snprintf(pose, sizeof pose, POSE, 0.0);
+        snprintf(text, sizeof text, "{\"fl_x\":50,%s,\"keys\":[{\"at\":0,%s}]}", bent[i][0], pose);
+        expect_error(read_path(text, &request, &frames), ADCGS_ERR_UNSUPPORTED, bent[i][1], "expected a pinhole camera");
+        adcgs_camera_path_free(&frames);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_turns),      cmocka_unit_test(test_through_keys),  cmocka_unit_test(test_smooth),
         cmocka_unit_test(test_steady),     cmocka_unit_test(test_standstill),    cmocka_unit_test(test_bullet),
         cmocka_unit_test(test_spiral),     cmocka_unit_test(test_bullet_at_rest), cmocka_unit_test(test_key_file),
-        cmocka_unit_test(test_bad_files),
+        cmocka_unit_test(test_bad_files),  cmocka_unit_test(test_bent_lenses),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

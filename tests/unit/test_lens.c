@@ -16,11 +16,13 @@
 #define RATIONAL {.width = 320, .height = 200, .fx = 180, .fy = 180, .cx = 170, .cy = 90, \
                   .k = {0.4, 0.1, 0.01, 0.6, 0.2, 0.02}, .p = {-0.001, 0.002}}
 #define EIGHTH {.width = 240, .height = 240, .fx = 200, .fy = 200, .cx = 120, .cy = 120, .k = {-0.2, 0.1, -0.06}, .k8 = 0.03}
+#define FISHEYE {.width = 320, .height = 240, .fx = 260, .fy = 265, .cx = 165, .cy = 118, .k = {0.03, -0.02, 0.01, -0.003}, \
+                 .is_fisheye = 1}
 #define SHEARED {.width = 100, .height = 80, .fx = 90, .fy = 80, .cx = 40, .cy = 45, .skew = -12}
 /* The axis of the camera lies outside of the picture, which is a part of a larger one. */
 #define ASIDE {.width = 100, .height = 80, .fx = 300, .fy = 300, .cx = -60, .cy = 140, .k = {-0.2, 0.05}, .p = {0.001, 0}}
 
-static const adcgs_lens lenses[] = {BARREL, CUSHION, CROOKED, RATIONAL, EIGHTH, SHEARED, ASIDE};
+static const adcgs_lens lenses[] = {BARREL, CUSHION, CROOKED, RATIONAL, EIGHTH, SHEARED, ASIDE, FISHEYE};
 
 static void expect_good(adcgs_status status)
 {
@@ -33,14 +35,19 @@ static void expect_good(adcgs_status status)
 /** The formula of lens.h, term by term. */
 static void reference(const adcgs_lens *l, double x, double y, double uv[2])
 {
-    const double r = hypot(x, y);
+    const double r = hypot(x, y), a = atan(r);
     double above = 1.0 + l->k8 * pow(r, 8), below = 1.0;
     for (int i = 0; i < 3; i++) {
         above += l->k[i] * pow(r, 2 * (i + 1));
         below += l->k[3 + i] * pow(r, 2 * (i + 1));
     }
-    const double bx = x * above / below + 2 * l->p[0] * x * y + l->p[1] * (r * r + 2 * x * x);
-    const double by = y * above / below + l->p[0] * (r * r + 2 * y * y) + 2 * l->p[1] * x * y;
+    double bx = x * above / below + 2 * l->p[0] * x * y + l->p[1] * (r * r + 2 * x * x);
+    double by = y * above / below + l->p[0] * (r * r + 2 * y * y) + 2 * l->p[1] * x * y;
+    if (l->is_fisheye) {
+        const double bent = a + l->k[0] * pow(a, 3) + l->k[1] * pow(a, 5) + l->k[2] * pow(a, 7) + l->k[3] * pow(a, 9);
+        bx = r > 0.0 ? bent * x / r : 0.0;
+        by = r > 0.0 ? bent * y / r : 0.0;
+    }
     uv[0] = l->fx * bx + l->skew * by + l->cx;
     uv[1] = l->fy * by + l->cy;
 }
@@ -112,15 +119,57 @@ static void test_fold(void **state)
     expect_error(adcgs_lens_pinhole(&bent, &camera, "x", &error), ADCGS_ERR_DATA, "x: ", "folds inside");
 }
 
+/** A circle that shows what lies behind the lens, too. The pinhole of the same focal lengths sees 60 to each side of the axis. */
+#define CIRCLE {.width = 400, .height = 300, .fx = 100, .fy = 101, .cx = 190, .cy = 210, .k = {0.04, -0.01, 0.002, -0.0003}, \
+                .is_fisheye = 1}
+
+/** The inverse is found up to 89.4 degrees from the axis, and nothing is seen beyond. */
+static void test_angles(void **state)
+{
+    const adcgs_lens circle = CIRCLE;
+    double uv[2], xy[2];
+    for (int turn = 0; turn < 12; turn++)
+        for (int tenth = 0; tenth < 894; tenth++) {
+            const double angle = tenth * 0.1 * M_PI / 180.0, x = tan(angle) * cos(turn), y = tan(angle) * sin(turn);
+            reference(&circle, x, y, uv);
+            assert_true(adcgs_lens_unproject(&circle, uv[0], uv[1], xy));
+            assert_true(fabs(atan(hypot(xy[0], xy[1])) - angle) < 1e-10);
+            assert_true(hypot(xy[0] - x, xy[1] - y) < 1e-9 * (1.0 + x * x + y * y));
+        }
+    reference(&circle, 1e9, 0, uv);
+    assert_false(adcgs_lens_unproject(&circle, uv[0], uv[1], xy)); /* 90 degrees */
+    assert_false(adcgs_lens_unproject(&circle, uv[0] + 20, uv[1], xy));
+    adcgs_lens_project(&circle, 0.0, 0.0, uv);
+    assert_true(uv[0] == circle.cx && uv[1] == circle.cy);
+}
+
+/** Where the model shrinks it must be of no use: outside of the picture, or of what is left of it. */
+static void test_fisheye_folds(void **state)
+{
+    /* a - a^3 / 3 k grows up to a = sqrt(k). */
+    adcgs_lens lens = {.width = 400, .height = 400, .fx = 100, .fy = 100, .cx = 200, .cy = 200, .is_fisheye = 1};
+    adcgs_camera c = {0};
+    const double corner = atan(sqrt(6.0)); /* of what is left */
+    lens.k[0] = -1.0 / (3.0 * pow(corner + 0.01, 2));
+    expect_good(adcgs_lens_pinhole(&lens, &c, "x", &error));
+    lens.k[0] = -1.0 / (3.0 * pow(corner - 0.01, 2));
+    expect_error(adcgs_lens_pinhole(&lens, &c, "cams.json", &error), ADCGS_ERR_DATA, "cams.json: ", "folds inside");
+    lens.width = lens.height = 60; /* half of it reaches the corner of this, 42 focal lengths of 100 from the axis */
+    lens.cx = lens.cy = 30;
+    expect_good(adcgs_lens_pinhole(&lens, &c, "x", &error));
+    lens.k[0] = -3.0;
+    expect_error(adcgs_lens_pinhole(&lens, &c, "x", &error), ADCGS_ERR_DATA, "x: ", "folds inside");
+}
+
 static void test_nonsense(void **state)
 {
     static const double values[] = {NAN, INFINITY, -INFINITY, 1e308, -1e308, 1e300, 1e17, -1e17, 1e6, 0.0};
     double xy[2];
     for (size_t i = 0; i < ADCGS_COUNTOF(values); i++)
-        for (size_t field = 2; field < sizeof(adcgs_lens) / sizeof(double); field++) {
-            adcgs_lens lens = CROOKED;
+        for (size_t field = 2; field < 2 * sizeof(adcgs_lens) / sizeof(double); field++) {
+            adcgs_lens lens = field % 2 ? (adcgs_lens)CROOKED : (adcgs_lens)FISHEYE;
             adcgs_camera camera = {0};
-            memcpy((char *)&lens + field * sizeof(double), &values[i], sizeof(double));
+            memcpy((char *)&lens + field / 2 * sizeof(double), &values[i], sizeof(double));
             error = (adcgs_error){0};
             (void)adcgs_lens_unproject(&lens, 3, 4, xy);
             if (adcgs_lens_pinhole(&lens, &camera, "x", &error) == ADCGS_OK)
@@ -204,6 +253,21 @@ static void test_largest(void **state)
     }
 }
 
+/** Of what a circle shows, this is left. */
+static void test_circle(void **state)
+{
+    adcgs_lens lens = CIRCLE;
+    adcgs_camera c = {0};
+    expect_good(adcgs_lens_pinhole(&lens, &c, "x", &error));
+    assert_true(c.fx == 100 && c.fy == 101 && lens.width == 400);
+    assert_true(c.width == 2 * floor(100 * sqrt(3)) && c.cx == floor(100 * sqrt(3))); /* 60 degrees to each side */
+    assert_true(c.height - c.cy > 90 && c.height - c.cy < floor(101 * sqrt(3))); /* below the axis the picture ends before */
+    assert_true(c.cy == floor(101 * sqrt(3)));
+    for (int j = 0; j <= c.height; j++)
+        for (int i = 0; i <= c.width; i++)
+            assert_true(is_shown(&lens, &c, i, j));
+}
+
 static void test_flat(void **state)
 {
     adcgs_lens lens = {.width = 60, .height = 40, .fx = 50, .fy = 51, .cx = 29, .cy = 18};
@@ -241,8 +305,9 @@ static void draw(adcgs_image *image, const adcgs_lens *lens, int channels)
         for (int i = 0; i < image->width; i++)
             for (int c = 0; c < channels; c++) {
                 double xy[2];
-                assert_true(adcgs_lens_invert(lens, fold, i + 0.5, j + 0.5, xy));
-                image->data[(j * image->width + i) * channels + c] = (float)look(xy[0], xy[1], c);
+                const int shown = adcgs_lens_invert(lens, fold, i + 0.5, j + 0.5, xy);
+                assert_true(shown || lens->is_fisheye); /* which looks behind */
+                image->data[(j * image->width + i) * channels + c] = shown ? (float)look(xy[0], xy[1], c) : 0.0f;
             }
 }
 
@@ -304,6 +369,17 @@ static void test_straightened(void **state)
         assert_true(d.inside < 0.0025 && d.edge < 0.008);
         assert_true(fine.mean < d.mean / 5.0 && fine.inside < d.inside / 2.5);
     }
+}
+
+/** So it is of a circle, of which a pixel far from the axis sees a wider angle than the pinhole's, and of a larger one better. */
+static void test_circle_straightened(void **state)
+{
+    const adcgs_lens lens = enlarge((adcgs_lens)CIRCLE, 2);
+    const differences d = compare(lens, 3), fine = compare(enlarge(lens, 2), 1);
+    print_message("%.1e inside, mean %.1e, edge %.1e; at twice the size %.1e, %.1e, %.1e\n", d.inside, d.mean, d.edge,
+                  fine.inside, fine.mean, fine.edge);
+    assert_true(d.inside < 0.02 && d.edge < 0.02 && d.mean < 0.002);
+    assert_true(fine.mean < d.mean / 5.0 && fine.inside < d.inside / 2.5);
 }
 
 /** Nothing is made up: values stay in the range of those around, and one colour stays that colour. */
@@ -446,9 +522,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_projection), cmocka_unit_test(test_inverse),      cmocka_unit_test(test_fold),
+        cmocka_unit_test(test_angles),     cmocka_unit_test(test_fisheye_folds), cmocka_unit_test(test_circle),
         cmocka_unit_test(test_nonsense),   cmocka_unit_test(test_coverage),     cmocka_unit_test(test_largest),
         cmocka_unit_test(test_flat),       cmocka_unit_test(test_straightened), cmocka_unit_test(test_range),
-        cmocka_unit_test(test_alpha),      cmocka_unit_test(test_ring),
+        cmocka_unit_test(test_alpha),      cmocka_unit_test(test_ring),         cmocka_unit_test(test_circle_straightened),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -111,7 +111,7 @@ static void check_transforms(const char *fields, adcgs_lens lens)
 
 #define TAKEN .width = WIDTH, .height = HEIGHT, .fx = 80, .fy = 82, .cx = 50, .cy = 34
 
-/** Every model of nerfstudio's that has a pinhole in it, and COLMAP's largest. */
+/** Every model of nerfstudio's that has a pinhole or a fisheye in it, and COLMAP's largest. */
 static void test_models(void **state)
 {
     check_transforms("\"k1\":-0.1", (adcgs_lens){TAKEN, .k = {-0.1}});
@@ -122,6 +122,13 @@ static void test_models(void **state)
     check_transforms("\"camera_model\":\"FULL_OPENCV\",\"k1\":0.3,\"k2\":0.1,\"k3\":0.01,\"k4\":0.4,\"k5\":0.1,\"k6\":0.02,"
                      "\"p1\":0.002,\"p2\":0.003",
                      (adcgs_lens){TAKEN, .k = {0.3, 0.1, 0.01, 0.4, 0.1, 0.02}, .p = {0.002, 0.003}});
+    check_transforms("\"camera_model\":\"OPENCV_FISHEYE\",\"k1\":0.05,\"k2\":-0.02,\"k3\":0.01,\"k4\":-0.004,\"p1\":0",
+                     (adcgs_lens){TAKEN, .k = {0.05, -0.02, 0.01, -0.004}, .is_fisheye = 1});
+    check_transforms("\"is_fisheye\":true,\"k1\":0.05,\"k2\":-0.02,\"k3\":0.01,\"k4\":-0.004",
+                     (adcgs_lens){TAKEN, .k = {0.05, -0.02, 0.01, -0.004}, .is_fisheye = 1});
+    check_transforms("\"camera_model\":\"RADIAL_FISHEYE\",\"k1\":0.05,\"k2\":-0.02",
+                     (adcgs_lens){TAKEN, .k = {0.05, -0.02}, .is_fisheye = 1});
+    check_transforms("\"camera_model\":\"SIMPLE_RADIAL_FISHEYE\"", (adcgs_lens){TAKEN, .is_fisheye = 1});
 }
 
 /** Lenses for all frames, of single frames, and none; w and h are of the picture as taken, or are the picture's own. */

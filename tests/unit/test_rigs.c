@@ -252,15 +252,18 @@ static void test_kinds_of_cameras(void **state)
     static const struct {
         const char *line;
         double fy, k[6], p[2];
-    } good[] = {{"SIMPLE_PINHOLE 24 16 20 12 8", 20, {0}, {0}},
-                {"PINHOLE 24 16 20 21 12 8", 21, {0}, {0}},
-                {"SIMPLE_RADIAL 24 16 20 12 8 0.05", 20, {0.05}, {0}},
-                {"RADIAL 24 16 20 12 8 0.05 0.02", 20, {0.05, 0.02}, {0}},
-                {"OPENCV 24 16 20 21 12 8 0.05 0.02 0.003 0.004", 21, {0.05, 0.02}, {0.003, 0.004}},
+        int is_fisheye;
+    } good[] = {{"SIMPLE_PINHOLE 24 16 20 12 8", 20, {0}, {0}, 0},
+                {"PINHOLE 24 16 20 21 12 8", 21, {0}, {0}, 0},
+                {"SIMPLE_RADIAL 24 16 20 12 8 0.05", 20, {0.05}, {0}, 0},
+                {"RADIAL 24 16 20 12 8 0.05 0.02", 20, {0.05, 0.02}, {0}, 0},
+                {"OPENCV 24 16 20 21 12 8 0.05 0.02 0.003 0.004", 21, {0.05, 0.02}, {0.003, 0.004}, 0},
                 {"FULL_OPENCV 24 16 20 21 12 8 0.05 0.02 0.003 0.004 0.01 0.011 0.012 0.013", 21,
-                 {0.05, 0.02, 0.01, 0.011, 0.012, 0.013}, {0.003, 0.004}}};
-    static const char *const refused[] = {"OPENCV_FISHEYE", "FOV", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE",
-                                          "THIN_PRISM_FISHEYE", "RAD_TAN_THIN_PRISM_FISHEYE"};
+                 {0.05, 0.02, 0.01, 0.011, 0.012, 0.013}, {0.003, 0.004}, 0},
+                {"OPENCV_FISHEYE 24 16 20 21 12 8 0.05 0.02 0.003 0.004", 21, {0.05, 0.02, 0.003, 0.004}, {0}, 1},
+                {"SIMPLE_RADIAL_FISHEYE 24 16 20 12 8 0.05", 20, {0.05}, {0}, 1},
+                {"RADIAL_FISHEYE 24 16 20 12 8 0.05 0.02", 20, {0.05, 0.02}, {0}, 1}};
+    static const char *const refused[] = {"FOV", "THIN_PRISM_FISHEYE", "RAD_TAN_THIN_PRISM_FISHEYE"};
     char line[256];
     put_images(2, "images", "ppm");
     put_folder("sparse");
@@ -274,7 +277,7 @@ static void test_kinds_of_cameras(void **state)
             continue;
         }
         assert_true(v->lens.width == 24 && v->lens.height == 16 && v->lens.fx == 20 && v->lens.fy == good[i].fy);
-        assert_true(v->lens.cx == 12 && v->lens.cy == 8);
+        assert_true(v->lens.cx == 12 && v->lens.cy == 8 && v->lens.is_fisheye == good[i].is_fisheye);
         assert_memory_equal(v->lens.k, good[i].k, sizeof v->lens.k);
         assert_memory_equal(v->lens.p, good[i].p, sizeof v->lens.p);
     }

@@ -351,17 +351,22 @@ static void test_bad_frames(void **state)
     expect_bad_frame(GOOD ",\"camera_model\":\"SIMPLE_RADIAL\",\"k2\":1", ADCGS_ERR_DATA, "k2", "SIMPLE_RADIAL has no k2");
     expect_bad_frame(GOOD ",\"camera_model\":\"RADIAL\",\"k3\":1", ADCGS_ERR_DATA, "k3", "RADIAL has no k3");
     expect_bad_frame(GOOD ",\"sk_x\":0.5", ADCGS_ERR_UNSUPPORTED, "sk_x", "0.5");
-    static const char *const others[] = {"OPENCV_FISHEYE", "EQUIRECTANGULAR", "FISHEYE624", "ORTHOPHOTO", "VR180_L", "opencv"};
+    static const char *const others[] = {"THIN_PRISM_FISHEYE", "EQUIRECTANGULAR", "FISHEYE624", "ORTHOPHOTO", "VR180_L",
+                                         "opencv"};
     for (size_t i = 0; i < ADCGS_COUNTOF(others); i++) {
         char fields[512];
         snprintf(fields, sizeof fields, GOOD ",\"camera_model\":\"%s\"", others[i]);
         expect_bad_frame(fields, ADCGS_ERR_UNSUPPORTED, "camera_model", others[i]);
     }
     expect_bad_frame(GOOD ",\"latlong\":true", ADCGS_ERR_UNSUPPORTED, "latlong", "panoramic");
-    expect_bad_frame(GOOD ",\"ftheta_p0\":1", ADCGS_ERR_UNSUPPORTED, "ftheta_p0", "fisheye");
+    expect_bad_frame(GOOD ",\"ftheta_p0\":1", ADCGS_ERR_UNSUPPORTED, "ftheta_p0", "f-theta");
     expect_bad_frame(GOOD ",\"camera_model\":3", ADCGS_ERR_DATA, "camera_model", "string");
-    expect_bad_frame(GOOD ",\"is_fisheye\":true", ADCGS_ERR_UNSUPPORTED, "is_fisheye", "fisheye");
+    expect_bad_frame(GOOD ",\"camera_model\":\"OPENCV\",\"is_fisheye\":true", ADCGS_ERR_DATA, "is_fisheye", "OPENCV");
+    expect_bad_frame(GOOD ",\"is_fisheye\":true,\"p1\":0.1", ADCGS_ERR_DATA, "p1", "OPENCV_FISHEYE has no p1");
+    expect_bad_frame(GOOD ",\"camera_model\":\"RADIAL_FISHEYE\",\"k3\":1", ADCGS_ERR_DATA, "k3", "RADIAL_FISHEYE has no k3");
     expect_bad("{\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "fl_x", "missing");
+    expect_bad("{\"is_fisheye\":true,\"camera_angle_x\":1,\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "fl_x",
+               "fisheye");
     expect_bad("{\"w\":6,\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "frames[0].h", "missing");
     expect_bad("{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", ",\"k1\":-3") "]}", ADCGS_ERR_DATA, "frames[0]: ", "folds");
 }

@@ -106,7 +106,10 @@ static void test_intrinsics(void **state)
     const adcgs_lens *l = &train(0)->lens;
     for (int i = 0; i < 6; i++)
         assert_true(l->k[i] == (i + 1) / 100.0);
-    assert_true(l->p[0] == 0.007 && l->p[1] == 0.008 && l->skew == 0.5 && l->width == 24);
+    assert_true(l->p[0] == 0.007 && l->p[1] == 0.008 && l->skew == 0.5 && l->width == 24 && !l->is_fisheye);
+    open_good(FILE_OF(",\"defaults\":{\"lens\":\"fisheye\",\"k1\":0.01,\"k4\":0.04}", CAMERA("," IDENTITY ",\"k2\":0.02")));
+    l = &train(0)->lens;
+    assert_true(l->is_fisheye && l->k[0] == 0.01 && l->k[1] == 0.02 && l->k[2] == 0 && l->k[3] == 0.04 && l->width == 24);
 }
 
 /** Seconds: offsets, rates of their own, and test frames before and after what is trained on. */
@@ -178,6 +181,9 @@ static void test_bad(void **state)
     BAD_CAMERA(",\"split\":\"dev\"," IDENTITY, "split: dev");
     BAD_CAMERA(",\"axes\":\"maya\"," IDENTITY, "axes: maya");
     BAD_CAMERA(",\"pixel_centre\":0.25," IDENTITY, "pixel_centre: 0.25");
+    BAD_CAMERA(",\"lens\":\"plastic\"," IDENTITY, "lens: plastic");
+    BAD_CAMERA(",\"lens\":\"fisheye\",\"p1\":0.1," IDENTITY, "p1: 0.1, but a fisheye lens");
+    BAD_CAMERA(",\"lens\":\"fisheye\",\"k5\":0.1," IDENTITY, "k5: 0.1, but a fisheye lens");
     BAD_CAMERA(",\"video\":\"a.mp4\"," IDENTITY, "video: expected either");
     BAD_CAMERA(",\"frame_rate\":0," IDENTITY, "frame_rate: 0");
     BAD_CAMERA(",\"count\":1.5," IDENTITY, "count: 1.5");
@@ -189,6 +195,8 @@ static void test_bad(void **state)
     BAD_CAMERA(",\"world_to_camera\":[[1,0,0,0],[0,1,0,0],[0,0,-1,0]]", "world_to_camera: is a reflection");
     BAD_CAMERA(",\"world_to_camera\":[[1,0,0,1e99],[0,1,0,0],[0,0,1,0]]", "world_to_camera: 1e+99");
     expect_bad(FILE_OF("", "{\"name\":\"a/b\"}"), "cameras[0].video: expected either");
+    put_text("s.json", FILE_OF("", CAMERA(",\"lens\":\"fisheye\",\"k1\":-9," IDENTITY)));
+    expect_error(adcgs_scene_open(&scene, in("s.json"), NULL, &error), ADCGS_ERR_DATA, "f001.ppm", "the lens folds inside");
     put_text("s.json", FILE_OF("", CAMERA(",\"count\":9," IDENTITY)));
     expect_error(adcgs_scene_open(&scene, in("s.json"), NULL, &error), ADCGS_ERR_DATA, "a/f005.ppm", "no such image");
 }
