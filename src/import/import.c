@@ -124,10 +124,19 @@ static adcgs_status begin(const adcgs_import_job *job)
     return status;
 }
 
+/** The stamp goes last: a folder that could not be renamed is still known as ours. */
+static adcgs_status remove_stamp(const adcgs_import_job *job)
+{
+    char *stamp = adcgs_path("%s/" STAMP, job->options->output);
+    const adcgs_status status = stamp ? remove_tree(stamp, job->error) : no_memory(job);
+    free(stamp);
+    return status;
+}
+
 /** Of a rig the pictures were for COLMAP alone. */
 static adcgs_status finish(const adcgs_import_job *job)
 {
-    static const char *const scaffolding[] = {"sparse", "database.db", "database.db-shm", "database.db-wal", "colmap.log", STAMP};
+    static const char *const scaffolding[] = {"sparse", "database.db", "database.db-shm", "database.db-wal", "colmap.log"};
     if (job->shots.kind == ADCGS_FOOTAGE_RIG)
         ADCGS_TRY(remove_below(job, "images"));
     for (uint32_t i = 0; job->shots.kind == ADCGS_FOOTAGE_RIG && job->options->masks && i < job->shots.n_cameras; i++) {
@@ -141,7 +150,7 @@ static adcgs_status finish(const adcgs_import_job *job)
     if (rename(job->folder, job->options->output))
         return adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot rename to %s: %s", job->folder, job->options->output,
                           strerror(errno));
-    return ADCGS_OK;
+    return remove_stamp(job);
 }
 
 /* ---- The steps ---- */

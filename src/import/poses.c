@@ -77,7 +77,8 @@ static adcgs_status run(step *s)
         return adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot write: %s", job->log, strerror(errno));
     adcgs_progress_show(job->progress, "%-9s", s->name);
     adcgs_status status = adcgs_child_run(s->words, s->log, hear, s, &code, job->error);
-    if (fclose(s->log) && status == ADCGS_OK)
+    const int lost = ferror(s->log); /* it is written line by line, and closing tells of the last alone */
+    if ((fclose(s->log) || lost) && status == ADCGS_OK)
         status = adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot write: %s", job->log, strerror(errno));
     ADCGS_TRY(status);
     ADCGS_TRY(adcgs_import_goes_on(job));

@@ -4,7 +4,7 @@
 # 3, one line that names what could not be written, files that are the old ones or whole new ones, and nothing else left behind.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-dec adcgs-info adcgs-enc adcgs-eval adcgs-sweep adcgs-conform adcgs-demo-scene tests/cli/fail-nth
+need adcgs-dec adcgs-info adcgs-enc adcgs-eval adcgs-sweep adcgs-conform adcgs-demo-scene adcgs-import tests/cli/fail-nth
 vectors=$(cd "${srcdir:-.}/conformance" && pwd)
 tests/cli/fail-nth "$dir" "$dir/report" 1 true || exit $?
 tiny_stream 40
@@ -72,6 +72,31 @@ check_fault()
     done <"$dir/files"
 }
 
+# imports NAME ARGUMENTS...: of adcgs-import, which is to make the folder $w/s. It appears whole or not at all; from what is left beside
+# it the same command goes on. The last calls are tried, and fewer and fewer before (ADCGS_FULL=1: more of them).
+imports()
+{
+    name=$1
+    shift
+    set -- ./adcgs-import --colmap "$fake" -o "$w/s" "$@"
+    rm -rf "$w" "$dir/good" && mkdir "$w"
+    tests/cli/fail-nth "$w" "$dir/report" 0 "$@" >"$w/stdout.log" 2>"$dir/err" || { bad "$name"; cat "$dir/err"; return; }
+    cp -r "$w/s" "$dir/good"
+    read -r calls <"$dir/report"
+    back=0
+    while [ $back -lt "$calls" ]; do
+        rm -rf "$w" && mkdir "$w"
+        what="$name, call $((calls - back)) of $calls"
+        tests/cli/fail-nth "$w" "$dir/report" $((calls - back)) "$@" >"$w/stdout.log" 2>"$dir/err"
+        code=$?
+        [ "$code" -eq 3 ] && [ "$(grep -c 'cannot' "$dir/err")" -eq 1 ] || { bad "$what: exit code $code"; cat "$dir/err"; }
+        [ -e "$w/s" ] || "$@" >"$dir/out" 2>"$dir/err" || { bad "$what: and then"; cat "$dir/err"; }
+        diff -r "$w/s" "$dir/good" >"$dir/out" || { bad "$what: another scene"; cat "$dir/out"; }
+        [ "$(ls "$w")" = "$(printf 's\nstdout.log')" ] || { bad "$what: more is left"; ls "$w"; }
+        back=$((back + 1 + (back > 1 ? back : 0) ${ADCGS_FULL:+/ 4}))
+    done
+}
+
 # The decoder: pictures of each writer, streams, a video, splats, cameras, standard output.
 for extension in png jpg ppm exr; do
     faults "$extension" ./adcgs-dec "$s" --time 0:0.06 --camera 0 -o "$w/%d.$extension"
@@ -130,6 +155,16 @@ ways=+
 faults "scene" ./adcgs-demo-scene --scene tiny -o "$w/scene"
 ways='once +'
 faults "conformance" ./adcgs-conform "$vectors/manifest.json" --filter 'bad-geom-*' --junit "$w/x.xml"
+
+# Footage made a scene: pictures reduced, masks, points; videos taken over. COLMAP's own files lie elsewhere.
+fake=$(cd "${srcdir:-.}/tests/cli" && pwd)/fake-colmap
+export FAKE="$dir/fake" FAKE_ASIDE="$dir/aside"
+mkdir "$dir/aside" "$dir/views" "$dir/masks"
+for i in 0 1 2; do
+    ./adcgs-dec "$s" --time 0.0$i --camera 0 --size 96x64 -o "$dir/views/$i.png" 2>"$dir/err" || cat "$dir/err"
+    { printf 'P6 24 16 255\n'; head -c 1152 /dev/zero; } >"$dir/masks/$i.ppm"
+done
+imports "import" "$dir/views" --masks "$dir/masks" --side 64
 
 # A sweep's tables and page, of runs that have been made.
 if ./adcgs-sweep "$dir/scene" -o "$dir/sweep" --lambda 0.1 --preset draft --iterations 10 --yardsticks none >/dev/null 2>"$dir/err"; then
