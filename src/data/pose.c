@@ -103,8 +103,8 @@ static void solve(double a[3][3], const double b[3], double x[3])
     }
 }
 
-/** Least squares over the distances from all axes, drawn gently to the cameras' mean so that parallel axes have an answer too. */
-static void find_centre(const adcgs_scene_view *views, uint32_t n, double centre[3])
+/** Least squares over the distances from all axes. */
+void adcgs_pose_centre(const adcgs_scene_view *views, uint32_t n, double centre[3])
 {
     double a[3][3] = {{0}}, b[3] = {0}, mean[3] = {0};
     for (uint32_t v = 0; v < n; v++) {
@@ -132,7 +132,7 @@ adcgs_status adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t 
     *median = 0.0;
     if (!distances)
         return adcgs_alloc_status(error);
-    find_centre(views, n, centre);
+    adcgs_pose_centre(views, n, centre);
     for (uint32_t v = 0; v < n; v++) {
         const double *p = views[v].camera.cam_to_world;
         distances[v] = sqrt((p[3] - centre[0]) * (p[3] - centre[0]) + (p[7] - centre[1]) * (p[7] - centre[1]) +

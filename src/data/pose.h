@@ -15,6 +15,9 @@ const char *adcgs_pose_check(double pose[12]);
 /** As adcgs_pose_check(), and from OpenGL axes (y up, looking along -z) to OpenCV axes. */
 const char *adcgs_pose_from_opengl(double pose[12]);
 
+/** The point nearest to all axes, drawn gently to the cameras' mean so that parallel axes have an answer too. n is not 0. */
+void adcgs_pose_centre(const adcgs_scene_view *views, uint32_t n, double centre[3]);
+
 /** Median distance of the cameras from the point nearest to all their axes; 0 if they share one position. */
 adcgs_status adcgs_pose_median_distance(const adcgs_scene_view *views, uint32_t n, double *median, adcgs_error *error);
 

@@ -6,11 +6,7 @@
 
 #include <stdlib.h>
 
-enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8, COPIED = 16, POSES = 32, TIMES = 64 };
-
-/* Scenes in order are off by 0.06 of a pixel, where cameras are few and far apart by 0.17; with errors of a pixel, by 1. */
-#define POSES_OFF 0.4 /* of a pixel of the pictures that are matched */
-enum { POSES_PAIRS = 3 };
+enum { GAPS = 1, DOUBLED = 2, LIGHT = 4, CLOCKS = 8, COPIED = 16, POSES = 32, TIMES = 64, AXES = 128 };
 
 /** A file as seen from the scene. */
 static const char *short_name(const adcgs_scene *scene, const char *path)
@@ -93,6 +89,44 @@ static void say_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcg
                    scene->directory, poses->median * poses->pixels);
 }
 
+/** How poses seem to be meant, if not as they are given. */
+static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_axes_doubt *d)
+{
+    static const char *const changes[ADCGS_READINGS] = {"", "y and z of all cameras are turned round", "all poses are inverted",
+                                                        "all poses are inverted"};
+    static const char *const questions[ADCGS_READINGS] = {
+        "", "are their axes OpenGL's where OpenCV's are expected, or these where those are",
+        "do their matrices take the world to the camera where the way back is expected",
+        "do their matrices take the world to the camera where the way back is expected"};
+    const char *const change = changes[d->meant], *const question = questions[d->meant], *const where = scene->directory;
+    if (d->by == ADCGS_BY_POINTS)
+        adcgs_cli_note(cli, "%s: a camera sees %.0f %% of the points, and %.0f %% if %s: %s?", where, 100.0 * d->here,
+                       100.0 * d->there, change, question);
+    else if (d->by == ADCGS_BY_PICTURES)
+        adcgs_cli_note(cli, "%s: what cameras show does not go together, but does if %s: %s?", where, change, question);
+    else
+        adcgs_cli_note(cli, "%s: all cameras %s; if they were around what they film: %s?", where,
+                       d->meant == ADCGS_READ_TURNED ? "look away from each other" : "are in one place", question);
+}
+
+/** What is wrong with all poses. */
+static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_stereo *found,
+                          adcgs_pool *pool, unsigned *told)
+{
+    adcgs_axes_doubt doubt;
+    adcgs_error error;
+    if (!(*told & AXES) && adcgs_axes_doubt_find(&doubt, scene, found, pool, &error) == ADCGS_OK &&
+        doubt.meant != ADCGS_READ_AS_GIVEN) {
+        say_axes(cli, whole, &doubt);
+        *told |= POSES;
+    }
+    *told |= AXES; /* by the first part of a scene */
+    if (!(*told & POSES) && found->poses.pairs >= ADCGS_STEREO_PAIRS && !adcgs_stereo_poses_fit(&found->poses)) {
+        say_poses(cli, whole, &found->poses);
+        *told |= POSES;
+    }
+}
+
 /** What pictures show, each kind until it was told. */
 static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_tracks *tracks,
                              const adcgs_glance *glances, double begins, unsigned *told)
@@ -128,7 +162,7 @@ static void say_times(const adcgs_cli *cli, const adcgs_scene *scene)
                    "scene in which nothing moves; adcgs-import makes one with times", scene->directory);
 }
 
-void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_off *poses,
+void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found, adcgs_pool *pool,
                              const adcgs_glance *glances, double begins, unsigned *told)
 {
     const adcgs_scene *const whole = scene->whole ? scene->whole : scene;
@@ -140,10 +174,7 @@ void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, con
     if (!(*told & TIMES) && whole->counts)
         say_times(cli, whole);
     *told |= GAPS | TIMES; /* of the whole scene, once */
-    if (!(*told & POSES) && poses->pairs >= POSES_PAIRS && poses->median >= POSES_OFF) {
-        say_poses(cli, whole, poses);
-        *told |= POSES;
-    }
+    look_at_poses(cli, scene, whole, found, pool, told);
     if (adcgs_tracks_find(&tracks, scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], &error) != ADCGS_OK)
         return;
     look_at_pictures(cli, scene, whole, &tracks, glances, begins, told);

@@ -6,15 +6,15 @@
 #include "cli/cli.h"
 #include "data/glance.h"
 #include "data/scene.h"
-#include "stereo/stereo.h"
+#include "stereo/axes.h"
 
 /**
  * Note, unless --quiet, faults of footage that are found (data/faults.h), one line for each kind. scene: what is learnt at a
- * time, which begins at `begins` seconds of the whole; poses are by its matched pictures, glances are of its training views.
+ * time, which begins at `begins` seconds of the whole; found: by its matched pictures; glances are of its training views.
  * *told: kinds told of before, for one part of a scene after the other; 0 to begin with. Where there is no memory for it nothing
  * is said.
  */
-void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_off *poses,
+void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found, adcgs_pool *pool,
                              const adcgs_glance *glances, double begins, unsigned *told);
 
 #endif

@@ -12,10 +12,10 @@ learn()
     name=$1
     shift
     ./adcgs-demo-scene --scene cross20 --size 64x64 --moments 12 --format ppm -o "$dir/$name" -q "$@" || bad "adcgs-demo-scene $*"
-    ./adcgs-enc "$dir/$name" -o "$dir/$name.adcgs" --iterations 400 --threads 2 ${quiet:-} >"$dir/out" 2>"$dir/$name.err" ||
+    ./adcgs-enc "$dir/$name" -o "$dir/$name.adcgs" --iterations ${iterations:-400} --threads 2 ${quiet:-} >"$dir/out" 2>"$dir/$name.err" ||
         bad "adcgs-enc of $name"
 }
-doubts='is its pose right\|axes and times right\|is a guess'
+doubts='is its pose right\|axes and times right\|is a guess\|are their axes\|do their matrices'
 
 learn right
 grep "$doubts" "$dir/right.err" && bad "doubts of a scene that is in order"
@@ -26,6 +26,13 @@ grep -q "the camera of view r_002 has .* dB, the median camera .*is its pose rig
 [ "$(grep -c "is its pose right" "$dir/pose.err")" -eq 1 ] || bad "other cameras are in doubt, too"
 learn axes --spoil axes=1
 grep -q "training views have .* dB, others .*axes and times right" "$dir/axes.err" || { bad "nothing of wrong axes"; cat "$dir/axes.err"; }
+grep -q "what cameras show does not go together, but does if y and z of all cameras are turned round" "$dir/axes.err" ||
+    { bad "nothing of wrong axes before training"; cat "$dir/axes.err"; }
+iterations=10
+learn inverse --spoil axes=2
+grep -q "but does if all poses are inverted: do their matrices take the world to the camera" "$dir/inverse.err" ||
+    { bad "nothing of inverted poses"; cat "$dir/inverse.err"; }
+iterations=
 learn few --cameras 2
 grep -q "filmed by 2 cameras: what is seen from elsewhere is a guess" "$dir/few.err" || { bad "nothing of few cameras"; cat "$dir/few.err"; }
 learn four --cameras 4 --moments 48 # more views than are measured, cameras in turn

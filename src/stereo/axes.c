@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Whether cameras look where their poses say. */
+#include "stereo/axes.h"
+
+#include "data/pose.h"
+#include "stereo/poses.h"
+
+#include <math.h>
+
+/* Scenes in order are off by 0.06 of a pixel, where cameras are few and far apart by 0.17; with errors of a pixel, by 1. */
+#define FITS 0.4             /* pixels */
+#define FITS_WELL 0.2        /* so that no other reading is looked at */
+enum { POINTS_LEAST = 100, POINTS_MOST = 4000, VIEWS_MOST = 200 }; /* that are looked at */
+#define SEEN_WELL 0.2        /* share of the points that a camera sees: then all is well; */
+#define SEEN_ENOUGH 0.05     /* so much of what is all around cameras in a room */
+#define SEEN_BETTER 3.0      /* times as many, and */
+#define SEEN_MORE 0.3        /* as many more, as another reading must have */
+enum { MOMENTS = 12 };       /* that pictures are compared of */
+#define MOST_OF 0.9          /* cameras */
+#define AROUND 0.9           /* length of the mean axis: more, and cameras look much the same way, at no one place */
+#define CROSSED 0.2          /* distances of axes from the place that is common to them, over those of the cameras */
+#define ONE_PLACE 0.02       /* how far cameras are apart, over the distance of what they would look at */
+
+/* ---- Readings ---- */
+
+static void invert(double pose[12])
+{
+    double p[12];
+    memcpy(p, pose, sizeof p);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            pose[4 * i + j] = p[4 * j + i];
+        pose[4 * i + 3] = -(p[i] * p[3] + p[4 + i] * p[7] + p[8 + i] * p[11]);
+    }
+}
+
+static void turn(double pose[12])
+{
+    for (int i = 0; i < 3; i++) {
+        pose[4 * i + 1] = -pose[4 * i + 1];
+        pose[4 * i + 2] = -pose[4 * i + 2];
+    }
+}
+
+/** The scene with its training views' poses read so; free views. */
+static adcgs_status read_as(adcgs_scene *out, const adcgs_scene *scene, adcgs_reading reading, adcgs_error *error)
+{
+    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
+    adcgs_scene_view *views = adcgs_alloc(NULL, n, sizeof *views, error);
+    *out = *scene;
+    out->views[ADCGS_SPLIT_TRAIN] = views;
+    if (!views)
+        return adcgs_alloc_status(error);
+    memcpy(views, scene->views[ADCGS_SPLIT_TRAIN], n * sizeof *views);
+    for (uint32_t i = 0; i < n; i++) {
+        double *const pose = views[i].camera.cam_to_world;
+        if (reading == ADCGS_READ_TURNED || reading == ADCGS_READ_INVERSE_OPENGL)
+            turn(pose);
+        if (reading == ADCGS_READ_INVERSE || reading == ADCGS_READ_INVERSE_OPENGL)
+            invert(pose);
+        if (reading == ADCGS_READ_INVERSE_OPENGL)
+            turn(pose);
+    }
+    return ADCGS_OK;
+}
+
+/* ---- Points ---- */
+
+static int sees(const adcgs_camera *c, const float point[3])
+{
+    const double *m = c->cam_to_world;
+    double p[3];
+    for (int a = 0; a < 3; a++)
+        p[a] = m[a] * ((double)point[0] - m[3]) + m[4 + a] * ((double)point[1] - m[7]) + m[8 + a] * ((double)point[2] - m[11]);
+    const double u = c->fx * p[0] / p[2] + c->cx, v = c->fy * p[1] / p[2] + c->cy;
+    return p[2] > 0.0 && u >= 0.0 && v >= 0.0 && u < c->width && v < c->height;
+}
+
+/** The share of points that a camera sees on the mean. */
+static double share_seen(const adcgs_scene *scene)
+{
+    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN], views = ADCGS_MIN(n, VIEWS_MOST);
+    const uint32_t points = ADCGS_MIN(scene->points.n, POINTS_MOST);
+    uint64_t seen = 0;
+    for (uint32_t i = 0; i < views; i++)
+        for (uint32_t k = 0; k < points; k++)
+            seen += (uint64_t)sees(&scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * n / views].camera,
+                                   scene->points.position[(uint64_t)k * scene->points.n / points]);
+    return (double)seen / ((double)views * points);
+}
+
+/* ---- Places ---- */
+
+/** Where the cameras are and look. */
+typedef struct places {
+    double before;   /**< share of cameras before which the place common to all axes lies */
+    double axis;     /**< length of the mean axis: 1 if all look one way */
+    double distance; /**< mean, of cameras from that place */
+    double crossed;  /**< mean distance of the axes from it, over that */
+    double apart;    /**< mean, of cameras from their middle */
+} places;
+
+static places find_places(const adcgs_scene *scene)
+{
+    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
+    const adcgs_scene_view *const views = scene->views[ADCGS_SPLIT_TRAIN];
+    double centre[3], middle[3] = {0.0}, axis[3] = {0.0};
+    places p = {.before = 0.0};
+    adcgs_pose_centre(views, n, centre);
+    for (uint32_t v = 0; v < n; v++)
+        for (int a = 0; a < 3; a++) {
+            middle[a] += views[v].camera.cam_to_world[4 * a + 3] / n;
+            axis[a] += views[v].camera.cam_to_world[4 * a + 2] / n;
+        }
+    for (uint32_t v = 0; v < n; v++) {
+        const double *m = views[v].camera.cam_to_world;
+        double along = 0.0, square = 0.0, off = 0.0;
+        for (int a = 0; a < 3; a++) {
+            const double way = centre[a] - m[4 * a + 3];
+            along += way * m[4 * a + 2];
+            square += way * way;
+            off += (m[4 * a + 3] - middle[a]) * (m[4 * a + 3] - middle[a]);
+        }
+        p.before += (along > 0.0) / (double)n;
+        p.distance += sqrt(square) / n;
+        p.crossed += sqrt(fmax(square - along * along, 0.0)) / n;
+        p.apart += sqrt(off) / n;
+    }
+    p.crossed /= fmax(p.distance, 1e-300);
+    p.axis = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    return p;
+}
+
+/** Do cameras stand around something that they look at? */
+static int look_in(const places *p)
+{
+    return p->before >= MOST_OF && p->axis < AROUND && p->crossed < CROSSED;
+}
+
+static adcgs_reading judge_places(const places p[ADCGS_READINGS])
+{
+    if (look_in(&p[ADCGS_READ_TURNED]) && !look_in(&p[ADCGS_READ_AS_GIVEN]))
+        return ADCGS_READ_TURNED;
+    /* On a circle about the world's middle a camera is always the same distance before it. */
+    for (int r = ADCGS_READ_INVERSE; r < ADCGS_READINGS; r++)
+        if (look_in(&p[r]) && p[ADCGS_READ_AS_GIVEN].apart < ONE_PLACE * p[r].distance)
+            return (adcgs_reading)r;
+    return ADCGS_READ_AS_GIVEN;
+}
+
+/* ---- Pictures ---- */
+
+int adcgs_stereo_poses_fit(const adcgs_stereo_off *off)
+{
+    return off->pairs >= ADCGS_STEREO_PAIRS && off->median < FITS;
+}
+
+/** More cameras fit where some did not fit, or as many much better. */
+static int is_better(const adcgs_stereo_off *off, const adcgs_stereo_off *than)
+{
+    if (!adcgs_stereo_poses_fit(than))
+        return adcgs_stereo_poses_fit(off) && off->pairs > than->pairs;
+    return off->pairs >= than->pairs && off->median < 0.5 * than->median;
+}
+
+/** How far poses are off, by pictures of a few moments. */
+static adcgs_status match_pairs(adcgs_stereo_off *out, const adcgs_scene *scene, const places *p, adcgs_pool *pool,
+                                adcgs_error *error)
+{
+    adcgs_stereo_options options = {.moments = MOMENTS, .scale = fmax(p->distance, 1e-300)};
+    adcgs_stereo_rig *rig = adcgs_alloc(NULL, 1, sizeof *rig, error);
+    *out = (adcgs_stereo_off){.pairs = 0};
+    if (!rig)
+        return adcgs_alloc_status(error);
+    adcgs_pose_centre(scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], options.origin);
+    adcgs_status status = adcgs_stereo_rig_init(rig, scene, &options, error);
+    if (status == ADCGS_OK)
+        status = adcgs_stereo_poses_off(rig, out, pool, error);
+    adcgs_stereo_rig_clear(rig);
+    adcgs_free(NULL, rig);
+    return status;
+}
+
+/* ---- All ---- */
+
+static void judge_points(adcgs_axes_doubt *out, const double seen[ADCGS_READINGS])
+{
+    adcgs_reading best = ADCGS_READ_AS_GIVEN;
+    for (int r = ADCGS_READ_TURNED; r < ADCGS_READINGS; r++)
+        best = seen[r] > seen[best] ? (adcgs_reading)r : best;
+    if (seen[ADCGS_READ_AS_GIVEN] < SEEN_WELL && seen[best] >= SEEN_BETTER * seen[ADCGS_READ_AS_GIVEN] &&
+        seen[best] >= seen[ADCGS_READ_AS_GIVEN] + SEEN_MORE)
+        *out = (adcgs_axes_doubt){best, ADCGS_BY_POINTS, seen[ADCGS_READ_AS_GIVEN], seen[best]};
+}
+
+static adcgs_status judge_pictures(adcgs_axes_doubt *out, const adcgs_scene readings[ADCGS_READINGS], const places *p,
+                                   const adcgs_stereo_off *given, adcgs_pool *pool, adcgs_error *error)
+{
+    adcgs_stereo_off best = *given;
+    for (int r = ADCGS_READ_TURNED; r < ADCGS_READINGS; r++) {
+        adcgs_stereo_off off;
+        ADCGS_TRY(match_pairs(&off, &readings[r], &p[r], pool, error));
+        if (!is_better(&off, &best))
+            continue;
+        *out = (adcgs_axes_doubt){.meant = (adcgs_reading)r, .by = ADCGS_BY_PICTURES};
+        best = off;
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status judge(adcgs_axes_doubt *out, const adcgs_scene readings[ADCGS_READINGS], const adcgs_stereo *found,
+                          adcgs_pool *pool, adcgs_error *error)
+{
+    const adcgs_stereo_off *const off = &found->poses;
+    double seen[ADCGS_READINGS] = {0.0};
+    places p[ADCGS_READINGS];
+    for (int r = 0; r < ADCGS_READINGS && readings->points.n >= POINTS_LEAST; r++)
+        seen[r] = share_seen(&readings[r]);
+    judge_points(out, seen);
+    const int vouched = seen[ADCGS_READ_AS_GIVEN] >= SEEN_ENOUGH && off->pairs < ADCGS_STEREO_PAIRS; /* and no picture objects */
+    if (out->meant != ADCGS_READ_AS_GIVEN || vouched ||
+        (found->n_moments && adcgs_stereo_poses_fit(off) && off->median < FITS_WELL))
+        return ADCGS_OK;
+    for (int r = 0; r < ADCGS_READINGS; r++)
+        p[r] = find_places(&readings[r]);
+    if (found->n_moments)
+        ADCGS_TRY(judge_pictures(out, readings, p, off, pool, error));
+    if (out->meant == ADCGS_READ_AS_GIVEN && seen[ADCGS_READ_AS_GIVEN] < SEEN_ENOUGH && !adcgs_stereo_poses_fit(off))
+        *out = (adcgs_axes_doubt){.meant = judge_places(p), .by = ADCGS_BY_PLACES};
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_axes_doubt_find(adcgs_axes_doubt *out, const adcgs_scene *scene, const adcgs_stereo *found, adcgs_pool *pool,
+                                   adcgs_error *error)
+{
+    adcgs_scene readings[ADCGS_READINGS] = {{.directory = NULL}};
+    adcgs_status status = ADCGS_OK;
+    *out = (adcgs_axes_doubt){.meant = ADCGS_READ_AS_GIVEN};
+    for (int r = 0; r < ADCGS_READINGS && status == ADCGS_OK; r++)
+        status = read_as(&readings[r], scene, (adcgs_reading)r, error);
+    if (status == ADCGS_OK && scene->n_views[ADCGS_SPLIT_TRAIN])
+        status = judge(out, readings, found, pool, error);
+    for (int r = 0; r < ADCGS_READINGS; r++)
+        adcgs_free(NULL, readings[r].views[ADCGS_SPLIT_TRAIN]);
+    return status;
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Whether poses are told to be meant otherwise than they are given: of a ball that cameras stand around, and of a room that they
+ * look out into, by points, by pictures and by where cameras are; of scenes in order nothing is said.
+ */
+#include "outside_files.h"
+
+#include "stereo/axes.h"
+
+#include <math.h>
+
+enum { CAMERAS = 12, SIDE = 72, POINTS = 400 };
+
+static adcgs_scene scene;
+static adcgs_scene_view views[CAMERAS];
+static char names[CAMERAS][300];
+static float positions[POINTS][3];
+
+/** Smooth noise over directions. */
+static double noise(const double x[3], uint32_t seed)
+{
+    double sum = 0.0;
+    int cell[3];
+    double f[3];
+    for (int a = 0; a < 3; a++) {
+        cell[a] = (int)floor(12.0 * x[a]);
+        f[a] = 12.0 * x[a] - cell[a];
+    }
+    for (int k = 0; k < 8; k++) {
+        uint32_t h = seed;
+        double weight = 1.0;
+        for (int a = 0; a < 3; a++) {
+            const int up = k >> a & 1;
+            h = (h ^ (uint32_t)(cell[a] + up + 1000)) * 2654435761u;
+            h ^= h >> 15;
+            weight *= up ? f[a] : 1.0 - f[a];
+        }
+        sum += weight * (h >> 8) / 16777216.0;
+    }
+    return sum;
+}
+
+/** What a camera sees of a sphere of radius 1 about the middle: from outside the near side, from inside the wall. */
+static void put_picture(const char *name, const adcgs_camera *c)
+{
+    adcgs_image image;
+    const double *m = c->cam_to_world;
+    assert_int_equal(adcgs_image_alloc(&image, SIDE, SIDE, 3, name, &error), ADCGS_OK);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double d[3] = {(i % SIDE + 0.5 - c->cx) / c->fx, (i / SIDE + 0.5 - c->cy) / c->fy, 1.0};
+        double w[3], x[3], dd = 0.0, dp = 0.0, pp = 0.0;
+        for (int a = 0; a < 3; a++) {
+            w[a] = m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2];
+            dd += w[a] * w[a];
+            dp += w[a] * m[4 * a + 3];
+            pp += m[4 * a + 3] * m[4 * a + 3];
+        }
+        const double root = dp * dp - dd * (pp - 1.0);
+        const double s = (-dp + (pp < 1.0 ? 1.0 : -1.0) * sqrt(fmax(root, 0.0))) / dd;
+        for (int a = 0; a < 3; a++)
+            x[a] = m[4 * a + 3] + s * w[a];
+        for (int k = 0; k < 3; k++)
+            image.data[3 * i + k] = root > 0.0 ? (float)noise(x, (uint32_t)k) : 0.5f;
+    }
+    assert_int_equal(adcgs_image_write(&image, name, 0, &error), ADCGS_OK);
+    adcgs_image_free(&image);
+}
+
+/** Cameras on an arc, so far from the middle, above it; they look at it from far, and away from it from near. */
+static void make_scene(double radius, double degrees)
+{
+    for (int i = 0; i < CAMERAS; i++) {
+        const double a = degrees * (i - 0.5 * (CAMERAS - 1)) / (CAMERAS - 1) * M_PI / 180.0, look = radius > 1.0 ? -1.0 : 1.0;
+        const double z[3] = {look * cos(a), look * sin(a), 0.0}, down[3] = {0.0, 0.0, -1.0};
+        adcgs_camera *c = &views[i].camera;
+        *c = (adcgs_camera){.width = SIDE, .height = SIDE, .fx = radius > 1.0 ? 1.6 * SIDE : 0.6 * SIDE, .cx = 0.5 * SIDE,
+                            .cy = 0.5 * SIDE};
+        c->fy = c->fx;
+        for (int k = 0; k < 3; k++) {
+            c->cam_to_world[4 * k] = down[(k + 1) % 3] * z[(k + 2) % 3] - down[(k + 2) % 3] * z[(k + 1) % 3];
+            c->cam_to_world[4 * k + 1] = down[k];
+            c->cam_to_world[4 * k + 2] = z[k];
+            c->cam_to_world[4 * k + 3] = k < 2 ? radius * look * z[k] : 0.1;
+        }
+        snprintf(names[i], sizeof names[i], "%s/%d.ppm", folder, i);
+        put_picture(names[i], c);
+        views[i].path = names[i];
+    }
+    scene = (adcgs_scene){.directory = folder, .n_views = {CAMERAS}, .views = {views}, .n_times = 1};
+}
+
+static void add_points(void)
+{
+    for (int i = 0; i < POINTS; i++) {
+        const double z = 2.0 * (i + 0.5) / POINTS - 1.0, a = 2.4 * i, r = sqrt(1.0 - z * z);
+        positions[i][0] = (float)(r * cos(a));
+        positions[i][1] = (float)(r * sin(a));
+        positions[i][2] = (float)z;
+    }
+    scene.points.n = POINTS;
+    scene.points.position = positions;
+}
+
+/** As somebody else writes poses. */
+static void write_otherwise(adcgs_reading reading)
+{
+    for (int i = 0; i < CAMERAS; i++) {
+        const int turned = reading == ADCGS_READ_TURNED || reading == ADCGS_READ_INVERSE_OPENGL;
+        const double sign = turned ? -1.0 : 1.0; /* inverted, in axes of OpenGL: of y and z, in the world and in the camera */
+        double *p = views[i].camera.cam_to_world, q[12];
+        memcpy(q, p, sizeof q);
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                if (reading < ADCGS_READ_INVERSE)
+                    p[4 * r + c] = (c ? sign : 1.0) * q[4 * r + c];
+                else
+                    p[4 * r + c] = (r ? sign : 1.0) * (c ? sign : 1.0) * q[4 * c + r];
+        for (int r = 0; r < 3 && reading >= ADCGS_READ_INVERSE; r++)
+            p[4 * r + 3] = -(r ? sign : 1.0) * (q[r] * q[3] + q[4 + r] * q[7] + q[8 + r] * q[11]);
+    }
+}
+
+/** matched: pictures are asked, too. */
+static adcgs_axes_doubt doubt(int matched)
+{
+    adcgs_axes_doubt out;
+    adcgs_stereo found = {.n_moments = 0};
+    if (matched) {
+        adcgs_stereo_options options = {.still = 10, .scale = 1.0};
+        int applies;
+        assert_int_equal(adcgs_stereo_applies(&scene, &applies, &error), ADCGS_OK);
+        assert_true(applies);
+        assert_int_equal(adcgs_stereo_find(&found, &scene, &options, NULL, &error), ADCGS_OK);
+        print_message("%d pairs, %.2f pixels off\n", found.poses.pairs, found.poses.median);
+    }
+    assert_int_equal(adcgs_axes_doubt_find(&out, &scene, &found, NULL, &error), ADCGS_OK);
+    adcgs_stereo_clear(&found);
+    return out;
+}
+
+static void expect(adcgs_reading meant, adcgs_witness by, int matched)
+{
+    const adcgs_axes_doubt d = doubt(matched);
+    assert_int_equal(d.meant, meant);
+    if (meant != ADCGS_READ_AS_GIVEN)
+        assert_int_equal(d.by, by);
+}
+
+static void test_around(void **state)
+{
+    for (int r = ADCGS_READ_AS_GIVEN; r < ADCGS_READINGS; r++) {
+        make_scene(4.0, 120.0);
+        write_otherwise((adcgs_reading)r);
+        expect((adcgs_reading)r, ADCGS_BY_PICTURES, 1);
+        expect((adcgs_reading)r, ADCGS_BY_PLACES, 0);
+        add_points();
+        expect((adcgs_reading)r, ADCGS_BY_POINTS, 0);
+    }
+}
+
+/** Cameras that look out of a room are in order; where nothing can be seen of that, they are asked about. */
+static void test_room(void **state)
+{
+    make_scene(0.4, 300.0);
+    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_PICTURES, 1);
+    expect(ADCGS_READ_TURNED, ADCGS_BY_PLACES, 0);
+    add_points();
+    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_POINTS, 0);
+}
+
+/** All look nearly one way: where they look says nothing, and what they show does. */
+static void test_forward(void **state)
+{
+    make_scene(4.0, 20.0);
+    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_PICTURES, 1);
+    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_PLACES, 0);
+    write_otherwise(ADCGS_READ_TURNED);
+    expect(ADCGS_READ_TURNED, ADCGS_BY_PICTURES, 1);
+    expect(ADCGS_READ_AS_GIVEN, ADCGS_BY_PLACES, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_around),
+        cmocka_unit_test(test_room),
+        cmocka_unit_test(test_forward),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
