@@ -111,7 +111,7 @@ static inline int take(const source *s, size_t pixel, float value[4])
 static void average_box(const source *s, int x, int y, int divide, float out[4])
 {
     const int right = ADCGS_MIN(x + divide, s->image->width), bottom = ADCGS_MIN(y + divide, s->image->height);
-    float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f}, value[4];
+    float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f}, value[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int v = y; v < bottom; v++)
         for (int u = x; u < right; u++) {
             if (!take(s, (size_t)v * (size_t)s->image->width + (size_t)u, value))
@@ -250,19 +250,22 @@ static adcgs_status to_zero_and_one(adcgs_image *image, const char *path, adcgs_
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_scene_load_moving(const adcgs_scene_view *view, uint8_t **moving, adcgs_error *error)
+adcgs_status adcgs_scene_load_moving(const adcgs_scene_view *view, int divide, uint8_t **moving, adcgs_error *error)
 {
     adcgs_image image;
+    const source straight = {&image, NULL, NULL};
     *moving = NULL;
     ADCGS_TRY(read_image(view, view->moving, &image, error));
     adcgs_status status = to_zero_and_one(&image, view->moving, error);
     if (status == ADCGS_OK && view->lens.width > 0)
         status = straighten(view, &image, 1, error);
+    if (status == ADCGS_OK && divide > 1)
+        status = reduce_image(&image, &straight, divide, view->moving, error);
     const size_t plane = (size_t)image.width * (size_t)image.height;
     if (status == ADCGS_OK && !(*moving = malloc(plane)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->moving);
     for (size_t i = 0; status == ADCGS_OK && i < plane; i++)
-        (*moving)[i] = image.data[i] >= COUNTS;
+        (*moving)[i] = image.data[i * (size_t)image.channels] >= COUNTS;
     adcgs_image_free(&image);
     return status;
 }

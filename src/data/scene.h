@@ -46,6 +46,9 @@ typedef adcgs_points adcgs_scene_points; /**< positions in world units; as the s
 /** Splats that views are renderings of; see splat_views.h. */
 typedef struct adcgs_splat_scene adcgs_splat_scene;
 
+/** Pictures that are wider or higher cost training more than they show. */
+#define ADCGS_SIDE_MOST 1600
+
 typedef struct adcgs_scene {
     char *directory;
     uint32_t n_views[ADCGS_SPLITS];
@@ -62,6 +65,7 @@ typedef struct adcgs_scene {
     uint8_t axes, units, colour_space; /**< codes of adcgs_stream */
     double origin[3], scale; /**< the frame of reference, where it is given; scale 0: it follows from the views for training */
     adcgs_splat_scene *splats; /**< NULL: views are pictures; else path of a view is that of the splats */
+    int measured;         /**< pictures are reduced by this when a stream is measured on them; 0 or 1: as they are */
     struct adcgs_clips *clips; /**< videos that are open (clips.h) */
     const struct adcgs_scene *whole; /**< of which this is a part in time (part.h); NULL: it is whole */
 } adcgs_scene;
@@ -89,10 +93,10 @@ adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error);
 /**
- * Load what is known of a view that has `moving`: [height][width] as its camera says, 1 where something moves, which is where
- * that image is not black, else 0. It is straightened as the picture is, and then moves where most of a pixel does. The caller
- * frees *moving with free(). Any thread may call.
+ * Load what is known of a view that has `moving`: of the size of its picture reduced by `divide`, 1 where something moves, which
+ * is where that image is not black, else 0. It is straightened and reduced as the picture is, and then moves where most of a
+ * pixel does. The caller frees *moving with free(). Any thread may call.
  */
-adcgs_status adcgs_scene_load_moving(const adcgs_scene_view *view, uint8_t **moving, adcgs_error *error);
+adcgs_status adcgs_scene_load_moving(const adcgs_scene_view *view, int divide, uint8_t **moving, adcgs_error *error);
 
 #endif

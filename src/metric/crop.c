@@ -131,7 +131,7 @@ static void cut(const float *picture, int width, int height, const int rectangle
 adcgs_status adcgs_crop_measure(adcgs_crop *out, const adcgs_box *box, const adcgs_view_score *score, adcgs_error *error)
 {
     int *const r = out->rectangle;
-    out->visible = adcgs_box_rectangle(box, &score->view->camera, r);
+    out->visible = adcgs_box_rectangle(box, score->seen, r);
     if (!out->visible)
         return ADCGS_OK;
     const int width = r[2] - r[0], height = r[3] - r[1];

@@ -14,13 +14,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** Render a view into planar 8-bit levels over 255. The frame and planes are the caller's, of the view's size. */
-static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_scene_view *view, adcgs_frame *frame, uint8_t *levels,
-                                  float *planar, double *seconds, adcgs_error *error)
+/** Render a view into planar 8-bit levels over 255. The frame and planes are the caller's, of the camera's size. */
+static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_camera *camera, double time, adcgs_frame *frame,
+                                  uint8_t *levels, float *planar, double *seconds, adcgs_error *error)
 {
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;
     const double begin = adcgs_seconds();
-    ADCGS_TRY(adcgs_camera_path_rendered(&view->camera, adcgs_render(decoder, &view->camera, view->time, frame, error), error));
+    ADCGS_TRY(adcgs_camera_path_rendered(camera, adcgs_render(decoder, camera, time, frame, error), error));
     *seconds = adcgs_seconds() - begin;
     adcgs_frame_to_u8(frame, levels);
     for (size_t i = 0; i < pixels; i++)
@@ -43,16 +43,25 @@ typedef struct session {
     void *user;
 } session;
 
+/** A view's true picture, and its camera of that size. */
+static adcgs_status load(const session *s, const adcgs_scene_view *view, float **truth, adcgs_camera *camera, adcgs_error *error)
+{
+    return adcgs_scene_load(s->scene, view, ADCGS_MAX(s->scene->measured, 1), truth, camera, error);
+}
+
 /** Load the true pictures of the camera whose views are order[first..end). */
 static adcgs_status look_ahead(session *s, uint32_t first, uint32_t end, adcgs_error *error)
 {
-    const adcgs_camera *camera = &s->views[s->order[first]].camera;
-    ADCGS_TRY(adcgs_temporal_create(&s->temporal, camera->width, camera->height, error));
     for (uint32_t i = first; i < end; i++) {
+        adcgs_camera camera;
         float *truth;
-        ADCGS_TRY(adcgs_scene_load(s->scene, &s->views[s->order[i]], 1, &truth, NULL, error));
-        adcgs_temporal_look(s->temporal, truth);
+        ADCGS_TRY(load(s, &s->views[s->order[i]], &truth, &camera, error));
+        const adcgs_status status = i > first ? ADCGS_OK
+                                              : adcgs_temporal_create(&s->temporal, camera.width, camera.height, error);
+        if (status == ADCGS_OK)
+            adcgs_temporal_look(s->temporal, truth);
         free(truth);
+        ADCGS_TRY(status);
     }
     return adcgs_temporal_find_region(s->temporal, error);
 }
@@ -112,7 +121,7 @@ static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_err
     if (s->temporal)
         score->temporal = adcgs_temporal_add(s->temporal, a, b);
     if ((s->measure & ADCGS_MEASURE_MOVING) && score->view->moving) {
-        ADCGS_TRY(adcgs_scene_load_moving(score->view, &known, error));
+        ADCGS_TRY(adcgs_scene_load_moving(score->view, ADCGS_MAX(s->scene->measured, 1), &known, error));
         measure_known(score, known);
     }
     if (s->measure & (ADCGS_MEASURE_FITTED | ADCGS_MEASURE_FITTED_DYNAMIC))
@@ -125,17 +134,18 @@ static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_err
 static adcgs_status score_view(session *s, uint32_t i, adcgs_view_score *score, adcgs_error *error)
 {
     const adcgs_scene_view *view = &s->views[s->order[i]];
-    const size_t pixels = (size_t)view->camera.width * (size_t)view->camera.height;
+    adcgs_camera camera;
     float *truth;
-    ADCGS_TRY(adcgs_scene_load(s->scene, view, 1, &truth, NULL, error));
+    ADCGS_TRY(load(s, view, &truth, &camera, error));
+    const size_t pixels = (size_t)camera.width * (size_t)camera.height;
     float *rgb = malloc(pixels * 3 * sizeof *rgb), *planar = malloc(pixels * 3 * sizeof *planar);
     uint8_t *levels = malloc(pixels * 3);
-    adcgs_frame frame = { view->camera.width, view->camera.height, rgb };
+    adcgs_frame frame = { camera.width, camera.height, rgb };
     *score = (adcgs_view_score){.view = view, .camera = s->of[s->order[i]], .width = frame.width, .height = frame.height,
-                                .decoded = planar, .truth = truth};
+                                .seen = &camera, .decoded = planar, .truth = truth};
     adcgs_status status = ADCGS_ERR_MEMORY;
     if (rgb && planar && levels)
-        status = render_planar(s->decoder, view, &frame, levels, planar, &score->seconds, error);
+        status = render_planar(s->decoder, &camera, view->time, &frame, levels, planar, &score->seconds, error);
     else
         adcgs_fail(error, status, "out of memory for a picture of %d x %d", frame.width, frame.height);
     if (status == ADCGS_OK)

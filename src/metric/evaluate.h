@@ -37,6 +37,7 @@ typedef struct adcgs_view_score {
     const adcgs_temporal_total *of_camera;  /**< with the last view of such a camera, else NULL */
     double seconds;                         /**< to render the frame */
     int width, height;
+    const adcgs_camera *seen;               /**< the view's, of this size; lasts as the pictures do */
     const float *decoded, *truth;
 } adcgs_view_score;
 
@@ -51,7 +52,7 @@ typedef struct adcgs_evaluation {
 
 /**
  * Views come camera by camera, each in ascending time. measure: flags from above. each may be NULL.
- * ADCGS_ERR_DATA if the split is empty.
+ * Pictures are those of the scene, reduced as its `measured` says. ADCGS_ERR_DATA if the split is empty.
  */
 adcgs_status adcgs_evaluate(adcgs_evaluation *out, adcgs_decoder *decoder, const adcgs_scene *scene, adcgs_split split,
                             int measure, adcgs_score_fn each, void *user, adcgs_error *error);

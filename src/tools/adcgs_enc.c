@@ -263,7 +263,6 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scen
                           "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
     ADCGS_TRY(configure(&job->config, o, job->cpu, error));
     ADCGS_TRY(check_distinct(o, error));
-    ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->live)
         return ADCGS_OK;
     ADCGS_TRY(check_writable(adcgs_enc_target(o), error));
@@ -288,6 +287,25 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** Pictures are as large as they were asked to be; where nobody asked, not larger than is of use. */
+static void reduce_large(adcgs_enc_job *job, adcgs_enc_watcher *w)
+{
+    const adcgs_scene *const scene = job->scene;
+    const int asked = job->o->has_scale || adcgs_setting_in_list(job->o->set, "scale");
+    int side = 0;
+    for (uint32_t i = 0; i < scene->n_views[ADCGS_SPLIT_TRAIN]; i++) {
+        const adcgs_camera *const c = &scene->views[ADCGS_SPLIT_TRAIN][i].camera;
+        side = ADCGS_MAX(side, ADCGS_MAX(c->width, c->height));
+    }
+    if (!asked && side > ADCGS_SIDE_MOST) {
+        job->config.scale = (side + ADCGS_SIDE_MOST - 1) / ADCGS_SIDE_MOST;
+        adcgs_progress_clear(&w->progress);
+        adcgs_cli_note(job->cli, "%s: pictures of %d pixels are reduced to 1/%d of that; --scale 1 leaves them as they are",
+                       scene->directory, side, job->config.scale);
+    }
+    job->scene->measured = job->config.scale;
+}
+
 static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
@@ -296,14 +314,18 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     w->log = o->log ? fopen(o->log, o->resume || o->finish ? "a" : "w") : NULL;
     if (o->log && !w->log)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
-    if (o->live)
+    if (o->live) {
+        ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
         return adcgs_enc_live(w, job, error);
+    }
     ADCGS_TRY(name_base(w, error));
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     adcgs_progress_show(&w->progress, "scene     %u views for training, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
                         adcgs_seconds() - o->started.clock);
     if (o->preview)
         ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
+    reduce_large(job, w);
+    ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->has_segment)
         ADCGS_TRY(cut_scene(job, error));
     return job->cuts.n > 1 ? encode_segments(w, job, met, error) : encode_whole(w, job, met, error);
@@ -397,7 +419,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "iterations", 'n', ADCGS_OPTION_INT, &o->iterations, iterations->min, iterations->max, "N",
           "length of the run (default: the preset's)", NULL, &o->has_iterations },
         { "scale", 0, ADCGS_OPTION_INT, &o->scale, scale->min, scale->max, "S",
-          "divide the pictures' size by this integer (default 1)", NULL, &o->has_scale },
+          "divide the pictures' size by this integer (default: 1, and\nmore for those of over 1600 pixels)", NULL,
+          &o->has_scale },
         { "k", 0, ADCGS_OPTION_INT, &o->k, k->min, k->max, "N",
           "primitives per anchor, 1 to 16 (default: the preset's)", NULL, &o->has_k },
         { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, anchors->min, anchors->max, "N",

@@ -9,6 +9,7 @@
 #include "tools/eval_match.h"
 #include "tools/eval_report.h"
 #include "tools/mosaic.h"
+#include "train/settings.h"
 
 #include <adcgs/adcgs.h>
 
@@ -22,7 +23,7 @@ typedef struct settings {
     const char *file, *scene, *images, *crop, *frames, *csv, *metrics;
     adcgs_config config;
     adcgs_box box; /**< of --crop, where it gives numbers */
-    int quiet, split, cpu, json, as_is, beside, dataset, tiers;
+    int quiet, split, cpu, json, as_is, beside, dataset, tiers, scale;
     int measure; /**< of --metrics: flags of metric/evaluate.h */
 } settings;
 
@@ -37,7 +38,7 @@ typedef struct report {
 
 static const char *const splits[] = {"train", "val", "test", NULL}; /* in the order of adcgs_split */
 
-#define OPTION_COUNT 14
+#define OPTION_COUNT 15
 static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
 {
     const adcgs_option table[OPTION_COUNT] = {
@@ -48,6 +49,9 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
          adcgs_dataset_names, NULL},
         {"frames", 0, ADCGS_OPTION_STRING, &s->frames, 0, 0, "A:B:STEP",
          "the frames that the stream was made of, as for adcgs-enc", NULL, NULL},
+        {"scale", 0, ADCGS_OPTION_INT, &s->scale, 1, 64, "S",
+         "divide the pictures' size by this integer before they are\nmeasured (default: as for the stream's training)", NULL,
+         NULL},
         {"layers", 'l', ADCGS_OPTION_INT, &s->config.layers, 1, 5, "N", "use at most N layers of the stream", NULL, NULL},
         {"tiers", 0, ADCGS_OPTION_INT, &s->tiers, 1, 8, "N", "draw the first N tiers of the stream alone, a coarser picture",
          NULL, NULL},
@@ -157,6 +161,23 @@ static adcgs_status compare_views(report *r, adcgs_decoder *decoder, const adcgs
     return adcgs_eval_report_end(&r->out, &e, error);
 }
 
+/** What the pictures were divided by that the stream was made of, as it says itself among its settings; 1 if it does not. */
+static int scale_of(const adcgs_decoder *decoder)
+{
+    const char *const value = adcgs_setting_in_list(adcgs_get_metadata(decoder, "settings"), "scale");
+    const int scale = value ? atoi(value) : 1;
+    return scale >= 1 && scale <= 64 ? scale : 1;
+}
+
+/** At the size that was asked for, or that of training. */
+static void choose_size(const settings *s, adcgs_decoder *decoder, adcgs_scene *scene)
+{
+    scene->measured = s->scale ? s->scale : scale_of(decoder);
+    if (!s->scale && scene->measured > 1)
+        adcgs_cli_note(s->cli, "%s: made of pictures of 1/%d of the size, and measured on such; --scale 1 takes them as they are",
+                       s->file, scene->measured);
+}
+
 static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *error)
 {
     const settings *s = r->set;
@@ -164,6 +185,7 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
     adcgs_scene *scene = NULL;
     ADCGS_TRY(adcgs_get_info(decoder, &info, sizeof info, error));
     ADCGS_TRY(open_scene(&scene, s, &info, error));
+    choose_size(s, decoder, scene);
     r->n = scene->n_views[s->split];
     r->out.bytes = info.bytes.total;
     r->out.layers = info.layers;

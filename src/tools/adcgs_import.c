@@ -3,13 +3,13 @@
 #include "config.h"
 
 #include "cli/text.h"
+#include "data/scene.h"
 #include "import/import.h"
 #include "io/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-#define SIDE 1600   /* pixels: what is larger costs training more than it shows */
 #define FRAMES 300  /* of a film */
 #define TEST_EVERY 8
 
@@ -168,7 +168,7 @@ static int import(const adcgs_cli *cli, const arguments *a)
 
 int main(int argc, char **argv)
 {
-    arguments a = {.import = {.colmap = "colmap", .side = SIDE, .frames = FRAMES, .test_every = TEST_EVERY}};
+    arguments a = {.import = {.colmap = "colmap", .side = ADCGS_SIDE_MOST, .frames = FRAMES, .test_every = TEST_EVERY}};
     adcgs_cli cli = program;
     const int code = parse(&cli, &a, argc, argv);
     if (code >= 0)

@@ -233,6 +233,17 @@ adcgs_status adcgs_train_set(adcgs_train_config *config, const char *text, adcgs
 
 /* ---- Telling ---- */
 
+const char *adcgs_setting_in_list(const char *list, const char *name)
+{
+    const size_t n = strlen(name);
+    for (const char *at = list; at; at = strchr(at, ',')) {
+        at += *at == ',';
+        if (!strncmp(at, name, n) && at[n] == '=')
+            return at + n + 1;
+    }
+    return NULL;
+}
+
 adcgs_status adcgs_train_changes(const adcgs_train_config *c, adcgs_buffer *text, adcgs_error *error)
 {
     static const char *const told_apart[] = { "lambda", "iterations", "seed" };

@@ -101,5 +101,7 @@ adcgs_status adcgs_train_check(const adcgs_train_config *config, adcgs_error *er
 adcgs_status adcgs_train_changes(const adcgs_train_config *config, adcgs_buffer *text, adcgs_error *error);
 /** Write a table of all settings that have names: value, range, what they trade, what they are. */
 void adcgs_train_list(const adcgs_train_config *config, FILE *file);
+/** The value of a setting as a list has it that adcgs_train_set() takes, or a stream among its notes; NULL: it is not there. */
+const char *adcgs_setting_in_list(const char *list, const char *name);
 
 #endif

@@ -23,6 +23,21 @@ agree()
     [ "$(wc -l <"$dir/from_csv")" -gt 5 ] || bad "nothing was compared"
 }
 
+# Pictures of more than 1600 pixels are reduced, and measured so; not if nobody is to.
+enc="./adcgs-enc $dir/wide -o $dir/wide.adcgs --preset draft -n 10 --threads 2"
+width() { ./adcgs-eval "$dir/wide.adcgs" "$dir/wide" --images "$dir/wide/seen" "$@" >"$dir/out" 2>"$dir/err" || bad "adcgs-eval $*"
+          od -An -tu1 -j 16 -N 4 "$dir"/wide/seen/0000-*.png | awk '{ print $3 * 256 + $4 }'; }
+./adcgs-demo-scene --scene tiny --size 1601x12 --format ppm -o "$dir/wide" -q || bad "adcgs-demo-scene --size 1601x12"
+expect 0 'pictures of 1601 pixels are reduced to 1/2 of that; --scale 1 leaves' $enc --set stereo=0
+[ "$(width)" = 801 ] && grep -q 'measured on such' "$dir/err" || { bad "measured on other pictures"; cat "$dir/err"; }
+[ "$(width --scale 1)" = 1601 ] && [ "$(width --scale 4)" = 401 ] || bad "--scale of adcgs-eval"
+./adcgs-info "$dir/wide.adcgs" --why | grep -q 'settings .*scale=2' || bad "the stream does not tell that pictures were reduced"
+for own in "--set stereo=0 --scale 1" "--set stereo=0,scale=1"; do
+    expect 0 '' $enc $own -q
+    [ "$(width)" = 1601 ] && [ ! -s "$dir/err" ] || { bad "reduced in spite of $own"; cat "$dir/err"; }
+done
+./adcgs-info "$dir/wide.adcgs" --why | grep 'settings .*scale=' && bad "a scale of 1 is told"
+
 # A scene that the stream was not made of: other cameras, other lenses, other times. The right one passes without a word.
 expect 0 "" $eval "$s" "$dir/scene" --split train
 [ ! -s "$dir/err" ] || { bad "a word about the right scene"; cat "$dir/err"; }

@@ -185,7 +185,7 @@ static void test_moving(void **state)
     const adcgs_scene_view *view = &scene->views[ADCGS_SPLIT_TEST][0];
     const adcgs_camera *c = &view->camera;
     assert_int_equal(view->lens.width, WIDTH);
-    expect_good(adcgs_scene_load_moving(view, &moving, &error));
+    expect_good(adcgs_scene_load_moving(view, 1, &moving, &error));
     for (int i = 0; i < c->width * c->height; i++) {
         const double beyond = i % c->width + 0.5 - c->cx - EAST * c->fx; /* pixels */
         assert_true(fabs(beyond) < 1 || moving[i] == (beyond > 0));

@@ -93,12 +93,19 @@ static void check_mask(const adcgs_scene_view *view, double motion)
     adcgs_pose_other_axes(camera.to_world);
     assert_int_equal(adcgs_trace_cover(entry->objects, entry->n_objects, entry->moving, &camera,
                                        motion * view->time / scene->duration, SIZE, SIZE, 3, NULL, expected, &error), ADCGS_OK);
-    expect_good(adcgs_scene_load_moving(view, &moving, &error));
+    expect_good(adcgs_scene_load_moving(view, 1, &moving, &error));
     for (int i = 0; i < PLANE; i++) {
         n += moving[i];
         other += moving[i] != (expected[i] > 0.0f);
     }
     assert_true(n > 20 && n < PLANE / 4 && other <= 1); /* poses have 12 digits */
+    uint8_t *half;
+    expect_good(adcgs_scene_load_moving(view, 2, &half, &error));
+    for (int i = 0; i < PLANE / 4; i++) {
+        const uint8_t *const at = moving + 2 * (i / (SIZE / 2)) * SIZE + 2 * (i % (SIZE / 2));
+        assert_int_equal(half[i], at[0] + at[1] + at[SIZE] + at[SIZE + 1] >= 2);
+    }
+    free(half);
     free(moving);
 }
 
@@ -141,7 +148,7 @@ static adcgs_status hear(void *user, const adcgs_view_score *score, adcgs_error 
     h->dynamic[h->n] = score->temporal.dynamic_psnr;
     h->share[h->n] = score->known_share;
     if (score->view->moving) {
-        ADCGS_TRY(adcgs_scene_load_moving(score->view, &moving, e));
+        ADCGS_TRY(adcgs_scene_load_moving(score->view, 1, &moving, e));
         for (int i = 0; i < 3 * PLANE; i++) {
             squares += moving[i % PLANE] * pow((double)score->decoded[i] - (double)score->truth[i], 2);
             n += moving[i % PLANE] / 3.0;

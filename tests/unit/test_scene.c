@@ -246,7 +246,7 @@ static void test_moving(void **state)
     expect_good(open_single(json));
     const adcgs_scene_view *view = scene->views[ADCGS_SPLIT_TEST];
     assert_true(view->moving && !view->mask && !scene->views[ADCGS_SPLIT_TRAIN][0].moving);
-    expect_good(adcgs_scene_load_moving(view, &moving, &error));
+    expect_good(adcgs_scene_load_moving(view, 1, &moving, &error));
     for (int i = 0; i < 6 * 4; i++)
         assert_int_equal(moving[i], i % 5 == 0);
     free(moving);
