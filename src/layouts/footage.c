@@ -215,8 +215,8 @@ adcgs_status adcgs_scene_append(adcgs_scene *scene, adcgs_split split, adcgs_sce
     if (status == ADCGS_OK)
         scene->views[split][scene->n_views[split]++] = *view;
     else
-        free(view->path);
-    view->path = NULL;
+        adcgs_scene_view_clear(view);
+    view->path = view->mask = NULL;
     return status;
 }
 

@@ -198,6 +198,16 @@ static adcgs_status find_last(reader *r)
     return ADCGS_OK;
 }
 
+/** Its mask beside the pictures, in mask/Nx/ by its id, if there is one. */
+static adcgs_status find_mask(const reader *r, const char *id, char **mask)
+{
+    char *stem = adcgs_path("%s/mask/%dx/%s", r->scene->directory, r->divide, id);
+    const adcgs_status status = stem ? adcgs_find_image(mask, stem, r->error)
+                                     : adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->images);
+    free(stem);
+    return status;
+}
+
 /** On failure view->path is set or NULL, and is freed with the scene. */
 static adcgs_status read_view(const reader *r, const char *id, adcgs_scene_view *view)
 {
@@ -215,6 +225,7 @@ static adcgs_status read_view(const reader *r, const char *id, adcgs_scene_view 
     ADCGS_TRY(status);
     if (!view->path)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no image of %s", r->images, id);
+    ADCGS_TRY(find_mask(r, id, &view->mask));
     return read_camera(r, id, view);
 }
 

@@ -104,8 +104,11 @@ static adcgs_status add_views(adcgs_live *l, uint32_t camera, uint32_t stretch, 
         view.time = time - s->begin;
         view.frame = c->source->video ? i - adcgs_live_first_of_file(&l->watch, c, file) : 0;
         view.path = adcgs_live_camera_path(c, i, &limits, file);
-        if (!view.path)
+        view.mask = view.mask ? strdup(view.mask) : NULL;
+        if (!view.path || (!view.mask && find_view(l, camera)->mask)) {
+            adcgs_scene_view_clear(&view);
             return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
+        }
         ADCGS_TRY(adcgs_scene_append(s->scene, ADCGS_SPLIT_TRAIN, &view, l->path, error));
     }
     return ADCGS_OK;

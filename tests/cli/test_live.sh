@@ -34,6 +34,22 @@ whole "$dir/all.adcgs"
 [ "$(grep -c '"predicted": false' "$dir/out")" -eq 2 ] || { bad "keys"; cat "$dir/out"; }
 [ "$(left)" = "" ] || bad "left behind: $(left)"
 
+# A mask for all pictures of a camera, also where segments come one after the other.
+scene_file "$dir/masked" images
+put "$dir/masked" 0 1 2 3 4 5 6 7
+touch "$dir/masked/end"
+{ printf 'P6 64 64 255\n'; head -c 6144 /dev/zero | tr '\0' x; head -c 6144 /dev/zero; } >"$dir/masked/mask.ppm"
+sed -i 's/"name": "c[0-5]"/&, "masks": "mask.ppm"/' "$dir/masked/scene.json"
+masked="--preset draft --max-anchors 100 --iterations 40 --quiet"
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/masked" -o "$dir/masked.adcgs" $masked --segment 0.1 2>"$dir/err" || { bad "masks"; cat "$dir/err"; }
+mv "$dir/masked/scene.json" "$dir/masked/masked.json"
+sed 's/, "masks": "mask.ppm"//' "$dir/masked/masked.json" >"$dir/masked/scene.json"
+# shellcheck disable=SC2086
+./adcgs-enc --live "$dir/masked" -o "$dir/seen.adcgs" $masked --segment 0.1 2>"$dir/err" || { bad "no masks"; cat "$dir/err"; }
+[ "$(spans "$dir/masked.adcgs")" = "0 0 0.1 1 0.1 0.2 2 0.2 0.233333" ] || { bad "spans"; spans "$dir/masked.adcgs"; }
+cmp -s "$dir/masked.adcgs" "$dir/seen.adcgs" && bad "masks change nothing"
+
 # Moment by moment: the same, whatever was waited for. The output has each segment as soon as it can.
 scene_file "$dir/slow" images
 out=$dir/slow.adcgs

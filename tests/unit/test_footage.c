@@ -534,6 +534,35 @@ static void what_moves_as_it_likes_has_no_fault(void **state)
     }
 }
 
+/**
+ * What is masked, which is no number in pictures, takes no part: a sign that shines over most of a picture is no step of light,
+ * hides none, and does not tell pictures apart that are the same but for it.
+ */
+static void what_is_masked_does_not_count(void **state)
+{
+    enum { SIDE = 64, PLANE = SIDE * SIDE };
+    static float rgb[2][3 * PLANE];
+    adcgs_glance glances[2];
+    double spread;
+    (void)state;
+    for (int masked = 0; masked < 2; masked++)
+        for (int brighter = 0; brighter < 2; brighter++) {
+            for (int p = 0; p < 2; p++) {
+                for (int i = 0; i < 3 * PLANE; i++) {
+                    const int sign = i % SIDE < 3 * SIDE / 4;
+                    const double shade = 0.2 + 0.1 * (i % 7) / 7.0, gain = p ? sign ? 2.0 : 1.0 + 0.25 * brighter : 1.0;
+                    rgb[p][i] = sign && masked ? NAN : (float)(shade * gain);
+                }
+                adcgs_glance_take(&glances[p], rgb[p], SIDE, SIDE);
+            }
+            const double step = exp(adcgs_glance_compare(&glances[0], &glances[1], ADCGS_LIGHT_BRIGHTER, &spread));
+            const double expected = !masked ? 2.0 : 1.0 + 0.25 * brighter;
+            assert_true(fabs(step - expected) < 1e-3 && (!masked || spread < 1e-3));
+            if (masked && !brighter)
+                assert_true(adcgs_glance_difference(&glances[0], &glances[1]) < 1e-6);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -547,6 +576,7 @@ int main(void)
         cmocka_unit_test(light_that_changes_all_the_time),    cmocka_unit_test(the_greatest_step_is_told),
         cmocka_unit_test(clocks_that_are_off_are_found),      cmocka_unit_test(too_little_tells_no_clock),
         cmocka_unit_test(what_repeats_tells_no_clock),        cmocka_unit_test(what_moves_as_it_likes_has_no_fault),
+        cmocka_unit_test(what_is_masked_does_not_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

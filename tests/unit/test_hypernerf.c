@@ -507,6 +507,34 @@ static void test_windmill(void **state)
     adcgs_scene_free(&scene);
 }
 
+/** Masks in mask/Nx, of the N of the pictures, where they are. */
+static void test_masks(void **state)
+{
+    adcgs_image mask;
+    float *rgb;
+    assert_true(!mkdir(in("mask"), 0777) && !mkdir(in("mask/1x"), 0777) && !mkdir(in("mask/2x"), 0777));
+    assert_int_equal(adcgs_image_alloc(&mask, 6, 4, 1, "mask", &error), ADCGS_OK);
+    for (int i = 0; i < 6 * 4; i++)
+        mask.data[i] = i % 6 < 2 ? 0.0f : 1.0f;
+    expect_good(adcgs_image_write(&mask, in("mask/1x/a.png"), 0, &error));
+    expect_good(adcgs_image_write(&mask, in("mask/1x/b.png"), 0, &error));
+    expect_good(adcgs_image_write(&mask, in("mask/2x/c.png"), 0, &error));
+    adcgs_image_free(&mask);
+    open_good();
+    const adcgs_scene_view *a = &scene->views[ADCGS_SPLIT_TRAIN][0], *c = &scene->views[ADCGS_SPLIT_TRAIN][1];
+    assert_true(a->mask && strstr(a->mask, "mask/1x/a.png") && scene->views[ADCGS_SPLIT_TEST][0].mask && !c->mask);
+    expect_good(adcgs_scene_load(scene, a, 1, &rgb, NULL, &error));
+    for (int i = 0; i < 3 * 6 * 4; i++)
+        assert_int_equal(isnan(rgb[i]), i % 6 < 2);
+    free(rgb);
+    adcgs_scene_free(&scene);
+    put_text("mask/1x/a.png", "no picture");
+    open_good();
+    expect_error(adcgs_scene_probe(&scene->views[ADCGS_SPLIT_TRAIN][0], &error), ADCGS_ERR_DATA, "mask/1x/a.png", "");
+    adcgs_scene_free(&scene);
+    assert_true(!unlink(in("mask/1x/a.png")) && !unlink(in("mask/1x/b.png")) && !unlink(in("mask/2x/c.png")));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -516,7 +544,7 @@ int main(void)
         cmocka_unit_test_teardown(test_detection, mend),   cmocka_unit_test_teardown(test_bad_lists, mend),
         cmocka_unit_test_teardown(test_bad_scene, mend),   cmocka_unit_test_teardown(test_bad_cameras, mend),
         cmocka_unit_test_teardown(test_mutations, mend),   cmocka_unit_test(test_hand),
-        cmocka_unit_test(test_windmill),
+        cmocka_unit_test(test_windmill),                   cmocka_unit_test_teardown(test_masks, mend),
     };
     return cmocka_run_group_tests(tests, setup, remove_folder);
 }
