@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file A scene in segments. */
+#include "config.h"
+
+#include "tools/enc_segments.h"
+
+#include "io/atomic.h"
+#include "tools/enc_parts.h"
+#include "tools/enc_whole.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+void adcgs_enc_cut_config(adcgs_enc_job *job)
+{
+    job->whole = job->config;
+    if (job->cuts.n > 1)
+        job->config.params.time_rows = (uint16_t)ADCGS_MIN(job->config.params.time_rows, job->cuts.moments);
+}
+
+adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_cuts_find(&job->cuts, job->scene, seconds, job->o->fade, error));
+    adcgs_enc_cut_config(job);
+    job->follows = adcgs_alloc(NULL, job->cuts.n, sizeof *job->follows, error);
+    if (!job->follows)
+        return adcgs_alloc_status(error);
+    const double *at = job->cuts.at, every = job->o->has_key ? job->o->key : ADCGS_ENC_KEY_EVERY;
+    for (uint32_t i = 1, key = 0; i < job->cuts.n; i++) {
+        job->follows[i] = at[i + 1] - at[key] <= every + 1e-6;
+        key = job->follows[i] ? key : i;
+    }
+    return ADCGS_OK;
+}
+
+/** The notes of a run that has ended, but for lambda. */
+static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const adcgs_enc_job *job)
+{
+    const adcgs_trainer ended = { .config = job->config, .iteration = job->config.iterations };
+    adcgs_enc_take_notes(n, &ended, (const char *)w->changes.data);
+}
+
+/** Learn the part that w->segment says, from its checkpoint if there is one, and leave its stream on the disk. */
+static adcgs_status learn_part(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+{
+    adcgs_scene part;
+    adcgs_model before = { .n = 0 };
+    adcgs_enc_notes n;
+    const int follows = job->follows[w->segment];
+    ADCGS_TRY(adcgs_scene_part(&part, job->scene, &job->cuts, w->segment, error));
+    w->next_log = 0;
+    adcgs_status status =
+        follows ? adcgs_enc_part_model(&before, w->base, w->segment - 1, job->cpu, job->pool, error) : ADCGS_OK;
+    if (status == ADCGS_OK)
+        status = adcgs_enc_learn(w, job, &part, follows ? &before : NULL, NULL,
+                                 job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
+    adcgs_model_clear(&before, NULL);
+    *spent = adcgs_time_plus(*spent, w->last.spent);
+    if (status == ADCGS_OK) {
+        adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
+        status = adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
+    }
+    adcgs_trainer_free(&w->t);
+    adcgs_scene_part_clear(&part);
+    return status;
+}
+
+adcgs_status adcgs_enc_segments_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+{
+    adcgs_enc_notes expected;
+    expect_notes(&expected, w, job);
+    w->segments = job->cuts.n;
+    for (w->segment = 0; w->segment < w->segments; w->segment++) {
+        int found = 0;
+        free(w->state);
+        w->state = NULL;
+        ADCGS_TRY(adcgs_enc_part_name(&w->state, w->base, w->segment, 0, error));
+        if (job->o->resume)
+            ADCGS_TRY(adcgs_enc_part_check(w->base, job->scene, &job->cuts, w->segment, expected.list, expected.n, job->cpu,
+                                           job->pool, &found, error));
+        if (!found)
+            ADCGS_TRY(learn_part(w, job, spent, error));
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_enc_segments_write(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+{
+    adcgs_stream stream;
+    adcgs_buffer bytes;
+    adcgs_buffer_init(&bytes);
+    adcgs_status status = adcgs_enc_parts_join(&stream, w->base, job->scene, &job->cuts, job->follows, job->cpu, job->pool,
+                                               error);
+    if (status == ADCGS_OK)
+        status = adcgs_encode_verified(&stream, &bytes, job->cpu, job->pool, error);
+    if (status == ADCGS_OK && job->o->or_whole)
+        status = adcgs_enc_try_whole(w, job, &bytes, spent, error);
+    if (status == ADCGS_OK)
+        status = adcgs_atomic_save(job->o->output, bytes.data, bytes.size, error);
+    if (status == ADCGS_OK) {
+        adcgs_enc_parts_remove(w->base, job->cuts.n);
+        if (job->o->or_whole)
+            adcgs_enc_part_remove(w->base, job->cuts.n, 0);
+    }
+    adcgs_buffer_clear(&bytes);
+    adcgs_stream_clear(&stream, NULL);
+    return status;
+}
