@@ -50,3 +50,51 @@ adcgs_status adcgs_scene_content(const adcgs_scene *scene, adcgs_split split, ui
     free(buffer);
     return status;
 }
+
+/* ---- Besides pictures ---- */
+
+static void add_numbers(adcgs_md5 *md5, const double *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        uint8_t text[8];
+        uint64_t bits;
+        memcpy(&bits, &x[i], sizeof bits);
+        adcgs_store_le64(text, bits);
+        adcgs_md5_update(md5, text, sizeof text);
+    }
+}
+
+static void add_view(adcgs_md5 *md5, const adcgs_scene_view *v)
+{
+    const adcgs_camera *c = &v->camera;
+    const adcgs_lens *l = &v->lens;
+    const double numbers[] = { v->time, (double)v->frame, v->is_video, v->mask != NULL, c->width, c->height, c->fx, c->fy, c->cx,
+                               c->cy, c->near_plane, l->width, l->height, l->fx, l->fy, l->cx, l->cy, l->skew, l->k8, l->p[0],
+                               l->p[1] };
+    add_numbers(md5, numbers, ADCGS_COUNTOF(numbers));
+    add_numbers(md5, l->k, ADCGS_COUNTOF(l->k));
+    add_numbers(md5, c->cam_to_world, ADCGS_COUNTOF(c->cam_to_world));
+}
+
+static void add_points(adcgs_md5 *md5, const adcgs_points *points)
+{
+    for (uint32_t i = 0; i < points->n; i++) {
+        const double x[3] = { (double)points->position[i][0], (double)points->position[i][1], (double)points->position[i][2] };
+        add_numbers(md5, x, 3);
+        adcgs_md5_update(md5, points->colour[i], sizeof points->colour[i]);
+    }
+}
+
+void adcgs_scene_outline(const adcgs_scene *scene, uint8_t digest[ADCGS_CONTENT_BYTES])
+{
+    adcgs_md5 md5;
+    const uint32_t n = scene->n_views[ADCGS_SPLIT_TRAIN];
+    const double facts[] = { n, scene->duration, (double)scene->rate.num, (double)scene->rate.den, scene->n_times,
+                             scene->splats != NULL, scene->axes, scene->units, scene->colour_space, scene->points.n };
+    adcgs_md5_init(&md5);
+    add_numbers(&md5, facts, ADCGS_COUNTOF(facts));
+    for (uint32_t i = 0; i < n; i++)
+        add_view(&md5, &scene->views[ADCGS_SPLIT_TRAIN][i]);
+    add_points(&md5, &scene->points);
+    adcgs_md5_final(&md5, digest);
+}

@@ -13,5 +13,10 @@
  */
 adcgs_status adcgs_scene_content(const adcgs_scene *scene, adcgs_split split, uint8_t digest[ADCGS_CONTENT_BYTES],
                                  adcgs_error *error);
+/**
+ * MD5 of all that the training views and the scene say besides their pictures, which are not read, and the places of files:
+ * cameras, lenses, moments, frames, initial points. Two scenes that have it in common, and the same pictures, are learnt alike.
+ */
+void adcgs_scene_outline(const adcgs_scene *scene, uint8_t digest[ADCGS_CONTENT_BYTES]);
 
 #endif

@@ -56,6 +56,7 @@ typedef struct adcgs_scene {
     double duration;      /**< seconds, 0 for a still scene */
     adcgs_fps rate;       /**< frames per second of what is kept, known */
     double intervals;     /**< between frames of the data set, from time 0 to 1 of its layout; 0: it does not say */
+    int is_outline;       /**< nobody has asked whether all pictures are there */
     int counts;           /**< names of its pictures only count, as those of frames do, but all are of one time */
     uint32_t n_times;     /**< distinct times of the training split */
     double near_bound;    /**< nothing that training views show is nearer, by what the data set says; 0: it does not say */

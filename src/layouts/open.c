@@ -48,11 +48,8 @@ static adcgs_status find_duration(adcgs_scene *scene, const char *path, int64_t 
     return ADCGS_OK;
 }
 
-/**
- * Every picture is there, and those that are not for training have the right size: these are read last, and it is better to
- * hear of them now than when all is learnt.
- */
-static adcgs_status check_files(const adcgs_scene *scene, adcgs_error *error)
+/* Those that are not for training are read last: better to hear of them now than when all is learnt. */
+adcgs_status adcgs_scene_check_files(const adcgs_scene *scene, adcgs_error *error)
 {
     for (int s = 0; s < ADCGS_SPLITS && !scene->splats; s++)
         for (uint32_t i = 0; i < scene->n_views[s]; i++) {
@@ -90,14 +87,15 @@ static adcgs_status set_near_planes(adcgs_scene *scene, const char *path, adcgs_
 /** What follows from all views together: seconds, alpha, background. */
 static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
 {
-    ADCGS_TRY(check_files(scene, error));
+    if (!options->is_outline)
+        ADCGS_TRY(adcgs_scene_check_files(scene, error));
     ADCGS_TRY(find_duration(scene, path, adcgs_frames_step(&options->frames), error));
     const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
     for (int s = 0; s < ADCGS_SPLITS; s++)
         for (uint32_t i = 0; i < scene->n_views[s]; i++)
             scene->views[s][i].time *= scene->duration;
     int width, height, channels = 3;
-    if (!scene->splats && !train[0].is_video)
+    if (!scene->splats && !options->is_outline && !train[0].is_video)
         ADCGS_TRY(adcgs_image_probe(&width, &height, &channels, train[0].path, error));
     scene->has_alpha = channels % 2 == 0;
     for (int c = 0; c < 3; c++)
@@ -337,6 +335,7 @@ static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, co
     char *points_path = NULL;
     scene->axes = ADCGS_AXES_Z_UP; /* by custom of the transforms layouts */
     scene->colour_space = COLOUR_SRGB;
+    scene->is_outline = options->is_outline;
     scene->rate = options->rate;
     adcgs_status status =
         is_folder ? read_folder(scene, &points_path, options, error) : read_file(scene, path, &points_path, options, error);

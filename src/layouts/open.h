@@ -42,6 +42,7 @@ typedef struct adcgs_scene_options {
     adcgs_fps rate;           /**< of the frames that are kept; not known: the scene's, else 30 */
     int dataset;              /**< an adcgs_dataset */
     const adcgs_footage *taken; /**< of a scene file: as adcgs_scene_file_read() takes it; or NULL */
+    int is_outline;           /**< of pictures, only those are looked at that tell a size: no word of alpha and background */
     adcgs_frame_range frames; /**< of videos, or of the distinct moments of all pictures; the first one kept is time 0 */
 } adcgs_scene_options;
 
@@ -54,5 +55,10 @@ typedef struct adcgs_scene_options {
  * that it lists, ADCGS_ERR_UNSUPPORTED for other camera models than the pinhole and OpenCV's.
  */
 adcgs_status adcgs_scene_open(adcgs_scene **out, const char *path, const adcgs_scene_options *options, adcgs_error *error);
+/**
+ * What adcgs_scene_open() asks of files, which it does not of an outline: that all of these views' pictures and masks are there,
+ * and that those which are not for training have the right size.
+ */
+adcgs_status adcgs_scene_check_files(const adcgs_scene *scene, adcgs_error *error);
 
 #endif

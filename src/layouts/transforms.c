@@ -30,7 +30,7 @@ static char *join(const char *folder, const char *name)
 }
 
 /** The image's file: as named, or with an extension that makes it exist. */
-static adcgs_status find_image(const place *at, char **out)
+static adcgs_status find_image(const place *at, const adcgs_scene *scene, char **out)
 {
     const char *name = json_string_value(json_object_get(at->json.frame, "file_path"));
     if (!name || !*name)
@@ -38,6 +38,10 @@ static adcgs_status find_image(const place *at, char **out)
     char *stem = join(at->folder, name);
     const adcgs_status status = stem ? adcgs_find_image(out, stem, at->json.error)
                                      : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "file_path", "out of memory");
+    if (status == ADCGS_OK && !*out && scene->is_outline && adcgs_is_image_name(stem)) {
+        *out = stem; /* it may be elsewhere */
+        return status;
+    }
     free(stem);
     if (status == ADCGS_OK && !*out)
         return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.100s", name);
@@ -45,7 +49,7 @@ static adcgs_status find_image(const place *at, char **out)
 }
 
 /** The file of a mask, as the field names it; NULL if the frame has none. */
-static adcgs_status find_mask(const place *at, const char *field, char **out)
+static adcgs_status find_mask(const place *at, const adcgs_scene *scene, const char *field, char **out)
 {
     json_t *item = json_object_get(at->json.frame, field);
     const char *name = json_string_value(item);
@@ -55,7 +59,7 @@ static adcgs_status find_mask(const place *at, const char *field, char **out)
     if (!name || !*name)
         return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, field, "expected the name of an image");
     *out = join(at->folder, name);
-    if (*out && adcgs_is_there(*out))
+    if (*out && (scene->is_outline || adcgs_is_there(*out)))
         return ADCGS_OK;
     free(*out);
     if (!*out)
@@ -100,12 +104,12 @@ static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_v
     if (time)
         ADCGS_TRY(adcgs_json_number(&at->json, "time", 0.0, 1.0, &view->time, &found));
     ADCGS_TRY(adcgs_json_pose(&at->json, &view->camera));
-    ADCGS_TRY(find_image(at, &view->path));
+    ADCGS_TRY(find_image(at, scene, &view->path));
     adcgs_status status = read_camera(at, scene, view);
     if (status == ADCGS_OK)
-        status = find_mask(at, "mask_path", &view->mask);
+        status = find_mask(at, scene, "mask_path", &view->mask);
     if (status == ADCGS_OK)
-        status = find_mask(at, "moving_path", &view->moving);
+        status = find_mask(at, scene, "moving_path", &view->moving);
     if (status != ADCGS_OK) {
         adcgs_scene_view_clear(view);
         return status;

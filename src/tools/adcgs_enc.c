@@ -6,9 +6,12 @@
 #include "encode/encode.h"
 #include "encode/raw.h"
 #include "io/atomic.h"
+#include "io/claim.h"
 #include "io/json.h"
 #include "layouts/open.h"
 #include "tools/enc_live.h"
+#include "tools/enc_parts.h"
+#include "tools/enc_plan.h"
 #include "tools/enc_report.h"
 #include "tools/enc_run.h"
 #include "tools/enc_segments.h"
@@ -150,9 +153,17 @@ static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job,
 static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
     adcgs_time spent = { 0, 0 };
-    ADCGS_TRY(adcgs_enc_segments_learn(w, job, &spent, error));
-    ADCGS_TRY(adcgs_enc_segments_write(w, job, &spent, error));
-    return report(w, job, spent, met, error);
+    adcgs_claim *claim = NULL;
+    char *name;
+    ADCGS_TRY(adcgs_enc_claim_name(&name, w->base, error));
+    adcgs_status status = adcgs_claim_take(&claim, name, "the segments", error);
+    free(name);
+    if (status == ADCGS_OK)
+        status = adcgs_enc_segments_learn(w, job, &spent, error);
+    if (status == ADCGS_OK)
+        status = adcgs_enc_segments_write(w, job, &spent, error);
+    adcgs_claim_drop(&claim);
+    return status == ADCGS_OK ? report(w, job, spent, met, error) : status;
 }
 
 /* ---- The program ---- */
@@ -169,9 +180,9 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scen
                           "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
     ADCGS_TRY(configure(&job->config, o, job->cpu, error));
     ADCGS_TRY(check_distinct(o, error));
-    if (o->live)
+    if (o->live || o->plan)
         return ADCGS_OK;
-    ADCGS_TRY(check_writable(adcgs_enc_target(o), error));
+    ADCGS_TRY(check_writable(w->target, error));
     if (o->checkpoint)
         ADCGS_TRY(check_writable(o->checkpoint, error));
     return o->uncompressed ? check_writable(o->uncompressed, error) : ADCGS_OK;
@@ -182,7 +193,7 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
 {
     const adcgs_enc_options *o = w->o;
     const char *given = o->checkpoint ? o->checkpoint : o->has_segment ? o->resume : NULL;
-    const char *const name = given ? given : adcgs_enc_target(o);
+    const char *const name = given ? given : w->target;
     const size_t n = strlen(name) + 16;
     w->base = malloc(n);
     w->state = malloc(n);
@@ -193,25 +204,6 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Pictures are as large as they were asked to be; where nobody asked, not larger than is of use. */
-static void reduce_large(adcgs_enc_job *job, adcgs_enc_watcher *w)
-{
-    const adcgs_scene *const scene = job->scene;
-    const int asked = job->o->has_scale || adcgs_setting_in_list(job->o->set, "scale");
-    int side = 0;
-    for (uint32_t i = 0; i < scene->n_views[ADCGS_SPLIT_TRAIN]; i++) {
-        const adcgs_camera *const c = &scene->views[ADCGS_SPLIT_TRAIN][i].camera;
-        side = ADCGS_MAX(side, ADCGS_MAX(c->width, c->height));
-    }
-    if (!asked && side > ADCGS_SIDE_MOST) {
-        job->config.scale = (side + ADCGS_SIDE_MOST - 1) / ADCGS_SIDE_MOST;
-        adcgs_progress_clear(&w->progress);
-        adcgs_cli_note(job->cli, "%s: pictures of %d pixels are reduced to 1/%d of that; --scale 1 leaves them as they are",
-                       scene->directory, side, job->config.scale);
-    }
-    job->scene->measured = job->config.scale;
-}
-
 static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
@@ -220,6 +212,8 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     w->log = o->log ? fopen(o->log, o->resume || o->finish ? "a" : "w") : NULL;
     if (o->log && !w->log)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
+    if (o->plan)
+        return o->has_segment ? adcgs_enc_plan_learn(w, job, error) : adcgs_enc_plan_make(job, &scene, error);
     if (o->live) {
         ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
         return adcgs_enc_live(w, job, error);
@@ -230,7 +224,7 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
                         adcgs_seconds() - o->started.clock);
     if (o->preview)
         ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
-    reduce_large(job, w);
+    adcgs_enc_reduce_large(job, &w->progress);
     ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->has_segment)
         ADCGS_TRY(adcgs_enc_cut(job, o->segment, error));
@@ -240,7 +234,8 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
 static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
 {
     adcgs_enc_job job = { .cli = cli, .o = o, .pool = pool };
-    adcgs_enc_watcher w = { .o = o, .preview = { .path = o->preview } };
+    adcgs_enc_watcher w = { .o = o, .target = o->plan ? o->plan : o->beginning ? o->beginning : o->output,
+                            .keeps = o->checkpoint || o->plan, .preview = { .path = o->preview } };
     adcgs_progress_init(&w.progress, cli);
     adcgs_progress_keep(&w.progress);
     adcgs_buffer_init(&w.changes);
@@ -283,9 +278,8 @@ static int list_settings(const adcgs_cli *cli, const adcgs_enc_options *o)
 }
 
 /** What --live goes with; as parse(). */
-static int check_live(const adcgs_cli *cli, adcgs_enc_options *o, const char *scene)
+static int check_live(const adcgs_cli *cli, adcgs_enc_options *o)
 {
-    o->scene = scene;
     if (!o->has_segment)
         o->segment = ADCGS_ENC_LIVE_SEGMENT;
     if (o->has_size || o->has_psnr || o->beginning || o->uncompressed || o->time_limit > 0 || o->frames || o->fps ||
@@ -297,6 +291,50 @@ static int check_live(const adcgs_cli *cli, adcgs_enc_options *o, const char *sc
                                "than that, or a shorter --segment", o->delay, o->segment);
     if (o->json && !strcmp(o->output, "-"))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--json and -o - both want standard output");
+    return -1;
+}
+
+static size_t size_of(adcgs_option_kind kind)
+{
+    return kind == ADCGS_OPTION_REAL ? sizeof(double) : kind == ADCGS_OPTION_SIZE ? sizeof(uint64_t) :
+           kind == ADCGS_OPTION_STRING || kind == ADCGS_OPTION_FILE ? sizeof(char *) : sizeof(int);
+}
+
+/** The first option that was given and is none of the names, which end with NULL; NULL if there is none. */
+static const char *find_other(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_enc_options *before,
+                              const char *const *names)
+{
+    for (size_t i = 0; i < cli->n_options; i++) {
+        const adcgs_option *const option = &cli->options[i];
+        const size_t at = (size_t)((const char *)option->target - (const char *)o);
+        const int given = option->given ? *option->given :
+                                          memcmp(option->target, (const char *)before + at, size_of(option->kind)) != 0;
+        const char *const *name = names;
+        while (*name && strcmp(*name, option->name))
+            name++;
+        if (given && !*name)
+            return option->name;
+    }
+    return NULL;
+}
+
+/** What --plan goes with, while the table of options is there; as parse(). */
+static int check_plan(const adcgs_cli *cli, adcgs_enc_options *o, const adcgs_enc_options *before)
+{
+    static const char *const making[] = { "plan", "cut", "key", "fade", "preset", "lambda", "psnr", "iterations", "scale", "k",
+                                          "max-anchors", "dataset", "frames", "fps", "points", "without", "fixed",
+                                          "no-progression", "set", "seed", "cpu", "bf16", "threads", NULL };
+    static const char *const learning[] = { "plan", "segment", "points", "log", "checkpoint-every", "memory", "threads", "json",
+                                            NULL };
+    const char *const other = find_other(cli, o, before, o->has_segment ? learning : making);
+    if (other && o->has_segment)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s: the plan says how its segments are learnt: give --plan and --segment "
+                               "without it", other);
+    if (other)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is nothing that a plan has", other);
+    if (o->has_segment && (o->segment < 1 || o->segment != floor(o->segment)))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment %g: with --plan, the number of a segment is expected",
+                               o->segment);
     return -1;
 }
 
@@ -342,8 +380,13 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "points", 0, ADCGS_OPTION_FILE, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
         { "segment", 0, ADCGS_OPTION_REAL, &o->segment, 1e-3, 1e6, "S",
-          "cut time every S seconds, at the nearest moment; each segment\nis learnt from the one before, with a run of its own",
-          NULL, &o->has_segment },
+          "cut time every S seconds, at the nearest moment; each segment\nis learnt from the one before, with a run of its own;\n"
+          "with --plan: learn segment number S alone", NULL, &o->has_segment },
+        { "plan", 0, ADCGS_OPTION_FILE, &o->plan, 0, 0, "FILE",
+          "write a plan of the segments, with all settings, for them to\nbe learnt by --segment 1, 2, ... anywhere, and joined "
+          "by\nadcgs-join", NULL, NULL },
+        { "cut", 0, ADCGS_OPTION_REAL, &o->cut, 1e-3, 1e6, "S",
+          "with --plan: cut time every S seconds (default 2)", NULL, &o->has_cut },
         { "key", 0, ADCGS_OPTION_REAL, &o->key, 0, 1e6, "S",
           "with --segment: at least every S seconds a segment that needs\nno other, where playing can begin (default 10)", NULL,
           &o->has_key },
@@ -409,8 +452,10 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     cli->options = options;
     cli->n_options = ADCGS_COUNTOF(options);
     cli->quiet = &o->quiet;
-    int first;
-    const int code = adcgs_cli_parse(cli, argc, argv, &first);
+    const adcgs_enc_options before = *o;
+    int first, code = adcgs_cli_parse(cli, argc, argv, &first);
+    if (code < 0 && o->plan)
+        code = check_plan(cli, o, &before);
     cli->n_options = 0; /* the table ends with this function */
     if (code >= 0)
         return code;
@@ -418,6 +463,11 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         return list_settings(cli, o);
     if (first >= argc)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
+    o->scene = argv[first];
+    if (o->plan)
+        return -1;
+    if (o->has_cut)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--cut is for plans: give --plan, too");
     if (!o->output == !o->beginning)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, o->output ? "give either -o FILE or --beginning FILE" :
                                                                   "no output: give -o FILE");
@@ -427,7 +477,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--finish excludes --resume, --beginning, --checkpoint, --segment, --live "
                                "and --time-limit");
     if (o->live)
-        return check_live(cli, o, argv[first]);
+        return check_live(cli, o);
     if (o->has_delay)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--delay is for what is live: give --live, too");
     if ((o->has_key || o->has_fade || o->or_whole) && !o->has_segment)
@@ -435,13 +485,13 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
                                o->has_key ? "key" : o->has_fade ? "fade" : "or-whole");
     if (o->has_segment && (o->has_size || o->beginning || o->uncompressed || o->time_limit > 0))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment excludes --size, --beginning, --uncompressed and --time-limit");
-    o->scene = argv[first];
     return -1;
 }
 
 int main(int argc, char **argv)
 {
-    adcgs_enc_options o = { .preset = "fast", .fade = ADCGS_ENC_FADE, .checkpoint_every = 60, .started = adcgs_time_now() };
+    adcgs_enc_options o = { .preset = "fast", .fade = ADCGS_ENC_FADE, .cut = ADCGS_ENC_LIVE_SEGMENT, .checkpoint_every = 60,
+                            .started = adcgs_time_now() };
     adcgs_cli cli = program;
     const int code = parse(&cli, &o, argc, argv);
     if (code >= 0)

@@ -21,6 +21,16 @@ adcgs_status adcgs_enc_part_name(char **name, const char *base, uint32_t part, i
     return ADCGS_OK;
 }
 
+adcgs_status adcgs_enc_claim_name(char **name, const char *state, adcgs_error *error)
+{
+    const size_t n = strlen(state) + 16;
+    *name = malloc(n);
+    if (!*name)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
+    snprintf(*name, n, "%s.claim", state);
+    return ADCGS_OK;
+}
+
 void adcgs_enc_part_remove(const char *base, uint32_t part, int is_stream)
 {
     char *name;
@@ -43,7 +53,7 @@ adcgs_status adcgs_enc_part_save(const char *base, const adcgs_cuts *cuts, uint3
     adcgs_buffer bytes;
     char *name = NULL;
     adcgs_buffer_init(&bytes);
-    adcgs_status status = adcgs_encode_begin(&stream, t->scene->whole, cuts, notes, n_notes, error);
+    adcgs_status status = adcgs_encode_begin(&stream, t->scene->whole ? t->scene->whole : t->scene, cuts, notes, n_notes, error);
     if (status == ADCGS_OK)
         status = adcgs_encode_segment(&stream, t, cuts, part, error);
     if (status == ADCGS_OK)
@@ -60,9 +70,8 @@ adcgs_status adcgs_enc_part_save(const char *base, const adcgs_cuts *cuts, uint3
     return status;
 }
 
-/** Read a part's stream, initialised by the caller; *found: 0 if there is no such file. */
-static adcgs_status load(adcgs_stream *stream, const char *name, adcgs_cpu_level cpu, adcgs_pool *pool, int *found,
-                         adcgs_error *error)
+adcgs_status adcgs_enc_part_load(adcgs_stream *stream, const char *name, adcgs_cpu_level cpu, adcgs_pool *pool, int *found,
+                                 adcgs_error *error)
 {
     const adcgs_read_options options = { .cpu = cpu, .pool = pool, .strict_end = 1 };
     adcgs_error why;
@@ -116,7 +125,7 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
     if (status == ADCGS_OK)
         adcgs_encode_place(&now, cuts, part, &none); /* for its time alone */
     if (status == ADCGS_OK)
-        status = load(&then, name, cpu, pool, found, error);
+        status = adcgs_enc_part_load(&then, name, cpu, pool, found, error);
     const char *const what = status == ADCGS_OK && *found ? difference(&now, &then) : NULL;
     if (what)
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: of another run: its %s is another", name, what);
@@ -143,7 +152,7 @@ static adcgs_status load_part(adcgs_stream *one, const char *base, uint32_t part
     int found;
     adcgs_stream_init(one);
     ADCGS_TRY(adcgs_enc_part_name(&name, base, part, 1, error));
-    adcgs_status status = load(one, name, cpu, pool, &found, error);
+    adcgs_status status = adcgs_enc_part_load(one, name, cpu, pool, &found, error);
     if (status == ADCGS_OK && !found)
         status = adcgs_fail(error, ADCGS_ERR_IO, "%s: it is gone", name);
     free(name);

@@ -12,6 +12,13 @@
 /** Name of segment part's (from 0) checkpoint, or of its stream. The caller frees it with free(). */
 adcgs_status adcgs_enc_part_name(char **name, const char *base, uint32_t part, int is_stream, adcgs_error *error);
 
+/** Name of the file that says that a run has what is learnt by the name of `state`. */
+adcgs_status adcgs_enc_claim_name(char **name, const char *state, adcgs_error *error);
+
+/** Read a stream of one part, initialised by the caller; *found: 0 if there is no such file. Messages name it. */
+adcgs_status adcgs_enc_part_load(adcgs_stream *stream, const char *name, adcgs_cpu_level cpu, adcgs_pool *pool, int *found,
+                                 adcgs_error *error);
+
 /** Write a part's stream and remove its checkpoint. */
 adcgs_status adcgs_enc_part_save(const char *base, const adcgs_cuts *cuts, uint32_t part, const adcgs_trainer *trainer,
                                  const adcgs_encode_note *notes, uint32_t n_notes, adcgs_pool *pool, adcgs_error *error);

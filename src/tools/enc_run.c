@@ -8,6 +8,7 @@
 #include "metric/metric.h"
 #include "model/model_priv.h"
 #include "tools/enc_footage.h"
+#include "train/settings.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -148,7 +149,7 @@ static int observe(void *user, const adcgs_train_report *r)
                             r->bytes / 1000, r->rate, describe_left(r->left, left));
     if (r->iteration)
         adcgs_enc_preview_show(&w->preview, w->t, r->stage, &w->progress);
-    if (w->o->checkpoint && r->spent.clock - w->saved > w->o->checkpoint_every)
+    if (w->keeps && r->spent.clock - w->saved > w->o->checkpoint_every)
         save_now_and_then(w, r->spent.clock);
     return adcgs_interrupted() && !w->is_live;
 }
@@ -170,7 +171,7 @@ void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char
     snprintf(n->lambda, sizeof n->lambda, "%g", t->lambda);
     snprintf(n->iterations, sizeof n->iterations, "%u", t->iteration);
     adcgs_decisions_tell(&t->decisions, n->decisions);
-    const adcgs_encode_note list[ADCGS_COUNTOF(n->list)] = {
+    const adcgs_encode_note list[] = {
         { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
         { "iterations", n->iterations }, { "seed", n->seed },     { "decisions", n->decisions },
         { "settings", changes },
@@ -199,12 +200,6 @@ adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const a
 
 /* ---- Learning ---- */
 
-/** What the run is for: the stream, or the state before lambda matters. */
-const char *adcgs_enc_target(const adcgs_enc_options *o)
-{
-    return o->beginning ? o->beginning : o->output;
-}
-
 /** Whether there is something to make a file of, should it be wanted; segments behind the one that is learnt would be missing. */
 static int is_ready(const adcgs_enc_watcher *w)
 {
@@ -216,7 +211,10 @@ static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs
     if (is_ready(w) && adcgs_interrupts() < 2)
         adcgs_cli_error(cli, ADCGS_OK, "interrupted: the state is being saved; a second interrupt makes a file of what there is");
     ADCGS_TRY(adcgs_trainer_save(w->t, w->state, error));
-    if (w->segments)
+    if (w->o->plan)
+        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; the same command goes on", w->t->iteration,
+                        w->segment + 1, w->segments);
+    else if (w->segments)
         adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; go on with the same command and --resume %s",
                         w->t->iteration, w->segment + 1, w->segments, w->base);
     else
@@ -282,7 +280,7 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
     w->cut_short = is_ready(w) && adcgs_interrupts() > 1;
     if (w->cut_short)
         return finish(cli, w, error);
-    return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", adcgs_enc_target(w->o));
+    return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", w->target);
 }
 
 adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
@@ -310,4 +308,23 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
     const adcgs_status status = train(job->cli, w, state, error);
     forget_glances(w);
     return status;
+}
+
+void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_progress *progress)
+{
+    const adcgs_scene *const scene = job->scene;
+    const int asked = job->o->has_scale || adcgs_setting_in_list(job->o->set, "scale");
+    int side = 0;
+    for (uint32_t i = 0; i < scene->n_views[ADCGS_SPLIT_TRAIN]; i++) {
+        const adcgs_camera *const c = &scene->views[ADCGS_SPLIT_TRAIN][i].camera;
+        side = ADCGS_MAX(side, ADCGS_MAX(c->width, c->height));
+    }
+    if (!asked && side > ADCGS_SIDE_MOST) {
+        job->config.scale = (side + ADCGS_SIDE_MOST - 1) / ADCGS_SIDE_MOST;
+        if (progress)
+            adcgs_progress_clear(progress);
+        adcgs_cli_note(job->cli, "%s: pictures of %d pixels are reduced to 1/%d of that; --scale 1 leaves them as they are",
+                       scene->directory, side, job->config.scale);
+    }
+    job->scene->measured = job->config.scale;
 }

@@ -5,20 +5,21 @@
 
 #include "cli/cli.h"
 #include "encode/encode.h"
+#include "encode/plan.h"
 #include "tools/enc_preview.h"
 
 #define ADCGS_ENC_KEY_EVERY 10.0   /**< seconds from one key to the next, unless given */
 #define ADCGS_ENC_FADE 0.2         /**< seconds in which a segment is faded into the one before, unless given */
-#define ADCGS_ENC_LIVE_SEGMENT 2.0 /**< seconds of a segment of what is live, unless given */
+#define ADCGS_ENC_LIVE_SEGMENT 2.0 /**< seconds of a segment of what is live, or planned, unless given */
 
 /** As on the command line. */
 typedef struct adcgs_enc_options {
     const char *scene, *output, *preset, *checkpoint, *resume, *finish, *log, *points, *set, *without, *beginning, *uncompressed;
-    const char *preview, *frames, *fps;
-    double lambda, psnr, time_limit, segment, key, fade, delay;
+    const char *preview, *frames, *fps, *plan;
+    double lambda, psnr, time_limit, segment, key, fade, delay, cut;
     int iterations, scale, k, max_anchors, threads, cpu, dataset, bf16, json, quiet, no_progression, fixed, live, or_whole;
     int has_segment, has_key, has_lambda, has_size, has_psnr, has_iterations, has_scale, has_k, has_max_anchors, has_seed;
-    int has_fade, has_delay;
+    int has_fade, has_delay, has_cut;
     adcgs_time started;
     double checkpoint_every;
     uint64_t seed, size, memory;
@@ -26,6 +27,8 @@ typedef struct adcgs_enc_options {
 
 typedef struct adcgs_enc_watcher {
     const adcgs_enc_options *o;
+    const char *target; /* what the run is for: the stream, a part of it, or the state before lambda matters */
+    int keeps;    /* it saves its state now and then */
     adcgs_trainer *t;
     uint32_t segment, segments; /* the one that is learnt, from 0; 0 segments: the scene is not cut, or nobody knows how many */
     int is_live; /* an interrupt ends what comes, not the run */
@@ -50,9 +53,9 @@ typedef struct adcgs_enc_watcher {
 
 /** What the stream tells of how it was made. */
 typedef struct adcgs_enc_notes {
-    adcgs_encode_note list[7];
+    adcgs_encode_note list[9]; /* with room for two that a part of a plan has */
     uint32_t n;
-    char seed[32], lambda[32], iterations[32], decisions[ADCGS_DECISIONS_TEXT];
+    char seed[32], lambda[32], iterations[32], decisions[ADCGS_DECISIONS_TEXT], follows[33];
 } adcgs_enc_notes;
 
 /** What a run is given. */
@@ -62,14 +65,13 @@ typedef struct adcgs_enc_job {
     adcgs_scene *scene;
     adcgs_cuts cuts; /* n 0: the scene is not cut */
     uint8_t *follows; /* [cuts.n] 1: the part is learnt from the one before */
+    const adcgs_plan *plan; /* that the scene is learnt by; NULL: there is none */
     adcgs_train_config config;
     adcgs_train_config whole; /* of the scene as one segment, where it is cut */
     adcgs_cpu_level cpu;
     adcgs_pool *pool;
 } adcgs_enc_job;
 
-/** What the run is for: the stream, or the state before lambda matters. */
-const char *adcgs_enc_target(const adcgs_enc_options *o);
 /** changes: settings that are not the preset's, "" for none. The notes point into the trainer's configuration. */
 void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes);
 
@@ -84,5 +86,11 @@ adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const a
  */
 adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error);
+
+/**
+ * Of the job's scene, once it is open: pictures are as large as they were asked to be; where nobody asked, not larger than is of
+ * use, which is said. progress: cleared before that, or NULL.
+ */
+void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_progress *progress);
 
 #endif

@@ -4,9 +4,12 @@
 
 #include "tools/enc_segments.h"
 
+#include "base/digest.h"
 #include "io/atomic.h"
+#include "layouts/open.h"
 #include "tools/enc_parts.h"
 #include "tools/enc_whole.h"
+#include "tools/plan_parts.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -40,28 +43,58 @@ static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const a
     adcgs_enc_take_notes(n, &ended, (const char *)w->changes.data);
 }
 
-/** Learn the part that w->segment says, from its checkpoint if there is one, and leave its stream on the disk. */
-static adcgs_status learn_part(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+/** What the part is learnt from; with a plan that has to be of it, too. */
+static adcgs_status load_before(adcgs_model *before, const adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
 {
-    adcgs_scene part;
+    if (!job->follows[w->segment])
+        return ADCGS_OK;
+    return job->plan ? adcgs_plan_part_model(before, job->plan, w->base, w->segment - 1, job->cpu, job->pool, error) :
+                       adcgs_enc_part_model(before, w->base, w->segment - 1, job->cpu, job->pool, error);
+}
+
+/** Of which plan it is, and which model it went on with. */
+static void add_plan_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const adcgs_enc_job *job)
+{
+    if (!job->plan)
+        return;
+    n->list[n->n++] = (adcgs_encode_note){ ADCGS_NOTE_PLAN, job->plan->digest };
+    if (!job->follows[w->segment])
+        return;
+    adcgs_md5_hex(w->t->before, n->follows);
+    n->list[n->n++] = (adcgs_encode_note){ ADCGS_NOTE_FOLLOWS, n->follows };
+}
+
+static adcgs_status learn_scene(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, adcgs_time *spent,
+                                adcgs_error *error)
+{
     adcgs_model before = { .n = 0 };
     adcgs_enc_notes n;
-    const int follows = job->follows[w->segment];
-    ADCGS_TRY(adcgs_scene_part(&part, job->scene, &job->cuts, w->segment, error));
+    const int resumes = job->plan || job->o->resume;
     w->next_log = 0;
-    adcgs_status status =
-        follows ? adcgs_enc_part_model(&before, w->base, w->segment - 1, job->cpu, job->pool, error) : ADCGS_OK;
+    adcgs_status status = job->scene->is_outline ? adcgs_scene_check_files(scene, error) : ADCGS_OK;
     if (status == ADCGS_OK)
-        status = adcgs_enc_learn(w, job, &part, follows ? &before : NULL, NULL,
-                                 job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
+        status = load_before(&before, w, job, error);
+    if (status == ADCGS_OK)
+        status = adcgs_enc_learn(w, job, scene, job->follows[w->segment] ? &before : NULL, NULL,
+                                 resumes && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
     adcgs_model_clear(&before, NULL);
     *spent = adcgs_time_plus(*spent, w->last.spent);
-    if (status == ADCGS_OK) {
-        adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
-        status = adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
-    }
+    if (status != ADCGS_OK)
+        return status;
+    adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
+    add_plan_notes(&n, w, job);
+    return adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
+}
+
+adcgs_status adcgs_enc_segment_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+{
+    adcgs_scene part;
+    if (job->cuts.n > 1)
+        ADCGS_TRY(adcgs_scene_part(&part, job->scene, &job->cuts, w->segment, error));
+    const adcgs_status status = learn_scene(w, job, job->cuts.n > 1 ? &part : job->scene, spent, error);
     adcgs_trainer_free(&w->t);
-    adcgs_scene_part_clear(&part);
+    if (job->cuts.n > 1)
+        adcgs_scene_part_clear(&part);
     return status;
 }
 
@@ -79,7 +112,7 @@ adcgs_status adcgs_enc_segments_learn(adcgs_enc_watcher *w, const adcgs_enc_job 
             ADCGS_TRY(adcgs_enc_part_check(w->base, job->scene, &job->cuts, w->segment, expected.list, expected.n, job->cpu,
                                            job->pool, &found, error));
         if (!found)
-            ADCGS_TRY(learn_part(w, job, spent, error));
+            ADCGS_TRY(adcgs_enc_segment_learn(w, job, spent, error));
     }
     return ADCGS_OK;
 }

@@ -10,6 +10,11 @@ adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *erro
 /** Parts share their parameters, so all have a time table of as many rows as the shortest can have. */
 void adcgs_enc_cut_config(adcgs_enc_job *job);
 
+/**
+ * Learn the part that w->segment says, from its checkpoint, w->state, if there is one and the run goes on, and leave its stream
+ * on the disk.
+ */
+adcgs_status adcgs_enc_segment_learn(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error);
 /** Learn what is not there yet, part by part, and leave their streams on the disk. *spent: grows by what that takes. */
 adcgs_status adcgs_enc_segments_learn(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_time *spent,
                                       adcgs_error *error);

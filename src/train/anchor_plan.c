@@ -9,8 +9,7 @@
 
 enum { PICTURES_MOST = 16, ANCHORS_LEAST = 100 };
 
-/** Of the pictures, evenly spread over those for training, as they are trained on. */
-static adcgs_status measure(const adcgs_scene *scene, int divide, uint32_t *details, adcgs_error *error)
+adcgs_status adcgs_plan_details(const adcgs_scene *scene, int divide, uint32_t *details, adcgs_error *error)
 {
     const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = ADCGS_MIN(all, PICTURES_MOST);
     uint64_t sum = 0;
@@ -34,7 +33,9 @@ adcgs_status adcgs_plan_anchors(adcgs_train_config *c, const adcgs_scene *scene,
     *details = 0;
     if (c->own_anchors || !(c->detail_anchors > 0))
         return ADCGS_OK;
-    ADCGS_TRY(measure(scene->whole ? scene->whole : scene, c->scale, details, error));
+    *details = c->details;
+    if (!c->has_details)
+        ADCGS_TRY(adcgs_plan_details(scene->whole ? scene->whole : scene, c->scale, details, error));
     c->max_anchors = (uint32_t)fmin(fmax((double)c->detail_anchors * sqrt(*details), ANCHORS_LEAST), ADCGS_ANCHORS_MAX);
     c->start_anchors = ADCGS_MIN(c->start_anchors, c->max_anchors);
     return ADCGS_OK;

@@ -29,6 +29,8 @@ typedef struct adcgs_train_config {
     double target_value;   /**< bytes or dB */
     /* Chosen by hand: no target changes lambda, max_anchors or networks' widths, no scene the others. */
     uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigid, own_scale_from, own_square, own_smooth;
+    uint32_t details;      /**< of the scene's pictures, where somebody has looked (adcgs_plan_details()) */
+    uint8_t has_details;
     /* The run. */
     uint32_t iterations;
     uint64_t seed;

@@ -38,8 +38,7 @@ double adcgs_setting_get(const adcgs_setting *s, const adcgs_train_config *c)
     }
 }
 
-/** value is in the setting's range. */
-static void put(const adcgs_setting *s, adcgs_train_config *c, double value)
+void adcgs_setting_put(const adcgs_setting *s, adcgs_train_config *c, double value)
 {
     void *at = (char *)c + s->offset;
     switch (s->kind) {
@@ -85,8 +84,7 @@ int adcgs_setting_is_preset(const adcgs_setting *s, const adcgs_train_config *c)
 
 /* ---- Checks ---- */
 
-/** The bounds themselves are in it, as decimals and as binary32. */
-static int in_range(const adcgs_setting *s, double value)
+int adcgs_setting_may_be(const adcgs_setting *s, double value)
 {
     return value >= fmin(s->min, as_held(s, s->min)) && value <= fmax(s->max, as_held(s, s->max)) &&
            (s->kind == ADCGS_SETTING_REAL || value == floor(value));
@@ -105,7 +103,7 @@ static adcgs_status check_ranges(const adcgs_train_config *c, adcgs_error *error
     for (const adcgs_setting *s = adcgs_settings; s->name; s++) {
         const double value = adcgs_setting_get(s, c);
         char text[ADCGS_SETTING_TEXT];
-        if (!in_range(s, value))
+        if (!adcgs_setting_may_be(s, value))
             return fail_range(s, adcgs_setting_print(s, value, text), error);
     }
     return ADCGS_OK;
@@ -173,14 +171,14 @@ adcgs_status adcgs_train_preset(adcgs_train_config *config, const char *name, ad
         return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown preset '%s': expected draft, fast, medium, slow or paper", name);
     *config = (adcgs_train_config){ .preset = adcgs_train_presets[i] };
     for (const adcgs_setting *s = adcgs_settings; s->name; s++)
-        put(s, config, s->preset[i]);
+        adcgs_setting_put(s, config, s->preset[i]);
     return ADCGS_OK;
 }
 
 /** A value in range, chosen by hand. Fewer anchors than a preset begins with may be asked for; it then begins with these. */
 static void choose(adcgs_train_config *c, const adcgs_setting *s, double value)
 {
-    put(s, c, value);
+    adcgs_setting_put(s, c, value);
     if (s->own)
         *((uint8_t *)c + s->own) = 1;
     if (s->offset == offsetof(adcgs_train_config, max_anchors) && !c->own_start) {
@@ -195,7 +193,7 @@ adcgs_status adcgs_train_set_value(adcgs_train_config *config, const char *name,
     char text[ADCGS_SETTING_TEXT];
     if (!s || s->group == ADCGS_SETTING_SWITCHES)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown setting '%s': --set list shows what there is", name);
-    if (!in_range(s, value)) {
+    if (!adcgs_setting_may_be(s, value)) {
         snprintf(text, sizeof text, "%.9g", value);
         return fail_range(s, text, error);
     }
@@ -211,7 +209,7 @@ static adcgs_status set_one(adcgs_train_config *c, char *text, adcgs_error *erro
         *equals = 0;
     const double value = equals ? strtod(equals + 1, &end) : 0;
     const adcgs_setting *s = adcgs_setting_find(text);
-    if (s && s->group != ADCGS_SETTING_SWITCHES && (!equals || end == equals + 1 || *end || !in_range(s, value)))
+    if (s && s->group != ADCGS_SETTING_SWITCHES && (!equals || end == equals + 1 || *end || !adcgs_setting_may_be(s, value)))
         return fail_range(s, equals ? equals + 1 : "", error);
     return adcgs_train_set_value(c, text, value, error);
 }

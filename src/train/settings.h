@@ -64,6 +64,10 @@ void adcgs_setting_names(const char *names[ADCGS_SETTING_NAMES + 1]);
 /** The row of that name; NULL if there is none. Names of the program itself are always there. */
 const adcgs_setting *adcgs_setting_find(const char *name);
 double adcgs_setting_get(const adcgs_setting *setting, const adcgs_train_config *config);
+/** The value is one that it may have; nothing says that it was chosen by hand. */
+void adcgs_setting_put(const adcgs_setting *setting, adcgs_train_config *config, double value);
+/** Whether a value is in its range: the bounds themselves are, as decimals and as binary32. */
+int adcgs_setting_may_be(const adcgs_setting *setting, double value);
 /** Whether it is what the configuration's preset says. */
 int adcgs_setting_is_preset(const adcgs_setting *setting, const adcgs_train_config *config);
 

@@ -4,7 +4,7 @@
 # 3, one line that names what could not be written, files that are the old ones or whole new ones, and nothing else left behind.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-dec adcgs-info adcgs-enc adcgs-eval adcgs-sweep adcgs-conform adcgs-demo-scene adcgs-import tests/cli/fail-nth
+need adcgs-dec adcgs-info adcgs-enc adcgs-join adcgs-eval adcgs-sweep adcgs-conform adcgs-demo-scene adcgs-import tests/cli/fail-nth
 vectors=$(cd "${srcdir:-.}/conformance" && pwd)
 tests/cli/fail-nth "$dir" "$dir/report" 1 true || exit $?
 tiny_stream 40
@@ -149,6 +149,12 @@ faults "table printed" ./adcgs-eval "$s" "$dir/scene" --csv -
 faults "encoder" ./adcgs-enc "$dir/scene" -o "$w/x.adcgs" --preset draft --iterations 10 --threads 1 --quiet --memory 1 \
     --uncompressed "$w/x.bin"
 faults "beginning" ./adcgs-enc "$dir/scene" --beginning "$w/x.state" --preset draft --iterations 200 --threads 1 --quiet
+
+# Parts, put together.
+./adcgs-enc "$dir/scene" --plan "$dir/plan.json" --cut 9 --preset draft --iterations 10 --quiet &&
+    ./adcgs-enc "$dir/scene" --plan "$dir/plan.json" --segment 1 --quiet || bad "adcgs-enc --plan"
+faults "join" ./adcgs-join "$dir/plan.json" -o "$w/x.adcgs"
+faults "list of parts" ./adcgs-join "$dir/plan.json" --list
 
 # The built-in scene, conformance's report.
 ways=+

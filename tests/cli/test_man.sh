@@ -11,7 +11,7 @@ fault()
     faults=$((faults + 1))
 }
 
-for program in adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-import adcgs-share adcgs-sweep adcgs-demo-scene; do
+for program in adcgs-enc adcgs-dec adcgs-info adcgs-eval adcgs-conform adcgs-import adcgs-join adcgs-share adcgs-sweep adcgs-demo-scene; do
     if [ ! -x "./$program" ]; then
         fault "$program: not built"
         continue

@@ -11,7 +11,7 @@ shift 2
 sanitize=${SANITIZE:-address,undefined}
 build=fuzz-build${SANITIZE:+-$SANITIZE}
 targets=(range geom net headers decode roundtrip ply splats transforms hypernerf layouts manifest texts pictures
-    checkpoint live past)
+    checkpoint live past plan)
 options=()
 if [ "$sanitize" = memory ]; then
     targets=(range geom net headers decode roundtrip)
@@ -33,7 +33,8 @@ make -s -j "${JOBS:-2}" "${programs[@]}" LDFLAGS="-fsanitize=fuzzer,$sanitize" >
 seeds()
 {
     case $1 in
-        ply | splats | transforms | hypernerf | layouts | texts | pictures | checkpoint | live) echo "$top/tests/fuzz/seeds/$1" ;;
+        ply | splats | transforms | hypernerf | layouts | texts | pictures | checkpoint | live | plan)
+            echo "$top/tests/fuzz/seeds/$1" ;;
         manifest) echo "$top/conformance/manifest.json" ;;
         *) echo "$top/conformance/vectors" ;;
     esac

@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Plans, made and followed. */
+#include "config.h"
+
+#include "tools/enc_plan.h"
+
+#include "base/cpu.h"
+#include "base/digest.h"
+#include "io/claim.h"
+#include "io/json.h"
+#include "tools/enc_parts.h"
+#include "tools/enc_segments.h"
+#include "tools/plan_parts.h"
+#include "train/anchor_plan.h"
+#include "train/settings.h"
+
+#include <stdlib.h>
+
+/* ---- Made ---- */
+
+static char *copy(const char *text, int *failed)
+{
+    char *const out = text ? strdup(text) : NULL;
+    *failed |= text && !out;
+    return out;
+}
+
+static void take_outline(const adcgs_scene *scene, char text[2 * ADCGS_CONTENT_BYTES + 1])
+{
+    uint8_t digest[ADCGS_CONTENT_BYTES];
+    adcgs_scene_outline(scene, digest);
+    adcgs_md5_hex(digest, text);
+}
+
+/** The head that all parts' streams will have. */
+static adcgs_status plan_coding(adcgs_plan *p, const adcgs_enc_job *job, adcgs_error *error)
+{
+    adcgs_stream head;
+    const adcgs_status status = adcgs_encode_begin(&head, job->scene, &job->cuts, NULL, 0, error);
+    memcpy(p->origin, head.scene_origin, sizeof p->origin);
+    p->scale = head.scene_scale;
+    p->timebase_num = head.timebase_num;
+    p->timebase_den = head.timebase_den;
+    adcgs_stream_clear(&head, NULL);
+    return status;
+}
+
+/** Cuts and follows are the job's. */
+static adcgs_status fill(adcgs_plan *p, adcgs_enc_job *job, const adcgs_scene_options *options, adcgs_error *error)
+{
+    const adcgs_enc_options *o = job->o;
+    adcgs_train_config *c = &p->config;
+    int failed = 0;
+    snprintf(p->encoder, sizeof p->encoder, "adcgs-enc %s", PACKAGE_VERSION);
+    p->scene = copy(o->scene, &failed);
+    p->points = copy(o->points, &failed);
+    p->frames = copy(o->frames, &failed);
+    if (failed)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", o->plan);
+    p->dataset = o->dataset;
+    p->rate = options->rate;
+    take_outline(job->scene, p->outline);
+    p->has_alpha = job->scene->has_alpha;
+    memcpy(p->background, job->scene->background, sizeof p->background);
+    p->cpu = job->cpu;
+    *c = job->whole; /* as it was before it was cut */
+    c->has_details = !c->own_anchors && c->detail_anchors > 0;
+    if (c->has_details)
+        ADCGS_TRY(adcgs_plan_details(job->scene, c->scale, &c->details, error));
+    p->segments = adcgs_alloc(NULL, job->cuts.n, sizeof *p->segments, error);
+    if (!p->segments)
+        return adcgs_alloc_status(error);
+    p->cuts = job->cuts;
+    for (uint32_t i = 0; i < p->cuts.n; i++)
+        p->segments[i].follows = job->follows[i];
+    return plan_coding(p, job, error);
+}
+
+static adcgs_status make(adcgs_plan *p, adcgs_enc_job *job, const adcgs_scene_options *options, adcgs_error *error)
+{
+    const char *const path = job->o->plan;
+    double cost = 0;
+    uint32_t keys = 0;
+    ADCGS_TRY(fill(p, job, options, error));
+    ADCGS_TRY(adcgs_plan_write(p, job->scene, path, error));
+    adcgs_plan_clear(p); /* with the job's cuts */
+    job->cuts = (adcgs_cuts){ .n = 0 };
+    ADCGS_TRY(adcgs_plan_read(p, path, error));
+    for (uint32_t i = 0; i < p->cuts.n; i++) {
+        cost += p->segments[i].cost;
+        keys += !p->segments[i].follows;
+    }
+    adcgs_cli_note(job->cli, "%s: %u segment%s, %u of them key%s; roughly %.0f s of one processor", path, p->cuts.n,
+                   p->cuts.n > 1 ? "s" : "", keys, keys > 1 ? "s" : "", cost);
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *options, adcgs_error *error)
+{
+    adcgs_plan plan = { .dataset = 0 };
+    ADCGS_TRY(adcgs_scene_open(&job->scene, job->o->scene, options, error));
+    adcgs_enc_reduce_large(job, NULL);
+    ADCGS_TRY(adcgs_enc_cut(job, job->o->cut, error));
+    const adcgs_status status = make(&plan, job, options, error);
+    if (plan.cuts.at == job->cuts.at)
+        job->cuts = (adcgs_cuts){ .n = 0 };
+    adcgs_plan_clear(&plan);
+    return status;
+}
+
+/* ---- Followed ---- */
+
+/** The scene as the plan has it, without a look at pictures that are not the segment's. */
+static adcgs_status open_scene(adcgs_enc_job *job, const adcgs_plan *p, adcgs_error *error)
+{
+    const adcgs_enc_options *o = job->o;
+    adcgs_scene_options options = { .points_path = o->points ? o->points : p->points, .dataset = p->dataset, .rate = p->rate,
+                                    .is_outline = 1 };
+    char outline[sizeof p->outline];
+    if (p->frames)
+        ADCGS_TRY(adcgs_frames_parse(&options.frames, p->frames, error));
+    ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &options, error));
+    take_outline(job->scene, outline);
+    if (strcmp(outline, p->outline))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not the scene of %s, which was %.80s: cameras, times or points are others",
+                          o->scene, o->plan, p->scene ? p->scene : "?");
+    job->scene->has_alpha = p->has_alpha;
+    memcpy(job->scene->background, p->background, sizeof p->background);
+    memcpy(job->scene->origin, p->origin, sizeof p->origin);
+    job->scene->scale = p->scale;
+    return ADCGS_OK;
+}
+
+/** What the plan says of how it is learnt. The cuts are lent. */
+static adcgs_status take_settings(adcgs_enc_watcher *w, adcgs_enc_job *job, const adcgs_plan *p, adcgs_error *error)
+{
+    ADCGS_TRY(adcgs_plan_check_version(p, job->o->plan, error));
+    if (adcgs_cpu_resolve(p->cpu, &job->cpu, error) != ADCGS_OK)
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: for kernels of level %s, which this machine has not: a plan with "
+                          "--cpu %s is for all that have these", job->o->plan, adcgs_cpu_name(p->cpu),
+                          adcgs_cpu_name(adcgs_cpu_best()));
+    job->plan = p;
+    job->config = p->config;
+    if (p->config.bf16)
+        ADCGS_TRY(adcgs_bf16_check(job->cpu, error));
+    w->changes.size = 0;
+    ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
+    job->cuts = p->cuts;
+    adcgs_enc_cut_config(job);
+    job->follows = adcgs_alloc(NULL, p->cuts.n, sizeof *job->follows, error);
+    if (!job->follows)
+        return adcgs_alloc_status(error);
+    for (uint32_t i = 0; i < p->cuts.n; i++)
+        job->follows[i] = p->segments[i].follows;
+    if (job->o->segment > p->cuts.n)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--segment %g: %s has %u", job->o->segment, job->o->plan, p->cuts.n);
+    w->segments = p->cuts.n;
+    w->segment = (uint32_t)job->o->segment - 1;
+    return ADCGS_OK;
+}
+
+static adcgs_status report(const adcgs_enc_job *job, const adcgs_enc_watcher *w, adcgs_time spent, const char *name,
+                           adcgs_error *error)
+{
+    adcgs_json j;
+    const double begin = job->cuts.at[w->segment], end = job->cuts.at[w->segment + 1];
+    if (!job->o->json) {
+        adcgs_cli_note(job->cli, "%s: segment %u of %u, %.3f to %.3f s: %u anchors; trained in %.0f s (CPU %.0f s)", name,
+                       w->segment + 1, w->segments, begin, end, w->last.anchors, spent.clock, spent.cpu);
+        return ADCGS_OK;
+    }
+    adcgs_json_init(&j);
+    adcgs_json_open(&j, NULL, '{');
+    adcgs_json_string(&j, "file", name);
+    adcgs_json_int(&j, "segment", w->segment + 1);
+    adcgs_json_int(&j, "segments", w->segments);
+    adcgs_json_real(&j, "begin", begin);
+    adcgs_json_real(&j, "end", end);
+    adcgs_json_int(&j, "iterations", w->last.iteration);
+    adcgs_json_real(&j, "training_seconds", spent.clock);
+    adcgs_json_real(&j, "cpu_seconds", spent.cpu);
+    adcgs_json_real(&j, "training_psnr", w->last.psnr);
+    adcgs_json_close(&j);
+    return adcgs_json_write(&j, stdout, "standard output", error);
+}
+
+/** It is there already, or it is learnt. */
+static adcgs_status learn(adcgs_enc_watcher *w, adcgs_enc_job *job, const char *name, adcgs_error *error)
+{
+    adcgs_stream there;
+    adcgs_time spent = { 0, 0 };
+    int found;
+    adcgs_status status = adcgs_plan_part_load(&there, job->plan, w->base, w->segment, job->cpu, job->pool, &found, error);
+    adcgs_stream_clear(&there, NULL);
+    if (status == ADCGS_OK && found) {
+        adcgs_cli_note(job->cli, "%s: is there already", name);
+        return ADCGS_OK;
+    }
+    if (status == ADCGS_OK)
+        status = open_scene(job, job->plan, error);
+    if (status == ADCGS_OK)
+        status = adcgs_enc_segment_learn(w, job, &spent, error);
+    return status == ADCGS_OK ? report(job, w, spent, name, error) : status;
+}
+
+static adcgs_status learn_claimed(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_error *error)
+{
+    adcgs_claim *claim = NULL;
+    char *name, *claimed = NULL, what[64];
+    ADCGS_TRY(adcgs_enc_part_name(&name, w->base, w->segment, 1, error));
+    w->target = name;
+    snprintf(what, sizeof what, "segment %u", w->segment + 1);
+    adcgs_status status = adcgs_enc_claim_name(&claimed, w->state, error);
+    if (status == ADCGS_OK)
+        status = adcgs_claim_take(&claim, claimed, what, error);
+    if (status == ADCGS_OK)
+        status = learn(w, job, name, error);
+    adcgs_claim_drop(&claim);
+    w->target = job->o->plan;
+    free(claimed);
+    free(name);
+    return status;
+}
+
+adcgs_status adcgs_enc_plan_learn(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_error *error)
+{
+    adcgs_plan plan = { .dataset = 0 };
+    adcgs_status status = adcgs_plan_read(&plan, job->o->plan, error);
+    if (status == ADCGS_OK)
+        status = take_settings(w, job, &plan, error);
+    if (status == ADCGS_OK)
+        status = adcgs_plan_base(&w->base, job->o->plan, error);
+    if (status == ADCGS_OK)
+        status = adcgs_enc_part_name(&w->state, w->base, w->segment, 0, error);
+    if (status == ADCGS_OK)
+        status = learn_claimed(w, job, error);
+    job->plan = NULL;
+    if (job->cuts.at == plan.cuts.at)
+        job->cuts = (adcgs_cuts){ .n = 0 };
+    adcgs_plan_clear(&plan);
+    return status;
+}
