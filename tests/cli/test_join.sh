@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc --plan and adcgs-join: parts that are learnt apart, in any order, by other threads, with no pictures but their own, make
-# the stream of one process; what is wrong with a part is said by name, and nothing is lost. Runs in the build folder.
+# adcgs-enc --plan and adcgs-join: parts that are learnt apart, in any order, by other threads, with no pictures but their own,
+# make the stream of one process; what is wrong with a part is said by name, and nothing is lost. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-join adcgs-info adcgs-demo-scene tests/cli/edit-stream
 
@@ -31,7 +31,8 @@ expect 3 "plan.1.adcgs: missing: learn segment 1 first" ./adcgs-enc "$scene" --p
 # The last segment first, from a scene that has no other pictures but those that tell the size of each split.
 mkdir "$dir/own"
 cp "$scene"/*.json "$dir/own"
-for file in train/r_000.ppm val/r_000.ppm test/r_000.ppm $(awk '/"begin"/ { n++ } n == 3' "$plan" | sed -n 's/^ *"\(.*ppm\)",*$/\1/p'); do
+own=$(awk '/"begin"/ { n++ } n == 3' "$plan" | sed -n 's/^ *"\(.*ppm\)",*$/\1/p')
+for file in train/r_000.ppm val/r_000.ppm test/r_000.ppm $own; do
     mkdir -p "$(dirname "$dir/own/$file")" && cp "$scene/$file" "$dir/own/$file"
 done
 [ "$(find "$dir/own/train" -name '*.ppm' | wc -l)" -lt "$(find "$scene/train" -name '*.ppm' | wc -l)" ] || bad "all are its own"
@@ -103,7 +104,8 @@ plan_wrong 5 "adcgs_plan: 2, expected 1" -e 's/"adcgs_plan": 1/"adcgs_plan": 2/'
 plan_wrong 5 "by adcgs-enc 9" -e "s/adcgs-enc $version/adcgs-enc 9/"
 expect 3 "cannot open" ./adcgs-enc "$scene" --plan "$dir/none.json" --segment 1
 expect 3 "cannot open" ./adcgs-join "$dir/none.json" --list
-sed 's/"time": 0,/"time": 0.01,/' "$dir/own/transforms_train.json" >"$dir/other" && mv "$dir/other" "$dir/own/transforms_train.json"
+views=$dir/own/transforms_train.json
+sed 's/"time": 0,/"time": 0.01,/' "$views" >"$dir/other" && mv "$dir/other" "$views"
 rm "$dir/plan.3.adcgs"
 expect 4 "not the scene of" ./adcgs-enc "$dir/own" --plan "$plan" --segment 3
 
@@ -119,19 +121,20 @@ expect 2 "give --plan" ./adcgs-enc "$scene" -o "$dir/x" --cut 1
 
 # Two runs do not learn the same segment; what a run that is gone, or dead, has left is taken over.
 claim=$dir/plan.3.claim
-echo "elsewhere 1 2026-01-01T00:00:00Z" >"$claim"
-expect 3 "plan.3.claim: another run has segment 3: process 1 on elsewhere, since 2026" ./adcgs-enc "$scene" --plan "$plan" --segment 3
-[ "$(cat "$claim")" = "elsewhere 1 2026-01-01T00:00:00Z" ] || bad "the other's claim is gone"
-echo "$(uname -n) $$ 2026-01-01T00:00:00Z" >"$claim"
+ln -s "elsewhere 1 2026-01-01T00:00:00Z" "$claim"
+expect 3 "plan.3.claim: another run has segment 3: process 1 on elsewhere, since 2026" \
+    ./adcgs-enc "$scene" --plan "$plan" --segment 3
+[ "$(readlink "$claim")" = "elsewhere 1 2026-01-01T00:00:00Z" ] || bad "the other's claim is gone"
+ln -sf "$(uname -n) $$ 2026-01-01T00:00:00Z" "$claim"
 expect 3 "process $$ on $(uname -n)" ./adcgs-enc "$scene" --plan "$plan" --segment 3
-touch -d '2 minutes ago' "$claim"
+touch -h -d '2 minutes ago' "$claim"
 learn 3
-[ ! -e "$claim" ] || bad "the claim stays"
+[ ! -h "$claim" ] || bad "the claim stays"
 sh -c 'echo $$' >"$dir/gone"
-echo "$(uname -n) $(cat "$dir/gone") 2026-01-01T00:00:00Z" >"$claim"
+ln -s "$(uname -n) $(cat "$dir/gone") 2026-01-01T00:00:00Z" "$claim"
 learn 3
-[ ! -e "$claim" ] || bad "the claim of one that is gone stays"
-echo "elsewhere 1 2026-01-01T00:00:00Z" >"$dir/two.adcgs.checkpoint.claim"
+[ ! -h "$claim" ] || bad "the claim of one that is gone stays"
+ln -s "elsewhere 1 2026-01-01T00:00:00Z" "$dir/two.adcgs.checkpoint.claim"
 expect 3 "another run has the segments" ./adcgs-enc "$scene" -o "$dir/two.adcgs" --segment 0.1 --preset draft --iterations 30
 
 # Interrupted, the same command goes on.
