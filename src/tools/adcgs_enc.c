@@ -12,6 +12,8 @@
 #include "tools/enc_live.h"
 #include "tools/enc_parts.h"
 #include "tools/enc_plan.h"
+#include "tools/enc_rank.h"
+#include "tools/enc_ranks.h"
 #include "tools/enc_report.h"
 #include "tools/enc_run.h"
 #include "tools/enc_segments.h"
@@ -20,6 +22,7 @@
 #include <adcgs/adcgs.h>
 
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -159,7 +162,7 @@ static adcgs_status encode_segments(adcgs_enc_watcher *w, const adcgs_enc_job *j
     adcgs_status status = adcgs_claim_take(&claim, name, "the segments", error);
     free(name);
     if (status == ADCGS_OK)
-        status = adcgs_enc_segments_learn(w, job, &spent, error);
+        status = job->ranks ? adcgs_enc_ranks_lead(w, job, &spent, error) : adcgs_enc_segments_learn(w, job, &spent, error);
     if (status == ADCGS_OK)
         status = adcgs_enc_segments_write(w, job, &spent, error);
     adcgs_claim_drop(&claim);
@@ -209,6 +212,8 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     const adcgs_enc_options *o = job->o;
     adcgs_scene_options scene = { .points_path = o->points, .dataset = o->dataset };
     ADCGS_TRY(prepare(job, w, &scene, error));
+    if (job->ranks && job->ranks->rank && (!o->has_segment || o->live)) /* there is nothing to share */
+        return adcgs_rank_follow(w, job, error);
     w->log = o->log ? fopen(o->log, o->resume || o->finish ? "a" : "w") : NULL;
     if (o->log && !w->log)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
@@ -222,20 +227,23 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     adcgs_progress_show(&w->progress, "scene     %u views for training, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
                         adcgs_seconds() - o->started.clock);
-    if (o->preview)
+    if (w->preview.path)
         ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
     adcgs_enc_reduce_large(job, &w->progress);
     ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->has_segment)
         ADCGS_TRY(adcgs_enc_cut(job, o->segment, error));
+    if (job->ranks && job->ranks->rank)
+        return adcgs_rank_follow(w, job, error);
     return job->cuts.n > 1 ? encode_segments(w, job, met, error) : encode_whole(w, job, met, error);
 }
 
-static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, adcgs_pool *pool, int *met, adcgs_error *error)
+static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_ranks *ranks, adcgs_pool *pool, int *met,
+                           adcgs_error *error)
 {
-    adcgs_enc_job job = { .cli = cli, .o = o, .pool = pool };
+    adcgs_enc_job job = { .cli = cli, .o = o, .ranks = ranks->size > 1 ? ranks : NULL, .pool = pool };
     adcgs_enc_watcher w = { .o = o, .target = o->plan ? o->plan : o->beginning ? o->beginning : o->output,
-                            .keeps = o->checkpoint || o->plan, .preview = { .path = o->preview } };
+                            .keeps = o->checkpoint || o->plan, .preview = { .path = ranks->rank ? NULL : o->preview } };
     adcgs_progress_init(&w.progress, cli);
     adcgs_progress_keep(&w.progress);
     adcgs_buffer_init(&w.changes);
@@ -488,6 +496,24 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     return -1;
 }
 
+static adcgs_status run_program(const adcgs_cli *cli, adcgs_enc_options *o, const adcgs_ranks *ranks, int *met,
+                                adcgs_error *error)
+{
+    adcgs_pool *pool = NULL;
+    char log[PATH_MAX];
+    if (ranks->size && !o->threads)
+        o->threads = adcgs_enc_ranks_threads(ranks);
+    if (ranks->rank && o->log) { /* a log has one writer */
+        snprintf(log, sizeof log, "%s.%d", o->log, ranks->rank);
+        o->log = log;
+    }
+    adcgs_status status = adcgs_pool_create(&pool, o->threads, error);
+    if (status == ADCGS_OK)
+        status = encode(cli, o, ranks, pool, met, error);
+    adcgs_pool_free(&pool);
+    return status;
+}
+
 int main(int argc, char **argv)
 {
     adcgs_enc_options o = { .preset = "fast", .fade = ADCGS_ENC_FADE, .cut = ADCGS_ENC_LIVE_SEGMENT, .checkpoint_every = 60,
@@ -497,15 +523,20 @@ int main(int argc, char **argv)
     if (code >= 0)
         return code;
     adcgs_error error = { ADCGS_OK, "" };
-    adcgs_pool *pool = NULL;
+    adcgs_ranks ranks = { .size = 0 };
     int met = 1;
-    adcgs_status status = adcgs_pool_create(&pool, o.threads, &error);
+    adcgs_status status = o.plan || adcgs_ranks_expected() == 1 ? ADCGS_OK : adcgs_ranks_open(&ranks, &error);
     if (status == ADCGS_OK)
-        status = encode(&cli, &o, pool, &met, &error);
-    adcgs_pool_free(&pool);
-    if (status != ADCGS_OK) {
-        error.status = status;
-        return adcgs_cli_fail(&cli, &error);
+        status = run_program(&cli, &o, &ranks, &met, &error);
+    if (status == ADCGS_OK) {
+        if (ranks.size && !ranks.rank)
+            adcgs_enc_ranks_dismiss(&ranks);
+        adcgs_ranks_close(&ranks);
+        return adcgs_cli_leave(&cli, met ? 0 : 1);
     }
-    return adcgs_cli_leave(&cli, met ? 0 : 1);
+    error.status = status;
+    const int bad = adcgs_cli_fail(&cli, &error);
+    if (ranks.size && !adcgs_interrupted()) /* else all are told already */
+        adcgs_ranks_abort(&ranks, bad);
+    return bad;
 }

@@ -83,8 +83,7 @@ static void log_last(adcgs_enc_watcher *w)
     log_line(w, &line);
 }
 
-/** "  1:05:00 left", or nothing where it is not known. */
-static const char *describe_left(double seconds, char text[32])
+const char *adcgs_enc_left(double seconds, char text[32])
 {
     const unsigned whole = seconds >= 0 && seconds < 1e9 ? (unsigned)seconds : 0;
     if (whole >= 3600)
@@ -143,10 +142,12 @@ static int observe(void *user, const adcgs_train_report *r)
         w->first = *r;
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back, and another try */
         log_last(w);
-    if (r->iteration)
+    if (w->hear)
+        w->hear(w->hear_user, w);
+    else if (r->iteration)
         adcgs_progress_show(&w->progress, "%s%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
                             attempt, r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors,
-                            r->bytes / 1000, r->rate, describe_left(r->left, left));
+                            r->bytes / 1000, r->rate, adcgs_enc_left(r->left, left));
     if (r->iteration)
         adcgs_enc_preview_show(&w->preview, w->t, r->stage, &w->progress);
     if (w->keeps && r->spent.clock - w->saved > w->o->checkpoint_every)
@@ -157,7 +158,8 @@ static int observe(void *user, const adcgs_train_report *r)
 static int loading(void *user, uint32_t done, uint32_t n)
 {
     adcgs_enc_watcher *w = user;
-    adcgs_progress_show(&w->progress, "pictures  %6u/%u", done, n);
+    if (!w->hear)
+        adcgs_progress_show(&w->progress, "pictures  %6u/%u", done, n);
     /* Later there is a run to save, which it is once they are loaded. */
     return adcgs_interrupted() && !w->t->iteration && !w->is_live;
 }
@@ -211,6 +213,8 @@ static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs
     if (is_ready(w) && adcgs_interrupts() < 2)
         adcgs_cli_error(cli, ADCGS_OK, "interrupted: the state is being saved; a second interrupt makes a file of what there is");
     ADCGS_TRY(adcgs_trainer_save(w->t, w->state, error));
+    if (w->hear)
+        return ADCGS_OK; /* who is told says so for all */
     if (w->o->plan)
         adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; the same command goes on", w->t->iteration,
                         w->segment + 1, w->segments);
@@ -292,7 +296,8 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
         adcgs_trainer_free(&w->t);
         ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, otherwise, job->cpu, job->pool, error));
     }
-    if (!*job->cli->quiet && !w->is_live) { /* nobody asks what is live once more */
+    const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank says it for all */
+    if (!*job->cli->quiet && !w->is_live && !is_one_of_many) { /* nobody asks what is live once more */
         w->t->glances = w->glances = adcgs_alloc(NULL, w->t->n_views, sizeof *w->glances, error);
         if (!w->glances)
             return adcgs_alloc_status(error);

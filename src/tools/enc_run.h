@@ -6,6 +6,7 @@
 #include "cli/cli.h"
 #include "encode/encode.h"
 #include "encode/plan.h"
+#include "io/ranks.h"
 #include "tools/enc_preview.h"
 
 #define ADCGS_ENC_KEY_EVERY 10.0   /**< seconds from one key to the next, unless given */
@@ -42,6 +43,8 @@ typedef struct adcgs_enc_watcher {
     int unsaved; /* the last checkpoint could not be written */
     int cut_short; /* by interrupts: it was made a file of before its end */
     adcgs_train_report last;
+    void (*hear)(void *user, const struct adcgs_enc_watcher *w); /* told how far it is, instead of showing it; or NULL */
+    void *hear_user;
     size_t uncompressed_bytes;
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
@@ -65,6 +68,7 @@ typedef struct adcgs_enc_job {
     adcgs_scene *scene;
     adcgs_cuts cuts; /* n 0: the scene is not cut */
     uint8_t *follows; /* [cuts.n] 1: the part is learnt from the one before */
+    const adcgs_ranks *ranks; /* that learn the segments together; NULL: this process alone */
     const adcgs_plan *plan; /* that the scene is learnt by; NULL: there is none */
     adcgs_train_config config;
     adcgs_train_config whole; /* of the scene as one segment, where it is cut */
@@ -72,6 +76,8 @@ typedef struct adcgs_enc_job {
     adcgs_pool *pool;
 } adcgs_enc_job;
 
+/** "  1:05:00 left", or nothing where it is not known. */
+const char *adcgs_enc_left(double seconds, char text[32]);
 /** changes: settings that are not the preset's, "" for none. The notes point into the trainer's configuration. */
 void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes);
 

@@ -98,19 +98,33 @@ adcgs_status adcgs_enc_segment_learn(adcgs_enc_watcher *w, const adcgs_enc_job *
     return status;
 }
 
-adcgs_status adcgs_enc_segments_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+adcgs_status adcgs_enc_segment_begin(adcgs_enc_watcher *w, uint32_t segment, adcgs_error *error)
+{
+    free(w->state);
+    w->state = NULL;
+    w->segment = segment;
+    return adcgs_enc_part_name(&w->state, w->base, segment, 0, error);
+}
+
+adcgs_status adcgs_enc_segment_find(adcgs_enc_watcher *w, const adcgs_enc_job *job, uint32_t segment, int *found,
+                                    adcgs_error *error)
 {
     adcgs_enc_notes expected;
+    *found = 0;
+    if (!job->o->resume)
+        return ADCGS_OK;
     expect_notes(&expected, w, job);
+    return adcgs_enc_part_check(w->base, job->scene, &job->cuts, segment, expected.list, expected.n, job->cpu, job->pool, found,
+                                error);
+}
+
+adcgs_status adcgs_enc_segments_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)
+{
     w->segments = job->cuts.n;
-    for (w->segment = 0; w->segment < w->segments; w->segment++) {
-        int found = 0;
-        free(w->state);
-        w->state = NULL;
-        ADCGS_TRY(adcgs_enc_part_name(&w->state, w->base, w->segment, 0, error));
-        if (job->o->resume)
-            ADCGS_TRY(adcgs_enc_part_check(w->base, job->scene, &job->cuts, w->segment, expected.list, expected.n, job->cpu,
-                                           job->pool, &found, error));
+    for (uint32_t i = 0; i < w->segments; i++) {
+        int found;
+        ADCGS_TRY(adcgs_enc_segment_begin(w, i, error));
+        ADCGS_TRY(adcgs_enc_segment_find(w, job, i, &found, error));
         if (!found)
             ADCGS_TRY(adcgs_enc_segment_learn(w, job, spent, error));
     }

@@ -10,6 +10,11 @@ adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *erro
 /** Parts share their parameters, so all have a time table of as many rows as the shortest can have. */
 void adcgs_enc_cut_config(adcgs_enc_job *job);
 
+/** Make a part, from 0, the one that is learnt: w->segment and the name of its state. */
+adcgs_status adcgs_enc_segment_begin(adcgs_enc_watcher *watcher, uint32_t segment, adcgs_error *error);
+/** Whether a part's stream is there, of a run that this one goes on with. ADCGS_ERR_DATA, naming it, if it is another's. */
+adcgs_status adcgs_enc_segment_find(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, uint32_t segment, int *found,
+                                    adcgs_error *error);
 /**
  * Learn the part that w->segment says, from its checkpoint, w->state, if there is one and the run goes on, and leave its stream
  * on the disk.

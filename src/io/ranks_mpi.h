@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file The module that holds MPI: its table. What messages mean is others' business. */
+#ifndef ADCGS_IO_RANKS_MPI_H
+#define ADCGS_IO_RANKS_MPI_H
+
+#include "io/module.h"
+#include "io/ranks.h"
+
+typedef struct adcgs_mpi {
+    const char *version; /**< of the programs that the module belongs to */
+    adcgs_status (*open)(adcgs_ranks *ranks, adcgs_error *error);
+    void (*close)(void);
+    void (*abort)(int code);
+    void (*send)(int to, const void *message, int bytes);
+    int (*take)(int *from, void *message, int bytes); /**< \return whether there was one of so many bytes */
+} adcgs_mpi;
+
+/** The one thing that the module exports. */
+ADCGS_MODULE_EXPORT extern const adcgs_mpi adcgs_mpi_table;
+
+#endif
