@@ -7,6 +7,7 @@
 #include "io/atomic.h"
 #include "io/json.h"
 #include "layouts/open.h"
+#include "train/anchor_plan.h"
 #include "train/settings.h"
 
 #include <adcgs/cpu.h>
@@ -15,9 +16,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Seconds of one processor with AVX-512: of an iteration whatever is drawn, and for each pixel that is drawn; to read a pixel. */
-#define PER_ITERATION 7e-3
-#define PER_PIXEL 1.8e-7
+/*
+ * Seconds of one processor with AVX-512: of an iteration for each anchor that there may be, and for each pixel that is drawn; to
+ * read a pixel. Of the seven scenes of README.md's "Figures" that move, six take 0.9 to 1.4 times what this says, and one 0.4.
+ */
+#define PER_ANCHOR 4.5e-6
+#define PER_PIXEL 8e-8
 #define PER_PIXEL_READ 6e-8
 
 void adcgs_plan_clear(adcgs_plan *p)
@@ -37,13 +41,19 @@ static double share_drawn(const adcgs_train_config *c)
     return (quarter / 16 + (half - quarter) / 4 + (1 - half)) / ((double)c->scale * c->scale);
 }
 
-double adcgs_plan_cost(const adcgs_train_config *c, const adcgs_scene *part)
+double adcgs_plan_cost(const adcgs_train_config *config, const adcgs_scene *part)
 {
     double pixels = 0;
+    uint32_t details;
+    adcgs_error ignored;
+    adcgs_train_config c = *config;
+    c.own_anchors |= !c.has_details; /* nobody has counted them, so no picture is read here */
+    adcgs_plan_anchors(&c, part, &details, &ignored);
     const uint32_t n = part->n_views[ADCGS_SPLIT_TRAIN];
     for (uint32_t i = 0; i < n; i++)
         pixels += (double)part->views[ADCGS_SPLIT_TRAIN][i].camera.width * part->views[ADCGS_SPLIT_TRAIN][i].camera.height;
-    return n ? PER_PIXEL_READ * pixels + c->iterations * (PER_ITERATION + PER_PIXEL * share_drawn(c) * pixels / n) : 0;
+    const double iteration = n ? PER_ANCHOR * c.max_anchors + PER_PIXEL * share_drawn(&c) * pixels / n : 0;
+    return PER_PIXEL_READ * pixels + c.iterations * iteration;
 }
 
 /* ---- Writing ---- */

@@ -7,7 +7,7 @@ need adcgs-enc adcgs-join adcgs-info adcgs-demo-scene tests/cli/edit-stream
 
 scene=$dir/scene plan=$dir/plan.json
 tiny_scene "$scene"
-short="--preset draft --iterations 30 --key 0.15"
+short="--preset draft --iterations 20 --key 0.15 --lambda 0.08 --set square_weight=0.7,k=4,stereo=4 --no-progression"
 # learn N OPTIONS...: segment N by the plan.
 learn()
 {
