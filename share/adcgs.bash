@@ -76,5 +76,5 @@ _adcgs()
     done
 }
 
-complete -F _adcgs adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-share \
-    adcgs-sweep
+complete -F _adcgs adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join \
+    adcgs-share adcgs-sweep

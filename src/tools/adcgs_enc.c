@@ -214,7 +214,7 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(prepare(job, w, &scene, error));
     if (job->ranks && job->ranks->rank && (!o->has_segment || o->live)) /* there is nothing to share */
         return adcgs_rank_follow(w, job, error);
-    w->log = o->log ? fopen(o->log, o->resume || o->finish ? "a" : "w") : NULL;
+    w->log = o->log ? fopen(o->log, o->resume || o->finish || o->plan ? "a" : "w") : NULL;
     if (o->log && !w->log)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
     if (o->plan)
@@ -299,50 +299,6 @@ static int check_live(const adcgs_cli *cli, adcgs_enc_options *o)
                                "than that, or a shorter --segment", o->delay, o->segment);
     if (o->json && !strcmp(o->output, "-"))
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--json and -o - both want standard output");
-    return -1;
-}
-
-static size_t size_of(adcgs_option_kind kind)
-{
-    return kind == ADCGS_OPTION_REAL ? sizeof(double) : kind == ADCGS_OPTION_SIZE ? sizeof(uint64_t) :
-           kind == ADCGS_OPTION_STRING || kind == ADCGS_OPTION_FILE ? sizeof(char *) : sizeof(int);
-}
-
-/** The first option that was given and is none of the names, which end with NULL; NULL if there is none. */
-static const char *find_other(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_enc_options *before,
-                              const char *const *names)
-{
-    for (size_t i = 0; i < cli->n_options; i++) {
-        const adcgs_option *const option = &cli->options[i];
-        const size_t at = (size_t)((const char *)option->target - (const char *)o);
-        const int given = option->given ? *option->given :
-                                          memcmp(option->target, (const char *)before + at, size_of(option->kind)) != 0;
-        const char *const *name = names;
-        while (*name && strcmp(*name, option->name))
-            name++;
-        if (given && !*name)
-            return option->name;
-    }
-    return NULL;
-}
-
-/** What --plan goes with, while the table of options is there; as parse(). */
-static int check_plan(const adcgs_cli *cli, adcgs_enc_options *o, const adcgs_enc_options *before)
-{
-    static const char *const making[] = { "plan", "cut", "key", "fade", "preset", "lambda", "psnr", "iterations", "scale", "k",
-                                          "max-anchors", "dataset", "frames", "fps", "points", "without", "fixed",
-                                          "no-progression", "set", "seed", "cpu", "bf16", "threads", NULL };
-    static const char *const learning[] = { "plan", "segment", "points", "log", "checkpoint-every", "memory", "threads", "json",
-                                            NULL };
-    const char *const other = find_other(cli, o, before, o->has_segment ? learning : making);
-    if (other && o->has_segment)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s: the plan says how its segments are learnt: give --plan and --segment "
-                               "without it", other);
-    if (other)
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is nothing that a plan has", other);
-    if (o->has_segment && (o->segment < 1 || o->segment != floor(o->segment)))
-        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment %g: with --plan, the number of a segment is expected",
-                               o->segment);
     return -1;
 }
 
@@ -442,7 +398,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
           "train as far as lambda does not matter, save the state\nhere and leave; runs with any lambda --resume it", NULL,
           NULL },
         { "log", 0, ADCGS_OPTION_FILE, &o->log, 0, 0, "FILE",
-          "write progress as JSON lines; appended with --resume", NULL, NULL },
+          "write progress as JSON lines; appended with --resume, and by\na plan's segments", NULL, NULL },
         { "preview", 0, ADCGS_OPTION_FILE, &o->preview, 0, 0, "FILE",
           "keep a picture here (PNG, JPEG, ...) of a view as it was\ntaken and as the model shows it, anew every 30 seconds",
           NULL, NULL },
@@ -463,7 +419,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
     const adcgs_enc_options before = *o;
     int first, code = adcgs_cli_parse(cli, argc, argv, &first);
     if (code < 0 && o->plan)
-        code = check_plan(cli, o, &before);
+        code = adcgs_enc_plan_check(cli, o, &before);
     cli->n_options = 0; /* the table ends with this function */
     if (code >= 0)
         return code;

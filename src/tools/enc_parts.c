@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file What a run of several segments leaves on the disk while it lasts. */
+#include "config.h"
+
 #include "tools/enc_parts.h"
 
 #include "io/atomic.h"
@@ -9,7 +11,11 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <time.h>
 #include <unistd.h>
+
+#define AWAIT_NAP 100000000L /* nanoseconds */
+#define AWAIT_NAPS 900       /* a minute and a half: NFS looks again after one */
 
 adcgs_status adcgs_enc_part_name(char **name, const char *base, uint32_t part, int is_stream, adcgs_error *error)
 {
@@ -133,6 +139,18 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
     adcgs_stream_clear(&then, NULL);
     free(name);
     return status;
+}
+
+void adcgs_enc_part_await(const char *base, uint32_t part)
+{
+    const struct timespec moment = { 0, AWAIT_NAP };
+    adcgs_error ignored;
+    char *name;
+    if (adcgs_enc_part_name(&name, base, part, 1, &ignored) != ADCGS_OK)
+        return;
+    for (int i = 0; i < AWAIT_NAPS && access(name, F_OK) && errno == ENOENT; i++)
+        nanosleep(&moment, NULL);
+    free(name);
 }
 
 /** Move the notes of a part to the stream. */

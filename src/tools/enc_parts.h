@@ -31,6 +31,12 @@ adcgs_status adcgs_enc_part_check(const char *base, const adcgs_scene *scene, co
                                   const adcgs_encode_note *notes, uint32_t n_notes, adcgs_cpu_level cpu, adcgs_pool *pool,
                                   int *found, adcgs_error *error);
 
+/**
+ * Wait until a part's stream that another machine has written is seen here: a shared file system may be a minute late with what
+ * it said was not there.
+ */
+void adcgs_enc_part_await(const char *base, uint32_t part);
+
 /** The model of a part's stream, which adcgs_model_clear() frees. */
 adcgs_status adcgs_enc_part_model(adcgs_model *model, const char *base, uint32_t part, adcgs_cpu_level cpu, adcgs_pool *pool,
                                   adcgs_error *error);

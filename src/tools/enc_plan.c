@@ -14,7 +14,53 @@
 #include "train/anchor_plan.h"
 #include "train/settings.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+/* ---- Options ---- */
+
+static size_t size_of(adcgs_option_kind kind)
+{
+    return kind == ADCGS_OPTION_REAL ? sizeof(double) : kind == ADCGS_OPTION_SIZE ? sizeof(uint64_t) :
+           kind == ADCGS_OPTION_STRING || kind == ADCGS_OPTION_FILE ? sizeof(char *) : sizeof(int);
+}
+
+/** The first option that was given and is none of the names, which end with NULL; NULL if there is none. */
+static const char *find_other(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_enc_options *before,
+                              const char *const *names)
+{
+    for (size_t i = 0; i < cli->n_options; i++) {
+        const adcgs_option *const option = &cli->options[i];
+        const size_t at = (size_t)((const char *)option->target - (const char *)o);
+        const int given = option->given ? *option->given :
+                                          memcmp(option->target, (const char *)before + at, size_of(option->kind)) != 0;
+        const char *const *name = names;
+        while (*name && strcmp(*name, option->name))
+            name++;
+        if (given && !*name)
+            return option->name;
+    }
+    return NULL;
+}
+
+int adcgs_enc_plan_check(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_enc_options *before)
+{
+    static const char *const making[] = { "plan", "cut", "key", "fade", "preset", "lambda", "psnr", "iterations", "scale", "k",
+                                          "max-anchors", "dataset", "frames", "fps", "points", "without", "fixed",
+                                          "no-progression", "set", "seed", "cpu", "bf16", "threads", NULL };
+    static const char *const learning[] = { "plan", "segment", "points", "log", "checkpoint-every", "memory", "threads", "json",
+                                            NULL };
+    const char *const other = find_other(cli, o, before, o->has_segment ? learning : making);
+    if (other && o->has_segment)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s: the plan says how its segments are learnt: give --plan and --segment "
+                               "without it", other);
+    if (other)
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--%s is nothing that a plan has", other);
+    if (o->has_segment && (o->segment < 1 || o->segment != floor(o->segment)))
+        return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "--segment %g: with --plan, the number of a segment is expected",
+                               o->segment);
+    return -1;
+}
 
 /* ---- Made ---- */
 

@@ -6,6 +6,12 @@
 #include "layouts/open.h"
 #include "tools/enc_run.h"
 
+/**
+ * Whether the options that were given go with --plan, while cli has their table; before: what they were before any was given. A
+ * mistake is reported. \return -1 to go on, else the exit code
+ */
+int adcgs_enc_plan_check(const adcgs_cli *cli, const adcgs_enc_options *o, const adcgs_enc_options *before);
+
 /** Write the plan, job->o->plan, of a scene that is opened as the options say; nothing is learnt. */
 adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *options, adcgs_error *error);
 

@@ -59,16 +59,17 @@ typedef struct follower {
     double told; /* when */
 } follower;
 
-static void tell(void *user, const adcgs_enc_watcher *w)
+static int tell(void *user, const adcgs_enc_watcher *w)
 {
     follower *f = user;
     const double now = adcgs_seconds();
     if (now - f->told < TELL_EVERY)
-        return;
+        return 0;
     f->told = now;
     f->last.kind = ADCGS_RANK_TOLD;
     take_report(&f->last, w);
     adcgs_ranks_send(f->ranks, 0, &f->last, sizeof f->last);
+    return 0;
 }
 
 adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
@@ -98,13 +99,15 @@ adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, a
 
 /* ---- Beside what rank 0 hands out ---- */
 
-static void hear(void *user, const adcgs_enc_watcher *w)
+static int hear(void *user, const adcgs_enc_watcher *w)
 {
     adcgs_rank_learner *l = user;
     pthread_mutex_lock(&l->lock);
     l->last.kind = ADCGS_RANK_TOLD;
     take_report(&l->last, w);
+    const int ends = l->ends;
     pthread_mutex_unlock(&l->lock);
+    return ends;
 }
 
 static void *run_learner(void *user)

@@ -46,7 +46,7 @@ adcgs_status adcgs_rank_start(adcgs_rank_learner *learner, adcgs_error *error);
 void adcgs_rank_give(adcgs_rank_learner *learner, const adcgs_rank_note *note);
 /** What it would say: how far it is, or once that it is done. */
 adcgs_status adcgs_rank_ask(adcgs_rank_learner *learner, adcgs_rank_note *note, int *is_done, adcgs_error *error);
-/** Wait for what it learns, and end the thread. */
+/** Stop what it learns, whose state it saves, and end the thread. */
 void adcgs_rank_end(adcgs_rank_learner *learner);
 
 #endif

@@ -226,8 +226,7 @@ adcgs_status adcgs_enc_ranks_lead(adcgs_enc_watcher *w, const adcgs_enc_job *job
         l.there[0] = 1;
         status = lead(&l, error);
         adcgs_progress_clear(&l.progress);
-        if (status == ADCGS_OK || adcgs_interrupted())
-            adcgs_rank_end(&l.own);
+        adcgs_rank_end(&l.own);
         if (status == ADCGS_OK && l.final.iterations) {
             w->last.iteration = l.final.iteration;
             w->last.loss = l.final.loss;

@@ -136,6 +136,7 @@ static int observe(void *user, const adcgs_train_report *r)
         snprintf(segment, sizeof segment, "%u: ", w->segment + 1);
     if (r->attempt > 1)
         snprintf(attempt, sizeof attempt, "try %d: ", r->attempt);
+    int stops = 0;
     look_at_footage(w);
     w->last = *r;
     if (r->iteration && !w->first.iteration)
@@ -143,7 +144,7 @@ static int observe(void *user, const adcgs_train_report *r)
     if (r->iteration >= w->next_log || r->iteration + 100 < w->next_log) /* a rollback goes back, and another try */
         log_last(w);
     if (w->hear)
-        w->hear(w->hear_user, w);
+        stops = w->hear(w->hear_user, w);
     else if (r->iteration)
         adcgs_progress_show(&w->progress, "%s%s%-9s %6u/%u  1/%d  loss %.4f  %.2f dB  %u anchors  %.0f KB  %.0f it/s%s", segment,
                             attempt, r->stage, r->iteration, r->iterations, r->divide, r->loss, r->psnr, r->anchors,
@@ -152,7 +153,7 @@ static int observe(void *user, const adcgs_train_report *r)
         adcgs_enc_preview_show(&w->preview, w->t, r->stage, &w->progress);
     if (w->keeps && r->spent.clock - w->saved > w->o->checkpoint_every)
         save_now_and_then(w, r->spent.clock);
-    return adcgs_interrupted() && !w->is_live;
+    return stops || (adcgs_interrupted() && !w->is_live);
 }
 
 static int loading(void *user, uint32_t done, uint32_t n)

@@ -43,7 +43,7 @@ typedef struct adcgs_enc_watcher {
     int unsaved; /* the last checkpoint could not be written */
     int cut_short; /* by interrupts: it was made a file of before its end */
     adcgs_train_report last;
-    void (*hear)(void *user, const struct adcgs_enc_watcher *w); /* told how far it is, instead of showing it; or NULL */
+    int (*hear)(void *user, const struct adcgs_enc_watcher *w); /* told how far it is, which is then not shown; nonzero: stop */
     void *hear_user;
     size_t uncompressed_bytes;
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */

@@ -48,6 +48,8 @@ static adcgs_status load_before(adcgs_model *before, const adcgs_enc_watcher *w,
 {
     if (!job->follows[w->segment])
         return ADCGS_OK;
+    if (job->ranks)
+        adcgs_enc_part_await(w->base, w->segment - 1);
     return job->plan ? adcgs_plan_part_model(before, job->plan, w->base, w->segment - 1, job->cpu, job->pool, error) :
                        adcgs_enc_part_model(before, w->base, w->segment - 1, job->cpu, job->pool, error);
 }
@@ -136,6 +138,8 @@ adcgs_status adcgs_enc_segments_write(adcgs_enc_watcher *w, const adcgs_enc_job 
     adcgs_stream stream;
     adcgs_buffer bytes;
     adcgs_buffer_init(&bytes);
+    for (uint32_t i = 0; job->ranks && i < job->cuts.n; i++)
+        adcgs_enc_part_await(w->base, i);
     adcgs_status status = adcgs_enc_parts_join(&stream, w->base, job->scene, &job->cuts, job->follows, job->cpu, job->pool,
                                                error);
     if (status == ADCGS_OK)

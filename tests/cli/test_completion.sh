@@ -55,7 +55,8 @@ wants "adcgs-dec http://host/n" ""
 
 # Each program prints its whole table: the options of its help, all of them.
 cd "$here" || exit 99
-for program in adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-share adcgs-sweep; do
+for program in adcgs-conform adcgs-dec adcgs-demo-scene adcgs-enc adcgs-eval adcgs-import adcgs-info adcgs-join adcgs-share \
+    adcgs-sweep; do
     [ -x "./$program" ] || continue
     "./$program" --completion | cut -f 1 | grep -v '^-$' | sort -u >"$dir/table"
     "./$program" --help | grep -o -E '^ +(-[a-zA-Z], )?--[a-z0-9-]+' | grep -o -E -e '--.*' | sort -u >"$dir/help"
