@@ -87,9 +87,9 @@ pid=$!
 while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":200,' "$dir/log.1" 2>/dev/null; do
     sleep 0.05
 done
-for process in $(pgrep -x adcgs-enc); do
-    grep -qz "^OMPI_COMM_WORLD_RANK=1$" "/proc/$process/environ" && grep -qzF "$dir/two.adcgs" "/proc/$process/cmdline" &&
-        kill -KILL "$process"
+for process in /proc/[0-9]*; do
+    [ "$(cat "$process/comm" 2>/dev/null)" = adcgs-enc ] && grep -qz "^OMPI_COMM_WORLD_RANK=1$" "$process/environ" &&
+        grep -qzF "$dir/two.adcgs" "$process/cmdline" && kill -KILL "${process#/proc/}"
 done
 wait $pid
 [ $? -ne 0 ] || bad "a run whose rank is dead leaves with 0"
