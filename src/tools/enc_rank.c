@@ -78,7 +78,7 @@ adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, a
     w->hear = tell;
     w->hear_user = &f;
     w->segments = job->cuts.n;
-    adcgs_interrupt_catch();
+    adcgs_interrupt_catch(1);
     adcgs_ranks_send(job->ranks, 0, &f.last, sizeof f.last);
     for (;;) {
         int from;

@@ -212,7 +212,7 @@ adcgs_status adcgs_enc_ranks_lead(adcgs_enc_watcher *w, const adcgs_enc_job *job
     const adcgs_ranks *const ranks = job->ranks;
     leader l = { .w = w, .job = job, .ranks = ranks, .spent = spent, .own = { .w = w, .job = job } };
     adcgs_progress_init(&l.progress, job->cli);
-    adcgs_interrupt_catch();
+    adcgs_interrupt_catch(1);
     w->segments = job->cuts.n;
     l.states = adcgs_alloc(NULL, job->cuts.n, sizeof *l.states, error);
     l.last = adcgs_alloc(NULL, (size_t)ranks->size, sizeof *l.last, error);
