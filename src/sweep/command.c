@@ -6,8 +6,16 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+/** Where mpirun or srun starts sweeps, what these start is a process by itself, and no rank that others wait for. */
+static void leave_ranks(void)
+{
+    unsetenv("OMPI_COMM_WORLD_SIZE");
+    unsetenv("PMIX_RANK");
+}
 
 static void redirect(const char *path, int descriptor, int flags)
 {
@@ -28,6 +36,7 @@ adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *
             redirect(out, STDOUT_FILENO, O_TRUNC);
         if (log)
             redirect(log, STDERR_FILENO, O_APPEND);
+        leave_ranks();
         execvp(argv[0], argv);
         _exit(127);
     }

@@ -7,11 +7,12 @@ mkdir "$dir/scene"
 
 # The pretended encoder: 64000 bytes over lambda at 36 - lambda dB, with features for each primitive twice that; 0.1 dB a seed; half a
 # dB less for each part left out of the method. An uncompressed model has 400000 zeros and 35.05 dB. It lists its calls, goes
-# on from nothing but what it began, and refuses lambda 666 half way. It does not end while there is a file "slow".
+# on from nothing but what it began, and refuses lambda 666 half way. It does not end while there is a file "slow", and is no rank of MPI.
 cat >"$dir/adcgs-enc" <<'END'
 #!/bin/bash
 here=$(dirname "$0") lambda=1 seed=0 without= raw= begin= resume= partial=
 echo "$*" >>"$here/calls"
+[ -z "${OMPI_COMM_WORLD_SIZE-}${PMIX_RANK-}" ] || exit 5
 while [ $# -gt 0 ]; do
     case $1 in
         --output) file=$2 ;;

@@ -85,11 +85,11 @@ line "lambda-666: begun, not finished, and nobody is at it; see $out/lambda-666.
 sweep --lambda 1,2,666 --yardsticks none --list --resume
 [ "$(wc -l <"$dir/report")" -eq 2 ] || fail "expected what is missing: $(cat "$dir/report")"
 
-# A beginning that one process left is used.
+# A beginning that one process left is used. What is started by mpirun or srun is no rank for the encoder.
 out=$dir/begun
 sweep --lambda 1,2 --yardsticks none
 : >"$dir/calls"
-many 0 '' "$dir/scene" -o "$out" --lambda 1,2,4 --yardsticks none --run lambda-4
+OMPI_COMM_WORLD_SIZE=2 PMIX_RANK=1 many 0 '' "$dir/scene" -o "$out" --lambda 1,2,4 --yardsticks none --run lambda-4
 calls 1 1 "--resume $out/beginning.checkpoint"
 
 # Two at one run, two at one folder: the second refuses, by name, and what is there stays. Others, and --collect, go on.
