@@ -368,7 +368,8 @@ static void test_crop(void **state)
     static float truth[3 * W * H], decoded[3 * W * H], small_truth[3 * 20 * 26], small_decoded[3 * 20 * 26];
     const adcgs_box box = {{-1, -1, 4}, {1, 1, 9}}, aside = {{9, -1, 4}, {10, 1, 5}}; /* 20..40 x 7..33, as above */
     const adcgs_scene_view view = {.camera = camera};
-    const adcgs_view_score score = {.view = &view, .seen = &view.camera, .width = W, .height = H, .decoded = decoded, .truth = truth};
+    const adcgs_view_score score = {.view = &view, .seen = &view.camera, .width = W, .height = H, .decoded = decoded,
+                                    .truth = truth};
     adcgs_crop crop, again;
     double ssim;
     for (int i = 0; i < 3 * W * H; i++) {
