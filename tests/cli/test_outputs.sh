@@ -43,7 +43,7 @@ if [ -w /dev/full ]; then
     printed ./adcgs-conform "$vectors/manifest.json" --list
     printed ./adcgs-demo-scene --list
     printed ./adcgs-enc --set list
-    printed ./adcgs-enc "$dir/scene" -o "$dir/x.adcgs" --preset draft --iterations 10 --json
+    printed ./adcgs-enc "$dir/scene" -o "$dir/x.adcgs" --preset draft --iterations 10 --json --quiet
 
     # Names that stand for the device, with the extensions that programs go by.
     for extension in png jpg exr ppm tif sgi y4m raw mp4 ply drc json xml csv svg; do
