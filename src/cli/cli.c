@@ -249,7 +249,7 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
     char letters[2 * OPTIONS_MAX + 5];
     getopt_tables(cli, longs, letters);
     opterr = 0;
-    optind = 1; /* a program may have two lines to read */
+    optind = 0; /* a new scan, with GNU and musl: a program may have two lines to read */
     if (argc == 2 && !strcmp(argv[1], "--completion")) {
         adcgs_cli_print_completion(cli);
         return adcgs_cli_leave(cli, 0);
