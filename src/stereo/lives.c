@@ -51,27 +51,31 @@ static int is_gone(const job *j, int moment, const double x[3])
     return usual >= 2 && usual >= USUAL_SHARE * seen;
 }
 
+/** How long it is from the point's moment to an end, going by steps of 1 or -1; 0: there is none near. */
+static float end_of(const job *j, const adcgs_stereo_point *p, int moment, int step)
+{
+    const adcgs_stereo_rig *rig = j->rig;
+    for (int k = 1, m = moment + step; k <= REACH && m >= 0 && m < rig->n_moments; k++, m += step) {
+        double x[3];
+        for (int a = 0; a < 3; a++)
+            x[a] = p->x[a] + (double)p->velocity[a] * (double)(rig->moment[m] - p->t);
+        if (is_gone(j, m, x))
+            return fabsf(0.5f * (rig->moment[m] + rig->moment[m - step]) - p->t);
+    }
+    return 0;
+}
+
 static void find_ends(void *arg, int part, int thread)
 {
     const job *j = arg;
-    const adcgs_stereo_rig *rig = j->rig;
     (void)thread;
     for (uint32_t i = (uint32_t)part * PART; i < j->n && i < ((uint32_t)part + 1) * PART; i++) {
         adcgs_stereo_point *p = &j->points[i];
         int moment = 0;
-        while (moment + 1 < rig->n_moments && rig->moment[moment] < p->t)
+        while (moment + 1 < j->rig->n_moments && j->rig->moment[moment] < p->t)
             moment++;
-        for (int side = 0; side < 2; side++) {
-            const int step = side ? 1 : -1;
-            p->end[side] = 0;
-            for (int k = 1, m = moment + step; k <= REACH && m >= 0 && m < rig->n_moments && !(p->end[side] > 0); k++, m += step) {
-                double x[3];
-                for (int a = 0; a < 3; a++)
-                    x[a] = p->x[a] + (double)p->velocity[a] * (double)(rig->moment[m] - p->t);
-                if (is_gone(j, m, x))
-                    p->end[side] = fabsf(0.5f * (rig->moment[m] + rig->moment[m - step]) - p->t);
-            }
-        }
+        p->end[0] = end_of(j, p, moment, -1);
+        p->end[1] = end_of(j, p, moment, 1);
     }
 }
 

@@ -11,8 +11,8 @@
 #include "stereo/rig.h"
 
 /**
- * Set the ends of points that move, whose velocities are known, before cameras that stay. still: of each camera that has something
- * it usually shows, in their order, depths of that; who sees it before a place says nothing of it.
+ * Set the ends of points that move, whose velocities are known, before cameras that stay. still: of each camera that usually
+ * shows something, in their order, depths of that; who sees it before a place says nothing of it.
  */
 void adcgs_stereo_find_ends(adcgs_stereo_point *points, uint32_t n, const adcgs_stereo_rig *rig,
                             const adcgs_depths *still, adcgs_pool *pool);
