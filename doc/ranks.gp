@@ -3,7 +3,7 @@
 set terminal svg size 700,450 dynamic font 'sans-serif,12'
 set datafile separator ','
 set grid
-set key bottom right
+set key noenhanced bottom right
 set output folder.'/ranks.svg'
 set title 'A scene in segments, learnt by many ranks'
 set xlabel 'ranks'
