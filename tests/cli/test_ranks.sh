@@ -94,9 +94,10 @@ done
 wait $pid
 [ $? -ne 0 ] || bad "a run whose rank is dead leaves with 0"
 grep -q 'process rank 1 .* exited on signal 9' "$dir/err" || { bad "mpirun does not name it"; cat "$dir/err"; }
-grep -q 'stopped, with 0 of 3 segments done: .*rank 1 on .* at iteration [0-9]* of segment 3; .*--resume' "$dir/err" ||
+grep -q 'stopped, with [01] of 3 segments done: .*rank 1 on .* at iteration [0-9]* of segment 3; .*--resume' "$dir/err" ||
     { bad "rank 0 does not say who was at what"; cat "$dir/err"; }
-[ -e "$dir/state.1" ] && [ -e "$dir/state.3" ] || bad "there are no checkpoints: $(find "$dir" -name 'state*' | xargs)"
+{ [ -e "$dir/state.1" ] || [ -e "$dir/state.1.adcgs" ]; } && [ -e "$dir/state.3" ] ||
+    bad "there are no checkpoints: $(find "$dir" -name 'state*' | xargs)"
 # shellcheck disable=SC2086
 same two 4 $long --resume "$dir/state"
 left=$(find "$dir" -name 'state*' | xargs)
