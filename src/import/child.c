@@ -25,19 +25,25 @@ typedef struct listener {
     int stop, is_told;
 } listener;
 
+/** The log gets whole lines, so that the same output makes the same calls, however it arrives; who waits may look. */
 static void take_bytes(listener *l, const char *bytes, size_t n)
 {
-    if (l->log) {
-        fwrite(bytes, 1, n, l->log);
-        fflush(l->log); /* who waits may look */
-    }
-    for (size_t i = 0; i < n; i++)
-        if (bytes[i] == '\n' || bytes[i] == '\r') {
+    size_t from = 0;
+    for (size_t i = 0; i < n; i++) {
+        const int ends = bytes[i] == '\n' || bytes[i] == '\r';
+        if (l->log && (ends || i + 1 == n)) {
+            fwrite(bytes + from, 1, i + 1 - from, l->log);
+            from = i + 1;
+        }
+        if (l->log && ends)
+            fflush(l->log);
+        if (ends) {
             l->text[l->n] = 0;
             l->n = 0;
             l->stop |= l->line(l->user, l->text) != 0;
         } else if (l->n + 1 < sizeof l->text)
             l->text[l->n++] = bytes[i];
+    }
 }
 
 /** Until nobody can write any more. */
