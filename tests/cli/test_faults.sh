@@ -11,6 +11,7 @@ tiny_stream 40
 s=$dir/s.adcgs w=$dir/w
 
 ways='once +'
+none=1000000 most=$none # a call that there is not; the last that is tried
 
 # faults NAME COMMAND...: the command writes into $w; what it prints goes to a file there, too. Of its files, those that end in
 # .log grow line by line, and the standard output does so as well; the others are to be whole.
@@ -32,6 +33,7 @@ faults()
             [ "$n" -le "$calls" ] || break
             check_fault "$name, call $n$rest of $calls"
             n=$((n + 1 + n / 4)) # all of the first ones, then fewer and fewer
+            [ "$n" -le "$most" ] || n=$none
         done
         [ "$calls" -gt 0 ] || bad "$name: nothing is written"
         [ "$code" -eq 0 ] || { bad "$name: exit code $code without a fault"; cat "$dir/err"; }
@@ -174,7 +176,8 @@ imports "import" "$dir/views" --masks "$dir/masks" --side 64
 
 # A sweep's tables and page, of runs that have been made.
 if ./adcgs-sweep "$dir/scene" -o "$dir/sweep" --lambda 0.1 --preset draft --iterations 10 --yardsticks none >/dev/null 2>"$dir/err"; then
-    kept="$w/sweep/lambda*" spare=yes
+    # The last calls are those of adcgs-eval, which has its own line; here what it says is in its log.
+    kept="$w/sweep/lambda*" spare=yes most=2000
     faults "sweep" sh -c '[ -e "$1/sweep" ] || cp -r "$2" "$1/sweep"; shift 2; exec "$@"' sh "$w" "$dir/sweep" \
         ./adcgs-sweep "$dir/scene" -o "$w/sweep" --lambda 0.1 --preset draft --iterations 10 --yardsticks none --resume
 else
