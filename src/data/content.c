@@ -70,7 +70,7 @@ static void add_view(adcgs_md5 *md5, const adcgs_scene_view *v)
     const adcgs_lens *l = &v->lens;
     const double numbers[] = { v->time, (double)v->frame, v->is_video, v->mask != NULL, c->width, c->height, c->fx, c->fy, c->cx,
                                c->cy, c->near_plane, l->width, l->height, l->fx, l->fy, l->cx, l->cy, l->skew, l->k8, l->p[0],
-                               l->p[1] };
+                               l->p[1], l->is_fisheye };
     add_numbers(md5, numbers, ADCGS_COUNTOF(numbers));
     add_numbers(md5, l->k, ADCGS_COUNTOF(l->k));
     add_numbers(md5, c->cam_to_world, ADCGS_COUNTOF(c->cam_to_world));

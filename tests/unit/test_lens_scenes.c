@@ -2,6 +2,7 @@
 /** \file Scenes whose pictures were taken through lenses: what their files say, and the pictures that training gets. */
 #include "outside_files.h"
 
+#include "data/content.h"
 #include "data/lens_model.h"
 #include "data/scene.h"
 #include "layouts/open.h"
@@ -251,6 +252,21 @@ static void test_hypernerf_terms(void **state)
     adcgs_scene_free(&scene);
 }
 
+/* Scenes that differ by how a lens bends alone are not the same. */
+static void test_outline(void **state)
+{
+    adcgs_scene_view view = {.camera = {.width = 8, .height = 8, .fx = 8, .fy = 8},
+                             .lens = {.width = 8, .height = 8, .k = {0.1}}};
+    const adcgs_scene scene = {.views = {&view}, .n_views = {1}};
+    uint8_t lens[ADCGS_CONTENT_BYTES], again[ADCGS_CONTENT_BYTES], fisheye[ADCGS_CONTENT_BYTES];
+    adcgs_scene_outline(&scene, lens);
+    adcgs_scene_outline(&scene, again);
+    view.lens.is_fisheye = 1;
+    adcgs_scene_outline(&scene, fisheye);
+    assert_memory_equal(lens, again, sizeof lens);
+    assert_memory_not_equal(lens, fisheye, sizeof lens);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -259,6 +275,7 @@ int main(void)
         cmocka_unit_test(test_moving),
         cmocka_unit_test(test_hypernerf),
         cmocka_unit_test(test_hypernerf_terms),
+        cmocka_unit_test(test_outline),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
