@@ -52,6 +52,17 @@ void adcgs_pose_other_axes(double pose[12])
     }
 }
 
+void adcgs_pose_invert(double pose[12])
+{
+    double p[12];
+    memcpy(p, pose, sizeof p);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            pose[4 * i + j] = p[4 * j + i];
+        pose[4 * i + 3] = 0.0 - (p[i] * p[3] + p[4 + i] * p[7] + p[8 + i] * p[11]);
+    }
+}
+
 void adcgs_camera_stretch(adcgs_camera *camera, int width, int height)
 {
     const double x = (double)width / camera->width, y = (double)height / camera->height;

@@ -24,6 +24,8 @@ void adcgs_look_at(double pose[12], const double eye[3], const double target[3],
 void adcgs_look_along(double pose[12], const double eye[3], const double forward[3], const double up[3]);
 /** From OpenCV axes (y down, looking along z) to OpenGL axes (y up, looking along -z), or back. */
 void adcgs_pose_other_axes(double pose[12]);
+/** From a 3x4 camera-to-world matrix to world-to-camera, or back: R^T, -R^T t. */
+void adcgs_pose_invert(double pose[12]);
 
 /** Stretch what the camera sees to another size: pixels change their shape. */
 void adcgs_camera_stretch(adcgs_camera *camera, int width, int height);

@@ -107,16 +107,16 @@ static int is_gone(const owner *who)
 
 typedef enum answer { NOBODY, DEAD, ALIVE, UNKNOWN } answer;
 
-/** Whether somebody is there; leaves a file under our own name, whose time is that of the file system. */
+/** Whether somebody is there; if so, leaves a file under our own name, whose time is that of the file system. */
 static answer look(const adcgs_claim *c, owner *who, double *age)
 {
     char text[TEXT_MAX];
     struct stat theirs, ours;
+    if (read_claim(c->path, text, who, &theirs))
+        return NOBODY;
     unlink(c->mine);
     if (create(c->mine, c->text) || stat(c->mine, &ours))
         return UNKNOWN;
-    if (read_claim(c->path, text, who, &theirs))
-        return NOBODY;
     *age = difftime(ours.st_mtime, theirs.st_mtime);
     return *age > ADCGS_CLAIM_SECONDS || is_gone(who) ? DEAD : ALIVE;
 }

@@ -4,6 +4,7 @@
 
 #include "layouts/scene_file.h"
 
+#include "camera/rotation.h"
 #include "data/pose.h"
 
 #include <math.h>
@@ -150,18 +151,6 @@ static adcgs_status read_parts(const adcgs_json_place *at, double pose[12])
     return ADCGS_OK;
 }
 
-/** R^T, -R^T t; the rotation has been checked. */
-static void invert(double pose[12])
-{
-    double p[12];
-    memcpy(p, pose, sizeof p);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            pose[4 * i + j] = p[4 * j + i];
-        pose[4 * i + 3] = -(p[i] * p[3] + p[4 + i] * p[7] + p[8 + i] * p[11]);
-    }
-}
-
 /** Which of the ways of giving a pose is there; NULL, with a message, if none or several are. */
 static const char *find_pose(const adcgs_json_place *at)
 {
@@ -192,7 +181,7 @@ static adcgs_status read_pose(const adcgs_json_place *at, double pose[12])
     if (wrong)
         return adcgs_json_bad(at, ADCGS_ERR_DATA, way, "%s", wrong);
     if (*way != 'c')
-        invert(pose);
+        adcgs_pose_invert(pose); /* the rotation has been checked */
     if (axes && !strcmp(axes, "opengl"))
         adcgs_pose_from_opengl(pose);
     return ADCGS_OK;

@@ -2,7 +2,7 @@
 /** \file Faults of pictures and cameras, from basic arithmetic alone, as all of the scenes. */
 #include "scenes/spoil.h"
 
-#include "camera/vector.h"
+#include "camera/rotation.h"
 #include "scenes/sine.h"
 #include "scenes/texture.h"
 
@@ -116,20 +116,6 @@ static void jolt(double to_world[12], int which, adcgs_spoil_kind kind, double p
     }
 }
 
-/* World to camera. */
-static void invert(double pose[12])
-{
-    double out[12];
-    for (int r = 0; r < 3; r++) {
-        out[4 * r + 3] = 0.0;
-        for (int c = 0; c < 3; c++) {
-            out[4 * r + c] = pose[4 * c + r];
-            out[4 * r + 3] -= pose[4 * c + r] * pose[4 * c + 3];
-        }
-    }
-    memcpy(pose, out, sizeof out);
-}
-
 void adcgs_spoil_pose(const adcgs_spoil *spoil, const adcgs_spoil_picture *picture, double focal, double to_world[12])
 {
     static const double up[3] = {0.0, 0.0, 1.0};
@@ -146,7 +132,7 @@ void adcgs_spoil_pose(const adcgs_spoil *spoil, const adcgs_spoil_picture *pictu
         to_world[4 * r + 2] = -to_world[4 * r + 2];
     }
     if (axes == 2)
-        invert(to_world);
+        adcgs_pose_invert(to_world);
     for (int r = 0; r < 3 && axes == 3; r++)
         to_world[4 * r] = -to_world[4 * r];
 }

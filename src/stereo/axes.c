@@ -2,6 +2,7 @@
 /** \file Whether cameras look where their poses say. */
 #include "stereo/axes.h"
 
+#include "camera/rotation.h"
 #include "data/pose.h"
 #include "stereo/poses.h"
 
@@ -23,25 +24,6 @@ enum { MOMENTS = 12 };       /* that pictures are compared of */
 
 /* ---- Readings ---- */
 
-static void invert(double pose[12])
-{
-    double p[12];
-    memcpy(p, pose, sizeof p);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            pose[4 * i + j] = p[4 * j + i];
-        pose[4 * i + 3] = -(p[i] * p[3] + p[4 + i] * p[7] + p[8 + i] * p[11]);
-    }
-}
-
-static void turn(double pose[12])
-{
-    for (int i = 0; i < 3; i++) {
-        pose[4 * i + 1] = -pose[4 * i + 1];
-        pose[4 * i + 2] = -pose[4 * i + 2];
-    }
-}
-
 /** The scene with its training views' poses read so; free views. */
 static adcgs_status read_as(adcgs_scene *out, const adcgs_scene *scene, adcgs_reading reading, adcgs_error *error)
 {
@@ -55,11 +37,11 @@ static adcgs_status read_as(adcgs_scene *out, const adcgs_scene *scene, adcgs_re
     for (uint32_t i = 0; i < n; i++) {
         double *const pose = views[i].camera.cam_to_world;
         if (reading == ADCGS_READ_TURNED || reading == ADCGS_READ_INVERSE_OPENGL)
-            turn(pose);
+            adcgs_pose_other_axes(pose);
         if (reading == ADCGS_READ_INVERSE || reading == ADCGS_READ_INVERSE_OPENGL)
-            invert(pose);
+            adcgs_pose_invert(pose);
         if (reading == ADCGS_READ_INVERSE_OPENGL)
-            turn(pose);
+            adcgs_pose_other_axes(pose);
     }
     return ADCGS_OK;
 }

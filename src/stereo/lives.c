@@ -5,9 +5,8 @@
 #include "stereo/lives.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-enum { REACH = 3, OFF_USUAL = 18, OFF_LEAST = 3, PART = 256 }; /* moments; levels of 255; of nine pixels; points of a job */
+enum { REACH = 3, OFF_LEAST = 3, PART = 256 }; /* moments; of nine pixels; points of a job */
 #define USUAL_SHARE 0.8 /* of the cameras that have the place in their pictures */
 
 typedef struct job {
@@ -24,10 +23,7 @@ static int shows_usual(const adcgs_stereo_camera *c, int moment, int px, int py)
     for (int y = ADCGS_MAX(py - 1, 0); y <= ADCGS_MIN(py + 1, c->view.h - 1); y++)
         for (int x = ADCGS_MAX(px - 1, 0); x <= ADCGS_MIN(px + 1, c->view.w - 1); x++) {
             const int i = y * c->view.w + x;
-            int most = 0;
-            for (int k = 0; k < 3; k++)
-                most = ADCGS_MAX(most, abs(c->shown[moment][4 * i + k] - (int)(c->usual[4 * i + k] * 255 + 0.5f)));
-            off += c->changes[i] || !c->shown[moment][4 * i + 3] || most > OFF_USUAL;
+            off += !c->shown[moment][4 * i + 3] || adcgs_stereo_rig_differs(c, moment, i);
         }
     return off < OFF_LEAST;
 }

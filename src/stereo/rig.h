@@ -11,6 +11,7 @@
 #include "stereo/stereo.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { ADCGS_STEREO_CAMERAS = 24 };
 
@@ -41,6 +42,17 @@ typedef struct adcgs_stereo_rig {
 adcgs_status adcgs_stereo_rig_init(adcgs_stereo_rig *rig, const adcgs_scene *scene, const adcgs_stereo_options *options,
                                    adcgs_error *error);
 void adcgs_stereo_rig_clear(adcgs_stereo_rig *rig);
+
+enum { ADCGS_STEREO_MOVED = 18 }; /**< levels of 255 that a pixel is off what it usually shows, at most, if nothing moves */
+
+/** Whether a pixel shows something else at a moment, of which there is a picture, than most of the time. */
+static inline int adcgs_stereo_rig_differs(const adcgs_stereo_camera *c, int moment, int pixel)
+{
+    int most = 0;
+    for (int k = 0; k < 3; k++)
+        most = ADCGS_MAX(most, abs(c->shown[moment][4 * pixel + k] - (int)(c->usual[4 * pixel + k] * 255 + 0.5f)));
+    return most > ADCGS_STEREO_MOVED || c->changes[pixel];
+}
 
 /** Picture of a moment as numbers, [h][w][4]. */
 void adcgs_stereo_rig_take(const adcgs_stereo_camera *camera, int moment, float *pixels);

@@ -12,12 +12,10 @@
 #include "stereo/thin.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4 }; /* views that are matched at a moment; pixels that move; about them */
 #define AXES_ALIKE 0.6  /* cosine between axes of views that are matched */
 #define APART 0.005     /* scene units between views that tell depths */
-#define MOVED 18        /* levels of 255 off what a pixel usually shows */
 
 struct adcgs_stereo_maps {
     int n;
@@ -126,12 +124,8 @@ static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t
 {
     const int w = c->view.w, h = c->view.h;
     int left = w, right = -1, top = h, bottom = -1, n = 0;
-    for (int i = 0; i < w * h; i++) {
-        int most = 0;
-        for (int k = 0; k < 3; k++)
-            most = ADCGS_MAX(most, abs(c->shown[moment][4 * i + k] - (int)(c->usual[4 * i + k] * 255 + 0.5f)));
-        off[i] = (uint8_t)(c->shown[moment][4 * i + 3] && (most > MOVED || c->changes[i]));
-    }
+    for (int i = 0; i < w * h; i++)
+        off[i] = (uint8_t)(c->shown[moment][4 * i + 3] && adcgs_stereo_rig_differs(c, moment, i));
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             int sum = 0;

@@ -24,13 +24,11 @@ static const adcgs_scene_view *choose(const adcgs_scene *scene)
 static adcgs_status draw(float *image, adcgs_trainer *t, const adcgs_scene_view *of, const adcgs_camera *camera,
                          adcgs_error *error)
 {
-    const double duration = t->scene->duration;
-    const float time = duration > 0 ? (float)fmin(fmax(of->time / duration, 0), 1) : 0;
     const adcgs_pass_mode mode = { .quant = t->rounding && !t->frozen ? ADCGS_QUANT_ROUND : ADCGS_QUANT_NONE,
                                    .deform = ADCGS_DEFORM_ALL };
     adcgs_view view;
     ADCGS_TRY(adcgs_view_init(&view, camera, t->origin, t->scale, error));
-    adcgs_pass_forward(t->pass, t->f, time, &mode);
+    adcgs_pass_forward(t->pass, t->f, adcgs_trainer_time(t, of->time), &mode);
     return adcgs_view_draw(t, &view, image, 0, error);
 }
 

@@ -11,18 +11,16 @@
 
 static adcgs_status load_pictures(adcgs_trainer *t, int divide, adcgs_error *error)
 {
-    adcgs_glance *glances = t->glances;
-    if (!glances && t->config.retime_doubled)
-        glances = adcgs_alloc(NULL, t->n_views, sizeof *glances, error);
-    if (!glances && t->config.retime_doubled)
+    adcgs_glance *own = NULL;
+    if (t->config.retime_doubled && !t->glances && !(own = adcgs_alloc(NULL, t->n_views, sizeof *own, error)))
         return adcgs_alloc_status(error);
+    adcgs_glance *const glances = own ? own : t->glances;
     const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
                                            .progress = t->loading, .user = t->loading_user, .glances = glances };
     adcgs_status status = adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error);
     if (status == ADCGS_OK && t->config.retime_doubled)
         status = adcgs_doubled_retime(t, glances, error);
-    if (glances != t->glances)
-        adcgs_free(NULL, glances);
+    adcgs_free(NULL, own);
     return status;
 }
 

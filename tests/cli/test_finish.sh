@@ -48,15 +48,22 @@ if [ -n "${ADCGS_FULL-}" ]; then
     shows "$dir/size.adcgs" 18
 fi
 
-# Two interrupts: the state is saved, and the file is what --finish makes of it. Their two signals cannot become one.
-for try in 1 2 3; do
-    rm -f "$dir/two.log"
+# begin_twice NAME THREADS: begin a run of that file and log, and interrupt it twice once it is on its way; pid is its process. The
+# two signals cannot become one.
+begin_twice()
+{
+    rm -f "$dir/$1.log"
     # shellcheck disable=SC2086
-    $run -o "$dir/two.adcgs" --threads 2 --log "$dir/two.log" >"$dir/out" 2>"$dir/err" &
+    $run -o "$dir/$1.adcgs" --threads "$2" --log "$dir/$1.log" >"$dir/out" 2>"$dir/err" &
     pid=$!
-    while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":100,' "$dir/two.log" 2>/dev/null; do sleep 0.02; done
+    while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":100,' "$dir/$1.log" 2>/dev/null; do sleep 0.02; done
     kill -INT $pid
     kill -TERM $pid
+}
+
+# Two interrupts: the state is saved, and the file is what --finish makes of it.
+for try in 1 2 3; do
+    begin_twice two 2
     wait $pid
     code=$?
     [ $code -eq 0 ] || break
@@ -71,13 +78,7 @@ cmp "$dir/two.adcgs" "$dir/other.adcgs" || bad "two interrupts and --finish make
 if [ -n "${ADCGS_FULL-}" ]; then
     echo precious >"$dir/three.adcgs"
     for try in 1 2 3; do
-        rm -f "$dir/three.log"
-        # shellcheck disable=SC2086
-        $run -o "$dir/three.adcgs" --threads 1 --log "$dir/three.log" >"$dir/out" 2>"$dir/err" &
-        pid=$!
-        while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":100,' "$dir/three.log" 2>/dev/null; do sleep 0.02; done
-        kill -INT $pid
-        kill -TERM $pid
+        begin_twice three 1
         while kill -0 $pid 2>/dev/null && ! grep -q 'stopped at' "$dir/err"; do sleep 0.01; done
         kill -TERM $pid
         wait $pid
