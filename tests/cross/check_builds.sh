@@ -65,9 +65,13 @@ tarball()
     line PASS "distcheck, $(counted), $((SECONDS - begin)) s"
 }
 
+# What failed, or what did not compile: the log itself may be out of reach.
 failed_tests()
 {
-    line FAIL "$(grep -E '^(FAIL|ERROR): ' check.log | sort -u | tr '\n' ' ')see $PWD/check.log"
+    local why
+    why=$(grep -E '^(FAIL|ERROR): ' check.log | sort -u | tr '\n' ' ')
+    [ -n "$why" ] || why=$(grep -m 1 -E ' error: |\*\*\* ' check.log)' '
+    line FAIL "${why}see $PWD/check.log"
 }
 
 counted()

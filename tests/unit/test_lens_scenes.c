@@ -257,12 +257,12 @@ static void test_outline(void **state)
 {
     adcgs_scene_view view = {.camera = {.width = 8, .height = 8, .fx = 8, .fy = 8},
                              .lens = {.width = 8, .height = 8, .k = {0.1}}};
-    const adcgs_scene scene = {.views = {&view}, .n_views = {1}};
+    const adcgs_scene one_view = {.views = {&view}, .n_views = {1}};
     uint8_t lens[ADCGS_CONTENT_BYTES], again[ADCGS_CONTENT_BYTES], fisheye[ADCGS_CONTENT_BYTES];
-    adcgs_scene_outline(&scene, lens);
-    adcgs_scene_outline(&scene, again);
+    adcgs_scene_outline(&one_view, lens);
+    adcgs_scene_outline(&one_view, again);
     view.lens.is_fisheye = 1;
-    adcgs_scene_outline(&scene, fisheye);
+    adcgs_scene_outline(&one_view, fisheye);
     assert_memory_equal(lens, again, sizeof lens);
     assert_memory_not_equal(lens, fisheye, sizeof lens);
 }
