@@ -11,6 +11,9 @@
 #define INPUTS_MAX (ADCGS_NV_MAX + ADCGS_NG_MAX)
 #define BODY_BITS 4 /* of 0..ADCGS_BODIES_MAX */
 #define BODY_TREE (1 << BODY_BITS)
+#define ROOM_ALIGNMENT 64
+/* Inputs, means and scales of a walk, in front of the networks' activations. */
+#define ROOM_VALUES (((INPUTS_MAX + ADCGS_NV_MAX) * sizeof(int16_t) + ADCGS_NV_MAX) * ADCGS_LANES)
 
 struct adcgs_latents {
     adcgs_memory *memory;
@@ -153,19 +156,19 @@ static void walk_chunk(const walker *w, int chunk)
     }
 }
 
-adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
-                                adcgs_latent_visit visit, void *user, adcgs_error *error)
+size_t adcgs_latents_room(const adcgs_latents *latents)
 {
-    const size_t lane = ADCGS_LANES * sizeof(int16_t);
-    const size_t bytes = (INPUTS_MAX + ADCGS_NV_MAX) * lane + ADCGS_NV_MAX * ADCGS_LANES;
-    uint8_t *memory = adcgs_alloc(NULL, 1, bytes + latents->scratch, error);
-    if (!memory)
-        return adcgs_alloc_status(error);
+    return ROOM_VALUES + (latents->scratch + ROOM_ALIGNMENT - 1) / ROOM_ALIGNMENT * ROOM_ALIGNMENT;
+}
+
+void adcgs_latents_walk_in(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
+                           adcgs_latent_visit visit, void *user, void *room)
+{
     walker w = { latents, model, visit, user, 0, 0, NULL, NULL, NULL, NULL };
-    w.x = (int16_t(*)[ADCGS_LANES])memory;
+    w.x = room;
     w.mu = w.x + INPUTS_MAX;
-    w.si = (uint8_t(*)[ADCGS_LANES])(memory + (INPUTS_MAX + ADCGS_NV_MAX) * lane);
-    w.scratch = memory + bytes;
+    w.si = (uint8_t(*)[ADCGS_LANES])(w.mu + ADCGS_NV_MAX);
+    w.scratch = (uint8_t *)room + ROOM_VALUES;
     for (w.begin = begin; w.begin < end; w.begin += ADCGS_LANES) {
         w.n = (int)ADCGS_MIN(end - w.begin, (uint32_t)ADCGS_LANES);
         if (layer == 0)
@@ -173,7 +176,16 @@ adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model
         else
             walk_chunk(&w, layer - 1);
     }
-    adcgs_free(NULL, memory);
+}
+
+adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
+                                adcgs_latent_visit visit, void *user, adcgs_error *error)
+{
+    void *room = adcgs_alloc(NULL, 1, adcgs_latents_room(latents), error);
+    if (!room)
+        return adcgs_alloc_status(error);
+    adcgs_latents_walk_in(latents, model, layer, begin, end, visit, user, room);
+    adcgs_free(NULL, room);
     return ADCGS_OK;
 }
 

@@ -33,6 +33,8 @@ typedef struct adcgs_latents adcgs_latents;
 adcgs_status adcgs_latents_create(adcgs_latents **out, const adcgs_model *model, adcgs_cpu_level cpu, adcgs_memory *memory,
                                   adcgs_error *error);
 void adcgs_latents_free(adcgs_latents **latents);
+/** Bytes that one walk works in; a multiple of what adcgs_alloc() aligns to, so that several can lie in a row. */
+size_t adcgs_latents_room(const adcgs_latents *latents);
 
 /**
  * Walk one layer (0..4) of anchors [begin, end) in coding order; begin and end are multiples of 64, or end == n.
@@ -45,9 +47,12 @@ adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model
 /** Append the sub-stream of (layer, [begin,end)). ADCGS_ERR_USAGE names a value that the networks cannot give. */
 adcgs_status adcgs_latents_encode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
                                   adcgs_buffer *out, adcgs_error *error);
-/** Decode it with a decoder that has been started. It is finished here, and holds its final state if all is well. */
+/**
+ * Decode it with a decoder that has been started. It is finished here, and holds its final state if all is well. room has
+ * adcgs_latents_room() bytes, aligned as adcgs_alloc() does it: nothing is allocated here.
+ */
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
-                                  adcgs_range_dec *range, adcgs_error *error);
+                                  adcgs_range_dec *range, void *room, adcgs_error *error);
 /** The flags, bodies and masks with which the sub-stream of layer 0 begins, alone. */
 adcgs_status adcgs_latents_decode_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_range_dec *range,
                                         adcgs_error *error);

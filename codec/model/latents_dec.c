@@ -33,12 +33,12 @@ adcgs_status adcgs_latents_decode_flags(adcgs_model *model, uint32_t begin, uint
 }
 
 adcgs_status adcgs_latents_decode(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
-                                  adcgs_range_dec *range, adcgs_error *error)
+                                  adcgs_range_dec *range, void *room, adcgs_error *error)
 {
     decoder d = { range, model->shape };
     if (layer == 0)
         ADCGS_TRY(adcgs_latents_decode_flags(model, begin, end, range, error));
-    ADCGS_TRY(adcgs_latents_walk(latents, model, layer, begin, end, decode_site, &d, error));
+    adcgs_latents_walk_in(latents, model, layer, begin, end, decode_site, &d, room);
     return adcgs_range_dec_finish(range, error);
 }
 

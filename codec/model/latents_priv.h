@@ -15,4 +15,8 @@ typedef int (*adcgs_flag_fn)(void *user, adcgs_adaptive *context, int bit);
 adcgs_status adcgs_latents_flags(adcgs_model *model, uint32_t begin, uint32_t end, adcgs_flag_fn code, void *user,
                                  adcgs_error *error);
 
+/** adcgs_latents_walk() in room that the caller has, adcgs_latents_room() bytes. */
+void adcgs_latents_walk_in(const adcgs_latents *latents, adcgs_model *model, int layer, uint32_t begin, uint32_t end,
+                           adcgs_latent_visit visit, void *user, void *room);
+
 #endif

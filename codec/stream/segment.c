@@ -20,6 +20,8 @@ typedef struct slice_job {
     const uint8_t *payload;
     uint32_t first;
     int layer;
+    uint8_t *room; /**< for each thread: tasks allocate nothing */
+    size_t room_each;
 } slice_job;
 
 static uint32_t segment_number(const adcgs_segment *s)
@@ -239,10 +241,10 @@ static void decode_slice(void *arg, int index, int thread)
     const slice_job *job = arg;
     slice *one = &job->slices[index];
     uint32_t begin, end;
-    (void)thread;
     slice_span(job->s, job->first + (uint32_t)index, &begin, &end);
     adcgs_range_dec_init(&one->range, job->payload + one->offset, one->bytes);
-    one->status = adcgs_latents_decode(job->s->latents, &job->s->model, job->layer, begin, end, &one->range, NULL);
+    one->status = adcgs_latents_decode(job->s->latents, &job->s->model, job->layer, begin, end, &one->range,
+                                       job->room + (size_t)thread * job->room_each, NULL);
 }
 
 /** Why decoding a slice failed: a body that cannot be, which its flags tell once more, or its end. */
@@ -261,16 +263,19 @@ static void explain(const slice_job *job, uint32_t index, adcgs_error *why)
 static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int layer, uint32_t first, slice *slices,
                                   uint32_t usable)
 {
-    slice_job job = { s, slices, p->r.data, first, layer };
+    slice_job job = { s, slices, p->r.data, first, layer, NULL, adcgs_latents_room(s->latents) };
+    job.room = adcgs_alloc(NULL, (size_t)adcgs_pool_threads(s->options->pool), job.room_each, s->error);
+    if (!job.room)
+        return adcgs_alloc_status(s->error);
     adcgs_pool_run(s->options->pool, decode_slice, &job, (int)usable);
+    adcgs_free(NULL, job.room);
     for (uint32_t i = 0; i < usable; i++) {
-        adcgs_error why = { ADCGS_ERR_MEMORY, "no memory for the networks' activations" };
+        adcgs_error why = { ADCGS_OK, "" };
         if (slices[i].status == ADCGS_OK) {
             adcgs_parse_trace_end(p, &slices[i].range);
             continue;
         }
-        if (slices[i].status != ADCGS_ERR_MEMORY)
-            explain(&job, i, &why);
+        explain(&job, i, &why);
         return adcgs_fail(s->error, slices[i].status, "%s: segment %u, slice %u: %.160s", p->chunk, segment_number(s), first + i,
                           why.text);
     }

@@ -400,6 +400,8 @@ int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void 
 /* Allocations that still succeed; below 0 nothing fails. Blocks in use. */
 static atomic_long left = -1;
 static atomic_long blocks = 0;
+/* Whether a task of a pool is under way, and what tasks asked of the allocator: it may be one that knows no threads. */
+static atomic_int in_task = 0, task_calls = 0;
 
 static int fails(void)
 {
@@ -410,6 +412,7 @@ void *__wrap_calloc(size_t count, size_t size)
 {
     void *block = fails() ? NULL : __real_calloc(count, size);
     atomic_fetch_add(&blocks, block != NULL);
+    atomic_fetch_add(&task_calls, in_task);
     return block;
 }
 
@@ -417,12 +420,14 @@ void *__wrap_realloc(void *old, size_t size)
 {
     void *block = fails() ? NULL : __real_realloc(old, size);
     atomic_fetch_add(&blocks, block != NULL && old == NULL);
+    atomic_fetch_add(&task_calls, in_task);
     return block;
 }
 
 void __wrap_free(void *block)
 {
     atomic_fetch_sub(&blocks, block != NULL);
+    atomic_fetch_add(&task_calls, in_task);
     __real_free(block);
 }
 
@@ -431,11 +436,12 @@ int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void 
     return fails() ? 11 : __real_pthread_create(id, attributes, function, arg);
 }
 
+static const adcgs_camera camera = { .width = 33, .height = 20, .fx = 30, .fy = 30, .cx = 16, .cy = 10, .near_plane = 0.01,
+                                     .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4 } };
+
 /** Open, look at two moments, close, with the allocation number n failing. Returns whether one did. */
 static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
 {
-    static const adcgs_camera camera = { .width = 33, .height = 20, .fx = 30, .fy = 30, .cx = 16, .cy = 10, .near_plane = 0.01,
-                                         .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4 } };
     float rgb[33 * 20 * 3];
     uint8_t pixels[33 * 20 * 4];
     adcgs_frame frame = { 33, 20, rgb };
@@ -464,22 +470,61 @@ static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
     return failed;
 }
 
-static void test_failing_allocations(void **state)
+/** Two segments, the second predicted, of several slices. */
+static void write_two_segments(adcgs_buffer *bytes)
 {
     adcgs_stream stream;
     adcgs_params params;
-    adcgs_buffer bytes;
     uint64_t seed = 2;
-    (void)state;
     adcgs_random_params(&params, 1, &seed);
     params.k = 2;
     params.n_fg = params.chunks = 2;
     assert_int_equal(adcgs_random_stream(&stream, &params, 2, 130, 4, &seed, NULL), ADCGS_OK);
     stream.slice_log2 = ADCGS_SLICE_LOG2_MIN;
     assert_true(stream.segments[1].predicted); /* by this seed */
-    adcgs_buffer_init(&bytes);
-    assert_int_equal(adcgs_stream_write(&stream, &bytes, NULL), ADCGS_OK);
+    adcgs_buffer_init(bytes);
+    assert_int_equal(adcgs_stream_write(&stream, bytes, NULL), ADCGS_OK);
     adcgs_stream_clear(&stream, NULL);
+}
+
+static void run_tasks(void *tasks, adcgs_task_fn task, void *work, int n)
+{
+    in_task = 1;
+    for (int i = 0; i < n; i++)
+        task(work, i);
+    in_task = 0;
+    *(int *)tasks += n;
+}
+
+/** Whoever lends threads may have an allocator for one alone. */
+static void test_tasks_allocate_nothing(void **state)
+{
+    float rgb[33 * 20 * 3];
+    adcgs_frame frame = { 33, 20, rgb };
+    adcgs_buffer bytes;
+    adcgs_config config;
+    adcgs_decoder *d;
+    int tasks = 0;
+    (void)state;
+    write_two_segments(&bytes);
+    adcgs_config_init(&config, sizeof config);
+    assert_int_equal(adcgs_pool_wrap(&config.pool, 3, run_tasks, &tasks, NULL), ADCGS_OK);
+    assert_int_equal(adcgs_open_memory(&d, bytes.data, bytes.size, &config, NULL), ADCGS_OK);
+    assert_true(tasks > 0);
+    tasks = 0;
+    assert_int_equal(adcgs_render(d, &camera, 0, &frame, NULL), ADCGS_OK);
+    assert_true(tasks > 0);
+    assert_int_equal(task_calls, 0);
+    adcgs_close(&d);
+    adcgs_pool_free(&config.pool);
+    adcgs_buffer_clear(&bytes);
+}
+
+static void test_failing_allocations(void **state)
+{
+    adcgs_buffer bytes;
+    (void)state;
+    write_two_segments(&bytes);
     for (int threads = 1; threads <= 2; threads++) {
         long n = 0;
         while (fail_allocation(&bytes, threads, n))
@@ -497,6 +542,7 @@ int main(void)
         cmocka_unit_test(test_model_bytes), cmocka_unit_test(test_work),     cmocka_unit_test(test_cameras),
         cmocka_unit_test(test_networks),    cmocka_unit_test(test_repeated_networks),
         cmocka_unit_test(test_predicted),   cmocka_unit_test(test_failing_allocations),
+        cmocka_unit_test(test_tasks_allocate_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/** A task for a caller's threads. */
+/** A task for a caller's threads. It takes no memory and gives none back. */
 typedef void (*adcgs_task_fn)(void *work, int task);
 
 /**
