@@ -16,21 +16,26 @@ here=$(cd "$(dirname "$0")/.." && pwd)
 flags="-std=c11 -ffp-contract=off -fno-math-errno -fvisibility=hidden -msimd128 -mbulk-memory -D_GNU_SOURCE
     -D_WASI_EMULATED_PROCESS_CLOCKS -I$here/web/wasm -I$here/web -I$here/codec/include -I$here/codec -I$here/src"
 [ "$kind" = exact ] || flags="$flags -mrelaxed-simd"
-model=
-[ "$form" = command ] || model=-mexec-model=reactor
+link=-Wl,--initial-memory=16777216
+# A page's memory is given to it, and can be shared by workers, each with a stack of its own. The C library knows of no threads, and
+# has one errno: only the first thread may ask something of it, which the linker is told to believe.
+[ "$form" = command ] || link="$link,--shared-memory,--import-memory,--max-memory=4294967296,--no-check-features
+    -Wl,--export=__stack_pointer -mexec-model=reactor"
 rm -rf "$out.d"
 mkdir -p "$out.d"
 objects=
 for source; do
-    # Headers are listed, too; of the pool there is another one, without threads.
+    # Headers are listed, too; of the pool there is another one, which starts no threads.
     case $source in *.h | codec/base/pool.c) continue ;; esac
     object=$out.d/$(echo "$source" | tr / -).o
+    # What shares out work needs atomic instructions; nothing else does, and no variable is a thread's own.
+    case $source in codec/base/pool_alone.c | web/wasm/threads.c) atomics=-matomics ;; *) atomics= ;; esac
     # shellcheck disable=SC2086
-    $compiler $flags ${WASM_CFLAGS--O3} -c "$here/$source" -o "$object"
+    $compiler $flags $atomics ${WASM_CFLAGS--O3} -c "$here/$source" -o "$object"
     objects="$objects $object"
 done
 # shellcheck disable=SC2086
-$compiler $model -fuse-ld=lld -Wl,--initial-memory=16777216 -Wl,-z,stack-size=1048576 -Wl,--strip-all -o "$out.new" $objects \
+$compiler $link -fuse-ld=lld -Wl,-z,stack-size=1048576 -Wl,--strip-all -o "$out.new" $objects \
     -lwasi-emulated-process-clocks
 mv "$out.new" "$out"
 rm -rf "$out.d"

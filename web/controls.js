@@ -126,7 +126,8 @@ function showHelp() {
 function statisticsText() {
     const call = view.call, drawn = page.drawn, fast = page.fast;
     const ms = value => (value || 0).toFixed(1);
-    return [`module  ${page.module}`,
+    const threads = drawn ? drawn.threads : 1;
+    return [`module  ${page.module}, ${threads} thread${threads > 1 ? 's' : ''}`,
             `exact   ${drawn ? `${ms(drawn.ms)} ms, ${drawn.width}x${drawn.height}` : '-'}`,
             gpu ? `gpu     pack ${ms(fast.packMs)}, sort ${ms(fast.sortMs)}, draw ${ms(fast.drawMs)} ms` : 'gpu     none',
             `splats  ${fast.n || page.facts.gaussians}`,

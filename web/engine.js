@@ -4,6 +4,7 @@
 
 const OK = 0, ERR_FPENV = -8;                               // adcgs/status.h
 const ARRIVED_SEGMENT = 3;                                  // adcgs/types.h
+const MEMORY_SHARED = 2;                                    // a flag of memories in WebAssembly
 const CAMERA = { WIDTH: 0, HEIGHT: 4, FORWARD: [56, 88, 120] }; // bytes in adcgs_camera: the third column of cam_to_world
 
 /** Which of the two modules runs here: relaxed, exact, or null. Whether relaxed fuses is for the library to find out. */
@@ -11,21 +12,64 @@ function chooseModule(modules, but) {
     return ['relaxed', 'exact'].find(name => name !== but && modules[name] && WebAssembly.validate(modules[name])) || null;
 }
 
+/** The memory that a module asks for: where in its bytes the flags are, and pages at first and at most. */
+function memoryOf(bytes) {
+    const name = '\x03env\x06memory\x02';
+    let at = String.fromCharCode(...bytes.subarray(0, 4096)).indexOf(name) + name.length;
+    const flags = at++;
+    const number = () => {
+        for (let value = 0, unit = 1; ; unit *= 128) {
+            const byte = bytes[at++];
+            value += unit * (byte & 127);
+            if (byte < 128)
+                return value;
+        }
+    };
+    return { flags, initial: number(), maximum: number() };
+}
+
+/** Memory that workers share; null where they may not. */
+function sharedMemory(limits) {
+    try {
+        return new WebAssembly.Memory({ ...limits, shared: true });
+    } catch (e) {
+        return null;
+    }
+}
+
 class Engine {
-    /** An instance of the module in these bytes. It has no system: what the C library would ask of one fails. */
-    static async create(bytes) {
-        const refuse = () => 52; // ENOSYS
-        const system = { fd_close: refuse, fd_seek: refuse, fd_write: refuse, clock_time_get: refuse };
-        const { instance } = await WebAssembly.instantiate(bytes, { wasi_snapshot_preview1: system });
-        const engine = new Engine();
-        engine.call = instance.exports;
+    /**
+     * An instance of the module in these bytes, whose memory may be shared. Modules ask for such a memory; but for a bit they are
+     * good for one that is not, too.
+     */
+    static async create(bytes, shared = false) {
+        const { flags, initial, maximum } = memoryOf(bytes);
+        let memory = shared ? sharedMemory({ initial, maximum }) : null, text = bytes;
+        if (!memory) {
+            text = bytes.slice();
+            text[flags] &= ~MEMORY_SHARED;
+            memory = new WebAssembly.Memory({ initial, maximum });
+        }
+        const engine = await Engine.over(await WebAssembly.compile(text), memory);
         engine.call._initialize();
         return engine;
     }
 
+    /** An instance over a memory. It has no system: what the C library would ask of one fails. */
+    static async over(module, memory) {
+        const refuse = () => 52; // ENOSYS
+        const system = { fd_close: refuse, fd_seek: refuse, fd_write: refuse, clock_time_get: refuse };
+        const instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: system, env: { memory } });
+        return Object.assign(new Engine(), { module, memory, call: instance.exports });
+    }
+
+    get shared() {
+        return !(this.memory.buffer instanceof ArrayBuffer);
+    }
+
     /** A view of memory, until the next call that may allocate. */
     bytes(at, length) {
-        return new Uint8Array(this.call.memory.buffer, at, length);
+        return new Uint8Array(this.memory.buffer, at, length);
     }
 
     copy(at, length) {
@@ -33,13 +77,13 @@ class Engine {
     }
 
     floats(at, length) {
-        return new Float32Array(this.call.memory.buffer, at, length).slice();
+        return new Float32Array(this.memory.buffer, at, length).slice();
     }
 
     text(at) {
         if (!at)
             return '';
-        const all = new Uint8Array(this.call.memory.buffer);
+        const all = new Uint8Array(this.memory.buffer);
         return new TextDecoder().decode(all.subarray(at, all.indexOf(0, at)).slice());
     }
 

@@ -219,7 +219,7 @@ function takePicture(m) {
         page.picture = { width: m.width, height: m.height, time: m.time, digest: m.digest, ms: m.ms };
     else
         view.call.view_took(m.ms / 1000);
-    page.drawn = { width: m.width, height: m.height, ms: m.ms, exact: m.exact };
+    page.drawn = { width: m.width, height: m.height, ms: m.ms, exact: m.exact, threads: m.threads };
     $('digest').textContent = m.digest;
     $('what').textContent = `${m.exact ? 'exact' : 'moving'} ${m.width}×${m.height}, ${m.time.toFixed(3)} s, ` +
         `${m.ms.toFixed(0)} ms by the ${page.module} module${m.digest ? '; MD5' : ''}`;
@@ -281,7 +281,7 @@ async function start() {
     const parameters = new URLSearchParams(location.search);
     if (parameters.get('module') === 'exact')
         delete modules.relaxed;
-    worker.postMessage({ kind: 'modules', modules });
+    worker.postMessage({ kind: 'modules', modules, threads: Number(parameters.get('threads')) });
     try {
         if (parameters.get('draw') === 'exact')
             throw new Error('draw=exact');

@@ -3,6 +3,7 @@
 'use strict';
 
 let modules, engine, which;
+let threads = 1;                 // that draw, at most
 let pieces = [], received = 0;   // the stream, to open it again
 let ended = false, failed = null; // no more will come; what the decoder said when it gave up
 let drawable = false;
@@ -13,7 +14,8 @@ async function useModule(but) {
     if (!which)
         throw new Error(but ? 'this browser’s WebAssembly does not compute as the specification demands'
                             : 'this browser has no WebAssembly with SIMD');
-    engine = await Engine.create(modules[which]);
+    engine = await Engine.create(modules[which], threads > 1);
+    startHelpers(engine, threads);
     return engine.call.page_open();
 }
 
@@ -103,6 +105,7 @@ async function draw(m) {
     if (status === ERR_FPENV && await fallBack())
         return draw(m);
     const reply = { kind: 'drawn', id: m.id, time: m.time, status, exact: m.exact, saves: m.saves };
+    reply.threads = 1 + call.page_helpers();
     const size = new DataView(m.camera.buffer, m.camera.byteOffset);
     reply.width = size.getInt32(CAMERA.WIDTH, true);
     reply.height = size.getInt32(CAMERA.HEIGHT, true);
@@ -143,7 +146,11 @@ function setLayers(m) {
 
 async function handle(m) {
     switch (m.kind) {
-    case 'modules': modules = m.modules; break;
+    case 'help': await help(m); break;
+    case 'modules':
+        modules = m.modules;
+        threads = threadsHere(m.threads);
+        break;
     case 'open':
         pieces = [];
         received = splats = 0;

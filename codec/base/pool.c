@@ -6,17 +6,12 @@
  * take an index of the next one with the wrong function. The caller works too,
  * and returns when the count of finished indices reaches n; workers that slept
  * through a short run are not waited for.
- *
- * Threads that a caller lends get a task each, which takes indices until there
- * are none; so it does not matter how many of the tasks really run at once.
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "base/pool.h"
+#include "base/pool_lent.h"
 
-#include <fenv.h>
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -47,14 +42,6 @@ struct adcgs_pool {
     adcgs_run_fn lent_run; /* the caller's threads; NULL: ours */
     void *lent_user;
 };
-
-/* A run on threads that were lent. */
-typedef struct lent_work {
-    adcgs_work_fn fn;
-    void *arg;
-    int n;
-    atomic_int next;
-} lent_work;
 
 static void relax(void)
 {
@@ -255,18 +242,6 @@ static void await_done(adcgs_pool *pool, int n)
     pthread_mutex_unlock(&pool->mutex);
 }
 
-/* Indices of a lent run, until there are none. The thread may be in any mode, and gets it back. */
-static void lent_task(void *work, int task)
-{
-    lent_work *w = work;
-    fenv_t modes;
-    fegetenv(&modes);
-    fesetenv(FE_DFL_ENV);
-    for (int i; (i = atomic_fetch_add_explicit(&w->next, 1, memory_order_relaxed)) < w->n;)
-        w->fn(w->arg, i, task);
-    fesetenv(&modes);
-}
-
 void adcgs_pool_run(adcgs_pool *pool, adcgs_work_fn fn, void *arg, int n)
 {
     if (!pool || pool->threads == 1 || n <= 1) {
@@ -276,9 +251,7 @@ void adcgs_pool_run(adcgs_pool *pool, adcgs_work_fn fn, void *arg, int n)
     }
     pthread_mutex_lock(&pool->turn);
     if (pool->lent_run) {
-        lent_work w = { .fn = fn, .arg = arg, .n = n };
-        atomic_init(&w.next, 0);
-        pool->lent_run(pool->lent_user, lent_task, &w, ADCGS_MIN(pool->threads, n));
+        run_lent(pool->lent_run, pool->lent_user, pool->threads, fn, arg, n);
     } else {
         open_run(pool, fn, arg, n);
         work(pool, 0);

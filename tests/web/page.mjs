@@ -52,8 +52,8 @@ const drop = (bytes, name) => {
     window.dispatchEvent(new DragEvent('drop', { dataTransfer: files, bubbles: true, cancelable: true }));
 };
 const report = () => {
-    const { state, message, picture, notes, module } = adcgs;
-    return { state, message, picture, notes, module };
+    const { state, message, picture, notes, module, drawn } = adcgs;
+    return { state, message, picture, notes, module, threads: drawn ? drawn.threads : 0 };
 };
 `;
 
@@ -82,8 +82,9 @@ async function digests() {
         const got = await run(`return document.getElementById('digests').textContent.trim().split('\\n');`);
         same(got, expected.slice(0, got.length), `frames of share.html${query}`);
         check(got.length >= 2, 'too few frames');
-        const { module } = await run('return report();');
+        const { module, threads } = await run('return report();');
         same(module, query.includes('exact') ? 'exact' : 'relaxed', 'the module that draws');
+        same(threads, 1, 'threads of a page from a file');
     }
 }
 
@@ -178,13 +179,13 @@ async function dropped() {
     }
 }
 
-/** A server that gives the stream in small pieces. */
-function serve() {
+/** A server that gives the stream in small pieces. It may isolate pages, and change what is in them. */
+function serve(headers = {}, edit = text => text) {
     const server = createServer((request, response) => {
         const name = new URL(request.url, 'http://host').pathname.slice(1);
-        if (name === 'player.html') {
-            response.setHeader('content-type', 'text/html');
-            response.end(readFileSync(at(name)));
+        if (name.endsWith('.html')) {
+            response.writeHead(200, { 'content-type': 'text/html', ...headers });
+            response.end(edit(readFileSync(at(name), 'utf8')));
         } else if (name === 's.adcgs') {
             const data = readFileSync(at(name));
             let sent = 0;
@@ -204,19 +205,78 @@ function serve() {
     return new Promise(resolve => server.listen(0, '127.0.0.1', () => resolve(server)));
 }
 
+async function withServer(use, ...options) {
+    const server = await serve(...options);
+    try {
+        await use(`http://127.0.0.1:${server.address().port}`);
+    } finally {
+        server.close();
+        server.closeAllConnections();
+    }
+}
+
+const ISOLATED = { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' };
+
+/** Pictures at both ends of the time bar, once as many threads are there: the program's. */
+async function drawnBy(url, threads, text) {
+    await go(url);
+    const got = await run(`await settled();
+        const bar = document.getElementById('time'), pictures = [];
+        for (let n = 0; n < 200 && (pictures.length < 2 || adcgs.drawn.threads < ${threads}); n++) {
+            const before = adcgs.picture.time;
+            bar.value = Number(bar.value) ? 0 : bar.max;
+            bar.dispatchEvent(new Event('input'));
+            await until(() => adcgs.drawn.exact && adcgs.picture.time !== before, 'picture of another moment');
+            pictures.push(adcgs.picture);
+        }
+        key('i');
+        await sleep(100);
+        return { pictures: pictures.slice(-2), statistics: document.getElementById('statistics').textContent,
+                 isolated: crossOriginIsolated, ...report() };`);
+    same(got.threads, threads, `threads, ${text}`);
+    check(got.statistics.includes(`, ${threads} thread${threads > 1 ? 's' : ''}\n`), `statistics, ${text}: ${got.statistics}`);
+    for (const picture of got.pictures)
+        samePicture(picture, at('s.adcgs'), `a picture by ${threads} threads, ${text}`);
+    return got;
+}
+
+/** Threads: where the server's headers allow it, as many as there are processors, or as the address says; else one. */
+async function threads() {
+    const page = 'share.html?draw=exact';
+    await withServer(async host => {
+        const got = await drawnBy(`${host}/${page}&threads=3`, 3, 'isolated');
+        same([got.isolated, got.module], [true, 'relaxed'], 'isolated, and the module');
+        if (!full)
+            return;
+        const processors = await run('return navigator.hardwareConcurrency;');
+        await drawnBy(`${host}/${page}`, Math.min(8, processors), 'one for each processor');
+        await drawnBy(`${host}/${page}&threads=1`, 1, 'isolated, but one is wanted');
+        await drawnBy(`${host}/${page}&threads=2&module=exact`, 2, 'by the exact module');
+    }, ISOLATED);
+    if (!full)
+        return;
+    await withServer(host => drawnBy(`${host}/${page}&threads=3`, 1, 'helpers fail'), ISOLATED,
+                     text => text.replace('call.page_help();', 'throw new Error("a test");'));
+    await withServer(host => drawnBy(`${host}/${page}&threads=3`, 1, 'no workers of workers'), ISOLATED,
+                     text => text.replace('new Worker(self.location.href)', 'new NoWorker()'));
+    await withServer(async host => {
+        const { isolated } = await drawnBy(`${host}/${page}&threads=3`, 1, 'without headers');
+        same(isolated, false, 'isolated without headers');
+    });
+}
+
 async function served() {
-    const server = await serve(), host = `http://127.0.0.1:${server.address().port}`;
-    await go(`${host}/player.html?src=s.adcgs`);
-    const early = await run(`await until(() => adcgs.pictures > 0, 'picture'); return report();`);
-    same(early.state, 'loading', 'a picture while the stream comes');
-    const late = await run('await settled(); await sleep(300); return { pictures: adcgs.pictures, ...report() };');
-    check(late.pictures > 1, `${late.pictures} pictures while the stream came`);
-    samePicture(late.picture, at('s.adcgs'), 'the picture of a stream that has come');
-    await go(`${host}/player.html?src=other.adcgs`);
-    const missing = await run(`await until(() => adcgs.state === 'failed', 'failure'); return report();`);
-    check(/404/.test(missing.message), `a stream that is not there: "${missing.message}"`);
-    server.close();
-    server.closeAllConnections();
+    await withServer(async host => {
+        await go(`${host}/player.html?src=s.adcgs`);
+        const early = await run(`await until(() => adcgs.pictures > 0, 'picture'); return report();`);
+        same(early.state, 'loading', 'a picture while the stream comes');
+        const late = await run('await settled(); await sleep(300); return { pictures: adcgs.pictures, ...report() };');
+        check(late.pictures > 1, `${late.pictures} pictures while the stream came`);
+        samePicture(late.picture, at('s.adcgs'), 'the picture of a stream that has come');
+        await go(`${host}/player.html?src=other.adcgs`);
+        const missing = await run(`await until(() => adcgs.state === 'failed', 'failure'); return report();`);
+        check(/404/.test(missing.message), `a stream that is not there: "${missing.message}"`);
+    });
 }
 
 /** Without WebGL2: moving pictures come from the decoder, and it is said. */
@@ -277,7 +337,8 @@ function open(width, height, flags = []) {
 
 browser = await open(800, 600);
 try {
-    const parts = full ? [digests, controls, gpu, dropped, served, withoutGpu, phone, notFused] : [digests, controls, dropped];
+    const parts = full ? [digests, controls, gpu, dropped, served, threads, withoutGpu, phone, notFused]
+                       : [digests, controls, dropped, threads];
     for (const part of parts)
         await part().catch(e => check(false, `${part.name}: ${e.message}`));
 } finally {

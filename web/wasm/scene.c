@@ -8,6 +8,7 @@
 #include "camera/path.h"
 #include "wasm/export.h"
 #include "wasm/scene.h"
+#include "wasm/threads.h"
 
 #include <adcgs/adcgs.h>
 
@@ -64,6 +65,7 @@ static adcgs_config make_config(int layers)
     adcgs_config config;
     adcgs_config_init(&config, sizeof config);
     config.threads = 1;
+    config.pool = adcgs_page_pool();
     config.layers = layers;
     config.log = note_fault;
     *scene.fault = 0;
