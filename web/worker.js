@@ -40,13 +40,17 @@ function whole() {
     return all;
 }
 
+function factsNow() {
+    return JSON.parse(engine.text(engine.call.page_facts()) || 'null');
+}
+
 /** What is known by now, for the page. */
 function report(arrived) {
     const call = engine.call, at = call.page_info();
     const message = { kind: 'grown', arrived, received, ended, drawable, failed, fault: engine.text(call.page_fault()) };
     if (at) {
         message.info = engine.copy(at, call.page_info_size());
-        message.facts = JSON.parse(engine.text(call.page_facts()) || 'null');
+        message.facts = factsNow();
         const cameras = call.page_cameras(), home = drawable ? call.page_home() : 0;
         if (cameras && home) {
             message.cameras = engine.copy(cameras, message.facts.cameras * call.page_camera_size());
@@ -83,6 +87,9 @@ function end() {
         const all = whole();
         if (engine.with([all], at => engine.call.page_reopen(at, all.length, 0, 1)) === OK)
             drawable = true;
+    } else if (!drawable) {
+        const facts = factsNow(); // the end may make a segment of a part of one
+        drawable = facts !== null && facts.segments > 0;
     }
     report(0);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-2-Clause
 // The page in a browser, against the programs: node page.mjs chromium|firefox COMMAND FOLDER [full]; in the build folder. FOLDER
-// has s.adcgs, cut.adcgs, bad.adcgs, share.html (s.adcgs in it) and player.html. Prints what differs; exits with 1 if something
-// does.
+// has s.adcgs, cut.adcgs, stub.adcgs (its first layer is cut off), bad.adcgs, share.html (s.adcgs in it) and player.html. Prints
+// what differs; exits with 1 if something does.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
@@ -166,7 +166,7 @@ async function dropped() {
     await go(urlOf('player.html'));
     await shot('empty');
     const drops = [['s.adcgs', 'complete', /^$/], ['cut.adcgs', 'complete', /ends early/],
-                   ['bad.adcgs', 'complete', /damaged/, '--conceal'], ['none.adcgs', 'failed', /none\.adcgs: ./],
+                   ['stub.adcgs', 'complete', /ends early/], ['bad.adcgs', 'complete', /damaged/, '--conceal'], ['none.adcgs', 'failed', /none\.adcgs: ./],
                    ['s.adcgs', 'complete', /^$/]];
     for (const [name, state, message, ...options] of drops) {
         const bytes = name === 'none.adcgs' ? Buffer.alloc(3000) : readFileSync(at(name));

@@ -16,6 +16,7 @@ tiny_stream 40
 ./adcgs-share -q --page "$page" -o "$dir/player.html" || bad "adcgs-share without a scene"
 bytes=$(wc -c <"$dir/s.adcgs")
 head -c $((bytes * 3 / 4)) "$dir/s.adcgs" >"$dir/cut.adcgs"
+cp "${srcdir:-.}/conformance/vectors/good-unit-truncated-layer-0.adcgs" "$dir/stub.adcgs"
 cp "$dir/s.adcgs" "$dir/bad.adcgs"
 printf '\377\377\377\377' | dd of="$dir/bad.adcgs" bs=1 seek=$((bytes * 9 / 10)) conv=notrunc 2>/dev/null
 
