@@ -219,17 +219,15 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
     if (o->plan)
         return o->has_segment ? adcgs_enc_plan_learn(w, job, error) : adcgs_enc_plan_make(job, &scene, error);
-    if (o->live) {
-        ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
+    if (o->live)
         return adcgs_enc_live(w, job, error);
-    }
     ADCGS_TRY(name_base(w, error));
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
     adcgs_progress_show(&w->progress, "scene     %u views for training, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
                         adcgs_seconds() - o->started.clock);
     if (w->preview.path)
         ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
-    adcgs_enc_reduce_large(job, &w->progress);
+    adcgs_enc_reduce_large(job, job->scene, &w->progress);
     ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->has_segment)
         ADCGS_TRY(adcgs_enc_cut(job, o->segment, error));

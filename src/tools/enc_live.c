@@ -14,6 +14,7 @@
 #include "tools/enc_live_file.h"
 #include "tools/enc_live_past.h"
 #include "tools/enc_live_sum.h"
+#include "train/settings.h"
 
 #include <math.h>
 #include <signal.h>
@@ -23,6 +24,7 @@
 typedef struct live_run {
     adcgs_enc_watcher *w;
     adcgs_enc_job *job;
+    adcgs_train_config asked; /* as it was before it was fitted to what comes */
     adcgs_live *live;
     adcgs_live_segment segment;
     adcgs_encode_live stream;
@@ -191,14 +193,24 @@ static adcgs_status go_on(live_run *r, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** How large pictures are is known, and with that all settings. */
+static adcgs_status settle(live_run *r, adcgs_error *error)
+{
+    adcgs_enc_reduce_large(r->job, r->segment.scene, &r->w->progress);
+    r->asked.scale = r->job->config.scale;
+    return adcgs_train_changes(&r->asked, &r->w->changes, error);
+}
+
 static adcgs_status learn_all(live_run *r, adcgs_error *error)
 {
-    for (;;) {
+    for (int is_first = 1;; is_first = 0) {
         ADCGS_TRY(adcgs_live_next(r->live, &r->segment, error));
         if (r->past.last.n)
             ADCGS_TRY(go_on(r, error));
         if (!r->segment.scene)
             return ADCGS_OK;
+        if (is_first)
+            ADCGS_TRY(settle(r, error));
         tell_missing(r);
         const adcgs_status status = learn_segment(r, error);
         adcgs_trainer_free(&r->w->t);
@@ -238,6 +250,7 @@ adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_erro
 {
     live_run r = { .w = w, .job = job };
     w->is_live = 1;
+    r.asked = job->config;
     job->config.own_anchors = 1; /* HEAD says how many there may be before most pictures are taken */
     adcgs_buffer_init(&r.bytes);
     adcgs_enc_effort_init(&r.effort, job);

@@ -145,7 +145,7 @@ adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *
 {
     adcgs_plan plan = { .dataset = 0 };
     ADCGS_TRY(adcgs_scene_open(&job->scene, job->o->scene, options, error));
-    adcgs_enc_reduce_large(job, NULL);
+    adcgs_enc_reduce_large(job, job->scene, NULL);
     ADCGS_TRY(adcgs_enc_cut(job, job->o->cut, error));
     const adcgs_status status = make(&plan, job, options, error);
     if (plan.cuts.at == job->cuts.at)

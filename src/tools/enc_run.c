@@ -316,9 +316,8 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
     return status;
 }
 
-void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_progress *progress)
+void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_scene *scene, adcgs_progress *progress)
 {
-    const adcgs_scene *const scene = job->scene;
     const int asked = job->o->has_scale || adcgs_setting_in_list(job->o->set, "scale");
     int side = 0;
     for (uint32_t i = 0; i < scene->n_views[ADCGS_SPLIT_TRAIN]; i++) {
@@ -332,5 +331,5 @@ void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_progress *progress)
         adcgs_cli_note(job->cli, "%s: pictures of %d pixels are reduced to 1/%d of that; --scale 1 leaves them as they are",
                        scene->directory, side, job->config.scale);
     }
-    job->scene->measured = job->config.scale;
+    scene->measured = job->config.scale;
 }

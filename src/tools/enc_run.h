@@ -94,9 +94,9 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error);
 
 /**
- * Of the job's scene, once it is open: pictures are as large as they were asked to be; where nobody asked, not larger than is of
- * use, which is said. progress: cleared before that, or NULL.
+ * Of the job's scene, once it is open, or what is live of it first: pictures are as large as they were asked to be; where nobody
+ * asked, not larger than is of use, which is said. progress: cleared before that, or NULL.
  */
-void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_progress *progress);
+void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_scene *scene, adcgs_progress *progress);
 
 #endif

@@ -34,6 +34,25 @@ whole "$dir/all.adcgs"
 [ "$(grep -c '"predicted": false' "$dir/out")" -eq 2 ] || { bad "keys"; cat "$dir/out"; }
 [ "$(left)" = "" ] || bad "left behind: $(left)"
 
+# Pictures of more than 1600 pixels are reduced, as those of a scene are; not if nobody is to.
+mkdir "$dir/wide"
+cp "$dir/all/scene.json" "$dir/wide" && sed -i 's/"width": 64/"width": 1601/' "$dir/wide/scene.json"
+for i in 0 1 2 3 4 5; do
+    mkdir "$dir/wide/c$i" && for k in 000 001 002 003; do
+        { printf 'P6 1601 64 255\n'; head -c $((1601 * 64 * 3)) /dev/zero | tr '\0' "$((i + k % 10))"; } >"$dir/wide/c$i/$k.ppm"
+    done
+done
+touch "$dir/wide/end"
+wide="--preset draft --max-anchors 50 -n 10 --set stereo=0 --segment 0.1"
+# shellcheck disable=SC2086
+{
+    expect 0 'pictures of 1601 pixels are reduced to 1/2 of that; --scale 1 leaves' ./adcgs-enc --live "$dir/wide" -o "$dir/wide.adcgs" $wide
+    [ "$(grep -c 'are reduced' "$dir/err")" -eq 1 ] || { bad "said more than once"; cat "$dir/err"; }
+    ./adcgs-info "$dir/wide.adcgs" --why | grep -q 'settings .*scale=2' || bad "the stream does not tell that pictures were reduced"
+    ./adcgs-enc --live "$dir/wide" -o "$dir/wide.adcgs" $wide --scale 1 2>"$dir/err" || { bad "--scale 1"; cat "$dir/err"; }
+    grep 'are reduced' "$dir/err" && bad "reduced in spite of --scale 1"
+}
+
 # A mask for all pictures of a camera, also where segments come one after the other.
 scene_file "$dir/masked" images
 put "$dir/masked" 0 1 2 3 4 5 6 7
