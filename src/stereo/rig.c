@@ -287,6 +287,7 @@ static adcgs_status load_cameras(adcgs_stereo_rig *rig, const adcgs_scene *scene
             begin++;
         for (end = begin; end < x->n && x->of[x->order[end]] == wanted; end++)
             ;
+        rig->camera[c].first = x->order[begin];
         ADCGS_TRY(load_camera(rig, &rig->camera[c], scene, x, x->order + begin, end - begin, o, error));
     }
     return ADCGS_OK;
@@ -306,6 +307,7 @@ static adcgs_status load_film(adcgs_stereo_rig *rig, const adcgs_scene *scene, c
     for (int c = 0; c < rig->n_cameras; c++) {
         const uint32_t view = x->film[(uint64_t)c * (x->n - 1) / (uint64_t)(rig->n_cameras - 1)];
         rig->moment[c] = moment_of(scene, x->views[view].time);
+        rig->camera[c].first = view;
         ADCGS_TRY(load(scene, &x->views[view], o, &rig->camera[c], c, error));
         ADCGS_TRY(find_usual(&rig->camera[c], error));
     }

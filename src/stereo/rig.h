@@ -25,6 +25,7 @@ typedef struct adcgs_stereo_view {
 
 typedef struct adcgs_stereo_camera {
     adcgs_stereo_view view;                /**< pixels: what it shows most of the time */
+    uint32_t first;                     /**< of its views for training */
     float *usual;                       /**< [h][w][4] the same, its own */
     uint8_t *changes;                   /**< [h][w] 1: there is nothing that it shows most of the time */
     uint8_t *shown[ADCGS_STEREO_MOMENTS];  /**< [h][w][4] what it shows at a moment; NULL: no picture */

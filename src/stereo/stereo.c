@@ -8,6 +8,7 @@
 #include "stereo/fuse.h"
 #include "stereo/hull.h"
 #include "stereo/lives.h"
+#include "stereo/odd.h"
 #include "stereo/poses.h"
 #include "stereo/thin.h"
 
@@ -255,6 +256,8 @@ static adcgs_status find(adcgs_stereo *out, adcgs_stereo_rig *rig, const adcgs_s
 {
     adcgs_stereo_list still = { 0, 0, NULL }, moving = { 0, 0, NULL };
     adcgs_status status = find_still(out, &still, rig, pool, error);
+    if (status == ADCGS_OK && options->judges)
+        status = adcgs_stereo_find_odd(out, rig, out->maps->depths, pool, error);
     if (status == ADCGS_OK)
         status = adcgs_stereo_thin(&still, options->still, error);
     if (status == ADCGS_OK && rig->film)
@@ -288,7 +291,8 @@ adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, cons
         out->n_moments = (uint32_t)rig->n_moments;
         out->film = rig->film;
         memcpy(out->moment, rig->moment, out->n_moments * sizeof *out->moment);
-        status = adcgs_stereo_poses_off(rig, &out->poses, pool, error);
+        if (options->judges)
+            status = adcgs_stereo_poses_off(rig, &out->poses, pool, error);
     }
     if (status == ADCGS_OK) {
         out->poses.pixels = (double)scene->views[ADCGS_SPLIT_TRAIN][0].camera.width / rig->camera[0].view.w;

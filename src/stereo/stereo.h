@@ -50,6 +50,7 @@ typedef struct adcgs_stereo_options {
     uint32_t moving;         /**< points of each moment that do, at most */
     uint32_t moments;        /**< that are looked at, evenly spread, at most; 0: ADCGS_STEREO_MOMENTS */
     uint32_t bodies;         /**< rigid bodies among these, at most ADCGS_BODIES_MAX; 0: none are looked for */
+    int judges;              /**< poses are judged */
 } adcgs_stereo_options;
 
 /**
@@ -61,6 +62,16 @@ typedef struct adcgs_stereo_off {
     double median; /**< over these, of the distance of most of a pair's matches to one side, in pixels of what is matched */
     double pixels; /**< of the pictures as they are, to one of these */
 } adcgs_stereo_off;
+
+enum { ADCGS_STEREO_ODD = 4 };
+
+/** A camera that shows what others show where its pose has it not, and the pose that would do. */
+typedef struct adcgs_stereo_odd {
+    uint32_t view; /**< the first of its views for training */
+    double off;    /**< how far beside, in the median, in pixels of what is matched */
+    double turned; /**< degrees from its pose to that one, and */
+    double moved;  /**< the way, over the distance of what it sees */
+} adcgs_stereo_odd;
 
 /** Depths of what is still, which also say where nothing is. */
 typedef struct adcgs_stereo_maps adcgs_stereo_maps;
@@ -75,7 +86,9 @@ typedef struct adcgs_stereo {
     float *moment;              /**< [n_moments] those that were matched, ascending in t */
     uint32_t n_bodies;          /**< at most ADCGS_BODIES_MAX, the largest first */
     adcgs_stereo_body *body;
-    adcgs_stereo_off poses;
+    adcgs_stereo_off poses;     /**< these, and cameras that are odd, if that was asked for */
+    int n_odd;
+    adcgs_stereo_odd odd[ADCGS_STEREO_ODD];
     adcgs_stereo_maps *maps;
 } adcgs_stereo;
 

@@ -109,7 +109,16 @@ static void say_axes(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs
                        d->meant == ADCGS_READ_TURNED ? "look away from each other" : "are in one place", question);
 }
 
-/** What is wrong with all poses. */
+/** One camera's pose alone. */
+static void say_odd(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo_odd *o, double pixels)
+{
+    const char *const path = short_name(scene, scene->views[ADCGS_SPLIT_TRAIN][o->view].path);
+    adcgs_cli_note(cli, "%s: its camera disagrees with the others: it shows things %.1f pixels beside where they have them, as "
+                   "if turned by %.1f degrees and moved by %.0f %% of the way to these: is its pose, or its lens, off?", path,
+                   o->off * pixels, o->turned, 100.0 * o->moved);
+}
+
+/** What is wrong with poses. */
 static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_scene *whole, const adcgs_stereo *found,
                           adcgs_pool *pool, unsigned *told)
 {
@@ -125,6 +134,8 @@ static void look_at_poses(const adcgs_cli *cli, const adcgs_scene *scene, const 
         say_poses(cli, whole, &found->poses);
         *told |= POSES;
     }
+    for (int i = 0; i < found->n_odd && !(*told & POSES); i++)
+        say_odd(cli, scene, &found->odd[i], found->poses.pixels);
 }
 
 /** What pictures show, each kind until it was told. */

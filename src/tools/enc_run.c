@@ -292,13 +292,16 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error)
 {
     adcgs_progress_show(&w->progress, "start     %u views: where things are", scene->n_views[ADCGS_SPLIT_TRAIN]);
-    ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, before, job->cpu, job->pool, error));
+    const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank says it for all */
+    const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* nobody asks what is live once more */
+    adcgs_train_config config = job->config;
+    config.judges_poses = tells && !w->doubted; /* by the first part of a scene */
+    ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &config, before, job->cpu, job->pool, error));
     if (!before && otherwise && !adcgs_params_equal(&w->t->f->params, &otherwise->params)) {
         adcgs_trainer_free(&w->t);
-        ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &job->config, otherwise, job->cpu, job->pool, error));
+        ADCGS_TRY(adcgs_trainer_create_after(&w->t, scene, &config, otherwise, job->cpu, job->pool, error));
     }
-    const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank says it for all */
-    if (!*job->cli->quiet && !w->is_live && !is_one_of_many) { /* nobody asks what is live once more */
+    if (tells) {
         w->t->glances = w->glances = adcgs_alloc(NULL, w->t->n_views, sizeof *w->glances, error);
         if (!w->glances)
             return adcgs_alloc_status(error);

@@ -31,6 +31,7 @@ typedef struct adcgs_train_config {
     uint8_t own_lambda, own_start, own_anchors, own_networks, own_rigid, own_scale_from, own_square, own_smooth;
     uint32_t details;      /**< of the scene's pictures, where somebody has looked (adcgs_plan_details()) */
     uint8_t has_details;
+    uint8_t judges_poses;  /**< somebody wants to hear what is wrong with them; no checkpoint and no stream knows of it */
     /* The run. */
     uint32_t iterations;
     uint64_t seed;

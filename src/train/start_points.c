@@ -395,6 +395,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, ad
     if (matched) {
         options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
         options.moments = config->stereo;
+        options.judges = config->judges_poses;
         options.bodies = config->params.spans ? config->params.bodies : 0;
         options.moving = config->params.spans ? MOVING_MOST : (uint32_t)(MOVING_SHARE * options.still);
         ADCGS_TRY(adcgs_scene_frame(scene, options.origin, &options.scale, error));

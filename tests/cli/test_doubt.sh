@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# adcgs-enc says which camera cannot be where it is said to be, that axes are wrong and that cameras are too few; of a scene in order,
-# and quietly, it says nothing.
+# adcgs-enc says which camera cannot be where it is said to be, before it learns and behind it, that axes are wrong and that
+# cameras are too few; of a scene in order, and quietly, it says nothing.
 set -u
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-demo-scene
@@ -15,7 +15,7 @@ learn()
     ./adcgs-enc "$dir/$name" -o "$dir/$name.adcgs" --iterations ${iterations:-400} --threads 2 ${quiet:-} >"$dir/out" 2>"$dir/$name.err" ||
         bad "adcgs-enc of $name"
 }
-doubts='is its pose right\|axes and times right\|is a guess\|are their axes\|do their matrices'
+doubts='is its pose right\|axes and times right\|is a guess\|disagrees\|are their axes\|do their matrices'
 
 learn right
 grep "$doubts" "$dir/right.err" && bad "doubts of a scene that is in order"
@@ -24,6 +24,12 @@ learn pose --spoil wrongpose=30
 grep -q "the camera of view r_002 has .* dB, the median camera .*is its pose right" "$dir/pose.err" ||
     { bad "nothing of a wrong pose"; cat "$dir/pose.err"; }
 [ "$(grep -c "is its pose right" "$dir/pose.err")" -eq 1 ] || bad "other cameras are in doubt, too"
+grep -q "train/r_002.ppm: its camera disagrees with the others: .* as if turned by [23][09]\.[0-9] degrees" "$dir/pose.err" ||
+    { bad "nothing of a wrong pose before training"; cat "$dir/pose.err"; }
+[ "$(grep -c "disagrees" "$dir/pose.err")" -eq 1 ] || bad "other cameras disagree, too"
+./adcgs-enc "$dir/pose" -o "$dir/parts.adcgs" --preset draft -n 10 --segment 0.25 --threads 2 >"$dir/out" 2>"$dir/err" ||
+    bad "adcgs-enc in parts"
+[ "$(grep -c "r_002.ppm: its camera disagrees" "$dir/err")" -eq 1 ] || { bad "not once for a scene in parts"; cat "$dir/err"; }
 learn axes --spoil axes=1
 grep -q "training views have .* dB, others .*axes and times right" "$dir/axes.err" || { bad "nothing of wrong axes"; cat "$dir/axes.err"; }
 grep -q "what cameras show does not go together, but does if y and z of all cameras are turned round" "$dir/axes.err" ||

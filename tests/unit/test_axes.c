@@ -5,6 +5,8 @@
  */
 #include "outside_files.h"
 
+#include "ball.h"
+
 #include "stereo/axes.h"
 
 #include <math.h>
@@ -16,30 +18,6 @@ static adcgs_scene_view views[CAMERAS];
 static char names[CAMERAS][300];
 static float positions[POINTS][3];
 
-/** Smooth noise over directions. */
-static double noise(const double x[3], uint32_t seed)
-{
-    double sum = 0.0;
-    int cell[3];
-    double f[3];
-    for (int a = 0; a < 3; a++) {
-        cell[a] = (int)floor(12.0 * x[a]);
-        f[a] = 12.0 * x[a] - cell[a];
-    }
-    for (int k = 0; k < 8; k++) {
-        uint32_t h = seed;
-        double weight = 1.0;
-        for (int a = 0; a < 3; a++) {
-            const int up = k >> a & 1;
-            h = (h ^ (uint32_t)(cell[a] + up + 1000)) * 2654435761u;
-            h ^= h >> 15;
-            weight *= up ? f[a] : 1.0 - f[a];
-        }
-        sum += weight * (h >> 8) / 16777216.0;
-    }
-    return sum;
-}
-
 /** What a camera sees of a sphere of radius 1 about the middle: from outside the near side, from inside the wall. */
 static void put_picture(const char *name, const adcgs_camera *c)
 {
@@ -48,19 +26,12 @@ static void put_picture(const char *name, const adcgs_camera *c)
     assert_int_equal(adcgs_image_alloc(&image, SIDE, SIDE, 3, name, &error), ADCGS_OK);
     for (int i = 0; i < SIDE * SIDE; i++) {
         const double d[3] = {(i % SIDE + 0.5 - c->cx) / c->fx, (i / SIDE + 0.5 - c->cy) / c->fy, 1.0};
-        double w[3], x[3], dd = 0.0, dp = 0.0, pp = 0.0;
-        for (int a = 0; a < 3; a++) {
-            w[a] = m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2];
-            dd += w[a] * w[a];
-            dp += w[a] * m[4 * a + 3];
-            pp += m[4 * a + 3] * m[4 * a + 3];
-        }
-        const double root = dp * dp - dd * (pp - 1.0);
-        const double s = (-dp + (pp < 1.0 ? 1.0 : -1.0) * sqrt(fmax(root, 0.0))) / dd;
+        double w[3], x[3];
         for (int a = 0; a < 3; a++)
-            x[a] = m[4 * a + 3] + s * w[a];
+            w[a] = m[4 * a] * d[0] + m[4 * a + 1] * d[1] + m[4 * a + 2] * d[2];
+        const int hits = ball_hit((const double[]){m[3], m[7], m[11]}, w, x) > 0.0;
         for (int k = 0; k < 3; k++)
-            image.data[3 * i + k] = root > 0.0 ? (float)noise(x, (uint32_t)k) : 0.5f;
+            image.data[3 * i + k] = hits ? (float)ball_shows(x, (uint32_t)k) : 0.5f;
     }
     assert_int_equal(adcgs_image_write(&image, name, 0, &error), ADCGS_OK);
     adcgs_image_free(&image);
@@ -126,7 +97,7 @@ static adcgs_axes_doubt doubt(int matched)
     adcgs_axes_doubt out;
     adcgs_stereo found = {.n_moments = 0};
     if (matched) {
-        adcgs_stereo_options options = {.still = 10, .scale = 1.0};
+        adcgs_stereo_options options = {.still = 10, .scale = 1.0, .judges = 1};
         int applies;
         assert_int_equal(adcgs_stereo_applies(&scene, &applies, &error), ADCGS_OK);
         assert_true(applies);

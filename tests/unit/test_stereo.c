@@ -7,7 +7,7 @@
 
 #include "stereo/stereo.h"
 
-static const adcgs_stereo_options options = { .scale = 1, .still = 800, .moving = 60 };
+static const adcgs_stereo_options options = { .scale = 1, .still = 800, .moving = 60, .judges = 1 };
 
 static adcgs_stereo found; /* without threads */
 
