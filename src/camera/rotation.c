@@ -87,6 +87,19 @@ void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill)
     camera->height = height;
 }
 
+int adcgs_camera_sees(const adcgs_camera *c, const double point[3], double nearest, double at[2])
+{
+    const double *const m = c->cam_to_world;
+    double p[3];
+    for (int a = 0; a < 3; a++)
+        p[a] = m[a] * (point[0] - m[3]) + m[4 + a] * (point[1] - m[7]) + m[8 + a] * (point[2] - m[11]);
+    if (!(p[2] > nearest))
+        return 0;
+    at[0] = c->fx * p[0] / p[2] + c->cx;
+    at[1] = c->fy * p[1] / p[2] + c->cy;
+    return at[0] >= 0.0 && at[1] >= 0.0 && at[0] < c->width && at[1] < c->height;
+}
+
 void adcgs_rotation_from_pose(const double pose[12], double q[4])
 {
     double m[9];

@@ -36,6 +36,12 @@ void adcgs_camera_stretch(adcgs_camera *camera, int width, int height);
  */
 void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill);
 
+/**
+ * Where a point of the world lies in the camera's picture, in pixels, centres at + 0.5. 0: beside it, or no farther before the
+ * camera than `nearest`.
+ */
+int adcgs_camera_sees(const adcgs_camera *camera, const double point[3], double nearest, double at[2]);
+
 /** Rotation of a row-major 3x4 matrix, whose 3x3 part is orthonormal, and back; the last column stays. */
 void adcgs_rotation_from_pose(const double pose[12], double q[4]);
 void adcgs_rotation_to_pose(const double q[4], double pose[12]);

@@ -48,16 +48,6 @@ static adcgs_status read_as(adcgs_scene *out, const adcgs_scene *scene, adcgs_re
 
 /* ---- Points ---- */
 
-static int sees(const adcgs_camera *c, const float point[3])
-{
-    const double *m = c->cam_to_world;
-    double p[3];
-    for (int a = 0; a < 3; a++)
-        p[a] = m[a] * ((double)point[0] - m[3]) + m[4 + a] * ((double)point[1] - m[7]) + m[8 + a] * ((double)point[2] - m[11]);
-    const double u = c->fx * p[0] / p[2] + c->cx, v = c->fy * p[1] / p[2] + c->cy;
-    return p[2] > 0.0 && u >= 0.0 && v >= 0.0 && u < c->width && v < c->height;
-}
-
 /** The share of points that a camera sees on the mean. */
 static double share_seen(const adcgs_scene *scene)
 {
@@ -65,9 +55,12 @@ static double share_seen(const adcgs_scene *scene)
     const uint32_t points = ADCGS_MIN(scene->points.n, POINTS_MOST);
     uint64_t seen = 0;
     for (uint32_t i = 0; i < views; i++)
-        for (uint32_t k = 0; k < points; k++)
-            seen += (uint64_t)sees(&scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * n / views].camera,
-                                   scene->points.position[(uint64_t)k * scene->points.n / points]);
+        for (uint32_t k = 0; k < points; k++) {
+            const float *const x = scene->points.position[(uint64_t)k * scene->points.n / points];
+            const double point[3] = {(double)x[0], (double)x[1], (double)x[2]};
+            double at[2];
+            seen += (uint64_t)adcgs_camera_sees(&scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * n / views].camera, point, 0.0, at);
+        }
     return (double)seen / ((double)views * points);
 }
 

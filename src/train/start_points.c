@@ -2,6 +2,7 @@
 /** \file Where anchors begin. */
 #include "train/start_points.h"
 
+#include "camera/rotation.h"
 #include "data/sort.h"
 #include "grad/random.h"
 #include "stereo/pose.h"
@@ -70,18 +71,11 @@ static glimpse look_at(const sight *s, const double x[3])
         world[a] = s->origin[a] + s->scale * x[a];
     for (uint32_t i = 0; i < s->n; i++) {
         const adcgs_camera *c = &s->camera[i];
-        double p[3];
-        for (int a = 0; a < 3; a++) {
-            p[a] = 0;
-            for (int b = 0; b < 3; b++)
-                p[a] += c->cam_to_world[4 * b + a] * (world[b] - c->cam_to_world[4 * b + 3]);
-        }
-        if (p[2] <= c->near_plane)
+        double place[2];
+        if (!adcgs_camera_sees(c, world, c->near_plane, place))
             continue;
-        const double u = c->fx * p[0] / p[2] + c->cx, v = c->fy * p[1] / p[2] + c->cy;
-        if (u < 0 || v < 0 || u >= c->width || v >= c->height)
-            continue;
-        const size_t plane = (size_t)c->width * (size_t)c->height, at = (size_t)v * (size_t)c->width + (size_t)u;
+        const size_t plane = (size_t)c->width * (size_t)c->height;
+        const size_t at = (size_t)place[1] * (size_t)c->width + (size_t)place[0];
         if (isnan(s->rgb[i][at])) /* masked */
             continue;
         double off = 0;
