@@ -145,13 +145,6 @@ static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, con
     const adcgs_scene_view *const views = scene->views[ADCGS_SPLIT_TRAIN];
     adcgs_fault f;
     adcgs_error error;
-    if (!(*told & DOUBLED)) {
-        adcgs_fault_doubled(&f, NULL, views, tracks, glances);
-        if (f.cameras) {
-            say_doubled(cli, whole, &f, begins);
-            *told |= DOUBLED;
-        }
-    }
     if (!(*told & COPIED) && adcgs_fault_copied(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
         say_copied(cli, whole, &f, begins);
         *told |= COPIED;
@@ -173,8 +166,9 @@ static void say_times(const adcgs_cli *cli, const adcgs_scene *scene)
                    "scene in which nothing moves; adcgs-import makes one with times", scene->directory);
 }
 
-void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found, adcgs_pool *pool,
-                             const adcgs_glance *glances, double begins, unsigned *told)
+void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_stereo *found,
+                             const adcgs_fault *doubled, adcgs_pool *pool, const adcgs_glance *glances, double begins,
+                             unsigned *told)
 {
     const adcgs_scene *const whole = scene->whole ? scene->whole : scene;
     adcgs_fault gaps;
@@ -186,6 +180,10 @@ void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, con
         say_times(cli, whole);
     *told |= GAPS | TIMES; /* of the whole scene, once */
     look_at_poses(cli, scene, whole, found, pool, told);
+    if (!(*told & DOUBLED) && doubled->cameras) {
+        say_doubled(cli, whole, doubled, begins);
+        *told |= DOUBLED;
+    }
     if (adcgs_tracks_find(&tracks, scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN], &error) != ADCGS_OK)
         return;
     look_at_pictures(cli, scene, whole, &tracks, glances, begins, told);

@@ -122,7 +122,8 @@ static void look_at_footage(adcgs_enc_watcher *w)
     if (!w->glances || !w->t->divide)
         return;
     adcgs_progress_clear(&w->progress);
-    adcgs_enc_doubt_footage(w->progress.cli, w->t->scene, &w->t->stereo, w->t->pool, w->glances, w->begins, &w->doubted);
+    adcgs_enc_doubt_footage(w->progress.cli, w->t->scene, &w->t->stereo, &w->t->doubled, w->t->pool, w->glances, w->begins,
+                            &w->doubted);
     forget_glances(w);
 }
 

@@ -4,13 +4,10 @@
 
 #include "train/doubled.h"
 
-#include "data/faults.h"
-
-adcgs_status adcgs_doubled_retime(adcgs_trainer *t, const adcgs_glance *glances, adcgs_error *error)
+adcgs_status adcgs_doubled_find(adcgs_trainer *t, const adcgs_glance *glances, adcgs_error *error)
 {
     const adcgs_scene_view *const views = t->scene->views[ADCGS_SPLIT_TRAIN];
     adcgs_tracks tracks;
-    adcgs_fault doubled;
     uint32_t *shows = adcgs_alloc(NULL, t->n_views, sizeof *shows, error);
     if (!shows)
         return adcgs_alloc_status(error);
@@ -18,10 +15,10 @@ adcgs_status adcgs_doubled_retime(adcgs_trainer *t, const adcgs_glance *glances,
         shows[i] = i;
     const adcgs_status status = adcgs_tracks_find(&tracks, views, t->n_views, error);
     if (status == ADCGS_OK) {
-        adcgs_fault_doubled(&doubled, shows, views, &tracks, glances);
+        adcgs_fault_doubled(&t->doubled, shows, views, &tracks, glances);
         adcgs_tracks_clear(&tracks);
     }
-    for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++)
+    for (uint32_t i = 0; status == ADCGS_OK && t->config.retime_doubled && i < t->n_views; i++)
         t->views[i].t = adcgs_trainer_time(t, views[shows[i]].time);
     adcgs_free(NULL, shows);
     return status;

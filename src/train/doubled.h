@@ -9,9 +9,9 @@
 #include "train/state.h"
 
 /**
- * Times of the training views: their own, in [0,1], but that of the picture before for one that is the same once more
- * (data/faults.h). glances: of all training views.
+ * Set trainer->doubled, for who tells of it, and where the run is to, times of the training views: their own, in [0,1], but that
+ * of the picture before for one that is the same once more (data/faults.h). glances: of all training views.
  */
-adcgs_status adcgs_doubled_retime(adcgs_trainer *trainer, const adcgs_glance *glances, adcgs_error *error);
+adcgs_status adcgs_doubled_find(adcgs_trainer *trainer, const adcgs_glance *glances, adcgs_error *error);
 
 #endif

@@ -6,6 +6,7 @@
 #define ADCGS_TRAIN_STATE_H
 
 #include "bits/bytes.h"
+#include "data/faults.h"
 #include "data/pictures.h"
 #include "fmodel/pass.h"
 #include "fmodel/rdo.h"
@@ -61,6 +62,7 @@ typedef struct adcgs_trainer {
     adcgs_pictures_progress loading; /* told of pictures loaded, or NULL */
     void *loading_user;
     adcgs_glance *glances;   /* [n_views] taken of pictures that are loaded, whoever asks keeps them; NULL: nobody does */
+    adcgs_fault doubled;     /* pictures that come twice, where they were looked for */
     float *image, *grad;
     float *taken;            /* the view's picture in use */
     adcgs_train_stats stats;

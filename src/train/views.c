@@ -18,8 +18,8 @@ static adcgs_status load_pictures(adcgs_trainer *t, int divide, adcgs_error *err
     const adcgs_pictures_config config = { .split = ADCGS_SPLIT_TRAIN, .divide = divide, .memory = t->picture_memory,
                                            .progress = t->loading, .user = t->loading_user, .glances = glances };
     adcgs_status status = adcgs_pictures_load(&t->pictures, t->scene, &config, t->pool, error);
-    if (status == ADCGS_OK && t->config.retime_doubled)
-        status = adcgs_doubled_retime(t, glances, error);
+    if (status == ADCGS_OK && glances)
+        status = adcgs_doubled_find(t, glances, error);
     adcgs_free(NULL, own);
     return status;
 }

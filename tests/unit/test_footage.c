@@ -243,21 +243,26 @@ static void doubled_pictures_are_found(void **state)
     expect_silence("d");
 }
 
-/* They are learnt as of the time that they show; all others as of their own. */
+/* They are told of, and learnt as of the time that they show; all others as of their own. */
 static void doubled_pictures_are_of_the_time_before(void **state)
 {
     (void)state;
     adcgs_train_view views[MOST];
     const adcgs_scene scene = {.duration = 24.0, .views = {film.views}, .n_views = {24}};
-    adcgs_trainer trainer = {.scene = &scene, .n_views = 24, .views = views};
+    adcgs_trainer trainer = {.scene = &scene, .n_views = 24, .views = views, .config.retime_doubled = 1};
     for (int pictures = 1; pictures <= 3; pictures++) {
         film_twice(pictures, 0.0, 2);
-        assert_int_equal(adcgs_doubled_retime(&trainer, film.glances, &error), ADCGS_OK);
+        assert_int_equal(adcgs_doubled_find(&trainer, film.glances, &error), ADCGS_OK);
         for (int i = 0; i < 24; i++) {
             const int copies = pictures > 1 && i / 8 < pictures && (i % 8 == 4 || i % 8 == 5) ? i % 8 - 3 : 0;
             assert_true(views[i].t == (float)((i - copies) / 24.0));
         }
+        assert_int_equal(trainer.doubled.count, pictures > 1 ? 2 * pictures : 0);
     }
+    trainer.config.retime_doubled = 0;
+    views[4].t = -1.0f;
+    assert_int_equal(adcgs_doubled_find(&trainer, film.glances, &error), ADCGS_OK);
+    assert_true(trainer.doubled.count == 6 && views[4].t < 0.0f);
 }
 
 /* What goes to and fro may rest where it turns. */
