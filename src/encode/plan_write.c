@@ -52,8 +52,8 @@ double adcgs_plan_cost(const adcgs_train_config *config, const adcgs_scene *part
     const uint32_t n = part->n_views[ADCGS_SPLIT_TRAIN];
     for (uint32_t i = 0; i < n; i++)
         pixels += (double)part->views[ADCGS_SPLIT_TRAIN][i].camera.width * part->views[ADCGS_SPLIT_TRAIN][i].camera.height;
-    const double iteration = n ? PER_ANCHOR * c.max_anchors + PER_PIXEL * share_drawn(&c) * pixels / n : 0;
-    return PER_PIXEL_READ * pixels + c.iterations * iteration;
+    const double look = n ? PER_ANCHOR * c.max_anchors + PER_PIXEL * share_drawn(&c) * pixels / n : 0;
+    return PER_PIXEL_READ * pixels + (double)c.iterations * c.batch * look;
 }
 
 /* ---- Writing ---- */

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 30 };
+enum { FORMAT = 31 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -199,7 +199,7 @@ static void walk_arrays(walk *w, adcgs_trainer *t)
     visit(w, f->learns, lanes * sizeof(float));
     w->failed |= f->finest >= ADCGS_TIERS_MAX;
     visit(w, f->centre, sizeof f->centre);
-    visit(w, t->stats.weight, (3 * slots + lanes) * sizeof(float));
+    visit(w, t->stats.weight, adcgs_train_stats_size(f) * sizeof(float));
     visit(w, &t->stats.n, sizeof t->stats.n);
     for (int i = 0; i < ADCGS_P_COUNT; i++) {
         adcgs_param *p = &f->param[i];

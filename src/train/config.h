@@ -34,6 +34,7 @@ typedef struct adcgs_train_config {
     uint8_t judges_poses;  /**< somebody wants to hear what is wrong with them; no checkpoint and no stream knows of it */
     /* The run. */
     uint32_t iterations;
+    uint32_t batch;        /**< views that an iteration looks at */
     uint64_t seed;
     int scale;             /**< images are divided by this integer before training */
     float learn_features, learn_prediction, learn_motion, learn_entropy; /**< learning rates, relative to what suits most */

@@ -43,9 +43,10 @@ void adcgs_exposure_clear(adcgs_exposure *e)
     *e = (adcgs_exposure){ .n = 0 };
 }
 
-void adcgs_exposure_follow(adcgs_exposure *e, uint32_t view, const float *drawn, const float *taken, size_t plane)
+void adcgs_exposure_sum(const adcgs_exposure *e, uint32_t view, const float *drawn, const float *taken, size_t plane,
+                        adcgs_exposure_sums *sums)
 {
-    adcgs_exposure_camera *camera = &e->cameras[e->of[view]];
+    const adcgs_exposure_camera *camera = &e->cameras[e->of[view]];
     for (size_t c = 0; c < 3; c++, drawn += plane, taken += plane) {
         double cross = 0, square = 0;
         for (size_t i = 0; i < plane; i++)
@@ -53,8 +54,17 @@ void adcgs_exposure_follow(adcgs_exposure *e, uint32_t view, const float *drawn,
                 cross += (double)drawn[i] * (double)(taken[i] - camera->black[c]);
                 square += (double)drawn[i] * (double)drawn[i];
             }
-        camera->cross[c] = KEEP * camera->cross[c] + cross;
-        camera->square[c] = KEEP * camera->square[c] + square;
+        sums->cross[c] = cross;
+        sums->square[c] = square;
+    }
+}
+
+void adcgs_exposure_follow(adcgs_exposure *e, uint32_t view, const adcgs_exposure_sums *sums)
+{
+    adcgs_exposure_camera *camera = &e->cameras[e->of[view]];
+    for (size_t c = 0; c < 3; c++) {
+        camera->cross[c] = KEEP * camera->cross[c] + sums->cross[c];
+        camera->square[c] = KEEP * camera->square[c] + sums->square[c];
         if (camera->cross[c] > 0 && camera->square[c] > 0)
             camera->gain[c] = fminf(fmaxf((float)(camera->cross[c] / camera->square[c]), 1 / GAIN_MOST), GAIN_MOST);
     }

@@ -13,8 +13,13 @@
 
 #include "data/scene.h"
 
+/** Of drawn * taken and of drawn^2, by channel. */
+typedef struct adcgs_exposure_sums {
+    double cross[3], square[3];
+} adcgs_exposure_sums;
+
 typedef struct adcgs_exposure_camera {
-    double cross[3], square[3]; /* sums of drawn * taken and of drawn^2; recent pictures count more */
+    double cross[3], square[3]; /* such sums; recent pictures count more */
     float gain[3];              /* (taken - black) / drawn */
     float black[3];             /* added to all it takes, relative to the middle camera; see black_level.h */
 } adcgs_exposure_camera;
@@ -34,8 +39,11 @@ typedef struct adcgs_exposure {
 adcgs_status adcgs_exposure_create(adcgs_exposure *exposure, const adcgs_scene_view *views, uint32_t n_views, int still,
                                    adcgs_error *error);
 void adcgs_exposure_clear(adcgs_exposure *exposure);
-/** Take note of a view's picture as drawn and as taken, [3][plane] both. */
-void adcgs_exposure_follow(adcgs_exposure *exposure, uint32_t view, const float *drawn, const float *taken, size_t plane);
+/** The sums of a view's picture as drawn and as taken, [3][plane] both. */
+void adcgs_exposure_sum(const adcgs_exposure *exposure, uint32_t view, const float *drawn, const float *taken, size_t plane,
+                        adcgs_exposure_sums *sums);
+/** Take note of such sums: the gain of the view's camera is another then. */
+void adcgs_exposure_follow(adcgs_exposure *exposure, uint32_t view, const adcgs_exposure_sums *sums);
 /** out: the picture taken, as the mean camera would have. All [3][plane]. */
 void adcgs_exposure_even(const adcgs_exposure *exposure, uint32_t view, const float *taken, float *out, size_t plane);
 

@@ -8,6 +8,7 @@
 
 #include "net/net.h"
 #include "stereo/stereo.h"
+#include "train/tree_sum.h"
 
 #include <stddef.h>
 
@@ -40,7 +41,9 @@ const char *const adcgs_train_presets[] = { "draft", "fast", "medium", "slow", "
 #define SWITCH(name, binds, help) ROW(#name, name, 0, SWITCHES, binds, 0, 0, 1, ALL(0), help)
 
 const adcgs_setting adcgs_settings[] = {
-    RUN(iterations, S | Q, 10, 1e7, { 3000, 20000, 40000, 100000, 80000 }, "iterations of the run; each looks at one picture"),
+    RUN(iterations, S | Q, 10, 1e7, { 3000, 20000, 40000, 100000, 80000 }, "iterations of the run, each one step"),
+    RUN(batch, S | Q | M, 1, ADCGS_TREE_MOST, ALL(1),
+        "pictures that an iteration looks at: it is one step, by the mean of their gradients"),
     RUN(seed, 0, 0, 1e15, ALL(1), "seed of every random choice"),
     RUN(learn_features, Q, 0, 100, ALL(1), "learning rates of the anchors' values, times this"),
     RUN(learn_prediction, Q, 0, 100, ALL(1), "learning rate of F_theta, times this"),

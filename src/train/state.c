@@ -16,18 +16,40 @@
 
 #define SQUARE_ALONE 0.5f /* square_weight, at most, where one camera sees a moment */
 
+static size_t slots_of(const adcgs_fmodel *f)
+{
+    return (size_t)f->groups * ADCGS_LANES * f->params.k;
+}
+
+size_t adcgs_train_stats_size(const adcgs_fmodel *f)
+{
+    return 3 * slots_of(f) + (size_t)f->groups * ADCGS_LANES;
+}
+
+adcgs_train_stats adcgs_train_stats_at(float *numbers, const adcgs_fmodel *f)
+{
+    const size_t slots = slots_of(f);
+    return (adcgs_train_stats){ numbers, numbers + slots, numbers + 2 * slots, numbers + 3 * slots, 0 };
+}
+
+void adcgs_train_batch_forget(adcgs_train_batch *b)
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(b->sum); i++)
+        adcgs_free(NULL, b->sum[i]);
+    adcgs_free(NULL, b->means);
+    *b = (adcgs_train_batch){ .seen = b->seen };
+}
+
 adcgs_status adcgs_trainer_resize(adcgs_trainer *t, adcgs_error *error)
 {
-    const size_t lanes = (size_t)t->f->groups * ADCGS_LANES, slots = lanes * t->f->params.k;
     adcgs_bodies_recentre(t->f);
     ADCGS_TRY(adcgs_pass_resize(t->pass, t->f, error));
     adcgs_free(NULL, t->stats.weight);
-    t->stats = (adcgs_train_stats){ .weight = adcgs_alloc(NULL, 3 * slots + lanes, sizeof(float), error) };
-    if (!t->stats.weight)
+    t->stats.weight = NULL;
+    float *const numbers = adcgs_alloc(NULL, adcgs_train_stats_size(t->f), sizeof *numbers, error);
+    if (!numbers)
         return adcgs_alloc_status(error);
-    t->stats.significance = t->stats.weight + slots;
-    t->stats.opacity = t->stats.weight + 2 * slots;
-    t->stats.presence = t->stats.weight + 3 * slots;
+    t->stats = adcgs_train_stats_at(numbers, t->f);
     return t->config.rigid_weight > 0 ? adcgs_rigidity_build(&t->rigid, t->f, t->pool, error) : ADCGS_OK;
 }
 
@@ -41,8 +63,9 @@ static adcgs_status create_views(adcgs_trainer *t, adcgs_error *error)
 {
     t->n_views = t->scene->n_views[ADCGS_SPLIT_TRAIN];
     t->views = adcgs_alloc(NULL, t->n_views, sizeof *t->views, error);
+    t->batch.seen = adcgs_alloc(NULL, t->config.batch, sizeof *t->batch.seen, error);
     float *times = adcgs_alloc(NULL, t->n_views, sizeof *times, error);
-    adcgs_status status = t->views && times ? ADCGS_OK : adcgs_alloc_status(error);
+    adcgs_status status = t->views && t->batch.seen && times ? ADCGS_OK : adcgs_alloc_status(error);
     for (uint32_t i = 0; status == ADCGS_OK && i < t->n_views; i++)
         times[i] = t->views[i].t = adcgs_trainer_time(t, t->scene->views[ADCGS_SPLIT_TRAIN][i].time);
     if (status == ADCGS_OK)
@@ -207,6 +230,8 @@ void adcgs_trainer_free(adcgs_trainer **trainer)
     adcgs_exposure_clear(&t->exposure);
     adcgs_stereo_clear(&t->stereo);
     adcgs_viewpoints_clear(&t->viewpoints);
+    adcgs_train_batch_forget(&t->batch);
+    adcgs_free(NULL, t->batch.seen);
     adcgs_weight_average_clear(&t->average);
     adcgs_buffer_clear(&t->snapshot);
     adcgs_buffer_clear(&t->begin);

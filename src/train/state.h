@@ -22,6 +22,7 @@
 #include "train/schedule.h"
 #include "train/time_curriculum.h"
 #include "train/time_left.h"
+#include "train/tree_sum.h"
 
 typedef struct adcgs_train_view {
     adcgs_view view;
@@ -34,8 +35,30 @@ typedef struct adcgs_train_stats {
     float *significance; /* Psi times screen gradient */
     float *opacity;
     float *presence;     /* of each anchor, [groups][64] */
-    uint32_t n;          /* iterations summed */
+    uint32_t n;          /* looks summed */
 } adcgs_train_stats;
+
+/** Where they lie, one behind the other, and how many numbers they are. */
+size_t adcgs_train_stats_size(const adcgs_fmodel *f);
+adcgs_train_stats adcgs_train_stats_at(float *numbers, const adcgs_fmodel *f);
+
+/** What a look says beside gradients and statistics. */
+typedef struct adcgs_seen {
+    double loss, mse;
+    double bits[ADCGS_GROUPS]; /* 0 where they have no price */
+    adcgs_exposure_sums sums;  /* 0 where exposure is not followed */
+} adcgs_seen;
+
+/** Of the looks of an iteration; see batch.h. */
+typedef struct adcgs_train_batch {
+    adcgs_seen *seen;               /* [config.batch] */
+    float *sum[ADCGS_TREE_PARTS];   /* [size] gradients and statistics, where there are several looks */
+    size_t size;
+    float *means;                   /* of the pass, as they were before */
+} adcgs_train_batch;
+
+/** Sums and means have another size now. */
+void adcgs_train_batch_forget(adcgs_train_batch *batch);
 
 typedef struct adcgs_trainer {
     adcgs_train_config config;
@@ -66,6 +89,7 @@ typedef struct adcgs_trainer {
     float *image, *grad;
     float *taken;            /* the view's picture in use */
     adcgs_train_stats stats;
+    adcgs_train_batch batch;
     adcgs_weight_average average;
     adcgs_train_quantise quantise; /* provided by the room that builds streams; NULL: values stay as they are */
     adcgs_train_measure measure;   /* likewise; asked where there is a size to meet */

@@ -4,9 +4,8 @@
 
 #include "fmodel/from_model.h"
 #include "fmodel/weight_rate.h"
-#include "grad/random.h"
-#include "train/tiers.h"
-#include "train/views.h"
+#include "train/batch.h"
+#include "train/look.h"
 
 #include <math.h>
 
@@ -114,23 +113,6 @@ static void update(adcgs_trainer *t, double progress)
     adcgs_trainer_prepare_networks(t);
 }
 
-static void accumulate_stats(adcgs_trainer *t, const adcgs_raster_grads *grads)
-{
-    const size_t slots = t->pass->primitives.n;
-    const float *weight = t->pass->grads.weight, *screen = grads->screen, *opacity = t->pass->primitives.opacity;
-    /* Psi is counted in pixels of the full resolution. */
-    const float area = (float)(t->divide * t->divide);
-    for (size_t i = 0; i < slots; i++) {
-        t->stats.weight[i] += area * weight[i];
-        t->stats.opacity[i] += opacity[i];
-    }
-    for (size_t i = 0; screen && i < slots; i++)
-        t->stats.significance[i] += area * weight[i] * screen[i];
-    for (uint32_t i = 0; i < t->f->groups * ADCGS_LANES; i++)
-        t->stats.presence[i] += i < t->f->n ? adcgs_fmodel_presence(t->f, i, t->pass->t) : 0;
-    t->stats.n++;
-}
-
 /** Whether an iteration is one of the last before values are frozen, or before the end. */
 static int averages(const adcgs_trainer *t, double progress)
 {
@@ -140,59 +122,29 @@ static int averages(const adcgs_trainer *t, double progress)
     return progress >= end - fmin((double)c->average_last, (end - begin) / 2);
 }
 
-/* Before, the pictures drawn say nothing of brightness. */
-static const double EXPOSURE_FROM = 0.02;
-/* Iterations for a picture to be read in the meantime. */
-enum { PICTURES_AHEAD = 8 };
+/** Running means of what the looks have said: in the beginning of few iterations, then of many. */
+static void note_means(adcgs_trainer *t, int rated)
+{
+    const double keep = !t->iteration ? 0 : t->iteration < 100 ? 0.9 : 0.99;
+    adcgs_seen mean = { .loss = 0 };
+    for (uint32_t i = 0; i < t->config.batch; i++) {
+        const adcgs_seen *seen = &t->batch.seen[i];
+        mean.loss += seen->loss / t->config.batch;
+        mean.mse += seen->mse / t->config.batch;
+        for (int j = 0; j < ADCGS_GROUPS; j++)
+            mean.bits[j] += seen->bits[j] / t->config.batch;
+    }
+    t->mean_loss = keep * t->mean_loss + (1 - keep) * mean.loss;
+    t->mean_mse = keep * t->mean_mse + (1 - keep) * mean.mse;
+    t->least_mse = t->iteration ? fmin(t->least_mse, t->mean_mse) : t->mean_mse;
+    for (int i = 0; rated && i < ADCGS_GROUPS; i++)
+        t->mean_bits[i] = t->mean_bits[i] > 0 ? 0.95 * t->mean_bits[i] + 0.05 * mean.bits[i] : mean.bits[i];
+}
 
 adcgs_status adcgs_train_step(adcgs_trainer *t, double progress, adcgs_error *error)
 {
-    const adcgs_train_config *c = &t->config;
-    const uint32_t picked = adcgs_view_pick(t, t->iteration);
-    const adcgs_train_view *v = &t->views[picked];
-    const adcgs_quant quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND :
-                              progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
-    const int rated = progress >= c->rate_from && !c->without_rate && !t->frozen;
-    const adcgs_pass_mode mode = { .quant = quant,
-                                   .deform = t->f->follows ? ADCGS_DEFORM_ALL :
-                                             progress < c->deform_from && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
-                                             progress < c->fine_from   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
-                                   .bf16 = c->bf16,
-                                   .dropout = progress >= c->round_from ? 0 : c->dropout,
-                                   .seed = (uint32_t)adcgs_random64(c->seed, 3000, t->iteration) };
-    adcgs_loss_value value;
-    adcgs_raster_grads grads = t->pass->grads;
-    if (progress >= c->densify_until) /* only growth asks for it */
-        grads.screen = NULL;
-    adcgs_pass_forward(t->pass, t->f, v->t, &mode);
-    ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 1, error));
-    const float *target;
-    ADCGS_TRY(adcgs_trainer_target(t, picked, progress >= EXPOSURE_FROM ? t->image : NULL, &target, error));
-    adcgs_pictures_expect(t->pictures, adcgs_view_pick(t, t->iteration + PICTURES_AHEAD));
-    ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
-    ADCGS_TRY(adcgs_view_draw_back(t, &v->view, &grads, error));
-    accumulate_stats(t, &grads);
-    if (c->scale_weight > 0 && progress >= c->scale_from)
-        adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_weight, grads.scale);
-    if (c->distortion_weight > 0 && t->iteration % (uint32_t)c->distortion_period == 0)
-        ADCGS_TRY(adcgs_distortion_add(&t->distortion, t->raster, t->back, &t->pass->primitives, &v->view, ADCGS_SCREEN_FILTER,
-                                       c->distortion_weight * (float)c->distortion_period, &grads, NULL, error));
-    t->pass->pull = NULL;
-    if (c->rigid_weight > 0 && mode.deform && t->f->mlp[ADCGS_P_OMEGA].n) {
-        adcgs_rigidity_pull(&t->rigid, t->pass, t->f, c->rigid_weight);
-        t->pass->pull = t->rigid.pull;
-    }
-    adcgs_rate rate = { .total = 0 };
-    /* Loss per bit: lambda per 2^23 bits. */
-    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_price_of_bit(t) : 0, c->rate_period,
-                        (int)(t->iteration % (uint32_t)c->rate_period), rated ? &rate : NULL);
-    ADCGS_TRY(adcgs_tiers_learn(t, picked, &mode, error));
-    const double keep = t->iteration < 100 ? 0.9 : 0.99;
-    t->mean_loss = t->iteration ? keep * t->mean_loss + (1 - keep) * value.loss : value.loss;
-    t->mean_mse = t->iteration ? keep * t->mean_mse + (1 - keep) * value.mse : value.mse;
-    t->least_mse = t->iteration ? fmin(t->least_mse, t->mean_mse) : t->mean_mse;
-    for (int i = 0; rated && i < ADCGS_GROUPS; i++)
-        t->mean_bits[i] = t->mean_bits[i] > 0 ? 0.95 * t->mean_bits[i] + 0.05 * rate.bits[i] : rate.bits[i];
+    ADCGS_TRY(adcgs_batch_look(t, progress, error));
+    note_means(t, adcgs_look_is_rated(t, progress));
     update(t, progress);
     t->iteration++;
     return averages(t, progress) ? adcgs_weight_average_add(&t->average, t->f, error) : ADCGS_OK;

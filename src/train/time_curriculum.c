@@ -83,8 +83,8 @@ void adcgs_curriculum_grow(adcgs_curriculum *w, double fraction, adcgs_fmodel *f
     w->n = n;
 }
 
-uint32_t adcgs_curriculum_pick(const adcgs_curriculum *w, uint64_t seed, uint32_t iteration)
+uint32_t adcgs_curriculum_pick(const adcgs_curriculum *w, uint64_t seed, uint32_t look)
 {
-    const uint32_t late = (w->n + 3) / 4, from = iteration % 2 ? w->n - late : 0;
-    return w->views[from + (uint32_t)(adcgs_random64(seed, 2100, iteration) % (w->n - from))].index;
+    const uint32_t late = (w->n + 3) / 4, from = look % 2 ? w->n - late : 0;
+    return w->views[from + (uint32_t)(adcgs_random64(seed, 2100, look) % (w->n - from))].index;
 }

@@ -30,7 +30,7 @@ adcgs_status adcgs_curriculum_create(adcgs_curriculum *window, const float *t, u
 void adcgs_curriculum_clear(adcgs_curriculum *window);
 /** Take in the views of this fraction of all; rows of the time table newly reached become copies of their neighbours. */
 void adcgs_curriculum_grow(adcgs_curriculum *window, double fraction, adcgs_fmodel *f);
-/** A view of the window; every other iteration one of those taken in last. */
-uint32_t adcgs_curriculum_pick(const adcgs_curriculum *window, uint64_t seed, uint32_t iteration);
+/** A view of the window, of which so many have been looked at; every other time one of those taken in last. */
+uint32_t adcgs_curriculum_pick(const adcgs_curriculum *window, uint64_t seed, uint32_t look);
 
 #endif

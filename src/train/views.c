@@ -42,13 +42,16 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *t, int divide, adcgs_error 
     return t->image && t->grad && t->taken ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, const float *drawn, const float **target, adcgs_error *error)
+adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, adcgs_exposure_sums *sums, const float **target,
+                                  adcgs_error *error)
 {
     const adcgs_view *v = &t->views[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
     ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
-    if (t->exposure.n && drawn)
-        adcgs_exposure_follow(&t->exposure, view, drawn, t->taken, plane);
+    if (t->exposure.n && sums) {
+        adcgs_exposure_sum(&t->exposure, view, t->image, t->taken, plane, sums);
+        adcgs_exposure_follow(&t->exposure, view, sums);
+    }
     if (t->exposure.n)
         adcgs_exposure_even(&t->exposure, view, t->taken, t->taken, plane);
     const uint8_t *const hidden = adcgs_pictures_hidden(t->pictures, view);
@@ -124,16 +127,16 @@ adcgs_status adcgs_view_draw_back(adcgs_trainer *t, const adcgs_view *view, adcg
                                  t->image, t->grad, grads, error);
 }
 
-uint32_t adcgs_view_pick(const adcgs_trainer *t, uint32_t iteration)
+uint32_t adcgs_view_pick(const adcgs_trainer *t, uint32_t look)
 {
     if (t->curriculum.n < t->n_views)
-        return adcgs_curriculum_pick(&t->curriculum, t->config.seed, iteration);
-    const uint32_t n = t->n_views, epoch = iteration / n;
+        return adcgs_curriculum_pick(&t->curriculum, t->config.seed, look);
+    const uint32_t n = t->n_views, epoch = look / n;
     int half = 1;
     while ((uint64_t)1 << (2 * half) < n)
         half++;
     const uint32_t mask = (1u << half) - 1;
-    uint32_t x = iteration % n;
+    uint32_t x = look % n;
     do {
         uint32_t l = x >> half, r = x & mask;
         for (uint32_t round = 0; round < 4; round++) {

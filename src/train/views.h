@@ -10,9 +10,10 @@ adcgs_status adcgs_trainer_load_views(adcgs_trainer *trainer, int divide, adcgs_
 
 /**
  * A training view's picture as the mean camera would have taken it; valid until the next is asked for. Where it is masked, it
- * is the model's own, trainer->image. drawn: that too, for the camera's exposure to be followed from, or NULL.
+ * is the model's own, trainer->image. sums: receives those of that and of the picture, from which the exposure of the view's
+ * camera is followed before the picture is made even; NULL: gains stay.
  */
-adcgs_status adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view, const float *drawn, const float **target,
+adcgs_status adcgs_trainer_target(adcgs_trainer *trainer, uint32_t view, adcgs_exposure_sums *sums, const float **target,
                                   adcgs_error *error);
 
 /**
@@ -39,9 +40,9 @@ adcgs_status adcgs_view_draw(adcgs_trainer *trainer, const adcgs_view *view, flo
 adcgs_status adcgs_view_draw_back(adcgs_trainer *trainer, const adcgs_view *view, adcgs_raster_grads *grads, adcgs_error *error);
 
 /**
- * View of an iteration. Once all of time is trained on, every epoch visits all views once, in an order of its own (a Feistel walk
- * over the index).
+ * The view that is looked at when so many have been. Once all of time is trained on, every epoch visits all views once, in an
+ * order of its own (a Feistel walk over the index).
  */
-uint32_t adcgs_view_pick(const adcgs_trainer *trainer, uint32_t iteration);
+uint32_t adcgs_view_pick(const adcgs_trainer *trainer, uint32_t look);
 
 #endif

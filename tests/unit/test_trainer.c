@@ -1093,6 +1093,13 @@ static void black_levels_are_found(void **state)
 
 enum { CAMERAS = 3, PICTURES = 5, PLANE = 64 };
 
+static void follow_picture(adcgs_exposure *exposure, uint32_t view, const float *drawn, const float *taken)
+{
+    adcgs_exposure_sums sums;
+    adcgs_exposure_sum(exposure, view, drawn, taken, PLANE, &sums);
+    adcgs_exposure_follow(exposure, view, &sums);
+}
+
 /** Pictures by cameras of these gains, followed in the order they were taken; even: what the mean camera would have taken. */
 static uint32_t follow_cameras(const float *gain, uint32_t n_views, int still, float even[][3 * PLANE], const float *drawn)
 {
@@ -1109,7 +1116,7 @@ static uint32_t follow_cameras(const float *gain, uint32_t n_views, int still, f
             if (even_out)
                 adcgs_exposure_even(&exposure, i, taken, even[i], PLANE);
             else
-                adcgs_exposure_follow(&exposure, i, drawn, taken, PLANE);
+                follow_picture(&exposure, i, drawn, taken);
         }
     const uint32_t n = exposure.n;
     adcgs_exposure_clear(&exposure);
@@ -1147,10 +1154,10 @@ static void cameras_are_evened_out(void **state)
     for (int j = 0; j < 3 * PLANE; j++)
         bright[j] = 2 * drawn[j];
     assert_int_equal(adcgs_exposure_create(&exposure, views, 2, 1, &error), ADCGS_OK);
-    adcgs_exposure_follow(&exposure, 0, drawn, bright, PLANE);
+    follow_picture(&exposure, 0, drawn, bright);
     adcgs_exposure_even(&exposure, 0, bright, even[0], PLANE);
     assert_memory_equal(even[0], bright, sizeof bright);
-    adcgs_exposure_follow(&exposure, 1, drawn, drawn, PLANE);
+    follow_picture(&exposure, 1, drawn, drawn);
     adcgs_exposure_even(&exposure, 0, bright, even[0], PLANE);
     assert_true(even[0][7] < 0.8f * bright[7]);
     adcgs_exposure_clear(&exposure);

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file One look at a view. */
+#include "train/look.h"
+
+#include "grad/random.h"
+#include "train/tiers.h"
+#include "train/views.h"
+
+/* Before, the pictures drawn say nothing of brightness. */
+static const double EXPOSURE_FROM = 0.02;
+/* Looks for a picture to be read in the meantime. */
+enum { PICTURES_AHEAD = 8 };
+
+int adcgs_look_is_rated(const adcgs_trainer *t, double progress)
+{
+    return progress >= t->config.rate_from && !t->config.without_rate && !t->frozen;
+}
+
+static int follows_exposure(const adcgs_trainer *t, double progress)
+{
+    return progress >= EXPOSURE_FROM && t->exposure.n;
+}
+
+static adcgs_pass_mode mode_of(const adcgs_trainer *t, double progress, uint32_t number)
+{
+    const adcgs_train_config *c = &t->config;
+    const adcgs_quant quant = t->frozen ? ADCGS_QUANT_NONE : t->rounding ? ADCGS_QUANT_ROUND :
+                              progress >= c->noise_from && !c->without_rate ? ADCGS_QUANT_NOISE : ADCGS_QUANT_NONE;
+    return (adcgs_pass_mode){ .quant = quant,
+                              .deform = t->f->follows ? ADCGS_DEFORM_ALL :
+                                        progress < c->deform_from && !t->stereo.n_bodies ? ADCGS_DEFORM_NONE :
+                                        progress < c->fine_from   ? ADCGS_DEFORM_COARSE : ADCGS_DEFORM_ALL,
+                              .bf16 = c->bf16,
+                              .dropout = progress >= c->round_from ? 0 : c->dropout,
+                              .seed = (uint32_t)adcgs_random64(c->seed, 3000, number) };
+}
+
+static void add_stats(const adcgs_trainer *t, const adcgs_raster_grads *grads, adcgs_train_stats *stats)
+{
+    const size_t slots = t->pass->primitives.n;
+    const float *weight = t->pass->grads.weight, *screen = grads->screen, *opacity = t->pass->primitives.opacity;
+    /* Psi is counted in pixels of the full resolution. */
+    const float area = (float)(t->divide * t->divide);
+    for (size_t i = 0; i < slots; i++) {
+        stats->weight[i] += area * weight[i];
+        stats->opacity[i] += opacity[i];
+    }
+    for (size_t i = 0; screen && i < slots; i++)
+        stats->significance[i] += area * weight[i] * screen[i];
+    for (uint32_t i = 0; i < t->f->groups * ADCGS_LANES; i++)
+        stats->presence[i] += i < t->f->n ? adcgs_fmodel_presence(t->f, i, t->pass->t) : 0;
+    stats->n++;
+}
+
+/** Draw the view, and find the gradients of its picture's loss by the primitives. */
+static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t number, const adcgs_raster_grads *grads,
+                                    adcgs_seen *seen, adcgs_error *error)
+{
+    const uint32_t picked = adcgs_view_pick(t, number), n = t->config.batch;
+    const adcgs_view *v = &t->views[picked].view;
+    adcgs_raster_grads all = *grads;
+    adcgs_loss_value value;
+    const float *target;
+    ADCGS_TRY(adcgs_view_draw(t, v, t->image, 1, error));
+    ADCGS_TRY(adcgs_trainer_target(t, picked, follows_exposure(t, progress) ? &seen->sums : NULL, &target, error));
+    adcgs_pictures_expect(t->pictures, adcgs_view_pick(t, number + (PICTURES_AHEAD + n - 1) / n * n));
+    ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
+    seen->loss = value.loss;
+    seen->mse = value.mse;
+    return adcgs_view_draw_back(t, v, &all, error);
+}
+
+/** Prices of primitives and of their motion, beside the picture. */
+static adcgs_status add_prices(adcgs_trainer *t, double progress, uint32_t number, const adcgs_view *v, adcgs_deform deform,
+                               adcgs_raster_grads *grads, adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    if (c->scale_weight > 0 && progress >= c->scale_from)
+        adcgs_scale_penalty(&t->pass->primitives, &t->viewpoints, c->scale_weight, grads->scale);
+    if (c->distortion_weight > 0 && number % (uint32_t)c->distortion_period == 0)
+        ADCGS_TRY(adcgs_distortion_add(&t->distortion, t->raster, t->back, &t->pass->primitives, v, ADCGS_SCREEN_FILTER,
+                                       c->distortion_weight * (float)c->distortion_period, grads, NULL, error));
+    t->pass->pull = NULL;
+    if (c->rigid_weight > 0 && deform && t->f->mlp[ADCGS_P_OMEGA].n) {
+        adcgs_rigidity_pull(&t->rigid, t->pass, t->f, c->rigid_weight);
+        t->pass->pull = t->rigid.pull;
+    }
+    return ADCGS_OK;
+}
+
+static adcgs_status look(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats, adcgs_seen *seen,
+                         adcgs_error *error)
+{
+    const adcgs_train_config *c = &t->config;
+    const uint32_t picked = adcgs_view_pick(t, number);
+    const adcgs_train_view *v = &t->views[picked];
+    const adcgs_pass_mode mode = mode_of(t, progress, number);
+    const int rated = adcgs_look_is_rated(t, progress);
+    /* A pass that rounds renews the means of what it measures: all looks of an iteration those of the same groups. */
+    const uint32_t turn = mode.quant == ADCGS_QUANT_ROUND ? t->iteration : number;
+    adcgs_raster_grads grads = t->pass->grads;
+    if (progress >= c->densify_until) /* only growth asks for it */
+        grads.screen = NULL;
+    adcgs_pass_forward(t->pass, t->f, v->t, &mode);
+    ADCGS_TRY(look_at_picture(t, progress, number, &grads, seen, error));
+    add_stats(t, &grads, stats);
+    ADCGS_TRY(add_prices(t, progress, number, &v->view, mode.deform, &grads, error));
+    adcgs_rate rate = { .total = 0 };
+    adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_price_of_bit(t) : 0, c->rate_period,
+                        (int)(turn % (uint32_t)c->rate_period), rated ? &rate : NULL);
+    memcpy(seen->bits, rate.bits, sizeof seen->bits);
+    return adcgs_tiers_learn(t, picked, &mode, error);
+}
+
+adcgs_status adcgs_look(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats, adcgs_seen *seen,
+                        adcgs_error *error)
+{
+    adcgs_exposure *const e = &t->exposure;
+    adcgs_exposure_camera *const camera = e->n ? &e->cameras[e->of[adcgs_view_pick(t, number)]] : NULL;
+    adcgs_exposure_camera before;
+    if (camera)
+        before = *camera;
+    const adcgs_status status = look(t, progress, number, stats, seen, error);
+    if (camera)
+        *camera = before;
+    return status;
+}
+
+void adcgs_look_note(adcgs_trainer *t, double progress, uint32_t number, const adcgs_seen *seen)
+{
+    if (follows_exposure(t, progress))
+        adcgs_exposure_follow(&t->exposure, adcgs_view_pick(t, number), &seen->sums);
+}

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Iterations of several looks: the tree by which they are summed, the mean that comes of it, and whole runs of them. */
+#include "tiny_scene.h"
+
+#include "encode/encode.h"
+#include "grad/random.h"
+#include "train/batch.h"
+#include "train/look.h"
+#include "train/stages.h"
+
+#include <math.h>
+
+/* ---- The tree ---- */
+
+enum { MOST = 40, WIDE = 5 };
+
+static float value_of(uint32_t place, size_t i)
+{
+    return (float)adcgs_random_normal(7, place, i) * (float)(1 << (place * 7 + i) % 20);
+}
+
+/** As tree_sum.h says it: halves, of which the first is the longest power of two that leaves something. */
+static float sum_of(uint32_t first, uint32_t n, size_t i)
+{
+    uint32_t half = 1;
+    if (n == 1)
+        return value_of(first, i);
+    while (half * 2 < n)
+        half *= 2;
+    return sum_of(first, half, i) + sum_of(first + half, n - half, i);
+}
+
+/** Wherever places are cut between those that sum them. */
+static void parts_sum_to_the_same_bits(void **state)
+{
+    static float room[MOST][WIDE];
+    (void)state;
+    for (uint32_t n = 1; n <= MOST; n++)
+        for (uint32_t ranks = 1; ranks <= n && ranks < 9; ranks++) {
+            adcgs_tree_part all[ADCGS_TREE_PARTS];
+            int n_all = 0;
+            for (uint32_t r = 0; r < ranks; r++) {
+                adcgs_tree_part own[ADCGS_TREE_PARTS];
+                int n_own = 0;
+                for (uint32_t place = n * r / ranks; place < n * (r + 1) / ranks; place++) {
+                    for (size_t i = 0; i < WIDE; i++)
+                        room[place][i] = value_of(place, i);
+                    n_own = adcgs_tree_add(own, n_own, (adcgs_tree_part){ place, 1, room[place] }, WIDE);
+                    assert_in_range(n_own, 1, ADCGS_TREE_PARTS - 1);
+                }
+                for (int i = 0; i < n_own; i++)
+                    n_all = adcgs_tree_add(all, n_all, own[i], WIDE);
+            }
+            adcgs_tree_end(all, n_all, WIDE);
+            assert_int_equal(all[0].n, n);
+            for (size_t i = 0; i < WIDE; i++)
+                assert_int_equal(adcgs_float_bits(all[0].sum[i]), adcgs_float_bits(sum_of(0, n, i)));
+        }
+}
+
+/* ---- One iteration ---- */
+
+static adcgs_trainer *make(const adcgs_train_config *config, adcgs_pool *threads)
+{
+    adcgs_trainer *t;
+    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), threads, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    t->quantise = adcgs_encode_quantise_hook;
+    return t;
+}
+
+/** A trainer before its step at an iteration. */
+static adcgs_trainer *make_at(const adcgs_train_config *config, uint32_t stop)
+{
+    adcgs_trainer *t = make(config, pool);
+    int stopped;
+    assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
+    assert_int_equal(adcgs_stages_before(t, adcgs_trainer_progress(t), &error), ADCGS_OK);
+    return t;
+}
+
+/** At the beginning and while noise stands for rounding: the mean of four looks, and the sum of what they show. */
+static void gradients_are_the_mean(void **state)
+{
+    static const uint32_t stops[] = { 0, 20 };
+    adcgs_train_config config = small_config();
+    config.iterations = 60;
+    config.batch = 4;
+    (void)state;
+    for (size_t s = 0; s < ADCGS_COUNTOF(stops); s++) {
+        adcgs_trainer *t = make_at(&config, stops[s]), *by_hand = make_at(&config, stops[s]);
+        const double progress = adcgs_trainer_progress(t);
+        const adcgs_param *p = &t->f->param[ADCGS_P_THETA], *q = &by_hand->f->param[ADCGS_P_THETA];
+        float *g[4];
+        double bits = 0;
+        assert_int_equal(adcgs_batch_look(t, progress, &error), ADCGS_OK);
+        for (uint32_t i = 0; i < 4; i++) {
+            adcgs_seen seen;
+            g[i] = calloc(q->n, sizeof **g);
+            assert_int_equal(adcgs_look(by_hand, progress, 4 * stops[s] + i, &by_hand->stats, &seen, &error), ADCGS_OK);
+            memcpy(g[i], q->g, q->n * sizeof *q->g);
+            for (int j = 0; j < ADCGS_P_COUNT; j++)
+                memset(by_hand->f->param[j].g, 0, by_hand->f->param[j].n * sizeof *q->g);
+            assert_true(seen.loss > 0 && seen.loss == t->batch.seen[i].loss && seen.mse == t->batch.seen[i].mse);
+            assert_true(seen.bits[ADCGS_GROUP_FV] == t->batch.seen[i].bits[ADCGS_GROUP_FV]);
+            bits += seen.bits[ADCGS_GROUP_FV];
+        }
+        assert_true((bits > 0) == (s > 0));
+        for (size_t i = 0; i < p->n; i++)
+            assert_true(p->g[i] == ((g[0][i] + g[1][i]) + (g[2][i] + g[3][i])) / 4);
+        assert_int_equal(t->stats.n, by_hand->stats.n);
+        for (size_t i = 0; i < adcgs_train_stats_size(t->f); i++)
+            assert_float_equal(t->stats.weight[i], by_hand->stats.weight[i], 1e-5 * fabsf(t->stats.weight[i]));
+        for (int i = 0; i < 4; i++)
+            free(g[i]);
+        adcgs_trainer_free(&t);
+        adcgs_trainer_free(&by_hand);
+    }
+}
+
+/* ---- Runs ---- */
+
+static adcgs_train_config run_config(uint32_t batch)
+{
+    adcgs_train_config c = small_config();
+    c.iterations = 60;
+    c.batch = batch;
+    c.densify_every = 7;
+    c.freeze_from = 0.92f;
+    c.average_last = 0.1f;
+    c.rigid_weight = 0.02f;
+    c.own_rigid = 1;
+    c.distortion_weight = 0.001f;
+    c.params.adaptive_steps = batch % 2;
+    return c;
+}
+
+/** The state of a run less its time. */
+static void store(adcgs_trainer *t, adcgs_buffer *out)
+{
+    t->elapsed = (adcgs_time){ 0, 0 };
+    adcgs_buffer_init(out);
+    assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
+}
+
+static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
+{
+    int stopped;
+    if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+}
+
+static void assert_ends_alike(adcgs_trainer *a, adcgs_trainer *b)
+{
+    adcgs_buffer ends[2];
+    store(a, &ends[0]);
+    store(b, &ends[1]);
+    assert_int_equal(ends[0].size, ends[1].size);
+    assert_memory_equal(ends[0].data, ends[1].data, ends[0].size);
+    adcgs_buffer_clear(&ends[0]);
+    adcgs_buffer_clear(&ends[1]);
+}
+
+/** Neither on threads nor on stopping, at any stage, does a run depend. */
+static void runs_end_alike(void **state)
+{
+    (void)state;
+    for (uint32_t batch = 2; batch <= 3; batch++) {
+        const adcgs_train_config config = run_config(batch);
+        adcgs_trainer *through = make(&config, pool), *stopping = make(&config, NULL);
+        run(through, NULL, NULL);
+        for (uint32_t stop = 10; stop < config.iterations; stop += 20) {
+            adcgs_buffer middle;
+            run(stopping, stop_at, &stop);
+            store(stopping, &middle);
+            adcgs_trainer_free(&stopping);
+            stopping = make(&config, NULL);
+            assert_int_equal(adcgs_trainer_restore(stopping, middle.data, middle.size, &error), ADCGS_OK);
+            adcgs_buffer_clear(&middle);
+        }
+        run(stopping, NULL, NULL);
+        assert_ends_alike(through, stopping);
+        adcgs_trainer_free(&through);
+        adcgs_trainer_free(&stopping);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parts_sum_to_the_same_bits),
+        cmocka_unit_test(gradients_are_the_mean),
+        cmocka_unit_test(runs_end_alike),
+    };
+    return cmocka_run_group_tests(tests, open_scene, close_scene);
+}
