@@ -3,6 +3,7 @@
 #include "train/batch.h"
 
 #include "train/look.h"
+#include "train/share.h"
 
 /* ---- What is summed: all gradients, and behind them the statistics ---- */
 
@@ -115,9 +116,13 @@ static adcgs_status look_at(adcgs_trainer *t, double progress, uint32_t first, u
 static adcgs_status look_at_many(adcgs_trainer *t, double progress, adcgs_error *error)
 {
     adcgs_tree_part parts[ADCGS_TREE_PARTS];
+    const int rank = t->team ? t->team->rank : 0;
     int n;
-    ADCGS_TRY(look_at(t, progress, 0, t->config.batch, parts, &n, error));
-    adcgs_tree_end(parts, n, t->batch.size);
+    ADCGS_TRY(look_at(t, progress, adcgs_share_place(t, rank), adcgs_share_place(t, rank + 1), parts, &n, error));
+    if (t->team)
+        ADCGS_TRY(adcgs_share(t, parts, n, error));
+    else
+        adcgs_tree_end(parts, n, t->batch.size);
     give(t, parts[0].sum);
     return ADCGS_OK;
 }

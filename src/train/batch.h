@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The views of an iteration: as many looks as the configuration says, and the mean of their gradients. */
+/** \file
+ * The views of an iteration: as many looks as the configuration says, and the mean of their gradients. Runs of a team look at
+ * some of them each, and know all of it then.
+ */
 #ifndef ADCGS_TRAIN_BATCH_H
 #define ADCGS_TRAIN_BATCH_H
 

@@ -37,6 +37,7 @@ void adcgs_train_batch_forget(adcgs_train_batch *b)
     for (size_t i = 0; i < ADCGS_COUNTOF(b->sum); i++)
         adcgs_free(NULL, b->sum[i]);
     adcgs_free(NULL, b->means);
+    adcgs_free(NULL, b->room);
     *b = (adcgs_train_batch){ .seen = b->seen };
 }
 

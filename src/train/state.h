@@ -20,6 +20,7 @@
 #include "train/exposure.h"
 #include "train/rate_state.h"
 #include "train/schedule.h"
+#include "train/team.h"
 #include "train/time_curriculum.h"
 #include "train/time_left.h"
 #include "train/tree_sum.h"
@@ -55,6 +56,7 @@ typedef struct adcgs_train_batch {
     float *sum[ADCGS_TREE_PARTS];   /* [size] gradients and statistics, where there are several looks */
     size_t size;
     float *means;                   /* of the pass, as they were before */
+    float *room;                    /* for what comes from a team */
 } adcgs_train_batch;
 
 /** Sums and means have another size now. */
@@ -94,6 +96,7 @@ typedef struct adcgs_trainer {
     adcgs_train_quantise quantise; /* provided by the room that builds streams; NULL: values stay as they are */
     adcgs_train_measure measure;   /* likewise; asked where there is a size to meet */
     void *measure_user;
+    const adcgs_team *team;        /* with whom the run is shared; NULL: with nobody */
     int until_lambda;        /* stop before the first iteration that lambda has a say in */
     /* State that a checkpoint carries beside the model. */
     uint32_t iteration;

@@ -2,6 +2,7 @@
 /** \file The training loop: stages, steps, reports, and the way back when a step goes wrong. */
 #include "train/trainer.h"
 
+#include "base/digest.h"
 #include "metric/metric.h"
 #include "train/rate_search.h"
 #include "train/stages.h"
@@ -9,7 +10,7 @@
 
 #include <math.h>
 
-enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, ROLLBACKS_MAX = 4, MEANS_AFTER = 100 };
+enum { SNAPSHOT_EVERY = 500, CHECK_EVERY = 10, REPORT_EVERY = 10, AGREE_EVERY = 100, ROLLBACKS_MAX = 4, MEANS_AFTER = 100 };
 /*
  * LOST_BY: times the pictures' deviation, by which one colour for all of them is off. LOST_LEAST: of that deviation, since
  * pictures of one colour have none. BLOWN_BY: times the least error that there was.
@@ -28,6 +29,34 @@ static int is_finite(const adcgs_trainer *t)
             return 0;
     }
     return 1;
+}
+
+/** What a run is in a few bytes: whether all of a team are at the same. */
+static uint32_t sum_up(const adcgs_trainer *t)
+{
+    uint32_t crc = adcgs_crc32c(t->iteration, &t->f->n, sizeof t->f->n);
+    for (int i = 0; i < ADCGS_P_COUNT; i++)
+        crc = adcgs_crc32c(crc, t->f->param[i].p, t->f->param[i].n * sizeof(float));
+    return crc;
+}
+
+/** Nobody is sent parameters: a run that computes otherwise would spoil what all learn. */
+static adcgs_status agree(const adcgs_trainer *t, adcgs_error *error)
+{
+    uint32_t sums[ADCGS_TREE_MOST];
+    size_t at[ADCGS_TREE_MOST + 1];
+    if (!t->team)
+        return ADCGS_OK;
+    for (int r = 0; r <= t->team->size; r++)
+        at[r] = (size_t)r * sizeof *sums;
+    sums[t->team->rank] = sum_up(t);
+    ADCGS_TRY(adcgs_team_gather(t->team, sums, at, error));
+    for (int r = 1; r < t->team->size; r++)
+        if (sums[r] != sums[0])
+            return adcgs_fail(error, ADCGS_ERR_DATA, "at iteration %u number %d of the %d that learn together has another model "
+                              "than the first: expected the same programs, libraries, pictures and checkpoints", t->iteration,
+                              r + 1, t->team->size);
+    return ADCGS_OK;
 }
 
 static adcgs_status take_snapshot(adcgs_trainer *t, adcgs_error *error)
@@ -116,29 +145,52 @@ adcgs_status adcgs_trainer_finish(adcgs_trainer *t, adcgs_train_report *report, 
     return ADCGS_OK;
 }
 
+/** How much time the run has taken. Where that is limited it is the first's of a team: progress has to be the same. */
+static adcgs_status take_time(adcgs_trainer *t, adcgs_time begin, adcgs_error *error)
+{
+    t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
+    return t->config.time_limit > 0 ? adcgs_team_tell(t->team, &t->elapsed, sizeof t->elapsed, error) : ADCGS_OK;
+}
+
+typedef struct reports {
+    adcgs_train_observe observe;
+    void *user;
+    double last, rate; /* when, and iterations per second */
+    uint32_t iteration;
+} reports;
+
+/** \return *stops: the first of a team says so for all */
+static adcgs_status tell(const adcgs_trainer *t, reports *r, double progress, int *stops, adcgs_error *error)
+{
+    const double at = adcgs_seconds();
+    const double lately = at > r->last && t->iteration > r->iteration ? (t->iteration - r->iteration) / (at - r->last) : r->rate;
+    adcgs_train_report report;
+    r->rate = r->rate > 0 ? 0.9 * r->rate + 0.1 * lately : lately;
+    r->iteration = t->iteration;
+    r->last = at;
+    fill_report(t, progress, r->rate, &report);
+    *stops = r->observe && r->observe(r->user, &report);
+    return adcgs_team_tell(t->team, stops, sizeof *stops, error);
+}
+
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
     const adcgs_time begin = begin_of(t);
-    double last = adcgs_seconds(), rate = 0;
-    uint32_t reported = t->iteration;
+    reports r = { observe, user, adcgs_seconds(), 0, t->iteration };
     *stopped = 0;
     adcgs_trainer_prepare_networks(t);
     ADCGS_TRY(take_snapshot(t, error));
+    ADCGS_TRY(agree(t, error));
     for (;;) {
-        t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
+        ADCGS_TRY(take_time(t, begin, error));
         const double progress = adcgs_trainer_progress(t);
-        adcgs_train_report report;
         if (progress >= 1 && !t->iteration)
             return adcgs_fail(error, ADCGS_ERR_USAGE, "the time limit of %g s was over after %.1f s, before training began: "
                               "reading the scene takes a part of it", t->config.time_limit, t->elapsed.clock);
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
-            const double at = adcgs_seconds();
-            const double lately = at > last && t->iteration > reported ? (t->iteration - reported) / (at - last) : rate;
-            rate = rate > 0 ? 0.9 * rate + 0.1 * lately : lately;
-            reported = t->iteration;
-            last = at;
-            fill_report(t, progress, rate, &report);
-            if (observe && observe(user, &report)) {
+            int stops;
+            ADCGS_TRY(tell(t, &r, progress, &stops, error));
+            if (stops) {
                 *stopped = progress < 1;
                 return ADCGS_OK;
             }
@@ -151,7 +203,7 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         }
         const uint32_t at = t->iteration;
         ADCGS_TRY(adcgs_stages_before(t, progress, error));
-        t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
+        ADCGS_TRY(take_time(t, begin, error));
         if (t->iteration != at) { /* it goes on from an earlier one, which is the last good state now */
             ADCGS_TRY(take_snapshot(t, error));
             continue;
@@ -160,7 +212,9 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
             continue;
         ADCGS_TRY(adcgs_train_step(t, progress, error));
         adcgs_time_left_add(&t->left, t->divide / t->config.scale, adcgs_seconds() - begin.clock - t->elapsed.clock);
-        t->elapsed = adcgs_time_less(adcgs_time_now(), begin);
+        ADCGS_TRY(take_time(t, begin, error));
+        if (t->iteration % AGREE_EVERY == 0 || adcgs_trainer_progress(t) >= 1)
+            ADCGS_TRY(agree(t, error));
         ADCGS_TRY(guard(t, progress, error));
     }
 }

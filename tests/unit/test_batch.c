@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Iterations of several looks: the tree by which they are summed, the mean that comes of it, and whole runs of them. */
+/** \file
+ * Iterations of several looks: the tree by which they are summed, the mean that comes of it, whole runs of them,
+ * and runs that share them.
+ */
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
@@ -9,6 +12,7 @@
 #include "train/stages.h"
 
 #include <math.h>
+#include <pthread.h>
 
 /* ---- The tree ---- */
 
@@ -123,7 +127,7 @@ static void gradients_are_the_mean(void **state)
 static adcgs_train_config run_config(uint32_t batch)
 {
     adcgs_train_config c = small_config();
-    c.iterations = 60;
+    c.iterations = 40;
     c.batch = batch;
     c.densify_every = 7;
     c.freeze_from = 0.92f;
@@ -169,7 +173,7 @@ static void runs_end_alike(void **state)
         const adcgs_train_config config = run_config(batch);
         adcgs_trainer *through = make(&config, pool), *stopping = make(&config, NULL);
         run(through, NULL, NULL);
-        for (uint32_t stop = 10; stop < config.iterations; stop += 20) {
+        for (uint32_t stop = 10; stop < config.iterations; stop += 10) {
             adcgs_buffer middle;
             run(stopping, stop_at, &stop);
             store(stopping, &middle);
@@ -185,12 +189,138 @@ static void runs_end_alike(void **state)
     }
 }
 
+/* ---- Teams, of a thread each ---- */
+
+enum { TEAM_MOST = 4 };
+
+/** Where they swap. */
+typedef struct board {
+    pthread_barrier_t all;
+    const adcgs_ranks_part *out[TEAM_MOST];
+    int n_out[TEAM_MOST];
+    int faults;
+    size_t bytes; /* swapped */
+} board;
+
+typedef struct member {
+    adcgs_team team;
+    board *board;
+    adcgs_trainer *t;
+    adcgs_train_observe observe;
+    uint32_t stop;
+    adcgs_status status;
+    adcgs_error error;
+    int stopped;
+    pthread_t thread;
+} member;
+
+static adcgs_status swap(void *user, const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in, int n_in,
+                         adcgs_error *why)
+{
+    const member *m = user;
+    board *b = m->board;
+    int taken[TEAM_MOST] = { 0 };
+    (void)why;
+    b->out[m->team.rank] = out;
+    b->n_out[m->team.rank] = n_out;
+    pthread_barrier_wait(&b->all);
+    for (int i = 0; i < n_in; i++) {
+        const int from = in[i].rank;
+        while (taken[from] < b->n_out[from] && b->out[from][taken[from]].rank != m->team.rank)
+            taken[from]++;
+        const adcgs_ranks_part *part = taken[from] < b->n_out[from] ? &b->out[from][taken[from]++] : NULL;
+        if (part && part->bytes == in[i].bytes)
+            memcpy(in[i].data, part->data, part->bytes);
+        else
+            b->faults = 1;
+        b->bytes += m->team.rank == 0 && part ? part->bytes : 0;
+    }
+    pthread_barrier_wait(&b->all);
+    return ADCGS_OK;
+}
+
+static void *run_member(void *user)
+{
+    member *m = user;
+    m->status = adcgs_trainer_run(m->t, m->observe, &m->stop, &m->stopped, &m->error);
+    return NULL;
+}
+
+/** Run the team's trainers to their end, or where the first one's observer says stop. */
+static void run_team(member *team, int size, board *b)
+{
+    *b = (board){ .faults = 0 };
+    assert_int_equal(pthread_barrier_init(&b->all, NULL, (unsigned)size), 0);
+    for (int r = 0; r < size; r++) {
+        team[r].team = (adcgs_team){ r, size, swap, &team[r] };
+        team[r].board = b;
+        team[r].t->team = &team[r].team;
+        assert_int_equal(pthread_create(&team[r].thread, NULL, run_member, &team[r]), 0);
+    }
+    for (int r = 0; r < size; r++)
+        pthread_join(team[r].thread, NULL);
+    pthread_barrier_destroy(&b->all);
+    assert_int_equal(b->faults, 0);
+}
+
+/** However many share the looks: each ends with the state of a run that has them all; and all stop where the first one does. */
+static void teams_end_as_one(void **state)
+{
+    static const int sizes[][2] = { { 4, 2 }, { 5, 3 } };
+    (void)state;
+    for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++) {
+        const adcgs_train_config config = run_config((uint32_t)sizes[i][0]);
+        const int size = sizes[i][1];
+        adcgs_trainer *alone = make(&config, pool);
+        member team[TEAM_MOST];
+        board b;
+        run(alone, NULL, NULL);
+        for (int r = 0; r < size; r++)
+            team[r] = (member){ .t = make(&config, NULL), .observe = r ? NULL : stop_at, .stop = 20 };
+        run_team(team, size, &b);
+        for (int r = 0; r < size; r++) {
+            assert_int_equal(team[r].status, ADCGS_OK);
+            assert_int_equal(team[r].t->iteration, 20);
+            assert_true(team[r].stopped);
+            team[r].stop = UINT32_MAX;
+        }
+        run_team(team, size, &b);
+        assert_true(b.bytes > 0);
+        for (int r = 0; r < size; r++) {
+            assert_int_equal(team[r].status, ADCGS_OK);
+            assert_ends_alike(alone, team[r].t);
+            adcgs_trainer_free(&team[r].t);
+        }
+        adcgs_trainer_free(&alone);
+    }
+}
+
+/** Who computes otherwise is noticed. */
+static void strangers_are_noticed(void **state)
+{
+    const adcgs_train_config config = run_config(2);
+    member team[2];
+    board b;
+    (void)state;
+    for (int r = 0; r < 2; r++)
+        team[r] = (member){ .t = make(&config, NULL) };
+    team[1].t->f->param[ADCGS_P_THETA].p[3] += 1e-6f;
+    run_team(team, 2, &b);
+    for (int r = 0; r < 2; r++) {
+        assert_int_equal(team[r].status, ADCGS_ERR_DATA);
+        assert_non_null(strstr(team[r].error.text, "at iteration 0 number 2 of the 2 that learn together has another model"));
+        adcgs_trainer_free(&team[r].t);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_sum_to_the_same_bits),
         cmocka_unit_test(gradients_are_the_mean),
         cmocka_unit_test(runs_end_alike),
+        cmocka_unit_test(teams_end_as_one),
+        cmocka_unit_test(strangers_are_noticed),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }
