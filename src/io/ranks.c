@@ -66,10 +66,10 @@ int adcgs_ranks_take(const adcgs_ranks *r, int *from, void *message, int bytes)
     return r->mpi->take(from, message, bytes);
 }
 
-adcgs_status adcgs_ranks_swap(const adcgs_ranks *r, const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in, int n_in,
-                              adcgs_error *error)
+adcgs_status adcgs_ranks_swap(const adcgs_ranks *r, int first, const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in,
+                              int n_in, adcgs_error *error)
 {
-    return r->mpi->swap(out, n_out, in, n_in, error);
+    return r->mpi->swap(first, out, n_out, in, n_in, error);
 }
 
 int adcgs_ranks_swapped(const adcgs_ranks *r, int *missing)

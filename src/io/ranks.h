@@ -41,12 +41,13 @@ void adcgs_ranks_send(const adcgs_ranks *ranks, int to, const void *message, int
 /** \return whether there was a message, of that size; *from: whose it is */
 int adcgs_ranks_take(const adcgs_ranks *ranks, int *from, void *message, int bytes);
 /**
- * Begin to send parts and to receive others. Both sides know their sizes, and their order between each two of them. What they
- * point to is untouched until adcgs_ranks_swapped() says so; a process is at one swap at a time.
+ * Begin to send parts and to receive others; their ranks are counted from `first`. Both sides know their sizes, and their order
+ * between each two of them. What they point to is untouched until adcgs_ranks_swapped() says so; a process is at one swap at a
+ * time.
  */
-adcgs_status adcgs_ranks_swap(const adcgs_ranks *ranks, const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in,
-                              int n_in, adcgs_error *error);
-/** \return whether all is there; if not *missing is a rank that is waited for */
+adcgs_status adcgs_ranks_swap(const adcgs_ranks *ranks, int first, const adcgs_ranks_part *out, int n_out,
+                              const adcgs_ranks_part *in, int n_in, adcgs_error *error);
+/** \return whether all is there; if not *missing is one of the ranks that are waited for, counted from 0 */
 int adcgs_ranks_swapped(const adcgs_ranks *ranks, int *missing);
 
 #endif

@@ -93,16 +93,16 @@ static int pieces_of(const adcgs_ranks_part *parts, int n)
     return pieces;
 }
 
-static void begin_part(const adcgs_ranks_part *part, int receives)
+static void begin_part(const adcgs_ranks_part *part, int rank, int receives)
 {
     for (size_t at = 0; at < part->bytes; at += PIECE) {
         char *const data = (char *)part->data + at;
         const int bytes = (int)ADCGS_MIN(part->bytes - at, PIECE);
         if (receives)
-            MPI_Irecv(data, bytes, MPI_BYTE, part->rank, TAG_PART, MPI_COMM_WORLD, &swap.requests[swap.n]);
+            MPI_Irecv(data, bytes, MPI_BYTE, rank, TAG_PART, MPI_COMM_WORLD, &swap.requests[swap.n]);
         else
-            MPI_Isend(data, bytes, MPI_BYTE, part->rank, TAG_PART, MPI_COMM_WORLD, &swap.requests[swap.n]);
-        swap.ranks[swap.n++] = part->rank;
+            MPI_Isend(data, bytes, MPI_BYTE, rank, TAG_PART, MPI_COMM_WORLD, &swap.requests[swap.n]);
+        swap.ranks[swap.n++] = rank;
     }
 }
 
@@ -116,7 +116,8 @@ static void end_swap(void)
     swap.n = 0;
 }
 
-static adcgs_status mpi_swap(const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in, int n_in, adcgs_error *error)
+static adcgs_status mpi_swap(int first, const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in, int n_in,
+                             adcgs_error *error)
 {
     const size_t n = (size_t)(pieces_of(out, n_out) + pieces_of(in, n_in)) + 1;
     swap.requests = calloc(n, sizeof(MPI_Request));
@@ -128,9 +129,9 @@ static adcgs_status mpi_swap(const adcgs_ranks_part *out, int n_out, const adcgs
     }
     pthread_mutex_lock(&turn);
     for (int i = 0; i < n_in; i++)
-        begin_part(&in[i], 1);
+        begin_part(&in[i], first + in[i].rank, 1);
     for (int i = 0; i < n_out; i++)
-        begin_part(&out[i], 0);
+        begin_part(&out[i], first + out[i].rank, 0);
     pthread_mutex_unlock(&turn);
     return ADCGS_OK;
 }

@@ -13,7 +13,8 @@ typedef struct adcgs_mpi {
     void (*abort)(int code);
     void (*send)(int to, const void *message, int bytes);
     int (*take)(int *from, void *message, int bytes); /**< \return whether there was one of so many bytes */
-    adcgs_status (*swap)(const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in, int n_in, adcgs_error *error);
+    adcgs_status (*swap)(int first, const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in, int n_in,
+                         adcgs_error *error);
     int (*swapped)(int *missing);
 } adcgs_mpi;
 

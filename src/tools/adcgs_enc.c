@@ -135,11 +135,30 @@ static adcgs_status report(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs
                                   met, error);
 }
 
+/** Rank 0 waits for one of its team, and was interrupted: perhaps that is gone. */
+static void say_late(void *user, int rank, const char *host)
+{
+    adcgs_enc_watcher *w = user;
+    adcgs_progress_clear(&w->progress);
+    adcgs_cli_error(w->progress.cli, ADCGS_OK, "interrupted at iteration %u, waiting for rank %d on %s; %s%s", w->last.iteration,
+                    rank, host, access(w->state, F_OK) ? "there is no --checkpoint" : "the same command goes on with --resume ",
+                    access(w->state, F_OK) ? "" : w->state);
+}
+
 static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
     adcgs_stream stream;
+    if (job->ranks && !job->ranks->rank && !w->is_live) {
+        w->team.late = say_late;
+        w->team.late_user = w;
+        adcgs_enc_ranks_say_idle(job);
+    } else if (job->ranks) {
+        w->hear = adcgs_rank_hear_nothing;
+    }
     ADCGS_TRY(adcgs_enc_learn(w, job, job->scene, NULL, NULL, job->o->finish ? job->o->finish : job->o->resume,
                               job->o->started, error));
+    if (adcgs_enc_team_follows(&w->team))
+        return adcgs_rank_follow(w, job, error);
     if (!job->o->output)
         return ADCGS_OK;
     adcgs_stream_init(&stream);
@@ -207,16 +226,37 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
     return ADCGS_OK;
 }
 
+/** Ranks find to each other once it is known how many segments there are; what rank 0 keeps is not theirs to keep. */
+static adcgs_status gather_ranks(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+{
+    if (!job->ranks)
+        return ADCGS_OK;
+    if (!job->o->finish) /* which trains nothing */
+        adcgs_enc_team_form(&w->team, job->ranks, job->config.batch, adcgs_enc_ranks_keys(job));
+    w->keeps &= !adcgs_enc_team_follows(&w->team);
+    return adcgs_enc_team_meet(&w->team, job->cpu, error);
+}
+
+static adcgs_status open_log(adcgs_enc_watcher *w, adcgs_error *error)
+{
+    const adcgs_enc_options *o = w->o;
+    if (adcgs_enc_team_follows(&w->team))
+        return ADCGS_OK;
+    w->log = o->log ? fopen(o->log, o->resume || o->finish || o->plan ? "a" : "w") : NULL;
+    return !o->log || w->log ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
+}
+
 static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcgs_error *error)
 {
     const adcgs_enc_options *o = job->o;
     adcgs_scene_options scene = { .points_path = o->points, .dataset = o->dataset };
     ADCGS_TRY(prepare(job, w, &scene, error));
-    if (job->ranks && job->ranks->rank && (!o->has_segment || o->live)) /* there is nothing to share */
+    const int follows = job->ranks && job->ranks->rank;
+    const uint32_t shared = o->live || o->finish ? 1 : job->config.batch;
+    if (follows && (!o->has_segment || o->live) && (uint32_t)job->ranks->rank >= shared) /* there is nothing to share */
         return adcgs_rank_follow(w, job, error);
-    w->log = o->log ? fopen(o->log, o->resume || o->finish || o->plan ? "a" : "w") : NULL;
-    if (o->log && !w->log)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
+    if (!follows)
+        ADCGS_TRY(open_log(w, error));
     if (o->plan)
         return o->has_segment ? adcgs_enc_plan_learn(w, job, error) : adcgs_enc_plan_make(job, &scene, error);
     if (o->live)
@@ -231,7 +271,10 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->has_segment)
         ADCGS_TRY(adcgs_enc_cut(job, o->segment, error));
-    if (job->ranks && job->ranks->rank)
+    ADCGS_TRY(gather_ranks(w, job, error));
+    if (follows)
+        ADCGS_TRY(open_log(w, error));
+    if (follows && (job->cuts.n > 1 || !adcgs_enc_team_follows(&w->team)))
         return adcgs_rank_follow(w, job, error);
     return job->cuts.n > 1 ? encode_segments(w, job, met, error) : encode_whole(w, job, met, error);
 }
@@ -252,6 +295,7 @@ static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, con
     if (w.log_error.status != ADCGS_OK)
         adcgs_cli_error(cli, ADCGS_OK, "%s; the run went on without it", w.log_error.text);
     adcgs_buffer_clear(&w.changes);
+    adcgs_enc_team_clear(&w.team);
     free(w.base);
     free(w.state);
     adcgs_trainer_free(&w.t);
@@ -457,6 +501,8 @@ static adcgs_status run_program(const adcgs_cli *cli, adcgs_enc_options *o, cons
     char log[PATH_MAX];
     if (ranks->size && !o->threads)
         o->threads = adcgs_enc_ranks_threads(ranks);
+    if (ranks->rank && !o->has_segment)
+        o->quiet = 1; /* rank 0 says it for all */
     if (ranks->rank && o->log) { /* a log has one writer */
         snprintf(log, sizeof log, "%s.%d", o->log, ranks->rank);
         o->log = log;

@@ -37,10 +37,13 @@ static void take_report(adcgs_rank_note *n, const adcgs_enc_watcher *w)
     n->psnr = w->last.psnr;
 }
 
-/** Learn the note's segment. A failure is that of a rank and its segment. */
+/** Learn the note's segment, as the first of a team with the others, who are told. A failure is that of a rank and its segment. */
 static adcgs_status learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_rank_note *n, adcgs_error *error)
 {
     n->spent = (adcgs_time){ 0, 0 };
+    n->kind = ADCGS_RANK_LEARN;
+    for (int r = 1; !w->team.team.rank && r < w->team.team.size; r++)
+        adcgs_ranks_send(job->ranks, w->team.first + r, n, sizeof *n);
     adcgs_status status = adcgs_enc_segment_begin(w, n->segment, error);
     if (status == ADCGS_OK)
         status = adcgs_enc_segment_learn(w, job, &n->spent, error);
@@ -72,14 +75,23 @@ static int tell(void *user, const adcgs_enc_watcher *w)
     return 0;
 }
 
+int adcgs_rank_hear_nothing(void *user, const adcgs_enc_watcher *w)
+{
+    (void)user;
+    (void)w;
+    return 0;
+}
+
 adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
 {
+    const int leads = !w->team.team.rank && w->team.team.size; /* a team, or learns alone */
     follower f = { .ranks = job->ranks, .last = adcgs_rank_say(ADCGS_RANK_READY, job) };
-    w->hear = tell;
+    w->hear = leads ? tell : adcgs_rank_hear_nothing;
     w->hear_user = &f;
     w->segments = job->cuts.n;
     adcgs_interrupt_catch(1);
-    adcgs_ranks_send(job->ranks, 0, &f.last, sizeof f.last);
+    if (leads)
+        adcgs_ranks_send(job->ranks, 0, &f.last, sizeof f.last);
     for (;;) {
         int from;
         adcgs_rank_note asked;
@@ -93,7 +105,8 @@ adcgs_status adcgs_rank_follow(adcgs_enc_watcher *w, const adcgs_enc_job *job, a
             return ADCGS_OK;
         f.last.segment = asked.segment;
         ADCGS_TRY(learn(w, job, &f.last, error));
-        adcgs_ranks_send(job->ranks, 0, &f.last, sizeof f.last);
+        if (leads)
+            adcgs_ranks_send(job->ranks, 0, &f.last, sizeof f.last);
     }
 }
 

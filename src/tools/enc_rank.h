@@ -24,7 +24,9 @@ adcgs_rank_note adcgs_rank_say(int kind, const adcgs_enc_job *job);
 /** Sleep for a moment, between two looks for notes. */
 void adcgs_rank_nap(void);
 
-/** Learn what rank 0 hands out, until it has nothing more. */
+/** For the ranks of a team but the first, of which nobody wants to hear. */
+int adcgs_rank_hear_nothing(void *user, const adcgs_enc_watcher *watcher);
+/** Learn what rank 0 hands out, or the first of the team, until rank 0 has nothing more. */
 adcgs_status adcgs_rank_follow(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_error *error);
 
 /** Rank 0's own learning, in a thread beside the one that hands out. What is below the lock is both threads'. */

@@ -56,6 +56,28 @@ void adcgs_enc_ranks_dismiss(const adcgs_ranks *ranks)
         adcgs_ranks_send(ranks, to, &n, sizeof n);
 }
 
+uint32_t adcgs_enc_ranks_keys(const adcgs_enc_job *job)
+{
+    uint32_t keys = job->cuts.n < 2;
+    for (uint32_t i = 0; job->cuts.n > 1 && i < job->cuts.n; i++)
+        keys += !job->follows[i];
+    return keys;
+}
+
+void adcgs_enc_ranks_say_idle(const adcgs_enc_job *job)
+{
+    const uint32_t keys = adcgs_enc_ranks_keys(job), batch = job->config.batch;
+    const int ranks = job->ranks->size, busy = adcgs_enc_team_busy(job->ranks, batch, keys);
+    if (busy == ranks)
+        return;
+    if (job->cuts.n > 1)
+        adcgs_cli_note(job->cli, "%u segments, %u of them keys, batch=%u: no more than %d of %d ranks have something to do at a time; "
+                       "--key makes more, or --set batch=", job->cuts.n, keys, batch, busy, ranks);
+    else
+        adcgs_cli_note(job->cli, "one segment, batch=%u: no more than %d of %d ranks have something to do; --set batch= makes more",
+                       batch, busy, ranks);
+}
+
 /* ---- Handing out ---- */
 
 static int is_free(const leader *l, int rank)
@@ -185,16 +207,6 @@ static adcgs_status lead(leader *l, adcgs_error *error)
     return ADCGS_OK;
 }
 
-static void say_idle(const leader *l)
-{
-    uint32_t keys = 0;
-    for (uint32_t i = 0; i < l->job->cuts.n; i++)
-        keys += !l->job->follows[i];
-    if (keys < (uint32_t)l->ranks->size)
-        adcgs_cli_note(l->job->cli, "%u segments, %u of them keys: no more than %u of %d ranks have something to do at a time; "
-                       "--key makes more", l->job->cuts.n, keys, keys, l->ranks->size);
-}
-
 /** What is there of an earlier run. */
 static adcgs_status find_done(leader *l, adcgs_error *error)
 {
@@ -221,7 +233,7 @@ adcgs_status adcgs_enc_ranks_lead(adcgs_enc_watcher *w, const adcgs_enc_job *job
     if (status == ADCGS_OK)
         status = adcgs_rank_start(&l.own, error);
     if (status == ADCGS_OK) {
-        say_idle(&l);
+        adcgs_enc_ranks_say_idle(job);
         l.last[0] = adcgs_rank_say(ADCGS_RANK_READY, job);
         l.there[0] = 1;
         status = lead(&l, error);

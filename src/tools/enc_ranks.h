@@ -13,6 +13,10 @@
 /** Threads of a rank: of the CPUs that it may use, its share among the ranks of its host. */
 int adcgs_enc_ranks_threads(const adcgs_ranks *ranks);
 
+/** How many segments can be learnt at a time, at most: the keys, or the one that is all of the scene. */
+uint32_t adcgs_enc_ranks_keys(const adcgs_enc_job *job);
+/** Say so, where ranks wait that could be of use. */
+void adcgs_enc_ranks_say_idle(const adcgs_enc_job *job);
 /** As rank 0: learn all segments that are not there yet. Says in one line how far all are. */
 adcgs_status adcgs_enc_ranks_lead(adcgs_enc_watcher *watcher, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error);
 /** As rank 0: let the others go. */

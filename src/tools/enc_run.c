@@ -255,6 +255,20 @@ static void remark(const adcgs_cli *cli, const adcgs_enc_watcher *w)
                        w->last.psnr, adcgs_psnr_from_mse(t->contrast * t->contrast), "poses, points and settings");
 }
 
+/** Train, as one of a team if there is one; processors' time is that of all, but for what a checkpoint knows of. */
+static adcgs_status run(adcgs_enc_watcher *w, int *stopped, adcgs_error *error)
+{
+    const double before = w->t->elapsed.cpu;
+    w->t->team = adcgs_enc_team_of(&w->team);
+    adcgs_status status = adcgs_trainer_run(w->t, observe, w, stopped, error);
+    double cpu = w->t->elapsed.cpu - before;
+    if (status == ADCGS_OK && !*stopped)
+        status = adcgs_enc_team_sum(&w->team, &cpu, error);
+    if (w->t->team)
+        w->last.spent.cpu = before + cpu;
+    return status;
+}
+
 /** state: a checkpoint to go on from, or NULL. */
 static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char *state, adcgs_error *error)
 {
@@ -269,8 +283,10 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
         return finish(cli, w, error);
     if (!w->is_live)
         adcgs_interrupt_catch(w->o->output && !w->segments ? 2 : 1);
-    const adcgs_status status = adcgs_trainer_run(w->t, observe, w, &stopped, error);
+    const adcgs_status status = run(w, &stopped, error);
     adcgs_progress_clear(&w->progress);
+    if (status == ADCGS_OK && adcgs_enc_team_follows(&w->team)) /* another rank says and saves what there is */
+        return stopped && adcgs_interrupted() ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted") : ADCGS_OK;
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
         log_last(w);
     ADCGS_TRY(status);

@@ -8,6 +8,7 @@
 #include "encode/plan.h"
 #include "io/ranks.h"
 #include "tools/enc_preview.h"
+#include "tools/enc_team.h"
 
 #define ADCGS_ENC_KEY_EVERY 10.0   /**< seconds from one key to the next, unless given */
 #define ADCGS_ENC_FADE 0.2         /**< seconds in which a segment is faded into the one before, unless given */
@@ -31,6 +32,7 @@ typedef struct adcgs_enc_watcher {
     const char *target; /* what the run is for: the stream, a part of it, or the state before lambda matters */
     int keeps;    /* it saves its state now and then */
     adcgs_trainer *t;
+    adcgs_enc_team team; /* ranks that learn with this one */
     uint32_t segment, segments; /* the one that is learnt, from 0; 0 segments: the scene is not cut, or nobody knows how many */
     int is_live; /* an interrupt ends what comes, not the run */
     char *base;   /* of what the run leaves while it lasts: the checkpoint, and where the scene is cut those of its segments */

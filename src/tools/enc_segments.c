@@ -81,7 +81,7 @@ static adcgs_status learn_scene(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
                                  resumes && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
     adcgs_model_clear(&before, NULL);
     *spent = adcgs_time_plus(*spent, w->last.spent);
-    if (status != ADCGS_OK)
+    if (status != ADCGS_OK || adcgs_enc_team_follows(&w->team))
         return status;
     adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
     add_plan_notes(&n, w, job);

@@ -36,6 +36,7 @@ static adcgs_status learn_whole(adcgs_buffer *bytes, adcgs_enc_watcher *w, const
     free(w->state);
     w->state = NULL;
     w->segments = w->segment = w->next_log = 0;
+    w->team.team.size = 0; /* other ranks are done */
     ADCGS_TRY(adcgs_enc_part_name(&w->state, w->base, job->cuts.n, 0, error));
     adcgs_status status = adcgs_enc_learn(w, &whole, job->scene, NULL, NULL,
                                           job->o->resume && !access(w->state, F_OK) ? w->state : NULL, adcgs_time_now(), error);
