@@ -308,7 +308,8 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
 adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, const adcgs_scene *scene, const adcgs_model *before,
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error)
 {
-    adcgs_progress_show(&w->progress, "start     %u views: where things are", scene->n_views[ADCGS_SPLIT_TRAIN]);
+    if (!adcgs_enc_team_follows(&w->team))
+        adcgs_progress_show(&w->progress, "start     %u views: where things are", scene->n_views[ADCGS_SPLIT_TRAIN]);
     const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank says it for all */
     const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* nobody asks what is live once more */
     adcgs_train_config config = job->config;

@@ -31,6 +31,15 @@ same()
     [ -z "$left" ] || bad "$n ranks leave $left"
 }
 
+# kill_rank R OUTPUT: kill the rank of the run that writes this.
+kill_rank()
+{
+    for process in /proc/[0-9]*; do
+        [ "$(cat "$process/comm" 2>/dev/null)" = adcgs-enc ] && grep -qz "^OMPI_COMM_WORLD_RANK=$1$" "$process/environ" &&
+            grep -qzF "$2" "$process/cmdline" && kill -KILL "${process#/proc/}"
+    done
+}
+
 # shellcheck disable=SC2086
 {
     ./adcgs-enc "$scene" -o "$dir/one.adcgs" $short --iterations 40 --quiet || bad "one process"
@@ -87,10 +96,7 @@ pid=$!
 while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":200,' "$dir/log.1" 2>/dev/null; do
     sleep 0.05
 done
-for process in /proc/[0-9]*; do
-    [ "$(cat "$process/comm" 2>/dev/null)" = adcgs-enc ] && grep -qz "^OMPI_COMM_WORLD_RANK=1$" "$process/environ" &&
-        grep -qzF "$dir/two.adcgs" "$process/cmdline" && kill -KILL "${process#/proc/}"
-done
+kill_rank 1 "$dir/two.adcgs"
 wait $pid
 [ $? -ne 0 ] || bad "a run whose rank is dead leaves with 0"
 grep -q 'process rank 1 .* exited on signal 9' "$dir/err" || { bad "mpirun does not name it"; cat "$dir/err"; }
@@ -102,4 +108,39 @@ grep -q 'stopped, with [01] of 3 segments done: .*rank 1 on .* at iteration [0-9
 same two 4 $long --resume "$dir/state"
 left=$(find "$dir" -name 'state*' | xargs)
 [ -z "$left" ] || bad "left behind: $left"
+
+# More ranks than segments share the views of each: of a scene that is one, and of two chains of segments.
+views="--preset draft --max-anchors 300 --threads 1 --set batch=4"
+# shellcheck disable=SC2086
+{
+    ./adcgs-enc "$scene" -o "$dir/one.adcgs" $views --iterations 40 --quiet || bad "one process"
+    for n in 2 3 4; do
+        same "views-$n" "$n" $views --iterations 40 --log "$dir/views-log"
+        [ ! -e "$dir/views-log.1" ] || bad "rank 1 has a log"
+    done
+    same views-6 6 $views --iterations 40
+    grep -q 'one segment, batch=4: no more than 4 of 6 ranks have something to do' "$dir/err" || bad "idle ranks are not told"
+    ./adcgs-enc "$scene" -o "$dir/one.adcgs" $short --set batch=3 --iterations 20 --quiet || bad "one process"
+    same chains 5 $short --set batch=3 --iterations 20
+}
+
+# One of them dies, and all goes on from what the first has saved, by others; then without any.
+long="$views --iterations 300 --checkpoint-every 0 --checkpoint $dir/state"
+# shellcheck disable=SC2086
+{
+    ./adcgs-enc "$scene" -o "$dir/one.adcgs" $views --iterations 300 --quiet || bad "one process"
+    ranks 3 ./adcgs-enc "$scene" -o "$dir/views.adcgs" $long --log "$dir/dies.log" >"$dir/out" 2>"$dir/err" &
+}
+pid=$!
+while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":100,' "$dir/dies.log" 2>/dev/null; do
+    sleep 0.05
+done
+kill_rank 2 "$dir/views.adcgs"
+wait $pid
+[ $? -ne 0 ] || bad "a run of which a rank is dead leaves with 0"
+grep -q 'process rank 2 .* exited on signal 9' "$dir/err" || { bad "mpirun does not name it"; cat "$dir/err"; }
+grep -q "interrupted at iteration [0-9]*, waiting for rank [12] on .*--resume $dir/state" "$dir/err" ||
+    { bad "rank 0 does not say for whom it waits"; cat "$dir/err"; }
+# shellcheck disable=SC2086
+same views 2 $long --resume "$dir/state"
 exit $failed
