@@ -135,34 +135,20 @@ static adcgs_status report(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs
                                   met, error);
 }
 
-/** Rank 0 waits for one of its team, and was interrupted: perhaps that is gone. */
-static void say_late(void *user, int rank, const char *host)
-{
-    adcgs_enc_watcher *w = user;
-    adcgs_progress_clear(&w->progress);
-    adcgs_cli_error(w->progress.cli, ADCGS_OK, "interrupted at iteration %u, waiting for rank %d on %s; %s%s", w->last.iteration,
-                    rank, host, access(w->state, F_OK) ? "there is no --checkpoint" : "the same command goes on with --resume ",
-                    access(w->state, F_OK) ? "" : w->state);
-}
-
 static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job, int *met, adcgs_error *error)
 {
     adcgs_stream stream;
-    if (job->ranks && !job->ranks->rank && !w->is_live) {
-        w->team.late = say_late;
-        w->team.late_user = w;
-        adcgs_enc_ranks_say_idle(job);
-    } else if (job->ranks) {
-        w->hear = adcgs_rank_hear_nothing;
-    }
-    ADCGS_TRY(adcgs_enc_learn(w, job, job->scene, NULL, NULL, job->o->finish ? job->o->finish : job->o->resume,
-                              job->o->started, error));
+    adcgs_enc_ranks_whole(w, job);
+    adcgs_status status = adcgs_enc_learn(w, job, job->scene, NULL, NULL, job->o->finish ? job->o->finish : job->o->resume,
+                                          job->o->started, error);
     if (adcgs_enc_team_follows(&w->team))
-        return adcgs_rank_follow(w, job, error);
+        return status == ADCGS_OK ? adcgs_rank_follow(w, job, error) : adcgs_rank_fail(job, error);
+    if (status != ADCGS_OK)
+        return status;
     if (!job->o->output)
         return ADCGS_OK;
     adcgs_stream_init(&stream);
-    adcgs_status status = write_stream(&stream, w, job->pool, error);
+    status = write_stream(&stream, w, job->pool, error);
     adcgs_stream_clear(&stream, NULL);
     if (status == ADCGS_OK)
         status = report(w, job, w->last.spent, met, error);
@@ -226,24 +212,14 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Ranks find to each other once it is known how many segments there are; what rank 0 keeps is not theirs to keep. */
-static adcgs_status gather_ranks(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
-{
-    if (!job->ranks)
-        return ADCGS_OK;
-    if (!job->o->finish) /* which trains nothing */
-        adcgs_enc_team_form(&w->team, job->ranks, job->config.batch, adcgs_enc_ranks_keys(job));
-    w->keeps &= !adcgs_enc_team_follows(&w->team);
-    return adcgs_enc_team_meet(&w->team, job->cpu, error);
-}
-
 static adcgs_status open_log(adcgs_enc_watcher *w, adcgs_error *error)
 {
     const adcgs_enc_options *o = w->o;
     if (adcgs_enc_team_follows(&w->team))
         return ADCGS_OK;
     w->log = o->log ? fopen(o->log, o->resume || o->finish || o->plan ? "a" : "w") : NULL;
-    return !o->log || w->log ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
+    return !o->log || w->log ? ADCGS_OK :
+                               adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
 }
 
 static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcgs_error *error)
@@ -271,7 +247,7 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->has_segment)
         ADCGS_TRY(adcgs_enc_cut(job, o->segment, error));
-    ADCGS_TRY(gather_ranks(w, job, error));
+    ADCGS_TRY(adcgs_enc_ranks_gather(w, job, error));
     if (follows)
         ADCGS_TRY(open_log(w, error));
     if (follows && (job->cuts.n > 1 || !adcgs_enc_team_follows(&w->team)))

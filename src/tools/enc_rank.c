@@ -27,6 +27,12 @@ void adcgs_rank_nap(void)
     nanosleep(&moment, NULL);
 }
 
+adcgs_status adcgs_rank_fail(const adcgs_enc_job *job, adcgs_error *error)
+{
+    const adcgs_error why = *error;
+    return adcgs_fail(error, why.status, "rank %d on %s: %.160s", job->ranks->rank, job->ranks->host, why.text);
+}
+
 static void take_report(adcgs_rank_note *n, const adcgs_enc_watcher *w)
 {
     n->segment = w->segment;
@@ -37,7 +43,7 @@ static void take_report(adcgs_rank_note *n, const adcgs_enc_watcher *w)
     n->psnr = w->last.psnr;
 }
 
-/** Learn the note's segment, as the first of a team with the others, who are told. A failure is that of a rank and its segment. */
+/** Learn the note's segment, the first of a team with the others, who are told. A failure is that of a rank and its segment. */
 static adcgs_status learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_rank_note *n, adcgs_error *error)
 {
     n->spent = (adcgs_time){ 0, 0 };

@@ -24,6 +24,8 @@ adcgs_rank_note adcgs_rank_say(int kind, const adcgs_enc_job *job);
 /** Sleep for a moment, between two looks for notes. */
 void adcgs_rank_nap(void);
 
+/** The same failure as that of this rank; of a run that is not cut. */
+adcgs_status adcgs_rank_fail(const adcgs_enc_job *job, adcgs_error *error);
 /** For the ranks of a team but the first, of which nobody wants to hear. */
 int adcgs_rank_hear_nothing(void *user, const adcgs_enc_watcher *watcher);
 /** Learn what rank 0 hands out, or the first of the team, until rank 0 has nothing more. */

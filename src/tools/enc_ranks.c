@@ -56,7 +56,10 @@ void adcgs_enc_ranks_dismiss(const adcgs_ranks *ranks)
         adcgs_ranks_send(ranks, to, &n, sizeof n);
 }
 
-uint32_t adcgs_enc_ranks_keys(const adcgs_enc_job *job)
+/* ---- Who learns what with whom ---- */
+
+/** How many segments can be learnt at a time, at most: the keys, or the one that is all of the scene. */
+static uint32_t keys_of(const adcgs_enc_job *job)
 {
     uint32_t keys = job->cuts.n < 2;
     for (uint32_t i = 0; job->cuts.n > 1 && i < job->cuts.n; i++)
@@ -64,18 +67,52 @@ uint32_t adcgs_enc_ranks_keys(const adcgs_enc_job *job)
     return keys;
 }
 
-void adcgs_enc_ranks_say_idle(const adcgs_enc_job *job)
+/** Say so, where ranks wait that could be of use. */
+static void say_idle(const adcgs_enc_job *job)
 {
-    const uint32_t keys = adcgs_enc_ranks_keys(job), batch = job->config.batch;
+    const uint32_t keys = keys_of(job), batch = job->config.batch;
     const int ranks = job->ranks->size, busy = adcgs_enc_team_busy(job->ranks, batch, keys);
     if (busy == ranks)
         return;
     if (job->cuts.n > 1)
-        adcgs_cli_note(job->cli, "%u segments, %u of them keys, batch=%u: no more than %d of %d ranks have something to do at a time; "
-                       "--key makes more, or --set batch=", job->cuts.n, keys, batch, busy, ranks);
+        adcgs_cli_note(job->cli, "%u segments, %u of them keys, batch=%u: no more than %d of %d ranks have something to do at a "
+                       "time; --key makes more, or --set batch=", job->cuts.n, keys, batch, busy, ranks);
     else
-        adcgs_cli_note(job->cli, "one segment, batch=%u: no more than %d of %d ranks have something to do; --set batch= makes more",
-                       batch, busy, ranks);
+        adcgs_cli_note(job->cli, "one segment, batch=%u: no more than %d of %d ranks have something to do; --set batch= makes "
+                       "more", batch, busy, ranks);
+}
+
+adcgs_status adcgs_enc_ranks_gather(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_error *error)
+{
+    if (!job->ranks || job->o->finish) /* which trains nothing */
+        return ADCGS_OK;
+    adcgs_enc_team_form(&w->team, job->ranks, job->config.batch, keys_of(job));
+    w->keeps &= !adcgs_enc_team_follows(&w->team);
+    return adcgs_enc_team_meet(&w->team, job->cpu, error);
+}
+
+/** Rank 0 waits for one of its team, and was interrupted: perhaps that is gone. */
+static void say_late(void *user, int rank, const char *host)
+{
+    adcgs_enc_watcher *w = user;
+    const int keeps = !access(w->state, F_OK);
+    adcgs_progress_clear(&w->progress);
+    adcgs_cli_error(w->progress.cli, ADCGS_OK, "interrupted at iteration %u, waiting for rank %d on %s; %s%s", w->last.iteration,
+                    rank, host, keeps ? "the same command goes on with --resume " : "there is no --checkpoint",
+                    keeps ? w->state : "");
+}
+
+void adcgs_enc_ranks_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job)
+{
+    if (!job->ranks || job->o->finish)
+        return;
+    if (job->ranks->rank) {
+        w->hear = adcgs_rank_hear_nothing;
+        return;
+    }
+    w->team.late = say_late;
+    w->team.late_user = w;
+    say_idle(job);
 }
 
 /* ---- Handing out ---- */
@@ -233,7 +270,7 @@ adcgs_status adcgs_enc_ranks_lead(adcgs_enc_watcher *w, const adcgs_enc_job *job
     if (status == ADCGS_OK)
         status = adcgs_rank_start(&l.own, error);
     if (status == ADCGS_OK) {
-        adcgs_enc_ranks_say_idle(job);
+        say_idle(job);
         l.last[0] = adcgs_rank_say(ADCGS_RANK_READY, job);
         l.there[0] = 1;
         status = lead(&l, error);

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <time.h>
 
-/* YIELDS: looks before a wait is a long one; a swap takes some hundred microseconds. NAP: nanoseconds between looks from then on. */
+/* YIELDS: looks before a wait is a long one. NAP: nanoseconds between looks from then on. */
 enum { YIELDS = 100, NAP = 50000 };
 /* Seconds since an interrupt: before whoever is waited for is named, and before it is taken for gone. */
 static const double NAMED_AFTER = 0.3, GONE_AFTER = 30;
