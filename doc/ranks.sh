@@ -63,12 +63,12 @@ learn()
 }
 
 # on_paper: an iteration of 64 views by ranks that are joined by 10 Gbit/s and wait thrice for 0.1 ms, of what views.csv has.
-# There are 131 numbers of an anchor to sum (112 gradients, 19 statistics), and some 20,000 of networks; who shares sends them twice.
+# There are 117 numbers of an anchor to sum (98 gradients, 19 statistics) and some 20,000 of networks; who shares sends them twice.
 on_paper()
 {
     awk -F, -v n="$views" '
     $3 == 1 { one = $7 / n }
-    $2 == 1 && $3 > 1 { view = ($7 / n - one) / ($3 - 1); step = one - view; bytes = 4 * (131 * $8 + 20000) }
+    $2 == 1 && $3 > 1 { view = ($7 / n - one) / ($3 - 1); step = one - view; bytes = 4 * (117 * $8 + 20000) }
     END {
         for (ranks = 1; ranks <= 64; ranks *= 2) {
             swap = ranks > 1 ? 2 * bytes * (ranks - 1) / ranks / 1.25e9 + 3e-4 : 0

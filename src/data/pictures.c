@@ -243,7 +243,7 @@ static adcgs_status load_all(adcgs_pictures *p, adcgs_pool *pool, adcgs_error *e
     return status;
 }
 
-static uint64_t half_of_memory(void)
+uint64_t adcgs_pictures_usual_memory(void)
 {
     const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
     return pages > 0 && size > 0 ? (uint64_t)pages * (uint64_t)size / 2 : (uint64_t)1 << 30;
@@ -258,7 +258,7 @@ adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene,
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for pictures");
     p->scene = scene;
     p->config = *config;
-    p->config.memory = config->memory ? config->memory : half_of_memory();
+    p->config.memory = config->memory ? config->memory : adcgs_pictures_usual_memory();
     p->n = scene->n_views[config->split];
     p->file = -1;
     pthread_mutex_init(&p->lock, NULL);

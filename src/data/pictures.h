@@ -27,6 +27,8 @@ typedef struct adcgs_pictures_config {
     adcgs_glance *glances; /**< [views] taken of each picture as it is loaded; or NULL */
 } adcgs_pictures_config;
 
+/** Bytes in memory at most, unless they are given: half of what the machine has. */
+uint64_t adcgs_pictures_usual_memory(void);
 /**
  * The scene must outlive them. The first failure of a picture, in their order, is the one reported; ADCGS_ERR_IO also when
  * the file has no room, or when progress says stop.

@@ -329,6 +329,8 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
     w->t->measure = measure;
     w->t->measure_user = w;
     w->t->picture_memory = job->o->memory;
+    if (job->ranks && !job->o->memory) /* those of a host share it */
+        w->t->picture_memory = adcgs_pictures_usual_memory() / (uint64_t)ADCGS_MAX(job->ranks->local_size, 1);
     w->t->loading = loading;
     w->t->loading_user = w;
     w->t->started = started;

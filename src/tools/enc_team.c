@@ -13,8 +13,11 @@
 #include <stdio.h>
 #include <time.h>
 
-/* YIELDS: looks before a wait is a long one. NAP: nanoseconds between looks from then on. */
-enum { YIELDS = 100, NAP = 50000 };
+/*
+ * YIELDS: looks before a wait is a long one. NAP: nanoseconds between looks from then on; LONG_NAP: when there have been so many
+ * NAPS, since who is waited for does something else.
+ */
+enum { YIELDS = 100, NAP = 50000, NAPS = 1000, LONG_NAP = 1000000 };
 /* Seconds since an interrupt: before whoever is waited for is named, and before it is taken for gone. */
 static const double NAMED_AFTER = 0.3, GONE_AFTER = 30;
 
@@ -82,7 +85,6 @@ static adcgs_status swap(void *user, const adcgs_ranks_part *out, int n_out, con
                          adcgs_error *error)
 {
     adcgs_enc_team *const t = user;
-    const struct timespec nap = { 0, NAP };
     int missing = t->first;
     ADCGS_TRY(adcgs_ranks_swap(t->ranks, t->first, out, n_out, in, n_in, error));
     for (int looks = 0; !adcgs_ranks_swapped(t->ranks, &missing);) {
@@ -91,7 +93,7 @@ static adcgs_status swap(void *user, const adcgs_ranks_part *out, int n_out, con
             continue;
         }
         ADCGS_TRY(doubt(t, missing, error));
-        nanosleep(&nap, NULL);
+        nanosleep(&(struct timespec){ 0, looks < YIELDS + NAPS ? NAP : LONG_NAP }, NULL);
     }
     return ADCGS_OK;
 }

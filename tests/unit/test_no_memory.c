@@ -3,7 +3,9 @@
 #include "tiny_scene.h"
 
 #include "encode/encode.h"
+#include "train/batch.h"
 #include "train/decide.h"
+#include "train/stages.h"
 #include "train/unit_prune.h"
 
 #include <limits.h>
@@ -174,12 +176,35 @@ static void runs_and_streams(void **state)
     each_fails(try_run, 80);
 }
 
+/** What several looks to an iteration need beside a run's: sums, and the means before. */
+static void looks(void **state)
+{
+    adcgs_train_config config = short_config();
+    adcgs_trainer *t;
+    adcgs_status status;
+    long tries = 0;
+    (void)state;
+    config.batch = 3;
+    assert_int_equal(adcgs_trainer_create(&t, scene, &config, adcgs_cpu_best(), NULL, &error), ADCGS_OK);
+    assert_int_equal(adcgs_stages_before(t, 0, &error), ADCGS_OK);
+    t->rounding = 1;
+    do {
+        atomic_store(&left, tries++);
+        status = adcgs_batch_look(t, 0.9, &error);
+        atomic_store(&left, -1);
+        assert_true(status == ADCGS_OK || status == ADCGS_ERR_MEMORY);
+    } while (status != ADCGS_OK);
+    assert_true(tries > 3);
+    adcgs_trainer_free(&t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes),
         cmocka_unit_test(trainers),
         cmocka_unit_test(runs_and_streams),
+        cmocka_unit_test(looks),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }
