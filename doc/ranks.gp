@@ -5,7 +5,7 @@ set datafile separator ','
 set grid
 set key noenhanced bottom right
 set output folder.'/ranks.svg'
-set title 'A scene in segments, learnt by many ranks'
+set title 'A scene in segments, and views of one segment, learnt by many ranks'
 set xlabel 'ranks'
 set ylabel 'times as fast as one'
 set logscale xy 2

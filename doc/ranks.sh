@@ -4,10 +4,10 @@
 # one, two and four ranks of a thread each, and what it takes is written to ranks.csv, in seconds, and those of all processors.
 # With PLAN its segments are shared out on paper, chains of a key and what follows it as ranks become free, by the seconds that
 # the plan says. Draws ranks.svg.
-# The clip as one segment, four views to an iteration, is learnt by ranks that share these, and what that takes goes to views.csv:
-# seconds, those of all processors, and of the first rank's alone, which is what it would take with a processor for each. What
-# many ranks would take, on paper, goes to views-paper.csv, in milliseconds; what four views to an iteration are worth, to
-# batch.csv.
+# A scene of one segment (cross80), four views to an iteration, is learnt by ranks that share these, and what that takes goes to
+# views.csv: seconds, those of all processors, and of the first rank's alone, which is what it would take with a processor for
+# each. What many ranks would take, on paper, goes to views-paper.csv, in milliseconds; what four views to an iteration are worth,
+# to batch.csv.
 #   RANKS       folder of all of it (default ranks)
 #   ITERATIONS  of a segment (default 400)
 #   VIEWS       iterations that share views, hundreds (default 200); 0: none
@@ -48,27 +48,28 @@ shared()
     }'
 }
 
-# learn NAME RANKS BATCH: seconds, those of all processors, of the first rank's, and of that from the first iteration to the last;
-# and anchors.
+# learn NAME RANKS BATCH: seconds, those of all processors, of the first rank's, and of that for a hundred iterations, before there
+# are stages, which each rank does by itself; and anchors.
 learn()
 {
     begin=$(date +%s.%N)
-    cpu=$(sh -c 'mpirun --allow-run-as-root --oversubscribe -n "$0" ./adcgs-enc "$1/clip" -o "$1/$2.adcgs" --set "batch=$3" \
-        -n "$4" --log "$1/$2.log" --threads 1 -q >&2 && times' "$2" "$out" "$1" "$3" "$views" | sed -n '2s/[ms]/ /gp' |
-        awk '{ printf "%.1f", 60 * ($1 + $3) + $2 + $4 }')
+    cpu=$(sh -c 'mpirun --allow-run-as-root --oversubscribe -n "$0" ./adcgs-enc "$1/cross80" -o "$1/$2.adcgs" \
+        --fixed --no-progression --set "stereo=0,quarter_until=0,half_until=0,batch=$3" -n "$4" --log "$1/$2.log" --threads 1 \
+        -q >&2 && times' "$2" "$out" "$1" "$3" "$views" |
+        sed -n '2s/[ms]/ /gp' | awk '{ printf "%.1f", 60 * ($1 + $3) + $2 + $4 }')
     wall=$(awk "BEGIN { print $(date +%s.%N) - $begin }")
     sed -n 's/.*"anchors":\([0-9]*\),.*"cpu_seconds":\([0-9.]*\),.*/\1 \2/p' "$out/$1.log" |
-        awk -v all="$cpu" -v wall="$wall" 'NR == 1 { first = $2 }
-            END { printf "%.1f,%.1f,%.1f,%.1f,%d\n", wall, all, $2, $2 - first, $1 }'
+        awk -v all="$cpu" -v wall="$wall" 'NR == 1 { at = $2 } NR == 2 { hundred = $2 - at }
+            END { printf "%.1f,%.1f,%.1f,%.2f,%d\n", wall, all, $2, hundred, $1 }'
 }
 
 # on_paper: an iteration of 64 views by ranks that are joined by 10 Gbit/s and wait thrice for 0.1 ms, of what views.csv has.
 # There are 117 numbers of an anchor to sum (98 gradients, 19 statistics) and some 20,000 of networks; who shares sends them twice.
 on_paper()
 {
-    awk -F, -v n="$views" '
-    $3 == 1 { one = $7 / n }
-    $2 == 1 && $3 > 1 { view = ($7 / n - one) / ($3 - 1); step = one - view; bytes = 4 * (117 * $8 + 20000) }
+    awk -F, '
+    $3 == 1 { one = $7 / 100 }
+    $2 == 1 && $3 > 1 { view = ($7 / 100 - one) / ($3 - 1); step = one - view; bytes = 4 * (117 * $8 + 20000) }
     END {
         for (ranks = 1; ranks <= 64; ranks *= 2) {
             swap = ranks > 1 ? 2 * bytes * (ranks - 1) / ranks / 1.25e9 + 3e-4 : 0
@@ -94,22 +95,26 @@ done
 for plan in ${PLAN:-}; do
     ./adcgs-join "$plan" --list | shared "$(basename "$plan" .json)" >>"$out/ranks.csv"
 done
+[ -d "$out/cross80" ] || ./adcgs-demo-scene --scene cross80 -o "$out/cross80" --format ppm -q
 if [ "$views" -gt 0 ]; then
-    echo run,ranks,batch,seconds,processors,first,iterations,anchors >"$out/views.csv"
+    echo run,ranks,batch,seconds,processors,first,hundred,anchors >"$out/views.csv"
     echo "one,1,1,$(learn one 1 1)" >>"$out/views.csv"
     for n in 1 2 4; do
         echo "views,$n,4,$(learn "views-$n" $n 4)" >>"$out/views.csv"
         cmp "$out/views-1.adcgs" "$out/views-$n.adcgs"
     done
     { echo ranks,iteration,view,step,swap,bytes && on_paper; } >"$out/views-paper.csv"
+    {
+        awk -F, '$3 > 1 && NR > 1 { print "four_views_measured," $2 "," $7 "," $2 * $7 }' "$out/views.csv"
+        awk -F, 'NR > 1 { printf "64_views_on_paper,%d,%.4f,%.4f\n", $1, $2 / 1e3, $1 * $2 / 1e3 }' "$out/views-paper.csv"
+    } >>"$out/ranks.csv"
 fi
 if [ "$batch" -gt 0 ]; then
-    [ -d "$out/cross80" ] || ./adcgs-demo-scene --scene cross80 -o "$out/cross80" --format ppm -q
     echo batch,iterations,seed,bytes,psnr,processors >"$out/batch.csv"
     for seed in 1 2; do
-        echo "1,$batch,$seed,$(worth 1 "$batch" $seed)"
-        echo "4,$((batch / 4)),$seed,$(worth 4 $((batch / 4)) $seed)"
-        echo "4,$batch,$seed,$(worth 4 "$batch" $seed)"
+        for run in "1 $batch" "4 $((batch / 4))" "1 $((batch * 2))" "4 $batch"; do
+            echo "${run% *},${run#* },$seed,$(worth "${run% *}" "${run#* }" $seed)"
+        done
     done >>"$out/batch.csv"
 fi
 gnuplot -e "folder='$out'" "$source/doc/ranks.gp"
