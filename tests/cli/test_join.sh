@@ -27,6 +27,8 @@ is() { [ "$(states)" = "$1" ] || { bad "it lists: $(states)"; cat "$dir/err"; };
 }
 is "1 0 ready 2 1 waits 3 0 ready"
 expect 3 "plan.1.adcgs: missing: learn segment 1 first" ./adcgs-enc "$scene" --plan "$plan" --segment 2
+# What the fuzz target begins with is a plan, too: of all settings that there are.
+expect 0 "" ./adcgs-join "${srcdir:-.}/tests/fuzz/seeds/plan/three.json" --list
 
 # The last segment first, from a scene that has no other pictures but those that tell the size of each split.
 mkdir "$dir/own"
