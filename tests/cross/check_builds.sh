@@ -20,8 +20,8 @@ describe()
     case $1 in
         tarball)
             arguments=(CC=gcc CXX=g++ CFLAGS=-O2 CXXFLAGS=-O1 --enable-werror --disable-simd)
-            # Trainings take 20 times as long without SIMD; that levels agree is tested by the others.
-            except=$(printf 'tests/unit/test_%s ' trainer control moments nets rdo scale no_memory) ;;
+            # Trainings, and pictures to match, take up to 20 times as long without SIMD; that levels agree is tested by the others.
+            except=$(printf 'tests/unit/test_%s ' trainer train batch control moments nets rdo scale no_memory bodies film) ;;
         sanitize)
             ADCGS_FUZZ_ROUNDS=10
             unset ADCGS_FULL # which asks functions about more numbers: for their values, which are the same here
