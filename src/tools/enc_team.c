@@ -106,16 +106,13 @@ typedef struct card {
 adcgs_status adcgs_enc_team_meet(adcgs_enc_team *t, adcgs_cpu_level level, adcgs_error *error)
 {
     card cards[ADCGS_TREE_MOST] = { { .level = 0 } };
-    size_t at[ADCGS_TREE_MOST + 1];
     if (t->team.size < 2)
         return ADCGS_OK;
     t->team.swap = swap;
     t->team.user = t;
-    for (int i = 0; i <= t->team.size; i++)
-        at[i] = (size_t)i * sizeof *cards;
     cards[t->team.rank].level = (int32_t)level;
     memcpy(cards[t->team.rank].host, t->ranks->host, sizeof cards->host);
-    ADCGS_TRY(adcgs_team_gather(&t->team, cards, at, error));
+    ADCGS_TRY(adcgs_team_gather_each(&t->team, cards, sizeof *cards, error));
     t->hosts = adcgs_alloc(NULL, (size_t)t->team.size, sizeof *t->hosts, error);
     if (!t->hosts)
         return adcgs_alloc_status(error);
@@ -139,13 +136,10 @@ void adcgs_enc_team_clear(adcgs_enc_team *t)
 adcgs_status adcgs_enc_team_sum(const adcgs_enc_team *t, double *value, adcgs_error *error)
 {
     double values[ADCGS_TREE_MOST];
-    size_t at[ADCGS_TREE_MOST + 1];
     if (t->team.size < 2)
         return ADCGS_OK;
-    for (int i = 0; i <= t->team.size; i++)
-        at[i] = (size_t)i * sizeof *values;
     values[t->team.rank] = *value;
-    ADCGS_TRY(adcgs_team_gather(&t->team, values, at, error));
+    ADCGS_TRY(adcgs_team_gather_each(&t->team, values, sizeof *values, error));
     *value = 0;
     for (int i = 0; i < t->team.size; i++)
         *value += values[i];

@@ -29,3 +29,11 @@ adcgs_status adcgs_team_gather(const adcgs_team *team, void *data, const size_t 
     }
     return team->swap(team->user, out, n, in, n, error);
 }
+
+adcgs_status adcgs_team_gather_each(const adcgs_team *team, void *data, size_t bytes, adcgs_error *error)
+{
+    size_t at[ADCGS_TREE_MOST + 1];
+    for (int r = 0; r <= team->size; r++)
+        at[r] = (size_t)r * bytes;
+    return adcgs_team_gather(team, data, at, error);
+}

@@ -20,5 +20,7 @@ typedef struct adcgs_team {
 adcgs_status adcgs_team_tell(const adcgs_team *team, void *data, size_t bytes, adcgs_error *error);
 /** Of data, rank r has bytes at[r] to at[r + 1]; all have all of it then. at: [size + 1] */
 adcgs_status adcgs_team_gather(const adcgs_team *team, void *data, const size_t *at, adcgs_error *error);
+/** The same where each has so many bytes. */
+adcgs_status adcgs_team_gather_each(const adcgs_team *team, void *data, size_t bytes, adcgs_error *error);
 
 #endif

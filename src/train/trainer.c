@@ -44,13 +44,10 @@ static uint32_t sum_up(const adcgs_trainer *t)
 static adcgs_status agree(const adcgs_trainer *t, adcgs_error *error)
 {
     uint32_t sums[ADCGS_TREE_MOST];
-    size_t at[ADCGS_TREE_MOST + 1];
     if (!t->team)
         return ADCGS_OK;
-    for (int r = 0; r <= t->team->size; r++)
-        at[r] = (size_t)r * sizeof *sums;
     sums[t->team->rank] = sum_up(t);
-    ADCGS_TRY(adcgs_team_gather(t->team, sums, at, error));
+    ADCGS_TRY(adcgs_team_gather_each(t->team, sums, sizeof *sums, error));
     for (int r = 1; r < t->team->size; r++)
         if (sums[r] != sums[0])
             return adcgs_fail(error, ADCGS_ERR_DATA, "at iteration %u number %d of the %d that learn together has another model "
