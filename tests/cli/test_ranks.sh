@@ -40,6 +40,20 @@ kill_rank()
     done
 }
 
+# dies R OUTPUT LOG N: rank R of the run in the background that writes OUTPUT is killed when LOG tells of iteration N; mpirun
+# ends the run with its name.
+dies()
+{
+    pid=$!
+    while kill -0 $pid 2>/dev/null && ! grep -q "\"iteration\":$4," "$3" 2>/dev/null; do
+        sleep 0.05
+    done
+    kill_rank "$1" "$2"
+    wait $pid
+    [ $? -ne 0 ] || bad "a run whose rank is dead leaves with 0"
+    grep -q "process rank $1 .* exited on signal 9" "$dir/err" || { bad "mpirun does not name it"; cat "$dir/err"; }
+}
+
 # shellcheck disable=SC2086
 {
     ./adcgs-enc "$scene" -o "$dir/one.adcgs" $short --iterations 40 --quiet || bad "one process"
@@ -92,14 +106,7 @@ long="$short --iterations 800 --checkpoint-every 0 --checkpoint $dir/state"
     rm -f "$dir"/log*
     ranks 2 ./adcgs-enc "$scene" -o "$dir/two.adcgs" $long --log "$dir/log" >"$dir/out" 2>"$dir/err" &
 }
-pid=$!
-while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":200,' "$dir/log.1" 2>/dev/null; do
-    sleep 0.05
-done
-kill_rank 1 "$dir/two.adcgs"
-wait $pid
-[ $? -ne 0 ] || bad "a run whose rank is dead leaves with 0"
-grep -q 'process rank 1 .* exited on signal 9' "$dir/err" || { bad "mpirun does not name it"; cat "$dir/err"; }
+dies 1 "$dir/two.adcgs" "$dir/log.1" 200
 grep -q 'stopped, with [01] of 3 segments done: .*rank 1 on .* at iteration [0-9]* of segment 3; .*--resume' "$dir/err" ||
     { bad "rank 0 does not say who was at what"; cat "$dir/err"; }
 { [ -e "$dir/state.1" ] || [ -e "$dir/state.1.adcgs" ]; } && [ -e "$dir/state.3" ] ||
@@ -131,14 +138,7 @@ long="$views --iterations 300 --checkpoint-every 0 --checkpoint $dir/state"
     ./adcgs-enc "$scene" -o "$dir/one.adcgs" $views --iterations 300 --quiet || bad "one process"
     ranks 3 ./adcgs-enc "$scene" -o "$dir/views.adcgs" $long --log "$dir/dies.log" >"$dir/out" 2>"$dir/err" &
 }
-pid=$!
-while kill -0 $pid 2>/dev/null && ! grep -q '"iteration":100,' "$dir/dies.log" 2>/dev/null; do
-    sleep 0.05
-done
-kill_rank 2 "$dir/views.adcgs"
-wait $pid
-[ $? -ne 0 ] || bad "a run of which a rank is dead leaves with 0"
-grep -q 'process rank 2 .* exited on signal 9' "$dir/err" || { bad "mpirun does not name it"; cat "$dir/err"; }
+dies 2 "$dir/views.adcgs" "$dir/dies.log" 100
 grep -q "interrupted at iteration [0-9]*, waiting for rank [12] on .*--resume $dir/state" "$dir/err" ||
     { bad "rank 0 does not say for whom it waits"; cat "$dir/err"; }
 # shellcheck disable=SC2086
