@@ -5,7 +5,6 @@
  */
 #include "tiny_scene.h"
 
-#include "encode/encode.h"
 #include "grad/random.h"
 #include "train/batch.h"
 #include "train/look.h"
@@ -64,19 +63,10 @@ static void parts_sum_to_the_same_bits(void **state)
 
 /* ---- One iteration ---- */
 
-static adcgs_trainer *make(const adcgs_train_config *config, adcgs_pool *threads)
-{
-    adcgs_trainer *t;
-    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), threads, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-    t->quantise = adcgs_encode_quantise_hook;
-    return t;
-}
-
 /** A trainer before its step at an iteration. */
 static adcgs_trainer *make_at(const adcgs_train_config *config, uint32_t stop)
 {
-    adcgs_trainer *t = make(config, pool);
+    adcgs_trainer *t = make_trainer(config, pool);
     int stopped;
     assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
     assert_int_equal(adcgs_stages_before(t, adcgs_trainer_progress(t), &error), ADCGS_OK);
@@ -139,14 +129,6 @@ static adcgs_train_config run_config(uint32_t batch)
     return c;
 }
 
-/** The state of a run less its time. */
-static void store(adcgs_trainer *t, adcgs_buffer *out)
-{
-    t->elapsed = (adcgs_time){ 0, 0 };
-    adcgs_buffer_init(out);
-    assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
-}
-
 static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
 {
     int stopped;
@@ -171,14 +153,14 @@ static void runs_end_alike(void **state)
     (void)state;
     for (uint32_t batch = 2; batch <= 3; batch++) {
         const adcgs_train_config config = run_config(batch);
-        adcgs_trainer *through = make(&config, pool), *stopping = make(&config, NULL);
+        adcgs_trainer *through = make_trainer(&config, pool), *stopping = make_trainer(&config, NULL);
         run(through, NULL, NULL);
         for (uint32_t stop = 10; stop < config.iterations; stop += 10) {
             adcgs_buffer middle;
             run(stopping, stop_at, &stop);
             store(stopping, &middle);
             adcgs_trainer_free(&stopping);
-            stopping = make(&config, NULL);
+            stopping = make_trainer(&config, NULL);
             assert_int_equal(adcgs_trainer_restore(stopping, middle.data, middle.size, &error), ADCGS_OK);
             adcgs_buffer_clear(&middle);
         }
@@ -271,12 +253,12 @@ static void teams_end_as_one(void **state)
     for (size_t i = 0; i < ADCGS_COUNTOF(sizes); i++) {
         const adcgs_train_config config = run_config((uint32_t)sizes[i][0]);
         const int size = sizes[i][1];
-        adcgs_trainer *alone = make(&config, pool);
+        adcgs_trainer *alone = make_trainer(&config, pool);
         member team[TEAM_MOST];
         board b;
         run(alone, NULL, NULL);
         for (int r = 0; r < size; r++)
-            team[r] = (member){ .t = make(&config, NULL), .observe = r ? NULL : stop_at, .stop = 20 };
+            team[r] = (member){ .t = make_trainer(&config, NULL), .observe = r ? NULL : stop_at, .stop = 20 };
         run_team(team, size, &b);
         for (int r = 0; r < size; r++) {
             assert_int_equal(team[r].status, ADCGS_OK);
@@ -303,7 +285,7 @@ static void strangers_are_noticed(void **state)
     board b;
     (void)state;
     for (int r = 0; r < 2; r++)
-        team[r] = (member){ .t = make(&config, NULL) };
+        team[r] = (member){ .t = make_trainer(&config, NULL) };
     team[1].t->f->param[ADCGS_P_THETA].p[3] += 1e-6f;
     run_team(team, 2, &b);
     for (int r = 0; r < 2; r++) {

@@ -142,13 +142,6 @@ static void what_is_settled_is_kept(void **state)
     adcgs_trainer_free(&t);
 }
 
-static void store(adcgs_trainer *t, adcgs_buffer *out)
-{
-    t->elapsed = (adcgs_time){ 0, 0 };
-    adcgs_buffer_init(out);
-    assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
-}
-
 /** Stopped in each stage and restored, and with other threads, a run ends where it does otherwise. */
 static void stopping_changes_nothing(void **state)
 {

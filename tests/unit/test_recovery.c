@@ -12,15 +12,6 @@
 
 #include <math.h>
 
-static adcgs_trainer *make(const adcgs_train_config *config)
-{
-    adcgs_trainer *t;
-    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), pool, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-    t->quantise = adcgs_encode_quantise_hook;
-    return t;
-}
-
 /* ---- Steps ---- */
 
 /** What blows the scene apart at once is found out and taken back, until steps are short enough. */
@@ -31,7 +22,7 @@ static void lost_pictures_are_learnt_anew(void **state)
     for (size_t i = 0; i < ADCGS_COUNTOF(too_long); i++) {
         adcgs_train_config config = small_config();
         assert_int_equal(adcgs_train_set(&config, too_long[i], &error), ADCGS_OK);
-        adcgs_trainer *t = make(&config);
+        adcgs_trainer *t = make_trainer(&config, pool);
         int stopped;
         if (adcgs_trainer_run(t, NULL, NULL, &stopped, &error) != ADCGS_OK)
             fail_msg("%s: %s", too_long[i], error.text);
@@ -53,7 +44,7 @@ static void what_does_not_learn_stays(void **state)
         assert_float_equal(adcgs_train_rate(&config, 0, 0, i / 10.0), 0, 0);
     config.prune_units_at = config.prune_units_again = 2;
     config.without_rounding = 1;
-    adcgs_trainer *t = make(&config);
+    adcgs_trainer *t = make_trainer(&config, pool);
     const adcgs_param *p = &t->f->param[ADCGS_P_THETA];
     float *before = calloc(p->n, sizeof *before);
     memcpy(before, p->p, p->n * sizeof *before);
@@ -101,7 +92,7 @@ static void points_that_no_camera_sees_are_refused(void **state)
 static void contrast_is_of_what_is_known(void **state)
 {
     const adcgs_train_config config = small_config();
-    adcgs_trainer *t = make(&config);
+    adcgs_trainer *t = make_trainer(&config, pool);
     double contrast;
     (void)state;
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
@@ -127,7 +118,7 @@ static void a_run_ends_wherever_it_stands(void **state)
     static const uint32_t stops[] = { 60, 198 };
     const adcgs_train_config config = small_config();
     adcgs_train_report report;
-    adcgs_trainer *t = make(&config);
+    adcgs_trainer *t = make_trainer(&config, pool);
     (void)state;
     assert_int_equal(adcgs_trainer_finish(t, &report, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "before its first iteration"));
@@ -136,7 +127,7 @@ static void a_run_ends_wherever_it_stands(void **state)
         int stopped;
         adcgs_stream stream;
         assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
-        adcgs_trainer *other = make(&config);
+        adcgs_trainer *other = make_trainer(&config, pool);
         adcgs_buffer bytes;
         adcgs_buffer_init(&bytes);
         assert_int_equal(adcgs_trainer_store(t, &bytes, &error), ADCGS_OK);
@@ -195,7 +186,7 @@ static void impossible_checkpoints_are_refused(void **state)
     int stopped, way = 0, more = 1;
     (void)state;
     for (; more; way++) {
-        adcgs_trainer *t = make(&config), *other = make(&config);
+        adcgs_trainer *t = make_trainer(&config, pool), *other = make_trainer(&config, pool);
         adcgs_buffer bytes;
         assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
         more = spoil(t, way);

@@ -35,29 +35,12 @@ static adcgs_train_config all_stages_config(void)
     return c;
 }
 
-static adcgs_trainer *make(const adcgs_train_config *config, adcgs_pool *threads)
-{
-    adcgs_trainer *t;
-    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), threads, &error) != ADCGS_OK)
-        fail_msg("%s", error.text);
-    t->quantise = adcgs_encode_quantise_hook;
-    return t;
-}
-
 static void run(adcgs_trainer *t, adcgs_train_observe observe, void *user)
 {
     int stopped;
     if (adcgs_trainer_run(t, observe, user, &stopped, &error) != ADCGS_OK)
         fail_msg("%s", error.text);
     assert_int_equal(stopped, t->iteration < t->config.iterations && !(t->config.time_limit > 0));
-}
-
-/** The state of a run less its time. */
-static void store(adcgs_trainer *t, adcgs_buffer *out)
-{
-    t->elapsed = (adcgs_time){ 0, 0 };
-    adcgs_buffer_init(out);
-    assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
 }
 
 static void assert_same(const adcgs_buffer *a, const adcgs_buffer *b)
@@ -98,7 +81,7 @@ static void tiers_are_of_falling_worth(void **state)
     adcgs_train_config config = small_config();
     config.start_anchors = config.max_anchors = 500;
     config.tiers = 3;
-    adcgs_trainer *t = make(&config, pool), *alone = make(&config, NULL);
+    adcgs_trainer *t = make_trainer(&config, pool), *alone = make_trainer(&config, NULL);
     adcgs_stream stream;
     adcgs_buffer ends[2];
     uint32_t anchors[3] = { 0 };
@@ -140,7 +123,7 @@ static void restored_runs_go_on_in_lockstep(void **state)
 {
     static const uint32_t stops[] = { 0, 30, 90, 140, 180, 190 };
     const adcgs_train_config config = all_stages_config();
-    adcgs_trainer *through = make(&config, pool), *stopping = make(&config, NULL);
+    adcgs_trainer *through = make_trainer(&config, pool), *stopping = make_trainer(&config, NULL);
     adcgs_buffer end, middle, again;
     run(through, NULL, NULL);
     store(through, &end);
@@ -149,7 +132,7 @@ static void restored_runs_go_on_in_lockstep(void **state)
         run(stopping, stop_at, &stop);
         assert_int_equal(stopping->iteration, stop);
         store(stopping, &middle);
-        adcgs_trainer *restored = make(&config, pool);
+        adcgs_trainer *restored = make_trainer(&config, pool);
         assert_int_equal(adcgs_trainer_restore(restored, middle.data, middle.size, &error), ADCGS_OK);
         store(restored, &again);
         assert_same(&middle, &again);
@@ -173,7 +156,7 @@ static void restored_runs_go_on_in_lockstep(void **state)
 static void checkpoints_are_checked(void **state)
 {
     adcgs_train_config config = all_stages_config();
-    adcgs_trainer *t = make(&config, NULL), *other;
+    adcgs_trainer *t = make_trainer(&config, NULL), *other;
     adcgs_buffer b;
     store(t, &b);
     for (size_t cut = 0; cut < b.size; cut += b.size / 97 + 1) {
@@ -184,7 +167,7 @@ static void checkpoints_are_checked(void **state)
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size, &error), ADCGS_ERR_DATA);
     assert_int_equal(adcgs_trainer_restore(t, b.data, b.size - 1, &error), ADCGS_OK);
     config.densify_until += 0.01f;
-    other = make(&config, NULL);
+    other = make_trainer(&config, NULL);
     assert_int_equal(adcgs_trainer_restore(other, b.data, b.size - 1, &error), ADCGS_ERR_DATA);
     assert_non_null(strstr(error.text, "other options: densify_until is 0.5 there and 0.51 here"));
     adcgs_trainer_free(&other);
@@ -196,7 +179,7 @@ static void checkpoints_are_checked(void **state)
 static void checkpoints_name_what_differs(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    adcgs_trainer *t = make(&config, NULL);
+    adcgs_trainer *t = make_trainer(&config, NULL);
     for (int later = 0; later < 2; later++) {
         adcgs_buffer b;
         t->lambda_used = t->rounding = (uint8_t)later;
@@ -250,7 +233,7 @@ static void refuse_checkpoint(const adcgs_scene *other, const char *what)
 static void checkpoints_know_their_scene(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    adcgs_trainer *t = make(&config, NULL);
+    adcgs_trainer *t = make_trainer(&config, NULL);
     assert_int_equal(adcgs_trainer_save(t, in("state"), &error), ADCGS_OK);
     adcgs_trainer_free(&t);
     refuse_checkpoint(scene, NULL);
@@ -321,7 +304,7 @@ static int count_anchors(void *user, const adcgs_train_report *r)
 static void densification_keeps_order_and_budget(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    census c = { make(&config, pool), UINT32_MAX, 0 };
+    census c = { make_trainer(&config, pool), UINT32_MAX, 0 };
     const uint32_t start = c.t->f->n;
     run(c.t, count_anchors, &c);
     assert_true(c.most > start);
@@ -333,7 +316,7 @@ static void densification_prunes_what_is_not_seen(void **state)
 {
     adcgs_train_config config = all_stages_config();
     config.densify_threshold = 1e6f;
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     uint32_t stop = 50, gone[3], left;
     run(t, stop_at, &stop);
     const uint32_t slots = t->pass->primitives.n, k = config.params.k;
@@ -355,7 +338,7 @@ static void densification_prunes_what_is_not_seen(void **state)
 /** A run of 50 iterations, then faint primitives: those of number 1 and all of anchor 5, which weigh this to the others' 1. */
 static adcgs_trainer *make_faint(const adcgs_train_config *config, float weight)
 {
-    adcgs_trainer *t = make(config, pool);
+    adcgs_trainer *t = make_trainer(config, pool);
     uint32_t stop = 50;
     run(t, stop_at, &stop);
     for (uint32_t i = 0; i < t->f->n; i++)
@@ -409,7 +392,7 @@ static void what_faint_primitives_make_stays(void **state)
 /** How many anchors still move when that is decided after 50 iterations, where all that is drawn is so opaque. */
 static uint32_t moving_anchors(const adcgs_train_config *config, float opacity)
 {
-    adcgs_trainer *t = make(config, pool);
+    adcgs_trainer *t = make_trainer(config, pool);
     uint32_t stop = 50, moving = 0;
     run(t, stop_at, &stop);
     for (uint32_t i = 0; i < t->f->n; i++)
@@ -445,7 +428,7 @@ static void what_never_changes_is_static(void **state)
     config.params.spans = 0;
     config.still_below = 1e-30f; /* all that the networks move at all */
     config.start_anchors = config.max_anchors = 1500; /* of which some are where nothing changes */
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     uint32_t stop = 50, changing = 0, moving = 0;
     run(t, stop_at, &stop);
     const uint32_t n = t->f->n;
@@ -512,7 +495,7 @@ static void no_number_is_rolled_back(void **state)
     const adcgs_train_config config = all_stages_config();
     for (size_t i = 0; i < ADCGS_COUNTOF(groups); i++) {
         adcgs_model model;
-        poison p = { .t = make(&config, pool), .group = groups[i], .repair = 1, .at = 90 };
+        poison p = { .t = make_trainer(&config, pool), .group = groups[i], .repair = 1, .at = 90 };
         run(p.t, give_poison, &p);
         assert_int_equal(p.t->iteration, ITERATIONS);
         assert_int_equal(p.t->rollbacks, 1);
@@ -529,7 +512,7 @@ static void no_number_is_rolled_back_late(void **state)
 {
     const adcgs_train_config config = all_stages_config();
     for (uint32_t at = 140; at < ITERATIONS; at += 20) {
-        poison p = { .t = make(&config, pool), .group = ADCGS_P_THETA, .at = at };
+        poison p = { .t = make_trainer(&config, pool), .group = ADCGS_P_THETA, .at = at };
         run(p.t, give_poison, &p);
         assert_int_equal(p.t->iteration, ITERATIONS);
         assert_true(p.t->rollbacks >= 1 && all_finite(p.t->f));
@@ -540,7 +523,7 @@ static void no_number_is_rolled_back_late(void **state)
 static void lasting_poison_ends_the_run(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    poison p = { .t = make(&config, pool), .group = -1, .at = 0 };
+    poison p = { .t = make_trainer(&config, pool), .group = -1, .at = 0 };
     int stopped;
     p.at = 10;
     assert_int_equal(adcgs_trainer_run(p.t, give_poison, &p, &stopped, &error), ADCGS_ERR_DATA);
@@ -566,7 +549,7 @@ static void decoded_values_are_their_own_quantisation(void **state)
     adcgs_train_config config = all_stages_config();
     for (uint32_t stop = 90; stop <= ITERATIONS; stop += 55) {
         config.params.adaptive_steps = config.params.spans = stop % 110 == 90;
-        adcgs_trainer *t = make(&config, pool);
+        adcgs_trainer *t = make_trainer(&config, pool);
         adcgs_model first, second;
         float *mu[ADCGS_P_ANCHOR], *value[ADCGS_P_ANCHOR];
         run(t, stop_at, &stop);
@@ -601,7 +584,7 @@ static int is_tie(double value, double level, double other)
 static void rounding_is_decoding(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     float *mu[ADCGS_P_ANCHOR], *value[ADCGS_P_ANCHOR];
     adcgs_model model;
     uint32_t stop = 180, adapted = 0, ties = 0;
@@ -662,7 +645,7 @@ static void estimated_bits_are_written_bytes(void **state)
     config.start_anchors = config.max_anchors = 600;
     config.params.k = 6;
     config.tiers = 1; /* each has flags and sub-streams of its own */
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_stream stream;
     adcgs_buffer bytes;
     double estimate[ADCGS_LAYERS] = { 0 };
@@ -731,7 +714,7 @@ static void rate_reaches_every_weight(void **state)
     config.without_weight_steps = 1; /* coarser lattices, or a price of weights, may leave nothing of a unit */
     config.network_rate = 0;
     for (size_t s = 0; s < ADCGS_COUNTOF(stops); s++) {
-        adcgs_trainer *t = make(&config, pool);
+        adcgs_trainer *t = make_trainer(&config, pool);
         adcgs_fmodel *f = t->f;
         uint32_t stop = stops[s];
         run(t, stop_at, &stop);
@@ -792,7 +775,7 @@ static void motion_pays_for_little(void **state)
 {
     const adcgs_train_config config = all_stages_config();
     for (int much = 0; much < 2; much++) {
-        adcgs_trainer *t = make(&config, pool);
+        adcgs_trainer *t = make_trainer(&config, pool);
         uint32_t stop = 90, moving = 0;
         double stopped, moved;
         run(t, stop_at, &stop);
@@ -814,7 +797,7 @@ static void motion_pays_for_little(void **state)
 static void still_models_carry_no_motion(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_stream stream;
     adcgs_buffer bytes;
     uint32_t stop = 180;
@@ -843,7 +826,7 @@ static void crops_are_parts_of_pictures(void **state)
     enum { X = 16, Y = 9, W = 16, H = 20, SIDE = 32 };
     static float whole[3 * SIDE * SIDE];
     adcgs_train_config config = small_config();
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_loss_value value;
     const float *target;
     double square = 0;
@@ -897,7 +880,7 @@ static void uncompressed_models_lose_nothing(void **state)
 {
     adcgs_train_config config = all_stages_config();
     config.without_rate = config.without_rounding = 1;
-    adcgs_trainer *t = make(&config, pool), *other = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool), *other = make_trainer(&config, pool);
     adcgs_model model, coarse;
     adcgs_buffer bytes;
     run(t, NULL, NULL);
@@ -940,7 +923,7 @@ static float *time_row(adcgs_trainer *t, int row)
 static void windows_grow_outwards(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_curriculum *w = &t->curriculum;
     const size_t bytes = t->f->params.time_width * sizeof(float);
     const int rows = t->f->params.time_rows;
@@ -971,7 +954,7 @@ static void windows_grow_outwards(void **state)
 static void averages_are_means(void **state)
 {
     const adcgs_train_config config = all_stages_config();
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_fmodel *f = t->f;
     adcgs_param *varied = &f->param[ADCGS_P_OMEGA], *same = &f->param[ADCGS_P_THETA];
     adcgs_weight_average average = { .n = 0 };
@@ -1014,7 +997,7 @@ static void dim(adcgs_trainer *t, float by)
 static void lambda_follows_contrast(void **state)
 {
     adcgs_train_config config = small_config();
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     double contrast, half, lambda;
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
     assert_int_equal(adcgs_contrast(t, &contrast, &error), ADCGS_OK);
@@ -1060,7 +1043,7 @@ static void darken(adcgs_trainer *t, const float black[3], float last_share)
 static void black_levels_are_found(void **state)
 {
     adcgs_train_config config = small_config();
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_scene_view *views = calloc(t->n_views, sizeof *views);
     assert_non_null(views);
     for (uint32_t i = 0; i < t->n_views; i++)
@@ -1235,11 +1218,11 @@ static void rates_follow_their_kind(void **state)
 {
     adcgs_train_config config = small_config();
     static const int groups[] = { ADCGS_P_COLOUR, ADCGS_P_THETA, ADCGS_P_TIME, ADCGS_P_E_FV };
-    adcgs_trainer *plain = make(&config, NULL), *told;
+    adcgs_trainer *plain = make_trainer(&config, NULL), *told;
     const adcgs_status status =
         adcgs_train_set(&config, "learn_features=2,learn_prediction=3,learn_motion=5,learn_entropy=7", &error);
     assert_int_equal(status, ADCGS_OK);
-    told = make(&config, NULL);
+    told = make_trainer(&config, NULL);
     for (int i = 0; i < 4; i++) {
         const adcgs_param *p = &plain->f->param[groups[i]], *q = &told->f->param[groups[i]];
         const float times = (const float[]){ 2, 3, 5, 7 }[i];
@@ -1329,7 +1312,7 @@ static void time_limits_count_what_was_before(void **state)
     adcgs_train_config config = small_config();
     int stopped;
     config.time_limit = 5;
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     t->started.clock = adcgs_seconds() - 6;
     assert_int_equal(adcgs_trainer_run(t, NULL, NULL, &stopped, &error), ADCGS_ERR_USAGE);
     assert_int_equal(t->iteration, 0);
@@ -1339,13 +1322,13 @@ static void time_limits_count_what_was_before(void **state)
     config.time_limit = 0;
     config.iterations = 10;
     const double begin = adcgs_seconds();
-    t = make(&config, pool);
+    t = make_trainer(&config, pool);
     run(t, NULL, NULL);
     adcgs_trainer_free(&t);
     const double left = fmax(1, 5 * (adcgs_seconds() - begin));
     config.time_limit = 10000;
     config.iterations = 1000000;
-    t = make(&config, pool);
+    t = make_trainer(&config, pool);
     t->started.clock = adcgs_seconds() - (config.time_limit - left);
     run(t, NULL, NULL);
     assert_true(t->iteration > 0 && t->iteration < config.iterations);
@@ -1457,7 +1440,7 @@ static void missing_things_are_found(void **state)
     enum { MOST = 64 };
     const adcgs_train_config config = all_stages_config();
     const float x[3] = { 0.1f, -0.05f, 0.12f };
-    adcgs_trainer *t = make(&config, pool);
+    adcgs_trainer *t = make_trainer(&config, pool);
     adcgs_residual places[MOST];
     uint32_t n;
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);

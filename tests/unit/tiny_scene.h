@@ -5,9 +5,11 @@
 
 #include "outside_files.h"
 
+#include "encode/encode.h"
 #include "layouts/open.h"
 #include "scenes/scenes.h"
 #include "train/settings.h"
+#include "train/state.h"
 #include "train/trainer.h"
 
 static adcgs_scene *scene;
@@ -57,6 +59,24 @@ static inline adcgs_train_config small_config(void)
 static inline int stop_at(void *user, const adcgs_train_report *r)
 {
     return r->iteration >= *(const uint32_t *)user;
+}
+
+/** A run over the scene, whose values are rounded as streams have them. */
+static inline adcgs_trainer *make_trainer(const adcgs_train_config *config, adcgs_pool *threads)
+{
+    adcgs_trainer *t;
+    if (adcgs_trainer_create(&t, scene, config, adcgs_cpu_best(), threads, &error) != ADCGS_OK)
+        fail_msg("%s", error.text);
+    t->quantise = adcgs_encode_quantise_hook;
+    return t;
+}
+
+/** The state of a run less its time. */
+static inline void store(adcgs_trainer *t, adcgs_buffer *out)
+{
+    t->elapsed = (adcgs_time){ 0, 0 };
+    adcgs_buffer_init(out);
+    assert_int_equal(adcgs_trainer_store(t, out, &error), ADCGS_OK);
 }
 
 #endif
