@@ -54,6 +54,7 @@ static void finish_start(start *s)
     adcgs_train_config config;
     expect_good(adcgs_train_preset(&config, "draft", &error));
     config.start_anchors = 60;
+    config.stereo = 2;
     assert_int_equal(adcgs_scene_frame(s->scene, s->origin, &s->scale, &error), ADCGS_OK);
     expect_good(adcgs_start_match(&s->found, s->scene, &config, NULL, &error));
     expect_good(adcgs_initialise(&s->model, s->scene, &config, &s->found, &error));
@@ -120,7 +121,7 @@ static void spoil_tests(const layout *l, adcgs_scene *opened)
     assert_true(!l->tests || touch_tests(l, REMOVE) > 0);
 }
 
-/** Other test views, from elsewhere, and none at all once the scene is open, leave the start of training as it is, to the bit. */
+/** Other test views, from elsewhere, which are gone once the scene is open, leave the start of training as it is, to the bit. */
 static void test_apart(void **state)
 {
     for (size_t i = 0; i < LAYOUTS; i++) {
@@ -130,7 +131,7 @@ static void test_apart(void **state)
             continue;
         }
         begin_anew(l);
-        start first = make_start(l), second, third;
+        start first = make_start(l), second;
         finish_start(&first);
         assert_true(first.scene->n_views[ADCGS_SPLIT_TEST] > 0 && first.scene->n_views[ADCGS_SPLIT_TRAIN] > 0);
         rig_moved = l->period;
@@ -138,18 +139,14 @@ static void test_apart(void **state)
         rig_moved = 0;
         assert_true(!l->tests || touch_tests(l, REPLACE) > 0);
         second = make_start(l);
-        finish_start(&second);
-        third = make_start(l);
-        spoil_tests(l, third.scene);
-        finish_start(&third);
         if (l->period)
             assert_memory_not_equal(&first.scene->views[ADCGS_SPLIT_TEST][0].camera.cam_to_world,
                                     &second.scene->views[ADCGS_SPLIT_TEST][0].camera.cam_to_world, sizeof(double[12]));
+        spoil_tests(l, second.scene);
+        finish_start(&second);
         expect_same(&first, &second);
-        expect_same(&first, &third);
         free_start(&first);
         free_start(&second);
-        free_start(&third);
     }
 }
 
