@@ -127,7 +127,7 @@ static double travel(const adcgs_track *t, int n, int first)
     return sqrt(fmax(least, 0));
 }
 
-/** Whether all of it travels, but lies where what is still lies anyhow: a shadow, or what something else uncovers. */
+/** Whether all of it travels, but lies where what is still is seen most of the time: a shadow, or what something uncovers. */
 static int is_shadow(const work *w, int first, double far)
 {
     const adcgs_track *t = &w->t;
@@ -140,7 +140,7 @@ static int is_shadow(const work *w, int first, double far)
             if (!adcgs_body_match(&t->model, i, x, &w->l.all[m], &t->place[m], &j))
                 continue;
             n++;
-            in_place += w->l.all[m].p[j].in_place;
+            in_place += w->l.all[m].p[j].in_place == ADCGS_PLACE_STILL;
         }
     const double all = travel(t, w->l.n, first);
     return in_place > IN_PLACE * n && (all > TRAVELS * t->model.pixel || all > TRAVELS_SHARE * far);

@@ -15,6 +15,7 @@
 #include <math.h>
 
 enum { REFERENCES = 4, MOVING_LEAST = 24, MARGIN = 4 }; /* views that are matched at a moment; pixels that move; about them */
+enum { MOST = 5, LINE = 3 }; /* of nine pixels */
 #define AXES_ALIKE 0.6  /* cosine between axes of views that are matched */
 #define APART 0.005     /* scene units between views that tell depths */
 
@@ -22,6 +23,7 @@ struct adcgs_stereo_maps {
     int n;
     adcgs_stereo_view view[ADCGS_STEREO_CAMERAS];
     adcgs_depths depths[ADCGS_STEREO_CAMERAS];
+    const uint8_t *changes[ADCGS_STEREO_CAMERAS]; /* [h][w] of the rig, while there is one */
 };
 
 /* ---- Neighbours ---- */
@@ -100,6 +102,7 @@ static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const
         const size_t plane = (size_t)camera->view.w * (size_t)camera->view.h;
         const int i = maps->n++;
         maps->view[i] = camera->view;
+        maps->changes[i] = camera->changes;
         memcpy(parts[i], (const int[]){ 0, 0, camera->view.w, camera->view.h }, sizeof parts[i]);
         wanted[i] = still[i] = adcgs_alloc(NULL, plane, 1, error);
         status = still[i] ? ADCGS_OK : adcgs_alloc_status(error);
@@ -120,8 +123,8 @@ static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const
 
 /* ---- What moves ---- */
 
-/** Where a picture is off what is usual, and most of what is about is so too. */
-static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t *moves, int part[4])
+/** Where a picture is off what is usual, and so is most of what is about, or a line through it. shows: adcgs_stereo_moves. */
+static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t *moves, uint8_t *shows, int part[4])
 {
     const int w = c->view.w, h = c->view.h;
     int left = w, right = -1, top = h, bottom = -1, n = 0;
@@ -133,7 +136,9 @@ static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t
             for (int b = ADCGS_MAX(y - 1, 0); b <= ADCGS_MIN(y + 1, h - 1); b++)
                 for (int a = ADCGS_MAX(x - 1, 0); a <= ADCGS_MIN(x + 1, w - 1); a++)
                     sum += off[b * w + a];
-            if (!(moves[y * w + x] = sum >= 5))
+            moves[y * w + x] = sum >= MOST || (off[y * w + x] && sum >= LINE);
+            shows[y * w + x] = (uint8_t)(moves[y * w + x] ? ADCGS_MOVES : sum ? ADCGS_MOVES_NEAR : ADCGS_MOVES_NOT);
+            if (!moves[y * w + x])
                 continue;
             n++;
             left = ADCGS_MIN(left, x);
@@ -154,7 +159,7 @@ typedef struct moment {
     int part[ADCGS_STEREO_CAMERAS][4];
     adcgs_depths depths[ADCGS_STEREO_CAMERAS];
     float *pixels[ADCGS_STEREO_CAMERAS];
-    uint8_t *moves[ADCGS_STEREO_CAMERAS];
+    uint8_t *moves[ADCGS_STEREO_CAMERAS]; /* [3][h][w] whether pixels do, what the view says of that, and scratch */
     int n;
 } moment;
 
@@ -167,13 +172,14 @@ static adcgs_status take_moment(moment *o, const adcgs_stereo_rig *rig, int m, a
         const size_t plane = (size_t)camera->view.w * (size_t)camera->view.h;
         const int i = o->n++;
         o->pixels[i] = adcgs_alloc(NULL, 4 * plane, sizeof(float), error);
-        o->moves[i] = adcgs_alloc(NULL, 2 * plane, 1, error);
+        o->moves[i] = adcgs_alloc(NULL, 3 * plane, 1, error);
         if (!o->pixels[i] || !o->moves[i])
             return adcgs_alloc_status(error);
         adcgs_stereo_rig_take(camera, m, o->pixels[i]);
         o->view[i] = camera->view;
         o->view[i].pixels = o->pixels[i];
-        mark(camera, m, o->moves[i] + plane, o->moves[i], o->part[i]);
+        o->view[i].moves = o->moves[i] + plane;
+        mark(camera, m, o->moves[i] + 2 * plane, o->moves[i], o->moves[i] + plane, o->part[i]);
     }
     for (int i = 0; i < o->n; i++) /* not every view of many is matched */
         if (o->n > REFERENCES && i * REFERENCES / o->n == (i + 1) * REFERENCES / o->n)
@@ -191,17 +197,20 @@ static void moment_free(moment *o)
     adcgs_free(NULL, o);
 }
 
-/** Shadows, what is uncovered at the edge of what moves, what turns on the spot: points where what is still lies anyhow. */
-static void mark_in_place(adcgs_stereo_list *list, const adcgs_stereo_maps *maps)
+/** Whether two cameras have a surface there in what they usually show; and whether they show it most of the time. */
+static adcgs_stereo_in_place in_place(const adcgs_stereo_maps *maps, const double x[3])
 {
-    for (size_t i = 0; i < list->n; i++) {
-        const double *x = list->point[i].x;
-        double there[3];
-        int same = 0;
-        for (int k = 0; k < maps->n && same < 2; k++)
-            same += adcgs_depths_judge(&maps->depths[k], x, there) == ADCGS_VERDICT_SAME;
-        list->point[i].in_place = same >= 2;
+    double there[3], at[2] = { 0, 0 }, depth;
+    int same = 0, still = 0;
+    for (int k = 0; k < maps->n && still < 2; k++) {
+        const adcgs_stereo_view *v = &maps->view[k];
+        if (adcgs_depths_judge(&maps->depths[k], x, there) != ADCGS_VERDICT_SAME)
+            continue;
+        adcgs_stereo_rig_project(v, x, at, &depth);
+        same++;
+        still += !maps->changes[k][(int)at[1] * v->w + (int)at[0]];
     }
+    return still >= 2 ? ADCGS_PLACE_STILL : same >= 2 ? ADCGS_PLACE_COMMON : ADCGS_PLACE_OWN;
 }
 
 /** Whether no view has another near enough to be matched with. */
@@ -240,7 +249,8 @@ static adcgs_status find_moving(adcgs_stereo_list *list, const adcgs_stereo_rig 
     adcgs_stereo_list found = { 0, 0, NULL };
     adcgs_status status = rig->film ? adcgs_film_find_moving(&found, rig, maps->depths, m, error)
                                     : match_moment(&found, rig, m, pool, error);
-    mark_in_place(&found, maps);
+    for (size_t i = 0; i < found.n; i++)
+        found.point[i].in_place = (uint8_t)in_place(maps, found.point[i].x);
     if (status == ADCGS_OK)
         status = adcgs_stereo_thin(&found, most, error);
     for (size_t i = 0; i < found.n && status == ADCGS_OK; i++)
@@ -298,8 +308,10 @@ adcgs_status adcgs_stereo_find(adcgs_stereo *out, const adcgs_scene *scene, cons
         out->poses.pixels = (double)scene->views[ADCGS_SPLIT_TRAIN][0].camera.width / rig->camera[0].view.w;
         status = find(out, rig, options, pool, error);
     }
-    for (int i = 0; out->maps && i < out->maps->n; i++) /* the pictures go */
+    for (int i = 0; out->maps && i < out->maps->n; i++) { /* the pictures go */
         out->maps->view[i].pixels = NULL;
+        out->maps->changes[i] = NULL;
+    }
     if (rig)
         adcgs_stereo_rig_clear(rig);
     adcgs_free(NULL, rig);

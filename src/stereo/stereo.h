@@ -18,6 +18,13 @@
 
 enum { ADCGS_STEREO_MOMENTS = 48 /**< that are looked at, at most */ };
 
+/** Whether something that moves lies where what is still lies anyhow. */
+typedef enum adcgs_stereo_in_place {
+    ADCGS_PLACE_OWN,    /**< it does not */
+    ADCGS_PLACE_COMMON, /**< it does: a shadow, what is uncovered, or what turns on the spot */
+    ADCGS_PLACE_STILL   /**< and most of the time what is still is seen there, so that it does not turn there all the time */
+} adcgs_stereo_in_place;
+
 typedef struct adcgs_stereo_point {
     double x[3];       /**< scene units */
     float rgb[3];
@@ -28,7 +35,7 @@ typedef struct adcgs_stereo_point {
     float life, shift; /**< for who makes it an anchor: half of its life to begin with, and from t to the middle of that */
     float detail;      /**< contrast of the picture about it, 0..1 */
     uint8_t moves;
-    uint8_t in_place;  /**< it lies where what is still lies anyhow: a shadow, what is uncovered, or what turns on the spot */
+    uint8_t in_place;  /**< adcgs_stereo_in_place */
     uint8_t body;      /**< the body that it is part of, from 1; 0: none */
 } adcgs_stereo_point;
 

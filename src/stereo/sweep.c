@@ -9,6 +9,8 @@ enum { RADIUS = 2, SIDE = 2 * RADIUS + 1, PLANES_LEAST = 24, PLANES_MOST = 112 }
 #define NOISE 1e-4f         /* variance that tells nothing */
 /* Cost of windows that are not alike, of colours that are not, and of a place that a neighbour does not see. */
 enum { UNLIKE_MOST = 120, COLOUR_MOST = ADCGS_SWEEP_COST - UNLIKE_MOST, UNSEEN = 2 * ADCGS_SWEEP_COST };
+enum { STILL_THERE = 100 }; /* where the view shows what moves, a neighbour what it usually does */
+enum { THIN = 12 };         /* pixels of a window, at most, that move, if what moves is thin */
 #define COLOUR_OFF 0.15f    /* a difference that is as bad as any */
 #define COLOUR_SCALE (COLOUR_MOST / (3 * WINDOW * COLOUR_OFF))
 
@@ -60,6 +62,12 @@ void adcgs_sweep_set_planes(adcgs_sweep *s, double nearest, double farthest)
 
 /* ---- One neighbour, one plane ---- */
 
+/** The view's windows, or what moves in those that have it in the middle. */
+typedef struct windows {
+    float *over;          /* [s->h][s->w] one over the pixels that count; 0: there is no window */
+    float *mean, *spread; /* [s->h][s->w] */
+} windows;
+
 /** Arrays over the part and a margin of RADIUS about it, in which its edge is repeated. */
 typedef struct field {
     const adcgs_sweep *s;
@@ -67,14 +75,17 @@ typedef struct field {
     float *ray[2];        /* [w], [h] of the view's pixels */
     float *own;           /* [h][w][4] pixels of the view */
     float *grey;          /* [h][w] of the view */
-    float *mean, *spread; /* [s->h][s->w] of the view's windows */
+    windows window[2];    /* of all, and of what is thin and moves */
+    float *mask;          /* [h][w] 1: a pixel of the view counts in the latter */
     float *at[2];         /* [w] where a row of pixels lies in the neighbour */
     float *other;         /* [w][4] and what is there */
     uint8_t *inside;      /* [w] if it is in the picture */
+    uint8_t *still;       /* [w] and if nothing moves there */
     float *sum[4];        /* [h][w] neighbour's grey, its square, its product with the view's, difference of colour */
     float *down;          /* [s->h][w] sums of columns */
     float *total[4];      /* [s->h][s->w] sums of windows */
     uint8_t *seen;        /* [s->h][s->w] */
+    uint8_t *against;     /* [s->h][s->w] the view's moves, the neighbour's does not */
     int16_t *cost;        /* [n_sources][s->h][s->w] */
 } field;
 
@@ -130,6 +141,7 @@ static void sample_row(const field *f, const adcgs_stereo_view *v)
             value[c] = p0 * p[c] + p1 * p[4 + c] + q0 * q[c] + q1 * q[4 + c];
         memcpy(f->other + 4 * x, value, sizeof value);
         f->inside[x] = (uint8_t)inside;
+        f->still[x] = v->moves && v->moves[(int)(w + 0.5f) * v->w + (int)(u + 0.5f)] == ADCGS_MOVES_NOT;
     }
 }
 
@@ -150,27 +162,44 @@ static void fetch(const field *f, const adcgs_stereo_view *source, const passage
             sum[3][x] = fabsf(other[4 * x] - own[4 * x]) + fabsf(other[4 * x + 1] - own[4 * x + 1]) +
                         fabsf(other[4 * x + 2] - own[4 * x + 2]);
         }
-        for (int x = 0; y >= RADIUS && y < f->h - RADIUS && x < f->s->w; x++)
-            f->seen[(y - RADIUS) * f->s->w + x] = f->inside[x + RADIUS] && other[4 * (x + RADIUS) + 3] > 0.99f &&
-                                                  own[4 * (x + RADIUS) + 3] > 0.99f;
+        for (int x = 0; y >= RADIUS && y < f->h - RADIUS && x < f->s->w; x++) {
+            const int at = (y - RADIUS) * f->s->w + x;
+            f->seen[at] = f->inside[x + RADIUS] && other[4 * (x + RADIUS) + 3] > 0.99f && own[4 * (x + RADIUS) + 3] > 0.99f;
+            f->against[at] = f->mask[row + (size_t)x + RADIUS] > 0 && f->still[x + RADIUS];
+        }
     }
 }
 
-/** In whole numbers, which compilers compare in lanes. */
-static void compare(const field *f, int16_t *cost)
+/** Lower costs to those of the view's windows. In whole numbers, which compilers compare in lanes. */
+static void compare_windows(const field *f, const windows *own, int16_t *cost)
 {
     const int n = f->s->w * f->s->h;
     for (int k = 0; k < 4; k++)
         add_windows(f, f->sum[k], f->total[k]);
     for (int i = 0; i < n; i++) {
-        const float mean = f->total[0][i] * (1.0f / WINDOW);
-        const float spread = fabsf(f->total[1][i] * (1.0f / WINDOW) - mean * mean); /* less than 0 by rounding alone */
-        const float both = f->total[2][i] * (1.0f / WINDOW) - mean * f->mean[i];
-        const float alike = both / sqrtf((spread + NOISE) * (f->spread[i] + NOISE));
-        const int unlike = (int)((1 - alike) * UNLIKE_MOST), off = (int)(f->total[3][i] * COLOUR_SCALE);
-        const int value = ADCGS_MIN(unlike, UNLIKE_MOST) + ADCGS_MIN(off, COLOUR_MOST);
-        cost[i] = (int16_t)(f->seen[i] ? value : UNSEEN);
+        const float over = own->over[i], mean = f->total[0][i] * over;
+        const float spread = fabsf(f->total[1][i] * over - mean * mean); /* less than 0 by rounding alone */
+        const float both = f->total[2][i] * over - mean * own->mean[i];
+        const float alike = both / sqrtf((spread + NOISE) * (own->spread[i] + NOISE));
+        const int unlike = (int)((1 - alike) * UNLIKE_MOST), off = (int)(f->total[3][i] * (over * WINDOW) * COLOUR_SCALE);
+        const int value = ADCGS_MIN(unlike, UNLIKE_MOST) + ADCGS_MIN(off, COLOUR_MOST) + STILL_THERE * f->against[i];
+        const int limited = f->seen[i] && over > 0 ? ADCGS_MIN(value, ADCGS_SWEEP_COST) : UNSEEN;
+        cost[i] = (int16_t)ADCGS_MIN(cost[i], limited);
     }
+}
+
+/** Of what is thin a window shows mostly what is behind, which lies elsewhere in the neighbour: it is compared alone, too. */
+static void compare(const field *f, int16_t *cost)
+{
+    for (int i = 0; i < f->s->w * f->s->h; i++)
+        cost[i] = UNSEEN;
+    compare_windows(f, &f->window[0], cost);
+    if (!f->s->view->moves)
+        return;
+    for (int k = 0; k < 4; k++)
+        for (int i = 0; i < f->w * f->h; i++)
+            f->sum[k][i] *= f->mask[i];
+    compare_windows(f, &f->window[1], cost);
 }
 
 /* ---- All neighbours ---- */
@@ -209,11 +238,17 @@ static void field_free(field *f)
     adcgs_free(NULL, f->own);
     adcgs_free(NULL, f->other);
     adcgs_free(NULL, f->inside);
+    adcgs_free(NULL, f->still);
     adcgs_free(NULL, f->grey);
-    adcgs_free(NULL, f->mean);
-    adcgs_free(NULL, f->spread);
+    for (int k = 0; k < 2; k++) {
+        adcgs_free(NULL, f->window[k].over);
+        adcgs_free(NULL, f->window[k].mean);
+        adcgs_free(NULL, f->window[k].spread);
+    }
     adcgs_free(NULL, f->down);
+    adcgs_free(NULL, f->mask);
     adcgs_free(NULL, f->seen);
+    adcgs_free(NULL, f->against);
     adcgs_free(NULL, f->cost);
 }
 
@@ -233,35 +268,66 @@ static adcgs_status field_alloc(field *f, const adcgs_sweep *s, adcgs_error *err
     good &= (f->own = adcgs_alloc(NULL, 4 * whole, sizeof *f->own, error)) != NULL;
     good &= (f->other = adcgs_alloc(NULL, 4 * (size_t)f->w, sizeof *f->other, error)) != NULL;
     good &= (f->inside = adcgs_alloc(NULL, (size_t)f->w, 1, error)) != NULL;
+    good &= (f->still = adcgs_alloc(NULL, (size_t)f->w, 1, error)) != NULL;
     good &= (f->grey = adcgs_alloc(NULL, whole, sizeof *f->grey, error)) != NULL;
-    good &= (f->mean = adcgs_alloc(NULL, part, sizeof *f->mean, error)) != NULL;
-    good &= (f->spread = adcgs_alloc(NULL, part, sizeof *f->spread, error)) != NULL;
+    for (int k = 0; k < 2; k++) {
+        good &= (f->window[k].over = adcgs_alloc(NULL, part, sizeof(float), error)) != NULL;
+        good &= (f->window[k].mean = adcgs_alloc(NULL, part, sizeof(float), error)) != NULL;
+        good &= (f->window[k].spread = adcgs_alloc(NULL, part, sizeof(float), error)) != NULL;
+    }
     good &= (f->down = adcgs_alloc(NULL, (size_t)s->h * (size_t)f->w, sizeof *f->down, error)) != NULL;
+    good &= (f->mask = adcgs_alloc(NULL, whole, sizeof *f->mask, error)) != NULL;
     good &= (f->seen = adcgs_alloc(NULL, part, 1, error)) != NULL;
+    good &= (f->against = adcgs_alloc(NULL, part, 1, error)) != NULL;
     good &= (f->cost = adcgs_alloc(NULL, part * (size_t)ADCGS_MAX(s->n_sources, 1), sizeof *f->cost, error)) != NULL;
     return good ? ADCGS_OK : adcgs_alloc_status(error);
+}
+
+/** Windows of the view's pixels that the mask has, of which they have at most so many. */
+static void set_windows(field *f, windows *own, float most)
+{
+    for (int i = 0; i < f->w * f->h; i++) {
+        f->sum[0][i] = f->mask[i] * f->grey[i];
+        f->sum[1][i] = f->sum[0][i] * f->grey[i];
+    }
+    add_windows(f, f->mask, own->over);
+    add_windows(f, f->sum[0], own->mean);
+    add_windows(f, f->sum[1], own->spread);
+    for (int y = 0; y < f->s->h; y++)
+        for (int x = 0; x < f->s->w; x++) {
+            const int i = y * f->s->w + x;
+            const int is = f->mask[(y + RADIUS) * f->w + x + RADIUS] > 0 && own->over[i] <= most;
+            own->over[i] = is ? 1 / own->over[i] : 0;
+            own->mean[i] *= own->over[i];
+            own->spread[i] = fmaxf(own->spread[i] * own->over[i] - own->mean[i] * own->mean[i], 0);
+        }
+}
+
+/** The view's pixel that lies at a field's, or the nearest that is in the picture. */
+static int pixel_of(const field *f, int i)
+{
+    const adcgs_stereo_view *v = f->s->view;
+    const int x = ADCGS_MIN(ADCGS_MAX(f->s->x + i % f->w - RADIUS, 0), v->w - 1);
+    return ADCGS_MIN(ADCGS_MAX(f->s->y + i / f->w - RADIUS, 0), v->h - 1) * v->w + x;
 }
 
 static void field_fill(field *f)
 {
     const adcgs_stereo_view *v = f->s->view;
-    for (int y = 0; y < f->h; y++)
-        for (int x = 0; x < f->w; x++) {
-            const int px = ADCGS_MIN(ADCGS_MAX(f->s->x + x - RADIUS, 0), v->w - 1);
-            const int py = ADCGS_MIN(ADCGS_MAX(f->s->y + y - RADIUS, 0), v->h - 1);
-            const size_t at = (size_t)y * (size_t)f->w + (size_t)x;
-            memcpy(f->own + 4 * at, v->pixels + 4 * ((size_t)py * (size_t)v->w + (size_t)px), 4 * sizeof *f->own);
-            f->grey[at] = grey_of(f->own + 4 * at);
-            f->sum[0][at] = f->grey[at] * f->grey[at];
-            f->ray[0][x] = (float)((px + 0.5 - v->cx) / v->fx);
-            f->ray[1][y] = (float)((py + 0.5 - v->cy) / v->fy);
-        }
-    add_windows(f, f->grey, f->mean);
-    add_windows(f, f->sum[0], f->spread);
-    for (int i = 0; i < f->s->w * f->s->h; i++) {
-        f->mean[i] *= 1.0f / WINDOW;
-        f->spread[i] = fmaxf(f->spread[i] * (1.0f / WINDOW) - f->mean[i] * f->mean[i], 0);
+    for (int i = 0; i < f->w * f->h; i++) {
+        const int pixel = pixel_of(f, i), px = pixel % v->w, py = pixel / v->w;
+        memcpy(f->own + 4 * i, v->pixels + 4 * pixel, 4 * sizeof *f->own);
+        f->grey[i] = grey_of(f->own + 4 * i);
+        f->mask[i] = 1;
+        f->ray[0][i % f->w] = (float)((px + 0.5 - v->cx) / v->fx);
+        f->ray[1][i / f->w] = (float)((py + 0.5 - v->cy) / v->fy);
     }
+    set_windows(f, &f->window[0], WINDOW);
+    if (!v->moves)
+        return;
+    for (int i = 0; i < f->w * f->h; i++)
+        f->mask[i] = v->moves[pixel_of(f, i)] == ADCGS_MOVES;
+    set_windows(f, &f->window[1], THIN);
 }
 
 adcgs_status adcgs_sweep_run(const adcgs_sweep *s, int16_t *cost, adcgs_error *error)

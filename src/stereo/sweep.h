@@ -2,7 +2,8 @@
 /** \file
  * How well the neighbours of a picture agree with it, pixel by pixel and depth by depth. Depths are planes that face the
  * camera, even in inverse depth, which is even in pixels. Pictures are compared over a small window by normalised
- * correlation, which does not mind how bright a camera is, and by colour, which correlation does not see; the better half of
+ * correlation, which does not mind how bright a camera is, and by colour, which correlation does not see, and where it is known
+ * what moves, by whether it moves in both, which tells the depth of what is thinner than a window; the better half of
  * the neighbours counts, so that what hides a place from some of them does no harm (Kang, Szeliski and Chai 2001, Handling
  * occlusions in dense multi-view stereo, CVPR).
  */

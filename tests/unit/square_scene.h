@@ -17,6 +17,7 @@ enum { CAMERAS = 6, MOMENTS = 9, VIEWS = CAMERAS * MOMENTS, WIDTH = 96, HEIGHT =
 #define HALF 0.12  /* of the square */
 #define SPEED 0.8  /* along x, a unit of time */
 
+static double half_wide = HALF, half_high = HALF;
 static adcgs_scene_view views[VIEWS];
 static adcgs_scene scene = { .views = { views }, .n_views = { VIEWS }, .duration = 1, .n_times = MOMENTS,
                               .rate = { MOMENTS - 1, 1 } };
@@ -40,7 +41,7 @@ static double colour_at(const adcgs_camera *c, double t, double px, double py, i
 {
     const double ray[2] = { (px - c->cx) / c->fx, (py - c->cy) / c->fy }, *m = c->cam_to_world;
     const double x = m[3] + SQUARE * ray[0] - square_at(t), y = m[7] + SQUARE * ray[1];
-    return fabs(x) < HALF && fabs(y) < HALF ? texture(x, y, 10 + (uint64_t)channel)
+    return fabs(x) < half_wide && fabs(y) < half_high ? texture(x, y, 10 + (uint64_t)channel)
                                            : texture(m[3] + WALL * ray[0], m[7] + WALL * ray[1], 20 + (uint64_t)channel);
 }
 

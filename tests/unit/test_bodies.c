@@ -140,7 +140,7 @@ static void check_sliding(const adcgs_stereo *s, const adcgs_stereo_body *b)
 static void boxes_are_followed(void **state)
 {
     const adcgs_stereo s = found;
-    uint32_t n[BOXES + 1] = { 0 }, right = 0;
+    uint32_t n[BOXES + 1] = { 0 }, right = 0, common = 0, still = 0;
     for (uint32_t b = 0; b < s.n_bodies; b++)
         print_message("%u points about %.2f %.2f %.2f\n", s.body[b].n, s.body[b].pivot[0], s.body[b].pivot[1],
                       s.body[b].pivot[2]);
@@ -153,8 +153,12 @@ static void boxes_are_followed(void **state)
         assert_true(b <= BOXES);
         n[b]++;
         right += b && (s.moving[i].x[0] < 0.18) == (b == turning + 1);
+        common += b == turning + 1 && s.moving[i].in_place;
+        still += b == turning + 1 && s.moving[i].in_place == ADCGS_PLACE_STILL;
     }
-    print_message("%u of the one, %u of the other, %u of none\n", n[1], n[2], n[0]);
+    print_message("%u of the one, %u of the other, %u of none; of what turns %u in place, %u still\n", n[1], n[2], n[0],
+                  common, still);
+    assert_true(common > n[turning + 1] / 4 && still < n[turning + 1] / 20); /* it is always there, and never the same */
     assert_true(n[1] >= n[2] && n[1] == s.body[0].n && n[2] == s.body[1].n);
     assert_true(right > 0.98 * (n[1] + n[2]) && n[1] + n[2] > n[0]);
     for (uint32_t b = 0; b < s.n_bodies; b++)
