@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Rigid bodies in pictures: a box that turns 20 degrees a moment and one that slides are found, told apart and followed; boxes
- * whose looks are other ones at each moment are none.
+ * whose looks are other ones at each moment are none, nor is a shadow.
  */
 #include "outside_files.h"
 
@@ -26,6 +26,7 @@ static const adcgs_stereo_options options = { .scale = 1, .still = 300, .moving 
 static const double half[BOXES] = { 0.2, 0.13 };
 static adcgs_stereo found; /* without threads */
 static int flickers; /* whether the boxes' looks change */
+static int shadow;   /* whether a round shadow crosses the wall, and there are no boxes */
 
 /** Smooth noise of cells of a width. */
 static double texture(double x, double y, double width, uint64_t surface)
@@ -74,11 +75,12 @@ static int hit(int box, int moment, const double eye[3], const double ray[3], in
 static double colour_at(const adcgs_camera *c, int moment, double px, double py, int channel)
 {
     const double ray[3] = { (px - c->cx) / c->fx, (py - c->cy) / c->fy, 1 }, *m = c->cam_to_world, eye[3] = { m[3], m[7], m[11] };
+    const double x = m[3] + WALL * ray[0], y = m[7] + WALL * ray[1];
     double colour;
-    for (int box = 0; box < BOXES; box++)
+    for (int box = 0; box < BOXES && !shadow; box++)
         if (hit(box, moment, eye, ray, channel, &colour))
             return colour;
-    return texture(m[3] + WALL * ray[0], m[7] + WALL * ray[1], 0.1, 20 + (uint64_t)channel);
+    return texture(x, y, 0.1, 20 + (uint64_t)channel) * (shadow && hypot(x - 0.16 * (moment - 3.5), y) < 0.2 ? 0.5 : 1);
 }
 
 static void put_view(adcgs_scene_view *v, int camera, int moment)
@@ -102,6 +104,12 @@ static void put_view(adcgs_scene_view *v, int camera, int moment)
     }
     assert_int_equal(adcgs_image_write(&image, v->path, 0, &error), ADCGS_OK);
     adcgs_image_free(&image);
+}
+
+static void put_views(void)
+{
+    for (int i = 0; i < VIEWS; i++)
+        put_view(&views[i], i / MOMENTS, i % MOMENTS);
 }
 
 static void find(adcgs_stereo *s, adcgs_pool *pool)
@@ -189,10 +197,24 @@ static void what_changes_its_looks_is_none(void **state)
 {
     adcgs_stereo s;
     flickers = 1;
-    for (int i = 0; i < VIEWS; i++)
-        put_view(&views[i], i / MOMENTS, i % MOMENTS);
+    put_views();
     find(&s, NULL);
     print_message("%u bodies among %u points\n", s.n_bodies, s.n_moving);
+    assert_int_equal(s.n_bodies, 0);
+    adcgs_stereo_clear(&s);
+}
+
+static void a_shadow_is_none(void **state)
+{
+    adcgs_stereo s;
+    uint32_t still = 0;
+    shadow = 1;
+    put_views();
+    find(&s, NULL);
+    for (uint32_t i = 0; i < s.n_moving; i++)
+        still += s.moving[i].in_place == ADCGS_PLACE_STILL;
+    print_message("%u bodies among %u points, of which %u in place\n", s.n_bodies, s.n_moving, still);
+    assert_true(s.n_moving > 60 * MOMENTS && still > 0.95 * s.n_moving);
     assert_int_equal(s.n_bodies, 0);
     adcgs_stereo_clear(&s);
 }
@@ -201,8 +223,7 @@ static int put_scene(void **state)
 {
     if (make_folder(state) != 0)
         return -1;
-    for (int i = 0; i < VIEWS; i++)
-        put_view(&views[i], i / MOMENTS, i % MOMENTS);
+    put_views();
     find(&found, NULL);
     return 0;
 }
@@ -221,6 +242,7 @@ int main(void)
         cmocka_unit_test(boxes_are_followed),
         cmocka_unit_test(threads_do_not_show),
         cmocka_unit_test(what_changes_its_looks_is_none),
+        cmocka_unit_test(a_shadow_is_none),
     };
     return cmocka_run_group_tests(tests, put_scene, remove_scene);
 }
