@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
 # The failures that are looked for, to be read with `.`: a line each, in fields with | between:
-#   1 CLASS     its name
+#   1 CLASS     its name, without commas: a column of stability.csv
 #   2 OPTIONS   of adcgs-demo-scene, with @ for the strength; where that is 0, a --spoil, --noise or --aside of it is left out
 #   3 STRENGTHS from mild to hard; the first is what the others are measured against
 #   4 UNIT      of the strength
@@ -41,7 +41,7 @@ before the first picture|--scene cross80 --spoil before=@|0 0.1 0.3|of the time|
 no picture inside|--scene cross80 --spoil inside=@|0 0.2 0.5|of the time|worst|0.2:21|a short gap is gone through in a line; in a long one it fades from one place to the other
 after the last picture|--scene cross80 --spoil after=@|0 0.1 0.3|of the time|worst|none: beyond what was seen it fails: nobody saw it, and it stays frozen|the last moment stays, frozen
 dropped pictures|--scene cross80 --spoil drop=@|0 0.3 0.8|of the pictures|moving|0.3:21|at 0.8 about one picture of each moment is left, from which nothing can be matched, so what moves is lost
-doubled, all cameras see all|--scene cross80 --cameras 4 --spoil twice=@|0 0.2 0.5|of the pictures|moving|0.2:21.3|such pictures are told from others and learnt as of the time that they show; what is matched is still off
+doubled where all cameras see all|--scene cross80 --cameras 4 --spoil twice=@|0 0.2 0.5|of the pictures|moving|0.2:21.3|such pictures are told from others and learnt as of the time that they show; what is matched is still off
 doubled pictures|--scene cross80 --spoil twice=@|0 0.2 0.5|of the pictures|moving|0.2:20|a picture that comes twice shows what moves where it was a moment before: it is drawn over both places
 EOF
 }
