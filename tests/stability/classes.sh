@@ -19,7 +19,7 @@ collision|--scene collide --motion @|0.5 1 2|meetings|moving|2:19|where two touc
 split|--scene split --motion @|0.3 1 2|x 1.1 apart|moving|2:22|each half goes its way in a line, and is followed
 split and merge|--scene merge --motion @|0.5 1 2|times|moving|2:20|where halves touch, their patterns blur
 appear and vanish|--scene blink@|5 2 1|moments|moving|2:19.5|lives end where cameras show what is behind; test views are half way between moments, so that of what is there at one alone they show half
-thin rods|--scene rods@|4 2 1|x 0.6 pixels|moving|none: fails from here on, what moves and is thinner than some three pixels is not matched|windows of matching are wider than rods: 1,600 points of rods of one pixel, and they are a haze along their circle
+thin rods|--scene rods@|4 2 1|x 0.6 pixels|moving|4:18|they are matched where they are, but their speed is known to two pixels a moment only: between moments they are drawn beside
 moving texture|--scene slide --motion @|0.3 1 3|x 2.4 patches|moving|3:21|it is followed as if it moved, and at the edges of the box it has to come and go
 transparent|--scene glass@|30 60 90|% let through|moving|60:29|what shows least is taken as still: at 90 % nothing of the ball is left, and little is lost by it
 mirror|--scene mirror@|30 60 90|% reflected|moving|90:23|a reflection is elsewhere from each side, so that it blurs towards the edge
