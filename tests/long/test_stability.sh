@@ -40,7 +40,11 @@ while IFS= read -r line; do
     printf '%-26s %6s %6.2f dB, floor %s; %s bytes\n' "$class" "${floor%:*}" "${got:-0}" "${floor#*:}" "$(value bytes "$stem.json")"
     is_less "$got" "${floor#*:}" && bad "$class at ${floor%:*}: ${got:-no} dB, floor ${floor#*:}"
     ./adcgs-info "$stem.adcgs" --check >/dev/null 2>&1 || bad "$class: no sound stream"
-    is_less 0.0001 "$(value static_variance "$stem.val")" && bad "$class: what stands still varies"
+    case $class in # where the light steps, what it falls on does, by a tenth of a stop to both sides
+    "step of "*) most=0.0005 ;;
+    *) most=0.0001 ;;
+    esac
+    is_less "$most" "$(value static_variance "$stem.val")" && bad "$class: what stands still varies"
 done <"$dir/floors"
 classes | grep -v '|[0-9a-z.]*:[0-9.]*|[^|]*$' | while IFS= read -r line; do
     printf '%-26s not asserted, %s\n' "$(field 1 "$line")" "$(field 6 "$line")"
