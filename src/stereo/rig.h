@@ -21,15 +21,9 @@ typedef struct adcgs_stereo_view {
     double fx, fy, cx, cy;
     int w, h;
     const float *pixels; /**< [h][w][4] red, green, blue, and 1 where it is known */
-    const uint8_t *moves; /**< [h][w] adcgs_stereo_moves; NULL: nothing is known of that */
+    const uint8_t *moves; /**< [h][w] 1: it shows what moves; NULL: nothing is known of that */
+    const uint8_t *still; /**< [h][w] 1: it shows what it usually does, and so do those about it; known where moves is */
 } adcgs_stereo_view;
-
-/** What a pixel shows. */
-typedef enum adcgs_stereo_moves {
-    ADCGS_MOVES_NOT,  /**< what it usually shows, and so do those about it */
-    ADCGS_MOVES_NEAR, /**< the same, but one about it does not */
-    ADCGS_MOVES       /**< what moves */
-} adcgs_stereo_moves;
 
 typedef struct adcgs_stereo_camera {
     adcgs_stereo_view view;                /**< pixels: what it shows most of the time */

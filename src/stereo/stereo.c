@@ -123,8 +123,8 @@ static adcgs_status find_still(adcgs_stereo *out, adcgs_stereo_list *list, const
 
 /* ---- What moves ---- */
 
-/** Where a picture is off what is usual, and so is most of what is about, or a line through it. shows: adcgs_stereo_moves. */
-static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t *moves, uint8_t *shows, int part[4])
+/** Where a picture is off what is usual, and so is most of what is about, or a line through it; and where nothing about is. */
+static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t *moves, uint8_t *still, int part[4])
 {
     const int w = c->view.w, h = c->view.h;
     int left = w, right = -1, top = h, bottom = -1, n = 0;
@@ -137,7 +137,7 @@ static void mark(const adcgs_stereo_camera *c, int moment, uint8_t *off, uint8_t
                 for (int a = ADCGS_MAX(x - 1, 0); a <= ADCGS_MIN(x + 1, w - 1); a++)
                     sum += off[b * w + a];
             moves[y * w + x] = sum >= MOST || (off[y * w + x] && sum >= LINE);
-            shows[y * w + x] = (uint8_t)(moves[y * w + x] ? ADCGS_MOVES : sum ? ADCGS_MOVES_NEAR : ADCGS_MOVES_NOT);
+            still[y * w + x] = !sum;
             if (!moves[y * w + x])
                 continue;
             n++;
@@ -159,7 +159,7 @@ typedef struct moment {
     int part[ADCGS_STEREO_CAMERAS][4];
     adcgs_depths depths[ADCGS_STEREO_CAMERAS];
     float *pixels[ADCGS_STEREO_CAMERAS];
-    uint8_t *moves[ADCGS_STEREO_CAMERAS]; /* [3][h][w] whether pixels do, what the view says of that, and scratch */
+    uint8_t *moves[ADCGS_STEREO_CAMERAS]; /* [3][h][w] the view's moves and still, and scratch */
     int n;
 } moment;
 
@@ -178,7 +178,8 @@ static adcgs_status take_moment(moment *o, const adcgs_stereo_rig *rig, int m, a
         adcgs_stereo_rig_take(camera, m, o->pixels[i]);
         o->view[i] = camera->view;
         o->view[i].pixels = o->pixels[i];
-        o->view[i].moves = o->moves[i] + plane;
+        o->view[i].moves = o->moves[i];
+        o->view[i].still = o->moves[i] + plane;
         mark(camera, m, o->moves[i] + 2 * plane, o->moves[i], o->moves[i] + plane, o->part[i]);
     }
     for (int i = 0; i < o->n; i++) /* not every view of many is matched */

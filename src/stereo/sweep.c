@@ -141,7 +141,7 @@ static void sample_row(const field *f, const adcgs_stereo_view *v)
             value[c] = p0 * p[c] + p1 * p[4 + c] + q0 * q[c] + q1 * q[4 + c];
         memcpy(f->other + 4 * x, value, sizeof value);
         f->inside[x] = (uint8_t)inside;
-        f->still[x] = v->moves && v->moves[(int)(w + 0.5f) * v->w + (int)(u + 0.5f)] == ADCGS_MOVES_NOT;
+        f->still[x] = v->still && v->still[(int)(w + 0.5f) * v->w + (int)(u + 0.5f)];
     }
 }
 
@@ -326,7 +326,7 @@ static void field_fill(field *f)
     if (!v->moves)
         return;
     for (int i = 0; i < f->w * f->h; i++)
-        f->mask[i] = v->moves[pixel_of(f, i)] == ADCGS_MOVES;
+        f->mask[i] = v->moves[pixel_of(f, i)];
     set_windows(f, &f->window[1], THIN);
 }
 
