@@ -19,6 +19,12 @@ static adcgs_stereo find(adcgs_pool *pool)
     return s;
 }
 
+static void put_pictures(void)
+{
+    for (int i = 0; i < VIEWS; i++)
+        put_picture(&views[i], views[i].time);
+}
+
 static void what_is_still_is_the_wall(void **state)
 {
     const adcgs_stereo s = found;
@@ -55,7 +61,7 @@ static void what_moves_is_the_square(void **state)
         fast += fabs((double)p->velocity[0] - SPEED) < 0.3 * SPEED && fabs((double)p->velocity[1]) < 0.3 * SPEED;
     }
     print_message("%u of what moves, %u off, %u as fast as they are\n", n, off, fast);
-    assert_true(n > s.n_moving / 2 && astray <= (s.n_moving - n) / 4 && seen >= (s.n_moving - n) * 3 / 4);
+    assert_true(n > s.n_moving / 2 && astray < (s.n_moving - n) / 4 && seen >= (s.n_moving - n) * 3 / 4);
     assert_true(off < n / 10);
     assert_true(fast > n * 2 / 3);
 }
@@ -106,8 +112,7 @@ static void what_comes_and_goes_has_ends(void **state)
     for (int i = 0; i < VIEWS; i++)
         put_picture(&views[i], i % MOMENTS / 2 == 2 ? views[i].time : NAN);
     adcgs_stereo s = find(NULL);
-    for (int i = 0; i < VIEWS; i++)
-        put_picture(&views[i], views[i].time);
+    put_pictures();
     const double first = ending(&s, 4, 0.5, 1.5), second = ending(&s, 5, 1.5, 0.5), stays = ending(&found, 4, 0, 0);
     print_message("right: %.2f, %.2f; of what stays %.2f\n", first, second, stays);
     assert_true(first > 0.8 && second > 0.8);
@@ -123,12 +128,10 @@ static void what_is_thin_is_found(void **state)
     (void)state;
     half_wide = 0.5 * pixel;
     half_high = 0.4;
-    for (int i = 0; i < VIEWS; i++)
-        put_picture(&views[i], views[i].time);
+    put_pictures();
     adcgs_stereo s = find(NULL);
     half_wide = half_high = HALF;
-    for (int i = 0; i < VIEWS; i++)
-        put_picture(&views[i], views[i].time);
+    put_pictures();
     for (uint32_t i = 0; i < s.n_moving; i++) {
         const adcgs_stereo_point *p = &s.moving[i];
         if (p->in_place)
