@@ -190,8 +190,8 @@ is_idle() { sinfo -h -o %T 2>/dev/null | grep -q idle; }
 first_task() { squeue -h -r -t R -o %i | grep '_1$'; }
 is_listed() { first_task >/dev/null; }
 waits() { squeue -h -r -j "$1" -o %r | grep -q BeginTime; }
-# A task that is put back in the queue while it runs goes on by itself, and is not done twice. Slurm has it wait two minutes, which
-# we tell it not to.
+# A task that is put back in the queue while it runs goes on by itself, and is not done twice. Slurm has it wait two minutes; we say
+# seconds, not none: what was put back and what starts in one and the same second look to it as one, "credential revoked".
 requeued()
 {
     touch "$dir/wait"
@@ -203,7 +203,7 @@ requeued()
     scontrol requeue "$job"
     await waits "$job"
     rm "$dir/wait"
-    scontrol update "jobid=$job" StartTime=now
+    scontrol update "jobid=$job" StartTime=now+3
     wait $script || exit 1
     [ "$(grep -c 'lambda-0.02.adcgs --check' "$dir/calls")" -eq 2 ] && [ "$(wc -l <"$dir/calls")" -eq 4 ] ||
         fail "a task that was put back: $(cat "$dir/calls" runs/slurm-1.log)"
