@@ -248,7 +248,7 @@ static void runs_land_on_qualities(void **state)
 /** Goes on to the end by way of every stop: each time what was stored goes into a new trainer. */
 static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
 {
-    static const uint32_t stops[] = { 50, 70, 130, 180, 190 };
+    static const uint32_t stops[] = { 50, 130, 190 };
     adcgs_trainer *t = make(config, real_bytes);
     for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
         uint32_t stop = stops[i];
@@ -271,7 +271,8 @@ static void stopping_changes_nothing(void **state)
 {
     static const double values[] = { [ADCGS_TARGET_SIZE] = 12000, [ADCGS_TARGET_PSNR] = 22 };
     for (int target = ADCGS_TARGET_SIZE; target <= ADCGS_TARGET_PSNR; target++) {
-        const adcgs_train_config config = roomy_config((adcgs_train_target)target, values[target]);
+        adcgs_train_config config = roomy_config((adcgs_train_target)target, values[target]);
+        config.max_anchors = 300; /* bytes need not be met, only be the same */
         adcgs_trainer *through = make(&config, real_bytes), *pieces = run_in_pieces(&config);
         run(through, NULL, NULL);
         assert_true(pieces->lambda == through->lambda && final_bytes(pieces) == final_bytes(through));

@@ -302,13 +302,13 @@ static void draw(adcgs_image *image, const adcgs_lens *lens, int channels)
     const double fold = adcgs_lens_fold(lens);
     expect_good(adcgs_image_alloc(image, lens->width, lens->height, channels, "x", &error));
     for (int j = 0; j < image->height; j++)
-        for (int i = 0; i < image->width; i++)
-            for (int c = 0; c < channels; c++) {
-                double xy[2];
-                const int shown = adcgs_lens_invert(lens, fold, i + 0.5, j + 0.5, xy);
-                assert_true(shown || lens->is_fisheye); /* which looks behind */
+        for (int i = 0; i < image->width; i++) {
+            double xy[2];
+            const int shown = adcgs_lens_invert(lens, fold, i + 0.5, j + 0.5, xy);
+            assert_true(shown || lens->is_fisheye); /* which looks behind */
+            for (int c = 0; c < channels; c++)
                 image->data[(j * image->width + i) * channels + c] = shown ? (float)look(xy[0], xy[1], c) : 0.0f;
-            }
+        }
 }
 
 /** The straightened picture against what the pinhole sees. */
