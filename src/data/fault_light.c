@@ -29,9 +29,9 @@ static double step_between(const adcgs_glance *a, const adcgs_glance *b, adcgs_g
     return fabs(*any) >= STEP && spread <= SPREAD * fabs(*any) ? *any : 0.0;
 }
 
-/** The greatest of one camera's. A flash is a step and a step back. */
+/** The greatest of one camera's. A flash is a step and a step back. steps: [n] of pictures behind one become 1; or NULL. */
 static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n,
-                      adcgs_glance_light light)
+                      adcgs_glance_light light, uint8_t *steps)
 {
     step out = {.size = 0.0};
     double before = 0.0, at = 0.0, behind = 0.0, next;
@@ -43,6 +43,10 @@ static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances
         if (!(fabs(size) > 0.0 && fabs(before) <= ALONE * fabs(size) && back <= ALONE * fabs(size)))
             continue;
         out.count++;
+        if (steps) {
+            steps[i + 1] = 1;
+            steps[i + 2] |= fabs(behind) > back; /* the way back of a flash */
+        }
         if (fabs(size) > fabs(out.size)) {
             out.size = size;
             out.view = order[i + 1];
@@ -90,13 +94,46 @@ adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views
         for (uint32_t c = 0; c < tracks->n; c++) {
             const uint32_t n = tracks->begin[c + 1] - tracks->begin[c];
             if (n >= FEW)
-                steps[found.of++] = find_step(views, glances, tracks->order + tracks->begin[c], n, found.light);
+                steps[found.of++] = find_step(views, glances, tracks->order + tracks->begin[c], n, found.light, NULL);
         }
         judge(&found, views, steps, found.of);
         if (!light || fabs(found.size) > fabs(fault->size))
             *fault = found;
     }
     fault->size = exp(fault->size);
+    adcgs_free(NULL, steps);
+    return ADCGS_OK;
+}
+
+/** Of one camera. steps: [n] zeros. */
+static void even_track(adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint8_t *steps)
+{
+    double stops[3] = {0.0, 0.0, 0.0};
+    for (int light = 0; light < ADCGS_LIGHTS; light++)
+        (void)find_step(views, glances, order, n, (adcgs_glance_light)light, steps);
+    for (uint32_t i = 0; i < n; i++) {
+        double gains[3] = {0.0, 0.0, 0.0};
+        if (steps[i])
+            adcgs_glance_gains(&glances[order[i - 1]], &glances[order[i]], gains);
+        for (int c = 0; c < 3; c++) {
+            stops[c] += isnan(gains[c]) ? 0.0 : gains[c] / log(2.0);
+            views[order[i]].stops[c] = (float)stops[c];
+        }
+    }
+}
+
+adcgs_status adcgs_fault_light_even(adcgs_scene_view *views, const adcgs_tracks *tracks, const adcgs_glance *glances,
+                                    adcgs_error *error)
+{
+    const uint32_t n_views = tracks->n ? tracks->begin[tracks->n] : 0;
+    uint8_t *const steps = adcgs_alloc(NULL, (size_t)n_views + 1, sizeof *steps, error);
+    if (!steps)
+        return adcgs_alloc_status(error);
+    for (uint32_t c = 0; c < tracks->n; c++) {
+        const uint32_t begin = tracks->begin[c], n = tracks->begin[c + 1] - begin;
+        if (n >= FEW)
+            even_track(views, glances, tracks->order + begin, n, steps + begin);
+    }
     adcgs_free(NULL, steps);
     return ADCGS_OK;
 }

@@ -101,3 +101,33 @@ double adcgs_glance_compare(const adcgs_glance *a, const adcgs_glance *b, adcgs_
     *spread = ratios[n / 2];
     return median;
 }
+
+/** Mean colour of a cell whose tints are known, from its four greys and from these. */
+static void colour_of(double colour[3], const adcgs_glance *glance, int cell)
+{
+    const int side = ADCGS_GLANCE_SIDE, at = cell / ADCGS_GLANCE_TINT_SIDE * 2 * side + cell % ADCGS_GLANCE_TINT_SIDE * 2;
+    const float *const grey = glance->cells + at;
+    const double red = exp((double)glance->tints[0][cell]), blue = exp((double)glance->tints[1][cell]);
+    colour[1] = 0.75 * ((double)grey[0] + (double)grey[1] + (double)grey[side] + (double)grey[side + 1]) / (red + 1.0 + blue);
+    colour[0] = red * colour[1];
+    colour[2] = blue * colour[1];
+}
+
+void adcgs_glance_gains(const adcgs_glance *a, const adcgs_glance *b, double gains[3])
+{
+    double ratios[3][ADCGS_GLANCE_TINTS], x[3], y[3];
+    size_t n = 0;
+    for (int i = 0; i < ADCGS_GLANCE_TINTS; i++) {
+        colour_of(x, a, i);
+        colour_of(y, b, i);
+        if (isnan(x[0] + x[2] + y[0] + y[2]))
+            continue;
+        for (int c = 0; c < 3; c++)
+            ratios[c][n] = log(y[c] / x[c]);
+        n++;
+    }
+    for (int c = 0; c < 3; c++) {
+        adcgs_sort(ratios[c], n);
+        gains[c] = n < FEW ? (double)NAN : ratios[c][n / 2];
+    }
+}

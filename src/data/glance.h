@@ -33,4 +33,7 @@ double adcgs_glance_difference(const adcgs_glance *a, const adcgs_glance *b);
  */
 double adcgs_glance_compare(const adcgs_glance *a, const adcgs_glance *b, adcgs_glance_light light, double *spread);
 
+/** How many times as bright each channel of b is as that of a: as adcgs_glance_compare(), medians as logarithms. NaN likewise. */
+void adcgs_glance_gains(const adcgs_glance *a, const adcgs_glance *b, double gains[3]);
+
 #endif

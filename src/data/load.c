@@ -16,6 +16,7 @@
 #include <stdlib.h>
 
 #define COUNTS 0.5f /* share of a pixel that must not be masked for it to count, or must move for it to move */
+#define BURNT 0.98f /* values from here on do not grow with the light */
 
 static adcgs_status check_size(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
 {
@@ -214,6 +215,25 @@ static float *to_planes(const adcgs_image *image)
     return rgb;
 }
 
+/** Divided by what its light has in excess. What was cut off at white is nobody knows what; what was not stays below it. */
+static void even_light(const adcgs_scene_view *view, float *rgb, size_t plane)
+{
+    float by[3];
+    for (int c = 0; c < 3; c++)
+        by[c] = (float)exp2(-(double)view->stops[c]);
+    for (size_t i = 0; i < plane; i++) {
+        int burnt = 0;
+        for (size_t c = 0; c < 3; c++) {
+            float *const value = &rgb[c * plane + i];
+            const float most = fmaxf(*value, 1.0f);
+            burnt |= *value >= BURNT && by[c] < 1.0f;
+            *value = fminf(by[c] * *value, most);
+        }
+        for (size_t c = 0; burnt && c < 3; c++)
+            rgb[c * plane + i] = (float)NAN;
+    }
+}
+
 adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                               adcgs_camera *camera, adcgs_error *error)
 {
@@ -227,6 +247,8 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
         status = shape(scene, view, view->mask ? &mask : NULL, divide, &image, error);
     if (status == ADCGS_OK && !(*rgb = to_planes(&image)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);
+    if (status == ADCGS_OK && (view->stops[0] != 0.0f || view->stops[1] != 0.0f || view->stops[2] != 0.0f))
+        even_light(view, *rgb, (size_t)image.width * (size_t)image.height);
     adcgs_image_free(&image);
     adcgs_image_free(&mask);
     if (status == ADCGS_OK && camera) {

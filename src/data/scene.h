@@ -39,6 +39,7 @@ typedef struct adcgs_scene_view {
     int is_video;
     int64_t frame;        /**< of a video, from 0 */
     adcgs_lens lens;      /**< the picture as it was taken; width 0: by the camera itself */
+    float stops[3];       /**< by which its channels are taken back when it is loaded (light.h) */
 } adcgs_scene_view;
 
 typedef adcgs_points adcgs_scene_points; /**< positions in world units; as the scene gives them */
@@ -86,7 +87,8 @@ adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
 /**
  * Load a view's picture as planar binary32 [3][h][w], alpha composited over scene->background, straightened, box-filtered down
  * by the integer factor `divide` (edge boxes average what they cover; w = ceil(width/divide)). Where its mask is black, pixels
- * are not seen: only others are averaged, and a pixel of which less than half is left has NaN in all channels. Who compares
+ * are not seen: only others are averaged, and a pixel of which less than half is left has NaN in all channels, as has one that is
+ * burnt out in a picture whose light is taken back. Who compares
  * pictures leaves such pixels out (metric.h, adcgs_trainer_loss()). camera, if not NULL, gets the camera at that size. The caller
  * frees *rgb with free(). Any thread may call; frames of a video are best asked for in ascending order by one thread
  * (adcgs_view_runs_make()).

@@ -65,14 +65,26 @@ static void say_copied(const adcgs_cli *cli, const adcgs_scene *scene, const adc
                    short_name(scene, f->path), begins + f->from, so_are(more, f->size - 1));
 }
 
-static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins)
+/** is_evened: it was taken out of the pictures. */
+static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins, int is_evened)
 {
-    static const char *const what[ADCGS_LIGHTS][2] = { { "bright", "exposure" }, { "red beside green", "white balance" },
-                                                       { "blue beside green", "white balance" } };
+    static const char *const what[ADCGS_LIGHTS][2] = {
+        { "bright", "does exposure, or the light, change? (--set even_light)" },
+        { "red beside green", "does white balance, or the light, change? (--set even_light)" },
+        { "blue beside green", "does white balance, or the light, change? (--set even_light)" } };
     char more[64];
-    adcgs_cli_note(cli, "%s: at %.3f s the pictures of %s become %.2f times as %s%s: does %s, or the light, change?",
-                   short_name(scene, f->path), begins + f->to, f->cameras == f->of && f->of > 1 ? "all cameras" : "its camera",
-                   f->size, what[f->light][0], f->cameras == f->of ? "" : others(more, ", and those of", f), what[f->light][1]);
+    adcgs_cli_note(cli, "%s: at %.3f s the pictures of %s become %.2f times as %s%s: %s", short_name(scene, f->path),
+                   begins + f->to, f->cameras == f->of && f->of > 1 ? "all cameras" : "its camera", f->size, what[f->light][0],
+                   f->cameras == f->of ? "" : others(more, ", and those of", f),
+                   is_evened ? "this is taken out of them, as all steps of light" : what[f->light][1]);
+}
+
+void adcgs_enc_tell_evened(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *light)
+{
+    if (light->cameras)
+        say_light(cli, scene, light, 0, 1);
+    else
+        adcgs_cli_note(cli, "%s: even_light: no camera's light steps", scene->directory);
 }
 
 static void say_clocks(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f)
@@ -150,7 +162,7 @@ static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, con
         *told |= COPIED;
     }
     if (!(*told & LIGHT) && adcgs_fault_light(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
-        say_light(cli, whole, &f, begins);
+        say_light(cli, whole, &f, begins, 0);
         *told |= LIGHT;
     }
     if (!(*told & CLOCKS) && adcgs_fault_clocks(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {

@@ -249,6 +249,8 @@ static adcgs_status run(live_run *r, adcgs_error *error)
 adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_error *error)
 {
     live_run r = { .w = w, .job = job };
+    if (job->config.even_light)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--live: even_light looks at all pictures before any is learnt");
     w->is_live = 1;
     r.asked = job->config;
     job->config.own_anchors = 1; /* HEAD says how many there may be before most pictures are taken */

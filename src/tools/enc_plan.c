@@ -245,6 +245,8 @@ static adcgs_status learn(adcgs_enc_watcher *w, adcgs_enc_job *job, const char *
     if (status == ADCGS_OK)
         status = open_scene(job, job->plan, error);
     if (status == ADCGS_OK)
+        status = adcgs_enc_even_light(job, &w->progress, error);
+    if (status == ADCGS_OK)
         status = adcgs_enc_segment_learn(w, job, &spent, error);
     return status == ADCGS_OK ? report(job, w, spent, name, error) : status;
 }

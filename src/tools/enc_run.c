@@ -4,6 +4,7 @@
 
 #include "tools/enc_run.h"
 
+#include "data/light.h"
 #include "io/json.h"
 #include "metric/metric.h"
 #include "model/model_priv.h"
@@ -355,4 +356,25 @@ void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_scene *scene, adcgs_progre
                        scene->directory, side, job->config.scale);
     }
     scene->measured = job->config.scale;
+}
+
+static int looking(void *user, uint32_t done, uint32_t n)
+{
+    if (user)
+        adcgs_progress_show(user, "light     %6u/%u", done, n);
+    return adcgs_interrupted();
+}
+
+adcgs_status adcgs_enc_even_light(const adcgs_enc_job *job, adcgs_progress *progress, adcgs_error *error)
+{
+    const adcgs_pictures_config config = { .memory = job->o->memory, .progress = looking, .user = progress };
+    adcgs_fault found;
+    if (!job->config.even_light)
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_light_even(job->scene, &found, &config, job->pool, error));
+    if (progress)
+        adcgs_progress_clear(progress);
+    if (!job->ranks || !job->ranks->rank)
+        adcgs_enc_tell_evened(job->cli, job->scene, &found);
+    return ADCGS_OK;
 }

@@ -96,6 +96,12 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error);
 
 /**
+ * Of the job's scene, once it is open and before it is cut: its light is evened out where that was asked for, which is said.
+ * Pictures of all of it are looked at. progress: cleared before anything is said, or NULL.
+ */
+adcgs_status adcgs_enc_even_light(const adcgs_enc_job *job, adcgs_progress *progress, adcgs_error *error);
+
+/**
  * Of the job's scene, once it is open, or what is live of it first: pictures are as large as they were asked to be; where nobody
  * asked, not larger than is of use, which is said. progress: cleared before that, or NULL.
  */

@@ -78,6 +78,7 @@ typedef struct adcgs_train_config {
     uint8_t without_rounding; /**< values and weights remain binary32 to the end, for a model that is stored uncompressed */
     uint8_t bf16;          /**< networks that draw are trained in bf16; see adcgs_bf16_check() */
     uint8_t retime_doubled; /**< pictures that come twice are learnt as of the time that they show */
+    uint8_t even_light;    /**< steps of light are taken out of pictures (data/light.h), by who opens the scene */
     uint8_t stereo;        /**< moments at most of which pictures of cameras that stay are matched, for first anchors; 0: none */
 } adcgs_train_config;
 

@@ -50,6 +50,7 @@ const adcgs_setting adcgs_settings[] = {
     RUN(learn_motion, Q, 0, 100, ALL(1), "learning rates of F_omega, F_varpi and the time table, times this"),
     RUN(learn_entropy, B | Q, 0, 100, ALL(1), "learning rates of quantiser steps, priors and entropy networks, times this"),
     RUN(retime_doubled, Q, 0, 1, BUT_PAPER(1, 0), "1: a picture that is the one before once more is learnt as of its time"),
+    RUN(even_light, Q, 0, 1, ALL(0), "1: where the light of a camera's pictures steps, those behind are learnt in that before"),
     RUN(scale, S | Q | M, 1, 64, ALL(1), "the pictures' width and height are divided by this"),
 
     /* Rate in the loss: Balle et al. 2017, End-to-end optimized image compression, ICLR. Choice of levels by rate and distortion:

@@ -16,7 +16,7 @@ film()
 # look NAME: learn next to nothing from it; what the encoder says is in $dir/NAME.err.
 look()
 {
-    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set stereo=${moments:-0} -n 10 --threads 2 ${quiet:-} >"$dir/out" \
+    ./adcgs-enc "$dir/$1" -o "$dir/$1.adcgs" --preset draft --set stereo=${moments:-0} -n 10 --threads 2 ${quiet:-} ${even:-} >"$dir/out" \
         2>"$dir/$1.err" ||
         { bad "adcgs-enc of $1"; cat "$dir/$1.err"; }
 }
@@ -89,7 +89,21 @@ film poses --scene cross20
 silent poses
 film pose --scene cross20 --spoil pose=1
 says pose 'pose: what a camera shows lies 1.[0-9] pixels beside where others should have it: are poses, or lenses, off?'
-quiet=-q moments=0
+# Steps that are taken out of the pictures are told once, as such; where there is none that is said, and nothing else is.
+moments=0
+evened()
+{
+    even=--set=even_light=1
+    look "$1"
+    even=
+    [ "$(grep -c -- "$2" "$dir/$1.err")" -eq 1 ] || { bad "not once \"$2\" of $1"; cat "$dir/$1.err"; }
+    grep "does exposure\|does white" "$dir/$1.err" && bad "what was evened in $1 is a doubt"
+    return 0
+}
+evened step 'the pictures of all cameras become 0.87 times as bright: this is taken out of them'
+evened tint 'the pictures of all cameras become 0.87 times as blue beside green: this is taken out of them'
+evened sync 'sync: even_light: no camera.s light steps'
+quiet=-q
 look step
 [ ! -s "$dir/step.err" ] || { bad "--quiet is not quiet"; cat "$dir/step.err"; }
 [ $failed -eq 0 ]

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
 # The failures that are looked for, to be read with `.`: a line each, in fields with | between:
 #   1 CLASS     its name, without commas: a column of stability.csv
-#   2 OPTIONS   of adcgs-demo-scene, with @ for the strength; where that is 0, a --spoil, --noise or --aside of it is left out
+#   2 OPTIONS   of adcgs-demo-scene, with @ for the strength; where that is 0, a --spoil, --noise or --aside of it is left out;
+#               behind " // " those of adcgs-enc
 #   3 STRENGTHS from mild to hard; the first is what the others are measured against
 #   4 UNIT      of the strength
 #   5 MEASURE   what breaks: "moving", PSNR of what moves; "all", PSNR; "fitted", PSNR after gains and black levels are fitted;
@@ -28,7 +29,9 @@ sensor noise|--scene cross20 --noise @|0 6 16|levels of 255|all|16:27.5|noise is
 exposure|--scene cross20 --spoil exposure=@|0 0.2 0.8|stops between cameras|fitted|0.2:28.5|gains of cameras are fitted in training; without them the mean camera is not the true one, hence fitted PSNR
 white balance|--scene cross20 --spoil white=@|0 0.2 0.8|stops between cameras|fitted|0.8:26|as exposure, a gain per channel
 step of light|--scene cross20 --spoil step=@|0 0.2 0.8|stops, half of the time|fitted|none: fails from here on, all has to change at one moment|gains are of cameras, not of moments: all anchors have to darken at once, which costs sharpness, and the truth of tests does not darken
+step of light evened out|--scene cross20 --spoil step=@ // --set even_light=1|0 0.2 0.8|stops, half of the time|fitted|0.8:29.5|pictures behind it are learnt as if it had not been
 step of tint|--scene cross20 --spoil tint=@|0 0.2 0.8|stops between red and blue, half of the time|fitted|0.2:29.5|as a step of light: all anchors have to change at one moment, and the truth of tests does not
+step of tint evened out|--scene cross20 --spoil tint=@ // --set even_light=1|0 0.2 0.8|stops between red and blue, half of the time|fitted|0.8:29|as a step of light
 pose of cameras|--scene cross20 --spoil pose=@|0 0.3 1 3|pixels of 96|all|0.3:28|poses are taken as they are: beyond a pixel rays of a point meet nowhere, and views between the cameras are haze
 pose of pictures|--scene cross20 --spoil shake=@|0 0.3 1 3|pixels of 96|all|0.3:25|no camera stays, so nothing is matched in the way of cameras that do, and errors average to a blur
 one wrong pose|--scene cross20 --spoil wrongpose=@|0 2 20|degrees, one of 12 cameras|all|20:26.5|eleven cameras outvote it, and clutter before it alone pays for its pictures; the encoder names it

@@ -19,8 +19,12 @@ options_of()
     fi
 }
 
-# run_name OPTIONS: of a scene's folder; scenes made alike are one.
-run_name() { printf '%s\n' "$1" | sed 's/--scene //; s/ --/-/g; s/ /-/g'; }
+# run_name OPTIONS: of a run; runs made alike are one.
+run_name() { printf '%s\n' "$1" | sed 's/--scene //; s| // --set |-|; s/ --/-/g; s/ /-/g'; }
+
+# scene_of OPTIONS, learn_of OPTIONS: those of adcgs-demo-scene, and those of adcgs-enc.
+scene_of() { printf '%s\n' "${1%% // *}"; }
+learn_of() { case $1 in *" // "*) printf '%s\n' "${1#* // }" ;; esac; }
 
 # value NAME FILE: of a report as JSON, or of a whole evaluation, not of a view; nothing where it is null.
 value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
@@ -28,16 +32,17 @@ value() { sed -n "s/^  \"$1\": \([-0-9.e]\{1,\}\),*$/\1/p" "$2"; }
 # run OPTIONS SEED: unless it is there. What the encoder says is kept without its progress. A refusal is a result, too.
 run()
 {
-    scene=$stability/scenes/$(run_name "$1")
+    scene=$stability/scenes/$(run_name "$(scene_of "$1")")
     stem=$stability/runs/$(run_name "$1")-$2
     [ ! -e "$stem.done" ] || return 0
     mkdir -p "$stability/scenes" "$stability/runs"
     echo "stability: $(run_name "$1"), seed $2" >&2
     # shellcheck disable=SC2086
-    [ -e "$scene/done" ] || { ./adcgs-demo-scene $common $1 -o "$scene" && : >"$scene/done"; } || return 1
+    [ -e "$scene/done" ] || { ./adcgs-demo-scene $common $(scene_of "$1") -o "$scene" && : >"$scene/done"; } || return 1
     code=0
-    ./adcgs-enc "$scene" -o "$stem.adcgs" --threads 1 --seed "$2" -n "$iterations" --json --log "$stem.log" >"$stem.json" \
-        2>"$stem.err" || code=$?
+    # shellcheck disable=SC2046
+    ./adcgs-enc "$scene" -o "$stem.adcgs" --threads 1 --seed "$2" -n "$iterations" --json --log "$stem.log" $(learn_of "$1") \
+        >"$stem.json" 2>"$stem.err" || code=$?
     grep -v '^adcgs-enc: [a-z]*  *[0-9]*\/[0-9]' "$stem.err" >"$stem.said"
     if [ $code -eq 0 ]; then
         rm -rf "$stem.views"

@@ -125,6 +125,35 @@ static void test_linear(void **state)
     free(rgb);
 }
 
+/** Light is taken back by stops of each channel; what was cut off at white is not known, what was not does not go beyond. */
+static void test_stops(void **state)
+{
+    static const float stops[2][3] = {{1.0f, 0.5f, 2.0f}, {-1.0f, 0.0f, -4.0f}};
+    int known = 0, kept = 0, cut = 0;
+    put_levels("even.png", 8, 3, 15);
+    open_frames(FRAMES(FRAME("even.png") "," FRAME("even.png")));
+    float *const taken = load(0);
+    for (int s = 0; s < 2; s++) {
+        memcpy(scene->views[ADCGS_SPLIT_TRAIN][0].stops, stops[s], sizeof stops[s]);
+        float *const rgb = load(0);
+        for (int i = 0; i < PIXELS; i++) {
+            const int burnt = !s && (taken[i] >= 0.98f || taken[PIXELS + i] >= 0.98f || taken[2 * PIXELS + i] >= 0.98f);
+            known += !burnt && !s;
+            for (int c = 0; c < 3; c++) {
+                const double even = (double)taken[c * PIXELS + i] * pow(2.0, -(double)stops[s][c]);
+                assert_true(!isnan(rgb[c * PIXELS + i]) == !burnt);
+                kept += s && even <= 1.0;
+                cut += s && even > 1.0;
+                if (!burnt)
+                    expect_near(rgb[c * PIXELS + i], fmin(even, 1.0));
+            }
+        }
+        free(rgb);
+    }
+    assert_true(known > 0 && known < PIXELS && kept > 0 && cut > 0);
+    free(taken);
+}
+
 /** The curve is for straight colours, and the background comes last, as with every other picture. */
 static void test_linear_alpha(void **state)
 {
@@ -231,6 +260,7 @@ static void test_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_stops, close_scene),
         cmocka_unit_test_teardown(test_linear, close_scene),   cmocka_unit_test_teardown(test_linear_alpha, close_scene),
         cmocka_unit_test_teardown(test_labelled, close_scene), cmocka_unit_test_teardown(test_sixteen, close_scene),
         cmocka_unit_test_teardown(test_sixteen_alpha, close_scene), cmocka_unit_test(test_refused),

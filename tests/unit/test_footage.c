@@ -432,6 +432,77 @@ static void the_greatest_step_is_told(void **state)
     assert_true(find('l').light == ADCGS_LIGHT_REDDER && find('l').cameras == 3);
 }
 
+/* ---- Light evened out ---- */
+
+static void even(void)
+{
+    adcgs_tracks tracks;
+    assert_int_equal(adcgs_tracks_find(&tracks, film.views, film.n, &error), ADCGS_OK);
+    for (uint32_t i = 0; i < film.n; i++) /* whatever was there before */
+        film.views[i].stops[i % 3] = 7.0f;
+    assert_int_equal(adcgs_fault_light_even(film.views, &tracks, film.glances, &error), ADCGS_OK);
+    adcgs_tracks_clear(&tracks);
+}
+
+/* What film_light() made, of which `cameras` have it from `at` on; gains: logarithms by which their channels are taken back. */
+static void expect_even(int at, const double gains[3], int cameras)
+{
+    even();
+    for (int i = 0; i < 3 * 16; i++)
+        for (int c = 0; c < 3; c++) {
+            const double expected = i / 3 >= at && i % 3 < cameras ? gains[c] / log(2.0) : 0.0;
+            assert_true(fabs((double)film.views[i].stops[c] - expected) < 1e-4);
+        }
+}
+
+/* What is brighter is so in all channels; what is redder and as bright is redder, and all else is darker for it. */
+static void steps_of_light_are_evened(void **state)
+{
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double size = sign * 0.3, all_alike[3] = {size, size, size};
+        for (int cameras = 0; cameras <= 3; cameras++) {
+            film_light(ADCGS_LIGHT_BRIGHTER, size, 8, 99, 0, cameras);
+            expect_even(8, all_alike, cameras);
+        }
+        film_light(ADCGS_LIGHT_BRIGHTER, size, 8, 9, 0, 3); /* a flash is back to what was before */
+        even();
+        for (int i = 0; i < 3 * 16; i++)
+            assert_true(fabs((double)film.views[i].stops[1] * log(2.0) - (i / 3 == 8 ? size : 0.0)) < 1e-4);
+        for (int light = ADCGS_LIGHT_REDDER; light <= ADCGS_LIGHT_BLUER; light++) {
+            film_light((adcgs_glance_light)light, size, 8, 99, 0, 3);
+            for (uint32_t i = 0; i < film.n; i++) /* of one tint, so that it can be said */
+                for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
+                    film.glances[i].tints[0][k] = film.glances[i].tints[1][k] = 0.0f;
+            for (uint32_t i = 24; i < film.n; i++)
+                for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
+                    film.glances[i].tints[light - ADCGS_LIGHT_REDDER][k] = (float)size;
+            const double green = log(3.0 / (2.0 + exp(size)));
+            double gains[3] = {green, green, green};
+            gains[light == ADCGS_LIGHT_REDDER ? 0 : 2] += size;
+            expect_even(8, gains, 3);
+        }
+    }
+}
+
+/* A second step is from the first on; where too little is lit to say, and of a camera of few pictures, nothing is done. */
+static void what_is_evened_adds_up(void **state)
+{
+    (void)state;
+    film_light(ADCGS_LIGHT_BRIGHTER, 0.3, 4, 99, 0, 3);
+    for (uint32_t i = 36; i < film.n; i++)
+        for (int k = 0; k < ADCGS_GLANCE_CELLS; k++)
+            film.glances[i].cells[k] *= (float)exp(-0.5);
+    even();
+    for (int i = 0; i < 3 * 16; i++)
+        assert_true(fabs((double)film.views[i].stops[0] * log(2.0) - (i / 3 < 4 ? 0.0 : i / 3 < 12 ? 0.3 : -0.2)) < 1e-4);
+    film_light(ADCGS_LIGHT_BRIGHTER, 0.3, 8, 99, 0, 3);
+    for (uint32_t i = 0; i < film.n; i++)
+        for (int k = 0; k < ADCGS_GLANCE_TINTS; k++)
+            film.glances[i].tints[0][k] = NAN;
+    expect_even(8, (const double[3]){0.0, 0.0, 0.0}, 3);
+}
+
 /* ---- Clocks ---- */
 
 /* What jerks at moments that are the same for all cameras but some, which are late; jerks: how many of them stand out. */
@@ -578,6 +649,7 @@ int main(void)
         cmocka_unit_test(what_turns_may_rest),                cmocka_unit_test(doubled_pictures_of_one_that_moves),
         cmocka_unit_test(pictures_of_others_are_found),       cmocka_unit_test(what_all_see_is_no_copy),
         cmocka_unit_test(steps_of_light_are_found),           cmocka_unit_test(what_moves_is_no_light),
+        cmocka_unit_test(steps_of_light_are_evened),          cmocka_unit_test(what_is_evened_adds_up),
         cmocka_unit_test(light_that_changes_all_the_time),    cmocka_unit_test(the_greatest_step_is_told),
         cmocka_unit_test(clocks_that_are_off_are_found),      cmocka_unit_test(too_little_tells_no_clock),
         cmocka_unit_test(what_repeats_tells_no_clock),        cmocka_unit_test(what_moves_as_it_likes_has_no_fault),
