@@ -204,8 +204,10 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
         status = print_json(r, &x, error);
     else if (status == ADCGS_OK && !*cli->quiet)
         print_text(r, &x);
+    /* Views for testing are as they were taken: of other light than those that it was evened out of. */
+    const int tells = x.split != ADCGS_SPLIT_TRAIN && !r->config->even_light;
     if (status == ADCGS_OK)
-        adcgs_enc_doubt(cli, decoder, r->scene, x.split == ADCGS_SPLIT_TRAIN ? (double)NAN : x.quality.psnr, r->file);
+        adcgs_enc_doubt(cli, decoder, r->scene, tells ? x.quality.psnr : (double)NAN, r->file);
     if (status == ADCGS_OK && !x.target.met)
         say_missed(cli, r, &x.target);
     *met = status != ADCGS_OK || x.target.met;
