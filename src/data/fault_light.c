@@ -29,23 +29,23 @@ static double step_between(const adcgs_glance *a, const adcgs_glance *b, adcgs_g
     return fabs(*any) >= STEP && spread <= SPREAD * fabs(*any) ? *any : 0.0;
 }
 
-/** The greatest of one camera's. A flash is a step and a step back. steps: [n] of pictures behind one become 1; or NULL. */
+/** The greatest of one camera's. A flash is a step and a step back. behind: [views] of those behind one become 1; or NULL. */
 static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n,
-                      adcgs_glance_light light, uint8_t *steps)
+                      adcgs_glance_light light, uint8_t *behind)
 {
     step out = {.size = 0.0};
-    double before = 0.0, at = 0.0, behind = 0.0, next;
+    double before = 0.0, at = 0.0, after = 0.0, next;
     (void)step_between(&glances[order[0]], &glances[order[1]], light, &before);
     double size = step_between(&glances[order[1]], &glances[order[2]], light, &at);
-    for (uint32_t i = 1; i + 2 < n; i++, before = at, at = behind, size = next) {
-        next = step_between(&glances[order[i + 1]], &glances[order[i + 2]], light, &behind);
-        const double back = fmin(fabs(behind), fabs(behind + at));
+    for (uint32_t i = 1; i + 2 < n; i++, before = at, at = after, size = next) {
+        next = step_between(&glances[order[i + 1]], &glances[order[i + 2]], light, &after);
+        const double back = fmin(fabs(after), fabs(after + at));
         if (!(fabs(size) > 0.0 && fabs(before) <= ALONE * fabs(size) && back <= ALONE * fabs(size)))
             continue;
         out.count++;
-        if (steps) {
-            steps[i + 1] = 1;
-            steps[i + 2] |= fabs(behind) > back; /* the way back of a flash */
+        if (behind) {
+            behind[order[i + 1]] = 1;
+            behind[order[i + 2]] |= fabs(after) > back; /* the way back of a flash */
         }
         if (fabs(size) > fabs(out.size)) {
             out.size = size;
@@ -82,7 +82,7 @@ static void judge(adcgs_fault *f, const adcgs_scene_view *views, const step *ste
     }
 }
 
-adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+adcgs_status adcgs_fault_light(adcgs_fault *fault, uint8_t *behind, const adcgs_scene_view *views, const adcgs_tracks *tracks,
                                const adcgs_glance *glances, adcgs_error *error)
 {
     step *const steps = adcgs_alloc(NULL, (size_t)tracks->n + 1, sizeof *steps, error);
@@ -94,46 +94,13 @@ adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views
         for (uint32_t c = 0; c < tracks->n; c++) {
             const uint32_t n = tracks->begin[c + 1] - tracks->begin[c];
             if (n >= FEW)
-                steps[found.of++] = find_step(views, glances, tracks->order + tracks->begin[c], n, found.light, NULL);
+                steps[found.of++] = find_step(views, glances, tracks->order + tracks->begin[c], n, found.light, behind);
         }
         judge(&found, views, steps, found.of);
         if (!light || fabs(found.size) > fabs(fault->size))
             *fault = found;
     }
     fault->size = exp(fault->size);
-    adcgs_free(NULL, steps);
-    return ADCGS_OK;
-}
-
-/** Of one camera. steps: [n] zeros. */
-static void even_track(adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint8_t *steps)
-{
-    double stops[3] = {0.0, 0.0, 0.0};
-    for (int light = 0; light < ADCGS_LIGHTS; light++)
-        (void)find_step(views, glances, order, n, (adcgs_glance_light)light, steps);
-    for (uint32_t i = 0; i < n; i++) {
-        double gains[3] = {0.0, 0.0, 0.0};
-        if (steps[i])
-            adcgs_glance_gains(&glances[order[i - 1]], &glances[order[i]], gains);
-        for (int c = 0; c < 3; c++) {
-            stops[c] += isnan(gains[c]) ? 0.0 : gains[c] / log(2.0);
-            views[order[i]].stops[c] = (float)stops[c];
-        }
-    }
-}
-
-adcgs_status adcgs_fault_light_even(adcgs_scene_view *views, const adcgs_tracks *tracks, const adcgs_glance *glances,
-                                    adcgs_error *error)
-{
-    const uint32_t n_views = tracks->n ? tracks->begin[tracks->n] : 0;
-    uint8_t *const steps = adcgs_alloc(NULL, (size_t)n_views + 1, sizeof *steps, error);
-    if (!steps)
-        return adcgs_alloc_status(error);
-    for (uint32_t c = 0; c < tracks->n; c++) {
-        const uint32_t begin = tracks->begin[c], n = tracks->begin[c + 1] - begin;
-        if (n >= FEW)
-            even_track(views, glances, tracks->order + begin, n, steps + begin);
-    }
     adcgs_free(NULL, steps);
     return ADCGS_OK;
 }

@@ -43,17 +43,11 @@ adcgs_status adcgs_fault_copied(adcgs_fault *fault, const adcgs_scene_view *view
 
 /**
  * A camera's pictures are all brighter or darker, or redder or bluer, by one factor from one moment on, or at one moment. size:
- * the factor. cameras are those that have one at the same time.
+ * the factor. cameras are those that have one at the same time. behind: [views] of those behind any such step of their camera
+ * become 1, at both ends of a flash; others stay as they are; or NULL.
  */
-adcgs_status adcgs_fault_light(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,
+adcgs_status adcgs_fault_light(adcgs_fault *fault, uint8_t *behind, const adcgs_scene_view *views, const adcgs_tracks *tracks,
                                const adcgs_glance *glances, adcgs_error *error);
-
-/**
- * Set stops of views such that each camera's pictures behind such steps are as bright, and of the same tint, as its first. Views
- * of cameras without any get zeros.
- */
-adcgs_status adcgs_fault_light_even(adcgs_scene_view *views, const adcgs_tracks *tracks, const adcgs_glance *glances,
-                                    adcgs_error *error);
 
 /** Changes of a camera's pictures come as those of all others do, but at other moments. size: seconds that it is late. */
 adcgs_status adcgs_fault_clocks(adcgs_fault *fault, const adcgs_scene_view *views, const adcgs_tracks *tracks,

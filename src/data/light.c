@@ -4,6 +4,8 @@
 
 #include "data/light.h"
 
+#include <math.h>
+
 enum { SIDE = 2 * ADCGS_GLANCE_SIDE }; /* of pictures at a glance: each cell has some pixels */
 
 /** As few pixels as will do. */
@@ -31,6 +33,27 @@ static adcgs_status take_glances(adcgs_glance *glances, const adcgs_scene *scene
     return status;
 }
 
+static void add_up_track(adcgs_scene_view *views, const uint8_t *behind, const uint32_t *order, uint32_t n,
+                         const adcgs_glance *glances)
+{
+    double stops[3] = {0.0, 0.0, 0.0};
+    for (uint32_t i = 0; i < n; i++) {
+        double gains[3] = {0.0, 0.0, 0.0};
+        if (behind[order[i]])
+            adcgs_glance_gains(&glances[order[i - 1]], &glances[order[i]], gains);
+        for (int c = 0; c < 3; c++) {
+            stops[c] += isnan(gains[c]) ? 0.0 : gains[c] / log(2.0);
+            views[order[i]].stops[c] = (float)stops[c];
+        }
+    }
+}
+
+void adcgs_light_add_up(adcgs_scene_view *views, const uint8_t *behind, const adcgs_tracks *tracks, const adcgs_glance *glances)
+{
+    for (uint32_t c = 0; c < tracks->n; c++)
+        add_up_track(views, behind, tracks->order + tracks->begin[c], tracks->begin[c + 1] - tracks->begin[c], glances);
+}
+
 adcgs_status adcgs_light_even(adcgs_scene *scene, adcgs_fault *found, const adcgs_pictures_config *config, adcgs_pool *pool,
                               adcgs_error *error)
 {
@@ -41,17 +64,16 @@ adcgs_status adcgs_light_even(adcgs_scene *scene, adcgs_fault *found, const adcg
     for (uint32_t i = 0; i < n; i++)
         memset(views[i].stops, 0, sizeof views[i].stops);
     adcgs_glance *const glances = adcgs_alloc(NULL, n, sizeof *glances, error);
-    if (!glances)
-        return adcgs_alloc_status(error);
-    adcgs_status status = take_glances(glances, scene, config, pool, error);
+    uint8_t *const behind = adcgs_alloc(NULL, n, sizeof *behind, error);
+    adcgs_status status = glances && behind ? take_glances(glances, scene, config, pool, error) : adcgs_alloc_status(error);
     if (status == ADCGS_OK)
         status = adcgs_tracks_find(&tracks, views, n, error);
     if (status == ADCGS_OK) {
-        status = adcgs_fault_light(found, views, &tracks, glances, error);
-        if (status == ADCGS_OK && found->cameras)
-            status = adcgs_fault_light_even(views, &tracks, glances, error);
+        status = adcgs_fault_light(found, behind, views, &tracks, glances, error);
+        adcgs_light_add_up(views, behind, &tracks, glances);
         adcgs_tracks_clear(&tracks);
     }
+    adcgs_free(NULL, behind);
     adcgs_free(NULL, glances);
     return status;
 }

@@ -12,6 +12,12 @@
 #include "data/pictures.h"
 
 /**
+ * Set stops of views: what the light of a camera's pictures gains at those that are behind a step (adcgs_fault_light()), added up
+ * from its first, which has none.
+ */
+void adcgs_light_add_up(adcgs_scene_view *views, const uint8_t *behind, const adcgs_tracks *tracks, const adcgs_glance *glances);
+
+/**
  * Set stops of a scene's training views: zeros, but for those behind a step of a camera's light (faults.h), which become as its
  * first pictures are. All pictures are loaded for it, small, and forgotten. found: the step that most cameras have, for who tells
  * of it; its cameras are 0 where there is none. config: who is told of progress, and how much memory there is.

@@ -16,7 +16,6 @@
 #include <stdlib.h>
 
 #define COUNTS 0.5f /* share of a pixel that must not be masked for it to count, or must move for it to move */
-#define BURNT 0.98f /* values from here on do not grow with the light */
 
 static adcgs_status check_size(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
 {
@@ -226,7 +225,7 @@ static void even_light(const adcgs_scene_view *view, float *rgb, size_t plane)
         for (size_t c = 0; c < 3; c++) {
             float *const value = &rgb[c * plane + i];
             const float most = fmaxf(*value, 1.0f);
-            burnt |= *value >= BURNT && by[c] < 1.0f;
+            burnt |= *value >= ADCGS_BURNT && by[c] < 1.0f;
             *value = fminf(by[c] * *value, most);
         }
         for (size_t c = 0; burnt && c < 3; c++)

@@ -30,6 +30,9 @@ typedef enum adcgs_split { ADCGS_SPLIT_TRAIN, ADCGS_SPLIT_VAL, ADCGS_SPLIT_TEST,
 /** World axes, right-handed: the codes of adcgs_stream. */
 typedef enum adcgs_axes { ADCGS_AXES_UNKNOWN, ADCGS_AXES_Y_UP, ADCGS_AXES_Z_UP, ADCGS_AXES_Y_DOWN } adcgs_axes;
 
+/** Values of a picture from here on do not grow with the light. */
+#define ADCGS_BURNT 0.98f
+
 typedef struct adcgs_scene_view {
     adcgs_camera camera;  /**< at the image's own size, straightened; name is the file's stem */
     double time;          /**< seconds */

@@ -68,15 +68,14 @@ static void say_copied(const adcgs_cli *cli, const adcgs_scene *scene, const adc
 /** is_evened: it was taken out of the pictures. */
 static void say_light(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *f, double begins, int is_evened)
 {
-    static const char *const what[ADCGS_LIGHTS][2] = {
-        { "bright", "does exposure, or the light, change? (--set even_light)" },
-        { "red beside green", "does white balance, or the light, change? (--set even_light)" },
-        { "blue beside green", "does white balance, or the light, change? (--set even_light)" } };
-    char more[64];
+    static const char *const what[ADCGS_LIGHTS][2] = { { "bright", "exposure" }, { "red beside green", "white balance" },
+                                                       { "blue beside green", "white balance" } };
+    char more[64], question[80];
+    snprintf(question, sizeof question, "does %s, or the light, change? (--set even_light)", what[f->light][1]);
     adcgs_cli_note(cli, "%s: at %.3f s the pictures of %s become %.2f times as %s%s: %s", short_name(scene, f->path),
                    begins + f->to, f->cameras == f->of && f->of > 1 ? "all cameras" : "its camera", f->size, what[f->light][0],
                    f->cameras == f->of ? "" : others(more, ", and those of", f),
-                   is_evened ? "this is taken out of them, as all steps of light" : what[f->light][1]);
+                   is_evened ? "this is taken out of them, as all steps of light" : question);
 }
 
 void adcgs_enc_tell_evened(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *light)
@@ -161,7 +160,7 @@ static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, con
         say_copied(cli, whole, &f, begins);
         *told |= COPIED;
     }
-    if (!(*told & LIGHT) && adcgs_fault_light(&f, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
+    if (!(*told & LIGHT) && adcgs_fault_light(&f, NULL, views, tracks, glances, &error) == ADCGS_OK && f.cameras) {
         say_light(cli, whole, &f, begins, 0);
         *told |= LIGHT;
     }

@@ -360,8 +360,7 @@ void adcgs_enc_reduce_large(adcgs_enc_job *job, adcgs_scene *scene, adcgs_progre
 
 static int looking(void *user, uint32_t done, uint32_t n)
 {
-    if (user)
-        adcgs_progress_show(user, "light     %6u/%u", done, n);
+    adcgs_progress_show(user, "light     %6u/%u", done, n);
     return adcgs_interrupted();
 }
 
@@ -372,8 +371,7 @@ adcgs_status adcgs_enc_even_light(const adcgs_enc_job *job, adcgs_progress *prog
     if (!job->config.even_light)
         return ADCGS_OK;
     ADCGS_TRY(adcgs_light_even(job->scene, &found, &config, job->pool, error));
-    if (progress)
-        adcgs_progress_clear(progress);
+    adcgs_progress_clear(progress);
     if (!job->ranks || !job->ranks->rank)
         adcgs_enc_tell_evened(job->cli, job->scene, &found);
     return ADCGS_OK;

@@ -97,7 +97,7 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
 
 /**
  * Of the job's scene, once it is open and before it is cut: its light is evened out where that was asked for, which is said.
- * Pictures of all of it are looked at. progress: cleared before anything is said, or NULL.
+ * Pictures of all of it are looked at. progress: cleared before anything is said.
  */
 adcgs_status adcgs_enc_even_light(const adcgs_enc_job *job, adcgs_progress *progress, adcgs_error *error);
 

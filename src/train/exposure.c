@@ -9,10 +9,9 @@
 enum { PICTURES_LEAST = 4 };
 /*
  * KEEP: of the sums, from one picture of a camera to its next. DOUBT: logarithm of what gains may be off where cameras agree.
- * BURNT: values from here on do not grow with the light.
  */
 static const double KEEP = 0.9, DOUBT = 0.03;
-static const float BURNT = 0.98f, GAIN_MOST = 4;
+static const float GAIN_MOST = 4;
 
 adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *views, uint32_t n_views, int still,
                                    adcgs_error *error)
@@ -50,7 +49,7 @@ void adcgs_exposure_sum(const adcgs_exposure *e, uint32_t view, const float *dra
     for (size_t c = 0; c < 3; c++, drawn += plane, taken += plane) {
         double cross = 0, square = 0;
         for (size_t i = 0; i < plane; i++)
-            if (taken[i] < BURNT) {
+            if (taken[i] < ADCGS_BURNT) {
                 cross += (double)drawn[i] * (double)(taken[i] - camera->black[c]);
                 square += (double)drawn[i] * (double)drawn[i];
             }

@@ -95,7 +95,6 @@ evened()
 {
     even=--set=even_light=1
     look "$1"
-    even=
     [ "$(grep -c -- "$2" "$dir/$1.err")" -eq 1 ] || { bad "not once \"$2\" of $1"; cat "$dir/$1.err"; }
     grep "does exposure\|does white" "$dir/$1.err" && bad "what was evened in $1 is a doubt"
     return 0
@@ -103,6 +102,17 @@ evened()
 evened step 'the pictures of all cameras become 0.87 times as bright: this is taken out of them'
 evened tint 'the pictures of all cameras become 0.87 times as blue beside green: this is taken out of them'
 evened sync 'sync: even_light: no camera.s light steps'
+even=
+# Segments are cut of a scene whose light is even: it is told once, and the same.
+./adcgs-enc "$dir/step" -o "$dir/cut.adcgs" --preset draft --set stereo=0,even_light=1 --segment 0.3 -n 10 --threads 2 2>"$dir/cut.err" ||
+    { bad "segments of even light"; cat "$dir/cut.err"; }
+[ "$(grep -c 'this is taken out of them' "$dir/cut.err")" -eq 1 ] || { bad "not told once of segments"; cat "$dir/cut.err"; }
+grep "does exposure\|does white" "$dir/cut.err" && bad "what was evened before it was cut is a doubt"
+# What is live has no pictures yet.
+code=0
+./adcgs-enc --live "$dir/step" -o "$dir/live.adcgs" --set even_light=1 2>"$dir/live.err" || code=$?
+{ [ $code -eq 2 ] && grep -q 'live: even_light looks at all pictures' "$dir/live.err" && [ ! -e "$dir/live.adcgs" ]; } ||
+    { bad "even light of what is live: $code"; cat "$dir/live.err"; }
 quiet=-q
 look step
 [ ! -s "$dir/step.err" ] || { bad "--quiet is not quiet"; cat "$dir/step.err"; }

@@ -248,7 +248,7 @@ static void runs_land_on_qualities(void **state)
 /** Goes on to the end by way of every stop: each time what was stored goes into a new trainer. */
 static adcgs_trainer *run_in_pieces(const adcgs_train_config *config)
 {
-    static const uint32_t stops[] = { 50, 130, 190 };
+    static const uint32_t stops[] = { 50, 70, 130, 180, 190 };
     adcgs_trainer *t = make(config, real_bytes);
     for (size_t i = 0; i < ADCGS_COUNTOF(stops); i++) {
         uint32_t stop = stops[i];

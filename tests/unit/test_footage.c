@@ -4,6 +4,7 @@
  * likes, and of next to nothing, nothing is said.
  */
 #include "data/faults.h"
+#include "data/light.h"
 #include "train/doubled.h"
 
 #include <math.h>
@@ -67,7 +68,7 @@ static adcgs_fault find(char which)
     case 'g': status = adcgs_fault_gaps(&fault, &scene, &error); break;
     case 'd': adcgs_fault_doubled(&fault, NULL, film.views, &tracks, film.glances); break;
     case 'x': status = adcgs_fault_copied(&fault, film.views, &tracks, film.glances, &error); break;
-    case 'l': status = adcgs_fault_light(&fault, film.views, &tracks, film.glances, &error); break;
+    case 'l': status = adcgs_fault_light(&fault, NULL, film.views, &tracks, film.glances, &error); break;
     default: status = adcgs_fault_clocks(&fault, film.views, &tracks, film.glances, &error); break;
     }
     assert_int_equal(status, ADCGS_OK);
@@ -436,11 +437,14 @@ static void the_greatest_step_is_told(void **state)
 
 static void even(void)
 {
+    uint8_t behind[MOST] = {0};
+    adcgs_fault fault;
     adcgs_tracks tracks;
     assert_int_equal(adcgs_tracks_find(&tracks, film.views, film.n, &error), ADCGS_OK);
     for (uint32_t i = 0; i < film.n; i++) /* whatever was there before */
         film.views[i].stops[i % 3] = 7.0f;
-    assert_int_equal(adcgs_fault_light_even(film.views, &tracks, film.glances, &error), ADCGS_OK);
+    assert_int_equal(adcgs_fault_light(&fault, behind, film.views, &tracks, film.glances, &error), ADCGS_OK);
+    adcgs_light_add_up(film.views, behind, &tracks, film.glances);
     adcgs_tracks_clear(&tracks);
 }
 
