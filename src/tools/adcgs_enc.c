@@ -17,6 +17,7 @@
 #include "tools/enc_report.h"
 #include "tools/enc_run.h"
 #include "tools/enc_segments.h"
+#include "tools/enc_trials.h"
 #include "train/settings.h"
 
 #include <adcgs/adcgs.h>
@@ -245,6 +246,7 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
         ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
     adcgs_enc_reduce_large(job, job->scene, &w->progress);
     ADCGS_TRY(adcgs_enc_even_light(job, &w->progress, error));
+    ADCGS_TRY(adcgs_enc_try(job, w, error));
     ADCGS_TRY(adcgs_train_changes(&job->config, &w->changes, error));
     if (o->has_segment)
         ADCGS_TRY(adcgs_enc_cut(job, o->segment, error));

@@ -169,7 +169,6 @@ static int loading(void *user, uint32_t done, uint32_t n)
 
 /* ---- What the stream tells ---- */
 
-/** changes: settings that are not the preset's, "" for none. */
 void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes)
 {
     snprintf(n->seed, sizeof n->seed, "%llu", (unsigned long long)t->config.seed);
@@ -179,10 +178,12 @@ void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char
     const adcgs_encode_note list[] = {
         { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
         { "iterations", n->iterations }, { "seed", n->seed },     { "decisions", n->decisions },
-        { "settings", changes },
+        { "settings", changes },         { "trials", t->trials },
     };
-    memcpy(n->list, list, sizeof list);
-    n->n = ADCGS_COUNTOF(list) - !*changes;
+    n->n = 0;
+    for (size_t i = 0; i < ADCGS_COUNTOF(list); i++)
+        if (*list[i].value)
+            n->list[n->n++] = list[i];
 }
 
 /** The bytes that the run's file would have. */
@@ -326,6 +327,7 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
             return adcgs_alloc_status(error);
     }
     w->begins = scene->whole && job->cuts.n ? job->cuts.at[w->segment] : 0;
+    memcpy(w->t->trials, w->trials, sizeof w->trials);
     w->t->quantise = adcgs_encode_quantise_hook;
     w->t->measure = measure;
     w->t->measure_user = w;

@@ -48,6 +48,7 @@ typedef struct adcgs_enc_watcher {
     int (*hear)(void *user, const struct adcgs_enc_watcher *w); /* told how far it is, which is then not shown; nonzero: stop */
     void *hear_user;
     size_t uncompressed_bytes;
+    char trials[ADCGS_TRIALS_TEXT]; /**< what trials of mechanisms said, for the stream to carry; "" without them */
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
     adcgs_error log_error;
@@ -58,7 +59,7 @@ typedef struct adcgs_enc_watcher {
 
 /** What the stream tells of how it was made. */
 typedef struct adcgs_enc_notes {
-    adcgs_encode_note list[9]; /* with room for two that a part of a plan has */
+    adcgs_encode_note list[10]; /* with room for two that a part of a plan has */
     uint32_t n;
     char seed[32], lambda[32], iterations[32], decisions[ADCGS_DECISIONS_TEXT], follows[33];
 } adcgs_enc_notes;
@@ -80,7 +81,7 @@ typedef struct adcgs_enc_job {
 
 /** "  1:05:00 left", or nothing where it is not known. */
 const char *adcgs_enc_left(double seconds, char text[32]);
-/** changes: settings that are not the preset's, "" for none. The notes point into the trainer's configuration. */
+/** changes: settings that are not the preset's, "" for none. The notes point into the trainer and its configuration. */
 void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes);
 
 /** The run's stream, initialised by the caller, and its bytes, read back once. */

@@ -101,7 +101,7 @@ static void print_setting(const adcgs_stream *stream, const char *key)
 
 void adcgs_info_why(const adcgs_info_report *r, const char *name)
 {
-    static const char *const settings[] = { "preset", "iterations", "lambda", "settings" };
+    static const char *const settings[] = { "preset", "iterations", "lambda", "settings", "trials" };
     const char *const list = find_meta(&r->stream, "decisions");
     adcgs_text_show(stdout, name);
     printf(": %llu bytes\n\n", (unsigned long long)r->info.bytes.total);

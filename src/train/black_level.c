@@ -80,7 +80,7 @@ none:
 
 adcgs_status adcgs_black_levels(adcgs_trainer *t, adcgs_error *error)
 {
-    const uint32_t n = t->exposure.patient ? 0 : t->exposure.n;
+    const uint32_t n = t->exposure.patient || !t->config.black_levels ? 0 : t->exposure.n;
     if (!n)
         return ADCGS_OK;
     histogram(*of)[3] = adcgs_alloc(NULL, n, sizeof *of, error);

@@ -11,6 +11,7 @@
 #include "io/atomic.h"
 #include "io/file.h"
 #include "train/checkpoint_check.h"
+#include "train/mechanisms.h"
 #include "train/settings.h"
 
 #include <stdarg.h>
@@ -18,7 +19,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 31 };
+enum { FORMAT = 32 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing */
@@ -141,6 +142,8 @@ static void walk_config(walk *w, adcgs_trainer *t)
     walk_scene(w, t);
     walk_before(w, t);
     walk_target(w, t);
+    visit(w, t->trials, sizeof t->trials);
+    t->trials[sizeof t->trials - 1] = '\0';
     walk_settings(w, t);
 }
 
@@ -230,6 +233,8 @@ static void walk_average(walk *w, adcgs_trainer *t)
 /** The cameras are the scene's. */
 static void walk_exposure(walk *w, adcgs_trainer *t)
 {
+    if (t->exposure.n)
+        visit(w, &t->exposure.limit, sizeof t->exposure.limit);
     for (uint32_t i = 0; i < t->exposure.n; i++)
         visit(w, &t->exposure.cameras[i], sizeof t->exposure.cameras[i]);
 }
@@ -371,4 +376,26 @@ adcgs_status adcgs_trainer_load(adcgs_trainer *t, const char *path, adcgs_error 
     if (status != ADCGS_OK)
         adcgs_error_locate(error, path);
     return status;
+}
+
+/* Bytes before what trials said: magic, content, format, views, four parts of the scene, the segment before, target. */
+enum { TRIALS_AT = sizeof magic + 16 + 8 + 8 + 4 * 4 + 16 + 1 + 4 + 8 };
+
+adcgs_status adcgs_checkpoint_adopt(adcgs_train_config *config, const char *path, adcgs_error *error)
+{
+    char text[ADCGS_TRIALS_TEXT] = "";
+    uint64_t format = 0;
+    uint8_t *data;
+    size_t size;
+    ADCGS_TRY(adcgs_file_load(&data, &size, path, 1ull << 36, error));
+    if (size > TRIALS_AT + sizeof text)
+        memcpy(&format, data + sizeof magic + 16, sizeof format);
+    if (format == FORMAT)
+        memcpy(text, data + TRIALS_AT, sizeof text);
+    text[sizeof text - 1] = '\0';
+    free(data);
+    for (int m = 0; m < ADCGS_MECHANISMS; m++)
+        if (adcgs_mechanism_is_dropped(m, text))
+            adcgs_setting_put(adcgs_setting_find(adcgs_mechanism_settings[m]), config, 0);
+    return ADCGS_OK;
 }

@@ -14,6 +14,11 @@
  */
 adcgs_status adcgs_trainer_save(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
 adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_error *error);
+/**
+ * Turn off in config the mechanisms that trials decide (train/trial.h) and that are off in a file: a run that goes on has no
+ * trials again. A file that is no checkpoint changes nothing: adcgs_trainer_load() reports it.
+ */
+adcgs_status adcgs_checkpoint_adopt(adcgs_train_config *config, const char *path, adcgs_error *error);
 /** The same to and from memory (rollback), where pictures are taken on trust. */
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error);
 adcgs_status adcgs_trainer_restore(adcgs_trainer *trainer, const uint8_t *data, size_t size, adcgs_error *error);

@@ -79,6 +79,11 @@ typedef struct adcgs_train_config {
     uint8_t bf16;          /**< networks that draw are trained in bf16; see adcgs_bf16_check() */
     uint8_t retime_doubled; /**< pictures that come twice are learnt as of the time that they show */
     uint8_t even_light;    /**< steps of light are taken out of pictures (data/light.h), by who opens the scene */
+    float trial_share;     /**< iterations of a trial (trial.h), of the run's; fewer than 100: no trials */
+    uint8_t gains;         /**< cameras, and images of a static scene, have a gain each in training (exposure.h) */
+    uint8_t black_levels;  /**< cameras have a black level each in training (black_level.h) */
+    uint8_t residual_densify; /**< anchors grow where several views miss light, too (residual_densify.h) */
+    uint8_t prune_floaters; /**< static primitives in space that matching found empty are pruned (floaters.h) */
     uint8_t stereo;        /**< moments at most of which pictures of cameras that stay are matched, for first anchors; 0: none */
 } adcgs_train_config;
 

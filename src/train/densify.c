@@ -259,7 +259,7 @@ adcgs_status adcgs_densify(adcgs_trainer *t, double progress, adcgs_error *error
     ADCGS_TRY(workspace_init(&w, t, budget, error));
     keep_anchors(t, &w);
     adcgs_status status = ADCGS_OK;
-    if (leaves_gaps(t, progress))
+    if (leaves_gaps(t, progress) && t->config.residual_densify)
         status = adcgs_residual_find(t, w.missing, MISSING_MOST, &n_missing, error);
     if (status == ADCGS_OK && t->config.params.spans && t->stereo.n_moving)
         status = adcgs_moment_find(t, w.moment, MOMENT_MOST, &n_moment, error);

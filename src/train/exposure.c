@@ -3,15 +3,22 @@
 #include "train/exposure.h"
 
 #include "data/by_camera.h"
+#include "data/sort.h"
 
 #include <math.h>
 
 enum { PICTURES_LEAST = 4 };
 /*
- * KEEP: of the sums, from one picture of a camera to its next. DOUBT: logarithm of what gains may be off where cameras agree.
+ * KEEP: share of the sums that is kept from one image of a camera to its next; KEEP_PATIENT: where each image is a camera of its
+ * own, which is seen once in an epoch, and would be hundreds of iterations behind the model. DOUBT: logarithm of a gain that is
+ * taken for none, as with a Laplace prior: view-dependent light alone makes gains of 0.1.
  */
-static const double KEEP = 0.9, DOUBT = 0.03;
+static const double KEEP = 0.9, KEEP_PATIENT = 0.3, DOUBT = 0.03;
 static const float GAIN_MOST = 4;
+/* Logarithm by which a gain may exceed the range of the images' brightness: their contents differ, too. */
+static const double SLACK = 0.1;
+/* Value by which each channel of a pixel may differ from the background's. */
+static const float BACKDROP = 0.004f;
 
 adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *views, uint32_t n_views, int still,
                                    adcgs_error *error)
@@ -32,6 +39,7 @@ adcgs_status adcgs_exposure_create(adcgs_exposure *e, const adcgs_scene_view *vi
         e->cameras[i] = (adcgs_exposure_camera){ .gain = { 1, 1, 1 } };
     e->n = n;
     e->patient = n > most;
+    e->limit = logf(GAIN_MOST);
     return ADCGS_OK;
 }
 
@@ -61,9 +69,10 @@ void adcgs_exposure_sum(const adcgs_exposure *e, uint32_t view, const float *dra
 void adcgs_exposure_follow(adcgs_exposure *e, uint32_t view, const adcgs_exposure_sums *sums)
 {
     adcgs_exposure_camera *camera = &e->cameras[e->of[view]];
+    const double keep = e->patient ? KEEP_PATIENT : KEEP;
     for (size_t c = 0; c < 3; c++) {
-        camera->cross[c] = KEEP * camera->cross[c] + sums->cross[c];
-        camera->square[c] = KEEP * camera->square[c] + sums->square[c];
+        camera->cross[c] = keep * camera->cross[c] + sums->cross[c];
+        camera->square[c] = keep * camera->square[c] + sums->square[c];
         if (camera->cross[c] > 0 && camera->square[c] > 0)
             camera->gain[c] = fminf(fmaxf((float)(camera->cross[c] / camera->square[c]), 1 / GAIN_MOST), GAIN_MOST);
     }
@@ -76,7 +85,21 @@ static float excess(const adcgs_exposure *e, uint32_t camera, size_t channel)
     for (uint32_t i = 0; i < e->n; i++)
         mean += log((double)e->cameras[i].gain[channel]) / e->n;
     const double off = log((double)e->cameras[camera].gain[channel]) - mean;
-    return (float)exp(off > DOUBT ? off - DOUBT : off < -DOUBT ? off + DOUBT : 0);
+    const double sure = off > DOUBT ? off - DOUBT : off < -DOUBT ? off + DOUBT : 0, limit = (double)e->limit;
+    return (float)exp(fmin(fmax(sure, -limit), limit));
+}
+
+void adcgs_exposure_bound(adcgs_exposure *e, double *brightness)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < e->n; i++)
+        if (brightness[i] > 0)
+            brightness[n++] = log(brightness[i]);
+    adcgs_sort(brightness, n);
+    if (!n)
+        return;
+    const double middle = brightness[n / 2];
+    e->limit = (float)fmin(fmax(middle - brightness[0], brightness[n - 1] - middle) + SLACK, log((double)GAIN_MOST));
 }
 
 static int all_followed(const adcgs_exposure *e)
@@ -94,5 +117,31 @@ void adcgs_exposure_even(const adcgs_exposure *e, uint32_t view, const float *ta
         const float by = told ? 1 / excess(e, e->of[view], c) : 1, black = e->cameras[e->of[view]].black[c];
         for (size_t i = c * plane; i < (c + 1) * plane; i++)
             out[i] = by * (taken[i] - black);
+    }
+}
+
+/** Whether a pixel of a target is the background that it was composited over. */
+static int is_backdrop(const float *target, size_t plane, const float backdrop[3])
+{
+    int same = 1;
+    for (size_t c = 0; c < 3; c++)
+        same &= fabsf(target[c * plane] - backdrop[c]) < BACKDROP;
+    return same;
+}
+
+void adcgs_exposure_allow_burnt(const adcgs_exposure *e, uint32_t view, const float *drawn, const float background[3],
+                                float *target, size_t plane)
+{
+    const float full[3] = { ADCGS_BURNT, ADCGS_BURNT, ADCGS_BURNT };
+    float burnt[3], backdrop[3] = { 0, 0, 0 };
+    adcgs_exposure_even(e, view, full, burnt, 1);
+    if (background)
+        adcgs_exposure_even(e, view, background, backdrop, 1);
+    for (size_t i = 0; i < plane; i++) {
+        if (background && is_backdrop(target + i, plane, backdrop))
+            continue;
+        for (size_t c = 0; c < 3; c++)
+            if (target[c * plane + i] >= burnt[c])
+                target[c * plane + i] = fmaxf(target[c * plane + i], drawn[c * plane + i]);
     }
 }

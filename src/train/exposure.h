@@ -30,6 +30,7 @@ typedef struct adcgs_exposure {
     uint32_t *of;                   /**< [views] camera of each view */
     adcgs_exposure_camera *cameras; /**< [n] */
     int patient;                    /**< the mean says nothing until each has taken a picture: they are many */
+    float limit;                    /**< of a gain's logarithm, either way, about the mean: from the images alone */
 } adcgs_exposure;
 
 /**
@@ -44,6 +45,18 @@ void adcgs_exposure_sum(const adcgs_exposure *exposure, uint32_t view, const flo
                         adcgs_exposure_sums *sums);
 /** Take note of such sums: the gain of the view's camera is another then. */
 void adcgs_exposure_follow(adcgs_exposure *exposure, uint32_t view, const adcgs_exposure_sums *sums);
+/**
+ * Bound gains by the images: no gain is further from the mean than the brightest or the darkest camera is from the median one.
+ * brightness: [n] mean values of what each camera shows; sorted here. Values that are not > 0 do not count.
+ */
+void adcgs_exposure_bound(adcgs_exposure *exposure, double *brightness);
+/**
+ * Where an image is burnt, the mean camera may have seen more than the target says: where more is drawn, the target is what is
+ * drawn. drawn, target: as the mean camera would have them, [3][plane]. background: that of images with alpha, which are not
+ * burnt where they have its colour; else NULL.
+ */
+void adcgs_exposure_allow_burnt(const adcgs_exposure *exposure, uint32_t view, const float *drawn, const float background[3],
+                                float *target, size_t plane);
 /** out: the picture taken, as the mean camera would have. All [3][plane]. */
 void adcgs_exposure_even(const adcgs_exposure *exposure, uint32_t view, const float *taken, float *out, size_t plane);
 

@@ -8,7 +8,7 @@ void adcgs_drop_floaters(adcgs_trainer *t)
 {
     const adcgs_fmodel *f = t->f;
     const adcgs_primitives *p = &t->pass->primitives;
-    if (!t->stereo.maps)
+    if (!t->stereo.maps || !t->config.prune_floaters)
         return;
     adcgs_pass_forward(t->pass, f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
     for (uint32_t i = 0; i < p->n; i++) {

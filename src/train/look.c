@@ -61,13 +61,13 @@ static adcgs_status look_at_picture(adcgs_trainer *t, double progress, uint32_t 
     adcgs_raster_grads all = *grads;
     adcgs_loss_value value;
     const float *target;
-    ADCGS_TRY(adcgs_view_draw(t, v, t->image, 1, error));
+    ADCGS_TRY(adcgs_view_draw(t, v, picked, t->image, 1, error));
     ADCGS_TRY(adcgs_trainer_target(t, picked, follows_exposure(t, progress) ? &seen->sums : NULL, &target, error));
     adcgs_pictures_expect(t->pictures, adcgs_view_pick(t, number + (PICTURES_AHEAD + n - 1) / n * n));
     ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
     seen->loss = value.loss;
     seen->mse = value.mse;
-    return adcgs_view_draw_back(t, v, &all, error);
+    return adcgs_view_draw_back(t, v, picked, &all, error);
 }
 
 /** Prices of primitives and of their motion, beside the picture. */
@@ -88,8 +88,8 @@ static adcgs_status add_prices(adcgs_trainer *t, double progress, uint32_t numbe
     return ADCGS_OK;
 }
 
-static adcgs_status look(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats, adcgs_seen *seen,
-                         adcgs_error *error)
+adcgs_status adcgs_look(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats, adcgs_seen *seen,
+                        adcgs_error *error)
 {
     const adcgs_train_config *c = &t->config;
     const uint32_t picked = adcgs_view_pick(t, number);
@@ -110,20 +110,6 @@ static adcgs_status look(adcgs_trainer *t, double progress, uint32_t number, adc
                         (int)(turn % (uint32_t)c->rate_period), rated ? &rate : NULL);
     memcpy(seen->bits, rate.bits, sizeof seen->bits);
     return adcgs_tiers_learn(t, picked, &mode, error);
-}
-
-adcgs_status adcgs_look(adcgs_trainer *t, double progress, uint32_t number, adcgs_train_stats *stats, adcgs_seen *seen,
-                        adcgs_error *error)
-{
-    adcgs_exposure *const e = &t->exposure;
-    adcgs_exposure_camera *const camera = e->n ? &e->cameras[e->of[adcgs_view_pick(t, number)]] : NULL;
-    adcgs_exposure_camera before;
-    if (camera)
-        before = *camera;
-    const adcgs_status status = look(t, progress, number, stats, seen, error);
-    if (camera)
-        *camera = before;
-    return status;
 }
 
 void adcgs_look_note(adcgs_trainer *t, double progress, uint32_t number, const adcgs_seen *seen)

@@ -35,7 +35,7 @@ static adcgs_status ask_view(adcgs_trainer *t, batch *b, uint32_t index, adcgs_e
     const adcgs_view *v = &t->views[index].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
     const float *taken;
-    ADCGS_TRY(adcgs_view_draw(t, v, t->image, 0, error));
+    ADCGS_TRY(adcgs_view_draw(t, v, index, t->image, 0, error));
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &taken, error));
     for (uint32_t i = 0; i < b->n; i++) {
         const double *place = b->point[i].x;

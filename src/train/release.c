@@ -47,11 +47,11 @@ static adcgs_status add_view(adcgs_trainer *t, moments *m, uint32_t index, adcgs
     const size_t values = 3 * (size_t)v->view.width * (size_t)v->view.height;
     const adcgs_raster_grads *g = &t->pass->grads;
     const float *taken;
-    ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 1, error));
+    ADCGS_TRY(adcgs_view_draw(t, &v->view, index, t->image, 1, error));
     ADCGS_TRY(adcgs_trainer_target(t, index, NULL, &taken, error));
     for (size_t i = 0; i < values; i++)
         t->grad[i] = taken[i] - t->image[i];
-    ADCGS_TRY(adcgs_view_draw_back(t, &v->view, &t->pass->grads, error));
+    ADCGS_TRY(adcgs_view_draw_back(t, &v->view, index, &t->pass->grads, error));
     float(*missing)[3] = m->missing + m->n * m->anchors;
     float *pixels = m->pixels + m->n * m->anchors;
     for (size_t i = 0; i < t->pass->primitives.n; i++) {

@@ -21,7 +21,7 @@ static adcgs_status view_loss(adcgs_trainer *t, uint32_t picked, int quarter, do
     const int whole = quarter < 0 || adcgs_pictures_hidden(t->pictures, picked);
     if (!whole)
         adcgs_view_crop(&v, quarter & 1 ? v.width / 2 : 0, quarter & 2 ? v.height / 2 : 0, (v.width + 1) / 2, (v.height + 1) / 2);
-    ADCGS_TRY(adcgs_view_draw(t, &v, t->image, 0, error));
+    ADCGS_TRY(adcgs_view_draw(t, &v, picked, t->image, 0, error));
     ADCGS_TRY(adcgs_trainer_target(t, picked, NULL, &target, error));
     if (whole)
         ADCGS_TRY(adcgs_trainer_loss(t, picked, target, &value, error));
@@ -71,7 +71,7 @@ static adcgs_status picture_psnr(adcgs_trainer *t, const adcgs_view *view, const
                                  adcgs_error *error)
 {
     const size_t values = 3 * (size_t)view->width * (size_t)view->height;
-    ADCGS_TRY(adcgs_view_draw(t, view, image, 0, error));
+    ADCGS_TRY(adcgs_view_draw(t, view, ADCGS_MEAN_LIGHT, image, 0, error));
     for (size_t i = 0; i < values; i++)
         image[i] = rintf(255 * fminf(fmaxf(image[i], 0), 1)) / 255;
     *psnr = adcgs_psnr(image, taken, values);

@@ -51,6 +51,10 @@ const adcgs_setting adcgs_settings[] = {
     RUN(learn_entropy, B | Q, 0, 100, ALL(1), "learning rates of quantiser steps, priors and entropy networks, times this"),
     RUN(retime_doubled, Q, 0, 1, BUT_PAPER(1, 0), "1: a picture that is the one before once more is learnt as of its time"),
     RUN(even_light, Q, 0, 1, ALL(0), "1: where the light of a camera's pictures steps, those behind are learnt in that before"),
+    RUN(trial_share, S | Q, 0, 1, BUT_PAPER(0.02, 0),
+        "iterations of each trial that judges a mechanism before the run, over the run's; fewer than 100: none"),
+    RUN(gains, Q, 0, 1, ALL(1), "1: cameras, and images of a static scene, have a gain each while the scene is trained"),
+    RUN(black_levels, Q, 0, 1, ALL(1), "1: cameras have a black level each while the scene is trained"),
     RUN(scale, S | Q | M, 1, 64, ALL(1), "the pictures' width and height are divided by this"),
 
     /* Rate in the loss: Balle et al. 2017, End-to-end optimized image compression, ICLR. Choice of levels by rate and distortion:
@@ -123,6 +127,8 @@ const adcgs_setting adcgs_settings[] = {
            "moments at most that pictures are matched of, for first anchors and motion; 0: none"),
     ANCHOR(span_moments, B | Q, 0.1, 1e4, ALL(3), "moments before and after its own that an anchor with a span begins with"),
     ANCHOR(span_ends, Q, 0, 1, BUT_PAPER(1, 0), "1: but it ends where most cameras show what is behind it"),
+    ANCHOR(residual_densify, Q, 0, 1, ALL(1), "1: anchors are added where several views miss light, too"),
+    ANCHOR(prune_floaters, Q, 0, 1, ALL(1), "1: static primitives in space that matching found empty are pruned"),
     ANCHOR(densify_every, S | Q, 1, 1e6, ALL(100), "iterations from one densification to the next"),
     ANCHOR(densify_threshold, S | B | Q, 0, 1e6, ALL(0.0003),
            "screen gradient, weighted by temporal significance, at which anchors grow"),

@@ -3,6 +3,7 @@
 #include "train/stages.h"
 
 #include "train/black_level.h"
+#include "train/brightness.h"
 #include "train/contrast.h"
 #include "train/decide.h"
 #include "train/densify.h"
@@ -108,8 +109,10 @@ static adcgs_status load_views(adcgs_trainer *t, double progress, adcgs_error *e
     ADCGS_TRY(adcgs_trainer_load_views(t, adcgs_stages_divide(t, progress), error));
     if (first)
         ADCGS_TRY(adcgs_contrast_lambda(t, error));
-    if (!t->iteration)
+    if (!t->iteration) {
         ADCGS_TRY(adcgs_black_levels(t, error));
+        ADCGS_TRY(adcgs_bound_gains(t, error));
+    }
     t->left.load = adcgs_seconds() - begin;
     return ADCGS_OK;
 }

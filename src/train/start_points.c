@@ -374,8 +374,8 @@ static void set_lives(adcgs_stereo *found, const adcgs_train_config *config)
     }
 }
 
-adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
-                               adcgs_error *error)
+adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene *scene, adcgs_train_config *config,
+                               adcgs_pool *pool, adcgs_error *error)
 {
     int matched = 0, whole = 0, far = 1;
     const int given = has_points(scene);
@@ -386,7 +386,7 @@ adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, ad
     }
     if ((matched || given) && !config->own_start)
         config->start_anchors = ADCGS_MAX(config->start_anchors, (uint32_t)(START_SHARE * config->max_anchors));
-    if (matched) {
+    if (matched && !known) {
         options.still = (uint32_t)(MATCHED_SHARE * config->start_anchors);
         options.moments = config->stereo;
         options.judges = config->judges_poses;

@@ -20,11 +20,12 @@ typedef struct adcgs_start_points {
 } adcgs_start_points;
 
 /**
- * Match pictures where that is to be done: found receives the points, and config as many anchors to start from as is good where
- * points are known, and no spans where matching found nothing that moves.
+ * Match images where that is to be done: found receives the points, and config as many anchors to start from as is good where
+ * points are known, and no lifetimes where matching found nothing that moves. known: found is the result of another such call,
+ * for the same scene, which is used again.
  */
-adcgs_status adcgs_start_match(adcgs_stereo *found, const adcgs_scene *scene, adcgs_train_config *config, adcgs_pool *pool,
-                               adcgs_error *error);
+adcgs_status adcgs_start_match(adcgs_stereo *found, int known, const adcgs_scene *scene, adcgs_train_config *config,
+                               adcgs_pool *pool, adcgs_error *error);
 /** How long, of all time, what moves by itself lives before its moment, and behind. */
 float adcgs_half_life(const adcgs_train_config *config, const adcgs_stereo *found);
 /** At most config->start_anchors points; found, which may be empty, has to outlive them. Clear them, whatever this returns. */

@@ -154,7 +154,7 @@ static adcgs_status create_parts(adcgs_trainer *t, const adcgs_model *before, ad
     ADCGS_TRY(adcgs_plan_anchors(c, t->scene, &t->decisions.details, error));
     ADCGS_TRY(adcgs_rate_plan(c, error));
     ADCGS_TRY(adcgs_scene_frame(t->scene, t->origin, &t->scale, error));
-    ADCGS_TRY(adcgs_start_match(&t->stereo, t->scene, c, t->pool, error));
+    ADCGS_TRY(adcgs_start_match(&t->stereo, t->stereo.n_moments > 0, t->scene, c, t->pool, error));
     if (before)
         ADCGS_TRY(follow(t, before, error));
     else
@@ -181,8 +181,10 @@ adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene,
     return adcgs_trainer_create_after(out, scene, config, NULL, cpu, pool, error);
 }
 
-adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
-                                        const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+/** matched: taken over; NULL: images are matched here. */
+static adcgs_status create(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                           const adcgs_model *before, adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool,
+                           adcgs_error *error)
 {
     adcgs_trainer *t = adcgs_alloc(NULL, 1, sizeof *t, error);
     *out = NULL;
@@ -195,12 +197,28 @@ adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *
     t->lr_scale = 1;
     adcgs_buffer_init(&t->snapshot);
     adcgs_buffer_init(&t->begin);
+    if (matched) {
+        t->stereo = *matched;
+        *matched = (adcgs_stereo){ .n_still = 0 };
+    }
     const adcgs_status status = create_parts(t, before, error);
     t->lambda = (double)t->config.lambda;
     if (status != ADCGS_OK)
         adcgs_trainer_free(&t);
     *out = t;
     return status;
+}
+
+adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                        const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+{
+    return create(out, scene, config, before, NULL, cpu, pool, error);
+}
+
+adcgs_status adcgs_trainer_create_matched(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
+                                          adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error)
+{
+    return create(out, scene, config, NULL, matched, cpu, pool, error);
 }
 
 void adcgs_views_unload(adcgs_trainer *t)

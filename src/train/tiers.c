@@ -53,7 +53,7 @@ static adcgs_status draw(const survey *s, const lookout *l, int tiers, float *im
     const adcgs_pass_mode mode = { .deform = ADCGS_DEFORM_ALL };
     adcgs_pass_forward(s->t->pass, s->t->f, l->t, &mode);
     show(s->t, tiers);
-    return adcgs_view_draw(s->t, &l->view, image, keep, error);
+    return adcgs_view_draw(s->t, &l->view, ADCGS_MEAN_LIGHT, image, keep, error);
 }
 
 /** A training view, made smaller by a whole number if it is large. */
@@ -143,7 +143,7 @@ static adcgs_status change_of_anchors(survey *s, const lookout *l, adcgs_error *
     adcgs_trainer *t = s->t;
     adcgs_raster_grads grads = t->pass->grads;
     grads.screen = NULL;
-    ADCGS_TRY(adcgs_view_draw_back(t, &l->view, &grads, error));
+    ADCGS_TRY(adcgs_view_draw_back(t, &l->view, ADCGS_MEAN_LIGHT, &grads, error));
     memset(s->change, 0, t->f->n * sizeof *s->change);
     for (uint32_t i = 0; i < t->pass->primitives.n; i++)
         if (t->pass->primitives.opacity[i] > 0)
@@ -248,10 +248,10 @@ adcgs_status adcgs_tiers_learn(adcgs_trainer *t, uint32_t view, const adcgs_pass
     grads.screen = NULL;
     adcgs_pass_forward(t->pass, f, t->views[view].t, mode);
     show(t, tiers);
-    ADCGS_TRY(adcgs_view_draw(t, v, t->image, 1, error));
+    ADCGS_TRY(adcgs_view_draw(t, v, view, t->image, 1, error));
     ADCGS_TRY(adcgs_trainer_target(t, view, NULL, &target, error));
     ADCGS_TRY(adcgs_trainer_loss(t, view, target, &value, error));
-    ADCGS_TRY(adcgs_view_draw_back(t, v, &grads, error));
+    ADCGS_TRY(adcgs_view_draw_back(t, v, view, &grads, error));
     const float weight = t->config.tier_weight, factor = weight * adcgs_step_factor(f->growth[tiers - 1]);
     const size_t n = t->pass->primitives.n;
     for (size_t i = 0; i < ADCGS_ROWS * n; i++) /* scales were multiplied on their way */

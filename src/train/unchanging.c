@@ -37,11 +37,11 @@ static adcgs_status add_picture(adcgs_trainer *t, const adcgs_train_view *v, con
     adcgs_raster_grads grads = t->pass->grads;
     grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_ALL });
-    ADCGS_TRY(adcgs_view_draw(t, &v->view, t->image, 1, error));
+    ADCGS_TRY(adcgs_view_draw(t, &v->view, ADCGS_MEAN_LIGHT, t->image, 1, error));
     memset(t->grad, 0, 3 * pixels * sizeof *t->grad);
     for (size_t i = 0; i < pixels; i++)
         t->grad[i] = region[i];
-    ADCGS_TRY(adcgs_view_draw_back(t, &v->view, &grads, error));
+    ADCGS_TRY(adcgs_view_draw_back(t, &v->view, ADCGS_MEAN_LIGHT, &grads, error));
     for (uint32_t i = 0; i < t->pass->primitives.n; i++) {
         const uint32_t anchor = adcgs_anchor_of(t->f, i);
         if (anchor >= t->f->n)

@@ -48,12 +48,13 @@ adcgs_status adcgs_trainer_target(adcgs_trainer *t, uint32_t view, adcgs_exposur
     const adcgs_view *v = &t->views[view].view;
     const size_t plane = (size_t)v->width * (size_t)v->height;
     ADCGS_TRY(adcgs_pictures_get(t->pictures, view, t->taken, error));
-    if (t->exposure.n && sums) {
+    if (t->exposure.n && sums)
         adcgs_exposure_sum(&t->exposure, view, t->image, t->taken, plane, sums);
-        adcgs_exposure_follow(&t->exposure, view, sums);
-    }
-    if (t->exposure.n)
+    if (t->exposure.n) {
         adcgs_exposure_even(&t->exposure, view, t->taken, t->taken, plane);
+        adcgs_exposure_allow_burnt(&t->exposure, view, t->image, t->scene->has_alpha ? t->scene->background : NULL, t->taken,
+                                   plane);
+    }
     const uint8_t *const hidden = adcgs_pictures_hidden(t->pictures, view);
     for (size_t i = 0; hidden && i < plane; i++)
         for (size_t c = 0; hidden[i] && c < 3; c++)
@@ -115,16 +116,28 @@ adcgs_status adcgs_trainer_loss_crop(adcgs_trainer *t, uint32_t view, const adcg
     return adcgs_loss_image(t->loss, t->image, t->taken, crop->width, crop->height, &shares, t->grad, value, error);
 }
 
-adcgs_status adcgs_view_draw(adcgs_trainer *t, const adcgs_view *view, float *image, int keep, adcgs_error *error)
+/** The background that makes up a target: where images have alpha, it is divided by the gain with all else. */
+static void backdrop_of(const adcgs_trainer *t, uint32_t of, float backdrop[3])
 {
-    return adcgs_raster_forward(t->raster, &t->pass->primitives, view, t->scene->background, ADCGS_SCREEN_FILTER, image, keep,
-                                error);
+    memcpy(backdrop, t->scene->background, 3 * sizeof *backdrop);
+    if (of != ADCGS_MEAN_LIGHT && t->exposure.n && t->scene->has_alpha)
+        adcgs_exposure_even(&t->exposure, of, t->scene->background, backdrop, 1);
 }
 
-adcgs_status adcgs_view_draw_back(adcgs_trainer *t, const adcgs_view *view, adcgs_raster_grads *grads, adcgs_error *error)
+adcgs_status adcgs_view_draw(adcgs_trainer *t, const adcgs_view *view, uint32_t of, float *image, int keep, adcgs_error *error)
 {
-    return adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, view, t->scene->background, ADCGS_SCREEN_FILTER,
-                                 t->image, t->grad, grads, error);
+    float backdrop[3];
+    backdrop_of(t, of, backdrop);
+    return adcgs_raster_forward(t->raster, &t->pass->primitives, view, backdrop, ADCGS_SCREEN_FILTER, image, keep, error);
+}
+
+adcgs_status adcgs_view_draw_back(adcgs_trainer *t, const adcgs_view *view, uint32_t of, adcgs_raster_grads *grads,
+                                  adcgs_error *error)
+{
+    float backdrop[3];
+    backdrop_of(t, of, backdrop);
+    return adcgs_raster_backward(t->back, t->raster, &t->pass->primitives, view, backdrop, ADCGS_SCREEN_FILTER, t->image, t->grad,
+                                 grads, error);
 }
 
 uint32_t adcgs_view_pick(const adcgs_trainer *t, uint32_t look)

@@ -833,11 +833,11 @@ static void crops_are_parts_of_pictures(void **state)
     assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
     adcgs_trainer_prepare_networks(t);
     adcgs_pass_forward(t->pass, t->f, 0.5f, &(adcgs_pass_mode){ .deform = 1 });
-    assert_int_equal(adcgs_view_draw(t, &t->views[0].view, whole, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_view_draw(t, &t->views[0].view, 0, whole, 0, &error), ADCGS_OK);
     adcgs_view crop = t->views[0].view;
     assert_true(crop.width == SIDE && crop.height == SIDE);
     adcgs_view_crop(&crop, X, Y, W, H);
-    assert_int_equal(adcgs_view_draw(t, &crop, t->image, 0, &error), ADCGS_OK);
+    assert_int_equal(adcgs_view_draw(t, &crop, 0, t->image, 0, &error), ADCGS_OK);
     assert_int_equal(adcgs_trainer_target(t, 0, NULL, &target, &error), ADCGS_OK);
     for (int c = 0; c < 3; c++)
         for (int y = 0; y < H; y++)
@@ -1144,6 +1144,97 @@ static void cameras_are_evened_out(void **state)
     adcgs_exposure_even(&exposure, 0, bright, even[0], PLANE);
     assert_true(even[0][7] < 0.8f * bright[7]);
     adcgs_exposure_clear(&exposure);
+}
+
+/** No gain leaves the range of the images' brightness, whatever a model says. */
+static void gains_are_bounded_by_images(void **state)
+{
+    adcgs_scene_view views[CAMERAS] = { { .time = 0 } };
+    adcgs_exposure exposure = { .n = 0 };
+    double brightness[CAMERAS] = { 0.2, 0.25, 0.2 };
+    float drawn[3 * PLANE], taken[3 * PLANE], even[3 * PLANE];
+    for (int i = 0; i < CAMERAS; i++)
+        views[i].camera.cam_to_world[3] = i;
+    assert_int_equal(adcgs_exposure_create(&exposure, views, CAMERAS, 1, &error), ADCGS_OK);
+    adcgs_exposure_bound(&exposure, brightness);
+    for (uint32_t i = 0; i < CAMERAS; i++) {
+        for (int j = 0; j < 3 * PLANE; j++) {
+            drawn[j] = i ? 0.3f : 0.1f; /* haze before the first camera doubles what is seen there */
+            taken[j] = 0.3f;
+        }
+        follow_picture(&exposure, i, drawn, taken);
+    }
+    adcgs_exposure_even(&exposure, 0, taken, even, PLANE);
+    assert_float_equal(log(0.3 / (double)even[0]), log(0.25 / 0.2) + 0.1, 1e-5);
+    adcgs_exposure_clear(&exposure);
+}
+
+/** A burnt pixel is a lower bound of what the mean camera sees, unless it is the background of an image with alpha. */
+static void burnt_pixels_are_lower_bounds(void **state)
+{
+    adcgs_scene_view views[2] = { { .time = 0 } };
+    adcgs_exposure exposure = { .n = 0 };
+    float target[3 * PLANE], drawn[3 * PLANE];
+    const float white[3] = { 1, 1, 1 };
+    views[1].camera.cam_to_world[3] = 1;
+    assert_int_equal(adcgs_exposure_create(&exposure, views, 2, 1, &error), ADCGS_OK);
+    for (int i = 0; i < 2; i++)
+        for (int c = 0; c < 3; c++)
+            exposure.cameras[i] = (adcgs_exposure_camera){ .square = { 1, 1, 1 }, .gain = { i ? 1 : 2, i ? 1 : 2, i ? 1 : 2 } };
+    for (int j = 0; j < 3 * PLANE; j++) {
+        target[j] = j % PLANE == 0 ? 1 : j % PLANE == 1 ? 0.5f : j == 2 ? 1 : 0.25f; /* white, grey, and red that is burnt */
+        drawn[j] = 1.5f;
+    }
+    adcgs_exposure_even(&exposure, 0, target, target, PLANE);
+    const float grey = target[1], red = target[2], even_white = target[0];
+    assert_true(even_white < 0.8f);
+    adcgs_exposure_allow_burnt(&exposure, 0, drawn, white, target, PLANE);
+    assert_true(target[0] == even_white && target[1] == grey && target[2] == 1.5f && target[PLANE + 2] < 0.25f);
+    drawn[2] = 0.5f * red; /* less than it says is wrong all the same */
+    target[2] = red;
+    adcgs_exposure_allow_burnt(&exposure, 0, drawn, white, target, PLANE);
+    assert_true(target[2] == red);
+    adcgs_exposure_allow_burnt(&exposure, 0, drawn, NULL, target, PLANE);
+    assert_true(target[0] == 1.5f);
+    adcgs_exposure_clear(&exposure);
+}
+
+/** Where nothing is in front of the background of images with alpha, there is no error, whatever the gain. */
+static void backgrounds_have_no_gain(void **state)
+{
+    adcgs_scene white = *scene;
+    adcgs_train_config config = small_config();
+    const float *target;
+    white.has_alpha = 1;
+    for (int c = 0; c < 3; c++)
+        white.background[c] = 1;
+    const adcgs_scene *const before = scene;
+    adcgs_trainer *t;
+    assert_int_equal(adcgs_trainer_create(&t, &white, &config, adcgs_cpu_best(), pool, &error), ADCGS_OK);
+    assert_ptr_equal(scene, before);
+    adcgs_scene_view *views = calloc(t->n_views, sizeof *views);
+    assert_non_null(views);
+    for (uint32_t i = 0; i < t->n_views; i++)
+        views[i].camera.cam_to_world[3] = i % 2;
+    assert_int_equal(adcgs_exposure_create(&t->exposure, views, t->n_views, 0, &error), ADCGS_OK);
+    free(views);
+    t->exposure.cameras[0] = (adcgs_exposure_camera){ .square = { 1, 1, 1 }, .gain = { 2, 2, 2 } };
+    t->exposure.cameras[1] = (adcgs_exposure_camera){ .square = { 1, 1, 1 }, .gain = { 1, 1, 1 } };
+    assert_int_equal(adcgs_trainer_load_views(t, 1, &error), ADCGS_OK);
+    memset(t->f->keep, 0, (size_t)t->f->groups * ADCGS_LANES * t->f->params.k * sizeof *t->f->keep);
+    adcgs_pass_forward(t->pass, t->f, 0, &(adcgs_pass_mode){ .deform = ADCGS_DEFORM_NONE });
+    for (uint32_t i = 0; i < 2; i++) {
+        const size_t values = 3 * (size_t)t->views[i].view.width * (size_t)t->views[i].view.height;
+        for (size_t j = 0; j < values; j++)
+            t->taken[j] = 1;
+        assert_int_equal(adcgs_pictures_put(t->pictures, i, t->taken, &error), ADCGS_OK);
+        assert_int_equal(adcgs_view_draw(t, &t->views[i].view, i, t->image, 0, &error), ADCGS_OK);
+        assert_int_equal(adcgs_trainer_target(t, i, NULL, &target, &error), ADCGS_OK);
+        for (size_t j = 0; j < values; j++)
+            assert_float_equal(t->image[j], target[j], 1e-6);
+        assert_int_equal(target[0] < 0.8f, i == 0);
+    }
+    adcgs_trainer_free(&t);
 }
 
 /**
@@ -1507,6 +1598,8 @@ int main(void)
         cmocka_unit_test(windows_grow_outwards),
         cmocka_unit_test(averages_are_means),
         cmocka_unit_test(black_levels_are_found), cmocka_unit_test(cameras_are_evened_out),
+        cmocka_unit_test(gains_are_bounded_by_images), cmocka_unit_test(burnt_pixels_are_lower_bounds),
+        cmocka_unit_test(backgrounds_have_no_gain),
         cmocka_unit_test(lambda_follows_contrast),
         cmocka_unit_test(moments_shared_by_views_change_settings), cmocka_unit_test(few_cameras_make_time_smooth),
         cmocka_unit_test(crops_are_parts_of_pictures), cmocka_unit_test(rates_stay_then_fall),

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Trials: a run checks itself. Mechanisms that follow from the scene (matching, gains, lifetimes, ...) were each kept by figures
+ * of some scenes, and some lose on others. Before a long run, each mechanism that applies is judged on the scene at hand. A trial
+ * is a short run at a small size, with all mechanisms or without one. Some training views are held back from it, rendered at its
+ * end, and compared. A mechanism without which they are rendered clearly better, by two seeds, is dropped. Known as hold-out
+ * validation (Stone 1974, Cross-validatory choice and assessment of statistical predictions, JRSS B).
+ */
+#ifndef ADCGS_TRAIN_TRIAL_H
+#define ADCGS_TRAIN_TRIAL_H
+
+#include "base/cpu.h"
+#include "base/pool.h"
+#include "data/scene.h"
+#include "train/config.h"
+#include "train/mechanisms.h"
+
+enum { ADCGS_TRIALS_TEXT = 640 };
+
+/** What trials say of a mechanism. */
+typedef struct adcgs_trial {
+    const char *name;     /**< as in "without NAME" */
+    double with, without; /**< dB, mean over the views held back, and over seeds where two were asked */
+    int dropped;
+} adcgs_trial;
+
+typedef struct adcgs_trials {
+    uint32_t n;           /**< mechanisms that were judged; 0: none, as in a short run */
+    uint32_t views;       /**< held back, that judged */
+    uint32_t iterations;  /**< of each trial */
+    adcgs_trial of[ADCGS_MECHANISMS];
+} adcgs_trials;
+
+/** Told before each trial: number `done` of `most` at most, without a mechanism (NULL: with all). Nonzero: stop. */
+typedef int (*adcgs_trials_progress)(void *user, const char *without, uint32_t done, uint32_t most);
+
+typedef struct adcgs_trials_options {
+    adcgs_cpu_level cpu;
+    adcgs_pool *pool;
+    uint64_t memory;      /**< bytes of images at most, as in adcgs_pictures_config */
+    adcgs_trials_progress progress; /**< or NULL */
+    void *user;
+} adcgs_trials_options;
+
+/** Iterations of each trial by the configuration (trial_share); 0: the run is too short for trials, or they are off. */
+uint32_t adcgs_trial_length(const adcgs_train_config *config);
+
+/**
+ * Judge the mechanisms that apply to a whole scene, and turn off in config those that lose. Deterministic for any number of
+ * threads. ADCGS_ERR_IO when progress says stop.
+ */
+adcgs_status adcgs_trials_run(adcgs_trials *out, adcgs_train_config *config, const adcgs_scene *scene,
+                              const adcgs_trials_options *options, adcgs_error *error);
+
+/** "views=12 iterations=400 gains=24.13/24.60 ... dropped=gains" (with/without), for a stream to carry; "" without trials. */
+void adcgs_trials_tell(const adcgs_trials *trials, char text[ADCGS_TRIALS_TEXT]);
+
+#endif
