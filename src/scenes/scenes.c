@@ -4,12 +4,11 @@
 
 #include "scenes/scenes.h"
 
-#include "data/scene.h"
 #include "io/atomic.h"
 #include "io/image.h"
-#include "scenes/sine.h"
 #include "scenes/table.h"
 #include "scenes/texture.h"
+#include "scenes/views.h"
 
 #include <errno.h>
 #include <math.h>
@@ -25,19 +24,13 @@
 #define MOTION_MAX 10.0
 #define NOISE_MAX 64.0
 #define NOISE_SEED 29
-#define ARC 0.39 /* turns, on which training's cameras stand */
 #define WATCH_MAX 1000
 #define ASIDE_MAX 0.5
-/* The layout wants the angle: 2 atan(1 / ADCGS_SCENES_FOCAL). */
+/* The layout wants the angle: 2 atan(1 / ADCGS_SCENES_FOCAL), 2 atan(1 / ADCGS_SCENES_WIDE). */
 #define CAMERA_ANGLE_X "0.7610127542247298"
+#define CAMERA_ANGLE_WIDE "1.3494818844471053"
 
 static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
-
-typedef struct view {
-    adcgs_trace_camera camera;
-    double time;
-    int number; /* of its camera */
-} view;
 
 typedef struct writer {
     adcgs_scenes_entry scene; /* as it is wanted */
@@ -52,7 +45,7 @@ typedef struct writer {
     adcgs_scenes_progress_fn progress;
     void *user;
     int done;
-    float *pixels; /* of a picture, or of a mask */
+    float *pixels; /* of an image or a mask, 3 planes; then alpha, 1 plane; then RGBA, 4 planes */
     adcgs_error *error;
 } writer;
 
@@ -68,18 +61,11 @@ const char *adcgs_scenes_about(int i)
     return entry ? entry->about : NULL;
 }
 
-static int split_size(const adcgs_scenes_entry *scene, int split)
-{
-    return split == ADCGS_SPLIT_TRAIN ? scene->cameras / scene->turns * scene->times
-           : split == ADCGS_SPLIT_VAL ? scene->n_val
-                                      : scene->n_test;
-}
-
 static int count_pictures(const adcgs_scenes_entry *scene)
 {
     int n = 0;
     for (int split = 0; split < ADCGS_SPLITS; split++)
-        n += split_size(scene, split);
+        n += adcgs_scenes_split_size(scene, split);
     return n;
 }
 
@@ -89,70 +75,16 @@ int adcgs_scenes_count(const char *name)
     return scene ? count_pictures(scene) : 0;
 }
 
-/* Azimuth from -y and elevation in turns; part of a hemisphere around the target. */
-static void place(adcgs_trace_camera *camera, const adcgs_scenes_entry *scene, double azimuth, double elevation, int width)
-{
-    const double flat = scene->distance * adcgs_trace_cos(elevation);
-    const double eye[3] = {scene->target[0] + flat * adcgs_trace_sin(azimuth), scene->target[1] - flat * adcgs_trace_cos(azimuth),
-                           scene->target[2] + scene->distance * adcgs_trace_sin(elevation)};
-    camera->focal = 0.5 * width * ADCGS_SCENES_FOCAL;
-    adcgs_trace_look(camera, eye, scene->target);
-}
-
-/*
- * A camera in a hand: to and fro on an arc of 50 degrees, and up and down. Views for validation and testing
- * are from a hand's breadth or two beside it, as if by a second lens; those for testing between its moments.
- */
-static view filmed_at(const adcgs_scenes_entry *scene, int split, int i, int width)
-{
-    static const double shift[ADCGS_SPLITS] = {0.0, 0.0, 0.5}, beside[ADCGS_SPLITS] = {0.0, -0.008, 0.010};
-    const int steps = scene->times - 1, count = split_size(scene, split);
-    const int moment = split == ADCGS_SPLIT_TRAIN ? i : (int)((double)i / count * steps);
-    view v = {.time = (moment + shift[split]) / steps};
-    const double phase = scene->swings * v.time;
-    place(&v.camera, scene, 0.07 * adcgs_trace_sin(phase) + beside[split], 0.085 + 0.025 * adcgs_trace_sin(2.3 * phase + 0.1),
-          width);
-    return v;
-}
-
-/*
- * Training cameras stand on an arc of 140 degrees at three heights and take
- * turns: each moment is seen by some of them. The others stand between them, and the test looks between the times too.
- */
-static view view_on_arc(const adcgs_scenes_entry *scene, int split, int i, int width)
-{
-    static const double heights[3] = {0.050, 0.120, 0.085};
-    static const double shift[ADCGS_SPLITS] = {0.0, 0.3, 0.5};
-    const int steps = scene->times - 1, count = split_size(scene, split);
-    view v = {.time = 0.0};
-    if (scene->swings > 0.0)
-        return filmed_at(scene, split, i, width);
-    if (split == ADCGS_SPLIT_TRAIN) {
-        const int each = scene->cameras / scene->turns, moment = i / each;
-        const int c = i % each * scene->turns + moment % scene->turns;
-        v.time = steps > 0 ? (double)moment / steps : 0.0;
-        v.number = c;
-        const double along = scene->cameras > 1 ? (double)c / (scene->cameras - 1) - 0.5 : 0.0;
-        place(&v.camera, scene, ARC * along, heights[(c + c / 3) % 3], width);
-        return v;
-    }
-    const double along = (i + shift[split]) / count;
-    /* 7 is coprime to the counts in use, so that place and time do not run together. */
-    const double moment = (double)(i * 7 % count) / count * steps;
-    v.time = steps > 0 ? ((double)(int)moment + (split == ADCGS_SPLIT_TEST ? 0.5 : 0.0)) / steps : 0.0;
-    place(&v.camera, scene, 0.36 * (along - 0.5), 0.065 + 0.040 * (double)(i * 3 % 5) / 4.0, width);
-    return v;
-}
-
 /* Those that are wanted of one camera that stays, or from far beside, are not where the scene has them. */
-static view view_at(const writer *w, int split, int i)
+static adcgs_scenes_view view_at(const writer *w, int split, int i)
 {
-    view v = view_on_arc(&w->scene, split, i, w->width);
+    adcgs_scenes_view v = adcgs_scenes_view_at(&w->scene, split, i, w->width);
     if (split == ADCGS_SPLIT_VAL && w->watch) {
         v.time = (double)i / (w->watch - 1);
-        place(&v.camera, &w->scene, 0.02, 0.080, w->width);
+        adcgs_scenes_place(&v.camera, &w->scene, 0.02, 0.080, w->width);
     } else if (split == ADCGS_SPLIT_TEST && w->aside > 0.0) {
-        place(&v.camera, &w->scene, 0.5 * ARC + w->aside, 0.065 + 0.040 * (double)(i * 3 % 5) / 4.0, w->width);
+        adcgs_scenes_place(&v.camera, &w->scene, 0.5 * ADCGS_SCENES_ARC + w->aside, 0.065 + 0.040 * (double)(i * 3 % 5) / 4.0,
+                           w->width);
     }
     return v;
 }
@@ -199,10 +131,10 @@ static void take_objects(writer *w, double motion)
     }
 }
 
-static adcgs_status write_pixels(writer *w, const char *name, const char *extension, int channels)
+static adcgs_status write_pixels(writer *w, const char *name, const char *extension, int channels, float *pixels)
 {
     char path[PATH_BYTES];
-    const adcgs_image image = {.width = w->width, .height = w->height, .channels = channels, .data = w->pixels};
+    const adcgs_image image = {.width = w->width, .height = w->height, .channels = channels, .data = pixels};
     ADCGS_TRY(join(path, w->directory, name, extension, w->error));
     return adcgs_image_write(&image, path, 0, w->error);
 }
@@ -219,39 +151,81 @@ static void add_noise(const writer *w, int number)
     }
 }
 
-static adcgs_spoil_picture picture_of(const writer *w, const view *v, int i)
+static adcgs_spoil_picture picture_of(const writer *w, const adcgs_scenes_view *v, int i)
 {
     const adcgs_spoil_picture picture = {.camera = v->number, .cameras = w->scene.cameras, .number = i, .width = w->width,
-                                         .time = v->time, .step = w->scene.times > 1 ? 1.0 / (w->scene.times - 1) : 0.0};
+                                         .time = v->time, .step = w->scene.times > 1 ? 1.0 / (w->scene.times - 1) : 0.0,
+                                         .stops = adcgs_scenes_stops(&w->scene, v->number)};
     return picture;
 }
 
-static adcgs_status write_picture(writer *w, const view *v, int split, int i, const char *name)
+static size_t plane_of(const writer *w)
+{
+    return (size_t)w->width * (size_t)w->height;
+}
+
+static int samples_of(const adcgs_scenes_entry *scene)
+{
+    return scene->samples ? scene->samples : SAMPLES;
+}
+
+/* A camera exposes the object before anybody composites it: colours of objects alone, no longer times their coverage. */
+static adcgs_status take_ground_off(writer *w, const adcgs_scenes_view *v, double time)
+{
+    float *const alpha = w->pixels + 3 * plane_of(w);
+    ADCGS_TRY(adcgs_trace_alpha(w->objects, w->scene.n_objects, &v->camera, time, w->width, w->height, samples_of(&w->scene),
+                                w->pool, alpha, w->error));
+    for (size_t i = 0; i < 3 * plane_of(w); i++)
+        w->pixels[i] = alpha[i / 3] > 0.0f ? fminf(w->pixels[i] / alpha[i / 3], 1.0f) : 0.0f;
+    return ADCGS_OK;
+}
+
+static adcgs_status write_on_ground(writer *w, const char *name)
+{
+    const float *const alpha = w->pixels + 3 * plane_of(w), ground = w->scene.ground == ADCGS_GROUND_WHITE ? 1.0f : 0.0f;
+    float *const rgba = w->pixels + 4 * plane_of(w);
+    if (w->scene.ground != ADCGS_GROUND_ALPHA) {
+        for (size_t i = 0; i < 3 * plane_of(w); i++)
+            w->pixels[i] = alpha[i / 3] * w->pixels[i] + (1.0f - alpha[i / 3]) * ground;
+        return write_pixels(w, name, w->format, 3, w->pixels);
+    }
+    for (size_t i = 0; i < 4 * plane_of(w); i++)
+        rgba[i] = i % 4 == 3 ? alpha[i / 4] : w->pixels[3 * (i / 4) + i % 4];
+    return write_pixels(w, name, w->format, 4, rgba);
+}
+
+static adcgs_status write_picture(writer *w, const adcgs_scenes_view *v, int split, int i, const char *name)
 {
     const adcgs_spoil_picture picture = picture_of(w, v, i);
     const double time = split == ADCGS_SPLIT_TRAIN ? adcgs_spoil_time(&w->spoil, &picture) : v->time;
-    ADCGS_TRY(adcgs_trace_render(w->objects, w->scene.n_objects, &v->camera, time, w->width, w->height, SAMPLES, w->pool,
-                                 w->pixels, w->error));
+    const int is_open = w->scene.path == ADCGS_PATH_ROUND; /* part of an image may show no object */
+    ADCGS_TRY(adcgs_trace_render(w->objects, w->scene.n_objects, &v->camera, time, w->width, w->height, samples_of(&w->scene),
+                                 w->pool, w->pixels, w->error));
+    if (is_open)
+        ADCGS_TRY(take_ground_off(w, v, time));
     if (split == ADCGS_SPLIT_TRAIN)
-        adcgs_spoil_pixels(&w->spoil, &picture, w->pixels, (size_t)w->width * (size_t)w->height);
+        adcgs_spoil_pixels(&w->spoil, &picture, w->pixels, plane_of(w));
     if (split == ADCGS_SPLIT_TRAIN && w->noise > 0.0)
         add_noise(w, i);
-    return write_pixels(w, name, w->format, 3);
+    return is_open ? write_on_ground(w, name) : write_pixels(w, name, w->format, 3, w->pixels);
 }
 
 /* The picture of what moves. */
-static adcgs_status write_mask(writer *w, const view *v, const char *name)
+static adcgs_status write_mask(writer *w, const adcgs_scenes_view *v, const char *name)
 {
     ADCGS_TRY(adcgs_trace_cover(w->objects, w->scene.n_objects, w->scene.moving, &v->camera, v->time, w->width, w->height,
-                                SAMPLES, w->pool, w->pixels, w->error));
-    return write_pixels(w, name, mask_extension(w), 1);
+                                samples_of(&w->scene), w->pool, w->pixels, w->error));
+    return write_pixels(w, name, mask_extension(w), 1, w->pixels);
 }
 
 /* The layout leaves ".png" out of a picture's name; any other extension is written out. A mask's name has it always. */
-static void print_frame(const writer *w, FILE *file, const view *v, const char *name, const char *mask)
+static void print_frame(const writer *w, FILE *file, const adcgs_scenes_view *v, const char *name, const char *mask)
 {
     const double *const m = v->camera.to_world;
-    fprintf(file, "    { \"file_path\": \"./%s%s\", \"time\": %.12g,\n", name, strcmp(w->format, "png") ? ".ppm" : "", v->time);
+    fprintf(file, "    { \"file_path\": \"./%s%s\",", name, strcmp(w->format, "png") ? ".ppm" : "");
+    if (w->scene.times > 1)
+        fprintf(file, " \"time\": %.12g,", v->time);
+    fprintf(file, "\n");
     if (mask)
         fprintf(file, "      \"moving_path\": \"./%s.%s\",\n", mask, mask_extension(w));
     fprintf(file, "      \"transform_matrix\": [");
@@ -264,8 +238,8 @@ static void print_frame(const writer *w, FILE *file, const view *v, const char *
 static adcgs_status write_view(writer *w, int split, int i, FILE *file)
 {
     char name[32], mask[64];
-    const view v = view_at(w, split, i);
-    view said = v;
+    const adcgs_scenes_view v = view_at(w, split, i);
+    adcgs_scenes_view said = v;
     const adcgs_spoil_picture picture = picture_of(w, &v, i);
     const int has_mask = split != ADCGS_SPLIT_TRAIN && w->scene.moving;
     snprintf(name, sizeof name, "%s/r_%03d", split_names[split], i);
@@ -279,16 +253,16 @@ static adcgs_status write_view(writer *w, int split, int i, FILE *file)
 
 static int is_hidden(const writer *w, int split, int i)
 {
-    const view v = view_at(w, split, i);
+    const adcgs_scenes_view v = view_at(w, split, i);
     const adcgs_spoil_picture picture = picture_of(w, &v, i);
     return split == ADCGS_SPLIT_TRAIN && adcgs_spoil_hides(&w->spoil, &picture);
 }
 
 static adcgs_status write_frames(writer *w, int split, FILE *file)
 {
-    const int n = split_size(&w->scene, split), total = count_pictures(&w->scene);
+    const int n = adcgs_scenes_split_size(&w->scene, split), total = count_pictures(&w->scene);
     int written = 0;
-    fprintf(file, "{\n  \"camera_angle_x\": " CAMERA_ANGLE_X ",\n  \"frames\": [");
+    fprintf(file, "{\n  \"camera_angle_x\": %s,\n  \"frames\": [", w->scene.is_wide ? CAMERA_ANGLE_WIDE : CAMERA_ANGLE_X);
     for (int i = 0; i < n; i++) {
         if (!is_hidden(w, split, i)) {
             fprintf(file, written++ ? ",\n" : "\n");
@@ -324,7 +298,7 @@ static adcgs_status take_counts(adcgs_scenes_entry *scene, const adcgs_scenes_op
     if (options->moments < 0 || options->moments > MOMENTS_MAX || options->cameras < 0 || options->cameras > CAMERAS_MAX)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: %d moments, %d cameras, expected up to %d and %d", options->moments,
                           options->cameras, MOMENTS_MAX, CAMERAS_MAX);
-    if (options->cameras && scene->swings > 0.0)
+    if (options->cameras && scene->cameras == 1)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s is filmed by one camera: expected no number of cameras", scene->name);
     const int each = scene->cameras / scene->turns; /* see a moment */
     if (options->cameras > each && options->cameras % each)
@@ -341,8 +315,11 @@ static adcgs_status take_counts(adcgs_scenes_entry *scene, const adcgs_scenes_op
     return ADCGS_OK;
 }
 
-static adcgs_status check_views(const adcgs_scenes_options *options, adcgs_error *error)
+static adcgs_status check_views(const adcgs_scenes_entry *scene, const adcgs_scenes_options *options, adcgs_error *error)
 {
+    if ((options->watch || options->aside != 0.0) && scene->path > ADCGS_PATH_HAND)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s: cameras stand on no arc: expected no views to watch or from aside",
+                          scene->name);
     if (options->watch && (options->watch < 2 || options->watch > WATCH_MAX))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: %d views to watch, expected 2..%d", options->watch, WATCH_MAX);
     if (!(options->aside >= 0.0 && options->aside <= ASIDE_MAX))
@@ -361,20 +338,24 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
         return adcgs_fail(error, ADCGS_ERR_USAGE, "no scene is called \"%s\"", options->name);
     if (strcmp(format, "png") && strcmp(format, "ppm"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: format \"%s\", expected png or ppm", format);
+    if (scene->ground == ADCGS_GROUND_ALPHA && strcmp(format, "png"))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s: its images have alpha, which %s does not: expected png", scene->name,
+                          format);
     writer w = {.scene = *scene, .noise = options->noise / 255.0, .watch = options->watch,
                 .aside = options->aside, .spoil = options->spoil, .directory = directory, .format = format,
-                .width = options->width ? options->width : scene->size, .height = options->height ? options->height : scene->size,
+                .width = options->width ? options->width : scene->size,
+                .height = options->height ? options->height : scene->height ? scene->height : scene->size,
                 .pool = pool, .progress = progress, .user = user, .error = error};
     if (w.width < 1 || w.height < 1 || w.width > 16384 || w.height > 16384)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: size %dx%d, expected 1..16384 each", w.width, w.height);
     const double motion = options->motion != 0.0 ? options->motion : 1.0;
     if (!(motion >= MOTION_MIN && motion <= MOTION_MAX))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: motion %g, expected %g..%g", motion, MOTION_MIN, MOTION_MAX);
-    ADCGS_TRY(check_views(options, error));
+    ADCGS_TRY(check_views(scene, options, error));
     ADCGS_TRY(take_counts(&w.scene, options, error));
     take_objects(&w, motion);
     ADCGS_TRY(make_directory(directory, error));
-    w.pixels = adcgs_alloc(NULL, (size_t)w.width * (size_t)w.height, 3 * sizeof *w.pixels, error);
+    w.pixels = adcgs_alloc(NULL, plane_of(&w), 8 * sizeof *w.pixels, error);
     if (!w.pixels)
         return adcgs_alloc_status(error);
     adcgs_status status = ADCGS_OK;

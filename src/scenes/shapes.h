@@ -10,5 +10,7 @@
 /** Smallest t > 0 at which the ray o + t d meets the object, in its local coordinates, and the normal there; ADCGS_SHAPES_FAR if
     nowhere. */
 double adcgs_shapes_hit(const adcgs_trace_object *object, const double o[3], const double d[3], double normal[3]);
+/** Squared radius of a ball about the origin of local coordinates that holds the object. */
+double adcgs_shapes_bound2(const adcgs_trace_object *object);
 
 #endif

@@ -153,7 +153,8 @@ void adcgs_spoil_pixels(const adcgs_spoil *spoil, const adcgs_spoil_picture *pic
     const double *const s = spoil->strength;
     double gain[3];
     for (int c = 0; c < 3; c++)
-        gain[c] = power_of_two(s[ADCGS_SPOIL_EXPOSURE] * (2.0 * draw(picture->camera, 0, ADCGS_SPOIL_EXPOSURE) - 1.0) +
+        gain[c] = power_of_two(picture->stops +
+                               s[ADCGS_SPOIL_EXPOSURE] * (2.0 * draw(picture->camera, 0, ADCGS_SPOIL_EXPOSURE) - 1.0) +
                                s[ADCGS_SPOIL_WHITE] * (2.0 * draw(picture->camera, c, ADCGS_SPOIL_WHITE) - 1.0) +
                                (picture->time >= 0.5 ? 0.5 * (1 - c) * s[ADCGS_SPOIL_TINT] - s[ADCGS_SPOIL_STEP] : 0.0));
     for (size_t i = 0; i < pixels; i++)

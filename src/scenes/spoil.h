@@ -38,6 +38,7 @@ typedef struct adcgs_spoil_picture {
     int number;          /**< of the picture */
     int width;           /**< pixels */
     double time, step;   /**< of the picture, and from one moment to the next */
+    double stops;        /**< exposure of the image relative to the truth, which is the scene's own and no fault */
 } adcgs_spoil_picture;
 
 /** NAME=STRENGTH[,NAME=STRENGTH]; NULL or "" spoils nothing. */
@@ -49,7 +50,7 @@ int adcgs_spoil_hides(const adcgs_spoil *spoil, const adcgs_spoil_picture *pictu
 double adcgs_spoil_time(const adcgs_spoil *spoil, const adcgs_spoil_picture *picture);
 /** From the camera that took it, with a focal length in pixels, to the pose that is written, row-major 3x4 in OpenGL's axes. */
 void adcgs_spoil_pose(const adcgs_spoil *spoil, const adcgs_spoil_picture *picture, double focal, double to_world[12]);
-/** Its pixels, rgb interleaved. */
+/** Its pixels, rgb interleaved, with its exposure. */
 void adcgs_spoil_pixels(const adcgs_spoil *spoil, const adcgs_spoil_picture *picture, float *rgb, size_t pixels);
 
 #endif

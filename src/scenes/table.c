@@ -204,7 +204,8 @@ static const adcgs_trace_object fire[] = {
 
 /* The same, filmed by one camera in a hand: 90 moments, each seen once. */
 #define FILMED(things, movers)                                                                                    \
-    LAST_MOVE(things, movers), .cameras = 1, .times = 90, .turns = 1, .swings = 1.5, .n_val = 9, .n_test = 22
+    LAST_MOVE(things, movers), .path = ADCGS_PATH_HAND, .cameras = 1, .times = 90, .turns = 1, .swings = 1.5, .n_val = 9, \
+    .n_test = 22
 
 #define STAGE                                                                                                         \
     .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage), .size = 256, .cameras = 12, .times = 40, .turns = 3, .n_val = 5, \
@@ -240,8 +241,8 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "film-cross80", .about = "cross80 filmed so", FILMED(cross80, 1)},
     {.name = "film-turn1", .about = "turn1 filmed so", FILMED(turn1, 1)},
     {.name = "film-demo", .about = "demo filmed so", .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage),
-     .moving = HOP | SPIN | PASS | FADE | ORBIT, .size = 256, .cameras = 1, .times = 120, .turns = 1, .swings = 2.0, .n_val = 9,
-     .n_test = 22, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},
+     .moving = HOP | SPIN | PASS | FADE | ORBIT, .size = 256, .path = ADCGS_PATH_HAND, .cameras = 1, .times = 120, .turns = 1,
+     .swings = 2.0, .n_val = 9, .n_test = 22, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},
     {.name = "race", .about = "a box goes to and fro over 80 % of the picture's width", MOVING(race, 1)},
     {.name = "bounce", .about = "a box goes up a ramp and back, with sharp turns", MOVING(bounce, 1)},
     {.name = "collide", .about = "two boxes meet and go back", MOVING(collide, 2)},
@@ -261,6 +262,8 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "mirror60", .about = "60 %", MOVING(mirror60, 1)},
     {.name = "mirror90", .about = "90 %", MOVING(mirror90, 1)},
     {.name = "fire", .about = "a fire that flickers", MOVING(fire, 3)},
+    {.name = "tripod", .about = "several filmed by one camera that never moves", LAST_MOVE(several, 3), .path = ADCGS_PATH_TRIPOD,
+     .cameras = 1, .times = 60, .turns = 1, .n_val = 5, .n_test = 15},
     {.name = "clip", .about = "ten seconds: things move, one comes, one goes, a lamp is switched on",
      .objects = clip, .n_objects = (int)ADCGS_COUNTOF(clip), .moving = 0xf << (ADCGS_COUNTOF(clip) - 4), .size = 128,
      .cameras = 12, .times = 300, .turns = 3, .n_val = 5, .n_test = 29, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},
@@ -268,13 +271,22 @@ static const adcgs_scenes_entry entries[] = {
 
 const adcgs_scenes_entry *adcgs_scenes_entry_at(int i)
 {
-    return i >= 0 && i < (int)ADCGS_COUNTOF(entries) ? &entries[i] : NULL;
+    const int n = (int)ADCGS_COUNTOF(entries);
+    if (i < 0)
+        return NULL;
+    if (i < n)
+        return &entries[i];
+    for (int k = 0; adcgs_scenes_captures[k].name; k++)
+        if (k == i - n)
+            return &adcgs_scenes_captures[k];
+    return NULL;
 }
 
 const adcgs_scenes_entry *adcgs_scenes_entry_find(const char *name)
 {
-    for (size_t i = 0; i < ADCGS_COUNTOF(entries); i++)
-        if (!strcmp(entries[i].name, name))
-            return &entries[i];
+    const adcgs_scenes_entry *entry;
+    for (int i = 0; (entry = adcgs_scenes_entry_at(i)); i++)
+        if (!strcmp(entry->name, name))
+            return entry;
     return NULL;
 }

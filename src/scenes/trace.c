@@ -61,12 +61,14 @@ static double there_and_back(double x)
 
 static void pose_at(pose *out, const adcgs_trace_object *o, double time)
 {
-    static const double x_axis[3] = {1.0, 0.0, 0.0};
+    static const double x_axis[3] = {1.0, 0.0, 0.0}, z_axis[3] = {0.0, 0.0, 1.0};
     for (int a = 0; a < 3; a++) {
         double *const axis = out->axes + 3 * a;
         for (int i = 0; i < 3; i++)
             axis[i] = a == i ? 1.0 : 0.0;
         rotate(axis, x_axis, o->tilt);
+        if (o->turn != 0.0)
+            rotate(axis, z_axis, o->turn);
         rotate(axis, o->spin_axis, o->spin * time);
         out->centre[a] = o->position[a] + o->velocity[a] * time + o->zigzag[a] * there_and_back(o->zigs * time);
         out->slide[a] = o->slide[a] * time;
@@ -87,9 +89,8 @@ static void pose_at(pose *out, const adcgs_trace_object *o, double time)
         longest = ADCGS_MAX(longest, out->stretch[a]);
     }
     out->fade = time * time * (3.0 - 2.0 * time);
-    const double box2 = adcgs_v3_dot(o->size, o->size), round2 = o->size[0] * o->size[0] + o->size[2] * o->size[2];
     const int is_there = time >= o->from && (o->until == 0.0 || time < o->until), is_lamp = o->shape == ADCGS_SHAPE_LAMP;
-    out->bound2 = !is_there || is_lamp ? -1.0 : longest * longest * (o->shape == ADCGS_SHAPE_BOX ? box2 : round2);
+    out->bound2 = !is_there || is_lamp ? -1.0 : longest * longest * adcgs_shapes_bound2(o);
     out->shines = is_there && is_lamp;
 }
 
@@ -286,6 +287,23 @@ static void colour_row(void *arg, int y, int thread)
     }
 }
 
+static void alpha_row(void *arg, int y, int thread)
+{
+    const job *const j = arg;
+    const double *const m = j->camera->to_world, eye[3] = {m[3], m[7], m[11]};
+    const int samples = j->samples * j->samples;
+    (void)thread;
+    for (int x = 0; x < j->width; x++) {
+        int met = 0;
+        for (int k = 0; k < samples; k++) {
+            double direction[3];
+            aim(j, x, y, k, direction);
+            met += trace_ray(j, eye, direction).t < ADCGS_SHAPES_FAR;
+        }
+        j->out[(size_t)y * (size_t)j->width + (size_t)x] = (float)met / (float)samples;
+    }
+}
+
 static void cover_row(void *arg, int y, int thread)
 {
     const job *const j = arg;
@@ -338,6 +356,13 @@ adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const 
 {
     job j = {.objects = objects, .n = n, .width = width, .height = height, .samples = samples, .camera = camera, .out = rgb};
     return trace(&j, time, pool, colour_row, error);
+}
+
+adcgs_status adcgs_trace_alpha(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time, int width,
+                               int height, int samples, adcgs_pool *pool, float *alpha, adcgs_error *error)
+{
+    job j = {.objects = objects, .n = n, .width = width, .height = height, .samples = samples, .camera = camera, .out = alpha};
+    return trace(&j, time, pool, alpha_row, error);
 }
 
 adcgs_status adcgs_trace_cover(const adcgs_trace_object *objects, int n, uint32_t which, const adcgs_trace_camera *camera,

@@ -12,8 +12,12 @@ typedef enum adcgs_trace_shape {
     ADCGS_SHAPE_BALL,     /**< size[0] is the radius */
     ADCGS_SHAPE_BOX,      /**< size is half the edges */
     ADCGS_SHAPE_CYLINDER, /**< size[0] is the radius, size[2] half the height, axis z */
+    ADCGS_SHAPE_CAPSULE,  /**< the same with a half ball at each end, outside the height */
     ADCGS_SHAPE_FLOOR,    /**< the disc z = position z of radius size[0] */
+    ADCGS_SHAPE_HAIR,     /**< a chain of capsules of radius size[0] from z = -size[2] to size[2] along a parabola; its
+                               middle lies at x = size[1], its ends at x = 0; casts no shadow */
     ADCGS_SHAPE_DOME,     /**< a ball seen from inside: shines by itself, casts no shadow */
+    ADCGS_SHAPE_ROOM,     /**< a box seen from inside, size is half the edges; light from outside passes its walls */
     ADCGS_SHAPE_LAMP      /**< not seen; shines on what is about it, half as bright at the distance size[0], through everything */
 } adcgs_trace_shape;
 
@@ -33,6 +37,7 @@ typedef struct adcgs_trace_object {
     double size[3];
     double position[3];
     double tilt;                 /**< turns about the local x axis, before everything else */
+    double turn;                 /**< turns about the z axis, after the tilt */
     adcgs_trace_texture texture;
     double frequency;            /**< texture cells per unit of length */
     double colour[2][3];         /**< the two ends of the texture's mix */
@@ -68,6 +73,13 @@ void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const dou
  */
 adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time,
                                 int width, int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error);
+
+/**
+ * Coverage of the image by objects: the share of a pixel's samples that meet one, 0..1, [height][width]. Samples are those of
+ * adcgs_trace_render(), whose colours are premultiplied by it.
+ */
+adcgs_status adcgs_trace_alpha(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time, int width,
+                               int height, int samples, adcgs_pool *pool, float *alpha, adcgs_error *error);
 
 /**
  * Where some of the objects are seen: 1 where the nearest surface is, for at least half of a pixel's samples, that of an object
