@@ -1,0 +1,157 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Robustness of the default: make -C build robust. Each scene of doc/robust.list is coded by default, then once with each mechanism
+# off; one thread a run. All figures are those of decoded files on test views (adcgs-eval). Writes robust.md: PSNR, bytes and CPU
+# seconds of every run, and the gain in dB by turning each mechanism off, in bold where it is more than MARGIN. Leaves with 1 then,
+# or if a run fails. Results are kept, so that it resumes: one folder for each version of adcgs-enc and number of iterations.
+#   ROBUST      folder of these folders (default robust)
+#   VERSION     name of the version (default the checksum of adcgs-enc)
+#   SCENES      short names (default all that are present); MECHANISMS likewise
+#   ITERATIONS  of training (default 1500)
+#   SEEDS       default 1; figures are means over them
+#   JOBS        runs at once, at most 2 (default 1)
+#   MARGIN      dB (default 0.3)
+#   ROBUST_LIST another list
+#   ADCGS_DATA  folder of data sets (default ../shared/data next to the sources)
+set -eu
+source=$(cd "${srcdir:-.}" && pwd)
+. "$source/doc/scenes.sh"
+list=${ROBUST_LIST:-$source/doc/robust.list}
+data=${ADCGS_DATA:-$source/../shared/data}
+out=${ROBUST:-robust}/${VERSION:-$(cksum <./adcgs-enc | cut -d ' ' -f 1)}-${ITERATIONS:-1500}
+
+# listed KIND: lines of the list without that word.
+listed() { sed -n "s/^$1 \{1,\}//p" "$list"; }
+# is_in NAME NAMES: everything is in no names.
+is_in() { case " ${2:-$1} " in *" $1 "*) ;; *) return 1 ;; esac }
+
+# scenes: NAME FOLDER OPTIONS of those that are asked for and present.
+scenes()
+{
+    listed made | while read -r name rest; do
+        ! is_in "$name" "${SCENES:-}" || echo "$name $out/scenes/$name"
+    done
+    listed data | while read -r name folder options; do
+        is_in "$name" "${SCENES:-}" || continue
+        [ -e "$data/$folder" ] && echo "$name $data/$folder $options" || echo "robust: no $data/$folder, left out" >&2
+    done
+}
+
+# mechanisms: NAME OPTIONS of those that are asked for, behind the default.
+mechanisms()
+{
+    echo default
+    listed without | while read -r name options; do
+        ! is_in "$name" "${MECHANISMS:-}" || echo "$name $options"
+    done
+}
+
+make_scene()
+{
+    name=$1 scene=$2
+    shift 2
+    [ -e "$out/scenes/$name.made" ] && return 0
+    mkdir -p "$out/scenes"
+    ./adcgs-demo-scene --scene "$scene" "$@" -o "$out/scenes/$name" -q --threads 1 && : >"$out/scenes/$name.made"
+}
+
+# run SCENE MECHANISM SEED FOLDER OPTIONS...: unless it is there. An encoder without the switch of a mechanism is noted as such.
+run()
+{
+    stem=$out/runs/$1-$2-$3 seed=$3 scene=$4
+    [ ! -s "$stem.eval" ] && [ ! -e "$stem.missing" ] || return 0
+    echo "robust: $1, $2, seed $3" >&2
+    shift 4
+    code=0
+    ./adcgs-enc "$scene" -o "$stem.adcgs" --threads 1 --seed "$seed" -n "${ITERATIONS:-1500}" -q --json "$@" >"$stem.json" \
+        2>"$stem.err" || code=$?
+    if [ $code -eq 2 ] && grep -q "cannot leave out\|unknown setting" "$stem.err"; then
+        mv "$stem.err" "$stem.missing"
+        return 0
+    fi
+    [ $code -eq 0 ] || { cat "$stem.err" >&2; return 1; }
+    ./adcgs-eval "$stem.adcgs" "$scene" --metrics fitted-psnr,dynamic-psnr --threads 1 -q --json >"$stem.new"
+    mv "$stem.new" "$stem.eval"
+}
+
+if [ "${1:-}" = run ]; then
+    shift
+    run "$@" || { echo "robust: FAILED: $1, $2, seed $3" >&2; exit 1; }
+    exit 0
+fi
+
+# figures: SCENE MECHANISM SEED PSNR BYTES SECONDS of each run, with - where the encoder has no switch.
+figures()
+{
+    scenes | while read -r scene rest; do
+        mechanisms | while read -r mechanism rest; do
+            for seed in ${SEEDS:-1}; do
+                stem=$out/runs/$scene-$mechanism-$seed
+                if [ -s "$stem.eval" ]; then
+                    echo "$scene $mechanism $seed $(value psnr "$stem.eval") $(value bytes "$stem.json") $(value cpu_seconds "$stem.json")"
+                elif [ -e "$stem.missing" ]; then
+                    echo "$scene $mechanism $seed - - -"
+                fi
+            done
+        done
+    done
+}
+
+# tables: of figures; the last line is the number of marked cells and of all of them.
+tables()
+{
+    awk -v margin="${MARGIN:-0.3}" '
+        !($1 in seen) { seen[$1] = 1; scenes[++n] = $1 }
+        !($2 in known) { known[$2] = 1; mechanisms[++m] = $2 }
+        $4 != "-" { count[$1, $2]++; psnr[$1, $2] += $4; bytes[$1, $2] += $5; seconds[$1, $2] += $6 }
+        $4 == "-" { missing[$1, $2] = 1 }
+        function gain(s, k) { return psnr[s, k] / count[s, k] - psnr[s, "default"] / count[s, "default"] }
+        function cell(s, k,  text) {
+            if (!count[s, k] || !count[s, "default"]) return missing[s, k] ? "no switch" : ""
+            text = sprintf("%+.2f", gain(s, k))
+            return gain(s, k) > margin ? "**" text "**" : text
+        }
+        END {
+            print "PSNR in dB that each scene gains by turning a mechanism off; **bold** where that is more than " margin ".\n"
+            line = "| Scene | Default"; rule = "|---|---"
+            for (j = 2; j <= m; j++) { line = line " | " mechanisms[j]; rule = rule "|---" }
+            print line " |\n" rule "|"
+            for (i = 1; i <= n; i++) {
+                s = scenes[i]
+                line = "| " s " | " (count[s, "default"] ? sprintf("%.2f", psnr[s, "default"] / count[s, "default"]) : "")
+                for (j = 2; j <= m; j++) line = line " | " cell(s, mechanisms[j])
+                print line " |"
+            }
+            print "\n| Scene | Off | PSNR, dB | Difference | Bytes | CPU, s |\n|---|---|---|---|---|---|"
+            for (i = 1; i <= n; i++) for (j = 1; j <= m; j++) {
+                s = scenes[i]; k = mechanisms[j]
+                if (count[s, k])
+                    printf "| %s | %s | %.2f | %s | %.0f | %.0f |\n", s, k, psnr[s, k] / count[s, k], k == "default" ? "" : cell(s, k),
+                        bytes[s, k] / count[s, k], seconds[s, k] / count[s, k]
+                if (count[s, k] && count[s, "default"] && k != "default") { all++; marked += gain(s, k) > margin }
+            }
+            printf "\n%d of %d cells are marked.\n", marked, all
+        }'
+}
+
+mkdir -p "$out/runs"
+jobs=${JOBS:-1}
+[ "$jobs" -le 2 ] || jobs=2
+listed made | while read -r name scene options; do
+    # shellcheck disable=SC2086
+    ! is_in "$name" "${SCENES:-}" || make_scene "$name" $scene $options
+done
+failed=0
+scenes | while read -r scene folder own; do
+    mechanisms | while read -r mechanism options; do
+        for seed in ${SEEDS:-1}; do
+            # shellcheck disable=SC2086
+            echo $scene $mechanism $seed $folder $own $options
+        done
+    done
+done | xargs -P "$jobs" -L 1 sh "$0" run || failed=1
+figures | tables >"$out/robust.md"
+cat "$out/robust.md"
+[ $failed -eq 0 ] || echo "robust: some runs failed" >&2
+grep -q '^0 of ' "$out/robust.md" && exit $failed
+exit 1
