@@ -70,7 +70,7 @@ run()
         return 0
     fi
     [ $code -eq 0 ] || { cat "$stem.err" >&2; return 1; }
-    ./adcgs-eval "$stem.adcgs" "$scene" --metrics fitted-psnr,dynamic-psnr --threads 1 -q --json >"$stem.new"
+    ./adcgs-eval "$stem.adcgs" "$scene" --metrics fitted-psnr,dynamic-psnr --threads 1 -q --json >"$stem.new" || return 1
     mv "$stem.new" "$stem.eval"
 }
 
