@@ -22,14 +22,16 @@ out=${ROBUST:-robust}/${VERSION:-$(cksum <./adcgs-enc | cut -d ' ' -f 1)}-${ITER
 
 # listed KIND: lines of the list without that word.
 listed() { sed -n "s/^$1 \{1,\}//p" "$list"; }
+# own_options OPTIONS: those of adcgs-enc, behind " // "; nothing where there are none.
+own_options() { case $1 in *"// "*) printf '%s\n' "${1#*// }" ;; esac; }
 # is_in NAME NAMES: everything is in no names.
 is_in() { case " ${2:-$1} " in *" $1 "*) ;; *) return 1 ;; esac }
 
 # scenes: NAME FOLDER OPTIONS of those that are asked for and present.
 scenes()
 {
-    listed made | while read -r name rest; do
-        ! is_in "$name" "${SCENES:-}" || echo "$name $out/scenes/$name"
+    listed made | while read -r name scene options; do
+        ! is_in "$name" "${SCENES:-}" || echo "$name $out/scenes/$name $(own_options "$options")"
     done
     listed data | while read -r name folder options; do
         is_in "$name" "${SCENES:-}" || continue
@@ -139,7 +141,7 @@ jobs=${JOBS:-1}
 [ "$jobs" -le 2 ] || jobs=2
 listed made | while read -r name scene options; do
     # shellcheck disable=SC2086
-    ! is_in "$name" "${SCENES:-}" || make_scene "$name" $scene $options
+    ! is_in "$name" "${SCENES:-}" || make_scene "$name" $scene ${options%%// *}
 done
 failed=0
 scenes | while read -r scene folder own; do

@@ -10,7 +10,7 @@ without nothing --set stereo=48
 without planted -n 40
 without absent --without no-such-part
 made one tiny --size 24x24 --moments 4
-made two tiny --size 16x16 --moments 2
+made two tiny --size 16x16 --moments 2 // --set tiers=1
 data nowhere no-such-folder
 END
 export ROBUST=$dir/robust ROBUST_LIST=$dir/list VERSION=test ITERATIONS=10 ADCGS_DATA=$dir
