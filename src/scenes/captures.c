@@ -113,7 +113,7 @@ static const adcgs_trace_object hair[] = {
     HAIR(0.007, -0.30, 1.05, -0.20, 0.25, 0.55, 0.24, 0.22, 0.90),
 };
 
-/* All of it lies in front of cameras at y = -6, up to a wall nine units from them. */
+/* Everything lies in front of cameras at y = -6, up to a wall nine units from them. */
 static const adcgs_trace_object shelf[] = {
     {BOX(9.0, 0.05, 4.0, 0.0, 3.0, 2.0), PAINT(PATCHES, 1.6, 0.5, 0.70, 0.62, 0.56, 0.48, 0.54, 0.60, 181)},
     {.shape = ADCGS_SHAPE_FLOOR, .size = {14.0}, .position = {0.0, 0.0, -0.6},

@@ -54,7 +54,7 @@ static adcgs_scenes_view filmed_at(const adcgs_scenes_entry *scene, int split, i
     return v;
 }
 
-/* Number of the camera that takes image i for training, and when: cameras take turns, each moment is seen by some of them. */
+/* Camera and time of training's image i: cameras take turns, each time is seen by some of them. */
 static void take_turns(const adcgs_scenes_entry *scene, int i, adcgs_scenes_view *v)
 {
     const int each = scene->cameras / scene->turns, moment = i / each, steps = scene->times - 1;

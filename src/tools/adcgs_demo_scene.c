@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#define SCENES_MAX 64 /* that completion knows */
+#define SCENES_MAX 128 /* that completion knows */
 
 static void show(void *user, int done, int total)
 {

@@ -28,14 +28,14 @@ grep -q '^2 of 4 cells are marked\.$' "$table" || bad "the count"
 grep -q 'no .*/no-such-folder, left out' "$dir/err" || bad "a data set that is not there"
 [ $failed -eq 0 ] || cat "$table" "$dir/err"
 
-# All of it is there by now; parts can be asked for.
+# The whole is present by now; parts can be asked for.
 cp "$table" "$dir/before"
 robust
 cmp -s "$table" "$dir/before" && ! grep -q '^robust: one' "$dir/err" || bad "it does not resume"
 SCENES=two MECHANISMS=nothing robust || { bad "a part without the planted loss"; cat "$dir/out" "$dir/err"; }
 grep -q '^0 of 1 cells' "$table" && ! grep -q planted "$table" || bad "not the part"
 
-# A run that fails is told of, and fails.
+# A failed run is reported, and fails.
 echo 'without wrong --set stereo=-1' >>"$dir/list"
 SCENES=two MECHANISMS=wrong robust && bad "a run that fails"
 grep -q 'FAILED: two, wrong, seed 1' "$dir/err" || { bad "no word of it"; cat "$dir/err"; }

@@ -243,7 +243,7 @@ static double off_line(const adcgs_trace_object *object, const double p[3])
     return best;
 }
 
-/* Rays from outside meet capsules and hair at their radius, on the near side, within the ball that is said to hold them. */
+/* Rays from outside meet capsules and hair at their radius, on the near side, within the bounding ball. */
 static void thick_lines_are_where_they_should_be(void **state)
 {
     static const adcgs_trace_object shapes[2] = {{.shape = ADCGS_SHAPE_CAPSULE, .size = {0.3, 0.0, 0.5}},
