@@ -97,8 +97,8 @@ static adcgs_status catch_up(adcgs_decoder *d, adcgs_error *error)
         return ADCGS_OK;
     adcgs_decoder_forget_drawn(d); /* of models that go, or were moved */
     adcgs_model_clear(&d->unfinished, &d->memory);
-    d->is_behind = 0;
     const adcgs_status status = adcgs_push_peek(d->push, &d->unfinished, &drawable, error);
+    d->is_behind = status != ADCGS_OK; /* then it is tried again: what is not drawn would not be missed */
     if (status != ADCGS_OK)
         adcgs_model_clear(&d->unfinished, &d->memory);
     return status;
@@ -158,11 +158,22 @@ static adcgs_status find_segment(adcgs_decoder *d, double time, uint32_t *segmen
     return ADCGS_OK;
 }
 
+/** Have at hand the segment that serves a time, and with blends the one that fades into it then. */
+static adcgs_status bring(adcgs_decoder *d, double time, int blends, uint32_t *segment, int *is_fade, adcgs_error *error)
+{
+    ADCGS_TRY(find_segment(d, time, segment, is_fade, error));
+    ADCGS_TRY(fetch(d, *segment, blends && *is_fade, error));
+    if (segment_at(d, time) == *segment && fades(d, *segment, time) == *is_fade)
+        return ADCGS_OK;
+    /* Reading it showed that the index is wrong, which is noticed once: now times are those of the segments themselves. */
+    ADCGS_TRY(find_segment(d, time, segment, is_fade, error));
+    return fetch(d, *segment, blends && *is_fade, error);
+}
+
 adcgs_status adcgs_decoder_moment(adcgs_decoder *d, double time, adcgs_moment *out, adcgs_error *error)
 {
     uint32_t segment;
-    ADCGS_TRY(find_segment(d, time, &segment, &out->fades, error));
-    ADCGS_TRY(fetch(d, segment, out->fades, error));
+    ADCGS_TRY(bring(d, time, 1, &segment, &out->fades, error));
     ADCGS_TRY(primitives_of(d, segment, time, &out->now, error));
     if (!out->fades)
         return ADCGS_OK;
@@ -175,8 +186,7 @@ adcgs_status adcgs_decoder_moment(adcgs_decoder *d, double time, adcgs_moment *o
 static adcgs_status primitives_at(adcgs_decoder *d, double time, uint32_t *segment, adcgs_primitives *out, adcgs_error *error)
 {
     int is_fade;
-    ADCGS_TRY(find_segment(d, time, segment, &is_fade, error));
-    ADCGS_TRY(fetch(d, *segment, 0, error));
+    ADCGS_TRY(bring(d, time, 0, segment, &is_fade, error));
     return primitives_of(d, *segment, time, out, error);
 }
 

@@ -162,6 +162,7 @@ adcgs_status adcgs_meta_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory
         const adcgs_status status = adcgs_parse_text(p, "value", 0, META_VALUE_MAX, memory, &m->value);
         if (status != ADCGS_OK) {
             adcgs_free(memory, m->key);
+            m->key = NULL;
             return status;
         }
     }

@@ -25,14 +25,17 @@ adcgs_status adcgs_grow_create(adcgs_grow **out, adcgs_stream *stream, uint32_t 
     *out = g;
     if (!g)
         return adcgs_alloc_status(error);
+    const int64_t duration = stream->duration_ticks;
     stream->duration_ticks = UNKNOWN;
     adcgs_buffer none;
     adcgs_buffer_init(&none);
     adcgs_writer_init(&g->writer, stream, max_anchors, &none, error);
     const adcgs_status status = adcgs_head_write(&none, stream, max_anchors, error); /* to learn now that it cannot be */
     adcgs_buffer_clear(&none);
-    if (status != ADCGS_OK)
+    if (status != ADCGS_OK) {
+        stream->duration_ticks = duration;
         adcgs_grow_free(out);
+    }
     return status;
 }
 
@@ -51,6 +54,32 @@ static void go_on(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
     g->writer.out = out;
     g->writer.begin = out->size;
     g->writer.error = error;
+}
+
+/** What a call changes before it is known to succeed. */
+typedef struct state {
+    adcgs_writer writer;
+    adcgs_bytes bytes;
+    uint32_t weights;
+} state;
+
+static state note_state(const adcgs_grow *g)
+{
+    return (state){ g->writer, g->writer.stream->bytes, g->writer.stream->weights };
+}
+
+/** A call failed: all is as if it had not been made. */
+static void restore(adcgs_grow *g, const state *was)
+{
+    adcgs_writer *w = &g->writer;
+    const adcgs_buffer grown = w->index; /* its memory may be another */
+    w->out->size = w->begin;
+    *w = was->writer;
+    w->index = grown;
+    w->index.size = was->writer.index.size;
+    w->index.failed = 0;
+    w->stream->bytes = was->bytes;
+    w->stream->weights = was->weights;
 }
 
 /** What was appended is the caller's now. Lengths of payloads stand in the headers. */
@@ -95,20 +124,13 @@ adcgs_status adcgs_grow_segment(adcgs_grow *g, const adcgs_model *before, adcgs_
     if (w->n_segments == 0 && span[0] != w->stream->start_ticks)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment does not begin where the stream does");
     go_on(g, out, error);
-    const adcgs_writer was = *w;
-    const adcgs_bytes bytes = w->stream->bytes;
-    const size_t index = w->index.size;
+    const state was = note_state(g);
     const adcgs_status status = write_segment(g, before, model);
     if (status != ADCGS_OK) {
-        const adcgs_buffer grown = w->index; /* its memory may be another */
-        *w = was;
-        w->index = grown;
-        w->index.size = index;
-        w->stream->bytes = bytes;
-        out->size = w->begin;
+        restore(g, &was);
         return status;
     }
-    hand_over(g, was.n_segments == 0);
+    hand_over(g, was.writer.n_segments == 0);
     g->span[0] = span[0];
     g->span[1] = span[1];
     g->max_anchors = ADCGS_MAX(g->max_anchors, model->n);
@@ -121,9 +143,13 @@ adcgs_status adcgs_grow_end(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error
     if (g->writer.n_segments == 0)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: no segments, expected some");
     go_on(g, out, error);
-    ADCGS_TRY(adcgs_writer_end(&g->writer));
-    hand_over(g, 0);
-    return ADCGS_OK;
+    const state was = note_state(g);
+    const adcgs_status status = adcgs_writer_end(&g->writer);
+    if (status == ADCGS_OK)
+        hand_over(g, 0);
+    else
+        restore(g, &was);
+    return status;
 }
 
 uint32_t adcgs_grow_segments(const adcgs_grow *g)

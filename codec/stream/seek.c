@@ -2,13 +2,8 @@
 /** \file Seeking in a stream. */
 #include "stream/seek.h"
 
-#include "base/digest.h"
 #include "model/model_priv.h"
-#include "stream/reader.h"
-
-#define ENDC_BYTES 32  /**< of the chunk */
-#define ENTRY_BYTES 37 /**< of a segment in INDX */
-#define TIMES_BYTES 20 /**< of SEGM: start, end and reach, with which it begins */
+#include "stream/seek_table.h"
 
 struct adcgs_seek {
     adcgs_seekable input;
@@ -16,12 +11,14 @@ struct adcgs_seek {
     adcgs_error error;   /**< of the reader */
     adcgs_stream_reader reader;
     adcgs_stream *stream;
-    uint32_t n, capacity;
-    adcgs_syn_index *entry; /**< [n] */
+    adcgs_seek_table table; /**< of segments; never without one, and their number stays */
+    adcgs_cost *spent;   /**< [table.n] what each segment cost that was decoded so far; 0: it was not */
+    adcgs_cost left;     /**< of what the level allows the stream, less the front and all of spent */
     uint64_t first;      /**< position of the first segment */
-    int by_index;        /**< the entries are those of INDX, and not yet doubted */
+    int by_index;        /**< the table is that of INDX, and not yet doubted */
     uint32_t first_nets; /**< networks that stand before the first segment */
     int keeps_nets;      /**< some segment names what was sent before its key: reading began at the beginning, all is kept */
+    int passes;          /**< segments before the key that decoding began at, or passed, were not read: nor were their networks */
 };
 
 /** The reader's failure, to whoever called. */
@@ -30,37 +27,6 @@ static adcgs_status pass_on(const adcgs_seek *s, adcgs_status status, adcgs_erro
     if (status != ADCGS_OK && error)
         *error = s->error;
     return status;
-}
-
-/** Read some bytes, all of which are there. */
-static adcgs_status fetch(adcgs_seek *s, uint64_t position, void *to, size_t bytes)
-{
-    size_t got = 0;
-    if (position > s->input.size || bytes > s->input.size - position)
-        return adcgs_fail(&s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before ENDC",
-                          (unsigned long long)s->input.size);
-    adcgs_source_move(&s->reader.source, position);
-    ADCGS_TRY(adcgs_source_read(&s->reader.source, to, bytes, &got, &s->error));
-    return got == bytes ? ADCGS_OK :
-                          adcgs_fail(&s->error, ADCGS_ERR_IO, "stream: reading failed at byte %llu",
-                                     (unsigned long long)(position + got));
-}
-
-/** The header of the chunk at a position, and whether all of the chunk is there. */
-static adcgs_status look_at(adcgs_seek *s, uint64_t position, adcgs_chunk *chunk)
-{
-    uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES];
-    ADCGS_TRY(fetch(s, position, bytes, sizeof bytes));
-    ADCGS_TRY(adcgs_chunk_header(bytes, position, chunk, &s->error));
-    if (chunk->header.length > s->input.size || position + ADCGS_CHUNK_BYTES + chunk->header.length > s->input.size)
-        return adcgs_fail(&s->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, inside %s",
-                          (unsigned long long)s->input.size, chunk->name);
-    return ADCGS_OK;
-}
-
-static uint64_t behind(const adcgs_chunk *chunk)
-{
-    return chunk->origin + ADCGS_CHUNK_BYTES + chunk->header.length;
 }
 
 static adcgs_status use_chunk(adcgs_seek *s, uint64_t position)
@@ -73,149 +39,49 @@ static adcgs_status use_chunk(adcgs_seek *s, uint64_t position)
                        ADCGS_OK;
 }
 
-/** All that stands before the first segment. first: its position. */
-static adcgs_status read_front(adcgs_seek *s, uint64_t *first)
+/** All that stands before the first segment. */
+static adcgs_status read_front(adcgs_seek *s)
 {
-    adcgs_source_move(&s->reader.source, 0);
-    ADCGS_TRY(adcgs_stream_reader_signature(&s->reader));
+    adcgs_stream_reader *r = &s->reader;
+    adcgs_source_move(&r->source, 0);
+    ADCGS_TRY(adcgs_stream_reader_signature(r));
     for (uint64_t at = ADCGS_SIGNATURE_BYTES;;) {
         adcgs_chunk chunk;
-        ADCGS_TRY(look_at(s, at, &chunk));
-        *first = at;
-        if (chunk.type == ADCGS_TYPE_SEGM && s->reader.head_payload)
+        ADCGS_TRY(adcgs_seek_look(r, at, &chunk));
+        s->first = at;
+        if (chunk.type == ADCGS_TYPE_SEGM && r->head_payload)
             break;
         ADCGS_TRY(use_chunk(s, at)); /* which refuses what may not stand here */
-        if (s->reader.ended || s->reader.indexed)
+        if (r->ended || r->indexed)
             return adcgs_fail(&s->error, ADCGS_ERR_DATA, "stream: no segment stands before its end");
-        at = behind(&chunk);
+        if (r->segment.stage != ADCGS_SEGMENT_NONE)
+            return adcgs_fail(&s->error, ADCGS_ERR_DATA, "stream: %s at byte %llu has become another chunk", chunk.name,
+                              (unsigned long long)at);
+        at = adcgs_seek_behind(&chunk);
     }
-    s->first_nets = s->reader.nets.n;
-    s->reader.nets.has_gaps = 1;
+    s->first_nets = r->nets.n;
+    r->nets.has_gaps = 1;
+    s->left = r->segment.left;
     return ADCGS_OK;
 }
 
-static adcgs_status add_entry(adcgs_seek *s, const adcgs_syn_index *entry)
+/** Find the segments, by the index or else by the headers of chunks. */
+static adcgs_status find_segments(adcgs_seek *s)
 {
-    if (s->n >= s->reader.segment.limits->segments)
-        return adcgs_fail(&s->error, ADCGS_ERR_LIMIT, "SEGM: more than %u segments, the level's limit",
-                          s->reader.segment.limits->segments);
-    if (s->n == s->capacity) {
-        const uint32_t capacity = s->capacity ? 2 * s->capacity : 16;
-        adcgs_syn_index *entries = adcgs_alloc(s->options.memory, capacity, sizeof *entries, &s->error);
-        if (!entries)
-            return adcgs_alloc_status(&s->error);
-        if (s->n > 0)
-            memcpy(entries, s->entry, s->n * sizeof *entries);
-        adcgs_free(s->options.memory, s->entry);
-        s->entry = entries;
-        s->capacity = capacity;
-    }
-    s->entry[s->n++] = *entry;
-    return ADCGS_OK;
-}
-
-/** Bytes that a `var` has. */
-static uint64_t var_bytes(uint32_t value)
-{
-    uint64_t n = 1;
-    while (value >>= 7)
-        n++;
-    return n;
-}
-
-/** Where INDX stands if nothing but it and ENDC follows the segments; 0 if that cannot be. */
-static uint64_t index_position(const adcgs_seek *s)
-{
-    const uint64_t n = s->reader.head.segments, payload = var_bytes((uint32_t)n) + ENTRY_BYTES * n;
-    const uint64_t behind_it = ENDC_BYTES + ADCGS_CHUNK_BYTES + payload;
-    return n > 0 && s->input.size > behind_it ? s->input.size - behind_it : 0;
-}
-
-/** The payload of INDX: all segments, one behind the other in the stream and in time. */
-static adcgs_status parse_entries(adcgs_seek *s, const uint8_t *payload, size_t bytes, uint64_t first, uint64_t end)
-{
-    adcgs_parse p = { .chunk = "INDX", .error = &s->error };
-    uint32_t n;
-    adcgs_reader_init(&p.r, payload, bytes);
-    ADCGS_TRY(adcgs_parse_varint(&p, "segments", s->reader.head.segments, s->reader.head.segments, &n));
-    for (uint32_t i = 0; i < n; i++) {
-        adcgs_syn_index entry;
-        ADCGS_TRY(adcgs_syn_index_parse(&p, &entry));
-        if (entry.offset < first || entry.offset >= end || entry.bytes > end - entry.offset ||
-            (i > 0 && entry.start_ticks <= s->entry[i - 1].start_ticks))
-            return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: not what the stream holds");
-        first = entry.offset + entry.bytes;
-        ADCGS_TRY(add_entry(s, &entry));
-    }
-    return adcgs_parse_end(&p);
-}
-
-/** Take the index where it is expected. ADCGS_ERR_DATA: there is none, or it is none. */
-static adcgs_status read_index(adcgs_seek *s, uint64_t first)
-{
-    const uint64_t at = index_position(s);
-    adcgs_chunk chunk;
-    uint8_t crc[4];
-    if (at < first)
-        return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: there is none");
-    ADCGS_TRY(look_at(s, at, &chunk));
-    if (chunk.type != ADCGS_TYPE_INDX || chunk.header.version > 0 || behind(&chunk) != s->input.size - ENDC_BYTES)
-        return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: there is none");
-    uint8_t *payload = adcgs_alloc(s->options.memory, chunk.header.length, 1, &s->error);
-    if (!payload)
-        return adcgs_alloc_status(&s->error);
-    adcgs_status status = fetch(s, at + ADCGS_CHUNK_HEADER_BYTES, payload, chunk.header.length);
-    if (status == ADCGS_OK)
-        status = fetch(s, behind(&chunk) - sizeof crc, crc, sizeof crc);
-    if (status == ADCGS_OK && adcgs_load_le32(crc) != adcgs_crc32c(0, payload, chunk.header.length))
-        status = adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: checksum is wrong");
-    if (status == ADCGS_OK)
-        status = parse_entries(s, payload, chunk.header.length, first, at);
-    adcgs_free(s->options.memory, payload);
-    return status;
-}
-
-/** A SEGM that was met: it ends the segment before it. */
-static adcgs_status meet_segment(adcgs_seek *s, const adcgs_chunk *chunk)
-{
-    uint8_t times[TIMES_BYTES] = { 0 };
-    ADCGS_TRY(fetch(s, chunk->origin + ADCGS_CHUNK_HEADER_BYTES, times, ADCGS_MIN(sizeof times, (size_t)chunk->header.length)));
-    const adcgs_syn_index entry = { .start_ticks = (int64_t)adcgs_load_le64(times),
-                                    .end_ticks = (int64_t)adcgs_load_le64(times + 8),
-                                    .reach_ticks = adcgs_load_le32(times + 16),
-                                    .offset = chunk->origin,
-                                    .key = chunk->header.flags & ADCGS_CHUNK_KEY };
-    if (chunk->header.length < sizeof times || (s->n > 0 && entry.start_ticks <= s->entry[s->n - 1].start_ticks))
-        return adcgs_fail(&s->error, ADCGS_ERR_DATA, "SEGM: too short, or not later than the segment in front of it");
-    return add_entry(s, &entry);
-}
-
-/** Find the segments by the headers of all chunks. */
-static adcgs_status scan(adcgs_seek *s, uint64_t first)
-{
-    s->n = 0;
-    for (uint64_t at = first;;) {
-        adcgs_chunk chunk;
-        ADCGS_TRY(look_at(s, at, &chunk));
-        const int ends = chunk.type == ADCGS_TYPE_SEGM || chunk.type == ADCGS_TYPE_INDX || chunk.type == ADCGS_TYPE_ENDC;
-        if (ends && s->n > 0 && s->entry[s->n - 1].bytes == 0)
-            s->entry[s->n - 1].bytes = at - s->entry[s->n - 1].offset;
-        if (chunk.type == ADCGS_TYPE_SEGM)
-            ADCGS_TRY(meet_segment(s, &chunk));
-        if (chunk.type == ADCGS_TYPE_ENDC)
-            return ADCGS_OK;
-        at = behind(&chunk);
-    }
+    const adcgs_status status = adcgs_seek_table_index(&s->table, &s->reader, s->first);
+    s->by_index = status == ADCGS_OK;
+    if (status != ADCGS_ERR_DATA && status != ADCGS_ERR_TRUNCATED)
+        return status;
+    adcgs_seek_table_clear(&s->table, s->options.memory);
+    return adcgs_seek_table_scan(&s->table, &s->reader, s->first);
 }
 
 static adcgs_status open_seek(adcgs_seek *s)
 {
-    ADCGS_TRY(read_front(s, &s->first));
-    const adcgs_status status = read_index(s, s->first);
-    s->by_index = status == ADCGS_OK;
-    if (status == ADCGS_ERR_DATA || status == ADCGS_ERR_TRUNCATED)
-        return scan(s, s->first);
-    return status;
+    ADCGS_TRY(read_front(s));
+    ADCGS_TRY(find_segments(s));
+    s->spent = adcgs_alloc(s->options.memory, s->table.n, sizeof *s->spent, &s->error);
+    return s->spent ? ADCGS_OK : adcgs_alloc_status(&s->error);
 }
 
 adcgs_status adcgs_seek_open(adcgs_seek **out, adcgs_stream *stream, adcgs_read_at_fn read, void *user, uint64_t size,
@@ -242,21 +108,22 @@ void adcgs_seek_free(adcgs_seek **seek)
     if (!s)
         return;
     adcgs_stream_reader_clear(&s->reader);
-    adcgs_free(s->options.memory, s->entry);
+    adcgs_seek_table_clear(&s->table, s->options.memory);
+    adcgs_free(s->options.memory, s->spent);
     adcgs_free(NULL, s);
     *seek = NULL;
 }
 
 uint32_t adcgs_seek_segments(const adcgs_seek *s)
 {
-    return s->n;
+    return s->table.n;
 }
 
 void adcgs_seek_times(const adcgs_seek *s, uint32_t number, int64_t ticks[3])
 {
-    ticks[0] = s->entry[number].start_ticks;
-    ticks[1] = s->entry[number].end_ticks;
-    ticks[2] = s->entry[number].reach_ticks;
+    ticks[0] = s->table.entry[number].start_ticks;
+    ticks[1] = s->table.entry[number].end_ticks;
+    ticks[2] = s->table.entry[number].reach_ticks;
 }
 
 const adcgs_model *adcgs_seek_at_hand(const adcgs_seek *s, uint32_t number)
@@ -287,31 +154,42 @@ static void forget_networks(adcgs_seek *s)
     }
 }
 
+/** All chunks of a segment. */
+static adcgs_status use_chunks(adcgs_seek *s, const adcgs_syn_index *e, uint64_t end)
+{
+    uint64_t at = e->offset;
+    while (at < end) {
+        adcgs_chunk chunk;
+        ADCGS_TRY(adcgs_seek_look(&s->reader, at, &chunk));
+        if (chunk.name[0] < 'a' || chunk.type == ADCGS_TYPE_hash) /* cameras and texts are those in front */
+            ADCGS_TRY(use_chunk(s, at));
+        at = adcgs_seek_behind(&chunk);
+    }
+    return at == end ? ADCGS_OK :
+                       adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: the segment at byte %llu does not end at byte %llu",
+                                  (unsigned long long)e->offset, (unsigned long long)end);
+}
+
 /** Decode the next segment, of which that before it is in memory unless it is a key; no other stays. */
 static adcgs_status decode(adcgs_seek *s, uint32_t number)
 {
     forget(s, 1);
-    const adcgs_syn_index *e = &s->entry[number];
+    const adcgs_syn_index *e = &s->table.entry[number];
     const uint64_t end = e->offset + e->bytes;
     adcgs_segment *segment = &s->reader.segment;
-    /* Whoever plays on and on needs no more than a part at a time: the level's bounds are on what is at hand. */
-    segment->left = (adcgs_cost){ segment->limits->model_bytes, segment->limits->work };
+    /* Each segment counts once, however often it is decoded: the sum is that of reading the whole stream (REQ-STRM-051). */
+    const adcgs_cost most = { s->left.bytes + s->spent[number].bytes, s->left.work + s->spent[number].work };
+    segment->left = most;
     segment->index.size = 0;
-    uint64_t at = e->offset;
-    while (at < end) {
-        adcgs_chunk chunk;
-        ADCGS_TRY(look_at(s, at, &chunk));
-        if (chunk.name[0] < 'a' || chunk.type == ADCGS_TYPE_hash) /* cameras and texts are those in front */
-            ADCGS_TRY(use_chunk(s, at));
-        at = behind(&chunk);
-    }
-    if (at != end)
-        return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: segment %u does not end at byte %llu", number,
-                          (unsigned long long)end);
+    ADCGS_TRY(use_chunks(s, e, end));
     const uint32_t before = s->stream->n_segments;
     ADCGS_TRY(adcgs_segment_finish(segment, end, 0));
     if (s->stream->n_segments != before + 1)
         return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: no segment %u at byte %llu", number, (unsigned long long)e->offset);
+    if (segment->ticks[0] != e->start_ticks || segment->ticks[1] != e->end_ticks || segment->ticks[2] != e->reach_ticks)
+        return adcgs_fail(&s->error, ADCGS_ERR_DATA, "INDX: segment %u has other times in its SEGM", number);
+    s->left = segment->left;
+    s->spent[number] = (adcgs_cost){ most.bytes - s->left.bytes, most.work - s->left.work };
     return ADCGS_OK;
 }
 
@@ -322,8 +200,7 @@ static void begin_at(adcgs_seek *s, uint32_t number)
     adcgs_segment_drop(&s->reader.segment);
     s->stream->first_segment = number;
     s->reader.indexed = s->reader.ended = 0;
-    if (!s->keeps_nets)
-        forget_networks(s);
+    forget_networks(s); /* also where all are kept, which then are read again from the beginning */
 }
 
 /** From the last key at or before the first of the segments that are wanted, or from what is in memory, to the last. */
@@ -331,53 +208,73 @@ static adcgs_status go_to(adcgs_seek *s, uint32_t number, int before)
 {
     const adcgs_stream *stream = s->stream;
     uint32_t next = number - (before != 0);
-    while (next > 0 && (s->keeps_nets || !s->entry[next].key))
+    while (next > 0 && (s->keeps_nets || !s->table.entry[next].key))
         next--;
     const uint32_t behind = stream->first_segment + stream->n_segments; /* what is in memory, if anything */
+    s->passes = next > 0;
     if (stream->n_segments > 0 && behind > next && behind <= number)
         next = behind;
     else
         begin_at(s, next);
     for (; next <= number; next++) {
-        if (s->entry[next].key && !s->keeps_nets)
+        if (next > 0 && s->table.entry[next].key && !s->keeps_nets) {
+            s->passes = 1;
             forget_networks(s);
+        }
         ADCGS_TRY(decode(s, next));
     }
     forget(s, 1 + (before != 0));
     return ADCGS_OK;
 }
 
-/** Whether the headers of all chunks tell of the same segments at other places than the index, which is forgotten then. */
+/**
+ * Whether the headers of all chunks tell of as many segments as the index, but at other places or times: then the index is
+ * forgotten. Whatever else they tell, the table stays, and with it the number of segments.
+ */
 static int doubts_index(adcgs_seek *s)
 {
-    const uint32_t n = s->n;
     const adcgs_error why = s->error;
+    adcgs_seek_table found = { 0 };
     if (!s->by_index)
         return 0;
     s->by_index = 0;
-    if (scan(s, s->first) == ADCGS_OK && s->n == n)
-        return 1;
+    const int differs = adcgs_seek_table_scan(&found, &s->reader, s->first) == ADCGS_OK && found.n == s->table.n &&
+                        !adcgs_seek_table_equal(&found, &s->table);
+    if (differs) {
+        const adcgs_seek_table doubted = s->table;
+        s->table = found;
+        found = doubted;
+    }
+    adcgs_seek_table_clear(&found, s->options.memory);
     s->error = why;
-    return 0;
+    return differs;
+}
+
+/** As go_to(); what names a network that was sent before its key is decoded from the beginning. */
+static adcgs_status go_to_with_nets(adcgs_seek *s, uint32_t number, int before)
+{
+    const adcgs_status status = go_to(s, number, before);
+    if (status != ADCGS_ERR_DATA || s->keeps_nets || !s->passes)
+        return status;
+    const adcgs_error first = s->error;
+    s->keeps_nets = 1;
+    begin_at(s, 0);
+    const adcgs_status again = go_to(s, number, before);
+    if (again == ADCGS_OK)
+        return again;
+    s->keeps_nets = 0;
+    if (again != ADCGS_ERR_DATA)
+        return again;
+    s->error = first;
+    return status;
 }
 
 adcgs_status adcgs_seek_to(adcgs_seek *s, uint32_t number, int before, adcgs_error *error)
 {
-    adcgs_status status = go_to(s, number, before);
-    if (status == ADCGS_ERR_DATA && !s->keeps_nets) { /* perhaps it names a network that was sent before its key */
-        const adcgs_error first = s->error;
-        s->keeps_nets = 1;
-        begin_at(s, 0);
-        if (go_to(s, number, before) == ADCGS_OK) {
-            status = ADCGS_OK;
-        } else {
-            s->keeps_nets = 0;
-            s->error = first;
-        }
-    }
+    adcgs_status status = go_to_with_nets(s, number, before);
     if (status == ADCGS_ERR_DATA && doubts_index(s)) {
         begin_at(s, 0);
-        status = go_to(s, number, before);
+        status = go_to_with_nets(s, number, before);
     }
     if (status != ADCGS_OK)
         begin_at(s, 0);

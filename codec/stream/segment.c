@@ -49,7 +49,7 @@ void adcgs_segment_drop(adcgs_segment *s)
     adcgs_model_clear(&s->model, s->options->memory);
     adcgs_model_clear(&s->coarser, s->options->memory);
     s->tier = 0;
-    s->has_kept = s->sent = 0;
+    s->has_kept = s->sent = s->is_joined = 0;
     memset(s->done, 0, sizeof s->done);
     s->n_slices = 0;
     s->has_hash = 0;
@@ -82,11 +82,15 @@ adcgs_status adcgs_segment_start(adcgs_segment *s, adcgs_parse *p, uint64_t orig
     if (segment_number(s) >= s->limits->segments)
         return adcgs_fail(s->error, ADCGS_ERR_LIMIT, "SEGM: more than %u segments, the level's limit", s->limits->segments);
     s->model.params = s->stream->params;
+    adcgs_status status = adcgs_segm_parse(p, s->stream, &s->model, &s->ids, ticks);
+    if (status == ADCGS_OK)
+        status = check_times(s, ticks);
+    if (status != ADCGS_OK) {
+        adcgs_segment_drop(s);
+        return status;
+    }
     s->stage = ADCGS_SEGMENT_STARTED;
     s->origin = origin;
-    s->ticks[2] = 0;
-    ADCGS_TRY(adcgs_segm_parse(p, s->stream, &s->model, &s->ids, ticks));
-    ADCGS_TRY(check_times(s, ticks));
     memcpy(s->ticks, ticks, sizeof ticks);
     return ADCGS_OK;
 }
@@ -173,6 +177,15 @@ static adcgs_status complete_model(const adcgs_segment *s, adcgs_model *model, a
     return ADCGS_OK;
 }
 
+/** The model at hand has all that has come of it; once that is so it stays so. */
+static adcgs_status join_model(adcgs_segment *s)
+{
+    if (!s->is_joined)
+        ADCGS_TRY(complete_model(s, &s->model, s->error));
+    s->is_joined = 1;
+    return ADCGS_OK;
+}
+
 /** The anchors of a tier, or of a predicted segment. */
 static adcgs_status place_anchors(adcgs_segment *s, adcgs_parse *p)
 {
@@ -204,17 +217,26 @@ static adcgs_model begin_tier(adcgs_segment *s)
     adcgs_latents_free(&s->latents);
     memset(s->done, 0, sizeof s->done);
     s->n_slices = 0;
+    s->is_joined = 0;
     return was;
 }
 
 /** What has come of a tier is all there is of it: it joins those before, and the model is ready for the next. */
 static adcgs_status end_tier(adcgs_segment *s)
 {
-    ADCGS_TRY(complete_model(s, &s->model, s->error));
+    ADCGS_TRY(join_model(s));
     adcgs_model_clear(&s->coarser, s->options->memory);
     s->coarser = begin_tier(s);
     s->tier++;
     return ADCGS_OK;
+}
+
+/** The tier that was begun is none; the segment is as it was with those before. */
+static void undo_tier(adcgs_segment *s)
+{
+    adcgs_model part = begin_tier(s);
+    adcgs_model_clear(&part, s->options->memory);
+    s->tier--;
 }
 
 adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
@@ -230,7 +252,11 @@ adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: slices of FEA0 of the tier before are missing");
     if (s->stage == ADCGS_SEGMENT_PLACED)
         ADCGS_TRY(end_tier(s));
-    ADCGS_TRY(place_anchors(s, p));
+    const adcgs_status status = place_anchors(s, p);
+    if (status != ADCGS_OK && s->tier > 0)
+        undo_tier(s);
+    if (status != ADCGS_OK)
+        return status;
     s->is_key = !s->model.predicted && s->sent == s->ids.mask;
     s->stage = ADCGS_SEGMENT_PLACED;
     return ADCGS_OK;
@@ -406,9 +432,7 @@ void adcgs_segment_drop_tier(adcgs_segment *s)
 {
     if (tier_is_complete(s) || !s->tier)
         return;
-    adcgs_model part = begin_tier(s); /* of no slices: they are all there */
-    adcgs_model_clear(&part, s->options->memory);
-    s->tier--;
+    undo_tier(s); /* which leaves one of no slices: they are all there */
 }
 
 adcgs_status adcgs_segment_peek(const adcgs_segment *s, adcgs_model *model, int *drawable, adcgs_error *error)
@@ -419,7 +443,7 @@ adcgs_status adcgs_segment_peek(const adcgs_segment *s, adcgs_model *model, int 
         return ADCGS_OK;
     if (tier_is_complete(s)) {
         ADCGS_TRY(adcgs_model_copy(model, &s->model, s->options->memory, error));
-        return complete_model(s, model, error);
+        return s->is_joined ? ADCGS_OK : complete_model(s, model, error);
     }
     ADCGS_TRY(adcgs_model_copy(model, &s->coarser, s->options->memory, error));
     return adcgs_nets_copy(model, &s->model, s->options->memory, error);
@@ -472,7 +496,7 @@ adcgs_status adcgs_segment_finish(adcgs_segment *s, uint64_t end, int truncated)
         adcgs_segment_drop(s);
         return ADCGS_OK;
     }
-    ADCGS_TRY(complete_model(s, &s->model, s->error));
+    ADCGS_TRY(join_model(s));
     ADCGS_TRY(check_hash(s));
     ADCGS_TRY(adcgs_syn_index_write(&s->index, "INDX", &entry, s->error));
     if (s->index.failed)

@@ -25,6 +25,7 @@ typedef struct adcgs_segment {
     adcgs_model model;    /**< of the anchors of its last GEOM, until it is finished */
     adcgs_model coarser;  /**< what is kept, or the tiers before, joined; without networks. n = 0: there is none */
     int tier;             /**< that the model at hand is */
+    int is_joined;        /**< the model has all that has come of its tier, and the coarser anchors, already */
     adcgs_role_ids ids;
     uint16_t sent;        /**< roles whose networks stand in the segment, before GEOM */
     int has_kept;         /**< KEEP was read */
