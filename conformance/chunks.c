@@ -83,6 +83,15 @@ static int is_key(const adcgs_chunk_list *list, int segm)
     return key;
 }
 
+/* The times of a segment, zero where its SEGM ends before them. */
+static void write_times(adcgs_buffer *out, const adcgs_buffer *segm)
+{
+    const size_t there = ADCGS_MIN(segm->size, TIMES);
+    adcgs_write_bytes(out, segm->data, there);
+    for (size_t i = there; i < TIMES; i++)
+        adcgs_write_uint(out, 0, 1);
+}
+
 /* The payload of INDX: the times of each segment are the first elements of its SEGM. */
 static void complete_index(adcgs_chunk_list *list, adcgs_raw_chunk *index)
 {
@@ -99,7 +108,7 @@ static void complete_index(adcgs_chunk_list *list, adcgs_raw_chunk *index)
             while (end < list->n && !is_type(&list->chunk[end], "SEGM") && !is_type(&list->chunk[end], "INDX"))
                 end++;
             const adcgs_raw_chunk *const last = &list->chunk[end - 1];
-            adcgs_write_bytes(&index->payload, list->chunk[i].payload.data, ADCGS_MIN(list->chunk[i].payload.size, TIMES));
+            write_times(&index->payload, &list->chunk[i].payload);
             adcgs_write_uint(&index->payload, list->chunk[i].at, 8);
             adcgs_write_uint(&index->payload, last->at + ADCGS_CHUNK_FRAME + last->payload.size - list->chunk[i].at, 8);
             adcgs_write_uint(&index->payload, (uint64_t)is_key(list, i), 1);

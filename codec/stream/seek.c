@@ -177,7 +177,7 @@ static adcgs_status decode(adcgs_seek *s, uint32_t number)
     const adcgs_syn_index *e = &s->table.entry[number];
     const uint64_t end = e->offset + e->bytes;
     adcgs_segment *segment = &s->reader.segment;
-    /* Each segment counts once, however often it is decoded: the sum is that of reading the whole stream (REQ-STRM-051). */
+    /* Each segment counts once, however often it is decoded: the sum is that of reading the whole stream (REQ-STRM-052). */
     const adcgs_cost most = { s->left.bytes + s->spent[number].bytes, s->left.work + s->spent[number].work };
     segment->left = most;
     segment->index.size = 0;

@@ -193,10 +193,63 @@ static int decode_fits(const attempt *a, int complete, const adcgs_fewer *fewer)
     return good;
 }
 
+/* ---- On demand ---- */
+
+/* Bytes that can be read anywhere. */
+static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
+{
+    const attempt *const a = user;
+    memcpy(buffer, a->data + offset, bytes);
+    return (int64_t)bytes;
+}
+
+/* A failure changes nothing of what is known of the stream. *refused: the class of the last that there was. */
+static int segments_fit(const attempt *a, adcgs_decoder *decoder, adcgs_status *refused)
+{
+    adcgs_info before, after;
+    adcgs_error error = {ADCGS_OK, ""};
+    uint8_t digest[16];
+    (void)adcgs_get_info(decoder, &before, sizeof before, NULL);
+    for (int i = 0; i < before.segments; i++) {
+        const adcgs_status status = adcgs_get_model_digest(decoder, i, digest, &error);
+        (void)adcgs_get_info(decoder, &after, sizeof after, NULL);
+        if (after.segments != before.segments)
+            return wrong(a, "on demand: %d segments after segment %d, %d before", after.segments, i, before.segments);
+        if (status == ADCGS_ERR_INTERNAL || status == ADCGS_ERR_IO || status == ADCGS_ERR_USAGE)
+            return wrong(a, "on demand: segment %d: %.200s", i, error.text);
+        *refused = status != ADCGS_OK ? status : *refused;
+    }
+    return 1;
+}
+
+/*
+ * Segment by segment, what the whole stream is: the same results, or as much more than the level allows. Of another fault only
+ * that part may be read that has none.
+ */
+static int demand_fits(attempt *a)
+{
+    const adcgs_vector *const v = a->vector;
+    adcgs_config config;
+    adcgs_decoder *decoder = NULL;
+    adcgs_error error = {ADCGS_OK, ""};
+    adcgs_config_init(&config, sizeof config);
+    config.cpu = a->trial->cpu;
+    config.threads = a->trial->threads;
+    adcgs_status status = adcgs_open_at(&decoder, read_at, a, a->bytes, &config, &error);
+    int good = status == ADCGS_OK ? segments_fit(a, decoder, &status) : 1;
+    if (good && v->status == ADCGS_OK && status == ADCGS_OK)
+        good = results_fit(a, decoder);
+    else if (good && (v->status == ADCGS_OK || v->status == ADCGS_ERR_LIMIT) && status != v->status)
+        good = wrong(a, "on demand: status \"%s\", expected \"%s\": %.200s", adcgs_status_name(status),
+                     adcgs_status_name(v->status), error.text);
+    adcgs_close(&decoder);
+    return good;
+}
+
 adcgs_outcome adcgs_vector_try(const adcgs_vector *vector, const uint8_t *data, size_t bytes, const adcgs_trial *trial,
                                char what[ADCGS_WHAT])
 {
-    const attempt a = {.vector = vector, .data = data, .bytes = bytes, .trial = trial, .what = what};
+    attempt a = {.vector = vector, .data = data, .bytes = bytes, .trial = trial, .what = what};
     adcgs_pool *pool = NULL;
     char hex[ADCGS_HEX];
     int good = 0;
@@ -209,6 +262,8 @@ adcgs_outcome adcgs_vector_try(const adcgs_vector *vector, const uint8_t *data, 
         good = parse_fits(&a, pool) && decode_fits(&a, 0, NULL) && (!vector->truncated || decode_fits(&a, 1, NULL));
     for (int i = 0; good && i < vector->n_fewer; i++)
         good = decode_fits(&a, 0, &vector->fewer[i]);
+    if (good && trial->threads == 1 && trial->step == 0)
+        good = demand_fits(&a);
     adcgs_pool_free(&pool);
     return good ? ADCGS_OUTCOME_OK : ADCGS_OUTCOME_WRONG;
 }

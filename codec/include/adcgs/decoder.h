@@ -6,7 +6,9 @@
  * bit-identical on every CPU, CPU level and number of threads.
  *
  * Streams may come from strangers. Opening one takes memory and time that its level bounds before they are spent, whatever its
- * size: with level 1 at most 64 MiB, with level 2 half a GiB, and one or two seconds of one core. A frame is as large as the
+ * size: with level 1 at most 64 MiB, with level 2 half a GiB, and one or two seconds of one core. Where segments are read on
+ * demand, a call that asks for a time or a segment may take as long; where the stream has a fault, up to twice that, and once in
+ * the life of a decoder, where its index is wrong, four times. Reading itself comes on top. A frame is as large as the
  * caller wants it, and its time and memory grow with pixels times splats; memory_limit bounds both (annex "Security and
  * resources").
  *
@@ -75,7 +77,11 @@ ADCGS_API adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read
  * in, both are there. So a stream of any length takes no more memory than two of its segments. What was not read was not checked.
  * A stream of one segment, and one that ends early, is read as adcgs_open_stream() does.
  *
- * Functions that take a time or the number of a segment can then fail as adcgs_open_stream() does; the decoder remains usable.
+ * Functions that take a time or the number of a segment can then fail as adcgs_open_stream() does; the decoder remains usable,
+ * and adcgs_get_info() goes on telling of as many segments. Where a segment shows that the index is wrong, times and places are
+ * taken from the segments themselves, if there are as many; else all that depends on the index fails (ADCGS_ERR_DATA). What the
+ * level allows the stream is allowed for all segments that were decoded so far: a stream that is refused whole is refused, too,
+ * when the segment that exceeds it is asked for (ADCGS_ERR_LIMIT).
  * \param out receives the decoder; NULL on failure
  * \param read gives bytes at a position, as long as the decoder is open
  * \param user for read
