@@ -166,7 +166,7 @@ adcgs_status adcgs_seek_table_index(adcgs_seek_table *t, adcgs_stream_reader *r,
 
 static int is_tick(int64_t ticks)
 {
-    return (double)ticks >= -ADCGS_TICKS_MAX && (double)ticks <= ADCGS_TICKS_MAX;
+    return ticks >= -(int64_t)ADCGS_TICKS_MAX && ticks <= (int64_t)ADCGS_TICKS_MAX;
 }
 
 /** A SEGM that was met: it ends the segment before it. */

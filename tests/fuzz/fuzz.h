@@ -22,6 +22,17 @@ size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max);
 /** What fuzz_main.c replays when it is given nothing: files and folders of them, relative to the source tree; NULL at the end. */
 extern const char *const adcgs_fuzz_seeds[];
 
+/* MemorySanitizer does not see what the engine, which is not instrumented, writes, passes and returns. */
+#if defined(__has_feature)
+#if __has_feature(memory_sanitizer)
+#include <sanitizer/msan_interface.h>
+#define FUZZ_WRITTEN(data, size) __msan_unpoison(data, size)
+#endif
+#endif
+#ifndef FUZZ_WRITTEN
+#define FUZZ_WRITTEN(data, size) ((void)0)
+#endif
+
 /** What must hold whatever the input is. */
 #define FUZZ_REQUIRE(condition)                                                                   \
     do {                                                                                          \

@@ -9,17 +9,6 @@
 
 #define CHUNKS_MAX 256
 
-/* MemorySanitizer does not see what the engine, which is not instrumented, writes, passes and returns. */
-#if defined(__has_feature)
-#if __has_feature(memory_sanitizer)
-#include <sanitizer/msan_interface.h>
-#define WRITTEN(data, size) __msan_unpoison(data, size)
-#endif
-#endif
-#ifndef WRITTEN
-#define WRITTEN(data, size) ((void)0)
-#endif
-
 typedef struct chunk_list {
     int n;
     adcgs_found_chunk chunk[CHUNKS_MAX];
@@ -64,8 +53,8 @@ static size_t mutate_payload(uint8_t *data, size_t size, size_t max, const adcgs
         return size;
     memcpy(copy, data + c->payload, c->length);
     size_t n = LLVMFuzzerMutate(copy, c->length, room + (room == 0));
-    WRITTEN(&n, sizeof n);
-    WRITTEN(copy, room + 1);
+    FUZZ_WRITTEN(&n, sizeof n);
+    FUZZ_WRITTEN(copy, room + 1);
     if (layer && n < c->length) {
         memmove(copy + c->length - n, copy, n); /* the slices' bytes stay where they were */
         memcpy(copy, data + c->payload, c->length - n);
@@ -93,15 +82,15 @@ static size_t mutate_order(uint8_t *data, size_t size, size_t max, const adcgs_f
     return size;
 }
 
-size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned int seed)
+size_t adcgs_mutate_stream(uint8_t *data, size_t size, size_t max, unsigned int seed)
 {
     uint32_t state = seed;
     chunk_list list;
-    WRITTEN(&data, sizeof data);
-    WRITTEN(&size, sizeof size);
-    WRITTEN(&max, sizeof max);
-    WRITTEN(&state, sizeof state);
-    WRITTEN(data, max);
+    FUZZ_WRITTEN(&data, sizeof data);
+    FUZZ_WRITTEN(&size, sizeof size);
+    FUZZ_WRITTEN(&max, sizeof max);
+    FUZZ_WRITTEN(&state, sizeof state);
+    FUZZ_WRITTEN(data, max);
     list_chunks(&list, data, size);
     const uint32_t kind = draw(&state, 16);
     if (list.n == 0 || kind == 0)
@@ -115,4 +104,10 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned 
         size = mutate_payload(data, size, max, a);
     adcgs_repair_stream(data, size, 0);
     return size;
+}
+
+/* Of targets whose input is a stream and nothing else. */
+__attribute__((weak)) size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned int seed)
+{
+    return adcgs_mutate_stream(data, size, max, seed);
 }

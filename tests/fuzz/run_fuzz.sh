@@ -10,11 +10,11 @@ seconds=$2
 shift 2
 sanitize=${SANITIZE:-address,undefined}
 build=fuzz-build${SANITIZE:+-$SANITIZE}
-targets=(range geom net headers decode roundtrip ply splats transforms hypernerf layouts manifest texts pictures
+targets=(range geom net headers decode calls roundtrip ply splats transforms hypernerf layouts manifest texts pictures
     checkpoint live past plan)
 options=()
 if [ "$sanitize" = memory ]; then
-    targets=(range geom net headers decode roundtrip)
+    targets=(range geom net headers decode calls roundtrip)
     options=(--disable-encoder) # the libraries that it needs are not instrumented
 fi
 [ $# -gt 0 ] && targets=("$@")
@@ -33,7 +33,7 @@ make -s -j "${JOBS:-2}" "${programs[@]}" LDFLAGS="-fsanitize=fuzzer,$sanitize" >
 seeds()
 {
     case $1 in
-        ply | splats | transforms | hypernerf | layouts | texts | pictures | checkpoint | live | plan)
+        calls | ply | splats | transforms | hypernerf | layouts | texts | pictures | checkpoint | live | plan)
             echo "$top/tests/fuzz/seeds/$1" ;;
         manifest) echo "$top/conformance/manifest.json" ;;
         *) echo "$top/conformance/vectors" ;;
@@ -41,11 +41,20 @@ seeds()
     [ -d "$top/tests/fuzz/regressions/$1" ] && echo "$top/tests/fuzz/regressions/$1"
 }
 
+# Small vectors with a script of calls behind them. What is made to take long is left out.
+script_vectors()
+{
+    find "$top/conformance/vectors" -type f -size -8k | grep -v -e level -e limit -e widest -e many -e work | while read -r vector; do
+        { cat "$vector" && basename "$vector" | sha512sum | head -c 64; } >"corpus/calls/$(basename "$vector" .adcgs)"
+    done
+}
+
 bad=0
 for target in "${targets[@]}"; do
     mkdir -p "corpus/$target"
     # shellcheck disable=SC2046
     find $(seeds "$target") -type f -size -64k -exec cp -n {} "corpus/$target/" \;
+    [ "$target" = calls ] && script_vectors
     "tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=120 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
         -dict="$top/tests/fuzz/adcgs.dict" -artifact_prefix="faults/$target-" "corpus/$target" >"$target.log" 2>&1
     status=$?

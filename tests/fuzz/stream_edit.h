@@ -20,4 +20,7 @@ int adcgs_next_chunk(const uint8_t *data, size_t size, size_t *pos, adcgs_found_
 /** Make all checksums, and the size in ENDC, right again. With drop_hash, chunks "hash" become unknown ones. */
 void adcgs_repair_stream(uint8_t *data, size_t size, int drop_hash);
 
+/** The mutator of streams (mutate_stream.c), as LLVMFuzzerCustomMutator(). */
+size_t adcgs_mutate_stream(uint8_t *data, size_t size, size_t max, unsigned int seed);
+
 #endif

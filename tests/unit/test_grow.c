@@ -206,6 +206,10 @@ static void test_refused(void **state)
     assert_int_equal(out.size, f->at[3]);
     assert_int_equal(adcgs_grow_segment(grow, &models[2], &models[3], &out, NULL), ADCGS_OK);
     assert_int_equal(out.size, f->at[4]);
+    out.failed = 1; /* memory ran out */
+    assert_int_equal(adcgs_grow_end(grow, &out, NULL), ADCGS_ERR_MEMORY);
+    assert_int_equal(out.size, f->at[4]);
+    out.failed = 0;
     assert_int_equal(adcgs_grow_end(grow, &out, NULL), ADCGS_OK);
     adcgs_decoder *d = NULL;
     uint8_t digest[16];
