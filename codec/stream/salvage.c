@@ -303,6 +303,23 @@ static adcgs_status end(salvage *s)
     return ADCGS_OK;
 }
 
+uint64_t adcgs_salvage_bytes(const uint8_t *data, size_t bytes)
+{
+    const size_t least = ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_BYTES;
+    adcgs_parse p = { .chunk = "HEAD" };
+    adcgs_syn_version version;
+    adcgs_chunk chunk;
+    if (bytes < least || !is_header(data + ADCGS_SIGNATURE_BYTES, ADCGS_SIGNATURE_BYTES, &chunk) ||
+        chunk.type != ADCGS_TYPE_HEAD || chunk.header.length > bytes - least)
+        return ADCGS_SALVAGE_BYTES;
+    const uint8_t *const payload = data + ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_HEADER_BYTES;
+    adcgs_reader_init(&p.r, payload, chunk.header.length);
+    if (adcgs_load_le32(payload + chunk.header.length) != adcgs_crc32c(0, payload, chunk.header.length) ||
+        adcgs_syn_version_parse(&p, &version) != ADCGS_OK || version.level < 1 || version.level > ADCGS_LEVELS)
+        return ADCGS_SALVAGE_BYTES;
+    return adcgs_level_get(version.level)->file_bytes;
+}
+
 adcgs_status adcgs_stream_salvage(adcgs_stream *stream, adcgs_read_at_fn read, void *user, uint64_t size,
                                   const adcgs_read_options *options, uint32_t *faults, adcgs_error *error)
 {

@@ -9,6 +9,14 @@
 
 #include "stream/stream.h"
 
+/** Most bytes of a stream of which the level is not known: those of level 2. */
+#define ADCGS_SALVAGE_BYTES (UINT64_C(256) << 20)
+/**
+ * How many bytes, from the first on, may be of use of a stream that begins with these: those that its level allows, or
+ * ADCGS_SALVAGE_BYTES if no header of it is whole where one should be.
+ */
+uint64_t adcgs_salvage_bytes(const uint8_t *data, size_t bytes);
+
 /**
  * Read what is whole. Each fault is a warning of options->log, one line with its place; *faults: how many there were, 0 for a
  * stream that nothing is wrong with, which then is as adcgs_stream_read() gives it. ADCGS_ERR_DATA if no segment can be used,

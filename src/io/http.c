@@ -270,10 +270,15 @@ adcgs_status adcgs_http_explain(const adcgs_http *http, adcgs_status status, adc
 }
 
 /** Room that grows with what arrives, not with what the server says. */
-static adcgs_status load(adcgs_http *h, uint8_t **data, size_t *bytes, adcgs_error *error)
+static adcgs_status load(adcgs_http *h, uint8_t **data, size_t *bytes, adcgs_http_useful_fn useful, adcgs_error *error)
 {
     size_t room = 0;
     for (int64_t got = 1; got > 0; *bytes += (size_t)got) {
+        const uint64_t most = useful(*data, *bytes);
+        if (*bytes >= most) {
+            *bytes = (size_t)most;
+            return ADCGS_OK;
+        }
         if (*bytes > ADCGS_HTTP_LOAD_MAX)
             return adcgs_fail(error, ADCGS_ERR_LIMIT, "%.160s: expected at most %llu bytes", h->url,
                               (unsigned long long)ADCGS_HTTP_LOAD_MAX);
@@ -291,14 +296,15 @@ static adcgs_status load(adcgs_http *h, uint8_t **data, size_t *bytes, adcgs_err
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_http_load(uint8_t **data, size_t *bytes, const char *url, int (*interrupted)(void), adcgs_error *error)
+adcgs_status adcgs_http_load(uint8_t **data, size_t *bytes, const char *url, adcgs_http_useful_fn useful,
+                             int (*interrupted)(void), adcgs_error *error)
 {
     adcgs_http *h;
     const adcgs_http_config config = {.interrupted = interrupted};
     *data = NULL;
     *bytes = 0;
     ADCGS_TRY(adcgs_http_open(&h, url, &config, error));
-    const adcgs_status status = load(h, data, bytes, error);
+    const adcgs_status status = load(h, data, bytes, useful, error);
     adcgs_http_close(&h);
     if (status == ADCGS_OK)
         return ADCGS_OK;

@@ -3,6 +3,7 @@
 #include "tools/dec_open.h"
 
 #include "stream/input.h"
+#include "stream/salvage.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -33,7 +34,7 @@ static adcgs_status open_whole(adcgs_decoder **decoder, const char *input, const
 {
     uint8_t *data;
     size_t bytes;
-    ADCGS_TRY(adcgs_http_load(&data, &bytes, input, adcgs_interrupted, error));
+    ADCGS_TRY(adcgs_http_load(&data, &bytes, input, adcgs_salvage_bytes, adcgs_interrupted, error));
     const adcgs_status status = adcgs_open_memory(decoder, data, bytes, how->config, error);
     free(data);
     if (status != ADCGS_OK)

@@ -78,7 +78,7 @@ static adcgs_status check_url(const char *url, const char *repaired, uint32_t *f
 {
     uint8_t *data;
     size_t bytes;
-    ADCGS_TRY(adcgs_http_load(&data, &bytes, url, NULL, error));
+    ADCGS_TRY(adcgs_http_load(&data, &bytes, url, adcgs_salvage_bytes, NULL, error));
     const adcgs_status status = check(read_data, data, bytes, url, repaired, faults, error);
     free(data);
     return status;

@@ -125,6 +125,16 @@ requests
 same tiers.adcgs --tiers 1
 same cut.adcgs
 same long.adcgs --conceal
+# A body without end, behind a stream of level 1: no more is read than the level allows, and what is on its way.
+cp "$tiers" "$dir/endless.adcgs"
+truncate -s 200M "$dir/endless.adcgs"
+requests
+same endless.adcgs --conceal
+./adcgs-info --check $at/endless.adcgs >"$dir/out" 2>&1 || bad "--check of a body without end"
+requests
+[ $count -eq 2 ] && [ "$sum" -lt 40000000 ] || { bad "a body without end is read beyond the level"; cat "$dir/requests"; }
+rm "$dir/endless.adcgs"
+same long.adcgs --conceal
 requests
 
 # A moment costs the first range, the index, and what is about its segment; a span those of its segments.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A failure changes nothing of what was there: bytes that are pushed and refused leave what could be drawn before. A stream that is
- * read on demand goes on being read where its bytes are right, and tells of as many segments.
+ * A failure changes nothing of what was there: bytes that are pushed and refused leave what could be drawn before. A stream
+ * that is read on demand goes on being read where its bytes are right, and tells of as many segments.
  */
 #include "stream_fixture.h"
 

@@ -263,11 +263,30 @@ static void test_decoder(void **state)
     adcgs_buffer_clear(&b);
 }
 
+/** How much may be of use: the level says, once its header is there and right. */
+static void test_useful_bytes(void **state)
+{
+    const fixture *f = *state;
+    const size_t head = ADCGS_SIGNATURE_BYTES + ADCGS_CHUNK_BYTES + adcgs_load_le32(f->bytes.data + ADCGS_SIGNATURE_BYTES + 4);
+    adcgs_buffer b;
+    for (size_t bytes = 0; bytes < head; bytes++)
+        assert_int_equal(adcgs_salvage_bytes(f->bytes.data, bytes), ADCGS_SALVAGE_BYTES);
+    assert_int_equal(adcgs_salvage_bytes(f->bytes.data, head), adcgs_level_get(1)->file_bytes);
+    copy(&b, &f->bytes);
+    for (size_t i = ADCGS_SIGNATURE_BYTES; i < head; i++) {
+        b.data[i] ^= 3;
+        assert_int_equal(adcgs_salvage_bytes(b.data, b.size), ADCGS_SALVAGE_BYTES);
+        b.data[i] ^= 3;
+    }
+    adcgs_buffer_clear(&b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_whole), cmocka_unit_test(test_what_is_lost), cmocka_unit_test(test_pieces),
         cmocka_unit_test(test_bytes), cmocka_unit_test(test_nested),       cmocka_unit_test(test_decoder),
+        cmocka_unit_test(test_useful_bytes),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
