@@ -3,7 +3,7 @@
 'use strict';
 
 const OK = 0, ERR_FPENV = -8;                               // adcgs/status.h
-const ARRIVED_SEGMENT = 3;                                  // adcgs/types.h
+const ARRIVED_SEGMENT = 3, ARRIVED_END = 4;                 // adcgs/types.h
 const MEMORY_SHARED = 2;                                    // a flag of memories in WebAssembly
 const CAMERA = { WIDTH: 0, HEIGHT: 4, FORWARD: [56, 88, 120] }; // bytes in adcgs_camera: the third column of cam_to_world
 

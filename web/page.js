@@ -20,7 +20,9 @@ const page = window.adcgs = {
 };
 
 let worker, view, gpu = null;
+const AHEAD = 8388608;          // bytes of a scene that the worker may have before it
 let reading = 0;                // number of the scene that is read; pieces of others are dropped
+let flow = new Flow(AHEAD);     // of its bytes
 let information = null;         // the last report of the worker
 let generation = 0;             // of what there is to draw
 let shownKey = '', asked = false, drawing = false, packing = false;
@@ -49,7 +51,9 @@ function note(text) {
 // ---- A scene comes. ----
 
 async function openScene(getSource) {
-    const number = ++reading;
+    const number = ++reading, ours = new Flow(AHEAD);
+    flow.end();
+    flow = ours;
     setState('loading');
     say('');
     information = null;
@@ -60,7 +64,7 @@ async function openScene(getSource) {
     try {
         const source = await getSource();
         Object.assign(page, { name: source.name, total: source.total || 0 });
-        await readStream(source.stream, bytes => {
+        await readStream(source.stream, ours, bytes => {
             if (number === reading)
                 worker.postMessage({ kind: 'bytes', bytes }, [bytes.buffer]);
         });
@@ -261,7 +265,16 @@ function onReply(m) {
     case 'drawn': takePicture(m); break;
     case 'splats':
     case 'sorted': takeSplats(m); break;
-    case 'broken': fail(m.error); break;
+    case 'taken':
+        if (m.number === reading)
+            flow.take(m.taken);
+        if (m.number === reading && m.enough)
+            flow.end();
+        break;
+    case 'broken':
+        flow.end();
+        fail(m.error);
+        break;
     }
 }
 

@@ -16,15 +16,49 @@ async function unpack(id) {
     return new Uint8Array(await new Response(packed.stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
 }
 
-/** Calls take(bytes) for each piece, which it may keep. */
-async function readStream(stream, take) {
-    for (const reader = stream.getReader(); ;) {
+/** Bytes on their way to one who takes them: no more than so many at once, and none once it has enough. */
+class Flow {
+    constructor(ahead) {
+        this.ahead = ahead;
+        this.sent = this.taken = 0;
+        this.over = false;
+        this.changed = this.cancel = () => null;
+    }
+
+    take(taken) {
+        this.taken = taken;
+        this.changed();
+    }
+
+    end() {
+        this.over = true;
+        this.changed();
+        this.cancel();
+    }
+
+    /** Wait for room. */
+    async room() {
+        while (!this.over && this.sent - this.taken > this.ahead)
+            await new Promise(done => { this.changed = done; });
+    }
+}
+
+/** Calls take(bytes) for each piece, which it may keep, until the stream or the flow ends. */
+async function readStream(stream, flow, take) {
+    const reader = stream.getReader();
+    flow.cancel = () => reader.cancel().catch(() => null); // which ends a read that waits
+    while (!flow.over) {
         const { done, value } = await reader.read();
         if (done)
             return;
-        for (let at = 0; at < value.length; at += PIECE)
-            take(value.slice(at, at + PIECE));
+        for (let at = 0; at < value.length && !flow.over; at += PIECE) {
+            const piece = value.slice(at, at + PIECE);
+            flow.sent += piece.length;
+            take(piece);
+            await flow.room();
+        }
     }
+    flow.cancel();
 }
 
 function embeddedScene() {

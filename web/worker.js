@@ -5,6 +5,8 @@
 let modules, engine, which;
 let threads = 1;                 // that draw, at most
 let pieces = [], received = 0;   // the stream, to open it again
+let number = 0, taken = 0;       // of the scene; its bytes that came, also those that are not kept
+let enough = false;              // no more of it is of use: it has ended, or is as long as its level allows
 let ended = false, failed = null; // no more will come; what the decoder said when it gave up
 let drawable = false;
 let order = null;                // a reader of the messages, so that each waits for the one before
@@ -65,17 +67,28 @@ function push(bytes) {
     return engine.with([bytes], at => engine.call.page_push(at, bytes.length));
 }
 
-function take(bytes) {
-    pieces.push(bytes);
-    received += bytes.length;
+/** Give bytes to the decoder, unless it gave up; what they have brought. */
+function decode(bytes) {
     if (failed)
-        return;
+        return 0;
     const arrived = push(bytes);
     if (arrived < 0)
         failed = engine.text(engine.call.page_error());
     drawable = drawable || arrived >= ARRIVED_SEGMENT;
     if (arrived !== 0)
         report(arrived);
+    return arrived;
+}
+
+/** Of a damaged stream all is kept that may be of use, to look at it again as a whole. */
+function take(bytes) {
+    taken += bytes.length;
+    if (!enough) {
+        pieces.push(bytes);
+        received += bytes.length;
+        enough = decode(bytes) === ARRIVED_END || received >= engine.call.page_useful();
+    }
+    postMessage({ kind: 'taken', number, taken, enough });
 }
 
 /** All has come that will: of a damaged stream, what is whole is shown. */
@@ -160,8 +173,9 @@ async function handle(m) {
         break;
     case 'open':
         pieces = [];
-        received = splats = 0;
-        ended = drawable = false;
+        number = m.number;
+        received = taken = splats = 0;
+        ended = drawable = enough = false;
         failed = null;
         await begin();
         break;

@@ -279,6 +279,50 @@ async function served() {
     });
 }
 
+/** A server that sends a stream, then zeros without end; how many bytes it could send before the page hung up. */
+async function endless(start, mibMost, see) {
+    let sent = 0, gone = null;
+    const hungUp = new Promise(done => { gone = done; });
+    const server = createServer((request, response) => {
+        const zeros = Buffer.alloc(65536);
+        const more = () => {
+            while (!response.destroyed && sent < 1024 * 1048576) {
+                sent += zeros.length;
+                if (!response.write(zeros))
+                    return response.once('drain', () => setImmediate(more));
+            }
+            return response.end();
+        };
+        response.on('close', gone);
+        if (new URL(request.url, 'http://x/').pathname !== '/endless.adcgs')
+            return response.end(readFileSync(at('player.html')));
+        response.write(start);
+        return more();
+    });
+    await new Promise(done => server.listen(0, '127.0.0.1', done));
+    await go(`http://127.0.0.1:${server.address().port}/player.html?src=endless.adcgs`);
+    await see(await run('await settled(); return report();'));
+    await hungUp;
+    server.close();
+    server.closeAllConnections();
+    check(sent < mibMost * 1048576, `a body without end: ${sent} bytes were sent`);
+}
+
+/** No more is read than the stream has, of a damaged one than its level allows, and without a header than level 2 does. */
+async function bodiesWithoutEnd() {
+    const stream = readFileSync(at('s.adcgs')), bad = readFileSync(at('bad.adcgs'));
+    await endless(stream, 64, got => {
+        same(got.message, '', 'what is said of a body without end');
+        samePicture(got.picture, at('s.adcgs'), 'the picture of a body without end');
+    });
+    await endless(bad, 64, got => check(/damaged/.test(got.message), `a damaged body without end: "${got.message}"`));
+    if (!full)
+        return;
+    const headless = Buffer.from(stream);
+    headless[30] ^= 1;
+    await endless(headless, 400, got => check(got.state === 'failed', `a body without end or header: ${got.state}`));
+}
+
 /** Without WebGL2: moving pictures come from the decoder, and it is said. */
 async function withoutGpu() {
     await go(urlOf('share.html', '?draw=exact'));
@@ -337,8 +381,8 @@ function open(width, height, flags = []) {
 
 browser = await open(800, 600);
 try {
-    const parts = full ? [digests, controls, gpu, dropped, served, threads, withoutGpu, phone, notFused]
-                       : [digests, controls, dropped, threads];
+    const parts = full ? [digests, controls, gpu, dropped, served, bodiesWithoutEnd, threads, withoutGpu, phone, notFused]
+                       : [digests, controls, dropped, bodiesWithoutEnd, threads];
     for (const part of parts)
         await part().catch(e => check(false, `${part.name}: ${e.message}`));
 } finally {

@@ -6,6 +6,7 @@
 #include "api/frame.h"
 #include "base/digest.h"
 #include "camera/path.h"
+#include "stream/chunk.h"
 #include "wasm/export.h"
 #include "wasm/scene.h"
 #include "wasm/threads.h"
@@ -15,6 +16,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+/** Of a stream that is kept: twice as many are needed to open it again, in a memory of 4 GiB. */
+#define BYTES_MOST (UINT64_C(1) << 30)
 
 static struct {
     adcgs_decoder *decoder;
@@ -106,6 +110,15 @@ int PAGE_EXPORT(page_push)(const uint8_t *data, size_t bytes)
         most = ADCGS_MAX(most, (int)arrived);
     }
     return most;
+}
+
+/** Bytes from the first on that may be of use, as far as it is known by now. */
+double PAGE_EXPORT(page_useful)(void)
+{
+    adcgs_info info;
+    const int known = adcgs_get_info(scene.decoder, &info, sizeof info, NULL) == ADCGS_OK;
+    const uint64_t bytes = known ? adcgs_level_get(info.level)->file_bytes : ADCGS_SALVAGE_BYTES;
+    return (double)ADCGS_MIN(bytes, BYTES_MOST);
 }
 
 int PAGE_EXPORT(page_end)(void)
