@@ -28,6 +28,7 @@ typedef struct worker {
 
 struct adcgs_pool {
     int threads, started;
+    int missing;           /* threads that could not be started */
     pthread_mutex_t mutex;
     pthread_cond_t wake, finished;
     int sleepers;          /* workers waiting on wake; under mutex */
@@ -115,17 +116,19 @@ static void *worker_main(void *arg)
     }
 }
 
-static adcgs_status start_workers(adcgs_pool *pool, adcgs_error *error)
+/* As many as the system has for us: with fewer all takes longer, and gives the same. */
+static void start_workers(adcgs_pool *pool)
 {
     for (int i = 0; i < pool->threads - 1; i++) {
         worker *w = &pool->workers[i];
         w->pool = pool;
         w->thread = i + 1;
         if (pthread_create(&w->id, NULL, worker_main, w))
-            return adcgs_fail(error, ADCGS_ERR_MEMORY, "thread %d of %d could not be started", i + 2, pool->threads);
+            break;
         pool->started++;
     }
-    return ADCGS_OK;
+    pool->missing = pool->threads - 1 - pool->started;
+    pool->threads -= pool->missing;
 }
 
 /* All but the threads. */
@@ -165,11 +168,9 @@ adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error
     adcgs_pool *pool = allocate(threads, threads);
     if (!pool)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a pool of %d threads", threads);
-    const adcgs_status status = start_workers(pool, error);
-    if (status != ADCGS_OK)
-        adcgs_pool_free(&pool);
+    start_workers(pool);
     *out = pool;
-    return status;
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_pool_wrap(adcgs_pool **out, int threads, adcgs_run_fn run, void *user, adcgs_error *error)
@@ -204,6 +205,11 @@ void adcgs_pool_free(adcgs_pool **out)
     pthread_mutex_destroy(&pool->turn);
     free(pool->workers);
     free(pool);
+}
+
+int adcgs_pool_missing(const adcgs_pool *pool)
+{
+    return pool ? pool->missing : 0;
 }
 
 int adcgs_pool_threads(const adcgs_pool *pool)

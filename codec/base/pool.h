@@ -12,6 +12,9 @@
 
 #include <adcgs/pool.h>
 
+/** Threads that were asked for and could not be started. */
+int adcgs_pool_missing(const adcgs_pool *pool);
+
 /** Work on one index; thread in [0, adcgs_pool_threads()) is for scratch space only. */
 typedef void (*adcgs_work_fn)(void *arg, int index, int thread);
 

@@ -45,6 +45,12 @@ void adcgs_pool_free(adcgs_pool **pool)
     *pool = NULL;
 }
 
+int adcgs_pool_missing(const adcgs_pool *pool)
+{
+    (void)pool;
+    return 0; /* that there are none is no surprise here */
+}
+
 int adcgs_pool_threads(const adcgs_pool *pool)
 {
     return pool ? pool->threads : 1;

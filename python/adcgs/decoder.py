@@ -28,12 +28,15 @@ units; world = scene_origin + scene_scale * scene."""
 class Pool:
     """Threads that several decoders share. threads: 1 to 256, counting the one that calls; 0: one for each processor."""
 
+    _handle = None  # of one that was never made
+
     def __init__(self, threads=0):
         self._handle = ctypes.c_void_p()
         call(lib.adcgs_pool_create, ctypes.byref(self._handle), threads)
 
     def __del__(self):
-        lib.adcgs_pool_free(ctypes.byref(self._handle))
+        if self._handle:
+            lib.adcgs_pool_free(ctypes.byref(self._handle))
 
     @property
     def threads(self):
@@ -69,6 +72,8 @@ class Decoder:
     the end of a with statement, by close(), or with its last reference. What fails raises an Error with the library's one
     line."""
 
+    _handle = None  # of one that was never made
+
     def __init__(self, config, pool):
         self._handle = ctypes.c_void_p()
         self._source = None
@@ -85,7 +90,8 @@ class Decoder:
 
     def close(self):
         """Free all it owns. Arrays that it gave stay."""
-        lib.adcgs_close(ctypes.byref(self._handle))
+        if self._handle:
+            lib.adcgs_close(ctypes.byref(self._handle))
         self._source = None
 
     def _call(self, function, *arguments):

@@ -7,7 +7,7 @@
 #ifndef ADCGS_CLI_CLI_H
 #define ADCGS_CLI_CLI_H
 
-#include "base/base.h"
+#include "base/pool.h"
 
 #include <stdio.h>
 
@@ -74,6 +74,8 @@ adcgs_status adcgs_cli_flush(adcgs_error *error);
 int adcgs_cli_leave(const adcgs_cli *cli, int code);
 /** A remark that does not end the program: "program: text" on stderr, unless --quiet was given. */
 void adcgs_cli_note(const adcgs_cli *cli, const char *format, ...) ADCGS_PRINTF(2, 3);
+/** A pool of threads, 0: one for each processor. That the system starts fewer is a note. */
+adcgs_status adcgs_cli_pool(const adcgs_cli *cli, adcgs_pool **out, int threads, adcgs_error *error);
 
 /* Whole-string parsers: 0, or -1 when text is not exactly one number of the kind within [min, max]. */
 int adcgs_parse_int(const char *text, int min, int max, int *out);

@@ -322,6 +322,8 @@ int main(int argc, char **argv)
     adcgs_error error = {0};
     adcgs_decoder *decoder = NULL;
     adcgs_status status = adcgs_dec_check(&s, &error);
+    if (status == ADCGS_OK)
+        status = adcgs_cli_pool(&cli, &s.config.pool, s.config.threads, &error);
     adcgs_interrupt_catch(1);
     s.opened = adcgs_seconds();
     if (status == ADCGS_OK && s.answer)
@@ -335,6 +337,7 @@ int main(int argc, char **argv)
     adcgs_close(&decoder);
     adcgs_http_close(&s.http);
     adcgs_http_close(&s.http_beside);
+    adcgs_pool_free(&s.config.pool);
     if (adcgs_interrupted())
         raise(adcgs_interrupted()); /* the shell shall see why the program ended; the handler is gone by now */
     if (status == ADCGS_OK)

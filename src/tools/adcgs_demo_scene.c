@@ -69,7 +69,7 @@ int main(int argc, char **argv)
                                    .watch = watch, .aside = aside, .noise = noise, .format = formats[format], .motion = motion};
     if (adcgs_spoil_parse(&wanted.spoil, spoil, &error) != ADCGS_OK)
         return adcgs_cli_fail(&cli, &error);
-    if (adcgs_pool_create(&pool, threads, &error) != ADCGS_OK)
+    if (adcgs_cli_pool(&cli, &pool, threads, &error) != ADCGS_OK)
         return adcgs_cli_fail(&cli, &error);
     adcgs_progress_init(&progress, &cli);
     const adcgs_status status = adcgs_scenes_write(directory, &wanted, pool, show, &progress, &error);

@@ -486,7 +486,7 @@ static adcgs_status run_program(const adcgs_cli *cli, adcgs_enc_options *o, cons
         snprintf(log, sizeof log, "%s.%d", o->log, ranks->rank);
         o->log = log;
     }
-    adcgs_status status = adcgs_pool_create(&pool, o->threads, error);
+    adcgs_status status = adcgs_cli_pool(cli, &pool, o->threads, error);
     if (status == ADCGS_OK)
         status = encode(cli, o, ranks, pool, met, error);
     adcgs_pool_free(&pool);

@@ -260,6 +260,9 @@ int main(int argc, char **argv)
     s.config.cpu = (adcgs_cpu_level)s.cpu;
     adcgs_error error = {0};
     adcgs_interrupt_catch(1);
-    error.status = run(&s, &error);
+    error.status = adcgs_cli_pool(&cli, &s.config.pool, s.config.threads, &error);
+    if (error.status == ADCGS_OK)
+        error.status = run(&s, &error);
+    adcgs_pool_free(&s.config.pool);
     return adcgs_cli_leave(&cli, error.status != ADCGS_OK ? adcgs_cli_fail(&cli, &error) : 0);
 }

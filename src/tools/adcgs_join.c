@@ -134,7 +134,7 @@ static adcgs_status run(join_job *j, int *code, adcgs_error *error)
     ADCGS_TRY(adcgs_plan_check_version(&j->plan, j->o->plan, error));
     ADCGS_TRY(adcgs_plan_base(&j->base, j->o->plan, error));
     ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &j->cpu, error));
-    ADCGS_TRY(adcgs_pool_create(&j->pool, j->o->threads, error));
+    ADCGS_TRY(adcgs_cli_pool(j->cli, &j->pool, j->o->threads, error));
     if (j->o->list)
         return list(j, code, error);
     ADCGS_TRY(check_output(j, error));

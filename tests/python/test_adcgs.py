@@ -219,6 +219,14 @@ class Failures(unittest.TestCase):
         self.assertRaises(ValueError, lambda: stream.info)
         stream.close()
 
+    def test_wrong_use(self):
+        """One traceback, that of the call."""
+        for call in ("adcgs.Decoder('f')", "adcgs.Pool(1, 2)", "adcgs.Pool('two')"):
+            done = subprocess.run([sys.executable, "-c", f"import adcgs; {call}"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(done.stderr.count("Traceback"), 1, done.stderr)
+            self.assertNotIn("Exception ignored", done.stderr)
+
     def test_log(self):
         told = []
         damaged = bytearray(pathlib.Path(LONG).read_bytes())

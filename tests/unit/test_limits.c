@@ -402,6 +402,8 @@ static atomic_long left = -1;
 static atomic_long blocks = 0;
 /* Whether a task of a pool is under way, and what tasks asked of the allocator: it may be one that knows no threads. */
 static atomic_int in_task = 0, task_calls = 0;
+/* Threads that were not started. */
+static atomic_int denied = 0;
 
 static int fails(void)
 {
@@ -433,13 +435,15 @@ void __wrap_free(void *block)
 
 int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void *(*function)(void *), void *arg)
 {
-    return fails() ? 11 : __real_pthread_create(id, attributes, function, arg);
+    const int fails_now = fails();
+    atomic_fetch_add(&denied, fails_now);
+    return fails_now ? 11 : __real_pthread_create(id, attributes, function, arg);
 }
 
 static const adcgs_camera camera = { .width = 33, .height = 20, .fx = 30, .fy = 30, .cx = 16, .cy = 10, .near_plane = 0.01,
                                      .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4 } };
 
-/** Open, look at two moments, close, with the allocation number n failing. Returns whether one did. */
+/** Open, look at two moments, close, with allocation n failing, or a thread, which is done without. Returns whether one did. */
 static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
 {
     float rgb[33 * 20 * 3];
@@ -451,6 +455,7 @@ static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
     adcgs_config_init(&config, sizeof config);
     config.threads = threads;
     const long before = atomic_load(&blocks);
+    const int denied_before = atomic_load(&denied);
     atomic_store(&left, n);
     adcgs_status status = adcgs_open_memory(&d, bytes->data, bytes->size, &config, &error);
     if (status == ADCGS_OK)
@@ -459,10 +464,11 @@ static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
         status = adcgs_render_rgba8(d, &camera, 0, ADCGS_ALPHA_PREMULTIPLIED, pixels, 4 * 33, &error);
     const int failed = atomic_load(&left) < 0;
     atomic_store(&left, -1);
-    if (status != (failed ? ADCGS_ERR_MEMORY : ADCGS_OK))
+    const int is_short = failed && atomic_load(&denied) == denied_before;
+    if (status != (is_short ? ADCGS_ERR_MEMORY : ADCGS_OK))
         fail_msg("allocation %ld fails: status %d, %s", n, (int)status, error.text);
     assert_int_equal(error.status, status);
-    assert_true(!failed || error.text[0] != 0);
+    assert_true(!is_short || error.text[0] != 0);
     if (d && failed) /* it goes on as if nothing had happened */
         assert_int_equal(adcgs_render(d, &camera, 0, &frame, &error), ADCGS_OK);
     adcgs_close(&d);
@@ -535,6 +541,21 @@ static void test_failing_allocations(void **state)
     adcgs_buffer_clear(&bytes);
 }
 
+/** A pool has as many threads as start. */
+static void test_no_threads(void **state)
+{
+    adcgs_pool *pool = NULL;
+    (void)state;
+    for (int started = 0; started < 3; started++) {
+        atomic_store(&left, 2 + started); /* the pool and its list of threads are there */
+        assert_int_equal(adcgs_pool_create(&pool, 4, NULL), ADCGS_OK);
+        atomic_store(&left, -1);
+        assert_int_equal(adcgs_pool_threads(pool), 1 + started);
+        assert_int_equal(adcgs_pool_missing(pool), 3 - started);
+        adcgs_pool_free(&pool);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -543,6 +564,7 @@ int main(void)
         cmocka_unit_test(test_networks),    cmocka_unit_test(test_repeated_networks),
         cmocka_unit_test(test_predicted),   cmocka_unit_test(test_failing_allocations),
         cmocka_unit_test(test_tasks_allocate_nothing),
+        cmocka_unit_test(test_no_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,11 +24,11 @@ typedef void (*adcgs_task_fn)(void *work, int task);
 typedef void (*adcgs_run_fn)(void *user, adcgs_task_fn task, void *work, int n);
 
 /**
- * Start a pool of threads.
+ * Start a pool of threads, as many of those asked for as the system allows: adcgs_pool_threads() says how many.
  * \param out receives the pool, to be freed with adcgs_pool_free(); NULL on failure
  * \param threads 1..ADCGS_THREADS_MAX, counting the thread that calls a decoder; 0: one for each processor
  * \param error says why it failed; may be NULL
- * \return ADCGS_OK, ADCGS_ERR_USAGE, or ADCGS_ERR_MEMORY when there is no memory or no thread
+ * \return ADCGS_OK, ADCGS_ERR_USAGE or ADCGS_ERR_MEMORY
  */
 ADCGS_API adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error);
 
