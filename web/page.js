@@ -16,6 +16,7 @@ const page = window.adcgs = {
     opened: 0, first: 0,  // milliseconds: when a scene began to come, and how long until its first picture
     fast: {},             // milliseconds of the last picture of the GPU: pack, sort, draw
     get view() { return view; },
+    get generation() { return generation; }, // of what there is to draw; a picture has that which it shows
     get gpu() { return gpu; },
 };
 
@@ -138,7 +139,7 @@ function ask(exact) {
         return;
     drawing = true;
     shownKey = key;
-    worker.postMessage({ kind: 'draw', camera, time, tiers: exact ? 0 : view.call.view_tiers(), digest: exact, exact, saves });
+    worker.postMessage({ kind: 'draw', id: generation, camera, time, tiers: exact ? 0 : view.call.view_tiers(), digest: exact, exact, saves });
 }
 
 /** The GPU's picture of the present view, of the splats that were packed last. */
@@ -220,7 +221,7 @@ function takePicture(m) {
     page.pictures++;
     page.first = page.first || performance.now() - page.opened;
     if (m.exact)
-        page.picture = { width: m.width, height: m.height, time: m.time, digest: m.digest, ms: m.ms };
+        page.picture = { width: m.width, height: m.height, time: m.time, digest: m.digest, ms: m.ms, generation: m.id };
     else
         view.call.view_took(m.ms / 1000);
     page.drawn = { width: m.width, height: m.height, ms: m.ms, exact: m.exact, threads: m.threads };

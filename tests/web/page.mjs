@@ -40,7 +40,8 @@ const until = async (what, why) => {
     }
     throw new Error('no ' + why + ': ' + JSON.stringify(adcgs.state) + ' ' + adcgs.message + ' ' + JSON.stringify(adcgs.notes));
 };
-const settled = () => until(() => adcgs.state === 'failed' || (adcgs.state === 'complete' && adcgs.picture), 'picture');
+const isLast = () => adcgs.picture && adcgs.picture.generation === adcgs.generation;
+const settled = () => until(() => adcgs.state === 'failed' || (adcgs.state === 'complete' && isLast()), 'picture');
 const pointer = (type, x, y, id = 1, kind = 'mouse') => document.getElementById('stage').dispatchEvent(new PointerEvent(type,
     { pointerId: id, pointerType: kind, clientX: x, clientY: y, button: 0, buttons: 1, bubbles: true }));
 Element.prototype.setPointerCapture = () => undefined; // those of pointers that are not there

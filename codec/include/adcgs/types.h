@@ -78,7 +78,7 @@ typedef enum adcgs_arrival {
  */
 typedef struct adcgs_config {
     size_t size;           /**< sizeof(adcgs_config) of the caller, set by adcgs_config_init() */
-    int threads;           /**< 1..ADCGS_THREADS_MAX, 0: one for each processor; as many as start. Not looked at when there is a pool */
+    int threads;           /**< most, 1..ADCGS_THREADS_MAX; 0: one for each processor. Not looked at when there is a pool */
     adcgs_cpu_level cpu;   /**< ADCGS_ERR_UNSUPPORTED if the machine or the build lacks it */
     int layers;            /**< use at most this many layers, 1..5; 0: all (clause "Fewer layers, truncated streams") */
     uint64_t memory_limit; /**< bytes that the decoder may allocate, then ADCGS_ERR_LIMIT; 0: the stream's level decides */
