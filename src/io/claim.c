@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -14,13 +15,22 @@
 #include <time.h>
 #include <unistd.h>
 
+#ifndef BEAT    /* a test has shorter ones */
 #define BEAT 10 /* seconds from one touch to the next */
+#endif
+#define WATCH (1.25 * BEAT)     /* seconds in which a live owner elsewhere touches its claim once */
+#define WATCH_LONG (6.0 * BEAT) /* the same where the claim's time is in the future, and nobody knows how old it is */
+#define LOOK 0.1                /* seconds from one look to the next meanwhile */
 #define TRIES 5 /* while others come and go */
 #define TEXT_MAX 400
+#define ENDED ULLONG_MAX
+/* Of a process's line in proc(5), between state, which is the third, and starttime. */
+#define SKIP_18 " %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s"
 
 typedef struct owner {
     char host[80], since[32], place[120]; /* place: which kernel, and which numbers of processes */
     long process;
+    unsigned long long began; /* when the process did, in the kernel's ticks; 0: not known */
 } owner;
 
 struct adcgs_claim {
@@ -45,6 +55,23 @@ static void read_line(const char *path, char *out, size_t size)
         fclose(file);
 }
 
+/** When a process began, in ticks since the machine did; 0: not known; ENDED: it has ended, and its parent has not asked yet. */
+static unsigned long long find_begin(long process)
+{
+    char name[48], text[1024], state = '-';
+    unsigned long long began = 0;
+    snprintf(name, sizeof name, "/proc/%ld/stat", process);
+    FILE *const file = fopen(name, "r");
+    const size_t n = file ? fread(text, 1, sizeof text - 1, file) : 0;
+    if (file)
+        fclose(file);
+    text[n] = '\0';
+    const char *const behind = strrchr(text, ')'); /* the program's name may hold anything */
+    if (!behind || sscanf(behind + 1, " %c" SKIP_18 " %llu", &state, &began) != 2)
+        return 0;
+    return state == 'Z' || state == 'X' ? ENDED : began;
+}
+
 /** Numbers of processes mean the same where both are equal: since the machine started, in one container. */
 static void find_own(owner *own)
 {
@@ -56,6 +83,7 @@ static void find_own(owner *own)
     read_line("/proc/sys/kernel/random/boot_id", boot, sizeof boot);
     snprintf(own->place, sizeof own->place, "%s/%s", boot, n > 0 ? space : "-");
     own->process = (long)getpid();
+    own->began = find_begin(own->process);
     if (gethostname(own->host, sizeof own->host))
         snprintf(own->host, sizeof own->host, "-");
     own->host[sizeof own->host - 1] = '\0';
@@ -73,7 +101,7 @@ static int read_claim(const char *path, char text[TEXT_MAX], owner *who, struct 
         return -1;
     text[n] = '\0';
     *who = (owner){ .host = "" };
-    if (sscanf(text, "%79s %ld %31s %119s", who->host, &who->process, who->since, who->place) < 3)
+    if (sscanf(text, "%79s %ld %31s %119s %llu", who->host, &who->process, who->since, who->place, &who->began) < 3)
         *who = (owner){ .host = "?", .since = "?" };
     return 0;
 }
@@ -96,16 +124,39 @@ static int create(const char *path, const char *text)
 
 /* ---- Who is there ---- */
 
-static int is_gone(const owner *who)
+typedef enum answer { NOBODY, DEAD, ALIVE, UNKNOWN } answer;
+
+/** What this machine knows of a process; UNKNOWN: it is another's, or the claim does not say enough. No clock is asked. */
+static answer ask_system(const owner *who)
 {
     owner own;
     find_own(&own);
     if (strcmp(own.host, who->host) != 0 || (who->place[0] && strcmp(own.place, who->place) != 0) || who->process <= 0)
-        return 0;
-    return who->process == own.process || (kill((pid_t)who->process, 0) && errno == ESRCH);
+        return UNKNOWN;
+    if (who->process == own.process || (kill((pid_t)who->process, 0) && errno == ESRCH))
+        return DEAD;
+    if (!who->place[0] || !who->began || !own.began) /* the number may have been given again */
+        return UNKNOWN;
+    const unsigned long long began = find_begin(who->process);
+    return !began ? UNKNOWN : began == who->began ? ALIVE : DEAD;
 }
 
-typedef enum answer { NOBODY, DEAD, ALIVE, UNKNOWN } answer;
+/** Clocks may be set: whether nobody touches a claim for so long by one that is not. */
+static int stays_untouched(const adcgs_claim *c, const struct stat *before, double seconds)
+{
+    const struct timespec nap = { .tv_nsec = (long)(1e9 * LOOK) };
+    const double end = adcgs_seconds() + seconds;
+    struct stat now;
+    char text[TEXT_MAX];
+    owner who;
+    while (adcgs_seconds() < end) {
+        nanosleep(&nap, NULL);
+        if (read_claim(c->path, text, &who, &now) || now.st_mtim.tv_sec != before->st_mtim.tv_sec ||
+            now.st_mtim.tv_nsec != before->st_mtim.tv_nsec || now.st_ino != before->st_ino)
+            return 0;
+    }
+    return 1;
+}
 
 /** Whether somebody is there; if so, leaves a file under our own name, whose time is that of the file system. */
 static answer look(const adcgs_claim *c, owner *who, double *age)
@@ -118,7 +169,12 @@ static answer look(const adcgs_claim *c, owner *who, double *age)
     if (create(c->mine, c->text) || stat(c->mine, &ours))
         return UNKNOWN;
     *age = difftime(ours.st_mtime, theirs.st_mtime);
-    return *age > ADCGS_CLAIM_SECONDS || is_gone(who) ? DEAD : ALIVE;
+    const answer known = ask_system(who);
+    if (known != UNKNOWN)
+        return known;
+    if (*age >= -BEAT && *age <= ADCGS_CLAIM_SECONDS)
+        return ALIVE;
+    return stays_untouched(c, &theirs, *age < 0 ? WATCH_LONG : WATCH) ? DEAD : ALIVE;
 }
 
 static adcgs_status refuse(const adcgs_claim *c, const owner *who, double age, adcgs_error *error)
@@ -147,7 +203,8 @@ static adcgs_claim *make(const char *path, const char *what)
     find_own(&own);
     if (c && (c->path = strdup(path)) && (c->what = strdup(what)) && (c->mine = malloc(n))) {
         snprintf(c->mine, n, "%s.%s-%ld", path, own.host, own.process);
-        snprintf(c->text, sizeof c->text, "%s %ld %s %s\n", own.host, own.process, own.since, own.place);
+        snprintf(c->text, sizeof c->text, "%s %ld %s %s %llu\n", own.host, own.process, own.since, own.place,
+                 own.began);
         return c;
     }
     clear(c);
@@ -168,7 +225,7 @@ static void *keep_alive(void *argument)
     adcgs_claim *const c = argument;
     struct timespec until;
     pthread_mutex_lock(&c->lock);
-    clock_gettime(CLOCK_REALTIME, &until);
+    clock_gettime(CLOCK_MONOTONIC, &until);
     until.tv_sec += BEAT;
     while (!c->ends) {
         if (pthread_cond_timedwait(&c->changed, &c->lock, &until) != ETIMEDOUT)
@@ -176,7 +233,7 @@ static void *keep_alive(void *argument)
         if (!is_ours(c))
             break;
         utimensat(AT_FDCWD, c->path, NULL, 0); /* the server's time, not ours */
-        clock_gettime(CLOCK_REALTIME, &until);
+        clock_gettime(CLOCK_MONOTONIC, &until);
         until.tv_sec += BEAT;
     }
     pthread_mutex_unlock(&c->lock);
@@ -187,8 +244,12 @@ static void *keep_alive(void *argument)
 static adcgs_status begin(adcgs_claim *c, adcgs_error *error)
 {
     sigset_t all, before;
+    pthread_condattr_t steady;
     pthread_mutex_init(&c->lock, NULL);
-    pthread_cond_init(&c->changed, NULL);
+    pthread_condattr_init(&steady);
+    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC); /* beats come whatever the time of day is set to */
+    pthread_cond_init(&c->changed, &steady);
+    pthread_condattr_destroy(&steady);
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     c->beats = !pthread_create(&c->beat, NULL, keep_alive, c);
