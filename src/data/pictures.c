@@ -5,22 +5,25 @@
 #include "data/pictures.h"
 
 #include "data/clips.h"
-#include "data/paths.h"
+#include "data/spool.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #define FULL 65535.0f
+#define LEVEL 257 /* from one level of 8 bits to the next, in 16 */
+
+typedef enum place { IN_MEMORY, IN_FILE, NOWHERE } place; /* NOWHERE: it is decoded again whenever it is asked for */
 
 typedef struct picture {
     adcgs_camera camera;
-    void *values;  /**< NULL: in the file */
+    void *values;  /**< in memory */
     uint64_t at;   /**< in the file */
-    int wide;      /**< binary32, else 16 bits */
+    place place;
+    uint8_t bytes; /**< of a value: 1, 2, or 4 for binary32 */
     uint8_t *hidden; /**< [height * width] pixels that are not known, which values hold as 0; NULL: all are */
 } picture;
 
@@ -29,10 +32,10 @@ struct adcgs_pictures {
     adcgs_pictures_config config;
     uint32_t n;
     picture *list;
-    int file;          /**< -1: none yet */
-    char *folder;      /**< of the file */
     pthread_mutex_t lock; /**< for what follows, while loading */
-    uint64_t held, spooled;
+    adcgs_spool spool;
+    uint64_t held;
+    uint32_t nowhere; /**< images that are decoded again */
 };
 
 /* ---- Values ---- */
@@ -44,7 +47,7 @@ static size_t values_of(const picture *p)
 
 static size_t bytes_of(const picture *p)
 {
-    return values_of(p) * (p->wide ? sizeof(float) : sizeof(uint16_t));
+    return values_of(p) * p->bytes;
 }
 
 static int is_wide(const float *rgb, size_t n)
@@ -55,19 +58,37 @@ static int is_wide(const float *rgb, size_t n)
     return wide;
 }
 
-/** In place: sixteen bits are never ahead of the thirty-two they come from. */
-static void narrow(float *rgb, size_t n)
+static inline uint16_t to_16(float value)
 {
-    for (size_t i = 0; i < n; i++) {
-        const uint16_t value = (uint16_t)(rgb[i] * FULL + 0.5f);
-        memcpy((char *)rgb + i * sizeof value, &value, sizeof value);
-    }
+    return (uint16_t)(value * FULL + 0.5f);
 }
 
-static void widen(float *rgb, const uint16_t *values, size_t n)
+/** In place: narrower values are never ahead of what they come from. \return bytes of a value, which lose nothing of 16 bits */
+static uint8_t narrow(float *rgb, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
-        rgb[i] = (float)values[i] / FULL;
+    uint32_t between = 0;
+    for (size_t i = 0; i < n; i++) {
+        const uint16_t value = to_16(rgb[i]);
+        between |= value % LEVEL;
+        memcpy((char *)rgb + i * sizeof value, &value, sizeof value);
+    }
+    for (size_t i = 0; !between && i < n; i++) {
+        uint16_t value;
+        memcpy(&value, (char *)rgb + i * sizeof value, sizeof value);
+        ((uint8_t *)rgb)[i] = (uint8_t)(value / LEVEL);
+    }
+    return between ? 2 : 1;
+}
+
+/** The same floats from 8 bits as from 16. */
+static void widen(float *rgb, const void *values, uint8_t bytes, size_t n)
+{
+    for (size_t i = 0; bytes == 1 && i < n; i++)
+        rgb[i] = (float)(LEVEL * ((const uint8_t *)values)[i]) / FULL;
+    for (size_t i = 0; bytes == 2 && i < n; i++)
+        rgb[i] = (float)((const uint16_t *)values)[i] / FULL;
+    if (bytes == 4)
+        memcpy(rgb, values, n * sizeof *rgb);
 }
 
 /** Note which pixels are not known, and give them a value that can be kept. */
@@ -96,83 +117,53 @@ static void show_hidden(const picture *p, float *rgb)
             rgb[c * plane + i] = (float)NAN;
 }
 
-/* ---- The file ---- */
-
-static adcgs_status open_file(adcgs_pictures *p, adcgs_error *error)
-{
-    char *name = adcgs_path("%s/adcgs-XXXXXX", p->folder);
-    if (!name)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for pictures");
-    p->file = mkstemp(name);
-    const int problem = errno;
-    if (p->file >= 0)
-        unlink(name);
-    free(name);
-    return p->file >= 0 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot keep pictures there: %s", p->folder,
-                                                strerror(problem));
-}
-
-static adcgs_status write_values(adcgs_pictures *p, const void *values, size_t bytes, uint64_t at, adcgs_error *error)
-{
-    for (size_t done = 0; done < bytes;) {
-        const ssize_t n = pwrite(p->file, (const char *)values + done, bytes - done, (off_t)(at + done));
-        if (n <= 0 && errno != EINTR)
-            return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot keep pictures there: %s; more memory or another TMPDIR may help",
-                              p->folder, strerror(errno));
-        done += n > 0 ? (size_t)n : 0;
-    }
-    return ADCGS_OK;
-}
-
-static adcgs_status read_values(const adcgs_pictures *p, void *values, size_t bytes, uint64_t at, adcgs_error *error)
-{
-    for (size_t done = 0; done < bytes;) {
-        const ssize_t n = pread(p->file, (char *)values + done, bytes - done, (off_t)(at + done));
-        if (n == 0 || (n < 0 && errno != EINTR))
-            return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read back a picture: %s", p->folder,
-                              n ? strerror(errno) : "the file ends early");
-        done += n > 0 ? (size_t)n : 0;
-    }
-    return ADCGS_OK;
-}
-
 /* ---- Loading ---- */
 
-/** Where a picture of so many bytes goes: *at is its place in the file, or it is left in memory. */
-static adcgs_status find_place(adcgs_pictures *p, size_t bytes, int *in_memory, uint64_t *at, adcgs_error *error)
+/** Where an image goes. */
+static void find_place(adcgs_pictures *p, picture *to, int can_decode)
 {
-    adcgs_status status = ADCGS_OK;
+    const size_t bytes = bytes_of(to);
     pthread_mutex_lock(&p->lock);
-    *in_memory = p->held + bytes <= p->config.memory;
-    if (!*in_memory && p->file < 0)
-        status = open_file(p, error);
-    *at = p->spooled;
-    *(*in_memory ? &p->held : &p->spooled) += bytes;
+    to->place = p->held + bytes <= p->config.memory          ? IN_MEMORY
+                : adcgs_spool_take(&p->spool, bytes, &to->at) ? IN_FILE
+                : can_decode                                  ? NOWHERE
+                                                              : IN_MEMORY;
+    p->held += to->place == IN_MEMORY ? bytes : 0;
+    p->nowhere += to->place == NOWHERE;
     pthread_mutex_unlock(&p->lock);
-    return status;
 }
 
-static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, adcgs_error *error)
+/** Others took the room, or the disk fails: the file grows no more. */
+static void give_up_file(adcgs_pictures *p, picture *to, int problem)
 {
-    int in_memory;
-    adcgs_status status = hide(to, rgb, error);
+    pthread_mutex_lock(&p->lock);
+    to->place = NOWHERE;
+    p->nowhere++;
+    p->spool.problem = problem;
+    pthread_mutex_unlock(&p->lock);
+}
+
+/** can_decode: the image is the scene's, and can be read from there once more. */
+static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, int can_decode, adcgs_error *error)
+{
+    const adcgs_status status = hide(to, rgb, error);
     if (status != ADCGS_OK) {
         free(rgb);
         return status;
     }
-    to->wide = is_wide(rgb, values_of(to));
-    if (!to->wide)
-        narrow(rgb, values_of(to));
-    status = find_place(p, bytes_of(to), &in_memory, &to->at, error);
-    if (status == ADCGS_OK && in_memory) {
+    to->bytes = is_wide(rgb, values_of(to)) ? sizeof *rgb : narrow(rgb, values_of(to));
+    find_place(p, to, can_decode);
+    const int problem = to->place == IN_FILE ? adcgs_spool_write(&p->spool, rgb, bytes_of(to), to->at) : 0;
+    if (problem && can_decode)
+        give_up_file(p, to, problem);
+    else if (problem)
+        to->place = IN_MEMORY;
+    if (to->place == IN_MEMORY) {
         void *const fitted = realloc(rgb, bytes_of(to));
         to->values = fitted ? fitted : rgb;
-        return ADCGS_OK;
-    }
-    if (status == ADCGS_OK)
-        status = write_values(p, rgb, bytes_of(to), to->at, error);
-    free(rgb);
-    return status;
+    } else
+        free(rgb);
+    return ADCGS_OK;
 }
 
 typedef struct load_job {
@@ -190,7 +181,7 @@ static adcgs_status load(adcgs_pictures *p, uint32_t view, adcgs_error *error)
                                error));
     if (p->config.glances)
         adcgs_glance_take(&p->config.glances[view], rgb, p->list[view].camera.width, p->list[view].camera.height);
-    return keep(p, &p->list[view], rgb, error);
+    return keep(p, &p->list[view], rgb, 1, error);
 }
 
 /** Count a picture, or one that failed. \return whether to go on. */
@@ -243,12 +234,6 @@ static adcgs_status load_all(adcgs_pictures *p, adcgs_pool *pool, adcgs_error *e
     return status;
 }
 
-uint64_t adcgs_pictures_usual_memory(void)
-{
-    const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
-    return pages > 0 && size > 0 ? (uint64_t)pages * (uint64_t)size / 2 : (uint64_t)1 << 30;
-}
-
 adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene, const adcgs_pictures_config *config,
                                  adcgs_pool *pool, adcgs_error *error)
 {
@@ -260,14 +245,11 @@ adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene,
     p->config = *config;
     p->config.memory = config->memory ? config->memory : adcgs_pictures_usual_memory();
     p->n = scene->n_views[config->split];
-    p->file = -1;
     pthread_mutex_init(&p->lock, NULL);
     p->list = calloc(ADCGS_MAX(p->n, 1), sizeof *p->list);
-    const char *const chosen = getenv("TMPDIR");
-    p->folder = strdup(chosen && *chosen ? chosen : "/var/tmp");
-    const adcgs_status status = p->list && p->folder
-                                    ? load_all(p, pool, error)
-                                    : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u pictures", p->n);
+    adcgs_status status = adcgs_spool_init(&p->spool, error);
+    if (status == ADCGS_OK)
+        status = p->list ? load_all(p, pool, error) : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for %u images", p->n);
     if (status != ADCGS_OK)
         adcgs_pictures_free(&p);
     *out = p;
@@ -283,10 +265,8 @@ void adcgs_pictures_free(adcgs_pictures **pictures)
         free(p->list[i].values);
         free(p->list[i].hidden);
     }
-    if (p->file >= 0)
-        close(p->file);
+    adcgs_spool_clear(&p->spool);
     pthread_mutex_destroy(&p->lock);
-    free(p->folder);
     free(p->list);
     free(p);
     *pictures = NULL;
@@ -299,32 +279,39 @@ const adcgs_camera *adcgs_pictures_camera(const adcgs_pictures *pictures, uint32
     return &pictures->list[view].camera;
 }
 
-/** As they are kept. */
-static adcgs_status get_values(const adcgs_pictures *pictures, const picture *p, float *rgb, adcgs_error *error)
+/** From the scene's files, the same values as would have been kept. */
+static adcgs_status decode_again(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error)
 {
-    const size_t n = values_of(p);
-    if (p->values && p->wide)
-        memcpy(rgb, p->values, bytes_of(p));
-    else if (p->values)
-        widen(rgb, p->values, n);
-    else if (p->wide)
-        return read_values(pictures, rgb, bytes_of(p), p->at, error);
-    else {
-        uint16_t *values = malloc(bytes_of(p));
-        const adcgs_status status = values ? read_values(pictures, values, bytes_of(p), p->at, error)
-                                           : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a picture");
-        if (status == ADCGS_OK)
-            widen(rgb, values, n);
-        free(values);
-        return status;
+    const picture *p = &pictures->list[view];
+    const adcgs_scene_view *v = &pictures->scene->views[pictures->config.split][view];
+    float *values;
+    ADCGS_TRY(adcgs_scene_load(pictures->scene, v, pictures->config.divide, &values, NULL, error));
+    for (size_t i = 0; i < values_of(p); i++) {
+        const float x = isnan(values[i]) ? 0.0f : values[i];
+        rgb[i] = p->bytes == sizeof *rgb ? x : (float)to_16(fminf(fmaxf(x, 0.0f), 1.0f)) / FULL;
     }
+    free(values);
     return ADCGS_OK;
+}
+
+/** \return 0, or errno: then nothing was read */
+static int read_file(const adcgs_pictures *pictures, const picture *p, float *rgb)
+{
+    void *const values = malloc(bytes_of(p));
+    const int problem = values ? adcgs_spool_read(&pictures->spool, values, bytes_of(p), p->at) : ENOMEM;
+    if (!problem)
+        widen(rgb, values, p->bytes, values_of(p));
+    free(values);
+    return problem;
 }
 
 adcgs_status adcgs_pictures_get(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error)
 {
     const picture *p = &pictures->list[view];
-    ADCGS_TRY(get_values(pictures, p, rgb, error));
+    if (p->place == IN_MEMORY)
+        widen(rgb, p->values, p->bytes, values_of(p));
+    else if (p->place == NOWHERE || read_file(pictures, p, rgb))
+        ADCGS_TRY(decode_again(pictures, view, rgb, error));
     show_hidden(p, rgb);
     return ADCGS_OK;
 }
@@ -341,22 +328,29 @@ adcgs_status adcgs_pictures_put(adcgs_pictures *pictures, uint32_t view, const f
     if (!copy)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a picture");
     memcpy(copy, rgb, values_of(p) * sizeof *copy);
-    if (p->values)
+    if (p->place == IN_MEMORY)
         pictures->held -= bytes_of(p);
+    pictures->nowhere -= p->place == NOWHERE;
     free(p->values);
     p->values = NULL;
-    return keep(pictures, p, copy, error);
+    return keep(pictures, p, copy, 0, error);
 }
 
 void adcgs_pictures_expect(const adcgs_pictures *pictures, uint32_t view)
 {
     const picture *p = &pictures->list[view];
-    if (!p->values)
-        posix_fadvise(pictures->file, (off_t)p->at, (off_t)bytes_of(p), POSIX_FADV_WILLNEED);
+    if (p->place == IN_FILE)
+        posix_fadvise(pictures->spool.file, (off_t)p->at, (off_t)bytes_of(p), POSIX_FADV_WILLNEED);
 }
 
 void adcgs_pictures_size(const adcgs_pictures *pictures, uint64_t *memory, uint64_t *file)
 {
     *memory = pictures->held;
-    *file = pictures->spooled;
+    *file = pictures->spool.used;
+}
+
+uint32_t adcgs_pictures_decoded_again(const adcgs_pictures *pictures, const char **why)
+{
+    *why = strerror(pictures->spool.problem ? pictures->spool.problem : ENOSPC);
+    return pictures->nowhere;
 }

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * All pictures of a split at one size, decoded once and kept: in memory up to a
- * budget, the others in an unnamed file of TMPDIR (/var/tmp without it), which
- * the system reads ahead when told what comes next. Values in [0,1] are kept in
- * 16 bits wherever they lie, so that a budget never changes what is learnt;
- * those of a picture that goes beyond are kept as binary32.
+ * All images of a split at one size, decoded once and kept: in memory up to a
+ * budget, then in an unnamed file of TMPDIR (/var/tmp without it) up to the room
+ * there, which the system reads ahead when told what comes next. What has room
+ * nowhere is decoded again from the scene's files each time it is asked for.
+ * Values in [0,1] are kept in 16 bits, or in 8 where that is the same, so that no
+ * budget ever changes what is trained; those of an image that goes beyond are
+ * kept as binary32.
  */
 #ifndef ADCGS_DATA_PICTURES_H
 #define ADCGS_DATA_PICTURES_H
@@ -21,17 +23,17 @@ typedef int (*adcgs_pictures_progress)(void *user, uint32_t done, uint32_t n);
 typedef struct adcgs_pictures_config {
     adcgs_split split;
     int divide;        /**< sizes are divided by this, see adcgs_scene_load() */
-    uint64_t memory;   /**< bytes of pictures in memory at most; 0: half of what the machine has */
+    uint64_t memory;   /**< bytes of images in memory at most; 0: adcgs_pictures_usual_memory() */
     adcgs_pictures_progress progress; /**< or NULL */
     void *user;
     adcgs_glance *glances; /**< [views] taken of each picture as it is loaded; or NULL */
 } adcgs_pictures_config;
 
-/** Bytes in memory at most, unless they are given: half of what the machine has. */
+/** Bytes in memory at most, unless they are given: half of what the machine has, or a cgroup or ulimit -v leaves of it. */
 uint64_t adcgs_pictures_usual_memory(void);
 /**
  * The scene must outlive them. The first failure of a picture, in their order, is the one reported; ADCGS_ERR_IO also when
- * the file has no room, or when progress says stop.
+ * progress says stop.
  */
 adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene, const adcgs_pictures_config *config,
                                  adcgs_pool *pool, adcgs_error *error);
@@ -48,5 +50,20 @@ adcgs_status adcgs_pictures_put(adcgs_pictures *pictures, uint32_t view, const f
 void adcgs_pictures_expect(const adcgs_pictures *pictures, uint32_t view);
 /** Bytes in memory, and in the file. */
 void adcgs_pictures_size(const adcgs_pictures *pictures, uint64_t *memory, uint64_t *file);
+/** Images that are decoded again each time they are asked for, and why there is no room for them. */
+uint32_t adcgs_pictures_decoded_again(const adcgs_pictures *pictures, const char **why);
+
+/** How much room images will take, and where. */
+typedef struct adcgs_pictures_need {
+    uint64_t bytes;         /**< of all of them, as far as is known from a few of them */
+    uint64_t memory, file;  /**< of these, kept in memory and in the file; the rest is decoded again */
+    uint64_t room;          /**< for the file */
+    int problem;            /**< errno, where there is no room at all */
+    uint32_t n, again;      /**< images, and those that are decoded again */
+} adcgs_pictures_need;
+
+/** Before they are loaded. Decodes one or two images, but none where all fit into memory, whatever they hold. */
+adcgs_status adcgs_pictures_foresee(adcgs_pictures_need *need, const adcgs_scene *scene, const adcgs_pictures_config *config,
+                                    adcgs_error *error);
 
 #endif

@@ -15,6 +15,7 @@
 #include "tools/enc_rank.h"
 #include "tools/enc_ranks.h"
 #include "tools/enc_report.h"
+#include "tools/enc_rescue.h"
 #include "tools/enc_run.h"
 #include "tools/enc_segments.h"
 #include "tools/enc_trials.h"
@@ -132,7 +133,8 @@ static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *erro
 static adcgs_status report(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time spent, int *met, adcgs_error *error)
 {
     return adcgs_enc_report_print(job->cli, &(adcgs_enc_report){ job->o->output, &job->config, job->cpu, job->scene, w->last,
-                                                                 spent, w->uncompressed_bytes, job->o->threads, job->o->json },
+                                                                 spent, w->uncompressed_bytes, job->o->threads, job->o->json,
+                                                                 w->heard },
                                   met, error);
 }
 
@@ -151,6 +153,8 @@ static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job,
     adcgs_stream_init(&stream);
     status = write_stream(&stream, w, job->pool, error);
     adcgs_stream_clear(&stream, NULL);
+    if (status != ADCGS_OK)
+        adcgs_enc_rescue(job->cli, w, status);
     if (status == ADCGS_OK)
         status = report(w, job, w->last.spent, met, error);
     *met &= !w->cut_short;

@@ -22,35 +22,44 @@ typedef struct tally {
     const char *name; /* of its first view that is measured */
 } tally;
 
+/** Of each camera, and the interrupts that came before. */
+typedef struct tallies {
+    tally of[VIEWS];
+    int heard;
+} tallies;
+
 static adcgs_status count(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
-    tally *const t = (tally *)user + score->camera;
-    (void)error;
+    tallies *const all = user;
+    tally *const t = &all->of[score->camera];
+    if (adcgs_interrupts() > all->heard)
+        return adcgs_fail(error, ADCGS_ERR_IO, "interrupted");
     t->sum += score->fitted_psnr;
     t->name = t->n++ ? t->name : score->view->camera.name;
     return ADCGS_OK;
 }
 
-static void say_odd(const adcgs_cli *cli, const tally *tallies, int cameras, const char *file)
+static void say_odd(const adcgs_cli *cli, const tally *list, int cameras, const char *file)
 {
     double mean[VIEWS], sorted[VIEWS];
     int named = 0;
     for (int i = 0; i < cameras; i++)
-        sorted[i] = mean[i] = tallies[i].sum / tallies[i].n;
+        sorted[i] = mean[i] = list[i].sum / list[i].n;
     adcgs_sort(sorted, (size_t)cameras);
     const double median = sorted[cameras / 2], quartile = sorted[cameras / 4];
     const double odd = fmin(median - DB_ODD, quartile - SPREADS * (median - quartile));
     for (int i = 0; i < cameras && cameras >= CAMERAS_MANY && named < NAMED; i++)
         if (mean[i] < odd && ++named)
             adcgs_cli_note(cli, "%s: the camera of view %s has %.1f dB, the median camera %.1f: is its pose right?", file,
-                           tallies[i].name, mean[i], median);
+                           list[i].name, mean[i], median);
 }
 
-void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene, double unseen, const char *file)
+void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene, double unseen, const char *file,
+                     int heard)
 {
     const uint32_t all = scene->n_views[ADCGS_SPLIT_TRAIN], n = ADCGS_MIN(all, VIEWS);
     adcgs_scene_view picked[VIEWS];
-    tally tallies[VIEWS] = {{.n = 0}};
+    tallies found = {.heard = heard};
     adcgs_scene some = *scene;
     adcgs_evaluation mean;
     adcgs_error error;
@@ -63,10 +72,10 @@ void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_s
     }
     some.views[ADCGS_SPLIT_TRAIN] = picked;
     some.n_views[ADCGS_SPLIT_TRAIN] = n;
-    if (adcgs_evaluate(&mean, decoder, &some, ADCGS_SPLIT_TRAIN, ADCGS_MEASURE_FITTED, count, tallies, &error) != ADCGS_OK)
+    if (adcgs_evaluate(&mean, decoder, &some, ADCGS_SPLIT_TRAIN, ADCGS_MEASURE_FITTED, count, &found, &error) != ADCGS_OK)
         return;
     int cameras = 0;
-    while (cameras < (int)n && tallies[cameras].n)
+    while (cameras < (int)n && found.of[cameras].n)
         cameras++;
     if (cameras <= CAMERAS_FEW && cameras < (int)n)
         adcgs_cli_note(cli, "%s: filmed by %d camera%s: what is seen from elsewhere is a guess", file, cameras,
@@ -74,5 +83,5 @@ void adcgs_enc_doubt(const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_s
     if (unseen < mean.psnr - DB_UNSEEN)
         adcgs_cli_note(cli, "%s: training views have %.1f dB, others %.1f: are poses, axes and times right, and views enough?",
                        file, mean.psnr, unseen);
-    say_odd(cli, tallies, cameras, file);
+    say_odd(cli, found.of, cameras, file);
 }

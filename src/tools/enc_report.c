@@ -114,22 +114,25 @@ static adcgs_status print_json(const adcgs_enc_report *r, const result *x, adcgs
 typedef struct counter {
     adcgs_progress progress;
     uint32_t done, n;
+    int heard;
 } counter;
 
 static adcgs_status count_view(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
     counter *c = user;
     (void)score;
-    (void)error;
+    if (adcgs_interrupts() > c->heard)
+        return adcgs_fail(error, ADCGS_ERR_IO, "interrupted after %u of %u views were measured", c->done, c->n);
     adcgs_progress_show(&c->progress, "measured  %6u/%u", ++c->done, c->n);
     return ADCGS_OK;
 }
 
 /** PSNR and SSIM of a split's views. */
-static adcgs_status evaluate(adcgs_evaluation *out, const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_scene *scene,
+static adcgs_status evaluate(adcgs_evaluation *out, const adcgs_cli *cli, adcgs_decoder *decoder, const adcgs_enc_report *r,
                              adcgs_split split, adcgs_error *error)
 {
-    counter c = {.n = scene->n_views[split]};
+    const adcgs_scene *const scene = r->scene;
+    counter c = {.n = scene->n_views[split], .heard = r->heard};
     adcgs_progress_init(&c.progress, cli);
     const adcgs_status status = adcgs_evaluate(out, decoder, scene, split, 0, count_view, &c, error);
     adcgs_progress_clear(&c.progress);
@@ -148,7 +151,7 @@ static adcgs_status judge(const adcgs_cli *cli, outcome *o, const adcgs_enc_repo
         o->reached = (double)info->bytes.total;
         o->met = o->reached <= o->value && o->reached > (1 - SIZE_WITHIN) * o->value;
     } else if (c->target == ADCGS_TARGET_PSNR) {
-        ADCGS_TRY(evaluate(&e, cli, decoder, r->scene, ADCGS_SPLIT_TRAIN, error));
+        ADCGS_TRY(evaluate(&e, cli, decoder, r, ADCGS_SPLIT_TRAIN, error));
         o->kind = "psnr";
         o->reached = e.psnr;
         o->met = fabs(o->reached - o->value) <= PSNR_WITHIN;
@@ -177,7 +180,7 @@ static adcgs_status measure(const adcgs_cli *cli, result *x, const adcgs_enc_rep
     const char *const lambda = adcgs_get_metadata(decoder, "lambda");
     x->lambda = lambda ? strtod(lambda, NULL) : 0;
     ADCGS_TRY(adcgs_get_info(decoder, &x->info, sizeof x->info, error));
-    ADCGS_TRY(evaluate(&x->quality, cli, decoder, scene, x->split, error));
+    ADCGS_TRY(evaluate(&x->quality, cli, decoder, r, x->split, error));
     return judge(cli, &x->target, r, &x->info, decoder, error);
 }
 
@@ -198,8 +201,14 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     config.cpu = r->cpu;
     ADCGS_TRY(adcgs_open_file(&decoder, r->file, &config, error));
     adcgs_status status = measure(cli, &x, r, decoder, error);
+    *met = status != ADCGS_OK || x.target.met;
     if (status != ADCGS_OK)
         say_written(r, error);
+    if (status != ADCGS_OK && adcgs_interrupts() > r->heard && !r->json) {
+        adcgs_close(&decoder);
+        adcgs_cli_error(cli, ADCGS_OK, "%s", error->text);
+        return ADCGS_OK;
+    }
     if (status == ADCGS_OK && r->json)
         status = print_json(r, &x, error);
     else if (status == ADCGS_OK && !*cli->quiet)
@@ -207,10 +216,9 @@ adcgs_status adcgs_enc_report_print(const adcgs_cli *cli, const adcgs_enc_report
     /* Views for testing are as they were taken: of other light than those that it was evened out of. */
     const int tells = x.split != ADCGS_SPLIT_TRAIN && !r->config->even_light;
     if (status == ADCGS_OK)
-        adcgs_enc_doubt(cli, decoder, r->scene, tells ? x.quality.psnr : (double)NAN, r->file);
+        adcgs_enc_doubt(cli, decoder, r->scene, tells ? x.quality.psnr : (double)NAN, r->file, r->heard);
     if (status == ADCGS_OK && !x.target.met)
         say_missed(cli, r, &x.target);
-    *met = status != ADCGS_OK || x.target.met;
     adcgs_close(&decoder);
     return status;
 }

@@ -9,6 +9,8 @@
 #include "metric/metric.h"
 #include "model/model_priv.h"
 #include "tools/enc_footage.h"
+#include "tools/enc_rescue.h"
+#include "tools/enc_room.h"
 #include "train/settings.h"
 
 #include <math.h>
@@ -140,6 +142,8 @@ static int observe(void *user, const adcgs_train_report *r)
         snprintf(attempt, sizeof attempt, "try %d: ", r->attempt);
     int stops = 0;
     look_at_footage(w);
+    if (w->t->divide)
+        adcgs_enc_tell_no_room(w);
     w->last = *r;
     if (r->iteration && !w->first.iteration)
         w->first = *r;
@@ -206,28 +210,15 @@ adcgs_status adcgs_enc_encode(adcgs_stream *stream, adcgs_buffer *bytes, const a
 
 /* ---- Learning ---- */
 
-/** Whether there is something to make a file of, should it be wanted; segments behind the one that is learnt would be missing. */
-static int is_ready(const adcgs_enc_watcher *w)
-{
-    return w->o->output && !w->segments && w->t->iteration;
-}
-
 static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
 {
-    if (is_ready(w) && adcgs_interrupts() < 2)
+    char *path;
+    if (adcgs_enc_is_ready(w) && adcgs_interrupts() < 2)
         adcgs_cli_error(cli, ADCGS_OK, "interrupted: the state is being saved; a second interrupt makes a file of what there is");
-    ADCGS_TRY(adcgs_trainer_save(w->t, w->state, error));
-    if (w->hear)
-        return ADCGS_OK; /* who is told says so for all */
-    if (w->o->plan)
-        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; the same command goes on", w->t->iteration,
-                        w->segment + 1, w->segments);
-    else if (w->segments)
-        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u of segment %u of %u; go on with the same command and --resume %s",
-                        w->t->iteration, w->segment + 1, w->segments, w->base);
-    else
-        adcgs_cli_error(cli, ADCGS_OK, "stopped at iteration %u; go on with the same command and --resume %s%s", w->t->iteration,
-                        w->base, is_ready(w) ? "; or --finish it: a file of what there is" : "");
+    ADCGS_TRY(adcgs_enc_save(w, w->state, 1, &path, error));
+    if (!w->hear) /* who is told says so for all */
+        adcgs_enc_say_how_to_go_on(cli, w, "stopped", path);
+    free(path);
     return ADCGS_OK;
 }
 
@@ -271,6 +262,16 @@ static adcgs_status run(adcgs_enc_watcher *w, int *stopped, adcgs_error *error)
     return status;
 }
 
+static adcgs_status save_beginning(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
+{
+    char *path;
+    ADCGS_TRY(adcgs_enc_save(w, w->o->beginning, 1, &path, error));
+    if (strcmp(path, w->o->beginning))
+        adcgs_cli_error(cli, ADCGS_OK, "%s could not be written: the state is %s", w->o->beginning, path);
+    free(path);
+    return ADCGS_OK;
+}
+
 /** state: a checkpoint to go on from, or NULL. */
 static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char *state, adcgs_error *error)
 {
@@ -291,6 +292,8 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
         return stopped && adcgs_interrupted() ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted") : ADCGS_OK;
     if (w->last.stage && w->last.iteration + 100 != w->next_log)
         log_last(w);
+    if (status != ADCGS_OK)
+        adcgs_enc_rescue(cli, w, error->status);
     ADCGS_TRY(status);
     if (!stopped) {
         adcgs_enc_preview_show(&w->preview, w->t, NULL, &w->progress);
@@ -299,9 +302,9 @@ static adcgs_status train(const adcgs_cli *cli, adcgs_enc_watcher *w, const char
         return ADCGS_OK;
     }
     if (w->o->beginning && !adcgs_interrupted())
-        return adcgs_trainer_save(w->t, w->o->beginning, error);
+        return save_beginning(cli, w, error);
     ADCGS_TRY(stop_early(cli, w, error));
-    w->cut_short = is_ready(w) && adcgs_interrupts() > 1;
+    w->cut_short = adcgs_enc_is_ready(w) && adcgs_interrupts() > 1;
     if (w->cut_short)
         return finish(cli, w, error);
     return adcgs_fail(error, ADCGS_ERR_IO, "interrupted; nothing was written to %s", w->target);
@@ -337,7 +340,10 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
     w->t->loading = loading;
     w->t->loading_user = w;
     w->t->started = started;
+    if (tells)
+        ADCGS_TRY(adcgs_enc_tell_room(w, error));
     const adcgs_status status = train(job->cli, w, state, error);
+    w->heard = adcgs_interrupts();
     forget_glances(w);
     return status;
 }

@@ -8,6 +8,7 @@
 #include "io/atomic.h"
 #include "layouts/open.h"
 #include "tools/enc_parts.h"
+#include "tools/enc_rescue.h"
 #include "tools/enc_whole.h"
 #include "tools/plan_parts.h"
 
@@ -85,7 +86,10 @@ static adcgs_status learn_scene(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
         return status;
     adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
     add_plan_notes(&n, w, job);
-    return adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
+    status = adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
+    if (status != ADCGS_OK)
+        adcgs_enc_rescue(job->cli, w, status);
+    return status;
 }
 
 adcgs_status adcgs_enc_segment_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, adcgs_time *spent, adcgs_error *error)

@@ -12,17 +12,27 @@
 
 #define AS_GOOD 0.05 /* dB: less is not seen */
 
+/** Whether to go on: the parts stay, and the same command with --resume joins them. */
+static adcgs_status heed(void *user, const adcgs_view_score *score, adcgs_error *error)
+{
+    const int *const heard = user;
+    (void)score;
+    return adcgs_interrupts() == *heard ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "interrupted while the two were compared; "
+                                                                "the same command with --resume goes on");
+}
+
 /** A stream, and how well it shows the training views. */
 static adcgs_status measure(double *psnr, const adcgs_buffer *bytes, const adcgs_enc_job *job, adcgs_error *error)
 {
     adcgs_config config;
     adcgs_decoder *decoder = NULL;
     adcgs_evaluation result = { .n = 0 };
+    int heard = adcgs_interrupts();
     adcgs_config_init(&config, sizeof config);
     config.cpu = job->cpu;
     config.pool = job->pool;
     ADCGS_TRY(adcgs_open_memory(&decoder, bytes->data, bytes->size, &config, error));
-    const adcgs_status status = adcgs_evaluate(&result, decoder, job->scene, ADCGS_SPLIT_TRAIN, 0, NULL, NULL, error);
+    const adcgs_status status = adcgs_evaluate(&result, decoder, job->scene, ADCGS_SPLIT_TRAIN, 0, heed, &heard, error);
     adcgs_close(&decoder);
     *psnr = result.psnr;
     return status;

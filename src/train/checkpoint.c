@@ -14,6 +14,7 @@
 #include "train/mechanisms.h"
 #include "train/settings.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +23,9 @@ static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
 enum { FORMAT = 32 };
 
 typedef struct walk {
-    adcgs_buffer *out; /* storing */
+    adcgs_buffer *out; /* storing in memory */
+    FILE *file;        /* or in a file, which needs none */
+    uint32_t crc;      /* of what is in the file */
     adcgs_reader *in;  /* or restoring */
     int failed;
     char differs[160]; /* restoring: what the run and the file do not agree on; "" if they do */
@@ -32,6 +35,11 @@ static void visit(walk *w, void *data, size_t bytes)
 {
     if (w->out) {
         adcgs_write_bytes(w->out, data, bytes);
+        return;
+    }
+    if (w->file) {
+        w->crc = adcgs_crc32c(w->crc, data, bytes);
+        w->failed |= fwrite(data, 1, bytes, w->file) != bytes;
         return;
     }
     const uint8_t *from = adcgs_read_bytes(w->in, bytes);
@@ -180,7 +188,7 @@ static void walk_width(walk *w, adcgs_fmodel *f, int group)
                                       [ADCGS_P_VARPI] = f->shape.varpi_width };
     int width = f->mlp[group].width;
     visit(w, &width, sizeof width);
-    if (!f->mlp[group].hidden || w->out)
+    if (!f->mlp[group].hidden || !w->in)
         return;
     if (width < 1 || width > (f->mlp[group].entropy ? f->shape.entropy_width : from[group]))
         w->failed = 1;
@@ -223,7 +231,7 @@ static void walk_average(walk *w, adcgs_trainer *t)
     adcgs_weight_average *a = &t->average;
     uint32_t n = a->n;
     visit(w, &n, sizeof n);
-    if (n > 0 && !w->out && adcgs_weight_average_begin(a, t->f, NULL) != ADCGS_OK)
+    if (n > 0 && w->in && adcgs_weight_average_begin(a, t->f, NULL) != ADCGS_OK)
         w->failed = 1;
     a->n = w->failed ? 0 : n;
     if (a->n > 0)
@@ -244,7 +252,7 @@ static void walk_begin(walk *w, adcgs_trainer *t)
 {
     uint64_t n = t->begin.size;
     visit(w, &n, sizeof n);
-    if (w->out) {
+    if (!w->in) {
         visit(w, t->begin.data, n);
         return;
     }
@@ -256,18 +264,23 @@ static void walk_begin(walk *w, adcgs_trainer *t)
     w->failed |= t->begin.failed;
 }
 
+static void walk_all(walk *w, const adcgs_trainer *trainer)
+{
+    adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the storing visitors only read */
+    walk_config(w, t);
+    walk_scalars(w, t);
+    visit(w, &t->f->n, sizeof t->f->n);
+    visit(w, t->f->pos, t->f->n * sizeof *t->f->pos);
+    walk_arrays(w, t);
+    walk_average(w, t);
+    walk_exposure(w, t);
+    walk_begin(w, t);
+}
+
 adcgs_status adcgs_trainer_store(const adcgs_trainer *trainer, adcgs_buffer *out, adcgs_error *error)
 {
-    adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* the storing visitor only reads */
     walk w = { .out = out };
-    walk_config(&w, t);
-    walk_scalars(&w, t);
-    visit(&w, &t->f->n, sizeof t->f->n);
-    visit(&w, t->f->pos, t->f->n * sizeof *t->f->pos);
-    walk_arrays(&w, t);
-    walk_average(&w, t);
-    walk_exposure(&w, t);
-    walk_begin(&w, t);
+    walk_all(&w, trainer);
     return out->failed ? adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint") : ADCGS_OK;
 }
 
@@ -322,7 +335,7 @@ adcgs_status adcgs_trainer_restore(adcgs_trainer *t, const uint8_t *data, size_t
 
 /* ---- Files ---- */
 
-/** The pictures' digest; they are read once, when it is first asked for. */
+/** The images' digest; their files are read once, when it is first asked for. */
 static adcgs_status find_content(const adcgs_trainer *trainer, adcgs_error *error)
 {
     adcgs_trainer *t = (adcgs_trainer *)(uintptr_t)trainer; /* nothing that the run depends on */
@@ -332,22 +345,45 @@ static adcgs_status find_content(const adcgs_trainer *trainer, adcgs_error *erro
     return ADCGS_OK;
 }
 
+/** A file of the state as it is, or of what a snapshot holds. Nothing is gathered in memory, of which there may be no more. */
+static adcgs_status save(const adcgs_trainer *t, const adcgs_buffer *snapshot, const char *path, adcgs_error *error)
+{
+    adcgs_atomic atomic;
+    uint8_t crc[4];
+    ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
+    walk w = { .file = atomic.file };
+    errno = 0;
+    visit(&w, (void *)(uintptr_t)magic, sizeof magic);
+    visit(&w, (void *)(uintptr_t)t->content, sizeof t->content);
+    if (snapshot)
+        visit(&w, snapshot->data, snapshot->size);
+    else
+        walk_all(&w, t);
+    adcgs_store_le32(crc, w.crc);
+    visit(&w, crc, sizeof crc);
+    if (!w.failed)
+        return adcgs_atomic_commit(&atomic, error);
+    const int reason = errno;
+    adcgs_atomic_abort(&atomic);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, strerror(reason ? reason : EIO));
+}
+
 adcgs_status adcgs_trainer_save(const adcgs_trainer *t, const char *path, adcgs_error *error)
 {
-    adcgs_buffer b;
     ADCGS_TRY(find_content(t, error));
-    adcgs_buffer_init(&b);
-    adcgs_write_bytes(&b, magic, sizeof magic);
-    adcgs_write_bytes(&b, t->content, sizeof t->content);
-    adcgs_status status = adcgs_trainer_store(t, &b, error);
-    if (status == ADCGS_OK)
-        adcgs_write_uint(&b, adcgs_crc32c(0, b.data, b.size), 4);
-    if (status == ADCGS_OK && b.failed)
-        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a checkpoint");
-    if (status == ADCGS_OK)
-        status = adcgs_atomic_save(path, b.data, b.size, error);
-    adcgs_buffer_clear(&b);
-    return status;
+    return save(t, NULL, path, error);
+}
+
+uint32_t adcgs_trainer_rescued(const adcgs_trainer *t)
+{
+    return !t->torn ? t->iteration : t->snapshot.size && !t->snapshot.failed ? t->snapshot_at : 0;
+}
+
+adcgs_status adcgs_trainer_rescue(const adcgs_trainer *t, const char *path, adcgs_error *error)
+{
+    if (!adcgs_trainer_rescued(t))
+        return adcgs_fail(error, ADCGS_ERR_DATA, "nothing to save: the run is before its first iteration");
+    return save(t, t->torn ? &t->snapshot : NULL, path, error);
 }
 
 /** A file's contents, whole. */
@@ -358,7 +394,10 @@ static adcgs_status restore_file(adcgs_trainer *t, const uint8_t *data, size_t s
         return adcgs_fail(error, ADCGS_ERR_DATA, "not a checkpoint of adcgs-enc");
     if (adcgs_crc32c(0, data, size - 4) != adcgs_load_le32(data + size - 4))
         return adcgs_fail(error, ADCGS_ERR_DATA, "damaged: its checksum does not match");
+    static const uint8_t unknown[sizeof t->content];
     ADCGS_TRY(adcgs_trainer_restore(t, data + head, size - 4 - head, error));
+    if (!memcmp(data + sizeof magic, unknown, sizeof unknown)) /* a run that failed did not read them for this */
+        return ADCGS_OK;
     ADCGS_TRY(find_content(t, error));
     if (memcmp(data + sizeof magic, t->content, sizeof t->content))
         return adcgs_fail(error, ADCGS_ERR_DATA,

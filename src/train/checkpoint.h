@@ -13,6 +13,13 @@
  * rounded, so that its price can be told: the table of settings says from when on a run is bound to each.
  */
 adcgs_status adcgs_trainer_save(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
+/**
+ * Save what a run that has failed still has: the state as it is, or where the failure tore that, as it was at the last
+ * snapshot. Takes no memory and reads no images: unless their digest is known already, the file has none, and loading it
+ * does not compare it. adcgs_trainer_rescued(): the iteration of that state; 0: there is none worth saving.
+ */
+adcgs_status adcgs_trainer_rescue(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
+uint32_t adcgs_trainer_rescued(const adcgs_trainer *trainer);
 adcgs_status adcgs_trainer_load(adcgs_trainer *trainer, const char *path, adcgs_error *error);
 /**
  * Turn off in config the mechanisms that trials decide (train/trial.h) and that are off in a file: a run that goes on has no

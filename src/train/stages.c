@@ -121,16 +121,20 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
 {
     const adcgs_train_config *c = &t->config;
     ADCGS_TRY(load_views(t, progress, error));
+    t->torn = 1;
     adcgs_curriculum_grow(&t->curriculum, window_of(c, progress), t->f);
     ADCGS_TRY(adcgs_release_step(t, progress, error));
-    if (!c->without_densification && t->iteration && t->iteration % c->densify_every == 0 && progress >= c->densify_from &&
-        progress < c->densify_until)
+    const int grows = !c->without_densification && t->iteration && t->iteration % c->densify_every == 0 &&
+                      progress >= c->densify_from && progress < c->densify_until;
+    if (grows)
         ADCGS_TRY(adcgs_densify(t, progress, error));
     const uint32_t at = t->iteration;
     ADCGS_TRY(enter_stages(t, progress, error));
-    if (t->iteration != at)
-        return ADCGS_OK;
-    return adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error) : adcgs_rate_control_step(t, progress, error);
+    if (t->iteration == at)
+        ADCGS_TRY(adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error) :
+                                            adcgs_rate_control_step(t, progress, error));
+    t->torn = grows; /* a run that went on from here would grow once more */
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_stages_skip(adcgs_trainer *t, adcgs_error *error)

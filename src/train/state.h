@@ -122,6 +122,8 @@ typedef struct adcgs_trainer {
     uint8_t content[16];     /* of the training pictures' files; see adcgs_scene_content() */
     int has_content;         /* it is known: they are read when a file needs it, once */
     adcgs_buffer snapshot;
+    uint32_t snapshot_at;    /* its iteration */
+    int torn;                /* the state is being changed in several steps: only the snapshot is whole */
     adcgs_buffer begin;      /* a checkpoint has it: the run where rate began, while it may go back there; see rate_search.h */
 } adcgs_trainer;
 

@@ -41,7 +41,7 @@ static uint32_t sum_up(const adcgs_trainer *t)
 }
 
 /** Nobody is sent parameters: a run that computes otherwise would spoil what all learn. */
-static adcgs_status agree(const adcgs_trainer *t, adcgs_error *error)
+static adcgs_status agree(adcgs_trainer *t, adcgs_error *error)
 {
     uint32_t sums[ADCGS_TREE_MOST];
     if (!t->team)
@@ -49,16 +49,19 @@ static adcgs_status agree(const adcgs_trainer *t, adcgs_error *error)
     sums[t->team->rank] = sum_up(t);
     ADCGS_TRY(adcgs_team_gather_each(t->team, sums, sizeof *sums, error));
     for (int r = 1; r < t->team->size; r++)
-        if (sums[r] != sums[0])
+        if (sums[r] != sums[0]) {
+            t->torn = 1; /* nobody knows whose state is right */
             return adcgs_fail(error, ADCGS_ERR_DATA, "at iteration %u number %d of the %d that learn together has another model "
                               "than the first: expected the same programs, libraries, pictures and checkpoints", t->iteration,
                               r + 1, t->team->size);
+        }
     return ADCGS_OK;
 }
 
 static adcgs_status take_snapshot(adcgs_trainer *t, adcgs_error *error)
 {
     t->snapshot.size = 0;
+    t->snapshot_at = t->iteration;
     return adcgs_trainer_store(t, &t->snapshot, error);
 }
 
@@ -86,6 +89,7 @@ static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
                     adcgs_train_stage(&t->config, progress) != adcgs_train_stage(&t->config, before);
     if (isfinite(t->mean_loss) && t->mean_loss <= 4 && !is_blown(t) && (!due || is_finite(t)))
         return t->iteration % SNAPSHOT_EVERY == 0 ? take_snapshot(t, error) : ADCGS_OK;
+    t->torn = 1;
     const uint32_t rollbacks = t->rollbacks + 1;
     const float lr = t->lr_scale * 0.5f;
     if (rollbacks > ROLLBACKS_MAX)
@@ -170,6 +174,14 @@ static adcgs_status tell(const adcgs_trainer *t, reports *r, double progress, in
     return adcgs_team_tell(t->team, stops, sizeof *stops, error);
 }
 
+/** What its end changes is not gone through twice: should it fail, or writing what comes of it, the state before is saved. */
+static adcgs_status end(adcgs_trainer *t, adcgs_error *error)
+{
+    ADCGS_TRY(take_snapshot(t, error));
+    t->torn = 1;
+    return adcgs_stages_finish(t, error);
+}
+
 adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error)
 {
     const adcgs_time begin = begin_of(t);
@@ -179,6 +191,7 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
     ADCGS_TRY(take_snapshot(t, error));
     ADCGS_TRY(agree(t, error));
     for (;;) {
+        t->torn = 0;
         ADCGS_TRY(take_time(t, begin, error));
         const double progress = adcgs_trainer_progress(t);
         if (progress >= 1 && !t->iteration)
@@ -187,13 +200,13 @@ adcgs_status adcgs_trainer_run(adcgs_trainer *t, adcgs_train_observe observe, vo
         if (t->iteration % REPORT_EVERY == 0 || progress >= 1) {
             int stops;
             ADCGS_TRY(tell(t, &r, progress, &stops, error));
-            if (stops) {
-                *stopped = progress < 1;
+            if (stops && progress < 1) {
+                *stopped = 1;
                 return ADCGS_OK;
             }
         }
         if (progress >= 1)
-            return adcgs_stages_finish(t, error);
+            return end(t, error);
         if (t->until_lambda && progress >= adcgs_train_lambda_from(&t->config)) {
             *stopped = 1;
             return ADCGS_OK;

@@ -41,7 +41,8 @@ faults()
 }
 
 # The files that the good run wrote, with other contents, but for those that it reads. spare=yes: not every call matters.
-kept=none spare=no
+# rescues=yes: a run that fails saves its state, or says why it cannot.
+kept=none spare=no rescues=no
 fresh()
 {
     rm -rf "$w" && cp -r "$dir/good" "$w"
@@ -58,14 +59,25 @@ whole()
               [ "$(size_of "$w/$1")" = "$(size_of "$dir/good/$1")" ]; }
 }
 
+# check_message NAME: exit code 3, and one line that says what failed.
+check_message()
+{
+    [ "$code" -eq 3 ] || { bad "$1: exit code $code"; cat "$dir/err"; }
+    [ "$(grep -v 'its state is lost' "$dir/err" | grep -c 'cannot')" -eq 1 ] && tail -n 1 "$dir/err" | grep -q '^adcgs-.*: .*cannot' ||
+        { bad "$1: not one line that says so"; cat "$dir/err"; }
+}
+
 check_fault()
 {
     if [ "$code" -eq 0 ] && [ $spare = yes ] && diff -r "$w" "$dir/good" >/dev/null; then
         return # another program's messages, say
     fi
-    [ "$code" -eq 3 ] || { bad "$1: exit code $code"; cat "$dir/err"; }
-    [ "$(grep -c 'cannot' "$dir/err")" -eq 1 ] && tail -n 1 "$dir/err" | grep -q '^adcgs-.*: .*cannot' ||
-        { bad "$1: not one line that says so"; cat "$dir/err"; }
+    if [ "$code" -eq 0 ] && [ $rescues = yes ]; then
+        grep -rqx old "$w" && bad "$1: exit code 0, and a file is the old one"
+    else
+        check_message "$1"
+    fi
+    [ $rescues = no ] || rm -f "$w/x.adcgs.checkpoint"
     [ "$(cd "$w" && find . ! -name '*.gp.log' | sort)" = "$(cd "$dir/good" && find . ! -name '*.gp.log' | sort)" ] ||
         { bad "$1: other files than before"; (cd "$w" && find . -name '*tmp*'); }
     (cd "$w" && find . -type f ! -name '*.log') >"$dir/files"
@@ -147,10 +159,12 @@ faults "table" ./adcgs-eval "$s" "$dir/scene" --csv "$w/x.csv" --images "$w/view
 faults "evaluation" ./adcgs-eval "$s" "$dir/scene" --json
 faults "table printed" ./adcgs-eval "$s" "$dir/scene" --csv -
 
-# The encoder: stream, plain numbers; pictures that go to a file for want of memory; the beginning of a run.
+# The encoder: stream, plain numbers; images that go to a file for want of memory, or are decoded again; the beginning of a run.
+spare=yes rescues=yes
 faults "encoder" ./adcgs-enc "$dir/scene" -o "$w/x.adcgs" --preset draft --iterations 10 --threads 1 --quiet --memory 1 \
     --uncompressed "$w/x.bin"
 faults "beginning" ./adcgs-enc "$dir/scene" --beginning "$w/x.state" --preset draft --iterations 200 --threads 1 --quiet
+spare=no rescues=no
 
 # Parts, put together.
 ./adcgs-enc "$dir/scene" --plan "$dir/plan.json" --cut 9 --preset draft --iterations 10 --quiet &&

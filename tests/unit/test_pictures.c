@@ -5,8 +5,10 @@
 #include "data/pictures.h"
 #include "layouts/open.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #define VIEW(path) "{\"file_path\":\"" path "\",\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}"
 enum { WIDTH = 7, HEIGHT = 5, VALUES = 3 * WIDTH * HEIGHT, TRAIN = 4 };
@@ -53,13 +55,13 @@ static adcgs_status load(adcgs_pictures **pictures, uint64_t memory, int divide,
 /** With room for all, some and none. */
 static void test_budgets(void **state)
 {
-    static const uint64_t budgets[] = {0, VALUES * 2, 1};
+    static const uint64_t budgets[] = {0, VALUES * 2, 1}; /* for all, for two of 8 bits, for none */
     for (size_t i = 0; i < ADCGS_COUNTOF(budgets); i++) {
         adcgs_pictures *pictures;
         uint64_t memory, file;
         assert_int_equal(load(&pictures, budgets[i], 1, NULL, NULL), ADCGS_OK);
         adcgs_pictures_size(pictures, &memory, &file);
-        assert_int_equal(memory + file, VALUES * (3 * 2 + 4));
+        assert_int_equal(memory + file, VALUES * (3 * 1 + 4));
         assert_true(i == 0 ? file == 0 : memory <= budgets[i]);
         for (uint32_t view = 0; view < TRAIN; view++) {
             float got[VALUES], *want;
@@ -138,15 +140,77 @@ static void test_progress(void **state)
     assert_null(pictures);
 }
 
-static void test_no_room(void **state)
+/** Change TMPDIR, or change it back: NULL. */
+static void use_tmpdir(const char *name)
 {
-    adcgs_pictures *pictures;
-    char *before = getenv("TMPDIR") ? strdup(getenv("TMPDIR")) : NULL;
-    setenv("TMPDIR", in("nowhere"), 1);
-    expect_error(load(&pictures, 1, 1, NULL, NULL), ADCGS_ERR_IO, "nowhere", "cannot keep pictures there");
-    assert_null(pictures);
+    static char *before;
+    if (name) {
+        before = getenv("TMPDIR") ? strdup(getenv("TMPDIR")) : NULL;
+        setenv("TMPDIR", name, 1);
+        return;
+    }
     before ? setenv("TMPDIR", before, 1) : unsetenv("TMPDIR");
     free(before);
+    before = NULL;
+}
+
+/** Whatever is kept nowhere is the same as what is kept; divide: 16 bits, too. */
+static void expect_same_as_kept(const adcgs_pictures *pictures, int divide)
+{
+    adcgs_pictures *kept;
+    assert_int_equal(load(&kept, 0, divide, NULL, NULL), ADCGS_OK);
+    for (uint32_t view = 0; view < TRAIN; view++) {
+        const adcgs_camera *const c = adcgs_pictures_camera(kept, view);
+        float a[VALUES], b[VALUES];
+        adcgs_pictures_expect(pictures, view);
+        assert_int_equal(adcgs_pictures_get(kept, view, a, &error), ADCGS_OK);
+        assert_int_equal(adcgs_pictures_get(pictures, view, b, &error), ADCGS_OK);
+        assert_memory_equal(a, b, 3 * (size_t)c->width * (size_t)c->height * sizeof *a);
+    }
+    adcgs_pictures_free(&kept);
+}
+
+/** No folder for a file, or one that may not grow: what has no room is decoded again. */
+static void test_no_room(void **state)
+{
+    for (int divide = 1; divide <= 2; divide++) {
+        adcgs_pictures *pictures;
+        const char *why;
+        use_tmpdir(in("nowhere"));
+        assert_int_equal(load(&pictures, 1, divide, NULL, NULL), ADCGS_OK);
+        use_tmpdir(NULL);
+        assert_int_equal(adcgs_pictures_decoded_again(pictures, &why), TRAIN);
+        assert_string_equal(why, strerror(ENOENT));
+        expect_same_as_kept(pictures, divide);
+        adcgs_pictures_free(&pictures);
+    }
+}
+
+/** With room for one of two images in 8 bits: a limit of a file's size counts as the disk's does. */
+static void test_limited_room(void **state)
+{
+    struct rlimit before, limit;
+    adcgs_pictures *pictures;
+    const adcgs_pictures_config config = {ADCGS_SPLIT_TRAIN, 1, VALUES, NULL, NULL, NULL};
+    adcgs_pictures_need need;
+    const char *why;
+    uint64_t memory, file;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    limit = before;
+    limit.rlim_cur = VALUES + 1;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    const adcgs_status status = load(&pictures, VALUES, 1, NULL, NULL);
+    assert_int_equal(adcgs_pictures_foresee(&need, scene, &config, &error), ADCGS_OK);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_int_equal(status, ADCGS_OK);
+    adcgs_pictures_size(pictures, &memory, &file);
+    assert_true(memory == VALUES && file == VALUES);
+    assert_int_equal(adcgs_pictures_decoded_again(pictures, &why), 2);
+    assert_int_equal(need.n, TRAIN);
+    assert_true(need.memory == VALUES && need.file == VALUES && need.room == VALUES + 1 && !need.problem);
+    assert_true(need.again == 2 && need.bytes == TRAIN * VALUES); /* the first and the last have 8 bits */
+    expect_same_as_kept(pictures, 1);
+    adcgs_pictures_free(&pictures);
 }
 
 /** The first in the order of views is told, not the first to fail. */
@@ -163,7 +227,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_budgets),  cmocka_unit_test(test_reduced),         cmocka_unit_test(test_put),
         cmocka_unit_test(test_progress),
-        cmocka_unit_test(test_no_room),  cmocka_unit_test(test_missing_picture),
+        cmocka_unit_test(test_no_room),  cmocka_unit_test(test_limited_room), cmocka_unit_test(test_missing_picture),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
