@@ -4,6 +4,7 @@
 
 #include "io/atomic.h"
 
+#include "cli/cli.h"
 #include "cli/flush.h"
 
 #include <errno.h>
@@ -11,11 +12,14 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #define NAME_TRIES 1000
+#define NAME_USUAL 255 /* bytes of a name, where the file system does not say: those of Linux */
 #define LINKS_MAX 40 /* as many as Linux follows */
 #define MODE_BITS 0777
+#define READER_NAP 50000000 /* nanoseconds from one look for a reader to the next */
 
 /** The length of what precedes a path's last part, with its slash. */
 static size_t folder_length(const char *path)
@@ -36,6 +40,22 @@ static char *join(const char *name, const char *link)
     return path;
 }
 
+/**
+ * Whether the kernel would follow a link where it protects them (proc(5), protected_symlinks): not one that another user laid
+ * into a folder where everybody may lay them. We follow links ourselves, so the kernel is not asked.
+ */
+static int may_follow(const char *name)
+{
+    struct stat link, folder;
+    char *const path = join(name, ".");
+    const int unknown = !path || lstat(name, &link) || stat(path, &folder);
+    free(path);
+    if (unknown)
+        return 0;
+    return link.st_uid == geteuid() || link.st_uid == folder.st_uid || !(folder.st_mode & S_ISVTX) ||
+           !(folder.st_mode & S_IWOTH);
+}
+
 /** Where a chain of symbolic links ends, be a file there or not. \return from malloc(); NULL, and errno, when it has no end. */
 static char *follow(const char *path)
 {
@@ -46,8 +66,12 @@ static char *follow(const char *path)
         if (n < 0)
             return name;
         link[n] = 0;
-        char *next = join(name, link);
+        char *next = may_follow(name) ? join(name, link) : NULL;
         free(name);
+        if (!next && errno != ENOMEM)
+            errno = EACCES;
+        if (!next)
+            return NULL;
         name = next;
     }
     if (name)
@@ -56,14 +80,30 @@ static char *follow(const char *path)
     return NULL;
 }
 
-/** Create "<target>.tmp<process>-<i>" anew; the extension stays last for whoever looks at it. */
+/** Bytes of a name that may be kept where so many are added to it and the folder allows no more; whole characters of UTF-8. */
+static size_t fit_name(const char *folder, const char *base, size_t added)
+{
+    const long limit = pathconf(folder, _PC_NAME_MAX);
+    const size_t most = limit > 0 ? (size_t)limit : NAME_USUAL, room = most > added ? most - added : 0;
+    size_t n = strlen(base);
+    if (n <= room)
+        return n;
+    for (n = room; n > 0 && ((unsigned char)base[n] & 0xc0) == 0x80;)
+        n--;
+    return n;
+}
+
+/** Create ".<name>.tmp<process>-<i>" anew beside a target; the extension stays last for whoever looks at it. */
 static int open_temporary(const char *target, char *name, size_t size)
 {
     const size_t folder = folder_length(target);
     const char *base = target + folder, *dot = strrchr(base, '.');
-    const char *extension = dot && dot != base ? dot : "";
+    const char *extension = dot && dot != base && strlen(dot) < 32 ? dot : "";
+    char tail[96];
     for (int i = 0; i < NAME_TRIES; i++) {
-        snprintf(name, size, "%.*s.%s.tmp%ld-%d%s", (int)folder, target, base, (long)getpid(), i, extension);
+        snprintf(tail, sizeof tail, ".tmp%ld-%d%s", (long)getpid(), i, extension);
+        snprintf(name, size, "%.*s.", (int)folder, target);
+        snprintf(name, size, "%.*s.%.*s%s", (int)folder, target, (int)fit_name(name, base, strlen(tail) + 1), base, tail);
         const int fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd >= 0 || errno != EEXIST)
             return fd;
@@ -81,16 +121,36 @@ static void take_mode(int fd, const struct stat *old)
         errno = 0;
 }
 
+/** Open a special file. A pipe that nobody reads yet is waited for, as open() would, but a signal that is caught ends that. */
+static int open_special(const char *path)
+{
+    const struct timespec nap = {.tv_nsec = READER_NAP};
+    int fd;
+    const int before = adcgs_interrupts();
+    while ((fd = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK)) < 0 && errno == ENXIO) {
+        if (adcgs_interrupts() != before) {
+            errno = EINTR;
+            return -1;
+        }
+        nanosleep(&nap, NULL);
+    }
+    if (fd >= 0 && fcntl(fd, F_SETFL, 0) < 0) { /* from here on writing waits */
+        close(fd);
+        return -1;
+    }
+    return fd;
+}
+
 /** Open what is written to: the special file itself, or a temporary one beside the target. \return -1, and errno */
 static int open_file(adcgs_atomic *atomic)
 {
     struct stat old;
     const int exists = !stat(atomic->target, &old);
     if (exists && !S_ISREG(old.st_mode))
-        return open(atomic->target, O_WRONLY | O_CLOEXEC);
+        return open_special(atomic->target);
     if (exists && access(atomic->target, W_OK))
         return -1;
-    const size_t size = 2 * strlen(atomic->target) + 64;
+    const size_t size = 2 * strlen(atomic->target) + 128;
     atomic->temporary = malloc(size);
     const int fd = atomic->temporary ? open_temporary(atomic->target, atomic->temporary, size) : -1;
     if (fd < 0) {
@@ -127,6 +187,8 @@ adcgs_status adcgs_atomic_open(adcgs_atomic *atomic, const char *path, adcgs_err
     adcgs_atomic_abort(atomic);
     if (reason == ENOMEM)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    if (reason == EINTR)
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: interrupted, while nobody read this pipe", path);
     return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", path, strerror(reason));
 }
 

@@ -99,6 +99,42 @@ expect 0 "" sh -c 'umask 077; exec "$@"' sh ./adcgs-dec "$s" --time 0 -o "$dir/l
 [ "$(mode "$dir/target.png")" = -rw-rw-r-- ] || bad "the mode becomes $(mode "$dir/target.png")"
 [ "$(wc -c <"$dir/target.png")" -gt 100 ] && [ -h "$dir/links/to.png" ] || bad "not written through a link"
 
+# Where everybody may lay links, one of another user is not followed, as the kernel does not where it protects links.
+if [ "$(id -u)" -eq 0 ]; then
+    mkdir "$dir/open"
+    chmod 1777 "$dir/open"
+    echo old >"$dir/theirs.png"
+    ln -s ../theirs.png "$dir/open/to.png"
+    chown -h 12345 "$dir/open/to.png"
+    expect 3 "open/to.png: cannot create: Permission denied" ./adcgs-dec "$s" --time 0 -o "$dir/open/to.png"
+    [ "$(cat "$dir/theirs.png")" = old ] || bad "another user's link is followed"
+    chown -h 0 "$dir/open/to.png"
+    expect 0 "" ./adcgs-dec "$s" --time 0 -o "$dir/open/to.png"
+    [ "$(cat "$dir/theirs.png")" != old ] || bad "an own link is not followed"
+else
+    echo "skipped: links of other users (not root)"
+fi
+
+# Names as long as they may be.
+long=$(printf 'n%.0s' $(seq 251))
+expect 0 "" ./adcgs-dec "$s" --time 0 -o "$dir/$long.png"
+[ -s "$dir/$long.png" ] || bad "a long name is not written"
+expect 2 "the name of the run's state is longer than 255 bytes" ./adcgs-enc "$dir/scene" -o "$dir/$long" --iterations 10
+
+# A pipe is waited for until somebody reads it; a signal ends that.
+mkfifo "$dir/pipe.png"
+timeout -k 60 1 ./adcgs-dec "$s" --time 0 -o "$dir/pipe.png" >"$dir/out" 2>"$dir/err"
+[ $? -eq 124 ] || { bad "SIGTERM is not heard while nobody reads a pipe"; cat "$dir/err"; }
+{ sleep 0.3; cat "$dir/pipe.png" >"$dir/read.png"; } &
+expect 0 "" ./adcgs-dec "$s" --time 0 -o "$dir/pipe.png"
+wait $!
+expect 0 "" ./adcgs-dec "$s" --time 0 -o "$dir/straight.png"
+cmp "$dir/read.png" "$dir/straight.png" || bad "another picture through a pipe"
+
+# A stream under a video's name.
+expect 0 "x.mp4: this file will hold an adcgs stream, not mp4" ./adcgs-enc "$dir/scene" -o "$dir/x.mp4" --preset draft \
+    --set stereo=0 --iterations 10
+
 # One file for two outputs.
 ln -s two "$dir/links/also"
 for other in "$dir/links/two" "$dir/./links/two" "$dir/links/also"; do
