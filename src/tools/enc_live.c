@@ -8,16 +8,20 @@
 #include "tools/enc_live.h"
 
 #include "encode/live.h"
+#include "io/claim.h"
 #include "io/growing.h"
+#include "io/pipe.h"
 #include "layouts/live.h"
 #include "tools/enc_effort.h"
 #include "tools/enc_live_file.h"
 #include "tools/enc_live_past.h"
 #include "tools/enc_live_sum.h"
+#include "tools/enc_parts.h"
 #include "train/settings.h"
 
 #include <math.h>
 #include <signal.h>
+#include <stdlib.h>
 
 #define ANCHORS_MARGIN 2 /* times the budget, that HEAD has room for */
 
@@ -29,6 +33,7 @@ typedef struct live_run {
     adcgs_live_segment segment;
     adcgs_encode_live stream;
     adcgs_enc_live_file file;
+    adcgs_claim *claim; /* of the file; NULL: of a pipe */
     adcgs_enc_live_past past; /* what goes on */
     adcgs_buffer bytes;   /* of the segment at hand */
     int is_open;          /* the stream has a segment */
@@ -42,6 +47,8 @@ typedef struct live_run {
 static adcgs_status append(live_run *r, adcgs_error *error)
 {
     r->file.growing.is_hidden = 0;
+    if (r->claim)
+        ADCGS_TRY(adcgs_claim_check(r->claim, error));
     ADCGS_TRY(adcgs_enc_live_file_append(&r->file, r->bytes.data, r->bytes.size, error));
     r->sum.bytes += r->bytes.size;
     r->bytes.size = 0;
@@ -224,6 +231,18 @@ static int can_end(const live_run *r, adcgs_status status)
     return r->is_open && r->stream.model.n && !r->bytes.size && !r->file.growing.is_hidden && status != ADCGS_ERR_INTERNAL;
 }
 
+/** Two that write one file would each take it from the other. */
+static adcgs_status claim_file(live_run *r, adcgs_error *error)
+{
+    char *name;
+    if (adcgs_pipe_is(r->job->o->output))
+        return ADCGS_OK;
+    ADCGS_TRY(adcgs_enc_claim_name(&name, r->job->o->output, error));
+    const adcgs_status status = adcgs_claim_take(&r->claim, name, "this output", error);
+    free(name);
+    return status;
+}
+
 static adcgs_status run(live_run *r, adcgs_error *error)
 {
     const adcgs_enc_options *o = r->job->o;
@@ -232,6 +251,7 @@ static adcgs_status run(live_run *r, adcgs_error *error)
     adcgs_interrupt_catch(1);
     signal(SIGPIPE, SIG_IGN); /* a reader that leaves is an error of writing */
     ADCGS_TRY(adcgs_enc_live_file_open(&r->file, o->output, o->resume, error));
+    ADCGS_TRY(claim_file(r, error));
     if (o->resume)
         ADCGS_TRY(take_past(r, &options, error));
     ADCGS_TRY(adcgs_live_open(&r->live, o->scene, &options, error));
@@ -263,6 +283,7 @@ adcgs_status adcgs_enc_live(adcgs_enc_watcher *w, adcgs_enc_job *job, adcgs_erro
     adcgs_trainer_free(&w->t); /* before the scene that it was given */
     adcgs_live_close(&r.live);
     adcgs_enc_live_file_close(&r.file);
+    adcgs_claim_drop(&r.claim);
     adcgs_buffer_clear(&r.bytes);
     return status;
 }

@@ -148,8 +148,14 @@ scene_file "$dir/stop" images
 pid=$!
 put "$dir/stop" 0 1 2 3 4 5 6
 wait_for 2 "$dir/stop.adcgs"
+# Meanwhile nobody else writes it.
+cp "$dir/err" "$dir/err.first"
+# shellcheck disable=SC2086
+expect 3 "stop.adcgs.claim: another run has this output: process $pid on " ./adcgs-enc --live "$dir/stop" -o "$dir/stop.adcgs" $live
+cp "$dir/err.first" "$dir/err"
 kill -INT "$pid"
 ended 0
+[ ! -e "$dir/stop.adcgs.claim" ] || bad "a claim is left"
 [ "$(spans "$dir/stop.adcgs")" = "0 0 0.1 1 0.1 0.2" ] || { bad "after SIGINT"; spans "$dir/stop.adcgs"; }
 whole "$dir/stop.adcgs"
 # Killed: what is there are whole segments.
