@@ -102,11 +102,13 @@ static int option_set(const adcgs_option *option, const char *text)
         *(const char **)option->target = text;
         return 0;
     case ADCGS_OPTION_INT:
-        return adcgs_parse_int(text, (int)option->min, (int)option->max, option->target);
+        return adcgs_parse_count(text, (int)option->min, (int)option->max, option->target);
     case ADCGS_OPTION_SIZE:
         return adcgs_parse_size(text, (uint64_t)option->min, (uint64_t)option->max, option->target);
     case ADCGS_OPTION_REAL:
         return adcgs_parse_real(text, option->min, option->max, option->target);
+    case ADCGS_OPTION_SECONDS:
+        return adcgs_parse_seconds(text, option->min, option->max, option->target);
     case ADCGS_OPTION_PAIR:
         return adcgs_parse_pair(text, (int)option->min, (int)option->max, option->target);
     case ADCGS_OPTION_CHOICE:
@@ -120,7 +122,8 @@ static void describe(const adcgs_option *option, char *text, size_t size)
 {
     switch (option->kind) {
     case ADCGS_OPTION_INT:
-        snprintf(text, size, "a whole number from %.0f to %.0f", option->min, option->max);
+        snprintf(text, size, "a whole number from %.0f to %.0f%s", option->min, option->max,
+                 option->max >= 1000 ? ", suffix k or M allowed" : "");
         break;
     case ADCGS_OPTION_SIZE:
         snprintf(text, size, "a whole number from %.0f to %.0f, suffix k, M, G, KiB, MiB or GiB allowed",
@@ -128,6 +131,9 @@ static void describe(const adcgs_option *option, char *text, size_t size)
         break;
     case ADCGS_OPTION_REAL:
         snprintf(text, size, "a number from %g to %g", option->min, option->max);
+        break;
+    case ADCGS_OPTION_SECONDS:
+        snprintf(text, size, "seconds from %g to %g, suffix ms, s, m or h allowed", option->min, option->max);
         break;
     case ADCGS_OPTION_PAIR:
         snprintf(text, size, "WIDTHxHEIGHT, each from %.0f to %.0f", option->min, option->max);

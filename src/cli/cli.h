@@ -15,9 +15,10 @@ typedef enum adcgs_option_kind {
     ADCGS_OPTION_FLAG,   /**< target: int, set to 1 */
     ADCGS_OPTION_STRING, /**< target: const char * */
     ADCGS_OPTION_FILE,   /**< as STRING: the name of a file or folder */
-    ADCGS_OPTION_INT,    /**< target: int */
+    ADCGS_OPTION_INT,    /**< target: int; suffixes k and M are powers of 1000 */
     ADCGS_OPTION_SIZE,   /**< target: uint64_t; suffixes k, M, G are powers of 1000, KiB, MiB, GiB of 1024 */
     ADCGS_OPTION_REAL,   /**< target: double */
+    ADCGS_OPTION_SECONDS, /**< target: double; suffixes ms, s, m, min and h */
     ADCGS_OPTION_PAIR,   /**< target: int[2]; WIDTHxHEIGHT */
     ADCGS_OPTION_CHOICE  /**< target: int, index into choices */
 } adcgs_option_kind;
@@ -28,7 +29,7 @@ typedef struct adcgs_option {
     char letter;        /**< short name, 0: none */
     adcgs_option_kind kind;
     void *target;
-    double min, max;    /**< inclusive range of INT, SIZE, REAL and PAIR */
+    double min, max;    /**< inclusive range of INT, SIZE, REAL, SECONDS and PAIR */
     const char *value;  /**< what the help calls the value; NULL for a FLAG */
     const char *help;   /**< one sentence without full stop; '\n' continues on the next line */
     const char *const *choices; /**< names of a CHOICE, ended by NULL; words of a STRING or FILE, for completion alone */
@@ -79,15 +80,21 @@ adcgs_status adcgs_cli_pool(const adcgs_cli *cli, adcgs_pool **out, int threads,
 
 /* Whole-string parsers: 0, or -1 when text is not exactly one number of the kind within [min, max]. */
 int adcgs_parse_int(const char *text, int min, int max, int *out);
+/** The same, or thousands (20k, 1.5k) or millions (2M) that are whole. */
+int adcgs_parse_count(const char *text, int min, int max, int *out);
+/** Seconds, or with a unit: 500ms, 2s, 10m or 10min, 1.5h. */
+int adcgs_parse_seconds(const char *text, double min, double max, double *out);
 /** Digits, or with a suffix (k, M, G, also followed by B, or Ki, Mi, Gi likewise) also a decimal fraction, rounded down: 1.5M. */
 int adcgs_parse_size(const char *text, uint64_t min, uint64_t max, uint64_t *out);
 int adcgs_parse_real(const char *text, double min, double max, double *out);
 int adcgs_parse_pair(const char *text, int min, int max, int out[2]);
-/** "T" or "A:B" in seconds; *end == *begin for the former. */
+/** "T" or "A:B" as adcgs_parse_seconds() has them; *end == *begin for the former. */
 int adcgs_parse_times(const char *text, double *begin, double *end);
 
-/** Make the first so many of SIGINT and SIGTERM set a flag; one more kills. */
+/** Make the first so many of SIGINT, SIGTERM and SIGHUP, unless that is ignored, set a flag; one more kills. */
 void adcgs_interrupt_catch(int most);
+/** Make one of these print a line, which stays where it is in memory, on standard error before it kills. */
+void adcgs_interrupt_word(const char *text);
 /** The signal that came last, 0 if none. */
 int adcgs_interrupted(void);
 /** How many came. */
@@ -113,7 +120,8 @@ void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCG
 void adcgs_progress_clear(adcgs_progress *progress);
 /**
  * From now on, and until adcgs_progress_end(), a line comes every 30 seconds at least where there is no terminal, also while
- * nothing is shown: then it is the last one once more, with its age. It stays where it is in memory meanwhile.
+ * nothing is shown: then it is the last one once more, with its age; of a line that ends in " ...", for what still goes on, with
+ * the time that this takes. It stays where it is in memory meanwhile.
  */
 void adcgs_progress_keep(adcgs_progress *progress);
 void adcgs_progress_end(adcgs_progress *progress);

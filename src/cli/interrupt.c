@@ -5,10 +5,12 @@
 #include "cli/cli.h"
 
 #include <signal.h>
+#include <unistd.h>
 
 /* A signal handler can reach nothing but static storage. */
 static volatile sig_atomic_t interrupted, interrupts, interrupts_most;
-static const int numbers[] = {SIGINT, SIGTERM};
+static const char *volatile last_word;
+static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
 
 static void on_signal(int number)
 {
@@ -18,14 +20,38 @@ static void on_signal(int number)
         signal(numbers[i], SIG_DFL);
 }
 
+/** Ends the program as the signal does by itself, which is what a shell wants to know. */
+static void on_last_signal(int number)
+{
+    const char *const text = last_word;
+    if (write(STDERR_FILENO, text, strlen(text)) < 0)
+        last_word = text; /* nobody is there to read it */
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+/** A signal that was ignored when the program began stays so: nohup has its reason. */
+static void handle(void (*handler)(int))
+{
+    for (size_t i = 0; i < ADCGS_COUNTOF(numbers); i++) {
+        struct sigaction before, action = {.sa_handler = handler, .sa_flags = SA_RESTART};
+        sigemptyset(&action.sa_mask);
+        if (numbers[i] == SIGHUP && !sigaction(SIGHUP, NULL, &before) && before.sa_handler == SIG_IGN)
+            continue;
+        sigaction(numbers[i], &action, NULL);
+    }
+}
+
 void adcgs_interrupt_catch(int most)
 {
     interrupts_most = most;
-    for (size_t i = 0; i < ADCGS_COUNTOF(numbers); i++) {
-        struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
-        sigemptyset(&action.sa_mask);
-        sigaction(numbers[i], &action, NULL);
-    }
+    handle(on_signal);
+}
+
+void adcgs_interrupt_word(const char *text)
+{
+    last_word = text;
+    handle(on_last_signal);
 }
 
 int adcgs_interrupted(void)

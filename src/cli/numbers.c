@@ -51,6 +51,49 @@ int adcgs_parse_int(const char *text, int min, int max, int *out)
     return 0;
 }
 
+/** The factor that a suffix stands for, of a table that ends with NULL; 0: it is none of them. */
+static double unit_of(const char *suffix, const char *const *names, const double *factors)
+{
+    for (; *names; names++, factors++)
+        if (!strcmp(*names, suffix))
+            return *factors;
+    return 0.0;
+}
+
+/** A number and its unit; 0, or -1 outside of [min, max] and for what strtod() takes beyond digits. */
+static int parse_with_unit(const char *text, double min, double max, const char *const *names, const double *factors, double *out)
+{
+    char *end;
+    const double number = strtod(text, &end);
+    if (end == text || (size_t)(end - text) != strspn(text, "+-.0123456789"))
+        return -1;
+    const double factor = unit_of(end, names, factors), value = number * factor;
+    if (!(factor > 0.0) || !isfinite(value) || value < min || value > max)
+        return -1;
+    *out = value;
+    return 0;
+}
+
+int adcgs_parse_count(const char *text, int min, int max, int *out)
+{
+    static const char *const names[] = {"k", "K", "M", NULL};
+    static const double factors[] = {1e3, 1e3, 1e6};
+    double value;
+    if (!adcgs_parse_int(text, min, max, out))
+        return 0;
+    if (parse_with_unit(text, min, max, names, factors, &value) || fabs(value - round(value)) > 1e-6) /* 1.001k is whole */
+        return -1;
+    *out = (int)round(value);
+    return 0;
+}
+
+int adcgs_parse_seconds(const char *text, double min, double max, double *out)
+{
+    static const char *const names[] = {"ms", "s", "sec", "m", "min", "h", NULL};
+    static const double factors[] = {1e-3, 1.0, 1.0, 60.0, 60.0, 3600.0};
+    return adcgs_parse_real(text, min, max, out) ? parse_with_unit(text, min, max, names, factors, out) : 0;
+}
+
 /** Bytes that a suffix stands for: none (1), k, M, G (powers of 1000), Ki, Mi, Gi (of 1024), with or without B; else 0. */
 static uint64_t size_unit(const char *suffix)
 {
@@ -110,14 +153,18 @@ int adcgs_parse_pair(const char *text, int min, int max, int out[2])
 
 int adcgs_parse_times(const char *text, double *begin, double *end)
 {
-    char *stop;
-    const double a = strtod(text, &stop);
-    if (stop == text || !isfinite(a))
+    char first[32];
+    const char *const colon = strchr(text, ':');
+    const size_t n = colon ? (size_t)(colon - text) : strlen(text);
+    double a, b;
+    if (n >= sizeof first)
         return -1;
-    double b = a;
-    if (*stop == ':' && (adcgs_parse_real(stop + 1, a, HUGE_VAL, &b)))
+    memcpy(first, text, n);
+    first[n] = '\0';
+    if (adcgs_parse_seconds(first, -HUGE_VAL, HUGE_VAL, &a))
         return -1;
-    if (*stop && *stop != ':')
+    b = a;
+    if (colon && adcgs_parse_seconds(colon + 1, a, HUGE_VAL, &b))
         return -1;
     *begin = a;
     *end = b;

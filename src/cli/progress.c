@@ -104,7 +104,11 @@ static void *beat(void *user)
         const double now = adcgs_seconds();
         if (now >= p->last + p->every + p->grace) {
             char text[sizeof p->said + 32];
-            snprintf(text, sizeof text, "%s (%.0f s ago)", p->said, now - p->said_at);
+            const size_t n = strlen(p->said);
+            if (n > 4 && !strcmp(p->said + n - 4, " ...")) /* it still goes on */
+                snprintf(text, sizeof text, "%.*s, %.0f s", (int)n - 4, p->said, now - p->said_at);
+            else
+                snprintf(text, sizeof text, "%s (%.0f s ago)", p->said, now - p->said_at);
             if (p->said[0])
                 print_line(p, now, text);
             else

@@ -4,6 +4,7 @@
 
 #include "import/shots.h"
 
+#include "cli/text.h"
 #include "data/paths.h"
 #include "io/extension.h"
 #include "io/photo.h"
@@ -89,6 +90,6 @@ adcgs_status adcgs_shots_pictures(adcgs_shots *shots, const adcgs_import_options
     for (uint32_t i = 0; i < shots->n; i++)
         adcgs_counting_add(&counting, shots->shots[i].stem);
     shots->is_numbered = adcgs_counting_holds(&counting);
-    return shots->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u pictures, expected at least three",
-                                                 options->inputs[0], shots->n);
+    return shots->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u image%s, expected at least three",
+                                                 options->inputs[0], shots->n, adcgs_s(shots->n));
 }

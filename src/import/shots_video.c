@@ -4,6 +4,7 @@
 
 #include "import/shots.h"
 
+#include "cli/text.h"
 #include "io/video.h"
 #include "layouts/listing.h"
 
@@ -55,7 +56,8 @@ static adcgs_status add_frames(adcgs_shots *shots, const char *path, const adcgs
     for (int64_t frame = 0; frame < info->frames; frame += step)
         ADCGS_TRY(add_frame(shots, video, frame, error));
     shots->rate = adcgs_fps_divide(info->rate, step);
-    return shots->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u frames, expected at least three", path, shots->n);
+    return shots->n >= 3 ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: %u frame%s, expected at least three", path,
+                                                 shots->n, adcgs_s(shots->n));
 }
 
 adcgs_status adcgs_shots_film(adcgs_shots *shots, const char *path, const adcgs_import_options *options, adcgs_error *error)

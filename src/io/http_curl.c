@@ -19,6 +19,8 @@
 #define REDIRECTS 5L
 #define HEAD_BYTES 65536
 
+#define TOO_LARGE 100 /* CURLE_TOO_LARGE, which older headers do not name */
+
 struct adcgs_transfer {
     CURLM *multi;
     CURL *easy;
@@ -75,8 +77,20 @@ static double seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/** libcurl takes no line of a head that is longer than its bound, and calls that a lack of memory, or too large since 8.6. */
+static int is_long_line(const adcgs_transfer *t)
+{
+    curl_off_t connected = 0, came = 0;
+    const int is_so = t->result == CURLE_OUT_OF_MEMORY || (int)t->result == TOO_LARGE;
+    return is_so && !curl_easy_getinfo(t->easy, CURLINFO_CONNECT_TIME_T, &connected) && connected > 0 &&
+           !curl_easy_getinfo(t->easy, CURLINFO_SIZE_DOWNLOAD_T, &came) && came == 0;
+}
+
 static adcgs_status fail(const adcgs_transfer *t, adcgs_error *error)
 {
+    if (is_long_line(t))
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: a line of its answer's head is longer than the %d bytes that libcurl "
+                          "takes, or there is no memory", t->url, CURL_MAX_HTTP_HEADER);
     const char *const why = t->refused ? t->refused : *t->reason ? t->reason : curl_easy_strerror(t->result);
     return adcgs_fail(error, t->result == CURLE_OUT_OF_MEMORY ? ADCGS_ERR_MEMORY : ADCGS_ERR_IO, "%.160s: %s", t->url, why);
 }

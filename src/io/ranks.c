@@ -17,7 +17,8 @@ static ADCGS_MODULE_GET(get_mpi, adcgs_mpi, adcgs_mpi_table, "adcgs_mpi.so", "ra
 static adcgs_status get_mpi(const adcgs_mpi **mpi, const char *path, adcgs_error *error)
 {
     *mpi = NULL;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: ranks need MPI, which this build does without", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: ranks need MPI, which this build does without: install libopenmpi-dev, "
+                      "configure and build again", path);
 }
 
 #endif

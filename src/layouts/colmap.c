@@ -4,6 +4,7 @@
 
 #include "layouts/colmap.h"
 
+#include "cli/text.h"
 #include "data/paths.h"
 #include "data/pose.h"
 #include "layouts/calibration.h"
@@ -212,8 +213,9 @@ static adcgs_status add_footage(reader *r, size_t index, const adcgs_footage *fo
     if (!camera)
         return ADCGS_ERR_DATA;
     if (index && footage->frames != *frames)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: the video of %.100s has %lld frames, but that of %.100s has %lld",
-                          r->scene->directory, first->name, (long long)*frames, image->name, (long long)footage->frames);
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: the video of %.100s has %lld frame%s, but that of %.100s has %lld",
+                          r->scene->directory, first->name, (long long)*frames, adcgs_s((uint64_t)*frames), image->name,
+                          (long long)footage->frames);
     *frames = footage->frames;
     if (!r->scene->rate.den)
         r->scene->rate = footage->rate;

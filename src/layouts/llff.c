@@ -4,6 +4,7 @@
 
 #include "layouts/llff.h"
 
+#include "cli/text.h"
 #include "data/paths.h"
 #include "data/pose.h"
 #include "io/file.h"
@@ -122,8 +123,8 @@ static adcgs_status check_count(const reader *r, const char *what)
 {
     if (r->cameras.n == r->table.rows)
         return ADCGS_OK;
-    return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %llu poses, but there are %zu %s", r->path,
-                      (unsigned long long)r->table.rows, r->cameras.n, what);
+    return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %llu pose%s, but there are %zu %s", r->path,
+                      (unsigned long long)r->table.rows, adcgs_s(r->table.rows), r->cameras.n, what);
 }
 
 /* ---- Pictures of one moment ---- */
@@ -228,8 +229,8 @@ static adcgs_status add_camera(const reader *r, size_t index, const adcgs_footag
     adcgs_scene_view like;
     int64_t count;
     if (index && footage->frames != *frames)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %s has %lld frames, but %s has %lld", r->scene->directory,
-                          r->cameras.names[0], (long long)*frames, name, (long long)footage->frames);
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %s has %lld frame%s, but %s has %lld", r->scene->directory,
+                          r->cameras.names[0], (long long)*frames, adcgs_s((uint64_t)*frames), name, (long long)footage->frames);
     *frames = footage->frames;
     ADCGS_TRY(adcgs_frames_count(r->frames, footage->frames, &count, r->scene->directory, r->error));
     const char *file = footage->video ? footage->video : footage->pictures[0];

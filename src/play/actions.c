@@ -4,6 +4,8 @@
 
 #include "play/actions.h"
 
+#include "cli/text.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -55,7 +57,7 @@ static void do_loop(adcgs_play_state *state, int unused)
 static void do_layers(adcgs_play_state *state, int more)
 {
     state->layers = ADCGS_MAX(1, ADCGS_MIN(state->layers + more, state->layers_max));
-    adcgs_play_say(state, "%d of %d layers", state->layers, state->layers_max);
+    adcgs_play_say(state, "%d of %d layer%s", state->layers, state->layers_max, adcgs_s((uint64_t)state->layers_max));
 }
 
 static void do_camera(adcgs_play_state *state, int index)

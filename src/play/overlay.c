@@ -4,6 +4,7 @@
 
 #include "play/overlay.h"
 
+#include "cli/text.h"
 #include "play/actions.h"
 #include "play/panel.h"
 
@@ -98,7 +99,7 @@ void adcgs_overlay_draw(adcgs_panel panels[ADCGS_PANELS], const adcgs_play_state
         draw_statistics(&panels[STATISTICS], state, figures);
     const int has_message = *state->message && state->now < state->message_end;
     char recording[40];
-    snprintf(recording, sizeof recording, "recording, %ld frames", state->recorded);
+    snprintf(recording, sizeof recording, "recording, %ld frame%s", state->recorded, adcgs_s((uint64_t)state->recorded));
     if (has_message || state->record || (*figures->coming && state->bar)) {
         const char *const text = has_message ? state->message : state->record ? recording : figures->coming;
         text_panel(&panels[MESSAGE], state, text, 0.0, 1.0, BACKGROUND);

@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "play/actions.h"
+#include "cli/text.h"
 #include "play/files.h"
 #include "play/panel.h"
 #include "play/player.h"
@@ -93,7 +94,7 @@ static void follow_recording(adcgs_player *p)
         p->state.record = 0;
         adcgs_play_say(&p->state, "%s", r->error.text);
     } else if (!r->sink) {
-        adcgs_play_say(&p->state, "%s: %ld frames", r->path, r->frames);
+        adcgs_play_say(&p->state, "%s: %ld frame%s", r->path, r->frames, adcgs_s((uint64_t)r->frames));
         *r->path = 0; /* the next has another name */
     }
 }

@@ -50,7 +50,9 @@ static adcgs_status check_option(int option, const char *value, adcgs_error *err
     double number;
     while (name && *name && strcmp(*name, value) != 0)
         name++;
-    if (name ? *name != NULL : adcgs_parse_real(value, min, max, &number) == 0)
+    if (name ? *name != NULL
+             : !adcgs_parse_real(value, min, max, &number) ||
+                   (max == SECONDS_MAX && !adcgs_parse_seconds(value, min, max, &number)))
         return ADCGS_OK;
     if (name)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected one of those that adcgs-enc --help names",

@@ -4,6 +4,7 @@
 
 #include "sweep/sweep.h"
 
+#include "cli/text.h"
 #include "io/atomic.h"
 #include "sweep/charts.h"
 
@@ -307,9 +308,10 @@ static void print_machine(const sheet *s, const adcgs_sweep *sweep)
         snprintf(threads, sizeof threads, "%d thread%s", sweep->threads, sweep->threads > 1 ? "s" : "");
     if (gmtime_r(&now, &day))
         strftime(date, sizeof date, "%Y-%m-%d", &day);
-    say(s, "%s, %ld processors online, %s unless a curve says otherwise; seconds of training are of processors, all threads "
+    say(s, "%s, %ld processor%s online, %s unless a curve says otherwise; seconds of training are of processors, all threads "
         "together; adcgs %s, %s. %s", processor,
-        sysconf(_SC_NPROCESSORS_ONLN), threads, PACKAGE_VERSION, date, sweep->command);
+        sysconf(_SC_NPROCESSORS_ONLN), adcgs_s((uint64_t)sysconf(_SC_NPROCESSORS_ONLN)), threads, PACKAGE_VERSION, date,
+        sweep->command);
 }
 
 static void print_settings(const sheet *s, const adcgs_sweep *sweep, const adcgs_sweep_plan *plan)

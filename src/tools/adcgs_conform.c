@@ -43,7 +43,8 @@ static adcgs_outcome try_everywhere(const adcgs_vector *vector, const uint8_t *d
             ++*runs;
             if (adcgs_vector_try(vector, data, bytes, &t, why) == ADCGS_OUTCOME_OK)
                 continue;
-            snprintf(what, ADCGS_WHAT, "%s, %d threads, input %s: %.320s", adcgs_cpu_name(t.cpu), t.threads,
+            snprintf(what, ADCGS_WHAT, "%s, %d thread%s, input %s: %.320s", adcgs_cpu_name(t.cpu), t.threads,
+                     adcgs_s((uint64_t)t.threads),
                      t.step ? "in pieces" : "whole", why);
             return ADCGS_OUTCOME_WRONG;
         }

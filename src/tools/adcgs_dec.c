@@ -5,6 +5,7 @@
 #include "api/frame.h"
 #include "camera/path.h"
 #include "cli/cli.h"
+#include "cli/text.h"
 #include "io/sink.h"
 #include "tools/answer.h"
 #include "tools/canvas.h"
@@ -78,8 +79,9 @@ static adcgs_status make_frames(const settings *s, const streams *from, adcgs_ca
         adcgs_cli_note(s->cli, "%s: the stream ends early; showing what is complete", s->input);
     ADCGS_TRY(adcgs_camera_path_make(frames, from->decoder, &s->request, error));
     if (frames->outside && (!from->live || from->live->over))
-        adcgs_cli_note(s->cli, "%s: %d of %d frames show its first or last moment: it lasts from %g to %g s", s->input,
-                       frames->outside, frames->n, info.time_start, info.time_end);
+        adcgs_cli_note(s->cli, "%s: %d of %d frame%s %s its first or last moment: it lasts from %g to %g s", s->input,
+                       frames->outside, frames->n, adcgs_s((uint64_t)frames->n), frames->outside == 1 ? "shows" : "show",
+                       info.time_start, info.time_end);
     return ADCGS_OK;
 }
 

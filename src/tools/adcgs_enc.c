@@ -3,10 +3,12 @@
 #include "config.h"
 
 #include "base/cpu.h"
+#include "cli/text.h"
 #include "encode/encode.h"
 #include "encode/raw.h"
 #include "io/atomic.h"
 #include "io/claim.h"
+#include "io/extension.h"
 #include "io/json.h"
 #include "layouts/open.h"
 #include "tools/enc_live.h"
@@ -27,6 +29,7 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -115,6 +118,18 @@ static adcgs_status write_stream(adcgs_stream *stream, adcgs_enc_watcher *w, adc
     return status;
 }
 
+/** Who names a video gets a stream, which no player of videos plays. */
+static void note_extension(const adcgs_cli *cli, const char *path)
+{
+    static const char *const others[] = { "mp4", "mkv", "webm", "mov", "avi", "y4m", "gif", "png", "jpg", "jpeg", "html",
+                                          "ply", "spz", "sog", "glb", "splat" };
+    const char *const extension = adcgs_extension(path);
+    for (size_t i = 0; i < ADCGS_COUNTOF(others); i++)
+        if (!strcasecmp(extension, others[i]))
+            adcgs_cli_note(cli, "%s: this file will hold an adcgs stream, not %s: name it .adcgs, and let adcgs-dec or "
+                           "adcgs-share make others of it", path, others[i]);
+}
+
 /** No output may take another's place. */
 static adcgs_status check_distinct(const adcgs_enc_options *o, adcgs_error *error)
 {
@@ -193,6 +208,8 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scen
                           "30000/1001", o->fps, ADCGS_FPS_MIN, ADCGS_FPS_MAX);
     ADCGS_TRY(configure(&job->config, o, job->cpu, error));
     ADCGS_TRY(check_distinct(o, error));
+    if (o->output && !(job->ranks && job->ranks->rank))
+        note_extension(job->cli, o->output);
     if (o->live || o->plan)
         return ADCGS_OK;
     ADCGS_TRY(check_writable(w->target, error));
@@ -200,6 +217,8 @@ static adcgs_status prepare(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_scen
         ADCGS_TRY(check_writable(o->checkpoint, error));
     return o->uncompressed ? check_writable(o->uncompressed, error) : ADCGS_OK;
 }
+
+#define PART_NAME 20 /* bytes of ".<number>.adcgs" that are added to a state's name for parts, at most */
 
 /** Where a run keeps its state: with --checkpoint there, else where it went on from, else beside its output. */
 static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
@@ -214,6 +233,10 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory");
     snprintf(w->base, n, "%s%s", name, given ? "" : ".checkpoint");
     memcpy(w->state, w->base, n);
+    const char *const slash = strrchr(w->base, '/');
+    if (strlen(slash ? slash + 1 : w->base) + (o->has_segment ? PART_NAME : 0) > NAME_MAX)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "the name of the run's state is longer than %d bytes, by what is added to that "
+                          "of the output: give a shorter one with --checkpoint", NAME_MAX);
     return ADCGS_OK;
 }
 
@@ -226,6 +249,8 @@ static adcgs_status open_log(adcgs_enc_watcher *w, adcgs_error *error)
     return !o->log || w->log ? ADCGS_OK :
                                adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write the log: %s", o->log, strerror(errno));
 }
+
+#define EARLY "interrupted before training began: there is no state to save\n"
 
 static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcgs_error *error)
 {
@@ -243,8 +268,10 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     if (o->live)
         return adcgs_enc_live(w, job, error);
     ADCGS_TRY(name_base(w, error));
+    adcgs_interrupt_word(isatty(STDERR_FILENO) ? "\nadcgs-enc: " EARLY : "adcgs-enc: " EARLY);
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
-    adcgs_progress_show(&w->progress, "scene     %u views for training, read in %.0f s", job->scene->n_views[ADCGS_SPLIT_TRAIN],
+    adcgs_progress_show(&w->progress, "scene     %u view%s for training, read in %.0f s",
+                        job->scene->n_views[ADCGS_SPLIT_TRAIN], adcgs_s(job->scene->n_views[ADCGS_SPLIT_TRAIN]),
                         adcgs_seconds() - o->started.clock);
     if (w->preview.path)
         ADCGS_TRY(adcgs_enc_preview_begin(o->preview, job->scene, error));
@@ -295,7 +322,8 @@ static const adcgs_cli program = {
     .operands = "SCENE",
     .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
     .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D or COLMAP,\n"
-               "a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), of which it renders views.",
+               "a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), of which it renders views.\n"
+               "Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or millions: 20k, 2M.",
     .min_operands = 0,
     .max_operands = 1,
 };
@@ -368,18 +396,18 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
           "frames per second of the frames that are taken (default:\nthe scene's, else 30)", NULL, NULL },
         { "points", 0, ADCGS_OPTION_FILE, &o->points, 0, 0, "FILE",
           "initial points (PLY, NPY or Draco) instead of the scene's\nor random ones", NULL, NULL },
-        { "segment", 0, ADCGS_OPTION_REAL, &o->segment, 1e-3, 1e6, "S",
+        { "segment", 0, ADCGS_OPTION_SECONDS, &o->segment, 1e-3, 1e6, "S",
           "cut time every S seconds, at the nearest moment; each segment\nis learnt from the one before, with a run of its own;\n"
           "with --plan: learn segment number S alone", NULL, &o->has_segment },
         { "plan", 0, ADCGS_OPTION_FILE, &o->plan, 0, 0, "FILE",
           "write a plan of the segments, with all settings, for them to\nbe learnt by --segment 1, 2, ... anywhere, and joined "
           "by\nadcgs-join", NULL, NULL },
-        { "cut", 0, ADCGS_OPTION_REAL, &o->cut, 1e-3, 1e6, "S",
+        { "cut", 0, ADCGS_OPTION_SECONDS, &o->cut, 1e-3, 1e6, "S",
           "with --plan: cut time every S seconds (default 2)", NULL, &o->has_cut },
-        { "key", 0, ADCGS_OPTION_REAL, &o->key, 0, 1e6, "S",
+        { "key", 0, ADCGS_OPTION_SECONDS, &o->key, 0, 1e6, "S",
           "with --segment: at least every S seconds a segment that needs\nno other, where playing can begin (default 10)", NULL,
           &o->has_key },
-        { "fade", 0, ADCGS_OPTION_REAL, &o->fade, 0, 1e6, "S",
+        { "fade", 0, ADCGS_OPTION_SECONDS, &o->fade, 0, 1e6, "S",
           "with --segment: fade each segment in over S seconds, while\nthe one before goes on; at most a quarter of a segment\n"
           "(default 0.2; 0: not at all)", NULL, &o->has_fade },
         { "or-whole", 0, ADCGS_OPTION_FLAG, &o->or_whole, 0, 0, NULL,
@@ -389,7 +417,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
           "learn footage while it comes: SCENE is a scene file, or a\nfolder with scene.json; segments, of 2 s unless --segment\n"
           "says otherwise, are written as they are done; -o - writes to\nstandard output; a camera's video may be -, standard "
           "input", NULL, NULL },
-        { "delay", 0, ADCGS_OPTION_REAL, &o->delay, 1e-3, 1e6, "S",
+        { "delay", 0, ADCGS_OPTION_SECONDS, &o->delay, 1e-3, 1e6, "S",
           "with --live: have all written within S seconds from when it\nwas filmed; effort falls if need be", NULL,
           &o->has_delay },
         { "without", 0, ADCGS_OPTION_STRING, &o->without, 0, 0, "PART,...",
@@ -404,7 +432,7 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
           NULL },
         { "set", 0, ADCGS_OPTION_STRING, &o->set, 0, 0, "NAME=VALUE,...",
           "change settings of the preset; 'list' shows them all", names, NULL },
-        { "time-limit", 0, ADCGS_OPTION_REAL, &o->time_limit, 0, ADCGS_TIME_LIMIT_MAX, "S",
+        { "time-limit", 0, ADCGS_OPTION_SECONDS, &o->time_limit, 0, ADCGS_TIME_LIMIT_MAX, "S",
           "be done with training S seconds from now, reading the scene\nincluded; the result then depends on the machine's speed",
           NULL, NULL },
         { "seed", 0, ADCGS_OPTION_SIZE, &o->seed, seed->min, seed->max, "N", "seed of every random choice (default 1)", NULL,
@@ -412,8 +440,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "checkpoint", 0, ADCGS_OPTION_FILE, &o->checkpoint, 0, 0, "FILE",
           "save the state of the run here every minute and when\ninterrupted (default then: the output's name.checkpoint)", NULL,
           NULL },
-        { "checkpoint-every", 0, ADCGS_OPTION_REAL, &o->checkpoint_every, 0, 1e6, "S", "seconds between such saves (default 60)",
-          NULL, NULL },
+        { "checkpoint-every", 0, ADCGS_OPTION_SECONDS, &o->checkpoint_every, 0, 1e6, "S",
+          "seconds between such saves (default 60)", NULL, NULL },
         { "resume", 0, ADCGS_OPTION_FILE, &o->resume, 0, 0, "FILE",
           "go on from such a state; same scene, same options; with\n--live: from the output that a run has left", NULL,
           NULL },

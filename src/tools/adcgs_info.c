@@ -117,10 +117,10 @@ static void print_header(const adcgs_info_report *r, const char *name)
     printf("picture     colour %s, background %g %g %g, filter %g px^2\n", i->colour, (double)i->background[0],
            (double)i->background[1], (double)i->background[2], (double)r->stream.screen_filter);
     if (r->stream.params.bodies)
-        snprintf(bodies, sizeof bodies, ", %d bodies", r->stream.params.bodies);
-    printf("model       %u anchors (%u static%s%s), %u Gaussians of at most %d each, %u weights, %d of %d layers, ", i->anchors,
+        snprintf(bodies, sizeof bodies, r->stream.params.bodies == 1 ? ", %d body" : ", %d bodies", r->stream.params.bodies);
+    printf("model       %u anchors (%u static%s%s), %u Gaussians of at most %d each, %u weights, %d of %d layer%s, ", i->anchors,
            i->static_anchors, r->stream.params.spans ? ", others with spans" : "", bodies, i->gaussians, i->k, i->weights,
-           i->layers, adcgs_params_layers(&r->stream.params));
+           i->layers, adcgs_params_layers(&r->stream.params), adcgs_s((uint64_t)adcgs_params_layers(&r->stream.params)));
     printf("%d of %d tier%s\n", i->tiers_present, i->tiers, i->tiers == 1 ? "" : "s");
 }
 
@@ -153,8 +153,9 @@ static adcgs_status print_segments(const adcgs_info_report *r, adcgs_error *erro
 {
     for (uint32_t i = 0; i < r->stream.n_segments; i++) {
         const adcgs_model *m = &r->stream.segments[i];
-        printf("\nsegment %u: %g .. %g s, %u anchors, depth %u, voxel %g, %u Gaussians, %d layers\n", i, m->time_start,
-               m->time_end, m->n, m->depth, (double)m->voxel, adcgs_info_count_gaussians(m), m->layers);
+        printf("\nsegment %u: %g .. %g s, %u anchors, depth %u, voxel %g, %u Gaussians, %d layer%s\n", i, m->time_start,
+               m->time_end, m->n, m->depth, (double)m->voxel, adcgs_info_count_gaussians(m), m->layers,
+               adcgs_s((uint64_t)m->layers));
         if (m->reach > 0)
             printf("  goes on for %g s, in which the next is faded in\n", m->reach);
         uint32_t same, refined;

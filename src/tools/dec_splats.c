@@ -4,6 +4,7 @@
 
 #include "tools/dec_splats.h"
 
+#include "cli/text.h"
 #include "io/sink.h"
 #include "io/splats.h"
 
@@ -86,8 +87,9 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
         adcgs_cli_note(cli, "%s: the stream ends early; writing what is complete", input);
     ADCGS_TRY(adcgs_camera_path_make(&frames, decoder, &moments, error));
     if (frames.outside)
-        adcgs_cli_note(cli, "%s: %d of %d files show its first or last moment: it lasts from %g to %g s", input, frames.outside,
-                       frames.n, info.time_start, info.time_end);
+        adcgs_cli_note(cli, "%s: %d of %d file%s %s its first or last moment: it lasts from %g to %g s", input, frames.outside,
+                       frames.n, adcgs_s((uint64_t)frames.n), frames.outside == 1 ? "shows" : "show",
+                       info.time_start, info.time_end);
     const adcgs_status status = write_all(&n, decoder, &info, how, &frames, error);
     if (status == ADCGS_OK && !adcgs_interrupted())
         adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);

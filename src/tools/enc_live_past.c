@@ -4,6 +4,7 @@
 
 #include "tools/enc_live_past.h"
 
+#include "cli/text.h"
 #include "encode/past.h"
 
 /** Add the last segment, as it was. */
@@ -42,8 +43,9 @@ static adcgs_status take_segments(adcgs_enc_live_past *p, adcgs_past *from, adcg
 static void tell(const adcgs_enc_live_past *p, const adcgs_past *from, const adcgs_cli *cli)
 {
     const char *const fault = from->fault.status != ADCGS_OK ? from->fault.text : NULL;
-    adcgs_cli_note(cli, "%s: %u segments are whole, to %g s%s%s", from->path, p->n + 1, p->last.time_end,
-                   fault ? "; behind them: " : "", fault ? fault : "");
+    adcgs_cli_note(cli, "%s: %u segment%s %s whole, to %g s%s%s", from->path, p->n + 1, adcgs_s(p->n + 1), p->n ? "are" : "is",
+                   p->last.time_end,
+                   fault ? "; behind that: " : "", fault ? fault : "");
 }
 
 adcgs_status adcgs_enc_live_past_take(adcgs_enc_live_past *p, adcgs_encode_live *stream, adcgs_enc_live_file *file,

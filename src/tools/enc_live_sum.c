@@ -58,8 +58,8 @@ adcgs_status adcgs_enc_live_sum_print(const adcgs_enc_live_sum *s, const adcgs_e
     adcgs_text_show(stderr, strcmp(o->output, "-") ? o->output : "standard output");
     fprintf(stderr, ": %llu bytes; ", (unsigned long long)s->bytes);
     if (s->past)
-        fprintf(stderr, "%u segments as they were, ", s->past);
-    fprintf(stderr, "%u segments of %g s together, %u of them keys\n", s->n, s->end - s->begin, s->keys);
+        fprintf(stderr, "%u segment%s as they were, ", s->past, adcgs_s(s->past));
+    fprintf(stderr, "%u segment%s of %g s together, %u of them keys\n", s->n, adcgs_s(s->n), s->end - s->begin, s->keys);
     fprintf(stderr, "delay %.2f s in the mean, %.2f s at worst", s->delay / n, s->worst);
     if (o->has_delay)
         fprintf(stderr, ", %g s asked for", o->delay);

@@ -21,7 +21,8 @@
 
 static size_t size_of(adcgs_option_kind kind)
 {
-    return kind == ADCGS_OPTION_REAL ? sizeof(double) : kind == ADCGS_OPTION_SIZE ? sizeof(uint64_t) :
+    return kind == ADCGS_OPTION_REAL || kind == ADCGS_OPTION_SECONDS ? sizeof(double) :
+           kind == ADCGS_OPTION_SIZE ? sizeof(uint64_t) :
            kind == ADCGS_OPTION_STRING || kind == ADCGS_OPTION_FILE ? sizeof(char *) : sizeof(int);
 }
 

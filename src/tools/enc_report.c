@@ -44,7 +44,8 @@ static void print_text(const adcgs_enc_report *r, const result *x)
         fprintf(stderr, "%d segments; ", x->info.segments);
     fprintf(stderr, "%u anchors (%u static), %u primitives; lambda %.3g; trained in %.0f s (CPU %.0f s)\n", x->info.anchors,
             x->info.static_anchors, x->info.gaussians, x->lambda, r->spent.clock, r->spent.cpu);
-    fprintf(stderr, "decoded from the file, %u %s views: %.2f dB PSNR, %.4f SSIM\n", x->quality.n, adcgs_split_name(x->split),
+    fprintf(stderr, "decoded from the file, %u %s view%s: %.2f dB PSNR, %.4f SSIM\n", x->quality.n, adcgs_split_name(x->split),
+            adcgs_s(x->quality.n),
             x->quality.psnr, x->quality.ssim);
 }
 
@@ -122,7 +123,7 @@ static adcgs_status count_view(void *user, const adcgs_view_score *score, adcgs_
     counter *c = user;
     (void)score;
     if (adcgs_interrupts() > c->heard)
-        return adcgs_fail(error, ADCGS_ERR_IO, "interrupted after %u of %u views were measured", c->done, c->n);
+        return adcgs_fail(error, ADCGS_ERR_IO, "interrupted after %u of %u view%s were measured", c->done, c->n, adcgs_s(c->n));
     adcgs_progress_show(&c->progress, "measured  %6u/%u", ++c->done, c->n);
     return ADCGS_OK;
 }

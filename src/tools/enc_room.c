@@ -2,6 +2,7 @@
 /** \file The room that a run's images take. */
 #include "tools/enc_room.h"
 
+#include "cli/text.h"
 #include "data/pictures.h"
 #include "data/spool.h"
 
@@ -63,7 +64,7 @@ void adcgs_enc_tell_no_room(adcgs_enc_watcher *w)
     if (!n || w->told_room == 2)
         return;
     adcgs_progress_clear(&w->progress);
-    adcgs_cli_note(w->progress.cli, "no room for %u of %u images (%s): they are decoded again for each use, which is slow", n,
-                   w->t->n_views, why);
+    adcgs_cli_note(w->progress.cli, "no room for %u of %u image%s (%s): decoded again for each use, which is slow", n,
+                   w->t->n_views, adcgs_s(w->t->n_views), why);
     w->told_room = 2;
 }

@@ -4,6 +4,7 @@
 
 #include "tools/enc_run.h"
 
+#include "cli/text.h"
 #include "data/light.h"
 #include "io/json.h"
 #include "metric/metric.h"
@@ -225,7 +226,11 @@ static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs
 /** Make of a run, wherever it stands, what can be written. */
 static adcgs_status finish(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs_error *error)
 {
-    adcgs_progress_show(&w->progress, "finish    what there is of %u iterations", w->t->iteration);
+    if (!adcgs_trainer_moves(w->t))
+        adcgs_cli_error(cli, ADCGS_OK, "%s: at iteration %u of %u nothing moves yet: the file shows a still, coarse scene; a run "
+                        "of -n %u shows far more", w->target, w->t->iteration, w->t->config.iterations,
+                        ADCGS_MAX(w->t->iteration, 300));
+    adcgs_progress_show(&w->progress, "finish    what there is after iteration %u ...", w->t->iteration);
     const adcgs_status status = adcgs_trainer_finish(w->t, &w->last, error);
     adcgs_progress_clear(&w->progress);
     ADCGS_TRY(status);
@@ -314,7 +319,8 @@ adcgs_status adcgs_enc_learn(adcgs_enc_watcher *w, const adcgs_enc_job *job, con
                              const adcgs_model *otherwise, const char *state, adcgs_time started, adcgs_error *error)
 {
     if (!adcgs_enc_team_follows(&w->team))
-        adcgs_progress_show(&w->progress, "start     %u views: where things are", scene->n_views[ADCGS_SPLIT_TRAIN]);
+        adcgs_progress_show(&w->progress, "start     %u view%s: finding where things are ...", scene->n_views[ADCGS_SPLIT_TRAIN],
+                            adcgs_s(scene->n_views[ADCGS_SPLIT_TRAIN]));
     const int is_one_of_many = job->ranks && job->ranks->rank; /* the first rank says it for all */
     const int tells = !*job->cli->quiet && !w->is_live && !is_one_of_many; /* nobody asks what is live once more */
     adcgs_train_config config = job->config;

@@ -7,6 +7,8 @@
 
 #include "tools/eval_match.h"
 
+#include "cli/text.h"
+
 #include <adcgs/decoder.h>
 
 #include <math.h>
@@ -50,11 +52,11 @@ static void match_cameras(const adcgs_match *m, const adcgs_info *info)
         if (adcgs_get_camera(m->decoder, i, &camera, NULL) == ADCGS_OK)
             n[find_camera(&camera, m->scene, info->scene_scale)]++;
     if (2 * n[0] > info->cameras)
-        adcgs_cli_note(m->cli, "%s: %d of its %d cameras are none of %s: was it made of another scene?", m->file, n[0],
-                       info->cameras, m->scene_name);
+        adcgs_cli_note(m->cli, "%s: %d of its %d camera%s %s none of %s: was it made of another scene?", m->file, n[0],
+                       info->cameras, adcgs_s((uint64_t)info->cameras), n[0] == 1 ? "is" : "are", m->scene_name);
     else if (2 * n[1] > info->cameras)
-        adcgs_cli_note(m->cli, "%s: %d of its %d cameras have other lenses in %s: was it made of other pictures?", m->file, n[1],
-                       info->cameras, m->scene_name);
+        adcgs_cli_note(m->cli, "%s: %d of its %d camera%s %s other lenses in %s: was it made of other pictures?", m->file, n[1],
+                       info->cameras, adcgs_s((uint64_t)info->cameras), n[1] == 1 ? "has" : "have", m->scene_name);
 }
 
 /** How many views of the split are of a time that the stream has not, give or take a frame. */

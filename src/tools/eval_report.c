@@ -250,7 +250,8 @@ static void text_end(const adcgs_eval_report *r, const double *mean, const adcgs
     printf("%-35s", title);
     text_values(r, mean, 2);
     if (r->box && r->of_all[ADCGS_EVAL_CROP_PSNR].n)
-        printf("the box is seen in %u views\n", r->of_all[ADCGS_EVAL_CROP_PSNR].n);
+        printf("the box is seen in %u view%s\n", r->of_all[ADCGS_EVAL_CROP_PSNR].n,
+               adcgs_s(r->of_all[ADCGS_EVAL_CROP_PSNR].n));
     else if (r->box)
         printf("no view sees the box\n");
     if ((r->measure & ADCGS_MEASURE_TIME) && !r->n_cameras && !only_known(r))
@@ -306,7 +307,7 @@ static adcgs_status report_camera(adcgs_eval_report *r, const adcgs_temporal_tot
         csv_values(r, c->value);
     }
     if (r->as_text && (r->measure & (ADCGS_MEASURE_DYNAMIC | ADCGS_MEASURE_STATIC))) {
-        printf("camera %u, %u views:", r->camera, total->views);
+        printf("camera %u, %u view%s:", r->camera, total->views, adcgs_s(total->views));
         text_values(r, c->value, 1);
     }
     return ADCGS_OK;

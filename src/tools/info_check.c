@@ -32,8 +32,9 @@ static void print_usable(const char *path, const adcgs_stream *s, uint32_t fault
     printf(": %u fault%s; %u segment%s can be used\n", faults, faults == 1 ? "" : "s", s->n_segments,
            s->n_segments == 1 ? "" : "s");
     for (uint32_t i = 0; faults && i < s->n_segments; i++)
-        printf("  %g .. %g s, %d of %d layers whole, %d of %d tiers\n", s->segments[i].time_start, s->segments[i].time_end,
-               s->segments[i].layers, layers, s->segments[i].finest + 1 - s->segments[i].absent, s->segments[i].finest + 1);
+        printf("  %g .. %g s, %d of %d layer%s whole, %d of %d tier%s\n", s->segments[i].time_start, s->segments[i].time_end,
+               s->segments[i].layers, layers, adcgs_s((uint64_t)layers), s->segments[i].finest + 1 - s->segments[i].absent,
+               s->segments[i].finest + 1, s->segments[i].finest ? "s" : "");
 }
 
 static adcgs_status write_repaired(adcgs_stream *s, const char *path, adcgs_error *error)

@@ -7,6 +7,7 @@
 #include "train/checkpoint.h"
 
 #include "base/digest.h"
+#include "cli/text.h"
 #include "data/content.h"
 #include "io/atomic.h"
 #include "io/file.h"
@@ -118,7 +119,8 @@ static void walk_scene(walk *w, const adcgs_trainer *t)
     uint64_t n = t->n_views;
     visit(w, &n, sizeof n);
     if (n != t->n_views)
-        differ(w, "saved with another scene: %llu training views there and %u here", (unsigned long long)n, t->n_views);
+        differ(w, "saved with another scene: %llu training view%s there and %u here", (unsigned long long)n, adcgs_s(n),
+               t->n_views);
     for (uint32_t i = 0; i < t->n_views; i++) {
         const adcgs_scene_view *v = &s->views[ADCGS_SPLIT_TRAIN][i];
         cameras = add_camera(cameras, v);

@@ -207,7 +207,9 @@ static adcgs_status set_one(adcgs_train_config *c, char *text, adcgs_error *erro
     char *const equals = strchr(text, '='), *end = NULL;
     if (equals)
         *equals = 0;
-    const double value = equals ? strtod(equals + 1, &end) : 0;
+    double value = equals ? strtod(equals + 1, &end) : 0;
+    if (equals && end > equals + 1 && *end && !end[1] && strchr("kKM", *end)) /* thousands, millions */
+        value *= *end++ == 'M' ? 1e6 : 1e3;
     const adcgs_setting *s = adcgs_setting_find(text);
     if (s && s->group != ADCGS_SETTING_SWITCHES && (!equals || end == equals + 1 || *end || !adcgs_setting_may_be(s, value)))
         return fail_range(s, equals ? equals + 1 : "", error);

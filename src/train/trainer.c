@@ -146,6 +146,12 @@ adcgs_status adcgs_trainer_finish(adcgs_trainer *t, adcgs_train_report *report, 
     return ADCGS_OK;
 }
 
+int adcgs_trainer_moves(const adcgs_trainer *t)
+{
+    return t->f->follows || t->stereo.n_bodies || t->scene->n_times < 2 || t->config.deform_from >= 1 ||
+           (t->config.without_coarse && t->config.without_fine) || adcgs_trainer_progress(t) >= (double)t->config.deform_from;
+}
+
 /** How much time the run has taken. Where that is limited it is the first's of a team: progress has to be the same. */
 static adcgs_status take_time(adcgs_trainer *t, adcgs_time begin, adcgs_error *error)
 {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Training: one loop over posed pictures. The same seed gives the same model at
- * any thread count; a run can stop and go on exactly where it was.
+ * any thread count, by vector kernels of any level; scalar ones round otherwise
+ * and give another. A run can stop and go on exactly where it was.
  */
 #ifndef ADCGS_TRAIN_TRAINER_H
 #define ADCGS_TRAIN_TRAINER_H
@@ -31,6 +32,9 @@ typedef int (*adcgs_train_observe)(void *user, const adcgs_train_report *report)
 
 /** Whether training views are drawn so badly that one colour for all of them would be much better: something went wrong. */
 int adcgs_trainer_is_lost(const adcgs_trainer *trainer);
+
+/** Whether the run is past the stage in which its model is trained without motion; one without motion always is. */
+int adcgs_trainer_moves(const adcgs_trainer *trainer);
 
 /** Train to the end, or (*stopped = 1) until observe says stop or lambda would have a say. */
 adcgs_status adcgs_trainer_run(adcgs_trainer *trainer, adcgs_train_observe observe, void *user, int *stopped, adcgs_error *error);

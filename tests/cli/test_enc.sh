@@ -267,6 +267,10 @@ expect 2 "unknown option" $try --fast
 expect 2 "from 0 to 1000" $try --lambda -1
 expect 2 "from 0 to 1000" $try --lambda nan
 expect 2 "whole number" $try --iterations 1.5
+expect 2 "a whole number from .*, suffix k or M allowed" $try --iterations 20m
+expect 2 "iterations=2: expected a whole number\|from" $try --set iterations=2
+expect 2 "seconds from .*, suffix ms, s, m or h allowed" $try --time-limit 10d
+expect 2 "at most\|from" $try --iterations 2000M
 expect 2 "whole number" $try --iterations 9
 expect 2 "1 to 16" $try --k 17
 expect 2 "setting k=17: expected a whole number from 1 to 16" $try --set k=17

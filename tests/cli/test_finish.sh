@@ -117,4 +117,41 @@ done
     expect 2 "finish excludes\|either" $run --beginning "$dir/x.adcgs" --finish "$dir/kept"
 }
 [ "$(cat "$dir/x.adcgs")" = precious ] || bad "what failed touched the output"
+
+# An interrupt is heard while the file is measured, which is complete: 900 views would take some seconds.
+many=$dir/many
+cp -r "$scene" "$many"
+awk '/"file_path"/ { on = 1; one = "" }
+     on { one = one $0 "\n" }
+     on && /\] \},?$/ { on = 0; sub(/,?\n$/, "", one); view[n++] = one }
+     /"frames"/ || !n && !on { print }
+     END { for (i = 0; i < 900; i++) printf "%s%s\n", view[i % n], i < 899 ? "," : ""; print "  ]\n}" }' \
+    "$scene/transforms_test.json" >"$many/transforms_test.json"
+for try in 1 2 3; do
+    rm -f "$dir/many.adcgs"
+    ./adcgs-enc "$many" -o "$dir/many.adcgs" --preset draft --set stereo=0 --iterations 10 >"$dir/out" 2>"$dir/err" &
+    pid=$!
+    while kill -0 $pid 2>/dev/null && [ ! -e "$dir/many.adcgs" ]; do sleep 0.02; done
+    kill -TERM $pid 2>/dev/null
+    wait $pid
+    got=$?
+    grep -q 'interrupted after [0-9]* of 900 views were measured; but .*many.adcgs is written' "$dir/err" && break
+done
+[ "$got" -eq 0 ] && [ "$try" -lt 3 ] || { bad "exit code $got of an interrupt while views are measured"; cat "$dir/err"; }
+expect 0 "" ./adcgs-info --check "$dir/many.adcgs"
+
+# In its first stage a run has nothing to save, and says so; a state of its motionless stage is one that shows little.
+./adcgs-enc "$many" -o "$dir/early.adcgs" -n 20k >"$dir/out" 2>"$dir/err" &
+pid=$!
+sleep 0.3
+kill -INT $pid
+wait $pid
+got=$?
+[ "$got" -gt 128 ] && grep -q 'interrupted before training began: there is no state to save' "$dir/err" ||
+    [ "$got" -eq 3 ] || { bad "exit code $got of an early interrupt"; cat "$dir/err"; }
+# shellcheck disable=SC2086
+interrupt INT "$dir/still.log" '"iteration":100,' $run -n 20k -o "$dir/still.adcgs" --threads 2 --log "$dir/still.log"
+# shellcheck disable=SC2086
+expect 0 'still.adcgs: at iteration [0-9]* of 20000 nothing moves yet' $run -n 20k -o "$dir/still.adcgs" --threads 2 -q \
+    --finish "$dir/still.adcgs.checkpoint"
 exit $failed

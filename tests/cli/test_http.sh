@@ -6,6 +6,23 @@
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec adcgs-info conformance/make_vectors
 unset http_proxy https_proxy all_proxy HTTPS_PROXY ALL_PROXY
+# A server whose head has a line of 200 kB, once.
+if command -v python3 >/dev/null && ! ./adcgs-dec http://127.0.0.1:1/ --md5 2>&1 | grep -q 'this build does without'; then
+    python3 -c 'import socket
+s = socket.create_server(("127.0.0.1", 0))
+print(s.getsockname()[1], flush=True)
+c = s.accept()[0]
+c.recv(65536)
+try:
+    c.sendall(b"HTTP/1.1 200 OK\r\nX: " + b"x" * 200000 + b"\r\n\r\n")
+    c.recv(1)
+except OSError:
+    pass' >"$dir/port" &
+    while [ ! -s "$dir/port" ]; do sleep 0.02; done
+    read -r port <"$dir/port"
+    expect 3 "a line of its answer's head is longer than" ./adcgs-dec "http://127.0.0.1:$port/x.adcgs" --md5
+    [ $failed -eq 0 ] || exit 1
+fi
 nginx=$(PATH=$PATH:/usr/sbin:/usr/local/sbin command -v nginx) || { echo "skipped: no nginx"; exit 77; }
 ./adcgs-dec http://127.0.0.1:1/ --md5 2>&1 | grep -q 'this build does without' &&
     { echo "skipped: no libcurl in this build"; exit 77; }

@@ -35,6 +35,27 @@ static void test_numbers(void **state)
     const char *bad_ints[] = {"", "x", "1x", "13", "-4", "1.0", "99999999999999999999", "0x1"};
     for (size_t n = 0; n < ADCGS_COUNTOF(bad_ints); n++)
         assert_int_equal(adcgs_parse_int(bad_ints[n], -3, 12, &i), -1);
+    assert_true(!adcgs_parse_count("20k", 10, 100000, &i) && i == 20000);
+    assert_true(!adcgs_parse_count("1.5K", 10, 100000, &i) && i == 1500);
+    assert_true(!adcgs_parse_count("1.001k", 10, 100000, &i) && i == 1001);
+    assert_true(!adcgs_parse_count("2M", 10, 5000000, &i) && i == 2000000);
+    assert_true(!adcgs_parse_count("-3", -3, 12, &i) && i == -3);
+    static const char *const bad_counts[] = {"", "k", "1.5", "1.0001k", "20kk", "20 k", "20m", "0x2k", "200k", "nank",
+                                            "--1k", "1e9k"};
+    for (size_t n = 0; n < ADCGS_COUNTOF(bad_counts); n++)
+        assert_int_equal(adcgs_parse_count(bad_counts[n], -100000, 100000, &i), -1);
+    static const struct {
+        const char *text;
+        double seconds;
+    } times[] = {{"2", 2}, {"2s", 2}, {"10m", 600}, {"10min", 600}, {"1.5h", 5400}, {"500ms", 0.5}, {".5s", 0.5}, {"-1s", -1}};
+    for (size_t n = 0; n < ADCGS_COUNTOF(times); n++) {
+        double got;
+        assert_int_equal(adcgs_parse_seconds(times[n].text, -10, 1e4, &got), 0);
+        assert_float_equal(got, times[n].seconds, 1e-12);
+    }
+    static const char *const bad_seconds[] = {"", "s", "2 s", "2d", "2sm", "infs", "nanm", "3h ", "0x1m"};
+    for (size_t n = 0; n < ADCGS_COUNTOF(bad_seconds); n++)
+        assert_int_equal(adcgs_parse_seconds(bad_seconds[n], 0, 1e4, &(double){0}), -1);
     assert_true(!adcgs_parse_size("200000", 0, UINT64_MAX, &size) && size == 200000);
     assert_true(!adcgs_parse_size("200k", 0, UINT64_MAX, &size) && size == 200000);
     assert_true(!adcgs_parse_size("200KiB", 0, UINT64_MAX, &size) && size == 204800);
@@ -57,6 +78,7 @@ static void test_numbers(void **state)
     for (size_t n = 0; n < ADCGS_COUNTOF(bad_pairs); n++)
         assert_int_equal(adcgs_parse_pair(bad_pairs[n], 1, 1000, pair), -1);
     assert_true(!adcgs_parse_times("1.5", &real, &end) && real == 1.5 && end == 1.5);
+    assert_true(!adcgs_parse_times("500ms:1m", &real, &end) && real == 0.5 && end == 60.0);
     assert_true(!adcgs_parse_times("-1:2", &real, &end) && real == -1.0 && end == 2.0);
     const char *bad_times[] = {"", ":", "1:", ":1", "2:1", "1:2:3", "1;2", "nan", "1:inf"};
     for (size_t n = 0; n < ADCGS_COUNTOF(bad_times); n++)
