@@ -120,8 +120,8 @@ void adcgs_progress_show(adcgs_progress *progress, const char *format, ...) ADCG
 void adcgs_progress_clear(adcgs_progress *progress);
 /**
  * From now on, and until adcgs_progress_end(), a line comes every 30 seconds at least where there is no terminal, also while
- * nothing is shown: then it is the last one once more, with its age; of a line that ends in " ...", for what still goes on, with
- * the time that this takes. It stays where it is in memory meanwhile.
+ * nothing is shown: then it is the last one once more, with its age; of a line that ends in " ...", for work that lasts, with
+ * its time so far. It stays where it is in memory meanwhile.
  */
 void adcgs_progress_keep(adcgs_progress *progress);
 void adcgs_progress_end(adcgs_progress *progress);

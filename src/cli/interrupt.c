@@ -20,7 +20,7 @@ static void on_signal(int number)
         signal(numbers[i], SIG_DFL);
 }
 
-/** Ends the program as the signal does by itself, which is what a shell wants to know. */
+/** Ends the program as the signal does by itself, so that a shell sees the signal. */
 static void on_last_signal(int number)
 {
     const char *const text = last_word;

@@ -60,7 +60,7 @@ static double unit_of(const char *suffix, const char *const *names, const double
     return 0.0;
 }
 
-/** A number and its unit; 0, or -1 outside of [min, max] and for what strtod() takes beyond digits. */
+/** A number and its unit; 0, or -1 outside of [min, max] and for all but digits, point and sign. */
 static int parse_with_unit(const char *text, double min, double max, const char *const *names, const double *factors, double *out)
 {
     char *end;

@@ -105,7 +105,7 @@ static void *beat(void *user)
         if (now >= p->last + p->every + p->grace) {
             char text[sizeof p->said + 32];
             const size_t n = strlen(p->said);
-            if (n > 4 && !strcmp(p->said + n - 4, " ...")) /* it still goes on */
+            if (n > 4 && !strcmp(p->said + n - 4, " ...")) /* it still lasts */
                 snprintf(text, sizeof text, "%.*s, %.0f s", (int)n - 4, p->said, now - p->said_at);
             else
                 snprintf(text, sizeof text, "%s (%.0f s ago)", p->said, now - p->said_at);

@@ -34,7 +34,7 @@ void adcgs_text_column(FILE *file, const char *text, int width);
  */
 void adcgs_text_cell(FILE *file, const char *text);
 
-/** What makes a plural: "%u frame%s". */
+/** The ending of a plural: "%u frame%s". */
 static inline const char *adcgs_s(uint64_t n)
 {
     return n == 1 ? "" : "s";

@@ -143,7 +143,7 @@ static void give_up_file(adcgs_pictures *p, picture *to, int problem)
     pthread_mutex_unlock(&p->lock);
 }
 
-/** can_decode: the image is the scene's, and can be read from there once more. */
+/** can_decode: the image is the scene's, and can be read from there again. */
 static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, int can_decode, adcgs_error *error)
 {
     const adcgs_status status = hide(to, rgb, error);

@@ -2,10 +2,10 @@
 /** \file
  * All images of a split at one size, decoded once and kept: in memory up to a
  * budget, then in an unnamed file of TMPDIR (/var/tmp without it) up to the room
- * there, which the system reads ahead when told what comes next. What has room
- * nowhere is decoded again from the scene's files each time it is asked for.
+ * there, which the system reads ahead. Images without room are decoded again
+ * from the scene's files for each use.
  * Values in [0,1] are kept in 16 bits, or in 8 where that is the same, so that no
- * budget ever changes what is trained; those of an image that goes beyond are
+ * budget changes the result of training; those of an image that goes beyond are
  * kept as binary32.
  */
 #ifndef ADCGS_DATA_PICTURES_H
@@ -29,7 +29,7 @@ typedef struct adcgs_pictures_config {
     adcgs_glance *glances; /**< [views] taken of each picture as it is loaded; or NULL */
 } adcgs_pictures_config;
 
-/** Bytes in memory at most, unless they are given: half of what the machine has, or a cgroup or ulimit -v leaves of it. */
+/** Bytes in memory at most, unless they are given: half of the machine's, or of the limit of a cgroup or of ulimit -v. */
 uint64_t adcgs_pictures_usual_memory(void);
 /**
  * The scene must outlive them. The first failure of a picture, in their order, is the one reported; ADCGS_ERR_IO also when
@@ -55,14 +55,14 @@ uint32_t adcgs_pictures_decoded_again(const adcgs_pictures *pictures, const char
 
 /** How much room images will take, and where. */
 typedef struct adcgs_pictures_need {
-    uint64_t bytes;         /**< of all of them, as far as is known from a few of them */
+    uint64_t bytes;         /**< of all of them, estimated from one or two of them */
     uint64_t memory, file;  /**< of these, kept in memory and in the file; the rest is decoded again */
     uint64_t room;          /**< for the file */
     int problem;            /**< errno, where there is no room at all */
     uint32_t n, again;      /**< images, and those that are decoded again */
 } adcgs_pictures_need;
 
-/** Before they are loaded. Decodes one or two images, but none where all fit into memory, whatever they hold. */
+/** Before they are loaded. Decodes one or two images, but none where all fit into memory as binary32. */
 adcgs_status adcgs_pictures_foresee(adcgs_pictures_need *need, const adcgs_scene *scene, const adcgs_pictures_config *config,
                                     adcgs_error *error);
 

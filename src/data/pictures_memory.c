@@ -28,7 +28,7 @@ static uint64_t cgroup_limit(const char *root, const char *name, const char *fil
     }
 }
 
-/** By the limits of containers and job schedulers: who takes more is killed, and no state is saved. */
+/** By the limits of containers and job schedulers: a process beyond them is killed, and no state is saved. */
 static uint64_t limited(uint64_t most)
 {
     char line[PATH_MAX];

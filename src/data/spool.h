@@ -18,11 +18,11 @@ typedef struct adcgs_spool {
 
 /** The folder, from malloc(); NULL without memory. */
 char *adcgs_spool_folder(void);
-/** Bytes that may be written there: free space but for a sixteenth, and the process's limit of a file's size. *problem: errno. */
+/** Bytes that may be written there: 15/16 of the free space, and the process's limit of a file's size. *problem: errno. */
 uint64_t adcgs_spool_room(const char *folder, int *problem);
 
 adcgs_status adcgs_spool_init(adcgs_spool *spool, adcgs_error *error);
-/** The file is closed, and so is gone. Accepts one that is zero but for its file, -1. */
+/** The file is closed, and so is gone. Accepts one that is zero except its file, -1. */
 void adcgs_spool_clear(adcgs_spool *spool);
 /** Take so many bytes; \return whether there is room, which makes the file. One thread at a time. */
 int adcgs_spool_take(adcgs_spool *spool, size_t bytes, uint64_t *at);

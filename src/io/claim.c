@@ -20,7 +20,7 @@
 #endif
 #define WATCH (1.25 * BEAT)     /* seconds in which a live owner elsewhere touches its claim once */
 #define WATCH_LONG (6.0 * BEAT) /* the same where the claim's time is in the future, and nobody knows how old it is */
-#define LOOK 0.1                /* seconds from one look to the next meanwhile */
+#define LOOK 0.1                /* seconds from one look to the next while a claim is watched */
 #define TRIES 5 /* while others come and go */
 #define TEXT_MAX 400
 #define ENDED ULLONG_MAX
@@ -126,7 +126,7 @@ static int create(const char *path, const char *text)
 
 typedef enum answer { NOBODY, DEAD, ALIVE, UNKNOWN } answer;
 
-/** What this machine knows of a process; UNKNOWN: it is another's, or the claim does not say enough. No clock is asked. */
+/** Whether a process of this machine lives; UNKNOWN: it is another's, or the claim does not say enough. No clock is asked. */
 static answer ask_system(const owner *who)
 {
     owner own;
@@ -247,7 +247,7 @@ static adcgs_status begin(adcgs_claim *c, adcgs_error *error)
     pthread_condattr_t steady;
     pthread_mutex_init(&c->lock, NULL);
     pthread_condattr_init(&steady);
-    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC); /* beats come whatever the time of day is set to */
+    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC); /* beats do not depend on the time of day */
     pthread_cond_init(&c->changed, &steady);
     pthread_condattr_destroy(&steady);
     sigfillset(&all);

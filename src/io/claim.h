@@ -8,8 +8,8 @@
  * The file is made as one that must not be there yet, and a thread touches it every ten seconds while its process lives. On the
  * owner's machine, until that is started again, the system knows whether the process lives, by its number and when it began;
  * no clock has a say. Elsewhere a claim counts no more when it has not been touched for a minute by the clock of the file system.
- * Clocks are set, so it is watched then for as long as an owner takes to touch it once more. Whoever finds a claim that does not
- * count renames its own over it. So after kill -9 nothing has to be removed by hand.
+ * Clocks are set, so it is watched then for as long as an owner takes to touch it again. The process that finds a claim that does
+ * not count renames its own over it. So after kill -9 nothing has to be removed by hand.
  */
 #ifndef ADCGS_IO_CLAIM_H
 #define ADCGS_IO_CLAIM_H

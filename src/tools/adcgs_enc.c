@@ -168,7 +168,7 @@ static adcgs_status encode_whole(adcgs_enc_watcher *w, const adcgs_enc_job *job,
     adcgs_stream_init(&stream);
     status = write_stream(&stream, w, job->pool, error);
     adcgs_stream_clear(&stream, NULL);
-    if (status != ADCGS_OK)
+    if (status != ADCGS_OK && status != ADCGS_ERR_DATA) /* which a stream cannot hold: to encode it again would fail again */
         adcgs_enc_rescue(job->cli, w, status);
     if (status == ADCGS_OK)
         status = report(w, job, w->last.spent, met, error);
@@ -235,8 +235,8 @@ static adcgs_status name_base(adcgs_enc_watcher *w, adcgs_error *error)
     memcpy(w->state, w->base, n);
     const char *const slash = strrchr(w->base, '/');
     if (strlen(slash ? slash + 1 : w->base) + (o->has_segment ? PART_NAME : 0) > NAME_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "the name of the run's state is longer than %d bytes, by what is added to that "
-                          "of the output: give a shorter one with --checkpoint", NAME_MAX);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "the name of the run's state is longer than %d bytes, with the ending that "
+                          "it has behind the output's: give a shorter one with --checkpoint", NAME_MAX);
     return ADCGS_OK;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The room that a run's images take, told before training. */
+/** \file The room that a run's images take, reported before training. */
 #ifndef ADCGS_TOOLS_ENC_ROOM_H
 #define ADCGS_TOOLS_ENC_ROOM_H
 

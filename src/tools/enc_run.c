@@ -217,7 +217,7 @@ static adcgs_status stop_early(const adcgs_cli *cli, adcgs_enc_watcher *w, adcgs
     if (adcgs_enc_is_ready(w) && adcgs_interrupts() < 2)
         adcgs_cli_error(cli, ADCGS_OK, "interrupted: the state is being saved; a second interrupt makes a file of what there is");
     ADCGS_TRY(adcgs_enc_save(w, w->state, 1, &path, error));
-    if (!w->hear) /* who is told says so for all */
+    if (!w->hear) /* else the listener reports for all */
         adcgs_enc_say_how_to_go_on(cli, w, "stopped", path);
     free(path);
     return ADCGS_OK;

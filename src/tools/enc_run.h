@@ -42,7 +42,7 @@ typedef struct adcgs_enc_watcher {
     adcgs_train_report first; /* after the first iteration */
     double saved;
     adcgs_enc_preview preview;
-    int heard;   /* interrupts that were answered when training ended; more of them end what is measured then */
+    int heard;   /* interrupts that were answered when training ended; more of them end the measurement */
     int unsaved; /* the last checkpoint could not be written */
     int cut_short; /* by interrupts: it was made a file of before its end */
     adcgs_train_report last;
@@ -56,7 +56,7 @@ typedef struct adcgs_enc_watcher {
     double begins;    /* of what is learnt, in the scene */
     adcgs_glance *glances; /* until its footage has been looked at; NULL: nobody wants to know */
     unsigned doubted; /* kinds of doubts of footage that were told */
-    int told_room;    /* how much room images take was told, or that there is none */
+    int told_room;    /* 1: the room that images take was reported; 2: that it is not enough */
 } adcgs_enc_watcher;
 
 /** What the stream tells of how it was made. */

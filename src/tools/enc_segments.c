@@ -87,7 +87,7 @@ static adcgs_status learn_scene(adcgs_enc_watcher *w, const adcgs_enc_job *job, 
     adcgs_enc_take_notes(&n, w->t, (const char *)w->changes.data);
     add_plan_notes(&n, w, job);
     status = adcgs_enc_part_save(w->base, &job->cuts, w->segment, w->t, n.list, n.n, job->pool, error);
-    if (status != ADCGS_OK)
+    if (status != ADCGS_OK && status != ADCGS_ERR_DATA)
         adcgs_enc_rescue(job->cli, w, status);
     return status;
 }

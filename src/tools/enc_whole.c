@@ -12,7 +12,7 @@
 
 #define AS_GOOD 0.05 /* dB: less is not seen */
 
-/** Whether to go on: the parts stay, and the same command with --resume joins them. */
+/** Whether to continue: the parts stay, and the same command with --resume joins them. */
 static adcgs_status heed(void *user, const adcgs_view_score *score, adcgs_error *error)
 {
     const int *const heard = user;

@@ -26,7 +26,7 @@ enum { FORMAT = 32 };
 typedef struct walk {
     adcgs_buffer *out; /* storing in memory */
     FILE *file;        /* or in a file, which needs none */
-    uint32_t crc;      /* of what is in the file */
+    uint32_t crc;      /* of the bytes in the file */
     adcgs_reader *in;  /* or restoring */
     int failed;
     char differs[160]; /* restoring: what the run and the file do not agree on; "" if they do */
@@ -347,7 +347,7 @@ static adcgs_status find_content(const adcgs_trainer *trainer, adcgs_error *erro
     return ADCGS_OK;
 }
 
-/** A file of the state as it is, or of what a snapshot holds. Nothing is gathered in memory, of which there may be no more. */
+/** A file of the present state, or of a snapshot. Nothing is gathered in memory, since that may be exhausted. */
 static adcgs_status save(const adcgs_trainer *t, const adcgs_buffer *snapshot, const char *path, adcgs_error *error)
 {
     adcgs_atomic atomic;

@@ -14,7 +14,7 @@
  */
 adcgs_status adcgs_trainer_save(const adcgs_trainer *trainer, const char *path, adcgs_error *error);
 /**
- * Save what a run that has failed still has: the state as it is, or where the failure tore that, as it was at the last
+ * Save the state of a run that has failed: the present one, or where the failure left that inconsistent, the last
  * snapshot. Takes no memory and reads no images: unless their digest is known already, the file has none, and loading it
  * does not compare it. adcgs_trainer_rescued(): the iteration of that state; 0: there is none worth saving.
  */

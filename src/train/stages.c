@@ -133,7 +133,7 @@ adcgs_status adcgs_stages_before(adcgs_trainer *t, double progress, adcgs_error 
     if (t->iteration == at)
         ADCGS_TRY(adcgs_rate_is_sought(t) ? adcgs_rate_search_step(t, progress, error) :
                                             adcgs_rate_control_step(t, progress, error));
-    t->torn = grows; /* a run that went on from here would grow once more */
+    t->torn = grows; /* a run that continued from here would grow again */
     return ADCGS_OK;
 }
 

@@ -180,7 +180,7 @@ static adcgs_status tell(const adcgs_trainer *t, reports *r, double progress, in
     return adcgs_team_tell(t->team, stops, sizeof *stops, error);
 }
 
-/** What its end changes is not gone through twice: should it fail, or writing what comes of it, the state before is saved. */
+/** The end must not be applied twice: should it, or writing its result, fail, the state before it is saved. */
 static adcgs_status end(adcgs_trainer *t, adcgs_error *error)
 {
     ADCGS_TRY(take_snapshot(t, error));

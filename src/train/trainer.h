@@ -2,7 +2,7 @@
 /** \file
  * Training: one loop over posed pictures. The same seed gives the same model at
  * any thread count, by vector kernels of any level; scalar ones round otherwise
- * and give another. A run can stop and go on exactly where it was.
+ * and give another. A run can stop, and continue exactly from there.
  */
 #ifndef ADCGS_TRAIN_TRAINER_H
 #define ADCGS_TRAIN_TRAINER_H

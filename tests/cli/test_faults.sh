@@ -59,7 +59,7 @@ whole()
               [ "$(size_of "$w/$1")" = "$(size_of "$dir/good/$1")" ]; }
 }
 
-# check_message NAME: exit code 3, and one line that says what failed.
+# check_message NAME: exit code 3, and one line that names the failure.
 check_message()
 {
     [ "$code" -eq 3 ] || { bad "$1: exit code $code"; cat "$dir/err"; }

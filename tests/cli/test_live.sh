@@ -148,7 +148,7 @@ scene_file "$dir/stop" images
 pid=$!
 put "$dir/stop" 0 1 2 3 4 5 6
 wait_for 2 "$dir/stop.adcgs"
-# Meanwhile nobody else writes it.
+# Another run is refused at the same time.
 cp "$dir/err" "$dir/err.first"
 # shellcheck disable=SC2086
 expect 3 "stop.adcgs.claim: another run has this output: process $pid on " ./adcgs-enc --live "$dir/stop" -o "$dir/stop.adcgs" $live

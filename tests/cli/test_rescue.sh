@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# A run whose images have no room goes on without it, and says so before training; one that fails in its end saves its state,
-# says how to go on, and then has the same bytes as a run without the failure. Runs in the build folder.
+# A run whose images have no room does without it, and says so before training; one that fails in its end saves its state,
+# says how to continue, and then has the same bytes as a run without the failure. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-demo-scene tests/cli/fail-nth
 scene=$dir/scene
@@ -22,7 +22,7 @@ expect 0 "24 of 24 images will be decoded again" env TMPDIR="$dir/nowhere" $run 
 grep -q "nowhere: No such file" "$dir/err" || bad "no word of a folder that is not there"
 cmp "$dir/good.adcgs" "$dir/small.adcgs" || bad "images without a folder make another file"
 
-# goes_on FILE STATE: the command that was told, and its file.
+# goes_on FILE STATE: the command that was given, and its file.
 goes_on()
 {
     grep -q -- "the state is saved at iteration 12; go on with the same command and --resume $2" "$dir/err" ||

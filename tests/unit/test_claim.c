@@ -69,7 +69,7 @@ static pid_t begin_owner(void)
     return child;
 }
 
-/** On one machine an owner that lives has its claim, and one that does not has not, whatever the time is set to. */
+/** On one machine an owner that lives has its claim, and one that does not has not, at any time of day. */
 static void processes_are_believed(void **state)
 {
     static const double ages[] = { 0, 600, -3600 };
@@ -120,7 +120,7 @@ static void *touch_often(void *argument)
     return NULL;
 }
 
-/** On another machine the file's time alone tells, as far as it goes on. */
+/** On another machine the file's time alone counts, and whether it changes. */
 static void times_that_go_on_are_believed(void **state)
 {
     static const double ages[] = { 600, -3600 };

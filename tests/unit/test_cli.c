@@ -220,6 +220,20 @@ static void keep_progress(const adcgs_cli *cli)
     adcgs_cli_note(cli, "done");
 }
 
+/** Work that lasts, of which there is nothing to count. */
+static void keep_working(const adcgs_cli *cli)
+{
+    adcgs_progress progress;
+    adcgs_progress_init(&progress, cli);
+    progress.last = adcgs_seconds();
+    progress.every = 0.05;
+    progress.grace = 0.05;
+    adcgs_progress_keep(&progress);
+    adcgs_progress_show(&progress, "finding where things are ...");
+    rest(1.0);
+    adcgs_progress_end(&progress);
+}
+
 /* Without a terminal there is a plain line now and then; with --quiet nothing but what went wrong. */
 static void test_progress(void **state)
 {
@@ -240,6 +254,9 @@ static void test_progress(void **state)
     const char *const at = strstr(text, "prog: step 1 (0 s ago)\n");
     assert_true(at && (at == text || !strncmp(text, "prog: step 1\n", 13)));
     assert_non_null(strstr(text, "ago)\nprog: done\n"));
+    catch_stderr(text, keep_working, &cli);
+    assert_non_null(strstr(text, "prog: finding where things are, 0 s\n"));
+    assert_null(strstr(text, "ago"));
 }
 
 /* What is no UTF-8, as Unicode's table 3-7 has it: lone and missing continuations, overlong forms, surrogates, beyond the end. */

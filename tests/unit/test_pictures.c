@@ -154,7 +154,7 @@ static void use_tmpdir(const char *name)
     before = NULL;
 }
 
-/** Whatever is kept nowhere is the same as what is kept; divide: 16 bits, too. */
+/** Images that are decoded again are the same as those that are kept; divide: 16 bits, too. */
 static void expect_same_as_kept(const adcgs_pictures *pictures, int divide)
 {
     adcgs_pictures *kept;
@@ -170,7 +170,7 @@ static void expect_same_as_kept(const adcgs_pictures *pictures, int divide)
     adcgs_pictures_free(&kept);
 }
 
-/** No folder for a file, or one that may not grow: what has no room is decoded again. */
+/** No folder for a file, or one that may not grow: images without room are decoded again. */
 static void test_no_room(void **state)
 {
     for (int divide = 1; divide <= 2; divide++) {

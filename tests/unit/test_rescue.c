@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Runs that fail after their first iteration: the state that is saved goes on to where a run without the failure ends. */
+/** \file Runs that fail after their first iteration: the state that is saved leads to the end of a run without the failure. */
 #include "tiny_scene.h"
 
 static adcgs_buffer end; /* the state at the end of a run that nothing happened to */
@@ -29,7 +29,7 @@ static int forget_and_close(void **state)
     return close_scene(state);
 }
 
-/** The state that a failed run saves: of an iteration, and a run that goes on from it ends as the other did. */
+/** The state that a failed run saves: of an iteration, and a run that continues from it ends as the other did. */
 static void expect_rescued(adcgs_trainer *failed, uint32_t iteration)
 {
     const adcgs_train_config config = small_config();
@@ -101,7 +101,7 @@ static void an_image_goes_away(void **state)
     adcgs_trainer_free(&t);
 }
 
-/** What follows a run fails: its end is gone through again. */
+/** Writing the result fails: the end is applied again. */
 static void writing_fails(void **state)
 {
     const adcgs_train_config config = small_config();
