@@ -9,6 +9,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#define DEPTH_MAX 256 /* parents above a node: others' files have some ten */
+
 static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 static adcgs_status bad(const adcgs_glb *g, adcgs_status status, const char *what)
@@ -92,39 +94,96 @@ static adcgs_status find_parents(const adcgs_glb *g, json_t *nodes, size_t *pare
     return ADCGS_OK;
 }
 
-static adcgs_status find_place(double matrix[12], const adcgs_glb *g, json_t *nodes, size_t *parents, size_t mesh)
+static int uses(json_t *node, size_t mesh)
 {
-    const size_t n = json_array_size(nodes);
-    size_t i, uses = 0;
-    json_t *node;
-    ADCGS_TRY(find_parents(g, nodes, parents));
-    json_array_foreach(nodes, i, node) {
-        const json_t *const used = json_object_get(node, "mesh");
-        size_t steps = 0;
-        if (!json_is_integer(used) || (uint64_t)json_integer_value(used) != mesh)
-            continue;
-        if (uses++)
-            return bad(g, ADCGS_ERR_UNSUPPORTED, "splats of several nodes, expected one");
-        for (size_t at = i; at < n; at = parents[at]) {
-            double one[12] = {0};
-            if (steps++ > n)
-                return bad(g, ADCGS_ERR_DATA, "nodes that are their own parents");
-            ADCGS_TRY(matrix_of(g, json_array_get(nodes, at), one));
-            multiply(one, matrix, matrix);
-        }
+    const json_t *const used = json_object_get(node, "mesh");
+    return json_is_integer(used) && (uint64_t)json_integer_value(used) == mesh;
+}
+
+/** The nodes of a file: whose child each is, and whether the scene begins with it. */
+typedef struct graph {
+    json_t *nodes;
+    size_t *parents;   /**< the count of nodes for none */
+    uint8_t *in_scene; /**< of those without a parent; all where there is no scene */
+} graph;
+
+static void find_scene(const adcgs_glb *g, graph *to)
+{
+    json_t *const scenes = json_object_get(g->root, "scenes"), *value;
+    const size_t n = json_array_size(to->nodes), chosen = (size_t)json_integer_value(json_object_get(g->root, "scene"));
+    size_t i;
+    memset(to->in_scene, !json_array_size(scenes), n);
+    json_array_foreach(json_object_get(json_array_get(scenes, chosen), "nodes"), i, value)
+        if (json_is_integer(value) && (uint64_t)json_integer_value(value) < n)
+            to->in_scene[json_integer_value(value)] = 1;
+}
+
+/** The matrix of a node behind those of its parents; the one that has none. */
+static adcgs_status place_node(double matrix[12], size_t *root, const adcgs_glb *g, const graph *of, size_t at)
+{
+    const size_t n = json_array_size(of->nodes);
+    memcpy(matrix, unit, sizeof unit);
+    for (int steps = 0; at < n; at = of->parents[at]) {
+        double one[12] = {0};
+        if ((size_t)steps > n)
+            return bad(g, ADCGS_ERR_DATA, "nodes that are their own parents");
+        if (steps++ > DEPTH_MAX)
+            return bad(g, ADCGS_ERR_UNSUPPORTED, "nodes with more than 256 parents one above the other");
+        ADCGS_TRY(matrix_of(g, json_array_get(of->nodes, at), one));
+        multiply(one, matrix, matrix);
+        *root = at;
     }
     return ADCGS_OK;
 }
 
-adcgs_status adcgs_glb_place(double matrix[12], int *moves, const adcgs_glb *g, size_t mesh)
+/** all: of the whole file, else of its scene. */
+static adcgs_status find_places(adcgs_glb_places *out, const adcgs_glb *g, const graph *of, size_t mesh, int all)
 {
-    json_t *const nodes = json_object_get(g->root, "nodes");
-    size_t *const parents = malloc((json_array_size(nodes) + 1) * sizeof *parents);
-    memcpy(matrix, unit, sizeof unit);
-    const adcgs_status status = parents ? find_place(matrix, g, nodes, parents, mesh) : bad(g, ADCGS_ERR_MEMORY, "out of memory");
-    free(parents);
-    *moves = 0;
-    for (int i = 0; i < 12; i++)
-        *moves |= matrix[i] != unit[i];
+    size_t i, root = 0, n = 0;
+    json_t *node;
+    json_array_foreach(of->nodes, i, node) {
+        double matrix[12];
+        if (!uses(node, mesh))
+            continue;
+        if (n++ == ADCGS_GLB_PLACES)
+            return bad(g, ADCGS_ERR_UNSUPPORTED, "splats of more than 4096 nodes");
+        ADCGS_TRY(place_node(matrix, &root, g, of, i));
+        if (all || of->in_scene[root])
+            memcpy(out->matrix[out->n++], matrix, sizeof matrix);
+    }
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_glb_places_find(adcgs_glb_places *out, const adcgs_glb *g, size_t mesh)
+{
+    graph of = {.nodes = json_object_get(g->root, "nodes")};
+    const size_t n = json_array_size(of.nodes) + 1;
+    of.parents = malloc(n * sizeof *of.parents);
+    of.in_scene = malloc(n);
+    *out = (adcgs_glb_places){.matrix = malloc(ADCGS_GLB_PLACES * sizeof *out->matrix)};
+    adcgs_status status = of.parents && of.in_scene && out->matrix ? find_parents(g, of.nodes, of.parents)
+                                                                   : bad(g, ADCGS_ERR_MEMORY, "out of memory");
+    if (status == ADCGS_OK)
+        find_scene(g, &of);
+    for (int all = 0; status == ADCGS_OK && all < 2 && !out->n; all++)
+        status = find_places(out, g, &of, mesh, all);
+    free(of.parents);
+    free(of.in_scene);
+    if (status == ADCGS_OK && !out->n)
+        memcpy(out->matrix[out->n++], unit, sizeof unit);
     return status;
+}
+
+void adcgs_glb_places_clear(adcgs_glb_places *places)
+{
+    free(places->matrix);
+    *places = (adcgs_glb_places){0};
+}
+
+int adcgs_glb_moves(const double matrix[12])
+{
+    int moves = 0;
+    for (int i = 0; i < 12; i++)
+        moves |= matrix[i] != unit[i];
+    return moves;
 }

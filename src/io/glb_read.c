@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats from GLB: its chunks, the primitive that is splats, and its attributes' numbers. */
+/** \file Splats from GLB: its chunks, the primitives that are splats, and their attributes' numbers. */
 #include "config.h"
 
 #include "io/glb.h"
@@ -84,7 +84,7 @@ static adcgs_status open_chunks(adcgs_glb *g, const uint8_t *data, size_t bytes)
     return ADCGS_OK;
 }
 
-/* ---- The primitive ---- */
+/* ---- Primitives ---- */
 
 /** What materials say does not change splats. */
 static int is_known(const char *extension)
@@ -135,28 +135,6 @@ static adcgs_status check_primitive(const adcgs_glb *g, json_t *primitive, json_
                           g->path, packing);
     ADCGS_TRY(expect_text(g, splats, "kernel", ADCGS_GLB_KERNEL));
     return expect_text(g, splats, "colorSpace", ADCGS_GLB_COLOURS);
-}
-
-/** The one primitive of splats; the index of its mesh. */
-static adcgs_status find_primitive(const adcgs_glb *g, json_t **out, size_t *mesh)
-{
-    size_t m, p;
-    json_t *value, *primitive;
-    *out = NULL;
-    *mesh = 0;
-    json_array_foreach(json_object_get(g->root, "meshes"), m, value) {
-        json_array_foreach(json_object_get(value, "primitives"), p, primitive) {
-            json_t *const splats = json_object_get(json_object_get(primitive, "extensions"), ADCGS_GLB_SPLATS);
-            if (!splats)
-                continue;
-            if (*out)
-                return bad(g, ADCGS_ERR_UNSUPPORTED, "several primitives of splats, expected one");
-            ADCGS_TRY(check_primitive(g, primitive, splats));
-            *out = primitive;
-            *mesh = m;
-        }
-    }
-    return *out ? ADCGS_OK : bad(g, ADCGS_ERR_DATA, "no splats: no primitive with " ADCGS_GLB_SPLATS);
 }
 
 /* ---- Splats ---- */
@@ -283,27 +261,100 @@ static adcgs_status take_splats(const adcgs_glb *g, adcgs_splats *s)
     return take_harmonics(g, s);
 }
 
-static adcgs_status read_file(adcgs_glb *g, adcgs_splats *out, const uint8_t *data, size_t bytes)
+/* ---- All of a file ---- */
+
+/** What has been read: splats where nodes have them. */
+typedef struct parts {
+    adcgs_splats *list;
+    size_t n;
+    uint64_t splats;
+} parts;
+
+static void clear_parts(parts *p)
 {
-    json_t *primitive, *packed;
-    size_t mesh;
-    double place[12];
+    for (size_t i = 0; i < p->n; i++)
+        adcgs_splats_free(&p->list[i]);
+    free(p->list);
+}
+
+/** Takes *splats. */
+static adcgs_status add_part(parts *p, adcgs_splats *splats, const double place[12], const adcgs_glb *g)
+{
+    adcgs_splats *const list = realloc(p->list, (p->n + 1) * sizeof *list);
+    if (!list) {
+        adcgs_splats_free(splats);
+        return bad(g, ADCGS_ERR_MEMORY, "out of memory");
+    }
+    p->list = list;
+    p->list[p->n] = *splats;
+    *splats = (adcgs_splats){0};
+    return adcgs_glb_moves(place) ? adcgs_splats_move(&p->list[p->n++], place, g->path, g->error) : (p->n++, ADCGS_OK);
+}
+
+/** Once for each place, the last one without a copy. */
+static adcgs_status add_parts(parts *p, adcgs_splats *splats, const adcgs_glb_places *places, const adcgs_glb *g)
+{
+    p->splats += (uint64_t)splats->n * places->n;
+    if (p->splats > ADCGS_SPLATS_MAX)
+        return adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %llu splats of all nodes, expected at most %u", g->path,
+                          (unsigned long long)p->splats, ADCGS_SPLATS_MAX);
+    for (size_t i = 0; i + 1 < places->n; i++) {
+        adcgs_splats copy;
+        ADCGS_TRY(adcgs_splats_join(&copy, splats, 1, g->path, g->error));
+        ADCGS_TRY(add_part(p, &copy, places->matrix[i], g));
+    }
+    return add_part(p, splats, places->matrix[places->n - 1], g);
+}
+
+static adcgs_status read_primitive(parts *p, adcgs_glb *g, json_t *primitive, size_t mesh)
+{
+    json_t *const splats = json_object_get(json_object_get(primitive, "extensions"), ADCGS_GLB_SPLATS);
+    adcgs_glb_places places;
+    adcgs_splats read = {0};
     const char *packing;
-    int moves;
+    ADCGS_TRY(check_primitive(g, primitive, splats));
+    g->attributes = json_object_get(primitive, "attributes");
+    json_t *const packed = packing_of(splats, &packing);
+    adcgs_status status = adcgs_glb_places_find(&places, g, mesh);
+    if (status == ADCGS_OK)
+        status = packed ? adcgs_glb_take_spz(&read, g, packed) : take_splats(g, &read);
+    if (status == ADCGS_OK)
+        status = add_parts(p, &read, &places, g);
+    adcgs_splats_free(&read);
+    adcgs_glb_places_clear(&places);
+    return status;
+}
+
+static adcgs_status read_parts(parts *p, adcgs_glb *g)
+{
+    size_t m, i;
+    json_t *mesh, *primitive;
+    json_array_foreach(json_object_get(g->root, "meshes"), m, mesh) {
+        json_array_foreach(json_object_get(mesh, "primitives"), i, primitive)
+            if (json_object_get(json_object_get(primitive, "extensions"), ADCGS_GLB_SPLATS))
+                ADCGS_TRY(read_primitive(p, g, primitive, m));
+    }
+    return p->n ? ADCGS_OK : bad(g, ADCGS_ERR_DATA, "no splats: no primitive with " ADCGS_GLB_SPLATS);
+}
+
+static adcgs_status read_file(adcgs_glb *g, parts *p, adcgs_splats *out, const uint8_t *data, size_t bytes)
+{
     ADCGS_TRY(open_chunks(g, data, bytes));
     ADCGS_TRY(check_required(g));
-    ADCGS_TRY(find_primitive(g, &primitive, &mesh));
-    ADCGS_TRY(adcgs_glb_place(place, &moves, g, mesh));
-    g->attributes = json_object_get(primitive, "attributes");
-    packed = packing_of(json_object_get(json_object_get(primitive, "extensions"), ADCGS_GLB_SPLATS), &packing);
-    ADCGS_TRY(packed ? adcgs_glb_take_spz(out, g, packed) : take_splats(g, out));
-    return moves ? adcgs_splats_move(out, place, g->path, g->error) : ADCGS_OK;
+    ADCGS_TRY(read_parts(p, g));
+    if (p->n > 1)
+        return adcgs_splats_join(out, p->list, p->n, g->path, g->error);
+    *out = *p->list;
+    *p->list = (adcgs_splats){0};
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_glb_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
 {
     adcgs_glb g = {.path = path, .error = error};
-    const adcgs_status status = read_file(&g, out, data, bytes);
+    parts p = {0};
+    const adcgs_status status = read_file(&g, &p, out, data, bytes);
+    clear_parts(&p);
     json_decref(g.root);
     return status;
 }

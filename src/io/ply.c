@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define LINE_MAX_BYTES 1024
+#define LINE_MAX_BYTES 1024 /* of a line that declares something; comments may be longer */
 
 static const struct {
     const char *name, *alias;
@@ -34,25 +34,86 @@ static adcgs_status bad_header(adcgs_ply *r, const char *what)
     return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: line %d: %s", r->path, r->line, what);
 }
 
-/** Next header line without its end, as text. */
-static adcgs_status next_line(adcgs_ply *r, char *line)
+/* ---- The lines of a header ---- */
+
+static int is_blank(uint8_t c)
 {
-    size_t n = 0;
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+/** The line at `at` without white space at its ends. \return where the next one begins; NULL if the line has no end. */
+static const uint8_t *find_line(const adcgs_ply *r, const uint8_t *at, const uint8_t **line, size_t *n)
+{
+    const uint8_t *stop = memchr(at, r->line_end, (size_t)(r->end - at));
+    const uint8_t *const next = stop ? stop + 1 : NULL;
+    while (stop && stop > at && is_blank(stop[-1]))
+        stop--;
+    while (stop && stop > at && is_blank(*at))
+        at++;
+    *line = at;
+    *n = stop ? (size_t)(stop - at) : 0;
+    return next;
+}
+
+/** Whether a line begins with a word; behind is where what follows it begins. */
+static int has_word(const uint8_t *line, size_t n, const char *word, size_t *behind)
+{
+    *behind = strlen(word);
+    if (n < *behind || memcmp(line, word, *behind) || (n > *behind && !is_blank(line[*behind])))
+        return 0;
+    while (*behind < n && is_blank(line[*behind]))
+        ++*behind;
+    return 1;
+}
+
+static int is_comment(const uint8_t *line, size_t n)
+{
+    size_t behind;
+    return has_word(line, n, "comment", &behind) || has_word(line, n, "obj_info", &behind);
+}
+
+/** Next header line as text: "" for a comment, which may be of any length and hold any bytes. */
+static adcgs_status next_line(adcgs_ply *r, char *text)
+{
+    const uint8_t *line;
+    size_t n;
     r->line++;
-    while (r->at < r->end && *r->at != '\n') {
-        const uint8_t c = *r->at++;
-        if (c == '\r')
-            continue;
-        if (n + 1 >= LINE_MAX_BYTES || c < 0x09 || c > 0x7e)
-            return bad_header(r, "malformed PLY header");
-        line[n++] = (char)c;
-    }
-    if (r->at == r->end)
+    r->at = find_line(r, r->at, &line, &n);
+    if (!r->at) {
+        r->at = r->end;
         return bad_header(r, "PLY header ends early");
-    r->at++;
-    line[n] = 0;
+    }
+    *text = 0;
+    if (is_comment(line, n))
+        return ADCGS_OK;
+    int is_text = n < LINE_MAX_BYTES;
+    for (size_t i = 0; i < n && is_text; i++)
+        is_text = (line[i] >= ' ' && line[i] != 0x7f) || is_blank(line[i]);
+    if (!is_text)
+        return bad_header(r, "malformed PLY header");
+    memcpy(text, line, n);
+    text[n] = 0;
     return ADCGS_OK;
 }
+
+int adcgs_ply_comment(const adcgs_ply *ply, const char **at, size_t *n)
+{
+    const uint8_t *next = *at ? find_line(ply, (const uint8_t *)*at, (const uint8_t **)at, n) : ply->header;
+    const uint8_t *line;
+    size_t behind;
+    while (next && (next = find_line(ply, next, &line, n))) {
+        if (has_word(line, *n, "end_header", &behind))
+            return 0;
+        if (!has_word(line, *n, "comment", &behind))
+            continue;
+        *at = (const char *)line + behind;
+        *n -= behind;
+        return 1;
+    }
+    return 0;
+}
+
+/* ---- Declarations ---- */
 
 static int find_scalar(const char *name)
 {
@@ -66,7 +127,7 @@ static adcgs_status parse_property(adcgs_ply *r, const char *line, adcgs_ply_ele
 {
     char type[16], count[16], item[16], name[sizeof e->properties[0].name] = "";
     if (e->n == ADCGS_PLY_PROPERTIES)
-        return bad_header(r, "more than 256 properties");
+        return bad_header(r, "more than 1024 properties");
     adcgs_ply_property *p = &e->properties[e->n++];
     *p = (adcgs_ply_property){.role = -1};
     int kind, count_kind = ADCGS_PLY_INT8;
@@ -103,6 +164,8 @@ static adcgs_status parse_format(adcgs_ply *r, const char *line)
         return bad_header(r, "unknown format");
     return ADCGS_OK;
 }
+
+/* ---- Numbers ---- */
 
 /** Bytes of a number at r->at as an unsigned integer in host order. */
 static uint64_t load(const adcgs_ply *r, int bytes)
@@ -237,7 +300,7 @@ static adcgs_status parse_header(adcgs_ply *r)
         unsigned long long count;
         if (!strcmp(line, "end_header"))
             break;
-        if (!strncmp(line, "comment", 7) || !strncmp(line, "obj_info", 8) || !*line)
+        if (!*line) /* a comment is empty, too */
             continue;
         if (!strncmp(line, "format ", 7)) {
             ADCGS_TRY(parse_format(r, line));
@@ -271,8 +334,9 @@ adcgs_status adcgs_ply_open(adcgs_ply **out, const uint8_t *data, size_t bytes, 
     *out = NULL;
     if (!ply)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    ply->at = data;
+    ply->header = ply->at = data;
     ply->end = data + bytes;
+    ply->line_end = bytes > 4 && data[3] == '\r' && data[4] != '\n' ? '\r' : '\n';
     ply->path = path;
     ply->error = error;
     ply->form = ADCGS_PLY_ASCII;

@@ -9,8 +9,8 @@
 
 #include "base/base.h"
 
-#define ADCGS_PLY_PROPERTIES 256
-#define ADCGS_PLY_BEFORE 4 /**< elements before the vertices */
+#define ADCGS_PLY_PROPERTIES 1024 /**< of an element: splats with features have hundreds */
+#define ADCGS_PLY_BEFORE 8        /**< elements before the vertices */
 
 typedef enum adcgs_ply_type {
     ADCGS_PLY_INT8,
@@ -41,11 +41,12 @@ typedef struct adcgs_ply_element {
 typedef enum adcgs_ply_form { ADCGS_PLY_ASCII, ADCGS_PLY_LITTLE, ADCGS_PLY_BIG } adcgs_ply_form;
 
 typedef struct adcgs_ply {
-    const uint8_t *at, *end;
+    const uint8_t *header, *at, *end;
     const char *path;
     adcgs_error *error;
     adcgs_ply_form form;
     int line;
+    uint8_t line_end; /**< of the header: LF, with or without CR before it, or CR alone */
     int n_before;
     adcgs_ply_element vertex, before[ADCGS_PLY_BEFORE];
 } adcgs_ply;
@@ -62,6 +63,12 @@ const char *adcgs_ply_type_name(adcgs_ply_type type);
  */
 adcgs_status adcgs_ply_open(adcgs_ply **out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 void adcgs_ply_close(adcgs_ply **ply);
+
+/**
+ * The next comment of the header, behind the word, without white space at its ends: *at and *n, in the data, of any length and
+ * any bytes. Set *at to NULL before the first call. \return 0 where there is none.
+ */
+int adcgs_ply_comment(const adcgs_ply *ply, const char **at, size_t *n);
 
 /** A vertex's property by its name, lists aside; NULL without it. */
 adcgs_ply_property *adcgs_ply_find(adcgs_ply *ply, const char *name);

@@ -45,6 +45,61 @@ void adcgs_splats_free(adcgs_splats *splats)
     *splats = (adcgs_splats){0};
 }
 
+/** Coefficients of a channel above degree 0. */
+static size_t coefficients(int degree)
+{
+    return (size_t)((degree + 1) * (degree + 1) - 1);
+}
+
+/** Harmonics of a part, behind `first` splats; those of degrees that it has not are zero already. */
+static void join_harmonics(adcgs_splats *out, uint32_t first, const adcgs_splats *part)
+{
+    const size_t to = coefficients(out->degree), from = coefficients(part->degree);
+    for (size_t i = 0; i < (size_t)3 * part->n && from; i++)
+        memcpy(out->harmonics + (3 * (size_t)first + i) * to, part->harmonics + i * from, from * sizeof *out->harmonics);
+}
+
+static void join_arrays(adcgs_splats *out, uint32_t first, const adcgs_splats *part)
+{
+    const size_t bytes = part->n * sizeof(float);
+    for (int a = 0; a < 3; a++) {
+        memcpy(out->mean[a] + first, part->mean[a], bytes);
+        memcpy(out->scale[a] + first, part->scale[a], bytes);
+        memcpy(out->colour[a] + first, part->colour[a], bytes);
+    }
+    for (int a = 0; a < 4; a++)
+        memcpy(out->rotation[a] + first, part->rotation[a], bytes);
+    memcpy(out->opacity + first, part->opacity, bytes);
+}
+
+adcgs_status adcgs_splats_join(adcgs_splats *out, const adcgs_splats *parts, size_t n, const char *path, adcgs_error *error)
+{
+    uint64_t total = 0;
+    uint32_t first = 0;
+    int degree = 0;
+    *out = (adcgs_splats){0};
+    for (size_t i = 0; i < n; i++) {
+        total += parts[i].n;
+        degree = ADCGS_MAX(degree, parts[i].degree);
+        if (parts[i].antialiased != parts->antialiased)
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: splats that are antialiased beside splats that are not", path);
+    }
+    ADCGS_TRY(adcgs_splats_alloc(out, total, path, error));
+    out->degree = degree;
+    out->axes = parts->axes;
+    out->antialiased = parts->antialiased;
+    out->harmonics = degree ? calloc((size_t)total * 3 * coefficients(degree), sizeof *out->harmonics) : NULL;
+    if (degree && !out->harmonics) {
+        adcgs_splats_free(out);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %llu splats", path, (unsigned long long)total);
+    }
+    for (size_t i = 0; i < n; first += parts[i++].n) {
+        join_arrays(out, first, &parts[i]);
+        join_harmonics(out, first, &parts[i]);
+    }
+    return ADCGS_OK;
+}
+
 void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out)
 {
     *out = (adcgs_primitives){.n = (splats->n + 63) / 64 * 64, .opacity = splats->opacity};

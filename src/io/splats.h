@@ -27,6 +27,7 @@ enum { ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLA
 typedef struct adcgs_splats {
     uint32_t n;
     uint8_t axes;      /**< ADCGS_SPLATS_Y_UP..., as far as the file or the stream tells */
+    uint8_t antialiased; /**< trained so: a view scales opacities by what the screen filter takes (see data/splat_views.h) */
     float *mean[3], *scale[3], *rotation[4]; /**< world units; standard deviations, > 0; unit quaternion w x y z */
     float *opacity;    /**< 0..1 */
     float *colour[3];  /**< 0.5 + ADCGS_SPLATS_DC f_dc: RGB seen from everywhere, not clipped */
@@ -38,6 +39,11 @@ typedef struct adcgs_splats {
 /** n splats of degree 0 that draw nothing yet. ADCGS_ERR_DATA, naming path, for more than ADCGS_SPLATS_MAX. */
 adcgs_status adcgs_splats_alloc(adcgs_splats *splats, uint64_t n, const char *path, adcgs_error *error);
 void adcgs_splats_free(adcgs_splats *splats);
+/**
+ * One after the other; harmonics of the highest degree, axes of the first. ADCGS_ERR_UNSUPPORTED if some are antialiased and some
+ * are not. On failure *out is empty.
+ */
+adcgs_status adcgs_splats_join(adcgs_splats *out, const adcgs_splats *parts, size_t n, const char *path, adcgs_error *error);
 
 /** The splats as the renderer takes them; they stay where they are. */
 void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out);

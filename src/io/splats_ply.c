@@ -9,8 +9,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <strings.h>
 
 #define LOG_SCALE_MAX 80.0f
+#define LOG_SCALE_MIN -80.0f /* what is flat gets so much, as in GLB */
 
 /* Roles of properties; f_rest_i has the role REST + i. */
 enum { MEAN, DC = 3, OPACITY = 6, SCALE = 7, ROTATION = 10, REST = 14, REST_MAX = 45 };
@@ -22,15 +24,22 @@ typedef struct taker {
     adcgs_splats *out;
     float *to[REST];
     size_t n_rest;
-    int fault;      /**< role of the first number that is not finite, or -1 */
+    int fault;      /**< role of the first number that may not be what it is, or -1 */
     uint64_t where; /**< its vertex */
 } taker;
+
+/** A logit and a logarithm have limits that mean something: opacities of 0 and 1, and a flat splat. */
+static int may_be(int role, float v)
+{
+    const int is_scale = role >= SCALE && role < ROTATION;
+    return isfinite(v) || (!isnan(v) && (role == OPACITY || (is_scale && v < 0.0f)));
+}
 
 static void take(void *user, uint64_t vertex, const adcgs_ply_property *property, double value)
 {
     taker *t = user;
     const float v = (float)value;
-    if (t->fault < 0 && !isfinite(v)) {
+    if (t->fault < 0 && !may_be(property->role, v)) {
         t->fault = property->role;
         t->where = vertex;
     }
@@ -40,13 +49,22 @@ static void take(void *user, uint64_t vertex, const adcgs_ply_property *property
         t->out->harmonics[vertex * t->n_rest + (size_t)(property->role - REST)] = v;
 }
 
+/** Whether the vertices have places, and nothing that splats have besides. */
+static int is_cloud(adcgs_ply *ply)
+{
+    int found = 0;
+    for (int role = DC; role < REST; role++)
+        found |= adcgs_ply_find(ply, names[role]) != NULL;
+    return !found && adcgs_ply_find(ply, "x") && adcgs_ply_find(ply, "y") && adcgs_ply_find(ply, "z");
+}
+
 static adcgs_status give_role(adcgs_ply *ply, const char *name, int role)
 {
     adcgs_ply_property *p = adcgs_ply_find(ply, name);
     if (!p)
         return adcgs_fail(ply->error, ADCGS_ERR_DATA,
-                          "%s: no property %s: not splats, which have x, y, z, f_dc_0..2, opacity, scale_0..2 and rot_0..3",
-                          ply->path, name);
+                          "%s: no property %s: not splats, which have x, y, z, f_dc_0..2, opacity, scale_0..2 and rot_0..3%s",
+                          ply->path, name, is_cloud(ply) ? "; a point cloud goes with a scene, by --points" : "");
     if (p->type != ADCGS_PLY_FLOAT32 && p->type != ADCGS_PLY_FLOAT64)
         return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: the property %s is of type %s, expected float or double", ply->path,
                           name, adcgs_ply_type_name(p->type));
@@ -77,10 +95,10 @@ static adcgs_status activate(adcgs_splats *s, uint32_t i, const char *path, adcg
 {
     double length = 0.0;
     for (int a = 0; a < 3; a++) {
-        if (!(fabsf(s->scale[a][i]) <= LOG_SCALE_MAX))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: vertex %u: scale_%d is %g, expected a logarithm from -80 to 80", path,
-                              i, a, (double)s->scale[a][i]);
-        s->scale[a][i] = (float)exp((double)s->scale[a][i]);
+        if (!(s->scale[a][i] <= LOG_SCALE_MAX))
+            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: vertex %u: scale_%d is %g, expected a logarithm of at most 80", path, i,
+                              a, (double)s->scale[a][i]);
+        s->scale[a][i] = (float)exp((double)fmaxf(s->scale[a][i], LOG_SCALE_MIN));
         s->colour[a][i] = (float)(0.5 + ADCGS_SPLATS_DC * (double)s->colour[a][i]);
     }
     s->opacity[i] = (float)(1.0 / (1.0 + exp(-(double)s->opacity[i])));
@@ -108,20 +126,75 @@ static adcgs_status read_vertices(adcgs_ply *ply, taker *t)
     return ADCGS_OK;
 }
 
+/** Text of n bytes against a word, whatever the case of its letters. */
+static int is_word(const char *text, size_t n, const char *word)
+{
+    return n == strlen(word) && !strncasecmp(text, word, n);
+}
+
+/** What a comment behind a key says; NULL where it has another key. */
+static const char *value_behind(const char *key, const char *comment, size_t *n)
+{
+    const size_t length = strlen(key);
+    if (*n <= length || strncasecmp(comment, key, length))
+        return NULL;
+    for (comment += length, *n -= length; *n && (*comment == ' ' || *comment == '\t'); comment++)
+        --*n;
+    return comment;
+}
+
+/** The last comment that says so counts, as other readers have it. */
+static int says_antialiased(const adcgs_ply *ply)
+{
+    const char *at = NULL, *value;
+    size_t n;
+    int found = 0;
+    while (adcgs_ply_comment(ply, &at, &n)) {
+        size_t left = n;
+        if ((value = value_behind("SplatRenderMode:", at, &left)))
+            found = is_word(value, left, "mip");
+        left = n;
+        if ((value = value_behind("antialiased ", at, &left)))
+            found = is_word(value, left, "1");
+    }
+    return found;
+}
+
+/** What a PLY of splats may be besides, by a property that tells it. */
+static adcgs_status check_kind(adcgs_ply *ply)
+{
+    static const struct {
+        const char *property, *kind;
+    } others[] = {{"packed_position", "a compressed PLY (it has packed_position), expected one of plain splats: decompress it first"},
+                  {"trbf_center", "splats that change with time (Spacetime Gaussians: it has trbf_center), expected still ones"},
+                  {"scale_t", "splats that change with time (4D Gaussians: it has scale_t), expected still ones"}};
+    for (size_t i = 0; i < ADCGS_COUNTOF(others); i++)
+        if (adcgs_ply_find(ply, others[i].property))
+            return adcgs_fail(ply->error, ADCGS_ERR_UNSUPPORTED, "%s: %s", ply->path, others[i].kind);
+    return ADCGS_OK;
+}
+
+/** Surfels of 2D Gaussian splatting have two scales and all else. */
+static int are_surfels(adcgs_ply *ply)
+{
+    return !adcgs_ply_find(ply, "scale_2") && adcgs_ply_find(ply, "scale_1") && adcgs_ply_find(ply, "rot_3") &&
+           adcgs_ply_find(ply, "opacity");
+}
+
 static adcgs_status read_splats(adcgs_ply *ply, adcgs_splats *out)
 {
     taker t = {.out = out, .fault = -1};
+    const int surfels = are_surfels(ply);
     int degree = 0;
-    if (adcgs_ply_find(ply, "packed_position"))
-        return adcgs_fail(ply->error, ADCGS_ERR_UNSUPPORTED,
-                          "%s: a compressed PLY (it has packed_position), expected one of plain splats: decompress it first",
-                          ply->path);
+    ADCGS_TRY(check_kind(ply));
     for (int role = 0; role < REST; role++)
-        ADCGS_TRY(give_role(ply, names[role], role));
+        if (!surfels || role != SCALE + 2)
+            ADCGS_TRY(give_role(ply, names[role], role));
     ADCGS_TRY(find_rest(ply, &degree, &t.n_rest));
     if (!ply->vertex.count)
         return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: no splats", ply->path);
     ADCGS_TRY(adcgs_splats_alloc(out, ply->vertex.count, ply->path, ply->error));
+    out->antialiased = !surfels && says_antialiased(ply);
     out->degree = degree;
     out->harmonics = t.n_rest ? malloc(out->n * t.n_rest * sizeof *out->harmonics) : NULL;
     if (t.n_rest && !out->harmonics)
@@ -134,6 +207,8 @@ static adcgs_status read_splats(adcgs_ply *ply, adcgs_splats *out)
     t.to[OPACITY] = out->opacity;
     for (int a = 0; a < 4; a++)
         t.to[ROTATION + a] = out->rotation[a];
+    for (uint32_t i = 0; surfels && i < out->n; i++)
+        out->scale[2][i] = -INFINITY;
     return read_vertices(ply, &t);
 }
 

@@ -16,12 +16,13 @@ static int rest_count(int degree)
     return 3 * ((degree + 1) * (degree + 1) - 1);
 }
 
-static void put_header(FILE *file, uint32_t n, const adcgs_splats_style *style)
+static void put_header(FILE *file, const adcgs_splats *s, const adcgs_splats_style *style)
 {
     static const char *const names[WRITTEN] = {"x",      "y",       "z",       "nx",      "ny",      "nz",
                                                "f_dc_0", "f_dc_1",  "f_dc_2",  "opacity", "scale_0", "scale_1",
                                                "scale_2", "rot_0",  "rot_1",   "rot_2",   "rot_3"};
-    fprintf(file, "ply\nformat binary_little_endian 1.0\ncomment %s\nelement vertex %u\n", style->comment, n);
+    fprintf(file, "ply\nformat binary_little_endian 1.0\ncomment %s\n%selement vertex %u\n", style->comment,
+            s->antialiased ? "comment SplatRenderMode: mip\n" : "", s->n);
     for (int i = 0; i < WRITTEN; i++) {
         for (int j = 0; i == DC_END && j < rest_count(style->rest_degree); j++)
             fprintf(file, "property float f_rest_%d\n", j);
@@ -60,7 +61,7 @@ adcgs_status adcgs_splats_put_ply(const adcgs_splats *splats, const adcgs_splats
         if (!(splats->opacity[i] > 0.0f && splats->opacity[i] < 1.0f))
             return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: splat %u: an opacity of %g has no logit", path, i,
                               (double)splats->opacity[i]);
-    put_header(file, splats->n, style);
+    put_header(file, splats, style);
     for (uint32_t i = 0; i < splats->n; i++)
         put_splat(file, splats, i, style->rest_degree);
     return ADCGS_OK;

@@ -74,6 +74,7 @@ static adcgs_status turn_up(adcgs_splats *out, const adcgs_splats *s, const char
         }
     }
     out->axes = ADCGS_SPLATS_Y_UP;
+    out->antialiased = s->antialiased;
     return ADCGS_OK;
 }
 

@@ -16,6 +16,7 @@
 
 #define ADCGS_SPZ_HEADER 32
 #define ADCGS_SPZ_ENTRY 16           /**< of the table: bytes of a stream, bytes that come out of it */
+#define ADCGS_SPZ_ANTIALIASED 1      /**< a flag: trained so */
 #define ADCGS_SPZ_COLOUR 0.15        /**< f_dc is (c / 255 - 1/2) / 0.15 */
 #define ADCGS_SPZ_SCALE_MIN (-10.0)  /**< scales are e^(s / 16 - 10) */
 #define ADCGS_SPZ_SCALE_STEPS 16.0

@@ -32,7 +32,7 @@ typedef struct reader {
     const char *path;
     adcgs_error *error;
     uint32_t version, n;
-    int degree, fraction_bits;
+    int degree, fraction_bits, antialiased;
     size_t sizes[ADCGS_SPZ_COLUMNS];
     uint8_t *column; /**< the one at hand; room for the largest */
     z_stream gzip;   /**< of versions 2 and 3 */
@@ -108,6 +108,7 @@ static adcgs_status take_header(reader *r, const uint8_t *header)
     r->n = adcgs_load_le32(header + 8);
     r->degree = header[12];
     r->fraction_bits = header[13];
+    r->antialiased = header[14] & ADCGS_SPZ_ANTIALIASED;
     if (!r->n)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no splats", r->path);
     if (r->n > ADCGS_SPLATS_MAX)
@@ -312,6 +313,7 @@ static adcgs_status read_columns(reader *r, adcgs_splats *out)
         largest = r->sizes[c] > largest ? r->sizes[c] : largest;
     ADCGS_TRY(adcgs_splats_alloc(out, r->n, r->path, r->error));
     out->axes = ADCGS_SPLATS_Y_UP;
+    out->antialiased = r->antialiased;
     out->degree = r->degree;
     out->harmonics = r->degree ? malloc(r->sizes[ADCGS_SPZ_HARMONICS] * sizeof *out->harmonics) : NULL;
     r->column = malloc(largest);

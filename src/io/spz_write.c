@@ -120,12 +120,13 @@ static int pack_columns(packed *p, uint8_t *column, const adcgs_splats *s, int b
     return 1;
 }
 
-static void put_file(FILE *file, const packed *p, uint32_t n, int bits)
+static void put_file(FILE *file, const packed *p, const adcgs_splats *s, int bits)
 {
     uint8_t header[ADCGS_SPZ_HEADER + ADCGS_SPZ_ENTRY * COLUMNS] = {'N', 'G', 'S', 'P'};
     adcgs_store_le32(header + 4, 4);
-    adcgs_store_le32(header + 8, n);
+    adcgs_store_le32(header + 8, s->n);
     header[13] = (uint8_t)bits;
+    header[14] = s->antialiased ? ADCGS_SPZ_ANTIALIASED : 0;
     header[15] = COLUMNS;
     adcgs_store_le32(header + 16, ADCGS_SPZ_HEADER);
     for (int c = 0; c < COLUMNS; c++) {
@@ -149,7 +150,7 @@ adcgs_status adcgs_spz_put(const adcgs_splats *splats, const adcgs_splats_style 
     uint8_t *column = malloc((size_t)9 * splats->n);
     const int done = column && pack_columns(&p, column, splats, bits);
     if (done)
-        put_file(file, &p, splats->n, bits);
+        put_file(file, &p, splats, bits);
     free(column);
     for (int c = 0; c < COLUMNS; c++)
         free(p.bytes[c]);

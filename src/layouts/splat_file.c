@@ -68,7 +68,8 @@ static void normalise(adcgs_splat_scene *s)
 {
     adcgs_splats *splats = &s->splats;
     for (uint32_t i = 0; i < splats->n; i++) {
-        splats->opacity[i] = fminf(splats->opacity[i], OPACITY_MAX);
+        if (!splats->antialiased) /* else each view has its own */
+            splats->opacity[i] = fminf(splats->opacity[i], OPACITY_MAX);
         for (int a = 0; a < 3; a++) {
             splats->mean[a][i] = (float)(((double)splats->mean[a][i] - s->centre[a]) / s->radius);
             splats->scale[a][i] = (float)((double)splats->scale[a][i] / s->radius);

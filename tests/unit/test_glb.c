@@ -304,6 +304,67 @@ static void test_packed(void **state)
     free(spz);
 }
 
+/** The good text with the first place of one of its parts replaced. */
+static size_t change(uint8_t file[4096], const char *part, const char *instead)
+{
+    uint8_t numbers[134];
+    char text[4096];
+    const char *const at = strstr(good, part);
+    assert_non_null(at);
+    fill_numbers(numbers);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, instead, at + strlen(part));
+    return make(file, text, numbers, sizeof numbers);
+}
+
+/** Splats are wherever a node of the scene has them, and of all primitives. */
+static void test_many_nodes(void **state)
+{
+#define BESIDE "\"nodes\":[{\"mesh\":1,\"translation\":[3,0,0]},{\"mesh\":1},{\"mesh\":1,\"translation\":[0,9,0]}]"
+#define NODES "\"nodes\":[{\"children\":[1]},{\"mesh\":1,\"scale\":[1,1,1],\"rotation\":[0,0,0,1]}]"
+#define FLOATS "{\"attributes\":{\"POSITION\":0,\"" NAME ":ROTATION\":1,\"" NAME ":SCALE\":2,\"" NAME ":OPACITY\":3,\"" \
+    NAME ":SH_DEGREE_0_COEF_0\":4},\"mode\":0,\"extensions\":{\"" NAME "\":{}}}"
+    uint8_t file[4096];
+    adcgs_splats s;
+    size_t bytes = change(file, NODES, BESIDE);
+    expect_good(adcgs_splats_parse(&s, file, bytes, "k.glb", &error));
+    assert_true(s.n == 6 && s.degree == 1 && s.axes == ADCGS_SPLATS_Y_UP);
+    assert_true(s.mean[0][0] == 4.0f && s.mean[0][2] == 1.0f && s.mean[0][3] == -4.0f && s.mean[1][4] == 11.0f);
+    assert_true(s.harmonics[2] == 1.0f && s.harmonics[18 + 17] == 6.0f && s.harmonics[36 + 2] == 1.0f);
+    adcgs_splats_free(&s);
+    bytes = change(file, NODES, BESIDE ",\"scene\":1,\"scenes\":[{\"nodes\":[1]},{\"nodes\":[2,0,77]}]");
+    expect_good(adcgs_splats_parse(&s, file, bytes, "k.glb", &error));
+    assert_true(s.n == 4 && s.mean[0][0] == 4.0f && s.mean[1][2] == 11.0f);
+    adcgs_splats_free(&s);
+    bytes = change(file, "\"meshes\":[{\"primitives\":[{", "\"meshes\":[{\"primitives\":[" FLOATS ",{");
+    expect_good(adcgs_splats_parse(&s, file, bytes, "k.glb", &error));
+    assert_true(s.n == 4 && s.degree == 1 && s.mean[2][3] == 6.0f);
+    for (int i = 0; i < 18; i++) /* the first part has none */
+        assert_true(s.harmonics[i] == 0.0f && s.harmonics[18 + i] == (i % 3 == 2 ? (float)(i / 3 + 1) : 0.0f));
+    adcgs_splats_free(&s);
+}
+
+/** A file of 4097 nodes is refused. */
+static void test_too_many_nodes(void **state)
+{
+    const size_t room = 1 << 17;
+    char *const text = malloc(room);
+    uint8_t *const file = malloc(room), numbers[134];
+    const char *const at = strstr(good, NODES);
+    adcgs_splats s;
+    size_t n = (size_t)(at - good);
+    assert_true(text && file && at);
+    memcpy(text, good, n);
+    n += (size_t)snprintf(text + n, room - n, "\"nodes\":[{\"mesh\":1}");
+    for (int i = 0; i < 4096; i++)
+        n += (size_t)snprintf(text + n, room - n, ",{\"mesh\":1}");
+    snprintf(text + n, room - n, "]%s", at + strlen(NODES));
+    fill_numbers(numbers);
+    const size_t bytes = make(file, text, numbers, sizeof numbers);
+    expect_error(adcgs_splats_parse(&s, file, bytes, "n.glb", &error), ADCGS_ERR_UNSUPPORTED, "n.glb: ", "more than 4096 nodes");
+    free(text);
+    free(file);
+}
+
 /* ---- What is refused ---- */
 
 static void expect_bad(const char *text, const uint8_t *numbers, size_t n, adcgs_status status, const char *what)
@@ -315,7 +376,7 @@ static void expect_bad(const char *text, const uint8_t *numbers, size_t n, adcgs
     assert_true(!s.n && !s.block && !s.harmonics);
 }
 
-/** The good text with the first place of one of its parts replaced. */
+/** One part of the good text changed. */
 static void test_bad_text(void **state)
 {
     static const struct {
@@ -366,18 +427,16 @@ static void test_bad_text(void **state)
         {NAME ":SH_DEGREE_1_COEF_0", NAME ":SH_DEGREE_4_COEF_0", ADCGS_ERR_UNSUPPORTED, "harmonics of degree 4"},
         {"{\"children\":[1]}", "{\"children\":[2]}", ADCGS_ERR_DATA, "a child of a node that there is not"},
         {"{\"mesh\":1,", "{\"children\":[0],\"mesh\":1,", ADCGS_ERR_DATA, "their own parents"},
-        {"{\"children\":[1]}", "{\"mesh\":1}", ADCGS_ERR_UNSUPPORTED, "splats of several nodes"},
-        {"{\"primitives\":[", "{\"primitives\":[{\"mode\":0,\"extensions\":{\"" NAME "\":{}}},", ADCGS_ERR_UNSUPPORTED,
-         "several primitives of splats"},
+        {"{\"primitives\":[", "{\"primitives\":[{\"mode\":0,\"extensions\":{\"" NAME "\":{}}},", ADCGS_ERR_DATA,
+         "POSITION: not there"},
     };
-    uint8_t numbers[134];
-    char text[4096];
+    uint8_t file[4096], numbers[134];
+    adcgs_splats s;
     fill_numbers(numbers);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        const char *const at = strstr(good, cases[i].part);
-        assert_non_null(at);
-        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, cases[i].instead, at + strlen(cases[i].part));
-        expect_bad(text, numbers, sizeof numbers, cases[i].status, cases[i].what);
+        const size_t bytes = change(file, cases[i].part, cases[i].instead);
+        expect_error(adcgs_splats_parse(&s, file, bytes, "b.glb", &error), cases[i].status, "b.glb: ", cases[i].what);
+        assert_true(!s.n && !s.block && !s.harmonics);
     }
     expect_bad(good, numbers, 0, ADCGS_ERR_DATA, "the binary chunk has 0");
 }
@@ -488,6 +547,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trip),  cmocka_unit_test(test_kinds),  cmocka_unit_test(test_bad_text),
         cmocka_unit_test(test_moves),       cmocka_unit_test(test_nodes), cmocka_unit_test(test_packed),
+        cmocka_unit_test(test_many_nodes),  cmocka_unit_test(test_too_many_nodes),
         cmocka_unit_test(test_bad_numbers), cmocka_unit_test(test_damage), cmocka_unit_test(test_splat_transform),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
