@@ -8,11 +8,13 @@
 #include "io/atomic.h"
 #include "io/extension.h"
 #include "io/file.h"
+#include "io/kind.h"
 #include "io/netpbm.h"
 #ifdef HAVE_ENCODER
 #include "io/exr.h"
 #include "io/jpeg.h"
 #include "io/oiio_shim.h"
+#include "io/photo.h"
 #include "io/png.h"
 #endif
 
@@ -37,18 +39,19 @@ typedef struct format {
 /* ---- OpenImageIO, or nobody ---- */
 
 #ifdef HAVE_ENCODER
-static adcgs_status probe_foreign(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
+static adcgs_status probe_foreign(FILE *file, const char *named, int *width, int *height, int *channels, const char *path,
+                                  adcgs_error *error)
 {
     const adcgs_oiio *oiio;
     ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
-    return oiio->probe(width, height, channels, path, error);
+    return oiio->probe(width, height, channels, file, named, path, error);
 }
 
-static adcgs_status read_foreign(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
+static adcgs_status read_foreign(FILE *file, const char *named, adcgs_image *out, const char *path, adcgs_error *error)
 {
     const adcgs_oiio *oiio;
     ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
-    return oiio->read(out, path, error);
+    return oiio->read(out, file, named, path, error);
 }
 
 static adcgs_status encode_foreign(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options,
@@ -58,18 +61,20 @@ static adcgs_status encode_foreign(adcgs_buffer *out, const adcgs_image *image, 
     uint8_t *data;
     size_t bytes;
     ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
-    ADCGS_TRY(oiio->encode(&data, &bytes, image, options->bits, adcgs_extension(path), path, error));
+    ADCGS_TRY(oiio->encode(&data, &bytes, image, options->bits, options->format ? options->format : adcgs_extension(path), path,
+                           error));
     adcgs_write_bytes(out, data, bytes);
     free(data);
     return ADCGS_OK;
 }
 #else
-static adcgs_status probe_foreign(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error)
+static adcgs_status probe_foreign(FILE *file, const char *named, int *width, int *height, int *channels, const char *path,
+                                  adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
 }
 
-static adcgs_status read_foreign(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
+static adcgs_status read_foreign(FILE *file, const char *named, adcgs_image *out, const char *path, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build reads binary PGM and PPM only", path);
 }
@@ -91,8 +96,9 @@ static const format formats[] = {
     {{NULL}, {"exr"}, NULL, NULL, adcgs_exr_encode},
 #endif
 };
-static const format foreign = {{NULL}, {NULL}, probe_foreign, read_foreign, encode_foreign};
+static const format foreign = {{NULL}, {NULL}, NULL, NULL, encode_foreign};
 
+/** NULL: none of ours. */
 static const format *find_reader(const uint8_t *begin, size_t n)
 {
     for (size_t i = 0; i < ADCGS_COUNTOF(formats); i++)
@@ -101,7 +107,7 @@ static const format *find_reader(const uint8_t *begin, size_t n)
             if (magic && n >= strlen(magic) && !memcmp(begin, magic, strlen(magic)))
                 return &formats[i];
         }
-    return &foreign;
+    return NULL;
 }
 
 static const format *find_writer(const char *extension)
@@ -120,46 +126,101 @@ static int is_exr(const char *extension)
 
 /* ---- Reading ---- */
 
-/** Open for reading and tell by the first bytes who reads it. */
-static adcgs_status open_image(FILE **file, const format **found, const char *path, adcgs_error *error)
+/** An image that is open, and who reads it: one of our formats, or the reader of that name in OpenImageIO. */
+typedef struct source {
+    FILE *file;
+    const format *own; /**< NULL: another's */
+    const char *reader;
+} source;
+
+static uint32_t load_size(const uint8_t *at, size_t bytes)
 {
-    uint8_t begin[8];
-    ADCGS_TRY(adcgs_file_open(file, path, error));
+    return bytes == 2 ? (uint32_t)(at[0] | at[1] << 8) : adcgs_load_le32(at);
+}
+
+/** Two readers have memory for all pixels before they tell the size: that is looked at here. */
+static adcgs_status check_early(const char *named, const uint8_t *begin, size_t n, const char *path, adcgs_error *error)
+{
+    const int is_gif = !strcmp(named, "gif"), is_bmp = !strcmp(named, "bmp");
+    const size_t bytes = is_gif || (n >= 26 && adcgs_load_le32(begin + 14) == 12) ? 2 : 4, at = is_gif ? 6 : 18;
+    if ((!is_gif && !is_bmp) || n < at + 2 * bytes)
+        return ADCGS_OK;
+    const uint32_t width = load_size(begin + at, bytes), height = load_size(begin + at + bytes, bytes);
+    const uint32_t rows = bytes == 4 && height > 0x7fffffffu ? 0u - height : height; /* from top to bottom */
+    if (width >= 1 && rows >= 1 && width <= ADCGS_IMAGE_MAX && rows <= ADCGS_IMAGE_MAX)
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %ux%u pixels, expected 1x1 to %dx%d", path, width, rows, ADCGS_IMAGE_MAX,
+                      ADCGS_IMAGE_MAX);
+}
+
+/** Tell by the first bytes who reads it; whatever is no image of a kind that is meant is refused by its name. */
+static adcgs_status find_source(source *s, const uint8_t *begin, size_t n, const char *path, adcgs_error *error)
+{
+    s->own = find_reader(begin, n);
+#ifndef HAVE_ENCODER
+    if (!s->own)
+        return probe_foreign(s->file, NULL, NULL, NULL, NULL, path, error);
+#endif
+    const adcgs_kind *const kind = adcgs_kind_of(begin, n, 0, NULL, path);
+    s->reader = kind->reader;
+    if (!s->own && !s->reader)
+        return adcgs_kind_refuse(kind, path, ADCGS_WANT_IMAGE, error);
+    return s->own ? ADCGS_OK : check_early(s->reader, begin, n, path, error);
+}
+
+static adcgs_status open_image(source *s, const char *path, adcgs_error *error)
+{
+    uint8_t begin[ADCGS_KIND_BYTES];
+    ADCGS_TRY(adcgs_file_open(&s->file, path, error));
     errno = 0;
-    const size_t n = fread(begin, 1, sizeof begin, *file);
-    if (n < 2 || fseek(*file, 0, SEEK_SET)) {
-        const int reason = errno;
-        fclose(*file);
-        return reason ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read: %s", path, strerror(reason))
-                      : adcgs_fail(error, ADCGS_ERR_DATA, "%s: too short for an image", path);
-    }
-    *found = find_reader(begin, n);
-    return ADCGS_OK;
+    const size_t n = fread(begin, 1, sizeof begin, s->file);
+    adcgs_status status;
+    if (n < 2 || fseek(s->file, 0, SEEK_SET))
+        status = errno ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot read: %s", path, strerror(errno))
+                       : adcgs_fail(error, ADCGS_ERR_DATA, "%s: too short for an image", path);
+    else
+        status = find_source(s, begin, n, path, error);
+    if (status != ADCGS_OK)
+        fclose(s->file);
+    return status;
 }
 
 adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *error)
 {
-    FILE *file;
-    const format *found;
+    source s;
     *out = (adcgs_image){0};
-    ADCGS_TRY(open_image(&file, &found, path, error));
-    const adcgs_status status = found->read(file, out, path, error);
-    fclose(file);
+    ADCGS_TRY(open_image(&s, path, error));
+    const adcgs_status status = s.own ? s.own->read(s.file, out, path, error) : read_foreign(s.file, s.reader, out, path, error);
+    fclose(s.file);
     return status;
 }
 
 adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const char *path, adcgs_error *error)
 {
-    FILE *file;
-    const format *found;
-    ADCGS_TRY(open_image(&file, &found, path, error));
-    adcgs_status status = found->probe(file, width, height, channels, path, error);
-    fclose(file);
+    source s;
+    ADCGS_TRY(open_image(&s, path, error));
+    adcgs_status status = s.own ? s.own->probe(s.file, width, height, channels, path, error)
+                                : probe_foreign(s.file, s.reader, width, height, channels, path, error);
+    fclose(s.file);
     if (status == ADCGS_OK && (*width < 1 || *height < 1 || *width > ADCGS_IMAGE_MAX || *height > ADCGS_IMAGE_MAX))
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected at most %dx%d", path, *width, *height,
                             ADCGS_IMAGE_MAX, ADCGS_IMAGE_MAX);
     return status;
 }
+
+#ifdef HAVE_ENCODER
+adcgs_status adcgs_image_tell(adcgs_photo *photo, const char *path, adcgs_error *error)
+{
+    const adcgs_oiio *oiio;
+    source s;
+    ADCGS_TRY(open_image(&s, path, error));
+    adcgs_status status = adcgs_oiio_get(&oiio, path, error);
+    if (status == ADCGS_OK)
+        status = oiio->tell(photo, s.file, s.reader, path, error);
+    fclose(s.file);
+    return status;
+}
+#endif
 
 /* ---- Writing ---- */
 

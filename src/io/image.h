@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Images in files. PPM and PGM are our own code, PNG goes through libspng, JPEG
- * through libjpeg-turbo, EXR is written by OpenEXRCore, and everything else is
- * OpenImageIO's, in a module; a build without the encoder has the first only.
- * Reading tells formats by content, writing by extension. A picture is made in
+ * through libjpeg-turbo, EXR is written by OpenEXRCore; TIFF, EXR, WebP, HEIC,
+ * AVIF, BMP, GIF, HDR and other netpbm are read by OpenImageIO, in a module, each
+ * by the reader that is named; a build without the encoder has the first only.
+ * Reading tells formats by content (io/kind.h), writing by extension. A picture is made in
  * memory, and then written as a whole: see atomic.h.
  */
 #ifndef ADCGS_IO_IMAGE_H

@@ -12,6 +12,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@
 
 namespace {
 
+#define CONVERT "convert the image to PNG or JPEG first, for instance by heif-convert"
+
 /** Run work and turn whatever it throws into a status. */
 template <typename Work> adcgs_status guarded(const char *path, adcgs_error *error, Work work) noexcept
 {
@@ -36,8 +39,10 @@ template <typename Work> adcgs_status guarded(const char *path, adcgs_error *err
         return work();
     } catch (const std::bad_alloc &) {
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    } catch (const std::exception &problem) {
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %s", path, problem.what());
+    } catch (const std::length_error &) { /* what it says names a container of the library */
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    } catch (const std::exception &) {
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: OpenImageIO gave up", path);
     } catch (...) {
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: OpenImageIO failed", path);
     }
@@ -49,37 +54,42 @@ std::string first_line(const std::string &text)
     return text.empty() ? "no reason given" : text.substr(0, text.find('\n'));
 }
 
-std::string extension_of(const std::string &path)
-{
-    const size_t slash = path.rfind('/'), dot = path.rfind('.');
-    return dot == std::string::npos || (slash != std::string::npos && dot < slash) ? "" : path.substr(dot + 1);
-}
+/** A reader, and what it reads of: our own open file, so that no name in it, nor its own, leads to another one. */
+struct opened {
+    std::unique_ptr<OIIO::Filesystem::IOFile> file; /* outlives the reader */
+    std::unique_ptr<OIIO::ImageInput> reader;
+};
 
-/** Whether this build of OpenImageIO knows the extension; its list reads "name:ext,ext;name:ext;...". */
-bool knows_extension(const std::string &extension)
-{
-    std::string list;
-    OIIO::getattribute("extension_list", list);
-    for (char &c : list)
-        if (c == ':' || c == ';')
-            c = ',';
-    return ("," + list + ",").find("," + extension + ",") != std::string::npos;
-}
-
-adcgs_status open_input(std::unique_ptr<OIIO::ImageInput> &input, const char *path, adcgs_error *error)
+/** By the reader of that name, which is told by what the file holds; OpenImageIO itself asks every one that it has. */
+adcgs_status open_input(opened &in, FILE *file, const char *reader, const char *path, adcgs_error *error)
 {
     OIIO::attribute("threads", 1); /* callers have their own threads */
-    OIIO::ImageSpec hints;
+    OIIO::ImageSpec hints, spec;
     hints.attribute("oiio:UnassociatedAlpha", 1);
-    input = OIIO::ImageInput::open(path, &hints);
-    if (input)
+    in.reader = OIIO::ImageInput::create(reader);
+    if (!in.reader) {
+        OIIO::geterror(); /* take the message away, else the library prints it at exit */
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of OpenImageIO has no reader of %s; " CONVERT, path, reader);
+    }
+    std::string name = path;
+    if (in.reader->supports("ioproxy")) {
+        in.file.reset(new OIIO::Filesystem::IOFile(file, OIIO::Filesystem::IOProxy::Read));
+        in.reader->set_ioproxy(in.file.get());
+    } else
+        name = "/proc/self/fd/" + std::to_string(fileno(file));
+    if (in.reader->open(name, spec, hints))
         return ADCGS_OK;
-    const std::string reason = first_line(OIIO::geterror());
-    const std::string extension = extension_of(path);
-    if (!knows_extension(extension))
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of OpenImageIO cannot read .%s files", path,
-                          extension.c_str());
-    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot read as an image: %s", path, reason.c_str());
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot read as an image (%s): %s", path, reader,
+                      first_line(in.reader->geterror()).c_str());
+}
+
+/** Before there is memory for pixels. */
+adcgs_status check_size(const OIIO::ImageSpec &spec, const char *path, adcgs_error *error)
+{
+    if (spec.width >= 1 && spec.height >= 1 && spec.width <= ADCGS_IMAGE_MAX && spec.height <= ADCGS_IMAGE_MAX)
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected 1x1 to %dx%d", path, spec.width, spec.height,
+                      ADCGS_IMAGE_MAX, ADCGS_IMAGE_MAX);
 }
 
 /** EXR may hold depth behind its colours. */
@@ -131,12 +141,14 @@ adcgs_status check_finite(const adcgs_image *image, const char *path, adcgs_erro
     return ADCGS_OK;
 }
 
-adcgs_status read(adcgs_image *out, const char *path, adcgs_error *error)
+adcgs_status read(adcgs_image *out, FILE *file, const char *reader, const char *path, adcgs_error *error)
 {
-    std::unique_ptr<OIIO::ImageInput> input;
-    ADCGS_TRY(open_input(input, path, error));
+    opened in;
+    ADCGS_TRY(open_input(in, file, reader, path, error));
+    OIIO::ImageInput *const input = in.reader.get();
     const OIIO::ImageSpec &spec = input->spec();
     const int channels = colour_channels(spec);
+    ADCGS_TRY(check_size(spec, path, error));
     ADCGS_TRY(check_primaries(spec, path, error));
     ADCGS_TRY(adcgs_image_alloc(out, spec.width, spec.height, channels, path, error));
     bool good;
@@ -282,11 +294,11 @@ adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int
 
 #define FILM_WIDTH 36.0f /* millimetres of what focal lengths are equivalent to */
 
-adcgs_status tell(adcgs_photo *photo, const char *path, adcgs_error *error)
+adcgs_status tell(adcgs_photo *photo, FILE *file, const char *reader, const char *path, adcgs_error *error)
 {
-    std::unique_ptr<OIIO::ImageInput> input;
-    ADCGS_TRY(open_input(input, path, error));
-    const OIIO::ImageSpec &spec = input->spec();
+    opened in;
+    ADCGS_TRY(open_input(in, file, reader, path, error));
+    const OIIO::ImageSpec &spec = in.reader->spec();
     const int turn = spec.get_int_attribute("Orientation", ADCGS_PHOTO_UPRIGHT);
     photo->turn = turn >= 1 && turn <= 8 ? turn : ADCGS_PHOTO_UPRIGHT;
     const float film = spec.get_float_attribute("Exif:FocalLengthIn35mmFilm");
@@ -351,22 +363,24 @@ adcgs_status shape(adcgs_image *image, int turn, int width, int height, const ch
     return take(image, at, path, error);
 }
 
-adcgs_status probe_c(int *width, int *height, int *channels, const char *path, adcgs_error *error) noexcept
+adcgs_status probe_c(int *width, int *height, int *channels, FILE *file, const char *reader, const char *path,
+                     adcgs_error *error) noexcept
 {
     return guarded(path, error, [&]() -> adcgs_status {
-        std::unique_ptr<OIIO::ImageInput> input;
-        ADCGS_TRY(open_input(input, path, error));
-        *width = input->spec().width;
-        *height = input->spec().height;
-        *channels = colour_channels(input->spec());
+        opened in;
+        ADCGS_TRY(open_input(in, file, reader, path, error));
+        ADCGS_TRY(check_size(in.reader->spec(), path, error));
+        *width = in.reader->spec().width;
+        *height = in.reader->spec().height;
+        *channels = colour_channels(in.reader->spec());
         return ADCGS_OK;
     });
 }
 
-adcgs_status read_c(adcgs_image *out, const char *path, adcgs_error *error) noexcept
+adcgs_status read_c(adcgs_image *out, FILE *file, const char *reader, const char *path, adcgs_error *error) noexcept
 {
     *out = adcgs_image{};
-    const adcgs_status status = guarded(path, error, [&]() { return read(out, path, error); });
+    const adcgs_status status = guarded(path, error, [&]() { return read(out, file, reader, path, error); });
     if (status != ADCGS_OK)
         adcgs_image_free(out);
     return status;
@@ -380,9 +394,9 @@ adcgs_status encode_c(uint8_t **data, size_t *bytes, const adcgs_image *image, i
     return guarded(path, error, [&]() { return encode(data, bytes, image, bits, extension, path, error); });
 }
 
-adcgs_status tell_c(adcgs_photo *photo, const char *path, adcgs_error *error) noexcept
+adcgs_status tell_c(adcgs_photo *photo, FILE *file, const char *reader, const char *path, adcgs_error *error) noexcept
 {
-    return guarded(path, error, [&]() { return tell(photo, path, error); });
+    return guarded(path, error, [&]() { return tell(photo, file, reader, path, error); });
 }
 
 adcgs_status shape_c(adcgs_image *image, int turn, int width, int height, const char *path, adcgs_error *error) noexcept

@@ -16,12 +16,16 @@ extern "C" {
 #include "io/module.h"
 #include "io/photo.h"
 
+#include <stdio.h>
+
 /** What the module offers. What a build of OpenImageIO cannot do gives ADCGS_ERR_UNSUPPORTED. Any thread may call. */
 typedef struct adcgs_oiio {
     const char *version; /**< of the programs that the module belongs to */
-    adcgs_status (*probe)(int *width, int *height, int *channels, const char *path, adcgs_error *error);
+    /** Of a file that is open, by the reader of that name and no other: "tiff". path is for messages. */
+    adcgs_status (*probe)(int *width, int *height, int *channels, FILE *file, const char *reader, const char *path,
+                          adcgs_error *error);
     /** The first picture in the file, as sRGB with straight alpha. A depth channel behind the colours is left out. */
-    adcgs_status (*read)(adcgs_image *out, const char *path, adcgs_error *error);
+    adcgs_status (*read)(adcgs_image *out, FILE *file, const char *reader, const char *path, adcgs_error *error);
     /**
      * With 8 or 16 bits, in the format that `extension` stands for, into memory: the caller free()s *data. Messages name `path`.
      * ADCGS_ERR_USAGE when the format has no such samples, or no alpha and the image has.
@@ -29,7 +33,7 @@ typedef struct adcgs_oiio {
     adcgs_status (*encode)(uint8_t **data, size_t *bytes, const adcgs_image *image, int bits, const char *extension,
                            const char *path, adcgs_error *error);
     /** Fill in what the header says besides the size. What is no number there is as if it were not there. */
-    adcgs_status (*tell)(adcgs_photo *photo, const char *path, adcgs_error *error);
+    adcgs_status (*tell)(adcgs_photo *photo, FILE *file, const char *reader, const char *path, adcgs_error *error);
     adcgs_status (*shape)(adcgs_image *image, int turn, int width, int height, const char *path, adcgs_error *error);
 } adcgs_oiio;
 

@@ -9,13 +9,11 @@
 
 adcgs_status adcgs_photo_probe(adcgs_photo *out, const char *path, adcgs_error *error)
 {
-    const adcgs_oiio *oiio;
     int channels;
     *out = (adcgs_photo){.turn = ADCGS_PHOTO_UPRIGHT};
     ADCGS_TRY(adcgs_file_check(path, "an image", error));
     ADCGS_TRY(adcgs_image_probe(&out->width, &out->height, &channels, path, error));
-    ADCGS_TRY(adcgs_oiio_get(&oiio, path, error));
-    return oiio->tell(out, path, error);
+    return adcgs_image_tell(out, path, error);
 }
 
 int adcgs_photo_lies(int turn)

@@ -10,6 +10,7 @@
 #include "data/paths.h"
 #include "data/pose.h"
 #include "io/file.h"
+#include "io/kind.h"
 #include "io/splats.h"
 #include "io/video.h"
 #include "layouts/colmap.h"
@@ -281,6 +282,7 @@ static adcgs_status read_file(adcgs_scene *scene, const char *path, char **point
         return adcgs_splat_scene_read(scene, !options->points_path, path, error);
     if (options->dataset == ADCGS_DATASET_AUTO && is_footage(path))
         return bare(path, error);
+    ADCGS_TRY(adcgs_kind_check(path, ADCGS_WANT_SCENE, error));
     if (options->dataset == ADCGS_DATASET_AUTO) {
         ADCGS_TRY(adcgs_json_load(&root, path, error));
         is_scene_file = json_object_get(root, "adcgs_scene") != NULL;

@@ -135,10 +135,10 @@ static void test_surfels(void **state)
 /** Splats that move are not read as what stands still. */
 static void test_other_kinds(void **state)
 {
-    static const char *const others[] = {"trbf_center", "scale_t"};
+    static const char *const others[] = {"trbf_center", "scale_t", "log_duration"};
     char text[1024];
     adcgs_splats s;
-    for (size_t i = 0; i < 2; i++) {
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         snprintf(text, sizeof text, "ply\nformat ascii 1.0\nelement vertex 1\n" PROPERTIES "property float scale_2\n" TURN
                  "property float %s\nend_header\n1 2 3 0 0 0 0 0 0 0 1 0 0 0 0.5\n", others[i]);
         put_text("t.ply", text);

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * The kind of a file by its first bytes: one table for all programs, of what
+ * is read and of what is often given to us instead, each with its name and the
+ * way to what is read. Names of files count only where a kind has no bytes of
+ * its own (raw images of cameras in TIFF, videos of two fisheyes in MP4).
+ */
+#ifndef ADCGS_IO_KIND_H
+#define ADCGS_IO_KIND_H
+
+#include "base/base.h"
+
+#define ADCGS_KIND_BYTES 4096 /**< of a file's beginning that are looked at */
+
+/** What a file holds. */
+typedef enum adcgs_kind_class {
+    ADCGS_KIND_UNKNOWN, /**< nothing in the table: a reader says itself what it expected */
+    ADCGS_KIND_FOLDER,
+    ADCGS_KIND_STREAM,  /**< an adcgs stream */
+    ADCGS_KIND_PAGE,    /**< a page for browsers with a stream in it */
+    ADCGS_KIND_IMAGE,
+    ADCGS_KIND_VIDEO,
+    ADCGS_KIND_SPLATS,
+    ADCGS_KIND_POINTS,
+    ADCGS_KIND_SCENE,   /**< cameras and the like, as text */
+    ADCGS_KIND_OTHER,
+    ADCGS_KIND_CLASSES
+} adcgs_kind_class;
+
+typedef struct adcgs_kind {
+    adcgs_kind_class class;
+    const char *name;   /**< with its article: "a TIFF image" */
+    const char *reader; /**< of images that are read: OpenImageIO's name of the format; else NULL */
+    const char *advice; /**< of what is not read: what to do; NULL where there is none */
+    int is_read;        /**< by those programs that want its class */
+} adcgs_kind;
+
+/** What a program wants where a file was given. */
+typedef enum adcgs_want {
+    ADCGS_WANT_STREAM,
+    ADCGS_WANT_SCENE,
+    ADCGS_WANT_SPLATS,
+    ADCGS_WANT_POINTS,
+    ADCGS_WANT_IMAGE,
+    ADCGS_WANTS
+} adcgs_want;
+
+/**
+ * The kind of a file of `size` bytes that begins with n bytes, at most ADCGS_KIND_BYTES; never NULL. name: of the file. tail: its
+ * last 32 bytes, or NULL.
+ */
+const adcgs_kind *adcgs_kind_of(const uint8_t *begin, size_t n, uint64_t size, const uint8_t *tail, const char *name);
+/** The kind of what is at a path; unknown where nothing can be read, and for what is neither a regular file nor a folder. */
+const adcgs_kind *adcgs_kind_at(const char *path);
+
+/** "PATH: a GIF image, expected a scene: ..." as ADCGS_ERR_DATA, or _UNSUPPORTED where it is of the right class. */
+adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_want want, adcgs_error *error);
+/** Refuse what is at a path if it is known not to be what is wanted. Whatever is unknown, a pipe or a URL passes. */
+adcgs_status adcgs_kind_check(const char *path, adcgs_want want, adcgs_error *error);
+
+#endif
