@@ -7,6 +7,7 @@
 #include "cli/text.h"
 #include "data/paths.h"
 #include "io/extension.h"
+#include "io/kind.h"
 #include "io/photo.h"
 #include "layouts/listing.h"
 
@@ -61,20 +62,85 @@ static adcgs_status add_picture(adcgs_shots *shots, const char *path, const adcg
     return shot->path ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
 }
 
+static int is_heif_name(const char *name)
+{
+    return ends_like(name, "heic", "heif") || ends_like(name, "avif", "avifs");
+}
+
+static int any_name(const char *name)
+{
+    return 1;
+}
+
+/** Names by what stands before their extension, the dot with it: the order in which folders are listed, too. */
+static int compare_stems(const char *a, const char *b)
+{
+    const size_t n = strlen(a) - strlen(adcgs_extension(a)), m = strlen(b) - strlen(adcgs_extension(b));
+    const int order = memcmp(a, b, n < m ? n : m);
+    return order ? order : (n > m) - (n < m);
+}
+
+/** Names of pictures in order, and of HEIC and AVIF those that are not there as another picture, too. */
+static size_t merge(const char **out, const adcgs_listing *images, const adcgs_listing *heifs)
+{
+    size_t n = 0, i = 0;
+    for (size_t k = 0; k < heifs->n; k++) {
+        while (i < images->n && compare_stems(images->names[i], heifs->names[k]) < 0)
+            out[n++] = images->names[i++];
+        if (i == images->n || compare_stems(images->names[i], heifs->names[k]))
+            out[n++] = heifs->names[k];
+    }
+    while (i < images->n)
+        out[n++] = images->names[i++];
+    return n;
+}
+
+/** Of a folder without pictures: name what is there instead, if its kind is known. */
+static adcgs_status refuse_folder(const char *folder, adcgs_error *error)
+{
+    adcgs_listing all;
+    adcgs_status status = adcgs_listing_read(&all, folder, any_name, error);
+    for (size_t i = 0; status == ADCGS_OK && i < all.n; i++) {
+        char *const path = adcgs_path("%s/%s", folder, all.names[i]);
+        const adcgs_kind *const kind = path ? adcgs_kind_at(path) : NULL;
+        if (kind && kind->class != ADCGS_KIND_UNKNOWN && kind->class != ADCGS_KIND_FOLDER && !kind->reader)
+            status = adcgs_kind_refuse(kind, path, ADCGS_WANT_IMAGE, error);
+        free(path);
+    }
+    adcgs_listing_free(&all);
+    return status == ADCGS_OK ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: no picture in this folder", folder) : status;
+}
+
+static adcgs_status add_names(adcgs_shots *shots, const char *folder, const char *const *names, size_t n,
+                              const adcgs_import_options *options, adcgs_progress *progress, adcgs_error *error)
+{
+    for (size_t i = 0; i < n; i++) {
+        char *path = adcgs_path("%s/%s", folder, names[i]);
+        const adcgs_status status = path ? add_picture(shots, path, options, error)
+                                         : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
+        free(path);
+        ADCGS_TRY(status);
+        adcgs_progress_show(progress, "looking   %6u pictures", shots->n);
+    }
+    return ADCGS_OK;
+}
+
 static adcgs_status add_folder(adcgs_shots *shots, const char *folder, const adcgs_import_options *options,
                                adcgs_progress *progress, adcgs_error *error)
 {
-    adcgs_listing listing;
-    ADCGS_TRY(adcgs_listing_read(&listing, folder, adcgs_is_image_name, error));
-    adcgs_status status = listing.n ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no picture in this folder", folder);
-    for (size_t i = 0; status == ADCGS_OK && i < listing.n; i++) {
-        char *path = adcgs_path("%s/%s", folder, listing.names[i]);
-        status = path ? add_picture(shots, path, options, error)
-                      : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
-        free(path);
-        adcgs_progress_show(progress, "looking   %6u pictures", shots->n);
-    }
-    adcgs_listing_free(&listing);
+    adcgs_listing images, heifs = {0};
+    const char **names = NULL;
+    ADCGS_TRY(adcgs_listing_read(&images, folder, adcgs_is_image_name, error));
+    adcgs_status status = adcgs_listing_read(&heifs, folder, is_heif_name, error);
+    if (status == ADCGS_OK && !images.n && !heifs.n)
+        status = refuse_folder(folder, error);
+    if (status == ADCGS_OK && !(names = malloc((images.n + heifs.n) * sizeof *names)))
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
+    if (status == ADCGS_OK)
+        status = add_names(shots, folder, names, merge(names, &images, &heifs), options, progress, error);
+    free(names);
+    adcgs_listing_free(&images);
+    adcgs_listing_free(&heifs);
     return status;
 }
 

@@ -1,414 +1,32 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The kinds of files: tables, and what has no bytes of its own at its beginning. */
+/** \file The kind of what is at a path, and what to say of it where something else was wanted. */
 #include "config.h"
 
 #include "io/kind.h"
 
-#include "io/extension.h"
-
-#include <ctype.h>
 #include <fcntl.h>
-#include <math.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define TAIL 32 /* bytes at a file's end */
-
-/* ---- Advice ---- */
-
-#define TO_PLY "convert it to PLY or SPZ first, as PlayCanvas' splat-transform does"
-#define TO_PNG "convert it to PNG, JPEG, TIFF or EXR first"
-#define TO_JPEG "develop it to JPEG, TIFF or PNG first"
-#define FRAMES_OUT "adcgs-import takes its frames out and finds their cameras"
-#define NO_SEQUENCE "files of splats that change with time are not read"
-#define COLMAP_FOLDER "give the folder that has the model and its images"
-#define TO_COLMAP "export the cameras as a COLMAP model, or as transforms.json"
-
-/* ---- Kinds that begin with bytes of their own ---- */
-
-typedef struct magic {
-    uint16_t at, n;
-    const char *bytes; /* NULL: an end of the table */
-    adcgs_kind kind;
-} magic;
-
-#define IMAGE(name, reader) {ADCGS_KIND_IMAGE, name, reader, NULL, 1}
-#define NO_IMAGE(name, advice) {ADCGS_KIND_IMAGE, name, NULL, advice, 0}
-#define VIDEO(name) {ADCGS_KIND_VIDEO, name, NULL, NULL, 1}
-#define SPLATS(name) {ADCGS_KIND_SPLATS, name, NULL, NULL, 1}
-#define NO_SPLATS(name, advice) {ADCGS_KIND_SPLATS, name, NULL, advice, 0}
-#define POINTS(name) {ADCGS_KIND_POINTS, name, NULL, NULL, 1}
-#define NO_POINTS(name, advice) {ADCGS_KIND_POINTS, name, NULL, advice, 0}
-#define NO_SCENE(name, advice) {ADCGS_KIND_SCENE, name, NULL, advice, 0}
-#define OTHER(name, advice) {ADCGS_KIND_OTHER, name, NULL, advice, 0}
-#define AT(place, text) place, sizeof text - 1, text
-
-static const magic magics[] = {
-    {AT(0, "\x8b""ADC\r\n\x1a\n"), {ADCGS_KIND_STREAM, "an adcgs stream", NULL, NULL, 1}},
-    /* Images. */
-    {AT(0, "\x89PNG\r\n\x1a\n"), IMAGE("a PNG image", "png")},
-    {AT(0, "\xff\xd8\xff"), IMAGE("a JPEG image", "jpeg")},
-    {AT(8, "WEBP"), IMAGE("a WebP image", "webp")},
-    {AT(0, "\x76\x2f\x31\x01"), IMAGE("an OpenEXR image", "openexr")},
-    {AT(0, "#?RADIANCE"), IMAGE("a Radiance HDR image", "hdr")},
-    {AT(0, "#?RGBE"), IMAGE("a Radiance HDR image", "hdr")},
-    {AT(0, "GIF87a"), IMAGE("a GIF image", "gif")},
-    {AT(0, "GIF89a"), IMAGE("a GIF image", "gif")},
-    {AT(0, "8BPS"), NO_IMAGE("a Photoshop document", TO_PNG)},
-    {AT(0, "FUJIFILMCCD-RAW"), NO_IMAGE("a raw image of a camera (RAF)", TO_JPEG)},
-    {AT(0, "IIU\0"), NO_IMAGE("a raw image of a camera (RW2)", TO_JPEG)},
-    {AT(0, "IIRO"), NO_IMAGE("a raw image of a camera (ORF)", TO_JPEG)},
-    {AT(0, "IIRS"), NO_IMAGE("a raw image of a camera (ORF)", TO_JPEG)},
-    {AT(0, "MMOR"), NO_IMAGE("a raw image of a camera (ORF)", TO_JPEG)},
-    {AT(0, "FOVb"), NO_IMAGE("a raw image of a camera (X3F)", TO_JPEG)},
-    {AT(0, "\0\0\0\x0cjP  "), NO_IMAGE("a JPEG 2000 image", TO_PNG)},
-    {AT(0, "\xff\x4f\xff\x51"), NO_IMAGE("a JPEG 2000 image", TO_PNG)},
-    {AT(0, "\0\0\0\x0cJXL "), NO_IMAGE("a JPEG XL image", TO_PNG)},
-    {AT(0, "\xff\x0a"), NO_IMAGE("a JPEG XL image", TO_PNG)},
-    {AT(0, "qoif"), NO_IMAGE("a QOI image", TO_PNG)},
-    {AT(0, "DDS "), NO_IMAGE("a DirectDraw surface", TO_PNG)},
-    {AT(0, "SDPX"), NO_IMAGE("a DPX image", TO_PNG)},
-    {AT(0, "XPDS"), NO_IMAGE("a DPX image", TO_PNG)},
-    {AT(0, "\x80\x2a\x5f\xd7"), NO_IMAGE("a Cineon image", TO_PNG)},
-    {AT(0, "SIMPLE  ="), NO_IMAGE("a FITS image", TO_PNG)},
-    {AT(0, "\0\0\x01\0"), NO_IMAGE("an icon", TO_PNG)},
-    {AT(0, "\x01\xda"), NO_IMAGE("an SGI image", TO_PNG)},
-    {AT(128, "DICM"), NO_IMAGE("a DICOM image", TO_PNG)},
-    /* Videos, and texts that name some. */
-    {AT(0, "\x1a\x45\xdf\xa3"), VIDEO("a video (Matroska or WebM)")},
-    {AT(8, "AVI "), VIDEO("a video (AVI)")},
-    {AT(0, "\0\0\x01\xba"), VIDEO("a video (MPEG program stream)")},
-    {AT(0, "FLV\x01"), VIDEO("a video (Flash)")},
-    {AT(0, "OggS"), VIDEO("a video (Ogg)")},
-    {AT(0, "YUV4MPEG2"), VIDEO("a video (YUV4MPEG2)")},
-    {AT(0, "\x30\x26\xb2\x75\x8e\x66\xcf\x11"), VIDEO("a video (ASF)")},
-    {AT(0, "ffconcat version"), OTHER("a playlist (ffconcat)", "give the files that it names")},
-    {AT(0, "#EXTM3U"), OTHER("a playlist (M3U, HLS)", "give the files that it names")},
-    /* Splats and points. */
-    {AT(0, "NGSP"), SPLATS("splats (SPZ)")},
-    {AT(0, "glTF"), SPLATS("a glTF binary file (GLB)")},
-    {AT(0, "Kg\0\0"), NO_SPLATS("splats that change with time (.splatv)", NO_SEQUENCE)},
-    {AT(0, "\x89""4DGS"), NO_SPLATS("splats that change with time (.4dgs)", NO_SEQUENCE)},
-    {AT(0, "SP4D"), NO_SPLATS("splats that change with time (.splat4d)", NO_SEQUENCE)},
-    {AT(0, "DRACO"), POINTS("a Draco file")},
-    {AT(0, "\x93NUMPY"), POINTS("an array of NumPy (NPY)")},
-    {AT(0, "LASF"), NO_POINTS("a point cloud (LAS or LAZ)", "convert it to PLY first")},
-    {AT(0, "ASTM-E57"), NO_POINTS("a point cloud (E57)", "convert it to PLY first")},
-    {AT(0, "# .PCD"), NO_POINTS("a point cloud (PCD)", "convert it to PLY first")},
-    /* Cameras. */
-    {AT(0, "SQLite format 3"), NO_SCENE("a database (SQLite, as COLMAP's database.db)", COLMAP_FOLDER)},
-    {AT(0, "# Camera list with"), NO_SCENE("COLMAP's cameras.txt", COLMAP_FOLDER)},
-    {AT(0, "# Image list with"), NO_SCENE("COLMAP's images.txt", COLMAP_FOLDER)},
-    {AT(0, "# 3D point list with"), NO_SCENE("COLMAP's points3D.txt", COLMAP_FOLDER)},
-    {AT(0, "NVM_V3"), NO_SCENE("VisualSFM's model (NVM)", TO_COLMAP)},
-    {AT(0, "# Bundle file"), NO_SCENE("Bundler's model", TO_COLMAP)},
-    {AT(0, "#name,x,y,"), NO_SCENE("RealityCapture's cameras (CSV)", TO_COLMAP)},
-    {AT(0, "#usda"), NO_SCENE("a USD scene", TO_COLMAP)},
-    {AT(0, "PXR-USDC"), NO_SCENE("a USD scene", TO_COLMAP)},
-    {AT(0, "Kaydara FBX"), OTHER("a scene of polygons (FBX)", NULL)},
-    {AT(0, "BLENDER"), OTHER("a Blender file", "render its views, as transforms.json lists them")},
-    /* Packed files and the like. */
-    {AT(0, "7z\xbc\xaf\x27\x1c"), OTHER("an archive (7z)", "unpack it first")},
-    {AT(0, "Rar!"), OTHER("an archive (RAR)", "unpack it first")},
-    {AT(257, "ustar"), OTHER("an archive (tar)", "unpack it first")},
-    {AT(0, "\x28\xb5\x2f\xfd"), OTHER("a file packed by zstd", "unpack it first")},
-    {AT(0, "\xfd""7zXZ"), OTHER("a file packed by xz", "unpack it first")},
-    {AT(0, "BZh"), OTHER("a file packed by bzip2", "unpack it first")},
-    {AT(0, "%PDF"), OTHER("a PDF document", NULL)},
-    {AT(0, "\x7f""ELF"), OTHER("a program", NULL)},
-};
-
-/* ---- Kinds that take a closer look ---- */
-
-static const adcgs_kind unknown = {ADCGS_KIND_UNKNOWN, "a file of no kind that is known", NULL, NULL, 0};
 static const adcgs_kind folder = {ADCGS_KIND_FOLDER, "a folder", NULL, NULL, 0};
-
-/** What is looked at. */
-typedef struct look {
-    const uint8_t *begin, *tail;
-    const char *name, *extension;
-    size_t n;
-    uint64_t size;
-} look;
-
-static int begins(const look *l, size_t at, const char *text)
-{
-    const size_t n = strlen(text);
-    return l->n >= at + n && !memcmp(l->begin + at, text, n);
-}
-
-/** Whether a text stands anywhere in the beginning. */
-static int has(const look *l, const char *text)
-{
-    const size_t n = strlen(text);
-    for (size_t i = 0; i + n <= l->n; i++)
-        if (l->begin[i] == (uint8_t)*text && !memcmp(l->begin + i, text, n))
-            return 1;
-    return 0;
-}
-
-static int ends_in(const look *l, const char *const *list)
-{
-    for (; *list; list++)
-        if (!strcasecmp(l->extension, *list))
-            return 1;
-    return 0;
-}
-
-/** MPEG-4's container: which it is says the brand behind the box's type. */
-static const adcgs_kind *find_in_boxes(const look *l)
-{
-    static const adcgs_kind video = VIDEO("a video (MP4 or QuickTime)"), heif = IMAGE("an HEIC image", "heif"),
-                            avif = IMAGE("an AVIF image", "heif"), raw = NO_IMAGE("a raw image of a camera (CR3)", TO_JPEG),
-                            fisheyes = {ADCGS_KIND_VIDEO, "a video of two fisheyes (Insta360)", NULL,
-                                        "export a flat video of it with the camera's own program", 0};
-    static const char *const boxes[] = {"ftyp", "moov", "mdat", "wide", "skip", "free"};
-    static const char *const heifs[] = {"heic", "heix", "heim", "heis", "hevc", "hevx", "mif1", "msf1", "miaf"};
-    static const char *const insv[] = {"insv", "insp", NULL};
-    size_t box = 0;
-    while (box < ADCGS_COUNTOF(boxes) && !begins(l, 4, boxes[box]))
-        box++;
-    if (box == ADCGS_COUNTOF(boxes))
-        return NULL;
-    if (ends_in(l, insv) || (l->tail && !memcmp(l->tail, "8db42d694ccc418790edff439fe026bf", TAIL)))
-        return &fisheyes;
-    if (box || begins(l, 8, "qt  "))
-        return &video;
-    if (begins(l, 8, "crx "))
-        return &raw;
-    if (begins(l, 8, "avif") || begins(l, 8, "avis"))
-        return &avif;
-    for (size_t i = 0; i < ADCGS_COUNTOF(heifs); i++)
-        if (begins(l, 8, heifs[i]))
-            return has(l, "avif") ? &avif : &heif; /* mif1 is either's */
-    return &video;
-}
-
-static uint32_t number(const look *l, size_t at, size_t bytes, int is_big)
-{
-    uint32_t value = 0;
-    for (size_t i = 0; i < bytes && at + bytes <= l->n; i++)
-        value = value << 8 | l->begin[at + (is_big ? i : bytes - 1 - i)];
-    return value;
-}
-
-/** A tag of the first image's directory, if that lies in the beginning: its value, or -1. */
-static int64_t tiff_tag(const look *l, uint32_t tag, int is_big)
-{
-    const size_t at = number(l, 4, 4, is_big), entries = number(l, at, 2, is_big);
-    for (size_t i = 0; i < entries && at + 2 + 12 * (i + 1) <= l->n; i++) {
-        const size_t entry = at + 2 + 12 * i;
-        if (number(l, entry, 2, is_big) == tag)
-            return number(l, entry + 8, 4, is_big);
-    }
-    return -1;
-}
-
-/** Cameras keep raw images in TIFF, behind a small picture. */
-static const adcgs_kind *find_in_tiff(const look *l)
-{
-    static const adcgs_kind tiff = IMAGE("a TIFF image", "tiff"), dng = NO_IMAGE("a raw image (DNG)", TO_JPEG),
-                            raw = NO_IMAGE("a raw image of a camera", TO_JPEG);
-    static const char *const ends[] = {"nef", "nrw", "arw", "sr2", "srf", "cr2", "pef", "srw", "3fr", "fff", "iiq", "rwl", "erf",
-                                       "dcr", "kdc", "mef", "mos", NULL};
-    const int is_big = begins(l, 0, "MM\0") && l->n > 3 && (l->begin[3] == '*' || l->begin[3] == '+');
-    if (!is_big && !(begins(l, 0, "II") && l->n > 3 && (l->begin[2] == '*' || l->begin[2] == '+') && !l->begin[3]))
-        return NULL;
-    if (tiff_tag(l, 50706, is_big) >= 0) /* DNGVersion */
-        return &dng;
-    if (begins(l, 8, "CR") || tiff_tag(l, 254, is_big) == 1 || ends_in(l, ends)) /* 254: what comes first is a smaller image */
-        return &raw;
-    return &tiff;
-}
-
-static const adcgs_kind *find_bitmap(const look *l)
-{
-    static const adcgs_kind bmp = IMAGE("a BMP image", "bmp"), text = IMAGE("a PBM, PGM, PPM or PFM image", "pnm");
-    const uint32_t header = number(l, 14, 4, 0);
-    if (begins(l, 0, "BM") && l->n >= 26 && !number(l, 6, 4, 0) && header >= 12 && header <= 124)
-        return &bmp;
-    if (l->n >= 3 && l->begin[0] == 'P' && strchr("123456Ff", l->begin[1]) && l->begin[1] && isspace(l->begin[2]))
-        return &text;
-    return NULL;
-}
-
-/** Archives: which one says the name of the first file in it. */
-static const adcgs_kind *find_in_archive(const look *l)
-{
-    static const adcgs_kind sog = NO_SPLATS("splats (SOG)", TO_PLY), tsog = NO_SPLATS("splats that change with time (TSOG)", NO_SEQUENCE),
-                            npz = OTHER("arrays of NumPy (NPZ)", NULL), zip = OTHER("an archive (ZIP)", "unpack it first");
-    if (!begins(l, 0, "PK\3\4") && !begins(l, 0, "PK\5\6"))
-        return NULL;
-    if (has(l, "means_l.webp") || has(l, "means_u.webp") || has(l, "meta.json"))
-        return !strcasecmp(l->extension, "tsog") || has(l, "velocity") ? &tsog : &sog;
-    return has(l, ".npy") ? &npz : &zip;
-}
-
-static const adcgs_kind *find_ply(const look *l)
-{
-    static const adcgs_kind plain = SPLATS("splats (PLY)"), other = SPLATS("a PLY file");
-    if (!begins(l, 0, "ply\n") && !begins(l, 0, "ply\r"))
-        return NULL;
-    return has(l, " f_dc_0") || has(l, " packed_position") ? &plain : &other; /* which one tells the header: its readers */
-}
-
-/** 32 bytes a splat and nothing else: place and size in binary32, colour, rotation; all that are here must be splats. */
-static const adcgs_kind *find_splat(const look *l)
-{
-    static const adcgs_kind splat = NO_SPLATS("splats (.splat)", TO_PLY);
-    if (!l->size || l->size % 32 || l->n < 32)
-        return NULL;
-    for (size_t at = 0; at + 32 <= l->n; at += 32) {
-        double turn = 0.0;
-        for (size_t i = 0; i < 6; i++) {
-            const double v = (double)adcgs_bits_float(adcgs_load_le32(l->begin + at + 4 * i));
-            if (!(fabs(v) <= 1e8) || (i >= 3 && !(v >= 0.0 && v <= 1e6)))
-                return NULL;
-        }
-        for (size_t i = 28; i < 32; i++)
-            turn += pow((l->begin[at + i] - 128.0) / 128.0, 2);
-        if (!(turn > 0.7 && turn < 1.4))
-            return NULL;
-    }
-    return &splat;
-}
-
-/** Sections behind a header of 4096 bytes that begins with a version and counts. */
-static const adcgs_kind *find_ksplat(const look *l)
-{
-    static const adcgs_kind ksplat = NO_SPLATS("splats (.ksplat)", TO_PLY);
-    const uint32_t most = number(l, 4, 4, 0);
-    const float low = adcgs_bits_float(number(l, 36, 4, 0)), high = adcgs_bits_float(number(l, 40, 4, 0)); /* of harmonics */
-    if (l->n < 44 || number(l, 0, 4, 0) != 0x100 || number(l, 20, 2, 0) > 2 || most < 1 || !(low <= high))
-        return NULL;
-    return l->size >= 4096 + (uint64_t)1024 * most ? &ksplat : NULL;
-}
-
-static size_t skip_blanks(const look *l)
-{
-    size_t at = begins(l, 0, "\xef\xbb\xbf") ? 3 : 0;
-    while (at < l->n && isspace(l->begin[at]))
-        at++;
-    return at;
-}
-
-#define RECORD3D NO_SCENE("Record3D's metadata.json", "export it for nerfstudio: ns-process-data record3d")
-
-/** Texts that some tool's cameras are; those of scenes that are read, or may be, are left to their readers. */
-static const adcgs_kind *find_json(const look *l)
-{
-    static const struct {
-        const char *keys[3];
-        adcgs_kind kind;
-    } texts[] = {
-        {{"\"poses\"", "\"K\"", NULL}, RECORD3D},
-        {{"\"poses\"", "\"perFrameIntrinsicCoeffs\"", NULL}, RECORD3D},
-        {{"{\"poses\"", NULL, NULL}, RECORD3D},
-        {{"\"w2c\"", "\"fn\"", NULL}, NO_SCENE("a train_meta.json of Dynamic 3D Gaussians", "give the folder that it is in")},
-        {{"\"img_name\"", "\"position\"", "\"rotation\""},
-         NO_SCENE("cameras.json as 3D Gaussian splatting writes it", "give the folder of the scene that it was trained on")},
-        {{"\"sfm_data_version\"", NULL, NULL}, NO_SCENE("OpenMVG's sfm_data.json", TO_COLMAP)},
-        {{"\"featuresFolders\"", NULL, NULL}, NO_SCENE("Meshroom's cameras (SfM)", TO_COLMAP)},
-        {{"\"reference_lla\"", NULL, NULL}, NO_SCENE("OpenSfM's reconstruction.json", TO_COLMAP)},
-        {{"\"asset\"", "\"version\"", "\"accessors\""}, NO_SPLATS("a glTF text", "pack it as one binary file (GLB)")},
-        {{"\"means\"", "\"quats\"", "\"scales\""}, NO_SPLATS("the meta.json of splats (SOG)", TO_PLY)},
-    };
-    const size_t at = skip_blanks(l);
-    if (at >= l->n || (l->begin[at] != '{' && l->begin[at] != '[') || has(l, "\"frames\"") || has(l, "\"adcgs_scene\""))
-        return NULL;
-    for (size_t i = 0; i < ADCGS_COUNTOF(texts); i++) {
-        int all = 1;
-        for (int k = 0; k < 3 && texts[i].keys[k]; k++)
-            all &= has(l, texts[i].keys[k]);
-        if (all)
-            return &texts[i].kind;
-    }
-    return NULL;
-}
-
-static const adcgs_kind *find_markup(const look *l)
-{
-    static const adcgs_kind page = {ADCGS_KIND_PAGE, "a page of adcgs-share", NULL,
-                                    "open it in a browser; programs want the stream that it was made of", 0},
-                            html = OTHER("a page (HTML)", "save the file that it links to"),
-                            agisoft = NO_SCENE("Agisoft Metashape's cameras (XML)", TO_COLMAP),
-                            blocks = NO_SCENE("cameras as BlocksExchange (XML)", TO_COLMAP), xml = OTHER("an XML text", NULL);
-    static const char head[] = "<!doctype html", root[] = "<html";
-    const char *const at = (const char *)l->begin + skip_blanks(l);
-    const size_t left = l->n - skip_blanks(l);
-    if (left < 5 || *at != '<')
-        return NULL;
-    if ((left >= sizeof head && !strncasecmp(at, head, sizeof head - 1)) || !strncasecmp(at, root, sizeof root - 1))
-        return has(l, "<!-- SPDX-License-Identifier: BSD-2-Clause -->") ? &page : &html;
-    if (has(l, "<BlocksExchange"))
-        return &blocks;
-    if (has(l, "<document version") && has(l, "<chunk"))
-        return &agisoft;
-    return !strncmp(at, "<?xml", 5) ? &xml : NULL;
-}
-
-/** A packet each 188 bytes begins with the same byte. */
-static const adcgs_kind *find_transport(const look *l)
-{
-    static const adcgs_kind video = VIDEO("a video (MPEG transport stream)");
-    return l->n > 2 * 188 && l->begin[0] == 'G' && l->begin[188] == 'G' && l->begin[2 * 188] == 'G' ? &video : NULL;
-}
-
-/** A first line of printable characters with commas, and a second one with as many. */
-static const adcgs_kind *find_table(const look *l)
-{
-    static const adcgs_kind table = OTHER("a table (CSV)", NULL);
-    size_t commas[2] = {0, 0}, line = 0;
-    for (size_t i = 0; i < l->n && line < 2; i++) {
-        const uint8_t c = l->begin[i];
-        if ((c < ' ' && c != '\t' && c != '\r' && c != '\n') || c == 0x7f || c == '{')
-            return NULL;
-        commas[line] += c == ',';
-        line += c == '\n';
-    }
-    return line == 2 && commas[0] >= 2 && commas[1] == commas[0] ? &table : NULL;
-}
-
-static const adcgs_kind *find_packed(const look *l)
-{
-    static const adcgs_kind spz = SPLATS("splats (SPZ), or another file packed by gzip");
-    return begins(l, 0, "\x1f\x8b") ? &spz : NULL;
-}
-
-const adcgs_kind *adcgs_kind_of(const uint8_t *begin, size_t n, uint64_t size, const uint8_t *tail, const char *name)
-{
-    static const adcgs_kind *(*const finders[])(const look *) = {
-        find_in_boxes, find_in_tiff, find_bitmap,    find_in_archive, find_ply,    find_packed,
-        find_ksplat,   find_markup,  find_transport, find_json,       find_splat, find_table,
-    };
-    const look l = {begin, tail, name, adcgs_extension(name), n, size};
-    for (size_t i = 0; i < ADCGS_COUNTOF(magics); i++)
-        if (n >= (size_t)magics[i].at + magics[i].n && !memcmp(begin + magics[i].at, magics[i].bytes, magics[i].n))
-            return &magics[i].kind;
-    for (size_t i = 0; i < ADCGS_COUNTOF(finders); i++) {
-        const adcgs_kind *const kind = finders[i](&l);
-        if (kind)
-            return kind;
-    }
-    return &unknown;
-}
 
 const adcgs_kind *adcgs_kind_at(const char *path)
 {
-    uint8_t begin[ADCGS_KIND_BYTES], tail[TAIL];
+    uint8_t begin[ADCGS_KIND_BYTES], tail[ADCGS_KIND_TAIL];
+    const adcgs_kind *const unknown = adcgs_kind_of(begin, 0, 0, NULL, path);
     struct stat status;
     if (stat(path, &status)) /* not by opening it: whoever writes into a pipe would see a reader come and go */
-        return &unknown;
+        return unknown;
     if (S_ISDIR(status.st_mode))
         return &folder;
     const int fd = S_ISREG(status.st_mode) ? open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK) : -1;
     if (fd < 0)
-        return &unknown;
+        return unknown;
     const ssize_t n = pread(fd, begin, sizeof begin, 0);
-    const int has_tail = status.st_size >= TAIL && pread(fd, tail, TAIL, status.st_size - TAIL) == TAIL;
+    const int has_tail = status.st_size >= ADCGS_KIND_TAIL &&
+                         pread(fd, tail, ADCGS_KIND_TAIL, status.st_size - ADCGS_KIND_TAIL) == ADCGS_KIND_TAIL;
     close(fd);
-    return n > 0 ? adcgs_kind_of(begin, (size_t)n, (uint64_t)status.st_size, has_tail ? tail : NULL, path) : &unknown;
+    return n > 0 ? adcgs_kind_of(begin, (size_t)n, (uint64_t)status.st_size, has_tail ? tail : NULL, path) : unknown;
 }
 
 /* ---- What is wanted ---- */
@@ -431,7 +49,7 @@ static const char *advise(adcgs_kind_class class, adcgs_want want)
     case ADCGS_KIND_STREAM:
         return want == ADCGS_WANT_STREAM ? NULL : "adcgs-dec renders it, adcgs-info describes it";
     case ADCGS_KIND_VIDEO:
-        return want == ADCGS_WANT_STREAM ? NULL : FRAMES_OUT;
+        return want == ADCGS_WANT_STREAM ? NULL : "adcgs-import takes its frames out and finds their cameras";
     case ADCGS_KIND_IMAGE:
         return want == ADCGS_WANT_SCENE ? "nothing says where its camera was; adcgs-import finds the cameras of several" : NULL;
     case ADCGS_KIND_SPLATS:
@@ -439,7 +57,6 @@ static const char *advise(adcgs_kind_class class, adcgs_want want)
     case ADCGS_KIND_POINTS:
         return want == ADCGS_WANT_SCENE ? "points go with a scene, by --points" : NULL;
     case ADCGS_KIND_SCENE:
-        return want == ADCGS_WANT_STREAM ? "adcgs-enc makes a stream of a scene" : NULL;
     case ADCGS_KIND_FOLDER:
         return want == ADCGS_WANT_STREAM ? "adcgs-enc makes a stream of a scene" : NULL;
     default:
@@ -451,7 +68,7 @@ adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_w
 {
     const char *const advice = kind->advice ? kind->advice : advise(kind->class, want);
     const adcgs_status status = kind->class == wants[want].class ? ADCGS_ERR_UNSUPPORTED : ADCGS_ERR_DATA;
-    if (kind->advice && kind->class == wants[want].class) /* the right thing, packed otherwise: what to do says what is expected */
+    if (kind->advice && kind->class == wants[want].class) /* the right thing, packed otherwise */
         return adcgs_fail(error, status, "%.150s: %s, which is not read: %s", path, kind->name, advice);
     return adcgs_fail(error, status, "%.150s: %s, expected %s%s%s", path, kind->name, wants[want].name, advice ? ": " : "",
                       advice ? advice : "");
@@ -461,7 +78,8 @@ adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_w
 static int fits(const adcgs_kind *kind, adcgs_want want)
 {
     return kind->class == ADCGS_KIND_UNKNOWN || (kind->is_read && kind->class == wants[want].class) ||
-           (want == ADCGS_WANT_SCENE && (kind->class == ADCGS_KIND_FOLDER || (kind->is_read && kind->class == ADCGS_KIND_SPLATS))) ||
+           (want == ADCGS_WANT_SCENE && kind->class == ADCGS_KIND_FOLDER) ||
+           (want == ADCGS_WANT_SCENE && kind->is_read && kind->class == ADCGS_KIND_SPLATS) ||
            (want == ADCGS_WANT_POINTS && kind->is_read && kind->class == ADCGS_KIND_SPLATS);
 }
 

@@ -11,6 +11,7 @@
 #include "base/base.h"
 
 #define ADCGS_KIND_BYTES 4096 /**< of a file's beginning that are looked at */
+#define ADCGS_KIND_TAIL 32    /**< of its end */
 
 /** What a file holds. */
 typedef enum adcgs_kind_class {
@@ -47,7 +48,7 @@ typedef enum adcgs_want {
 
 /**
  * The kind of a file of `size` bytes that begins with n bytes, at most ADCGS_KIND_BYTES; never NULL. name: of the file. tail: its
- * last 32 bytes, or NULL.
+ * last ADCGS_KIND_TAIL bytes, or NULL.
  */
 const adcgs_kind *adcgs_kind_of(const uint8_t *begin, size_t n, uint64_t size, const uint8_t *tail, const char *name);
 /** The kind of what is at a path; unknown where nothing can be read, and for what is neither a regular file nor a folder. */

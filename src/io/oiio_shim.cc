@@ -69,7 +69,8 @@ adcgs_status open_input(opened &in, FILE *file, const char *reader, const char *
     in.reader = OIIO::ImageInput::create(reader);
     if (!in.reader) {
         OIIO::geterror(); /* take the message away, else the library prints it at exit */
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of OpenImageIO has no reader of %s; " CONVERT, path, reader);
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of OpenImageIO has no reader of %s; " CONVERT, path,
+                          reader);
     }
     std::string name = path;
     if (in.reader->supports("ioproxy")) {

@@ -4,6 +4,7 @@
 
 #include "io/draco_shim.h"
 #include "io/file.h"
+#include "io/kind.h"
 #include "io/ply.h"
 #include "io/points.h"
 
@@ -26,6 +27,7 @@ adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error 
     *out = (adcgs_points){0};
     uint8_t *data;
     size_t bytes;
+    ADCGS_TRY(adcgs_kind_check(path, ADCGS_WANT_POINTS, error));
     ADCGS_TRY(adcgs_file_load(&data, &bytes, path, FILE_MAX, error));
     adcgs_status status;
     if (adcgs_ply_is(data, bytes))

@@ -165,7 +165,8 @@ static adcgs_status check_kind(adcgs_ply *ply)
 {
     static const struct {
         const char *property, *kind;
-    } others[] = {{"packed_position", "a compressed PLY (it has packed_position), expected one of plain splats: decompress it first"},
+    } others[] = {{"packed_position",
+                   "a compressed PLY (it has packed_position), expected one of plain splats: decompress it first"},
                   {"trbf_center", "splats that change with time (Spacetime Gaussians: it has trbf_center), expected still ones"},
                   {"log_duration", "splats that change with time (FreeTimeGS: it has log_duration), expected still ones"},
                   {"scale_t", "splats that change with time (4D Gaussians: it has scale_t), expected still ones"}};

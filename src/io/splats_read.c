@@ -4,6 +4,7 @@
 
 #include "io/file.h"
 #include "io/glb.h"
+#include "io/kind.h"
 #include "io/ply.h"
 #include "io/splats_ply.h"
 #include "io/spz.h"
@@ -57,6 +58,7 @@ adcgs_status adcgs_splats_read(adcgs_splats *out, const char *path, adcgs_error 
     uint8_t *data;
     size_t bytes;
     *out = (adcgs_splats){0};
+    ADCGS_TRY(adcgs_kind_check(path, ADCGS_WANT_SPLATS, error));
     ADCGS_TRY(adcgs_file_load(&data, &bytes, path, FILE_MAX, error));
     const adcgs_status status = adcgs_splats_parse(out, data, bytes, path, error);
     free(data);

@@ -9,6 +9,7 @@
 #include "data/extent.h"
 #include "data/paths.h"
 #include "data/pose.h"
+#include "io/extension.h"
 #include "io/file.h"
 #include "io/kind.h"
 #include "io/splats.h"
@@ -24,6 +25,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
@@ -240,6 +242,35 @@ static int has_footage(const char *folder)
     return found;
 }
 
+static int is_splats(const char *name)
+{
+    static const char *const ends[] = {"ply", "spz", "glb", "splat", "ksplat", "sog", "splatv"};
+    const char *const end = adcgs_extension(name);
+    for (size_t i = 0; i < ADCGS_COUNTOF(ends); i++)
+        if (!strcasecmp(end, ends[i]))
+            return 1;
+    return 0;
+}
+
+/** A folder without cameras that has files of splats, one for each moment, as some players take them. */
+static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
+{
+    adcgs_listing listing;
+    adcgs_error unused;
+    adcgs_status status = ADCGS_OK;
+    if (adcgs_listing_read(&listing, folder, is_splats, &unused) != ADCGS_OK)
+        return ADCGS_OK;
+    const int is_cloud = listing.n == 1 && !strcmp(listing.names[0], "points3d.ply"); /* of a scene that lacks its cameras */
+    char *const path = listing.n && !is_cloud ? adcgs_path("%s/%s", folder, listing.names[0]) : NULL;
+    if (path && adcgs_kind_at(path)->class == ADCGS_KIND_SPLATS)
+        status = adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: a folder of %zu files of splats (%.60s): %s", folder, listing.n,
+                            listing.names[0], listing.n > 1 ? "sequences of splats are not read, give one file of them"
+                                                            : "give the file itself");
+    free(path);
+    adcgs_listing_free(&listing);
+    return status;
+}
+
 static adcgs_status bare(const char *path, adcgs_error *error)
 {
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a scene: nothing says where its cameras were" HINT, path);
@@ -264,6 +295,7 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     case ADCGS_DATASET_SPLATS:
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats", scene->directory);
     default:
+        ADCGS_TRY(refuse_sequence(scene->directory, error));
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
                           "metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model%s",

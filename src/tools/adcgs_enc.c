@@ -10,6 +10,7 @@
 #include "io/claim.h"
 #include "io/extension.h"
 #include "io/json.h"
+#include "io/kind.h"
 #include "layouts/open.h"
 #include "tools/enc_live.h"
 #include "tools/enc_parts.h"
@@ -317,6 +318,8 @@ static adcgs_status encode(const adcgs_cli *cli, const adcgs_enc_options *o, con
 
 /* ---- Command line ---- */
 
+#define OPERANDS_MAX 1000000
+
 static const adcgs_cli program = {
     .program = "adcgs-enc",
     .operands = "SCENE",
@@ -325,8 +328,21 @@ static const adcgs_cli program = {
                "a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), of which it renders views.\n"
                "Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or millions: 20k, 2M.",
     .min_operands = 0,
-    .max_operands = 1,
+    .max_operands = OPERANDS_MAX, /* one is expected: more are told apart below */
 };
+
+/** Files of splats, one for each moment, are what other players take. */
+static int tell_surplus(const adcgs_cli *cli, int n, char **operands)
+{
+    int splats = 0;
+    while (splats < n && adcgs_kind_at(operands[splats])->class == ADCGS_KIND_SPLATS)
+        splats++;
+    if (splats == n)
+        return adcgs_cli_error(cli, ADCGS_ERR_UNSUPPORTED,
+                               "%.100s and %d more files of splats: sequences of splats are not read, expected one file",
+                               *operands, n - 1);
+    return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "%s: one operand too many; try '%s --help'", operands[1], cli->program);
+}
 
 static int list_settings(const adcgs_cli *cli, const adcgs_enc_options *o)
 {
@@ -480,6 +496,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         return list_settings(cli, o);
     if (first >= argc)
         return adcgs_cli_error(cli, ADCGS_ERR_USAGE, "one operand expected: SCENE");
+    if (first + 1 < argc)
+        return tell_surplus(cli, argc - first, argv + first);
     o->scene = argv[first];
     if (o->plan)
         return -1;

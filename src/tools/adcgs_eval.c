@@ -4,6 +4,7 @@
 
 #include "base/cpu.h"
 #include "cli/cli.h"
+#include "io/kind.h"
 #include "layouts/open.h"
 #include "metric/crop.h"
 #include "tools/eval_match.h"
@@ -199,6 +200,14 @@ static adcgs_status compare(report *r, adcgs_decoder *decoder, adcgs_error *erro
     return status;
 }
 
+static adcgs_status check_operands(const settings *s, adcgs_error *error)
+{
+    if (adcgs_kind_at(s->file)->class != ADCGS_KIND_STREAM && adcgs_kind_at(s->scene)->class == ADCGS_KIND_STREAM)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%.100s is a stream and %.100s is none: the stream comes first, then the scene",
+                          s->scene, s->file);
+    return adcgs_kind_check(s->file, ADCGS_WANT_STREAM, error);
+}
+
 static adcgs_status decode_and_compare(report *r, adcgs_error *error)
 {
     adcgs_decoder *decoder;
@@ -217,6 +226,7 @@ static adcgs_status run(const settings *s, adcgs_error *error)
     report r = {.set = s, .box = s->box};
     r.out = (adcgs_eval_report){.file = s->file, .scene = s->scene, .split = splits[s->split], .csv = s->csv,
                                 .measure = s->measure, .as_json = s->json, .box = s->crop ? &r.box : NULL};
+    ADCGS_TRY(check_operands(s, error));
     if (s->images && mkdir(s->images, 0777) && errno != EEXIST)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot make the folder: %s", s->images, strerror(errno));
     ADCGS_TRY(adcgs_eval_report_open(&r.out, error));

@@ -8,6 +8,7 @@
 #include "cli/cli.h"
 #include "cli/text.h"
 #include "io/http.h"
+#include "io/kind.h"
 #include "model/model_priv.h"
 #include "stream/input.h"
 #include "tools/info_check.h"
@@ -83,6 +84,7 @@ static adcgs_status read_report(adcgs_info_report *r, const settings *s, adcgs_e
 {
     adcgs_read_options options = { .layers = 0 };
     origin from;
+    ADCGS_TRY(adcgs_kind_check(s->input, ADCGS_WANT_STREAM, error));
     ADCGS_TRY(open_origin(&from, s->input, error));
     const adcgs_read_fn read = from.http ? adcgs_http_read : adcgs_file_read;
     void *const user = from.http ? (void *)from.http : (void *)from.file;
@@ -252,7 +254,9 @@ static adcgs_status print_report(const adcgs_info_report *r, const settings *s, 
 static int check(const adcgs_cli *cli, const settings *s, adcgs_error *error)
 {
     uint32_t faults = 0;
-    adcgs_status status = adcgs_info_check(s->input, s->repair, &faults, error);
+    adcgs_status status = adcgs_kind_check(s->input, ADCGS_WANT_STREAM, error);
+    if (status == ADCGS_OK)
+        status = adcgs_info_check(s->input, s->repair, &faults, error);
     if (status == ADCGS_OK)
         status = adcgs_cli_flush(error);
     fflush(stdout);

@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "io/atomic.h"
 #include "io/file.h"
+#include "io/kind.h"
 #include "tools/share_page.h"
 
 #include <adcgs/adcgs.h>
@@ -79,6 +80,8 @@ static adcgs_status share(const settings *s, const char *path, adcgs_error *erro
     if (path && adcgs_atomic_same(path, s->output))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%.160s: the page would take the place of the stream", path);
     if (path)
+        status = adcgs_kind_check(path, ADCGS_WANT_STREAM, error);
+    if (status == ADCGS_OK && path)
         status = adcgs_file_load(&p.stream, &p.stream_bytes, path, STREAM_BYTES_MAX, error);
     if (status == ADCGS_OK && path)
         status = check_stream(s, path, &p, error);

@@ -2,6 +2,7 @@
 /** \file Opening a stream, wherever it is. */
 #include "tools/dec_open.h"
 
+#include "io/kind.h"
 #include "stream/input.h"
 #include "stream/salvage.h"
 
@@ -90,6 +91,7 @@ adcgs_status adcgs_dec_open(adcgs_decoder **decoder, adcgs_http **http, const ch
                             adcgs_error *error)
 {
     *http = NULL;
+    ADCGS_TRY(adcgs_kind_check(input, ADCGS_WANT_STREAM, error));
     if (adcgs_is_url(input))
         return how->config->conceal ? open_whole(decoder, input, how, error) : open_url(decoder, http, input, how, error);
     if (strcmp(input, "-"))

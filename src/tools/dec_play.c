@@ -11,6 +11,7 @@
 #include "cli/cli.h"
 #include "io/file.h"
 #include "io/http.h"
+#include "io/kind.h"
 #include "play/play.h"
 #include "stream/salvage.h"
 
@@ -141,6 +142,7 @@ adcgs_status adcgs_dec_play_run(const adcgs_dec_play *how, int *failed, adcgs_er
 {
     adcgs_play_settings settings = {.source.path = strcmp(how->input, "-") ? how->input : "stream", .config = how->config,
                                     .script = how->script, .interrupted = adcgs_interrupted};
+    ADCGS_TRY(adcgs_kind_check(how->input, ADCGS_WANT_STREAM, error));
     memcpy(settings.size, how->request.size, sizeof settings.size);
     /* What is damaged at a URL is looked at again and again. */
     const int comes = adcgs_pipe_is(how->input) || (adcgs_is_url(how->input) && !how->config.conceal);

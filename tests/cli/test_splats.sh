@@ -3,7 +3,7 @@
 # Splats and points in files: adcgs-dec --splats, adcgs-enc and adcgs-eval on a PLY of splats, adcgs-info --points.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
-need adcgs-dec adcgs-eval adcgs-enc adcgs-info adcgs-demo-scene
+need adcgs-dec adcgs-eval adcgs-enc adcgs-info adcgs-share adcgs-demo-scene
 
 # vertices FILE: how many it declares; size FILE: bytes behind its header.
 vertices() { sed -n '/^end_header/q; s/^element vertex //p' "$1"; }
@@ -95,5 +95,37 @@ if [ -f .libs/adcgs_draco.so ]; then
         env ADCGS_MODULES="$dir/none" ./adcgs-enc "$dir/scene" -o "$dir/x.adcgs" --points "$dir/points.drc"
     expect 0 "" env ADCGS_MODULES="$dir/none" ./adcgs-info "$s"
 fi
-[ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || bad "something was left behind"
+
+# What is no scene, and what is no stream, is named by what it is.
+mkdir "$dir/sequence" && cp "$dir/t000.ply" "$dir/t001.ply" "$dir/sequence"
+expect 5 "sequence: a folder of 2 files of splats (t000.ply): sequences" ./adcgs-enc "$dir/sequence" -o "$dir/x.adcgs"
+expect 5 "t000.ply and 1 more files of splats" ./adcgs-enc "$dir/t000.ply" "$dir/t001.ply" -o "$dir/x.adcgs"
+expect 2 "$dir/t000.ply: one operand too many" ./adcgs-enc "$dir/scene" "$dir/t000.ply" -o "$dir/x.adcgs"
+expect 4 "s.adcgs: an adcgs stream, expected a scene: adcgs-dec" ./adcgs-enc "$s" -o "$dir/x.adcgs"
+expect 2 "s.adcgs is a stream and .*/scene is none: the stream comes first" ./adcgs-eval "$dir/scene" "$s"
+printf '<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html lang="en">' >"$dir/page"
+for program in "adcgs-info" "adcgs-info --check" "adcgs-dec --md5" "adcgs-share -o $dir/x.html"; do
+    expect 4 "page: a page of adcgs-share, expected an adcgs stream" ./$program "$dir/page"
+    expect 4 "scene: a folder, expected an adcgs stream: adcgs-enc" ./$program "$dir/scene"
+done
+expect 4 "page: a page of adcgs-share" ./adcgs-eval "$dir/page" "$dir/scene"
+printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\200\077\0\0\200\077\377\377\377\377\377\200\200\200' >"$dir/splat"
+for option in "" "--dataset splats"; do
+    expect 4 "splat: splats (.splat), expected\|splat: splats (.splat), which is not read: convert" \
+        sh -c "./adcgs-enc '$dir/splat' -o '$dir/x.adcgs' $option || exit 4"
+done
+# Nor is a playlist a photo, nor a video, nor a name that a reader of images makes something of.
+train=$dir/scene/transforms_train.json
+cp -r "$dir/scene" "$dir/photos"
+for name in x.mp4 x.ppm 'x.null?RES=64x64\&CHANNELS=3'; do
+    sed "1,/file_path/s#\"file_path\": *\"[^\"]*\"#\"file_path\": \"$name\"#" "$train" >"$dir/photos/transforms_train.json"
+    file=$dir/photos/$(echo "$name" | tr -d '\\')
+    printf 'ffconcat version 1.0\nfile secret.mp4' >"$file"
+    expect 4 "a playlist (ffconcat), expected an image" ./adcgs-enc "$dir/photos" -o "$dir/x.adcgs" --preset draft -n 10
+    printf '\0\0\0\030ftypisom\0\0\0\0isomavc1' >"$file"
+    expect 4 "a video (MP4 or QuickTime), expected an image" ./adcgs-enc "$dir/photos" -o "$dir/x.adcgs" --preset draft -n 10
+    printf 'any bytes' >"$file"
+    expect 4 "a file of no kind that is known, expected an image" ./adcgs-enc "$dir/photos" -o "$dir/x.adcgs" --preset draft -n 10
+done
+[ -z "$(find "$dir" \( -name 'x.adcgs' -o -name 'x.html' -o -name '.*tmp*' \))" ] || bad "something was left behind"
 exit $failed

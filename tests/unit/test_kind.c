@@ -31,7 +31,8 @@ static void test_names(void **state)
         adcgs_kind_class class;
     } cases[] = {
         {"a", BYTES("\x8b""ADC\r\n\x1a\n"), "an adcgs stream", ADCGS_KIND_STREAM},
-        {"a", BYTES("<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html"), "a page of adcgs-share", ADCGS_KIND_PAGE},
+        {"a", BYTES("<!DOCTYPE html>\n<!-- SPDX-License-Identifier: BSD-2-Clause -->\n<html"),
+         "a page of adcgs-share", ADCGS_KIND_PAGE},
         {"a", BYTES("\xef\xbb\xbf <html lang=\"de\">"), "a page (HTML)", ADCGS_KIND_OTHER},
         {"a.png", BYTES("\xff\xd8\xff\xe0"), "a JPEG image", ADCGS_KIND_IMAGE},
         {"a", BYTES("RIFF\1\2\3\4WEBPVP8 "), "a WebP image", ADCGS_KIND_IMAGE},
@@ -60,17 +61,24 @@ static void test_names(void **state)
         {"a", BYTES("ply\nformat ascii 1.0\nelement vertex 1\nproperty float f_dc_0\n"), "splats (PLY)", ADCGS_KIND_SPLATS},
         {"a", BYTES("ply\r\nformat ascii 1.0\r\n"), "a PLY file", ADCGS_KIND_SPLATS},
         {"a", BYTES("Kg\0\0\xe9\0\0\0[{"), "splats that change with time (.splatv)", ADCGS_KIND_SPLATS},
-        {"a.zip", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x05\0\0\0b.png"), "an archive (ZIP)", ADCGS_KIND_OTHER},
-        {"a.sog", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0c\0\0\0means_l.webp"), "splats (SOG)", ADCGS_KIND_SPLATS},
+        {"a.zip", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x05\0\0\0b.png"),
+         "an archive (ZIP)", ADCGS_KIND_OTHER},
+        {"a.sog", BYTES("PK\3\4\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0c\0\0\0means_l.webp"),
+         "splats (SOG)", ADCGS_KIND_SPLATS},
         {"a", BYTES("PK\3\4 params.npy"), "arrays of NumPy (NPZ)", ADCGS_KIND_OTHER},
         {"a", BYTES("LASF"), "a point cloud (LAS or LAZ)", ADCGS_KIND_POINTS},
         {"a", BYTES("{\"w\":1,\"h\":1,\"K\":[1],\"poses\":[[1]]}"), "Record3D's metadata.json", ADCGS_KIND_SCENE},
         {"a", BYTES("{\"poses\":[["), "Record3D's metadata.json", ADCGS_KIND_SCENE},
-        {"a", BYTES("{\"w\":1,\"h\":1,\"k\":[],\"w2c\":[],\"fn\":[]}"), "a train_meta.json of Dynamic 3D Gaussians", ADCGS_KIND_SCENE},
-        {"a", BYTES("[{\"id\":0,\"img_name\":\"a\",\"position\":[],\"rotation\":[]}]"), "cameras.json as 3D Gaussian splatting writes it",
+        {"a", BYTES("{\"w\":1,\"h\":1,\"k\":[],\"w2c\":[],\"fn\":[]}"),
+         "a train_meta.json of Dynamic 3D Gaussians", ADCGS_KIND_SCENE},
+        {"a", BYTES("[{\"id\":0,\"img_name\":\"a\",\"position\":[],\"rotation\":[]}]"),
+         "cameras.json as 3D Gaussian splatting writes it",
          ADCGS_KIND_SCENE},
+        {"a", BYTES("{\"camera_angle_x\":1,\"frames\":[{\"transform_matrix\":"),
+         "the cameras of a scene (JSON)", ADCGS_KIND_SCENE},
         {"a", BYTES("{\"K\":1,\"poses\":2,\"frames\":[]}"), "a file of no kind that is known", ADCGS_KIND_UNKNOWN},
-        {"a", BYTES("<?xml version=\"1.0\"?>\n<document version=\"2.0.0\">\n<chunk label=\"a\">"), "Agisoft Metashape's cameras (XML)",
+        {"a", BYTES("<?xml version=\"1.0\"?>\n<document version=\"2.0.0\">\n<chunk label=\"a\">"),
+         "Agisoft Metashape's cameras (XML)",
          ADCGS_KIND_SCENE},
         {"a", BYTES("<?xml version=\"1.0\"?>\n<b/>"), "an XML text", ADCGS_KIND_OTHER},
         {"a", BYTES("#name,x,y,alt\na,1,2,3\n"), "RealityCapture's cameras (CSV)", ADCGS_KIND_SCENE},
@@ -135,24 +143,28 @@ static void test_no_images(void **state)
     refused("x.null?RES=64x64&CHANNELS=3", BYTES("any bytes"), ADCGS_ERR_DATA, "expected an image");
     refused("x.png", BYTES("any bytes"), ADCGS_ERR_DATA, "a file of no kind that is known");
     refused("x", BYTES("any bytes"), ADCGS_ERR_DATA, "x: a file of no kind that is known");
-    refused("x.mp4", BYTES("\0\0\0\x18" "ftypisom\0\0\0\0isomavc1"), ADCGS_ERR_DATA, "a video (MP4 or QuickTime), expected an image");
+    refused("x.mp4", BYTES("\0\0\0\x18" "ftypisom\0\0\0\0isomavc1"),
+            ADCGS_ERR_DATA, "a video (MP4 or QuickTime), expected an image");
     refused("x.jpg", BYTES("\x1a\x45\xdf\xa3\x9f"), ADCGS_ERR_DATA, "adcgs-import takes its frames out");
     refused("x.tga", BYTES("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0\1\2\3"), ADCGS_ERR_DATA, "x.tga: ");
-    refused("x.psd", BYTES("8BPS\0\1\0\0\0\0\0\0\0\3"), ADCGS_ERR_UNSUPPORTED, "a Photoshop document, which is not read: convert");
+    refused("x.psd", BYTES("8BPS\0\1\0\0\0\0\0\0\0\3"),
+            ADCGS_ERR_UNSUPPORTED, "a Photoshop document, which is not read: convert");
     refused("x.vdb", BYTES(" BDV\0\0\0\0"), ADCGS_ERR_DATA, "x.vdb: ");
     refused("x.dcm", BYTES("\0\0\0\0DICM"), ADCGS_ERR_DATA, "x.dcm: ");
-    refused("x.nef", BYTES("MM\0*\0\0\0\x08\0\0\0\0"), ADCGS_ERR_UNSUPPORTED, "a raw image of a camera, which is not read: develop");
+    refused("x.nef", BYTES("MM\0*\0\0\0\x08\0\0\0\0"),
+            ADCGS_ERR_UNSUPPORTED, "a raw image of a camera, which is not read: develop");
     refused("x.adcgs", BYTES("\x8b""ADC\r\n\x1a\n"), ADCGS_ERR_DATA, "an adcgs stream, expected an image");
 }
 
 /** Sizes are held against the bound before there is memory for pixels. */
 static void test_sizes(void **state)
 {
-    refused("x.gif", BYTES("GIF89a\xff\xff\xff\xff\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\xff\xff\xff\xff\0\2\2D\1\0;"), ADCGS_ERR_DATA,
-            "x.gif: 65535x65535 pixels, expected 1x1 to 16384x16384");
-    refused("x.bmp", BYTES("BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\xff\xff\xff\x7f\1\0\0\0\1\0\x18\0\1\0\0\0\0\0\0\0"), ADCGS_ERR_DATA,
-            "x.bmp: 2147483647x1 pixels, expected");
-    refused("x.bmp", BYTES("BM\0\0\0\0\0\0\0\0\x1a\0\0\0\x0c\0\0\0\1\0\xff\xff\1\0\x18\0"), ADCGS_ERR_DATA, "x.bmp: 1x65535 pixels");
+    refused("x.gif", BYTES("GIF89a\xff\xff\xff\xff\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\xff\xff\xff\xff\0\2\2D\1\0;"),
+            ADCGS_ERR_DATA, "x.gif: 65535x65535 pixels, expected 1x1 to 16384x16384");
+    refused("x.bmp", BYTES("BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\xff\xff\xff\x7f\1\0\0\0\1\0\x18\0"),
+            ADCGS_ERR_DATA, "x.bmp: 2147483647x1 pixels, expected");
+    refused("x.bmp", BYTES("BM\0\0\0\0\0\0\0\0\x1a\0\0\0\x0c\0\0\0\1\0\xff\xff\1\0\x18\0"), ADCGS_ERR_DATA,
+            "x.bmp: 1x65535 pixels");
     refused("x.hdr", BYTES("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 70000 +X 70000\n"), ADCGS_ERR_DATA, "70000x70000 pixels");
     refused("x.pgm", BYTES("P2\n70000 70000\n255\n1 2 3\n"), ADCGS_ERR_DATA, "70000x70000 pixels");
 }
@@ -240,7 +252,8 @@ static void test_wants(void **state)
     assert_int_equal(adcgs_kind_check("http://127.0.0.1:9/a.adcgs", ADCGS_WANT_STREAM, &error), ADCGS_OK);
     expect_error(adcgs_kind_check(in("p.html"), ADCGS_WANT_STREAM, &error), ADCGS_ERR_DATA, "p.html",
                  "a page of adcgs-share, expected an adcgs stream: open it in a browser");
-    expect_error(adcgs_kind_check(folder, ADCGS_WANT_STREAM, &error), ADCGS_ERR_DATA, folder, "a folder, expected an adcgs stream");
+    expect_error(adcgs_kind_check(folder, ADCGS_WANT_STREAM, &error), ADCGS_ERR_DATA, folder,
+                 "a folder, expected an adcgs stream");
     expect_error(adcgs_scene_open(&scene, in("s.adcgs"), NULL, &error), ADCGS_ERR_DATA, "s.adcgs",
                  "an adcgs stream, expected a scene: adcgs-dec renders it");
     assert_int_equal(mkfifo(in("pipe"), 0600), 0);

@@ -10,7 +10,8 @@
     "property float x\nproperty float y\nproperty float z\nproperty float f_dc_0\nproperty float f_dc_1\n"                \
     "property float f_dc_2\nproperty float opacity\nproperty float scale_0\nproperty float scale_1\n"
 #define TURN "property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\n"
-#define HEAD(comments) "ply\nformat ascii 1.0\n" comments "element vertex 1\n" PROPERTIES "property float scale_2\n" TURN "end_header\n"
+#define HEAD(comments) \
+    "ply\nformat ascii 1.0\n" comments "element vertex 1\n" PROPERTIES "property float scale_2\n" TURN "end_header\n"
 #define ONE "1 2 3 0 0.5 -1 2 -4 -3 -2 1 0 0 0\n"
 
 static adcgs_splats parse(const void *data, size_t bytes)
@@ -72,7 +73,8 @@ static void test_headers(void **state)
                "property float f\nelement g 1\nproperty list int float h\nelement i 1\nproperty char j\nelement vertex 1\n"
                "property double rot_0\nproperty list uchar float k\nproperty float rot_1\nproperty float rot_2\n"
                "property float64 rot_3\nproperty float scale_2\nproperty float scale_1\nproperty double scale_0\n"
-               "property float32 opacity\nproperty double f_dc_2\nproperty float f_dc_1\nproperty uchar l\nproperty float f_dc_0\n"
+               "property float32 opacity\nproperty double f_dc_2\nproperty float f_dc_1\nproperty uchar l\n"
+               "property float f_dc_0\n"
                "property float z\nproperty double y\nproperty float x\nelement face 1\nproperty list uchar int m\nend_header\n"
                "2 7 7 1 1 2 0 -5 1 3 3e0 9 9 9 0 0 0 -2 -3 -4 2 -1 0.5 77 0 3 2 1\n0\n");
 }
@@ -146,7 +148,8 @@ static void test_other_kinds(void **state)
     }
     put_text("t.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                       "property uchar red\nend_header\n1 2 3 4\n");
-    expect_error(adcgs_splats_read(&s, in("t.ply"), &error), ADCGS_ERR_DATA, "t.ply", "a point cloud goes with a scene, by --points");
+    expect_error(adcgs_splats_read(&s, in("t.ply"), &error), ADCGS_ERR_DATA, "t.ply",
+                 "a point cloud goes with a scene, by --points");
 }
 
 /* ---- Antialiasing ---- */
