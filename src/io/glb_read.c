@@ -268,6 +268,7 @@ typedef struct parts {
     adcgs_splats *list;
     size_t n;
     uint64_t splats;
+    double offset[3]; /**< of a file that is far from the origin: left out of all places */
 } parts;
 
 static void clear_parts(parts *p)
@@ -277,9 +278,30 @@ static void clear_parts(parts *p)
     free(p->list);
 }
 
-/** Takes *splats. */
-static adcgs_status add_part(parts *p, adcgs_splats *splats, const double place[12], const adcgs_glb *g)
+#define FAR 1024.0 /* times as far as the splats reach: binary32 would leave less than four digits of a place */
+
+/** A place far from the origin, as scenes in map coordinates have it, becomes the offset of the file. */
+static void find_offset(parts *p, const adcgs_splats *s, const double place[12])
 {
+    double reach = 0.0, far = 0.0;
+    for (int a = 0; a < 3; a++) {
+        far = fmax(far, fabs(place[4 * a + 3]));
+        for (uint32_t i = 0; i < s->n; i++)
+            reach = fmax(reach, fabs((double)s->mean[a][i]));
+    }
+    for (int a = 0; a < 3 && far > FAR * reach; a++)
+        p->offset[a] = place[4 * a + 3];
+}
+
+/** Takes *splats. */
+static adcgs_status add_part(parts *p, adcgs_splats *splats, const double node[12], const adcgs_glb *g)
+{
+    double place[12];
+    memcpy(place, node, sizeof place);
+    if (!p->n)
+        find_offset(p, splats, place);
+    for (int a = 0; a < 3; a++)
+        place[4 * a + 3] -= p->offset[a];
     adcgs_splats *const list = realloc(p->list, (p->n + 1) * sizeof *list);
     if (!list) {
         adcgs_splats_free(splats);
@@ -343,9 +365,12 @@ static adcgs_status read_file(adcgs_glb *g, parts *p, adcgs_splats *out, const u
     ADCGS_TRY(check_required(g));
     ADCGS_TRY(read_parts(p, g));
     if (p->n > 1)
-        return adcgs_splats_join(out, p->list, p->n, g->path, g->error);
-    *out = *p->list;
-    *p->list = (adcgs_splats){0};
+        ADCGS_TRY(adcgs_splats_join(out, p->list, p->n, g->path, g->error));
+    else {
+        *out = *p->list;
+        *p->list = (adcgs_splats){0};
+    }
+    memcpy(out->offset, p->offset, sizeof p->offset);
     return ADCGS_OK;
 }
 

@@ -7,12 +7,14 @@
 #ifdef HAVE_ENCODER
 
 #include "io/json.h"
+#include "io/offset.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define ATTRIBUTES 5
 #define FLOATS 14 /* of a splat */
+#define DIGITS 9  /* give each binary32 back */
 
 static const struct {
     const char *name, *type;
@@ -129,12 +131,28 @@ static void say_mesh(adcgs_json *json)
     close_one(json);
 }
 
+/** The one node; where the scene is far from the origin, its place. */
+static void say_node(adcgs_json *json, const adcgs_splats *s)
+{
+    open_one(json, "nodes");
+    adcgs_json_int(json, "mesh", 0);
+    if (adcgs_offset_is(s->offset)) {
+        json->digits = 17;
+        adcgs_json_open(json, "translation", '[');
+        for (int a = 0; a < 3; a++)
+            adcgs_json_real(json, NULL, s->offset[a]);
+        adcgs_json_close(json);
+        json->digits = DIGITS;
+    }
+    close_one(json);
+}
+
 static adcgs_status write_json(FILE *file, const adcgs_splats *s, const char *generator, const char *path, adcgs_error *error)
 {
     adcgs_json json;
     adcgs_json_init(&json);
     json.is_line = 1;
-    json.digits = 9; /* give each binary32 back */
+    json.digits = DIGITS;
     adcgs_json_open(&json, NULL, '{');
     adcgs_json_open(&json, "asset", '{');
     adcgs_json_string(&json, "version", "2.0");
@@ -147,9 +165,7 @@ static adcgs_status write_json(FILE *file, const adcgs_splats *s, const char *ge
     adcgs_json_int(&json, NULL, 0);
     adcgs_json_close(&json);
     close_one(&json);
-    open_one(&json, "nodes");
-    adcgs_json_int(&json, "mesh", 0);
-    close_one(&json);
+    say_node(&json, s);
     say_mesh(&json);
     say_numbers(&json, s);
     adcgs_json_close(&json);

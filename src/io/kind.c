@@ -13,7 +13,7 @@ static const adcgs_kind folder = {ADCGS_KIND_FOLDER, "a folder", NULL, NULL, 0};
 const adcgs_kind *adcgs_kind_at(const char *path)
 {
     uint8_t begin[ADCGS_KIND_BYTES], tail[ADCGS_KIND_TAIL];
-    const adcgs_kind *const unknown = adcgs_kind_of(begin, 0, 0, NULL, path);
+    const adcgs_kind *const unknown = adcgs_kind_of((const uint8_t *)"", 0, 0, NULL, path);
     struct stat status;
     if (stat(path, &status)) /* not by opening it: whoever writes into a pipe would see a reader come and go */
         return unknown;

@@ -53,6 +53,8 @@ adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adc
 
 /** As PLY or Draco, by the name's extension; ADCGS_ERR_USAGE for another. */
 adcgs_status adcgs_points_write(const adcgs_points *points, const char *path, adcgs_error *error);
+/** The same of points that an offset is to be added to (io/offset.h): PLY names it in a comment, Draco has no place for it. */
+adcgs_status adcgs_points_write_from(const adcgs_points *points, const double offset[3], const char *path, adcgs_error *error);
 
 #ifdef __cplusplus
 }

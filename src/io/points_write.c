@@ -5,17 +5,21 @@
 #include "io/atomic.h"
 #include "io/draco_shim.h"
 #include "io/extension.h"
+#include "io/offset.h"
 #include "io/points.h"
 
 #include <stdlib.h>
 #include <strings.h>
 
-adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs_error *error)
+static adcgs_status write_ply(const adcgs_points *points, const double offset[3], const char *path, adcgs_error *error)
 {
     adcgs_atomic atomic;
     ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
+    fputs("ply\nformat binary_little_endian 1.0\n", atomic.file);
+    if (adcgs_offset_is(offset))
+        fprintf(atomic.file, "comment offset %.17g %.17g %.17g\n", offset[0], offset[1], offset[2]);
     fprintf(atomic.file,
-            "ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty float x\nproperty float y\nproperty float z\n"
+            "element vertex %u\nproperty float x\nproperty float y\nproperty float z\n"
             "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
             points->n);
     for (uint32_t i = 0; i < points->n; i++) {
@@ -26,6 +30,11 @@ adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs
         fwrite(record, sizeof record, 1, atomic.file);
     }
     return adcgs_atomic_commit(&atomic, error);
+}
+
+adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs_error *error)
+{
+    return write_ply(points, (const double[3]){0.0, 0.0, 0.0}, path, error);
 }
 
 adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adcgs_error *error)
@@ -42,9 +51,14 @@ adcgs_status adcgs_draco_write(const adcgs_points *points, const char *path, adc
 
 adcgs_status adcgs_points_write(const adcgs_points *points, const char *path, adcgs_error *error)
 {
+    return adcgs_points_write_from(points, (const double[3]){0.0, 0.0, 0.0}, path, error);
+}
+
+adcgs_status adcgs_points_write_from(const adcgs_points *points, const double offset[3], const char *path, adcgs_error *error)
+{
     const char *const extension = adcgs_extension(path);
     if (!strcasecmp(extension, "ply"))
-        return adcgs_ply_write(points, path, error);
+        return write_ply(points, offset, path, error);
     if (!strcasecmp(extension, "drc"))
         return adcgs_draco_write(points, path, error);
     return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name of points must end in .ply or .drc", path);

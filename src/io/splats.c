@@ -4,6 +4,8 @@
 
 #include "io/splats.h"
 
+#include "io/offset.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -135,9 +137,13 @@ adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primit
                                const char *path, adcgs_error *error)
 {
     uint32_t n = 0;
+    double near_by[3];
     ADCGS_TRY(adcgs_splats_alloc(out, primitives->n, path, error));
+    adcgs_offset_of(out->offset, origin, scale);
+    for (int a = 0; a < 3; a++)
+        near_by[a] = origin[a] - out->offset[a];
     for (uint32_t i = 0; i < primitives->n; i++)
-        n += (uint32_t)take_one(out, n, primitives, i, origin, scale);
+        n += (uint32_t)take_one(out, n, primitives, i, near_by, scale);
     for (uint32_t i = n; i < out->n; i++) /* one that was left out may stand here */
         out->opacity[i] = 0.0f;
     out->n = n;

@@ -28,6 +28,7 @@ typedef struct adcgs_splats {
     uint32_t n;
     uint8_t axes;      /**< ADCGS_SPLATS_Y_UP..., as far as the file or the stream tells */
     uint8_t antialiased; /**< trained so: a view scales opacities by what the screen filter takes (see data/splat_views.h) */
+    double offset[3];  /**< of a scene far from the origin: what binary32 cannot hold is left out of mean, and added by readers */
     float *mean[3], *scale[3], *rotation[4]; /**< world units; standard deviations, > 0; unit quaternion w x y z */
     float *opacity;    /**< 0..1 */
     float *colour[3];  /**< 0.5 + ADCGS_SPLATS_DC f_dc: RGB seen from everywhere, not clipped */
@@ -48,7 +49,7 @@ adcgs_status adcgs_splats_join(adcgs_splats *out, const adcgs_splats *parts, siz
 /** The splats as the renderer takes them; they stay where they are. */
 void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out);
 /**
- * A decoder's primitives in world units, world = origin + scale * scene. Left out are those that draw nothing: of opacity 0, or
+ * A decoder's primitives in world units, world = origin + scale * scene, less the offset of a far origin (io/offset.h). Left out are those that draw nothing: of opacity 0, or
  * so far out that binary32 cannot hold them. The rest keep their order.
  */
 adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primitives, const double origin[3], double scale,
@@ -75,7 +76,8 @@ typedef struct adcgs_splats_style {
 adcgs_status adcgs_splats_check_name(const char *path, const adcgs_splats_style *style, adcgs_error *error);
 /**
  * Write a file of the format that its name tells; only colours of degree 0 are written. Where a format says which way is up, what
- * knows its own is turned. Atomic.
+ * knows its own is turned. An offset becomes the translation of GLB's node, and a comment "offset X Y Z" of PLY; SPZ and SOG have
+ * no place for it. Atomic.
  */
 adcgs_status adcgs_splats_write(const adcgs_splats *splats, const adcgs_splats_style *style, const char *path,
                                 adcgs_error *error);

@@ -4,6 +4,8 @@
 
 #include "io/splats_ply.h"
 
+#include "io/offset.h"
+
 #include <math.h>
 
 #define WRITTEN 17 /* floats of a splat but f_rest_* */
@@ -21,8 +23,11 @@ static void put_header(FILE *file, const adcgs_splats *s, const adcgs_splats_sty
     static const char *const names[WRITTEN] = {"x",      "y",       "z",       "nx",      "ny",      "nz",
                                                "f_dc_0", "f_dc_1",  "f_dc_2",  "opacity", "scale_0", "scale_1",
                                                "scale_2", "rot_0",  "rot_1",   "rot_2",   "rot_3"};
-    fprintf(file, "ply\nformat binary_little_endian 1.0\ncomment %s\n%selement vertex %u\n", style->comment,
-            s->antialiased ? "comment SplatRenderMode: mip\n" : "", s->n);
+    fprintf(file, "ply\nformat binary_little_endian 1.0\ncomment %s\n%s", style->comment,
+            s->antialiased ? "comment SplatRenderMode: mip\n" : "");
+    if (adcgs_offset_is(s->offset))
+        fprintf(file, "comment offset %.17g %.17g %.17g\n", s->offset[0], s->offset[1], s->offset[2]);
+    fprintf(file, "element vertex %u\n", s->n);
     for (int i = 0; i < WRITTEN; i++) {
         for (int j = 0; i == DC_END && j < rest_count(style->rest_degree); j++)
             fprintf(file, "property float f_rest_%d\n", j);

@@ -73,6 +73,9 @@ static adcgs_status turn_up(adcgs_splats *out, const adcgs_splats *s, const char
             out->colour[a][i] = s->colour[a][i];
         }
     }
+    out->offset[0] = s->offset[0];
+    out->offset[1] = s->axes == ADCGS_SPLATS_Z_UP ? s->offset[2] : -s->offset[1];
+    out->offset[2] = s->axes == ADCGS_SPLATS_Z_UP ? -s->offset[1] : -s->offset[2];
     out->axes = ADCGS_SPLATS_Y_UP;
     out->antialiased = s->antialiased;
     return ADCGS_OK;

@@ -9,6 +9,7 @@
 #include "cli/text.h"
 #include "io/http.h"
 #include "io/kind.h"
+#include "io/offset.h"
 #include "model/model_priv.h"
 #include "stream/input.h"
 #include "tools/info_check.h"
@@ -221,8 +222,12 @@ adcgs_status adcgs_info_print_json(const adcgs_info_report *r, adcgs_error *erro
 static adcgs_status write_points(const adcgs_info_report *r, const char *path, adcgs_error *error)
 {
     adcgs_points points;
-    ADCGS_TRY(adcgs_info_points(&points, &r->stream, path, error));
-    const adcgs_status status = adcgs_points_write(&points, path, error);
+    double offset[3];
+    ADCGS_TRY(adcgs_info_points(&points, offset, &r->stream, path, error));
+    const adcgs_status status = adcgs_points_write_from(&points, offset, path, error);
+    if (status == ADCGS_OK && adcgs_offset_is(offset))
+        fprintf(stderr, "adcgs-info: %s: the scene is too far from the origin for binary32: positions are less %.17g %.17g %.17g\n",
+                path, offset[0], offset[1], offset[2]);
     adcgs_points_free(&points);
     return status;
 }

@@ -5,12 +5,15 @@
 #include "tools/dec_splats.h"
 
 #include "cli/text.h"
+#include "io/extension.h"
+#include "io/offset.h"
 #include "io/sink.h"
 #include "io/splats.h"
 
 #include <adcgs/decoder.h>
 
 #include <stdlib.h>
+#include <strings.h>
 
 static adcgs_status check_target(const char *target, const adcgs_splats_style *style, int has_many, adcgs_error *error)
 {
@@ -53,6 +56,22 @@ static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcg
     return status;
 }
 
+/** Where binary32 cannot hold places in the world, say from where on they are, and what tells a reader so. */
+static void tell_offset(const adcgs_cli *cli, const adcgs_info *info, const char *target)
+{
+    static const struct {
+        const char *extension, *place;
+    } formats[] = {{"glb", "its node is moved by them"}, {"ply", "a comment of its header names them"}};
+    const char *place = "add them: the format has no place for them";
+    double offset[3];
+    if (!adcgs_offset_of(offset, info->scene_origin, info->scene_scale))
+        return;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        place = strcasecmp(adcgs_extension(target), formats[i].extension) ? place : formats[i].place;
+    adcgs_cli_note(cli, "%s: the scene is too far from the origin for binary32: positions are less %.17g %.17g %.17g%s; %s", target,
+                   offset[0], offset[1], offset[2], place == formats[1].place ? "" : " (before y is turned up)", place);
+}
+
 static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, const adcgs_dec_splats_config *how,
                               const adcgs_camera_path *frames, adcgs_error *error)
 {
@@ -91,6 +110,8 @@ adcgs_status adcgs_dec_splats(const adcgs_cli *cli, adcgs_decoder *decoder, cons
                        frames.n, adcgs_s((uint64_t)frames.n), frames.outside == 1 ? "shows" : "show",
                        info.time_start, info.time_end);
     const adcgs_status status = write_all(&n, decoder, &info, how, &frames, error);
+    if (status == ADCGS_OK && !adcgs_interrupted())
+        tell_offset(cli, &info, how->target);
     if (status == ADCGS_OK && !adcgs_interrupted())
         adcgs_cli_note(cli, "%s: %d file%s, %u splats in the last", input, frames.n, frames.n == 1 ? "" : "s", n);
     adcgs_camera_path_free(&frames);

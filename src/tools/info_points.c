@@ -5,6 +5,7 @@
 #include "tools/info_points.h"
 
 #include "base/cpu.h"
+#include "io/offset.h"
 #include "splat/splat.h"
 
 /** The last segment that begins at or before the time. */
@@ -17,12 +18,12 @@ static const adcgs_model *model_at(const adcgs_stream *stream, double time)
     return found;
 }
 
-static void place(adcgs_points *out, const adcgs_stream *stream, const adcgs_model *m)
+static void place(adcgs_points *out, const double offset[3], const adcgs_stream *stream, const adcgs_model *m)
 {
     for (uint32_t i = 0; i < m->n; i++)
         for (int a = 0; a < 3; a++) {
             const double scene = (double)m->origin[a] + ((double)m->pos[3 * (size_t)i + (size_t)a] + 0.5) * (double)m->voxel;
-            out->position[i][a] = (float)(stream->scene_origin[a] + stream->scene_scale * scene);
+            out->position[i][a] = (float)((stream->scene_origin[a] - offset[a]) + stream->scene_scale * scene);
         }
 }
 
@@ -62,13 +63,15 @@ static adcgs_status colour_at(adcgs_points *out, const adcgs_model *m, double ti
     return status;
 }
 
-adcgs_status adcgs_info_points(adcgs_points *out, const adcgs_stream *stream, const char *path, adcgs_error *error)
+adcgs_status adcgs_info_points(adcgs_points *out, double offset[3], const adcgs_stream *stream, const char *path,
+                               adcgs_error *error)
 {
     const double first = stream->segments[0].time_start, last = stream->segments[stream->n_segments - 1].time_end;
     const double middle = 0.5 * (first + last);
     const adcgs_model *m = model_at(stream, middle);
     ADCGS_TRY(adcgs_points_alloc(out, m->n, path, error));
-    place(out, stream, m);
+    adcgs_offset_of(offset, stream->scene_origin, stream->scene_scale);
+    place(out, offset, stream, m);
     const adcgs_status status = colour_at(out, m, middle, error);
     if (status != ADCGS_OK)
         adcgs_points_free(out);

@@ -4,6 +4,7 @@
 #include "random_splats.h"
 
 #include "data/splat_views.h"
+#include "io/offset.h"
 #include "layouts/open.h"
 
 #define PROPERTIES                                                                                                        \
@@ -152,6 +153,43 @@ static void test_other_kinds(void **state)
                  "a point cloud goes with a scene, by --points");
 }
 
+/* ---- Far from the origin ---- */
+
+/** A decoder's splats in earth-centred metres keep their shape in every format, and GLB and PLY say where they are. */
+static void test_far(void **state)
+{
+    static const char *const formats[] = {"f.ply", "f.glb", "f.spz"};
+    static const double origin[3] = {4510731.25, -1512345.5, 4260123.125};
+    adcgs_splats model = random_splats(500, 1.0, 0.0, 3), s, back;
+    adcgs_primitives p;
+    double nowhere[3];
+    adcgs_splats_primitives(&model, &p);
+    expect_good(adcgs_splats_take(&s, &p, origin, 10.0, "far", &error));
+    assert_int_equal(s.n, model.n);
+    for (int a = 0; a < 3; a++)
+        assert_true(fabs(s.offset[a] - origin[a]) <= 4.0 && s.offset[a] == 8.0 * rint(s.offset[a] / 8.0));
+    for (int k = 0; k < 3; k++) {
+        size_t bytes;
+        if (write_splats(&s, in(formats[k])) == ADCGS_ERR_UNSUPPORTED)
+            continue;
+        expect_good(adcgs_splats_read(&back, in(formats[k]), &error));
+        for (uint32_t i = 0; i < s.n; i++)
+            for (int a = 0; a < 3; a++) /* to a thousandth of the scene's scale and better */
+                near(back.mean[a][i], (float)(origin[a] - s.offset[a] + 10.0 * (double)model.mean[a][i]), 1e-6, k == 2 ? 1e-5 : 1e-6);
+        for (int a = 0; a < 3; a++)
+            assert_true(back.offset[a] == (k == 1 ? s.offset[a] : 0.0));
+        adcgs_splats_free(&back);
+        char *const text = (char *)load(formats[k], &bytes);
+        assert_true(k || strstr(text, "\ncomment offset 4510728 -1512344 4260120\n"));
+        free(text);
+    }
+    /* Near the origin nothing changes. */
+    assert_int_equal(adcgs_offset_of(nowhere, (const double[3]){2500.0, 0.0, -1.0}, 10.0), 0);
+    assert_true(nowhere[0] == 0.0 && !adcgs_offset_is(nowhere));
+    adcgs_splats_free(&s);
+    adcgs_splats_free(&model);
+}
+
 /* ---- Antialiasing ---- */
 
 static void test_comments(void **state)
@@ -259,7 +297,7 @@ int main(void)
         cmocka_unit_test(test_headers),     cmocka_unit_test(test_cr_alone), cmocka_unit_test(test_many_properties),
         cmocka_unit_test(test_infinities),  cmocka_unit_test(test_surfels),  cmocka_unit_test(test_other_kinds),
         cmocka_unit_test(test_comments),    cmocka_unit_test(test_written),  cmocka_unit_test(test_antialiased),
-        cmocka_unit_test(test_scenes),
+        cmocka_unit_test(test_scenes),      cmocka_unit_test(test_far),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

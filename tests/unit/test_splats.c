@@ -311,7 +311,8 @@ static void test_points(void **state)
     const adcgs_model *m = &f->stream.segments[f->stream.segments[1].time_start <= middle];
     adcgs_points points;
     adcgs_primitives p;
-    expect_good(adcgs_info_points(&points, &f->stream, "points", &error));
+    double offset[3];
+    expect_good(adcgs_info_points(&points, offset, &f->stream, "points", &error));
     assert_int_equal(adcgs_get_primitives(f->decoder, middle, &p, NULL), ADCGS_OK);
     assert_int_equal(points.n, m->n);
     uint32_t grey = 0;

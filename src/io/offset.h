@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file
+ * Places far from the world's origin (earth-centred or map coordinates in metres) in files of binary32: what is left is written
+ * from an offset on.
+ */
+#ifndef ADCGS_IO_OFFSET_H
+#define ADCGS_IO_OFFSET_H
+
+#include "base/base.h"
+
+#include <math.h>
+
+/** Of the scene's scale: from there on binary32, whose step is 2^-23 of a number, would show less than some 2^-15 of the scale. */
+#define ADCGS_OFFSET_FAR 256.0
+
+/**
+ * The offset for a scene of this origin and scale: zero unless the origin is far, else the origin in whole steps of a power of two
+ * near the scale. \return whether it is far.
+ */
+static inline int adcgs_offset_of(double offset[3], const double origin[3], double scale)
+{
+    const double step = exp2(floor(log2(scale > 0.0 ? scale : 1.0)));
+    const int is_far = fmax(fabs(origin[0]), fmax(fabs(origin[1]), fabs(origin[2]))) > ADCGS_OFFSET_FAR * scale;
+    for (int a = 0; a < 3; a++)
+        offset[a] = is_far ? step * rint(origin[a] / step) : 0.0;
+    return is_far;
+}
+
+/** Whether there is one. */
+static inline int adcgs_offset_is(const double offset[3])
+{
+    return offset[0] != 0.0 || offset[1] != 0.0 || offset[2] != 0.0;
+}
+
+#endif
