@@ -3,7 +3,8 @@
  * Pictures as training and measuring want them: read, put on the background, straightened, reduced. Where a picture is to be
  * straightened and reduced, most of the reducing is done before: a box filter costs little, resampling much. The last whole
  * factor is left for after it, so that what the lens takes apart is still there when it is looked at: pixels on a grid twice as
- * fine lose next to nothing to interpolation that is seen in the end.
+ * fine lose next to nothing to interpolation that is seen in the end. A file without a mask and a lens is reduced row by row as
+ * it is read, to the same values: the whole of a large image is never in memory as binary32.
  */
 #include "config.h"
 
@@ -233,28 +234,83 @@ static void even_light(const adcgs_scene_view *view, float *rgb, size_t plane)
     }
 }
 
-adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
-                              adcgs_camera *camera, adcgs_error *error)
+/** Rows of a picture that become one of its planes: what shape() and to_planes() make of it. */
+static void place_rows(float *rgb, size_t plane, size_t first, const source *s, int divide)
+{
+    const int keeps = divide == 1 && s->image->channels == 3;
+    for (int x = 0, at = 0; x < s->image->width; x += divide, at++) {
+        float value[4];
+        if (keeps)
+            memcpy(value, s->image->data + 3 * (size_t)x, 3 * sizeof *value);
+        else
+            average_box(s, x, 0, divide, value);
+        for (size_t c = 0; c < 3; c++)
+            rgb[c * plane + first + (size_t)at] = value[c];
+    }
+}
+
+/** A file whose pixels go where they are seen: reduced as it is read, in memory for some rows besides the result. */
+static adcgs_status load_by_rows(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                                 adcgs_error *error)
+{
+    adcgs_image_rows *rows;
+    adcgs_image strip = {.data = NULL};
+    const source s = {&strip, NULL, scene->background};
+    int width, height, channels;
+    ADCGS_TRY(probe(view, view->path, error));
+    ADCGS_TRY(adcgs_image_rows_open(&rows, &width, &height, &channels, view->path, error));
+    const size_t across = (size_t)((width + divide - 1) / divide), plane = across * (size_t)((height + divide - 1) / divide);
+    adcgs_status status = check_size(view, view->path, width, height, error);
+    if (status == ADCGS_OK)
+        status = adcgs_image_alloc(&strip, width, ADCGS_MIN(divide, height), channels, view->path, error);
+    if (status == ADCGS_OK && !(*rgb = malloc(3 * plane * sizeof **rgb)))
+        status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %dx%d pixels", view->path, width, height);
+    for (int y = 0; y < height && status == ADCGS_OK; y += divide) {
+        strip.height = ADCGS_MIN(divide, height - y);
+        status = adcgs_image_rows_read(rows, strip.height, strip.data, view->path, error);
+        if (status == ADCGS_OK)
+            place_rows(*rgb, plane, (size_t)(y / divide) * across, &s, divide);
+    }
+    adcgs_image_rows_close(&rows);
+    adcgs_image_free(&strip);
+    if (status != ADCGS_OK) {
+        free(*rgb);
+        *rgb = NULL;
+    }
+    return status;
+}
+
+/** The picture as a whole, of a file, a video or splats, with its mask and its lens. */
+static adcgs_status load_whole(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                               adcgs_error *error)
 {
     adcgs_image image, mask = {.data = NULL};
-    *rgb = NULL;
-    if (divide < 1)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
     ADCGS_TRY(read_picture(scene, view, &image, error));
     adcgs_status status = view->mask ? read_image(view, view->mask, &mask, error) : ADCGS_OK;
     if (status == ADCGS_OK)
         status = shape(scene, view, view->mask ? &mask : NULL, divide, &image, error);
     if (status == ADCGS_OK && !(*rgb = to_planes(&image)))
         status = adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", view->path);
-    if (status == ADCGS_OK && (view->stops[0] != 0.0f || view->stops[1] != 0.0f || view->stops[2] != 0.0f))
-        even_light(view, *rgb, (size_t)image.width * (size_t)image.height);
     adcgs_image_free(&image);
     adcgs_image_free(&mask);
-    if (status == ADCGS_OK && camera) {
-        *camera = view->camera;
-        divide_camera(camera, divide);
-    }
     return status;
+}
+
+adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
+                              adcgs_camera *camera, adcgs_error *error)
+{
+    adcgs_camera seen = view->camera;
+    *rgb = NULL;
+    if (divide < 1)
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cannot reduce by %d", view->path, divide);
+    divide_camera(&seen, divide);
+    const int is_plain = !scene->splats && !view->is_video && !view->mask && view->lens.width <= 0;
+    ADCGS_TRY((is_plain ? load_by_rows : load_whole)(scene, view, divide, rgb, error));
+    if (view->stops[0] != 0.0f || view->stops[1] != 0.0f || view->stops[2] != 0.0f)
+        even_light(view, *rgb, (size_t)seen.width * (size_t)seen.height);
+    if (camera)
+        *camera = seen;
+    return ADCGS_OK;
 }
 
 /* ---- What moves ---- */

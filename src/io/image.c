@@ -208,6 +208,80 @@ adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const cha
     return status;
 }
 
+/* ---- Reading by rows ---- */
+
+struct adcgs_image_rows {
+    source from;
+    adcgs_image whole;   /**< where the format has no rows of its own */
+    size_t row, at;      /**< values of a row, and of those that were read of the whole */
+#ifdef HAVE_ENCODER
+    adcgs_png_rows *png;
+#endif
+};
+
+static adcgs_status start_rows(adcgs_image_rows *r, int *width, int *height, int *channels, const char *path,
+                               adcgs_error *error)
+{
+    const source *s = &r->from;
+#ifdef HAVE_ENCODER
+    if (s->own && s->own->read == adcgs_png_read)
+        ADCGS_TRY(adcgs_png_rows_open(&r->png, s->file, width, height, channels, path, error));
+    if (r->png)
+        return ADCGS_OK;
+#endif
+    ADCGS_TRY(s->own ? s->own->read(s->file, &r->whole, path, error) : read_foreign(s->file, s->reader, &r->whole, path, error));
+    *width = r->whole.width;
+    *height = r->whole.height;
+    *channels = r->whole.channels;
+    return ADCGS_OK;
+}
+
+adcgs_status adcgs_image_rows_open(adcgs_image_rows **out, int *width, int *height, int *channels, const char *path,
+                                   adcgs_error *error)
+{
+    adcgs_image_rows *r = *out = calloc(1, sizeof *r);
+    if (!r)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    adcgs_status status = open_image(&r->from, path, error);
+    if (status != ADCGS_OK)
+        r->from.file = NULL;
+    else
+        status = start_rows(r, width, height, channels, path, error);
+    if (status != ADCGS_OK)
+        adcgs_image_rows_close(out);
+    else
+        r->row = (size_t)*width * (size_t)*channels;
+    return status;
+}
+
+adcgs_status adcgs_image_rows_read(adcgs_image_rows *r, int n, float *to, const char *path, adcgs_error *error)
+{
+#ifdef HAVE_ENCODER
+    for (int i = 0; r->png && i < n; i++)
+        ADCGS_TRY(adcgs_png_rows_next(r->png, to + (size_t)i * r->row, path, error));
+    if (r->png)
+        return ADCGS_OK;
+#endif
+    memcpy(to, r->whole.data + r->at, (size_t)n * r->row * sizeof *to);
+    r->at += (size_t)n * r->row;
+    return ADCGS_OK;
+}
+
+void adcgs_image_rows_close(adcgs_image_rows **rows)
+{
+    adcgs_image_rows *const r = *rows;
+    if (r) {
+#ifdef HAVE_ENCODER
+        adcgs_png_rows_close(&r->png);
+#endif
+        adcgs_image_free(&r->whole);
+        if (r->from.file)
+            fclose(r->from.file);
+    }
+    free(r);
+    *rows = NULL;
+}
+
 #ifdef HAVE_ENCODER
 adcgs_status adcgs_image_tell(adcgs_photo *photo, const char *path, adcgs_error *error)
 {

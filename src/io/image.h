@@ -44,6 +44,13 @@ adcgs_status adcgs_image_copy(adcgs_image *copy, const adcgs_image *image, const
 void adcgs_image_free(adcgs_image *image);
 /** Limits: 16384 x 16384. One-line errors name the file. Floats that are not finite are errors, so are primaries not sRGB's. */
 adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *error);
+/** An image that is read from its top to its bottom: one that is large need not be in memory as a whole (PNG). */
+typedef struct adcgs_image_rows adcgs_image_rows;
+adcgs_status adcgs_image_rows_open(adcgs_image_rows **out, int *width, int *height, int *channels, const char *path,
+                                   adcgs_error *error);
+/** The next n rows, of which there are as many yet, as adcgs_image_read() has them. path is for messages. */
+adcgs_status adcgs_image_rows_read(adcgs_image_rows *rows, int n, float *to, const char *path, adcgs_error *error);
+void adcgs_image_rows_close(adcgs_image_rows **rows);
 /** Size and channels without decoding pixels. */
 adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const char *path, adcgs_error *error);
 /** Format by extension (ppm, exr, png, tif, jpg, ...). Atomic: temporary name, sync, rename. half: EXR stores half floats. */

@@ -78,7 +78,7 @@ adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_w
 static int fits(const adcgs_kind *kind, adcgs_want want)
 {
     return kind->class == ADCGS_KIND_UNKNOWN || (kind->is_read && kind->class == wants[want].class) ||
-           (want == ADCGS_WANT_SCENE && kind->class == ADCGS_KIND_FOLDER) ||
+           (want != ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_FOLDER) || /* a scene, or no regular file, which readers say */
            (want == ADCGS_WANT_SCENE && kind->is_read && kind->class == ADCGS_KIND_SPLATS) ||
            (want == ADCGS_WANT_POINTS && kind->is_read && kind->class == ADCGS_KIND_SPLATS);
 }

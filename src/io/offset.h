@@ -10,12 +10,12 @@
 
 #include <math.h>
 
-/** Of the scene's scale: from there on binary32, whose step is 2^-23 of a number, would show less than some 2^-15 of the scale. */
+/** In units of the scene's scale: from there on binary32, in steps of 2^-23 of a number, is coarser than 2^-15 of the scale. */
 #define ADCGS_OFFSET_FAR 256.0
 
 /**
- * The offset for a scene of this origin and scale: zero unless the origin is far, else the origin in whole steps of a power of two
- * near the scale. \return whether it is far.
+ * The offset for a scene of this origin and scale: zero unless the origin is far, else the origin in whole steps of a power of
+ * two near the scale. \return whether it is far.
  */
 static inline int adcgs_offset_of(double offset[3], const double origin[3], double scale)
 {

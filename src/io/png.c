@@ -35,6 +35,7 @@ typedef struct layout {
     int width, height, channels;
     int wide;   /**< samples of 16 bits */
     int linear; /**< light, not sRGB's curve */
+    int interlaced;
     int format; /**< libspng's */
 } layout;
 
@@ -89,6 +90,7 @@ static adcgs_status read_layout(spng_ctx *png, FILE *file, layout *out, const ch
     out->width = (int)head.width;
     out->height = (int)head.height;
     out->linear = is_linear(png);
+    out->interlaced = head.interlace_method != 0;
     return ADCGS_OK;
 }
 
@@ -146,7 +148,83 @@ adcgs_status adcgs_png_probe(FILE *file, int *width, int *height, int *channels,
     return status;
 }
 
-adcgs_status adcgs_png_read(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
+struct adcgs_png_rows {
+    spng_ctx *png;
+    FILE *file;
+    layout l;
+    uint8_t *samples; /**< of a row */
+    int at;           /**< the next row */
+};
+
+static adcgs_status start_rows(adcgs_png_rows *r, const char *path, adcgs_error *error)
+{
+    size_t bytes;
+    const size_t values = (size_t)r->l.width * (size_t)r->l.channels;
+    int code = spng_decoded_image_size(r->png, r->l.format, &bytes);
+    if (!code && bytes != (values << r->l.wide) * (size_t)r->l.height)
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: PNG of %zu bytes of pixels, expected %zu", path, bytes,
+                          (values << r->l.wide) * (size_t)r->l.height);
+    r->samples = malloc(values << r->l.wide);
+    if (!r->samples)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory for %d pixels", path, r->l.width);
+    if (!code)
+        code = spng_decode_image(r->png, NULL, 0, r->l.format, SPNG_DECODE_TRNS | SPNG_DECODE_PROGRESSIVE);
+    return code ? read_failure(code, path, error) : ADCGS_OK;
+}
+
+adcgs_status adcgs_png_rows_open(adcgs_png_rows **out, FILE *file, int *width, int *height, int *channels, const char *path,
+                                 adcgs_error *error)
+{
+    adcgs_png_rows *r = *out = calloc(1, sizeof *r);
+    if (!r)
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+    r->file = file;
+    adcgs_status status = open_decoder(&r->png, path, error);
+    if (status == ADCGS_OK)
+        status = read_layout(r->png, file, &r->l, path, error);
+    if (status == ADCGS_OK && !r->l.interlaced)
+        status = start_rows(r, path, error);
+    *width = r->l.width;
+    *height = r->l.height;
+    *channels = r->l.channels;
+    if (status == ADCGS_OK && !r->l.interlaced)
+        return ADCGS_OK;
+    adcgs_png_rows_close(out);
+    rewind(file);
+    return status;
+}
+
+adcgs_status adcgs_png_rows_next(adcgs_png_rows *r, float *row, const char *path, adcgs_error *error)
+{
+    adcgs_image line = {r->l.width, 1, r->l.channels, row};
+    const size_t values = (size_t)r->l.width * (size_t)r->l.channels;
+    const int last = ++r->at == r->l.height;
+    int code = spng_decode_row(r->png, r->samples, values << r->l.wide);
+    if (code == SPNG_EOI && last)
+        code = spng_decode_chunks(r->png); /* what follows the pixels, so that all of the file is looked at */
+    if (!code && last && feof(r->file))
+        code = SPNG_IO_EOF; /* in the checksum of IEND, which it does without */
+    if (code)
+        return read_failure(code, path, error);
+    convert(r->samples, r->l.wide, values, row);
+    if (r->l.linear)
+        adcgs_image_to_srgb(&line);
+    return ADCGS_OK;
+}
+
+void adcgs_png_rows_close(adcgs_png_rows **rows)
+{
+    adcgs_png_rows *const r = *rows;
+    if (r) {
+        spng_ctx_free(r->png);
+        free(r->samples);
+    }
+    free(r);
+    *rows = NULL;
+}
+
+/** Interlaced, all at once. */
+static adcgs_status read_interlaced(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
 {
     spng_ctx *png;
     layout l;
@@ -162,6 +240,23 @@ adcgs_status adcgs_png_read(FILE *file, adcgs_image *out, const char *path, adcg
         adcgs_image_free(out);
     else if (l.linear)
         adcgs_image_to_srgb(out);
+    return status;
+}
+
+adcgs_status adcgs_png_read(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
+{
+    adcgs_png_rows *rows;
+    int width, height, channels;
+    *out = (adcgs_image){0};
+    ADCGS_TRY(adcgs_png_rows_open(&rows, file, &width, &height, &channels, path, error));
+    if (!rows)
+        return read_interlaced(file, out, path, error);
+    adcgs_status status = adcgs_image_alloc(out, width, height, channels, path, error);
+    for (int y = 0; y < height && status == ADCGS_OK; y++)
+        status = adcgs_png_rows_next(rows, out->data + (size_t)y * (size_t)width * (size_t)channels, path, error);
+    adcgs_png_rows_close(&rows);
+    if (status != ADCGS_OK)
+        adcgs_image_free(out);
     return status;
 }
 

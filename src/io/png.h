@@ -10,6 +10,14 @@
 
 /** The file is at its start and stays the caller's; path is for messages. */
 adcgs_status adcgs_png_probe(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error);
+/** A picture that is decoded row by row, in no more memory than a row. */
+typedef struct adcgs_png_rows adcgs_png_rows;
+/** *out is NULL where rows come in another order than they lie (interlaced): the file is at its start again then. */
+adcgs_status adcgs_png_rows_open(adcgs_png_rows **out, FILE *file, int *width, int *height, int *channels, const char *path,
+                                 adcgs_error *error);
+/** The next row, as adcgs_png_read() has it; with the last one all that follows is looked at, too. */
+adcgs_status adcgs_png_rows_next(adcgs_png_rows *rows, float *row, const char *path, adcgs_error *error);
+void adcgs_png_rows_close(adcgs_png_rows **rows);
 /**
  * All kinds of PNG: palettes become RGB, transparent colours alpha, interlaced rows are put in order; with gAMA of 1 and without
  * sRGB, values are linear light and become sRGB. ADCGS_ERR_DATA for a file that ends early and for any checksum that is wrong.

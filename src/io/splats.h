@@ -49,8 +49,8 @@ adcgs_status adcgs_splats_join(adcgs_splats *out, const adcgs_splats *parts, siz
 /** The splats as the renderer takes them; they stay where they are. */
 void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out);
 /**
- * A decoder's primitives in world units, world = origin + scale * scene, less the offset of a far origin (io/offset.h). Left out are those that draw nothing: of opacity 0, or
- * so far out that binary32 cannot hold them. The rest keep their order.
+ * A decoder's primitives in world units, world = origin + scale * scene, less the offset of a far origin (io/offset.h). Left
+ * out are those that draw nothing: of opacity 0, or so far out that binary32 cannot hold them. The rest keep their order.
  */
 adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primitives, const double origin[3], double scale,
                                const char *path, adcgs_error *error);

@@ -226,8 +226,9 @@ static adcgs_status write_points(const adcgs_info_report *r, const char *path, a
     ADCGS_TRY(adcgs_info_points(&points, offset, &r->stream, path, error));
     const adcgs_status status = adcgs_points_write_from(&points, offset, path, error);
     if (status == ADCGS_OK && adcgs_offset_is(offset))
-        fprintf(stderr, "adcgs-info: %s: the scene is too far from the origin for binary32: positions are less %.17g %.17g %.17g\n",
-                path, offset[0], offset[1], offset[2]);
+        fprintf(stderr,
+                "adcgs-info: %s: the scene is too far from the origin for binary32: positions are less %.17g %.17g %.17g\n", path,
+                offset[0], offset[1], offset[2]);
     adcgs_points_free(&points);
     return status;
 }

@@ -68,8 +68,8 @@ static void tell_offset(const adcgs_cli *cli, const adcgs_info *info, const char
         return;
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         place = strcasecmp(adcgs_extension(target), formats[i].extension) ? place : formats[i].place;
-    adcgs_cli_note(cli, "%s: the scene is too far from the origin for binary32: positions are less %.17g %.17g %.17g%s; %s", target,
-                   offset[0], offset[1], offset[2], place == formats[1].place ? "" : " (before y is turned up)", place);
+    adcgs_cli_note(cli, "%s: the scene is too far from the origin for binary32: positions are less %.17g %.17g %.17g%s; %s",
+                   target, offset[0], offset[1], offset[2], place == formats[1].place ? "" : " (before y is turned up)", place);
 }
 
 static adcgs_status write_all(uint32_t *n, adcgs_decoder *decoder, const adcgs_info *info, const adcgs_dec_splats_config *how,

@@ -4,8 +4,10 @@
 
 #include "io/image.h"
 #include "io/oiio_shim.h"
+#include "layouts/open.h"
 
 #include <math.h>
+#include <sys/resource.h>
 
 #include <spng.h>
 #include <turbojpeg.h>
@@ -227,6 +229,51 @@ static void test_names(void **state)
     adcgs_image_free(&image);
 }
 
+#define SIDE 6000
+
+static long peak_kib(void)
+{
+    struct rusage usage;
+    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+    return usage.ru_maxrss;
+}
+
+/** A large picture that is reduced as it is read takes memory for some rows of it: 36 million pixels are 144 MB as binary32. */
+static void test_large(void **state)
+{
+    struct spng_ihdr head = {.width = SIDE, .height = SIDE, .bit_depth = 8, .color_type = SPNG_COLOR_TYPE_GRAYSCALE};
+    adcgs_scene *scene;
+    adcgs_camera camera;
+    float *rgb;
+    uint8_t *const row = malloc(SIDE);
+    FILE *const file = fopen(in("large.png"), "wb");
+    spng_ctx *png = spng_ctx_new(SPNG_CTX_ENCODER);
+    assert_true(row && file && png && !spng_set_png_file(png, file) && !spng_set_ihdr(png, &head));
+    assert_int_equal(spng_set_option(png, SPNG_IMG_COMPRESSION_LEVEL, 1), 0);
+    assert_int_equal(spng_set_option(png, SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_NONE), 0);
+    assert_int_equal(spng_encode_image(png, NULL, 0, SPNG_FMT_PNG, SPNG_ENCODE_PROGRESSIVE | SPNG_ENCODE_FINALIZE), 0);
+    for (int y = 0, code = 0; y < SIDE; y++) {
+        memset(row, y / 8 % 2 ? 255 : 51, SIDE); /* alternate rows of the reduced picture */
+        code = spng_encode_row(png, row, SIDE);
+        assert_true(code == (y + 1 < SIDE ? 0 : SPNG_EOI));
+    }
+    spng_ctx_free(png);
+    fclose(file);
+    free(row);
+    put_text("transforms.json", "{\"camera_angle_x\":0.8,\"w\":6000,\"h\":6000,\"frames\":[{\"file_path\":\"large.png\","
+                                "\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]},{\"file_path\":\"large.png\","
+                                "\"transform_matrix\":[[1,0,0,1],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]}");
+    assert_int_equal(adcgs_scene_open(&scene, in("transforms.json"), NULL, &error), ADCGS_OK);
+    const long before = peak_kib();
+    assert_int_equal(adcgs_scene_load(scene, &scene->views[0][0], 8, &rgb, &camera, &error), ADCGS_OK);
+    assert_true(peak_kib() - before < 48 << 10);
+    assert_true(camera.width == SIDE / 8 && camera.height == SIDE / 8);
+    for (int i = 0; i < 3 * SIDE / 8 * SIDE / 8; i += 7)
+        assert_true(fabs((double)rgb[i] - (i / (SIDE / 8) % (SIDE / 8) % 2 ? 1.0 : 0.2)) < 1e-6);
+    free(rgb);
+    adcgs_scene_free(&scene);
+}
+
 /* ---- JPEG ---- */
 
 static void put_jpeg(const char *name, int format, const uint8_t *samples, const void *before_end, size_t n)
@@ -304,6 +351,7 @@ static void test_jpeg_written(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_large),
         cmocka_unit_test(test_few_bits), cmocka_unit_test(test_palette),    cmocka_unit_test(test_transparent),
         cmocka_unit_test(test_wide),     cmocka_unit_test(test_gamma),      cmocka_unit_test(test_interlaced),
         cmocka_unit_test(test_names),    cmocka_unit_test(test_jpeg),       cmocka_unit_test(test_damaged_jpeg),

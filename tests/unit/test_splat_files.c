@@ -175,7 +175,8 @@ static void test_far(void **state)
         expect_good(adcgs_splats_read(&back, in(formats[k]), &error));
         for (uint32_t i = 0; i < s.n; i++)
             for (int a = 0; a < 3; a++) /* to a thousandth of the scene's scale and better */
-                near(back.mean[a][i], (float)(origin[a] - s.offset[a] + 10.0 * (double)model.mean[a][i]), 1e-6, k == 2 ? 1e-5 : 1e-6);
+                near(back.mean[a][i], (float)(origin[a] - s.offset[a] + 10.0 * (double)model.mean[a][i]), 1e-6,
+                     k == 2 ? 1e-5 : 1e-6);
         for (int a = 0; a < 3; a++)
             assert_true(back.offset[a] == (k == 1 ? s.offset[a] : 0.0));
         adcgs_splats_free(&back);
