@@ -234,7 +234,7 @@ static void even_light(const adcgs_scene_view *view, float *rgb, size_t plane)
     }
 }
 
-/** Rows of a picture that become one of its planes: what shape() and to_planes() make of it. */
+/** Rows of an image to a row of each plane, with the values of shape() and to_planes(). */
 static void place_rows(float *rgb, size_t plane, size_t first, const source *s, int divide)
 {
     const int keeps = divide == 1 && s->image->channels == 3;
@@ -249,7 +249,7 @@ static void place_rows(float *rgb, size_t plane, size_t first, const source *s, 
     }
 }
 
-/** A file whose pixels go where they are seen: reduced as it is read, in memory for some rows besides the result. */
+/** An image file that is reduced as it is read, in memory for some rows in addition to the result. */
 static adcgs_status load_by_rows(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                                  adcgs_error *error)
 {
@@ -280,7 +280,7 @@ static adcgs_status load_by_rows(const adcgs_scene *scene, const adcgs_scene_vie
     return status;
 }
 
-/** The picture as a whole, of a file, a video or splats, with its mask and its lens. */
+/** The image as a whole, of a file, a video or splats, with its mask and its lens. */
 static adcgs_status load_whole(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                                adcgs_error *error)
 {

@@ -47,7 +47,7 @@ static void look(float *colours, size_t slots, const adcgs_splat_scene *s, const
 
 /**
  * The share of a splat's opacity that is left when the screen filter spreads it: sqrt(det S / det(S + filter I)) of its
- * covariance S in the picture (Yu et al., Mip-Splatting, 2024), S as the renderer has it.
+ * covariance S in the image (Yu et al., Mip-Splatting, 2024), S by the renderer's projection.
  */
 static double share_left(const adcgs_splats *s, uint32_t i, const adcgs_view *view, double filter)
 {
@@ -63,7 +63,7 @@ static double share_left(const adcgs_splats *s, uint32_t i, const adcgs_view *vi
         trace += (double)g.f[0][j] * (double)g.f[0][j] + (double)g.f[1][j] * (double)g.f[1][j];
     }
     const double spread = det + filter * trace + filter * filter;
-    return isfinite(spread) ? sqrt(det / spread) : 1.0; /* behind the camera, and not drawn */
+    return isfinite(spread) ? sqrt(det / spread) : 1.0; /* behind the camera, and not rendered */
 }
 
 /** Opacities as a camera sees them: [slots], zero behind the last splat. */
@@ -73,7 +73,7 @@ static void fade(float *opacities, const adcgs_splats *s, const adcgs_view *view
         opacities[i] = fminf((float)((double)s->opacity[i] * share_left(s, i, view, (double)ADCGS_SCREEN_FILTER)), OPACITY_MAX);
 }
 
-/** Room for what depends on the camera; NULL where nothing does. */
+/** Arrays that depend on the camera; NULL if nothing does. */
 typedef struct workspace {
     size_t slots;
     float *colours, *opacities; /**< [3][slots], [slots] */

@@ -16,7 +16,7 @@ void adcgs_splat_scene_free(adcgs_splat_scene **splats);
 /**
  * What a camera sees over a background, values clipped to [0,1], three channels. Colours are those for the direction of view,
  * and not below 0. Splats that were trained with antialiasing have their opacity scaled by sqrt(det S / det(S + 0.3 I)), S being
- * their covariance in the picture in pixels^2: what the filter spreads covers more, and must not show more. Any thread may call;
+ * their covariance in the image in pixels^2: the filter makes a splat larger, and must not make it stronger. Any thread may call;
  * path is for messages.
  */
 adcgs_status adcgs_splat_scene_render(const adcgs_splat_scene *splats, const float background[3], const adcgs_camera *camera,

@@ -72,7 +72,7 @@ static int any_name(const char *name)
     return 1;
 }
 
-/** Names by what stands before their extension, the dot with it: the order in which folders are listed, too. */
+/** Order of names by their stems with the dot: the order of listings, too. */
 static int compare_stems(const char *a, const char *b)
 {
     const size_t n = strlen(a) - strlen(adcgs_extension(a)), m = strlen(b) - strlen(adcgs_extension(b));
@@ -80,7 +80,7 @@ static int compare_stems(const char *a, const char *b)
     return order ? order : (n > m) - (n < m);
 }
 
-/** Names of pictures in order, and of HEIC and AVIF those that are not there as another picture, too. */
+/** Names of images in order, and those of HEIC and AVIF without another image of the same stem. */
 static size_t merge(const char **out, const adcgs_listing *images, const adcgs_listing *heifs)
 {
     size_t n = 0, i = 0;
@@ -95,7 +95,7 @@ static size_t merge(const char **out, const adcgs_listing *images, const adcgs_l
     return n;
 }
 
-/** Of a folder without pictures: name what is there instead, if its kind is known. */
+/** A folder without images: name the kind of a file in it, if that is known. */
 static adcgs_status refuse_folder(const char *folder, adcgs_error *error)
 {
     adcgs_listing all;

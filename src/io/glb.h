@@ -25,9 +25,9 @@
 /** Whether the bytes begin as GLB does. */
 int adcgs_glb_is(const uint8_t *data, size_t bytes);
 /**
- * What adcgs_splats_parse() does with what adcgs_glb_is(): all primitives of splats in the file, whose attributes may be of any
+ * adcgs_splats_parse() of data that adcgs_glb_is(): all primitives of splats in the file, whose attributes may be of any
  * type of components, or which are packed as SPZ (glb_spz.h), wherever a node of the scene and its parents have them.
- * ADCGS_ERR_UNSUPPORTED for harmonics of degree 4, what still other extensions pack, other kernels, linear colours, sparse
+ * ADCGS_ERR_UNSUPPORTED for harmonics of degree 4, packing by other extensions, other kernels, linear colours, sparse
  * accessors, buffers outside, and parts that are antialiased where others are not. On failure the caller clears *out.
  */
 adcgs_status adcgs_glb_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);

@@ -263,7 +263,7 @@ static adcgs_status take_splats(const adcgs_glb *g, adcgs_splats *s)
 
 /* ---- All of a file ---- */
 
-/** What has been read: splats where nodes have them. */
+/** Splats that have been read, at the places of their nodes. */
 typedef struct parts {
     adcgs_splats *list;
     size_t n;

@@ -126,7 +126,7 @@ static int is_exr(const char *extension)
 
 /* ---- Reading ---- */
 
-/** An image that is open, and who reads it: one of our formats, or the reader of that name in OpenImageIO. */
+/** An open image and its reader: one of our formats, or the reader of that name in OpenImageIO. */
 typedef struct source {
     FILE *file;
     const format *own; /**< NULL: another's */
@@ -138,7 +138,7 @@ static uint32_t load_size(const uint8_t *at, size_t bytes)
     return bytes == 2 ? (uint32_t)(at[0] | at[1] << 8) : adcgs_load_le32(at);
 }
 
-/** Two readers have memory for all pixels before they tell the size: that is looked at here. */
+/** Two readers allocate all pixels before they return the size: it is checked here. */
 static adcgs_status check_early(const char *named, const uint8_t *begin, size_t n, const char *path, adcgs_error *error)
 {
     const int is_gif = !strcmp(named, "gif"), is_bmp = !strcmp(named, "bmp");
@@ -153,7 +153,7 @@ static adcgs_status check_early(const char *named, const uint8_t *begin, size_t 
                       ADCGS_IMAGE_MAX);
 }
 
-/** Tell by the first bytes who reads it; whatever is no image of a kind that is meant is refused by its name. */
+/** The reader by the first bytes. A file that is no image of a supported kind is refused with its kind. */
 static adcgs_status find_source(source *s, const uint8_t *begin, size_t n, const char *path, adcgs_error *error)
 {
     s->own = find_reader(begin, n);
@@ -213,7 +213,7 @@ adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const cha
 struct adcgs_image_rows {
     source from;
     adcgs_image whole;   /**< where the format has no rows of its own */
-    size_t row, at;      /**< values of a row, and of those that were read of the whole */
+    size_t row, at;      /**< values of a row; values of `whole` that have been read */
 #ifdef HAVE_ENCODER
     adcgs_png_rows *png;
 #endif

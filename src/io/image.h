@@ -44,11 +44,11 @@ adcgs_status adcgs_image_copy(adcgs_image *copy, const adcgs_image *image, const
 void adcgs_image_free(adcgs_image *image);
 /** Limits: 16384 x 16384. One-line errors name the file. Floats that are not finite are errors, so are primaries not sRGB's. */
 adcgs_status adcgs_image_read(adcgs_image *out, const char *path, adcgs_error *error);
-/** An image that is read from its top to its bottom: one that is large need not be in memory as a whole (PNG). */
+/** An image that is read from top to bottom, without all of its pixels in memory (PNG that is not interlaced). */
 typedef struct adcgs_image_rows adcgs_image_rows;
 adcgs_status adcgs_image_rows_open(adcgs_image_rows **out, int *width, int *height, int *channels, const char *path,
                                    adcgs_error *error);
-/** The next n rows, of which there are as many yet, as adcgs_image_read() has them. path is for messages. */
+/** The next n rows, at most those that are left, with the values of adcgs_image_read(). path is for messages. */
 adcgs_status adcgs_image_rows_read(adcgs_image_rows *rows, int n, float *to, const char *path, adcgs_error *error);
 void adcgs_image_rows_close(adcgs_image_rows **rows);
 /** Size and channels without decoding pixels. */

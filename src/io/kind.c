@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The kind of what is at a path, and what to say of it where something else was wanted. */
+/** \file The kind of the file at a path, and the message for a file of another kind than expected. */
 #include "config.h"
 
 #include "io/kind.h"
@@ -15,7 +15,7 @@ const adcgs_kind *adcgs_kind_at(const char *path)
     uint8_t begin[ADCGS_KIND_BYTES], tail[ADCGS_KIND_TAIL];
     const adcgs_kind *const unknown = adcgs_kind_of((const uint8_t *)"", 0, 0, NULL, path);
     struct stat status;
-    if (stat(path, &status)) /* not by opening it: whoever writes into a pipe would see a reader come and go */
+    if (stat(path, &status)) /* without opening it: the writer of a pipe would see a reader open and close it */
         return unknown;
     if (S_ISDIR(status.st_mode))
         return &folder;
@@ -29,7 +29,7 @@ const adcgs_kind *adcgs_kind_at(const char *path)
     return n > 0 ? adcgs_kind_of(begin, (size_t)n, (uint64_t)status.st_size, has_tail ? tail : NULL, path) : unknown;
 }
 
-/* ---- What is wanted ---- */
+/* ---- Expected kinds ---- */
 
 static const struct {
     const char *name;
@@ -42,7 +42,7 @@ static const struct {
     {"an image (PNG, JPEG, TIFF, EXR, WebP, HEIC, AVIF, BMP, GIF, HDR or netpbm)", ADCGS_KIND_IMAGE},
 };
 
-/** What to do with a kind that is read, but elsewhere. */
+/** The way to go for a file that another program or option reads. */
 static const char *advise(adcgs_kind_class class, adcgs_want want)
 {
     switch (class) {
@@ -68,17 +68,17 @@ adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_w
 {
     const char *const advice = kind->advice ? kind->advice : advise(kind->class, want);
     const adcgs_status status = kind->class == wants[want].class ? ADCGS_ERR_UNSUPPORTED : ADCGS_ERR_DATA;
-    if (kind->advice && kind->class == wants[want].class) /* the right thing, packed otherwise */
+    if (kind->advice && kind->class == wants[want].class) /* the expected class in another format */
         return adcgs_fail(error, status, "%.150s: %s, which is not read: %s", path, kind->name, advice);
     return adcgs_fail(error, status, "%.150s: %s, expected %s%s%s", path, kind->name, wants[want].name, advice ? ": " : "",
                       advice ? advice : "");
 }
 
-/** Splats are scenes, too; points may be, or a mesh with splats in it, which the reader tells. */
+/** Files of splats are scenes, too, and PLY of splats are points. */
 static int fits(const adcgs_kind *kind, adcgs_want want)
 {
     return kind->class == ADCGS_KIND_UNKNOWN || (kind->is_read && kind->class == wants[want].class) ||
-           (want != ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_FOLDER) || /* a scene, or no regular file, which readers say */
+           (want != ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_FOLDER) || /* other readers want a regular file and say so */
            (want == ADCGS_WANT_SCENE && kind->is_read && kind->class == ADCGS_KIND_SPLATS) ||
            (want == ADCGS_WANT_POINTS && kind->is_read && kind->class == ADCGS_KIND_SPLATS);
 }

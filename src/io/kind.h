@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The kind of a file by its first bytes: one table for all programs, of what
- * is read and of what is often given to us instead, each with its name and the
- * way to what is read. Names of files count only where a kind has no bytes of
- * its own (raw images of cameras in TIFF, videos of two fisheyes in MP4).
+ * The kind of a file by its first bytes: one table for all programs, with the
+ * formats that are read and others that users have, each with its name and
+ * advice. The extension counts only if a kind has no bytes of its own (raw
+ * images of cameras in TIFF, videos of two fisheyes in MP4).
  */
 #ifndef ADCGS_IO_KIND_H
 #define ADCGS_IO_KIND_H
@@ -13,9 +13,9 @@
 #define ADCGS_KIND_BYTES 4096 /**< of a file's beginning that are looked at */
 #define ADCGS_KIND_TAIL 32    /**< of its end */
 
-/** What a file holds. */
+/** The content of a file. */
 typedef enum adcgs_kind_class {
-    ADCGS_KIND_UNKNOWN, /**< nothing in the table: a reader says itself what it expected */
+    ADCGS_KIND_UNKNOWN, /**< not in the table: the reader has its own message */
     ADCGS_KIND_FOLDER,
     ADCGS_KIND_STREAM,  /**< an adcgs stream */
     ADCGS_KIND_PAGE,    /**< a page for browsers with a stream in it */
@@ -32,11 +32,11 @@ typedef struct adcgs_kind {
     adcgs_kind_class class;
     const char *name;   /**< with its article: "a TIFF image" */
     const char *reader; /**< of images that are read: OpenImageIO's name of the format; else NULL */
-    const char *advice; /**< of what is not read: what to do; NULL where there is none */
+    const char *advice; /**< for a kind that is not read; or NULL */
     int is_read;        /**< by those programs that want its class */
 } adcgs_kind;
 
-/** What a program wants where a file was given. */
+/** The content that a program expects of a file. */
 typedef enum adcgs_want {
     ADCGS_WANT_STREAM,
     ADCGS_WANT_SCENE,
@@ -51,12 +51,12 @@ typedef enum adcgs_want {
  * last ADCGS_KIND_TAIL bytes, or NULL.
  */
 const adcgs_kind *adcgs_kind_of(const uint8_t *begin, size_t n, uint64_t size, const uint8_t *tail, const char *name);
-/** The kind of what is at a path; unknown where nothing can be read, and for what is neither a regular file nor a folder. */
+/** The kind of the file at a path; unknown if it cannot be read, or is neither a regular file nor a folder. */
 const adcgs_kind *adcgs_kind_at(const char *path);
 
-/** "PATH: a GIF image, expected a scene: ..." as ADCGS_ERR_DATA, or _UNSUPPORTED where it is of the right class. */
+/** "PATH: a GIF image, expected a scene: ..." as ADCGS_ERR_DATA, or ADCGS_ERR_UNSUPPORTED if it is of the right class. */
 adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_want want, adcgs_error *error);
-/** Refuse what is at a path if it is known not to be what is wanted. Whatever is unknown, a pipe or a URL passes. */
+/** Refuse a file of a known kind that does not fit. Unknown kinds, pipes and URLs pass. */
 adcgs_status adcgs_kind_check(const char *path, adcgs_want want, adcgs_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The kinds of files: a table of first bytes, and what takes a closer look. */
+/** \file The kinds of files: a table of first bytes, and functions for kinds that a few bytes do not identify. */
 #include "config.h"
 
 #include "io/kind.h"
@@ -113,11 +113,11 @@ static const magic magics[] = {
     {AT(0, "\x7f""ELF"), OTHER("a program", NULL)},
 };
 
-/* ---- Kinds that take a closer look ---- */
+/* ---- Kinds that a few bytes do not identify ---- */
 
 static const adcgs_kind unknown = {ADCGS_KIND_UNKNOWN, "a file of no kind that is known", NULL, NULL, 0};
 
-/** What is looked at. */
+/** The bytes and names to examine. */
 typedef struct look {
     const uint8_t *begin, *tail;
     const char *name, *extension;
@@ -149,7 +149,7 @@ static int ends_in(const look *l, const char *const *list)
     return 0;
 }
 
-/** MPEG-4's container: which it is says the brand behind the box's type. */
+/** MPEG-4's container: the brand behind the type of the first box decides. */
 static const adcgs_kind *find_in_boxes(const look *l)
 {
     static const adcgs_kind video = VIDEO("a video (MP4 or QuickTime)"), heif = IMAGE("an HEIC image", "heif"),
@@ -198,7 +198,7 @@ static int64_t tiff_tag(const look *l, uint32_t tag, int is_big)
     return -1;
 }
 
-/** Cameras keep raw images in TIFF, behind a small picture. */
+/** Cameras store raw images in TIFF, behind a reduced image. */
 static const adcgs_kind *find_in_tiff(const look *l)
 {
     static const adcgs_kind tiff = IMAGE("a TIFF image", "tiff"), dng = NO_IMAGE("a raw image (DNG)", TO_JPEG),
@@ -210,7 +210,7 @@ static const adcgs_kind *find_in_tiff(const look *l)
         return NULL;
     if (tiff_tag(l, 50706, is_big) >= 0) /* DNGVersion */
         return &dng;
-    if (begins(l, 8, "CR") || tiff_tag(l, 254, is_big) == 1 || ends_in(l, ends)) /* 254: what comes first is a smaller image */
+    if (begins(l, 8, "CR") || tiff_tag(l, 254, is_big) == 1 || ends_in(l, ends)) /* 254: the first image is a reduced one */
         return &raw;
     return &tiff;
 }
@@ -226,7 +226,7 @@ static const adcgs_kind *find_bitmap(const look *l)
     return NULL;
 }
 
-/** Archives: which one says the name of the first file in it. */
+/** Archives: the names of the files in it decide. */
 static const adcgs_kind *find_in_archive(const look *l)
 {
     static const adcgs_kind sog = NO_SPLATS("splats (SOG)", TO_PLY),
@@ -244,7 +244,7 @@ static const adcgs_kind *find_ply(const look *l)
     static const adcgs_kind plain = SPLATS("splats (PLY)"), other = SPLATS("a PLY file");
     if (!begins(l, 0, "ply\n") && !begins(l, 0, "ply\r"))
         return NULL;
-    return has(l, " f_dc_0") || has(l, " packed_position") ? &plain : &other; /* which one tells the header: its readers */
+    return has(l, " f_dc_0") || has(l, " packed_position") ? &plain : &other; /* the reader parses the header */
 }
 
 /** 32 bytes a splat and nothing else: place and size in binary32, colour, rotation; all that are here must be splats. */
@@ -289,7 +289,7 @@ static size_t skip_blanks(const look *l)
 
 #define RECORD3D NO_SCENE("Record3D's metadata.json", "export it for nerfstudio: ns-process-data record3d")
 
-/** Texts that some tool's cameras are; those of scenes that are read, or may be, are left to their readers. */
+/** Camera files of other tools. Scenes pass, so do texts with "frames". */
 static const adcgs_kind *find_json(const look *l)
 {
     static const struct {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Places far from the world's origin (earth-centred or map coordinates in metres) in files of binary32: what is left is written
- * from an offset on.
+ * Positions far from the world's origin (earth-centred or map coordinates in metres) in files of binary32: they are stored
+ * relative to an offset.
  */
 #ifndef ADCGS_IO_OFFSET_H
 #define ADCGS_IO_OFFSET_H

@@ -39,7 +39,7 @@ template <typename Work> adcgs_status guarded(const char *path, adcgs_error *err
         return work();
     } catch (const std::bad_alloc &) {
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    } catch (const std::length_error &) { /* what it says names a container of the library */
+    } catch (const std::length_error &) { /* its text names a container of the library */
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     } catch (const std::exception &) {
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: OpenImageIO gave up", path);
@@ -54,13 +54,13 @@ std::string first_line(const std::string &text)
     return text.empty() ? "no reason given" : text.substr(0, text.find('\n'));
 }
 
-/** A reader, and what it reads of: our own open file, so that no name in it, nor its own, leads to another one. */
+/** A reader over our own open file, so that no name in the file, nor its own, opens another one. */
 struct opened {
     std::unique_ptr<OIIO::Filesystem::IOFile> file; /* outlives the reader */
     std::unique_ptr<OIIO::ImageInput> reader;
 };
 
-/** By the reader of that name, which is told by what the file holds; OpenImageIO itself asks every one that it has. */
+/** By the reader of that name. ImageInput::open() would try every plug-in that OpenImageIO has. */
 adcgs_status open_input(opened &in, FILE *file, const char *reader, const char *path, adcgs_error *error)
 {
     OIIO::attribute("threads", 1); /* callers have their own threads */

@@ -18,7 +18,7 @@ typedef struct adcgs_photo {
     char camera[96];   /**< maker, model and focal length of the lens, "" where they are not known */
 } adcgs_photo;
 
-/** What an image's header says besides its size, filled in; what is no number there is as if it were not there. */
+/** Fill in the fields that an image's header has in addition to its size. A value that is no number counts as absent. */
 adcgs_status adcgs_image_tell(adcgs_photo *photo, const char *path, adcgs_error *error);
 /** What its header says, without decoding pixels. */
 adcgs_status adcgs_photo_probe(adcgs_photo *out, const char *path, adcgs_error *error);

@@ -55,7 +55,7 @@ static const uint8_t *find_line(const adcgs_ply *r, const uint8_t *at, const uin
     return next;
 }
 
-/** Whether a line begins with a word; behind is where what follows it begins. */
+/** Whether a line begins with a word; *behind: where the text after it begins. */
 static int has_word(const uint8_t *line, size_t n, const char *word, size_t *behind)
 {
     *behind = strlen(word);

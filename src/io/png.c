@@ -201,7 +201,7 @@ adcgs_status adcgs_png_rows_next(adcgs_png_rows *r, float *row, const char *path
     const int last = ++r->at == r->l.height;
     int code = spng_decode_row(r->png, r->samples, values << r->l.wide);
     if (code == SPNG_EOI && last)
-        code = spng_decode_chunks(r->png); /* what follows the pixels, so that all of the file is looked at */
+        code = spng_decode_chunks(r->png); /* behind the pixels, so that the whole file is checked */
     if (!code && last && feof(r->file))
         code = SPNG_IO_EOF; /* in the checksum of IEND, which it does without */
     if (code)

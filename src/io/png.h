@@ -10,7 +10,7 @@
 
 /** The file is at its start and stays the caller's; path is for messages. */
 adcgs_status adcgs_png_probe(FILE *file, int *width, int *height, int *channels, const char *path, adcgs_error *error);
-/** A picture that is decoded row by row, in no more memory than a row. */
+/** An image that is decoded row by row, in the memory of a row. */
 typedef struct adcgs_png_rows adcgs_png_rows;
 /** *out is NULL where rows come in another order than they lie (interlaced): the file is at its start again then. */
 adcgs_status adcgs_png_rows_open(adcgs_png_rows **out, FILE *file, int *width, int *height, int *channels, const char *path,

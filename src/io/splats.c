@@ -84,7 +84,7 @@ adcgs_status adcgs_splats_join(adcgs_splats *out, const adcgs_splats *parts, siz
         total += parts[i].n;
         degree = ADCGS_MAX(degree, parts[i].degree);
         if (parts[i].antialiased != parts->antialiased)
-            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: splats that are antialiased beside splats that are not", path);
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: some splats are antialiased and some are not", path);
     }
     ADCGS_TRY(adcgs_splats_alloc(out, total, path, error));
     out->degree = degree;

@@ -27,8 +27,8 @@ enum { ADCGS_SPLATS_UP_UNKNOWN, ADCGS_SPLATS_Y_UP, ADCGS_SPLATS_Z_UP, ADCGS_SPLA
 typedef struct adcgs_splats {
     uint32_t n;
     uint8_t axes;      /**< ADCGS_SPLATS_Y_UP..., as far as the file or the stream tells */
-    uint8_t antialiased; /**< trained so: a view scales opacities by what the screen filter takes (see data/splat_views.h) */
-    double offset[3];  /**< of a scene far from the origin: what binary32 cannot hold is left out of mean, and added by readers */
+    uint8_t antialiased; /**< trained with antialiasing: each view scales opacities (data/splat_views.h) */
+    double offset[3];  /**< to be added to mean: not zero for a scene far from the origin, which binary32 cannot hold */
     float *mean[3], *scale[3], *rotation[4]; /**< world units; standard deviations, > 0; unit quaternion w x y z */
     float *opacity;    /**< 0..1 */
     float *colour[3];  /**< 0.5 + ADCGS_SPLATS_DC f_dc: RGB seen from everywhere, not clipped */

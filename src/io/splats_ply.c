@@ -12,7 +12,7 @@
 #include <strings.h>
 
 #define LOG_SCALE_MAX 80.0f
-#define LOG_SCALE_MIN -80.0f /* what is flat gets so much, as in GLB */
+#define LOG_SCALE_MIN -80.0f /* the scale of a flat axis, as in GLB */
 
 /* Roles of properties; f_rest_i has the role REST + i. */
 enum { MEAN, DC = 3, OPACITY = 6, SCALE = 7, ROTATION = 10, REST = 14, REST_MAX = 45 };
@@ -24,7 +24,7 @@ typedef struct taker {
     adcgs_splats *out;
     float *to[REST];
     size_t n_rest;
-    int fault;      /**< role of the first number that may not be what it is, or -1 */
+    int fault;      /**< role of the first invalid number, or -1 */
     uint64_t where; /**< its vertex */
 } taker;
 
@@ -126,13 +126,13 @@ static adcgs_status read_vertices(adcgs_ply *ply, taker *t)
     return ADCGS_OK;
 }
 
-/** Text of n bytes against a word, whatever the case of its letters. */
+/** Text of n bytes against a word, without regard to case. */
 static int is_word(const char *text, size_t n, const char *word)
 {
     return n == strlen(word) && !strncasecmp(text, word, n);
 }
 
-/** What a comment behind a key says; NULL where it has another key. */
+/** The value of a comment with this key; NULL if it has another key. */
 static const char *value_behind(const char *key, const char *comment, size_t *n)
 {
     const size_t length = strlen(key);
@@ -160,7 +160,7 @@ static int says_antialiased(const adcgs_ply *ply)
     return found;
 }
 
-/** What a PLY of splats may be besides, by a property that tells it. */
+/** Other kinds of splats in PLY, by a property that they have. */
 static adcgs_status check_kind(adcgs_ply *ply)
 {
     static const struct {

@@ -252,7 +252,7 @@ static int is_splats(const char *name)
     return 0;
 }
 
-/** A folder without cameras that has files of splats, one for each moment, as some players take them. */
+/** A folder without cameras that has files of splats, one for each timestamp, as some players take them. */
 static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
 {
     adcgs_listing listing;

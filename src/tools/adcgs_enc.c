@@ -328,10 +328,10 @@ static const adcgs_cli program = {
                "a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), of which it renders views.\n"
                "Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or millions: 20k, 2M.",
     .min_operands = 0,
-    .max_operands = OPERANDS_MAX, /* one is expected: more are told apart below */
+    .max_operands = OPERANDS_MAX, /* one is expected: the message depends on the others */
 };
 
-/** Files of splats, one for each moment, are what other players take. */
+/** Other players take a file of splats for each timestamp. */
 static int tell_surplus(const adcgs_cli *cli, int n, char **operands)
 {
     int splats = 0;

@@ -56,7 +56,7 @@ static adcgs_status write_moment(uint32_t *n, adcgs_decoder *decoder, const adcg
     return status;
 }
 
-/** Where binary32 cannot hold places in the world, say from where on they are, and what tells a reader so. */
+/** If binary32 cannot hold positions in the world, report the offset, and its place in the file. */
 static void tell_offset(const adcgs_cli *cli, const adcgs_info *info, const char *target)
 {
     static const struct {

@@ -140,7 +140,7 @@ rm -rf "$dir/s.importing"
 import 4 ': 1 image, expected at least three' "$(find "$pictures" -type f | head -n 1)"
 import 3 'nowhere' "$dir/nowhere"
 import 4 'no picture in this folder' "$dir/masks"
-# A folder of what is no picture, by its kind; HEIC where OpenImageIO has no reader of it, or this one is damaged.
+# A folder without images is refused with the kind of a file in it; HEIC without a reader in OpenImageIO, or damaged.
 mkdir "$dir/others"
 printf 'MM\0*\0\0\0\010\0\0\0\0' >"$dir/others/IMG_1.NEF"
 import 5 'IMG_1.NEF: a raw image of a camera, which is not read: develop' "$dir/others"
@@ -148,7 +148,7 @@ printf '\0\0\0\030ftypheic\0\0\0\0mif1heic' >"$dir/others/IMG_2.HEIC"
 expect "$(./adcgs-import --colmap "$fake" -o "$dir/s" "$dir/others" 2>/dev/null; echo $?)" 'IMG_2.HEIC: .*heif' \
     ./adcgs-import --colmap "$fake" -o "$dir/s" "$dir/others"
 rm -rf "$dir/s" "$dir/s.importing"
-# Beside a picture of the same name it is not looked at.
+# HEIC next to another image of the same stem is ignored.
 find "$pictures" -type f | head -n 1 | while read -r first; do cp "$first" "$dir/others/IMG_2.${first##*.}"; done
 import 4 ': 1 image, expected at least three' "$dir/others"
 printf 'no picture' >"$dir/masks/a.jpg"

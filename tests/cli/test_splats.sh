@@ -96,7 +96,7 @@ if [ -f .libs/adcgs_draco.so ]; then
     expect 0 "" env ADCGS_MODULES="$dir/none" ./adcgs-info "$s"
 fi
 
-# What is no scene, and what is no stream, is named by what it is.
+# A file that is no scene, or no stream, is refused with its kind.
 mkdir "$dir/sequence" && cp "$dir/t000.ply" "$dir/t001.ply" "$dir/sequence"
 expect 5 "sequence: a folder of 2 files of splats (t000.ply): sequences" ./adcgs-enc "$dir/sequence" -o "$dir/x.adcgs"
 expect 5 "t000.ply and 1 more files of splats" ./adcgs-enc "$dir/t000.ply" "$dir/t001.ply" -o "$dir/x.adcgs"
@@ -114,7 +114,7 @@ for option in "" "--dataset splats"; do
     expect 4 "splat: splats (.splat), expected\|splat: splats (.splat), which is not read: convert" \
         sh -c "./adcgs-enc '$dir/splat' -o '$dir/x.adcgs' $option || exit 4"
 done
-# Nor is a playlist a photo, nor a video, nor a name that a reader of images makes something of.
+# A playlist is no photo, nor is a video, nor any file with a name that selects a plug-in of OpenImageIO.
 train=$dir/scene/transforms_train.json
 cp -r "$dir/scene" "$dir/photos"
 for name in x.mp4 x.ppm 'x.null?RES=64x64\&CHANNELS=3'; do

@@ -238,7 +238,7 @@ static long peak_kib(void)
     return usage.ru_maxrss;
 }
 
-/** A large picture that is reduced as it is read takes memory for some rows of it: 36 million pixels are 144 MB as binary32. */
+/** A large image that is reduced as it is read takes memory for some rows: 36 million pixels are 144 MB as binary32. */
 static void test_large(void **state)
 {
     struct spng_ihdr head = {.width = SIDE, .height = SIDE, .bit_depth = 8, .color_type = SPNG_COLOR_TYPE_GRAYSCALE};
@@ -253,7 +253,7 @@ static void test_large(void **state)
     assert_int_equal(spng_set_option(png, SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_NONE), 0);
     assert_int_equal(spng_encode_image(png, NULL, 0, SPNG_FMT_PNG, SPNG_ENCODE_PROGRESSIVE | SPNG_ENCODE_FINALIZE), 0);
     for (int y = 0, code = 0; y < SIDE; y++) {
-        memset(row, y / 8 % 2 ? 255 : 51, SIDE); /* alternate rows of the reduced picture */
+        memset(row, y / 8 % 2 ? 255 : 51, SIDE); /* alternate rows of the reduced image */
         code = spng_encode_row(png, row, SIDE);
         assert_true(code == (y + 1 < SIDE ? 0 : SPNG_EOI));
     }

@@ -104,7 +104,7 @@ static void test_names(void **state)
     assert_string_equal(kind_of("a", text, 300, 512)->name, "an archive (tar)");
 }
 
-/** What has no mark: records of 32 bytes that are splats all of them, and a header of KSplat. */
+/** Kinds without a signature: records of 32 bytes that are splats, and the header of KSplat. */
 static void test_unmarked(void **state)
 {
     uint8_t splat[320], ksplat[5120] = {0, 1, 0, 0, 1};
@@ -137,7 +137,7 @@ static void refused(const char *name, const char *bytes, size_t n, adcgs_status 
     expect_error(adcgs_image_probe(&width, &height, &channels, in(name), &error), status, name, what);
 }
 
-/** What is no image of a kind that is meant is refused by what it is, whatever its name is. */
+/** A file that is no supported image is refused with its kind, under any name. */
 static void test_no_images(void **state)
 {
     refused("x.null?RES=64x64&CHANNELS=3", BYTES("any bytes"), ADCGS_ERR_DATA, "expected an image");
@@ -184,7 +184,7 @@ static int was_opened(int watch, const char *name)
     return found;
 }
 
-/** A picture that names others opens none of them. */
+/** An image that names other files opens none of them. */
 static void test_nothing_else(void **state)
 {
     static const struct {
@@ -200,7 +200,7 @@ static void test_nothing_else(void **state)
     if (watch < 0 || inotify_add_watch(watch, folder, IN_OPEN) < 0)
         skip();
     fclose(fopen(in("secret.mp4"), "rb"));
-    assert_true(was_opened(watch, "secret.mp4")); /* it would be seen */
+    assert_true(was_opened(watch, "secret.mp4")); /* the watch works */
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         refused(cases[i].name, cases[i].text, strlen(cases[i].text), ADCGS_ERR_DATA, "expected an image");
         assert_false(was_opened(watch, "secret.mp4"));
@@ -209,7 +209,7 @@ static void test_nothing_else(void **state)
 }
 #endif
 
-/** Names do not matter to what is read, and other readers of OpenImageIO are given our own open file. */
+/** The name does not matter, and OpenImageIO's readers read our own open file. */
 static void test_readers(void **state)
 {
     static const char *const ends[] = {"tif", "webp", "bmp", "hdr", "exr", "gif", "heic", "png", "jpg", "ppm", "pfm"};
@@ -237,7 +237,7 @@ static void test_readers(void **state)
     adcgs_image_free(&image);
 }
 
-/* ---- What is wanted ---- */
+/* ---- Expected kinds ---- */
 
 static void test_wants(void **state)
 {

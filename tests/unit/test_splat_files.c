@@ -80,7 +80,7 @@ static void test_headers(void **state)
                "2 7 7 1 1 2 0 -5 1 3 3e0 9 9 9 0 0 0 -2 -3 -4 2 -1 0.5 77 0 3 2 1\n0\n");
 }
 
-/** Binary data may begin with what ends a line. */
+/** Binary data may begin with a line feed. */
 static void test_cr_alone(void **state)
 {
     static const float values[14] = {0.0f, 2.0f, 3.0f, 0.0f, 0.5f, -1.0f, 2.0f, -4.0f, -3.0f, -2.0f, 1.0f, 0.0f, 0.0f, 0.0f};
@@ -96,7 +96,7 @@ static void test_cr_alone(void **state)
     adcgs_splats_free(&s);
 }
 
-/** Features beside what is drawn. */
+/** Properties that the renderer does not use. */
 static void test_many_properties(void **state)
 {
     char text[32768];
@@ -135,7 +135,7 @@ static void test_surfels(void **state)
     expect_error(adcgs_splats_read(&s, in("t.ply"), &error), ADCGS_ERR_DATA, "t.ply", "no property scale_2");
 }
 
-/** Splats that move are not read as what stands still. */
+/** Dynamic splats are not read as static ones. */
 static void test_other_kinds(void **state)
 {
     static const char *const others[] = {"trbf_center", "scale_t", "log_duration"};
@@ -215,7 +215,7 @@ static void test_comments(void **state)
     }
 }
 
-/** What is known of splats is written; a decoder's are not antialiased. */
+/** The flag is written and read back; a decoder's splats are not antialiased. */
 static void test_written(void **state)
 {
     static const char *const formats[] = {"w.ply", "w.spz"};
@@ -232,7 +232,7 @@ static void test_written(void **state)
         }
 }
 
-/** How white the middle of a picture is where a splat of opacity 0.9 with these standard deviations, in pixels, lies there. */
+/** The value at the middle of an image where a white splat of opacity 0.9 lies; its standard deviations are in pixels. */
 static double middle(int antialiased, double across, double down, double distance)
 {
     static const float black[3] = {0.0f, 0.0f, 0.0f};
@@ -255,7 +255,7 @@ static double middle(int antialiased, double across, double down, double distanc
     return value;
 }
 
-/** What the filter spreads shows no more than before; by each view anew, since it follows from sizes in pixels. */
+/** The filter makes no splat stronger. The scale of opacity follows from sizes in pixels, so it differs between views. */
 static void test_antialiased(void **state)
 {
     static const double sizes[][2] = {{0.2, 0.2}, {1.0, 1.0}, {0.1, 5.0}, {20.0, 30.0}};
@@ -268,7 +268,7 @@ static void test_antialiased(void **state)
         }
 }
 
-/** A file that says so is learnt so: its views are fainter. */
+/** The views of a file with the comment are fainter. */
 static void test_scenes(void **state)
 {
     adcgs_splats s = random_splats(300, 1.0, 0.0, 9);
