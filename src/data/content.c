@@ -79,8 +79,7 @@ static void add_view(adcgs_md5 *md5, const adcgs_scene_view *v)
 static void add_points(adcgs_md5 *md5, const adcgs_points *points)
 {
     for (uint32_t i = 0; i < points->n; i++) {
-        const double x[3] = { (double)points->position[i][0], (double)points->position[i][1], (double)points->position[i][2] };
-        add_numbers(md5, x, 3);
+        add_numbers(md5, points->position[i], 3);
         adcgs_md5_update(md5, points->colour[i], sizeof points->colour[i]);
     }
 }

@@ -37,8 +37,7 @@ static adcgs_status points_extent(const adcgs_scene *scene, double *extent, adcg
         return adcgs_alloc_status(error);
     camera_centre(scene, 0, centre);
     for (uint32_t i = 0; i < n; i++) {
-        const float *p = scene->points.position[(uint64_t)i * all / n];
-        distances[i] = distance((const double[3]){(double)p[0], (double)p[1], (double)p[2]}, centre);
+        distances[i] = distance(scene->points.position[(uint64_t)i * all / n], centre);
     }
     adcgs_sort(distances, n);
     *extent = isfinite(distances[n / 2]) ? distances[n / 2] : 0.0;

@@ -255,14 +255,6 @@ static adcgs_status read_points(adcgs_poses *poses, const adcgs_import_job *job,
     return ADCGS_OK;
 }
 
-static void turn_about(const double axis[3], double angle, float position[3])
-{
-    double v[3] = {position[0], position[1], position[2]};
-    adcgs_rotate_about(axis, angle, v);
-    for (int a = 0; a < 3; a++)
-        position[a] = (float)v[a];
-}
-
 /** Columns of a pose: the camera's axes, and its place. */
 static void turn_pose(const double axis[3], double angle, double pose[12])
 {
@@ -288,7 +280,7 @@ static void set_upright(adcgs_poses *poses)
     for (uint32_t i = 0; i < poses->n; i++)
         turn_pose(axis, angle, poses->posed[i].cam_to_world);
     for (uint32_t i = 0; i < poses->model.points.n; i++)
-        turn_about(axis, angle, poses->model.points.position[i]);
+        adcgs_rotate_about(axis, angle, poses->model.points.position[i]);
 }
 
 adcgs_status adcgs_poses_read(adcgs_poses *out, adcgs_import_job *job)

@@ -45,7 +45,7 @@ adcgs_status parse(adcgs_points *out, const uint8_t *data, size_t bytes, const c
     const bool bytes_per_colour = colour && colour->data_type() == draco::DT_UINT8;
     out->coloured = bytes_per_colour;
     for (uint32_t i = 0; i < out->n; i++) {
-        read_values<float>(position, i, out->position[i]);
+        read_values<double>(position, i, out->position[i]);
         if (bytes_per_colour)
             read_values<uint8_t>(colour, i, out->colour[i]);
     }
@@ -57,7 +57,11 @@ std::unique_ptr<draco::PointCloud> build(const adcgs_points *points)
     draco::PointCloudBuilder builder;
     builder.Start(points->n);
     const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-    builder.SetAttributeValuesForAllPoints(position, points->position, sizeof *points->position);
+    for (uint32_t i = 0; i < points->n; i++) {
+        const double *const x = points->position[i];
+        const float value[3] = {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])};
+        builder.SetAttributeValueForPoint(position, draco::PointIndex(i), value);
+    }
     if (points->coloured) {
         const int colour = builder.AddAttribute(draco::GeometryAttribute::COLOR, 3, draco::DT_UINT8);
         builder.SetAttributeValuesForAllPoints(colour, points->colour, sizeof *points->colour);

@@ -206,9 +206,7 @@ adcgs_status adcgs_npy_parse(adcgs_points *out, const uint8_t *data, size_t byte
     ADCGS_TRY(adcgs_npy_open(&table, data, bytes, 3, "points", path, error));
     ADCGS_TRY(adcgs_points_alloc(out, table.rows, path, error));
     for (uint32_t i = 0; i < out->n; i++)
-        for (uint32_t a = 0; a < 3; a++) {
-            const double value = adcgs_npy_value(&table, i, a);
-            out->position[i][a] = fabs(value) <= (double)FLT_MAX ? (float)value : INFINITY; /* binary32 cannot hold it */
-        }
+        for (uint32_t a = 0; a < 3; a++)
+            out->position[i][a] = adcgs_npy_value(&table, i, a);
     return ADCGS_OK;
 }

@@ -19,7 +19,7 @@ static void take(void *user, uint64_t vertex, const adcgs_ply_property *property
 {
     const adcgs_points *points = user;
     if (property->role <= Z)
-        points->position[vertex][property->role] = (float)value;
+        points->position[vertex][property->role] = value;
     else
         points->colour[vertex][property->role - RED] = to_colour(property->type, value);
 }

@@ -13,7 +13,7 @@ extern "C" {
 
 typedef struct adcgs_points {
     uint32_t n;
-    float (*position)[3]; /**< finite */
+    double (*position)[3]; /**< finite; numbers of binary32, unless the cloud is too far from the origin for them */
     uint8_t (*colour)[3];
     int coloured;         /**< 0: the file has no colours, and they are mid-grey */
 } adcgs_points;
@@ -21,8 +21,14 @@ typedef struct adcgs_points {
 /** Uninitialised positions, grey colours. */
 adcgs_status adcgs_points_alloc(adcgs_points *points, uint64_t n, const char *path, adcgs_error *error);
 void adcgs_points_free(adcgs_points *points);
+/**
+ * Round positions to binary32, except those of a cloud that lies so far from the origin of the world that rounding would move
+ * its points against each other: coordinates in metres from the centre of the earth would lose half a metre. Readers of scenes
+ * call it once all is in world units.
+ */
+void adcgs_points_round(adcgs_points *points);
 
-/** Read PLY, Draco or NPY, told by content. */
+/** Read PLY, Draco or NPY, told by content. Coordinates are at most FLT_MAX, and rounded as adcgs_points_round() does. */
 adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error *error);
 
 /**
@@ -36,7 +42,7 @@ adcgs_status adcgs_ply_write(const adcgs_points *points, const char *path, adcgs
 
 /**
  * NPY in memory, formats 1.0 to 3.0: a little-endian array of binary32 or binary64, shape (n,3), C order, and nothing behind
- * it. Binary64 is rounded. A zero byte stands behind the data; positions need not be finite yet.
+ * it. A zero byte stands behind the data; positions need not be finite yet.
  */
 adcgs_status adcgs_npy_parse(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
 

@@ -8,6 +8,7 @@
 #include "io/ply.h"
 #include "io/points.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,7 +18,7 @@ static adcgs_status check_finite(const adcgs_points *points, const char *path, a
 {
     for (uint32_t i = 0; i < points->n; i++)
         for (int a = 0; a < 3; a++)
-            if (!isfinite(points->position[i][a]))
+            if (!(fabs(points->position[i][a]) <= (double)FLT_MAX))
                 return adcgs_fail(error, ADCGS_ERR_DATA, "%s: vertex %u: %c is not a finite number", path, i, "xyz"[a]);
     return ADCGS_OK;
 }
@@ -41,7 +42,9 @@ adcgs_status adcgs_points_read(adcgs_points *out, const char *path, adcgs_error 
     free(data);
     if (status == ADCGS_OK)
         status = check_finite(out, path, error);
-    if (status != ADCGS_OK)
+    if (status == ADCGS_OK)
+        adcgs_points_round(out);
+    else
         adcgs_points_free(out);
     return status;
 }

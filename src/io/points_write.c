@@ -25,7 +25,7 @@ static adcgs_status write_ply(const adcgs_points *points, const double offset[3]
     for (uint32_t i = 0; i < points->n; i++) {
         uint8_t record[15];
         for (int a = 0; a < 3; a++)
-            adcgs_store_le32(record + 4 * a, adcgs_float_bits(points->position[i][a]));
+            adcgs_store_le32(record + 4 * a, adcgs_float_bits((float)points->position[i][a]));
         memcpy(record + 12, points->colour[i], 3);
         fwrite(record, sizeof record, 1, atomic.file);
     }

@@ -80,6 +80,8 @@ adcgs_status adcgs_colmap_load(adcgs_colmap *model, const adcgs_colmap_place *pl
         status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such file; a COLMAP model has cameras, images, points3D", path);
     if (status == ADCGS_OK)
         status = formats[place->format].parse[file](model, data, bytes);
+    if (status == ADCGS_OK && file == ADCGS_COLMAP_POINTS)
+        adcgs_points_round(&model->points);
     if (status == ADCGS_OK && file == ADCGS_COLMAP_CAMERAS)
         status = adcgs_colmap_sort_cameras(model);
     if (status == ADCGS_OK && file == ADCGS_COLMAP_IMAGES)

@@ -268,7 +268,7 @@ adcgs_status adcgs_colmap_add_point(adcgs_colmap *model, const double position[3
     if (model->training && track->seen && track->training < 2)
         return ADCGS_OK;
     for (int a = 0; a < 3; a++) {
-        model->points.position[model->points.n][a] = (float)position[a];
+        model->points.position[model->points.n][a] = position[a];
         model->points.colour[model->points.n][a] = (uint8_t)colour[a];
     }
     model->points.n++;

@@ -330,14 +330,14 @@ static adcgs_status find_images(reader *r)
 }
 
 /** A point into working coordinates. */
-static adcgs_status move_point(const reader *r, const char *path, uint32_t index, float position[3])
+static adcgs_status move_point(const reader *r, const char *path, uint32_t index, double position[3])
 {
     for (int a = 0; a < 3; a++) {
-        const double x = ((double)position[a] - r->centre[a]) * r->scale;
+        const double x = (position[a] - r->centre[a]) * r->scale;
         if (!(fabs(x) <= WORLD_MAX))
             return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: point %u: %c is %g with the scene's center and scale, at most %g "
                               "is expected", path, index, "xyz"[a], x, WORLD_MAX);
-        position[a] = (float)x;
+        position[a] = x;
     }
     return ADCGS_OK;
 }
@@ -353,6 +353,8 @@ static adcgs_status read_points(const reader *r)
         status = adcgs_points_read(points, path, r->error);
     for (uint32_t i = 0; status == ADCGS_OK && i < points->n; i++)
         status = move_point(r, path, i, points->position[i]);
+    if (status == ADCGS_OK)
+        adcgs_points_round(points);
     free(path);
     return status;
 }

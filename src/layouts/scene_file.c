@@ -348,12 +348,13 @@ static adcgs_status read_points(const reader *r, const adcgs_json_place *at)
     ADCGS_TRY(status);
     for (uint32_t i = 0; i < points->n; i++)
         for (int a = 0; a < 3; a++) {
-            const double x = (double)points->position[i][a] * scale;
+            const double x = points->position[i][a] * scale;
             if (!(fabs(x) <= WORLD_MAX))
                 return adcgs_json_bad(at, ADCGS_ERR_DATA, "points", "point %u: %c is %g, expected at most %g", i, "xyz"[a], x,
                                       WORLD_MAX);
-            points->position[i][a] = (float)x;
+            points->position[i][a] = x;
         }
+    adcgs_points_round(points);
     return ADCGS_OK;
 }
 

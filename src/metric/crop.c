@@ -19,7 +19,7 @@ static void find_fences(const adcgs_scene_points *points, double *values, adcgs_
 {
     for (int a = 0; a < 3; a++) {
         for (uint32_t i = 0; i < points->n; i++)
-            values[i] = (double)points->position[i][a];
+            values[i] = points->position[i][a];
         adcgs_sort(values, points->n);
         const double low = values[points->n / 4], high = values[points->n - 1 - points->n / 4];
         fences->low[a] = low - FENCE * (high - low);
@@ -27,11 +27,11 @@ static void find_fences(const adcgs_scene_points *points, double *values, adcgs_
     }
 }
 
-static int is_inside(const adcgs_box *box, const float position[3])
+static int is_inside(const adcgs_box *box, const double position[3])
 {
     int inside = 1;
     for (int a = 0; a < 3; a++)
-        inside &= (double)position[a] >= box->low[a] && (double)position[a] <= box->high[a];
+        inside &= position[a] >= box->low[a] && position[a] <= box->high[a];
     return inside;
 }
 
@@ -51,8 +51,8 @@ adcgs_status adcgs_box_of_points(adcgs_box *box, const adcgs_scene *scene, adcgs
         if (!is_inside(&fences, points->position[i]))
             continue;
         for (int a = 0; a < 3; a++) {
-            box->low[a] = fmin(box->low[a], (double)points->position[i][a]);
-            box->high[a] = fmax(box->high[a], (double)points->position[i][a]);
+            box->low[a] = fmin(box->low[a], points->position[i][a]);
+            box->high[a] = fmax(box->high[a], points->position[i][a]);
         }
         inside++;
     }

@@ -56,8 +56,7 @@ static double share_seen(const adcgs_scene *scene)
     uint64_t seen = 0;
     for (uint32_t i = 0; i < views; i++)
         for (uint32_t k = 0; k < points; k++) {
-            const float *const x = scene->points.position[(uint64_t)k * scene->points.n / points];
-            const double point[3] = {(double)x[0], (double)x[1], (double)x[2]};
+            const double *const point = scene->points.position[(uint64_t)k * scene->points.n / points];
             double at[2];
             seen += (uint64_t)adcgs_camera_sees(&scene->views[ADCGS_SPLIT_TRAIN][(uint64_t)i * n / views].camera, point, 0.0, at);
         }

@@ -16,7 +16,7 @@ enum { CAMERAS = 12, SIDE = 72, POINTS = 400 };
 static adcgs_scene scene;
 static adcgs_scene_view views[CAMERAS];
 static char names[CAMERAS][300];
-static float positions[POINTS][3];
+static double positions[POINTS][3];
 
 /** What a camera sees of a sphere of radius 1 about the middle: from outside the near side, from inside the wall. */
 static void put_picture(const char *name, const adcgs_camera *c)
@@ -64,9 +64,9 @@ static void add_points(void)
 {
     for (int i = 0; i < POINTS; i++) {
         const double z = 2.0 * (i + 0.5) / POINTS - 1.0, a = 2.4 * i, r = sqrt(1.0 - z * z);
-        positions[i][0] = (float)(r * cos(a));
-        positions[i][1] = (float)(r * sin(a));
-        positions[i][2] = (float)z;
+        positions[i][0] = r * cos(a);
+        positions[i][1] = r * sin(a);
+        positions[i][2] = z;
     }
     scene.points.n = POINTS;
     scene.points.position = positions;

@@ -114,7 +114,7 @@ static void test_fields(void **state)
     assert_true(scene->n_times == 2 && adcgs_fps_value(scene->rate) == 30.0 && scene->duration == 8.0 / 30.0);
     assert_true(a->time == 0.0 && fabs(b->time - 3.0 / 30.0) < 1e-15 && fabs(c->time - 4.0 / 30.0) < 1e-15);
     assert_int_equal(scene->points.n, 2);
-    const float points[2][3] = {{0.0f, 1.0f, 2.0f}, {-1.0f, 0.0f, 0.75f}};
+    const double points[2][3] = {{0.0, 1.0, 2.0}, {-1.0, 0.0, 0.75}};
     assert_memory_equal(scene->points.position, points, sizeof points);
     float *rgb;
     expect_good(adcgs_scene_load(scene, b, 1, &rgb, NULL, &error));
@@ -124,7 +124,7 @@ static void test_fields(void **state)
     put_bytes("other.npy", NPY NUMBERS, sizeof NPY + sizeof NUMBERS - 2);
     put_text("points.npy", "not looked at");
     expect_good(adcgs_scene_open(&scene, folder, &options, &error)); /* points of one's own are in world units already */
-    assert_true(scene->duration == 0.8 && scene->points.n == 2 && scene->points.position[0][1] == 2.0f);
+    assert_true(scene->duration == 0.8 && scene->points.n == 2 && scene->points.position[0][1] == 2.0);
     adcgs_scene_free(&scene);
 }
 
@@ -173,7 +173,7 @@ static void test_points(void **state)
 {
     put_text("scene.json", "{\"center\":[0,0,0],\"scale\":1}");
     open_good();
-    assert_true(scene->points.n == 2 && scene->points.position[0][2] == 3.0f && scene->points.position[1][0] == -1.0f);
+    assert_true(scene->points.n == 2 && scene->points.position[0][2] == 3.0 && scene->points.position[1][0] == -1.0);
     assert_true(scene->points.colour[1][0] == 128);
     adcgs_scene_free(&scene);
     unlink(in("points.npy"));

@@ -451,7 +451,7 @@ static adcgs_lens read_lens(json_t *k, json_t *d)
 }
 
 /** Where the pinhole camera of the published, straightened pictures sees a point. */
-static void see(const adcgs_camera *c, const float point[3], double uv[2])
+static void see(const adcgs_camera *c, const double point[3], double uv[2])
 {
     const double *m = c->cam_to_world;
     double p[3];
@@ -471,7 +471,7 @@ static void check_camera(const adcgs_scene *scene, const adcgs_camera *pinhole, 
     const adcgs_lens lens = read_lens(json_array_get(json_object_get(all, "K"), i), json_array_get(json_object_get(all, "D"), i));
     json_t *r = json_array_get(json_object_get(all, "R"), i), *t = json_array_get(json_object_get(all, "T"), i);
     for (uint32_t n = 0; n < scene->points.n; n++) {
-        const float *point = scene->points.position[n];
+        const double *point = scene->points.position[n];
         double p[3], seen[2], uv[2], xy[2];
         for (size_t a = 0; a < 3; a++)
             p[a] = cell(r, a, 0) * point[0] + cell(r, a, 1) * point[1] + cell(r, a, 2) * point[2] + cell(t, a, 0) / 1000.0;

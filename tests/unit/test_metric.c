@@ -331,26 +331,26 @@ static void test_any_box(void **state)
 /** Fences by hand: x from 0 to 100 in no order, y from -1000 to 0 with one stray point, z the same for all. */
 static void test_box_of_points(void **state)
 {
-    static float position[101][3];
+    static double position[101][3];
     adcgs_scene scene = {.directory = "scene", .points = {.n = 101, .position = position}};
     adcgs_error error;
     adcgs_box box;
     for (int i = 0; i < 101; i++) {
-        position[i][0] = (float)(i * 37 % 101);
-        position[i][1] = -10.0f * (float)(i * 29 % 101);
-        position[i][2] = 7.0f;
+        position[i][0] = (double)(i * 37 % 101);
+        position[i][1] = -10.0 * (double)(i * 29 % 101);
+        position[i][2] = 7.0;
     }
     assert_int_equal(adcgs_box_of_points(&box, &scene, &error), ADCGS_OK);
     assert_true(fabs(box.low[0] + 5) < 1e-9 && fabs(box.high[0] - 105) < 1e-9);
     assert_true(fabs(box.low[1] + 1050) < 1e-9 && fabs(box.high[1] - 50) < 1e-9 && box.low[2] == 7 && box.high[2] == 7);
     for (int i = 0; i < 101; i++)
-        if (position[i][0] == 100.0f)
-            position[i][1] = 251.0f; /* inside: the quartiles are near -750 and -250 and the fence near 500 */
+        if (position[i][0] == 100.0)
+            position[i][1] = 251.0; /* inside: the quartiles are near -750 and -250 and the fence near 500 */
     assert_int_equal(adcgs_box_of_points(&box, &scene, &error), ADCGS_OK);
     assert_true(box.high[1] > 251 && fabs(box.high[0] - 105) < 1e-9);
     for (int i = 0; i < 101; i++)
-        if (position[i][0] == 100.0f)
-            position[i][1] = 600.0f; /* beyond it: the point does not count along the other axes either */
+        if (position[i][0] == 100.0)
+            position[i][1] = 600.0; /* beyond it: the point does not count along the other axes either */
     assert_int_equal(adcgs_box_of_points(&box, &scene, &error), ADCGS_OK);
     assert_true(box.high[1] < 51 && fabs(box.high[0] - (99 + 0.05 * 99)) < 1e-9);
     scene.points.n = 1;

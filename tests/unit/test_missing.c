@@ -15,7 +15,7 @@ enum { CAMERAS = 3, SIDE = 128, FOCAL = 100, ACROSS = 3, DOWN = 4, LAMPS = ACROS
 #define RADIUS 0.02 /* of a lamp */
 
 static adcgs_scene_view views[CAMERAS];
-static float dark[POINTS][3];
+static double dark[POINTS][3];
 static uint8_t black[POINTS][3];
 static adcgs_scene scene = { .views = { views }, .n_views = { CAMERAS }, .n_times = 1, .rate = { 1, 1 },
                               .points = { .n = POINTS, .coloured = 1 } };
@@ -60,7 +60,7 @@ static int put_scene(void **state)
         adcgs_image_free(&image);
     }
     for (int i = 0; i < POINTS; i++) /* a dark ground */
-        memcpy(dark[i], (const float[]){ 0.25f * (float)(i % 8 - 4), 1.2f, 2 + 0.3f * (float)(i / 8) }, sizeof dark[i]);
+        memcpy(dark[i], (const double[]){ 0.25 * (i % 8 - 4), 1.2, 2 + 0.3 * (double)(i / 8) }, sizeof dark[i]);
     scene.points.position = dark;
     scene.points.colour = black;
     return 0;

@@ -19,7 +19,8 @@ static void expect_points(const char *text, size_t bytes, uint32_t n, const floa
     if (status != ADCGS_OK)
         fail_msg("%s", error.text);
     assert_int_equal(points.n, n);
-    assert_memory_equal(points.position[n - 1], position, 3 * sizeof *position);
+    for (int a = 0; a < 3; a++)
+        assert_true(points.position[n - 1][a] == (double)position[a]);
     assert_memory_equal(points.colour[n - 1], colour, 3);
     assert_int_equal(points.coloured, colour[0] != colour[2]);
     adcgs_points_free(&points);
@@ -175,7 +176,7 @@ static void test_round_trip(void **state)
     assert_int_equal(adcgs_points_alloc(&points, 1000, "points", &error), ADCGS_OK);
     for (uint32_t i = 0; i < points.n; i++)
         for (int a = 0; a < 3; a++) {
-            points.position[i][a] = ldexpf((float)i - 500.5f, a * 10 - 20);
+            points.position[i][a] = ldexp((double)i - 500.5, a * 10 - 20);
             points.colour[i][a] = (uint8_t)(i * 7 + (uint32_t)a);
         }
     assert_int_equal(adcgs_ply_write(&points, in("w.ply"), &error), ADCGS_OK);
@@ -185,6 +186,40 @@ static void test_round_trip(void **state)
     assert_memory_equal(back.colour, points.colour, points.n * sizeof *points.colour);
     adcgs_points_free(&points);
     adcgs_points_free(&back);
+}
+
+/** Points about a place, in binary64: read back as they are where they lie far from the origin, else as numbers of binary32. */
+static void expect_places(double at, double size, int is_far)
+{
+    static uint8_t data[128 + 100 * 24];
+    adcgs_points points;
+    double x[100][3];
+    static const char header[] = "\x93NUMPY\1\0\x76\0{'descr': '<f8', 'fortran_order': False, 'shape': (100, 3), }";
+    memset(data, ' ', 128);
+    memcpy(data, header, sizeof header - 1);
+    data[127] = '\n';
+    for (size_t i = 0; i < 100; i++)
+        for (size_t a = 0; a < 3; a++) {
+            x[i][a] = (a == 1 ? -at : at) + size * (double)(i * (a + 7) % 101) / 101;
+            adcgs_store_le64(data + 128 + 8 * (3 * i + a), adcgs_double_bits(x[i][a]));
+        }
+    put_bytes("far.npy", data, sizeof data);
+    assert_int_equal(adcgs_points_read(&points, in("far.npy"), &error), ADCGS_OK);
+    for (size_t i = 0; i < 100; i++)
+        for (size_t a = 0; a < 3; a++)
+            if (points.position[i][a] != (is_far ? x[i][a] : (double)(float)x[i][a]))
+                fail_msg("point %zu of a cloud at %g of size %g: %c is %.17g, written as %.17g", i, at, size, "xyz"[a], points.position[i][a], x[i][a]);
+    adcgs_points_free(&points);
+}
+
+static void test_far(void **state)
+{
+    expect_places(0.0, 3.0, 0);
+    expect_places(10.0, 3.0, 0);
+    expect_places(4.6e6, 3.0, 1);
+    expect_places(4.6e-3, 3e-9, 1); /* no length is absolute */
+    expect_places(5e5, 5e4, 0);
+    expect_places(5.1, 0.0, 0);
 }
 
 /** One byte of a good file at a time gets another value: any outcome but a crash. */
@@ -219,8 +254,8 @@ static void test_draco(void **state)
     assert_int_equal(points.n, 4);
     assert_int_equal(points.coloured, 1);
     for (int i = 0; i < 4; i++) {
-        const float *p = points.position[i];
-        assert_true(p[0] == (float)i && p[1] == -2.0f * (float)i && p[2] == 0.5f);
+        const double *p = points.position[i];
+        assert_true(p[0] == i && p[1] == -2.0 * i && p[2] == 0.5);
         assert_true(points.colour[i][0] == 10 * i && points.colour[i][1] == 200 && points.colour[i][2] == 255 - i);
     }
     adcgs_points_free(&points);
@@ -240,8 +275,8 @@ static void expect_draco_round_trip(const adcgs_points *points)
     for (int a = 0; a < 3; a++) {
         double low = INFINITY, high = -INFINITY;
         for (uint32_t i = 0; i < points->n; i++) {
-            low = fmin(low, (double)points->position[i][a]);
-            high = fmax(high, (double)points->position[i][a]);
+            low = fmin(low, points->position[i][a]);
+            high = fmax(high, points->position[i][a]);
         }
         longest = fmax(longest, high - low);
         farthest = fmax(farthest, fmax(-low, high));
@@ -251,7 +286,7 @@ static void expect_draco_round_trip(const adcgs_points *points)
     assert_int_equal(back.coloured, points->coloured);
     for (uint32_t i = 0; i < points->n; i++)
         for (int a = 0; a < 3; a++) {
-            const double off = fabs((double)back.position[i][a] - (double)points->position[i][a]);
+            const double off = fabs(back.position[i][a] - points->position[i][a]);
             if (!(off <= bound))
                 fail_msg("point %u: off by %g, bound %g", i, off, bound);
         }
@@ -275,7 +310,7 @@ static void test_draco_writing(void **state)
     assert_int_equal(adcgs_points_alloc(&points, 1000, "points", &error), ADCGS_OK);
     for (uint32_t i = 0; i < points.n; i++)
         for (int a = 0; a < 3; a++) {
-            points.position[i][a] = 100.0f + (float)(i * 7919 % 1000) / (float)(a + 1);
+            points.position[i][a] = (double)(100.0f + (float)(i * 7919 % 1000) / (float)(a + 1));
             points.colour[i][a] = (uint8_t)(i * 7 + (uint32_t)a);
         }
     memcpy(points.position[999], points.position[3], sizeof *points.position); /* no two become one */
@@ -327,7 +362,7 @@ int main(void)
         cmocka_unit_test(test_variants),   cmocka_unit_test(test_damage),    cmocka_unit_test(test_too_many_properties),
         cmocka_unit_test(test_round_trip), cmocka_unit_test(test_mutations), cmocka_unit_test(test_draco),
         cmocka_unit_test(test_real_files), cmocka_unit_test(test_npy),       cmocka_unit_test(test_bad_npy),
-        cmocka_unit_test(test_draco_writing),
+        cmocka_unit_test(test_draco_writing), cmocka_unit_test(test_far),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -67,7 +67,7 @@ static void put_points(adcgs_scene *s, float at)
     assert_int_equal(adcgs_points_alloc(&s->points, POINTS, "points", &error), ADCGS_OK);
     for (int i = 0; i < POINTS; i++)
         for (int a = 0; a < 3; a++)
-            s->points.position[i][a] = at + 0.01f * (float)(i * (a + 1) % 10);
+            s->points.position[i][a] = (double)(at + 0.01f * (float)(i * (a + 1) % 10));
 }
 
 /** Points in other units than the poses' would be anchors that no picture says anything of. */

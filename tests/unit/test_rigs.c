@@ -225,7 +225,8 @@ static void expect_rig(int n)
             continue;
         rig_point(i, x);
         for (int a = 0; a < 3; a++)
-            assert_true(scene->points.position[at][a] == (float)x[a]);
+            if (scene->points.position[at][a] != (double)(float)x[a])
+                fail_msg("point %d: %.17g, expected %.17g", i, scene->points.position[at][a], x[a]);
         assert_true(scene->points.colour[at][0] == i * 9 && scene->points.colour[at][1] == 128);
         at++;
     }
@@ -387,7 +388,7 @@ static void test_colmap_videos(void **state)
 /* ---- Real scenes ---- */
 
 /** Depth of a point, and whether the picture holds it. */
-static int project(const adcgs_camera *c, const float x[3], double *depth)
+static int project(const adcgs_camera *c, const double x[3], double *depth)
 {
     const double *m = c->cam_to_world;
     double p[3];
@@ -432,9 +433,9 @@ static void test_fern(void **state)
     static double depths[20][10091];
     size_t n[20] = {0}, inside = 0, all = 0, at = 8;
     for (uint64_t i = 0, points = adcgs_load_le64(data); i < points; i++) {
-        float x[3];
+        double x[3];
         for (size_t a = 0; a < 3; a++)
-            x[a] = (float)adcgs_bits_double(adcgs_load_le64(data + at + 8 + 8 * a));
+            x[a] = adcgs_bits_double(adcgs_load_le64(data + at + 8 + 8 * a));
         const uint64_t track = adcgs_load_le64(data + at + 43);
         at += 51;
         for (uint64_t k = 0; k < track; k++, at += 8) {

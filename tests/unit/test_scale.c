@@ -161,12 +161,12 @@ static void frames_go_with_units(void **state)
             const double factor = i < 0 ? 1 : factors[i];
             adcgs_scene_view views[VIEWS];
             adcgs_scene s = { .near_bound = bound ? 0.5 * factor : 0 };
-            float position[3][3];
+            double position[3][3];
             double x[3], length;
             put_views(&s, views, panorama, factor);
             for (int p = 0; p < 3; p++)
                 for (int a = 0; a < 3; a++)
-                    position[p][a] = (float)(factor * (1 + 3 * p + a));
+                    position[p][a] = factor * (1 + 3 * p + a);
             if (points) {
                 s.points.n = 3;
                 s.points.position = position;

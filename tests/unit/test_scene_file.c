@@ -146,9 +146,9 @@ static void test_points(void **state)
     open_good(FILE_OF("", CAMERA("," IDENTITY)));
     assert_int_equal(scene->points.n, 0);
     open_good(FILE_OF(",\"scale\":0.5,\"points\":\"p.ply\"", CAMERA("," IDENTITY)));
-    assert_true(scene->points.position[0][2] == 1.5f && train(0)->camera.cam_to_world[3] == 0.5);
+    assert_true(scene->points.position[0][2] == 1.5 && train(0)->camera.cam_to_world[3] == 0.5);
     open_good(FILE_OF(",\"scale\":0.5,\"points\":\"p.ply\",\"points_scale\":1", CAMERA("," IDENTITY)));
-    assert_true(scene->points.position[0][2] == 3.0f);
+    assert_true(scene->points.position[0][2] == 3.0);
 }
 
 static void expect_bad(const char *text, const char *what)
@@ -270,7 +270,7 @@ static void test_calibration(void **state)
     expect_good(adcgs_scene_open(&scene, in("zju.json"), NULL, &error));
     assert_true(scene->n_times == 15 && fabs(scene->duration - other->duration) < 1e-12 && scene->axes == other->axes);
     assert_int_equal(scene->points.n, 1313);
-    assert_memory_equal(scene->points.position, other->points.position, 1313 * sizeof(float[3]));
+    assert_memory_equal(scene->points.position, other->points.position, 1313 * sizeof *other->points.position);
     for (int s = 0; s < ADCGS_SPLITS; s++) {
         assert_int_equal(scene->n_views[s], other->n_views[s]);
         uint32_t found = 0;

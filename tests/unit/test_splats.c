@@ -320,7 +320,7 @@ static void test_points(void **state)
         double sum[3] = {0, 0, 0}, weight = 0.0;
         for (int a = 0; a < 3; a++) {
             const double scene = (double)m->origin[a] + 0.5 * (2.0 * m->pos[3 * i + (uint32_t)a] + 1.0) * (double)m->voxel;
-            near(points.position[i][a], (float)((a == 1 ? 0.75 : 0.0) + 2.5 * scene), 2e-7, 1e-9);
+            near((float)points.position[i][a], (float)((a == 1 ? 0.75 : 0.0) + 2.5 * scene), 2e-7, 1e-9);
         }
         for (uint32_t slot = i / 64 * 4 * 64 + i % 64; slot < (i / 64 + 1) * 4 * 64; slot += 64)
             for (int c = 0; c < 3; c++) {
@@ -489,7 +489,7 @@ static void test_cameras(void **state)
     for (uint32_t i = 0; i < s.n; i++)
         points += s.opacity[i] > 0.1f;
     assert_true(scene->points.n == points && scene->points.coloured && points > 400);
-    assert_true(scene->points.position[0][2] == s.mean[2][s.opacity[0] > 0.1f ? 0 : 1]);
+    assert_true(scene->points.position[0][2] == (double)s.mean[2][s.opacity[0] > 0.1f ? 0 : 1]);
     adcgs_scene_free(&scene);
     adcgs_splats_free(&s);
 }
@@ -516,7 +516,7 @@ static void test_scene(void **state)
     adcgs_scene_free(&scene);
     const adcgs_scene_options points = {.points_path = in("p.ply")};
     expect_good(adcgs_scene_open(&scene, in("s.ply"), &points, &error));
-    assert_true(scene->points.n == 1 && scene->points.position[0][2] == 3.0f);
+    assert_true(scene->points.n == 1 && scene->points.position[0][2] == 3.0);
     adcgs_scene_free(&scene);
     expect_error(adcgs_scene_open(&scene, in("p.ply"), NULL, &error), ADCGS_ERR_DATA, "p.ply", "not splats");
     for (uint32_t i = 0; i < s.n; i++)
