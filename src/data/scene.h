@@ -53,6 +53,8 @@ typedef struct adcgs_splat_scene adcgs_splat_scene;
 /** Pictures that are wider or higher cost training more than they show. */
 #define ADCGS_SIDE_MOST 1600
 
+#define ADCGS_REMARKS_MAX 8
+
 typedef struct adcgs_scene {
     char *directory;
     uint32_t n_views[ADCGS_SPLITS];
@@ -71,6 +73,8 @@ typedef struct adcgs_scene {
     double origin[3], scale; /**< the frame of reference, where it is given; scale 0: it follows from the views for training */
     adcgs_splat_scene *splats; /**< NULL: views are pictures; else path of a view is that of the splats */
     int measured;         /**< pictures are reduced by this when a stream is measured on them; 0 or 1: as they are */
+    char *remarks[ADCGS_REMARKS_MAX]; /**< lines that who learns from it should read before */
+    int n_remarks;
     struct adcgs_clips *clips; /**< videos that are open (clips.h) */
     const struct adcgs_scene *whole; /**< of which this is a part in time (part.h); NULL: it is whole */
 } adcgs_scene;
@@ -78,6 +82,9 @@ typedef struct adcgs_scene {
 void adcgs_scene_free(adcgs_scene **scene);
 /** What a view has allocated. */
 void adcgs_scene_view_clear(adcgs_scene_view *view);
+
+/** Add a line about the scene, which is read nevertheless, after its directory. Without memory, or when there are too many, none. */
+void adcgs_scene_remark(adcgs_scene *scene, const char *format, ...) ADCGS_PRINTF(2, 3);
 
 /** "train", "val", "test". */
 const char *adcgs_split_name(adcgs_split split);

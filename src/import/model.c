@@ -32,8 +32,10 @@ static adcgs_status no_memory(const adcgs_import_job *job)
 static adcgs_status read_model(adcgs_colmap *model, adcgs_colmap_place *place, const adcgs_import_job *job, uint32_t number)
 {
     char *folder = adcgs_path("%s/sparse/%u", job->folder, number);
-    adcgs_status status = folder ? adcgs_colmap_find(place, folder, job->error) : no_memory(job);
+    adcgs_colmap_models models = {.n = 0};
+    adcgs_status status = folder ? adcgs_colmap_find(&models, folder, 1, job->error) : no_memory(job);
     free(folder);
+    *place = models.place;
     if (status == ADCGS_OK && place->folder)
         status = adcgs_colmap_load(model, place, ADCGS_COLMAP_CAMERAS, job->error);
     if (status == ADCGS_OK && place->folder)

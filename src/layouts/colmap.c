@@ -11,6 +11,7 @@
 #include "layouts/colmap_files.h"
 #include "layouts/footage.h"
 #include "layouts/listing.h"
+#include "layouts/unposed.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +23,8 @@ typedef struct reader {
     adcgs_scene *scene;
     adcgs_error *error;
     const adcgs_frame_range *frames;
-    adcgs_colmap_place place;     /**< of the model */
+    adcgs_colmap_models models;
+    adcgs_colmap_place place;     /**< of the model that is read, one of these */
     adcgs_colmap model;
     char *pictures;              /**< their folder, with its slash */
     adcgs_scene_view *calibrated; /**< for each camera; height 0: not yet */
@@ -62,6 +64,10 @@ static adcgs_status find_in(const reader *r, const char *folder, const char *nam
 {
     char *path = adcgs_path("%s%s", folder, name);
     adcgs_status status = path ? adcgs_find_image(out, path, r->error) : no_memory(r);
+    for (char *c = path ? path + strlen(folder) : NULL; status == ADCGS_OK && !*out && c && (c = strchr(c, '\\'));)
+        *c = '/'; /* folders as Windows writes them */
+    if (status == ADCGS_OK && !*out && strchr(name, '\\'))
+        status = adcgs_find_image(out, path, r->error);
     if (status == ADCGS_OK && !*out) {
         char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
         if (dot && (!slash || dot > slash + 1)) {
@@ -110,7 +116,7 @@ static void set_name(adcgs_camera *camera, const char *name)
     const size_t n = dot && (slash ? dot > slash + 1 : dot > name) ? (size_t)(dot - name) : strlen(name);
     snprintf(camera->name, sizeof camera->name, "%.*s", (int)n, name);
     for (char *c = camera->name; *c; c++)
-        *c = *c == '/' ? '_' : *c;
+        *c = *c == '/' || *c == '\\' ? '_' : *c;
 }
 
 /** The camera of an image; NULL, with a message, if the model has none. */
@@ -181,6 +187,8 @@ static adcgs_status add_pictures(reader *r)
         adcgs_counting_add(&counting, named.name);
     }
     r->scene->counts = adcgs_counting_holds(&counting);
+    if (strlen(r->pictures) > strlen(r->scene->directory) + 1) /* in the scene's own folder anything may lie */
+        adcgs_unposed_remark(r->scene, r->pictures);
     return adcgs_frames_keep(r->scene, r->frames, r->scene->directory, r->error);
 }
 
@@ -246,6 +254,19 @@ static adcgs_status add_videos(reader *r)
 
 /* ---- The scene ---- */
 
+/** Where there are several models. */
+static void tell_models(const reader *r)
+{
+    const adcgs_colmap_models *m = &r->models;
+    if (m->n < 2)
+        return;
+    const char *taken = m->place.folder + strlen(r->scene->directory) + 1;
+    const char *other = m->other.folder + strlen(r->scene->directory) + 1;
+    adcgs_scene_remark(r->scene, "there are %u models of COLMAP: %.*s with %zu images is taken; %.*s has %zu", m->n,
+                       *taken ? (int)strlen(taken) - 1 : 9, *taken ? taken : "that here", m->images,
+                       *other ? (int)strlen(other) - 1 : 9, *other ? other : "that here", m->other_images);
+}
+
 static adcgs_status read_model(reader *r, int with_points)
 {
     const adcgs_colmap_file files[] = {ADCGS_COLMAP_CAMERAS, ADCGS_COLMAP_IMAGES, ADCGS_COLMAP_POINTS};
@@ -264,6 +285,7 @@ static adcgs_status read_model(reader *r, int with_points)
     char *video = find_video(r, r->model.images[0].name);
     const int has_videos = video != NULL;
     free(video);
+    tell_models(r);
     ADCGS_TRY(has_videos ? add_videos(r) : add_pictures(r));
     r->scene->axes = adcgs_pose_axes(r->scene->views[ADCGS_SPLIT_TRAIN], r->scene->n_views[ADCGS_SPLIT_TRAIN]);
     return with_points ? read_points(r, 0, has_videos ? SIZE_MAX : TEST_EVERY) : ADCGS_OK;
@@ -274,13 +296,14 @@ static void clear(reader *r)
     adcgs_colmap_clear(&r->model);
     free(r->calibrated);
     free(r->pictures);
-    adcgs_colmap_leave(&r->place);
+    adcgs_colmap_forget(&r->models);
 }
 
 adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *frames, int with_points, adcgs_error *error)
 {
     reader r = {.scene = scene, .error = error, .frames = frames};
-    adcgs_status status = adcgs_colmap_find(&r.place, scene->directory, error);
+    adcgs_status status = adcgs_colmap_find(&r.models, scene->directory, 0, error);
+    r.place = r.models.place;
     if (status == ADCGS_OK)
         status = r.place.folder ? read_model(&r, with_points)
                           : adcgs_fail(error, ADCGS_ERR_DATA, "%s: no COLMAP model: no cameras.bin or cameras.txt in sparse/0, "
@@ -292,7 +315,8 @@ adcgs_status adcgs_colmap_read(adcgs_scene *scene, const adcgs_frame_range *fram
 adcgs_status adcgs_colmap_read_points(adcgs_scene *scene, size_t n, size_t period, adcgs_error *error)
 {
     reader r = {.scene = scene, .error = error};
-    adcgs_status status = adcgs_colmap_find(&r.place, scene->directory, error);
+    adcgs_status status = adcgs_colmap_find(&r.models, scene->directory, 1, error);
+    r.place = r.models.place;
     if (r.place.folder && adcgs_colmap_has(&r.place, ADCGS_COLMAP_POINTS)) {
         if (adcgs_colmap_has(&r.place, ADCGS_COLMAP_IMAGES))
             status = read_file(&r, ADCGS_COLMAP_IMAGES);

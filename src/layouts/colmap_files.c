@@ -24,35 +24,13 @@ static const struct {
     {"txt", 1, {adcgs_colmap_text_cameras, adcgs_colmap_text_images, adcgs_colmap_text_points}},
 };
 
-/** The place of a model in a directory and its format; NULL if there is none. */
-static const char *find_model(const char *directory, int *format)
+int adcgs_colmap_format(const char *directory, const char *place, int *format)
 {
-    static const char *const places[] = {"sparse/0/", "sparse/", ""};
-    for (size_t p = 0; p < ADCGS_COUNTOF(places); p++)
-        for (*format = 0; *format < (int)ADCGS_COUNTOF(formats); ++*format)
-            for (int f = 0; f < FILES; f++)
-                if (adcgs_is_there_at("%s/%s%s.%s", directory, places[p], names[f], formats[*format].end))
-                    return places[p];
-    return NULL;
-}
-
-int adcgs_is_colmap(const char *folder)
-{
-    int format;
-    return find_model(folder, &format) != NULL;
-}
-
-adcgs_status adcgs_colmap_find(adcgs_colmap_place *out, const char *directory, adcgs_error *error)
-{
-    const char *place = find_model(directory, &out->format);
-    out->folder = place ? adcgs_path("%s/%s", directory, place) : NULL;
-    return place && !out->folder ? adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", directory) : ADCGS_OK;
-}
-
-void adcgs_colmap_leave(adcgs_colmap_place *place)
-{
-    free(place->folder);
-    place->folder = NULL;
+    for (*format = 0; *format < (int)ADCGS_COUNTOF(formats); ++*format)
+        for (int f = 0; f < FILES; f++)
+            if (adcgs_is_there_at("%s/%s%s.%s", directory, place, names[f], formats[*format].end))
+                return 1;
+    return 0;
 }
 
 int adcgs_colmap_has(const adcgs_colmap_place *place, adcgs_colmap_file file)

@@ -5,12 +5,16 @@
 #include "layouts/colmap_model.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
+
+#define LIST_CHECKED 4096 /* bytes of a list of points that is looked at; no line of an image is as long */
 
 typedef struct cursor {
     char *at;   /**< in the line, which ends with a zero byte */
     char *next; /**< the line after it */
     char *end;
+    int is_held; /**< the line is yet to be read as an entry */
 } cursor;
 
 static void begin(adcgs_colmap *model, cursor *c, uint8_t *data, size_t bytes)
@@ -20,13 +24,18 @@ static void begin(adcgs_colmap *model, cursor *c, uint8_t *data, size_t bytes)
     *c = (cursor){.next = (char *)data, .end = (char *)data + bytes};
 }
 
-/** The line that comes next, whatever it holds; 0 at the end. */
+/** The line that comes next, whatever it holds; 0 at the end. Lines end as those of Unix, Windows or old Macs do. */
 static int next_line(adcgs_colmap *model, cursor *c)
 {
     if (c->next >= c->end)
         return 0;
     c->at = c->next;
     char *feed = memchr(c->at, '\n', (size_t)(c->end - c->at)), *stop = feed ? feed : c->end;
+    size_t n = (size_t)(stop - c->at);
+    while (n && c->at[n - 1] == '\r')
+        n--;
+    char *inner = memchr(c->at, '\r', n);
+    stop = inner ? inner : stop;
     c->next = stop + 1;
     while (stop > c->at && (stop[-1] == '\r' || stop[-1] == ' ' || stop[-1] == '\t'))
         stop--;
@@ -44,6 +53,10 @@ static void skip_blanks(cursor *c)
 /** The next line that says something. */
 static int next_entry(adcgs_colmap *model, cursor *c)
 {
+    if (c->is_held) {
+        c->is_held = 0;
+        return 1;
+    }
     while (next_line(model, c)) {
         skip_blanks(c);
         if (*c->at && *c->at != '#')
@@ -118,6 +131,57 @@ adcgs_status adcgs_colmap_text_cameras(adcgs_colmap *model, uint8_t *data, size_
     return ADCGS_OK;
 }
 
+/** Is it nothing but numbers, three for each point? Nothing is a list of none. */
+static int is_list(const char *at)
+{
+    uint64_t n = 0;
+    if (strlen(at) > LIST_CHECKED)
+        return 1;
+    for (;; n++) {
+        char *end;
+        at += strspn(at, " \t");
+        if (!*at)
+            return n % 3 == 0;
+        const double value = strtod(at, &end);
+        if (end == at || !ends(end) || (n % 3 == 2 && value != floor(value)))
+            return 0;
+        at = end;
+    }
+}
+
+/** Is it the line of an image: its number, a pose, the number of a camera, a name? */
+static int is_image(const char *at)
+{
+    for (int i = 0; i < 9; i++) {
+        char *end;
+        at += strspn(at, " \t");
+        const double value = strtod(at, &end);
+        if (end == at || !ends(end) || ((i == 0 || i == 8) && value != floor(value)))
+            return 0;
+        at = end;
+    }
+    return at[strspn(at, " \t")] != 0;
+}
+
+/**
+ * The second line of an image: its points. Some programs leave it out, and then this one is the next image, which is not to be
+ * skipped. Remarks and empty lines belong to neither.
+ */
+static adcgs_status skip_points(adcgs_colmap *model, cursor *c)
+{
+    do
+        if (!next_line(model, c))
+            return ADCGS_OK;
+    while (c->at[strspn(c->at, " \t")] == '#');
+    if (is_list(c->at))
+        return ADCGS_OK;
+    skip_blanks(c);
+    c->is_held = is_image(c->at);
+    return c->is_held ? ADCGS_OK
+                      : adcgs_colmap_bad(model, ADCGS_ERR_DATA, "neither the points of the image before, X, Y, POINT3D_ID for "
+                                         "each, nor the next image");
+}
+
 adcgs_status adcgs_colmap_text_images(adcgs_colmap *model, uint8_t *data, size_t bytes)
 {
     cursor c;
@@ -131,7 +195,7 @@ adcgs_status adcgs_colmap_text_images(adcgs_colmap *model, uint8_t *data, size_t
         ADCGS_TRY(take_integer(model, &c, "CAMERA_ID", UINT32_MAX, &camera));
         skip_blanks(&c); /* the name is the rest, blanks and all */
         ADCGS_TRY(adcgs_colmap_add_image(model, (uint32_t)id, q, t, (uint32_t)camera, c.at));
-        next_line(model, &c); /* its features, of which there may be none */
+        ADCGS_TRY(skip_points(model, &c));
     }
     return ADCGS_OK;
 }
@@ -154,7 +218,7 @@ adcgs_status adcgs_colmap_text_points(adcgs_colmap *model, uint8_t *data, size_t
     cursor c;
     uint64_t lines = 1;
     for (size_t i = 0; i < bytes; i++)
-        lines += data[i] == '\n';
+        lines += data[i] == '\n' || data[i] == '\r';
     ADCGS_TRY(adcgs_points_alloc(&model->points, lines, model->path, model->error));
     model->points.n = 0;
     model->points.coloured = 1;

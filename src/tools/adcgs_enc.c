@@ -12,6 +12,7 @@
 #include "io/json.h"
 #include "io/kind.h"
 #include "layouts/open.h"
+#include "tools/enc_footage.h"
 #include "tools/enc_live.h"
 #include "tools/enc_parts.h"
 #include "tools/enc_plan.h"
@@ -271,6 +272,8 @@ static adcgs_status run(adcgs_enc_job *job, adcgs_enc_watcher *w, int *met, adcg
     ADCGS_TRY(name_base(w, error));
     adcgs_interrupt_word(isatty(STDERR_FILENO) ? "\nadcgs-enc: " EARLY : "adcgs-enc: " EARLY);
     ADCGS_TRY(adcgs_scene_open(&job->scene, o->scene, &scene, error));
+    if (!follows)
+        adcgs_enc_tell_remarks(job->cli, job->scene);
     adcgs_progress_show(&w->progress, "scene     %u view%s for training, read in %.0f s",
                         job->scene->n_views[ADCGS_SPLIT_TRAIN], adcgs_s(job->scene->n_views[ADCGS_SPLIT_TRAIN]),
                         adcgs_seconds() - o->started.clock);

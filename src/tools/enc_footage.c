@@ -170,6 +170,12 @@ static void look_at_pictures(const adcgs_cli *cli, const adcgs_scene *scene, con
     }
 }
 
+void adcgs_enc_tell_remarks(const adcgs_cli *cli, const adcgs_scene *scene)
+{
+    for (int i = 0; i < scene->n_remarks; i++)
+        adcgs_cli_note(cli, "%s", scene->remarks[i]);
+}
+
 /** Pictures that have no times and look as if they should. */
 static void say_times(const adcgs_cli *cli, const adcgs_scene *scene)
 {

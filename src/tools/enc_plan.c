@@ -8,6 +8,7 @@
 #include "base/digest.h"
 #include "io/claim.h"
 #include "io/json.h"
+#include "tools/enc_footage.h"
 #include "tools/enc_parts.h"
 #include "tools/enc_segments.h"
 #include "tools/plan_parts.h"
@@ -146,6 +147,7 @@ adcgs_status adcgs_enc_plan_make(adcgs_enc_job *job, const adcgs_scene_options *
 {
     adcgs_plan plan = { .dataset = 0 };
     ADCGS_TRY(adcgs_scene_open(&job->scene, job->o->scene, options, error));
+    adcgs_enc_tell_remarks(job->cli, job->scene);
     adcgs_enc_reduce_large(job, job->scene, NULL);
     ADCGS_TRY(adcgs_enc_cut(job, job->o->cut, error));
     const adcgs_status status = make(&plan, job, options, error);

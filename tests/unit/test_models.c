@@ -102,10 +102,157 @@ static void test_far(void **state)
     adcgs_start_points_clear(&far);
 }
 
+/* ---- Lines of images ---- */
+
+/** Put the model with images.txt as made of pieces: what stands behind each image's line, and how lines end. */
+static void put_lines(const char *second, const char *end, int last_second)
+{
+    char *text = malloc(65536);
+    size_t at = (size_t)sprintf(text, "# remark%s", end);
+    assert_non_null(text);
+    for (int i = 0; i < 9; i++) {
+        double pose[12], q[4], t[3];
+        rig_pose(i, pose);
+        rig_quaternion(pose, q, t);
+        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 7 %d.ppm%s%s%s", i + 1, q[0], q[1], q[2], q[3],
+                              t[0], t[1], t[2], i, end, i < 8 || last_second ? second : "",
+                              *second && (i < 8 || last_second) ? end : "");
+    }
+    put_text("sparse/images.txt", text);
+    free(text);
+}
+
+static void expect_nine(void)
+{
+    adcgs_scene_free(&scene);
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
+    assert_int_equal(scene->n_views[ADCGS_SPLIT_TRAIN] + scene->n_views[ADCGS_SPLIT_TEST], 9);
+    for (int s = 0; s < ADCGS_SPLITS; s++)
+        for (uint32_t v = 0; v < scene->n_views[s]; v++)
+            expect_pose(&scene->views[s][v], atoi(scene->views[s][v].camera.name), 1.0, 1e-12);
+}
+
+/** No image is skipped, whatever stands in the place of its list of points, and however lines end. */
+static void test_lines(void **state)
+{
+    static const char *const ends[] = {"\n", "\r\n", "\r", "\r\r\n"};
+    static const char *const seconds[] = {"", " ", "1.5 2.5 -1", "1 2 3 4.5 5 -1 \t", "# 1 2", "# a\n1 2 -1", "\t# of points: 0\n"};
+    static char longer[6000];
+    put_images(9, "images", "%d.ppm");
+    put_model_at((const double[3]){0.0, 0.0, 0.0}, 9);
+    for (size_t e = 0; e < ADCGS_COUNTOF(ends); e++) {
+        char text[256];
+        snprintf(text, sizeof text, "# cameras%s7 PINHOLE 24 16 20 20 12 8%s", ends[e], ends[e]);
+        put_text("sparse/cameras.txt", text);
+        snprintf(text, sizeof text, "# points%s1 0 0 0 9 9 9 0.5%s2 0 0 0 9 9 9 .5 1 2%s3 0 0 1 9 9 9 .5 2 1 3 1", ends[e], ends[e],
+                 ends[e]);
+        put_text("sparse/points3D.txt", text);
+        for (size_t i = 0; i < ADCGS_COUNTOF(seconds); i++)
+            for (int last = 0; last < 2; last++) {
+                put_lines(seconds[i], ends[e], last);
+                expect_nine();
+                assert_int_equal(scene->points.n, 2); /* the second is seen by one alone */
+            }
+    }
+    for (size_t i = 0; i + 12 < sizeof longer; i += 12)
+        memcpy(longer + i, "100.5 7 -1  ", 13);
+    put_lines(longer, "\n", 1);
+    expect_nine();
+}
+
+static void test_bad_lines(void **state)
+{
+    static const char *const seconds[] = {"1.5 2.5", "1.5 2.5 -1 7", "1 2 3.5", "a b c", "1 0 0 0 a 0 0 0 7 x.ppm"};
+    put_images(9, "images", "%d.ppm");
+    put_model_at((const double[3]){0.0, 0.0, 0.0}, 9);
+    for (size_t i = 0; i < ADCGS_COUNTOF(seconds); i++) {
+        put_lines(seconds[i], "\n", 1);
+        expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "images.txt: line 3", "nor the next image");
+    }
+}
+
+/* ---- Several models ---- */
+
+/** A line about the scene that says both. */
+static void expect_remark(const char *first, const char *second)
+{
+    for (int i = 0; i < scene->n_remarks; i++)
+        if (strstr(scene->remarks[i], first) && strstr(scene->remarks[i], second))
+            return;
+    fail_msg("no remark says \"%s\" and \"%s\"; there are %d", first, second, scene->n_remarks);
+}
+
+static void expect_views(uint32_t n, int n_remarks)
+{
+    adcgs_scene_free(&scene);
+    expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
+    assert_int_equal(scene->n_views[ADCGS_SPLIT_TRAIN] + scene->n_views[ADCGS_SPLIT_TEST], n);
+    assert_int_equal(scene->n_remarks, n_remarks);
+}
+
+/** The largest model is taken, and who learns hears of it and of images without a pose. */
+static void test_several(void **state)
+{
+    put_images(9, "images", "%d.ppm");
+    put_folder("sparse");
+    put_folder("sparse/0");
+    put_model_text("sparse/0", 4, "%d.ppm", CAMERA);
+    expect_views(4, 1);
+    expect_remark("5 of 9 images in images/ have no pose", "");
+    put_folder("sparse/1");
+    put_model_binary("sparse/1", 9, "%d.ppm");
+    expect_views(9, 1);
+    expect_remark("2 models", "sparse/1 with 9 images is taken; sparse/0 has 4");
+    put_folder("sparse/12");
+    put_model_text("sparse/12", 9, "%d.ppm", CAMERA); /* as many: the first */
+    put_folder("sparse/x");
+    put_model_text("sparse/x", 9, "%d.ppm", CAMERA); /* no number */
+    expect_views(9, 1);
+    expect_remark("3 models", "sparse/1 with 9 images is taken; sparse/12 has 9");
+    put_text("sparse/12/images.txt", "what is this?");
+    expect_views(9, 1);
+    expect_remark("3 models", "sparse/0 has 4");
+    put_text("sparse/1/images.bin", "what is this?");
+    put_text("sparse/0/images.txt", "what is this?");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "sparse/0/images.txt: line 1", "IMAGE_ID");
+}
+
+/** Where others have them. */
+static void test_places(void **state)
+{
+    static const char *const places[] = {"distorted/sparse/0", "colmap/sparse/0", "sparse/3"};
+    static const char *const folders[] = {"distorted", "distorted/sparse", "colmap", "colmap/sparse", "sparse"};
+    put_images(9, "input", "%d.ppm");
+    for (size_t i = 0; i < ADCGS_COUNTOF(folders); i++)
+        put_folder(folders[i]);
+    for (size_t i = 0; i < ADCGS_COUNTOF(places); i++) {
+        put_folder(places[i]);
+        put_model_text(places[i], 6 + (int)i, "%d.ppm", CAMERA);
+        expect_views(6 + (uint32_t)i, 1);
+        expect_remark(i == 2 ? "1 of 9 images in input/ has no pose" : "of 9 images in input/ have no pose", "left out");
+    }
+}
+
+/** Images in folders, as Windows writes them, too; what has a pose is known by its name without its end. */
+static void test_folders(void **state)
+{
+    put_folder("images");
+    put_images(9, "images/left", "%d.ppm");
+    put_folder("sparse");
+    put_model_text("sparse", 9, "left\\%d.jpg", CAMERA);
+    expect_views(9, 0);
+    assert_string_equal(scene->views[ADCGS_SPLIT_TRAIN][0].camera.name, "left_1");
+    put_images(2, "images/right", "%d.ppm");
+    expect_views(9, 1);
+    expect_remark("2 of 11 images in images/", "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_far, clean),
+        cmocka_unit_test_teardown(test_far, clean),     cmocka_unit_test_teardown(test_lines, clean),
+        cmocka_unit_test_teardown(test_bad_lines, clean), cmocka_unit_test_teardown(test_several, clean),
+        cmocka_unit_test_teardown(test_places, clean),  cmocka_unit_test_teardown(test_folders, clean),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -240,7 +240,7 @@ static void test_colmap(void **state)
     put_model_binary("sparse/0", 10, "%02d.ppm");
     expect_rig(10);
     assert_int_equal(rename(in("images"), in("input")), 0);
-    assert_int_equal(rename(in("sparse/0"), in("sparse/1")), 0);
+    assert_int_equal(rename(in("sparse/0"), in("elsewhere")), 0);
     put_model_text("sparse", 10, "%02d.JPG", "# cameras\n\n7 PINHOLE 96 64 80 80 48 32\r\n"); /* other ends, reduced pictures */
     expect_rig(10);
     unlink(in("sparse/images.txt"));
