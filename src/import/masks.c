@@ -4,6 +4,7 @@
 
 #include "import/pictures.h"
 
+#include "data/mask.h"
 #include "data/paths.h"
 #include "io/image.h"
 #include "io/photo.h"
@@ -72,6 +73,8 @@ static adcgs_status make_mask(const adcgs_import_job *job, const adcgs_shot *sho
     adcgs_image mask;
     ADCGS_TRY(adcgs_image_read(&mask, from, job->error));
     adcgs_status status = check_shape(job, shot, from, &mask);
+    if (status == ADCGS_OK)
+        status = adcgs_mask_settle(&mask, from, job->error);
     make_plain(&mask, 0.0f);
     if (status == ADCGS_OK)
         status = adcgs_photo_shape(&mask, shot->turn, shot->width, shot->height, from, job->error);
@@ -110,7 +113,9 @@ adcgs_status adcgs_import_camera_mask(adcgs_import_job *job, uint32_t camera)
     adcgs_status status = to ? adcgs_image_read(&mask, from, job->error)
                              : adcgs_fail(job->error, ADCGS_ERR_MEMORY, "%s: out of memory", from);
     if (status == ADCGS_OK) {
-        status = adcgs_image_write(&mask, to, 0, job->error);
+        status = adcgs_mask_settle(&mask, from, job->error);
+        if (status == ADCGS_OK)
+            status = adcgs_image_write(&mask, to, 0, job->error);
         adcgs_image_free(&mask);
     }
     free(to);

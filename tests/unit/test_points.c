@@ -208,7 +208,8 @@ static void expect_places(double at, double size, int is_far)
     for (size_t i = 0; i < 100; i++)
         for (size_t a = 0; a < 3; a++)
             if (points.position[i][a] != (is_far ? x[i][a] : (double)(float)x[i][a]))
-                fail_msg("point %zu of a cloud at %g of size %g: %c is %.17g, written as %.17g", i, at, size, "xyz"[a], points.position[i][a], x[i][a]);
+                fail_msg("point %zu of a cloud at %g of size %g: %c is %.17g, written as %.17g", i, at, size, "xyz"[a],
+                         points.position[i][a], x[i][a]);
     adcgs_points_free(&points);
 }
 
