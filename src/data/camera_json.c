@@ -52,7 +52,7 @@ adcgs_status adcgs_json_bad(const adcgs_json_place *at, adcgs_status status, con
     va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
-    if (at->frame)
+    if (at->frame && (json_object_get(at->frame, field) || !json_object_get(at->root, field)))
         return adcgs_fail(at->error, status, "%s: %s[%zu].%s: %s", at->path, list_name(at), at->index, field, what);
     return adcgs_fail(at->error, status, "%s: %s: %s", at->path, field, what);
 }

@@ -52,7 +52,7 @@ static adcgs_status read_mask(const adcgs_scene_view *view, const char *path, ad
     return status;
 }
 
-/** Size and, of a mask with alpha, what it says. */
+/** The size, and whether colours and alpha of a mask agree. */
 static adcgs_status probe_mask(const adcgs_scene_view *view, const char *path, adcgs_error *error)
 {
     int width, height, channels;

@@ -56,7 +56,8 @@ adcgs_status adcgs_mask_settle(adcgs_image *mask, const char *path, adcgs_error 
     ADCGS_TRY(adcgs_image_alloc(&out, mask->width, mask->height, 1, path, error));
     for (size_t i = 0; i < n.all; i++) {
         const float *pixel = mask->data + i * (size_t)mask->channels;
-        out.data[i] = (by_colour && is_black(pixel, mask->channels)) || (by_alpha && is_clear(pixel, mask->channels)) ? 0.0f : 1.0f;
+        const int hidden = (by_colour && is_black(pixel, mask->channels)) || (by_alpha && is_clear(pixel, mask->channels));
+        out.data[i] = hidden ? 0.0f : 1.0f;
     }
     adcgs_image_free(mask);
     *mask = out;

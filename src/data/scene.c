@@ -11,8 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define REMARK_BYTES 400
-
 static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
 
 const char *adcgs_split_name(adcgs_split split)
@@ -32,14 +30,14 @@ int adcgs_split_parse(const char *name, adcgs_split *split)
 
 void adcgs_scene_remark(adcgs_scene *scene, const char *format, ...)
 {
-    char text[REMARK_BYTES];
+    if (scene->n_remarks == ADCGS_REMARKS_MAX)
+        return;
+    char *text = scene->remarks[scene->n_remarks++];
     va_list arguments;
     va_start(arguments, format);
-    const int n = snprintf(text, sizeof text, "%.200s: ", scene->directory);
-    vsnprintf(text + n, sizeof text - (size_t)n, format, arguments);
+    const int n = snprintf(text, ADCGS_REMARK_BYTES, "%.200s: ", scene->directory);
+    vsnprintf(text + n, ADCGS_REMARK_BYTES - (size_t)n, format, arguments);
     va_end(arguments);
-    if (scene->n_remarks < ADCGS_REMARKS_MAX && (scene->remarks[scene->n_remarks] = strdup(text)))
-        scene->n_remarks++;
 }
 
 void adcgs_scene_view_clear(adcgs_scene_view *view)
@@ -59,8 +57,6 @@ void adcgs_scene_free(adcgs_scene **scene)
             adcgs_scene_view_clear(&(*scene)->views[s][i]);
         free((*scene)->views[s]);
     }
-    for (int i = 0; i < (*scene)->n_remarks; i++)
-        free((*scene)->remarks[i]);
     adcgs_points_free(&(*scene)->points);
     adcgs_splat_scene_free(&(*scene)->splats);
     adcgs_clips_free(&(*scene)->clips);

@@ -54,6 +54,7 @@ typedef struct adcgs_splat_scene adcgs_splat_scene;
 #define ADCGS_SIDE_MOST 1600
 
 #define ADCGS_REMARKS_MAX 8
+#define ADCGS_REMARK_BYTES 400
 
 typedef struct adcgs_scene {
     char *directory;
@@ -73,7 +74,7 @@ typedef struct adcgs_scene {
     double origin[3], scale; /**< the frame of reference, where it is given; scale 0: it follows from the views for training */
     adcgs_splat_scene *splats; /**< NULL: views are pictures; else path of a view is that of the splats */
     int measured;         /**< pictures are reduced by this when a stream is measured on them; 0 or 1: as they are */
-    char *remarks[ADCGS_REMARKS_MAX]; /**< lines that who learns from it should read before */
+    char remarks[ADCGS_REMARKS_MAX][ADCGS_REMARK_BYTES]; /**< lines to read before it is learned */
     int n_remarks;
     struct adcgs_clips *clips; /**< videos that are open (clips.h) */
     const struct adcgs_scene *whole; /**< of which this is a part in time (part.h); NULL: it is whole */
@@ -83,7 +84,7 @@ void adcgs_scene_free(adcgs_scene **scene);
 /** What a view has allocated. */
 void adcgs_scene_view_clear(adcgs_scene_view *view);
 
-/** Add a line about the scene, which is read nevertheless, after its directory. Without memory, or when there are too many, none. */
+/** Add a line about the scene, which is read nevertheless, after its directory. Long lines are cut off. */
 void adcgs_scene_remark(adcgs_scene *scene, const char *format, ...) ADCGS_PRINTF(2, 3);
 
 /** "train", "val", "test". */

@@ -8,6 +8,18 @@
 
 #define SHAPE_TOLERANCE 0.01
 
+void adcgs_lens_resize(adcgs_lens *lens, int width, int height)
+{
+    const double x = (double)width / lens->width, y = (double)height / lens->height;
+    lens->width = width;
+    lens->height = height;
+    lens->fx *= x;
+    lens->fy *= y;
+    lens->cx *= x;
+    lens->cy *= y;
+    lens->skew *= x;
+}
+
 adcgs_status adcgs_calibrate(adcgs_scene_view *view, const adcgs_lens *lens, int width, int height, const char *path,
                              adcgs_error *error)
 {
@@ -17,12 +29,6 @@ adcgs_status adcgs_calibrate(adcgs_scene_view *view, const adcgs_lens *lens, int
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, another shape than the %dx%d that its camera is given for",
                           path, width, height, lens->width, lens->height);
     view->lens = *lens;
-    view->lens.width = width;
-    view->lens.height = height;
-    view->lens.fx *= x;
-    view->lens.fy *= y;
-    view->lens.cx *= x;
-    view->lens.cy *= y;
-    view->lens.skew *= x;
+    adcgs_lens_resize(&view->lens, width, height);
     return adcgs_lens_pinhole(&view->lens, &view->camera, path, error);
 }

@@ -188,7 +188,7 @@ static adcgs_status add_pictures(reader *r)
     }
     r->scene->counts = adcgs_counting_holds(&counting);
     if (strlen(r->pictures) > strlen(r->scene->directory) + 1) /* in the scene's own folder anything may lie */
-        adcgs_unposed_remark(r->scene, r->pictures);
+        ADCGS_TRY(adcgs_unposed_remark(r->scene, r->pictures, r->error));
     return adcgs_frames_keep(r->scene, r->frames, r->scene->directory, r->error);
 }
 

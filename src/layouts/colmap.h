@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Sparse models of COLMAP: cameras, images and points3D, .bin or .txt, in sparse/0, in sparse or in the folder itself. Pixel
+ * Sparse models of COLMAP: cameras, images and points3D, .bin or .txt, in sparse/N, in sparse or in the folder itself. Pixel
  * centres lie at 0.5, as ours do, and axes are OpenCV's. Pictures lie in images/, in the folder itself, in input/, or reduced
  * in images_N/, and for models that lie beside HyperNeRF's files in rgb/Nx/.
  *

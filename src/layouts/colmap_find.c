@@ -9,11 +9,13 @@
 
 #include "data/paths.h"
 #include "layouts/colmap.h"
-#include "layouts/listing.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
-/** Places of the first group of which any is there count; later ones hold what was made on the way to them. */
+#define NUMBERS 64 /* of models below one folder; COLMAP makes 50 at most unless told otherwise */
+
+/** Only the first group with any model counts: later ones hold intermediate models. */
 static const struct {
     const char *whole[3]; /**< folders with a model each */
     const char *parent;   /**< of numbered folders, each with a model */
@@ -30,78 +32,59 @@ typedef struct search {
     adcgs_error *error;
 } search;
 
-/** Images of a model; 0 where its list cannot be read. */
-static size_t count_images(const adcgs_colmap_place *place)
+/** Images of a model; none where their list cannot be read. */
+static adcgs_status count_images(const search *s, const adcgs_colmap_place *place, size_t *n)
 {
     adcgs_colmap model = {0};
-    adcgs_error unused;
-    const int is_read = adcgs_colmap_has(place, ADCGS_COLMAP_IMAGES) &&
-                        adcgs_colmap_load(&model, place, ADCGS_COLMAP_IMAGES, &unused) == ADCGS_OK;
-    const size_t n = is_read ? model.n_images : 0;
+    const adcgs_status status =
+        adcgs_colmap_has(place, ADCGS_COLMAP_IMAGES) ? adcgs_colmap_load(&model, place, ADCGS_COLMAP_IMAGES, s->error) : ADCGS_OK;
+    *n = status == ADCGS_OK ? model.n_images : 0;
     adcgs_colmap_clear(&model);
-    return n;
+    return status == ADCGS_ERR_MEMORY ? status : ADCGS_OK;
 }
 
-/** Take a model in place of what was found, or leave it. Only where there are two is any counted. */
-static void weigh(search *s, adcgs_colmap_place *here)
+/** Keep the larger of two models. */
+static void weigh(adcgs_colmap_models *f, adcgs_colmap_place *here, size_t images)
 {
-    adcgs_colmap_models *f = s->found;
-    if (f->n++ == 0) {
-        f->place = *here;
-        return;
-    }
-    if (f->n == 2)
-        f->images = count_images(&f->place);
-    const size_t n = count_images(here);
-    const int is_larger = n > f->images;
-    if (is_larger || !f->other.folder || n > f->other_images) {
+    const int is_larger = images > f->images;
+    if (is_larger || !f->other.folder || images > f->other_images) {
         adcgs_colmap_leave(&f->other);
         f->other = is_larger ? f->place : *here;
-        f->other_images = is_larger ? f->images : n;
+        f->other_images = is_larger ? f->images : images;
     } else
         adcgs_colmap_leave(here);
     if (is_larger) {
         f->place = *here;
-        f->images = n;
+        f->images = images;
     }
+}
+
+/** A model that is there. Only where there are two is any counted. */
+static adcgs_status add(search *s, adcgs_colmap_place *here)
+{
+    adcgs_colmap_models *f = s->found;
+    size_t images = 0;
+    adcgs_status status = f->n == 1 ? count_images(s, &f->place, &f->images) : ADCGS_OK;
+    if (status == ADCGS_OK && f->n)
+        status = count_images(s, here, &images);
+    if (status != ADCGS_OK)
+        adcgs_colmap_leave(here);
+    else if (f->n++)
+        weigh(f, here, images);
+    else
+        f->place = *here;
+    return status;
 }
 
 /** Look into "DIRECTORY/PLACE". */
 static adcgs_status look(search *s, const char *place)
 {
     adcgs_colmap_place here = {0};
-    if (s->first && s->found->n)
-        return ADCGS_OK;
-    if (!adcgs_colmap_format(s->directory, place, &here.format))
+    if ((s->first && s->found->n) || !adcgs_colmap_format(s->directory, place, &here.format))
         return ADCGS_OK;
     if (!(here.folder = adcgs_path("%s/%s", s->directory, place)))
         return adcgs_fail(s->error, ADCGS_ERR_MEMORY, "%s: out of memory", s->directory);
-    weigh(s, &here);
-    return ADCGS_OK;
-}
-
-static int is_later_number(const char *name)
-{
-    return strcmp(name, "0") && name[strspn(name, "0123456789")] == 0;
-}
-
-/** Numbered folders from 1 on. */
-static adcgs_status look_at_numbers(search *s, const char *parent)
-{
-    adcgs_listing numbers;
-    char *folder = adcgs_path("%s/%s", s->directory, parent), *place = NULL;
-    adcgs_status status = folder ? ADCGS_OK : adcgs_fail(s->error, ADCGS_ERR_MEMORY, "%s: out of memory", s->directory);
-    const int is_there = status == ADCGS_OK && adcgs_is_folder(folder);
-    if (is_there && (status = adcgs_listing_read(&numbers, folder, is_later_number, s->error)) == ADCGS_OK) {
-        for (size_t i = 0; status == ADCGS_OK && i < numbers.n; i++) {
-            place = adcgs_path("%s%s/", parent, numbers.names[i]);
-            status = place ? look(s, place) : adcgs_fail(s->error, ADCGS_ERR_MEMORY, "%s: out of memory", s->directory);
-            free(place);
-        }
-        adcgs_listing_free(&numbers);
-    }
-    free(folder);
-    return status;
+    return add(s, &here);
 }
 
 adcgs_status adcgs_colmap_find(adcgs_colmap_models *out, const char *directory, int first, adcgs_error *error)
@@ -113,8 +96,11 @@ adcgs_status adcgs_colmap_find(adcgs_colmap_models *out, const char *directory, 
         for (size_t i = 0; status == ADCGS_OK && i < ADCGS_COUNTOF(groups[g].whole); i++)
             if (groups[g].whole[i])
                 status = look(&s, groups[g].whole[i]);
-        if (status == ADCGS_OK)
-            status = look_at_numbers(&s, groups[g].parent);
+        for (int number = 1; status == ADCGS_OK && number < NUMBERS; number++) {
+            char place[64];
+            snprintf(place, sizeof place, "%s%d/", groups[g].parent, number);
+            status = look(&s, place);
+        }
     }
     if (status != ADCGS_OK)
         adcgs_colmap_forget(out);
@@ -136,9 +122,17 @@ void adcgs_colmap_forget(adcgs_colmap_models *models)
 
 int adcgs_is_colmap(const char *folder)
 {
-    adcgs_colmap_models models;
-    adcgs_error unused;
-    const int found = adcgs_colmap_find(&models, folder, 1, &unused) == ADCGS_OK && models.n;
-    adcgs_colmap_forget(&models);
-    return found;
+    int format;
+    for (size_t g = 0; g < ADCGS_COUNTOF(groups); g++) {
+        for (size_t i = 0; i < ADCGS_COUNTOF(groups[g].whole); i++)
+            if (groups[g].whole[i] && adcgs_colmap_format(folder, groups[g].whole[i], &format))
+                return 1;
+        for (int number = 1; number < NUMBERS; number++) {
+            char place[64];
+            snprintf(place, sizeof place, "%s%d/", groups[g].parent, number);
+            if (adcgs_colmap_format(folder, place, &format))
+                return 1;
+        }
+    }
+    return 0;
 }

@@ -14,13 +14,16 @@
 #include "io/kind.h"
 #include "io/splats.h"
 #include "io/video.h"
+#include "layouts/captures.h"
 #include "layouts/colmap.h"
 #include "layouts/hypernerf.h"
 #include "layouts/listing.h"
 #include "layouts/llff.h"
+#include "layouts/panoptic.h"
 #include "layouts/scene_file.h"
 #include "layouts/splat_file.h"
 #include "layouts/transforms.h"
+#include "layouts/transforms_check.h"
 
 #include <errno.h>
 #include <math.h>
@@ -36,7 +39,7 @@
 #define COLOUR_SRGB 1           /* a code of adcgs_stream */
 
 const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto", "transforms", "hypernerf", "llff", "colmap", "adcgs",
-                                                            "splats", NULL};
+                                                            "splats", "panoptic", NULL};
 
 /** Seconds of the scene, unless the layout has said so, and how many moments are trained on. */
 static adcgs_status find_duration(adcgs_scene *scene, const char *path, int64_t step, adcgs_error *error)
@@ -130,7 +133,7 @@ static adcgs_status agree_rate(adcgs_fps *rate, adcgs_fps own, const char *path,
 /** One file per split; only the training split must exist. */
 static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_error *error)
 {
-    int has_times = 0;
+    adcgs_transforms train = {.has_times = 0};
     adcgs_fps rate = {0, 0};
     for (int s = 0; s < ADCGS_SPLITS; s++) {
         char *path = adcgs_path("%s/transforms_%s.json", scene->directory, adcgs_split_name((adcgs_split)s));
@@ -140,12 +143,12 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
             status = adcgs_transforms_read(scene, &facts, path, (adcgs_split)s, error);
             if (status == ADCGS_OK && s == ADCGS_SPLIT_TRAIN) {
                 take_facts(scene, &facts, points_path);
-                has_times = facts.has_times;
+                train = facts;
             } else
                 free(facts.points_path); /* only the training split decides */
-            if (status == ADCGS_OK && has_times != facts.has_times)
+            if (status == ADCGS_OK && train.has_times != facts.has_times)
                 status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: frames[0].time: %s, unlike in the training split", path,
-                                    has_times ? "missing" : "given");
+                                    train.has_times ? "missing" : "given");
             if (status == ADCGS_OK)
                 status = agree_rate(&rate, facts.rate, path, error);
         }
@@ -154,7 +157,7 @@ static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_er
     }
     if (!scene->rate.den)
         scene->rate = rate;
-    return ADCGS_OK;
+    return adcgs_transforms_check(scene, &train, 0, scene->directory, error);
 }
 
 static adcgs_status read_single(adcgs_scene *scene, const char *path, char **points_path, adcgs_error *error)
@@ -164,7 +167,7 @@ static adcgs_status read_single(adcgs_scene *scene, const char *path, char **poi
     take_facts(scene, &facts, points_path);
     if (!scene->n_views[ADCGS_SPLIT_TRAIN])
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: frames: no frame is left for training", path);
-    return ADCGS_OK;
+    return adcgs_transforms_check(scene, &facts, 1, path, error);
 }
 
 static adcgs_status read_transforms(adcgs_scene *scene, char **points_path, adcgs_error *error)
@@ -203,6 +206,7 @@ static int has_scene_file(const char *folder)
 static adcgs_dataset find_dataset(const char *folder)
 {
     return is_transforms(folder)         ? ADCGS_DATASET_TRANSFORMS
+           : adcgs_is_panoptic(folder)  ? ADCGS_DATASET_PANOPTIC
            : adcgs_is_hypernerf(folder) ? ADCGS_DATASET_HYPERNERF
            : adcgs_is_llff(folder)      ? ADCGS_DATASET_LLFF
            : adcgs_is_colmap(folder)    ? ADCGS_DATASET_COLMAP
@@ -286,6 +290,9 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     case ADCGS_DATASET_HYPERNERF:
         ADCGS_TRY(adcgs_hypernerf_read(scene, with_points, error));
         break;
+    case ADCGS_DATASET_PANOPTIC:
+        ADCGS_TRY(adcgs_panoptic_read(scene, with_points, error));
+        break;
     case ADCGS_DATASET_LLFF:
         return adcgs_llff_read(scene, &options->frames, with_points, error);
     case ADCGS_DATASET_COLMAP:
@@ -296,12 +303,24 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a folder, expected a file of splats", scene->directory);
     default:
         ADCGS_TRY(refuse_sequence(scene->directory, error));
+        ADCGS_TRY(adcgs_capture_refuse_folder(scene->directory, error));
         return adcgs_fail(error, ADCGS_ERR_DATA,
-                          "%s: not a scene: neither transforms_train.json, nor transforms.json, nor dataset.json with "
-                          "metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model%s",
+                          "%s: not a scene: neither transforms_train.json, nor transforms.json, nor train_meta.json, nor "
+                          "dataset.json with metadata.json and camera/, nor poses_bounds.npy, nor a COLMAP model%s",
                           scene->directory, has_footage(scene->directory) ? HINT : " in sparse/0, sparse or here");
     }
     return adcgs_frames_keep(scene, &options->frames, scene->directory, error);
+}
+
+/** train_meta.json itself: its folder. */
+static adcgs_status read_meta(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
+{
+    const char *slash = strrchr(path, '/');
+    if (strcmp(slash ? slash + 1 : path, "train_meta.json"))
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: cameras of Dynamic 3D Gaussians, expected train_meta.json, or its folder",
+                          path);
+    ADCGS_TRY(adcgs_panoptic_read(scene, !options->points_path, error));
+    return adcgs_frames_keep(scene, &options->frames, path, error);
 }
 
 /** Splats, told by what the file begins with; a scene file or a file of transforms, told by the field adcgs_scene. */
@@ -318,7 +337,12 @@ static adcgs_status read_file(adcgs_scene *scene, const char *path, char **point
     if (options->dataset == ADCGS_DATASET_AUTO) {
         ADCGS_TRY(adcgs_json_load(&root, path, error));
         is_scene_file = json_object_get(root, "adcgs_scene") != NULL;
+        const int is_panoptic = json_object_get(root, "fn") && json_object_get(root, "w2c") && json_object_get(root, "k");
+        const adcgs_status status = adcgs_capture_refuse(root, path, error);
         json_decref(root);
+        ADCGS_TRY(status);
+        if (is_panoptic)
+            return read_meta(scene, path, options, error);
     } else if (!is_scene_file && options->dataset != ADCGS_DATASET_TRANSFORMS)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a file, expected the folder of a scene of the kind %s", path,
                           adcgs_dataset_names[options->dataset]);

@@ -10,6 +10,7 @@
  *   coordinates, (x - center) * scale of its scene.json.
  * - a folder with poses_bounds.npy: pictures (LLFF) or videos of fixed cameras (Neu3D), see llff.h.
  * - a folder with a sparse model of COLMAP, see colmap.h.
+ * - a folder with train_meta.json (Dynamic 3D Gaussians' Panoptic benchmark), or that file itself, see panoptic.h.
  * - a JSON file with the field adcgs_scene, see scene_file.h.
  * - a PLY file of splats: a still scene, whose views are renderings of them, see splat_file.h.
  */
@@ -28,10 +29,11 @@ typedef enum adcgs_dataset {
     ADCGS_DATASET_COLMAP,
     ADCGS_DATASET_ADCGS,  /**< the scene file */
     ADCGS_DATASET_SPLATS, /**< a PLY file of splats */
+    ADCGS_DATASET_PANOPTIC,
     ADCGS_DATASETS
 } adcgs_dataset;
 
-/** "auto", "transforms", "hypernerf", "llff", "colmap", "adcgs", and NULL at the end. */
+/** "auto", "transforms", "hypernerf", "llff", "colmap", "adcgs", "splats", "panoptic", and NULL at the end. */
 extern const char *const adcgs_dataset_names[ADCGS_DATASETS + 1];
 
 /** Overrides given on a command line. Zero-initialise. */

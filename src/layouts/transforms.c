@@ -6,46 +6,42 @@
 
 #include "data/camera_json.h"
 #include "data/paths.h"
+#include "layouts/calibration.h"
 #include "layouts/listing.h"
+#include "layouts/transforms_files.h"
 #include "layouts/view_lens.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define TEST_EVERY 8
+#define TIME_MAX 1e20 /* nanoseconds since 1970 are below */
 
 typedef struct place {
     adcgs_json_place json;
     const char *folder; /**< of the file, with the slash at its end */
     adcgs_split split;  /**< of the frame; ADCGS_SPLITS: of none */
-    int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< of a split's first image, for frames that do not say */
+    int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< of a split's first image */
+    int other_width, other_height; /**< of one that differs from it; 0: none does */
 } place;
 
-/** folder + name, allocated. Absolute names stand for themselves. */
-static char *join(const char *folder, const char *name)
-{
-    while (name[0] == '.' && name[1] == '/')
-        name += 2;
-    return adcgs_path("%s%s", *name == '/' ? "" : folder, name);
-}
-
-/** The image's file: as named, or with an extension that makes it exist. */
+/** The image's file: as named, or where else it may be. */
 static adcgs_status find_image(const place *at, const adcgs_scene *scene, char **out)
 {
     const char *name = json_string_value(json_object_get(at->json.frame, "file_path"));
+    *out = NULL;
     if (!name || !*name)
         return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "expected the name of an image");
-    char *stem = join(at->folder, name);
-    const adcgs_status status = stem ? adcgs_find_image(out, stem, at->json.error)
-                                     : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "file_path", "out of memory");
-    if (status == ADCGS_OK && !*out && scene->is_outline && adcgs_is_image_name(stem)) {
-        *out = stem; /* it may be elsewhere */
-        return status;
-    }
-    free(stem);
-    if (status == ADCGS_OK && !*out)
-        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.100s", name);
-    return status;
+    ADCGS_TRY(adcgs_transforms_find(out, at->folder, name, at->json.error));
+    if (!*out && scene->is_outline && adcgs_is_image_name(name))
+        return (*out = adcgs_transforms_join(at->folder, name)) /* it may be elsewhere */
+                   ? ADCGS_OK
+                   : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "file_path", "out of memory");
+    if (!*out && adcgs_is_windows_path(name))
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.60s, a path of Windows, nor one of its "
+                              "name beside this file or in images", name);
+    return *out ? ADCGS_OK : adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.100s", name);
 }
 
 /** The file of a mask, as the field names it; NULL if the frame has none. */
@@ -58,30 +54,62 @@ static adcgs_status find_mask(const place *at, const adcgs_scene *scene, const c
         return ADCGS_OK;
     if (!name || !*name)
         return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, field, "expected the name of an image");
-    *out = join(at->folder, name);
-    if (*out && (scene->is_outline || adcgs_is_there(*out)))
+    ADCGS_TRY(adcgs_transforms_find(out, at->folder, name, at->json.error));
+    if (*out)
         return ADCGS_OK;
-    free(*out);
-    if (!*out)
-        return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, field, "out of memory");
-    *out = NULL;
-    return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, field, "no such image: %.100s", name);
+    if (!scene->is_outline)
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, field, "no such image: %.100s", name);
+    *out = adcgs_transforms_join(at->folder, name);
+    return *out ? ADCGS_OK : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, field, "out of memory");
 }
 
-/** The lens and the pinhole for it; w and h are the picture's as it was taken. */
+/** The size of the view's own image; of one that is elsewhere, that of the first of its split. */
+static adcgs_status probe_size(place *at, const adcgs_scene *scene, const adcgs_scene_view *view, int *width, int *height)
+{
+    int channels, *first_width = &at->width[at->split], *first_height = &at->height[at->split];
+    if (scene->is_outline && *first_width && !adcgs_is_there(view->path)) {
+        *width = *first_width;
+        *height = *first_height;
+        return ADCGS_OK;
+    }
+    ADCGS_TRY(adcgs_image_probe(width, height, &channels, view->path, at->json.error));
+    if (!*first_width) {
+        *first_width = *width;
+        *first_height = *height;
+    } else if (*width != *first_width || *height != *first_height) {
+        at->other_width = *width;
+        at->other_height = *height;
+    }
+    return ADCGS_OK;
+}
+
+/** Numbers that are for pictures of w x h pixels: made to fit the image, which has the same shape to a pixel of either. */
+static adcgs_status fit_size(const place *at, const adcgs_scene_view *view, adcgs_lens *lens, int width, int height)
+{
+    const double x = (double)width / lens->width, y = (double)height / lens->height, slack = fmax(1.0, fmax(x, y));
+    if (width == lens->width && height == lens->height)
+        return ADCGS_OK;
+    if (fabs(width - y * lens->width) > slack && fabs(height - x * lens->height) > slack)
+        return adcgs_fail(at->json.error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as w and h of frames[%zu] in %s say, "
+                          "or the same shape in another size: cropped, or rotated?", view->path, width, height, lens->width,
+                          lens->height, at->json.index, at->json.path);
+    adcgs_lens_resize(lens, width, height);
+    return ADCGS_OK;
+}
+
+/** The lens and the pinhole for it. */
 static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene_view *view)
 {
-    adcgs_camera taken;
-    int found;
-    ADCGS_TRY(adcgs_json_size(&at->json, &taken, &found));
-    int *width = &at->width[at->split], *height = &at->height[at->split];
-    if (!found && !*width) {
-        int channels;
-        ADCGS_TRY(adcgs_image_probe(width, height, &channels, view->path, at->json.error));
-    }
-    view->lens.width = found ? taken.width : *width;
-    view->lens.height = found ? taken.height : *height;
+    adcgs_camera said;
+    int found, width = 0, height = 0;
+    ADCGS_TRY(adcgs_json_size(&at->json, &said, &found));
+    if (!found || !scene->is_outline || adcgs_is_there(view->path))
+        ADCGS_TRY(probe_size(at, scene, view, &width, &height));
+    view->lens.width = found ? said.width : width;
+    view->lens.height = found ? said.height : height;
     ADCGS_TRY(adcgs_json_lens(&at->json, &view->lens));
+    if (width)
+        ADCGS_TRY(fit_size(at, view, &view->lens, width, height));
     char *where = adcgs_path("%s: frames[%zu]", at->json.path, at->json.index);
     const adcgs_status status = where ? adcgs_view_lens(scene, view, where, at->json.error)
                                       : adcgs_fail(at->json.error, ADCGS_ERR_MEMORY, "%s: out of memory", at->json.path);
@@ -102,7 +130,7 @@ static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_v
         return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "time", "%s in frames[0]",
                               time ? "given, but missing" : "missing, but given");
     if (time)
-        ADCGS_TRY(adcgs_json_number(&at->json, "time", 0.0, 1.0, &view->time, &found));
+        ADCGS_TRY(adcgs_json_number(&at->json, "time", -TIME_MAX, TIME_MAX, &view->time, &found));
     ADCGS_TRY(adcgs_json_pose(&at->json, &view->camera));
     ADCGS_TRY(find_image(at, scene, &view->path));
     adcgs_status status = read_camera(at, scene, view);
@@ -118,52 +146,194 @@ static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_v
     return ADCGS_OK;
 }
 
-static int lists(json_t *names, const char *name)
+/* ---- Lists of names ---- */
+
+static const char *const lists[ADCGS_SPLITS] = {"train_filenames", "val_filenames", "test_filenames"};
+
+/** A name as lists and frames may write it, for comparing, from malloc(). */
+static char *plain_name(const char *name)
 {
+    while (name[0] == '.' && (name[1] == '/' || name[1] == '\\'))
+        name += 2;
+    char *plain = strdup(name);
+    for (char *c = plain; c && (c = strchr(c, '\\'));)
+        *c = '/';
+    return plain;
+}
+
+/** Put the names of one list into a table: a number with a bit for each split. */
+static adcgs_status add_list(const place *at, json_t *table, int split)
+{
+    json_t *names = json_object_get(at->json.root, lists[split]), *item;
     size_t i;
-    json_t *item;
+    if (names && !json_is_array(names))
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, lists[split], "expected an array of names");
     json_array_foreach(names, i, item)
     {
         const char *text = json_string_value(item);
-        if (text && !strcmp(text, name))
-            return 1;
+        char *name = text ? plain_name(text) : NULL;
+        const json_int_t before = name ? json_integer_value(json_object_get(table, name)) : 0;
+        const int failed = text && (!name || json_object_set_new(table, name, json_integer(before | 1 << split)));
+        free(name);
+        if (!text)
+            return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, lists[split], "element %zu: expected a name", i);
+        if (failed)
+            return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, lists[split], "out of memory");
+        if ((before | 1 << split) == (1 << ADCGS_SPLIT_TRAIN | 1 << ADCGS_SPLIT_TEST))
+            return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, lists[split], "%.80s is in train_filenames, too: a view for testing "
+                                  "must not be trained on", text);
     }
-    return 0;
+    return ADCGS_OK;
+}
+
+/** The table of a file that lists names; NULL if it does not. */
+static adcgs_status read_lists(const place *at, json_t **table)
+{
+    int found = 0;
+    for (int split = 0; split < ADCGS_SPLITS; split++)
+        found |= json_object_get(at->json.root, lists[split]) != NULL;
+    *table = NULL;
+    if (!found)
+        return ADCGS_OK;
+    if (!json_object_get(at->json.root, lists[ADCGS_SPLIT_TRAIN]))
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, lists[ADCGS_SPLIT_TRAIN], "missing, but other splits have names");
+    if (!(*table = json_object()))
+        return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, lists[ADCGS_SPLIT_TRAIN], "out of memory");
+    adcgs_status status = ADCGS_OK;
+    for (int split = 0; status == ADCGS_OK && split < ADCGS_SPLITS; split++)
+        status = add_list(at, *table, split);
+    if (status != ADCGS_OK) {
+        json_decref(*table);
+        *table = NULL;
+    }
+    return status;
 }
 
 /** Where a frame of an undivided file belongs; ADCGS_SPLITS: nowhere, when the file lists names and not this one. */
-static adcgs_split choose_split(const place *at)
+static adcgs_status choose_split(const place *at, json_t *table, json_t *seen, adcgs_split *split)
 {
-    static const char *const fields[ADCGS_SPLITS] = {"train_filenames", "val_filenames", "test_filenames"};
-    if (!json_object_get(at->json.root, fields[ADCGS_SPLIT_TRAIN]))
-        return at->json.index % TEST_EVERY == 0 ? ADCGS_SPLIT_TEST : ADCGS_SPLIT_TRAIN;
-    const char *name = json_string_value(json_object_get(at->json.frame, "file_path"));
-    for (int split = 0; split < ADCGS_SPLITS; split++)
-        if (name && lists(json_object_get(at->json.root, fields[split]), name))
-            return (adcgs_split)split;
-    return ADCGS_SPLITS;
+    *split = at->json.index % TEST_EVERY == 0 ? ADCGS_SPLIT_TEST : ADCGS_SPLIT_TRAIN;
+    if (!table)
+        return ADCGS_OK;
+    const char *text = json_string_value(json_object_get(at->json.frame, "file_path"));
+    char *name = text ? plain_name(text) : NULL;
+    const json_int_t in = name ? json_integer_value(json_object_get(table, name)) : 0;
+    const int failed = text && (!name || json_object_set_new(seen, name, json_true()));
+    free(name);
+    if (failed)
+        return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "file_path", "out of memory");
+    *split = in & 1 << ADCGS_SPLIT_TRAIN  ? ADCGS_SPLIT_TRAIN
+             : in & 1 << ADCGS_SPLIT_TEST ? ADCGS_SPLIT_TEST
+             : in & 1 << ADCGS_SPLIT_VAL  ? ADCGS_SPLIT_VAL
+                                          : ADCGS_SPLITS;
+    return ADCGS_OK;
+}
+
+/** Names that no frame has: nerfstudio refuses them, too. */
+static adcgs_status check_lists(const place *at, json_t *table, json_t *seen)
+{
+    const char *name;
+    json_t *value;
+    json_object_foreach(table, name, value)
+    {
+        const json_int_t in = json_integer_value(value);
+        int split = 0;
+        while (!(in & 1 << split))
+            split++;
+        if (!json_object_get(seen, name))
+            return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, lists[split], "%.100s is the file_path of no frame", name);
+    }
+    return ADCGS_OK;
+}
+
+/* ---- Frames ---- */
+
+/** Fields by which others say when a frame was taken. */
+static const char *find_clock(json_t *frames, size_t n)
+{
+    static const char *const fields[] = {"timestamp", "timestamps", "time_stamp", "timestamp_ns", "frame_time", "capture_time",
+                                         "t", "time_id", "frame_index", "frame_id", "frame_number"};
+    for (size_t i = 0; i < ADCGS_COUNTOF(fields) && n > 1; i++) {
+        json_t *first = json_object_get(json_array_get(frames, 0), fields[i]);
+        json_t *last = json_object_get(json_array_get(frames, n - 1), fields[i]);
+        const int is_clock = (json_is_number(first) && json_is_number(last)) || (json_is_string(first) && json_is_string(last));
+        if (is_clock && !json_equal(first, last))
+            return fields[i];
+    }
+    return NULL;
+}
+
+static adcgs_status add_frame(place *at, adcgs_scene *scene, adcgs_transforms *out, json_t *table, json_t *seen,
+                              adcgs_split split)
+{
+    adcgs_scene_view view = {.time = 0.0};
+    at->split = split;
+    if (split == ADCGS_SPLITS)
+        ADCGS_TRY(choose_split(at, table, seen, &at->split));
+    ADCGS_TRY(read_view(at, scene, &view, out));
+    if (at->split == ADCGS_SPLITS)
+        adcgs_scene_view_clear(&view);
+    else
+        scene->views[at->split][scene->n_views[at->split]++] = view;
+    return ADCGS_OK;
 }
 
 static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms *out, adcgs_split split)
 {
-    json_t *frames;
+    json_t *frames, *table = NULL, *seen = json_object();
     size_t n;
-    ADCGS_TRY(adcgs_json_frames(&at->json, &frames, &n));
-    for (int s = 0; s < ADCGS_SPLITS; s++)
+    adcgs_status status = seen ? adcgs_json_frames(&at->json, &frames, &n)
+                               : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "frames", "out of memory");
+    if (status == ADCGS_OK && split == ADCGS_SPLITS)
+        status = read_lists(at, &table);
+    for (int s = 0; status == ADCGS_OK && s < ADCGS_SPLITS; s++)
         if ((split == ADCGS_SPLITS || (int)split == s) && !(scene->views[s] = calloc(n, sizeof *scene->views[s])))
-            return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "frames", "out of memory");
-    for (size_t i = 0; i < n; i++) {
-        adcgs_scene_view view = {.time = 0.0};
+            status = adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "frames", "out of memory");
+    for (size_t i = 0; status == ADCGS_OK && i < n; i++) {
         at->json.index = i;
         at->json.frame = json_array_get(frames, i);
-        at->split = split == ADCGS_SPLITS ? choose_split(at) : split;
-        ADCGS_TRY(read_view(at, scene, &view, out));
-        if (at->split == ADCGS_SPLITS)
-            adcgs_scene_view_clear(&view);
-        else
-            scene->views[at->split][scene->n_views[at->split]++] = view;
+        status = add_frame(at, scene, out, table, seen, split);
     }
     at->json.frame = NULL;
+    if (status == ADCGS_OK && table)
+        status = check_lists(at, table, seen);
+    if (status == ADCGS_OK) {
+        out->clock = find_clock(frames, n);
+        out->has_lists = table != NULL;
+    }
+    if (table)
+        json_decref(table);
+    json_decref(seen);
+    return status;
+}
+
+/** Sizes that differ are each image's own; numbers in pixels that are one for all of them may be meant so, or not. */
+static void tell_sizes(const place *at, adcgs_scene *scene)
+{
+    if (!at->other_width || json_object_get(at->json.root, "w") || !json_object_get(at->json.root, "fl_x"))
+        return;
+    const adcgs_split split = scene->n_views[ADCGS_SPLIT_TRAIN] ? ADCGS_SPLIT_TRAIN : at->split;
+    adcgs_scene_remark(scene, "images have several sizes, such as %dx%d and %dx%d, and fl_x is one for all: it is taken as it "
+                       "stands; if some are reduced, give each frame w, h, fl_x, cx, cy", at->width[split], at->height[split],
+                       at->other_width, at->other_height);
+}
+
+/** A file of points that is not there is none: training can do without. */
+static adcgs_status find_points(const place *at, adcgs_scene *scene, adcgs_transforms *out)
+{
+    json_t *points = json_object_get(at->json.root, "ply_file_path");
+    const char *name = json_string_value(points);
+    if (!points || json_is_null(points))
+        return ADCGS_OK;
+    if (!name)
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "ply_file_path", "expected a string");
+    if (!(out->points_path = adcgs_transforms_join(at->folder, name)))
+        return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "ply_file_path", "out of memory");
+    if (adcgs_is_there(out->points_path))
+        return ADCGS_OK;
+    free(out->points_path);
+    out->points_path = NULL;
+    adcgs_scene_remark(scene, "ply_file_path: there is no %.100s: training starts without these points", name);
     return ADCGS_OK;
 }
 
@@ -171,17 +341,11 @@ static adcgs_status read_root(place *at, adcgs_scene *scene, adcgs_transforms *o
 {
     int found;
     ADCGS_TRY(adcgs_json_fps(&at->json, "fps", &out->rate, &found));
-    json_t *points = json_object_get(at->json.root, "ply_file_path");
-    if (points) {
-        const char *name = json_string_value(points);
-        if (!name)
-            return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "ply_file_path", "expected a string");
-        if (!(out->points_path = join(at->folder, name)))
-            return adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "ply_file_path", "out of memory");
-        if (!adcgs_is_there(out->points_path))
-            return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "ply_file_path", "no such file: %.100s", name);
-    }
-    return read_frames(at, scene, out, split);
+    if (split == ADCGS_SPLIT_TRAIN || split == ADCGS_SPLITS) /* only the training split decides */
+        ADCGS_TRY(find_points(at, scene, out));
+    ADCGS_TRY(read_frames(at, scene, out, split));
+    tell_sizes(at, scene);
+    return ADCGS_OK;
 }
 
 adcgs_status adcgs_transforms_read(adcgs_scene *scene, adcgs_transforms *out, const char *path, adcgs_split split,

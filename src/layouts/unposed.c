@@ -38,28 +38,43 @@ static void clear(stems *s)
     free(s->list);
 }
 
-/** 0, or -1 without memory. */
-static int list_views(stems *s, const adcgs_scene *scene)
+static adcgs_status no_memory(const char *path, adcgs_error *error)
+{
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
+}
+
+static adcgs_status list_views(stems *s, const adcgs_scene *scene, adcgs_error *error)
 {
     size_t all = 0;
     for (int split = 0; split < ADCGS_SPLITS; split++)
         all += scene->n_views[split];
     *s = (stems){.list = calloc(all + 1, sizeof *s->list)};
     for (int split = 0; s->list && split < ADCGS_SPLITS; split++)
-        for (uint32_t i = 0; i < scene->n_views[split]; i++)
-            if ((s->list[s->n] = stem_of(scene->views[split][i].path)))
-                s->n++;
+        for (uint32_t i = 0; i < scene->n_views[split]; i++) {
+            if (!(s->list[s->n] = stem_of(scene->views[split][i].path)))
+                return no_memory(scene->directory, error);
+            s->n++;
+        }
     if (s->n)
         qsort(s->list, s->n, sizeof *s->list, compare);
-    return s->list && s->n == all ? 0 : -1;
+    return s->list ? ADCGS_OK : no_memory(scene->directory, error);
 }
 
-static int is_posed(const stems *s, const char *path)
+typedef struct counter {
+    stems posed;
+    size_t all, unposed;
+    adcgs_error *error;
+} counter;
+
+static adcgs_status count_image(counter *c, const char *path)
 {
     char *stem = stem_of(path);
-    const int found = !stem || (s->n && bsearch(&stem, s->list, s->n, sizeof *s->list, compare));
+    if (!stem)
+        return no_memory(path, c->error);
+    c->all++;
+    c->unposed += !c->posed.n || !bsearch(&stem, c->posed.list, c->posed.n, sizeof *c->posed.list, compare);
     free(stem);
-    return found;
+    return ADCGS_OK;
 }
 
 static int is_anything(const char *name)
@@ -67,38 +82,41 @@ static int is_anything(const char *name)
     return *name != '.';
 }
 
-/** Images below a folder, which ends with its slash, and how many of them are none of the views'. */
-static void count(const stems *s, const char *folder, int depth, size_t *all, size_t *unposed)
+/** Images below a folder, which ends with its slash. A folder that cannot be read has none. */
+static adcgs_status count(counter *c, const char *folder, int depth)
 {
     adcgs_listing listing;
-    adcgs_error unused;
     size_t folders = 0;
-    if (adcgs_listing_read(&listing, folder, is_anything, &unused) != ADCGS_OK)
-        return;
-    for (size_t i = 0; i < listing.n; i++) {
+    adcgs_status status = adcgs_listing_read(&listing, folder, is_anything, c->error);
+    if (status != ADCGS_OK)
+        return status == ADCGS_ERR_MEMORY ? status : ADCGS_OK;
+    for (size_t i = 0; status == ADCGS_OK && i < listing.n; i++) {
         const int is_image = adcgs_is_image_name(listing.names[i]);
         char *path = adcgs_path("%s%s%s", folder, listing.names[i], is_image ? "" : "/");
-        if (path && is_image) {
-            *all += 1;
-            *unposed += !is_posed(s, path);
-        } else if (path && depth && adcgs_is_folder(path) && ++folders <= FOLDERS_MOST)
-            count(s, path, depth - 1, all, unposed);
+        if (!path)
+            status = no_memory(folder, c->error);
+        else if (is_image)
+            status = count_image(c, path);
+        else if (depth && adcgs_is_folder(path) && ++folders <= FOLDERS_MOST)
+            status = count(c, path, depth - 1);
         free(path);
     }
     adcgs_listing_free(&listing);
+    return status;
 }
 
-void adcgs_unposed_remark(adcgs_scene *scene, const char *folder)
+adcgs_status adcgs_unposed_remark(adcgs_scene *scene, const char *folder, adcgs_error *error)
 {
-    stems s;
-    size_t all = 0, unposed = 0;
-    if (list_views(&s, scene) == 0)
-        count(&s, folder, DEPTH_MOST, &all, &unposed);
-    clear(&s);
+    counter c = {.error = error};
+    adcgs_status status = list_views(&c.posed, scene, error);
+    if (status == ADCGS_OK)
+        status = count(&c, folder, DEPTH_MOST);
+    clear(&c.posed);
     const size_t above = strlen(scene->directory);
     const char *const below = strncmp(folder, scene->directory, above) || folder[above] != '/' ? folder : folder + above + 1;
-    if (unposed == 1)
-        adcgs_scene_remark(scene, "1 of %zu images in %s has no pose: it is left out", all, below);
-    else if (unposed)
-        adcgs_scene_remark(scene, "%zu of %zu images in %s have no pose: they are left out", unposed, all, below);
+    if (status == ADCGS_OK && c.unposed == 1)
+        adcgs_scene_remark(scene, "1 of %zu images in %s has no pose: it is left out", c.all, below);
+    else if (status == ADCGS_OK && c.unposed)
+        adcgs_scene_remark(scene, "%zu of %zu images in %s have no pose: they are left out", c.unposed, c.all, below);
+    return status;
 }

@@ -327,9 +327,10 @@ static const adcgs_cli program = {
     .program = "adcgs-enc",
     .operands = "SCENE",
     .summary = "Learn a dynamic scene from posed pictures and write it to one file.",
-    .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D or COLMAP,\n"
-               "a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), of which it renders views.\n"
-               "Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or millions: 20k, 2M.",
+    .details = "SCENE is a folder in the layout of D-NeRF, nerfstudio, HyperNeRF, LLFF, Neu3D, COLMAP or\n"
+               "Dynamic 3D Gaussians, a transforms.json, a scene file, or a file of splats (PLY, SPZ, GLB), of which\n"
+               "it renders views. Seconds may have a unit: 500ms, 2s, 10m, 1.5h. Counts may be in thousands or\n"
+               "millions: 20k, 2M.",
     .min_operands = 0,
     .max_operands = OPERANDS_MAX, /* one is expected: the message depends on the others */
 };
@@ -406,7 +407,8 @@ static int parse(adcgs_cli *cli, adcgs_enc_options *o, int argc, char **argv)
         { "max-anchors", 0, ADCGS_OPTION_INT, &o->max_anchors, anchors->min, anchors->max, "N",
           "budget of anchors (default: by how much there is to see\nin the pictures)", NULL, &o->has_max_anchors },
         { "dataset", 0, ADCGS_OPTION_CHOICE, &o->dataset, 0, 0, "KIND",
-          "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs or splats",
+          "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, "
+          "colmap, adcgs, splats or\npanoptic",
           adcgs_dataset_names, NULL },
         { "frames", 0, ADCGS_OPTION_STRING, &o->frames, 0, 0, "A:B:STEP",
           "take frames A, A + STEP, ... below B of videos, or such\nmoments of pictures; A, B or :STEP may be left out", NULL,

@@ -46,7 +46,8 @@ static void make_options(settings *s, adcgs_option options[OPTION_COUNT])
         {"split", 0, ADCGS_OPTION_CHOICE, &s->split, 0, 0, "NAME", "views to compare: test (the default), val or train", splits,
          NULL},
         {"dataset", 0, ADCGS_OPTION_CHOICE, &s->dataset, 0, 0, "KIND",
-         "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, colmap, adcgs or splats",
+         "kind of the scene, instead of telling it by its files:\nauto, transforms, hypernerf, llff, "
+          "colmap, adcgs, splats or\npanoptic",
          adcgs_dataset_names, NULL},
         {"frames", 0, ADCGS_OPTION_STRING, &s->frames, 0, 0, "A:B:STEP",
          "the frames that the stream was made of, as for adcgs-enc", NULL, NULL},

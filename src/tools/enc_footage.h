@@ -19,7 +19,7 @@ void adcgs_enc_doubt_footage(const adcgs_cli *cli, const adcgs_scene *scene, con
                              const adcgs_fault *doubled, adcgs_pool *pool, const adcgs_glance *glances, double begins,
                              unsigned *told);
 
-/** Note, unless --quiet, what the scene's reader found to remark. */
+/** Print the scene's remarks, unless --quiet. */
 void adcgs_enc_tell_remarks(const adcgs_cli *cli, const adcgs_scene *scene);
 /** Note that such a step of light was evened out, or that there is none. */
 void adcgs_enc_tell_evened(const adcgs_cli *cli, const adcgs_scene *scene, const adcgs_fault *light);

@@ -73,7 +73,7 @@ spoil()
         large) truncate -s 100G "$at" ;; # takes no room
         gigantic) printf 'P6\n99999 99999\n255\n' >"$at" ;;
         big) printf 'P6\n16384 16384\n255\n' >"$at" ;;
-        other) printf 'P6\n12 8\n255\n%0288d' 0 >"$at" ;;
+        other) printf 'P6\n16 6\n255\n%0288d' 0 >"$at" ;;
     esac
 }
 # What cannot be opened, or holds nothing.

@@ -81,7 +81,8 @@ static void expect_same(const start *a, const start *b)
         assert_true(v->time == w->time && v->frame == w->frame && !strcmp(v->path, w->path));
     }
     assert_int_equal(a->scene->points.n, b->scene->points.n);
-    assert_memory_equal(a->scene->points.position, b->scene->points.position, a->scene->points.n * sizeof *a->scene->points.position);
+    assert_memory_equal(a->scene->points.position, b->scene->points.position,
+                        a->scene->points.n * sizeof *a->scene->points.position);
     assert_int_equal(a->model->n, b->model->n);
     assert_true(a->model->n > 16 && a->model->voxel == b->model->voxel);
     assert_memory_equal(a->model->pos, b->model->pos, a->model->n * sizeof *a->model->pos);

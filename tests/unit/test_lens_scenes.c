@@ -142,7 +142,7 @@ static void test_frames(void **state)
     put_text("transforms.json", "{\"fl_x\":80,\"fl_y\":82,\"cx\":50,\"cy\":34,\"k1\":-0.15,\"k2\":0.02,\"frames\":["
              FRAME("a.exr", "") "," FRAME("a.exr", "") ","
              FRAME("b.exr", ",\"w\":96,\"h\":72,\"fl_x\":90,\"fl_y\":90,\"cx\":48,\"cy\":36,\"k1\":0.05") ","
-             FRAME("a.exr", "") "," FRAME("b.exr", ",\"k1\":0,\"k2\":0") "," FRAME("a.exr", ",\"w\":90,\"h\":72") "]}");
+             FRAME("a.exr", "") "," FRAME("b.exr", ",\"k1\":0,\"k2\":0") "]}");
     expect_good(adcgs_scene_open(&scene, folder, NULL, &error));
     const adcgs_scene_view *views = scene->views[ADCGS_SPLIT_TRAIN];
     check_view(&views[0], &common);
@@ -150,10 +150,9 @@ static void test_frames(void **state)
     check_view(&views[2], &common);
     assert_true(views[0].camera.width == views[2].camera.width && views[0].camera.cx == views[2].camera.cx);
     assert_true(views[3].lens.width == 0 && views[3].camera.width == WIDTH && views[3].camera.cx == 50);
-    float *rgb;
-    expect_error(adcgs_scene_load(scene, &views[4], 1, &rgb, NULL, &error), ADCGS_ERR_DATA, "a.exr: 96x72 pixels", "90x72");
-    assert_null(rgb);
     adcgs_scene_free(&scene);
+    put_text("transforms.json", "{\"fl_x\":80,\"frames\":[" FRAME("a.exr", "") "," FRAME("a.exr", ",\"w\":90,\"h\":72") "]}");
+    expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "a.exr: 96x72 pixels", "90x72");
 }
 
 /* ---- HyperNeRF ---- */

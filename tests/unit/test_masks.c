@@ -23,7 +23,7 @@ static int clean(void **state)
     return remove_folder(state) || mkdir(folder, 0777);
 }
 
-/** What a channel is in the two halves of a mask; a third part, of so many columns, lies between. */
+/** Values of a channel in the two halves of a mask; a third part, of so many columns, lies between. */
 typedef struct paint {
     float hidden, seen, between;
 } paint;
@@ -44,7 +44,8 @@ static void put_mask(const char *name, int channels, paint colour, paint alpha, 
 
 static void put_scene(const char *mask)
 {
-    static const char frame[] = "{\"file_path\":\"%c.ppm\",\"mask_path\":\"%s\",\"transform_matrix\":[[1,0,0,%d],[0,1,0,0],[0,0,1,3]]}";
+    static const char frame[] = "{\"file_path\":\"%c.ppm\",\"mask_path\":\"%s\",\"transform_matrix\":"
+                                "[[1,0,0,%d],[0,1,0,0],[0,0,1,3]]}";
     char text[1000] = "{\"fl_x\":30,\"frames\":[";
     adcgs_image image;
     expect_good(adcgs_image_alloc(&image, W, H, 3, "i", &error));

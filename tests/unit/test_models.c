@@ -51,15 +51,16 @@ static void put_model_at(const double place[3], int n)
         for (int a = 0; a < 3; a++)
             pose[4 * a + 3] += place[a];
         rig_quaternion(pose, q, t);
-        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 7 %d.ppm\n\n", i + 1, q[0], q[1], q[2], q[3],
-                              t[0], t[1], t[2], i);
+        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 7 %d.ppm\n\n", i + 1, q[0], q[1], q[2],
+                              q[3], t[0], t[1], t[2], i);
     }
     put_text("sparse/images.txt", text);
     at = 0;
     for (int i = 0; i < RIG_POINTS; i++) {
         double x[3];
         rig_point(i, x);
-        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g 9 9 9 0.5\n", i, x[0] + place[0], x[1] + place[1], x[2] + place[2]);
+        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g 9 9 9 0.5\n", i, x[0] + place[0], x[1] + place[1],
+                              x[2] + place[2]);
     }
     put_text("sparse/points3D.txt", text);
     free(text);
@@ -104,7 +105,7 @@ static void test_far(void **state)
 
 /* ---- Lines of images ---- */
 
-/** Put the model with images.txt as made of pieces: what stands behind each image's line, and how lines end. */
+/** Put images.txt with a second line behind the line of each image, and with such ends of lines. */
 static void put_lines(const char *second, const char *end, int last_second)
 {
     char *text = malloc(65536);
@@ -114,8 +115,8 @@ static void put_lines(const char *second, const char *end, int last_second)
         double pose[12], q[4], t[3];
         rig_pose(i, pose);
         rig_quaternion(pose, q, t);
-        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 7 %d.ppm%s%s%s", i + 1, q[0], q[1], q[2], q[3],
-                              t[0], t[1], t[2], i, end, i < 8 || last_second ? second : "",
+        at += (size_t)sprintf(text + at, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 7 %d.ppm%s%s%s", i + 1, q[0], q[1], q[2],
+                              q[3], t[0], t[1], t[2], i, end, i < 8 || last_second ? second : "",
                               *second && (i < 8 || last_second) ? end : "");
     }
     put_text("sparse/images.txt", text);
@@ -136,7 +137,8 @@ static void expect_nine(void)
 static void test_lines(void **state)
 {
     static const char *const ends[] = {"\n", "\r\n", "\r", "\r\r\n"};
-    static const char *const seconds[] = {"", " ", "1.5 2.5 -1", "1 2 3 4.5 5 -1 \t", "# 1 2", "# a\n1 2 -1", "\t# of points: 0\n"};
+    static const char *const seconds[] = {"", " ", "1.5 2.5 -1", "1 2 3 4.5 5 -1 \t", "# 1 2", "# a\n1 2 -1",
+                                          "\t# of points: 0\n"};
     static char longer[6000];
     put_images(9, "images", "%d.ppm");
     put_model_at((const double[3]){0.0, 0.0, 0.0}, 9);
@@ -144,8 +146,8 @@ static void test_lines(void **state)
         char text[256];
         snprintf(text, sizeof text, "# cameras%s7 PINHOLE 24 16 20 20 12 8%s", ends[e], ends[e]);
         put_text("sparse/cameras.txt", text);
-        snprintf(text, sizeof text, "# points%s1 0 0 0 9 9 9 0.5%s2 0 0 0 9 9 9 .5 1 2%s3 0 0 1 9 9 9 .5 2 1 3 1", ends[e], ends[e],
-                 ends[e]);
+        snprintf(text, sizeof text, "# points%s1 0 0 0 9 9 9 0.5%s2 0 0 0 9 9 9 .5 1 2%s3 0 0 1 9 9 9 .5 2 1 3 1", ends[e],
+                 ends[e], ends[e]);
         put_text("sparse/points3D.txt", text);
         for (size_t i = 0; i < ADCGS_COUNTOF(seconds); i++)
             for (int last = 0; last < 2; last++) {
@@ -190,7 +192,7 @@ static void expect_views(uint32_t n, int n_remarks)
     assert_int_equal(scene->n_remarks, n_remarks);
 }
 
-/** The largest model is taken, and who learns hears of it and of images without a pose. */
+/** The largest model is taken, and remarks name the others and count images without a pose. */
 static void test_several(void **state)
 {
     put_images(9, "images", "%d.ppm");
@@ -209,11 +211,11 @@ static void test_several(void **state)
     put_model_text("sparse/x", 9, "%d.ppm", CAMERA); /* no number */
     expect_views(9, 1);
     expect_remark("3 models", "sparse/1 with 9 images is taken; sparse/12 has 9");
-    put_text("sparse/12/images.txt", "what is this?");
+    put_text("sparse/12/images.txt", "no such thing");
     expect_views(9, 1);
     expect_remark("3 models", "sparse/0 has 4");
-    put_text("sparse/1/images.bin", "what is this?");
-    put_text("sparse/0/images.txt", "what is this?");
+    put_text("sparse/1/images.bin", "no such thing");
+    put_text("sparse/0/images.txt", "no such thing");
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "sparse/0/images.txt: line 1", "IMAGE_ID");
 }
 
@@ -233,7 +235,7 @@ static void test_places(void **state)
     }
 }
 
-/** Images in folders, as Windows writes them, too; what has a pose is known by its name without its end. */
+/** Images in folders, as Windows writes them, too; images with a pose are known by their names without extension. */
 static void test_folders(void **state)
 {
     put_folder("images");

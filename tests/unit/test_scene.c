@@ -313,7 +313,6 @@ static void test_bad_files(void **state)
     expect_bad("{\"frames\":[7]}", ADCGS_ERR_DATA, "frames[0]", "object");
     expect_bad("{\"fl_x\":5,\"frames\":[" FRAME("a.ppm", "") "]}", ADCGS_ERR_DATA, "frames", "training");
     expect_bad("{\"fps\":0,\"frames\":[]}", ADCGS_ERR_DATA, "fps", "0");
-    expect_bad("{\"ply_file_path\":\"x.ply\",\"frames\":[]}", ADCGS_ERR_DATA, "ply_file_path", "x.ply");
     expect_bad("{\"ply_file_path\":1,\"frames\":[]}", ADCGS_ERR_DATA, "ply_file_path", "string");
 }
 
@@ -334,8 +333,7 @@ static void test_bad_frames(void **state)
     expect_bad_frame("\"time\":0,\"file_path\":\"\",\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "file_path", "name");
     expect_bad_frame("\"time\":0,\"file_path\":\"./zz/y\",\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "file_path", "zz/y");
     expect_bad_frame("\"file_path\":\"b.ppm\",\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "missing");
-    expect_bad_frame("\"file_path\":\"b.ppm\",\"time\":1.01,\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "1.01");
-    expect_bad_frame("\"file_path\":\"b.ppm\",\"time\":-0.1,\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "-0.1");
+    expect_bad_frame("\"file_path\":\"b.ppm\",\"time\":1e30,\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "1e+30");
     expect_bad_frame("\"file_path\":\"b.ppm\",\"time\":\"0\",\"transform_matrix\":" IDENTITY, ADCGS_ERR_DATA, "time", "number");
     expect_bad_frame(GOOD ",\"w\":7.5", ADCGS_ERR_DATA, "w", "whole");
     expect_bad_frame(GOOD ",\"w\":0", ADCGS_ERR_DATA, "w", "0");

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/** \file Captures of programs whose format is known by its fields, but not read. */
+#include "config.h"
+
+#include "layouts/captures.h"
+
+#include "data/camera_json.h"
+#include "data/paths.h"
+
+#include <stdlib.h>
+
+/* Record3D has the poses of ARKit in one list, and one matrix K for all. */
+adcgs_status adcgs_capture_refuse(json_t *root, const char *path, adcgs_error *error)
+{
+    if (!json_is_array(json_object_get(root, "poses")) || !json_is_array(json_object_get(root, "K")))
+        return ADCGS_OK;
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: the metadata of a capture by Record3D, which is not read: nerfstudio's "
+                      "ns-process-data record3d makes a folder with transforms.json of it", path);
+}
+
+adcgs_status adcgs_capture_refuse_folder(const char *folder, adcgs_error *error)
+{
+    static const char *const places[] = {"metadata.json", "metadata", "EXR_RGBD/metadata.json", "EXR_RGBD/metadata"};
+    for (size_t i = 0; i < ADCGS_COUNTOF(places); i++) {
+        json_t *root = NULL;
+        adcgs_error unused;
+        if (!adcgs_is_there_at("%s/%s", folder, places[i]))
+            continue;
+        char *path = adcgs_path("%s/%s", folder, places[i]);
+        if (!path)
+            return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
+        const int is_read = adcgs_json_load(&root, path, &unused) == ADCGS_OK;
+        const adcgs_status status = is_read ? adcgs_capture_refuse(root, path, error) : ADCGS_OK;
+        json_decref(root);
+        free(path);
+        ADCGS_TRY(status);
+    }
+    return ADCGS_OK;
+}
