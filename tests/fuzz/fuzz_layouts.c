@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Scenes of LLFF and COLMAP, scene files and splats from outside. The first byte says which: L poses_bounds.npy, B a binary model
- * of COLMAP, T the same in text, S a scene file, G splats as a scene. The files of a model follow each other, each but the last
- * after its length in two bytes. There are two small pictures.
+ * of COLMAP, T the same in text, M two of these, S a scene file, G splats as a scene, P the layout of Dynamic 3D Gaussians. Files
+ * follow each other, each but the last after its length in two bytes. There are two small pictures for all.
  */
 #define _GNU_SOURCE
 
@@ -21,7 +21,7 @@ const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/layouts", "tests/fuzz
 static const struct kind {
     char letter;
     const char *scene; /* "" is the folder */
-    const char *files[3];
+    const char *files[5];
     int n;
 } kinds[] = {
     { 'L', "", { "poses_bounds.npy" }, 1 },
@@ -29,8 +29,11 @@ static const struct kind {
     { 'T', "", { "cameras.txt", "images.txt", "points3D.txt" }, 3 },
     { 'S', "/s.json", { "s.json" }, 1 },
     { 'G', "/s.ply", { "s.ply" }, 1 },
+    { 'M', "", { "cameras.txt", "images.txt", "sparse/1/cameras.txt", "sparse/1/images.txt", "sparse/1/points3D.txt" }, 5 },
+    { 'P', "", { "train_meta.json", "test_meta.json", "init_pt_cld.npz" }, 3 },
 };
-static const char *const pictures[] = { "images/0.ppm", "images/1.ppm" };
+static const char *const pictures[] = { "images/0.ppm", "images/1.ppm", "ims/0.ppm", "ims/1.ppm" };
+static const char *const folders[] = { "images", "ims", "sparse", "sparse/1" };
 
 static void put_files(const char *folder, const struct kind *kind, const uint8_t *data, size_t size)
 {
@@ -52,12 +55,14 @@ static void put_files(const char *folder, const struct kind *kind, const uint8_t
 static void remove_files(const char *folder, const struct kind *kind)
 {
     char path[96];
-    for (int i = 0; i < kind->n + 2; i++) {
+    for (int i = 0; i < kind->n + (int)ADCGS_COUNTOF(pictures); i++) {
         snprintf(path, sizeof path, "%s/%s", folder, i < kind->n ? kind->files[i] : pictures[i - kind->n]);
         unlink(path);
     }
-    snprintf(path, sizeof path, "%s/images", folder);
-    rmdir(path);
+    for (size_t i = ADCGS_COUNTOF(folders); i-- > 0;) {
+        snprintf(path, sizeof path, "%s/%s", folder, folders[i]);
+        rmdir(path);
+    }
     rmdir(folder);
 }
 
@@ -71,8 +76,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         kind = kinds[i].letter == *data ? &kinds[i] : kind;
     uint8_t picture[sizeof PICTURE - 1 + 24 * 16] = PICTURE;
     FUZZ_REQUIRE(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/images", folder);
-    FUZZ_REQUIRE(mkdir(path, 0700) == 0);
+    for (size_t i = 0; i < ADCGS_COUNTOF(folders); i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, folders[i]);
+        FUZZ_REQUIRE(mkdir(path, 0700) == 0);
+    }
     for (size_t i = 0; i < ADCGS_COUNTOF(pictures); i++) {
         snprintf(path, sizeof path, "%s/%s", folder, pictures[i]);
         write_outside_file(path, picture, sizeof picture);

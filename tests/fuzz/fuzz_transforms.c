@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes as JSON files from outside: cameras, times, splits. The only picture there is is empty. */
+/** \file Scenes as JSON files from outside: cameras, times, splits, names. The only picture there is is a small one. */
 #define _GNU_SOURCE
 
 #include "outside_file.h"
 
 #include "layouts/transforms.h"
+#include "layouts/transforms_check.h"
+
+#define PICTURE "P5\n24 16\n255\n" /* and as many pixels, all black */
 
 const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/transforms", "tests/fuzz/regressions/transforms", NULL };
 
@@ -19,8 +22,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     snprintf(path, sizeof path, "%s/scene.json", folder);
     snprintf(picture, sizeof picture, "%s/a.png", folder);
     write_outside_file(path, data, size);
-    write_outside_file(picture, data, 0);
-    const adcgs_status status = adcgs_transforms_read(scene, &said, path, split, &error);
+    const uint8_t pixels[sizeof PICTURE - 1 + 24 * 16] = PICTURE;
+    write_outside_file(picture, pixels, sizeof pixels);
+    FUZZ_REQUIRE((scene->directory = strdup(folder)));
+    adcgs_status status = adcgs_transforms_read(scene, &said, path, split, &error);
+    if (status == ADCGS_OK)
+        status = adcgs_transforms_check(scene, &said, split == ADCGS_SPLITS, path, &error);
     FUZZ_REQUIRE(status == ADCGS_OK || (error.status == status && error.text[0]));
     unlink(path);
     unlink(picture);
