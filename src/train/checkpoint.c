@@ -27,8 +27,9 @@ typedef struct walk {
     adcgs_buffer *out; /* storing in memory */
     FILE *file;        /* or in a file, which needs none */
     uint32_t crc;      /* of the bytes in the file */
+    int unwritten;     /* the file takes no more, which is no reason to change the state */
     adcgs_reader *in;  /* or restoring */
-    int failed;
+    int failed;        /* then the bytes do not fit */
     char differs[160]; /* restoring: what the run and the file do not agree on; "" if they do */
 } walk;
 
@@ -40,7 +41,7 @@ static void visit(walk *w, void *data, size_t bytes)
     }
     if (w->file) {
         w->crc = adcgs_crc32c(w->crc, data, bytes);
-        w->failed |= fwrite(data, 1, bytes, w->file) != bytes;
+        w->unwritten |= fwrite(data, 1, bytes, w->file) != bytes;
         return;
     }
     const uint8_t *from = adcgs_read_bytes(w->in, bytes);
@@ -363,7 +364,7 @@ static adcgs_status save(const adcgs_trainer *t, const adcgs_buffer *snapshot, c
         walk_all(&w, t);
     adcgs_store_le32(crc, w.crc);
     visit(&w, crc, sizeof crc);
-    if (!w.failed)
+    if (!w.unwritten)
         return adcgs_atomic_commit(&atomic, error);
     const int reason = errno;
     adcgs_atomic_abort(&atomic);

@@ -322,7 +322,11 @@ expect 0 "" ./adcgs-enc "$dir/lenses" -o "$dir/lenses.adcgs" --preset draft --it
 
 # A full disk, pretended by a limit on the size of files: the file that was there stays.
 cp "$dir/one.adcgs" "$dir/full.adcgs"
-expect 3 "full.adcgs" sh -c "trap '' XFSZ; ulimit -f 8; exec ./adcgs-enc '$scene' -o '$dir/full.adcgs' --preset draft --iterations 10"
+sh -c "trap '' XFSZ; ulimit -f 8; exec ./adcgs-enc '$scene' -o '$dir/full.adcgs' --preset draft --iterations 10 -q" 2>"$dir/err"
+got=$?
+[ $got -eq 3 ] && [ "$(wc -l <"$dir/err")" -eq 2 ] && tail -n 1 "$dir/err" | grep -q "full.adcgs: cannot write" &&
+    grep -q "a failure ends the run at iteration 10, and its state is lost: .*full.adcgs.checkpoint" "$dir/err" ||
+    { bad "exit code $got of a full disk"; cat "$dir/err"; }
 same one full "a failed write touched the file"
 [ -z "$(find "$dir" -name 'x.*' -o -name '.*tmp*')" ] || { bad "something was left behind"; ls -a "$dir"; }
 exit $failed

@@ -101,6 +101,27 @@ static void an_image_goes_away(void **state)
     adcgs_trainer_free(&t);
 }
 
+/** A state that cannot be written, near the end, where parameters are averaged, does not change the run. */
+static void a_full_disk_changes_nothing(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = make_trainer(&config, pool);
+    adcgs_buffer before, after;
+    uint32_t stop = ITERATIONS - 10; /* reports come every ten */
+    int stopped;
+    (void)state;
+    assert_int_equal(adcgs_trainer_run(t, stop_at, &stop, &stopped, &error), ADCGS_OK);
+    assert_true(t->average.n > 0);
+    store(t, &before);
+    assert_int_equal(adcgs_trainer_save(t, "/dev/full", &error), ADCGS_ERR_IO);
+    store(t, &after);
+    assert_int_equal(before.size, after.size);
+    assert_memory_equal(before.data, after.data, before.size);
+    adcgs_buffer_clear(&before);
+    adcgs_buffer_clear(&after);
+    adcgs_trainer_free(&t);
+}
+
 /** Writing the result fails: the end is applied again. */
 static void writing_fails(void **state)
 {
@@ -147,6 +168,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(loading_fails),
         cmocka_unit_test(an_image_goes_away),
+        cmocka_unit_test(a_full_disk_changes_nothing),
         cmocka_unit_test(writing_fails),
         cmocka_unit_test(a_change_fails),
     };
