@@ -273,6 +273,6 @@ for value in nan inf -1e999 null '"x"'; do
 done
 for value in 0 -5 1e-9; do
     sed "s/\"fl_x\":[0-9.]*/\"fl_x\":$value/" "$dir/one/transforms_train.json" >"$dir/twice/transforms_train.json"
-    refused "a focal length of $value" 4 "frames\[0\].fl_x: [-0-9e]*, expected" "$dir/twice" --iterations $n
+    refused "a focal length of $value" 4 "json: fl_x: [-0-9e]*, expected" "$dir/twice" --iterations $n
 done
 exit $failed
