@@ -7,7 +7,7 @@
 
 /**
  * Run the trials of the job's scene, before it is cut, note each mechanism that is dropped, and turn it off in the job's
- * configuration. A run that goes on from a state (--resume, --finish) takes what that state says instead.
+ * configuration. A run that is resumed or finished from a state adopts the verdicts of that state instead.
  */
 adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_error *error);
 

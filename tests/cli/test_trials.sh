@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# A run tries its mechanisms on images that it holds back, notes what it drops, and tells it; one that goes on does not try again.
+# A run tries its mechanisms on held-back images, and notes each one that it turns off. A resumed run has no trials of its own.
 # Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-enc adcgs-info adcgs-demo-scene
@@ -13,17 +13,17 @@ run="./adcgs-enc $scene --preset draft --max-anchors 150 --iterations 120 --thre
 # shellcheck disable=SC2086
 expect 0 'without scale_price [0-9]* images that were held back have' $run -o "$dir/a.adcgs"
 expect 0 "" ./adcgs-info --why "$dir/a.adcgs"
-grep -q '^trials .* iterations=120 .*scale_price=' "$dir/out" || { bad "--why does not tell trials"; cat "$dir/out"; }
-grep -q '^settings .*scale_weight=0' "$dir/out" || { bad "--why does not tell what is off"; cat "$dir/out"; }
+grep -q '^trials .* iterations=120 .*scale_price=' "$dir/out" || { bad "--why lists no trials"; cat "$dir/out"; }
+grep -q '^settings .*scale_weight=0' "$dir/out" || { bad "--why does not list the setting that is off"; cat "$dir/out"; }
 [ "$(grep -c 'turned off' "$dir/err")" -eq 0 ] || bad "adcgs-info notes something"
 
-# The same bytes by a run that was saved on its way, which has no trials of its own.
+# A resumed run has no trials, and writes the same bytes.
 # shellcheck disable=SC2086
 expect 0 "turned off" $run --beginning "$dir/state"
 # shellcheck disable=SC2086
 expect 0 "" $run -o "$dir/b.adcgs" --resume "$dir/state"
-grep -q 'turned off' "$dir/err" && bad "a run that goes on was tried again"
-cmp "$dir/a.adcgs" "$dir/b.adcgs" || bad "a run that goes on writes other bytes"
+grep -q 'turned off' "$dir/err" && bad "a resumed run was tried again"
+cmp "$dir/a.adcgs" "$dir/b.adcgs" || bad "a resumed run writes other bytes"
 
 # Without trials nothing is dropped.
 # shellcheck disable=SC2086

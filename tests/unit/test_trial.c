@@ -105,7 +105,7 @@ static const adcgs_trial *find(const adcgs_trials *t, const char *name)
 }
 
 /** A price of size that no scene can pay is found out and dropped; no other mechanism is. So by any number of threads. */
-static void what_loses_is_dropped(void **state)
+static void losing_mechanisms_are_dropped(void **state)
 {
     adcgs_train_config config = small_config();
     char texts[2][ADCGS_TRIALS_TEXT];
@@ -168,10 +168,10 @@ static void short_runs_have_no_trials(void **state)
     assert_int_equal(adcgs_trial_length(&config), 0);
 }
 
-/* ---- Runs that go on ---- */
+/* ---- Resumed runs ---- */
 
-/** A run that goes on takes over what trials turned off, and nothing else, and carries what they said. */
-static void runs_that_go_on_adopt_verdicts(void **state)
+/** A resumed run takes over the mechanisms that trials turned off, nothing else, and carries their figures. */
+static void resumed_runs_adopt_verdicts(void **state)
 {
     static const char said[] = "views=3 iterations=100 gains=20.10/20.00 scale_price=20.00/21.00 dropped=squares,scale_price";
     adcgs_train_config config = small_config(), other = config;
@@ -199,8 +199,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(views_are_held_back), cmocka_unit_test(long_scenes_give_a_stretch),
-        cmocka_unit_test(what_loses_is_dropped), cmocka_unit_test(trials_can_be_stopped),
-        cmocka_unit_test(short_runs_have_no_trials), cmocka_unit_test(runs_that_go_on_adopt_verdicts),
+        cmocka_unit_test(losing_mechanisms_are_dropped), cmocka_unit_test(trials_can_be_stopped),
+        cmocka_unit_test(short_runs_have_no_trials), cmocka_unit_test(resumed_runs_adopt_verdicts),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
 }
