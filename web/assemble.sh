@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
 # One file of all that the page is: assemble.sh FOLDER-OF-MODULES >adcgs-page.html. A line "@include FILE" stands for a file
-# beside this one, "@module NAME" for adcgs-NAME.wasm of the folder, packed, and @hash for what lets the page's own script run,
-# and no other.
+# beside this one, "@module NAME" for adcgs-NAME.wasm of the folder, packed, and @hash for the digest of the script, which
+# is the only one that the policy allows.
 set -eu
 here=$(dirname "$0")
 
@@ -18,7 +18,7 @@ include()
     done
 }
 
-# All between <script> and </script>, of which there is one that runs.
+# The text between <script> and </script>, as browsers take its digest.
 script()
 {
     printf '\n'

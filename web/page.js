@@ -16,7 +16,7 @@ const page = window.adcgs = {
     opened: 0, first: 0,  // milliseconds: when a scene began to come, and how long until its first picture
     fast: {},             // milliseconds of the last picture of the GPU: pack, sort, draw
     get view() { return view; },
-    get generation() { return generation; }, // of what there is to draw; a picture has that which it shows
+    get generation() { return generation; }, // of the scene's state; page.picture.generation is the rendered one
     get gpu() { return gpu; },
 };
 
@@ -139,7 +139,8 @@ function ask(exact) {
         return;
     drawing = true;
     shownKey = key;
-    worker.postMessage({ kind: 'draw', id: generation, camera, time, tiers: exact ? 0 : view.call.view_tiers(), digest: exact, exact, saves });
+    worker.postMessage({ kind: 'draw', id: generation,
+                         camera, time, tiers: exact ? 0 : view.call.view_tiers(), digest: exact, exact, saves });
 }
 
 /** The GPU's picture of the present view, of the splats that were packed last. */

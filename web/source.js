@@ -16,7 +16,7 @@ async function unpack(id) {
     return new Uint8Array(await new Response(packed.stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
 }
 
-/** Bytes on their way to one who takes them: no more than so many at once, and none once it has enough. */
+/** Bytes on their way to the worker: at most so many at once, and none once it has enough. */
 class Flow {
     constructor(ahead) {
         this.ahead = ahead;

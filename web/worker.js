@@ -67,7 +67,7 @@ function push(bytes) {
     return engine.with([bytes], at => engine.call.page_push(at, bytes.length));
 }
 
-/** Give bytes to the decoder, unless it gave up; what they have brought. */
+/** Give bytes to the decoder, unless it failed before. Returns an arrival, or a negative status. */
 function decode(bytes) {
     if (failed)
         return 0;

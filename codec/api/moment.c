@@ -98,7 +98,7 @@ static adcgs_status catch_up(adcgs_decoder *d, adcgs_error *error)
     adcgs_decoder_forget_drawn(d); /* of models that go, or were moved */
     adcgs_model_clear(&d->unfinished, &d->memory);
     const adcgs_status status = adcgs_push_peek(d->push, &d->unfinished, &drawable, error);
-    d->is_behind = status != ADCGS_OK; /* then it is tried again: what is not drawn would not be missed */
+    d->is_behind = status != ADCGS_OK; /* a failure is tried again with the next call */
     if (status != ADCGS_OK)
         adcgs_model_clear(&d->unfinished, &d->memory);
     return status;
@@ -158,14 +158,14 @@ static adcgs_status find_segment(adcgs_decoder *d, double time, uint32_t *segmen
     return ADCGS_OK;
 }
 
-/** Have at hand the segment that serves a time, and with blends the one that fades into it then. */
+/** Load the segment that serves a time, with blends also the one that fades into it. */
 static adcgs_status bring(adcgs_decoder *d, double time, int blends, uint32_t *segment, int *is_fade, adcgs_error *error)
 {
     ADCGS_TRY(find_segment(d, time, segment, is_fade, error));
     ADCGS_TRY(fetch(d, *segment, blends && *is_fade, error));
     if (segment_at(d, time) == *segment && fades(d, *segment, time) == *is_fade)
         return ADCGS_OK;
-    /* Reading it showed that the index is wrong, which is noticed once: now times are those of the segments themselves. */
+    /* The segment showed that the index is wrong, which happens once: times come from the segments now. */
     ADCGS_TRY(find_segment(d, time, segment, is_fade, error));
     return fetch(d, *segment, blends && *is_fade, error);
 }

@@ -56,7 +56,7 @@ static void go_on(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
     g->writer.error = error;
 }
 
-/** What a call changes before it is known to succeed. */
+/** State that a call changes before it succeeds. */
 typedef struct state {
     adcgs_writer writer;
     adcgs_bytes bytes;

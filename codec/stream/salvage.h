@@ -9,11 +9,11 @@
 
 #include "stream/stream.h"
 
-/** Most bytes of a stream of which the level is not known: those of level 2. */
+/** Most bytes of a stream whose level is unknown: those of level 2. */
 #define ADCGS_SALVAGE_BYTES (UINT64_C(256) << 20)
 /**
- * How many bytes, from the first on, may be of use of a stream that begins with these: those that its level allows, or
- * ADCGS_SALVAGE_BYTES if no header of it is whole where one should be.
+ * The most bytes of a stream that begins with these: the bound of its level, or ADCGS_SALVAGE_BYTES if its HEAD is damaged or
+ * not complete.
  */
 uint64_t adcgs_salvage_bytes(const uint8_t *data, size_t bytes);
 

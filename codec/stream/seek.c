@@ -12,10 +12,10 @@ struct adcgs_seek {
     adcgs_stream_reader reader;
     adcgs_stream *stream;
     adcgs_seek_table table; /**< of segments; never without one, and their number stays */
-    adcgs_cost *spent;   /**< [table.n] what each segment cost that was decoded so far; 0: it was not */
-    adcgs_cost left;     /**< of what the level allows the stream, less the front and all of spent */
+    adcgs_cost *spent;   /**< [table.n] cost of each segment that was decoded so far; 0: it was not */
+    adcgs_cost left;     /**< the bounds of the level, less the front and all of spent */
     uint64_t first;      /**< position of the first segment */
-    int by_index;        /**< the table is that of INDX, and not yet doubted */
+    int by_index;        /**< the table is that of INDX, and was not compared with the chunks yet */
     uint32_t first_nets; /**< networks that stand before the first segment */
     int keeps_nets;      /**< some segment names what was sent before its key: reading began at the beginning, all is kept */
     int passes;          /**< segments before the key that decoding began at, or passed, were not read: nor were their networks */
@@ -228,8 +228,8 @@ static adcgs_status go_to(adcgs_seek *s, uint32_t number, int before)
 }
 
 /**
- * Whether the headers of all chunks tell of as many segments as the index, but at other places or times: then the index is
- * forgotten. Whatever else they tell, the table stays, and with it the number of segments.
+ * Whether the headers of all chunks show as many segments as the index, but at other places or times: then they replace the
+ * index. Otherwise the table stays. So the number of segments never changes.
  */
 static int doubts_index(adcgs_seek *s)
 {
@@ -250,7 +250,7 @@ static int doubts_index(adcgs_seek *s)
     return differs;
 }
 
-/** As go_to(); what names a network that was sent before its key is decoded from the beginning. */
+/** As go_to(); a segment that names a network sent before its key is decoded from the beginning of the stream. */
 static adcgs_status go_to_with_nets(adcgs_seek *s, uint32_t number, int before)
 {
     const adcgs_status status = go_to(s, number, before);

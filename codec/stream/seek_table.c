@@ -13,7 +13,7 @@ static uint64_t size_of(const adcgs_stream_reader *r)
     return ((const adcgs_seekable *)r->source.user)->size;
 }
 
-/** Read some bytes, all of which are there. */
+/** Read bytes; a source that ends before the last of them is a failure. */
 static adcgs_status fetch(adcgs_stream_reader *r, uint64_t position, void *to, size_t bytes)
 {
     const uint64_t size = size_of(r);

@@ -17,10 +17,10 @@ int adcgs_seek_table_equal(const adcgs_seek_table *a, const adcgs_seek_table *b)
 
 /*
  * Below, reader is one of an adcgs_seekable (reader->source.user), which has read HEAD unless it says otherwise; its error says
- * why. first: position of the first segment. A table that is filled is empty before, and the caller clears it whatever results.
+ * why. first: position of the first segment. A table that is filled is empty before. The caller clears it, after a failure too.
  */
 
-/** The header of the chunk at a position, of which all bytes are there and the level allows so many. HEAD may not be read yet. */
+/** The header of a chunk, if the source has all its bytes and the level allows them. HEAD may not be read yet. */
 adcgs_status adcgs_seek_look(adcgs_stream_reader *reader, uint64_t position, adcgs_chunk *chunk);
 /** The position behind a chunk. */
 uint64_t adcgs_seek_behind(const adcgs_chunk *chunk);

@@ -177,7 +177,7 @@ static adcgs_status complete_model(const adcgs_segment *s, adcgs_model *model, a
     return ADCGS_OK;
 }
 
-/** The model at hand has all that has come of it; once that is so it stays so. */
+/** Join the tier at hand with the coarser anchors, once. */
 static adcgs_status join_model(adcgs_segment *s)
 {
     if (!s->is_joined)
@@ -231,7 +231,7 @@ static adcgs_status end_tier(adcgs_segment *s)
     return ADCGS_OK;
 }
 
-/** The tier that was begun is none; the segment is as it was with those before. */
+/** Remove the tier that was begun: the segment has the tiers before it. */
 static void undo_tier(adcgs_segment *s)
 {
     adcgs_model part = begin_tier(s);

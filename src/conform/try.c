@@ -203,7 +203,7 @@ static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
     return (int64_t)bytes;
 }
 
-/* A failure changes nothing of what is known of the stream. *refused: the class of the last that there was. */
+/* After a failure adcgs_get_info() gives the same. *refused: class of the last failure. */
 static int segments_fit(const attempt *a, adcgs_decoder *decoder, adcgs_status *refused)
 {
     adcgs_info before, after;
@@ -223,8 +223,8 @@ static int segments_fit(const attempt *a, adcgs_decoder *decoder, adcgs_status *
 }
 
 /*
- * Segment by segment, what the whole stream is: the same results, or as much more than the level allows. Of another fault only
- * that part may be read that has none.
+ * Segment by segment the results are those of the whole stream, and bounds of the level are exceeded as well. With another fault
+ * only the segments without it may be decoded.
  */
 static int demand_fits(attempt *a)
 {

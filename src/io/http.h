@@ -52,11 +52,11 @@ adcgs_status adcgs_http_explain(const adcgs_http *http, adcgs_status status, adc
 
 /** Bytes that adcgs_http_load() takes at most. */
 #define ADCGS_HTTP_LOAD_MAX (UINT64_C(1) << 30)
-/** How many bytes may be of use, from the first on, of what begins with these. */
+/** The number of useful bytes, from the first on, of a file that begins with these. */
 typedef uint64_t (*adcgs_http_useful_fn)(const uint8_t *data, size_t bytes);
 /**
- * All of it that may be of use, in memory; the caller free()s *data, which is not NULL. Reading ends there. ADCGS_ERR_LIMIT if
- * that is more than ADCGS_HTTP_LOAD_MAX, and comes.
+ * All useful bytes, in memory; the caller free()s *data, which is not NULL. Reading ends behind them. ADCGS_ERR_LIMIT if more
+ * than ADCGS_HTTP_LOAD_MAX come.
  */
 adcgs_status adcgs_http_load(uint8_t **data, size_t *bytes, const char *url, adcgs_http_useful_fn useful,
                              int (*interrupted)(void), adcgs_error *error);

@@ -142,7 +142,7 @@ requests
 same tiers.adcgs --tiers 1
 same cut.adcgs
 same long.adcgs --conceal
-# A body without end, behind a stream of level 1: no more is read than the level allows, and what is on its way.
+# A body without end, behind a stream of level 1: reading ends at the bound of the level, plus the bytes in flight.
 cp "$tiers" "$dir/endless.adcgs"
 truncate -s 200M "$dir/endless.adcgs"
 requests

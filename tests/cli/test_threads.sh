@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Where no thread may start, programs go on with one, say so in one line, and give the same. Runs in the build folder.
+# Where no thread may start, programs continue with one, print one line, and give the same frames. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec
 vector=${srcdir:-.}/conformance/vectors/good-seq-segments.adcgs

@@ -22,7 +22,7 @@ size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max);
 /** What fuzz_main.c replays when it is given nothing: files and folders of them, relative to the source tree; NULL at the end. */
 extern const char *const adcgs_fuzz_seeds[];
 
-/* MemorySanitizer does not see what the engine, which is not instrumented, writes, passes and returns. */
+/* The engine is not instrumented: MemorySanitizer does not see its writes, arguments and results. */
 #if defined(__has_feature)
 #if __has_feature(memory_sanitizer)
 #include <sanitizer/msan_interface.h>

@@ -19,7 +19,7 @@
 #define MEMORY_MOST ((uint64_t)48 << 20)
 #define STEPS_MOST 400
 #define READS_MOST 100000
-#define HEAVY 2e8 /* products of a picture's networks, from which nothing is drawn */
+#define HEAVY 2e8 /* products of a frame's networks, from which no frame is rendered */
 
 const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/calls", "tests/fuzz/regressions/calls", NULL };
 
@@ -28,7 +28,7 @@ const char *const adcgs_fuzz_seeds[] = { "tests/fuzz/seeds/calls", "tests/fuzz/r
 typedef struct script {
     const uint8_t *next;
     size_t left;
-    uint32_t state; /**< goes on where the script ends */
+    uint32_t state; /**< gives the bytes behind the end of the script */
 } script;
 
 static uint32_t draw(script *s)
@@ -68,11 +68,11 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max, unsigned 
 
 /* ---- Calls ---- */
 
-/** A decoder, and what was promised of it. */
+/** A decoder and its last answers. */
 typedef struct patient {
     adcgs_decoder *d;
     int is_pushed;
-    int segments; /**< that it told of last; -1: none yet */
+    int segments; /**< in its last facts; -1: none yet */
 } patient;
 
 static void check(adcgs_status status, const adcgs_error *error)
@@ -83,7 +83,7 @@ static void check(adcgs_status status, const adcgs_error *error)
                      !strchr(error->text, '\n'));
 }
 
-/** What is known of the stream; 0: nothing is. */
+/** The stream's facts; 0: there are none yet. */
 static int ask_info(patient *p, adcgs_info *info)
 {
     adcgs_error error = { ADCGS_OK, "" };
@@ -123,7 +123,7 @@ static adcgs_camera any_camera(script *s, const adcgs_decoder *d)
     return c;
 }
 
-/** What is drawn at a time is finite; whether it succeeds. */
+/** One frame, whose pixels are finite. */
 static adcgs_status ask_picture(patient *p, const adcgs_camera *camera, double time, int kind, adcgs_error *error)
 {
     float rgb[WIDTH * HEIGHT * 3] = { 0 }, depth[WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
@@ -149,7 +149,7 @@ static adcgs_status ask_primitives(patient *p, double time, adcgs_error *error)
     return status;
 }
 
-/** What takes no time and cannot fail but by its arguments. */
+/** Calls that take no time and fail by their arguments alone. */
 static void ask_texts(patient *p, script *s)
 {
     adcgs_info info;
@@ -320,7 +320,7 @@ static uint8_t *change(const uint8_t *data, size_t size, script *s)
     return other;
 }
 
-/** A source that has become reliable gives what the whole stream has. */
+/** A source that has become reliable gives the models of the whole stream. */
 static void compare(patient *p, const source *from, const adcgs_config *config)
 {
     adcgs_decoder *whole = NULL;

@@ -41,7 +41,7 @@ seeds()
     [ -d "$top/tests/fuzz/regressions/$1" ] && echo "$top/tests/fuzz/regressions/$1"
 }
 
-# Small vectors with a script of calls behind them. What is made to take long is left out.
+# Small vectors with a script of calls behind them, without those that are made to take long.
 script_vectors()
 {
     find "$top/conformance/vectors" -type f -size -8k | grep -v -e level -e limit -e widest -e many -e work | while read -r vector; do

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A failure changes nothing of what was there: bytes that are pushed and refused leave what could be drawn before. A stream
- * that is read on demand goes on being read where its bytes are right, and tells of as many segments.
+ * State after a failure. Pushed bytes that are refused leave the splats of every time unchanged. A stream that is read on demand
+ * keeps its number of segments, and can be decoded wherever its bytes are right.
  */
 #include "stream_fixture.h"
 
@@ -12,7 +12,7 @@
 
 enum { SEGMENTS = 4, TIMES = 6 };
 
-/** What a decoder shows, and says of it. */
+/** Splats at some times, and facts. */
 typedef struct shown {
     adcgs_status status[TIMES], info_status;
     uint8_t digest[TIMES][16];
@@ -58,10 +58,10 @@ static void check_same(const shown *before, const shown *after, const char *name
 {
     if (memcmp(before->digest, after->digest, sizeof before->digest) ||
         memcmp(before->status, after->status, sizeof before->status))
-        fail_msg("%s: after a failure other splats are drawn", name);
+        fail_msg("%s: other splats after a failure", name);
     assert_in_range(after->segments, before->segments, before->segments + 1);
     if (before->info_status == ADCGS_OK && before->drawable != after->drawable)
-        fail_msg("%s: after a failure %g s can be drawn, %g before", name, after->drawable, before->drawable);
+        fail_msg("%s: time_drawable is %g after a failure, %g before", name, after->drawable, before->drawable);
 }
 
 static adcgs_decoder *open_push(uint64_t memory)
@@ -126,7 +126,7 @@ static void test_refused_chunk(void **state)
     free(bytes);
 }
 
-/** Memory ends anywhere: nothing that was half made is drawn. */
+/** Memory ends anywhere: a model that is not complete gives no splats. */
 static void test_no_memory(void **state)
 {
     const fixture *f = *state;
@@ -198,7 +198,7 @@ static void test_bytes_that_change(void **state)
             assert_int_equal(then.segments, SEGMENTS);
             failed += memcmp(&then, &expected, sizeof then) != 0;
             s.data = f->bytes.data;
-            (void)look(d); /* what was read with right checksums may be at hand */
+            (void)look(d); /* changed bytes with right checksums may still be in memory */
             const shown now = look(d);
             assert_memory_equal(now.digest, expected.digest, sizeof now.digest);
         }

@@ -443,7 +443,10 @@ int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *attributes, void 
 static const adcgs_camera camera = { .width = 33, .height = 20, .fx = 30, .fy = 30, .cx = 16, .cy = 10, .near_plane = 0.01,
                                      .cam_to_world = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4 } };
 
-/** Open, look at two moments, close, with allocation n failing, or a thread, which is done without. Returns whether one did. */
+/**
+ * Open, look at two times, close, with allocation n failing, or the start of a thread, which is no failure. Returns whether one
+ * did.
+ */
 static int fail_allocation(const adcgs_buffer *bytes, int threads, long n)
 {
     float rgb[33 * 20 * 3];

@@ -112,7 +112,7 @@ int PAGE_EXPORT(page_push)(const uint8_t *data, size_t bytes)
     return most;
 }
 
-/** Bytes from the first on that may be of use, as far as it is known by now. */
+/** The most bytes that the stream may have, by its level or, before HEAD, by level 2. */
 double PAGE_EXPORT(page_useful)(void)
 {
     adcgs_info info;

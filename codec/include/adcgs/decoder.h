@@ -78,10 +78,10 @@ ADCGS_API adcgs_status adcgs_open_stream(adcgs_decoder **out, adcgs_read_fn read
  * A stream of one segment, and one that ends early, is read as adcgs_open_stream() does.
  *
  * Functions that take a time or the number of a segment can then fail as adcgs_open_stream() does; the decoder remains usable,
- * and adcgs_get_info() goes on telling of as many segments. Where a segment shows that the index is wrong, times and places are
- * taken from the segments themselves, if there are as many; else all that depends on the index fails (ADCGS_ERR_DATA). What the
- * level allows the stream is allowed for all segments that were decoded so far: a stream that is refused whole is refused, too,
- * when the segment that exceeds it is asked for (ADCGS_ERR_LIMIT).
+ * and adcgs_info.segments stays. If a segment shows that the index is wrong, times and places are taken from the segments
+ * themselves, as long as their number is that of the index; otherwise these segments fail (ADCGS_ERR_DATA). The bounds of the
+ * level hold for all segments that were decoded so far: a stream that is refused as a whole fails here at the segment that
+ * exceeds a bound (ADCGS_ERR_LIMIT).
  * \param out receives the decoder; NULL on failure
  * \param read gives bytes at a position, as long as the decoder is open
  * \param user for read
