@@ -183,12 +183,14 @@ void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char
     const adcgs_encode_note list[] = {
         { "encoder", "adcgs-enc " PACKAGE_VERSION }, { "preset", t->config.preset }, { "lambda", n->lambda },
         { "iterations", n->iterations }, { "seed", n->seed },     { "decisions", n->decisions },
-        { "settings", changes },         { "trials", t->trials },
     };
-    n->n = 0;
-    for (size_t i = 0; i < ADCGS_COUNTOF(list); i++)
-        if (*list[i].value)
-            n->list[n->n++] = list[i];
+    snprintf(n->trials, sizeof n->trials, "%s", t->trials);
+    const adcgs_encode_note some[] = { { "settings", changes }, { "trials", n->trials } };
+    memcpy(n->list, list, sizeof list);
+    n->n = ADCGS_COUNTOF(list);
+    for (size_t i = 0; i < ADCGS_COUNTOF(some); i++)
+        if (*some[i].value)
+            n->list[n->n++] = some[i];
 }
 
 /** The bytes that the run's file would have. */

@@ -64,6 +64,7 @@ typedef struct adcgs_enc_notes {
     adcgs_encode_note list[10]; /* with room for two that a part of a plan has */
     uint32_t n;
     char seed[32], lambda[32], iterations[32], decisions[ADCGS_DECISIONS_TEXT], follows[33];
+    char trials[ADCGS_TRIALS_TEXT];
 } adcgs_enc_notes;
 
 /** What a run is given. */
@@ -83,7 +84,7 @@ typedef struct adcgs_enc_job {
 
 /** "  1:05:00 left", or nothing where it is not known. */
 const char *adcgs_enc_left(double seconds, char text[32]);
-/** changes: settings that are not the preset's, "" for none. The notes point into the trainer and its configuration. */
+/** changes: settings that are not the preset's, "" for none. The notes point into this, changes and the configuration. */
 void adcgs_enc_take_notes(adcgs_enc_notes *n, const adcgs_trainer *t, const char *changes);
 
 /** The run's stream, initialised by the caller, and its bytes, read back once. */

@@ -40,7 +40,8 @@ adcgs_status adcgs_enc_cut(adcgs_enc_job *job, double seconds, adcgs_error *erro
 /** The notes of a run that has ended, but for lambda. */
 static void expect_notes(adcgs_enc_notes *n, const adcgs_enc_watcher *w, const adcgs_enc_job *job)
 {
-    const adcgs_trainer ended = { .config = job->config, .iteration = job->config.iterations };
+    adcgs_trainer ended = { .config = job->config, .iteration = job->config.iterations };
+    memcpy(ended.trials, w->trials, sizeof ended.trials);
     adcgs_enc_take_notes(n, &ended, (const char *)w->changes.data);
 }
 

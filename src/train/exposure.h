@@ -51,8 +51,9 @@ void adcgs_exposure_follow(adcgs_exposure *exposure, uint32_t view, const adcgs_
  */
 void adcgs_exposure_bound(adcgs_exposure *exposure, double *brightness);
 /**
- * A burnt pixel is a lower bound: where more is rendered, the target follows the rendered value. drawn, target: as the mean camera would have them, [3][plane]. background: that of images with alpha, which are not
- * burnt where they have its colour; else NULL.
+ * A burnt pixel is a lower bound: where more is rendered, the target follows the rendered value. drawn, target: as the mean
+ * camera would have them, [3][plane]. background: that of images with alpha, which are not burnt where they have its colour;
+ * else NULL.
  */
 void adcgs_exposure_allow_burnt(const adcgs_exposure *exposure, uint32_t view, const float *drawn, const float background[3],
                                 float *target, size_t plane);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Claims: whose they are follows from processes where these can be asked, not from clocks, which are set. */
-#include "outside_files.h"
-
 #define BEAT 1 /* second */
-#include "io/claim.c"
+#include "io/claim.c" /* before anything global of the test can be shadowed */
+
+#include "outside_files.h"
 
 #include <sys/wait.h>
 
@@ -73,19 +73,19 @@ static pid_t begin_owner(void)
 static void processes_are_believed(void **state)
 {
     static const double ages[] = { 0, 600, -3600 };
-    const pid_t owner = begin_owner();
+    const pid_t child = begin_owner();
     (void)state;
-    kill(owner, SIGSTOP); /* no beats */
+    kill(child, SIGSTOP); /* no beats */
     for (size_t i = 0; i < ADCGS_COUNTOF(ages); i++) {
         set_age(ages[i]);
-        expect_refused((long)owner);
+        expect_refused((long)child);
     }
-    kill(owner, SIGKILL);
+    kill(child, SIGKILL);
     siginfo_t info;
-    assert_int_equal(waitid(P_PID, (id_t)owner, &info, WEXITED | WNOWAIT), 0); /* its number is still there */
+    assert_int_equal(waitid(P_PID, (id_t)child, &info, WEXITED | WNOWAIT), 0); /* its number is still there */
     set_age(0);
     expect_taken();
-    assert_int_equal(waitpid(owner, NULL, 0), owner);
+    assert_int_equal(waitpid(child, NULL, 0), child);
 }
 
 /** A number that was given to another process since. */
