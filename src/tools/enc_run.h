@@ -49,7 +49,7 @@ typedef struct adcgs_enc_watcher {
     int (*hear)(void *user, const struct adcgs_enc_watcher *w); /* told how far it is, which is then not shown; nonzero: stop */
     void *hear_user;
     size_t uncompressed_bytes;
-    char trials[ADCGS_TRIALS_TEXT]; /**< what trials of mechanisms said, for the stream to carry; "" without them */
+    char trials[ADCGS_TRIALS_TEXT]; /**< figures of the trials, for the stream to carry; "" without trials */
     adcgs_buffer changes; /**< settings that are not the preset's, for the stream to tell */
     uint32_t next_log; /**< iteration */
     adcgs_error log_error;

@@ -47,7 +47,7 @@ void adcgs_exposure_sum(const adcgs_exposure *exposure, uint32_t view, const flo
 void adcgs_exposure_follow(adcgs_exposure *exposure, uint32_t view, const adcgs_exposure_sums *sums);
 /**
  * Bound gains by the images: no gain is further from the mean than the brightest or the darkest camera is from the median one.
- * brightness: [n] mean values of what each camera shows; sorted here. Values that are not > 0 do not count.
+ * brightness: [n] mean value of each camera's images; sorted here. Values that are not > 0 do not count.
  */
 void adcgs_exposure_bound(adcgs_exposure *exposure, double *brightness);
 /**

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Mechanisms that follow from the scene, each with the setting that turns it off: what trials judge (trial.h). */
+/** \file Mechanisms that follow from the scene, each with the setting that turns it off: the subject of trials (trial.h). */
 #ifndef ADCGS_TRAIN_MECHANISMS_H
 #define ADCGS_TRAIN_MECHANISMS_H
 
@@ -23,7 +23,7 @@ extern const char *const adcgs_mechanism_names[ADCGS_MECHANISMS];
 /** The setting of each that is 0 where it is off. */
 extern const char *const adcgs_mechanism_settings[ADCGS_MECHANISMS];
 
-/** Whether a mechanism was dropped, by what trials said (adcgs_trials_tell(): " dropped=NAME,NAME"). */
+/** Whether a mechanism was dropped, by the text of adcgs_trials_tell() (" dropped=NAME,NAME"). */
 int adcgs_mechanism_is_dropped(int mechanism, const char *trials);
 
 #endif

@@ -115,7 +115,7 @@ typedef struct adcgs_trainer {
     adcgs_time elapsed; /* of all programs that have had a part in the run */
     double mean_bits[ADCGS_GROUPS];
     adcgs_decisions decisions;
-    char trials[ADCGS_TRIALS_TEXT]; /* what trials said before the run, for its stream to carry; "" without them */
+    char trials[ADCGS_TRIALS_TEXT]; /* figures of the trials before the run, for its stream to carry; "" without trials */
     /* No checkpoint has these. */
     adcgs_time started;      /* from which this program's time counts; clock 0: when the run begins, or goes on */
     adcgs_time_left left;
@@ -136,7 +136,7 @@ adcgs_status adcgs_trainer_create(adcgs_trainer **out, const adcgs_scene *scene,
  */
 adcgs_status adcgs_trainer_create_after(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                         const adcgs_model *before, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
-/** The same with what matching found for another run over the scene. It is taken over, and may be taken back: trainer->stereo. */
+/** The same with the matching result of another run over the scene. It is taken over, and may be taken back: trainer->stereo. */
 adcgs_status adcgs_trainer_create_matched(adcgs_trainer **out, const adcgs_scene *scene, const adcgs_train_config *config,
                                           adcgs_stereo *matched, adcgs_cpu_level cpu, adcgs_pool *pool, adcgs_error *error);
 void adcgs_trainer_free(adcgs_trainer **trainer);

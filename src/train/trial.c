@@ -62,7 +62,7 @@ static int applies(const adcgs_trainer *t, int mechanism)
 
 /* ---- One trial ---- */
 
-/** A trial renders what was held back: PSNR of each view. */
+/** A trial renders the views held back: PSNR of each. */
 typedef struct score {
     double psnr[ADCGS_TRIAL_JUDGES];
     uint8_t applies[ADCGS_MECHANISMS];
@@ -246,7 +246,7 @@ uint32_t adcgs_trial_length(const adcgs_train_config *config)
     return n < ITERATIONS_LEAST || config->time_limit > 0 ? 0 : (uint32_t)fmin(rint(n), ITERATIONS_MOST);
 }
 
-/** Turn off what was dropped. */
+/** Turn off the mechanisms that were dropped. */
 static adcgs_status apply(const adcgs_trials *out, adcgs_train_config *config, adcgs_error *error)
 {
     for (uint32_t k = 0; k < out->n; k++)

@@ -17,7 +17,7 @@
 
 enum { ADCGS_TRIALS_TEXT = 640 };
 
-/** What trials say of a mechanism. */
+/** The verdict of trials on a mechanism. */
 typedef struct adcgs_trial {
     const char *name;     /**< as in "without NAME" */
     double with, without; /**< dB, mean over the views held back, and over seeds where two were asked */
