@@ -158,20 +158,25 @@ static int stays_untouched(const adcgs_claim *c, const struct stat *before, doub
     return 1;
 }
 
-/** Whether somebody is there; if so, leaves a file under our own name, whose time is that of the file system. */
+/**
+ * Whether somebody is there. Leaves a file under our own name, whose time is that of the file system, unless nobody is, or the
+ * owner is known to be dead: a process that is killed then leaves nothing behind.
+ */
 static answer look(const adcgs_claim *c, owner *who, double *age)
 {
     char text[TEXT_MAX];
     struct stat theirs, ours;
     if (read_claim(c->path, text, who, &theirs))
         return NOBODY;
+    const answer known = ask_system(who);
+    if (known == DEAD)
+        return DEAD;
     unlink(c->mine);
     if (create(c->mine, c->text) || stat(c->mine, &ours))
         return UNKNOWN;
     *age = difftime(ours.st_mtime, theirs.st_mtime);
-    const answer known = ask_system(who);
-    if (known != UNKNOWN)
-        return known;
+    if (known == ALIVE)
+        return ALIVE;
     if (*age >= -BEAT && *age <= ADCGS_CLAIM_SECONDS)
         return ALIVE;
     return stays_untouched(c, &theirs, *age < 0 ? WATCH_LONG : WATCH) ? DEAD : ALIVE;
@@ -261,7 +266,7 @@ static adcgs_status begin(adcgs_claim *c, adcgs_error *error)
 static int take_over(const adcgs_claim *c)
 {
     const struct timespec while_others_rename = { .tv_nsec = 300000000 };
-    if (rename(c->mine, c->path))
+    if ((create(c->mine, c->text) && errno != EEXIST) || rename(c->mine, c->path))
         return 0;
     nanosleep(&while_others_rename, NULL);
     return is_ours(c);

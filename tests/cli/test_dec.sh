@@ -157,7 +157,7 @@ cmp -s "$dir/out" "$dir/plain" || bad "a byte order mark changes a camera path"
 echo '{"fl_x":80,"frames":[{"time":0,"transform_matrix":[[2,0,0,0],[0,2,0,0],[0,0,2,0]]}]}' >"$dir/path.json"
 expect 4 "frames\\[0\\].transform_matrix" $dec "$s" --camera "$dir/path.json" --md5
 echo "{\"fl_x\":80,\"k1\":0.1,\"frames\":[{\"transform_matrix\":$pose}]}" >"$dir/path.json"
-expect 5 "frames\\[0\\].k1: .*pinhole" $dec "$s" --camera "$dir/path.json" --md5
+expect 5 "path.json: k1: .*pinhole" $dec "$s" --camera "$dir/path.json" --md5
 echo "{\"fl_x\":1e9,\"frames\":[{\"transform_matrix\":$pose}]}" >"$dir/path.json"
 expect 4 'camera "frame 0": focal lengths 1e+09' $dec "$s" --camera "$dir/path.json" --md5
 expect 3 "nowhere.json" $dec "$s" --camera "$dir/nowhere.json" --md5
