@@ -299,7 +299,6 @@ static const adcgs_kind *find_json(const look *l)
         {{"\"poses\"", "\"K\"", NULL}, RECORD3D},
         {{"\"poses\"", "\"perFrameIntrinsicCoeffs\"", NULL}, RECORD3D},
         {{"{\"poses\"", NULL, NULL}, RECORD3D},
-        {{"\"w2c\"", "\"fn\"", NULL}, NO_SCENE("a train_meta.json of Dynamic 3D Gaussians", "give the folder that it is in")},
         {{"\"img_name\"", "\"position\"", "\"rotation\""},
          NO_SCENE("cameras.json as 3D Gaussian splatting writes it", "give the folder of the scene that it was trained on")},
         {{"\"sfm_data_version\"", NULL, NULL}, NO_SCENE("OpenMVG's sfm_data.json", TO_COLMAP)},
@@ -312,7 +311,7 @@ static const adcgs_kind *find_json(const look *l)
     const size_t at = skip_blanks(l);
     if (at >= l->n || (l->begin[at] != '{' && l->begin[at] != '['))
         return NULL;
-    if (has(l, "\"adcgs_scene\"") || has(l, "\"transform_matrix\""))
+    if (has(l, "\"adcgs_scene\"") || has(l, "\"transform_matrix\"") || (has(l, "\"w2c\"") && has(l, "\"fn\"")))
         return &scene;
     if (has(l, "\"frames\""))
         return NULL;

@@ -70,7 +70,7 @@ static void test_names(void **state)
         {"a", BYTES("{\"w\":1,\"h\":1,\"K\":[1],\"poses\":[[1]]}"), "Record3D's metadata.json", ADCGS_KIND_SCENE},
         {"a", BYTES("{\"poses\":[["), "Record3D's metadata.json", ADCGS_KIND_SCENE},
         {"a", BYTES("{\"w\":1,\"h\":1,\"k\":[],\"w2c\":[],\"fn\":[]}"),
-         "a train_meta.json of Dynamic 3D Gaussians", ADCGS_KIND_SCENE},
+         "the cameras of a scene (JSON)", ADCGS_KIND_SCENE},
         {"a", BYTES("[{\"id\":0,\"img_name\":\"a\",\"position\":[],\"rotation\":[]}]"),
          "cameras.json as 3D Gaussian splatting writes it",
          ADCGS_KIND_SCENE},
