@@ -19,6 +19,7 @@ static void expect_good(adcgs_status status)
 static int clean(void **state)
 {
     adcgs_scene_free(&scene);
+    adcgs_scene_free(&scene);
     return remove_folder(state) || mkdir(folder, 0777);
 }
 
