@@ -19,7 +19,6 @@ static void expect_good(adcgs_status status)
 static int clean(void **state)
 {
     adcgs_scene_free(&scene);
-    adcgs_scene_free(&scene);
     return remove_folder(state) || mkdir(folder, 0777);
 }
 
@@ -217,6 +216,7 @@ static void test_several(void **state)
     expect_remark("3 models", "sparse/0 has 4");
     put_text("sparse/1/images.bin", "no such thing");
     put_text("sparse/0/images.txt", "no such thing");
+    adcgs_scene_free(&scene);
     expect_error(adcgs_scene_open(&scene, folder, NULL, &error), ADCGS_ERR_DATA, "sparse/0/images.txt: line 1", "IMAGE_ID");
 }
 
