@@ -175,7 +175,7 @@ template <typename Sample>
 bool write_samples(OIIO::ImageOutput &output, const adcgs_image *image, OIIO::TypeDesc kind,
                    void (*convert)(const float *, size_t, Sample *))
 {
-    /* Bytes that OpenImageIO 2.4 reads behind the last row of an HEIC image: its rows are as long as libheif's, multiples of 64. */
+    /* Bytes that OpenImageIO 2.4 reads behind the last row of an HEIC image: it takes rows of a multiple of 64 samples. */
     constexpr size_t BEHIND = 64 * 4;
     const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
     std::vector<Sample> samples(n + BEHIND);
