@@ -1,27 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Masks as other people save them: in alpha, in colours, in both, of every depth. */
-#include "outside_files.h"
+#include "opened_scene.h"
 
 #include "data/mask.h"
-#include "layouts/open.h"
 
 #include <math.h>
 
 enum { W = 40, H = 20 };
-
-static adcgs_scene *scene;
-
-static void expect_good(adcgs_status status)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
-static int clean(void **state)
-{
-    adcgs_scene_free(&scene);
-    return remove_folder(state) || mkdir(folder, 0777);
-}
 
 /** Values of a channel in the two halves of a mask; a third part, of so many columns, lies between. */
 typedef struct paint {

@@ -1,26 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Models of COLMAP as other people make them: far from the origin, without second lines, several of them. */
 #include "layout_files.h"
+#include "opened_scene.h"
 
-#include "layouts/open.h"
 #include "train/settings.h"
 #include "train/start_points.h"
 
 #define CAMERA "7 PINHOLE 24 16 20 20 12 8\n"
-
-static adcgs_scene *scene;
-
-static void expect_good(adcgs_status status)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
-static int clean(void **state)
-{
-    adcgs_scene_free(&scene);
-    return remove_folder(state) || mkdir(folder, 0777);
-}
 
 static void put_images(int n, const char *place, const char *names)
 {

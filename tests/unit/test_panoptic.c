@@ -1,26 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file The layout of Dynamic 3D Gaussians' Panoptic benchmark, arrays in NPZ files, and captures that are not read. */
 #include "layout_files.h"
+#include "opened_scene.h"
 
 #include "io/npz.h"
 #include "io/zip.h"
-#include "layouts/open.h"
 
 enum { T = 4, TRAIN = 3 };
-
-static adcgs_scene *scene;
-
-static void expect_good(adcgs_status status)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
-static int clean(void **state)
-{
-    adcgs_scene_free(&scene);
-    return remove_folder(state) || mkdir(folder, 0777);
-}
 
 /** One field of a file: rows by moment and camera, of the rig's cameras first, first + 1, ... */
 static size_t put_field(char *text, const char *field, int moments, int first, int n)

@@ -1,22 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file LLFF, Neu3D and COLMAP: every convention on a small rig, every kind of bad input, real scenes where they are at hand. */
 #include "layout_files.h"
-
-#include "layouts/open.h"
-
-static adcgs_scene *scene;
-
-static void expect_good(adcgs_status status)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
-static int clean(void **state)
-{
-    adcgs_scene_free(&scene);
-    return remove_folder(state) || mkdir(folder, 0777);
-}
+#include "opened_scene.h"
 
 static void open_good(void)
 {

@@ -1,22 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file Transforms files as other programs write them: sizes, times, names, lists, paths of other machines. */
 #include "layout_files.h"
-
-#include "layouts/open.h"
-
-static adcgs_scene *scene;
-
-static void expect_good(adcgs_status status)
-{
-    if (status != ADCGS_OK)
-        fail_msg("%s", error.text);
-}
-
-static int clean(void **state)
-{
-    adcgs_scene_free(&scene);
-    return remove_folder(state) || mkdir(folder, 0777);
-}
+#include "opened_scene.h"
 
 /** A transforms file of n frames; the fields of a frame besides its pose are a format of its number, given twice. */
 static void put_file(const char *name, const char *root, const char *frame, int first, int n)
