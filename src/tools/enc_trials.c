@@ -22,8 +22,8 @@ static void tell(const adcgs_enc_job *job, const adcgs_trials *t)
     for (uint32_t i = 0; i < t->n; i++)
         if (t->of[i].dropped)
             adcgs_cli_note(job->cli, "%s: without %s %u images that were held back have %.2f dB instead of %.2f in trials of %u "
-                           "iterations: it is turned off; --set trial_share=0 keeps it", job->scene->directory, t->of[i].name,
-                           t->views, t->of[i].without, t->of[i].with, t->iterations);
+                           "iterations: it is turned off; --set trial_share=0 keeps it", job->scene->directory,
+                           adcgs_mechanism_names[t->of[i].mechanism], t->views, t->of[i].without, t->of[i].with, t->iterations);
 }
 
 adcgs_status adcgs_enc_try(adcgs_enc_job *job, adcgs_enc_watcher *w, adcgs_error *error)

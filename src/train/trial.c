@@ -233,7 +233,7 @@ static adcgs_status try_all(trials *r, adcgs_trials *out, adcgs_error *error)
             continue;
         adcgs_trial *t = &out->of[out->n++];
         ADCGS_TRY(try_without(r, m, 0, &without, error));
-        *t = (adcgs_trial){ .name = adcgs_mechanism_names[m], .with = mean(&r->base[0], n), .without = mean(&without, n) };
+        *t = (adcgs_trial){ .mechanism = m, .with = mean(&r->base[0], n), .without = mean(&without, n) };
         if (is_better(&without, &r->base[0], n))
             ADCGS_TRY(ask_again(r, m, t, error));
     }
@@ -249,10 +249,9 @@ uint32_t adcgs_trial_length(const adcgs_train_config *config)
 /** Turn off the mechanisms that were dropped. */
 static adcgs_status apply(const adcgs_trials *out, adcgs_train_config *config, adcgs_error *error)
 {
-    for (uint32_t k = 0; k < out->n; k++)
-        for (int m = 0; out->of[k].dropped && m < ADCGS_MECHANISMS; m++)
-            if (!strcmp(adcgs_mechanism_names[m], out->of[k].name))
-                ADCGS_TRY(adcgs_train_set_value(config, adcgs_mechanism_settings[m], 0, error));
+    for (uint32_t i = 0; i < out->n; i++)
+        if (out->of[i].dropped)
+            ADCGS_TRY(adcgs_train_set_value(config, adcgs_mechanism_settings[out->of[i].mechanism], 0, error));
     return ADCGS_OK;
 }
 
@@ -286,8 +285,10 @@ void adcgs_trials_tell(const adcgs_trials *t, char text[ADCGS_TRIALS_TEXT])
         return;
     n = (size_t)snprintf(text, ADCGS_TRIALS_TEXT, "views=%u iterations=%u", t->views, t->iterations);
     for (uint32_t i = 0; i < t->n; i++)
-        n += (size_t)snprintf(text + n, ADCGS_TRIALS_TEXT - n, " %s=%.2f/%.2f", t->of[i].name, t->of[i].with, t->of[i].without);
+        n += (size_t)snprintf(text + n, ADCGS_TRIALS_TEXT - n, " %s=%.2f/%.2f",
+                              adcgs_mechanism_names[t->of[i].mechanism], t->of[i].with, t->of[i].without);
     for (uint32_t i = 0, dropped = 0; i < t->n; i++)
         if (t->of[i].dropped)
-            n += (size_t)snprintf(text + n, ADCGS_TRIALS_TEXT - n, "%s%s", dropped++ ? "," : " dropped=", t->of[i].name);
+            n += (size_t)snprintf(text + n, ADCGS_TRIALS_TEXT - n, "%s%s", dropped++ ? "," : " dropped=",
+                                  adcgs_mechanism_names[t->of[i].mechanism]);
 }

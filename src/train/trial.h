@@ -19,7 +19,7 @@ enum { ADCGS_TRIALS_TEXT = 640 };
 
 /** The verdict of trials on a mechanism. */
 typedef struct adcgs_trial {
-    const char *name;     /**< as in "without NAME" */
+    int mechanism;        /**< adcgs_mechanism */
     double with, without; /**< dB, mean over the views held back, and over seeds where two were asked */
     int dropped;
 } adcgs_trial;

@@ -99,7 +99,7 @@ static int stop_at_third(void *user, const char *without, uint32_t done, uint32_
 static const adcgs_trial *find(const adcgs_trials *t, const char *name)
 {
     for (uint32_t i = 0; i < t->n; i++)
-        if (!strcmp(t->of[i].name, name))
+        if (!strcmp(adcgs_mechanism_names[t->of[i].mechanism], name))
             return &t->of[i];
     return NULL;
 }
