@@ -8,6 +8,8 @@
 #   VERSION     name of the version (default the checksum of adcgs-enc)
 #   SCENES      short names (default all that are present); MECHANISMS likewise
 #   ITERATIONS  of training (default 1500)
+#   TRIALS      iterations of each trial of the default (default 400, as in a run of 20000; 0: no trials). Other runs have none: they
+#               show what each mechanism is worth, and the trials have to find that.
 #   SEEDS       default 1; figures are means over them
 #   JOBS        runs at once, at most 2 (default 1)
 #   MARGIN      dB (default 0.3)
@@ -42,9 +44,9 @@ scenes()
 # mechanisms: NAME OPTIONS of those that are asked for, behind the default.
 mechanisms()
 {
-    echo default
+    echo "default --set trial_share=$(awk "BEGIN { s = ${TRIALS:-400} / ${ITERATIONS:-1500}; print s < 1 ? s : 1 }")"
     listed without | while read -r name options; do
-        ! is_in "$name" "${MECHANISMS:-}" || echo "$name $options"
+        ! is_in "$name" "${MECHANISMS:-}" || echo "$name --set trial_share=0 $options"
     done
 }
 
