@@ -110,6 +110,7 @@ typedef struct adcgs_trainer {
     double lambda; /* of the rate; the configuration's unless a target steers it, or contrast */
     adcgs_rate_control rate_control;
     uint32_t rollbacks;
+    int diverged;            /* the run ended after too many rollbacks */
     double mean_loss, mean_mse;
     double least_mse; /* the least that mean_mse has been; 0 before the first iteration */
     adcgs_time elapsed; /* of all programs that have had a part in the run */

@@ -92,7 +92,8 @@ static adcgs_status guard(adcgs_trainer *t, double before, adcgs_error *error)
     t->torn = 1;
     const uint32_t rollbacks = t->rollbacks + 1;
     const float lr = t->lr_scale * 0.5f;
-    if (rollbacks > ROLLBACKS_MAX)
+    t->diverged = rollbacks > ROLLBACKS_MAX;
+    if (t->diverged)
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "training diverged at iteration %u (loss %g) after %u rollbacks: check poses, exposure and settings",
                           t->iteration, t->mean_loss, t->rollbacks);

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { NONE = -1 }; /* no mechanism is left out */
 enum { ITERATIONS_LEAST = 100, ITERATIONS_MOST = 600, DENSIFICATIONS = 20 };
@@ -153,7 +154,10 @@ static adcgs_status run_trial(score *out, const adcgs_train_config *config, tria
     for (int i = 0; i < ADCGS_MECHANISMS; i++)
         out->applies[i] = (uint8_t)applies(t, i);
     out->fits = first ? applies(t, ADCGS_GAINS) : r->base[0].fits;
-    if (status == ADCGS_OK)
+    memset(out->psnr, 0, sizeof out->psnr);
+    if (t->diverged) /* 0 dB: the run without the mechanism wins unless it diverges, too */
+        status = ADCGS_OK;
+    else if (status == ADCGS_OK)
         status = judge(t, out->fits, out, error);
     if (first)
         r->details = t->decisions.details;

@@ -135,6 +135,22 @@ static void losing_mechanisms_are_dropped(void **state)
     adcgs_pool_free(&alone);
 }
 
+/** A trial that diverges counts 0 dB, and is no failure of the run; where all diverge, nothing is dropped. */
+static void diverging_trials_count_nothing(void **state)
+{
+    const adcgs_trials_options options = { .cpu = adcgs_cpu_best(), .pool = pool };
+    adcgs_train_config config = small_config();
+    adcgs_trials trials;
+    config.trial_share = 1;
+    config.iterations = 100;
+    adcgs_scene spoilt = *scene;
+    spoilt.background[1] = NAN;
+    assert_int_equal(adcgs_trials_run(&trials, &config, &spoilt, &options, &error), ADCGS_OK);
+    assert_true(trials.n > 0);
+    for (uint32_t i = 0; i < trials.n; i++)
+        assert_true(trials.of[i].with == 0 && trials.of[i].without == 0 && !trials.of[i].dropped);
+}
+
 static void trials_can_be_stopped(void **state)
 {
     adcgs_train_config config = small_config();
@@ -200,6 +216,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(views_are_held_back), cmocka_unit_test(long_scenes_give_a_stretch),
         cmocka_unit_test(losing_mechanisms_are_dropped), cmocka_unit_test(trials_can_be_stopped),
+        cmocka_unit_test(diverging_trials_count_nothing),
         cmocka_unit_test(short_runs_have_no_trials), cmocka_unit_test(resumed_runs_adopt_verdicts),
     };
     return cmocka_run_group_tests(tests, open_scene, close_scene);
