@@ -61,6 +61,8 @@ adcgs_status adcgs_anchor_set_adopt(adcgs_trainer *t, adcgs_anchor_set *s, adcgs
     return status == ADCGS_OK ? adcgs_trainer_resize(t, error) : status;
 }
 
+#define PRESENCE_LEAST 0.25f /* sum of presence over looks, below which nothing is known of an anchor */
+
 int adcgs_anchor_is_idle(const adcgs_trainer *t, uint32_t anchor, double min_pixels)
 {
     const int k = t->f->params.k;
@@ -71,9 +73,13 @@ int adcgs_anchor_is_idle(const adcgs_trainer *t, uint32_t anchor, double min_pix
         opacity = fmaxf(opacity, t->stats.opacity[slot]);
         weight += t->stats.weight[slot];
     }
-    /* Of the moments at which it is there. Who was not yet asked to be stays. */
-    const float n = t->stats.presence[anchor];
-    return n > 0.25f && (opacity < t->config.prune_opacity * n || weight < min_pixels * (double)n);
+    /* Means over the frames in its lifetime. An anchor whose lifetime had no frame stays. */
+    const float n = t->stats.presence[anchor], in_view = t->stats.in_view[anchor];
+    if (!(n > PRESENCE_LEAST))
+        return 0;
+    if (opacity < t->config.prune_opacity * n)
+        return 1;
+    return in_view > PRESENCE_LEAST ? weight < min_pixels * (double)in_view : t->stats.n >= t->n_views;
 }
 
 static int by_score(const void *a, const void *b)

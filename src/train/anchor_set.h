@@ -33,7 +33,10 @@ static inline uint32_t adcgs_anchor_of(const adcgs_fmodel *f, uint32_t slot)
 {
     return slot / (ADCGS_LANES * (uint32_t)f->params.k) * ADCGS_LANES + slot % ADCGS_LANES;
 }
-/** Whether an anchor's primitives stay transparent, or cover fewer pixels than this. */
+/**
+ * Whether an anchor's primitives stay transparent, or cover fewer pixels than min_pixels of the full resolution, in the mean over
+ * the views that contain it. An anchor that no view contained is idle once every training view was asked.
+ */
 int adcgs_anchor_is_idle(const adcgs_trainer *trainer, uint32_t anchor, double min_pixels);
 
 #endif

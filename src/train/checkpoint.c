@@ -21,7 +21,7 @@
 #include <stdlib.h>
 
 static const char magic[8] = { 'A', 'D', 'C', 'G', 'S', 'C', 'K', 'P' };
-enum { FORMAT = 32 };
+enum { FORMAT = 33 };
 
 typedef struct walk {
     adcgs_buffer *out; /* storing in memory */

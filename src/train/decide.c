@@ -162,7 +162,7 @@ static adcgs_status drop_primitives(adcgs_trainer *t, adcgs_error *error)
             continue;
         const float there = t->stats.presence[anchor], opacity = t->stats.opacity[i];
         drawn += (double)t->stats.weight[i];
-        if (t->stats.weight[i] < 0.05f * there) {
+        if (t->stats.weight[i] < 0.05f * t->stats.in_view[anchor]) {
             f->keep[i] = 0;
             t->decisions.unseen++;
         } else if (opacity < t->config.keep_opacity * there)

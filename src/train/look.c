@@ -35,7 +35,21 @@ static adcgs_pass_mode mode_of(const adcgs_trainer *t, double progress, uint32_t
                               .seed = (uint32_t)adcgs_random64(c->seed, 3000, number) };
 }
 
-static void add_stats(const adcgs_trainer *t, const adcgs_raster_grads *grads, adcgs_train_stats *stats)
+/** Whether a view's image contains one of an anchor's primitives, by its centre or by what it covers. */
+static int is_in_view(const adcgs_trainer *t, const adcgs_view *v, uint32_t anchor)
+{
+    const float *const *mean = t->pass->primitives.mean;
+    for (int k = 0; k < t->f->params.k; k++) {
+        const size_t slot = adcgs_fmodel_slot(t->f, anchor, k);
+        size_t at;
+        if (t->pass->grads.weight[slot] > 0 ||
+            adcgs_view_pixel(v, (const float[]){ mean[0][slot], mean[1][slot], mean[2][slot] }, &at))
+            return 1;
+    }
+    return 0;
+}
+
+static void add_stats(const adcgs_trainer *t, const adcgs_view *v, const adcgs_raster_grads *grads, adcgs_train_stats *stats)
 {
     const size_t slots = t->pass->primitives.n;
     const float *weight = t->pass->grads.weight, *screen = grads->screen, *opacity = t->pass->primitives.opacity;
@@ -47,8 +61,11 @@ static void add_stats(const adcgs_trainer *t, const adcgs_raster_grads *grads, a
     }
     for (size_t i = 0; screen && i < slots; i++)
         stats->significance[i] += area * weight[i] * screen[i];
-    for (uint32_t i = 0; i < t->f->groups * ADCGS_LANES; i++)
-        stats->presence[i] += i < t->f->n ? adcgs_fmodel_presence(t->f, i, t->pass->t) : 0;
+    for (uint32_t i = 0; i < t->f->n; i++) {
+        const float presence = adcgs_fmodel_presence(t->f, i, t->pass->t);
+        stats->presence[i] += presence;
+        stats->in_view[i] += is_in_view(t, v, i) ? presence : 0;
+    }
     stats->n++;
 }
 
@@ -103,7 +120,7 @@ adcgs_status adcgs_look(adcgs_trainer *t, double progress, uint32_t number, adcg
         grads.screen = NULL;
     adcgs_pass_forward(t->pass, t->f, v->t, &mode);
     ADCGS_TRY(look_at_picture(t, progress, number, &grads, seen, error));
-    add_stats(t, &grads, stats);
+    add_stats(t, &v->view, &grads, stats);
     ADCGS_TRY(add_prices(t, progress, number, &v->view, mode.deform, &grads, error));
     adcgs_rate rate = { .total = 0 };
     adcgs_pass_backward(t->pass, t->f, mode.deform, rated ? (float)adcgs_price_of_bit(t) : 0, c->rate_period,

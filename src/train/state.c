@@ -23,13 +23,14 @@ static size_t slots_of(const adcgs_fmodel *f)
 
 size_t adcgs_train_stats_size(const adcgs_fmodel *f)
 {
-    return 3 * slots_of(f) + (size_t)f->groups * ADCGS_LANES;
+    return 3 * slots_of(f) + 2 * (size_t)f->groups * ADCGS_LANES;
 }
 
 adcgs_train_stats adcgs_train_stats_at(float *numbers, const adcgs_fmodel *f)
 {
-    const size_t slots = slots_of(f);
-    return (adcgs_train_stats){ numbers, numbers + slots, numbers + 2 * slots, numbers + 3 * slots, 0 };
+    const size_t slots = slots_of(f), anchors = (size_t)f->groups * ADCGS_LANES;
+    float *const of_anchors = numbers + 3 * slots;
+    return (adcgs_train_stats){ numbers, numbers + slots, numbers + 2 * slots, of_anchors, of_anchors + anchors, 0 };
 }
 
 void adcgs_train_batch_forget(adcgs_train_batch *b)

@@ -37,6 +37,7 @@ typedef struct adcgs_train_stats {
     float *significance; /* Psi times screen gradient */
     float *opacity;
     float *presence;     /* of each anchor, [groups][64] */
+    float *in_view;      /* likewise, in views whose image contains one of its primitives */
     uint32_t n;          /* looks summed */
 } adcgs_train_stats;
 

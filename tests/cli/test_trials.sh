@@ -8,7 +8,7 @@ need adcgs-enc adcgs-info adcgs-demo-scene
 scene=$dir/scene
 tiny_scene "$scene"
 # A price of size that no scene can pay loses wherever it is tried.
-run="./adcgs-enc $scene --preset draft --max-anchors 150 --iterations 120 --threads 2 --set stereo=0,scale_weight=100,trial_share=1"
+run="./adcgs-enc $scene --preset draft --max-anchors 150 --iterations 120 --threads 2 --set stereo=0,scale_weight=1000,trial_share=1"
 
 # shellcheck disable=SC2086
 expect 0 'without scale_price [0-9]* images that were held back have' $run -o "$dir/a.adcgs"

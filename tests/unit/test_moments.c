@@ -145,16 +145,34 @@ static void absence_is_no_idleness(void **state)
     const adcgs_train_config config = small_config();
     adcgs_trainer *t = make(&config);
     t->stats.n = 100;
-    t->stats.presence[0] = 5;
+    t->stats.presence[0] = t->stats.in_view[0] = 5;
     for (int k = 0; k < t->f->params.k; k++) {
         t->stats.opacity[adcgs_fmodel_slot(t->f, 0, k)] = 0.5f * 5;
         t->stats.weight[adcgs_fmodel_slot(t->f, 0, k)] = 10 * 5;
     }
     assert_false(adcgs_anchor_is_idle(t, 0, 1));
-    t->stats.presence[0] = 100;
+    t->stats.presence[0] = t->stats.in_view[0] = 100;
     t->stats.presence[1] = 0; /* was not yet asked to be there */
     assert_true(adcgs_anchor_is_idle(t, 0, 100));
     assert_false(adcgs_anchor_is_idle(t, 1, 1));
+    adcgs_trainer_free(&t);
+}
+
+/** Pixels are means over the views that contain an anchor: views of other places, and views not yet visited, do not count. */
+static void views_of_other_places_are_no_idleness(void **state)
+{
+    const adcgs_train_config config = small_config();
+    adcgs_trainer *t = make(&config);
+    t->stats.presence[0] = (float)(t->stats.n = t->n_views - 1);
+    for (int k = 0; k < t->f->params.k; k++)
+        t->stats.opacity[adcgs_fmodel_slot(t->f, 0, k)] = 0.5f * (float)t->n_views;
+    assert_false(adcgs_anchor_is_idle(t, 0, 1)); /* the last view may contain it */
+    t->stats.presence[0] = (float)++t->stats.n;
+    assert_true(adcgs_anchor_is_idle(t, 0, 1)); /* none does */
+    t->stats.in_view[0] = 2;
+    t->stats.weight[adcgs_fmodel_slot(t->f, 0, 0)] = 5;
+    assert_false(adcgs_anchor_is_idle(t, 0, 2));
+    assert_true(adcgs_anchor_is_idle(t, 0, 3));
     adcgs_trainer_free(&t);
 }
 
@@ -227,6 +245,7 @@ int main(void)
         cmocka_unit_test(what_keeps_its_form_is_a_body),
         cmocka_unit_test(spans_need_what_moves),
         cmocka_unit_test(what_is_missing_is_found),     cmocka_unit_test(absence_is_no_idleness),
+        cmocka_unit_test(views_of_other_places_are_no_idleness),
         cmocka_unit_test(runs_go_on_and_decode),
     };
     return cmocka_run_group_tests(tests, put_scene, remove_scene);
