@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Everything that libadcgs offers.
+ * The whole public interface of libadcgs.
  */
 #ifndef ADCGS_ADCGS_H
 #define ADCGS_ADCGS_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * CPU levels: what this machine and this build have.
+ * CPU levels that this machine and this build support.
  */
 #ifndef ADCGS_CPU_H
 #define ADCGS_CPU_H
@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/** \return the best level that this build has on this machine, never ADCGS_CPU_AUTO */
+/** \return the best level that this build supports on this machine, never ADCGS_CPU_AUTO */
 ADCGS_API adcgs_cpu_level adcgs_cpu_best(void);
 
 /**

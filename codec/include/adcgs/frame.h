@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What can be done with a rendered frame.
+ * Conversion and digest of rendered frames.
  */
 #ifndef ADCGS_FRAME_H
 #define ADCGS_FRAME_H

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Threads for decoders. Without a pool in its adcgs_config a decoder starts threads of its own. A program with many decoders
- * gives them one pool, which they use in turns; a program that has threads already lends those.
+ * Threads for decoders. Without a pool in its adcgs_config a decoder starts threads of its own. A program with many decoders can
+ * give them one pool, which they use in turn. A program with threads of its own can lend these.
  *
- * What a decoder gives never depends on the threads, their number, or the modes of floating-point arithmetic that they are in.
+ * The results of a decoder never depend on the threads, their number, or their floating-point modes.
  */
 #ifndef ADCGS_POOL_H
 #define ADCGS_POOL_H
@@ -14,37 +14,37 @@
 extern "C" {
 #endif
 
-/** A task for a caller's threads. It takes no memory and gives none back. */
+/** A task for a caller's threads. It neither allocates nor frees memory. */
 typedef void (*adcgs_task_fn)(void *work, int task);
 
 /**
- * Calls task(work, i) once for each i in [0, n), on any threads, in any order, one after the other or all at once, and returns
- * when all calls have returned. n is at most the pool's number of threads.
+ * Calls task(work, i) once for each i in [0, n), on any threads, in any order, in sequence or concurrently. Returns when all
+ * calls have returned. n is at most the pool's number of threads.
  */
 typedef void (*adcgs_run_fn)(void *user, adcgs_task_fn task, void *work, int n);
 
 /**
- * Start a pool of threads, as many of those asked for as the system allows: adcgs_pool_threads() says how many.
+ * Start a pool of threads. It has fewer threads than requested if the system allows fewer: adcgs_pool_threads() gives the number.
  * \param out receives the pool, to be freed with adcgs_pool_free(); NULL on failure
- * \param threads 1..ADCGS_THREADS_MAX, counting the thread that calls a decoder; 0: one for each processor
+ * \param threads 1..ADCGS_THREADS_MAX, including the thread that calls a decoder; 0: one for each processor
  * \param error says why it failed; may be NULL
  * \return ADCGS_OK, ADCGS_ERR_USAGE or ADCGS_ERR_MEMORY
  */
 ADCGS_API adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error);
 
 /**
- * Make a pool of a caller's threads; it starts none.
+ * Make a pool of the caller's threads. The function starts none.
  * \param out receives the pool, to be freed with adcgs_pool_free(); NULL on failure
- * \param threads tasks that can be under way at once, 1..ADCGS_THREADS_MAX
- * \param run hands out tasks; called in the thread that calls a decoder, never twice at a time for one pool
- * \param user for run
+ * \param threads tasks that can run at once, 1..ADCGS_THREADS_MAX
+ * \param run distributes tasks; called in the thread that calls a decoder, never concurrently for one pool
+ * \param user passed to run
  * \param error says why it failed; may be NULL
  * \return ADCGS_OK, ADCGS_ERR_USAGE or ADCGS_ERR_MEMORY
  */
 ADCGS_API adcgs_status adcgs_pool_wrap(adcgs_pool **out, int threads, adcgs_run_fn run, void *user, adcgs_error *error);
 
 /**
- * End a pool, and the threads that it started, after all decoders that use it have been closed.
+ * Free a pool and end the threads that it started. All decoders that use it must be closed before.
  * \param pool is set to NULL; may point to NULL
  */
 ADCGS_API void adcgs_pool_free(adcgs_pool **pool);

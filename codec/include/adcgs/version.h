@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Version of the library and of the bitstream that it knows. configure.ac reads this file.
+ * Version of the library and of the bitstream that it decodes. configure.ac reads this file.
  */
 #ifndef ADCGS_VERSION_H
 #define ADCGS_VERSION_H
