@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Ground: errors, memory, little-endian access, small integer helpers, the
- * clock. Knows nothing of the codec. The room's other headers: pool.h, cpu.h,
- * log.h, digest.h, fmath.h, lanes.h, strict.h.
+ * The lowest layer: errors, memory, little-endian access, small integer
+ * helpers, the clock. It knows nothing of the codec. The other headers of this
+ * folder: pool.h, cpu.h, log.h, digest.h, fmath.h, lanes.h, strict.h.
  */
 #ifndef ADCGS_BASE_BASE_H
 #define ADCGS_BASE_BASE_H
@@ -14,7 +14,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* WebAssembly with its SIMD, which then is the level "scalar". */
+/* WebAssembly with SIMD, which is then the level "scalar". */
 #if defined(__wasm_simd128__) && !defined(ADCGS_PORTABLE)
 #define ADCGS_WASM 1
 #endif
@@ -25,7 +25,7 @@
 #define ADCGS_PRINTF(fmt, args)
 #endif
 
-/* Refusals by macro. What no macro shows (contraction, flushing, rounding) is found when a decoder opens: strict.h. */
+/* Refuse builds by macro. When a decoder opens, strict.h finds faults that no macro shows (contraction, flushing, rounding). */
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
 #error "adcgs must not be built with -ffast-math or a part of it: decoded frames would differ"
 #endif
@@ -41,11 +41,11 @@
 
 /**
  * Record status and message, return status: `return adcgs_fail(err, ADCGS_ERR_DATA, "...", ...)`. error may be NULL. The message
- * stays one line: control characters, which names from outside may hold, become question marks.
+ * stays one line: control characters, which file names and other outside text may contain, become question marks.
  */
 adcgs_status adcgs_fail(adcgs_error *error, adcgs_status status, const char *format, ...) ADCGS_PRINTF(3, 4);
 
-/** Put the name of an input in front of a message about its contents, in place of "stream:". error may be NULL. */
+/** Put the name of an input before a message about its contents, in place of "stream:". error may be NULL. */
 void adcgs_error_locate(adcgs_error *error, const char *name);
 
 /** Make a line of text safe to show: control characters become question marks. */
@@ -59,7 +59,7 @@ void adcgs_one_line(char *text);
             return try_status_;                  \
     } while (0)
 
-/** Memory with a limit. One per decoder; alignment is 64 bytes; contents are zero. Not thread-safe. */
+/** Memory accounting with a limit. One per decoder; alignment is 64 bytes; contents are zero. Not thread-safe. */
 typedef struct adcgs_memory {
     uint64_t used, peak;
     uint64_t limit; /**< bytes; 0 means none */
@@ -72,14 +72,14 @@ typedef struct adcgs_memory {
  */
 void *adcgs_alloc(adcgs_memory *memory, size_t count, size_t size, adcgs_error *error);
 /**
- * The status of a failed adcgs_alloc(): what its callers return, so that a limit stays a limit. Without an error nothing is
- * known of the reason; whoever sets a limit passes one.
+ * The status of a failed adcgs_alloc(). Callers return it, so that a limit stays a limit. Without an error the reason is unknown
+ * and ADCGS_ERR_MEMORY is returned; code that sets a limit must pass an error.
  */
 static inline adcgs_status adcgs_alloc_status(const adcgs_error *error)
 {
     return error ? error->status : ADCGS_ERR_MEMORY;
 }
-/** Free what adcgs_alloc() gave; NULL is fine. The same memory that allocated it. */
+/** Free memory from adcgs_alloc(), with the same memory argument. pointer may be NULL. */
 void adcgs_free(adcgs_memory *memory, void *pointer);
 
 static inline uint16_t adcgs_load_le16(const uint8_t *p)
@@ -135,10 +135,10 @@ static inline double adcgs_bits_double(uint64_t u)
     return f;
 }
 
-/** Seconds of a clock that only goes forward. */
+/** Seconds of a monotonic clock. */
 double adcgs_seconds(void);
 
-/** Time in seconds: of that clock, and of processors, all threads of this program together. */
+/** Time in seconds: of that clock, and processor time of all threads of this program together. */
 typedef struct adcgs_time {
     double clock, cpu;
 } adcgs_time;

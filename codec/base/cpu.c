@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file CPU levels: what this machine and this build have. */
+/** \file CPU levels that this machine and this build support. */
 #ifdef HAVE_CONFIG_H
 #include "config.h"
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the CPU can do. */
+/** \file Capabilities of the CPU. */
 #ifndef ADCGS_BASE_CPU_H
 #define ADCGS_BASE_CPU_H
 
@@ -7,9 +7,9 @@
 
 #include <adcgs/cpu.h>
 
-/** Resolve AUTO to the best level; ADCGS_ERR_UNSUPPORTED when the machine or the build lacks the level asked for. */
+/** Resolve AUTO to the best level; ADCGS_ERR_UNSUPPORTED if the machine or the build lacks the requested level. */
 adcgs_status adcgs_cpu_resolve(adcgs_cpu_level asked, adcgs_cpu_level *level, adcgs_error *error);
-/** "auto", "scalar", "avx2", "avx512" by level, then NULL. */
+/** "auto", "scalar", "avx2", "avx512", indexed by level, then NULL. */
 extern const char *const adcgs_cpu_names[];
 
 #endif

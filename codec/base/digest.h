@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file CRC-32C (RFC 3720) for damage, MD5 (RFC 1321) for conformance digests. Neither guards against attackers. */
+/** \file CRC-32C (RFC 3720) to detect damage, MD5 (RFC 1321) for conformance digests. Neither guards against attackers. */
 #ifndef ADCGS_BASE_DIGEST_H
 #define ADCGS_BASE_DIGEST_H
 

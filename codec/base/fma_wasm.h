@@ -2,13 +2,13 @@
 /** \file
  * Fused multiply-add on WebAssembly, which has no such instruction of its own.
  *
- * With relaxed SIMD there is one of which an engine may choose whether it fuses. It is used where the compiler is allowed it
- * (-mrelaxed-simd), and strict.h finds out what was chosen.
+ * Relaxed SIMD has a multiply-add that an engine may or may not fuse. It is used if the compiler may emit it (-mrelaxed-simd);
+ * strict.h detects whether the engine fuses.
  *
- * Without, binary64 does it: the product of two binary32 numbers is exact there. Their sum is rounded, and once more to binary32,
- * which goes wrong in one case alone: where the first rounding made a tie for the second, or hid one. So where the sum lies on a
- * tie, or is so small that binary32 has fewer digits than usual, it is rounded to odd first (Boldo and Melquiond, 2008): then the
- * second rounding sees which side it came from.
+ * Otherwise binary64 does the work. The product of two binary32 numbers is exact in binary64. The sum is rounded to binary64,
+ * then to binary32. This double rounding is wrong in one case only: if the first rounding made, or hid, a tie for the second. So
+ * if the sum lies on a tie, or is so small that binary32 has fewer digits than usual, it is rounded to odd first (Boldo and
+ * Melquiond, 2008). The second rounding then sees on which side of the tie the exact sum lies.
  */
 #ifndef ADCGS_BASE_FMA_WASM_H
 #define ADCGS_BASE_FMA_WASM_H
@@ -34,13 +34,13 @@ FMA_INLINE float adcgs_fma1(float a, float b, float c)
 
 #else
 
-/* Of a binary64 number's halves: what binary32 cuts off of the lower one, a tie of that, and the least exponent that is normal in
- * binary32, with the sign shifted out of the upper one. */
+/* Bit masks for the halves of a binary64 number. Lower half: the bits that binary32 cuts off, and a tie of them. Upper half,
+ * with the sign shifted out: the smallest exponent that is normal in binary32. */
 #define FMA_CUT 0x1fffffffu
 #define FMA_TIE 0x10000000u
 #define FMA_NORMAL (897u << 21)
 
-/* p + c, rounded to odd; sum: the same rounded to nearest. The error of that is exact (Knuth's TwoSum), and of infinity NaN. */
+/* p + c, rounded to odd; sum: p + c rounded to nearest. The error of sum is exact (Knuth's TwoSum); for infinity it is NaN. */
 static __attribute__((noinline, unused)) double adcgs_sum_to_odd(double p, double c, double sum)
 {
     const double part = sum - p, error = (p - (sum - part)) + (c - part);
@@ -63,7 +63,7 @@ FMA_INLINE float adcgs_fma1(float a, float b, float c)
     return (float)sum;
 }
 
-/* Two lanes whose sums are too near to ties or zero. */
+/* Sums of two lanes, rounded to odd. */
 static __attribute__((noinline, unused)) v128_t adcgs_sums_to_odd(v128_t p, v128_t c, v128_t sum)
 {
     return wasm_f64x2_make(

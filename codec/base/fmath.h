@@ -13,13 +13,13 @@
 
 #include <math.h>
 
-/* Where the C library's would be called, and slow: the same numbers in line. */
+/* The C library's function would be an expensive call here; this one gives the same numbers inline. */
 #ifdef ADCGS_WASM
 #include "base/fma_wasm.h"
 #define fmaf adcgs_fma1
 #endif
 
-/* Adding and subtracting 1.5 * 2^23 rounds to an integer, whose low bits stand in the sum's significand. */
+/* Adding and subtracting 1.5 * 2^23 rounds to an integer; its low bits are then in the sum's significand. */
 #define ADCGS_ROUND_MAGIC 0x1.8p23f
 
 static inline float adcgs_clampf(float x, float lo, float hi)
@@ -28,7 +28,7 @@ static inline float adcgs_clampf(float x, float lo, float hi)
     return hi < y ? hi : y;
 }
 
-/* 2^f for |f| <= 1/2, relative error of the polynomial 2.6e-9. */
+/* 2^f for |f| <= 1/2; relative error of the polynomial: 2.6e-9. */
 static inline float adcgs_exp2_poly(float f)
 {
     float p = 0x1.470b48p-13f;
@@ -40,7 +40,7 @@ static inline float adcgs_exp2_poly(float f)
     return fmaf(p, f, 1.0f);
 }
 
-/* p * 2^n, where rounded is n + magic and the result is normal. */
+/* p * 2^n; rounded is n + magic, and the result must be normal. */
 static inline float adcgs_scale2(float p, float rounded)
 {
     return adcgs_bits_float(adcgs_float_bits(p) + (adcgs_float_bits(rounded) << 23));

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Sixteen binary32 lanes, for kernels that are written once and compiled per
- * CPU level. The including file defines ADCGS_LANES_ISA as 512 (one AVX-512
- * register), 256 (two AVX registers) or 0 (what every machine of the kind has:
- * four NEON registers of 64-bit ARM, four of WebAssembly's SIMD, else portable
- * C; ADCGS_PORTABLE asks for the latter). Every operation means the same in
- * all, to the bit: minimum and maximum are `a < b ? a : b` and `a > b ? a : b`,
- * comparisons with NaN are false.
+ * CPU level. The including file defines ADCGS_LANES_ISA: 512 (one AVX-512
+ * register), 256 (two AVX registers) or 0 (the baseline of the machine: four
+ * NEON registers of 64-bit ARM, four SIMD registers of WebAssembly, else
+ * portable C; ADCGS_PORTABLE forces the latter). Every operation gives the same
+ * bits in all variants: minimum and maximum are `a < b ? a : b` and
+ * `a > b ? a : b`, comparisons with NaN are false.
  */
 #ifndef ADCGS_BASE_LANES_H
 #define ADCGS_BASE_LANES_H
@@ -27,7 +27,7 @@
 #if ADCGS_LANES_ISA || LANES_NEON || LANES_WASM
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 #else
-/* Sixteen loops in a row, all unrolled: the compiler may choose. */
+/* Sixteen unrolled loops in a row: the compiler may choose whether to inline them. */
 #define LANES_INLINE static inline __attribute__((unused))
 #endif
 
@@ -43,7 +43,7 @@
 #include "base/lanes_portable.h"
 #endif
 
-/** 2^p for -126 < p < 1; any p gives some number. Relative error 3.6e-6. */
+/** 2^p for -126 < p < 1; any other p gives some number. Relative error 3.6e-6. */
 LANES_INLINE vf vf_exp2(vf p)
 {
     const vf magic = vf_set1(ADCGS_ROUND_MAGIC);

@@ -127,7 +127,7 @@ LANES_INLINE void vf_turn_squares(vf r[4])
     half_turn(&r[0].b, &r[1].b, &r[2].b, &r[3].b);
 }
 
-/* As in lanes_avx512.h. Two of the four columns of sums at a time. */
+/* See lanes_avx512.h. Computes two of the four columns of sums at a time. */
 LANES_INLINE __m256 half_sums(const vf *v)
 {
     __m256 quarter[3];

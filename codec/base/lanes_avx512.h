@@ -33,13 +33,13 @@ LANES_INLINE vf vf_scale2(vf p, vf rounded)
     return _mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(p), _mm512_slli_epi32(_mm512_castps_si512(rounded), 23)));
 }
 
-/* Truncation of 0 <= a < 2^31 to integers. */
+/* Truncate 0 <= a < 2^31 to integers. */
 LANES_INLINE void vf_store_int(int32_t *p, vf a)
 {
     _mm512_store_si512(p, _mm512_cvttps_epi32(a));
 }
 
-/* Rows i of four lanes each to row[i]. */
+/* Store row i, four lanes, to row[i]. */
 LANES_INLINE void vf_store_rows(float *const row[4], vf a)
 {
     _mm_storeu_ps(row[0], _mm512_castps512_ps128(a));
@@ -48,7 +48,7 @@ LANES_INLINE void vf_store_rows(float *const row[4], vf a)
     _mm_storeu_ps(row[3], _mm512_extractf32x4_ps(a, 3));
 }
 
-/* Four rows of four lanes each, stride floats apart. */
+/* Load four rows of four lanes each, stride floats apart. */
 LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
 {
     const __m256 a = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p)), _mm_loadu_ps(p + stride), 1);
@@ -56,7 +56,7 @@ LANES_INLINE vf vf_load_rows(const float *p, size_t stride)
     return _mm512_insertf32x8(_mm512_castps256_ps512(a), b, 1);
 }
 
-/* Not again at each use, as GCC would where a load may be an operand: there is one load in the time of one multiply-add. */
+/* Load once and keep in a register. GCC would load again at each use, and only one load fits in the time of a multiply-add. */
 LANES_INLINE vf vf_load_once(const float *p)
 {
     vf a = _mm512_load_ps(p);
@@ -64,7 +64,7 @@ LANES_INLINE vf vf_load_once(const float *p)
     return a;
 }
 
-/* Lanes take what is in the next one, or in the one before; there is 0 beyond the ends. */
+/* Each lane takes the value of the next lane, or of the lane before; 0 beyond the ends. */
 LANES_INLINE vf vf_next(vf a)
 {
     return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_setzero_si512(), _mm512_castps_si512(a), 1));
@@ -75,7 +75,7 @@ LANES_INLINE vf vf_before(vf a)
     return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(a), _mm512_setzero_si512(), 15));
 }
 
-/* Each four lanes of four vectors are a square that is transposed. */
+/* Transpose squares: each four lanes of the four vectors are one square. */
 LANES_INLINE void vf_turn_squares(vf r[4])
 {
     const __m512 a = _mm512_unpacklo_ps(r[0], r[1]), b = _mm512_unpackhi_ps(r[0], r[1]);

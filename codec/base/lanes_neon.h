@@ -30,7 +30,7 @@ LANES_BINARY(vf_add, vf, vaddq_f32(a.v[i], b.v[i]))
 LANES_BINARY(vf_sub, vf, vsubq_f32(a.v[i], b.v[i]))
 LANES_BINARY(vf_mul, vf, vmulq_f32(a.v[i], b.v[i]))
 LANES_BINARY(vf_div, vf, vdivq_f32(a.v[i], b.v[i]))
-/* Not vminq_f32() and vmaxq_f32(), which have rules of their own for NaN and zeros. */
+/* Not vminq_f32() and vmaxq_f32(), whose rules for NaN and zeros differ. */
 LANES_BINARY(vf_min, vf, vbslq_f32(vcltq_f32(a.v[i], b.v[i]), a.v[i], b.v[i]))
 LANES_BINARY(vf_max, vf, vbslq_f32(vcgtq_f32(a.v[i], b.v[i]), a.v[i], b.v[i]))
 LANES_BINARY(vf_ge, vm, vcgeq_f32(a.v[i], b.v[i]))
@@ -148,14 +148,14 @@ LANES_INLINE void vf_turn_squares(vf r[4])
     }
 }
 
-/* Lanes 0 and 2, 1 and 3 of the four registers' sum. */
+/* Lanes 0 and 2, and lanes 1 and 3, of the four registers' sum. */
 LANES_INLINE float32x2_t lanes_halves(vf x)
 {
     const float32x4_t s = vaddq_f32(vaddq_f32(x.v[0], x.v[2]), vaddq_f32(x.v[1], x.v[3]));
     return vadd_f32(vget_low_f32(s), vget_high_f32(s));
 }
 
-/* As in lanes_avx512.h. */
+/* See lanes_avx512.h. */
 LANES_INLINE void vf_sums(float *out, const vf v[12])
 {
     for (int c = 0; c < 4; c++)

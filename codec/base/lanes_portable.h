@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Sixteen lanes in portable C, the reference of the other two; see lanes.h. */
+/** \file Sixteen lanes in portable C, the reference of the other variants; see lanes.h. */
 
 typedef struct vf {
     float v[16];
@@ -134,7 +134,7 @@ LANES_INLINE void vf_turn_squares(vf r[4])
             }
 }
 
-/* As in lanes_avx512.h. */
+/* See lanes_avx512.h. */
 LANES_INLINE void vf_sums(float *out, const vf v[12])
 {
     for (int i = 0; i < 16; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Sixteen lanes in four registers of WebAssembly's SIMD; see lanes.h. What the trainer alone needs is not here. */
+/** \file Sixteen lanes in four registers of WebAssembly's SIMD; see lanes.h. Operations for the trainer alone are absent. */
 #include "base/fma_wasm.h"
 
 typedef struct vf {
@@ -30,7 +30,7 @@ LANES_BINARY(vf_add, vf, wasm_f32x4_add(a.v[i], b.v[i]))
 LANES_BINARY(vf_sub, vf, wasm_f32x4_sub(a.v[i], b.v[i]))
 LANES_BINARY(vf_mul, vf, wasm_f32x4_mul(a.v[i], b.v[i]))
 LANES_BINARY(vf_div, vf, wasm_f32x4_div(a.v[i], b.v[i]))
-/* These give their second operand where it is smaller (larger), else the first. */
+/* These instructions return the second operand if it is smaller (larger), else the first. */
 LANES_BINARY(vf_min, vf, wasm_f32x4_pmin(b.v[i], a.v[i]))
 LANES_BINARY(vf_max, vf, wasm_f32x4_pmax(b.v[i], a.v[i]))
 LANES_BINARY(vf_ge, vm, wasm_f32x4_ge(a.v[i], b.v[i]))

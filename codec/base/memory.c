@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Allocation with a limit. Blocks come from calloc(), so that the pages of a
- * large block cost nothing until they are touched; a header in front of each
- * block remembers what calloc() gave and how much was counted.
+ * large block cost nothing until they are touched. A header before each block
+ * stores the pointer from calloc() and the number of bytes counted.
  */
 #include "base/base.h"
 

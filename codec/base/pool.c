@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The thread pool. One 64-bit ticket holds the number of the current run (high
- * half) and the next unclaimed index (low half); a thread claims an index by
- * compare-and-swap, so a thread that wakes late for a finished run can never
- * take an index of the next one with the wrong function. The caller works too,
- * and returns when the count of finished indices reaches n; workers that slept
- * through a short run are not waited for.
+ * half) and the next unclaimed index (low half). A thread claims an index by
+ * compare-and-swap. So a thread that wakes late for a finished run can never
+ * claim an index of the next run with the wrong function. The caller works,
+ * too, and returns when the number of finished indices reaches n. It does not
+ * wait for workers that slept through a short run.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* About 20 to 50 microseconds of pause instructions before a thread sleeps. */
+/* Pause instructions before a thread sleeps: about 20 to 50 microseconds. */
 #define SPINS 800
 /* Index part of the ticket while no run is open. */
 #define CLOSED 0xffffffffu
@@ -40,7 +40,7 @@ struct adcgs_pool {
     _Atomic(void *) arg;
     worker *workers; /* [threads - 1] */
     pthread_mutex_t turn; /* held during a run: several decoders may share the pool */
-    adcgs_run_fn lent_run; /* the caller's threads; NULL: ours */
+    adcgs_run_fn lent_run; /* runs tasks on the caller's threads; NULL: the pool's own threads */
     void *lent_user;
 };
 
@@ -53,7 +53,7 @@ static void relax(void)
 #endif
 }
 
-/* Claim and run indices of the open run until there are none. */
+/* Claim and run indices of the open run until none is left. */
 static void work(adcgs_pool *pool, int thread)
 {
     int completed = 0;
@@ -65,7 +65,7 @@ static void work(adcgs_pool *pool, int thread)
         void *arg = atomic_load_explicit(&pool->arg, memory_order_acquire);
         if (index >= (uint32_t)n)
             break;
-        /* Success proves that the run is still the one whose ticket was read, hence that n, fn and arg belong to it. */
+        /* Success proves that the run is still the one whose ticket was read, so n, fn and arg belong to it. */
         if (!atomic_compare_exchange_weak_explicit(&pool->ticket, &ticket, ticket + 1, memory_order_acq_rel,
                                                    memory_order_acquire))
             continue;
@@ -82,7 +82,7 @@ static void work(adcgs_pool *pool, int thread)
     }
 }
 
-/* Wait for a run other than the one seen; returns its number. */
+/* Wait for a run other than seen; returns its number. */
 static uint32_t await_run(adcgs_pool *pool, uint32_t seen)
 {
     for (int i = 0; i < SPINS; i++) {
@@ -107,7 +107,7 @@ static void *worker_main(void *arg)
     const worker *self = arg;
     adcgs_pool *pool = self->pool;
     uint32_t seen = 0;
-    fesetenv(FE_DFL_ENV); /* not the modes of the thread that made the pool */
+    fesetenv(FE_DFL_ENV); /* do not inherit the modes of the thread that made the pool */
     for (;;) {
         seen = await_run(pool, seen);
         if (atomic_load_explicit(&pool->stop, memory_order_acquire))
@@ -116,7 +116,7 @@ static void *worker_main(void *arg)
     }
 }
 
-/* As many as the system has for us: with fewer all takes longer, and gives the same. */
+/* Start as many workers as the system allows. With fewer the work takes longer; the results are the same. */
 static void start_workers(adcgs_pool *pool)
 {
     for (int i = 0; i < pool->threads - 1; i++) {
@@ -131,7 +131,7 @@ static void start_workers(adcgs_pool *pool)
     pool->threads -= pool->missing;
 }
 
-/* All but the threads. */
+/* Allocate everything except the threads. */
 static adcgs_pool *allocate(int threads, int workers)
 {
     adcgs_pool *pool = calloc(1, sizeof *pool);
@@ -160,7 +160,7 @@ adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error
 {
     *out = NULL;
     if (threads < 0 || threads > ADCGS_THREADS_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads asked for; 0 to %d are possible", threads, ADCGS_THREADS_MAX);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads requested, expected 0..%d", threads, ADCGS_THREADS_MAX);
     if (threads == 0) {
         const long online = sysconf(_SC_NPROCESSORS_ONLN);
         threads = online < 1 ? 1 : online > ADCGS_THREADS_MAX ? ADCGS_THREADS_MAX : (int)online;
@@ -177,7 +177,7 @@ adcgs_status adcgs_pool_wrap(adcgs_pool **out, int threads, adcgs_run_fn run, vo
 {
     *out = NULL;
     if (threads < 1 || threads > ADCGS_THREADS_MAX || !run)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads lent; 1 to %d are possible, and a function that runs tasks on them",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads lent, expected 1..%d and a function that runs tasks on them",
                           threads, ADCGS_THREADS_MAX);
     *out = allocate(threads, 0);
     if (!*out)
@@ -217,7 +217,7 @@ int adcgs_pool_threads(const adcgs_pool *pool)
     return pool ? pool->threads : 1;
 }
 
-/* Close the old run before its description changes, then open the new one. */
+/* Close the old run before changing its description, then open the new one. */
 static void open_run(adcgs_pool *pool, adcgs_work_fn fn, void *arg, int n)
 {
     const uint64_t run = (atomic_load_explicit(&pool->ticket, memory_order_relaxed) >> 32) + 1;

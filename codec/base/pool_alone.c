@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The pool where no threads can be started, in place of pool.c: on WebAssembly. One that is created has the caller's thread
- * alone; those that a caller lends are used.
+ * The pool for platforms that cannot start threads (WebAssembly), in place of pool.c. A pool from adcgs_pool_create() has the
+ * caller's thread alone. Lent threads (adcgs_pool_wrap()) are used.
  */
 #include "base/pool_lent.h"
 
@@ -9,7 +9,7 @@
 
 struct adcgs_pool {
     int threads;
-    adcgs_run_fn run; /* NULL: nobody's but the caller's */
+    adcgs_run_fn run; /* NULL: only the calling thread */
     void *user;
 };
 
@@ -26,7 +26,7 @@ adcgs_status adcgs_pool_create(adcgs_pool **out, int threads, adcgs_error *error
 {
     *out = NULL;
     if (threads < 0 || threads > ADCGS_THREADS_MAX)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads asked for; 0 to %d are possible", threads, ADCGS_THREADS_MAX);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads requested, expected 0..%d", threads, ADCGS_THREADS_MAX);
     return create(out, (adcgs_pool){ .threads = 1 }, error);
 }
 
@@ -34,7 +34,7 @@ adcgs_status adcgs_pool_wrap(adcgs_pool **out, int threads, adcgs_run_fn run, vo
 {
     *out = NULL;
     if (threads < 1 || threads > ADCGS_THREADS_MAX || !run)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads lent; 1 to %d are possible, and a function that runs tasks on them",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d threads lent, expected 1..%d and a function that runs tasks on them",
                           threads, ADCGS_THREADS_MAX);
     return create(out, (adcgs_pool){ threads, run, user }, error);
 }
@@ -48,7 +48,7 @@ void adcgs_pool_free(adcgs_pool **pool)
 int adcgs_pool_missing(const adcgs_pool *pool)
 {
     (void)pool;
-    return 0; /* that there are none is no surprise here */
+    return 0; /* missing threads are expected here */
 }
 
 int adcgs_pool_threads(const adcgs_pool *pool)

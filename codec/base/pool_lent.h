@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Work on threads that a caller lends (adcgs_pool_wrap()). Each gets a task, which takes indices until there are none; so it does
- * not matter how many of the tasks really run at once.
+ * Work on threads that a caller lends (adcgs_pool_wrap()). Each thread gets a task, which takes indices until none is left. So it
+ * does not matter how many tasks really run at once.
  */
 #ifndef ADCGS_BASE_POOL_LENT_H
 #define ADCGS_BASE_POOL_LENT_H
@@ -18,7 +18,7 @@ typedef struct lent_work {
     atomic_int next;
 } lent_work;
 
-/* Indices of a run, until there are none. The thread may be in any mode, and gets it back. */
+/* Take indices of a run until none is left. The thread may be in any floating-point mode; its mode is restored. */
 static void lent_task(void *work, int task)
 {
     lent_work *w = work;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Status codes: their names, how an error message is recorded, and how other messages are said. */
+/** \file Status codes: their names, recording of error messages, formatting of log messages. */
 #include "base/base.h"
 #include "base/log.h"
 
@@ -81,7 +81,7 @@ void adcgs_error_locate(adcgs_error *error, const char *name)
         return;
     const size_t skip = strncmp(error->text, general, sizeof general - 1) == 0 ? sizeof general - 1 : 0;
     memcpy(text, error->text, sizeof text);
-    /* A name of any length leaves room for the start of the message. */
+    /* A long name is cut, so that the start of the message still fits. */
     if (snprintf(error->text, sizeof error->text, "%.160s: %s", name, text + skip) < 0)
         error->text[0] = 0;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Strict binary32 or not: single operations, then the known answers at every CPU level. */
+/** \file Check of strict binary32: single operations, then the known answers at every CPU level. */
 #ifdef HAVE_CONFIG_H
 #include "config.h"
 #endif
@@ -9,7 +9,7 @@
 #include "base/digest.h"
 #include "base/strict_kernels.h"
 
-/* Of the values' bits, least significant byte first, function by function. */
+/* CRC-32C of the bits of all values, least significant byte first, function by function. */
 #define ANSWER 0xb9edc3bcu
 
 void adcgs_strict_scalar(float out[ADCGS_STRICT_FUNCTIONS][ADCGS_STRICT_SAMPLES], const float *x, const float *y, const float *z)
@@ -17,8 +17,8 @@ void adcgs_strict_scalar(float out[ADCGS_STRICT_FUNCTIONS][ADCGS_STRICT_SAMPLES]
     answer(out, x, y, z);
 }
 
-/* Operands come from volatile objects so that nothing is folded at compile time; the expressions themselves are plain, so
- * that they are compiled as the codec's are. */
+/* Operands come from volatile objects, so that the compiler folds nothing. The expressions themselves are plain, so that they are
+ * compiled like those of the codec. */
 adcgs_status adcgs_strict_modes(adcgs_error *error)
 {
     volatile uint32_t bits[] = { 0x3f800001, 0x3f7ffffe, 0x3f800000, 0x00800000, 0x00000001, 0x33800000, 0x40000000, 0x40400000,
@@ -61,7 +61,7 @@ static adcgs_status check_level(adcgs_cpu_level level, adcgs_strict_fn *fn, adcg
         }
     if (crc != ANSWER)
         return adcgs_fail(error, ADCGS_ERR_FPENV, "binary32 arithmetic (%s): known-answer test gives 0x%08x, expected 0x%08x: "
-                          "wrong flags of the build", adcgs_cpu_name(level), (unsigned)crc, ANSWER);
+                          "check the flags of the build", adcgs_cpu_name(level), (unsigned)crc, ANSWER);
     return ADCGS_OK;
 }
 

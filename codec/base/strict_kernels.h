@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The known answers, compiled per CPU level. Plain loops, lanes and elementary
- * functions all take part, since a flag may bend any one of them alone:
- * contraction, say, shows only where the level has a fused instruction.
+ * functions all take part, since a flag may affect any one of them alone.
+ * Contraction, for example, only shows if the level has a fused instruction.
  */
 #ifndef ADCGS_BASE_STRICT_KERNELS_H
 #define ADCGS_BASE_STRICT_KERNELS_H

@@ -2,7 +2,7 @@
 /** \file Adaptive binary probabilities, and the cost of a decision in 1/65536 bit. */
 #include "bits/range.h"
 
-/* Shift of the update by the number of updates so far: about 1/(count + 1.5) at first, 1/64 in the long run. */
+/* Shift of the update, indexed by the number of updates so far: about 1/(count + 1.5) at first, 1/64 in the long run. */
 static const uint8_t rates[] = { 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 6 };
 #define COUNT_MAX (ADCGS_COUNTOF(rates) - 1)
 
@@ -63,7 +63,7 @@ uint32_t adcgs_bit_cost(uint32_t p1, int bit)
     for (int step = 16; step; step >>= 1)
         if (p >> exponent >> step)
             exponent += step;
-    /* Mantissa with 16 fractional bits; the table is interpolated linearly. */
+    /* The mantissa has 16 fractional bits; the table is interpolated linearly. */
     const uint32_t fraction = (p << (16 - exponent)) - 65536;
     const uint32_t i = fraction >> 8, rest = fraction & 255;
     const uint32_t log2_mantissa = (log2_table[i] * (256 - rest) + log2_table[i + 1] * rest + 128) / 256;

@@ -6,7 +6,7 @@
 
 void adcgs_reader_init(adcgs_reader *r, const void *data, size_t size)
 {
-    static const uint8_t nothing; /* an address to count from where there are no bytes */
+    static const uint8_t nothing; /* a valid address if there are no bytes */
     *r = (adcgs_reader){ .data = size ? data : &nothing, .size = size };
 }
 
@@ -59,7 +59,7 @@ void adcgs_buffer_clear(adcgs_buffer *b)
     adcgs_buffer_init(b);
 }
 
-/* Room for n more bytes, or the failure flag. */
+/* Make room for n more bytes, or set the failure flag. */
 static int reserve(adcgs_buffer *b, size_t n)
 {
     if (b->failed)

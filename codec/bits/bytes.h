@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Bounded reading and growing writing of byte-aligned little-endian fields.
- * Errors are sticky: reading past the end yields zeros and sets a flag that
+ * Errors are sticky: reading past the end yields zeros and sets a flag, which
  * callers check once per structure.
  */
 #ifndef ADCGS_BITS_BYTES_H
@@ -12,7 +12,7 @@
 typedef struct adcgs_reader {
     const uint8_t *data;
     size_t size, pos;
-    int overrun; /**< set once something past the end was asked for */
+    int overrun; /**< set once a read went past the end */
 } adcgs_reader;
 
 void adcgs_reader_init(adcgs_reader *r, const void *data, size_t size);

@@ -2,10 +2,10 @@
 /** \file
  * The range coder: 64-bit range, 32-bit renormalisation, 16-bit
  * probabilities (decision D4; spec clause "Parsing process"). One engine
- * for features, geometry and weights.
+ * serves features, geometry and weights.
  *
- * Decoder errors are sticky: a damaged sub-stream decodes to some values in
- * bounded time and adcgs_range_dec_finish() reports it.
+ * Decoder errors are sticky: a damaged sub-stream decodes to arbitrary values
+ * in bounded time, and adcgs_range_dec_finish() reports the damage.
  */
 #ifndef ADCGS_BITS_RANGE_H
 #define ADCGS_BITS_RANGE_H
@@ -27,7 +27,7 @@ int adcgs_range_dec_symbol(adcgs_range_dec *d, const uint32_t *cdf, int n);
 uint32_t adcgs_range_dec_bits(adcgs_range_dec *d, int n);
 /** One binary decision with P(1) = p1/65536, p1 in 1..65535. */
 int adcgs_range_dec_bit(adcgs_range_dec *d, uint32_t p1);
-/** ADCGS_ERR_DATA unless the sub-stream was consumed exactly (spec "End of a sub-stream"). */
+/** ADCGS_ERR_DATA unless the decoder consumed the sub-stream exactly (spec "End of a sub-stream"). */
 adcgs_status adcgs_range_dec_finish(const adcgs_range_dec *d, adcgs_error *error);
 
 typedef struct adcgs_range_enc {
@@ -56,7 +56,7 @@ void adcgs_adaptive_init(adcgs_adaptive *contexts, size_t n);
 void adcgs_adaptive_update(adcgs_adaptive *context, int bit);
 int adcgs_adaptive_dec(adcgs_range_dec *d, adcgs_adaptive *context);
 void adcgs_adaptive_enc(adcgs_range_enc *e, adcgs_adaptive *context, int bit);
-/** Cost of the bit in 1/65536 bit under the current state (for encoder decisions; literal integer table). */
+/** Cost of a bit in 1/65536 bit under the current state, from an integer table; for encoder decisions. */
 uint32_t adcgs_bit_cost(uint32_t p1, int bit);
 
 #endif

@@ -65,7 +65,7 @@ static inline int search(const uint32_t *cdf, int n, uint32_t quotient)
 int adcgs_range_dec_symbol(adcgs_range_dec *d, const uint32_t *cdf, int n)
 {
     const uint64_t r = d->range >> 16;
-    /* The tables of values peak in the middle: at small sigma this test saves the division most of the time. */
+    /* The tables of values peak in the middle: at small sigma this test usually saves the division. */
     int k = (n - 2) / 2;
     if (n < 2 || d->value < r * cdf[k] || d->value >= r * cdf[k + 1]) {
         const uint64_t quotient = d->value / r;
@@ -83,7 +83,7 @@ uint32_t adcgs_range_dec_bits(adcgs_range_dec *d, int n)
     const uint64_t r = d->range >> n, largest = (UINT64_C(1) << n) - 1;
     uint64_t v = d->value / r;
     if (v > largest) {
-        /* Only damage gets here: no encoder uses the remainder R - 2^n r. */
+        /* Only damaged data gets here: no encoder uses the remainder R - 2^n r. */
         v = largest;
         d->broken = 1;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The range encoder: the interval [low, low + range); a carry goes into the bytes already written. */
+/** \file The range encoder: the interval [low, low + range); a carry propagates into bytes already written. */
 #include "bits/range.h"
 
 static void put_word(adcgs_range_enc *e, uint32_t word)
@@ -58,7 +58,7 @@ void adcgs_range_enc_finish(adcgs_range_enc *e)
 {
     uint64_t value = e->low;
     int kept = 8;
-    /* Fewest leading bytes first: round low up to a multiple of 2^(64 - 8 kept); it must stay below low + range. */
+    /* Try the fewest leading bytes first: round low up to a multiple of 2^(64 - 8 kept); it must stay below low + range. */
     for (int bytes = 0; bytes < 8; bytes++) {
         const uint64_t mask = bytes ? UINT64_MAX >> 8 * bytes : UINT64_MAX;
         const uint64_t add = -e->low & mask;

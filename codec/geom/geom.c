@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The walk of the position coder: the cube is halved 3 * depth times, x, y and z
- * in turn, and at each step the count of every non-empty cell is split. Cells
- * are kept in Morton order; a hash table finds the neighbours of the step, or,
- * where keys were made to collide, bisection. Encoder and decoder run the same
- * walk.
+ * The walk of the position coder. The cube is halved 3 * depth times, along x,
+ * y and z in turn; each step splits the count of every non-empty cell. Cells
+ * are stored in Morton order. A hash table finds the neighbours of the step;
+ * if keys were made to collide, bisection does. Encoder and decoder run the
+ * same walk.
  */
 #include "geom/geom.h"
 
 #include "geom/geom_models.h"
 
 #define NO_CELL UINT32_MAX
-/* A key lies at most this far behind its slot; with more, somebody chose the keys to be slow. */
+/* Maximum distance of a key from its slot. A larger distance means that the keys were chosen to make the table slow. */
 #define PROBES_MAX 64
 #define X_MASK UINT64_C(0x4924924924924924)
 /*
- * The cells around one are numbered 9 a + 3 u + v, where 0, 1 or 2 tell what lies before, at or behind it along the axis of the
- * step, the next one and the one after that; bits of masks likewise.
+ * The cells around a cell are numbered 9 a + 3 u + v. Each of a, u and v is 0, 1 or 2 for a cell before, at or behind it: a along
+ * the axis of the step, u along the next axis, v along the one after that. Bits of masks are numbered likewise.
  */
 #define ITSELF 13
 #define LAYER 0x1ffu
@@ -26,14 +26,14 @@ typedef struct cell {
     uint32_t n;    /* points */
     uint32_t left; /* of these in the left half, once split */
     uint32_t split : 1; /* left is known */
-    uint32_t alone : 1; /* one point, and nothing in the 26 cells around: so it will be for all its descendants */
-    uint32_t around : 27; /* which of the 27 cells around and at it are there, or, before they were looked for, may be */
+    uint32_t alone : 1; /* one point, and nothing in the 26 cells around: this also holds for all descendants */
+    uint32_t around : 27; /* mask of the 27 cells around and at it: those that exist or, before the search, may exist */
 } cell;
 
 typedef struct walk {
     adcgs_geom_coder coder;
     adcgs_geom_models models;
-    adcgs_memory *memory; /* of everything here; may be NULL */
+    adcgs_memory *memory; /* accounts for everything here; may be NULL */
     int depth;
     uint32_t n;
     const uint64_t *codes; /* encoder: [n], ascending */
@@ -41,7 +41,7 @@ typedef struct walk {
     uint32_t *slots; /* numbers of cells */
     int slot_bits; /* 0: bisect instead */
     size_t n_cells;
-    size_t finger[27];     /* where bisection for each neighbour ended last, in this step */
+    size_t finger[27];     /* end position of the last bisection for each neighbour, in this step */
     uint64_t mask[3], unit[3]; /* bits of each axis; one cell in its direction */
 } walk;
 
@@ -50,7 +50,7 @@ static size_t hash(const walk *w, uint64_t key)
     return (size_t)(key * UINT64_C(0x9e3779b97f4a7c15) >> (64 - w->slot_bits));
 }
 
-/* Bisection between bounds that are found by doubling steps away from where the same neighbour of the cell before was. */
+/* Bisect between bounds found by doubling steps away from the position of the same neighbour of the previous cell. */
 static const cell *bisect(walk *w, uint64_t key, int neighbour)
 {
     size_t low = w->finger[neighbour], high = low;
@@ -74,7 +74,7 @@ static const cell *bisect(walk *w, uint64_t key, int neighbour)
     return low < w->n_cells && w->cells[low].key == key ? &w->cells[low] : NULL;
 }
 
-/* The cell with a key, which is that of a neighbour 0..26 of the cell at hand, or NULL. */
+/* The cell with this key, the key of neighbour 0..26 of the current cell; NULL if there is none. */
 static const cell *find(walk *w, uint64_t key, int neighbour)
 {
     if (w->slot_bits == 0)
@@ -87,7 +87,7 @@ static const cell *find(walk *w, uint64_t key, int neighbour)
     return NULL;
 }
 
-/* Cells without neighbours are nobody's neighbours, so they stay out of the table. */
+/* Cells without neighbours are neighbours of no cell, so they stay out of the table. */
 static void fill_slots(walk *w)
 {
     memset(w->finger, 0, sizeof w->finger);
@@ -111,7 +111,7 @@ static void fill_slots(walk *w)
     }
 }
 
-/* The parts of the keys of the cells before, at and behind a cell along one axis, as far as these are in the cube. */
+/* Along one axis, the key parts of the cells before, at and behind a cell, as far as these are in the cube. */
 static void parts_along(const walk *w, int axis, uint64_t key, uint64_t part[3])
 {
     const uint64_t mask = w->mask[axis];
@@ -120,7 +120,7 @@ static void parts_along(const walk *w, int axis, uint64_t key, uint64_t part[3])
     part[2] = ((part[1] | ~mask) + w->unit[axis]) & mask;
 }
 
-/* What cell number i around another tells about how that one is split. */
+/* Add the information that cell number i around another one gives about the split of that one. */
 static void take_neighbour(adcgs_geom_around *around, const cell *c, int i)
 {
     const int layer = i / 9, straight = i % 9 == ITSELF % 9;
@@ -136,7 +136,7 @@ static void take_neighbour(adcgs_geom_around *around, const cell *c, int i)
     }
 }
 
-/* Look for those of the cells around that may be there. */
+/* Search for the cells around that may exist. */
 static void look_around(walk *w, cell *at, int axis, adcgs_geom_around *around)
 {
     uint64_t a[3], u[3], v[3];
@@ -154,7 +154,7 @@ static void look_around(walk *w, cell *at, int axis, adcgs_geom_around *around)
     at->alone = at->n == 1 && at->around == 1u << ITSELF;
 }
 
-/* Bit i of nine to bit 3 i. */
+/* Move bit i of nine to bit 3 i. */
 static uint32_t spread(uint32_t x)
 {
     x = (x | x << 16) & 0x030000ff;
@@ -164,8 +164,8 @@ static uint32_t spread(uint32_t x)
 }
 
 /*
- * What may be around the halves of a cell: children of what is around it. Of the three layers along the step's axis, which comes
- * last in the numbers of the next step, the left half has two within the cell's own.
+ * Mask of the cells that may exist around a half of a cell: the children of the cells around the cell. The step's axis comes last
+ * in the numbers of the next step. Of the three layers along it, the left half has two within the cell's own layer.
  */
 static uint32_t around_half(uint32_t around, int right)
 {
@@ -173,7 +173,7 @@ static uint32_t around_half(uint32_t around, int right)
     return right ? at | at << 1 | behind << 2 : before | at << 1 | at << 2;
 }
 
-/* How many of the codes [first, first + n) have the bit clear. */
+/* Number of codes in [first, first + n) whose bit is clear. */
 static uint32_t count_left(const uint64_t *codes, uint32_t n, uint64_t bit)
 {
     uint32_t low = 0, high = n;
@@ -231,9 +231,9 @@ static adcgs_status run(walk *w, adcgs_error *error)
     w->n_cells = 1;
     for (int step = 0; step < 3 * w->depth; step++) {
         for (int axis = 0; axis < 3; axis++) {
-            const int bits = (step + 2 - axis) / 3; /* of this axis already split */
+            const int bits = (step + 2 - axis) / 3; /* number of splits of this axis so far */
             w->mask[axis] = X_MASK >> axis & ((UINT64_C(1) << 3 * w->depth) - 1);
-            /* an axis not yet split has no neighbours: its part is 0, and stays 0 */
+            /* an axis not yet split has no neighbours: its part is 0 and stays 0 */
             w->unit[axis] = bits ? UINT64_C(1) << (3 * (w->depth - bits) + 2 - axis) : 0;
         }
         fill_slots(w);
@@ -255,13 +255,13 @@ static void clear(walk *w)
 static adcgs_status check_size(uint32_t n, int depth, adcgs_status status, adcgs_error *error)
 {
     if (depth < 0 || depth > ADCGS_GEOM_DEPTH_MAX)
-        return adcgs_fail(error, status, "positions of depth %d; it may be 0 to %d", depth, ADCGS_GEOM_DEPTH_MAX);
+        return adcgs_fail(error, status, "positions of depth %d, expected 0..%d", depth, ADCGS_GEOM_DEPTH_MAX);
     if (n < 1 || n > UINT64_C(1) << 3 * depth)
         return adcgs_fail(error, status, "%u distinct positions cannot be of depth %d", n, depth);
     return ADCGS_OK;
 }
 
-/* Every third bit, closed up. */
+/* Collect every third bit. */
 static uint32_t gather(uint64_t code, int depth)
 {
     uint32_t v = 0;
@@ -284,7 +284,7 @@ adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, u
     adcgs_status status = run(w, error);
     if (status == ADCGS_OK)
         status = adcgs_range_dec_finish(d, error);
-    /* Every cell of the last step is one voxel with one point, because capacities were respected all the way. */
+    /* Every cell of the last step is one voxel with one point, because every split respected the capacities. */
     for (uint32_t i = 0; status == ADCGS_OK && i < n; i++)
         for (int axis = 0; axis < 3; axis++)
             voxels[3 * i + (uint32_t)axis] = gather(w->cells[i].key >> (2 - axis), depth);
@@ -308,7 +308,7 @@ static adcgs_status list_codes(uint64_t *codes, const uint32_t *voxels, uint32_t
             return adcgs_fail(error, ADCGS_ERR_USAGE, "position %u is outside the cube of depth %d", i, depth);
         codes[i] = adcgs_morton(voxel);
         if (i && codes[i] <= codes[i - 1])
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "position %u is not behind its predecessor in Morton order", i);
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "position %u does not follow its predecessor in Morton order", i);
     }
     return ADCGS_OK;
 }

@@ -18,12 +18,12 @@ int adcgs_morton_sort(uint32_t *voxels, size_t n, uint32_t *order, adcgs_error *
 
 /**
  * Decode n distinct voxels into voxels [n][3], Morton order, every coordinate < 2^depth.
- * 1 <= n, depth 0..21, n <= 2^(3 depth) is the caller's check (it is also checked here).
+ * The caller checks 1 <= n, depth 0..21, n <= 2^(3 depth); the function checks this, too.
  */
 adcgs_status adcgs_geom_decode(const uint8_t *data, size_t bytes, uint32_t n, int depth, uint32_t *voxels, adcgs_error *error);
 /**
- * The same from a decoder that has been started. It is finished here, and holds its final state if all is well. Scratch of at
- * most 128 bytes for each position and a constant comes from memory.
+ * The same with a decoder that has been started. The function finishes it; on success it holds its final state. Scratch memory,
+ * at most 128 bytes for each position plus a constant, comes from memory.
  */
 adcgs_status adcgs_geom_decode_from(adcgs_range_dec *d, uint32_t n, int depth, uint32_t *voxels, adcgs_memory *memory,
                                     adcgs_error *error);

@@ -22,7 +22,7 @@ static uint32_t squash(int v)
     return squash_half[v > DOMAIN_MAX ? DOMAIN_MAX : v];
 }
 
-/* Trust in a context by the number of its updates. */
+/* Weight of a context by the number of its updates. */
 static int weight(uint32_t count)
 {
     return count == 0 ? 0 : count < 3 ? 2 : count < 8 ? 4 : 5;
@@ -68,7 +68,7 @@ static int bit_length(uint32_t v)
     return n;
 }
 
-/* v in [0, n), n <= 16, in a tree of adaptive decisions; decisions that n leaves no choice are skipped. */
+/* Code v in [0, n), n <= 16, in a tree of adaptive decisions. Decisions with only one possible outcome are skipped. */
 static uint32_t code_tree(adcgs_geom_coder *c, adcgs_adaptive *tree, uint32_t v, uint32_t n)
 {
     uint32_t node = 1, value = 0;
@@ -87,7 +87,7 @@ static uint32_t code_tree(adcgs_geom_coder *c, adcgs_adaptive *tree, uint32_t v,
     return value;
 }
 
-/* v in [0, n), all equally likely: truncated binary code. */
+/* Code v in [0, n), all values equally likely: truncated binary code. */
 static uint32_t code_uniform(adcgs_geom_coder *c, uint32_t v, uint32_t n)
 {
     const int length = bit_length(n) - 1;
@@ -104,7 +104,7 @@ static int sign_class(uint64_t a, uint64_t b)
     return a < b ? 0 : a > b ? 2 : 1;
 }
 
-/* Which half: 1 is left. Mirror images share their contexts, so that both halves learn from each other. */
+/* Code the half: 1 is left. Mirror images share their contexts, so that both halves train the same contexts. */
 static int code_side(adcgs_geom_coder *c, int several, int step, const adcgs_geom_around *around, int left)
 {
     int s0 = sign_class(around->before, around->behind), s1 = sign_class(around->ring_before, around->ring_behind);
@@ -134,7 +134,7 @@ static int code_one_sided(adcgs_geom_coder *c, int step, uint32_t n, const adcgs
                       &c->models->one_axis[(axis * 3 + ring) * ADCGS_GEOM_COUNT_CLASSES + class], one_sided);
 }
 
-/* v in [0, n): both halves have points. */
+/* Code v in [0, n) when both halves have points. */
 static uint32_t code_inner(adcgs_geom_coder *c, uint32_t v, uint32_t n, int constrained)
 {
     if (n <= 16)

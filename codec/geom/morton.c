@@ -2,7 +2,7 @@
 /** \file Morton codes, and sorting voxels by them. */
 #include "geom/geom.h"
 
-/* Two zero bits between each bit of a 21-bit number. */
+/* Insert two zero bits between the bits of a 21-bit number. */
 static uint64_t spread(uint32_t v)
 {
     uint64_t x = v & 0x1fffff;

@@ -61,7 +61,7 @@ static adcgs_status check_shapes(const adcgs_net *net, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/* Copy a row, checking the bound that makes it exact. */
+/* Copy a row, and check the bound that makes it exact. */
 static adcgs_status pack_row(int16_t *to, const adcgs_net *net, int l, uint32_t row, adcgs_error *error)
 {
     const adcgs_layer *layer = &net->layer[l];

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Inside of the E24 evaluation: the packed network that its kernels share. */
+/** \file Internals of the E24 evaluation: the packed network that its kernels share. */
 #ifndef ADCGS_NET_E24_H
 #define ADCGS_NET_E24_H
 
 #include "net/net.h"
 
-/** Bound of every activation (A of the specification), and of every weight. */
+/** Bound of every activation (A in the specification) and of every weight. */
 #define ADCGS_E24_A 2047
 
 typedef struct adcgs_e24_layer {

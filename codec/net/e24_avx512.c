@@ -32,7 +32,7 @@ static inline __attribute__((always_inline)) void dense_tile(int32_t *acc, const
             _mm512_store_si512((void *)(acc + j * ADCGS_LANES + 16 * q), sum[j][q]);
 }
 
-/* The rows are dealt out evenly: fewer at once would load more than they multiply. */
+/* Distribute the rows evenly over tiles: a tile of few rows would load more than it multiplies. */
 static void e24_dense(int32_t *acc, const int16_t *w, const int32_t *b, const uint32_t *x, int n, int pairs)
 {
     for (int j = 0, tiles = (n + 5) / 6, rows; tiles > 0; tiles--, j += rows) {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The E24 kernels, compiled once per CPU level by e24_scalar.c, e24_avx2.c and
- * e24_avx512.c. The includer defines E24_NAME(x) and may define E24_DENSE, its
- * own e24_dense(). Activations are stored in pairs of features, as the
- * multiply-add instructions want them: element (feature f, sample s) is the low
- * (f even) or high (f odd) half of x[(f / 2) * 64 + s]. Everything is an
- * integer below 2^24 (checked when the network is loaded), so all variants
- * agree exactly.
+ * e24_avx512.c. The including file defines E24_NAME(x) and may define
+ * E24_DENSE if it has its own e24_dense(). Activations are stored in pairs of
+ * features, as the multiply-add instructions need them: element (feature f,
+ * sample s) is the low (f even) or high (f odd) half of x[(f / 2) * 64 + s].
+ * Everything is an integer below 2^24 (checked when the network is loaded), so
+ * all variants agree exactly.
  */
 #include "net/e24.h"
 
@@ -41,7 +41,7 @@ static inline int32_t e24_shr(int32_t v, int s)
     return (v + (1 << s >> 1)) >> s;
 }
 
-/* The larger one, since shr(v, 6) is nearer to zero. */
+/* The larger of v and shr(v, 6): for negative v, shr(v, 6) is nearer to zero. */
 static inline int32_t e24_lrelu(int32_t v)
 {
     const int32_t slow = e24_shr(v, 6);
@@ -54,8 +54,8 @@ static inline uint32_t e24_pair(int32_t even, int32_t odd)
 }
 
 /*
- * shr(x, s) within the bound of activations, factor being 2^(15-s): a product of 16-bit numbers that many machines round like
- * this. No shift is a factor of 2^15 - 1, which changes only what is far beyond the bound.
+ * shr(x, s) limited to the bound of activations, with factor = 2^(15-s): many machines round a product of 16-bit numbers like
+ * this. For s = 0 the factor is 2^15 - 1, which only changes results far beyond the bound.
  */
 static inline int16_t e24_scaled(int16_t x, int16_t factor)
 {
@@ -79,7 +79,7 @@ static void e24_input(uint32_t *out, const int16_t *x, int n, int shift)
     }
 }
 
-/* Activation of n rows of a hidden layer. in is where these rows are in the layer's input, for residual layers, else NULL. */
+/* Activation of n rows of a hidden layer. in: these rows in the layer's input, for residual layers; else NULL. */
 static void e24_hidden(uint32_t *out, int32_t *acc, const uint32_t *in, int n, int shift)
 {
     if (n & 1)
@@ -101,7 +101,7 @@ static void e24_hidden(uint32_t *out, int32_t *acc, const uint32_t *in, int n, i
 
 static void e24_output(const adcgs_e24 *net, const int32_t *acc, int first, int n, int16_t *mu, uint8_t *si)
 {
-    /* Read once: for all the compiler knows, a byte that is stored may be a part of them. */
+    /* Read these once: the compiler must assume that storing a byte may change them. */
     const int channels = net->channels, offset = net->sigma_offset;
     const int mu_shift = net->layer[net->n_layers - 1].shift, si_shift = net->sigma_shift;
     for (int row = first; row < first + n; row++, acc += ADCGS_LANES) {

@@ -27,12 +27,12 @@ typedef struct adcgs_tensor {
     int32_t *m;
 } adcgs_tensor;
 
-/** What a network is for. Values are those of the syntax element net_role. */
+/** Role of a network. The values are those of the syntax element net_role. */
 typedef enum adcgs_role {
     ADCGS_ROLE_ENTROPY_FV = 0,    /**< E_fv: eta -> mean and scale of f_v */
-    ADCGS_ROLE_ENTROPY_SIGMA = 1, /**< E_Sigma: f_v -> of Sigma_v */
-    ADCGS_ROLE_ENTROPY_COLOUR = 2,/**< E_C: f_v -> of C_v */
-    ADCGS_ROLE_ENTROPY_FG = 3,    /**< E_fg: 3 + chunk, chunk 0..3: f_v and earlier chunks of f_g,k -> of this chunk */
+    ADCGS_ROLE_ENTROPY_SIGMA = 1, /**< E_Sigma: f_v -> mean and scale of Sigma_v */
+    ADCGS_ROLE_ENTROPY_COLOUR = 2,/**< E_C: f_v -> mean and scale of C_v */
+    ADCGS_ROLE_ENTROPY_FG = 3,    /**< E_fg: 3 + chunk, chunk 0..3: f_v and earlier chunks of f_g,k -> the same of this chunk */
     ADCGS_ROLE_ENTROPY_STEPS = 7, /**< E_q: f_v -> step indices of Sigma_v, C_v and the chunks of f_g */
     ADCGS_ROLE_PREDICTION = 8,    /**< F_theta (binary32) */
     ADCGS_ROLE_COARSE = 9,        /**< F_omega (binary32) */
@@ -52,8 +52,8 @@ typedef struct adcgs_layer {
 /**
  * A network. Hidden layers use leaky ReLU of slope 1/64; the last is linear.
  * E24 (roles below 8): input clip(shr(yq, in_shift), 2047); the last layer's rows are [mu of C channels, then sigma index of
- * C channels]; mu = clip(shr(acc, shift), 32767), si = clip3(0, 63, shr(acc, sigma_shift) + sigma_offset). E_q has the former
- * rows alone, and uses no sigma_shift and no sigma_offset: they are 0.
+ * C channels]; mu = clip(shr(acc, shift), 32767), si = clip3(0, 63, shr(acc, sigma_shift) + sigma_offset). E_q only has the mu
+ * rows and uses neither sigma_shift nor sigma_offset: both are 0.
  * A network with n_in == 0 has one layer and its outputs are its biases.
  */
 typedef struct adcgs_net {
@@ -66,7 +66,7 @@ typedef struct adcgs_net {
     adcgs_layer layer[ADCGS_NET_LAYERS_MAX];
 } adcgs_net;
 
-void adcgs_net_clear(adcgs_net *net); /**< frees with memory NULL accounting; harmless on zeroed structs */
+void adcgs_net_clear(adcgs_net *net); /**< frees with NULL as memory; harmless on zeroed structs */
 uint32_t adcgs_net_weights(const adcgs_net *net);
 static inline uint32_t adcgs_net_inputs(const adcgs_net *net)
 {
@@ -76,18 +76,18 @@ static inline uint32_t adcgs_net_outputs(const adcgs_net *net)
 {
     return net->layer[net->n_layers - 1].w.rows;
 }
-/** Whether a role's outputs are means and scale indices of a prior, half and half. */
+/** Whether a role's outputs are the means (first half) and scale indices (second half) of a prior. */
 static inline int adcgs_role_is_prior(int role)
 {
     return role < ADCGS_ROLE_ENTROPY_STEPS;
 }
-/** Channels of an E24 network: each row of the last layer is one, or each two rows are. */
+/** Channels of an E24 network: the rows of the last layer, or half of them if it gives a prior. */
 static inline uint32_t adcgs_net_channels(const adcgs_net *net)
 {
     return adcgs_role_is_prior(net->role) ? adcgs_net_outputs(net) / 2 : adcgs_net_outputs(net);
 }
 
-/** An E24 network made ready: int16 weights packed for the CPU level. */
+/** An E24 network prepared for evaluation: int16 weights packed for the CPU level. */
 typedef struct adcgs_e24 adcgs_e24;
 /**
  * Checks shapes, |w| <= 2047, mode 0 (the numbers m are the weights, e is not used), and the row bound
@@ -99,11 +99,11 @@ void adcgs_e24_free(adcgs_e24 **net, adcgs_memory *memory);
 /**
  * Evaluate 64 samples. x: [n_in][64] yq in 1/64 step (already the reconstruction; shift and clip happen inside).
  * mu: [C][64] in 1/64 step; si: [C][64] in 0..63, C = n_out/2. scratch: adcgs_e24_scratch() bytes, 64-byte aligned.
- * Of E_q there is no si (NULL), and C = n_out.
+ * For E_q, si is NULL and C = n_out.
  */
 void adcgs_e24_eval(const adcgs_e24 *net, const int16_t *x, int16_t *mu, uint8_t *si, void *scratch);
 size_t adcgs_e24_scratch(const adcgs_e24 *net);
-/** Known-answer test of every E24 kernel this machine has. */
+/** Known-answer test of every E24 kernel that this machine supports. */
 adcgs_status adcgs_e24_check(adcgs_error *error);
 
 /** shr of the specification: floor((v + 2^(s-1)) / 2^s), s = 0 gives v. |v| < 2^30, 0 <= s <= 24. */
@@ -119,11 +119,11 @@ static inline int32_t adcgs_clip(int32_t v, int32_t limit)
     return v > limit ? limit : v < -limit ? -limit : v;
 }
 
-/** Weight coder (bitstream study 4): code class, top bits, rest, sign of m with adaptive contexts. */
+/** Weight coder (bitstream study 4): codes class, top bits, rest and sign of m with adaptive contexts. */
 void adcgs_tensor_encode(adcgs_range_enc *e, const adcgs_tensor *t);
 /**
- * rows, cols, mode, e are set; m is allocated by the caller, from adcgs_alloc(). Sticky errors in d; ADCGS_ERR_DATA on values
- * outside the mode's range.
+ * The caller sets rows, cols, mode and e, and allocates m with adcgs_alloc(). Errors of d are sticky. ADCGS_ERR_DATA if a value
+ * is outside the mode's range.
  */
 adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_error *error);
 
@@ -134,7 +134,7 @@ adcgs_status adcgs_tensor_decode(adcgs_range_dec *d, adcgs_tensor *t, adcgs_erro
 int adcgs_table_support(int shape, int level);
 /** CDF of level l, 2T+3 entries, 0 .. 65536; symbol k is value k-T, the last symbol is the escape. */
 const uint32_t *adcgs_table_cdf(int shape, int level);
-/** Decode / encode what a magnitude exceeds a bound by, 0..65534: a prefix of at most 15 ones, then as many bits. */
+/** Decode / encode the excess of a magnitude over a bound, 0..65534: a prefix of at most 15 ones, then as many bits. */
 int32_t adcgs_excess_dec(adcgs_range_dec *d);
 void adcgs_excess_enc(adcgs_range_enc *e, int32_t excess);
 /** Decode / encode one value under level si (si == 0 is never coded: the value is 0). */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The value tables: one cumulative distribution per shape and sigma level,
- * symmetric around the value 0, laid out by the compiler from their left
- * halves. All of it is constant data.
+ * symmetric around the value 0. The compiler builds them from their left
+ * halves. Everything is constant data.
  */
 #include "net/net.h"
 

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The weight coder (spec clause "Weights"). Every tensor is a run of 32-bit
- * numbers; what the trainer left empty (low bits on a coarse lattice, large
- * magnitudes, differences between rows) costs next to nothing, and what it did
- * not leave empty is still exact. The walk over the elements exists once, for
- * both directions; a coder with e set encodes.
+ * numbers. Unused precision and range (low bits on a coarse lattice, large
+ * magnitudes, differences between rows) cost next to nothing, and all values
+ * are exact. One walk over the elements serves both directions; a coder with e
+ * set encodes.
  */
 #include "net/net.h"
 
 #define CLASSES 33
 
 typedef struct coder {
-    adcgs_range_enc *e; /* one of these */
+    adcgs_range_enc *e; /* one of e and d is set */
     adcgs_range_dec *d;
     int bad;            /* a value does not fit its type */
 } coder;
 
 typedef struct integer_models {
-    adcgs_adaptive size[CLASSES][CLASSES]; /* is the class larger than this? given the neighbours' mean class */
+    adcgs_adaptive size[CLASSES][CLASSES]; /* is the class larger than this index? given the neighbours' mean class */
     adcgs_adaptive top[CLASSES][3];
 } integer_models;
 
@@ -33,7 +33,7 @@ static int code_bit(coder *c, adcgs_adaptive *context, int bit)
     return bit;
 }
 
-/* n raw bits, 0..32, the high part first when there are more than 16. */
+/* Code n raw bits, 0..32; if there are more than 16, the high part first. */
 static uint32_t code_raw(coder *c, uint32_t value, int n)
 {
     if (n == 0)
@@ -48,7 +48,7 @@ static uint32_t code_raw(coder *c, uint32_t value, int n)
     return value;
 }
 
-/* A number of n bits, most significant first, in a tree of 2^n contexts. */
+/* Code a number of n bits, most significant first, in a tree of 2^n contexts. */
 static uint32_t code_tree(coder *c, adcgs_adaptive *tree, uint32_t value, int n)
 {
     uint32_t node = 1;
@@ -57,7 +57,7 @@ static uint32_t code_tree(coder *c, adcgs_adaptive *tree, uint32_t value, int n)
     return node - (1u << n);
 }
 
-/* The n bits below an implied leading one: at most two of them adaptive, the rest raw. */
+/* Code the n bits below an implied leading one: at most two of them adaptively, the rest raw. */
 static uint32_t code_tail(coder *c, adcgs_adaptive top[3], uint32_t value, int n)
 {
     const int adaptive = ADCGS_MIN(n, 2), raw = n - adaptive;
@@ -82,7 +82,7 @@ static uint32_t magnitude_of(int32_t v)
     return v < 0 ? 0u - (uint32_t)v : (uint32_t)v;
 }
 
-/* One integer; *class becomes its bit length. context: the rounded mean class of its neighbours. */
+/* Code one integer; *class becomes its bit length. context: the rounded mean class of its neighbours. */
 static int32_t code_integer(coder *c, integer_models *models, int context, int32_t v, uint8_t *class)
 {
     const uint32_t magnitude = magnitude_of(v);
@@ -110,7 +110,7 @@ static int neighbour_context(const uint8_t *classes, uint32_t row, uint32_t col)
     return (up + left + 1) >> 1;
 }
 
-/* Everything but the two header elements of a mode 0 tensor. m must be readable also when decoding. */
+/* Code everything except the two header elements of a mode 0 tensor. m must be readable when decoding, too. */
 static void code_integers(coder *c, const adcgs_tensor *t, int zeros, int by_row, uint8_t *classes)
 {
     integer_models models;
@@ -157,7 +157,7 @@ static void code_floats(coder *c, const adcgs_tensor *t)
     }
 }
 
-/* Trailing zero bits common to all elements; 0 if all are zero. */
+/* Trailing zero bits common to all elements; 0 if all elements are zero. */
 static int common_zeros(const adcgs_tensor *t)
 {
     const size_t n = (size_t)t->rows * t->cols;
@@ -170,7 +170,7 @@ static int common_zeros(const adcgs_tensor *t)
     return zeros;
 }
 
-/* Are differences between rows smaller than the values? */
+/* Whether differences between rows are smaller than the values. */
 static int rows_are_smooth(const adcgs_tensor *t)
 {
     int64_t plain = 0, difference = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * One quantised value: a table symbol, or the escape symbol followed by a
- * sign and an Exp-Golomb code whose prefix is cut at 15 ones, so that damaged
- * data cannot make it longer.
+ * sign and an Exp-Golomb code. The code's prefix has at most 15 ones, so that
+ * damaged data cannot make it longer.
  */
 #include "net/net.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What a splat does to the sixteen pixels of a 4x4 block, shared by the blend
+ * Effect of a splat on the sixteen pixels of a 4x4 block, shared by the blend
  * and its backward pass. Needs lanes.h.
  */
 #ifndef ADCGS_RENDER_ALPHA_H
@@ -17,9 +17,9 @@ static const alignas(64) float pixel_y[16] = {0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f
                                               2.5f, 2.5f, 2.5f, 2.5f, 3.5f, 3.5f, 3.5f, 3.5f};
 
 /*
- * Opacity at offset (dx, dy) from the splat's centre, in two steps: first its logarithm to base 2, without the limit. The two in
- * a row are a long chain of operations that wait for each other; a loop of the first and then one of the second are two short
- * ones.
+ * Opacity at offset (dx, dy) from the splat's centre, in two steps: the first gives its logarithm to base 2, without the limit.
+ * Both steps in a row are one long chain of dependent operations. A loop over the first step and then a loop over the second are
+ * two short chains.
  */
 LANES_INLINE vf splat_power(const adcgs_splat2d *s, vf dx, vf dy)
 {
@@ -27,13 +27,13 @@ LANES_INLINE vf splat_power(const adcgs_splat2d *s, vf dx, vf dy)
     return vf_fma(dx, along, vf_fma(vf_mul(vf_set1(s->c), dy), dy, vf_set1(s->log2_opacity)));
 }
 
-/* 0 where it is below 1/255. */
+/* 0 where the opacity is below 1/255. */
 LANES_INLINE vf alpha_of_power(vf power)
 {
     return vf_only(vf_ge(power, vf_set1(ADCGS_POWER_MIN)), vf_exp2(power));
 }
 
-/* Pixels outside the image begin with no light left. */
+/* Initial transmittance of a block's pixels: 0 outside the image. */
 LANES_INLINE vf initial_transmittance(int x, int y, int width, int height)
 {
     alignas(64) float t[16];

@@ -2,14 +2,14 @@
 /** \file
  * Body of the binning kernel. The part of the ellipse alpha >= 1/255 within a
  * row of 4x4 blocks is convex, so the blocks it touches are those between its
- * leftmost and rightmost points; these are found for sixteen block rows, which
- * are four tile rows, at once.
+ * leftmost and rightmost points. The kernel finds these points for sixteen
+ * block rows, which are four tile rows, at once.
  */
 #include "render/raster_isa.h"
 
 #include <stdalign.h>
 
-/* How far ahead records are fetched: they were written by slot and are read by depth. */
+/* Prefetch distance of records, which were written by slot and are read by depth. */
 #define FETCH_AHEAD 12
 
 static const alignas(64) float row_centre[16] = {0.5f,  4.5f,  8.5f,  12.5f, 16.5f, 20.5f, 24.5f, 28.5f,
@@ -42,7 +42,7 @@ LANES_INLINE block_rows find_rows(const adcgs_splat2d *s, const adcgs_outline *o
 
 /*
  * A group of 4x4 tiles has sixteen block rows of sixteen blocks. With the rows' bits as 16-bit words, four words are one row
- * of tiles, and the mask of a tile is made of one hexadecimal digit of each.
+ * of tiles. The mask of a tile consists of one hexadecimal digit of each word.
  */
 #if ADCGS_LANES_ISA == 512
 typedef struct bin_frame {
@@ -58,7 +58,7 @@ static inline bin_frame bin_begin(int tiles_x)
     return (bin_frame){{_mm512_slli_epi64(first, 16), _mm512_slli_epi64(third, 16)}};
 }
 
-/* Masks of two rows of tiles, whose words stand in lanes 0-3 and 4-7. */
+/* Masks of two rows of tiles; their words are in lanes 0-3 and 4-7. */
 static inline __m512i tile_masks(__m512i words)
 {
     const __m512i digit = _mm512_set_epi64(12, 8, 4, 0, 12, 8, 4, 0);
@@ -128,7 +128,7 @@ static inline __m256i tile_masks(long long words)
 
 static inline uint32_t emit(uint64_t *out, __m256i items, __m256i masks)
 {
-    /* The set bits of four, first to last, as places of two 32-bit halves each. */
+    /* The set bits of four, first to last, as indices of two 32-bit halves each. */
     static const uint32_t halves_of[16] = {0,    0x10,   0x32,   0x3210,   0x54,   0x5410,   0x5432,   0x543210,
                                            0x76, 0x7610, 0x7632, 0x763210, 0x7654, 0x765410, 0x765432, 0x76543210};
     const __m256i hits = _mm256_cmpgt_epi64(masks, _mm256_setzero_si256());

@@ -11,19 +11,19 @@
 #endif
 
 /*
- * A tile's splats are taken so many at a time: their records and lists stay in the first cache while all blocks go through them,
- * and blocks without light left are spared the rest.
+ * Number of a tile's splats that are processed at a time. Their records and lists stay in the first-level cache while all blocks
+ * go through them, and blocks without remaining transmittance skip the later pieces.
  */
 #define PIECE 128
 
 typedef struct tile_piece {
     alignas(64) uint32_t splats[PIECE];
     alignas(64) uint32_t masks[PIECE];
-    alignas(64) uint32_t list[PIECE + 16]; /* splats of one block, and room for vectors written past the last */
+    alignas(64) uint32_t list[PIECE + 16]; /* splats of one block, with padding for vectors stored past the last */
     uint32_t n;
 } tile_piece;
 
-/* Splats and masks apart, so that vectors of either can be read; what lies past the last splat touches nothing. */
+/* Store splats and masks separately, so that either can be loaded as vectors. The padding past the last splat touches nothing. */
 static void take_piece(tile_piece *piece, const adcgs_tile_entry *entries, uint32_t n, const adcgs_splat2d *splats)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -36,7 +36,7 @@ static void take_piece(tile_piece *piece, const adcgs_tile_entry *entries, uint3
     piece->n = n;
 }
 
-/* List the splats that touch a block; returns how many. */
+/* List the splats that touch a block; returns their number. */
 #if ADCGS_LANES_ISA == 512
 static uint32_t select_block(tile_piece *piece, int block)
 {
@@ -58,7 +58,7 @@ static uint32_t select_block(tile_piece *piece, int block)
     for (uint32_t i = 0; i < piece->n; i += 8) {
         const __m256i masks = _mm256_sll_epi32(_mm256_load_si256((const __m256i *)(piece->masks + i)), to_sign);
         const uint32_t hit = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(masks));
-        /* A lane's number is its index's low three bits: what the shift leaves above them does not matter. */
+        /* A lane's number is its index's low three bits: bits that the shift leaves above them do not matter. */
         const __m256i from = _mm256_srlv_epi32(_mm256_set1_epi32((int)bits_of[hit]), digits);
         const __m256i splats = _mm256_load_si256((const __m256i *)(piece->splats + i));
         _mm256_storeu_si256((__m256i *)(piece->list + count), _mm256_permutevar8x32_epi32(splats, from));
@@ -87,12 +87,12 @@ LANES_INLINE vf power_at(const adcgs_splat2d *s, vf px, vf py)
     return splat_power(s, vf_sub(px, vf_set1(s->x)), vf_sub(py, vf_set1(s->y)));
 }
 
-/* Splats whose opacities in a block are found together. */
+/* Number of splats whose opacities in a block are computed together. */
 #define TOGETHER 8
 
 /*
- * Blend n splats of a list; returns whether light is left. Opacities of several splats come first and on their own: nothing in
- * them waits for the light that is left, while behind each other they would keep the processor waiting.
+ * Blend n splats of a list; returns whether transmittance remains. The opacities of several splats are computed first: they do
+ * not depend on the transmittance. Interleaved with the blending they would stall the processor.
  */
 LANES_INLINE int blend_block(block_state *state, const adcgs_splat2d *splats, const uint32_t *list, uint32_t n, float x, float y)
 {
@@ -126,7 +126,7 @@ static void write_block(const adcgs_blend_job *job, int x, int y, const block_st
     const size_t stride = (size_t)job->width;
     const int columns = job->width - x, lines = job->height - y;
     for (int c = 0; c < 3; c++) {
-        /* Adding zero makes -0 into +0: neither a black background nor a splat that adds nothing decides a zero's sign. */
+        /* Adding zero turns -0 into +0: neither a black background nor a splat that adds nothing decides a zero's sign. */
         const vf value = vf_add(vf_fma(state->t, vf_set1(job->background[c]), state->rgb[c]), vf_set1(0.0f));
         float *to = job->rgb + (size_t)c * plane + at;
         if (columns >= 4 && lines >= 4) {
@@ -142,7 +142,7 @@ static void write_block(const adcgs_blend_job *job, int x, int y, const block_st
     }
 }
 
-/* Light of a tile's blocks passes a piece of its splats; returns the blocks with light left. */
+/* Blend a piece of a tile's splats into its blocks; returns the blocks with remaining transmittance. */
 LANES_INLINE uint32_t blend_piece(block_state *blocks, uint32_t alive, tile_piece *piece, const adcgs_splat2d *splats,
                                   const float at[2])
 {

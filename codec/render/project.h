@@ -9,11 +9,11 @@
 #include "base/fmath.h"
 #include "render/render.h"
 
-/** log2(1/255): a splat adds nothing to a pixel where log2 of its alpha is below. */
+/** log2(1/255): a splat adds nothing to a pixel if log2 of its alpha there is below this. */
 #define ADCGS_POWER_MIN -0x1.ffa37cp+2f
-/** 1/255: a splat that is never more opaque than this is not drawn. */
+/** 1/255: a splat whose opacity never exceeds this is not rendered. */
 #define ADCGS_OPACITY_MIN 0x1.010102p-8f
-/** Keeps the screen covariance invertible for the thinnest needles: its condition number stays below 2^18. */
+/** Keeps the screen covariance invertible for the thinnest splats: its condition number stays below 2^18. */
 #define ADCGS_SHEAR 0x1.ffff8p-1f
 /** A pixel block is finished when all its transmittances are below this. */
 #define ADCGS_T_MIN 0x1.a36e2ep-14f
@@ -82,12 +82,12 @@ static inline void adcgs_project_shape(adcgs_projection *o, const adcgs_view *vi
     o->p = fmaf(o->f[0][2], o->f[0][2], fmaf(o->f[0][1], o->f[0][1], fmaf(o->f[0][0], o->f[0][0], filter)));
     o->r = fmaf(o->f[1][2], o->f[1][2], fmaf(o->f[1][1], o->f[1][1], fmaf(o->f[1][0], o->f[1][0], filter)));
     o->q = ADCGS_SHEAR * fmaf(o->f[0][2], o->f[1][2], fmaf(o->f[0][1], o->f[1][1], o->f[0][0] * o->f[1][0]));
-    /* p r - q^2 with one rounding's worth of error, whatever cancels. */
+    /* p r - q^2 with an error of one rounding, even under cancellation. */
     const float qq = o->q * o->q;
     o->det = fmaf(o->p, o->r, -qq) + fmaf(-o->q, o->q, qq);
 }
 
-/* Whether the splat is drawn at all; written so that NaN means no. */
+/* Whether the splat is rendered at all; NaN means no. */
 static inline int adcgs_project_drawn(const adcgs_projection *o, const adcgs_view *view, float opacity)
 {
     return (o->z > view->near_plane) & (opacity >= ADCGS_OPACITY_MIN) & (o->u >= -0x1p20f) & (o->u <= 0x1p20f) &

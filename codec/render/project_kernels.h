@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Body of the projection kernel: 64 slots at a time, then the drawn ones as records. */
+/** \file Body of the projection kernel: projects 64 slots at a time, then stores the visible ones as records. */
 #include "render/project.h"
 
 #include <stdalign.h>
@@ -10,8 +10,8 @@ typedef struct lanes64 {
     alignas(64) int32_t x0[64], x1[64], y0[64], y1[64], drawn[64];
 } lanes64;
 
-/* Twice the natural logarithm of how far alpha may fall. The margin covers the rounding of the blend, which grows with the
- * condition number of the covariance, so that culling never changes the image. */
+/* Twice the natural logarithm of the ratio by which alpha may fall. The margin covers the rounding of the blend, which grows
+ * with the condition number of the covariance, so that culling never changes the image. */
 static inline float reach(float log2_opacity, float condition)
 {
     return 0x1.62e43p+0f * ((log2_opacity - ADCGS_POWER_MIN) + 0x1p-9f) * fmaf(condition, 0x1p-19f, 1.0f);
@@ -53,7 +53,7 @@ static void project_lanes(lanes64 *o, const adcgs_project_job *job, uint32_t fir
         o->width[l] = sqrtf(g.det) * ir;
         o->ym[l] = ym;
         o->y_right[l] = g.q * xm / g.p;
-        /* The centres of the pixels concerned lie in [u - xm, u + xm]. */
+        /* The centres of the affected pixels lie in [u - xm, u + xm]. */
         const float ex = fmaf(xm + fabsf(g.u), 0x1p-20f, 0x1p-5f), ey = fmaf(ym + fabsf(g.v), 0x1p-20f, 0x1p-5f);
         const int32_t x0 = tile_below(ok, g.u - (xm + ex) + 0.5f, tiles_x), x1 = tile_below(ok, g.u + (xm + ex) + 15.5f, tiles_x);
         const int32_t y0 = tile_below(ok, g.v - (ym + ey) + 0.5f, tiles_y), y1 = tile_below(ok, g.v + (ym + ey) + 15.5f, tiles_y);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The renderer's stages and its workspace: project the slots, sort the drawn
+ * The renderer's stages and its workspace: project the slots, sort the visible
  * splats by depth, bin them into tiles in that order, blend the tiles. Every
- * stage is parallel over disjoint pieces whose results are put together by
+ * stage runs in parallel over disjoint pieces whose results are combined by
  * index, so the image does not depend on the number of threads.
  */
 #include "config.h"
@@ -10,15 +10,15 @@
 #include "render/raster_isa.h"
 #include "render/sort.h"
 
-/* Slots projected by one piece of work. */
+/* Slots in one piece of projection work. */
 #define PROJECT_PIECE 1024u
-/* Splats a scene may have, and (splat, tile) pairs a frame may have by the splats' tile rectangles. */
+/* Maximum number of slots, and of (splat, tile) pairs of a frame, counted by the splats' tile rectangles. */
 #define SPLATS_MAX ((uint64_t)1 << 28)
 #define ENTRIES_MAX ((uint64_t)1 << 28)
-/* Counters of all binning pieces together, unless one piece needs more. */
+/* Maximum number of counters of all binning pieces together, unless one piece needs more. */
 #define COUNTERS_MAX ((size_t)1 << 22)
 
-/* An array that grows and keeps no contents when it does. */
+/* An array that can grow; growing discards its contents. */
 typedef struct room {
     void *data;
     size_t bytes;
@@ -154,7 +154,7 @@ static adcgs_status project(adcgs_raster *r, const adcgs_primitives *primitives,
 
 /* ---- Binning ---- */
 
-/* Cut the sorted splats into pieces of about equal area and give each room for all its pairs. */
+/* Cut the sorted splats into pieces of about equal area, and reserve memory for all pairs of each piece. */
 static adcgs_status cut_pieces(adcgs_raster *r, adcgs_error *error)
 {
     const uint32_t *areas = r->areas.data;
@@ -193,7 +193,7 @@ static void bin_piece_splats(void *arg, int index, int thread)
     piece->emitted = r->dsp.bin(&r->bin, piece->begin, piece->end, counts, (uint64_t *)r->emitted.data + piece->at);
 }
 
-/* Turn the pieces' counts into their first places: by tile, then by piece. Also the first pair of each piece. */
+/* Turn the pieces' counts into their first positions: by tile, then by piece. Also set the first pair of each piece. */
 static uint32_t place_counts(adcgs_raster *r)
 {
     uint32_t *start = r->tile_start.data, *counts = r->counts.data, sum = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the kernels of the renderer take, and their variants; for raster.c alone. */
+/** \file Arguments of the renderer's kernels, and their variants; for raster.c alone. */
 #ifndef ADCGS_RENDER_RASTER_ISA_H
 #define ADCGS_RENDER_RASTER_ISA_H
 
@@ -31,8 +31,8 @@ typedef struct adcgs_bin_job {
     const adcgs_outline *outlines; /**< as projected */
     int tiles_x;
     adcgs_splat2d *to; /**< sorted */
-    uint32_t *first;   /**< pairs of this piece before each sorted splat; unless where is NULL */
-    uint32_t *where;   /**< sorted place of each slot, or NULL */
+    uint32_t *first;   /**< pairs of this piece before each sorted splat; not used if where is NULL */
+    uint32_t *where;   /**< sorted position of each slot, or NULL */
 } adcgs_bin_job;
 
 typedef struct adcgs_blend_job {
@@ -46,11 +46,11 @@ typedef struct adcgs_blend_job {
 } adcgs_blend_job;
 
 typedef struct adcgs_raster_dsp {
-    /** Project 64 slots from first; drawn ones are written from index at on, in slot order. Returns how many. */
+    /** Project 64 slots from first on. Visible splats are written from index at on, in slot order. Returns their number. */
     uint32_t (*project)(const adcgs_project_job *job, uint32_t first, uint32_t at);
     /**
-     * Copy sorted splats [begin, end) and list the tiles that each touches: out[i] = splat << 36 | tile << 16 | mask;
-     * counts[tile] is raised by one for each. Returns how many. out has room for the splats' areas and ADCGS_BIN_SLACK more.
+     * Copy sorted splats [begin, end) and list the tiles that each touches: out[i] = splat << 36 | tile << 16 | mask. Adds one to
+     * counts[tile] for each pair. Returns the number of pairs. out has room for the splats' areas and ADCGS_BIN_SLACK more.
      */
     uint32_t (*bin)(const adcgs_bin_job *job, uint32_t begin, uint32_t end, uint32_t *counts, uint64_t *out);
     /** Blend a tile and write its pixels. */

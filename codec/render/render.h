@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Rendering in strict binary32 (spec clause "Rendering"): project, order by
+ * Rendering in strict binary32 (spec clause "Rendering"): project, sort by
  * depth, bin into 16x16 tiles with exact 4x4-block masks, blend front to back.
- * The trainer uses the same forward pass and reads the kept lists back.
+ * The trainer uses the same forward pass and reads the kept lists.
  */
 #ifndef ADCGS_RENDER_RENDER_H
 #define ADCGS_RENDER_RENDER_H
@@ -14,7 +14,7 @@
 
 #define ADCGS_TILE 16
 
-/** The screen filter that streams name unless they have a reason: pixels^2 added to what a splat covers (Kerbl et al., 2023). */
+/** Default screen filter of streams: variance in pixels^2 added to a splat's screen covariance (Kerbl et al., 2023). */
 #define ADCGS_SCREEN_FILTER 0.3f
 
 /** A camera prepared for rendering: scene units, binary32. */
@@ -27,7 +27,7 @@ typedef struct adcgs_view {
     float limit[4];       /**< bounds of X/Z (lo, hi) and Y/Z (lo, hi) inside the Jacobian */
 } adcgs_view;
 
-/** Validates the camera; world = origin + scale * scene. Binary64, rounded once per field (spec "View"). */
+/** Validates the camera; world = origin + scale * scene. Computes in binary64, rounds once per field (spec "View"). */
 adcgs_status adcgs_view_init(adcgs_view *view, const adcgs_camera *camera, const double origin[3], double scale,
                              adcgs_error *error);
 
@@ -39,7 +39,7 @@ typedef struct adcgs_splat2d {
     float rgb[3];
     float depth;         /**< camera z, > near plane */
     uint16_t tile[4];    /**< x0, y0, x1, y1: tiles [x0,x1) x [y0,y1) that may be touched */
-    uint32_t slot;       /**< primitive it came from */
+    uint32_t slot;       /**< index of the primitive */
     float spare[3];
 } adcgs_splat2d;
 
@@ -57,20 +57,20 @@ void adcgs_raster_free(adcgs_raster **raster);
 
 /**
  * Render. primitives->n is a multiple of 64 and its arrays are 64-byte aligned. rgb: planar [3][height][width]. More than 2^28
- * (splat, tile) pairs by the splats' bounding rectangles are ADCGS_ERR_LIMIT. No allocation once the workspace has grown. keep
- * nonzero: what backward needs stays readable through adcgs_raster_kept() until the next call.
+ * (splat, tile) pairs by the splats' bounding rectangles are ADCGS_ERR_LIMIT. Allocates nothing once the workspace has grown. If
+ * keep is nonzero, the data for the backward pass stays readable through adcgs_raster_kept() until the next call.
  */
 adcgs_status adcgs_raster_forward(adcgs_raster *raster, const adcgs_primitives *primitives, const adcgs_view *view,
                                   const float background[3], float screen_filter, float *rgb, int keep, adcgs_error *error);
 
 /**
- * Draw depth and coverage in place of colours: the same splats with the same weights. sums: planar [3][height][width]: the sum
- * of weight times camera z in scene units, the sum of weights, and zeros. Ends what the last forward pass kept.
+ * Render depth and coverage in place of colours: the same splats with the same weights. sums: planar [3][height][width]: the sum
+ * of weight times camera z in scene units, the sum of weights, and zeros. Discards the data kept by the last forward pass.
  */
 adcgs_status adcgs_raster_depth(adcgs_raster *raster, const adcgs_primitives *primitives, const adcgs_view *view,
                                 float screen_filter, float *sums, adcgs_error *error);
 
-/** What the last forward pass with keep left behind. */
+/** Data kept by the last forward pass with keep. */
 typedef struct adcgs_kept {
     uint32_t n_splats;
     const adcgs_splat2d *splats;     /**< [n_splats], by depth, then slot */

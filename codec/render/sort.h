@@ -6,7 +6,7 @@
 #include "base/pool.h"
 
 /**
- * Sort n keys by their upper 32 bits, stably. other: [n] scratch. Returns where the result is: keys or other.
+ * Sort n keys by their upper 32 bits, stably. other: [n] scratch. Returns the array that holds the result: keys or other.
  */
 uint64_t *adcgs_sort_keys(uint64_t *keys, uint64_t *other, uint32_t n);
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file From a camera in world units to a view in scene units (spec clause "View"). */
+/** \file Conversion of a camera in world units to a view in scene units (spec clause "View"). */
 #include "render/render.h"
 
 #include <math.h>
 
-/* What a view may hold: far beyond any use, near enough that nothing overflows on the way. */
+/* Bound of a view's translation, scene units: far beyond any use, small enough that nothing overflows later. */
 #define FIELD_MAX 0x1p30
 
 static int usable(double v, double lo, double hi)

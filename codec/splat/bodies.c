@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Poses of rigid bodies, in plain C: there are few of them. */
+/** \file Poses of rigid bodies, in plain C: there are few bodies. */
 #include "splat/bodies.h"
 
 #include "splat/quaternion.h"
 
-/* The middle of the box of a body's voxels; the sum of both ends is exact, in half voxels. */
+/* The centre of the box of a body's voxels; the sum of both ends is exact, in half voxels. */
 static void set_centre(float centre[3], const adcgs_model *m, const uint32_t low[3], const uint32_t high[3])
 {
     const float half = 0.5f * m->voxel;
@@ -16,7 +16,7 @@ void adcgs_bodies_init(adcgs_body_pose pose[ADCGS_BODIES_MAX], const adcgs_model
 {
     uint32_t low[ADCGS_BODIES_MAX][3], high[ADCGS_BODIES_MAX][3] = {{0}};
     memset(pose, 0, ADCGS_BODIES_MAX * sizeof *pose);
-    uint8_t tier[ADCGS_BODIES_MAX]; /* the first that has anchors of the body: it is there if any of them is */
+    uint8_t tier[ADCGS_BODIES_MAX]; /* first tier with anchors of the body: always present if any of its anchors is */
     memset(low, 0xff, sizeof low);
     memset(tier, 0xff, sizeof tier);
     for (uint32_t i = 0; m->params.bodies && i < m->n; i++)

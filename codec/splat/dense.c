@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Dense layers: the portable reference and the choice of a variant. */
+/** \file Dense layers: the portable reference, and the choice of a variant. */
 #include "config.h"
 
 #include "splat/dense_isa.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Dense layers in strict binary32 over 64 samples (decision D3; spec clause
- * "Binary32 networks"): every output is one chain of fused multiply-adds in
- * ascending input order, so every CPU gives the same bits. Also the trainer's
- * forward and input-gradient kernel.
+ * "Binary32 networks"). Every output is one chain of fused multiply-adds in
+ * ascending input order, so every CPU gives the same bits. The trainer uses
+ * the same kernel for its forward pass and its input gradients.
  */
 #ifndef ADCGS_SPLAT_DENSE_H
 #define ADCGS_SPLAT_DENSE_H
@@ -24,7 +24,7 @@ typedef struct adcgs_dense_dsp {
     void (*residual)(float *y, const float *x, int n);
 } adcgs_dense_dsp;
 
-/** The row of an input that is 1 in every lane; one is 64-byte aligned. */
+/** Fill a row of an input that is 1 in every lane; one is 64-byte aligned. */
 static inline void adcgs_dense_ones(float one[ADCGS_LANES])
 {
     for (int l = 0; l < ADCGS_LANES; l++)

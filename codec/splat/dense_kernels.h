@@ -4,8 +4,9 @@
  * type V, its width VW, the columns of a register tile COLS (COLS*VW divides
  * 64) and the operations LOAD, STORE, SPREAD, FMADD, ADDV, LRELU.
  *
- * A tile of up to six rows by COLS vectors stays in registers while all inputs
- * pass by, so each output is one chain of fused multiply-adds in input order.
+ * A tile of up to six rows by COLS vectors stays in registers during the loop
+ * over all inputs, so each output is one chain of fused multiply-adds in input
+ * order.
  */
 #define ROWS_MAX 6
 #define INLINE static inline __attribute__((always_inline))
@@ -68,7 +69,7 @@ static void dense_rows(int rows, float *y, const float *init, const float *bias,
     }
 }
 
-/* The rows are dealt out evenly: a remainder of one or two rows would leave the multipliers idle. */
+/* Distribute the rows evenly over tiles: a remainder of one or two rows would leave the multipliers idle. */
 static void dense(float *y, const float *init, const float *bias, const float *w, size_t ldw, const float *x, int n_out, int n_in)
 {
     const int tiles = (n_out + ROWS_MAX - 1) / ROWS_MAX;

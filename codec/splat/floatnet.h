@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A binary32 network made ready (spec clause "Binary32 networks"). Layer 0 is
- * the caller's affair, as its inputs come in parts that are kept for different
- * times; everything after it is one call.
+ * A binary32 network prepared for evaluation (spec clause "Binary32 networks").
+ * The caller evaluates layer 0, since its inputs come in parts that are valid
+ * for different times. One call evaluates all later layers.
  */
 #ifndef ADCGS_SPLAT_FLOATNET_H
 #define ADCGS_SPLAT_FLOATNET_H
@@ -21,12 +21,12 @@ typedef struct adcgs_floatnet {
     float *data;
 } adcgs_floatnet;
 
-/** Convert; an absent network gives n_layers 0. */
+/** Convert a network; an absent network gives n_layers 0. */
 adcgs_status adcgs_floatnet_init(adcgs_floatnet *out, const adcgs_net *net, adcgs_memory *memory, adcgs_error *error);
 void adcgs_floatnet_clear(adcgs_floatnet *net, adcgs_memory *memory);
 /**
- * From layer 0's sums to the outputs [n_out][64]. z: [width][64], layer 0's sums, overwritten; other: [width][64] scratch.
- * Returns z or other.
+ * Evaluate from layer 0's sums to the outputs [n_out][64]. z: [width][64], layer 0's sums, overwritten; other: [width][64]
+ * scratch. Returns the buffer with the outputs: z or other.
  */
 float *adcgs_floatnet_finish(const adcgs_floatnet *net, const adcgs_dense_dsp *dsp, float *z, float *other);
 /** Value of an element of a tensor. */

@@ -5,7 +5,7 @@
 
 #include "base/fmath.h"
 
-/** A quaternion whose squared norm is outside cannot be normalised; it becomes the identity. */
+/** Whether a squared norm is within the range that can be normalised. Outside, the quaternion becomes the identity. */
 static inline int adcgs_usable_norm(float n)
 {
     return n >= 0x1p-40f && n <= 0x1p100f;

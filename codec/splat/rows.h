@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How primitives lie in memory: arrays of as many slots, one after the other, and anchors in groups of ADCGS_LANES. */
+/** \file Memory layout of primitives: one array of slots per number, one after the other; anchors in groups of ADCGS_LANES. */
 #ifndef ADCGS_SPLAT_ROWS_H
 #define ADCGS_SPLAT_ROWS_H
 
 #include "model/model.h"
 
-/** The arrays, in the order in which conformance point S has a primitive's numbers. */
+/** The arrays, in the order of a primitive's numbers in conformance point S. */
 enum {
     ADCGS_ROW_MEAN = 0,
     ADCGS_ROW_SCALE = 3,
@@ -15,12 +15,12 @@ enum {
     ADCGS_ROWS = 14
 };
 
-/** The arrays from some slot on. */
+/** Pointers into the arrays at some slot. */
 typedef struct adcgs_slot_out {
     float *mean[3], *scale[3], *rotation[4], *opacity, *colour[3];
 } adcgs_slot_out;
 
-/** The arrays in rows [ADCGS_ROWS][n], from a slot on. */
+/** Pointers into rows [ADCGS_ROWS][n] at a slot. */
 static inline adcgs_slot_out adcgs_rows_at(float *rows, size_t n, size_t slot)
 {
     float *const at = rows + slot;
@@ -35,7 +35,7 @@ static inline adcgs_slot_out adcgs_rows_at(float *rows, size_t n, size_t slot)
     return o;
 }
 
-/** All of rows [ADCGS_ROWS][n], to be read. */
+/** All of rows [ADCGS_ROWS][n], for reading. */
 static inline adcgs_primitives adcgs_rows_primitives(float *rows, uint32_t n)
 {
     const adcgs_slot_out o = adcgs_rows_at(rows, n, 0);
@@ -47,13 +47,13 @@ static inline adcgs_primitives adcgs_rows_primitives(float *rows, uint32_t n)
                               .colour = {o.colour[0], o.colour[1], o.colour[2]}};
 }
 
-/** Groups that n anchors make; the last one is padded. */
+/** Number of groups for n anchors; the last one is padded. */
 static inline uint32_t adcgs_lane_groups(uint32_t n)
 {
     return (n + ADCGS_LANES - 1) / ADCGS_LANES;
 }
 
-/** Slot of primitive k of an anchor that has `per_anchor` of them: by group, then by k, then by anchor. */
+/** Slot of primitive k of an anchor with `per_anchor` primitives: by group, then by k, then by anchor. */
 static inline size_t adcgs_slot_of(uint32_t anchor, int per_anchor, int k)
 {
     return ((size_t)(anchor / ADCGS_LANES) * (size_t)per_anchor + (size_t)k) * ADCGS_LANES + anchor % ADCGS_LANES;

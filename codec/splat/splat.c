@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Prediction and deformation over groups of 64 anchors. What depends on no time
- * is evaluated once: the canonical primitives and, for groups in which something
- * moves, the part of the deformation networks' first layer that the anchors
- * decide. A group without motion is written once and never touched again.
+ * Prediction and deformation over groups of 64 anchors. Values that do not
+ * depend on time are computed once: the canonical primitives and, for groups
+ * with a moving anchor, the anchors' part of the deformation networks' first
+ * layer. A group without motion is written once and never changes again.
  */
 #include "config.h"
 
@@ -19,7 +19,7 @@
 
 #include <stdalign.h>
 
-/* Rows of scratch beside three buffers as wide as the widest network: Sigma_v, f_p and f_v, f_g. */
+/* Rows of scratch, in addition to three buffers as wide as the widest network: Sigma_v, f_p and f_v, f_g. */
 #define INPUT_ROWS (ADCGS_SIGMA_MAX + 6 * ADCGS_OCTAVES_MAX + ADCGS_NV_MAX + ADCGS_NG_MAX)
 
 struct adcgs_splat {
@@ -30,7 +30,7 @@ struct adcgs_splat {
     adcgs_splat_dsp dsp;
     adcgs_floatnet prediction, coarse, fine;
     adcgs_steps steps;
-    uint32_t groups, moving; /* groups of 64 anchors; those in which an anchor moves */
+    uint32_t groups, moving; /* groups of 64 anchors; groups in which an anchor moves */
     int width;               /* widest layer of the networks */
     float *out;              /* [ADCGS_ROWS][groups*k*64] */
     uint32_t *moving_group;  /* [moving] */
@@ -41,7 +41,7 @@ struct adcgs_splat {
     float *coarse_part, *fine_part; /* [moving][outputs of layer 0][64]: layer 0 over the static inputs */
     float *scratch;                 /* [threads][scratch_rows][64] */
     size_t scratch_rows;
-    float *time_code, *coarse_time, *fine_time; /* a row of Z; bias and f_t's part of layer 0 */
+    float *time_code, *coarse_time, *fine_time; /* interpolated row of Z; bias and f_t's part of layer 0 */
     adcgs_body_pose pose[ADCGS_BODIES_MAX];
     float time;
     int has_time;
@@ -56,8 +56,8 @@ static adcgs_slot_out slot_out(const adcgs_splat *s, uint32_t group, int k)
 /* ---- Inputs of a group ---- */
 
 /*
- * Latents of 64 anchors as rows of 64 lanes; lanes past the last anchor are 0. stride: values from anchor to anchor.
- * factor: of each anchor's steps, or NULL.
+ * Convert latents of 64 anchors to rows of 64 lanes; lanes past the last anchor are 0. stride: values from anchor to anchor.
+ * factor: the factor of each anchor's steps, or NULL.
  */
 static void load_rows(float *rows, const int16_t *yq, size_t stride, const float *d, int channels, uint32_t first, uint32_t n,
                       const float *factor)
@@ -86,7 +86,7 @@ static void load_present(int32_t present[ADCGS_LANES], const adcgs_model *m, uin
         present[l] = first + l < m->n && (m->mask[first + l] >> k & 1);
 }
 
-/* Factors of a group's steps, by adcgs_group_steps(). */
+/* Factors of a group's steps, indexed by adcgs_group_steps(). */
 typedef struct adcgs_group_factors {
     float of[ADCGS_STEPS_MAX][ADCGS_LANES];
 } adcgs_group_factors;
@@ -96,14 +96,14 @@ static const float *factor_of(const adcgs_model *m, const adcgs_group_factors *f
     return m->params.adaptive_steps ? factors->of[adcgs_group_steps(group)] : NULL;
 }
 
-/* ---- What depends on no time ---- */
+/* ---- Values that do not depend on time ---- */
 
 typedef struct canonical_job {
     adcgs_splat *splat;
     const uint32_t *moving_index; /* [groups] index among the moving groups, or UINT32_MAX */
 } canonical_job;
 
-/* f_g of primitive k of a group, chunk by chunk: each has factors of its own. */
+/* Load f_g of primitive k of a group, chunk by chunk: each chunk has its own factors. */
 static void load_fg(float *fg, const adcgs_model *m, uint32_t first, int k, const adcgs_group_factors *factors)
 {
     const int n_fg = m->params.n_fg, count = n_fg / m->params.chunks;
@@ -114,7 +114,7 @@ static void load_fg(float *fg, const adcgs_model *m, uint32_t first, int k, cons
     }
 }
 
-/* What is missing between the anchors of the first tiers, where the others are absent, is covered by larger primitives. */
+/* While finer tiers are absent, larger primitives cover the gaps between the anchors of the first tiers. */
 static void grow(adcgs_anchor_lanes *anchor, const adcgs_model *m)
 {
     const float factor = adcgs_step_factor(m->absent ? m->growth[m->finest - m->absent] : 0);
@@ -149,7 +149,7 @@ static void predict_group(adcgs_splat *s, uint32_t group, uint32_t index, const 
     }
 }
 
-/* The part of a deformation network's layer 0 that the anchors decide. */
+/* Compute the static inputs' part of a deformation network's layer 0. */
 static void static_part(const adcgs_splat *s, float *to, const adcgs_floatnet *net, const float *x, int n_in)
 {
     if (net->n_layers)
@@ -228,7 +228,7 @@ static void *get(adcgs_splat *s, size_t count, size_t size, int *missing, adcgs_
     return p;
 }
 
-/* Columns of Z: f_t, and the poses. */
+/* Number of columns of Z: f_t, and the poses. */
 static size_t time_columns(const adcgs_model *m)
 {
     return (size_t)m->params.time_width + adcgs_pose_columns(&m->params);
@@ -272,7 +272,7 @@ static adcgs_status build(adcgs_splat *s, adcgs_cpu_level cpu, uint32_t *moving_
 
 void adcgs_splat_dsp_init(adcgs_splat_dsp *dsp, adcgs_cpu_level level)
 {
-    (void)level; /* without SIMD */
+    (void)level; /* unused without SIMD */
     *dsp = adcgs_splat_scalar;
 #ifdef HAVE_AVX2
     if (level >= ADCGS_CPU_AVX2)
@@ -327,7 +327,7 @@ void adcgs_splat_free(adcgs_splat **splat)
 
 /* ---- At a time ---- */
 
-/* f_t and the poses. */
+/* Interpolate f_t and the poses. */
 static void interpolate_time(adcgs_splat *s, float t)
 {
     const adcgs_tensor *z = &s->model->net[ADCGS_ROLE_TIME].layer[0].w;
@@ -351,7 +351,7 @@ static void interpolate_time(adcgs_splat *s, float t)
     }
 }
 
-/* What the time adds to a deformation network's layer 0: the same for all anchors. */
+/* Compute the time's part of a deformation network's layer 0: the same for all anchors. */
 static void time_part(float *to, const adcgs_floatnet *net, const float *time_code, int width)
 {
     const adcgs_float_layer *layer = &net->layer[0];
@@ -373,7 +373,7 @@ static const float *deform_outputs(const adcgs_splat *s, const adcgs_floatnet *n
         1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     if (!net->n_layers)
         return NULL;
-    /* One times the time's part, fused with the anchors' part, is their plain sum. */
+    /* Weight 1 times the time's part, fused with the anchors' part, is their plain sum. */
     s->dense.dense(z, part, NULL, time, 1, ones, net->layer[0].n_out, 1);
     return adcgs_floatnet_finish(net, &s->dense, z, other);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Body of the kernels from network outputs to primitives (spec clause
- * "Primitives"). Every loop is over 64 independent lanes and without branches,
- * so that compilers vectorise it for the CPU level it is compiled for.
+ * "Primitives"). Every loop runs over 64 independent lanes without branches,
+ * so that compilers vectorise it for their CPU level.
  */
 #include "base/fmath.h"
 #include "splat/quaternion.h"
@@ -111,7 +111,7 @@ static void turn(adcgs_anchor_motion *m, const float *r)
     }
 }
 
-/* Positions or offsets turned by rotation matrices; in, out: [3][64]. */
+/* Rotate positions or offsets by rotation matrices; in, out: [3][64]. */
 static void turn_vector(float *restrict out, const float *restrict in, const float matrix[9][ADCGS_LANES])
 {
     const float *x = in, *y = in + ADCGS_LANES, *z = in + 2 * ADCGS_LANES;
@@ -121,7 +121,7 @@ static void turn_vector(float *restrict out, const float *restrict in, const flo
     }
 }
 
-/* Products of quaternions, the rotation r after the rotation q, not normalised again; out, q: [4][64]. */
+/* Products of quaternions: the rotation q, then the rotation r; not normalised again. out, q: [4][64]. */
 static void turn_quaternion(float *restrict out, const float r[4][ADCGS_LANES], const float *restrict q)
 {
     LANES {
@@ -134,14 +134,14 @@ static void turn_quaternion(float *restrict out, const float r[4][ADCGS_LANES], 
     }
 }
 
-/* Rows of what bodies have changed, and of what is as it was where an anchor has none. */
+/* Restore the previous values of rows where an anchor has no body. */
 static void keep_bodiless(float *restrict changed, const float *restrict before, const int32_t *restrict has, int rows)
 {
     for (int c = 0; c < rows * ADCGS_LANES; c += ADCGS_LANES)
         LANES changed[c + l] = has[l] ? changed[c + l] : before[c + l];
 }
 
-/* An anchor's way since the middle of its life, and how much of it is there. */
+/* An anchor's motion since the middle of its lifetime, and the weight of its lifetime. */
 static void live(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, float t)
 {
     float u[ADCGS_LANES];
@@ -154,7 +154,7 @@ static void live(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, float t)
         LANES m->position[c][l] = fmaf(a->velocity[c][l], u[l], m->position[c][l]);
 }
 
-/* Anchors go with their bodies. */
+/* Anchors move with their bodies. */
 static void carry(adcgs_anchor_motion *m, const adcgs_body_lanes *b)
 {
     float from[3][ADCGS_LANES], to[3][ADCGS_LANES];
@@ -188,7 +188,7 @@ static void motion(adcgs_anchor_motion *m, const adcgs_anchor_lanes *a, const fl
         carry(m, bodies);
 }
 
-/* Orientations behind the anchor's rotation and its body's. */
+/* Orientations after the anchor's rotation and its body's. */
 static void deform_rotation(const adcgs_slot_out *to, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m, int rotation,
                             const adcgs_body_lanes *bodies, const int32_t *moves)
 {
@@ -209,7 +209,7 @@ static void deform_rotation(const adcgs_slot_out *to, const adcgs_slot_lanes *s,
     }
 }
 
-/* Offsets behind the same, [3][64]: those at rest, or in one of the two buffers. */
+/* Offsets after the same rotations, [3][64]: the canonical offsets, or one of the two buffers. */
 static const float *deform_offset(float *turned, float *carried, const adcgs_slot_lanes *s, const adcgs_anchor_motion *m,
                                   int rotation, const adcgs_body_lanes *bodies)
 {

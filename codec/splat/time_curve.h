@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /**
  * \file
- * The time table as a smooth curve (spec clause "Time"): a uniform cubic B-spline of its rows, whose motion has no corners where
- * that of a line from row to row has one at each, and in which neighbouring moments learn from each other. Beyond the first and
- * last row it goes on in a line, so that it begins and ends at these.
+ * The time table as a smooth curve (spec clause "Time"): a uniform cubic B-spline of its rows. Its motion has no corners, while
+ * linear interpolation has one at each row. Neighbouring times share rows, so they are trained together. Beyond the first and
+ * last rows the curve is extrapolated linearly, so that it begins and ends at these rows.
  */
 #ifndef ADCGS_SPLAT_TIME_CURVE_H
 #define ADCGS_SPLAT_TIME_CURVE_H
 
 #include "base/fmath.h"
 
-/** What is about t in [0,1]: a row, the next, one before and one behind, which may be rows that are not there; and weights. */
+/** The rows around t in [0,1]: row, the next, one before and one after, which may not exist; and their weights. */
 typedef struct adcgs_time_place {
     uint32_t row;
-    float fraction;  /**< of the way to the next */
+    float fraction;  /**< position between row and the next row */
     float weight[4]; /**< of rows row - 1 .. row + 2, on the smooth curve */
 } adcgs_time_place;
 
@@ -28,13 +28,13 @@ static inline adcgs_time_place adcgs_time_place_of(float t, uint32_t rows)
                                  fmaf(s * s, fmaf(0.5f, s, -1), two_thirds), r * r * r * sixth } };
 }
 
-/** A row that is not there, from the last that is and the one before that. */
+/** Extrapolate a row that does not exist, from the last row that does and the row before it. */
 static inline float adcgs_time_beyond(float last, float before)
 {
     return fmaf(2, last, -before);
 }
 
-/** Rows row - 1 .. row + 2 by their weights. */
+/** Blend rows row - 1 .. row + 2 by their weights. */
 static inline float adcgs_time_blend(const float weight[4], float a, float b, float c, float d)
 {
     return fmaf(weight[3], d, fmaf(weight[2], c, fmaf(weight[1], b, weight[0] * a)));
