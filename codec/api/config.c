@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Structs that grow from version to version, between callers and a library of different age: what one side does not know is
- * zero, which is the default of every setting.
+ * Structs that grow from version to version, exchanged by a caller and a library of different versions. A member that one side
+ * does not know is zero, and zero is the default of every setting.
  */
 #include "api/decoder_priv.h"
 
 #include <math.h>
 
-/* The struct of the first version ended in front of pool. No version has one as large as SIZE_MOST: such a size was never set. */
+/* The struct of the first version ended before pool. No version has one as large as SIZE_MOST: such a size was never set. */
 #define CONFIG_SIZE_LEAST offsetof(adcgs_config, pool)
 #define SIZE_MOST 4096
 
@@ -24,7 +24,7 @@ adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, ad
     own->size = sizeof *own;
     if (!theirs)
         return ADCGS_OK;
-    memcpy(&size, theirs, sizeof size); /* there may be less than an adcgs_config */
+    memcpy(&size, theirs, sizeof size); /* the caller's struct may be smaller than adcgs_config */
     if (size < CONFIG_SIZE_LEAST || size > SIZE_MOST)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "config: size is %zu, expected %zu: call adcgs_config_init() first", size,
                           sizeof *own);
@@ -32,13 +32,13 @@ adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, ad
     for (size_t i = sizeof *own; i < size; i++)
         if (bytes[i])
             return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED,
-                              "config: byte %zu is set, which this version of the library does not know", i);
+                              "config: byte %zu is set, but this version of the library does not know it", i);
     memcpy(own, theirs, ADCGS_MIN(size, sizeof *own));
     own->size = sizeof *own;
     return ADCGS_OK;
 }
 
-/** What is known of a stream without its segments. */
+/** Properties that are known before any segment is read. */
 static void tell_of_demand(const adcgs_decoder *d, adcgs_info *info)
 {
     const uint32_t n = adcgs_seek_segments(d->seek);
@@ -54,13 +54,13 @@ static void tell_of_demand(const adcgs_decoder *d, adcgs_info *info)
     info->bytes.total = adcgs_seek_bytes(d->seek);
 }
 
-/** Seconds of a tick, of which the first and the last mean infinities. */
+/** Seconds of a tick. The lowest and the highest tick mean minus and plus infinity. */
 static double seconds_of(const adcgs_stream *s, int64_t tick)
 {
     return tick == INT64_MIN ? -INFINITY : tick == INT64_MAX ? INFINITY : adcgs_ticks_to_seconds(s, tick);
 }
 
-/** What is known of a stream that comes, and how far it has. */
+/** Properties of a pushed stream, and its progress. */
 static void tell_of_push(const adcgs_decoder *d, adcgs_info *info)
 {
     adcgs_push_progress p;
@@ -87,7 +87,7 @@ adcgs_status adcgs_get_info(const adcgs_decoder *decoder, adcgs_info *info, size
     if (size < sizeof info->size || size > SIZE_MOST)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "info: size is %zu, expected %zu", size, sizeof own);
     if (decoder->push && !adcgs_push_has_head(decoder->push))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: the header has not come yet");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: the header has not arrived yet");
     memset(&own, 0, sizeof own); /* padding, too */
     adcgs_stream_info(&decoder->stream, &own);
     own.faults = (int)ADCGS_MIN(decoder->faults, (uint32_t)INT32_MAX);
@@ -109,7 +109,7 @@ adcgs_status adcgs_get_camera(const adcgs_decoder *decoder, int index, adcgs_cam
     ADCGS_REQUIRE(decoder, error);
     ADCGS_REQUIRE(camera, error);
     if (index < 0 || (uint32_t)index >= decoder->stream.n_cameras)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "camera %d asked for; the stream has %u", index,
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "camera %d requested; the stream has %u", index,
                           (unsigned)decoder->stream.n_cameras);
     *camera = decoder->stream.cameras[index];
     return ADCGS_OK;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The public decoder: opened, given bytes as they come, closed. */
+/** \file The public decoder: opening it, pushing bytes to it, closing it. */
 #include "api/decoder_priv.h"
 
 #include "base/cpu.h"
@@ -23,15 +23,15 @@ static void say_opened(const adcgs_decoder *d)
                   adcgs_pool_threads(d->pool), (unsigned long long)d->memory.peak);
 }
 
-/** Where a stream comes from: in order, or from any position. */
+/** Source of a stream: sequential, or with random access. */
 typedef struct origin {
     adcgs_read_fn read;
-    adcgs_read_at_fn read_at; /**< NULL: in order only */
+    adcgs_read_at_fn read_at; /**< NULL: sequential only */
     void *user;
-    uint64_t size, at;        /**< of read_at: bytes there are, and were read in order */
+    uint64_t size, at;        /**< of read_at: total size, and bytes read in order so far */
 } origin;
 
-/** In order from what is read at any position. */
+/** Read sequentially from a source with random access. */
 static int64_t read_in_order(void *user, void *buffer, size_t bytes)
 {
     origin *o = user;
@@ -42,12 +42,12 @@ static int64_t read_in_order(void *user, void *buffer, size_t bytes)
 }
 
 /**
- * Open for reading on demand, where there are segments to choose from. A stream that ends early or has a fault is one to be read
- * whole, which tells what can be used of it, or what is wrong.
+ * Open for reading on demand, if the stream has several segments. A stream that ends early or is faulty is read as a whole
+ * instead: only that shows its usable parts, or its fault.
  */
 static adcgs_status open_seek(adcgs_decoder *d, const origin *from, const adcgs_read_options *options, adcgs_error *error)
 {
-    adcgs_error why; /* a failure that reading it whole may mend is none yet */
+    adcgs_error why; /* not yet a failure: reading the whole stream may still succeed */
     adcgs_stream_init(&d->stream);
     const adcgs_status status = adcgs_seek_open(&d->seek, &d->stream, from->read_at, from->user, from->size, options, &why);
     if (status == ADCGS_OK && adcgs_seek_segments(d->seek) > 1)
@@ -159,7 +159,7 @@ void adcgs_close(adcgs_decoder **decoder)
     *decoder = NULL;
 }
 
-/* ---- Bytes as they come ---- */
+/* ---- Pushed bytes ---- */
 
 adcgs_status adcgs_open_push(adcgs_decoder **out, const adcgs_config *config, adcgs_error *error)
 {
@@ -171,7 +171,7 @@ adcgs_status adcgs_open_push(adcgs_decoder **out, const adcgs_config *config, ad
 
 static adcgs_status require_push(const adcgs_decoder *d, adcgs_error *error)
 {
-    return d->push ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: was not opened for bytes that come");
+    return d->push ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: was not opened with adcgs_open_push()");
 }
 
 adcgs_status adcgs_push(adcgs_decoder *decoder, const void *data, size_t bytes, size_t *used, adcgs_arrival *arrived,
@@ -199,9 +199,9 @@ adcgs_status adcgs_push_forget(adcgs_decoder *decoder, double time, adcgs_error 
     while (n + 1 < decoder->stream.n_segments && segments[n + 1].time_start <= time)
         n++;
     if (n > 0 && time < segments[n - 1].time_end + segments[n - 1].reach)
-        n--; /* the next is not yet faded in */
+        n--; /* the crossfade into the next one has not ended */
     if (n > 0)
-        adcgs_decoder_forget_drawn(decoder); /* of models that go, or are moved */
+        adcgs_decoder_forget_drawn(decoder); /* they refer to models that are freed or moved */
     adcgs_stream_forget(&decoder->stream, n, &decoder->memory);
     return ADCGS_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The public decoder, and what the files of this room share about it. */
+/** \file The public decoder, and the declarations that the files of this folder share. */
 #ifndef ADCGS_API_DECODER_PRIV_H
 #define ADCGS_API_DECODER_PRIV_H
 
@@ -15,43 +15,43 @@
 
 #include <stdio.h>
 
-/** A segment's model made ready to be drawn. */
+/** A segment's model prepared for rendering. */
 typedef struct adcgs_drawn {
-    adcgs_splat *splat;     /**< NULL: none is */
+    adcgs_splat *splat;     /**< NULL: nothing is prepared */
     uint32_t segment;
-    adcgs_model coarser;    /**< what splat is of, if the segment has more tiers; n 0: it is of the segment */
+    adcgs_model coarser;    /**< the model of splat, if the segment has more tiers; n 0: splat uses the segment's own model */
 } adcgs_drawn;
 
 struct adcgs_decoder {
     adcgs_memory memory;
     adcgs_pool *pool;       /**< the caller's or own_pool */
-    adcgs_pool *own_pool;   /**< NULL: the caller gave one */
+    adcgs_pool *own_pool;   /**< NULL: the caller gave a pool */
     adcgs_cpu_level cpu;
     adcgs_log log;
     adcgs_stream stream;
-    adcgs_seek *seek;       /**< reads its segments on demand; NULL: all are there */
-    adcgs_push_reader *push; /**< gives it its segments as bytes come; NULL: all are there */
-    adcgs_model unfinished; /**< the segment at hand of push, as far as it came; n 0: there is none */
-    int is_behind;          /**< more of it has come since */
-    uint32_t faults;        /**< that were concealed */
-    FILE *file;             /**< that it reads from, if that is a file opened here */
-    int tiers;              /**< that are drawn at most; 0: all */
-    adcgs_drawn drawn[2];   /**< of even and odd segments: that at hand, and in a fade the one before */
+    adcgs_seek *seek;       /**< reads segments on demand; NULL: all segments are in memory */
+    adcgs_push_reader *push; /**< reads segments from pushed bytes; NULL: all segments are in memory */
+    adcgs_model unfinished; /**< the segment that push is receiving, as far as it has come; n 0: none */
+    int is_behind;          /**< more of that segment has come since */
+    uint32_t faults;        /**< number of concealed faults */
+    FILE *file;             /**< file being read, if the decoder opened one */
+    int tiers;              /**< maximum number of tiers to render; 0: all */
+    adcgs_drawn drawn[2];   /**< for even and odd segments: the current one, and during a crossfade the previous one */
     adcgs_raster *raster;   /**< NULL until the first frame */
     float *planar;          /**< planes of [height][width], grows */
     size_t planar_size;     /**< floats in it */
 };
 
 /**
- * In front of everything a public function does: its caller's error may be NULL, but inside the reason of a failed allocation
- * has to be known (adcgs_alloc_status()).
+ * Put at the start of every public function. The caller's error may be NULL, but the implementation must know why an allocation
+ * failed (adcgs_alloc_status()).
  */
 #define ADCGS_OWN_ERROR(error)                        \
     adcgs_error own_error_ = { .status = ADCGS_OK };  \
     if (!(error))                                     \
     (error) = &own_error_
 
-/** Refuse a pointer that must not be NULL. */
+/** Fail if a pointer that must not be NULL is NULL. */
 #define ADCGS_REQUIRE(pointer, error)                                                      \
     do {                                                                                   \
         if (!(pointer))                                                                    \
@@ -61,16 +61,16 @@ struct adcgs_decoder {
 /** Set up own from a caller's struct of any version; NULL: all defaults. */
 adcgs_status adcgs_config_read(adcgs_config *own, const adcgs_config *theirs, adcgs_error *error);
 
-/** What is drawn at a time: the splats of a segment, and while it is faded into those of the segment before. */
+/** Splats to render at a time: those of a segment, and during a crossfade those of the segment before it. */
 typedef struct adcgs_moment {
     adcgs_primitives now, before;
-    int fades;              /**< 0: there is no `before` */
-    float weight;           /**< of what is now, 0..1 */
+    int fades;              /**< 0: no crossfade, `before` is unset */
+    float weight;           /**< of `now`, 0..1 */
 } adcgs_moment;
 
-/** After a look at the modes of arithmetic. */
+/** Fill out for a time. Also checks the floating-point modes. */
 adcgs_status adcgs_decoder_moment(adcgs_decoder *d, double time, adcgs_moment *out, adcgs_error *error);
-/** Before models are freed or moved. */
+/** Must be called before models are freed or moved. */
 void adcgs_decoder_forget_drawn(adcgs_decoder *d);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Frames leaving the decoder (spec clause "Output conversion"). */
+/** \file Conversion and digest of frames (spec clause "Output conversion"). */
 #include "api/frame.h"
 
 void adcgs_frame_to_u8(const adcgs_frame *frame, uint8_t *out)

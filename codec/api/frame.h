@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the library and its programs share about frames. */
+/** \file Declarations about frames that the library and its programs share. */
 #ifndef ADCGS_API_FRAME_H
 #define ADCGS_API_FRAME_H
 
@@ -7,7 +7,7 @@
 
 #include <adcgs/frame.h>
 
-/** A sample in 8 bits (spec clause "Output conversion"). */
+/** Convert a sample to 8 bits (spec clause "Output conversion"). */
 static inline uint8_t adcgs_sample_u8(float v)
 {
     const float clipped = v > 0.0f ? v < 1.0f ? v : 1.0f : 0.0f;

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What is drawn at a time: which segment serves it, which one is faded into it, and their splats. */
+/** \file Splats to render at a time: the segment that serves the time, the segment that is crossfaded with it, their splats. */
 #include "api/decoder_priv.h"
 
 #include "base/strict.h"
 
-/** The first segment that can be asked for: those before it were forgotten, or missed. */
+/** The first available segment: earlier ones were freed or missed. */
 static uint32_t first_segment(const adcgs_decoder *d)
 {
     return d->seek ? 0 : d->stream.first_segment;
 }
 
-/** The number behind the last segment that can be asked for. */
+/** One more than the number of the last available segment. */
 static uint32_t end_segment(const adcgs_decoder *d)
 {
     return d->seek ? adcgs_seek_segments(d->seek) : d->stream.first_segment + d->stream.n_segments + (d->unfinished.n > 0);
 }
 
-/** Of a decoder that does not seek: one that came, or the one that comes. */
+/** For a decoder that does not seek: a complete segment, or the one being received. */
 static const adcgs_model *model_of(const adcgs_decoder *d, uint32_t segment)
 {
     const uint32_t index = segment - d->stream.first_segment;
@@ -32,7 +32,7 @@ static double start_of(const adcgs_decoder *d, uint32_t segment)
     return adcgs_ticks_to_seconds(&d->stream, ticks[0]);
 }
 
-/** The moment up to which a segment's model knows what it shows. */
+/** End of the time range of a segment's model, with its crossfade. */
 static double reach_of(const adcgs_decoder *d, uint32_t segment)
 {
     int64_t ticks[3];
@@ -42,7 +42,7 @@ static double reach_of(const adcgs_decoder *d, uint32_t segment)
     return adcgs_ticks_to_seconds(&d->stream, ticks[1]) + adcgs_ticks_to_seconds(&d->stream, ticks[2]);
 }
 
-/** The last segment that starts at or before the time; the first if none does. */
+/** The last segment that starts at or before the time; the first segment if none does. */
 static uint32_t segment_at(const adcgs_decoder *d, double time)
 {
     uint32_t lo = first_segment(d), hi = end_segment(d);
@@ -56,7 +56,7 @@ static uint32_t segment_at(const adcgs_decoder *d, double time)
     return lo;
 }
 
-/** Whether the time belongs to the segment before as well, which fades into this one. */
+/** Whether the time is in the crossfade of the previous segment into this one. */
 static int fades(const adcgs_decoder *d, uint32_t segment, double time)
 {
     return segment > first_segment(d) && time < reach_of(d, segment - 1);
@@ -74,13 +74,13 @@ void adcgs_decoder_forget_drawn(adcgs_decoder *d)
     forget_drawn(d, &d->drawn[1]);
 }
 
-/** A segment's model that can be asked for without reading. */
+/** A segment's model if it is in memory; NULL if a seeking decoder must read it first. */
 static const adcgs_model *model_at_hand(const adcgs_decoder *d, uint32_t segment)
 {
     return d->seek ? adcgs_seek_at_hand(d->seek, segment) : model_of(d, segment);
 }
 
-/** Have a segment's model at hand, and with before that of the one in front of it. */
+/** Bring a segment's model into memory; if before is nonzero, also the model of the segment before it. */
 static adcgs_status fetch(adcgs_decoder *d, uint32_t segment, int before, adcgs_error *error)
 {
     if (model_at_hand(d, segment) && (!before || model_at_hand(d, segment - 1)))
@@ -89,22 +89,22 @@ static adcgs_status fetch(adcgs_decoder *d, uint32_t segment, int before, adcgs_
     return adcgs_seek_to(d->seek, segment, before, error);
 }
 
-/** Look at what has come since of the segment at hand. */
+/** Update the model of the segment being received if more of it has come. */
 static adcgs_status catch_up(adcgs_decoder *d, adcgs_error *error)
 {
     int drawable;
     if (!d->is_behind)
         return ADCGS_OK;
-    adcgs_decoder_forget_drawn(d); /* of models that go, or were moved */
+    adcgs_decoder_forget_drawn(d); /* they refer to models that are freed or were moved */
     adcgs_model_clear(&d->unfinished, &d->memory);
     const adcgs_status status = adcgs_push_peek(d->push, &d->unfinished, &drawable, error);
-    d->is_behind = status != ADCGS_OK; /* a failure is tried again with the next call */
+    d->is_behind = status != ADCGS_OK; /* after a failure, the next call tries again */
     if (status != ADCGS_OK)
         adcgs_model_clear(&d->unfinished, &d->memory);
     return status;
 }
 
-/** Splats of a segment's model, or of the tiers of it that are wanted. */
+/** Splats of a segment's model, or of its requested tiers. */
 static adcgs_status make_splat(adcgs_decoder *d, adcgs_drawn *drawn, const adcgs_model *model, adcgs_error *error)
 {
     if (d->tiers && d->tiers < model->finest + 1 - model->absent) {
@@ -114,7 +114,7 @@ static adcgs_status make_splat(adcgs_decoder *d, adcgs_drawn *drawn, const adcgs
     return adcgs_splat_create(&drawn->splat, model, d->cpu, d->pool, &d->memory, error);
 }
 
-/** Splats at a time, by a segment whose model is at hand. */
+/** Splats at a time, of a segment whose model is in memory. */
 static adcgs_status primitives_of(adcgs_decoder *d, uint32_t segment, double time, adcgs_primitives *out, adcgs_error *error)
 {
     const adcgs_model *const model = model_at_hand(d, segment);
@@ -137,20 +137,20 @@ adcgs_status adcgs_set_tiers(adcgs_decoder *decoder, int tiers, adcgs_error *err
     ADCGS_OWN_ERROR(error);
     ADCGS_REQUIRE(decoder, error);
     if (tiers < 0)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d tiers asked for", tiers);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d tiers requested, expected 0 or more", tiers);
     if (tiers != decoder->tiers)
         adcgs_decoder_forget_drawn(decoder);
     decoder->tiers = tiers;
     return ADCGS_OK;
 }
 
-/** The segment that serves a time, once there is one, and whether it is faded into then. What is not drawn then is forgotten. */
+/** Find the segment that serves a time, and whether the time is in its crossfade. Splats not needed at that time are freed. */
 static adcgs_status find_segment(adcgs_decoder *d, double time, uint32_t *segment, int *is_fade, adcgs_error *error)
 {
     ADCGS_TRY(adcgs_strict_modes(error)); /* the caller may have changed them since */
     ADCGS_TRY(catch_up(d, error));
     if (end_segment(d) == first_segment(d))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: no segment that can be drawn has come yet");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "decoder: no segment that can be rendered has arrived yet");
     *segment = segment_at(d, time);
     *is_fade = fades(d, *segment, time);
     if (!*is_fade)
@@ -158,14 +158,14 @@ static adcgs_status find_segment(adcgs_decoder *d, double time, uint32_t *segmen
     return ADCGS_OK;
 }
 
-/** Load the segment that serves a time, with blends also the one that fades into it. */
+/** Bring the segment that serves a time into memory; if blends is nonzero, also the segment that is crossfaded with it. */
 static adcgs_status bring(adcgs_decoder *d, double time, int blends, uint32_t *segment, int *is_fade, adcgs_error *error)
 {
     ADCGS_TRY(find_segment(d, time, segment, is_fade, error));
     ADCGS_TRY(fetch(d, *segment, blends && *is_fade, error));
     if (segment_at(d, time) == *segment && fades(d, *segment, time) == *is_fade)
         return ADCGS_OK;
-    /* The segment showed that the index is wrong, which happens once: times come from the segments now. */
+    /* The segment showed that the index is wrong, which happens only once: from now on, times come from the segments. */
     ADCGS_TRY(find_segment(d, time, segment, is_fade, error));
     return fetch(d, *segment, blends && *is_fade, error);
 }
@@ -182,7 +182,7 @@ adcgs_status adcgs_decoder_moment(adcgs_decoder *d, double time, adcgs_moment *o
     return primitives_of(d, segment - 1, time, &out->before, error);
 }
 
-/** Splats at a time, by the segment that serves it, alone. */
+/** Splats at a time, of the segment that serves it alone. */
 static adcgs_status primitives_at(adcgs_decoder *d, double time, uint32_t *segment, adcgs_primitives *out, adcgs_error *error)
 {
     int is_fade;
@@ -220,9 +220,9 @@ adcgs_status adcgs_get_model_digest(adcgs_decoder *decoder, int segment, uint8_t
     ADCGS_TRY(catch_up(decoder, error));
     const uint32_t first = first_segment(decoder), end = end_segment(decoder);
     if (segment < 0 || (uint32_t)segment >= end)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; the stream has %u", segment, (unsigned)end);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d requested; the stream has %u", segment, (unsigned)end);
     if ((uint32_t)segment < first)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d asked for; those before %u are not here", segment,
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "segment %d requested; segments before %u are not available", segment,
                           (unsigned)first);
     ADCGS_TRY(fetch(decoder, (uint32_t)segment, 0, error));
     adcgs_model_digest(model_at_hand(decoder, (uint32_t)segment), digest);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures: frames, frames of 8 bits, depth. The rasteriser draws planes; their rows go to the caller in bands. */
+/** \file Images: frames, frames of 8 bits, depth. The rasteriser fills planes; the rows are then converted in bands. */
 #include "api/decoder_priv.h"
 #include "api/frame.h"
 
 #define ROWS_PER_JOB 32
 
-/** Planar to interleaved, a band of rows. */
+/** Convert a band of rows from planar to interleaved. */
 typedef struct interleave_job {
     const float *planar;
     const adcgs_frame *frame;
@@ -42,15 +42,15 @@ static adcgs_status reserve_planar(adcgs_decoder *d, size_t floats, adcgs_error 
     return ADCGS_OK;
 }
 
-/** What is drawn for all kinds of picture. */
+/** State for rendering any kind of image. */
 typedef struct picture {
     adcgs_moment moment;
     adcgs_view view;
-    size_t plane;  /**< floats of one */
-    float *before; /**< three planes, of what is before in a fade */
+    size_t plane;  /**< floats in one plane */
+    float *before; /**< three planes, for the previous segment during a crossfade */
 } picture;
 
-/** Look up what to draw; have a raster, and planes of the picture's size. */
+/** Find the splats to render; allocate the rasteriser and planes of the image's size. */
 static adcgs_status prepare(adcgs_decoder *d, const adcgs_camera *camera, double time, size_t planes, picture *p,
                             adcgs_error *error)
 {
@@ -64,11 +64,11 @@ static adcgs_status prepare(adcgs_decoder *d, const adcgs_camera *camera, double
     return ADCGS_OK;
 }
 
-/** Three planes of one segment's picture into those of the other's, a band of rows. */
+/** Blend three planes of the previous segment's image into those of the current one, a band of rows. */
 typedef struct fade_job {
     const float *before;
     float *now;
-    size_t n, step; /**< floats in all, and of a band */
+    size_t n, step; /**< total number of floats, and of a band */
     float weight;
 } fade_job;
 
@@ -89,7 +89,7 @@ static adcgs_status draw_one(adcgs_decoder *d, const picture *p, const adcgs_pri
                                         error);
 }
 
-/** Colours, or with depth the sums that depth and coverage are made of, into the first three planes. */
+/** Fill the first three planes with colours or, if depth is nonzero, with the sums that give depth and coverage. */
 static adcgs_status draw(adcgs_decoder *d, const picture *p, int depth, adcgs_error *error)
 {
     ADCGS_TRY(draw_one(d, p, &p->moment.now, depth, d->planar, error));
@@ -117,7 +117,7 @@ adcgs_status adcgs_render(adcgs_decoder *decoder, const adcgs_camera *camera, do
     return ADCGS_OK;
 }
 
-/** Planes R, G, B and coverage to pixels of 4 bytes, a band of rows. */
+/** Convert planes R, G, B and coverage to pixels of 4 bytes, a band of rows. */
 typedef struct rgba8_job {
     const float *planar;
     size_t width, height;
@@ -130,7 +130,7 @@ typedef struct rgba8_job {
 static void store_rgba8(const rgba8_job *job, size_t i, uint8_t *out)
 {
     const size_t plane = job->width * job->height;
-    const float sum = job->planar[3 * plane + i], coverage = sum < 1 ? sum : 1.0f; /* rounding may add up to more */
+    const float sum = job->planar[3 * plane + i], coverage = sum < 1 ? sum : 1.0f; /* rounding can make the sum exceed 1 */
     const float divisor = job->alpha == ADCGS_ALPHA_STRAIGHT && coverage > 0 ? coverage : 1.0f;
     for (size_t c = 0; c < 3; c++)
         out[c] = adcgs_sample_u8((job->planar[c * plane + i] - (1.0f - coverage) * job->background[c]) / divisor);
@@ -173,7 +173,7 @@ adcgs_status adcgs_render_rgba8(adcgs_decoder *decoder, const adcgs_camera *came
     ADCGS_TRY(prepare(d, camera, time, 4, &p, error));
     const int width = p.view.width, height = p.view.height;
     if (stride < 4 * (ptrdiff_t)width && stride > -4 * (ptrdiff_t)width)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "stride is %td bytes, expected %d or more, or their negative", stride,
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stride is %td bytes, expected at least %d in magnitude", stride,
                           4 * width);
     if (alpha != ADCGS_ALPHA_OPAQUE) {
         ADCGS_TRY(draw(d, &p, 1, error));
@@ -185,7 +185,7 @@ adcgs_status adcgs_render_rgba8(adcgs_decoder *decoder, const adcgs_camera *came
     return ADCGS_OK;
 }
 
-/** Sums over the splats to depth and coverage, a band of rows. */
+/** Convert sums over the splats to depth and coverage, a band of rows. */
 typedef struct divide_job {
     const float *sums;
     size_t width, height;
@@ -206,7 +206,7 @@ static void divide(void *arg, int index, int thread)
             job->depth[i] = weight > 0 && depth < (double)ADCGS_DEPTH_FAR ? (float)depth : ADCGS_DEPTH_FAR; /* NaN is far, too */
         }
         if (job->alpha)
-            job->alpha[i] = weight < 1 ? weight : 1.0f; /* rounding may add up to more */
+            job->alpha[i] = weight < 1 ? weight : 1.0f; /* rounding can make the sum exceed 1 */
     }
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where streams come from: files and memory. */
+/** \file Sources of streams: files and memory. */
 #define _POSIX_C_SOURCE 200809L /* files beyond 2 GiB, where long has 32 bits */
 #define _FILE_OFFSET_BITS 64
 
@@ -9,13 +9,13 @@
 #include <errno.h>
 #include <stdio.h>
 
-/** Bytes of a file that can be read at any position; -1: it cannot. */
+/** Size of a file in bytes; -1 if it cannot be read at any position. */
 static int64_t size_of(FILE *file)
 {
     return fseeko(file, 0, SEEK_END) ? -1 : (int64_t)ftello(file);
 }
 
-/** Whether config asks for more than reading in order. */
+/** Whether config asks for more than sequential reading. */
 static int asks_for_any_order(const adcgs_config *config)
 {
     adcgs_config own;
@@ -59,6 +59,6 @@ adcgs_status adcgs_open_memory(adcgs_decoder **out, const void *data, size_t byt
         ADCGS_REQUIRE(data, error);
     adcgs_span s = { .next = data, .left = bytes };
     if (config && adcgs_config_read(&own, config, NULL) == ADCGS_OK && own.conceal)
-        return adcgs_open_at(out, read_memory_at, &s, bytes, config, error); /* which reads all at once */
+        return adcgs_open_at(out, read_memory_at, &s, bytes, config, error); /* concealment reads the whole stream at once */
     return adcgs_open_stream(out, adcgs_span_read, &s, config, error);
 }

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Equality and digest of models. One list of items, in the order of the spec
- * clause "Model digest", drives both, so that two models are equal exactly when
+ * clause "Model digest", drives both. So two models are equal exactly when
  * their canonical serialisations are.
  */
 #include "base/digest.h"
 #include "model/model.h"
 #include "model/model_priv.h"
 
-/** What is done at each item: count elements of size bytes at a, and the same item of the other model at b. */
+/** Operation on each item: count elements of size bytes at a; b is the same item of the other model. */
 typedef struct visitor {
     void (*item)(struct visitor *v, const char *name, const void *a, const void *b, size_t size, size_t count);
     adcgs_md5 md5;
     const char *difference; /**< name of the first item that differs */
-    size_t index;           /**< element of it */
+    size_t index;           /**< element of it that differs */
 } visitor;
 
-/** Little-endian bytes of the elements, whatever this machine's order is. */
+/** Digest the elements as little-endian bytes on any machine. */
 static void digest_item(visitor *v, const char *name, const void *a, const void *b, size_t size, size_t count)
 {
     uint8_t block[512];

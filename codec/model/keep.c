@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Coding what is kept of the anchors before, both ways. */
+/** \file Coding of inter-segment prediction (KEEP), in both directions. */
 #include "model/keep.h"
 #include "model/keep_priv.h"
 
-#define MORE_MAX 15 /* magnitudes from here on have an escape */
+#define MORE_MAX 15 /* magnitudes from this value on have an escape code */
 
-/** One direction: each function returns what it read, or writes and returns what it was given. */
+/** One direction of coding. Each function returns the value that it read, or writes its argument and returns it. */
 typedef struct coder {
     adcgs_range_dec *dec; /**< NULL: encoding */
     adcgs_range_enc *enc;
 } coder;
 
-/** Contexts, and what they look back at. */
+/** Contexts, and the recent decisions that select them. */
 typedef struct contexts {
     adcgs_adaptive drop[2][3], refine[2][3], change[ADCGS_KEEP_GROUPS], zero[ADCGS_KEEP_GROUPS][2];
     adcgs_adaptive more[ADCGS_KEEP_GROUPS][MORE_MAX]; /**< by magnitude */
-    int dropped[2], refined[2];                        /**< of the last two anchors, of the last two that were not dropped */
+    int dropped[2], refined[2];                        /**< for the last two anchors; for the last two that were not dropped */
 } contexts;
 
 static int code_flag(const coder *c, adcgs_adaptive *context, int bit)
@@ -42,7 +42,7 @@ static int code_sign(const coder *c, int negative)
     return negative;
 }
 
-/** A difference in steps. */
+/** Code a difference, in steps. */
 static int32_t code_difference(const coder *c, contexts *x, int group, int after_other, int32_t q)
 {
     const int32_t wanted = q < 0 ? -q : q;
@@ -57,7 +57,7 @@ static int32_t code_difference(const coder *c, contexts *x, int group, int after
     return negative ? -magnitude : magnitude;
 }
 
-/** The differences of one group of an anchor; row: as before when decoding, as it will be when encoding. */
+/** Code the differences of one group of an anchor. row: the previous values when decoding, the new values when encoding. */
 static void code_group(const coder *c, contexts *x, int group, const int16_t *before, int16_t *row, int n)
 {
     if (!code_flag(c, &x->change[group], memcmp(before, row, (size_t)n * sizeof *row) != 0))
@@ -162,7 +162,7 @@ adcgs_status adcgs_kept_encode(const adcgs_keep *kept, const adcgs_model *before
 {
     adcgs_range_enc range;
     const coder c = { .enc = &range };
-    adcgs_keep same = *kept; /* the walk gives back what it was given */
+    adcgs_keep same = *kept; /* code_all() stores the same values again */
     adcgs_range_enc_init(&range, out);
     code_all(&c, &same, before);
     adcgs_range_enc_finish(&range);

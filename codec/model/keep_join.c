@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Taking a model apart into what is kept of the one before and what is new, and joining these. */
+/** \file Splitting a model into kept anchors of the previous one and new anchors, and joining them. */
 #include "geom/geom.h"
 #include "model/keep_priv.h"
 #include "model/model_priv.h"
@@ -40,11 +40,11 @@ int adcgs_kept_possible(const adcgs_model *a, const adcgs_model *b, adcgs_error 
         if (a->net[role].present && !b->net[role].present)
             what = "networks";
     if (what)
-        adcgs_fail(why, ADCGS_ERR_USAGE, "stream: a predicted segment has other %s than the one before it", what);
+        adcgs_fail(why, ADCGS_ERR_USAGE, "stream: a predicted segment does not share the %s of the previous one", what);
     return !what;
 }
 
-/** Whether differences lead from one latent to the other, exactly. */
+/** Whether differences lead exactly from one latent to the other. */
 static int within_reach(int32_t before, int32_t now)
 {
     return adcgs_clip(before + 64 * adcgs_keep_difference(before, now), 32767) == now;
@@ -89,7 +89,7 @@ adcgs_status adcgs_kept_find(adcgs_keep *kept, const adcgs_model *before, const 
     return ADCGS_OK;
 }
 
-/** Whether an anchor is kept at a place. i: of the anchors before; places are asked for in ascending order. */
+/** Whether an anchor is kept at this place. i: index of the anchors before; calls must ask for places in ascending order. */
 static int is_kept(const adcgs_keep *kept, const adcgs_model *before, uint32_t *i, uint64_t place)
 {
     while (*i < before->n && (kept->mode[*i] == ADCGS_KEEP_DROPPED || adcgs_anchor_place(before, *i) < place))

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * The order of the latents and their contexts (spec clause "Latent chain").
- * Everything that decodes, encodes, quantises or conceals goes through the two
- * walks here, so there is one definition of the order.
+ * All decoding, encoding, quantising and concealing goes through the two walks
+ * here, so the order is defined once.
  */
 #include "model/latents.h"
 #include "model/latents_priv.h"
 #include "model/model_priv.h"
 
 #define INPUTS_MAX (ADCGS_NV_MAX + ADCGS_NG_MAX)
-#define BODY_BITS 4 /* of 0..ADCGS_BODIES_MAX */
+#define BODY_BITS 4 /* for values 0..ADCGS_BODIES_MAX */
 #define BODY_TREE (1 << BODY_BITS)
 #define ROOM_ALIGNMENT 64
-/* Inputs, means and scales of a walk, in front of the networks' activations. */
+/* Memory for inputs, means and scales of a walk, before the networks' activations. */
 #define ROOM_VALUES (((INPUTS_MAX + ADCGS_NV_MAX) * sizeof(int16_t) + ADCGS_NV_MAX) * ADCGS_LANES)
 
 struct adcgs_latents {
@@ -21,7 +21,7 @@ struct adcgs_latents {
     size_t scratch;                        /**< bytes that the largest of them needs */
 };
 
-/** One walk: where it is and its working memory, 64 anchors wide. */
+/** State of one walk: position and working memory, 64 anchors wide. */
 typedef struct walker {
     const adcgs_latents *latents;
     adcgs_model *model;
@@ -69,8 +69,8 @@ void adcgs_latents_free(adcgs_latents **latents)
 }
 
 /**
- * Bring channels [0,count) of rows that are stride apart into feature-major inputs. Nobody looks at lanes past the
- * group's end.
+ * Copy channels [0,count) of rows that are stride apart into feature-major inputs. Lanes past the end of the group are never
+ * used.
  */
 static void gather(int16_t (*x)[ADCGS_LANES], const int16_t *rows, size_t stride, int n, int count)
 {
@@ -79,7 +79,7 @@ static void gather(int16_t (*x)[ADCGS_LANES], const int16_t *rows, size_t stride
             x[c][j] = rows[(size_t)j * stride + (size_t)c];
 }
 
-/** Hand the group's anchors to the visitor. rows: first value of the first anchor; k < 0: values that every anchor has. */
+/** Pass the group's anchors to the visitor. rows: first value of the first anchor; k < 0: values that every anchor has. */
 static void visit_group(const walker *w, int group, int k, int first, int count, int16_t *rows, size_t stride)
 {
     int16_t mu[ADCGS_NV_MAX];
@@ -189,13 +189,13 @@ adcgs_status adcgs_latents_walk(const adcgs_latents *latents, adcgs_model *model
     return ADCGS_OK;
 }
 
-/* What the bodies of a slice are coded with, and the last of them. */
+/* Contexts for the bodies of a slice, and the last body coded. */
 typedef struct body_coder {
     adcgs_adaptive same[2], tree[BODY_TREE];
     int last;
 } body_coder;
 
-/* The body of an anchor that is not static: that of the last one, or another. */
+/* Code the body of an anchor that is not static: the last body, or another one. */
 static adcgs_status code_body(body_coder *b, adcgs_model *model, uint32_t anchor, adcgs_flag_fn code, void *user,
                               adcgs_error *error)
 {

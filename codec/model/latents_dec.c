@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Decoding a slice of a layer, and what stands in for one that is absent. */
+/** \file Decoding a slice of a layer, and concealing an absent one. */
 #include "model/latents.h"
 #include "model/latents_priv.h"
 

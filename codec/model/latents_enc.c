@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Encoding a slice of a layer from values that were quantised along the same walk. */
+/** \file Encoding a slice of a layer from values that were quantised in the same walk. */
 #include "model/latents.h"
 #include "model/latents_priv.h"
 
@@ -17,7 +17,7 @@ static int encode_flag(void *user, adcgs_adaptive *context, int bit)
     return bit;
 }
 
-/** The n of smallest magnitude with clip(64 n + mu, 32767) == yq; 0 when there is none (the caller checks). */
+/** The n of smallest magnitude with clip(64 n + mu, 32767) == yq; 0 if there is none (the caller checks). */
 static int32_t level_of(int32_t yq, int32_t mu)
 {
     const int32_t distance = yq - mu;

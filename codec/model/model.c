@@ -125,7 +125,7 @@ adcgs_status adcgs_model_alloc(adcgs_model *model, adcgs_memory *memory, adcgs_e
     return model->fg ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-/** Copy the anchors' arrays, which are there. */
+/** Copy the anchors' arrays; dst has them allocated. */
 static void copy_arrays(adcgs_model *dst, const adcgs_model *src)
 {
     const adcgs_params *p = &src->params;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Sets of a model's anchors: taking a tier out, joining tiers, doing without the finest. */
+/** \file Tiers, the sets of a model's anchors: extracting a tier, joining tiers, leaving out the finest. */
 #include "geom/geom.h"
 #include "model/model_priv.h"
 
@@ -8,7 +8,7 @@ uint64_t adcgs_anchor_place(const adcgs_model *model, uint32_t anchor)
     return adcgs_morton(model->pos + 3 * (size_t)anchor);
 }
 
-/** Copy one anchor's row of an array with so many values each. */
+/** Copy one anchor's row of an array; `values` is its number of values per anchor. */
 #define COPY(array, values) \
     memcpy(to->array + (size_t)i * (values), from->array + (size_t)j * (values), (values) * sizeof *to->array)
 
@@ -38,7 +38,7 @@ adcgs_model adcgs_model_frame(const adcgs_model *model)
     return m;
 }
 
-/** The anchors whose tiers are first .. last, with the model's networks. */
+/** The anchors of tiers first .. last, with the model's networks. */
 static adcgs_status take(adcgs_model *dst, const adcgs_model *src, int first, int last, adcgs_memory *memory, adcgs_error *error)
 {
     *dst = adcgs_model_frame(src);
@@ -70,7 +70,8 @@ adcgs_status adcgs_tiers_check(const adcgs_model *coarser, const adcgs_model *ad
         while (j < added->n && adcgs_anchor_place(added, j) < adcgs_anchor_place(coarser, i))
             j++;
         if (j < added->n && adcgs_anchor_place(added, j) == adcgs_anchor_place(coarser, i))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "GEOM: anchor %u is where one is already, of a tier before or kept", j);
+            return adcgs_fail(error, ADCGS_ERR_DATA, "GEOM: anchor %u has the position of another one (earlier tier or kept)",
+                              j);
     }
     return ADCGS_OK;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What a model must satisfy before anything is derived from it: everything that
- * the later stages rely on without looking again.
+ * Validation of a model before anything is derived from it: everything that
+ * the later stages rely on without checking it again.
  */
 #include "geom/geom.h"
 #include "model/latents.h"
@@ -57,7 +57,7 @@ adcgs_status adcgs_params_validate(const adcgs_params *p, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** A weight of a binary32 network: exact in binary32 and of magnitude below 2^8, so that nothing downstream overflows. */
+/** Check a weight of a binary32 network: exact in binary32, magnitude below 2^8, so that nothing downstream overflows. */
 static int float_weight_ok(const adcgs_tensor *t, int32_t m)
 {
     if (t->mode == 0) {
@@ -107,7 +107,7 @@ static adcgs_status check_layers(int role, const adcgs_net *net, uint32_t n_in, 
     return ADCGS_OK;
 }
 
-/** The E24 rules are checked by making the network ready, which is where they are needed. */
+/** Check the E24 rules by preparing the network for evaluation, which performs these checks. */
 static adcgs_status check_e24(const adcgs_net *net, adcgs_error *error)
 {
     adcgs_e24 *ready = NULL;
@@ -195,18 +195,18 @@ static adcgs_status check_values(const char *name, const int16_t *v, size_t n, a
     return ADCGS_OK;
 }
 
-/** That what is static has no span. */
+/** Check that static anchors have no lifetime. */
 static adcgs_status check_spans(const adcgs_model *m, adcgs_error *error)
 {
     const int rows = adcgs_sigma_rows(&m->params);
     for (uint32_t i = 0; i < m->n; i++)
         for (int c = adcgs_sigma_coded(m, i); c < rows; c++)
             if (m->sigma[(size_t)i * (size_t)rows + (size_t)c] != 0)
-                return adcgs_fail(error, ADCGS_ERR_DATA, "model: anchor %u is static but has a span", i);
+                return adcgs_fail(error, ADCGS_ERR_DATA, "model: anchor %u is static but has a lifetime", i);
     return ADCGS_OK;
 }
 
-/** That bodies are there, and that what is static is part of none. */
+/** Check that the bodies exist, and that static anchors belong to none. */
 static adcgs_status check_bodies(const adcgs_model *m, adcgs_error *error)
 {
     for (uint32_t i = 0; i < m->n; i++)
@@ -216,7 +216,7 @@ static adcgs_status check_bodies(const adcgs_model *m, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** That tiers are there, and each of a model that needs no other has anchors. */
+/** Check that the tiers exist and that, in a model that is not predicted, each tier has anchors. */
 static adcgs_status check_tiers(const adcgs_model *m, adcgs_error *error)
 {
     uint32_t brings[ADCGS_TIERS_MAX] = { 0 };
@@ -234,7 +234,7 @@ static adcgs_status check_tiers(const adcgs_model *m, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Flags, masks, and that primitives which do not exist hold zeros. */
+/** Check flags and masks, and that primitives that do not exist hold zeros. */
 static adcgs_status check_primitives(const adcgs_model *m, adcgs_error *error)
 {
     const adcgs_params *p = &m->params;
@@ -263,7 +263,7 @@ static adcgs_status check_frame(const adcgs_model *m, adcgs_error *error)
     if (!(m->voxel >= 0x1p-40f && m->voxel <= 0x1p10f))
         return adcgs_fail(error, ADCGS_ERR_DATA, "model: voxel is %g, expected 2^-40..2^10", (double)m->voxel);
     if (!(m->time_start <= m->time_end && m->time_start >= -0x1p60 && m->time_end <= 0x1p60))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "model: times %g..%g s are not a span", m->time_start, m->time_end);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "model: times %g..%g s are not a time range", m->time_start, m->time_end);
     if (!(m->reach >= 0 && m->reach <= 0x1p60))
         return adcgs_fail(error, ADCGS_ERR_DATA, "model: reach is %g s, expected a duration", m->reach);
     return ADCGS_OK;

@@ -5,10 +5,10 @@
 #include "base/digest.h"
 #include "model/model_priv.h"
 
-#define STEP_BYTES 65536 /* payload memory grows with what arrives, not with what a header claims */
+#define STEP_BYTES 65536 /* payload memory grows with the bytes that arrive, not with the length in the header */
 #define SEGMENT_BYTES 8192
-/* What takes longer than a multiplication and addition, in these: a coded value, the splits of one bit of depth of a position,
- * a coded weight. */
+/* Work of operations that take longer than a multiplication and addition, in units of one: a coded value, the splits for one bit
+ * of depth of a position, a coded weight. */
 #define VALUE_WORK 512
 #define DEPTH_WORK 8192
 #define WEIGHT_WORK 1024
@@ -136,7 +136,7 @@ static adcgs_status read_payload(adcgs_source *source, adcgs_chunk *chunk, adcgs
     return ADCGS_OK;
 }
 
-/** Letters and digits only, so that a message can show it. */
+/** Whether the type has only letters and digits, so that a message can show it. */
 static int type_is_text(const char *name)
 {
     for (int i = 0; i < 4; i++) {
@@ -215,7 +215,7 @@ size_t adcgs_chunk_begin(adcgs_buffer *out, uint32_t type, uint32_t segment, int
 {
     const size_t begin = out->size;
     adcgs_write_uint(out, type, 4);
-    adcgs_write_uint(out, 0, 4); /* the length, known at the end */
+    adcgs_write_uint(out, 0, 4); /* the length, filled in at the end */
     adcgs_write_uint(out, segment, 2);
     adcgs_write_uint(out, (uint64_t)flags, 1);
     adcgs_write_uint(out, 0, 1);

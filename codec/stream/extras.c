@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file cams and meta: cameras and text that travel with the scene. */
+/** \file cams and meta: cameras and text stored with the scene. */
 #include "stream/parts.h"
 
-#define CAMERA_SAME_LENS 1  /**< size, intrinsics and near plane of the camera before */
+#define CAMERA_SAME_LENS 1  /**< same size, intrinsics and near plane as the previous camera */
 #define CAMERA_SHORT_POSE 2 /**< the pose is twelve binary32 */
 #define CAMERAS_MAX 65535U
 #define META_MAX 1024U
@@ -121,7 +121,7 @@ static adcgs_status write_camera(adcgs_buffer *out, const adcgs_camera *c, const
     const adcgs_syn_camera head = { (uint8_t)(same * CAMERA_SAME_LENS + brief * CAMERA_SHORT_POSE) };
     const char *end = memchr(c->name, 0, sizeof c->name);
     if (!end)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "cams: a camera's name has no end");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "cams: a camera's name has no terminating zero");
     adcgs_write_varint(out, (uint32_t)(end - c->name));
     adcgs_write_bytes(out, c->name, (size_t)(end - c->name));
     ADCGS_TRY(adcgs_syn_camera_write(out, "cams", &head, error));
@@ -156,7 +156,7 @@ adcgs_status adcgs_meta_parse(adcgs_parse *p, adcgs_stream *stream, adcgs_memory
     stream->meta = adcgs_alloc(memory, n, sizeof *stream->meta, p->error);
     if (!stream->meta)
         return adcgs_alloc_status(p->error);
-    for (; stream->n_meta < n; stream->n_meta++) { /* which counts those that are complete */
+    for (; stream->n_meta < n; stream->n_meta++) { /* n_meta counts complete entries */
         adcgs_meta *m = &stream->meta[stream->n_meta];
         ADCGS_TRY(adcgs_parse_text(p, "key", 1, META_KEY_MAX, memory, &m->key));
         const adcgs_status status = adcgs_parse_text(p, "value", 0, META_VALUE_MAX, memory, &m->value);

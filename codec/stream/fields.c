@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The drivers of the field lists: parse with trace, and write. */
+/** \file The drivers of the field lists: parsing with trace, and writing. */
 #include "stream/fields.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 
-/** A field's value in transit: its bits as the stream has them, and as a number for checks and messages. */
+/** Value of a field: its bits as in the stream, and its number for checks and messages. */
 typedef struct field_value {
     uint64_t bits;
     double number;
@@ -34,7 +34,7 @@ static double number_of(int type, uint64_t bits)
     }
 }
 
-/** Bring a field's bits to or from its member. */
+/** Load a field's bits from its member; store_member() does the reverse. */
 static uint64_t load_member(const void *member, int bytes)
 {
     uint8_t u8;
@@ -66,7 +66,7 @@ static void store_member(void *member, int bytes, uint64_t bits)
     memcpy(member, from, (size_t)bytes);
 }
 
-/** The value as text: integers exactly, 9 and 17 digits bring a binary32 and a binary64 back exactly. */
+/** Format the value: integers exactly, a binary32 with 9 and a binary64 with 17 digits, which identify it exactly. */
 static void format_value(char *text, size_t size, int type, field_value v)
 {
     if (type == ADCGS_F32 || type == ADCGS_F64)
@@ -105,7 +105,7 @@ void adcgs_parse_trace_end(const adcgs_parse *p, const adcgs_range_dec *d)
                       "range 0x%016" PRIx64 " value 0x%016" PRIx64 " virtual %d", d->range, d->value, d->zeros);
 }
 
-/** An element of a list; those of an array are told apart by an index. */
+/** Trace an element of a list; elements of an array have an index. */
 static void trace_field(const adcgs_parse *p, uint64_t bit, const adcgs_field *f, int i, field_value v)
 {
     char name[40], text[32];
@@ -187,7 +187,7 @@ adcgs_status adcgs_parse_bytes(adcgs_parse *p, const char *name, size_t n, const
     return ADCGS_OK;
 }
 
-/** Text from a stream in quotes, with whatever is not plain in hexadecimal. */
+/** Trace text from a stream in quotes, with other than printable ASCII characters in hexadecimal. */
 static adcgs_status trace_text(const adcgs_parse *p, uint64_t bit, const char *name, const uint8_t *bytes, size_t n)
 {
     char element[64];

@@ -20,7 +20,7 @@ typedef enum adcgs_field_type {
     ADCGS_F64
 } adcgs_field_type;
 
-/** One element, or an array of count: where it stands in its structure and what it may hold. */
+/** One element, or an array of count: its position in the structure and its range. */
 typedef struct adcgs_field {
     const char *name;
     uint8_t type, count;
@@ -32,7 +32,7 @@ typedef struct adcgs_field {
 typedef struct adcgs_parse {
     adcgs_reader r;
     uint64_t origin;   /**< position of the payload in the stream, bytes */
-    const char *chunk; /**< its type, for messages */
+    const char *chunk; /**< type of the chunk, for messages */
     adcgs_trace_fn trace;
     void *trace_user;
     adcgs_error *error;
@@ -41,15 +41,15 @@ typedef struct adcgs_parse {
 /** Read n elements in order into structure. ADCGS_ERR_DATA names the element that is cut off or out of range. */
 adcgs_status adcgs_parse_fields(adcgs_parse *p, const adcgs_field *fields, size_t n, void *structure);
 adcgs_status adcgs_parse_varint(adcgs_parse *p, const char *name, uint32_t min, uint32_t max, uint32_t *value);
-/** The next n bytes, which stay in the payload. The trace has their number. */
+/** Get the next n bytes, which stay in the payload. The trace shows their number. */
 adcgs_status adcgs_parse_bytes(adcgs_parse *p, const char *name, size_t n, const uint8_t **bytes);
-/** A varint length in min..max, then as many bytes without a zero among them: allocated, zero-terminated. */
+/** Parse a varint length in min..max, then as many bytes, none of them zero. *text is allocated and zero-terminated. */
 adcgs_status adcgs_parse_text(adcgs_parse *p, const char *name, uint32_t min, uint32_t max, adcgs_memory *memory, char **text);
-/** ADCGS_ERR_DATA when something is left of the payload. */
+/** ADCGS_ERR_DATA if bytes of the payload are left. */
 adcgs_status adcgs_parse_end(const adcgs_parse *p);
 /** Report an element to the trace; bit counts from the start of the payload. */
 void adcgs_parse_trace(const adcgs_parse *p, uint64_t bit, const char *name, const char *format, ...) ADCGS_PRINTF(4, 5);
-/** Report how the sub-stream ended that a decoder finished; it lies in the payload. */
+/** Report the final state of a range decoder that has finished its sub-stream; the sub-stream lies in the payload. */
 void adcgs_parse_trace_end(const adcgs_parse *p, const adcgs_range_dec *d);
 
 /** Append n elements. ADCGS_ERR_USAGE names one that is out of range. */

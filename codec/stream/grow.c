@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A stream that grows. */
+/** \file A stream written segment by segment. */
 #include "stream/grow.h"
 
 #include "stream/writer.h"
@@ -8,10 +8,10 @@
 
 struct adcgs_grow {
     adcgs_writer writer;
-    int64_t span[2];      /**< ticks of the segment written last */
-    uint32_t max_anchors; /**< of the segments so far */
+    int64_t span[2];      /**< ticks of the last segment written */
+    uint32_t max_anchors; /**< maximum over the segments so far */
     uint32_t depth;       /**< likewise */
-    uint64_t chunk_bytes; /**< of the longest payload so far */
+    uint64_t chunk_bytes; /**< longest payload so far */
 };
 
 adcgs_status adcgs_grow_create(adcgs_grow **out, adcgs_stream *stream, uint32_t max_anchors, adcgs_error *error)
@@ -30,7 +30,7 @@ adcgs_status adcgs_grow_create(adcgs_grow **out, adcgs_stream *stream, uint32_t 
     adcgs_buffer none;
     adcgs_buffer_init(&none);
     adcgs_writer_init(&g->writer, stream, max_anchors, &none, error);
-    const adcgs_status status = adcgs_head_write(&none, stream, max_anchors, error); /* to learn now that it cannot be */
+    const adcgs_status status = adcgs_head_write(&none, stream, max_anchors, error); /* detects now whether HEAD can be written */
     adcgs_buffer_clear(&none);
     if (status != ADCGS_OK) {
         stream->duration_ticks = duration;
@@ -48,7 +48,7 @@ void adcgs_grow_free(adcgs_grow **grow)
     *grow = NULL;
 }
 
-/** The writer goes on in this buffer. */
+/** Let the writer continue in this buffer. */
 static void go_on(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
 {
     g->writer.out = out;
@@ -56,7 +56,7 @@ static void go_on(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
     g->writer.error = error;
 }
 
-/** State that a call changes before it succeeds. */
+/** State that a call changes before it can fail. */
 typedef struct state {
     adcgs_writer writer;
     adcgs_bytes bytes;
@@ -68,11 +68,11 @@ static state note_state(const adcgs_grow *g)
     return (state){ g->writer, g->writer.stream->bytes, g->writer.stream->weights };
 }
 
-/** A call failed: all is as if it had not been made. */
+/** Restore the state after a failed call, as if the call had not been made. */
 static void restore(adcgs_grow *g, const state *was)
 {
     adcgs_writer *w = &g->writer;
-    const adcgs_buffer grown = w->index; /* its memory may be another */
+    const adcgs_buffer grown = w->index; /* its memory may have been reallocated */
     w->out->size = w->begin;
     *w = was->writer;
     w->index = grown;
@@ -82,7 +82,7 @@ static void restore(adcgs_grow *g, const state *was)
     w->stream->weights = was->weights;
 }
 
-/** What was appended is the caller's now. Lengths of payloads stand in the headers. */
+/** Release the appended bytes to the caller. Payload lengths come from the chunk headers. */
 static void hand_over(adcgs_grow *g, int has_signature)
 {
     adcgs_writer *w = &g->writer;
@@ -108,10 +108,10 @@ static adcgs_status write_segment(adcgs_grow *g, const adcgs_model *before, adcg
     else if (!model->predicted)
         ADCGS_TRY(adcgs_writer_head(w));
     ADCGS_TRY(adcgs_writer_segment(w, model->predicted ? before : NULL, model));
-    /* There must be room for the end. */
+    /* Reserve bytes for the end of the stream. */
     const uint64_t end = w->index.size + 3 * ADCGS_CHUNK_BYTES + ADCGS_HEAD_BYTES_MAX;
     if (w->gone + (w->out->size - w->begin) + end > w->limits->file_bytes)
-        return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: as many bytes as the level allows");
+        return adcgs_fail(w->error, ADCGS_ERR_LIMIT, "stream: the level allows no more bytes");
     return ADCGS_OK;
 }
 
@@ -122,7 +122,7 @@ adcgs_status adcgs_grow_segment(adcgs_grow *g, const adcgs_model *before, adcgs_
     int64_t span[2] = { g->span[0], g->span[1] };
     ADCGS_TRY(adcgs_writer_check(w->stream, w->n_segments, before, model, span, error));
     if (w->n_segments == 0 && span[0] != w->stream->start_ticks)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment does not begin where the stream does");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment does not begin at the stream's start");
     go_on(g, out, error);
     const state was = note_state(g);
     const adcgs_status status = write_segment(g, before, model);
@@ -141,7 +141,7 @@ adcgs_status adcgs_grow_segment(adcgs_grow *g, const adcgs_model *before, adcgs_
 adcgs_status adcgs_grow_end(adcgs_grow *g, adcgs_buffer *out, adcgs_error *error)
 {
     if (g->writer.n_segments == 0)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: no segments, expected some");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: no segments, expected at least one");
     go_on(g, out, error);
     const state was = note_state(g);
     const adcgs_status status = adcgs_writer_end(&g->writer);
@@ -157,7 +157,7 @@ uint32_t adcgs_grow_segments(const adcgs_grow *g)
     return g->writer.n_segments;
 }
 
-/** Whether the stream as it is fits a level. */
+/** Whether the stream so far fits a level. */
 static int fits(const adcgs_grow *g, const adcgs_level *l)
 {
     const adcgs_writer *w = &g->writer;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file HEAD: what holds for the whole stream, and whether this decoder can decode it. */
+/** \file HEAD: properties of the whole stream, and whether this decoder supports them. */
 #include "model/model_priv.h"
 #include "stream/parts.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Sources of streams, and the sum of a trace. */
+/** \file Sources of streams, and the digest of a trace. */
 #define _POSIX_C_SOURCE 200809L /* files beyond 2 GiB, where long has 32 bits */
 #define _FILE_OFFSET_BITS 64
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a reader of streams is given: bytes from a file or from memory; and a listener that sums up the trace. */
+/** \file Input of stream readers, from a file or from memory, and a trace function that sums up the trace. */
 #ifndef ADCGS_STREAM_INPUT_H
 #define ADCGS_STREAM_INPUT_H
 
@@ -7,11 +7,11 @@
 
 #include <adcgs/types.h>
 
-/** Bytes in memory that are left to read. */
+/** Bytes in memory that remain to be read. */
 typedef struct adcgs_span {
     const uint8_t *next;
     size_t left;
-    int step, turn; /**< step > 0: hand out 1, 2, .. step bytes in turn, as a slow pipe might; turn starts at 0 */
+    int step, turn; /**< step > 0: return 1, 2, .. step bytes in turn, as a slow pipe might; turn starts at 0 */
 } adcgs_span;
 
 /** An adcgs_read_fn; user is an adcgs_span. */

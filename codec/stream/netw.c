@@ -20,7 +20,7 @@ void adcgs_net_table_clear(adcgs_net_table *table)
     *table = (adcgs_net_table){ .memory = table->memory };
 }
 
-/** Room for as many ids. */
+/** Reserve memory for n ids. */
 static adcgs_status reserve(adcgs_net_table *table, uint32_t n, adcgs_error *error)
 {
     uint32_t capacity = table->capacity ? table->capacity : 16;
@@ -79,7 +79,7 @@ static adcgs_status parse_layer(adcgs_parse *p, adcgs_net *net, int i, uint32_t 
     return ADCGS_OK;
 }
 
-/** Everything but the values. A role that the parameters do not give has no outputs, which check_shapes() refuses. */
+/** Parse everything except the values. check_shapes() refuses a role without outputs, which the parameters do not have. */
 static adcgs_status parse_shape(adcgs_parse *p, const adcgs_params *params, adcgs_net *net)
 {
     adcgs_syn_net head;
@@ -101,7 +101,7 @@ static adcgs_status parse_shape(adcgs_parse *p, const adcgs_params *params, adcg
         net->sigma_offset = prior.sigma_offset;
     }
     for (int i = 0; i < net->n_layers; i++, n_in = width) {
-        width = n_out; /* the last layer's; the others send theirs */
+        width = n_out; /* the last layer's width; parse_layer() reads those of the other layers */
         ADCGS_TRY(parse_layer(p, net, i, n_in, &width));
     }
     return ADCGS_OK;
@@ -134,16 +134,16 @@ static adcgs_status decode_values(adcgs_parse *p, adcgs_net *nets, uint32_t n, a
     return ADCGS_OK;
 }
 
-/**
- * What can be said before the values are decoded, so that damage costs neither time nor memory. A network that is repeated
- * has the weights of the one that it repeats; the others count.
- */
-/** The network of an id; NULL if there is none, or none was read. */
+/** The network of an id; NULL if it does not exist or was not read. */
 static const adcgs_net *known(const adcgs_net_table *table, uint32_t id)
 {
     return id < table->n && table->nets[id].present ? &table->nets[id] : NULL;
 }
 
+/**
+ * Perform all checks that are possible before the values are decoded, so that damage costs neither time nor memory. A repeated
+ * network must have as many weights as the network that it repeats; only new networks count towards the level's weights.
+ */
 static adcgs_status check_shapes(const adcgs_params *params, const adcgs_level *limits, const adcgs_net *nets, uint32_t n,
                                  uint32_t first_id, const adcgs_net_table *table, adcgs_cost *left, adcgs_error *error)
 {
@@ -161,7 +161,7 @@ static adcgs_status check_shapes(const adcgs_params *params, const adcgs_level *
             return adcgs_fail(error, ADCGS_ERR_LIMIT, "NETW: more than %u weights, the level's limit", limits->weights);
         if (first_id + i >= limits->networks)
             return adcgs_fail(error, ADCGS_ERR_LIMIT, "NETW: more than %u networks, the level's limit", limits->networks);
-        const uint64_t work = adcgs_weights_work(adcgs_net_weights(&nets[i])); /* of repeated ones too: they are decoded */
+        const uint64_t work = adcgs_weights_work(adcgs_net_weights(&nets[i])); /* repeated ones count: they are decoded */
         if (work > left->work)
             return adcgs_fail(error, ADCGS_ERR_LIMIT, "NETW: decoding the stream is more work than %llu, the level's limit",
                               (unsigned long long)limits->work);
@@ -170,7 +170,7 @@ static adcgs_status check_shapes(const adcgs_params *params, const adcgs_level *
     return ADCGS_OK;
 }
 
-/** Enter the networks of a chunk into the table; what the table takes is zeroed here. */
+/** Enter the networks of a chunk into the table; networks that the table takes over are zeroed here. */
 static adcgs_status enter_nets(adcgs_parse *p, const adcgs_params *params, adcgs_net *nets, uint32_t n, uint32_t id,
                                adcgs_net_table *table)
 {

@@ -1,29 +1,29 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Reading a stream as it comes. */
+/** \file Reading a stream from pushed bytes. */
 #include "stream/push.h"
 
 #include "base/digest.h"
 #include "stream/reader.h"
 
-#define READ_BYTES 65536 /* at a time, of a source */
+#define READ_BYTES 65536 /* read from a source at a time */
 
-/** What is looked for before chunks are used. */
+/** Target of the search before chunks are used. */
 typedef enum search { SEARCH_OVER, SEARCH_HEAD, SEARCH_KEY } search;
 
 struct adcgs_push_reader {
     adcgs_read_options options;
-    adcgs_error error;     /**< of the reader; a failure stays */
+    adcgs_error error;     /**< of the reader; a failure is final */
     adcgs_stream_reader reader;
-    uint8_t *held;         /**< what has come of the chunk at hand, or of the signature */
-    size_t n, capacity, wanted; /**< bytes held; room for; that are needed to go on */
-    size_t given;          /**< of those held, to the reader */
+    uint8_t *held;         /**< bytes received of the current chunk, or of the signature */
+    size_t n, capacity, wanted; /**< bytes held; room for; bytes needed to continue */
+    size_t given;          /**< bytes of held already passed to the reader */
     int has_signature, has_start, is_over;
     int64_t start;         /**< tick at which the first segment begins */
-    int64_t end_before;    /**< tick at which the segment before the one at hand ends */
-    search search;         /**< of one who joins */
+    int64_t end_before;    /**< tick at which the segment before the current one ends */
+    search search;         /**< state of tuning in */
 };
 
-/** What is held, to the reader. */
+/** Read callback of the reader: returns held bytes. */
 static int64_t read_held(void *user, void *buffer, size_t bytes)
 {
     adcgs_push_reader *p = user;
@@ -58,7 +58,7 @@ void adcgs_push_free(adcgs_push_reader **reader)
     *reader = NULL;
 }
 
-/** Room for what is wanted, which grows with what has come, not with what a header claims. */
+/** Reserve memory for held bytes. It grows with the bytes that arrive, not with the length in a header. */
 static adcgs_status reserve(adcgs_push_reader *p, size_t bytes)
 {
     if (bytes <= p->capacity)
@@ -75,21 +75,21 @@ static adcgs_status reserve(adcgs_push_reader *p, size_t bytes)
     return ADCGS_OK;
 }
 
-/** What is held is used up; of what comes next the header is wanted first. */
+/** Discard the held bytes; the header of the next chunk is needed first. */
 static void next_chunk(adcgs_push_reader *p)
 {
     p->n = p->given = 0;
     p->wanted = ADCGS_CHUNK_HEADER_BYTES;
 }
 
-/** Chunks with a segment's number, and networks: who waits for a key has no use for them. */
+/** Chunks with a segment's number, and networks: the search for a key skips them. */
 static int is_of_segment(uint32_t type)
 {
     return type == ADCGS_TYPE_SEGM || type == ADCGS_TYPE_KEEP || type == ADCGS_TYPE_GEOM || type == ADCGS_TYPE_hash ||
            type == ADCGS_TYPE_NETW || adcgs_type_layer(type) >= 0;
 }
 
-/** What is held is passed over. */
+/** Skip held bytes. */
 static void pass_over(adcgs_push_reader *p, size_t bytes)
 {
     p->reader.source.pos += bytes;
@@ -97,7 +97,7 @@ static void pass_over(adcgs_push_reader *p, size_t bytes)
     memmove(p->held, p->held + bytes, p->n);
 }
 
-/** Whether what is held begins with the header of a HEAD. */
+/** Whether the held bytes begin with the header of a HEAD. */
 static int is_head(const adcgs_push_reader *p, size_t *bytes)
 {
     adcgs_chunk chunk;
@@ -112,7 +112,7 @@ static int is_whole(const uint8_t *chunk, size_t bytes)
     return adcgs_load_le32(chunk + bytes - 4) == adcgs_crc32c(0, chunk + ADCGS_CHUNK_HEADER_BYTES, bytes - ADCGS_CHUNK_BYTES);
 }
 
-/** Somewhere in a stream: go on to the next HEAD, which is used. */
+/** Tune in at an arbitrary byte: skip to the next HEAD and use it. */
 static adcgs_status search_head(adcgs_push_reader *p, adcgs_arrival *arrived)
 {
     size_t bytes = 0;
@@ -138,13 +138,13 @@ static adcgs_status search_head(adcgs_push_reader *p, adcgs_arrival *arrived)
     return ADCGS_OK;
 }
 
-/** A chunk of one who waits for a key: *use 0 if it is passed over. */
+/** Handle a chunk during the search for a key: *use becomes 0 if the chunk is skipped. */
 static adcgs_status search_key(adcgs_push_reader *p, int *use)
 {
     adcgs_chunk chunk;
     ADCGS_TRY(adcgs_chunk_header(p->held, p->reader.source.pos, &chunk, &p->error));
     if (chunk.type == ADCGS_TYPE_ENDC)
-        return adcgs_fail(&p->error, ADCGS_ERR_TRUNCATED, "stream: ends before a segment that needs no other");
+        return adcgs_fail(&p->error, ADCGS_ERR_TRUNCATED, "stream: ends before a key segment");
     const int is_key = chunk.type == ADCGS_TYPE_SEGM && chunk.header.flags & ADCGS_CHUNK_KEY;
     *use = is_key || (!is_of_segment(chunk.type) && chunk.type != ADCGS_TYPE_INDX);
     if (is_key) {
@@ -154,7 +154,7 @@ static adcgs_status search_key(adcgs_push_reader *p, int *use)
     return ADCGS_OK;
 }
 
-/** A header is there: is it one, and how long is its chunk? The reader says so once more, of the same bytes. */
+/** Check a complete header and get its chunk's length. The reader will check the same bytes again. */
 static adcgs_status measure_chunk(adcgs_push_reader *p)
 {
     adcgs_chunk chunk;
@@ -164,7 +164,7 @@ static adcgs_status measure_chunk(adcgs_push_reader *p)
     return ADCGS_OK;
 }
 
-/** What a chunk that was used means to those who watch. */
+/** The arrival to report for a chunk that was used. */
 static adcgs_arrival arrival_of(const adcgs_push_reader *p, uint32_t type, int had_head, uint32_t segments_before)
 {
     const adcgs_stream_reader *r = &p->reader;
@@ -179,7 +179,7 @@ static adcgs_arrival arrival_of(const adcgs_push_reader *p, uint32_t type, int h
     return (part && draws) || r->stream->n_segments > segments_before ? ADCGS_ARRIVED_SEGMENT : ADCGS_ARRIVED_NOTHING;
 }
 
-/** A segment has begun; the one before it, if any, ends at a tick. */
+/** A segment has begun. end_before: tick at which the previous one, if any, ends. */
 static void note_start(adcgs_push_reader *p, int64_t end_before)
 {
     if (!p->has_start)
@@ -221,10 +221,10 @@ static adcgs_status use_held(adcgs_push_reader *p, adcgs_arrival *arrived)
     *arrived = arrival_of(p, type, had_head, before);
     p->is_over = p->reader.ended;
     next_chunk(p);
-    return p->is_over ? adcgs_stream_reader_rest(&p->reader) : ADCGS_OK; /* which has nothing left to read, and sums up */
+    return p->is_over ? adcgs_stream_reader_rest(&p->reader) : ADCGS_OK; /* nothing is left to read; this computes the totals */
 }
 
-/** The reader's failure, to whoever called, now and whenever they call again. */
+/** Report the reader's failure to the caller, in this call and in all later ones. */
 static adcgs_status pass_on(const adcgs_push_reader *p, adcgs_status status, adcgs_error *error)
 {
     if (status != ADCGS_OK && error)
@@ -260,14 +260,14 @@ adcgs_status adcgs_push_take(adcgs_push_reader *p, const uint8_t *data, size_t b
     return pass_on(p, p->error.status, error);
 }
 
-/** Nothing was found of what one who joins needs. */
+/** Fail: the stream had no header, or no key, at which decoding could begin. */
 static adcgs_status end_search(adcgs_push_reader *p)
 {
     const unsigned long long bytes = p->reader.source.pos + p->n;
     if (p->search == SEARCH_HEAD)
-        return adcgs_fail(&p->error, ADCGS_ERR_DATA, "stream: not an adcgs stream, nor is a header of one in its %llu bytes",
+        return adcgs_fail(&p->error, ADCGS_ERR_DATA, "stream: not an adcgs stream: its %llu bytes contain no header",
                           bytes);
-    return adcgs_fail(&p->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before a segment that needs no other", bytes);
+    return adcgs_fail(&p->error, ADCGS_ERR_TRUNCATED, "stream: ends at byte %llu, before a key segment", bytes);
 }
 
 adcgs_status adcgs_push_finish(adcgs_push_reader *p, adcgs_error *error)
@@ -279,7 +279,7 @@ adcgs_status adcgs_push_finish(adcgs_push_reader *p, adcgs_error *error)
     return pass_on(p, p->error.status, error);
 }
 
-/** Read what is wanted. *over: the source has ended, or the stream. */
+/** Read the needed bytes. *over: the source or the stream has ended. */
 static adcgs_status read_wanted(adcgs_push_reader *p, adcgs_read_fn read, void *user, int *over)
 {
     adcgs_arrival arrived = ADCGS_ARRIVED_NOTHING;
@@ -319,7 +319,7 @@ int adcgs_push_has_head(const adcgs_push_reader *p)
     return p->reader.head_payload != NULL;
 }
 
-/** The tick before which no byte can change anything that may still come. */
+/** The tick before which no further byte can change any content. */
 static int64_t final_tick(const adcgs_push_reader *p)
 {
     const adcgs_stream_reader *r = &p->reader;
@@ -330,7 +330,7 @@ static int64_t final_tick(const adcgs_push_reader *p)
     return r->stream->n_segments > 0 ? r->segment.ticks[0] : INT64_MIN;
 }
 
-/** The end of what can be drawn. */
+/** End of the content that can be rendered. */
 static int64_t drawable_tick(const adcgs_push_reader *p)
 {
     const adcgs_segment *s = &p->reader.segment;

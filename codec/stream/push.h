@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A stream whose bytes come when they come, any number at a time. Each chunk is used when its last byte is there; what a segment
- * has by then can be looked at. What results in the end is what reading in order gives.
+ * A stream whose bytes arrive over time, in pieces of any size. Each chunk is used when its last byte has arrived. The part of a
+ * segment that is decoded by then can be inspected. The final result equals that of reading in order.
  *
- * With options->join the beginning may be missing: bytes that are no signature are passed over up to the next HEAD, and chunks
- * behind that up to the next key. stream->first_segment is then the number of that segment.
+ * With options->join the beginning may be missing. Bytes that are no signature are skipped up to the next HEAD, and the chunks
+ * after it up to the next key. stream->first_segment is then the number of that segment.
  */
 #ifndef ADCGS_STREAM_PUSH_H
 #define ADCGS_STREAM_PUSH_H
@@ -13,41 +13,44 @@
 
 typedef struct adcgs_push_reader adcgs_push_reader;
 
-/** stream, initialised by the caller and owned by it, receives what comes. options is copied; what it points to outlives this. */
+/**
+ * stream is initialised and owned by the caller and receives the contents. options is copied; the objects that it points to must
+ * outlive the reader.
+ */
 adcgs_status adcgs_push_create(adcgs_push_reader **out, adcgs_stream *stream, const adcgs_read_options *options,
                                adcgs_error *error);
 void adcgs_push_free(adcgs_push_reader **reader);
 
 /**
- * Take bytes, those to the end of the chunk at hand at most: *used. At the end of the stream none are taken. A failure is final:
- * the next call fails as well.
+ * Take bytes, at most up to the end of the current chunk: *used. At the end of the stream none are taken. A failure is final: all
+ * later calls fail, too.
  */
 adcgs_status adcgs_push_take(adcgs_push_reader *reader, const uint8_t *data, size_t bytes, size_t *used, adcgs_arrival *arrived,
                              adcgs_error *error);
-/** No more will come: what of the last chunk is there is used, as reading in order does when a stream ends. */
+/** No more bytes will come. The received part of the last chunk is used, as when reading in order ends early. */
 adcgs_status adcgs_push_finish(adcgs_push_reader *reader, adcgs_error *error);
-/** All of a sequential source, read as adcgs_push_take() would take it, to the end of the stream and not beyond. */
+/** Read a sequential source like adcgs_push_take(), to the end of the stream and not beyond. */
 adcgs_status adcgs_push_read(adcgs_stream *stream, adcgs_read_fn read, void *user, const adcgs_read_options *options,
                              adcgs_error *error);
-/** Whether HEAD has come. */
+/** Whether HEAD has been received. */
 int adcgs_push_has_head(const adcgs_push_reader *reader);
-/** How much of a stream has come. */
+/** Progress of receiving a stream. */
 typedef struct adcgs_push_progress {
-    int is_over;            /**< all of it, or no more will */
+    int is_over;            /**< the stream is complete, or no more bytes will come */
     uint64_t bytes;
-    int64_t start;          /**< tick at which the first segment begins, or before that has come what HEAD says */
-    int64_t end;            /**< tick, by HEAD; INT64_MAX: it does not say */
-    int64_t final;          /**< tick before which nothing changes any more; INT64_MIN: everything may, INT64_MAX: nothing will */
-    int64_t drawable;       /**< tick at which what can be drawn ends; INT64_MIN: nothing can */
-    uint32_t segments;      /**< complete ones, also if they were forgotten */
-    uint32_t promised;      /**< by HEAD; 0: it does not say */
-    int tiers, tiers_drawable; /**< of the segment at hand; 0: there is none */
+    int64_t start;          /**< tick at which the first segment begins; before it has begun, the value in HEAD */
+    int64_t end;            /**< tick, from HEAD; INT64_MAX: not given */
+    int64_t final;          /**< tick before which content no longer changes; INT64_MIN: all may, INT64_MAX: nothing will */
+    int64_t drawable;       /**< tick at which the renderable content ends; INT64_MIN: none */
+    uint32_t segments;      /**< complete segments, including those freed */
+    uint32_t promised;      /**< from HEAD; 0: not given */
+    int tiers, tiers_drawable; /**< of the segment being received; 0: none */
 } adcgs_push_progress;
-/** Once HEAD has come. */
+/** Only after HEAD has been received. */
 void adcgs_push_tell(const adcgs_push_reader *reader, adcgs_push_progress *progress);
 
 /**
- * The segment at hand as far as it has come, if it can be drawn (*drawable): a model of its own, which the caller clears with the
+ * A copy of the current segment as far as it has been received, if it can be rendered (*drawable). The caller clears it with the
  * options' memory.
  */
 adcgs_status adcgs_push_peek(const adcgs_push_reader *reader, adcgs_model *model, int *drawable, adcgs_error *error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Reading a stream: chunk after chunk from a source that cannot seek. */
+/** \file Reading a stream chunk by chunk from a source that cannot seek. */
 #include "stream/reader.h"
 
 #include "base/digest.h"
@@ -23,7 +23,7 @@ adcgs_status adcgs_stream_reader_signature(adcgs_stream_reader *s)
     return ADCGS_OK;
 }
 
-/** The parts of a chunk that are not its payload's elements. */
+/** Parser for the elements of a chunk outside its payload. */
 static adcgs_parse chunk_parts(const adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
     const adcgs_parse p = { .origin = chunk->origin, .chunk = "chunk", .trace = s->trace, .trace_user = s->trace_user,
@@ -38,7 +38,7 @@ static adcgs_status skip_payload(adcgs_stream_reader *s, const adcgs_chunk *chun
     return ADCGS_OK;
 }
 
-/** An ancillary chunk that this decoder does not know, or knows in an older version. */
+/** Skip an ancillary chunk that this decoder does not know, or knows in an older version. */
 static adcgs_status skip_unknown(adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
     adcgs_log_say(&s->options->log, ADCGS_LOG_INFO, "%s: chunk of version %u, %u bytes, is unknown and was skipped", chunk->name,
@@ -84,7 +84,7 @@ static adcgs_status read_index(adcgs_stream_reader *s, adcgs_parse *p, uint64_t 
         ADCGS_TRY(adcgs_syn_index_parse(p, &entry));
     }
     if (s->indexed || n == 0 || memcmp(entries, expected->data, expected->size) != 0)
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "INDX: repeated, or not what the stream holds");
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "INDX: repeated, or does not match the stream");
     s->indexed = 1;
     return adcgs_parse_end(p);
 }
@@ -117,7 +117,7 @@ static int belongs_to_segment(uint32_t type)
            adcgs_type_layer(type) >= 0;
 }
 
-/** Order of chunks and versions, before any payload is looked at. */
+/** Check the order of chunks and their versions before parsing any payload. */
 static adcgs_status check_chunk(adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
     const uint32_t type = chunk->type, number = adcgs_stream_reader_segments(s);
@@ -180,7 +180,7 @@ static adcgs_status use_chunk(adcgs_stream_reader *s, const adcgs_chunk *chunk, 
     }
 }
 
-/** Ancillary chunks of a newer version than known are skipped like unknown ones; of cut-off chunks only layers are of use. */
+/** Ancillary chunks of a newer version are skipped like unknown ones. Of incomplete chunks, only layers are used. */
 static adcgs_status use_or_skip(adcgs_stream_reader *s, const adcgs_chunk *chunk, adcgs_parse *p)
 {
     if (!chunk->complete && adcgs_type_layer(chunk->type) < 0)
@@ -190,7 +190,7 @@ static adcgs_status use_or_skip(adcgs_stream_reader *s, const adcgs_chunk *chunk
     return use_chunk(s, chunk, p);
 }
 
-/** A chunk came to its end: its checksum counts. */
+/** A complete chunk: include its checksum in ENDC's sum. */
 static void end_chunk(adcgs_stream_reader *s, const adcgs_chunk *chunk)
 {
     const adcgs_parse p = chunk_parts(s, chunk);
@@ -218,7 +218,7 @@ adcgs_status adcgs_stream_reader_chunk(adcgs_stream_reader *s, int *truncated)
     return ADCGS_OK;
 }
 
-/** What the stream is worth when it ended before ENDC. */
+/** The stream ended before ENDC: use its complete part, or fail. */
 static adcgs_status end_early(adcgs_stream_reader *s)
 {
     const unsigned long long at = s->source.pos;

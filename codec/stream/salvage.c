@@ -8,19 +8,19 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#define PIECE_BYTES 65536 /* of what is searched for a header */
-#define READ_AGAIN 16     /* times that a stream is read, in all: headers within damaged chunks may tell of chunks without end */
+#define PIECE_BYTES 65536 /* read at a time when searching for a header */
+#define READ_AGAIN 16     /* maximum number of times that a stream is read: headers within damaged chunks may chain endlessly */
 
 typedef struct salvage {
     adcgs_seekable input;
     adcgs_stream *stream;
     adcgs_read_options options;
     adcgs_stream_reader reader;
-    adcgs_error why;    /**< of the reader */
+    adcgs_error why;    /**< failure of the reader */
     uint64_t left;      /**< bytes that may still be read */
     uint32_t faults;
-    int is_cut;         /**< tiers of the segment at hand were lost: nothing more is taken of it */
-    int is_broken;      /**< a segment was lost since the last one that needs no other */
+    int is_cut;         /**< tiers of the current segment were lost: its further chunks are skipped */
+    int is_broken;      /**< a segment was lost since the last one that is not predicted */
     uint8_t *piece;     /**< [PIECE_BYTES] */
 } salvage;
 
@@ -36,14 +36,14 @@ static void warn(salvage *s, const char *format, ...)
     adcgs_log_say(&s->options.log, ADCGS_LOG_WARNING, "%s", text);
 }
 
-/** Read as many bytes as there are from a position, at most so many. */
+/** Read at most `bytes` bytes from a position, as many as exist. */
 static adcgs_status fetch(salvage *s, uint64_t position, void *to, size_t bytes, size_t *got)
 {
     adcgs_source_move(&s->reader.source, position);
     return adcgs_source_read(&s->reader.source, to, bytes, got, &s->why);
 }
 
-/** Whether these 16 bytes are the header of a chunk. That its checksum is right by chance is as good as impossible. */
+/** Whether these 16 bytes are the header of a chunk. A correct checksum by chance is practically impossible. */
 static int is_header(const uint8_t *bytes, uint64_t origin, adcgs_chunk *chunk)
 {
     const uint8_t letter = bytes[0] | 0x20;
@@ -51,7 +51,7 @@ static int is_header(const uint8_t *bytes, uint64_t origin, adcgs_chunk *chunk)
            adcgs_chunk_header(bytes, origin, chunk, NULL) == ADCGS_OK;
 }
 
-/** The next header at or behind a position, before `end`. *found: whether there is one. */
+/** Find the next header at or after a position, before `end`. *found: whether one exists. */
 static adcgs_status find_header(salvage *s, uint64_t position, uint64_t end, adcgs_chunk *chunk, int *found)
 {
     *found = 0;
@@ -84,13 +84,13 @@ static uint32_t number_at_hand(const salvage *s)
 static void lose_segment(salvage *s, const char *why)
 {
     const int fades = s->reader.segment.stage != ADCGS_SEGMENT_NONE && s->reader.segment.ticks[2] > 0;
-    warn(s, "segment %u is lost%s: %.130s", number_at_hand(s), fades ? ", and what the next would be faded into" : "", why);
+    warn(s, "segment %u is lost%s: %.130s", number_at_hand(s), fades ? ", and the crossfade into the next one" : "", why);
     adcgs_segment_drop(&s->reader.segment);
     s->stream->first_segment++;
     s->is_broken = 1;
 }
 
-/** The tier at hand is lost, and those behind it, or with the first of them the segment. */
+/** Lose the current tier and all finer ones; if it is the first tier, lose the segment. */
 static void lose_tier(salvage *s, const char *why)
 {
     adcgs_segment *at = &s->reader.segment;
@@ -103,7 +103,7 @@ static void lose_tier(salvage *s, const char *why)
     warn(s, "segment %u: its tiers from %d on are lost: %.150s", number_at_hand(s), at->tier + 1, why);
 }
 
-/** The segment at hand, if any, is over. */
+/** Finish the current segment, if any. */
 static adcgs_status finish(salvage *s, uint64_t end)
 {
     s->is_cut = 0;
@@ -115,7 +115,7 @@ static adcgs_status finish(salvage *s, uint64_t end)
     return ADCGS_OK;
 }
 
-/** Have the reader use a chunk that is whole. */
+/** Let the reader use an intact chunk. */
 static adcgs_status use(salvage *s, const adcgs_chunk *chunk)
 {
     int truncated;
@@ -128,7 +128,7 @@ static adcgs_status use_start(salvage *s, const adcgs_chunk *chunk)
     ADCGS_TRY(finish(s, chunk->origin));
     const uint32_t ahead = (uint32_t)(uint16_t)(chunk->header.segment - number_at_hand(s));
     if (ahead) {
-        warn(s, "segments %u to %u are lost: nothing is left of them", number_at_hand(s), number_at_hand(s) + ahead - 1);
+        warn(s, "segments %u to %u are lost: no part of them can be used", number_at_hand(s), number_at_hand(s) + ahead - 1);
         s->stream->first_segment += ahead;
         s->is_broken = 1;
     }
@@ -140,11 +140,11 @@ static adcgs_status use_start(salvage *s, const adcgs_chunk *chunk)
     else if (!s->reader.segment.model.predicted)
         s->is_broken = 0;
     else if (s->is_broken)
-        lose_segment(s, "it is predicted from one that is");
+        lose_segment(s, "it is predicted from a lost segment");
     return ADCGS_OK;
 }
 
-/** A layer that is damaged, as far as its slices are whole. */
+/** Use a damaged layer, as far as its slices are intact. */
 static adcgs_status use_damaged_layer(salvage *s, const adcgs_chunk *chunk, size_t available)
 {
     adcgs_parse p = { .origin = chunk->origin + ADCGS_CHUNK_HEADER_BYTES, .chunk = chunk->name, .error = &s->why };
@@ -152,14 +152,14 @@ static adcgs_status use_damaged_layer(salvage *s, const adcgs_chunk *chunk, size
     return adcgs_segment_features(&s->reader.segment, &p, adcgs_type_layer(chunk->type), 0);
 }
 
-/** A chunk of the segment at hand. Without its base the segment is lost; a layer above, or its digest, it can do without. */
+/** Use a chunk of the current segment. Without its base the segment is lost; higher layers and the digest are dispensable. */
 static adcgs_status use_part(salvage *s, const adcgs_chunk *chunk, int whole, size_t available)
 {
     const int layer = adcgs_type_layer(chunk->type);
     adcgs_status status = ADCGS_OK;
     if (s->reader.segment.stage == ADCGS_SEGMENT_NONE || chunk->header.segment != (number_at_hand(s) & 0xffff) ||
         s->is_cut)
-        return ADCGS_OK; /* of one that is lost */
+        return ADCGS_OK; /* its segment is lost */
     if (whole)
         status = use(s, chunk);
     else if (layer >= 0 && ADCGS_CHUNK_TIER(chunk->header.flags) == adcgs_segment_tier(&s->reader.segment, 0))
@@ -167,7 +167,7 @@ static adcgs_status use_part(salvage *s, const adcgs_chunk *chunk, int whole, si
     else if (chunk->type == ADCGS_TYPE_GEOM)
         lose_tier(s, "its positions are damaged");
     else if (chunk->type == ADCGS_TYPE_KEEP)
-        lose_segment(s, "what it keeps is damaged");
+        lose_segment(s, "its KEEP is damaged");
     const adcgs_segment *at = &s->reader.segment;
     if (status == ADCGS_OK && layer == 0 && !whole && at->stage == ADCGS_SEGMENT_PLACED && at->done[0] < at->n_slices)
         lose_tier(s, "its base layer is damaged");
@@ -182,10 +182,10 @@ static adcgs_status use_part(salvage *s, const adcgs_chunk *chunk, int whole, si
     return ADCGS_OK;
 }
 
-/** A chunk that belongs to no segment. */
+/** Use a chunk that belongs to no segment. */
 static adcgs_status use_other(salvage *s, const adcgs_chunk *chunk, int whole)
 {
-    if (!whole || chunk->type == ADCGS_TYPE_INDX) /* nothing depends on the index, which tells of what may be lost */
+    if (!whole || chunk->type == ADCGS_TYPE_INDX) /* the index is not needed, and lists segments that may be lost */
         return ADCGS_OK;
     const adcgs_status status = use(s, chunk);
     if (!is_damage(status))
@@ -194,7 +194,7 @@ static adcgs_status use_other(salvage *s, const adcgs_chunk *chunk, int whole)
     return ADCGS_OK;
 }
 
-/** The end, where all that it says is right, is as good as the reader has it. */
+/** Handle ENDC. If it is intact, segments that HEAD counts but that were not found before it are lost. */
 static adcgs_status use_end(salvage *s, const adcgs_chunk *chunk, int whole)
 {
     ADCGS_TRY(finish(s, chunk->origin));
@@ -202,10 +202,10 @@ static adcgs_status use_end(salvage *s, const adcgs_chunk *chunk, int whole)
     if (!whole)
         return ADCGS_OK;
     if (chunk->origin + ADCGS_CHUNK_BYTES + chunk->header.length != s->input.size)
-        adcgs_log_say(&s->options.log, ADCGS_LOG_INFO, "stream: bytes stand behind its end");
+        adcgs_log_say(&s->options.log, ADCGS_LOG_INFO, "stream: there are bytes after its end");
     const uint32_t expected = s->reader.head.segments;
     if (expected > number_at_hand(s)) {
-        warn(s, "segments %u to %u are lost: nothing is left of them", number_at_hand(s), expected - 1);
+        warn(s, "segments %u to %u are lost: no part of them can be used", number_at_hand(s), expected - 1);
         s->stream->first_segment = expected - s->stream->n_segments;
     }
     return ADCGS_OK;
@@ -215,9 +215,9 @@ static adcgs_status dispatch(salvage *s, const adcgs_chunk *chunk, int whole, si
 {
     const uint32_t type = chunk->type;
     if (!s->reader.head_payload && type != ADCGS_TYPE_HEAD)
-        return ADCGS_OK; /* nothing can be made of it */
+        return ADCGS_OK; /* useless before HEAD */
     if (type == ADCGS_TYPE_SEGM && !whole)
-        return finish(s, chunk->origin); /* its number will be missed */
+        return finish(s, chunk->origin); /* the gap in segment numbers will show the loss */
     if (type == ADCGS_TYPE_SEGM)
         return use_start(s, chunk);
     if (type == ADCGS_TYPE_ENDC)
@@ -227,7 +227,7 @@ static adcgs_status dispatch(salvage *s, const adcgs_chunk *chunk, int whole, si
     return use_other(s, chunk, whole);
 }
 
-/** Whether a chunk is whole. available: bytes of its payload that there are, in the reader's memory. */
+/** Whether a chunk is intact. available: bytes of its payload that are present, in the reader's memory. */
 static adcgs_status look_whole(salvage *s, const adcgs_chunk *chunk, int *whole, size_t *available)
 {
     adcgs_chunk read;
@@ -238,7 +238,7 @@ static adcgs_status look_whole(salvage *s, const adcgs_chunk *chunk, int *whole,
     return is_damage(status) ? ADCGS_OK : status;
 }
 
-/** Use the chunk at hand. *next: where the search for another goes on: inside of it, if it swallowed one that came too soon. */
+/** Use the current chunk. *next: position to search for the next one, inside this chunk if it swallowed another header. */
 static adcgs_status use_chunk(salvage *s, const adcgs_chunk *chunk, uint64_t *next)
 {
     int whole, swallowed = 0;
@@ -275,10 +275,11 @@ static adcgs_status salvage_chunks(salvage *s)
         ADCGS_TRY(find_header(s, at, s->input.size, &chunk, &found));
         const uint64_t cost = found ? chunk.header.length + (chunk.origin - at) + PIECE_BYTES / 64 : 0;
         if (cost > s->left)
-            return adcgs_fail(&s->why, ADCGS_ERR_DATA, "stream: damaged beyond all bounds at byte %llu", (unsigned long long)at);
+            return adcgs_fail(&s->why, ADCGS_ERR_DATA, "stream: too many damaged chunks, the search ends at byte %llu",
+                              (unsigned long long)at);
         s->left -= cost;
         if (found && chunk.origin > at)
-            warn(s, "stream: %llu bytes from byte %llu on are no chunk", (unsigned long long)(chunk.origin - at),
+            warn(s, "stream: %llu bytes from byte %llu on are not a chunk", (unsigned long long)(chunk.origin - at),
                  (unsigned long long)at);
         if (!found)
             break;
@@ -287,7 +288,7 @@ static adcgs_status salvage_chunks(salvage *s)
     return ADCGS_OK;
 }
 
-/** What is there when nothing more comes. */
+/** Finish when no more chunks follow. */
 static adcgs_status end(salvage *s)
 {
     if (!s->reader.ended && s->reader.head_payload) {
@@ -296,7 +297,7 @@ static adcgs_status end(salvage *s)
         s->stream->truncated = 1;
     }
     if (s->stream->n_segments == 0)
-        return adcgs_fail(&s->why, ADCGS_ERR_DATA, "stream: no segment of it can be used");
+        return adcgs_fail(&s->why, ADCGS_ERR_DATA, "stream: no segment can be used");
     s->stream->first_segment = 0;
     s->stream->weights = (uint32_t)s->reader.nets.weights;
     adcgs_bytes_finish(&s->stream->bytes, s->input.size);

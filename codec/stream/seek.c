@@ -8,20 +8,20 @@
 struct adcgs_seek {
     adcgs_seekable input;
     adcgs_read_options options;
-    adcgs_error error;   /**< of the reader */
+    adcgs_error error;   /**< failure of the reader */
     adcgs_stream_reader reader;
     adcgs_stream *stream;
-    adcgs_seek_table table; /**< of segments; never without one, and their number stays */
-    adcgs_cost *spent;   /**< [table.n] cost of each segment that was decoded so far; 0: it was not */
-    adcgs_cost left;     /**< the bounds of the level, less the front and all of spent */
+    adcgs_seek_table table; /**< never empty once open; the number of segments is fixed */
+    adcgs_cost *spent;   /**< [table.n] cost of each segment decoded so far; 0: not yet decoded */
+    adcgs_cost left;     /**< bounds of the level, less the costs of the front and of all of spent */
     uint64_t first;      /**< position of the first segment */
-    int by_index;        /**< the table is that of INDX, and was not compared with the chunks yet */
-    uint32_t first_nets; /**< networks that stand before the first segment */
-    int keeps_nets;      /**< some segment names what was sent before its key: reading began at the beginning, all is kept */
-    int passes;          /**< segments before the key that decoding began at, or passed, were not read: nor were their networks */
+    int by_index;        /**< the table comes from INDX and has not been compared with the chunks yet */
+    uint32_t first_nets; /**< number of networks before the first segment */
+    int keeps_nets;      /**< a segment refers to networks sent before its key: read from the beginning and keep all networks */
+    int passes;          /**< decoding began at, or passed, a later key: networks sent before it are not in memory */
 };
 
-/** The reader's failure, to whoever called. */
+/** Report the reader's failure to the caller. */
 static adcgs_status pass_on(const adcgs_seek *s, adcgs_status status, adcgs_error *error)
 {
     if (status != ADCGS_OK && error)
@@ -39,7 +39,7 @@ static adcgs_status use_chunk(adcgs_seek *s, uint64_t position)
                        ADCGS_OK;
 }
 
-/** All that stands before the first segment. */
+/** Read everything before the first segment. */
 static adcgs_status read_front(adcgs_seek *s)
 {
     adcgs_stream_reader *r = &s->reader;
@@ -51,11 +51,11 @@ static adcgs_status read_front(adcgs_seek *s)
         s->first = at;
         if (chunk.type == ADCGS_TYPE_SEGM && r->head_payload)
             break;
-        ADCGS_TRY(use_chunk(s, at)); /* which refuses what may not stand here */
+        ADCGS_TRY(use_chunk(s, at)); /* refuses chunks that must not be here */
         if (r->ended || r->indexed)
-            return adcgs_fail(&s->error, ADCGS_ERR_DATA, "stream: no segment stands before its end");
+            return adcgs_fail(&s->error, ADCGS_ERR_DATA, "stream: has no segment before its end");
         if (r->segment.stage != ADCGS_SEGMENT_NONE)
-            return adcgs_fail(&s->error, ADCGS_ERR_DATA, "stream: %s at byte %llu has become another chunk", chunk.name,
+            return adcgs_fail(&s->error, ADCGS_ERR_DATA, "stream: %s at byte %llu changed during reading", chunk.name,
                               (unsigned long long)at);
         at = adcgs_seek_behind(&chunk);
     }
@@ -65,7 +65,7 @@ static adcgs_status read_front(adcgs_seek *s)
     return ADCGS_OK;
 }
 
-/** Find the segments, by the index or else by the headers of chunks. */
+/** Find the segments by the index, or else by the headers of chunks. */
 static adcgs_status find_segments(adcgs_seek *s)
 {
     const adcgs_status status = adcgs_seek_table_index(&s->table, &s->reader, s->first);
@@ -137,14 +137,14 @@ uint64_t adcgs_seek_bytes(const adcgs_seek *s)
     return s->input.bytes;
 }
 
-/** Of the models in memory, keep the last, so many at most. */
+/** Keep at most the last `kept` models in memory. */
 static void forget(adcgs_seek *s, uint32_t kept)
 {
     const uint32_t n = s->stream->n_segments;
     adcgs_stream_forget(s->stream, n - ADCGS_MIN(n, kept), s->options.memory);
 }
 
-/** Networks of segments that are past. */
+/** Free the networks of past segments. */
 static void forget_networks(adcgs_seek *s)
 {
     adcgs_net_table *table = &s->reader.nets;
@@ -154,14 +154,14 @@ static void forget_networks(adcgs_seek *s)
     }
 }
 
-/** All chunks of a segment. */
+/** Use all chunks of a segment. */
 static adcgs_status use_chunks(adcgs_seek *s, const adcgs_syn_index *e, uint64_t end)
 {
     uint64_t at = e->offset;
     while (at < end) {
         adcgs_chunk chunk;
         ADCGS_TRY(adcgs_seek_look(&s->reader, at, &chunk));
-        if (chunk.name[0] < 'a' || chunk.type == ADCGS_TYPE_hash) /* cameras and texts are those in front */
+        if (chunk.name[0] < 'a' || chunk.type == ADCGS_TYPE_hash) /* cameras and texts come from the front */
             ADCGS_TRY(use_chunk(s, at));
         at = adcgs_seek_behind(&chunk);
     }
@@ -170,7 +170,7 @@ static adcgs_status use_chunks(adcgs_seek *s, const adcgs_syn_index *e, uint64_t
                                   (unsigned long long)e->offset, (unsigned long long)end);
 }
 
-/** Decode the next segment, of which that before it is in memory unless it is a key; no other stays. */
+/** Decode the next segment. Unless it is a key, the previous one must be in memory; all others are freed. */
 static adcgs_status decode(adcgs_seek *s, uint32_t number)
 {
     forget(s, 1);
@@ -193,24 +193,24 @@ static adcgs_status decode(adcgs_seek *s, uint32_t number)
     return ADCGS_OK;
 }
 
-/** Begin anew in front of a segment. */
+/** Reset, so that decoding can begin at this segment. */
 static void begin_at(adcgs_seek *s, uint32_t number)
 {
     forget(s, 0);
     adcgs_segment_drop(&s->reader.segment);
     s->stream->first_segment = number;
     s->reader.indexed = s->reader.ended = 0;
-    forget_networks(s); /* also where all are kept, which then are read again from the beginning */
+    forget_networks(s); /* with keeps_nets, too: decoding then reads them again from the beginning */
 }
 
-/** From the last key at or before the first of the segments that are wanted, or from what is in memory, to the last. */
+/** Decode up to segment `number`, from the segments in memory or from the last key at or before the first requested segment. */
 static adcgs_status go_to(adcgs_seek *s, uint32_t number, int before)
 {
     const adcgs_stream *stream = s->stream;
     uint32_t next = number - (before != 0);
     while (next > 0 && (s->keeps_nets || !s->table.entry[next].key))
         next--;
-    const uint32_t behind = stream->first_segment + stream->n_segments; /* what is in memory, if anything */
+    const uint32_t behind = stream->first_segment + stream->n_segments; /* end of the segments in memory, if any */
     s->passes = next > 0;
     if (stream->n_segments > 0 && behind > next && behind <= number)
         next = behind;
@@ -228,8 +228,8 @@ static adcgs_status go_to(adcgs_seek *s, uint32_t number, int before)
 }
 
 /**
- * Whether the headers of all chunks show as many segments as the index, but at other places or times: then they replace the
- * index. Otherwise the table stays. So the number of segments never changes.
+ * Whether the headers of all chunks show as many segments as the index, but at other positions or times. If so, they replace the
+ * index; otherwise the table stays. So the number of segments never changes.
  */
 static int doubts_index(adcgs_seek *s)
 {
@@ -250,7 +250,7 @@ static int doubts_index(adcgs_seek *s)
     return differs;
 }
 
-/** As go_to(); a segment that names a network sent before its key is decoded from the beginning of the stream. */
+/** As go_to(). A segment that refers to a network sent before its key is decoded from the beginning of the stream. */
 static adcgs_status go_to_with_nets(adcgs_seek *s, uint32_t number, int before)
 {
     const adcgs_status status = go_to(s, number, before);

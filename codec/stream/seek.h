@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A stream of which segments are read when they are wanted, from bytes at any position (spec clause "Seeking"): the header once,
- * the index or else the headers of chunks, and then a segment with what it is predicted from. One segment is in memory at a time,
- * or two where one fades into the other.
+ * A stream with random access whose segments are read on demand (spec clause "Seeking"). The header is read once, then the index
+ * or else the headers of chunks, then each requested segment with the segments that it is predicted from. One segment is in
+ * memory at a time, two during a crossfade.
  */
 #ifndef ADCGS_STREAM_SEEK_H
 #define ADCGS_STREAM_SEEK_H
@@ -12,25 +12,25 @@
 typedef struct adcgs_seek adcgs_seek;
 
 /**
- * Read the header and find the segments; stream, initialised by the caller and owned by it, receives the header, cameras and
- * metadata that stand before the first segment, and from then on the segments at hand, if any. options is copied; what it points
- * to outlives the seeker. ADCGS_ERR_TRUNCATED if the stream ends before ENDC: nothing can be said of it without reading it all.
+ * Read the header and find the segments. stream is initialised and owned by the caller. It receives the header, cameras and
+ * metadata that precede the first segment, and later the segments in memory, if any. options is copied; the objects that it
+ * points to must outlive the seeker. ADCGS_ERR_TRUNCATED if the stream ends before ENDC: such a stream must be read as a whole.
  */
 adcgs_status adcgs_seek_open(adcgs_seek **out, adcgs_stream *stream, adcgs_read_at_fn read, void *user, uint64_t size,
                              const adcgs_read_options *options, adcgs_error *error);
 void adcgs_seek_free(adcgs_seek **seek);
 
-/** Segments of the stream, and the ticks of one of them: its start, its end, its reach. */
+/** Number of segments of the stream, and the ticks of one of them: its start, end and reach. */
 uint32_t adcgs_seek_segments(const adcgs_seek *seek);
 void adcgs_seek_times(const adcgs_seek *seek, uint32_t number, int64_t ticks[3]);
-/** Bytes that were read so far. */
+/** Number of bytes read so far. */
 uint64_t adcgs_seek_bytes(const adcgs_seek *seek);
 
-/** A segment's model, if it is in memory; else NULL. */
+/** A segment's model if it is in memory; else NULL. */
 const adcgs_model *adcgs_seek_at_hand(const adcgs_seek *seek, uint32_t number);
 /**
- * Bring a segment into memory, which is not there, or with before nonzero it and the one in front of it, which are not both
- * there; those that were there may be gone or moved, whatever this returns.
+ * Bring a segment into memory; if before is nonzero, also the segment before it. The caller has checked that not all of them are
+ * in memory. Segments that were in memory may be freed or moved, even on failure.
  */
 adcgs_status adcgs_seek_to(adcgs_seek *seek, uint32_t number, int before, adcgs_error *error);
 

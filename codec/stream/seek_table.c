@@ -4,16 +4,16 @@
 
 #include "base/digest.h"
 
-#define ENDC_BYTES 32  /**< of the chunk */
-#define ENTRY_BYTES 37 /**< of a segment in INDX */
-#define TIMES_BYTES 20 /**< of SEGM: start, end and reach, with which it begins */
+#define ENDC_BYTES 32  /**< of the whole chunk */
+#define ENTRY_BYTES 37 /**< of one segment in INDX */
+#define TIMES_BYTES 20 /**< at the start of SEGM: start, end and reach */
 
 static uint64_t size_of(const adcgs_stream_reader *r)
 {
     return ((const adcgs_seekable *)r->source.user)->size;
 }
 
-/** Read bytes; a source that ends before the last of them is a failure. */
+/** Read exactly this number of bytes; a source that ends earlier is a failure. */
 static adcgs_status fetch(adcgs_stream_reader *r, uint64_t position, void *to, size_t bytes)
 {
     const uint64_t size = size_of(r);
@@ -27,7 +27,7 @@ static adcgs_status fetch(adcgs_stream_reader *r, uint64_t position, void *to, s
                                      (unsigned long long)(position + got));
 }
 
-/** The header of the chunk at a position, and whether all of the chunk is there. */
+/** Read the header of the chunk at a position, and check that the whole chunk is present. */
 static adcgs_status look_whole(adcgs_stream_reader *r, uint64_t position, adcgs_chunk *chunk)
 {
     uint8_t bytes[ADCGS_CHUNK_HEADER_BYTES];
@@ -91,13 +91,13 @@ static adcgs_status add_entry(adcgs_seek_table *t, adcgs_stream_reader *r, const
     return ADCGS_OK;
 }
 
-/** Whether a segment may follow those that are there. */
+/** Whether a segment may follow those in the table. */
 static int follows(const adcgs_seek_table *t, const adcgs_syn_index *entry)
 {
     return entry->end_ticks >= entry->start_ticks && (t->n == 0 || entry->start_ticks > t->entry[t->n - 1].start_ticks);
 }
 
-/** Bytes that a `var` has. */
+/** Number of bytes of a `var`. */
 static uint64_t var_bytes(uint32_t value)
 {
     uint64_t n = 1;
@@ -106,7 +106,7 @@ static uint64_t var_bytes(uint32_t value)
     return n;
 }
 
-/** Where INDX stands if nothing but it and ENDC follows the segments; 0 if that cannot be. */
+/** Position of INDX if only INDX and ENDC follow the segments; 0 if that is impossible. */
 static uint64_t index_position(const adcgs_stream_reader *r)
 {
     const uint64_t n = r->head.segments, payload = var_bytes((uint32_t)n) + ENTRY_BYTES * n;
@@ -114,7 +114,7 @@ static uint64_t index_position(const adcgs_stream_reader *r)
     return n > 0 && size_of(r) > behind_it ? size_of(r) - behind_it : 0;
 }
 
-/** The payload of INDX: all segments, one behind the other in the stream and in time. */
+/** Parse the payload of INDX: all segments, in order of position and of time. */
 static adcgs_status parse_entries(adcgs_seek_table *t, adcgs_stream_reader *r, const uint8_t *payload, size_t bytes,
                                   uint64_t first, uint64_t end)
 {
@@ -126,14 +126,14 @@ static adcgs_status parse_entries(adcgs_seek_table *t, adcgs_stream_reader *r, c
         adcgs_syn_index entry;
         ADCGS_TRY(adcgs_syn_index_parse(&p, &entry));
         if (entry.offset < first || entry.offset >= end || entry.bytes > end - entry.offset || !follows(t, &entry))
-            return adcgs_fail(r->error, ADCGS_ERR_DATA, "INDX: not what the stream holds");
+            return adcgs_fail(r->error, ADCGS_ERR_DATA, "INDX: does not match the stream");
         first = entry.offset + entry.bytes;
         ADCGS_TRY(add_entry(t, r, &entry));
     }
     return adcgs_parse_end(&p);
 }
 
-/** Read the payload of INDX, whose checksum is right, and take it. */
+/** Read the payload of INDX, check its checksum, and parse it. */
 static adcgs_status use_index(adcgs_seek_table *t, adcgs_stream_reader *r, const adcgs_chunk *chunk, uint8_t *payload,
                               uint64_t first)
 {
@@ -151,11 +151,11 @@ adcgs_status adcgs_seek_table_index(adcgs_seek_table *t, adcgs_stream_reader *r,
     const uint64_t at = index_position(r);
     adcgs_chunk chunk;
     if (at < first)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "INDX: there is none");
-    ADCGS_TRY(look_whole(r, at, &chunk)); /* which may be no chunk of the stream: the level says nothing of it */
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "INDX: the stream has none");
+    ADCGS_TRY(look_whole(r, at, &chunk)); /* not limited by the level: it may not be a chunk of the stream */
     if (chunk.type != ADCGS_TYPE_INDX || chunk.header.version > 0 ||
         adcgs_seek_behind(&chunk) != size_of(r) - ENDC_BYTES)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "INDX: there is none");
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "INDX: the stream has none");
     uint8_t *payload = adcgs_alloc(r->options->memory, chunk.header.length, 1, r->error);
     if (!payload)
         return adcgs_alloc_status(r->error);
@@ -169,7 +169,7 @@ static int is_tick(int64_t ticks)
     return ticks >= -(int64_t)ADCGS_TICKS_MAX && ticks <= (int64_t)ADCGS_TICKS_MAX;
 }
 
-/** A SEGM that was met: it ends the segment before it. */
+/** Add the segment of a SEGM, which ends the previous one. */
 static adcgs_status meet_segment(adcgs_seek_table *t, adcgs_stream_reader *r, const adcgs_chunk *chunk)
 {
     uint8_t times[TIMES_BYTES] = { 0 };
@@ -180,7 +180,7 @@ static adcgs_status meet_segment(adcgs_seek_table *t, adcgs_stream_reader *r, co
                                     .offset = chunk->origin,
                                     .key = chunk->header.flags & ADCGS_CHUNK_KEY };
     if (chunk->header.length < sizeof times || !is_tick(entry.start_ticks) || !is_tick(entry.end_ticks) || !follows(t, &entry))
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "SEGM: too short, or not later than the segment in front of it");
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "SEGM: too short, or not later than the previous segment");
     return add_entry(t, r, &entry);
 }
 
@@ -195,7 +195,7 @@ adcgs_status adcgs_seek_table_scan(adcgs_seek_table *t, adcgs_stream_reader *r, 
         if (chunk.type == ADCGS_TYPE_SEGM)
             ADCGS_TRY(meet_segment(t, r, &chunk));
         if (chunk.type == ADCGS_TYPE_ENDC && t->n == 0)
-            return adcgs_fail(r->error, ADCGS_ERR_DATA, "stream: no segment stands before its end");
+            return adcgs_fail(r->error, ADCGS_ERR_DATA, "stream: has no segment before its end");
         if (chunk.type == ADCGS_TYPE_ENDC)
             return ADCGS_OK;
         at = adcgs_seek_behind(&chunk);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file SEGM and GEOM: what a time segment consists of, and where its anchors are. */
+/** \file SEGM and GEOM: the composition of a time segment, and the positions of its anchors. */
 #include "geom/geom.h"
 #include "model/model_priv.h"
 #include "stream/parts.h"
@@ -22,7 +22,7 @@ adcgs_status adcgs_seconds_to_ticks(const adcgs_stream *stream, double seconds, 
             if (adcgs_ticks_to_seconds(stream, *ticks) == seconds)
                 return ADCGS_OK;
     }
-    return adcgs_fail(error, ADCGS_ERR_USAGE, "SEGM: %.17g s is no whole number of ticks of %u/%u s", seconds,
+    return adcgs_fail(error, ADCGS_ERR_USAGE, "SEGM: %.17g s is not a whole number of ticks of %u/%u s", seconds,
                       stream->timebase_num, stream->timebase_den);
 }
 
@@ -96,7 +96,7 @@ static adcgs_status parse_roles(adcgs_parse *p, const adcgs_params *params, int 
     return ADCGS_OK;
 }
 
-/** What SEGM says of a segment's values. */
+/** Parse the part of SEGM about the segment's values. */
 static adcgs_status parse_values(adcgs_parse *p, adcgs_model *model)
 {
     adcgs_syn_shapes shapes;
@@ -122,7 +122,7 @@ static adcgs_status parse_values(adcgs_parse *p, adcgs_model *model)
     return ADCGS_OK;
 }
 
-/** What a predicted segment has of the one before without a word: how values are coded, and the grid. */
+/** Copy the values that a predicted segment inherits from the previous one: coding of values, tiers, and the grid. */
 static void inherit_values(adcgs_model *model, const adcgs_model *before)
 {
     memcpy(model->shape, before->shape, sizeof model->shape);
@@ -154,7 +154,7 @@ adcgs_status adcgs_segm_parse(adcgs_parse *p, const adcgs_stream *stream, adcgs_
     if (segm.predicted && stream->n_segments == 0)
         return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: the first segment is predicted");
     if (segm.predicted && stream->segments[stream->n_segments - 1].absent)
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: it is predicted from a segment of which tiers are absent");
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "SEGM: it is predicted from a segment with absent tiers");
     if (segm.predicted)
         inherit_values(model, &stream->segments[stream->n_segments - 1]);
     model->predicted = segm.predicted;
@@ -213,7 +213,7 @@ adcgs_status adcgs_segm_write(adcgs_buffer *out, const adcgs_stream *stream, con
     return model->predicted ? ADCGS_OK : write_values(out, model, error);
 }
 
-/** Use up so much, if that much is left. */
+/** Subtract a cost from the remaining budget, or fail. */
 static adcgs_status spend(const adcgs_parse *p, const adcgs_level *limits, adcgs_cost cost, adcgs_cost *left)
 {
     if (cost.bytes > left->bytes)
@@ -247,7 +247,7 @@ static adcgs_status check_geom(const adcgs_parse *p, uint32_t anchors, uint32_t 
 {
     const uint64_t all = (uint64_t)anchors + others;
     if (all < 1 || all > max_anchors)
-        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: anchors is %u beside %u others, HEAD allows 1..%u in all",
+        return adcgs_fail(p->error, ADCGS_ERR_DATA, "GEOM: anchors is %u in addition to %u others, HEAD allows 1..%u in total",
                           anchors, others, max_anchors);
     if ((uint32_t)depth > limits->depth)
         return adcgs_fail(p->error, ADCGS_ERR_LIMIT, "GEOM: depth is %d, the level allows %u", depth, limits->depth);
@@ -256,7 +256,7 @@ static adcgs_status check_geom(const adcgs_parse *p, uint32_t anchors, uint32_t 
     return ADCGS_OK;
 }
 
-/** The anchors of a model that has room for them. */
+/** Decode the positions of a model whose arrays are allocated. */
 static adcgs_status parse_positions(adcgs_parse *p, adcgs_model *model, adcgs_memory *memory)
 {
     const size_t bytes = adcgs_reader_left(&p->r);

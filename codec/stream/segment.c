@@ -13,14 +13,14 @@ typedef struct slice {
     adcgs_status status;
 } slice;
 
-/** What the threads of a chunk share. */
+/** State shared by the threads that decode a chunk. */
 typedef struct slice_job {
     adcgs_segment *s;
     slice *slices;
     const uint8_t *payload;
     uint32_t first;
     int layer;
-    uint8_t *room; /**< for each thread: tasks allocate nothing */
+    uint8_t *room; /**< one part for each thread: tasks allocate nothing */
     size_t room_each;
 } slice_job;
 
@@ -29,7 +29,7 @@ static uint32_t segment_number(const adcgs_segment *s)
     return s->stream->first_segment + s->stream->n_segments;
 }
 
-/** Layers to decode: those the stream has, or as many as the caller wants. */
+/** Number of layers to decode: all layers of the stream, or fewer if the caller wants fewer. */
 static int layers_wanted(const adcgs_segment *s)
 {
     const int all = adcgs_params_layers(&s->stream->params);
@@ -71,7 +71,7 @@ static adcgs_status check_times(const adcgs_segment *s, const int64_t ticks[3])
                           (long long)ticks[1]);
     if (stream->n_segments > 0 && (ticks[0] <= s->ticks[0] || ticks[0] < s->ticks[1]))
         return adcgs_fail(s->error, ADCGS_ERR_DATA,
-                          "SEGM: start_ticks is %lld, before the end of the segment in front of it, %lld", (long long)ticks[0],
+                          "SEGM: start_ticks is %lld, before the end of the previous segment, %lld", (long long)ticks[0],
                           (long long)s->ticks[1]);
     return ADCGS_OK;
 }
@@ -121,7 +121,7 @@ adcgs_status adcgs_segment_keep(adcgs_segment *s, adcgs_parse *p)
     return status;
 }
 
-/** A segment's network: the one that SEGM named, or, in a predicted segment, the one of the segment before. NULL: none. */
+/** A segment's network: the one that SEGM names or, in a predicted segment, that of the previous segment. NULL: none. */
 static const adcgs_net *net_of(const adcgs_segment *s, int role)
 {
     if (s->ids.mask >> role & 1)
@@ -129,14 +129,14 @@ static const adcgs_net *net_of(const adcgs_segment *s, int role)
     return s->model.predicted && model_before(s)->net[role].present ? &model_before(s)->net[role] : NULL;
 }
 
-/** Whether the networks that SEGM named are there, and what they and those of the segment before cost. */
+/** Check that the networks named by SEGM exist, and add up their cost and that of inherited networks. */
 static adcgs_status check_nets(const adcgs_segment *s, adcgs_nets_cost *cost)
 {
     *cost = (adcgs_nets_cost){ 0, 0 };
     for (int role = 0; role < ADCGS_ROLES; role++) {
         const uint32_t id = s->ids.id[role];
         if (s->ids.mask >> role & 1 && (id >= s->nets->n || !s->nets->nets[id].present || s->nets->nets[id].role != role))
-            return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: network_id for %s is %u, which is no such network",
+            return adcgs_fail(s->error, ADCGS_ERR_DATA, "SEGM: network_id for %s is %u, but there is no such network",
                               adcgs_role_name(role), id);
         if (net_of(s, role))
             adcgs_nets_cost_add(cost, &s->stream->params, role, net_of(s, role));
@@ -152,7 +152,7 @@ static adcgs_status copy_nets(adcgs_segment *s)
     return ADCGS_OK;
 }
 
-/** Fill what did not come with predicted means. */
+/** Fill missing slices with predicted means. */
 static adcgs_status conceal_layers(const adcgs_segment *s, adcgs_model *model, adcgs_error *error)
 {
     for (int layer = 1; layer < adcgs_params_layers(&s->stream->params); layer++)
@@ -165,7 +165,7 @@ static adcgs_status conceal_layers(const adcgs_segment *s, adcgs_model *model, a
     return ADCGS_OK;
 }
 
-/** What of a tier has come: layers that are there, others concealed, joined with what is kept and the tiers before. */
+/** Complete the model with the received part of a tier: conceal missing layers, join kept anchors and earlier tiers. */
 static adcgs_status complete_model(const adcgs_segment *s, adcgs_model *model, adcgs_error *error)
 {
     while (model->layers < adcgs_params_layers(&s->stream->params) && s->done[model->layers] == s->n_slices)
@@ -177,7 +177,7 @@ static adcgs_status complete_model(const adcgs_segment *s, adcgs_model *model, a
     return ADCGS_OK;
 }
 
-/** Join the tier at hand with the coarser anchors, once. */
+/** Join the current tier with the coarser anchors, once. */
 static adcgs_status join_model(adcgs_segment *s)
 {
     if (!s->is_joined)
@@ -186,13 +186,13 @@ static adcgs_status join_model(adcgs_segment *s)
     return ADCGS_OK;
 }
 
-/** The anchors of a tier, or of a predicted segment. */
+/** Read the anchors of a tier, or the new anchors of a predicted segment. */
 static adcgs_status place_anchors(adcgs_segment *s, adcgs_parse *p)
 {
     adcgs_nets_cost cost;
     ADCGS_TRY(check_nets(s, &cost));
     if (s->tier > 0)
-        cost.weights = 0; /* these networks are there */
+        cost.weights = 0; /* the tiers share these networks: their weights count once */
     ADCGS_TRY(adcgs_geom_parse(p, s->limits, s->max_anchors, s->coarser.n, s->tier, &s->model, &s->left, &cost,
                                s->options->memory));
     if (s->model.n)
@@ -205,7 +205,7 @@ static adcgs_status place_anchors(adcgs_segment *s, adcgs_parse *p)
     return ADCGS_OK;
 }
 
-/** The model at hand becomes one of no anchors, with its networks; what it was is the caller's. */
+/** Reset the current model to one without anchors but with its networks. The caller owns the returned previous model. */
 static adcgs_model begin_tier(adcgs_segment *s)
 {
     adcgs_model was = s->model;
@@ -221,7 +221,7 @@ static adcgs_model begin_tier(adcgs_segment *s)
     return was;
 }
 
-/** What has come of a tier is all there is of it: it joins those before, and the model is ready for the next. */
+/** Finish a tier: join it with the earlier ones, and prepare the model for the next tier. */
 static adcgs_status end_tier(adcgs_segment *s)
 {
     ADCGS_TRY(join_model(s));
@@ -231,7 +231,7 @@ static adcgs_status end_tier(adcgs_segment *s)
     return ADCGS_OK;
 }
 
-/** Remove the tier that was begun: the segment has the tiers before it. */
+/** Remove the tier that was begun; the segment keeps the earlier tiers. */
 static void undo_tier(adcgs_segment *s)
 {
     adcgs_model part = begin_tier(s);
@@ -246,10 +246,10 @@ adcgs_status adcgs_segment_place(adcgs_segment *s, adcgs_parse *p)
     if (s->model.predicted && !s->has_kept)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected after KEEP, the segment is predicted");
     if (s->stage == ADCGS_SEGMENT_PLACED && (s->model.predicted || s->tier == s->model.finest))
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: there is one for each tier, and there are %d",
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: expected once for each tier, and there are %d tiers",
                           s->model.predicted ? 1 : s->model.finest + 1);
     if (s->stage == ADCGS_SEGMENT_PLACED && s->done[0] < s->n_slices)
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: slices of FEA0 of the tier before are missing");
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "GEOM: slices of FEA0 of the previous tier are missing");
     if (s->stage == ADCGS_SEGMENT_PLACED)
         ADCGS_TRY(end_tier(s));
     const adcgs_status status = place_anchors(s, p);
@@ -273,7 +273,7 @@ static void decode_slice(void *arg, int index, int thread)
                                        job->room + (size_t)thread * job->room_each, NULL);
 }
 
-/** Why decoding a slice failed: a body that cannot be, which its flags tell once more, or its end. */
+/** Find the reason why decoding a slice failed: an impossible body, found by decoding the flags again, or its end. */
 static void explain(const slice_job *job, uint32_t index, adcgs_error *why)
 {
     const slice *one = &job->slices[index];
@@ -285,7 +285,7 @@ static void explain(const slice_job *job, uint32_t index, adcgs_error *why)
         adcgs_range_dec_finish(&one->range, why);
 }
 
-/** Decode usable slices on all threads. The first that fails is looked at once more for a message. */
+/** Decode usable slices on all threads. The first that fails is decoded again for its message. */
 static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int layer, uint32_t first, slice *slices,
                                   uint32_t usable)
 {
@@ -309,7 +309,7 @@ static adcgs_status decode_slices(adcgs_segment *s, const adcgs_parse *p, int la
     return ADCGS_OK;
 }
 
-/** The table of contents. Offsets count from the end of the table until the caller adds its position. */
+/** Parse the table of slices. Offsets count from the end of the table until check_slices() adds its position. */
 static adcgs_status parse_slices(adcgs_parse *p, slice *slices, uint32_t n, uint64_t *total)
 {
     *total = 0;
@@ -324,7 +324,7 @@ static adcgs_status parse_slices(adcgs_parse *p, slice *slices, uint32_t n, uint
     return ADCGS_OK;
 }
 
-/** How many of the slices are there, with checksums that are right. */
+/** Count the leading slices that are present and have correct checksums. */
 static adcgs_status check_slices(adcgs_segment *s, const adcgs_parse *p, slice *slices, uint32_t first, uint32_t n,
                                  uint32_t *usable)
 {
@@ -351,7 +351,7 @@ static adcgs_status use_slices(adcgs_segment *s, adcgs_parse *p, int layer, uint
     uint32_t usable = 0;
     const adcgs_status status = parse_slices(p, slices, n, &total);
     if (status != ADCGS_OK)
-        return complete ? status : ADCGS_OK; /* the table is cut off: nothing here can be used */
+        return complete ? status : ADCGS_OK; /* the table is cut off: no slice can be used */
     if (complete && total != adcgs_reader_left(&p->r))
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: slices have %llu bytes, the payload has %zu", p->chunk,
                           (unsigned long long)total, adcgs_reader_left(&p->r));
@@ -365,7 +365,7 @@ adcgs_status adcgs_segment_features(adcgs_segment *s, adcgs_parse *p, int layer,
     if (s->stage != ADCGS_SEGMENT_PLACED)
         return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: expected after GEOM", p->chunk);
     if (layer >= adcgs_params_layers(&s->stream->params))
-        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: the parameters give the stream %d layers", p->chunk,
+        return adcgs_fail(s->error, ADCGS_ERR_DATA, "%s: the stream's parameters give %d layers", p->chunk,
                           adcgs_params_layers(&s->stream->params));
     if (layer >= layers_wanted(s))
         return ADCGS_OK;
@@ -432,7 +432,7 @@ void adcgs_segment_drop_tier(adcgs_segment *s)
 {
     if (tier_is_complete(s) || !s->tier)
         return;
-    undo_tier(s); /* which leaves one of no slices: they are all there */
+    undo_tier(s); /* leaves a tier without slices, which counts as complete */
 }
 
 adcgs_status adcgs_segment_peek(const adcgs_segment *s, adcgs_model *model, int *drawable, adcgs_error *error)

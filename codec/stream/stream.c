@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The stream's storage, and what it holds in short. */
+/** \file The stream's storage, and the summary of its contents. */
 #include "stream/stream.h"
 
 #include "model/model_priv.h"
@@ -57,7 +57,7 @@ static int count_bits(uint32_t v)
     return n;
 }
 
-/** What a segment adds to a summary. */
+/** Add a segment to a summary. */
 static void add_segment(adcgs_info *info, const adcgs_model *model)
 {
     info->anchors += model->n;

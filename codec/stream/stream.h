@@ -21,7 +21,7 @@ typedef struct adcgs_stream {
     uint8_t slice_log2;            /**< anchors per slice = 2^slice_log2 */
     adcgs_params params;
     uint32_t timebase_num, timebase_den; /**< seconds per tick = num/den */
-    uint32_t rate_num, rate_den;   /**< frames per second suggested for playing */
+    uint32_t rate_num, rate_den;   /**< suggested frames per second for playing */
     int64_t start_ticks, duration_ticks;
     double scene_origin[3], scene_scale; /**< world = origin + scale * scene units */
     float background[3];
@@ -34,31 +34,31 @@ typedef struct adcgs_stream {
     uint32_t n_meta;
     adcgs_meta *meta;
     uint32_t n_segments;
-    uint32_t first_segment;        /**< number of segments[0]: those before it are not kept, or were missed; else 0 */
+    uint32_t first_segment;        /**< number of segments[0]: above 0 if earlier ones were freed or missed */
     adcgs_model *segments;         /**< [n_segments], in time order; time_start/end in seconds are derived from ticks */
     int truncated;
     uint32_t weights;              /**< of distinct networks; filled by reading and by writing */
     adcgs_bytes bytes;             /**< filled by reading and by writing */
 } adcgs_stream;
 
-/** Zero and defaults: timebase 1/1000, rate 30, slices of 1024, scale 1, filter 0.3. */
+/** Zero, with defaults: timebase 1/1000, rate 30, slices of 1024, scale 1, filter 0.3. */
 void adcgs_stream_init(adcgs_stream *stream);
 void adcgs_stream_clear(adcgs_stream *stream, adcgs_memory *memory);
-/** Drop the first n models, n at most n_segments; the others move to the front. */
+/** Free the first n models, n at most n_segments; the others move to the front. */
 void adcgs_stream_forget(adcgs_stream *stream, uint32_t n, adcgs_memory *memory);
 
 /** The summary that decoders and reports give, of a stream that was read or written. */
 void adcgs_stream_info(const adcgs_stream *stream, adcgs_info *info);
 
-/** Seconds of a tick, and the tick of a time that a tick gives exactly (ADCGS_ERR_USAGE if none does). */
+/** Seconds of a tick; the tick of a time, exactly (ADCGS_ERR_USAGE if there is none). */
 double adcgs_ticks_to_seconds(const adcgs_stream *stream, int64_t ticks);
 adcgs_status adcgs_seconds_to_ticks(const adcgs_stream *stream, double seconds, int64_t *ticks, adcgs_error *error);
-/** Those of a segment's reach; ADCGS_ERR_USAGE as above. */
+/** The ticks of a segment's reach; ADCGS_ERR_USAGE as above. */
 adcgs_status adcgs_reach_ticks(const adcgs_stream *stream, const adcgs_model *model, uint32_t *ticks, adcgs_error *error);
 
 /**
- * Append the stream to out, without the tiers that are absent. Validates first; segment times must be whole ticks. Derives
- * start_ticks and duration_ticks from the segments; level 0 becomes the lowest level that the stream fits; fills bytes.
+ * Append the stream to out, without absent tiers. Validates first; segment times must be whole ticks. Derives start_ticks and
+ * duration_ticks from the segments; level 0 becomes the lowest level that the stream fits; fills bytes.
  */
 adcgs_status adcgs_stream_write(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error);
 
@@ -69,8 +69,8 @@ typedef struct adcgs_read_options {
     adcgs_log log;
     int layers;            /**< 1..5, 0: all */
     int strict_end;
-    int conceal;           /**< slices behind one that is damaged are as if they had not come */
-    int join;              /**< of a stream whose beginning is missing, what comes behind its next HEAD (push.h) */
+    int conceal;           /**< slices after a damaged one are treated as missing */
+    int join;              /**< tune in: if the beginning is missing, start at the next HEAD (push.h) */
 } adcgs_read_options;
 
 /** Called for each line of the trace (spec "Trace"), in the caller's thread: absolute bit position, name, value as text. */

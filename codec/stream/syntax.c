@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The tables behind the lists of syntax.h, and for each structure the two functions that use its table. */
+/** \file The tables for the lists of syntax.h, and for each structure the two functions that use its table. */
 #include "stream/syntax.h"
 
 #include "geom/geom.h"

@@ -13,7 +13,7 @@
 #define ADCGS_TICKS_MAX 0x1p52
 #define ADCGS_WORLD_MAX 0x1p40
 
-/* Of a chunk, behind its type. */
+/* Elements of a chunk header after its type. */
 #define ADCGS_LIST_CHUNK_HEADER(F, V) \
     F(U32, length, 0, 0x1p30)         \
     F(U16, segment, 0, 65535)         \
@@ -21,7 +21,7 @@
     F(U8, version, 0, 255)            \
     F(U32, header_crc, 0, 4294967295.0)
 
-/* HEAD: what says whether a decoder knows the rest, and the rest. */
+/* HEAD: the elements that show whether a decoder supports the stream, then all others. */
 #define ADCGS_LIST_VERSION(F, V)    \
     F(U16, version_major, 0, 65535) \
     F(U16, version_minor, 0, 65535) \
@@ -61,8 +61,7 @@
     F(U16, time_rows, 0, ADCGS_TIME_ROWS_MAX)                   \
     F(U16, time_width, 0, ADCGS_TIME_WIDTH_MAX)
 
-/* Of a network: role, then for E24 roles e24 and for priors prior, then layers; and of a layer, where form is 64 mode + e, plus
- * 128 if residual. */
+/* A network: role; e24 for E24 roles; prior for priors; then layers. The form of a layer is 64 mode + e, plus 128 if residual. */
 #define ADCGS_LIST_NET(F, V)        \
     F(U8, role, 0, ADCGS_ROLES - 1) \
     F(U8, n_layers, 1, ADCGS_NET_LAYERS_MAX)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Writing a stream that is there as a whole. */
+/** \file Writing a stream that is complete in memory. */
 #include "model/model_priv.h"
 #include "stream/writer.h"
 
@@ -32,12 +32,12 @@ static adcgs_status write_at_level(adcgs_stream *stream, adcgs_buffer *out, adcg
     return status;
 }
 
-/** Each model by itself, then what the segments must agree on. Derives the stream's span. */
+/** Check each model by itself, then the consistency of the segments. Derives the stream's time range. */
 static adcgs_status check_stream(adcgs_stream *stream, adcgs_error *error)
 {
     int64_t span[2] = { 0, 0 };
     if (stream->n_segments < 1)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: no segments, expected some");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: no segments, expected at least one");
     ADCGS_TRY(adcgs_writer_check_head(stream, error));
     for (uint32_t i = 0; i < stream->n_segments; i++) {
         const adcgs_model *model = &stream->segments[i];

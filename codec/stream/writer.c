@@ -51,7 +51,7 @@ static adcgs_status write_extras(adcgs_writer *w)
     return ADCGS_OK;
 }
 
-/** Ids for a model's networks, which are sent anew but for those that a predicted one has of the one before. */
+/** Assign ids to a model's networks, which are sent again except those that a predicted segment shares with the previous one. */
 static void assign_ids(adcgs_writer *w, const adcgs_model *before, const adcgs_model *model, adcgs_role_ids *ids)
 {
     for (int role = 0; role < ADCGS_ROLES; role++) {
@@ -65,7 +65,7 @@ static void assign_ids(adcgs_writer *w, const adcgs_model *before, const adcgs_m
     }
 }
 
-/** What a segment's tiers cost, which are one where it is predicted: networks do so once. */
+/** Add the cost of a segment's tiers; a predicted segment has one. Networks count once. */
 static void spend_tiers(adcgs_writer *w, const adcgs_model *model)
 {
     adcgs_nets_cost nets = { 0, 0 };
@@ -109,7 +109,7 @@ static adcgs_status encode_slices(adcgs_writer *w, const adcgs_latents *latents,
     return ADCGS_OK;
 }
 
-/** Slices from first on, as many as one chunk may hold. \return their number, at least one. */
+/** Number of slices from first on that fit into one chunk. \return at least one. */
 static uint32_t slices_per_chunk(const adcgs_writer *w, const layer_data *l, uint32_t first)
 {
     uint64_t payload = 10; /* two numbers in front; each slice has a length and a CRC */
@@ -121,7 +121,7 @@ static uint32_t slices_per_chunk(const adcgs_writer *w, const layer_data *l, uin
 
 static adcgs_status write_layer(adcgs_writer *w, uint32_t segment, int tier, int layer, const layer_data *l)
 {
-    static const uint8_t nothing[1]; /* all slices may be empty, and then the buffer has no bytes either */
+    static const uint8_t nothing[1]; /* if all slices are empty, the buffer has no memory */
     const uint8_t *data = l->data.data ? l->data.data : nothing, *slice = data;
     for (uint32_t first = 0, n; first < l->n_slices; first += n) {
         const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_FEA(layer), segment, ADCGS_CHUNK_OF_TIER(tier));
@@ -194,7 +194,7 @@ static adcgs_status write_networks(adcgs_writer *w, uint32_t segment, const adcg
     return end_chunk(w, ADCGS_TYPE_NETW, begin);
 }
 
-/** Where the anchors of a tier are, or the new ones of a predicted segment, and their latents. */
+/** Write the positions of a tier's anchors, or of the new anchors of a predicted segment, and their latents. */
 static adcgs_status write_anchors(adcgs_writer *w, uint32_t segment, int tier, adcgs_model *added)
 {
     const size_t begin = adcgs_chunk_begin(w->out, ADCGS_TYPE_GEOM, segment, ADCGS_CHUNK_OF_TIER(tier));
@@ -252,7 +252,7 @@ static uint64_t position(const adcgs_writer *w)
     return w->gone + (w->out->size - w->begin);
 }
 
-/** The segment written last ends here: at the next SEGM, or at INDX. */
+/** Index the last segment, which ends here: at the next SEGM, or at INDX. */
 static adcgs_status index_last(adcgs_writer *w)
 {
     if (w->n_segments == 0)
@@ -272,7 +272,7 @@ static adcgs_status write_parts(adcgs_writer *w, const adcgs_model *before, adcg
     ADCGS_TRY(end_chunk(w, ADCGS_TYPE_SEGM, begin));
     ADCGS_TRY(write_networks(w, segment, model, &ids));
     ADCGS_TRY(before ? write_predicted(w, segment, before, model) : write_tiers(w, segment, model));
-    return model->absent ? ADCGS_OK : write_hash(w, segment, model); /* else nobody would compare it */
+    return model->absent ? ADCGS_OK : write_hash(w, segment, model); /* without all tiers no reader would compare it */
 }
 
 adcgs_status adcgs_writer_segment(adcgs_writer *w, const adcgs_model *before, adcgs_model *model)
@@ -287,7 +287,7 @@ adcgs_status adcgs_writer_segment(adcgs_writer *w, const adcgs_model *before, ad
     return ADCGS_OK;
 }
 
-/** INDX helps nobody in a stream of one segment. */
+/** Write INDX; it is useless in a stream of one segment. */
 static adcgs_status write_index(adcgs_writer *w)
 {
     if (w->n_segments < 2)
@@ -367,11 +367,11 @@ adcgs_status adcgs_writer_check(const adcgs_stream *stream, uint32_t i, const ad
     if (model->predicted && !before)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: the first segment is predicted");
     if (model->predicted && before->absent)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u is predicted from one of which tiers are absent", i);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u is predicted from a segment with absent tiers", i);
     if (model->predicted && !adcgs_kept_possible(before, model, error))
         return ADCGS_ERR_USAGE;
     if (i > 0 && (start <= span[0] || start < span[1]))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u starts before the one in front of it ends", i);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "stream: segment %u starts before the previous one ends", i);
     span[0] = start;
     span[1] = end;
     return ADCGS_OK;

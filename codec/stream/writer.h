@@ -1,45 +1,45 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A stream being written, chunk by chunk: what those who have all of it and those whose stream grows share. */
+/** \file State of writing a stream chunk by chunk, shared by complete and growing streams. */
 #ifndef ADCGS_STREAM_WRITER_H
 #define ADCGS_STREAM_WRITER_H
 
 #include "stream/parts.h"
 
 typedef struct adcgs_writer {
-    adcgs_stream *stream;   /**< what is true of all segments; receives bytes and weights */
-    uint32_t max_anchors;   /**< of any segment */
+    adcgs_stream *stream;   /**< properties of all segments; receives bytes and weights */
+    uint32_t max_anchors;   /**< maximum over the segments */
     adcgs_buffer *out;
-    size_t begin;           /**< in out, of what of the stream is there */
-    uint64_t gone;          /**< bytes of the stream before these */
+    size_t begin;           /**< position in out at which the stream's bytes begin */
+    uint64_t gone;          /**< bytes of the stream before begin */
     const adcgs_level *limits;
     uint32_t crc_of_crcs;
     uint32_t n_nets;        /**< written so far */
     uint64_t weights;
-    adcgs_cost spent;       /**< of the level's model bytes and work */
+    adcgs_cost spent;       /**< used model bytes and work of the level */
     uint32_t n_segments;    /**< written so far */
-    adcgs_syn_index last;   /**< the segment written last, but for its bytes */
-    adcgs_buffer index;     /**< payload of INDX of those before it, less the count */
+    adcgs_syn_index last;   /**< the last segment written, without its bytes */
+    adcgs_buffer index;     /**< payload of INDX for the segments before it, without the count */
     adcgs_error *error;
 } adcgs_writer;
 
-/** stream->level is set; error receives what fails, and outlives the writer, as stream and out do. */
+/** stream->level is set. error receives failures. error, stream and out must outlive the writer. */
 void adcgs_writer_init(adcgs_writer *writer, adcgs_stream *stream, uint32_t max_anchors, adcgs_buffer *out, adcgs_error *error);
 void adcgs_writer_clear(adcgs_writer *writer);
 
 /** Signature, HEAD, cameras and metadata. */
 adcgs_status adcgs_writer_front(adcgs_writer *writer);
-/** HEAD, once more. */
+/** HEAD again. */
 adcgs_status adcgs_writer_head(adcgs_writer *writer);
-/** The next segment, which was checked; before: of which it is predicted, or NULL. */
+/** The next segment, already checked. before: the model that it is predicted from, or NULL. */
 adcgs_status adcgs_writer_segment(adcgs_writer *writer, const adcgs_model *before, adcgs_model *model);
-/** INDX, where there are several segments, and ENDC. */
+/** INDX, if there are several segments, and ENDC. */
 adcgs_status adcgs_writer_end(adcgs_writer *writer);
 
-/** Whether a stream without its segments can be written. */
+/** Check that a stream can be written, apart from its segments. */
 adcgs_status adcgs_writer_check_head(const adcgs_stream *stream, adcgs_error *error);
 /**
- * Whether a segment can be the stream's i-th, behind one that has this model (NULL: it is not known, or there is none) and these
- * ticks, which become its own. ADCGS_ERR_USAGE if not.
+ * Check that a segment can be the stream's i-th. before: the model of the previous segment; NULL if unknown or none. span: ticks
+ * of the previous segment, replaced by its own. ADCGS_ERR_USAGE if not.
  */
 adcgs_status adcgs_writer_check(const adcgs_stream *stream, uint32_t i, const adcgs_model *before, const adcgs_model *model,
                                 int64_t span[2], adcgs_error *error);

@@ -242,7 +242,7 @@ static void test_lost(void **state)
     config.conceal = 1;
     config.log = listen;
     assert_int_equal(adcgs_open_memory(&d, b.data, b.size, &config, NULL), ADCGS_OK);
-    assert_non_null(strstr(told, "segment 5 is lost, and what the next would be faded into"));
+    assert_non_null(strstr(told, "segment 5 is lost, and the crossfade into the next one"));
     draw(d, time, found);
     assert_memory_equal(found, drawn_alone[0], sizeof found);
     adcgs_close(&d);
