@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * One frame of a stream to a picture: render_frame FILE OUT.ppm [SECONDS]. The stream's first camera looks; a stream without
- * cameras is seen from in front of the scene.
+ * Render one frame of a stream to an image file: render_frame FILE OUT.ppm [SECONDS]. Uses the stream's first camera; a stream
+ * without cameras is seen from in front of the scene.
  *
  * cc render_frame.c $(pkg-config --cflags --libs adcgs)
  */
@@ -23,7 +23,7 @@ static adcgs_camera choose_camera(const adcgs_decoder *decoder, const adcgs_info
     return camera;
 }
 
-/* A PPM has three samples a pixel; the fourth is left out. */
+/* A PPM has three samples per pixel; the fourth is left out. */
 static int write_ppm(const char *path, const uint8_t *rgba, int width, int height)
 {
     FILE *file = fopen(path, "wb");

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Splats of one moment as a buffer for a GPU: splat_buffer FILE OUT.bin [SECONDS]. 64 bytes for each splat, in the layout that
- * std430 gives the struct below (three numbers and a fourth share 16 bytes). What is written to a file here goes to
- * glBufferData(), vkMapMemory() or writeBuffer() elsewhere; a splat that moves is uploaded anew for each moment.
+ * The splats at one time as a buffer for a GPU: splat_buffer FILE OUT.bin [SECONDS]. Each splat has 64 bytes, in the std430
+ * layout of the struct below (three numbers and a fourth share 16 bytes). This example writes the buffer to a file. Other
+ * programs pass it to glBufferData(), vkMapMemory() or writeBuffer(), and upload moving splats again for each time.
  *
  * cc splat_buffer.c $(pkg-config --cflags --libs adcgs)
  */
@@ -17,7 +17,7 @@ typedef struct gpu_splat {
     float opacity;     /* 0..0.99 */
     float scale[3];    /* world units */
     float pad0;
-    float rotation[4]; /* unit quaternion x, y, z, w, as shaders like it */
+    float rotation[4]; /* unit quaternion x, y, z, w, the usual order in shaders */
     float colour[3];   /* RGB */
     float pad1;
 } gpu_splat;
@@ -35,7 +35,7 @@ static gpu_splat pack(const adcgs_primitives *p, uint32_t i, const adcgs_info *i
     return s;
 }
 
-/* Slots of opacity 0 draw nothing and need no place in the buffer. Returns how many splats it holds. */
+/* Slots with opacity 0 are invisible and left out of the buffer. Returns the number of splats in it. */
 static size_t fill(gpu_splat *buffer, const adcgs_primitives *primitives, const adcgs_info *info)
 {
     size_t n = 0;

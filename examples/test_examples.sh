@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The examples give what adcgs-dec gives: the same picture, the same splats. Runs in the build folder.
+# The examples give the same results as adcgs-dec: the same image, the same splats. Runs in the build folder.
 . "${srcdir:-.}/tests/cli/common.sh"
 need adcgs-dec examples/render_frame examples/splat_buffer
 vectors=${srcdir:-.}/conformance/vectors
@@ -12,7 +12,7 @@ for t in 0 0.02 0.04; do
     expect 0 "" ./adcgs-dec "$s" -o "$dir/expected.ppm" --camera 0 --time $t
     cmp "$dir/frame.ppm" "$dir/expected.ppm" || bad "the frame at $t s"
 
-    # Position, then what PLY holds as it is: rotations, in another order.
+    # Compare the numbers that PLY stores without conversion: position and, in another order, rotation.
     expect 0 "" ./examples/splat_buffer "$s" "$dir/splats.bin" $t
     n=$(sed -n 's/ splats, 64 bytes each$//p' "$dir/out")
     [ "$n" -gt 0 ] && [ "$(wc -c <"$dir/splats.bin")" -eq $((64 * n)) ] || bad "$n splats and the size of their buffer"
@@ -22,7 +22,7 @@ for t in 0 0.02 0.04; do
     cmp "$dir/found" "$dir/wanted" || bad "the splats at $t s"
 done
 
-# A stream that ends early plays as far as it came, with a warning.
+# A stream that ends early plays as far as it goes, with a warning.
 size=$(wc -c <"$s")
 head -c $((size - 1)) "$s" >"$dir/cut.adcgs"
 expect 0 "^warning: stream: ends at byte $((size - 1))" ./examples/render_frame "$dir/cut.adcgs" "$dir/frame.ppm"

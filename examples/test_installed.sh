@@ -1,13 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-2-Clause
-# What `make install` lays down is what a stranger needs: pkg-config finds the library by both of its names, the examples build
-# against it, with the shared library and with the static one, and give the same as in the tree. No debug information comes
-# along unless the builder's flags asked for it. Runs in the build folder.
+# Another project can use the files of `make install`. pkg-config finds the library by both of its names. The examples build
+# against the shared and the static library, and give the same results as in the tree. The installed files have no debug
+# information unless the builder's flags asked for it. Runs in the build folder.
 set -u
 [ -f Makefile ] && [ -d .libs ] || exit 77
 command -v pkg-config >/dev/null || { echo "skipped: no pkg-config"; exit 77; }
 source=$(cd "${srcdir:-.}" && pwd) || exit 99
-# Sanitizers and other machines' programs: what is installed does not run by itself.
+# With sanitizers, or for another machine, the installed library does not run by itself.
 grep -qE '^(CC|CFLAGS) *=.*(-fsanitize|-m32)' Makefile && exit 77
 dir=$(mktemp -d) || exit 99
 trap 'rm -rf "$dir"' EXIT
@@ -32,7 +32,7 @@ compiler=$(sed -n 's/^CC = *//p' Makefile)
 vector=$source/conformance/vectors/good-sys-cams.adcgs
 ./examples/render_frame "$vector" "$dir/tree.ppm" || fault "render_frame of the tree"
 
-# try NAME FLAG...: both examples, built so; the first gives the tree's picture.
+# try NAME FLAG...: build both examples with these flags; the first must give the tree's image.
 try()
 {
     local name=$1 example
