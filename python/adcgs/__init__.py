@@ -9,9 +9,9 @@
         for time, frame in stream.frames():
             ...
 
-help(adcgs.open) says how to open a stream, help(adcgs.Decoder) what can be asked of it. Arrays are NumPy's; what gives none
-(info, cameras, metadata, digests of models and splats) works without it. ADCGS_LIBRARY names another libadcgs.so than the one
-that was installed with this package.
+help(adcgs.open) describes how to open a stream, help(adcgs.Decoder) how to query it. Arrays are NumPy's. Calls that return no
+array (info, cameras, metadata, digests of models and splats) work without NumPy. ADCGS_LIBRARY selects another libadcgs.so than
+the one installed with this package.
 """
 from ._library import lib as _lib
 from .camera import Camera
@@ -23,7 +23,7 @@ __version__ = _lib.adcgs_version_string().decode()
 
 
 def cpu_best():
-    """The best CPU level that this library has on this machine: "scalar", "avx2" or "avx512"."""
+    """The best CPU level that this library supports on this machine: "scalar", "avx2" or "avx512"."""
     return _lib.adcgs_cpu_name(_lib.adcgs_cpu_best()).decode()
 
 

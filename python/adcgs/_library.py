@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""libadcgs.so, found and declared."""
+"""Finding and declaring libadcgs.so."""
 import ctypes
 import os
 from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_ssize_t, c_uint32, c_uint64, c_uint8, c_void_p
@@ -14,7 +14,7 @@ _config = POINTER(s.adcgs_config)
 _camera = POINTER(s.adcgs_camera)
 _digest = c_uint8 * 16
 
-# What a function returns, and what it takes. Those that return a status are called by call(), which raises what it means.
+# Result and argument types by function. Functions that return a status are called by call(), which raises failures.
 PROTOTYPES = {
     "adcgs_close": (None, [_opened]),
     "adcgs_config_init": (None, [_config, c_size_t]),
@@ -51,13 +51,13 @@ PROTOTYPES = {
 
 
 def _find():
-    """ADCGS_LIBRARY, or the library that was installed with this package."""
+    """Find ADCGS_LIBRARY, or the library that was installed with this package."""
     name = os.environ.get("ADCGS_LIBRARY")
     if not name:
         try:
             from ._where import LIBRARY
         except ImportError:
-            raise ImportError("adcgs: this package was not installed; ADCGS_LIBRARY must say where libadcgs.so is") from None
+            raise ImportError("adcgs: this package was not installed; ADCGS_LIBRARY must be the path of libadcgs.so") from None
         name = os.path.join(os.path.dirname(os.path.abspath(__file__)), LIBRARY)
     try:
         return ctypes.CDLL(name)
@@ -69,7 +69,7 @@ def _declare(library):
     for name, (result, arguments) in PROTOTYPES.items():
         function = getattr(library, name, None)
         if function is None:
-            raise ImportError(f"adcgs: {library._name}: it has no {name}: older than this package")
+            raise ImportError(f"adcgs: {library._name}: has no {name}: the library is older than this package")
         function.restype, function.argtypes = result, arguments
     return library
 
@@ -78,7 +78,7 @@ lib = _declare(_find())
 
 
 def call(function, *arguments):
-    """Call a function that returns a status, its error left out; raise what it tells."""
+    """Call a function that returns a status, without its error argument; raise a failure as an exception."""
     error = s.adcgs_error()
     status = function(*arguments, ctypes.byref(error))
     if status:
@@ -88,5 +88,5 @@ def call(function, *arguments):
 
 
 def digest():
-    """Room for an MD5."""
+    """An uninitialised MD5."""
     return _digest()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""NumPy, asked for when the first array is: what needs none works without it."""
+"""NumPy, imported for the first array: all else works without it."""
 
 
 def numpy():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""What a decoder is opened from: a file's name, bytes, or an object to read from."""
+"""Sources of a decoder: a file's name, bytes, or an object to read from."""
 import ctypes
 import os
 
@@ -9,8 +9,8 @@ from .errors import Error
 
 
 class Source:
-    """An object with read(), and seek() where parts of it are asked for, behind the library's callbacks. What it raises is kept:
-    a callback cannot raise through the library."""
+    """An object with read(), and seek() for random access, behind the library's callbacks. Its exceptions are stored, since a
+    callback cannot raise through the library."""
 
     def __init__(self, file):
         self.file = file
@@ -24,7 +24,7 @@ class Source:
     def _give(self, buffer, size):
         data = self.file.read(size)
         if data is None or len(data) > size:
-            raise OSError("read() gave nothing to wait for, or more than was asked for")
+            raise OSError("read() returned no data yet, or more than requested")
         ctypes.memmove(buffer, bytes(data), len(data))
         return len(data)
 
@@ -44,7 +44,7 @@ class Source:
             return -1
 
     def call(self, function, *arguments):
-        """As call(); what the object raised is raised instead of the failure that it became."""
+        """As call(). If the object raised an exception, raise that in place of the failure that it caused."""
         self.raised = None
         try:
             call(function, *arguments)
@@ -55,7 +55,7 @@ class Source:
 
 
 def open_source(handle, source, config):
-    """Open a decoder. Returns what must be kept while it is open, or None."""
+    """Open a decoder. Returns the object that must be kept while it is open, or None."""
     out, how = ctypes.byref(handle), ctypes.byref(config)
     if isinstance(source, (str, os.PathLike)):
         call(lib.adcgs_open_file, out, os.fsencode(source), how)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""The structs of adcgs/types.h and adcgs/status.h. tests/python compares them with the headers, and with C's own layout."""
+"""The structs of adcgs/types.h and adcgs/status.h. tests/python compares them with the headers and with C's own layout."""
 from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64, c_size_t,
                     c_uint32, c_uint64, c_void_p)
 

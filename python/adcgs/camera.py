@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Cameras, as the library has them and as gsplat has them."""
+"""Cameras in the library's and in gsplat's conventions."""
 from dataclasses import dataclass
 
 from . import _structs as s
@@ -8,13 +8,13 @@ from ._numpy import numpy
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera. Axes are OpenCV's, as gsplat's are: x right, y down, looking along +z; the centre of the first pixel is
+    """A pinhole camera. Axes are OpenCV's, like gsplat's: x right, y down, looking along +z; the centre of the first pixel is
     at (0.5, 0.5).
 
     width, height   pixels, 1 to 16384
     fx, fy, cx, cy  pixels
-    cam_to_world    12 numbers, row-major 3x4 [R|c]: R orthonormal, c the camera's place in world units
-    near_plane      world units, above 0: nothing closer is drawn
+    cam_to_world    12 numbers, row-major 3x4 [R|c]: R orthonormal, c the camera's centre in world units
+    near_plane      world units, above 0: nothing closer is rendered
     name            at most 63 bytes
     """
 
@@ -30,8 +30,8 @@ class Camera:
 
     @classmethod
     def from_gsplat(cls, viewmat, K, width, height, near_plane=0.01, name=""):
-        """The camera of a viewmat [4, 4], world to camera, and a K [3, 3], pixels, without skew. The camera's place is computed
-        from viewmat in binary64: a frame may differ in last bits from one of the camera that viewmat was made of."""
+        """The camera of a viewmat [4, 4], world to camera, and a K [3, 3], pixels, without skew. The camera's centre is computed
+        from viewmat in binary64. So a frame may differ in its last bits from one of the camera that viewmat was made of."""
         np = numpy()
         view, k = np.asarray(viewmat, np.float64), np.asarray(K, np.float64)
         if view.shape != (4, 4) or k.shape != (3, 3):

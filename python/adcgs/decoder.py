@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Decoders: open a stream, ask what it holds, take its splats, render frames."""
+"""Decoders: open a stream, query its contents, get its splats, render frames."""
 import collections
 import ctypes
 import math
@@ -11,7 +11,7 @@ from ._source import open_source
 from .camera import Camera, from_struct, to_struct
 
 Splats = collections.namedtuple("Splats", "means quats scales opacities colors")
-Splats.__doc__ = """Splats at one moment, float32, in gsplat's words: what gsplat.rasterization() takes, with sh_degree None.
+Splats.__doc__ = """Splats at one time, float32, with gsplat's names: input of gsplat.rasterization() with sh_degree None.
 
 means      [N, 3]  centres
 quats      [N, 4]  unit quaternions w x y z, from a splat's axes to the world's
@@ -21,14 +21,14 @@ colors     [N, 3]  RGB in the stream's transfer characteristic (Info.colour), 0 
 """
 Bytes = collections.namedtuple("Bytes", [name for name, _ in s.adcgs_bytes._fields_])
 Info = collections.namedtuple("Info", [name for name, _ in s.adcgs_info._fields_ if name != "size"])
-Info.__doc__ = """What a stream holds: the members of adcgs_info (adcgs_get_info(3)). Times are in seconds, scene_origin in world
+Info.__doc__ = """Summary of a stream: the members of adcgs_info (adcgs_get_info(3)). Times are in seconds, scene_origin in world
 units; world = scene_origin + scene_scale * scene."""
 
 
 class Pool:
-    """Threads that several decoders share. threads: 1 to 256, counting the one that calls; 0: one for each processor."""
+    """Threads that several decoders share. threads: 1 to 256, including the calling one; 0: one for each processor."""
 
-    _handle = None  # of one that was never made
+    _handle = None  # if the constructor fails
 
     def __init__(self, threads=0):
         self._handle = ctypes.c_void_p()
@@ -40,12 +40,12 @@ class Pool:
 
     @property
     def threads(self):
-        """How many."""
+        """Number of threads."""
         return lib.adcgs_pool_threads(self._handle)
 
 
 def _plain(value):
-    """A struct's member as Python has it."""
+    """A struct's member as a Python value."""
     if isinstance(value, s.adcgs_bytes):
         return Bytes(*(_plain(getattr(value, name)) for name in Bytes._fields))
     if isinstance(value, bytes):
@@ -68,16 +68,16 @@ def _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand,
 
 
 class Decoder:
-    """A stream that was opened, by open(). One thread at a time may use it; different decoders are independent. It is closed at
-    the end of a with statement, by close(), or with its last reference. What fails raises an Error with the library's one
-    line."""
+    """An open stream, made by open(). Only one thread at a time may use it; different decoders are independent. It is closed at
+    the end of a with statement, by close(), or with its last reference. A failure raises an Error with the library's one-line
+    message."""
 
-    _handle = None  # of one that was never made
+    _handle = None  # if the constructor fails
 
     def __init__(self, config, pool):
         self._handle = ctypes.c_void_p()
         self._source = None
-        self._config, self._pool = config, pool  # the library calls the one's log, and uses the other
+        self._config, self._pool = config, pool  # keep alive: the library uses both
 
     def __enter__(self):
         return self
@@ -89,7 +89,7 @@ class Decoder:
         self.close()
 
     def close(self):
-        """Free all it owns. Arrays that it gave stay."""
+        """Free everything that it owns. Arrays that it returned stay valid."""
         if self._handle:
             lib.adcgs_close(ctypes.byref(self._handle))
         self._source = None
@@ -99,11 +99,11 @@ class Decoder:
             raise ValueError("the decoder is closed")
         (self._source.call if self._source else call)(function, self._handle, *arguments)
 
-    # ---- what the stream holds ----
+    # ---- contents of the stream ----
 
     @property
     def info(self):
-        """An Info, as of now."""
+        """An Info with the current values."""
         info = s.adcgs_info()
         self._call(lib.adcgs_get_info, ctypes.byref(info), ctypes.sizeof(info))
         return Info(*(_plain(getattr(info, name)) for name in Info._fields))
@@ -114,7 +114,7 @@ class Decoder:
         return [self.camera(i) for i in range(self.info.cameras)]
 
     def camera(self, which):
-        """A stored camera by its number, or by its name; a Camera is given back."""
+        """A stored camera, by its number or its name; a Camera is returned unchanged."""
         if isinstance(which, Camera):
             return which
         if isinstance(which, str):
@@ -128,7 +128,7 @@ class Decoder:
 
     @property
     def metadata(self):
-        """Texts that the stream stores, a dict; of a key that comes twice the first. They are whoever's that wrote the stream."""
+        """Texts stored in the stream, a dict; of a repeated key, the first text. Their contents are untrusted."""
         texts = {}
         for i in range(self.info.metadata):
             key = lib.adcgs_get_metadata_key(self._handle, i)
@@ -136,7 +136,7 @@ class Decoder:
         return texts
 
     def times(self, begin=None, end=None):
-        """Moments from begin to end, both in seconds and included, at the stream's frame rate; without them all of the stream."""
+        """Times from begin to end, in seconds, both included, at the stream's frame rate; by default the whole stream."""
         info = self.info
         begin = info.time_start if begin is None else begin
         end = info.time_end if end is None else end
@@ -145,14 +145,14 @@ class Decoder:
     # ---- splats ----
 
     def set_tiers(self, tiers):
-        """Draw the first tiers alone from now on, a coarser picture in less time; 0: all."""
+        """From now on, render only the first tiers, a coarser image in less time; 0: all."""
         self._call(lib.adcgs_set_tiers, tiers)
 
     def splats(self, time, units="world", draws_nothing=False):
-        """Splats at a time in seconds; times outside the stream's span become its start or end.
+        """Splats at a time in seconds; a time outside the stream's range becomes its start or end.
 
-        units          "world", or "scene": what the decoder computes, not placed and scaled
-        draws_nothing  True: all slots of the stream, also those of opacity 0, so that a slot is the same splat at all times
+        units          "world", or "scene": the numbers that the decoder computes, without the scene's origin and scale
+        draws_nothing  True: all slots of the stream, including those of opacity 0, so that a slot is the same splat at all times
         """
         np = numpy()
         primitives, info = s.adcgs_primitives(), self.info
@@ -187,8 +187,8 @@ class Decoder:
         return out
 
     def render_rgba8(self, time, camera=0, alpha="straight"):
-        """A picture, uint8 [height, width, 4]. alpha: "straight" or "premultiplied": A is what the splats cover, and there is no
-        background; "opaque": the frame, and 255."""
+        """An image, uint8 [height, width, 4]. alpha: "straight" or "premultiplied": A is the coverage of the splats, without
+        background; "opaque": the frame, and A is 255."""
         if alpha not in s.ALPHAS:
             raise ValueError(f"alpha: {alpha}: expected one of {', '.join(s.ALPHAS)}")
         camera = to_struct(self.camera(camera))
@@ -197,16 +197,16 @@ class Decoder:
         return out
 
     def render_depth(self, time, camera=0):
-        """(depth, alpha), float32 [height, width] each: world units along the camera's axis, 1e10 where alpha is 0; what the
-        splats cover, 0 to 1."""
+        """(depth, alpha), float32 [height, width] each. depth: world units along the camera's axis, 1e10 where alpha is 0. alpha:
+        the coverage of the splats, 0 to 1."""
         camera = to_struct(self.camera(camera))
         depth, alpha = self._array(camera), self._array(camera)
         self._call(lib.adcgs_render_depth, ctypes.byref(camera), time, depth.ctypes.data, alpha.ctypes.data)
         return depth, alpha
 
     def rasterize(self, time, viewmats, Ks, width, height, near_plane=0.01):
-        """Frames as gsplat.rasterization() gives them: (colors [C, height, width, 3], alphas [C, height, width, 1]), float32, the
-        stream's background behind the splats. viewmats [C, 4, 4] go from world to camera; Ks [C, 3, 3] are in pixels."""
+        """Frames as gsplat.rasterization() returns them: (colors [C, height, width, 3], alphas [C, height, width, 1]), float32,
+        with the stream's background behind the splats. viewmats [C, 4, 4]: world to camera; Ks [C, 3, 3]: pixels."""
         np = numpy()
         cameras = [Camera.from_gsplat(viewmat, K, width, height, near_plane) for viewmat, K in zip(viewmats, Ks, strict=True)]
         colors = np.empty((len(cameras), height, width, 3), np.float32)
@@ -217,7 +217,7 @@ class Decoder:
         return colors, alphas
 
     def frames(self, camera=0, times=None):
-        """Yield (time, frame), as render() gives it, for each of times, in seconds; without them for times()."""
+        """Yield (time, frame), as render() returns it, for each of times, in seconds; by default for times()."""
         camera = self.camera(camera)
         for time in self.times() if times is None else times:
             yield time, self.render(time, camera)
@@ -243,12 +243,13 @@ class Decoder:
 
 
 class PushDecoder(Decoder):
-    """A decoder that is given bytes as they come, by open_push(). Until the first "header" nothing can be asked of it, until the
-    first "segment" nothing drawn; then times are served by what came so far."""
+    """A decoder for bytes that arrive over time, made by open_push(). Before the first "header" queries fail, before the first
+    "segment" rendering fails. From then on, the parts received so far serve all times."""
 
     def push(self, data):
-        """Give it bytes, any number, in order. Returns what they have brought, a list of "header", "cameras", "segment" (one that
-        can be drawn, or more of it) and "end". A failure is final, but what was there before can be drawn."""
+        """Give the next bytes of the stream, any number of them. Returns the parts that they completed, a list of "header",
+        "cameras", "segment" (one that can be rendered, or a further part of one) and "end". A failure is final, but the parts
+        that arrived before it can still be rendered."""
         data, at, brought = bytes(data), 0, []
         used, arrived = ctypes.c_size_t(), ctypes.c_int()
         start = ctypes.cast(ctypes.c_char_p(data), ctypes.c_void_p).value or 0
@@ -260,11 +261,11 @@ class PushDecoder(Decoder):
         return brought
 
     def end(self):
-        """Say that no more bytes will come: of a stream that has not ended what is complete remains."""
+        """Declare that no more bytes will come. If the stream has not ended, its complete part remains."""
         self._call(lib.adcgs_push_end)
 
     def forget(self, time):
-        """Say that no moment before this one, in seconds, will be asked for again: what is past is freed."""
+        """Declare that no time before this one, in seconds, will be requested again: past segments are freed."""
         self._call(lib.adcgs_push_forget, time)
 
 
@@ -273,16 +274,16 @@ def open(source, *, threads=0, cpu="auto", layers=0, tiers=0, memory_limit=0, st
     """Open a stream: a file's name, bytes, or an object with read(), which is read to the stream's end. Returns a Decoder.
 
     threads       1 to 256; 0: one for each processor
-    cpu           "auto", "scalar", "avx2", "avx512": which kernels; results never depend on it
-    layers        use at most so many, 1 to 5; 0: all
-    tiers         draw the first tiers alone, 1 to 8; 0: all
-    memory_limit  bytes that the decoder may allocate; 0: the stream's level decides
-    strict        refuse a stream that ends early; without it what is complete can be shown
-    conceal       of a damaged stream use what is whole; log is told what is not
-    on_demand     read a segment when a time in it is asked for; of an object with read(), by seek()
-    join          of an object with read(): its beginning may be missing
+    cpu           "auto", "scalar", "avx2", "avx512": variant of the kernels; results never depend on it
+    layers        use at most this many, 1 to 5; 0: all
+    tiers         render only the first tiers, 1 to 8; 0: all
+    memory_limit  bytes that the decoder may allocate; 0: bounded by the stream's level
+    strict        refuse a stream that ends early; by default its complete part can be shown
+    conceal       use the intact parts of a damaged stream, and report the damage to log
+    on_demand     read a segment when a time in it is requested; an object with read() then needs seek()
+    join          tune in: the beginning may be missing, for an object with read()
     pool          a Pool to use instead of threads of its own
-    log           log(level, text): takes messages; level is "warning" or "info"
+    log           log(level, text) receives messages; level is "warning" or "info"
     """
     config = _make_config(threads, cpu, layers, memory_limit, strict, conceal, on_demand, join, pool, log)
     decoder = Decoder(config, pool)
@@ -293,7 +294,7 @@ def open(source, *, threads=0, cpu="auto", layers=0, tiers=0, memory_limit=0, st
 
 
 def open_push(*, threads=0, cpu="auto", layers=0, memory_limit=0, strict=False, join=False, pool=None, log=None):
-    """Open a PushDecoder; what can be said is as for open()."""
+    """Open a PushDecoder; the arguments are those of open()."""
     decoder = PushDecoder(_make_config(threads, cpu, layers, memory_limit, strict, False, False, join, pool, log), pool)
     call(lib.adcgs_open_push, ctypes.byref(decoder._handle), ctypes.byref(decoder._config))
     return decoder
@@ -315,7 +316,7 @@ def frame_to_u8(frame):
 
 
 def _frame(frame):
-    """The array, which must stay, and its struct."""
+    """The array, which must be kept alive, and its struct."""
     array = numpy().ascontiguousarray(frame, "float32")
     if array.ndim != 3 or array.shape[2] != 3:
         raise ValueError(f"expected a frame [height, width, 3], not {list(array.shape)}")

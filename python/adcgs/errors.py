@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""What goes wrong in the library, as exceptions with its one line, which says what was read, where, and what was expected."""
+"""The library's failures as exceptions. The text is its one-line message: the input, the position, the expected contents."""
 
 
 class Error(Exception):
@@ -9,19 +9,19 @@ class Error(Exception):
 
 
 class UsageError(Error, ValueError):
-    """A caller asked for what cannot be: a camera out of range, a segment that is not there."""
+    """A caller broke a function's contract: a camera out of range, a segment that does not exist."""
 
     status = -1
 
 
 class NoMemoryError(Error, MemoryError):
-    """The machine has no more memory."""
+    """The machine is out of memory."""
 
     status = -2
 
 
 class ReadError(Error, OSError):
-    """Reading failed: there is no such file, or its device is at fault."""
+    """Reading failed: no such file, or a faulty device."""
 
     status = -3
 
@@ -39,7 +39,7 @@ class TruncatedError(DataError):
 
 
 class UnsupportedError(Error):
-    """Valid, but newer or other than this library or machine can handle."""
+    """Valid, but newer than, or different from, the features of this library or machine."""
 
     status = -6
 
