@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# One file of all that the page is: assemble.sh FOLDER-OF-MODULES >adcgs-page.html. A line "@include FILE" stands for a file
-# beside this one, "@module NAME" for adcgs-NAME.wasm of the folder, packed, and @hash for the digest of the script, which
-# is the only one that the policy allows.
+# Assemble the page into one file: assemble.sh FOLDER-OF-MODULES >adcgs-page.html. A line "@include FILE" stands for a file in
+# this folder, "@module NAME" for adcgs-NAME.wasm of the given folder, packed. @hash stands for the digest of the script, the
+# only script that the policy allows.
 set -eu
 here=$(dirname "$0")
 
-# The texts in place of their names.
+# Replace the lines of names by the texts.
 include()
 {
     while IFS= read -r line; do
@@ -18,14 +18,14 @@ include()
     done
 }
 
-# The text between <script> and </script>, as browsers take its digest.
+# The text between <script> and </script>; browsers compute its digest.
 script()
 {
     printf '\n'
     sed -n '/^<script>$/,/^<\/script>$/p' "$here/page.html" | sed "1d;\$d" | include
 }
 
-# From digits of base 16 to base 64.
+# Convert hexadecimal digits to base 64.
 to_base64()
 {
     while read -r digits; do

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// ?md5=N: the first N frames of the first view, at its own size, as `adcgs-dec --md5` lists them. Whether a browser computes what
-// the specification says can be seen by comparing the two.
+// ?md5=N: list the MD5 of the first N frames of the first view at its own size, as `adcgs-dec --md5` does. Comparing the two
+// lists shows whether a browser follows the specification.
 'use strict';
 
 function once(condition) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// What the user does, given to the player's state; and what it says, shown.
+// Input: the user's actions change the player's state. Output: the state is shown.
 'use strict';
 
 const KEYS = { Escape: 27, ArrowLeft: 256, ArrowRight: 257, Home: 258, End: 259, PageUp: 260, PageDown: 261, F1: 262,
                Shift: 263 };
 const KEY = 2, BUTTON = 3, MOTION = 4, WHEEL = 5, LOST = 7; // src/play/event.h
-const WHEEL_STEP = 100;                                     // pixels that browsers scroll by a notch
+const WHEEL_STEP = 100;                                     // pixels that browsers scroll per notch
 const ZOOM_STEP = 0.9;                                      // src/camera/orbit_control.c
 
 function opened() {
@@ -31,7 +31,7 @@ function onKey(event, down) {
     const elsewhere = event.target.tagName === 'INPUT' || (event.target.tagName === 'BUTTON' && event.key === ' ');
     if (!key || !opened() || event.ctrlKey || event.metaKey || event.altKey || elsewhere)
         return;
-    if (event.key === 'k' || event.key === 'v' || (event.key === 'q' && !view.call.view_flying())) // of windows alone
+    if (event.key === 'k' || event.key === 'v' || (event.key === 'q' && !view.call.view_flying())) // keys for windows only
         return;
     if (key === KEYS.Escape && !view.call.view_help() && !view.call.view_flying())
         return;
@@ -46,7 +46,7 @@ function onKey(event, down) {
 
 const pointers = new Map();
 
-/** Middle and distance of two fingers. */
+/** Midpoint and distance of two fingers. */
 function pinchOf() {
     const [a, b] = [...pointers.values()];
     return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, distance: Math.max(1, Math.hypot(a.x - b.x, a.y - b.y)) };
@@ -57,7 +57,7 @@ function placeOf(event) {
     return { x: (event.clientX - box.left) * dense, y: (event.clientY - box.top) * dense };
 }
 
-/** On the picture, not on what is laid over it. */
+/** Whether an event is on the image, not on an element over it. */
 function isOnPicture(event) {
     return !event.target.closest('#empty, #facts, #help');
 }
@@ -111,12 +111,12 @@ function openFile(file) {
         openScene(async () => ({ name: file.name, stream: file.stream(), total: file.size }));
 }
 
-// ---- What is shown beside the picture. ----
+// ---- Texts next to the image. ----
 
 function showHelp() {
     const lines = view.text(view.call.view_help_lines()).trim().split('\n').map(line => line.split('\t'));
     const table = element('table');
-    const touch = [['one finger', 'orbit'], ['two fingers', 'pan, nearer and farther']];
+    const touch = [['one finger', 'orbit'], ['two fingers', 'pan, zoom']];
     for (const [keys, text] of lines.concat(touch))
         rowOf(table, '', element('td', keys), element('td', keys === 'p' ? 'screenshot' : text));
     table.querySelectorAll('th').forEach(cell => cell.remove());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// The decoder's module, as the page and its worker see it: one instance and its memory.
+// The decoder's module for the page and its worker: one instance and its memory.
 'use strict';
 
 const OK = 0, ERR_FPENV = -8;                               // adcgs/status.h
@@ -7,12 +7,12 @@ const ARRIVED_SEGMENT = 3, ARRIVED_END = 4;                 // adcgs/types.h
 const MEMORY_SHARED = 2;                                    // a flag of memories in WebAssembly
 const CAMERA = { WIDTH: 0, HEIGHT: 4, FORWARD: [56, 88, 120] }; // bytes in adcgs_camera: the third column of cam_to_world
 
-/** Which of the two modules runs here: relaxed, exact, or null. Whether relaxed fuses is for the library to find out. */
+/** The module that this browser can run: relaxed, exact, or null. The library finds out whether relaxed fuses. */
 function chooseModule(modules, but) {
     return ['relaxed', 'exact'].find(name => name !== but && modules[name] && WebAssembly.validate(modules[name])) || null;
 }
 
-/** The memory that a module asks for: where in its bytes the flags are, and pages at first and at most. */
+/** The memory that a module requires: position of its flags in the bytes, and initial and maximum numbers of pages. */
 function memoryOf(bytes) {
     const name = '\x03env\x06memory\x02';
     let at = String.fromCharCode(...bytes.subarray(0, 4096)).indexOf(name) + name.length;
@@ -28,7 +28,7 @@ function memoryOf(bytes) {
     return { flags, initial: number(), maximum: number() };
 }
 
-/** Memory that workers share; null where they may not. */
+/** Memory that workers share; null if the browser does not allow it. */
 function sharedMemory(limits) {
     try {
         return new WebAssembly.Memory({ ...limits, shared: true });
@@ -39,8 +39,8 @@ function sharedMemory(limits) {
 
 class Engine {
     /**
-     * An instance of the module in these bytes, whose memory may be shared. Modules ask for such a memory; but for a bit they are
-     * good for one that is not, too.
+     * An instance of the module in these bytes; its memory may be shared. Modules require shared memory. Clearing one flag makes
+     * them accept unshared memory.
      */
     static async create(bytes, shared = false) {
         const { flags, initial, maximum } = memoryOf(bytes);
@@ -55,7 +55,7 @@ class Engine {
         return engine;
     }
 
-    /** An instance over a memory. It has no system: what the C library would ask of one fails. */
+    /** An instance over a memory. It has no system: all system calls of the C library fail. */
     static async over(module, memory) {
         const refuse = () => 52; // ENOSYS
         const system = { fd_close: refuse, fd_seek: refuse, fd_write: refuse, clock_time_get: refuse };
@@ -67,7 +67,7 @@ class Engine {
         return !(this.memory.buffer instanceof ArrayBuffer);
     }
 
-    /** A view of memory, until the next call that may allocate. */
+    /** A view of memory, valid until the next call that may allocate. */
     bytes(at, length) {
         return new Uint8Array(this.memory.buffer, at, length);
     }
@@ -87,7 +87,7 @@ class Engine {
         return new TextDecoder().decode(all.subarray(at, all.indexOf(0, at)).slice());
     }
 
-    /** Calls back with addresses of these bytes in memory, and gives the result. */
+    /** Copies the arrays into memory, calls use with their addresses, frees the copies, and returns the result. */
     with(arrays, use) {
         const at = arrays.map(a => this.call.page_alloc(Math.max(a.length, 1)));
         if (at.includes(0)) {

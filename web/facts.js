@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// What the file holds, as a table and a chart of its bytes. Texts come from whoever wrote the file: they are text, never markup.
+// Contents of the file, as a table and a chart of its bytes. Texts in the file are untrusted: always text, never markup.
 'use strict';
 
 function element(name, text, className) {
@@ -20,7 +20,7 @@ function grouped(n) {
     return Number(n).toLocaleString('en');
 }
 
-/** A bar for each part of the file, as long as its share. */
+/** A bar for each part of the file, proportional to its share. */
 function bytesChart(bytes) {
     const table = element('table'), largest = Math.max(1, ...Object.keys(bytes).filter(k => k !== 'total').map(k => bytes[k]));
     for (const [name, value] of Object.entries(bytes)) {
@@ -36,7 +36,7 @@ function bytesChart(bytes) {
     return table;
 }
 
-/** notes: what this browser lacks, and what is wrong with the file. */
+/** notes: missing features of this browser, and faults of the file. */
 function showFacts(into, name, facts, notes) {
     const table = element('table');
     const seconds = value => value === null ? '…' : Number(value.toFixed(3));

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// Splats by WebGL2, while things move: the formulas of the specification's clause on projection, in whatever arithmetic a GPU
-// has.
+// Rendering with WebGL2 during motion: the formulas of the specification's clause on projection, in the GPU's arithmetic.
 'use strict';
 
 const VERTEX = `#version 300 es
 precision highp float;
 precision highp sampler2D;
 uniform sampler2D splats;       // four texels each: centre and opacity, rotation, scale, colour
-uniform vec2 size;              // of the picture
+uniform vec2 size;              // of the image
 uniform mat3 rotation;          // scene to camera
 uniform vec3 translation;
 uniform vec4 lens;              // fx, fy, cx, cy
 uniform vec4 limits;
-uniform float nearest, screen;  // near plane; what is added to footprints
+uniform float nearest, screen;  // near plane; variance added to footprints
 in vec2 corner;
 in uint index;
 out vec2 at;
@@ -65,7 +64,7 @@ void main() {
 }`;
 
 class Gpu {
-    /** Throws where WebGL2 or what is needed of it is not there. */
+    /** Throws if WebGL2, or a part of it that is needed, is missing. */
     constructor(canvas) {
         const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, preserveDrawingBuffer: true });
         if (!gl)
@@ -117,7 +116,7 @@ class Gpu {
         gl.vertexAttribDivisor(1, 1);
     }
 
-    /** Splats of a moment, 16 numbers each. */
+    /** Uploads the splats at one time, 16 numbers each. */
     take(texels, n) {
         const gl = this.gl, width = this.width, height = Math.max(1, Math.ceil(4 * n / width));
         const padded = new Float32Array(4 * width * height);
@@ -129,7 +128,7 @@ class Gpu {
         this.n = n;
     }
 
-    /** The order to draw them in. */
+    /** Uploads the order of rendering. */
     sort(indices) {
         const gl = this.gl;
         gl.bindBuffer(gl.ARRAY_BUFFER, this.indices);
@@ -165,7 +164,7 @@ class Gpu {
             gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.n);
     }
 
-    /** What was drawn last, rows from the top. */
+    /** The last image, rows from the top. */
     pixels() {
         const gl = this.gl, width = this.canvas.width, height = this.canvas.height;
         const rows = new Uint8Array(4 * width * height), out = new Uint8ClampedArray(rows.length);

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// Workers that help to draw: instances of the same module over the same memory. A page may share memory with workers where its
-// server isolates it: Cross-Origin-Opener-Policy: same-origin, Cross-Origin-Embedder-Policy: require-corp. Elsewhere, and where
-// none of them starts, the one thread does all.
+// Workers that help to render: instances of the same module over the same memory. A page may share memory with workers if its
+// server isolates it: Cross-Origin-Opener-Policy: same-origin, Cross-Origin-Embedder-Policy: require-corp. Otherwise, or if no
+// helper starts, one thread does all the work.
 'use strict';
 
 const THREADS_MOST = 8;
-const STACK = 1 << 20; // bytes of a helper's, as build.sh gives the first thread's
+const STACK = 1 << 20; // bytes of a helper's stack, the same as build.sh gives the first thread
 
-/** As many as there are processors, or as somebody wants. */
+/** Number of threads: as many as processors, or as wanted. */
 function threadsHere(wanted) {
     return self.crossOriginIsolated ? Math.min(wanted || navigator.hardwareConcurrency || 1, THREADS_MOST) : 1;
 }
 
-let helpers = []; // of the engine that there is
+let helpers = []; // of the current engine
 
 function dismissHelpers() {
     helpers.forEach(worker => worker.terminate());
     helpers = [];
 }
 
-/** This worker's own text in another one, which waits for tasks from its first message on. */
+/** Starts this worker's own text in another worker, which waits for tasks after its first message. */
 function startHelper(engine) {
     const room = engine.call.page_alloc(STACK);
     if (!room)
@@ -30,7 +30,7 @@ function startHelper(engine) {
     helpers.push(worker);
 }
 
-/** As many threads draw, counting this one, if all helpers come; else those that do. */
+/** Starts helpers, so that this number of threads, including this one, renders; fewer if some helpers do not start. */
 function startHelpers(engine, threads) {
     dismissHelpers();
     if (!engine.shared || engine.call.page_threads(threads) !== OK)
@@ -39,11 +39,11 @@ function startHelpers(engine, threads) {
         for (let i = 1; i < threads; i++)
             startHelper(engine);
     } catch (e) {
-        return; // it goes without
+        return; // continue with fewer threads
     }
 }
 
-/** A helper's life, which has no end. */
+/** Main loop of a helper; never returns. */
 async function help({ module, memory, room }) {
     const { call } = await Engine.over(module, memory);
     call.__stack_pointer.value = room + STACK;

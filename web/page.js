@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// The page: a scene comes, and what should be seen is drawn: by the GPU while it moves, exactly when it rests.
+// The page: receives a scene and renders it: with the GPU during motion, exactly when everything stands still.
 'use strict';
 
 const $ = id => document.getElementById(id);
 
-/** What tests and curious people may look at. */
+/** State that tests and curious users may inspect. */
 const page = window.adcgs = {
     state: 'empty',       // empty, loading, complete, failed
-    module: null,         // that draws
+    module: null,         // the module that renders
     name: '', total: 0,
     facts: null, notes: [],
-    picture: null,        // the last exact one: width, height, time, digest, ms
+    picture: null,        // the last exact image: width, height, time, digest, ms
     pictures: 0,
-    listing: false,       // check.js asks for pictures: no others meanwhile
-    opened: 0, first: 0,  // milliseconds: when a scene began to come, and how long until its first picture
-    fast: {},             // milliseconds of the last picture of the GPU: pack, sort, draw
+    listing: false,       // check.js requests images: no others in the meantime
+    opened: 0, first: 0,  // milliseconds: when a scene began to arrive, and the time until its first image
+    fast: {},             // milliseconds for the last image of the GPU: pack, sort, draw
     get view() { return view; },
     get generation() { return generation; }, // of the scene's state; page.picture.generation is the rendered one
     get gpu() { return gpu; },
 };
 
 let worker, view, gpu = null;
-const AHEAD = 8388608;          // bytes of a scene that the worker may have before it
-let reading = 0;                // number of the scene that is read; pieces of others are dropped
+const AHEAD = 8388608;          // maximum bytes of a scene on their way to the worker
+let reading = 0;                // number of the scene being read; pieces of others are dropped
 let flow = new Flow(AHEAD);     // of its bytes
 let information = null;         // the last report of the worker
-let generation = 0;             // of what there is to draw
+let generation = 0;             // counts changes of the scene's content
 let shownKey = '', asked = false, drawing = false, packing = false;
 let saves = false;              // a screenshot is wanted
 let packed = { time: null, generation: -1, direction: [0, 0, 0] };
@@ -49,7 +49,7 @@ function note(text) {
         page.notes.push(text);
 }
 
-// ---- A scene comes. ----
+// ---- Receiving a scene. ----
 
 async function openScene(getSource) {
     const number = ++reading, ours = new Flow(AHEAD);
@@ -77,7 +77,7 @@ async function openScene(getSource) {
         worker.postMessage({ kind: 'end' });
 }
 
-/** The view knows the stream by copies of what the worker's instance found. */
+/** Take a report of the worker. The view gets copies of the data that the worker's instance found. */
 function takeReport(report) {
     const first = information === null || !information.home;
     information = report;
@@ -106,16 +106,16 @@ function finish(report) {
         note('file: ' + report.fault);
     const wrong = page.notes.filter(text => text.startsWith('file: ')).map(text => text.slice(6));
     if (!report.drawable)
-        fail(`${page.name || 'stream'}: ${wrong[0] || 'it ends before anything can be drawn'}`);
+        fail(`${page.name || 'stream'}: ${wrong[0] || 'ends before anything can be rendered'}`);
     else if (report.failed || (report.facts && report.facts.faults))
-        say(`${page.name}: damaged; showing what is whole (${wrong[0]})`);
+        say(`${page.name}: damaged; showing the intact parts (${wrong[0]})`);
     else if (report.facts && report.facts.truncated)
-        say(`${page.name}: it ends early; showing what is complete`);
+        say(`${page.name}: ends early; showing the complete part`);
     if (report.drawable)
         setState('complete');
 }
 
-// ---- What should be drawn. ----
+// ---- Requesting images. ----
 
 function fitCanvas() {
     const stage = $('stage'), dense = window.devicePixelRatio || 1;
@@ -143,7 +143,7 @@ function ask(exact) {
                          camera, time, tiers: exact ? 0 : view.call.view_tiers(), digest: exact, exact, saves });
 }
 
-/** The GPU's picture of the present view, of the splats that were packed last. */
+/** Render the current view with the GPU, from the splats packed last. */
 function drawFast() {
     const start = performance.now(), time = view.call.view_time(), direction = directionOf(cameraOf(1));
     const turned = direction.some((d, i) => Math.abs(d - packed.direction[i]) > 1e-4);
@@ -202,10 +202,10 @@ function step() {
 function dropGpu(why) {
     gpu = null;
     $('fast').hidden = true;
-    note(`${why}: pictures that move are drawn exactly, and smaller where that takes long`);
+    note(`${why}: moving images are rendered exactly, and smaller if that takes long`);
 }
 
-// ---- What was drawn. ----
+// ---- Showing images. ----
 
 function takePicture(m) {
     drawing = false;
@@ -280,15 +280,15 @@ function onReply(m) {
     }
 }
 
-// ---- Beginning. ----
+// ---- Start. ----
 
 async function start() {
     const modules = { relaxed: await unpack('relaxed'), exact: await unpack('exact-module') };
     const which = chooseModule(modules, null);
     if (!which)
-        throw new Error('this browser has no WebAssembly with SIMD: nothing can be drawn');
+        throw new Error('this browser has no WebAssembly with SIMD: nothing can be rendered');
     if (which === 'exact')
-        note('no relaxed SIMD: the exact module draws, some five times slower');
+        note('no relaxed SIMD: the exact module renders, about five times slower');
     view = await Engine.create(modules[which]);
     worker = new Worker(URL.createObjectURL(new Blob([$('worker-text').textContent], { type: 'text/javascript' })));
     worker.onmessage = event => onReply(event.data);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// Where bytes come from: the page itself, a file, or a server, in pieces that can be drawn as they come.
+// Sources of bytes: the page itself, a file, or a server, in pieces that can be rendered as they arrive.
 'use strict';
 
 const PIECE = 32768;
@@ -16,7 +16,7 @@ async function unpack(id) {
     return new Uint8Array(await new Response(packed.stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
 }
 
-/** Bytes on their way to the worker: at most so many at once, and none once it has enough. */
+/** Bytes on their way to the worker: a limited number at a time, and none once it has enough. */
 class Flow {
     constructor(ahead) {
         this.ahead = ahead;
@@ -46,7 +46,7 @@ class Flow {
 /** Calls take(bytes) for each piece, which it may keep, until the stream or the flow ends. */
 async function readStream(stream, flow, take) {
     const reader = stream.getReader();
-    flow.cancel = () => reader.cancel().catch(() => null); // which ends a read that waits
+    flow.cancel = () => reader.cancel().catch(() => null); // ends a read that waits
     while (!flow.over) {
         const { done, value } = await reader.read();
         if (done)
@@ -72,11 +72,11 @@ async function sceneAt(url) {
     try {
         response = await fetch(url);
     } catch (e) {
-        const why = location.protocol === 'file:' ? 'a page that was opened from a file may read no others; drop it here'
-                                                  : 'not there, or its server does not let other pages read it (CORS)';
+        const why = location.protocol === 'file:' ? 'a page opened from a file may read no other files; drop it here'
+                                                  : 'not found, or its server does not let other pages read it (CORS)';
         throw new Error(`${url}: ${why}`);
     }
     if (!response.ok)
-        throw new Error(`${url}: the server says ${response.status} ${response.statusText}`);
+        throw new Error(`${url}: the server answers ${response.status} ${response.statusText}`);
     return { name, stream: response.body, total: Number(response.headers.get('content-length')) || 0 };
 }

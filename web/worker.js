@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: BSD-2-Clause
-// The worker: decodes what comes, draws exact frames, and packs and sorts splats for the GPU. Messages are done in their order.
+// The worker: decodes incoming bytes, renders exact frames, packs and sorts splats for the GPU. It handles messages in order.
 'use strict';
 
 let modules, engine, which;
-let threads = 1;                 // that draw, at most
-let pieces = [], received = 0;   // the stream, to open it again
-let number = 0, taken = 0;       // of the scene; its bytes that came, also those that are not kept
-let enough = false;              // no more of it is of use: it has ended, or is as long as its level allows
-let ended = false, failed = null; // no more will come; what the decoder said when it gave up
+let threads = 1;                 // maximum number of rendering threads
+let pieces = [], received = 0;   // the stream, for opening it again
+let number = 0, taken = 0;       // of the scene; its bytes received, including those not kept
+let enough = false;              // more bytes are useless: the stream has ended or is as long as its level allows
+let ended = false, failed = null; // no more bytes will come; the message of the decoder when it failed
 let drawable = false;
-let order = null;                // a reader of the messages, so that each waits for the one before
+let order = null;                // promise that makes each message wait for the previous one
 
 async function useModule(but) {
     which = chooseModule(modules, but);
     if (!which)
-        throw new Error(but ? 'this browser’s WebAssembly does not compute as the specification demands'
+        throw new Error(but ? 'the arithmetic of this browser’s WebAssembly does not follow the specification'
                             : 'this browser has no WebAssembly with SIMD');
     engine = await Engine.create(modules[which], threads > 1);
     startHelpers(engine, threads);
     return engine.call.page_open();
 }
 
-/** The module that computes exactly. If the faster one does not fuse, the other one begins anew. */
+/** Start the module that computes exactly. If the faster one does not fuse, start again with the other one. */
 async function begin() {
     let status = await useModule(null);
     if (status === ERR_FPENV && which === 'relaxed')
@@ -46,7 +46,7 @@ function factsNow() {
     return JSON.parse(engine.text(engine.call.page_facts()) || 'null');
 }
 
-/** What is known by now, for the page. */
+/** Report the current knowledge to the page. */
 function report(arrived) {
     const call = engine.call, at = call.page_info();
     const message = { kind: 'grown', arrived, received, ended, drawable, failed, fault: engine.text(call.page_fault()) };
@@ -80,7 +80,7 @@ function decode(bytes) {
     return arrived;
 }
 
-/** Of a damaged stream all is kept that may be of use, to look at it again as a whole. */
+/** Keep all useful bytes, in case the stream is damaged and must be opened again as a whole. */
 function take(bytes) {
     taken += bytes.length;
     if (!enough) {
@@ -91,7 +91,7 @@ function take(bytes) {
     postMessage({ kind: 'taken', number, taken, enough });
 }
 
-/** All has come that will: of a damaged stream, what is whole is shown. */
+/** All bytes have arrived. Show the intact parts of a damaged stream. */
 function end() {
     ended = true;
     if (!failed && engine.call.page_end() !== OK)
@@ -101,13 +101,13 @@ function end() {
         if (engine.with([all], at => engine.call.page_reopen(at, all.length, 0, 1)) === OK)
             drawable = true;
     } else if (!drawable) {
-        const facts = factsNow(); // the end may make a segment of a part of one
+        const facts = factsNow(); // at the end, a part of a segment may become a segment
         drawable = facts !== null && facts.segments > 0;
     }
     report(0);
 }
 
-/** The same bytes in the other module, once the faster one is found out. */
+/** Load the same bytes in the other module, once the faster one turns out not to fuse. */
 async function fallBack() {
     if (which !== 'relaxed' || await useModule('relaxed') !== OK)
         return false;

@@ -338,7 +338,7 @@ async function withoutGpu() {
         pointer('pointerup', 360, 200);
         await until(() => adcgs.pictures > n + 1 && adcgs.drawn.exact, 'pictures');
         return report();`);
-    check(got.notes.some(note => /drawn exactly/.test(note)), 'it does not say that WebGL2 is missing');
+    check(got.notes.some(note => /rendered exactly/.test(note)), 'it does not say that WebGL2 is missing');
 }
 
 /** At a phone's width, with fingers. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The decoder as a command of WASI that answers requests as `adcgs-dec --answer` does: for the conformance vectors. */
+/** \file The decoder as a command of WASI for the conformance vectors. It answers requests like `adcgs-dec --answer`. */
 #include "config.h"
 
 #include "tools/answer.h"

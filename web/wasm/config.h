@@ -1,2 +1,2 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file In place of what configure found: that is about the machine it runs on, and nothing of it holds for WebAssembly. */
+/** \file In place of configure's results, which describe the machine that runs configure and do not apply to WebAssembly. */

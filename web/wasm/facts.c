@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a stream holds, as JSON: what adcgs-info says first. */
+/** \file Summary of a stream as JSON, like the first part of adcgs-info's report. */
 #include "config.h"
 
 #include "wasm/export.h"
@@ -16,7 +16,7 @@
 
 #define META_SHOWN 64 /* texts; streams may have many more */
 
-/* JSON as far as it was written; what does not fit is left out by whole members. */
+/* The JSON written so far. If memory runs out, whole members are left out. */
 typedef struct text {
     char *data;
     size_t used, room;
@@ -42,7 +42,7 @@ static void put(text *t, const char *format, ...)
     }
 }
 
-/* Text of strangers: it is promised to be UTF-8, and whoever reads the JSON replaces what is not. */
+/* Untrusted text: it should be UTF-8; the reader of the JSON replaces invalid bytes. */
 static void put_string(text *t, const char *s)
 {
     put(t, "\"");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The page's scene: bytes go in, what they hold and exact frames come out. One scene in an instance. */
+/** \file The page's scene: takes bytes, gives a summary and exact frames. One scene per instance. */
 #include "config.h"
 
 #include "api/decoder_priv.h"
@@ -17,7 +17,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/** Of a stream that is kept: twice as many are needed to open it again, in a memory of 4 GiB. */
+/** Maximum size of a stream that is kept: opening it again needs twice as much, in a memory of 4 GiB. */
 #define BYTES_MOST (UINT64_C(1) << 30)
 
 static struct {
@@ -26,7 +26,7 @@ static struct {
     adcgs_camera *cameras;
     adcgs_camera home;
     adcgs_error error;
-    char fault[sizeof ((adcgs_error *)0)->text]; /* the first that is concealed */
+    char fault[sizeof ((adcgs_error *)0)->text]; /* the first concealed fault */
     float *values;
     uint8_t *rgba;
     size_t pixels; /* room in both */
@@ -76,7 +76,7 @@ static adcgs_config make_config(int layers)
     return config;
 }
 
-/** Begin anew, with a stream that comes byte by byte. */
+/** Start again, with a stream whose bytes arrive over time. */
 int PAGE_EXPORT(page_open)(void)
 {
     const adcgs_config config = make_config(0);
@@ -84,7 +84,7 @@ int PAGE_EXPORT(page_open)(void)
     return adcgs_open_push(&scene.decoder, &config, &scene.error);
 }
 
-/** A whole stream, with fewer layers, or as much of it as is whole. What was open stays if that fails. */
+/** Open a whole stream with fewer layers, or the intact parts of a damaged one. On failure the previous stream stays open. */
 int PAGE_EXPORT(page_reopen)(const void *data, size_t bytes, int layers, int conceal)
 {
     adcgs_config config = make_config(layers);
@@ -98,7 +98,7 @@ int PAGE_EXPORT(page_reopen)(const void *data, size_t bytes, int layers, int con
     return status;
 }
 
-/** Bytes that came. \return the most that they have brought (adcgs_arrival), or a status. */
+/** Push bytes. \return the highest arrival (adcgs_arrival), or a status. */
 int PAGE_EXPORT(page_push)(const uint8_t *data, size_t bytes)
 {
     int most = ADCGS_ARRIVED_NOTHING;
@@ -112,7 +112,7 @@ int PAGE_EXPORT(page_push)(const uint8_t *data, size_t bytes)
     return most;
 }
 
-/** The most bytes that the stream may have, by its level or, before HEAD, by level 2. */
+/** The maximum size of the stream, by its level or, before HEAD, by level 2. */
 double PAGE_EXPORT(page_useful)(void)
 {
     adcgs_info info;
@@ -131,7 +131,7 @@ const adcgs_info *PAGE_EXPORT(page_info)(void)
     return adcgs_get_info(scene.decoder, &scene.info, sizeof scene.info, &scene.error) == ADCGS_OK ? &scene.info : NULL;
 }
 
-/** What the renderer adds to the splats' footprints, square pixels. */
+/** Variance that the renderer adds to the splats' footprints, square pixels. */
 float PAGE_EXPORT(page_filter)(void)
 {
     return scene.decoder->stream.screen_filter;
@@ -159,7 +159,7 @@ const adcgs_camera *PAGE_EXPORT(page_cameras)(void)
     return scene.cameras;
 }
 
-/** Where to begin: as the player does it. */
+/** The first view, chosen as in the player. */
 const adcgs_camera *PAGE_EXPORT(page_home)(void)
 {
     const adcgs_info *info = page_info();
@@ -183,10 +183,10 @@ static adcgs_status reserve(size_t pixels)
     scene.values = malloc(3 * pixels * sizeof *scene.values);
     scene.rgba = malloc(4 * pixels);
     scene.pixels = scene.values && scene.rgba ? pixels : 0;
-    return scene.pixels ? ADCGS_OK : adcgs_fail(&scene.error, ADCGS_ERR_MEMORY, "out of memory for a picture");
+    return scene.pixels ? ADCGS_OK : adcgs_fail(&scene.error, ADCGS_ERR_MEMORY, "out of memory for an image");
 }
 
-/** An exact frame, of the first tiers alone if tiers is not 0, and its MD5 if that is wanted. */
+/** Render an exact frame, of the first tiers only if tiers is not 0; with digest, also its MD5. */
 int PAGE_EXPORT(page_draw)(const adcgs_camera *camera, double time, int tiers, int digest)
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The scene that an instance of the module has. */
+/** \file The scene of an instance of the module. */
 #ifndef ADCGS_WEB_SCENE_H
 #define ADCGS_WEB_SCENE_H
 

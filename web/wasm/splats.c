@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats for a GPU: four texels each, and the order in which they are drawn, from the farthest to the nearest. */
+/** \file Splats for a GPU: four texels each, and the order of rendering, from the farthest to the nearest. */
 #include "config.h"
 
 #include "base/base.h"
@@ -34,7 +34,7 @@ static int reserve(uint32_t n)
     return splats.room ? 0 : -1;
 }
 
-/** Take the splats that show anything at a time. \return how many there are, or a status. */
+/** Pack the splats that are visible at a time. \return their number, or a status. */
 int PAGE_EXPORT(page_pack)(double time)
 {
     adcgs_primitives p;
@@ -59,7 +59,7 @@ const float *PAGE_EXPORT(page_texels)(void)
     return splats.texel[0][0];
 }
 
-/** Sort by depth along a direction of the scene: a counting sort of 16 bits, which splats of one bucket leave in order. */
+/** Sort by depth along a direction of the scene: a counting sort of 16 bits, stable within a bucket. */
 const uint32_t *PAGE_EXPORT(page_sort)(double x, double y, double z)
 {
     static uint32_t first[BUCKETS + 1];

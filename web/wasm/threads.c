@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Threads: helpers are workers with instances of their own over the same memory, and a stack of their own in it (helpers.js).
- * They wait for a run of tasks, take some, and wait again. One word, the ticket, has the number of the run and how many of its
- * tasks nobody has taken yet: a task is taken by compare-and-swap, so that a helper that wakes late cannot take one of the next
- * run for one of this. The thread that draws takes tasks as well: it needs no helper, and waits for none that has not begun.
+ * Threads. Helpers are workers with their own instances over the same memory, and their own stacks in it (helpers.js). They wait
+ * for a run of tasks, take some, and wait again. One word, the ticket, holds the number of the run and the number of its tasks
+ * that are not taken yet. A task is taken by compare-and-swap, so that a helper that wakes late cannot take a task of the next
+ * run for one of this run. The rendering thread takes tasks, too. It needs no helper, and waits for none that has not begun.
  *
- * The C library here knows no threads; the codec's tasks ask nothing of it.
+ * The C library here does not support threads; the codec's tasks do not call it.
  */
 #include "config.h"
 
@@ -17,14 +17,14 @@
 #include <stdatomic.h>
 #include <stddef.h>
 
-#define TASKS 0x1ffU /* of the ticket; above them stands the run's number */
+#define TASKS 0x1ffU /* bits of the ticket; the run's number is above them */
 
 _Static_assert(ADCGS_THREADS_MAX <= TASKS, "the tasks of a run fit into the ticket");
 
 static struct {
     adcgs_pool *pool;
     atomic_uint ticket;
-    atomic_uint open; /* tasks that have not come to their end */
+    atomic_uint open; /* tasks that have not finished */
     _Atomic(adcgs_task_fn) task;
     _Atomic(void *) work;
     atomic_int helpers;
@@ -35,7 +35,7 @@ adcgs_pool *adcgs_page_pool(void)
     return threads.pool;
 }
 
-/* Sleep until someone wakes those that wait at a word, if it still is what it was. */
+/* Sleep until a thread wakes the waiters at a word, provided that it still has this value. */
 static void sleep_at(atomic_uint *word, unsigned was)
 {
     __builtin_wasm_memory_atomic_wait32((int *)word, (int)was, -1);
@@ -52,7 +52,7 @@ static void take_tasks(void)
     while (ticket & TASKS) {
         const adcgs_task_fn task = atomic_load(&threads.task);
         void *const work = atomic_load(&threads.work);
-        /* Success proves that the run is the one whose ticket was read: task and work are its. */
+        /* Success proves that the run is the one whose ticket was read: task and work belong to it. */
         if (!atomic_compare_exchange_strong(&threads.ticket, &ticket, ticket - 1))
             continue;
         task(work, (int)(ticket & TASKS) - 1);
@@ -75,13 +75,13 @@ static void run(void *user, adcgs_task_fn task, void *work, int n)
         sleep_at(&threads.open, open);
 }
 
-/** Before a scene is opened: how many threads draw it, if as many helpers come. \return a status. */
+/** Before a scene is opened: set the number of threads that render it, if as many helpers start. \return a status. */
 int PAGE_EXPORT(page_threads)(int n)
 {
     return adcgs_pool_wrap(&threads.pool, n, run, NULL, NULL);
 }
 
-/** A helper's life. */
+/** Main loop of a helper. */
 void PAGE_EXPORT(page_help)(void)
 {
     atomic_fetch_add(&threads.helpers, 1);
@@ -93,7 +93,7 @@ void PAGE_EXPORT(page_help)(void)
     }
 }
 
-/** How many have come. */
+/** Number of helpers that have started. */
 int PAGE_EXPORT(page_helpers)(void)
 {
     return atomic_load(&threads.helpers);

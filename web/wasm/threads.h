@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The threads that draw, where the browser lets workers share memory. */
+/** \file The threads that render, if the browser lets workers share memory. */
 #ifndef ADCGS_WEB_THREADS_H
 #define ADCGS_WEB_THREADS_H
 
 #include <adcgs/types.h>
 
-/** NULL where there is one thread. */
+/** NULL if there is one thread. */
 adcgs_pool *adcgs_page_pool(void);
 
 #endif

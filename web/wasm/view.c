@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The page's camera, clock and keys: the player's state, moved by events. One in an instance. */
+/** \file The page's camera, clock and keys: the player's state, changed by events. One per instance. */
 #include "config.h"
 
 #include "camera/rotation.h"
@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define HAND_SECONDS (1.0 / 30.0) /* that a picture may take while the camera is moved by hand */
-#define BUDGET_MAX (1.0 / 8.0)    /* a film of fewer pictures is none; browsers are slower than what the player runs on */
+#define HAND_SECONDS (1.0 / 30.0) /* seconds, maximum for an image while the camera is moved by hand */
+#define BUDGET_MAX (1.0 / 8.0)    /* seconds, maximum while playing: at least 8 images/s; browsers are slower than the player */
 
 static struct {
     adcgs_play_state state;
@@ -23,7 +23,7 @@ static struct {
     adcgs_camera *cameras;
 } page;
 
-/** The moments to play, and how far they are there, from what is known of the stream by now. */
+/** Set the time range to play, and its available part, from the current knowledge of the stream. */
 void PAGE_EXPORT(view_span)(const adcgs_info *info, int over)
 {
     adcgs_play_clock *const clock = &page.state.clock;
@@ -34,7 +34,7 @@ void PAGE_EXPORT(view_span)(const adcgs_info *info, int over)
         adcgs_play_scale_init(&page.scale, info->tiers);
 }
 
-/** A scene, with its first view and n stored cameras. \return 0, or less if there is no memory. */
+/** Open a scene with its first view and n stored cameras. \return 0, or less if there is no memory. */
 int PAGE_EXPORT(view_open)(const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *cameras, int over)
 {
     const int statistics = page.state.statistics;
@@ -57,7 +57,7 @@ void PAGE_EXPORT(view_resize)(int width, int height, double density)
     adcgs_play_resize(&page.state, width, height, density);
 }
 
-/** kind and key as window.h has them. The page's time bar is no part of the picture. */
+/** kind and key as in window.h. The page's time bar is not part of the image. */
 void PAGE_EXPORT(view_event)(int kind, int key, int down, int again, int button, double x, double y, double dx, double dy)
 {
     const adcgs_event event = {.kind = (adcgs_event_kind)kind, .key = key, .down = down, .again = again, .button = button,
@@ -72,7 +72,7 @@ void PAGE_EXPORT(view_event)(int kind, int key, int down, int again, int button,
     page.state.bar = bar;
 }
 
-/** Fingers have no buttons: they pan, in pixels, and go nearer, in steps of the wheel. */
+/** Fingers have no buttons: they pan, in pixels, and zoom, in steps of the wheel. */
 void PAGE_EXPORT(view_pinch)(double dx, double dy, double steps)
 {
     adcgs_orbit_control *const control = &page.state.control;
@@ -88,14 +88,14 @@ void PAGE_EXPORT(view_tick)(double now)
     adcgs_play_tick(&page.state, now);
 }
 
-/** A part of the whole, 0 to 1. */
+/** part: fraction of the duration, 0 to 1. */
 void PAGE_EXPORT(view_seek)(double part)
 {
     adcgs_play_clock_seek(&page.state.clock, part);
     page.state.moved = page.state.now;
 }
 
-/** The camera for the picture: a divider makes it coarser. */
+/** The camera for the image; a divider reduces its size. */
 const adcgs_camera *PAGE_EXPORT(view_camera)(int divider)
 {
     const int width = page.state.width, height = page.state.height;
@@ -106,17 +106,17 @@ const adcgs_camera *PAGE_EXPORT(view_camera)(int divider)
 }
 
 /**
- * The same camera for a shader: rotation and translation from the scene's units, fx, fy, cx, cy, near plane, and four limits, in
- * all 21 numbers; NULL if it cannot be drawn.
+ * The same camera for a shader: rotation and translation from the scene's units, fx, fy, cx, cy, near plane, and four limits, 21
+ * numbers in total; NULL if it cannot be rendered.
  */
 const float *PAGE_EXPORT(view_uniforms)(void)
 {
     static adcgs_view view;
-    _Static_assert(sizeof view == 2 * sizeof(int32_t) + 21 * sizeof(float), "what the shader takes lies in a row");
+    _Static_assert(sizeof view == 2 * sizeof(int32_t) + 21 * sizeof(float), "the shader's numbers lie in a row");
     return adcgs_view_init(&view, view_camera(1), page.origin, page.unit, NULL) == ADCGS_OK ? view.rotation : NULL;
 }
 
-/** A picture took so long: the next ones may be coarser. */
+/** Report the time that an image took: the next ones may be coarser. */
 void PAGE_EXPORT(view_took)(double seconds)
 {
     const adcgs_play_clock *const clock = &page.state.clock;
@@ -124,7 +124,7 @@ void PAGE_EXPORT(view_took)(double seconds)
     adcgs_play_scale_took(&page.scale, seconds, ADCGS_MAX(HAND_SECONDS, ADCGS_MIN(each, BUDGET_MAX)));
 }
 
-/* ---- What can be read off. ---- */
+/* ---- Queries. ---- */
 
 int PAGE_EXPORT(view_divider)(void) { return page.scale.divider; }
 int PAGE_EXPORT(view_tiers)(void) { return page.scale.tiers; }
@@ -142,7 +142,7 @@ int PAGE_EXPORT(view_statistics)(void) { return page.state.statistics; }
 int PAGE_EXPORT(view_bar)(void) { return page.state.bar; }
 int PAGE_EXPORT(view_help)(void) { return page.state.help; }
 
-/** Whether a screenshot was asked for; once. */
+/** Whether a screenshot was requested; resets the request. */
 int PAGE_EXPORT(view_shot)(void)
 {
     const int shot = page.state.shot != ADCGS_SHOT_NONE;
@@ -150,13 +150,13 @@ int PAGE_EXPORT(view_shot)(void)
     return shot;
 }
 
-/** Empty when there is none. */
+/** Empty if there is none. */
 const char *PAGE_EXPORT(view_message)(void)
 {
     return page.state.now < page.state.message_end ? page.state.message : "";
 }
 
-/** Lines of the help page: keys and text, each line ended by a line feed, with a tab between. */
+/** Lines of the help page: keys and text, separated by a tab; each line ends with a line feed. */
 const char *PAGE_EXPORT(view_help_lines)(void)
 {
     static char text[2000];
