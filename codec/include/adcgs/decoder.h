@@ -9,7 +9,7 @@
  * most 64 MiB at level 1, half a GiB at level 2, and one or two seconds of one core. The decoder checks these bounds before it
  * spends the memory or time. With segments read on demand, a call that takes a time or a segment number may need as long. In a
  * faulty stream such a call may need up to twice as long. Once per decoder, if the index is wrong, a call may need four times as
- * long. The time for reading the bytes comes on top. The caller chooses the size of a frame. Its time and memory grow with pixels
+ * long. The time for reading the bytes is extra. The caller chooses the size of a frame. Its time and memory grow with pixels
  * times splats, and memory_limit bounds both (annex "Security and resources").
  *
  * Unless a function says otherwise, error is the only pointer that may be NULL. In addition to the failures that a function
@@ -195,7 +195,7 @@ ADCGS_API adcgs_status adcgs_get_primitives(adcgs_decoder *decoder, double time,
 
 /**
  * From now on, render only the first tiers: fewer splats and a coarser image in less time (clause "Tiers"). A segment that has
- * fewer tiers, or has received fewer so far, is rendered with all of its tiers.
+ * fewer tiers, or has received fewer so far, is rendered with all available ones.
  * \param decoder an open decoder
  * \param tiers their number, at least 1; 0: all, the state after opening
  * \param error says why it failed
