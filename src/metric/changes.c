@@ -9,23 +9,23 @@
 
 #include <math.h>
 
-/* Steps from one picture to the next are counted up to this, in bins. */
+/* Upper bound of the histogram of steps between successive images; larger steps share one more bin. */
 #define STEP_MOST 0.1F
 enum { STEP_BINS = 1000 };
-/* Changes that are noise of most pixels, and of any, in its standard deviations. */
+/* Largest change by noise [its standard deviations]: of most pixels, and of any single pixel. */
 #define NOISE_RANGE 5.0
 #define NOISE_ALONE 12.0
-/* What changes by so much more than least counts alone. */
+/* Multiple of `least` above which a pixel needs no changing neighbours. */
 #define ALONE 1.5
-/* The share of errors below which nothing is worth following. */
+/* Share of the mean square error below which changes are not worth modelling. */
 #define WORTH 0.25
 
 struct adcgs_changes {
     int width, height;
     size_t values;
-    float *low, *high, *last; /* [values] the least, the largest, the one before */
+    float *low, *high, *last; /* [values] minimum, maximum, previous value */
     double *sum, *square;     /* [values] */
-    uint32_t *known;          /* [values] pictures in which it is a number */
+    uint32_t *known;          /* [values] number of images in which it is not NaN */
     uint64_t steps[STEP_BINS + 1];
 };
 
@@ -81,7 +81,9 @@ void adcgs_changes_add(adcgs_changes *c, const float *picture)
     }
 }
 
-/** Steps of what is at rest are normal, with twice its variance; half of them, a quarter of all, lie below the bound. */
+/**
+ * Steps of static values are normal, with twice the noise variance. Half of these steps, a quarter of all, lie below the bound.
+ */
 double adcgs_changes_noise(const adcgs_changes *c)
 {
     static const double bound = 0.6745 * 1.4142; /* in standard deviations of the noise */
@@ -94,7 +96,7 @@ double adcgs_changes_noise(const adcgs_changes *c)
     return (i + 0.5) * (double)STEP_MOST / STEP_BINS / bound;
 }
 
-/** Mean square, but for noise, of how far values that change by more than `low` and no more than `least` are from their means. */
+/** Mean variance, less the noise variance, of the values that change by more than `low` and at most `least`. */
 static double spread_between(const adcgs_changes *c, double low, double least, double noise)
 {
     double sum = 0;

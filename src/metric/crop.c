@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Quality of a part of a picture. */
+/** \file Quality of a part of an image. */
 #include "config.h"
 
 #include "metric/crop.h"
@@ -12,9 +12,12 @@
 
 #define CORNERS 8
 #define FENCE 1.5
-#define GROWTH 1.1
+#define GROWTH 1.1 /* factor of the bounds */
 
-/** Tukey's fences: what lies further from the quartiles than FENCE times their distance is an outlier. values: space for all. */
+/**
+ * Tukey's fences: a point further from the quartiles than FENCE times their distance is an outlier. values: memory for all
+ * points.
+ */
 static void find_fences(const adcgs_scene_points *points, double *values, adcgs_box *fences)
 {
     for (int a = 0; a < 3; a++) {
@@ -57,7 +60,7 @@ adcgs_status adcgs_box_of_points(adcgs_box *box, const adcgs_scene *scene, adcgs
         inside++;
     }
     if (!inside)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the scene has no points to tell a box from", scene->directory);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the scene has no points to find a box from", scene->directory);
     for (int a = 0; a < 3; a++) {
         const double grow = 0.5 * (GROWTH - 1.0) * (box->high[a] - box->low[a]);
         box->low[a] -= grow;
@@ -66,7 +69,7 @@ adcgs_status adcgs_box_of_points(adcgs_box *box, const adcgs_scene *scene, adcgs
     return ADCGS_OK;
 }
 
-/** Corner i has the higher coordinate along each axis whose bit is set in i. Camera coordinates. */
+/** Corner i has the higher coordinate along each axis whose bit is set in i. In camera coordinates. */
 static void find_corners(const adcgs_box *box, const adcgs_camera *camera, double corners[CORNERS][3])
 {
     const double *m = camera->cam_to_world;
@@ -88,7 +91,7 @@ static void project(const adcgs_camera *camera, const double p[3], double bounds
     bounds[3] = fmax(bounds[3], y);
 }
 
-/** Where an edge of the box goes through the near plane, if it does. */
+/** Widen bounds by the intersection of an edge of the box with the near plane, if there is one. */
 static void project_cut(const adcgs_camera *camera, const double a[3], const double b[3], double bounds[4])
 {
     const double near_plane = camera->near_plane;
@@ -119,7 +122,7 @@ int adcgs_box_rectangle(const adcgs_box *box, const adcgs_camera *camera, int re
     return 1;
 }
 
-/** Copy the rectangle out of a planar picture. */
+/** Copy the rectangle out of a planar image. */
 static void cut(const float *picture, int width, int height, const int rectangle[4], float *out)
 {
     const size_t row = (size_t)(rectangle[2] - rectangle[0]);
@@ -144,7 +147,7 @@ adcgs_status adcgs_crop_measure(adcgs_crop *out, const adcgs_box *box, const adc
         out->psnr = adcgs_psnr(decoded, truth, n);
         status = adcgs_ssim(decoded, truth, width, height, &out->ssim, error);
     } else {
-        adcgs_fail(error, status, "out of memory for a picture of %d x %d", width, height);
+        adcgs_fail(error, status, "out of memory for an image of %d x %d", width, height);
     }
     free(decoded);
     free(truth);

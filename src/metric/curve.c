@@ -9,7 +9,7 @@
 
 /* ---- Bjontegaard's difference ---- */
 
-/** log(bytes) as a function of quality: knots, values and slopes; without slopes it is piecewise linear. */
+/** log(bytes) as a function of quality: knots, values and slopes; piecewise linear without slopes. */
 typedef struct spline {
     int n, cubic;
     double x[ADCGS_CURVE_MAX], y[ADCGS_CURVE_MAX], slope[ADCGS_CURVE_MAX];
@@ -38,7 +38,7 @@ static double end_slope(double h0, double h1, double d0, double d1)
     return d0 * d1 <= 0 && fabs(slope) > 3 * fabs(d0) ? 3 * d0 : slope;
 }
 
-/** Fritsch and Carlson: between pieces of one direction the weighted harmonic mean of their slopes, else level. */
+/** Fritsch and Carlson: the weighted harmonic mean of the slopes of two pieces with the same direction, else zero. */
 static void set_slopes(spline *s)
 {
     double h[ADCGS_CURVE_MAX], d[ADCGS_CURVE_MAX];
@@ -63,7 +63,7 @@ static adcgs_status spline_init(spline *s, const adcgs_curve_point *points, int 
     memcpy(sorted, points, (size_t)n * sizeof *points);
     for (int i = 0; i < n; i++)
         if (!isfinite(sorted[i].quality) || !isfinite(sorted[i].bytes) || !(sorted[i].bytes > 0))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "a point of %g bytes and %g dB on the curve", sorted[i].bytes,
+            return adcgs_fail(error, ADCGS_ERR_DATA, "an invalid point on the curve: %g bytes, %g dB", sorted[i].bytes,
                               sorted[i].quality);
     qsort(sorted, (size_t)n, sizeof *sorted, by_quality);
     s->n = n;
@@ -113,7 +113,7 @@ adcgs_status adcgs_bd_rate(const adcgs_curve_point *reference, int n_reference, 
     return ADCGS_OK;
 }
 
-/* ---- Questions to one curve ---- */
+/* ---- Queries of one curve ---- */
 
 static int sort_by_bytes(adcgs_curve_point sorted[ADCGS_CURVE_MAX], const adcgs_curve_point *points, int n)
 {
@@ -129,7 +129,7 @@ double adcgs_curve_quality(const adcgs_curve_point *points, int n, double bytes)
     double best = (double)NAN;
     n = sort_by_bytes(p, points, n);
     for (int i = 0; i < n && p[i].bytes <= bytes; i++) {
-        best = fmax(best, p[i].quality); /* fmax() takes the number of a number and a NaN */
+        best = fmax(best, p[i].quality); /* fmax() ignores a NaN */
         if (i + 1 < n && p[i + 1].bytes > bytes) {
             const double u = log(bytes / p[i].bytes) / log(p[i + 1].bytes / p[i].bytes);
             best = fmax(best, p[i].quality + u * (p[i + 1].quality - p[i].quality));

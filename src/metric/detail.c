@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How much there is to see in a picture. */
+/** \file The amount of detail in an image. */
 #include "metric/detail.h"
 
 #include <math.h>
@@ -13,7 +13,10 @@ static void take_luma(double *out, const float *picture, size_t plane)
     }
 }
 
-/** One scale: details beyond the least are counted; what is left is a quarter as large, in place, less an odd row or column. */
+/**
+ * One scale: counts the details above the bound. Leaves an image of half the size in place, without the last row or column of an
+ * uneven size.
+ */
 static uint32_t halve(double *picture, int width, int height)
 {
     const size_t row = (size_t)width, half = row / 2;

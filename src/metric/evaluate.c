@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Quality of a decoded stream against a scene's pictures. */
+/** \file Quality of a decoded stream against a scene's images. */
 #include "metric/evaluate.h"
 
 #include "camera/path.h"
@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** Render a view into planar 8-bit levels over 255. The frame and planes are the caller's, of the camera's size. */
+/** Render a view into planar 8-bit levels over 255. The caller provides the frame and planes, of the camera's size. */
 static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_camera *camera, double time, adcgs_frame *frame,
                                   uint8_t *levels, float *planar, double *seconds, adcgs_error *error)
 {
@@ -29,27 +29,27 @@ static adcgs_status render_planar(adcgs_decoder *decoder, const adcgs_camera *ca
     return ADCGS_OK;
 }
 
-/** What the views of a split go through. */
+/** State of an evaluation. */
 typedef struct session {
     adcgs_decoder *decoder;
     const adcgs_scene *scene;
     const adcgs_scene_view *views;
     uint32_t n;
-    uint32_t *of, *order;     /**< [n] as adcgs_sort_by_camera() gives them */
+    uint32_t *of, *order;     /**< [n] from adcgs_sort_by_camera() */
     int measure;
-    adcgs_temporal *temporal; /**< of the camera at hand; NULL: it has one view, or nothing over time is wanted */
+    adcgs_temporal *temporal; /**< of the current camera; NULL for a camera with one view, and without a measure over time */
     adcgs_temporal_total total;
     adcgs_score_fn each;
     void *user;
 } session;
 
-/** A view's true picture, and its camera of that size. */
+/** A view's true image, and its camera at that size. */
 static adcgs_status load(const session *s, const adcgs_scene_view *view, float **truth, adcgs_camera *camera, adcgs_error *error)
 {
     return adcgs_scene_load(s->scene, view, ADCGS_MAX(s->scene->measured, 1), truth, camera, error);
 }
 
-/** Load the true pictures of the camera whose views are order[first..end). */
+/** Load the true images of the camera whose views are order[first..end). */
 static adcgs_status look_ahead(session *s, uint32_t first, uint32_t end, adcgs_error *error)
 {
     for (uint32_t i = first; i < end; i++) {
@@ -71,7 +71,7 @@ static int is_same_camera(const session *s, uint32_t i, uint32_t j)
     return j < s->n && s->of[s->order[i]] == s->of[s->order[j]];
 }
 
-/** Before view order[i]. */
+/** Prepare the camera of view order[i], if it is the first view of this camera. */
 static adcgs_status begin_camera(session *s, uint32_t i, adcgs_error *error)
 {
     uint32_t end = i + 1;
@@ -82,7 +82,7 @@ static adcgs_status begin_camera(session *s, uint32_t i, adcgs_error *error)
     return look_ahead(s, i, end, error);
 }
 
-/** Where what moves is known, that counts, not what the camera's views together have it guessed to be. */
+/** A known mask of moving pixels replaces the region estimated from the camera's views. */
 static void measure_known(adcgs_view_score *score, const uint8_t *known)
 {
     const size_t plane = (size_t)score->width * (size_t)score->height;
@@ -91,7 +91,7 @@ static void measure_known(adcgs_view_score *score, const uint8_t *known)
     score->known_share = moving.share;
 }
 
-/** With the levels of the decoded picture fitted to the truth. moving: NULL where nothing is known or guessed to move. */
+/** Measure with the levels of the decoded image fitted to the truth. moving: NULL without a known or estimated region. */
 static adcgs_status measure_fitted(adcgs_view_score *score, const uint8_t *moving, adcgs_error *error)
 {
     const size_t plane = (size_t)score->width * (size_t)score->height;
@@ -106,7 +106,7 @@ static adcgs_status measure_fitted(adcgs_view_score *score, const uint8_t *movin
     return ADCGS_OK;
 }
 
-/** All but the speed. */
+/** Measure everything but the speed. */
 static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_error *error)
 {
     const float *const a = score->decoded, *const b = score->truth;
@@ -130,7 +130,7 @@ static adcgs_status compare(const session *s, adcgs_view_score *score, adcgs_err
     return status;
 }
 
-/** View order[i]. */
+/** Render and compare view order[i]. */
 static adcgs_status score_view(session *s, uint32_t i, adcgs_view_score *score, adcgs_error *error)
 {
     const adcgs_scene_view *view = &s->views[s->order[i]];
@@ -147,7 +147,7 @@ static adcgs_status score_view(session *s, uint32_t i, adcgs_view_score *score, 
     if (rgb && planar && levels)
         status = render_planar(s->decoder, &camera, view->time, &frame, levels, planar, &score->seconds, error);
     else
-        adcgs_fail(error, status, "out of memory for a picture of %d x %d", frame.width, frame.height);
+        adcgs_fail(error, status, "out of memory for an image of %d x %d", frame.width, frame.height);
     if (status == ADCGS_OK)
         status = compare(s, score, error);
     if (status == ADCGS_OK && s->temporal && !is_same_camera(s, i, i + 1)) {
@@ -164,7 +164,7 @@ static adcgs_status score_view(session *s, uint32_t i, adcgs_view_score *score, 
     return status;
 }
 
-/** seconds: [n] of each frame. */
+/** seconds: [n] one per frame. */
 static adcgs_status score_all(session *s, adcgs_evaluation *out, double *seconds, adcgs_error *error)
 {
     uint32_t n_cameras;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Quality of what moves, by a known mask. */
+/** \file Quality of moving pixels, by a known mask. */
 #include "config.h"
 
 #include "metric/moving.h"

@@ -6,16 +6,16 @@
 
 #include <math.h>
 
-#define IDENTICAL 99.0
+#define IDENTICAL 99.0 /* dB for identical images */
 
 double adcgs_psnr_from_mse(double mse)
 {
     if (!(mse > 0.0))
-        return mse == 0.0 ? IDENTICAL : mse; /* not-a-number stays visible */
+        return mse == 0.0 ? IDENTICAL : mse; /* NaN stays visible */
     return ADCGS_MIN(IDENTICAL, -10.0 * log10(mse));
 }
 
-/** Of one channel: *gain and *black of the line through a that comes nearest to b where that is known. */
+/** Fit one channel: *gain and *black of the line through a that is nearest to b, where b is known. */
 static void fit_line(const float *a, const float *b, size_t n, double *gain, double *black)
 {
     double count = 0, sa = 0, sb = 0, saa = 0, sab = 0;

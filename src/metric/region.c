@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Regions of a picture, by counts along rows, then columns. */
+/** \file Regions of an image, by counts along rows, then columns. */
 #include "metric/region.h"
 
-/** out: of n values in, `stride` apart, the sums of those that are within `reach`. */
+/** out: for each of n values, `stride` apart, the sum of the values of in within `reach`. */
 static void sum_near(const uint8_t *in, uint8_t *out, int n, size_t stride, int reach)
 {
     for (int i = 0; i < n; i++) {
@@ -14,7 +14,7 @@ static void sum_near(const uint8_t *in, uint8_t *out, int n, size_t stride, int 
     }
 }
 
-/** The region becomes the numbers of its pixels within reach of each. */
+/** Replace each pixel of the region by the number of its pixels within reach. */
 static void count_near(uint8_t *region, uint8_t *scratch, int width, int height, int reach)
 {
     const size_t row = (size_t)width;
@@ -24,7 +24,7 @@ static void count_near(uint8_t *region, uint8_t *scratch, int width, int height,
         sum_near(scratch + x, region + x, height, row, reach);
 }
 
-/** How many of n pixels in a row are within reach of the i-th. */
+/** Number of pixels, in a row of n, within reach of the i-th. */
 static int row_near(int i, int n, int reach)
 {
     return ADCGS_MIN(i + reach, n - 1) - ADCGS_MAX(i - reach, 0) + 1;

@@ -10,7 +10,7 @@
 /** Wang, Simoncelli and Bovik, Multiscale structural similarity for image quality assessment, 2003. */
 static const double WEIGHTS[ADCGS_MS_SSIM_SCALES] = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
 
-/** Two planes, and the space to compare them in. */
+/** Two planes, and the scratch memory to compare them. */
 typedef struct pair {
     adcgs_ssim_space space;
     double *a, *b;
@@ -28,7 +28,7 @@ static adcgs_status pair_init(pair *p, int width, int height, adcgs_error *error
 {
     *p = (pair){.width = width, .height = height};
     if (width < 1 || height < 1)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "SSIM of a picture of %dx%d pixels", width, height);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "SSIM of an image of %dx%d pixels", width, height);
     const size_t plane = (size_t)width * (size_t)height;
     p->a = adcgs_alloc(NULL, plane, sizeof *p->a, error);
     p->b = adcgs_alloc(NULL, plane, sizeof *p->b, error);
@@ -38,7 +38,7 @@ static adcgs_status pair_init(pair *p, int width, int height, adcgs_error *error
     return status;
 }
 
-/** Take channel c of two pictures, which have the size of pair_init(). */
+/** Copy channel c of two images, which are as large as in pair_init(). */
 static void pair_fill(pair *p, const float *a, const float *b, int width, int height, size_t c)
 {
     const size_t plane = (size_t)width * (size_t)height;
@@ -50,7 +50,7 @@ static void pair_fill(pair *p, const float *a, const float *b, int width, int he
     }
 }
 
-/** Marks what is not known of a picture; how many pixels are. */
+/** Mark the unknown pixels of an image. \return the number of known pixels */
 static size_t find_hidden(uint8_t *hidden, const float *picture, size_t plane)
 {
     size_t known = 0;
@@ -84,7 +84,7 @@ adcgs_status adcgs_ssim(const float *a, const float *b, int width, int height, d
     return ADCGS_OK;
 }
 
-/** Mean of the pixels of a plane that a box of 2x2 covers. In place: boxes are read no earlier than they are written. */
+/** Mean of the pixels of a plane that a box of 2x2 covers. In place: no box is read after it has been overwritten. */
 static void halve(double *plane, int width, int height)
 {
     double *out = plane;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * Structural similarity of one channel. The window is separable, so each of the
- * five moments is blurred along rows and then along columns; a ring of the last
- * eleven blurred rows is all that is kept. The innermost loops run along a row.
+ * five moments is blurred along rows and then along columns. Only a ring of the
+ * last eleven blurred rows is kept. The innermost loops run along a row.
  */
 #include "config.h"
 
@@ -13,7 +13,7 @@
 #define RADIUS ADCGS_SSIM_RADIUS
 #define TAPS ADCGS_SSIM_TAPS
 #define MOMENTS ADCGS_SSIM_MOMENTS
-#define SIGMA 1.5
+#define SIGMA 1.5 /* of the Gaussian window, pixels */
 #define C1 (0.01 * 0.01)
 #define C2 (0.03 * 0.03)
 
@@ -53,7 +53,7 @@ static double *ring_row(const adcgs_ssim_space *s, int row, size_t width)
     return s->ring + (size_t)(row % TAPS) * MOMENTS * width;
 }
 
-/** Moments of one row, blurred along it; zeros beyond the picture's edge. */
+/** Moments of one row, blurred along it; zeros beyond the image's edge. */
 static void blur_row(const adcgs_ssim_space *s, const double *a, const double *b, int row, size_t width)
 {
     const size_t stride = width + 2 * RADIUS;
@@ -73,7 +73,7 @@ static void blur_row(const adcgs_ssim_space *s, const double *a, const double *b
             add_scaled(out + m * width, s->padded + m * stride + t, s->window[t], width);
 }
 
-/** Add the similarity of one pixel from its blurred moments, each `stride` after the one before. */
+/** Add the similarity of one pixel from its blurred moments, which are `stride` apart. */
 static void add_pixel(adcgs_ssim_sums *sums, const double *m, size_t stride)
 {
     const double a = m[0], b = m[stride];

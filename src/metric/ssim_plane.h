@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Structural similarity of one channel, in double precision: what SSIM and MS-SSIM are made of. */
+/** \file
+ * Structural similarity of one channel, in double precision: the basis of SSIM
+ * and MS-SSIM.
+ */
 #ifndef ADCGS_METRIC_SSIM_PLANE_H
 #define ADCGS_METRIC_SSIM_PLANE_H
 
@@ -16,13 +19,13 @@ typedef struct adcgs_ssim_sums {
     double similarity, structure;
 } adcgs_ssim_sums;
 
-/** The window and the space to blur rows in, for pictures up to a width. Zero-initialise before use. */
+/** The window and scratch memory to blur rows, for images up to a width. Zero-initialise before use. */
 typedef struct adcgs_ssim_space {
     double window[ADCGS_SSIM_TAPS];
     double *ring;   /**< [TAPS][MOMENTS][width] */
     double *padded; /**< [MOMENTS][width + 2 RADIUS] */
     double *row;    /**< [MOMENTS][width] */
-    const uint8_t *hidden; /**< [height][width] pixels that are in no sum; NULL: all are */
+    const uint8_t *hidden; /**< [height][width] pixels left out of the sums; NULL: none */
 } adcgs_ssim_space;
 
 adcgs_status adcgs_ssim_space_init(adcgs_ssim_space *space, int width, adcgs_error *error);
@@ -30,8 +33,8 @@ void adcgs_ssim_space_clear(adcgs_ssim_space *space);
 
 /**
  * Sum over the pixels of two planes [height][width] that are at least margin from each edge. With margin 0 the window sees zeros
- * beyond the edges; with margin ADCGS_SSIM_RADIUS it stays inside, and both sides must be at least ADCGS_SSIM_TAPS.
- * width: at most that of space.
+ * beyond the edges. With margin ADCGS_SSIM_RADIUS it stays inside, and both sides must be at least ADCGS_SSIM_TAPS. width: at
+ * most that of space.
  */
 adcgs_ssim_sums adcgs_ssim_plane(const adcgs_ssim_space *space, const double *a, const double *b, int width, int height,
                                  int margin);

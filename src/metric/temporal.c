@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Quality over time, in sums that run along. The region is known before variances begin, so the squares of all static pixels go
- * into one sum (Welford's, which loses nothing to large means), and a pixel keeps no more than its means. The difference of two
- * changes is the change of the error, so one picture of errors is all that flicker needs.
+ * Quality over time, in running sums. The region is known before variances
+ * begin. So the squares of all static pixels share one sum (Welford's, which is
+ * accurate for large means), and only means are stored per pixel. The difference
+ * of two changes is the change of the error, so flicker needs only one image of
+ * errors.
  */
 #include "config.h"
 
@@ -13,7 +15,7 @@
 
 #include <math.h>
 
-/** A value over time. */
+/** Running statistics of values over time. */
 typedef struct moments {
     double *mean;  /* [3][plane] */
     double square; /* sum over static values of squared distances from their means */
@@ -21,11 +23,11 @@ typedef struct moments {
 
 struct adcgs_temporal {
     int width, height;
-    size_t plane, moving; /* pixels; those in the region */
-    uint32_t looked, n;   /* pictures of the first pass, of the second */
+    size_t plane, moving; /* pixels; pixels in the region */
+    uint32_t looked, n;   /* images of the first pass, of the second */
     float *low, *high;    /* [3][plane] of the truth; until the region is found */
     uint8_t *region;      /* [plane] */
-    double *error;        /* [3][plane] decoded - true of the picture before */
+    double *error;        /* [3][plane] decoded - true of the previous image */
     moments decoded, truth;
 };
 
@@ -118,7 +120,7 @@ adcgs_temporal_view adcgs_temporal_add(adcgs_temporal *t, const float *decoded, 
     double squares = 0.0, changes = 0.0;
     t->n++;
     for (size_t i = 0; i < 3 * t->plane; i++) {
-        const double seen = (double)(isnan(truth[i]) ? decoded[i] : truth[i]); /* what is not known is right */
+        const double seen = (double)(isnan(truth[i]) ? decoded[i] : truth[i]); /* unknown pixels count as correct */
         const double difference = (double)decoded[i] - seen;
         changes += fabs(difference - t->error[i]);
         t->error[i] = difference;
@@ -137,7 +139,7 @@ adcgs_temporal_view adcgs_temporal_add(adcgs_temporal *t, const float *decoded, 
 
 adcgs_temporal_total adcgs_temporal_end(const adcgs_temporal *t)
 {
-    const double values = 3.0 * (double)(t->plane - t->moving) * t->n; /* 0 / 0 where there are none */
+    const double values = 3.0 * (double)(t->plane - t->moving) * t->n; /* 0 / 0 without static pixels */
     return (adcgs_temporal_total){
         .views = t->n,
         .dynamic_share = (double)t->moving / (double)t->plane,
