@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define DEGREE 0.017453292519943295
-#define LEVEL 1e-9 /* cosine below which the first and the last turn are about one axis */
+#define LEVEL 1e-9 /* cosine of the middle angle below which the first and the last axis coincide */
 
 const char *const adcgs_rotation_orders[] = {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx", NULL};
 
@@ -33,7 +33,7 @@ void adcgs_euler_to_pose(const double degrees[3], adcgs_rotation_order order, do
         memcpy(pose + 4 * i, m[i], sizeof m[i]);
 }
 
-/** Whole turns aside. */
+/** Add whole turns to get nearest to `to`. */
 static double nearest(double degrees, double to)
 {
     return degrees + 360.0 * round((to - degrees) / 360.0);
@@ -43,7 +43,7 @@ void adcgs_euler_from_pose(const double pose[12], adcgs_rotation_order order, do
 {
     const char *const axes = adcgs_rotation_orders[order];
     const int i = axes[0] - 'x', j = axes[1] - 'x', k = axes[2] - 'x';
-    const double sign = (i + 1) % 3 == j ? 1.0 : -1.0; /* whether the axes follow each other as x, y, z do */
+    const double sign = (i + 1) % 3 == j ? 1.0 : -1.0; /* 1 if the axes are in cyclic order */
 #define M(a, b) pose[4 * (a) + (b)]
     const double level = hypot(M(k, j), M(k, k));
     double angles[3] = {0};

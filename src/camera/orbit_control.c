@@ -10,10 +10,10 @@
 #include <math.h>
 
 #define HALF_TURN 3.141592653589793
-#define POLE 0.01          /* radians that stay between the view and up or down */
-#define NEAREST 1e-3       /* scene units between camera and target */
-#define FARTHEST 1e5       /* scene units between camera and centre: still far within what a view may hold */
-#define ZOOM_STEP 0.9
+#define POLE 0.01          /* smallest angle [radians] between the view and up or down */
+#define NEAREST 1e-3       /* smallest depth of the target [scene units] */
+#define FARTHEST 1e5       /* largest distance from the centre [scene units], far below the limit of a view */
+#define ZOOM_STEP 0.9 /* factor of the target's depth per step */
 
 /** A column of the matrix: 0 right, 1 down, 2 forward, 3 position. */
 static void get_column(const adcgs_orbit_control *control, int column, double v[3])
@@ -47,7 +47,7 @@ void adcgs_orbit_control_jump(adcgs_orbit_control *control, const adcgs_camera *
     memcpy(control->target, control->centre, sizeof control->target);
 }
 
-/** The target as seen from the camera, and its depth, which is at least NEAREST. */
+/** Depth of the target seen from the camera, at least NEAREST. */
 static double depth_of_target(const adcgs_orbit_control *control)
 {
     double forward[3], place[3], offset[3];
@@ -58,7 +58,7 @@ static double depth_of_target(const adcgs_orbit_control *control)
     return ADCGS_MAX(adcgs_v3_dot(offset, forward), NEAREST * control->unit);
 }
 
-/** Put the camera somewhere, unless that is out of this world. \return whether it is there now. */
+/** Move the camera, except beyond FARTHEST. \return true if it was moved */
 static int move_to(adcgs_orbit_control *control, const double place[3])
 {
     double offset[3];
@@ -70,7 +70,7 @@ static int move_to(adcgs_orbit_control *control, const double place[3])
     return 1;
 }
 
-/** Many turns add up their rounding: make the axes orthonormal again. */
+/** Make the axes orthonormal again, since rounding errors of many turns accumulate. */
 static void straighten(adcgs_orbit_control *control)
 {
     double right[3], down[3], forward[3];
@@ -100,7 +100,7 @@ static void turn_about(adcgs_orbit_control *control, const double axis[3], doubl
     straighten(control);
 }
 
-/** As much of a pitch as does not bring the view nearer to a pole than POLE. */
+/** The part of a pitch that keeps the view at least POLE from a pole. */
 static double limit_pitch(const adcgs_orbit_control *control, const double forward[3], double pitch)
 {
     const double from_up = acos(ADCGS_MAX(-1.0, ADCGS_MIN(1.0, adcgs_v3_dot(forward, control->up))));
@@ -116,7 +116,7 @@ static void yaw_and_pitch(adcgs_orbit_control *control, double yaw, double pitch
     get_column(control, 2, forward);
     adcgs_v3_cross(forward, control->up, horizontal);
     if (adcgs_v3_dot(horizontal, horizontal) < 1e-12)
-        get_column(control, 0, horizontal); /* straight up or down: there is no other horizontal */
+        get_column(control, 0, horizontal); /* straight up or down there is no other horizontal */
     adcgs_v3_normalise(horizontal);
     if (pitch != 0.0)
         turn_about(control, horizontal, limit_pitch(control, forward, pitch), pivot);

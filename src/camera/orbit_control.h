@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A camera that is moved by hand: round a point, sideways, towards it, or
- * freely. Axes are those of adcgs_camera; angles are in radians. A camera that
- * nobody moved stays as it was given, to the last bit. Known as orbit or
- * turntable control: yaw about up and pitch about the horizontal, so that the
- * picture never rolls, as it may with an arcball (Shoemake, 1992).
+ * A camera moved by hand: around a point, sideways, towards it, or freely. Axes
+ * are those of adcgs_camera; angles are in radians. Without any movement the
+ * camera stays bit-exact. Known as orbit or turntable control: yaw about up and
+ * pitch about the horizontal, so that the image never rolls, as it may with an
+ * arcball (Shoemake, 1992).
  */
 #ifndef ADCGS_CAMERA_ORBIT_CONTROL_H
 #define ADCGS_CAMERA_ORBIT_CONTROL_H
@@ -12,40 +12,39 @@
 #include <adcgs/types.h>
 
 typedef struct adcgs_orbit_control {
-    adcgs_camera camera; /**< at the size that its intrinsics are for */
-    double centre[3];    /**< of the scene, world units */
-    double target[3];    /**< what it orbits about: the centre until it is panned or flown elsewhere */
+    adcgs_camera camera; /**< at the size of its intrinsics */
+    double centre[3];    /**< of the scene [world units] */
+    double target[3];    /**< centre of the orbit: the scene's centre, until it is panned or flown elsewhere */
     double up[3];        /**< unit vector */
-    double unit;         /**< world units in a scene unit */
+    double unit;         /**< world units per scene unit */
 } adcgs_orbit_control;
 
-/** Centre, unit and up are the stream's; where it names no up, the camera's own. */
+/** Centre, unit and up are the stream's; without an up axis in the stream, up is the camera's own. */
 void adcgs_orbit_control_init(adcgs_orbit_control *control, const adcgs_info *info, const adcgs_camera *camera);
-/** Take another camera's place and lens, and orbit about the scene's centre again. */
+/** Take the pose and lens of another camera, and orbit about the scene's centre again. */
 void adcgs_orbit_control_jump(adcgs_orbit_control *control, const adcgs_camera *camera);
 
 /**
- * Turn the whole camera about the target: yaw about up, then pitch about the
- * horizontal. The distance stays, and so does the target's place in the
- * picture. Pitch ends shortly before the camera looks straight up or down.
+ * Turn the whole camera about the target: yaw about up, then pitch about the horizontal. The distance and the target's position
+ * in the image are unchanged. Pitch is limited so that the camera never looks straight up or down.
  */
 void adcgs_orbit_control_orbit(adcgs_orbit_control *control, double yaw, double pitch);
 /** The same turns about the camera's own position. */
 void adcgs_orbit_control_look(adcgs_orbit_control *control, double yaw, double pitch);
-/** Move camera and target so that the target moves by right and down in the picture, in focal lengths. */
+/** Move camera and target so that the target moves right and down in the image, in focal lengths. */
 void adcgs_orbit_control_pan(adcgs_orbit_control *control, double right, double down);
-/** Move along the view: the target's depth shrinks by a tenth for each step, and grows with negative ones. */
+/** Move along the view: each step reduces the target's depth by a tenth; negative steps increase it. */
 void adcgs_orbit_control_zoom(adcgs_orbit_control *control, double steps);
-/** Move by scene units along the camera's own axes, the target staying behind. */
+/** Move by scene units along the camera's own axes; the target stays. */
 void adcgs_orbit_control_fly(adcgs_orbit_control *control, double right, double down, double forward);
-/** After a flight: the target becomes the point of the view axis that is nearest to it. */
+/** After a flight: set the target to its nearest point on the view axis. */
 void adcgs_orbit_control_land(adcgs_orbit_control *control);
 
 /** Distance from camera to target, world units. */
 double adcgs_orbit_control_distance(const adcgs_orbit_control *control);
 /**
- * The camera for a picture of another size, with square pixels where the camera has them: all that it sees is in it,
- * and more at two sides where the shapes differ.
+ * The camera for an image of another size, with square pixels if the camera has them. The image contains the camera's whole view,
+ * and more at two sides if the aspect ratios differ.
  */
 void adcgs_orbit_control_view(const adcgs_orbit_control *control, int width, int height, adcgs_camera *out);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Which frames to render. */
+/** \file Camera paths: a camera and a time for each frame to render. */
 #include "config.h"
 
 #include "camera/path.h"
@@ -23,7 +23,7 @@ adcgs_status adcgs_camera_path_rendered(const adcgs_camera *camera, adcgs_status
     return adcgs_fail(error, ADCGS_ERR_DATA, "camera \"%s\": %.150s", camera->name, why.text + skip);
 }
 
-/** Times are given in few digits, and the last frame lasts, too: a frame more or less is no mistake. */
+/** Allow one frame of tolerance: times are given with few digits, and the last frame lasts, too. */
 static int is_outside(const adcgs_info *info, double begin, double end)
 {
     const double frame = 1.0 / info->frame_rate;
@@ -80,7 +80,7 @@ adcgs_status adcgs_camera_path_times(adcgs_camera_path *out, const adcgs_info *i
     const double end = request->has_times ? request->end : info->time_end;
     const int is_frozen = motion == ADCGS_PATH_FROZEN;
     if (is_frozen && request->has_times && begin != end)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time: time stands still with --camera %s, expected one moment",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--time: time is frozen with --camera %s, expected a single time",
                           request->camera);
     const int is_still = is_frozen || (!request->has_times && motion == ADCGS_PATH_MOVING && begin == end);
     const double n = is_still ? ADCGS_PATH_SECONDS * info->frame_rate : (end - begin) * info->frame_rate + 1.0;
@@ -127,7 +127,7 @@ static void make_orbit(adcgs_camera_path *out, const adcgs_rig *rig, const adcgs
     }
 }
 
-/** Paths that begin at the stored cameras, or at one of our own. */
+/** Paths based on the stored cameras, or on a default one. */
 static adcgs_status make_from_rig(adcgs_camera_path *out, const adcgs_decoder *decoder, const adcgs_info *info,
                                   const adcgs_camera_path_request *request, adcgs_error *error)
 {
@@ -161,7 +161,7 @@ static adcgs_status make_from_camera(adcgs_camera_path *out, const adcgs_decoder
     return ADCGS_OK;
 }
 
-/** A path from a file; what it does not say is as in the first stored camera, or one of our own. */
+/** A path from a file; missing values are those of the first stored camera, or of a default one. */
 static adcgs_status make_from_file(adcgs_camera_path *out, const adcgs_decoder *decoder, const adcgs_info *info,
                                    const adcgs_camera_path_request *request, adcgs_error *error)
 {
@@ -196,7 +196,7 @@ adcgs_status adcgs_camera_path_make(adcgs_camera_path *out, const adcgs_decoder 
     const adcgs_status status = make_shots(out, decoder, &info, request, error);
     if (status != ADCGS_OK)
         adcgs_camera_path_free(out);
-    if (!(out->frame_rate > 0.0)) /* paths may have one of their own */
+    if (!(out->frame_rate > 0.0)) /* paths may have their own */
         out->frame_rate = info.frame_rate;
     for (int i = 0; i < out->n; i++) {
         out->outside += info.time_start < info.time_end && is_outside(&info, out->frame[i].time, out->frame[i].time);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Camera paths as Nuke and Blender exchange them: .chan. */
+/** \file Camera paths in the exchange format of Nuke and Blender: .chan. */
 #include "config.h"
 
 #include "camera/euler.h"
@@ -14,13 +14,13 @@
 #include <stdlib.h>
 
 #define BLANKS " \t\r,"
-#define BYTES_MAX ((uint64_t)256 << 20)
-#define VALUE_MAX 1e9
+#define BYTES_MAX ((uint64_t)256 << 20) /* of a file */
+#define VALUE_MAX 1e9 /* largest absolute value of a number */
 #define DEGREE 0.017453292519943295
 
 enum { FRAME, PLACE, ANGLES = 4, VIEW = 7, COLUMNS };
 
-/** The numbers of a line. \return how many; -1 if something else is there. */
+/** Parse the numbers of a line. \return their count; -1 for other text */
 static int read_numbers(char *line, double out[COLUMNS])
 {
     char *rest = NULL;
@@ -55,7 +55,7 @@ static adcgs_status make_camera(const adcgs_path_reader *r, const double v[COLUM
     return ADCGS_OK;
 }
 
-/** Keys of all lines; *gaps: whether frames are missing. */
+/** Read the keys of all lines; *gaps: true if frames are missing. */
 static adcgs_status read_keys(const adcgs_path_reader *r, char *text, adcgs_camera_key *keys, int *n, int *gaps)
 {
     double first = 0.0, last = 0.0;
@@ -71,10 +71,10 @@ static adcgs_status read_keys(const adcgs_path_reader *r, char *text, adcgs_came
             continue;
         if (columns < VIEW || v[FRAME] != floor(v[FRAME]))
             return adcgs_fail(r->error, ADCGS_ERR_DATA,
-                              "%s: line %d: expected a frame's number, a place, three angles, and maybe a field of view", r->path,
-                              line);
+                              "%s: line %d: expected a frame number, a position, three angles, and optionally a field of view",
+                              r->path, line);
         if (*n && v[FRAME] <= last)
-            return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: line %d: frame %.0f, expected one behind %.0f", r->path, line,
+            return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: line %d: frame %.0f, expected one after %.0f", r->path, line,
                               v[FRAME], last);
         first = *n ? first : v[FRAME];
         *gaps |= *n && v[FRAME] != last + 1.0;
@@ -87,12 +87,12 @@ static adcgs_status read_keys(const adcgs_path_reader *r, char *text, adcgs_came
     return *n ? ADCGS_OK : adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: no frames", r->path);
 }
 
-/** One frame for each line, or where numbers are left out, as between key frames. */
+/** One frame for each line, or interpolated frames if frame numbers are missing. */
 static adcgs_status read_frames(adcgs_camera_path *out, const adcgs_path_reader *r, char *text, adcgs_camera_key *keys)
 {
     int n, gaps;
     ADCGS_TRY(read_keys(r, text, keys, &n, &gaps));
-    out->frame_rate = r->info->frame_rate; /* what it flies at */
+    out->frame_rate = r->info->frame_rate; /* rate for the interpolation */
     if (gaps)
         return adcgs_path_fly(r, keys, (size_t)n, 0, out);
     ADCGS_TRY(adcgs_camera_path_alloc(out, n, r->path, r->error));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Which format a path's file has, and what goes into one. */
+/** \file Formats of path files, and writing a path. */
 #include "config.h"
 
 #include "camera/path_files.h"
@@ -45,7 +45,7 @@ adcgs_status adcgs_camera_keys_write(const adcgs_camera_key *keys, int n, int ha
                          : adcgs_path_json_write(keys, n, has_times, frame_rate, path, error);
 }
 
-/** What cameras of one path have: one size. */
+/** Fit all cameras to the size of the first: a path has one size. */
 static void fit_size(adcgs_camera_key *keys, int n)
 {
     for (int i = 1; i < n; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file From key frames to frames. */
+/** \file Interpolating key frames. */
 #include "config.h"
 
 #include "camera/path_files.h"

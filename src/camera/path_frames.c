@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Memory of paths, and a camera where none is stored. */
+/** \file Memory of paths, and a default camera. */
 #include "config.h"
 
 #include "camera/path.h"
@@ -9,14 +9,14 @@
 #include <stdlib.h>
 
 #define ORBIT_DISTANCE 2.5 /* scene units */
-#define ORBIT_ELEVATION 0.35
+#define ORBIT_ELEVATION 0.35 /* radians */
 #define ORBIT_FOCAL 1.2    /* focal length per image width */
 
 adcgs_status adcgs_camera_path_alloc(adcgs_camera_path *frames, double n, const char *who, adcgs_error *error)
 {
     *frames = (adcgs_camera_path){0};
     if (!(n >= 1.0 && n <= ADCGS_PATH_FRAMES_MAX))
-        return adcgs_fail(error, who ? ADCGS_ERR_DATA : ADCGS_ERR_USAGE, "%s%s%.0f frames asked for, expected 1 to %d",
+        return adcgs_fail(error, who ? ADCGS_ERR_DATA : ADCGS_ERR_USAGE, "%s%s%.0f frames requested, expected 1 to %d",
                           who ? who : "", who ? ": " : "", n, ADCGS_PATH_FRAMES_MAX);
     frames->frame = calloc((size_t)n, sizeof *frames->frame);
     if (!frames->frame)
@@ -31,7 +31,7 @@ void adcgs_camera_path_free(adcgs_camera_path *frames)
     *frames = (adcgs_camera_path){0};
 }
 
-/** On the outside, looking at the scene's centre from a little above. */
+/** A camera outside the scene, looking at its centre from slightly above. */
 void adcgs_camera_path_default(adcgs_camera *camera, const adcgs_info *info, const double up[3])
 {
     *camera = (adcgs_camera){.width = ADCGS_ORBIT_WIDTH,

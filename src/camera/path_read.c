@@ -11,18 +11,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define SECONDS_MAX 1e9
+#define SECONDS_MAX 1e9 /* largest absolute value of a time */
 
-/** What a path is read for, and where we are in it. */
+/** Input of the reader, and the position in the file. */
 typedef struct reader {
     adcgs_json_place at;
     const adcgs_path_reader *of;
     const adcgs_info *info;
     const adcgs_camera_path_request *request;
-    double near_plane; /* of cameras that do not say */
+    double near_plane; /* of cameras without one */
 } reader;
 
-/** A camera and its time, which is after_begin seconds into the stream if neither file nor request say. */
+/** Read a camera and its time; by default the time is after_begin seconds into the stream. */
 static adcgs_status read_shot(const reader *r, double after_begin, const char *kind, adcgs_camera_frame *frame)
 {
     const adcgs_json_place *at = &r->at;
@@ -49,7 +49,7 @@ static adcgs_status enter(reader *r, json_t *list, size_t i)
     return ADCGS_OK;
 }
 
-/** Sizes may differ only where --size makes them one. */
+/** Check for one size; sizes may differ only with --size, which fits them. */
 static adcgs_status check_size(const reader *r, const adcgs_camera_frame *frame, const adcgs_camera_frame *first)
 {
     if (!r->request->size[0] &&
@@ -84,11 +84,11 @@ static adcgs_status read_key(reader *r, adcgs_camera_key *keys, size_t i)
     if (!found)
         return adcgs_json_bad(&r->at, ADCGS_ERR_DATA, "at", "missing, expected seconds along the path");
     if (i && !(key->at >= key[-1].at + 1e-6))
-        return adcgs_json_bad(&r->at, ADCGS_ERR_DATA, "at", "%g, expected more than the %g of the key before", key->at,
+        return adcgs_json_bad(&r->at, ADCGS_ERR_DATA, "at", "%g, expected more than the %g of the previous key", key->at,
                               key[-1].at);
     ADCGS_TRY(read_shot(r, key->at - keys[0].at, "key", &key->frame));
     ADCGS_TRY(check_size(r, &key->frame, &keys[0].frame));
-    if (r->request->size[0]) /* lenses are comparable for one size only */
+    if (r->request->size[0]) /* lenses are comparable only at one size */
         adcgs_camera_fit(&key->frame.camera, r->request->size[0], r->request->size[1], r->request->fill);
     return ADCGS_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Camera paths drawn round the stored cameras. */
+/** \file Camera paths around the stored cameras. */
 #include "config.h"
 
 #include "camera/rotation.h"
@@ -12,10 +12,10 @@
 
 #define FULL_TURN 6.283185307179586
 #define SPIRAL_TURNS 2.0
-#define SPIRAL_LEAST 0.1 /* radius per distance to the focus, where the cameras have no spread of their own */
-#define SPIRAL_MOST 0.5
-#define LOOK_TOGETHER 0.5 /* length of the mean of their directions from which cameras have a mean pose */
-#define RING_GAP 2.0      /* a gap so many times the mean one, and no larger, is part of a ring */
+#define SPIRAL_LEAST 0.1 /* radius over the distance to the focus, for cameras without a spread of their own */
+#define SPIRAL_MOST 0.5 /* upper bound of the radius over the distance to the focus */
+#define LOOK_TOGETHER 0.5 /* smallest length of the mean viewing direction for which cameras have a mean pose */
+#define RING_GAP 2.0      /* largest gap within a closed ring, in mean gaps */
 
 /** Mean of a column of the cameras' matrices: 0 right, 1 down, 2 forward, 3 position. */
 static void mean_column(const adcgs_rig *rig, int column, double out[3])
@@ -27,7 +27,7 @@ static void mean_column(const adcgs_rig *rig, int column, double out[3])
     }
 }
 
-/** How far the focus lies in front of the cameras, on the mean of those that have it in front; 0 if none has. */
+/** Mean depth of the focus over the cameras that have it in front of them; 0 if none has. */
 static double mean_distance(const adcgs_rig *rig)
 {
     double sum = 0.0;
@@ -78,7 +78,7 @@ void adcgs_rig_clear(adcgs_rig *rig)
 
 /* ---- Spiral ---- */
 
-/** The mean pose, and the spread of the cameras along its axes; without a mean the first camera, and a spread of our own. */
+/** The mean pose, and the spread of the cameras along its axes; without a mean pose the first camera, and a default spread. */
 static void spiral_frame(const adcgs_rig *rig, double pose[12], double radius[3])
 {
     double eye[3], ahead[3], target[3];
@@ -114,7 +114,7 @@ void adcgs_rig_spiral(const adcgs_rig *rig, adcgs_camera_path *frames)
     }
     for (int s = 0; s < frames->n; s++) {
         const double angle = SPIRAL_TURNS * FULL_TURN * s / frames->n;
-        /* Once forward and back while going round twice. */
+        /* one cycle forward and back during two turns */
         const double offset[3] = {radius[0] * cos(angle), radius[1] * sin(angle), radius[2] * sin(angle / SPIRAL_TURNS)};
         double eye[3];
         for (int i = 0; i < 3; i++)
@@ -127,7 +127,7 @@ void adcgs_rig_spiral(const adcgs_rig *rig, adcgs_camera_path *frames)
 /* ---- Bullet time ---- */
 
 typedef struct place {
-    double angle; /* round the focus, seen from above */
+    double angle; /* around the focus, seen from above */
     int camera;
 } place;
 
@@ -137,7 +137,7 @@ static int compare_places(const void *a, const void *b)
     return x->angle != y->angle ? (x->angle < y->angle ? -1 : 1) : x->camera - y->camera;
 }
 
-/** The cameras by angle, beginning after the largest gap. \return that gap. */
+/** Sort the cameras by angle, beginning after the largest gap. \return that gap */
 static double order_places(const adcgs_rig *rig, place *places)
 {
     double side[3], ahead[3] = {0.0, 0.0, 0.0};
@@ -174,7 +174,7 @@ static double distance_between(const adcgs_camera *a, const adcgs_camera *b)
     return sqrt(sum);
 }
 
-/** A key for each camera, at the length of the way there; cameras in one place are one. \return how many. */
+/** A key for each camera, positioned by path length; cameras at the same position give one key. \return the number of keys */
 static int make_keys(const adcgs_rig *rig, const place *places, int closed, adcgs_camera_key *keys)
 {
     int n = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Camera paths as USD, in text. */
+/** \file Camera paths as USD text. */
 #include "config.h"
 
 #include "camera/euler.h"
@@ -13,12 +13,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* USD's own, where a file does not say: in tenths of its unit; codes in a second. */
+/* USD's defaults: lengths in tenths of a scene unit; time codes per second. */
 #define APERTURE 20.955
 #define FOCAL 50.0
 #define CODES_A_SECOND 24.0
-#define WRITTEN_APERTURE 36.0
-#define FAR_PLANE 1e6
+#define WRITTEN_APERTURE 36.0 /* horizontal aperture in written files */
+#define FAR_PLANE 1e6 /* in written files, world units */
 #define OP "xformOp:"
 
 static int is_wanted(const char *name)
@@ -32,14 +32,14 @@ static int is_wanted(const char *name)
     return !strncmp(name, OP, sizeof OP - 1);
 }
 
-/** The camera in a file, and what for it is read. */
+/** The camera in a file, and the reader's input. */
 typedef struct usd_camera {
     adcgs_usda file;
     int prim;
     const adcgs_path_reader *r;
 } usd_camera;
 
-/** Numbers of a property at a time; 0 if it has not that many, and out stays. */
+/** Numbers of a property at a time; 0, with out unchanged, if their count is not n. */
 static int get(const usd_camera *c, int prim, const char *name, double at, double *out, int n)
 {
     double v[ADCGS_USDA_NUMBERS];
@@ -51,7 +51,7 @@ static int get(const usd_camera *c, int prim, const char *name, double at, doubl
     return 1;
 }
 
-/* ---- Where it is. Matrices are of columns here, as ours are; USD's are of rows. ---- */
+/* ---- Pose. Matrices here multiply column vectors, as ours do; USD's multiply row vectors. ---- */
 
 typedef struct matrix {
     double m[4][4];
@@ -81,7 +81,7 @@ static adcgs_status refuse(const usd_camera *c, const char *name, const char *wh
     return adcgs_fail(c->r->error, ADCGS_ERR_UNSUPPORTED, "%s: %.60s: %s", c->r->path, name, what);
 }
 
-/** rotateXYZ and the other orders, rotateX and so on; 0 if the name is none of them. */
+/** Parse rotateXYZ and the other orders, rotateX and so on; 0 for another name. */
 static int rotation(const char *kind, size_t length, const double *v, int n, matrix *out)
 {
     double degrees[3] = {0}, pose[12] = {0};
@@ -105,7 +105,7 @@ static int rotation(const char *kind, size_t length, const double *v, int n, mat
     return 0;
 }
 
-/** One of the operations of xformOpOrder. */
+/** Matrix of one operation of xformOpOrder. */
 static adcgs_status operation(const usd_camera *c, int prim, const char *name, double at, matrix *out)
 {
     const adcgs_usda_property *const property = adcgs_usda_find(&c->file, prim, name);
@@ -139,7 +139,7 @@ static adcgs_status operation(const usd_camera *c, int prim, const char *name, d
     return ADCGS_OK;
 }
 
-/** All of a prim's operations; *alone: its parents have no say. */
+/** The product of a prim's operations; *alone: ignore its parents. */
 static adcgs_status local_matrix(const usd_camera *c, int prim, double at, matrix *out, int *alone)
 {
     const adcgs_usda_property *const order = adcgs_usda_find(&c->file, prim, "xformOpOrder");
@@ -168,18 +168,18 @@ static adcgs_status read_pose(const usd_camera *c, double at, adcgs_camera *came
         ADCGS_TRY(local_matrix(c, prim, at, &one, &alone));
         all = multiply(&one, &all);
     }
-    for (int j = 0; j < 3; j++) { /* the size of a camera is of no matter */
+    for (int j = 0; j < 3; j++) { /* a camera's scale has no effect */
         const double size = sqrt(all.m[0][j] * all.m[0][j] + all.m[1][j] * all.m[1][j] + all.m[2][j] * all.m[2][j]);
         for (int i = 0; i < 3; i++)
             all.m[i][j] /= size;
     }
     memcpy(camera->cam_to_world, all.m, sizeof camera->cam_to_world);
     const char *const wrong = adcgs_pose_from_opengl(camera->cam_to_world);
-    return wrong ? adcgs_fail(c->r->error, ADCGS_ERR_DATA, "%s: the camera's place at time code %g: %s", c->r->path, at, wrong)
+    return wrong ? adcgs_fail(c->r->error, ADCGS_ERR_DATA, "%s: the camera's pose at time code %g: %s", c->r->path, at, wrong)
                  : ADCGS_OK;
 }
 
-/* ---- Its lens. ---- */
+/* ---- Lens ---- */
 
 static adcgs_status read_lens(const usd_camera *c, double at, adcgs_camera *camera)
 {
@@ -210,9 +210,9 @@ static adcgs_status read_lens(const usd_camera *c, double at, adcgs_camera *came
     return ADCGS_OK;
 }
 
-/* ---- When. ---- */
+/* ---- Time ---- */
 
-/** From the first sample to the last, where the file does not say. */
+/** The span of time codes, by default from the first sample to the last. */
 static void find_span(const usd_camera *c, double *begin, double *end)
 {
     *begin = INFINITY, *end = -INFINITY;
@@ -281,15 +281,15 @@ adcgs_status adcgs_path_usd_read(adcgs_camera_path *out, const adcgs_path_reader
 
 /* ---- Writing ---- */
 
-/** What is said of a camera at a time. */
+/** Writes a property of a camera at one key. */
 typedef void (*write_fn)(FILE *file, const adcgs_camera_key *key);
 
-static double tenth(const adcgs_camera *c, double pixels) /* of the width to tenths of a unit */
+static double tenth(const adcgs_camera *c, double pixels) /* converts lengths along the width to tenths of a unit */
 {
     return pixels * WRITTEN_APERTURE / c->width;
 }
 
-static double rows_of(const adcgs_camera *c) /* of the height, at the focal length of the width */
+static double rows_of(const adcgs_camera *c) /* height in tenths of a unit, at the focal length of the width */
 {
     return tenth(c, c->height) * c->fx / c->fy;
 }

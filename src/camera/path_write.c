@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Key frames as the JSON file of a path. */
+/** \file Writing key frames as a path in JSON. */
 #include "config.h"
 
 #include "camera/path_files.h"
@@ -45,7 +45,7 @@ adcgs_status adcgs_path_json_write(const adcgs_camera_key *keys, int n, int has_
     adcgs_json json;
     ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
     adcgs_json_init(&json);
-    json.digits = 17; /* a camera that is read again is the same */
+    json.digits = 17; /* reading the camera again gives the same values */
     adcgs_json_open(&json, NULL, '{');
     adcgs_json_string(&json, "interpolate", "smooth");
     adcgs_json_real(&json, "frame_rate", frame_rate);

@@ -80,7 +80,7 @@ void adcgs_camera_fit(adcgs_camera *camera, int width, int height, int fill)
     const double scale = fill == (x < y) ? y : x;
     camera->fx *= scale;
     camera->fy *= scale;
-    /* Without a difference in shape nothing is rounded that need not be. */
+    /* Equal aspect ratios avoid unnecessary rounding here. */
     camera->cx = camera->cx * scale + (x > scale || x < scale ? 0.5 * (width - camera->width * scale) : 0.0);
     camera->cy = camera->cy * scale + (y > scale || y < scale ? 0.5 * (height - camera->height * scale) : 0.0);
     camera->width = width;

@@ -17,7 +17,7 @@ struct adcgs_knot {
     double position[3], rotation[4];
     double numbers[N_NUMBERS]; /* fx, fy, cx, cy, near plane, time */
     double rate[RATES];        /* at the knot, per unit of at */
-    double chord[RATES];       /* on the mean to the next knot */
+    double chord[RATES];       /* mean rate up to the next knot */
 };
 
 static void make_knot(adcgs_knot *knot, const adcgs_camera_key *key)
@@ -44,7 +44,7 @@ static void make_chord(adcgs_knot *knot)
         chord[i] /= next->at - knot->at;
 }
 
-/** Rate of a vector between two chords, that of the parabola through three knots; none next to a standstill. */
+/** Rate of a vector between two chords: that of the parabola through three knots, or zero next to a standstill. */
 static void vector_rate(const double before[3], const double after[3], double h0, double h1, double out[3])
 {
     const int still = adcgs_v3_dot(before, before) == 0.0 || adcgs_v3_dot(after, after) == 0.0;
@@ -52,7 +52,7 @@ static void vector_rate(const double before[3], const double after[3], double h0
         out[i] = still ? 0.0 : (h1 * before[i] + h0 * after[i]) / (h0 + h1);
 }
 
-/** Rate of a number between two chords, so small that the curve does not overshoot (a weighted harmonic mean). */
+/** Rate of a number between two chords: a weighted harmonic mean, small enough to prevent overshoot. */
 static double number_rate(double before, double after, double h0, double h1)
 {
     const double w0 = h0 + 2.0 * h1, w1 = 2.0 * h0 + h1;
@@ -68,7 +68,7 @@ static void make_rate(double rate[RATES], const adcgs_knot *before, const adcgs_
         rate[i] = number_rate(before->chord[i], knot->chord[i], h0, h1);
 }
 
-/** The ends of an open spline do not bend. */
+/** Rates at the ends of an open spline, for zero curvature there. */
 static void make_end_rates(adcgs_knot *knots, int n)
 {
     for (int i = 0; i < RATES; i++) {
@@ -106,7 +106,7 @@ void adcgs_camera_spline_clear(adcgs_camera_spline *spline)
     *spline = (adcgs_camera_spline){0};
 }
 
-/** The last knot at or before a place that has one after it. */
+/** The last knot at or before a position that has a successor. */
 static const adcgs_knot *find_knot(const adcgs_camera_spline *spline, double at)
 {
     int lo = 0, hi = spline->n - 1;
@@ -120,7 +120,7 @@ static const adcgs_knot *find_knot(const adcgs_camera_spline *spline, double at)
     return &spline->knots[lo];
 }
 
-/** Cubic through a and b with rates over the whole stretch. */
+/** Cubic through a and b with rates over the whole interval. */
 static double hermite(double a, double rate_a, double b, double rate_b, double t)
 {
     const double u = 1.0 - t;
@@ -128,8 +128,8 @@ static double hermite(double a, double rate_a, double b, double rate_b, double t
 }
 
 /**
- * From a to b with given angular velocities over the stretch: a exp(w0 f0) exp(w1 f1) exp(w2 f2), where w0 and w2 are a third of
- * the velocities, w1 is what then is left to turn, and the f are the cumulative cubic Bernstein polynomials.
+ * From a to b with given angular velocities over the interval: a exp(w0 f0) exp(w1 f1) exp(w2 f2). w0 and w2 are a third of the
+ * velocities, w1 is the remaining turn, and the f are the cumulative cubic Bernstein polynomials.
  */
 static void rotation_curve(const adcgs_knot *a, const adcgs_knot *b, double h, double t, double out[4])
 {

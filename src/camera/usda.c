@@ -10,9 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define BYTES_MAX ((uint64_t)256 << 20)
-#define DEPTH_MAX 64
-#define SAMPLES_MAX 1000000
+#define BYTES_MAX ((uint64_t)256 << 20) /* of a file */
+#define DEPTH_MAX 64 /* nested prims */
+#define SAMPLES_MAX 1000000 /* of a property */
 #define NAME_MAX_BYTES 200
 
 typedef struct parser {
@@ -61,7 +61,7 @@ static adcgs_status need(parser *p, char sign)
     return take(p, sign) ? ADCGS_OK : bad(p, expected);
 }
 
-/** A word of letters, digits and what names have; "" if there is none. What is too long is cut off. */
+/** A word of letters, digits and punctuation of names; "" if there is none. Longer words are truncated. */
 static void word(parser *p, char out[NAME_MAX_BYTES])
 {
     size_t n = 0;
@@ -78,7 +78,7 @@ static int at_string(parser *p)
     return *p->at == '"' || *p->at == '\'';
 }
 
-/** A text between quotes, or three of them: its beginning and length. */
+/** A text in single or triple quotes: its beginning and length. */
 static adcgs_status string(parser *p, const char **text, size_t *n)
 {
     if (!at_string(p))
@@ -99,7 +99,7 @@ static adcgs_status string(parser *p, const char **text, size_t *n)
     return ADCGS_OK;
 }
 
-/** Whatever is between brackets, these included. */
+/** Skip a pair of brackets with its content. */
 static adcgs_status skip_brackets(parser *p)
 {
     const char *text;
@@ -110,7 +110,7 @@ static adcgs_status skip_brackets(parser *p)
             ADCGS_TRY(string(p, &text, &n));
             continue;
         }
-        if (*p->at == '@') /* what is in it is a path */
+        if (*p->at == '@') /* a path in @ signs */
             p->at += 1 + strcspn(p->at + 1, "@\n");
         if (!*p->at)
             return bad(p, "a closing bracket");
@@ -121,7 +121,7 @@ static adcgs_status skip_brackets(parser *p)
     }
 }
 
-/** A value of no interest. */
+/** Skip a value of an unwanted property. */
 static adcgs_status skip_value(parser *p)
 {
     const char *text;
@@ -144,7 +144,7 @@ static adcgs_status skip_value(parser *p)
 
 /* ---- Values ---- */
 
-/** Numbers, in brackets or alone; *n is 0 for None. */
+/** Numbers, in brackets or single; *n is 0 for None. */
 static adcgs_status numbers(parser *p, double out[ADCGS_USDA_NUMBERS], int *n)
 {
     int depth = 0;
@@ -161,7 +161,7 @@ static adcgs_status numbers(parser *p, double out[ADCGS_USDA_NUMBERS], int *n)
         blanks(p);
         const double value = strtod(p->at, &end);
         if (end == p->at || !isfinite(value) || *n == ADCGS_USDA_NUMBERS)
-            return bad(p, "numbers, 16 at most");
+            return bad(p, "numbers, at most 16");
         p->at = end;
         out[(*n)++] = value;
         while (depth && take(p, ')'))
@@ -176,15 +176,15 @@ static adcgs_status add_sample(parser *p, adcgs_usda_property *to, double at)
     int n;
     ADCGS_TRY(numbers(p, sample.v, &n));
     if (!n)
-        return ADCGS_OK; /* blocked: as if it were not there */
+        return ADCGS_OK; /* blocked: treated as missing */
     if (to->n && n != to->n)
         return bad(p, "as many numbers as before");
     if (to->n_samples && at <= to->samples[to->n_samples - 1].at)
-        return bad(p, "times one after the other");
+        return bad(p, "ascending times");
     to->n = n;
     if (to->n_samples == SAMPLES_MAX)
         return bad(p, "at most a million samples");
-    if (!(to->n_samples & (to->n_samples - 1))) { /* a power of two, or none: twice the room */
+    if (!(to->n_samples & (to->n_samples - 1))) { /* a power of two, or zero: double the memory */
         const size_t room = to->n_samples ? 2 * (size_t)to->n_samples : 1;
         adcgs_usda_sample *const more = realloc(to->samples, room * sizeof *more);
         if (!more)
@@ -212,7 +212,7 @@ static adcgs_status time_samples(parser *p, adcgs_usda_property *to)
     return ADCGS_OK;
 }
 
-/** A text, or an array of them. */
+/** A text, or an array of texts. */
 static adcgs_status texts(parser *p, adcgs_usda_property *to)
 {
     const int is_array = take(p, '[');
@@ -249,7 +249,7 @@ static adcgs_usda_property *new_property(parser *p, int prim, const char *name)
     return property->name ? property : NULL;
 }
 
-/** What follows the name of a property: maybe a value, maybe what is said of it. */
+/** Parse the rest of a property after its name: an optional value and optional metadata. */
 static adcgs_status value_of(parser *p, int prim, char name[NAME_MAX_BYTES])
 {
     char *const suffix = strstr(name, ".timeSamples");
@@ -279,7 +279,7 @@ static adcgs_status value_of(parser *p, int prim, char name[NAME_MAX_BYTES])
 
 static adcgs_status body(parser *p, int prim, int depth);
 
-/** def Type "name" (...) { ... }, its first word read. */
+/** Parse def Type "name" (...) { ... } after its first word. */
 static adcgs_status prim_of(parser *p, int parent, int depth)
 {
     adcgs_usda *const u = p->out;
@@ -300,12 +300,12 @@ static adcgs_status prim_of(parser *p, int parent, int depth)
         ADCGS_TRY(skip_brackets(p));
     ADCGS_TRY(need(p, '{'));
     if (depth == DEPTH_MAX)
-        return bad(p, "fewer prims in one another");
+        return bad(p, "less deeply nested prims");
     ADCGS_TRY(body(p, prim, depth + 1));
     return need(p, '}');
 }
 
-/** What only changes or prepares others, or chooses among them. */
+/** Skip a prim that only changes, prepares or chooses other prims. */
 static adcgs_status skip_prim(parser *p)
 {
     while (*p->at && *p->at != '{') {
@@ -322,7 +322,7 @@ static adcgs_status skip_prim(parser *p)
     return *p->at ? skip_brackets(p) : bad(p, "'{'");
 }
 
-/** A line of a prim that is none of a prim in it, its first word read: [custom] [uniform] type name [= value]. */
+/** Parse a property of a prim after its first word: [custom] [uniform] type name [= value]. */
 static adcgs_status property_of(parser *p, int prim, char name[NAME_MAX_BYTES])
 {
     for (;;) {
@@ -349,7 +349,7 @@ static adcgs_status body(parser *p, int prim, int depth)
     }
 }
 
-/** What the file says of itself, in brackets: texts and NAME = VALUE. */
+/** Parse the file's metadata, in brackets: texts and NAME = VALUE. */
 static adcgs_status head(parser *p)
 {
     const char *text;
@@ -380,9 +380,9 @@ adcgs_status adcgs_usda_read(adcgs_usda *out, const char *path, int (*wanted)(co
     parser p = {path, (const char *)data, 1, wanted, out, error};
     adcgs_status status = ADCGS_OK;
     if (bytes >= 8 && !memcmp(data, "PXR-USDC", 8))
-        status = adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: binary USD, expected text; usdcat makes it", path);
+        status = adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: binary USD, expected text; convert it with usdcat", path);
     else if (strncmp(p.at, "#usda 1.", 8) || memchr(data, 0, bytes))
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: no USD text, which begins with #usda 1.0", path);
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: not USD text, which begins with #usda 1.0", path);
     if (status == ADCGS_OK)
         status = head(&p);
     if (status == ADCGS_OK)

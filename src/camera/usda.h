@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/**
- * \file
- * As much of USD's text format as cameras take: prims, one in another, and of their properties those that are asked for, with
- * their values at moments. What a file brings in from others (references, payloads, variants) is not looked for.
+/** \file
+ * The part of USD's text format that cameras need: nested prims, and the wanted
+ * properties with their values at time codes. Content from other files
+ * (references, payloads, variants) is ignored.
  */
 #ifndef ADCGS_CAMERA_USDA_H
 #define ADCGS_CAMERA_USDA_H
 
 #include "base/base.h"
 
-#define ADCGS_USDA_NUMBERS 16 /**< of a value: a matrix */
+#define ADCGS_USDA_NUMBERS 16 /**< per value: a matrix */
 
 typedef struct adcgs_usda_sample {
     double at; /**< time code */
@@ -18,16 +18,16 @@ typedef struct adcgs_usda_sample {
 
 typedef struct adcgs_usda_property {
     char *name;
-    int prim;                 /**< whose it is */
-    int n;                    /**< numbers of each value; 0: it is text */
-    int n_samples, is_fixed;  /**< samples in the order of their times; fixed: one, of no time */
+    int prim;                 /**< owner */
+    int n;                    /**< numbers per value; 0: the property is text */
+    int n_samples, is_fixed;  /**< samples in order of time; fixed: a single one without a time */
     adcgs_usda_sample *samples;
-    char *text;               /**< of a text, or texts of an array, each ended by a line feed */
+    char *text;               /**< the text, or the texts of an array, each ended by a line feed */
 } adcgs_usda_property;
 
 typedef struct adcgs_usda_prim {
     int parent;    /**< -1: none */
-    char type[32]; /**< "Camera", "Xform"; what is longer is cut off */
+    char type[32]; /**< "Camera", "Xform"; longer types are truncated */
 } adcgs_usda_prim;
 
 typedef struct adcgs_usda {
@@ -37,15 +37,15 @@ typedef struct adcgs_usda {
 } adcgs_usda;
 
 /**
- * Read a file; wanted says which properties are kept. ADCGS_ERR_UNSUPPORTED for binary USD, ADCGS_ERR_DATA, naming the line, for
- * what is none.
+ * Read a file; wanted() selects the properties to keep. ADCGS_ERR_UNSUPPORTED for binary USD. ADCGS_ERR_DATA, naming the line,
+ * for a file that is not USD text.
  */
 adcgs_status adcgs_usda_read(adcgs_usda *out, const char *path, int (*wanted)(const char *name), adcgs_error *error);
 void adcgs_usda_free(adcgs_usda *usda);
 
 /** A prim's property; NULL if it has none of that name. */
 const adcgs_usda_property *adcgs_usda_find(const adcgs_usda *usda, int prim, const char *name);
-/** Its value at a time code: straight between samples, else the nearest one's. out receives n numbers. */
+/** Value at a time code: interpolated linearly between samples, else the nearest sample's. out receives n numbers. */
 void adcgs_usda_value(const adcgs_usda_property *property, double at, double out[ADCGS_USDA_NUMBERS]);
 
 #endif

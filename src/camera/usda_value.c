@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What was read of USD: its properties' values at times, its end. */
+/** \file Values of USD properties at times, and freeing a parsed file. */
 #include "config.h"
 
 #include "camera/usda.h"
@@ -13,7 +13,7 @@ const adcgs_usda_property *adcgs_usda_find(const adcgs_usda *usda, int prim, con
     for (int i = 0; i < usda->n_properties; i++) {
         const adcgs_usda_property *const p = &usda->properties[i];
         const int says = p->text || p->n_samples;
-        if (p->prim == prim && says && !strcmp(p->name, name) && (!found || found->is_fixed)) /* samples before a fixed value */
+        if (p->prim == prim && says && !strcmp(p->name, name) && (!found || found->is_fixed)) /* samples override a fixed value */
             found = p;
     }
     return found;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Vectors of three numbers in binary64, in which all mathematics of cameras is done. */
+/** \file Vectors of three numbers in binary64, for all mathematics of cameras. */
 #ifndef ADCGS_CAMERA_VECTOR_H
 #define ADCGS_CAMERA_VECTOR_H
 
@@ -10,7 +10,7 @@ static inline double adcgs_v3_dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/** out: neither a nor b. */
+/** out must be neither a nor b. */
 static inline void adcgs_v3_cross(const double a[3], const double b[3], double out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -18,7 +18,7 @@ static inline void adcgs_v3_cross(const double a[3], const double b[3], double o
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/** To length 1. \return the length it had; a vector of length 0 stays. */
+/** Scale to length 1. \return the previous length; a vector of length 0 is unchanged */
 static inline double adcgs_v3_normalise(double v[3])
 {
     const double length = sqrt(adcgs_v3_dot(v, v));

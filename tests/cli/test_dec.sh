@@ -113,7 +113,7 @@ cmp -s "$dir/out" "$dir/first" && bad "two cameras see the same"
 expect 2 "neither" $dec "$s" --camera nobody --md5
 expect 2 "seconds" $dec "$s" --time 2:1 --md5
 expect 2 "WIDTHxHEIGHT" $dec "$s" --size 0x10 --md5
-expect 2 "frames asked" $dec "$s" --time 0:1e9 --md5
+expect 2 "frames requested" $dec "$s" --time 0:1e9 --md5
 expect 2 "no output: give -o" $dec "$s"
 expect 2 "no output: give -o" $dec "$s" --camera orbit --size 64x48
 # Times that the stream has not: none is a mistake, some are worth a word.

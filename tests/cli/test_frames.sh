@@ -50,7 +50,7 @@ for way in orbit spiral; do
 done
 expect 0 "120 frames of" $dec "$s" --camera bullet --time 0.05 --md5
 [ "$(sort -u "$dir/out" | wc -l)" -gt 100 ] || bad "bullet stands still"
-expect 2 "one moment" $dec "$s" --camera bullet --time 0:0.1 --md5
+expect 2 "a single time" $dec "$s" --camera bullet --time 0:0.1 --md5
 
 # Stored cameras as a path: it passes through each of them.
 expect 0 "" $dec "$s" --cameras "$dir/p.json"
@@ -92,7 +92,7 @@ cmp -s "$dir/zxy.chan" "$dir/spiral.chan" && bad "the order of rotations does no
 $dec "$s" --camera "$dir/zxy.chan" --rotation-order zxy --size 64x48 --md5 --quiet >"$dir/zxy"
 $dec "$s" --camera "$dir/spiral.chan" --size 64x48 --md5 --quiet >"$dir/angles"
 [ "$(wc -l <"$dir/zxy")" -eq 8 ] && [ "$(wc -l <"$dir/angles")" -eq 8 ] || bad "frames of .chan"
-expect 4 "bad.chan: line 1: expected a frame's number" sh -c "echo 1 2 >'$dir/bad.chan'; exec $dec '$s' --camera '$dir/bad.chan' --md5"
+expect 4 "bad.chan: line 1: expected a frame number" sh -c "echo 1 2 >'$dir/bad.chan'; exec $dec '$s' --camera '$dir/bad.chan' --md5"
 expect 5 "x.usdc: USD is written as text" $dec "$s" --cameras "$dir/x.usdc"
 expect 0 "" $dec "$s" --cameras "$dir/stored.chan"
 

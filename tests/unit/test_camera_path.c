@@ -345,7 +345,7 @@ static void test_bad_files(void **state)
         {"{\"at\":0,@}", ",\"interpolate\":7", "interpolate", "\"smooth\" or \"linear\""},
         {"{\"at\":0,@}", ",\"frame_rate\":0", "frame_rate", "expected 0.001"},
         {"{\"at\":0,@}", ",\"frames\":[]", "keys", "not both"},
-        {"{\"at\":0,@},{\"at\":1e9,@}", "", "frames asked for", "1000000"},
+        {"{\"at\":0,@},{\"at\":1e9,@}", "", "frames requested", "1000000"},
         {"{\"at\":0,\"time\":\"x\",@}", "", "keys[0].time", "a number"},
         {"{\"at\":0,\"fl_x\":-1,@}", "", "keys[0].fl_x", "expected"},
     };
