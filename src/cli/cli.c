@@ -20,9 +20,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define OPTIONS_MAX 64
-#define HELP_COLUMN 28
-#define MESSAGE_MAX 8192
+#define OPTIONS_MAX 64 /* of a program */
+#define HELP_COLUMN 28 /* column of the options' descriptions */
+#define MESSAGE_MAX 8192 /* bytes of a message */
 
 static void message(const adcgs_cli *cli, const char *format, va_list arguments) ADCGS_PRINTF(2, 0);
 static void message(const adcgs_cli *cli, const char *format, va_list arguments)
@@ -30,7 +30,7 @@ static void message(const adcgs_cli *cli, const char *format, va_list arguments)
     char text[MESSAGE_MAX], *line = NULL;
     size_t bytes = 0;
     vsnprintf(text, sizeof text, format, arguments);
-    FILE *memory = open_memstream(&line, &bytes); /* lines of several processes may meet: each is written at once */
+    FILE *memory = open_memstream(&line, &bytes); /* written at once, since lines of several processes may interleave */
     FILE *file = memory ? memory : stderr;
     fprintf(file, "%s: ", cli->program);
     adcgs_text_show(file, text);
@@ -68,7 +68,7 @@ adcgs_status adcgs_cli_flush(adcgs_error *error)
 {
     int reason = adcgs_file_flush(stdout);
     const int copy = reason ? -1 : dup(STDOUT_FILENO);
-    if (copy >= 0 && close(copy)) /* some file systems tell only then */
+    if (copy >= 0 && close(copy)) /* some file systems report errors only then */
         reason = errno;
     return reason ? adcgs_fail(error, ADCGS_ERR_IO, "standard output: cannot write: %s", strerror(reason)) : ADCGS_OK;
 }
@@ -117,7 +117,7 @@ static int option_set(const adcgs_option *option, const char *text)
     return -1;
 }
 
-/** What would have been right, for the message about a wrong value. */
+/** Describe the valid values, for the message about a wrong one. */
 static void describe(const adcgs_option *option, char *text, size_t size)
 {
     switch (option->kind) {
@@ -197,11 +197,11 @@ static int print_version(const adcgs_cli *cli)
     return adcgs_cli_leave(cli, 0);
 }
 
-/** getopt_long()'s two descriptions from ours. Values above UCHAR_MAX stand for options without a letter. */
+/** Make getopt_long()'s two tables from ours. Codes above UCHAR_MAX are options without a letter. */
 static size_t getopt_tables(const adcgs_cli *cli, struct option *longs, char *letters)
 {
     size_t n = ADCGS_MIN(cli->n_options, (size_t)OPTIONS_MAX);
-    *letters++ = ':'; /* report a missing value as ':' */
+    *letters++ = ':'; /* reports a missing value as ':' */
     for (size_t i = 0; i < n; i++) {
         const adcgs_option *option = &cli->options[i];
         const int takes = option->kind != ADCGS_OPTION_FLAG;
@@ -230,7 +230,7 @@ static const adcgs_option *find_option(const adcgs_cli *cli, int code)
     return NULL;
 }
 
-/** getopt_long() said '?'; optopt holds what it choked on: a letter, an option of ours, or 0. */
+/** Report a '?' of getopt_long(). optopt is an unknown letter, a code of our table, or 0. */
 static int wrong_option(const adcgs_cli *cli, const char *word)
 {
     if (optopt > UCHAR_MAX || (optopt && !strncmp(word, "--", 2)))
@@ -255,12 +255,12 @@ int adcgs_cli_parse(const adcgs_cli *cli, int argc, char **argv, int *first)
     char letters[2 * OPTIONS_MAX + 5];
     getopt_tables(cli, longs, letters);
     opterr = 0;
-    optind = 0; /* a new scan, with GNU and musl: a program may have two lines to read */
+    optind = 0; /* restarts the scan, with GNU and musl: a program may parse two command lines */
     if (argc == 2 && !strcmp(argv[1], "--completion")) {
         adcgs_cli_print_completion(cli);
         return adcgs_cli_leave(cli, 0);
     }
-    signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond its limit is an error like a full disk, not the end of the program */
+    signal(SIGXFSZ, SIG_IGN); /* exceeding the file size limit is an error like a full disk, not the end of the program */
     for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
         if (code == 'h')
             return print_help(cli);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The table of options for completion. */
+/** \file The table of options for the shell's completion. */
 #include "cli/completion.h"
 
 #include <string.h>

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The table of options as the shell's completion reads it (share/adcgs.bash). */
+/** \file The table of options for the shell's completion (share/adcgs.bash). */
 #ifndef ADCGS_CLI_COMPLETION_H
 #define ADCGS_CLI_COMPLETION_H
 
 #include "cli/cli.h"
 
 /**
- * Print a line for each option, as `program --completion` does, with tabs between: name, letter or -, kind (flag, value, file),
- * what the help calls the value or -, words that the value may be or be made of, with blanks between, or -, what it does. The
- * last line is that of the operands: a name of -, kind file if there are any.
+ * Print a line for each option, as `program --completion` does, separated by tabs: name; letter or -; kind (flag, value, file);
+ * name of the value in the help, or -; words that the value may consist of, separated by blanks, or -; description. The last line
+ * describes the operands: name -, kind file if there are any.
  */
 void adcgs_cli_print_completion(const adcgs_cli *cli);
 

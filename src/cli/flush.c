@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Whether all that was written to a stream has arrived. */
+/** \file Flushing a stream, with all errors. */
 #include "config.h"
 
 #include "cli/flush.h"
@@ -14,7 +14,9 @@ int adcgs_file_flush(FILE *file)
         return errno ? errno : EIO;
     if (!failed && !ferror(file))
         return 0;
-    /* A write has failed earlier, and its reason is gone by now. It is lost in any case; whoever is full still tells. */
+    /*
+     * An earlier write failed and its errno is lost, as are its data. Writing again gives the reason: a full device fails again.
+     */
     clearerr(file);
     errno = 0;
     return (fputc('\n', file) == EOF || fflush(file)) && errno ? errno : EIO;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Whether all that was written to a stream has arrived. */
+/** \file Flushing a stream, with all errors. */
 #ifndef ADCGS_CLI_FLUSH_H
 #define ADCGS_CLI_FLUSH_H
 
 #include <stdio.h>
 
-/** Write out what is held back. \return 0, or an errno that tells why something was not written, now or earlier. */
+/** Flush a stream. \return 0, or the errno of output that could not be written, now or earlier. */
 int adcgs_file_flush(FILE *file);
 
 #endif

@@ -7,7 +7,7 @@
 #include <signal.h>
 #include <unistd.h>
 
-/* A signal handler can reach nothing but static storage. */
+/* A signal handler may only use static storage. */
 static volatile sig_atomic_t interrupted, interrupts, interrupts_most;
 static const char *volatile last_word;
 static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
@@ -20,17 +20,17 @@ static void on_signal(int number)
         signal(numbers[i], SIG_DFL);
 }
 
-/** Ends the program as the signal does by itself, so that a shell sees the signal. */
+/** Ends the program by the signal's default action, so that a shell sees the signal. */
 static void on_last_signal(int number)
 {
     const char *const text = last_word;
     if (write(STDERR_FILENO, text, strlen(text)) < 0)
-        last_word = text; /* nobody is there to read it */
+        last_word = text; /* nobody can read it */
     signal(number, SIG_DFL);
     raise(number);
 }
 
-/** A signal that was ignored when the program began stays so: nohup has its reason. */
+/** Install a handler. SIGHUP stays ignored if it was ignored at the start, as under nohup. */
 static void handle(void (*handler)(int))
 {
     for (size_t i = 0; i < ADCGS_COUNTOF(numbers); i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Numbers that command lines give, and the one that a program leaves with. Needs nothing of a system. */
+/** \file Parsing numbers of command lines, and exit codes. Uses no system calls. */
 #include "config.h"
 
 #include "cli/cli.h"
@@ -51,7 +51,7 @@ int adcgs_parse_int(const char *text, int min, int max, int *out)
     return 0;
 }
 
-/** The factor that a suffix stands for, of a table that ends with NULL; 0: it is none of them. */
+/** The factor of a suffix, in a table that ends with NULL; 0 for an unknown suffix. */
 static double unit_of(const char *suffix, const char *const *names, const double *factors)
 {
     for (; *names; names++, factors++)
@@ -60,7 +60,7 @@ static double unit_of(const char *suffix, const char *const *names, const double
     return 0.0;
 }
 
-/** A number and its unit; 0, or -1 outside of [min, max] and for all but digits, point and sign. */
+/** Parse a number with a unit, of digits, point and sign only. 0, or -1 for other text and outside [min, max]. */
 static int parse_with_unit(const char *text, double min, double max, const char *const *names, const double *factors, double *out)
 {
     char *end;
@@ -94,7 +94,7 @@ int adcgs_parse_seconds(const char *text, double min, double max, double *out)
     return adcgs_parse_real(text, min, max, out) ? parse_with_unit(text, min, max, names, factors, out) : 0;
 }
 
-/** Bytes that a suffix stands for: none (1), k, M, G (powers of 1000), Ki, Mi, Gi (of 1024), with or without B; else 0. */
+/** Bytes of a suffix: none (1), k, M, G (powers of 1000), Ki, Mi, Gi (of 1024), with or without B; else 0. */
 static uint64_t size_unit(const char *suffix)
 {
     static const char letters[] = "kMG";

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How far a program is: a line that rewrites itself, or lines now and then, also from what calls nobody while it lasts. */
+/** \file
+ * Progress: a line that rewrites itself, or occasional lines, which a thread
+ * repeats while long work reports none.
+ */
 #include "config.h"
 
 #include "cli/cli.h"
@@ -14,12 +17,12 @@
 #include <time.h>
 #include <unistd.h>
 
-#define TERMINAL_EVERY 0.1 /* seconds */
-#define LINES_FIRST 5.0
-#define LINES_MOST 25.0
-#define PULSE_AFTER 5.0 /* a line that is due has so long to come by itself, and then say something new */
+#define TERMINAL_EVERY 0.1 /* seconds between two updates on a terminal */
+#define LINES_FIRST 5.0 /* seconds to the first line without a terminal; each further interval is doubled */
+#define LINES_MOST 25.0 /* upper bound of the seconds between two lines */
+#define PULSE_AFTER 5.0 /* seconds that a due line is left to the program, whose text is newer */
 
-/** A thread that repeats what was shown last. */
+/** A thread that repeats the last line. */
 struct adcgs_pulse {
     adcgs_progress *progress;
     pthread_t thread;
@@ -105,7 +108,7 @@ static void *beat(void *user)
         if (now >= p->last + p->every + p->grace) {
             char text[sizeof p->said + 32];
             const size_t n = strlen(p->said);
-            if (n > 4 && !strcmp(p->said + n - 4, " ...")) /* it still lasts */
+            if (n > 4 && !strcmp(p->said + n - 4, " ...")) /* the work still runs */
                 snprintf(text, sizeof text, "%.*s, %.0f s", (int)n - 4, p->said, now - p->said_at);
             else
                 snprintf(text, sizeof text, "%s (%.0f s ago)", p->said, now - p->said_at);
@@ -126,11 +129,11 @@ void adcgs_progress_keep(adcgs_progress *progress)
     pthread_condattr_t steady;
     const int is_silent = progress->is_terminal || (progress->cli->quiet && *progress->cli->quiet);
     struct adcgs_pulse *const pulse = is_silent ? NULL : malloc(sizeof *pulse);
-    if (!pulse) /* without memory it does without */
+    if (!pulse) /* without memory, no line is repeated */
         return;
     *pulse = (struct adcgs_pulse){.progress = progress};
     pthread_condattr_init(&steady);
-    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC); /* adcgs_seconds()'s */
+    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC); /* the clock of adcgs_seconds() */
     pthread_mutex_init(&pulse->lock, NULL);
     pthread_cond_init(&pulse->changed, &steady);
     pthread_condattr_destroy(&steady);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Text that somebody else wrote: UTF-8, terminals, tables. */
+/** \file Output of text from others: UTF-8, terminals, tables. */
 #include "config.h"
 
 #include "cli/text.h"
@@ -8,12 +8,13 @@
 
 int adcgs_utf8_next(const char *text, uint32_t *code)
 {
-    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000}; /* of so many bytes; below, they are too many */
+    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000}; /* smallest code point of each length; smaller ones are
+                                                                      overlong */
     const unsigned char *const c = (const unsigned char *)text;
     const int n = !*c ? 0 : *c < 0x80 ? 1 : *c >> 5 == 6 ? 2 : *c >> 4 == 14 ? 3 : *c >> 3 == 30 ? 4 : 0;
     uint32_t value = n > 1 ? *c & (0x7fu >> n) : *c;
     for (int i = 1; i < n; i++) {
-        if (c[i] >> 6 != 2) /* the end is none of these either */
+        if (c[i] >> 6 != 2) /* the terminating zero fails this check, too */
             return 0;
         value = value << 6 | (c[i] & 0x3f);
     }
@@ -40,7 +41,7 @@ char *adcgs_text_utf8(const char *text)
     return whole;
 }
 
-/** Whether a character is shown, rather than obeyed by who shows it. */
+/** True if programs show a character instead of interpreting it. */
 static int is_shown(uint32_t code)
 {
     static const uint32_t hidden[][2] = {
@@ -56,7 +57,7 @@ static int is_shown(uint32_t code)
     return 1;
 }
 
-/** quote: a character to double, 0: none. */
+/** quote: a character to double; 0: none. */
 static int show(FILE *file, const char *text, char quote)
 {
     int columns = 0;

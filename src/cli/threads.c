@@ -6,7 +6,7 @@ adcgs_status adcgs_cli_pool(const adcgs_cli *cli, adcgs_pool **out, int threads,
 {
     ADCGS_TRY(adcgs_pool_create(out, threads, error));
     if (adcgs_pool_missing(*out))
-        adcgs_cli_note(cli, "%d of %d threads could not be started: going on with %d, which takes longer",
+        adcgs_cli_note(cli, "%d of %d threads could not be started; continuing with %d, which takes longer",
                        adcgs_pool_missing(*out), adcgs_pool_missing(*out) + adcgs_pool_threads(*out), adcgs_pool_threads(*out));
     return ADCGS_OK;
 }
