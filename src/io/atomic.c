@@ -15,20 +15,20 @@
 #include <time.h>
 #include <unistd.h>
 
-#define NAME_TRIES 1000
-#define NAME_USUAL 255 /* bytes of a name, where the file system does not say: those of Linux */
-#define LINKS_MAX 40 /* as many as Linux follows */
+#define NAME_TRIES 1000 /* attempts to find an unused temporary name */
+#define NAME_USUAL 255 /* maximum length of a name [bytes] if the file system does not report it; Linux's value */
+#define LINKS_MAX 40 /* maximum number of links in a chain; Linux's limit */
 #define MODE_BITS 0777
-#define READER_NAP 50000000 /* nanoseconds from one look for a reader to the next */
+#define READER_NAP 50000000 /* nanoseconds between two checks for a reader of a pipe */
 
-/** The length of what precedes a path's last part, with its slash. */
+/** Length of the folder part of a path, with its slash. */
 static size_t folder_length(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/** What a link in the folder of `name` points to, as a path from where we are. */
+/** Target of a link in the folder of `name`, as a path from the current directory. */
 static char *join(const char *name, const char *link)
 {
     const size_t folder = *link == '/' ? 0 : folder_length(name), bytes = strlen(link) + 1;
@@ -41,8 +41,8 @@ static char *join(const char *name, const char *link)
 }
 
 /**
- * Whether the kernel would follow a link where it protects them (proc(5), protected_symlinks): not one that another user laid
- * into a folder where everybody may lay them. We follow links ourselves, so the kernel is not asked.
+ * True if the kernel would follow this link under protected_symlinks (proc(5)): false for a link of another user in a sticky
+ * folder that everybody can write to. We follow links ourselves, so the kernel does not check.
  */
 static int may_follow(const char *name)
 {
@@ -56,7 +56,10 @@ static int may_follow(const char *name)
            !(folder.st_mode & S_IWOTH);
 }
 
-/** Where a chain of symbolic links ends, be a file there or not. \return from malloc(); NULL, and errno, when it has no end. */
+/**
+ * End of a chain of symbolic links; the file need not exist. \return from malloc(); NULL, with errno set, if the chain has no end
+ * or may not be followed
+ */
 static char *follow(const char *path)
 {
     char link[PATH_MAX];
@@ -80,7 +83,7 @@ static char *follow(const char *path)
     return NULL;
 }
 
-/** Bytes of a name that may be kept where so many are added to it and the folder allows no more; whole characters of UTF-8. */
+/** Length of the part of `base` that fits the folder's limit for names if `added` bytes follow. Cuts between UTF-8 characters. */
 static size_t fit_name(const char *folder, const char *base, size_t added)
 {
     const long limit = pathconf(folder, _PC_NAME_MAX);
@@ -93,7 +96,7 @@ static size_t fit_name(const char *folder, const char *base, size_t added)
     return n;
 }
 
-/** Create ".<name>.tmp<process>-<i>" anew beside a target; the extension stays last for whoever looks at it. */
+/** Create the new file ".<name>.tmp<process>-<i>" next to a target. The extension stays last for programs that look at it. */
 static int open_temporary(const char *target, char *name, size_t size)
 {
     const size_t folder = folder_length(target);
@@ -111,7 +114,10 @@ static int open_temporary(const char *target, char *name, size_t size)
     return -1;
 }
 
-/** Give the new file the old one's owner and mode. Some file systems have neither, and only some users may: no reason to fail. */
+/**
+ * Give the new file the old one's owner and mode. Errors are ignored: some file systems have neither, and only some users may
+ * change them.
+ */
 static void take_mode(int fd, const struct stat *old)
 {
     struct stat new;
@@ -121,7 +127,7 @@ static void take_mode(int fd, const struct stat *old)
         errno = 0;
 }
 
-/** Open a special file. A pipe that nobody reads yet is waited for, as open() would, but a signal that is caught ends that. */
+/** Open a special file. Waits for a pipe's first reader, as open() would, but a caught signal ends the wait. */
 static int open_special(const char *path)
 {
     const struct timespec nap = {.tv_nsec = READER_NAP};
@@ -134,14 +140,14 @@ static int open_special(const char *path)
         }
         nanosleep(&nap, NULL);
     }
-    if (fd >= 0 && fcntl(fd, F_SETFL, 0) < 0) { /* from here on writing waits */
+    if (fd >= 0 && fcntl(fd, F_SETFL, 0) < 0) { /* from here on writing blocks */
         close(fd);
         return -1;
     }
     return fd;
 }
 
-/** Open what is written to: the special file itself, or a temporary one beside the target. \return -1, and errno */
+/** Open the output: the special file itself, or a temporary file next to the target. \return -1, with errno set, on failure */
 static int open_file(adcgs_atomic *atomic)
 {
     struct stat old;
@@ -188,11 +194,11 @@ adcgs_status adcgs_atomic_open(adcgs_atomic *atomic, const char *path, adcgs_err
     if (reason == ENOMEM)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     if (reason == EINTR)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: interrupted, while nobody read this pipe", path);
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: interrupted while waiting for a reader of this pipe", path);
     return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot create: %s", path, strerror(reason));
 }
 
-/** The folder's entry must survive a crash too; folders that cannot be synced are left to the system. */
+/** Sync the folder, since its entry must survive a crash too. Folders that cannot be synced are left to the system. */
 static void sync_folder(const char *path)
 {
     const size_t n = folder_length(path);
@@ -205,7 +211,7 @@ static void sync_folder(const char *path)
     free(folder);
 }
 
-/** Everything up to the rename; the file is closed. \return 0, or why it failed */
+/** All steps up to the rename; closes the file. \return 0 or an errno value */
 static int finish(adcgs_atomic *atomic)
 {
     int reason = adcgs_file_flush(atomic->file);
@@ -264,7 +270,7 @@ adcgs_status adcgs_atomic_save(const char *path, const void *data, size_t bytes,
 {
     adcgs_atomic atomic;
     ADCGS_TRY(adcgs_atomic_open(&atomic, path, error));
-    setvbuf(atomic.file, NULL, _IONBF, 0); /* there is nothing to gather */
+    setvbuf(atomic.file, NULL, _IONBF, 0); /* one write needs no buffer */
     errno = 0;
     if (fwrite(data, 1, bytes, atomic.file) == bytes)
         return adcgs_atomic_commit(&atomic, error);
@@ -273,7 +279,7 @@ adcgs_status adcgs_atomic_save(const char *path, const void *data, size_t bytes,
     return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, strerror(reason ? reason : EIO));
 }
 
-/** Whether the last parts of two paths are equal and so are their folders. */
+/** True if the last parts of two paths are equal and their folders are the same. */
 static int same_place(const char *a, const char *b)
 {
     struct stat status[2];

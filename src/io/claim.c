@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Files that say who is at something, on whatever machine. */
+/** \file Claim files that name the process and the machine that hold a resource. */
 #include "config.h"
 
 #include "io/claim.h"
@@ -15,36 +15,36 @@
 #include <time.h>
 #include <unistd.h>
 
-#ifndef BEAT    /* a test has shorter ones */
-#define BEAT 10 /* seconds from one touch to the next */
+#ifndef BEAT    /* a test sets a shorter one */
+#define BEAT 10 /* seconds between two touches */
 #endif
-#define WATCH (1.25 * BEAT)     /* seconds in which a live owner elsewhere touches its claim once */
-#define WATCH_LONG (6.0 * BEAT) /* the same where the claim's time is in the future, and nobody knows how old it is */
-#define LOOK 0.1                /* seconds from one look to the next while a claim is watched */
-#define TRIES 5 /* while others come and go */
-#define TEXT_MAX 400
+#define WATCH (1.25 * BEAT)     /* seconds within which a live owner on another machine touches its claim once */
+#define WATCH_LONG (6.0 * BEAT) /* the same for a claim whose time lies in the future, so its age is unknown */
+#define LOOK 0.1                /* seconds between two checks of a watched claim */
+#define TRIES 5 /* attempts to take a claim, in case others appear and vanish in between */
+#define TEXT_MAX 400 /* bytes of a claim file */
 #define ENDED ULLONG_MAX
-/* Of a process's line in proc(5), between state, which is the third, and starttime. */
+/* Skips the 18 fields of /proc/PID/stat (proc(5)) between state, field 3, and starttime. */
 #define SKIP_18 " %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s"
 
 typedef struct owner {
-    char host[80], since[32], place[120]; /* place: which kernel, and which numbers of processes */
+    char host[80], since[32], place[120]; /* place: boot id and process id namespace */
     long process;
-    unsigned long long began; /* when the process did, in the kernel's ticks; 0: not known */
+    unsigned long long began; /* start of the process, in the kernel's ticks; 0: unknown */
 } owner;
 
 struct adcgs_claim {
-    char *path, *what, *mine; /* mine: a name of our own beside path */
-    char text[TEXT_MAX];      /* what is in the file */
+    char *path, *what, *mine; /* mine: our own file name next to path */
+    char text[TEXT_MAX];      /* content of the file */
     pthread_t beat;
     pthread_mutex_t lock;
     pthread_cond_t changed;
     int beats, ends;
 };
 
-/* ---- What is written there ---- */
+/* ---- Content of the file ---- */
 
-/** A line of a file of the system without its end, or "-". */
+/** First line of a system file without its newline, or "-". */
 static void read_line(const char *path, char *out, size_t size)
 {
     FILE *const file = fopen(path, "r");
@@ -55,7 +55,7 @@ static void read_line(const char *path, char *out, size_t size)
         fclose(file);
 }
 
-/** When a process began, in ticks since the machine did; 0: not known; ENDED: it has ended, and its parent has not asked yet. */
+/** Start of a process, in ticks since boot; 0: unknown; ENDED: it has ended, and its parent has not waited for it yet. */
 static unsigned long long find_begin(long process)
 {
     char name[48], text[1024], state = '-';
@@ -66,13 +66,13 @@ static unsigned long long find_begin(long process)
     if (file)
         fclose(file);
     text[n] = '\0';
-    const char *const behind = strrchr(text, ')'); /* the program's name may hold anything */
+    const char *const behind = strrchr(text, ')'); /* the program's name may contain any characters */
     if (!behind || sscanf(behind + 1, " %c" SKIP_18 " %llu", &state, &began) != 2)
         return 0;
     return state == 'Z' || state == 'X' ? ENDED : began;
 }
 
-/** Numbers of processes mean the same where both are equal: since the machine started, in one container. */
+/** Describe this process. Process ids are comparable only where `place` is equal: same boot, same container. */
 static void find_own(owner *own)
 {
     const time_t now = time(NULL);
@@ -90,10 +90,10 @@ static void find_own(owner *own)
     strftime(own->since, sizeof own->since, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
 }
 
-/** Read a claim and who it is of; -1 if it is gone. What is not written yet has no name. */
+/** Read a claim and its owner; -1 if the file is gone. An incomplete file gives "?" as the host. */
 static int read_claim(const char *path, char text[TEXT_MAX], owner *who, struct stat *s)
 {
-    const int fd = open(path, O_RDONLY | O_CLOEXEC); /* opening asks the server anew */
+    const int fd = open(path, O_RDONLY | O_CLOEXEC); /* opening it makes the client ask the server again */
     const ssize_t n = fd < 0 || fstat(fd, s) ? -1 : read(fd, text, TEXT_MAX - 1);
     if (fd >= 0)
         close(fd);
@@ -106,7 +106,7 @@ static int read_claim(const char *path, char text[TEXT_MAX], owner *who, struct 
     return 0;
 }
 
-/** Make a file that is not there yet; 0, or -1 and errno. */
+/** Create a file that does not exist yet; 0, or -1 with errno set. */
 static int create(const char *path, const char *text)
 {
     const size_t n = strlen(text);
@@ -122,11 +122,14 @@ static int create(const char *path, const char *text)
     return -1;
 }
 
-/* ---- Who is there ---- */
+/* ---- State of the owner ---- */
 
 typedef enum answer { NOBODY, DEAD, ALIVE, UNKNOWN } answer;
 
-/** Whether a process of this machine lives; UNKNOWN: it is another's, or the claim does not say enough. No clock is asked. */
+/**
+ * State of a process on this machine. UNKNOWN: it runs on another machine, or the claim has too little information. Uses no
+ * clock.
+ */
 static answer ask_system(const owner *who)
 {
     owner own;
@@ -135,13 +138,13 @@ static answer ask_system(const owner *who)
         return UNKNOWN;
     if (who->process == own.process || (kill((pid_t)who->process, 0) && errno == ESRCH))
         return DEAD;
-    if (!who->place[0] || !who->began || !own.began) /* the number may have been given again */
+    if (!who->place[0] || !who->began || !own.began) /* the process id may have been reused */
         return UNKNOWN;
     const unsigned long long began = find_begin(who->process);
     return !began ? UNKNOWN : began == who->began ? ALIVE : DEAD;
 }
 
-/** Clocks may be set: whether nobody touches a claim for so long by one that is not. */
+/** True if nobody touches a claim for `seconds` by the monotonic clock; the clock of the files can be set. */
 static int stays_untouched(const adcgs_claim *c, const struct stat *before, double seconds)
 {
     const struct timespec nap = { .tv_nsec = (long)(1e9 * LOOK) };
@@ -159,8 +162,8 @@ static int stays_untouched(const adcgs_claim *c, const struct stat *before, doub
 }
 
 /**
- * Whether somebody is there. Leaves a file under our own name, whose time is that of the file system, unless nobody is, or the
- * owner is known to be dead: a process that is killed then leaves nothing behind.
+ * State of a claim's owner. Creates our own file, whose time is that of the file system, except if there is no claim or the
+ * system reports the owner dead. So a process that is killed then leaves no file behind.
  */
 static answer look(const adcgs_claim *c, owner *who, double *age)
 {
@@ -224,7 +227,7 @@ static int is_ours(const adcgs_claim *c)
     return !read_claim(c->path, text, &who, &s) && !strcmp(text, c->text);
 }
 
-/** Touches the file, until it is told to end or the file is another's. */
+/** Thread that touches the file until `ends` is set or another process owns the file. */
 static void *keep_alive(void *argument)
 {
     adcgs_claim *const c = argument;
@@ -245,7 +248,7 @@ static void *keep_alive(void *argument)
     return NULL;
 }
 
-/** Signals are for other threads. */
+/** Start the thread that touches the file, with all signals blocked: other threads handle them. */
 static adcgs_status begin(adcgs_claim *c, adcgs_error *error)
 {
     sigset_t all, before;
@@ -262,7 +265,7 @@ static adcgs_status begin(adcgs_claim *c, adcgs_error *error)
     return c->beats ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: cannot start a thread", c->path);
 }
 
-/** Others may find the same dead claim: who renames last has it, and the one before sees that. */
+/** Take over a dead claim. Several processes may find it: the last one to rename owns it, and the others see that. */
 static int take_over(const adcgs_claim *c)
 {
     const struct timespec while_others_rename = { .tv_nsec = 300000000 };
@@ -332,7 +335,7 @@ adcgs_status adcgs_claim_absent(const char *path, const char *what, adcgs_error 
 adcgs_status adcgs_claim_check(const adcgs_claim *claim, adcgs_error *error)
 {
     return is_ours(claim) ? ADCGS_OK :
-           adcgs_fail(error, ADCGS_ERR_IO, "%s: %s is another's by now: this process was taken for dead", claim->path,
+           adcgs_fail(error, ADCGS_ERR_IO, "%s: another process has taken over %s: it considered this process dead", claim->path,
                       claim->what);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Codebooks of numbers by Lloyd's iterations, whose means come of sums over the sorted values. */
+/** \file Codebooks by Lloyd's iterations. Prefix sums over the sorted values give the means. */
 #include "config.h"
 
 #include "io/codebook.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define ITERATIONS 40
+#define ITERATIONS 40 /* of Lloyd's algorithm */
 
 static int compare(const void *a, const void *b)
 {
@@ -15,7 +15,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** How many of the sorted values are less. */
+/** Number of sorted values below limit. */
 static size_t count_below(const float *values, size_t n, double limit)
 {
     size_t low = 0, high = n;
@@ -29,7 +29,7 @@ static size_t count_below(const float *values, size_t n, double limit)
     return low;
 }
 
-/** sums[i]: of the first i values. A centre that has none stays. */
+/** One iteration. sums[i]: sum of the first i values. A centre without values stays. */
 static void move_centres(float book[ADCGS_CODEBOOK], const float *values, const double *sums, size_t n)
 {
     size_t begin = 0;
@@ -52,7 +52,7 @@ int adcgs_codebook_make(float book[ADCGS_CODEBOOK], float *values, size_t n)
     sums[0] = 0.0;
     for (size_t i = 0; i < n; i++)
         sums[i + 1] = sums[i] + (double)values[i];
-    /* Half way between equal counts and equal distances: many values are near each other, and few are far out. */
+    /* Start half way between equal counts and equal distances: many values lie close together, and a few are far out. */
     for (int k = 0; k < ADCGS_CODEBOOK; k++) {
         const double share = (k + 0.5) / ADCGS_CODEBOOK, span = (double)values[n - 1] - (double)values[0];
         book[k] = (float)(0.5 * ((double)values[(size_t)(share * (double)n)] + (double)values[0] + share * span));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file 256 values that stand for many: each value is near one of them, in the mean of squares. */
+/** \file Codebooks: 256 values that approximate many values with a small mean squared error. */
 #ifndef ADCGS_IO_CODEBOOK_H
 #define ADCGS_IO_CODEBOOK_H
 
@@ -7,9 +7,9 @@
 
 #define ADCGS_CODEBOOK 256
 
-/** Of n finite values, which are sorted; book rises. \return 0 where there was no memory. */
+/** Compute the codebook of n finite values; sorts them. book is ascending. \return 0 on allocation failure */
 int adcgs_codebook_make(float book[ADCGS_CODEBOOK], float *values, size_t n);
-/** Index of the nearest. */
+/** Index of the nearest entry. */
 uint8_t adcgs_codebook_find(const float book[ADCGS_CODEBOOK], float value);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The module that holds Draco. */
+/** \file The module with Draco. */
 #include "config.h"
 
 #include "io/draco_shim.h"

@@ -2,7 +2,7 @@
 /** \file Draco point clouds: see draco_shim.h. */
 #include "config.h"
 
-/* The standard headers first: draco_shim.h includes C headers inside extern "C". */
+/* Standard headers come first: draco_shim.h includes C headers inside extern "C". */
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -20,7 +20,7 @@
 
 namespace {
 
-/** Values of a point, normalised integers as 0..1; zeros where it has fewer than three. */
+/** Values of a point, normalised integers as 0..1; missing components are zero. */
 template <typename T> void read_values(const draco::PointAttribute *attribute, uint32_t point, T value[3])
 {
     value[0] = value[1] = value[2] = 0;
@@ -69,7 +69,7 @@ std::unique_ptr<draco::PointCloud> build(const adcgs_points *points)
     return builder.Finalize(false);
 }
 
-/** Sequential, not by a tree, which would be smaller but give the points back in an order of its own. */
+/** Sequential encoding keeps the order of the points; Draco's tree would be smaller but reorders them. */
 adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_points *points, const char *path, adcgs_error *error)
 {
     if (!points->n)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Draco seen from C. No exception and no C++ type crosses this border. The shim
- * is a module, opened when the first Draco file is read or written, so that
- * programs start without it; a build without shared libraries links it.
+ * C interface to Draco. No exception and no C++ type crosses it. The shim is a
+ * module, opened when the first Draco file is read or written, so that programs
+ * start without it. A build without shared libraries links it.
  */
 #ifndef ADCGS_IO_DRACO_SHIM_H
 #define ADCGS_IO_DRACO_SHIM_H
@@ -14,19 +14,19 @@ extern "C" {
 #include "io/module.h"
 #include "io/points.h"
 
-/** What the module offers. Any thread may call. */
+/** Functions of the module. Any thread may call them. */
 typedef struct adcgs_draco {
-    const char *version; /**< of the programs that the module belongs to */
+    const char *version; /**< version of the programs that the module belongs to */
     /** See adcgs_draco_parse(). */
     adcgs_status (*parse)(adcgs_points *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error);
-    /** What adcgs_draco_write() writes, in memory; the caller free()s *data. */
+    /** Encode the file that adcgs_draco_write() writes, in memory; the caller free()s *data. */
     adcgs_status (*encode)(uint8_t **data, size_t *bytes, const adcgs_points *points, const char *path, adcgs_error *error);
 } adcgs_draco;
 
-/** The one thing that the module exports. */
+/** The module's only exported symbol. */
 ADCGS_MODULE_EXPORT extern const adcgs_draco adcgs_draco_table;
 
-/** The module's table (see module.h), for the file `path`, which messages name. ADCGS_ERR_UNSUPPORTED when it is not there. */
+/** The module's table (see module.h). path: the file that messages name. ADCGS_ERR_UNSUPPORTED if the module is missing. */
 adcgs_status adcgs_draco_get(const adcgs_draco **draco, const char *path, adcgs_error *error);
 
 #ifdef __cplusplus

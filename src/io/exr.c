@@ -6,14 +6,14 @@
 
 #include <openexr.h>
 
-#define ASPECT_MIN 1e-6 /* the library takes no others, nor larger than its inverse */
+#define ASPECT_MIN 1e-6 /* smallest pixel aspect ratio that the library accepts; the largest is its inverse */
 
-/** A channel and where its samples lie; the file has them in alphabetical order. */
+/** A channel and the place of its samples; the file sorts channels alphabetically. */
 typedef struct plane {
     char name[2];
     exr_pixel_type_t type;
     const float *samples;
-    size_t stride; /**< floats from a pixel to the next */
+    size_t stride; /**< floats from one pixel to the next */
 } plane;
 
 typedef struct picture {
@@ -23,7 +23,7 @@ typedef struct picture {
     plane planes[5];
 } picture;
 
-/** Messages are written by the callers, with the file's name. */
+/** Ignores the library's messages: callers write their own, with the file's name. */
 static void ignore_message(exr_const_context_t context, exr_result_t code, const char *text)
 {
 }
@@ -42,7 +42,7 @@ static void list_planes(picture *p)
         p->planes[p->n++] = (plane){"Z", EXR_PIXEL_FLOAT, p->options->depth, 1};
 }
 
-/** Point the library at where a chunk's first row lies in our picture. */
+/** Point the library at the first row of a chunk in our image. */
 static void aim(exr_coding_channel_info_t *channels, int count, const picture *p, int row)
 {
     for (int i = 0; i < count && i < p->n; i++) {
@@ -56,7 +56,10 @@ static void aim(exr_coding_channel_info_t *channels, int count, const picture *p
     }
 }
 
-/** The library's way to write: some bytes at a place of the file, which is in memory; it leaves gaps to be filled later. */
+/**
+ * Write callback of the library: writes bytes at an offset of the file, which is in memory. The library leaves gaps and fills
+ * them later.
+ */
 static int64_t write_at(exr_const_context_t context, void *user, const void *buffer, uint64_t bytes, uint64_t offset,
                         exr_stream_error_func_ptr_t report)
 {
@@ -74,10 +77,10 @@ static int64_t write_at(exr_const_context_t context, void *user, const void *buf
     return -1;
 }
 
-/** Our matrices take columns; those of the format take rows, and its camera has y up. */
+/** Our matrices multiply column vectors. EXR's multiply row vectors, and its camera has y up. */
 static void make_matrices(const adcgs_camera *camera, exr_attr_m44f_t *to_camera, exr_attr_m44f_t *to_ndc)
 {
-    double m[4][3]; /* world to our camera, for rows */
+    double m[4][3]; /* world to our camera, for row vectors */
     for (int j = 0; j < 3; j++) {
         m[3][j] = 0.0;
         for (int i = 0; i < 3; i++) {
@@ -97,7 +100,10 @@ static void make_matrices(const adcgs_camera *camera, exr_attr_m44f_t *to_camera
     }
 }
 
-/** Attributes that every EXR has; the screen window is the picture as the camera throws it on a plane at distance 1. */
+/**
+ * Set the attributes that every EXR file has. The screen window is the camera's projection of the image onto a plane at distance
+ * 1.
+ */
 static exr_result_t describe_size(exr_context_t context, int part, const picture *p)
 {
     const adcgs_camera *camera = p->options->camera;
@@ -135,7 +141,7 @@ static exr_result_t describe_camera(exr_context_t context, int part, const adcgs
     return EXR_ERR_SUCCESS;
 }
 
-/** What the values stand for: EXR that does not say is taken for linear light with these primaries, which are sRGB's. */
+/** Declare the colour space. Readers take an EXR file without a declaration for linear light with these primaries, sRGB's. */
 static exr_result_t describe_colours(exr_context_t context, int part, int linear)
 {
     static const exr_attr_chromaticities_t bt709 = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
@@ -204,7 +210,9 @@ static exr_result_t write_premultiplied(adcgs_buffer *out, const picture *p, con
     return code == EXR_ERR_SUCCESS ? end : code;
 }
 
-/** As EXR has it: colours multiplied by alpha, after they went through the curve, which is for straight ones. */
+/**
+ * Convert to EXR's form, with colours multiplied by alpha. The transfer curve comes first, since it holds for straight colours.
+ */
 static void make_stored(adcgs_image *image, const adcgs_image_options *options)
 {
     if (options->linear) {

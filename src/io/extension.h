@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a file's name ends in. */
+/** \file Extension of a file name. */
 #ifndef ADCGS_IO_EXTENSION_H
 #define ADCGS_IO_EXTENSION_H
 
 #include "base/base.h"
 
-/** What follows the last dot of a path's last part; "" without one. */
+/** The text after the last dot of a path's last part; "" without a dot. */
 static inline const char *adcgs_extension(const char *path)
 {
     const char *slash = strrchr(path, '/');

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Files that are read. */
+/** \file Opening and loading files. */
 #include "config.h"
 
 #include "io/file.h"
@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/** Open without waiting, which a pipe that nobody writes to would make us do, and see what it is. */
+/** Open without waiting, as a pipe without a writer would make us do, and reject anything but a regular file. */
 static adcgs_status open_regular(int *fd, uint64_t *size, const char *path, adcgs_error *error)
 {
     struct stat status;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Frames per second as exact ratios. */
+/** \file Frame rates as exact ratios. */
 #include "config.h"
 
 #include "io/fps.h"
@@ -7,9 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define WHOLE_WITHIN 1e-6
-#define NTSC_WITHIN 2e-6   /* relative; 29.97 differs from 30000/1001 by half of it */
-#define EQUAL_WITHIN 1e-12 /* relative: rounding of what was a ratio */
+#define WHOLE_WITHIN 1e-6 /* absolute, frames per second */
+#define NTSC_WITHIN 2e-6   /* relative; 29.97 differs from 30000/1001 by half of this */
+#define EQUAL_WITHIN 1e-12 /* relative rounding error of a double that was a ratio */
 
 double adcgs_fps_value(adcgs_fps rate)
 {
@@ -26,7 +26,7 @@ static uint64_t common_divisor(uint64_t a, uint64_t b)
     return a;
 }
 
-/** In lowest terms, and where these are too large for their fields, rounded to what fits. */
+/** Ratio in lowest terms, rounded if they do not fit their fields. */
 static adcgs_fps make(uint64_t num, uint64_t den)
 {
     const uint64_t divisor = common_divisor(num, den);
@@ -39,7 +39,7 @@ static adcgs_fps make(uint64_t num, uint64_t den)
     return (adcgs_fps){(uint32_t)num, (uint32_t)den};
 }
 
-/** Convergents of the continued fraction, until one is the value or the next has no room. */
+/** Convergents of the continued fraction, until one equals the value or the next does not fit. */
 static adcgs_fps approach(double value)
 {
     uint64_t num[2] = {1, (uint64_t)value}, den[2] = {0, 1};
@@ -48,7 +48,7 @@ static adcgs_fps approach(double value)
         if (!(rest < UINT32_MAX))
             break;
         const uint64_t term = (uint64_t)rest, next[2] = {term * num[1] + num[0], term * den[1] + den[0]};
-        if (next[0] > INT32_MAX || next[1] > INT32_MAX) /* FFmpeg has int */
+        if (next[0] > INT32_MAX || next[1] > INT32_MAX) /* FFmpeg's rationals are int */
             break;
         num[0] = num[1];
         den[0] = den[1];
@@ -75,7 +75,7 @@ adcgs_fps adcgs_fps_divide(adcgs_fps rate, int64_t by)
     return rate.den ? make(rate.num, (uint64_t)rate.den * (uint64_t)by) : rate;
 }
 
-/** Digits and nothing else, from 1 to 2^32 - 1; 0: it is none. */
+/** A number of digits alone, from 1 to 2^32 - 1; 0 for any other text. */
 static uint64_t whole_number(const char *text, char end)
 {
     uint64_t value = 0;

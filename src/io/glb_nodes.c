@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Nodes, and their matrices. */
+/** \file Nodes of a GLB file and their matrices. */
 #include "config.h"
 
 #include "io/glb_nodes.h"
@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define DEPTH_MAX 256 /* parents above a node: others' files have some ten */
+#define DEPTH_MAX 256 /* maximum number of parents above a node; files of other programs have about ten */
 
 static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
@@ -18,7 +18,7 @@ static adcgs_status bad(const adcgs_glb *g, adcgs_status status, const char *wha
     return adcgs_fail(g->error, status, "%s: glTF: %s", g->path, what);
 }
 
-/** n finite numbers of a node, or if it has none of that name what is in out. */
+/** Read n finite numbers of a node; out stays unchanged if the node has no array of that name. */
 static adcgs_status numbers(const adcgs_glb *g, json_t *node, const char *name, double *out, size_t n)
 {
     json_t *const array = json_object_get(node, name);
@@ -31,7 +31,7 @@ static adcgs_status numbers(const adcgs_glb *g, json_t *node, const char *name, 
     return ADCGS_OK;
 }
 
-/** out = a b, out may be b. */
+/** out = a b; out may be b. */
 static void multiply(const double a[12], const double b[12], double out[12])
 {
     double product[12];
@@ -42,7 +42,7 @@ static void multiply(const double a[12], const double b[12], double out[12])
     memcpy(out, product, sizeof product);
 }
 
-/** By translation, rotation x y z w, and scale. */
+/** Matrix from translation, rotation (x y z w) and scale. */
 static adcgs_status compose(const adcgs_glb *g, json_t *node, double out[12])
 {
     double t[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1}, turn[9];
@@ -75,7 +75,7 @@ static adcgs_status matrix_of(const adcgs_glb *g, json_t *node, double out[12])
     return ADCGS_OK;
 }
 
-/** The index of each node's parent, the count of nodes for none. */
+/** The index of each node's parent; the number of nodes for none. */
 static adcgs_status find_parents(const adcgs_glb *g, json_t *nodes, size_t *parents)
 {
     const size_t n = json_array_size(nodes);
@@ -87,7 +87,7 @@ static adcgs_status find_parents(const adcgs_glb *g, json_t *nodes, size_t *pare
         json_array_foreach(json_object_get(node, "children"), j, child) {
             const json_int_t index = json_is_integer(child) ? json_integer_value(child) : -1;
             if (index < 0 || (size_t)index >= n)
-                return bad(g, ADCGS_ERR_DATA, "a child of a node that there is not");
+                return bad(g, ADCGS_ERR_DATA, "a node lists a child that does not exist");
             parents[index] = i;
         }
     }
@@ -100,11 +100,11 @@ static int uses(json_t *node, size_t mesh)
     return json_is_integer(used) && (uint64_t)json_integer_value(used) == mesh;
 }
 
-/** The nodes of a file: whose child each is, and whether the scene begins with it. */
+/** The nodes of a file, with their parents and the roots of the scene. */
 typedef struct graph {
     json_t *nodes;
-    size_t *parents;   /**< the count of nodes for none */
-    uint8_t *in_scene; /**< of those without a parent; all where there is no scene */
+    size_t *parents;   /**< the number of nodes for none */
+    uint8_t *in_scene; /**< for nodes without a parent; all if there is no scene */
 } graph;
 
 static void find_scene(const adcgs_glb *g, graph *to)
@@ -118,7 +118,7 @@ static void find_scene(const adcgs_glb *g, graph *to)
             to->in_scene[json_integer_value(value)] = 1;
 }
 
-/** The matrix of a node behind those of its parents; the one that has none. */
+/** The matrix of a node, with its parents' transforms applied. *root: its topmost parent. */
 static adcgs_status place_node(double matrix[12], size_t *root, const adcgs_glb *g, const graph *of, size_t at)
 {
     const size_t n = json_array_size(of->nodes);
@@ -126,7 +126,7 @@ static adcgs_status place_node(double matrix[12], size_t *root, const adcgs_glb 
     for (int steps = 0; at < n; at = of->parents[at]) {
         double one[12] = {0};
         if ((size_t)steps > n)
-            return bad(g, ADCGS_ERR_DATA, "nodes that are their own parents");
+            return bad(g, ADCGS_ERR_DATA, "a node is its own ancestor");
         if (steps++ > DEPTH_MAX)
             return bad(g, ADCGS_ERR_UNSUPPORTED, "nodes with more than 256 parents one above the other");
         ADCGS_TRY(matrix_of(g, json_array_get(of->nodes, at), one));
@@ -136,7 +136,7 @@ static adcgs_status place_node(double matrix[12], size_t *root, const adcgs_glb 
     return ADCGS_OK;
 }
 
-/** all: of the whole file, else of its scene. */
+/** all: nodes of the whole file, else of its scene. */
 static adcgs_status find_places(adcgs_glb_places *out, const adcgs_glb *g, const graph *of, size_t mesh, int all)
 {
     size_t i, root = 0, n = 0;
@@ -146,7 +146,7 @@ static adcgs_status find_places(adcgs_glb_places *out, const adcgs_glb *g, const
         if (!uses(node, mesh))
             continue;
         if (n++ == ADCGS_GLB_PLACES)
-            return bad(g, ADCGS_ERR_UNSUPPORTED, "splats of more than 4096 nodes");
+            return bad(g, ADCGS_ERR_UNSUPPORTED, "splats in more than 4096 nodes");
         ADCGS_TRY(place_node(matrix, &root, g, of, i));
         if (all || of->in_scene[root])
             memcpy(out->matrix[out->n++], matrix, sizeof matrix);

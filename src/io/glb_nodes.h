@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The nodes of a GLB file: where they have a mesh. */
+/** \file Nodes of a GLB file, which place meshes in the scene. */
 #ifndef ADCGS_IO_GLB_NODES_H
 #define ADCGS_IO_GLB_NODES_H
 
 #include "io/glb_numbers.h"
 
-#define ADCGS_GLB_PLACES 4096 /**< nodes of one mesh at most */
+#define ADCGS_GLB_PLACES 4096 /**< maximum number of nodes per mesh */
 
-/** Where the nodes that use a mesh have it: row-major 3x4 matrices, those of parents before a node's own. */
+/** Transforms of the nodes that use a mesh: row-major 3x4 matrices, with the parents' transforms applied. */
 typedef struct adcgs_glb_places {
-    size_t n;              /**< 1 and more */
+    size_t n;              /**< at least 1 */
     double (*matrix)[12];
 } adcgs_glb_places;
 
 /**
- * The nodes of the file's scene, or where none of these has the mesh of the whole file; the unit matrix where no node has it.
- * ADCGS_ERR_UNSUPPORTED for more than ADCGS_GLB_PLACES nodes, or parents above one of them more than 256 deep. The caller clears
- * *out in any case.
+ * Find the nodes of the file's scene that use a mesh. Without any, find those of the whole file; if no node uses it, return the
+ * unit matrix. ADCGS_ERR_UNSUPPORTED for more than ADCGS_GLB_PLACES nodes, or more than 256 parents above a node. The caller
+ * clears *out in any case.
  */
 adcgs_status adcgs_glb_places_find(adcgs_glb_places *out, const adcgs_glb *glb, size_t mesh);
 void adcgs_glb_places_clear(adcgs_glb_places *places);
-/** Whether a matrix is another than the unit matrix. */
+/** True if a matrix differs from the unit matrix. */
 int adcgs_glb_moves(const double matrix[12]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Numbers in GLB. */
+/** \file Numbers of a GLB file. */
 #include "config.h"
 
 #include "io/glb_numbers.h"
@@ -8,12 +8,12 @@
 
 #include <math.h>
 
-#define INT_MAX_IN_JSON ((json_int_t)1 << 53)
-#define STRIDE_MAX 252
+#define INT_MAX_IN_JSON ((json_int_t)1 << 53) /* whole numbers up to here are exact in a double */
+#define STRIDE_MAX 252 /* bytes; glTF's upper bound */
 
 enum { INT8 = 5120, UINT8, INT16, UINT16 };
 
-/** An attribute that is looked for, for messages. */
+/** The attribute that is searched, for messages. */
 typedef struct finder {
     const adcgs_glb *glb;
     const char *name;
@@ -24,13 +24,13 @@ static adcgs_status bad(const finder *f, adcgs_status status, const char *what)
     return adcgs_fail(f->glb->error, status, "%s: glTF: %s: %s", f->glb->path, f->name, what);
 }
 
-/** Bytes of a component; 0 for what is no type of them. */
+/** Size of a component type [bytes]; 0 for an unknown type. */
 static uint64_t size_of(json_int_t type)
 {
     return type == ADCGS_GLB_FLOAT ? 4 : type == INT8 || type == UINT8 ? 1 : type == INT16 || type == UINT16 ? 2 : 0;
 }
 
-/** A count, size or index; `missing` without one, which if it is less than 0 is a fault too. */
+/** Read a count, size or index. missing: the value if the key is absent; if negative, an absent key is an error. */
 static adcgs_status get_count(const finder *f, json_t *object, const char *key, json_int_t missing, uint64_t *out)
 {
     const json_t *const value = json_object_get(object, key);
@@ -42,7 +42,7 @@ static adcgs_status get_count(const finder *f, json_t *object, const char *key, 
     return ADCGS_OK;
 }
 
-/** An element of an array at the root. */
+/** The element of an array at the root that object[key] refers to. */
 static adcgs_status get_element(const finder *f, const char *array, json_t *object, const char *key, json_t **out)
 {
     uint64_t index;
@@ -54,7 +54,7 @@ static adcgs_status get_element(const finder *f, const char *array, json_t *obje
     return ADCGS_OK;
 }
 
-/** The bytes of a view of the buffer that is the binary chunk. */
+/** The bytes of a view into the buffer that is the binary chunk. */
 static adcgs_status get_bytes(const finder *f, json_t *view, const uint8_t **at, uint64_t *bytes)
 {
     json_t *buffer;
@@ -73,7 +73,7 @@ static adcgs_status get_bytes(const finder *f, json_t *view, const uint8_t **at,
         return adcgs_fail(f->glb->error, ADCGS_ERR_DATA, "%s: glTF: a buffer of %llu bytes, but the binary chunk has %zu",
                           f->glb->path, (unsigned long long)length, f->glb->n_bytes);
     if (offset > length || *bytes > length - offset)
-        return bad(f, ADCGS_ERR_DATA, "a view beyond its buffer");
+        return bad(f, ADCGS_ERR_DATA, "a view extends beyond its buffer");
     *at = f->glb->numbers + offset;
     return ADCGS_OK;
 }
@@ -107,7 +107,7 @@ adcgs_status adcgs_glb_find(adcgs_glb_view *view, const adcgs_glb *glb, const ch
     json_t *accessor, *bytes_view;
     uint64_t count, offset, stride, type, bytes;
     if (!json_object_get(glb->attributes, name))
-        return bad(&f, ADCGS_ERR_DATA, "not there, expected of splats");
+        return bad(&f, ADCGS_ERR_DATA, "missing, expected for splats");
     ADCGS_TRY(get_element(&f, "accessors", glb->attributes, name, &accessor));
     ADCGS_TRY(check_type(&f, accessor, components));
     ADCGS_TRY(get_count(&f, accessor, "count", -1, &count));
@@ -117,7 +117,7 @@ adcgs_status adcgs_glb_find(adcgs_glb_view *view, const adcgs_glb *glb, const ch
     if (!element)
         return bad(&f, ADCGS_ERR_DATA, "componentType: expected 5120 to 5123 or 5126");
     if (!count || count > ADCGS_SPLATS_MAX)
-        return adcgs_fail(glb->error, ADCGS_ERR_DATA, "%s: glTF: %s: %llu of them, expected 1 to %u", glb->path, name,
+        return adcgs_fail(glb->error, ADCGS_ERR_DATA, "%s: glTF: %s: %llu elements, expected 1 to %u", glb->path, name,
                           (unsigned long long)count, ADCGS_SPLATS_MAX);
     ADCGS_TRY(get_element(&f, "bufferViews", accessor, "bufferView", &bytes_view));
     ADCGS_TRY(get_bytes(&f, bytes_view, &view->at, &bytes));
@@ -125,7 +125,7 @@ adcgs_status adcgs_glb_find(adcgs_glb_view *view, const adcgs_glb *glb, const ch
     if (stride < element || stride > STRIDE_MAX)
         return bad(&f, ADCGS_ERR_DATA, "byteStride: expected at least an element's bytes, and at most 252");
     if (offset > bytes || stride * (count - 1) + element > bytes - offset)
-        return bad(&f, ADCGS_ERR_DATA, "an accessor beyond its view");
+        return bad(&f, ADCGS_ERR_DATA, "an accessor extends beyond its view");
     view->at += offset;
     view->stride = (size_t)stride;
     view->count = (uint32_t)count;

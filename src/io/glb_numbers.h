@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The numbers of a GLB file: an attribute's accessor, held against what is there before anything is read. */
+/** \file
+ * Numbers of a GLB file. An attribute's accessor is checked against the file's
+ * contents before anything is read.
+ */
 #ifndef ADCGS_IO_GLB_NUMBERS_H
 #define ADCGS_IO_GLB_NUMBERS_H
 
@@ -10,7 +13,7 @@
 typedef struct adcgs_glb {
     const char *path;
     adcgs_error *error;
-    json_t *root;       /**< the caller's to free */
+    json_t *root;       /**< the caller frees it */
     json_t *attributes; /**< of the primitive, in root */
     const uint8_t *numbers; /**< the binary chunk; NULL without one */
     size_t n_bytes;
@@ -20,15 +23,15 @@ typedef struct adcgs_glb_view {
     const uint8_t *at;
     size_t stride;
     uint32_t count;  /**< 1 to ADCGS_SPLATS_MAX */
-    int type;        /**< of components, a code of glTF */
-    int is_normal;   /**< integers stand for -1..1 or 0..1 */
+    int type;        /**< component type, a code of glTF */
+    int is_normal;   /**< integers represent -1..1 or 0..1 */
 } adcgs_glb_view;
 
-/** An attribute, which must be there with so many components: all that the view has is in the binary chunk. */
+/** Find a required attribute with this number of components. All bytes of the returned view lie in the binary chunk. */
 adcgs_status adcgs_glb_find(adcgs_glb_view *view, const adcgs_glb *glb, const char *name, int components);
-/** The bytes of the view that an object of the file names; `name` is what the object is, for messages. */
+/** The bytes of the view that an object of the file refers to. name: the object, for messages. */
 adcgs_status adcgs_glb_bytes(const uint8_t **at, size_t *bytes, const adcgs_glb *glb, json_t *object, const char *name);
-/** Component c of element i, both as there are. */
+/** Component c of element i; both must exist. */
 double adcgs_glb_number(const adcgs_glb_view *view, uint32_t i, int c);
 
 #endif

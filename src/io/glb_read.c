@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats from GLB: its chunks, the primitives that are splats, and their attributes' numbers. */
+/** \file Splats from GLB: its chunks, the primitives with splats, and their attributes' numbers. */
 #include "config.h"
 
 #include "io/glb.h"
@@ -12,9 +12,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TEXT_MAX ((size_t)16 << 20) /* of JSON: that of splats is a few kilobytes, and jansson takes some 20 times as much */
-#define SCALE_MIN 1.8048514e-35f    /* e^-80: what is flat gets so much */
-#define SCALE_MAX 5.5406223e34
+#define TEXT_MAX ((size_t)16 << 20) /* bytes of JSON; splats need a few kilobytes, and jansson takes about 20 times the text in
+                                       memory */
+#define SCALE_MIN 1.8048514e-35f    /* e^-80: lower bound of scales, which flat splats get */
+#define SCALE_MAX 5.5406223e34 /* e^80: upper bound of scales */
 
 int adcgs_glb_is(const uint8_t *data, size_t bytes)
 {
@@ -28,7 +29,7 @@ static adcgs_status bad(const adcgs_glb *g, adcgs_status status, const char *wha
 
 /* ---- Chunks ---- */
 
-/** The chunk at *at, which then is behind it. */
+/** The chunk at *at. Moves *at behind it. */
 static adcgs_status next_chunk(const adcgs_glb *g, const uint8_t **at, const uint8_t *end, const uint8_t **data, size_t *bytes,
                                uint32_t *type)
 {
@@ -86,7 +87,7 @@ static adcgs_status open_chunks(adcgs_glb *g, const uint8_t *data, size_t bytes)
 
 /* ---- Primitives ---- */
 
-/** What materials say does not change splats. */
+/** Extensions that may be required. Materials do not affect splats. */
 static int is_known(const char *extension)
 {
     return !strcmp(extension, ADCGS_GLB_SPLATS) || adcgs_glb_is_spz(extension) || !strcmp(extension, "KHR_mesh_quantization") ||
@@ -100,13 +101,13 @@ static adcgs_status check_required(const adcgs_glb *g)
     json_array_foreach(json_object_get(g->root, "extensionsRequired"), i, value) {
         const char *const name = json_string_value(value);
         if (!name || !is_known(name))
-            return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: needs the extension %s, which we do not have", g->path,
-                              name ? name : "?");
+            return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: needs the extension %s, which is not supported",
+                              g->path, name ? name : "?");
     }
     return ADCGS_OK;
 }
 
-/** A text of the extension that may be missing, and then is what is expected. */
+/** Check a text of the extension. It may be missing, which means the expected value. */
 static adcgs_status expect_text(const adcgs_glb *g, json_t *splats, const char *key, const char *expected)
 {
     const char *const text = json_string_value(json_object_get(splats, key));
@@ -115,7 +116,7 @@ static adcgs_status expect_text(const adcgs_glb *g, json_t *splats, const char *
     return ADCGS_OK;
 }
 
-/** How splats are packed, NULL where they are plain. */
+/** The packing extension of splats and its name; NULL for unpacked splats. */
 static json_t *packing_of(json_t *splats, const char **name)
 {
     void *const first = json_object_iter(json_object_get(splats, "extensions"));
@@ -131,15 +132,15 @@ static adcgs_status check_primitive(const adcgs_glb *g, json_t *primitive, json_
     if (!json_is_integer(mode) || json_integer_value(mode))
         return bad(g, ADCGS_ERR_DATA, "splats with a mode that is not 0 (points)");
     if (packing && !adcgs_glb_is_spz(packing))
-        return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED, "%s: glTF: splats by the extension %s, expected plain ones, or SPZ",
-                          g->path, packing);
+        return adcgs_fail(g->error, ADCGS_ERR_UNSUPPORTED,
+                          "%s: glTF: splats packed by the extension %s, expected unpacked ones or SPZ", g->path, packing);
     ADCGS_TRY(expect_text(g, splats, "kernel", ADCGS_GLB_KERNEL));
     return expect_text(g, splats, "colorSpace", ADCGS_GLB_COLOURS);
 }
 
 /* ---- Splats ---- */
 
-/* What becomes of an attribute's finite numbers. \return NULL, or what was expected of them. */
+/* Store the finite numbers of an attribute in a splat. \return NULL, or the expected values for a message. */
 
 static const char *put_position(adcgs_splats *s, uint32_t i, int k, const double v[4])
 {
@@ -179,7 +180,7 @@ static const char *put_colour(adcgs_splats *s, uint32_t i, int k, const double v
     return NULL;
 }
 
-/** The k-th coefficient above degree 0. */
+/** k: index of the coefficient above degree 0. */
 static const char *put_harmonic(adcgs_splats *s, uint32_t i, int k, const double v[4])
 {
     const size_t per = (size_t)((s->degree + 1) * (s->degree + 1) - 1);
@@ -194,7 +195,7 @@ static adcgs_status find(adcgs_glb_view *view, const adcgs_glb *g, const adcgs_s
 {
     ADCGS_TRY(adcgs_glb_find(view, g, name, components));
     return view->count == s->n ? ADCGS_OK
-                               : adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %s: %u of them, expected %u", g->path, name,
+                               : adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %s: %u elements, expected %u", g->path, name,
                                             view->count, s->n);
 }
 
@@ -222,7 +223,7 @@ static const char *harmonic_name(char out[64], int degree, int n)
     return out;
 }
 
-/** The degree is that of the last coefficients that are there; there is no memory for them before all are. */
+/** The degree is the highest one present. Memory is allocated only after all coefficients have been found. */
 static adcgs_status take_harmonics(const adcgs_glb *g, adcgs_splats *s)
 {
     adcgs_glb_view view;
@@ -261,14 +262,14 @@ static adcgs_status take_splats(const adcgs_glb *g, adcgs_splats *s)
     return take_harmonics(g, s);
 }
 
-/* ---- All of a file ---- */
+/* ---- The whole file ---- */
 
-/** Splats that have been read, at the places of their nodes. */
+/** The splats read so far, transformed by their nodes. */
 typedef struct parts {
     adcgs_splats *list;
     size_t n;
     uint64_t splats;
-    double offset[3]; /**< of a file that is far from the origin: left out of all places */
+    double offset[3]; /**< of a file that is far from the origin; subtracted from all positions */
 } parts;
 
 static void clear_parts(parts *p)
@@ -278,9 +279,10 @@ static void clear_parts(parts *p)
     free(p->list);
 }
 
-#define FAR 1024.0 /* times as far as the splats reach: binary32 would leave less than four digits of a place */
+#define FAR 1024.0 /* distance of a node from the origin over the extent of its splats; beyond it binary32 leaves fewer than
+                      four digits of a position */
 
-/** A place far from the origin, as scenes in map coordinates have it, becomes the offset of the file. */
+/** Take a node position far from the origin, as in scenes in map coordinates, as the offset of the file. */
 static void find_offset(parts *p, const adcgs_splats *s, const double place[12])
 {
     double reach = 0.0, far = 0.0;
@@ -293,7 +295,7 @@ static void find_offset(parts *p, const adcgs_splats *s, const double place[12])
         p->offset[a] = place[4 * a + 3];
 }
 
-/** Takes *splats. */
+/** Add splats at a node; takes ownership of *splats. */
 static adcgs_status add_part(parts *p, adcgs_splats *splats, const double node[12], const adcgs_glb *g)
 {
     double place[12];
@@ -313,7 +315,7 @@ static adcgs_status add_part(parts *p, adcgs_splats *splats, const double node[1
     return adcgs_glb_moves(place) ? adcgs_splats_move(&p->list[p->n++], place, g->path, g->error) : (p->n++, ADCGS_OK);
 }
 
-/** Once for each place, the last one without a copy. */
+/** Add splats once per node; the last node needs no copy. */
 static adcgs_status add_parts(parts *p, adcgs_splats *splats, const adcgs_glb_places *places, const adcgs_glb *g)
 {
     p->splats += (uint64_t)splats->n * places->n;

@@ -15,7 +15,7 @@ int adcgs_glb_is_spz(const char *extension)
     return !strcmp(extension, NAME "_2") || !strcmp(extension, NAME);
 }
 
-/** Accessors tell what would come of unpacking. */
+/** Check the counts of the accessors, which describe the unpacked splats. */
 static adcgs_status check_counts(const adcgs_glb *g, uint32_t n)
 {
     const char *name;
@@ -24,15 +24,15 @@ static adcgs_status check_counts(const adcgs_glb *g, uint32_t n)
         const json_t *const accessor = json_array_get(json_object_get(g->root, "accessors"), (size_t)json_integer_value(index));
         const json_int_t count = json_integer_value(json_object_get(accessor, "count"));
         if (count != (json_int_t)n)
-            return adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %.64s: %lld of them, but the SPZ has %u splats", g->path, name,
-                              (long long)count, n);
+            return adcgs_fail(g->error, ADCGS_ERR_DATA, "%s: glTF: %.64s: %lld elements, but the SPZ has %u splats", g->path,
+                              name, (long long)count, n);
     }
     return ADCGS_OK;
 }
 
 adcgs_status adcgs_glb_take_spz(adcgs_splats *out, const adcgs_glb *g, json_t *packed)
 {
-    /* SPZ has right, up and back, glTF left, up and front. */
+    /* SPZ's axes are right, up, back; glTF's are left, up, front. */
     static const double half_a_turn[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
     const uint8_t *at;
     size_t bytes;

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats as GLB: the header, a chunk of JSON, and one of numbers, attribute after attribute. */
+/** \file
+ * Writing splats as GLB: the header, a chunk of JSON, and one of numbers,
+ * attribute by attribute.
+ */
 #include "config.h"
 
 #include "io/glb.h"
@@ -13,8 +16,8 @@
 #include <stdlib.h>
 
 #define ATTRIBUTES 5
-#define FLOATS 14 /* of a splat */
-#define DIGITS 9  /* give each binary32 back */
+#define FLOATS 14 /* numbers per splat */
+#define DIGITS 9  /* significant decimal digits that preserve each binary32 */
 
 static const struct {
     const char *name, *type;
@@ -25,7 +28,7 @@ static const struct {
                             {ADCGS_GLB_SPLATS ":OPACITY", "SCALAR", 1},
                             {ADCGS_GLB_SPLATS ":SH_DEGREE_0_COEF_0", "VEC3", 3}};
 
-/** A component of an attribute of a splat. */
+/** Component c of an attribute of splat i. */
 static float value_of(const adcgs_splats *s, uint32_t i, int attribute, int c)
 {
     switch (attribute) {
@@ -44,7 +47,7 @@ static float value_of(const adcgs_splats *s, uint32_t i, int attribute, int c)
 
 /* ---- JSON ---- */
 
-/** An array with one object in it, which stays open; and what closes both. */
+/** Open an array and one object in it. close_one() closes both. */
 static void open_one(adcgs_json *json, const char *key)
 {
     adcgs_json_open(json, key, '[');
@@ -64,7 +67,7 @@ static void list_one(adcgs_json *json, const char *key, const char *name)
     adcgs_json_close(json);
 }
 
-/** "min" and "max" of positions, which glTF asks for. */
+/** "min" and "max" of positions, which glTF requires. */
 static void say_bounds(adcgs_json *json, const adcgs_splats *s)
 {
     for (int side = 0; side < 2; side++) {
@@ -79,7 +82,7 @@ static void say_bounds(adcgs_json *json, const adcgs_splats *s)
     }
 }
 
-/** Where the numbers are: a buffer, a view of it for each attribute, and how the view is read. */
+/** Layout of the numbers: one buffer, a view of it for each attribute, and an accessor for each view. */
 static void say_numbers(adcgs_json *json, const adcgs_splats *s)
 {
     int64_t offset = 0;
@@ -131,7 +134,7 @@ static void say_mesh(adcgs_json *json)
     close_one(json);
 }
 
-/** The one node; where the scene is far from the origin, its place. */
+/** The single node, with a translation if the scene is far from the origin. */
 static void say_node(adcgs_json *json, const adcgs_splats *s)
 {
     open_one(json, "nodes");
@@ -225,7 +228,7 @@ adcgs_status adcgs_glb_put(const adcgs_splats *splats, const adcgs_splats_style 
 adcgs_status adcgs_glb_put(const adcgs_splats *splats, const adcgs_splats_style *style, FILE *file, const char *path,
                            adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build has no glTF: jansson was not there", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build has no glTF: it needs jansson", path);
 }
 
 #endif

@@ -20,7 +20,7 @@ adcgs_status adcgs_growing_open(adcgs_growing *g, const char *path, adcgs_error 
     return status;
 }
 
-/** Of a piece that did not fit nothing is left. */
+/** Remove a partly written piece. */
 static adcgs_status take_back(adcgs_growing *g, int reason, adcgs_error *error)
 {
     if (g->is_regular && ftruncate(fileno(g->file), (off_t)g->bytes))
@@ -39,7 +39,7 @@ adcgs_status adcgs_growing_append(adcgs_growing *g, const void *data, size_t byt
     if (!g->atomic.temporary || g->is_hidden)
         return ADCGS_OK;
     const adcgs_status status = adcgs_atomic_show(&g->atomic, error);
-    g->file = status == ADCGS_OK ? g->file : NULL; /* else it is closed */
+    g->file = status == ADCGS_OK ? g->file : NULL; /* on failure it has been closed */
     return status;
 }
 

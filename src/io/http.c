@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What is asked of a web server, and whether its answers are of use: the front of the module that holds libcurl. */
+/** \file
+ * Requests to a web server and checks of its responses: the front of the module
+ * with libcurl.
+ */
 #include "config.h"
 
 #include "io/http.h"
@@ -10,28 +13,28 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define RANGE_FIRST (UINT64_C(64) << 10)
-#define RANGE_MAX (UINT64_C(1) << 20)
+#define RANGE_FIRST (UINT64_C(64) << 10) /* bytes of a first range */
+#define RANGE_MAX (UINT64_C(1) << 20) /* bytes of the longest range */
 #define BYTES_MAX (UINT64_C(1) << 36) /* of a stream of the highest level */
 
-/** Bytes that are at hand. */
+/** A cached range. */
 typedef struct window {
-    uint8_t *bytes;      /**< [room], of which held are there */
+    uint8_t *bytes;      /**< [room], the first `held` of them valid */
     size_t held, room;
-    uint64_t at;         /**< of the first */
-    uint64_t asked;      /**< how many were asked for at most */
+    uint64_t at;         /**< offset of the first byte */
+    uint64_t asked;      /**< maximum length of the request */
 } window;
 
 struct adcgs_http {
     const adcgs_curl *curl;
     adcgs_transfer *transfer;
     char *url;
-    uint64_t size;       /**< 0: it can be read in order only */
-    adcgs_http_head is;  /**< what the first answer said: so it has to stay */
+    uint64_t size;       /**< 0: it can only be read in order */
+    adcgs_http_head is;  /**< head of the first response; later ones must agree */
     uint64_t left;       /**< bytes that may still be read */
-    window windows[2];   /**< so that a look at the index, say, does not cost what was there before */
-    int used;            /**< which was used last */
-    adcgs_error why;     /**< why reading failed */
+    window windows[2];   /**< two, so that a jump, to the index for example, keeps the range before it */
+    int used;            /**< index of the window used last */
+    adcgs_error why;     /**< reason of a read failure */
 };
 
 #ifdef HAVE_CURL
@@ -43,7 +46,7 @@ static ADCGS_MODULE_GET(get_curl, adcgs_curl, adcgs_curl_table, "adcgs_http.so",
 static adcgs_status get_curl(const adcgs_curl **curl, const char *path, adcgs_error *error)
 {
     *curl = NULL;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%.160s: http needs libcurl, which this build does without", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%.160s: http needs libcurl, which this build lacks", path);
 }
 
 #endif
@@ -53,12 +56,12 @@ int adcgs_is_url(const char *name)
     return !strncasecmp(name, "http://", 7) || !strncasecmp(name, "https://", 8);
 }
 
-/* ---- Asking ---- */
+/* ---- Requests ---- */
 
 static adcgs_status fail_status(const adcgs_http *h, int status, adcgs_error *error)
 {
-    const char *const what = status == 401 ? " (it wants a password)"
-                             : status == 206 ? " (a part, which was not asked for)"
+    const char *const what = status == 401 ? " (a password is required)"
+                             : status == 206 ? " (a range that was not requested)"
                              : status == 403 ? " (forbidden)"
                              : status == 404 ? " (not found)"
                                              : "";
@@ -72,7 +75,7 @@ static adcgs_status check_size(const adcgs_http *h, uint64_t size, adcgs_error *
                                           (unsigned long long)size, (unsigned long long)BYTES_MAX);
 }
 
-/** What to ask by, so that a range is of what the first one was of. A weak tag does not say that. */
+/** Validator that makes the server send a range only of the unchanged resource. A weak tag does not guarantee that. */
 static const char *same(const adcgs_http *h)
 {
     return *h->is.tag == '"' ? h->is.tag : *h->is.modified ? h->is.modified : NULL;
@@ -83,22 +86,22 @@ static int has_changed(const adcgs_http *h, const adcgs_http_head *head)
     return head->size != h->is.size || (*h->is.tag ? strcmp(head->tag, h->is.tag) : strcmp(head->modified, h->is.modified));
 }
 
-/** Whether the answer is the range from `first` on, no longer than asked for. */
+/** Check that the response is the range from `first` on, at most as long as requested. */
 static adcgs_status check_range(const adcgs_http *h, const adcgs_http_head *head, uint64_t first, uint64_t last,
                                 adcgs_error *error)
 {
     if (head->first == first && head->last <= last)
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: the server sent another range than bytes %llu to %llu", h->url,
+    return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: the server sent a range other than bytes %llu to %llu", h->url,
                       (unsigned long long)first, (unsigned long long)last);
 }
 
-/** All bytes of the body, of which there are to be n, into a window. */
+/** Read the whole body, of expected length n, into a window. */
 static adcgs_status fill(adcgs_http *h, window *w, size_t n, adcgs_error *error)
 {
     size_t got = 1;
     if (n > h->left)
-        return adcgs_fail(error, ADCGS_ERR_LIMIT, "%.160s: more than %llu bytes were read in all", h->url,
+        return adcgs_fail(error, ADCGS_ERR_LIMIT, "%.160s: more than %llu bytes read in total", h->url,
                           (unsigned long long)BYTES_MAX);
     if (n > w->room) {
         uint8_t *const bytes = realloc(w->bytes, n);
@@ -112,15 +115,15 @@ static adcgs_status fill(adcgs_http *h, window *w, size_t n, adcgs_error *error)
     h->left -= w->held;
     uint8_t more;
     if (w->held == n)
-        ADCGS_TRY(h->curl->read(h->transfer, &more, 1, &got, error)); /* its end, which leaves the connection whole */
+        ADCGS_TRY(h->curl->read(h->transfer, &more, 1, &got, error)); /* reading to the end keeps the connection usable */
     if (w->held == n && got == 0)
         return ADCGS_OK;
     w->held = 0;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: the server sent %s bytes than its answer says", h->url,
+    return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: the server sent %s bytes than announced", h->url,
                       got ? "more" : "fewer");
 }
 
-/** Make a window one of at most so many bytes from `first` on. */
+/** Fill a window with at most this many bytes from `first` on. */
 static adcgs_status fetch(adcgs_http *h, window *w, uint64_t first, uint64_t bytes, adcgs_error *error)
 {
     char range[48];
@@ -141,13 +144,13 @@ static adcgs_status fetch(adcgs_http *h, window *w, uint64_t first, uint64_t byt
 
 /* ---- Opening ---- */
 
-/** All of it, or as much as is to be read, in order. */
+/** Request the whole resource, or its first `limit` bytes, to be read in order. */
 static adcgs_status ask_in_order(adcgs_http *h, uint64_t limit, adcgs_error *error)
 {
     char range[48];
     snprintf(range, sizeof range, "0-%llu", (unsigned long long)limit - 1);
     ADCGS_TRY(h->curl->ask(h->transfer, limit ? range : NULL, NULL, &h->is, error));
-    if (limit && h->is.status == 416) /* there is nothing */
+    if (limit && h->is.status == 416) /* it is empty */
         ADCGS_TRY(h->curl->ask(h->transfer, NULL, NULL, &h->is, error));
     if (h->is.status == 206 && limit)
         return check_range(h, &h->is, 0, limit - 1, error);
@@ -156,13 +159,13 @@ static adcgs_status ask_in_order(adcgs_http *h, uint64_t limit, adcgs_error *err
     return limit || h->is.length == ADCGS_HTTP_UNKNOWN ? ADCGS_OK : check_size(h, h->is.length, error);
 }
 
-/** By ranges, if the server gives them. */
+/** Request the first range; falls back to reading in order if the server has no ranges. */
 static adcgs_status ask_any_order(adcgs_http *h, adcgs_error *error)
 {
     char range[48];
     snprintf(range, sizeof range, "0-%llu", (unsigned long long)RANGE_FIRST - 1);
     ADCGS_TRY(h->curl->ask(h->transfer, range, NULL, &h->is, error));
-    if (h->is.status == 416 || (h->is.status == 206 && h->is.size == ADCGS_HTTP_UNKNOWN)) /* nothing, or nobody knows how much */
+    if (h->is.status == 416 || (h->is.status == 206 && h->is.size == ADCGS_HTTP_UNKNOWN)) /* empty, or of unknown size */
         return ask_in_order(h, 0, error);
     if (h->is.status == 200)
         return h->is.length == ADCGS_HTTP_UNKNOWN ? ADCGS_OK : check_size(h, h->is.length, error);
@@ -269,7 +272,7 @@ adcgs_status adcgs_http_explain(const adcgs_http *http, adcgs_status status, adc
     return http->why.status;
 }
 
-/** Room that grows with what arrives, not with what the server says. */
+/** Memory grows with the bytes that arrive, not with the announced length. */
 static adcgs_status load(adcgs_http *h, uint8_t **data, size_t *bytes, adcgs_http_useful_fn useful, adcgs_error *error)
 {
     size_t room = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The module that holds libcurl: a transfer at a time over a kept connection, its bytes taken as they are wanted. */
+/** \file The module with libcurl: one transfer at a time over a kept connection, read on demand. */
 #include "config.h"
 
 #include "io/http_curl.h"
@@ -12,14 +12,14 @@
 #include <strings.h>
 #include <time.h>
 
-#define CONNECT_MS 15000L
-#define WAIT_SECONDS 30.0 /* in which less than WAIT_BYTES is nothing */
+#define CONNECT_MS 15000L /* time limit for a connection */
+#define WAIT_SECONDS 30.0 /* time limit for WAIT_BYTES, after which the transfer fails */
 #define WAIT_BYTES 1024
-#define POLL_MS 200       /* how soon an interrupt is noticed */
-#define REDIRECTS 5L
-#define HEAD_BYTES 65536
+#define POLL_MS 200       /* longest delay until an interrupt is noticed */
+#define REDIRECTS 5L /* followed at most */
+#define HEAD_BYTES 65536 /* upper bound of all headers of a response */
 
-#define TOO_LARGE 100 /* CURLE_TOO_LARGE, which older headers do not name */
+#define TOO_LARGE 100 /* CURLE_TOO_LARGE, which older headers do not define */
 
 struct adcgs_transfer {
     CURLM *multi;
@@ -27,16 +27,16 @@ struct adcgs_transfer {
     struct curl_slist *headers;
     const char *url;
     int (*interrupted)(void);
-    int started, done;     /**< an answer is asked for; it came to its end */
-    CURLcode result;       /**< once it did */
+    int started, done;     /**< a request has been sent; its response has ended */
+    CURLcode result;       /**< valid once done */
     char reason[CURL_ERROR_SIZE];
-    const char *refused;   /**< what of the answer was too much; NULL: nothing */
+    const char *refused;   /**< reason to refuse the response; NULL: none */
     adcgs_http_head head;
-    size_t head_bytes;     /**< of all heads since it was asked, those of redirects too */
-    int paused;            /**< there is more than the bytes held */
-    double waited;         /**< since WAIT_BYTES came */
+    size_t head_bytes;     /**< of all heads since the request, those of redirects too */
+    int paused;            /**< more data waits behind the bytes held */
+    double waited;         /**< seconds since WAIT_BYTES came */
     size_t came;
-    size_t next, held;     /**< bytes[next .. held) are still to be taken */
+    size_t next, held;     /**< bytes[next .. held) have not been read yet */
     uint8_t bytes[CURL_MAX_WRITE_SIZE];
 };
 
@@ -45,14 +45,14 @@ static size_t take_header(char *data, size_t size, size_t n, void *user)
     adcgs_transfer *const t = user;
     t->head_bytes += n;
     if (t->head_bytes > HEAD_BYTES) {
-        t->refused = "the head of its answer does not end";
+        t->refused = "the headers of its response are too long";
         return 0;
     }
     adcgs_http_head_line(&t->head, data, n);
     return n;
 }
 
-/** The body: held until it is taken, and no more of it comes until then. */
+/** The body: held until it is read; until then libcurl is paused. */
 static size_t take_body(char *data, size_t size, size_t n, void *user)
 {
     adcgs_transfer *const t = user;
@@ -77,7 +77,7 @@ static double seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/** libcurl takes no line of a head that is longer than its bound, and calls that a lack of memory, or too large since 8.6. */
+/** True if libcurl refused a head line above its length limit. It reports CURLE_OUT_OF_MEMORY, or CURLE_TOO_LARGE since 8.6. */
 static int is_long_line(const adcgs_transfer *t)
 {
     curl_off_t connected = 0, came = 0;
@@ -89,19 +89,19 @@ static int is_long_line(const adcgs_transfer *t)
 static adcgs_status fail(const adcgs_transfer *t, adcgs_error *error)
 {
     if (is_long_line(t))
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: a line of its answer's head is longer than the %d bytes that libcurl "
-                          "takes, or there is no memory", t->url, CURL_MAX_HTTP_HEADER);
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.160s: a header line of its response exceeds the %d bytes that libcurl "
+                          "accepts, or memory is exhausted", t->url, CURL_MAX_HTTP_HEADER);
     const char *const why = t->refused ? t->refused : *t->reason ? t->reason : curl_easy_strerror(t->result);
     return adcgs_fail(error, t->result == CURLE_OUT_OF_MEMORY ? ADCGS_ERR_MEMORY : ADCGS_ERR_IO, "%.160s: %s", t->url, why);
 }
 
-/** Do what can be done now; wait a little if that is nothing. */
+/** Make progress without blocking; wait briefly if there is none. */
 static adcgs_status step(adcgs_transfer *t, adcgs_error *error)
 {
     const CURLMsg *message;
     int running, left;
     if (curl_multi_perform(t->multi, &running) != CURLM_OK)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot go on", t->url);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot continue", t->url);
     while ((message = curl_multi_info_read(t->multi, &left)))
         if (message->msg == CURLMSG_DONE) {
             t->done = 1;
@@ -116,8 +116,8 @@ static adcgs_status step(adcgs_transfer *t, adcgs_error *error)
 }
 
 /**
- * Until there are bytes of the body, or it has ended, or so many steps have brought nothing. Time counts while we wait, not while
- * what came is used.
+ * Wait until bytes of the body are available, it has ended, or `steps` steps brought nothing. Only waiting counts as time, not
+ * the use of received bytes.
  */
 static adcgs_status wait_for_body(adcgs_transfer *t, int steps, adcgs_error *error)
 {
@@ -164,7 +164,7 @@ static void transfer_close(adcgs_transfer **transfer)
     *transfer = NULL;
 }
 
-/** Protocols by name since libcurl 7.85, by bits before. What began encrypted stays so. */
+/** Allowed protocols: by name since libcurl 7.85, as bits before. An https URL is never redirected to http. */
 static CURLcode set_protocols(CURL *easy, int is_secure)
 {
 #if LIBCURL_VERSION_NUM >= 0x075500
@@ -183,7 +183,7 @@ static CURLcode set_up(adcgs_transfer *t)
     CURLcode result = set_protocols(e, !strncasecmp(t->url, "https:", 6));
     result = result ? result : curl_easy_setopt(e, CURLOPT_URL, t->url);
     result = result ? result : curl_easy_setopt(e, CURLOPT_USERAGENT, "adcgs/" PACKAGE_VERSION);
-    result = result ? result : curl_easy_setopt(e, CURLOPT_NOSIGNAL, 1L); /* there are other threads */
+    result = result ? result : curl_easy_setopt(e, CURLOPT_NOSIGNAL, 1L); /* the program has other threads */
     result = result ? result : curl_easy_setopt(e, CURLOPT_CONNECTTIMEOUT_MS, CONNECT_MS);
     result = result ? result : curl_easy_setopt(e, CURLOPT_FOLLOWLOCATION, 1L);
     result = result ? result : curl_easy_setopt(e, CURLOPT_MAXREDIRS, REDIRECTS);
@@ -202,18 +202,18 @@ static adcgs_status transfer_open(adcgs_transfer **out, const char *url, int (*i
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", url);
     t->url = url;
     t->interrupted = interrupted;
-    curl_global_init(CURL_GLOBAL_DEFAULT); /* counted, and undone as often */
+    curl_global_init(CURL_GLOBAL_DEFAULT); /* counts its calls; curl_global_cleanup() undoes one */
     t->multi = curl_multi_init();
     t->easy = t->multi ? curl_easy_init() : NULL;
     if (!t->easy || set_up(t) != CURLE_OK) {
         transfer_close(&t);
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot begin", url);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot start", url);
     }
     *out = t;
     return ADCGS_OK;
 }
 
-/** "If-Range: ...": the range as long as it is of the same, else all. */
+/** "If-Range: ...": the range if the resource is unchanged, else the whole resource. */
 static CURLcode set_same(adcgs_transfer *t, const char *same)
 {
     char line[160];
@@ -231,7 +231,7 @@ static adcgs_status transfer_ask(adcgs_transfer *t, const char *range, const cha
     curl_off_t length = -1;
     stop(t);
     if (set_same(t, same) || curl_easy_setopt(t->easy, CURLOPT_RANGE, range) || curl_multi_add_handle(t->multi, t->easy))
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot ask", t->url);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: libcurl cannot send a request", t->url);
     t->started = 1;
     ADCGS_TRY(wait_for_body(t, INT_MAX, error));
     *head = t->head;
@@ -247,7 +247,7 @@ static adcgs_status take(adcgs_transfer *t, int steps, void *buffer, size_t byte
     *got = 0;
     if (t->paused && t->next == t->held) {
         t->paused = 0;
-        curl_easy_pause(t->easy, CURLPAUSE_CONT); /* which may hand over the next bytes at once */
+        curl_easy_pause(t->easy, CURLPAUSE_CONT); /* may deliver the next bytes at once */
     }
     ADCGS_TRY(wait_for_body(t, steps, error));
     *got = ADCGS_MIN(bytes, t->held - t->next);

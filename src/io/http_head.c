@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a web server's answer says of itself. */
+/** \file Heads of a web server's responses. */
 #include "config.h"
 
 #include "io/http_head.h"
 
 #include <strings.h>
 
-/** Decimal digits, up to what fits. \return whether there was one at least. */
+/** Parse decimal digits. \return true if there was at least one and the number fits. */
 static int parse_number(const char **text, uint64_t *number)
 {
     const char *const begin = *text;
@@ -18,7 +18,7 @@ static int parse_number(const char **text, uint64_t *number)
     return *text > begin;
 }
 
-/** "bytes 0-65535/100000"; with * for what is not known, or where no range is there to be had. */
+/** "bytes 0-65535/100000"; with * for an unknown size, or for a range that cannot be had. */
 static void parse_range(adcgs_http_head *head, const char *text)
 {
     uint64_t first = ADCGS_HTTP_UNKNOWN, last = 0, size = ADCGS_HTTP_UNKNOWN;
@@ -38,7 +38,7 @@ static void parse_range(adcgs_http_head *head, const char *text)
     head->size = size;
 }
 
-/** Keep a value that goes back to the server as it is; one that is too long or no plain text is none. */
+/** Keep a value that is sent back to the server unchanged; "" if it is too long or not plain ASCII. */
 static void keep(char *to, size_t size, const char *value)
 {
     const size_t n = strlen(value);
@@ -53,7 +53,7 @@ static void keep(char *to, size_t size, const char *value)
 static void take(adcgs_http_head *head, char *line)
 {
     char *value = strchr(line, ':');
-    if (!strncmp(line, "HTTP/", 5)) /* another answer: what a redirect said counts no more */
+    if (!strncmp(line, "HTTP/", 5)) /* another response: headers of a redirect no longer count */
         *head = (adcgs_http_head){.length = ADCGS_HTTP_UNKNOWN, .first = ADCGS_HTTP_UNKNOWN, .size = ADCGS_HTTP_UNKNOWN};
     if (!value)
         return;
@@ -72,7 +72,7 @@ void adcgs_http_head_line(adcgs_http_head *head, const char *data, size_t n)
     char line[256];
     while (n > 0 && strchr(" \t\r\n", data[n - 1]))
         n--;
-    if (n >= sizeof line) /* longer ones tell nothing that we ask for */
+    if (n >= sizeof line) /* headers of interest are shorter */
         return;
     memcpy(line, data, n);
     line[n] = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Images: who reads and writes what. */
+/** \file Images: the table of formats with their readers and writers. */
 #include "config.h"
 
 #include "io/image.h"
@@ -27,16 +27,16 @@ typedef adcgs_status reader(FILE *file, adcgs_image *out, const char *path, adcg
 typedef adcgs_status encoder(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options, const char *path,
                              adcgs_error *error);
 
-/** A format: told when it is read by how a file begins, when it is written by the name's end. */
+/** A format. Reading detects it by the first bytes, writing by the extension. */
 typedef struct format {
     const char *magic[2];      /* NULL: not this one */
     const char *extensions[6];
-    prober *probe;             /* NULL: another reads it */
+    prober *probe;             /* NULL: OpenImageIO reads it */
     reader *read;
     encoder *encode;
 } format;
 
-/* ---- OpenImageIO, or nobody ---- */
+/* ---- OpenImageIO, if the build has it ---- */
 
 #ifdef HAVE_ENCODER
 static adcgs_status probe_foreign(FILE *file, const char *named, int *width, int *height, int *channels, const char *path,
@@ -98,7 +98,7 @@ static const format formats[] = {
 };
 static const format foreign = {{NULL}, {NULL}, NULL, NULL, encode_foreign};
 
-/** NULL: none of ours. */
+/** NULL: no format of ours. */
 static const format *find_reader(const uint8_t *begin, size_t n)
 {
     for (size_t i = 0; i < ADCGS_COUNTOF(formats); i++)
@@ -126,10 +126,10 @@ static int is_exr(const char *extension)
 
 /* ---- Reading ---- */
 
-/** An open image and its reader: one of our formats, or the reader of that name in OpenImageIO. */
+/** An open image and its reader: one of our formats, or a named reader of OpenImageIO. */
 typedef struct source {
     FILE *file;
-    const format *own; /**< NULL: another's */
+    const format *own; /**< NULL: OpenImageIO's */
     const char *reader;
 } source;
 
@@ -138,7 +138,7 @@ static uint32_t load_size(const uint8_t *at, size_t bytes)
     return bytes == 2 ? (uint32_t)(at[0] | at[1] << 8) : adcgs_load_le32(at);
 }
 
-/** Two readers allocate all pixels before they return the size: it is checked here. */
+/** Check the size before reading: OpenImageIO's GIF and BMP readers allocate all pixels before they report it. */
 static adcgs_status check_early(const char *named, const uint8_t *begin, size_t n, const char *path, adcgs_error *error)
 {
     const int is_gif = !strcmp(named, "gif"), is_bmp = !strcmp(named, "bmp");
@@ -146,14 +146,15 @@ static adcgs_status check_early(const char *named, const uint8_t *begin, size_t 
     if ((!is_gif && !is_bmp) || n < at + 2 * bytes)
         return ADCGS_OK;
     const uint32_t width = load_size(begin + at, bytes), height = load_size(begin + at + bytes, bytes);
-    const uint32_t rows = bytes == 4 && height > 0x7fffffffu ? 0u - height : height; /* from top to bottom */
+    const uint32_t rows = bytes == 4 && height > 0x7fffffffu ? 0u - height : height; /* negative height: rows from top to
+                                                                                        bottom */
     if (width >= 1 && rows >= 1 && width <= ADCGS_IMAGE_MAX && rows <= ADCGS_IMAGE_MAX)
         return ADCGS_OK;
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %ux%u pixels, expected 1x1 to %dx%d", path, width, rows, ADCGS_IMAGE_MAX,
                       ADCGS_IMAGE_MAX);
 }
 
-/** The reader by the first bytes. A file that is no image of a supported kind is refused with its kind. */
+/** Choose the reader by the first bytes. A file that is no image of a supported kind is refused with its kind. */
 static adcgs_status find_source(source *s, const uint8_t *begin, size_t n, const char *path, adcgs_error *error)
 {
     s->own = find_reader(begin, n);
@@ -212,8 +213,8 @@ adcgs_status adcgs_image_probe(int *width, int *height, int *channels, const cha
 
 struct adcgs_image_rows {
     source from;
-    adcgs_image whole;   /**< where the format has no rows of its own */
-    size_t row, at;      /**< values of a row; values of `whole` that have been read */
+    adcgs_image whole;   /**< for formats without reading by rows */
+    size_t row, at;      /**< values per row; values of `whole` that have been read */
 #ifdef HAVE_ENCODER
     adcgs_png_rows *png;
 #endif
@@ -298,12 +299,12 @@ adcgs_status adcgs_image_tell(adcgs_photo *photo, const char *path, adcgs_error 
 
 /* ---- Writing ---- */
 
-/** What our formats have; OpenImageIO's tell themselves. */
+/** Check the options against our formats; OpenImageIO checks its own formats. */
 static adcgs_status check_options(const adcgs_image_options *options, const char *path, const char *extension,
                                   adcgs_error *error)
 {
     if (!*extension)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the name's extension must say the format", path);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the file name needs an extension that gives the format", path);
     if (options->bits != 0 && options->bits != 8 && options->bits != 16)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: %d bits, expected 8 or 16", path, options->bits);
     if (options->depth && !is_exr(extension))
@@ -313,7 +314,7 @@ static adcgs_status check_options(const adcgs_image_options *options, const char
     return ADCGS_OK;
 }
 
-/** The file in memory; only EXR has premultiplied colours. */
+/** Encode the file in memory. Only EXR has premultiplied colours. */
 static adcgs_status encode_image(adcgs_buffer *out, const adcgs_image *image, const adcgs_image_options *options,
                                  const char *path, const char *extension, adcgs_error *error)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Bytes that come in order. */
+/** \file Bytes that arrive in order. */
 #include "io/incoming.h"
 
 adcgs_status adcgs_incoming_open(adcgs_incoming *in, const char *path, int (*interrupted)(void), adcgs_error *error)

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file JPEG by libjpeg-turbo. Where a file ends is found here, since the library makes do with whatever there is. */
+/** \file
+ * JPEG by libjpeg-turbo. The end of a file is checked here, since the library
+ * accepts truncated files.
+ */
 #include "config.h"
 
 #include "io/jpeg.h"
@@ -12,14 +15,14 @@
 #include <turbojpeg.h>
 
 #define QUALITY 95
-#define FILE_MAX ((uint64_t)1 << 30)
+#define FILE_MAX ((uint64_t)1 << 30) /* bytes of a file that is read */
 
 /* ---- Markers ---- */
 
 enum { STUFFED = 0x00, TEM = 0x01, SOF0 = 0xc0, DHT = 0xc4, JPG = 0xc8, DAC = 0xcc, SOF15 = 0xcf, RST0 = 0xd0, RST7 = 0xd7,
        SOI = 0xd8, EOI = 0xd9, MARKER = 0xff };
 
-/** The next marker with a meaning of its own; between segments, and in coded data, there is nothing else of note. */
+/** The next marker that matters here. Skips coded data and bytes between segments. */
 static int next_marker(FILE *file)
 {
     for (int c = getc(file); c != EOF; c = getc(file)) {
@@ -44,11 +47,11 @@ static int read_u16(FILE *file)
     return low == EOF ? 0 : high << 8 | low;
 }
 
-/** Go on to the end of the picture, or to the header of its frame, of which the length has then been read. */
+/** Skip to the end of the image or, with to_frame, to its frame header, whose length has then been read. */
 static adcgs_status walk(FILE *file, int to_frame, const char *path, adcgs_error *error)
 {
     for (int marker = next_marker(file); marker != EOI; marker = next_marker(file)) {
-        const int bytes = marker == EOF ? 0 : read_u16(file); /* with these two */
+        const int bytes = marker == EOF ? 0 : read_u16(file); /* including these two bytes */
         if (to_frame && is_frame(marker) && bytes >= 8)
             return ADCGS_OK;
         if (bytes < 2 || fseek(file, bytes - 2, SEEK_CUR))
@@ -69,7 +72,7 @@ adcgs_status adcgs_jpeg_probe(FILE *file, int *width, int *height, int *channels
 
 /* ---- Reading ---- */
 
-/** Ink as Adobe stores it, 255 for none, times black; in place, three of four bytes. */
+/** Convert CMYK as Adobe stores it, 255 for no ink, by multiplying with black. In place, from four to three bytes a pixel. */
 static void ink_to_rgb(uint8_t *bytes, size_t pixels)
 {
     for (size_t i = 0; i < pixels; i++)
@@ -77,7 +80,7 @@ static void ink_to_rgb(uint8_t *bytes, size_t pixels)
             bytes[3 * i + c] = (uint8_t)((bytes[4 * i + c] * bytes[4 * i + 3] + 127) / 255);
 }
 
-/** Whether a warning tells of nothing that was lost: bytes between segments, which some cameras leave there. */
+/** True for a warning without loss of data: bytes between segments, which some cameras leave there. */
 static int is_harmless(tjhandle decoder)
 {
     return tjGetErrorCode(decoder) == TJERR_WARNING && strstr(tjGetErrorStr2(decoder), "extraneous bytes");

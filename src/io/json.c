@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define WHOLE_MAX 9007199254740992.0 /* 2^53: up to here whole numbers are exact */
+#define WHOLE_MAX 9007199254740992.0 /* 2^53: whole numbers below it are exact */
 
 void adcgs_json_init(adcgs_json *json)
 {
@@ -24,7 +24,7 @@ void adcgs_json_clear(adcgs_json *json)
     *json = (adcgs_json){0};
 }
 
-/** Takes the value, which NULL says there was no memory for. */
+/** Add a value and take its ownership; NULL stands for an allocation failure. */
 static void add(adcgs_json *json, const char *key, json_t *value)
 {
     json_t *const parent = json->depth ? json->open[json->depth - 1] : NULL;
@@ -37,7 +37,7 @@ static void add(adcgs_json *json, const char *key, json_t *value)
         json->failed = json_array_append_new(parent, value) != 0;
     else {
         char *const name = adcgs_text_utf8(key);
-        json->failed = json_object_set_new(parent, name, value) != 0; /* NULL for a name is refused */
+        json->failed = json_object_set_new(parent, name, value) != 0; /* fails if name is NULL */
         free(name);
     }
 }

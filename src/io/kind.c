@@ -15,7 +15,7 @@ const adcgs_kind *adcgs_kind_at(const char *path)
     uint8_t begin[ADCGS_KIND_BYTES], tail[ADCGS_KIND_TAIL];
     const adcgs_kind *const unknown = adcgs_kind_of((const uint8_t *)"", 0, 0, NULL, path);
     struct stat status = {0}; /* MemorySanitizer of clang 14 does not know that stat() writes it */
-    if (stat(path, &status)) /* without opening it: the writer of a pipe would see a reader open and close it */
+    if (stat(path, &status)) /* without opening it, so that the writer of a pipe does not see a reader come and go */
         return unknown;
     if (S_ISDIR(status.st_mode))
         return &folder;
@@ -42,20 +42,20 @@ static const struct {
     {"an image (PNG, JPEG, TIFF, EXR, WebP, HEIC, AVIF, BMP, GIF, HDR or netpbm)", ADCGS_KIND_IMAGE},
 };
 
-/** The way to go for a file that another program or option reads. */
+/** Advice for a file that another program or option reads. */
 static const char *advise(adcgs_kind_class class, adcgs_want want)
 {
     switch (class) {
     case ADCGS_KIND_STREAM:
         return want == ADCGS_WANT_STREAM ? NULL : "adcgs-dec renders it, adcgs-info describes it";
     case ADCGS_KIND_VIDEO:
-        return want == ADCGS_WANT_STREAM ? NULL : "adcgs-import takes its frames out and finds their cameras";
+        return want == ADCGS_WANT_STREAM ? NULL : "adcgs-import extracts its frames and estimates their cameras";
     case ADCGS_KIND_IMAGE:
-        return want == ADCGS_WANT_SCENE ? "nothing says where its camera was; adcgs-import finds the cameras of several" : NULL;
+        return want == ADCGS_WANT_SCENE ? "one image has no camera pose; adcgs-import estimates those of several" : NULL;
     case ADCGS_KIND_SPLATS:
         return want == ADCGS_WANT_STREAM ? "adcgs-enc makes a stream of it" : NULL;
     case ADCGS_KIND_POINTS:
-        return want == ADCGS_WANT_SCENE ? "points go with a scene, by --points" : NULL;
+        return want == ADCGS_WANT_SCENE ? "give points with a scene, by --points" : NULL;
     case ADCGS_KIND_SCENE:
     case ADCGS_KIND_FOLDER:
         return want == ADCGS_WANT_STREAM ? "adcgs-enc makes a stream of a scene" : NULL;
@@ -68,17 +68,18 @@ adcgs_status adcgs_kind_refuse(const adcgs_kind *kind, const char *path, adcgs_w
 {
     const char *const advice = kind->advice ? kind->advice : advise(kind->class, want);
     const adcgs_status status = kind->class == wants[want].class ? ADCGS_ERR_UNSUPPORTED : ADCGS_ERR_DATA;
-    if (kind->advice && kind->class == wants[want].class) /* the expected class in another format */
+    if (kind->advice && kind->class == wants[want].class) /* the expected class, but an unsupported format */
         return adcgs_fail(error, status, "%.150s: %s, which is not read: %s", path, kind->name, advice);
     return adcgs_fail(error, status, "%.150s: %s, expected %s%s%s", path, kind->name, wants[want].name, advice ? ": " : "",
                       advice ? advice : "");
 }
 
-/** Files of splats are scenes, too, and PLY of splats are points. */
+/** Splats also serve as scenes, and PLY splats as points. */
 static int fits(const adcgs_kind *kind, adcgs_want want)
 {
     return kind->class == ADCGS_KIND_UNKNOWN || (kind->is_read && kind->class == wants[want].class) ||
-           (want != ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_FOLDER) || /* other readers want a regular file and say so */
+           (want != ADCGS_WANT_STREAM && kind->class == ADCGS_KIND_FOLDER) || /* other readers need a regular file and report
+                                                                                 this */
            (want == ADCGS_WANT_SCENE && kind->is_read && kind->class == ADCGS_KIND_SPLATS) ||
            (want == ADCGS_WANT_POINTS && kind->is_read && kind->class == ADCGS_KIND_SPLATS);
 }

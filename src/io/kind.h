@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The kind of a file by its first bytes: one table for all programs, with the
+ * The kind of a file by its first bytes. One table for all programs has the
  * formats that are read and others that users have, each with its name and
  * advice. The extension counts only if a kind has no bytes of its own (raw
  * images of cameras in TIFF, videos of two fisheyes in MP4).
@@ -10,8 +10,8 @@
 
 #include "base/base.h"
 
-#define ADCGS_KIND_BYTES 4096 /**< of a file's beginning that are looked at */
-#define ADCGS_KIND_TAIL 32    /**< of its end */
+#define ADCGS_KIND_BYTES 4096 /**< bytes examined at the beginning of a file */
+#define ADCGS_KIND_TAIL 32    /**< bytes examined at its end */
 
 /** The content of a file. */
 typedef enum adcgs_kind_class {
@@ -31,9 +31,9 @@ typedef enum adcgs_kind_class {
 typedef struct adcgs_kind {
     adcgs_kind_class class;
     const char *name;   /**< with its article: "a TIFF image" */
-    const char *reader; /**< of images that are read: OpenImageIO's name of the format; else NULL */
+    const char *reader; /**< for images that are read: OpenImageIO's name of the format; else NULL */
     const char *advice; /**< for a kind that is not read; or NULL */
-    int is_read;        /**< by those programs that want its class */
+    int is_read;        /**< true: programs that expect its class read it */
 } adcgs_kind;
 
 /** The content that a program expects of a file. */

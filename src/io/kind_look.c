@@ -115,7 +115,7 @@ static const magic magics[] = {
 
 /* ---- Kinds that a few bytes do not identify ---- */
 
-static const adcgs_kind unknown = {ADCGS_KIND_UNKNOWN, "a file of no kind that is known", NULL, NULL, 0};
+static const adcgs_kind unknown = {ADCGS_KIND_UNKNOWN, "a file of unknown kind", NULL, NULL, 0};
 
 /** The bytes and names to examine. */
 typedef struct look {
@@ -131,7 +131,7 @@ static int begins(const look *l, size_t at, const char *text)
     return l->n >= at + n && !memcmp(l->begin + at, text, n);
 }
 
-/** Whether a text stands anywhere in the beginning. */
+/** True if a text occurs anywhere in the first bytes. */
 static int has(const look *l, const char *text)
 {
     const size_t n = strlen(text);
@@ -149,7 +149,7 @@ static int ends_in(const look *l, const char *const *list)
     return 0;
 }
 
-/** MPEG-4's container: the brand behind the type of the first box decides. */
+/** Container of MPEG-4: the brand after the type of the first box decides. */
 static const adcgs_kind *find_in_boxes(const look *l)
 {
     static const adcgs_kind video = VIDEO("a video (MP4 or QuickTime)"), heif = IMAGE("an HEIC image", "heif"),
@@ -174,7 +174,7 @@ static const adcgs_kind *find_in_boxes(const look *l)
         return &avif;
     for (size_t i = 0; i < ADCGS_COUNTOF(heifs); i++)
         if (begins(l, 8, heifs[i]))
-            return has(l, "avif") ? &avif : &heif; /* mif1 is either's */
+            return has(l, "avif") ? &avif : &heif; /* mif1 is used by both */
     return &video;
 }
 
@@ -186,7 +186,7 @@ static uint32_t number(const look *l, size_t at, size_t bytes, int is_big)
     return value;
 }
 
-/** A tag of the first image's directory, if that lies in the beginning: its value, or -1. */
+/** Value of a tag of the first image's directory; -1 if the examined bytes do not contain it. */
 static int64_t tiff_tag(const look *l, uint32_t tag, int is_big)
 {
     const size_t at = number(l, 4, 4, is_big), entries = number(l, at, 2, is_big);
@@ -198,7 +198,7 @@ static int64_t tiff_tag(const look *l, uint32_t tag, int is_big)
     return -1;
 }
 
-/** Cameras store raw images in TIFF, behind a reduced image. */
+/** Raw images of cameras are TIFF files whose first image is a reduced one. */
 static const adcgs_kind *find_in_tiff(const look *l)
 {
     static const adcgs_kind tiff = IMAGE("a TIFF image", "tiff"), dng = NO_IMAGE("a raw image (DNG)", TO_JPEG),
@@ -226,7 +226,7 @@ static const adcgs_kind *find_bitmap(const look *l)
     return NULL;
 }
 
-/** Archives: the names of the files in it decide. */
+/** Archives: the names of their files decide. */
 static const adcgs_kind *find_in_archive(const look *l)
 {
     static const adcgs_kind sog = NO_SPLATS("splats (SOG)", TO_PLY),
@@ -247,7 +247,10 @@ static const adcgs_kind *find_ply(const look *l)
     return has(l, " f_dc_0") || has(l, " packed_position") ? &plain : &other; /* the reader parses the header */
 }
 
-/** 32 bytes a splat and nothing else: place and size in binary32, colour, rotation; all that are here must be splats. */
+/**
+ * .splat has 32 bytes per splat and no header: position and size as binary32, colour, rotation. All splats in the examined bytes
+ * must be valid.
+ */
 static const adcgs_kind *find_splat(const look *l)
 {
     static const adcgs_kind splat = NO_SPLATS("splats (.splat)", TO_PLY);
@@ -268,7 +271,7 @@ static const adcgs_kind *find_splat(const look *l)
     return &splat;
 }
 
-/** Sections behind a header of 4096 bytes that begins with a version and counts. */
+/** .ksplat has sections after a header of 4096 bytes that begins with a version and counts. */
 static const adcgs_kind *find_ksplat(const look *l)
 {
     static const adcgs_kind ksplat = NO_SPLATS("splats (.ksplat)", TO_PLY);
@@ -289,7 +292,7 @@ static size_t skip_blanks(const look *l)
 
 #define RECORD3D NO_SCENE("Record3D's metadata.json", "export it for nerfstudio: ns-process-data record3d")
 
-/** Camera files of other tools. Scenes pass, so do texts with "frames". */
+/** Camera files of other tools. Scenes pass, and so do texts with "frames". */
 static const adcgs_kind *find_json(const look *l)
 {
     static const struct {
@@ -328,7 +331,7 @@ static const adcgs_kind *find_json(const look *l)
 static const adcgs_kind *find_markup(const look *l)
 {
     static const adcgs_kind page = {ADCGS_KIND_PAGE, "a page of adcgs-share", NULL,
-                                    "open it in a browser; programs want the stream that it was made of", 0},
+                                    "open it in a browser; programs need the stream that it was made from", 0},
                             html = OTHER("a page (HTML)", "save the file that it links to"),
                             agisoft = NO_SCENE("Agisoft Metashape's cameras (XML)", TO_COLMAP),
                             blocks = NO_SCENE("cameras as BlocksExchange (XML)", TO_COLMAP), xml = OTHER("an XML text", NULL);
@@ -346,14 +349,14 @@ static const adcgs_kind *find_markup(const look *l)
     return !strncmp(at, "<?xml", 5) ? &xml : NULL;
 }
 
-/** A packet each 188 bytes begins with the same byte. */
+/** Packets of 188 bytes that begin with the same byte. */
 static const adcgs_kind *find_transport(const look *l)
 {
     static const adcgs_kind video = VIDEO("a video (MPEG transport stream)");
     return l->n > 2 * 188 && l->begin[0] == 'G' && l->begin[188] == 'G' && l->begin[2 * 188] == 'G' ? &video : NULL;
 }
 
-/** A first line of printable characters with commas, and a second one with as many. */
+/** Two first lines of printable characters with equally many commas. */
 static const adcgs_kind *find_table(const look *l)
 {
     static const adcgs_kind table = OTHER("a table (CSV)", NULL);

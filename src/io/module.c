@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Modules: found and opened once. */
+/** \file Finding and opening modules. */
 #include "config.h"
 
 #include "io/module.h"
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/** \return whether the module in the directory is ours; else the reason says why not. */
+/** \return whether the directory has the module of this version; if not, sets the reason. */
 static int open_in(adcgs_module *m, const char *directory, const char *below)
 {
     char name[PATH_MAX];
@@ -24,7 +24,7 @@ static int open_in(adcgs_module *m, const char *directory, const char *below)
     void *const object = dlopen(name, RTLD_NOW | RTLD_LOCAL);
     const char *const *const found = object ? dlsym(object, m->symbol) : NULL;
     if (!found || strcmp(*found, PACKAGE_VERSION)) {
-        const char *const why = object ? "another version's" : dlerror();
+        const char *const why = object ? "it is of another version" : dlerror();
         snprintf(m->reason, sizeof m->reason, "%.150s", why ? why : name);
         if (object)
             dlclose(object);
@@ -34,7 +34,7 @@ static int open_in(adcgs_module *m, const char *directory, const char *below)
     return 1;
 }
 
-/** The directory of the running program, without the last slash. Only Linux tells. \return 0 if it is not known. */
+/** The directory of the running program, without the last slash. Only Linux reports it. \return 0 if it is unknown. */
 static int program_directory(char directory[PATH_MAX])
 {
     const ssize_t n = readlink("/proc/self/exe", directory, PATH_MAX - 1);
@@ -55,7 +55,7 @@ static void open_module(adcgs_module *m)
     }
     if (program_directory(beside) && open_in(m, beside, "/../lib/adcgs"))
         return;
-    *m->reason = 0; /* the place where it was installed is the one to name */
+    *m->reason = 0; /* the message names the installation directory */
     open_in(m, MODULES_DIRECTORY, "");
 }
 

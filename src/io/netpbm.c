@@ -12,7 +12,7 @@ typedef struct header {
     int width, height, channels, maximum;
 } header;
 
-/** A decimal number after white space and comments; -1 if there is none or it is beyond NUMBER_MAX. */
+/** A decimal number after white space and comments; -1 if there is none or it exceeds NUMBER_MAX. */
 static int read_number(FILE *file)
 {
     int c = getc(file);
@@ -93,7 +93,7 @@ adcgs_status adcgs_netpbm_read(FILE *file, adcgs_image *out, const char *path, a
     return status;
 }
 
-/** A row without its alpha: of bytes, or of pairs of bytes, high byte first. */
+/** Convert a row without its alpha, to bytes or to pairs of bytes, high byte first. */
 static void pack_row(const float *row, size_t width, size_t held, size_t stored, int bits, uint16_t *levels, uint8_t *bytes)
 {
     if (bits == 16)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Reading NPY: a magic number, the length of a header, a header that is the
- * text of a Python dictionary, the numbers. Only what describes a table of
- * so many columns is understood; everything else is an error that says so.
+ * Reading NPY: a magic number, the length of a header, a header with the text
+ * of a Python dictionary, the numbers. Only tables with the expected number of
+ * columns are accepted; any other file is an error that names the reason.
  */
 #include "config.h"
 
@@ -15,7 +15,7 @@
 
 #define MAGIC_BYTES 6
 #define DIMENSIONS_MAX 4
-#define COUNT_MAX ((uint64_t)1 << 40) /* of one dimension; no file is as large */
+#define COUNT_MAX ((uint64_t)1 << 40) /* upper bound of one dimension; no file is that large */
 
 enum { SEEN_DESCR = 1, SEEN_ORDER = 2, SEEN_SHAPE = 4, SEEN_ALL = 7 };
 
@@ -25,7 +25,7 @@ typedef struct reader {
     adcgs_error *error;
     int seen;
     int item_bytes;       /**< 4 or 8 */
-    uint32_t columns;     /**< that the table must have */
+    uint32_t columns;     /**< required number of columns */
     int n_dimensions;
     uint64_t shape[DIMENSIONS_MAX];
 } reader;
@@ -41,7 +41,7 @@ static void skip_blanks(reader *r)
         r->at++;
 }
 
-/** The character next, after blanks, if it is this one. */
+/** Take the next character, after blanks, if it is c. */
 static int take(reader *r, char c)
 {
     skip_blanks(r);
@@ -51,7 +51,7 @@ static int take(reader *r, char c)
     return 1;
 }
 
-/** A word that stands next, after blanks. */
+/** Take a word that comes next, after blanks. */
 static int take_word(reader *r, const char *word)
 {
     const size_t n = strlen(word);
@@ -62,7 +62,7 @@ static int take_word(reader *r, const char *word)
     return 1;
 }
 
-/** A string in quotes of either kind, without escapes. */
+/** Take a string in single or double quotes, without escapes. */
 static int take_string(reader *r, char text[16])
 {
     skip_blanks(r);
@@ -156,7 +156,7 @@ static adcgs_status read_dictionary(reader *r)
     return ADCGS_OK;
 }
 
-/** Where the header's text lies, by the format's version. */
+/** Find the header's text; its position depends on the format's version. */
 static adcgs_status find_header(reader *r, const uint8_t *data, size_t bytes)
 {
     const size_t fixed = MAGIC_BYTES + 2;

@@ -14,12 +14,12 @@ typedef struct adcgs_npy {
 } adcgs_npy;
 
 /**
- * Find the table in an NPY file, formats 1.0 to 3.0: C order, shape (n, columns), and nothing behind it. what names the rows in
- * messages: "points", "poses".
+ * Find the table in an NPY file, formats 1.0 to 3.0: C order, shape (n, columns), without trailing bytes. what: the rows' name in
+ * messages, "points", "poses".
  */
 adcgs_status adcgs_npy_open(adcgs_npy *out, const uint8_t *data, size_t bytes, uint32_t columns, const char *what,
                             const char *path, adcgs_error *error);
-/** A number of the table, as stored: it need not be finite. */
+/** A number of the table as stored, so it may not be finite. */
 double adcgs_npy_value(const adcgs_npy *table, size_t row, uint32_t column);
 
 #endif

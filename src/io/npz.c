@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Arrays in NPZ files. The directory at the end says where each file is and how large; local headers, whose sizes numpy leaves
- * to an extra field, only how long they are themselves. No size is believed before the bytes are seen to be there.
+ * Arrays in NPZ files. The directory at the end gives the position and size of
+ * each file. Local headers are read only for their own length, since numpy puts
+ * the sizes there into an extra field. Sizes are checked against the bytes
+ * present before use.
  */
 #include "config.h"
 
@@ -11,12 +13,12 @@
 
 #include <stdlib.h>
 
-#ifdef HAVE_SPZ /* it comes with zlib */
+#ifdef HAVE_SPZ /* HAVE_SPZ implies zlib */
 #include <zlib.h>
 #endif
 
-#define FILE_MAX ((uint64_t)4 << 30)
-#define RATIO_MAX 1100 /* of deflate: nothing becomes smaller */
+#define FILE_MAX ((uint64_t)4 << 30) /* bytes of an archive */
+#define RATIO_MAX 1100 /* upper bound of deflate's compression ratio */
 
 #define END_BYTES 22
 #define ENTRY_BYTES 46
@@ -46,7 +48,7 @@ static adcgs_status bad(const archive *a, const char *text)
     return adcgs_fail(a->error, ADCGS_ERR_DATA, "%s: damaged NPZ file: %s", a->path, text);
 }
 
-/** Where the directory is, and how many files it lists. */
+/** Position of the directory, and its number of files. */
 static adcgs_status find_directory(const archive *a, size_t *at, unsigned *n)
 {
     const size_t least = a->bytes < END_BYTES + COMMENT_MAX ? 0 : a->bytes - END_BYTES - COMMENT_MAX;
@@ -56,9 +58,9 @@ static adcgs_status find_directory(const archive *a, size_t *at, unsigned *n)
         if (adcgs_load_le32(a->data + i) == END_MAGIC) {
             *n = adcgs_load_le16(a->data + i + 10);
             *at = adcgs_load_le32(a->data + i + 16);
-            return *at <= i ? ADCGS_OK : bad(a, "its directory lies behind its end");
+            return *at <= i ? ADCGS_OK : bad(a, "its directory lies beyond its end");
         }
-    return bad(a, "it has no directory, so it ends early");
+    return bad(a, "no directory, so the file ends early");
 }
 
 static int is_named(const uint8_t *name, size_t n, const char *array)
@@ -85,7 +87,7 @@ static adcgs_status find_entry(const archive *a, const char *array, entry *out)
         *out = (entry){adcgs_load_le16(e + 10), adcgs_load_le32(e + 20), adcgs_load_le32(e + 24), adcgs_load_le32(e + 42)};
         return adcgs_load_le16(e + 8) & ENCRYPTED ? bad(a, "it is encrypted") : ADCGS_OK;
     }
-    return adcgs_fail(a->error, ADCGS_ERR_DATA, "%s: there is no array %s in it", a->path, array);
+    return adcgs_fail(a->error, ADCGS_ERR_DATA, "%s: no array %s in the file", a->path, array);
 }
 
 static adcgs_status find_bytes(const archive *a, const entry *e, const uint8_t **packed)
@@ -129,7 +131,7 @@ static adcgs_status take(const archive *a, const char *array, uint8_t **out, siz
     if (e.method != STORED && e.method != DEFLATED)
         return bad(a, "neither stored nor deflated");
     if (e.method == STORED ? e.whole != e.packed : e.whole / RATIO_MAX > e.packed)
-        return bad(a, "a file has another size than it says");
+        return bad(a, "a file's size differs from the declared size");
     uint8_t *data = malloc((size_t)e.whole + 1);
     if (!data)
         return adcgs_fail(a->error, ADCGS_ERR_MEMORY, "%s: out of memory", a->path);

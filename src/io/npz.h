@@ -6,8 +6,8 @@
 #include "base/base.h"
 
 /**
- * The NPY file of an array's name, from malloc(), with a zero byte behind it. Archives are those of numpy: one part, no
- * encryption, less than 4 GiB; stored, or deflated where this build has zlib (ADCGS_ERR_UNSUPPORTED where it has not).
+ * The NPY file with the name of an array, from malloc(), with a zero byte after it. Archives must be like numpy's: one part, no
+ * encryption, less than 4 GiB; stored, or deflated if this build has zlib (else ADCGS_ERR_UNSUPPORTED).
  */
 adcgs_status adcgs_npz_read(uint8_t **out, size_t *bytes, const char *path, const char *array, adcgs_error *error);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Positions far from the world's origin (earth-centred or map coordinates in metres) in files of binary32: they are stored
- * relative to an offset.
+ * Positions far from the world's origin (earth-centred or map coordinates in
+ * metres) in files of binary32. They are stored relative to an offset.
  */
 #ifndef ADCGS_IO_OFFSET_H
 #define ADCGS_IO_OFFSET_H
@@ -10,12 +10,15 @@
 
 #include <math.h>
 
-/** In units of the scene's scale: from there on binary32, in steps of 2^-23 of a number, is coarser than 2^-15 of the scale. */
+/**
+ * Distance of the origin in units of the scene's scale. Beyond it binary32, in steps of 2^-23 of a value, is coarser than 2^-15
+ * of the scale.
+ */
 #define ADCGS_OFFSET_FAR 256.0
 
 /**
- * The offset for a scene of this origin and scale: zero unless the origin is far, else the origin in whole steps of a power of
- * two near the scale. \return whether it is far.
+ * The offset for a scene of this origin and scale. It is zero for a near origin, else the origin rounded to multiples of a power
+ * of two near the scale. \return true if the origin is far.
  */
 static inline int adcgs_offset_of(double offset[3], const double origin[3], double scale)
 {
@@ -26,7 +29,7 @@ static inline int adcgs_offset_of(double offset[3], const double origin[3], doub
     return is_far;
 }
 
-/** Whether there is one. */
+/** True if the offset is not zero. */
 static inline int adcgs_offset_is(const double offset[3])
 {
     return offset[0] != 0.0 || offset[1] != 0.0 || offset[2] != 0.0;

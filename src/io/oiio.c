@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The module that holds OpenImageIO. */
+/** \file The module with OpenImageIO. */
 #include "config.h"
 
 #include "io/oiio_shim.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file OpenImageIO seen from C. */
+/** \file C interface to OpenImageIO. */
 #include "config.h"
 
-/* The standard headers first: the shim's own header includes C headers inside extern "C". */
+/* Standard headers come first: the shim's own header includes C headers inside extern "C". */
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
@@ -32,14 +32,14 @@ namespace {
 
 #define CONVERT "convert the image to PNG or JPEG first, for instance by heif-convert"
 
-/** Run work and turn whatever it throws into a status. */
+/** Run work and convert any exception into a status. */
 template <typename Work> adcgs_status guarded(const char *path, adcgs_error *error, Work work) noexcept
 {
     try {
         return work();
     } catch (const std::bad_alloc &) {
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
-    } catch (const std::length_error &) { /* its text names a container of the library */
+    } catch (const std::length_error &) { /* its text would name a container of the library */
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     } catch (const std::exception &) {
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged image: OpenImageIO gave up", path);
@@ -48,19 +48,19 @@ template <typename Work> adcgs_status guarded(const char *path, adcgs_error *err
     }
 }
 
-/** The first line of a message, which may quote the file's name again. */
+/** The first line of a message; further lines may repeat the file's name. */
 std::string first_line(const std::string &text)
 {
     return text.empty() ? "no reason given" : text.substr(0, text.find('\n'));
 }
 
-/** A reader over our own open file, so that no name in the file, nor its own, opens another one. */
+/** A reader over our own open file. So neither the file's name nor a name inside it can open another file. */
 struct opened {
-    std::unique_ptr<OIIO::Filesystem::IOFile> file; /* outlives the reader */
+    std::unique_ptr<OIIO::Filesystem::IOFile> file; /* must outlive the reader */
     std::unique_ptr<OIIO::ImageInput> reader;
 };
 
-/** By the reader of that name. ImageInput::open() would try every plug-in that OpenImageIO has. */
+/** Open by the named reader. ImageInput::open() would try every plug-in of OpenImageIO. */
 adcgs_status open_input(opened &in, FILE *file, const char *reader, const char *path, adcgs_error *error)
 {
     OIIO::attribute("threads", 1); /* callers have their own threads */
@@ -68,7 +68,7 @@ adcgs_status open_input(opened &in, FILE *file, const char *reader, const char *
     hints.attribute("oiio:UnassociatedAlpha", 1);
     in.reader = OIIO::ImageInput::create(reader);
     if (!in.reader) {
-        OIIO::geterror(); /* take the message away, else the library prints it at exit */
+        OIIO::geterror(); /* fetch the message, else the library prints it at exit */
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of OpenImageIO has no reader of %s; " CONVERT, path,
                           reader);
     }
@@ -84,7 +84,7 @@ adcgs_status open_input(opened &in, FILE *file, const char *reader, const char *
                       first_line(in.reader->geterror()).c_str());
 }
 
-/** Before there is memory for pixels. */
+/** Check the size before allocating pixels. */
 adcgs_status check_size(const OIIO::ImageSpec &spec, const char *path, adcgs_error *error)
 {
     if (spec.width >= 1 && spec.height >= 1 && spec.width <= ADCGS_IMAGE_MAX && spec.height <= ADCGS_IMAGE_MAX)
@@ -93,19 +93,19 @@ adcgs_status check_size(const OIIO::ImageSpec &spec, const char *path, adcgs_err
                       ADCGS_IMAGE_MAX, ADCGS_IMAGE_MAX);
 }
 
-/** EXR may hold depth behind its colours. */
+/** Number of channels without depth, which EXR may hold after its colours. */
 int colour_channels(const OIIO::ImageSpec &spec)
 {
     return spec.z_channel > 0 && spec.z_channel == spec.nchannels - 1 ? spec.z_channel : spec.nchannels;
 }
 
-/** Whether two names are the same but for the case of their letters. */
+/** True if two names are equal, ignoring case. */
 bool same_name(const std::string &a, const char *b)
 {
     return a.size() == strlen(b) && !strncasecmp(a.c_str(), b, a.size());
 }
 
-/** Whether values are linear light, by what the file says or its format stands for (EXR), under every name OpenImageIO has. */
+/** True for linear light, as declared by the file or implied by its format (EXR), under any of OpenImageIO's names for it. */
 bool is_linear(const OIIO::ImageSpec &spec)
 {
     static const char *const names[] = {"Linear", "scene_linear", "lin_srgb", "lin_rec709", "lin_rec709_scene",
@@ -117,7 +117,7 @@ bool is_linear(const OIIO::ImageSpec &spec)
     return false;
 }
 
-/** EXR may name its primaries; those of BT.709 are sRGB's, and what it has when it names none. */
+/** Check EXR's primaries. Those of BT.709 are sRGB's, and the default of EXR. */
 adcgs_status check_primaries(const OIIO::ImageSpec &spec, const char *path, adcgs_error *error)
 {
     static const float bt709[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
@@ -131,7 +131,7 @@ adcgs_status check_primaries(const OIIO::ImageSpec &spec, const char *path, adcg
     return ADCGS_OK;
 }
 
-/** Floats may be no numbers, which would spoil whatever is learnt from them. */
+/** Reject NaN and infinity, which would spoil any training on them. */
 adcgs_status check_finite(const adcgs_image *image, const char *path, adcgs_error *error)
 {
     const size_t row = (size_t)image->width * (size_t)image->channels, values = row * (size_t)image->height;
@@ -154,7 +154,7 @@ adcgs_status read(adcgs_image *out, FILE *file, const char *reader, const char *
     ADCGS_TRY(adcgs_image_alloc(out, spec.width, spec.height, channels, path, error));
     bool good;
     if (spec.format == OIIO::TypeDesc::UINT8) {
-        /* Divided here, so that 8 bits give v/255 to the last bit. */
+        /* divided here, so that 8 bits give exactly v/255 */
         std::vector<uint8_t> bytes((size_t)spec.width * (size_t)spec.height * (size_t)channels);
         good = input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, bytes.data());
         for (size_t i = 0; good && i < bytes.size(); i++)
@@ -170,12 +170,12 @@ adcgs_status read(adcgs_image *out, FILE *file, const char *reader, const char *
     return check_finite(out, path, error);
 }
 
-/** Samples of the kind that the format is to hold. */
+/** Write samples of the format's kind. */
 template <typename Sample>
 bool write_samples(OIIO::ImageOutput &output, const adcgs_image *image, OIIO::TypeDesc kind,
                    void (*convert)(const float *, size_t, Sample *))
 {
-    /* Bytes that OpenImageIO 2.4 reads behind the last row of an HEIC image: it takes rows of a multiple of 64 samples. */
+    /* Samples that OpenImageIO 2.4 reads behind the last row of an HEIC image: it assumes rows of a multiple of 64 samples. */
     constexpr size_t BEHIND = 64 * 4;
     const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
     std::vector<Sample> samples(n + BEHIND);
@@ -183,14 +183,15 @@ bool write_samples(OIIO::ImageOutput &output, const adcgs_image *image, OIIO::Ty
     return output.write_image(kind, samples.data());
 }
 
-/** Write to an output that is not open yet, under a name; closed at the end. */
+/** Open an output under a name, write to it and close it. */
 adcgs_status write(OIIO::ImageOutput &output, const adcgs_image *image, int bits, const std::string &name, const char *extension,
                    const char *path, adcgs_error *error)
 {
     const OIIO::TypeDesc kind = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
     OIIO::ImageSpec spec(image->width, image->height, image->channels, kind);
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (strcmp(output.format_name(), "tiff") != 0) /* it would become EXIF, which is lost in memory; integers are sRGB anyway */
+    if (strcmp(output.format_name(), "tiff") != 0) /* in TIFF it would become EXIF, which is lost in memory; integers are sRGB
+                                                      anyway */
         spec.attribute("oiio:ColorSpace", "sRGB");
     bool good = output.open(name, spec);
     if (good && output.spec().format != kind)
@@ -204,13 +205,13 @@ adcgs_status write(OIIO::ImageOutput &output, const adcgs_image *image, int bits
     return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: %s", path, first_line(output.geterror()).c_str());
 }
 
-/** OpenImageIO does not look at everything that can fail: what cannot be read back was not written. */
+/** Check by reading the output, since OpenImageIO misses some write errors. */
 bool reads_back(const char *extension, const std::string &name, OIIO::Filesystem::IOProxy *proxy, const adcgs_image *image)
 {
     std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(extension);
     OIIO::geterror(); /* else it is printed at exit */
     if (!input || (proxy && !input->supports("ioproxy")))
-        return true; /* nobody to ask */
+        return true; /* no reader to check with */
     OIIO::ImageSpec spec;
     bool good = (!proxy || input->set_ioproxy(proxy)) && input->open(name, spec) && spec.width == image->width &&
                 spec.height == image->height;
@@ -233,11 +234,11 @@ adcgs_status encode_in_memory(std::vector<uint8_t> &out, OIIO::ImageOutput &outp
     OIIO::Filesystem::IOMemReader reader(out.data(), out.size());
     if (reads_back(extension, name, &reader, image))
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what OpenImageIO made of it does not read back", path);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: OpenImageIO's output cannot be read back", path);
 }
 
 #ifdef MFD_CLOEXEC
-/** All that a descriptor's file holds. */
+/** Load the whole file of a descriptor. */
 bool load(int fd, std::vector<uint8_t> &out)
 {
     struct stat status;
@@ -247,7 +248,9 @@ bool load(int fd, std::vector<uint8_t> &out)
     return pread(fd, out.data(), out.size(), 0) == (ssize_t)out.size();
 }
 
-/** For formats that OpenImageIO has in files only, where it misses most errors of writing: such a file lies in memory. */
+/**
+ * Encode formats that OpenImageIO writes to named files only. It misses most write errors there, so the file is one in memory.
+ */
 adcgs_status encode_in_file(std::vector<uint8_t> &out, OIIO::ImageOutput &output, const adcgs_image *image, int bits,
                             const char *extension, const char *path, adcgs_error *error)
 {
@@ -257,7 +260,7 @@ adcgs_status encode_in_file(std::vector<uint8_t> &out, OIIO::ImageOutput &output
     const std::string name = "/proc/self/fd/" + std::to_string(fd);
     adcgs_status status = write(output, image, bits, name, extension, path, error);
     if (status == ADCGS_OK && !(load(fd, out) && (out.empty() || reads_back(extension, name, nullptr, image))))
-        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: what OpenImageIO made of it does not read back", path);
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot write: OpenImageIO's output cannot be read back", path);
     close(fd);
     return status;
 }
@@ -277,7 +280,7 @@ adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int
     OIIO::attribute("threads", 1);
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(extension);
     if (!output) {
-        OIIO::geterror(); /* take the message away, else the library prints it at exit */
+        OIIO::geterror(); /* fetch the message, else the library prints it at exit */
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of OpenImageIO cannot write .%s files", path, extension);
     }
     if (image->channels % 2 == 0 && !output->supports("alpha"))
@@ -285,7 +288,7 @@ adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int
     ADCGS_TRY((output->supports("ioproxy") ? encode_in_memory : encode_in_file)(memory, *output, image, bits, extension, path,
                                                                                error));
     if (memory.empty())
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files hold no pictures", path, extension);
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files hold no images", path, extension);
     *data = static_cast<uint8_t *>(std::malloc(memory.size()));
     if (!*data)
         throw std::bad_alloc();
@@ -296,7 +299,7 @@ adcgs_status encode(uint8_t **data, size_t *bytes, const adcgs_image *image, int
 
 /* ---- Photos ---- */
 
-#define FILM_WIDTH 36.0f /* millimetres of what focal lengths are equivalent to */
+#define FILM_WIDTH 36.0f /* width [mm] of the 35 mm film frame that equivalent focal lengths refer to */
 
 adcgs_status tell(adcgs_photo *photo, FILE *file, const char *reader, const char *path, adcgs_error *error)
 {
@@ -314,7 +317,7 @@ adcgs_status tell(adcgs_photo *photo, FILE *file, const char *reader, const char
     return ADCGS_OK;
 }
 
-/** What is left of work on pictures in the library's own memory. */
+/** Copy the result of an operation on images in the library's own memory. */
 adcgs_status take(adcgs_image *image, const OIIO::ImageBuf &from, const char *path, adcgs_error *error)
 {
     const OIIO::ImageSpec &spec = from.spec();
@@ -332,7 +335,7 @@ adcgs_status take(adcgs_image *image, const OIIO::ImageBuf &from, const char *pa
     return ADCGS_OK;
 }
 
-/** As EXIF has it. The library's own reorient() takes two of the eight for each other (2.4). */
+/** Turn by EXIF's orientation. The library's own reorient() confuses two of the eight (2.4). */
 OIIO::ImageBuf upright(const OIIO::ImageBuf &at, int turn)
 {
     using namespace OIIO::ImageBufAlgo;

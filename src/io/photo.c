@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures as a camera leaves them, by OpenImageIO. */
+/** \file Photos from cameras, by OpenImageIO. */
 #include "config.h"
 
 #include "io/photo.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures as a camera leaves them: what they say of how they were taken, and making them upright and smaller. */
+/** \file Photos from cameras: the metadata in their headers, and turning and resizing them. */
 #ifndef ADCGS_IO_PHOTO_H
 #define ADCGS_IO_PHOTO_H
 
@@ -13,20 +13,20 @@ extern "C" {
 
 typedef struct adcgs_photo {
     int width, height; /**< as stored */
-    int turn;          /**< how it is to be turned, 1 to 8 as in EXIF; ADCGS_PHOTO_UPRIGHT where it says nothing */
-    double focal;      /**< focal length over the longer side of the picture, about; 0: not known */
-    char camera[96];   /**< maker, model and focal length of the lens, "" where they are not known */
+    int turn;          /**< orientation, 1 to 8 as in EXIF; ADCGS_PHOTO_UPRIGHT if the file has none */
+    double focal;      /**< approximate focal length over the longer side of the image; 0: unknown */
+    char camera[96];   /**< maker, model and focal length of the lens; "" if unknown */
 } adcgs_photo;
 
-/** Fill in the fields that an image's header has in addition to its size. A value that is no number counts as absent. */
+/** Fill in the fields from an image's header, except its size. A value that is not a number counts as absent. */
 adcgs_status adcgs_image_tell(adcgs_photo *photo, const char *path, adcgs_error *error);
-/** What its header says, without decoding pixels. */
+/** Read the size and the other fields from the header, without decoding pixels. */
 adcgs_status adcgs_photo_probe(adcgs_photo *out, const char *path, adcgs_error *error);
-/** Whether width and height change places. */
+/** True if turning upright swaps width and height. */
 int adcgs_photo_lies(int turn);
 /**
- * Turn an image upright, then make it width x height, by a filter that keeps what is smaller sharp; *image is replaced. path is
- * for messages.
+ * Turn an image upright, then resize it to width x height, by a filter that keeps reduced images sharp; *image is replaced. path
+ * is for messages.
  */
 adcgs_status adcgs_photo_shape(adcgs_image *image, int turn, int width, int height, const char *path, adcgs_error *error);
 

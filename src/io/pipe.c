@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Bytes that come when they come. */
+/** \file Input that arrives at any time. */
 #include "config.h"
 
 #include "io/pipe.h"
@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define WAIT_MILLISECONDS 100
+#define WAIT_MILLISECONDS 100 /* longest wait of a read */
 
 int adcgs_pipe_is(const char *path)
 {
@@ -26,7 +26,7 @@ adcgs_status adcgs_pipe_open(adcgs_pipe *pipe, const char *path, adcgs_error *er
     *pipe = (adcgs_pipe){.name = is_input ? "standard input" : path, .fd = STDIN_FILENO, .own = !is_input};
     if (is_input)
         return ADCGS_OK;
-    pipe->fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* which waits for nobody who might write */
+    pipe->fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* does not wait for a writer */
     if (pipe->fd >= 0)
         return ADCGS_OK;
     pipe->own = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Bytes that come when they come: from standard input, a pipe, a device. Nothing waits longer than a moment, so that who reads
- * can look round meanwhile.
+ * Input that arrives at any time: from standard input, a pipe, a device. A read
+ * waits only a short time, so that the caller can do other work in between.
  */
 #ifndef ADCGS_IO_PIPE_H
 #define ADCGS_IO_PIPE_H
@@ -11,19 +11,22 @@
 typedef struct adcgs_pipe {
     const char *name; /**< for messages */
     int fd;
-    int own;          /**< to be closed */
+    int own;          /**< fd must be closed */
     int ended;        /**< no more bytes will come */
 } adcgs_pipe;
 
-/** Whether bytes of this input come in order, and how many is not known: it is "-", or neither a regular file nor missing. */
+/**
+ * True for an input that can only be read in order and has no known size: "-", or a path that exists and is not a regular file or
+ * a folder.
+ */
 int adcgs_pipe_is(const char *path);
-/** path: as the user has it, "-" for standard input; outlives the pipe. That nobody has opened it to write is no failure. */
+/** path: as the user gave it, "-" for standard input; must outlive the pipe. Succeeds without a writer. */
 adcgs_status adcgs_pipe_open(adcgs_pipe *pipe, const char *path, adcgs_error *error);
-/** Harmless where opening failed. */
+/** Harmless if opening failed. */
 void adcgs_pipe_close(adcgs_pipe *pipe);
 /**
- * Take up to `bytes` bytes as soon as there are some. After a tenth of a second without any, or after a signal, *got is 0, as it
- * is at the end, which sets ended. ADCGS_ERR_IO if reading fails.
+ * Read up to `bytes` bytes as soon as some are available. *got is 0 after a tenth of a second without any, after a signal, and at
+ * the end, which sets ended. ADCGS_ERR_IO if reading fails.
  */
 adcgs_status adcgs_pipe_read(adcgs_pipe *pipe, void *buffer, size_t bytes, size_t *got, adcgs_error *error);
 

@@ -39,7 +39,7 @@ void adcgs_image_free(adcgs_image *image)
 void adcgs_image_to_u8(const float *values, size_t n, uint8_t *out)
 {
     for (size_t i = 0; i < n; i++) {
-        const float low = values[i] > 0.0f ? values[i] : 0.0f; /* not-a-number becomes 0 */
+        const float low = values[i] > 0.0f ? values[i] : 0.0f; /* NaN becomes 0 */
         const float clipped = low < 1.0f ? low : 1.0f;
         out[i] = (uint8_t)(clipped * 255.0f + 0.5f);
     }
@@ -48,7 +48,7 @@ void adcgs_image_to_u8(const float *values, size_t n, uint8_t *out)
 void adcgs_image_to_u16(const float *values, size_t n, uint16_t *out)
 {
     for (size_t i = 0; i < n; i++) {
-        const double low = values[i] > 0.0f ? (double)values[i] : 0.0; /* not-a-number becomes 0 */
+        const double low = values[i] > 0.0f ? (double)values[i] : 0.0; /* NaN becomes 0 */
         out[i] = (uint16_t)((low < 1.0 ? low : 1.0) * 65535.0 + 0.5);
     }
 }

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define LINE_MAX_BYTES 1024 /* of a line that declares something; comments may be longer */
+#define LINE_MAX_BYTES 1024 /* of a declaration; comments may be longer */
 
 static const struct {
     const char *name, *alias;
@@ -41,7 +41,7 @@ static int is_blank(uint8_t c)
     return c == ' ' || c == '\t' || c == '\r';
 }
 
-/** The line at `at` without white space at its ends. \return where the next one begins; NULL if the line has no end. */
+/** The line at `at` without surrounding white space. \return the start of the next line; NULL if the line has no end */
 static const uint8_t *find_line(const adcgs_ply *r, const uint8_t *at, const uint8_t **line, size_t *n)
 {
     const uint8_t *stop = memchr(at, r->line_end, (size_t)(r->end - at));
@@ -55,7 +55,7 @@ static const uint8_t *find_line(const adcgs_ply *r, const uint8_t *at, const uin
     return next;
 }
 
-/** Whether a line begins with a word; *behind: where the text after it begins. */
+/** True if a line begins with a word; *behind: start of the text after it. */
 static int has_word(const uint8_t *line, size_t n, const char *word, size_t *behind)
 {
     *behind = strlen(word);
@@ -72,7 +72,7 @@ static int is_comment(const uint8_t *line, size_t n)
     return has_word(line, n, "comment", &behind) || has_word(line, n, "obj_info", &behind);
 }
 
-/** Next header line as text: "" for a comment, which may be of any length and hold any bytes. */
+/** Next header line as text: "" for a comment, which may have any length and any bytes. */
 static adcgs_status next_line(adcgs_ply *r, char *text)
 {
     const uint8_t *line;
@@ -167,7 +167,7 @@ static adcgs_status parse_format(adcgs_ply *r, const char *line)
 
 /* ---- Numbers ---- */
 
-/** Bytes of a number at r->at as an unsigned integer in host order. */
+/** The number at r->at as an unsigned integer in host order. */
 static uint64_t load(const adcgs_ply *r, int bytes)
 {
     uint64_t value = 0;
@@ -194,7 +194,7 @@ static double convert(adcgs_ply_type type, uint64_t bits)
     }
 }
 
-/** One number of text; white space separates. The data ends with a zero byte, where strtod() stops. */
+/** Read one number of text, separated by white space. The data ends with a zero byte, where strtod() stops. */
 static int read_text(adcgs_ply *r, double *out)
 {
     while (r->at < r->end && isspace(*r->at)) {
@@ -241,7 +241,7 @@ static int skip_list(adcgs_ply *r, const adcgs_ply_property *p)
     return 0;
 }
 
-/** Hand over or, with no function, skip the items of an element. */
+/** Read the items of an element: pass their numbers to take(), or skip them if it is NULL. */
 static adcgs_status read_element(adcgs_ply *r, const adcgs_ply_element *e, adcgs_ply_take_fn take, void *user)
 {
     for (uint64_t i = 0; i < e->count; i++)
@@ -260,7 +260,7 @@ static adcgs_status read_element(adcgs_ply *r, const adcgs_ply_element *e, adcgs
     return ADCGS_OK;
 }
 
-/** Each item costs at least a byte per property (text: and a separator), so a count can be held against what is left. */
+/** Check a count against the bytes left: each item takes at least one byte per property (text: and a separator). */
 static adcgs_status check_count(adcgs_ply *r, const adcgs_ply_element *e)
 {
     uint64_t least = 0;
@@ -274,7 +274,7 @@ static adcgs_status check_count(adcgs_ply *r, const adcgs_ply_element *e)
     return ADCGS_OK;
 }
 
-/** The element that a line begins; NULL if there are too many. `after` holds one that follows the vertices. */
+/** The element that a line declares; NULL if there are too many. `after` holds an element that follows the vertices. */
 static adcgs_ply_element *begin_element(adcgs_ply *r, const char *name, uint64_t count, int *has_vertex, adcgs_ply_element *after)
 {
     adcgs_ply_element *e = after;
@@ -317,7 +317,7 @@ static adcgs_status parse_header(adcgs_ply *r)
     return has_format && has_vertex ? ADCGS_OK : bad_header(r, "PLY header without format or vertices");
 }
 
-/** The header and the elements before the vertices. */
+/** Read the header and the elements before the vertices. */
 static adcgs_status open_vertices(adcgs_ply *r)
 {
     ADCGS_TRY(parse_header(r));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Points in PLY files: which properties they are. */
+/** \file Points in PLY files. */
 #include "config.h"
 
 #include "io/ply.h"
@@ -7,7 +7,7 @@
 
 enum { X, Y, Z, RED, GREEN, BLUE, ROLES };
 
-/** Full range of the type is white. */
+/** Convert to 8 bits; the maximum of an integer type, and 1 of a float type, is white. */
 static uint8_t to_colour(adcgs_ply_type type, double value)
 {
     static const double white[ADCGS_PLY_TYPES] = {127.0, 255.0, 32767.0, 65535.0, 2147483647.0, 4294967295.0, 1.0, 1.0};
@@ -24,7 +24,7 @@ static void take(void *user, uint64_t vertex, const adcgs_ply_property *property
         points->colour[vertex][property->role - RED] = to_colour(property->type, value);
 }
 
-/** \return a bit for each role that some property has. */
+/** Assign roles to properties. \return a bit for each role found */
 static unsigned give_roles(adcgs_ply *ply)
 {
     static const char *const names[ROLES] = {"x", "y", "z", "red", "green", "blue"};

@@ -9,8 +9,8 @@
 
 #include <spng.h>
 
-#define LEVEL 4 /* zlib's; with one filter, a quarter of the time that the defaults take, for a tenth more bytes */
-#define CHUNK_MAX (64u << 20) /* bytes of a chunk besides pixels, and of all that are kept */
+#define LEVEL 4 /* zlib's level; with one filter it takes a quarter of the defaults' time for 10 % more bytes */
+#define CHUNK_MAX (64u << 20) /* bytes of a chunk without pixels, and of all that are kept */
 
 /* ---- Errors ---- */
 
@@ -30,11 +30,11 @@ static adcgs_status read_failure(int code, const char *path, adcgs_error *error)
 
 /* ---- Reading ---- */
 
-/** What a file holds, and as what it is decoded. */
+/** Layout of a file, and the format to decode it to. */
 typedef struct layout {
     int width, height, channels;
-    int wide;   /**< samples of 16 bits */
-    int linear; /**< light, not sRGB's curve */
+    int wide;   /**< samples have 16 bits */
+    int linear; /**< linear light, not sRGB's curve */
     int interlaced;
     int format; /**< libspng's */
 } layout;
@@ -48,7 +48,7 @@ static const struct {
     {SPNG_FMT_RGBA8, SPNG_FMT_RGBA16},
 };
 
-/** libspng makes grey with alpha of grey with a transparent level; what is stored with alpha it gives as it is. */
+/** libspng decodes grey with a transparent level to grey with alpha. Images stored with alpha are decoded in their own format. */
 static void choose_format(layout *l, const struct spng_ihdr *head, int has_transparent)
 {
     const int stored_alpha = head->color_type & 4, colour = head->color_type & 2;
@@ -59,7 +59,7 @@ static void choose_format(layout *l, const struct spng_ihdr *head, int has_trans
         l->format = SPNG_FMT_PNG;
 }
 
-/** The curve of values: sRGB, unless gAMA alone says that there is none. Other exponents pass for sRGB. */
+/** True for linear light: only if gAMA alone declares it. Other exponents are treated as sRGB. */
 static int is_linear(spng_ctx *png)
 {
     uint8_t intent;
@@ -94,7 +94,7 @@ static adcgs_status read_layout(spng_ctx *png, FILE *file, layout *out, const ch
     return ADCGS_OK;
 }
 
-/** Samples as they are stored to values of 0 to 1. */
+/** Convert stored samples to values of 0 to 1. */
 static void convert(const uint8_t *samples, int wide, size_t n, float *out)
 {
     for (size_t i = 0; i < n; i++) {
@@ -120,9 +120,9 @@ static adcgs_status read_pixels(spng_ctx *png, FILE *file, const layout *l, adcg
     if (!code)
         code = spng_decode_image(png, samples, bytes, l->format, SPNG_DECODE_TRNS);
     if (!code)
-        code = spng_decode_chunks(png); /* what follows the pixels, so that all of the file is looked at */
+        code = spng_decode_chunks(png); /* chunks after the pixels, so that the whole file is checked */
     if (!code && feof(file))
-        code = SPNG_IO_EOF; /* in the checksum of IEND, which it does without */
+        code = SPNG_IO_EOF; /* libspng ignores an end within the checksum of IEND */
     if (!code)
         convert(samples, l->wide, values, out->data);
     free(samples);
@@ -153,7 +153,7 @@ struct adcgs_png_rows {
     FILE *file;
     layout l;
     uint8_t *samples; /**< of a row */
-    int at;           /**< the next row */
+    int at;           /**< index of the next row */
 };
 
 static adcgs_status start_rows(adcgs_png_rows *r, const char *path, adcgs_error *error)
@@ -201,9 +201,9 @@ adcgs_status adcgs_png_rows_next(adcgs_png_rows *r, float *row, const char *path
     const int last = ++r->at == r->l.height;
     int code = spng_decode_row(r->png, r->samples, values << r->l.wide);
     if (code == SPNG_EOI && last)
-        code = spng_decode_chunks(r->png); /* behind the pixels, so that the whole file is checked */
+        code = spng_decode_chunks(r->png); /* chunks after the pixels, so that the whole file is checked */
     if (!code && last && feof(r->file))
-        code = SPNG_IO_EOF; /* in the checksum of IEND, which it does without */
+        code = SPNG_IO_EOF; /* libspng ignores an end within the checksum of IEND */
     if (code)
         return read_failure(code, path, error);
     convert(r->samples, r->l.wide, values, row);
@@ -223,7 +223,7 @@ void adcgs_png_rows_close(adcgs_png_rows **rows)
     *rows = NULL;
 }
 
-/** Interlaced, all at once. */
+/** Decode an interlaced image as a whole. */
 static adcgs_status read_interlaced(FILE *file, adcgs_image *out, const char *path, adcgs_error *error)
 {
     spng_ctx *png;
@@ -269,7 +269,7 @@ static int append(spng_ctx *png, void *user, void *bytes, size_t n)
     return out->failed ? SPNG_IO_ERROR : 0;
 }
 
-/** Size and compression, and that values are sRGB; gAMA and cHRM say it once more, as the format advises. */
+/** Set size, compression and sRGB; gAMA and cHRM repeat it, as the format recommends. */
 static int describe(spng_ctx *png, const adcgs_image *image, int bits)
 {
     static const uint8_t types[4] = {SPNG_COLOR_TYPE_GRAYSCALE, SPNG_COLOR_TYPE_GRAYSCALE_ALPHA, SPNG_COLOR_TYPE_TRUECOLOR,

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define ROUND_LOOKS 1001 /* points that tell where a cloud lies, and how large it is */
-#define ROUND_FAR 64.0   /* distance from the origin over the size, from which on 24 bits of a coordinate are too few */
+#define ROUND_LOOKS 1001 /* number of points that estimate the cloud's position and size */
+#define ROUND_FAR 64.0   /* distance from the origin over the size, above which 24 bits of a coordinate are too few */
 
 adcgs_status adcgs_points_alloc(adcgs_points *points, uint64_t n, const char *path, adcgs_error *error)
 {
@@ -43,14 +43,14 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** values: [n], sorted by this. */
+/** values: [n]; sorts them. */
 static double median(double *values, uint32_t n)
 {
     qsort(values, n, sizeof *values, compare);
     return values[n / 2];
 }
 
-/** Medians, so that a few points elsewhere do not count. */
+/** True for a cloud far from the origin. Medians ignore a few outliers. */
 static int is_far(const adcgs_points *points)
 {
     const uint32_t n = ADCGS_MIN(points->n, ROUND_LOOKS);
@@ -73,7 +73,8 @@ void adcgs_points_round(adcgs_points *points)
 {
     if (!points->n || is_far(points))
         return;
-    double *const x = (double *)points->position; /* in one loop: of two, gcc 12 with -O3 leaves the last rows as they are */
+    double *const x = (double *)points->position; /* one loop: of two nested ones, gcc 12 with -O3 leaves the last rows
+                                                     unrounded */
     for (size_t i = 0; i < 3 * (size_t)points->n; i++)
         x[i] = (double)(float)x[i];
 }

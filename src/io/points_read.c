@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Reading point clouds, whatever they are in. */
+/** \file Reading point clouds in any supported format. */
 #include "config.h"
 
 #include "io/draco_shim.h"
@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FILE_MAX ((uint64_t)8 << 30)
+#define FILE_MAX ((uint64_t)8 << 30) /* bytes of a file that is read */
 
 static adcgs_status check_finite(const adcgs_points *points, const char *path, adcgs_error *error)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Rotations as quaternions and as matrices, as files of cameras and of splats have them. */
+/** \file Rotations as quaternions and as matrices, as in files of cameras and of splats. */
 #ifndef ADCGS_IO_QUATERNION_H
 #define ADCGS_IO_QUATERNION_H
 
@@ -21,8 +21,8 @@ static inline void adcgs_quaternion_matrix(const double q[4], double m[9])
 }
 
 /**
- * w, x, y, z, of length 1, of a rotation's matrix, row by row. The component that is largest is found first (Shepperd, 1978):
- * dividing by it is safe, and it is positive.
+ * The quaternion w, x, y, z, of length 1, of a rotation matrix, row by row. The largest component is found first (Shepperd,
+ * 1978): dividing by it is safe, and it is positive.
  */
 static inline void adcgs_quaternion_of(const double m[9], double q[4])
 {

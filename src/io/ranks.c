@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Processes that were started together: the front of the module that holds MPI. */
+/** \file Processes that were started together: the front of the module with MPI. */
 #include "config.h"
 
 #include "io/ranks.h"
@@ -17,7 +17,7 @@ static ADCGS_MODULE_GET(get_mpi, adcgs_mpi, adcgs_mpi_table, "adcgs_mpi.so", "ra
 static adcgs_status get_mpi(const adcgs_mpi **mpi, const char *path, adcgs_error *error)
 {
     *mpi = NULL;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: ranks need MPI, which this build does without: install libopenmpi-dev, "
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: ranks need MPI, which this build lacks: install libopenmpi-dev, "
                       "configure and build again", path);
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * MPI, in a module of its own. What fails in it ends all ranks by itself, with a message: so MPI has it unless told otherwise,
- * and there is nothing to be done without the others.
+ * MPI, in a module of its own. A failed call ends all ranks with a message,
+ * which is MPI's default: no rank can continue without the others.
  */
 #include "config.h"
 
@@ -13,17 +13,17 @@
 #include <stdlib.h>
 
 enum { TAG_MESSAGE = 1, TAG_PART = 2 };
-#define PIECE ((size_t)1 << 30) /* of a part: MPI counts in int */
+#define PIECE ((size_t)1 << 30) /* bytes per piece of a part: MPI counts in int */
 
-/* Threads take turns, which is all that MPI is asked to allow for. */
+/* Threads take turns, since MPI is only asked for MPI_THREAD_SERIALIZED. */
 static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
 
-/* The swap at hand. */
+/* The current swap. */
 static struct {
-    int n;                 /* of its requests, those that receive first; 0: there is none */
+    int n;                 /* number of requests, those that receive first; 0: no swap */
     MPI_Request *requests; /* MPI_REQUEST_NULL when done */
-    int *ranks;            /* whom they are about */
-    int *done;             /* room for MPI */
+    int *ranks;            /* the other rank of each request */
+    int *done;             /* output of MPI_Testsome() */
 } swap;
 
 static adcgs_status mpi_open(adcgs_ranks *r, adcgs_error *error)
@@ -32,7 +32,7 @@ static adcgs_status mpi_open(adcgs_ranks *r, adcgs_error *error)
     int level, length;
     MPI_Comm here;
     if (MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &level) != MPI_SUCCESS || level < MPI_THREAD_SERIALIZED)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "MPI does not start with threads beside it");
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "MPI does not start with support for threads");
     MPI_Comm_rank(MPI_COMM_WORLD, &r->rank);
     MPI_Comm_size(MPI_COMM_WORLD, &r->size);
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
@@ -68,7 +68,7 @@ static int take(int *from, void *message, int bytes)
     if (!is_there)
         return 0;
     MPI_Get_count(&status, MPI_BYTE, &length);
-    if (length != bytes) /* another program's: MPI ends all by itself where it does not fit */
+    if (length != bytes) /* from another program: MPI itself aborts if a message does not fit */
         MPI_Abort(MPI_COMM_WORLD, 1);
     MPI_Recv(message, bytes, MPI_BYTE, status.MPI_SOURCE, TAG_MESSAGE, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     *from = status.MPI_SOURCE;
@@ -125,7 +125,7 @@ static adcgs_status mpi_swap(int first, const adcgs_ranks_part *out, int n_out, 
     swap.done = calloc(n, sizeof *swap.done);
     if (!swap.requests || !swap.ranks || !swap.done) {
         end_swap();
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for what ranks say to each other");
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for messages between ranks");
     }
     pthread_mutex_lock(&turn);
     for (int i = 0; i < n_in; i++)

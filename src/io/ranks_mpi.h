@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The module that holds MPI: its table. What messages mean is others' business. */
+/** \file Table of the module with MPI. Callers define the meaning of messages. */
 #ifndef ADCGS_IO_RANKS_MPI_H
 #define ADCGS_IO_RANKS_MPI_H
 
@@ -7,18 +7,18 @@
 #include "io/ranks.h"
 
 typedef struct adcgs_mpi {
-    const char *version; /**< of the programs that the module belongs to */
+    const char *version; /**< version of the programs that the module belongs to */
     adcgs_status (*open)(adcgs_ranks *ranks, adcgs_error *error);
     void (*close)(void);
     void (*abort)(int code);
     void (*send)(int to, const void *message, int bytes);
-    int (*take)(int *from, void *message, int bytes); /**< \return whether there was one of so many bytes */
+    int (*take)(int *from, void *message, int bytes); /**< \return whether there was a message of this size */
     adcgs_status (*swap)(int first, const adcgs_ranks_part *out, int n_out, const adcgs_ranks_part *in, int n_in,
                          adcgs_error *error);
     int (*swapped)(int *missing);
 } adcgs_mpi;
 
-/** The one thing that the module exports. */
+/** The module's only exported symbol. */
 ADCGS_MODULE_EXPORT extern const adcgs_mpi adcgs_mpi_table;
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where rendered frames go. Each kind of output is a row of a table. */
+/** \file Output of rendered frames. Each kind of output is a row of a table. */
 #include "config.h"
 
 #include "io/sink.h"
@@ -67,7 +67,7 @@ static adcgs_status null_write(adcgs_sink *sink, const adcgs_frame *frame, int i
     return ADCGS_OK;
 }
 
-/** Colours and alpha as pixels of four. */
+/** Join colours and alpha to four channels. */
 static adcgs_status join_alpha(adcgs_image *image, const adcgs_frame *frame, const float *alpha, const char *path,
                                adcgs_error *error)
 {
@@ -217,7 +217,7 @@ static adcgs_status check(const adcgs_sink_config *config, const kind *what, con
     return ADCGS_OK;
 }
 
-/** What the sink writes to: standard output, a file of ours, or a video's, which is opened by name. */
+/** Open the sink's output: standard output, an atomic file, or a video, which is opened by name. */
 static adcgs_status open_target(adcgs_sink *sink, adcgs_error *error)
 {
     const adcgs_sink_config *config = &sink->config;
@@ -277,7 +277,7 @@ adcgs_status adcgs_sink_write_with(adcgs_sink *sink, const adcgs_frame *frame, c
 {
     sink->extras = *extras;
     if (frame->width != sink->config.width || frame->height != sink->config.height)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels among those of %dx%d", sink->config.target,
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels, expected %dx%d", sink->config.target,
                           frame->width, frame->height, sink->config.width, sink->config.height);
     errno = 0;
     ADCGS_TRY(sink->what->write(sink, frame, index, error));

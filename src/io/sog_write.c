@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats as SOG. */
+/** \file Writing splats as SOG. */
 #include "config.h"
 
 #include "io/sog.h"
@@ -20,9 +20,9 @@
 typedef struct writer {
     const adcgs_splats *s;
     adcgs_zip zip;
-    uint32_t (*at)[3]; /**< [n] positions in what 16 bits hold, z y x, along Morton's curve, in which x comes first here */
-    uint32_t *order;  /**< [n] splats in that order, which is that of the pictures */
-    double low[3], high[3]; /**< of the logarithms of positions */
+    uint32_t (*at)[3]; /**< [n] positions quantised to 16 bits, z y x, in Morton order (z's bits first) */
+    uint32_t *order;  /**< [n] index of each splat in that order, which is also that of the pixels */
+    double low[3], high[3]; /**< bounds of the positions' logarithms */
     float scales[ADCGS_CODEBOOK], colours[ADCGS_CODEBOOK];
     int width, height;
     uint8_t *pixels;  /**< RGBA */
@@ -48,7 +48,7 @@ static float scale_of(const adcgs_splats *s, uint32_t i, int a)
     return (float)log((double)s->scale[a][i]);
 }
 
-/* ---- Places ---- */
+/* ---- Positions ---- */
 
 static void find_bounds(writer *w)
 {
@@ -61,7 +61,7 @@ static void find_bounds(writer *w)
     }
 }
 
-/** \return 0 where there was no memory. */
+/** Quantise the positions and sort the splats along the curve. \return 0 on allocation failure */
 static int find_places(writer *w)
 {
     for (uint32_t i = 0; i < w->s->n; i++)
@@ -72,7 +72,7 @@ static int find_places(writer *w)
     return adcgs_morton_sort(&w->at[0][0], w->s->n, w->order, NULL) >= 0;
 }
 
-/** One of values of all splats and channels. */
+/** Make a codebook of the values of all splats and channels. \return 0 on allocation failure */
 static int make_book(float *book, const adcgs_splats *s, float (*value)(const adcgs_splats *, uint32_t, int))
 {
     float *const values = malloc((size_t)3 * s->n * sizeof *values);
@@ -83,7 +83,7 @@ static int make_book(float *book, const adcgs_splats *s, float (*value)(const ad
     return done;
 }
 
-/* ---- Pictures ---- */
+/* ---- Images ---- */
 
 static void paint_low(uint8_t *to, const writer *w, uint32_t k)
 {
@@ -97,7 +97,7 @@ static void paint_high(uint8_t *to, const writer *w, uint32_t k)
         to[a] = (uint8_t)(w->at[k][2 - a] >> 8);
 }
 
-/** The three smaller components, and in alpha which of w x y z is the largest, which counts as positive. */
+/** The three smaller components. Alpha holds the index of the largest of w x y z, which is made positive. */
 static void paint_rotation(uint8_t *to, const writer *w, uint32_t k)
 {
     double q[4];
@@ -125,7 +125,7 @@ static void paint_colour(uint8_t *to, const writer *w, uint32_t k)
     to[3] = to_byte(255.0 * (double)w->s->opacity[w->order[k]]);
 }
 
-/** \return 0 where there was no memory. */
+/** \return 0 on allocation failure */
 static int add_picture(writer *w, const char *name, void (*paint)(uint8_t *to, const writer *w, uint32_t k))
 {
     uint8_t *packed = NULL;
@@ -218,11 +218,11 @@ static adcgs_status add_meta(writer *w, const char *generator, const char *path,
     return status;
 }
 
-/** \return 0 where there was no memory. */
+/** \return 0 on allocation failure */
 static int fill(writer *w)
 {
     const uint32_t n = w->s->n;
-    w->width = 4 * (int)ceil(sqrt((double)n) / 4.0); /* 4096 at most, and multiples of 4, as others write them */
+    w->width = 4 * (int)ceil(sqrt((double)n) / 4.0); /* at most 4096, and a multiple of 4, as other programs write it */
     w->height = 4 * (int)ceil((double)n / w->width / 4.0);
     w->at = malloc(n * sizeof *w->at);
     w->order = malloc(n * sizeof *w->order);
@@ -254,7 +254,7 @@ adcgs_status adcgs_sog_put(const adcgs_splats *splats, const adcgs_splats_style 
 adcgs_status adcgs_sog_put(const adcgs_splats *splats, const adcgs_splats_style *style, FILE *file, const char *path,
                            adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build has no SOG: libwebp and zlib were not there", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build has no SOG: it needs libwebp and zlib", path);
 }
 
 #endif

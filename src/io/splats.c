@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats in memory, and taken from a decoder. */
+/** \file Splats in memory, and conversion from a decoder's primitives. */
 #include "config.h"
 
 #include "io/splats.h"
@@ -47,13 +47,13 @@ void adcgs_splats_free(adcgs_splats *splats)
     *splats = (adcgs_splats){0};
 }
 
-/** Coefficients of a channel above degree 0. */
+/** Number of coefficients per channel above degree 0. */
 static size_t coefficients(int degree)
 {
     return (size_t)((degree + 1) * (degree + 1) - 1);
 }
 
-/** Harmonics of a part, behind `first` splats; those of degrees that it has not are zero already. */
+/** Copy a part's harmonics behind `first` splats; coefficients of higher degrees are already zero. */
 static void join_harmonics(adcgs_splats *out, uint32_t first, const adcgs_splats *part)
 {
     const size_t to = coefficients(out->degree), from = coefficients(part->degree);
@@ -114,7 +114,7 @@ void adcgs_splats_primitives(const adcgs_splats *splats, adcgs_primitives *out)
         out->rotation[i] = splats->rotation[i];
 }
 
-/** One primitive at place `to`. \return whether it is one that can be seen and written. */
+/** Copy one primitive to index `to`. \return true if it is visible and can be stored */
 static int take_one(adcgs_splats *out, uint32_t to, const adcgs_primitives *p, uint32_t from, const double origin[3],
                     double scale)
 {
@@ -144,7 +144,7 @@ adcgs_status adcgs_splats_take(adcgs_splats *out, const adcgs_primitives *primit
         near_by[a] = origin[a] - out->offset[a];
     for (uint32_t i = 0; i < primitives->n; i++)
         n += (uint32_t)take_one(out, n, primitives, i, near_by, scale);
-    for (uint32_t i = n; i < out->n; i++) /* one that was left out may stand here */
+    for (uint32_t i = n; i < out->n; i++) /* a dropped primitive may have been stored here */
         out->opacity[i] = 0.0f;
     out->n = n;
     return ADCGS_OK;

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Moving splats. Ellipsoids become others by a one-sided Jacobi method (Hestenes, 1958). */
+/** \file
+ * Transforming splats. A one-sided Jacobi method (Hestenes, 1958) finds the
+ * axes of transformed ellipsoids.
+ */
 #include "config.h"
 
 #include "io/splats_move.h"
@@ -9,11 +12,11 @@
 
 #include <math.h>
 
-#define POLAR_STEPS 60   /* of Newton's, which doubles the digits when it is near */
-#define EVEN 1e-6        /* how far from a size alone counts as one */
-#define SWEEPS 30
-#define SMALLEST 1.8048514e-35 /* e^-80: what is flat gets so much */
-#define LARGEST 5.5406223e34
+#define POLAR_STEPS 60   /* iterations of Newton's method, which converges quadratically */
+#define EVEN 1e-6        /* relative deviation from a uniform scale that still counts as one */
+#define SWEEPS 30 /* of Jacobi's method, at most */
+#define SMALLEST 1.8048514e-35 /* e^-80: lower bound of scales, which flat splats get */
+#define LARGEST 5.5406223e34 /* e^80: upper bound of scales */
 
 typedef struct m3 {
     double m[3][3];
@@ -29,7 +32,7 @@ static m3 multiply(const m3 *a, const m3 *b)
     return out;
 }
 
-/** The matrix of cofactors: the inverse's transpose times the determinant, which is returned. */
+/** The matrix of cofactors: the inverse's transpose times the determinant. \return the determinant */
 static double cofactors(const m3 *a, m3 *out)
 {
     for (int i = 0; i < 3; i++)
@@ -40,7 +43,7 @@ static double cofactors(const m3 *a, m3 *out)
     return a->m[0][0] * out->m[0][0] + a->m[0][1] * out->m[0][1] + a->m[0][2] * out->m[0][2];
 }
 
-/** The rotation or reflection that is nearest; 0 if the matrix flattens. */
+/** The nearest rotation or reflection; 0 if the matrix is singular. */
 static int polar(const m3 *a, m3 *q)
 {
     *q = *a;
@@ -78,7 +81,7 @@ static double dot_columns(const m3 *b, int i, int j)
     return b->m[0][i] * b->m[0][j] + b->m[1][i] * b->m[1][j] + b->m[2][i] * b->m[2][j];
 }
 
-/** Turn columns until they stand on each other, which leaves B B^T as it is: the axes of the ellipsoid. */
+/** Rotate columns until they are orthogonal, which leaves B B^T unchanged: they become the axes of the ellipsoid. */
 static void find_axes(m3 *b)
 {
     for (int sweep = 0, turned = 1; sweep < SWEEPS && turned; sweep++) {
@@ -99,7 +102,7 @@ static void find_axes(m3 *b)
     }
 }
 
-/** A rotation whose first two columns are the longest axes, and their lengths. */
+/** A rotation whose first two columns are the longest axes, and the lengths of all axes. */
 static void frame_of(const m3 *b, m3 *out, double lengths[3])
 {
     int order[3] = {0, 1, 2};
@@ -115,7 +118,7 @@ static void frame_of(const m3 *b, m3 *out, double lengths[3])
     for (int c = 0; c < 2; c++)
         for (int i = 0; i < 3; i++)
             out->m[i][c] = lengths[c] > 0.0 ? b->m[i][order[c]] / lengths[c] : i == c;
-    for (int i = 0; i < 3; i++) { /* the shortest one, to the right side */
+    for (int i = 0; i < 3; i++) { /* the shortest axis completes a right-handed frame */
         const int u = (i + 1) % 3, v = (i + 2) % 3;
         out->m[i][2] = out->m[u][0] * out->m[v][1] - out->m[v][0] * out->m[u][1];
     }
@@ -123,9 +126,9 @@ static void frame_of(const m3 *b, m3 *out, double lengths[3])
 
 /* ---- Harmonics ---- */
 
-#define PER_MAX 7 /* of a degree */
+#define PER_MAX 7 /* maximum number of coefficients per degree */
 
-/** Solve A x = b for n columns of b at once, both of n rows; A is not singular. */
+/** Solve A x = b for n columns of b at once, both with n rows; A must be regular. */
 static void solve(int n, double a[PER_MAX][PER_MAX], double b[PER_MAX][PER_MAX])
 {
     for (int c = 0; c < n; c++) {
@@ -151,8 +154,8 @@ static void solve(int n, double a[PER_MAX][PER_MAX], double b[PER_MAX][PER_MAX])
 }
 
 /**
- * The matrix that takes a degree's coefficients along with a rotation q: what they give in a direction d is what those before
- * gave in q^T d. It follows from as many directions as there are coefficients.
+ * The matrix that rotates a degree's coefficients by q. In a direction d the new coefficients give the same value as the old ones
+ * in q^T d. It is solved from as many directions as there are coefficients.
  */
 static void turn_of(int degree, const m3 *q, double out[PER_MAX][PER_MAX])
 {
@@ -193,7 +196,10 @@ static void move_harmonics(adcgs_splats *s, const m3 *q)
 
 /* ---- Splats ---- */
 
-/** What moves them: all of it, its nearest rotation, and its size if it is that and no more; else 0. */
+/**
+ * A transform: its matrix and linear part, the nearest rotation, and the uniform scale, or 0 if the linear part is not a rotation
+ * and uniform scale.
+ */
 typedef struct motion {
     const double *matrix;
     m3 linear, rotation;
@@ -232,7 +238,7 @@ static void rotate(const double a[4], const double b[4], double out[4])
     }
 }
 
-/** \return whether all that comes out can be held. */
+/** \return true if all results are within range */
 static int move_one(adcgs_splats *s, uint32_t i, const motion *m)
 {
     double q[4], moved[4], sizes[3], place[3];
@@ -270,10 +276,10 @@ adcgs_status adcgs_splats_move(adcgs_splats *splats, const double matrix[12], co
 {
     motion m;
     if (!make_motion(&m, matrix))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: a matrix that flattens the splats", path);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: a singular matrix, which flattens the splats", path);
     for (uint32_t i = 0; i < splats->n; i++)
         if (!move_one(splats, i, &m))
-            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: splat %u is moved beyond what can be held", path, i);
+            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: splat %u is moved beyond the range of binary32", path, i);
     move_harmonics(splats, &m.rotation);
     return ADCGS_OK;
 }

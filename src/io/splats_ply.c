@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats from PLY: which properties they are, and from logits and logarithms to what is drawn. */
+/** \file Splats from PLY: the roles of properties, and the activations of logits and logarithms. */
 #include "config.h"
 
 #include "io/splats_ply.h"
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define LOG_SCALE_MAX 80.0f
+#define LOG_SCALE_MAX 80.0f /* upper bound of a scale's logarithm */
 #define LOG_SCALE_MIN -80.0f /* the scale of a flat axis, as in GLB */
 
 /* Roles of properties; f_rest_i has the role REST + i. */
@@ -28,7 +28,7 @@ typedef struct taker {
     uint64_t where; /**< its vertex */
 } taker;
 
-/** A logit and a logarithm have limits that mean something: opacities of 0 and 1, and a flat splat. */
+/** Logits and logarithms may be infinite: opacities of 0 and 1, and a flat splat. */
 static int may_be(int role, float v)
 {
     const int is_scale = role >= SCALE && role < ROTATION;
@@ -49,7 +49,7 @@ static void take(void *user, uint64_t vertex, const adcgs_ply_property *property
         t->out->harmonics[vertex * t->n_rest + (size_t)(property->role - REST)] = v;
 }
 
-/** Whether the vertices have places, and nothing that splats have besides. */
+/** True if the vertices have positions, but none of the other properties of splats. */
 static int is_cloud(adcgs_ply *ply)
 {
     int found = 0;
@@ -64,7 +64,7 @@ static adcgs_status give_role(adcgs_ply *ply, const char *name, int role)
     if (!p)
         return adcgs_fail(ply->error, ADCGS_ERR_DATA,
                           "%s: no property %s: not splats, which have x, y, z, f_dc_0..2, opacity, scale_0..2 and rot_0..3%s",
-                          ply->path, name, is_cloud(ply) ? "; a point cloud goes with a scene, by --points" : "");
+                          ply->path, name, is_cloud(ply) ? "; give a point cloud with a scene, by --points" : "");
     if (p->type != ADCGS_PLY_FLOAT32 && p->type != ADCGS_PLY_FLOAT64)
         return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: the property %s is of type %s, expected float or double", ply->path,
                           name, adcgs_ply_type_name(p->type));
@@ -72,7 +72,7 @@ static adcgs_status give_role(adcgs_ply *ply, const char *name, int role)
     return ADCGS_OK;
 }
 
-/** f_rest_0, f_rest_1, ... as far as they go. */
+/** Find f_rest_0, f_rest_1, ... up to the first missing one. */
 static adcgs_status find_rest(adcgs_ply *ply, int *out, size_t *n_rest)
 {
     char name[32];
@@ -90,7 +90,7 @@ static adcgs_status find_rest(adcgs_ply *ply, int *out, size_t *n_rest)
     return adcgs_fail(ply->error, ADCGS_ERR_DATA, "%s: %zu properties f_rest_*, expected none, 9, 24 or 45", ply->path, *n_rest);
 }
 
-/** From what the file holds to what is drawn. \return ADCGS_ERR_DATA for a scale or a rotation that is none. */
+/** Apply the activations to a splat. \return ADCGS_ERR_DATA for an invalid scale or rotation */
 static adcgs_status activate(adcgs_splats *s, uint32_t i, const char *path, adcgs_error *error)
 {
     double length = 0.0;
@@ -126,7 +126,7 @@ static adcgs_status read_vertices(adcgs_ply *ply, taker *t)
     return ADCGS_OK;
 }
 
-/** Text of n bytes against a word, without regard to case. */
+/** True if a text of n bytes equals a word, ignoring case. */
 static int is_word(const char *text, size_t n, const char *word)
 {
     return n == strlen(word) && !strncasecmp(text, word, n);
@@ -143,7 +143,7 @@ static const char *value_behind(const char *key, const char *comment, size_t *n)
     return comment;
 }
 
-/** The last comment that says so counts, as other readers have it. */
+/** True if trained with antialiasing. The last such comment counts, as in other readers. */
 static int says_antialiased(const adcgs_ply *ply)
 {
     const char *at = NULL, *value;
@@ -160,23 +160,23 @@ static int says_antialiased(const adcgs_ply *ply)
     return found;
 }
 
-/** Other kinds of splats in PLY, by a property that they have. */
+/** Reject other kinds of splats in PLY, by a characteristic property. */
 static adcgs_status check_kind(adcgs_ply *ply)
 {
     static const struct {
         const char *property, *kind;
     } others[] = {{"packed_position",
-                   "a compressed PLY (it has packed_position), expected one of plain splats: decompress it first"},
-                  {"trbf_center", "splats that change with time (Spacetime Gaussians: it has trbf_center), expected still ones"},
-                  {"log_duration", "splats that change with time (FreeTimeGS: it has log_duration), expected still ones"},
-                  {"scale_t", "splats that change with time (4D Gaussians: it has scale_t), expected still ones"}};
+                   "a compressed PLY (it has packed_position), expected uncompressed splats: decompress it first"},
+                  {"trbf_center", "splats that change with time (Spacetime Gaussians: it has trbf_center), expected static ones"},
+                  {"log_duration", "splats that change with time (FreeTimeGS: it has log_duration), expected static ones"},
+                  {"scale_t", "splats that change with time (4D Gaussians: it has scale_t), expected static ones"}};
     for (size_t i = 0; i < ADCGS_COUNTOF(others); i++)
         if (adcgs_ply_find(ply, others[i].property))
             return adcgs_fail(ply->error, ADCGS_ERR_UNSUPPORTED, "%s: %s", ply->path, others[i].kind);
     return ADCGS_OK;
 }
 
-/** Surfels of 2D Gaussian splatting have two scales and all else. */
+/** True for surfels of 2D Gaussian splatting, which have only two scales. */
 static int are_surfels(adcgs_ply *ply)
 {
     return !adcgs_ply_find(ply, "scale_2") && adcgs_ply_find(ply, "scale_1") && adcgs_ply_find(ply, "rot_3") &&

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats as PLY. */
+/** \file Writing splats as PLY. */
 #include "config.h"
 
 #include "io/splats_ply.h"
@@ -8,11 +8,11 @@
 
 #include <math.h>
 
-#define WRITTEN 17 /* floats of a splat but f_rest_* */
-#define DC_END 9   /* of these, before f_rest_* */
+#define WRITTEN 17 /* floats per splat without f_rest_* */
+#define DC_END 9   /* index of the first of these after f_rest_* */
 #define REST_MAX 45
 
-/** Floats of f_rest_* up to a degree. */
+/** Number of f_rest_* properties up to a degree. */
 static int rest_count(int degree)
 {
     return 3 * ((degree + 1) * (degree + 1) - 1);
@@ -36,7 +36,7 @@ static void put_header(FILE *file, const adcgs_splats *s, const adcgs_splats_sty
     fputs("end_header\n", file);
 }
 
-/** The numbers before their activations, each rounded once. */
+/** Write a splat's numbers before their activations, each rounded once. */
 static void put_splat(FILE *file, const adcgs_splats *s, uint32_t i, int rest_degree)
 {
     float values[WRITTEN] = {0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Reading splats: the format that a file begins as. */
+/** \file Reading splats in the format that the first bytes identify. */
 #include "config.h"
 
 #include "io/file.h"
@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FILE_MAX ((uint64_t)8 << 30)
-#define BEGINNING 4 /* bytes that tell a format */
+#define FILE_MAX ((uint64_t)8 << 30) /* bytes of a file that is read */
+#define BEGINNING 4 /* bytes that identify a format */
 
 int adcgs_splats_is(const char *path)
 {
@@ -26,7 +26,7 @@ int adcgs_splats_is(const char *path)
     return adcgs_ply_is(start, n) || adcgs_spz_is(start, n) || adcgs_glb_is(start, n);
 }
 
-/** Colours that do not bend are of degree 0. */
+/** Reduce colours whose harmonics are all zero to degree 0. */
 static void drop_zeros(adcgs_splats *s)
 {
     const size_t n = (size_t)s->n * 3 * (size_t)((s->degree + 1) * (s->degree + 1) - 1);

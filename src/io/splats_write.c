@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Writing splats: the format that a name tells. */
+/** \file Writing splats in the format of the file name's extension. */
 #include "config.h"
 
 #include "io/atomic.h"
@@ -18,13 +18,13 @@ typedef adcgs_status (*put_fn)(const adcgs_splats *splats, const adcgs_splats_st
 static const struct {
     const char *extension;
     put_fn put;
-    int turns; /**< what it writes has y up, if it is known what has */
+    int turns; /**< files have y up; splats with known axes are turned */
 } formats[] = {{"ply", adcgs_splats_put_ply, 0}, {"spz", adcgs_spz_put, 1}, {"glb", adcgs_glb_put, 1},
              {"sog", adcgs_sog_put, 1}};
 
 #define FORMATS (sizeof formats / sizeof *formats)
 
-/** Index of a name's format; FORMATS without one. */
+/** Index of a file name's format; FORMATS for an unknown one. */
 static size_t format_of(const char *path)
 {
     size_t i = 0;
@@ -43,14 +43,14 @@ adcgs_status adcgs_splats_check_name(const char *path, const adcgs_splats_style 
     return ADCGS_OK;
 }
 
-/** What turns splats of these axes so that y is up: a quarter or half turn about x, w and x of its quaternion. */
+/** The rotation from these axes to y up, a quarter or half turn about x: w and x of its quaternion. */
 static void turn_of(double turn[2], int axes)
 {
     turn[0] = axes == ADCGS_SPLATS_Z_UP ? 0.70710678118654752 : 0.0;
     turn[1] = axes == ADCGS_SPLATS_Z_UP ? -0.70710678118654752 : 1.0;
 }
 
-/** A copy that is turned, without harmonics, which nobody writes. */
+/** A turned copy, without harmonics, since no format writes them. */
 static adcgs_status turn_up(adcgs_splats *out, const adcgs_splats *s, const char *path, adcgs_error *error)
 {
     double t[2];

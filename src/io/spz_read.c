@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats from SPZ: its columns one after the other, unpacked into memory that the header and the file's length allow. */
+/** \file
+ * Splats from SPZ. Its columns are unpacked one after the other; the header and
+ * the file's length bound their memory.
+ */
 #include "config.h"
 
 #include "io/spz.h"
@@ -13,18 +16,18 @@ int adcgs_spz_is(const uint8_t *data, size_t bytes)
 
 #include <math.h>
 #include <stdlib.h>
-#define ZLIB_CONST /* what is read is not written to */
+#define ZLIB_CONST /* zlib's input is const */
 #include <zlib.h>
 #include <zstd.h>
 
-#define OLD_HEADER 16           /* of versions 2 and 3, packed with what follows */
-#define GZIP_RATIO 1032         /* the most that deflate can pack */
-#define ZSTD_RATIO ((uint64_t)1 << 17) /* a block of 128 KiB takes four bytes */
-#define INPUT_PART ((size_t)1 << 30)
-#define FRACTION_MAX 30
+#define OLD_HEADER 16           /* of versions 2 and 3, packed together with the columns */
+#define GZIP_RATIO 1032         /* upper bound of deflate's compression ratio */
+#define ZSTD_RATIO ((uint64_t)1 << 17) /* above zstd's compression ratio: a block of 128 KiB takes four bytes */
+#define INPUT_PART ((size_t)1 << 30) /* bytes passed to zlib at once */
+#define FRACTION_MAX 30 /* fractional bits accepted in a header */
 #define HAS_EXTENSIONS 2        /* a flag */
-#define AXES_EXTENSION 0xadbe0003u
-#define AXES_RIGHT_UP_BACK 4u   /* 0: not specified, which means the same */
+#define AXES_EXTENSION 0xadbe0003u /* type of the extension that declares the axes */
+#define AXES_RIGHT_UP_BACK 4u   /* 0 means unspecified, which is treated the same */
 
 static const char *const names[ADCGS_SPZ_COLUMNS] = {"positions", "opacities", "colours", "scales", "rotations", "harmonics"};
 
@@ -34,14 +37,17 @@ typedef struct reader {
     uint32_t version, n;
     int degree, fraction_bits, antialiased;
     size_t sizes[ADCGS_SPZ_COLUMNS];
-    uint8_t *column; /**< the one at hand; room for the largest */
+    uint8_t *column; /**< the current column; has room for the largest */
     z_stream gzip;   /**< of versions 2 and 3 */
-    const uint8_t *entry, *at, *end; /**< of version 4: the next column's place in the table, its stream, the file's end */
+    const uint8_t *entry, *at, *end; /**< of version 4: the next column's table entry and stream, the file's end */
 } reader;
 
-/* ---- What is packed ---- */
+/* ---- Unpacking ---- */
 
-/** Until `bytes` of them, less than 2^32 (a column of ADCGS_SPLATS_MAX splats is), are there or no more come: zlib's result. */
+/**
+ * Inflate until `bytes` bytes are present, fewer than 2^32 (a column of ADCGS_SPLATS_MAX splats has fewer), or the input ends.
+ * \return zlib's result
+ */
 static int inflate_into(reader *r, uint8_t *out, size_t bytes)
 {
     int result = Z_OK;
@@ -71,15 +77,15 @@ static adcgs_status inflate_some(reader *r, uint8_t *out, size_t bytes, const ch
                       r->gzip.avail_out);
 }
 
-/** Behind the last column gzip has a checksum, unless what is left to vendors stands before it. */
+/** Check gzip's checksum, which follows the last column, except if vendor data come before it. */
 static adcgs_status check_end(reader *r, size_t room)
 {
     return inflate_into(r, r->column, room) == Z_DATA_ERROR
-               ? adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: SPZ: what gzip has packed has another checksum", r->path)
+               ? adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: SPZ: gzip's checksum does not match", r->path)
                : ADCGS_OK;
 }
 
-/** The next stream of version 4, whose sizes check_table() has seen. */
+/** Unpack the next stream of version 4; check_table() has checked its sizes. */
 static adcgs_status unpack_stream(reader *r, adcgs_spz_column c)
 {
     const uint64_t packed = adcgs_load_le64(r->entry);
@@ -101,7 +107,7 @@ static adcgs_status next_column(reader *r, adcgs_spz_column c)
 
 /* ---- Headers ---- */
 
-/** What both headers have in the same places. */
+/** Read the fields that both headers have in the same places. */
 static adcgs_status take_header(reader *r, const uint8_t *header)
 {
     r->version = adcgs_load_le32(header + 4);
@@ -118,7 +124,7 @@ static adcgs_status take_header(reader *r, const uint8_t *header)
     if (r->degree > ADCGS_SPLATS_DEGREE_MAX)
         return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: harmonics of degree %d, expected 0 to 3", r->path, r->degree);
     if (r->fraction_bits > FRACTION_MAX)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %d bits behind the point, expected at most %d", r->path,
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %d fractional bits, expected at most %d", r->path,
                           r->fraction_bits, FRACTION_MAX);
     const size_t n = r->n, per[ADCGS_SPZ_COLUMNS] = {9, 1, 3, 3, r->version == 2 ? 3 : 4,
                                                      3 * (size_t)((r->degree + 1) * (r->degree + 1) - 1)};
@@ -136,7 +142,7 @@ static adcgs_status open_old(reader *r)
         return adcgs_fail(r->error, ADCGS_ERR_MEMORY, "%s: out of memory", r->path);
     ADCGS_TRY(inflate_some(r, header, sizeof header, "header"));
     if (memcmp(header, "NGSP", 4))
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: what gzip has packed is not SPZ", r->path);
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: the gzip data are not SPZ", r->path);
     r->version = adcgs_load_le32(header + 4);
     if (r->version == 1)
         return adcgs_fail(r->error, ADCGS_ERR_UNSUPPORTED, "%s: SPZ of version 1, expected 2 to 4", r->path);
@@ -146,11 +152,11 @@ static adcgs_status open_old(reader *r)
     for (int c = 0; c < ADCGS_SPZ_COLUMNS; c++)
         total += r->sizes[c];
     if (total / GZIP_RATIO > bytes)
-        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %u splats, but no more than %zu bytes", r->path, r->n, bytes);
+        return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %u splats, but only %zu bytes", r->path, r->n, bytes);
     return ADCGS_OK;
 }
 
-/** Records of a type, a length, and so many bytes. Those that we do not know are skipped. */
+/** Check the extensions: records of a type, a length, and that many bytes. Unknown ones are skipped. */
 static adcgs_status check_extensions(const reader *r, const uint8_t *at, const uint8_t *end)
 {
     while (end - at >= 8) {
@@ -168,7 +174,7 @@ static adcgs_status check_extensions(const reader *r, const uint8_t *at, const u
     return ADCGS_OK;
 }
 
-/** The streams are as long as they must be, and lie in the file. */
+/** Check that the streams have the expected sizes and lie in the file. */
 static adcgs_status check_table(reader *r, int n_streams)
 {
     const int needed = ADCGS_SPZ_HARMONICS + (r->degree > 0);
@@ -243,7 +249,7 @@ static void take_scales(const reader *r, adcgs_splats *s)
         s->scale[i % 3][i / 3] = (float)exp(r->column[i] / ADCGS_SPZ_SCALE_STEPS + ADCGS_SPZ_SCALE_MIN);
 }
 
-/** x, y, z in bytes; w is what is left of 1, and not negative. q: x y z w. */
+/** x, y, z as bytes; w is computed from length 1, and not negative. q: x y z w. */
 static void rotation_of_three(double q[4], const uint8_t *at)
 {
     double sum = 0.0;
@@ -254,7 +260,7 @@ static void rotation_of_three(double q[4], const uint8_t *at)
     q[3] = sqrt(fmax(0.0, 1.0 - sum));
 }
 
-/** Which of x y z w is the largest, in two bits; of the others each, in their order, a sign and nine bits. */
+/** The index of the largest of x y z w in two bits; then a sign and nine bits for each other component in order. */
 static void rotation_of_smallest(double q[4], const uint8_t *at)
 {
     uint32_t bits = adcgs_load_le32(at);
@@ -280,13 +286,13 @@ static void take_rotations(const reader *r, adcgs_splats *s)
         else
             rotation_of_smallest(q, r->column + (size_t)4 * i);
         for (int a = 0; a < 4; a++)
-            length += q[a] * q[a]; /* at least 1 but for rounding */
+            length += q[a] * q[a]; /* at least 1, except for rounding */
         for (int a = 0; a < 4; a++)
             s->rotation[(a + 1) % 4][i] = (float)(q[a] / sqrt(length));
     }
 }
 
-/** Red, green and blue of each coefficient in turn, where ours have a channel's coefficients together. */
+/** The file has red, green and blue of each coefficient in turn; our array has each channel's coefficients together. */
 static void take_harmonics(const reader *r, adcgs_splats *s)
 {
     const size_t per = r->sizes[ADCGS_SPZ_HARMONICS] / r->n;
@@ -340,7 +346,7 @@ adcgs_status adcgs_spz_parse(adcgs_splats *out, const uint8_t *data, size_t byte
 
 adcgs_status adcgs_spz_parse(adcgs_splats *out, const uint8_t *data, size_t bytes, const char *path, adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build has no SPZ: zlib and zstd were not there", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build has no SPZ: it needs zlib and zstd", path);
 }
 
 #endif

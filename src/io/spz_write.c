@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats as SPZ of version 4. */
+/** \file Writing splats as SPZ of version 4. */
 #include "config.h"
 
 #include "io/spz.h"
@@ -11,16 +11,16 @@
 #include <zstd.h>
 
 #define COLUMNS ADCGS_SPZ_HARMONICS /* harmonics are not written */
-#define FRACTION_MAX 23
+#define FRACTION_MAX 23 /* fractional bits of a position */
 #define POSITION_MAX 8388607.0      /* 2^23 - 1 */
-#define LEVEL 12                    /* of zstd: what higher ones save of these columns is less than 1 % */
+#define LEVEL 12                    /* zstd's level; higher ones save less than 1 % of these columns */
 
 static uint8_t to_byte(double value)
 {
     return (uint8_t)fmin(fmax(floor(value + 0.5), 0.0), 255.0);
 }
 
-/** As many bits as the farthest position leaves room for; less than 0 if it is too far. */
+/** The number of fractional bits that the farthest position allows; negative if it is too far. */
 static int fraction_bits(const adcgs_splats *s)
 {
     double farthest = 0.0;
@@ -68,7 +68,10 @@ static size_t fill_scales(uint8_t *to, const adcgs_splats *s, int bits)
     return (size_t)3 * s->n;
 }
 
-/** q: x y z w. A quaternion and its negative turn alike: the largest component, which is not sent, counts as positive. */
+/**
+ * q: x y z w. A quaternion and its negative are the same rotation, so the largest component, which is not stored, is taken as
+ * positive.
+ */
 static uint32_t pack_rotation(const double q[4])
 {
     int largest = 0;
@@ -102,7 +105,7 @@ typedef struct packed {
     size_t raw[COLUMNS], size[COLUMNS];
 } packed;
 
-/** column: room for the largest. \return 0 where there was no memory. */
+/** column: room for the largest column. \return 0 on allocation failure */
 static int pack_columns(packed *p, uint8_t *column, const adcgs_splats *s, int bits)
 {
     static size_t (*const fills[COLUMNS])(uint8_t *, const adcgs_splats *, int) = {fill_positions, fill_opacities, fill_colours,
@@ -114,7 +117,7 @@ static int pack_columns(packed *p, uint8_t *column, const adcgs_splats *s, int b
         if (!p->bytes[c])
             return 0;
         p->size[c] = ZSTD_compress(p->bytes[c], room, column, p->raw[c], LEVEL);
-        if (ZSTD_isError(p->size[c])) /* there is room enough, so it is memory */
+        if (ZSTD_isError(p->size[c])) /* the output has enough room, so this is an allocation failure */
             return 0;
     }
     return 1;
@@ -162,7 +165,7 @@ adcgs_status adcgs_spz_put(const adcgs_splats *splats, const adcgs_splats_style 
 adcgs_status adcgs_spz_put(const adcgs_splats *splats, const adcgs_splats_style *style, FILE *file, const char *path,
                            adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build has no SPZ: zlib and zstd were not there", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build has no SPZ: it needs zlib and zstd", path);
 }
 
 #endif

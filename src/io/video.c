@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Video files: the front of the module that holds FFmpeg. */
+/** \file Video files: the front of the module with FFmpeg. */
 #include "config.h"
 
 #include "io/video.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define RATE_MAX 100000.0
+#define RATE_MAX 100000.0 /* frames per second */
 
 struct adcgs_video {
     const adcgs_ffmpeg *ffmpeg;
@@ -33,7 +33,7 @@ struct adcgs_video_writer {
 static adcgs_status get_ffmpeg(const adcgs_ffmpeg **ffmpeg, const char *path, adcgs_error *error)
 {
     *ffmpeg = NULL;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: videos need FFmpeg, which this build does without", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: videos need FFmpeg, which this build lacks", path);
 }
 
 #else

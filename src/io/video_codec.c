@@ -12,19 +12,21 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define BITS_PER_PIXEL 1 /* for encoders that know no constant quality */
+#define BITS_PER_PIXEL 1 /* for encoders without constant quality */
 
 typedef struct codec {
-    const char *name, *family;  /* FFmpeg's encoder, and what people call the codec */
-    const char *options;        /* as FFmpeg's, for little loss; "": by bit rate */
-    int even;                   /* sizes must be */
-    enum AVPixelFormat format, with_alpha; /* NONE: it has no alpha */
+    const char *name, *family;  /* FFmpeg's encoder, and the codec's common name */
+    const char *options;        /* in FFmpeg's form, for little loss; "": by bit rate */
+    int even;                   /* width and height must be even */
+    enum AVPixelFormat format, with_alpha; /* NONE: no alpha */
 } codec;
 
 #define NO_ALPHA AV_PIX_FMT_NONE
 
-/* Those of the table. x264 without mb-tree: its AVX-512 code there reads memory nobody has set, and the same frames would not
- * give the same bytes. */
+/*
+ * Rows of the table. x264 runs without mb-tree: its AVX-512 code reads uninitialised memory there, so the same frames would not
+ * give the same bytes.
+ */
 enum { X264, OPENH264, X265, VP9, AOM, SVT, MPEG4, FFV1, PRORES, QTRLE };
 static const codec codecs[] = {
     [X264] = {"libx264", "h264", "preset=medium:crf=12:x264-params=mbtree=0", 1, AV_PIX_FMT_YUV420P, NO_ALPHA},
@@ -52,7 +54,7 @@ static const struct {
     {"avi", "avi", {ROW(X264), ROW(OPENH264), ROW(MPEG4)}, {0}},
 };
 
-/** The first of a list that there is; NULL if none is. */
+/** The first codec of a list that FFmpeg has; NULL for none. */
 static const codec *first_of(const signed char *list, const AVCodec **encoder)
 {
     for (; *list; list++)
@@ -61,7 +63,7 @@ static const codec *first_of(const signed char *list, const AVCodec **encoder)
     return NULL;
 }
 
-/** A codec by what people or FFmpeg call it; one that is not in the table becomes *other. */
+/** A codec by its common name or FFmpeg's; one outside the table becomes *other. */
 static const codec *find_codec(const char *name, codec *other, const AVCodec **encoder)
 {
     for (size_t i = 0; i < ADCGS_COUNTOF(codecs); i++)
@@ -86,7 +88,7 @@ static adcgs_status find_container(size_t *at, const adcgs_video_target *target,
                       target->path);
 }
 
-/** The container's own choice, or what the user named, where the container takes it. */
+/** The container's default codec, or the one that the user named, if the container supports it. */
 static adcgs_status choose_codec(const codec **chosen, codec *other, size_t at, const adcgs_video_target *target,
                                  const AVCodec **encoder, adcgs_error *error)
 {
@@ -98,13 +100,14 @@ static adcgs_status choose_codec(const codec **chosen, codec *other, size_t at, 
             return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of FFmpeg has no encoder %s", target->path,
                               style->codec);
         if (avformat_query_codec(av_guess_format(containers[at].name, NULL, NULL), (*encoder)->id, FF_COMPLIANCE_NORMAL) != 1)
-            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s holds no %s", target->path, extension, style->codec);
+            return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s files cannot hold %s", target->path, extension,
+                              style->codec);
         return ADCGS_OK;
     }
     *chosen = first_of(style->has_alpha ? containers[at].alpha : containers[at].opaque, encoder);
     if (!*chosen && style->has_alpha)
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: .%s has no alpha here; .mov, .mkv and .webm may", target->path,
-                          extension);
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: no encoder with alpha for .%s; .mov, .mkv and .webm may have one",
+                          target->path, extension);
     return *chosen ? ADCGS_OK
                    : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of FFmpeg has no encoder for .%s", target->path,
                                 extension);
@@ -128,7 +131,7 @@ static const enum AVPixelFormat *formats_of(const AVCodec *encoder)
 #endif
 }
 
-/** Whether frames can be made and encoded so. */
+/** True if frames can be converted to this format and encoded. */
 static int suits(const AVCodec *encoder, enum AVPixelFormat format, int alpha)
 {
     const enum AVPixelFormat *list = formats_of(encoder);
@@ -139,7 +142,7 @@ static int suits(const AVCodec *encoder, enum AVPixelFormat format, int alpha)
     return !list || *list == format;
 }
 
-/** As the user named it, as the table has it, or the first that suits. */
+/** The pixel format that the user named, else the table's, else the first suitable one. */
 static adcgs_status choose_format(adcgs_video_codec *out, const codec *chosen, const adcgs_video_target *target,
                                   adcgs_error *error)
 {
@@ -147,7 +150,7 @@ static adcgs_status choose_format(adcgs_video_codec *out, const codec *chosen, c
     const AVDictionaryEntry *const named = av_dict_get(out->options, "pix_fmt", NULL, 0);
     out->format = named ? av_get_pix_fmt(named->value) : alpha ? chosen->with_alpha : chosen->format;
     if (named && !suits(out->encoder, out->format, alpha))
-        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: %s does not take pix_fmt=%s%s", target->path, out->encoder->name,
+        return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: %s does not support pix_fmt=%s%s", target->path, out->encoder->name,
                           named->value, alpha ? " with alpha" : "");
     av_dict_set(&out->options, "pix_fmt", NULL, 0);
     const enum AVPixelFormat *list = formats_of(out->encoder);
@@ -157,12 +160,12 @@ static adcgs_status choose_format(adcgs_video_codec *out, const codec *chosen, c
                 out->format = *list;
     return out->format != AV_PIX_FMT_NONE ? ADCGS_OK
                                           : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: %s has no %s", target->path,
-                                                       out->encoder->name, alpha ? "alpha" : "pixels that we can make");
+                                                       out->encoder->name, alpha ? "alpha" : "supported pixel format");
 }
 
 /* ---- Options ---- */
 
-/** What the table says, without what would contradict the user, then what the user says. */
+/** Set the table's options, without those that would contradict the user's, then the user's. */
 static adcgs_status set_options(adcgs_video_codec *out, const codec *chosen, const adcgs_video_target *target, adcgs_error *error)
 {
     static const char *const qualities[] = {"crf", "b", "flags", "global_quality"};

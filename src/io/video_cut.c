@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Files that are shorter than their own headers say, where FFmpeg takes the end of the file for the end of the film. */
+/** \file
+ * Detecting videos that are shorter than their headers declare, since FFmpeg
+ * takes the end of the file for the end of the video.
+ */
 #include "config.h"
 
 #include "io/video_input.h"
@@ -7,9 +10,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define HEAD_BYTES 4096
+#define HEAD_BYTES 4096 /* of a file, read to find its headers */
 
-/** A number of EBML's: its first byte tells its length. \return that length, 0 if it is not there whole. */
+/** Parse an EBML number, whose first byte gives its length. \return the length; 0 if the number is incomplete */
 static size_t ebml_number(uint64_t *value, const uint8_t *p, size_t bytes)
 {
     size_t n = 1;
@@ -23,7 +26,7 @@ static size_t ebml_number(uint64_t *value, const uint8_t *p, size_t bytes)
     return n;
 }
 
-/** Where the element behind a four-byte name ends; 0 if that is not said. *body: where it begins. */
+/** End of the element after a four-byte name; 0 if it is not declared. *body: start of the element. */
 static uint64_t element_end(uint64_t *body, const uint8_t *head, size_t bytes, uint64_t at, uint32_t name)
 {
     uint64_t size = 0;

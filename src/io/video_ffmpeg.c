@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The table of the module that holds FFmpeg. */
+/** \file Table of the module with FFmpeg. */
 #include "config.h"
 
 #include "io/video_ffmpeg.h"

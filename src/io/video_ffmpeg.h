@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The module that holds FFmpeg: its table, and what its parts share. The front
- * (video.c) sees the table alone; nothing of FFmpeg's shows in its types.
+ * Table of the module with FFmpeg, and declarations that its parts share. The
+ * front (video.c) uses only the table, and the table's types contain none of
+ * FFmpeg's.
  */
 #ifndef ADCGS_IO_VIDEO_FFMPEG_H
 #define ADCGS_IO_VIDEO_FFMPEG_H
@@ -14,34 +15,34 @@
 typedef struct adcgs_video_reader adcgs_video_reader;
 typedef struct adcgs_video_encoder adcgs_video_encoder;
 
-/** What a film is written to. */
+/** Output of an encoder. */
 typedef struct adcgs_video_target {
     FILE *file;           /**< written and sought in, not closed */
-    const char *path;     /**< its name's end says the container; for messages; outlives the encoder */
+    const char *path;     /**< its extension gives the container; also for messages; must outlive the encoder */
     int width, height;    /**< of the frames */
     int rate[2];          /**< frames per second: numerator and denominator, > 0 */
-    adcgs_video_style style; /**< its strings are not looked at after begin() */
+    adcgs_video_style style; /**< its strings are not used after begin() */
 } adcgs_video_target;
 
 typedef struct adcgs_ffmpeg {
-    const char *version; /**< of the programs that the module belongs to */
+    const char *version; /**< version of the programs that the module belongs to */
     adcgs_status (*open)(adcgs_video_reader **out, adcgs_video_info *info, const char *path, adcgs_error *error);
     void (*close)(adcgs_video_reader **reader);
     adcgs_status (*read)(adcgs_video_reader *reader, int64_t frame, adcgs_image *out, adcgs_error *error);
-    /** Seconds since the first frame; not a number where the file does not say. */
+    /** Seconds since the first frame; NaN without timestamps in the file. */
     double (*time)(const adcgs_video_reader *reader, int64_t frame);
-    /** stored: the size of the pictures in the file, which some codecs make even. */
+    /** stored: the size of the frames in the file, which some codecs need to be even. */
     adcgs_status (*begin)(adcgs_video_encoder **out, int stored[2], const adcgs_video_target *target, adcgs_error *error);
     adcgs_status (*add)(adcgs_video_encoder *encoder, const adcgs_frame *frame, const float *alpha, adcgs_error *error);
-    /** What is still to come, and the container's end. */
+    /** Write the remaining packets and the container's end. */
     adcgs_status (*end)(adcgs_video_encoder *encoder, adcgs_error *error);
     void (*free)(adcgs_video_encoder **encoder);
 } adcgs_ffmpeg;
 
-/** The one thing that the module exports. */
+/** The module's only exported symbol. */
 ADCGS_MODULE_EXPORT extern const adcgs_ffmpeg adcgs_ffmpeg_table;
 
-/* ---- Shared by the module's parts: the functions of the table. ---- */
+/* ---- Functions of the table, shared by the module's parts ---- */
 adcgs_status adcgs_video_reader_open(adcgs_video_reader **out, adcgs_video_info *info, const char *path, adcgs_error *error);
 void adcgs_video_reader_close(adcgs_video_reader **reader);
 adcgs_status adcgs_video_reader_read(adcgs_video_reader *reader, int64_t frame, adcgs_image *out, adcgs_error *error);

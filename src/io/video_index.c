@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The packets of a video and the frames they hold. */
+/** \file The packets and frames of a video. */
 #include "config.h"
 
 #include "io/video_index.h"
@@ -7,9 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FRAMES_MAX (1u << 24) /* three days of pictures at 60 in a second */
+#define FRAMES_MAX (1u << 24) /* three days at 60 frames per second */
 
-/** Codecs of which each packet is one frame. Others hide some, or join several. */
+/** True for codecs with exactly one frame per packet. Others have hidden frames, or join several. */
 static int is_frame_each(enum AVCodecID codec)
 {
     const AVCodecDescriptor *descriptor = avcodec_descriptor_get(codec);
@@ -44,7 +44,9 @@ static adcgs_status append(adcgs_video_index *index, uint32_t *room, const AVPac
     return ADCGS_OK;
 }
 
-/** Packets that the container lists beyond those that were read: the file was cut off. Only complete lists count. */
+/**
+ * Number of packets that the container lists in addition to those read, which means a truncated file. Only complete lists count.
+ */
 static int64_t missing_packets(const adcgs_video_input *input, int64_t read, int failed)
 {
 #if LIBAVFORMAT_VERSION_MAJOR < 59
@@ -86,7 +88,7 @@ static int shown_earlier(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** Fill index->shown; index->timed stays 0 where times are missing or not different. */
+/** Fill index->shown; index->timed stays 0 if timestamps are missing or not distinct. */
 static adcgs_status sort_frames(adcgs_video_index *index, const char *path, adcgs_error *error)
 {
     timed *all = malloc(index->n * sizeof *all);
@@ -98,7 +100,7 @@ static adcgs_status sort_frames(adcgs_video_index *index, const char *path, adcg
     for (uint32_t i = 0; i < index->n; i++)
         all[i] = (timed){index->packet[i].pts, i};
     qsort(all, index->n, sizeof *all, shown_earlier);
-    index->timed = all[0].pts != AV_NOPTS_VALUE; /* which is the least of all numbers */
+    index->timed = all[0].pts != AV_NOPTS_VALUE; /* AV_NOPTS_VALUE is the smallest int64_t */
     for (uint32_t i = 0; i < index->n; i++) {
         index->shown[i] = all[i].packet;
         if (i && all[i].pts == all[i - 1].pts)
@@ -108,15 +110,15 @@ static adcgs_status sort_frames(adcgs_video_index *index, const char *path, adcg
     return ADCGS_OK;
 }
 
-/** From the frame before; as double, since times from a file may be anything. */
+/** Time since the previous frame; double, since timestamps from a file may have any value. */
 static double distance(const adcgs_video_index *index, uint32_t frame)
 {
     return (double)index->packet[index->shown[frame]].pts - (double)index->packet[index->shown[frame - 1]].pts;
 }
 
 /**
- * Frames before the first that follows at more than one and a half times the usual distance. In a file that is cut off, a frame
- * shown earlier may be missing there, since it is stored later. Two frames alone tell no usual distance.
+ * Number of frames before the first gap of more than one and a half times the usual distance. In a truncated file, the gap may be
+ * a frame that is shown earlier but stored later. Two frames alone give no usual distance.
  */
 static uint32_t count_sure(const adcgs_video_index *index)
 {
@@ -142,7 +144,9 @@ int64_t adcgs_video_index_find(const adcgs_video_index *index, int64_t pts)
     return from < index->n && index->packet[index->shown[from]].pts == pts ? (int64_t)from : -1;
 }
 
-/* A key frame that is shown later than the frame is no good: what leads up to it may lean on what was before. */
+/*
+ * A key frame shown after the frame is not suitable: frames decoded after it but shown before it may depend on earlier packets.
+ */
 uint32_t adcgs_video_index_key(const adcgs_video_index *index, int64_t frame)
 {
     uint32_t i = index->shown[frame];
@@ -163,7 +167,7 @@ int64_t adcgs_video_index_bad(const adcgs_video_index *index, int64_t frame)
 
 /* ---- Counting by decoding ---- */
 
-/** Take out what the decoder has ready. \return how many frames, or -1 at a damaged one. */
+/** Take all frames that the decoder has ready. \return their number, or -1 at a damaged one */
 static int64_t take_frames(adcgs_video_input *input, AVFrame *frame)
 {
     int64_t n = 0;
@@ -179,7 +183,7 @@ static int64_t take_frames(adcgs_video_input *input, AVFrame *frame)
     }
 }
 
-/** Frames up to the first that is damaged, and that one. The input is at its beginning. */
+/** Number of frames up to the first damaged one, which is included. The input must be at its beginning. */
 static int64_t count_frames(adcgs_video_input *input, AVPacket *packet, AVFrame *frame)
 {
     int64_t n = 0;

@@ -9,9 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define IO_BYTES 65536
+#define IO_BYTES 65536 /* of the buffer for FFmpeg */
 
-/* Containers and bare streams that hold pictures themselves. */
+/* Containers and bare streams that contain the images themselves. */
 static const char formats[] = "mov,matroska,avi,mpegts,mpeg,mpegvideo,flv,ogg,asf,mxf,nut,ivf,h264,hevc,obu,av1,m4v,yuv4mpegpipe";
 
 static int read_bytes(void *opaque, uint8_t *buffer, int size)
@@ -34,7 +34,7 @@ static int64_t seek_bytes(void *opaque, int64_t offset, int whence)
     return at < 0 ? AVERROR(errno) : (int64_t)at;
 }
 
-/** Nothing besides our file is opened. */
+/** Prevents FFmpeg from opening other files. */
 static int refuse_other(AVFormatContext *format, AVIOContext **io, const char *url, int flags, AVDictionary **options)
 {
     return AVERROR(EPERM);
@@ -66,7 +66,7 @@ static adcgs_status open_format(adcgs_video_input *input, adcgs_error *error)
     }
     input->format->pb = input->io;
     input->format->io_open = refuse_other;
-    const int code = avformat_open_input(&input->format, input->path, NULL, &options); /* frees the format if it fails */
+    const int code = avformat_open_input(&input->format, input->path, NULL, &options); /* frees the format on failure */
     av_dict_free(&options);
     if (code == AVERROR(ENOMEM))
         return no_memory(input, error);
@@ -76,7 +76,7 @@ static adcgs_status open_format(adcgs_video_input *input, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Headers of all streams, by what they begin with where the container does not say. */
+/** Read the headers of all streams, and their first packets if the container does not describe them. */
 static adcgs_status find_streams(adcgs_video_input *input, adcgs_error *error)
 {
     const unsigned n = input->format->nb_streams;
@@ -100,7 +100,7 @@ static adcgs_status choose_stream(adcgs_video_input *input, adcgs_error *error)
 {
     const int index = av_find_best_stream(input->format, AVMEDIA_TYPE_VIDEO, -1, -1, NULL, 0);
     if (index < 0)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no pictures in it, expected a video", input->path);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no images in it, expected a video", input->path);
     for (unsigned i = 0; i < input->format->nb_streams; i++)
         if ((int)i != index)
             input->format->streams[i]->discard = AVDISCARD_ALL;
@@ -112,13 +112,13 @@ static adcgs_status choose_stream(adcgs_video_input *input, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** One thread, since callers have their own; what is damaged is an error and not painted over. */
+/** Uses one thread, since callers have their own. Damage is an error and is not concealed. */
 static adcgs_status open_codec(adcgs_video_input *input, adcgs_error *error)
 {
     const AVCodecParameters *par = input->stream->codecpar;
     const AVCodec *decoder = avcodec_find_decoder(par->codec_id);
     if (par->codec_id == AV_CODEC_ID_NONE && !par->codec_tag)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: does not say how its pictures are coded: damaged or cut off", input->path);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: does not name the codec of its images: damaged or truncated", input->path);
     if (!decoder)
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of FFmpeg cannot decode %s", input->path,
                           avcodec_get_name(par->codec_id));
@@ -135,7 +135,7 @@ static adcgs_status open_codec(adcgs_video_input *input, adcgs_error *error)
         code = avcodec_open2(input->codec, decoder, NULL);
     if (code == AVERROR(ENOMEM))
         return no_memory(input, error);
-    return code < 0 ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot begin to decode %s: %s", input->path,
+    return code < 0 ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: cannot start to decode %s: %s", input->path,
                                  avcodec_get_name(par->codec_id), av_err2str(code))
                     : ADCGS_OK;
 }

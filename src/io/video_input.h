@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
  * A video file opened by FFmpeg: one stream of packets and its decoder. FFmpeg
- * reads from our file alone: formats that name other files or addresses
- * (playlists, lists to concatenate) are not known here.
+ * reads from our file alone: formats that refer to other files or addresses
+ * (playlists, lists to concatenate) are disabled.
  */
 #ifndef ADCGS_IO_VIDEO_INPUT_H
 #define ADCGS_IO_VIDEO_INPUT_H
@@ -17,18 +17,18 @@ typedef struct adcgs_video_input {
     const char *path;  /**< for messages */
     AVIOContext *io;
     AVFormatContext *format;
-    AVStream *stream;  /**< the one to decode; the others are left out */
+    AVStream *stream;  /**< the one to decode; others are ignored */
     AVCodecContext *codec;
 } adcgs_video_input;
 
-/** Open from the file's beginning. input->fd and path are set. On failure as on success, adcgs_video_input_close() clears up. */
+/** Open from the file's beginning. input->fd and path must be set. Call adcgs_video_input_close() after failure, too. */
 adcgs_status adcgs_video_input_open(adcgs_video_input *input, adcgs_error *error);
 void adcgs_video_input_close(adcgs_video_input *input);
-/** The stream's next packet; AVERROR_EOF at the end, or another negative code of FFmpeg's. Packets without bytes are left out. */
+/** The stream's next packet; AVERROR_EOF at the end, or another negative code of FFmpeg's. Empty packets are skipped. */
 int adcgs_video_input_next(adcgs_video_input *input, AVPacket *packet);
-/** Whether the file is shorter than its header says (Matroska, WebM, AVI); a cut in others shows when they are read. */
+/** True if the file is shorter than its header declares (Matroska, WebM, AVI). Truncation of others is detected while reading. */
 int adcgs_video_input_cut(const adcgs_video_input *input);
-/** The matrix that turns the picture, nine numbers as in ISO 14496-12; NULL if there is none. */
+/** The matrix that turns the image, nine numbers as in ISO 14496-12; NULL if there is none. */
 const int32_t *adcgs_video_input_matrix(const adcgs_video_input *input);
 
 #endif

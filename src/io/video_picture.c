@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Decoded pictures as images: samples and colours. The shape is in video_shape.c. */
+/** \file
+ * Decoded frames as images: samples and colours. Aspect and orientation are in
+ * video_shape.c.
+ */
 #include "config.h"
 
 #include "io/video_picture.h"
@@ -10,7 +13,7 @@
 #include <libavutil/pixdesc.h>
 #include <stdlib.h>
 
-/* From this size on, a stream that names no matrix means BT.709. */
+/* Smallest size at which a stream without a declared matrix is taken as BT.709. */
 #define LARGE_WIDTH 1280
 #define LARGE_HEIGHT 577
 
@@ -21,10 +24,10 @@ typedef struct source {
     int width, height;
     float zero[3], scale[3];  /* value = (sample - zero) * scale: 0..1, chroma -0.5..0.5 */
     adcgs_ycbcr weights;      /* not used for RGB */
-    float from[2];            /* of the first chroma sample, right and down from the first luma sample, in pixels */
+    float from[2];            /* offset of the first chroma sample from the first luma sample, right and down [pixels] */
     uint16_t *samples;        /* one row as stored */
-    int (*column)[2];         /* for each column of pixels, the columns of chroma before and after it, */
-    float *right;             /* and the share of the latter */
+    int (*column)[2];         /* for each column of pixels, the chroma columns before and after it */
+    float *right;             /* weight of the chroma column after it */
     float *blend, *row[3];    /* one row of chroma as stored; one row of pixels for each component */
 } source;
 
@@ -75,7 +78,7 @@ static adcgs_status choose_weights(source *s, const char *name, adcgs_error *err
                       named ? named : "without a name");
 }
 
-/** Integer samples of at most 16 bits, Y Cb Cr or RGB or grey. */
+/** Check for integer samples of at most 16 bits, Y Cb Cr or RGB or grey. */
 static adcgs_status check_format(const source *s, const char *name, adcgs_error *error)
 {
     const uint64_t strange = AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BAYER |
@@ -113,7 +116,7 @@ static void set_chroma_place(source *s)
 static void read_row(const source *s, int component, int y, int width)
 {
     const AVComponentDescriptor *at = &s->desc->comp[component];
-    if (at->depth == 8 && at->step == 1 && !at->shift) { /* the common kind, much faster than by the general function */
+    if (at->depth == 8 && at->step == 1 && !at->shift) { /* the common case, much faster than the general function */
         const uint8_t *from = s->data[at->plane] + (ptrdiff_t)y * s->frame->linesize[at->plane] + at->offset;
         for (int x = 0; x < width; x++)
             s->samples[x] = from[x];
@@ -133,7 +136,7 @@ static void plain_row(const source *s, int component, int y)
         row[x] = ((float)s->samples[x] - zero) * scale;
 }
 
-/** Place among n samples that stand 2^shift apart: the sample before it and the share of the one after. */
+/** Position among n samples that are 2^shift apart: the sample before it, and the weight of the one after. */
 static float place_of(int at, float from, int shift, int n, int *before, int *after)
 {
     const float place = ((float)at - from) / (float)(1 << shift);

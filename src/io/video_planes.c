@@ -18,7 +18,7 @@ static float clip(float v)
     return low < 1.0f ? low : 1.0f;
 }
 
-/** What a row is made of. */
+/** Source of the rows. */
 typedef struct source {
     const adcgs_frame *frame;
     const float *alpha; /**< NULL: all 1 */
@@ -26,7 +26,7 @@ typedef struct source {
     int width;          /**< of the rows: at least the frame's */
 } source;
 
-/** One row: `width` values of each component. Colours that are premultiplied become straight. */
+/** Convert one row to `width` values of each component. Premultiplied colours become straight. */
 static void convert_row(float *row, const source *from, int y)
 {
     const size_t first = (size_t)ADCGS_MIN(y, from->frame->height - 1) * (size_t)from->frame->width;
@@ -46,7 +46,7 @@ static void convert_row(float *row, const source *from, int y)
     }
 }
 
-/** Where a component's samples are, and what they are: `low` + `span` v, rounded. */
+/** A component's samples: position and form. A value v is stored as `low` + `span` v, rounded. */
 typedef struct samples {
     uint8_t *at;
     int step, shift, wide;
@@ -80,7 +80,7 @@ static void put_row(const samples *to, const float *row, int width)
         put(to, x, to->span * row[x]);
 }
 
-/** Every other column, weighed 1 2 1 about it: of one row, or of the mean of two. */
+/** Every other column, filtered by weights 1 2 1, from one row or the mean of two. */
 static void put_halved(const samples *to, const float *above, const float *below, int width)
 {
     for (int x = 0; x < width; x += 2) {
@@ -90,7 +90,7 @@ static void put_halved(const samples *to, const float *above, const float *below
     }
 }
 
-/** Two rows of a frame, or the last one alone. */
+/** Write two rows of a frame, or the last row alone. */
 static void put_rows(AVFrame *to, const AVPixFmtDescriptor *format, const float *above, const float *below, int y)
 {
     const size_t step = (size_t)to->width;
@@ -118,7 +118,7 @@ int adcgs_video_planes_take(enum AVPixelFormat format)
         return 0;
     for (int c = 0; c < d->nb_components; c++)
         if (d->comp[c].depth < 8 || d->comp[c].depth > 16 ||
-            (d->comp[c].depth + d->comp[c].shift > 8 && is_big != big)) /* samples are stored as this machine has them */
+            (d->comp[c].depth + d->comp[c].shift > 8 && is_big != big)) /* samples are stored in this machine's byte order */
             return 0;
     return 1;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/**
- * \file
- * Rendered frames as FFmpeg stores them: RGB of full range, or BT.709 of limited range, chroma beside luma on the left; of 8 to
- * 16 bits a sample; alpha, which is straight, of full range.
+/** \file
+ * Rendered frames in FFmpeg's formats: RGB of full range, or BT.709 of limited
+ * range with chroma at the left of luma; 8 to 16 bits per sample; straight
+ * alpha of full range.
  */
 #ifndef ADCGS_IO_VIDEO_PLANES_H
 #define ADCGS_IO_VIDEO_PLANES_H
@@ -13,11 +13,11 @@
 
 #include <libavutil/frame.h>
 
-/** Whether frames can be had in that format. */
+/** True if frames can be converted to this format. */
 int adcgs_video_planes_take(enum AVPixelFormat format);
 /**
- * Fill a frame of FFmpeg's of such a format, at least as large; what is larger repeats the last row and column. With alpha, which
- * may be NULL, colours come premultiplied by it.
+ * Fill an AVFrame of such a format, at least as large as from; additional rows and columns repeat the last one. With alpha, which
+ * may be NULL, the colours of from are premultiplied.
  */
 adcgs_status adcgs_video_planes(AVFrame *to, const adcgs_frame *from, const float *alpha, adcgs_error *error);
 

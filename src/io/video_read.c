@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Frames of a video by their index. Going on is cheap; going back, or far
- * ahead, begins anew at a key frame. Which frame came out is told by its time.
+ * Frames of a video by their index. Reading ahead is cheap; going back, or far
+ * ahead, restarts decoding at a key frame. Decoded frames are identified by
+ * their timestamps.
  */
 #include "config.h"
 
@@ -16,29 +17,29 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define AHEAD 8 /* a key frame no further than so many packets ahead is reached by decoding, not by seeking */
-#define DEFAULT_RATE 25
+#define AHEAD 8 /* key frames at most this many packets ahead are reached by decoding, not by seeking */
+#define DEFAULT_RATE 25 /* frames per second of a file without a rate */
 
 struct adcgs_video_reader {
     adcgs_video_input input;
     adcgs_video_index index;
     char *path, *name;  /* name: of a frame, for messages */
     size_t name_size;
-    int width, height;  /* of the first picture, as shown; 0 before it */
+    int width, height;  /* of the first frame, as shown; 0 before it */
     AVPacket *packet;
-    AVFrame *frame;     /* the one decoded last */
-    int64_t last;       /* its index; -1 when there is none */
-    int64_t place;      /* number of the packet that the decoder got last, -1 before the first */
-    int64_t begun;      /* that of the key packet where decoding began, -1 for the file's beginning */
-    int known;          /* whether decoding can go on from here */
+    AVFrame *frame;     /* the last decoded frame */
+    int64_t last;       /* its index; -1: none */
+    int64_t place;      /* number of the last packet sent to the decoder, -1 before the first */
+    int64_t begun;      /* number of the key packet where decoding began, -1 for the file's beginning */
+    int known;          /* decoding can continue from here */
     int pending;        /* the packet has been read, but not decoded */
     int at_end;         /* all packets have been read */
-    int code;           /* FFmpeg's word on the last fault */
+    int code;           /* FFmpeg's code of the last fault */
 };
 
 /* ---- Place ---- */
 
-/** The file's beginning, in a state that no seeking has touched. */
+/** Reopen at the file's beginning, in a state without any previous seek. */
 static adcgs_status rewind_input(adcgs_video_reader *r, adcgs_error *error)
 {
     av_packet_unref(r->packet);
@@ -58,14 +59,14 @@ static void read_packet(adcgs_video_reader *r)
     r->pending = !r->at_end;
 }
 
-/** Number of the packet at hand; -1 if it is not shown, or nothing is timed. */
+/** Number of the current packet; -1 if it is not shown, or the index is not timed. */
 static int64_t packet_number(const adcgs_video_reader *r)
 {
     const int64_t frame = r->index.timed ? adcgs_video_index_find(&r->index, r->packet->pts) : -1;
     return frame < 0 ? -1 : (int64_t)r->index.shown[frame];
 }
 
-/** To a key packet, or to one before it, which is at hand then. \return 0 if the container does not lead there. */
+/** Seek to a key packet, or to an earlier one, which is the current packet then. \return 0 if the container cannot seek there */
 static int seek(adcgs_video_reader *r, uint32_t key)
 {
     av_frame_unref(r->frame);
@@ -110,8 +111,8 @@ static int decode(adcgs_video_reader *r)
 }
 
 /**
- * Take note of a fault in a packet. Where decoding has begun at a key frame, it may only be what leads up to that frame, or a key
- * frame that needs what was before. \return whether that is the end of looking for the frame.
+ * Record a fault in a packet. If decoding began at a key frame, the packet is not marked as bad. It may belong to a frame shown
+ * before that key frame, or the key frame may need earlier packets. \return true to stop the search for the frame
  */
 static int take_fault(adcgs_video_reader *r, int64_t packet, int code, int64_t frame)
 {
@@ -124,7 +125,7 @@ static int take_fault(adcgs_video_reader *r, int64_t packet, int code, int64_t f
     return adcgs_video_index_bad(&r->index, frame) >= 0;
 }
 
-/** Decode up to the frame. \return whether it came out, and whole. */
+/** Decode up to the frame. \return true if it was decoded intact */
 static int find_timed(adcgs_video_reader *r, int64_t frame)
 {
     for (;;) {
@@ -168,10 +169,10 @@ static adcgs_status fail_frame(adcgs_video_reader *r, adcgs_error *error)
     if (r->code == AVERROR(ENOSYS) || r->code == AVERROR_PATCHWELCOME)
         return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: this build of FFmpeg cannot decode this kind of %s", r->name,
                           avcodec_get_name(r->input.stream->codecpar->codec_id));
-    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged, or made from a damaged one", r->name);
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: damaged, or predicted from a damaged frame", r->name);
 }
 
-/** The frame as decoded is r->frame then. */
+/** Decode the frame into r->frame. */
 static adcgs_status go_timed(adcgs_video_reader *r, int64_t frame, adcgs_error *error)
 {
     if (frame >= r->index.sure)
@@ -202,7 +203,7 @@ adcgs_status adcgs_video_reader_read(adcgs_video_reader *r, int64_t frame, adcgs
     *out = (adcgs_image){0};
     snprintf(r->name, r->name_size, "%s: frame %lld", r->path, (long long)frame);
     if (frame < 0 || frame >= r->index.frames)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not there, the last is %lld", r->name, (long long)r->index.frames - 1);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: does not exist, the last is %lld", r->name, (long long)r->index.frames - 1);
     if (frame != r->last || !r->known)
         ADCGS_TRY(r->index.timed ? go_timed(r, frame, error) : go_counted(r, frame, error));
     const adcgs_video_view view = {.aspect = av_guess_sample_aspect_ratio(r->input.format, r->input.stream, r->frame),
@@ -250,11 +251,11 @@ static adcgs_status open_file(adcgs_video_reader *r, adcgs_error *error)
 {
     struct stat status;
     r->input.path = r->path;
-    r->input.fd = open(r->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe without a writer does not hold us up */
+    r->input.fd = open(r->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* opening a pipe without a writer must not block */
     if (r->input.fd < 0 || fstat(r->input.fd, &status))
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot open: %s", r->path, strerror(errno));
     if (!S_ISREG(status.st_mode))
-        return adcgs_fail(error, ADCGS_ERR_IO, "%s: not a regular file, which a video has to be", r->path);
+        return adcgs_fail(error, ADCGS_ERR_IO, "%s: not a regular file, as a video must be", r->path);
     return status.st_size ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_DATA, "%s: empty, expected a video", r->path);
 }
 
@@ -278,7 +279,7 @@ static adcgs_status open_reader(adcgs_video_reader *r, adcgs_video_info *info, a
 adcgs_status adcgs_video_reader_open(adcgs_video_reader **out, adcgs_video_info *info, const char *path, adcgs_error *error)
 {
     *out = NULL;
-    av_log_set_level(AV_LOG_QUIET); /* what FFmpeg has to say is in our messages */
+    av_log_set_level(AV_LOG_QUIET); /* our own messages report FFmpeg's errors */
     adcgs_video_reader *r = calloc(1, sizeof *r);
     if (!r)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The shape of a video's pictures. */
+/** \file Aspect and orientation of a video's images. */
 #include "config.h"
 
 #include "io/video_shape.h"
 
 #include <math.h>
 
-/** Centre of pixel i of n among m pixels of the same length: the pixel before it and the share of the one after. */
+/** Centre of pixel i of n among m pixels along the same side: the pixel before it, and the weight of the one after. */
 static float place_of(int i, int n, int m, int *before, int *after)
 {
     const double place = (i + 0.5) * m / n - 0.5, inside = fmin(fmax(place, 0.0), m - 1.0);
@@ -53,13 +53,13 @@ adcgs_status adcgs_video_square(adcgs_image *image, AVRational aspect, const cha
     return ADCGS_OK;
 }
 
-/** Is the one number next to nothing beside the other? */
+/** True if one number is negligible compared with the other. */
 static int vanishes(int32_t small, int32_t large)
 {
     return 100 * fabs((double)small) < fabs((double)large);
 }
 
-/** Pixels of a picture that is mirrored in x or y, or across its diagonal first. */
+/** Copy pixels, optionally transposed (across), then mirrored in x or y. */
 static void move_pixels(const adcgs_image *from, adcgs_image *to, int across, int mirror_x, int mirror_y)
 {
     for (int y = 0; y < to->height; y++)
@@ -70,7 +70,7 @@ static void move_pixels(const adcgs_image *from, adcgs_image *to, int across, in
         }
 }
 
-/* Of the matrix (a b u, c d v, x y w), a place (p, q) of the picture goes to (a p + c q, b p + d q), but for shifts. */
+/* The matrix (a b u, c d v, x y w) maps a point (p, q) of the image to (a p + c q, b p + d q), apart from a translation. */
 adcgs_status adcgs_video_turn(adcgs_image *image, const int32_t *matrix, const char *name, adcgs_error *error)
 {
     if (!matrix)

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Writing films. The same frames give the same bytes, unless the user chose the codec. */
+/** \file
+ * Writing videos. The same frames give the same bytes, except with a codec
+ * chosen by the user.
+ */
 #include "config.h"
 
 #include "io/extension.h"
@@ -12,10 +15,10 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define IO_BYTES 65536
-#define THREADS 4            /* a fixed number, since what encoders write depends on it */
+#define IO_BYTES 65536 /* of the buffer for FFmpeg */
+#define THREADS 4            /* fixed, since the encoders' output depends on it */
 #define KEY_SECONDS 2        /* between key frames */
-#define KEY_FRAMES_MAX 250
+#define KEY_FRAMES_MAX 250 /* between key frames */
 
 struct adcgs_video_encoder {
     adcgs_video_target target;
@@ -50,7 +53,7 @@ static int64_t seek_bytes(void *opaque, int64_t offset, int whence)
     adcgs_video_encoder *e = opaque;
     if (whence & AVSEEK_SIZE)
         return AVERROR(ENOSYS);
-    if (fseeko(e->target.file, (off_t)offset, whence & ~AVSEEK_FORCE)) { /* writes what stdio has held back */
+    if (fseeko(e->target.file, (off_t)offset, whence & ~AVSEEK_FORCE)) { /* flushes stdio's buffer */
         e->reason = e->reason ? e->reason : errno;
         return AVERROR(errno);
     }
@@ -93,10 +96,11 @@ static void set_codec(adcgs_video_encoder *e, const adcgs_video_codec *chosen)
     c->color_range = is_rgb ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
     c->colorspace = is_rgb ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
     c->color_primaries = AVCOL_PRI_BT709;
-    c->color_trc = AVCOL_TRC_IEC61966_2_1; /* pictures are sRGB, and so is what is learnt from them */
+    c->color_trc = AVCOL_TRC_IEC61966_2_1; /* images are sRGB, and so are renders trained on them */
     c->chroma_sample_location = is_rgb ? AVCHROMA_LOC_UNSPECIFIED : AVCHROMA_LOC_LEFT;
     c->gop_size = ADCGS_MIN(ADCGS_MAX((int)(KEY_SECONDS * (int64_t)rate[0] / rate[1]), 1), KEY_FRAMES_MAX);
-    c->max_b_frames = strcasecmp(adcgs_extension(e->target.path), "avi") ? c->max_b_frames : 0; /* its packets have no times */
+    c->max_b_frames = strcasecmp(adcgs_extension(e->target.path), "avi") ? c->max_b_frames : 0; /* AVI's packets have no
+                                                                                                   timestamps */
     c->thread_count = THREADS;
     c->flags |= AV_CODEC_FLAG_BITEXACT;
     if (e->format->oformat->flags & AVFMT_GLOBALHEADER)
@@ -116,7 +120,7 @@ static adcgs_status open_codec(adcgs_video_encoder *e, adcgs_video_codec *chosen
     const int code = avcodec_open2(e->codec, chosen->encoder, &chosen->options);
     if (code < 0)
         return fail(e, code, e->target.style.options || e->target.style.has_crf ? "encode with these options"
-                                                                                : "encode pictures of this size", error);
+                                                                                : "encode frames of this size", error);
     const AVDictionaryEntry *const unknown = av_dict_get(chosen->options, "", NULL, AV_DICT_IGNORE_SUFFIX);
     if (unknown)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: the encoder %s has no option %s", e->target.path, chosen->encoder->name,
@@ -147,7 +151,7 @@ static int open_container(adcgs_video_encoder *e)
     e->stream->time_base = e->codec->time_base;
     e->stream->avg_frame_rate = e->codec->framerate;
     e->stream->sample_aspect_ratio = e->codec->sample_aspect_ratio;
-    if (e->target.style.has_alpha) /* WebM's beside the pictures, which it must be told */
+    if (e->target.style.has_alpha) /* WebM stores alpha separately and must declare it */
         av_dict_set(&e->stream->metadata, "alpha_mode", "1", 0);
     const int code = avcodec_parameters_from_context(e->stream->codecpar, e->codec);
     return code < 0 ? code : avformat_write_header(e->format, NULL);
@@ -164,9 +168,9 @@ static adcgs_status begin_with(adcgs_video_encoder *e, adcgs_video_codec *chosen
     ADCGS_TRY(open_codec(e, chosen, error));
     code = open_frame(e);
     if (code < 0)
-        return fail(e, code, "encode pictures of this size", error);
+        return fail(e, code, "encode frames of this size", error);
     code = open_container(e);
-    return code < 0 ? fail(e, code, "begin the file", error) : ADCGS_OK;
+    return code < 0 ? fail(e, code, "start the file", error) : ADCGS_OK;
 }
 
 static adcgs_status begin(adcgs_video_encoder *e, adcgs_error *error)
@@ -186,7 +190,7 @@ adcgs_status adcgs_video_encoder_begin(adcgs_video_encoder **out, int stored[2],
                                        adcgs_error *error)
 {
     *out = NULL;
-    av_log_set_level(AV_LOG_QUIET); /* what FFmpeg has to say is in our messages */
+    av_log_set_level(AV_LOG_QUIET); /* our own messages report FFmpeg's errors */
     adcgs_video_encoder *e = calloc(1, sizeof *e);
     if (!e)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", target->path);
@@ -219,7 +223,7 @@ void adcgs_video_encoder_free(adcgs_video_encoder **encoder)
 
 /* ---- Frames ---- */
 
-/** Encode a frame, or with NULL what is held back, and write what comes out. */
+/** Encode a frame, or with NULL the delayed ones, and write the packets. */
 static adcgs_status encode(adcgs_video_encoder *e, const AVFrame *frame, adcgs_error *error)
 {
     int code = avcodec_send_frame(e->codec, frame);
@@ -244,9 +248,9 @@ adcgs_status adcgs_video_encoder_add(adcgs_video_encoder *e, const adcgs_frame *
                                      adcgs_error *error)
 {
     if (frame->width != e->target.width || frame->height != e->target.height)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels among those of %dx%d", e->target.path,
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a frame of %dx%d pixels, expected %dx%d", e->target.path,
                           frame->width, frame->height, e->target.width, e->target.height);
-    const int code = av_frame_make_writable(e->frame); /* the encoder may hold the last one */
+    const int code = av_frame_make_writable(e->frame); /* the encoder may still hold the previous frame */
     if (code < 0)
         return fail(e, code, "encode", error);
     ADCGS_TRY(adcgs_video_planes(e->frame, frame, alpha, error));

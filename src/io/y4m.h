@@ -3,8 +3,8 @@
  * Writing Y4M (YUV4MPEG2): 4:4:4, 8 bit, BT.709 matrix, limited range (Y from
  * 16 to 235, Cb and Cr from 16 to 240).
  *
- * The format has no field for the matrix; players guess it from the size.
- * Say BT.709 to them where they ask (FFmpeg: -colorspace bt709).
+ * The format has no field for the matrix, so players guess it from the size.
+ * Set BT.709 in players with an option for it (FFmpeg: -colorspace bt709).
  */
 #ifndef ADCGS_IO_Y4M_H
 #define ADCGS_IO_Y4M_H
@@ -15,7 +15,7 @@
 
 #include <stdio.h>
 
-/** Failures of the stream show in ferror(). */
+/** The caller checks the file with ferror(). */
 void adcgs_y4m_write_header(FILE *file, int width, int height, double frame_rate);
 adcgs_status adcgs_y4m_write_frame(FILE *file, const adcgs_frame *frame, adcgs_error *error);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How long the frames of a Y4M stream are. */
+/** \file Size of the frames of a Y4M stream. */
 #include "config.h"
 
 #include "io/y4m_shape.h"
@@ -10,20 +10,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Chroma of a colour space by the beginning of its name: one sample for so many across and down; 0: there is none. */
+/** Chroma subsampling of a colour space by the beginning of its name, across and down; 0: no chroma. */
 static const struct {
     const char *name;
     int across, down;
 } spaces[] = {{"420", 2, 2}, {"422", 2, 1}, {"444", 1, 1}, {"411", 4, 1}, {"mono", 0, 0}};
 
-/** What may stand behind it: bytes of a sample, and whether there is a plane of alpha. */
+/** The rest of the name: bytes per sample, and whether there is an alpha plane. */
 static const struct {
     const char *name;
     int bytes, alpha;
 } kinds[] = {{"", 1, 0},    {"jpeg", 1, 0}, {"mpeg2", 1, 0}, {"paldv", 1, 0}, {"alpha", 1, 1}, {"p9", 2, 0}, {"p10", 2, 0},
              {"p12", 2, 0}, {"p14", 2, 0},  {"p16", 2, 0},   {"9", 2, 0},     {"10", 2, 0},    {"12", 2, 0}, {"16", 2, 0}};
 
-/** Bytes of a frame; 0 for a colour space that is not known. */
+/** Bytes of a frame; 0 for an unknown colour space. */
 static size_t frame_bytes(const char *space, size_t width, size_t height)
 {
     for (size_t i = 0; i < ADCGS_COUNTOF(spaces); i++) {
@@ -39,7 +39,7 @@ static size_t frame_bytes(const char *space, size_t width, size_t height)
     return 0;
 }
 
-/** A whole number of at most so much, with nothing behind it; -1 if it is none. */
+/** A whole number up to `most` without trailing characters; -1 for other text. */
 static long read_number(const char *text, long most)
 {
     char *end;
@@ -78,6 +78,6 @@ adcgs_status adcgs_y4m_shape_parse(adcgs_y4m_shape *out, const char *line, const
                           ADCGS_IMAGE_MAX);
     out->frame_bytes = frame_bytes(space, (size_t)out->width, (size_t)out->height);
     return out->frame_bytes ? ADCGS_OK
-                            : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: Y4M in the colour space %.31s is not known", path,
+                            : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: Y4M in the colour space %.31s is not supported", path,
                                          space);
 }

@@ -3,7 +3,7 @@
 #ifndef ADCGS_IO_YCBCR_H
 #define ADCGS_IO_YCBCR_H
 
-/** Shares of red and blue in luma. */
+/** Weights of red and blue in luma. */
 typedef struct adcgs_ycbcr {
     float red, blue;
 } adcgs_ycbcr;

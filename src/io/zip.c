@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file ZIP, as far as stored files need it. Times are the format's first day, so that the same splats give the same bytes. */
+/** \file
+ * ZIP with the features that uncompressed files need. Times are the format's
+ * first day, so that the same splats give the same bytes.
+ */
 #include "config.h"
 
 #include "io/zip.h"
@@ -8,11 +11,11 @@
 
 #include <zlib.h>
 
-#define LOCAL 30   /* bytes of a file's header, */
-#define CENTRAL 46 /* of its entry in the directory, */
-#define END 22     /* and of what is behind that */
-#define NEEDED 20  /* version of what reads it */
-#define FIRST_DAY 0x21
+#define LOCAL 30   /* bytes of a file's header */
+#define CENTRAL 46 /* bytes of its entry in the directory */
+#define END 22     /* bytes of the record after the directory */
+#define NEEDED 20  /* version that a reader must support */
+#define FIRST_DAY 0x21 /* 1 January 1980 */
 
 static void put(adcgs_zip *zip, const void *data, size_t bytes)
 {
@@ -20,7 +23,7 @@ static void put(adcgs_zip *zip, const void *data, size_t bytes)
     zip->at += (uint32_t)bytes;
 }
 
-/** What a file's header and its entry have alike, from the version that is needed on: 26 bytes. */
+/** Write the 26 bytes that a file's header and its entry share, beginning with the needed version. */
 static void put_common(uint8_t *to, const adcgs_zip *zip, int i)
 {
     adcgs_store_le16(to, NEEDED);

@@ -90,8 +90,8 @@ if grep -q "define HAVE_FFMPEG" config.h; then
     expect 0 "frame" $dec "$s" -o "$dir/alpha.mov" --codec qtrle --alpha --time 0
     expect 0 "frame" $dec "$s" -o "$dir/rate.avi" --codec mpeg4 --bitrate 100k --codec-options bf=0:trellis=0
     [ -s "$dir/lossless.mkv" ] && [ -s "$dir/alpha.mov" ] && [ -s "$dir/rate.avi" ] || bad "codecs by name"
-    expect 5 "x.mp4: .mp4 holds no ffv1" $dec "$s" -o "$dir/x.mp4" --codec ffv1
-    expect 5 "x.mp4: .mp4 has no alpha here" $dec "$s" -o "$dir/x.mp4" --alpha
+    expect 5 "x.mp4: .mp4 files cannot hold ffv1" $dec "$s" -o "$dir/x.mp4" --codec ffv1
+    expect 5 "x.mp4: no encoder with alpha for .mp4" $dec "$s" -o "$dir/x.mp4" --alpha
     expect 2 "the encoder mpeg4 has no option crf" $dec "$s" -o "$dir/x.avi" --codec mpeg4 --crf 20
     expect 0 "stored as 52x40" $dec "$s" -o "$dir/odd.mp4" --size 51x39 --time 0
     expect 3 "x.mp4" $dec "$s" -o "$dir/no/x.mp4" --time 0

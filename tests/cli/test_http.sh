@@ -7,7 +7,7 @@
 need adcgs-dec adcgs-info conformance/make_vectors
 unset http_proxy https_proxy all_proxy HTTPS_PROXY ALL_PROXY
 # A server whose head has a line of 200 kB, once.
-if command -v python3 >/dev/null && ! ./adcgs-dec http://127.0.0.1:1/ --md5 2>&1 | grep -q 'this build does without'; then
+if command -v python3 >/dev/null && ! ./adcgs-dec http://127.0.0.1:1/ --md5 2>&1 | grep -q 'this build lacks'; then
     python3 -c 'import socket
 s = socket.create_server(("127.0.0.1", 0))
 print(s.getsockname()[1], flush=True)
@@ -20,11 +20,11 @@ except OSError:
     pass' >"$dir/port" &
     while [ ! -s "$dir/port" ]; do sleep 0.02; done
     read -r port <"$dir/port"
-    expect 3 "a line of its answer's head is longer than" ./adcgs-dec "http://127.0.0.1:$port/x.adcgs" --md5
+    expect 3 "a header line of its response exceeds" ./adcgs-dec "http://127.0.0.1:$port/x.adcgs" --md5
     [ $failed -eq 0 ] || exit 1
 fi
 nginx=$(PATH=$PATH:/usr/sbin:/usr/local/sbin command -v nginx) || { echo "skipped: no nginx"; exit 77; }
-./adcgs-dec http://127.0.0.1:1/ --md5 2>&1 | grep -q 'this build does without' &&
+./adcgs-dec http://127.0.0.1:1/ --md5 2>&1 | grep -q 'this build lacks' &&
     { echo "skipped: no libcurl in this build"; exit 77; }
 vectors=${srcdir:-.}/conformance/vectors
 
@@ -237,9 +237,9 @@ done
 fails 3 "changed while it was read" $at/changed.adcgs
 fails 3 "changed while it was read" $at/swapped.adcgs
 fails 3 "status 206" $at/no-range
-fails 3 "another range than bytes 0 to 65535" $at/other-range
-fails 3 "fewer bytes than its answer says" $at/fewer
-fails 3 "more bytes than its answer says" $at/more
+fails 3 "a range other than bytes 0 to 65535" $at/other-range
+fails 3 "fewer bytes than announced" $at/fewer
+fails 3 "more bytes than announced" $at/more
 fails 4 "99999999999999 bytes, expected at most 68719476736" $at/huge
 fails 3 "status 206" $at/overflow
 expect 3 "^adcgs-dec: $at/none: .*404" ./adcgs-dec "$long" --beside $at/none -o "$dir/none.ppm"

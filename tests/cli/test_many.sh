@@ -155,7 +155,7 @@ until [ -s "$dir/calls" ]; do sleep 0.05; done
 echo 'node7 17 2026-01-01T00:00:00Z other/pid:[1]' >"$out/lambda-1.running"
 rm "$dir/slow"
 wait $!
-[ $? -eq 3 ] && grep -q "$out/lambda-1.running: lambda-1 is another's by now" "$dir/slow.err" || fail "$(cat "$dir/slow.err")"
+[ $? -eq 3 ] && grep -q "$out/lambda-1.running: another process has taken over lambda-1" "$dir/slow.err" || fail "$(cat "$dir/slow.err")"
 grep -q node7 "$out/lambda-1.running" || fail "another's is gone"
 
 # What it cannot be asked for, and folders that are none.

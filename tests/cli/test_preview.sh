@@ -36,7 +36,7 @@ expect 2 "before training began" $run -o "$dir/x.adcgs" --preview "$dir/early.pp
 # What it cannot be is said before training; what fails later is said once, and the run goes on.
 # shellcheck disable=SC2086
 {
-    expect 2 "extension must say the format" $run -o "$dir/x.adcgs" --preview "$dir/nothing"
+    expect 2 "extension that gives the format" $run -o "$dir/x.adcgs" --preview "$dir/nothing"
     expect 3 "no/p.png" $run -o "$dir/x.adcgs" --preview "$dir/no/p.png"
     expect 2 "same file" $run -o "$dir/x.adcgs" --preview "$dir/x.adcgs"
 }

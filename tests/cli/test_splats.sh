@@ -125,7 +125,7 @@ for name in x.mp4 x.ppm 'x.null?RES=64x64\&CHANNELS=3'; do
     printf '\0\0\0\030ftypisom\0\0\0\0isomavc1' >"$file"
     expect 4 "a video (MP4 or QuickTime), expected an image" ./adcgs-enc "$dir/photos" -o "$dir/x.adcgs" --preset draft -n 10
     printf 'any bytes' >"$file"
-    expect 4 "a file of no kind that is known, expected an image" ./adcgs-enc "$dir/photos" -o "$dir/x.adcgs" --preset draft -n 10
+    expect 4 "a file of unknown kind, expected an image" ./adcgs-enc "$dir/photos" -o "$dir/x.adcgs" --preset draft -n 10
 done
 [ -z "$(find "$dir" \( -name 'x.adcgs' -o -name 'x.html' -o -name '.*tmp*' \))" ] || bad "something was left behind"
 exit $failed

@@ -293,9 +293,9 @@ static void test_packed(void **state)
         assert_true(back.axes == ADCGS_SPLATS_Y_UP && back.degree == plain.degree);
         adcgs_splats_free(&back);
     }
-    read_packed(&back, spz, bytes, s.n + 1, SPZ "_2", 0, ADCGS_ERR_DATA, "POSITION: 41 of them, but the SPZ has 40");
+    read_packed(&back, spz, bytes, s.n + 1, SPZ "_2", 0, ADCGS_ERR_DATA, "POSITION: 41 elements, but the SPZ has 40");
     read_packed(&back, spz, bytes, s.n, SPZ "_2", 1, ADCGS_ERR_DATA, SPZ "_2: no bufferViews 1");
-    read_packed(&back, spz, bytes, s.n, "EXT_odd", 0, ADCGS_ERR_UNSUPPORTED, "by the extension EXT_odd, expected plain");
+    read_packed(&back, spz, bytes, s.n, "EXT_odd", 0, ADCGS_ERR_UNSUPPORTED, "by the extension EXT_odd, expected unpacked");
     read_packed(&back, spz, bytes - 9, s.n, SPZ "_2", 0, ADCGS_ERR_DATA, "SPZ");
     for (size_t n = 0; n < 32; n++)
         read_packed(&back, spz, n, s.n, SPZ "_2", 0, ADCGS_ERR_DATA, n < 4 ? "that is not SPZ" : "SPZ");
@@ -393,31 +393,31 @@ static void test_bad_text(void **state)
         {"\"byteLength\":134", "\"byteLength\":9999999999999999", ADCGS_ERR_DATA, "byteLength: expected a whole number"},
         {"\"byteLength\":134", "\"byteLength\":134,\"uri\":\"a.bin\"", ADCGS_ERR_UNSUPPORTED, "a buffer outside of the file"},
         {"{\"buffer\":0", "{\"buffer\":1", ADCGS_ERR_DATA, "no buffers 1"},
-        {"\"byteLength\":28", "\"byteLength\":27", ADCGS_ERR_DATA, "POSITION: an accessor beyond its view"},
-        {"\"byteLength\":28", "\"byteLength\":1000", ADCGS_ERR_DATA, "POSITION: a view beyond its buffer"},
+        {"\"byteLength\":28", "\"byteLength\":27", ADCGS_ERR_DATA, "POSITION: an accessor extends beyond its view"},
+        {"\"byteLength\":28", "\"byteLength\":1000", ADCGS_ERR_DATA, "POSITION: a view extends beyond its buffer"},
         {"\"byteStride\":16", "\"byteStride\":11", ADCGS_ERR_DATA, "byteStride"},
         {"\"byteStride\":16", "\"byteStride\":9007199254740992", ADCGS_ERR_DATA, "byteStride"},
         {"\"byteStride\":16", "\"byteStride\":16,\"extensions\":{}", ADCGS_ERR_UNSUPPORTED, "packed by another extension"},
         {"\"componentType\":5126", "\"componentType\":5125", ADCGS_ERR_DATA, "componentType"},
-        {"\"count\":2", "\"count\":0", ADCGS_ERR_DATA, "POSITION: 0 of them, expected 1 to 16777216"},
-        {"\"count\":2", "\"count\":16777217", ADCGS_ERR_DATA, "POSITION: 16777217 of them, expected 1 to"},
-        {"\"count\":2", "\"count\":16777216", ADCGS_ERR_DATA, "POSITION: an accessor beyond its view"},
-        {"\"count\":2", "\"count\":1", ADCGS_ERR_DATA, "ROTATION: 2 of them, expected 1"},
+        {"\"count\":2", "\"count\":0", ADCGS_ERR_DATA, "POSITION: 0 elements, expected 1 to 16777216"},
+        {"\"count\":2", "\"count\":16777217", ADCGS_ERR_DATA, "POSITION: 16777217 elements, expected 1 to"},
+        {"\"count\":2", "\"count\":16777216", ADCGS_ERR_DATA, "POSITION: an accessor extends beyond its view"},
+        {"\"count\":2", "\"count\":1", ADCGS_ERR_DATA, "ROTATION: 2 elements, expected 1"},
         {"\"VEC3\"", "\"VEC2\"", ADCGS_ERR_DATA, "POSITION: of type VEC2, expected VEC3"},
         {"\"VEC3\"", "\"VEC3\",\"sparse\":{}", ADCGS_ERR_UNSUPPORTED, "a sparse accessor"},
         {"\"bufferView\":0", "\"bufferView\":6", ADCGS_ERR_DATA, "POSITION: no bufferViews 6"},
         {"\"bufferView\":0,", "", ADCGS_ERR_DATA, "bufferView: expected a whole number"},
         {"\"POSITION\":0", "\"POSITION\":7", ADCGS_ERR_DATA, "POSITION: no accessors 7"},
-        {NAME ":ROTATION", NAME ":ROT", ADCGS_ERR_DATA, "ROTATION: not there"},
-        {NAME ":OPACITY", NAME ":O", ADCGS_ERR_DATA, "OPACITY: not there"},
-        {NAME ":SH_DEGREE_0_COEF_0", NAME ":SH", ADCGS_ERR_DATA, "SH_DEGREE_0_COEF_0: not there"},
-        {NAME ":SH_DEGREE_1_COEF_2", NAME ":SH", ADCGS_ERR_DATA, "SH_DEGREE_1_COEF_2: not there"},
+        {NAME ":ROTATION", NAME ":ROT", ADCGS_ERR_DATA, "ROTATION: missing"},
+        {NAME ":OPACITY", NAME ":O", ADCGS_ERR_DATA, "OPACITY: missing"},
+        {NAME ":SH_DEGREE_0_COEF_0", NAME ":SH", ADCGS_ERR_DATA, "SH_DEGREE_0_COEF_0: missing"},
+        {NAME ":SH_DEGREE_1_COEF_2", NAME ":SH", ADCGS_ERR_DATA, "SH_DEGREE_1_COEF_2: missing"},
         {"\"mode\":0,", "", ADCGS_ERR_DATA, "not 0 (points)"},
         {"\"extensions\":{\"" NAME "\"", "\"extensions\":{\"other\"", ADCGS_ERR_DATA, "no splats: no primitive with"},
         {"\"kernel\":\"ellipse\"", "\"kernel\":\"cube\"", ADCGS_ERR_UNSUPPORTED, "kernel: cube, expected ellipse"},
         {"srgb_rec709", "lin_rec709", ADCGS_ERR_UNSUPPORTED, "colorSpace: lin_rec709_display, expected srgb"},
         {"\"kernel\"", "\"extensions\":{\"EXT_packed\":{}},\"k\"", ADCGS_ERR_UNSUPPORTED, "by the extension EXT_packed"},
-        {"\"scale\":[1,1,1]", "\"scale\":[1,0,1]", ADCGS_ERR_DATA, "a matrix that flattens"},
+        {"\"scale\":[1,1,1]", "\"scale\":[1,0,1]", ADCGS_ERR_DATA, "a singular matrix"},
         {"\"scale\":[1,1,1]", "\"scale\":[1,1]", ADCGS_ERR_DATA, "a node's scale: expected 3 numbers"},
         {"\"scale\":[1,1,1]", "\"scale\":[1,\"a\",1]", ADCGS_ERR_DATA, "a node's scale: expected 3 numbers"},
         {"\"scale\":[1,1,1]", "\"scale\":[1e38,1e38,1e38]", ADCGS_ERR_DATA, "splat 0 is moved beyond"},
@@ -425,10 +425,10 @@ static void test_bad_text(void **state)
         {"{\"children\":[1]}", "{\"children\":[1],\"matrix\":[1]}", ADCGS_ERR_DATA, "a node's matrix: expected 16 numbers"},
         {"{\"children\":[1]}", "{\"children\":[1],\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]}", ADCGS_ERR_DATA, "a last row"},
         {NAME ":SH_DEGREE_1_COEF_0", NAME ":SH_DEGREE_4_COEF_0", ADCGS_ERR_UNSUPPORTED, "harmonics of degree 4"},
-        {"{\"children\":[1]}", "{\"children\":[2]}", ADCGS_ERR_DATA, "a child of a node that there is not"},
-        {"{\"mesh\":1,", "{\"children\":[0],\"mesh\":1,", ADCGS_ERR_DATA, "their own parents"},
+        {"{\"children\":[1]}", "{\"children\":[2]}", ADCGS_ERR_DATA, "a node lists a child that does not exist"},
+        {"{\"mesh\":1,", "{\"children\":[0],\"mesh\":1,", ADCGS_ERR_DATA, "its own ancestor"},
         {"{\"primitives\":[", "{\"primitives\":[{\"mode\":0,\"extensions\":{\"" NAME "\":{}}},", ADCGS_ERR_DATA,
-         "POSITION: not there"},
+         "POSITION: missing"},
     };
     uint8_t file[4096], numbers[134];
     adcgs_splats s;

@@ -102,7 +102,7 @@ static void test_damage(void **state)
     expect_bad("d.ppm", "P", ADCGS_ERR_DATA, "too short");
     expect_bad("d.exr", "\x76\x2f\x31\x01 and then nothing of use", ADCGS_ERR_DATA, "d.exr");
     expect_bad("d.tif", "II*\001 and then nothing of use", ADCGS_ERR_DATA, "d.tif");
-    expect_bad("d", "what is this?", ADCGS_ERR_DATA, "d: a file of no kind that is known, expected an image (PNG, ");
+    expect_bad("d", "what is this?", ADCGS_ERR_DATA, "d: a file of unknown kind, expected an image (PNG, ");
     expect_error(adcgs_image_read(&image, in("absent.ppm"), &error), ADCGS_ERR_IO, "absent.ppm", "No such file");
     expect_error(adcgs_image_read(&image, folder, &error), ADCGS_ERR_IO, folder, "");
 }

@@ -83,7 +83,7 @@ static void test_names(void **state)
          ADCGS_KIND_SCENE},
         {"a", BYTES("{\"camera_angle_x\":1,\"frames\":[{\"transform_matrix\":"),
          "the cameras of a scene (JSON)", ADCGS_KIND_SCENE},
-        {"a", BYTES("{\"K\":1,\"poses\":2,\"frames\":[]}"), "a file of no kind that is known", ADCGS_KIND_UNKNOWN},
+        {"a", BYTES("{\"K\":1,\"poses\":2,\"frames\":[]}"), "a file of unknown kind", ADCGS_KIND_UNKNOWN},
         {"a", BYTES("<?xml version=\"1.0\"?>\n<document version=\"2.0.0\">\n<chunk label=\"a\">"),
          "Agisoft Metashape's cameras (XML)",
          ADCGS_KIND_SCENE},
@@ -92,9 +92,9 @@ static void test_names(void **state)
         {"a", BYTES("name;b,x,y\na,1,2\n"), "a table (CSV)", ADCGS_KIND_OTHER},
         {"a", BYTES("SQLite format 3"), "a database (SQLite, as COLMAP's database.db)", ADCGS_KIND_SCENE},
         {"a", BYTES("# Image list with two lines"), "COLMAP's images.txt", ADCGS_KIND_SCENE},
-        {"a.txt", BYTES("some words"), "a file of no kind that is known", ADCGS_KIND_UNKNOWN},
-        {"a.null?RES=64x64&CHANNELS=3", BYTES("whatever"), "a file of no kind that is known", ADCGS_KIND_UNKNOWN},
-        {"a", BYTES(""), "a file of no kind that is known", ADCGS_KIND_UNKNOWN},
+        {"a.txt", BYTES("some words"), "a file of unknown kind", ADCGS_KIND_UNKNOWN},
+        {"a.null?RES=64x64&CHANNELS=3", BYTES("whatever"), "a file of unknown kind", ADCGS_KIND_UNKNOWN},
+        {"a", BYTES(""), "a file of unknown kind", ADCGS_KIND_UNKNOWN},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const adcgs_kind *const kind = kind_of(cases[i].name, cases[i].bytes, cases[i].n, cases[i].n);
@@ -148,11 +148,11 @@ static void refused(const char *name, const char *bytes, size_t n, adcgs_status 
 static void test_no_images(void **state)
 {
     refused("x.null?RES=64x64&CHANNELS=3", BYTES("any bytes"), ADCGS_ERR_DATA, "expected an image");
-    refused("x.png", BYTES("any bytes"), ADCGS_ERR_DATA, "a file of no kind that is known");
-    refused("x", BYTES("any bytes"), ADCGS_ERR_DATA, "x: a file of no kind that is known");
+    refused("x.png", BYTES("any bytes"), ADCGS_ERR_DATA, "a file of unknown kind");
+    refused("x", BYTES("any bytes"), ADCGS_ERR_DATA, "x: a file of unknown kind");
     refused("x.mp4", BYTES("\0\0\0\x18" "ftypisom\0\0\0\0isomavc1"),
             ADCGS_ERR_DATA, "a video (MP4 or QuickTime), expected an image");
-    refused("x.jpg", BYTES("\x1a\x45\xdf\xa3\x9f"), ADCGS_ERR_DATA, "adcgs-import takes its frames out");
+    refused("x.jpg", BYTES("\x1a\x45\xdf\xa3\x9f"), ADCGS_ERR_DATA, "adcgs-import extracts its frames");
     refused("x.tga", BYTES("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0\1\2\3"), ADCGS_ERR_DATA, "x.tga: ");
     refused("x.psd", BYTES("8BPS\0\1\0\0\0\0\0\0\0\3"),
             ADCGS_ERR_UNSUPPORTED, "a Photoshop document, which is not read: convert");

@@ -150,7 +150,7 @@ static void test_other_kinds(void **state)
     put_text("t.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                       "property uchar red\nend_header\n1 2 3 4\n");
     expect_error(adcgs_splats_read(&s, in("t.ply"), &error), ADCGS_ERR_DATA, "t.ply",
-                 "a point cloud goes with a scene, by --points");
+                 "give a point cloud with a scene, by --points");
 }
 
 /* ---- Far from the origin ---- */

@@ -186,7 +186,7 @@ static void test_bad(void **state)
         {12, 1, ADCGS_ERR_DATA, "5 streams of SPZ, expected 6"},
         {12, 4, ADCGS_ERR_UNSUPPORTED, "degree 4, expected at most 3"},
         {12, 9, ADCGS_ERR_DATA, "degree 9, expected 0 to 3"},
-        {13, 31, ADCGS_ERR_DATA, "31 bits behind the point, expected at most 30"},
+        {13, 31, ADCGS_ERR_DATA, "31 fractional bits, expected at most 30"},
         {15, 4, ADCGS_ERR_DATA, "4 streams of SPZ, expected 5"},
         {15, 7, ADCGS_ERR_DATA, "7 streams of SPZ, expected 5"},
         {16, 31, ADCGS_ERR_DATA, "table of 5 streams at 31"},
@@ -260,7 +260,7 @@ static void test_bad_old(void **state)
         expect_bad(file, cut, ADCGS_ERR_DATA, "early");
     }
     good[whole - 7] ^= 1;
-    expect_bad(good, whole, ADCGS_ERR_DATA, "another checksum");
+    expect_bad(good, whole, ADCGS_ERR_DATA, "checksum does not match");
     free(good);
     static const struct {
         int at;
@@ -271,7 +271,7 @@ static void test_bad_old(void **state)
                  {4, 1, ADCGS_ERR_UNSUPPORTED, "version 1, expected 2 to 4"},
                  {4, 4, ADCGS_ERR_DATA, "version 4 packed by gzip"},
                  {8, 3, ADCGS_ERR_DATA, "early"},
-                 {10, 9, ADCGS_ERR_DATA, "splats, but no more than"},
+                 {10, 9, ADCGS_ERR_DATA, "splats, but only"},
                  {12, 3, ADCGS_ERR_DATA, "SPZ's harmonics: the data end"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const size_t n = make_old(raw, 3);

@@ -211,16 +211,16 @@ static void test_refused(void **state)
         adcgs_status status;
         const char *text;
     } rows[] = {
-        {"a.mp4", {.has_alpha = 1}, ADCGS_ERR_UNSUPPORTED, ".mp4 has no alpha here"},
+        {"a.mp4", {.has_alpha = 1}, ADCGS_ERR_UNSUPPORTED, "no encoder with alpha for .mp4"},
         {"a.mkv", {.has_alpha = 1, .codec = "mpeg4"}, ADCGS_ERR_UNSUPPORTED, "mpeg4 has no alpha"},
-        {"a.mp4", {.codec = "ffv1"}, ADCGS_ERR_UNSUPPORTED, ".mp4 holds no ffv1"},
+        {"a.mp4", {.codec = "ffv1"}, ADCGS_ERR_UNSUPPORTED, ".mp4 files cannot hold ffv1"},
         {"a.mp4", {.codec = "abacus"}, ADCGS_ERR_UNSUPPORTED, "no encoder abacus"},
         {"a.mp4", {.codec = "aac"}, ADCGS_ERR_UNSUPPORTED, "no encoder aac"},
         {"a.avi", {.codec = "mpeg4", .crf = 3, .has_crf = 1}, ADCGS_ERR_USAGE, "the encoder mpeg4 has no option crf"},
         {"a.mkv", {.codec = "ffv1", .options = "nonsense=1"}, ADCGS_ERR_USAGE, "the encoder ffv1 has no option nonsense"},
         {"a.mkv", {.codec = "ffv1", .options = "nonsense"}, ADCGS_ERR_USAGE, "expected NAME=VALUE"},
         {"a.mkv", {.codec = "ffv1", .options = "coder=99"}, ADCGS_ERR_UNSUPPORTED, "cannot encode with these options"},
-        {"a.mkv", {.codec = "ffv1", .options = "pix_fmt=pal8"}, ADCGS_ERR_UNSUPPORTED, "does not take pix_fmt=pal8"},
+        {"a.mkv", {.codec = "ffv1", .options = "pix_fmt=pal8"}, ADCGS_ERR_UNSUPPORTED, "does not support pix_fmt=pal8"},
     };
     for (size_t i = 0; i < ADCGS_COUNTOF(rows); i++) {
         adcgs_video_writer *w;
