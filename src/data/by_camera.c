@@ -9,7 +9,7 @@
 typedef struct item {
     const adcgs_scene_view *view;
     uint32_t index;
-    uint32_t first; /* view of the same camera */
+    uint32_t first; /* index of the first view of the same camera */
 } item;
 
 int adcgs_camera_compare(const adcgs_camera *a, const adcgs_camera *b)

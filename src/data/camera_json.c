@@ -15,7 +15,7 @@
 
 #define FILE_MAX ((uint64_t)256 << 20)
 #define FRAMES_MAX 1000000
-#define TERM_MAX 1e6 /* of distortion */
+#define TERM_MAX 1e6 /* largest magnitude of a distortion coefficient */
 
 adcgs_status adcgs_json_load(json_t **root, const char *path, adcgs_error *error)
 {
@@ -100,7 +100,7 @@ adcgs_status adcgs_json_fps(const adcgs_json_place *at, const char *field, adcgs
 enum { N_TERMS = 8 };
 static const char *const terms[N_TERMS] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"};
 
-/** The models by which pictures are made from a pinhole's, and how many of k1 .. k6 and of p1, p2 they have. */
+/** A camera model, with the number of its coefficients among k1 .. k6 and among p1, p2. */
 typedef struct model {
     const char *name;
     int n_radial, n_tangential, is_fisheye;
@@ -112,7 +112,7 @@ static const model models[] = {
     {"FULL_OPENCV", 6, 2, 0},   {"SIMPLE_RADIAL_FISHEYE", 1, 0, 1}, {"RADIAL_FISHEYE", 2, 0, 1},
 };
 
-/** Without a name, the first, or the second if the file says that it is a fisheye. */
+/** Without a name: the first model, or the second if the file sets is_fisheye. */
 static adcgs_status find_model(const adcgs_json_place *at, const model **out)
 {
     json_t *item = adcgs_json_find(at, "camera_model");
@@ -131,7 +131,7 @@ static adcgs_status find_model(const adcgs_json_place *at, const model **out)
                           "RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE", name);
 }
 
-/** What instant-ngp has for other projections, and skew, which has no agreed meaning here. */
+/** Refuses instant-ngp's fields for other projections, and skew, which has no agreed meaning here. */
 static adcgs_status refuse_others(const adcgs_json_place *at)
 {
     static const char *const kinds[] = {"ftheta_p0", "latlong", "equirectangular"};
@@ -198,7 +198,7 @@ adcgs_status adcgs_json_size(const adcgs_json_place *at, adcgs_camera *camera, i
     return ADCGS_OK;
 }
 
-/** Focal length of an axis from pixels, or else from the field of view. */
+/** Reads the focal length along an axis, in pixels; if it is absent, derives it from the field of view. */
 static adcgs_status read_focal(const adcgs_json_place *at, const char *pixels, const char *angle, int size, double *focal,
                                int *found)
 {
@@ -248,7 +248,7 @@ adcgs_status adcgs_json_lens(const adcgs_json_place *at, adcgs_lens *lens)
     double values[N_TERMS];
     ADCGS_TRY(read_terms(at, &its, values));
     if (its->is_fisheye && !adcgs_json_find(at, "fl_x"))
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "fl_x", "missing: of a fisheye lens angles say too little");
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "fl_x", "missing: a fisheye lens needs fl_x, its field of view is not enough");
     ADCGS_TRY(read_pinhole(at, &camera));
     *lens = (adcgs_lens){.width = camera.width, .height = camera.height, .fx = camera.fx, .fy = camera.fy, .cx = camera.cx,
                          .cy = camera.cy, .p = {values[6], values[7]}, .is_fisheye = its->is_fisheye};

@@ -8,15 +8,15 @@
 #include <stdlib.h>
 
 typedef struct clip {
-    char *path;           /* NULL: free */
-    adcgs_video *video;   /* NULL until it is opened, or if that failed */
-    pthread_mutex_t lock; /* for the video */
+    char *path;           /* NULL: the slot is free */
+    adcgs_video *video;   /* NULL until it is opened, or if opening failed */
+    pthread_mutex_t lock; /* protects video */
     int users;
-    uint64_t used;        /* when, counted in calls */
+    uint64_t used;        /* number of the call that used it last */
 } clip;
 
 struct adcgs_clips {
-    pthread_mutex_t lock; /* for the table and all of a clip but the video */
+    pthread_mutex_t lock; /* protects the table and all members of a clip except video and its lock */
     pthread_cond_t freed;
     uint64_t calls;
     clip clip[ADCGS_CLIPS_OPEN];
@@ -55,7 +55,7 @@ void adcgs_clips_free(adcgs_clips **clips)
     *clips = NULL;
 }
 
-/** The clip of a path, else the one nobody uses that was used longest ago; NULL if all are in use. */
+/** The clip of a path, else the least recently used clip without users; NULL if all are in use. */
 static clip *find_clip(adcgs_clips *clips, const char *path)
 {
     clip *best = NULL;
@@ -69,7 +69,7 @@ static clip *find_clip(adcgs_clips *clips, const char *path)
     return best;
 }
 
-/** A clip for this path, which stays ours until release(). */
+/** Acquires the clip of this path for the caller, until release(). */
 static adcgs_status acquire(adcgs_clips *clips, clip **out, const char *path, adcgs_error *error)
 {
     adcgs_status status = ADCGS_OK;
@@ -99,7 +99,7 @@ static void release(adcgs_clips *clips, clip *c)
     pthread_mutex_unlock(&clips->lock);
 }
 
-/** What the video says of itself and, if asked for, a frame. */
+/** Reads the video's properties and a frame; info and image may be NULL. */
 static adcgs_status use(adcgs_clips *clips, const char *path, adcgs_video_info *info, int64_t frame, adcgs_image *image,
                         adcgs_error *error)
 {
@@ -142,7 +142,7 @@ static int by_video(const void *a, const void *b)
         if (paths || x->view->frame != y->view->frame)
             return paths ? paths : x->view->frame < y->view->frame ? -1 : 1;
     } else if (x->view->is_video || y->view->is_video)
-        return x->view->is_video ? -1 : 1; /* the long runs first, so that threads end together */
+        return x->view->is_video ? -1 : 1; /* long runs first, so that the threads finish together */
     return (x->index > y->index) - (x->index < y->index);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the files of a scene's views hold. */
+/** \file Digests of the files and the metadata of a scene. */
 #include "config.h"
 
 #include "data/content.h"
@@ -40,7 +40,7 @@ adcgs_status adcgs_scene_content(const adcgs_scene *scene, adcgs_split split, ui
     adcgs_md5_init(&md5);
     for (uint32_t i = 0; status == ADCGS_OK && i < scene->n_views[split]; i++) {
         const adcgs_scene_view *view = &scene->views[split][i];
-        if (!last || strcmp(view->path, last)) /* views of a video follow each other */
+        if (!last || strcmp(view->path, last)) /* views of one video are adjacent */
             status = add_file(&md5, buffer, view->path, error);
         if (status == ADCGS_OK && view->mask)
             status = add_file(&md5, buffer, view->mask, error);
@@ -51,7 +51,7 @@ adcgs_status adcgs_scene_content(const adcgs_scene *scene, adcgs_split split, ui
     return status;
 }
 
-/* ---- Besides pictures ---- */
+/* ---- Metadata ---- */
 
 static void add_numbers(adcgs_md5 *md5, const double *x, size_t n)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How long a length is. */
+/** \file The extent of a scene, its typical length. */
 #include "config.h"
 
 #include "data/extent.h"
@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#define POINTS_MOST 10000 /* that are looked at */
+#define POINTS_MOST 10000 /* largest number of points that are examined */
 #define BOUNDS_PER_EXTENT 4
 #define SPREADS_PER_EXTENT 4
 
@@ -24,7 +24,7 @@ static double distance(const double a[3], const double b[3])
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/** The median distance of points from the first camera; 0 without any. */
+/** Sets *extent to the median distance of the points from the first camera; 0 without points. */
 static adcgs_status points_extent(const adcgs_scene *scene, double *extent, adcgs_error *error)
 {
     const uint32_t all = scene->points.n, n = ADCGS_MIN(all, POINTS_MOST);
@@ -45,7 +45,7 @@ static adcgs_status points_extent(const adcgs_scene *scene, double *extent, adcg
     return ADCGS_OK;
 }
 
-/** By how far the cameras are apart; 1 if they stand in one place. */
+/** The extent from the cameras' distances from the first camera; 1 if all cameras share one position. */
 static double spread_extent(const adcgs_scene *scene)
 {
     double first[3], other[3], spread = 0.0, far = 0.0;

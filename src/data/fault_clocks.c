@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/**
- * \file A camera whose clock is off by whole frames: what jerks, starts and stops does so in all cameras at once. How much
- * pictures change from one moment to the next is compared without what is smooth in time: a thing that goes past is nearest to
- * one camera before it is to another, and there is nothing wrong with that.
+/** \file
+ * Detects a camera whose clock is off by whole frames. Sudden changes (jerks, starts, stops) appear in all cameras at once. The
+ * detector compares how much images change from frame to frame, after it has removed changes that are smooth in time. A passing
+ * object is nearest to one camera earlier than to another, without any fault.
  */
 #include "config.h"
 
@@ -13,28 +13,29 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define CAMERAS 3   /* two that differ do not say which is wrong */
-#define MOMENTS 12  /* changes in common, at any shift */
-#define STRONG 4    /* of them that stand out: where something happens once, a camera may only have seen it later */
-#define REACH 2     /* changes to either side, whose median is what is smooth */
+#define CAMERAS 3   /* least number of cameras: of two that differ, either may be wrong */
+#define MOMENTS 12  /* least number of changes in common, at any shift */
+#define STRONG 4    /* least number of strong changes: a camera may simply have seen a single event later */
+#define REACH 2     /* changes to either side; their median is the smooth part */
 /*
- * Correlations with the mean of the others. Of 32 generated scenes that four cameras film in order, and of rigs of 4, 8 and
- * 17 cameras, those in which cameras agree by 0.8 and more (bounce, collide, merge, race, soft, clip, synth_robot_multiview) have
- * none that any shift would suit better. Of cameras of clip of which one is 1 to 5 frames off, the shift gains 1.0 and more, and
- * matches by 0.9. Where nothing jerks cameras agree by less than 0.8, and shifts gain up to 1.4 by chance: nothing is said.
+ * Correlations with the mean of the other cameras. They were tested on 32 generated scenes filmed by four correct cameras, and
+ * on rigs of 4, 8 and 17 cameras. Where cameras agree by 0.8 and more (bounce, collide, merge, race, soft, clip,
+ * synth_robot_multiview), no shift fits any camera better. With one camera of clip 1 to 5 frames off, the shift gains 1.0 and
+ * more, and matches by 0.9. Without sudden changes cameras agree by less than 0.8, and shifts gain up to 1.4 by chance: nothing
+ * is reported.
  */
-#define AGREE 0.8   /* the median of the others with each other */
-#define MATCH 0.7   /* the camera in doubt, at its shift */
-#define GAIN 0.4    /* of this, by the shift */
-#define UNIQUE 0.2  /* of this, over shifts that are not next to it: what repeats is in step in many ways */
+#define AGREE 0.8   /* least median correlation of the other cameras with each other */
+#define MATCH 0.7   /* least correlation of the suspected camera, at its shift */
+#define GAIN 0.4    /* least increase of this correlation by the shift */
+#define UNIQUE 0.2  /* least lead over shifts that are not adjacent: repeated motion matches at many shifts */
 
-/** Changes of all cameras: [cameras][steps], NaN where one of the two pictures is missing. */
+/** Changes of all cameras from frame to frame: [cameras][steps], NaN if one of the two images is missing. */
 typedef struct signals {
     uint32_t cameras, steps;
     double *values;
-    double *mean; /* [steps] of all cameras but one */
+    double *mean; /* [steps] over all cameras except one or two */
     double *times; /* [steps + 1] */
-    const adcgs_scene_view **first; /* [cameras] */
+    const adcgs_scene_view **first; /* [cameras] first view of each */
 } signals;
 
 static double median_around(const double *values, uint32_t n, uint32_t at)
@@ -48,7 +49,10 @@ static double median_around(const double *values, uint32_t n, uint32_t at)
     return count % 2 ? near[count / 2] : 0.5 * (near[count / 2 - 1] + near[count / 2]);
 }
 
-/** Take away what is smooth; what is left has mean 0 and deviation 1. buffer: [n]. 0: nothing is left, or it is too little. */
+/**
+ * Removes the smooth part and scales the rest to mean 0 and deviation 1. buffer: [n]. Returns 0 if nothing or too little is
+ * left.
+ */
 static int sharpen(double *values, uint32_t n, double *buffer)
 {
     double sum = 0.0, square = 0.0;
@@ -69,7 +73,7 @@ static int sharpen(double *values, uint32_t n, double *buffer)
     return count >= MOMENTS && strong >= STRONG;
 }
 
-/** Of a camera with a mean, which it follows by so many steps; NaN where they have too little in common. */
+/** Correlation of a camera with a mean that it follows by `late` steps; NaN if they have too little in common. */
 static double correlate(const double *a, const double *b, uint32_t n, int late)
 {
     double s[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
@@ -89,7 +93,7 @@ static double correlate(const double *a, const double *b, uint32_t n, int late)
     return count >= MOMENTS && va > 0.0 && vb > 0.0 ? (s[4] - s[0] * s[1] / count) / sqrt(va * vb) : (double)NAN;
 }
 
-/** Mean of all cameras but one, or two. */
+/** Mean of all cameras except one or two. */
 static void take_mean(signals *s, uint32_t without, uint32_t and_without)
 {
     for (uint32_t i = 0; i < s->steps; i++) {
@@ -106,7 +110,10 @@ static void take_mean(signals *s, uint32_t without, uint32_t and_without)
     }
 }
 
-/** How late a camera is, in steps, with what that gains and its correlation there; gain 0: in step, or nobody knows. */
+/**
+ * Returns by how many steps a camera is late. *match: its correlation at this shift; *gain: the increase of the correlation by
+ * the shift, 0 if the camera is synchronised or the shift is ambiguous.
+ */
 static int find_shift(const double *values, const signals *s, double *gain, double *match)
 {
     const int most = (int)ADCGS_MIN(s->steps - MOMENTS, s->steps / 2);
@@ -131,7 +138,7 @@ static int find_shift(const double *values, const signals *s, double *gain, doub
     return late;
 }
 
-/** How well all cameras but one agree among each other: the median correlation of one with the others. agreed: [cameras]. */
+/** Agreement of all cameras except one: the median correlation of one of them with the others. agreed: [cameras]. */
 static double agreement(signals *s, uint32_t without, double *agreed)
 {
     uint32_t n = 0;
@@ -168,7 +175,7 @@ static void judge(adcgs_fault *f, signals *s, double *agreed)
         f->cameras = 0;
 }
 
-/** The moment of a time, which is there to within a thousandth of a step. */
+/** Index of a view's time in s->times, which holds it to within a thousandth of a step. */
 static uint32_t find_moment(const signals *s, double time)
 {
     uint32_t low = 0, high = s->steps;
@@ -182,7 +189,7 @@ static uint32_t find_moment(const signals *s, double time)
     return low && time - s->times[low - 1] < s->times[low] - time ? low - 1 : low;
 }
 
-/** The distinct times of all views; those that are one but for rounding are one. */
+/** Lists the distinct times of all views; times that differ only by rounding count as one. */
 static void take_times(signals *s, const adcgs_scene_view *views, uint32_t n)
 {
     uint32_t count = 1;
@@ -196,7 +203,7 @@ static void take_times(signals *s, const adcgs_scene_view *views, uint32_t n)
     s->steps = count - 1;
 }
 
-/** The cameras that have something to say: their number is known behind it. */
+/** Computes the signals of the cameras that have enough strong changes, and sets s->cameras to their number. */
 static void take_signals(signals *s, const adcgs_tracks *tracks, const adcgs_scene_view *views, const adcgs_glance *glances)
 {
     for (uint32_t c = 0; c < tracks->n; c++) {

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures of a camera that are another's, of the moment before: files that were mixed up, frames that came twice. */
+/** \file
+ * Images that repeat another camera's image of the time before: files that were mixed up, or frames delivered twice.
+ */
 #include "config.h"
 
 #include "data/faults.h"
@@ -7,16 +9,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SAME 0.1     /* of what a copy is off its camera's other pictures; written anew it is off the other a little */
-#define OTHER 0.5    /* of that, which the pictures of both cameras around differ by at least: else they see the same */
-#define CONTRAST 0.25 /* of the camera's others, that a copy has at least: what is dark is dark before all cameras */
-#define FEW 3        /* pictures of a camera of which nothing can be said */
+#define SAME 0.1     /* largest share of the copy's change from its camera's other images; re-encoding alters a copy slightly */
+#define OTHER 0.5    /* least share of that change by which the cameras' other images differ: else both see the same */
+#define CONTRAST 0.25 /* least contrast, as a share of the camera's other images: dark images look alike in all cameras */
+#define FEW 3        /* least number of images of a camera; fewer are not judged */
 
 /** A view in the order of time. */
 typedef struct shot {
     double time;
     uint32_t view, camera;
-    uint32_t near[2]; /* the views of its camera before and behind it; where it is the first or the last, twice the same */
+    uint32_t near[2]; /* the camera's previous and next view; for its first and last view, the only neighbour twice */
 } shot;
 
 static int by_time(const void *a, const void *b)
@@ -27,7 +29,7 @@ static int by_time(const void *a, const void *b)
     return x->view < y->view ? -1 : x->view > y->view;
 }
 
-/** Mean distance of cells from their mean. */
+/** Mean absolute distance of the cells from their mean. */
 static double contrast(const adcgs_glance *glance)
 {
     double sum = 0.0, distance = 0.0;
@@ -43,7 +45,7 @@ static double contrast(const adcgs_glance *glance)
     return n ? distance / n : 0.0;
 }
 
-/** Whether b is a copy of a. Comparisons are such that what is not known says no. */
+/** True if b is a copy of a. The comparisons are written so that unknown values (NaN) yield false. */
 static int is_copy(const adcgs_glance *glances, const shot *a, const shot *b)
 {
     const adcgs_glance *const it = &glances[b->view];
@@ -57,7 +59,7 @@ static int is_copy(const adcgs_glance *glances, const shot *a, const shot *b)
     return 1;
 }
 
-/** Those of cameras that took enough. */
+/** Lists the views of cameras with enough images, and returns their number. */
 static uint32_t take_shots(shot *shots, adcgs_fault *f, const adcgs_scene_view *views, const adcgs_tracks *tracks)
 {
     uint32_t count = 0;
@@ -72,7 +74,7 @@ static uint32_t take_shots(shot *shots, adcgs_fault *f, const adcgs_scene_view *
     return count;
 }
 
-/** counts: [cameras] 0. */
+/** counts: [cameras], zero on entry. */
 static void look(adcgs_fault *f, const adcgs_scene_view *views, const shot *shots, uint32_t n, const adcgs_glance *glances,
                  uint32_t *counts)
 {

@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures of a camera that come twice. */
+/** \file Duplicate frames of a camera. */
 #include "config.h"
 
 #include "data/faults.h"
 
 #include <math.h>
 
-#define SAME 0.1   /* of the change before and behind: noise alone is more, and what stops for a moment comes to it slowly */
-#define ONWARDS 0.5 /* of these changes, that pictures around differ by: what goes to and fro, or comes and goes, may rest */
-#define COPIES 2    /* that one picture may have: what rests for longer rests, or is hidden */
-#define PICTURES 2  /* of a camera that have copies: one may be where something that moved is hidden for a moment */
-#define FEW 6      /* pictures of a camera of which nothing can be said */
+#define SAME 0.1   /* largest share of the changes before and after: noise alone exceeds it, and objects stop gradually */
+#define ONWARDS 0.5 /* least share of these changes by which the images around differ: oscillating or briefly visible objects
+                       may pause */
+#define COPIES 2    /* most duplicates of one image: a longer pause is a real pause, or the object is hidden */
+#define PICTURES 2  /* least number of images with duplicates in a camera: one may be a moving object that is hidden briefly */
+#define FEW 6      /* least number of images of a camera; fewer are not judged */
 
-/** How many copies follow picture i, which has one before it, until the next that differs; 0: none, or something only rests. */
+/**
+ * Number of duplicates of image i, up to the next image that differs; 0 if there are none or motion only pauses. i is not the
+ * first image.
+ */
 static uint32_t copies_of(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t i)
 {
     const adcgs_glance *const before = &glances[order[i - 1]], *const it = &glances[order[i]];
@@ -30,7 +34,7 @@ static uint32_t copies_of(const adcgs_glance *glances, const uint32_t *order, ui
     return adcgs_glance_difference(before, &glances[order[i + copies + 1]]) >= ONWARDS * fmax(change, next) ? copies : 0;
 }
 
-/** Of one camera: how many of its pictures are the one before, and the first of them. shows: as below. */
+/** Number of duplicates of one camera; *first becomes the first of them. shows: as in adcgs_fault_doubled(). */
 static uint32_t count_copies(const adcgs_glance *glances, const uint32_t *order, uint32_t n, uint32_t *first, uint32_t *shows)
 {
     uint32_t count = 0, pictures = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Times at which cameras that take pictures regularly have none. */
+/** \file Gaps in time of cameras that otherwise take images regularly. */
 #include "config.h"
 
 #include "data/faults.h"
@@ -9,13 +9,13 @@
 
 #include <math.h>
 
-#define STEPS 2.5   /* median steps that are a gap: one picture that is put aside makes two */
-#define REGULAR 0.6 /* of a camera's steps that are the median, within a half: where times are random fewer are, some 0.4 */
-#define FEW 6       /* pictures of which nothing can be said */
+#define STEPS 2.5   /* least gap in median steps: one held-out image makes a step of two */
+#define REGULAR 0.6 /* least share of a camera's steps within half of the median; at random times about 0.4 are */
+#define FEW 6       /* least number of images; fewer are not judged */
 
 /**
- * The median of the steps between n ascending times that differ; 0 where it is not regular, or where they are few. *median: in
- * any case, 0 where there is none.
+ * Returns the median step between n ascending times, without steps of 0; 0 if the steps are irregular or too few. *median: the
+ * median in any case, 0 without steps.
  */
 static double regular_step(const double *times, uint32_t n, double *steps, double *median)
 {
@@ -30,14 +30,14 @@ static double regular_step(const double *times, uint32_t n, double *steps, doubl
     return count + 1 >= FEW && near >= REGULAR * count ? *median : 0.0;
 }
 
-/** Room for what follows: [n] each. */
+/** Buffers: [n] each. */
 typedef struct space {
     double *times, *steps;
-    double *aside; /* times at which others than training's views were taken by a camera that moves, in any order */
+    double *aside; /* times of held-out views (validation, test) of a moving camera, in any order */
     uint32_t n_aside;
 } space;
 
-/** At least half of what is missing was put aside, not lost. */
+/** True if at least half of the missing images were held out, not lost. */
 static int is_filled(const space *s, double from, double to, double step)
 {
     uint32_t count = 0;
@@ -46,7 +46,7 @@ static int is_filled(const space *s, double from, double to, double step)
     return 2.0 * count >= (to - from) / step - 1.5;
 }
 
-/** The widest gap between s->times; *count: how many there are. */
+/** Returns the widest gap in s->times; *count: number of gaps. */
 static double widest(const space *s, uint32_t n, double step_of, double least, uint32_t *count, uint32_t *at)
 {
     double most = 0.0;
@@ -64,7 +64,7 @@ static double widest(const space *s, uint32_t n, double step_of, double least, u
     return most;
 }
 
-/** *least_step: the least of the cameras' median steps. */
+/** Lowers *least_step to the smallest of the cameras' median steps. */
 static void look_at_cameras(adcgs_fault *f, const adcgs_scene_view *views, const adcgs_tracks *tracks, space *s,
                             double *least_step)
 {
@@ -94,8 +94,8 @@ static void look_at_cameras(adcgs_fault *f, const adcgs_scene_view *views, const
 }
 
 /**
- * Of all cameras at once. Where these take turns a moment of the scene is shorter than the step of a camera; where their clocks
- * are not tied together steps of the scene are of any length, but none is longer than those of a camera.
+ * Looks for gaps of all cameras together. Where cameras take turns, the scene's step is shorter than a camera's step. With
+ * unsynchronised clocks the scene's steps have any length, but none exceeds a camera's steps.
  */
 static void look_at_moments(adcgs_fault *f, const adcgs_scene_view *views, uint32_t n, uint32_t cameras, space *s,
                             double least_step)
@@ -115,7 +115,7 @@ static void look_at_moments(adcgs_fault *f, const adcgs_scene_view *views, uint3
                        .size = round(gap / step) - 1.0};
 }
 
-/** Whether one of the cameras took a view. */
+/** True if one of the cameras took the view. */
 static int is_known(const adcgs_scene_view *views, const adcgs_tracks *tracks, const adcgs_scene_view *view)
 {
     int known = 0;
@@ -125,8 +125,8 @@ static int is_known(const adcgs_scene_view *views, const adcgs_tracks *tracks, c
 }
 
 /**
- * Training's views, then those of other splits that training's cameras took; *views: room for all. Of a camera that moves it is
- * not known which of the others it took.
+ * Collects the training views, then the views of other splits that training cameras took; *views has room for all. For a moving
+ * camera it is unknown which of the other views it took.
  */
 static adcgs_status gather(const adcgs_scene *scene, adcgs_scene_view *views, uint32_t *n, space *s, adcgs_error *error)
 {

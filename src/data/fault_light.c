@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Steps of light, and of its colour. What differs between cameras for all of the time is none: they see different things, and
- * their gains are fitted in training.
+ * Steps in brightness or colour. Constant differences between cameras are no steps: cameras see different content, and training
+ * fits their gains.
  */
 #include "config.h"
 
@@ -9,19 +9,20 @@
 
 #include <math.h>
 
-#define STEP 0.077      /* the logarithm of 1.08 */
-#define ALONE (1.0 / 3) /* of a step, that what comes before and behind may be: more, and the light changes all the time */
-#define SPREAD (1.0 / 3) /* of a step, that half of a picture's cells may differ by: more, and something else is seen */
-#define FEW 6           /* pictures of a camera of which nothing can be said */
+#define STEP 0.077      /* least step: the logarithm of 1.08 */
+#define ALONE (1.0 / 3) /* largest change before and after, as a share of the step: beyond it the light changes all the time */
+#define SPREAD (1.0 / 3) /* largest deviation of half of an image's cells, as a share of the step: beyond it the content
+                            changes */
+#define FEW 6           /* least number of images of a camera; fewer are not judged */
 
 typedef struct step {
-    double from, to; /* times between which it is */
+    double from, to; /* times before and after the step */
     double size;     /* logarithm of the factor; 0: none */
-    uint32_t count;  /* of this camera */
-    uint32_t view;   /* the first behind it */
+    uint32_t count;  /* number of steps of this camera */
+    uint32_t view;   /* the first view after the step */
 } step;
 
-/** From a picture to the next; 0 where that is no step of light. */
+/** The step of light from one image to the next, 0 if the change is no such step; *any is the change in any case. */
 static double step_between(const adcgs_glance *a, const adcgs_glance *b, adcgs_glance_light light, double *any)
 {
     double spread;
@@ -29,7 +30,7 @@ static double step_between(const adcgs_glance *a, const adcgs_glance *b, adcgs_g
     return fabs(*any) >= STEP && spread <= SPREAD * fabs(*any) ? *any : 0.0;
 }
 
-/** The greatest of one camera's. A flash is a step and a step back. behind: [views] of those behind one become 1; or NULL. */
+/** The largest step of one camera. A flash is a step and a step back. behind: [views], views behind a step become 1; or NULL. */
 static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances, const uint32_t *order, uint32_t n,
                       adcgs_glance_light light, uint8_t *behind)
 {
@@ -45,7 +46,7 @@ static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances
         out.count++;
         if (behind) {
             behind[order[i + 1]] = 1;
-            behind[order[i + 2]] |= fabs(after) > back; /* the way back of a flash */
+            behind[order[i + 2]] |= fabs(after) > back; /* the step back of a flash */
         }
         if (fabs(size) > fabs(out.size)) {
             out.size = size;
@@ -57,7 +58,7 @@ static step find_step(const adcgs_scene_view *views, const adcgs_glance *glances
     return out;
 }
 
-/** How many cameras have a step of the same sign in the time of that one. */
+/** Number of cameras with a step of the same sign in the same interval as the given one. */
 static uint32_t count_like(const step *steps, uint32_t n, const step *one)
 {
     uint32_t count = 0;
@@ -66,7 +67,7 @@ static uint32_t count_like(const step *steps, uint32_t n, const step *one)
     return count;
 }
 
-/** What most cameras have, the greatest of it; its size is still a logarithm. */
+/** The step that most cameras share, and the largest of these; its size is still a logarithm. */
 static void judge(adcgs_fault *f, const adcgs_scene_view *views, const step *steps, uint32_t n)
 {
     for (uint32_t c = 0; c < n; c++) {
@@ -89,7 +90,7 @@ adcgs_status adcgs_fault_light(adcgs_fault *fault, uint8_t *behind, const adcgs_
     *fault = (adcgs_fault){.cameras = 0};
     if (!steps)
         return adcgs_alloc_status(error);
-    for (int light = 0; light < ADCGS_LIGHTS; light++) { /* the greatest: what becomes redder may be brighter, too */
+    for (int light = 0; light < ADCGS_LIGHTS; light++) { /* the largest step decides: redder images may also be brighter */
         adcgs_fault found = {.light = (adcgs_glance_light)light};
         for (uint32_t c = 0; c < tracks->n; c++) {
             const uint32_t n = tracks->begin[c + 1] - tracks->begin[c];

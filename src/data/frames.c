@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Which frames of a scene are taken. */
+/** \file Selection of a scene's frames. */
 #include "config.h"
 
 #include "data/frames.h"
@@ -10,10 +10,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FRAME_MAX 1000000000 /* larger numbers are mistakes */
-#define GRID_WITHIN 0.25     /* of an interval */
+#define FRAME_MAX 1000000000 /* larger frame numbers are mistakes */
+#define GRID_WITHIN 0.25     /* largest distance of a time from its grid point, as a share of an interval */
 
-/** Digits, if there are any: 0, or -1 for a number that is too large. */
+/** Reads digits, if there are any. Returns 0, or -1 if the number is too large. */
 static int take_number(const char **text, int64_t *value)
 {
     if (**text < '0' || **text > '9')
@@ -61,7 +61,7 @@ adcgs_status adcgs_frames_count(const adcgs_frame_range *range, int64_t n, int64
     return ADCGS_OK;
 }
 
-/** Of ascending values the distinct ones. */
+/** Removes repeated values from ascending values; returns the number of distinct ones. */
 static size_t drop_repeated(double *values, size_t n)
 {
     size_t kept = ADCGS_MIN(n, 1);
@@ -71,7 +71,7 @@ static size_t drop_repeated(double *values, size_t n)
     return kept;
 }
 
-/** The distinct times of the views of the first splits, ascending, from malloc(). */
+/** The distinct times of the views of the first `splits` splits, ascending, from malloc(). */
 static double *find_moments(const adcgs_scene *scene, int splits, size_t *n)
 {
     size_t all = 0;
@@ -89,7 +89,7 @@ static double *find_moments(const adcgs_scene *scene, int splits, size_t *n)
     return moments;
 }
 
-/** The place of a time among the moments. */
+/** Index of a time among the distinct times. */
 static int64_t find_moment(const double *moments, size_t n, double time)
 {
     size_t low = 0, high = n;
@@ -143,9 +143,9 @@ adcgs_status adcgs_frames_keep(adcgs_scene *scene, const adcgs_frame_range *rang
     return ADCGS_OK;
 }
 
-/* ---- How long it is ---- */
+/* ---- Number of intervals ---- */
 
-/** Whether all moments are multiples of 1/n, as well as files of six digits can tell. */
+/** True if all times are multiples of 1/intervals, to within the precision of files with six digits. */
 static int is_grid(const double *moments, size_t n, double intervals)
 {
     const double within = fmin(ADCGS_TIME_TOLERANCE * intervals, GRID_WITHIN);
@@ -155,7 +155,7 @@ static int is_grid(const double *moments, size_t n, double intervals)
     return 1;
 }
 
-/** The coarsest grid of which the moments fill at least half; 0: there is none. */
+/** The coarsest grid of which the times fill at least half; 0 if there is none. */
 static double find_grid(const double *moments, size_t n)
 {
     for (size_t intervals = n - 1; intervals && intervals <= 2 * (n - 1); intervals++)
@@ -174,7 +174,7 @@ adcgs_status adcgs_frames_intervals(const adcgs_scene *scene, uint32_t *n_times,
         const double own = find_grid(train, n), common = n > 1 ? find_grid(all, n_all) : 0.0;
         *n_times = (uint32_t)n;
         *intervals = (double)(n - 1);
-        if (own > *intervals) /* with gaps */
+        if (own > *intervals) /* the training views leave gaps */
             *intervals = common > 0.0 ? common : own;
         else if (!(own > 0.0) && common > 0.0)
             *intervals = common;

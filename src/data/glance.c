@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures at a glance. */
+/** \file Thumbnails of images. */
 #include "config.h"
 
 #include "data/glance.h"
@@ -9,11 +9,11 @@
 #include <math.h>
 #include <stddef.h>
 
-#define DARK 0.02   /* black levels and rounding have their say below */
-#define LIGHT 0.95  /* what is cut off at white does not brighten any more */
-#define FEW 32      /* cells: fewer are one thing, not the light */
+#define DARK 0.02   /* least value of a cell: black level and rounding dominate below */
+#define LIGHT 0.95  /* largest value of a cell: clipped values do not become brighter */
+#define FEW 32      /* least number of cells: fewer are one object, not the light */
 
-/** Means of the channels of the pixels from x0 to x1 in rows y0 to y1; NaN where less than half of them are known. */
+/** Means of the channels over pixels x0 to x1 of rows y0 to y1; NaN if less than half of these pixels are known. */
 static void mean_of(double mean[3], const float *rgb, size_t width, size_t height, size_t x0, size_t x1, size_t y0, size_t y1)
 {
     const size_t plane = width * height;
@@ -41,7 +41,7 @@ void adcgs_glance_take(adcgs_glance *glance, const float *rgb, int width, int he
     const size_t side = ADCGS_GLANCE_SIDE, w = (size_t)width, h = (size_t)height;
     double tints[ADCGS_GLANCE_TINTS][3] = {{0.0}}, mean[3];
     for (size_t y = 0; y < side; y++)
-        for (size_t x = 0; x < side; x++) { /* of a picture that is smaller some cells have no pixel */
+        for (size_t x = 0; x < side; x++) { /* some cells of a smaller image have no pixel */
             double *const tint = tints[y / 2 * ADCGS_GLANCE_TINT_SIDE + x / 2];
             mean_of(mean, rgb, w, h, x * w / side, (x + 1) * w / side, y * h / side, (y + 1) * h / side);
             glance->cells[y * side + x] = (float)((mean[0] + mean[1] + mean[2]) / 3.0);
@@ -69,7 +69,7 @@ double adcgs_glance_difference(const adcgs_glance *a, const adcgs_glance *b)
     return n ? sum / n : (double)NAN;
 }
 
-/** Logarithms of the ratios of cells that say something. */
+/** Logarithms of the ratios of usable cells; returns their number. */
 static size_t take_ratios(double *ratios, const adcgs_glance *a, const adcgs_glance *b, adcgs_glance_light light)
 {
     size_t n = 0;
@@ -102,7 +102,7 @@ double adcgs_glance_compare(const adcgs_glance *a, const adcgs_glance *b, adcgs_
     return median;
 }
 
-/** Mean colour of a cell whose tints are known, from its four greys and from these. */
+/** Mean colour of a cell with known tints, from its four grey cells and the tints. */
 static void colour_of(double colour[3], const adcgs_glance *glance, int cell)
 {
     const int side = ADCGS_GLANCE_SIDE, at = cell / ADCGS_GLANCE_TINT_SIDE * 2 * side + cell % ADCGS_GLANCE_TINT_SIDE * 2;

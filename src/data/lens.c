@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The model of lenses: projection, its inverse, its first fold. */
+/** \file The lens model: projection, inverse and first fold. */
 #include "config.h"
 
 #include "data/lens_model.h"
 
 #include <math.h>
 
-#define REACH 1e4            /* largest r^2 that is looked at */
-#define HALVINGS 60          /* bisections end at rounding */
-#define START_HALVINGS 16    /* where Newton's steps go on */
+#define REACH 1e4            /* largest r^2 that is considered */
+#define HALVINGS 60          /* bisection steps; the last ones reach rounding precision */
+#define START_HALVINGS 16    /* bisection steps before Newton's method takes over */
 #define NEWTON_STEPS 40
 #define NEWTON_TOLERANCE 1e-12
 
-/* Coefficients in r^2 above and below the line; degree of their product. */
+/* Number of coefficients in r^2 of numerator and denominator; degree of their product. */
 enum { ABOVE = 5, BELOW = 4, DEGREE = ABOVE + BELOW - 2 };
 
-/** Where a direction goes, and the derivatives of x' by x, of both by the other, of y' by y. */
+/** The distorted direction (x', y'), with dx'/dx, dx'/dy = dy'/dx and dy'/dy. */
 typedef struct bent {
     double x, y, xx, xy, yy;
 } bent;
@@ -32,13 +32,13 @@ static void list_terms(const adcgs_lens *lens, double above[ABOVE], double below
 
 /* ---- Projection ---- */
 
-/** The angle from the axis is bent: factor is its length in the picture over that of the direction. */
+/** Distorts the angle from the axis. factor is the length in the image over the length of the direction. */
 static bent bend_angle(const adcgs_lens *lens, double x, double y)
 {
     const double *k = lens->k, r = hypot(x, y), a = atan(r), s = a * a;
     const double factor = r > 0.0 ? a / r * (1.0 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3])))) : 1.0;
     const double growth = 1.0 + s * (3.0 * k[0] + s * (5.0 * k[1] + s * (7.0 * k[2] + s * 9.0 * k[3])));
-    const double slope = r > 0.0 ? (growth / (1.0 + r * r) - factor) / (r * r) : 0.0; /* the factor's derivative by r, over r */
+    const double slope = r > 0.0 ? (growth / (1.0 + r * r) - factor) / (r * r) : 0.0; /* d factor / dr, over r */
     return (bent){.x = x * factor, .y = y * factor, .xx = factor + x * x * slope, .xy = x * y * slope,
                   .yy = factor + y * y * slope};
 }
@@ -52,7 +52,7 @@ static bent bend(const adcgs_lens *lens, double x, double y)
     const double below = 1.0 + s * (k[3] + s * (k[4] + s * k[5])), share = 1.0 / below, factor = above * share;
     const double above_slope = k[0] + s * (2.0 * k[1] + s * (3.0 * k[2] + s * 4.0 * lens->k8));
     const double below_slope = k[3] + s * (2.0 * k[4] + s * 3.0 * k[5]);
-    const double slope = 2.0 * (above_slope - factor * below_slope) * share; /* twice the factor's derivative by s */
+    const double slope = 2.0 * (above_slope - factor * below_slope) * share; /* twice d factor / ds */
     return (bent){
         .x = x * factor + 2.0 * p1 * x * y + p2 * (s + 2.0 * x * x),
         .y = y * factor + 2.0 * p2 * x * y + p1 * (s + 2.0 * y * y),
@@ -62,7 +62,7 @@ static bent bend(const adcgs_lens *lens, double x, double y)
     };
 }
 
-/** The derivatives are the identity on the axis; until the model folds they stay positive definite. */
+/** True if the derivatives are positive definite. They are the identity on the axis, and positive definite up to the fold. */
 static int is_open(const bent *b)
 {
     return b->xx > 0.0 && b->xx * b->yy > b->xy * b->xy;
@@ -97,7 +97,10 @@ static double polynomial(const double *p, int degree, double s)
     return value;
 }
 
-/** Where the sign changes between 0 and end: at most once between two roots of the derivative. In order; returns how many. */
+/**
+ * Finds the sign changes between 0 and end, in ascending order: at most one between two roots of the derivative. Returns their
+ * number.
+ */
 static int find_roots(const double *p, int degree, double end, double roots[DEGREE])
 {
     double slope[DEGREE], turns[DEGREE], low = 0.0;
@@ -119,14 +122,14 @@ static int find_roots(const double *p, int degree, double end, double roots[DEGR
                 else
                     high = middle;
             }
-            roots[n++] = low; /* the side where the sign is still the old one */
+            roots[n++] = low; /* the side before the sign change */
         }
         low = next;
     }
     return n;
 }
 
-/** The bent angle grows with the angle a, s = a^2, while 1 + 3 k1 s + 5 k2 s^2 + 7 k3 s^3 + 9 k4 s^4 > 0. */
+/** The distorted angle grows with the angle a, s = a^2, while 1 + 3 k1 s + 5 k2 s^2 + 7 k3 s^3 + 9 k4 s^4 > 0. */
 static double find_fold_of_angle(const adcgs_lens *lens)
 {
     const double *k = lens->k, growth[] = {1.0, 3.0 * k[0], 5.0 * k[1], 7.0 * k[2], 9.0 * k[3]}, widest = atan(sqrt(REACH));
@@ -156,7 +159,7 @@ double adcgs_lens_fold(const adcgs_lens *lens)
 
 /* ---- The inverse ---- */
 
-/** About the length of the direction, tangential terms left out, that a length in the picture comes from. */
+/** Approximate length of the direction for a length in the image, without tangential terms. */
 static double straighten_radius(const adcgs_lens *lens, double fold, double radius)
 {
     double low = 0.0, high = sqrt(fold);
@@ -177,7 +180,7 @@ static double miss(const bent *b, const double target[2])
     return hypot(b->x - target[0], b->y - target[1]);
 }
 
-/** One step of Newton's, halved until it stays where the model is open and comes closer; 0 if none does. */
+/** One Newton step, halved until it stays inside the fold and comes closer. Returns 0 if no halving does. */
 static int step_closer(const adcgs_lens *lens, double fold, const double target[2], double xy[2], bent *b)
 {
     const double ex = b->x - target[0], ey = b->y - target[1], determinant = b->xx * b->yy - b->xy * b->xy;
@@ -206,7 +209,7 @@ int adcgs_lens_invert(const adcgs_lens *lens, double fold, double u, double v, d
     xy[0] = scale * target[0];
     xy[1] = scale * target[1];
     bent b = bend(lens, xy[0], xy[1]);
-    if (!is_open(&b)) { /* tangential terms fold here: the axis is always open */
+    if (!is_open(&b)) { /* tangential terms fold here; the axis never folds */
         xy[0] = xy[1] = 0.0;
         b = bend(lens, 0.0, 0.0);
     }

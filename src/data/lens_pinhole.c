@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The pinhole camera for a lens: which rectangle of its pixels the picture covers. */
+/** \file The pinhole camera for a lens: the rectangle of its pixels that the image covers. */
 #include "config.h"
 
 #include "data/lens_model.h"
@@ -7,16 +7,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define MOVES_LEAST 0.01 /* pixels: less is no reason to resample */
-#define CORNER_SLACK 1e-6 /* pixels: rounding at the picture's edge */
-#define PROBES 32        /* places along a side of the picture where the lens is tried */
+#define MOVES_LEAST 0.01 /* pixels; smaller displacements do not justify resampling */
+#define CORNER_SLACK 1e-6 /* pixels, for rounding at the image's edge */
+#define PROBES 32        /* intervals along a side of the image; the lens is evaluated at their ends */
 #define RASTER 128       /* cells along the longer side, in the search for the rectangle */
-#define LEAST_SHARE 10   /* at least one in so many pixels must be left */
-#define FISHEYE_REACH 1.7320508075688772 /* tan of 60 degrees: further out a pinhole's pixels tell little apart */
+#define LEAST_SHARE 10   /* at least one in this many pixels must be left */
+#define FISHEYE_REACH 1.7320508075688772 /* tan of 60 degrees: further out, a pinhole's pixels resolve little */
 #define FOCAL_LEAST 1e-3
-#define NUMBER_MOST 1e9  /* of focal lengths and what is added to pixels: whole numbers of such a size are exact */
+#define NUMBER_MOST 1e9  /* bound on focal lengths and pixel offsets: whole numbers of this size are exact */
 
-/** A rectangle of the plane that the pinhole sees, in pixels with the lens's principal point; whole numbers. */
+/** A rectangle in the pinhole's image plane: whole numbers, in pixels, with the lens's principal point. */
 typedef struct area {
     double side[4]; /**< left, top, right, bottom */
 } area;
@@ -24,11 +24,11 @@ typedef struct area {
 typedef struct search {
     const adcgs_lens *lens;
     double fold;
-    double reach; /**< how far from the axis, to each side, the pinhole may see */
-    area box; /**< around all that the picture sees */
+    double reach; /**< largest distance from the axis, to each side, that the pinhole may see */
+    area box; /**< bounds of everything that the image sees */
 } search;
 
-/** Does the picture show what the pinhole sees at (u, v)? */
+/** True if the image shows the direction that the pinhole sees at (u, v). */
 static int is_covered(const search *s, double u, double v)
 {
     const adcgs_lens *l = s->lens;
@@ -38,7 +38,7 @@ static int is_covered(const search *s, double u, double v)
            at[1] >= -CORNER_SLACK && at[0] <= l->width + CORNER_SLACK && at[1] <= l->height + CORNER_SLACK;
 }
 
-/** Does any of a grid of places in the picture move? */
+/** True if the lens displaces any point of a grid over the image. */
 static int moves(const adcgs_lens *lens)
 {
     for (int j = 0; j <= PROBES; j++)
@@ -52,7 +52,7 @@ static int moves(const adcgs_lens *lens)
     return 0;
 }
 
-/** Around a direction, or what may be left of it, too. */
+/** Extends the box to a direction, clamped to the reach. */
 static void widen(search *s, double x, double y)
 {
     const adcgs_lens *l = s->lens;
@@ -63,7 +63,7 @@ static void widen(search *s, double x, double y)
     }
 }
 
-/** What the edge of the picture sees; 0 if the model folds there. */
+/** Sets the box to the directions seen along the edge of the image. Returns 0 if the model folds there. */
 static int find_box(search *s)
 {
     const adcgs_lens *l = s->lens;
@@ -74,7 +74,8 @@ static int find_box(search *s)
             double at[2];
             if (adcgs_lens_invert(l, s->fold, l->width * u, l->height * v, at))
                 widen(s, at[0], at[1]);
-            else if (s->fold > 2.0 * s->reach * s->reach) { /* looks aside, or behind: where the pinhole sees nothing folds */
+            else if (s->fold > 2.0 * s->reach * s->reach) { /* beyond the reach, where the pinhole sees nothing, folds are
+                                                               harmless */
                 widen(s, s->reach, s->reach);
                 widen(s, -s->reach, -s->reach);
             } else
@@ -88,7 +89,7 @@ static int find_box(search *s)
     return 1;
 }
 
-/** The largest rectangle under a row of columns of covered places, counted in cells between places; its size. */
+/** Finds the largest rectangle below a row of column heights of covered points, in cells between points. Returns its size. */
 static int largest_under(const int height[RASTER + 1], int n, int *left, int *right, int *depth)
 {
     int best = 0;
@@ -103,7 +104,7 @@ static int largest_under(const int height[RASTER + 1], int n, int *left, int *ri
     return best;
 }
 
-/** The largest rectangle of a raster all of whose places are covered; 0 if there is none. */
+/** Finds the largest rectangle of raster points that are all covered. Returns its size, or 0 if there is none. */
 static int search_raster(const search *s, double step, area *found)
 {
     const double *box = s->box.side;
@@ -121,7 +122,7 @@ static int search_raster(const search *s, double step, area *found)
     return best;
 }
 
-/** Are all corners of pixels along a side covered? */
+/** True if all pixel corners along a side are covered. */
 static int is_side_covered(const search *s, const area *a, int side)
 {
     const int across = side % 2; /* 0: left and right run down, 1: top and bottom run across */
@@ -141,7 +142,7 @@ static int is_empty(const area *a)
     return a->side[2] - a->side[0] < 1.0 || a->side[3] - a->side[1] < 1.0;
 }
 
-/** Sides go in where the raster has missed something. */
+/** Moves sides inwards where the raster has missed uncovered points. */
 static void shrink(const search *s, area *a)
 {
     for (int side = 0, good = 0; good < 4 && !is_empty(a); side = (side + 1) % 4)
@@ -153,7 +154,7 @@ static void shrink(const search *s, area *a)
         }
 }
 
-/** Sides go out, by large steps and then by small ones, until none can. */
+/** Moves sides outwards, by large steps and then by small ones, until none can move. */
 static void grow(const search *s, double step, area *a)
 {
     for (; step >= 1.0; step = floor(0.5 * step))
@@ -173,7 +174,7 @@ static adcgs_status find_area(search *s, area *a, const char *path, adcgs_error 
 {
     const adcgs_lens *l = s->lens;
     if (!find_box(s))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the lens folds inside the picture of %dx%d pixels", path, l->width,
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: the lens folds inside the image of %dx%d pixels", path, l->width,
                           l->height);
     const double step = ceil(fmax(1.0, fmax(s->box.side[2] - s->box.side[0], s->box.side[3] - s->box.side[1]) / RASTER));
     *a = (area){{0.0, 0.0, 0.0, 0.0}};
@@ -184,8 +185,8 @@ static adcgs_status find_area(search *s, area *a, const char *path, adcgs_error 
     }
     const double width = a->side[2] - a->side[0], height = a->side[3] - a->side[1];
     if (is_empty(a) || width * height * LEAST_SHARE < (double)l->width * l->height)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: a pinhole sees %gx%g pixels of what the lens has bent, expected a tenth of "
-                          "%dx%d at least", path, fmax(width, 0.0), fmax(height, 0.0), l->width, l->height);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: a pinhole sees %gx%g pixels of the distorted image, expected at least a "
+                          "tenth of %dx%d", path, fmax(width, 0.0), fmax(height, 0.0), l->width, l->height);
     return ADCGS_OK;
 }
 
@@ -201,7 +202,7 @@ adcgs_status adcgs_lens_pinhole(adcgs_lens *lens, adcgs_camera *camera, const ch
     if (!is_sane(lens))
         return adcgs_fail(error, ADCGS_ERR_DATA,
                           "%s: focal lengths %g %g, principal point %g %g, skew %g: expected at most %g, and focal lengths of "
-                          "%g at least",
+                          "at least %g",
                           path, lens->fx, lens->fy, lens->cx, lens->cy, lens->skew, NUMBER_MOST, FOCAL_LEAST);
     const int bends = moves(lens);
     if (bends) {

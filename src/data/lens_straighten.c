@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Pictures straightened. Catmull-Rom and not Lanczos: it needs 16 pixels, not 36, and a ramp stays a ramp. Not held to
- * the range of the four nearest pixels, which would flatten every peak that falls between them, but to that of all 16.
+ * Undistortion of images. Catmull-Rom needs 16 pixels where Lanczos needs 36, and keeps a ramp a ramp. Values are clamped to
+ * the range of all 16 pixels. Clamping to the four nearest pixels would flatten every peak between them.
  */
 #include "config.h"
 
@@ -9,16 +9,16 @@
 
 #include <math.h>
 
-/** The four pixels of an axis around a place, and their weights. */
+/** The four pixels around a position along one axis, and their weights. */
 typedef struct taps {
     int at[4];
     float weight[4];
 } taps;
 
-/** n pixels, of which the outermost go on outside; x from 0 to n. */
+/** n pixels, with the outermost repeated outside; x from 0 to n. */
 static taps find_taps(double x, int n)
 {
-    const int whole = (int)(x + 0.5) - 1; /* rounded down, as x is not negative */
+    const int whole = (int)(x + 0.5) - 1; /* rounds down, as x is not negative */
     const float f = (float)(x - 0.5 - whole);
     taps t = {.weight = {((1.0f - 0.5f * f) * f - 0.5f) * f, (1.5f * f - 2.5f) * f * f + 1.0f,
                          ((2.0f - 1.5f * f) * f + 0.5f) * f, (0.5f * f - 0.5f) * f * f}};
@@ -49,7 +49,7 @@ static void sample(const adcgs_image *image, const taps *across, const taps *dow
     }
 }
 
-/** Into [0, n]; what is no number to 0. */
+/** Clamps to [0, n]; NaN becomes 0. */
 static double limit(double x, int n)
 {
     return x > 0.0 ? x < n ? x : n : 0.0;
@@ -73,7 +73,7 @@ adcgs_status adcgs_lens_straighten(const adcgs_lens *lens, const adcgs_camera *c
 {
     adcgs_image out;
     ADCGS_TRY(adcgs_image_alloc(&out, camera->width, camera->height, image->channels, path, error));
-    adcgs_image_premultiply(image); /* what transparent pixels hold must not bleed into their neighbours */
+    adcgs_image_premultiply(image); /* colours of transparent pixels must not bleed into their neighbours */
     straighten_rows(lens, camera, image, &out);
     adcgs_image_unpremultiply(&out);
     adcgs_image_free(image);

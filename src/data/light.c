@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Light that steps, evened out. */
+/** \file Compensation of light steps. */
 #include "config.h"
 
 #include "data/light.h"
 
 #include <math.h>
 
-enum { SIDE = 2 * ADCGS_GLANCE_SIDE }; /* of pictures at a glance: each cell has some pixels */
+enum { SIDE = 2 * ADCGS_GLANCE_SIDE }; /* pixels along the shorter side of images for thumbnails: each cell has several */
 
-/** As few pixels as will do. */
+/** The factor that leaves the fewest sufficient pixels. */
 static int divide_for(const adcgs_scene *scene)
 {
     int side = 0;

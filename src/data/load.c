@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Pictures as training and measuring want them: read, put on the background, straightened, reduced. Where a picture is to be
- * straightened and reduced, most of the reducing is done before: a box filter costs little, resampling much. The last whole
- * factor is left for after it, so that what the lens takes apart is still there when it is looked at: pixels on a grid twice as
- * fine lose next to nothing to interpolation that is seen in the end. A file without a mask and a lens is reduced row by row as
- * it is read, to the same values: the whole of a large image is never in memory as binary32.
+ * Loads images for training and measuring: reads, composites over the background, undistorts and reduces them. If an image
+ * needs both undistortion and reduction, most of the reduction comes first: a box filter is cheap, resampling is expensive. The
+ * last integer factor follows undistortion, to preserve detail where the lens stretches the image. On a grid twice as fine,
+ * interpolation loses next to nothing of the final result. An image file without mask and lens is reduced row by row during
+ * reading, to the same values. A large image is never in memory whole as binary32.
  */
 #include "config.h"
 
@@ -17,7 +17,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define COUNTS 0.5f /* share of a pixel that must not be masked for it to count, or must move for it to move */
+#define COUNTS 0.5f /* least unmasked share of a pixel that counts, and least moving share of a moving pixel */
 
 static adcgs_status check_size(const adcgs_scene_view *view, const char *path, int width, int height, adcgs_error *error)
 {
@@ -36,7 +36,7 @@ static adcgs_status probe(const adcgs_scene_view *view, const char *path, adcgs_
     return check_size(view, path, width, height, error);
 }
 
-/** Of another size than it should have, an image is refused before there is memory for its pixels. */
+/** Refuses an image of the wrong size before memory for its pixels is allocated. */
 static adcgs_status read_image(const adcgs_scene_view *view, const char *path, adcgs_image *image, adcgs_error *error)
 {
     ADCGS_TRY(probe(view, path, error));
@@ -52,7 +52,7 @@ static adcgs_status read_mask(const adcgs_scene_view *view, const char *path, ad
     return status;
 }
 
-/** The size, and whether colours and alpha of a mask agree. */
+/** Checks the size, and that colours and alpha of a mask agree. */
 static adcgs_status probe_mask(const adcgs_scene_view *view, const char *path, adcgs_error *error)
 {
     int width, height, channels;
@@ -76,7 +76,7 @@ adcgs_status adcgs_scene_probe(const adcgs_scene_view *view, adcgs_error *error)
 
 /* ---- Reading ---- */
 
-/** As it was taken: of a file, a video or splats. */
+/** Reads the image as recorded, from a file or a video, or renders it from splats. */
 static adcgs_status read_picture(const adcgs_scene *scene, const adcgs_scene_view *view, adcgs_image *image, adcgs_error *error)
 {
     if (scene->splats)
@@ -91,10 +91,10 @@ static adcgs_status read_picture(const adcgs_scene *scene, const adcgs_scene_vie
 
 /* ---- Reducing ---- */
 
-/** What is reduced: colours over a background; those with a weight have it in their fourth channel, and no background. */
+/** Input of the reduction: colours over a background, or colours with a weight in the fourth channel and no background. */
 typedef struct source {
     const adcgs_image *image, *mask; /**< mask NULL: every pixel counts */
-    const float *background;         /**< NULL: the fourth channel, if there is one, is the weight */
+    const float *background;         /**< NULL: the fourth channel, if present, is the weight */
 } source;
 
 /** Colour of one pixel over the background. */
@@ -107,7 +107,7 @@ static inline void composite(const float *pixel, int channels, const float backg
     }
 }
 
-/** Any colour but black counts. */
+/** True for any colour except black. */
 static inline int is_seen(const adcgs_image *mask, size_t pixel)
 {
     const float *values = mask->data + pixel * (size_t)mask->channels;
@@ -118,7 +118,7 @@ static inline int is_seen(const adcgs_image *mask, size_t pixel)
     return seen;
 }
 
-/** Colour and weight of a pixel; whether it counts at all. */
+/** Sets colour and weight of a pixel; true if the pixel counts. */
 static inline int take(const source *s, size_t pixel, float value[4])
 {
     const float *from = s->image->data + pixel * (size_t)s->image->channels;
@@ -132,7 +132,7 @@ static inline int take(const source *s, size_t pixel, float value[4])
     return value[3] > 0.0f;
 }
 
-/** Average of what counts in the box of source pixels under one pixel of the smaller picture; out[3]: the share that does. */
+/** Averages the counting source pixels in the box under one pixel of the reduced image; out[3] is their share. */
 static void average_box(const source *s, int x, int y, int divide, float out[4])
 {
     const int right = ADCGS_MIN(x + divide, s->image->width), bottom = ADCGS_MIN(y + divide, s->image->height);
@@ -188,7 +188,7 @@ static void divide_camera(adcgs_camera *camera, int divide)
     camera->cy /= divide;
 }
 
-/** The factor that is left for after straightening: the least but 1. */
+/** The factor left for after undistortion: the smallest divisor above 1. */
 static int last_factor(int divide)
 {
     for (int factor = 2; factor * factor <= divide; factor++)
@@ -197,7 +197,7 @@ static int last_factor(int divide)
     return divide;
 }
 
-/** The image is already reduced by this. */
+/** The image is already reduced by `divide`. */
 static adcgs_status straighten(const adcgs_scene_view *view, adcgs_image *image, int divide, adcgs_error *error)
 {
     adcgs_lens lens = view->lens;
@@ -213,7 +213,7 @@ static adcgs_status straighten(const adcgs_scene_view *view, adcgs_image *image,
     return adcgs_lens_straighten(&lens, &camera, image, view->path, error);
 }
 
-/** From the picture as it was taken, which is replaced, to one of the size wanted: colours, and with a mask their weight. */
+/** Replaces the recorded image by one of the requested size: colours, and with a mask their weight. */
 static adcgs_status shape(const adcgs_scene *scene, const adcgs_scene_view *view, const adcgs_image *mask, int divide,
                           adcgs_image *image, adcgs_error *error)
 {
@@ -226,7 +226,7 @@ static adcgs_status shape(const adcgs_scene *scene, const adcgs_scene_view *view
     return after > 1 ? reduce_image(image, &straight, after, view->path, error) : ADCGS_OK;
 }
 
-/** Planar; what does not count is not a number. */
+/** Returns planes; pixels that do not count are NaN. */
 static float *to_planes(const adcgs_image *image)
 {
     const size_t plane = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
@@ -239,7 +239,10 @@ static float *to_planes(const adcgs_image *image)
     return rgb;
 }
 
-/** Divided by what its light has in excess. What was cut off at white is nobody knows what; what was not stays below it. */
+/**
+ * Divides an image by its excess of light. The true values of clipped pixels are unknown: they become NaN. Values that were not
+ * clipped stay at most white.
+ */
 static void even_light(const adcgs_scene_view *view, float *rgb, size_t plane)
 {
     float by[3];
@@ -258,7 +261,7 @@ static void even_light(const adcgs_scene_view *view, float *rgb, size_t plane)
     }
 }
 
-/** Rows of an image to a row of each plane, with the values of shape() and to_planes(). */
+/** Reduces rows of an image to a row of each plane, with the values of shape() and to_planes(). */
 static void place_rows(float *rgb, size_t plane, size_t first, const source *s, int divide)
 {
     const int keeps = divide == 1 && s->image->channels == 3;
@@ -273,7 +276,7 @@ static void place_rows(float *rgb, size_t plane, size_t first, const source *s, 
     }
 }
 
-/** An image file that is reduced as it is read, in memory for some rows in addition to the result. */
+/** Loads an image file and reduces it during reading, with memory for some rows in addition to the result. */
 static adcgs_status load_by_rows(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                                  adcgs_error *error)
 {
@@ -304,7 +307,7 @@ static adcgs_status load_by_rows(const adcgs_scene *scene, const adcgs_scene_vie
     return status;
 }
 
-/** The image as a whole, of a file, a video or splats, with its mask and its lens. */
+/** Loads the image as a whole, from a file, a video or splats, with its mask and its lens. */
 static adcgs_status load_whole(const adcgs_scene *scene, const adcgs_scene_view *view, int divide, float **rgb,
                                adcgs_error *error)
 {
@@ -337,9 +340,9 @@ adcgs_status adcgs_scene_load(const adcgs_scene *scene, const adcgs_scene_view *
     return ADCGS_OK;
 }
 
-/* ---- What moves ---- */
+/* ---- Moving regions ---- */
 
-/** Of any colours, which are replaced: one channel, 1 where it is not black. */
+/** Replaces an image of any colours by one channel: 1 where it is not black, else 0. */
 static adcgs_status to_zero_and_one(adcgs_image *image, const char *path, adcgs_error *error)
 {
     adcgs_image out;

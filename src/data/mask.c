@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Images that say which pixels of another count. COLMAP and nerfstudio go by colours, nerfstudio refuses images of several
- * channels, and Brush goes by alpha wherever there is some. So colours and alpha are followed where only one of them tells
- * pixels apart, or both say the same.
+ * Masks: images that mark the pixels of another image that count. COLMAP and nerfstudio evaluate colours, nerfstudio refuses
+ * masks with several channels, and Brush evaluates alpha if present. So both are evaluated, provided that only one of them
+ * distinguishes pixels or both agree.
  */
 #include "config.h"
 
 #include "data/mask.h"
 
-#define SAME_SHARE 0.01 /* of the pixels, on which both may differ: soft edges */
+#define SAME_SHARE 0.01 /* share of the pixels on which both may differ, for soft edges */
 
 static int is_black(const float *pixel, int channels)
 {
@@ -23,7 +23,7 @@ static int is_clear(const float *pixel, int channels)
     return !(pixel[channels - 1] > 0.0f);
 }
 
-/** Pixels that are hidden. */
+/** Numbers of hidden pixels. */
 typedef struct counts {
     size_t all, black, clear, either, both;
 } counts;
@@ -50,8 +50,8 @@ adcgs_status adcgs_mask_settle(adcgs_image *mask, const char *path, adcgs_error 
     const int by_alpha = n.clear > 0 && n.clear < n.all, by_colour = !by_alpha || (n.black > 0 && n.black < n.all);
     adcgs_image out;
     if (by_colour && by_alpha && (double)(n.either - n.both) > SAME_SHARE * (double)n.all)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: its black hides %.0f %% of the pixels and its alpha %.0f %%, but not the "
-                          "same: which is the mask? Save it without the other", path, 100.0 * (double)n.black / (double)n.all,
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: its black hides %.0f %% of the pixels and its alpha %.0f %%, but they "
+                          "disagree: save the mask without one of the two", path, 100.0 * (double)n.black / (double)n.all,
                           100.0 * (double)n.clear / (double)n.all);
     ADCGS_TRY(adcgs_image_alloc(&out, mask->width, mask->height, 1, path, error));
     for (size_t i = 0; i < n.all; i++) {

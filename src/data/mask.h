@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Images that say which pixels of another count: black hides, and where the colours say nothing, transparent does. */
+/** \file
+ * Masks: images that mark the pixels of another image that count. Black pixels are hidden; if all colours agree, transparent
+ * ones.
+ */
 #ifndef ADCGS_DATA_MASK_H
 #define ADCGS_DATA_MASK_H
 
 #include "io/image.h"
 
 /**
- * Of an image with alpha, which is replaced: one channel, 1 where a pixel counts, else 0. Black hides where alpha is the same
- * everywhere, alpha of 0 where all is black or nothing is, and both where they agree but for 1 % of the pixels. An image without
- * alpha stays as it is. ADCGS_ERR_DATA where they contradict each other.
+ * Replaces an image with alpha by one channel: 1 where a pixel counts, else 0. Black hides a pixel if alpha is the same
+ * everywhere. Alpha of 0 hides it if all pixels are black or none is. Both hide it if they agree except for 1 % of the pixels.
+ * An image without alpha is unchanged. ADCGS_ERR_DATA if colours and alpha contradict each other.
  */
 adcgs_status adcgs_mask_settle(adcgs_image *mask, const char *path, adcgs_error *error);
 

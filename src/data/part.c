@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** Distinct moments of the training views, ascending: n of them. */
+/** Lists the n distinct times of the training views, ascending. */
 static adcgs_status list_moments(double **out, uint32_t *n, const adcgs_scene *scene, adcgs_error *error)
 {
     const uint32_t views = scene->n_views[ADCGS_SPLIT_TRAIN];
@@ -26,7 +26,7 @@ static adcgs_status list_moments(double **out, uint32_t *n, const adcgs_scene *s
     return ADCGS_OK;
 }
 
-/** Index of the moment nearest to a time. */
+/** Index of the list's time nearest to a given time. */
 static uint32_t nearest(const double *moment, uint32_t n, double time)
 {
     uint32_t best = 0;
@@ -53,7 +53,7 @@ static void cut(adcgs_cuts *cuts, const double *moment, uint32_t n, double durat
     cuts->moments = ADCGS_MIN(cuts->moments, n - last);
 }
 
-/** How far parts reach: to the last moment within the limits. */
+/** Extends parts past their ends, up to the last frame within the limits. */
 static void reach_out(adcgs_cuts *cuts, const double *moment, uint32_t n, double duration, double fade)
 {
     uint32_t next = 0;
@@ -62,7 +62,7 @@ static void reach_out(adcgs_cuts *cuts, const double *moment, uint32_t n, double
         const double until = at[1] + fmin(fade, shorter / 4) + ADCGS_TIME_TOLERANCE * duration;
         while (next < n && moment[next] <= until)
             next++;
-        cuts->reach[i] = moment[next - 1] - at[1]; /* the cut is a moment */
+        cuts->reach[i] = moment[next - 1] - at[1]; /* next > 0, since the cut itself is a frame */
     }
 }
 
@@ -72,7 +72,7 @@ adcgs_status adcgs_cuts_find(adcgs_cuts *cuts, const adcgs_scene *scene, double 
     uint32_t n;
     adcgs_status status = list_moments(&moment, &n, scene, error);
     if (status == ADCGS_OK && n < 2)
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: shows one moment only: there is nothing to cut", scene->directory);
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: only one distinct time: there is nothing to cut", scene->directory);
     if (status == ADCGS_OK) {
         cuts->at = adcgs_alloc(NULL, n + 1, sizeof *cuts->at, error);
         cuts->reach = adcgs_alloc(NULL, n, sizeof *cuts->reach, error);
@@ -93,7 +93,7 @@ void adcgs_cuts_clear(adcgs_cuts *cuts)
     *cuts = (adcgs_cuts){ .n = 0 };
 }
 
-/** Copies of the training views from begin to end, with times from begin on. */
+/** Copies the training views from begin to end, with times relative to begin. */
 static void take_views(adcgs_scene *part, const adcgs_scene *whole, double begin, double end)
 {
     const double within = ADCGS_TIME_TOLERANCE * whole->duration;

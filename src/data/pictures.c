@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures kept in memory and in a file. */
+/** \file Images kept in memory and in a file. */
 #include "config.h"
 
 #include "data/pictures.h"
@@ -14,17 +14,17 @@
 #include <stdlib.h>
 
 #define FULL 65535.0f
-#define LEVEL 257 /* from one level of 8 bits to the next, in 16 */
+#define LEVEL 257 /* step in 16 bits for one level of 8 bits */
 
-typedef enum place { IN_MEMORY, IN_FILE, NOWHERE } place; /* NOWHERE: it is decoded again whenever it is asked for */
+typedef enum place { IN_MEMORY, IN_FILE, NOWHERE } place; /* NOWHERE: decoded again for each use */
 
 typedef struct picture {
     adcgs_camera camera;
-    void *values;  /**< in memory */
-    uint64_t at;   /**< in the file */
+    void *values;  /**< if in memory */
+    uint64_t at;   /**< offset, if in the file */
     place place;
-    uint8_t bytes; /**< of a value: 1, 2, or 4 for binary32 */
-    uint8_t *hidden; /**< [height * width] pixels that are not known, which values hold as 0; NULL: all are */
+    uint8_t bytes; /**< size of a value: 1, 2, or 4 for binary32 */
+    uint8_t *hidden; /**< [height * width] pixels that are unknown; values holds 0 for them; NULL: none */
 } picture;
 
 struct adcgs_pictures {
@@ -32,7 +32,7 @@ struct adcgs_pictures {
     adcgs_pictures_config config;
     uint32_t n;
     picture *list;
-    pthread_mutex_t lock; /**< for what follows, while loading */
+    pthread_mutex_t lock; /**< protects the members below, while loading */
     adcgs_spool spool;
     uint64_t held;
     uint32_t nowhere; /**< images that are decoded again */
@@ -63,7 +63,7 @@ static inline uint16_t to_16(float value)
     return (uint16_t)(value * FULL + 0.5f);
 }
 
-/** In place: narrower values are never ahead of what they come from. \return bytes of a value, which lose nothing of 16 bits */
+/** In place: a narrower value never overtakes its source. \return bytes of a value, without a loss to its 16 bits */
 static uint8_t narrow(float *rgb, size_t n)
 {
     uint32_t between = 0;
@@ -80,7 +80,7 @@ static uint8_t narrow(float *rgb, size_t n)
     return between ? 2 : 1;
 }
 
-/** The same floats from 8 bits as from 16. */
+/** Converts values to floats; 8 bits yield the same floats as 16. */
 static void widen(float *rgb, const void *values, uint8_t bytes, size_t n)
 {
     for (size_t i = 0; bytes == 1 && i < n; i++)
@@ -91,7 +91,7 @@ static void widen(float *rgb, const void *values, uint8_t bytes, size_t n)
         memcpy(rgb, values, n * sizeof *rgb);
 }
 
-/** Note which pixels are not known, and give them a value that can be kept. */
+/** Records the unknown pixels and replaces them by 0, which can be stored. */
 static adcgs_status hide(picture *p, float *rgb, adcgs_error *error)
 {
     const size_t plane = values_of(p) / 3;
@@ -119,7 +119,7 @@ static void show_hidden(const picture *p, float *rgb)
 
 /* ---- Loading ---- */
 
-/** Where an image goes. */
+/** Decides where an image is kept. */
 static void find_place(adcgs_pictures *p, picture *to, int can_decode)
 {
     const size_t bytes = bytes_of(to);
@@ -133,7 +133,7 @@ static void find_place(adcgs_pictures *p, picture *to, int can_decode)
     pthread_mutex_unlock(&p->lock);
 }
 
-/** Others took the room, or the disk fails: the file grows no more. */
+/** Other processes took the room, or the disk fails: the file does not grow any further. */
 static void give_up_file(adcgs_pictures *p, picture *to, int problem)
 {
     pthread_mutex_lock(&p->lock);
@@ -143,7 +143,7 @@ static void give_up_file(adcgs_pictures *p, picture *to, int problem)
     pthread_mutex_unlock(&p->lock);
 }
 
-/** can_decode: the image is the scene's, and can be read from there again. */
+/** can_decode: the image comes from the scene, and can be decoded from its files again. */
 static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, int can_decode, adcgs_error *error)
 {
     const adcgs_status status = hide(to, rgb, error);
@@ -169,8 +169,8 @@ static adcgs_status keep(adcgs_pictures *p, picture *to, float *rgb, int can_dec
 typedef struct load_job {
     adcgs_pictures *pictures;
     adcgs_view_runs runs;
-    adcgs_error *errors; /**< of each view */
-    uint32_t done;       /**< under the lock */
+    adcgs_error *errors; /**< one for each view */
+    uint32_t done;       /**< protected by the lock */
     int stop;            /**< likewise */
 } load_job;
 
@@ -184,7 +184,7 @@ static adcgs_status load(adcgs_pictures *p, uint32_t view, adcgs_error *error)
     return keep(p, &p->list[view], rgb, 1, error);
 }
 
-/** Count a picture, or one that failed. \return whether to go on. */
+/** Counts an image as loaded, or as failed. \return true to continue */
 static int tell(load_job *job, adcgs_status status)
 {
     adcgs_pictures *p = job->pictures;
@@ -197,7 +197,7 @@ static int tell(load_job *job, adcgs_status status)
     return on;
 }
 
-/** One thread reads a video from its beginning to its end or its first fault, or one picture. */
+/** One thread reads a video to its end or its first error, or a single image. */
 static void load_run(void *arg, int run, int thread)
 {
     load_job *job = arg;
@@ -217,14 +217,14 @@ static adcgs_status first_error(const load_job *job, adcgs_error *error)
                 *error = job->errors[i];
             return job->errors[i].status;
         }
-    return job->stop ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted while pictures were loaded") : ADCGS_OK;
+    return job->stop ? adcgs_fail(error, ADCGS_ERR_IO, "interrupted while images were loaded") : ADCGS_OK;
 }
 
 static adcgs_status load_all(adcgs_pictures *p, adcgs_pool *pool, adcgs_error *error)
 {
     load_job job = {.pictures = p, .errors = calloc(ADCGS_MAX(p->n, 1), sizeof *job.errors)};
     adcgs_status status = job.errors ? adcgs_view_runs_make(&job.runs, p->scene->views[p->config.split], p->n, error)
-                                     : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for pictures");
+                                     : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for images");
     if (status == ADCGS_OK) {
         adcgs_pool_run(pool, load_run, &job, (int)job.runs.n);
         status = first_error(&job, error);
@@ -240,7 +240,7 @@ adcgs_status adcgs_pictures_load(adcgs_pictures **out, const adcgs_scene *scene,
     adcgs_pictures *p = calloc(1, sizeof *p);
     *out = NULL;
     if (!p)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for pictures");
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for images");
     p->scene = scene;
     p->config = *config;
     p->config.memory = config->memory ? config->memory : adcgs_pictures_usual_memory();
@@ -279,7 +279,7 @@ const adcgs_camera *adcgs_pictures_camera(const adcgs_pictures *pictures, uint32
     return &pictures->list[view].camera;
 }
 
-/** From the scene's files, the same values as would have been kept. */
+/** Decodes an image from the scene's files, to the same values as stored ones. */
 static adcgs_status decode_again(const adcgs_pictures *pictures, uint32_t view, float *rgb, adcgs_error *error)
 {
     const picture *p = &pictures->list[view];
@@ -294,7 +294,7 @@ static adcgs_status decode_again(const adcgs_pictures *pictures, uint32_t view, 
     return ADCGS_OK;
 }
 
-/** \return 0, or errno: then nothing was read */
+/** \return 0, or errno if nothing was read */
 static int read_file(const adcgs_pictures *pictures, const picture *p, float *rgb)
 {
     void *const values = malloc(bytes_of(p));
@@ -326,7 +326,7 @@ adcgs_status adcgs_pictures_put(adcgs_pictures *pictures, uint32_t view, const f
     picture *p = &pictures->list[view];
     float *copy = malloc(values_of(p) * sizeof *copy);
     if (!copy)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a picture");
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for an image");
     memcpy(copy, rgb, values_of(p) * sizeof *copy);
     if (p->place == IN_MEMORY)
         pictures->held -= bytes_of(p);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How much memory images take, unless it is given. */
+/** \file The default memory limit for images. */
 #include "config.h"
 
 #include "data/pictures.h"
@@ -9,7 +9,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-/** The least limit that a cgroup of this name or one above it has. */
+/** The lowest limit of the cgroup of this name and its ancestors. */
 static uint64_t cgroup_limit(const char *root, const char *name, const char *file, uint64_t least)
 {
     char path[PATH_MAX];
@@ -28,7 +28,7 @@ static uint64_t cgroup_limit(const char *root, const char *name, const char *fil
     }
 }
 
-/** By the limits of containers and job schedulers: a process beyond them is killed, and no state is saved. */
+/** Applies the limits of containers and job schedulers: a process beyond them is killed without saving its state. */
 static uint64_t limited(uint64_t most)
 {
     char line[PATH_MAX];

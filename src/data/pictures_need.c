@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How much room the images of a split will take. */
+/** \file Estimate of the storage that the images of a split need. */
 #include "config.h"
 
 #include "data/pictures.h"
@@ -7,14 +7,14 @@
 
 #include <stdlib.h>
 
-/** Values of an image. */
+/** Number of values of an image. */
 static uint64_t values_of(const adcgs_scene_view *view, int divide)
 {
     const uint64_t width = (uint64_t)((view->camera.width + divide - 1) / divide);
     return 3 * width * (uint64_t)((view->camera.height + divide - 1) / divide);
 }
 
-/** Bytes that a value of a view takes, found by loading it alone. */
+/** Raises *bytes to the bytes per value of a view, found by loading the view alone. */
 static adcgs_status sample(const adcgs_scene *scene, const adcgs_pictures_config *config, uint32_t view, uint64_t *bytes,
                            adcgs_error *error)
 {
@@ -49,7 +49,7 @@ adcgs_status adcgs_pictures_foresee(adcgs_pictures_need *need, const adcgs_scene
         return ADCGS_OK;
     }
     ADCGS_TRY(sample(scene, config, 0, &bytes, error));
-    if (!views[n - 1].is_video) /* the last frame of a video is far from its beginning */
+    if (!views[n - 1].is_video) /* reading the last frame of a video means decoding it all */
         ADCGS_TRY(sample(scene, config, n - 1, &bytes, error));
     need->bytes = values * bytes;
     char *const folder = adcgs_spool_folder();

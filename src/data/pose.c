@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Checking camera poses and measuring where cameras look. */
+/** \file Checks of camera poses, and measures of the cameras' arrangement. */
 #include "config.h"
 
 #include "data/pose.h"
@@ -31,7 +31,10 @@ static double deviation(double g[3][3], double s)
     return worst;
 }
 
-/** One Newton step towards the nearest rotation: R (3I - R^T R) / 2. Quadratic, so three end at rounding. */
+/**
+ * One Newton step towards the nearest rotation: R (3I - R^T R) / 2. It converges quadratically; three steps reach rounding
+ * precision.
+ */
 static void straighten(double pose[12])
 {
     double g[3][3], r[3][3];
@@ -89,7 +92,7 @@ uint8_t adcgs_pose_axes(const adcgs_scene_view *views, uint32_t n)
     return up[2] > fabs(up[0]) ? ADCGS_AXES_Z_UP : ADCGS_AXES_UNKNOWN;
 }
 
-/** Solve the symmetric positive definite 3x3 system a x = b by Cramer's rule. */
+/** Solves the symmetric positive definite 3x3 system a x = b by Cramer's rule. */
 static void solve(double a[3][3], const double b[3], double x[3])
 {
     double m[12] = {a[0][0], a[0][1], a[0][2], 0, a[1][0], a[1][1], a[1][2], 0, a[2][0], a[2][1], a[2][2], 0};
@@ -103,7 +106,7 @@ static void solve(double a[3][3], const double b[3], double x[3])
     }
 }
 
-/** Least squares over the distances from all axes. */
+/** Minimises the squared distances from all axes. */
 void adcgs_pose_centre(const adcgs_scene_view *views, uint32_t n, double centre[3])
 {
     double a[3][3] = {{0}}, b[3] = {0}, mean[3] = {0};

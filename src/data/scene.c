@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes: names of their parts. */
+/** \file Scenes: names of splits, remarks, freeing. */
 #include "config.h"
 
 #include "data/scene.h"

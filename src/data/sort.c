@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Numbers in order. */
+/** \file Sorting of numbers. */
 #include "data/sort.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats as a scene: what its cameras see. */
+/** \file Splats as a scene: the images of its cameras. */
 #include "config.h"
 
 #include "data/splat_views.h"
@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define OPACITY_MAX 0.99f /* of a primitive */
+#define OPACITY_MAX 0.99f /* largest opacity of a primitive */
 
 void adcgs_splat_scene_free(adcgs_splat_scene **splats)
 {
@@ -22,7 +22,7 @@ void adcgs_splat_scene_free(adcgs_splat_scene **splats)
     *splats = NULL;
 }
 
-/** Colours as a camera sees them: [3][slots]. */
+/** Computes colours for a camera's viewing directions: [3][slots]. */
 static void look(float *colours, size_t slots, const adcgs_splat_scene *s, const adcgs_camera *camera)
 {
     const adcgs_splats *splats = &s->splats;
@@ -46,8 +46,8 @@ static void look(float *colours, size_t slots, const adcgs_splat_scene *s, const
 }
 
 /**
- * The share of a splat's opacity that is left when the screen filter spreads it: sqrt(det S / det(S + filter I)) of its
- * covariance S in the image (Yu et al., Mip-Splatting, 2024), S by the renderer's projection.
+ * The share of a splat's opacity that remains when the screen filter spreads it: sqrt(det S / det(S + filter I)) of its
+ * covariance S in the image (Yu et al., Mip-Splatting, 2024), with S from the renderer's projection.
  */
 static double share_left(const adcgs_splats *s, uint32_t i, const adcgs_view *view, double filter)
 {
@@ -56,24 +56,24 @@ static double share_left(const adcgs_splats *s, uint32_t i, const adcgs_view *vi
     adcgs_quaternion_matrix(g.rot, s->rotation[0][i], s->rotation[1][i], s->rotation[2][i], s->rotation[3][i]);
     adcgs_project_shape(&g, view, (float)filter, s->scale[0][i], s->scale[1][i], s->scale[2][i]);
     double det = 0.0, trace = 0.0;
-    for (int j = 0; j < 3; j++) { /* S = f f^T: its determinant is the square of the cross product of the rows of f */
+    for (int j = 0; j < 3; j++) { /* S = f f^T: its determinant is the squared length of the cross product of the rows of f */
         const int k = (j + 1) % 3;
         const double cross = (double)g.f[0][j] * (double)g.f[1][k] - (double)g.f[0][k] * (double)g.f[1][j];
         det += cross * cross;
         trace += (double)g.f[0][j] * (double)g.f[0][j] + (double)g.f[1][j] * (double)g.f[1][j];
     }
     const double spread = det + filter * trace + filter * filter;
-    return isfinite(spread) ? sqrt(det / spread) : 1.0; /* behind the camera, and not rendered */
+    return isfinite(spread) ? sqrt(det / spread) : 1.0; /* behind the camera, not rendered */
 }
 
-/** Opacities as a camera sees them: [slots], zero behind the last splat. */
+/** Computes opacities for a camera: [slots], zero behind the last splat. */
 static void fade(float *opacities, const adcgs_splats *s, const adcgs_view *view)
 {
     for (uint32_t i = 0; i < s->n; i++)
         opacities[i] = fminf((float)((double)s->opacity[i] * share_left(s, i, view, (double)ADCGS_SCREEN_FILTER)), OPACITY_MAX);
 }
 
-/** Arrays that depend on the camera; NULL if nothing does. */
+/** Arrays that depend on the camera; NULL if they do not. */
 typedef struct workspace {
     size_t slots;
     float *colours, *opacities; /**< [3][slots], [slots] */
@@ -101,7 +101,7 @@ static adcgs_status draw(float *rgb, const adcgs_splat_scene *s, const float bac
     adcgs_primitives primitives;
     adcgs_view view;
     adcgs_splats_primitives(&s->splats, &primitives);
-    ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &cpu, error)); /* the picture does not depend on it */
+    ADCGS_TRY(adcgs_cpu_resolve(ADCGS_CPU_AUTO, &cpu, error)); /* the image does not depend on it */
     ADCGS_TRY(adcgs_view_init(&view, camera, s->centre, s->radius, error));
     if (w->colours)
         look(w->colours, w->slots, s, camera);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A file for images that memory has no room for. */
+/** \file A file for images that do not fit into memory. */
 #include "config.h"
 
 #include "data/spool.h"
@@ -12,7 +12,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#define LEFT_TO_OTHERS 16 /* one part of so many of the free space: for outputs and checkpoints on the same disk */
+#define LEFT_TO_OTHERS 16 /* one part in this many of the free space is left for outputs and checkpoints on the same disk */
 
 char *adcgs_spool_folder(void)
 {
@@ -30,7 +30,8 @@ uint64_t adcgs_spool_room(const char *folder, int *problem)
         return 0;
     }
     const uint64_t block = s.f_frsize ? s.f_frsize : s.f_bsize, free_bytes = (uint64_t)s.f_bavail * block;
-    uint64_t room = s.f_blocks ? free_bytes - free_bytes / LEFT_TO_OTHERS : UINT64_MAX; /* tmpfs without a size has no blocks */
+    uint64_t room = s.f_blocks ? free_bytes - free_bytes / LEFT_TO_OTHERS : UINT64_MAX; /* tmpfs without a size limit reports
+                                                                                           no blocks */
     if (!getrlimit(RLIMIT_FSIZE, &limit) && limit.rlim_cur != RLIM_INFINITY)
         room = ADCGS_MIN(room, (uint64_t)limit.rlim_cur);
     return room;
@@ -67,7 +68,7 @@ int adcgs_spool_take(adcgs_spool *spool, size_t bytes, uint64_t *at)
 {
     if (spool->file < 0 && !spool->problem)
         open_file(spool);
-    if (spool->problem || bytes > spool->room - spool->used) /* a smaller image may still have room */
+    if (spool->problem || bytes > spool->room - spool->used) /* a smaller image may still fit */
         return 0;
     *at = spool->used;
     spool->used += bytes;

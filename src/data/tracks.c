@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What each camera took, in the order of time. */
+/** \file The views of each camera, in ascending time. */
 #include "config.h"
 
 #include "data/tracks.h"
@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-#define STAY 3 /* views of a camera on the mean: fewer, and it is chance where some are equal */
+#define STAY 3 /* least mean number of views per camera: with fewer, equal cameras are chance */
 
 typedef struct item {
     double time;
@@ -23,7 +23,7 @@ static int by_time(const void *a, const void *b)
     return x->index < y->index ? -1 : x->index > y->index;
 }
 
-/** All views as one track, if no two are of one moment. */
+/** All views as one track, if no two have the same time. */
 static adcgs_status find_moving(adcgs_tracks *tracks, const adcgs_scene_view *views, uint32_t n, adcgs_error *error)
 {
     item *const items = adcgs_alloc(NULL, n, sizeof *items, error);

@@ -173,6 +173,6 @@ for other in "--size 100k" "--uncompressed $dir/raw" "--time-limit 9"; do
     expect 2 "segment excludes" $try $other
 done
 expect 2 "segment excludes" ./adcgs-enc "$scene" --beginning "$dir/x" --segment 0.1
-expect 4 "one moment only" $try --frames 0:1
+expect 4 "only one distinct time" $try --frames 0:1
 [ ! -e "$dir/x.adcgs" ] || bad "wrong use wrote a file"
 exit $failed

@@ -317,7 +317,7 @@ static void test_bad_cameras(void **state)
     bad_camera(PLAIN "," LENS ",\"skew\":1e7", ADCGS_ERR_DATA, "skew: 1e+07");
     bad_camera(PLAIN "," LENS ",\"skew\":60", ADCGS_ERR_DATA, "a tenth of 6x4");
     bad_camera(PLAIN "," LENS ",\"skew\":[0]", ADCGS_ERR_DATA, "skew: expected a number");
-    bad_camera(PLAIN "," LENS ",\"radial_distortion\":[-9,0,0]", ADCGS_ERR_DATA, "folds inside the picture of 6x4");
+    bad_camera(PLAIN "," LENS ",\"radial_distortion\":[-9,0,0]", ADCGS_ERR_DATA, "folds inside the image of 6x4");
     bad_camera(PLAIN "," LENS ",\"radial_distortion\":[0,0,1e7]", ADCGS_ERR_DATA, "radial_distortion: 1e+07");
     bad_camera(PLAIN "," LENS ",\"radial_distortion\":[0,0]", ADCGS_ERR_DATA, "radial_distortion: expected 3");
     bad_camera(PLAIN "," LENS ",\"tangential_distortion\":[0,-4]", ADCGS_ERR_DATA, "folds inside");

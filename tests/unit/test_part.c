@@ -108,7 +108,7 @@ static void one_moment_is_not_cut(void **state)
     adcgs_cuts cuts = { .n = 0 };
     still.n_views[ADCGS_SPLIT_TRAIN] = 1;
     assert_int_equal(adcgs_cuts_find(&cuts, &still, 0.5, 0.1, &error), ADCGS_ERR_DATA);
-    assert_non_null(strstr(error.text, "one moment only"));
+    assert_non_null(strstr(error.text, "only one distinct time"));
     adcgs_cuts_clear(&cuts);
 }
 
