@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Cameras calibrated for pictures of one size, used with pictures of another. */
+/** \file Cameras calibrated for images of one size, used with images of another. */
 #include "config.h"
 
 #include "layouts/calibration.h"
@@ -26,7 +26,7 @@ adcgs_status adcgs_calibrate(adcgs_scene_view *view, const adcgs_lens *lens, int
     const double x = (double)width / lens->width, y = (double)height / lens->height;
     if (fabs(width - y * lens->width) > fmax(SHAPE_TOLERANCE * width, 1.0) &&
         fabs(height - x * lens->height) > fmax(SHAPE_TOLERANCE * height, 1.0))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, another shape than the %dx%d that its camera is given for",
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %dx%d pixels, another aspect ratio than the %dx%d of its camera",
                           path, width, height, lens->width, lens->height);
     view->lens = *lens;
     adcgs_lens_resize(&view->lens, width, height);

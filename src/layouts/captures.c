@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Captures of programs whose format is known by its fields, but not read. */
+/** \file Captures in formats that are recognised by their fields, but not read. */
 #include "config.h"
 
 #include "layouts/captures.h"
@@ -9,13 +9,13 @@
 
 #include <stdlib.h>
 
-/* Record3D has the poses of ARKit in one list, and one matrix K for all. */
+/* Record3D has the poses of ARKit in one list, and one matrix K for all poses. */
 adcgs_status adcgs_capture_refuse(json_t *root, const char *path, adcgs_error *error)
 {
     if (!json_is_array(json_object_get(root, "poses")) || !json_is_array(json_object_get(root, "K")))
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: the metadata of a capture by Record3D, which is not read: nerfstudio's "
-                      "ns-process-data record3d makes a folder with transforms.json of it", path);
+    return adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: metadata of a Record3D capture, which is not supported: convert it "
+                      "to a folder with transforms.json by nerfstudio's ns-process-data record3d", path);
 }
 
 adcgs_status adcgs_capture_refuse_folder(const char *folder, adcgs_error *error)

@@ -24,10 +24,10 @@ typedef struct reader {
     adcgs_error *error;
     const adcgs_frame_range *frames;
     adcgs_colmap_models models;
-    adcgs_colmap_place place;     /**< of the model that is read, one of these */
+    adcgs_colmap_place place;     /**< of the model in use, one of models */
     adcgs_colmap model;
-    char *pictures;              /**< their folder, with its slash */
-    adcgs_scene_view *calibrated; /**< for each camera; height 0: not yet */
+    char *pictures;              /**< folder of the images, with its slash */
+    adcgs_scene_view *calibrated; /**< one for each camera; height 0: not yet calibrated */
 } reader;
 
 static adcgs_status no_memory(const reader *r)
@@ -42,7 +42,7 @@ static adcgs_status read_file(reader *r, adcgs_colmap_file file)
     return adcgs_colmap_load(&r->model, &r->place, file, r->error);
 }
 
-/** As adcgs_fail(), after the file's name. */
+/** Like adcgs_fail(), with the file's name in front of the message. */
 static adcgs_status bad_file(const reader *r, const char *file, const char *what)
 {
     return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s%s.%s: %s", r->place.folder, file, adcgs_colmap_end(&r->place), what);
@@ -57,15 +57,15 @@ static adcgs_status read_points(reader *r, size_t n, size_t period)
     return ADCGS_OK;
 }
 
-/* ---- Pictures ---- */
+/* ---- Images ---- */
 
-/** The picture of a name in a folder: as named, or with another extension. NULL if there is none. */
+/** Finds an image in a folder: by its name, or with another extension. *out is NULL if there is none. */
 static adcgs_status find_in(const reader *r, const char *folder, const char *name, char **out)
 {
     char *path = adcgs_path("%s%s", folder, name);
     adcgs_status status = path ? adcgs_find_image(out, path, r->error) : no_memory(r);
     for (char *c = path ? path + strlen(folder) : NULL; status == ADCGS_OK && !*out && c && (c = strchr(c, '\\'));)
-        *c = '/'; /* folders as Windows writes them */
+        *c = '/'; /* folders separated as in Windows */
     if (status == ADCGS_OK && !*out && strchr(name, '\\'))
         status = adcgs_find_image(out, path, r->error);
     if (status == ADCGS_OK && !*out) {
@@ -79,7 +79,7 @@ static adcgs_status find_in(const reader *r, const char *folder, const char *nam
     return status;
 }
 
-/** Is a picture in this folder, which is from malloc() and ends with its slash? Then it is where they all are. */
+/** If an image is in this folder, the folder becomes that of all images. folder is from malloc() and ends with its slash. */
 static adcgs_status try_folder(reader *r, char *folder, const char *name)
 {
     char *found = NULL;
@@ -109,7 +109,7 @@ static adcgs_status find_pictures(reader *r, const char *name)
                                     directory, name);
 }
 
-/** A name without its extension; folders become part of it. */
+/** Sets the name: the file's, without its extension and with its folders. */
 static void set_name(adcgs_camera *camera, const char *name)
 {
     const char *slash = strrchr(name, '/'), *dot = strrchr(name, '.');
@@ -135,7 +135,7 @@ static void set_pose(adcgs_scene_view *view, const adcgs_colmap_image *image)
     set_name(&view->camera, image->name);
 }
 
-/** Its mask in masks/, by the picture's name, whole or without its end, if there is one. */
+/** Adds a view's mask from masks/, named like the image with or without its extension, if there is one. */
 static adcgs_status add_mask(reader *r, const char *name, adcgs_scene_view *view)
 {
     char *folder = adcgs_path("%s/masks/", r->scene->directory);
@@ -144,7 +144,7 @@ static adcgs_status add_mask(reader *r, const char *name, adcgs_scene_view *view
     return status;
 }
 
-/** The first picture of a camera tells the size of them all. */
+/** The first image of a camera determines the size of all its images. */
 static adcgs_status add_picture(reader *r, const adcgs_colmap_image *image, adcgs_split split)
 {
     const adcgs_colmap_camera *camera = find_camera(r, image);
@@ -176,7 +176,7 @@ static adcgs_status add_picture(reader *r, const adcgs_colmap_image *image, adcg
 static adcgs_status add_pictures(reader *r)
 {
     ADCGS_TRY(find_pictures(r, r->model.images[0].name));
-    for (int split = 0; split < ADCGS_SPLITS; split++) /* training comes first, so that its pictures tell the size */
+    for (int split = 0; split < ADCGS_SPLITS; split++) /* training comes first, so that its images determine the size */
         for (size_t i = 0; i < r->model.n_images; i++)
             if (split == (i % TEST_EVERY == 0 ? ADCGS_SPLIT_TEST : ADCGS_SPLIT_TRAIN))
                 ADCGS_TRY(add_picture(r, &r->model.images[i], (adcgs_split)split));
@@ -187,7 +187,7 @@ static adcgs_status add_pictures(reader *r)
         adcgs_counting_add(&counting, named.name);
     }
     r->scene->counts = adcgs_counting_holds(&counting);
-    if (strlen(r->pictures) > strlen(r->scene->directory) + 1) /* in the scene's own folder anything may lie */
+    if (strlen(r->pictures) > strlen(r->scene->directory) + 1) /* the scene's own folder may contain unrelated files */
         ADCGS_TRY(adcgs_unposed_remark(r->scene, r->pictures, r->error));
     return adcgs_frames_keep(r->scene, r->frames, r->scene->directory, r->error);
 }
@@ -211,7 +211,7 @@ static char *find_video(const reader *r, const char *name)
     return NULL;
 }
 
-/** The views of one camera; *frames is what the first has. */
+/** Adds the views of one camera; *frames is the number of frames of the first camera. */
 static adcgs_status add_footage(reader *r, size_t index, const adcgs_footage *footage, int64_t *frames)
 {
     const adcgs_colmap_image *image = &r->model.images[index], *first = &r->model.images[0];
@@ -254,7 +254,7 @@ static adcgs_status add_videos(reader *r)
 
 /* ---- The scene ---- */
 
-/** Where there are several models. */
+/** Reports the choice if there are several models. */
 static void tell_models(const reader *r)
 {
     const adcgs_colmap_models *m = &r->models;
@@ -262,7 +262,7 @@ static void tell_models(const reader *r)
         return;
     const char *taken = m->place.folder + strlen(r->scene->directory) + 1;
     const char *other = m->other.folder + strlen(r->scene->directory) + 1;
-    adcgs_scene_remark(r->scene, "there are %u models of COLMAP: %.*s with %zu images is taken; %.*s has %zu", m->n,
+    adcgs_scene_remark(r->scene, "found %u models of COLMAP: %.*s with %zu images is used; %.*s has %zu", m->n,
                        *taken ? (int)strlen(taken) - 1 : 9, *taken ? taken : "that here", m->images,
                        *other ? (int)strlen(other) - 1 : 9, *other ? other : "that here", m->other_images);
 }
@@ -272,7 +272,7 @@ static adcgs_status read_model(reader *r, int with_points)
     const adcgs_colmap_file files[] = {ADCGS_COLMAP_CAMERAS, ADCGS_COLMAP_IMAGES, ADCGS_COLMAP_POINTS};
     for (size_t i = 0; i < ADCGS_COUNTOF(files) - !with_points; i++)
         if (!adcgs_colmap_has(&r->place, files[i]))
-            return read_file(r, files[i]); /* says why */
+            return read_file(r, files[i]); /* reports the error */
     ADCGS_TRY(read_file(r, ADCGS_COLMAP_CAMERAS));
     if (!r->model.n_cameras)
         return bad_file(r, "cameras", "no cameras, expected at least one");

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Binary files of a sparse model: little-endian numbers without gaps, after a
- * count of what follows. No count is believed before the bytes are seen to be
- * there.
+ * Binary files of a sparse model: little-endian numbers without gaps, after a count of elements. No count is trusted before the
+ * file's size is known to be sufficient.
  */
 #include "config.h"
 
@@ -46,7 +45,7 @@ static adcgs_status ends_early(const adcgs_colmap *model)
     return adcgs_colmap_bad(model, ADCGS_ERR_DATA, "the file ends early");
 }
 
-/** The count at the beginning; each of what follows takes at least so many bytes. */
+/** Reads the count at the beginning; each element takes at least `least` bytes. */
 static adcgs_status begin(adcgs_colmap *model, cursor *c, const uint8_t *data, size_t bytes, size_t least, uint64_t *n)
 {
     *c = (cursor){data, data + bytes};
@@ -62,7 +61,7 @@ static adcgs_status begin(adcgs_colmap *model, cursor *c, const uint8_t *data, s
 static adcgs_status finish(const adcgs_colmap *model, const cursor *c)
 {
     if (left(c))
-        return adcgs_fail(model->error, ADCGS_ERR_DATA, "%s: %zu bytes behind the last %s", model->path, left(c), model->unit);
+        return adcgs_fail(model->error, ADCGS_ERR_DATA, "%s: %zu bytes after the last %s", model->path, left(c), model->unit);
     return ADCGS_OK;
 }
 
@@ -81,7 +80,7 @@ adcgs_status adcgs_colmap_binary_cameras(adcgs_colmap *model, uint8_t *data, siz
         const uint64_t width = take64(&c), height = take64(&c);
         const int kind = adcgs_colmap_kind(NULL, number);
         if (kind < 0)
-            return adcgs_colmap_bad(model, ADCGS_ERR_UNSUPPORTED, "unknown kind %u of camera", number);
+            return adcgs_colmap_bad(model, ADCGS_ERR_UNSUPPORTED, "unknown camera model %u", number);
         ADCGS_TRY(adcgs_colmap_params(model, kind, &n_params));
         if (left(&c) < 8 * (size_t)n_params)
             return ends_early(model);
@@ -133,7 +132,7 @@ adcgs_status adcgs_colmap_binary_points(adcgs_colmap *model, uint8_t *data, size
         double position[3];
         if (left(&c) < POINT_BYTES)
             return ends_early(model);
-        take64(&c); /* its id, which nothing else needs */
+        take64(&c); /* the point's id, which is not needed */
         take_numbers(&c, position, 3);
         const uint64_t colour[3] = {c.at[0], c.at[1], c.at[2]};
         c.at += 3;

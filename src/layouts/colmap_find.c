@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Where sparse models lie. COLMAP writes several where images fall apart into groups that it cannot join, and the first need not
- * be the largest. Each has a world of its own, so that one is taken: the one with most images.
+ * Locations of sparse models. COLMAP writes several models if images form groups that it cannot join, and the first need not be
+ * the largest. Each model has a world of its own, so only one is used: the one with most images.
  */
 #include "config.h"
 
@@ -13,26 +13,26 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define NUMBERS 64 /* of models below one folder; COLMAP makes 50 at most unless told otherwise */
+#define NUMBERS 64 /* of models below one folder; COLMAP writes at most 50 by default */
 
-/** Only the first group with any model counts: later ones hold intermediate models. */
+/** Only the first group with any model counts: later groups hold intermediate models. */
 static const struct {
     const char *whole[3]; /**< folders with a model each */
     const char *parent;   /**< of numbered folders, each with a model */
 } groups[] = {
     {{"sparse/0/", "sparse/", ""}, "sparse/"},
     {{"colmap/sparse/0/", "colmap/sparse/", "colmap/"}, "colmap/sparse/"},  /* nerfstudio */
-    {{"distorted/sparse/0/", "distorted/sparse/", NULL}, "distorted/sparse/"}, /* before images are straightened */
+    {{"distorted/sparse/0/", "distorted/sparse/", NULL}, "distorted/sparse/"}, /* before images are undistorted */
 };
 
 typedef struct search {
     const char *directory;
-    int first; /**< the first is enough */
+    int first; /**< stop at the first model */
     adcgs_colmap_models *found;
     adcgs_error *error;
 } search;
 
-/** Images of a model; none where their list cannot be read. */
+/** Counts the images of a model; 0 if their list cannot be read. */
 static adcgs_status count_images(const search *s, const adcgs_colmap_place *place, size_t *n)
 {
     adcgs_colmap model = {0};
@@ -43,7 +43,7 @@ static adcgs_status count_images(const search *s, const adcgs_colmap_place *plac
     return status == ADCGS_ERR_MEMORY ? status : ADCGS_OK;
 }
 
-/** Keep the larger of two models. */
+/** Keeps the larger of two models. */
 static void weigh(adcgs_colmap_models *f, adcgs_colmap_place *here, size_t images)
 {
     const int is_larger = images > f->images;
@@ -59,7 +59,7 @@ static void weigh(adcgs_colmap_models *f, adcgs_colmap_place *here, size_t image
     }
 }
 
-/** A model that is there. Only where there are two is any counted. */
+/** Adds a model that exists. Images are counted only if there are two or more models. */
 static adcgs_status add(search *s, adcgs_colmap_place *here)
 {
     adcgs_colmap_models *f = s->found;
@@ -76,7 +76,7 @@ static adcgs_status add(search *s, adcgs_colmap_place *here)
     return status;
 }
 
-/** Look into "DIRECTORY/PLACE". */
+/** Looks into "DIRECTORY/PLACE". */
 static adcgs_status look(search *s, const char *place)
 {
     adcgs_colmap_place here = {0};

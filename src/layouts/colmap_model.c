@@ -40,7 +40,7 @@ adcgs_status adcgs_colmap_bad(const adcgs_colmap *model, adcgs_status status, co
 
 enum { FX, FY, CX, CY, K1, K2, P1, P2, K3, K4, K5, K6, BOTH }; /* BOTH: one focal length for both axes */
 
-/** What the parameters of a kind are, in their order; without any: neither of OpenCV's models. */
+/** The parameters of each kind, in order; a kind without parameters is neither of OpenCV's models. */
 static const struct kind {
     const char *name;
     int n, params[ADCGS_COLMAP_PARAMS_MAX];
@@ -72,12 +72,12 @@ adcgs_status adcgs_colmap_params(const adcgs_colmap *model, int kind, int *n)
 {
     *n = kinds[kind].n;
     if (!*n)
-        return adcgs_colmap_bad(model, ADCGS_ERR_UNSUPPORTED, "cameras of the kind %s are not supported, undistort the images "
-                                "first", kinds[kind].name);
+        return adcgs_colmap_bad(model, ADCGS_ERR_UNSUPPORTED, "camera model %s is not supported, undistort the images first",
+                                kinds[kind].name);
     return ADCGS_OK;
 }
 
-/** A parameter where it belongs. */
+/** Stores a parameter in the lens. */
 static void set_param(adcgs_lens *lens, int param, double value)
 {
     switch (param) {
@@ -105,7 +105,9 @@ static void set_param(adcgs_lens *lens, int param, double value)
     }
 }
 
-/** One more element's room in an array that grows by doubling; NULL without memory, and the array stays. */
+/**
+ * Makes room for one more element in an array that grows by doubling. NULL on allocation failure; the array is unchanged then.
+ */
 static void *grow(void *array, size_t n, size_t element)
 {
     return n & (n - 1) ? array : realloc(array, (n ? 2 * n : 1) * element);
@@ -161,7 +163,7 @@ const adcgs_colmap_camera *adcgs_colmap_find_camera(const adcgs_colmap *model, u
 
 /* ---- Images ---- */
 
-/** The pose of a camera in the world by what takes the world to the camera: R^T, -R^T t. */
+/** Computes the camera-to-world pose from the world-to-camera pose: R^T, -R^T t. Returns 0 if it is invalid. */
 static int invert_pose(const double q[4], const double t[3], double pose[12])
 {
     const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -179,7 +181,7 @@ static int invert_pose(const double q[4], const double t[3], double pose[12])
     return 1;
 }
 
-/** A file below a folder, of a length that can be. */
+/** True for a file below a folder, with a name of plausible length. */
 static int is_plain_name(const char *name)
 {
     if (!*name || *name == '/' || strlen(name) > NAME_BYTES_MAX)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Text files of a sparse model: a line for each thing, two for an image; lines that begin with # are remarks. */
+/** \file Text files of a sparse model: one line per element, two for an image; lines that begin with # are comments. */
 #include "config.h"
 
 #include "layouts/colmap_model.h"
@@ -8,13 +8,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define LIST_CHECKED 4096 /* bytes of a list of points that is looked at; no line of an image is as long */
+#define LIST_CHECKED 4096 /* bytes of a list of points that are examined; no line of an image is as long */
 
 typedef struct cursor {
-    char *at;   /**< in the line, which ends with a zero byte */
+    char *at;   /**< in the current line, which ends with a zero byte */
     char *next; /**< the line after it */
     char *end;
-    int is_held; /**< the line is yet to be read as an entry */
+    int is_held; /**< the line is still to be read as an entry */
 } cursor;
 
 static void begin(adcgs_colmap *model, cursor *c, uint8_t *data, size_t bytes)
@@ -24,7 +24,7 @@ static void begin(adcgs_colmap *model, cursor *c, uint8_t *data, size_t bytes)
     *c = (cursor){.next = (char *)data, .end = (char *)data + bytes};
 }
 
-/** The line that comes next, whatever it holds; 0 at the end. Lines end as those of Unix, Windows or old Macs do. */
+/** Moves to the next line of any content; returns 0 at the end. Accepts line ends of Unix, Windows and old Macs. */
 static int next_line(adcgs_colmap *model, cursor *c)
 {
     if (c->next >= c->end)
@@ -50,7 +50,7 @@ static void skip_blanks(cursor *c)
         c->at++;
 }
 
-/** The next line that says something. */
+/** Moves to the next line that is neither empty nor a comment. */
 static int next_entry(adcgs_colmap *model, cursor *c)
 {
     if (c->is_held) {
@@ -65,7 +65,7 @@ static int next_entry(adcgs_colmap *model, cursor *c)
     return 0;
 }
 
-/** Is this where a field ends? */
+/** True at the end of a field. */
 static int ends(const char *at)
 {
     return !*at || *at == ' ' || *at == '\t';
@@ -120,7 +120,7 @@ adcgs_status adcgs_colmap_text_cameras(adcgs_colmap *model, uint8_t *data, size_
             *c.at++ = 0;
         const int kind = adcgs_colmap_kind(name, 0);
         if (kind < 0)
-            return adcgs_colmap_bad(model, ADCGS_ERR_UNSUPPORTED, "unknown kind \"%.32s\" of camera", name);
+            return adcgs_colmap_bad(model, ADCGS_ERR_UNSUPPORTED, "unknown camera model \"%.32s\"", name);
         ADCGS_TRY(adcgs_colmap_params(model, kind, &n));
         ADCGS_TRY(take_integer(model, &c, "WIDTH", UINT32_MAX, &width));
         ADCGS_TRY(take_integer(model, &c, "HEIGHT", UINT32_MAX, &height));
@@ -131,7 +131,7 @@ adcgs_status adcgs_colmap_text_cameras(adcgs_colmap *model, uint8_t *data, size_
     return ADCGS_OK;
 }
 
-/** Is it nothing but numbers, three for each point? Nothing is a list of none. */
+/** True for a line of numbers only, three for each point. An empty line is an empty list. */
 static int is_list(const char *at)
 {
     uint64_t n = 0;
@@ -149,7 +149,7 @@ static int is_list(const char *at)
     }
 }
 
-/** Is it the line of an image: its number, a pose, the number of a camera, a name? */
+/** True for the line of an image: its number, a pose, the number of a camera, a name. */
 static int is_image(const char *at)
 {
     for (int i = 0; i < 9; i++) {
@@ -164,8 +164,8 @@ static int is_image(const char *at)
 }
 
 /**
- * The second line of an image: its points. Some programs leave it out, and then this one is the next image, which is not to be
- * skipped. Remarks and empty lines belong to neither.
+ * Skips the second line of an image: its points. Some programs omit it. Then the line is the next image, which must not be
+ * skipped. Comments and empty lines belong to neither.
  */
 static adcgs_status skip_points(adcgs_colmap *model, cursor *c)
 {
@@ -193,14 +193,14 @@ adcgs_status adcgs_colmap_text_images(adcgs_colmap *model, uint8_t *data, size_t
         ADCGS_TRY(take_numbers(model, &c, "QW, QX, QY, QZ", q, 4));
         ADCGS_TRY(take_numbers(model, &c, "TX, TY, TZ", t, 3));
         ADCGS_TRY(take_integer(model, &c, "CAMERA_ID", UINT32_MAX, &camera));
-        skip_blanks(&c); /* the name is the rest, blanks and all */
+        skip_blanks(&c); /* the name is the rest, including blanks */
         ADCGS_TRY(adcgs_colmap_add_image(model, (uint32_t)id, q, t, (uint32_t)camera, c.at));
         ADCGS_TRY(skip_points(model, &c));
     }
     return ADCGS_OK;
 }
 
-/** The images of a track: how many, and how many of them are for training. */
+/** Counts the images of a track, and the training images among them. */
 static adcgs_status take_track(const adcgs_colmap *model, cursor *c, adcgs_colmap_track *track)
 {
     for (skip_blanks(c); *c->at; skip_blanks(c)) {

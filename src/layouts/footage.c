@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a fixed camera took: a video, or a row of pictures. */
+/** \file The footage of a fixed camera: a video, or numbered images. */
 #include "config.h"
 
 #include "layouts/footage.h"
@@ -12,9 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define VIEWS_MAX 1000000  /* of a scene; a view takes some hundred bytes */
+#define VIEWS_MAX 1000000  /* limit of a scene's views; a view takes some hundred bytes */
 #define FIRST_CAPACITY 64
-#define GAP_MAX 1000       /* numbers that are tried behind the last picture of an open row */
+#define GAP_MAX 1000       /* numbers that are tried after the last image of a sequence without a count */
 
 static adcgs_status no_memory(const char *path, adcgs_error *error)
 {
@@ -45,7 +45,7 @@ adcgs_status adcgs_footage_video(adcgs_footage *out, const char *path, adcgs_err
     return out->video ? ADCGS_OK : no_memory(path, error);
 }
 
-/** The size of the pictures by their first. */
+/** Finds the size of the images from the first one. */
 static adcgs_status probe(adcgs_footage *footage, adcgs_error *error)
 {
     int channels;
@@ -75,9 +75,9 @@ adcgs_status adcgs_footage_folder(adcgs_footage *out, const char *folder, adcgs_
     return status;
 }
 
-/* ---- Pictures by number ---- */
+/* ---- Numbered images ---- */
 
-/** Where the number stands, and how wide it is with zeros; 0 without a number, -1 for what is no such pattern. */
+/** Finds the position of the number and its zero-padded width. Returns 0 without a number, -1 for an invalid pattern. */
 static int find_number(const char *pattern, size_t *at, size_t *after, int *width)
 {
     const char *percent = strchr(pattern, '%'), *end = percent;
@@ -111,7 +111,7 @@ char *adcgs_footage_number(const char *folder, const char *pattern, int64_t numb
                : adcgs_path("%s%s", folder, pattern);
 }
 
-/** Append the picture of a number; *found 0 if it is not there. */
+/** Appends the image of a number; *found is 0 if it does not exist. */
 static adcgs_status add_picture(adcgs_footage *out, size_t *capacity, const char *folder, const char *pattern, int64_t number,
                                 int *found, adcgs_error *error)
 {
@@ -138,7 +138,7 @@ static adcgs_status add_picture(adcgs_footage *out, size_t *capacity, const char
     return ADCGS_OK;
 }
 
-/** A row of pictures ends where it does: one with a later number says that this one is missing. */
+/** A sequence ends at its first missing number. An image with a later number shows that this one is missing. */
 static adcgs_status check_gap(const char *folder, const char *pattern, int64_t missing, adcgs_error *error)
 {
     for (int64_t number = missing + 1; number <= missing + GAP_MAX; number++) {
@@ -148,8 +148,8 @@ static adcgs_status check_gap(const char *folder, const char *pattern, int64_t m
         if (!found)
             continue;
         char *gap = adcgs_footage_number(folder, pattern, missing);
-        adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such image, but there is number %lld: if they end before, give their count",
-                   gap ? gap : pattern, (long long)number);
+        adcgs_fail(error, ADCGS_ERR_DATA, "%s: no such image, but number %lld exists: if the sequence ends before, give its "
+                   "count", gap ? gap : pattern, (long long)number);
         free(gap);
         return ADCGS_ERR_DATA;
     }
@@ -164,7 +164,8 @@ adcgs_status adcgs_footage_pattern(adcgs_footage *out, const char *folder, const
     *out = (adcgs_footage){0};
     const int numbers = find_number(pattern, &at, &after, &width);
     if (numbers < 0 || strlen(pattern) > INT_MAX / 2)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: expected the name of an image with one %%d or %%05d or the like", pattern);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: expected the name of an image with one number, such as %%d or %%05d",
+                          pattern);
     if (!numbers && count > 1)
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %lld images, but no %%d for their numbers", pattern, (long long)count);
     const int64_t most = !numbers ? 1 : count ? count : VIEWS_MAX;
@@ -172,7 +173,7 @@ adcgs_status adcgs_footage_pattern(adcgs_footage *out, const char *folder, const
     while (status == ADCGS_OK && found && out->frames < most)
         status = add_picture(out, &capacity, folder, pattern, first + out->frames, &found, error);
     if (status == ADCGS_OK && !found && (count || !out->frames))
-        status = ADCGS_ERR_DATA; /* the message is there already */
+        status = ADCGS_ERR_DATA; /* the message is already set */
     if (status == ADCGS_OK && !found)
         status = check_gap(folder, pattern, first + out->frames, error);
     if (status == ADCGS_OK)
@@ -184,7 +185,7 @@ adcgs_status adcgs_footage_pattern(adcgs_footage *out, const char *folder, const
 
 /* ---- Views ---- */
 
-/** Room for so many more views of a split. */
+/** Makes room for more views of a split. */
 static adcgs_status reserve(adcgs_scene *scene, adcgs_split split, int64_t more, const char *path, adcgs_error *error)
 {
     uint64_t all = (uint64_t)more;
@@ -194,7 +195,7 @@ static adcgs_status reserve(adcgs_scene *scene, adcgs_split split, int64_t more,
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %llu frames of all cameras together, expected at most %d: use --frames",
                           path, (unsigned long long)all, VIEWS_MAX);
     const size_t n = scene->n_views[split], wanted = n + (size_t)more;
-    size_t capacity = FIRST_CAPACITY; /* grows by doubling, so it follows from the number */
+    size_t capacity = FIRST_CAPACITY; /* grows by doubling, so it follows from n */
     while (capacity < n)
         capacity *= 2;
     if (scene->views[split] && wanted <= capacity)

@@ -17,22 +17,22 @@
 #define IDS_MAX 1000000
 #define ID_BYTES_MAX 200
 #define WARP_MAX 1e9
-#define WORLD_MAX 1e9          /* largest coordinate, of files and of what follows from them */
-#define BEND_MAX 1e6           /* skew in pixels, factors of distortion */
+#define WORLD_MAX 1e9          /* largest coordinate, in files and after conversion */
+#define BEND_MAX 1e6           /* largest skew in pixels and distortion coefficient */
 #define DIVIDE_MAX 64          /* largest N of rgb/Nx */
-#define RULE_PERIOD 4          /* without val_ids: of this many ids, one is for training ... */
-#define RULE_TEST 2            /* ... and this one for testing */
+#define RULE_PERIOD 4          /* without val_ids, one of this many ids is for training ... */
+#define RULE_TEST 2            /* ... and the one at this offset for testing */
 
 typedef struct reader {
     adcgs_scene *scene;
     adcgs_error *error;
     json_t *dataset, *metadata;
     char *dataset_path, *metadata_path;
-    char *images;              /**< folder of the pictures */
-    int divide;                /**< cameras are for pictures so many times as large */
+    char *images;              /**< folder of the images */
+    int divide;                /**< cameras are for images larger by this factor */
     double centre[3], scale;
     double last;               /**< largest warp_id */
-    json_t *taken;             /**< ids that have a view, as keys */
+    json_t *taken;             /**< keys: ids that have a view */
 } reader;
 
 int adcgs_is_hypernerf(const char *folder)
@@ -43,7 +43,7 @@ int adcgs_is_hypernerf(const char *folder)
 
 /* ---- Fields ---- */
 
-/** A number that must be there. */
+/** Reads a required number. */
 static adcgs_status need_number(const adcgs_json_place *at, const char *field, double min, double max, double *value)
 {
     int found;
@@ -51,7 +51,7 @@ static adcgs_status need_number(const adcgs_json_place *at, const char *field, d
     return found ? ADCGS_OK : adcgs_json_bad(at, ADCGS_ERR_DATA, field, "missing");
 }
 
-/** The numbers of an array that has so many; name is what a message calls it. */
+/** Reads an array of exactly n numbers; messages call it `name`. */
 static adcgs_status read_array(const adcgs_json_place *at, const char *name, json_t *array, size_t n, double max, double *values)
 {
     if (!json_is_array(array) || json_array_size(array) != n)
@@ -75,7 +75,7 @@ static adcgs_status need_array(const adcgs_json_place *at, const char *field, si
 
 /* ---- Cameras ---- */
 
-/** An array that may be there. */
+/** Reads an optional array. */
 static adcgs_status read_terms(const adcgs_json_place *at, const char *field, size_t n, double *values)
 {
     json_t *item = json_object_get(at->root, field);
@@ -83,8 +83,8 @@ static adcgs_status read_terms(const adcgs_json_place *at, const char *field, si
 }
 
 /**
- * Distortion is OpenCV's, [k1, k2, k3] and [p1, p2]. skew is in pixels and multiplies the bent y, so it is divided with the
- * focal length for smaller pictures.
+ * Distortion is OpenCV's, [k1, k2, k3] and [p1, p2]. skew is in pixels and multiplies the distorted y. So it is divided like
+ * the focal length for smaller images.
  */
 static adcgs_status read_lens(const reader *r, const adcgs_json_place *at, adcgs_lens *lens)
 {
@@ -105,7 +105,7 @@ static adcgs_status read_lens(const reader *r, const adcgs_json_place *at, adcgs
     return ADCGS_OK;
 }
 
-/** orientation's rows are the camera's axes in the world, so they are the columns of the rotation back. */
+/** The rows of orientation are the camera's axes in the world, and so the columns of the camera-to-world rotation. */
 static adcgs_status read_pose(const reader *r, const adcgs_json_place *at, adcgs_camera *camera)
 {
     const char *field = "orientation";
@@ -130,7 +130,7 @@ static adcgs_status read_pose(const reader *r, const adcgs_json_place *at, adcgs
     return wrong ? adcgs_json_bad(at, ADCGS_ERR_DATA, field, "%s", wrong) : ADCGS_OK;
 }
 
-/** The picture's size: image_size, or of a reduced picture its own, which rounding has made. */
+/** Reads the image's size: image_size, or for a reduced image its own size, which results from rounding. */
 static adcgs_status read_size(const reader *r, const adcgs_json_place *at, const char *image, adcgs_lens *lens)
 {
     double size[2];
@@ -198,7 +198,7 @@ static adcgs_status find_last(reader *r)
     return ADCGS_OK;
 }
 
-/** Its mask beside the pictures, in mask/Nx/ by its id, if there is one. */
+/** Finds the mask of an id in mask/Nx/, next to the images, if there is one. */
 static adcgs_status find_mask(const reader *r, const char *id, char **mask)
 {
     char *stem = adcgs_path("%s/mask/%dx/%s", r->scene->directory, r->divide, id);
@@ -208,7 +208,7 @@ static adcgs_status find_mask(const reader *r, const char *id, char **mask)
     return status;
 }
 
-/** On failure view->path is set or NULL, and is freed with the scene. */
+/** On failure view->path is set or NULL; it is freed with the scene. */
 static adcgs_status read_view(const reader *r, const char *id, adcgs_scene_view *view)
 {
     const adcgs_json_place at = {.path = r->metadata_path, .root = r->metadata, .error = r->error};
@@ -229,7 +229,7 @@ static adcgs_status read_view(const reader *r, const char *id, adcgs_scene_view 
     return read_camera(r, id, view);
 }
 
-/** An id that can be the name of a file, and has not been taken yet. */
+/** Takes an id that can be a file name and has not been taken before. */
 static adcgs_status take_id(const reader *r, const char *field, size_t index, json_t *item, const char **id)
 {
     const adcgs_json_place at = {.path = r->dataset_path, .root = r->dataset, .error = r->error};
@@ -246,7 +246,7 @@ static adcgs_status take_id(const reader *r, const char *field, size_t index, js
     return ADCGS_OK;
 }
 
-/** Views of one split from every step-th id of a list, beginning with the first-th. */
+/** Reads the views of one split: every step-th id of a list, beginning with number `first`. */
 static adcgs_status read_list(const reader *r, const char *field, size_t first, size_t step, adcgs_split split)
 {
     const adcgs_json_place at = {.path = r->dataset_path, .root = r->dataset, .error = r->error};
@@ -297,7 +297,7 @@ static adcgs_status read_coordinates(reader *r)
     return status;
 }
 
-/** The N of a folder's name Nx, 0 if it is no such name. */
+/** The N of a folder name Nx; 0 for other names. */
 static int parse_divide(const char *name)
 {
     int n = 0;
@@ -306,7 +306,7 @@ static int parse_divide(const char *name)
     return n <= DIVIDE_MAX && !strcmp(name, "x") ? n : 0;
 }
 
-/** The folder of the largest pictures. */
+/** Finds the folder of the largest images. */
 static adcgs_status find_images(reader *r)
 {
     char *rgb = adcgs_path("%s/rgb", r->scene->directory);
@@ -329,7 +329,7 @@ static adcgs_status find_images(reader *r)
                                   r->scene->directory);
 }
 
-/** A point into working coordinates. */
+/** Converts a point to working coordinates. */
 static adcgs_status move_point(const reader *r, const char *path, uint32_t index, double position[3])
 {
     for (int a = 0; a < 3; a++) {

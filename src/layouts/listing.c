@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What is in a folder, in order. */
+/** \file Sorted contents of a folder. */
 #include "config.h"
 
 #include "layouts/listing.h"
@@ -19,7 +19,7 @@ static int compare(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/** 0, or -1 without memory. */
+/** Returns 0, or -1 on allocation failure. */
 static int append(adcgs_listing *listing, size_t *capacity, const char *name)
 {
     if (listing->n == *capacity) {

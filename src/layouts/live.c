@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A scene whose footage comes while it is taken. */
+/** \file A scene whose footage arrives while it is recorded. */
 #include "config.h"
 
 #include "layouts/live.h"
@@ -21,10 +21,10 @@
 struct adcgs_live {
     adcgs_live_watch watch;
     const char *points_path;
-    double origin[3], scale; /* of the stream that goes on, else 0 */
+    double origin[3], scale; /* of the stream to continue, else 0 */
     char *path;            /* of the scene file */
-    adcgs_scene *whole;    /* of the first segment */
-    uint8_t *told;         /* [n] whose missing pictures were told of */
+    adcgs_scene *whole;    /* opened with the first segment */
+    uint8_t *told;         /* [n] nonzero for cameras whose missing images were reported */
 };
 
 /* ---- Segments ---- */
@@ -35,7 +35,7 @@ void adcgs_live_segment_clear(adcgs_live_segment *s)
     *s = (adcgs_live_segment){.scene = NULL};
 }
 
-/** What a camera took in the first stretch that is given, as the scene file's reader wants it. */
+/** Collects a camera's footage of the first given stretch, in the form that the scene file's reader takes. */
 static adcgs_status gather(adcgs_live *l, uint32_t camera, uint32_t stretch, adcgs_footage *out, adcgs_error *error)
 {
     const adcgs_live_camera *c = &l->watch.cameras[camera];
@@ -47,7 +47,7 @@ static adcgs_status gather(adcgs_live *l, uint32_t camera, uint32_t stretch, adc
     for (int64_t i = 0; i < out->frames; i++)
         n += adcgs_live_camera_has(c, span[0] + i);
     if (n == 0)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: nothing of it came for the first segment", c->source->name);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no footage arrived for the first segment", c->source->name);
     if (c->source->video) {
         out->video = adcgs_live_camera_path(c, 0, &limits, stretch);
         return out->video ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
@@ -59,7 +59,7 @@ static adcgs_status gather(adcgs_live *l, uint32_t camera, uint32_t stretch, adc
     return out->pictures ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a segment");
 }
 
-/** The scene by its first segment: where cameras are, how large it is. */
+/** Opens the scene with its first segment: positions of cameras, and size. */
 static adcgs_status open_whole(adcgs_live *l, uint32_t stretch, adcgs_error *error)
 {
     adcgs_footage *taken = calloc(l->watch.n, sizeof *taken);
@@ -79,16 +79,16 @@ static adcgs_status open_whole(adcgs_live *l, uint32_t stretch, adcgs_error *err
     return status;
 }
 
-/** A view of the camera, of the whole. */
+/** A view of the camera in the whole scene. */
 static const adcgs_scene_view *find_view(const adcgs_live *l, uint32_t camera)
 {
     const adcgs_scene_view *view = l->whole->views[ADCGS_SPLIT_TRAIN];
     while (strcmp(view->camera.name, l->watch.sources[camera].name) != 0)
-        view++; /* each camera has one: gather() saw to that */
+        view++; /* each camera has one: gather() ensures it */
     return view;
 }
 
-/** Views of a camera, appended to the segment's. */
+/** Appends views of a camera to the segment's views. */
 static adcgs_status add_views(adcgs_live *l, uint32_t camera, uint32_t stretch, adcgs_live_segment *s, adcgs_error *error)
 {
     const adcgs_live_camera *c = &l->watch.cameras[camera];
@@ -114,7 +114,7 @@ static adcgs_status add_views(adcgs_live *l, uint32_t camera, uint32_t stretch, 
     return ADCGS_OK;
 }
 
-/** Where it ends, by the last of its views, if nothing is behind it. */
+/** Ends a segment at its last view, if no footage follows it. */
 static void find_end(const adcgs_live *l, adcgs_live_segment *s)
 {
     s->end = fmin(s->end, l->watch.last);
@@ -139,7 +139,7 @@ static adcgs_status make_segment(adcgs_live *l, uint32_t stretch, adcgs_live_seg
     return adcgs_scene_part_moments(s->scene, error);
 }
 
-/** What no segment from this one on shows goes: frames, and files of what pipes brought. */
+/** Deletes data that no segment from this one on needs: frame records, and files of footage from pipes. */
 static void forget(adcgs_live *l, uint32_t stretch)
 {
     for (uint32_t i = 0; i < l->watch.n; i++) {
@@ -163,7 +163,8 @@ static adcgs_status take_next(adcgs_live *l, adcgs_live_segment *s, adcgs_error 
         if (l->watch.taken == l->watch.n_complete)
             return l->whole || l->watch.goes_on
                        ? ADCGS_OK
-                       : adcgs_fail(error, ADCGS_ERR_DATA, "%s: ended before it showed two moments", l->path);
+                       : adcgs_fail(error, ADCGS_ERR_DATA, "%s: the footage ended with a single frame time, expected two or "
+                                    "more", l->path);
         forget(l, l->watch.taken);
         ADCGS_TRY(make_segment(l, l->watch.taken++, s, error));
         if (s->scene->n_times > 1)
@@ -246,7 +247,7 @@ static adcgs_status prepare(adcgs_live *l, adcgs_error *error)
     if (!has_videos(l))
         *l->watch.folder = '\0';
     else if (!mkdtemp(l->watch.folder)) {
-        adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot keep footage there: %s", l->watch.folder, strerror(errno));
+        adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot store footage there: %s", l->watch.folder, strerror(errno));
         *l->watch.folder = '\0';
         return ADCGS_ERR_IO;
     }

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A scene whose footage comes while it is taken, cut into segments. A thread of its own looks for what has come, so that it is
- * known when it did, whatever else is going on; whoever learns waits for one segment after the other.
+ * A scene whose footage arrives while it is recorded, cut into segments. A thread of its own looks for new footage, so that
+ * arrival times are exact despite other work. The trainer waits for one segment after another.
  *
- * A segment ends at the frame of any camera that is nearest to a multiple of its length; the next one begins with that frame,
- * as it does where a scene is cut that is there as a whole (data/part.h). It is complete when each frame in it is there or is
- * missing. A picture is missing when one that was taken two frames later is there, when any camera is ahead of it by a segment,
- * or at the end; a pipe is waited for. Which frames a segment has follows from these rules alone, and, where none is missing,
- * from the footage alone.
+ * A segment ends at the frame of any camera that is nearest to a multiple of its length. The next one begins with that frame,
+ * as in a recorded scene (data/part.h). A segment is complete when each of its frames is available or missing. An image is
+ * missing when one taken two frames later is available, when any camera is ahead of it by a segment, or at the end; footage
+ * from a pipe is always waited for. These rules alone determine the frames of a segment; if none is missing, the footage alone
+ * does.
  *
- * The end: a file named `end` beside the scene file, or that all cameras end, which pipes do that are closed, and rows of
- * pictures that have their count.
+ * Footage ends with a file named `end` next to the scene file, or when all cameras end. A camera ends when its pipe is closed,
+ * or when its numbered images have reached their count.
  */
 #ifndef ADCGS_LAYOUTS_LIVE_H
 #define ADCGS_LAYOUTS_LIVE_H
@@ -20,45 +20,51 @@
 typedef struct adcgs_live adcgs_live;
 
 typedef struct adcgs_live_options {
-    double seconds;  /**< of a segment, at least */
-    int unbounded;   /**< pipes are read however much they bring; else whoever writes waits once segments behind them are there */
+    double seconds;  /**< minimum length of a segment */
+    int unbounded;   /**< pipes are read without a limit; else writers wait as soon as the segments after the current one are
+                          available */
     const char *points_path; /**< initial points instead of the scene's, or NULL */
-    int (*interrupted)(void); /**< whether to take no more than what was seen so far; asked now and then */
+    int (*interrupted)(void); /**< returns nonzero to stop at the footage found so far; called now and then */
     /**
-     * Of a stream that is to go on: seconds of its last segment's begin and end, and its frame of reference; scale 0: none.
-     * Footage before is passed over. Where the last segment ended in the middle of a stretch, since no more had come then, it is
-     * given anew, as a whole; but not if it was cut otherwise.
+     * Of a stream to continue: begin and end of its last segment in seconds, and its frame of reference; scale 0: none. Earlier
+     * footage is skipped. If the last segment ended in the middle of a stretch, for lack of footage at the time, that stretch
+     * is given again, as a whole; but not if the segment was cut in another way.
      */
     double last[2], origin[3], scale;
 } adcgs_live_options;
 
 /**
- * path: a scene file, or a folder with one that is named scene.json. The footage need not have begun. A pipe does not bring again
- * what was before: where a stream is to go on it is an error, ADCGS_ERR_USAGE of the next segment.
+ * path: a scene file, or a folder with one that is named scene.json. The footage need not have begun. A pipe cannot repeat
+ * earlier footage: when a stream is to be continued, a pipe makes the next segment fail with ADCGS_ERR_USAGE.
  */
 adcgs_status adcgs_live_open(adcgs_live **out, const char *path, const adcgs_live_options *options, adcgs_error *error);
 void adcgs_live_close(adcgs_live **live);
 
-/** Some stretch of time and what was taken in it. Zero-initialise before use. */
+/** A stretch of time and its footage. Zero-initialise before use. */
 typedef struct adcgs_live_segment {
-    adcgs_scene *scene;   /**< views for training, times from the segment's begin on; whole is adcgs_live_whole(). NULL: over */
+    adcgs_scene *scene;   /**< training views, with times from the segment's begin; its whole is adcgs_live_whole(). NULL: no
+                               more segments */
     double begin, end;    /**< seconds from the scene's beginning */
-    double came;          /**< adcgs_seconds() when the last of it came */
+    double came;          /**< adcgs_seconds() when its last frame arrived */
 } adcgs_live_segment;
 
 /**
- * Wait for the next segment that shows more than one moment; the one before is cleared. Its pictures stay until the next call.
- * ADCGS_ERR_DATA where footage is no such, or one moment is all that there is in the end and no stream is to go on.
+ * Clears the previous segment and waits for the next one with more than one frame time. Its images exist until the next call.
+ * ADCGS_ERR_DATA for invalid footage. It is also ADCGS_ERR_DATA if the footage ends with a single time and no stream is to be
+ * continued.
  */
 adcgs_status adcgs_live_next(adcgs_live *live, adcgs_live_segment *segment, adcgs_error *error);
 void adcgs_live_segment_clear(adcgs_live_segment *segment);
 
-/** What is the same of all segments, by the first of them, and of which they are parts: NULL before there is one. */
+/** The data that all segments share, taken from the first one. Segments are parts of it. NULL before the first segment. */
 const adcgs_scene *adcgs_live_whole(const adcgs_live *live);
 
-/** A camera of which pictures were missing since the last call, and when it was the first time; NULL: none. */
+/** Returns a camera with missing images that was not returned before; *time is that of its first missing image. NULL: none. */
 const char *adcgs_live_missing(adcgs_live *live, double *time);
-/** Seconds of the first two frames of each camera, to at, unless that is NULL; how many. There was a segment. */
+/**
+ * Stores the times of the first two frames of each camera, in seconds, to at, unless at is NULL. Returns their number. Call it
+ * after the first segment.
+ */
 uint32_t adcgs_live_times(const adcgs_live *live, double *at);
 
 #endif

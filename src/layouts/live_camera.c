@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A camera whose footage comes while it is taken. */
+/** \file A camera whose footage arrives while it is recorded. */
 #include "config.h"
 
 #include "layouts/live_camera.h"
@@ -15,9 +15,9 @@
 #include <unistd.h>
 
 #define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
-#define HELD_BYTES 65536 /* as many as a pipe holds */
-#define AHEAD 8          /* pictures behind a missing one that are looked for */
-#define AHEAD_LEAST 2    /* a picture may come before the one in front of it, and no sooner */
+#define HELD_BYTES 65536 /* capacity of a pipe */
+#define AHEAD 8          /* images after a missing one that are looked for */
+#define AHEAD_LEAST 2    /* an image may arrive before its predecessor, but not before earlier ones */
 
 static adcgs_status no_memory(const adcgs_live_camera *c, adcgs_error *error)
 {
@@ -60,7 +60,7 @@ int adcgs_live_camera_has(const adcgs_live_camera *c, int64_t frame)
 void adcgs_live_camera_pass_over(adcgs_live_camera *c, int64_t frame)
 {
     c->first = frame;
-    if (!c->source->video) /* bytes of a video are read, for where a frame begins follows from them */
+    if (!c->source->video) /* bytes of a video are read nevertheless, to find the beginnings of frames */
         c->base = c->next = frame;
 }
 
@@ -73,7 +73,7 @@ void adcgs_live_camera_forget(adcgs_live_camera *c, int64_t frame)
     c->base = to;
 }
 
-/** The next frame is there, or it is missing. */
+/** Records the next frame as available or missing. */
 static adcgs_status decide(adcgs_live_camera *c, int is_there, int *progress, adcgs_error *error)
 {
     const int64_t n = c->next - c->base;
@@ -99,9 +99,9 @@ char *adcgs_live_camera_path(const adcgs_live_camera *c, int64_t frame, const ad
                             : adcgs_footage_number(c->source->folder, c->source->images, c->source->first + frame);
 }
 
-/* ---- Pictures ---- */
+/* ---- Images ---- */
 
-/** Whether the file can be read now, and is of the camera's size. One that could not be is left alone until it changes. */
+/** True if the file can be read now and has the camera's size. A file that could not be read is skipped until it changes. */
 static int can_be_read(adcgs_live_camera *c, int64_t frame, const char *path)
 {
     adcgs_image image;
@@ -135,7 +135,7 @@ static int has_picture(adcgs_live_camera *c, int64_t frame)
     return there;
 }
 
-/** Whether pictures that were taken after one that is not there are. */
+/** True if images taken after a missing one are available. */
 static int has_later(const adcgs_live_camera *c, int64_t frame, int is_end)
 {
     for (int64_t i = frame + (is_end ? 1 : AHEAD_LEAST); i <= frame + AHEAD; i++) {
@@ -163,7 +163,7 @@ static adcgs_status look_for_picture(adcgs_live_camera *c, const adcgs_live_limi
 
 /* ---- Y4M ---- */
 
-/** A file or a pipe, if it is there. */
+/** Opens a file or a pipe, if it exists. */
 static adcgs_status open_file(adcgs_live_camera *c, adcgs_error *error)
 {
     const char *path = c->source->video;
@@ -192,13 +192,13 @@ static adcgs_status open_video(adcgs_live_camera *c, adcgs_error *error)
     return c->held ? ADCGS_OK : no_memory(c, error);
 }
 
-/** Have some bytes at hand, if any have come. A pipe that nobody writes to any more is over; a file may grow. */
+/** Reads some bytes if any have arrived. A pipe without writers has ended; a file may grow. */
 static adcgs_status fetch(adcgs_live_camera *c, adcgs_error *error)
 {
     if (c->held_begin < c->held_end || c->fd < 0)
         return ADCGS_OK;
     struct pollfd input = {.fd = c->fd, .events = POLLIN};
-    if (c->source->is_input && poll(&input, 1, 0) <= 0) /* which is not ours alone, so that it may wait */
+    if (c->source->is_input && poll(&input, 1, 0) <= 0) /* standard input is shared and may block */
         return ADCGS_OK;
     const ssize_t n = read(c->fd, c->held, HELD_BYTES);
     c->held_begin = c->held_end = 0;
@@ -211,7 +211,7 @@ static adcgs_status fetch(adcgs_live_camera *c, adcgs_error *error)
     return ADCGS_OK;
 }
 
-/** Go on with a line; *whole: it has ended, and is in text without its line feed. */
+/** Continues a line; *whole: it has ended, and is in text without its line feed. */
 static adcgs_status read_line(adcgs_live_camera *c, int *whole, adcgs_error *error)
 {
     *whole = 0;
@@ -249,10 +249,10 @@ adcgs_status adcgs_live_camera_begin(adcgs_live_camera *c, adcgs_error *error)
 
 static adcgs_status spool_failed(const adcgs_live_camera *c, const adcgs_live_limits *l, adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot keep the footage of %s: %s", l->folder, c->source->name, strerror(errno));
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot store the footage of %s: %s", l->folder, c->source->name, strerror(errno));
 }
 
-/** The file that the next frame goes to. */
+/** Opens the file for the next frame. */
 static adcgs_status open_spool(adcgs_live_camera *c, const adcgs_live_limits *l, adcgs_error *error)
 {
     const uint32_t stretch = l->stretch(l->user, adcgs_live_camera_time(c, c->next));
@@ -267,7 +267,7 @@ static adcgs_status open_spool(adcgs_live_camera *c, const adcgs_live_limits *l,
     return c->spool && fprintf(c->spool, "%s\n", c->line) > 0 ? ADCGS_OK : spool_failed(c, l, error);
 }
 
-/** The line in front of a frame. */
+/** Reads the line in front of a frame. */
 static adcgs_status begin_frame(adcgs_live_camera *c, const adcgs_live_limits *l, adcgs_error *error)
 {
     int whole;
@@ -304,7 +304,7 @@ static adcgs_status go_on_with_frame(adcgs_live_camera *c, const adcgs_live_limi
 static adcgs_status look_for_frames(adcgs_live_camera *c, const adcgs_live_limits *l, int *progress, adcgs_error *error)
 {
     const int64_t before = c->next;
-    c->waits = !c->shape.frame_bytes; /* the first line is adcgs_live_camera_begin()'s */
+    c->waits = !c->shape.frame_bytes; /* adcgs_live_camera_begin() reads the first line */
     while (!c->is_over && !c->waits && c->next == before && (c->left > 0 || adcgs_live_camera_time(c, c->next) <= l->until)) {
         ADCGS_TRY(fetch(c, error));
         c->waits = c->held_begin == c->held_end;

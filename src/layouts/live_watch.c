@@ -9,11 +9,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define LOOK_EVERY 20 /* milliseconds, while nothing comes */
-#define AHEAD 3       /* stretches that are looked at: one more than a camera may be behind another */
-#define NEAR 1e-3     /* of a frame: how far times are apart that a stream has made one by rounding */
+#define LOOK_EVERY 20 /* milliseconds, while nothing arrives */
+#define AHEAD 3       /* stretches that are read ahead: one more than a camera may be behind another */
+#define NEAR 1e-3     /* of a frame interval: a stream's rounding moves times by less */
 #define STRETCHES_MAX 1e9
-#define HALF (0.5 + 1e-9) /* of a frame: of two that are as near the first is taken */
+#define HALF (0.5 + 1e-9) /* of a frame interval: among two equally near frames the first is taken */
 
 /* ---- Time ---- */
 
@@ -22,7 +22,7 @@ double adcgs_live_within(const adcgs_live_watch *l)
     return ADCGS_TIME_TOLERANCE * l->seconds;
 }
 
-/** Seconds from one frame to the next of the quickest camera. */
+/** Seconds between frames of the camera with the highest rate. */
 static double find_interval(const adcgs_live_watch *l)
 {
     double rate = 0;
@@ -31,7 +31,7 @@ static double find_interval(const adcgs_live_watch *l)
     return 1 / rate;
 }
 
-/** Seconds that a stretch takes. */
+/** Length of a stretch in seconds. */
 static double length(const adcgs_live_watch *l)
 {
     return fmax(l->seconds, find_interval(l));
@@ -68,11 +68,11 @@ void adcgs_live_frames(const adcgs_live_watch *l, const adcgs_live_camera *c, ui
     span[1] = adcgs_live_camera_from(c, adcgs_live_cut(l, stretch + 1), -adcgs_live_within(l));
 }
 
-/* ---- Going on ---- */
+/* ---- Continuing a stream ---- */
 
 /**
- * The first stretch that is given where the last segment of what was before has the watch's span: the one behind it; or, if it
- * ended in the middle of one and began where that does, that one.
+ * The first stretch to give when the stream's last segment has the watch's span: the next one. If that segment ended in the
+ * middle of a stretch, and began where the stretch begins, this stretch is given again.
  */
 static uint32_t first_stretch(adcgs_live_watch *l)
 {
@@ -87,7 +87,7 @@ int64_t adcgs_live_first_of_file(const adcgs_live_watch *l, const adcgs_live_cam
     return stretch ? adcgs_live_camera_from(c, adcgs_live_cut(l, stretch), -adcgs_live_within(l)) : 0;
 }
 
-/** All that was before is passed over; of a video all of a file that has something which is not. */
+/** Skips all earlier footage; of a video, only whole files are skipped. */
 static adcgs_status pass_over(adcgs_live_watch *l, adcgs_error *error)
 {
     if (!(l->span[1] <= STRETCHES_MAX * l->seconds))
@@ -101,8 +101,8 @@ static adcgs_status pass_over(adcgs_live_watch *l, adcgs_error *error)
         int64_t span[2];
         adcgs_live_frames(l, c, first, span);
         if (c->is_pipe)
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a pipe brings nothing again: a stream goes on from footage that "
-                              "stays, pictures or files", c->source->video);
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "%s: a pipe cannot repeat footage: continue a stream from image or "
+                              "video files", c->source->video);
         adcgs_live_camera_pass_over(c, c->source->video ? adcgs_live_first_of_file(l, c, first ? first - 1 : 0) : span[0]);
     }
     return ADCGS_OK;
@@ -118,18 +118,18 @@ static int know_rates(const adcgs_live_watch *l)
     return 1;
 }
 
-/** First lines of videos. */
+/** Reads the first lines of videos. */
 static adcgs_status begin_all(adcgs_live_watch *l, adcgs_error *error)
 {
     for (uint32_t i = 0; i < l->n; i++) {
         ADCGS_TRY(adcgs_live_camera_begin(&l->cameras[i], error));
         if (l->cameras[i].is_over && !l->cameras[i].rate.den)
-            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: ends before its first line does", l->sources[i].video);
+            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: ends within its first line", l->sources[i].video);
     }
     return ADCGS_OK;
 }
 
-/** When what is there of any camera was taken. */
+/** Time of the latest available frame of any camera. */
 static double find_latest(const adcgs_live_watch *l)
 {
     double latest = -INFINITY;
@@ -149,7 +149,7 @@ adcgs_live_limits adcgs_live_limits_of(adcgs_live_watch *l, uint32_t camera)
     return (adcgs_live_limits){.folder = l->folder, .index = camera, .stretch = adcgs_live_stretch, .user = l};
 }
 
-/** Have each camera decide a frame, if it can. */
+/** Lets each camera decide a frame, if it can. */
 static adcgs_status look_at_all(adcgs_live_watch *l, int is_end, int *progress, adcgs_error *error)
 {
     const double until = l->unbounded ? INFINITY : adcgs_live_cut(l, l->taken + AHEAD) + adcgs_live_within(l);
@@ -176,7 +176,7 @@ static int is_complete(const adcgs_live_watch *l, uint32_t stretch)
     return 1;
 }
 
-/** Note which segments are complete now. */
+/** Records the segments that are complete now. */
 static adcgs_status note_complete(adcgs_live_watch *l, adcgs_error *error)
 {
     while (l->last > adcgs_live_cut(l, l->n_complete) + adcgs_live_within(l) && is_complete(l, l->n_complete)) {
@@ -195,7 +195,7 @@ static adcgs_status note_complete(adcgs_live_watch *l, adcgs_error *error)
 static adcgs_status look(adcgs_live_watch *l, int *progress, adcgs_error *error)
 {
     const int stops = l->interrupted() != 0;
-    const int is_end = stops || adcgs_is_there(l->end_path); /* before what came last is looked for */
+    const int is_end = stops || adcgs_is_there(l->end_path); /* checked before the last footage is looked for */
     ADCGS_TRY(begin_all(l, error));
     if (!know_rates(l)) {
         l->is_over = is_end;
@@ -213,7 +213,7 @@ static adcgs_status look(adcgs_live_watch *l, int *progress, adcgs_error *error)
     return note_complete(l, error);
 }
 
-/** A while, or until a pipe that was empty brings something. */
+/** Sleeps for a while, or until an empty pipe has data. */
 static void rest(adcgs_live_watch *l)
 {
     nfds_t n = 0;
@@ -235,7 +235,7 @@ static void *run(void *user)
             pthread_cond_broadcast(&l->changed);
         const int wanted = l->wanted;
         pthread_mutex_unlock(&l->lock);
-        if (on && wanted) /* a lock knows no turns */
+        if (on && wanted) /* a mutex is not fair, so let the waiting thread have it */
             poll(NULL, 0, 1);
         else if (on && !progress)
             rest(l);
@@ -256,7 +256,7 @@ adcgs_status adcgs_live_watch_start(adcgs_live_watch *l, adcgs_error *error)
         return ADCGS_OK;
     pthread_mutex_destroy(&l->lock);
     pthread_cond_destroy(&l->changed);
-    return adcgs_fail(error, ADCGS_ERR_MEMORY, "no thread to look for footage");
+    return adcgs_fail(error, ADCGS_ERR_MEMORY, "cannot start a thread that looks for footage");
 }
 
 void adcgs_live_watch_stop(adcgs_live_watch *l)

@@ -34,7 +34,7 @@ typedef struct reader {
     char *path;             /**< of the poses */
     uint8_t *data;
     adcgs_npy table;
-    adcgs_listing cameras;  /**< pictures of LLFF, videos or folders of Neu3D */
+    adcgs_listing cameras;  /**< images of LLFF, videos or folders of Neu3D */
     int fixed;              /**< it is Neu3D */
 } reader;
 
@@ -68,7 +68,7 @@ static adcgs_status load_table(reader *r)
     return ADCGS_OK;
 }
 
-/** Right, down and forward are the columns of OpenCV's axes: the second, the first, and the third turned round. */
+/** The axes right, down and forward are the columns of an OpenCV pose: the second column, the first, and the negative third. */
 static adcgs_status read_pose(const reader *r, size_t row, double pose[12])
 {
     for (uint32_t i = 0; i < 3; i++) {
@@ -87,7 +87,7 @@ static adcgs_status read_pose(const reader *r, size_t row, double pose[12])
     return bad_row(r, row, text);
 }
 
-/** A row's camera for pictures of a size; file is the one that has it. */
+/** Reads a row's camera for images of this size; file is an image or video of that size. */
 static adcgs_status read_view(const reader *r, size_t row, int width, int height, const char *file, adcgs_scene_view *view)
 {
     const double h = adcgs_npy_value(&r->table, row, 4), w = adcgs_npy_value(&r->table, row, 9);
@@ -103,7 +103,7 @@ static adcgs_status read_view(const reader *r, size_t row, int width, int height
     return adcgs_calibrate(view, &lens, width, height, file, r->error);
 }
 
-/** Those of every row are checked; a training view's count for the scene's. */
+/** Checks the bounds of every row; those of training views set the scene's near bound. */
 static adcgs_status read_bounds(const reader *r, size_t row, adcgs_split split)
 {
     const double near = adcgs_npy_value(&r->table, row, 15), far = adcgs_npy_value(&r->table, row, 16);
@@ -127,9 +127,9 @@ static adcgs_status check_count(const reader *r, const char *what)
                       (unsigned long long)r->table.rows, adcgs_s(r->table.rows), r->cameras.n, what);
 }
 
-/* ---- Pictures of one moment ---- */
+/* ---- Images of one time ---- */
 
-/** *path: images or the images_N of the largest pictures, from malloc(); NULL if there is none. */
+/** *path: images, or the images_N of the largest images, from malloc(); NULL if there is none. */
 static adcgs_status find_images(const reader *r, char **path)
 {
     *path = NULL;
@@ -147,7 +147,7 @@ static adcgs_status find_images(const reader *r, char **path)
 
 static adcgs_status add_pictures(const reader *r, const char *folder)
 {
-    const size_t n = r->cameras.n, sized = n > 1 ? 1 : 0; /* the first picture for training tells the size */
+    const size_t n = r->cameras.n, sized = n > 1 ? 1 : 0; /* the first training image determines the size */
     int width, height, channels;
     char *path = adcgs_path("%s/%s", folder, r->cameras.names[sized]);
     adcgs_status status = path ? adcgs_image_probe(&width, &height, &channels, path, r->error) : no_memory(r);
@@ -186,7 +186,7 @@ static adcgs_status read_still(reader *r)
 
 /* ---- Fixed cameras ---- */
 
-/** camNN, whatever follows the number; NULL for other names. */
+/** Skips camNN and returns the rest; NULL for other names. */
 static const char *skip_camera(const char *name)
 {
     if (strncmp(name, "cam", 3) || name[3] < '0' || name[3] > '9')
@@ -221,7 +221,7 @@ static adcgs_status open_footage(const reader *r, size_t index, int videos, adcg
     return status;
 }
 
-/** The views of one camera; *frames is what the first has. */
+/** Adds the views of one camera; *frames is the number of frames of the first camera. */
 static adcgs_status add_camera(const reader *r, size_t index, const adcgs_footage *footage, int64_t *frames)
 {
     const adcgs_split split = index ? ADCGS_SPLIT_TRAIN : ADCGS_SPLIT_TEST;
@@ -278,7 +278,7 @@ adcgs_status adcgs_llff_read(adcgs_scene *scene, const adcgs_frame_range *frames
     reader r = {.scene = scene, .error = error, .frames = frames, .path = adcgs_path("%s/poses_bounds.npy", scene->directory)};
     adcgs_status status = read_layout(&r);
     if (status == ADCGS_OK && !scene->n_views[ADCGS_SPLIT_TRAIN])
-        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: one picture, which is for testing: none is left for training", r.path);
+        status = adcgs_fail(error, ADCGS_ERR_DATA, "%s: one image, which is for testing: none is left for training", r.path);
     if (status == ADCGS_OK)
         scene->axes = adcgs_pose_axes(scene->views[ADCGS_SPLIT_TRAIN], scene->n_views[ADCGS_SPLIT_TRAIN]);
     adcgs_listing_free(&r.cameras);

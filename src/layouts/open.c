@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Opening a scene: finding its layout, and what follows from all views together. */
+/** \file Opens a scene: finds its layout, and derives values from all views together. */
 #include "config.h"
 
 #include "layouts/open.h"
@@ -33,28 +33,28 @@
 
 #define DEFAULT_FRAME_RATE ((adcgs_fps){30, 1})
 #define NEAR_PER_DISTANCE 0.01
-#define DISTANCE_MIN 1e-9       /* well within what a stream can hold */
+#define DISTANCE_MIN 1e-9       /* well within a stream's range */
 #define DISTANCE_MAX 1e10
-#define NEAR_PER_BOUND 0.5      /* bounds are of most points, not of all */
+#define NEAR_PER_BOUND 0.5      /* bounds hold for most points, not for all */
 #define COLOUR_SRGB 1           /* a code of adcgs_stream */
 
 const char *const adcgs_dataset_names[ADCGS_DATASETS + 1] = {"auto", "transforms", "hypernerf", "llff", "colmap", "adcgs",
                                                             "splats", "panoptic", NULL};
 
-/** Seconds of the scene, unless the layout has said so, and how many moments are trained on. */
+/** Sets the duration in seconds, unless the layout gives it, and the number of distinct training times. */
 static adcgs_status find_duration(adcgs_scene *scene, const char *path, int64_t step, adcgs_error *error)
 {
     double intervals;
     ADCGS_TRY(adcgs_frames_intervals(scene, &scene->n_times, &intervals, path, error));
     if (scene->duration > 0.0)
         return ADCGS_OK;
-    if (scene->intervals > 0.0 && scene->n_times > 1) /* of the data set: step times as many as of what is kept */
+    if (scene->intervals > 0.0 && scene->n_times > 1) /* the data set has step times as many intervals as the selected frames */
         intervals = scene->intervals / (double)step;
     scene->duration = intervals * (double)scene->rate.den / (double)scene->rate.num;
     return ADCGS_OK;
 }
 
-/* Those that are not for training are read last: better to hear of them now than when all is learnt. */
+/* Views of other splits than training are read last: it is better to report errors now than after training. */
 adcgs_status adcgs_scene_check_files(const adcgs_scene *scene, adcgs_error *error)
 {
     for (int s = 0; s < ADCGS_SPLITS && !scene->splats; s++)
@@ -73,7 +73,7 @@ adcgs_status adcgs_scene_check_files(const adcgs_scene *scene, adcgs_error *erro
     return ADCGS_OK;
 }
 
-/** Relative to the scene: its units may be anything. Cameras that all stand in one place see it from its extent. */
+/** Near planes are relative to the scene, whose units are unknown. Cameras in one place use the scene's extent as distance. */
 static adcgs_status set_near_planes(adcgs_scene *scene, const char *path, adcgs_error *error)
 {
     double extent, median;
@@ -90,7 +90,7 @@ static adcgs_status set_near_planes(adcgs_scene *scene, const char *path, adcgs_
     return ADCGS_OK;
 }
 
-/** What follows from all views together: seconds, alpha, background. */
+/** Sets values that depend on all views together: seconds, alpha, background. */
 static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
 {
     if (!options->is_outline)
@@ -109,7 +109,7 @@ static adcgs_status finish_views(adcgs_scene *scene, const char *path, const adc
     return ADCGS_OK;
 }
 
-/** Take what a file says besides its views. */
+/** Takes a file's values other than its views. */
 static void take_facts(adcgs_scene *scene, adcgs_transforms *facts, char **points_path)
 {
     if (!scene->rate.den)
@@ -120,7 +120,7 @@ static void take_facts(adcgs_scene *scene, adcgs_transforms *facts, char **point
         free(facts->points_path);
 }
 
-/** Whichever file tells the rate, it is that of all. */
+/** The rate of any file applies to all of them. */
 static adcgs_status agree_rate(adcgs_fps *rate, adcgs_fps own, const char *path, adcgs_error *error)
 {
     if (rate->den && own.den && (rate->num != own.num || rate->den != own.den))
@@ -130,7 +130,7 @@ static adcgs_status agree_rate(adcgs_fps *rate, adcgs_fps own, const char *path,
     return ADCGS_OK;
 }
 
-/** One file per split; only the training split must exist. */
+/** Reads one file per split; only the training split must exist. */
 static adcgs_status read_splits(adcgs_scene *scene, char **points_path, adcgs_error *error)
 {
     adcgs_transforms train = {.has_times = 0};
@@ -189,7 +189,7 @@ static int is_transforms(const char *folder)
     return adcgs_is_there_at("%s/transforms_train.json", folder) || adcgs_is_there_at("%s/transforms.json", folder);
 }
 
-/** Is there scene.json, and is it ours? */
+/** True if scene.json exists and is an adcgs scene file. */
 static int has_scene_file(const char *folder)
 {
     adcgs_error unused;
@@ -202,7 +202,7 @@ static int has_scene_file(const char *folder)
     return is_ours;
 }
 
-/** The folder's layout by the files it has; ADCGS_DATASET_AUTO: none that we know. */
+/** Detects the folder's layout by its files; ADCGS_DATASET_AUTO: no known layout. */
 static adcgs_dataset find_dataset(const char *folder)
 {
     return is_transforms(folder)         ? ADCGS_DATASET_TRANSFORMS
@@ -214,7 +214,7 @@ static adcgs_dataset find_dataset(const char *folder)
                                         : ADCGS_DATASET_AUTO;
 }
 
-/** A scene file in its folder. */
+/** Reads a scene file from its folder. */
 static adcgs_status read_scene_json(adcgs_scene *scene, const adcgs_scene_options *options, adcgs_error *error)
 {
     if (!adcgs_is_there_at("%s/scene.json", scene->directory))
@@ -227,14 +227,14 @@ static adcgs_status read_scene_json(adcgs_scene *scene, const adcgs_scene_option
     return status;
 }
 
-#define HINT "; adcgs-import makes one of footage"
+#define HINT "; adcgs-import makes one from footage"
 
 static int is_footage(const char *name)
 {
     return adcgs_is_image_name(name) || adcgs_is_video(name);
 }
 
-/** Pictures or videos, and nothing that says where their cameras were. */
+/** True for a folder with images or videos. */
 static int has_footage(const char *folder)
 {
     adcgs_listing listing;
@@ -256,7 +256,7 @@ static int is_splats(const char *name)
     return 0;
 }
 
-/** A folder without cameras that has files of splats, one for each timestamp, as some players take them. */
+/** Refuses a folder without cameras that contains files of splats, one for each timestamp, as some players take them. */
 static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
 {
     adcgs_listing listing;
@@ -264,11 +264,11 @@ static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
     adcgs_status status = ADCGS_OK;
     if (adcgs_listing_read(&listing, folder, is_splats, &unused) != ADCGS_OK)
         return ADCGS_OK;
-    const int is_cloud = listing.n == 1 && !strcmp(listing.names[0], "points3d.ply"); /* of a scene that lacks its cameras */
+    const int is_cloud = listing.n == 1 && !strcmp(listing.names[0], "points3d.ply"); /* of a scene without its cameras */
     char *const path = listing.n && !is_cloud ? adcgs_path("%s/%s", folder, listing.names[0]) : NULL;
     if (path && adcgs_kind_at(path)->class == ADCGS_KIND_SPLATS)
         status = adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: a folder of %zu files of splats (%.60s): %s", folder, listing.n,
-                            listing.names[0], listing.n > 1 ? "sequences of splats are not read, give one file of them"
+                            listing.names[0], listing.n > 1 ? "sequences of splats are not supported, give one of the files"
                                                             : "give the file itself");
     free(path);
     adcgs_listing_free(&listing);
@@ -277,7 +277,7 @@ static adcgs_status refuse_sequence(const char *folder, adcgs_error *error)
 
 static adcgs_status bare(const char *path, adcgs_error *error)
 {
-    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a scene: nothing says where its cameras were" HINT, path);
+    return adcgs_fail(error, ADCGS_ERR_DATA, "%s: not a scene: it has no camera poses" HINT, path);
 }
 
 static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const adcgs_scene_options *options, adcgs_error *error)
@@ -312,7 +312,7 @@ static adcgs_status read_folder(adcgs_scene *scene, char **points_path, const ad
     return adcgs_frames_keep(scene, &options->frames, scene->directory, error);
 }
 
-/** train_meta.json itself: its folder. */
+/** Reads the folder of train_meta.json, given the file itself. */
 static adcgs_status read_meta(adcgs_scene *scene, const char *path, const adcgs_scene_options *options, adcgs_error *error)
 {
     const char *slash = strrchr(path, '/');
@@ -323,7 +323,10 @@ static adcgs_status read_meta(adcgs_scene *scene, const char *path, const adcgs_
     return adcgs_frames_keep(scene, &options->frames, path, error);
 }
 
-/** Splats, told by what the file begins with; a scene file or a file of transforms, told by the field adcgs_scene. */
+/**
+ * Reads a file. Splats are detected by the first bytes, a scene file by the field adcgs_scene; other JSON is a file of
+ * transforms.
+ */
 static adcgs_status read_file(adcgs_scene *scene, const char *path, char **points_path, const adcgs_scene_options *options,
                               adcgs_error *error)
 {
@@ -367,7 +370,7 @@ static adcgs_status read_points(adcgs_scene *scene, const char *listed, const ad
     return status;
 }
 
-/** path without slashes at its end, or for a file the folder it is in. */
+/** Returns path without slashes at its end, or for a file its folder. */
 static char *folder_of(const char *path, int is_folder)
 {
     char *folder = strdup(path);
@@ -391,7 +394,7 @@ static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, co
                          adcgs_error *error)
 {
     char *points_path = NULL;
-    scene->axes = ADCGS_AXES_Z_UP; /* by custom of the transforms layouts */
+    scene->axes = ADCGS_AXES_Z_UP; /* convention of the transforms layouts */
     scene->colour_space = COLOUR_SRGB;
     scene->is_outline = options->is_outline;
     scene->rate = options->rate;
@@ -403,7 +406,7 @@ static adcgs_status fill(adcgs_scene *scene, const char *path, int is_folder, co
         scene->rate = adcgs_fps_divide(scene->rate, adcgs_frames_step(&options->frames));
     if (status == ADCGS_OK)
         status = finish_views(scene, path, options, error);
-    if (status == ADCGS_OK && !scene->points.position) /* the layout's own may be there already */
+    if (status == ADCGS_OK && !scene->points.position) /* the layout may have set its own points */
         status = read_points(scene, points_path, options, error);
     if (status == ADCGS_OK)
         status = set_near_planes(scene, path, error);

@@ -25,12 +25,12 @@
 typedef struct reader {
     adcgs_scene *scene;
     adcgs_error *error;
-    adcgs_json_place at;   /**< of the file that is read */
+    adcgs_json_place at;   /**< of the file being read */
     adcgs_split split;
-    int32_t wide, high;    /**< that k is for */
-    int width, height;     /**< of the images, by the first of the split */
-    size_t times;        /**< of the views for training */
-    json_t *taken;         /**< names of their images, as keys */
+    int32_t wide, high;    /**< image size that k is for */
+    int width, height;     /**< of the images, from the first one of the split */
+    size_t times;        /**< timestamps of the training views */
+    json_t *taken;         /**< keys: names of the training images */
 } reader;
 
 int adcgs_is_panoptic(const char *folder)
@@ -38,7 +38,7 @@ int adcgs_is_panoptic(const char *folder)
     return adcgs_is_there_at("%s/train_meta.json", folder);
 }
 
-/** As adcgs_fail(), after file, field, timestamp and camera. */
+/** Like adcgs_fail(), with file, field, timestamp and camera in front of the message. */
 static adcgs_status bad(const reader *r, const char *field, size_t t, size_t c, const char *text)
 {
     return adcgs_fail(r->error, ADCGS_ERR_DATA, "%s: %s[%zu][%zu]: %s", r->at.path, field, t, c, text);
@@ -54,7 +54,7 @@ static json_t *find(const reader *r, const char *field, size_t t, size_t c)
     return json_array_get(json_array_get(json_object_get(r->at.root, field), t), c);
 }
 
-/** A matrix of rows x n, of which so many rows are taken. */
+/** Reads an n x n matrix and keeps its first `rows` rows. */
 static adcgs_status read_matrix(const reader *r, const char *field, size_t t, size_t c, size_t n, size_t rows, double *values)
 {
     json_t *matrix = find(r, field, t, c);
@@ -96,7 +96,7 @@ static adcgs_status read_pose(const reader *r, size_t t, size_t c, double pose[1
     return ADCGS_OK;
 }
 
-/** The image, and its foreground, if there is such an image. */
+/** Finds the image, and its foreground image if there is one. */
 static adcgs_status find_files(const reader *r, size_t t, size_t c, adcgs_scene_view *view)
 {
     const char *name = json_string_value(find(r, "fn", t, c));
@@ -118,7 +118,7 @@ static adcgs_status find_files(const reader *r, size_t t, size_t c, adcgs_scene_
     return adcgs_is_there(path) || r->scene->is_outline ? ADCGS_OK : bad(r, "fn", t, c, "there is no such image in ims/");
 }
 
-/** By the camera's number, which all its images share, else by the image's folder. */
+/** Names the camera by its number, which all its images share, else by the image's folder. */
 static void set_name(const reader *r, size_t t, size_t c, adcgs_camera *camera)
 {
     json_t *id = find(r, "cam_id", t, c);
@@ -145,7 +145,7 @@ static adcgs_status read_view(reader *r, size_t t, size_t c, adcgs_scene_view *v
     return ADCGS_OK;
 }
 
-/** The number of cameras of a timestamp, the same in all fields. */
+/** Counts the cameras of a timestamp, the same number in all fields. */
 static adcgs_status count_cameras(const reader *r, size_t t, size_t *n)
 {
     static const char *const fields[] = {"fn", "k", "w2c"};

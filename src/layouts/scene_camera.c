@@ -89,7 +89,7 @@ static adcgs_status read_lens(const adcgs_json_place *at, adcgs_lens *lens)
     ADCGS_TRY(adcgs_json_number(at, "pixel_centre", 0.0, 0.5, &centre, &found));
     if (centre != 0.0 && centre != 0.5)
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "pixel_centre", "%g, expected 0 or 0.5", centre);
-    lens->cx = 0.5 * lens->width + centre - 0.5; /* the middle, as the file would say it */
+    lens->cx = 0.5 * lens->width + centre - 0.5; /* the centre, in the file's convention */
     lens->cy = 0.5 * lens->height + centre - 0.5;
     ADCGS_TRY(adcgs_json_number(at, "cx", -1e6, 1e6, &lens->cx, &found));
     ADCGS_TRY(adcgs_json_number(at, "cy", -1e6, 1e6, &lens->cy, &found));
@@ -100,7 +100,7 @@ static adcgs_status read_lens(const adcgs_json_place *at, adcgs_lens *lens)
 
 /* ---- Poses ---- */
 
-/** A row of numbers. */
+/** Reads a row of numbers. */
 static adcgs_status read_row(const adcgs_json_place *at, const char *field, json_t *row, size_t n, double *values)
 {
     for (size_t j = 0; j < n; j++) {
@@ -114,7 +114,7 @@ static adcgs_status read_row(const adcgs_json_place *at, const char *field, json
     return ADCGS_OK;
 }
 
-/** 3 rows of 4, or 4 of which the last is 0 0 0 1. */
+/** Reads 3 rows of 4, or 4 rows with a last one of 0 0 0 1. */
 static adcgs_status read_matrix(const adcgs_json_place *at, const char *field, double pose[12])
 {
     json_t *rows = json_object_get(at->frame, field);
@@ -129,7 +129,7 @@ static adcgs_status read_matrix(const adcgs_json_place *at, const char *field, d
     return ADCGS_OK;
 }
 
-/** R and t, x_camera = R x + t: the matrix of world_to_camera in two parts. */
+/** Reads R and t, x_camera = R x + t: the matrix of world_to_camera in two parts. */
 static adcgs_status read_parts(const adcgs_json_place *at, double pose[12])
 {
     json_t *rows = json_object_get(at->frame, "R"), *t = json_object_get(at->frame, "t");
@@ -140,7 +140,7 @@ static adcgs_status read_parts(const adcgs_json_place *at, double pose[12])
         ADCGS_TRY(read_row(at, "R", json_array_get(rows, i), 3, pose + 4 * i));
     if (json_array_size(t) != 3)
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "t", "expected 3 numbers");
-    for (size_t i = 0; i < 3; i++) { /* as published by many: a number, or a row of one */
+    for (size_t i = 0; i < 3; i++) { /* each is a number or a row of one, as many data sets publish it */
         json_t *item = json_array_get(t, i);
         item = json_is_array(item) && json_array_size(item) == 1 ? json_array_get(item, 0) : item;
         values[i] = json_number_value(item);
@@ -151,7 +151,7 @@ static adcgs_status read_parts(const adcgs_json_place *at, double pose[12])
     return ADCGS_OK;
 }
 
-/** Which of the ways of giving a pose is there; NULL, with a message, if none or several are. */
+/** Returns the field that gives the pose; NULL, with a message, if none or several are present. */
 static const char *find_pose(const adcgs_json_place *at)
 {
     static const char *const ways[] = {"camera_to_world", "world_to_camera", "R"};

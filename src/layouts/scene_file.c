@@ -26,24 +26,24 @@ typedef struct reader {
     const char *path;
     char *folder;      /**< of the file, with its slash, or "" */
     json_t *root;
-    double scale;      /**< of positions */
-    adcgs_fps rate;   /**< of the whole file; not known: none */
-    const adcgs_footage *taken; /**< by the next camera for training; NULL: what lies there */
-    int listing;      /**< cameras are listed, their footage is not looked at */
-    adcgs_source_camera *sources; /**< those for training, then */
+    double scale;      /**< factor of positions */
+    adcgs_fps rate;   /**< of the whole file; unknown: not given */
+    const adcgs_footage *taken; /**< footage of the next training camera; NULL: use the footage named by the file */
+    int listing;      /**< cameras are listed without reading their footage */
+    adcgs_source_camera *sources; /**< the training cameras, if listing */
     uint32_t n_sources;
 } reader;
 
 static const char *const root_fields[] = {"adcgs_scene", "name", "frame_rate", "scale", "unit", "up", "points", "points_scale",
                                           "defaults", "cameras", NULL};
-/* Of a camera; the first of them cannot be shared. */
+/* Fields of a camera; the first OWN_FIELDS cannot be shared. */
 static const char *const camera_fields[] = {
     "name", "camera_to_world", "world_to_camera", "R", "t", "video", "axes", "pixel_centre", "width", "height", "fx", "fy", "cx",
     "cy", "skew", "lens", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "images", "masks", "first", "count", "frame_rate",
     "time_offset", "split", NULL};
 #define OWN_FIELDS 6
 
-/** A name in the file, from malloc(). */
+/** The path of a name in the file, from malloc(). */
 static char *resolve(const reader *r, const char *name)
 {
     return adcgs_path("%s%s", *name == '/' ? "" : r->folder, name);
@@ -62,7 +62,7 @@ static adcgs_status read_whole(const adcgs_json_place *at, const char *field, in
     return ADCGS_OK;
 }
 
-/** Where a camera's frames lie. */
+/** Location of a camera's frames. */
 typedef struct place_of_footage {
     const char *video, *images;
     int64_t first, count;
@@ -79,7 +79,7 @@ static adcgs_status find_footage(const adcgs_json_place *at, place_of_footage *w
         return adcgs_json_bad(at, ADCGS_ERR_DATA, "video", "expected either video or images");
     if (where->video && (where->first || where->count))
         return adcgs_json_bad(at, ADCGS_ERR_DATA, where->first ? "first" : "count",
-                              "is of images: for a video there is --frames");
+                              "is for images only: for a video use --frames");
     return ADCGS_OK;
 }
 
@@ -112,7 +112,7 @@ static adcgs_status read_split(const adcgs_json_place *at, adcgs_split *split)
     return ADCGS_OK;
 }
 
-/** Frames per second: the camera's, else the file's, else the video's. */
+/** Reads frames per second: the camera's, else the file's, else the video's. */
 static adcgs_status read_rate(const reader *r, const adcgs_json_place *at, const adcgs_footage *footage, adcgs_fps *rate)
 {
     int found;
@@ -120,7 +120,7 @@ static adcgs_status read_rate(const reader *r, const adcgs_json_place *at, const
     return adcgs_json_fps(at, "frame_rate", rate, &found);
 }
 
-/** Take a pose to world units. */
+/** Converts a pose to world units. */
 static adcgs_status scale_pose(const reader *r, const adcgs_json_place *at, double pose[12])
 {
     for (int i = 0; i < 3; i++) {
@@ -132,7 +132,7 @@ static adcgs_status scale_pose(const reader *r, const adcgs_json_place *at, doub
     return ADCGS_OK;
 }
 
-/** One that is there. */
+/** A file that exists. */
 static const char *first_file(const adcgs_footage *footage)
 {
     int64_t i = 0;
@@ -141,7 +141,7 @@ static const char *first_file(const adcgs_footage *footage)
     return footage->video ? footage->video : footage->pictures[i];
 }
 
-/** Give views from the first of them on their masks: one for all, or each its own, by the number of its frame. */
+/** Adds masks to views from first_view on: one mask for all, or one for each, numbered by frame. */
 static adcgs_status add_masks(const reader *r, const adcgs_json_place *at, adcgs_split split, uint32_t first_view)
 {
     const char *masks;
@@ -157,7 +157,7 @@ static adcgs_status add_masks(const reader *r, const adcgs_json_place *at, adcgs
     return ADCGS_OK;
 }
 
-/** The views of a camera whose footage is known, with times in seconds. */
+/** Adds the views of a camera with known footage, with times in seconds. */
 static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const adcgs_footage *footage)
 {
     adcgs_scene_camera camera;
@@ -181,7 +181,7 @@ static adcgs_status add_views(const reader *r, const adcgs_json_place *at, const
     return add_masks(r, at, split, before);
 }
 
-/** A camera whose footage is yet to come. */
+/** Adds a camera whose footage is still to arrive. */
 static adcgs_status list_camera(reader *r, const adcgs_json_place *at)
 {
     static const adcgs_footage none;
@@ -190,19 +190,21 @@ static adcgs_status list_camera(reader *r, const adcgs_json_place *at)
     place_of_footage where;
     const char *masks;
     int found;
-    ADCGS_TRY(adcgs_scene_camera_read(&camera, at)); /* to hear now of what is wrong with it */
+    ADCGS_TRY(adcgs_scene_camera_read(&camera, at)); /* only to report its errors now */
     ADCGS_TRY(adcgs_scene_camera_string(at, "masks", &masks));
     if (masks && adcgs_footage_is_row(masks))
-        return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "masks", "one for each picture, which what is live has not");
+        return adcgs_json_bad(at, ADCGS_ERR_UNSUPPORTED, "masks", "one mask for each image is not supported for live footage");
     ADCGS_TRY(find_footage(at, &where));
     if (where.images && !adcgs_footage_is_row(where.images))
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "images", "expected the name of an image with one %%d or %%05d or the like");
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "images", "expected the name of an image with one number, such as %%d or "
+                              "%%05d");
     r->n_sources++;
     memcpy(c->name, camera.view.camera.name, sizeof c->name);
     c->is_input = where.video && !strcmp(where.video, "-");
     for (uint32_t i = 0; c->is_input && i + 1 < r->n_sources; i++)
         if (r->sources[i].is_input)
-            return adcgs_json_bad(at, ADCGS_ERR_DATA, "video", "- is standard input, which camera %s has", r->sources[i].name);
+            return adcgs_json_bad(at, ADCGS_ERR_DATA, "video", "- is standard input, which camera %s already uses",
+                                  r->sources[i].name);
     c->video = c->is_input ? strdup("standard input") : where.video ? resolve(r, where.video) : NULL;
     c->folder = where.images ? strdup(folder_of_images(r, where.images)) : NULL;
     c->images = where.images ? strdup(where.images) : NULL;
@@ -216,7 +218,7 @@ static adcgs_status list_camera(reader *r, const adcgs_json_place *at)
     return adcgs_json_number(at, "time_offset", -1e6, 1e6, &c->offset, &found);
 }
 
-/** What a camera for training took, which somebody says. */
+/** Adds a training camera whose footage the caller gives. */
 static adcgs_status take_camera(reader *r, const adcgs_json_place *at)
 {
     return add_views(r, at, r->taken++);
@@ -232,7 +234,7 @@ static adcgs_status read_camera(reader *r, json_t *defaults, json_t *camera, siz
     ADCGS_TRY(adcgs_scene_camera_fields(&at, "", camera, camera_fields));
     const char *name = json_string_value(json_object_get(camera, "name"));
     if (name && json_object_get(taken, name))
-        return adcgs_json_bad(&at, ADCGS_ERR_DATA, "name", "%.64s is there twice", name);
+        return adcgs_json_bad(&at, ADCGS_ERR_DATA, "name", "%.64s is used twice", name);
     if (name && json_object_set_new(taken, name, json_true()))
         return adcgs_json_bad(&at, ADCGS_ERR_MEMORY, "name", "out of memory");
     adcgs_split split;
@@ -272,7 +274,7 @@ static adcgs_status read_cameras(reader *r, const adcgs_json_place *at)
 
 /* ---- Times ---- */
 
-/** Other splits' views outside the time that the views for training span are left out: nothing is known of it. */
+/** Removes other splits' views outside the time range of the training views, where the scene is unknown. */
 static void fit_times(adcgs_scene *scene, int split, double begin, double slack)
 {
     adcgs_scene_view *views = scene->views[split];
@@ -289,7 +291,7 @@ static void fit_times(adcgs_scene *scene, int split, double begin, double slack)
     scene->n_views[split] = kept;
 }
 
-/** From seconds to [0,1]. */
+/** Converts seconds to [0,1]. */
 static void set_times(adcgs_scene *scene)
 {
     const adcgs_scene_view *train = scene->views[ADCGS_SPLIT_TRAIN];
@@ -319,7 +321,7 @@ static adcgs_status read_world(reader *r, const adcgs_json_place *at)
     ADCGS_TRY(adcgs_json_fps(at, "frame_rate", &r->rate, &found));
     ADCGS_TRY(adcgs_scene_camera_string(at, "unit", &unit));
     if (unit && strcmp(unit, "metre"))
-        return adcgs_json_bad(at, ADCGS_ERR_DATA, "unit", "%.32s, expected metre, or nothing where it is not known", unit);
+        return adcgs_json_bad(at, ADCGS_ERR_DATA, "unit", "%.32s, expected metre; leave it out if it is unknown", unit);
     r->scene->units = unit ? UNIT_METRE : 0;
     ADCGS_TRY(adcgs_scene_camera_string(at, "up", &up));
     r->scene->axes = ADCGS_AXES_UNKNOWN;

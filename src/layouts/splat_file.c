@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Splats as a scene: the cameras round them. */
+/** \file Splats as a scene: the cameras around them. */
 #include "config.h"
 
 #include "layouts/splat_file.h"
@@ -12,11 +12,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define OPACITY_MAX 0.99f       /* of a primitive */
-#define OPACITY_LEAST (1.0f / 255.0f) /* fainter splats are not drawn */
+#define OPACITY_MAX 0.99f       /* largest opacity of a primitive */
+#define OPACITY_LEAST (1.0f / 255.0f) /* fainter splats are not rendered */
 #define POINT_OPACITY 0.1f
 #define INSIDE 0.95             /* share of the splats within the radius */
-#define HALF_FIELD 0.4363323129985824 /* 25 degrees, from the centre of a view to the middle of its edge */
+#define HALF_FIELD 0.4363323129985824 /* 25 degrees, between the optical axis and the middle of an edge of the view */
 #define SHELLS 2
 #define GOLDEN_ANGLE 2.399963229728653
 #define RADIUS_MIN 1e-9
@@ -24,9 +24,9 @@
 
 static const uint32_t n_views[ADCGS_SPLITS] = {100, 10, 20};
 
-/* ---- Where the splats are ---- */
+/* ---- Region of the splats ---- */
 
-/** From a splat's centre to the middle, and its own size. */
+/** Distance of a splat from the centre, plus its own size. */
 static double reach(const adcgs_splats *s, uint32_t i, const double centre[3])
 {
     double square = 0.0, size = 0.0;
@@ -37,7 +37,7 @@ static double reach(const adcgs_splats *s, uint32_t i, const double centre[3])
     return sqrt(square) + size;
 }
 
-/** Medians, so that a few splats far out do not matter. values: [n], scratch. */
+/** Uses medians, so that a few distant splats do not matter. values: [n], scratch. */
 static adcgs_status find_region(adcgs_splat_scene *s, double *values, const char *path, adcgs_error *error)
 {
     const adcgs_splats *splats = &s->splats;
@@ -48,7 +48,7 @@ static adcgs_status find_region(adcgs_splat_scene *s, double *values, const char
             if (splats->opacity[i] >= OPACITY_LEAST)
                 values[n++] = (double)splats->mean[a][i];
         if (!n)
-            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no splat can be seen: none has an opacity of 1/255", path);
+            return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no splat is visible: none has an opacity of at least 1/255", path);
         adcgs_sort(values, n);
         s->centre[a] = values[n / 2];
     }
@@ -63,12 +63,12 @@ static adcgs_status find_region(adcgs_splat_scene *s, double *values, const char
     return ADCGS_OK;
 }
 
-/** World units to those of the region, and to what a primitive may be. */
+/** Converts world units to those of the region, and limits values to a primitive's range. */
 static void normalise(adcgs_splat_scene *s)
 {
     adcgs_splats *splats = &s->splats;
     for (uint32_t i = 0; i < splats->n; i++) {
-        if (!splats->antialiased) /* else each view has its own */
+        if (!splats->antialiased) /* else the limit applies in each view */
             splats->opacity[i] = fminf(splats->opacity[i], OPACITY_MAX);
         for (int a = 0; a < 3; a++) {
             splats->mean[a][i] = (float)(((double)splats->mean[a][i] - s->centre[a]) / s->radius);
@@ -81,10 +81,13 @@ static void normalise(adcgs_splat_scene *s)
 
 /* ---- Cameras ---- */
 
-/** A camera at `distance` in the direction `out` from the centre, looking back; y points down in its picture unless it is up. */
+/**
+ * Aims a camera at the centre from `distance` in the direction `out`. y points down in its image, or up if the splats' y axis
+ * is up.
+ */
 static void aim(adcgs_camera *camera, const adcgs_splat_scene *s, const double out[3], double distance)
 {
-    const double up[3] = {0.0, s->splats.axes == ADCGS_SPLATS_Y_UP ? 1.0 : -1.0, 0.0}; /* never the direction of a view */
+    const double up[3] = {0.0, s->splats.axes == ADCGS_SPLATS_Y_UP ? 1.0 : -1.0, 0.0}; /* never parallel to a viewing direction */
     double eye[3], forward[3];
     for (int i = 0; i < 3; i++) {
         eye[i] = s->centre[i] + distance * out[i];
@@ -96,7 +99,7 @@ static void aim(adcgs_camera *camera, const adcgs_splat_scene *s, const double o
     camera->fx = camera->fy = 0.5 * ADCGS_SPLAT_SCENE_SIZE / tan(HALF_FIELD);
 }
 
-/** On a spiral that is everywhere equally dense; those of the splits are turned against each other. */
+/** Places directions on a spiral of uniform density; each split's spiral is rotated against the others. */
 static void spread(double out[3], uint32_t i, uint32_t n, int split)
 {
     const double height = 1.0 - (2.0 * i + 1.0) / n, angle = GOLDEN_ANGLE * i + 2.0 * split;
@@ -132,7 +135,7 @@ static uint8_t to_byte(float value)
     return (uint8_t)(fminf(fmaxf(value, 0.0f), 1.0f) * 255.0f + 0.5f);
 }
 
-/** Before normalise(): the points are in world units. */
+/** Call it before normalise(), while points are in world units. */
 static adcgs_status take_points(adcgs_points *out, const adcgs_splats *s, const char *path, adcgs_error *error)
 {
     uint32_t n = 0;

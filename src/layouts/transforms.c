@@ -16,17 +16,17 @@
 #include <stdlib.h>
 
 #define TEST_EVERY 8
-#define TIME_MAX 1e20 /* nanoseconds since 1970 are below */
+#define TIME_MAX 1e20 /* largest magnitude of a time: nanoseconds since 1970 are below */
 
 typedef struct place {
     adcgs_json_place json;
-    const char *folder; /**< of the file, with the slash at its end */
-    adcgs_split split;  /**< of the frame; ADCGS_SPLITS: of none */
-    int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< of a split's first image */
-    int other_width, other_height; /**< of one that differs from it; 0: none does */
+    const char *folder; /**< of the file, with its slash */
+    adcgs_split split;  /**< of the frame; ADCGS_SPLITS: none */
+    int width[ADCGS_SPLITS + 1], height[ADCGS_SPLITS + 1]; /**< size of a split's first image */
+    int other_width, other_height; /**< size of an image that differs from it; 0: none does */
 } place;
 
-/** The image's file: as named, or where else it may be. */
+/** Finds the image's file: by its name, or at another possible location. */
 static adcgs_status find_image(const place *at, const adcgs_scene *scene, char **out)
 {
     const char *name = json_string_value(json_object_get(at->json.frame, "file_path"));
@@ -35,16 +35,16 @@ static adcgs_status find_image(const place *at, const adcgs_scene *scene, char *
         return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "expected the name of an image");
     ADCGS_TRY(adcgs_transforms_find(out, at->folder, name, at->json.error));
     if (!*out && scene->is_outline && adcgs_is_image_name(name))
-        return (*out = adcgs_transforms_join(at->folder, name)) /* it may be elsewhere */
+        return (*out = adcgs_transforms_join(at->folder, name)) /* the file may exist elsewhere */
                    ? ADCGS_OK
                    : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, "file_path", "out of memory");
     if (!*out && adcgs_is_windows_path(name))
-        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.60s, a path of Windows, nor one of its "
-                              "name beside this file or in images", name);
+        return adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.60s, a Windows path, nor an image of "
+                              "its name next to this file or in images", name);
     return *out ? ADCGS_OK : adcgs_json_bad(&at->json, ADCGS_ERR_DATA, "file_path", "no such image: %.100s", name);
 }
 
-/** The file of a mask, as the field names it; NULL if the frame has none. */
+/** Finds the file of a mask named by the field; NULL if the frame has none. */
 static adcgs_status find_mask(const place *at, const adcgs_scene *scene, const char *field, char **out)
 {
     json_t *item = json_object_get(at->json.frame, field);
@@ -63,7 +63,7 @@ static adcgs_status find_mask(const place *at, const adcgs_scene *scene, const c
     return *out ? ADCGS_OK : adcgs_json_bad(&at->json, ADCGS_ERR_MEMORY, field, "out of memory");
 }
 
-/** The size of the view's own image; of one that is elsewhere, that of the first of its split. */
+/** Finds the size of the view's image; if its file is elsewhere, the size of the first image of its split. */
 static adcgs_status probe_size(place *at, const adcgs_scene *scene, const adcgs_scene_view *view, int *width, int *height)
 {
     int channels, *first_width = &at->width[at->split], *first_height = &at->height[at->split];
@@ -83,21 +83,21 @@ static adcgs_status probe_size(place *at, const adcgs_scene *scene, const adcgs_
     return ADCGS_OK;
 }
 
-/** Numbers that are for pictures of w x h pixels: made to fit the image, which has the same shape to a pixel of either. */
+/** Scales numbers for images of w x h pixels to the image, which must have the same shape to a pixel of either. */
 static adcgs_status fit_size(const place *at, const adcgs_scene_view *view, adcgs_lens *lens, int width, int height)
 {
     const double x = (double)width / lens->width, y = (double)height / lens->height, slack = fmax(1.0, fmax(x, y));
     if (width == lens->width && height == lens->height)
         return ADCGS_OK;
     if (fabs(width - y * lens->width) > slack && fabs(height - x * lens->height) > slack)
-        return adcgs_fail(at->json.error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d as w and h of frames[%zu] in %s say, "
-                          "or the same shape in another size: cropped, or rotated?", view->path, width, height, lens->width,
-                          lens->height, at->json.index, at->json.path);
+        return adcgs_fail(at->json.error, ADCGS_ERR_DATA, "%s: %dx%d pixels, expected %dx%d, w and h of frames[%zu] in %s, "
+                          "or the same aspect ratio: check whether it was cropped or rotated", view->path, width, height,
+                          lens->width, lens->height, at->json.index, at->json.path);
     adcgs_lens_resize(lens, width, height);
     return ADCGS_OK;
 }
 
-/** The lens and the pinhole for it. */
+/** Reads the lens and derives its pinhole. */
 static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene_view *view)
 {
     adcgs_camera said;
@@ -117,7 +117,7 @@ static adcgs_status read_camera(place *at, const adcgs_scene *scene, adcgs_scene
     return status;
 }
 
-/** On failure nothing of the view is left. */
+/** On failure nothing of the view remains allocated. */
 static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_view *view, adcgs_transforms *out)
 {
     int found;
@@ -150,7 +150,7 @@ static adcgs_status read_view(place *at, const adcgs_scene *scene, adcgs_scene_v
 
 static const char *const lists[ADCGS_SPLITS] = {"train_filenames", "val_filenames", "test_filenames"};
 
-/** A name as lists and frames may write it, for comparing, from malloc(). */
+/** Normalises a name from lists or frames for comparison, from malloc(). */
 static char *plain_name(const char *name)
 {
     while (name[0] == '.' && (name[1] == '/' || name[1] == '\\'))
@@ -161,7 +161,7 @@ static char *plain_name(const char *name)
     return plain;
 }
 
-/** Put the names of one list into a table: a number with a bit for each split. */
+/** Adds the names of one list to a table: a number with a bit for each split. */
 static adcgs_status add_list(const place *at, json_t *table, int split)
 {
     json_t *names = json_object_get(at->json.root, lists[split]), *item;
@@ -186,7 +186,7 @@ static adcgs_status add_list(const place *at, json_t *table, int split)
     return ADCGS_OK;
 }
 
-/** The table of a file that lists names; NULL if it does not. */
+/** Makes the table of a file that lists names; NULL if it does not. */
 static adcgs_status read_lists(const place *at, json_t **table)
 {
     int found = 0;
@@ -209,7 +209,7 @@ static adcgs_status read_lists(const place *at, json_t **table)
     return status;
 }
 
-/** Where a frame of an undivided file belongs; ADCGS_SPLITS: nowhere, when the file lists names and not this one. */
+/** Chooses the split of a frame in a file with all splits. ADCGS_SPLITS: none, if the file lists names without this one. */
 static adcgs_status choose_split(const place *at, json_t *table, json_t *seen, adcgs_split *split)
 {
     *split = at->json.index % TEST_EVERY == 0 ? ADCGS_SPLIT_TEST : ADCGS_SPLIT_TRAIN;
@@ -229,7 +229,7 @@ static adcgs_status choose_split(const place *at, json_t *table, json_t *seen, a
     return ADCGS_OK;
 }
 
-/** Names that no frame has: nerfstudio refuses them, too. */
+/** Refuses listed names without a frame, as nerfstudio does. */
 static adcgs_status check_lists(const place *at, json_t *table, json_t *seen)
 {
     const char *name;
@@ -248,7 +248,7 @@ static adcgs_status check_lists(const place *at, json_t *table, json_t *seen)
 
 /* ---- Frames ---- */
 
-/** Fields by which others say when a frame was taken. */
+/** Finds a field that gives the time of frames in other programs' files. */
 static const char *find_clock(json_t *frames, size_t n)
 {
     static const char *const fields[] = {"timestamp", "timestamps", "time_stamp", "timestamp_ns", "frame_time", "capture_time",
@@ -307,18 +307,21 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
     return status;
 }
 
-/** Sizes that differ are each image's own; numbers in pixels that are one for all of them may be meant so, or not. */
+/**
+ * If sizes differ, each image has its own size. Intrinsics in pixels that are shared by all images may then be meant so, or
+ * not.
+ */
 static void tell_sizes(const place *at, adcgs_scene *scene)
 {
     if (!at->other_width || json_object_get(at->json.root, "w") || !json_object_get(at->json.root, "fl_x"))
         return;
     const adcgs_split split = scene->n_views[ADCGS_SPLIT_TRAIN] ? ADCGS_SPLIT_TRAIN : at->split;
-    adcgs_scene_remark(scene, "images have several sizes, such as %dx%d and %dx%d, and fl_x is one for all: it is taken as it "
-                       "stands; if some are reduced, give each frame w, h, fl_x, cx, cy", at->width[split], at->height[split],
-                       at->other_width, at->other_height);
+    adcgs_scene_remark(scene, "images have several sizes, such as %dx%d and %dx%d, and fl_x is one for all: it is used "
+                       "unchanged; if some are reduced, give each frame w, h, fl_x, cx, cy", at->width[split],
+                       at->height[split], at->other_width, at->other_height);
 }
 
-/** A file of points that is not there is none: training can do without. */
+/** A missing file of points counts as none: training works without it. */
 static adcgs_status find_points(const place *at, adcgs_scene *scene, adcgs_transforms *out)
 {
     json_t *points = json_object_get(at->json.root, "ply_file_path");
@@ -333,7 +336,7 @@ static adcgs_status find_points(const place *at, adcgs_scene *scene, adcgs_trans
         return ADCGS_OK;
     free(out->points_path);
     out->points_path = NULL;
-    adcgs_scene_remark(scene, "ply_file_path: there is no %.100s: training starts without these points", name);
+    adcgs_scene_remark(scene, "ply_file_path: there is no %.100s; training starts without these points", name);
     return ADCGS_OK;
 }
 

@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TIME_SLACK 1e-6 /* beyond 0 and 1 that times of binary32 may be */
-#define FPS_LEAST 1.0   /* that are worth a hint */
+#define TIME_SLACK 1e-6 /* largest excess beyond 0 and 1, for rounding of binary32 times */
+#define FPS_LEAST 1.0   /* lowest rate that is suggested */
 #define FPS_MOST 1000.0
 
 typedef struct listed {
@@ -21,7 +21,7 @@ typedef struct listed {
     adcgs_split split;
 } listed;
 
-/** All views of a scene, from malloc(); NULL without memory. */
+/** Lists all views of a scene, from malloc(); NULL on allocation failure. */
 static listed *list_all(const adcgs_scene *scene, size_t *n)
 {
     size_t all = 0;
@@ -43,7 +43,7 @@ static const char *short_path(const adcgs_scene *scene, const char *path)
 
 /* ---- Times ---- */
 
-/** How many distinct times there are. values are sorted by this. */
+/** Sorts values and returns the number of distinct ones. */
 static size_t distinct(double *values, size_t n)
 {
     size_t found = n > 0;
@@ -59,7 +59,7 @@ static void tell_scaled(adcgs_scene *scene, const adcgs_transforms *facts, doubl
     char hint[80] = "";
     if (!facts->rate.den && moments > 1 && fps >= FPS_LEAST && fps <= FPS_MOST)
         snprintf(hint, sizeof hint, "; if these are seconds, give --fps %.4g", fps);
-    adcgs_scene_remark(scene, "time goes from %.10g to %.10g, not from 0 to 1: it is scaled to that%s", low, high, hint);
+    adcgs_scene_remark(scene, "time ranges from %.10g to %.10g and is scaled to 0 to 1%s", low, high, hint);
 }
 
 static adcgs_status scale_times(adcgs_scene *scene, const adcgs_transforms *facts, const char *path, adcgs_error *error)
@@ -91,7 +91,7 @@ static adcgs_status scale_times(adcgs_scene *scene, const adcgs_transforms *fact
     return ADCGS_OK;
 }
 
-/** By path, then by time. */
+/** Orders by path, then by time. */
 static int by_path(const void *a, const void *b)
 {
     const adcgs_scene_view *x = ((const listed *)a)->view, *y = ((const listed *)b)->view;
@@ -99,7 +99,7 @@ static int by_path(const void *a, const void *b)
     return order ? order : (x->time > y->time) - (x->time < y->time);
 }
 
-/** Do names only count, as those of a film's frames do? */
+/** True if names only count, like those of a video's frames. */
 static int names_count(const listed *sorted, size_t n)
 {
     adcgs_counting counting = {.n = 0};
@@ -116,15 +116,15 @@ static void tell_times(adcgs_scene *scene, const adcgs_transforms *facts, int is
     if (facts->has_times)
         return;
     if (facts->clock)
-        adcgs_scene_remark(scene, "frames have %s, which is not read, and no time: the scene is taken for a static one; if it "
-                           "moves, give each frame time, from 0 to 1", facts->clock);
+        adcgs_scene_remark(scene, "frames have %s, which is not supported, and no time: the scene is treated as static; if "
+                           "it moves, give each frame a time from 0 to 1", facts->clock);
     else
         scene->counts = is_single && names_count(sorted, n);
 }
 
-/* ---- Frames that come twice ---- */
+/* ---- Repeated frames ---- */
 
-/** How often a frame is in each split: frames with its path and its time, which follow it. \return how many these are. */
+/** Counts a frame in each split: the entries from `sorted` on with the same path and time. \return their number */
 static size_t count_same(const listed *sorted, size_t n, size_t times[ADCGS_SPLITS])
 {
     size_t same = 0;
@@ -134,7 +134,7 @@ static size_t count_same(const listed *sorted, size_t n, size_t times[ADCGS_SPLI
     return same;
 }
 
-/** sorted is by path and time. is_listed: the files list views for testing; else the index of a frame decided. */
+/** sorted is by path and time. is_listed: the files list views for testing; otherwise the index of a frame decided. */
 static adcgs_status find_twice(adcgs_scene *scene, const listed *sorted, size_t n, int is_listed, const char *path,
                                adcgs_error *error)
 {
@@ -156,11 +156,11 @@ static adcgs_status find_twice(adcgs_scene *scene, const listed *sorted, size_t 
     }
     if (twice)
         adcgs_scene_remark(scene, "%zu frame%s for training come%s more than once, such as %.100s%s", twice, twice > 1 ? "s" : "",
-                           twice > 1 ? "" : "s", first_twice, tested ? ", and for testing, too: its figures say nothing of new "
-                                                                       "views" : "");
+                           twice > 1 ? "" : "s", first_twice, tested ? ", also for testing: test figures do not "
+                                                                       "measure new views" : "");
     if (validated)
-        adcgs_scene_remark(scene, "%zu frame%s for training, such as %.100s, %s listed for validation, too: figures of "
-                           "validation say nothing of new views", validated, validated > 1 ? "s" : "", first_validated,
+        adcgs_scene_remark(scene, "%zu frame%s for training, such as %.100s, %s listed for validation, too: validation "
+                           "figures do not measure new views", validated, validated > 1 ? "s" : "", first_validated,
                            validated > 1 ? "are" : "is");
     return ADCGS_OK;
 }
@@ -172,7 +172,7 @@ static int by_name(const void *a, const void *b)
     return strcmp(((const listed *)a)->view->camera.name, ((const listed *)b)->view->camera.name);
 }
 
-/** Whether different files of a split have one name. list: room for all views. */
+/** True if different files of a split have one name. list: room for all views. */
 static int shares_names(const adcgs_scene *scene, int split, listed *list)
 {
     const size_t n = scene->n_views[split];
@@ -187,7 +187,7 @@ static int shares_names(const adcgs_scene *scene, int split, listed *list)
     return found;
 }
 
-/** How much of their paths all views have in common, up to a slash. sorted is by path. */
+/** Length of the path that all views share, up to a slash. sorted is by path. */
 static size_t common_folders(const listed *sorted, size_t n)
 {
     const char *first = sorted[0].view->path, *last = sorted[n - 1].view->path;
@@ -198,7 +198,7 @@ static size_t common_folders(const listed *sorted, size_t n)
     return folders;
 }
 
-/** The path without the common folders; the end of it where it is too long. */
+/** Sets the name to the path without the common folders, or to the end of it if it is too long. */
 static void set_name(adcgs_camera *camera, const char *path)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
@@ -212,7 +212,7 @@ static void set_name(adcgs_camera *camera, const char *path)
         *c = *c == '/' ? '_' : *c;
 }
 
-/** The order of the list is lost. */
+/** Gives views distinct names. The order of the list is lost. */
 static void name_apart(adcgs_scene *scene, listed *sorted, size_t n)
 {
     const size_t common = n ? common_folders(sorted, n) : 0;
@@ -225,7 +225,7 @@ static void name_apart(adcgs_scene *scene, listed *sorted, size_t n)
 
 /* ---- All ---- */
 
-/** Images beside those of the frames, if all of these lie in one folder that is for images. */
+/** Reports images without a frame, if all frames lie in one folder for images. */
 static adcgs_status tell_unposed(adcgs_scene *scene, const listed *sorted, size_t n, adcgs_error *error)
 {
     const size_t common = common_folders(sorted, n), above = strlen(scene->directory) + 1;

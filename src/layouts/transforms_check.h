@@ -6,12 +6,12 @@
 #include "layouts/transforms.h"
 
 /**
- * Of views whose times are still those of the files:
- * - times that go beyond [0,1] are taken for seconds, numbers of frames or other units: the first becomes 0, the last 1;
- * - frames without times that look as if they should have some are remarked;
- * - names that views of one split share become those of their folders and files, front_00 for front/00.png;
- * - a frame for training and for testing is ADCGS_ERR_DATA; other frames that come twice are remarked.
- * facts: of the views for training; is_single: one file has all splits. path: for messages.
+ * Checks all views, whose times are still as in the files:
+ * - Times outside [0,1] are taken for seconds, frame numbers or other units: the first becomes 0, the last 1.
+ * - Frames without times that seem to need some produce a remark.
+ * - Names shared by views of one split are replaced by folder and file, front_00 for front/00.png.
+ * - A frame for both training and testing is ADCGS_ERR_DATA; other repeated frames produce a remark.
+ * facts: of the training views; is_single: one file has all splits. path: for messages.
  */
 adcgs_status adcgs_transforms_check(adcgs_scene *scene, const adcgs_transforms *facts, int is_single, const char *path,
                                     adcgs_error *error);

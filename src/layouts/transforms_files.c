@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The files that transforms files name, wherever they were made. */
+/** \file Locates the files named by transforms files, which may come from another machine. */
 #include "config.h"
 
 #include "layouts/transforms_files.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #define DIVIDE_MAX 64
-#define PARTS_MOST 3 /* of an absolute name, that may be below the folder */
+#define PARTS_MOST 3 /* last parts of an absolute path that are searched below the folder */
 
 char *adcgs_transforms_join(const char *folder, const char *name)
 {
@@ -42,7 +42,7 @@ static adcgs_status try_name(char **out, const char *folder, const char *name, a
     return status;
 }
 
-/** The last parts of a name, first as many as may be. */
+/** Tries the last parts of a name, the most parts first. */
 static adcgs_status try_parts(char **out, const char *folder, const char *name, adcgs_error *error)
 {
     const char *parts[PARTS_MOST];
@@ -59,7 +59,7 @@ static adcgs_status try_parts(char **out, const char *folder, const char *name, 
     return ADCGS_OK;
 }
 
-/** The same below images_N/, for a name whose last folder is images/; so for masks/. */
+/** Tries images_N/ for a name whose last folder is images/, and likewise masks_N/. */
 static adcgs_status try_reduced(char **out, const char *folder, const char *name, adcgs_error *error)
 {
     static const char *const kinds[] = {"images/", "masks/"};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Images that lie beside those of a scene, without a pose. */
+/** \file Images without a pose next to those of a scene. */
 #include "config.h"
 
 #include "layouts/unposed.h"
@@ -9,8 +9,8 @@
 
 #include <stdlib.h>
 
-#define DEPTH_MOST 4         /* folders below each other; also where links make a circle */
-#define FOLDERS_MOST 1000    /* of one folder */
+#define DEPTH_MOST 4         /* nesting of folders that is searched; also bounds circular links */
+#define FOLDERS_MOST 1000    /* limit of subfolders of one folder */
 
 /** Stems of the views' paths, sorted. */
 typedef struct stems {
@@ -82,7 +82,7 @@ static int is_anything(const char *name)
     return *name != '.';
 }
 
-/** Images below a folder, which ends with its slash. A folder that cannot be read has none. */
+/** Counts images below a folder, which ends with its slash. An unreadable folder counts as empty. */
 static adcgs_status count(counter *c, const char *folder, int depth)
 {
     adcgs_listing listing;

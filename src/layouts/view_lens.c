@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Views taken through lenses, as scenes are read. */
+/** \file Views taken through lenses, while scenes are read. */
 #include "config.h"
 
 #include "layouts/view_lens.h"
 
-#define LATEST 64 /* views of a split that are looked at: as many as a rig has cameras */
+#define LATEST 64 /* views of a split that are compared: as many as a rig has cameras */
 
 static const adcgs_scene_view *find_same(const adcgs_scene *scene, const adcgs_scene_view *view)
 {

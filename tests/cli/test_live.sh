@@ -172,7 +172,7 @@ scene_file "$dir/none" images
 put "$dir/none" 0
 touch "$dir/none/end"
 # shellcheck disable=SC2086
-expect 4 "ended before it showed two moments" ./adcgs-enc --live "$dir/none" -o "$dir/none.adcgs" $live
+expect 4 "ended with a single frame time" ./adcgs-enc --live "$dir/none" -o "$dir/none.adcgs" $live
 [ ! -e "$dir/none.adcgs" ] || bad "nothing was filmed, and a file of it is there"
 
 # A delay that leaves no time: as few iterations as there may be, in all segments.
@@ -235,9 +235,9 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$rates.mp4" >/dev/null 2>&1; then
     whole "$dir/alone.adcgs"
     # shellcheck disable=SC2086
     {
-        expect 4 "ended before it showed two moments" ./adcgs-enc --live "$dir/alone.json" -o "$dir/x.adcgs" $live </dev/null
+        expect 4 "ended with a single frame time" ./adcgs-enc --live "$dir/alone.json" -o "$dir/x.adcgs" $live </dev/null
         sed 's/"c0.y4m"/"-"/' "$dir/videos/input.json" >"$dir/twice.json"
-        expect 4 "cameras\[2\].*video: - is standard input, which camera c0 has" \
+        expect 4 "cameras\[2\].*video: - is standard input, which camera c0 already uses" \
             ./adcgs-enc --live "$dir/twice.json" -o "$dir/x.adcgs" $live </dev/null
     }
     # Damage in the third frame of a camera: what was learnt before is a stream.

@@ -142,7 +142,7 @@ if ./adcgs-dec "$dir/all.adcgs" -t 0 -o "$dir/x.mp4" >/dev/null 2>&1; then
         rm "$dir/videos/c$i.y4m" && mkfifo "$dir/videos/c$i.y4m"
         (sleep 1; echo "YUV4MPEG2 W64 H64 F15:1 C444") >"$dir/videos/c$i.y4m" &
     done
-    resume "$dir/videos" 2 "c0.y4m: a pipe brings nothing again"
+    resume "$dir/videos" 2 "c0.y4m: a pipe cannot repeat footage"
     cmp "$dir/before" "$dir/r.adcgs" || bad "what is refused changes the stream"
 fi
 [ "$(left)" = "" ] || bad "left behind: $(left)"

@@ -190,13 +190,13 @@ static void test_several(void **state)
     put_folder("sparse/1");
     put_model_binary("sparse/1", 9, "%d.ppm");
     expect_views(9, 1);
-    expect_remark("2 models", "sparse/1 with 9 images is taken; sparse/0 has 4");
+    expect_remark("2 models", "sparse/1 with 9 images is used; sparse/0 has 4");
     put_folder("sparse/12");
     put_model_text("sparse/12", 9, "%d.ppm", CAMERA); /* as many: the first */
     put_folder("sparse/x");
     put_model_text("sparse/x", 9, "%d.ppm", CAMERA); /* no number */
     expect_views(9, 1);
-    expect_remark("3 models", "sparse/1 with 9 images is taken; sparse/12 has 9");
+    expect_remark("3 models", "sparse/1 with 9 images is used; sparse/12 has 9");
     put_text("sparse/12/images.txt", "no such thing");
     expect_views(9, 1);
     expect_remark("3 models", "sparse/0 has 4");

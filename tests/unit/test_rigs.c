@@ -93,7 +93,7 @@ static void test_bad_poses(void **state)
                  {33, INFINITY, " and inf, expected 0 < near < far <= 1e+09"},
                  {15, NAN, "row 0: bounds of depth nan and "}, /* of a view for testing */
                  {16, 0.5, "row 0: bounds of depth"},
-                 {21, 10, "another shape"},
+                 {21, 10, "another aspect ratio"},
                  {17, 3, "row 1: the matrix is"}};
     for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
         memcpy(changed, data, sizeof data);
@@ -333,7 +333,7 @@ static void test_bad_binary(void **state)
         expect_bad(ADCGS_ERR_DATA, files[f], "counts 6148914691236517205");
         adcgs_store_le64(data, 0);
         put_bytes(files[f], data, size);
-        expect_bad(ADCGS_ERR_DATA, files[f], "bytes behind the last");
+        expect_bad(ADCGS_ERR_DATA, files[f], "bytes after the last");
     }
     put_model_binary("sparse", 2, "%02d.ppm");
     FILE *file = fopen(in(files[2]), "r+b"); /* the first point's track has more entries than there are bytes */

@@ -175,7 +175,7 @@ static void test_bad(void **state)
     expect_bad(FILE_OF(",\"unit\":\"inch\"", CAMERA("," IDENTITY)), "unit: inch");
     expect_bad(FILE_OF(",\"up\":\"x\"", CAMERA("," IDENTITY)), "up: x");
     expect_bad(FILE_OF(",\"scale\":0", CAMERA("," IDENTITY)), "scale: 0");
-    expect_bad(FILE_OF("", CAMERA("," IDENTITY) "," CAMERA("," IDENTITY)), "cameras[1].name: a is there twice");
+    expect_bad(FILE_OF("", CAMERA("," IDENTITY) "," CAMERA("," IDENTITY)), "cameras[1].name: a is used twice");
     expect_bad(FILE_OF("", CAMERA("," IDENTITY ",\"split\":\"test\"")), "cameras: none is for training");
     BAD_CAMERA(",\"fxy\":1," IDENTITY, "fxy: unknown field");
     BAD_CAMERA(",\"split\":\"dev\"," IDENTITY, "split: dev");

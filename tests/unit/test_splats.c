@@ -522,7 +522,7 @@ static void test_scene(void **state)
     for (uint32_t i = 0; i < s.n; i++)
         s.opacity[i] = 0.003f;
     expect_good(write_splats(&s, in("s.ply")));
-    expect_error(adcgs_scene_open(&scene, in("s.ply"), NULL, &error), ADCGS_ERR_DATA, "s.ply", "no splat can be seen");
+    expect_error(adcgs_scene_open(&scene, in("s.ply"), NULL, &error), ADCGS_ERR_DATA, "s.ply", "no splat is visible");
     for (uint32_t i = 0; i < s.n; i++) {
         s.opacity[i] = 0.9f;
         for (int a = 0; a < 3; a++)

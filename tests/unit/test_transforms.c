@@ -115,11 +115,11 @@ static void test_times(void **state)
     static const struct {
         const char *frame, *remark;
     } cases[] = {
-        {IN_IMAGES ",\"time\":%d", "time goes from 0 to 8, not from 0 to 1: it is scaled to that; if these are seconds, "
+        {IN_IMAGES ",\"time\":%d", "time ranges from 0 to 8 and is scaled to 0 to 1; if these are seconds, "
                                    "give --fps 1"},
         {IN_IMAGES ",\"time\":0.%d", NULL},
-        {IN_IMAGES ",\"time\":17000000%d.5", "time goes from 170000000.5 to 170000008.5"},
-        {IN_IMAGES ",\"time\":-%d", "time goes from -8 to 0"},
+        {IN_IMAGES ",\"time\":17000000%d.5", "time ranges from 170000000.5 to 170000008.5"},
+        {IN_IMAGES ",\"time\":-%d", "time ranges from -8 to 0"},
     };
     put_images("images", 9, RIG_WIDTH, RIG_HEIGHT);
     for (size_t i = 0; i < ADCGS_COUNTOF(cases); i++) {
@@ -154,10 +154,10 @@ static void test_no_times(void **state)
     assert_true(scene->counts && scene->n_times == 1);
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"timestamp\":170000000%d.25", 0, 9);
     open_good(1);
-    expect_remark("timestamp, which is not read", "give each frame time");
+    expect_remark("timestamp, which is not supported", "give each frame a time");
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"t\":\"%d\"", 0, 9);
     open_good(1);
-    expect_remark("frames have t, which is not read", "");
+    expect_remark("frames have t, which is not supported", "");
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"timestamp\":7", 0, 9); /* all alike: no clock */
     open_good(0);
     put_file("transforms.json", "\"fl_x\":20,", IN_IMAGES ",\"timestamp\":%d,\"time\":0", 0, 9);
@@ -247,7 +247,7 @@ static void test_paths(void **state)
         assert_true(!train(0)->mask == (i != 2));
     }
     put_file("transforms.json", "\"fl_x\":20,", "\"file_path\":\"C:\\\\scan\\\\none\\\\x%d.ppm\"", 0, 9);
-    open_bad("frames[0].file_path: no such image: C:\\scan\\none\\x0.ppm, a path of Windows", "nor one of its name beside");
+    open_bad("frames[0].file_path: no such image: C:\\scan\\none\\x0.ppm, a Windows path", "nor an image of its name next to");
     put_file("transforms.json", "\"fl_x\":20,", "\"file_path\":\"images/x%d.ppm\"", 0, 9);
     open_bad("frames[0].file_path: no such image: images/x0.ppm", "");
 }
