@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Scenes as other people film them: a person in a dome, a walk, a street, a portrait, hair, a sweep. */
+/** \file Scenes that imitate common captures: a person in a dome, a walk, a street, a portrait, hair, a sweep. */
 #include "scenes/table.h"
 
 #define PAINT(kind, often, grain, r0, g0, b0, r1, g1, b1, number)                                                     \
@@ -32,7 +32,7 @@ static const adcgs_trace_object person[] = {
     {CAPSULE(0.050, 0.13, -0.39, -0.08, 1.74), .tilt = 0.088, .turn = -0.19, SKIN(112)},
 };
 
-/* A furnished room of 6 x 7 x 2.6 units; the visitor goes round ahead of a camera that goes round in its middle. */
+/* A furnished room of 6 x 7 x 2.6 units. The visitor walks around ahead of a camera that turns in the middle of the room. */
 #define ROOM                                                                                                            \
     {.shape = ADCGS_SHAPE_ROOM, .size = {3.0, 3.5, 1.3}, .position = {0.0, 0.0, 1.3},                                   \
      PAINT(PATCHES, 1.7, 0.5, 0.80, 0.76, 0.66, 0.62, 0.66, 0.70, 121)},                                                \
@@ -78,7 +78,7 @@ static const adcgs_trace_object street[] = {
      .velocity = {0.0, -14.0, 0.0}},
 };
 
-/* A head on shoulders before nothing; it turns by 0.08 about the vertical. */
+/* A head on shoulders before an empty background; it turns by 0.08 about the vertical. */
 #define TURNS_HEAD .orbit_turns = 0.08, .spin_axis = {0.0, 0.0, 1.0}, .spin = 0.08
 #define FACE(number) PAINT(NOISE, 4.5, 0.4, 0.74, 0.52, 0.42, 0.92, 0.74, 0.62, number)
 #define EYE(side)                                                                                                       \
@@ -128,7 +128,7 @@ static const adcgs_trace_object shelf[] = {
 };
 
 #define OF(things) .objects = things, .n_objects = (int)ADCGS_COUNTOF(things)
-/* Bits of the last so many. */
+/* Bits of the last `movers` objects. */
 #define LAST(things, movers) ((1u << (movers)) - 1u) << (ADCGS_COUNTOF(things) - (movers))
 #define PERSON                                                                                                          \
     OF(person), .size = 120, .cameras = 60, .times = 1, .turns = 1, .n_val = 5, .n_test = 12, .distance = 2.9,          \
@@ -138,26 +138,26 @@ static const adcgs_trace_object shelf[] = {
     .path = ADCGS_PATH_WALK, .is_wide = 1
 
 const adcgs_scenes_entry adcgs_scenes_captures[] = {
-    {.name = "dome", .about = "a static person, 60 RGBA images from all round, exposures of plus and minus one stop", PERSON,
+    {.name = "dome", .about = "a static person, 60 RGBA images from all sides, exposures of plus and minus one stop", PERSON,
      .ground = ADCGS_GROUND_ALPHA, .stops = 1.0},
     {.name = "dome-even", .about = "the same, all exposures equal", PERSON, .ground = ADCGS_GROUND_ALPHA},
     {.name = "dome-black", .about = "dome composited over black, without alpha", PERSON, .stops = 1.0},
     {.name = "dome-white", .about = "dome composited over white, without alpha", PERSON, .ground = ADCGS_GROUND_WHITE,
      .stops = 1.0},
-    {.name = "walk", .about = "a static room, 80 images of a camera that turns round in it", OF(room), WALK, .cameras = 80,
+    {.name = "walk", .about = "a static room, 80 images of a camera that turns around in it", OF(room), WALK, .cameras = 80,
      .times = 1},
-    {.name = "walk-visitor", .about = "the same as a film, in which a visitor walks ahead of the camera", OF(visited),
+    {.name = "walk-visitor", .about = "the same as a video, in which a visitor walks ahead of the camera", OF(visited),
      .moving = LAST(visited, 1), WALK, .cameras = 1, .times = 80},
     {.name = "street", .about = "a street under a far sky, three cameras on a car, a van drives towards them", OF(street),
      .moving = LAST(street, 1), .size = 144, .height = 96, .cameras = 3, .times = 24, .turns = 1, .n_val = 5, .n_test = 12,
      .distance = 20.0, .target = {0.0, 0.0, 1.5}, .path = ADCGS_PATH_DRIVE, .is_wide = 1},
-    {.name = "portrait", .about = "a head that turns a little before black, six cameras in front", OF(head),
+    {.name = "portrait", .about = "a slightly turning head before black, six cameras in front", OF(head),
      .moving = LAST(head, 8), .size = 112, .cameras = 6, .times = 12, .turns = 1, .n_val = 5, .n_test = 11, .distance = 3.8,
      .target = {0.0, 0.0, 0.05}, .path = ADCGS_PATH_FRONT},
     {.name = "hair", .about = "static hair, half a pixel to one pixel thick, before a wall", OF(hair), .size = 128,
      .cameras = 30, .times = 1, .turns = 1, .n_val = 5, .n_test = 9, .distance = 4.2, .target = {0.0, 0.0, 0.40},
      .path = ADCGS_PATH_FRONT, .samples = 4},
-    {.name = "sweep", .about = "static, a camera that sweeps and looks outward: its axes meet behind it", OF(shelf),
+    {.name = "sweep", .about = "static, a sweeping camera that looks outward: its axes meet behind it", OF(shelf),
      .size = 120, .cameras = 40, .times = 1, .turns = 1, .n_val = 5, .n_test = 11, .distance = 6.0, .target = {0.0, 0.0, 0.8},
      .path = ADCGS_PATH_SWEEP},
     {.name = NULL},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where the cameras of a scene stand, what moves how fast, and writing the scene to a folder. */
+/** \file Prepares a scene's cameras and motion by the options, and writes the scene to a folder. */
 #include "config.h"
 
 #include "scenes/scenes.h"
@@ -26,19 +26,19 @@
 #define NOISE_SEED 29
 #define WATCH_MAX 1000
 #define ASIDE_MAX 0.5
-/* The layout wants the angle: 2 atan(1 / ADCGS_SCENES_FOCAL), 2 atan(1 / ADCGS_SCENES_WIDE). */
+/* The layout needs the angle: 2 atan(1 / ADCGS_SCENES_FOCAL), 2 atan(1 / ADCGS_SCENES_WIDE). */
 #define CAMERA_ANGLE_X "0.7610127542247298"
 #define CAMERA_ANGLE_WIDE "1.3494818844471053"
 
 static const char *const split_names[ADCGS_SPLITS] = {"train", "val", "test"};
 
 typedef struct writer {
-    adcgs_scenes_entry scene; /* as it is wanted */
-    double noise;             /* of training's pictures, 1 is white */
-    int watch;                /* views for validation of one camera that stays */
-    double aside;             /* turns from the arc to the cameras for testing */
+    adcgs_scenes_entry scene; /* after the options were applied */
+    double noise;             /* deviation of noise in training images; 1 is white */
+    int watch;                /* number of validation views of one fixed camera */
+    double aside;             /* turns from the end of the arc to the test cameras */
     adcgs_spoil spoil;
-    adcgs_trace_object objects[OBJECTS_MAX]; /* the scene's, with the motion that is wanted */
+    adcgs_trace_object objects[OBJECTS_MAX]; /* the scene's, with the requested motion */
     const char *directory, *format;
     int width, height;
     adcgs_pool *pool;
@@ -75,7 +75,7 @@ int adcgs_scenes_count(const char *name)
     return scene ? count_pictures(scene) : 0;
 }
 
-/* Those that are wanted of one camera that stays, or from far beside, are not where the scene has them. */
+/* Returns view i of a split. Validation views of one fixed camera and test views from outside the arc replace the scene's own. */
 static adcgs_scenes_view view_at(const writer *w, int split, int i)
 {
     adcgs_scenes_view v = adcgs_scenes_view_at(&w->scene, split, i, w->width);
@@ -109,7 +109,7 @@ static const char *mask_extension(const writer *w)
     return strcmp(w->format, "png") ? "pgm" : "png";
 }
 
-/* Objects that move do so `motion` times as far; the others keep the pose of time 0. */
+/* Scales the motion of moving objects by `motion`; the others keep the pose of time 0. */
 static void take_objects(writer *w, double motion)
 {
     for (int i = 0; i < w->scene.n_objects; i++) {
@@ -139,7 +139,7 @@ static adcgs_status write_pixels(writer *w, const char *name, const char *extens
     return adcgs_image_write(&image, path, 0, w->error);
 }
 
-/* Noise of a camera's sensor, near enough normal: the sum of twelve random numbers, in picture `number`. */
+/* Adds sensor noise to image `number`. It is approximately normal: the sum of twelve random numbers. */
 static void add_noise(const writer *w, int number)
 {
     const int n = w->width * w->height * 3;
@@ -169,7 +169,7 @@ static int samples_of(const adcgs_scenes_entry *scene)
     return scene->samples ? scene->samples : SAMPLES;
 }
 
-/* A camera exposes the object before anybody composites it: colours of objects alone, no longer times their coverage. */
+/* A camera exposes the object before compositing: divides the colours of objects by their coverage. */
 static adcgs_status take_ground_off(writer *w, const adcgs_scenes_view *v, double time)
 {
     float *const alpha = w->pixels + 3 * plane_of(w);
@@ -210,7 +210,7 @@ static adcgs_status write_picture(writer *w, const adcgs_scenes_view *v, int spl
     return is_open ? write_on_ground(w, name) : write_pixels(w, name, w->format, 3, w->pixels);
 }
 
-/* The picture of what moves. */
+/* Writes the mask of moving regions. */
 static adcgs_status write_mask(writer *w, const adcgs_scenes_view *v, const char *name)
 {
     ADCGS_TRY(adcgs_trace_cover(w->objects, w->scene.n_objects, w->scene.moving, &v->camera, v->time, w->width, w->height,
@@ -218,7 +218,7 @@ static adcgs_status write_mask(writer *w, const adcgs_scenes_view *v, const char
     return write_pixels(w, name, mask_extension(w), 1, w->pixels);
 }
 
-/* The layout leaves ".png" out of a picture's name; any other extension is written out. A mask's name has it always. */
+/* The layout omits ".png" in an image's name, but no other extension. A mask's name always has its extension. */
 static void print_frame(const writer *w, FILE *file, const adcgs_scenes_view *v, const char *name, const char *mask)
 {
     const double *const m = v->camera.to_world;
@@ -234,7 +234,7 @@ static void print_frame(const writer *w, FILE *file, const adcgs_scenes_view *v,
     fprintf(file, "[0, 0, 0, 1]] }");
 }
 
-/* What moves is known truth: training gets none of it. */
+/* The masks of moving regions are ground truth: training views get none. */
 static adcgs_status write_view(writer *w, int split, int i, FILE *file)
 {
     char name[32], mask[64];
@@ -292,17 +292,17 @@ static adcgs_status write_split(writer *w, int split)
     return status;
 }
 
-/* As many moments and cameras as are wanted. */
+/* Applies the requested numbers of times and cameras. */
 static adcgs_status take_counts(adcgs_scenes_entry *scene, const adcgs_scenes_options *options, adcgs_error *error)
 {
     if (options->moments < 0 || options->moments > MOMENTS_MAX || options->cameras < 0 || options->cameras > CAMERAS_MAX)
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: %d moments, %d cameras, expected up to %d and %d", options->moments,
                           options->cameras, MOMENTS_MAX, CAMERAS_MAX);
     if (options->cameras && scene->cameras == 1)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s is filmed by one camera: expected no number of cameras", scene->name);
-    const int each = scene->cameras / scene->turns; /* see a moment */
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s has one camera: their number cannot be changed", scene->name);
+    const int each = scene->cameras / scene->turns; /* number of cameras that see each time */
     if (options->cameras > each && options->cameras % each)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d cameras: of scene %s %d see each moment, expected a multiple, or fewer",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%d cameras: in scene %s %d see each time, expected a multiple, or fewer",
                           options->cameras, scene->name, each);
     if (options->cameras) {
         scene->cameras = options->cameras;
@@ -318,12 +318,13 @@ static adcgs_status take_counts(adcgs_scenes_entry *scene, const adcgs_scenes_op
 static adcgs_status check_views(const adcgs_scenes_entry *scene, const adcgs_scenes_options *options, adcgs_error *error)
 {
     if ((options->watch || options->aside != 0.0) && scene->path > ADCGS_PATH_HAND)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s: cameras stand on no arc: expected no views to watch or from aside",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s: cameras are not on an arc: --watch and --aside do not apply",
                           scene->name);
     if (options->watch && (options->watch < 2 || options->watch > WATCH_MAX))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: %d views to watch, expected 2..%d", options->watch, WATCH_MAX);
     if (!(options->aside >= 0.0 && options->aside <= ASIDE_MAX))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: tests %g turns aside, expected 0..%g", options->aside, ASIDE_MAX);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: test cameras %g turns aside, expected 0..%g", options->aside,
+                          ASIDE_MAX);
     if (!(options->noise >= 0.0 && options->noise <= NOISE_MAX))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: noise of %g levels, expected 0..%g", options->noise, NOISE_MAX);
     return ADCGS_OK;
@@ -335,12 +336,12 @@ adcgs_status adcgs_scenes_write(const char *directory, const adcgs_scenes_option
     const adcgs_scenes_entry *const scene = adcgs_scenes_entry_find(options->name);
     const char *const format = options->format ? options->format : "png";
     if (!scene)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "no scene is called \"%s\"", options->name);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "unknown scene \"%s\"", options->name);
     if (strcmp(format, "png") && strcmp(format, "ppm"))
         return adcgs_fail(error, ADCGS_ERR_USAGE, "scenes: format \"%s\", expected png or ppm", format);
     if (scene->ground == ADCGS_GROUND_ALPHA && strcmp(format, "png"))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s: its images have alpha, which %s does not: expected png", scene->name,
-                          format);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "scene %s: its images have alpha, which %s cannot store: expected png",
+                          scene->name, format);
     writer w = {.scene = *scene, .noise = options->noise / 255.0, .watch = options->watch,
                 .aside = options->aside, .spoil = options->spoil, .directory = directory, .format = format,
                 .width = options->width ? options->width : scene->size,

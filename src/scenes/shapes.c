@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Rays against each shape. Each function is the smallest t > 0 of the ray, with the normal there. */
+/** \file Intersection of rays with each shape. Each function returns the smallest t > 0 of the ray, and the normal there. */
 #include "scenes/shapes.h"
 
 #include "camera/vector.h"
@@ -85,7 +85,7 @@ static double hit_room(const double o[3], const double d[3], const double half[3
     return leave;
 }
 
-/* The points at a distance of radius from the line from a to b; entries alone, seen from outside. */
+/* The points at a distance of radius from the line from a to b. Only entry points count, seen from outside. */
 static double hit_link(const double o[3], const double d[3], const double a[3], const double b[3], double radius,
                        double normal[3])
 {

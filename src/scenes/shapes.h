@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where a ray meets a shape. */
+/** \file Intersection of rays with shapes. */
 #ifndef ADCGS_SCENES_SHAPES_H
 #define ADCGS_SCENES_SHAPES_H
 
@@ -7,8 +7,10 @@
 
 #define ADCGS_SHAPES_FAR 1e30
 
-/** Smallest t > 0 at which the ray o + t d meets the object, in its local coordinates, and the normal there; ADCGS_SHAPES_FAR if
-    nowhere. */
+/**
+ * Smallest t > 0 at which the ray o + t d meets the object, in its local coordinates, and the normal there; ADCGS_SHAPES_FAR if
+ * there is none.
+ */
 double adcgs_shapes_hit(const adcgs_trace_object *object, const double o[3], const double d[3], double normal[3]);
 /** Squared radius of a ball about the origin of local coordinates that holds the object. */
 double adcgs_shapes_bound2(const adcgs_trace_object *object);

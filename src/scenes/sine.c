@@ -4,7 +4,7 @@
 
 #define PI 3.14159265358979323846
 
-/* Odd Taylor polynomial of the sine within a quarter turn of zero; error below 1e-11 there. */
+/* Odd Taylor polynomial of the sine within a quarter turn of zero; its error there is below 1e-11. */
 static double sin_core(double x)
 {
     const double y = x * x;

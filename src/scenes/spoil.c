@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Faults of pictures and cameras, from basic arithmetic alone, as all of the scenes. */
+/** \file Faults of images and cameras, from basic arithmetic only, like all code of the scenes. */
 #include "scenes/spoil.h"
 
 #include "camera/rotation.h"
@@ -12,7 +12,7 @@
 #define TURN (2.0 * 3.14159265358979323846)
 #define NAME_BYTES 16
 
-/* By kind. */
+/* One row per kind. */
 static const struct {
     const char *name;
     double most;
@@ -23,7 +23,7 @@ static const struct {
     {"before", 0.9, 0},      {"inside", 0.9, 0}, {"after", 0.9, 0}, {"tint", 4.0, 0},
 };
 
-/* One fault; the text behind it, NULL if it is wrong. */
+/* Parses one fault. Returns the text after it, NULL if it is invalid. */
 static const char *parse_one(adcgs_spoil *out, const char *text, adcgs_error *error)
 {
     const size_t length = strcspn(text, "=,");
@@ -41,7 +41,7 @@ static const char *parse_one(adcgs_spoil *out, const char *text, adcgs_error *er
     const double strength = strtod(value, &end);
     if (text[length] != '=' || end == value || (*end && *end != ',') || !(strength >= 0.0 && strength <= kinds[kind].most) ||
         (kinds[kind].whole && strength != (double)(int)strength)) {
-        (void)adcgs_fail(error, ADCGS_ERR_USAGE, "spoil: %s wants a strength: expected %s from 0 to %g", kinds[kind].name,
+        (void)adcgs_fail(error, ADCGS_ERR_USAGE, "spoil: %s needs a strength: expected %s from 0 to %g", kinds[kind].name,
                          kinds[kind].whole ? "a whole number" : "a number", kinds[kind].most);
         return NULL;
     }
@@ -62,13 +62,13 @@ adcgs_status adcgs_spoil_parse(adcgs_spoil *out, const char *text, adcgs_error *
     return ADCGS_OK;
 }
 
-/* In [0,1), of a camera or a picture. */
+/* A random number in [0,1), of a camera or an image. */
 static double draw(int which, int i, adcgs_spoil_kind kind)
 {
     return adcgs_texture_random(which, i, (int)kind, SEED);
 }
 
-/* Near enough normal: the sum of twelve. */
+/* Approximately normal: the sum of twelve random numbers. */
 static double draw_normal(int which, int i, adcgs_spoil_kind kind)
 {
     double sum = -6.0;
@@ -96,7 +96,7 @@ double adcgs_spoil_time(const adcgs_spoil *spoil, const adcgs_spoil_picture *pic
     return time < 0.0 ? 0.0 : time > 1.0 ? 1.0 : time;
 }
 
-/* Turn the columns of a pose about an axis in the world. */
+/* Turns the columns of a pose about an axis in the world. */
 static void turn(double to_world[12], const double axis[3], double turns)
 {
     for (int c = 0; c < 3; c++) {
@@ -107,7 +107,7 @@ static void turn(double to_world[12], const double axis[3], double turns)
     }
 }
 
-/* About the camera's own axes: to the sides by pixels in the middle of the picture, around by pixels at its edge. */
+/* Turns a pose about the camera's own axes. The error is in pixels: for x and y in the image's centre, for z at its edge. */
 static void jolt(double to_world[12], int which, adcgs_spoil_kind kind, double pixels, double focal, int width)
 {
     for (int c = 0; c < 3; c++) {
@@ -137,7 +137,7 @@ void adcgs_spoil_pose(const adcgs_spoil *spoil, const adcgs_spoil_picture *pictu
         to_world[4 * r] = -to_world[4 * r];
 }
 
-/* 2 to the power x, for x of a few units: the series of the exponential. */
+/* 2 to the power x, for x of a few units, by the series of the exponential. */
 static double power_of_two(double x)
 {
     double sum = 1.0, term = 1.0;

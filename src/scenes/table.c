@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The scenes. To add one, add a line to the table below, and objects if the present ones do not do. */
+/** \file
+ * The scenes on a table. To add one, add a line to the table below, and objects if the present ones do not suffice.
+ */
 #include "scenes/table.h"
 
 /* A table top under a wide sky. Everything rests on z = 0; the cameras stand on the -y side. */
@@ -37,7 +39,7 @@ static const adcgs_trace_object stage[] = {
     {.shape = ADCGS_SHAPE_BOX, .size = {0.26, 0.20, 0.26}, .position = {0.0, 0.15, 0.58}, .texture = ADCGS_TEXTURE_RINGS,
      .frequency = 28.0, .colour = {{0.88, 0.50, 0.42}, {0.35, 0.18, 0.35}}, .detail = 0.25, .seed = 18,
      .spin_axis = {0.0, 0.0, 1.0}, .spin = 0.20},
-    /* 8: a ball that passes behind the still things */
+    /* 8: a ball that passes behind the static objects */
     {.shape = ADCGS_SHAPE_BALL, .size = {0.24}, .position = {-0.85, 1.30, 0.24}, .texture = ADCGS_TEXTURE_STRIPES,
      .frequency = 6.0, .colour = {{0.20, 0.60, 0.62}, {0.92, 0.92, 0.86}}, .seed = 19, .velocity = {1.5, -0.15, 0.0},
      .spin_axis = {0.0, 1.0, 0.0}, .spin = 0.60},
@@ -52,7 +54,7 @@ static const adcgs_trace_object stage[] = {
 
 enum { HOP = 1 << 6, SPIN = 1 << 7, PASS = 1 << 8, FADE = 1 << 9, ORBIT = 1 << 10 };
 
-/* A few things that hardly anything is needed to learn. */
+/* A few objects that are easy to train. */
 static const adcgs_trace_object mini[] = {
     {.shape = ADCGS_SHAPE_DOME, .size = {7.0}, .texture = ADCGS_TEXTURE_NOISE, .frequency = 0.25,
      .colour = {{0.45, 0.55, 0.70}, {0.80, 0.80, 0.80}}, .seed = 31},
@@ -64,16 +66,16 @@ static const adcgs_trace_object mini[] = {
      .frequency = 3.0, .colour = {{0.80, 0.30, 0.20}, {0.95, 0.75, 0.30}}, .seed = 34, .velocity = {0.60, 0.0, 0.0}},
 };
 
-/* ---- Motion of a known size: a thing that has structure to be followed, on the demo's table ---- */
+/* ---- Motion of a known size: an object with texture to follow, on the demo's table ---- */
 
 #define DISTANCE 4.2
-#define VISIBLE (DISTANCE * 2.0 / ADCGS_SCENES_FOCAL) /* the picture's width at the target */
+#define VISIBLE (DISTANCE * 2.0 / ADCGS_SCENES_FOCAL) /* the image's width at the target */
 
-/* A parcel: patches of 5 pixels of the pictures' own size, with grain. */
+/* A parcel: patches of 5 pixels at the images' default size, with grain. */
 #define PATCHED .texture = ADCGS_TEXTURE_PATCHES, .frequency = 9.0, .detail = 0.6,                             \
                 .colour = {{0.95, 0.80, 0.35}, {0.35, 0.12, 0.20}}
 #define PARCEL .shape = ADCGS_SHAPE_BOX, PATCHED
-/* Along x from one side of the target to the other, as the camera in the middle of the arc has it across. */
+/* Along x from one side of the target to the other: horizontal in the middle camera of the arc. */
 #define CROSSING(share)                                                                                         \
     {PARCEL, .size = {0.26, 0.22, 0.26}, .position = {-0.5 * (share) * VISIBLE, -0.10, 0.26}, .seed = 41,      \
      .velocity = {(share) * VISIBLE, 0.0, 0.0}}
@@ -90,7 +92,7 @@ static const adcgs_trace_object turn1[] = {STILL, PEDESTAL, TURNING(1.0)};
 static const adcgs_trace_object turn3[] = {STILL, PEDESTAL, TURNING(3.0)};
 static const adcgs_trace_object appear[] = {
     STILL, PEDESTAL, {PARCEL, .size = {0.28, 0.24, 0.30}, .position = {0.0, 0.15, 0.62}, .seed = 43, .from = 0.5}};
-/* Ten seconds, in which a fifth of the picture moves. The parcel comes in flight, the ball goes as it rolls. */
+/* Ten seconds, in which a fifth of the image moves. The parcel appears in flight, the ball disappears while it rolls. */
 static const adcgs_trace_object clip[] = {
     STILL,
     PEDESTAL,
@@ -101,7 +103,7 @@ static const adcgs_trace_object clip[] = {
     {PARCEL, .size = {0.18, 0.18, 0.18}, .position = {0.2, -0.75, 0.9}, .seed = 48, .velocity = {0.9, 0.3, -0.7}, .from = 0.35},
     {.shape = ADCGS_SHAPE_LAMP, .size = {0.7}, .position = {-0.7, -0.1, 1.0}, .from = 0.45},
 };
-/* Rungs of a ladder, from one thing that is still to many that flow; the other scenes of this size are among them. */
+/* Steps of increasing complexity, from one static object to many that flow; other scenes of this size fit in between. */
 #define PLAIN_DOME {.shape = ADCGS_SHAPE_DOME, .size = {7.0}, .colour = {{0.55, 0.60, 0.66}, {0.55, 0.60, 0.66}}}
 #define STANDING(x, y) {PARCEL, .size = {0.30, 0.24, 0.34}, .position = {x, y, 0.34}, .seed = 51}
 #define ARM(side, number)                                                                                       \
@@ -137,16 +139,16 @@ static const adcgs_trace_object drops[] = {
 };
 static const adcgs_trace_object split[] = {STILL, HALF(-1.0, 44), HALF(1.0, 45)};
 
-/* ---- What methods fail at, one difficulty each; how hard it is, their names or --motion say ---- */
+/* ---- Cases where methods fail, one difficulty each; the names or --motion give the degree ---- */
 
-/* To and fro, as fast as it goes: twice the share of the picture's width in a clip for each zig. */
+/* Back and forth at constant speed: each zig covers twice the share of the image's width in a clip. */
 #define ZIGZAG(share, up, times)                                                                                \
     {PARCEL, .size = {0.24, 0.22, 0.24}, .position = {-0.5 * (share) * VISIBLE, -0.10, 0.24}, .seed = 81,      \
      .zigzag = {(share) * VISIBLE, 0.0, up}, .zigs = (times)}
 #define BLINK(moments)                                                                                          \
     {PARCEL, .size = {0.28, 0.24, 0.30}, .position = {0.0, 0.15, 0.62}, .seed = 82, .from = 11.75 / 23.0,       \
      .until = (11.75 + (moments)) / 23.0}
-/* Upright, on a circle that turns; so many pixels of a picture that is 160 wide are as thick as they. */
+/* Upright, on a rotating circle. The thickness is given in pixels of an image 160 pixels wide. */
 #define ROD(pixels, x, y)                                                                                       \
     {.shape = ADCGS_SHAPE_CYLINDER, .size = {0.5 * (pixels) * VISIBLE / 160.0, 0.0, 0.45}, .position = {x, y, 0.77}, \
      .colour = {{0.16, 0.10, 0.22}, {0.16, 0.10, 0.22}}, .orbit = {0.0, 0.15}, .orbit_turns = 0.3}
@@ -195,14 +197,14 @@ static const adcgs_trace_object fire[] = {
     STILL, PEDESTAL, FLAME(0.0, 0.15, 0.66, 0.28, 2.0, 5.0, 91), FLAME(-0.16, 0.05, 0.52, 0.20, 2.6, 7.0, 92),
     FLAME(0.17, 0.10, 0.54, 0.21, 2.3, 6.0, 93)};
 
-/* The last `movers` of an array move. 11 views for testing: none is at the very moment at which a thing appears. */
+/* The last `movers` of an array move. There are 11 test views, so that none has exactly the time at which an object appears. */
 #define LAST_MOVE(things, movers)                                                                               \
     .objects = things, .n_objects = (int)ADCGS_COUNTOF(things),                                                 \
     .moving = ((1u << (movers)) - 1u) << (ADCGS_COUNTOF(things) - (movers)), .size = 160, .distance = DISTANCE, \
     .target = {0.0, 0.0, 0.35}
 #define MOVING(things, movers) LAST_MOVE(things, movers), .cameras = 12, .times = 24, .turns = 3, .n_val = 5, .n_test = 11
 
-/* The same, filmed by one camera in a hand: 90 moments, each seen once. */
+/* The same from one hand-held camera: 90 times, each seen once. */
 #define FILMED(things, movers)                                                                                    \
     LAST_MOVE(things, movers), .path = ADCGS_PATH_HAND, .cameras = 1, .times = 90, .turns = 1, .swings = 1.5, .n_val = 9, \
     .n_test = 22
@@ -212,7 +214,7 @@ static const adcgs_trace_object fire[] = {
     .n_test = 10, .distance = 4.2, .target = {0.0, 0.0, 0.35}
 
 static const adcgs_scenes_entry entries[] = {
-    {.name = "demo", .about = "things on a table: some still, five that hop, turn, pass behind, fade and fly",
+    {.name = "demo", .about = "objects on a table: some static, five that hop, turn, pass behind, fade and fly",
      .moving = HOP | SPIN | PASS | FADE | ORBIT, STAGE},
     {.name = "still", .about = "the demo's table, nothing moves", .moving = 0, STAGE},
     {.name = "hop", .about = "the demo's table, only the hopping ball moves", .moving = HOP, STAGE},
@@ -223,38 +225,38 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "tiny", .about = "a miniature for tests: a box and a ball that slides", .objects = mini,
      .n_objects = (int)ADCGS_COUNTOF(mini), .moving = 1 << 3, .size = 64, .cameras = 6, .times = 8, .turns = 2, .n_val = 1,
      .n_test = 3, .distance = 4.2, .target = {0.0, 0.0, 0.3}},
-    {.name = "cross5", .about = "a box crosses 5 % of the picture's width", MOVING(cross5, 1)},
-    {.name = "cross20", .about = "a box crosses 20 % of the picture's width", MOVING(cross20, 1)},
-    {.name = "cross80", .about = "a box crosses 80 % of the picture's width", MOVING(cross80, 1)},
+    {.name = "cross5", .about = "a box crosses 5 % of the image's width", MOVING(cross5, 1)},
+    {.name = "cross20", .about = "a box crosses 20 % of the image's width", MOVING(cross20, 1)},
+    {.name = "cross80", .about = "a box crosses 80 % of the image's width", MOVING(cross80, 1)},
     {.name = "turn1", .about = "a box turns once", MOVING(turn1, 1)},
     {.name = "turn3", .about = "a box turns three times", MOVING(turn3, 1)},
-    {.name = "appear", .about = "a box is there from half of the clip on", MOVING(appear, 1)},
+    {.name = "appear", .about = "a box appears halfway through the clip", MOVING(appear, 1)},
     {.name = "split", .about = "a box comes apart, and its halves slide away from each other", MOVING(split, 2)},
-    {.name = "object", .about = "a ladder of complexity: one parcel under a plain sky, nothing moves", MOVING(object, 0)},
-    {.name = "pair", .about = "that parcel twice", MOVING(pair, 0)},
-    {.name = "table", .about = "the table's still things alone", MOVING(table, 0)},
-    {.name = "several", .about = "on it two parcels and a ball that go their ways", MOVING(several, 3)},
-    {.name = "hinge", .about = "on it two arms on one hinge", MOVING(hinge, 2)},
-    {.name = "soft", .about = "on it a ball that is stretched and pressed", MOVING(soft, 1)},
-    {.name = "drops", .about = "on it a fountain of twelve drops", MOVING(drops, 12)},
-    {.name = "film-cross20", .about = "cross20 filmed by one camera, held in a hand", FILMED(cross20, 1)},
-    {.name = "film-cross80", .about = "cross80 filmed so", FILMED(cross80, 1)},
-    {.name = "film-turn1", .about = "turn1 filmed so", FILMED(turn1, 1)},
-    {.name = "film-demo", .about = "demo filmed so", .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage),
+    {.name = "object", .about = "rising complexity: one static parcel under a plain sky", MOVING(object, 0)},
+    {.name = "pair", .about = "two such parcels", MOVING(pair, 0)},
+    {.name = "table", .about = "the table's static objects alone", MOVING(table, 0)},
+    {.name = "several", .about = "on this table two parcels and a ball that move independently", MOVING(several, 3)},
+    {.name = "hinge", .about = "on this table two arms on one hinge", MOVING(hinge, 2)},
+    {.name = "soft", .about = "on this table a ball that is stretched and pressed", MOVING(soft, 1)},
+    {.name = "drops", .about = "on this table a fountain of twelve drops", MOVING(drops, 12)},
+    {.name = "film-cross20", .about = "cross20 filmed by one hand-held camera", FILMED(cross20, 1)},
+    {.name = "film-cross80", .about = "cross80 from a hand-held camera", FILMED(cross80, 1)},
+    {.name = "film-turn1", .about = "turn1 from a hand-held camera", FILMED(turn1, 1)},
+    {.name = "film-demo", .about = "demo from a hand-held camera", .objects = stage, .n_objects = (int)ADCGS_COUNTOF(stage),
      .moving = HOP | SPIN | PASS | FADE | ORBIT, .size = 256, .path = ADCGS_PATH_HAND, .cameras = 1, .times = 120, .turns = 1,
      .swings = 2.0, .n_val = 9, .n_test = 22, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},
-    {.name = "race", .about = "a box goes to and fro over 80 % of the picture's width", MOVING(race, 1)},
-    {.name = "bounce", .about = "a box goes up a ramp and back, with sharp turns", MOVING(bounce, 1)},
-    {.name = "collide", .about = "two boxes meet and go back", MOVING(collide, 2)},
+    {.name = "race", .about = "a box moves back and forth over 80 % of the image's width", MOVING(race, 1)},
+    {.name = "bounce", .about = "a box moves up a ramp and back, with sharp turns", MOVING(bounce, 1)},
+    {.name = "collide", .about = "two boxes meet and return", MOVING(collide, 2)},
     {.name = "merge", .about = "two halves become one box, and part again", MOVING(merge, 2)},
     {.name = "wall", .about = "a box passes behind a wall", MOVING(wall, 1)},
-    {.name = "blink1", .about = "a box is there for one moment", MOVING(blink1, 1)},
-    {.name = "blink2", .about = "for two", MOVING(blink2, 1)},
-    {.name = "blink5", .about = "for five", MOVING(blink5, 1)},
-    {.name = "rods4", .about = "five upright rods go round; each is four pixels thick", MOVING(rods4, 5)},
+    {.name = "blink1", .about = "a box is visible in one frame", MOVING(blink1, 1)},
+    {.name = "blink2", .about = "in two frames", MOVING(blink2, 1)},
+    {.name = "blink5", .about = "in five frames", MOVING(blink5, 1)},
+    {.name = "rods4", .about = "five upright rods circle; each is four pixels thick", MOVING(rods4, 5)},
     {.name = "rods2", .about = "two pixels", MOVING(rods2, 5)},
     {.name = "rods1", .about = "one pixel", MOVING(rods1, 5)},
-    {.name = "slide", .about = "a box stays, and its pattern moves over it", MOVING(slide, 1)},
+    {.name = "slide", .about = "a static box whose pattern moves over it", MOVING(slide, 1)},
     {.name = "glass30", .about = "a moving ball whose sides let 30 % of the light through", MOVING(glass30, 1)},
     {.name = "glass60", .about = "60 %", MOVING(glass60, 1)},
     {.name = "glass90", .about = "90 %", MOVING(glass90, 1)},
@@ -262,9 +264,9 @@ static const adcgs_scenes_entry entries[] = {
     {.name = "mirror60", .about = "60 %", MOVING(mirror60, 1)},
     {.name = "mirror90", .about = "90 %", MOVING(mirror90, 1)},
     {.name = "fire", .about = "a fire that flickers", MOVING(fire, 3)},
-    {.name = "tripod", .about = "several filmed by one camera that never moves", LAST_MOVE(several, 3), .path = ADCGS_PATH_TRIPOD,
+    {.name = "tripod", .about = "several filmed by one static camera", LAST_MOVE(several, 3), .path = ADCGS_PATH_TRIPOD,
      .cameras = 1, .times = 60, .turns = 1, .n_val = 5, .n_test = 15},
-    {.name = "clip", .about = "ten seconds: things move, one comes, one goes, a lamp is switched on",
+    {.name = "clip", .about = "ten seconds: objects move, one appears, one disappears, a lamp is switched on",
      .objects = clip, .n_objects = (int)ADCGS_COUNTOF(clip), .moving = 0xf << (ADCGS_COUNTOF(clip) - 4), .size = 128,
      .cameras = 12, .times = 300, .turns = 3, .n_val = 5, .n_test = 29, .distance = DISTANCE, .target = {0.0, 0.0, 0.35}},
 };

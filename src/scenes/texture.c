@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Procedural textures: functions of a point in an object's own coordinates, and nothing else. */
+/** \file Procedural textures: functions of a point in an object's own coordinates only. */
 #include "scenes/texture.h"
 
 #include "scenes/sine.h"
@@ -78,7 +78,7 @@ static double dots(const double p[3])
 
 double adcgs_texture_mix(const adcgs_trace_object *object, const double point[3])
 {
-    /* The offset keeps cell borders off the symmetry planes of shapes, where rounding would decide the cell. */
+    /* The offset keeps cell borders off the symmetry planes of shapes, where rounding would select the cell. */
     double p[3];
     for (int a = 0; a < 3; a++)
         p[a] = point[a] * object->frequency + 0.3125;

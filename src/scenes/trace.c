@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Things at one moment, rays among them, and the light on what these hit. */
+/** \file Poses of objects at a time, rays among them, and shading of the surfaces that rays hit. */
 #include "scenes/trace.h"
 
 #include "camera/rotation.h"
@@ -10,17 +10,17 @@
 #include <math.h>
 
 #define SAMPLES_MAX 8
-#define DEPTH_MAX 6 /* surfaces that a ray goes through or comes back from, and the last */
+#define DEPTH_MAX 6 /* limit of surfaces on a ray's path: transparent or mirroring ones, and the last */
 
-/* An object at one moment. */
+/* An object at one time. */
 typedef struct pose {
     double centre[3];
     double axes[9]; /* rows are the local axes in the world */
-    double stretch[3]; /* along these */
-    double slide[3];   /* how far its texture has gone */
+    double stretch[3]; /* along these axes */
+    double slide[3];   /* displacement of its texture */
     double fade;
-    double bound2;  /* squared radius of a ball around it; negative: it is not there, or not seen */
-    int shines;     /* as a lamp */
+    double bound2;  /* squared radius of a ball around it; negative: absent or invisible */
+    int shines;     /* nonzero: a lamp */
 } pose;
 
 typedef struct job {
@@ -29,14 +29,14 @@ typedef struct job {
     int n, width, height, samples;
     const adcgs_trace_camera *camera;
     double light[SAMPLES_MAX * SAMPLES_MAX][3];
-    uint32_t which; /* objects whose share is wanted */
-    float *out;     /* colours or shares */
+    uint32_t which; /* objects whose coverage is requested */
+    float *out;     /* colours or coverage */
 } job;
 
 typedef struct hit {
     double t;
     int object;
-    double painted[3], normal[3]; /* where its texture is looked up; the normal in local axes, not turned towards the ray */
+    double painted[3], normal[3]; /* texture coordinates; normal in local axes, not turned towards the ray */
 } hit;
 
 void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const double target[3])
@@ -46,13 +46,13 @@ void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const dou
     adcgs_pose_other_axes(camera->to_world);
 }
 
-/* Turn a vector about a unit axis. */
+/* Turns a vector about a unit axis. */
 static void rotate(double v[3], const double axis[3], double turns)
 {
     adcgs_v3_rotate(axis, adcgs_trace_sin(turns), adcgs_trace_cos(turns), v);
 }
 
-/* To 1 and back, in straight lines: 0 at whole numbers, 1 between them. */
+/* Triangle wave, 0 to 1 and back: 0 at whole numbers, 1 halfway between them. */
 static double there_and_back(double x)
 {
     const double f = 2.0 * (x - (double)(int)x);
@@ -94,7 +94,7 @@ static void pose_at(pose *out, const adcgs_trace_object *o, double time)
     out->shines = is_there && is_lamp;
 }
 
-/* Does the ray pass through the ball around the object, in front of its origin? */
+/* True if the ray passes through the ball around the object, in front of the ray's origin. */
 static int near_object(const pose *at, const double from[3], const double direction[3])
 {
     double to[3];
@@ -104,7 +104,7 @@ static int near_object(const pose *at, const double from[3], const double direct
     return d2 < at->bound2 || (along > 0.0 && d2 - along * along < at->bound2);
 }
 
-/* In the axes of the object at rest: what is stretched is seen as it was. */
+/* Converts to the axes of the undeformed object, which undoes stretching. */
 static void to_local(const pose *at, const double v[3], double out[3])
 {
     for (int a = 0; a < 3; a++)
@@ -158,7 +158,7 @@ static void surface_colour(const job *j, const hit *h, double colour[3])
         colour[c] = (o->colour[0][c] + (o->colour[1][c] - o->colour[0][c]) * mix + o->fade[c] * j->poses[h->object].fade) * grain;
 }
 
-/* What a lamp adds to a surface that looks its way. */
+/* Light from a lamp on a surface that faces it. */
 static double lamp_light(const adcgs_trace_object *lamp, const pose *at, const double point[3], const double normal[3])
 {
     double to[3], square = 0.0;
@@ -171,7 +171,7 @@ static double lamp_light(const adcgs_trace_object *lamp, const pose *at, const d
     return facing > 0.0 ? 0.45 * facing / sqrt(square) / (1.0 + share * share) : 0.0;
 }
 
-/* Of what is hit, in the world. */
+/* The normal of a hit in world axes. */
 static void turn_normal(const job *j, const hit *h, double normal[3])
 {
     const pose *const at = &j->poses[h->object];
@@ -210,7 +210,7 @@ static hit trace_ray(const job *j, const double from[3], const double direction[
     return nearest;
 }
 
-/* Of sample k of the pixel (x, y). */
+/* The ray of sample k of pixel (x, y). */
 static void aim(const job *j, int x, int y, int k, double direction[3])
 {
     const double *const m = j->camera->to_world;
@@ -222,14 +222,14 @@ static void aim(const job *j, int x, int y, int k, double direction[3])
     adcgs_v3_normalise(direction);
 }
 
-/* Its tongues have an edge. */
+/* Transparency of a flame: smooth, with clear edges of its tongues. */
 static double gaps_of_flame(double mix)
 {
     const double x = (0.62 - mix) / 0.24;
     return x <= 0.0 ? 0.0 : x >= 1.0 ? 1.0 : x;
 }
 
-/* The share of the light that comes from beyond, or out of the mirror; the ray goes on from there. */
+/* Continues a ray through a transparent surface or from a mirror. Returns the share of light that arrives along it. */
 static double go_on(const job *j, const hit *h, double from[3], double direction[3])
 {
     const adcgs_trace_object *const o = &j->objects[h->object];
@@ -322,7 +322,7 @@ static void cover_row(void *arg, int y, int thread)
     }
 }
 
-/* A disc of light directions, one per sample of a pixel: shadows get a soft edge that is the same from every side. */
+/* A disc of light directions, one per sample of a pixel: shadows have a soft edge that is the same from every viewpoint. */
 static void spread_light(job *j)
 {
     const int s = j->samples;

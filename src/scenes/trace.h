@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The ray tracer behind the scenes: a list of textured shapes with simple
- * motions, a key light with a soft edge, ambient and fill light.
+ * The ray tracer of the scenes: a list of textured shapes with simple motions, a key light with a soft edge, ambient and fill
+ * light.
  */
 #ifndef ADCGS_SCENES_TRACE_H
 #define ADCGS_SCENES_TRACE_H
@@ -16,9 +16,9 @@ typedef enum adcgs_trace_shape {
     ADCGS_SHAPE_FLOOR,    /**< the disc z = position z of radius size[0] */
     ADCGS_SHAPE_HAIR,     /**< a chain of capsules of radius size[0] from z = -size[2] to size[2] along a parabola; its
                                middle lies at x = size[1], its ends at x = 0; casts no shadow */
-    ADCGS_SHAPE_DOME,     /**< a ball seen from inside: shines by itself, casts no shadow */
-    ADCGS_SHAPE_ROOM,     /**< a box seen from inside, size is half the edges; light from outside passes its walls */
-    ADCGS_SHAPE_LAMP      /**< not seen; shines on what is about it, half as bright at the distance size[0], through everything */
+    ADCGS_SHAPE_DOME,     /**< a ball seen from inside: emits light, casts no shadow */
+    ADCGS_SHAPE_ROOM,     /**< a box seen from inside, size is half the edges; outside light passes through its walls */
+    ADCGS_SHAPE_LAMP      /**< invisible; lights its surroundings, half as bright at the distance size[0], through everything */
 } adcgs_trace_shape;
 
 typedef enum adcgs_trace_texture {
@@ -31,7 +31,7 @@ typedef enum adcgs_trace_texture {
     ADCGS_TEXTURE_DOTS
 } adcgs_trace_texture;
 
-/** One thing in a scene. Motions are added up; a member left at zero does nothing. Time runs from 0 to 1. */
+/** One object in a scene. Motions add up; a member left at zero has no effect. Time runs from 0 to 1. */
 typedef struct adcgs_trace_object {
     adcgs_trace_shape shape;
     double size[3];
@@ -47,18 +47,20 @@ typedef struct adcgs_trace_object {
     double bounces, bounce_height;
     double spin_axis[3], spin;   /**< unit axis, turns per unit of time */
     double orbit[2], orbit_turns; /**< circle about the point orbit (x, y) in turns per unit of time */
-    double stretch[3], beats;    /**< soft: its size along local axes times 1 + stretch sin(beats time), its texture with it */
-    double zigzag[3], zigs;      /**< to there and back in straight lines, so many times per unit of time, with sharp turns */
-    double slide[3];             /**< of its texture over it while itself it stays, units per unit of time */
-    double clear;                /**< glass: the share of what is behind that is seen through each of its sides, not bent */
-    double mirror;               /**< the share of what it reflects */
-    int glows;                   /**< fire: shines by itself, casts no shadow; it has gaps where its texture's mix is small */
-    double fade[3];              /**< added to both colours by time 1, smoothly */
-    double from;                 /**< before this time it is not there */
-    double until;                /**< nor is it from this time on; 0: it stays */
+    double stretch[3], beats;    /**< soft body: factor 1 + stretch sin(beats time) of its size along local axes; its texture
+                                      deforms with it */
+    double zigzag[3], zigs;      /**< back and forth along this vector in straight lines, zigs times per unit of time, with
+                                      sharp turns */
+    double slide[3];             /**< motion of its texture over the static surface, units per unit of time */
+    double clear;                /**< glass: share of the light that passes through each of its sides, without refraction */
+    double mirror;               /**< share of reflected light */
+    int glows;                   /**< fire: emits light, casts no shadow; has gaps where its texture's mix is small */
+    double fade[3];              /**< added smoothly to both colours until time 1 */
+    double from;                 /**< absent before this time */
+    double until;                /**< absent from this time on; 0: it stays */
 } adcgs_trace_object;
 
-/** A camera of the tracer: OpenGL axes (x right, y up, looking along -z), as in the layout that is written. */
+/** A camera of the tracer: OpenGL axes (x right, y up, looking along -z), as in the written layout. */
 typedef struct adcgs_trace_camera {
     double to_world[12]; /**< row-major 3x4 */
     double focal;        /**< in pixels */
@@ -68,22 +70,22 @@ typedef struct adcgs_trace_camera {
 void adcgs_trace_look(adcgs_trace_camera *camera, const double eye[3], const double target[3]);
 
 /**
- * Picture of objects [n] at a time, 0..1 interleaved rgb [height][width][3], with samples x samples rays per pixel.
- * The same bytes for any number of threads.
+ * Renders n objects at a time: interleaved rgb [height][width][3], 0..1, with samples x samples rays per pixel. The bytes are
+ * the same for any number of threads.
  */
 adcgs_status adcgs_trace_render(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time,
                                 int width, int height, int samples, adcgs_pool *pool, float *rgb, adcgs_error *error);
 
 /**
  * Coverage of the image by objects: the share of a pixel's samples that meet one, 0..1, [height][width]. Samples are those of
- * adcgs_trace_render(), whose colours are premultiplied by it.
+ * adcgs_trace_render(), whose colours are premultiplied by the coverage.
  */
 adcgs_status adcgs_trace_alpha(const adcgs_trace_object *objects, int n, const adcgs_trace_camera *camera, double time, int width,
                                int height, int samples, adcgs_pool *pool, float *alpha, adcgs_error *error);
 
 /**
- * Where some of the objects are seen: 1 where the nearest surface is, for at least half of a pixel's samples, that of an object
- * whose bit (bit i: object i) is set in `which`, else 0; [height][width]. Samples are those of adcgs_trace_render().
+ * Mask of some objects, [height][width]: 1 if, for at least half of a pixel's samples, the nearest surface belongs to an object
+ * whose bit (bit i: object i) is set in `which`, else 0. Samples are those of adcgs_trace_render().
  */
 adcgs_status adcgs_trace_cover(const adcgs_trace_object *objects, int n, uint32_t which, const adcgs_trace_camera *camera,
                                double time, int width, int height, int samples, adcgs_pool *pool, float *cover,

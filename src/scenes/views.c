@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The paths of cameras, from basic arithmetic alone, as all of the scenes. */
+/** \file The paths of cameras, from basic arithmetic only, like all code of the scenes. */
 #include "scenes/views.h"
 
 #include "scenes/sine.h"
 
 #include <math.h>
 
-#define GOLDEN 0.3819660112501051 /* turns from one camera of a sphere to the next: (3 - sqrt 5) / 2 */
+#define GOLDEN 0.3819660112501051 /* turns between consecutive cameras of a sphere: (3 - sqrt 5) / 2 */
 #define LOWEST (-0.35)            /* sines of the elevations of its lowest and highest camera */
 #define HIGHEST 0.95
-#define DRIVEN 8.0                /* units that a car drives in a clip */
-#define FRONT_ARC 0.083           /* turns, on which cameras in front of the target stand */
-#define SWEPT 2.0                 /* units that a camera sweeps along x */
-#define BEHIND 10.0               /* units from its path back to the point where all of its optical axes meet */
+#define DRIVEN 8.0                /* units that the car drives in a clip */
+#define FRONT_ARC 0.083           /* turns of the arc of cameras in front of the target */
+#define SWEPT 2.0                 /* units that the camera sweeps along x */
+#define BEHIND 10.0               /* units behind its path, the point where all optical axes meet */
 
-/* By split: views for validation and testing lie between those for training, those for testing between their times, too. */
+/* By split: validation and test views lie between the training cameras; test views also lie between their times. */
 static const double between[ADCGS_SPLITS] = {0.0, 0.3, 0.5}, later[ADCGS_SPLITS] = {0.0, 0.0, 0.5};
 
 int adcgs_scenes_split_size(const adcgs_scenes_entry *scene, int split)
@@ -39,8 +39,8 @@ void adcgs_scenes_place(adcgs_trace_camera *camera, const adcgs_scenes_entry *sc
 }
 
 /*
- * A camera in a hand: to and fro on an arc of 50 degrees, and up and down. Views for validation and testing
- * are from a hand's breadth or two beside it, as if by a second lens; those for testing between its moments.
+ * A hand-held camera: back and forth on an arc of 50 degrees, and up and down. Validation and test views are offset sideways by
+ * a hand's breadth or two, as if from a second lens. The times of test views lie between the camera's times.
  */
 static adcgs_scenes_view filmed_at(const adcgs_scenes_entry *scene, int split, int i, int width)
 {
@@ -54,7 +54,7 @@ static adcgs_scenes_view filmed_at(const adcgs_scenes_entry *scene, int split, i
     return v;
 }
 
-/* Camera and time of training's image i: cameras take turns, each time is seen by some of them. */
+/* Camera and time of training image i: cameras take turns, so some of them see each time. */
 static void take_turns(const adcgs_scenes_entry *scene, int i, adcgs_scenes_view *v)
 {
     const int each = scene->cameras / scene->turns, moment = i / each, steps = scene->times - 1;
@@ -62,7 +62,7 @@ static void take_turns(const adcgs_scenes_entry *scene, int i, adcgs_scenes_view
     v->time = steps > 0 ? (double)moment / steps : 0.0;
 }
 
-/* The time of view i of the others. 7 is coprime to the counts in use, so that place and time do not run together. */
+/* Time of view i of another split. 7 is coprime to the counts in use, so that place and time are not correlated. */
 static double scattered_time(const adcgs_scenes_entry *scene, int split, int i)
 {
     const int steps = scene->times - 1, count = adcgs_scenes_split_size(scene, split);
@@ -70,7 +70,7 @@ static double scattered_time(const adcgs_scenes_entry *scene, int split, int i)
     return steps > 0 ? ((double)(int)moment + later[split]) / steps : 0.0;
 }
 
-/* Place 0..1 and time of view i among all of a split: training's cameras from end to end, the others between them. */
+/* Place 0..1 and time of view i of a split: training cameras from end to end, the others between them. */
 static double spread(const adcgs_scenes_entry *scene, int split, int i, adcgs_scenes_view *v)
 {
     if (split == ADCGS_SPLIT_TRAIN) {
@@ -81,7 +81,7 @@ static double spread(const adcgs_scenes_entry *scene, int split, int i, adcgs_sc
     return (i + between[split]) / adcgs_scenes_split_size(scene, split);
 }
 
-/* Training's cameras stand at three heights. */
+/* Training cameras stand at three heights. */
 static adcgs_scenes_view view_on_arc(const adcgs_scenes_entry *scene, int split, int i, int width)
 {
     static const double heights[3] = {0.050, 0.120, 0.085};
@@ -95,7 +95,7 @@ static adcgs_scenes_view view_on_arc(const adcgs_scenes_entry *scene, int split,
     return v;
 }
 
-/* Evenly over the sphere, each camera a golden angle further round than the one below. */
+/* Evenly over the sphere: each camera is a golden angle further around than the one below it. */
 static adcgs_scenes_view view_around(const adcgs_scenes_entry *scene, int split, int i, int width)
 {
     adcgs_scenes_view v = {.time = 0.0, .camera.focal = focal_of(scene, width)};
@@ -110,7 +110,7 @@ static adcgs_scenes_view view_around(const adcgs_scenes_entry *scene, int split,
     return v;
 }
 
-/* How far a camera that goes its way once is, 0..1: by its time, or, in a static scene, by the number of the image. */
+/* Progress 0..1 of a camera along its path: from its time, or in a static scene from the image's number. */
 static double gone(const adcgs_scenes_entry *scene, int split, int i, adcgs_scenes_view *v)
 {
     const int count = adcgs_scenes_split_size(scene, split), steps = scene->times - 1;
@@ -121,7 +121,7 @@ static double gone(const adcgs_scenes_entry *scene, int split, int i, adcgs_scen
     return steps > 0 ? v->time : split == ADCGS_SPLIT_TRAIN ? (double)v->number / scene->cameras : (i + between[split]) / count;
 }
 
-/* Once round. The step of who walks is uneven; who tests walks a little inside or outside of the way. */
+/* Once around. The steps of the training camera are uneven. Test cameras walk slightly inside or outside of its path. */
 static adcgs_scenes_view view_walking(const adcgs_scenes_entry *scene, int split, int i, int width)
 {
     adcgs_scenes_view v = {.time = 0.0, .camera.focal = focal_of(scene, width)};
@@ -135,7 +135,7 @@ static adcgs_scenes_view view_walking(const adcgs_scenes_entry *scene, int split
     return v;
 }
 
-/* Training's cameras look ahead and to both sides by 25 degrees; who tests looks between them. */
+/* Training cameras look ahead and to both sides by 25 degrees; test cameras look between them. */
 static adcgs_scenes_view view_driving(const adcgs_scenes_entry *scene, int split, int i, int width)
 {
     adcgs_scenes_view v = {.time = 0.0, .camera.focal = focal_of(scene, width)};
@@ -200,7 +200,7 @@ adcgs_scenes_view adcgs_scenes_view_at(const adcgs_scenes_entry *scene, int spli
     }
 }
 
-/* Evenly spaced, in an order that follows no direction: 0 to n - 1 times a number that is coprime to n. */
+/* Evenly spaced exposures in a scattered order: the camera's number times a step that is coprime to n, modulo n. */
 double adcgs_scenes_stops(const adcgs_scenes_entry *scene, int camera)
 {
     const int n = scene->cameras;

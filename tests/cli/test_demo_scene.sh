@@ -17,7 +17,7 @@ frames() { grep -c file_path "$dir/$1/transforms_$2.json"; }
 places() { grep transform_matrix "$dir/$1/transforms_$2.json" | sed 's/ *}.*//' | sort -u | wc -l; }
 
 expect 2 "unknown fault 'fog'" ./adcgs-demo-scene --spoil fog=1 -o "$dir/none"
-expect 2 "pose wants a strength" ./adcgs-demo-scene --spoil drop=0.1,pose -o "$dir/none"
+expect 2 "pose needs a strength" ./adcgs-demo-scene --spoil drop=0.1,pose -o "$dir/none"
 expect 2 "a number from 0 to 0.95" ./adcgs-demo-scene --spoil drop=1 -o "$dir/none"
 expect 2 "a whole number from 0 to 3" ./adcgs-demo-scene --spoil axes=0.5 -o "$dir/none"
 expect 2 "after the comma" ./adcgs-demo-scene --spoil pose=1, -o "$dir/none"
@@ -70,7 +70,7 @@ scene two --cameras 2
 
 # Each scene can be rendered. Alpha needs PNG.
 expect 2 "expected png" ./adcgs-demo-scene --scene dome --format ppm -o "$dir/none"
-expect 2 "on no arc" ./adcgs-demo-scene --scene sweep --aside 0.1 -o "$dir/none"
+expect 2 "not on an arc" ./adcgs-demo-scene --scene sweep --aside 0.1 -o "$dir/none"
 ./adcgs-demo-scene --list >"$dir/list"
 while read -r name about; do
     case $name in dome*) format=png ;; *) format=ppm ;; esac
