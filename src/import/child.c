@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Another program, run to its end. */
+/** \file Runs another program to its end. */
 #include "config.h"
 
 #include "import/child.h"
@@ -25,7 +25,10 @@ typedef struct listener {
     int stop, is_told;
 } listener;
 
-/** The log gets whole lines, so that the same output makes the same calls, however it arrives; who waits may look. */
+/**
+ * Writes whole lines to the log, so that equal output makes equal calls however it is split on arrival. Users may read the log
+ * at the same time.
+ */
 static void take_bytes(listener *l, const char *bytes, size_t n)
 {
     size_t from = 0;
@@ -46,7 +49,7 @@ static void take_bytes(listener *l, const char *bytes, size_t n)
     }
 }
 
-/** Until nobody can write any more. */
+/** Reads until all writers have closed the pipe. */
 static void listen(listener *l, int fd, pid_t child)
 {
     char bytes[4096];

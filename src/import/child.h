@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Another program, run to its end: its words go into a log, and each line to who wants to know how far it is. */
+/** \file Runs another program to its end. Its output goes into a log, and each line to a callback for progress. */
 #ifndef ADCGS_IMPORT_CHILD_H
 #define ADCGS_IMPORT_CHILD_H
 
@@ -7,12 +7,15 @@
 
 #include <stdio.h>
 
-/** Told each line that the child writes, without its end, and "" every tenth of a second without one; nonzero: stop it. */
+/**
+ * Called with each line that the child writes, without its end, and with "" every tenth of a second without a line. Nonzero:
+ * stop the child.
+ */
 typedef int (*adcgs_child_line)(void *user, const char *line);
 
 /**
- * Run argv[0], found along PATH, with argv, NULL behind the last; standard input is empty. log: gets the command and all that it
- * writes; or NULL. *code: its exit code, 128 and more for a signal. ADCGS_ERR_UNSUPPORTED if there is no such program.
+ * Runs argv[0], found along PATH, with argv, which ends with NULL; standard input is empty. log: receives the command and its
+ * output; or NULL. *code: its exit code, 128 and more for a signal. ADCGS_ERR_UNSUPPORTED if there is no such program.
  */
 adcgs_status adcgs_child_run(char *const argv[], FILE *log, adcgs_child_line line, void *user, int *code, adcgs_error *error);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file From footage to a scene, step by step, and the folder that appears whole. */
+/** \file The steps from footage to a scene, and the folder that appears only when it is complete. */
 #include "config.h"
 
 #include "import/import.h"
@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 #define UNFINISHED ".importing"
-#define STAMP "footage.txt" /* what a folder that is not finished is made of */
+#define STAMP "footage.txt" /* fingerprint of the inputs of an unfinished folder */
 #define STAMP_MAX ((uint64_t)1 << 28)
 
 static const char *const kinds[] = {"pictures", "film", "rig"};
@@ -39,7 +39,7 @@ static int remove_entry(const char *path, const struct stat *status, int kind, s
     return remove(path);
 }
 
-/** All of a folder, links as such. */
+/** Removes a whole folder, without following links. */
 static adcgs_status remove_tree(const char *path, adcgs_error *error)
 {
     if (nftw(path, remove_entry, 8, FTW_DEPTH | FTW_PHYS) && errno != ENOENT)
@@ -63,7 +63,7 @@ static void stamp_file(FILE *out, const char *path)
         fprintf(out, "%s %lld %lld\n", path, (long long)s.st_size, (long long)s.st_mtime);
 }
 
-/** What the footage is, and what is to be made of it: with the same, what an unfinished run has made can be gone on with. */
+/** Writes the fingerprint of footage and options. If it is equal, the results of an unfinished run can be reused. */
 static adcgs_status write_stamp(const adcgs_import_job *job, char **text, size_t *bytes)
 {
     const adcgs_import_options *o = job->options;
@@ -83,7 +83,7 @@ static adcgs_status write_stamp(const adcgs_import_job *job, char **text, size_t
     return fclose(out) ? no_memory(job) : ADCGS_OK;
 }
 
-/** Is the folder there one of ours, of the same footage? */
+/** True if the folder was made by adcgs-import from the same footage and options. */
 static int goes_on(const char *path, const char *text, size_t bytes)
 {
     adcgs_error unused;
@@ -96,11 +96,14 @@ static int goes_on(const char *path, const char *text, size_t bytes)
     return same;
 }
 
-/** A folder of that name, empty or with what a run of the same footage has left; one that is nobody's of us is not touched. */
+/**
+ * Makes the folder, empty or with the results of an unfinished run on the same footage. A folder that adcgs-import did not make
+ * is not touched.
+ */
 static adcgs_status open_folder(const adcgs_import_job *job, const char *stamp, const char *text, size_t bytes)
 {
     if (adcgs_is_there(job->folder) && !adcgs_is_there(stamp) && rmdir(job->folder))
-        return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: is there, and not what an import has left: move it away",
+        return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: exists and was not made by an unfinished import; move it away",
                           job->folder);
     if (adcgs_is_there(job->folder) && !goes_on(stamp, text, bytes))
         ADCGS_TRY(remove_tree(job->folder, job->error));
@@ -124,7 +127,7 @@ static adcgs_status begin(const adcgs_import_job *job)
     return status;
 }
 
-/** The stamp goes last: a folder that could not be renamed is still known as ours. */
+/** Removes the stamp last, so that a folder that could not be renamed is still recognised. */
 static adcgs_status remove_stamp(const adcgs_import_job *job)
 {
     char *stamp = adcgs_path("%s/" STAMP, job->options->output);
@@ -133,7 +136,7 @@ static adcgs_status remove_stamp(const adcgs_import_job *job)
     return status;
 }
 
-/** Of a rig the pictures were for COLMAP alone. */
+/** Removes intermediate files and renames the folder. The images of a rig were for COLMAP only. */
 static adcgs_status finish(const adcgs_import_job *job)
 {
     static const char *const scaffolding[] = {"sparse", "database.db", "database.db-shm", "database.db-wal", "colmap.log"};
@@ -188,7 +191,7 @@ static adcgs_status run(adcgs_import_job *job)
     const adcgs_import_options *o = job->options;
     adcgs_colmap_program program;
     if (adcgs_is_there(o->output))
-        return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: is there already", o->output);
+        return adcgs_fail(job->error, ADCGS_ERR_USAGE, "%s: exists already", o->output);
     ADCGS_TRY(adcgs_import_ask(&program, o, job->error));
     ADCGS_TRY(adcgs_shots_list(&job->shots, o, job->progress, job->error));
     report_footage(job);

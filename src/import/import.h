@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Footage whose cameras nobody knows, made a scene: pictures, a video of a camera that moves, or videos of cameras that stand and
- * run in step. Pictures are taken out, made upright and of bounded size; COLMAP finds the cameras; a scene file says what came
- * of it. The folder appears whole or not at all: until then it is called as the output with ".importing" behind it, which holds
- * COLMAP's log, and from which the next run with the same footage goes on.
+ * Makes a scene from footage with unknown cameras: images, a video of a moving camera, or synchronised videos of fixed cameras.
+ * Images are extracted, rotated upright and reduced to a maximum size. COLMAP estimates the cameras. A scene file describes the
+ * result. The folder appears complete or not at all. Until then it has the output's name with ".importing" appended and holds
+ * COLMAP's log; the next run with the same footage continues from it.
  */
 #ifndef ADCGS_IMPORT_IMPORT_H
 #define ADCGS_IMPORT_IMPORT_H
@@ -11,7 +11,7 @@
 #include "cli/cli.h"
 #include "io/fps.h"
 
-/** With more numbers a lens is told better from many pictures; few may agree on whatever they are. */
+/** Models with more parameters describe a lens better, given many images; from few images, parameters may be fitted wrongly. */
 typedef enum adcgs_import_lens {
     ADCGS_IMPORT_RADIAL,
     ADCGS_IMPORT_PINHOLE,
@@ -22,36 +22,37 @@ typedef enum adcgs_import_lens {
 typedef struct adcgs_import_options {
     char *const *inputs; /**< files and folders, as on the command line */
     int n_inputs;
-    const char *output;  /**< the folder to be made */
-    const char *colmap;  /**< the program */
+    const char *output;  /**< folder to create */
+    const char *colmap;  /**< name or path of the program */
     const char *masks;   /**< a folder, or NULL */
-    int side;            /**< width and height of pictures at most */
-    int frames;          /**< of a moving camera's video at most */
-    int test_every;      /**< every so many views, or cameras that stand, for testing; 0: none */
+    int side;            /**< maximum width and height of images */
+    int frames;          /**< maximum number of frames from a moving camera's video */
+    int test_every;      /**< every test_every-th view or fixed camera is for testing; 0: none */
     int lens;            /**< adcgs_import_lens */
     int own_lens;        /**< each camera of a rig has intrinsics of its own */
-    int threads;         /**< of COLMAP; 0: one per processor */
-    adcgs_fps fps;       /**< of pictures that were taken one after the other; not known: at one time */
+    int threads;         /**< for COLMAP; 0: one per processor */
+    adcgs_fps fps;       /**< of images taken one after another; unknown: all at one time */
 } adcgs_import_options;
 
-/** How good the poses are. */
+/** Quality of the poses. */
 typedef struct adcgs_import_report {
     const char *kind;         /**< "pictures", "film" or "rig" */
-    uint32_t pictures, posed; /**< that COLMAP got, and those whose pose it found */
-    uint32_t cameras, found;  /**< that stand, of a rig, and those whose pose was found; else 0 */
-    uint32_t models;          /**< that COLMAP made, of which the largest is taken */
-    uint32_t points;          /**< for training to begin with */
-    double error;             /**< mean distance of points from where they were seen, in pixels */
-    double track;             /**< pictures that see a point, on average */
-    double spread;            /**< of a rig: how far its cameras' poses at other moments lie, over the cameras' mean distance */
+    uint32_t pictures, posed; /**< images given to COLMAP, and those with a pose */
+    uint32_t cameras, found;  /**< fixed cameras of a rig, and those with a pose; otherwise 0 */
+    uint32_t models;          /**< models made by COLMAP; the largest is used */
+    uint32_t points;          /**< initial points for training */
+    double error;             /**< mean reprojection error in pixels */
+    double track;             /**< mean number of images that see a point */
+    double spread;            /**< for a rig: deviation of its cameras' poses at different times, relative to the cameras' mean
+                                   distance */
     double seconds;           /**< of the footage */
-    int width, height;        /**< of the first picture */
-    int is_numbered;          /**< pictures without times whose names only count: perhaps frames of a film */
+    int width, height;        /**< of the first image */
+    int is_numbered;          /**< images without times whose names only count: possibly frames of a video */
 } adcgs_import_report;
 
 /**
- * ADCGS_ERR_USAGE where operands do not go together or the output is there already, ADCGS_ERR_UNSUPPORTED without COLMAP,
- * ADCGS_ERR_DATA where it finds no poses.
+ * Returns ADCGS_ERR_USAGE for conflicting operands or an existing output, ADCGS_ERR_UNSUPPORTED without COLMAP, ADCGS_ERR_DATA
+ * if COLMAP finds no poses.
  */
 adcgs_status adcgs_import(const adcgs_import_options *options, adcgs_progress *progress, adcgs_import_report *report,
                           adcgs_error *error);

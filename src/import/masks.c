@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Masks that come with pictures: found by name, and made like them. */
+/** \file Masks given with images: found by name, and transformed like the images. */
 #include "config.h"
 
 #include "import/pictures.h"
@@ -14,7 +14,7 @@
 
 #define SHAPE_TOLERANCE 0.01
 
-/** A mask by the name it would have without its extension, or with it; NULL if there is none. */
+/** Finds a mask by its name without or with the extension of an image; *out is NULL if there is none. */
 static adcgs_status find(const adcgs_import_job *job, const char *name, int length, char **out)
 {
     char *path = adcgs_path("%s/%.*s", job->options->masks, length, name);
@@ -24,7 +24,10 @@ static adcgs_status find(const adcgs_import_job *job, const char *name, int leng
     return status;
 }
 
-/** A picture's own by the name of its file, whole or without its end, or by that of the one that is made; else its camera's. */
+/**
+ * Finds an image's mask: by the image's file name with or without its extension, by the name of the image in the scene, or else
+ * by its camera's name.
+ */
 static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_shot *shot, char **out)
 {
     const char *slash = shot->path ? strrchr(shot->path, '/') : NULL, *file = slash ? slash + 1 : shot->path;
@@ -33,7 +36,7 @@ static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_shot *sho
     if (file) {
         const char *dot = strrchr(file, '.');
         ADCGS_TRY(find(job, file, dot && dot > file ? (int)(dot - file) : (int)strlen(file), out));
-        char *whole = *out ? NULL : adcgs_path("%s/%s.png", job->options->masks, file); /* COLMAP's way */
+        char *whole = *out ? NULL : adcgs_path("%s/%s.png", job->options->masks, file); /* COLMAP's convention */
         if (adcgs_is_there(whole))
             *out = whole;
         else
@@ -44,7 +47,7 @@ static adcgs_status find_mask(const adcgs_import_job *job, const adcgs_shot *sho
     return *out ? ADCGS_OK : find(job, camera, (int)strlen(camera), out);
 }
 
-/** It has the shape of the picture before that is turned. */
+/** Checks that the mask has the aspect ratio of the image before rotation. */
 static adcgs_status check_shape(const adcgs_import_job *job, const adcgs_shot *shot, const char *path, const adcgs_image *mask)
 {
     const int lies = adcgs_photo_lies(shot->turn);
@@ -52,11 +55,14 @@ static adcgs_status check_shape(const adcgs_import_job *job, const adcgs_shot *s
     const double ratio = (double)mask->width * height / ((double)mask->height * width);
     return fabs(ratio - 1.0) <= SHAPE_TOLERANCE
                ? ADCGS_OK
-               : adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: %dx%d pixels, another shape than its picture, which is made %dx%d",
-                            path, mask->width, mask->height, width, height);
+               : adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: %dx%d pixels, another aspect ratio than its image, which "
+                            "becomes %dx%d", path, mask->width, mask->height, width, height);
 }
 
-/** All that is not black counts: between the two, and only there, a smaller mask may have something else. */
+/**
+ * Makes pixels above the threshold 1, others 0. With threshold 0 all that is not black counts; values in between arise only at
+ * edges, by reduction.
+ */
 static void make_plain(adcgs_image *mask, float threshold)
 {
     const int colours = mask->channels < 3 ? 1 : 3;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What COLMAP found. */
+/** \file COLMAP's result. */
 #include "config.h"
 
 #include "import/model.h"
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define POSED_LEAST 3 /* views from which something can be learnt; of cameras that stand two */
+#define POSED_LEAST 3 /* least number of views to train on; for fixed cameras two suffice */
 #define STANDING_LEAST 2
 
 void adcgs_poses_clear(adcgs_poses *poses)
@@ -28,7 +28,7 @@ static adcgs_status no_memory(const adcgs_import_job *job)
 
 /* ---- The largest model ---- */
 
-/** Cameras and images of the model in sparse/NUMBER; *place stays without a folder where there is none. */
+/** Reads cameras and images of the model in sparse/NUMBER; place->folder is NULL if there is none. */
 static adcgs_status read_model(adcgs_colmap *model, adcgs_colmap_place *place, const adcgs_import_job *job, uint32_t number)
 {
     char *folder = adcgs_path("%s/sparse/%u", job->folder, number);
@@ -43,7 +43,7 @@ static adcgs_status read_model(adcgs_colmap *model, adcgs_colmap_place *place, c
     return status;
 }
 
-/** The model with most images is out->model then, and *place its own. */
+/** Moves the model with most images to out->model, and its location to *place. */
 static adcgs_status find_largest(adcgs_poses *out, adcgs_colmap_place *place, const adcgs_import_job *job)
 {
     adcgs_status status = ADCGS_OK;
@@ -69,14 +69,14 @@ static adcgs_status find_largest(adcgs_poses *out, adcgs_colmap_place *place, co
     return status;
 }
 
-/* ---- Whose pose is known ---- */
+/* ---- Views with known poses ---- */
 
 static int by_name(const void *name, const void *image)
 {
     return strcmp(name, ((const adcgs_colmap_image *)image)->name);
 }
 
-/** The image of a shot; NULL: it has no pose. */
+/** The image of a shot; NULL if it has no pose. */
 static const adcgs_colmap_image *find_image(const adcgs_poses *poses, const adcgs_shots *shots, const adcgs_shot *shot)
 {
     char name[2 * ADCGS_SHOT_NAME + 16];
@@ -108,7 +108,7 @@ static adcgs_status list_moving(adcgs_poses *poses, const adcgs_import_job *job)
     return ADCGS_OK;
 }
 
-/** The mean of poses that are one but for errors: of quaternions, whose sign says nothing, and of positions. */
+/** Mean of poses that differ only by errors: of quaternions, whose sign is arbitrary, and of positions. */
 typedef struct mean_pose {
     double q[4], position[3];
     int n;
@@ -139,7 +139,7 @@ static void take_mean(const mean_pose *mean, double pose[12])
         pose[4 * i + 3] = mean->position[i] / mean->n;
 }
 
-/** Of a camera that stands: one pose for all its pictures. */
+/** Lists a fixed camera, with one pose for all its images. */
 static adcgs_status list_standing(adcgs_poses *poses, const adcgs_import_job *job, uint32_t camera)
 {
     const adcgs_shots *shots = &job->shots;
@@ -164,7 +164,7 @@ static double square_distance(const double a[12], const double b[12])
     return x * x + y * y + z * z;
 }
 
-/** How far pictures' own poses are from their cameras', on the root of the mean square. */
+/** Root mean square distance of the images' own poses from their cameras' poses. */
 static double find_spread(const adcgs_poses *poses, const adcgs_import_job *job)
 {
     const adcgs_shots *shots = &job->shots;
@@ -179,7 +179,7 @@ static double find_spread(const adcgs_poses *poses, const adcgs_import_job *job)
     return sqrt(squares / job->report->posed);
 }
 
-/** Root of the mean square of distances of cameras from their middle. */
+/** Root mean square distance of the cameras from their centre. */
 static double find_extent(const adcgs_poses *poses)
 {
     double middle[12] = {0.0}, squares = 0.0;
@@ -210,16 +210,17 @@ static adcgs_status list_posed(adcgs_poses *poses, const adcgs_import_job *job)
         return no_memory(job);
     ADCGS_TRY(stands ? list_rig(poses, job) : list_moving(poses, job));
     if (poses->n < least)
-        return adcgs_fail(job->error, ADCGS_ERR_DATA, "COLMAP found where %u of %u %s were, expected at least %u: do they show "
-                          "the same things from places apart? What it said is in %s", poses->n,
-                          stands ? job->shots.n_cameras : job->shots.n, stands ? "cameras" : "pictures", least, job->log);
+        return adcgs_fail(job->error, ADCGS_ERR_DATA, "COLMAP found where %u of %u %s were, expected at least %u; check that "
+                          "they show the same objects from different positions. Its output is in %s", poses->n,
+                          stands ? job->shots.n_cameras : job->shots.n, stands ? "cameras" : "images", least, job->log);
     const uint32_t every = (uint32_t)job->options->test_every;
     for (uint32_t i = 0; every && i < poses->n; i++)
-        poses->posed[i].is_test = i % every == every / 2; /* neither the first nor, as a rule, the last: between others */
+        poses->posed[i].is_test = i % every == every / 2; /* neither the first nor usually the last, so that it lies between
+                                                             others */
     return ADCGS_OK;
 }
 
-/* ---- Points, and the world ---- */
+/* ---- Points and world axes ---- */
 
 static int by_id(const void *a, const void *b)
 {
@@ -227,7 +228,7 @@ static int by_id(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** Of a view for training: the images that show what it shows. */
+/** Adds the images of a training view to the list of training images. */
 static void add_training(adcgs_poses *poses, const adcgs_import_job *job, const adcgs_posed *posed)
 {
     const adcgs_shots *shots = &job->shots;
@@ -240,7 +241,7 @@ static void add_training(adcgs_poses *poses, const adcgs_import_job *job, const 
     }
 }
 
-/** Points that views for training show. */
+/** Reads the points that training views see. */
 static adcgs_status read_points(adcgs_poses *poses, const adcgs_import_job *job, const adcgs_colmap_place *place)
 {
     adcgs_colmap *model = &poses->model;
@@ -257,7 +258,7 @@ static adcgs_status read_points(adcgs_poses *poses, const adcgs_import_job *job,
     return ADCGS_OK;
 }
 
-/** Columns of a pose: the camera's axes, and its place. */
+/** Rotates the columns of a pose: the camera's axes, and its position. */
 static void turn_pose(const double axis[3], double angle, double pose[12])
 {
     for (int column = 0; column < 4; column++) {
@@ -268,7 +269,7 @@ static void turn_pose(const double axis[3], double angle, double pose[12])
     }
 }
 
-/** COLMAP's world lies as it happens to: up becomes z, where cameras agree on it. */
+/** Rotates the world, whose axes are arbitrary in COLMAP, so that the cameras' mean up direction becomes z. */
 static void set_upright(adcgs_poses *poses)
 {
     double up[3] = {0.0, 0.0, 0.0}, axis[3];
@@ -291,8 +292,8 @@ adcgs_status adcgs_poses_read(adcgs_poses *out, adcgs_import_job *job)
     *out = (adcgs_poses){0};
     adcgs_status status = find_largest(out, &place, job);
     if (status == ADCGS_OK && !place.folder)
-        status = adcgs_fail(job->error, ADCGS_ERR_DATA, "COLMAP found no cameras: do pictures show the same things from places "
-                            "apart? What it said is in %s", job->log);
+        status = adcgs_fail(job->error, ADCGS_ERR_DATA, "COLMAP found no cameras; check that images show the same objects "
+                            "from different positions. Its output is in %s", job->log);
     if (status == ADCGS_OK)
         status = list_posed(out, job);
     if (status == ADCGS_OK)

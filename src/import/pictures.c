@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Taking pictures out of videos, making them upright and smaller. */
+/** \file Extracts images from videos, rotates them upright and reduces them. */
 #include "config.h"
 
 #include "import/pictures.h"
@@ -38,10 +38,10 @@ adcgs_status adcgs_import_goes_on(const adcgs_import_job *job)
 {
     if (!adcgs_interrupted())
         return ADCGS_OK;
-    return adcgs_fail(job->error, ADCGS_ERR_IO, "interrupted; the same command goes on from %s", job->folder);
+    return adcgs_fail(job->error, ADCGS_ERR_IO, "interrupted; run the same command again to continue from %s", job->folder);
 }
 
-/* ---- One picture ---- */
+/* ---- One image ---- */
 
 static adcgs_status copy_file(const char *from, const char *to, adcgs_error *error)
 {
@@ -60,7 +60,7 @@ static adcgs_status write_shaped(adcgs_import_job *job, const adcgs_shot *shot, 
     return adcgs_image_write(image, to, 0, job->error);
 }
 
-/** A picture from its own file. */
+/** Makes an image from a file. */
 static adcgs_status make_picture(adcgs_import_job *job, const adcgs_shot *shot, const char *to)
 {
     adcgs_image image;
@@ -72,7 +72,7 @@ static adcgs_status make_picture(adcgs_import_job *job, const adcgs_shot *shot, 
     return status;
 }
 
-/** A frame of a video that is open. */
+/** Makes an image from a frame of an open video. */
 static adcgs_status make_frame(adcgs_import_job *job, const adcgs_shot *shot, adcgs_video *video, const char *to)
 {
     adcgs_image image;
@@ -82,7 +82,7 @@ static adcgs_status make_frame(adcgs_import_job *job, const adcgs_shot *shot, ad
     return status;
 }
 
-/* ---- All of a camera ---- */
+/* ---- All images of a camera ---- */
 
 static adcgs_status make_shot(adcgs_import_job *job, adcgs_shot *shot, adcgs_video *video)
 {
@@ -105,7 +105,7 @@ static adcgs_status make_shot(adcgs_import_job *job, adcgs_shot *shot, adcgs_vid
     return status;
 }
 
-/** Of one camera after the other, in the order in which its video has them. */
+/** Makes the images of one camera, in the order of its video's frames. */
 static adcgs_status make_shots(adcgs_import_job *job, uint32_t camera, uint32_t *done)
 {
     adcgs_shots *shots = &job->shots;
@@ -116,7 +116,7 @@ static adcgs_status make_shots(adcgs_import_job *job, uint32_t camera, uint32_t 
         if (shots->shots[i].camera != camera)
             continue;
         status = make_shot(job, &shots->shots[i], video);
-        adcgs_progress_show(job->progress, "pictures  %6u/%u", ++*done, shots->n);
+        adcgs_progress_show(job->progress, "images    %6u/%u", ++*done, shots->n);
     }
     adcgs_video_close(&video);
     return status;
@@ -144,8 +144,8 @@ adcgs_status adcgs_import_pictures(adcgs_import_job *job)
         ADCGS_TRY(make_shots(job, c, &done));
     }
     if (job->options->masks && !job->has_masks)
-        return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: no mask there has the name of a picture or of a camera, as %s.png or "
-                          "%s.png would be", job->options->masks, job->shots.shots[0].stem, job->shots.cameras[0].name);
+        return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s: no mask there has the name of an image or of a camera, such as "
+                          "%s.png or %s.png", job->options->masks, job->shots.shots[0].stem, job->shots.cameras[0].name);
     job->report->width = job->shots.shots[0].width;
     job->report->height = job->shots.shots[0].height;
     return ADCGS_OK;
@@ -162,7 +162,7 @@ static adcgs_status copy_video(const adcgs_import_job *job, const char *from, co
     adcgs_status status = adcgs_atomic_open(&out, to, job->error);
     for (size_t n = 1; status == ADCGS_OK && n;) {
         n = fread(buffer, 1, sizeof buffer, file);
-        fwrite(buffer, 1, n, out.file); /* what fails is found when it is closed */
+        fwrite(buffer, 1, n, out.file); /* closing the file reports errors */
         status = adcgs_import_goes_on(job);
     }
     if (status == ADCGS_OK && ferror(file))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The files of a scene's pictures, made from what was given. */
+/** \file The image files of a scene, made from the given footage. */
 #ifndef ADCGS_IMPORT_PICTURES_H
 #define ADCGS_IMPORT_PICTURES_H
 
@@ -8,37 +8,37 @@
 typedef struct adcgs_import_job {
     const adcgs_import_options *options;
     adcgs_shots shots;
-    char *folder;      /**< where all is made */
-    char *log;         /**< of COLMAP */
-    int has_masks;     /**< of some picture at least */
+    char *folder;      /**< folder of the unfinished scene */
+    char *log;         /**< path of COLMAP's log */
+    int has_masks;     /**< at least one image has a mask */
     adcgs_progress *progress;
     adcgs_import_report *report;
     adcgs_error *error;
 } adcgs_import_job;
 
-/** As adcgs_fail(), into the job's error. */
+/** Like adcgs_fail(), into the job's error. */
 #define ADCGS_IMPORT_FAIL(job, status, ...) adcgs_fail((job)->error, status, __VA_ARGS__)
 
 /** A path below the job's folder, from malloc(). *out is NULL on failure. */
 adcgs_status adcgs_import_path(char **out, const adcgs_import_job *job, const char *name);
-/** Make a folder there, unless it is there. */
+/** Makes a folder in the job's folder, unless it exists. */
 adcgs_status adcgs_import_make_folder(const adcgs_import_job *job, const char *name);
-/** ADCGS_ERR_IO if somebody wants us to stop. */
+/** Returns ADCGS_ERR_IO after an interrupt. */
 adcgs_status adcgs_import_goes_on(const adcgs_import_job *job);
 
 /**
- * images/FOLDER/STEM.END of all shots, and masks/FOLDER/STEM.END.png, as COLMAP calls them, of those that have one.
- * What is there already, of a run before, stays.
+ * Makes images/FOLDER/STEM.END for all shots, and masks/FOLDER/STEM.END.png, in COLMAP's convention, for shots with a mask.
+ * Files that exist from an earlier run are kept.
  */
 adcgs_status adcgs_import_pictures(adcgs_import_job *job);
-/** The videos of a rig in videos/, and their masks as masks/CAMERA.png. */
+/** Copies the videos of a rig to videos/, and their masks to masks/CAMERA.png. */
 adcgs_status adcgs_import_videos(adcgs_import_job *job);
 
 /* ---- Shared: masks.c ---- */
 
-/** The mask of a shot, if there is one, made to fit its picture. */
+/** Makes the mask of a shot, if there is one, to fit its image. */
 adcgs_status adcgs_import_mask(adcgs_import_job *job, const adcgs_shot *shot);
-/** The mask of all that a camera filmed, as it is, if there is one. */
+/** Copies the mask that applies to a camera's whole footage without resizing it, if there is one. */
 adcgs_status adcgs_import_camera_mask(adcgs_import_job *job, uint32_t camera);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file COLMAP's programs, one after the other: features, matches, cameras. No display and no GPU is needed. */
+/** \file Runs COLMAP's programs one after another: features, matches, cameras. No display and no GPU is needed. */
 #include "config.h"
 
 #include "import/poses.h"
@@ -11,10 +11,12 @@
 #include <stdlib.h>
 
 #define WORDS_MAX 32
-#define EXHAUSTIVE_MOST 80 /* of a film with more pictures only those that are near each other in time are matched */
-#define OVERLAP "12"       /* pictures before and behind; and at twice, four times ... as far */
+#define EXHAUSTIVE_MOST 80 /* largest number of images of a video for exhaustive matching; above it, only images near in time
+                              are matched */
+#define OVERLAP "12"       /* images before and after; also images at twice, four times, ... this distance */
 #define SMALLEST_MODEL "3"
-#define FISHEYE_FOCAL 0.4 /* of the longer side: what COLMAP begins with where nothing says more, for half a world and less */
+#define FISHEYE_FOCAL 0.4 /* focal length over the longer side from which COLMAP starts if no other is known, for fields
+                             of view up to half the sphere */
 
 static const char *const renamed[][2] = {
     {"--SiftExtraction.use_gpu", "--FeatureExtraction.use_gpu"},
@@ -23,22 +25,22 @@ static const char *const renamed[][2] = {
     {"--SiftMatching.num_threads", "--FeatureMatching.num_threads"},
 };
 
-/** A step while it runs. */
+/** A running step. */
 typedef struct step {
     adcgs_import_job *job;
     const adcgs_colmap_program *program;
-    const char *name; /* as the progress line has it */
-    const char *mark; /* what stands before the number in lines that tell how far it is */
-    int n;            /* words */
+    const char *name; /* for the progress line */
+    const char *mark; /* text in front of the number in progress lines */
+    int n;            /* number of words */
     char *words[WORDS_MAX + 1];
     FILE *log;
-    char last[200];   /* the last line that says what is wrong */
+    char last[200];   /* last line with an error */
 } step;
 
 static void add_word(step *s, const char *word)
 {
     if (s->n < WORDS_MAX)
-        s->words[s->n++] = (char *)(uintptr_t)word; /* spawning takes pointers to char and leaves the characters alone */
+        s->words[s->n++] = (char *)(uintptr_t)word; /* posix_spawnp() takes pointers to char but does not modify the characters */
     s->words[s->n] = NULL;
 }
 
@@ -51,7 +53,7 @@ static void add_option(step *s, const char *name, const char *value)
     add_word(s, value);
 }
 
-/** How far it is, by what it says: "Processed file [12/200]", "Registering image #7 (34)". */
+/** Reads the progress from lines such as "Processed file [12/200]", "Registering image #7 (34)". */
 static int hear(void *user, const char *line)
 {
     step *s = user;
@@ -77,14 +79,14 @@ static adcgs_status run(step *s)
         return adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot write: %s", job->log, strerror(errno));
     adcgs_progress_show(job->progress, "%-9s", s->name);
     adcgs_status status = adcgs_child_run(s->words, s->log, hear, s, &code, job->error);
-    const int lost = ferror(s->log); /* it is written line by line, and closing tells of the last alone */
+    const int lost = ferror(s->log); /* the log is written line by line; closing reports only the last error */
     if ((fclose(s->log) || lost) && status == ADCGS_OK)
         status = adcgs_fail(job->error, ADCGS_ERR_IO, "%s: cannot write: %s", job->log, strerror(errno));
     ADCGS_TRY(status);
     ADCGS_TRY(adcgs_import_goes_on(job));
     if (!code)
         return ADCGS_OK;
-    return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s %s failed with exit code %d%s%s; what it said is in %s", s->words[0],
+    return adcgs_fail(job->error, ADCGS_ERR_DATA, "%s %s failed with exit code %d%s%s; its output is in %s", s->words[0],
                       s->words[1], code, *s->last ? ": " : "", s->last, job->log);
 }
 
@@ -112,11 +114,11 @@ adcgs_status adcgs_import_ask(adcgs_colmap_program *out, const adcgs_import_opti
     char *const words[] = {(char *)(uintptr_t)options->colmap, "feature_extractor", "-h", NULL};
     int code;
     *out = (adcgs_colmap_program){0};
-    setenv("QT_QPA_PLATFORM", "offscreen", 0); /* COLMAP begins as a program with windows, for which there may be no screen */
+    setenv("QT_QPA_PLATFORM", "offscreen", 0); /* COLMAP starts as a graphical program, but there may be no display */
     const adcgs_status status = adcgs_child_run(words, NULL, hear_options, out, &code, error);
     if (status == ADCGS_ERR_UNSUPPORTED)
-        return adcgs_fail(error, status, "%s: no such program, which finds the cameras: install COLMAP (on Debian: apt-get "
-                          "install colmap), or name it with --colmap", options->colmap);
+        return adcgs_fail(error, status, "%s: no such program; it is needed to estimate the cameras: install COLMAP (on "
+                          "Debian: apt-get install colmap), or name it with --colmap", options->colmap);
     ADCGS_TRY(status);
     return out->is_known ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_UNSUPPORTED, "%s: its feature_extractor takes no "
                                                  "--database_path, expected COLMAP 3.6 or later", options->colmap);
@@ -143,7 +145,7 @@ static adcgs_status extract(adcgs_import_job *job, const adcgs_colmap_program *p
         add_option(&s, "--ImageReader.mask_path", p->masks);
     add_option(&s, "--ImageReader.single_camera_per_folder", "1");
     add_option(&s, "--ImageReader.camera_model", lens_models[job->options->lens]);
-    if (said > 0.0) { /* where the picture that is made does not say */
+    if (said > 0.0) { /* used if the image made for COLMAP has no focal length */
         snprintf(focal, sizeof focal, "%.6g", said);
         add_option(&s, "--ImageReader.default_focal_length_factor", focal);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Lists of pictures and cameras. */
+/** \file Lists of images and cameras. */
 #include "config.h"
 
 #include "import/shots.h"
@@ -10,7 +10,7 @@
 #include <ctype.h>
 #include <stdlib.h>
 
-#define SHOTS_MAX 10000 /* cameras of a scene file */
+#define SHOTS_MAX 10000 /* limit of cameras in a scene file */
 
 void adcgs_shots_clear(adcgs_shots *shots)
 {
@@ -39,7 +39,10 @@ void adcgs_shot_fit(int *width, int *height, int side)
 
 /* ---- Lists that grow ---- */
 
-/** A name that every program takes: letters, digits, and _ - for the rest; cut so that a number fits behind it. */
+/**
+ * Makes a name that every program accepts: letters, digits and -, with _ for other characters. It is cut so that a number fits
+ * behind it.
+ */
 static void clean_name(char out[ADCGS_SHOT_NAME], const char *text)
 {
     snprintf(out, ADCGS_SHOT_NAME, "%.50s", text);
@@ -49,7 +52,7 @@ static void clean_name(char out[ADCGS_SHOT_NAME], const char *text)
         strcpy(out, "_");
 }
 
-/** names are `size` bytes apart, the first n are taken; a name that is there already gets a number. */
+/** Makes a name unique by appending a number. names are `size` bytes apart; the first n are used. */
 static void make_unique(char name[ADCGS_SHOT_NAME], const char *names, uint32_t n, size_t size)
 {
     char wanted[ADCGS_SHOT_NAME];
@@ -64,16 +67,16 @@ static void make_unique(char name[ADCGS_SHOT_NAME], const char *names, uint32_t 
     }
 }
 
-/** Room for one more in an array that grows by doubling; NULL, with a message, if there is none. */
+/** Makes room for one more element in an array that grows by doubling; NULL, with a message, on failure. */
 static void *grow(void *array, uint32_t n, size_t element, adcgs_error *error)
 {
     if (n >= SHOTS_MAX) {
-        adcgs_fail(error, ADCGS_ERR_DATA, "more than %d pictures: give fewer, or of a video --frames", SHOTS_MAX);
+        adcgs_fail(error, ADCGS_ERR_DATA, "more than %d images: give fewer, or for a video use --frames", SHOTS_MAX);
         return NULL;
     }
     void *more = n & (n - 1) ? array : realloc(array, (n ? 2 * (size_t)n : 1) * element);
     if (!more)
-        adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the list of pictures");
+        adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for the list of images");
     return more;
 }
 
@@ -86,7 +89,7 @@ adcgs_shot *adcgs_shots_add(adcgs_shots *shots, uint32_t camera, const char *ste
     adcgs_shot *shot = &all[shots->n];
     *shot = (adcgs_shot){.camera = camera, .turn = ADCGS_PHOTO_UPRIGHT};
     clean_name(shot->stem, stem);
-    if (shots->kind != ADCGS_FOOTAGE_FILM || !shots->cameras[camera].video) /* frames of one film have numbers */
+    if (shots->kind != ADCGS_FOOTAGE_FILM || !shots->cameras[camera].video) /* frames of one video have numbers */
         make_unique(shot->stem, all[0].stem, shots->n, sizeof *all);
     shots->n++;
     shots->cameras[camera].shots++;

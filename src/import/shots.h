@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What COLMAP is to be given: pictures, each of a camera, from files and videos. Nothing is decoded to list them. */
+/** \file The input of COLMAP: images with their cameras, from files and videos. Listing them decodes nothing. */
 #ifndef ADCGS_IMPORT_SHOTS_H
 #define ADCGS_IMPORT_SHOTS_H
 
@@ -9,27 +9,27 @@
 
 typedef enum adcgs_footage_kind { ADCGS_FOOTAGE_PICTURES, ADCGS_FOOTAGE_FILM, ADCGS_FOOTAGE_RIG } adcgs_footage_kind;
 
-/** A camera, or what may be one. */
+/** A camera, or a group of images that are assumed to be from one camera. */
 typedef struct adcgs_shot_camera {
-    char name[ADCGS_SHOT_NAME];   /**< no two are the same */
-    char folder[ADCGS_SHOT_NAME]; /**< of its pictures: those in one folder share their intrinsics */
-    char *video;                /**< that it filmed; NULL: pictures */
+    char name[ADCGS_SHOT_NAME];   /**< unique */
+    char folder[ADCGS_SHOT_NAME]; /**< of its images; images in one folder share their intrinsics */
+    char *video;                /**< its footage; NULL: images */
     int64_t frames;             /**< of the video */
     adcgs_fps rate;
-    char key[160];              /**< of pictures: what tells cameras apart */
-    double focal;               /**< over the longer side, about; 0: not known */
-    uint32_t shots;             /**< how many are of it */
+    char key[160];              /**< for images: properties that distinguish cameras */
+    double focal;               /**< approximate focal length over the longer side; 0: unknown */
+    uint32_t shots;             /**< number of its shots */
 } adcgs_shot_camera;
 
 typedef struct adcgs_shot {
     uint32_t camera;
-    char stem[ADCGS_SHOT_NAME]; /**< no two are the same */
-    char end[8];                /**< of the file that is made: "jpg" or "png" */
-    char *path;                 /**< of the picture; NULL: a frame of the camera's video */
+    char stem[ADCGS_SHOT_NAME]; /**< unique */
+    char end[8];                /**< extension of the file to make: "jpg" or "png" */
+    char *path;                 /**< of the image; NULL: a frame of the camera's video */
     int64_t frame;
-    double time;                /**< seconds from the first */
-    int turn, width, height;    /**< as adcgs_photo_shape() is to make it; a frame's size is not known before it is decoded */
-    int as_is;                  /**< the file can stay as it is */
+    double time;                /**< seconds from the first shot */
+    int turn, width, height;    /**< parameters for adcgs_photo_shape(); a frame's size is unknown before it is decoded */
+    int as_is;                  /**< the file can be copied unchanged */
 } adcgs_shot;
 
 typedef struct adcgs_shots {
@@ -37,26 +37,29 @@ typedef struct adcgs_shots {
     adcgs_shot_camera *cameras;
     adcgs_shot *shots;
     uint32_t n_cameras, n;
-    adcgs_fps rate;             /**< of frames that are taken; not known: pictures of one time */
-    int is_numbered;            /**< names of pictures are one text with numbers that follow each other */
+    adcgs_fps rate;             /**< of the selected frames; unknown: images of one time */
+    int is_numbered;            /**< names of images are one prefix with consecutive numbers */
 } adcgs_shots;
 
-/** On failure, too, adcgs_shots_clear(). */
+/** Call adcgs_shots_clear() also on failure. */
 adcgs_status adcgs_shots_list(adcgs_shots *out, const adcgs_import_options *options, adcgs_progress *progress,
                               adcgs_error *error);
 void adcgs_shots_clear(adcgs_shots *shots);
-/** Its picture below a folder, "FOLDER/STEM.END", from malloc(); NULL without memory. */
+/** The path of its image below a folder, "FOLDER/STEM.END", from malloc(); NULL on allocation failure. */
 char *adcgs_shot_path(const adcgs_shots *shots, const adcgs_shot *shot, const char *folder);
-/** Width and height that a picture is to have, of at most so many pixels a side. */
+/** Reduces a width and height to at most `side` pixels each, with the same aspect ratio. */
 void adcgs_shot_fit(int *width, int *height, int side);
 
 /* ---- Shared by the files that list: shots_list.c, shots_pictures.c, shots_video.c ---- */
 
-/** One more, zero but for its stem, which comes from a text; NULL, with a message, if there is no memory or are too many. */
+/**
+ * Adds a shot, zero except for its stem, which is derived from a text. NULL, with a message, on allocation failure or if there
+ * are too many.
+ */
 adcgs_shot *adcgs_shots_add(adcgs_shots *shots, uint32_t camera, const char *stem, adcgs_error *error);
-/** The same for cameras, with a name of its own. */
+/** The same for cameras, with a unique name. */
 adcgs_shot_camera *adcgs_shots_add_camera(adcgs_shots *shots, const char *name, adcgs_error *error);
-/** Of pictures; of one video: a camera that moves; of several: cameras that stand. */
+/** Lists images; the frames of one video, as a moving camera; or those of several videos, as fixed cameras. */
 adcgs_status adcgs_shots_pictures(adcgs_shots *shots, const adcgs_import_options *options, adcgs_progress *progress,
                                   adcgs_error *error);
 adcgs_status adcgs_shots_film(adcgs_shots *shots, const char *path, const adcgs_import_options *options, adcgs_error *error);

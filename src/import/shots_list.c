@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What kind of footage operands are. */
+/** \file Detects the kind of footage from the operands. */
 #include "config.h"
 
 #include "import/shots.h"
@@ -15,9 +15,9 @@ adcgs_status adcgs_shots_list(adcgs_shots *out, const adcgs_import_options *opti
     for (int i = 0; i < options->n_inputs; i++)
         videos += adcgs_is_video(options->inputs[i]) && !adcgs_is_folder(options->inputs[i]);
     if (videos && videos < options->n_inputs)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "expected either videos or pictures, not both");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "expected either videos or images, not both");
     if (videos && options->fps.den)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fps is for pictures: a video says itself when its frames were taken");
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--fps is for images only: a video has times of its own");
     return !videos       ? adcgs_shots_pictures(out, options, progress, error)
            : videos == 1 ? adcgs_shots_film(out, options->inputs[0], options, error)
                          : adcgs_shots_rig(out, options, progress, error);

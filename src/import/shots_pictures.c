@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Which pictures there are in files and folders, and of which camera. */
+/** \file Lists images in files and folders, with their cameras. */
 #include "config.h"
 
 #include "import/shots.h"
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
-/** The camera that pictures of a kind are of: told by the size of its pictures and by what they say of maker, model and lens. */
+/** Finds the camera of an image by the image's size and its metadata (maker, model and lens). */
 static adcgs_status find_camera(adcgs_shots *shots, const adcgs_photo *photo, uint32_t *camera, adcgs_error *error)
 {
     char key[sizeof shots->cameras->key], name[ADCGS_SHOT_NAME];
@@ -72,7 +72,7 @@ static int any_name(const char *name)
     return 1;
 }
 
-/** Order of names by their stems with the dot: the order of listings, too. */
+/** Orders names by their stems with the dot, which is also the order of listings. */
 static int compare_stems(const char *a, const char *b)
 {
     const size_t n = strlen(a) - strlen(adcgs_extension(a)), m = strlen(b) - strlen(adcgs_extension(b));
@@ -80,7 +80,7 @@ static int compare_stems(const char *a, const char *b)
     return order ? order : (n > m) - (n < m);
 }
 
-/** Names of images in order, and those of HEIC and AVIF without another image of the same stem. */
+/** Merges names of images in order with names of HEIC and AVIF that have no other image of the same stem. */
 static size_t merge(const char **out, const adcgs_listing *images, const adcgs_listing *heifs)
 {
     size_t n = 0, i = 0;
@@ -95,7 +95,7 @@ static size_t merge(const char **out, const adcgs_listing *images, const adcgs_l
     return n;
 }
 
-/** A folder without images: name the kind of a file in it, if that is known. */
+/** Refuses a folder without images; names the kind of a file in it, if it is known. */
 static adcgs_status refuse_folder(const char *folder, adcgs_error *error)
 {
     adcgs_listing all;
@@ -108,7 +108,7 @@ static adcgs_status refuse_folder(const char *folder, adcgs_error *error)
         free(path);
     }
     adcgs_listing_free(&all);
-    return status == ADCGS_OK ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: no picture in this folder", folder) : status;
+    return status == ADCGS_OK ? adcgs_fail(error, ADCGS_ERR_DATA, "%s: no image in this folder", folder) : status;
 }
 
 static adcgs_status add_names(adcgs_shots *shots, const char *folder, const char *const *names, size_t n,
@@ -120,7 +120,7 @@ static adcgs_status add_names(adcgs_shots *shots, const char *folder, const char
                                          : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", folder);
         free(path);
         ADCGS_TRY(status);
-        adcgs_progress_show(progress, "looking   %6u pictures", shots->n);
+        adcgs_progress_show(progress, "scanning  %6u images", shots->n);
     }
     return ADCGS_OK;
 }

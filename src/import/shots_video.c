@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Which frames of videos COLMAP gets. */
+/** \file Selects the video frames for COLMAP. */
 #include "config.h"
 
 #include "import/shots.h"
@@ -11,9 +11,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define MOMENTS 3 /* of cameras that stand: what one moment has too little of to tell where they are, others may have */
+#define MOMENTS 3 /* frame times of fixed cameras: one time may have too few features to find the poses */
 
-/** A camera for a video that is open. */
+/** Adds a camera for an open video. */
 static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs_video *video,
                                const adcgs_import_options *options, adcgs_error *error)
 {
@@ -23,7 +23,7 @@ static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs
     adcgs_shot_camera *camera = adcgs_shots_add_camera(shots, stem, error);
     if (!camera)
         return error->status;
-    if (shots->kind == ADCGS_FOOTAGE_RIG && !options->own_lens) /* cameras of a rig are of one make, as a rule */
+    if (shots->kind == ADCGS_FOOTAGE_RIG && !options->own_lens) /* cameras of a rig are usually of one type */
         snprintf(camera->folder, sizeof camera->folder, "lens-%dx%d", info->width, info->height);
     camera->frames = info->frames;
     camera->rate = info->rate;
@@ -31,7 +31,7 @@ static adcgs_status add_camera(adcgs_shots *shots, const char *path, const adcgs
     return camera->video ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
 }
 
-/** A frame of the camera that came last. */
+/** Adds a frame of the last camera. */
 static adcgs_status add_frame(adcgs_shots *shots, const adcgs_video *video, int64_t frame, adcgs_error *error)
 {
     char stem[2 * ADCGS_SHOT_NAME];
@@ -46,7 +46,7 @@ static adcgs_status add_frame(adcgs_shots *shots, const adcgs_video *video, int6
     return ADCGS_OK;
 }
 
-/** So many frames, the first and others at an even step behind it. */
+/** Adds at most options->frames frames: the first one and others at equal steps. */
 static adcgs_status add_frames(adcgs_shots *shots, const char *path, const adcgs_video *video,
                                const adcgs_import_options *options, adcgs_error *error)
 {
@@ -70,7 +70,7 @@ adcgs_status adcgs_shots_film(adcgs_shots *shots, const char *path, const adcgs_
     return status;
 }
 
-/** Frames at moments that all cameras have, if they are as long as the first. */
+/** Adds frames at times that all cameras share, if the videos are as long as the first. */
 static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcgs_video *video,
                                 const adcgs_import_options *options, adcgs_error *error)
 {
@@ -78,9 +78,9 @@ static adcgs_status add_moments(adcgs_shots *shots, const char *path, const adcg
     ADCGS_TRY(add_camera(shots, path, video, options, error));
     const adcgs_shot_camera *first = &shots->cameras[0];
     if (info->frames != first->frames || fabs(adcgs_fps_value(info->rate) / adcgs_fps_value(first->rate) - 1.0) > 0.001)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %lld frames, %.6g a second, but %s has %lld, %.6g: expected videos that "
-                          "begin and end together", path, (long long)info->frames, adcgs_fps_value(info->rate), first->video,
-                          (long long)first->frames, adcgs_fps_value(first->rate));
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: %lld frames at %.6g per second, but %s has %lld at %.6g: expected "
+                          "videos that begin and end together", path, (long long)info->frames, adcgs_fps_value(info->rate),
+                          first->video, (long long)first->frames, adcgs_fps_value(first->rate));
     for (int64_t m = 0, last = -1; m < MOMENTS; m++) {
         const int64_t frame = m * (info->frames - 1) / (MOMENTS - 1);
         if (frame != last)
@@ -98,7 +98,7 @@ adcgs_status adcgs_shots_rig(adcgs_shots *shots, const adcgs_import_options *opt
     shots->kind = ADCGS_FOOTAGE_RIG;
     for (int i = 0; i < n; i++) {
         adcgs_video *video;
-        adcgs_progress_show(progress, "looking   %6d/%d videos", i, n);
+        adcgs_progress_show(progress, "scanning  %6d/%d videos", i, n);
         ADCGS_TRY(adcgs_video_open(&video, paths[i], error));
         const adcgs_status status = add_moments(shots, paths[i], video, options, error);
         adcgs_video_close(&video);

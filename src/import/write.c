@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The scene file, and the points beside it: doc/scene-file.md says what its fields mean. */
+/** \file Writes the scene file and its points. doc/scene-file.md describes the fields. */
 #include "config.h"
 
 #include "import/write.h"
@@ -12,7 +12,7 @@
 
 #include <stdlib.h>
 
-#define DIGITS 12 /* of numbers: far more than any pose is known to */
+#define DIGITS 12 /* significant digits of numbers: far more than the precision of any pose */
 
 static void write_pose(adcgs_json *json, const double pose[12])
 {
@@ -26,7 +26,7 @@ static void write_pose(adcgs_json *json, const double pose[12])
     adcgs_json_close(json);
 }
 
-/** Zero is what is not given. */
+/** Omits zero, the default. */
 static void write_number(adcgs_json *json, const char *name, double value)
 {
     if (value != 0.0)
@@ -50,7 +50,7 @@ static void write_lens(adcgs_json *json, const adcgs_lens *lens)
         write_number(json, tangential[i], lens->p[i]);
 }
 
-/** Names of files are relative to the folder. */
+/** File names are relative to the folder. */
 static adcgs_status write_file(adcgs_json *json, const char *field, const adcgs_import_job *job, char *name)
 {
     if (!name)
@@ -108,7 +108,7 @@ static adcgs_status fill(adcgs_json *json, const adcgs_poses *poses, const adcgs
     return ADCGS_OK;
 }
 
-/** Builds the value, which adcgs_json_write() clears. */
+/** Writes the scene file. adcgs_json_write() clears the value that is built. */
 static adcgs_status write_json(const char *path, const adcgs_poses *poses, const adcgs_import_job *job)
 {
     adcgs_json json;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The scene file, and the points beside it. */
+/** \file Writes the scene file and its points. */
 #ifndef ADCGS_IMPORT_WRITE_H
 #define ADCGS_IMPORT_WRITE_H
 
 #include "import/model.h"
 
-/** scene.json and points.ply in the job's folder. */
+/** Writes scene.json and points.ply in the job's folder. */
 adcgs_status adcgs_import_write(const adcgs_poses *poses, const adcgs_import_job *job);
 
 #endif

@@ -87,7 +87,7 @@ called '--ImageReader.mask_path'
 [ "$(plain | grep -o '"masks":' | wc -l)" -eq 1 ] || { bad "masks of the scene"; cat "$dir/s/scene.json"; }
 expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
 { printf 'P6 4 16 255\n'; head -c 192 /dev/zero; } >"$dir/masks/$stem.ppm"
-import 4 'another shape' --fps 10 --masks "$dir/masks" "$pictures"
+import 4 'another aspect ratio' --fps 10 --masks "$dir/masks" "$pictures"
 rm "$dir"/masks/*
 import 4 'no mask there has the name' --fps 10 --masks "$dir/masks" "$pictures"
 rm -rf "$dir/s.importing"
@@ -120,13 +120,13 @@ if grep -q '^neu3d-videos' "$dir/kinds"; then
     called 'default_focal_length_factor 0.4'
     expect 0 '' ./adcgs-enc "$dir/s" -o "$dir/s.adcgs" --preset draft --set stereo=0 -n 10 --threads 2 -q
     import 2 'not both' "$dir/neu3d-videos/cam03.mp4" "$pictures"
-    import 2 'says itself' --fps 3 "$dir/neu3d-videos/cam03.mp4"
+    import 2 'has times of its own' --fps 3 "$dir/neu3d-videos/cam03.mp4"
 else
     echo "skipped: videos: this build writes none"
 fi
 
 # What goes wrong, in one line; what COLMAP said stays, and what was made before is gone on with.
-FAKE_HOW=fail import 4 'mapper failed with exit code 1: ERROR: no space for cameras; what it said is in .*s.importing/colmap.log' "$pictures"
+FAKE_HOW=fail import 4 'mapper failed with exit code 1: ERROR: no space for cameras; its output is in .*s.importing/colmap.log' "$pictures"
 grep -q 'no space for cameras' "$dir/s.importing/colmap.log" || bad "no log"
 none "$dir/s"
 echo old >"$dir/s.importing/images/camera1/$stem.png"
@@ -134,12 +134,12 @@ import 0 '' --fps 10 "$pictures"
 grep -rq old "$dir/s/images" && bad "footage of other options was gone on with"
 FAKE_HOW=none import 4 'COLMAP found no cameras' "$pictures"
 echo mine >"$dir/s.importing/images/camera1/more.txt"
-FAKE_HOW=few import 4 "COLMAP found where 2 of $n pictures were, expected at least 3" "$pictures"
+FAKE_HOW=few import 4 "COLMAP found where 2 of $n images were, expected at least 3" "$pictures"
 [ -f "$dir/s.importing/images/camera1/more.txt" ] || bad "the same footage was begun anew"
 rm -rf "$dir/s.importing"
 import 4 ': 1 image, expected at least three' "$(find "$pictures" -type f | head -n 1)"
 import 3 'nowhere' "$dir/nowhere"
-import 4 'no picture in this folder' "$dir/masks"
+import 4 'no image in this folder' "$dir/masks"
 # A folder without images is refused with the kind of a file in it; HEIC without a reader in OpenImageIO, or damaged.
 mkdir "$dir/others"
 printf 'MM\0*\0\0\0\010\0\0\0\0' >"$dir/others/IMG_1.NEF"
@@ -154,10 +154,10 @@ import 4 ': 1 image, expected at least three' "$dir/others"
 printf 'no picture' >"$dir/masks/a.jpg"
 import 4 'a.jpg' "$dir/masks"
 mkdir "$dir/s.importing" && touch "$dir/s.importing/precious"
-import 2 'not what an import has left' "$pictures"
+import 2 'not made by an unfinished import' "$pictures"
 [ -f "$dir/s.importing/precious" ] || bad "a folder of others was emptied"
 rm -rf "$dir/s.importing"
-expect 2 'is there already' ./adcgs-import --colmap "$fake" -o "$dir/masks" "$pictures"
+expect 2 'exists already' ./adcgs-import --colmap "$fake" -o "$dir/masks" "$pictures"
 expect 2 'give -o' ./adcgs-import "$pictures"
 expect 5 'install COLMAP' ./adcgs-import --colmap "$dir/no-such" -o "$dir/s" "$pictures"
 expect 5 'not COLMAP\|no --database_path' ./adcgs-import --colmap true -o "$dir/s" "$pictures"
@@ -169,7 +169,7 @@ while kill -0 $pid 2>/dev/null && ! grep -qs Processed "$dir/s.importing/colmap.
 began=$SECONDS
 kill -INT $pid
 wait $pid
-[ $? -eq 3 ] && grep -q 'interrupted; the same command goes on' "$dir/err" || { bad "interrupt"; cat "$dir/err"; }
+[ $? -eq 3 ] && grep -q 'interrupted; run the same command again' "$dir/err" || { bad "interrupt"; cat "$dir/err"; }
 [ $((SECONDS - began)) -lt 30 ] || bad "COLMAP went on after an interrupt"
 
 # adcgs-enc says who makes scenes of bare footage, and doubts frames of a video that have no times.
