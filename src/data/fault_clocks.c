@@ -49,10 +49,7 @@ static double median_around(const double *values, uint32_t n, uint32_t at)
     return count % 2 ? near[count / 2] : 0.5 * (near[count / 2 - 1] + near[count / 2]);
 }
 
-/**
- * Removes the smooth part and scales the rest to mean 0 and deviation 1. buffer: [n]. Returns 0 if nothing or too little is
- * left.
- */
+/** Removes the smooth part and scales the rest to mean 0 and deviation 1. buffer: [n]. Returns 0 if too little is left. */
 static int sharpen(double *values, uint32_t n, double *buffer)
 {
     double sum = 0.0, square = 0.0;

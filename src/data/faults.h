@@ -13,8 +13,7 @@
 typedef struct adcgs_fault {
     uint32_t cameras;             /**< cameras with the fault; 0: none */
     uint32_t of;                  /**< cameras that could be judged; 1 for one moving camera that took everything */
-    const char *path;             /**< of the view where it begins, in the camera with the worst fault; NULL: all cameras have
-                                       it */
+    const char *path;             /**< of the view where it begins, in the worst affected camera; NULL: all cameras have it */
     uint32_t count;               /**< occurrences in this camera */
     double from, to;              /**< times of the worst occurrence */
     double size;                  /**< severity of the worst occurrence; see the functions */

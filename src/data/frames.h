@@ -29,8 +29,8 @@ adcgs_status adcgs_frames_keep(struct adcgs_scene *scene, const adcgs_frame_rang
 /**
  * Finds the number of intervals between frames in a scene whose times are in [0,1]. If the training views fill all of a grid,
  * they are the frames; other views may have been made at times in between. If they leave gaps, because frames were held out for
- * tests, the grid of the views of all splits counts, provided that these fill at least half of it. Otherwise the training views
- * decide, by their grid or by their number of distinct times (*n_times). ADCGS_ERR_MEMORY, naming path.
+ * tests, the grid of all splits' views counts if these fill at least half of it. Otherwise the training views decide, by their
+ * grid or by their number of distinct times (*n_times). ADCGS_ERR_MEMORY, naming path.
  */
 adcgs_status adcgs_frames_intervals(const struct adcgs_scene *scene, uint32_t *n_times, double *intervals, const char *path,
                                     adcgs_error *error);

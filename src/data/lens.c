@@ -98,8 +98,7 @@ static double polynomial(const double *p, int degree, double s)
 }
 
 /**
- * Finds the sign changes between 0 and end, in ascending order: at most one between two roots of the derivative. Returns their
- * number.
+ * Finds sign changes between 0 and end, in ascending order: at most one between two roots of the derivative. Returns how many.
  */
 static int find_roots(const double *p, int degree, double end, double roots[DEGREE])
 {

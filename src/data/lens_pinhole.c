@@ -74,8 +74,8 @@ static int find_box(search *s)
             double at[2];
             if (adcgs_lens_invert(l, s->fold, l->width * u, l->height * v, at))
                 widen(s, at[0], at[1]);
-            else if (s->fold > 2.0 * s->reach * s->reach) { /* beyond the reach, where the pinhole sees nothing, folds are
-                                                               harmless */
+            else if (s->fold > 2.0 * s->reach * s->reach) { /* a fold beyond the reach is harmless: the pinhole sees nothing
+                                                               there */
                 widen(s, s->reach, s->reach);
                 widen(s, -s->reach, -s->reach);
             } else

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Masks: images that mark the pixels of another image that count. Black pixels are hidden; if all colours agree, transparent
- * ones.
+ * Masks: images that mark the pixels of another image that count. Black hides a pixel; if all colours agree, transparency does.
  */
 #ifndef ADCGS_DATA_MASK_H
 #define ADCGS_DATA_MASK_H

@@ -13,10 +13,7 @@ int adcgs_is_there(const char *path);
 int adcgs_is_there_at(const char *format, ...) ADCGS_PRINTF(1, 2);
 /** Returns 0 for NULL. */
 int adcgs_is_folder(const char *path);
-/**
- * *out: the stem itself or with an image extension, the first that exists and is no folder; NULL if there is none.
- * ADCGS_ERR_MEMORY.
- */
+/** *out: the stem itself or with an image extension, the first that exists and is no folder; else NULL. ADCGS_ERR_MEMORY. */
 adcgs_status adcgs_find_image(char **out, const char *stem, adcgs_error *error);
 
 #endif

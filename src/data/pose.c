@@ -31,10 +31,7 @@ static double deviation(double g[3][3], double s)
     return worst;
 }
 
-/**
- * One Newton step towards the nearest rotation: R (3I - R^T R) / 2. It converges quadratically; three steps reach rounding
- * precision.
- */
+/** One Newton step towards the nearest rotation: R (3I - R^T R) / 2. Convergence is quadratic; three steps reach rounding. */
 static void straighten(double pose[12])
 {
     double g[3][3], r[3][3];

@@ -16,8 +16,8 @@ const char *adcgs_pose_check(double pose[12]);
 const char *adcgs_pose_from_opengl(double pose[12]);
 
 /**
- * The point nearest to all optical axes, pulled slightly to the mean of the cameras so that parallel axes have a solution. n is
- * not 0.
+ * The point nearest to all optical axes, pulled slightly to the cameras' mean so that parallel axes have a solution. n is not
+ * 0.
  */
 void adcgs_pose_centre(const adcgs_scene_view *views, uint32_t n, double centre[3]);
 

@@ -30,8 +30,7 @@ uint64_t adcgs_spool_room(const char *folder, int *problem)
         return 0;
     }
     const uint64_t block = s.f_frsize ? s.f_frsize : s.f_bsize, free_bytes = (uint64_t)s.f_bavail * block;
-    uint64_t room = s.f_blocks ? free_bytes - free_bytes / LEFT_TO_OTHERS : UINT64_MAX; /* tmpfs without a size limit reports
-                                                                                           no blocks */
+    uint64_t room = s.f_blocks ? free_bytes - free_bytes / LEFT_TO_OTHERS : UINT64_MAX; /* tmpfs without a limit has no blocks */
     if (!getrlimit(RLIMIT_FSIZE, &limit) && limit.rlim_cur != RLIM_INFINITY)
         room = ADCGS_MIN(room, (uint64_t)limit.rlim_cur);
     return room;

@@ -26,8 +26,7 @@ typedef struct listener {
 } listener;
 
 /**
- * Writes whole lines to the log, so that equal output makes equal calls however it is split on arrival. Users may read the log
- * at the same time.
+ * Writes whole lines to the log, so that equal output makes equal calls however it is split on arrival, and readers see lines.
  */
 static void take_bytes(listener *l, const char *bytes, size_t n)
 {

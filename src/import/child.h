@@ -8,8 +8,8 @@
 #include <stdio.h>
 
 /**
- * Called with each line that the child writes, without its end, and with "" every tenth of a second without a line. Nonzero:
- * stop the child.
+ * Called with each line of the child, without its end, and with "" every tenth of a second without one; nonzero: stop the
+ * child.
  */
 typedef int (*adcgs_child_line)(void *user, const char *line);
 

@@ -43,8 +43,7 @@ typedef struct adcgs_import_report {
     uint32_t points;          /**< initial points for training */
     double error;             /**< mean reprojection error in pixels */
     double track;             /**< mean number of images that see a point */
-    double spread;            /**< for a rig: deviation of its cameras' poses at different times, relative to the cameras' mean
-                                   distance */
+    double spread;            /**< for a rig: spread of its cameras' poses over time, relative to the cameras' mean distance */
     double seconds;           /**< of the footage */
     int width, height;        /**< of the first image */
     int is_numbered;          /**< images without times whose names only count: possibly frames of a video */

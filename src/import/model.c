@@ -215,8 +215,7 @@ static adcgs_status list_posed(adcgs_poses *poses, const adcgs_import_job *job)
                           stands ? job->shots.n_cameras : job->shots.n, stands ? "cameras" : "images", least, job->log);
     const uint32_t every = (uint32_t)job->options->test_every;
     for (uint32_t i = 0; every && i < poses->n; i++)
-        poses->posed[i].is_test = i % every == every / 2; /* neither the first nor usually the last, so that it lies between
-                                                             others */
+        poses->posed[i].is_test = i % every == every / 2; /* usually neither the first nor the last: between others */
     return ADCGS_OK;
 }
 

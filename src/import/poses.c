@@ -11,8 +11,7 @@
 #include <stdlib.h>
 
 #define WORDS_MAX 32
-#define EXHAUSTIVE_MOST 80 /* largest number of images of a video for exhaustive matching; above it, only images near in time
-                              are matched */
+#define EXHAUSTIVE_MOST 80 /* most images of a video for exhaustive matching; above it, only neighbours in time are matched */
 #define OVERLAP "12"       /* images before and after; also images at twice, four times, ... this distance */
 #define SMALLEST_MODEL "3"
 #define FISHEYE_FOCAL 0.4 /* focal length over the longer side from which COLMAP starts if no other is known, for fields

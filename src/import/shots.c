@@ -40,8 +40,7 @@ void adcgs_shot_fit(int *width, int *height, int side)
 /* ---- Lists that grow ---- */
 
 /**
- * Makes a name that every program accepts: letters, digits and -, with _ for other characters. It is cut so that a number fits
- * behind it.
+ * Makes a name that every program accepts: letters, digits and -, with _ for others. It is cut so that a number fits behind it.
  */
 static void clean_name(char out[ADCGS_SHOT_NAME], const char *text)
 {

@@ -40,10 +40,7 @@ adcgs_status adcgs_colmap_bad(const adcgs_colmap *model, adcgs_status status, co
 
 /** Finds a kind of camera by its name, or by its number in binary files. Returns the index of its row, -1 if there is none. */
 int adcgs_colmap_kind(const char *name, int64_t number);
-/**
- * Sets *n to the number of its parameters. ADCGS_ERR_UNSUPPORTED, naming it, for kinds other than pinholes with OpenCV's
- * models.
- */
+/** Sets *n to the number of parameters. ADCGS_ERR_UNSUPPORTED, naming the kind, if it is no pinhole with an OpenCV model. */
 adcgs_status adcgs_colmap_params(const adcgs_colmap *model, int kind, int *n);
 
 /* These functions check and append one element. Names are copied. */

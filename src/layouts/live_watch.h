@@ -43,10 +43,7 @@ adcgs_status adcgs_live_watch_start(adcgs_live_watch *watch, adcgs_error *error)
 void adcgs_live_watch_stop(adcgs_live_watch *watch);
 /** Takes the lock with priority over the thread; pthread_mutex_unlock() releases it as usual. */
 void adcgs_live_lock(adcgs_live_watch *watch);
-/**
- * Waits, with the lock held, until the stretch after those taken is complete, or no more footage will arrive. Returns the
- * thread's error.
- */
+/** Waits, with the lock held, for the stretch after those taken, or for the end of footage. Returns the thread's error. */
 adcgs_status adcgs_live_await(adcgs_live_watch *watch, adcgs_error *error);
 
 /* Times. Rates must be known, as they are once a stretch is complete. */

@@ -323,10 +323,7 @@ static adcgs_status read_meta(adcgs_scene *scene, const char *path, const adcgs_
     return adcgs_frames_keep(scene, &options->frames, path, error);
 }
 
-/**
- * Reads a file. Splats are detected by the first bytes, a scene file by the field adcgs_scene; other JSON is a file of
- * transforms.
- */
+/** Reads a file: splats by their first bytes, a scene file by its field adcgs_scene, other JSON as a file of transforms. */
 static adcgs_status read_file(adcgs_scene *scene, const char *path, char **points_path, const adcgs_scene_options *options,
                               adcgs_error *error)
 {

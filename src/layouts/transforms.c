@@ -307,10 +307,7 @@ static adcgs_status read_frames(place *at, adcgs_scene *scene, adcgs_transforms 
     return status;
 }
 
-/**
- * If sizes differ, each image has its own size. Intrinsics in pixels that are shared by all images may then be meant so, or
- * not.
- */
+/** If sizes differ, each image has its own size. Intrinsics in pixels shared by all images may be wrong for some. */
 static void tell_sizes(const place *at, adcgs_scene *scene)
 {
     if (!at->other_width || json_object_get(at->json.root, "w") || !json_object_get(at->json.root, "fl_x"))

@@ -18,14 +18,14 @@ typedef struct adcgs_scenes_options {
     int width, height;  /**< of the images; 0: the scene's own size */
     const char *format; /**< extension of the images: "png" or "ppm"; NULL: "png" */
     int moments;        /**< times that the training cameras see, 1 to 100000, over the same duration; 0: the scene's own */
-    int cameras;        /**< training cameras, 1 to 1000; 0: the scene's own. As many of them see each time as in the scene's
-                             own rig, or all if they are fewer */
+    int cameras;        /**< training cameras, 1 to 1000; 0: the scene's own. The number that sees each time stays that of the
+                             scene, or all if they are fewer */
     int watch;          /**< 0, or the number of validation views, 2 to 1000, in order of time, of one fixed camera */
     double aside;       /**< 0, or the turns, up to 0.5, by which test cameras stand beyond the last training camera */
     adcgs_spoil spoil;  /**< faults of training images and cameras */
     double noise;       /**< levels of 255, 0 to 64: deviation of the noise added to each channel of training images */
-    double motion;      /**< 0.001 to 10: factor of all motion (speed, bounces, turns, orbits, change of colour) and of the
-                             times at which objects appear and disappear, so that 0.1 is a tenth of the motion; 0: 1 */
+    double motion;      /**< 0.001 to 10, factor of all motion: speed, bounces, turns, orbits, change of colour, and times of
+                             appearance and disappearance; 0.1 is a tenth of the motion; 0: 1 */
 } adcgs_scenes_options;
 
 /** Name and one-line description of scene i; NULL past the last. */

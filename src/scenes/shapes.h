@@ -8,8 +8,7 @@
 #define ADCGS_SHAPES_FAR 1e30
 
 /**
- * Smallest t > 0 at which the ray o + t d meets the object, in its local coordinates, and the normal there; ADCGS_SHAPES_FAR if
- * there is none.
+ * Smallest t > 0 where the ray o + t d meets the object, in its local coordinates, and the normal there; else ADCGS_SHAPES_FAR.
  */
 double adcgs_shapes_hit(const adcgs_trace_object *object, const double o[3], const double d[3], double normal[3]);
 /** Squared radius of a ball about the origin of local coordinates that holds the object. */

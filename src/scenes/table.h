@@ -47,8 +47,7 @@ typedef struct adcgs_scenes_entry {
     adcgs_scenes_ground ground;
     int is_wide;             /**< focal length ADCGS_SCENES_WIDE */
     int samples;             /**< rays per pixel along each axis; 0: 3 */
-    double stops;            /**< exposures of training cameras are spread evenly between plus and minus this many stops, with
-                                  mean 0 */
+    double stops;            /**< exposures of training cameras: evenly between plus and minus this many stops, mean 0 */
 } adcgs_scenes_entry;
 
 /** The scenes that imitate common captures, terminated by an entry without a name. */

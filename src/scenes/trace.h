@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The ray tracer of the scenes: a list of textured shapes with simple motions, a key light with a soft edge, ambient and fill
- * light.
+ * The ray tracer of the scenes: textured shapes with simple motions, a key light with a soft edge, ambient and fill light.
  */
 #ifndef ADCGS_SCENES_TRACE_H
 #define ADCGS_SCENES_TRACE_H
@@ -47,10 +46,8 @@ typedef struct adcgs_trace_object {
     double bounces, bounce_height;
     double spin_axis[3], spin;   /**< unit axis, turns per unit of time */
     double orbit[2], orbit_turns; /**< circle about the point orbit (x, y) in turns per unit of time */
-    double stretch[3], beats;    /**< soft body: factor 1 + stretch sin(beats time) of its size along local axes; its texture
-                                      deforms with it */
-    double zigzag[3], zigs;      /**< back and forth along this vector in straight lines, zigs times per unit of time, with
-                                      sharp turns */
+    double stretch[3], beats;    /**< soft body: size along local axes times 1 + stretch sin(beats time), including its texture */
+    double zigzag[3], zigs;      /**< back and forth in straight lines, zigs times per unit of time, with sharp turns */
     double slide[3];             /**< motion of its texture over the static surface, units per unit of time */
     double clear;                /**< glass: share of the light that passes through each of its sides, without refraction */
     double mirror;               /**< share of reflected light */
