@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The conformance manifest (spec clause "Conformance"), trying its vectors on
- * the library or on any program, and reports.
+ * The conformance manifest (spec clause "Conformance"): reading it, running its vectors on the library or on any program, and
+ * reports.
  */
 #ifndef ADCGS_CONFORM_CONFORM_H
 #define ADCGS_CONFORM_CONFORM_H
@@ -19,10 +19,10 @@
 #define ADCGS_VECTOR_FRAMES 64
 #define ADCGS_VECTOR_LAYERS 4
 #define ADCGS_HEX 33
-#define ADCGS_REFUSED "refused" /**< in place of a frame's digest: its camera is */
-#define ADCGS_WHAT 400 /**< room for an explanation */
+#define ADCGS_REFUSED "refused" /**< replaces a frame's digest if its camera is refused */
+#define ADCGS_WHAT 400 /**< bytes of an explanation */
 
-/** Results of a decoder of which not all layers are wanted. */
+/** Expected results of a decoder that leaves out layers. */
 typedef struct adcgs_fewer {
     int layers, n_models, n_splats;
     char models[ADCGS_VECTOR_MODELS][ADCGS_HEX];
@@ -35,7 +35,7 @@ typedef struct adcgs_fewer {
 typedef struct adcgs_vector {
     char id[80], file[128], title[256];
     char md5[ADCGS_HEX];       /**< of the file */
-    adcgs_status status;       /**< ADCGS_OK for a good vector, else how decoding has to end */
+    adcgs_status status;       /**< ADCGS_OK for a good vector, else the status with which decoding has to end */
     int level, truncated;
     uint32_t elements;         /**< lines of the trace */
     char trace[ADCGS_HEX];
@@ -64,16 +64,16 @@ typedef struct adcgs_manifest {
 adcgs_status adcgs_manifest_read(adcgs_manifest *out, const char *path, adcgs_error *error);
 void adcgs_manifest_clear(adcgs_manifest *manifest);
 
-/** "data", "truncated", "unsupported", "limit": the classes of the manifest. Returns 0, or -1 if unknown. */
+/** Reads a class of the manifest: "data", "truncated", "unsupported" or "limit". Returns 0, or -1 if it is unknown. */
 int adcgs_vector_class(const char *name, adcgs_status *status);
 const char *adcgs_vector_class_name(adcgs_status status);
 
-/** The file of a vector in memory; free() it. */
+/** Loads the file of a vector into memory; the caller frees it with free(). */
 adcgs_status adcgs_vector_load(const adcgs_manifest *manifest, const adcgs_vector *vector, uint8_t **data, size_t *bytes,
                                adcgs_error *error);
 void adcgs_hex_of(const void *data, size_t bytes, char hex[ADCGS_HEX]);
 
-/** How a vector went. A decoder that dies or hangs has not refused anything. */
+/** Outcome of a vector. A crash or a timeout of the decoder never counts as a refusal. */
 typedef enum adcgs_outcome { ADCGS_OUTCOME_OK, ADCGS_OUTCOME_WRONG, ADCGS_OUTCOME_CRASHED, ADCGS_OUTCOME_TIMEOUT } adcgs_outcome;
 const char *adcgs_outcome_name(adcgs_outcome outcome);
 
@@ -81,36 +81,39 @@ const char *adcgs_outcome_name(adcgs_outcome outcome);
 typedef struct adcgs_trial {
     adcgs_cpu_level cpu;
     int threads;
-    int step; /**< 0: the input comes as it is asked for; else in pieces of 1 to step bytes */
+    int step; /**< 0: the input comes in the requested sizes; else in pieces of 1 to step bytes */
 } adcgs_trial;
 
 /**
- * Decode data and compare everything the vector expects, at all points; also that no more memory is taken than the level allows.
- * Whatever is not as expected is said in what.
+ * Decodes data and compares everything that the vector expects, at all points. Also checks that memory stays within the level's
+ * bound. The text receives a description of the difference.
  */
 adcgs_outcome adcgs_vector_try(const adcgs_vector *vector, const uint8_t *data, size_t bytes, const adcgs_trial *trial,
                                char what[ADCGS_WHAT]);
 
-/** A decoder that is a program. */
+/** A decoder that is an external program. */
 typedef struct adcgs_program {
-    const char *command; /**< for the shell; {in}, {request}, {out} stand for paths */
-    int point;           /**< 0 to 3: claims P, M, S or R */
+    const char *command; /**< for the shell; {in}, {request} and {out} stand for paths */
+    int point;           /**< claimed conformance point: 0 to 3 for P, M, S or R */
     int timeout;         /**< seconds */
-    int layers;          /**< claims that it can leave out layers */
+    int layers;          /**< it claims to be able to leave out layers */
 } adcgs_program;
 
-/** Have the program answer requests for everything the vector expects, and compare. */
+/** Sends the program requests for everything that the vector expects, and compares the answers. */
 adcgs_outcome adcgs_program_try(const adcgs_program *program, const adcgs_manifest *manifest, const adcgs_vector *vector,
                                 char what[ADCGS_WHAT]);
 
-/** Damage streams, expectations and decoders, one at a time; print what was not noticed. Adds to the counts. */
+/**
+ * Damages streams, expectations and decoders, one at a time, and prints each damage that the check does not notice. Adds to the
+ * counts.
+ */
 void adcgs_selftest_vector(const adcgs_manifest *manifest, const adcgs_vector *vector, int *runs, int *faults);
 void adcgs_selftest_program(const adcgs_manifest *manifest, int *runs, int *faults);
 
 /** Results as JUnit XML. */
 typedef struct adcgs_junit {
     adcgs_atomic atomic; /**< the report */
-    char *cases; /**< so far */
+    char *cases; /**< test cases so far */
     size_t bytes;
     FILE *memory;
     int n, failures, errors;

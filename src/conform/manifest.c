@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Reading the conformance manifest. Unknown members are refused: a misspelt expectation must not pass for a met one. */
+/** \file Reading the conformance manifest. Unknown members are refused: a misspelt expectation must not pass as met. */
 #include "config.h"
 
 #include "conform/conform.h"
@@ -62,7 +62,7 @@ static int copy_text(char *out, size_t size, const char *text)
     return snprintf(out, size, "%s", text) >= (int)size;
 }
 
-/* An array that is there and not longer than most. */
+/* Requires an array of least to most elements. */
 static adcgs_status check_array(const adcgs_vector *v, const json_t *array, size_t least, size_t most, adcgs_error *error)
 {
     if (json_is_array(array) && json_array_size(array) >= least && json_array_size(array) <= most)
@@ -187,11 +187,11 @@ static adcgs_status read_good(adcgs_vector *v, json_t *props, const json_t *came
                        &segments, "frames", &frames, "truncated", &v->truncated) != 0)
         return bad(v, where.text, error);
     if (segments != v->n_models || frames != v->n_frames)
-        return bad(v, "what props says is not what is expected", error);
+        return bad(v, "props does not match the expected results", error);
     return ADCGS_OK;
 }
 
-/* Requirements: a list that is not empty. */
+/* Requires a list of requirements that is not empty. */
 static adcgs_status check_requirements(const adcgs_vector *v, const json_t *list, adcgs_error *error)
 {
     ADCGS_TRY(check_array(v, list, 1, 64, error));
@@ -227,7 +227,7 @@ static adcgs_status read_vector(adcgs_vector *v, json_t *object, int index, adcg
     if (!status || covers || cameras || expect || adcgs_vector_class(status, &v->status) != 0)
         return bad(v, "a vector that is not good has a status and no expectations", error);
     const char *const fitting = v->status == ADCGS_ERR_LIMIT ? "limit" : v->status == ADCGS_ERR_UNSUPPORTED ? "unsup" : "bad";
-    return strcmp(verdict, fitting) ? bad(v, "verdict and status do not go together", error) : ADCGS_OK;
+    return strcmp(verdict, fitting) ? bad(v, "verdict and status do not match", error) : ADCGS_OK;
 }
 
 static adcgs_status read_root(adcgs_manifest *m, json_t *root, const char *path, adcgs_error *error)

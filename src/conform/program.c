@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file One conformance vector against a program that speaks the protocol of the spec clause "Conformance". */
+/** \file Tries one conformance vector on a program with the protocol of the spec clause "Conformance". */
 #include "config.h"
 
 #include "conform/conform.h"
@@ -19,9 +19,9 @@
 typedef struct run {
     char in[4096], request[64], out[64];
     char *command;
-    char *answers;   /**< what it printed */
+    char *answers;   /**< the program's output */
     size_t bytes;
-    int status;      /**< as waitpid() gives it */
+    int status;      /**< from waitpid() */
     int timed_out;
     char *what;
 } run;
@@ -34,7 +34,7 @@ static adcgs_outcome wrong(const run *r, adcgs_outcome outcome, const char *form
 
 /* ---- The command ---- */
 
-/* Append a path as one word of the shell. */
+/* Appends a path as one word of the shell. */
 static void put_quoted(FILE *out, const char *path)
 {
     fputc('\'', out);
@@ -46,7 +46,7 @@ static void put_quoted(FILE *out, const char *path)
     fputc('\'', out);
 }
 
-/* The command with paths put in; *has_out: it names a file for its answers. */
+/* Returns the command with its paths. *has_out: it names a file for its answers. */
 static char *fill_command(const char *command, const run *r, int *has_out)
 {
     const struct {
@@ -79,7 +79,7 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* In the child: a group of its own, so that all of it can be stopped. */
+/* Runs in the child, in a process group of its own, so that the whole group can be killed. */
 static void become(const char *command, int output)
 {
     const int nothing = open("/dev/null", O_RDWR);
@@ -91,7 +91,7 @@ static void become(const char *command, int output)
     _exit(127);
 }
 
-/* Read until the end or the deadline; what exceeds ANSWERS_MAX is dropped. */
+/* Reads until the end or the deadline, and drops output beyond ANSWERS_MAX. */
 static void collect(run *r, int fd, double deadline)
 {
     char buffer[4096];
@@ -111,7 +111,7 @@ static void collect(run *r, int fd, double deadline)
     }
 }
 
-/* The program may close its output and go on: its end counts. */
+/* Waits for the program's end: it may close its output and continue. */
 static void await(run *r, pid_t child, double deadline)
 {
     const struct timespec moment = {.tv_nsec = 1000000};
@@ -147,9 +147,9 @@ static int execute(run *r, int timeout)
     return child > 0 ? 0 : -1;
 }
 
-/* ---- Requests and the answers that are expected ---- */
+/* ---- Requests and expected answers ---- */
 
-/* What one run asks for beside the stream. */
+/* The contents of a request, in addition to the stream. */
 typedef struct asked {
     int point, complete;
     const adcgs_fewer *fewer; /* NULL: all layers */

@@ -37,7 +37,7 @@ adcgs_status adcgs_junit_open(adcgs_junit *junit, const char *path, adcgs_error 
     return adcgs_fail(error, ADCGS_ERR_MEMORY, "%.160s: out of memory", path);
 }
 
-/* A wrong result is a failure; a decoder that dies or hangs is an error. */
+/* A wrong result is a failure; a decoder that crashes or hangs is an error. */
 void adcgs_junit_add(adcgs_junit *junit, const adcgs_vector *vector, adcgs_outcome outcome, double seconds, const char *what)
 {
     const char *const tag = outcome == ADCGS_OUTCOME_WRONG ? "failure" : "error";

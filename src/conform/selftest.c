@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Whether the conformance check notices: damaged expectations, damaged streams, programs that lie, die or hang. */
+/** \file Tests that the conformance check notices damaged expectations, damaged streams, and programs that lie, crash or hang. */
 #include "conform/conform.h"
 
 #include <stdlib.h>
@@ -65,7 +65,7 @@ static void damage_results(const selftest *t, const adcgs_vector *vector, adcgs_
     }
 }
 
-/* A stream that is damaged, with the digest of its file made right, so that decoding has to notice. */
+/* Damages a stream and corrects the digest of its file, so that decoding has to notice. */
 static void damage_stream(const selftest *t, const adcgs_vector *vector, adcgs_vector *v)
 {
     uint8_t *const copy = malloc(t->bytes + 1);
@@ -132,7 +132,7 @@ void adcgs_selftest_program(const adcgs_manifest *manifest, int *runs, int *faul
 {
     static const struct {
         const char *command;
-        adcgs_outcome good, refused; /* for a good vector, and for one that is to be refused as data */
+        adcgs_outcome good, refused; /* for a good vector, and for one to be refused as data */
     } programs[] = {
         {"kill -SEGV $$", ADCGS_OUTCOME_CRASHED, ADCGS_OUTCOME_CRASHED},
         {"echo fault data; kill -ABRT $$", ADCGS_OUTCOME_CRASHED, ADCGS_OUTCOME_CRASHED},

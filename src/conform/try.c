@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file One conformance vector against the library, at one CPU level, thread count and way of input. */
+/** \file Tries one conformance vector on the library, at one CPU level, thread count and way of input. */
 #include "conform/conform.h"
 
 #include "base/digest.h"
@@ -14,7 +14,8 @@
 #include <stdarg.h>
 #include <stdlib.h>
 
-/* A decoder holds the models and, while it reads, a chunk and what it decodes from it: memory beyond this is a defect. */
+/* Memory bound of a decoder: MEMORY_FACTOR models of the level and MEMORY_CONSTANT bytes. A decoder holds the models and,
+   while reading, a chunk and the values decoded from it; more memory is a defect. */
 #define MEMORY_FACTOR 2
 #define MEMORY_CONSTANT (UINT64_C(1) << 20)
 
@@ -26,7 +27,7 @@ typedef struct attempt {
     char *what;
 } attempt;
 
-/* Say what is wrong; always 0. */
+/* Describes the difference; always returns 0. */
 static int wrong(const attempt *a, const char *format, ...) ADCGS_PRINTF(2, 3);
 
 static int wrong(const attempt *a, const char *format, ...)
@@ -167,7 +168,7 @@ static int fewer_fit(const attempt *a, adcgs_decoder *decoder, const adcgs_fewer
     return good;
 }
 
-/* Through the public interface; a truncated stream has to be refused where complete is set; fewer: NULL for all layers. */
+/* Decodes through the public interface. With complete, a truncated stream has to be refused. fewer: NULL for all layers. */
 static int decode_fits(const attempt *a, int complete, const adcgs_fewer *fewer)
 {
     adcgs_config config;
@@ -195,7 +196,7 @@ static int decode_fits(const attempt *a, int complete, const adcgs_fewer *fewer)
 
 /* ---- On demand ---- */
 
-/* Bytes that can be read anywhere. */
+/* Random access to the bytes. */
 static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
 {
     const attempt *const a = user;
@@ -203,7 +204,7 @@ static int64_t read_at(void *user, uint64_t offset, void *buffer, size_t bytes)
     return (int64_t)bytes;
 }
 
-/* After a failure adcgs_get_info() gives the same. *refused: class of the last failure. */
+/* Decodes segment by segment; after a failure adcgs_get_info() has to stay the same. *refused: class of the last failure. */
 static int segments_fit(const attempt *a, adcgs_decoder *decoder, adcgs_status *refused)
 {
     adcgs_info before, after;
@@ -223,8 +224,8 @@ static int segments_fit(const attempt *a, adcgs_decoder *decoder, adcgs_status *
 }
 
 /*
- * Segment by segment the results are those of the whole stream, and bounds of the level are exceeded as well. With another fault
- * only the segments without it may be decoded.
+ * Segment by segment, the results are those of the whole stream, and a level's exceeded bounds are noticed, too. With any other
+ * fault, only the segments without the fault may be decoded.
  */
 static int demand_fits(attempt *a)
 {
