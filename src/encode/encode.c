@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Training run to stream. */
+/** \file From a training run to a stream. */
 #include "encode/encode.h"
 
 #include "data/by_camera.h"
@@ -13,8 +13,8 @@
 
 #include <math.h>
 
-#define PARTS_MAX 100000   /* of a frame, that a tick may be */
-#define TICK_WITHIN 1e-6   /* of a tick: rounding of what is a whole number */
+#define PARTS_MAX 100000   /* ticks per frame, at most */
+#define TICK_WITHIN 1e-6   /* ticks: rounding error at which a time still counts as a whole number */
 
 adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error)
 {
@@ -24,7 +24,7 @@ adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quant
     return status;
 }
 
-/** Copy a string into memory that adcgs_stream_clear() frees. */
+/** Copies a string into memory that adcgs_stream_clear() frees. */
 static char *copy_text(const char *text, adcgs_error *error)
 {
     const size_t n = strlen(text) + 1;
@@ -47,7 +47,7 @@ static adcgs_status set_notes(adcgs_stream *s, const adcgs_encode_note *notes, u
     return s->meta ? ADCGS_OK : adcgs_alloc_status(error);
 }
 
-/** A few training cameras, spread evenly over the split; fixed cameras that recur at every time are stored once. */
+/** Stores a few training cameras, spread evenly over the split. Fixed cameras that recur at every time are stored once. */
 static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs_error *error)
 {
     const adcgs_scene_view *views = scene->views[ADCGS_SPLIT_TRAIN];
@@ -66,7 +66,7 @@ static adcgs_status set_cameras(adcgs_stream *s, const adcgs_scene *scene, adcgs
     return ADCGS_OK;
 }
 
-/** Whether times of a scene are whole numbers of so many to a frame. */
+/** True if the times are whole numbers of ticks, with `parts` ticks a frame. */
 static int are_whole(const adcgs_scene *scene, const double *at, uint32_t n, uint32_t parts)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -77,7 +77,7 @@ static int are_whole(const adcgs_scene *scene, const double *at, uint32_t n, uin
     return 1;
 }
 
-/** The moment up to which a part's model knows what it shows. */
+/** The time up to which a part's model is valid, crossfade included, in seconds. */
 static double reach_of(const adcgs_cuts *cuts, uint32_t part)
 {
     return cuts->at[part + 1] + (cuts->reach ? cuts->reach[part] : 0);
@@ -94,8 +94,8 @@ static int are_all_whole(const adcgs_scene *scene, const adcgs_cuts *cuts, uint3
 }
 
 /**
- * A tick is a frame, or the largest whole part of one of which the scene's duration, and where it is cut and parts reach to, are
- * whole numbers: so times are exact, whatever offsets cameras have.
+ * Makes a tick one frame, or the largest whole fraction of a frame in which the scene's duration, its cuts and the ends of
+ * crossfades are whole numbers. Times are then exact for any offsets of the cameras.
  */
 static void set_time(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts *cuts)
 {
@@ -109,7 +109,7 @@ static void set_time(adcgs_stream *s, const adcgs_scene *scene, const adcgs_cuts
     s->timebase_den = s->rate_num * parts;
 }
 
-/** The tick that is nearest to a time of the scene. */
+/** The tick nearest to a time of the scene, in seconds. */
 static int64_t nearest_tick(const adcgs_stream *s, double time)
 {
     return (int64_t)rint(time * s->timebase_den / s->timebase_num);
@@ -119,7 +119,7 @@ adcgs_status adcgs_encode_begin(adcgs_stream *s, const adcgs_scene *scene, const
                                 uint32_t n_notes, adcgs_error *error)
 {
     adcgs_stream_init(s);
-    s->level = 0; /* the lowest that fits */
+    s->level = 0; /* the lowest level that fits */
     ADCGS_TRY(adcgs_scene_frame(scene, s->scene_origin, &s->scene_scale, error));
     memcpy(s->background, scene->background, sizeof s->background);
     s->screen_filter = ADCGS_SCREEN_FILTER;
@@ -157,7 +157,7 @@ adcgs_status adcgs_encode_model(adcgs_model *model, const adcgs_stream *s, const
     return status;
 }
 
-/** Where nothing moves any more, motion is none that has to be sent: it stays what it was. */
+/** If no anchor moves any more, keeps the motion networks of the previous segment, so that none are sent. */
 static adcgs_status keep_motion(adcgs_model *model, const adcgs_model *before, adcgs_error *error)
 {
     static const int roles[] = { ADCGS_ROLE_COARSE, ADCGS_ROLE_FINE, ADCGS_ROLE_TIME };
@@ -212,14 +212,14 @@ adcgs_status adcgs_encode_stream(adcgs_stream *s, const adcgs_trainer *t, const 
     return make_stream(s, t, NULL, notes, n_notes, error);
 }
 
-/** Serialise. What the writer refuses to store is nobody's wrong use here: the scene has it. */
+/** Serialises. A refusal of the writer is a fault of the scene here, not of the caller. */
 static adcgs_status write_scene(adcgs_stream *stream, adcgs_buffer *out, adcgs_error *error)
 {
     const adcgs_status status = adcgs_stream_write(stream, out, error);
     if (status != ADCGS_ERR_USAGE)
         return status;
     const adcgs_error why = *error;
-    return adcgs_fail(error, ADCGS_ERR_DATA, "the scene has what a stream cannot hold: %.180s", why.text);
+    return adcgs_fail(error, ADCGS_ERR_DATA, "the scene has a value that a stream cannot hold: %.180s", why.text);
 }
 
 adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *t, double strength, const adcgs_encode_note *notes,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * From a finished training run to a stream, proven before anybody sees it: the
- * bytes are decoded again and the model compared.
+ * Makes a stream of a finished training run. The encoder decodes the bytes again and compares the models before anyone reads
+ * them.
  */
 #ifndef ADCGS_ENCODE_ENCODE_H
 #define ADCGS_ENCODE_ENCODE_H
@@ -18,28 +18,29 @@ typedef struct adcgs_encode_note {
 } adcgs_encode_note;
 
 /**
- * Fill stream (cleared by the caller, also on failure) from the run. At most ADCGS_ENCODE_CAMERAS_MAX training cameras
- * are stored.
+ * Fills stream (cleared by the caller, also on failure) from the run. At most ADCGS_ENCODE_CAMERAS_MAX training cameras are
+ * stored.
  */
 adcgs_status adcgs_encode_stream(adcgs_stream *stream, const adcgs_trainer *trainer, const adcgs_encode_note *notes,
                                  uint32_t n_notes, adcgs_error *error);
 
 /**
- * The same for a scene of several parts, segment by segment: a stream with all but the segments, with room for one of each part;
- * the next of them, from a run on that part of the scene; or as a model that it takes over, as of a run that ended before.
+ * The same for a scene of several parts, segment by segment. adcgs_encode_begin() makes a stream without segments, with room for
+ * one segment of each part. adcgs_encode_segment() adds the next segment, from a run on that part of the scene.
+ * adcgs_encode_place() adds a finished model, of an earlier run for example, and takes it over.
  */
 adcgs_status adcgs_encode_begin(adcgs_stream *stream, const adcgs_scene *scene, const adcgs_cuts *cuts,
                                 const adcgs_encode_note *notes, uint32_t n_notes, adcgs_error *error);
 adcgs_status adcgs_encode_segment(adcgs_stream *stream, const adcgs_trainer *trainer, const adcgs_cuts *cuts, uint32_t part,
                                   adcgs_error *error);
-/** The model of a run on a stretch of a scene, for a stream that has the scene's time. The caller clears it. */
+/** Makes the model of a run on the time range begin to end of a scene, for a stream with that scene's time. Caller clears it. */
 adcgs_status adcgs_encode_model(adcgs_model *model, const adcgs_stream *stream, const adcgs_trainer *trainer, double begin,
                                 double end, adcgs_error *error);
-/** Have a segment that was learnt from the one before be coded by what it shares with it, if it can be. */
+/** Predicts a segment that was trained from the previous one from that segment (inter-segment prediction), if possible. */
 adcgs_status adcgs_encode_predict(adcgs_model *model, const adcgs_model *before, adcgs_error *error);
 void adcgs_encode_place(adcgs_stream *stream, const adcgs_cuts *cuts, uint32_t part, adcgs_model *model);
 
-/** Serialise into out, decode that again and require the same model, byte for byte. */
+/** Serialises into out, decodes the bytes again and requires the same model, byte for byte. */
 adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcgs_cpu_level cpu, adcgs_pool *pool,
                                    adcgs_error *error);
 
@@ -47,12 +48,14 @@ adcgs_status adcgs_encode_verified(adcgs_stream *stream, adcgs_buffer *out, adcg
 adcgs_status adcgs_encode_quantise_hook(const adcgs_fmodel *f, const adcgs_quantise_options *options, adcgs_error *error);
 
 /**
- * Bytes of the stream that adcgs_encode_stream() and adcgs_stream_write() would make, with the same notes, if the frozen values
- * were decided anew by adcgs_level_choose() with this strength: exact, from the coder itself; nothing is changed or written.
- * Takes about as long as quantising and coding once, tens of milliseconds for a few thousand anchors. More strength gives
- * fewer bytes, but not strictly: choices are greedy, so equal or slightly more is possible from one strength to the next; who
- * bisects compares with the bytes, not with an order. ADCGS_ERR_USAGE before the trainer is frozen. A negative strength, at any
- * time: with the values as they stand.
+ * Counts the bytes of the stream that adcgs_encode_stream() and adcgs_stream_write() would make with the same notes, if
+ * adcgs_level_choose() decided the frozen values again with this strength. The count is exact, since it comes from the coder
+ * itself. Nothing is changed or written. A call takes about as long as quantising and coding once, tens of milliseconds for a few
+ * thousand anchors.
+ *
+ * More strength gives fewer bytes, but not strictly: choices are greedy, so equal or slightly more bytes are possible from one
+ * strength to the next. A bisection therefore compares the bytes and assumes no order. A negative strength is allowed at any time
+ * and counts with the current values. ADCGS_ERR_USAGE before the trainer is frozen.
  */
 adcgs_status adcgs_encode_bytes(adcgs_bytes *bytes, const adcgs_trainer *trainer, double strength, const adcgs_encode_note *notes,
                                 uint32_t n_notes, adcgs_error *error);

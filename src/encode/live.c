@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Runs that end one after the other, to a stream that grows. */
+/** \file Runs that end one after the other, written to a growing stream. */
 #include "encode/live.h"
 
 #include "model/model_priv.h"
@@ -7,10 +7,10 @@
 
 #include <math.h>
 
-#define NEAR 1e-5 /* of what is 1, that a stream may have rounded */
-#define LEVEL 3 /* nobody knows how long it will be */
+#define NEAR 1e-5 /* tolerance for rounding of stored cameras, relative to 1 */
+#define LEVEL 3 /* the level of a growing stream, since its length is unknown */
 
-/** Hand what was written to the reader. */
+/** Passes the written bytes to the reader. */
 static adcgs_status read_back(adcgs_encode_live *e, const adcgs_buffer *out, size_t begin, adcgs_error *error)
 {
     for (size_t at = begin; at < out->size;) {
@@ -22,7 +22,7 @@ static adcgs_status read_back(adcgs_encode_live *e, const adcgs_buffer *out, siz
     return ADCGS_OK;
 }
 
-/** What was read of the segment that came last is what was written. */
+/** Checks that the last segment read equals the one written. */
 static adcgs_status compare(const adcgs_encode_live *e, const adcgs_model *written, adcgs_error *error)
 {
     adcgs_model read;
@@ -63,7 +63,7 @@ adcgs_status adcgs_encode_live_go_on(adcgs_encode_live *e, adcgs_stream *past, u
     return adcgs_push_create(&e->reader, &e->back, &options, error);
 }
 
-/** Whether two poses are one, but for rounding; scale: what length is large. */
+/** True if two poses are equal within rounding. scale: the size of the scene, for translations. */
 static int are_near(const adcgs_camera *a, const adcgs_camera *b, double scale)
 {
     for (int i = 0; i < 12; i++)
@@ -81,13 +81,13 @@ adcgs_status adcgs_encode_live_check(const adcgs_encode_live *e, const adcgs_sce
             v++;
         if (v == end || v->camera.width != c->width || v->camera.height != c->height ||
             fabs(v->camera.fx - c->fx) > NEAR * c->fx || !are_near(&v->camera, c, e->front.scene_scale))
-            return adcgs_fail(error, ADCGS_ERR_USAGE, "the stream's camera %s is not one of the scene's: another scene cannot "
-                              "go on with it", c->name);
+            return adcgs_fail(error, ADCGS_ERR_USAGE, "the stream's camera %s is not one of the scene's: continue the stream "
+                                                      "with its own scene", c->name);
     }
     return ADCGS_OK;
 }
 
-/** The first segment says what all have in common. */
+/** Creates the stream from the first segment, which sets the values that all segments share. */
 static adcgs_status begin(adcgs_encode_live *e, adcgs_model *model, adcgs_error *error)
 {
     if (e->grow)
@@ -111,7 +111,7 @@ adcgs_status adcgs_encode_live_add(adcgs_encode_live *e, adcgs_model *model, adc
         error->status = ADCGS_ERR_INTERNAL;
         return ADCGS_ERR_INTERNAL;
     }
-    adcgs_stream_forget(&e->back, e->back.n_segments ? e->back.n_segments - 1 : 0, NULL); /* the last is enough to go on */
+    adcgs_stream_forget(&e->back, e->back.n_segments ? e->back.n_segments - 1 : 0, NULL); /* prediction needs only the last */
     adcgs_model_clear(&e->model, NULL);
     e->model = *model;
     memset(model, 0, sizeof *model);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What there is of a stream that is to go on. */
+/** \file Reads back a stream that is to be continued. */
 #include "config.h"
 
 #include "encode/past.h"
@@ -34,7 +34,7 @@ void adcgs_past_close(adcgs_past *p)
     *p = (adcgs_past){ .file = NULL };
 }
 
-/** Decode to the end of a chunk at most. A fault of the stream ends it, and is no failure. */
+/** Decodes to the end of a chunk at most. A fault of the stream ends reading, without a failure. */
 static adcgs_status step(adcgs_past *p, adcgs_error *error)
 {
     adcgs_arrival arrived = ADCGS_ARRIVED_NOTHING;
@@ -58,7 +58,7 @@ static adcgs_status step(adcgs_past *p, adcgs_error *error)
     return status;
 }
 
-/** The segment behind which the file ends, or its damage begins, if all of it is there. */
+/** Returns the last segment before the file ends or its damage begins, if the segment is complete. */
 static adcgs_status take_last(adcgs_past *p, adcgs_model *model, adcgs_error *error)
 {
     adcgs_push_progress progress;
@@ -88,6 +88,6 @@ adcgs_status adcgs_past_next(adcgs_past *p, adcgs_model *model, adcgs_error *err
     }
     p->given++;
     ADCGS_TRY(adcgs_model_copy(model, &p->stream.segments[held - 1], NULL, error));
-    adcgs_stream_forget(&p->stream, held - 1, NULL); /* the last is enough to go on */
+    adcgs_stream_forget(&p->stream, held - 1, NULL); /* prediction needs only the last */
     return ADCGS_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Plans, read: nothing is taken on trust. */
+/** \file Reads plans and checks every field. */
 #include "config.h"
 
 #include "encode/plan.h"
@@ -16,7 +16,7 @@
 #define SECONDS_MAX 1e9
 #define WORLD_MAX 1e12
 
-/** What is wrong with a field of the plan, or of a segment. */
+/** Reports a wrong field of the plan or of a segment. */
 #define BAD(at, field, ...) adcgs_json_bad(at, ADCGS_ERR_DATA, field, __VA_ARGS__)
 
 /* ---- Fields ---- */
@@ -43,7 +43,7 @@ static adcgs_status get_whole(const adcgs_json_place *at, const char *field, dou
     return x == floor(x) ? ADCGS_OK : BAD(at, field, "%g, expected a whole number", x);
 }
 
-/** *out: NULL where the field is null. */
+/** *out: NULL if the field is null. */
 static adcgs_status get_text(const adcgs_json_place *at, const char *field, char **out)
 {
     json_t *item;
@@ -65,7 +65,7 @@ static adcgs_status get_word(const adcgs_json_place *at, const char *field, char
     return ADCGS_OK;
 }
 
-/** One of the names. */
+/** Reads one of the names. */
 static adcgs_status get_choice(const adcgs_json_place *at, const char *field, const char *const *names, int *index)
 {
     char text[32];
@@ -73,7 +73,7 @@ static adcgs_status get_choice(const adcgs_json_place *at, const char *field, co
     for (*index = 0; names[*index]; ++*index)
         if (!strcmp(names[*index], text))
             return ADCGS_OK;
-    return BAD(at, field, "'%s' is none that there is", text);
+    return BAD(at, field, "unknown value '%s'", text);
 }
 
 static adcgs_status get_reals(const adcgs_json_place *at, const char *field, double min, double max, double *x, size_t n)
@@ -118,7 +118,7 @@ static adcgs_status read_scene(const adcgs_json_place *at, adcgs_plan *p)
     return ADCGS_OK;
 }
 
-/** Every setting has to be there, and no other. */
+/** Requires every setting, and no others. */
 static adcgs_status read_values(const adcgs_json_place *at, adcgs_train_config *c)
 {
     json_t *values, *chosen, *item;
@@ -133,20 +133,20 @@ static adcgs_status read_values(const adcgs_json_place *at, adcgs_train_config *
         adcgs_setting_put(s, c, json_number_value(one));
     }
     if (json_object_size(values) != n)
-        return BAD(at, "settings", "expected the %zu that there are", n);
+        return BAD(at, "settings", "expected all %zu settings and no others", n);
     if (!json_is_array(chosen))
         return BAD(at, "chosen", "expected an array of names");
     json_array_foreach(chosen, i, item)
     {
         const adcgs_setting *const s = json_is_string(item) ? adcgs_setting_find(json_string_value(item)) : NULL;
         if (!s || !s->own)
-            return BAD(at, "chosen", "entry %zu is no setting of which that matters", i);
+            return BAD(at, "chosen", "entry %zu is not a setting that records the user's choice", i);
         ((uint8_t *)c)[s->own] = 1;
     }
     return ADCGS_OK;
 }
 
-/** A number that may be null. */
+/** Reads a number that may be null. */
 static adcgs_status get_given(const adcgs_json_place *at, const char *field, double min, double max, double *value, int *given)
 {
     json_t *item;
@@ -164,7 +164,7 @@ static adcgs_status read_settings(const adcgs_json_place *at, adcgs_plan *p)
     ADCGS_TRY(get_choice(at, "cpu", adcgs_cpu_names, &level));
     p->cpu = (adcgs_cpu_level)level;
     if (!level)
-        return BAD(at, "cpu", "expected the kernels' level");
+        return BAD(at, "cpu", "expected the level of the kernels");
     ADCGS_TRY(get_choice(at, "preset", adcgs_train_presets, &preset));
     ADCGS_TRY(adcgs_train_preset(c, adcgs_train_presets[preset], at->error));
     ADCGS_TRY(read_values(at, c));
@@ -176,7 +176,7 @@ static adcgs_status read_settings(const adcgs_json_place *at, adcgs_plan *p)
     return adcgs_train_check(c, &why) == ADCGS_OK ? ADCGS_OK : BAD(at, "settings", "%.140s", why.text);
 }
 
-/** Each begins where the one before ends; at->frame is the segment. */
+/** Reads a segment, which begins at the end of the previous one; at->frame is the segment. */
 static adcgs_status read_segment(const adcgs_json_place *at, adcgs_plan *p)
 {
     const uint32_t i = (uint32_t)at->index;
@@ -186,14 +186,14 @@ static adcgs_status read_segment(const adcgs_json_place *at, adcgs_plan *p)
         return adcgs_fail(at->error, ADCGS_ERR_DATA, "%s: segments[%u]: expected an object", at->path, i);
     ADCGS_TRY(get_real(at, "begin", 0, SECONDS_MAX, &begin));
     if (begin != (i ? to[i] : 0))
-        return BAD(at, "begin", "%.9g, expected %.9g, where the one before ends", begin, i ? to[i] : 0);
+        return BAD(at, "begin", "%.9g, expected %.9g, the end of the previous segment", begin, i ? to[i] : 0);
     ADCGS_TRY(get_real(at, "end", begin, SECONDS_MAX, &to[i + 1]));
     if (!(to[i + 1] > begin))
-        return BAD(at, "end", "%.9g, expected a time behind its beginning", to[i + 1]);
+        return BAD(at, "end", "%.9g, expected a time after its beginning", to[i + 1]);
     ADCGS_TRY(get_real(at, "reach", 0, i + 1 < p->cuts.n ? SECONDS_MAX : 0, &p->cuts.reach[i]));
     ADCGS_TRY(get_whole(at, "follows", 0, i, &before));
     if (before && before != i)
-        return BAD(at, "follows", "%u, expected 0 or %u, the one before", before, i);
+        return BAD(at, "follows", "%u, expected 0 or %u, the previous segment", before, i);
     p->segments[i].follows = before > 0;
     ADCGS_TRY(get_whole(at, "views", 1, UINT32_MAX, &p->segments[i].views));
     return get_real(at, "cost", 0, SECONDS_MAX, &p->segments[i].cost);
@@ -205,7 +205,7 @@ static adcgs_status read_segments(adcgs_json_place *at, adcgs_plan *p)
     json_t *list = json_object_get(at->root, "segments");
     n = json_array_size(list);
     if (!n || n > UINT32_MAX / 64)
-        return BAD(at, "segments", "expected an array of at least one");
+        return BAD(at, "segments", "expected an array of at least one segment");
     ADCGS_TRY(get_whole(at, "moments", 2, UINT32_MAX, &p->cuts.moments));
     p->cuts.n = (uint32_t)n;
     p->cuts.at = adcgs_alloc(NULL, n + 1, sizeof *p->cuts.at, at->error);
@@ -233,7 +233,7 @@ static adcgs_status read_coding(const adcgs_json_place *at, adcgs_plan *p)
     return base[0] == floor(base[0]) && base[1] == floor(base[1]) ? ADCGS_OK : BAD(at, "time_base", "expected whole numbers");
 }
 
-/** Of what it says, in an order of its own. */
+/** The digest covers the values in sorted order of their keys. */
 static adcgs_status take_digest(const adcgs_json_place *at, adcgs_plan *p)
 {
     uint8_t digest[16];
@@ -255,7 +255,8 @@ static adcgs_status read_plan(adcgs_json_place *at, adcgs_plan *p)
     if (!json_is_integer(format))
         return adcgs_fail(at->error, ADCGS_ERR_DATA, "%s: not a plan: no number adcgs_plan", at->path);
     if (json_integer_value(format) != ADCGS_PLAN_FORMAT)
-        return adcgs_fail(at->error, ADCGS_ERR_UNSUPPORTED, "%s: adcgs_plan: %lld, expected %d: by another version", at->path,
+        return adcgs_fail(at->error, ADCGS_ERR_UNSUPPORTED, "%s: adcgs_plan: %lld, expected %d: use the version that made this "
+                                                            "plan", at->path,
                           (long long)json_integer_value(format), ADCGS_PLAN_FORMAT);
     ADCGS_TRY(get_word(at, "encoder", p->encoder, sizeof p->encoder));
     ADCGS_TRY(read_scene(at, p));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Plans: what learning costs, and how they are written. */
+/** \file Training cost of plans, and writing plans. */
 #include "config.h"
 
 #include "encode/plan.h"
@@ -17,8 +17,8 @@
 #include <unistd.h>
 
 /*
- * Seconds of one processor with AVX-512: of an iteration for each anchor that there may be, and for each pixel that is drawn; to
- * read a pixel. Of the seven scenes of README.md's "Figures" that move, six take 0.9 to 1.4 times what this says, and one 0.4.
+ * Seconds of one processor with AVX-512: per iteration and possible anchor, per iteration and rendered pixel, and per pixel read.
+ * Of the seven dynamic scenes in README.md's "Figures", six take 0.9 to 1.4 times this estimate, and one takes 0.4 times.
  */
 #define PER_ANCHOR 4.5e-6
 #define PER_PIXEL 8e-8
@@ -34,7 +34,7 @@ void adcgs_plan_clear(adcgs_plan *p)
     *p = (adcgs_plan){ .dataset = 0 };
 }
 
-/** Of all pixels of the pictures, the share that is drawn in the mean: they begin smaller. */
+/** The mean share of all image pixels that an iteration renders: images begin smaller. */
 static double share_drawn(const adcgs_train_config *c)
 {
     const double quarter = fmin((double)c->quarter_until, 1), half = fmax(fmin((double)c->half_until, 1), quarter);
@@ -47,7 +47,7 @@ double adcgs_plan_cost(const adcgs_train_config *config, const adcgs_scene *part
     uint32_t details;
     adcgs_error ignored;
     adcgs_train_config c = *config;
-    c.own_anchors |= !c.has_details; /* nobody has counted them, so no picture is read here */
+    c.own_anchors |= !c.has_details; /* details are not counted yet, and no image is read here */
     adcgs_plan_anchors(&c, part, &details, &ignored);
     const uint32_t n = part->n_views[ADCGS_SPLIT_TRAIN];
     for (uint32_t i = 0; i < n; i++)
@@ -58,7 +58,7 @@ double adcgs_plan_cost(const adcgs_train_config *config, const adcgs_scene *part
 
 /* ---- Writing ---- */
 
-/** NULL is written, too: so a plan says that there is nothing. */
+/** Writes null for NULL, so that a plan states the absence. */
 static void put_text(adcgs_json *j, const char *key, const char *text)
 {
     if (text)
@@ -108,14 +108,14 @@ static void put_settings(adcgs_json *j, const adcgs_plan *p)
     adcgs_json_real(j, "details", c->has_details ? c->details : (double)NAN);
 }
 
-/** A path as seen from the scene. */
+/** A path relative to the scene's folder, if it lies there. */
 static const char *beside(const adcgs_scene *scene, const char *path)
 {
     const size_t n = strlen(scene->directory);
     return strncmp(path, scene->directory, n) || path[n] != '/' ? path : path + n + 1;
 }
 
-/** Each file once: views of a video follow each other. */
+/** Lists each file once: views of a video follow each other. */
 static void put_files(adcgs_json *j, const adcgs_scene *scene, const adcgs_scene *part)
 {
     const char *last = NULL;
@@ -179,7 +179,7 @@ static adcgs_status write_file(adcgs_json *j, const char *path, adcgs_error *err
     return status;
 }
 
-/** Write it under another name, and read it: the same plan has the same digest. */
+/** Writes the plan under another name and reads it back: equal plans have equal digests. */
 static adcgs_status compare(adcgs_json *j, const char *path, adcgs_error *error)
 {
     adcgs_plan there = { .dataset = 0 }, here = { .dataset = 0 };
@@ -195,7 +195,8 @@ static adcgs_status compare(adcgs_json *j, const char *path, adcgs_error *error)
         status = adcgs_plan_read(&here, other, error);
     unlink(other);
     if (status == ADCGS_OK && strcmp(here.digest, there.digest))
-        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: is another plan, which parts may be of: remove it, or name another file",
+        status = adcgs_fail(error, ADCGS_ERR_IO, "%s: exists and is another plan, which finished parts may belong to: remove it, "
+                                                 "or name another file",
                             path);
     adcgs_plan_clear(&there);
     adcgs_plan_clear(&here);

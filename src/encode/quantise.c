@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Float model to adcgs_model. */
+/** \file From the float model to adcgs_model. */
 #include "encode/quantise.h"
 
 #include "encode/rdo.h"
@@ -10,7 +10,7 @@
 
 /* ---- Networks ---- */
 
-/** The largest binary32 below 2^8, which weights of binary32 networks are held under. */
+/** The largest binary32 below 2^8, the bound of weights of binary32 networks. */
 #define FLOAT_WEIGHT_MAX 0x1.fffffep7f
 
 static adcgs_status tensor_alloc(adcgs_tensor *t, uint32_t rows, uint32_t cols, int e, adcgs_error *error)
@@ -32,7 +32,7 @@ static void tensor_set(adcgs_tensor *t, const float *w, double scale, int32_t li
     }
 }
 
-/** Without a lattice the bits of the numbers themselves, within what networks may hold: no subnormals, magnitudes below 2^8. */
+/** Stores the numbers' own bits if there is no lattice, within the range of networks: no subnormals, magnitudes below 2^8. */
 static void tensor_set_exact(adcgs_tensor *t, const float *w)
 {
     t->mode = 1;
@@ -42,7 +42,7 @@ static void tensor_set_exact(adcgs_tensor *t, const float *w)
     }
 }
 
-/** The integer form of an entropy network; weights: its twin's on the lattice, from adcgs_mlp_integer(). */
+/** Makes the integer form of an entropy network. weights: the trained network's on the lattice, from adcgs_mlp_integer(). */
 static adcgs_status entropy_network(adcgs_net *net, const adcgs_mlp *m, const float *weights, int role, adcgs_error *error)
 {
     const int one = 1 << ADCGS_E24_BITS, prior = adcgs_role_is_prior(role);
@@ -56,7 +56,7 @@ static adcgs_status entropy_network(adcgs_net *net, const adcgs_mlp *m, const fl
         ADCGS_TRY(tensor_alloc(&layer->w, (uint32_t)m->n_out[i], (uint32_t)m->in[i], ADCGS_E24_BITS, error));
         ADCGS_TRY(tensor_alloc(&layer->b, (uint32_t)m->n_out[i], 1, 0, error));
         tensor_set(&layer->w, weights + m->w[i], one, ADCGS_E24_MAX);
-        /* Biases live at the accumulators' scale; on the weights' lattice their low bits are zero and cost nothing. */
+        /* Biases have the accumulators' scale; on the weights' lattice their low bits are zero and cost nothing. */
         tensor_set(&layer->b, weights + m->b[i], (double)one * one, (1 << 24) - 1);
         layer->residual = (uint8_t)(i > 0 && !last);
         /* Hidden: back to the activations' lattice. Output mu: gain 16 (2^4) in 1/64 step (2^6). Output q: gain 8. */
@@ -67,7 +67,7 @@ static adcgs_status entropy_network(adcgs_net *net, const adcgs_mlp *m, const fl
     return ADCGS_OK;
 }
 
-/** Leave out of the last layer what says where the values lie, and how far about it, of channels behind the first `rows`. */
+/** Removes the means and scales of channels after the first `rows` from the last layer. */
 static void cut_channels(adcgs_mlp *m, float *weights, int rows)
 {
     const int last = m->hidden, all = m->n_out[last] / 2;
@@ -126,7 +126,7 @@ static adcgs_status set_networks(adcgs_model *model, const adcgs_fmodel *f, adcg
             continue;
         const int role = adcgs_fmodel_role[i];
         adcgs_net *net = &model->net[role];
-        uint32_t n_in, n_out; /* fewer than in training where nothing moves */
+        uint32_t n_in, n_out; /* fewer than in training if the model is static */
         adcgs_role_shape(&model->params, role, &n_in, &n_out);
         if (f->mlp[i].entropy)
             ADCGS_TRY(integer_network(net, &f->mlp[i], f->param[i].p, role, (int)n_out, error));
@@ -152,7 +152,7 @@ static void set_anchors(adcgs_model *model, const adcgs_fmodel *f)
     }
 }
 
-/** Tiers, unless one has lost all its anchors. */
+/** Sets the tiers, or a single tier if one has lost all its anchors. */
 static void set_tiers(adcgs_model *model, const adcgs_fmodel *f)
 {
     uint32_t brings[ADCGS_TIERS_MAX] = { 0 };
@@ -189,10 +189,10 @@ typedef struct quantiser {
     const adcgs_quantise_options *o;
     adcgs_steps steps;
     float (*factor)[ADCGS_LANES]; /**< [groups * steps.n] */
-    void *scratch;                /**< of steps */
+    void *scratch;                /**< scratch memory of steps */
 } quantiser;
 
-/** Factor of the steps of a site. Those of 64 anchors follow from their f_v, which is final when Sigma_v begins. */
+/** The factor of a site's steps. The factors of 64 anchors follow from their f_v, which is final when Sigma_v begins. */
 static float factor_of(const quantiser *q, const adcgs_latent_site *s)
 {
     if (!q->steps.n || s->group < ADCGS_GROUP_SIGMA)
@@ -218,10 +218,10 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
         const int row = base + s->first + c;
         const size_t at = ((size_t)(s->anchor / ADCGS_LANES) * rows + (size_t)row) * ADCGS_LANES + s->anchor % ADCGS_LANES;
         const float d = f->step[group][row] * 0x1p-6f * factor, step = 64 * d;
-        const int32_t mu = s->mu[c], most = s->si[c] ? ADCGS_LEVEL_MAX : 0; /* what every level can code, but 0 */
+        const int32_t mu = s->mu[c], most = s->si[c] ? ADCGS_LEVEL_MAX : 0; /* codable at every level except 0 */
         const double wanted = (64.0 * target[at] / step - mu) / 64;
         double n = rint(wanted);
-        n = n >= most ? most : n >= -most ? n : -most; /* whatever n is, a value within reach */
+        n = n >= most ? most : n >= -most ? n : -most; /* keeps the value in range for any n */
         if (curvature)
             n = adcgs_rdo_level(q->model->shape[s->group], s->si[c], wanted, (int32_t)n,
                                 0.5 * curvature[at] * step * step, q->o->rdo->lambda_bit);
@@ -233,7 +233,7 @@ static void quantise_site(void *user, const adcgs_latent_site *s)
     }
 }
 
-/** Quantise all latents of the model along the walk that defines their order. */
+/** Quantises all latents of the model along the walk that defines their order. */
 static adcgs_status walk_latents(quantiser *q, adcgs_model *model, adcgs_error *error)
 {
     adcgs_latents *latents;
@@ -265,7 +265,7 @@ adcgs_status adcgs_quantise(adcgs_model *model, const adcgs_fmodel *f, const adc
 {
     memset(model, 0, sizeof *model);
     model->params = f->params;
-    /* Where nothing moves, a stream of one segment carries no motion: no networks, no time table, no flags. */
+    /* A static stream of one segment carries no motion: no networks, no time table, no flags. */
     if (!f->is_part && !adcgs_fmodel_moves(f)) {
         model->params.time_rows = model->params.time_width = 0;
         model->params.spans = model->params.bodies = model->params.smooth_time = 0;

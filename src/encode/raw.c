@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/** Set the steps of a group of parameters whose rows repeat after `channels`. */
+/** Sets the steps of a group of parameters whose rows repeat after `channels`. */
 static void finest_steps(adcgs_fmodel *f, int group, int channels)
 {
     for (int c = 0; c < channels; c++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Another HEAD for a stream that is complete: all else stays where it is, but for the checksum over all. */
+/** \file Another HEAD for a complete stream. Everything else stays in place, except the checksum over all chunks. */
 #include "encode/settle.h"
 
 #include "base/digest.h"
@@ -13,7 +13,7 @@ typedef struct copier {
     uint64_t at;
     const char *path;
     adcgs_error *error;
-    adcgs_buffer chunk; /* at hand */
+    adcgs_buffer chunk; /* the current chunk */
 } copier;
 
 static adcgs_status fetch(copier *c, size_t bytes)
@@ -22,7 +22,7 @@ static adcgs_status fetch(copier *c, size_t bytes)
     while (bytes > 0) {
         const size_t n = ADCGS_MIN(bytes, sizeof piece);
         if (fread(piece, 1, n, c->from) != n)
-            return adcgs_fail(c->error, ADCGS_ERR_DATA, "%s: ends before byte %llu", c->path,
+            return adcgs_fail(c->error, ADCGS_ERR_DATA, "%s: the file ends before byte %llu", c->path,
                               (unsigned long long)(c->at + bytes));
         adcgs_write_bytes(&c->chunk, piece, n);
         bytes -= n;
@@ -31,7 +31,7 @@ static adcgs_status fetch(copier *c, size_t bytes)
     return c->chunk.failed ? adcgs_fail(c->error, ADCGS_ERR_MEMORY, "%s: out of memory", c->path) : ADCGS_OK;
 }
 
-/** What changes of a chunk. */
+/** Changes a chunk: HEAD's payload, the checksum over all chunks in ENDC, and the chunk's own checksum. */
 static adcgs_status change(copier *c, uint32_t type, size_t length)
 {
     uint8_t *payload = c->chunk.data + ADCGS_CHUNK_HEADER_BYTES;

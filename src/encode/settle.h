@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A stream that grew, and whose HEAD knows nothing of its end, becomes one like any other. */
+/** \file Rewrites HEAD of a grown stream, which does not know its end, so that the stream becomes an ordinary one. */
 #ifndef ADCGS_ENCODE_SETTLE_H
 #define ADCGS_ENCODE_SETTLE_H
 
@@ -8,8 +8,8 @@
 #include <stdio.h>
 
 /**
- * Copy a complete stream from its beginning, with another payload of HEAD, of the same length, wherever HEAD stands. path is for
- * messages. ADCGS_ERR_DATA if it is no such stream.
+ * Copies a complete stream from its beginning, and replaces the payload of HEAD by one of the same length, wherever HEAD lies.
+ * path is for messages. ADCGS_ERR_DATA if it is no such stream.
  */
 adcgs_status adcgs_encode_settle(FILE *to, FILE *from, const uint8_t *head, size_t bytes, const char *path, adcgs_error *error);
 

@@ -314,7 +314,7 @@ expect 4 'camera "r_000": focal lengths 1e+09' ./adcgs-eval "$s" "$dir/odd"
 cp "$dir"/scene/transforms_*.json "$dir/odd"
 sed -i '/transform_matrix/{s/\[\[\([^,]*, [^,]*, [^,]*\), [^]]*\]/[[\1, 7e20]/;}' "$dir"/odd/transforms_*.json
 expect 4 'camera ".*": \(scene scale\|farther\)' ./adcgs-eval "$s" "$dir/odd"
-expect 4 'scene has what a stream cannot hold: .*scene_origin' ./adcgs-enc "$dir/odd" -o "$dir/x.adcgs" --preset draft --iterations 10
+expect 4 'scene has a value that a stream cannot hold: .*scene_origin' ./adcgs-enc "$dir/odd" -o "$dir/x.adcgs" --preset draft --iterations 10
 if [ -w /dev/full ]; then
     for command in "$dec --help" "./adcgs-info $s" "./adcgs-info $s --json" "./adcgs-enc --set list" "./adcgs-demo-scene --list" \
         "$dec $s --md5" "./adcgs-eval $s $dir/scene"; do
