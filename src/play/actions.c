@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What keys do: a table, and the page that tells of it. */
+/** \file The effects of keys: a table, and the help page that describes it. */
 #include "config.h"
 
 #include "play/actions.h"
@@ -178,27 +178,27 @@ static const struct action {
 };
 
 static const adcgs_play_help help_lines[] = {
-    {"left drag", "orbit about the scene", 0},
+    {"left drag", "orbit around the scene", 0},
     {"right drag", "pan; also shift and drag", 0},
-    {"wheel", "nearer and farther", 0},
+    {"wheel", "zoom", 0},
     {"f", "fly: w a s d q e, mouse looks", 0},
-    {"r", "back to the first view", 0},
+    {"r", "first view", 0},
     {"0 .. 9", "a stored camera", 0},
-    {"[ ]", "stored cameras in turn", 0},
+    {"[ ]", "previous or next stored camera", 0},
     {"space", "play, pause", 0},
-    {"left right", "a frame back, a frame on", 0},
+    {"left right", "previous or next frame", 0},
     {"home end", "first frame, last frame", 0},
     {", .", "slower, faster", 0},
     {"l", "loop", 0},
     {"- +", "fewer layers, more layers", 0},
     {"p", "screenshot; with shift EXR", 0},
-    {"k", "key frame; shift: take it back", 1},
+    {"k", "key frame; shift: undo it", 1},
     {"v", "video: begin, end", 1},
     {"i", "statistics", 0},
     {"b", "time bar", 0},
-    {"F11", "the whole screen", 1},
+    {"F11", "full screen", 1},
     {"h F1", "this page", 0},
-    {"escape q", "leave", 1},
+    {"escape q", "quit", 1},
 };
 
 const adcgs_play_help *adcgs_play_help_lines(int *n)

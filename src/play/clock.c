@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Where playing is. */
+/** \file The playback position. */
 #include "config.h"
 
 #include "play/clock.h"
@@ -9,7 +9,7 @@
 #include <math.h>
 
 #define FRAMES_MAX 1e9
-#define ROUNDING 1e-6 /* of a frame: what a position may lack because times are rounded */
+#define ROUNDING 1e-6 /* frames: error of a position due to rounded times */
 
 static double length(const adcgs_play_clock *clock)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a user does: keys and a mouse, wherever they are. */
+/** \file User input: keys and a mouse, independent of the platform. */
 #ifndef ADCGS_PLAY_EVENT_H
 #define ADCGS_PLAY_EVENT_H
 
-/** Keys: what they say, in small letters, for those that say anything in ASCII; else one of these. */
+/** Keys: the lower-case ASCII character for keys that have one, else one of these. */
 enum {
     ADCGS_KEY_ESCAPE = 27,
     ADCGS_KEY_LEFT = 256,
@@ -18,21 +18,21 @@ enum {
 };
 
 typedef enum adcgs_event_kind {
-    ADCGS_EVENT_NONE,   /**< something that is of no interest */
+    ADCGS_EVENT_NONE,   /**< an event without effect */
     ADCGS_EVENT_QUIT,
     ADCGS_EVENT_KEY,    /**< key, down, again */
     ADCGS_EVENT_BUTTON, /**< button, down, x, y */
-    ADCGS_EVENT_MOTION, /**< x, y, and by how much: dx, dy */
+    ADCGS_EVENT_MOTION, /**< x, y, and the movement dx, dy */
     ADCGS_EVENT_WHEEL,  /**< dy: steps away from the user */
-    ADCGS_EVENT_SIZE,   /**< the window has another size, or must be drawn again */
-    ADCGS_EVENT_LOST    /**< keys go elsewhere from now on */
+    ADCGS_EVENT_SIZE,   /**< the window has another size, or must be rendered again */
+    ADCGS_EVENT_LOST    /**< keyboard input goes elsewhere from now on */
 } adcgs_event_kind;
 
 typedef struct adcgs_event {
     adcgs_event_kind kind;
     int key;
     int down;   /**< pressed, not released */
-    int again;  /**< pressed because it is being held */
+    int again;  /**< repeated, since the key is held */
     int button; /**< 1 left, 2 middle, 3 right */
     double x, y, dx, dy;
 } adcgs_event;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Bytes that are still coming. */
+/** \file Bytes that are still arriving. */
 #include "config.h"
 
 #include "play/feed.h"
@@ -9,21 +9,21 @@
 #include <stdlib.h>
 
 #define PIECE_BYTES 65536
-#define BYTES_MAX ((uint64_t)1 << 32) /* as of a file that is played */
+#define BYTES_MAX ((uint64_t)1 << 32) /* the same limit as for a played file */
 
 struct adcgs_feed {
-    adcgs_incoming in;   /**< the thread's while it runs */
+    adcgs_incoming in;   /**< owned by the thread while it runs */
     uint8_t piece[PIECE_BYTES];
     void (*wake)(void *arg);
     void *arg;
     pthread_t thread;
     int running;
 
-    pthread_mutex_t lock; /**< of what follows */
+    pthread_mutex_t lock; /**< protects the members below */
     uint8_t *data;
     uint64_t bytes, room;
     int ended, leave;
-    adcgs_error error; /**< why it ended, unless its status is ADCGS_OK */
+    adcgs_error error; /**< the reason for the end, unless its status is ADCGS_OK */
 };
 
 adcgs_status adcgs_feed_open(adcgs_feed **out, const char *path, int (*interrupted)(void), adcgs_error *error)
@@ -51,11 +51,11 @@ void adcgs_feed_free(adcgs_feed **feed)
     free(f);
 }
 
-/** With the lock held. */
+/** Call it with the lock held. */
 static adcgs_status append(adcgs_feed *f, size_t n)
 {
     if (f->bytes + n > BYTES_MAX)
-        return adcgs_fail(&f->error, ADCGS_ERR_LIMIT, "%.160s: more than %llu bytes, which the player would keep", f->in.name,
+        return adcgs_fail(&f->error, ADCGS_ERR_LIMIT, "%.160s: more than %llu bytes, the player's limit for a stream", f->in.name,
                           (unsigned long long)BYTES_MAX);
     if (f->bytes + n > f->room) {
         const uint64_t room = ADCGS_MAX(2 * f->room, f->bytes + n);
@@ -71,7 +71,7 @@ static adcgs_status append(adcgs_feed *f, size_t n)
     return ADCGS_OK;
 }
 
-/** Wait for bytes and keep them. \return whether anything has changed. */
+/** Waits for bytes and keeps them. \return nonzero if anything has changed */
 static int take(adcgs_feed *f)
 {
     adcgs_error error = {.status = ADCGS_OK};
@@ -111,7 +111,7 @@ static void *read_on(void *arg)
     return NULL;
 }
 
-/** Signals are for the thread that has the window. */
+/** The thread with the window receives the signals. */
 adcgs_status adcgs_feed_start(adcgs_feed *f, void (*wake)(void *arg), void *arg, adcgs_error *error)
 {
     sigset_t all, before;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Names that are free. */
+/** \file Unused file names. */
 #include "config.h"
 
 #include "play/files.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Letters of 5x7 pixels for what ASCII can print, some of which reach two rows further down. */
+/** \file Letters of 5x7 pixels for the printable ASCII characters; some reach two rows further down. */
 #include "config.h"
 
 #include "play/font.h"
@@ -8,7 +8,7 @@
 
 #define FIRST 0x20
 
-/* A row in each number, from the top; 0x10 is its leftmost pixel. */
+/* One row per number, from the top; 0x10 is its leftmost pixel. */
 static const uint8_t glyphs[][ADCGS_GLYPH_HEIGHT] = {
     {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}, /* space */
     {0x04, 0x04, 0x04, 0x04, 0x04, 0x00, 0x04}, /* ! */

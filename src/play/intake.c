@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Decoding what a feed brings. */
+/** \file Decodes the bytes of a feed. */
 #include "config.h"
 
 #include "play/intake.h"
@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#define MOMENT 0.05 /* seconds of decoding between two pictures */
+#define MOMENT 0.05 /* seconds of decoding between two images */
 
 void adcgs_intake_init(adcgs_intake *in, adcgs_feed *feed, const adcgs_config *config)
 {
@@ -33,7 +33,7 @@ static adcgs_status open_layers(adcgs_intake *in, int layers, adcgs_error *error
     return ADCGS_OK;
 }
 
-/** No more bytes will come. */
+/** Ends decoding: no more bytes will arrive. */
 static adcgs_status end(adcgs_intake *in)
 {
     in->come.over = 1;
@@ -44,14 +44,14 @@ static adcgs_status end(adcgs_intake *in)
     return status;
 }
 
-/** Decode to the end of a part at most, and of the feed's bytes no more than limit. *some: there was something to do. */
+/** Decodes to the end of a part at most, and at most limit bytes of the feed. *some: there was something to do. */
 static adcgs_status step(adcgs_intake *in, uint64_t limit, int *some, adcgs_arrival *arrived)
 {
     size_t used = 0;
     int ended = 0;
     *arrived = ADCGS_ARRIVED_NOTHING;
     if (in->n == 0) {
-        adcgs_feed_bytes(in->feed, &ended); /* first: what comes in between is there the next time */
+        adcgs_feed_bytes(in->feed, &ended); /* first: bytes that arrive in between are available the next time */
         in->at = 0;
         in->n = adcgs_feed_copy(in->feed, in->come.bytes, in->piece,
                                 (size_t)ADCGS_MIN((uint64_t)sizeof in->piece, limit - in->come.bytes));
@@ -75,7 +75,7 @@ static void look(adcgs_intake *in)
         in->come.drawable = info->time_drawable > -INFINITY;
 }
 
-/** A part more. \return whether something else is to be drawn. */
+/** Decodes one more part. \return nonzero if the rendered result differs */
 static int go_on(adcgs_intake *in, uint64_t limit, int *some)
 {
     adcgs_arrival arrived;
@@ -87,7 +87,7 @@ static int go_on(adcgs_intake *in, uint64_t limit, int *some)
     return arrived >= ADCGS_ARRIVED_SEGMENT || in->come.over;
 }
 
-/** With other layers, as far as it had been. */
+/** Opens the stream with other layers, and decodes as far as before. */
 static adcgs_status begin_anew(adcgs_intake *in, int layers, adcgs_error *error)
 {
     const adcgs_come before = in->come;
@@ -108,7 +108,7 @@ adcgs_status adcgs_intake_take(adcgs_intake *in, int layers, int more, int *chan
     for (int some = more; some && !in->come.over && adcgs_seconds() - begin < MOMENT;) {
         *changed |= go_on(in, UINT64_MAX, &some);
         if (in->come.drawable && !was_drawable)
-            break; /* the first picture, at once */
+            break; /* shows the first image at once */
     }
     look(in);
     return ADCGS_OK;

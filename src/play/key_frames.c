@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Key frames by hand. */
+/** \file Key frames set by the user. */
 #include "config.h"
 
 #include "play/key_frames.h"
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define KEY_SECONDS 1.0 /* from a key to one that is not later */
+#define KEY_SECONDS 1.0 /* distance to a key that is not later */
 
 static adcgs_status write_keys(const adcgs_key_frames *keys, const adcgs_info *info, adcgs_error *error)
 {
@@ -35,7 +35,7 @@ adcgs_status adcgs_key_frames_add(adcgs_key_frames *keys, const adcgs_camera *ca
 {
     ADCGS_TRY(reserve(keys, error));
     if (!*keys->path && !adcgs_play_free_name(keys->path, stream, "json"))
-        return adcgs_fail(error, ADCGS_ERR_IO, "no number is left for a path");
+        return adcgs_fail(error, ADCGS_ERR_IO, "no unused file name is left for a path");
     adcgs_camera_key *const key = &keys->key[keys->n];
     *key = (adcgs_camera_key){.frame = {*camera, time}};
     if (keys->n) {

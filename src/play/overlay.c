@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Drawing what is laid over the picture. */
+/** \file Renders the overlay on the image. */
 #include "config.h"
 
 #include "play/overlay.h"
@@ -19,7 +19,7 @@
 
 enum { BAR, STATISTICS, MESSAGE, HELP };
 
-/** A panel of the size of its text; place is what part of the free space lies left of it and above it. */
+/** Makes a panel of the size of its text. x and y are the parts of the free space to its left and above it. */
 static void text_panel(adcgs_panel *panel, const adcgs_play_state *state, const char *text, double x, double y,
                        uint32_t background)
 {
@@ -34,7 +34,7 @@ static void text_panel(adcgs_panel *panel, const adcgs_play_state *state, const 
     panel->y = ADCGS_MAX(0, (int)(y * (state->height - height)));
 }
 
-/** The groove with what has passed, and the time on its right where there is room. */
+/** Renders the groove with the elapsed part, and the time on its right if there is room. */
 static void draw_bar(adcgs_panel *panel, const adcgs_play_state *state)
 {
     const adcgs_rect place = adcgs_play_bar(state);
@@ -64,7 +64,7 @@ static void draw_statistics(adcgs_panel *panel, const adcgs_play_state *state, c
     if (figures->rate > 0.0)
         snprintf(rate, sizeof rate, ", %.1f fps", figures->rate);
     snprintf(text, sizeof text,
-             "picture %.1f ms%s\n"
+             "image   %.1f ms%s\n"
              "size    %dx%d of %dx%d\n"
              "splats  %u\n"
              "layers  %d of %d\n"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Drawing on panels. */
+/** \file Panels. */
 #include "config.h"
 
 #include "play/panel.h"

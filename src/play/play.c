@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The player's loop: events in, and what follows from them. */
+/** \file The player's loop: takes events and reacts to them. */
 #include "config.h"
 
 #include "play/actions.h"
@@ -12,8 +12,8 @@
 #include <stdlib.h>
 
 #define HEIGHT_WANTED 480         /* of the first window; smaller cameras are enlarged by a whole number */
-#define SIDE_MAX 4096             /* of the first window, whatever the camera */
-#define REFRESH_SECONDS 0.25      /* after which figures and messages are drawn anew */
+#define SIDE_MAX 4096             /* of the first window, for any camera */
+#define REFRESH_SECONDS 0.25      /* interval at which figures and messages are rendered again */
 #define WAIT_MOVING 4             /* milliseconds to wait for events */
 #define WAIT_STILL 100
 
@@ -47,14 +47,14 @@ static void take_events(adcgs_player *p)
     p->full = p->state.full;
 }
 
-/* ---- What events ask for that goes to files. ---- */
+/* ---- Events that concern files ---- */
 
 static void begin_shot(adcgs_player *p)
 {
     if (!p->state.shot || *p->shot)
         return;
     if (!adcgs_play_free_name(p->shot, p->settings->source.path, p->state.shot == ADCGS_SHOT_EXR ? "exr" : "png"))
-        adcgs_play_say(&p->state, "no number is left for a screenshot");
+        adcgs_play_say(&p->state, "no unused file name is left for a screenshot");
     p->state.shot = ADCGS_SHOT_NONE;
 }
 
@@ -80,7 +80,7 @@ static void set_key_frame(adcgs_player *p)
     state->key_frame = 0;
 }
 
-/** Begin or end the video; who draws has it meanwhile. */
+/** Begins or ends the video, while the worker does not use it. */
 static void follow_recording(adcgs_player *p)
 {
     adcgs_recording *const r = &p->recording;
@@ -95,22 +95,22 @@ static void follow_recording(adcgs_player *p)
         adcgs_play_say(&p->state, "%s", r->error.text);
     } else if (!r->sink) {
         adcgs_play_say(&p->state, "%s: %ld frame%s", r->path, r->frames, adcgs_s((uint64_t)r->frames));
-        *r->path = 0; /* the next has another name */
+        *r->path = 0; /* the next one gets another name */
     }
 }
 
-/** Screenshots that were asked for are made before the player leaves. */
+/** Requested screenshots are made before the player leaves. */
 static adcgs_status loop(adcgs_player *p, adcgs_error *error)
 {
     while ((!p->state.quit || p->state.shot || *p->shot) && !p->settings->interrupted()) {
         if (!p->come.drawable && (p->come.over || p->state.quit))
-            return ADCGS_OK; /* there will never be anything to see, or to make a screenshot of */
+            return ADCGS_OK; /* there will never be an image */
         take_events(p);
         begin_shot(p);
         set_key_frame(p);
         ADCGS_TRY(adcgs_player_collect(p, error));
         follow_recording(p);
-        adcgs_play_tick(&p->state, adcgs_recording_now(&p->recording)); /* a frame that was collected is a step of time */
+        adcgs_play_tick(&p->state, adcgs_recording_now(&p->recording)); /* a collected frame is a step of time */
         adcgs_player_post(p);
         ADCGS_TRY(adcgs_script_go(p, error));
         if (p->stale || adcgs_seconds() - p->shown > REFRESH_SECONDS)
@@ -155,7 +155,7 @@ static void init(adcgs_player *p, const adcgs_play_settings *s)
     if (!s->source.feed)
         adcgs_player_has_all(p);
     else
-        clock->reach = 0.0; /* nothing has come that could be played */
+        clock->reach = 0.0; /* nothing playable has arrived */
     if (s->info.truncated && !s->source.feed)
         adcgs_play_say(&p->state, "the stream ends early");
 }
@@ -173,7 +173,7 @@ adcgs_status adcgs_play_run(const adcgs_play_settings *s, int *failed, adcgs_err
     if (status == ADCGS_OK)
         status = loop(p, error);
     if (s->source.feed)
-        adcgs_feed_stop(s->source.feed); /* these first, since they wake the window */
+        adcgs_feed_stop(s->source.feed); /* first, since they wake the window */
     adcgs_worker_free(&p->worker);
     if (adcgs_recording_end(&p->recording) != ADCGS_OK && status == ADCGS_OK) {
         *error = p->recording.error;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Pictures of the running player: jobs out, results back, window drawn. */
+/** \file Images of the running player: posts jobs, takes results, renders the window. */
 #include "config.h"
 
 #include "play/player.h"
@@ -10,12 +10,12 @@
 #include <math.h>
 #include <stdio.h>
 
-#define HAND_SECONDS (1.0 / 30.0) /* that a picture may take while the camera is moved by hand */
-#define BUDGET_MIN (1.0 / 60.0)   /* more pictures than that nobody sees */
-#define BUDGET_MAX (1.0 / 15.0)   /* fewer are no film */
-#define REST_SECONDS 0.5          /* without a picture, after which there is no rate of them */
+#define HAND_SECONDS (1.0 / 30.0) /* maximum time of an image while the user moves the camera */
+#define BUDGET_MIN (1.0 / 60.0)   /* more images per second are invisible */
+#define BUDGET_MAX (1.0 / 15.0)   /* fewer images per second are no film */
+#define REST_SECONDS 0.5          /* without an image, after which the rate is unknown */
 
-/* ---- What has come. ---- */
+/* ---- Received data ---- */
 
 void adcgs_player_has_all(adcgs_player *p)
 {
@@ -23,7 +23,7 @@ void adcgs_player_has_all(adcgs_player *p)
     p->come = (adcgs_come){.info = s->info, .bytes = s->source.bytes, .drawable = 1, .over = 1};
 }
 
-/** Whether more has come than the worker has decoded. */
+/** True if more has arrived than the worker has decoded. */
 static int lags(const adcgs_player *p)
 {
     adcgs_feed *const feed = p->settings->source.feed;
@@ -31,7 +31,7 @@ static int lags(const adcgs_player *p)
     return feed && !p->come.over && (adcgs_feed_bytes(feed, &ended) > p->come.bytes || ended);
 }
 
-/** How much, for those who watch. */
+/** Describes the received part for the user. */
 static void describe(adcgs_player *p)
 {
     const adcgs_info *const info = &p->come.info;
@@ -46,7 +46,7 @@ static void describe(adcgs_player *p)
              bytes / (bytes < 1e6 ? 1e3 : 1e6), bytes < 1e6 ? "KB" : "MB");
 }
 
-/** The moments to play, and how far they are there. */
+/** Sets the time range, and its available part. */
 static void set_span(adcgs_player *p)
 {
     const adcgs_info *const info = &p->come.info;
@@ -77,15 +77,15 @@ static void take_come(adcgs_player *p, const adcgs_come *come)
         adcgs_play_say(&p->state, "the stream ends early");
 }
 
-/* ---- What should be drawn. ---- */
+/* ---- Jobs ---- */
 
-/** Whether a screenshot can be made. */
+/** True if a screenshot can be made. */
 static int shoots(const adcgs_player *p)
 {
     return *p->shot && p->come.drawable;
 }
 
-/** Whether the next picture is a frame of a video. */
+/** True if the next image is a frame of a video. */
 static int records(const adcgs_player *p)
 {
     return p->recording.sink && p->state.record && p->come.drawable && !*p->shot;
@@ -152,7 +152,7 @@ void adcgs_player_post(adcgs_player *p)
         p->job = job;
 }
 
-/* ---- What was drawn. ---- */
+/* ---- Results ---- */
 
 static void take_shot(adcgs_player *p, const adcgs_play_result *result)
 {
@@ -165,7 +165,7 @@ static void take_shot(adcgs_player *p, const adcgs_play_result *result)
     *p->shot = 0;
 }
 
-/** A frame of the video is there, or there will be none. \return whether the picture can be shown, too. */
+/** Takes a frame of the video, or ends the video. \return nonzero if the image can be shown, too */
 static int take_frame(adcgs_player *p, const adcgs_play_result *result)
 {
     if (result->status == ADCGS_OK) {
@@ -178,7 +178,7 @@ static int take_frame(adcgs_player *p, const adcgs_play_result *result)
     return 0;
 }
 
-/** What cannot be drawn for lack of memory is drawn smaller; the player goes on in any case. */
+/** Reduces the resolution after an allocation failure. The player continues in any case. */
 static void take_failure(adcgs_player *p, const adcgs_play_result *result)
 {
     const int too_large = result->status == ADCGS_ERR_LIMIT || result->status == ADCGS_ERR_MEMORY;
@@ -207,7 +207,7 @@ static void count_picture(adcgs_player *p, const adcgs_play_result *result)
     p->pictures++;
 }
 
-/** Frames left out on purpose, at a higher speed or by going elsewhere, do not count. */
+/** Frames that are skipped on purpose, at a higher speed or by a jump, do not count. */
 static void count_dropped(adcgs_player *p, const adcgs_play_job *job)
 {
     const adcgs_play_clock *const clock = &p->state.clock;
@@ -241,7 +241,7 @@ adcgs_status adcgs_player_collect(adcgs_player *p, adcgs_error *error)
         take_come(p, &result->come);
     const int shows = !result->job.sink || take_frame(p, result);
     if (!shows)
-        p->job.camera.width = 0; /* it is drawn again, for the window alone */
+        p->job.camera.width = 0; /* renders it again, for the window alone */
     else if (*result->job.path)
         take_shot(p, result);
     else if (result->status != ADCGS_OK)

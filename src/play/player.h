@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The running player, for the files of this room. */
+/** \file The running player, for the files of this folder. */
 #ifndef ADCGS_PLAY_PLAYER_H
 #define ADCGS_PLAY_PLAYER_H
 
@@ -11,13 +11,13 @@
 #include "play/script.h"
 #include "play/worker.h"
 
-/** Where a script is. */
+/** The position in a script. */
 typedef struct adcgs_script_run {
     adcgs_script script;
-    int at;            /**< the line that is next, or being done */
-    int begun;         /**< that line is being done */
-    double since;      /**< when it was begun */
-    long pictures;     /**< that had been shown then */
+    int at;            /**< the next or current line */
+    int begun;         /**< the current line has begun */
+    double since;      /**< when it began */
+    long pictures;     /**< images shown at that time */
     int failed;        /**< an expectation did not hold */
 } adcgs_script_run;
 
@@ -31,37 +31,37 @@ typedef struct adcgs_player {
     adcgs_play_scale scale;
     adcgs_panel panels[ADCGS_PANELS];
     adcgs_script_run run;
-    adcgs_play_job job;      /**< the last one for the window; of camera width 0 before the first */
-    int least_divider;       /**< pictures any larger cannot be drawn */
+    adcgs_play_job job;      /**< the last one for the window; camera width 0 before the first */
+    int least_divider;       /**< larger images cannot be rendered */
     int drawing;             /**< the worker has a job */
     int captured;            /**< the window holds the mouse */
-    int full;                /**< the window has the whole screen */
-    adcgs_key_frames keys;   /**< those that the user has set */
+    int full;                /**< the window is full screen */
+    adcgs_key_frames keys;   /**< set by the user */
     adcgs_recording recording;
-    int last_frame;          /**< the frame shown last while playing; -1: none */
-    int seeks, last_seeks;   /**< times that an event changed the frame: by now, and when that one was posted */
-    int stale;               /**< what the window shows is not the last word */
-    double shown;            /**< when the window was drawn last */
-    double arrived;          /**< when the last picture came */
-    double period;           /**< seconds between pictures, on the mean of the last ones; 0: not known */
+    int last_frame;          /**< the last frame shown while playing; -1: none */
+    int seeks, last_seeks;   /**< number of events that changed the frame: now, and when that frame was posted */
+    int stale;               /**< the window's contents are not up to date */
+    double shown;            /**< when the window was last rendered */
+    double arrived;          /**< when the last image arrived */
+    double period;           /**< mean seconds between the last images; 0: unknown */
     long pictures;           /**< shown so far */
-    adcgs_come come;         /**< how much of the stream has been decoded */
-    adcgs_status failure;    /**< of the last picture for the window, if it cannot be drawn at any resolution */
+    adcgs_come come;         /**< decoded part of the stream */
+    adcgs_status failure;    /**< of the last image for the window, if no resolution can be rendered */
     adcgs_error failure_error;
-    char shot[PATH_MAX];     /**< file of the screenshot that is to be made or being made; "": none */
-    adcgs_status shot_status; /**< of the last one */
+    char shot[PATH_MAX];     /**< file of the requested or current screenshot; "": none */
+    adcgs_status shot_status; /**< of the last screenshot */
     adcgs_error shot_error;
 } adcgs_player;
 
-/** Whether the window shows the very picture that the state stands for, at full resolution, and nothing will change it. */
+/** True if the window shows exactly the image of the state, at full resolution, and nothing will change it. */
 int adcgs_player_settled(const adcgs_player *player);
-/** Of a stream that is all there: so it is. */
+/** Notes that the whole stream is present. */
 void adcgs_player_has_all(adcgs_player *player);
-/** Give the worker something to do, if it has nothing and there is something. */
+/** Gives the worker a job, if it is idle and there is one. */
 void adcgs_player_post(adcgs_player *player);
-/** Take what the worker has done, if anything: a picture into the window, a screenshot, or a failure. */
+/** Takes a result of the worker, if there is one: an image for the window, a screenshot, or a failure. */
 adcgs_status adcgs_player_collect(adcgs_player *player, adcgs_error *error);
-/** Draw the window; to rgb as well, if not NULL. */
+/** Renders the window; to rgb as well, if not NULL. */
 adcgs_status adcgs_player_show(adcgs_player *player, uint8_t *rgb, adcgs_error *error);
 
 #endif

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Recording. */
+/** \file Recordings. */
 #include "config.h"
 
 #include "play/recording.h"
 
 #include "play/files.h"
 
-#define MANY_FRAMES 2 /* how many will come nobody knows: more than a picture holds */
+#define MANY_FRAMES 2 /* their number is unknown; more than an image holds */
 
 double adcgs_recording_now(const adcgs_recording *r)
 {
@@ -32,7 +32,7 @@ static adcgs_status open_named(adcgs_recording *r, const char *stream, adcgs_err
     for (size_t i = 0; i < ADCGS_COUNTOF(extensions) && status == ADCGS_ERR_UNSUPPORTED; i++)
         status = adcgs_play_free_name(r->path, stream, extensions[i])
                      ? open_sink(r, error)
-                     : adcgs_fail(error, ADCGS_ERR_IO, "no number is left for a video");
+                     : adcgs_fail(error, ADCGS_ERR_IO, "no unused file name is left for a video");
     return status;
 }
 
@@ -56,7 +56,7 @@ void adcgs_recording_posted(adcgs_recording *r)
     r->due = ADCGS_MAX(r->due + r->step, adcgs_seconds());
 }
 
-/** Time goes on from where it is. */
+/** Continues the time from its present value. */
 static void leave(adcgs_recording *r)
 {
     r->behind = adcgs_seconds() - adcgs_recording_now(r);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Resolution and detail that follow the time a frame may take. */
+/** \file Resolution and detail, adapted to the time of a frame. */
 #include "config.h"
 
 #include "play/scale.h"
@@ -9,8 +9,8 @@
 #define SLOW_PICTURES 2
 #define FAST_PICTURES 12
 #define TIERS_BEHIND 2 /* the divider from which on tiers are left out first */
-#define ROOM 0.75      /* part of the budget that the finer picture is expected to take at most */
-#define TIER_TIMES 2.0 /* as long as a picture without a tier that with it is expected to take */
+#define ROOM 0.75      /* share of the budget that the finer image may take according to the estimate */
+#define TIER_TIMES 2.0 /* estimated ratio of the render times with and without a tier */
 
 void adcgs_play_scale_init(adcgs_play_scale *scale, int tiers)
 {
@@ -26,13 +26,13 @@ int adcgs_play_scale_coarser(adcgs_play_scale *scale)
     return possible || fewer;
 }
 
-/** Whether the tier left out last comes back before pixels do. */
+/** True if the last dropped tier returns before the resolution rises. */
 static int tier_is_next(const adcgs_play_scale *scale)
 {
     return scale->tiers < scale->all && scale->divider <= TIERS_BEHIND;
 }
 
-/** What a picture takes one step finer, if it all went by pixels, or by splats. */
+/** Estimates the render time one step finer, as if it depended on pixels only, or on splats only. */
 static double finer_seconds(const adcgs_play_scale *scale, double seconds)
 {
     const double ratio = (double)scale->divider / (scale->divider - 1);

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * At what part of the window's resolution a moving picture is drawn: 1/1, 1/2,
- * ..., and behind 1/2 with how many of the stream's tiers, so that drawing fits
- * into a frame's time. It becomes coarser after two pictures that took too
- * long, and finer only after many that left so much time that the finer ones
- * will fit too: it does not flicker between the two.
+ * The resolution of moving images, 1/1, 1/2, ... of the window's, and, below 1/2, the number of the stream's tiers. They are
+ * chosen so that rendering fits into a frame's time. The resolution falls after two images that took too long. It rises only
+ * after many images that were so fast that finer ones will fit, too, so that it does not flicker between the two.
  */
 #ifndef ADCGS_PLAY_SCALE_H
 #define ADCGS_PLAY_SCALE_H
@@ -13,15 +11,15 @@
 
 typedef struct adcgs_play_scale {
     int divider;    /**< 1..ADCGS_PLAY_DIVIDER_MAX */
-    int tiers, all; /**< of the stream: that are drawn; that there are */
-    int slow, fast; /**< pictures in a row that took too long, or would fit at the finer resolution */
+    int tiers, all; /**< tiers of the stream: rendered, and present */
+    int slow, fast; /**< consecutive images that took too long, or would fit at the finer resolution */
 } adcgs_play_scale;
 
-/** tiers: that the stream has. */
+/** tiers: of the stream. */
 void adcgs_play_scale_init(adcgs_play_scale *scale, int tiers);
-/** A picture drawn at the present divider, of the present tiers, took so many seconds, of so many that it should take at most. */
+/** Notes that an image with the present divider and tiers took `seconds`, of at most `budget` seconds. */
 void adcgs_play_scale_took(adcgs_play_scale *scale, double seconds, double budget);
-/** Pictures of the present size cannot be drawn at all. \return whether there is a smaller one. */
+/** Reduces the size, since images of the present one cannot be rendered at all. \return nonzero if there is a smaller size */
 int adcgs_play_scale_coarser(adcgs_play_scale *scale);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Reading scripts. */
+/** \file Reads scripts. */
 #include "config.h"
 
 #include "play/script.h"
@@ -39,7 +39,7 @@ static int read_text(adcgs_script_line *to, char **rest)
     return to->text ? 0 : -1;
 }
 
-/** Takes "shift-" off a name, and notes it. */
+/** Removes "shift-" from a name, and notes it. */
 static const char *take_shift(const char *name, int *shift)
 {
     *shift = name && !strncmp(name, "shift-", 6);
@@ -108,7 +108,7 @@ static int read_size(const char *text, double number[2])
     return 0;
 }
 
-/** What is expected, its value, and how far it may be off; of a size, two values. */
+/** Reads the name of an expected value, the value, and its tolerance. A size has two values. */
 static int read_expect(adcgs_script_line *to, char **rest)
 {
     if (read_text(to, rest))
@@ -156,7 +156,7 @@ static int read_arguments(adcgs_script_line *to, char **rest)
     return -1;
 }
 
-/** \return whether the line is a command of that shape; the line may be half filled then. */
+/** \return nonzero if the line is a command of that form; otherwise the line may be filled in part */
 static int read_command(adcgs_script_line *to, char *line)
 {
     static const struct { const char *name; adcgs_script_kind kind; } names[] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Doing what a script says. */
+/** \file Executes a script. */
 #include "config.h"
 
 #include "play/script_run.h"
@@ -11,9 +11,9 @@
 #include <stdlib.h>
 
 #define DRAG_STEPS 8
-#define SIZE_SECONDS 5.0 /* that a window may take to get another size */
+#define SIZE_SECONDS 5.0 /* maximum time for a window to change its size */
 
-/** Whether a line is done, so that the next may follow; some lines want events to be taken first. */
+/** State of a line: the next may follow when it is done. Some lines require that events are taken first. */
 typedef enum outcome { AGAIN, DONE, DONE_TAKE_EVENTS } outcome;
 
 static void push_key(adcgs_player *p, int key, int down)
@@ -55,7 +55,7 @@ static outcome wait_frames(const adcgs_player *p, const adcgs_script_line *line)
     return p->pictures - p->run.pictures >= line->number[0] || adcgs_player_settled(p) ? DONE : AGAIN;
 }
 
-/** Whether so much of the stream has come, and was decoded; no more comes than there is. */
+/** True if this part of the stream has arrived and was decoded, or if the stream has ended. */
 static outcome wait_stream(const adcgs_player *p, const adcgs_script_line *line)
 {
     const adcgs_come *const come = &p->come;
@@ -72,7 +72,7 @@ static adcgs_status wrong(const adcgs_player *p, const adcgs_script_line *line, 
     return adcgs_fail(error, status, "%.160s: line %d: %.160s", p->settings->script, line->line, what);
 }
 
-/** An expectation does not hold: the script ends here. */
+/** Ends the script after an expectation that does not hold. */
 static void disappoint(adcgs_player *p, const adcgs_script_line *line, const char *what, adcgs_error *error)
 {
     wrong(p, line, ADCGS_ERR_DATA, what, error);
@@ -87,12 +87,12 @@ static outcome wait_size(adcgs_player *p, const adcgs_script_line *line, adcgs_e
         return adcgs_player_settled(p) || adcgs_play_moving(&p->state) ? DONE : AGAIN;
     if (p->state.now - p->run.since < SIZE_SECONDS)
         return AGAIN;
-    snprintf(text, sizeof text, "the window has a size of %dx%d, and does not change it", p->state.width, p->state.height);
+    snprintf(text, sizeof text, "the window's size is %dx%d, and does not change", p->state.width, p->state.height);
     disappoint(p, line, text, error);
     return DONE;
 }
 
-/** The value of something that can be expected. \return 0 if there is no such thing. */
+/** Finds a value that can be expected. \return 0 if there is no such name */
 static int find_value(const adcgs_player *p, const char *name, double *value)
 {
     const adcgs_play_state *const s = &p->state;
@@ -123,7 +123,7 @@ static adcgs_status expect(adcgs_player *p, const adcgs_script_line *line, adcgs
         if (s->width != (int)n[0] || s->height != (int)n[1])
             snprintf(text, sizeof text, "size is %dx%d, expected %dx%d", s->width, s->height, (int)n[0], (int)n[1]);
     } else if (!find_value(p, line->text, &value))
-        return wrong(p, line, ADCGS_ERR_USAGE, "nothing of that name can be expected", error);
+        return wrong(p, line, ADCGS_ERR_USAGE, "no value of that name can be expected", error);
     else if (!(fabs(value - n[0]) <= n[1]))
         snprintf(text, sizeof text, "%.40s is %.9g, expected %.9g", line->text, value, n[0]);
     if (*text)
@@ -153,7 +153,7 @@ static void begin_shot(adcgs_player *p, const char *path)
     p->shot_status = ADCGS_OK;
 }
 
-/** What is done once, when a line begins. */
+/** Executes the part of a line that is done once. */
 static outcome begin(adcgs_player *p, const adcgs_script_line *line)
 {
     switch (line->kind) {
@@ -189,11 +189,11 @@ static outcome begin(adcgs_player *p, const adcgs_script_line *line)
     }
 }
 
-/** What is asked in each turn until the line is done. */
+/** Checks in each turn whether the line is done. */
 static adcgs_status go_on(adcgs_player *p, const adcgs_script_line *line, outcome *how, adcgs_error *error)
 {
     const int waits = line->kind == ADCGS_SCRIPT_WAIT_FRAMES || line->kind == ADCGS_SCRIPT_GRAB;
-    if (waits && p->failure != ADCGS_OK && !p->drawing) /* there may never be a picture */
+    if (waits && p->failure != ADCGS_OK && !p->drawing) /* there may never be an image */
         return wrong(p, line, p->failure, p->failure_error.text, error);
     switch (line->kind) {
     case ADCGS_SCRIPT_WAIT_FRAMES:
@@ -237,7 +237,7 @@ adcgs_status adcgs_script_go(adcgs_player *p, adcgs_error *error)
         outcome how = AGAIN;
         if (!run->begun) {
             if (line->kind == ADCGS_SCRIPT_SCREENSHOT && *p->shot)
-                return ADCGS_OK; /* that of a key is still being made */
+                return ADCGS_OK; /* a key's screenshot is still being made */
             run->begun = 1;
             run->since = p->state.now;
             run->pictures = p->pictures;

@@ -9,13 +9,13 @@
 
 #include <math.h>
 
-#define RADIANS_PER_HEIGHT 3.0 /* that a drag over the window's height turns */
+#define RADIANS_PER_HEIGHT 3.0 /* rotation by a drag over the window's height */
 #define SPEED_STEP 1.25
-#define SPEED_MIN 0.01         /* scene units in a second */
+#define SPEED_MIN 0.01         /* scene units per second */
 #define SPEED_MAX 100.0
-#define SHIFT_SPEED 4.0        /* times as fast with shift */
-#define STILL_AFTER 0.2        /* seconds without a move after which the picture counts as still */
-#define LARGE_WIDTH 512        /* from this size on letters are twice as large */
+#define SHIFT_SPEED 4.0        /* factor of the speed with shift */
+#define STILL_AFTER 0.2        /* seconds without a movement after which the image counts as still */
+#define LARGE_WIDTH 512        /* size from which on letters are twice as large */
 #define LARGE_HEIGHT 480
 
 void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *stored)
@@ -72,15 +72,15 @@ static void move_by_hand(adcgs_play_state *state)
 {
     state->moved = state->now;
     state->jumped = -1;
-    *state->control.camera.name = 0; /* it is no longer that one */
+    *state->control.camera.name = 0; /* it is no longer the stored camera */
 }
 
-/* Keys that fly while they are held: where to, in the camera's axes. */
+/* Keys that fly while they are held, with the direction in the camera's axes. */
 static const struct { char key; signed char right, down, forward; } flights[] = {
     {'w', 0, 0, 1}, {'s', 0, 0, -1}, {'a', -1, 0, 0}, {'d', 1, 0, 0}, {'q', 0, 1, 0}, {'e', 0, -1, 0},
 };
 
-/** \return whether the key is one of those that fly. */
+/** \return nonzero if the key is a flight key */
 static int hold(adcgs_play_state *state, const adcgs_event *event)
 {
     for (size_t i = 0; i < ADCGS_COUNTOF(flights) && state->flying; i++)
@@ -147,7 +147,7 @@ static void on_wheel(adcgs_play_state *state, const adcgs_event *event)
 {
     if (state->flying) {
         state->speed = ADCGS_MAX(SPEED_MIN, ADCGS_MIN(state->speed * pow(SPEED_STEP, event->dy), SPEED_MAX));
-        adcgs_play_say(state, "flying %.2f a second", state->speed);
+        adcgs_play_say(state, "flying speed %.2f per second", state->speed);
         return;
     }
     move_by_hand(state);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * What the player is doing, and how events change it. No window, no thread,
- * no file: events and the time go in, and what should be seen can be read off.
+ * The player's state, and its changes by events. It uses no window, thread or file: events and the time are inputs, and the
+ * desired view can be read from the state.
  */
 #ifndef ADCGS_PLAY_STATE_H
 #define ADCGS_PLAY_STATE_H
@@ -11,7 +11,7 @@
 #include "play/clock.h"
 #include "play/event.h"
 
-/* The time bar, in pixels of letters and in letters: how high it is, and the room for the time on its right. */
+/* The time bar: its height in pixels of letters, and the room for the time on its right in letters. */
 #define ADCGS_PLAY_BAR_HEIGHT 14
 #define ADCGS_PLAY_BAR_COLUMNS 13
 
@@ -35,47 +35,47 @@ typedef struct adcgs_rect {
 typedef struct adcgs_play_state {
     adcgs_orbit_control control;
     adcgs_play_clock clock;
-    adcgs_camera home;            /**< what reset goes back to */
+    adcgs_camera home;            /**< the view of reset */
     const adcgs_camera *stored;   /**< the stream's cameras, [cameras] */
     int cameras;
-    int jumped;                   /**< the stored camera that it jumped to last; -1: none, or moved since */
-    int layers, layers_max;       /**< of the stream: used, and there; 1..5 */
+    int jumped;                   /**< the last selected stored camera; -1: none, or moved since */
+    int layers, layers_max;       /**< of the stream: used, and present; 1..5 */
     int width, height;            /**< of the window, pixels */
-    double density;               /**< pixels in the unit that desktops measure in */
+    double density;               /**< pixels per unit of the desktop */
 
     int flying;                   /**< keys and mouse move the camera freely */
-    double speed;                 /**< of flying: scene units in a second */
-    unsigned held;                /**< keys held that fly, a bit for each */
+    double speed;                 /**< of flying: scene units per second */
+    unsigned held;                /**< flight keys that are held, a bit for each */
     int shift;
     adcgs_play_drag drag;
-    double moved;                 /**< when the camera or the time was last moved by hand */
+    double moved;                 /**< when the user last moved the camera or the time */
 
-    int bar, statistics, help;    /**< what is laid over the picture */
+    int bar, statistics, help;    /**< visible overlays */
     char message[200];
-    double message_end;           /**< when it goes away */
+    double message_end;           /**< when the message disappears */
 
-    adcgs_play_shot shot;         /**< asked for; who takes it sets it back */
-    int key_frame;                /**< asked for: 1 one more, -1 the last one back; who does it sets it back */
-    int record;                   /**< a video is to be written of what is shown */
-    long recorded;                /**< frames that it has by now */
-    int full;                     /**< the window is to have the whole screen */
+    adcgs_play_shot shot;         /**< requested screenshot; reset when it is taken */
+    int key_frame;                /**< request: 1 to add a key frame, -1 to remove the last; reset when it is done */
+    int record;                   /**< a video is recorded */
+    long recorded;                /**< its frames so far */
+    int full;                     /**< full screen is requested */
     int quit;
-    double now;                   /**< the clock on the wall at the last tick */
+    double now;                   /**< wall clock at the last tick */
 } adcgs_play_state;
 
-/** Begins at the home camera, paused at the first frame. stored must live as long as the state. */
+/** Starts at the home camera, paused at the first frame. stored must live as long as the state. */
 void adcgs_play_init(adcgs_play_state *state, const adcgs_info *info, const adcgs_camera *home, const adcgs_camera *stored);
 void adcgs_play_resize(adcgs_play_state *state, int width, int height, double density);
-/** What an event does. */
+/** Applies an event. */
 void adcgs_play_event(adcgs_play_state *state, const adcgs_event *event);
-/** What passing time does: now is in seconds. */
+/** Applies the passing of time; now is in seconds. */
 void adcgs_play_tick(adcgs_play_state *state, double now);
 
-/** Whether the picture moves: playing, flying, or moved by hand just now. */
+/** True if the image moves: playing, flying, or moved by the user just now. */
 int adcgs_play_moving(const adcgs_play_state *state);
-/** Where the time bar is in the window, without the time on its right; of width 0 when there is none. */
+/** The rectangle of the time bar in the window, without the time on its right; width 0 if it is hidden. */
 adcgs_rect adcgs_play_bar(const adcgs_play_state *state);
-/** Pixels of the window in a pixel of a letter. */
+/** Pixels of the window per pixel of a letter. */
 int adcgs_play_text_size(const adcgs_play_state *state);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The module that holds SDL. */
+/** \file The module with SDL. */
 #include "config.h"
 
 #include "play/window.h"

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * A window, keys and a mouse, seen from C without SDL. SDL brings some forty
- * shared libraries along, so it is in a module of its own, opened when the
- * player starts. Nothing here decides anything: events go out, pictures come
- * in. All places and sizes are in pixels, however dense they are.
+ * A window, keys and a mouse, accessible from C without SDL. SDL depends on some forty shared libraries, so it is in a module of
+ * its own, opened when the player starts. The module decides nothing: it emits events and shows images. All positions and sizes
+ * are in pixels, for any pixel density.
  */
 #ifndef ADCGS_PLAY_WINDOW_H
 #define ADCGS_PLAY_WINDOW_H
@@ -11,46 +10,46 @@
 #include "io/module.h"
 #include "play/event.h"
 
-/** A rectangle of straight RGBA, [height][width][4], laid over the picture. Of width 0: none. */
+/** A rectangle of straight RGBA, [height][width][4], on top of the image. Width 0: none. */
 typedef struct adcgs_panel {
     int x, y, width, height;
     uint8_t *rgba;
-    size_t room; /**< bytes that rgba has */
+    size_t room; /**< bytes of rgba */
 } adcgs_panel;
 
 #define ADCGS_PANELS 4
 
 typedef struct adcgs_window adcgs_window;
 
-/** What the module offers. Only wake() may be called from another thread than the one that opened the window. */
+/** The module's functions. Only wake() may be called from another thread than the one that opened the window. */
 typedef struct adcgs_sdl {
     const char *version; /**< of the programs that the module belongs to */
-    /** A window as large as wanted, or as the screen has room for. ADCGS_ERR_IO where there is no display. */
+    /** Opens a window of the requested size, or as large as the screen allows. ADCGS_ERR_IO without a display. */
     adcgs_status (*open)(adcgs_window **out, const char *title, int width, int height, adcgs_error *error);
     void (*close)(adcgs_window **window);
-    /** Size, and how many pixels make the unit that desktops measure in. */
+    /** Returns the size, and the pixels per unit of the desktop. */
     void (*size)(const adcgs_window *window, int *width, int *height, double *density);
     void (*resize)(adcgs_window *window, int width, int height);
-    /** The next event, waiting for it at most so long. \return whether one came. */
+    /** Waits for the next event, at most `milliseconds`. \return nonzero if there was one */
     int (*event)(adcgs_window *window, int milliseconds, adcgs_event *out);
-    /** Make an event as if the user had; event() gives it back in its turn. */
+    /** Adds an event like one of the user's; event() returns it in its turn. */
     void (*push)(adcgs_window *window, const adcgs_event *event);
-    /** End the waiting in event(). */
+    /** Ends the waiting in event(). */
     void (*wake)(adcgs_window *window);
-    /** Take the whole screen, or give it back. */
+    /** Switches full screen on or off. */
     void (*fullscreen)(adcgs_window *window, int on);
-    /** Hide the pointer and report all its ways, for looking round. */
+    /** Hides the pointer and reports all its movements, for looking around. */
     void (*capture)(adcgs_window *window, int on);
-    /** Take an RGB picture, [height][width][3], which show() scales to the window. */
+    /** Takes an RGB image, [height][width][3], which show() scales to the window. */
     adcgs_status (*picture)(adcgs_window *window, const uint8_t *rgb, int width, int height, adcgs_error *error);
-    /** The picture, if one was given, and the panels; to rgb as well, [height][width][3] of the window, if not NULL. */
+    /** Shows the image, if there is one, and the panels. Also copies the window to rgb, [height][width][3], if not NULL. */
     adcgs_status (*show)(adcgs_window *window, const adcgs_panel panels[ADCGS_PANELS], uint8_t *rgb, adcgs_error *error);
 } adcgs_sdl;
 
-/** The one thing that the module exports. */
+/** The module's only export. */
 ADCGS_MODULE_EXPORT extern const adcgs_sdl adcgs_play_table;
 
-/** The module's table; `path` is what messages name. ADCGS_ERR_UNSUPPORTED when it is not there, or built without SDL. */
+/** Returns the module's table. `path` is for messages. ADCGS_ERR_UNSUPPORTED if the module is missing, or built without SDL. */
 adcgs_status adcgs_sdl_get(const adcgs_sdl **sdl, const char *path, adcgs_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The window, by SDL. */
+/** \file The window, with SDL. */
 #include "config.h"
 
 #include "play/window.h"
@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-#define SMALLEST 64 /* pixels in width or height */
+#define SMALLEST 64 /* pixels, minimum width or height */
 
 struct adcgs_window {
     SDL_Window *window;
@@ -20,7 +20,7 @@ struct adcgs_window {
     Uint32 wake_event;
 };
 
-/* Keys that have another number with SDL; what says something in ASCII has the same. */
+/* Keys with another number in SDL; ASCII keys have the same. */
 static const struct { int key; SDL_Keycode code; } keys[] = {
     {ADCGS_KEY_LEFT, SDLK_LEFT}, {ADCGS_KEY_RIGHT, SDLK_RIGHT}, {ADCGS_KEY_HOME, SDLK_HOME}, {ADCGS_KEY_END, SDLK_END},
     {ADCGS_KEY_PAGE_UP, SDLK_PAGEUP}, {ADCGS_KEY_PAGE_DOWN, SDLK_PAGEDOWN}, {ADCGS_KEY_F1, SDLK_F1}, {ADCGS_KEY_F11, SDLK_F11},
@@ -43,7 +43,7 @@ static SDL_Keycode code_of(int key)
     return key;
 }
 
-/** As wanted, but with its shape no larger than the screen leaves room for. */
+/** Reduces the size to the screen's room, with the same aspect ratio. */
 static void fit_screen(int *width, int *height)
 {
     SDL_Rect usable;
@@ -75,7 +75,7 @@ static void window_close(adcgs_window **window)
     free(w);
 }
 
-/** Whether a driver of SDL draws where somebody sees it, and can be asked without writing messages of its own. */
+/** True if a driver of SDL has a visible display, and can be asked without printing messages of its own. */
 static int has_display(const char *driver)
 {
     static const char *const blind[] = {"dummy", "evdev", "offscreen"};
@@ -85,7 +85,7 @@ static int has_display(const char *driver)
     return strcmp(driver, "wayland") || SDL_getenv("XDG_RUNTIME_DIR") || SDL_getenv("WAYLAND_SOCKET");
 }
 
-/** With the driver that the user names, or the first that has a display: SDL by itself is content with one that has none. */
+/** Initialises the driver that the user names, or the first with a display: SDL itself also accepts one without a display. */
 static int init_video(void)
 {
     const char *const named = SDL_getenv("SDL_VIDEODRIVER");
@@ -96,7 +96,7 @@ static int init_video(void)
         if (has_display(driver) && !SDL_setenv("SDL_VIDEODRIVER", driver, 1) && !SDL_Init(SDL_INIT_VIDEO))
             return 0;
     }
-    return SDL_SetError("none of SDL's drivers finds one");
+    return SDL_SetError("none of SDL's drivers finds a display");
 }
 
 static adcgs_status open_parts(adcgs_window *w, const char *title, int width, int height, adcgs_error *error)
@@ -114,7 +114,7 @@ static adcgs_status open_parts(adcgs_window *w, const char *title, int width, in
     if (!w->renderer)
         w->renderer = SDL_CreateRenderer(w->window, -1, SDL_RENDERER_SOFTWARE);
     if (!w->renderer)
-        return adcgs_fail(error, ADCGS_ERR_IO, "%.100s: cannot draw in a window: %s", title, SDL_GetError());
+        return adcgs_fail(error, ADCGS_ERR_IO, "%.100s: cannot render in a window: %s", title, SDL_GetError());
     SDL_SetWindowMinimumSize(w->window, SMALLEST, SMALLEST);
     w->wake_event = SDL_RegisterEvents(1);
     return ADCGS_OK;
@@ -169,7 +169,7 @@ static void translate_window(const SDL_WindowEvent *from, adcgs_event *out)
     }
 }
 
-/** Mice count in points. */
+/** Mouse positions are in desktop units. */
 static void translate_mouse(const SDL_Event *from, double density, adcgs_event *out)
 {
     switch (from->type) {
@@ -259,7 +259,7 @@ static void window_capture(adcgs_window *w, int on)
     SDL_SetRelativeMouseMode(on ? SDL_TRUE : SDL_FALSE);
 }
 
-/** A texture of this size, kept while the size stays. \return 0 if there is none. */
+/** Provides a texture of this size, kept while the size stays. \return 0 on failure */
 static int need_texture(adcgs_window *w, SDL_Texture **texture, Uint32 format, int size[2], int width, int height)
 {
     if (*texture && size[0] == width && size[1] == height)
@@ -276,7 +276,7 @@ static adcgs_status window_picture(adcgs_window *w, const uint8_t *rgb, int widt
 {
     if (!need_texture(w, &w->picture, SDL_PIXELFORMAT_RGB24, w->picture_size, width, height) ||
         SDL_UpdateTexture(w->picture, NULL, rgb, 3 * width))
-        return adcgs_fail(error, ADCGS_ERR_IO, "cannot show a picture of %dx%d: %s", width, height, SDL_GetError());
+        return adcgs_fail(error, ADCGS_ERR_IO, "cannot show an image of %dx%d: %s", width, height, SDL_GetError());
     return ADCGS_OK;
 }
 
@@ -300,10 +300,10 @@ static adcgs_status window_show(adcgs_window *w, const adcgs_panel panels[ADCGS_
         good = !SDL_RenderCopy(w->renderer, w->picture, NULL, NULL);
     for (int i = 0; i < ADCGS_PANELS && good; i++)
         good = !panels[i].width || draw_panel(w, i, &panels[i]);
-    if (good && rgb) /* before they are shown: what is behind them afterwards nobody knows */
+    if (good && rgb) /* before they are shown, since their contents are undefined afterwards */
         good = !SDL_RenderReadPixels(w->renderer, NULL, SDL_PIXELFORMAT_RGB24, rgb, 3 * width);
     SDL_RenderPresent(w->renderer);
-    return good ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "cannot draw in the window: %s", SDL_GetError());
+    return good ? ADCGS_OK : adcgs_fail(error, ADCGS_ERR_IO, "cannot render in the window: %s", SDL_GetError());
 }
 
 const adcgs_sdl adcgs_play_table = {

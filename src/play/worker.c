@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The thread that draws. */
+/** \file The thread that renders. */
 #include "config.h"
 
 #include "play/worker.h"
@@ -14,7 +14,7 @@
 
 typedef enum stage {
     IDLE, /* a job may be posted */
-    BUSY, /* the thread has it */
+    BUSY, /* the thread has a job */
     DONE, /* the result may be taken */
     LEAVE
 } stage;
@@ -27,20 +27,20 @@ struct adcgs_worker {
 
     pthread_t thread;
     int running;
-    pthread_mutex_t lock; /**< of stage; what follows belongs to the thread while it is BUSY, else to the caller */
+    pthread_mutex_t lock; /**< protects stage; the members below belong to the thread while it is BUSY, else to the caller */
     pthread_cond_t changed;
     stage stage;
 
     adcgs_intake intake;  /**< of the feed, if there is one */
-    adcgs_decoder *decoder; /**< else */
-    int layers;           /**< that the decoder was opened with */
+    adcgs_decoder *decoder; /**< otherwise */
+    int layers;           /**< with which the decoder was opened */
     float *values;
     uint8_t *rgb;
     size_t room;          /**< samples in both */
     adcgs_play_result result;
 };
 
-/** Open the stream for a number of layers; if that fails, what was open stays. */
+/** Opens the stream for a number of layers; after a failure, the open stream stays. */
 static adcgs_status open_layers(adcgs_worker *w, int layers, adcgs_error *error)
 {
     adcgs_decoder *decoder;
@@ -68,7 +68,7 @@ static adcgs_status reserve(adcgs_worker *w, size_t samples, adcgs_error *error)
     w->values = malloc(samples * sizeof *w->values);
     w->rgb = malloc(samples);
     if (!w->values || !w->rgb)
-        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for a picture of %zu samples", samples);
+        return adcgs_fail(error, ADCGS_ERR_MEMORY, "out of memory for an image of %zu samples", samples);
     w->room = samples;
     return ADCGS_OK;
 }
@@ -86,7 +86,7 @@ static adcgs_status draw(adcgs_worker *w, adcgs_decoder *decoder)
     ADCGS_TRY(adcgs_render(decoder, camera, r->job.time, &frame, &r->error));
     adcgs_frame_to_u8(&frame, w->rgb);
     r->seconds = adcgs_seconds() - start;
-    ADCGS_TRY(adcgs_get_primitives(decoder, r->job.time, &splats, &r->error)); /* they are there */
+    ADCGS_TRY(adcgs_get_primitives(decoder, r->job.time, &splats, &r->error)); /* available without computation */
     for (uint32_t i = 0; i < splats.n; i++)
         r->splats += splats.opacity[i] > 0;
     r->rgb = w->rgb;
@@ -97,7 +97,10 @@ static adcgs_status draw(adcgs_worker *w, adcgs_decoder *decoder)
     return *r->job.path ? adcgs_image_write_as(&image, &options, r->job.path, &r->error) : ADCGS_OK;
 }
 
-/** Decode some of what has come, and draw if that shows. A picture for a file is of what the window's were of. */
+/**
+ * Decodes some of the received bytes, and renders if the result has changed. An image for a file shows the same decoded part as
+ * the window.
+ */
 static adcgs_status draw_coming(adcgs_worker *w)
 {
     adcgs_play_result *const r = &w->result;
