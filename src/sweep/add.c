@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * Curves of other methods, measured elsewhere on the same scene, from tables: the first line names the columns, in any order,
- * each other line is a point. Columns that are not known are passed over. No cell may hold a comma or a quote.
+ * Curves of other methods, measured elsewhere on the same scene, from tables. The first line names the columns, in any order;
+ * each other line is a point. Unknown columns are ignored. No cell may hold a comma or a quote.
  */
 #include "config.h"
 
@@ -42,14 +42,14 @@ static adcgs_status bad(const table *t, adcgs_error *error, const char *expected
     return adcgs_fail(error, ADCGS_ERR_DATA, "%s: line %d: expected %s", t->path, t->line, expected);
 }
 
-/** The next line that is not empty, without its end; *more: 0 if there is none. */
+/** Reads the next line that is not empty, without its end. *more: 0 if there is none. */
 static adcgs_status next_line(table *t, int *more, adcgs_error *error)
 {
     while ((*more = fgets(t->text, sizeof t->text, t->file) != NULL)) {
         size_t n = strlen(t->text);
         t->line++;
         if (n + 1 == sizeof t->text && t->text[n - 1] != '\n')
-            return bad(t, error, "no more than 1000 bytes");
+            return bad(t, error, "at most 1000 bytes");
         while (n && isspace((unsigned char)t->text[n - 1]))
             t->text[--n] = '\0';
         if (strchr(t->text, '"'))
@@ -60,7 +60,7 @@ static adcgs_status next_line(table *t, int *more, adcgs_error *error)
     return ferror(t->file) ? adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot be read: %s", t->path, strerror(errno)) : ADCGS_OK;
 }
 
-/** Cut the line's next cell off; NULL behind the last. */
+/** Cuts off the line's next cell; NULL after the last. */
 static char *next_cell(char **at)
 {
     char *const cell = *at;
@@ -79,7 +79,7 @@ static adcgs_status read_heading(table *t, adcgs_error *error)
     int more;
     ADCGS_TRY(next_line(t, &more, error));
     if (!more)
-        return bad(t, error, "a line of names of columns");
+        return bad(t, error, "a line of column names");
     for (char *at = t->text, *cell; (cell = next_cell(&at));) {
         int c = 0;
         while (c < OTHER && strcmp(known[c].name, cell) != 0)
@@ -92,7 +92,7 @@ static adcgs_status read_heading(table *t, adcgs_error *error)
     return found & 1U << BYTES && found & 1U << PSNR ? ADCGS_OK : bad(t, error, "columns bytes and psnr");
 }
 
-/** A point of the line that was read; what its source says goes to the curve's note. */
+/** Makes a point of the last line; its source goes to the curve's note. */
 static adcgs_status read_point(table *t, adcgs_sweep_curve *curve, adcgs_error *error)
 {
     double value[OTHER];
@@ -103,7 +103,7 @@ static adcgs_status read_point(table *t, adcgs_sweep_curve *curve, adcgs_error *
         const char *const cell = next_cell(&at);
         const column c = t->column[i];
         if (!cell)
-            return bad(t, error, "as many cells as there are columns");
+            return bad(t, error, "as many cells as columns");
         if (c == SOURCE && curve->n == 0)
             snprintf(curve->note + strlen(curve->note), sizeof curve->note - strlen(curve->note), "; %s", cell);
         else if (c < SOURCE && *cell && adcgs_parse_real(cell, known[c].min, known[c].max, &value[c]) != 0)
@@ -111,11 +111,11 @@ static adcgs_status read_point(table *t, adcgs_sweep_curve *curve, adcgs_error *
                               known[c].name, known[c].min, known[c].max);
     }
     if (at)
-        return bad(t, error, "no more cells than there are columns");
+        return bad(t, error, "at most as many cells as columns");
     if (isnan(value[BYTES]) || isnan(value[PSNR]))
         return bad(t, error, "bytes and psnr");
     if (curve->n == ADCGS_SWEEP_LIST)
-        return bad(t, error, "no more than 16 points");
+        return bad(t, error, "at most 16 points");
     curve->point[curve->n++] = (adcgs_sweep_row){.name = curve->name,
                                                  .lambda = -1,
                                                  .is_stream = 1,
@@ -142,7 +142,7 @@ static adcgs_status read_table(table *t, adcgs_sweep_curve *curve, adcgs_error *
     }
 }
 
-/** "NAME=FILE", of which the name goes into gnuplot's quotes and to terminals. */
+/** Adds "NAME=FILE". The name goes into gnuplot's quotes and to terminals. */
 static adcgs_status add_one(adcgs_sweep_plan *plan, const char *text, size_t length, adcgs_error *error)
 {
     char name[sizeof plan->curve->name], note[sizeof plan->curve->note], path[ADCGS_SWEEP_PATH];
@@ -154,7 +154,7 @@ static adcgs_status add_one(adcgs_sweep_plan *plan, const char *text, size_t len
     snprintf(path, sizeof path, "%.*s", (int)(length - n - 1), equals + 1);
     snprintf(note, sizeof note, "another method, from %.150s", path);
     if (adcgs_sweep_has_curve(plan, name))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--add %s: another curve is called that", name);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--add %s: another curve has this name", name);
     table t = {.path = path, .file = fopen(path, "r")};
     if (!t.file)
         return adcgs_fail(error, ADCGS_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));

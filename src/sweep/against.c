@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /** \file
- * The curves of earlier sweeps that a sweep is compared with, from the sweep.json that each left. Of each it is the first of the
- * codec's own. Its points are taken as they stand there: the files that they tell of need not be there any more.
+ * The curves of earlier sweeps that a sweep is compared with, from their sweep.json files. Each sweep contributes the first of
+ * the codec's own curves. Points are taken from that file alone: the streams need not exist any more.
  */
 #include "config.h"
 
@@ -16,11 +16,11 @@
 
 #define BYTES_MAX 1e15
 #define DB_MAX 1000.0
-#define ANY_MAX 1e12 /* of figures that are shown and no more */
+#define ANY_MAX 1e12 /* of figures that are only shown */
 
 /* ---- Points ---- */
 
-/** A number of the place's object, which keeps its value where there is none, or null, as for what was not known. */
+/** Reads a number of the place's object. The value stays if there is none, or null, which marks an unknown value. */
 static adcgs_status read_number(const adcgs_json_place *at, const char *field, double min, double max, double *value)
 {
     int found;
@@ -29,7 +29,7 @@ static adcgs_status read_number(const adcgs_json_place *at, const char *field, d
     return adcgs_json_number(at, field, min, max, value, &found);
 }
 
-/** A figure that no point goes without, over so many seeds. */
+/** Reads a figure that every point must have, over `seeds` seeds. */
 static adcgs_status read_spread(const adcgs_json_place *point, const char *field, double min, double max, int seeds,
                                 adcgs_spread *s)
 {
@@ -78,7 +78,7 @@ static adcgs_status read_points(const char *path, const json_t *points, adcgs_sw
 {
     const size_t n = json_array_size(points);
     if (!n || n > ADCGS_SWEEP_LIST)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no curve of the codec's own with 1 to %d points", path, ADCGS_SWEEP_LIST);
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no curve of the codec itself with 1 to %d points", path, ADCGS_SWEEP_LIST);
     for (size_t i = 0; i < n; i++) {
         json_t *const point = json_array_get(points, i);
         const adcgs_json_place at = {path, point, point, i, "points", error};
@@ -91,7 +91,7 @@ static adcgs_status read_points(const char *path, const json_t *points, adcgs_sw
     return ADCGS_OK;
 }
 
-/** The points of the first curve that is no yardstick. */
+/** The points of the first curve that is not a yardstick. */
 static const json_t *find_points(const json_t *root)
 {
     const json_t *const curves = json_object_get(root, "curves");
@@ -103,7 +103,7 @@ static const json_t *find_points(const json_t *root)
 
 /* ---- Names ---- */
 
-/** The last part of path[0..end), without slashes behind it: where it begins and its length, which is 0 if there is none. */
+/** Finds the last component of path[0..end), without trailing slashes. Returns its start; its length is 0 if there is none. */
 static size_t part_before(const char *path, size_t end, size_t *length)
 {
     while (end && path[end - 1] == '/')
@@ -132,8 +132,8 @@ void adcgs_sweep_write_name(char *name, size_t size, const char *text, size_t le
 }
 
 /**
- * After the folder; of curves/robot and before/robot, after the first in which they differ ("before"). After the whole path where
- * a curve has that name.
+ * Names a curve after the folder. For curves/robot and before/robot, it uses the first component from the end that differs
+ * ("before"). If another curve has that name, it uses the whole path.
  */
 static adcgs_status name_curve(char *name, size_t size, const adcgs_sweep_plan *plan, const char *folder, const char *own,
                                adcgs_error *error)
@@ -149,20 +149,20 @@ static adcgs_status name_curve(char *name, size_t size, const adcgs_sweep_plan *
     if (adcgs_sweep_has_curve(plan, name))
         adcgs_sweep_write_name(name, size, folder, strlen(folder));
     if (adcgs_sweep_has_curve(plan, name))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against %s: another curve is called that", name);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against %s: another curve has this name", name);
     return ADCGS_OK;
 }
 
 /* ---- Files ---- */
 
-/** The same scene may lie elsewhere by now, but goes by the same name. */
+/** The same scene may lie elsewhere now, but has the same name. */
 static adcgs_status check_scene(const adcgs_sweep *sweep, const char *path, const json_t *root, adcgs_error *error)
 {
     const char *const scene = json_string_value(json_object_get(root, "scene"));
     size_t n, own_n;
     if (!scene)
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no scene in it, which sweeps write there", path);
-    char *const own = adcgs_text_utf8(sweep->scene); /* as it was written */
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s: expected the scene's name, which sweeps store", path);
+    char *const own = adcgs_text_utf8(sweep->scene); /* in the form that was stored */
     if (!own)
         return adcgs_fail(error, ADCGS_ERR_MEMORY, "%s: out of memory", path);
     const size_t at = part_before(scene, strlen(scene), &n), own_at = part_before(own, strlen(own), &own_n);
@@ -186,7 +186,7 @@ static adcgs_status take_curve(adcgs_sweep_plan *plan, const adcgs_sweep *sweep,
     return read_points(path, find_points(root), curve, error);
 }
 
-/** A sweep writes over its own sweep.json: what was in there would be compared with itself the next time. */
+/** A sweep replaces its own sweep.json, so the next comparison would be with itself. */
 static int is_own(const adcgs_sweep *sweep, const char *folder)
 {
     struct stat a, b;
@@ -198,9 +198,9 @@ static adcgs_status add_earlier(adcgs_sweep_plan *plan, const adcgs_sweep *sweep
     char path[ADCGS_SWEEP_PATH];
     json_t *root;
     if (is_own(sweep, folder))
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against %s: the folder that this sweep writes to", folder);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against %s: is the output folder of this sweep", folder);
     if (snprintf(path, sizeof path, "%s/sweep.json", folder) >= (int)sizeof path)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against: a path of more than %zu bytes", sizeof path - 1);
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "--against: a path of over %zu bytes", sizeof path - 1);
     ADCGS_TRY(adcgs_json_load(&root, path, error));
     const adcgs_status status = take_curve(plan, sweep, folder, path, root, error);
     json_decref(root);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The chart of where the bytes of each stream are: a bar for each point of the codec's own curves. */
+/** \file The chart of the distribution of each stream's bytes: a bar for each point of the codec's own curves. */
 #include "config.h"
 
 #include "sweep/charts.h"
@@ -11,11 +11,11 @@ static const struct {
     adcgs_figure figure;
 } parts[] = {{"networks", "#7a3db8", ADCGS_FIGURE_NETWORKS},
              {"positions", "#d98000", ADCGS_FIGURE_GEOMETRY},
-             {"features without which nothing is drawn", "#0060ad", ADCGS_FIGURE_BASE},
-             {"features that refine", "#6fb0e0", ADCGS_FIGURE_DETAIL},
-             {"all else", "#999999", ADCGS_FIGURE_REST}};
+             {"base features", "#0060ad", ADCGS_FIGURE_BASE},
+             {"refining features", "#6fb0e0", ADCGS_FIGURE_DETAIL},
+             {"other", "#999999", ADCGS_FIGURE_REST}};
 
-/** A block for a curve, a row for each point whose parts are known: lambda, and kB of each part. Returns how many. */
+/** Prints a block for a curve, a row for each point with known parts: lambda, and kB of each part. Returns the number of rows. */
 static int print_block(FILE *script, const adcgs_sweep_plan *plan, int index)
 {
     const adcgs_sweep_curve *const curve = &plan->curve[index];
@@ -36,7 +36,7 @@ static int print_block(FILE *script, const adcgs_sweep_plan *plan, int index)
     return n;
 }
 
-/** The bars of a curve, above its name; only the first of all tells what colours are. */
+/** Prints the bars of a curve, above its name. Only the first curve explains the colours. */
 static void print_bars(FILE *script, const adcgs_sweep_plan *plan, int index, int first)
 {
     const char *const name = plan->n_curves > 1 ? plan->curve[index].name : "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The charts of a sweep that are curves: one quantity of its points against another, all curves and yardsticks. */
+/** \file The charts of a sweep that are curves: one quantity of its points against another, for all curves and yardsticks. */
 #include "config.h"
 
 #include "sweep/charts.h"
@@ -8,16 +8,16 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-/** An axis becomes logarithmic when what it shows spans this. */
+/** Ratio of the largest to the smallest value from which an axis is logarithmic. */
 #define DECADE 10.0
 
-/** Something that points have, in the unit of an axis. */
+/** A quantity of points, in the unit of an axis. */
 typedef struct quantity {
     const char *label;
-    size_t at;    /**< its adcgs_spread in adcgs_sweep_row */
+    size_t at;    /**< offset of its adcgs_spread in adcgs_sweep_row */
     double unit;
-    int is_gain;  /**< more of it is better */
-    int of_stream; /**< what only streams have */
+    int is_gain;  /**< more is better */
+    int of_stream; /**< only streams have it */
 } quantity;
 
 #define OF(field) offsetof(adcgs_sweep_row, field)
@@ -26,7 +26,7 @@ static const quantity quantities[ADCGS_Q_COUNT] = {
     [ADCGS_Q_SECONDS] = {"CPU seconds of training", OF(seconds), 1, 0, 1},
     [ADCGS_Q_SPEED] = {"frames per second", OF(speed), 1, 1, 1},
     [ADCGS_Q_PSNR] = {"PSNR, dB", OF(psnr), 1, 1, 0},
-    [ADCGS_Q_MOVING] = {"PSNR of what moves, dB", OF(moving), 1, 1, 0},
+    [ADCGS_Q_MOVING] = {"PSNR of moving regions, dB", OF(moving), 1, 1, 0},
     [ADCGS_Q_SSIM] = {"SSIM", OF(ssim), 1, 1, 0},
 };
 
@@ -37,13 +37,13 @@ typedef struct point {
     int curve;
 } point;
 
-/** All of a chart. */
+/** All points of a chart. */
 typedef struct cloud {
     const quantity *x, *y;
     point *point;
-    int n, spreads; /**< some point stands for several seeds */
+    int n, spreads; /**< some points are means over several seeds */
     double least, most; /**< of x */
-    int of_curve[ADCGS_SWEEP_CURVES]; /**< points of each */
+    int of_curve[ADCGS_SWEEP_CURVES]; /**< points per curve */
 } cloud;
 
 static adcgs_spread value_of(const adcgs_sweep_row *row, const quantity *q)
@@ -90,7 +90,10 @@ static int by_x(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** Points that no other betters in both: as the block $front. Yardsticks are of other things. Returns how many there are. */
+/**
+ * Prints the points that no other point exceeds in both quantities, as the block $front. Yardsticks do not count, since they
+ * measure something else. Returns the number of points.
+ */
 static int print_front(FILE *script, const adcgs_sweep_plan *plan, const cloud *c)
 {
     point sorted[ADCGS_SWEEP_CURVES * ADCGS_SWEEP_LIST];
@@ -116,7 +119,7 @@ static int print_front(FILE *script, const adcgs_sweep_plan *plan, const cloud *
 
 /* ---- Curves ---- */
 
-/** One block of data for each curve that has points. */
+/** Prints a block of data for each curve that has points. */
 static void print_block(FILE *script, const cloud *c, int curve)
 {
     fprintf(script, "$curve%d << END\n", curve);
@@ -129,7 +132,7 @@ static void print_block(FILE *script, const cloud *c, int curve)
     fprintf(script, "END\n");
 }
 
-/** How a curve looks: the codec's own are thick with dots, the yardsticks have shapes of their own. */
+/** Prints the style of a curve: the codec's own curves are thick with dots, the yardsticks have shapes of their own. */
 static void print_plot(FILE *script, const adcgs_sweep_plan *plan, int index, int points, int spreads)
 {
     static const char *const colours[] = {"#0060ad", "#008f5a", "#7a3db8", "#b03060", "#5a5a5a", "#d98000", "#c03000", "#806000",
@@ -171,7 +174,7 @@ static void print_curves(FILE *script, const adcgs_sweep_plan *plan, const cloud
     fprintf(script, "\n");
 }
 
-/** 1, 2 and 5 of every decade. */
+/** Prints ticks at 1, 2 and 5 of every decade. */
 static void print_log_axis(FILE *script, const cloud *c)
 {
     const char *separator = "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Command lines of a sweep's runs, and the processes that obey them. */
+/** \file Command lines of a sweep's runs, and the processes that execute them. */
 #include "config.h"
 
 #include "sweep/command.h"
@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/** Where mpirun or srun starts sweeps, what these start is a process by itself, and no rank that others wait for. */
+/** Leaves the ranks of mpirun or srun: children of a sweep are independent processes, for which no other rank waits. */
 static void leave_ranks(void)
 {
     unsetenv("OMPI_COMM_WORLD_SIZE");
@@ -50,7 +50,7 @@ adcgs_status adcgs_sweep_spawn(char *const argv[], const char *out, const char *
 void adcgs_command_word(adcgs_command *c, const char *text)
 {
     if (c->n + 1 < (int)ADCGS_COUNTOF(c->argv))
-        c->argv[c->n++] = (char *)(uintptr_t)text; /* exec takes pointers to char and leaves the characters alone */
+        c->argv[c->n++] = (char *)(uintptr_t)text; /* exec takes pointers to char, and does not change the characters */
     c->argv[c->n] = NULL;
 }
 

@@ -5,7 +5,7 @@
 
 #include "sweep/sweep.h"
 
-/** Numbers and what a choice says live in it, other strings where they come from: it does not move. Zero-initialise. */
+/** It holds numbers and the words of a choice, and refers to other strings, so it must not move. Zero-initialise. */
 typedef struct adcgs_command {
     char *argv[48];
     int n, n_text, n_chosen;
@@ -13,17 +13,17 @@ typedef struct adcgs_command {
     char name[ADCGS_SWEEP_AXES][ADCGS_SWEEP_NAME + 2], value[ADCGS_SWEEP_AXES][ADCGS_SWEEP_NAME]; /* of the choice */
 } adcgs_command;
 
-/** A word as it is. */
+/** Appends a word unchanged. */
 void adcgs_command_word(adcgs_command *c, const char *text);
-/** An option with its value; nothing without one. */
+/** Appends an option with its value; nothing without a value. */
 void adcgs_command_option(adcgs_command *c, const char *name, const char *value);
-/** An option with a number, if it is at least `from`. */
+/** Appends an option with a number, if it is at least `from`. */
 void adcgs_command_number(adcgs_command *c, const char *name, double value, double from);
-/** An option of the choice, if it is of those in `only`; NULL: of all. */
+/** Appends the options of the choice that are in `only`; NULL: all. */
 void adcgs_command_choice(adcgs_command *c, const adcgs_sweep_run *run, const char *const *only);
-/** Settings of all runs, and those of the choice behind them. */
+/** Appends the settings of all runs, followed by those of the choice. */
 void adcgs_command_settings(adcgs_command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run);
-/** The threads of all runs, unless each choice has its own. */
+/** Appends the threads of all runs, unless the choice sets them. */
 void adcgs_command_threads(adcgs_command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run);
 
 #endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/**
- * \file
- * Of one run, the chart of which test views come out how well: a panel for all of them, one for what moves in them. Where cameras
- * see several moments each it is a map of cameras and times, else a bar for each view, from the mean.
+/** \file
+ * The chart of one run's quality by test view: a panel for whole views, and one for their moving regions. If each of several
+ * cameras sees several times, it is a map of cameras and times, else a bar for each view, from the mean.
  */
 #include "config.h"
 
@@ -10,9 +9,9 @@
 
 #include <math.h>
 
-#define LABELS_X 26 /* that fit below, and beside a panel */
+#define LABELS_X 26 /* labels that fit below a panel, and next to it */
 #define LABELS_Y 16
-#define LABEL 20    /* characters of one */
+#define LABEL 20    /* characters of a label */
 
 static double quality_of(const adcgs_sweep_view *view, int moving)
 {
@@ -27,7 +26,7 @@ static int count_known(const adcgs_sweep_shown *shown, int moving)
     return n;
 }
 
-/** Whether a view is the first of a camera. */
+/** True if a view is the first of a camera. */
 static int begins(const adcgs_sweep_shown *shown, int index)
 {
     return index == 0 || shown->view[index].camera != shown->view[index - 1].camera;
@@ -41,7 +40,7 @@ static int count_cameras(const adcgs_sweep_shown *shown)
     return n;
 }
 
-/** Every view has a time, and each of several cameras has several. */
+/** True if every view has a time, and there are several cameras with several views each. */
 static int is_map(const adcgs_sweep_shown *shown)
 {
     for (int i = 0; i < shown->n_views; i++) {
@@ -52,7 +51,7 @@ static int is_map(const adcgs_sweep_shown *shown)
     return count_cameras(shown) > 1;
 }
 
-/** Names of files and cameras in gnuplot's quotes: no longer than there is room. */
+/** Prints the name of a file or camera in gnuplot's quotes, shortened to the available room. */
 static void print_label(FILE *script, const char *name, int index, double at)
 {
     char text[LABEL + 1], number[LABEL + 1];
@@ -63,7 +62,7 @@ static void print_label(FILE *script, const char *name, int index, double at)
 
 /* ---- Bars ---- */
 
-/** Of one camera the times tell views apart, of several the names. */
+/** Views of a single camera are labelled by their times, views of several by their names. */
 static void print_view_tics(FILE *script, const adcgs_sweep_shown *shown)
 {
     const int step = (shown->n_views + LABELS_X - 1) / LABELS_X, one = count_cameras(shown) == 1 && isfinite(shown->view[0].time);
@@ -77,7 +76,7 @@ static void print_view_tics(FILE *script, const adcgs_sweep_shown *shown)
     fprintf(script, ")\n");
 }
 
-/** A block of numbers and qualities. Returns the mean. */
+/** Prints a block of numbers and qualities. Returns the mean. */
 static double print_bars_block(FILE *script, const adcgs_sweep_shown *shown, int moving)
 {
     double sum = 0;
@@ -97,17 +96,17 @@ static void print_bars(FILE *script, const adcgs_sweep_shown *shown, int moving,
 {
     const char *const block = moving ? "moving" : "all", *const colour = moving ? "#c03000" : "#0060ad";
     fprintf(script, "set xrange [-0.7:%g]\nset offsets 0, 0, graph 0.12, graph 0.12\nset ylabel 'PSNR%s, dB'\n",
-            shown->n_views - 0.3, moving ? " of what moves" : "");
+            shown->n_views - 0.3, moving ? " of moving regions" : "");
     fprintf(script,
             "plot $%s using 1:(%.9g):(0):($2-%.9g) with vectors nohead linewidth 2.5 linecolor rgb '%s' title '%s', \\\n"
             "  $%s using 1:2 with points pointtype 7 pointsize 0.8 linecolor rgb '%s' notitle, \\\n"
             "  %.9g with lines linecolor rgb '#222222' linewidth 1.5 dashtype 2 title 'mean %.2f dB'\n",
-            block, mean, mean, colour, moving ? "what moves in a view" : "a view", block, colour, mean, mean);
+            block, mean, mean, colour, moving ? "moving regions of a view" : "a view", block, colour, mean, mean);
 }
 
 /* ---- Map ---- */
 
-/** Halfway from a view to another, or as far beyond where there is none. */
+/** The time halfway to the neighbouring view, or as far beyond the view if there is none. */
 static double border(const adcgs_sweep_shown *shown, int index, int step)
 {
     const int next = index + step, is_end = step < 0 ? begins(shown, index) : next == shown->n_views || begins(shown, next);
@@ -115,7 +114,7 @@ static double border(const adcgs_sweep_shown *shown, int index, int step)
     return is_end ? here + (here - shown->view[index - step].time) / 2 : (here + shown->view[next].time) / 2;
 }
 
-/** A block of rectangles: time and row, their bounds, quality. */
+/** Prints a block of rectangles: time and row, their bounds, quality. */
 static void print_map_block(FILE *script, const adcgs_sweep_shown *shown, int moving)
 {
     int row = -1;
@@ -130,7 +129,7 @@ static void print_map_block(FILE *script, const adcgs_sweep_shown *shown, int mo
     fprintf(script, "END\n");
 }
 
-/** A camera goes by the name of its first view if the next one's is the same, else by its number. */
+/** Labels a camera by the name of its first view if the next one has the same name, else by its number. */
 static void print_camera_tics(FILE *script, const adcgs_sweep_shown *shown)
 {
     const int step = (count_cameras(shown) + LABELS_Y - 1) / LABELS_Y;
@@ -151,14 +150,14 @@ static void print_camera_tics(FILE *script, const adcgs_sweep_shown *shown)
 static void print_map(FILE *script, const adcgs_sweep_shown *shown, int moving)
 {
     fprintf(script, "set yrange [%g:-0.5]\nset ylabel 'camera'\nset cblabel 'PSNR%s, dB' offset 1.5,0\n",
-            count_cameras(shown) - 0.5, moving ? " of what moves" : "");
+            count_cameras(shown) - 0.5, moving ? " of moving regions" : "");
     fprintf(script, "plot $%s using 1:2:3:4:5:6:7 with boxxyerror fillstyle solid noborder linecolor palette notitle\n",
             moving ? "moving" : "all");
 }
 
 /* ---- Both ---- */
 
-/** The data of n panels, and what they have in common. Bars begin at the mean, which is filled. */
+/** Prints the data of n panels, and their common settings. Bars begin at the mean, which is returned in mean. */
 static void print_data(FILE *script, const adcgs_sweep_shown *shown, int n, double mean[2])
 {
     const int map = is_map(shown);
@@ -175,7 +174,7 @@ static void print_data(FILE *script, const adcgs_sweep_shown *shown, int n, doub
     print_camera_tics(script, shown);
 }
 
-/** What all have below, which only the lowest panel says. */
+/** Prints the axis below all panels, for the lowest panel only. */
 static void print_below(FILE *script, const adcgs_sweep_shown *shown, int is_lowest)
 {
     if (!is_lowest)

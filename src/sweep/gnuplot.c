@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file How a chart's script is written and drawn by gnuplot, as SVG for the page and as PDF for papers. */
+/** \file Writes a chart's script and renders it by gnuplot, as SVG for the page and as PDF for papers. */
 #include "sweep/charts.h"
 
 #include <unistd.h>
@@ -12,7 +12,7 @@ adcgs_status adcgs_chart_open(adcgs_atomic *file, const adcgs_sweep *sweep, cons
     snprintf(path, sizeof path, "%s/%s.gp", sweep->directory, name);
     ADCGS_TRY(adcgs_atomic_open(file, path, error));
     fprintf(file->file,
-            "# Drawn from here by: gnuplot %s.gp >%s.svg; as PDF by: gnuplot -e 'pdf=1' %s.gp >%s.pdf\n"
+            "# Plotted in this folder by: gnuplot %s.gp >%s.svg; as PDF by: gnuplot -e 'pdf=1' %s.gp >%s.pdf\n"
             "if (exists('pdf')) set terminal pdfcairo size 16cm,11.5cm noenhanced font 'sans-serif,11'; else "
             "set terminal svg size 860,620 noenhanced font 'sans-serif,12' background 'white'\n"
             "set grid\nset key below height 1 spacing 1.15\n",
@@ -21,9 +21,9 @@ adcgs_status adcgs_chart_open(adcgs_atomic *file, const adcgs_sweep *sweep, cons
 }
 
 /*
- * gnuplot runs in the folder, so that no path has to be quoted for it. A missing gnuplot is no fault, nor is one without PDF. It
- * does not notice a full disk, but cat and sed do; and a chart is one when it has an end. Dates become blanks, as many since
- * offsets follow, so that the same figures make the same files.
+ * gnuplot runs in the folder, so that no path needs quotes. A missing gnuplot is not an error, nor is one without PDF. gnuplot
+ * does not notice a full disk, but cat and sed do; a chart counts if its end is present. Dates become blanks, so that the same
+ * figures make the same files; the number of characters stays, since offsets follow.
  */
 adcgs_status adcgs_chart_draw(const adcgs_sweep *sweep, const char *name, int *drawn, adcgs_error *error)
 {
@@ -48,5 +48,5 @@ adcgs_status adcgs_chart_draw(const adcgs_sweep *sweep, const char *name, int *d
     *drawn = code == 0;
     if (code == 0 || code == MISSING)
         return ADCGS_OK;
-    return adcgs_fail(error, ADCGS_ERR_IO, "%s/%s.svg: cannot be drawn by gnuplot, see %s.gp.log", sweep->directory, name, name);
+    return adcgs_fail(error, ADCGS_ERR_IO, "%s/%s.svg: gnuplot failed, see %s.gp.log", sweep->directory, name, name);
 }

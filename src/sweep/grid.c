@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a sweep varies. */
+/** \file The axes of a sweep. */
 #include "sweep/grid.h"
 
 #include "cli/cli.h"
@@ -19,7 +19,7 @@ static const struct {
     const char *name;
     const char *const *names;
     double min, max;
-    int cannot_share; /* runs with it have no beginning in common */
+    int cannot_share; /* runs with it have no common beginning */
 } options[] = {
     { "preset", adcgs_train_presets, 0, 0, 0 },
     { "time-limit", NULL, 1, SECONDS_MAX, 1 },
@@ -29,7 +29,7 @@ static const struct {
     { "cpu", cpu_names, 0, 0, 0 },
 };
 
-/** Index of an option; -1 if there is none of that name. */
+/** Returns the index of an option; -1 if there is no such name. */
 static int find_option(const char *name)
 {
     for (size_t i = 0; i < ADCGS_COUNTOF(options); i++)
@@ -55,14 +55,14 @@ static adcgs_status check_option(int option, const char *value, adcgs_error *err
                    (max == SECONDS_MAX && !adcgs_parse_seconds(value, min, max, &number)))
         return ADCGS_OK;
     if (name)
-        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected one of those that adcgs-enc --help names",
+        return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected a value that adcgs-enc --help names",
                           options[option].name, value);
     return adcgs_fail(error, ADCGS_ERR_USAGE, "%s=%s: expected a number from %g to %g", options[option].name, value, min, max);
 }
 
 /* ---- Parsing ---- */
 
-/** Copy what lies before `end`; 0 if it is empty or too long, or has characters that names of files had better not have. */
+/** Copies the text; returns 0 if it is empty or too long, or has characters that are unsuitable for file names. */
 static int take(char out[ADCGS_SWEEP_NAME], const char *text, size_t length)
 {
     static const char fine[] = "abcdefghijklmnopqrstuvwxyz0123456789_.-+E";
@@ -123,7 +123,7 @@ static void append(char choice[ADCGS_SWEEP_CHOICE], const char *name, const char
 
 void adcgs_sweep_grid_choice(char choice[ADCGS_SWEEP_CHOICE], const adcgs_sweep_grid *grid, int index)
 {
-    int faster = adcgs_sweep_grid_count(grid); /* choices in a turn of the axis before */
+    int faster = adcgs_sweep_grid_count(grid); /* choices per value of the previous axis */
     choice[0] = '\0';
     for (int i = 0; i < grid->n; i++) {
         faster /= grid->axis[i].n;
@@ -198,7 +198,7 @@ adcgs_status adcgs_sweep_grid_check(const adcgs_sweep_grid *grid, const char *pr
     for (int i = 0; i < grid->n; i++)
         for (size_t j = 0; j < ADCGS_COUNTOF(others); j++)
             if (!strcmp(grid->axis[i].name, others[j]))
-                return adcgs_fail(error, ADCGS_ERR_USAGE, "--grid: %s has an option of its own", others[j]);
+                return adcgs_fail(error, ADCGS_ERR_USAGE, "--grid: give %s by its own option", others[j]);
     for (int i = 0; i < adcgs_sweep_grid_count(grid); i++) {
         char choice[ADCGS_SWEEP_CHOICE];
         adcgs_sweep_grid_choice(choice, grid, i);

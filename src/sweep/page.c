@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file A sweep for people: tables and checks as text, and with the chart as one HTML page. */
+/** \file A sweep for readers: tables and checks as text, and with the charts as one HTML page. */
 #include "config.h"
 
 #include "sweep/sweep.h"
@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/** Where a report goes: plain text, or HTML if html is set. */
+/** Output of a report: plain text, or HTML if html is set. */
 typedef struct sheet {
     FILE *file;
     int html;
@@ -25,7 +25,7 @@ enum { COLUMNS = 10, CELL = ADCGS_SWEEP_CHOICE + 16 };
 
 typedef char table_row[COLUMNS][CELL];
 
-/* ---- Paper ---- */
+/* ---- Elements ---- */
 
 static void put_escaped(const sheet *s, const char *text)
 {
@@ -43,7 +43,7 @@ static void heading(const sheet *s, const char *text)
     fprintf(s->file, s->html ? "</h2>\n" : "\n");
 }
 
-/** A sentence of its own. */
+/** Prints a paragraph. */
 static void say(const sheet *s, const char *format, ...) ADCGS_PRINTF(2, 3);
 static void say(const sheet *s, const char *format, ...)
 {
@@ -162,7 +162,7 @@ static void print_comparison(const sheet *s, const adcgs_sweep_plan *plan, const
     if (isfinite(c.bd_rate))
         snprintf(rate, sizeof rate, "BD-rate %+.1f %%, ", c.bd_rate);
     if (isfinite(c.bd_rate_moving))
-        snprintf(moving, sizeof moving, "BD-rate of what moves %+.1f %%, ", c.bd_rate_moving);
+        snprintf(moving, sizeof moving, "BD-rate of moving regions %+.1f %%, ", c.bd_rate_moving);
     if (!c.compared)
         snprintf(place, sizeof place, "none of its points is larger than the smallest stream");
     else if (c.above)
@@ -173,11 +173,11 @@ static void print_comparison(const sheet *s, const adcgs_sweep_plan *plan, const
     if (c.compared && c.beyond)
         snprintf(rest, sizeof rest, "; points of it smaller than the smallest stream: %d", c.beyond);
     if (isfinite(c.smaller))
-        snprintf(smaller, sizeof smaller, "; %.2f times smaller at no more than 0.1 dB below its best", c.smaller);
+        snprintf(smaller, sizeof smaller, "; %.2f times smaller at most 0.1 dB below its best", c.smaller);
     say(s, "Against %s: %s%s%s%s%s.", curve->name, rate, moving, place, rest, smaller);
 }
 
-/** Why a curve has no points: a compressor that had a file and made nothing of it is missing. */
+/** The reason for a curve without points: a compressor that had a file but made no output is missing. */
 static const char *reason(const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve)
 {
     adcgs_sweep_row row;
@@ -228,7 +228,7 @@ void adcgs_sweep_print(FILE *file, const adcgs_sweep_plan *plan)
 
 /* ---- Page ---- */
 
-/** A chart without what comes before its first element, to press as pictures are. Its absence leaves the page without it. */
+/** Prints a chart from its first element on, enlarged by a click like images. A missing chart is left out. */
 static void print_chart(const sheet *s, const adcgs_sweep *sweep, const adcgs_chart *chart)
 {
     char path[ADCGS_SWEEP_PATH], line[4096];
@@ -248,7 +248,7 @@ static void print_chart(const sheet *s, const adcgs_sweep *sweep, const adcgs_ch
     fclose(svg);
 }
 
-/** A file in the digits of base 64 (RFC 4648). */
+/** Writes a file in the digits of base 64 (RFC 4648). */
 static void put_base64(FILE *out, FILE *in)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -260,7 +260,7 @@ static void put_base64(FILE *out, FILE *in)
     }
 }
 
-/** A picture that opens to its full size and closes again where one presses it, by a box that is not shown, without scripts. */
+/** Prints an image that a click enlarges to full size and reduces again, by a hidden checkbox, without scripts. */
 static void print_picture(const sheet *s, const adcgs_sweep_picture *p)
 {
     char text[200];
@@ -276,11 +276,11 @@ static void print_picture(const sheet *s, const adcgs_sweep_picture *p)
     put_base64(s->file, file);
     fprintf(s->file, "\"></label><figcaption>");
     put_escaped(s, text);
-    fprintf(s->file, ". Truth, decoded, four times their difference; press it for full size.</figcaption></figure>\n");
+    fprintf(s->file, ". Truth, decoded, four times their difference; click it for full size.</figcaption></figure>\n");
     fclose(file);
 }
 
-/** The processor by its own name, where the system tells it. */
+/** Finds the processor's name, if the system provides it. */
 static void find_processor(char *name, size_t size)
 {
     char line[256];
@@ -300,7 +300,7 @@ static void find_processor(char *name, size_t size)
 
 static void print_machine(const sheet *s, const adcgs_sweep *sweep)
 {
-    char processor[128], threads[48] = "as many threads as it has", date[32] = "";
+    char processor[128], threads[48] = "as many threads as processors", date[32] = "";
     const time_t now = time(NULL);
     struct tm day;
     find_processor(processor, sizeof processor);
@@ -308,8 +308,8 @@ static void print_machine(const sheet *s, const adcgs_sweep *sweep)
         snprintf(threads, sizeof threads, "%d thread%s", sweep->threads, sweep->threads > 1 ? "s" : "");
     if (gmtime_r(&now, &day))
         strftime(date, sizeof date, "%Y-%m-%d", &day);
-    say(s, "%s, %ld processor%s online, %s unless a curve says otherwise; seconds of training are of processors, all threads "
-        "together; adcgs %s, %s. %s", processor,
+    say(s, "%s, %ld processor%s online, %s unless a curve says otherwise; training seconds are CPU seconds of all threads; adcgs "
+           "%s, %s. %s", processor,
         sysconf(_SC_NPROCESSORS_ONLN), adcgs_s((uint64_t)sysconf(_SC_NPROCESSORS_ONLN)), threads, PACKAGE_VERSION, date,
         sweep->command);
 }
@@ -352,7 +352,7 @@ adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_
     put_escaped(&s, sweep->scene);
     fprintf(file.file, "</title>\n<style>\n%s</style>\n<h1>Rate, distortion and time</h1>\n", style);
     if (charts)
-        say(&s, "Press a chart for its full size.");
+        say(&s, "Click a chart for its full size.");
     fprintf(file.file, "<div class=\"charts\">\n");
     for (int i = 0; adcgs_charts[i].name; i++)
         if (charts & 1U << i)
@@ -361,7 +361,7 @@ adcgs_status adcgs_sweep_write_page(const adcgs_sweep *sweep, const adcgs_sweep_
     for (int i = 0; i < ADCGS_SWEEP_PICTURES; i++)
         print_picture(&s, &picture[i]);
     print_all(&s, plan);
-    heading(&s, "What is shown");
+    heading(&s, "Settings");
     print_settings(&s, sweep, plan);
     print_machine(&s, sweep);
     fprintf(file.file, "</html>\n");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a sweep consists of: each training once, whatever it is used for. */
+/** \file The contents of a sweep: each training once, for all its uses. */
 #include "config.h"
 
 #include "sweep/sweep.h"
@@ -29,10 +29,10 @@ static void name_run(adcgs_sweep_run *r)
         *c = *c == ',' ? '+' : *c == ' ' || *c == '=' ? '-' : *c;
 }
 
-/** Index of the run in the plan, which adds it if there is none of its tag; -1 without memory. */
+/** Returns the index of the run, added to the plan if there is none of its tag; -1 on allocation failure. */
 static int add_run(adcgs_sweep_plan *plan, adcgs_sweep_run run)
 {
-    run.lambda = run.beginning || run.uncompressed ? -1 : run.lambda; /* it has no say there */
+    run.lambda = run.beginning || run.uncompressed ? -1 : run.lambda; /* lambda has no effect there */
     name_run(&run);
     for (int i = 0; i < plan->n_runs; i++)
         if (!strcmp(plan->run[i].tag, run.tag))
@@ -52,7 +52,7 @@ static int add_run(adcgs_sweep_plan *plan, adcgs_sweep_run run)
     return plan->n_runs++;
 }
 
-/** A cell of runs like the one given, for each seed; -1 without memory. */
+/** Adds a cell of runs like the given one, for each seed; -1 on allocation failure. */
 static int add_cell(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_sweep_run like)
 {
     adcgs_sweep_cell *const cell = &plan->cell[plan->n_cells];
@@ -65,7 +65,7 @@ static int add_cell(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_swee
     return plan->n_cells++;
 }
 
-/** What is left out before lambda has a say. The weights' steps come later. */
+/** The parts left out before lambda has an effect. The weights' steps come later. */
 static const char *left_out_early(const adcgs_sweep_run *r)
 {
     return !strcmp(r->without, "weight_steps") ? "" : r->without;
@@ -76,7 +76,7 @@ static int share_beginning(const adcgs_sweep_run *a, const adcgs_sweep_run *b)
     return !strcmp(a->choice, b->choice) && a->seed == b->seed && !strcmp(left_out_early(a), left_out_early(b));
 }
 
-/** Runs that lambda alone, or what comes after it, tells apart begin together. */
+/** Runs that differ only in lambda, or in later stages, share their beginning. */
 static adcgs_status add_beginnings(adcgs_sweep_plan *plan, adcgs_error *error)
 {
     const int n = plan->n_runs;
@@ -114,7 +114,7 @@ adcgs_sweep_curve *adcgs_sweep_add_curve(adcgs_sweep_plan *plan, const char *nam
     return curve;
 }
 
-/** A cell for each lambda; 0 without memory. */
+/** Adds a cell for each lambda; 0 on allocation failure. */
 static int add_lambdas(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_sweep_curve *curve, adcgs_sweep_run like)
 {
     for (int i = 0; i < sweep->n_lambda; i++) {
@@ -126,7 +126,7 @@ static int add_lambdas(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_s
     return 1;
 }
 
-/** A curve of one point; 0 if the cell could not be made. */
+/** Adds a curve of one point; 0 if the cell could not be made. */
 static int add_point(adcgs_sweep_plan *plan, const char *name, const char *note, adcgs_figure size, int cell)
 {
     adcgs_sweep_curve *const curve = adcgs_sweep_add_curve(plan, name, note, size, 1);
@@ -149,8 +149,8 @@ static int add_own_curves(adcgs_sweep_plan *plan, const adcgs_sweep *sweep)
 }
 
 /**
- * What a general-purpose compressor makes of plain numbers is a yardstick too. The model is spare already, primitives gone and
- * units removed, which belongs to compression: the whole one is what the method stores without any.
+ * Adds the uncompressed yardsticks, also with general-purpose compressors. The uncompressed model is reduced already, by pruning
+ * of primitives and units, which belongs to compression. The whole model is that of the method without any compression.
  */
 static int add_uncompressed(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, adcgs_sweep_run like)
 {
@@ -158,7 +158,7 @@ static int add_uncompressed(adcgs_sweep_plan *plan, const adcgs_sweep *sweep, ad
     whole.without = "removal";
     const int cell = add_cell(plan, sweep, like);
     return add_point(plan, "uncompressed", "trained without rate and rounding, 4 bytes a number", ADCGS_FIGURE_RAW, cell) &&
-           add_point(plan, "whole uncompressed", "the same, and nothing that has grown is removed", ADCGS_FIGURE_RAW,
+           add_point(plan, "whole uncompressed", "the same, without removal of primitives and units", ADCGS_FIGURE_RAW,
                      add_cell(plan, sweep, whole)) &&
            add_point(plan, "zstd -19", "the uncompressed file by zstd -19", ADCGS_FIGURE_ZSTD, cell) &&
            add_point(plan, "xz -9e", "the uncompressed file by xz -9e", ADCGS_FIGURE_XZ, cell);

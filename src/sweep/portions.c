@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/**
- * \file
- * What can be seen of a part of a stream: of its first layers, its first tiers, its first bytes. What each part comprises follows
- * from the list of chunks, how good it is from decoding it. Both are kept beside the run's result.
+/** \file
+ * The quality of parts of a stream: its first layers, its first tiers, its first bytes. The bytes of each part follow from the
+ * list of chunks, its quality from decoding it. Both are stored next to the run's result.
  */
 #include "config.h"
 
@@ -15,12 +14,12 @@
 #include <math.h>
 #include <unistd.h>
 
-#define STEP 10      /* of prefixes, in percent */
+#define STEP 10      /* step of prefixes, percent */
 #define KEPT ".portions.json"
 
 /* ---- List ---- */
 
-/** One that is not measured yet; NULL if there are too many, which no stream has. */
+/** Adds a part that is not measured yet; NULL if there are too many, which no stream has. */
 static adcgs_sweep_portion *add(adcgs_sweep_shown *shown, adcgs_portion_kind kind, int count, double bytes)
 {
     if (shown->n_portions == ADCGS_SWEEP_PORTIONS)
@@ -30,14 +29,14 @@ static adcgs_sweep_portion *add(adcgs_sweep_shown *shown, adcgs_portion_kind kin
     return p;
 }
 
-/** A chunk with its header takes what is between its beginning and the next one's. */
+/** The bytes of a chunk with its header, from its offset to that of the next. */
 static double size_of(const json_t *chunks, size_t index)
 {
     return adcgs_sweep_number(json_array_get(chunks, index + 1), "offset") -
            adcgs_sweep_number(json_array_get(chunks, index), "offset");
 }
 
-/** Whether a chunk is of a type, or of several that begin like that. */
+/** True if a chunk's type is, or begins with, the given one. */
 static int is_of_type(const json_t *chunks, size_t index, const char *type)
 {
     const char *const own = json_string_value(json_object_get(json_array_get(chunks, index), "type"));
@@ -45,8 +44,8 @@ static int is_of_type(const json_t *chunks, size_t index, const char *type)
 }
 
 /**
- * The bytes of a stream without the chunks that hold nothing of its first layers and, in each segment, of its first tiers; and
- * without the digests, which tell nothing of less than all. It is what adcgs-info --bytes makes of it.
+ * Returns the bytes of a stream without the chunks beyond its first layers and, in each segment, its first tiers. It also
+ * subtracts the digests, which cover only whole models. The result equals the size that adcgs-info --bytes gives.
  */
 static double size_of_first(double total, const json_t *chunks, int layers, int tiers)
 {
@@ -64,7 +63,7 @@ static double size_of_first(double total, const json_t *chunks, int layers, int 
     return absent > 0 ? total - absent - digests : total;
 }
 
-/** A segment that is predicted takes anchors from all tiers of the one before, so that none of its bytes can go. */
+/** A predicted segment takes anchors from all tiers of the previous one, so none of their bytes can be left out. */
 static int is_predicted(const json_t *chunks)
 {
     for (size_t i = 0; i < json_array_size(chunks); i++)
@@ -73,7 +72,7 @@ static int is_predicted(const json_t *chunks)
     return 0;
 }
 
-/** All that there can be; one layer or one tier is no choice. */
+/** Lists all possible parts; a single layer or tier gives none. */
 static void list(adcgs_sweep_shown *shown, const json_t *info)
 {
     const json_t *const chunks = json_object_get(info, "chunks");
@@ -88,7 +87,7 @@ static void list(adcgs_sweep_shown *shown, const json_t *info)
         add(shown, ADCGS_PORTION_PERCENT, i, floor(total * i / 100));
 }
 
-/** What adcgs-info reports of a run's stream; json_decref() the root. */
+/** Asks adcgs-info for its report on a run's stream. The caller calls json_decref() on the root. */
 static adcgs_status ask(const adcgs_sweep *sweep, const adcgs_sweep_run *run, json_t **root, adcgs_error *error)
 {
     char program[ADCGS_SWEEP_PATH], file[ADCGS_SWEEP_PATH], out[ADCGS_SWEEP_PATH];
@@ -107,7 +106,7 @@ static adcgs_status ask(const adcgs_sweep *sweep, const adcgs_sweep_run *run, js
     return status;
 }
 
-/* ---- What was measured before ---- */
+/* ---- Stored measurements ---- */
 
 static adcgs_status save(const adcgs_sweep *sweep, const adcgs_sweep_shown *shown, adcgs_error *error)
 {
@@ -143,7 +142,7 @@ static void take(adcgs_sweep_shown *shown, const json_t *kept)
     }
 }
 
-/** The list as an earlier sweep left it; 0 if there is none. What makes a stream anew removes it. */
+/** Loads the list of an earlier sweep; 0 if there is none. Making a stream again removes it. */
 static int find_kept(const adcgs_sweep *sweep, adcgs_sweep_shown *shown)
 {
     char path[ADCGS_SWEEP_PATH];
@@ -174,7 +173,7 @@ adcgs_status adcgs_sweep_list_portions(const adcgs_sweep *sweep, adcgs_sweep_pla
         adcgs_sweep_portion *const p = &shown->portion[i];
         if (!(p->bytes >= shown->run->figure[ADCGS_FIGURE_BYTES]))
             continue;
-        p->is_known = 1; /* all of it is what the run's own figures are of */
+        p->is_known = 1; /* the run's own figures apply to the whole stream */
         p->psnr = shown->run->figure[ADCGS_FIGURE_PSNR];
         p->moving = shown->run->figure[ADCGS_FIGURE_MOVING];
     }
@@ -183,7 +182,7 @@ adcgs_status adcgs_sweep_list_portions(const adcgs_sweep *sweep, adcgs_sweep_pla
 
 /* ---- Measuring ---- */
 
-/** The first bytes of a file as another. */
+/** Copies the first bytes of a file to another. */
 static adcgs_status copy_first(const char *from, const char *to, size_t bytes, adcgs_error *error)
 {
     char buffer[65536];
@@ -233,7 +232,7 @@ adcgs_status adcgs_sweep_measure_portion(const adcgs_sweep *sweep, adcgs_sweep_p
     if (status == ADCGS_OK)
         status = adcgs_json_load(&root, out, error);
     else if (status == ADCGS_ERR_DATA)
-        status = ADCGS_OK; /* too little to draw anything: that is known, too */
+        status = ADCGS_OK; /* too little to render anything, which is a result, too */
     unlink(out);
     ADCGS_TRY(status);
     p->is_known = 1;

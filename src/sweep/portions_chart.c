@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Of one run, the chart of how good its test views are when a part of the stream has been read: layers, tiers, bytes. */
+/** \file The chart of one run's quality when a part of the stream has been read: layers, tiers, bytes. */
 #include "config.h"
 
 #include "sweep/charts.h"
@@ -8,8 +8,8 @@
 
 static const struct {
     const char *title, *colour;
-    int point, open;      /**< gnuplot's shapes: of all, of what moves */
-    const char *labels;   /**< how many they are, beside the points; NULL: the axis tells */
+    int point, open;      /**< gnuplot's point types: of whole views, of moving regions */
+    const char *labels;   /**< offset of labels with the count, next to the points; NULL: the axis shows it */
 } kinds[ADCGS_PORTION_COUNT] = {
     [ADCGS_PORTION_LAYERS] = {"first layers", "#0060ad", 5, 4, "offset 0.9,-0.7"},
     [ADCGS_PORTION_TIERS] = {"first tiers", "#008f5a", 9, 8, "offset -0.7,0.8"},
@@ -18,7 +18,10 @@ static const struct {
 
 static const char *const all_or_moving[] = {"all", "moving"};
 
-/** A block of kB, PSNR and count, of what moves or all. Returns how many points it has; one is no curve, and is left out. */
+/**
+ * Prints a block of kB, PSNR and count, for moving regions or whole views. Returns the number of points; a single point is no
+ * curve, and is left out.
+ */
 static int print_block(FILE *script, const adcgs_sweep_shown *shown, int kind, int moving)
 {
     int n = 0;
@@ -46,7 +49,7 @@ static void print_curve(FILE *script, int kind, int moving)
     const char *const name = adcgs_portion_name(kind), *const what = all_or_moving[moving];
     fprintf(script, "$%s_%s using 1:2 with linespoints linecolor rgb '%s' linewidth %s dashtype %d pointtype %d pointsize 0.8 "
                     "title '%s%s'", name, what, kinds[kind].colour, moving ? "1.3" : "2.2", moving ? 2 : 1,
-            moving ? kinds[kind].open : kinds[kind].point, kinds[kind].title, moving ? ", what moves" : "");
+            moving ? kinds[kind].open : kinds[kind].point, kinds[kind].title, moving ? ", moving regions" : "");
     if (kinds[kind].labels)
         fprintf(script, ", \\\n  $%s_%s using 1:2:3 with labels %s font ',9' textcolor rgb '%s' notitle", name, what,
                 kinds[kind].labels, kinds[kind].colour);

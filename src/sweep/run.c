@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file One run of a sweep: starts the encoder, the evaluation and the compressors, keeps what they report. */
+/** \file One run of a sweep: starts the encoder, the evaluation and the compressors, and stores their reports. */
 #include "config.h"
 
 #include "sweep/run.h"
@@ -39,7 +39,7 @@ static double size_of(const adcgs_sweep *sweep, const adcgs_sweep_run *run, cons
 /* Neither threads nor a shared beginning change a result. */
 json_t *adcgs_sweep_settings(const adcgs_sweep *sweep, const adcgs_sweep_run *run)
 {
-    char *const scene = adcgs_text_utf8(sweep->scene); /* all else has been checked, and is ASCII */
+    char *const scene = adcgs_text_utf8(sweep->scene); /* all other values have been checked, and are ASCII */
     json_t *const settings =
         json_pack("{s:s, s:s, s:s, s:i, s:f, s:s, s:f, s:s, s:i, s:i, s:s*, s:s*}", "scene", scene, "preset",
                   sweep->preset ? sweep->preset : "", "set", sweep->set ? sweep->set : "", "iterations", sweep->iterations,
@@ -90,10 +90,10 @@ adcgs_status adcgs_sweep_call(const adcgs_sweep *sweep, const adcgs_sweep_run *r
                              : code == 4 ? ADCGS_ERR_DATA
                              : code == 5 ? ADCGS_ERR_UNSUPPORTED
                                          : ADCGS_ERR_IO;
-    return code ? adcgs_fail(error, why, "%s: %s left with %d; see %s", run->tag, c->argv[0], code, log) : ADCGS_OK;
+    return code ? adcgs_fail(error, why, "%s: %s ended with exit status %d; see %s", run->tag, c->argv[0], code, log) : ADCGS_OK;
 }
 
-/** Whether an earlier sweep left this run unfinished, with these settings; if not, note that it begins now. */
+/** *found: 1 if an earlier sweep left this run unfinished, with these settings. If not, records that it begins now. */
 static adcgs_status find_unfinished(const adcgs_sweep *sweep, const adcgs_sweep_run *run, int *found, adcgs_error *error)
 {
     char path[ADCGS_SWEEP_PATH];
@@ -148,7 +148,7 @@ static adcgs_status encode(const adcgs_sweep *sweep, const adcgs_sweep_run *run,
     return adcgs_sweep_call(sweep, run, &c, out, error);
 }
 
-/** A command line that evaluates a run's stream, but for which and what; program is the caller's to hold. */
+/** Begins a command line that evaluates a run's stream, without the stream and the metrics. The caller holds program. */
 static void begin_evaluation(adcgs_command *c, const adcgs_sweep *sweep, const adcgs_sweep_run *run,
                              char program[ADCGS_SWEEP_PATH])
 {
@@ -192,7 +192,7 @@ adcgs_status adcgs_sweep_draw_views(const adcgs_sweep *sweep, const adcgs_sweep_
     return adcgs_sweep_call(sweep, run, &c, "/dev/null", error);
 }
 
-/** A general-purpose compressor on the uncompressed model. That it is not installed is no fault: there is no file then. */
+/** Runs a general-purpose compressor on the uncompressed model. A missing compressor is no error; there is no file then. */
 static adcgs_status compress(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *program, const char *level,
                              const char *suffix, adcgs_error *error)
 {
@@ -212,7 +212,8 @@ static adcgs_status compress(const adcgs_sweep *sweep, const adcgs_sweep_run *ru
     return ADCGS_OK;
 }
 
-/* The result file: the settings, and the programs' own reports. Written last, so that its presence means a finished run. */
+/* Writes the result file: the settings, and the programs' own reports. It comes last, so that its presence means a finished
+   run. */
 static adcgs_status write_result(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const char *encoded, const char *evaluated,
                                  adcgs_error *error)
 {
@@ -240,7 +241,7 @@ adcgs_status adcgs_sweep_execute(const adcgs_sweep *sweep, const adcgs_sweep_run
     adcgs_sweep_path(file, sweep, run, ".adcgs");
     drop(sweep, run, ".log");
     drop(sweep, run, ".json");
-    drop(sweep, run, ".portions.json"); /* of the stream that is made anew */
+    drop(sweep, run, ".portions.json"); /* of the stream that is made again */
     adcgs_status status = encode(sweep, run, from, encoded, error);
     if (status == ADCGS_OK && !run->beginning)
         status = adcgs_sweep_evaluate(sweep, run, file, NULL, 0, evaluated, error);
@@ -267,7 +268,7 @@ double adcgs_sweep_number(const json_t *report, const char *name)
     return json_is_number(value) ? json_number_value(value) : (double)NAN;
 }
 
-/** What the bytes are: the first layer, which nothing is drawn without, apart from the others. */
+/** Adds up the bytes: the first layer, which is required for rendering, apart from the others. */
 static void take_components(double *f, const json_t *components)
 {
     static const struct {
@@ -300,7 +301,7 @@ static void take_figures(const adcgs_sweep *sweep, adcgs_sweep_run *run, const j
     f[ADCGS_FIGURE_SECONDS] = adcgs_sweep_number(encoder, "cpu_seconds");
     f[ADCGS_FIGURE_PSNR] = adcgs_sweep_number(evaluation, "psnr");
     f[ADCGS_FIGURE_SSIM] = adcgs_sweep_number(evaluation, "ssim");
-    f[ADCGS_FIGURE_MOVING] = adcgs_sweep_number(evaluation, "dynamic_psnr"); /* nor have it the results of earlier versions */
+    f[ADCGS_FIGURE_MOVING] = adcgs_sweep_number(evaluation, "dynamic_psnr"); /* results of earlier versions lack it, too */
     f[ADCGS_FIGURE_SPEED] = adcgs_sweep_number(evaluation, "frames_per_second");
     f[ADCGS_FIGURE_OBJECTIVE] = adcgs_sweep_number(encoder, "objective");
     if (!run->uncompressed)
@@ -310,21 +311,21 @@ static void take_figures(const adcgs_sweep *sweep, adcgs_sweep_run *run, const j
     f[ADCGS_FIGURE_XZ] = size_of(sweep, run, ".raw.xz");
 }
 
-/** Whether the files of a run are those that its result file tells of. */
+/** Checks that the files of a run are those of its result file. */
 static adcgs_status check_files(const adcgs_sweep *sweep, const adcgs_sweep_run *run, const json_t *root, const char *path,
                                 adcgs_error *error)
 {
     const double *const f = run->figure;
     if (run->beginning)
         return size_of(sweep, run, ".checkpoint") > 0 ? ADCGS_OK :
-               adcgs_fail(error, ADCGS_ERR_DATA, "%s: the state that it tells of is missing", path);
+               adcgs_fail(error, ADCGS_ERR_DATA, "%s: its state file is missing", path);
     if (!(f[ADCGS_FIGURE_BYTES] > 0.0) || isnan(f[ADCGS_FIGURE_PSNR]))
         return adcgs_fail(error, ADCGS_ERR_DATA, "%s: no size or no PSNR in it", path);
     if (size_of(sweep, run, ".adcgs") != f[ADCGS_FIGURE_BYTES])
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s/%s.adcgs: missing, or not the file that %s tells of", sweep->directory,
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s/%s.adcgs: missing, or not the file described in %s", sweep->directory,
                           run->tag, path);
     if (run->uncompressed && f[ADCGS_FIGURE_RAW] != adcgs_sweep_number(json_object_get(root, "encoder"), "uncompressed_bytes"))
-        return adcgs_fail(error, ADCGS_ERR_DATA, "%s/%s.raw: missing, or not the file that %s tells of", sweep->directory,
+        return adcgs_fail(error, ADCGS_ERR_DATA, "%s/%s.raw: missing, or not the file described in %s", sweep->directory,
                           run->tag, path);
     return ADCGS_OK;
 }

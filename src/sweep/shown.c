@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file The run that stands for all, and its test views. */
+/** \file The representative run of a sweep, and its test views. */
 #include "config.h"
 
 #include "sweep/run.h"
@@ -26,7 +26,7 @@ static const adcgs_sweep_run *choose(const adcgs_sweep_plan *plan)
     return run->state == ADCGS_RUN_DONE ? run : NULL;
 }
 
-/** Results of early versions do not tell cameras: each view counts as one of its own then. */
+/** Results of early versions lack cameras: each view then counts as a camera of its own. */
 static adcgs_sweep_view view_of(const json_t *report, int index)
 {
     const double camera = adcgs_sweep_number(report, "camera");

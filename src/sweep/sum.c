@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What the runs of a sweep add up to: means over seeds, rows, and the comparison of curves. */
+/** \file Summaries of a sweep's runs: means over seeds, rows, and the comparison of curves. */
 #include "config.h"
 
 #include "sweep/sweep.h"
@@ -8,9 +8,9 @@
 
 #include <math.h>
 
-/** A point that is this much below another still counts as equal to it. */
+/** A point at most this much below another counts as equal, dB. */
 #define EQUAL_DB 0.1
-/** "Fewer bytes" means fewer by more than this share. */
+/** Minimum relative difference of sizes that counts as fewer bytes. */
 #define FEWER 1e-6
 
 adcgs_spread adcgs_sweep_spread(const adcgs_sweep_plan *plan, int cell, adcgs_figure figure)
@@ -23,7 +23,7 @@ adcgs_spread adcgs_sweep_spread(const adcgs_sweep_plan *plan, int cell, adcgs_fi
             continue;
         s.n++;
         s.mean += x;
-        s.min = fmin(s.min, x); /* of a number and a NaN these take the number */
+        s.min = fmin(s.min, x); /* of a number and a NaN, these return the number */
         s.max = fmax(s.max, x);
     }
     s.mean = s.n ? s.mean / s.n : (double)NAN;
@@ -58,7 +58,7 @@ int adcgs_sweep_point(adcgs_sweep_row *row, const adcgs_sweep_plan *plan, const 
     return 1;
 }
 
-/** moving: the quality is that of what moves, NaN where it is not known. */
+/** moving: the quality is that of moving regions, NaN if unknown. */
 static int points_of(adcgs_curve_point points[ADCGS_SWEEP_LIST], const adcgs_sweep_plan *plan, const adcgs_sweep_curve *curve,
                      int moving)
 {
@@ -71,7 +71,7 @@ static int points_of(adcgs_curve_point points[ADCGS_SWEEP_LIST], const adcgs_swe
     return n;
 }
 
-/** BD-rate of the codec's own curve over another, NaN if it cannot be told. */
+/** BD-rate of the codec's own curve against another, NaN if it is undefined. */
 static double rate_against(const adcgs_sweep_plan *plan, const adcgs_sweep_curve *other, int moving)
 {
     adcgs_curve_point own[ADCGS_SWEEP_LIST] = {{0, 0}}, theirs[ADCGS_SWEEP_LIST] = {{0, 0}};
@@ -95,7 +95,7 @@ adcgs_curve_facts adcgs_sweep_facts(const adcgs_sweep_plan *plan)
     return facts;
 }
 
-/** Bytes of the best of the other's points over those of the smallest of ours that is hardly worse. */
+/** Bytes of the other curve's best point over those of our smallest point at most 0.1 dB worse. */
 static double times_smaller(const adcgs_curve_point *own, int n_own, const adcgs_curve_point *other, int n_other)
 {
     int best = 0;

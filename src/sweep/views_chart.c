@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file Of one run, the test views: their quality over time as a chart, the worst and the middle one as pictures. */
+/** \file The test views of one run: their quality over time as a chart, the worst and the middle one as images. */
 #include "config.h"
 
 #include "sweep/charts.h"
@@ -13,7 +13,7 @@
 
 /* ---- Chart ---- */
 
-/** A block of time and quality, of what moves or all. Returns how many views have that. */
+/** Prints a block of time and quality, of moving regions or whole views. Returns the number of views with that value. */
 static int print_block(FILE *script, const adcgs_sweep_shown *shown, int moving)
 {
     int n = 0;
@@ -45,18 +45,18 @@ adcgs_status adcgs_chart_views(const adcgs_chart *chart, const adcgs_sweep *swee
     }
     fprintf(file.file, "set title '%s: test views of %s'\nset xlabel 'time, s'\nset ylabel 'PSNR, dB'\n"
                        "set offsets 0, 0, graph 0.05, graph 0.05\nplot $all using 1:2 smooth unique with lines linewidth 1.5 "
-                       "linecolor rgb '#0060ad' title 'mean of a moment', $all using 1:2 with points pointtype 7 pointsize 0.4 "
+                       "linecolor rgb '#0060ad' title 'mean at a time', $all using 1:2 with points pointtype 7 pointsize 0.4 "
                        "linecolor rgb '#0060ad' title 'view'", chart->title, shown->run->tag);
     if (moving)
         fprintf(file.file, ", \\\n  $moving using 1:2 smooth unique with lines linewidth 1.5 linecolor rgb '#c03000' title "
-                           "'of what moves', $moving using 1:2 with points pointtype 7 pointsize 0.4 linecolor rgb '#c03000' "
+                           "'of moving regions', $moving using 1:2 with points pointtype 7 pointsize 0.4 linecolor rgb '#c03000' "
                            "notitle");
     fprintf(file.file, "\n");
     ADCGS_TRY(adcgs_atomic_commit(&file, error));
     return adcgs_chart_draw(sweep, chart->name, drawn, error);
 }
 
-/* ---- Pictures ---- */
+/* ---- Images ---- */
 
 typedef struct ranked {
     double psnr;
@@ -69,7 +69,7 @@ static int by_psnr(const void *a, const void *b)
     return x->psnr != y->psnr ? (x->psnr > y->psnr) - (x->psnr < y->psnr) : (x->index > y->index) - (x->index < y->index);
 }
 
-/** Which views are the worst and the middle one; 0 if there are none. */
+/** Picks the worst and the middle view; returns 0 if there are none. */
 static int pick(const adcgs_sweep_shown *shown, adcgs_sweep_picture picture[ADCGS_SWEEP_PICTURES])
 {
     ranked *const list = calloc((size_t)shown->n_views + 1, sizeof *list);
@@ -90,7 +90,7 @@ static int pick(const adcgs_sweep_shown *shown, adcgs_sweep_picture picture[ADCG
     return known > 0;
 }
 
-/** Keep of the folder's pictures those that are picked, under their own names, and remove it. */
+/** Keeps the picked images of the folder, under their own names, and removes the folder. */
 static void keep_picked(const char *folder, adcgs_sweep_picture picture[ADCGS_SWEEP_PICTURES])
 {
     DIR *const files = opendir(folder);
@@ -102,7 +102,7 @@ static void keep_picked(const char *folder, adcgs_sweep_picture picture[ADCGS_SW
             continue;
         snprintf(path, sizeof path, "%s/%s", folder, file->d_name);
         for (int i = 0; i < ADCGS_SWEEP_PICTURES; i++)
-            if (index == picture[i].index) /* both, where there is one view; not all file systems have links */
+            if (index == picture[i].index) /* both, if there is a single view; some file systems have no links */
                 picture[i].is_there = link(path, picture[i].path) == 0 || rename(path, picture[i].path) == 0;
         unlink(path);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/** \file What a sweep leaves for other programs: tables as CSV, everything as JSON. */
+/** \file The output of a sweep for other programs: tables as CSV, everything as JSON. */
 #include "config.h"
 
 #include "sweep/sweep.h"
@@ -55,7 +55,7 @@ static adcgs_status csv_open(adcgs_atomic *file, const adcgs_sweep *sweep, const
     return ADCGS_OK;
 }
 
-/** Columns of csv_row(), behind the name. */
+/** Columns of csv_row(), after the name. */
 #define ROW_COLUMNS "lambda,choice,seeds,bytes,bytes_min,bytes_max,psnr,psnr_min,psnr_max,ssim,network_share,cpu_seconds," \
     "frames_per_second,dynamic_psnr,objective"
 
@@ -226,7 +226,7 @@ static void json_runs(adcgs_json *json, const adcgs_sweep_plan *plan)
     adcgs_json_close(json);
 }
 
-/** What was measured of the run that stands for all. */
+/** The measurements of the representative run. */
 static void json_shown(adcgs_json *json, const adcgs_sweep_shown *shown)
 {
     adcgs_json_open(json, "shown", '{');

@@ -82,7 +82,7 @@ spoilt 'line 2: psnr: expected a number' 'bytes,psnr\n1,x\n'
 spoilt 'line 2: bytes: expected a number' 'bytes,psnr\n-1,3\n'
 spoilt 'line 2: expected bytes and psnr' 'bytes,psnr\n1,\n'
 spoilt 'line 3: expected as many' 'bytes,psnr\n1,3\n1\n'
-spoilt 'line 2: expected no more cells' 'bytes,psnr\n1,3,4\n'
+spoilt 'line 2: expected at most as many cells' 'bytes,psnr\n1,3,4\n'
 spoilt 'line 2: expected cells without' 'bytes,psnr\n"1",3\n'
 spoilt 'line 18: expected no more than 16' "bytes,psnr\n$(yes '1,3\n' | head -17 | tr -d '\n')"
 for table in x x= "=$dir/other.csv" "x=$dir/other.csv,"; do
@@ -239,9 +239,9 @@ out=$dir/now/x
 drawn=$PATH sweep --lambda 1,4 --yardsticks networks --against "$dir/new/x,$dir/more/x/,$dir/moved/x,$dir/older/x,$dir/it's/x"
 [ $got -eq 0 ] || fail "--against: $(cat "$dir/err")"
 calls 3
-line 'Against new: BD-rate [+-]0\.0 %, BD-rate of what moves [+-]0\.0 %, ' "$dir/report"
-line 'Against more: BD-rate -20\.0 %, BD-rate of what moves -20\.0 %, above it (points compared: 2; ' "$dir/report"
-line 'Against moved: BD-rate -20\.0 %, BD-rate of what moves [+-]0\.0 %, ' "$dir/report"
+line 'Against new: BD-rate [+-]0\.0 %, BD-rate of moving regions [+-]0\.0 %, ' "$dir/report"
+line 'Against more: BD-rate -20\.0 %, BD-rate of moving regions -20\.0 %, above it (points compared: 2; ' "$dir/report"
+line 'Against moved: BD-rate -20\.0 %, BD-rate of moving regions [+-]0\.0 %, ' "$dir/report"
 line 'Against older: BD-rate [+-]0\.0 %, NOT above it' "$dir/report"
 line '^more,1,,1,80000,80000,80000,35.0000,35.0000,35.0000,0.900000,.*,1.50,100.00,25.0000,0.025000$' "$out/sweep.csv"
 line '^older,4,,1,16000,16000,16000,32.0000,32.0000,32.0000,0.900000,.*,1.50,100.00,,0.025000$' "$out/sweep.csv"
@@ -268,7 +268,7 @@ line '^x,1,,1,64000,.*,25.0000,0.025000$' "$out/sweep.csv"
 out=$dir/now/y
 sweep --lambda 1,4 --yardsticks none --against "$dir/seeds"
 line '^seeds,4,,2,16000,16000,16000,32.2000,32.1000,32.3000,' "$out/sweep.csv"
-line 'Against seeds: BD-rate +[0-9.]* %, BD-rate of what moves +[0-9.]* %, NOT above' "$dir/report"
+line 'Against seeds: BD-rate +[0-9.]* %, BD-rate of moving regions +[0-9.]* %, NOT above' "$dir/report"
 line 'xyerrorlines' "$out/rate.gp"
 : >"$dir/calls"
 
@@ -302,7 +302,7 @@ doctored 'points\[1\].bytes: expected mean, min and max' 's/"min": 20000/"min": 
 doctored 'points\[0\].seeds: 99, expected' 's/"seeds": 1\b/"seeds": 99/'
 refused 2 "1 to 8 folders" ""
 refused 2 "1 to 8 folders" "$dir/more/x,"
-refused 2 "another curve is called that" "$dir/more/x,$dir/more/x,$dir/more/x"
+refused 2 "another curve has this name" "$dir/more/x,$dir/more/x,$dir/more/x"
 nine=
 for name in 1 2 3 4 5 6 7 8 9; do
     mkdir -p "$dir/$name/x"
@@ -312,7 +312,7 @@ done
 refused 2 "1 to 8 folders" "${nine#,}"
 out=$dir/now/x
 sweep --lambda 1,4 --against "$dir/now/../now/x/"
-[ $got -eq 2 ] && grep -q "that this sweep writes to" "$dir/err" || fail "compared with itself: $(cat "$dir/err")"
+[ $got -eq 2 ] && grep -q "is the output folder of this sweep" "$dir/err" || fail "compared with itself: $(cat "$dir/err")"
 sweep --ablation --against "$dir/new/x"
 [ $got -eq 2 ] || fail "nothing to compare accepted"
 rm "$dir/moving"
@@ -402,7 +402,7 @@ named()
     done
 }
 named portions 'first layers' 'first tiers' 'first bytes of the file' 'first tiers, what moves' '100 %'
-named errors 'camera' 'it_s 1' 'PSNR, dB' 'PSNR of what moves, dB'
+named errors 'camera' 'it_s 1' 'PSNR, dB' 'PSNR of moving regions, dB'
 line '^0.5 1 0.25 0.75 0.5 1.5 34$' "$out/errors.gp"
 sweep --lambda 1,2,4 --yardsticks none --resume
 measured 0
@@ -467,7 +467,7 @@ done
 grep -o 'base64,[^"]*' "$dir/real/index.html" | head -n 1 | cut -c 8- | base64 -d | cmp - "$dir/real/worst.png" ||
     fail "another picture on the page"
 line '^\$moving' "$dir/real/views.gp"
-line "of what moves'" "$dir/real/views.gp"
+line "of moving regions'" "$dir/real/views.gp"
 # shellcheck disable=SC2086
 ./adcgs-enc "$dir/tiny" -o "$dir/whole.adcgs" --lambda 0.3 --seed 2 $small 2>"$dir/err" || fail "whole: $(cat "$dir/err")"
 cmp "$dir/whole.adcgs" "$dir/real/lambda-0.3-seed-2.adcgs" || fail "another stream from a shared beginning"
